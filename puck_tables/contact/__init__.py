@@ -1,0 +1,1 @@
+"""What the floor does to the puck: slow, trusted, independent of the compiled code."""

@@ -1,0 +1,74 @@
+"""Pressure laws: how the load is spread over the base before friction tilts it.
+
+The contact pressure of a sliding puck is σ = (N/πr²) W(ρ) (1 + b̂ x/r + ĉ y/r) with W an
+axisymmetric weight normalised to ∫₀¹ W ρ dρ = 1/2.  The friction integrals need W only through
+its chord moments.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+FloatArray = npt.NDArray[np.float64]
+
+# Half of the Gauss-Legendre rule for χ ∈ [-π/2, π/2]; the integrands are even in χ.
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(48)
+_CHI = 0.5 * np.pi * _NODES[24:]
+_CHI_WEIGHT = np.pi * _WEIGHTS[24:]
+
+
+@dataclass(frozen=True)
+class PressureLaw:
+    """An axisymmetric pressure law on the unit disc.
+
+    Parameters
+    ----------
+    name : str
+        The name a table file carries.
+    weight : callable
+        W(ρ), shape-preserving, for ρ in [0, 1); normalised to ∫ W ρ dρ = 1/2.
+
+    Examples
+    --------
+    >>> UNIFORM.name
+    'uniform'
+    """
+
+    name: str
+    weight: Callable[[FloatArray], FloatArray]
+
+    def chord_moments(self, distance: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Moments ∫ W dl and ∫ W l² dl along the chord at a distance from the centre.
+
+        Parameters
+        ----------
+        distance : array, any shape
+            Distance of the chord from the centre of the unit disc, in [0, 1].
+
+        Returns
+        -------
+        tuple of two arrays of the same shape
+
+        Notes
+        -----
+        l = L sin χ with L² = 1 − distance² removes the square-root ends of every law that is
+        smooth in ρ² and √(1 − ρ²).
+
+        Examples
+        --------
+        >>> zeroth, second = UNIFORM.chord_moments(np.array([0.6]))
+        >>> float(zeroth[0].round(12)), float(second[0].round(12))
+        (1.6, 0.341333333333)
+        """
+        half_length = np.sqrt((1.0 - distance) * (1.0 + distance))[..., None]
+        position = half_length * np.sin(_CHI)
+        radius = np.sqrt(distance[..., None] ** 2 + position**2)
+        element = self.weight(radius) * half_length * np.cos(_CHI) * _CHI_WEIGHT
+        return element.sum(axis=-1), (element * position**2).sum(axis=-1)
+
+
+UNIFORM = PressureLaw("uniform", np.ones_like)

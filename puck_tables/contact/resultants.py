@@ -1,0 +1,153 @@
+"""Moment balance: from the five integrals to the friction resultants and the contact regime.
+
+A puck of height h decelerated by friction is loaded more in front.  The linear pressure law with
+the moments balanced gives (Salnikova, Treschev, Gallyamov 2012, eq. 5.2 and section 6), with
+δ = 2fh/r,
+
+    Δ   = 1 − δ² sin²φ p_b p_c,     b̂ = δ cos φ p_a/Δ,   ĉ = δ sin φ p_b b̂,
+    ρ_∥ = p_a/Δ,   ρ_⊥ = δ p_a p_b/Δ,   ρ_ω = 2 [p_d + δ² cos²φ p_a p_b p_e/Δ].
+
+The friction on the puck is −fN cos φ ρ_∥ along its velocity, −fN sin φ cos φ ρ_⊥ across (to the
+left), and the torque −(fNr/2) sin φ ρ_ω.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables.contact.integrals import (
+    FloatArray,
+    PatchIntegrals,
+    SlipDirection,
+    slip_direction,
+)
+from puck_tables.errors import InputError
+
+# How far rounding may push the pressure below zero where it just touches it (δ = 1, φ = 0).
+CONTACT_SLACK = 1e-12
+
+
+class Resultants(NamedTuple):
+    """Dimensionless friction resultants: along the velocity, across it, about the vertical."""
+
+    parallel: FloatArray
+    perpendicular: FloatArray
+    spin: FloatArray
+
+
+def moment_balance(
+    p: PatchIntegrals, direction: SlipDirection, delta: npt.ArrayLike
+) -> Resultants:
+    """Resultants of full contact from the five integrals (uniform pressure).
+
+    Parameters
+    ----------
+    p : PatchIntegrals
+    direction : SlipDirection
+        The direction the integrals belong to, of the same shape.
+    delta : array_like
+        Dimensionless height δ = 2fh/r, broadcast against ``p``.
+
+    Returns
+    -------
+    Resultants
+        Dimensionless, of the broadcast shape.
+
+    Examples
+    --------
+    >>> from puck_tables.contact import quadrature
+    >>> phi = np.pi / 2
+    >>> rho = moment_balance(quadrature.integrals(phi), slip_direction(phi), 1.0)
+    >>> float(rho.parallel.round(14)), float(rho.spin.round(14))
+    (0.9, 1.33333333333333)
+    """
+    height = np.asarray(delta, dtype=np.float64)
+    denominator = 1.0 - height**2 * direction.sin_squared * p.b * p.c
+    parallel = p.a / denominator
+    perpendicular = height * parallel * p.b
+    spin = 2.0 * (p.d + height**2 * direction.cos_squared * parallel * p.b * p.e)
+    return Resultants(*np.broadcast_arrays(parallel, perpendicular, spin))
+
+
+def pressure_tilt(
+    rho: Resultants, direction: SlipDirection, delta: npt.ArrayLike
+) -> FloatArray:
+    """Relative tilt of the pressure, hypot(b̂, ĉ): contact is full while it is at most 1.
+
+    Parameters
+    ----------
+    rho, direction
+        Resultants and the slip direction they belong to.
+    delta : array_like
+        Dimensionless height, broadcast.
+
+    Notes
+    -----
+    b̂ = δ cos φ ρ_∥ and ĉ = δ cos φ sin φ ρ_⊥, so the tilt is δ times the friction force over fN
+    (Salnikova, Treschev, Gallyamov 2012, Prop. 4).
+
+    Examples
+    --------
+    >>> from puck_tables.contact import closed_form
+    >>> rho = moment_balance(closed_form.integrals(0.0), slip_direction(0.0), 1.0)
+    >>> float(pressure_tilt(rho, slip_direction(0.0), 1.0))
+    1.0
+    """
+    force = np.hypot(rho.parallel, np.sqrt(direction.sin_squared) * rho.perpendicular)
+    return np.asarray(delta) * np.sqrt(direction.cos_squared) * force
+
+
+def checked_delta(delta: npt.ArrayLike) -> FloatArray:
+    """``delta`` as an array, refused unless finite and not negative.
+
+    Examples
+    --------
+    >>> float(checked_delta(0.5))
+    0.5
+    """
+    try:
+        height = np.asarray(delta, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise InputError("delta must be real numbers: delta = 2 f h / r") from None
+    if not np.all((height >= 0.0) & (height < np.inf)):
+        worst = height[~((height >= 0.0) & (height < np.inf))].flat[0]
+        raise InputError(f"delta = 2 f h / r must be finite and not negative, got {worst}")
+    return height
+
+
+def is_full_contact(phi: npt.ArrayLike, delta: npt.ArrayLike) -> npt.NDArray[np.bool_]:
+    """Whether the whole base stays loaded: where the linear pressure law is nowhere negative.
+
+    Parameters
+    ----------
+    phi : array_like, radians, in [−π/2, π/2]
+    delta : array_like
+        Dimensionless height δ = 2fh/r ≥ 0, broadcast against ``phi``.
+
+    Returns
+    -------
+    array of bool, of the broadcast shape
+
+    Raises
+    ------
+    InputError
+        If an angle or a height is not finite or outside its range.
+
+    References
+    ----------
+    Salnikova, Treschev, Gallyamov 2012, Prop. 4: full contact at every φ exactly when δ ≤ 1.
+
+    Examples
+    --------
+    >>> is_full_contact([0.0, np.pi / 4], 1.1).tolist()  # the limit at π/4 is δ = 1.15914
+    [False, True]
+    """
+    from puck_tables.contact.closed_form import integrals
+
+    direction = slip_direction(phi)
+    height = checked_delta(delta)
+    rho = moment_balance(integrals(phi), direction, height)
+    return np.asarray(pressure_tilt(rho, direction, height) <= 1.0 + CONTACT_SLACK)

@@ -1,0 +1,31 @@
+"""Every exception of the package; each message is one sentence that says what to do."""
+
+from __future__ import annotations
+
+
+class PuckError(Exception):
+    """Base class: whatever the package refuses to do, it refuses with one of these."""
+
+
+class InputError(PuckError, ValueError):
+    """An argument is not a number, has the wrong shape or lies outside its range."""
+
+
+class ContactError(InputError):
+    """The state lies outside the law of full contact: part of the base would be pulled."""
+
+
+class AccuracyError(InputError):
+    """The accuracy asked for is out of reach of the chosen method."""
+
+
+class TableError(PuckError):
+    """A file cannot be used as a table: missing, altered, of another kind or format."""
+
+
+class OutputError(PuckError, OSError):
+    """A result could not be written; nothing was left half-written."""
+
+
+class MissingExtraError(PuckError, ImportError):
+    """An optional package is needed for this and is not installed."""

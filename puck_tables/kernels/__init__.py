@@ -1,0 +1,1 @@
+"""Compiled building blocks: the friction law as the hot loop reads it."""

@@ -1,0 +1,89 @@
+"""The one door to numba: how every compiled function of the package is made and cached.
+
+numba's own disk cache notices an edit of the file a function stands in, but not an edit of the
+functions it calls from elsewhere.  So the cache folder carries a digest of every source file of
+the package: after any edit, nothing compiled before can be found.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import sys
+import tempfile
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numba
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+_PACKAGE = Path(__file__).resolve().parent.parent
+
+
+@cache
+def source_digest() -> str:
+    """Digest of all sources of the package (16 hexadecimal digits)."""
+    digest = hashlib.sha256()
+    for path in sorted(_PACKAGE.rglob("*.py")):
+        digest.update(path.relative_to(_PACKAGE).as_posix().encode() + b"\0" + path.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+def _user_cache() -> Path:
+    if sys.platform == "win32":
+        base = os.environ.get("LOCALAPPDATA", str(Path.home() / "AppData" / "Local"))
+    elif sys.platform == "darwin":
+        base = str(Path.home() / "Library" / "Caches")
+    else:
+        base = os.environ.get("XDG_CACHE_HOME", str(Path.home() / ".cache"))
+    return Path(base) / "puck-tables"
+
+
+@cache
+def cache_folder() -> str | None:
+    """Where compiled code is kept; None where no folder can be written.
+
+    ``NUMBA_CACHE_DIR`` if set, else next to the package, else the user's cache folder.
+    """
+    chosen = os.environ.get("NUMBA_CACHE_DIR")
+    bases = [Path(chosen)] if chosen else [_PACKAGE / "__pycache__", _user_cache()]
+    for base in bases:
+        folder = base / f"compiled-{source_digest()}"
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            tempfile.TemporaryFile(dir=folder).close()
+        except OSError:
+            continue
+        return str(folder)
+    return None
+
+
+def kernel(function: Function) -> Function:
+    """Compile a function: no Python objects, no GIL, IEEE rules except fused multiply-add.
+
+    Division by zero gives inf or NaN as in NumPy; kernels report trouble by status codes.
+    """
+    return _compile(function, forceinline=False)
+
+
+def inlined(function: Function) -> Function:
+    """Compile a function that is pasted into every caller, so that loops over it vectorise."""
+    return _compile(function, forceinline=True)
+
+
+def _compile(function: Function, forceinline: bool) -> Function:
+    compiled: Any = numba.njit(
+        nogil=True, fastmath={"contract"}, error_model="numpy", forceinline=forceinline
+    )(function)
+    folder = cache_folder()
+    if folder is not None and hasattr(compiled, "enable_caching"):
+        before = numba.config.CACHE_DIR
+        numba.config.CACHE_DIR = folder
+        try:
+            compiled.enable_caching()
+        finally:
+            numba.config.CACHE_DIR = before
+    return compiled  # type: ignore[no-any-return]
