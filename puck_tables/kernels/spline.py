@@ -16,7 +16,8 @@ is uniform on the grid.  The resultants behave like x² ln|x| at φ = π/4; in �
 enough for a cubic spline to keep order 4.  All slopes vanish at both ends of η (the resultants are
 even about φ = 0 and π/2, and dφ/dη = 0 at π/4), so every side is a clamped spline.
 
-Coefficients: array (2, n_delta + 2, n_eta + 3, 3) of B-spline weights: side, δ, η, function.
+Coefficients: array (2, n_delta + 2, n_eta + 3, 3) of B-spline weights over 36, so that the
+B-splines can be taken without their 1/6: side, δ, η, function.
 """
 
 from __future__ import annotations
@@ -26,25 +27,22 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.kernels.compile import kernel
+from puck_tables.kernels.compile import inlined, kernel
 
 FloatArray = npt.NDArray[np.float64]
 
+_BLOCK = 128
 
-@kernel
+
+@inlined
 def basis(t: float) -> tuple[float, float, float, float]:
-    """The four uniform cubic B-splines that overlap a cell, at t ∈ [0, 1]."""
+    """Six times the four uniform cubic B-splines that overlap a cell, at t ∈ [0, 1]."""
     s = 1.0 - t
-    return (
-        s * s * s / 6.0,
-        (4.0 + t * t * (3.0 * t - 6.0)) / 6.0,
-        (4.0 + s * s * (3.0 * s - 6.0)) / 6.0,
-        t * t * t / 6.0,
-    )
+    return s * s * s, 4.0 + t * t * (3.0 * t - 6.0), 4.0 + s * s * (3.0 * s - 6.0), t * t * t
 
 
-@kernel
-def eta_of_phi(phi: float) -> tuple[int, float]:
+@inlined
+def side_and_eta(phi: float) -> tuple[int, float]:
     """Side and graded coordinate η of an angle |φ| ≤ π/2; tan by Lambert's continued fraction."""
     x = abs(phi) - 0.25 * math.pi
     y = x * x
@@ -53,72 +51,91 @@ def eta_of_phi(phi: float) -> tuple[int, float]:
     return (1 if x > 0.0 else 0), min(math.sqrt(math.sqrt(abs(up / down))), 1.0)
 
 
-@kernel
-def evaluate(
-    coefficients: FloatArray, side: int, eta: float, delta_share: float
+@inlined
+def _row(
+    c: FloatArray, k: int, w0: float, w1: float, w2: float, w3: float
 ) -> tuple[float, float, float]:
-    """The three friction ratios at (side, η, δ/δ_max)."""
-    n_delta = coefficients.shape[1] - 3
-    n_eta = coefficients.shape[2] - 3
-    p = eta * n_eta
-    i = min(int(p), n_eta - 1)
-    q = delta_share * n_delta
-    j = min(int(q), n_delta - 1)
-    w0, w1, w2, w3 = basis(p - i)
-    inverse, across, spin = 0.0, 0.0, 0.0
-    weights = basis(q - j)
-    for m in range(4):
-        c = coefficients[side, j + m]
-        w = weights[m]
-        inverse += w * (w0 * c[i, 0] + w1 * c[i + 1, 0] + w2 * c[i + 2, 0] + w3 * c[i + 3, 0])
-        across += w * (w0 * c[i, 1] + w1 * c[i + 1, 1] + w2 * c[i + 2, 1] + w3 * c[i + 3, 1])
-        spin += w * (w0 * c[i, 2] + w1 * c[i + 1, 2] + w2 * c[i + 2, 2] + w3 * c[i + 3, 2])
-    return inverse, across, spin
-
-
-@kernel
-def cut(coefficients: FloatArray, delta_share: float, out: FloatArray) -> None:
-    """Contract the δ axis once for a run at fixed δ: ``out`` is (2, n_eta + 3, 3)."""
-    n_delta = coefficients.shape[1] - 3
-    q = delta_share * n_delta
-    j = min(int(q), n_delta - 1)
-    w0, w1, w2, w3 = basis(q - j)
-    for side in range(2):
-        a, b = coefficients[side, j], coefficients[side, j + 1]
-        c, d = coefficients[side, j + 2], coefficients[side, j + 3]
-        for i in range(out.shape[1]):
-            for f in range(3):
-                out[side, i, f] = w0 * a[i, f] + w1 * b[i, f] + w2 * c[i, f] + w3 * d[i, f]
-
-
-@kernel
-def evaluate_cut(slice_: FloatArray, side: int, eta: float) -> tuple[float, float, float]:
-    """The three friction ratios at (side, η) of a slice made by :func:`cut`."""
-    n_eta = slice_.shape[1] - 3
-    p = eta * n_eta
-    i = min(int(p), n_eta - 1)
-    w0, w1, w2, w3 = basis(p - i)
-    c = slice_[side]
+    """Three functions at once from four neighbouring coefficients each."""
     return (
-        w0 * c[i, 0] + w1 * c[i + 1, 0] + w2 * c[i + 2, 0] + w3 * c[i + 3, 0],
-        w0 * c[i, 1] + w1 * c[i + 1, 1] + w2 * c[i + 2, 1] + w3 * c[i + 3, 1],
-        w0 * c[i, 2] + w1 * c[i + 1, 2] + w2 * c[i + 2, 2] + w3 * c[i + 3, 2],
+        w0 * c[k] + w1 * c[k + 3] + w2 * c[k + 6] + w3 * c[k + 9],
+        w0 * c[k + 1] + w1 * c[k + 4] + w2 * c[k + 7] + w3 * c[k + 10],
+        w0 * c[k + 2] + w1 * c[k + 5] + w2 * c[k + 8] + w3 * c[k + 11],
     )
 
 
 @kernel
 def fill_resultants(
-    coefficients: FloatArray,
-    delta_max: float,
-    phi: FloatArray,
-    delta: FloatArray,
-    out: FloatArray,
+    coefficients: FloatArray, delta_max: float, phi: FloatArray, delta: FloatArray, out: FloatArray
 ) -> None:
-    """ρ_∥, ρ_⊥, ρ_ω at flat arrays of points into ``out`` (3, n); arguments already checked."""
-    for n in range(phi.size):
-        side, eta = eta_of_phi(phi[n])
-        inverse, across, spin = evaluate(coefficients, side, eta, delta[n] / delta_max)
-        parallel = 1.0 / inverse
-        out[0, n] = parallel
-        out[1, n] = across * parallel
-        out[2, n] = spin * parallel
+    """ρ_∥, ρ_⊥, ρ_ω at flat arrays of points into ``out`` (3, n); arguments already checked.
+
+    In blocks of three loops: where and with which weights (vectorised), the sums (short dependency
+    chains: one point does not wait for another), the division (vectorised).
+    """
+    n_delta, n_eta = coefficients.shape[1] - 3, coefficients.shape[2] - 3
+    c = coefficients.reshape(-1)
+    row = 3 * (n_eta + 3)
+    step = np.uint64(row)
+    first = np.empty(_BLOCK, np.int64)
+    w = np.empty((8, _BLOCK))
+    w0, w1, w2, w3 = w[0], w[1], w[2], w[3]
+    v0, v1, v2, v3 = w[4], w[5], w[6], w[7]
+    for start in range(0, phi.size, _BLOCK):
+        angle = phi[start : start + _BLOCK]
+        height = delta[start : start + _BLOCK]
+        parallel = out[0, start : start + _BLOCK]
+        perpendicular = out[1, start : start + _BLOCK]
+        spin = out[2, start : start + _BLOCK]
+        for n in range(angle.size):
+            side, eta = side_and_eta(angle[n])
+            p = eta * n_eta
+            i = min(int(p), n_eta - 1)
+            q = height[n] / delta_max * n_delta
+            j = min(int(q), n_delta - 1)
+            first[n] = (side * (n_delta + 3) + j) * row + 3 * i
+            w0[n], w1[n], w2[n], w3[n] = basis(p - i)
+            v0[n], v1[n], v2[n], v3[n] = basis(q - j)
+        for n in range(angle.size):
+            k = np.uint64(first[n])  # unsigned: no test for negative indices
+            a, b, d, e = w0[n], w1[n], w2[n], w3[n]
+            f0, g0, h0 = _row(c, k, a, b, d, e)
+            f1, g1, h1 = _row(c, k + step, a, b, d, e)
+            f2, g2, h2 = _row(c, k + step + step, a, b, d, e)
+            f3, g3, h3 = _row(c, k + step + step + step, a, b, d, e)
+            a, b, d, e = v0[n], v1[n], v2[n], v3[n]
+            parallel[n] = a * f0 + b * f1 + d * f2 + e * f3
+            perpendicular[n] = a * g0 + b * g1 + d * g2 + e * g3
+            spin[n] = a * h0 + b * h1 + d * h2 + e * h3
+        for n in range(angle.size):
+            parallel[n] = 1.0 / parallel[n]
+            perpendicular[n] *= parallel[n]
+            spin[n] *= parallel[n]
+
+
+@kernel
+def cut(coefficients: FloatArray, delta_share: float, out: FloatArray) -> None:
+    """Contract the δ axis once for a run at fixed δ/δ_max: ``out`` is (2, 3 (n_eta + 3))."""
+    n_delta = coefficients.shape[1] - 3
+    rows = coefficients.reshape(2, n_delta + 3, -1)
+    q = delta_share * n_delta
+    j = min(int(q), n_delta - 1)
+    w0, w1, w2, w3 = basis(q - j)
+    for side in range(2):
+        for i in range(out.shape[1]):
+            out[side, i] = (
+                w0 * rows[side, j, i]
+                + w1 * rows[side, j + 1, i]
+                + w2 * rows[side, j + 2, i]
+                + w3 * rows[side, j + 3, i]
+            )
+
+
+@inlined
+def evaluate_cut(cut_: FloatArray, side: int, eta: float) -> tuple[float, float, float]:
+    """The three friction ratios at (side, η) from the contraction made by :func:`cut`."""
+    row = cut_.shape[1]
+    n_eta = row // 3 - 3
+    p = eta * n_eta
+    i = min(int(p), n_eta - 1)
+    w0, w1, w2, w3 = basis(p - i)
+    return _row(cut_.reshape(-1), np.uint64(side * row + 3 * i), w0, w1, w2, w3)

@@ -1,0 +1,1 @@
+"""Resultants computed once and looked up ever after."""

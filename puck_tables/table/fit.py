@@ -1,0 +1,98 @@
+"""From node values to B-spline coefficients."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+FloatArray = npt.NDArray[np.float64]
+
+
+def clamped_coefficients(values: FloatArray) -> FloatArray:
+    """Coefficients of the uniform cubic spline with zero slope at both ends, along axis 0.
+
+    Parameters
+    ----------
+    values : array (n + 1, …)
+
+    Returns
+    -------
+    array (n + 3, …)
+
+    Notes
+    -----
+    Zero slopes make the spline even about both ends: the interpolation conditions
+    (c_{i−1} + 4 c_i + c_{i+1})/6 = f_i of the reflected, periodic sequence are a circular
+    convolution, divided out by a Fourier transform.
+
+    Examples
+    --------
+    >>> clamped_coefficients(np.ones(5)).round(12).tolist()
+    [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0]
+    """
+    n = len(values) - 1
+    spectrum = np.fft.rfft(np.concatenate([values, values[-2:0:-1]]), axis=0)
+    symbol = (4.0 + 2.0 * np.cos(np.pi * np.arange(n + 1) / n)) / 6.0
+    spectrum /= symbol.reshape(-1, *([1] * (values.ndim - 1)))
+    c = np.fft.irfft(spectrum, 2 * n, axis=0)[: n + 1]
+    return np.concatenate([c[1:2], c, c[-2:-1]])
+
+
+def not_a_knot_coefficients(values: FloatArray) -> FloatArray:
+    """Coefficients of the uniform cubic spline with not-a-knot ends, along axis 0.
+
+    Parameters
+    ----------
+    values : array (n + 1, …), n ≥ 3
+
+    Returns
+    -------
+    array (n + 3, …); cubics are reproduced exactly
+
+    Examples
+    --------
+    >>> c = not_a_knot_coefficients(np.arange(4.0) ** 3)
+    >>> float(((c[1] + 23 * c[2] + 23 * c[3] + c[4]) / 48).round(12))  # at 1.5
+    3.375
+    """
+    size = len(values)
+    system = np.zeros((size + 2, size + 2))
+    rows = np.arange(size)
+    for offset, weight in enumerate((1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0)):
+        system[rows + 1, rows + offset] = weight
+    jump = (1.0, -4.0, 6.0, -4.0, 1.0)  # of the third derivative at the last inner knots
+    system[0, :5] = jump
+    system[-1, -5:] = jump
+    right = np.zeros((size + 2, *values.shape[1:]))
+    right[1:-1] = values
+    flat = np.linalg.solve(system, right.reshape(size + 2, -1))
+    return flat.reshape(right.shape)
+
+
+def table_coefficients(resultants: FloatArray) -> FloatArray:
+    """Spline coefficients of the friction ratios from tabulated resultants.
+
+    Parameters
+    ----------
+    resultants : array (n_phi, n_delta, 3)
+        ρ_∥, ρ_⊥, ρ_ω at the nodes.
+
+    Returns
+    -------
+    array (2, n_delta + 2, n_eta + 3, 3)
+        As :mod:`puck_tables.kernels.spline` reads it (B-spline weights over 36); side 0 is φ < π/4, η grows away from π/4.
+
+    Examples
+    --------
+    >>> table_coefficients(np.ones((9, 4, 3))).shape
+    (2, 6, 7, 3)
+    """
+    parallel = resultants[:, :, 0]
+    ratios = np.stack(
+        [1.0 / parallel, resultants[:, :, 1] / parallel, resultants[:, :, 2] / parallel], axis=-1
+    )
+    middle = len(ratios) // 2
+    sides = np.stack([ratios[middle::-1], ratios[middle:]], axis=1)  # (eta, side, delta, function)
+    along_eta = clamped_coefficients(sides)
+    along_delta = not_a_knot_coefficients(np.moveaxis(along_eta, 2, 0))
+    return np.ascontiguousarray(along_delta.transpose(2, 0, 1, 3)) / 36.0
