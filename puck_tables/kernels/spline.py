@@ -114,28 +114,30 @@ def fill_resultants(
 
 @kernel
 def cut(coefficients: FloatArray, delta_share: float, out: FloatArray) -> None:
-    """Contract the δ axis once for a run at fixed δ/δ_max: ``out`` is (2, 3 (n_eta + 3))."""
+    """Contract the δ axis once for a run at fixed δ/δ_max: ``out`` is flat, 2·3·(n_eta + 3)."""
     n_delta = coefficients.shape[1] - 3
-    rows = coefficients.reshape(2, n_delta + 3, -1)
     q = delta_share * n_delta
     j = min(int(q), n_delta - 1)
     w0, w1, w2, w3 = basis(q - j)
+    k = 0
     for side in range(2):
-        for i in range(out.shape[1]):
-            out[side, i] = (
-                w0 * rows[side, j, i]
-                + w1 * rows[side, j + 1, i]
-                + w2 * rows[side, j + 2, i]
-                + w3 * rows[side, j + 3, i]
-            )
+        for i in range(coefficients.shape[2]):
+            for f in range(3):
+                out[k] = (
+                    w0 * coefficients[side, j, i, f]
+                    + w1 * coefficients[side, j + 1, i, f]
+                    + w2 * coefficients[side, j + 2, i, f]
+                    + w3 * coefficients[side, j + 3, i, f]
+                )
+                k += 1
 
 
 @inlined
 def evaluate_cut(cut_: FloatArray, side: int, eta: float) -> tuple[float, float, float]:
     """The three friction ratios at (side, η) from the contraction made by :func:`cut`."""
-    row = cut_.shape[1]
+    row = cut_.size // 2
     n_eta = row // 3 - 3
     p = eta * n_eta
     i = min(int(p), n_eta - 1)
     w0, w1, w2, w3 = basis(p - i)
-    return _row(cut_.reshape(-1), np.uint64(side * row + 3 * i), w0, w1, w2, w3)
+    return _row(cut_, np.uint64(side * row + 3 * i), w0, w1, w2, w3)

@@ -1,0 +1,1 @@
+"""The hot loop: equations of motion, steppers, events; everything compiled."""

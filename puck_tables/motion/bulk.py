@@ -1,0 +1,84 @@
+"""Stops of many launches: the compiled loop behind ``stop`` and ``sweep``."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables.kernels.compile import kernel
+from puck_tables.kernels.spline import cut as cut_table
+from puck_tables.motion.equations import LENGTH, PSI, SIZE, THETA, U, X, Y, T, at_constant_angle
+from puck_tables.motion.limits import log_ratio
+from puck_tables.motion.path import STOPPED, integrate
+
+FloatArray = npt.NDArray[np.float64]
+
+OUTPUTS = ("stop_time", "stop_x", "stop_y", "path_length", "turn_angle", "body_angle")
+STATUS_MEANINGS = ("stopped", "step_limit", "overflow")
+OVERFLOW = 2
+
+_STEP_LIMIT = 100_000
+
+
+@kernel
+def fill_stops(
+    launches: FloatArray,
+    steps: float,
+    coefficients: FloatArray,
+    delta_max: float,
+    out: FloatArray,
+    status: npt.NDArray[np.int8],
+) -> None:
+    """Stops of launches (n, 6): vx, vy, ω, δ, J, r; ``out`` is (6, n) in the order of OUTPUTS.
+
+    One launch never influences another, so any cutting into chunks gives the same bits.
+    """
+    cut = np.empty(2 * 3 * coefficients.shape[2])
+    cut_delta = -1.0
+    no_s, no_y = np.empty(0), np.empty((0, SIZE))
+    start = np.empty(SIZE)
+    result = np.empty(SIZE + 2)
+    for n in range(launches.shape[0]):
+        vx, vy, spin = launches[n, 0], launches[n, 1], launches[n, 2]
+        delta, decel, radius = launches[n, 3], launches[n, 4], launches[n, 5]
+        speed, rim = math.hypot(vx, vy), radius * abs(spin)
+        q0 = math.hypot(speed, rim)
+        status[n] = STOPPED
+        if q0 == 0.0:
+            for i in range(6):
+                out[i, n] = 0.0
+            continue
+        if delta != cut_delta:
+            cut_table(coefficients, delta / delta_max, cut)
+            cut_delta = delta
+        if speed == 0.0 or rim == 0.0:
+            for i in range(SIZE):
+                start[i] = 0.0
+            start[U] = math.inf if speed == 0.0 else -math.inf
+            at_constant_angle(0.0, start, math.inf, cut, delta, result)
+        else:
+            code, _ = integrate(
+                log_ratio(speed, rim), steps, 1.0, cut, delta, _STEP_LIMIT, no_s, no_y, result
+            )
+            status[n] = code
+        side = 1.0 if spin >= 0.0 else -1.0
+        ex, ey = (vx / speed, vy / speed) if speed > 0.0 else (1.0, 0.0)
+        time = q0 / decel
+        length = time * q0
+        along, left = result[X] * length, side * result[Y] * length
+        out[0, n] = result[T] * time
+        out[1, n] = along * ex - left * ey
+        out[2, n] = along * ey + left * ex
+        out[3, n] = result[LENGTH] * length
+        out[4, n] = side * result[PSI]
+        out[5, n] = side * result[THETA] * (length / radius)
+        finite = True
+        for i in range(6):
+            finite = finite and math.isfinite(out[i, n])
+        if status[n] == STOPPED and not finite:
+            status[n] = OVERFLOW
+        if status[n] != STOPPED:
+            for i in range(6):
+                out[i, n] = math.nan

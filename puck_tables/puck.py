@@ -1,0 +1,129 @@
+"""What the user has: a puck, a floor, a launch; checked once, at the door."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables.errors import InputError
+
+STANDARD_GRAVITY = 9.80665
+
+
+def positive(name: str, value: float, unit: str) -> float:
+    """A finite number greater than zero.
+
+    Raises
+    ------
+    InputError
+
+    Examples
+    --------
+    >>> positive("radius", 0.04, "m")
+    0.04
+    """
+    number = real(name, value, unit)
+    if not number > 0.0:
+        raise InputError(f"{name} must be greater than 0 {unit}, got {number:g}".replace("  ", " "))
+    return number
+
+
+def real(name: str, value: float, unit: str) -> float:
+    """A finite number.
+
+    Raises
+    ------
+    InputError
+
+    Examples
+    --------
+    >>> real("w0", 5, "rad/s")
+    5.0
+    """
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        raise InputError(f"{name} must be a number in {unit}, got {value!r}") from None
+    if not math.isfinite(number):
+        raise InputError(f"{name} must be a finite number in {unit}, got {number}")
+    return number
+
+
+def similarity_parameters(
+    radius: float, height: float, friction: float, gravity: float = STANDARD_GRAVITY
+) -> tuple[float, float]:
+    """δ and J of a real puck: the two numbers its motion depends on besides its radius.
+
+    Parameters
+    ----------
+    radius, height : metres
+    friction : Coulomb coefficient f
+    gravity : m/s²
+
+    Returns
+    -------
+    delta, decel
+        δ = 2fh/r (dimensionless height) and J = fg (m/s²).
+
+    Raises
+    ------
+    InputError
+        If a number is not finite or not greater than zero.
+
+    References
+    ----------
+    Salnikova, Treschev, Gallyamov 2012, section 1.
+
+    Examples
+    --------
+    >>> similarity_parameters(radius=0.0381, height=0.0254, friction=0.1)  # ice-hockey puck
+    (0.13333333333333333, 0.980665)
+    """
+    r, h = positive("radius", radius, "m"), positive("height", height, "m")
+    f, g = positive("friction", friction, ""), positive("gravity", gravity, "m/s^2")
+    return 2.0 * f * h / r, f * g
+
+
+def finite_array(name: str, values: npt.ArrayLike, unit: str) -> npt.NDArray[np.float64]:
+    """An array of finite numbers.
+
+    Raises
+    ------
+    InputError
+
+    Examples
+    --------
+    >>> finite_array("w0", [1, 2], "rad/s")
+    array([1., 2.])
+    """
+    try:
+        array = np.asarray(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise InputError(f"{name} must be real numbers in {unit}") from None
+    if not np.isfinite(array).all():
+        raise InputError(
+            f"{name} must be finite numbers in {unit}, got {array[~np.isfinite(array)].flat[0]}"
+        )
+    return array
+
+
+def velocity_array(v0: npt.ArrayLike) -> npt.NDArray[np.float64]:
+    """Velocities of shape (…, 2), m/s.
+
+    Raises
+    ------
+    InputError
+
+    Examples
+    --------
+    >>> velocity_array((1, 0))
+    array([1., 0.])
+    """
+    velocity = finite_array("v0", v0, "m/s")
+    if velocity.ndim == 0 or velocity.shape[-1] != 2:
+        raise InputError(
+            f"v0 must have two components (vx, vy) in m/s, got an array of shape {velocity.shape}"
+        )
+    return velocity
