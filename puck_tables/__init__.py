@@ -1,0 +1,91 @@
+"""Exact motion of a flat puck that slides and spins under dry friction, until it stops.
+
+Importing the package stays light: numpy and numba are loaded when something is computed.
+
+>>> import puck_tables
+>>> round(puck_tables.simulate((1.0, 0.0), 5.0, delta=1.0).stop_time, 8)
+4.0001888
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from puck_tables._version import __version__
+
+if TYPE_CHECKING:
+    from puck_tables.contact.resultants import Resultants, is_full_contact
+    from puck_tables.kernels.closed_form import resultants
+    from puck_tables.motion.limits import limit_angle
+    from puck_tables.plots import plot_map, plot_trajectory
+    from puck_tables.puck import similarity_parameters
+    from puck_tables.result_file import save_map, save_trajectory
+    from puck_tables.stop_map import StopMap, sweep
+    from puck_tables.stops import Stops, stop
+    from puck_tables.table.build import build_table
+    from puck_tables.table.check import CheckReport, validate
+    from puck_tables.table.file import load_table, save_table
+    from puck_tables.table.table import Table
+    from puck_tables.trajectory import Trajectory, simulate
+
+_HOMES = {
+    "Resultants": "contact.resultants",
+    "is_full_contact": "contact.resultants",
+    "resultants": "kernels.closed_form",
+    "limit_angle": "motion.limits",
+    "plot_map": "plots",
+    "plot_trajectory": "plots",
+    "similarity_parameters": "puck",
+    "save_map": "result_file",
+    "save_trajectory": "result_file",
+    "Trajectory": "trajectory",
+    "simulate": "trajectory",
+    "Stops": "stops",
+    "stop": "stops",
+    "StopMap": "stop_map",
+    "sweep": "stop_map",
+    "build_table": "table.build",
+    "CheckReport": "table.check",
+    "validate": "table.check",
+    "load_table": "table.file",
+    "save_table": "table.file",
+    "Table": "table.table",
+}
+
+__all__ = [
+    "CheckReport",
+    "Resultants",
+    "StopMap",
+    "Stops",
+    "Table",
+    "Trajectory",
+    "__version__",
+    "build_table",
+    "is_full_contact",
+    "limit_angle",
+    "load_table",
+    "plot_map",
+    "plot_trajectory",
+    "resultants",
+    "save_map",
+    "save_table",
+    "save_trajectory",
+    "similarity_parameters",
+    "simulate",
+    "stop",
+    "sweep",
+    "validate",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOMES:
+        raise AttributeError(f"module 'puck_tables' has no attribute {name!r}")
+    value = getattr(import_module(f"puck_tables.{_HOMES[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return __all__

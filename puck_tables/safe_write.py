@@ -1,4 +1,4 @@
-"""Writing files so that nothing is lost: checked before the work, complete or not at all after it."""
+"""Writing files so that nothing is lost: checked before the work, whole or not at all after."""
 
 from __future__ import annotations
 
@@ -29,10 +29,10 @@ def check_target(path: str | Path, overwrite: bool = False) -> Path:
 
     Examples
     --------
-    >>> check_target("/nowhere/run.csv")
+    >>> check_target("/nowhere/a.csv")
     Traceback (most recent call last):
     ...
-    puck_tables.errors.OutputError: cannot write /nowhere/run.csv: the folder /nowhere does not exist
+    puck_tables.errors.OutputError: cannot write /nowhere/a.csv: the folder /nowhere does not exist
     """
     target = Path(path)
     folder = target.parent
@@ -41,7 +41,9 @@ def check_target(path: str | Path, overwrite: bool = False) -> Path:
     if target.is_dir():
         raise OutputError(f"cannot write {target}: it is a folder; give a file name")
     if target.exists() and not overwrite:
-        raise OutputError(f"{target} exists already; use --overwrite (overwrite=True) to replace it")
+        raise OutputError(
+            f"{target} exists already; use --overwrite (overwrite=True) to replace it"
+        )
     try:
         with tempfile.TemporaryFile(dir=folder):
             pass

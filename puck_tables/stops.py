@@ -21,6 +21,8 @@ DEFAULT_ACCURACY = 1e-7
 RK4_CONSTANT = 8.0
 FEWEST_STEPS = 8
 
+OUTPUTS = ("stop_time", "stop_x", "stop_y", "path_length", "turn_angle", "body_angle")
+
 
 @dataclass(frozen=True)
 class Stops:
@@ -147,7 +149,9 @@ def positive_array(name: str, values: npt.ArrayLike, unit: str) -> FloatArray:
     """
     array = finite_array(name, values, unit)
     if not np.all(array > 0.0):
-        raise InputError(f"{name} must be greater than 0 {unit}, got {array[array <= 0.0].flat[0]:g}")
+        raise InputError(
+            f"{name} must be greater than 0 {unit}, got {array[array <= 0.0].flat[0]:g}"
+        )
     return array
 
 
@@ -162,9 +166,10 @@ def stops_of(
     >>> values[:, 0].round(12).tolist(), int(status[0])
     ([1.0, 0.5, 0.0, 0.5, 0.0, 0.0], 0)
     """
-    from puck_tables.motion.bulk import OUTPUTS, fill_stops
+    from puck_tables.motion.bulk import fill_stops
+    from puck_tables.motion.steppers import RK4
 
     out = np.empty((len(OUTPUTS), len(launches)))
     status = np.empty(len(launches), np.int8)
-    fill_stops(launches, steps, table.coefficients, table.delta_axis.upper, out, status)
+    fill_stops(launches, RK4, steps, table.coefficients, table.delta_axis.upper, out, status)
     return out, status

@@ -35,7 +35,7 @@ def shape_integrals(
     # The first AGM step by hand: a₀ = 1, b₀ = √m1 (1e-32 stands for the limit k = 1),
     # c₁ = m/(4a₁).  (x, y) carries B along the way, c_over_m and total carry G.
     geometric = np.sqrt(m1 + 1e-32)
-    x = 1.0
+    x: FloatArray | float = 1.0
     y = geometric
     mean = 0.5 + 0.5 * geometric
     geometric = np.sqrt(geometric)

@@ -38,9 +38,7 @@ class Resultants(NamedTuple):
     spin: FloatArray
 
 
-def moment_balance(
-    p: PatchIntegrals, direction: SlipDirection, delta: npt.ArrayLike
-) -> Resultants:
+def moment_balance(p: PatchIntegrals, direction: SlipDirection, delta: npt.ArrayLike) -> Resultants:
     """Resultants of full contact from the five integrals (uniform pressure).
 
     Parameters
@@ -72,9 +70,7 @@ def moment_balance(
     return Resultants(*np.broadcast_arrays(parallel, perpendicular, spin))
 
 
-def pressure_tilt(
-    rho: Resultants, direction: SlipDirection, delta: npt.ArrayLike
-) -> FloatArray:
+def pressure_tilt(rho: Resultants, direction: SlipDirection, delta: npt.ArrayLike) -> FloatArray:
     """Relative tilt of the pressure, hypot(b̂, ĉ): contact is full while it is at most 1.
 
     Parameters

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -19,7 +20,7 @@ from puck_tables.kernels.compile import inlined, kernel
 
 FloatArray = npt.NDArray[np.float64]
 
-_shape_integrals = inlined(closed_form.shape_integrals)
+_shape_integrals: Any = inlined(closed_form.shape_integrals)
 _BLOCK = 256
 
 

@@ -70,7 +70,10 @@ def kernel(function: Function) -> Function:
 
 
 def inlined(function: Function) -> Function:
-    """Compile a function that is pasted into every caller, so that loops over it vectorise."""
+    """Compile a function that is pasted into every caller, so that loops over it vectorise.
+
+    The callers keep what was compiled; it needs no cache of its own.
+    """
     return _compile(function, forceinline=True)
 
 
@@ -78,12 +81,13 @@ def _compile(function: Function, forceinline: bool) -> Function:
     compiled: Any = numba.njit(
         nogil=True, fastmath={"contract"}, error_model="numpy", forceinline=forceinline
     )(function)
-    folder = cache_folder()
+    folder = None if forceinline else cache_folder()
     if folder is not None and hasattr(compiled, "enable_caching"):
-        before = numba.config.CACHE_DIR
-        numba.config.CACHE_DIR = folder
+        config: Any = numba.config
+        before = config.CACHE_DIR
+        config.CACHE_DIR = folder
         try:
             compiled.enable_caching()
         finally:
-            numba.config.CACHE_DIR = before
-    return compiled  # type: ignore[no-any-return]
+            config.CACHE_DIR = before
+    return compiled

@@ -12,9 +12,9 @@ Coordinates: ``fast`` tells which side of φ = π/4 a point lies on, and
 
     η = |tan(φ − π/4)|^(1/4) = |(r|ω| − v)/(r|ω| + v)|^(1/4) ∈ [0, 1]
 
-is uniform on the grid.  The resultants behave like x² ln|x| at φ = π/4; in η that is η⁸ ln η, smooth
-enough for a cubic spline to keep order 4.  All slopes vanish at both ends of η (the resultants are
-even about φ = 0 and π/2, and dφ/dη = 0 at π/4), so every side is a clamped spline.
+is uniform on the grid.  The resultants behave like x² ln|x| at φ = π/4; in η that is η⁸ ln η,
+smooth enough for a cubic spline to keep order 4.  All slopes vanish at both ends of η (the
+resultants are even about φ = 0 and π/2, and dφ/dη = 0 at π/4): each side is a clamped spline.
 
 Coefficients: array (2, n_delta + 2, n_eta + 3, 3) of B-spline weights over 36, so that the
 B-splines can be taken without their 1/6: side, δ, η, function.
@@ -53,7 +53,7 @@ def side_and_eta(phi: float) -> tuple[int, float]:
 
 @inlined
 def _row(
-    c: FloatArray, k: int, w0: float, w1: float, w2: float, w3: float
+    c: FloatArray, k: np.uint64, w0: float, w1: float, w2: float, w3: float
 ) -> tuple[float, float, float]:
     """Three functions at once from four neighbouring coefficients each."""
     return (

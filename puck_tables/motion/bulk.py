@@ -9,13 +9,13 @@ import numpy.typing as npt
 
 from puck_tables.kernels.compile import kernel
 from puck_tables.kernels.spline import cut as cut_table
-from puck_tables.motion.equations import LENGTH, PSI, SIZE, THETA, U, X, Y, T, at_constant_angle
+from puck_tables.motion.equations import LENGTH, PSI, SIZE, THETA, T, U, X, Y, at_constant_angle
 from puck_tables.motion.limits import log_ratio
 from puck_tables.motion.path import STOPPED, integrate
+from puck_tables.motion.steppers import Tableau
 
 FloatArray = npt.NDArray[np.float64]
 
-OUTPUTS = ("stop_time", "stop_x", "stop_y", "path_length", "turn_angle", "body_angle")
 STATUS_MEANINGS = ("stopped", "step_limit", "overflow")
 OVERFLOW = 2
 
@@ -25,13 +25,14 @@ _STEP_LIMIT = 100_000
 @kernel
 def fill_stops(
     launches: FloatArray,
+    tableau: Tableau,
     steps: float,
     coefficients: FloatArray,
     delta_max: float,
     out: FloatArray,
     status: npt.NDArray[np.int8],
 ) -> None:
-    """Stops of launches (n, 6): vx, vy, ω, δ, J, r; ``out`` is (6, n) in the order of OUTPUTS.
+    """Stops of launches (n, 6): vx, vy, ω, δ, J, r, into ``out`` (6, n), see stops.OUTPUTS.
 
     One launch never influences another, so any cutting into chunks gives the same bits.
     """
@@ -60,7 +61,16 @@ def fill_stops(
             at_constant_angle(0.0, start, math.inf, cut, delta, result)
         else:
             code, _ = integrate(
-                log_ratio(speed, rim), steps, 1.0, cut, delta, _STEP_LIMIT, no_s, no_y, result
+                log_ratio(speed, rim),
+                tableau,
+                steps,
+                1.0,
+                cut,
+                delta,
+                _STEP_LIMIT,
+                no_s,
+                no_y,
+                result,
             )
             status[n] = code
         side = 1.0 if spin >= 0.0 else -1.0

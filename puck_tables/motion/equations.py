@@ -51,9 +51,7 @@ def slip_ratio(u: float) -> tuple[float, bool, float, float]:
 
 
 @inlined
-def ratios_at(
-    k: float, fast: bool, cut: FloatArray, delta: float
-) -> tuple[float, float, float]:
+def ratios_at(k: float, fast: bool, cut: FloatArray, delta: float) -> tuple[float, float, float]:
     """The friction ratios at a slip ratio: from a table cut at δ, or exact if it is empty."""
     if cut.size == 0:
         return friction_ratios(k, 1.0 if fast else 0.0, delta)

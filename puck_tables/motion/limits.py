@@ -29,7 +29,7 @@ REGIMES = {
 
 @kernel
 def limit_log_ratio(delta: float) -> float:
-    """ln tan φ₀, the only zero of ρ_ω/ρ_∥ − 1, by bisection on the closed forms."""
+    """Ln tan φ₀, the only zero of ρ_ω/ρ_∥ − 1, by bisection on the closed forms."""
     low, high = -40.0, 40.0
     while True:
         middle = 0.5 * (low + high)

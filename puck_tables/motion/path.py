@@ -21,14 +21,14 @@ from puck_tables.kernels.compile import inlined, kernel
 from puck_tables.motion.equations import (
     PSI,
     SIZE,
-    U,
     WORK,
     T,
+    U,
     at_constant_angle,
     derivatives,
     kinetic_energy,
 )
-from puck_tables.motion.steppers import STAGES, pair_step, rk4_step
+from puck_tables.motion.steppers import ROWS, Tableau, step
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -42,7 +42,7 @@ _LONGEST_STEP = 2.0  # the approach to the limit angle stays stable
 _NEAR_CROSSING = 0.5
 
 
-@kernel
+@inlined
 def rk4_length(s: float, u: float, steps: float) -> float:
     """Length of the next RK4 step when about ``steps`` are to be taken in all.
 
@@ -54,26 +54,9 @@ def rk4_length(s: float, u: float, steps: float) -> float:
 
 
 @kernel
-def step(
-    s: float,
-    y: FloatArray,
-    h: float,
-    adaptive: bool,
-    cut: FloatArray,
-    delta: float,
-    work: FloatArray,
-    out: FloatArray,
-) -> float:
-    """One step of either method; returns its error estimate (0 for RK4)."""
-    if adaptive:
-        return pair_step(s, y, h, cut, delta, work, out)
-    rk4_step(s, y, h, cut, delta, work, out)
-    return 0.0
-
-
-@kernel
 def integrate(
     u: float,
+    tableau: Tableau,
     steps: float,
     tolerance: float,
     cut: FloatArray,
@@ -88,8 +71,9 @@ def integrate(
     Parameters
     ----------
     u : start value, finite
-    steps : about how many RK4 steps to take; 0 for the adaptive pair
-    tolerance : local error per step of the adaptive pair
+    tableau : the method
+    steps : about how many steps to take; 0 lets the error estimate choose them
+    tolerance : the local error then allowed per step
     cut, delta : friction ratios at this δ; an empty cut means closed forms
     step_limit : the most steps
     s_path, y_path : arrays (n,), (n, 8) for the step ends, or empty when nobody wants them
@@ -100,7 +84,7 @@ def integrate(
     status, number of step ends
     """
     adaptive = steps == 0.0
-    work = np.empty((STAGES, SIZE))
+    work = np.empty((ROWS, SIZE))
     y = np.empty(SIZE)
     new = np.empty(SIZE)
     for i in range(SIZE):
@@ -116,7 +100,7 @@ def integrate(
     record = s_path.size > 0
     count = 1
     if record:
-        _record(0, s, y, s_path, y_path)
+        _record(count - 1, s, y, s_path, y_path)
     h = 0.02
     derivatives(s, y, cut, delta, work[0])
     while s < s_end:
@@ -127,7 +111,7 @@ def integrate(
         target = s_end if turn_read else TURN_FALL
         # never leave a sliver before the target
         trial = h if s + 1.1 * h < target else target - s
-        error = step(s, y, trial, adaptive, cut, delta, work, new)
+        error = step(tableau, s, y, trial, cut, delta, work, new)
         if adaptive and not error <= tolerance:
             shrink = 0.2 if not error < math.inf else max(0.2, 0.9 * (tolerance / error) ** 0.2)
             h = trial * shrink
@@ -136,12 +120,16 @@ def integrate(
             continue
         crossed = y[U] * new[U] < 0.0
         if crossed:
-            trial = _land_on_crossing(s, y, trial, adaptive, cut, delta, work, new)
+            trial = _land_on_crossing(tableau, s, y, trial, cut, delta, work, new)
         landed = not crossed and trial == target - s
         s = target if landed else s + trial
         for i in range(SIZE):
             y[i] = new[i]
-        derivatives(s, y, cut, delta, work[0])
+        if adaptive and not crossed:  # the pair's last stage is the next step's first
+            for i in range(SIZE):
+                work[0, i] = work[tableau.b.size - 1, i]
+        else:
+            derivatives(s, y, cut, delta, work[0])
         if landed and not turn_read:
             turn = y[PSI]
             turn_read = True
@@ -171,10 +159,10 @@ def _record(n: int, s: float, y: FloatArray, s_path: FloatArray, y_path: FloatAr
 
 @kernel
 def _land_on_crossing(
+    tableau: Tableau,
     s: float,
     y: FloatArray,
     h: float,
-    adaptive: bool,
     cut: FloatArray,
     delta: float,
     work: FloatArray,
@@ -187,7 +175,7 @@ def _land_on_crossing(
     rate = (new[U] - y[U]) / h
     for _ in range(12):
         h = min(max(h - new[U] / rate, 0.0), 1.5 * h)
-        step(s, y, h, adaptive, cut, delta, work, new)
+        step(tableau, s, y, h, cut, delta, work, new)
         if abs(new[U]) < 1e-15:
             break
         derivatives(s + h, new, cut, delta, work[6])
@@ -202,7 +190,7 @@ def states_at(
     s_path: FloatArray,
     y_path: FloatArray,
     result: FloatArray,
-    adaptive: bool,
+    tableau: Tableau,
     cut: FloatArray,
     delta: float,
     s_out: FloatArray,
@@ -213,7 +201,7 @@ def states_at(
     Dense output without an interpolation error: the moment is found by Newton's method on a step
     of the same method from the last step end before it.  At rest s = inf, and ψ is the turn.
     """
-    work = np.empty((STAGES, SIZE))
+    work = np.empty((ROWS, SIZE))
     new = np.empty(SIZE)
     last = s_path.size - 1
     for n in range(times.size):
@@ -240,12 +228,12 @@ def states_at(
         whole = s_path[i + 1] - s_path[i]
         h = whole * (time - first[T]) / (y_path[i + 1, T] - first[T])
         for _ in range(20):
-            step(s_path[i], first, h, adaptive, cut, delta, work, new)
+            step(tableau, s_path[i], first, h, cut, delta, work, new)
             derivatives(s_path[i] + h, new, cut, delta, work[6])
             change = (time - new[T]) / work[6, T]
             h = min(max(h + change, 0.0), whole)
             if abs(change) <= 4e-16 * (1.0 + s_path[i]):
                 break
-        step(s_path[i], first, h, adaptive, cut, delta, work, new)
+        step(tableau, s_path[i], first, h, cut, delta, work, new)
         new[T] = time
         _record(n, s_path[i] + h, new, s_out, y_out)

@@ -1,6 +1,8 @@
-"""One step of the classical Runge–Kutta method, and of the Dormand–Prince 5(4) pair."""
+"""One explicit Runge–Kutta step, for any tableau: the classical method and Dormand–Prince 5(4)."""
 
 from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -10,47 +12,49 @@ from puck_tables.motion.equations import SIZE, derivatives
 
 FloatArray = npt.NDArray[np.float64]
 
-STAGES = 8  # rows of work space: seven stages and one state
 
-# Dormand and Prince 1980, RK5(4)7M
-_C = np.array([0.0, 1 / 5, 3 / 10, 4 / 5, 8 / 9, 1.0, 1.0])
-_A = np.zeros((7, 7))
-_A[1, :1] = [1 / 5]
-_A[2, :2] = [3 / 40, 9 / 40]
-_A[3, :3] = [44 / 45, -56 / 15, 32 / 9]
-_A[4, :4] = [19372 / 6561, -25360 / 2187, 64448 / 6561, -212 / 729]
-_A[5, :5] = [9017 / 3168, -355 / 33, 46732 / 5247, 49 / 176, -5103 / 18656]
-_A[6, :6] = [35 / 384, 0.0, 500 / 1113, 125 / 192, -2187 / 6784, 11 / 84]
-_E = np.array([71 / 57600, 0.0, -71 / 16695, 71 / 1920, -17253 / 339200, 22 / 525, -1 / 40])
+class Tableau(NamedTuple):
+    """Butcher tableau: stage weights, stage nodes, weights, and error weights (zero: none)."""
+
+    a: FloatArray
+    c: FloatArray
+    b: FloatArray
+    e: FloatArray
+
+
+def _tableau(rows: list[list[float]], weights: list[float], error: list[float]) -> Tableau:
+    size = len(rows)
+    a = np.zeros((size, size))
+    for i, row in enumerate(rows):
+        a[i, : len(row)] = row
+    return Tableau(a, a.sum(axis=1), np.array(weights), np.array(error))
+
+
+# Kutta 1901
+RK4 = _tableau([[], [1 / 2], [0, 1 / 2], [0, 0, 1]], [1 / 6, 1 / 3, 1 / 3, 1 / 6], [0.0] * 4)
+
+# Dormand and Prince 1980, RK5(4)7M; the last stage is the next step's first
+_LAST = [35 / 384, 0.0, 500 / 1113, 125 / 192, -2187 / 6784, 11 / 84]
+DORMAND_PRINCE = _tableau(
+    [
+        [],
+        [1 / 5],
+        [3 / 40, 9 / 40],
+        [44 / 45, -56 / 15, 32 / 9],
+        [19372 / 6561, -25360 / 2187, 64448 / 6561, -212 / 729],
+        [9017 / 3168, -355 / 33, 46732 / 5247, 49 / 176, -5103 / 18656],
+        _LAST,
+    ],
+    [*_LAST, 0.0],
+    [71 / 57600, 0.0, -71 / 16695, 71 / 1920, -17253 / 339200, 22 / 525, -1 / 40],
+)
+
+ROWS = 8  # of the work space: at most seven stages, and a state
 
 
 @kernel
-def rk4_step(
-    s: float,
-    y: FloatArray,
-    h: float,
-    cut: FloatArray,
-    delta: float,
-    work: FloatArray,
-    out: FloatArray,
-) -> None:
-    """Classical Runge–Kutta of order 4 from (s, y) over h into ``out``; work[0] holds dy/ds at s."""
-    k1, k2, k3, k4, middle = work[0], work[1], work[2], work[3], work[7]
-    for i in range(SIZE):
-        middle[i] = y[i] + 0.5 * h * k1[i]
-    derivatives(s + 0.5 * h, middle, cut, delta, k2)
-    for i in range(SIZE):
-        middle[i] = y[i] + 0.5 * h * k2[i]
-    derivatives(s + 0.5 * h, middle, cut, delta, k3)
-    for i in range(SIZE):
-        middle[i] = y[i] + h * k3[i]
-    derivatives(s + h, middle, cut, delta, k4)
-    for i in range(SIZE):
-        out[i] = y[i] + h / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i])
-
-
-@kernel
-def pair_step(
+def step(
+    tableau: Tableau,
     s: float,
     y: FloatArray,
     h: float,
@@ -59,25 +63,28 @@ def pair_step(
     work: FloatArray,
     out: FloatArray,
 ) -> float:
-    """Dormand–Prince from (s, y) over h into ``out``; returns the largest local error estimate.
+    """A step from (s, y) over h into ``out``; returns the largest local error estimate.
 
-    work[0] holds dy/ds at s; work[6] then holds it at s + h.
+    On entry work[0] is dy/ds at s; on return the other rows are the stages.
     """
-    state = work[7]
-    for stage in range(1, 7):
+    stages = tableau.b.size
+    state = work[ROWS - 1]
+    for stage in range(1, stages):
         for i in range(SIZE):
-            total = 0.0
-            for j in range(stage):
-                total += _A[stage, j] * work[j, i]
-            state[i] = y[i] + h * total
-        derivatives(s + _C[stage] * h, state, cut, delta, work[stage])
+            state[i] = y[i]
+        for j in range(stage):
+            if tableau.a[stage, j] != 0.0:
+                weight = h * tableau.a[stage, j]
+                for i in range(SIZE):
+                    state[i] += weight * work[j, i]
+        derivatives(s + tableau.c[stage] * h, state, cut, delta, work[stage])
     largest = 0.0
     for i in range(SIZE):
-        out[i] = state[i]
-        error = 0.0
-        for j in range(7):
-            error += _E[j] * work[j, i]
-        error = abs(h * error)
-        if not error <= largest:  # a NaN is never small
-            largest = error
+        increment, error = 0.0, 0.0
+        for j in range(stages):
+            increment += tableau.b[j] * work[j, i]
+            error += tableau.e[j] * work[j, i]
+        out[i] = y[i] + h * increment
+        if not abs(h * error) <= largest:  # a NaN is never small
+            largest = abs(h * error)
     return largest

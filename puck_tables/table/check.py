@@ -1,4 +1,4 @@
-"""A table judged: against the closed forms, direct quadrature, known entries and exact identities."""
+"""A table judged: by closed forms, direct quadrature, known entries and exact identities."""
 
 from __future__ import annotations
 

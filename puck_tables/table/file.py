@@ -89,7 +89,9 @@ def save_table(
     'uniform'
     """
     if table.accuracy is None or not np.all(np.isfinite(table.values)):
-        raise OutputError("a table without measured accuracy or with a non-finite value is not saved")
+        raise OutputError(
+            "a table without measured accuracy or with a non-finite value is not saved"
+        )
     content = _encode(table, command)
     written = _decode(content, str(path))
     if not np.array_equal(written.values, table.values):

@@ -66,7 +66,7 @@ def not_a_knot_coefficients(values: FloatArray) -> FloatArray:
     right = np.zeros((size + 2, *values.shape[1:]))
     right[1:-1] = values
     flat = np.linalg.solve(system, right.reshape(size + 2, -1))
-    return flat.reshape(right.shape)
+    return np.asarray(flat, dtype=np.float64).reshape(right.shape)
 
 
 def table_coefficients(resultants: FloatArray) -> FloatArray:
@@ -80,7 +80,8 @@ def table_coefficients(resultants: FloatArray) -> FloatArray:
     Returns
     -------
     array (2, n_delta + 2, n_eta + 3, 3)
-        As :mod:`puck_tables.kernels.spline` reads it (B-spline weights over 36); side 0 is φ < π/4, η grows away from π/4.
+        As :mod:`puck_tables.kernels.spline` reads it (B-spline weights over 36); side 0 is
+        φ < π/4, η grows away from π/4.
 
     Examples
     --------

@@ -62,7 +62,8 @@ class PhiAxis:
         """tan(φ − π/4) at the nodes."""
         n = self.cells_per_side
         xi = np.arange(-n, n + 1) / n
-        return np.sign(xi) * np.abs(xi) ** GRADING_POWER
+        tau: FloatArray = np.sign(xi) * np.abs(xi) ** GRADING_POWER
+        return tau
 
     def nodes(self) -> FloatArray:
         """φ at the nodes, radians, ascending; 0, π/4 and π/2 exactly."""

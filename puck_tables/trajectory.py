@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from puck_tables.contact.integrals import SlipDirection
 from puck_tables.contact.resultants import CONTACT_SLACK, pressure_tilt
-from puck_tables.errors import AccuracyError, ContactError, InputError, PuckError
+from puck_tables.errors import AccuracyError, InputError, PuckError
 from puck_tables.puck import finite_array, positive, real, velocity_array
 from puck_tables.table.file import load_table
 from puck_tables.table.table import Table
@@ -191,8 +191,9 @@ def simulate(
 
     side = -1.0 if spin < 0.0 else 1.0
     heading0 = math.atan2(vy, vx) if speed > 0.0 else 0.0
-    place = _rotated(states[:, 3], side * states[:, 4], heading0, scale_length)
-    end = _rotated(at[3:4], side * at[4:5], heading0, scale_length)
+    east, north = (vx / speed, vy / speed) if speed > 0.0 else (1.0, 0.0)
+    along, left = scale_length * states[:, 3], side * scale_length * states[:, 4]
+    end_along, end_left = scale_length * at[3], side * scale_length * at[4]
     q = np.exp(-s)
     moving = np.isfinite(s)
     angle = _slip_angle(states[:, 0], regime, limit, moving)
@@ -200,7 +201,10 @@ def simulate(
     return Trajectory(
         v0=(vx, vy), w0=spin, radius=r, delta=height, decel=J, mass=m, regime=regime,
         stop_time=float(stop_time),
-        stop_position=(float(end[0][0]), float(end[1][0])),
+        stop_position=(
+            float(end_along * east - end_left * north) + 0.0,
+            float(end_along * north + end_left * east) + 0.0,
+        ),
         path_length=float(at[6] * scale_length),
         turn_angle=float(side * at[1]) + 0.0,
         turn_rate=float(side * _turn_rate(run, regime, friction, height)) + 0.0,
@@ -212,8 +216,8 @@ def simulate(
         steps=run.steps,
         error_estimate=estimate,
         time=moments,
-        x=place[0],
-        y=place[1],
+        x=along * east - left * north + 0.0,
+        y=along * north + left * east + 0.0,
         heading=heading0 + side * states[:, 1],
         orientation=side * states[:, 5] * (scale_length / r) + 0.0,
         speed=q0 * fraction * (np.cos(angle) if regime != "B0" else 0.0),
@@ -286,22 +290,32 @@ def _run(
         steps = max(8.0, math.ceil((RK4_CONSTANT / accuracy) ** 0.25))
         if steps > 0.5 * _STEP_LIMIT:
             raise AccuracyError(f"accuracy {accuracy:g} needs too many RK4 steps: use 'adaptive'")
-    run = _integrate(u, steps, tolerance, friction, delta)
-    finer = _integrate(u, 2.0 * steps, max(0.1 * tolerance, 4e-15), friction, delta)
+    run = _integrate(u, method, steps, tolerance, friction, delta)
+    finer = _integrate(u, method, 2.0 * steps, max(0.1 * tolerance, 4e-15), friction, delta)
     difference = np.abs(run.result[2:5] - finer.result[2:5]).max()
     return run, float(difference) + friction.error + 1e-14
 
 
 def _integrate(
-    u: float, steps: float, tolerance: float, friction: _Friction, delta: float
+    u: float, method: str, steps: float, tolerance: float, friction: _Friction, delta: float
 ) -> _Run:
     from puck_tables.motion.equations import SIZE
     from puck_tables.motion.path import STOPPED, integrate
+    from puck_tables.motion.steppers import DORMAND_PRINCE, RK4
 
     s, y = np.empty(_STEP_LIMIT), np.empty((_STEP_LIMIT, SIZE))
     result = np.empty(SIZE + 2)
     status, count = integrate(
-        u, float(steps), tolerance, friction.cut, delta, _STEP_LIMIT, s, y, result
+        u,
+        DORMAND_PRINCE if method == "adaptive" else RK4,
+        float(steps),
+        tolerance,
+        friction.cut,
+        delta,
+        _STEP_LIMIT,
+        s,
+        y,
+        result,
     )
     if status != STOPPED:
         raise PuckError(
@@ -351,15 +365,15 @@ def _states(
     method: str,
 ) -> tuple[FloatArray, FloatArray]:
     from puck_tables.motion.path import states_at
+    from puck_tables.motion.steppers import DORMAND_PRINCE, RK4
 
     s, y = np.empty(times.size), np.empty((times.size, run.y.shape[1]))
     if regime == "A":
         s.fill(math.inf)
         y[:] = run.result[: y.shape[1]]
         return s, y
-    states_at(
-        times, run.s, run.y, run.result, method == "adaptive", friction.cut, delta, s, y
-    )
+    tableau = DORMAND_PRINCE if method == "adaptive" else RK4
+    states_at(times, run.s, run.y, run.result, tableau, friction.cut, delta, s, y)
     return s, y
 
 
@@ -389,13 +403,6 @@ def _kinetic(u: float) -> float:
     from puck_tables.motion.equations import kinetic_energy
 
     return float(kinetic_energy(0.0, u))
-
-
-def _rotated(
-    along: FloatArray, left: FloatArray, heading: float, scale: float
-) -> tuple[FloatArray, FloatArray]:
-    cosine, sine = math.cos(heading), math.sin(heading)
-    return scale * (along * cosine - left * sine), scale * (along * sine + left * cosine)
 
 
 def _method_name(regime: str, method: str, exact: bool) -> str:

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from puck_tables.errors import InputError
 from puck_tables.executor import run_chunks
 from puck_tables.puck import finite_array, positive, velocity_array
-from puck_tables.stops import DEFAULT_ACCURACY, steps_for, stops_of
+from puck_tables.stops import DEFAULT_ACCURACY, OUTPUTS, steps_for, stops_of
 from puck_tables.table.file import load_table
 from puck_tables.table.table import Table
 
@@ -134,7 +134,7 @@ def sweep(
     check_memory(shape)
 
     size = math.prod(shape)
-    out = np.empty((6, size))
+    out = np.empty((len(OUTPUTS), size))
     status = np.empty(size, np.int8)
     flat = {name: array.ravel() for name, array in values.items()}
     sizes = tuple(array.size for array in flat.values())
@@ -150,11 +150,15 @@ def sweep(
         out[:, start:stop], status[start:stop] = stops_of(launches, steps, chosen)
 
     run_chunks(work, size, chunk, threads, progress)
-    rows = [row.reshape(shape) for row in out]
+    results = {name: row.reshape(shape) for name, row in zip(OUTPUTS, out, strict=True)}
     return StopMap(
-        axes, fixed, accuracy, chosen.source,
-        *rows, status=status.reshape(shape),
-    )  # fmt: skip
+        axes=axes,
+        fixed=fixed,
+        accuracy=accuracy,
+        table=chosen.source,
+        status=status.reshape(shape),
+        **results,
+    )
 
 
 def check_memory(shape: tuple[int, ...]) -> None:

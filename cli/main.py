@@ -1,0 +1,47 @@
+"""The command ``puck``: its commands, and how it ends when something is wrong.
+
+Exit codes: 0 all well; 1 a file or an optional package is at fault; 2 bad input; 3 a table failed
+its validation; 130 interrupted.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+from puck_tables.cli.build_tables import build_tables
+from puck_tables.cli.info import info
+from puck_tables.cli.simulate import simulate
+from puck_tables.cli.sweep import sweep
+from puck_tables.cli.validate import validate
+
+from puck_tables._version import __version__
+from puck_tables.errors import InputError, PuckError
+
+
+class PuckGroup(click.Group):
+    """A group that ends every refusal with one sentence and an exit code."""
+
+    def invoke(self, ctx: click.Context) -> Any:
+        """Run a command."""
+        try:
+            return super().invoke(ctx)
+        except PuckError as error:
+            click.echo(f"Error: {error}", err=True)
+            ctx.exit(2 if isinstance(error, InputError) else 1)
+        except MemoryError:
+            click.echo("Error: not enough memory: ask for fewer points", err=True)
+            ctx.exit(1)
+        except KeyboardInterrupt:
+            click.echo("Interrupted: nothing was written.", err=True)
+            ctx.exit(130)
+
+
+@click.group(cls=PuckGroup, context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(__version__, package_name="puck-tables", prog_name="puck")
+def main() -> None:
+    """Motion of a flat puck that slides and spins under dry friction, until it stops."""
+
+
+for _command in (simulate, sweep, build_tables, validate, info):
+    main.add_command(_command)

@@ -1,0 +1,220 @@
+"""Options that several commands share, and how their values are read."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+
+from puck_tables.errors import InputError
+
+if TYPE_CHECKING:
+    from puck_tables.table.table import Table
+
+Command = TypeVar("Command", bound=Callable[..., Any])
+Progress = Callable[[int, int], None]
+
+DEFAULT_RADIUS, DEFAULT_DELTA, DEFAULT_DECEL, DEFAULT_MASS = 1.0, 0.5, 1.0, 1.0
+MAX_COUNT = 1_000_000_000
+
+
+class Number(click.ParamType):
+    """A finite number."""
+
+    name = "number"
+
+    def convert(self, value: Any, param: Any, ctx: Any) -> float:
+        """Parse a finite number."""
+        return finite(str(value), self, param, ctx)
+
+
+class Vector(click.ParamType):
+    """Two finite numbers: VX,VY."""
+
+    name = "VX,VY"
+
+    def convert(self, value: Any, param: Any, ctx: Any) -> tuple[float, float]:
+        """Parse 'VX,VY'."""
+        if isinstance(value, tuple):
+            return value
+        parts = str(value).split(",")
+        if len(parts) != 2:
+            self.fail(f"'{value}' must be two numbers with a comma, like 1,0 (m/s)", param, ctx)
+        return finite(parts[0], self, param, ctx), finite(parts[1], self, param, ctx)
+
+
+class Range(click.ParamType):
+    """A number, or START:STOP:COUNT; a tuple of three for a range."""
+
+    name = "NUMBER|START:STOP:COUNT"
+
+    def convert(self, value: Any, param: Any, ctx: Any) -> float | tuple[float, float, int]:
+        """Parse a number or a range."""
+        if isinstance(value, float | tuple):
+            return value
+        parts = str(value).split(":")
+        if len(parts) == 1:
+            return finite(parts[0], self, param, ctx)
+        if len(parts) != 3:
+            self.fail(f"'{value}' must be a number or START:STOP:COUNT, like 0:10:101", param, ctx)
+        start, stop = finite(parts[0], self, param, ctx), finite(parts[1], self, param, ctx)
+        if not parts[2].strip().isdigit() or not 2 <= int(parts[2]) <= MAX_COUNT:
+            self.fail(f"the COUNT of '{value}' must be a whole number from 2 to 1e9", param, ctx)
+        if not stop > start:
+            self.fail(f"in '{value}' STOP must be greater than START", param, ctx)
+        return start, stop, int(parts[2])
+
+
+class Times(click.ParamType):
+    """Times in seconds with commas, or START:STOP:COUNT."""
+
+    name = "T1,T2,…|START:STOP:COUNT"
+
+    def convert(self, value: Any, param: Any, ctx: Any) -> tuple[float, ...]:
+        """Parse a list of times or a range."""
+        if ":" not in str(value):
+            return tuple(finite(part, self, param, ctx) for part in str(value).split(","))
+        start, stop, count = Range().convert(value, param, ctx)  # type: ignore[misc]
+        if count > 10_000_000:
+            self.fail(f"'{value}' asks for too many states: at most 1e7", param, ctx)
+        return tuple(start + (stop - start) * i / (count - 1) for i in range(count))
+
+
+def finite(text: str, kind: click.ParamType, param: Any, ctx: Any) -> float:
+    """A finite number, or click's error."""
+    try:
+        number = float(text)
+    except ValueError:
+        kind.fail(f"'{text}' is not a number", param, ctx)
+    if not math.isfinite(number):
+        kind.fail(f"'{text}' is not a finite number", param, ctx)
+    return number
+
+
+NUMBER = Number()
+FILE = click.Path(dir_okay=True, path_type=Path)
+
+
+def puck_options(mass: bool) -> Callable[[Command], Command]:
+    """The puck and the floor: by δ and J, or by dimensions and friction."""
+    options = [
+        click.option("--radius", type=NUMBER, help="Radius r in m.  [default: 1]"),
+        click.option("--height", type=NUMBER, help="Height h in m; with --friction."),
+        click.option("--friction", type=NUMBER, help="Coulomb coefficient f; with --height."),
+        click.option("--gravity", type=NUMBER, help="Gravity in m/s².  [default: 9.80665]"),
+        click.option("--decel", type=NUMBER, help="J = f g in m/s² instead.  [default: 1]"),
+    ]
+    if mass:
+        options.insert(4, click.option("--mass", type=NUMBER, help="Mass in kg (for the energy)."))
+
+    def decorate(command: Command) -> Command:
+        for option in reversed(options):
+            command = option(command)
+        return command
+
+    return decorate
+
+
+def output_options(command: Command) -> Command:
+    """Where results go."""
+    for option in (
+        click.option("--overwrite", is_flag=True, help="Replace output files that exist."),
+        click.option("--plot", type=FILE, metavar="FILE", help="Draw: .png, .svg or .pdf."),
+    ):
+        command = option(command)
+    return command
+
+
+def table_option(command: Command) -> Command:
+    """Which table to use."""
+    return click.option(
+        "--table", "table_path", type=FILE, metavar="FILE",
+        help="Table file of 'puck build-tables'.  [default: the one that comes along]",
+    )(command)  # fmt: skip
+
+
+def puck_and_floor(
+    radius: float | None,
+    height: float | None,
+    friction: float | None,
+    gravity: float | None,
+    delta: Any,
+    decel: float | None,
+) -> tuple[float, Any, float]:
+    """Radius, δ and J from either set of options.
+
+    Raises
+    ------
+    InputError
+        If options of both sets are given (naming two of them), or one set is not complete.
+    """
+    real = {"--height": height, "--friction": friction, "--gravity": gravity}
+    scaled = {"--delta": delta, "--decel": decel}
+    given_real = [name for name, value in real.items() if value is not None]
+    given_scaled = [name for name, value in scaled.items() if value is not None]
+    if given_real and given_scaled:
+        raise InputError(
+            f"{given_real[0]} and {given_scaled[0]} clash: give the real puck (--radius --height "
+            "--friction --gravity) or the scaled one (--radius --delta --decel)"
+        )
+    if given_real:
+        needed = {"--radius": radius, "--height": height, "--friction": friction}
+        missing = [name for name, value in needed.items() if value is None]
+        if missing:
+            raise InputError(
+                f"{given_real[0]} needs {' and '.join(missing)} too: a real puck is given by "
+                "--radius --height --friction (and --gravity)"
+            )
+        from puck_tables.puck import STANDARD_GRAVITY, similarity_parameters
+
+        assert radius is not None and height is not None and friction is not None
+        g = STANDARD_GRAVITY if gravity is None else gravity
+        height_ratio, J = similarity_parameters(radius, height, friction, g)
+        return radius, height_ratio, J
+    return (
+        DEFAULT_RADIUS if radius is None else radius,
+        DEFAULT_DELTA if delta is None else delta,
+        DEFAULT_DECEL if decel is None else decel,
+    )
+
+
+def prepare_outputs(*paths: Path | None, overwrite: bool) -> None:
+    """Refuse outputs that could not be written, before any work is done."""
+    from puck_tables.safe_write import check_target
+
+    chosen = [path for path in paths if path is not None]
+    if len({path.absolute() for path in chosen}) < len(chosen):
+        raise InputError(f"{chosen[0]} is named for two outputs: give two file names")
+    for path in chosen:
+        check_target(path, overwrite)
+
+
+def open_table(path: Path | None) -> Table:
+    """The table asked for."""
+    from puck_tables.table.file import load_table
+
+    return load_table(path)
+
+
+def told(path: Path) -> None:
+    """Say on stderr that a file was written."""
+    click.echo(f"wrote {path}", err=True)
+
+
+@contextmanager
+def progress(label: str) -> Iterator[Progress]:
+    """A progress bar on stderr, silent where stderr is no terminal."""
+    stream = click.get_text_stream("stderr")
+    if not stream.isatty():
+        yield lambda done, total: None
+        return
+    with click.progressbar(length=1000, label=label, file=stream, show_pos=False) as bar:
+
+        def show(done: int, total: int) -> None:
+            bar.update(1000 * done // total - bar.pos)
+
+        yield show

@@ -1,0 +1,136 @@
+"""``puck simulate``: one trajectory."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+from puck_tables.cli.options import (
+    DEFAULT_MASS,
+    FILE,
+    NUMBER,
+    Times,
+    Vector,
+    open_table,
+    output_options,
+    prepare_outputs,
+    puck_and_floor,
+    puck_options,
+    table_option,
+    told,
+)
+
+from puck_tables.errors import InputError
+
+if TYPE_CHECKING:
+    from puck_tables.trajectory import Trajectory
+
+
+@click.command()
+@click.option("--v0", type=Vector(), required=True, help="Launch velocity in m/s, like 1,0.")
+@click.option("--w0", type=NUMBER, default=0.0, show_default=True, help="Launch spin in rad/s.")
+@puck_options(mass=True)
+@click.option("--delta", type=NUMBER, help="δ = 2 f h / r instead.  [default: 0.5]")
+@click.option("--frames", type=int, help="Number of states to save.  [default: 101]")
+@click.option("--times", type=Times(), help="Times of the states to save, in s.")
+@click.option(
+    "--accuracy",
+    type=NUMBER,
+    default=1e-9,
+    show_default=True,
+    help="Largest error, in units of Q/J (times) and Q²/J (places), Q = hypot(v0, r w0).",
+)
+@click.option(
+    "--method",
+    type=click.Choice(["adaptive", "rk4"]),
+    default="adaptive",
+    show_default=True,
+    help="Dormand-Prince 5(4), or Runge-Kutta 4.",
+)
+@click.option("--exact", is_flag=True, help="Closed forms instead of the table.")
+@table_option
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
+@click.option(
+    "-o", "--output", type=FILE, metavar="FILE", help="Save the states: .h5, .csv or .jsonl."
+)
+@output_options
+def simulate(
+    v0: tuple[float, float], w0: float, radius: float | None, height: float | None,
+    friction: float | None, gravity: float | None, mass: float | None, decel: float | None,
+    delta: float | None, frames: int | None, times: tuple[float, ...] | None, accuracy: float,
+    method: str, exact: bool, table_path: Path | None, as_json: bool, output: Path | None,
+    plot: Path | None, overwrite: bool,
+) -> None:  # fmt: skip
+    r"""Slide one puck until it stops.
+
+    \b
+    puck simulate --v0 1,0 --w0 5
+    puck simulate --v0 2,0 --w0 30 --radius 0.0381 --height 0.0254 --friction 0.1
+    puck simulate --v0 1,0 --w0 5 --frames 200 -o run.csv --plot run.png
+    """
+    r, height_ratio, J = puck_and_floor(radius, height, friction, gravity, delta, decel)
+    if exact and table_path is not None:
+        raise InputError("--exact and --table clash: closed forms need no table")
+    prepare_outputs(output, plot, overwrite=overwrite)
+    from puck_tables.result_file import TRAJECTORY_KINDS, kind_of, save_trajectory, summary
+
+    if output is not None:
+        kind_of(output, TRAJECTORY_KINDS)
+    if plot is not None:
+        from puck_tables.plots import PICTURE_KINDS, plot_trajectory, require_matplotlib
+
+        kind_of(plot, PICTURE_KINDS)
+        require_matplotlib()
+    from puck_tables.trajectory import simulate as run_simulation
+
+    run = run_simulation(
+        v0, w0, delta=height_ratio, decel=J, radius=r,
+        mass=DEFAULT_MASS if mass is None else mass,
+        frames=frames, times=times, accuracy=accuracy, method=method, exact=exact,
+        table=None if exact else open_table(table_path),
+    )  # fmt: skip
+    if output is not None:
+        save_trajectory(run, output, overwrite)
+        told(output)
+    if plot is not None:
+        plot_trajectory(run, plot, overwrite)
+        told(plot)
+    if as_json:
+        click.echo(json.dumps(summary(run), allow_nan=False, ensure_ascii=False))
+    else:
+        given = any(x is not None for x in (radius, height, friction, delta, decel))
+        click.echo(report(run, "" if given else "   (defaults: see --help for a real puck)"))
+
+
+def report(run: Trajectory, note: str) -> str:
+    """The trajectory in a dozen lines."""
+    from puck_tables.motion.limits import REGIMES
+
+    q0 = math.hypot(*run.v0, run.radius * run.w0)
+    turn = f"{math.degrees(run.turn_angle):.5g} deg"
+    if run.turn_rate != 0.0:
+        decade = math.degrees(run.turn_rate) * math.log(10.0)
+        turn += f" by Q = Q0/1000, then {decade:.4g} deg more for each factor 10 of Q"
+    x, y = run.stop_position
+    lines = {
+        "puck": f"r = {run.radius:g} m, delta = {run.delta:.6g}, J = {run.decel:.6g} m/s^2{note}",
+        "launch": f"v0 = ({run.v0[0]:g}, {run.v0[1]:g}) m/s, w0 = {run.w0:g} rad/s, "
+        f"Q0 = hypot(v0, r w0) = {q0:.6g} m/s",
+        "regime": f"{run.regime}: {REGIMES[run.regime]}",
+        "stop time": f"{run.stop_time:.9g} s",
+        "stop position": f"({x:.9g}, {y:.9g}) m",
+        "path length": f"{run.path_length:.9g} m",
+        "heading turned": turn,
+        "body turned": f"{run.body_angle:.9g} rad ({run.body_angle / (2 * math.pi):.5g} turns)",
+        "limit angle": f"{math.degrees(run.limit_angle):.7g} deg "
+        f"(rω/v tends to {math.tan(run.limit_angle):.7g})",
+        "energy": f"{run.kinetic_energy:.6g} J (m = {run.mass:g} kg), all lost to friction; "
+        f"residual {run.energy_residual:.1e} of it",
+        "method": run.method + (f", {run.steps} steps" if run.steps else ""),
+        "error estimate": f"{run.error_estimate * q0 / run.decel:.1e} s, "
+        f"{run.error_estimate * q0 * q0 / run.decel:.1e} m",
+    }
+    return "\n".join(f"{name:<15} {text}" for name, text in lines.items())

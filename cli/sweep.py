@@ -1,0 +1,129 @@
+"""``puck sweep``: maps of stops."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+from puck_tables.cli.options import (
+    FILE,
+    NUMBER,
+    Range,
+    Vector,
+    open_table,
+    output_options,
+    prepare_outputs,
+    progress,
+    puck_and_floor,
+    puck_options,
+    table_option,
+    told,
+)
+
+from puck_tables.errors import InputError
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
+
+    from puck_tables.stop_map import StopMap
+
+RANGE = Range()
+
+
+@click.command()
+@click.option("--w0", type=RANGE, help="Launch spin in rad/s.")
+@click.option("--speed", type=RANGE, help="Launch speed along x in m/s.")
+@click.option("--v0", type=Vector(), help="One launch velocity in m/s instead of --speed.")
+@click.option("--delta", type=RANGE, help="δ = 2 f h / r.  [default: 0.5]")
+@puck_options(mass=False)
+@click.option(
+    "--accuracy",
+    type=NUMBER,
+    default=1e-7,
+    show_default=True,
+    help="Largest error, in units of Q/J (times) and Q²/J (places).",
+)
+@click.option("--threads", type=click.IntRange(1, 1024), help="[default: all cores]")
+@table_option
+@click.option(
+    "-o",
+    "--output",
+    type=FILE,
+    metavar="FILE",
+    help="Save the map: .h5 or .csv.  Without -o and --plot, CSV goes to stdout.",
+)
+@output_options
+def sweep(
+    w0: float | tuple[float, float, int] | None, speed: float | tuple[float, float, int] | None,
+    v0: tuple[float, float] | None, delta: float | tuple[float, float, int] | None,
+    radius: float | None, height: float | None, friction: float | None, gravity: float | None,
+    decel: float | None, accuracy: float, threads: int | None, table_path: Path | None,
+    output: Path | None, plot: Path | None, overwrite: bool,
+) -> None:  # fmt: skip
+    r"""Map where and when pucks stop.
+
+    Ranges are START:STOP:COUNT, ends included; what is not ranged is fixed.  Without --w0,
+    --speed and --v0: speeds from 0 to 2 m/s by spins from -4 to 4 rad/s.
+
+    \b
+    puck sweep --plot map.png
+    puck sweep --v0 1,0 --w0 0:10:101 -o stops.csv
+    puck sweep --speed 0:2:201 --w0 -20:20:401 --delta 0:1:5 -o map.h5
+    """
+    r, height_ratio, J = puck_and_floor(radius, height, friction, gravity, delta, decel)
+    if v0 is not None and speed is not None:
+        raise InputError("--v0 and --speed clash: both give the launch velocity")
+    prepare_outputs(output, plot, overwrite=overwrite)
+    from puck_tables.result_file import MAP_KINDS, kind_of, map_as_csv, save_map
+    from puck_tables.stop_map import check_memory
+    from puck_tables.stop_map import sweep as run_sweep
+
+    if output is not None:
+        kind_of(output, MAP_KINDS)
+    if plot is not None:
+        from puck_tables.plots import PICTURE_KINDS, plot_map, require_matplotlib
+
+        kind_of(plot, PICTURE_KINDS)
+        if not any(isinstance(x, tuple) for x in (w0, speed, height_ratio)) and (
+            w0 is not None or speed is not None or v0 is not None
+        ):
+            raise InputError("--plot needs a range: give --w0, --speed or --delta START:STOP:COUNT")
+        require_matplotlib()
+    check_memory(tuple(x[2] for x in (w0, speed, height_ratio) if isinstance(x, tuple)))
+    with progress("stops") as show:
+        stops = run_sweep(
+            _values(w0), _values(speed), v0=v0, delta=_values(height_ratio), decel=J, radius=r,
+            accuracy=accuracy, table=open_table(table_path), threads=threads, progress=show,
+        )  # fmt: skip
+    if output is not None:
+        save_map(stops, output, overwrite)
+        told(output)
+    if plot is not None:
+        plot_map(stops, plot, overwrite)
+        told(plot)
+    if output is None and plot is None:
+        click.echo(map_as_csv(stops), nl=False)
+    click.echo(_summary(stops), err=True)
+
+
+def _values(given: float | tuple[float, float, int] | None) -> npt.NDArray[np.float64] | None:
+    if given is None:
+        return None
+    import numpy as np
+
+    return np.linspace(*given) if isinstance(given, tuple) else np.asarray(given)
+
+
+def _summary(stops: StopMap) -> str:
+    from puck_tables.motion.bulk import STATUS_MEANINGS
+
+    ranged = " x ".join(f"{name} ({values.size})" for name, values in stops.axes.items())
+    fixed = ", ".join(f"{name} = {value:g}" for name, value in stops.fixed.items())
+    counts = ", ".join(
+        f"{int((stops.status == code).sum())} {meaning.replace('_', ' ')}"
+        for code, meaning in enumerate(STATUS_MEANINGS)
+        if code == 0 or (stops.status == code).any()
+    )
+    return f"{ranged or 'one launch'} at {fixed}: {counts}"

@@ -1,0 +1,231 @@
+"""The only door to matplotlib: pictures of trajectories and maps."""
+
+from __future__ import annotations
+
+import io
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from puck_tables.errors import InputError, MissingExtraError
+from puck_tables.result_file import kind_of
+from puck_tables.safe_write import write_bytes
+from puck_tables.stop_map import StopMap
+from puck_tables.trajectory import Trajectory
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+PICTURE_KINDS = (".png", ".svg", ".pdf")
+
+_BLUE, _ORANGE, _GREEN, _GREY = "#0b5fa5", "#d9660c", "#2f8f3a", "#8a8a8a"
+_MAP_LABELS = {
+    "stop_time": "stop time / s",
+    "stop_x": "stop x / m",
+    "stop_y": "stop y / m",
+    "path_length": "path length / m",
+    "turn_angle": "turn of heading / rad",
+    "body_angle": "turn of body / rad",
+}
+_AXIS_LABELS = {"delta": "height δ = 2fh/r", "speed": "speed v₀ / m/s", "w0": "spin ω₀ / rad/s"}
+_PUCKS_DRAWN = 9
+
+
+def require_matplotlib() -> None:
+    """Refuse before any work is done if pictures cannot be drawn.
+
+    Raises
+    ------
+    MissingExtraError
+    """
+    try:
+        import matplotlib  # noqa: F401
+    except ImportError:
+        raise MissingExtraError(
+            "pictures need matplotlib: pip install 'puck-tables[plot]'"
+        ) from None
+
+
+def plot_trajectory(run: Trajectory, path: str | Path, overwrite: bool = False) -> None:
+    """Draw a trajectory: the path with the puck's orientation, and speeds against time.
+
+    Parameters
+    ----------
+    run : Trajectory
+        With a few dozen states or more.
+    path : .png, .svg or .pdf
+    overwrite : whether an existing file may be replaced
+
+    Raises
+    ------
+    InputError
+        If the ending is not known.
+    MissingExtraError
+        If matplotlib is not installed.
+    OutputError
+        If the file exists or cannot be written.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from puck_tables import simulate
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     plot_trajectory(simulate((1.0, 0.0), 5.0), folder + "/run.png")
+    """
+    kind = kind_of(path, PICTURE_KINDS)
+    figure = _figure(9.5, 7.6)
+    grid = figure.add_gridspec(2, 2, height_ratios=(1.15, 1.0))
+    _draw_path(figure.add_subplot(grid[0, :]), run)
+    speeds = figure.add_subplot(grid[1, 0])
+    speeds.plot(run.time, run.speed, color=_BLUE, label="speed v")
+    speeds.plot(run.time, run.radius * run.spin, color=_ORANGE, label="rim speed rω")
+    speeds.axhline(0.0, color=_GREY, linewidth=0.6)
+    speeds.set_ylabel("m/s")
+    speeds.set_xlabel("time / s")
+    speeds.legend(frameon=False)
+    ratio = figure.add_subplot(grid[1, 1], sharex=speeds)
+    moving = run.speed > 0.0
+    if moving.any() and run.w0 != 0.0:
+        ratio.plot(run.time[moving], np.tan(run.slip_angle[moving]), color=_GREEN)
+        limit = math.copysign(math.tan(run.limit_angle), run.w0)
+        ratio.axhline(limit, color=_GREY, linestyle="--", linewidth=1.0)
+        ratio.annotate(
+            f"limit {limit:.3f}", (0.02, limit), xycoords=("axes fraction", "data"),
+            xytext=(0, 3), textcoords="offset points", color=_GREY, fontsize=9,
+        )  # fmt: skip
+    else:
+        ratio.text(
+            0.5, 0.5, "spin only" if run.w0 != 0.0 else "no spin",
+            ha="center", transform=ratio.transAxes, color=_GREY,
+        )  # fmt: skip
+    ratio.set_ylabel("rω/v")
+    ratio.set_xlabel("time / s")
+    figure.suptitle(
+        f"v₀ = ({run.v0[0]:g}, {run.v0[1]:g}) m/s, ω₀ = {run.w0:g} rad/s, r = {run.radius:g} m, "
+        f"δ = {run.delta:.4g}, J = {run.decel:.4g} m/s²"
+    )
+    _save(figure, path, kind, overwrite)
+
+
+def plot_map(stops: StopMap, path: str | Path, overwrite: bool = False) -> None:
+    """Draw stops: maps when two quantities are ranged, curves when one is.
+
+    With three ranged quantities the maps are drawn at the middle value of the first.
+
+    Parameters
+    ----------
+    stops : StopMap
+    path : .png, .svg or .pdf
+    overwrite : whether an existing file may be replaced
+
+    Raises
+    ------
+    InputError
+        If nothing is ranged or the ending is not known.
+    MissingExtraError
+        If matplotlib is not installed.
+    OutputError
+        If the file exists or cannot be written.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from puck_tables import sweep
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     plot_map(sweep([0.0, 1.0, 2.0], 1.0), folder + "/map.png")
+    """
+    kind = kind_of(path, PICTURE_KINDS)
+    axes = dict(stops.axes)
+    if not axes:
+        raise InputError("there is nothing to draw: range at least one of w0, speed, delta")
+    values = {name: getattr(stops, name) for name in _MAP_LABELS}
+    fixed = dict(stops.fixed)
+    if len(axes) == 3:
+        name, nodes = next(iter(axes.items()))
+        middle = nodes.size // 2
+        fixed[name] = float(nodes[middle])
+        axes.pop(name)
+        values = {key: value[middle] for key, value in values.items()}
+    figure = _figure(11.0, 6.4)
+    panels = figure.subplots(2, 3, sharex=True)
+    for panel, (name, value) in zip(panels.flat, values.items(), strict=True):
+        if len(axes) == 1:
+            _draw_curve(panel, next(iter(axes.items())), name, value)
+        else:
+            _draw_map(figure, panel, axes, name, value)
+    across = list(axes)[-1]
+    for panel in panels[-1]:
+        panel.set_xlabel(_AXIS_LABELS[across])
+    figure.suptitle(_fixed_title(fixed))
+    _save(figure, path, kind, overwrite)
+
+
+def _draw_path(axes: Axes, run: Trajectory) -> None:
+    from matplotlib.patches import Circle
+
+    axes.plot(run.x, run.y, color=_BLUE, linewidth=1.6)
+    extent = max(np.ptp(run.x), np.ptp(run.y), 1e-300)
+    true_size = 0.02 * extent <= run.radius <= 0.12 * extent
+    radius = run.radius if true_size else (0.045 * extent if extent > 1e-300 else run.radius)
+    travelled = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(run.x), np.diff(run.y)))])
+    wanted = np.linspace(0.0, travelled[-1], _PUCKS_DRAWN)
+    chosen = np.unique(np.searchsorted(travelled, wanted).clip(0, run.time.size - 1))
+    for index in chosen:
+        x, y, angle = run.x[index], run.y[index], run.orientation[index]
+        axes.add_patch(Circle((x, y), radius, fill=False, color=_GREY, linewidth=0.9))
+        axes.plot(
+            [x, x + radius * math.cos(angle)], [y, y + radius * math.sin(angle)],
+            color=_ORANGE, linewidth=1.4,
+        )  # fmt: skip
+    axes.plot(run.x[0], run.y[0], "o", color=_BLUE, markersize=4)
+    axes.plot(*run.stop_position, "s", color=_BLUE, markersize=5)
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.margins(0.12)
+    axes.set_xlabel("x / m")
+    axes.set_ylabel("y / m")
+    size = "puck to scale" if true_size else "puck not to scale"
+    axes.set_title(f"path (● launch, ■ stop; {size})", fontsize=10)
+
+
+def _draw_curve(axes: Axes, axis: tuple[str, Any], name: str, value: Any) -> None:
+    axes.plot(axis[1], value, color=_BLUE, marker="." if axis[1].size < 30 else "")
+    axes.set_ylabel(_MAP_LABELS[name])
+    axes.grid(color="#dddddd", linewidth=0.6)
+
+
+def _draw_map(figure: Figure, axes: Axes, grid: dict[str, Any], name: str, value: Any) -> None:
+    (down, rows), (_, columns) = grid.items()
+    largest = float(np.nanmax(np.abs(value)))
+    signed = float(np.nanmin(value)) < 0.0 < float(np.nanmax(value))
+    limits: dict[str, Any] = {"vmin": -largest, "vmax": largest, "cmap": "RdBu_r"} if signed else {}
+    mesh = axes.pcolormesh(columns, rows, value, shading="nearest", rasterized=True, **limits)
+    figure.colorbar(mesh, ax=axes)
+    axes.set_title(_MAP_LABELS[name], fontsize=10)
+    if axes.get_subplotspec().is_first_col():  # type: ignore[union-attr]
+        axes.set_ylabel(_AXIS_LABELS[down])
+
+
+def _fixed_title(fixed: dict[str, float]) -> str:
+    units = {"decel": ("J", " m/s²"), "radius": ("r", " m"), "delta": ("δ", ""),
+             "speed": ("v₀", " m/s"), "w0": ("ω₀", " rad/s")}  # fmt: skip
+    parts = []
+    if "v0_x" in fixed:
+        parts.append(f"v₀ = ({fixed['v0_x']:g}, {fixed['v0_y']:g}) m/s")
+    parts += [f"{units[n][0]} = {v:.4g}{units[n][1]}" for n, v in fixed.items() if n in units]
+    return "stops at " + ", ".join(parts)
+
+
+def _figure(width: float, height: float) -> Figure:
+    require_matplotlib()
+    from matplotlib.figure import Figure
+
+    return Figure(figsize=(width, height), layout="constrained")
+
+
+def _save(figure: Figure, path: str | Path, kind: str, overwrite: bool) -> None:
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format=kind[1:], dpi=130)
+    write_bytes(path, buffer.getvalue(), overwrite)

@@ -1,0 +1,214 @@
+"""The only door to outputs: HDF5 that xarray opens, CSV, JSON lines; whole or not at all."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from collections.abc import Iterator
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from puck_tables._version import __version__
+from puck_tables.errors import InputError
+from puck_tables.safe_write import write_bytes
+from puck_tables.stop_map import StopMap
+from puck_tables.trajectory import Trajectory
+
+TRAJECTORY_COLUMNS = {
+    "time": ("s", "time since the launch"),
+    "x": ("m", "displacement of the centre along x"),
+    "y": ("m", "displacement of the centre along y"),
+    "heading": ("rad", "direction of the velocity from x, counter-clockwise"),
+    "orientation": ("rad", "angle the body has turned, counter-clockwise"),
+    "speed": ("m/s", "speed of the centre, v"),
+    "spin": ("rad/s", "angular velocity omega, counter-clockwise"),
+    "slip_speed": ("m/s", "Q = hypot(v, r omega)"),
+    "slip_angle": ("rad", "phi = atan2(r omega, v)"),
+}
+MAP_COLUMNS = {
+    "stop_time": ("s", "time from launch to stop"),
+    "stop_x": ("m", "displacement along x at the stop"),
+    "stop_y": ("m", "displacement along y at the stop"),
+    "path_length": ("m", "length of the path"),
+    "turn_angle": ("rad", "turn of the heading until Q has fallen to 1/1000"),
+    "body_angle": ("rad", "angle the body has turned"),
+    "status": ("1", "0 stopped, 1 step limit, 2 overflow"),
+}
+MAP_AXES = {
+    "delta": ("1", "dimensionless height 2 f h / r"),
+    "speed": ("m/s", "launch speed along x"),
+    "w0": ("rad/s", "launch spin, counter-clockwise"),
+}
+SUMMARY = (
+    "regime", "stop_time", "stop_position", "path_length", "turn_angle", "turn_rate", "body_angle",
+    "limit_angle", "kinetic_energy", "energy_residual", "method", "steps", "error_estimate",
+    "v0", "w0", "radius", "delta", "decel", "mass",
+)  # fmt: skip
+
+
+def summary(run: Trajectory) -> dict[str, Any]:
+    """The scalars of a trajectory, ready for JSON.
+
+    Examples
+    --------
+    >>> from puck_tables import simulate
+    >>> summary(simulate((1.0, 0.0), 0.0))["stop_position"]
+    [0.5, 0.0]
+    """
+    values = {name: getattr(run, name) for name in SUMMARY}
+    return {n: list(v) if isinstance(v, tuple) else v for n, v in values.items()}
+
+
+def kind_of(path: str | Path, allowed: tuple[str, ...]) -> str:
+    """The format that a file name asks for.
+
+    Raises
+    ------
+    InputError
+        If the ending is none of those allowed.
+
+    Examples
+    --------
+    >>> kind_of("run.csv", (".h5", ".csv"))
+    '.csv'
+    """
+    ending = Path(path).suffix.lower()
+    if ending not in allowed:
+        raise InputError(
+            f"{path}: the ending of an output file chooses its format: one of {', '.join(allowed)}"
+        )
+    return ending
+
+
+TRAJECTORY_KINDS = (".h5", ".csv", ".jsonl")
+MAP_KINDS = (".h5", ".csv")
+
+
+def save_trajectory(run: Trajectory, path: str | Path, overwrite: bool = False) -> None:
+    """Write the states of a trajectory as HDF5, CSV or JSON lines, by the ending of the name.
+
+    HDF5: dimension ``time``, a dataset a column with units, the scalars as attributes.
+    CSV: a header line ``name[unit]``.  JSON lines: one object a state.
+
+    Raises
+    ------
+    InputError
+        If the ending is not .h5, .csv or .jsonl.
+    OutputError
+        If the file exists (without ``overwrite``) or cannot be written.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from puck_tables import simulate
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     save_trajectory(simulate((1.0, 0.0), 0.0, frames=2), folder + "/run.csv")
+    ...     print(Path(folder, "run.csv").read_text().splitlines()[2][:11])
+    1.0,0.5,0.0
+    """
+    kind = kind_of(path, TRAJECTORY_KINDS)
+    columns = {name: getattr(run, name) for name in TRAJECTORY_COLUMNS}
+    if kind == ".h5":
+        scalars = {n: np.asarray(v) if isinstance(v, list) else v for n, v in summary(run).items()}
+        content = _hdf5(
+            {"time": columns.pop("time")}, columns, TRAJECTORY_COLUMNS,
+            {"title": "Trajectory of a sliding, spinning puck", **scalars},
+        )  # fmt: skip
+    elif kind == ".csv":
+        rows = zip(*(column.tolist() for column in columns.values()), strict=True)
+        content = _csv(TRAJECTORY_COLUMNS, rows)
+    else:
+        rows = zip(*(column.tolist() for column in columns.values()), strict=True)
+        lines = (json.dumps(dict(zip(columns, row, strict=True)), allow_nan=False) for row in rows)
+        content = "".join(line + "\n" for line in lines).encode()
+    write_bytes(path, content, overwrite)
+
+
+def save_map(stops: StopMap, path: str | Path, overwrite: bool = False) -> None:
+    """Write a map as labelled HDF5, or as CSV with one row a launch, by the ending of the name.
+
+    Raises
+    ------
+    InputError
+        If the ending is neither .h5 nor .csv.
+    OutputError
+        If the file exists (without ``overwrite``) or cannot be written.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from puck_tables import sweep
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     save_map(sweep([0.0, 1.0], 1.0), folder + "/map.csv")
+    ...     print(Path(folder, "map.csv").read_text().splitlines()[0][:24])
+    w0[rad/s],stop_time[s],s
+    """
+    if kind_of(path, MAP_KINDS) == ".csv":
+        content = map_as_csv(stops).encode()
+    else:
+        attributes = {
+            "title": "Stops of sliding, spinning pucks", **stops.fixed,
+            "accuracy": stops.accuracy, "table": stops.table,
+            "method": "Runge-Kutta 4 in ln Q",
+        }  # fmt: skip
+        columns = {name: getattr(stops, name) for name in MAP_COLUMNS}
+        content = _hdf5(stops.axes, columns, {**MAP_AXES, **MAP_COLUMNS}, attributes)
+    write_bytes(path, content, overwrite)
+
+
+def map_as_csv(stops: StopMap) -> str:
+    """A map as CSV text: ranged quantities, then results; one row a launch.
+
+    Examples
+    --------
+    >>> from puck_tables import sweep
+    >>> len(map_as_csv(sweep([0.0, 1.0], 1.0)).splitlines())
+    3
+    """
+    grids = np.meshgrid(*stops.axes.values(), indexing="ij") if stops.axes else []
+    columns = [grid.ravel().tolist() for grid in grids]
+    columns += [np.ravel(getattr(stops, name)).tolist() for name in MAP_COLUMNS]
+    names = {name: MAP_AXES[name] for name in stops.axes}
+    return _csv({**names, **MAP_COLUMNS}, zip(*columns, strict=True)).decode()
+
+
+def _csv(names: dict[str, tuple[str, str]], rows: Iterator[tuple[Any, ...]]) -> bytes:
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow([f"{name}[{unit}]" for name, (unit, _) in names.items()])
+    writer.writerows(rows)
+    return text.getvalue().encode()
+
+
+def _hdf5(
+    axes: dict[str, Any],
+    columns: dict[str, Any],
+    names: dict[str, tuple[str, str]],
+    attributes: dict[str, Any],
+) -> bytes:
+    import h5py
+
+    buffer = io.BytesIO()
+    with h5py.File(buffer, "w") as file:
+        for name, values in axes.items():
+            axis = file.create_dataset(name, data=values)
+            axis.make_scale(name)
+        for name, values in columns.items():
+            data = file.create_dataset(name, data=values)
+            for position, axis_name in enumerate(axes):
+                data.dims[position].attach_scale(file[axis_name])
+        for name in (*axes, *columns):
+            unit, text = names[name]
+            file[name].attrs.update(units=unit, long_name=text)
+        if "status" in columns:
+            file["status"].attrs["flag_values"] = np.array([0, 1, 2], np.int8)
+            file["status"].attrs["flag_meanings"] = "stopped step_limit overflow"
+        file.attrs.update({
+            "Conventions": "CF-1.11", "source": f"puck-tables {__version__}",
+            "created": datetime.now(UTC).isoformat(timespec="seconds"), **attributes,
+        })  # fmt: skip
+    return buffer.getvalue()
