@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -208,11 +209,10 @@ def told(path: Path) -> None:
 @contextmanager
 def progress(label: str) -> Iterator[Progress]:
     """A progress bar on stderr, silent where stderr is no terminal."""
-    stream = click.get_text_stream("stderr")
-    if not stream.isatty():
+    if not sys.stderr.isatty():
         yield lambda done, total: None
         return
-    with click.progressbar(length=1000, label=label, file=stream, show_pos=False) as bar:
+    with click.progressbar(length=1000, label=label, file=sys.stderr, show_pos=False) as bar:
 
         def show(done: int, total: int) -> None:
             bar.update(1000 * done // total - bar.pos)

@@ -99,7 +99,7 @@ def sweep(
     --------
     >>> stops = sweep([0.0, 1.0, 2.0], v0=(1.0, 0.0), delta=0.0)
     >>> stops.stop_x.round(4).tolist()
-    [0.5, 0.6374, 0.9915]
+    [0.5, 0.6374, 0.9835]
     """
     chosen = load_table() if table is None else table
     steps = steps_for(accuracy, chosen)

@@ -63,7 +63,7 @@ def build_table(
     --------
     >>> table = build_table(accuracy=1e-6)
     >>> table.phi_axis.size, table.accuracy.worst <= 1e-6
-    (71, True)
+    (69, True)
     """
     if accuracy is not None and n_phi is not None:
         raise InputError(

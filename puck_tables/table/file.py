@@ -121,7 +121,7 @@ def load_table(path: str | Path | None = None) -> Table:
     --------
     >>> table = load_table()
     >>> table.phi_axis.size, table.delta_axis.size
-    (1025, 4)
+    (991, 4)
     """
     try:
         if path is None:

@@ -1,0 +1,333 @@
+"""The commands as a person types them: results, refusals, exit codes, nothing lost."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pandas
+import pytest
+import xarray
+from click.testing import CliRunner, Result
+from puck_tables.cli.main import main
+
+from puck_tables import load_table, simulate
+
+PUCK = [sys.executable, "-c", "from puck_tables.cli.main import main; main(prog_name='puck')"]
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def puck(*arguments: str) -> Result:
+    return CliRunner().invoke(main, arguments)
+
+
+def refused(result: Result, code: int, *words: str) -> str:
+    """One sentence on stderr, nothing on stdout, no traceback."""
+    assert result.exit_code == code, result.output
+    assert isinstance(result.exception, SystemExit)
+    assert result.stdout == ""
+    lines = result.stderr.strip().splitlines()
+    errors = [line for line in lines if line.startswith("Error: ")]
+    assert len(errors) == 1, result.stderr
+    assert lines[-1] == errors[0]
+    for word in words:
+        assert word in errors[0]
+    assert "Traceback" not in result.output
+    return errors[0]
+
+
+def test_the_first_command_says_what_was_assumed():
+    result = puck("simulate", "--v0", "1,0", "--w0", "5")
+    assert result.exit_code == 0
+    for words in (
+        "r = 1 m, delta = 0.5, J = 1 m/s^2   (defaults", "B: spin-rich", "3.96299205 s",
+        "(2.21395163, -0.15716", "limit angle", "residual", "error estimate",
+    ):  # fmt: skip
+        assert words in result.stdout
+    assert "defaults" not in puck("simulate", "--v0", "1,0", "--delta", "0.5").stdout
+
+
+def test_json_is_one_object_with_the_promised_keys():
+    result = puck("simulate", "--v0", "1,0", "--w0", "5", "--json")
+    found = json.loads(result.stdout)
+    assert result.stdout.count("\n") == 1
+    assert set(found) >= {
+        "stop_time", "stop_position", "regime", "delta", "decel", "limit_angle", "turn_angle",
+        "body_angle", "path_length", "energy_residual", "method",
+    }  # fmt: skip
+    assert found["stop_position"] == list(simulate((1, 0), 5.0).stop_position)
+
+
+def test_a_real_puck():
+    arguments = ["--v0", "2,0", "--w0", "30", "--radius", "0.0381", "--height", "0.0254"]
+    found = json.loads(puck("simulate", *arguments, "--friction", "0.1", "--json").stdout)
+    assert found["delta"] == pytest.approx(2 * 0.1 * 0.0254 / 0.0381)
+    assert found["decel"] == pytest.approx(0.980665)
+    moon = puck("simulate", *arguments, "--friction", "0.1", "--gravity", "1.62", "--json")
+    assert json.loads(moon.stdout)["decel"] == pytest.approx(0.162)
+    heavy = puck("simulate", *arguments, "--friction", "0.1", "--mass", "0.17", "--json")
+    assert json.loads(heavy.stdout)["kinetic_energy"] == pytest.approx(
+        0.5 * 0.17 * (4 + 0.5 * (0.0381 * 30) ** 2)
+    )
+
+
+@pytest.mark.parametrize("ending", ["h5", "csv", "jsonl"])
+def test_saved_trajectories_open_elsewhere(folder: Path, ending: str):
+    name = f"run.{ending}"
+    result = puck("simulate", "--v0", "1,0", "--w0", "5", "--frames", "20", "-o", name)
+    assert result.exit_code == 0
+    assert f"wrote {name}" in result.stderr
+    if ending == "h5":
+        with xarray.open_dataset(name, engine="h5netcdf") as data:
+            assert data.x.dims == ("time",)
+            assert data.x.attrs["units"] == "m"
+            assert data.attrs["regime"] == "B"
+            x = data.x.values
+    elif ending == "csv":
+        frame = pandas.read_csv(name)
+        assert list(frame.columns)[:3] == ["time[s]", "x[m]", "y[m]"]
+        x = frame["x[m]"].to_numpy()
+    else:
+        frame = pandas.read_json(name, lines=True)
+        assert set(frame.columns) == {
+            "time", "x", "y", "heading", "orientation", "speed", "spin", "slip_speed", "slip_angle",
+        }  # fmt: skip
+        x = frame["x"].to_numpy()
+    np.testing.assert_allclose(x, simulate((1, 0), 5.0, frames=20).x, rtol=1e-12)
+
+
+def test_times_from_the_command_line():
+    puck("simulate", "--v0", "1,0", "--times", "0,0.5,7", "-o", "a.csv")
+    np.testing.assert_allclose(pandas.read_csv("a.csv")["x[m]"], [0.0, 0.375, 0.5], rtol=1e-12)
+    puck("simulate", "--v0", "1,0", "--times", "0:1:3", "-o", "b.csv")
+    np.testing.assert_allclose(pandas.read_csv("b.csv")["time[s]"], [0.0, 0.5, 1.0])
+
+
+@pytest.mark.parametrize("start", [["--w0", "5"], ["--w0", "0"], ["--v0", "0,0", "--w0", "1"]])
+def test_pictures_are_drawn_for_every_regime(folder: Path, start: list[str]):
+    assert puck("simulate", "--v0", "1,0", *start, "--plot", "run.png").exit_code == 0
+    assert Path("run.png").read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
+    assert puck("simulate", "--v0", "0,0", "--plot", "rest.svg").exit_code == 0
+
+
+def test_sweep_writes_labelled_maps_and_draws_them():
+    result = puck(
+        "sweep", "--speed", "0:2:5", "--w0", "-3:3:7", "--delta", "0:1:3", "-o", "map.h5",
+        "--plot", "map.png",
+    )  # fmt: skip
+    assert result.exit_code == 0
+    assert result.stdout == ""
+    with xarray.open_dataset("map.h5", engine="h5netcdf") as data:
+        assert dict(data.sizes) == {"delta": 3, "speed": 5, "w0": 7}
+        assert data.stop_time.dims == ("delta", "speed", "w0")
+        assert data.stop_x.attrs["units"] == "m"
+        assert data.w0.attrs["units"] == "rad/s"
+        assert data.status.attrs["flag_meanings"] == "stopped step_limit overflow"
+        at = data.sel(delta=0.5, speed=1.0, w0=-2.0)
+        run = simulate((1, 0), -2.0)
+        assert float(at.stop_time) == pytest.approx(run.stop_time, abs=1e-6)
+        assert float(at.stop_y) == pytest.approx(run.stop_position[1], abs=1e-6)
+    assert puck("sweep", "--w0", "0:10:11", "--v0", "1,0", "--plot", "curve.png").exit_code == 0
+
+
+def test_sweep_prints_csv_without_an_output():
+    result = puck("sweep", "--w0", "0:10:3", "--v0", "1,0", "--delta", "1")
+    rows = result.stdout.splitlines()
+    assert rows[0].startswith("w0[rad/s],stop_time[s],stop_x[m],stop_y[m]")
+    assert len(rows) == 4
+    assert float(rows[2].split(",")[1]) == pytest.approx(4.000188799127, abs=1e-6)
+    assert "3 stopped" in result.stderr
+    assert len(puck("sweep").stdout.splitlines()) == 1 + 41 * 41
+
+
+def test_build_info_validate(folder: Path):
+    built = puck("build-tables", "--accuracy", "1e-6", "-o", "rough.h5")
+    assert built.exit_code == 0
+    assert load_table("rough.h5").passport["command"].startswith("puck ")
+    assert puck("build-tables", "--n-phi", "65", "--n-delta", "5", "-o", "hand.h5").exit_code == 0
+    told = puck("info", "rough.h5").stdout
+    for words in ("69 phi x 4 delta", "tolerance   1e-06", "uniform pressure", "right"):
+        assert words in told
+    assert "default table" in puck("info").stdout
+    judged = puck("validate", "rough.h5")
+    assert judged.exit_code == 0
+    assert judged.stdout.count("pass") == 12
+    near = puck("simulate", "--v0", "1,0", "--w0", "5", "--table", "rough.h5", "--accuracy", "1e-5",
+                "--json")  # fmt: skip
+    assert json.loads(near.stdout)["stop_time"] == pytest.approx(3.96299205, abs=5e-5)
+
+
+def test_validate_ends_with_3_when_a_table_is_out_of_its_tolerance(monkeypatch: pytest.MonkeyPatch):
+    table = load_table()
+    object.__setattr__(table, "tolerance", 1e-13)
+    monkeypatch.setattr("puck_tables.table.file.load_table", lambda path: table)
+    result = puck("validate")
+    assert result.exit_code == 3
+    assert "FAIL" in result.stdout
+    assert "Error: the table is out of its own tolerance" in result.stderr
+
+
+V0 = ["simulate", "--v0", "1,0"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["simulate", "--v0", "1"], ["two numbers with a comma"]),
+        (["simulate", "--v0", "1,2,3"], ["two numbers"]),
+        (["simulate", "--v0", "one,0"], ["'one' is not a number"]),
+        (["simulate", "--v0", "nan,0"], ["'nan' is not a finite number"]),
+        (["simulate", "--v0", "inf,0"], ["finite"]),
+        (["simulate"], ["--v0"]),
+        ([*V0, "--w0", "inf"], ["--w0", "finite"]),
+        ([*V0, "--radius", "-1"], ["radius must be greater than 0"]),
+        ([*V0, "--radius", "0"], ["radius"]),
+        ([*V0, "--decel", "0"], ["decel must be greater than 0"]),
+        ([*V0, "--radius", "1", "--height", "1", "--friction", "-1"], ["friction"]),
+        ([*V0, "--radius", "1", "--height", "1", "--friction", "1", "--gravity", "0"], ["gravity"]),
+        ([*V0, "--radius", "1", "--height", "1", "--friction", "1"], ["delta = 2", "linear"]),
+        ([*V0, "--delta", "-0.1"], ["delta", "negative"]),
+        ([*V0, "--delta", "1.1"], ["outside this table", "--exact"]),
+        ([*V0, "--delta", "1.1", "--exact"], ["part of the base is lifted", "law of full contact"]),
+        ([*V0, "--height", "1", "--delta", "0.5"], ["--height and --delta clash"]),
+        ([*V0, "--friction", "1", "--decel", "0.5"], ["--friction and --decel clash"]),
+        ([*V0, "--friction", "0.1", "--radius", "1"], ["--friction needs --height"]),
+        ([*V0, "--gravity", "9.8"], ["--gravity needs --radius and --height and --friction"]),
+        ([*V0, "--frames", "0"], ["frames must be from 1"]),
+        ([*V0, "--frames", "5", "--times", "1"], ["one of them"]),
+        ([*V0, "--times", "2:1:5"], ["STOP must be greater"]),
+        ([*V0, "--times", "-1,2"], ["times"]),
+        ([*V0, "--w0", "2", "--accuracy", "1e-14"], ["accuracy must be from 1e-10"]),
+        ([*V0, "--method", "euler"], ["'euler'"]),
+        ([*V0, "--exact", "--table", "x.h5"], ["--exact and --table clash"]),
+        ([*V0, "-o", "run.xlsx"], [".h5, .csv, .jsonl"]),
+        ([*V0, "--plot", "run.bmp"], [".png"]),
+        ([*V0, "-o", "a.csv", "--plot", "a.csv"], ["two outputs"]),
+        (["sweep", "--w0", "5:1:10"], ["STOP must be greater than START"]),
+        (["sweep", "--w0", "1:5"], ["START:STOP:COUNT"]),
+        (["sweep", "--w0", "1:5:1"], ["COUNT"]),
+        (["sweep", "--w0", "1:5:1e3"], ["COUNT"]),
+        (["sweep", "--w0", "0:1:999999999999"], ["COUNT"]),
+        (["sweep", "--w0", "0:1:1000000", "--speed", "0:1:1000000"], ["would need", "GiB"]),
+        (["sweep", "--v0", "1,0", "--speed", "1"], ["--v0 and --speed clash"]),
+        (["sweep", "--speed", "-1:1:5"], ["speed must not be negative"]),
+        (["sweep", "--delta", "0:2:5"], ["outside this table"]),
+        (["sweep", "--w0", "1", "--plot", "x.png"], ["needs a range"]),
+        (["sweep", "--height", "1", "--delta", "0:1:5"], ["clash"]),
+        (["sweep", "-o", "map.jsonl"], [".h5, .csv"]),
+        (["build-tables", "--n-phi", "100"], ["odd"]),
+        (["build-tables", "--accuracy", "1e-20"], ["1e-13"]),
+        (["build-tables", "--accuracy", "1e-6", "--n-phi", "65"], ["both fix the grid"]),
+    ],
+)
+def test_bad_input_is_one_sentence_and_writes_nothing(
+    folder: Path, arguments: list[str], words: list[str]
+):
+    refused(puck(*arguments), 2, *words)
+    assert list(folder.iterdir()) == []
+
+
+COMMANDS = [
+    ([*V0, "-o", "{}.csv"], "csv"),
+    ([*V0, "--plot", "{}.png"], "png"),
+    (["sweep", "-o", "{}.h5"], "h5"),
+    (["sweep", "--plot", "{}.png"], "png"),
+    (["build-tables", "-o", "{}.h5"], "h5"),
+]
+
+
+@pytest.mark.parametrize(("command", "ending"), COMMANDS)
+def test_outputs_that_exist_or_cannot_be_written(folder: Path, command: list[str], ending: str):
+    def at(place: str) -> list[str]:
+        return [part.format(place) for part in command]
+
+    Path(f"old.{ending}").write_text("mine")
+    refused(puck(*at("old")), 1, "exists already", "--overwrite")
+    assert Path(f"old.{ending}").read_text() == "mine"
+    refused(puck(*at("none/run")), 1, "the folder none does not exist")
+    refused(puck(*at("/proc/run")), 1, "cannot write in the folder /proc")
+    Path(f"folder.{ending}").mkdir()
+    refused(puck(*at("folder")), 1, "it is a folder")
+    assert puck(*at("old"), "--overwrite").exit_code == 0
+    assert Path(f"old.{ending}").stat().st_size > 1000
+    assert sorted(path.name for path in folder.iterdir()) == [f"folder.{ending}", f"old.{ending}"]
+
+
+@pytest.mark.parametrize(("command", "ending"), COMMANDS)
+def test_full_disk(folder: Path, command: list[str], ending: str, monkeypatch: pytest.MonkeyPatch):
+    def full(descriptor: int) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("os.fsync", full)
+    refused(puck(*(part.format("full") for part in command)), 1, "No space left on device")
+    assert list(folder.iterdir()) == []
+
+
+@pytest.mark.parametrize("command", [["info"], ["validate"], [*V0, "--table"]])
+def test_files_that_are_no_tables(command: list[str]):
+    refused(puck(*command, "none.h5"), 1, "there is no table file none.h5")
+    Path("text.h5").write_text("puck")
+    refused(puck(*command, "text.h5"), 1, "not an HDF5 file")
+    puck("sweep", "--w0", "0:1:3", "-o", "map.h5")
+    refused(puck(*command, "map.h5"), 1, "not a table of this program")
+
+
+def test_pictures_without_matplotlib_say_what_to_install(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    refused(puck(*V0, "--plot", "run.png"), 1, "pip install 'puck-tables[plot]'")
+
+
+def environment() -> dict[str, str]:
+    return {**os.environ, "PYTHONUNBUFFERED": "1"}
+
+
+def test_help_and_version_are_quick_and_load_nothing_heavy():
+    for argument in ("--help", "--version"):
+        best = min(_seconds(argument) for _ in range(5))
+        assert best < 0.2, best
+    heavy = (
+        "import sys, puck_tables, puck_tables.cli.main; "
+        "print([m for m in ('numpy', 'numba', 'h5py', 'scipy', 'matplotlib') if m in sys.modules])"
+    )
+    found = subprocess.run(
+        [sys.executable, "-c", heavy], capture_output=True, text=True, check=True
+    )
+    assert found.stdout == "[]\n"
+
+
+def _seconds(argument: str) -> float:
+    start = time.perf_counter()
+    subprocess.run([*PUCK, argument], capture_output=True, check=True)
+    return time.perf_counter() - start
+
+
+def test_interrupted_sweep_writes_nothing(folder: Path):
+    process = subprocess.Popen(
+        [*PUCK, "sweep", "--speed", "0:2:3000", "--w0", "0:5:3000", "-o", "map.h5"],
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment(),
+    )  # fmt: skip
+    time.sleep(4.0)
+    process.send_signal(signal.SIGINT)
+    out, err = process.communicate(timeout=60)
+    assert process.returncode == 130, err
+    assert (out, err.strip()) == ("", "Interrupted: nothing was written.")
+    assert list(folder.iterdir()) == []
+
+
+def test_a_closed_pipe_is_quiet():
+    command = " ".join(f'"{part}"' for part in PUCK) + " sweep | head -1"
+    ended = subprocess.run(command, shell=True, capture_output=True, text=True, check=True)
+    assert ended.stdout.startswith("speed[m/s],w0[rad/s]")
+    assert "Traceback" not in ended.stderr
+    assert "Broken" not in ended.stderr

@@ -1,0 +1,155 @@
+"""Stops in bulk and maps of them."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from puck_tables import simulate, stop, sweep
+from puck_tables.errors import AccuracyError, InputError
+from puck_tables.executor import run_chunks
+from puck_tables.stop_map import check_memory
+
+ARRAYS = (
+    "stop_time", "stop_x", "stop_y", "path_length", "turn_angle", "body_angle", "status",
+)  # fmt: skip
+
+
+def test_stop_agrees_with_simulate_and_broadcasts():
+    v0 = np.array([[1.0, 0.0], [0.3, -2.0], [0.0, 0.0]])
+    w0 = np.array([[3.0], [-0.2], [0.0], [1e-9]])
+    result = stop(v0, w0, delta=0.8, decel=2.0, radius=0.1)
+    assert result.stop_time.shape == (4, 3)
+    assert result.stop_position.shape == (4, 3, 2)
+    assert np.all(result.status == 0)
+    for i in range(4):
+        for j in range(3):
+            run = simulate(v0[j], w0[i, 0], delta=0.8, decel=2.0, radius=0.1)
+            q = math.hypot(*v0[j], 0.1 * w0[i, 0])
+            assert result.stop_time[i, j] == pytest.approx(run.stop_time, abs=1e-7 * q)
+            np.testing.assert_allclose(
+                result.stop_position[i, j], run.stop_position, rtol=0, atol=1e-7 * q * q
+            )
+            assert result.path_length[i, j] == pytest.approx(run.path_length, abs=1e-7 * q * q)
+            assert result.body_angle[i, j] == pytest.approx(run.body_angle, abs=2e-6 * q * q)
+            assert result.turn_angle[i, j] == pytest.approx(run.turn_angle, abs=2e-6)
+
+
+def test_stop_reaches_the_accuracy_it_promises():
+    rng = np.random.default_rng(11)
+    u = np.concatenate([rng.uniform(-18, 18, 300), rng.uniform(-0.5, 0.5, 100)])
+    delta = rng.random(400)
+    v0 = np.stack([1.0 / np.hypot(1.0, np.exp(u)), 0.0 * u], axis=-1)
+    w0 = np.sqrt(1.0 - v0[:, 0] ** 2)
+    truth = stop(v0, w0, delta=delta, accuracy=1e-10)
+    for accuracy in (1e-2, 1e-3, 1e-5, 1e-7, 1e-8):
+        result = stop(v0, w0, delta=delta, accuracy=accuracy)
+        assert np.abs(result.stop_time - truth.stop_time).max() <= accuracy
+        assert np.abs(result.stop_position - truth.stop_position).max() <= accuracy
+
+
+def test_overflow_is_a_named_status():
+    result = stop([(1e200, 0.0), (1.0, 0.0)], 1.0)
+    assert result.status.tolist() == [2, 0]
+    assert np.isnan(result.stop_time[0])
+
+
+@pytest.mark.parametrize(
+    ("arguments", "options", "words"),
+    [
+        (((1, 0, 0), 1.0), {}, "two components"),
+        (((1, 0), [1.0, math.inf]), {}, "w0"),
+        (((1, 0), 1.0), {"delta": 1.5}, "outside this table"),
+        (((1, 0), 1.0), {"delta": -0.5}, "delta"),
+        (((1, 0), 1.0), {"radius": [1.0, 0.0]}, "radius"),
+        (((1, 0), 1.0), {"decel": 0.0}, "decel"),
+        (((1, 0), [1.0, 2.0, 3.0]), {"delta": [0.1, 0.2]}, "broadcast"),
+    ],
+)
+def test_bad_launches(arguments: tuple, options: dict, words: str):
+    with pytest.raises(InputError, match=words):
+        stop(*arguments, **options)
+
+
+def test_accuracy_out_of_reach():
+    with pytest.raises(AccuracyError, match=r"1e-10 .*to 0\.01"):
+        stop((1, 0), 1.0, accuracy=1e-12)
+
+
+def test_same_bits_for_any_threads_and_chunks():
+    grid = {
+        "w0": np.linspace(-3, 3, 23),
+        "speed": np.linspace(0, 2, 17),
+        "delta": np.array([0.0, 0.4, 1.0]),
+    }
+    base = sweep(threads=1, chunk=10**6, **grid)
+    for threads, chunk in ((2, 64), (2, 7), (1, 1), (3, 100)):
+        other = sweep(threads=threads, chunk=chunk, **grid)
+        for name in ARRAYS:
+            assert getattr(other, name).tobytes() == getattr(base, name).tobytes()
+    alone = stop((grid["speed"][5], 0.0), grid["w0"][3], delta=0.4)
+    assert float(alone.stop_time) == base.stop_time[1, 5, 3]
+
+
+def test_axes_only_of_what_is_ranged():
+    assert list(sweep().axes) == ["speed", "w0"]
+    assert sweep().stop_time.shape == (41, 41)
+    assert list(sweep([1.0, 2.0], v0=(0.0, 1.0)).axes) == ["w0"]
+    assert list(sweep(1.0, [0.5, 1.0], delta=[0.0, 1.0]).axes) == ["delta", "speed"]
+    single = sweep(1.0, 2.0)
+    assert single.stop_time.shape == ()
+    assert single.fixed == {"decel": 1.0, "radius": 1.0, "delta": 0.5, "speed": 2.0, "w0": 1.0}
+
+
+def test_figure_4_of_the_paper():
+    """v0 = (1, 0), J = 1: final x, y and stop time against ω(0) are nearly linear from 2 on."""
+    w0 = np.linspace(0, 10, 101)
+    stops = sweep(w0, v0=(1.0, 0.0), delta=1.0)
+    assert stops.stop_time[0] == pytest.approx(1.0, abs=1e-9)
+    assert stops.stop_x[0] == pytest.approx(0.5, abs=1e-9)
+    assert np.all(np.diff(stops.stop_time) > 0.0)
+    assert np.all(np.diff(stops.stop_x) > 0.0)
+    assert np.all(stops.stop_y[1:] < 0.0)  # ω > 0 turns the path to the right
+    for values in (stops.stop_time, stops.stop_x, stops.stop_y):
+        line = np.polyval(np.polyfit(w0[20:], values[20:], 1), w0[20:])
+        assert np.abs(line - values[20:]).max() <= 0.02 * np.ptp(values)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"v0": (1, 0), "speed": 1.0}, "give one of them"),
+        ({"speed": [-1.0, 1.0]}, "negative"),
+        ({"w0": [[1.0]]}, "list of numbers"),
+        ({"w0": []}, "list of numbers"),
+        ({"delta": [0.0, 1.1]}, "outside this table"),
+        ({"radius": -1.0}, "radius"),
+        ({"v0": ((1, 0), (2, 0))}, "one velocity"),
+    ],
+)
+def test_bad_maps(options: dict, words: str):
+    with pytest.raises(InputError, match=words):
+        sweep(**options)
+
+
+def test_a_map_too_large_says_how_large():
+    with pytest.raises(InputError, match=r"1000000 x 1000000 launches would need .* GiB"):
+        check_memory((10**6, 10**6))
+
+
+def test_executor_raises_the_first_error_and_drops_the_rest():
+    seen: list[int] = []
+
+    def work(start: int, stop: int) -> None:
+        seen.append(start)
+        if start == 20:
+            raise RuntimeError("chunk")
+
+    with pytest.raises(RuntimeError, match="chunk"):
+        run_chunks(work, 10_000, 10, threads=2)
+    assert len(seen) < 100
+    done: list[tuple[int, int]] = []
+    run_chunks(lambda a, b: None, 95, 10, threads=2, progress=lambda d, t: done.append((d, t)))
+    assert done[-1] == (95, 95)

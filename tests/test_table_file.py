@@ -1,0 +1,173 @@
+"""Table files: what they carry, and every way to be refused."""
+
+from __future__ import annotations
+
+import io
+import shutil
+from dataclasses import replace
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+import xarray
+
+from puck_tables import Table, build_table, load_table, save_table
+from puck_tables.errors import OutputError, TableError
+
+
+@pytest.fixture(scope="module")
+def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("tables") / "rough.h5"
+    save_table(build_table(accuracy=1e-6), path, command="puck build-tables --accuracy 1e-6")
+    return path
+
+
+def test_round_trip_is_exact(file: Path, rough_table: Table):
+    loaded = load_table(file)
+    np.testing.assert_array_equal(loaded.values, rough_table.values)
+    assert loaded.accuracy == rough_table.accuracy
+    assert loaded.tolerance == 1e-6
+
+
+def test_file_says_what_it_holds(file: Path):
+    passport = load_table(file).passport
+    assert passport["format"] == "puck-tables"
+    for name in (
+        "format_version", "kind", "pressure_law", "interpretation", "phi_map", "delta_map",
+        "valid_range", "method", "package_version", "library_versions", "created", "command",
+        "content_digest", "recipe_digest", "achieved_accuracy", "tolerance",
+    ):  # fmt: skip
+        assert passport[name], name
+
+
+def test_opens_in_xarray_with_named_axes(file: Path):
+    with xarray.open_dataset(file, engine="h5netcdf") as data:
+        assert dict(data.sizes) == {"phi": 69, "delta": 4}
+        assert data.spin.dims == ("phi", "delta")
+        assert data.phi.attrs["units"] == "rad"
+        middle = data.parallel.sel(phi=np.pi / 4, delta=1.0, method="nearest")
+        assert float(middle) == pytest.approx(1.1852400155)
+
+
+def test_default_table_ships_small_and_good(table: Table):
+    from importlib.resources import files
+
+    content = files("puck_tables.tables").joinpath("resultants.h5").read_bytes()
+    assert len(content) <= 1_000_000
+    assert table.accuracy.worst <= 5e-9
+    assert table.delta_axis.upper == 1.0
+
+
+def altered(file: Path, to: Path, **attributes: object) -> Path:
+    shutil.copy(file, to)
+    with h5py.File(to, "r+") as opened:
+        opened.attrs.update(attributes)
+    return to
+
+
+def test_newer_format_other_kind_and_stranger_are_refused_by_name(file: Path, tmp_path: Path):
+    newer = altered(file, tmp_path / "newer.h5", format_version="2.0")
+    with pytest.raises(TableError, match=r"format 2\.0, newer than 1\.0.*update puck-tables"):
+        load_table(newer)
+    with pytest.raises(TableError, match="holds 'stops'"):
+        load_table(altered(file, tmp_path / "kind.h5", kind="stops"))
+    with h5py.File(tmp_path / "other.h5", "w") as other:
+        other["x"] = 1.0
+    with pytest.raises(TableError, match="not a table of this program"):
+        load_table(tmp_path / "other.h5")
+
+
+def test_altered_values_text_and_axes_are_refused(file: Path, tmp_path: Path):
+    with pytest.raises(TableError, match="digest"):
+        load_table(altered(file, tmp_path / "text.h5", pressure_law="hertz"))
+    with pytest.raises(TableError, match="digest"):
+        load_table(altered(file, tmp_path / "tolerance.h5", tolerance=1e-12))
+    for name in ("parallel", "phi"):
+        path = tmp_path / f"{name}.h5"
+        shutil.copy(file, path)
+        with h5py.File(path, "r+") as opened:
+            opened[name][3, ...] *= 1.0 + 1e-15
+        with pytest.raises(TableError, match="digest"):
+            load_table(path)
+    absurd = altered(file, tmp_path / "absurd.h5", n_phi=4_000_001)
+    with pytest.raises(TableError, match="damaged"):
+        load_table(absurd)
+    huge = tmp_path / "huge.h5"
+    shutil.copy(file, huge)
+    with h5py.File(huge, "r+") as opened:
+        for name in ("parallel", "perpendicular", "spin"):
+            del opened[name]
+            opened.create_dataset(name, shape=(1_000_001, 1000), dtype="<f8", chunks=True)
+        opened.attrs.update(n_phi=1_000_001, n_delta=1000)
+    with pytest.raises(TableError, match="shorter than its arrays"):
+        load_table(huge)
+
+
+def test_every_flipped_byte_is_refused_or_harmless(file: Path, tmp_path: Path):
+    whole = file.read_bytes()
+    before = load_table(file)
+    rng = np.random.default_rng(2012)
+    flipped = tmp_path / "flipped.h5"
+    refused = 0
+    for position in rng.choice(len(whole), 120, replace=False):
+        content = bytearray(whole)
+        content[position] ^= 1 << int(rng.integers(8))
+        flipped.write_bytes(content)
+        try:
+            after = load_table(flipped)
+        except TableError:
+            refused += 1
+            continue
+        np.testing.assert_array_equal(after.values, before.values)
+        assert after.passport == before.passport
+    assert refused >= 20
+
+
+@pytest.mark.parametrize("share", [0.0, 0.01, 0.3, 0.9, 0.999])
+def test_truncated_is_refused(file: Path, tmp_path: Path, share: float):
+    content = file.read_bytes()
+    cut = tmp_path / "cut.h5"
+    cut.write_bytes(content[: int(share * len(content))])
+    with pytest.raises(TableError):
+        load_table(cut)
+
+
+def test_missing_not_hdf5_and_folder_are_refused(tmp_path: Path):
+    with pytest.raises(TableError, match="there is no table file"):
+        load_table(tmp_path / "none.h5")
+    (tmp_path / "text.h5").write_text("puck")
+    with pytest.raises(TableError, match="not an HDF5 file"):
+        load_table(tmp_path / "text.h5")
+    with pytest.raises(TableError, match="cannot read"):
+        load_table(tmp_path)
+
+
+def test_nothing_is_overwritten_and_nothing_non_finite_is_saved(file: Path, rough_table: Table):
+    before = file.read_bytes()
+    with pytest.raises(OutputError, match="exists already"):
+        save_table(rough_table, file)
+    spoilt = rough_table.values.copy()
+    spoilt[0, 0, 0] = np.nan
+    with pytest.raises(OutputError, match="non-finite"):
+        save_table(replace(rough_table, values=spoilt), file, overwrite=True)
+    assert file.read_bytes() == before
+    assert [path.name for path in file.parent.iterdir()] == [file.name]
+
+
+def test_full_disk_leaves_nothing(
+    tmp_path: Path, rough_table: Table, monkeypatch: pytest.MonkeyPatch
+):
+    def full(descriptor: int) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("os.fsync", full)
+    with pytest.raises(OutputError, match="No space left on device"):
+        save_table(rough_table, tmp_path / "full.h5")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_unpickles_nothing(file: Path):
+    with h5py.File(io.BytesIO(file.read_bytes())) as opened:
+        kinds = {opened[name].dtype.kind for name in opened}
+    assert kinds == {"f"}
