@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
-import sys
 from pathlib import Path
 
 import click
@@ -44,7 +42,10 @@ def build_tables(
 
     with progress("tabulating") as show:
         table = build_table(accuracy, n_phi, n_delta, show)
-    command = shlex.join(["puck", *sys.argv[1:]])
+    command = "puck build-tables"
+    for name, value in (("--accuracy", accuracy), ("--n-phi", n_phi), ("--n-delta", n_delta)):
+        if value is not None:
+            command += f" {name} {value}"
     written = save_table(table, output, overwrite, command)
     told(output)
     click.echo(describe(written))

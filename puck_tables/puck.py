@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.errors import InputError
+from puck_tables.real import finite_array
 
 STANDARD_GRAVITY = 9.80665
 
@@ -84,29 +85,6 @@ def similarity_parameters(
     r, h = positive("radius", radius, "m"), positive("height", height, "m")
     f, g = positive("friction", friction, ""), positive("gravity", gravity, "m/s^2")
     return 2.0 * f * h / r, f * g
-
-
-def finite_array(name: str, values: npt.ArrayLike, unit: str) -> npt.NDArray[np.float64]:
-    """An array of finite numbers.
-
-    Raises
-    ------
-    InputError
-
-    Examples
-    --------
-    >>> finite_array("w0", [1, 2], "rad/s")
-    array([1., 2.])
-    """
-    try:
-        array = np.asarray(values, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise InputError(f"{name} must be real numbers in {unit}") from None
-    if not np.isfinite(array).all():
-        raise InputError(
-            f"{name} must be finite numbers in {unit}, got {array[~np.isfinite(array)].flat[0]}"
-        )
-    return array
 
 
 def velocity_array(v0: npt.ArrayLike) -> npt.NDArray[np.float64]:

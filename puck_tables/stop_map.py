@@ -12,7 +12,8 @@ import numpy.typing as npt
 
 from puck_tables.errors import InputError
 from puck_tables.executor import run_chunks
-from puck_tables.puck import finite_array, positive, velocity_array
+from puck_tables.puck import positive, velocity_array
+from puck_tables.real import finite_array
 from puck_tables.stops import DEFAULT_ACCURACY, OUTPUTS, steps_for, stops_of
 from puck_tables.table.file import load_table
 from puck_tables.table.table import Table

@@ -9,7 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.errors import AccuracyError, InputError
-from puck_tables.puck import finite_array, velocity_array
+from puck_tables.puck import velocity_array
+from puck_tables.real import broadcast, finite_array
 from puck_tables.table.file import load_table
 from puck_tables.table.table import Table
 
@@ -111,22 +112,16 @@ def stop(
     chosen = load_table() if table is None else table
     steps = steps_for(accuracy, chosen)
     velocity = velocity_array(v0)
-    columns = [
-        velocity[..., 0],
-        velocity[..., 1],
-        finite_array("w0", w0, "rad/s"),
-        chosen.checked_range(delta),
-        positive_array("decel", decel, "m/s^2"),
-        positive_array("radius", radius, "m"),
-    ]
-    try:
-        shape = np.broadcast_shapes(*(column.shape for column in columns))
-    except ValueError:
-        shapes = ", ".join(str(column.shape) for column in columns[1:])
-        raise InputError(
-            f"v0[..., 0], w0, delta, decel and radius do not broadcast: shapes {shapes}"
-        ) from None
-    launches = np.stack([np.broadcast_to(c, shape).ravel() for c in columns], axis=-1)
+    columns = broadcast(
+        vx=velocity[..., 0],
+        vy=velocity[..., 1],
+        w0=finite_array("w0", w0, "rad/s"),
+        delta=chosen.checked_range(delta),
+        decel=positive_array("decel", decel, "m/s^2"),
+        radius=positive_array("radius", radius, "m"),
+    )
+    shape = columns[0].shape
+    launches = np.stack([column.ravel() for column in columns], axis=-1)
     out, status = stops_of(launches, steps, chosen)
     rows = [row.reshape(shape) for row in out]
     return Stops(

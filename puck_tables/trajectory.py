@@ -11,7 +11,8 @@ import numpy.typing as npt
 from puck_tables.contact.integrals import SlipDirection
 from puck_tables.contact.resultants import CONTACT_SLACK, pressure_tilt
 from puck_tables.errors import AccuracyError, InputError, PuckError
-from puck_tables.puck import finite_array, positive, real, velocity_array
+from puck_tables.puck import positive, real, velocity_array
+from puck_tables.real import finite_array
 from puck_tables.table.file import load_table
 from puck_tables.table.table import Table
 

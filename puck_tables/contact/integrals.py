@@ -6,8 +6,8 @@ On the unit disc, with α = cos φ, β = sin φ and w = |slip velocity|,
     β p_c = (1/π) ∫ (α − βρ sin θ) ρ sin θ / w   β p_d = (1/π) ∫ (βρ − α sin θ) ρ / w
     α p_e = (1/π) ∫ (βρ − α sin θ) ρ² sin θ / w
 
-(Salnikova, Treschev, Gallyamov 2012, eq. 4.3–4.6).  All five are even in φ.  The exact relations
-p_c = p_b − p_d and p_e = p_d − 2 p_b hold for the uniform pressure.
+(Salnikova, Treschev, Gallyamov 2012, eq. 4.3–4.6), for uniform pressure; another axisymmetric law
+enters as a weight W(ρ).  All five are even in φ, and p_c = p_b − p_d, p_e = p_d − 2 p_b.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.errors import InputError
+from puck_tables.real import real_array
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -65,10 +66,7 @@ def checked_phi(phi: npt.ArrayLike) -> FloatArray:
     >>> float(checked_phi(0.5))
     0.5
     """
-    try:
-        angle = np.asarray(phi, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise InputError("phi must be real numbers: angles in radians in [-pi/2, pi/2]") from None
+    angle = real_array("phi", phi, "radians")
     allowed = np.abs(angle) <= 0.5 * np.pi
     if not allowed.all():
         raise InputError(

@@ -67,6 +67,7 @@ class PressureLaw:
         half_length = np.sqrt((1.0 - distance) * (1.0 + distance))[..., None]
         position = half_length * np.sin(_CHI)
         radius = np.sqrt(distance[..., None] ** 2 + position**2)
+        radius = np.minimum(radius, 1.0 - 2.0**-53)  # rounding must not reach the rim
         element = self.weight(radius) * half_length * np.cos(_CHI) * _CHI_WEIGHT
         return element.sum(axis=-1), (element * position**2).sum(axis=-1)
 

@@ -22,12 +22,17 @@ from puck_tables.contact.integrals import (
     FloatArray,
     PatchIntegrals,
     SlipDirection,
+    checked_phi,
     slip_direction,
 )
 from puck_tables.errors import InputError
+from puck_tables.real import broadcast, real_array
 
 # How far rounding may push the pressure below zero where it just touches it (δ = 1, φ = 0).
 CONTACT_SLACK = 1e-12
+
+# Beyond this its fourth power in the balance would overflow.
+MAX_DELTA = 1e70
 
 
 class Resultants(NamedTuple):
@@ -104,13 +109,13 @@ def checked_delta(delta: npt.ArrayLike) -> FloatArray:
     >>> float(checked_delta(0.5))
     0.5
     """
-    try:
-        height = np.asarray(delta, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise InputError("delta must be real numbers: delta = 2 f h / r") from None
-    if not np.all((height >= 0.0) & (height < np.inf)):
-        worst = height[~((height >= 0.0) & (height < np.inf))].flat[0]
-        raise InputError(f"delta = 2 f h / r must be finite and not negative, got {worst}")
+    height = real_array("delta", delta, "units of 2 f h / r")
+    allowed = (height >= 0.0) & (height <= MAX_DELTA)
+    if not allowed.all():
+        raise InputError(
+            "delta = 2 f h / r must be finite and not negative "
+            f"(and at most {MAX_DELTA:g}), got {height[~allowed].flat[0]}"
+        )
     return height
 
 
@@ -143,7 +148,7 @@ def is_full_contact(phi: npt.ArrayLike, delta: npt.ArrayLike) -> npt.NDArray[np.
     """
     from puck_tables.contact.closed_form import integrals
 
-    direction = slip_direction(phi)
-    height = checked_delta(delta)
-    rho = moment_balance(integrals(phi), direction, height)
+    angle, height = broadcast(phi=checked_phi(phi), delta=checked_delta(delta))
+    direction = slip_direction(angle)
+    rho = moment_balance(integrals(angle), direction, height)
     return np.asarray(pressure_tilt(rho, direction, height) <= 1.0 + CONTACT_SLACK)

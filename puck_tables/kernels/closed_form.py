@@ -17,6 +17,7 @@ from puck_tables.contact.resultants import (
 )
 from puck_tables.errors import ContactError
 from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.real import broadcast
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -111,7 +112,7 @@ def resultants(phi: npt.ArrayLike, delta: npt.ArrayLike) -> Resultants:
     >>> rho.parallel.round(12).tolist(), rho.spin.round(12).tolist()
     ([1.0, 0.9], [0.375, 1.333333333333])
     """
-    angle, height = np.broadcast_arrays(checked_phi(phi), checked_delta(delta))
+    angle, height = broadcast(phi=checked_phi(phi), delta=checked_delta(delta))
     flat_angle, flat_height = (np.ascontiguousarray(a).reshape(-1) for a in (angle, height))
     out = np.empty((3, flat_angle.size))
     bad = _fill(flat_angle, flat_height, out)

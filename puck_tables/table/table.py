@@ -11,6 +11,7 @@ import numpy.typing as npt
 from puck_tables.contact.integrals import checked_phi
 from puck_tables.contact.resultants import Resultants, checked_delta
 from puck_tables.errors import InputError
+from puck_tables.real import broadcast
 from puck_tables.table.fit import table_coefficients
 from puck_tables.table.grid import DeltaAxis, PhiAxis
 
@@ -125,7 +126,7 @@ class Table:
         """
         from puck_tables.kernels.spline import fill_resultants
 
-        angle, height = np.broadcast_arrays(checked_phi(phi), self.checked_range(delta))
+        angle, height = broadcast(phi=checked_phi(phi), delta=self.checked_range(delta))
         out = np.empty((3, angle.size))
         fill_resultants(
             self.coefficients,

@@ -1,0 +1,78 @@
+"""Arrays of real numbers from whatever a caller passes, or a sentence that says what is wrong."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables.errors import InputError
+
+FloatArray = npt.NDArray[np.float64]
+
+
+def real_array(name: str, values: npt.ArrayLike, unit: str) -> FloatArray:
+    """Values as an array of float64; texts, complex numbers and dates are refused.
+
+    Parameters
+    ----------
+    name, unit : str
+        For the message.
+    values : array_like
+
+    Raises
+    ------
+    InputError
+        If the values are not real numbers that fit a double.
+
+    Examples
+    --------
+    >>> real_array("w0", [1, 2], "rad/s")
+    array([1., 2.])
+    """
+    try:
+        array = np.asarray(values)
+        if array.dtype.kind not in "buif":
+            raise TypeError
+        return array.astype(np.float64)
+    except (TypeError, ValueError, OverflowError):
+        raise InputError(f"{name} must be real numbers in {unit}") from None
+
+
+def finite_array(name: str, values: npt.ArrayLike, unit: str) -> FloatArray:
+    """Values as an array of finite numbers.
+
+    Raises
+    ------
+    InputError
+
+    Examples
+    --------
+    >>> finite_array("w0", [1, 2], "rad/s")
+    array([1., 2.])
+    """
+    array = real_array(name, values, unit)
+    if not np.isfinite(array).all():
+        raise InputError(
+            f"{name} must be finite numbers in {unit}, got {array[~np.isfinite(array)].flat[0]}"
+        )
+    return array
+
+
+def broadcast(**arrays: FloatArray) -> list[FloatArray]:
+    """Arrays broadcast against each other, in the order given.
+
+    Raises
+    ------
+    InputError
+        If their shapes do not fit.
+
+    Examples
+    --------
+    >>> [a.shape for a in broadcast(phi=np.zeros((3, 1)), delta=np.zeros(4))]
+    [(3, 4), (3, 4)]
+    """
+    try:
+        return list(np.broadcast_arrays(*arrays.values()))
+    except ValueError:
+        shapes = ", ".join(f"{name} {array.shape}" for name, array in arrays.items())
+        raise InputError(f"shapes do not broadcast: {shapes}") from None
