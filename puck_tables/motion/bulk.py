@@ -40,7 +40,7 @@ def fill_stops(
     cut_delta = -1.0
     no_s, no_y = np.empty(0), np.empty((0, SIZE))
     start = np.empty(SIZE)
-    result = np.empty(SIZE + 2)
+    result = np.empty(SIZE + 1)
     for n in range(launches.shape[0]):
         vx, vy, spin = launches[n, 0], launches[n, 1], launches[n, 2]
         delta, decel, radius = launches[n, 3], launches[n, 4], launches[n, 5]

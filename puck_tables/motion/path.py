@@ -77,7 +77,7 @@ def integrate(
     cut, delta : friction ratios at this δ; an empty cut means closed forms
     step_limit : the most steps
     s_path, y_path : arrays (n,), (n, 8) for the step ends, or empty when nobody wants them
-    result : array (8 + 2): the state at the stop (its ψ: the turn), energy residual, end s
+    result : array (8 + 1): the state at the stop (its ψ: the turn), energy residual
 
     Returns
     -------
@@ -146,7 +146,6 @@ def integrate(
     at_constant_angle(s, y, math.inf, cut, delta, result)
     result[PSI] = turn
     result[SIZE] = max(residual, abs(energy - result[WORK]) / energy)
-    result[SIZE + 1] = s
     return STOPPED, count
 
 

@@ -1,0 +1,207 @@
+"""One motion in natural units: spin positive, start along x, Q₀ = J = r = 1.
+
+The layer between the compiled loop and :mod:`puck_tables.trajectory`: which regime, which friction
+(table or closed forms), which method, how exact.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables.contact.integrals import SlipDirection
+from puck_tables.contact.resultants import CONTACT_SLACK, pressure_tilt
+from puck_tables.errors import AccuracyError, InputError, PuckError
+from puck_tables.kernels.closed_form import outside_full_contact
+from puck_tables.kernels.spline import cut
+from puck_tables.motion.equations import (
+    PSI,
+    SIZE,
+    WORK,
+    T,
+    U,
+    X,
+    at_constant_angle,
+    derivatives,
+    kinetic_energy,
+)
+from puck_tables.motion.limits import log_ratio
+from puck_tables.motion.path import STOPPED, TURN_FALL, integrate, states_at
+from puck_tables.motion.steppers import DORMAND_PRINCE, RK4, Tableau
+from puck_tables.stops import FEWEST_STEPS, RK4_CONSTANT
+from puck_tables.table.check import by_closed_form
+from puck_tables.table.table import Table
+
+FloatArray = npt.NDArray[np.float64]
+
+FINEST_ACCURACY = 1e-13
+CONSTANT_ANGLE = ("A", "B0", "C0", "D")  # regimes with a solution in elementary functions
+METHODS = {"adaptive": DORMAND_PRINCE, "rk4": RK4}
+
+_STEP_LIMIT = 20_000
+
+
+@dataclass(frozen=True)
+class Friction:
+    """What the loop reads at one δ: the table cut there, or nothing (closed forms)."""
+
+    delta: float
+    cut: FloatArray
+    error: float
+
+
+def closed_form_friction(delta: float) -> Friction:
+    """Friction by the closed forms.
+
+    Examples
+    --------
+    >>> closed_form_friction(0.5).error
+    0.0
+    """
+    return Friction(delta, np.empty(0), 0.0)
+
+
+def table_friction(delta: float, table: Table) -> Friction:
+    """Friction by a table.
+
+    Raises
+    ------
+    InputError
+        If δ is outside its range.
+
+    Examples
+    --------
+    >>> from puck_tables import load_table
+    >>> table_friction(0.5, load_table()).error
+    2e-11
+    """
+    table.checked_range(delta)
+    contracted = np.empty(6 * table.coefficients.shape[2])
+    cut(table.coefficients, delta / table.delta_axis.upper, contracted)
+    return Friction(delta, contracted, table.tolerance)
+
+
+@dataclass(frozen=True)
+class Run:
+    """Step ends (s, state) from launch to stop; ``stop`` is the state there, its ψ the turn."""
+
+    friction: Friction
+    tableau: Tableau
+    s: FloatArray
+    y: FloatArray
+    stop: FloatArray
+    turn_rate: float
+    energy_residual: float
+    steps: int
+    error: float
+
+    def states(self, times: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """S (n,) and states (n, 8) at times; at and after the stop s = inf."""
+        s, y = np.empty(times.size), np.empty((times.size, SIZE))
+        states_at(
+            times, self.s, self.y, self.stop, self.tableau, self.friction.cut,
+            self.friction.delta, s, y,
+        )  # fmt: skip
+        return s, y
+
+
+def run_motion(
+    regime: str, speed: float, rim: float, friction: Friction, accuracy: float, method: str
+) -> Run:
+    """The motion of a launch with speed v and rim speed r|ω| in natural units.
+
+    Raises
+    ------
+    AccuracyError
+        If the accuracy is out of reach.
+    ContactError
+        If part of the base would be lifted on the way.
+
+    Examples
+    --------
+    >>> run = run_motion("B", 1.0, 5.0, closed_form_friction(0.0), 1e-9, "adaptive")
+    >>> round(float(run.stop[T]), 6)  # T(φ) of Q/J
+    0.774875
+    """
+    if method not in METHODS:
+        raise InputError(f"method must be 'adaptive' or 'rk4', got {method!r}")
+    finest = max(FINEST_ACCURACY, 5.0 * friction.error)
+    if not finest <= accuracy <= 0.01:
+        hint = "" if friction.error == 0.0 else "; closed forms (--exact) reach 1e-13"
+        raise AccuracyError(
+            f"accuracy must be from {finest:.1g} to 0.01 (of Q/J and Q^2/J), got {accuracy:g}{hint}"
+        )
+    start = _log_ratio(regime, speed, rim)
+    _check_contact(friction.delta, np.array([start]))
+    if regime in CONSTANT_ANGLE:
+        return _at_constant_angle(regime, start, closed_form_friction(friction.delta))
+    run = _integrated(start, friction, accuracy, method)
+    _check_contact(friction.delta, run.y[:, U])
+    return run
+
+
+def _log_ratio(regime: str, speed: float, rim: float) -> float:
+    """u = ln(r|ω|/v); rest counts as sliding."""
+    return {"A": -math.inf, "B0": math.inf, "C0": -math.inf}.get(regime) or log_ratio(speed, rim)
+
+
+def _at_constant_angle(regime: str, u: float, friction: Friction) -> Run:
+    start, stop, turned = np.zeros((1, SIZE)), np.zeros(SIZE), np.zeros(SIZE)
+    start[0, U] = stop[U] = u
+    residual = 0.0
+    if regime != "A":
+        at_constant_angle(0.0, start[0], math.inf, friction.cut, friction.delta, stop)
+        at_constant_angle(0.0, start[0], TURN_FALL, friction.cut, friction.delta, turned)
+        stop[PSI] = turned[PSI]
+        energy = kinetic_energy(0.0, u)
+        residual = abs(stop[WORK] - energy) / energy
+    return Run(
+        friction, DORMAND_PRINCE, np.zeros(1), start, stop, turned[PSI] / TURN_FALL, residual, 0,
+        1e-15,
+    )  # fmt: skip
+
+
+def _integrated(u: float, friction: Friction, accuracy: float, method: str) -> Run:
+    """By the integrator; its error from a run of higher accuracy, plus that of the table."""
+    steps, tolerance = 0.0, 0.4 * accuracy
+    if method == "rk4":
+        steps = max(FEWEST_STEPS, math.ceil((RK4_CONSTANT / accuracy) ** 0.25))
+    s, y, result = _steps(u, friction, METHODS[method], steps, tolerance)
+    _, _, finer = _steps(u, friction, METHODS[method], 2.0 * steps, max(0.1 * tolerance, 4e-15))
+    difference = float(np.abs(result[T : X + 2] - finer[T : X + 2]).max())
+    rates = np.empty(SIZE)
+    derivatives(0.0, y[-1], friction.cut, friction.delta, rates)
+    return Run(
+        friction, METHODS[method], s, y, result[:SIZE], float(rates[PSI]), float(result[SIZE]),
+        len(s) - 1, difference + friction.error + 1e-14,
+    )  # fmt: skip
+
+
+def _steps(
+    u: float, friction: Friction, tableau: Tableau, steps: float, tolerance: float
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    s, y = np.empty(_STEP_LIMIT), np.empty((_STEP_LIMIT, SIZE))
+    result = np.empty(SIZE + 1)
+    status, count = integrate(
+        u, tableau, float(steps), tolerance, friction.cut, friction.delta, _STEP_LIMIT, s, y, result
+    )
+    if status != STOPPED:
+        raise PuckError(
+            f"the integration did not reach the stop in {_STEP_LIMIT} steps: ask for less accuracy"
+        )
+    return s[:count].copy(), y[:count].copy(), result
+
+
+def _check_contact(delta: float, path: FloatArray) -> None:
+    """Above δ = 1 the linear law holds state by state: refuse a path of u that leaves it."""
+    if delta <= 1.0:
+        return
+    for u in path:
+        direction = SlipDirection(np.asarray(math.exp(-abs(u))), np.asarray(u > 0.0))
+        phi = math.atan(math.exp(min(u, 700.0)))
+        tilt = pressure_tilt(by_closed_form(phi, delta), direction, delta)
+        if not tilt <= 1.0 + CONTACT_SLACK:
+            raise outside_full_contact(phi, delta)
