@@ -144,7 +144,7 @@ def run_motion(
 
 
 def _log_ratio(regime: str, speed: float, rim: float) -> float:
-    """u = ln(r|ω|/v); rest counts as sliding."""
+    """U = ln(r|ω|/v); rest counts as sliding."""
     return {"A": -math.inf, "B0": math.inf, "C0": -math.inf}.get(regime) or log_ratio(speed, rim)
 
 
