@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -169,8 +170,7 @@ def test_build_info_validate(folder: Path):
 
 
 def test_validate_ends_with_3_when_a_table_is_out_of_its_tolerance(monkeypatch: pytest.MonkeyPatch):
-    table = load_table()
-    object.__setattr__(table, "tolerance", 1e-13)
+    table = replace(load_table(), tolerance=1e-13)
     monkeypatch.setattr("puck_tables.table.file.load_table", lambda path: table)
     result = puck("validate")
     assert result.exit_code == 3

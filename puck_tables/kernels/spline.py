@@ -16,7 +16,7 @@ is uniform on the grid.  The resultants behave like x² ln|x| at φ = π/4; in �
 smooth enough for a cubic spline to keep order 4.  All slopes vanish at both ends of η (the
 resultants are even about φ = 0 and π/2, and dφ/dη = 0 at π/4): each side is a clamped spline.
 
-Coefficients: array (2, n_delta + 2, n_eta + 3, 3) of B-spline weights over 36, so that the
+Coefficients: array (2, δ cells + 3, η cells + 3, 3) of B-spline weights over 36, so that the
 B-splines can be taken without their 1/6: side, δ, η, function.
 """
 

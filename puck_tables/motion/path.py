@@ -133,11 +133,11 @@ def integrate(
         if landed and not turn_read:
             turn = y[PSI]
             turn_read = True
-        lost = energy - kinetic_energy(s, y[U])
-        residual = max(residual, abs(lost - y[WORK]) / energy)
         if record:
             if count == s_path.size:
                 return STEP_LIMIT, count
+            lost = energy - kinetic_energy(s, y[U])
+            residual = max(residual, abs(lost - y[WORK]) / energy)
             _record(count, s, y, s_path, y_path)
         count += 1
         if adaptive and not crossed:

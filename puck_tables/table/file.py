@@ -11,8 +11,9 @@ import hashlib
 import io
 import json
 import platform
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from datetime import UTC, datetime
+from functools import cache
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -123,15 +124,13 @@ def load_table(path: str | Path | None = None) -> Table:
     >>> table.phi_axis.size, table.delta_axis.size
     (991, 4)
     """
+    if path is None:
+        return _default_table()
+    source = str(path)
     try:
-        if path is None:
-            source = "default table"
-            content = files("puck_tables.tables").joinpath("resultants.h5").read_bytes()
-        else:
-            source = str(path)
-            if Path(path).stat().st_size > MAX_FILE_BYTES:
-                raise TableError(f"{source} is too large to be a table")
-            content = Path(path).read_bytes()
+        if Path(path).stat().st_size > MAX_FILE_BYTES:
+            raise TableError(f"{source} is too large to be a table")
+        content = Path(path).read_bytes()
     except FileNotFoundError:
         raise TableError(
             f"there is no table file {source}: build one with 'puck build-tables -o FILE', "
@@ -140,6 +139,12 @@ def load_table(path: str | Path | None = None) -> Table:
     except OSError as error:
         raise TableError(f"cannot read {source}: {error.strerror or error}") from None
     return _decode(content, source)
+
+
+@cache
+def _default_table() -> Table:
+    content = files("puck_tables.tables").joinpath("resultants.h5").read_bytes()
+    return _decode(content, "default table")
 
 
 def _digest(attributes: dict[str, Any], arrays: list[npt.NDArray[np.float64]]) -> str:
@@ -254,9 +259,10 @@ def _read(file: h5py.File, source: str) -> Table:
     accuracy = json.loads(attributes["achieved_accuracy"])
     for key, value in accuracy.items():
         accuracy[key] = tuple(value) if isinstance(value, list) else value
-    table = Table(phi_axis, delta_axis, np.stack(arrays[2:], axis=-1))
-    return replace(
-        table,
+    return Table(
+        phi_axis,
+        delta_axis,
+        np.stack(arrays[2:], axis=-1),
         tolerance=attributes["tolerance"],
         accuracy=Accuracy(**accuracy),
         passport={**attributes, "content_digest": stated},

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -71,10 +72,18 @@ class Table:
     accuracy: Accuracy | None = None
     passport: dict[str, Any] = field(default_factory=dict, repr=False)
     source: str = "memory"
-    coefficients: FloatArray = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "coefficients", table_coefficients(self.values))
+        values = self.values.view()
+        values.flags.writeable = False
+        object.__setattr__(self, "values", values)
+
+    @cached_property
+    def coefficients(self) -> FloatArray:
+        """Spline coefficients as the kernels read them, fitted at first use; read-only."""
+        fitted = table_coefficients(self.values)
+        fitted.flags.writeable = False
+        return fitted
 
     def checked_range(self, delta: npt.ArrayLike) -> FloatArray:
         """``delta`` as an array, refused outside the range of the table.

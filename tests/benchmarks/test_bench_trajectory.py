@@ -1,0 +1,472 @@
+"""How long does one stop take, one tight trajectory, and one start of the command line?
+
+Errors: the larger of stop time in units of Q/J and stop place in units of Q²/J, against
+``simulate(exact=True, accuracy=1e-13)``.  The rivals integrate the same physics over time with
+scipy, so their small errors also judge that reference.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import shutil
+import subprocess
+import sys
+import sysconfig
+import warnings
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numba
+import numpy as np
+import numpy.typing as npt
+import pytest
+from scipy.integrate import solve_ivp
+
+import puck_tables
+from puck_tables.kernels.closed_form import friction_ratios
+from puck_tables.kernels.spline import cut as cut_table
+from puck_tables.motion.equations import SIZE, T, X, Y
+from puck_tables.motion.limits import log_ratio
+from puck_tables.motion.path import integrate
+from puck_tables.motion.steppers import DORMAND_PRINCE, RK4
+from puck_tables.stops import steps_for, stops_of
+from puck_tables.table.table import Table
+
+FloatArray = npt.NDArray[np.float64]
+
+ONE_STOP = pytest.mark.benchmark(group="one stop at error 1e-6")
+TIGHT = pytest.mark.benchmark(group="one trajectory, tight (1e-10)")
+START = pytest.mark.benchmark(group="first and later start")
+
+DELTA = 0.5  # with J = r = 1 everywhere
+LAUNCH = (1.0, 0.0, 5.0)  # vx, vy, ω of the single launch
+LAUNCHES = 1000
+NOTHING = np.empty(0)
+
+
+# --- errors -----------------------------------------------------------------------------------
+
+
+@cache
+def reference(vx: float, vy: float, spin: float) -> FloatArray:
+    """Stop time and place, exact to about 1e-13."""
+    run = puck_tables.simulate((vx, vy), spin, delta=DELTA, exact=True, accuracy=1e-13, frames=1)
+    return np.array([run.stop_time, *run.stop_position])
+
+
+def error_of(stop: npt.ArrayLike, launch: tuple[float, ...]) -> float:
+    """Error of one (time, x, y): a NaN counts as infinite."""
+    off = np.asarray(stop) - reference(*launch)
+    q = math.hypot(*launch)
+    error = max(abs(off[0]) / q, math.hypot(off[1], off[2]) / q**2)
+    return error if error < math.inf else math.inf
+
+
+@pytest.fixture
+def launches(rng: np.random.Generator) -> FloatArray:
+    """Launches (n, 6) scattered over directions, spins of both signs and slip ratios."""
+    velocity, spin = rng.uniform(-1.0, 1.0, (LAUNCHES, 2)), rng.uniform(-5.0, 5.0, LAUNCHES)
+    other = np.broadcast_to([DELTA, 1.0, 1.0], (LAUNCHES, 3))
+    return np.column_stack([velocity, spin, other])
+
+
+def largest_error(stops: FloatArray, launches: FloatArray) -> float:
+    """Largest error of stops (n, 3)."""
+    return max(error_of(s, tuple(row[:3])) for s, row in zip(stops, launches, strict=True))
+
+
+# --- rival A: scipy over time, friction from the same compiled closed forms -----------------------
+
+
+@numba.njit(error_model="numpy", fastmath={"contract"})
+def rates(t: float, state: FloatArray) -> FloatArray:
+    """d/dt of vx, vy, ω, x, y."""
+    vx, vy, spin = state[0], state[1], state[2]
+    speed, rim = math.hypot(vx, vy), abs(spin)
+    q = math.hypot(speed, rim)
+    fast = 1.0 if rim > speed else 0.0
+    inverse, across, turning = friction_ratios(min(speed, rim) / max(speed, rim), fast, DELTA)
+    along, left = -1.0 / (inverse * q), -across * spin / (inverse * q * q)
+    out = np.empty(5)
+    out[0] = along * vx - left * vy
+    out[1] = along * vy + left * vx
+    out[2] = -turning / inverse * spin / q
+    out[3] = vx
+    out[4] = vy
+    return out
+
+
+@numba.njit
+def slip_speed(state: FloatArray) -> float:
+    return math.hypot(math.hypot(state[0], state[1]), state[2])
+
+
+class Setting(NamedTuple):
+    rtol: float
+    atol: float
+    calls: int = 0
+    error: float = math.inf
+
+
+class TooManyCalls(Exception):
+    """Stepped over the stop, where friction jumps, and now trembles about it."""
+
+
+def over_time(
+    method: str, setting: Setting, end: float, function: Callable[..., Any] = rates
+) -> Any:
+    """The launch by scipy until the slip speed has fallen to ``end`` times its start."""
+    start = np.array([*LAUNCH, 0.0, 0.0])
+    q0 = slip_speed(start)
+
+    def nearly_stopped(t: float, state: FloatArray) -> float:
+        return slip_speed(state) - end * q0
+
+    nearly_stopped.terminal = True  # type: ignore[attr-defined]
+    return solve_ivp(
+        function, (0.0, 2.0 * q0), start, method=method, rtol=setting.rtol, atol=setting.atol,
+        events=nearly_stopped,
+    )  # fmt: skip
+
+
+def stop_of(solution: Any) -> FloatArray:
+    """Time and place of the end event; NaN if it never came."""
+    if solution.status != 1:
+        return np.full(3, math.nan)
+    return np.array([solution.t_events[0][-1], *solution.y_events[0][-1][3:]])
+
+
+def tried(method: str, setting: Setting, end: float, most_calls: int = 5000) -> Setting:
+    """The setting with the calls it took and the error it made; infinite if it failed."""
+    calls = 0
+
+    def counted(t: float, state: FloatArray) -> FloatArray:
+        nonlocal calls
+        calls += 1
+        if calls > most_calls:
+            raise TooManyCalls
+        return rates(t, state)
+
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            solution = over_time(method, setting, end, counted)
+    except (TooManyCalls, UserWarning):
+        return setting
+    return setting._replace(calls=calls, error=error_of(stop_of(solution), LAUNCH))
+
+
+@cache
+def cheapest(method: str, accuracy: float, end: float) -> Setting:
+    """Of all tolerances that reach the accuracy, the one with the fewest calls.
+
+    The absolute tolerance is varied too: near the stop only it keeps the steps from jumping over.
+    """
+    settings = [
+        tried(method, Setting(10.0**-digits, share * 10.0**-digits), end)
+        for digits in range(3, 13)
+        for share in (1.0, 1e-2, 1e-4, 1e-6, 1e-8)
+    ]
+    good = [setting for setting in settings if setting.error <= accuracy]
+    return min(good, key=lambda setting: setting.calls)
+
+
+def note(benchmark: Any, setting: Setting) -> None:
+    benchmark.extra_info.update(rtol=setting.rtol, atol=setting.atol, calls=setting.calls)
+
+
+# --- rival B: what one would write without having read anything -----------------------------------
+
+
+def plain_script(vx: float, vy: float, spin: float, delta: float) -> FloatArray:
+    """Stop time and place: friction summed over 20 x 40 patches, scipy's default tolerances."""
+    radial, angular = 20, 40
+    rho = (np.arange(radial) + 0.5) / radial
+    angle = 2.0 * np.pi * (np.arange(angular) + 0.5) / angular
+    x, y = np.outer(rho, np.cos(angle)).ravel(), np.outer(rho, np.sin(angle)).ravel()
+    weight = np.repeat(rho / (rho.sum() * angular), angular)
+
+    def motion(t: float, state: FloatArray) -> list[float]:
+        u, v = state[0] - state[2] * y, state[1] + state[2] * x
+        pull = -weight / np.sqrt(u * u + v * v)
+        u, v = u * pull, v * pull
+        # the friction force F tilts the pressure by -δ F·(x, y), which changes F
+        tilted = np.array([[u @ x, u @ y], [v @ x, v @ y]])
+        force = np.linalg.solve(np.eye(2) + delta * tilted, [u.sum(), v.sum()])
+        pressure = 1.0 - delta * (force[0] * x + force[1] * y)
+        torque = ((x * v - y * u) * pressure).sum()
+        return [force[0], force[1], 2.0 * torque, state[0], state[1]]
+
+    q0 = math.hypot(vx, vy, spin)
+
+    def nearly_stopped(t: float, state: FloatArray) -> float:
+        return math.hypot(*state[:3]) - 1e-3 * q0
+
+    nearly_stopped.terminal = True  # type: ignore[attr-defined]
+    start = [vx, vy, spin, 0.0, 0.0]
+    solution = solve_ivp(motion, (0.0, 2.0 * q0), start, events=nearly_stopped)
+    return np.array([solution.t[-1], solution.y[3, -1], solution.y[4, -1]])
+
+
+# --- one stop -------------------------------------------------------------------------------------
+
+ACCURACY = 1e-6
+
+
+@ONE_STOP
+def test_stop_kernel(measure: Any, table: Table, launches: FloatArray) -> None:
+    steps = steps_for(ACCURACY, table)
+    out, status = stops_of(launches, steps, table)
+    assert not status.any()
+    measure(
+        "table, stops_of, 1000 launches",
+        lambda: stops_of(launches, steps, table),
+        items=LAUNCHES,
+        unit="trajectory",
+        error=largest_error(out[:3].T, launches),
+    )
+
+
+@ONE_STOP
+def test_stop_public(measure: Any, table: Table, launches: FloatArray) -> None:
+    velocity, spin = launches[:, :2].copy(), launches[:, 2].copy()
+
+    def stop() -> puck_tables.Stops:
+        return puck_tables.stop(velocity, spin, delta=DELTA, accuracy=ACCURACY, table=table)
+
+    stops = np.column_stack([stop().stop_time, stop().stop_position])
+    measure(
+        "table, puck_tables.stop, 1000 launches",
+        stop,
+        items=LAUNCHES,
+        unit="trajectory",
+        error=largest_error(stops, launches),
+    )
+
+
+@ONE_STOP
+@pytest.mark.parametrize("given", [True, False], ids=["table_given", "table_read"])
+def test_stop_public_single(measure: Any, table: Table, given: bool) -> None:
+    chosen = table if given else None
+
+    def stop() -> puck_tables.Stops:
+        return puck_tables.stop(LAUNCH[:2], LAUNCH[2], delta=DELTA, accuracy=ACCURACY, table=chosen)
+
+    measure(
+        "table, puck_tables.stop, 1 launch" + ("" if given else ", table left out"),
+        stop,
+        unit="trajectory",
+        error=error_of([float(stop().stop_time), *stop().stop_position], LAUNCH),
+    )
+
+
+@numba.njit
+def closed_form_stops(launches: FloatArray, tableau: Any, steps: float, out: FloatArray) -> None:
+    """The loop of ``stops_of`` with closed forms where the table would be read."""
+    cut, no_path = np.empty(0), np.empty((0, SIZE))
+    result = np.empty(SIZE + 2)
+    for n in range(launches.shape[0]):
+        vx, vy, spin = launches[n, 0], launches[n, 1], launches[n, 2]
+        speed = math.hypot(vx, vy)
+        u = log_ratio(speed, abs(spin))
+        integrate(u, tableau, steps, 1.0, cut, launches[n, 3], 100_000, cut, no_path, result)
+        q = math.hypot(speed, spin)
+        along = q * q * result[X] / speed
+        left = q * q * result[Y] / speed * (1.0 if spin >= 0.0 else -1.0)
+        out[n, 0] = q * result[T]
+        out[n, 1] = along * vx - left * vy
+        out[n, 2] = along * vy + left * vx
+
+
+@ONE_STOP
+def test_stop_closed_forms(measure: Any, table: Table, launches: FloatArray) -> None:
+    steps = steps_for(ACCURACY, table)
+    out = np.empty((LAUNCHES, 3))
+    closed_form_stops(launches, RK4, steps, out)
+    measure(
+        "closed forms in the same loop, 1000 launches",
+        lambda: closed_form_stops(launches, RK4, steps, out),
+        items=LAUNCHES,
+        unit="trajectory",
+        error=largest_error(out, launches),
+    )
+
+
+@ONE_STOP
+@pytest.mark.parametrize("method", ["RK45", "DOP853", "LSODA"])
+def test_stop_rival_scipy(measure: Any, method: str) -> None:
+    end = 1e-8
+    setting = cheapest(method, ACCURACY, end)
+    note(measure.benchmark, setting)
+    measure(
+        f"rival: scipy {method} over time, rtol {setting.rtol:.0e}",
+        lambda: over_time(method, setting, end),
+        unit="trajectory",
+        error=setting.error,
+    )
+
+
+@ONE_STOP
+def test_stop_rival_plain_script(measure: Any) -> None:
+    measure(
+        "rival: plain script, 20 x 40 patches",
+        lambda: plain_script(*LAUNCH, DELTA),
+        unit="trajectory",
+        error=error_of(plain_script(*LAUNCH, DELTA), LAUNCH),
+    )
+
+
+# --- one tight trajectory -------------------------------------------------------------------------
+
+TIGHT_ACCURACY = 1e-10
+
+
+@TIGHT
+@pytest.mark.parametrize("source", ["table", "closed forms"])
+def test_tight_integrator(measure: Any, table: Table, source: str) -> None:
+    cut = NOTHING
+    if source == "table":
+        cut = np.empty(6 * table.coefficients.shape[2])
+        cut_table(table.coefficients, DELTA / table.delta_axis.upper, cut)
+    s, y, result = np.empty(20_000), np.empty((20_000, SIZE)), np.empty(SIZE + 2)
+    u, q = log_ratio(math.hypot(*LAUNCH[:2]), abs(LAUNCH[2])), math.hypot(*LAUNCH)
+
+    def run() -> tuple[int, int]:
+        return integrate(
+            u, DORMAND_PRINCE, 0.0, 0.4 * TIGHT_ACCURACY, cut, DELTA, s.size, s, y, result
+        )  # fmt: skip
+
+    _, count = run()
+    measure.benchmark.extra_info["steps"] = count - 1
+    stop = [q * result[T], q * q * result[X], q * q * result[Y]]
+    measure(f"{source}, integrator", run, unit="trajectory", error=error_of(stop, LAUNCH))
+
+
+@TIGHT
+@pytest.mark.parametrize("source", ["table", "closed forms"])
+def test_tight_simulate(measure: Any, table: Table, source: str) -> None:
+    exact = source != "table"
+
+    def run() -> puck_tables.Trajectory:
+        return puck_tables.simulate(
+            LAUNCH[:2], LAUNCH[2], delta=DELTA, accuracy=TIGHT_ACCURACY, exact=exact,
+            table=None if exact else table,
+        )  # fmt: skip
+
+    stop = [run().stop_time, *run().stop_position]
+    measure(
+        f"{source}, simulate (101 states, error estimate)",
+        run,
+        unit="trajectory",
+        error=error_of(stop, LAUNCH),
+    )
+
+
+@TIGHT
+def test_tight_rival_scipy(measure: Any) -> None:
+    end, setting = 1e-12, Setting(1e-11, 1e-13)
+    setting = tried("DOP853", setting, end)
+    note(measure.benchmark, setting)
+    measure(
+        "rival: scipy DOP853 over time, rtol 1e-11",
+        lambda: over_time("DOP853", setting, end),
+        unit="trajectory",
+        error=setting.error,
+    )
+
+
+@TIGHT
+@pytest.mark.parametrize("method", ["DOP853", "LSODA"])
+def test_tight_rival_scipy_cheapest(measure: Any, method: str) -> None:
+    end = 1e-12
+    setting = cheapest(method, TIGHT_ACCURACY, end)
+    note(measure.benchmark, setting)
+    measure(
+        f"rival: scipy {method} over time, rtol {setting.rtol:.0e}",
+        lambda: over_time(method, setting, end),
+        unit="trajectory",
+        error=setting.error,
+    )
+
+
+# --- the command line -----------------------------------------------------------------------------
+
+SIMULATE = ["simulate", "--v0", "1,0", "--w0", "5"]
+SCIPY = "import numpy, scipy.integrate"
+
+
+@pytest.fixture(scope="module")
+def puck() -> str:
+    found = shutil.which("puck", path=sysconfig.get_path("scripts"))
+    if found is None:
+        pytest.skip("the command puck is not installed beside this Python")
+    return found
+
+
+@pytest.fixture(scope="module")
+def bytecode(puck: str, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with the bytecode of everything that is imported: only kernels are ever compiled."""
+    folder = tmp_path_factory.mktemp("bytecode")
+    for command in ([puck, *SIMULATE], [sys.executable, "-c", SCIPY]):
+        start(command, folder, tmp_path_factory.mktemp("kernels"))
+    return folder
+
+
+def start(command: list[str], bytecode: Path, kernels: Path) -> None:
+    environment = {**os.environ, "PYTHONPYCACHEPREFIX": str(bytecode)}
+    environment.pop("PYTHONDONTWRITEBYTECODE", None)
+    environment["NUMBA_CACHE_DIR"] = str(kernels)
+    subprocess.run(command, env=environment, check=True, capture_output=True)
+
+
+class TimeStarts:
+    """Times a command in a process of its own, with fresh kernel caches or one warm one."""
+
+    def __init__(self, measure: Any, bytecode: Path, factory: pytest.TempPathFactory) -> None:
+        self.measure = measure
+        self.bytecode = bytecode
+        self.factory = factory
+
+    def __call__(self, name: str, command: list[str], fresh: bool, rounds: int) -> None:
+        warm = self.factory.mktemp("kernels")
+        if not fresh:
+            start(command, self.bytecode, warm)
+
+        def arguments() -> tuple[tuple[Any, ...], dict[str, Any]]:
+            kernels = self.factory.mktemp("kernels") if fresh else warm
+            return (command, self.bytecode, kernels), {}
+
+        self.measure.benchmark.pedantic(start, setup=arguments, rounds=rounds, iterations=1)
+        self.measure.book(name, 1, "start")
+
+
+@pytest.fixture
+def time_starts(
+    measure: Any, bytecode: Path, tmp_path_factory: pytest.TempPathFactory
+) -> TimeStarts:
+    return TimeStarts(measure, bytecode, tmp_path_factory)
+
+
+@START
+def test_start_later(time_starts: TimeStarts, puck: str) -> None:
+    time_starts("puck simulate, later", [puck, *SIMULATE], fresh=False, rounds=3)
+
+
+@START
+def test_start_first(time_starts: TimeStarts, puck: str) -> None:
+    time_starts("puck simulate, first (compiles)", [puck, *SIMULATE], fresh=True, rounds=2)
+
+
+@START
+def test_start_version(time_starts: TimeStarts, puck: str) -> None:
+    time_starts("puck --version", [puck, "--version"], fresh=False, rounds=3)
+
+
+@START
+@pytest.mark.parametrize("statement", ["pass", SCIPY], ids=["python", "scipy"])
+def test_start_rival_python(time_starts: TimeStarts, statement: str) -> None:
+    command = [sys.executable, "-c", statement]
+    time_starts(f"rival: python -c '{statement}'", command, fresh=False, rounds=3)
