@@ -41,7 +41,7 @@ RANGE = Range()
 @click.option(
     "--accuracy",
     type=NUMBER,
-    default=1e-7,
+    default=1e-8,
     show_default=True,
     help="Largest error, in units of Q/J (times) and Q²/J (places).",
 )

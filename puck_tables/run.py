@@ -29,7 +29,7 @@ from puck_tables.motion.equations import (
     kinetic_energy,
 )
 from puck_tables.motion.limits import log_ratio
-from puck_tables.motion.path import STOPPED, TURN_FALL, integrate, states_at
+from puck_tables.motion.path import STOPPED, TURN_SHARE, integrate, states_at
 from puck_tables.motion.steppers import DORMAND_PRINCE, RK4, Tableau
 from puck_tables.stops import FEWEST_STEPS, RK4_CONSTANT
 from puck_tables.table.check import by_closed_form
@@ -86,11 +86,11 @@ def table_friction(delta: float, table: Table) -> Friction:
 
 @dataclass(frozen=True)
 class Run:
-    """Step ends (s, state) from launch to stop; ``stop`` is the state there, its ψ the turn."""
+    """Step ends (z, state) from launch to stop; ``stop`` is the state there, its ψ the turn."""
 
     friction: Friction
     tableau: Tableau
-    s: FloatArray
+    z: FloatArray
     y: FloatArray
     stop: FloatArray
     turn_rate: float
@@ -99,13 +99,13 @@ class Run:
     error: float
 
     def states(self, times: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """S (n,) and states (n, 8) at times; at and after the stop s = inf."""
-        s, y = np.empty(times.size), np.empty((times.size, SIZE))
+        """Q/Q₀ (n,) and states (n, 8) at times; at and after the stop Q = 0."""
+        q, y = np.empty(times.size), np.empty((times.size, SIZE))
         states_at(
-            times, self.s, self.y, self.stop, self.tableau, self.friction.cut,
-            self.friction.delta, s, y,
+            times, self.z, self.y, self.stop, self.tableau, self.friction.cut,
+            self.friction.delta, q, y,
         )  # fmt: skip
-        return s, y
+        return q, y
 
 
 def run_motion(
@@ -153,15 +153,22 @@ def _at_constant_angle(regime: str, u: float, friction: Friction) -> Run:
     start[0, U] = stop[U] = u
     residual = 0.0
     if regime != "A":
-        at_constant_angle(0.0, start[0], math.inf, friction.cut, friction.delta, stop)
-        at_constant_angle(0.0, start[0], TURN_FALL, friction.cut, friction.delta, turned)
+        at_constant_angle(1.0, start[0], 0.0, friction.cut, friction.delta, stop)
+        at_constant_angle(1.0, start[0], TURN_SHARE, friction.cut, friction.delta, turned)
         stop[PSI] = turned[PSI]
-        energy = kinetic_energy(0.0, u)
+        energy = kinetic_energy(1.0, u)
         residual = abs(stop[WORK] - energy) / energy
     return Run(
-        friction, DORMAND_PRINCE, np.zeros(1), start, stop, turned[PSI] / TURN_FALL, residual, 0,
-        1e-15,
-    )  # fmt: skip
+        friction,
+        DORMAND_PRINCE,
+        z=np.zeros(1),
+        y=start,
+        stop=stop,
+        turn_rate=-turned[PSI] / math.log(TURN_SHARE),
+        energy_residual=residual,
+        steps=0,
+        error=1e-15,
+    )
 
 
 def _integrated(u: float, friction: Friction, accuracy: float, method: str) -> Run:
@@ -169,30 +176,37 @@ def _integrated(u: float, friction: Friction, accuracy: float, method: str) -> R
     steps, tolerance = 0.0, 0.4 * accuracy
     if method == "rk4":
         steps = max(FEWEST_STEPS, math.ceil((RK4_CONSTANT / accuracy) ** 0.25))
-    s, y, result = _steps(u, friction, METHODS[method], steps, tolerance)
+    z, y, result = _steps(u, friction, METHODS[method], steps, tolerance)
     _, _, finer = _steps(u, friction, METHODS[method], 2.0 * steps, max(0.1 * tolerance, 4e-15))
     difference = float(np.abs(result[T : X + 2] - finer[T : X + 2]).max())
     rates = np.empty(SIZE)
     derivatives(0.0, y[-1], friction.cut, friction.delta, rates)
     return Run(
-        friction, METHODS[method], s, y, result[:SIZE], float(rates[PSI]), float(result[SIZE]),
-        len(s) - 1, difference + friction.error + 1e-14,
-    )  # fmt: skip
+        friction,
+        METHODS[method],
+        z=z,
+        y=y,
+        stop=result[:SIZE],
+        turn_rate=0.25 * float(rates[PSI]),  # at z = 0, dz = −d ln Q/4
+        energy_residual=float(result[SIZE]),
+        steps=len(z) - 1,
+        error=difference + friction.error + 1e-14,
+    )
 
 
 def _steps(
     u: float, friction: Friction, tableau: Tableau, steps: float, tolerance: float
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    s, y = np.empty(_STEP_LIMIT), np.empty((_STEP_LIMIT, SIZE))
+    z, y = np.empty(_STEP_LIMIT), np.empty((_STEP_LIMIT, SIZE))
     result = np.empty(SIZE + 1)
     status, count = integrate(
-        u, tableau, float(steps), tolerance, friction.cut, friction.delta, _STEP_LIMIT, s, y, result
+        u, tableau, float(steps), tolerance, friction.cut, friction.delta, _STEP_LIMIT, z, y, result
     )
     if status != STOPPED:
         raise PuckError(
             f"the integration did not reach the stop in {_STEP_LIMIT} steps: ask for less accuracy"
         )
-    return s[:count].copy(), y[:count].copy(), result
+    return z[:count].copy(), y[:count].copy(), result
 
 
 def _check_contact(delta: float, path: FloatArray) -> None:

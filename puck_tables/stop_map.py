@@ -37,7 +37,8 @@ class StopMap:
     ``radius`` (m), ``decel`` (m/s²) and, if given instead of a speed, ``v0_x``, ``v0_y`` (m/s).
 
     Arrays: ``stop_time`` s, ``stop_x``, ``stop_y`` m from the launch, ``path_length`` m,
-    ``turn_angle`` rad (until Q has fallen to 1/1000), ``body_angle`` rad, ``status`` (0: stopped).
+    ``turn_angle`` rad (until Q has fallen to 1/1000; to a hundred times the accuracy),
+    ``body_angle`` rad, ``status`` (0: stopped).
     """
 
     axes: dict[str, FloatArray]

@@ -172,17 +172,15 @@ def simulate(
     stop_time = float(run.stop[2] * scale_time)
     moments = _moments(frames, times, stop_time)
     scaled = np.where(moments < stop_time, moments, np.inf) / (scale_time if q0 > 0.0 else 1.0)
-    s, states = run.states(scaled)
+    q, states = run.states(scaled)
 
     side = -1.0 if spin < 0.0 else 1.0
     heading0 = math.atan2(vy, vx) if speed > 0.0 else 0.0
     east, north = (vx / speed, vy / speed) if speed > 0.0 else (1.0, 0.0)
     along, left = scale_length * states[:, 3], side * scale_length * states[:, 4]
     end_along, end_left = scale_length * run.stop[3], side * scale_length * run.stop[4]
-    q = np.exp(-s)
-    moving = np.isfinite(s)
+    moving = q > 0.0
     angle = _slip_angle(states[:, 0], regime, limit, moving)
-    fraction = np.where(moving, q, 0.0)
     return Trajectory(
         v0=(vx, vy), w0=spin, radius=r, delta=height, decel=J, mass=m, regime=regime,
         stop_time=stop_time,
@@ -205,9 +203,9 @@ def simulate(
         y=along * north + left * east + 0.0,
         heading=heading0 + side * states[:, 1],
         orientation=side * states[:, 5] * (scale_length / r) + 0.0,
-        speed=q0 * fraction * (np.cos(angle) if regime != "B0" else 0.0),
-        spin=side * q0 / r * fraction * np.sin(angle) + 0.0,
-        slip_speed=q0 * fraction,
+        speed=q0 * q * (np.cos(angle) if regime != "B0" else 0.0),
+        spin=side * q0 / r * q * np.sin(angle) + 0.0,
+        slip_speed=q0 * q,
         slip_angle=side * angle + 0.0,
     )  # fmt: skip
 

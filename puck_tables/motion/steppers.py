@@ -55,7 +55,7 @@ ROWS = 8  # of the work space: at most seven stages, and a state
 @kernel
 def step(
     tableau: Tableau,
-    s: float,
+    z: float,
     y: FloatArray,
     h: float,
     cut: FloatArray,
@@ -63,9 +63,9 @@ def step(
     work: FloatArray,
     out: FloatArray,
 ) -> float:
-    """A step from (s, y) over h into ``out``; returns the largest local error estimate.
+    """A step from (z, y) over h into ``out``; returns the largest local error estimate.
 
-    On entry work[0] is dy/ds at s; on return the other rows are the stages.
+    On entry work[0] is dy/dz at z; on return the other rows are the stages.
     """
     stages = tableau.b.size
     state = work[ROWS - 1]
@@ -77,7 +77,7 @@ def step(
                 weight = h * tableau.a[stage, j]
                 for i in range(SIZE):
                     state[i] += weight * work[j, i]
-        derivatives(s + tableau.c[stage] * h, state, cut, delta, work[stage])
+        derivatives(z + tableau.c[stage] * h, state, cut, delta, work[stage])
     largest = 0.0
     for i in range(SIZE):
         increment, error = 0.0, 0.0
