@@ -15,8 +15,8 @@ from puck_tables.cli.options import FILE, NUMBER, prepare_outputs, progress, tol
     type=NUMBER,
     help="Largest error of the resultants, 1e-13 to 0.01.  [default: 2e-11]",
 )
-@click.option("--n-phi", type=int, help="Number of φ nodes instead: odd, at least 9.")
-@click.option("--n-delta", type=int, help="Number of δ nodes, at least 4.  [default: 4, exact]")
+@click.option("--n-phi", type=int, help="Number of phi nodes instead: odd, at least 9.")
+@click.option("--n-delta", type=int, help="Number of delta nodes, at least 4.  [default: 4, exact]")
 @click.option(
     "-o",
     "--output",

@@ -49,6 +49,6 @@ def describe(table: Table) -> str:
         "made by": f"{passport['command']}  (puck-tables {passport['package_version']}, "
         f"{passport['created']})",
         "format": f"{passport['format']} {passport['format_version']}",
-        "digest": f"sha256 {passport['content_digest'][:16]}…, right",
+        "digest": f"sha256 {passport['content_digest'][:16]}..., right",
     }
     return "\n".join(text + [f"{name:<11} {value}" for name, value in rest.items()])

@@ -27,7 +27,7 @@ class PuckGroup(click.Group):
         try:
             return super().invoke(ctx)
         except PuckError as error:
-            click.echo(f"Error: {error}", err=True)
+            click.echo(f"Error: {click.format_filename(str(error))}", err=True)
             ctx.exit(2 if isinstance(error, InputError) else 1)
         except MemoryError:
             click.echo("Error: not enough memory: ask for fewer points", err=True)

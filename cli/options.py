@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -63,7 +64,7 @@ class Range(click.ParamType):
         if len(parts) != 3:
             self.fail(f"'{value}' must be a number or START:STOP:COUNT, like 0:10:101", param, ctx)
         start, stop = finite(parts[0], self, param, ctx), finite(parts[1], self, param, ctx)
-        if not parts[2].strip().isdigit() or not 2 <= int(parts[2]) <= MAX_COUNT:
+        if not re.fullmatch(r"[0-9]{1,10}", parts[2]) or not 2 <= int(parts[2]) <= MAX_COUNT:
             self.fail(f"the COUNT of '{value}' must be a whole number from 2 to 1e9", param, ctx)
         if not stop > start:
             self.fail(f"in '{value}' STOP must be greater than START", param, ctx)
@@ -73,7 +74,7 @@ class Range(click.ParamType):
 class Times(click.ParamType):
     """Times in seconds with commas, or START:STOP:COUNT."""
 
-    name = "T1,T2,…|START:STOP:COUNT"
+    name = "T1,T2,...|START:STOP:COUNT"
 
     def convert(self, value: Any, param: Any, ctx: Any) -> tuple[float, ...]:
         """Parse a list of times or a range."""
@@ -88,6 +89,8 @@ class Times(click.ParamType):
 def finite(text: str, kind: click.ParamType, param: Any, ctx: Any) -> float:
     """A finite number, or click's error."""
     try:
+        if "_" in text or not text.isascii():
+            raise ValueError
         number = float(text)
     except ValueError:
         kind.fail(f"'{text}' is not a number", param, ctx)
@@ -106,8 +109,8 @@ def puck_options(mass: bool) -> Callable[[Command], Command]:
         click.option("--radius", type=NUMBER, help="Radius r in m.  [default: 1]"),
         click.option("--height", type=NUMBER, help="Height h in m; with --friction."),
         click.option("--friction", type=NUMBER, help="Coulomb coefficient f; with --height."),
-        click.option("--gravity", type=NUMBER, help="Gravity in m/s².  [default: 9.80665]"),
-        click.option("--decel", type=NUMBER, help="J = f g in m/s² instead.  [default: 1]"),
+        click.option("--gravity", type=NUMBER, help="Gravity in m/s^2.  [default: 9.80665]"),
+        click.option("--decel", type=NUMBER, help="J = f g in m/s^2 instead.  [default: 1]"),
     ]
     if mass:
         options.insert(4, click.option("--mass", type=NUMBER, help="Mass in kg (for the energy)."))
@@ -203,7 +206,7 @@ def open_table(path: Path | None) -> Table:
 
 def told(path: Path) -> None:
     """Say on stderr that a file was written."""
-    click.echo(f"wrote {path}", err=True)
+    click.echo(f"wrote {click.format_filename(path)}", err=True)
 
 
 @contextmanager

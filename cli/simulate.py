@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 @click.option("--v0", type=Vector(), required=True, help="Launch velocity in m/s, like 1,0.")
 @click.option("--w0", type=NUMBER, default=0.0, show_default=True, help="Launch spin in rad/s.")
 @puck_options(mass=True)
-@click.option("--delta", type=NUMBER, help="δ = 2 f h / r instead.  [default: 0.5]")
+@click.option("--delta", type=NUMBER, help="delta = 2 f h / r instead.  [default: 0.5]")
 @click.option("--frames", type=int, help="Number of states to save.  [default: 101]")
 @click.option("--times", type=Times(), help="Times of the states to save, in s.")
 @click.option(
@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     type=NUMBER,
     default=1e-9,
     show_default=True,
-    help="Largest error, in units of Q/J (times) and Q²/J (places), Q = hypot(v0, r w0).",
+    help="Largest error, in units of Q/J (times) and Q^2/J (places), Q = hypot(v0, r w0).",
 )
 @click.option(
     "--method",
@@ -99,7 +99,7 @@ def simulate(
         plot_trajectory(run, plot, overwrite)
         told(plot)
     if as_json:
-        click.echo(json.dumps(summary(run), allow_nan=False, ensure_ascii=False))
+        click.echo(json.dumps(summary(run), allow_nan=False))
     else:
         given = any(x is not None for x in (radius, height, friction, delta, decel))
         click.echo(report(run, "" if given else "   (defaults: see --help for a real puck)"))
@@ -126,7 +126,7 @@ def report(run: Trajectory, note: str) -> str:
         "heading turned": turn,
         "body turned": f"{run.body_angle:.9g} rad ({run.body_angle / (2 * math.pi):.5g} turns)",
         "limit angle": f"{math.degrees(run.limit_angle):.7g} deg "
-        f"(rω/v tends to {math.tan(run.limit_angle):.7g})",
+        f"(r w/v tends to {math.tan(run.limit_angle):.7g})",
         "energy": f"{run.kinetic_energy:.6g} J (m = {run.mass:g} kg), all lost to friction; "
         f"residual {run.energy_residual:.1e} of it",
         "method": run.method + (f", {run.steps} steps" if run.steps else ""),

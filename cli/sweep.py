@@ -36,14 +36,14 @@ RANGE = Range()
 @click.option("--w0", type=RANGE, help="Launch spin in rad/s.")
 @click.option("--speed", type=RANGE, help="Launch speed along x in m/s.")
 @click.option("--v0", type=Vector(), help="One launch velocity in m/s instead of --speed.")
-@click.option("--delta", type=RANGE, help="δ = 2 f h / r.  [default: 0.5]")
+@click.option("--delta", type=RANGE, help="delta = 2 f h / r.  [default: 0.5]")
 @puck_options(mass=False)
 @click.option(
     "--accuracy",
     type=NUMBER,
     default=1e-8,
     show_default=True,
-    help="Largest error, in units of Q/J (times) and Q²/J (places).",
+    help="Largest error, in units of Q/J (times) and Q^2/J (places).",
 )
 @click.option("--threads", type=click.IntRange(1, 1024), help="[default: all cores]")
 @table_option
@@ -94,7 +94,7 @@ def sweep(
     check_memory(tuple(x[2] for x in (w0, speed, height_ratio) if isinstance(x, tuple)))
     with progress("stops") as show:
         stops = run_sweep(
-            _values(w0), _values(speed), v0=v0, delta=_values(height_ratio), decel=J, radius=r,
+            None if w0 is None else _values(w0), None if speed is None else _values(speed), v0=v0, delta=_values(height_ratio), decel=J, radius=r,
             accuracy=accuracy, table=open_table(table_path), threads=threads, progress=show,
         )  # fmt: skip
     if output is not None:
@@ -108,9 +108,7 @@ def sweep(
     click.echo(_summary(stops), err=True)
 
 
-def _values(given: float | tuple[float, float, int] | None) -> npt.NDArray[np.float64] | None:
-    if given is None:
-        return None
+def _values(given: float | tuple[float, float, int]) -> npt.NDArray[np.float64]:
     import numpy as np
 
     return np.linspace(*given) if isinstance(given, tuple) else np.asarray(given)

@@ -34,21 +34,26 @@ def check_target(path: str | Path, overwrite: bool = False) -> Path:
     ...
     puck_tables.errors.OutputError: cannot write /nowhere/a.csv: the folder /nowhere does not exist
     """
-    target = Path(path)
-    folder = target.parent
-    if not folder.is_dir():
-        raise OutputError(f"cannot write {target}: the folder {folder} does not exist")
-    if target.is_dir():
-        raise OutputError(f"cannot write {target}: it is a folder; give a file name")
-    if target.exists() and not overwrite:
-        raise OutputError(
-            f"{target} exists already; use --overwrite (overwrite=True) to replace it"
-        )
     try:
+        target = Path(os.path.realpath(path))  # a link is followed, not replaced
+        folder = target.parent
+        if not folder.is_dir():
+            raise OutputError(f"cannot write {path}: the folder {folder} does not exist")
+        if target.is_dir():
+            raise OutputError(f"cannot write {path}: it is a folder; give a file name")
+        if target.exists() and not target.is_file():
+            raise OutputError(f"cannot write {path}: it is not a regular file")
+        if target.exists() and not overwrite:
+            raise OutputError(
+                f"{path} exists already; use --overwrite (overwrite=True) to replace it"
+            )
         with tempfile.TemporaryFile(dir=folder):
             pass
-    except OSError as error:
-        raise OutputError(f"cannot write in the folder {folder}: {error.strerror}") from None
+    except (OSError, ValueError) as error:
+        if isinstance(error, OutputError):
+            raise
+        reason = getattr(error, "strerror", None) or error
+        raise OutputError(f"cannot write {path} in the folder {folder}: {reason}") from None
     return target
 
 

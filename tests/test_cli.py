@@ -255,7 +255,7 @@ def test_outputs_that_exist_or_cannot_be_written(folder: Path, command: list[str
     Path(f"old.{ending}").write_text("mine")
     refused(puck(*at("old")), 1, "exists already", "--overwrite")
     assert Path(f"old.{ending}").read_text() == "mine"
-    refused(puck(*at("none/run")), 1, "the folder none does not exist")
+    refused(puck(*at("none/run")), 1, "the folder", "none does not exist")
     refused(puck(*at("/proc/run")), 1, "cannot write in the folder /proc")
     Path(f"folder.{ending}").mkdir()
     refused(puck(*at("folder")), 1, "it is a folder")
@@ -331,3 +331,36 @@ def test_a_closed_pipe_is_quiet():
     assert ended.stdout.startswith("speed[m/s],w0[rad/s]")
     assert "Traceback" not in ended.stderr
     assert "Broken" not in ended.stderr
+
+
+def test_odd_names_and_numbers(folder: Path):
+    refused(puck(*V0, "-o", "x" * 300 + ".csv"), 1, "name too long")
+    refused(puck(*V0, "-o", "/dev/stdout", "--overwrite"), 2, ".h5, .csv, .jsonl")
+    Path("pipe.csv").unlink(missing_ok=True)
+    os.mkfifo("pipe.csv")
+    refused(puck(*V0, "-o", "pipe.csv", "--overwrite"), 1, "not a regular file")
+    for count in ("²", "1_0", "9" * 5000, "+5"):
+        refused(puck("sweep", "--w0", f"0:1:{count}"), 2, "COUNT")
+    for number in ("1_0", "１", ""):
+        refused(puck("simulate", "--v0", f"{number},0"), 2, "is not a number")
+    assert [path.name for path in folder.iterdir()] == ["pipe.csv"]
+    assert puck(*V0, "-o", "\udcff.csv").exit_code == 0
+
+
+def test_a_link_is_followed(folder: Path):
+    Path("real.csv").write_text("mine")
+    Path("link.csv").symlink_to("real.csv")
+    refused(puck(*V0, "-o", "link.csv"), 1, "exists already")
+    assert puck(*V0, "-o", "link.csv", "--overwrite").exit_code == 0
+    assert Path("link.csv").is_symlink()
+    assert Path("real.csv").read_text().startswith("time[s]")
+
+
+def test_everything_printed_is_ascii():
+    """Redirected output of consoles that know no Greek must not fail."""
+    for arguments in (
+        ["--help"], ["simulate", "--help"], ["sweep", "--help"], ["build-tables", "--help"],
+        ["info", "--help"], ["validate", "--help"], ["info"], ["validate"], [*V0, "--w0", "5"],
+        [*V0, "--json"], ["sweep", "--w0", "0:1:2"],
+    ):  # fmt: skip
+        assert puck(*arguments).output.isascii(), arguments

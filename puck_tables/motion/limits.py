@@ -21,9 +21,9 @@ REGIMES = {
     "A": "rest",
     "B0": "pure spin",
     "C0": "pure translation",
-    "D": "limit motion, rω/v constant",
-    "B": "spin-rich, rω/v falls towards the limit ratio",
-    "C": "spin-poor, rω/v grows towards the limit ratio",
+    "D": "limit motion, r w/v constant",
+    "B": "spin-rich, r w/v falls towards the limit ratio",
+    "C": "spin-poor, r w/v grows towards the limit ratio",
 }
 
 
