@@ -94,7 +94,8 @@ def sweep(
     check_memory(tuple(x[2] for x in (w0, speed, height_ratio) if isinstance(x, tuple)))
     with progress("stops") as show:
         stops = run_sweep(
-            None if w0 is None else _values(w0), None if speed is None else _values(speed), v0=v0, delta=_values(height_ratio), decel=J, radius=r,
+            None if w0 is None else _values(w0), None if speed is None else _values(speed),
+            v0=v0, delta=_values(height_ratio), decel=J, radius=r,
             accuracy=accuracy, table=open_table(table_path), threads=threads, progress=show,
         )  # fmt: skip
     if output is not None:

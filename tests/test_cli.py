@@ -256,7 +256,7 @@ def test_outputs_that_exist_or_cannot_be_written(folder: Path, command: list[str
     refused(puck(*at("old")), 1, "exists already", "--overwrite")
     assert Path(f"old.{ending}").read_text() == "mine"
     refused(puck(*at("none/run")), 1, "the folder", "none does not exist")
-    refused(puck(*at("/proc/run")), 1, "cannot write in the folder /proc")
+    refused(puck(*at("/proc/run")), 1, "cannot write /proc/run", "in the folder /proc")
     Path(f"folder.{ending}").mkdir()
     refused(puck(*at("folder")), 1, "it is a folder")
     assert puck(*at("old"), "--overwrite").exit_code == 0
