@@ -86,6 +86,8 @@ def simulate(
         require_matplotlib()
     from puck_tables.trajectory import simulate as run_simulation
 
+    if output is None and plot is None and times is None and frames is None:
+        frames = 1  # a report needs no states
     run = run_simulation(
         v0, w0, delta=height_ratio, decel=J, radius=r,
         mass=DEFAULT_MASS if mass is None else mass,

@@ -100,6 +100,8 @@ class Run:
 
     def states(self, times: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Q/Q₀ (n,) and states (n, 8) at times; at and after the stop Q = 0."""
+        if not times.any():  # the launch alone, as a report needs it: nothing to compile
+            return np.ones(times.size), np.tile(self.y[0], (times.size, 1))
         q, y = np.empty(times.size), np.empty((times.size, SIZE))
         states_at(
             times, self.z, self.y, self.stop, self.tableau, self.friction.cut,
