@@ -17,7 +17,12 @@ from puck_tables._version import __version__
 if TYPE_CHECKING:
     from puck_tables.contact.resultants import Resultants, is_full_contact
     from puck_tables.kernels.closed_form import resultants
-    from puck_tables.motion.limits import limit_angle
+    from puck_tables.motion.limits import (
+        approach_exponent,
+        curvature_slope,
+        limit_angle,
+        limit_ratio,
+    )
     from puck_tables.plots import plot_map, plot_trajectory
     from puck_tables.puck import similarity_parameters
     from puck_tables.result_file import save_map, save_trajectory
@@ -33,7 +38,10 @@ _HOMES = {
     "Resultants": "contact.resultants",
     "is_full_contact": "contact.resultants",
     "resultants": "kernels.closed_form",
+    "approach_exponent": "motion.limits",
+    "curvature_slope": "motion.limits",
     "limit_angle": "motion.limits",
+    "limit_ratio": "motion.limits",
     "plot_map": "plots",
     "plot_trajectory": "plots",
     "similarity_parameters": "puck",
@@ -61,9 +69,12 @@ __all__ = [
     "Table",
     "Trajectory",
     "__version__",
+    "approach_exponent",
     "build_table",
+    "curvature_slope",
     "is_full_contact",
     "limit_angle",
+    "limit_ratio",
     "load_table",
     "plot_map",
     "plot_trajectory",

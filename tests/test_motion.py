@@ -10,7 +10,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from reference import REFERENCE_RUNS, states
 
-from puck_tables import limit_angle, resultants, simulate, stop
+from puck_tables import (
+    approach_exponent,
+    curvature_slope,
+    limit_angle,
+    limit_ratio,
+    resultants,
+    simulate,
+    stop,
+)
 from puck_tables.errors import AccuracyError, ContactError, InputError
 
 
@@ -145,6 +153,25 @@ def test_every_regime_is_named_and_exact():
         assert limit.path_length == pytest.approx(beside.path_length, abs=1e-9)
     for start, regime in ((((1e-12, 0), 1.0), "B"), (((1, 0), 1e-12), "C")):
         assert simulate(*start).regime == regime
+
+
+def test_limits_as_functions_agree_with_the_motion():
+    for delta in (0.3, 1.0):
+        run = simulate((1, 0), 3.0, delta=delta, exact=True, accuracy=1e-13)
+        left = run.stop_time - 10.0 ** -np.linspace(2, 5.5, 60)
+        near = simulate((1, 0), 3.0, delta=delta, times=left, exact=True, accuracy=1e-13)
+        gap = np.log(np.abs(near.slip_angle - run.limit_angle))
+        kappa = np.diff(gap) / np.diff(np.log(near.slip_speed))
+        assert kappa[-1] == pytest.approx(float(approach_exponent(delta)), abs=1e-3)
+        # radius of curvature R = −(path per turn); its slope along the path at the stop is −Λ/δ
+        path = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(near.x), np.diff(near.y)))])
+        radius = np.abs(np.diff(path) / np.diff(near.heading))
+        middle = 0.5 * (path[1:] + path[:-1])
+        slope = np.diff(radius)[-5:] / np.diff(middle)[-5:]
+        assert slope.mean() == pytest.approx(-float(curvature_slope(delta)) / delta, rel=0.02)
+    assert float(limit_ratio(0.0)) == pytest.approx(1.53138937217390986, rel=1e-15)
+    with pytest.raises(ContactError, match="0 <= delta <= 1"):
+        limit_ratio(1.5)
 
 
 def test_pure_motions_are_limits_of_generic_ones():

@@ -7,9 +7,10 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables.contact.closed_form import integrals
 from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import ContactError
-from puck_tables.kernels.closed_form import friction_ratios
+from puck_tables.kernels.closed_form import friction_ratios, resultants
 from puck_tables.kernels.compile import kernel
 
 FloatArray = npt.NDArray[np.float64]
@@ -43,8 +44,8 @@ def limit_log_ratio(delta: float) -> float:
             high = middle
 
 
-def limit_angle(delta: npt.ArrayLike) -> FloatArray:
-    """The slip angle φ₀ that every generic motion approaches at its stop.
+def limit_ratio(delta: npt.ArrayLike) -> FloatArray:
+    """The ratio rω/v that every generic motion approaches at its stop, tan φ₀(δ).
 
     Parameters
     ----------
@@ -52,8 +53,7 @@ def limit_angle(delta: npt.ArrayLike) -> FloatArray:
 
     Returns
     -------
-    array of the same shape, radians
-        φ₀ with ρ_∥(φ₀) = ρ_ω(φ₀); tan φ₀ = rω/v is the limit ratio.
+    array of the same shape
 
     Raises
     ------
@@ -68,16 +68,114 @@ def limit_angle(delta: npt.ArrayLike) -> FloatArray:
 
     Examples
     --------
-    >>> float(limit_angle(0.5).round(12))
-    0.987079101411
+    >>> float(limit_ratio(0.0).round(12))
+    1.531389372174
     """
     height = checked_delta(delta)
     if not np.all(height <= 1.0):
         raise ContactError(
-            f"delta = {height[height > 1.0].flat[0]:g}: the limit angle is known for full contact, "
-            "0 <= delta <= 1"
+            f"delta = {height[height > 1.0].flat[0]:g}: the limit motion is known for full "
+            "contact, 0 <= delta <= 1"
         )
-    return np.vectorize(lambda d: math.atan(math.exp(limit_log_ratio(d))), otypes=[float])(height)
+    return np.vectorize(lambda d: math.exp(limit_log_ratio(d)), otypes=[float])(height)
+
+
+def limit_angle(delta: npt.ArrayLike) -> FloatArray:
+    """The slip angle φ₀ that every generic motion approaches at its stop: arctan of limit_ratio.
+
+    Parameters
+    ----------
+    delta : array_like, dimensionless, in [0, 1]
+
+    Returns
+    -------
+    array of the same shape, radians
+        φ₀ with ρ_∥(φ₀) = ρ_ω(φ₀).
+
+    Raises
+    ------
+    InputError, ContactError
+        As :func:`limit_ratio`.
+
+    Examples
+    --------
+    >>> float(limit_angle(0.5).round(12))
+    0.987079101411
+    """
+    return np.arctan(limit_ratio(delta))
+
+
+def curvature_slope(delta: npt.ArrayLike) -> FloatArray:
+    """Λ(δ): at the stop the radius of curvature of the path falls by Λ/δ for each unit of path.
+
+    Parameters
+    ----------
+    delta : array_like, dimensionless, in [0, 1]
+
+    Returns
+    -------
+    array of the same shape
+        Λ = 2/(sin φ₀ p_b(φ₀)), dR/ds = −Λ/δ, near 7 for every δ.
+
+    Raises
+    ------
+    InputError, ContactError
+        As :func:`limit_ratio`.
+
+    References
+    ----------
+    Salnikova, Treschev, Gallyamov 2012, section 2, result 8.
+
+    Examples
+    --------
+    >>> curvature_slope([0.0, 0.5, 1.0]).round(8).tolist()
+    [7.06673562, 7.09397854, 7.15668696]
+    """
+    angle = limit_angle(delta)
+    slope: FloatArray = 2.0 / (np.sin(angle) * integrals(angle).b)
+    return slope
+
+
+def approach_exponent(delta: npt.ArrayLike) -> FloatArray:
+    """κ(δ): next to the stop |φ − φ₀| falls like Q^κ.
+
+    Parameters
+    ----------
+    delta : array_like, dimensionless, in [0, 1]
+
+    Returns
+    -------
+    array of the same shape
+        κ = d(ρ_ω/ρ_∥)/du at the limit ratio, u = ln(rω/v); error about 1e-12.
+
+    Raises
+    ------
+    InputError, ContactError
+        As :func:`limit_ratio`.
+
+    Notes
+    -----
+    With s = −ln Q, du/ds = (1 − ρ_ω/ρ_∥)/(cos²φ + sin²φ ρ_ω/ρ_∥); at φ₀ the denominator is 1.  The
+    derivative is a central difference of order 8.
+
+    Examples
+    --------
+    >>> approach_exponent([0.0, 0.5, 1.0]).round(4).tolist()
+    [0.6151, 0.6772, 0.8611]
+    """
+    u0 = np.log(limit_ratio(delta))
+    step = 0.01
+    slope = np.zeros_like(u0)
+    for n, weight in enumerate((4 / 5, -1 / 5, 4 / 105, -1 / 280), start=1):
+        slope += weight * (_spin_ratio(u0 + n * step, delta) - _spin_ratio(u0 - n * step, delta))
+    return slope / step
+
+
+def _spin_ratio(u: FloatArray, delta: npt.ArrayLike) -> FloatArray:
+    """ρ_ω/ρ_∥ at u = ln(rω/v)."""
+    rho = resultants(np.arctan(np.exp(u)), delta)
+    ratio: FloatArray = rho.spin / rho.parallel
+    return ratio
 
 
 def regime_of(speed: float, rim_speed: float, limit: float) -> str:
