@@ -8,6 +8,8 @@ import click
 from puck_tables.cli.info import describe
 from puck_tables.cli.options import FILE, NUMBER, prepare_outputs, progress, told
 
+from puck_tables.errors import InputError
+
 
 @click.command("build-tables")
 @click.option(
@@ -36,6 +38,8 @@ def build_tables(
     puck build-tables --accuracy 1e-8 -o coarse.h5
     puck build-tables --n-phi 1025 -o fine.h5
     """
+    if output.suffix.lower() != ".h5":
+        raise InputError(f"{output}: a table is an HDF5 file: give a name that ends in .h5")
     prepare_outputs(output, overwrite=overwrite)
     from puck_tables.table.build import build_table
     from puck_tables.table.file import save_table

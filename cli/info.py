@@ -45,7 +45,9 @@ def describe(table: Table) -> str:
         )
     rest = {
         "entries": f"residual {accuracy.entry_residual:.1e} at phi = 0, pi/4, pi/2",
-        "order": f"{accuracy.order:.2f} in phi, against half the cells",
+        "order": f"{accuracy.order:.2f} in phi, against half the cells"
+        if accuracy.order
+        else "not measured: too few cells",
         "made by": f"{passport['command']}  (puck-tables {passport['package_version']}, "
         f"{passport['created']})",
         "format": f"{passport['format']} {passport['format_version']}",

@@ -6,6 +6,7 @@ its validation; 130 interrupted.
 
 from __future__ import annotations
 
+import sys
 from typing import Any
 
 import click
@@ -25,15 +26,23 @@ class PuckGroup(click.Group):
     def invoke(self, ctx: click.Context) -> Any:
         """Run a command."""
         try:
-            return super().invoke(ctx)
+            result = super().invoke(ctx)
+            if sys.stdout is not None:
+                sys.stdout.flush()
+            return result
         except PuckError as error:
             click.echo(f"Error: {click.format_filename(str(error))}", err=True)
             ctx.exit(2 if isinstance(error, InputError) else 1)
+        except BrokenPipeError:
+            raise
+        except OSError as error:
+            click.echo(f"Error: cannot write the results: {error.strerror or error}", err=True)
+            ctx.exit(1)
         except MemoryError:
             click.echo("Error: not enough memory: ask for fewer points", err=True)
             ctx.exit(1)
         except KeyboardInterrupt:
-            click.echo("Interrupted: nothing was written.", err=True)
+            click.echo("Interrupted: nothing more was written.", err=True)
             ctx.exit(130)
 
 

@@ -100,7 +100,7 @@ def finite(text: str, kind: click.ParamType, param: Any, ctx: Any) -> float:
 
 
 NUMBER = Number()
-FILE = click.Path(dir_okay=True, path_type=Path)
+FILE = click.Path(readable=False, path_type=Path)
 
 
 def puck_options(mass: bool) -> Callable[[Command], Command]:
@@ -186,8 +186,8 @@ def puck_and_floor(
     )
 
 
-def prepare_outputs(*paths: Path | None, overwrite: bool) -> None:
-    """Refuse outputs that could not be written, before any work is done."""
+def prepare_outputs(*paths: Path | None, overwrite: bool, table: Path | None = None) -> None:
+    """Refuse outputs that could not be written or would replace the table that is read."""
     from puck_tables.safe_write import check_target
 
     chosen = [path for path in paths if path is not None]
@@ -195,6 +195,8 @@ def prepare_outputs(*paths: Path | None, overwrite: bool) -> None:
         raise InputError(f"{chosen[0]} is named for two outputs: give two file names")
     for path in chosen:
         check_target(path, overwrite)
+        if table is not None and path.exists() and table.exists() and path.samefile(table):
+            raise InputError(f"{path} is the table that is read: give the output another name")
 
 
 def open_table(path: Path | None) -> Table:
@@ -212,7 +214,7 @@ def told(path: Path) -> None:
 @contextmanager
 def progress(label: str) -> Iterator[Progress]:
     """A progress bar on stderr, silent where stderr is no terminal."""
-    if not sys.stderr.isatty():
+    if sys.stderr is None or not sys.stderr.isatty():
         yield lambda done, total: None
         return
     with click.progressbar(length=1000, label=label, file=sys.stderr, show_pos=False) as bar:

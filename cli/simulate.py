@@ -74,7 +74,7 @@ def simulate(
     r, height_ratio, J = puck_and_floor(radius, height, friction, gravity, delta, decel)
     if exact and table_path is not None:
         raise InputError("--exact and --table clash: closed forms need no table")
-    prepare_outputs(output, plot, overwrite=overwrite)
+    prepare_outputs(output, plot, overwrite=overwrite, table=table_path)
     from puck_tables.result_file import TRAJECTORY_KINDS, kind_of, save_trajectory, summary
 
     if output is not None:

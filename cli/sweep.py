@@ -75,9 +75,9 @@ def sweep(
     r, height_ratio, J = puck_and_floor(radius, height, friction, gravity, delta, decel)
     if v0 is not None and speed is not None:
         raise InputError("--v0 and --speed clash: both give the launch velocity")
-    prepare_outputs(output, plot, overwrite=overwrite)
+    prepare_outputs(output, plot, overwrite=overwrite, table=table_path)
     from puck_tables.result_file import MAP_KINDS, kind_of, map_as_csv, save_map
-    from puck_tables.stop_map import check_memory
+    from puck_tables.stop_map import BYTES_PER_LAUNCH, BYTES_PER_ROW, check_memory
     from puck_tables.stop_map import sweep as run_sweep
 
     if output is not None:
@@ -91,7 +91,11 @@ def sweep(
         ):
             raise InputError("--plot needs a range: give --w0, --speed or --delta START:STOP:COUNT")
         require_matplotlib()
-    check_memory(tuple(x[2] for x in (w0, speed, height_ratio) if isinstance(x, tuple)))
+    as_text = plot is None if output is None else output.suffix.lower() == ".csv"
+    check_memory(
+        tuple(x[2] for x in (w0, speed, height_ratio) if isinstance(x, tuple)),
+        BYTES_PER_ROW if as_text else BYTES_PER_LAUNCH,
+    )
     with progress("stops") as show:
         stops = run_sweep(
             None if w0 is None else _values(w0), None if speed is None else _values(speed),

@@ -27,7 +27,7 @@ def positive(name: str, value: float, unit: str) -> float:
     """
     number = real(name, value, unit)
     if not number > 0.0:
-        raise InputError(f"{name} must be greater than 0 {unit}, got {number:g}".replace("  ", " "))
+        raise InputError(f"{name} must be greater than 0 ({unit}), got {number:g}")
     return number
 
 
@@ -45,10 +45,10 @@ def real(name: str, value: float, unit: str) -> float:
     """
     try:
         number = float(value)
-    except (TypeError, ValueError):
-        raise InputError(f"{name} must be a number in {unit}, got {value!r}") from None
+    except (TypeError, ValueError, OverflowError):
+        raise InputError(f"{name} must be a number ({unit}), got {value!r:.60}") from None
     if not math.isfinite(number):
-        raise InputError(f"{name} must be a finite number in {unit}, got {number}")
+        raise InputError(f"{name} must be a finite number ({unit}), got {number}")
     return number
 
 
@@ -83,7 +83,7 @@ def similarity_parameters(
     (0.13333333333333333, 0.980665)
     """
     r, h = positive("radius", radius, "m"), positive("height", height, "m")
-    f, g = positive("friction", friction, ""), positive("gravity", gravity, "m/s^2")
+    f, g = positive("friction", friction, "dimensionless"), positive("gravity", gravity, "m/s^2")
     return 2.0 * f * h / r, f * g
 
 

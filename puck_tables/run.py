@@ -28,7 +28,7 @@ from puck_tables.motion.equations import (
     derivatives,
     kinetic_energy,
 )
-from puck_tables.motion.limits import log_ratio
+from puck_tables.motion.limits import LIMIT_WIDTH, log_ratio
 from puck_tables.motion.path import STOPPED, TURN_SHARE, integrate, states_at
 from puck_tables.motion.steppers import DORMAND_PRINCE, RK4, Tableau
 from puck_tables.stops import FEWEST_STEPS, RK4_CONSTANT
@@ -111,9 +111,17 @@ class Run:
 
 
 def run_motion(
-    regime: str, speed: float, rim: float, friction: Friction, accuracy: float, method: str
+    regime: str,
+    speed: float,
+    rim: float,
+    limit: float,
+    friction: Friction,
+    accuracy: float,
+    method: str,
 ) -> Run:
     """The motion of a launch with speed v and rim speed r|ω| in natural units.
+
+    ``limit`` is ln tan φ₀, where the motion tends to.
 
     Raises
     ------
@@ -124,7 +132,7 @@ def run_motion(
 
     Examples
     --------
-    >>> run = run_motion("B", 1.0, 5.0, closed_form_friction(0.0), 1e-9, "adaptive")
+    >>> run = run_motion("B", 1.0, 5.0, 0.426, closed_form_friction(0.0), 1e-9, "adaptive")
     >>> round(float(run.stop[T]), 6)  # T(φ) of Q/J
     0.774875
     """
@@ -137,12 +145,12 @@ def run_motion(
             f"accuracy must be from {finest:.1g} to 0.01 (of Q/J and Q^2/J), got {accuracy:g}{hint}"
         )
     start = _log_ratio(regime, speed, rim)
-    _check_contact(friction.delta, np.array([start]))
     if regime in CONSTANT_ANGLE:
+        _check_contact(friction.delta, start)
         return _at_constant_angle(regime, start, closed_form_friction(friction.delta))
-    run = _integrated(start, friction, accuracy, method)
-    _check_contact(friction.delta, run.y[:, U])
-    return run
+    # φ moves monotonically to φ₀ and the tilt falls with φ: the smaller of both is the worst
+    _check_contact(friction.delta, min(start, limit))
+    return _integrated(start, friction, accuracy, method)
 
 
 def _log_ratio(regime: str, speed: float, rim: float) -> float:
@@ -169,7 +177,7 @@ def _at_constant_angle(regime: str, u: float, friction: Friction) -> Run:
         turn_rate=-turned[PSI] / math.log(TURN_SHARE),
         energy_residual=residual,
         steps=0,
-        error=1e-15,
+        error=2.0 * LIMIT_WIDTH if regime == "D" else 1e-15,
     )
 
 
@@ -192,7 +200,7 @@ def _integrated(u: float, friction: Friction, accuracy: float, method: str) -> R
         turn_rate=0.25 * float(rates[PSI]),  # at z = 0, dz = −d ln Q/4
         energy_residual=float(result[SIZE]),
         steps=len(z) - 1,
-        error=difference + friction.error + 1e-14,
+        error=difference + 0.01 * accuracy + friction.error,
     )
 
 
@@ -211,13 +219,12 @@ def _steps(
     return z[:count].copy(), y[:count].copy(), result
 
 
-def _check_contact(delta: float, path: FloatArray) -> None:
-    """Above δ = 1 the linear law holds state by state: refuse a path of u that leaves it."""
+def _check_contact(delta: float, u: float) -> None:
+    """Above δ = 1 the linear law holds state by state: refuse a u that lies outside it."""
     if delta <= 1.0:
         return
-    for u in path:
-        direction = SlipDirection(np.asarray(math.exp(-abs(u))), np.asarray(u > 0.0))
-        phi = math.atan(math.exp(min(u, 700.0)))
-        tilt = pressure_tilt(by_closed_form(phi, delta), direction, delta)
-        if not tilt <= 1.0 + CONTACT_SLACK:
-            raise outside_full_contact(phi, delta)
+    direction = SlipDirection(np.asarray(math.exp(-abs(u))), np.asarray(u > 0.0))
+    phi = math.atan(math.exp(min(u, 700.0)))
+    tilt = pressure_tilt(by_closed_form(phi, delta), direction, delta)
+    if not tilt <= 1.0 + CONTACT_SLACK:
+        raise outside_full_contact(phi, delta)

@@ -77,7 +77,7 @@ def write_bytes(path: str | Path, content: bytes, overwrite: bool = False) -> No
     temporary = None
     try:
         with tempfile.NamedTemporaryFile(
-            dir=target.parent, prefix=f".{target.name}.", suffix=".part", delete=False
+            dir=target.parent, prefix=".puck-", suffix=".part", delete=False
         ) as file:
             temporary = Path(file.name)
             file.write(content)

@@ -22,7 +22,8 @@ FloatArray = npt.NDArray[np.float64]
 Progress = Callable[[int, int], None]
 
 CHUNK = 1024
-_BYTES_PER_START = 8 * 6 + 1
+# Arrays, the encoded HDF5 file and working copies; as text (CSV) much more.
+BYTES_PER_LAUNCH, BYTES_PER_ROW = 130, 750
 
 DEFAULT_SPEED = np.linspace(0.0, 2.0, 41)
 DEFAULT_SPIN = np.linspace(-4.0, 4.0, 41)
@@ -103,6 +104,9 @@ def sweep(
     >>> stops.stop_x.round(4).tolist()
     [0.5, 0.6374, 0.9835]
     """
+    for name, count in (("chunk", chunk), ("threads", 1 if threads is None else threads)):
+        if not isinstance(count, int) or count < 1:
+            raise InputError(f"{name} must be a whole number from 1 on, got {count!r}")
     chosen = load_table() if table is None else table
     steps = steps_for(accuracy, chosen)
     if v0 is not None and speed is not None:
@@ -163,8 +167,13 @@ def sweep(
     )
 
 
-def check_memory(shape: tuple[int, ...]) -> None:
+def check_memory(shape: tuple[int, ...], per_launch: int = BYTES_PER_LAUNCH) -> None:
     """Refuse a map that would not fit in memory, before anything is allocated.
+
+    Parameters
+    ----------
+    shape : the sizes of the ranges
+    per_launch : bytes needed for each launch
 
     Raises
     ------
@@ -174,8 +183,7 @@ def check_memory(shape: tuple[int, ...]) -> None:
     --------
     >>> check_memory((1000, 1000))
     """
-    # the arrays, the encoded file, and the working copies of a chunk
-    needed = 2.5 * _BYTES_PER_START * math.prod(shape)
+    needed = float(per_launch) * math.prod(shape)
     available = _memory()
     if needed > available:
         sizes = " x ".join(str(n) for n in shape)

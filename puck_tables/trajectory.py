@@ -18,7 +18,7 @@ FloatArray = npt.NDArray[np.float64]
 
 DEFAULT_ACCURACY = 1e-9
 DEFAULT_FRAMES = 101
-MAX_FRAMES = 10_000_000
+MAX_FRAMES = 1_000_000
 
 
 @dataclass(frozen=True)
@@ -142,12 +142,15 @@ def simulate(
     spin = real("w0", w0, "rad/s")
     r, J = positive("radius", radius, "m"), positive("decel", decel, "m/s^2")
     m = positive("mass", mass, "kg")
-    height = real("delta", delta, "")
+    height = real("delta", delta, "dimensionless")
     if exact and table is not None:
         raise InputError("exact and table exclude each other: closed forms need no table")
     _check_frames(frames, times)
-    if height < 0.0:
-        raise InputError(f"delta = 2 f h / r must not be negative, got {height:g}")
+    if not 0.0 <= height < 2.0:
+        raise InputError(
+            f"delta = 2 f h / r must be from 0 to below 2, got {height:g}: the linear pressure law "
+            "of full contact holds at every phi up to 1, and beyond 2 in no motion but pure spin"
+        )
 
     from puck_tables.motion.limits import limit_log_ratio, regime_of
     from puck_tables.run import closed_form_friction, run_motion, table_friction
@@ -162,13 +165,14 @@ def simulate(
     limit = limit_log_ratio(height)
     regime = regime_of(speed, rim, limit)
     scale_time, scale_length = q0 / J, q0 / J * q0
-    if not math.isfinite(scale_length / r) or not math.isfinite(0.5 * m * q0 * q0):
+    energy = 0.5 * m * (speed * speed + 0.5 * rim * rim)
+    if not all(map(math.isfinite, (scale_time, scale_length, scale_length / r, q0 / r, energy))):
         raise InputError(
-            f"v0, w0 and decel give a motion too large for floating point (Q = {q0:g} m/s, "
-            f"J = {J:g} m/s^2): use larger units"
+            f"v0, w0, radius, decel and mass give a motion too large for floating point "
+            f"(Q = {q0:g} m/s, J = {J:g} m/s^2): use larger units"
         )
 
-    run = run_motion(regime, speed, rim, friction, accuracy, method)
+    run = run_motion(regime, speed, rim, limit, friction, accuracy, method)
     stop_time = float(run.stop[2] * scale_time)
     moments = _moments(frames, times, stop_time)
     scaled = np.where(moments < stop_time, moments, np.inf) / (scale_time if q0 > 0.0 else 1.0)
@@ -180,6 +184,7 @@ def simulate(
     along, left = scale_length * states[:, 3], side * scale_length * states[:, 4]
     end_along, end_left = scale_length * run.stop[3], side * scale_length * run.stop[4]
     moving = q > 0.0
+    cosine, sine = _direction(states[:, 0])
     angle = _slip_angle(states[:, 0], regime, limit, moving)
     return Trajectory(
         v0=(vx, vy), w0=spin, radius=r, delta=height, decel=J, mass=m, regime=regime,
@@ -193,7 +198,7 @@ def simulate(
         turn_rate=float(side * run.turn_rate) + 0.0,
         body_angle=float(side * run.stop[5] * (scale_length / r)) + 0.0,
         limit_angle=math.atan(math.exp(limit)),
-        kinetic_energy=0.5 * m * (speed * speed + 0.5 * rim * rim),
+        kinetic_energy=energy,
         energy_residual=run.energy_residual,
         method=_method_name(regime, method, exact),
         steps=run.steps,
@@ -203,8 +208,8 @@ def simulate(
         y=along * north + left * east + 0.0,
         heading=heading0 + side * states[:, 1],
         orientation=side * states[:, 5] * (scale_length / r) + 0.0,
-        speed=q0 * q * (np.cos(angle) if regime != "B0" else 0.0),
-        spin=side * q0 / r * q * np.sin(angle) + 0.0,
+        speed=q0 * q * cosine,
+        spin=side * (q0 / r) * q * sine + 0.0,
         slip_speed=q0 * q,
         slip_angle=side * angle + 0.0,
     )  # fmt: skip
@@ -213,7 +218,7 @@ def simulate(
 def _check_frames(frames: int | None, times: npt.ArrayLike | None) -> None:
     if times is not None and frames is not None:
         raise InputError("frames and times both choose the states: give one of them")
-    if frames is not None and not 1 <= frames <= MAX_FRAMES:
+    if frames is not None and not (isinstance(frames, int) and 1 <= frames <= MAX_FRAMES):
         raise InputError(f"frames must be from 1 to {MAX_FRAMES}, got {frames}")
 
 
@@ -224,6 +229,13 @@ def _moments(frames: int | None, times: npt.ArrayLike | None, stop_time: float) 
     if moments.ndim != 1 or moments.size == 0 or not np.all(moments >= 0.0):
         raise InputError("times must be a list of numbers >= 0 s")
     return moments
+
+
+def _direction(u: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Cos φ and sin φ from u = ln tan φ, to the last digits at both ends."""
+    k = np.exp(-np.abs(u))
+    large = 1.0 / np.sqrt(1.0 + k * k)
+    return np.where(u > 0.0, k * large, large), np.where(u > 0.0, large, k * large)
 
 
 def _slip_angle(

@@ -196,8 +196,10 @@ V0 = ["simulate", "--v0", "1,0"]
         ([*V0, "--decel", "0"], ["decel must be greater than 0"]),
         ([*V0, "--radius", "1", "--height", "1", "--friction", "-1"], ["friction"]),
         ([*V0, "--radius", "1", "--height", "1", "--friction", "1", "--gravity", "0"], ["gravity"]),
-        ([*V0, "--radius", "1", "--height", "1", "--friction", "1"], ["delta = 2", "linear"]),
-        ([*V0, "--delta", "-0.1"], ["delta", "negative"]),
+        ([*V0, "--radius", "1", "--height", "0.9", "--friction", "1"], ["delta = 1.8", "linear"]),
+        ([*V0, "--delta", "-0.1"], ["delta", "from 0 to below 2"]),
+        ([*V0, "--delta", "2", "--exact"], ["delta", "from 0 to below 2"]),
+        (["build-tables", "-o", "table.csv"], ["ends in .h5"]),
         ([*V0, "--delta", "1.1"], ["outside this table", "--exact"]),
         ([*V0, "--delta", "1.1", "--exact"], ["part of the base is lifted", "law of full contact"]),
         ([*V0, "--height", "1", "--delta", "0.5"], ["--height and --delta clash"]),
@@ -321,7 +323,7 @@ def test_interrupted_sweep_writes_nothing(folder: Path):
     process.send_signal(signal.SIGINT)
     out, err = process.communicate(timeout=60)
     assert process.returncode == 130, err
-    assert (out, err.strip()) == ("", "Interrupted: nothing was written.")
+    assert (out, err.strip()) == ("", "Interrupted: nothing more was written.")
     assert list(folder.iterdir()) == []
 
 
@@ -364,3 +366,24 @@ def test_everything_printed_is_ascii():
         [*V0, "--json"], ["sweep", "--w0", "0:1:2"],
     ):  # fmt: skip
         assert puck(*arguments).output.isascii(), arguments
+
+
+def test_the_table_that_is_read_is_never_replaced():
+    puck("build-tables", "--accuracy", "1e-6", "-o", "t.h5")
+    for command in (["sweep"], V0):
+        result = puck(*command, "--accuracy", "1e-4", "--table", "t.h5", "-o", "t.h5",
+                      "--overwrite")  # fmt: skip
+        refused(result, 2, "is the table that is read")
+    assert load_table("t.h5").tolerance == 1e-6
+
+
+def test_closed_stderr_and_full_stdout():
+    run = " ".join(f'"{part}"' for part in PUCK)
+    subprocess.run(f"{run} sweep --w0 0:1:3 -o a.csv 2>&-", shell=True, check=True)
+    assert Path("a.csv").exists()
+    full = subprocess.run(
+        f"{run} simulate --v0 1,0 > /dev/full", shell=True, capture_output=True, text=True
+    )
+    assert full.returncode == 1
+    assert "No space left" in full.stderr
+    assert "Traceback" not in full.stderr

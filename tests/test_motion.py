@@ -265,9 +265,24 @@ def test_symmetries(
     assert base.speed[-1] == base.spin[-1] == 0.0
 
 
+def test_speed_and_spin_keep_their_digits_at_both_ends():
+    for tiny in (1e-9, 1e-12, 1e-17, 1e-100, 1e-300):
+        assert simulate((tiny, 0), 1.0, frames=2).speed[0] == pytest.approx(tiny, rel=1e-12)
+        assert simulate((1, 0), tiny, frames=2).spin[0] == pytest.approx(tiny, rel=1e-12)
+    with pytest.raises(InputError, match="too large for floating point"):
+        simulate((1e-8, 0), 1e154, radius=5e-324)
+    with pytest.raises(InputError, match="w0 must be a number"):
+        simulate((1, 0), 10**400)
+
+
 def test_above_delta_1_the_law_holds_state_by_state():
     run = simulate((1, 0), 8.0, delta=1.2, exact=True)
     assert run.regime == "B"
+    # above 1.5723 the limit motion itself is outside, whatever the start and the accuracy
+    assert simulate((1, 0), 1e5, delta=1.572, exact=True).regime == "B"
+    for w0, accuracy in ((54.6, 1e-2), (1e5, 1e-9), (1e8, 1e-12)):
+        with pytest.raises(ContactError):
+            simulate((1, 0), w0, delta=1.573, exact=True, accuracy=accuracy)
     with pytest.raises(ContactError, match="part of the base is lifted"):
         simulate((1, 0), 0.5, delta=1.2, exact=True)
     with pytest.raises(ContactError):

@@ -14,6 +14,7 @@ import xarray
 
 from puck_tables import Table, build_table, load_table, save_table
 from puck_tables.errors import OutputError, TableError
+from puck_tables.table.file import sealed
 
 
 @pytest.fixture(scope="module")
@@ -76,6 +77,27 @@ def test_newer_format_other_kind_and_stranger_are_refused_by_name(file: Path, tm
         other["x"] = 1.0
     with pytest.raises(TableError, match="not a table of this program"):
         load_table(tmp_path / "other.h5")
+    resealed = tmp_path / "resealed.h5"
+    resealed.write_bytes(sealed(newer.read_bytes()))
+    with pytest.raises(TableError, match=r"format 2\.0"):
+        load_table(resealed)
+
+
+def test_an_untouched_copy_without_its_seal_is_refused(file: Path, tmp_path: Path):
+    bare = tmp_path / "bare.h5"
+    bare.write_bytes(file.read_bytes().rpartition(b"\npuck-tables")[0])
+    with pytest.raises(TableError, match="digest"):
+        load_table(bare)
+
+
+def test_a_sealed_file_is_still_checked(rough_table: Table, tmp_path: Path):
+    """Whoever writes a right digest over wrong numbers is refused for the numbers."""
+    bad = replace(rough_table, tolerance=float("inf"))
+    with pytest.raises(TableError, match="cannot use"):
+        save_table(bad, tmp_path / "bad.h5")
+    with pytest.raises(TableError, match="cannot use"):
+        save_table(replace(rough_table, values=-rough_table.values), tmp_path / "bad.h5")
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_altered_values_text_and_axes_are_refused(file: Path, tmp_path: Path):
@@ -104,24 +126,18 @@ def test_altered_values_text_and_axes_are_refused(file: Path, tmp_path: Path):
         load_table(huge)
 
 
-def test_every_flipped_byte_is_refused_or_harmless(file: Path, tmp_path: Path):
+def test_every_flipped_byte_is_refused(file: Path, tmp_path: Path):
+    """Before HDF5 reads a byte: there are flips that make it hang."""
     whole = file.read_bytes()
-    before = load_table(file)
     rng = np.random.default_rng(2012)
     flipped = tmp_path / "flipped.h5"
-    refused = 0
-    for position in rng.choice(len(whole), 120, replace=False):
+    positions = {*rng.choice(len(whole), 300, replace=False), *range(len(whole) - 90, len(whole))}
+    for position in positions:
         content = bytearray(whole)
         content[position] ^= 1 << int(rng.integers(8))
         flipped.write_bytes(content)
-        try:
-            after = load_table(flipped)
-        except TableError:
-            refused += 1
-            continue
-        np.testing.assert_array_equal(after.values, before.values)
-        assert after.passport == before.passport
-    assert refused >= 20
+        with pytest.raises(TableError):
+            load_table(flipped)
 
 
 @pytest.mark.parametrize("share", [0.0, 0.01, 0.3, 0.9, 0.999])
@@ -139,8 +155,10 @@ def test_missing_not_hdf5_and_folder_are_refused(tmp_path: Path):
     (tmp_path / "text.h5").write_text("puck")
     with pytest.raises(TableError, match="not an HDF5 file"):
         load_table(tmp_path / "text.h5")
-    with pytest.raises(TableError, match="cannot read"):
+    with pytest.raises(TableError, match="not a regular file"):
         load_table(tmp_path)
+    with pytest.raises(TableError, match="not a regular file"):
+        load_table("/dev/zero")
 
 
 def test_nothing_is_overwritten_and_nothing_non_finite_is_saved(file: Path, rough_table: Table):

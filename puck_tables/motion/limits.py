@@ -16,7 +16,7 @@ from puck_tables.kernels.compile import kernel
 FloatArray = npt.NDArray[np.float64]
 
 # A start this close to the limit ratio (in ln(rω/v)) is the limit motion itself.
-LIMIT_WIDTH = 1e-12
+LIMIT_WIDTH = 1e-13
 
 REGIMES = {
     "A": "rest",

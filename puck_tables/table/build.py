@@ -73,7 +73,11 @@ def build_table(
     if n_phi is not None:
         table = _tabulate(PhiAxis(n_phi), delta_axis, progress)
         measured = measure(table, _half(table))
-        return replace(table, accuracy=measured, tolerance=_rounded_up(1.25 * measured.worst))
+        return replace(
+            table,
+            accuracy=measured,
+            tolerance=_rounded_up(max(1.25 * measured.worst, FINEST_ACCURACY)),
+        )
     wanted = DEFAULT_ACCURACY if accuracy is None else accuracy
     if not FINEST_ACCURACY <= wanted <= 0.01:
         raise AccuracyError(

@@ -1,5 +1,8 @@
 """The only door to table files: HDF5 with a passport, refused unless whole and unaltered.
 
+After the HDF5 content stands a line with its sha256, checked before HDF5 reads a byte: damaged
+files can make it hang.
+
 Layout: dimension scales ``phi`` and ``delta``; datasets ``parallel``, ``perpendicular``, ``spin``
 of shape (phi, delta), little-endian float64; everything else in attributes of the root.  The file
 is made and read in memory, so that a failing disk leaves no half of one.
@@ -31,6 +34,7 @@ from puck_tables.table.table import FUNCTIONS, Accuracy, Table
 FORMAT = "puck-tables"
 FORMAT_VERSION = "1.0"
 KIND = "resultants"
+_SEAL = b"\npuck-tables sha256 "
 ALGORITHM = "elliptic integrals; friction ratios splined; 1"
 MAX_FILE_BYTES = 1 << 31
 
@@ -128,6 +132,8 @@ def load_table(path: str | Path | None = None) -> Table:
         return _default_table()
     source = str(path)
     try:
+        if Path(path).exists() and not Path(path).is_file():
+            raise TableError(f"cannot read {source}: it is not a regular file")
         if Path(path).stat().st_size > MAX_FILE_BYTES:
             raise TableError(f"{source} is too large to be a table")
         content = Path(path).read_bytes()
@@ -155,12 +161,17 @@ def _digest(attributes: dict[str, Any], arrays: list[npt.NDArray[np.float64]]) -
     return digest.hexdigest()
 
 
-def _encode(table: Table, command: str) -> bytes:
-    recipe = {
+def _recipe(phi_axis: PhiAxis, delta_axis: DeltaAxis) -> dict[str, Any]:
+    """What determines the values of a table."""
+    return {
         "kind": KIND, "pressure_law": "uniform", "phi_map": _PHI_MAP, "delta_map": _DELTA_MAP,
-        "splined": _SPLINED, "n_phi": table.phi_axis.size, "n_delta": table.delta_axis.size,
-        "delta_max": table.delta_axis.upper, "algorithm": ALGORITHM,
+        "splined": _SPLINED, "n_phi": phi_axis.size, "n_delta": delta_axis.size,
+        "delta_max": 1.0, "algorithm": ALGORITHM,
     }  # fmt: skip
+
+
+def _encode(table: Table, command: str) -> bytes:
+    recipe = _recipe(table.phi_axis, table.delta_axis)
     assert table.accuracy is not None
     attributes: dict[str, Any] = {
         "Conventions": "CF-1.11",
@@ -202,15 +213,33 @@ def _encode(table: Table, command: str) -> bytes:
             )
         file.attrs.update(attributes)
         file.attrs["content_digest"] = _digest(attributes, arrays)
-    return buffer.getvalue()
+    return sealed(buffer.getvalue())
+
+
+def sealed(content: bytes) -> bytes:
+    r"""HDF5 content with the line that proves it whole.
+
+    Examples
+    --------
+    >>> sealed(b"")[:20]
+    b'\npuck-tables sha256 '
+    """
+    return content + _SEAL + hashlib.sha256(content).hexdigest().encode() + b"\n"
 
 
 def _decode(content: bytes, source: str) -> Table:
     if not content.startswith(b"\x89HDF\r\n\x1a\n"):
         raise TableError(f"{source} is not an HDF5 file")
+    inside, seal, _ = content.rpartition(_SEAL)
+    altered = TableError(
+        f"{source} was altered or damaged: it does not match its digest; "
+        "build it again with 'puck build-tables'"
+    )
+    if seal and sealed(inside) != content:
+        raise altered
     try:
         with h5py.File(io.BytesIO(content), "r") as file:
-            return _read(file, source)
+            table = _read(file, source)
     except TableError:
         raise
     except Exception as error:  # whatever a damaged file makes h5py raise
@@ -218,6 +247,9 @@ def _decode(content: bytes, source: str) -> Table:
             f"{source} is damaged and cannot be read as a table ({type(error).__name__}): "
             "build it again with 'puck build-tables'"
         ) from None
+    if not seal:  # edited by another program, which dropped the line; read to name the reason
+        raise altered
+    return table
 
 
 def _read(file: h5py.File, source: str) -> Table:
@@ -238,22 +270,27 @@ def _read(file: h5py.File, source: str) -> Table:
     phi_axis = PhiAxis(attributes["n_phi"])
     delta_axis = DeltaAxis(attributes["n_delta"], attributes["delta_max"])
     shape = (phi_axis.size, delta_axis.size)
-    if any(file[name].shape != shape or file[name].dtype != "<f8" for name in FUNCTIONS):
+    shapes = {"phi": shape[:1], "delta": shape[1:], **dict.fromkeys(FUNCTIONS, shape)}
+    if any(file[n].shape != s or file[n].dtype != "<f8" for n, s in shapes.items()):
         raise TableError(f"{source} is damaged: its arrays do not fit its axes")
     if 24 * shape[0] * shape[1] > file.id.get_filesize():
         raise TableError(f"{source} is damaged: it is shorter than its arrays")
-    arrays = [np.asarray(file[name][...]) for name in ("phi", "delta", *FUNCTIONS)]
+    arrays = [np.asarray(file[name][...]) for name in shapes]
     stated = attributes.pop("content_digest", None)
     if _digest(attributes, arrays) != stated:
         raise TableError(
             f"{source} was altered or damaged: its content does not match its digest; "
             "build it again with 'puck build-tables'"
         )
+    if any(attributes[name] != value for name, value in _recipe(phi_axis, delta_axis).items()):
+        raise TableError(f"{source} was made by a recipe that this program does not know")
     # The digest covers what the file says; the nodes must also be where the spline will look.
     if not (
         np.allclose(arrays[0], phi_axis.nodes(), rtol=0.0, atol=1e-14)
         and np.allclose(arrays[1], delta_axis.nodes(), rtol=0.0, atol=1e-14)
         and all(np.isfinite(array).all() for array in arrays)
+        and (arrays[2] > 0.0).all()
+        and 0.0 < attributes["tolerance"] < 1.0
     ):
         raise TableError(f"{source} has axes or values that this program cannot use")
     accuracy = json.loads(attributes["achieved_accuracy"])
