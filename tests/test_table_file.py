@@ -118,9 +118,11 @@ def test_altered_values_text_and_axes_are_refused(file: Path, tmp_path: Path):
     huge = tmp_path / "huge.h5"
     shutil.copy(file, huge)
     with h5py.File(huge, "r+") as opened:
-        for name in ("parallel", "perpendicular", "spin"):
+        size = {"phi": (1_000_001,), "delta": (1000,)}
+        for name in ("parallel", "perpendicular", "spin", "phi", "delta"):
+            shape = size.get(name, (1_000_001, 1000))
             del opened[name]
-            opened.create_dataset(name, shape=(1_000_001, 1000), dtype="<f8", chunks=True)
+            opened.create_dataset(name, shape=shape, dtype="<f8", chunks=True)
         opened.attrs.update(n_phi=1_000_001, n_delta=1000)
     with pytest.raises(TableError, match="shorter than its arrays"):
         load_table(huge)
