@@ -92,9 +92,11 @@ def plot_trajectory(run: Trajectory, path: str | Path, overwrite: bool = False) 
         ratio.plot(run.time[moving], np.tan(run.slip_angle[moving]), color=_GREEN)
         limit = math.copysign(math.tan(run.limit_angle), run.w0)
         ratio.axhline(limit, color=_GREY, linestyle="--", linewidth=1.0)
+        above = limit > np.tan(run.slip_angle[moving]).max()
         ratio.annotate(
             f"limit {limit:.3f}", (0.02, limit), xycoords=("axes fraction", "data"),
-            xytext=(0, 3), textcoords="offset points", color=_GREY, fontsize=9,
+            xytext=(0, -3 if above else 3), va="top" if above else "bottom",
+            textcoords="offset points", color=_GREY, fontsize=9,
         )  # fmt: skip
     else:
         ratio.text(
@@ -167,9 +169,9 @@ def _draw_path(axes: Axes, run: Trajectory) -> None:
     from matplotlib.patches import Circle
 
     axes.plot(run.x, run.y, color=_BLUE, linewidth=1.6)
-    extent = max(np.ptp(run.x), np.ptp(run.y), 1e-300)
-    true_size = 0.02 * extent <= run.radius <= 0.12 * extent
-    radius = run.radius if true_size else (0.045 * extent if extent > 1e-300 else run.radius)
+    extent = max(np.ptp(run.x), np.ptp(run.y))
+    true_size = extent == 0.0 or 0.02 * extent <= run.radius <= 0.12 * extent
+    radius = run.radius if true_size else 0.045 * extent
     travelled = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(run.x), np.diff(run.y)))])
     wanted = np.linspace(0.0, travelled[-1], _PUCKS_DRAWN)
     chosen = np.unique(np.searchsorted(travelled, wanted).clip(0, run.time.size - 1))
