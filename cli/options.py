@@ -66,8 +66,8 @@ class Range(click.ParamType):
         start, stop = finite(parts[0], self, param, ctx), finite(parts[1], self, param, ctx)
         if not re.fullmatch(r"[0-9]{1,10}", parts[2]) or not 2 <= int(parts[2]) <= MAX_COUNT:
             self.fail(f"the COUNT of '{value}' must be a whole number from 2 to 1e9", param, ctx)
-        if not stop > start:
-            self.fail(f"in '{value}' STOP must be greater than START", param, ctx)
+        if not stop > start or not math.isfinite(stop - start):
+            self.fail(f"in '{value}' STOP must be greater than START, and finitely so", param, ctx)
         return start, stop, int(parts[2])
 
 

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
         curvature_slope,
         limit_angle,
         limit_ratio,
+        regime,
     )
     from puck_tables.plots import plot_map, plot_trajectory
     from puck_tables.puck import similarity_parameters
@@ -42,6 +43,7 @@ _HOMES = {
     "curvature_slope": "motion.limits",
     "limit_angle": "motion.limits",
     "limit_ratio": "motion.limits",
+    "regime": "motion.limits",
     "plot_map": "plots",
     "plot_trajectory": "plots",
     "similarity_parameters": "puck",
@@ -78,6 +80,7 @@ __all__ = [
     "load_table",
     "plot_map",
     "plot_trajectory",
+    "regime",
     "resultants",
     "save_map",
     "save_table",

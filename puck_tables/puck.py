@@ -71,7 +71,7 @@ def similarity_parameters(
     Raises
     ------
     InputError
-        If a number is not finite or not greater than zero.
+        If a number is not finite or not greater than zero, or δ or J is out of range.
 
     References
     ----------
@@ -84,7 +84,13 @@ def similarity_parameters(
     """
     r, h = positive("radius", radius, "m"), positive("height", height, "m")
     f, g = positive("friction", friction, "dimensionless"), positive("gravity", gravity, "m/s^2")
-    return 2.0 * f * h / r, f * g
+    delta, decel = 2.0 * f * h / r, f * g
+    if not math.isfinite(delta) or not math.isfinite(decel) or decel == 0.0:
+        raise InputError(
+            f"radius {r:g} m, height {h:g} m, friction {f:g} and gravity {g:g} m/s^2 give "
+            f"delta = {delta:g} and J = {decel:g} m/s^2: out of the range of floating point"
+        )
+    return delta, decel
 
 
 def velocity_array(v0: npt.ArrayLike) -> npt.NDArray[np.float64]:

@@ -218,6 +218,8 @@ V0 = ["simulate", "--v0", "1,0"]
         ([*V0, "-o", "a.csv", "--plot", "a.csv"], ["two outputs"]),
         (["sweep", "--w0", "5:1:10"], ["STOP must be greater than START"]),
         (["sweep", "--w0", "1:5"], ["START:STOP:COUNT"]),
+        (["sweep", "--w0", "-1e308:1e308:3"], ["finitely"]),
+        ([*V0, "--radius", "1e-308", "--height", "1e308", "--friction", "1"], ["floating point"]),
         (["sweep", "--w0", "1:5:1"], ["COUNT"]),
         (["sweep", "--w0", "1:5:1e3"], ["COUNT"]),
         (["sweep", "--w0", "0:1:999999999999"], ["COUNT"]),

@@ -15,6 +15,7 @@ from puck_tables import (
     curvature_slope,
     limit_angle,
     limit_ratio,
+    regime,
     resultants,
     simulate,
     stop,
@@ -151,8 +152,12 @@ def test_every_regime_is_named_and_exact():
         assert limit.turn_angle == pytest.approx(beside.turn_angle, abs=1e-8)
         assert limit.body_angle == pytest.approx(beside.body_angle, abs=1e-9)
         assert limit.path_length == pytest.approx(beside.path_length, abs=1e-9)
-    for start, regime in ((((1e-12, 0), 1.0), "B"), (((1, 0), 1e-12), "C")):
-        assert simulate(*start).regime == regime
+    for start, name in ((((1e-12, 0), 1.0), "B"), (((1, 0), 1e-12), "C"), (((0, 0), 0.0), "A")):
+        assert simulate(*start).regime == regime(*start) == name
+    assert regime((0, 1), math.tan(float(limit_angle(0.5))) / 0.3, radius=0.3) == "D"
+    for bad in (((1, 0, 0), 1.0), ((1, 0), math.nan), ((1, 0), [1.0, 2.0])):
+        with pytest.raises(InputError):
+            regime(*bad)
 
 
 def test_limits_as_functions_agree_with_the_motion():

@@ -9,9 +9,10 @@ import numpy.typing as npt
 
 from puck_tables.contact.closed_form import integrals
 from puck_tables.contact.resultants import checked_delta
-from puck_tables.errors import ContactError
+from puck_tables.errors import ContactError, InputError
 from puck_tables.kernels.closed_form import friction_ratios, resultants
 from puck_tables.kernels.compile import kernel
+from puck_tables.real import finite_array
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -178,8 +179,48 @@ def _spin_ratio(u: FloatArray, delta: npt.ArrayLike) -> FloatArray:
     return ratio
 
 
-def regime_of(speed: float, rim_speed: float, limit: float) -> str:
+def regime(v0: npt.ArrayLike, w0: float, delta: float = 0.5, radius: float = 1.0) -> str:
     """Which of the six kinds of motion a launch starts.
+
+    Parameters
+    ----------
+    v0 : (vx, vy), m/s
+    w0 : spin, rad/s
+    delta : dimensionless height, in [0, 1]
+    radius : m, > 0
+
+    Returns
+    -------
+    str
+        A rest, B0 pure spin, C0 pure translation, D the limit motion (rω/v constant), B generic
+        with more spin than that, C generic with less.
+
+    Raises
+    ------
+    InputError, ContactError
+        If an argument is not finite or lies outside its range.
+
+    References
+    ----------
+    Salnikova, Treschev, Gallyamov 2012, section 2.
+
+    Examples
+    --------
+    >>> regime((1.0, 0.0), 5.0), regime((3.0, 4.0), 0.0)
+    ('B', 'C0')
+    """
+    velocity = finite_array("v0", v0, "m/s")
+    if velocity.shape != (2,):
+        raise InputError(f"v0 must be one velocity (vx, vy) in m/s, got shape {velocity.shape}")
+    spin, r = finite_array("w0", w0, "rad/s"), finite_array("radius", radius, "m")
+    if spin.shape != () or r.shape != () or not r > 0.0:
+        raise InputError("w0 and radius must be numbers, radius greater than 0 m")
+    limit = math.log(float(limit_ratio(delta)))
+    return regime_of(math.hypot(*velocity.tolist()), float(r * abs(spin)), limit)
+
+
+def regime_of(speed: float, rim_speed: float, limit: float) -> str:
+    """The same from v and r|ω|, checked before.
 
     Parameters
     ----------

@@ -27,6 +27,7 @@ FloatArray = npt.NDArray[np.float64]
 
 GRADING_POWER = 4
 MAX_NODES = 1 << 22
+MAX_DELTA_NODES = 1025
 
 
 @dataclass(frozen=True)
@@ -98,8 +99,8 @@ class DeltaAxis:
     upper: float = 1.0
 
     def __post_init__(self) -> None:
-        if not 4 <= self.size <= MAX_NODES:
-            raise InputError(f"n_delta must be from 4 to {MAX_NODES}, got {self.size}")
+        if not 4 <= self.size <= MAX_DELTA_NODES:
+            raise InputError(f"n_delta must be from 4 to {MAX_DELTA_NODES}, got {self.size}")
 
     def nodes(self) -> FloatArray:
         """δ at the nodes, ascending."""
