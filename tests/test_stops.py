@@ -50,6 +50,13 @@ def test_stop_reaches_the_accuracy_it_promises():
         assert np.abs(result.stop_position - truth.stop_position).max() <= accuracy
 
 
+def test_pure_motions_are_exact():
+    result = stop([(1.0, 0.0), (0.0, 0.0), (3.0, 4.0)], [0.0, 1.0, 0.0], delta=0.7)
+    assert result.stop_time.tolist() == [1.0, 0.75, 5.0]
+    np.testing.assert_allclose(result.stop_position[2], [7.5, 10.0], rtol=1e-15)
+    assert result.turn_angle.tolist() == [0.0, 0.0, 0.0]
+
+
 def test_overflow_is_a_named_status():
     result = stop([(1e200, 0.0), (1.0, 0.0)], 1.0)
     assert result.status.tolist() == [2, 0]

@@ -39,6 +39,7 @@ def fill_stops(
     cut = np.empty(2 * 3 * coefficients.shape[2])
     cut_delta = -1.0
     no_z, no_y = np.empty(0), np.empty((0, SIZE))
+    closed_forms = np.empty(0)  # an empty cut
     start = np.empty(SIZE)
     result = np.empty(SIZE + 1)
     for n in range(launches.shape[0]):
@@ -58,7 +59,7 @@ def fill_stops(
             for i in range(SIZE):
                 start[i] = 0.0
             start[U] = math.inf if speed == 0.0 else -math.inf
-            at_constant_angle(1.0, start, 0.0, cut, delta, result)
+            at_constant_angle(1.0, start, 0.0, closed_forms, delta, result)
         else:
             code, _ = integrate(
                 log_ratio(speed, rim),
