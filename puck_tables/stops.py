@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.errors import AccuracyError, InputError
-from puck_tables.puck import velocity_array
+from puck_tables.puck import real, velocity_array
 from puck_tables.real import broadcast, finite_array
 from puck_tables.table.file import load_table
 from puck_tables.table.table import Table
@@ -57,6 +57,7 @@ def steps_for(accuracy: float, table: Table) -> float:
     >>> steps_for(1e-7, load_table())
     44.0
     """
+    accuracy = real("accuracy", accuracy, "dimensionless")
     finest = 5.0 * table.tolerance
     if not finest <= accuracy <= 0.01:
         raise AccuracyError(

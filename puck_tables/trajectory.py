@@ -152,6 +152,7 @@ def simulate(
             "of full contact holds at every phi up to 1, and beyond 2 in no motion but pure spin"
         )
 
+    from puck_tables.motion.equations import LENGTH, PSI, THETA, T, U, X, Y
     from puck_tables.motion.limits import limit_log_ratio, regime_of
     from puck_tables.run import closed_form_friction, run_motion, table_friction
 
@@ -172,8 +173,9 @@ def simulate(
             f"(Q = {q0:g} m/s, J = {J:g} m/s^2): use larger units"
         )
 
-    run = run_motion(regime, speed, rim, limit, friction, accuracy, method)
-    stop_time = float(run.stop[2] * scale_time)
+    wanted = real("accuracy", accuracy, "dimensionless")
+    run = run_motion(regime, speed, rim, limit, friction, wanted, method)
+    stop_time = float(run.stop[T] * scale_time)
     moments = _moments(frames, times, stop_time)
     scaled = np.where(moments < stop_time, moments, np.inf) / (scale_time if q0 > 0.0 else 1.0)
     q, states = run.states(scaled)
@@ -181,11 +183,11 @@ def simulate(
     side = -1.0 if spin < 0.0 else 1.0
     heading0 = math.atan2(vy, vx) if speed > 0.0 else 0.0
     east, north = (vx / speed, vy / speed) if speed > 0.0 else (1.0, 0.0)
-    along, left = scale_length * states[:, 3], side * scale_length * states[:, 4]
-    end_along, end_left = scale_length * run.stop[3], side * scale_length * run.stop[4]
+    along, left = scale_length * states[:, X], side * scale_length * states[:, Y]
+    end_along, end_left = scale_length * run.stop[X], side * scale_length * run.stop[Y]
     moving = q > 0.0
-    cosine, sine = _direction(states[:, 0])
-    angle = _slip_angle(states[:, 0], regime, limit, moving)
+    cosine, sine = _direction(states[:, U])
+    angle = _slip_angle(states[:, U], regime, limit, moving)
     return Trajectory(
         v0=(vx, vy), w0=spin, radius=r, delta=height, decel=J, mass=m, regime=regime,
         stop_time=stop_time,
@@ -193,10 +195,10 @@ def simulate(
             float(end_along * east - end_left * north) + 0.0,
             float(end_along * north + end_left * east) + 0.0,
         ),
-        path_length=float(run.stop[6] * scale_length),
-        turn_angle=float(side * run.stop[1]) + 0.0,
+        path_length=float(run.stop[LENGTH] * scale_length),
+        turn_angle=float(side * run.stop[PSI]) + 0.0,
         turn_rate=float(side * run.turn_rate) + 0.0,
-        body_angle=float(side * run.stop[5] * (scale_length / r)) + 0.0,
+        body_angle=float(side * run.stop[THETA] * (scale_length / r)) + 0.0,
         limit_angle=math.atan(math.exp(limit)),
         kinetic_energy=energy,
         energy_residual=run.energy_residual,
@@ -206,8 +208,8 @@ def simulate(
         time=moments,
         x=along * east - left * north + 0.0,
         y=along * north + left * east + 0.0,
-        heading=heading0 + side * states[:, 1],
-        orientation=side * states[:, 5] * (scale_length / r) + 0.0,
+        heading=heading0 + side * states[:, PSI],
+        orientation=side * states[:, THETA] * (scale_length / r) + 0.0,
         speed=q0 * q * cosine,
         spin=side * (q0 / r) * q * sine + 0.0,
         slip_speed=q0 * q,

@@ -332,6 +332,8 @@ def test_bad_launches(arguments: tuple, error: type, words: str):
         ({"accuracy": 1e-12}, AccuracyError, "exact"),
         ({"accuracy": 1e-16, "exact": True}, AccuracyError, "1e-13"),
         ({"method": "euler"}, InputError, "method"),
+        ({"accuracy": "fine"}, InputError, "accuracy must be a number"),
+        ({"frames": 2.5}, InputError, "frames"),
     ],
 )
 def test_bad_options(options: dict, error: type, words: str):

@@ -57,8 +57,3 @@ def test_library_examples():
 def test_pictures_of_the_readme_exist():
     for name in re.findall(r"!\[.*?\]\((.*?)\)", TEXT):
         assert (ROOT / name).stat().st_size > 10_000
-
-
-def test_nothing_refers_to_this_machine():
-    for path in (ROOT / "README.md", ROOT / "CHANGELOG.md", ROOT / "tables" / "README.md"):
-        assert "/work" not in path.read_text(encoding="utf-8")
