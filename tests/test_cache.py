@@ -6,6 +6,7 @@ import os
 import shutil
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 from conftest import ROOT
@@ -58,3 +59,23 @@ def test_no_writable_folder_still_computes(tmp_path: Path):
         capture_output=True, text=True, check=True,
     )  # fmt: skip
     assert ended.stdout == "0.375\n"
+
+
+def test_the_cache_lies_outside_the_package_and_old_ones_go(tmp_path: Path):
+    cache = tmp_path / "puck-tables"
+    old, recent = cache / f"compiled-{0:016}", cache / f"compiled-{1:016}"
+    for folder in (old, recent):
+        folder.mkdir(parents=True)
+    os.utime(old, (0, time.time() - 31 * 86400))
+    environment = {**os.environ, "XDG_CACHE_HOME": str(tmp_path)}
+    environment.pop("NUMBA_CACHE_DIR", None)
+    subprocess.run(
+        [sys.executable, "-c", "import puck_tables as p; p.resultants(0, 1)"],
+        env=environment, check=True,
+    )  # fmt: skip
+    assert not old.exists()
+    assert recent.exists()
+    assert len(list(cache.glob("*/*/*.nbc"))) > 0
+    # nothing but Python's own byte code appears beside the sources
+    beside = {path.suffix for path in (ROOT / "puck_tables").glob("**/__pycache__/*")}
+    assert beside <= {".pyc"}

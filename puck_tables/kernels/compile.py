@@ -9,8 +9,10 @@ from __future__ import annotations
 
 import hashlib
 import os
+import shutil
 import sys
 import tempfile
+import time
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -46,19 +48,28 @@ def _user_cache() -> Path:
 def cache_folder() -> str | None:
     """Where compiled code is kept; None where no folder can be written.
 
-    ``NUMBA_CACHE_DIR`` if set, else next to the package, else the user's cache folder.
+    ``NUMBA_CACHE_DIR`` if set, else the user's cache folder.  Never beside the package: what an
+    uninstalled package leaves in its folder would hide the one that is installed next.
     """
     chosen = os.environ.get("NUMBA_CACHE_DIR")
-    bases = [Path(chosen)] if chosen else [_PACKAGE / "__pycache__", _user_cache()]
-    for base in bases:
-        folder = base / f"compiled-{source_digest()}"
-        try:
+    base = Path(chosen) if chosen else _user_cache()
+    folder = base / f"compiled-{source_digest()}"
+    try:
+        if not folder.exists():
+            _forget_unused(base)
             folder.mkdir(parents=True, exist_ok=True)
-            tempfile.TemporaryFile(dir=folder).close()
-        except OSError:
-            continue
-        return str(folder)
-    return None
+        os.utime(folder)
+        tempfile.TemporaryFile(dir=folder).close()
+    except OSError:
+        return None
+    return str(folder)
+
+
+def _forget_unused(base: Path) -> None:
+    """Remove what versions of the package not run for a month have left."""
+    for folder in base.glob("compiled-????????????????"):
+        if folder.stat().st_mtime < time.time() - 30 * 86400:
+            shutil.rmtree(folder, ignore_errors=True)
 
 
 def kernel(function: Function) -> Function:
