@@ -6,9 +6,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
-from puck_tables.cli.options import FILE, open_table
+from puck_tables.cli.options import FILE, tables_named
 
 if TYPE_CHECKING:
+    from puck_tables.similarity.stop_table import StopTable
     from puck_tables.table.table import Table
 
 
@@ -17,34 +18,47 @@ if TYPE_CHECKING:
 def info(file: Path | None) -> None:
     """Say what a table holds, how good it is, and whether its digest is right.
 
-    Without FILE: the default table.
+    Without FILE: the tables that come along.
     """
-    click.echo(describe(open_table(file)))
+    click.echo("\n\n".join(describe(table) for table in tables_named(file)))
 
 
-def describe(table: Table) -> str:
+def describe(table: Table | StopTable) -> str:
     """A table in a dozen lines.  It was loaded, so its digest is right."""
-    from puck_tables.table.table import FUNCTIONS
+    from puck_tables.table.table import Table
 
-    accuracy, passport = table.accuracy, table.passport
+    passport, accuracy = table.passport, table.accuracy
     assert accuracy is not None
+    if isinstance(table, Table):
+        from puck_tables.table.table import FUNCTIONS as names
+
+        grid = f"{table.phi_axis.size} phi x {table.delta_axis.size} delta nodes"
+    else:
+        from puck_tables.similarity.check import NAMES as names
+
+        grid = f"{table.axis.size} phi x {table.values.shape[1]} delta nodes"
     lines = {
         "table": table.source,
-        "holds": f"{passport['kind']} {', '.join(FUNCTIONS)}; {passport['pressure_law']} pressure",
-        "grid": f"{table.phi_axis.size} phi x {table.delta_axis.size} delta nodes",
+        "holds": f"{passport['kind']} ({', '.join(names)}); {passport['pressure_law']} pressure",
+        "grid": grid,
         "valid": passport["valid_range"],
         "tolerance": f"{table.tolerance:g}",
         "measured": f"at {accuracy.points} random and adversarial points (absolute errors):",
     }
+    columns = {"largest": accuracy.largest, "rms": accuracy.rms}
+    rest = {}
+    if isinstance(table, Table):
+        assert table.accuracy is not None
+        columns["99.9 %"] = table.accuracy.p999
+        rest["entries"] = f"residual {table.accuracy.entry_residual:.1e} at phi = 0, pi/4, pi/2"
     text = [f"{name:<11} {value}" for name, value in lines.items()]
-    text.append(f"{'':<11} {'':<14}{'largest':>9}{'99.9 %':>10}{'rms':>10}   at phi, delta")
-    for i, name in enumerate(FUNCTIONS):
+    text.append(f"{'':<26}" + "".join(f"{name:>10}" for name in columns) + "   at phi, delta")
+    for i, name in enumerate(names):
+        errors = "".join(f"{values[i]:>10.1e}" for values in columns.values())
         text.append(
-            f"{'':<11} {name:<14}{accuracy.largest[i]:>9.1e}{accuracy.p999[i]:>10.1e}"
-            f"{accuracy.rms[i]:>10.1e}   {accuracy.at_phi[i]:.6g}, {accuracy.at_delta[i]:.6g}"
+            f"{'':<11} {name:<14}{errors}   {accuracy.at_phi[i]:.6g}, {accuracy.at_delta[i]:.6g}"
         )
-    rest = {
-        "entries": f"residual {accuracy.entry_residual:.1e} at phi = 0, pi/4, pi/2",
+    rest |= {
         "order": f"{accuracy.order:.2f} in phi, against half the cells"
         if accuracy.order
         else "not measured: too few cells",

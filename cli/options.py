@@ -15,6 +15,7 @@ import click
 from puck_tables.errors import InputError
 
 if TYPE_CHECKING:
+    from puck_tables.similarity.stop_table import StopTable
     from puck_tables.table.table import Table
 
 Command = TypeVar("Command", bound=Callable[..., Any])
@@ -200,10 +201,17 @@ def prepare_outputs(*paths: Path | None, overwrite: bool, table: Path | None = N
 
 
 def open_table(path: Path | None) -> Table:
-    """The table asked for."""
+    """The table of resultants asked for."""
     from puck_tables.table.file import load_table
 
     return load_table(path)
+
+
+def tables_named(path: Path | None) -> list[Table | StopTable]:
+    """The table in a file, of either kind, or those that come along."""
+    from puck_tables.similarity.file import load_any_table, load_stop_table
+
+    return [open_table(None), load_stop_table()] if path is None else [load_any_table(path)]
 
 
 def told(path: Path) -> None:

@@ -11,13 +11,13 @@ from puck_tables.cli.options import (
     NUMBER,
     Range,
     Vector,
-    open_table,
     output_options,
     prepare_outputs,
     progress,
     puck_and_floor,
     puck_options,
     table_option,
+    tables_named,
     told,
 )
 
@@ -96,11 +96,12 @@ def sweep(
         tuple(x[2] for x in (w0, speed, height_ratio) if isinstance(x, tuple)),
         BYTES_PER_ROW if as_text else BYTES_PER_LAUNCH,
     )
+    table = None if table_path is None else tables_named(table_path)[0]
     with progress("stops") as show:
         stops = run_sweep(
             None if w0 is None else _values(w0), None if speed is None else _values(speed),
             v0=v0, delta=_values(height_ratio), decel=J, radius=r,
-            accuracy=accuracy, table=open_table(table_path), threads=threads, progress=show,
+            accuracy=accuracy, table=table, threads=threads, progress=show,
         )  # fmt: skip
     if output is not None:
         save_map(stops, output, overwrite)
@@ -120,7 +121,7 @@ def _values(given: float | tuple[float, float, int]) -> npt.NDArray[np.float64]:
 
 
 def _summary(stops: StopMap) -> str:
-    from puck_tables.motion.bulk import STATUS_MEANINGS
+    from puck_tables.solvers import STATUS_MEANINGS
 
     ranged = " x ".join(f"{name} ({values.size})" for name, values in stops.axes.items())
     fixed = ", ".join(f"{name} = {value:g}" for name, value in stops.fixed.items())
@@ -129,4 +130,4 @@ def _summary(stops: StopMap) -> str:
         for code, meaning in enumerate(STATUS_MEANINGS)
         if code == 0 or (stops.status == code).any()
     )
-    return f"{ranged or 'one launch'} at {fixed}: {counts}"
+    return f"{ranged or 'one launch'} at {fixed}: {counts}; {stops.method}, {stops.table}"

@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
-from puck_tables.cli.options import FILE, open_table, progress
+from puck_tables.cli.options import FILE, progress, tables_named
+
+if TYPE_CHECKING:
+    from puck_tables.table.check import CheckReport
 
 FAILED = 3
 
@@ -13,27 +17,43 @@ FAILED = 3
 @click.command()
 @click.argument("file", type=FILE, required=False)
 def validate(file: Path | None) -> None:
-    """Judge a table by direct quadrature, closed forms, known entries and exact identities.
+    """Judge a table by independent routes.
 
-    Without FILE: the default table.  Ends with code 3 if anything is out of the table's own
+    Resultants: direct quadrature, closed forms, known entries, exact identities.  Stops: the
+    integrator, the equations they satisfy with friction by quadrature, elementary solutions.
+
+    Without FILE: the tables that come along.  Ends with code 3 if anything is out of a table's own
     tolerance.
     """
-    table = open_table(file)
-    from puck_tables.table.check import validate as judge
+    from puck_tables.similarity.check import validate_stops
+    from puck_tables.table.check import validate as validate_resultants
+    from puck_tables.table.table import Table
 
-    with progress("validating") as show:
-        report = judge(table, show)
-    click.echo(f"{report.source}: tolerance {report.tolerance:g}")
-    click.echo(
+    passed = True
+    for table in tables_named(file):
+        with progress("validating") as show:
+            report = (
+                validate_resultants(table, show)
+                if isinstance(table, Table)
+                else validate_stops(table, show)
+            )
+        click.echo(_lines(report))
+        passed = passed and report.passed
+    if not passed:
+        click.echo("Error: the table is out of its own tolerance", err=True)
+        raise SystemExit(FAILED)
+
+
+def _lines(report: CheckReport) -> str:
+    text = [
+        f"{report.source}: tolerance {report.tolerance:g}",
         f"{'check':<36}{'function':<15}{'points':>7}{'largest':>10}{'allowed':>10}  result"
-        "   at phi, delta"
-    )
+        "   at phi, delta",
+    ]
     for check in report.checks:
-        click.echo(
+        text.append(
             f"{check.name:<36}{check.function:<15}{check.points:>7}{check.deviation:>10.1e}"
             f"{check.allowed:>10.1e}  {'pass' if check.passed else 'FAIL'}"
             f"     {check.at_phi:.6g}, {check.at_delta:.6g}"
         )
-    if not report.passed:
-        click.echo("Error: the table is out of its own tolerance", err=True)
-        raise SystemExit(FAILED)
+    return "\n".join(text)

@@ -27,6 +27,10 @@ if TYPE_CHECKING:
     from puck_tables.plots import plot_map, plot_trajectory
     from puck_tables.puck import similarity_parameters
     from puck_tables.result_file import save_map, save_trajectory
+    from puck_tables.similarity.build import build_stop_table
+    from puck_tables.similarity.check import validate_stops
+    from puck_tables.similarity.file import load_stop_table, save_stop_table
+    from puck_tables.similarity.stop_table import StopTable
     from puck_tables.stop_map import StopMap, sweep
     from puck_tables.stops import Stops, stop
     from puck_tables.table.build import build_table
@@ -53,6 +57,11 @@ _HOMES = {
     "simulate": "trajectory",
     "Stops": "stops",
     "stop": "stops",
+    "build_stop_table": "similarity.build",
+    "validate_stops": "similarity.check",
+    "load_stop_table": "similarity.file",
+    "save_stop_table": "similarity.file",
+    "StopTable": "similarity.stop_table",
     "StopMap": "stop_map",
     "sweep": "stop_map",
     "build_table": "table.build",
@@ -67,22 +76,26 @@ __all__ = [
     "CheckReport",
     "Resultants",
     "StopMap",
+    "StopTable",
     "Stops",
     "Table",
     "Trajectory",
     "__version__",
     "approach_exponent",
+    "build_stop_table",
     "build_table",
     "curvature_slope",
     "is_full_contact",
     "limit_angle",
     "limit_ratio",
+    "load_stop_table",
     "load_table",
     "plot_map",
     "plot_trajectory",
     "regime",
     "resultants",
     "save_map",
+    "save_stop_table",
     "save_table",
     "save_trajectory",
     "similarity_parameters",
@@ -90,6 +103,7 @@ __all__ = [
     "stop",
     "sweep",
     "validate",
+    "validate_stops",
 ]
 
 

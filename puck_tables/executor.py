@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+import signal
+import threading
+from collections.abc import Callable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from contextlib import contextmanager
 
 Progress = Callable[[int, int], None]
 
@@ -40,6 +43,18 @@ def run_chunks(
     [(0, 2), (2, 4), (4, 5)]
     """
     count = usable_cores() if threads is None else threads
+    with _interrupt_noted() as check:
+        _run(work, items, chunk, count, progress, check)
+
+
+def _run(
+    work: Callable[[int, int], None],
+    items: int,
+    chunk: int,
+    count: int,
+    progress: Progress | None,
+    check: Callable[[], None],
+) -> None:
     pool = ThreadPoolExecutor(max_workers=count)
     waiting: set[Future[None]] = set()
     sizes: dict[Future[None], int] = {}
@@ -53,6 +68,7 @@ def run_chunks(
             if len(waiting) < 2 * count and stop < items:
                 continue
             while len(waiting) >= 2 * count or (stop == items and waiting):
+                check()
                 finished, waiting = wait(waiting, return_when=FIRST_COMPLETED)
                 for one in finished:
                     one.result()
@@ -61,6 +77,34 @@ def run_chunks(
                     progress(done_items, items)
     finally:
         pool.shutdown(wait=True, cancel_futures=True)
+
+
+@contextmanager
+def _interrupt_noted() -> Iterator[Callable[[], None]]:
+    """Ctrl-C is noted, and raised between chunks.
+
+    Raised at once it could strike where Python swallows it, such as in a weak reference's callback
+    inside the thread pool, and the work would go on.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield lambda: None
+        return
+    noted = False
+
+    def note(number: int, frame: object) -> None:
+        nonlocal noted
+        noted = True
+
+    def check() -> None:
+        if noted:
+            raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGINT, note)
+    try:
+        yield check
+    finally:
+        signal.signal(signal.SIGINT, before)
+    check()
 
 
 def usable_cores() -> int:

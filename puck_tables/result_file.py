@@ -152,8 +152,7 @@ def save_map(stops: StopMap, path: str | Path, overwrite: bool = False) -> None:
     else:
         attributes = {
             "title": "Stops of sliding, spinning pucks", **stops.fixed,
-            "accuracy": stops.accuracy, "table": stops.table,
-            "method": "Runge-Kutta 4",
+            "accuracy": stops.accuracy, "method": stops.method, "table": stops.table,
         }  # fmt: skip
         columns = {name: getattr(stops, name) for name in MAP_COLUMNS}
         content = _hdf5(stops.axes, columns, {**MAP_AXES, **MAP_COLUMNS}, attributes)

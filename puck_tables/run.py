@@ -31,7 +31,7 @@ from puck_tables.motion.equations import (
 from puck_tables.motion.limits import LIMIT_WIDTH, log_ratio
 from puck_tables.motion.path import STOPPED, TURN_SHARE, integrate, states_at
 from puck_tables.motion.steppers import DORMAND_PRINCE, RK4, Tableau
-from puck_tables.stops import FEWEST_STEPS, RK4_CONSTANT
+from puck_tables.solvers import FEWEST_STEPS, RK4_CONSTANT
 from puck_tables.table.check import by_closed_form
 from puck_tables.table.table import Table
 

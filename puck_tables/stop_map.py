@@ -14,8 +14,9 @@ from puck_tables.errors import InputError
 from puck_tables.executor import run_chunks
 from puck_tables.puck import positive, velocity_array
 from puck_tables.real import finite_array
-from puck_tables.stops import DEFAULT_ACCURACY, OUTPUTS, steps_for, stops_of
-from puck_tables.table.file import load_table
+from puck_tables.similarity.stop_table import StopTable
+from puck_tables.solvers import OUTPUTS, solver_for
+from puck_tables.stops import DEFAULT_ACCURACY
 from puck_tables.table.table import Table
 
 FloatArray = npt.NDArray[np.float64]
@@ -38,13 +39,15 @@ class StopMap:
     ``radius`` (m), ``decel`` (m/s²) and, if given instead of a speed, ``v0_x``, ``v0_y`` (m/s).
 
     Arrays: ``stop_time`` s, ``stop_x``, ``stop_y`` m from the launch, ``path_length`` m,
-    ``turn_angle`` rad (until Q has fallen to 1/1000; to a hundred times the accuracy),
-    ``body_angle`` rad, ``status`` (0: stopped).
+    ``turn_angle`` rad (until Q has fallen to 1/1000; integrated, to a hundred times the accuracy),
+    ``body_angle`` rad, ``status`` (0: stopped).  ``method`` says how ('look-up', 'integrated'), and
+    ``table`` with which table.
     """
 
     axes: dict[str, FloatArray]
     fixed: dict[str, float]
     accuracy: float
+    method: str
     table: str
     stop_time: FloatArray = field(repr=False)
     stop_x: FloatArray = field(repr=False)
@@ -64,7 +67,7 @@ def sweep(
     decel: float = 1.0,
     radius: float = 1.0,
     accuracy: float = DEFAULT_ACCURACY,
-    table: Table | None = None,
+    table: Table | StopTable | None = None,
     threads: int | None = None,
     chunk: int = CHUNK,
     progress: Progress | None = None,
@@ -81,7 +84,8 @@ def sweep(
     decel, radius : J = fg in m/s² and m, > 0
     accuracy : float
         Largest error in units of Q/J (time) and Q²/J (place).
-    table : Table, optional
+    table : StopTable or Table, optional
+        As in :func:`puck_tables.stop`.
     threads, chunk : int
         How the work is cut; the numbers do not depend on it, to the last bit.
     progress : callable (done, total), optional
@@ -107,8 +111,7 @@ def sweep(
     for name, count in (("chunk", chunk), ("threads", 1 if threads is None else threads)):
         if not isinstance(count, int) or count < 1:
             raise InputError(f"{name} must be a whole number from 1 on, got {count!r}")
-    chosen = load_table() if table is None else table
-    steps = steps_for(accuracy, chosen)
+    solver = solver_for(accuracy, table)
     if v0 is not None and speed is not None:
         raise InputError("v0 and speed both give the velocity: give one of them")
     if w0 is None and speed is None and v0 is None:
@@ -133,7 +136,7 @@ def sweep(
             raise InputError(f"{name} must be a number or a list of numbers")
     if "speed" in values and not np.all(values["speed"] >= 0.0):
         raise InputError(f"speed must not be negative, got {values['speed'].min():g} m/s")
-    chosen.checked_range(values["delta"])
+    solver.table.checked_range(values["delta"])
     axes = {name: array for name, array in values.items() if array.ndim == 1}
     fixed.update({name: float(array) for name, array in values.items() if array.ndim == 0})
     shape = tuple(array.size for array in axes.values())
@@ -152,8 +155,8 @@ def sweep(
         launches = np.stack([
             along * direction[0], along * direction[1], launch["w0"], launch["delta"],
             np.full(stop - start, decel), np.full(stop - start, radius),
-        ], axis=-1)  # fmt: skip
-        out[:, start:stop], status[start:stop] = stops_of(launches, steps, chosen)
+        ])  # fmt: skip
+        out[:, start:stop], status[start:stop] = solver.all(launches)
 
     run_chunks(work, size, chunk, threads, progress)
     results = {name: row.reshape(shape) for name, row in zip(OUTPUTS, out, strict=True)}
@@ -161,7 +164,8 @@ def sweep(
         axes=axes,
         fixed=fixed,
         accuracy=accuracy,
-        table=chosen.source,
+        method=solver.method,
+        table=solver.table.source,
         status=status.reshape(shape),
         **results,
     )

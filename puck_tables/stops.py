@@ -2,69 +2,70 @@
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.errors import AccuracyError, InputError
-from puck_tables.puck import real, velocity_array
+from puck_tables.errors import InputError
+from puck_tables.puck import velocity_array
 from puck_tables.real import broadcast, finite_array
-from puck_tables.table.file import load_table
+from puck_tables.similarity.stop_table import StopTable
+from puck_tables.solvers import Integration, LookUp, solver_for
 from puck_tables.table.table import Table
 
 FloatArray = npt.NDArray[np.float64]
 
 DEFAULT_ACCURACY = 1e-8
 
-# The error of RK4 with N steps is at most 0.29 N⁻⁴ in units of Q/J and Q²/J: that of Simpson's rule
-# for the place in pure sliding, where all else is smaller.  With a margin:
-RK4_CONSTANT = 0.36
-FEWEST_STEPS = 8
 
-OUTPUTS = ("stop_time", "stop_x", "stop_y", "path_length", "turn_angle", "body_angle")
-
-
-@dataclass(frozen=True)
 class Stops:
     """Stops of launches of shape (…).
 
-    ``stop_time`` (…) s, ``stop_position`` (…, 2) m from the launch, ``path_length`` (…) m,
-    ``turn_angle`` (…) rad the heading has turned when Q has fallen to 1/1000 (for δ > 0 it turns
-    on without end; good to a hundred times the accuracy asked), ``body_angle`` (…) rad, ``status``
-    (…) int8, 0 where all is well.
+    ``stop_time`` (…) s, ``stop_position`` (…, 2) m from the launch, ``status`` (…) int8, 0 where
+    all is well, ``method`` ('look-up' or 'integrated').  Computed when first asked for:
+    ``path_length`` (…) m, ``body_angle`` (…) rad, ``turn_angle`` (…) rad: how far the heading has
+    turned when Q has fallen to 1/1000 (for δ > 0 it turns on without end).
     """
 
-    stop_time: FloatArray
-    stop_position: FloatArray
-    path_length: FloatArray
-    turn_angle: FloatArray
-    body_angle: FloatArray
-    status: npt.NDArray[np.int8]
+    def __init__(
+        self, solver: LookUp | Integration, launches: FloatArray, shape: tuple[int, ...]
+    ) -> None:
+        self._values, status = solver.first(launches)
+        self._solver, self._launches, self._shape = solver, launches, shape
+        self.method = solver.method
+        self.stop_time: FloatArray = self._values[0].reshape(shape)
+        self.stop_position: FloatArray = np.stack([self._row(1), self._row(2)], axis=-1)
+        self.status: npt.NDArray[np.int8] = status.reshape(shape)
 
+    def __repr__(self) -> str:
+        return f"Stops({self._shape}, {self.method})"
 
-def steps_for(accuracy: float, table: Table) -> float:
-    """How many RK4 steps reach an accuracy (in units of Q/J and Q²/J) with a table.
+    @cached_property
+    def _all(self) -> FloatArray:
+        if len(self._values) > 3:
+            return self._values
+        return self._solver.all(self._launches)[0]
 
-    Raises
-    ------
-    AccuracyError
-        If it is out of reach.
+    def _row(self, index: int) -> FloatArray:
+        values = self._values if index < 3 else self._all
+        row: FloatArray = values[index].reshape(self._shape)
+        return row
 
-    Examples
-    --------
-    >>> steps_for(1e-7, load_table())
-    44.0
-    """
-    accuracy = real("accuracy", accuracy, "dimensionless")
-    finest = 5.0 * table.tolerance
-    if not finest <= accuracy <= 0.01:
-        raise AccuracyError(
-            f"accuracy must be from {finest:.1g} (five times the table's own error) to 0.01, "
-            f"got {accuracy:g}"
-        )
-    return float(max(FEWEST_STEPS, math.ceil((RK4_CONSTANT / accuracy) ** 0.25)))
+    @property
+    def path_length(self) -> FloatArray:
+        """Metres."""
+        return self._row(3)
+
+    @property
+    def turn_angle(self) -> FloatArray:
+        """Radians; integrated, good to a hundred times the accuracy only."""
+        return self._row(4)
+
+    @property
+    def body_angle(self) -> FloatArray:
+        """Radians."""
+        return self._row(5)
 
 
 def stop(
@@ -75,7 +76,7 @@ def stop(
     decel: npt.ArrayLike = 1.0,
     radius: npt.ArrayLike = 1.0,
     accuracy: float = DEFAULT_ACCURACY,
-    table: Table | None = None,
+    table: Table | StopTable | None = None,
 ) -> Stops:
     """Where and when pucks stop; everything broadcasts.
 
@@ -88,8 +89,9 @@ def stop(
     radius : array_like (…), m, > 0
     accuracy : float
         Largest error in units of Q/J (time) and Q²/J (place), Q = hypot(v, rω).
-    table : Table, optional
-        The default table if left out.
+    table : StopTable or Table, optional
+        A stop table: looked up.  A table of resultants: integrated.  Left out: the default stop
+        table.
 
     Returns
     -------
@@ -109,32 +111,21 @@ def stop(
     Examples
     --------
     >>> result = stop((1.0, 0.0), [1.0, 5.0], delta=1.0)
-    >>> result.stop_time.round(6).tolist()
-    [1.395088, 4.000189]
+    >>> result.stop_time.round(6).tolist(), result.method
+    ([1.395088, 4.000189], 'look-up')
     """
-    chosen = load_table() if table is None else table
-    steps = steps_for(accuracy, chosen)
+    solver = solver_for(accuracy, table)
     velocity = velocity_array(v0)
     columns = broadcast(
         vx=velocity[..., 0],
         vy=velocity[..., 1],
         w0=finite_array("w0", w0, "rad/s"),
-        delta=chosen.checked_range(delta),
+        delta=solver.table.checked_range(delta),
         decel=positive_array("decel", decel, "m/s^2"),
         radius=positive_array("radius", radius, "m"),
     )
     shape = columns[0].shape
-    launches = np.stack([column.ravel() for column in columns], axis=-1)
-    out, status = stops_of(launches, steps, chosen)
-    rows = [row.reshape(shape) for row in out]
-    return Stops(
-        stop_time=rows[0],
-        stop_position=np.stack(rows[1:3], axis=-1),
-        path_length=rows[3],
-        turn_angle=rows[4],
-        body_angle=rows[5],
-        status=status.reshape(shape),
-    )
+    return Stops(solver, np.stack([column.ravel() for column in columns]), shape)
 
 
 def positive_array(name: str, values: npt.ArrayLike, unit: str) -> FloatArray:
@@ -151,23 +142,3 @@ def positive_array(name: str, values: npt.ArrayLike, unit: str) -> FloatArray:
             f"{name} must be greater than 0 {unit}, got {array[array <= 0.0].flat[0]:g}"
         )
     return array
-
-
-def stops_of(
-    launches: FloatArray, steps: float, table: Table
-) -> tuple[FloatArray, npt.NDArray[np.int8]]:
-    """Stops of checked launches (n, 6): vx, vy, ω, δ, J, r → (6, n) values and (n,) status.
-
-    Examples
-    --------
-    >>> values, status = stops_of(np.array([[1.0, 0, 0, 0.5, 1.0, 1.0]]), 16.0, load_table())
-    >>> values[:, 0].round(12).tolist(), int(status[0])
-    ([1.0, 0.5, 0.0, 0.5, 0.0, 0.0], 0)
-    """
-    from puck_tables.motion.bulk import fill_stops
-    from puck_tables.motion.steppers import RK4
-
-    out = np.empty((len(OUTPUTS), len(launches)))
-    status = np.empty(len(launches), np.int8)
-    fill_stops(launches, RK4, steps, table.coefficients, table.delta_axis.upper, out, status)
-    return out, status

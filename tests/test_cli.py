@@ -318,10 +318,11 @@ def _seconds(argument: str) -> float:
 
 def test_interrupted_sweep_writes_nothing(folder: Path):
     process = subprocess.Popen(
-        [*PUCK, "sweep", "--speed", "0:2:3000", "--w0", "0:5:3000", "-o", "map.h5"],
+        [*PUCK, "sweep", "--speed", "0:2:5000", "--w0", "0:5:5000", "--threads", "1",
+         "-o", "map.h5"],
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment(),
     )  # fmt: skip
-    time.sleep(4.0)
+    time.sleep(3.0)
     process.send_signal(signal.SIGINT)
     out, err = process.communicate(timeout=60)
     assert process.returncode == 130, err

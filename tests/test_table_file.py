@@ -14,7 +14,7 @@ import xarray
 
 from puck_tables import Table, build_table, load_table, save_table
 from puck_tables.errors import OutputError, TableError
-from puck_tables.table.file import sealed
+from puck_tables.table.container import sealed
 
 
 @pytest.fixture(scope="module")

@@ -16,8 +16,7 @@ from puck_tables.motion.steppers import Tableau
 
 FloatArray = npt.NDArray[np.float64]
 
-STATUS_MEANINGS = ("stopped", "step_limit", "overflow")
-OVERFLOW = 2
+OVERFLOW = 2  # index of solvers.STATUS_MEANINGS
 
 _STEP_LIMIT = 100_000
 
@@ -32,7 +31,7 @@ def fill_stops(
     out: FloatArray,
     status: npt.NDArray[np.int8],
 ) -> None:
-    """Stops of launches (n, 6): vx, vy, ω, δ, J, r, into ``out`` (6, n), see stops.OUTPUTS.
+    """Stops of launches (6, n): vx, vy, ω, δ, J, r, into ``out`` (6, n), see solvers.OUTPUTS.
 
     One launch never influences another, so any cutting into chunks gives the same bits.
     """
@@ -42,9 +41,9 @@ def fill_stops(
     closed_forms = np.empty(0)  # an empty cut
     start = np.empty(SIZE)
     result = np.empty(SIZE + 1)
-    for n in range(launches.shape[0]):
-        vx, vy, spin = launches[n, 0], launches[n, 1], launches[n, 2]
-        delta, decel, radius = launches[n, 3], launches[n, 4], launches[n, 5]
+    for n in range(launches.shape[1]):
+        vx, vy, spin = launches[0, n], launches[1, n], launches[2, n]
+        delta, decel, radius = launches[3, n], launches[4, n], launches[5, n]
         speed, rim = math.hypot(vx, vy), radius * abs(spin)
         q0 = math.hypot(speed, rim)
         status[n] = STOPPED

@@ -1,0 +1,1 @@
+"""The motion's symmetry at work: stops and states by look-up, nothing integrated."""

@@ -1,0 +1,109 @@
+"""Axes of the stop table: graded in the slip ratio, polynomial in the height.
+
+Slip axis.  On either side of φ = π/4 let k = min(v, r|ω|)/max(v, r|ω|) and 2k/(1 + k) = q⁴.  The
+nodes are uniform in ξ ∈ [0, 1] with
+
+    q = ξ (2 − ξ),   so   k ∝ ξ⁴ at φ = 0 and π/2,   1 − k ∝ (1 − ξ)² at π/4.
+
+What is tabulated carries k^(8/(4 + δ²)) and k² ln k at φ = 0, a power between 2 and 4 at π/2, and
+x³ ln|x| at π/4; in ξ all of it is smooth enough for a cubic spline with zero end slopes to keep
+order 4.  No angle is needed to find the place of a launch: square roots are enough.
+
+Height axis.  Everything tabulated is analytic in δ², for 0 ≤ δ ≤ 1, and held at nine Chebyshev
+points of δ².  For the stop itself a polynomial of degree 6 in δ² is enough (4e-12); the curve takes
+degree 8.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from numpy.polynomial import chebyshev
+
+from puck_tables.errors import InputError
+
+FloatArray = npt.NDArray[np.float64]
+
+HEIGHTS = 9
+MAX_CELLS = 1 << 16
+
+
+@dataclass(frozen=True)
+class SlipAxis:
+    """The nodes of slip, from pure sliding (φ = 0) over φ = π/4 to pure spin (φ = π/2).
+
+    Parameters
+    ----------
+    cells : int
+        Cells on either side of π/4, at least 8; the axis has ``2 cells + 1`` nodes.
+
+    Examples
+    --------
+    >>> SlipAxis(8).phi().round(4).tolist()[:5]
+    [0.0, 0.0015, 0.0187, 0.0739, 0.1858]
+    """
+
+    cells: int
+
+    def __post_init__(self) -> None:
+        if not 8 <= self.cells <= MAX_CELLS:
+            raise InputError(f"cells must be from 8 to {MAX_CELLS}, got {self.cells}")
+
+    @property
+    def size(self) -> int:
+        """Number of nodes."""
+        return 2 * self.cells + 1
+
+    def ratio(self) -> FloatArray:
+        """K at the nodes of one side, from 0 to 1 (φ = π/4)."""
+        return ratio_at(np.arange(self.cells + 1) / self.cells)
+
+    def phi(self) -> FloatArray:
+        """φ at all nodes, radians, ascending from 0 to π/2."""
+        slow = np.arctan(self.ratio())
+        return np.concatenate([slow, 0.5 * np.pi - slow[-2::-1]])
+
+
+def ratio_at(xi: FloatArray) -> FloatArray:
+    """The slip ratio k at ξ.
+
+    Examples
+    --------
+    >>> ratio_at(np.array([0.0, 0.5, 1.0])).round(6).tolist()
+    [0.0, 0.187935, 1.0]
+    """
+    q4 = (xi * (2.0 - xi)) ** 4
+    return q4 / (2.0 - q4)
+
+
+def heights() -> FloatArray:
+    """The heights δ at which the stop table holds values: Chebyshev points of δ² on [0, 1].
+
+    Examples
+    --------
+    >>> heights().round(4).tolist()
+    [0.0872, 0.2588, 0.4226, 0.5736, 0.7071, 0.8192, 0.9063, 0.9659, 0.9962]
+    """
+    return np.sin(0.25 * np.pi * (2.0 * np.arange(HEIGHTS) + 1.0) / HEIGHTS)
+
+
+def height_polynomials(values: FloatArray, count: int = HEIGHTS) -> FloatArray:
+    """Coefficients in powers of 2δ² − 1 from values at :func:`heights`, along axis 0.
+
+    Of the interpolating Chebyshev series the first ``count`` terms are kept, nearly the best
+    polynomial of that degree.
+
+    Examples
+    --------
+    >>> height_polynomials(heights() ** 2, 2).round(12).tolist()
+    [0.5, 0.5]
+    """
+    series = chebyshev.chebfit(
+        2.0 * heights() ** 2 - 1.0, values.reshape(HEIGHTS, -1), HEIGHTS - 1
+    )[:count]
+    powers = np.zeros((count, count))
+    for n in range(count):
+        powers[: n + 1, n] = chebyshev.cheb2poly(np.eye(count)[n, : n + 1])
+    return (powers @ series).reshape(count, *values.shape[1:])

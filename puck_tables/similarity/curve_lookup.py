@@ -1,0 +1,372 @@
+"""States by look-up, compiled: along the universal curve and back.
+
+The signed number
+
+    N = sign(c − c₀) exp(κ (ln Q + ln T)) / (its modulus at φ = π/4)
+
+(ln Q of :mod:`puck_tables.similarity.curve`) falls along every motion like the κ-th power of the
+time that is left, N ∝ (t₀ − t)^κ, and is one and the same monotonic function of c for both generic
+classes: negative below the limit ratio, −1 at π/4, positive above.  Its inverse is tabulated, so a
+state at a time is found without solving anything.  Without ln T the same holds for Q itself.
+
+The inverse is tabulated on the axis ξ of the table, but for
+
+    y = (−N)^(−A/κ)  for N ≤ −1 (v > r|ω|),    y = (2 + N)^(−B/κ)  above,
+
+which is 1 at π/4 and proportional to 2w = 2 min(v, r|ω|)/(v + r|ω|) at the ends; what is splined is
+2w/y.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.kernels.spline import basis
+from puck_tables.similarity.axes import HEIGHTS
+from puck_tables.similarity.lookup import CURVE_ROW, STOP_POWERS, slip_place
+
+FloatArray = npt.NDArray[np.float64]
+
+CONSTANTS = 4  # c₀, κ, h₀/δ, ln T(π/4): polynomials in 2δ² − 1
+
+# order of the functions of the curve
+BODY_SUM, TURN_SUM, LENGTH_SUM, CURVE_SUM = range(4)
+
+_BLOCK = 64
+_SMALLEST_SHARE = 1e-300  # of the slower motion; less is a limit reached long before
+
+# rows of what is known of a launch
+TIME, STOP_X, STOP_Y, LENGTH, BODY, TURN = range(6)
+SLIP, SPEED0, T_LAUNCH, LOG_N, SIGN_N, HEADING, KAPPA, TURNING = range(6, 14)
+LAUNCH_ROWS = 14
+# rows of a state
+X, Y, PSI, THETA, SPEED, SPIN = range(6)
+STATE_ROWS = 6
+
+
+@inlined
+def _cell(xi: float, cells: int) -> tuple[int, float, float, float, float]:
+    p = xi * cells
+    i = min(int(p), cells - 1)
+    w0, w1, w2, w3 = basis(p - i)
+    return i, w0, w1, w2, w3
+
+
+@inlined
+def _place(double_share: float) -> float:
+    """ξ from 2w."""
+    q = math.sqrt(math.sqrt(double_share))
+    return 1.0 - math.sqrt((1.0 - double_share) / ((1.0 + q) * (1.0 + q * q)))
+
+
+@inlined
+def _polynomial(c: FloatArray, function: int, s: float) -> float:
+    """The polynomial of degree 8 that starts at 9 · function."""
+    total = 0.0
+    for m in range(HEIGHTS - 1, -1, -1):
+        total = total * s + c[function * HEIGHTS + m]
+    return total
+
+
+@inlined
+def _stop_functions(
+    c: FloatArray, side: int, xi: float, s: float, sums: FloatArray
+) -> tuple[float, float, float]:
+    """T, along, across."""
+    i, w0, w1, w2, w3 = _cell(xi, c.shape[1] - 3)
+    for m in range(3 * STOP_POWERS):
+        sums[m] = w0 * c[side, i, m] + w1 * c[side, i + 1, m]
+        sums[m] += w2 * c[side, i + 2, m] + w3 * c[side, i + 3, m]
+    f, g, h = 0.0, 0.0, 0.0
+    for m in range(STOP_POWERS - 1, -1, -1):
+        f = f * s + sums[3 * m]
+        g = g * s + sums[3 * m + 1]
+        h = h * s + sums[3 * m + 2]
+    return f, g, h
+
+
+@inlined
+def _curve_sums(c: FloatArray, side: int, xi: float, sums: FloatArray, functions: int) -> None:
+    """Polynomials of the first functions of: body, S/δ, length, κR."""
+    i, w0, w1, w2, w3 = _cell(xi, c.shape[1] - 3)
+    for m in range(functions * HEIGHTS):
+        sums[m] = w0 * c[side, i, m] + w1 * c[side, i + 1, m]
+        sums[m] += w2 * c[side, i + 2, m] + w3 * c[side, i + 3, m]
+
+
+@inlined
+def _end_rates(delta: float) -> tuple[float, float, float]:
+    """A, B and h₁, in elementary form."""
+    d2 = delta * delta
+    return 0.5 + 0.125 * d2, (9.0 + 4.0 * d2) / (36.0 + 4.0 * d2), 9.0 * delta / (36.0 + 4.0 * d2)
+
+
+@inlined
+def _logs(side: int, double_share: float) -> tuple[float, float]:
+    """ln(1 + c) and ln(1 − c) from 2w."""
+    small, large = math.log(double_share), math.log1p(1.0 - double_share)
+    return (large, small) if side == 1 else (small, large)
+
+
+@inlined
+def _log_n(side: int, double_share: float, c0: float, kappa: float, delta: float,
+           curve: float, log_time: float) -> float:  # fmt: skip
+    """ln|N|, or with log_time = 0 the same of Q alone."""
+    slow, fast, _ = _end_rates(delta)
+    log_plus, log_minus = _logs(side, double_share)
+    c = 1.0 - double_share if side == 1 else double_share - 1.0
+    return (
+        math.log(abs((c - c0) / c0))
+        - kappa * (log_plus / slow + log_minus / fast - log_time)
+        + curve
+    )
+
+
+@inlined
+def _log_y(side: int, sign: float, log_n: float, kappa: float, delta: float) -> float:
+    """Ln y of a number N = sign·exp(log_n) that lies on this side."""
+    slow, fast, _ = _end_rates(delta)
+    if side == 0:
+        return -(slow / kappa) * log_n
+    if sign > 0.0 and log_n > 1.0:
+        return -(fast / kappa) * (log_n + math.log1p(2.0 * math.exp(-log_n)))
+    return -(fast / kappa) * math.log1p(1.0 + sign * math.exp(log_n))
+
+
+@inlined
+def _inverse_place(
+    sign: float, log_n: float, kappa: float, delta: float
+) -> tuple[int, float, float]:
+    """Side, ξ and y of the number sign·exp(log_n)."""
+    side = 0 if sign < 0.0 and log_n >= 0.0 else 1
+    log_y = _log_y(side, sign, log_n, kappa, delta)
+    if log_y < -0.5:
+        y = math.exp(log_y)
+        rest = 1.0 - y
+    else:
+        rest = -math.expm1(log_y)
+        y = 1.0 - rest
+    q = math.sqrt(math.sqrt(y))
+    return side, 1.0 - math.sqrt(rest / ((1.0 + q) * (1.0 + q * q))), y
+
+
+@inlined
+def _inverse_sum(c: FloatArray, side: int, xi: float, s: float) -> float:
+    """2w/y."""
+    i, w0, w1, w2, w3 = _cell(xi, c.shape[1] - 3)
+    total = 0.0
+    for m in range(HEIGHTS - 1, -1, -1):
+        value = w0 * c[side, i, m] + w1 * c[side, i + 1, m]
+        value += w2 * c[side, i + 2, m] + w3 * c[side, i + 3, m]
+        total = total * s + value
+    return total
+
+
+@kernel
+def fill_inverse(
+    stops: FloatArray, curve: FloatArray, constants: FloatArray, with_time: bool,
+    deltas: FloatArray, out: FloatArray,
+) -> None:  # fmt: skip
+    """2w/y at the nodes of ξ (both sides) and δ into ``out`` (2, cells + 1, heights).
+
+    By bisection on the splines, so that forward and back agree.
+    """
+    cells = stops.shape[1] - 3
+    sums = np.empty(CURVE_ROW)
+    for side in range(2):
+        for j in range(deltas.size):
+            delta = deltas[j]
+            s = 2.0 * delta * delta - 1.0
+            c0, kappa = _polynomial(constants, 0, s), _polynomial(constants, 1, s)
+            quarter = _polynomial(constants, 3, s)
+            for i in range(cells + 1):
+                xi = max(i / cells, 1e-6)  # at the end a limit, reached long before
+                q = xi * (2.0 - xi)
+                target = 4.0 * math.log(q)
+                low, high = 0.0, 1.0
+                while True:
+                    middle = 0.5 * (low + high)
+                    if middle <= low or middle >= high or i == cells:
+                        break
+                    q = middle * (2.0 - middle)
+                    double_share = q * q * q * q
+                    _curve_sums(curve, side, middle, sums, 4)
+                    r = _polynomial(sums, CURVE_SUM, s)
+                    log_time = 0.0
+                    if with_time:
+                        t, _, _ = _stop_functions(stops, side, middle, s, sums)
+                        log_time = math.log(t) - quarter
+                    log_n = _log_n(side, double_share, c0, kappa, delta, r, log_time)
+                    sign = 1.0 if side == 1 and 1.0 - double_share > c0 else -1.0
+                    if _log_y(side, sign, log_n, kappa, delta) < target:
+                        low = middle
+                    else:
+                        high = middle
+                q = middle * (2.0 - middle)
+                out[side, i, j] = 1.0 if i == cells else math.exp(4.0 * math.log(q) - target)
+
+
+@inlined
+def _heading(side: int, double_share: float, delta: float, turning: float, part: float) -> float:
+    """The heading without its part h₀ ln Q."""
+    slow, fast, spin_turn = _end_rates(delta)
+    log_plus, log_minus = _logs(side, double_share)
+    return turning / slow * log_plus + (turning - spin_turn) / fast * log_minus + delta * part
+
+
+@kernel
+def fill_launches(
+    launches: FloatArray, stops: FloatArray, curve: FloatArray, turn_inverse: FloatArray,
+    constants: FloatArray, turn_share: float, out: FloatArray,
+) -> None:  # fmt: skip
+    """All that is known of launches (6, n): vx, vy, ω, δ, J, r, into ``out`` (14, n).
+
+    Stop time, x, y; path length, body angle, turn of the heading until Q has fallen to
+    ``turn_share``; Q, T; ln|N|, its sign, the heading's regular part; v.
+    """
+    sums = np.empty(CURVE_ROW)
+    for n in range(launches.shape[1]):
+        vx, vy, delta = launches[0, n], launches[1, n], launches[3, n]
+        decel, radius = launches[4, n], launches[5, n]
+        edge = radius * launches[2, n]
+        speed, rim = math.hypot(vx, vy), abs(edge)
+        slip = math.hypot(speed, rim)
+        s = 2.0 * delta * delta - 1.0
+        side, xi = slip_place(speed, rim)
+        t, along, across = _stop_functions(stops, side, xi, s, sums)
+        _curve_sums(curve, side, xi, sums, 4)
+        body, length = _polynomial(sums, BODY_SUM, s), _polynomial(sums, LENGTH_SUM, s)
+        r, part = _polynomial(sums, CURVE_SUM, s), _polynomial(sums, TURN_SUM, s)
+        if rim == 0.0:
+            t, along, length = 1.0, 0.5, 0.5
+        elif speed == 0.0:
+            t, body = 0.75, 0.375
+        scale = slip / decel
+        out[TIME, n] = scale * t
+        across *= delta * edge / decel
+        along *= scale
+        out[STOP_X, n] = along * vx - across * vy
+        out[STOP_Y, n] = along * vy + across * vx
+        out[LENGTH, n] = scale * length * speed
+        out[BODY, n] = scale * body * launches[2, n]
+        out[SLIP, n], out[T_LAUNCH, n], out[SPEED0, n] = slip, t, speed
+        out[TURN, n] = out[SIGN_N, n] = 0.0
+        if speed == 0.0 or rim == 0.0:
+            continue
+        c0, kappa = _polynomial(constants, 0, s), _polynomial(constants, 1, s)
+        turning = delta * _polynomial(constants, 2, s)
+        quarter = _polynomial(constants, 3, s)
+        double_share = max(2.0 * min(speed, rim) / (speed + rim), _SMALLEST_SHARE)
+        sign = 1.0 if side == 1 and (rim - speed) / (rim + speed) > c0 else -1.0
+        log_n = _log_n(side, double_share, c0, kappa, delta, r, 0.0)
+        heading = _heading(side, double_share, delta, turning, part)
+        out[SIGN_N, n], out[HEADING, n] = sign, heading
+        out[KAPPA, n], out[TURNING, n] = kappa, turning
+        out[LOG_N, n] = log_n + kappa * (math.log(t) - quarter)
+        if delta > 0.0:
+            log_share = math.log(turn_share)
+            end, xi, y = _inverse_place(sign, log_n + kappa * log_share, kappa, delta)
+            share = min(y * _inverse_sum(turn_inverse, end, xi, s), 1.0)
+            _curve_sums(curve, end, _place(share), sums, 2)
+            part = _polynomial(sums, TURN_SUM, s)
+            turn = turning * log_share + _heading(end, share, delta, turning, part) - heading
+            out[TURN, n] = turn if edge > 0.0 else -turn
+
+
+@inlined
+def _fill_state(
+    launch: FloatArray, known: FloatArray, time: float, side: int, double_share: float,
+    left: float, log_left: float, found: FloatArray, out: FloatArray,
+) -> None:  # fmt: skip
+    """One state from what was found at its place; side −1: at rest, the launch, or φ constant."""
+    vx, vy, spin, delta, decel, radius = (
+        launch[0], launch[1], launch[2], launch[3], launch[4], launch[5],
+    )  # fmt: skip
+    x, y, body = known[STOP_X], known[STOP_Y], known[BODY]
+    if side < 0:
+        left = 1.0 - time / known[TIME] if time < known[TIME] else 0.0
+        done = (1.0 - left) * (1.0 + left)
+        out[X], out[Y], out[THETA] = x * done, y * done, body * done
+        out[SPEED], out[SPIN] = left * known[SPEED0], left * spin
+        out[PSI] = known[TURN] if left == 0.0 else 0.0
+        return
+    around = 1.0 if spin > 0.0 else -1.0
+    fall = left * known[T_LAUNCH] / found[0]
+    slip = known[SLIP] * fall
+    small, large = 0.5 * double_share, 1.0 - 0.5 * double_share
+    norm = slip / math.sqrt(small * small + large * large)
+    speed, rim = (small, large) if side == 1 else (large, small)
+    speed, rim = norm * speed, norm * rim
+    heading = 0.0
+    if delta > 0.0:
+        regular = _heading(side, double_share, delta, known[TURNING], found[4])
+        heading = around * (known[TURNING] * math.log(fall) + regular - known[HEADING])
+    cosine, sine = math.cos(heading), math.sin(heading)
+    # the way that is left, along and across the new heading
+    along = found[1] * slip * speed / decel
+    across = around * delta * found[2] * rim * speed / decel
+    east, north = vx / known[SPEED0], vy / known[SPEED0]
+    ahead = along * cosine - across * sine
+    aside = along * sine + across * cosine
+    out[X] = x - (ahead * east - aside * north)
+    out[Y] = y - (ahead * north + aside * east)
+    out[PSI] = heading
+    out[THETA] = body - around * found[3] * slip / decel * rim / radius
+    out[SPEED], out[SPIN] = speed, around * rim / radius
+
+
+@kernel
+def fill_states(
+    launches: FloatArray, known: FloatArray, which: npt.NDArray[np.int64], times: FloatArray,
+    stops: FloatArray, curve: FloatArray, time_inverse: FloatArray, constants: FloatArray,
+    out: FloatArray,
+) -> None:  # fmt: skip
+    """States of launches ``which`` (n,) at ``times`` (n,) ≥ 0 into ``out`` (6, n).
+
+    x, y, heading from that at the launch, body angle, v, ω.  ``known`` comes from
+    :func:`fill_launches`.  At rest the angles are those of the stop.
+    """
+    sums = np.empty(CURVE_ROW)
+    sides = np.empty(_BLOCK, np.int64)
+    xis, ys, shares, logs = np.empty(_BLOCK), np.empty(_BLOCK), np.empty(_BLOCK), np.empty(_BLOCK)
+    found = np.empty((5, _BLOCK))
+    for start in range(0, times.size, _BLOCK):
+        count = min(_BLOCK, times.size - start)
+        for n in range(count):
+            launch = which[start + n]
+            share = times[start + n] / known[TIME, launch]
+            if known[SIGN_N, launch] == 0.0 or not 0.0 < share < 1.0:
+                sides[n] = -1
+                continue
+            kappa = known[KAPPA, launch]
+            logs[n] = math.log1p(-share)
+            shares[n] = 1.0 - share
+            log_n = known[LOG_N, launch] + kappa * logs[n]
+            sides[n], xis[n], ys[n] = _inverse_place(
+                known[SIGN_N, launch], log_n, kappa, launches[3, launch]
+            )
+        for n in range(count):
+            if sides[n] >= 0:
+                delta = launches[3, which[start + n]]
+                s = 2.0 * delta * delta - 1.0
+                ys[n] = min(ys[n] * _inverse_sum(time_inverse, sides[n], xis[n], s), 1.0)
+        for n in range(count):
+            if sides[n] >= 0:
+                delta = launches[3, which[start + n]]
+                s = 2.0 * delta * delta - 1.0
+                xi = _place(ys[n])
+                t, along, across = _stop_functions(stops, sides[n], xi, s, sums)
+                _curve_sums(curve, sides[n], xi, sums, 2)
+                found[0, n], found[1, n], found[2, n] = t, along, across
+                found[3, n] = _polynomial(sums, BODY_SUM, s)
+                found[4, n] = _polynomial(sums, TURN_SUM, s)
+        for n in range(count):
+            launch = which[start + n]
+            _fill_state(
+                launches[:, launch], known[:, launch], times[start + n], sides[n], ys[n],
+                shares[n], logs[n], found[:, n], out[:, start + n],
+            )  # fmt: skip

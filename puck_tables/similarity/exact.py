@@ -1,0 +1,88 @@
+"""Stops integrated one by one with closed forms, to rounding."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables.kernels.compile import kernel
+from puck_tables.motion.equations import LENGTH, SIZE, THETA, T, U, X, Y, at_constant_angle
+from puck_tables.motion.path import STOPPED, integrate
+from puck_tables.motion.steppers import DORMAND_PRINCE, Tableau
+
+FloatArray = npt.NDArray[np.float64]
+
+_LOCAL_TOLERANCE = 2e-14
+_STEP_LIMIT = 100_000
+
+
+@kernel
+def _fill_exact_stops(
+    u: FloatArray, delta: FloatArray, tableau: Tableau, tolerance: float, out: FloatArray
+) -> None:
+    """T, X, Y, path length, body angle of launches at u, δ into ``out`` (n, 5); NaN: no stop."""
+    closed_forms, no_z, no_y = np.empty(0), np.empty(0), np.empty((0, SIZE))
+    start, result = np.zeros(SIZE), np.empty(SIZE + 1)
+    for n in range(u.size):
+        status = STOPPED
+        if math.isinf(u[n]):
+            start[U] = u[n]
+            at_constant_angle(1.0, start, 0.0, closed_forms, delta[n], result)
+        else:
+            status, _ = integrate(
+                u[n], tableau, 0.0, tolerance, closed_forms, delta[n], _STEP_LIMIT,
+                no_z, no_y, result,
+            )  # fmt: skip
+        good = status == STOPPED
+        out[n, 0] = result[T] if good else math.nan
+        out[n, 1], out[n, 2] = result[X], result[Y]
+        out[n, 3], out[n, 4] = result[LENGTH], result[THETA]
+
+
+def exact_stops(u: FloatArray, delta: FloatArray) -> FloatArray:
+    """Stops in natural units by the integrator with closed forms, to rounding.
+
+    Parameters
+    ----------
+    u : array (n,), ln(rω/v), infinite for pure sliding (−) and pure spin (+)
+    delta : array (n,)
+
+    Returns
+    -------
+    array (n, 5)
+        T, X, Y, path length and body angle; error about 1e-15.
+
+    Examples
+    --------
+    >>> exact_stops(np.array([0.0]), np.array([1.0])).round(11).tolist()[0][:3]
+    [0.98647593897, 0.32409372866, -0.04297450852]
+    """
+    out = np.empty((u.size, 5))
+    _fill_exact_stops(u, delta, DORMAND_PRINCE, _LOCAL_TOLERANCE, out)
+    return out
+
+
+def end_values(delta: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """``time``, ``along``, ``across``, ``length``, ``body`` at φ → 0 and φ → π/2, elementary.
+
+    Next to pure sliding v falls like t₀ − t and rω like its power p = ½ − δ²/8; next to pure spin
+    rω falls linearly and the velocity like its complex power ¾(a + ib), a = ρ_∥, b = ρ_⊥ at π/2.
+
+    Returns
+    -------
+    two arrays (n, 5)
+
+    Examples
+    --------
+    >>> end_values(np.array([0.0]))[1].round(6).tolist()
+    [[0.75, 0.428571, -0.061224, 0.428571, 0.375]]
+    """
+    d2 = delta**2
+    half = np.full_like(delta, 0.5)
+    slow = [2.0 * half, half, -1.0 / (12.0 - d2), half, 8.0 / (12.0 - d2)]
+    real, across = 4.0 / 3.0 + 9.0 / (9.0 + d2), 3.0 / (9.0 + d2)  # 4/3 + a, b/δ
+    modulus = real**2 + d2 * across**2
+    fast = [0.75 * (2.0 * half), real / modulus, -across / modulus, 1.0 / real, 0.75 * half]
+    return np.stack(slow, axis=-1), np.stack(fast, axis=-1)

@@ -1,0 +1,230 @@
+"""Table files of stops, beside those of resultants: the same container, another kind.
+
+Axes ``phi`` and ``delta``; functions as in :class:`puck_tables.similarity.stop_table.StopTable`.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from functools import cache
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from puck_tables.errors import OutputError, TableError
+from puck_tables.safe_write import write_bytes
+from puck_tables.similarity.axes import HEIGHTS, SlipAxis, heights
+from puck_tables.similarity.stop_table import FUNCTIONS, UPPER_DELTA, StopAccuracy, StopTable
+from puck_tables.table import file as resultants_file
+from puck_tables.table.container import (
+    Contents,
+    Field,
+    accuracy_of,
+    check_usable,
+    decode,
+    encode,
+    read_content,
+)
+from puck_tables.table.table import Table
+
+KIND = "stops"
+ALGORITHM = "Dormand-Prince with closed forms at 2e-14, curve by Gauss quadrature; 1"
+
+_INTERPRETATION = (
+    "Where and when a uniform cylinder (radius r, height h) launched with speed v and spin omega "
+    "on a rough plane stops, whole base loaded. Q = hypot(v, r omega), "
+    "phi = atan2(r omega, v) >= 0, delta = 2 f h / r, J = f g. "
+    "Stop time = (Q/J) time. Displacement along the launch velocity = "
+    "(Q^2/J) cos(phi) along, to its left = (Q^2/J) delta sin(phi) cos(phi) across. Path length = "
+    "(Q^2/J) cos(phi) length, body angle = (Q^2/(J r)) sin(phi) body. For omega < 0 the mirror "
+    "image. Along a motion, with c = (r omega - v)/(r omega + v) and c0 its limit, ln Q = "
+    "(ln|c - c0| + curve)/kappa - ln(1 + c)/A - ln(1 - c)/B and heading = h0 ln Q "
+    "+ (h0/A) ln(1 + c) + ((h0 - h1)/B) ln(1 - c) + delta turn, up to constants; "
+    "A = 1/2 + delta^2/8, B = (9 + 4 delta^2)/(36 + 4 delta^2), h1 = 9 delta/(36 + 4 delta^2), "
+    "kappa = d ln|c - c0|/d ln Q and h0 = d heading/d ln Q at c0. "
+    "Salnikova, Treschev, Gallyamov 2012, eq. 6.2-6.7 and section 7."
+)
+_PHI_MAP = (
+    "tan(phi) below pi/4, cot(phi) above = q^4/(2 - q^4), q = xi (2 - xi), xi = i/cells from "
+    "either end; cubic splines with zero end slopes in xi on either side of pi/4"
+)
+_DELTA_MAP = (
+    "delta = sin(pi (2 j + 1)/(4 n_delta)); polynomial in delta^2, degree 6 for stops, "
+    "8 for the curve"
+)
+_LONG_NAMES = {
+    "time": "stop time J t/Q",
+    "along": "displacement along the launch velocity J x/(Q^2 cos(phi))",
+    "across": "displacement to its left J y/(Q^2 delta sin(phi) cos(phi))",
+    "length": "path length J l/(Q^2 cos(phi))",
+    "body": "body angle J r theta/(Q^2 sin(phi))",
+    "curve": "regular part of ln Q along a motion, times kappa",
+    "turn": "regular part of the heading along a motion, over delta",
+}
+
+
+def save_stop_table(
+    table: StopTable, path: str | Path, overwrite: bool = False, command: str = "library call"
+) -> StopTable:
+    """Write a stop table to an HDF5 file, read it back, and only then give it its name.
+
+    Parameters
+    ----------
+    table : StopTable
+        With a measured accuracy, as :func:`puck_tables.build_stop_table` returns it.
+    path : path of the file
+    overwrite : whether an existing file may be replaced
+    command : how it was made, for the record
+
+    Returns
+    -------
+    StopTable
+        As loaded from what was written.
+
+    Raises
+    ------
+    OutputError
+        If the file exists (without ``overwrite``) or cannot be written.
+    TableError
+        If what was written does not read back as the same table.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from puck_tables import build_stop_table
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     saved = save_stop_table(build_stop_table(cells=16), folder + "/rough.h5")
+    >>> saved.passport["kind"]
+    'stops'
+    """
+    if table.accuracy is None or not np.all(np.isfinite(table.values)):
+        raise OutputError(
+            "a table without measured accuracy or with a non-finite value is not saved"
+        )
+    content = _encode(table, command)
+    written = _decode(content, str(path))
+    if not np.array_equal(written.values, table.values):
+        raise TableError(f"{path}: the table does not read back as it was written")
+    write_bytes(path, content, overwrite)
+    return written
+
+
+def load_stop_table(path: str | Path | None = None) -> StopTable:
+    """Read a stop table from its file, or the default one that comes with the package.
+
+    Parameters
+    ----------
+    path : path of an HDF5 table file, optional
+
+    Returns
+    -------
+    StopTable
+
+    Raises
+    ------
+    TableError
+        As :func:`puck_tables.load_table`.
+
+    Examples
+    --------
+    >>> load_stop_table().tolerance
+    1e-10
+    """
+    if path is None:
+        return _default_table()
+    return _decode(read_content(path), str(path))
+
+
+def load_any_table(path: str | Path) -> Table | StopTable:
+    """Read a table file of either kind.
+
+    Raises
+    ------
+    TableError
+        As :func:`puck_tables.load_table`.
+
+    Examples
+    --------
+    >>> load_any_table("/nowhere/table.h5")
+    Traceback (most recent call last):
+    ...
+    puck_tables.errors.TableError: there is no table file /nowhere/table.h5: build one with \
+'puck build-tables -o FILE', or leave --table out to use the tables that come along
+    """
+    source = str(path)
+    kinds = {resultants_file.KIND: resultants_file.shapes, KIND: _shapes}
+    contents = decode(read_content(path), source, kinds)
+    if contents.attributes["kind"] == KIND:
+        return _table_of(contents, source)
+    return resultants_file.table_of(contents, source)
+
+
+@cache
+def _default_table() -> StopTable:
+    content = files("puck_tables.tables").joinpath("stops.h5").read_bytes()
+    return _decode(content, "default stop table")
+
+
+def _decode(content: bytes, source: str) -> StopTable:
+    return _table_of(decode(content, source, {KIND: _shapes}), source)
+
+
+def _recipe(axis: SlipAxis) -> dict[str, Any]:
+    """What determines the values of a stop table."""
+    return {
+        "kind": KIND, "pressure_law": "uniform", "phi_map": _PHI_MAP, "delta_map": _DELTA_MAP,
+        "cells": axis.cells, "n_delta": HEIGHTS, "delta_max": UPPER_DELTA, "algorithm": ALGORITHM,
+    }  # fmt: skip
+
+
+def _shapes(attributes: dict[str, Any]) -> dict[str, tuple[int, ...]]:
+    shape = (SlipAxis(attributes["cells"]).size, HEIGHTS)
+    return {"phi": shape[:1], "delta": shape[1:], **dict.fromkeys(FUNCTIONS, shape)}
+
+
+def _encode(table: StopTable, command: str) -> bytes:
+    assert table.accuracy is not None
+    described = {
+        "title": "Stops of a sliding, spinning puck",
+        "interpretation": _INTERPRETATION,
+        "valid_range": f"|phi| <= pi/2, 0 <= delta <= {UPPER_DELTA:g}; refused outside",
+        "tolerance": table.tolerance,
+        "achieved_accuracy": json.dumps(asdict(table.accuracy)),
+        "method": "stops integrated with closed forms to 1e-15, curve by quadrature to 1e-14",
+    }
+    axes = [
+        Field(
+            "phi", table.axis.phi(), {"units": "rad", "long_name": "slip angle atan2(r omega, v)"}
+        ),
+        Field("delta", heights(), {"units": "1", "long_name": "dimensionless height 2 f h / r"}),
+    ]
+    functions = [
+        Field(
+            name,
+            table.values[:, :, index],
+            {
+                "units": "1",
+                "long_name": _LONG_NAMES[name],
+                "max_error": table.accuracy.largest[index],
+            },
+        )
+        for index, name in enumerate(FUNCTIONS)
+    ]
+    return encode(_recipe(table.axis), described, axes, functions, command)
+
+
+def _table_of(contents: Contents, source: str) -> StopTable:
+    axis = SlipAxis(contents.attributes["cells"])
+    nodes = {"phi": axis.phi(), "delta": heights()}
+    check_usable(contents, source, _recipe(axis), nodes, positive="time")
+    return StopTable(
+        axis,
+        np.stack([contents.arrays[name] for name in FUNCTIONS], axis=-1),
+        tolerance=contents.attributes["tolerance"],
+        accuracy=StopAccuracy(**accuracy_of(contents.attributes)),
+        passport=contents.attributes,
+        source=source,
+    )

@@ -1,0 +1,289 @@
+"""The only door to table files: HDF5 with a passport, refused unless whole and unaltered.
+
+After the HDF5 content stands a line with its sha256, checked before HDF5 reads a byte: damaged
+files can make it hang.  What a kind of table puts into a file stands with that kind.
+
+Layout: one dimension scale per axis, one little-endian float64 dataset per function over all axes,
+everything else in attributes of the root.  The file is made and read in memory, so that a failing
+disk leaves no half of one.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import json
+import math
+import platform
+from collections.abc import Callable, Mapping
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import h5py
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables._version import __version__
+from puck_tables.errors import TableError
+
+FloatArray = npt.NDArray[np.float64]
+
+FORMAT = "puck-tables"
+FORMAT_VERSION = "1.0"
+MAX_FILE_BYTES = 1 << 31
+_SEAL = b"\npuck-tables sha256 "
+
+
+class Field(NamedTuple):
+    """An axis or a function: its name, its values, and its attributes in the file."""
+
+    name: str
+    values: FloatArray
+    attributes: dict[str, Any]
+
+
+class Contents(NamedTuple):
+    """What stands in a file: attributes (with ``content_digest``) and arrays by name."""
+
+    attributes: dict[str, Any]
+    arrays: dict[str, FloatArray]
+
+
+# From the attributes of a file of one kind to the shapes of its arrays, axes first.
+Shapes = Callable[[dict[str, Any]], dict[str, tuple[int, ...]]]
+
+
+def recipe_digest(recipe: dict[str, Any]) -> str:
+    """Digest of what determines the values of a table.
+
+    Examples
+    --------
+    >>> recipe_digest({})[:8]
+    '44136fa3'
+    """
+    return hashlib.sha256(json.dumps(recipe, sort_keys=True).encode()).hexdigest()
+
+
+def encode(
+    recipe: dict[str, Any],
+    described: dict[str, Any],
+    axes: list[Field],
+    functions: list[Field],
+    command: str,
+) -> bytes:
+    """The bytes of a table file.
+
+    Parameters
+    ----------
+    recipe : what determines the values: kind, axes, algorithm; with its own digest in the file
+    described : what else the file says: title, interpretation, range, accuracy
+    axes, functions : the arrays; every function has all axes as its dimensions
+    command : how the table was made
+
+    Returns
+    -------
+    bytes, sealed
+
+    Examples
+    --------
+    >>> line = Field("x", np.zeros(2), {"units": "1"})
+    >>> encode({"kind": "none"}, {}, [line], [], "by hand")[1:4]
+    b'HDF'
+    """
+    attributes = {
+        "Conventions": "CF-1.11",
+        "format": FORMAT,
+        "format_version": FORMAT_VERSION,
+        **recipe,
+        **described,
+        "package_version": __version__,
+        "library_versions": (
+            f"python {platform.python_version()}, numpy {np.__version__}, h5py {h5py.__version__}, "
+            f"HDF5 {h5py.version.hdf5_version}"
+        ),
+        "created": datetime.now(UTC).isoformat(timespec="seconds"),
+        "command": command,
+        "recipe_digest": recipe_digest(recipe),
+    }
+    buffer = io.BytesIO()
+    with h5py.File(buffer, "w") as file:
+        for axis in axes:
+            data = file.create_dataset(axis.name, data=axis.values, dtype="<f8")
+            data.make_scale(axis.name)
+            data.attrs.update(axis.attributes)
+        for function in functions:
+            data = file.create_dataset(function.name, data=function.values, dtype="<f8")
+            for dimension, axis in enumerate(axes):
+                data.dims[dimension].attach_scale(file[axis.name])
+            data.attrs.update(function.attributes)
+        file.attrs.update(attributes)
+        arrays = {field.name: field.values for field in (*axes, *functions)}
+        file.attrs["content_digest"] = _digest(attributes, arrays)
+    return sealed(buffer.getvalue())
+
+
+def sealed(content: bytes) -> bytes:
+    r"""HDF5 content with the line that proves it whole.
+
+    Examples
+    --------
+    >>> sealed(b"")[:20]
+    b'\npuck-tables sha256 '
+    """
+    return content + _SEAL + hashlib.sha256(content).hexdigest().encode() + b"\n"
+
+
+def read_content(path: str | Path) -> bytes:
+    """The bytes of a table file.
+
+    Raises
+    ------
+    TableError
+        If it is missing, no regular file, too large or cannot be read.
+
+    Examples
+    --------
+    >>> read_content("/nowhere/table.h5")
+    Traceback (most recent call last):
+    ...
+    puck_tables.errors.TableError: there is no table file /nowhere/table.h5: build one with \
+'puck build-tables -o FILE', or leave --table out to use the tables that come along
+    """
+    try:
+        if Path(path).exists() and not Path(path).is_file():
+            raise TableError(f"cannot read {path}: it is not a regular file")
+        if Path(path).stat().st_size > MAX_FILE_BYTES:
+            raise TableError(f"{path} is too large to be a table")
+        return Path(path).read_bytes()
+    except FileNotFoundError:
+        raise TableError(
+            f"there is no table file {path}: build one with 'puck build-tables -o FILE', "
+            "or leave --table out to use the tables that come along"
+        ) from None
+    except OSError as error:
+        raise TableError(f"cannot read {path}: {error.strerror or error}") from None
+
+
+def decode(content: bytes, source: str, kinds: Mapping[str, Shapes]) -> Contents:
+    """What stands in the bytes of a table file of one of these kinds.
+
+    Raises
+    ------
+    TableError
+        If they are not a table, of another kind or a newer format, or altered.
+
+    Examples
+    --------
+    >>> decode(b"puck", "my.h5", {})
+    Traceback (most recent call last):
+    ...
+    puck_tables.errors.TableError: my.h5 is not an HDF5 file
+    """
+    if not content.startswith(b"\x89HDF\r\n\x1a\n"):
+        raise TableError(f"{source} is not an HDF5 file")
+    inside, seal, _ = content.rpartition(_SEAL)
+    altered = TableError(
+        f"{source} was altered or damaged: it does not match its digest; "
+        "build it again with 'puck build-tables'"
+    )
+    if seal and sealed(inside) != content:
+        raise altered
+    try:
+        with h5py.File(io.BytesIO(content), "r") as file:
+            contents = _read(file, source, kinds)
+    except TableError:
+        raise
+    except Exception as error:  # whatever a damaged file makes h5py raise
+        raise TableError(
+            f"{source} is damaged and cannot be read as a table ({type(error).__name__}): "
+            "build it again with 'puck build-tables'"
+        ) from None
+    if not seal:  # edited by another program, which dropped the line; read to name the reason
+        raise altered
+    return contents
+
+
+def _read(file: h5py.File, source: str, kinds: Mapping[str, Shapes]) -> Contents:
+    attributes = {name: _plain(value) for name, value in file.attrs.items()}
+    if attributes.get("format") != FORMAT:
+        raise TableError(f"{source} is an HDF5 file but not a table of this program")
+    major = str(attributes["format_version"]).split(".")[0]
+    if not major.isdigit() or int(major) > int(FORMAT_VERSION.split(".")[0]):
+        raise TableError(
+            f"{source} has table format {attributes['format_version']}, newer than "
+            f"{FORMAT_VERSION} of this program: update puck-tables"
+        )
+    kind = str(attributes.get("kind"))
+    if kind not in kinds:
+        wanted = " or ".join(f"'{name}'" for name in kinds)
+        raise TableError(
+            f"{source} holds '{kind}', not a table of {wanted}: "
+            "give a file made by 'puck build-tables'"
+        )
+    shapes = kinds[kind](attributes)
+    if any(file[n].shape != s or file[n].dtype != "<f8" for n, s in shapes.items()):
+        raise TableError(f"{source} is damaged: its arrays do not fit its axes")
+    if 8 * sum(map(math.prod, shapes.values())) > file.id.get_filesize():
+        raise TableError(f"{source} is damaged: it is shorter than its arrays")
+    arrays = {name: np.asarray(file[name][...]) for name in shapes}
+    stated = attributes.pop("content_digest", None)
+    if _digest(attributes, arrays) != stated:
+        raise TableError(
+            f"{source} was altered or damaged: its content does not match its digest; "
+            "build it again with 'puck build-tables'"
+        )
+    return Contents({**attributes, "content_digest": stated}, arrays)
+
+
+def _digest(attributes: dict[str, Any], arrays: dict[str, FloatArray]) -> str:
+    digest = hashlib.sha256(json.dumps(attributes, sort_keys=True).encode())
+    for array in arrays.values():
+        digest.update(json.dumps(array.shape).encode())
+        digest.update(np.ascontiguousarray(array, dtype="<f8").tobytes())
+    return digest.hexdigest()
+
+
+def check_usable(
+    contents: Contents,
+    source: str,
+    recipe: dict[str, Any],
+    nodes: dict[str, FloatArray],
+    positive: str,
+) -> None:
+    """Refuse a file whose digest is right but whose numbers this program cannot use.
+
+    The recipe must be known, the nodes where the splines will look, all values finite and those
+    of ``positive`` greater than zero.
+
+    Raises
+    ------
+    TableError
+    """
+    attributes, arrays = contents
+    if any(attributes.get(name) != value for name, value in recipe.items()):
+        raise TableError(f"{source} was made by a recipe that this program does not know")
+    if not (
+        all(np.allclose(arrays[n], at, rtol=0.0, atol=1e-14) for n, at in nodes.items())
+        and all(np.isfinite(array).all() for array in arrays.values())
+        and (arrays[positive] > 0.0).all()
+        and 0.0 < attributes["tolerance"] < 1.0
+    ):
+        raise TableError(f"{source} has axes or values that this program cannot use")
+
+
+def accuracy_of(attributes: dict[str, Any]) -> dict[str, Any]:
+    """The measured accuracy as its class takes it: lists become tuples.
+
+    Examples
+    --------
+    >>> accuracy_of({"achieved_accuracy": '{"order": 4, "rms": [1]}'})
+    {'order': 4, 'rms': (1,)}
+    """
+    stated = json.loads(attributes["achieved_accuracy"])
+    return {key: tuple(v) if isinstance(v, list) else v for key, v in stated.items()}
+
+
+def _plain(value: Any) -> Any:
+    """An attribute as a plain Python value."""
+    return value.item() if isinstance(value, np.generic) else value
