@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from puck_tables.similarity.check import validate_stops
     from puck_tables.similarity.file import load_stop_table, save_stop_table
     from puck_tables.similarity.stop_table import StopTable
+    from puck_tables.states import States, flow
     from puck_tables.stop_map import StopMap, sweep
     from puck_tables.stops import Stops, stop
     from puck_tables.table.build import build_table
@@ -62,6 +63,8 @@ _HOMES = {
     "load_stop_table": "similarity.file",
     "save_stop_table": "similarity.file",
     "StopTable": "similarity.stop_table",
+    "States": "states",
+    "flow": "states",
     "StopMap": "stop_map",
     "sweep": "stop_map",
     "build_table": "table.build",
@@ -75,6 +78,7 @@ _HOMES = {
 __all__ = [
     "CheckReport",
     "Resultants",
+    "States",
     "StopMap",
     "StopTable",
     "Stops",
@@ -85,6 +89,7 @@ __all__ = [
     "build_stop_table",
     "build_table",
     "curvature_slope",
+    "flow",
     "is_full_contact",
     "limit_angle",
     "limit_ratio",

@@ -19,6 +19,7 @@ FloatArray = npt.NDArray[np.float64]
 DEFAULT_ACCURACY = 1e-9
 DEFAULT_FRAMES = 101
 MAX_FRAMES = 1_000_000
+LOOK_UP_FRAMES = 10_000  # from here on states are looked up: 0.2 µs each instead of 4
 
 
 @dataclass(frozen=True)
@@ -152,7 +153,7 @@ def simulate(
             "of full contact holds at every phi up to 1, and beyond 2 in no motion but pure spin"
         )
 
-    from puck_tables.motion.equations import LENGTH, PSI, THETA, T, U, X, Y
+    from puck_tables.motion.equations import LENGTH, PSI, THETA, T, X, Y
     from puck_tables.motion.limits import limit_log_ratio, regime_of
     from puck_tables.run import closed_form_friction, run_motion, table_friction
 
@@ -177,17 +178,24 @@ def simulate(
     run = run_motion(regime, speed, rim, limit, friction, wanted, method)
     stop_time = float(run.stop[T] * scale_time)
     moments = _moments(frames, times, stop_time)
-    scaled = np.where(moments < stop_time, moments, np.inf) / (scale_time if q0 > 0.0 else 1.0)
-    q, states = run.states(scaled)
-
+    look_up = (
+        moments.size >= LOOK_UP_FRAMES
+        and regime in ("B", "C")
+        and not exact
+        and table is None
+        and method == "adaptive"
+        and wanted >= DEFAULT_ACCURACY
+    )
+    if look_up:
+        till_rest = np.where(moments < stop_time, moments, 2.0 * stop_time)
+        columns = _looked_up((vx, vy), spin, till_rest, height, J, r, math.atan(math.exp(limit)))
+    else:
+        scaled = np.where(moments < stop_time, moments, np.inf) / (scale_time if q0 > 0.0 else 1.0)
+        q, states = run.states(scaled)
+        columns = _integrated(q, states, (vx, vy), spin, q0, scale_length, r, regime, limit)
     side = -1.0 if spin < 0.0 else 1.0
-    heading0 = math.atan2(vy, vx) if speed > 0.0 else 0.0
     east, north = (vx / speed, vy / speed) if speed > 0.0 else (1.0, 0.0)
-    along, left = scale_length * states[:, X], side * scale_length * states[:, Y]
     end_along, end_left = scale_length * run.stop[X], side * scale_length * run.stop[Y]
-    moving = q > 0.0
-    cosine, sine = _direction(states[:, U])
-    angle = _slip_angle(states[:, U], regime, limit, moving)
     return Trajectory(
         v0=(vx, vy), w0=spin, radius=r, delta=height, decel=J, mass=m, regime=regime,
         stop_time=stop_time,
@@ -202,19 +210,54 @@ def simulate(
         limit_angle=math.atan(math.exp(limit)),
         kinetic_energy=energy,
         energy_residual=run.energy_residual,
-        method=_method_name(regime, method, exact),
+        method=_method_name(regime, method, exact) + ("; states by look-up" if look_up else ""),
         steps=run.steps,
         error_estimate=run.error,
         time=moments,
-        x=along * east - left * north + 0.0,
-        y=along * north + left * east + 0.0,
-        heading=heading0 + side * states[:, PSI],
-        orientation=side * states[:, THETA] * (scale_length / r) + 0.0,
-        speed=q0 * q * cosine,
-        spin=side * (q0 / r) * q * sine + 0.0,
-        slip_speed=q0 * q,
-        slip_angle=side * angle + 0.0,
+        **columns,
     )  # fmt: skip
+
+
+def _integrated(
+    q: FloatArray, states: FloatArray, v0: tuple[float, float], spin: float, q0: float,
+    scale_length: float, radius: float, regime: str, limit: float,
+) -> dict[str, FloatArray]:  # fmt: skip
+    """States in natural units as the columns of a trajectory."""
+    from puck_tables.motion.equations import PSI, THETA, U, X, Y
+
+    side = -1.0 if spin < 0.0 else 1.0
+    speed = math.hypot(*v0)
+    heading0 = math.atan2(v0[1], v0[0]) if speed > 0.0 else 0.0
+    east, north = (v0[0] / speed, v0[1] / speed) if speed > 0.0 else (1.0, 0.0)
+    along, left = scale_length * states[:, X], side * scale_length * states[:, Y]
+    cosine, sine = _direction(states[:, U])
+    return {
+        "x": along * east - left * north + 0.0,
+        "y": along * north + left * east + 0.0,
+        "heading": heading0 + side * states[:, PSI],
+        "orientation": side * states[:, THETA] * (scale_length / radius) + 0.0,
+        "speed": q0 * q * cosine,
+        "spin": side * (q0 / radius) * q * sine + 0.0,
+        "slip_speed": q0 * q,
+        "slip_angle": side * _slip_angle(states[:, U], regime, limit, q > 0.0) + 0.0,
+    }
+
+
+def _looked_up(
+    v0: tuple[float, float], spin: float, moments: FloatArray, delta: float, decel: float,
+    radius: float, limit_angle: float,
+) -> dict[str, FloatArray]:  # fmt: skip
+    """The same by look-up: for many states the cheaper way."""
+    from puck_tables.states import flow
+
+    states = flow(v0, spin, moments, delta=delta, decel=decel, radius=radius)
+    names = ("x", "y", "heading", "orientation", "speed", "spin", "slip_speed", "slip_angle")
+    columns = {name: getattr(states, name) for name in names}
+    at_rest = states.slip_speed == 0.0
+    columns["slip_angle"] = np.where(
+        at_rest, math.copysign(limit_angle, spin), columns["slip_angle"]
+    )
+    return columns
 
 
 def _check_frames(frames: int | None, times: npt.ArrayLike | None) -> None:

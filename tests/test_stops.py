@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from puck_tables import simulate, stop, sweep
+from puck_tables import Table, simulate, stop, sweep
 from puck_tables.errors import AccuracyError, InputError
 from puck_tables.executor import run_chunks
 from puck_tables.stop_map import check_memory
@@ -17,10 +17,13 @@ ARRAYS = (
 )  # fmt: skip
 
 
-def test_stop_agrees_with_simulate_and_broadcasts():
+@pytest.mark.parametrize("way", ["look-up", "integrated"])
+def test_stop_agrees_with_simulate_and_broadcasts(way: str, table: Table):
     v0 = np.array([[1.0, 0.0], [0.3, -2.0], [0.0, 0.0]])
     w0 = np.array([[3.0], [-0.2], [0.0], [1e-9]])
-    result = stop(v0, w0, delta=0.8, decel=2.0, radius=0.1)
+    chosen = table if way == "integrated" else None
+    result = stop(v0, w0, delta=0.8, decel=2.0, radius=0.1, table=chosen)
+    assert result.method == way
     assert result.stop_time.shape == (4, 3)
     assert result.stop_position.shape == (4, 3, 2)
     assert np.all(result.status == 0)
@@ -37,24 +40,18 @@ def test_stop_agrees_with_simulate_and_broadcasts():
             assert result.turn_angle[i, j] == pytest.approx(run.turn_angle, abs=1e-5)
 
 
-def test_stop_reaches_the_accuracy_it_promises():
+def test_integration_reaches_the_accuracy_it_promises(table: Table):
     rng = np.random.default_rng(11)
     u = np.concatenate([rng.uniform(-18, 18, 300), rng.uniform(-0.5, 0.5, 100)])
     delta = rng.random(400)
     v0 = np.stack([1.0 / np.hypot(1.0, np.exp(u)), 0.0 * u], axis=-1)
     w0 = np.sqrt(1.0 - v0[:, 0] ** 2)
     truth = stop(v0, w0, delta=delta, accuracy=1e-10)
+    assert truth.method == "look-up"
     for accuracy in (1e-2, 1e-3, 1e-5, 1e-7, 1e-8):
-        result = stop(v0, w0, delta=delta, accuracy=accuracy)
-        assert np.abs(result.stop_time - truth.stop_time).max() <= accuracy
-        assert np.abs(result.stop_position - truth.stop_position).max() <= accuracy
-
-
-def test_pure_motions_are_exact():
-    result = stop([(1.0, 0.0), (0.0, 0.0), (3.0, 4.0)], [0.0, 1.0, 0.0], delta=0.7)
-    assert result.stop_time.tolist() == [1.0, 0.75, 5.0]
-    np.testing.assert_allclose(result.stop_position[2], [7.5, 10.0], rtol=1e-15)
-    assert result.turn_angle.tolist() == [0.0, 0.0, 0.0]
+        result = stop(v0, w0, delta=delta, accuracy=accuracy, table=table)
+        assert np.abs(result.stop_time - truth.stop_time).max() <= accuracy + 2e-10
+        assert np.abs(result.stop_position - truth.stop_position).max() <= accuracy + 2e-10
 
 
 def test_overflow_is_a_named_status():
@@ -85,18 +82,20 @@ def test_accuracy_out_of_reach():
         stop((1, 0), 1.0, accuracy=1e-12)
 
 
-def test_same_bits_for_any_threads_and_chunks():
+@pytest.mark.parametrize("way", ["look-up", "integrated"])
+def test_same_bits_for_any_threads_and_chunks(way: str, table: Table):
+    chosen = table if way == "integrated" else None
     grid = {
         "w0": np.linspace(-3, 3, 23),
         "speed": np.linspace(0, 2, 17),
         "delta": np.array([0.0, 0.4, 1.0]),
     }
-    base = sweep(threads=1, chunk=10**6, **grid)
+    base = sweep(threads=1, chunk=10**6, table=chosen, **grid)
     for threads, chunk in ((2, 64), (2, 7), (1, 1), (3, 100)):
-        other = sweep(threads=threads, chunk=chunk, **grid)
+        other = sweep(threads=threads, chunk=chunk, table=chosen, **grid)
         for name in ARRAYS:
             assert getattr(other, name).tobytes() == getattr(base, name).tobytes()
-    alone = stop((grid["speed"][5], 0.0), grid["w0"][3], delta=0.4)
+    alone = stop((grid["speed"][5], 0.0), grid["w0"][3], delta=0.4, table=chosen)
     assert float(alone.stop_time) == base.stop_time[1, 5, 3]
 
 

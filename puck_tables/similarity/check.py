@@ -207,7 +207,7 @@ def validate_stops(table: StopTable, progress: Progress | None = None) -> CheckR
         for name, column in zip(NAMES, error.T, strict=False)
     ]
     step(1)
-    checks += _equations(table, np.random.default_rng(3), 1000)
+    checks += _equations(table, np.random.default_rng(3), 600)
     step(2)
     checks += _elementary(table)
     step(3)

@@ -322,8 +322,7 @@ def _fill_state(
 @kernel
 def fill_states(
     launches: FloatArray, known: FloatArray, which: npt.NDArray[np.int64], times: FloatArray,
-    stops: FloatArray, curve: FloatArray, time_inverse: FloatArray, constants: FloatArray,
-    out: FloatArray,
+    stops: FloatArray, curve: FloatArray, time_inverse: FloatArray, out: FloatArray,
 ) -> None:  # fmt: skip
     """States of launches ``which`` (n,) at ``times`` (n,) ≥ 0 into ``out`` (6, n).
 

@@ -1,0 +1,317 @@
+"""Stops and states by look-up, judged by the integrator, by scipy, by elementary solutions."""
+
+from __future__ import annotations
+
+import math
+import shutil
+from dataclasses import replace
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+import xarray
+from reference import REFERENCE_RUNS, states
+
+from puck_tables import (
+    build_stop_table,
+    flow,
+    limit_ratio,
+    load_stop_table,
+    load_table,
+    save_stop_table,
+    simulate,
+    stop,
+    sweep,
+    validate_stops,
+)
+from puck_tables.errors import AccuracyError, InputError, OutputError, TableError
+from puck_tables.similarity.axes import SlipAxis, heights
+from puck_tables.similarity.check import launch_points, launches_at, looked_up
+from puck_tables.similarity.curve import limits, regular_slopes
+from puck_tables.similarity.exact import end_values, exact_stops
+from puck_tables.similarity.file import load_any_table
+from puck_tables.similarity.stop_table import StopTable
+
+
+@pytest.fixture(scope="module")
+def rough() -> StopTable:
+    return build_stop_table(cells=32)
+
+
+@pytest.fixture(scope="module")
+def file(tmp_path_factory: pytest.TempPathFactory, rough: StopTable) -> Path:
+    path = tmp_path_factory.mktemp("stops") / "rough.h5"
+    save_stop_table(rough, path, command="puck build-tables --kind stops --cells 32")
+    return path
+
+
+# ---- stops
+
+
+def test_reference_runs():
+    for (delta, k), (time, x, y) in REFERENCE_RUNS.items():
+        result = stop((1.0, 0.0), k, delta=delta)
+        q = math.hypot(1.0, k)
+        assert result.method == "look-up"
+        assert float(result.stop_time) == pytest.approx(time, abs=2e-10 * q)
+        assert result.stop_position == pytest.approx([x, y], abs=2e-10 * q * q)
+
+
+def test_default_table_at_adversarial_points():
+    """Down to 1e-16 from φ = 0, π/4, π/2 and from δ = 0, 1: far inside 3e-9."""
+    table = load_stop_table()
+    u, delta = launch_points(table.axis, 600, seed=99)
+    error = np.abs(looked_up(table, u, delta) - exact_stops(u, delta)).max(axis=0)
+    assert np.all(error <= 1.1e-10)
+    assert table.accuracy.worst <= table.tolerance == 1e-10
+    assert table.accuracy.order == pytest.approx(4.0, abs=0.15)
+
+
+def test_order_through_the_singular_angles():
+    """Twice the cells, a sixteenth of the error, where T and X carry k^1.6, k² ln k, x³ ln x."""
+    u = np.concatenate([np.linspace(-9, -2, 40), np.linspace(-0.1, 0.1, 41), np.linspace(1, 7, 40)])
+    delta = np.linspace(0.0, 1.0, u.size)
+    truth = exact_stops(u, delta)
+    errors = [
+        np.abs(looked_up(build_stop_table(cells=n), u, delta) - truth).max(axis=0) for n in (32, 64)
+    ]
+    assert np.all(np.log2(errors[0] / errors[1]) > 3.6)
+
+
+def test_integrated_and_looked_up_agree_for_any_puck():
+    rng = np.random.default_rng(5)
+    v0, w0 = rng.normal(size=(300, 2)), rng.normal(size=300) * 40.0
+    puck = {"delta": rng.random(300), "decel": 0.7, "radius": 0.05}
+    one = stop(v0, w0, **puck)
+    two = stop(v0, w0, **puck, accuracy=1e-9, table=load_table())
+    assert two.method == "integrated"
+    q = np.hypot(np.hypot(*v0.T), 0.05 * w0)
+    assert np.all(np.abs(one.stop_time - two.stop_time) <= 1.2e-9 * q / 0.7)
+    scale = q**2 / 0.7
+    position = np.abs(one.stop_position - two.stop_position).max(axis=-1)
+    assert np.all(position <= 1.2e-9 * scale)
+    assert np.all(np.abs(one.path_length - two.path_length) <= 2e-9 * scale)
+    assert np.all(np.abs(one.body_angle - two.body_angle) <= 2e-9 * scale / 0.05)
+    assert np.all(np.abs(one.turn_angle - two.turn_angle) <= 1e-6)
+
+
+def test_symmetry_holds_to_rounding():
+    """(v, ω) → (λ A v, λ det A ω): O(2) and scale."""
+    v, w, delta = np.array([0.8, -0.3]), 1.7, 0.6
+    base = stop(v, w, delta=delta)
+    turned = stop(1e-9 * np.array([0.3, 0.8]), 1e-9 * w, delta=delta)
+    assert float(turned.stop_time) == pytest.approx(1e-9 * float(base.stop_time), rel=1e-14)
+    x, y = base.stop_position * 1e-18
+    assert turned.stop_position == pytest.approx([-y, x], rel=1e-13)
+    mirrored = stop(v * (1, -1), -w, delta=delta)
+    assert mirrored.stop_position == pytest.approx(base.stop_position * (1, -1), rel=1e-14)
+    assert float(mirrored.turn_angle) == -float(base.turn_angle)
+
+
+@pytest.mark.parametrize("scale", [1e-307, 1e-160, 1e-120, 1e120])
+def test_scale_free_to_the_ends_of_floating_point(scale: float):
+    decel = 1e-140 if scale > 1.0 else 1.0
+    base = stop((1.0, 0.4), 2.0, delta=0.3)
+    far = stop((scale, 0.4 * scale), 2.0 * scale, delta=0.3, decel=decel * scale)
+    assert float(far.stop_time) * decel == pytest.approx(float(base.stop_time), rel=1e-14)
+
+
+def test_pure_motions_are_exact_by_either_way():
+    for table in (None, load_table()):
+        result = stop([(1, 0), (0, 0), (0, 2), (0, 0)], [0, 1, 0, 0], delta=0.7, table=table)
+        assert result.stop_time.tolist() == [1.0, 0.75, 2.0, 0.0]
+        assert result.stop_position.tolist() == [[0.5, 0.0], [0.0, 0.0], [0.0, 2.0], [0.0, 0.0]]
+        assert result.body_angle.tolist() == [0.0, 0.375, 0.0, 0.0]
+
+
+def test_end_values_are_those_of_the_motion():
+    """The elementary limits at φ → 0, π/2 against launches close to them."""
+    delta = heights()
+    k = 1e-4
+    for sign, values in ((-1.0, end_values(delta)[0]), (1.0, end_values(delta)[1])):
+        u = np.full_like(delta, -sign * math.log(k))
+        exact = exact_stops(u, delta)
+        vx, _, w = launches_at(u, delta)[:3]
+        scaled = exact / np.stack([1 + 0 * vx, vx, delta * vx * w, vx, w], axis=-1)
+        np.testing.assert_allclose(scaled, values, rtol=0, atol=2e-5)
+
+
+def test_regular_slopes_pass_the_limit_smoothly():
+    delta = 0.8
+    u0 = limits(delta).u
+    tiny = 1e-9
+    near = u0 + np.array([-0.15 - tiny, -0.15 + tiny, -tiny, tiny, 0.15 - tiny, 0.15 + tiny])
+    for slope in regular_slopes(near, delta):
+        assert np.all(np.abs(np.diff(slope)[[0, 2, 4]]) < 1e-8)
+        assert np.all(np.isfinite(slope))
+
+
+# ---- states
+
+
+def test_states_against_the_integrator():
+    rng = np.random.default_rng(8)
+    ends = [*(10.0 ** -np.arange(1, 13, 2)), 0.0]
+    ratios = [*np.exp(rng.normal(size=25)), *ends, *(1.0 / np.array(ends[:-1]))]
+    ratios += [
+        1.0,
+        1.0 - 1e-12,
+        1.0 + 1e-7,
+        float(limit_ratio(0.4)),
+        float(limit_ratio(0.4)) + 1e-9,
+    ]
+    for k in ratios:
+        v, w = 1.0 / math.hypot(1.0, k), k / math.hypot(1.0, k)
+        delta = 0.4 if k > 1.4 else float(rng.choice([0.0, rng.random(), 1.0]))
+        shares = np.concatenate([[0.0, 1e-9, 0.5, 1.0 - 1e-6, 1.0 - 1e-9], rng.random(6)])
+        run = simulate((0.0, v), -w, delta=delta, exact=True, accuracy=1e-13,
+                       times=shares * float(stop((0.0, v), w, delta=delta).stop_time))  # fmt: skip
+        got = flow((0.0, v), -w, run.time, delta=delta)
+        for name in ("x", "y", "speed", "spin", "orientation", "slip_speed"):
+            error = np.abs(getattr(got, name) - getattr(run, name)).max()
+            assert error <= 1e-9, (name, k, delta)
+        assert np.all(np.abs(got.heading - run.heading) * run.speed <= 1e-9)
+        assert np.all(np.abs(got.slip_angle - run.slip_angle) * run.slip_speed <= 1e-9)
+
+
+def test_states_against_scipy():
+    times = np.linspace(0.0, 1.2, 7)
+    vx, vy, rim, x, y, angle = states((0.6, -0.8), 1.3, 0.5, times)
+    got = flow((0.6, -0.8), 1.3, times, delta=0.5)
+    np.testing.assert_allclose(got.x, x, atol=1e-9)
+    np.testing.assert_allclose(got.y, y, atol=1e-9)
+    np.testing.assert_allclose(got.speed * np.cos(got.heading), vx, atol=1e-9)
+    np.testing.assert_allclose(got.speed * np.sin(got.heading), vy, atol=1e-9)
+    np.testing.assert_allclose(got.spin, rim, atol=1e-9)
+    np.testing.assert_allclose(got.orientation, angle, atol=1e-9)
+
+
+def test_a_state_launched_anew_goes_on():
+    """Flow(t₁ + t₂) = flow(t₂) of flow(t₁)."""
+    first = flow((1.0, 0.5), 3.0, 0.7, delta=0.9)
+    v1 = first.speed * np.array([np.cos(first.heading), np.sin(first.heading)])
+    second = flow(v1, first.spin, [0.4, 5.0], delta=0.9)
+    whole = flow((1.0, 0.5), 3.0, [1.1, 5.7], delta=0.9)
+    np.testing.assert_allclose(first.x + second.x, whole.x, atol=3e-9)
+    np.testing.assert_allclose(first.y + second.y, whole.y, atol=3e-9)
+    np.testing.assert_allclose(second.spin, whole.spin, atol=3e-9)
+
+
+def test_launch_and_rest_are_exact_in_any_order():
+    at = flow((3.0, 4.0), 2.0, [1e9, 0.0, 1e300], radius=0.5)
+    end = stop((3.0, 4.0), 2.0, radius=0.5)
+    assert at.speed.tolist() == [0.0, 5.0, 0.0]
+    assert at.spin.tolist() == [0.0, 2.0, 0.0]
+    assert (at.x[1], at.y[1], at.orientation[1]) == (0.0, 0.0, 0.0)
+    np.testing.assert_allclose([at.x[0], at.y[2]], end.stop_position, rtol=1e-15)
+    resting = flow((0.0, 0.0), 0.0, [0.0, 1.0])
+    assert resting.x.tolist() == resting.speed.tolist() == [0.0, 0.0]
+
+
+def test_states_broadcast_over_pucks_and_times():
+    v0 = np.array([[1.0, 0.0], [0.0, 2.0], [0.5, 0.5]])
+    times = np.linspace(0.0, 3.0, 5)
+    grid = flow(v0[:, None, :], np.array([1.0, -2.0, 0.0])[:, None], times, delta=0.2)
+    assert grid.x.shape == (3, 5)
+    alone = flow(v0[1], -2.0, times[3], delta=0.2)
+    assert float(alone.y) == grid.y[1, 3]
+    assert float(alone.heading) == grid.heading[1, 3]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "options", "words"),
+    [
+        (((1, 0), 1.0, -1.0), {}, "t must not be negative"),
+        (((1, 0), 1.0, math.nan), {}, "t must be finite"),
+        (((1, 0), 1.0, 1.0), {"delta": 1.2}, "outside this table"),
+        (((1, 0), [1.0, 2.0], [1.0, 2.0, 3.0]), {}, "broadcast"),
+        (((1e200, 0), 1.0, 1.0), {}, "too large"),
+    ],
+)
+def test_bad_states(arguments: tuple, options: dict, words: str):
+    with pytest.raises(InputError, match=words):
+        flow(*arguments, **options)
+
+
+def test_many_frames_are_looked_up():
+    run = simulate((1.0, 0.3), -5.0, frames=10_001)
+    assert "look-up" in run.method
+    few = simulate((1.0, 0.3), -5.0, times=run.time[::1000])
+    assert "look-up" not in few.method
+    for name in ("x", "y", "orientation", "spin", "slip_speed"):
+        error = np.abs(getattr(run, name)[::1000] - getattr(few, name)).max()
+        assert error <= 2e-9 * 26.0, name
+    assert run.slip_angle[-1] == few.slip_angle[-1] == -run.limit_angle
+
+
+# ---- the table and its file
+
+
+def test_validation_passes_and_can_fail(rough: StopTable):
+    assert validate_stops(rough).passed
+    bent = rough.values.copy()
+    bent[20, 4, 0] += 1e-4
+    report = validate_stops(replace(rough, values=bent))
+    failed = {(check.name, check.function) for check in report.checks if not check.passed}
+    assert {("integrator", "time"), ("equation", "time")} <= failed
+    bent = rough.values.copy()
+    bent[40, 4, 5] += 1e-3
+    report = validate_stops(replace(rough, values=bent))
+    assert {c.function for c in report.checks if not c.passed} == {"curve", "turn"}
+
+
+def test_round_trip_and_xarray(file: Path, rough: StopTable):
+    loaded = load_stop_table(file)
+    np.testing.assert_array_equal(loaded.values, rough.values)
+    assert loaded.accuracy == rough.accuracy
+    assert loaded.passport["kind"] == "stops"
+    with xarray.open_dataset(file, engine="h5netcdf") as data:
+        assert dict(data.sizes) == {"phi": 65, "delta": 9}
+        assert float(data.time[0, 0]) == 1.0
+        assert "Displacement" in data.attrs["interpretation"]
+
+
+def test_shipped_tables_take_less_than_a_megabyte():
+    from importlib.resources import files
+
+    folder = files("puck_tables.tables")
+    sizes = [len(folder.joinpath(name).read_bytes()) for name in ("resultants.h5", "stops.h5")]
+    assert sum(sizes) <= 1_000_000
+
+
+def test_kinds_are_told_apart(file: Path, tmp_path: Path):
+    with pytest.raises(TableError, match="holds 'stops', not a table of 'resultants'"):
+        load_table(file)
+    assert load_any_table(file).tolerance == load_stop_table(file).tolerance
+    edited = tmp_path / "edited.h5"
+    shutil.copy(file, edited)
+    with h5py.File(edited, "r+") as opened:
+        opened["time"][3, 3] += 1e-12
+    with pytest.raises(TableError, match="digest"):
+        load_any_table(edited)
+    with pytest.raises(OutputError, match="exists already"):
+        save_stop_table(load_stop_table(file), file)
+    with pytest.raises(TableError, match="cannot use"):
+        save_stop_table(replace(load_stop_table(file), tolerance=2.0), tmp_path / "bad.h5")
+
+
+def test_sizes_and_accuracies_out_of_range():
+    with pytest.raises(InputError, match="cells must be from 8"):
+        SlipAxis(7)
+    with pytest.raises(InputError, match="both fix the grid"):
+        build_stop_table(accuracy=1e-5, cells=32)
+    with pytest.raises(AccuracyError, match="1e-11"):
+        build_stop_table(accuracy=1e-13)
+    with pytest.raises(AccuracyError, match="--kind stops"):
+        stop((1, 0), 1.0, accuracy=1e-11)
+    with pytest.raises(AccuracyError, match="1e-10"):
+        sweep(accuracy=1e-11)
+
+
+def test_a_rough_stop_table_says_what_it_can(rough: StopTable):
+    with pytest.raises(AccuracyError, match="that of the stop table"):
+        stop((1, 0), 1.0, table=rough)
+    found = stop((1, 0), 5.0, delta=1.0, table=rough, accuracy=1e-5)
+    assert float(found.stop_time) == pytest.approx(4.000188799127, abs=5.2 * rough.tolerance)
+    assert sweep([0.0, 1.0], table=rough, accuracy=1e-4).method == "look-up"
