@@ -1,0 +1,272 @@
+"""The inverse problem: which launches come to rest at a given place."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables.errors import InputError
+from puck_tables.puck import positive, real
+from puck_tables.real import finite_array
+from puck_tables.similarity.file import load_stop_table
+from puck_tables.trajectory import simulate
+
+FloatArray = npt.NDArray[np.float64]
+
+DEFAULT_COUNT = 8
+MAX_COUNT = 10_000
+_LARGEST_U = 600.0
+_SAMPLED_U = math.log(math.tan(math.radians(80.0)))
+_SLACK = 1e-12
+_CHECK_ACCURACY = 1e-10
+
+
+@dataclass(frozen=True)
+class Aim:
+    """Launches that come to rest at ``target`` (2,) m from where they start.
+
+    Arrays (n,), ordered by spin, the most clockwise first: ``v0`` (n, 2) m/s, ``w0`` rad/s, ``speed`` m/s, ``direction`` rad, ``slip_angle`` φ rad, ``stop_time`` s, and
+    ``miss`` m: how far from the target an integration of the launch ends.  ``answer`` is one
+    sentence: what was found, or why nothing can be.
+    """
+
+    target: tuple[float, float]
+    delta: float
+    decel: float
+    radius: float
+    v0: FloatArray
+    w0: FloatArray
+    stop_time: FloatArray
+    miss: FloatArray
+    answer: str
+
+    @property
+    def speed(self) -> FloatArray:
+        """Launch speed, m/s."""
+        return np.hypot(self.v0[:, 0], self.v0[:, 1])
+
+    @property
+    def direction(self) -> FloatArray:
+        """Of the velocity at the launch, rad."""
+        return np.arctan2(self.v0[:, 1], self.v0[:, 0])
+
+    @property
+    def slip_angle(self) -> FloatArray:
+        """Slip angle atan2(rω, v) at the launch, rad."""
+        return np.arctan2(self.radius * self.w0, self.speed)
+
+
+@dataclass(frozen=True)
+class _Family:
+    """The launches that stop at distance D, by u = ln(r|ω|/v): one for each u and sense of spin.
+
+    From displacement = (Q²/J) Rot(ψ)(X, Y): Q² = J D/|X + iY|, ψ = bearing − arg(X ± iY).
+    """
+
+    distance: float
+    delta: float
+    decel: float
+
+    def at(self, u: float) -> tuple[float, float, float, float]:
+        """Ln of speed, rim speed and stop time, and arg(X + iY) for ω > 0; exact to rounding."""
+        from puck_tables.similarity.exact import exact_stops
+
+        time, x, y = exact_stops(np.array([u]), np.array([self.delta]))[0, :3].tolist()
+        log_q = 0.5 * (math.log(self.decel) + math.log(self.distance) - math.log(math.hypot(x, y)))
+        larger = log_q - 0.5 * math.log1p(math.exp(-2.0 * abs(u)))
+        speed, rim = larger - max(u, 0.0), larger + min(u, 0.0)
+        return speed, rim, log_q + math.log(time) - math.log(self.decel), math.atan2(y, x)
+
+    def where(self, quantity: int, value: float) -> float:
+        """U where the speed (0), the rim speed (1) or the stop time (2) has a value.
+
+        All three are monotonic in u: speed falls, rim speed and stop time grow.
+        """
+        from scipy.optimize import brentq
+
+        target = math.log(value)
+
+        def difference(u: float) -> float:
+            return self.at(u)[quantity] - target
+
+        low, high = difference(-_LARGEST_U), difference(_LARGEST_U)
+        if low * high > 0.0:  # at or beyond the end: a slide without spin
+            return -_LARGEST_U if abs(low) < abs(high) else _LARGEST_U
+        return float(brentq(difference, -_LARGEST_U, _LARGEST_U, xtol=1e-14, rtol=1e-15))
+
+
+def aim(
+    target: npt.ArrayLike,
+    *,
+    w0: float | None = None,
+    speed: float | None = None,
+    stop_time: float | None = None,
+    max_speed: float | None = None,
+    max_spin: float | None = None,
+    count: int = DEFAULT_COUNT,
+    delta: float = 0.5,
+    decel: float = 1.0,
+    radius: float = 1.0,
+) -> Aim:
+    """Launches after which a puck comes to rest at a given displacement.
+
+    They are a family: one for each slip angle and sense of spin.  A spin, a speed or a stop time
+    picks one or two of it; without any, a sample is given.
+
+    Parameters
+    ----------
+    target : (x, y), m from the launch
+    w0 : spin wanted, rad/s, with its sign
+    speed : launch speed wanted, m/s
+    stop_time : duration wanted, s
+    max_speed, max_spin : bounds on speed (m/s) and on |spin| (rad/s)
+    count : how many slip angles a sample has, for each sense of spin
+        Equally spaced from the least spin that ``max_speed`` allows (0 without it) to ``max_spin``
+        (without it: to φ = 80°).
+    delta : dimensionless height 2fh/r, from 0 to 1
+    decel, radius : J = fg in m/s² and m, > 0
+
+    Returns
+    -------
+    Aim
+        With no launch, and the reason in ``answer``, where there is none.  Errors of about 1e-12 of
+        the distance; every launch is integrated and its ``miss`` reported.
+
+    Raises
+    ------
+    InputError
+        If an argument is not finite or outside its range, or two of ``w0``, ``speed`` and
+        ``stop_time`` are given.
+
+    Notes
+    -----
+    Displacement = (Q²/J) Rot(ψ)(X, ±Y)(φ, δ), so at each φ the place fixes Q and ψ.  As φ goes from
+    0 to π/2 the speed falls from √(2JD) to 0, spin and stop time grow without bound from 0 and
+    √(2D/J), D the distance: each value is met once for each sense of spin.
+
+    References
+    ----------
+    Salnikova, Treschev, Gallyamov 2012, section 2: the symmetry of the motion.
+
+    Examples
+    --------
+    >>> found = aim((2.0, 0.1), w0=5.0)
+    >>> found.v0.round(6).tolist(), found.stop_time.round(6).tolist()
+    ([[0.899671, 0.109151]], [3.927704])
+    """
+    place = finite_array("target", target, "m")
+    if place.shape != (2,):
+        raise InputError(f"target must be one place (x, y) in m, got shape {place.shape}")
+    x, y = place.tolist()
+    r, J = positive("radius", radius, "m"), positive("decel", decel, "m/s^2")
+    height = float(load_stop_table().checked_range(delta))
+    wishes = {"w0": w0, "speed": speed, "stop_time": stop_time}
+    wished = [name for name, value in wishes.items() if value is not None]
+    if len(wished) > 1:
+        raise InputError(f"{wished[0]} and {wished[1]} both pick a launch: give one of them")
+    fastest = math.inf if max_speed is None else positive("max_speed", max_speed, "m/s")
+    widest = math.inf if max_spin is None else positive("max_spin", max_spin, "rad/s")
+    if not isinstance(count, int) or not 1 <= count <= MAX_COUNT:
+        raise InputError(f"count must be a whole number from 1 to {MAX_COUNT}, got {count!r}")
+    distance = math.hypot(x, y)
+    family = _Family(distance, height, J)
+    slide, quickest = math.sqrt(2.0 * J * distance), math.sqrt(2.0 * distance / J)
+    us: list[float] = []
+    senses: tuple[float, ...] = (-1.0, 1.0)
+    answer = ""
+    if distance == 0.0:
+        answer = "the target is where the puck lies: launched with any spin alone it stays there"
+    elif w0 is not None:
+        spin = real("w0", w0, "rad/s")
+        senses = (math.copysign(1.0, spin),)
+        us = [-math.inf if spin == 0.0 else family.where(1, r * abs(spin))]
+    elif speed is not None:
+        wanted = positive("speed", speed, "m/s")
+        us = [family.where(0, wanted)]
+        if wanted > slide * (1.0 + _SLACK):
+            us, answer = (
+                [],
+                (
+                    f"no launch at {wanted:g} m/s stops {distance:g} m away: the fastest has "
+                    f"{slide:.9g} m/s and no spin"
+                ),
+            )
+    elif stop_time is not None:
+        wanted = positive("stop_time", stop_time, "s")
+        us = [family.where(2, wanted)]
+        if wanted < quickest * (1.0 - _SLACK):
+            us, answer = (
+                [],
+                (
+                    f"no launch stops {distance:g} m away after {wanted:g} s: the quickest takes "
+                    f"{quickest:.9g} s and has no spin"
+                ),
+            )
+    else:
+        least = -math.inf if fastest >= slide else family.where(0, fastest)
+        most = family.where(1, r * widest) if widest < math.inf else max(least + 1.0, _SAMPLED_U)
+        if least <= most:
+            first, last = np.arctan(np.exp([least, most])).tolist()
+            tangents = np.tan(np.linspace(first, last, count))
+            with np.errstate(divide="ignore"):
+                us = np.log(tangents).tolist()
+    allowed = [u for u in us if _within(family, u, fastest, r * widest)]
+    if distance > 0.0 and not allowed and not answer:
+        answer = _out_of_bounds(family, us, fastest, widest, r)
+    bearing = math.atan2(y, x)
+    launches = []
+    for u in allowed:
+        log_speed, log_rim, log_time, bend = family.at(u)
+        for sense in senses if u > -math.inf else (1.0,):
+            heading = bearing - sense * bend
+            v = math.exp(log_speed)
+            launches.append((
+                sense * math.exp(log_rim) / r,
+                v * math.cos(heading), v * math.sin(heading), math.exp(log_time),
+            ))  # fmt: skip
+    found = np.array(sorted(launches)).reshape(-1, 4)
+    miss = [_miss(launch, (x, y), height, J, r) for launch in found]
+    if not answer:
+        answer = f"{len(found)} launch{'' if len(found) == 1 else 'es'}"
+    return Aim(
+        (x, y), height, J, r, found[:, 1:3], found[:, 0], found[:, 3], np.array(miss), answer
+    )
+
+
+def _within(family: _Family, u: float, fastest: float, widest: float) -> bool:
+    log_speed, log_rim, _, _ = family.at(u)
+    return (
+        math.exp(log_speed) <= fastest * (1.0 + _SLACK)
+        and math.exp(log_rim) <= widest * (1.0 + _SLACK)
+    )  # fmt: skip
+
+
+def _out_of_bounds(
+    family: _Family, us: list[float], fastest: float, widest: float, radius: float
+) -> str:
+    """Why the bounds leave nothing, in a sentence."""
+    if us:
+        log_speed, log_rim, _, _ = family.at(us[0])
+        return (
+            f"the launch asked for takes {math.exp(log_speed):.9g} m/s and "
+            f"{math.exp(log_rim) / radius:.9g} rad/s: out of the bounds"
+        )
+    _, log_rim, _, _ = family.at(family.where(0, fastest))
+    return (
+        f"no launch stops {family.distance:g} m away with at most {fastest:g} m/s and "
+        f"{widest:g} rad/s: at {fastest:g} m/s it takes {math.exp(log_rim) / radius:.9g} rad/s"
+    )
+
+
+def _miss(
+    launch: FloatArray, target: tuple[float, float], delta: float, decel: float, radius: float
+) -> float:
+    """How far from the target the integrated motion ends."""
+    run = simulate(
+        (launch[1], launch[2]), launch[0], delta=delta, decel=decel, radius=radius, frames=1,
+        accuracy=_CHECK_ACCURACY,
+    )  # fmt: skip
+    return math.dist(run.stop_position, target)
