@@ -47,7 +47,7 @@ def limit_angles() -> Picture:
     """
     curve = Curve(HEIGHTS, limit_angle(HEIGHTS))
     return Picture(
-        "Slip angle at the stop, the same for every launch (Fig. 2)",
+        "Slip angle at the stop of every puck that slides and spins (Fig. 2)",
         [Panel("height δ = 2fh/r", "limit angle φ₀ / rad", [curve])],
     )
 
@@ -64,7 +64,7 @@ def paths(delta: float = 1.0) -> Picture:
     curves = []
     for speed, spin in LAUNCHES:
         run = simulate((speed, 0.0), spin, delta=delta, exact=True, frames=400)
-        curves.append(Curve(run.x, run.y, f"v = {speed:g}, ω = {spin:g}  ({run.regime})"))
+        curves.append(Curve(run.x, run.y, f"v = {speed:g}, ω = {spin:g} ({run.regime})"))
     return Picture(
         f"Paths of the centre: counter-clockwise spin bends them right (Fig. 3; δ = {delta:g})",
         [
@@ -93,7 +93,7 @@ def stops_against_spin(delta: float = 1.0) -> Picture:
     ]
     return Picture(
         f"Stop of a puck launched with v = (1, 0)√(rJ) (Fig. 4; δ = {delta:g})",
-        [Panel("launch spin ω(0) / √(J/r)", "at the stop", curves)],
+        [Panel("launch spin ω(0) / √(J/r)", "at the stop (dimensionless)", curves)],
     )
 
 

@@ -79,19 +79,17 @@ def equations(run: Simulate) -> list[Claim]:
     True
     """
     step = 1e-3
-    middle = np.linspace(0.1, 0.9, 17)
+    stencil = np.array([-2, -1, 0, 1, 2])
+    shares = np.linspace(0.1, 0.9, 17)[:, None] - step * stencil
     worst = 0.0
     for delta in DELTAS:
         for ratio in RATIOS:
-            around = [
-                launch(run, ratio, delta, heading=0.7, shares=middle - n * step)
-                for n in (-2, -1, 1, 2)
-            ]
-            width = 12.0 * step * around[0].stop_time
-            state = [np.column_stack([velocity(r), r.spin]) for r in around]
-            rate = (state[0] - 8.0 * state[1] + 8.0 * state[2] - state[3]) / width
-            here = launch(run, ratio, delta, heading=0.7, shares=middle)
-            linear, angular = acceleration(velocity(here), here.spin, delta)
+            motion = launch(run, ratio, delta, heading=0.7, shares=shares.ravel())
+            state = np.column_stack([velocity(motion), motion.spin]).reshape(-1, 5, 3)
+            difference = np.array([1.0, -8.0, 0.0, 8.0, -1.0]) / (12.0 * step * motion.stop_time)
+            rate = np.einsum("k,nkj->nj", difference, state)
+            here = state[:, 2]
+            linear, angular = acceleration(here[:, :2], here[:, 2], delta)
             worst = max(worst, float(np.abs(rate - np.column_stack([linear, angular])).max()))
     return [equal("eq. 6.2", "24 motions obey it (largest difference /J)", 0.0, worst, 1e-5)]
 

@@ -9,8 +9,7 @@ import numpy.typing as npt
 
 from puck_tables.motion.limits import curvature_slope, limit_ratio
 from puck_tables.paper.claim import Claim, equal, farthest, more
-from puck_tables.paper.root import root
-from puck_tables.paper.runs import ACCURACY, Simulate, curvature_radius, launch, slip_ratio
+from puck_tables.paper.runs import ACCURACY, Simulate, curvature_radius, launch
 from puck_tables.table.check import by_closed_form
 from puck_tables.trajectory import Trajectory, simulate
 
@@ -40,35 +39,27 @@ def to_stop(run: Trajectory) -> Complex:
 def similar_paths(run: Simulate) -> list[Claim]:
     """Proposition 8: paths of one type are similar; those of type D congruent.
 
-    A motion of twice the size, mirrored and turned, is followed until its ratio rω/v (type D: its
-    Q) is that of another at its launch.  From there on both paths must be one up to scale,
-    rotation and reflection, which the first points fix.
+    A motion, halfway to its stop, and another one launched there in its own way (with the same
+    rω/v, but smaller, mirrored and turned; type D: with the same Q) must go on along one path up to
+    scale, rotation and reflection, which the first point fixes.
 
     Examples
     --------
     >>> [claim.holds for claim in similar_paths(simulate)]
     [True, True, True]
     """
-    limit = float(limit_ratio(DELTA))
     found = []
-    for name, early, late in (("B", 8.0, 3.0), ("C", 0.1, 0.8), ("D", limit, limit)):
-        shares = np.linspace(1.0, 0.0, 51)
-        short = to_stop(launch(run, late, DELTA, shares=shares))
-
-        def past(share: float, early: float = early, late: float = late, name: str = name) -> float:
-            state = launch(run, -early, DELTA, speed=2.0, heading=0.7, shares=[share])
-            if name == "D":
-                return float(state.slip_speed[0]) - 1.0
-            return float(abs(slip_ratio(state)[0])) - late
-
-        meeting = root(past, 1e-3, 1.0)
-        long = to_stop(
-            launch(run, -early, DELTA, speed=2.0, heading=0.7, shares=meeting * shares)
-        ).conj()  # the mirror image: the spins are opposite
-        map_ = short[0] / long[0]
-        off = float(np.abs(map_ * long - short).max() / abs(short[0]))
+    shares = np.linspace(1.0, 0.0, 51)
+    limit = float(limit_ratio(DELTA))
+    for name, ratio in (("B", 8.0), ("C", 0.1), ("D", limit)):
+        one = launch(run, -ratio, DELTA, speed=2.0, heading=0.7, shares=0.5 * shares)
+        q = float(one.slip_speed[0]) if name == "D" else 1.0
+        other = launch(run, -float(np.tan(one.slip_angle[0])), DELTA, speed=q, shares=shares)
+        way, image = to_stop(other), to_stop(one).conj()  # mirrored: the spins are opposite
+        scale = way[0] / image[0]
+        off = float(np.abs(scale * image - way).max() / abs(way[0]))
         if name == "D":
-            off = max(off, abs(abs(map_) - 1.0))
+            off = max(off, abs(abs(scale) - 1.0))
         kind = "congruent" if name == "D" else "similar"
         found.append(
             equal(
