@@ -32,12 +32,12 @@ from puck_tables.errors import InputError
 def build_tables(
     accuracy: float | None, n_phi: int | None, n_delta: int | None, output: Path, overwrite: bool
 ) -> None:  # fmt: skip
-    r"""Tabulate the friction resultants and measure how exact the table is.
+    """Tabulate the friction resultants and measure how exact the table is.
 
     \b
     puck build-tables --accuracy 1e-8 -o coarse.h5
     puck build-tables --n-phi 1025 -o fine.h5
-    """
+    """  # noqa: D301 - click reads the backspace
     if output.suffix.lower() != ".h5":
         raise InputError(f"{output}: a table is an HDF5 file: give a name that ends in .h5")
     prepare_outputs(output, overwrite=overwrite)
