@@ -23,7 +23,7 @@ DIFFERS = 3
 )
 @click.option("--overwrite", is_flag=True, help="Replace output files that exist.")
 def paper(folder: Path, overwrite: bool) -> None:
-    r"""Draw the figures of the paper behind the model and check its claims.
+    """Draw the figures of the paper behind the model and check its claims.
 
     Salnikova, Treschev, Gallyamov 2012.  Writes figure_02.png to figure_11.png and claims.csv, and
     prints each claim beside what is computed here: "off X <= Y" is the deviation and how large it
@@ -32,7 +32,7 @@ def paper(folder: Path, overwrite: bool) -> None:
 
     \b
     puck paper --out paper
-    """
+    """  # noqa: D301 - click reads the backspace
     from puck_tables.plots import require_matplotlib
 
     require_matplotlib()

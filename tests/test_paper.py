@@ -13,10 +13,11 @@ from typing import Any
 import numpy as np
 import pytest
 from click.testing import CliRunner, Result
+from conftest import ROOT
 from puck_tables.cli.main import main
 from reference import REFERENCE_RUNS
 
-from puck_tables.contact import closed_form
+from puck_tables.contact import closed_form, quadrature
 from puck_tables.contact.integrals import PatchIntegrals
 from puck_tables.contact.resultants import Resultants
 from puck_tables.paper import ends, figures, friction, motions, patch, shapes
@@ -107,10 +108,12 @@ def changed_integrals(**change: Field) -> Callable[[Any], PatchIntegrals]:
         ({"c": lambda p, phi: p * (1.0 + 1e-12)}, {"table 4.6"}),
         ({"a": lambda p, phi: p - 1.25 * np.sin(2.0 * phi) ** 8}, {"Cor. 1", "Cor. 2"}),
         ({"d": lambda p, phi: -p}, {"table 4.6", "Cor. 1", "Cor. 2"}),
+        ({"b": lambda p, phi: p - 0.3 * np.cos(phi) ** 2}, {"Cor. 1", "Cor. 2"}),
         ({"b": lambda p, phi: p + 2e-4 * np.sin(2.0 * phi) ** 2}, {"Cor. 2"}),
         ({"c": lambda p, phi: p + 0.15 * np.sin(2.0 * phi) ** 2}, {"Cor. 3"}),
         ({"e": lambda p, phi: -p}, {"Cor. 3"}),
         ({"a": lambda p, phi: 1.01 * p}, {"Prop. 4", "eq. 5.3", "section 1"}),
+        ({"a": lambda p, phi: 0.99 * p}, {"Prop. 4", "eq. 5.3", "section 1"}),
         ({"b": lambda p, phi: 1.01 * p}, {"eq. 5.3"}),
     ],
 )
@@ -176,7 +179,11 @@ CHANGES: dict[str, tuple[Callable[..., Trajectory], set[str]]] = {
     "spin left over": (changed_motions(lambda r: replace(r, spin=r.spin + 1e-6)), {"Cor. 6"}),
     "slides after the spin": (
         changed_motions(lambda r: replace(r, spin=r.spin * (1.0 - r.time / r.stop_time))),
-        {"eq. 6.2", "result 5"},
+        {"eq. 6.2", "result 5", "result 4"},
+    ),
+    "spins after the slide": (
+        changed_motions(lambda r: replace(r, speed=r.speed * (1.0 - r.time / r.stop_time))),
+        {"eq. 6.2", "result 5", "result 4"},
     ),
     "never B or C": (changed_motions(lambda r: replace(r, regime="D")), {"result 3"}),
     "one direction favoured": (
@@ -200,6 +207,9 @@ def test_wrong_motions_are_found_out(name: str):
         (changed_motions(lambda r: replace(r, heading=0.0 * r.heading)), {"Cor. 13", "result 7"}),
         (changed_motions(lambda r: replace(r, spin=-r.spin)), {"result 4"}),
         (changed_motions(lambda r: replace(r, speed=r.speed**1.1)), {"result 4", "Cor. 9"}),
+        (changed_motions(lambda r: replace(r, spin=np.sin(r.w0) * r.speed)), {"result 5"}),
+        (changed_motions(lambda r: replace(r, slip_speed=r.slip_speed + 1e-6)), {"result 8"}),
+        (changed_motions(lambda r: replace(r, heading=r.heading - 1e-9 * r.time)), {"result 7"}),
     ],
 )
 def test_wrong_ends_are_found_out(run: Callable[..., Trajectory], places: set[str]):
@@ -220,6 +230,60 @@ def test_wrong_ends_are_found_out(run: Callable[..., Trajectory], places: set[st
 )
 def test_wrong_paths_are_found_out(run: Callable[..., Trajectory], places: set[str]):
     assert differing(shapes.claims(run)) >= places
+
+
+def test_times_that_do_not_grow_linearly_are_found_out():
+    run = changed_motions(lambda r: replace(r, stop_time=r.stop_time**3))
+    assert [c.holds for c in shapes.nearly_straight_lines(run)] == [False, True]
+
+
+@pytest.mark.parametrize(
+    ("target", "factor", "group", "places"),
+    [
+        ("paper.friction.limit_angle", 0.7, friction.claims, {"Cor. 8", "Prop. 6", "result 4"}),
+        ("paper.friction.limit_angle", 1.5, friction.claims, {"Cor. 8", "Prop. 6", "result 4"}),
+        ("paper.friction.curvature_slope", 1.1, friction.claims, {"result 8"}),
+        ("paper.friction.curvature_slope", 0.9, friction.claims, {"result 8"}),
+        ("paper.friction.approach_exponent", -1.0, friction.claims, {"Cor. 9"}),
+        ("paper.ends.curvature_slope", 1.001, ends.claims, {"Cor. 12"}),
+        ("paper.ends.approach_exponent", 1.01, ends.claims, {"Cor. 9", "Cor. 11", "Cor. 12"}),
+    ],
+)
+def test_wrong_limits_are_found_out(
+    monkeypatch: pytest.MonkeyPatch,
+    target: str,
+    factor: float,
+    group: Callable[[], list[Claim]],
+    places: set[str],
+):
+    from puck_tables.motion import limits
+
+    true = getattr(limits, target.rsplit(".", 1)[1])
+    monkeypatch.setattr(f"puck_tables.{target}", lambda delta: factor * true(delta))
+    assert differing(group()) >= places
+
+
+def test_a_wrong_quadrature_is_found_out(monkeypatch: pytest.MonkeyPatch):
+    true = quadrature.integrals
+    assert differing(patch.pressure_laws()) == set()
+    for factor in (0.7, 1.3):
+        monkeypatch.setattr(
+            quadrature, "integrals",
+            lambda *given, factor=factor: (p := true(*given))._replace(d=factor * p.d),
+        )  # fmt: skip
+        assert differing(patch.claims()) >= {"eq. 4.5", "section 3"}
+
+
+def test_a_field_without_the_symmetry_is_found_out(monkeypatch: pytest.MonkeyPatch):
+    uneven = changed_friction(parallel=lambda r, phi: r * (1.0 + 1e-9 * phi))
+    monkeypatch.setattr(motions, "by_closed_form", uneven)
+    assert differing(motions.symmetry(simulate)) == {"Prop. 5"}
+
+
+def test_the_readme_counts_right(claims: list[Claim]):
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert f"{len(claims)} of its claims" in text
+    assert f"{sum(claim.verdict == 'ok' for claim in claims)} claims hold" in text
 
 
 # Figures

@@ -191,15 +191,15 @@ def unique_limit(friction: Friction) -> list[Claim]:
     """
     difference = excess(friction, PHI[:, None], HEIGHTS)
     changes = (np.diff(np.sign(difference), axis=0) != 0.0).sum(axis=0)
-    distance = np.abs(PHI[:, None] - limit_angle(HEIGHTS))
+    before = limit_angle(HEIGHTS) - PHI[:, None]
     slope = np.diff(difference, axis=0) / np.diff(PHI)[:, None]
-    near = distance < 0.2
+    near = np.abs(before) < 0.2
     worst = changes[np.argmax(np.abs(changes - 1))]
     return [
         equal("Prop. 6", "one zero in (0, pi/2) for each of 101 delta (changes)", 1.0,
               float(worst), 0.0),
-        more("Prop. 6", "|rho_par - rho_omega| where |phi - phi0| >= 0.2", 0.0,
-             float(np.abs(difference[~near]).min())),
+        more("Prop. 6", "> 0 before phi0 - 0.2, < 0 beyond phi0 + 0.2 (smallest)", 0.0,
+             float((np.sign(before) * difference)[~near].min())),
         less("Prop. 6", "its derivative where |phi - phi0| < 0.2 (largest)", 0.0,
              float(slope[near[1:] & near[:-1]].max())),
         less("Prop. 6", "its derivative at phi0 (largest)", 0.0, float(slope_at_limit(friction))),

@@ -7,8 +7,9 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.paper.claim import Claim, equal, less, more
+from puck_tables.paper.claim import Claim, equal, farthest, less, more
 from puck_tables.paper.friction import decline, excess
+from puck_tables.paper.root import power
 from puck_tables.paper.runs import (
     ACCURACY,
     Simulate,
@@ -251,19 +252,21 @@ def simultaneous_stop(run: Simulate) -> list[Claim]:
 
     Examples
     --------
-    >>> [round(claim.computed, 2) for claim in simultaneous_stop(simulate)]
-    [0.61, 0.89]
+    >>> [round(claim.computed, 4) for claim in simultaneous_stop(simulate)]
+    [1.0, 1.0]
     """
-    sliding, spinning = math.inf, math.inf
+    sliding, spinning = [], []
     for delta in DELTAS:
         for ratio in (0.1, 1.0, 10.0):
-            motion = launch(run, ratio, delta, shares=np.logspace(-6.0, -9.0, 4))
-            sliding = min(sliding, float((motion.speed / time_left(motion)).min()))
-            spinning = min(spinning, float((motion.spin / time_left(motion)).min()))
+            motion = launch(run, ratio, delta, shares=[1e-7, 1e-9])
+            sliding.append(power(time_left(motion), motion.speed))
+            spinning.append(power(time_left(motion), motion.spin))
     return [
-        more("result 4", "v ends when w does: v/(t0 - t)/J near t0 (smallest)", 0.0, sliding),
-        more("result 4", "w ends when v does: r w/(t0 - t)/J (smallest)", 0.0, spinning),
-    ]
+        equal("result 4", "v vanishes with w: power of t0 - t in v (9 motions)", 1.0,
+              farthest(sliding, 1.0), 1e-3),
+        equal("result 4", "w vanishes with v: power of t0 - t in w (9 motions)", 1.0,
+              farthest(spinning, 1.0), 1e-3),
+    ]  # fmt: skip
 
 
 def bending(motions: list[Trajectory]) -> list[Claim]:

@@ -218,7 +218,7 @@ def positive_pressure(integrals: Integrals) -> list[Claim]:
     reserve = pressure_reserve(integrals, phi, delta)
     away = 1.0 - delta**2 + np.sin(phi) ** 2
     share = (reserve[away > 0.0] / away[away > 0.0]).min()
-    beyond = 1.0 - tilt(integrals, 0.0, 1.001)
+    beyond = (1.0 - tilt(integrals, 0.0, np.linspace(1.001, 4.0, 101))).max()
     return [
         at_least("Prop. 4", "pressure >= 0 if delta <= 1 (smallest of Fig. 8)", 0.0,
                  float(reserve.min()), 1e-14),
@@ -226,7 +226,8 @@ def positive_pressure(integrals: Integrals) -> list[Claim]:
              float(share)),
         equal("Prop. 4", "there it is zero at one point of the rim (tilt)", 1.0,
               float(tilt(integrals, 0.0, 1.0)), 1e-14),
-        less("Prop. 4", "negative somewhere at phi = 0 if delta = 1.001", 0.0, float(beyond)),
+        less("Prop. 4", "negative somewhere at phi = 0, delta >= 1.001 (largest)", 0.0,
+             float(beyond)),
     ]  # fmt: skip
 
 
