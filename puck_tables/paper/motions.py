@@ -252,7 +252,7 @@ def simultaneous_stop(run: Simulate) -> list[Claim]:
 
     Examples
     --------
-    >>> [round(claim.computed, 4) for claim in simultaneous_stop(simulate)]
+    >>> [round(claim.computed, 3) for claim in simultaneous_stop(simulate)]
     [1.0, 1.0]
     """
     sliding, spinning = [], []
