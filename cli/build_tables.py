@@ -40,13 +40,13 @@ def build_tables(
     kind: str, accuracy: float | None, n_phi: int | None, n_delta: int | None, cells: int | None,
     output: Path | None, overwrite: bool,
 ) -> None:  # fmt: skip
-    r"""Tabulate friction resultants or stops, and measure how exact the table is.
+    """Tabulate friction resultants or stops, and measure how exact the table is.
 
     \b
     puck build-tables --accuracy 1e-8 -o coarse.h5
     puck build-tables --n-phi 1025 -o fine.h5
     puck build-tables --kind stops --accuracy 1e-11 -o fine-stops.h5
-    """
+    """  # noqa: D301 - click reads the backspace
     options = {"--accuracy": accuracy, "--n-phi": n_phi, "--n-delta": n_delta, "--cells": cells}
     given = {name: value for name, value in options.items() if value is not None}
     for name in ("--n-phi", "--n-delta") if kind == "stops" else ("--cells",):

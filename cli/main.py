@@ -1,7 +1,7 @@
 """The command ``puck``: its commands, and how it ends when something is wrong.
 
 Exit codes: 0 all well; 1 a file or an optional package is at fault; 2 bad input; 3 a table failed
-its validation; 130 interrupted.
+its validation or a claim of the paper differs; 130 interrupted.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from typing import Any
 import click
 from puck_tables.cli.build_tables import build_tables
 from puck_tables.cli.info import info
+from puck_tables.cli.paper import paper
 from puck_tables.cli.simulate import simulate
 from puck_tables.cli.sweep import sweep
 from puck_tables.cli.validate import validate
@@ -52,5 +53,5 @@ def main() -> None:
     """Motion of a flat puck that slides and spins under dry friction, until it stops."""
 
 
-for _command in (simulate, sweep, build_tables, validate, info):
+for _command in (simulate, sweep, build_tables, validate, info, paper):
     main.add_command(_command)

@@ -64,13 +64,13 @@ def simulate(
     method: str, exact: bool, table_path: Path | None, as_json: bool, output: Path | None,
     plot: Path | None, overwrite: bool,
 ) -> None:  # fmt: skip
-    r"""Slide one puck until it stops.
+    """Slide one puck until it stops.
 
     \b
     puck simulate --v0 1,0 --w0 5
     puck simulate --v0 2,0 --w0 30 --radius 0.0381 --height 0.0254 --friction 0.1
     puck simulate --v0 1,0 --w0 5 --frames 200 -o run.csv --plot run.png
-    """
+    """  # noqa: D301 - click reads the backspace
     r, height_ratio, J = puck_and_floor(radius, height, friction, gravity, delta, decel)
     if exact and table_path is not None:
         raise InputError("--exact and --table clash: closed forms need no table")

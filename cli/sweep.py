@@ -62,7 +62,7 @@ def sweep(
     decel: float | None, accuracy: float, threads: int | None, table_path: Path | None,
     output: Path | None, plot: Path | None, overwrite: bool,
 ) -> None:  # fmt: skip
-    r"""Map where and when pucks stop.
+    """Map where and when pucks stop.
 
     Ranges are START:STOP:COUNT, ends included; what is not ranged is fixed.  Without --w0,
     --speed and --v0: speeds from 0 to 2 m/s by spins from -4 to 4 rad/s.
@@ -71,7 +71,7 @@ def sweep(
     puck sweep --plot map.png
     puck sweep --v0 1,0 --w0 0:10:101 -o stops.csv
     puck sweep --speed 0:2:201 --w0 -20:20:401 --delta 0:1:5 -o map.h5
-    """
+    """  # noqa: D301 - click reads the backspace
     r, height_ratio, J = puck_and_floor(radius, height, friction, gravity, delta, decel)
     if v0 is not None and speed is not None:
         raise InputError("--v0 and --speed clash: both give the launch velocity")

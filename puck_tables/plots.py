@@ -21,7 +21,8 @@ if TYPE_CHECKING:
 
 PICTURE_KINDS = (".png", ".svg", ".pdf")
 
-_BLUE, _ORANGE, _GREEN, _GREY = "#0b5fa5", "#d9660c", "#2f8f3a", "#8a8a8a"
+BLUE, ORANGE, GREEN, GREY = "#0b5fa5", "#d9660c", "#2f8f3a", "#8a8a8a"
+COLORS = (BLUE, ORANGE, GREEN, "#8b2fa0", "#b3202a")
 _MAP_LABELS = {
     "stop_time": "stop time / s",
     "stop_x": "stop x / m",
@@ -76,32 +77,32 @@ def plot_trajectory(run: Trajectory, path: str | Path, overwrite: bool = False) 
     ...     plot_trajectory(simulate((1.0, 0.0), 5.0), folder + "/run.png")
     """
     kind = kind_of(path, PICTURE_KINDS)
-    figure = _figure(9.5, 7.6)
+    figure = canvas(9.5, 7.6)
     grid = figure.add_gridspec(2, 2, height_ratios=(1.15, 1.0))
     _draw_path(figure.add_subplot(grid[0, :]), run)
     speeds = figure.add_subplot(grid[1, 0])
-    speeds.plot(run.time, run.speed, color=_BLUE, label="speed v")
-    speeds.plot(run.time, run.radius * run.spin, color=_ORANGE, label="rim speed rω")
-    speeds.axhline(0.0, color=_GREY, linewidth=0.6)
+    speeds.plot(run.time, run.speed, color=BLUE, label="speed v")
+    speeds.plot(run.time, run.radius * run.spin, color=ORANGE, label="rim speed rω")
+    speeds.axhline(0.0, color=GREY, linewidth=0.6)
     speeds.set_ylabel("m/s")
     speeds.set_xlabel("time / s")
     speeds.legend(frameon=False)
     ratio = figure.add_subplot(grid[1, 1], sharex=speeds)
     moving = run.speed > 0.0
     if moving.any() and run.w0 != 0.0:
-        ratio.plot(run.time[moving], np.tan(run.slip_angle[moving]), color=_GREEN)
+        ratio.plot(run.time[moving], np.tan(run.slip_angle[moving]), color=GREEN)
         limit = math.copysign(math.tan(run.limit_angle), run.w0)
-        ratio.axhline(limit, color=_GREY, linestyle="--", linewidth=1.0)
+        ratio.axhline(limit, color=GREY, linestyle="--", linewidth=1.0)
         above = limit > np.tan(run.slip_angle[moving]).max()
         ratio.annotate(
             f"limit {limit:.3f}", (0.02, limit), xycoords=("axes fraction", "data"),
             xytext=(0, -3 if above else 3), va="top" if above else "bottom",
-            textcoords="offset points", color=_GREY, fontsize=9,
+            textcoords="offset points", color=GREY, fontsize=9,
         )  # fmt: skip
     else:
         ratio.text(
             0.5, 0.5, "spin only" if run.w0 != 0.0 else "no spin",
-            ha="center", transform=ratio.transAxes, color=_GREY,
+            ha="center", transform=ratio.transAxes, color=GREY,
         )  # fmt: skip
     ratio.set_ylabel("rω/v")
     ratio.set_xlabel("time / s")
@@ -109,7 +110,7 @@ def plot_trajectory(run: Trajectory, path: str | Path, overwrite: bool = False) 
         f"v₀ = ({run.v0[0]:g}, {run.v0[1]:g}) m/s, ω₀ = {run.w0:g} rad/s, r = {run.radius:g} m, "
         f"δ = {run.delta:.4g}, J = {run.decel:.4g} m/s²"
     )
-    _save(figure, path, kind, overwrite)
+    save(figure, path, kind, overwrite)
 
 
 def plot_map(stops: StopMap, path: str | Path, overwrite: bool = False) -> None:
@@ -151,7 +152,7 @@ def plot_map(stops: StopMap, path: str | Path, overwrite: bool = False) -> None:
         fixed[name] = float(nodes[middle])
         axes.pop(name)
         values = {key: value[middle] for key, value in values.items()}
-    figure = _figure(11.0, 6.4)
+    figure = canvas(11.0, 6.4)
     panels = figure.subplots(2, 3, sharex=True)
     for panel, (name, value) in zip(panels.flat, values.items(), strict=True):
         if len(axes) == 1:
@@ -162,13 +163,13 @@ def plot_map(stops: StopMap, path: str | Path, overwrite: bool = False) -> None:
     for panel in panels[-1]:
         panel.set_xlabel(_AXIS_LABELS[across])
     figure.suptitle(_fixed_title(fixed))
-    _save(figure, path, kind, overwrite)
+    save(figure, path, kind, overwrite)
 
 
 def _draw_path(axes: Axes, run: Trajectory) -> None:
     from matplotlib.patches import Circle
 
-    axes.plot(run.x, run.y, color=_BLUE, linewidth=1.6)
+    axes.plot(run.x, run.y, color=BLUE, linewidth=1.6)
     extent = max(np.ptp(run.x), np.ptp(run.y))
     true_size = extent == 0.0 or 0.02 * extent <= run.radius <= 0.12 * extent
     radius = run.radius if true_size else 0.045 * extent
@@ -177,13 +178,13 @@ def _draw_path(axes: Axes, run: Trajectory) -> None:
     chosen = np.unique(np.searchsorted(travelled, wanted).clip(0, run.time.size - 1))
     for index in chosen:
         x, y, angle = run.x[index], run.y[index], run.orientation[index]
-        axes.add_patch(Circle((x, y), radius, fill=False, color=_GREY, linewidth=0.9))
+        axes.add_patch(Circle((x, y), radius, fill=False, color=GREY, linewidth=0.9))
         axes.plot(
             [x, x + radius * math.cos(angle)], [y, y + radius * math.sin(angle)],
-            color=_ORANGE, linewidth=1.4,
+            color=ORANGE, linewidth=1.4,
         )  # fmt: skip
-    axes.plot(run.x[0], run.y[0], "o", color=_BLUE, markersize=4)
-    axes.plot(*run.stop_position, "s", color=_BLUE, markersize=5)
+    axes.plot(run.x[0], run.y[0], "o", color=BLUE, markersize=4)
+    axes.plot(*run.stop_position, "s", color=BLUE, markersize=5)
     axes.set_aspect("equal", adjustable="datalim")
     axes.margins(0.12)
     axes.set_xlabel("x / m")
@@ -193,7 +194,7 @@ def _draw_path(axes: Axes, run: Trajectory) -> None:
 
 
 def _draw_curve(axes: Axes, axis: tuple[str, Any], name: str, value: Any) -> None:
-    axes.plot(axis[1], value, color=_BLUE, marker="." if axis[1].size < 30 else "")
+    axes.plot(axis[1], value, color=BLUE, marker="." if axis[1].size < 30 else "")
     axes.set_ylabel(_MAP_LABELS[name])
     axes.grid(color="#dddddd", linewidth=0.6)
 
@@ -220,14 +221,39 @@ def _fixed_title(fixed: dict[str, float]) -> str:
     return "stops at " + ", ".join(parts)
 
 
-def _figure(width: float, height: float) -> Figure:
+def canvas(width: float, height: float) -> Figure:
+    """An empty figure; sizes in inches.
+
+    Raises
+    ------
+    MissingExtraError
+        If matplotlib is not installed.
+
+    Examples
+    --------
+    >>> canvas(4.0, 3.0).axes
+    []
+    """
     require_matplotlib()
     from matplotlib.figure import Figure
 
     return Figure(figsize=(width, height), layout="constrained")
 
 
-def _save(figure: Figure, path: str | Path, kind: str, overwrite: bool) -> None:
+def save(figure: Figure, path: str | Path, kind: str, overwrite: bool) -> None:
+    """Write a figure whole or not at all; ``kind`` is the ending of the file.
+
+    Raises
+    ------
+    OutputError
+        If the file exists (without ``overwrite``) or cannot be written.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     save(canvas(4.0, 3.0), folder + "/empty.png", ".png", overwrite=False)
+    """
     buffer = io.BytesIO()
     figure.savefig(buffer, format=kind[1:], dpi=130)
     write_bytes(path, buffer.getvalue(), overwrite)

@@ -98,7 +98,7 @@ def flow(
     --------
     >>> states = flow((1.0, 0.0), 5.0, [2.0, 0.0, 99.0])
     >>> states.x.round(6).tolist(), states.spin.round(6).tolist()
-    ([1.623484, 0.0, 2.213952], [2.338498, 5.0, 0.0])
+    ([1.590682, 0.0, 2.213952], [2.426862, 5.0, 0.0])
     """
     from puck_tables.similarity.curve_lookup import (
         PSI,

@@ -1,0 +1,119 @@
+"""Pictures made of panels of curves: plain data in, one file out."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables.plots import COLORS, GREY, PICTURE_KINDS, canvas, save
+from puck_tables.result_file import kind_of
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Curve:
+    """A curve, or points if it has a ``marker`` (``hollow`` or not).
+
+    ``shade`` from 0 to 1 gives its place in a family of curves, light to dark; without it colours
+    go by turns.  A ``dashed`` curve is a thin grey line for reference.
+    """
+
+    x: FloatArray
+    y: FloatArray
+    label: str = ""
+    shade: float | None = None
+    dashed: bool = False
+    marker: str = ""
+    hollow: bool = False
+
+
+@dataclass(frozen=True)
+class Panel:
+    """Curves over common axes, whose labels say the units.
+
+    ``x_ticks`` names places on the x axis.
+    """
+
+    x_label: str
+    y_label: str
+    curves: Sequence[Curve]
+    title: str = ""
+    x_ticks: dict[float, str] | None = None
+
+
+@dataclass(frozen=True)
+class Picture:
+    """Panels one below the other under a title, ``height`` inches each."""
+
+    title: str
+    panels: Sequence[Panel]
+    height: float = 4.2
+
+
+def draw(picture: Picture, path: str | Path, overwrite: bool = False) -> None:
+    """Draw a picture.
+
+    Parameters
+    ----------
+    picture : Picture
+    path : .png, .svg or .pdf
+    overwrite : whether an existing file may be replaced
+
+    Raises
+    ------
+    InputError
+        If the ending is not known.
+    MissingExtraError
+        If matplotlib is not installed.
+    OutputError
+        If the file exists or cannot be written.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> line = Curve(np.array([0.0, 1.0]), np.array([0.0, 2.0]), "twice")
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     draw(Picture("A line", [Panel("x / m", "y / m", [line])]), folder + "/line.png")
+    """
+    kind = kind_of(path, PICTURE_KINDS)
+    count = len(picture.panels)
+    figure = canvas(8.6, picture.height * count)
+    for row, panel in enumerate(picture.panels, start=1):
+        axes = figure.add_subplot(count, 1, row)
+        for number, curve in enumerate(panel.curves):
+            axes.plot(curve.x, curve.y, label=curve.label or None, **_look(curve, number))
+        axes.set_xlabel(panel.x_label)
+        axes.set_ylabel(panel.y_label)
+        axes.set_title(panel.title, fontsize=10)
+        axes.margins(y=0.08)
+        axes.grid(color="#e4e4e4", linewidth=0.6)
+        if panel.x_ticks is not None:
+            axes.set_xticks(list(panel.x_ticks), list(panel.x_ticks.values()))
+        low, high = axes.get_ylim()
+        if low < 0.0 < high:
+            axes.axhline(0.0, color=GREY, linewidth=0.8, zorder=1)
+        if any(curve.label for curve in panel.curves):
+            axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
+    figure.suptitle(picture.title)
+    save(figure, path, kind, overwrite)
+
+
+def _look(curve: Curve, number: int) -> dict[str, Any]:
+    """How matplotlib is to draw a curve, the ``number``-th of its panel."""
+    if curve.dashed:
+        return {"color": GREY, "linestyle": "--", "linewidth": 1.2}
+    color: Any = COLORS[number % len(COLORS)]
+    if curve.shade is not None:
+        light, dark = np.array([0.62, 0.80, 0.94]), np.array([0.02, 0.17, 0.38])
+        color = tuple(light + curve.shade * (dark - light))
+    if curve.marker:
+        face = "white" if curve.hollow else color
+        return {"color": color, "linestyle": "", "marker": curve.marker, "markersize": 8,
+                "markerfacecolor": face, "zorder": 3}  # fmt: skip
+    return {"color": color, "linewidth": 1.8}

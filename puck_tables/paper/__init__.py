@@ -1,0 +1,1 @@
+"""The paper behind the model, reproduced: figures and claims from the program's functions."""

@@ -1,0 +1,104 @@
+"""Motions to put claims to: launches by slip ratio, and what is read off their states."""
+
+from __future__ import annotations
+
+import math
+from typing import Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables.trajectory import Trajectory
+
+FloatArray = npt.NDArray[np.float64]
+
+ACCURACY = 1e-13
+
+
+class Simulate(Protocol):
+    """What :func:`puck_tables.trajectory.simulate` does, or something put to the test."""
+
+    def __call__(  # noqa: D102
+        self, v0: npt.ArrayLike, w0: float, *, delta: float, exact: bool, accuracy: float,
+        frames: int | None = None, times: npt.ArrayLike | None = None,
+    ) -> Trajectory: ...  # fmt: skip
+
+
+def launch(
+    simulate: Simulate, ratio: float, delta: float, *, speed: float = 1.0, heading: float = 0.0,
+    shares: npt.ArrayLike | None = None,
+) -> Trajectory:  # fmt: skip
+    """The motion (r = J = 1) launched with rω/v = ratio and Q = speed.
+
+    ``shares`` are the times of its states, as shares of the stop time still left; 101 equally
+    spaced states by default.
+
+    Examples
+    --------
+    >>> from puck_tables import simulate
+    >>> launch(simulate, 5.0, 0.5, shares=[1.0, 0.0]).slip_speed.tolist()
+    [1.0, 0.0]
+    """
+    v = speed / math.hypot(1.0, ratio)
+    spin = ratio * v if math.isfinite(ratio) else speed
+    v0 = (v * math.cos(heading), v * math.sin(heading))
+
+    def run(frames: int | None = None, times: npt.ArrayLike | None = None) -> Trajectory:
+        return simulate(
+            v0, spin, delta=delta, exact=True, accuracy=ACCURACY, frames=frames, times=times
+        )
+
+    if shares is None:
+        return run()
+    return run(times=run(frames=1).stop_time * (1.0 - np.asarray(shares)))
+
+
+def velocity(run: Trajectory) -> FloatArray:
+    """(v_x, v_y) of every state, shape (n, 2).
+
+    Examples
+    --------
+    >>> from puck_tables import simulate
+    >>> velocity(simulate((3.0, 4.0), 0.0))[0].round(12).tolist()
+    [3.0, 4.0]
+    """
+    return np.stack([run.speed * np.cos(run.heading), run.speed * np.sin(run.heading)], axis=-1)
+
+
+def time_left(run: Trajectory) -> FloatArray:
+    """How long before the stop each state is.
+
+    Examples
+    --------
+    >>> from puck_tables import simulate
+    >>> time_left(simulate((1.0, 0.0), 0.0, times=[0.25])).tolist()
+    [0.75]
+    """
+    return run.stop_time - run.time
+
+
+def slip_ratio(run: Trajectory) -> FloatArray:
+    """ε = rω/v of every state; the puck must be moving.
+
+    Examples
+    --------
+    >>> from puck_tables import simulate
+    >>> float(slip_ratio(simulate((1.0, 0.0), 5.0, frames=1))[0].round(12))
+    5.0
+    """
+    return run.radius * run.spin / run.speed  # tan φ would lose digits next to π/2
+
+
+def curvature_radius(friction_across: FloatArray, run: Trajectory) -> FloatArray:
+    """R = Q² cos φ/(sin φ ρ_⊥ J), from mv²/R = F_⊥; ``friction_across`` is ρ_⊥ at the states.
+
+    Examples
+    --------
+    >>> from puck_tables import resultants, simulate
+    >>> run = simulate((1.0, 0.0), 1.0, delta=1.0, frames=1)
+    >>> across = resultants(run.slip_angle, 1.0).perpendicular
+    >>> float(curvature_radius(across, run)[0].round(6))  # Q² = 2, ρ_⊥ = 0.37941 at π/4
+    5.271341
+    """
+    phi = run.slip_angle
+    return np.asarray(run.slip_speed**2 * np.cos(phi) / (np.sin(phi) * friction_across * run.decel))
