@@ -10,6 +10,7 @@ import sys
 from typing import Any
 
 import click
+from puck_tables.cli.aim import aim
 from puck_tables.cli.build_tables import build_tables
 from puck_tables.cli.info import info
 from puck_tables.cli.paper import paper
@@ -53,5 +54,5 @@ def main() -> None:
     """Motion of a flat puck that slides and spins under dry friction, until it stops."""
 
 
-for _command in (simulate, sweep, build_tables, validate, info, paper):
+for _command in (simulate, sweep, aim, build_tables, validate, info, paper):
     main.add_command(_command)

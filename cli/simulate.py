@@ -92,7 +92,7 @@ def simulate(
         v0, w0, delta=height_ratio, decel=J, radius=r,
         mass=DEFAULT_MASS if mass is None else mass,
         frames=frames, times=times, accuracy=accuracy, method=method, exact=exact,
-        table=None if exact else open_table(table_path),
+        table=None if table_path is None else open_table(table_path),
     )  # fmt: skip
     if output is not None:
         save_trajectory(run, output, overwrite)

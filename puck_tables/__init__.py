@@ -15,18 +15,20 @@ from typing import TYPE_CHECKING, Any
 from puck_tables._version import __version__
 
 if TYPE_CHECKING:
+    from puck_tables.aiming import Aim, aim
     from puck_tables.contact.resultants import Resultants, is_full_contact
     from puck_tables.kernels.closed_form import resultants
     from puck_tables.motion.limits import (
         approach_exponent,
         curvature_slope,
+        elementary_stop_time,
         limit_angle,
         limit_ratio,
         regime,
     )
-    from puck_tables.plots import plot_map, plot_trajectory
+    from puck_tables.plots import plot_aim, plot_map, plot_trajectory
     from puck_tables.puck import similarity_parameters
-    from puck_tables.result_file import save_map, save_trajectory
+    from puck_tables.result_file import save_aim, save_map, save_trajectory
     from puck_tables.similarity.build import build_stop_table
     from puck_tables.similarity.check import validate_stops
     from puck_tables.similarity.file import load_stop_table, save_stop_table
@@ -41,17 +43,22 @@ if TYPE_CHECKING:
     from puck_tables.trajectory import Trajectory, simulate
 
 _HOMES = {
+    "Aim": "aiming",
+    "aim": "aiming",
     "Resultants": "contact.resultants",
     "is_full_contact": "contact.resultants",
     "resultants": "kernels.closed_form",
     "approach_exponent": "motion.limits",
     "curvature_slope": "motion.limits",
+    "elementary_stop_time": "motion.limits",
     "limit_angle": "motion.limits",
     "limit_ratio": "motion.limits",
     "regime": "motion.limits",
+    "plot_aim": "plots",
     "plot_map": "plots",
     "plot_trajectory": "plots",
     "similarity_parameters": "puck",
+    "save_aim": "result_file",
     "save_map": "result_file",
     "save_trajectory": "result_file",
     "Trajectory": "trajectory",
@@ -76,6 +83,7 @@ _HOMES = {
 }
 
 __all__ = [
+    "Aim",
     "CheckReport",
     "Resultants",
     "States",
@@ -85,20 +93,24 @@ __all__ = [
     "Table",
     "Trajectory",
     "__version__",
+    "aim",
     "approach_exponent",
     "build_stop_table",
     "build_table",
     "curvature_slope",
+    "elementary_stop_time",
     "flow",
     "is_full_contact",
     "limit_angle",
     "limit_ratio",
     "load_stop_table",
     "load_table",
+    "plot_aim",
     "plot_map",
     "plot_trajectory",
     "regime",
     "resultants",
+    "save_aim",
     "save_map",
     "save_stop_table",
     "save_table",

@@ -30,8 +30,8 @@ class Aim:
 
     Arrays (n,), ordered by spin, the most clockwise first: ``v0`` (n, 2) m/s, ``w0`` rad/s,
     ``speed`` m/s, ``direction`` rad, ``slip_angle`` φ rad, ``stop_time`` s, and ``miss`` m: how far
-    from the target an integration of the launch ends.  ``answer`` is one sentence: what was found, or why
-    nothing can be.
+    from the target an integration of the launch ends.  ``answer`` is one sentence: what was found,
+    or why nothing can be.
     """
 
     target: tuple[float, float]

@@ -9,9 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from puck_tables.aiming import Aim
 from puck_tables.errors import InputError, MissingExtraError
 from puck_tables.result_file import kind_of
 from puck_tables.safe_write import write_bytes
+from puck_tables.states import flow
 from puck_tables.stop_map import StopMap
 from puck_tables.trajectory import Trajectory
 
@@ -163,6 +165,70 @@ def plot_map(stops: StopMap, path: str | Path, overwrite: bool = False) -> None:
     for panel in panels[-1]:
         panel.set_xlabel(_AXIS_LABELS[across])
     figure.suptitle(_fixed_title(fixed))
+    save(figure, path, kind, overwrite)
+
+
+def plot_aim(found: Aim, path: str | Path, overwrite: bool = False) -> None:
+    """Draw the paths of an aim to their target, and their speeds against their spins.
+
+    Parameters
+    ----------
+    found : Aim
+        With at least one launch.
+    path : .png, .svg or .pdf
+    overwrite : whether an existing file may be replaced
+
+    Raises
+    ------
+    InputError
+        If there is no launch to draw, or the ending is not known.
+    MissingExtraError
+        If matplotlib is not installed.
+    OutputError
+        If the file exists or cannot be written.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from puck_tables import aim
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     plot_aim(aim((2.0, 0.1)), folder + "/aim.png")
+    """
+    kind = kind_of(path, PICTURE_KINDS)
+    if found.w0.size == 0:
+        raise InputError(f"there is nothing to draw: {found.answer}")
+    figure = canvas(10.0, 4.4)
+    paths, launches = figure.subplots(1, 2, width_ratios=(1.7, 1.0))
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import Normalize
+
+    largest = float(np.abs(found.w0).max()) or 1.0
+    colours = ScalarMappable(Normalize(-largest, largest), "coolwarm")
+    shares = np.linspace(0.0, 1.0, 200)
+    states = flow(
+        found.v0[:, None, :], found.w0[:, None], found.stop_time[:, None] * shares,
+        delta=found.delta, decel=found.decel, radius=found.radius,
+    )  # fmt: skip
+    for n, w0 in enumerate(found.w0):
+        paths.plot(states.x[n], states.y[n], color=colours.to_rgba(w0), linewidth=1.3)
+    paths.plot(0.0, 0.0, "o", color=GREY, markersize=5)
+    paths.plot(*found.target, "x", color="black", markersize=8, markeredgewidth=1.8, zorder=5)
+    for text, place in (("launch", (0.0, 0.0)), ("target", found.target)):
+        paths.annotate(
+            text, place, xytext=(0, -17), textcoords="offset points", ha="center", fontsize=9
+        )
+    paths.set(xlabel="x / m", ylabel="y / m (not to scale)")
+    paths.margins(0.12, 0.2)
+    figure.colorbar(colours, ax=paths, label="launch spin ω₀ / rad/s")
+    for sense in (found.w0 <= 0.0, found.w0 >= 0.0):
+        launches.plot(found.w0[sense], found.speed[sense], color=GREY, linewidth=0.8, zorder=1)
+    launches.scatter(found.w0, found.speed, c=colours.to_rgba(found.w0), zorder=2)
+    launches.set(xlabel="launch spin ω₀ / rad/s", ylabel="launch speed v₀ / m/s")
+    launches.set_ylim(bottom=0.0)
+    figure.suptitle(
+        f"launches that stop at ({found.target[0]:g}, {found.target[1]:g}) m: "
+        f"r = {found.radius:g} m, δ = {found.delta:.4g}, J = {found.decel:.4g} m/s²"
+    )
     save(figure, path, kind, overwrite)
 
 

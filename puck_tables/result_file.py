@@ -11,12 +11,16 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from puck_tables._version import __version__
+from puck_tables.aiming import Aim
 from puck_tables.errors import InputError
 from puck_tables.safe_write import write_bytes
 from puck_tables.stop_map import StopMap
 from puck_tables.trajectory import Trajectory
+
+FloatArray = npt.NDArray[np.float64]
 
 TRAJECTORY_COLUMNS = {
     "time": ("s", "time since the launch"),
@@ -86,6 +90,7 @@ def kind_of(path: str | Path, allowed: tuple[str, ...]) -> str:
 
 TRAJECTORY_KINDS = (".h5", ".csv", ".jsonl")
 MAP_KINDS = (".h5", ".csv")
+AIM_KINDS = (".csv",)
 
 
 def save_trajectory(run: Trajectory, path: str | Path, overwrite: bool = False) -> None:
@@ -173,6 +178,55 @@ def map_as_csv(stops: StopMap) -> str:
     columns += [np.ravel(getattr(stops, name)).tolist() for name in MAP_COLUMNS]
     names = {name: MAP_AXES[name] for name in stops.axes}
     return _csv({**names, **MAP_COLUMNS}, zip(*columns, strict=True)).decode()
+
+
+AIM_COLUMNS = {
+    "w0": ("rad/s", "launch spin, counter-clockwise"),
+    "v0_x": ("m/s", "launch velocity along x"),
+    "v0_y": ("m/s", "launch velocity along y"),
+    "speed": ("m/s", "launch speed"),
+    "direction": ("rad", "direction of the launch velocity from x, counter-clockwise"),
+    "slip_angle": ("rad", "phi = atan2(r omega, v) at the launch"),
+    "stop_time": ("s", "time from launch to stop"),
+    "miss": ("m", "distance from the target at which an integration ends"),
+}
+
+
+def aim_columns(found: Aim) -> dict[str, FloatArray]:
+    """The launches of an aim by column.
+
+    Examples
+    --------
+    >>> from puck_tables import aim
+    >>> aim_columns(aim((2.0, 0.0), w0=0.0))["speed"].round(6).tolist()
+    [2.0]
+    """
+    columns: dict[str, Any] = {name: getattr(found, name, None) for name in AIM_COLUMNS}
+    return {**columns, "v0_x": found.v0[:, 0], "v0_y": found.v0[:, 1]}
+
+
+def save_aim(found: Aim, path: str | Path, overwrite: bool = False) -> None:
+    """Write the launches of an aim to a CSV file.
+
+    Raises
+    ------
+    InputError
+        If the ending is not .csv.
+    OutputError
+        If the file exists (without ``overwrite``) or cannot be written.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from puck_tables import aim
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     save_aim(aim((2.0, 0.0), w0=0.0), folder + "/aim.csv")
+    ...     print(Path(folder, "aim.csv").read_text().splitlines()[1][:8])
+    0.0,2.0,
+    """
+    kind_of(path, AIM_KINDS)
+    rows = zip(*(column.tolist() for column in aim_columns(found).values()), strict=True)
+    write_bytes(path, _csv(AIM_COLUMNS, rows), overwrite)
 
 
 def _csv(names: dict[str, tuple[str, str]], rows: Iterator[tuple[Any, ...]]) -> bytes:

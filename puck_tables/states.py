@@ -136,11 +136,12 @@ def flow(
     flat_which = np.ascontiguousarray(which, np.int64).reshape(-1)
     flat_moments = np.ascontiguousarray(moments).reshape(-1)
     out = np.empty((STATE_ROWS, flat_which.size))
+    pucks = np.concatenate([launches, known]).T.copy()
 
     def work(start: int, stop: int) -> None:
         part = np.empty((STATE_ROWS, stop - start))
         fill_states(
-            launches, known, flat_which[start:stop], flat_moments[start:stop],
+            pucks, flat_which[start:stop], flat_moments[start:stop],
             chosen.stop_coefficients, chosen.curve_coefficients, chosen.time_inverse, part,
         )  # fmt: skip
         out[:, start:stop] = part

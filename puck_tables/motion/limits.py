@@ -219,6 +219,48 @@ def regime(v0: npt.ArrayLike, w0: float, delta: float = 0.5, radius: float = 1.0
     return regime_of(math.hypot(*velocity.tolist()), float(r * abs(spin)), limit)
 
 
+def elementary_stop_time(
+    v0: npt.ArrayLike, w0: float, delta: float = 0.5, decel: float = 1.0, radius: float = 1.0
+) -> float | None:
+    """The stop time of a launch whose motion is elementary; None for a generic one (B or C).
+
+    Parameters
+    ----------
+    v0, w0, delta, radius
+        As :func:`regime`.
+    decel : J = fg, m/s², > 0
+
+    Returns
+    -------
+    float or None, s
+        A: 0.  C0: v/J.  B0: ¾ r|ω|/J.  D: Q/(J ρ_∥(φ₀)), Q = hypot(v, rω).
+
+    Raises
+    ------
+    InputError, ContactError
+        If an argument is not finite or lies outside its range.
+
+    References
+    ----------
+    Salnikova, Treschev, Gallyamov 2012, section 2.
+
+    Examples
+    --------
+    >>> elementary_stop_time((3.0, 4.0), 0.0), elementary_stop_time((0.0, 0.0), -2.0, radius=0.5)
+    (5.0, 0.75)
+    """
+    kind = regime(v0, w0, delta, radius)
+    deceleration = float(finite_array("decel", decel, "m/s^2"))
+    if not deceleration > 0.0:
+        raise InputError(f"decel must be greater than 0 m/s^2, got {decel:g}")
+    speed, rim = math.hypot(*np.asarray(v0, dtype=np.float64).tolist()), radius * abs(w0)
+    if kind == "D":
+        parallel = float(resultants(limit_angle(delta), delta).parallel)
+        return math.hypot(speed, rim) / (deceleration * parallel)
+    times = {"A": 0.0, "C0": speed / deceleration, "B0": 0.75 * rim / deceleration}
+    return times.get(kind)
+
+
 def regime_of(speed: float, rim_speed: float, limit: float) -> str:
     """The same from v and r|ω|, checked before.
 

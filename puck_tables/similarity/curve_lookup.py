@@ -43,6 +43,7 @@ _SMALLEST_SHARE = 1e-300  # of the slower motion; less is a limit reached long b
 TIME, STOP_X, STOP_Y, LENGTH, BODY, TURN = range(6)
 SLIP, SPEED0, T_LAUNCH, LOG_N, SIGN_N, HEADING, KAPPA, TURNING = range(6, 14)
 LAUNCH_ROWS = 14
+LAUNCH_COLUMNS = 6  # vx, vy, ω, δ, J, r
 # rows of a state
 X, Y, PSI, THETA, SPEED, SPIN = range(6)
 STATE_ROWS = 6
@@ -155,15 +156,10 @@ def _inverse_place(
 
 
 @inlined
-def _inverse_sum(c: FloatArray, side: int, xi: float, s: float) -> float:
+def _inverse_sum(c: FloatArray, side: int, xi: float, s: float, sums: FloatArray) -> float:
     """2w/y."""
-    i, w0, w1, w2, w3 = _cell(xi, c.shape[1] - 3)
-    total = 0.0
-    for m in range(HEIGHTS - 1, -1, -1):
-        value = w0 * c[side, i, m] + w1 * c[side, i + 1, m]
-        value += w2 * c[side, i + 2, m] + w3 * c[side, i + 3, m]
-        total = total * s + value
-    return total
+    _curve_sums(c, side, xi, sums, 1)
+    return _polynomial(sums, 0, s)
 
 
 @kernel
@@ -270,7 +266,7 @@ def fill_launches(
         if delta > 0.0:
             log_share = math.log(turn_share)
             end, xi, y = _inverse_place(sign, log_n + kappa * log_share, kappa, delta)
-            share = min(y * _inverse_sum(turn_inverse, end, xi, s), 1.0)
+            share = min(y * _inverse_sum(turn_inverse, end, xi, s, sums), 1.0)
             _curve_sums(curve, end, _place(share), sums, 2)
             part = _polynomial(sums, TURN_SUM, s)
             turn = turning * log_share + _heading(end, share, delta, turning, part) - heading
@@ -279,13 +275,13 @@ def fill_launches(
 
 @inlined
 def _fill_state(
-    launch: FloatArray, known: FloatArray, time: float, side: int, double_share: float,
+    launch: FloatArray, time: float, side: int, double_share: float,
     left: float, log_left: float, found: FloatArray, out: FloatArray,
 ) -> None:  # fmt: skip
     """One state from what was found at its place; side −1: at rest, the launch, or φ constant."""
-    vx, vy, spin, delta, decel, radius = (
-        launch[0], launch[1], launch[2], launch[3], launch[4], launch[5],
-    )  # fmt: skip
+    known = launch[LAUNCH_COLUMNS:]
+    vx, vy, spin = launch[0], launch[1], launch[2]
+    delta, decel, radius = launch[3], launch[4], launch[5]
     x, y, body = known[STOP_X], known[STOP_Y], known[BODY]
     if side < 0:
         left = 1.0 - time / known[TIME] if time < known[TIME] else 0.0
@@ -321,13 +317,14 @@ def _fill_state(
 
 @kernel
 def fill_states(
-    launches: FloatArray, known: FloatArray, which: npt.NDArray[np.int64], times: FloatArray,
+    pucks: FloatArray, which: npt.NDArray[np.int64], times: FloatArray,
     stops: FloatArray, curve: FloatArray, time_inverse: FloatArray, out: FloatArray,
 ) -> None:  # fmt: skip
-    """States of launches ``which`` (n,) at ``times`` (n,) ≥ 0 into ``out`` (6, n).
+    """States of pucks ``which`` (n,) at ``times`` (n,) ≥ 0 into ``out`` (6, n).
 
-    x, y, heading from that at the launch, body angle, v, ω.  ``known`` comes from
-    :func:`fill_launches`.  At rest the angles are those of the stop.
+    x, y, heading from that at the launch, body angle, v, ω.  ``pucks`` (m, 6 + 14) holds launches
+    and what :func:`fill_launches` knows of them, a puck in a row: scattered pucks cost two cache
+    lines each.  At rest the angles are those of the stop.
     """
     sums = np.empty(CURVE_ROW)
     sides = np.empty(_BLOCK, np.int64)
@@ -337,25 +334,25 @@ def fill_states(
         count = min(_BLOCK, times.size - start)
         for n in range(count):
             launch = which[start + n]
-            share = times[start + n] / known[TIME, launch]
-            if known[SIGN_N, launch] == 0.0 or not 0.0 < share < 1.0:
+            share = times[start + n] / pucks[launch, LAUNCH_COLUMNS + TIME]
+            if pucks[launch, LAUNCH_COLUMNS + SIGN_N] == 0.0 or not 0.0 < share < 1.0:
                 sides[n] = -1
                 continue
-            kappa = known[KAPPA, launch]
+            kappa = pucks[launch, LAUNCH_COLUMNS + KAPPA]
             logs[n] = math.log1p(-share)
             shares[n] = 1.0 - share
-            log_n = known[LOG_N, launch] + kappa * logs[n]
+            log_n = pucks[launch, LAUNCH_COLUMNS + LOG_N] + kappa * logs[n]
             sides[n], xis[n], ys[n] = _inverse_place(
-                known[SIGN_N, launch], log_n, kappa, launches[3, launch]
+                pucks[launch, LAUNCH_COLUMNS + SIGN_N], log_n, kappa, pucks[launch, 3]
             )
         for n in range(count):
             if sides[n] >= 0:
-                delta = launches[3, which[start + n]]
+                delta = pucks[which[start + n], 3]
                 s = 2.0 * delta * delta - 1.0
-                ys[n] = min(ys[n] * _inverse_sum(time_inverse, sides[n], xis[n], s), 1.0)
+                ys[n] = min(ys[n] * _inverse_sum(time_inverse, sides[n], xis[n], s, sums), 1.0)
         for n in range(count):
             if sides[n] >= 0:
-                delta = launches[3, which[start + n]]
+                delta = pucks[which[start + n], 3]
                 s = 2.0 * delta * delta - 1.0
                 xi = _place(ys[n])
                 t, along, across = _stop_functions(stops, sides[n], xi, s, sums)
@@ -366,6 +363,6 @@ def fill_states(
         for n in range(count):
             launch = which[start + n]
             _fill_state(
-                launches[:, launch], known[:, launch], times[start + n], sides[n], ys[n],
+                pucks[launch], times[start + n], sides[n], ys[n],
                 shares[n], logs[n], found[:, n], out[:, start + n],
             )  # fmt: skip

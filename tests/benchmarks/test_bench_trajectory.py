@@ -32,7 +32,7 @@ from puck_tables.motion.equations import SIZE, T, X, Y
 from puck_tables.motion.limits import log_ratio
 from puck_tables.motion.path import integrate
 from puck_tables.motion.steppers import DORMAND_PRINCE, RK4
-from puck_tables.stops import steps_for, stops_of
+from puck_tables.solvers import Integration, steps_for
 from puck_tables.table.table import Table
 
 FloatArray = npt.NDArray[np.float64]
@@ -218,12 +218,13 @@ ACCURACY = 1e-6
 
 @ONE_STOP
 def test_stop_kernel(measure: Any, table: Table, launches: FloatArray) -> None:
-    steps = steps_for(ACCURACY, table)
-    out, status = stops_of(launches, steps, table)
+    solver = Integration(table, steps_for(ACCURACY, table))
+    columns = np.ascontiguousarray(launches.T)
+    out, status = solver.all(columns)
     assert not status.any()
     measure(
-        "table, stops_of, 1000 launches",
-        lambda: stops_of(launches, steps, table),
+        "table, integrated, 1000 launches",
+        lambda: solver.all(columns),
         items=LAUNCHES,
         unit="trajectory",
         error=largest_error(out[:3].T, launches),
@@ -256,7 +257,9 @@ def test_stop_public_single(measure: Any, table: Table, given: bool) -> None:
         return puck_tables.stop(LAUNCH[:2], LAUNCH[2], delta=DELTA, accuracy=ACCURACY, table=chosen)
 
     measure(
-        "table, puck_tables.stop, 1 launch" + ("" if given else ", table left out"),
+        "integrated, puck_tables.stop, 1 launch"
+        if given
+        else "look-up, puck_tables.stop, 1 launch",
         stop,
         unit="trajectory",
         error=error_of([float(stop().stop_time), *stop().stop_position], LAUNCH),

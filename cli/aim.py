@@ -1,0 +1,120 @@
+"""``puck aim``: launches that come to rest at a given place."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+from puck_tables.cli.options import (
+    FILE,
+    NUMBER,
+    Vector,
+    output_options,
+    prepare_outputs,
+    puck_and_floor,
+    puck_options,
+    told,
+)
+
+if TYPE_CHECKING:
+    from puck_tables.aiming import Aim
+
+
+@click.command()
+@click.option(
+    "--target",
+    type=Vector(),
+    required=True,
+    help="Where to stop, in m from the launch, like 2,0.1.",
+)
+@click.option("--w0", type=NUMBER, help="The launch with this spin, in rad/s, with its sign.")
+@click.option("--speed", type=NUMBER, help="The launches with this speed, in m/s.")
+@click.option(
+    "--time", "stop_time", type=NUMBER, help="The launches that stop after this time, in s."
+)
+@click.option("--max-speed", type=NUMBER, help="No launch faster than this, in m/s.")
+@click.option("--max-spin", type=NUMBER, help="No launch with more spin than this, in rad/s.")
+@click.option(
+    "--count",
+    type=int,
+    default=8,
+    show_default=True,
+    help="Slip angles of a sample, for each sense of spin.",
+)
+@puck_options(mass=False)
+@click.option("--delta", type=NUMBER, help="delta = 2 f h / r instead.  [default: 0.5]")
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
+@click.option("-o", "--output", type=FILE, metavar="FILE", help="Save the launches: .csv.")
+@output_options
+def aim(
+    target: tuple[float, float], w0: float | None, speed: float | None, stop_time: float | None,
+    max_speed: float | None, max_spin: float | None, count: int, radius: float | None,
+    height: float | None, friction: float | None, gravity: float | None, decel: float | None,
+    delta: float | None, as_json: bool, output: Path | None, plot: Path | None, overwrite: bool,
+) -> None:  # fmt: skip
+    """Find launches after which a puck comes to rest at a target.
+
+    There is one for each slip angle and sense of spin.  --w0, --speed or --time picks one or two;
+    without them a sample of the family is shown.  Each is integrated, and how far from the target
+    that ends stands in the last column.  That there is none is an answer too.
+
+    \b
+    puck aim --target 2,0.1 --w0 5
+    puck aim --target 2,0.1 --time 3
+    puck aim --target 2,0.1 --max-speed 1.5 --max-spin 10 --plot aim.png
+    """  # noqa: D301 - click reads the backspace
+    r, height_ratio, J = puck_and_floor(radius, height, friction, gravity, delta, decel)
+    prepare_outputs(output, plot, overwrite=overwrite)
+    from puck_tables.result_file import AIM_KINDS, aim_columns, kind_of, save_aim
+
+    if output is not None:
+        kind_of(output, AIM_KINDS)
+    if plot is not None:
+        from puck_tables.plots import PICTURE_KINDS, plot_aim, require_matplotlib
+
+        kind_of(plot, PICTURE_KINDS)
+        require_matplotlib()
+    from puck_tables.aiming import aim as find_launches
+
+    found = find_launches(
+        target, w0=w0, speed=speed, stop_time=stop_time, max_speed=max_speed, max_spin=max_spin,
+        count=count, delta=height_ratio, decel=J, radius=r,
+    )  # fmt: skip
+    if output is not None:
+        save_aim(found, output, overwrite)
+        told(output)
+    if plot is not None and found.w0.size:
+        plot_aim(found, plot, overwrite)
+        told(plot)
+    if as_json:
+        launches = {name: column.tolist() for name, column in aim_columns(found).items()}
+        puck = {"delta": found.delta, "decel": found.decel, "radius": found.radius}
+        click.echo(json.dumps({"target": found.target, **puck, "answer": found.answer, **launches}))
+    else:
+        click.echo(_report(found))
+
+
+def _report(found: Aim) -> str:
+    """The answer, and the launches line by line."""
+    x, y = found.target
+    text = [
+        f"puck    r = {found.radius:g} m, delta = {found.delta:.6g}, J = {found.decel:.6g} m/s^2",
+        f"target  ({x:g}, {y:g}) m",
+        f"answer  {found.answer}",
+    ]
+    if found.w0.size:
+        text.append(
+            f"\n{'w0 rad/s':>13}{'v0 x m/s':>13}{'v0 y m/s':>13}{'speed m/s':>13}"
+            f"{'heading deg':>13}{'phi deg':>9}{'time s':>13}{'miss m':>9}"
+        )
+    for n in range(found.w0.size):
+        degrees = [math.degrees(a) for a in (found.direction[n], found.slip_angle[n])]
+        text.append(
+            f"{found.w0[n]:>13.7g}{found.v0[n, 0]:>13.7g}{found.v0[n, 1]:>13.7g}"
+            f"{found.speed[n]:>13.7g}{degrees[0]:>13.6f}{degrees[1]:>9.3f}"
+            f"{found.stop_time[n]:>13.7g}{found.miss[n]:>9.0e}"
+        )
+    return "\n".join(text)
