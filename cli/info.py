@@ -25,17 +25,17 @@ def info(file: Path | None) -> None:
 
 def describe(table: Table | StopTable) -> str:
     """A table in a dozen lines.  It was loaded, so its digest is right."""
-    from puck_tables.table.table import Table
+    from puck_tables.table.table import FUNCTIONS, Table
 
     passport, accuracy = table.passport, table.accuracy
     assert accuracy is not None
     if isinstance(table, Table):
-        from puck_tables.table.table import FUNCTIONS as names
-
+        names: tuple[str, ...] = FUNCTIONS
         grid = f"{table.phi_axis.size} phi x {table.delta_axis.size} delta nodes"
     else:
-        from puck_tables.similarity.check import NAMES as names
+        from puck_tables.similarity.check import NAMES
 
+        names = NAMES
         grid = f"{table.axis.size} phi x {table.values.shape[1]} delta nodes"
     lines = {
         "table": table.source,
