@@ -60,7 +60,7 @@ def build_stop_table(
     Notes
     -----
     Node values are exact to about 1e-15; the error of the splines falls like cells⁻⁴, down to the
-    4e-12 of the polynomial in δ².
+    1e-12 of the polynomial in δ².
 
     Examples
     --------

@@ -31,7 +31,6 @@ from puck_tables.similarity.lookup import CURVE_ROW, STOP_POWERS, slip_place
 
 FloatArray = npt.NDArray[np.float64]
 
-CONSTANTS = 4  # c₀, κ, h₀/δ, ln T(π/4): polynomials in 2δ² − 1
 
 # order of the functions of the curve
 BODY_SUM, TURN_SUM, LENGTH_SUM, CURVE_SUM = range(4)
@@ -70,6 +69,14 @@ def _polynomial(c: FloatArray, function: int, s: float) -> float:
     total = 0.0
     for m in range(HEIGHTS - 1, -1, -1):
         total = total * s + c[function * HEIGHTS + m]
+    return total
+
+
+@inlined
+def _constant(constants: FloatArray, row: int, s: float) -> float:
+    total = 0.0
+    for m in range(constants.shape[1] - 1, -1, -1):
+        total = total * s + constants[row, m]
     return total
 
 
@@ -177,8 +184,8 @@ def fill_inverse(
         for j in range(deltas.size):
             delta = deltas[j]
             s = 2.0 * delta * delta - 1.0
-            c0, kappa = _polynomial(constants, 0, s), _polynomial(constants, 1, s)
-            quarter = _polynomial(constants, 3, s)
+            c0, kappa = _constant(constants, 0, s), _constant(constants, 1, s)
+            quarter = _constant(constants, 3, s)
             for i in range(cells + 1):
                 xi = max(i / cells, 1e-6)  # at the end a limit, reached long before
                 q = xi * (2.0 - xi)
@@ -253,9 +260,9 @@ def fill_launches(
         out[TURN, n] = out[SIGN_N, n] = 0.0
         if speed == 0.0 or rim == 0.0:
             continue
-        c0, kappa = _polynomial(constants, 0, s), _polynomial(constants, 1, s)
-        turning = delta * _polynomial(constants, 2, s)
-        quarter = _polynomial(constants, 3, s)
+        c0, kappa = _constant(constants, 0, s), _constant(constants, 1, s)
+        turning = delta * _constant(constants, 2, s)
+        quarter = _constant(constants, 3, s)
         double_share = max(2.0 * min(speed, rim) / (speed + rim), _SMALLEST_SHARE)
         sign = 1.0 if side == 1 and (rim - speed) / (rim + speed) > c0 else -1.0
         log_n = _log_n(side, double_share, c0, kappa, delta, r, 0.0)

@@ -52,7 +52,7 @@ _PHI_MAP = (
     "either end; cubic splines with zero end slopes in xi on either side of pi/4"
 )
 _DELTA_MAP = (
-    "delta = sin(pi (2 j + 1)/(4 n_delta)); polynomial in delta^2, degree 6 for stops, "
+    "delta = sin(pi (2 j + 1)/(4 n_delta)); polynomial in delta^2, degree 7 for stops, "
     "8 for the curve"
 )
 _LONG_NAMES = {

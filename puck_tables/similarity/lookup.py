@@ -25,10 +25,10 @@ from puck_tables.kernels.spline import basis
 
 FloatArray = npt.NDArray[np.float64]
 
-STOP_POWERS = 7
+STOP_POWERS = 8
 _DEGREE = STOP_POWERS - 1
-CURVE_ROW = 40  # four functions by nine powers, padded likewise
-STOP_ROW = 24  # three functions by seven powers, padded to whole cache lines
+CURVE_ROW = 40  # four functions by nine powers, padded to whole cache lines
+STOP_ROW = 3 * STOP_POWERS  # whole cache lines
 _BLOCK = 128
 
 

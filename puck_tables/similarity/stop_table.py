@@ -12,7 +12,13 @@ import numpy.typing as npt
 
 from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import InputError
-from puck_tables.similarity.axes import HEIGHTS, SlipAxis, height_polynomials, heights
+from puck_tables.similarity.axes import (
+    CONSTANT_HEIGHTS,
+    HEIGHTS,
+    SlipAxis,
+    height_polynomials,
+    heights,
+)
 from puck_tables.similarity.curve import limits
 from puck_tables.similarity.lookup import CURVE_ROW, STOP_POWERS, STOP_ROW
 from puck_tables.table.fit import clamped_coefficients
@@ -96,13 +102,16 @@ class StopTable:
 
     @cached_property
     def constants(self) -> FloatArray:
-        """c₀, κ, h₀/δ and ln T(π/4) as polynomials in 2δ² − 1, four by nine."""
+        """c₀, κ, h₀/δ and ln T(π/4) as polynomials in 2δ² − 1, (4, 14)."""
         rows = []
-        for n, delta in enumerate(heights()):
+        for delta in heights(CONSTANT_HEIGHTS):
             at = limits(float(delta))
-            quarter = math.log(self.values[self.axis.cells, n, 0])
-            rows.append([math.tanh(0.5 * at.u), at.kappa, at.turn / delta, quarter])
-        return height_polynomials(np.array(rows)).T.ravel()
+            rows.append([math.tanh(0.5 * at.u), at.kappa, at.turn / delta])
+        polynomials = np.zeros((4, CONSTANT_HEIGHTS))
+        polynomials[:3] = height_polynomials(np.array(rows), CONSTANT_HEIGHTS).T
+        quarter = np.log(self.values[self.axis.cells, :, 0])
+        polynomials[3, :HEIGHTS] = height_polynomials(quarter)
+        return polynomials
 
     @cached_property
     def time_inverse(self) -> FloatArray:
