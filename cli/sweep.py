@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from puck_tables.stop_map import StopMap
 
 RANGE = Range()
+INTERRUPTED = 130
 
 
 @click.command()
@@ -54,13 +55,18 @@ RANGE = Range()
     metavar="FILE",
     help="Save the map: .h5 or .csv.  Without -o and --plot, CSV goes to stdout.",
 )
+@click.option(
+    "--resume",
+    is_flag=True,
+    help="Keep what is done in FILE.progress; the same command goes on from there.",
+)
 @output_options
 def sweep(
     w0: float | tuple[float, float, int] | None, speed: float | tuple[float, float, int] | None,
     v0: tuple[float, float] | None, delta: float | tuple[float, float, int] | None,
     radius: float | None, height: float | None, friction: float | None, gravity: float | None,
     decel: float | None, accuracy: float, threads: int | None, table_path: Path | None,
-    output: Path | None, plot: Path | None, overwrite: bool,
+    output: Path | None, resume: bool, plot: Path | None, overwrite: bool,
 ) -> None:  # fmt: skip
     """Map where and when pucks stop.
 
@@ -97,21 +103,37 @@ def sweep(
         BYTES_PER_ROW if as_text else BYTES_PER_LAUNCH,
     )
     table = None if table_path is None else tables_named(table_path)[0]
-    with progress("stops") as show:
-        stops = run_sweep(
-            None if w0 is None else _values(w0), None if speed is None else _values(speed),
-            v0=v0, delta=_values(height_ratio), decel=J, radius=r,
-            accuracy=accuracy, table=table, threads=threads, progress=show,
-        )  # fmt: skip
+    kept = _kept(output) if resume else None
+    try:
+        with progress("stops") as show:
+            stops = run_sweep(
+                None if w0 is None else _values(w0), None if speed is None else _values(speed),
+                v0=v0, delta=_values(height_ratio), decel=J, radius=r, accuracy=accuracy,
+                table=table, threads=threads, progress=show, checkpoint=kept,
+            )  # fmt: skip
+    except KeyboardInterrupt:
+        if kept is None or not kept.exists():
+            raise
+        click.echo(f"Interrupted: {kept} keeps what is done; the same command goes on.", err=True)
+        raise SystemExit(INTERRUPTED) from None
     if output is not None:
         save_map(stops, output, overwrite)
         told(output)
+    if kept is not None:
+        kept.unlink(missing_ok=True)
     if plot is not None:
         plot_map(stops, plot, overwrite)
         told(plot)
     if output is None and plot is None:
         click.echo(map_as_csv(stops), nl=False)
     click.echo(_summary(stops), err=True)
+
+
+def _kept(output: Path | None) -> Path:
+    """Where a sweep that may be interrupted keeps what is done."""
+    if output is None:
+        raise InputError("--resume needs -o FILE: what is done is kept beside it")
+    return output.with_name(output.name + ".progress")
 
 
 def _values(given: float | tuple[float, float, int]) -> npt.NDArray[np.float64]:

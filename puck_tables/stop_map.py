@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 import math
 import os
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables.checkpoint import Checkpoint
 from puck_tables.errors import InputError
 from puck_tables.executor import run_chunks
+from puck_tables.kernels.compile import source_digest
 from puck_tables.puck import positive, velocity_array
 from puck_tables.real import finite_array
 from puck_tables.similarity.stop_table import StopTable
-from puck_tables.solvers import OUTPUTS, solver_for
+from puck_tables.solvers import OUTPUTS, Integration, LookUp, solver_for
 from puck_tables.stops import DEFAULT_ACCURACY
 from puck_tables.table.table import Table
 
@@ -71,6 +76,7 @@ def sweep(
     threads: int | None = None,
     chunk: int = CHUNK,
     progress: Progress | None = None,
+    checkpoint: str | Path | None = None,
 ) -> StopMap:
     """Stops of all combinations of spins, speeds and heights.
 
@@ -89,6 +95,9 @@ def sweep(
     threads, chunk : int
         How the work is cut; the numbers do not depend on it, to the last bit.
     progress : callable (done, total), optional
+    checkpoint : path, optional
+        A file that keeps what is done: called again with the same arguments, the work goes on from
+        there.  It stays until you remove it.
 
     Returns
     -------
@@ -98,7 +107,8 @@ def sweep(
     Raises
     ------
     InputError
-        If an argument is not finite or outside its range, or the map would not fit in memory.
+        If an argument is not finite or outside its range, the map would not fit in memory, or
+        ``checkpoint`` belongs to other work.
     AccuracyError
         If the accuracy is out of the table's reach.
 
@@ -143,12 +153,10 @@ def sweep(
     check_memory(shape)
 
     size = math.prod(shape)
-    out = np.empty((len(OUTPUTS), size))
-    status = np.empty(size, np.int8)
     flat = {name: array.ravel() for name, array in values.items()}
     sizes = tuple(array.size for array in flat.values())
 
-    def work(start: int, stop: int) -> None:
+    def stops_of(start: int, stop: int) -> tuple[FloatArray, npt.NDArray[np.int8]]:
         index = np.unravel_index(np.arange(start, stop), sizes)
         launch = {name: flat[name][i] for name, i in zip(flat, index, strict=True)}
         along = launch.get("speed", np.ones(stop - start))
@@ -156,9 +164,25 @@ def sweep(
             along * direction[0], along * direction[1], launch["w0"], launch["delta"],
             np.full(stop - start, decel), np.full(stop - start, radius),
         ])  # fmt: skip
-        out[:, start:stop], status[start:stop] = solver.all(launches)
+        return solver.all(launches)
 
-    run_chunks(work, size, chunk, threads, progress)
+    out, status = np.empty((len(OUTPUTS), size)), np.empty(size, np.int8)
+    if checkpoint is None:
+
+        def work(start: int, stop: int) -> None:
+            out[:, start:stop], status[start:stop] = stops_of(start, stop)
+
+        run_chunks(work, size, chunk, threads, progress)
+    else:
+        what = _digest(solver, values, {**fixed, "accuracy": accuracy})
+        with Checkpoint(checkpoint, what, len(OUTPUTS), size, chunk) as kept:
+
+            def work_on(start: int, stop: int) -> None:
+                if not kept.is_done(start):
+                    kept.put(start, stop, *stops_of(start, stop))
+
+            run_chunks(work_on, size, chunk, threads, progress)
+            out[...], status[...] = kept.values, kept.status
     results = {name: row.reshape(shape) for name, row in zip(OUTPUTS, out, strict=True)}
     return StopMap(
         axes=axes,
@@ -169,6 +193,16 @@ def sweep(
         status=status.reshape(shape),
         **results,
     )
+
+
+def _digest(
+    solver: LookUp | Integration, values: dict[str, FloatArray], numbers: dict[str, float]
+) -> str:
+    """What determines the bits of a map."""
+    arrays = {name: hashlib.sha256(array.tobytes()).hexdigest() for name, array in values.items()}
+    table = solver.table.passport.get("content_digest", "")
+    what = [solver.method, table, source_digest(), arrays, numbers]
+    return hashlib.sha256(json.dumps(what, sort_keys=True).encode()).hexdigest()
 
 
 def check_memory(shape: tuple[int, ...], per_launch: int = BYTES_PER_LAUNCH) -> None:
