@@ -21,6 +21,7 @@ MAX_COUNT = 10_000
 _LARGEST_U = 600.0
 _SAMPLED_U = math.log(math.tan(math.radians(80.0)))
 _SLACK = 1e-12
+_LARGEST_LOG = 709.0
 _CHECK_ACCURACY = 1e-10
 
 
@@ -174,7 +175,8 @@ def aim(
         raise InputError(f"count must be a whole number from 1 to {MAX_COUNT}, got {count!r}")
     distance = math.hypot(x, y)
     family = _Family(distance, height, J)
-    slide, quickest = math.sqrt(2.0 * J * distance), math.sqrt(2.0 * distance / J)
+    slide = math.sqrt(2.0) * math.sqrt(J) * math.sqrt(distance)
+    quickest = math.sqrt(2.0) * math.sqrt(distance) / math.sqrt(J)
     us: list[float] = []
     senses: tuple[float, ...] = (-1.0, 1.0)
     answer = ""
@@ -223,10 +225,10 @@ def aim(
         log_speed, log_rim, log_time, bend = family.at(u)
         for sense in senses if u > -math.inf else (1.0,):
             heading = bearing - sense * bend
-            v = math.exp(log_speed)
+            v = _number(log_speed)
             launches.append((
-                sense * math.exp(log_rim) / r,
-                v * math.cos(heading), v * math.sin(heading), math.exp(log_time),
+                sense * _number(log_rim) / r,
+                v * math.cos(heading), v * math.sin(heading), _number(log_time),
             ))  # fmt: skip
     found = np.array(sorted(launches)).reshape(-1, 4)
     miss = [_miss(launch, (x, y), height, J, r) for launch in found]
@@ -237,11 +239,19 @@ def aim(
     )
 
 
+def _number(log: float) -> float:
+    if log > _LARGEST_LOG:
+        raise InputError(
+            "target and decel ask for launches too large for floating point: use larger units"
+        )
+    return math.exp(log)
+
+
 def _within(family: _Family, u: float, fastest: float, widest: float) -> bool:
     log_speed, log_rim, _, _ = family.at(u)
     return (
-        math.exp(log_speed) <= fastest * (1.0 + _SLACK)
-        and math.exp(log_rim) <= widest * (1.0 + _SLACK)
+        _number(log_speed) <= fastest * (1.0 + _SLACK)
+        and _number(log_rim) <= widest * (1.0 + _SLACK)
     )  # fmt: skip
 
 
@@ -252,13 +262,13 @@ def _out_of_bounds(
     if us:
         log_speed, log_rim, _, _ = family.at(us[0])
         return (
-            f"the launch asked for takes {math.exp(log_speed):.9g} m/s and "
-            f"{math.exp(log_rim) / radius:.9g} rad/s: out of the bounds"
+            f"the launch asked for takes {_number(log_speed):.9g} m/s and "
+            f"{_number(log_rim) / radius:.9g} rad/s: out of the bounds"
         )
     _, log_rim, _, _ = family.at(family.where(0, fastest))
     return (
         f"no launch stops {family.distance:g} m away with at most {fastest:g} m/s and "
-        f"{widest:g} rad/s: at {fastest:g} m/s it takes {math.exp(log_rim) / radius:.9g} rad/s"
+        f"{widest:g} rad/s: at {fastest:g} m/s it takes {_number(log_rim) / radius:.9g} rad/s"
     )
 
 

@@ -3,6 +3,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from hypothesis import HealthCheck, settings
 
 from puck_tables import Table, build_table, load_table
 
@@ -19,3 +20,10 @@ def table() -> Table:
 def rough_table() -> Table:
     """A small table, not saved."""
     return build_table(accuracy=1e-6)
+
+
+settings.register_profile("default", max_examples=60, deadline=None, derandomize=True)
+settings.register_profile(
+    "nightly", max_examples=1700, deadline=None, suppress_health_check=list(HealthCheck)
+)
+settings.load_profile("default")

@@ -318,7 +318,7 @@ def _fill_state(
     out[X] = x - (ahead * east - aside * north)
     out[Y] = y - (ahead * north + aside * east)
     out[PSI] = heading
-    out[THETA] = body - around * found[3] * slip / decel * rim / radius
+    out[THETA] = body - around * found[3] * (slip / decel) * (rim / radius)
     out[SPEED], out[SPIN] = speed, around * rim / radius
 
 

@@ -1,0 +1,156 @@
+"""Any arguments at all: an answer, a named status or one sentence; never a traceback or a NaN.
+
+``pytest tests/test_fuzz.py --hypothesis-profile=nightly`` tries ten thousand.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import tempfile
+from pathlib import Path
+
+import numpy as np
+from click.testing import CliRunner
+from hypothesis import given
+from hypothesis import strategies as st
+from puck_tables.cli.main import main
+
+from puck_tables import aim, flow, resultants, simulate, stop
+from puck_tables.errors import PuckError
+
+HARD = [
+    0.0, -0.0, 1.0, -1.0, 0.5, 5e-324, 1e-308, 1e-160, 1e-12, 1.0 - 2.0**-53, 1.0 + 2.0**-52,
+    1.5314, 2.0, 4.0, 1e12, 1e150, 1e160, 1.7e308, -1e-300, math.inf, -math.inf, math.nan,
+]  # fmt: skip
+number = st.one_of(st.sampled_from(HARD), st.floats(-10.0, 10.0), st.floats())
+height = st.one_of(st.floats(0.0, 1.0), number)
+positive = st.one_of(st.floats(0.01, 10.0), number)
+text = st.one_of(
+    number.map(repr),
+    st.sampled_from(
+        ["", " ", "1,2", "0:1:3", "nan", "1e999", "--w0", "١", "0x1", "1_0", "-", "a,b"]
+    ),
+)
+
+
+@given(number, number, number, height, positive, positive)
+def test_stops(vx: float, vy: float, w0: float, delta: float, decel: float, radius: float):
+    try:
+        found = stop((vx, vy), w0, delta=delta, decel=decel, radius=radius)
+    except PuckError as error:
+        assert str(error)
+        return
+    values = [float(found.stop_time), *found.stop_position]
+    if int(found.status) == 0:
+        assert np.isfinite(values).all()
+        assert values[0] >= 0.0
+    else:
+        assert np.isnan(values).all()
+
+
+@given(number, number, number, height, positive, positive, st.lists(number, min_size=0, max_size=4))
+def test_states(
+    vx: float, vy: float, w0: float, delta: float, decel: float, radius: float, times: list[float]
+):
+    puck = {"delta": delta, "decel": decel, "radius": radius}
+    try:
+        found = flow((vx, vy), w0, times, **puck)
+    except PuckError as error:
+        assert str(error)
+        return
+    for name in ("x", "y", "heading", "orientation", "speed", "spin"):
+        assert np.isfinite(getattr(found, name)).all(), name
+    q = math.hypot(vx, vy, radius * w0)
+    assert np.all(found.slip_speed <= q * (1.0 + 1e-9))
+
+
+@given(number, number, height, positive, st.one_of(st.none(), number), st.one_of(st.none(), number))
+def test_aims(
+    x: float, y: float, delta: float, decel: float, w0: float | None, max_speed: float | None
+):
+    try:
+        found = aim((x, y), delta=delta, decel=decel, w0=w0, max_speed=max_speed, count=2)
+    except PuckError as error:
+        assert str(error)
+        return
+    assert found.answer
+    assert np.isfinite(found.v0).all()
+    assert np.isfinite(found.w0).all()
+    if found.w0.size:
+        q = np.hypot(found.speed, found.w0)
+        scale = (q / decel * q).max()
+        assert found.miss.max() <= 1e-9 * scale + 1e-300
+
+
+@given(
+    number, number, number, height, positive, positive, st.sampled_from([1e-13, 1e-9, 1e-3, 2.0])
+)
+def test_trajectories(
+    vx: float, vy: float, w0: float, delta: float, decel: float, radius: float, accuracy: float
+):
+    puck = {"delta": delta, "decel": decel, "radius": radius, "exact": True}
+    try:
+        run = simulate((vx, vy), w0, **puck, accuracy=accuracy, frames=5)
+    except PuckError as error:
+        assert str(error)
+        return
+    for name in ("x", "y", "heading", "orientation", "speed", "spin", "slip_speed", "slip_angle"):
+        assert np.isfinite(getattr(run, name)).all(), name
+    assert run.energy_residual <= max(1e-10, 10.0 * accuracy)
+    assert np.all(np.diff(run.slip_speed) <= 1e-12 * run.slip_speed[0])
+
+
+@given(number, number)
+def test_resultants(phi: float, delta: float):
+    try:
+        rho = resultants(phi, delta)
+    except PuckError as error:
+        assert str(error)
+        return
+    assert np.isfinite([float(r) for r in rho]).all()
+
+
+OPTIONS = {
+    "simulate": [
+        "--v0",
+        "--w0",
+        "--delta",
+        "--radius",
+        "--decel",
+        "--times",
+        "--accuracy",
+        "--mass",
+    ],
+    "sweep": ["--v0", "--w0", "--speed", "--delta", "--radius", "--height", "--accuracy"],
+    "aim": ["--target", "--w0", "--speed", "--time", "--max-speed", "--max-spin", "--delta"],
+}
+
+
+@st.composite
+def command_lines(draw: st.DrawFn) -> list[str]:
+    command = draw(st.sampled_from(sorted(OPTIONS)))
+    line = [command]
+    pair = st.tuples(text, text).map(",".join)
+    for option in draw(st.lists(st.sampled_from(OPTIONS[command]), max_size=5)):
+        line += [option, draw(pair if option in ("--v0", "--target") else text)]
+    if draw(st.booleans()):
+        line += {"simulate": ["--json"], "aim": ["--json"]}.get(command, ["-o", "out.csv"])
+    return line
+
+
+@given(command_lines())
+def test_command_lines(line: list[str]):
+    with tempfile.TemporaryDirectory() as folder:
+        if "-o" in line:
+            line[line.index("-o") + 1] = str(Path(folder) / "out.csv")
+        ended = CliRunner().invoke(main, line)
+        assert ended.exit_code in (0, 1, 2), (line, ended.exception)
+        assert ended.exception is None or isinstance(ended.exception, SystemExit), line
+        assert "Traceback" not in ended.stderr
+        if ended.exit_code == 0 and "--json" in line:
+            json.loads(ended.stdout, parse_constant=lambda name: 1 / 0)
+        if ended.exit_code != 0:
+            assert ended.stdout == ""
+            assert list(Path(folder).iterdir()) == []
+            assert len(ended.stderr.strip().splitlines()) <= 4
