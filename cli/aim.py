@@ -19,6 +19,8 @@ from puck_tables.cli.options import (
     told,
 )
 
+from puck_tables.errors import InputError
+
 if TYPE_CHECKING:
     from puck_tables.aiming import Aim
 
@@ -67,6 +69,11 @@ def aim(
     puck aim --target 2,0.1 --max-speed 1.5 --max-spin 10 --plot aim.png
     """  # noqa: D301 - click reads the backspace
     r, height_ratio, J = puck_and_floor(radius, height, friction, gravity, delta, decel)
+    picked = [
+        n for n, v in (("--w0", w0), ("--speed", speed), ("--time", stop_time)) if v is not None
+    ]
+    if len(picked) > 1:
+        raise InputError(f"{picked[0]} and {picked[1]} clash: each picks a launch")
     prepare_outputs(output, plot, overwrite=overwrite)
     from puck_tables.result_file import AIM_KINDS, aim_columns, kind_of, save_aim
 
@@ -89,32 +96,36 @@ def aim(
     if plot is not None and found.w0.size:
         plot_aim(found, plot, overwrite)
         told(plot)
+    elif plot is not None:
+        click.echo(f"no picture: there is nothing to draw in {plot}", err=True)
     if as_json:
         launches = {name: column.tolist() for name, column in aim_columns(found).items()}
         puck = {"delta": found.delta, "decel": found.decel, "radius": found.radius}
         click.echo(json.dumps({"target": found.target, **puck, "answer": found.answer, **launches}))
     else:
-        click.echo(_report(found))
+        given = any(x is not None for x in (radius, height, friction, delta, decel))
+        click.echo(_report(found, "" if given else "   (defaults: see --help for a real puck)"))
 
 
-def _report(found: Aim) -> str:
+def _report(found: Aim, note: str) -> str:
     """The answer, and the launches line by line."""
     x, y = found.target
     text = [
-        f"puck    r = {found.radius:g} m, delta = {found.delta:.6g}, J = {found.decel:.6g} m/s^2",
+        f"puck    r = {found.radius:g} m, delta = {found.delta:.6g}, "
+        f"J = {found.decel:.6g} m/s^2{note}",
         f"target  ({x:g}, {y:g}) m",
         f"answer  {found.answer}",
     ]
     if found.w0.size:
         text.append(
-            f"\n{'w0 rad/s':>13}{'v0 x m/s':>13}{'v0 y m/s':>13}{'speed m/s':>13}"
-            f"{'heading deg':>13}{'phi deg':>9}{'time s':>13}{'miss m':>9}"
+            f"\n{'w0 rad/s':>13} {'v0 x m/s':>12} {'v0 y m/s':>12} {'speed m/s':>12}"
+            f" {'heading deg':>11} {'phi deg':>8} {'time s':>12} {'miss m':>7}"
         )
     for n in range(found.w0.size):
         degrees = [math.degrees(a) for a in (found.direction[n], found.slip_angle[n])]
         text.append(
-            f"{found.w0[n]:>13.7g}{found.v0[n, 0]:>13.7g}{found.v0[n, 1]:>13.7g}"
-            f"{found.speed[n]:>13.7g}{degrees[0]:>13.6f}{degrees[1]:>9.3f}"
-            f"{found.stop_time[n]:>13.7g}{found.miss[n]:>9.0e}"
+            f"{found.w0[n]:>13.6g} {found.v0[n, 0]:>12.6g} {found.v0[n, 1]:>12.6g}"
+            f" {found.speed[n]:>12.6g} {degrees[0]:>11.5f} {degrees[1]:>8.3f}"
+            f" {found.stop_time[n]:>12.6g} {found.miss[n]:>7.0e}"
         )
     return "\n".join(text)

@@ -21,6 +21,8 @@ from puck_tables.cli.validate import validate
 from puck_tables._version import __version__
 from puck_tables.errors import InputError, PuckError
 
+COMPILED = ("simulate", "sweep", "aim", "build-tables", "validate", "paper")
+
 
 class PuckGroup(click.Group):
     """A group that ends every refusal with one sentence and an exit code."""
@@ -50,8 +52,15 @@ class PuckGroup(click.Group):
 
 @click.group(cls=PuckGroup, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(__version__, package_name="puck-tables", prog_name="puck")
-def main() -> None:
+@click.pass_context
+def main(ctx: click.Context) -> None:
     """Motion of a flat puck that slides and spins under dry friction, until it stops."""
+    asks_help = any(word in ("-h", "--help") for word in sys.argv)
+    if ctx.invoked_subcommand in COMPILED and not asks_help:
+        from puck_tables.kernels.cache import is_empty
+
+        if is_empty():
+            click.echo("compiling for this machine, once: some seconds", err=True)
 
 
 for _command in (simulate, sweep, aim, build_tables, validate, info, paper):

@@ -36,17 +36,17 @@ class Number(click.ParamType):
 
 
 class Vector(click.ParamType):
-    """Two finite numbers: VX,VY."""
+    """Two finite numbers: X,Y."""
 
-    name = "VX,VY"
+    name = "X,Y"
 
     def convert(self, value: Any, param: Any, ctx: Any) -> tuple[float, float]:
-        """Parse 'VX,VY'."""
+        """Parse 'X,Y'."""
         if isinstance(value, tuple):
             return value
         parts = str(value).split(",")
         if len(parts) != 2:
-            self.fail(f"'{value}' must be two numbers with a comma, like 1,0 (m/s)", param, ctx)
+            self.fail(f"'{value}' must be two numbers with a comma, like 1,0", param, ctx)
         return finite(parts[0], self, param, ctx), finite(parts[1], self, param, ctx)
 
 
@@ -67,8 +67,10 @@ class Range(click.ParamType):
         start, stop = finite(parts[0], self, param, ctx), finite(parts[1], self, param, ctx)
         if not re.fullmatch(r"[0-9]{1,10}", parts[2]) or not 2 <= int(parts[2]) <= MAX_COUNT:
             self.fail(f"the COUNT of '{value}' must be a whole number from 2 to 1e9", param, ctx)
-        if not stop > start or not math.isfinite(stop - start):
-            self.fail(f"in '{value}' STOP must be greater than START, and finitely so", param, ctx)
+        if not stop > start:
+            self.fail(f"in '{value}' STOP must be greater than START", param, ctx)
+        if not math.isfinite(stop - start):
+            self.fail(f"the range of '{value}' is too wide for floating point", param, ctx)
         return start, stop, int(parts[2])
 
 

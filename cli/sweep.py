@@ -70,8 +70,10 @@ def sweep(
 ) -> None:  # fmt: skip
     """Map where and when pucks stop.
 
-    Ranges are START:STOP:COUNT, ends included; what is not ranged is fixed.  Without --w0,
-    --speed and --v0: speeds from 0 to 2 m/s by spins from -4 to 4 rad/s.
+    Ranges are START:STOP:COUNT, ends included.  What is left out is fixed at --speed 1 --w0 0
+    --delta 0.5 --radius 1 --decel 1; without --w0, --speed and --v0 the map is that of speeds from
+    0 to 2 m/s by spins from -4 to 4 rad/s.  The status of a stop is 0, or 2 where the motion is too
+    large for floating point.
 
     \b
     puck sweep --plot map.png
@@ -116,6 +118,8 @@ def sweep(
             raise
         click.echo(f"Interrupted: {kept} keeps what is done; the same command goes on.", err=True)
         raise SystemExit(INTERRUPTED) from None
+    if not (stops.status == 0).any():
+        raise InputError("all these launches are too large for floating point: use larger units")
     if output is not None:
         save_map(stops, output, overwrite)
         told(output)

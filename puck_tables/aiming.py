@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -85,7 +85,8 @@ class _Family:
     def where(self, quantity: int, value: float) -> float:
         """U where the speed (0), the rim speed (1) or the stop time (2) has a value.
 
-        All three are monotonic in u: speed falls, rim speed and stop time grow.
+        All three are monotonic in u: speed falls, rim speed and stop time grow.  −∞, a slide
+        without spin, where speed or stop time is that of it.
         """
         from scipy.optimize import brentq
 
@@ -95,8 +96,13 @@ class _Family:
             return self.at(u)[quantity] - target
 
         low, high = difference(-_LARGEST_U), difference(_LARGEST_U)
-        if low * high > 0.0:  # at or beyond the end: a slide without spin
-            return -_LARGEST_U if abs(low) < abs(high) else _LARGEST_U
+        if quantity != 1 and abs(low) <= _SLACK:
+            return -math.inf
+        if low * high > 0.0:
+            raise InputError(
+                "that takes a launch whose ratio of spin to speed is beyond 1e-260 to 1e260: "
+                "out of the range of floating point"
+            )
         return float(brentq(difference, -_LARGEST_U, _LARGEST_U, xtol=1e-14, rtol=1e-15))
 
 
@@ -164,7 +170,7 @@ def aim(
         raise InputError(f"target must be one place (x, y) in m, got shape {place.shape}")
     x, y = place.tolist()
     r, J = positive("radius", radius, "m"), positive("decel", decel, "m/s^2")
-    height = float(load_stop_table().checked_range(delta))
+    height = float(load_stop_table().checked_range(real("delta", delta, "dimensionless")))
     wishes = {"w0": w0, "speed": speed, "stop_time": stop_time}
     wished = [name for name, value in wishes.items() if value is not None]
     if len(wished) > 1:
@@ -173,70 +179,83 @@ def aim(
     widest = math.inf if max_spin is None else positive("max_spin", max_spin, "rad/s")
     if not isinstance(count, int) or not 1 <= count <= MAX_COUNT:
         raise InputError(f"count must be a whole number from 1 to {MAX_COUNT}, got {count!r}")
+    none = np.empty(0)
+    given = Aim((x, y), height, J, r, np.empty((0, 2)), none, none, none, "")
     distance = math.hypot(x, y)
+    if distance == 0.0:
+        return _on_the_spot(given, w0, speed, stop_time)
     family = _Family(distance, height, J)
     slide = math.sqrt(2.0) * math.sqrt(J) * math.sqrt(distance)
     quickest = math.sqrt(2.0) * math.sqrt(distance) / math.sqrt(J)
     us: list[float] = []
     senses: tuple[float, ...] = (-1.0, 1.0)
     answer = ""
-    if distance == 0.0:
-        answer = "the target is where the puck lies: launched with any spin alone it stays there"
-    elif w0 is not None:
+    if w0 is not None:
         spin = real("w0", w0, "rad/s")
         senses = (math.copysign(1.0, spin),)
         us = [-math.inf if spin == 0.0 else family.where(1, r * abs(spin))]
     elif speed is not None:
         wanted = positive("speed", speed, "m/s")
-        us = [family.where(0, wanted)]
-        if wanted > slide * (1.0 + _SLACK):
-            us, answer = (
-                [],
-                (
-                    f"no launch at {wanted:g} m/s stops {distance:g} m away: the fastest has "
-                    f"{slide:.9g} m/s and no spin"
-                ),
+        if wanted <= slide * (1.0 + _SLACK):
+            us = [family.where(0, wanted)]
+        else:
+            answer = (
+                f"no launch at {wanted:g} m/s stops {distance:g} m away: the fastest has "
+                f"{slide:.9g} m/s and no spin"
             )
     elif stop_time is not None:
         wanted = positive("stop_time", stop_time, "s")
-        us = [family.where(2, wanted)]
-        if wanted < quickest * (1.0 - _SLACK):
-            us, answer = (
-                [],
-                (
-                    f"no launch stops {distance:g} m away after {wanted:g} s: the quickest takes "
-                    f"{quickest:.9g} s and has no spin"
-                ),
+        if wanted >= quickest * (1.0 - _SLACK):
+            us = [family.where(2, wanted)]
+        else:
+            answer = (
+                f"no launch stops {distance:g} m away after {wanted:g} s: the quickest takes "
+                f"{quickest:.9g} s and has no spin"
             )
     else:
         least = -math.inf if fastest >= slide else family.where(0, fastest)
         most = family.where(1, r * widest) if widest < math.inf else max(least + 1.0, _SAMPLED_U)
         if least <= most:
             first, last = np.arctan(np.exp([least, most])).tolist()
-            tangents = np.tan(np.linspace(first, last, count))
             with np.errstate(divide="ignore"):
-                us = np.log(tangents).tolist()
+                us = np.log(np.tan(np.linspace(first, last, count))).tolist()
     allowed = [u for u in us if _within(family, u, fastest, r * widest)]
-    if distance > 0.0 and not allowed and not answer:
+    if not allowed and not answer:
         answer = _out_of_bounds(family, us, fastest, widest, r)
     bearing = math.atan2(y, x)
     launches = []
     for u in allowed:
         log_speed, log_rim, log_time, bend = family.at(u)
+        v, spin, time = _number(log_speed), _number(log_rim) / r, _number(log_time)
         for sense in senses if u > -math.inf else (1.0,):
             heading = bearing - sense * bend
-            v = _number(log_speed)
-            launches.append((
-                sense * _number(log_rim) / r,
-                v * math.cos(heading), v * math.sin(heading), _number(log_time),
-            ))  # fmt: skip
-    found = np.array(sorted(launches)).reshape(-1, 4)
-    miss = [_miss(launch, (x, y), height, J, r) for launch in found]
+            launches.append((sense * spin, v * math.cos(heading), v * math.sin(heading), time))
+    return _found(given, launches, answer)
+
+
+def _found(given: Aim, launches: list[tuple[float, float, float, float]], answer: str) -> Aim:
+    """The aim with its launches (ω, vx, vy, stop time), each integrated for its miss."""
+    rows = np.array(sorted(launches)).reshape(-1, 4)
+    miss = np.array([_miss(row, given) for row in rows])
     if not answer:
-        answer = f"{len(found)} launch{'' if len(found) == 1 else 'es'}"
-    return Aim(
-        (x, y), height, J, r, found[:, 1:3], found[:, 0], found[:, 3], np.array(miss), answer
+        answer = f"{len(rows)} launch{'' if len(rows) == 1 else 'es'}"
+    return replace(
+        given, v0=rows[:, 1:3], w0=rows[:, 0], stop_time=rows[:, 3], miss=miss, answer=answer
     )
+
+
+def _on_the_spot(given: Aim, w0: float | None, speed: float | None, stop_time: float | None) -> Aim:
+    """The target is where the puck lies: pure spin stays there, for ¾ r|ω|/J."""
+    turning = 0.75 * given.radius / given.decel
+    if w0 is not None:
+        spin = real("w0", w0, "rad/s")
+        return _found(given, [(spin, 0.0, 0.0, turning * abs(spin))], "")
+    if stop_time is not None:
+        time = positive("stop_time", stop_time, "s")
+        return _found(given, [(s * time / turning, 0.0, 0.0, time) for s in (-1.0, 1.0)], "")
+    if speed is not None:
+        return _found(given, [], "no launch with speed comes to rest where it began")
+    return _found(given, [], "the target is where the puck lies: any spin alone stays there")
 
 
 def _number(log: float) -> float:
@@ -272,12 +291,11 @@ def _out_of_bounds(
     )
 
 
-def _miss(
-    launch: FloatArray, target: tuple[float, float], delta: float, decel: float, radius: float
-) -> float:
+def _miss(launch: FloatArray, given: Aim) -> float:
     """How far from the target the integrated motion ends."""
+    w0, vx, vy, _ = launch.tolist()
     run = simulate(
-        (launch[1], launch[2]), launch[0], delta=delta, decel=decel, radius=radius, frames=1,
+        (vx, vy), w0, delta=given.delta, decel=given.decel, radius=given.radius, frames=1,
         accuracy=_CHECK_ACCURACY,
     )  # fmt: skip
-    return math.dist(run.stop_position, target)
+    return math.dist(run.stop_position, given.target)

@@ -42,6 +42,11 @@ def run_chunks(
     >>> seen
     [(0, 2), (2, 4), (4, 5)]
     """
+    if items <= chunk:
+        work(0, items)
+        if progress is not None:
+            progress(items, items)
+        return
     count = usable_cores() if threads is None else threads
     with _interrupt_noted() as check:
         _run(work, items, chunk, count, progress, check)

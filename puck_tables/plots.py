@@ -148,11 +148,12 @@ def plot_map(stops: StopMap, path: str | Path, overwrite: bool = False) -> None:
         raise InputError("there is nothing to draw: range at least one of w0, speed, delta")
     values = {name: getattr(stops, name) for name in _MAP_LABELS}
     fixed = dict(stops.fixed)
+    left_out = ""
     if len(axes) == 3:
         name, nodes = next(iter(axes.items()))
         middle = nodes.size // 2
         fixed[name] = float(nodes[middle])
-        axes.pop(name)
+        left_out = f" (one of {axes.pop(name).size} values of {name})"
         values = {key: value[middle] for key, value in values.items()}
     figure = canvas(11.0, 6.4)
     panels = figure.subplots(2, 3, sharex=True)
@@ -164,7 +165,7 @@ def plot_map(stops: StopMap, path: str | Path, overwrite: bool = False) -> None:
     across = list(axes)[-1]
     for panel in panels[-1]:
         panel.set_xlabel(_AXIS_LABELS[across])
-    figure.suptitle(_fixed_title(fixed))
+    figure.suptitle(_fixed_title(fixed) + left_out)
     save(figure, path, kind, overwrite)
 
 
@@ -200,10 +201,11 @@ def plot_aim(found: Aim, path: str | Path, overwrite: bool = False) -> None:
     figure = canvas(10.0, 4.4)
     paths, launches = figure.subplots(1, 2, width_ratios=(1.7, 1.0))
     from matplotlib.cm import ScalarMappable
-    from matplotlib.colors import Normalize
+    from matplotlib.colors import LinearSegmentedColormap, Normalize
 
     largest = float(np.abs(found.w0).max()) or 1.0
-    colours = ScalarMappable(Normalize(-largest, largest), "coolwarm")
+    ramp = LinearSegmentedColormap.from_list("spin", [BLUE, "#303030", ORANGE])
+    colours = ScalarMappable(Normalize(-largest, largest), ramp)
     shares = np.linspace(0.0, 1.0, 200)
     states = flow(
         found.v0[:, None, :], found.w0[:, None], found.stop_time[:, None] * shares,

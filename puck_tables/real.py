@@ -58,6 +58,25 @@ def finite_array(name: str, values: npt.ArrayLike, unit: str) -> FloatArray:
     return array
 
 
+def instance(name: str, value: object, *kinds: type) -> None:
+    """Refuse a value that is not of one of these kinds.
+
+    Raises
+    ------
+    InputError
+
+    Examples
+    --------
+    >>> instance("table", "coarse.h5", dict)
+    Traceback (most recent call last):
+    ...
+    puck_tables.errors.InputError: table must be a dict, got a str
+    """
+    if not isinstance(value, kinds):
+        names = " or a ".join(kind.__name__ for kind in kinds if kind is not type(None))
+        raise InputError(f"{name} must be a {names}, got a {type(value).__name__}")
+
+
 def broadcast(**arrays: FloatArray) -> list[FloatArray]:
     """Arrays broadcast against each other, in the order given.
 

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from puck_tables.errors import AccuracyError
 from puck_tables.puck import real
+from puck_tables.real import instance
 from puck_tables.similarity.file import load_stop_table
 from puck_tables.similarity.stop_table import StopTable
 from puck_tables.table.table import Table
@@ -41,15 +42,17 @@ class LookUp:
 
         out = np.empty((3, launches.shape[1]))
         overflows = fill_stops_by_table(launches, self.table.stop_coefficients, out)
-        return _marked(out, overflows)
+        return _marked(out, launches, overflows)
 
     def all(self, launches: FloatArray) -> tuple[FloatArray, Status]:
         """All of :data:`OUTPUTS` (6, n) and status (n,) of checked launches (6, n)."""
         from puck_tables.similarity.curve_lookup import BODY, LENGTH, TURN
 
         known = self.table.known(launches)
-        out = np.concatenate([self.first(launches)[0], known[[LENGTH, TURN, BODY]]])
-        return _marked(out, int(np.count_nonzero(~np.isfinite(out.sum(axis=0)))))
+        first, status = self.first(launches)
+        out = np.concatenate([first, known[[LENGTH, TURN, BODY]]])
+        out[:, status != 0] = np.nan
+        return out, status
 
 
 @dataclass(frozen=True)
@@ -78,14 +81,30 @@ class Integration:
         return out, status
 
 
-def _marked(out: FloatArray, overflows: int) -> tuple[FloatArray, Status]:
-    """Status 2 and NaN where a number is too large for floating point."""
+def _marked(out: FloatArray, launches: FloatArray, overflows: int) -> tuple[FloatArray, Status]:
+    """Status 2 and NaN where a motion is too large for floating point."""
     status = np.zeros(out.shape[1], np.int8)
     if overflows:
-        bad = ~np.isfinite(out).all(axis=0)
+        bad = ~fits(launches)
         status[bad] = STATUS_MEANINGS.index("overflow")
         out[:, bad] = np.nan
     return out, status
+
+
+def fits(launches: FloatArray) -> npt.NDArray[np.bool_]:
+    """Whether Q²/J and Q²/(J r) of launches (6, n) are within floating point, (n,).
+
+    Examples
+    --------
+    >>> fits(np.array([[1.0, 1e200], [0, 0], [0, 0], [0, 0], [1, 1], [1, 1]])).tolist()
+    [True, False]
+    """
+    vx, vy, spin, _, decel, radius = launches
+    with np.errstate(over="ignore", invalid="ignore"):
+        slip = np.hypot(np.hypot(vx, vy), radius * spin)
+        size = slip / decel * slip
+        inside: npt.NDArray[np.bool_] = np.isfinite(size / radius + size)
+    return inside
 
 
 def solver_for(accuracy: float, table: Table | StopTable | None) -> LookUp | Integration:
@@ -108,6 +127,7 @@ def solver_for(accuracy: float, table: Table | StopTable | None) -> LookUp | Int
     'look-up'
     """
     wanted = real("accuracy", accuracy, "dimensionless")
+    instance("table", table, Table, StopTable, type(None))
     if isinstance(table, Table):
         return Integration(table, steps_for(wanted, table))
     chosen = load_stop_table() if table is None else table

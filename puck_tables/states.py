@@ -10,9 +10,10 @@ import numpy.typing as npt
 from puck_tables.errors import InputError
 from puck_tables.executor import run_chunks
 from puck_tables.puck import velocity_array
-from puck_tables.real import broadcast, finite_array
+from puck_tables.real import broadcast, finite_array, instance
 from puck_tables.similarity.file import load_stop_table
 from puck_tables.similarity.stop_table import StopTable
+from puck_tables.solvers import fits
 from puck_tables.stops import positive_array
 
 FloatArray = npt.NDArray[np.float64]
@@ -111,6 +112,7 @@ def flow(
         fill_states,
     )
 
+    instance("table", table, StopTable, type(None))
     chosen = load_stop_table() if table is None else table
     velocity = velocity_array(v0)
     columns = broadcast(
@@ -125,11 +127,11 @@ def flow(
     if not np.all(times >= 0.0):
         raise InputError(f"t must not be negative, got {times.min():g} s")
     launches = np.stack([column.ravel() for column in columns])
-    known = chosen.known(launches)
-    if not np.isfinite(known[:6]).all():
+    if not fits(launches).all():
         raise InputError(
             "v0, w0, radius and decel give a motion too large for floating point: use larger units"
         )
+    known = chosen.known(launches)
     numbers = np.arange(launches.shape[1]).reshape(columns[0].shape)
     which, moments = broadcast(v0=numbers.astype(np.float64), t=times)
     shape = which.shape

@@ -16,7 +16,7 @@ import numpy.typing as npt
 from puck_tables.checkpoint import Checkpoint
 from puck_tables.errors import InputError
 from puck_tables.executor import run_chunks
-from puck_tables.kernels.compile import source_digest
+from puck_tables.kernels.cache import source_digest
 from puck_tables.puck import positive, velocity_array
 from puck_tables.real import finite_array
 from puck_tables.similarity.stop_table import StopTable

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from puck_tables.errors import InputError
 from puck_tables.puck import positive, real, velocity_array
-from puck_tables.real import finite_array
+from puck_tables.real import finite_array, instance
 from puck_tables.table.file import load_table
 from puck_tables.table.table import Table
 
@@ -144,6 +144,7 @@ def simulate(
     r, J = positive("radius", radius, "m"), positive("decel", decel, "m/s^2")
     m = positive("mass", mass, "kg")
     height = real("delta", delta, "dimensionless")
+    instance("table", table, Table, type(None))
     if exact and table is not None:
         raise InputError("exact and table exclude each other: closed forms need no table")
     _check_frames(frames, times)

@@ -79,8 +79,10 @@ def test_ends_of_the_family():
     fast = aim(TARGET, w0=1e9)
     assert fast.miss[0] < 1e-9
     assert fast.stop_time[0] == pytest.approx(0.75e9, rel=1e-9)
-    tiny = aim((1e-200, 0.0), w0=1e-90)
-    assert tiny.w0.size == 1
+    for options in ({"w0": 1e300}, {"stop_time": 1e300}, {"speed": 1e-200}, {"w0": 1e-290}):
+        with pytest.raises(InputError, match="out of the range of floating point"):
+            aim(TARGET, **options)
+    assert aim((1.0, 0.0), speed=math.sqrt(2.0)).w0.tolist() == [0.0]
 
 
 @pytest.mark.parametrize("scale", [1e-12, 1e9])
@@ -116,7 +118,12 @@ def test_no_solution_is_an_answer(options: dict, words: str):
 
 
 def test_the_target_under_the_puck():
-    assert "any spin alone" in aim((0.0, 0.0), w0=3.0).answer
+    assert "any spin alone" in aim((0.0, 0.0)).answer
+    spinning = aim((0.0, 0.0), w0=-3.0, radius=0.5)
+    assert (spinning.v0.tolist(), spinning.w0.tolist()) == ([[0.0, 0.0]], [-3.0])
+    assert spinning.stop_time.tolist() == [0.75 * 1.5]
+    assert aim((0.0, 0.0), stop_time=0.75).w0.tolist() == [-1.0, 1.0]
+    assert "no launch with speed" in aim((0.0, 0.0), speed=1.0).answer
 
 
 @pytest.mark.parametrize(
@@ -161,7 +168,7 @@ def test_command_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     assert again.exit_code == 1
     assert "exists already" in again.stderr
     for options, words in (
-        (["--w0", "1", "--time", "2"], "give one of them"),
+        (["--w0", "1", "--time", "2"], "--w0 and --time clash"),
         (["-o", "aim.h5"], ".csv"),
         (["--count", "0"], "count"),
     ):

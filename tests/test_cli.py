@@ -218,7 +218,7 @@ V0 = ["simulate", "--v0", "1,0"]
         ([*V0, "-o", "a.csv", "--plot", "a.csv"], ["two outputs"]),
         (["sweep", "--w0", "5:1:10"], ["STOP must be greater than START"]),
         (["sweep", "--w0", "1:5"], ["START:STOP:COUNT"]),
-        (["sweep", "--w0", "-1e308:1e308:3"], ["finitely"]),
+        (["sweep", "--w0", "-1e308:1e308:3"], ["too wide"]),
         ([*V0, "--radius", "1e-308", "--height", "1e308", "--friction", "1"], ["floating point"]),
         (["sweep", "--w0", "1:5:1"], ["COUNT"]),
         (["sweep", "--w0", "1:5:1e3"], ["COUNT"]),
@@ -326,7 +326,7 @@ def test_interrupted_sweep_writes_nothing(folder: Path):
     process.send_signal(signal.SIGINT)
     out, err = process.communicate(timeout=60)
     assert process.returncode == 130, err
-    assert (out, err.strip()) == ("", "Interrupted: nothing more was written.")
+    assert (out, err.splitlines()[-1]) == ("", "Interrupted: nothing more was written.")
     assert list(folder.iterdir()) == []
 
 

@@ -263,8 +263,10 @@ def fill_launches(
         c0, kappa = _constant(constants, 0, s), _constant(constants, 1, s)
         turning = delta * _constant(constants, 2, s)
         quarter = _constant(constants, 3, s)
-        double_share = max(2.0 * min(speed, rim) / (speed + rim), _SMALLEST_SHARE)
-        sign = 1.0 if side == 1 and (rim - speed) / (rim + speed) > c0 else -1.0
+        # max + min by parts: their sum may overflow
+        share = min(speed, rim) / max(speed, rim)
+        double_share = max(2.0 * share / (1.0 + share), _SMALLEST_SHARE)
+        sign = 1.0 if side == 1 and 1.0 - double_share > c0 else -1.0
         log_n = _log_n(side, double_share, c0, kappa, delta, r, 0.0)
         heading = _heading(side, double_share, delta, turning, part)
         out[SIGN_N, n], out[HEADING, n] = sign, heading
@@ -310,8 +312,8 @@ def _fill_state(
         heading = around * (known[TURNING] * math.log(fall) + regular - known[HEADING])
     cosine, sine = math.cos(heading), math.sin(heading)
     # the way that is left, along and across the new heading
-    along = found[1] * slip * speed / decel
-    across = around * delta * found[2] * rim * speed / decel
+    along = found[1] * slip / decel * speed
+    across = around * delta * found[2] * rim / decel * speed
     east, north = vx / known[SPEED0], vy / known[SPEED0]
     ahead = along * cosine - across * sine
     aside = along * sine + across * cosine

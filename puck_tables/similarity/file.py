@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from puck_tables.errors import OutputError, TableError
+from puck_tables.real import instance
 from puck_tables.safe_write import write_bytes
 from puck_tables.similarity.axes import HEIGHTS, SlipAxis, heights
 from puck_tables.similarity.stop_table import FUNCTIONS, UPPER_DELTA, StopAccuracy, StopTable
@@ -100,6 +101,7 @@ def save_stop_table(
     >>> saved.passport["kind"]
     'stops'
     """
+    instance("table", table, StopTable)
     if table.accuracy is None or not np.all(np.isfinite(table.values)):
         raise OutputError(
             "a table without measured accuracy or with a non-finite value is not saved"

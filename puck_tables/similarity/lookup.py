@@ -35,6 +35,8 @@ _BLOCK = 128
 @inlined
 def slip_place(speed: float, rim: float) -> tuple[int, float]:
     """Side (1: r|ω| > v) and ξ of a motion; 1 − q without cancellation next to φ = π/4."""
+    raised = 2.0**200 if speed + rim < 1e-290 else 1.0  # the inverse of the least would overflow
+    speed, rim = raised * speed, raised * rim
     total = speed + rim
     inverse = 1.0 / total if total > 0.0 else 0.0
     q = math.sqrt(math.sqrt(2.0 * min(speed, rim) * inverse))
@@ -53,9 +55,9 @@ def _safe(speed2: float, rim2: float) -> bool:
 def fill_stops_by_table(launches: FloatArray, coefficients: FloatArray, out: FloatArray) -> int:
     """Stop time, x, y of launches (6, n): vx, vy, ω, δ, J, r, into ``out`` (3, n).
 
-    Returns how many are too large for floating point.  In blocks of three loops, as in
-    :mod:`puck_tables.kernels.spline`: places and weights (vectorised), sums over a cell, results
-    (vectorised).
+    Returns of how many Q²/J or Q²/(J r) is too large for floating point.  In blocks of three
+    loops, as in :mod:`puck_tables.kernels.spline`: places and weights (vectorised), sums over a
+    cell, results (vectorised).
     """
     cells = coefficients.shape[1] - 3
     side_stride = coefficients.shape[1] * STOP_ROW
@@ -121,8 +123,9 @@ def fill_stops_by_table(launches: FloatArray, coefficients: FloatArray, out: Flo
             across = delta[n] * edge[n] * y[n]
             still = vx[n] == 0.0 and vy[n] == 0.0
             t = 1.0 if edge[n] == 0.0 else (0.75 if still else time[n])
-            time[n] = slip[n] / decel[n] * t
+            scale = slip[n] / decel[n]
+            time[n] = scale * t
             x[n] = (along * vx[n] - across * vy[n]) / decel[n]
             y[n] = (along * vy[n] + across * vx[n]) / decel[n]
-            overflows += 0 if math.isfinite(time[n] + x[n] + y[n]) else 1
+            overflows += 0 if math.isfinite(scale * slip[n] / radius[n] + scale * slip[n]) else 1
     return overflows

@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import InputError
+from puck_tables.executor import run_chunks
 from puck_tables.similarity.axes import (
     CONSTANT_HEIGHTS,
     HEIGHTS,
@@ -24,6 +25,8 @@ from puck_tables.similarity.lookup import CURVE_ROW, STOP_POWERS, STOP_ROW
 from puck_tables.table.fit import clamped_coefficients
 
 FloatArray = npt.NDArray[np.float64]
+
+_CHUNK = 1 << 15
 
 FUNCTIONS = ("time", "along", "across", "length", "body", "curve", "turn")
 UPPER_DELTA = 1.0
@@ -157,10 +160,16 @@ class StopTable:
         from puck_tables.similarity.curve_lookup import LAUNCH_ROWS, fill_launches
 
         out = np.empty((LAUNCH_ROWS, launches.shape[1]))
-        fill_launches(
-            launches, self.stop_coefficients, self.curve_coefficients, self.turn_inverse,
-            self.constants, TURN_SHARE, out,
+        tables = (
+            self.stop_coefficients, self.curve_coefficients, self.turn_inverse, self.constants,
         )  # fmt: skip
+
+        def work(start: int, stop: int) -> None:
+            part = np.empty((LAUNCH_ROWS, stop - start))
+            fill_launches(np.ascontiguousarray(launches[:, start:stop]), *tables, TURN_SHARE, part)
+            out[:, start:stop] = part
+
+        run_chunks(work, launches.shape[1], _CHUNK)
         return out
 
     def checked_range(self, delta: npt.ArrayLike) -> FloatArray:
@@ -173,7 +182,7 @@ class StopTable:
         height = checked_delta(delta)
         if not np.all(height <= UPPER_DELTA):
             raise InputError(
-                f"delta = {height[height > UPPER_DELTA].flat[0]:g} is outside this table "
+                f"delta = {height[height > UPPER_DELTA].flat[0]!s} is outside this table "
                 f"(0 <= delta <= {UPPER_DELTA:g}): beyond, the whole base does not stay loaded in "
                 "every motion"
             )

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from puck_tables.contact import closed_form, quadrature
 from puck_tables.contact.integrals import slip_direction
 from puck_tables.contact.resultants import Resultants, moment_balance
+from puck_tables.real import instance
 from puck_tables.table.grid import PhiAxis
 from puck_tables.table.table import FUNCTIONS, Accuracy, Table
 
@@ -227,6 +228,7 @@ def validate(
     >>> validate(load_table(), random_points=50).passed
     True
     """
+    instance("table", table, Table)
     upper = table.delta_axis.upper
     checks: list[Check] = []
     steps = 4 + -(-random_points // 500)

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from puck_tables.errors import OutputError, TableError
+from puck_tables.real import instance
 from puck_tables.safe_write import write_bytes
 from puck_tables.table.container import (
     Contents,
@@ -87,6 +88,7 @@ def save_table(
     >>> saved.passport["pressure_law"]
     'uniform'
     """
+    instance("table", table, Table)
     if table.accuracy is None or not np.all(np.isfinite(table.values)):
         raise OutputError(
             "a table without measured accuracy or with a non-finite value is not saved"

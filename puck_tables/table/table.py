@@ -96,7 +96,7 @@ class Table:
         height = checked_delta(delta)
         if not np.all(height <= self.delta_axis.upper):
             raise InputError(
-                f"delta = {height[height > self.delta_axis.upper].flat[0]:g} is outside this table "
+                f"delta = {height[height > self.delta_axis.upper].flat[0]!s} is outside this table "
                 f"(0 <= delta <= {self.delta_axis.upper:g}): the linear pressure law of full "
                 "contact holds at every phi only up to 1; where it still holds beyond, "
                 "use the closed forms (--exact)"
