@@ -215,12 +215,17 @@ def plot_aim(found: Aim, path: str | Path, overwrite: bool = False) -> None:
         paths.plot(states.x[n], states.y[n], color=colours.to_rgba(w0), linewidth=1.3)
     paths.plot(0.0, 0.0, "o", color=GREY, markersize=5)
     paths.plot(*found.target, "x", color="black", markersize=8, markeredgewidth=1.8, zorder=5)
-    for text, place in (("launch", (0.0, 0.0)), ("target", found.target)):
+    outwards = 1 if found.target[0] >= 0.0 else -1  # labels stand clear of the paths
+    for text, place, side in (
+        ("launch", (0.0, 0.0), -outwards),
+        ("target", found.target, outwards),
+    ):
         paths.annotate(
-            text, place, xytext=(0, -17), textcoords="offset points", ha="center", fontsize=9
-        )
+            text, place, xytext=(9 * side, -3), textcoords="offset points", fontsize=9,
+            ha="left" if side > 0 else "right",
+        )  # fmt: skip
     paths.set(xlabel="x / m", ylabel="y / m (not to scale)")
-    paths.margins(0.12, 0.2)
+    paths.margins(0.18, 0.2)
     figure.colorbar(colours, ax=paths, label="launch spin ω₀ / rad/s")
     for sense in (found.w0 <= 0.0, found.w0 >= 0.0):
         launches.plot(found.w0[sense], found.speed[sense], color=GREY, linewidth=0.8, zorder=1)
