@@ -208,7 +208,7 @@ def _guess(direction: SlipDirection, delta: FloatArray) -> Chord:
     sideways = np.sqrt(direction.sin_squared) * rho.perpendicular
     force = np.sqrt(direction.cos_squared) * np.hypot(rho.parallel, sideways)
     offset = -1.0 / (delta * force)
-    lever = np.clip(0.25 * delta * force, 0.25, 0.245 * delta)
+    lever = np.clip(0.25 * delta * force, 0.25, np.minimum(0.245 * delta, 0.98))
     opened = 1.0 - 7.985 * (1.0 - np.sqrt(1.0 - 0.584 * (1.0 - lever)))  # m(d), fitted
     bearing = np.arctan2(sideways, rho.parallel)
     return Chord(np.where(offset > -1.0, opened, offset), bearing)
