@@ -66,6 +66,25 @@ def test_smoothness_across_the_opening():
         assert np.abs(order[:, -1] - 2.5).max() < 0.02, (phi, order)
 
 
+def test_the_only_other_singular_line_is_where_the_centre_crosses_the_rim():
+    """φ = π/4, x² ln|x|, in partial contact too: the chord never cuts the centre off the load."""
+    x, signs = 2.0 ** -np.arange(6, 11), np.array([1.0, -4.0, 6.0, -4.0, 1.0])
+
+    def order(phi, delta):
+        rho = np.stack(resultants(phi + x[:, None] * np.arange(-2, 3), delta))
+        difference = np.abs(rho @ signs)
+        return np.log2(difference[:, :-1] / difference[:, 1:]).mean(axis=1)
+
+    for delta in (1.5, 2.0, 3.0):
+        assert np.abs(order(QUARTER, delta) - 2.0).max() < 0.35
+        assert order(0.5, delta).min() > 3.3 and order(0.84, delta).min() > 3.3
+    phi, delta = scattered(1500, 3.9)
+    phi, delta = phi[phi > QUARTER], delta[phi > QUARTER]
+    chord = balance(phi, delta)[1]
+    depth = np.sin(chord.bearing) / np.tan(phi) - chord.offset  # ξ at the centre
+    assert phi.size > 200 and depth.min() > 0.03
+
+
 # --- values ------------------------------------------------------------------------------------
 
 
