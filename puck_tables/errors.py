@@ -12,7 +12,7 @@ class InputError(PuckError, ValueError):
 
 
 class ContactError(InputError):
-    """The state lies outside the law of full contact: part of the base would be pulled."""
+    """The state lies outside the law of contact asked for: lifted, tipping, or not determined."""
 
 
 class AccuracyError(InputError):

@@ -31,6 +31,8 @@ class PressureLaw:
         The name a table file carries.
     weight : callable
         W(ρ), shape-preserving, for ρ in [0, 1); normalised to ∫ W ρ dρ = 1/2.
+    moments : callable, optional
+        The chord moments as functions of L² = 1 − distance², where they are elementary.
 
     Examples
     --------
@@ -40,6 +42,7 @@ class PressureLaw:
 
     name: str
     weight: Callable[[FloatArray], FloatArray]
+    moments: Callable[[FloatArray], tuple[FloatArray, FloatArray]] | None = None
 
     def chord_moments(self, distance: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Moments ∫ W dl and ∫ W l² dl along the chord at a distance from the centre.
@@ -64,7 +67,10 @@ class PressureLaw:
         >>> float(zeroth[0].round(12)), float(second[0].round(12))
         (1.6, 0.341333333333)
         """
-        half_length = np.sqrt((1.0 - distance) * (1.0 + distance))[..., None]
+        square = (1.0 - distance) * (1.0 + distance)
+        if self.moments is not None:
+            return self.moments(square)
+        half_length = np.sqrt(square)[..., None]
         position = half_length * np.sin(_CHI)
         radius = np.sqrt(distance[..., None] ** 2 + position**2)
         radius = np.minimum(radius, 1.0 - 2.0**-53)  # rounding must not reach the rim
@@ -73,3 +79,16 @@ class PressureLaw:
 
 
 UNIFORM = PressureLaw("uniform", np.ones_like)
+
+# The pressure under a rigid flat punch on an elastic floor, infinite at the rim (Galin 1953), and
+# under a ball of large radius (Hertz 1881); ∫ l² dl/√(L² − l²) = π L²/2 and its like.
+GALIN = PressureLaw(
+    "galin",
+    lambda rho: 0.5 / np.sqrt((1.0 - rho) * (1.0 + rho)),
+    lambda square: (np.full_like(square, 0.5 * np.pi), 0.25 * np.pi * square),
+)
+HERTZ = PressureLaw(
+    "hertz",
+    lambda rho: 1.5 * np.sqrt((1.0 - rho) * (1.0 + rho)),
+    lambda square: (0.75 * np.pi * square, 0.1875 * np.pi * square**2),
+)

@@ -28,7 +28,7 @@ _GAUSS_NODES = 14
 
 
 def _graded_rule() -> tuple[FloatArray, FloatArray]:
-    """Distances from π/2 and weights of the rule."""
+    """Distances from the end and weights of the rule."""
     node, weight = np.polynomial.legendre.leggauss(_GAUSS_NODES)
     edges = np.append(0.5 * np.pi * 0.5 ** np.arange(_PANELS), 0.0)
     half = 0.5 * (edges[:-1] - edges[1:])
@@ -36,8 +36,8 @@ def _graded_rule() -> tuple[FloatArray, FloatArray]:
     return (middle[:, None] + half[:, None] * node).ravel(), (half[:, None] * weight).ravel()
 
 
-_FROM_END, _WEIGHT = _graded_rule()
-_SIN, _COS = np.cos(_FROM_END), np.sin(_FROM_END)
+FROM_END, WEIGHT = _graded_rule()
+_SIN, _COS = np.cos(FROM_END), np.sin(FROM_END)
 _CHUNK = 64
 
 
@@ -92,12 +92,12 @@ def _centre_inside(s: FloatArray, law: PressureLaw) -> FloatArray:
         (_SIN**2 - _COS**2) * second,
     )
     factor = 2.0 / np.pi * np.sqrt(1.0 + s[:, 0] ** 2)  # 2/(π sin φ)
-    return np.stack([factor * (term @ _WEIGHT) for term in integrand])
+    return np.stack([factor * (term @ WEIGHT) for term in integrand])
 
 
 def _centre_outside(kappa: FloatArray, law: PressureLaw) -> FloatArray:
     """|φ| ≤ π/4: κ = tan φ = 1/s ≤ 1, integration over χ ∈ [0, π/2] (doubled by symmetry)."""
-    zeroth, second = (moment * _COS * _WEIGHT for moment in law.chord_moments(_SIN))
+    zeroth, second = (moment * _COS * WEIGHT for moment in law.chord_moments(_SIN))
     kappa = kappa[:, None]
     cos_a = np.sqrt((1.0 - kappa * _SIN) * (1.0 + kappa * _SIN))
     integrand = (

@@ -245,7 +245,7 @@ def validate(
     ) -> None:
         error = np.abs(np.stack(table.resultants(phi, delta)) - np.stack(truth))
         for function, row in zip(FUNCTIONS, error, strict=True):
-            checks.append(_worst(name, function, row, phi, delta, allowed))
+            checks.append(worst_of(name, function, row, phi, delta, allowed))
 
     rng = np.random.default_rng(83)
     edge, _ = adversarial_points(table.phi_axis, upper, 0, seed=101)
@@ -289,7 +289,7 @@ def _identities(table: Table, rng: np.random.Generator) -> list[Check]:
     turning = p_d + delta**2 * cos2 * rho.parallel * p_b * (p_d - 2.0 * p_b) - 0.5 * rho.spin
     allowed = IDENTITY_FACTOR * table.tolerance
     return [
-        _worst(f"identity {name}", function, np.abs(residual), phi, delta, allowed)
+        worst_of(f"identity {name}", function, np.abs(residual), phi, delta, allowed)
         for name, function, residual in (
             ("p_a(phi) = p_a(pi/2 - phi)", "parallel", p_a - mirrored),
             ("pressure balance", "perpendicular", balance),
@@ -298,9 +298,17 @@ def _identities(table: Table, rng: np.random.Generator) -> list[Check]:
     ]
 
 
-def _worst(
+def worst_of(
     name: str, function: str, error: FloatArray, phi: FloatArray, delta: FloatArray, allowed: float
 ) -> Check:
+    """The line of a report for errors at points: the largest, and where it stands; NaN is largest.
+
+    Examples
+    --------
+    >>> places = np.array([0.1, 0.2])
+    >>> worst_of("rule", "spin", np.array([1e-9, 1e-7]), places, places, 1e-8).passed
+    False
+    """
     worst = int(np.argmax(np.where(np.isnan(error), np.inf, error)))
     return Check(
         name, function, error.size, float(error[worst]), allowed,

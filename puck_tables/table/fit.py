@@ -55,17 +55,50 @@ def not_a_knot_coefficients(values: FloatArray) -> FloatArray:
     >>> float(((c[1] + 23 * c[2] + 23 * c[3] + c[4]) / 48).round(12))  # at 1.5
     3.375
     """
-    size = len(values)
+    system = _interpolation(len(values))
+    system[0, :5] = system[-1, -5:] = _JUMP
+    return _solved(system, values)
+
+
+def half_clamped_coefficients(values: FloatArray) -> FloatArray:
+    """Coefficients of the uniform cubic spline with zero slope at its start, not-a-knot at its end.
+
+    Parameters
+    ----------
+    values : array (n + 1, …), n ≥ 3
+
+    Returns
+    -------
+    array (n + 3, …)
+
+    Examples
+    --------
+    >>> c = half_clamped_coefficients(np.arange(6.0) ** 2)
+    >>> float(((c[1] + 23 * c[2] + 23 * c[3] + c[4]) / 48).round(12))  # at 1.5
+    2.25
+    """
+    system = _interpolation(len(values))
+    system[0, :3] = (-1.0, 0.0, 1.0)
+    system[-1, -5:] = _JUMP
+    return _solved(system, values)
+
+
+_JUMP = (1.0, -4.0, 6.0, -4.0, 1.0)  # of the third derivative at the last inner knots
+
+
+def _interpolation(size: int) -> FloatArray:
+    """The system for coefficients, first and last row left free for the ends."""
     system = np.zeros((size + 2, size + 2))
     rows = np.arange(size)
     for offset, weight in enumerate((1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0)):
         system[rows + 1, rows + offset] = weight
-    jump = (1.0, -4.0, 6.0, -4.0, 1.0)  # of the third derivative at the last inner knots
-    system[0, :5] = jump
-    system[-1, -5:] = jump
-    right = np.zeros((size + 2, *values.shape[1:]))
+    return system
+
+
+def _solved(system: FloatArray, values: FloatArray) -> FloatArray:
+    right = np.zeros((len(values) + 2, *values.shape[1:]))
     right[1:-1] = values
-    flat = np.linalg.solve(system, right.reshape(size + 2, -1))
+    flat = np.linalg.solve(system, right.reshape(len(values) + 2, -1))
     return np.asarray(flat, dtype=np.float64).reshape(right.shape)
 
 

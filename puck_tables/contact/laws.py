@@ -1,0 +1,261 @@
+"""Pressure laws by name: what a law tells the tables.
+
+A law says how the five integrals follow from φ, and where on the radius it begins, ends or jumps:
+at s = cot φ equal to such an edge the instantaneous centre of rotation crosses it, and the
+resultants are singular there: like x² ln|x| where the pressure jumps, x ln|x| on the thin ring,
+|x|^(3/2) under Galin's and |x|^(5/2) under Hertz's law, these two only for s > 1.
+
+With ⟨x²⟩ = ∫ W ρ³ dρ in place of the 1/4 of uniform pressure the moment balance is that of a puck
+of height δ/(4⟨x²⟩) under uniform pressure.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables.contact import closed_form, quadrature
+from puck_tables.contact.integrals import FloatArray, PatchIntegrals, checked_phi, slip_direction
+from puck_tables.contact.pressure import GALIN, HERTZ
+from puck_tables.contact.resultants import Resultants, checked_delta, moment_balance
+from puck_tables.contact.superposition import (
+    annulus_integrals,
+    profile_integrals,
+    ring_integrals,
+)
+from puck_tables.errors import InputError
+from puck_tables.real import broadcast
+
+NAMES = "uniform, galin, hertz, ring, annulus:INNER (0 < INNER < 1), or a CSV file of rho, W"
+_SLACK = 1e-9  # of δ/δ_max: names and files carry twelve digits
+_LARGEST = 1e-5  # a limit ratio above 1e5 is none: there the two rates agree to rounding
+THINNEST = 1.0 - 1e-6  # inner radius of the thinnest washer; beyond it take the ring
+
+
+@dataclass(frozen=True)
+class Law:
+    """An axisymmetric pressure law as the tables need it.
+
+    Parameters
+    ----------
+    name : str
+        As :func:`law_of` takes it.
+    edges : tuple of float
+        Radii at which the law begins, ends or jumps, ascending, the last 1.
+    integrals : callable
+        From slip angles to :class:`PatchIntegrals`.
+
+    Examples
+    --------
+    >>> law_of("annulus:0.8").edges
+    (0.8, 1.0)
+    """
+
+    name: str
+    edges: tuple[float, ...]
+    integrals: Callable[[npt.ArrayLike], PatchIntegrals]
+
+    @property
+    def mean_square(self) -> float:
+        """⟨x²⟩ = ∫ W ρ³ dρ, in r²: it is p_b at φ = 0."""
+        return float(self.integrals(0.0).b)
+
+    @property
+    def delta_max(self) -> float:
+        """The height up to which contact is full at every φ: 4⟨x²⟩."""
+        return 4.0 * self.mean_square
+
+    def resultants(self, phi: npt.ArrayLike, delta: npt.ArrayLike) -> Resultants:
+        """Friction resultants of full contact under this law.
+
+        Parameters
+        ----------
+        phi : array_like, radians, in [−π/2, π/2]
+        delta : array_like
+            Dimensionless height 2fh/r, at most ``delta_max``; broadcast against ``phi``.
+
+        Returns
+        -------
+        Resultants
+
+        Raises
+        ------
+        InputError
+            If an argument is not finite or outside its range.
+
+        References
+        ----------
+        Salnikova, Treschev, Gallyamov 2012, sections 3, 5 and 6.
+
+        Examples
+        --------
+        >>> float(law_of("ring").resultants(0.0, 1.0).perpendicular.round(12))
+        0.25
+        """
+        angle, height = broadcast(phi=checked_phi(phi), delta=checked_delta(delta))
+        scaled = height / self.delta_max
+        if not np.all(scaled <= 1.0 + _SLACK):
+            raise InputError(
+                f"delta = {height[scaled > 1.0 + _SLACK].flat[0]:g} is outside full contact under "
+                f"the pressure law {self.name}: 0 <= delta <= {self.delta_max:g}"
+            )
+        return moment_balance(self.integrals(angle), slip_direction(angle), scaled)
+
+
+def law_of(text: str) -> Law:
+    """The pressure law of a name, or of a CSV file with columns ρ (in units of r) and W.
+
+    Parameters
+    ----------
+    text : str
+        uniform, galin, hertz, ring, annulus:INNER, or the path of a CSV file.
+
+    Returns
+    -------
+    Law
+
+    Raises
+    ------
+    InputError
+        If the name is not known, the inner radius not between 0 and 1, or the file no profile.
+
+    Examples
+    --------
+    >>> round(law_of("hertz").mean_square, 12)
+    0.2
+    """
+    kind, colon, rest = text.partition(":")
+    if text in _NAMED:
+        return Law(text, (1.0,), _NAMED[text])
+    if kind == "annulus" and colon:
+        try:
+            inner = float(rest)
+        except ValueError:
+            inner = np.nan
+        if not 0.0 < inner <= THINNEST:
+            raise InputError(
+                f"annulus:{rest}: the inner radius must be a number between 0 and 1 in units of "
+                "the outer (0 is 'uniform', 1 is 'ring')"
+            )
+        return Law(f"annulus:{inner:g}", (inner, 1.0), partial(annulus_integrals, inner=inner))
+    if not text.lower().endswith(".csv"):
+        raise InputError(f"no pressure law is called {text!r}: choose {NAMES}")
+    return profile_law(*_read(text), name=Path(text).name)
+
+
+def profile_law(radii: npt.ArrayLike, pressure: npt.ArrayLike, name: str = "profile") -> Law:
+    """A law from tabulated pressures, straight between the radii.
+
+    Parameters
+    ----------
+    radii : array_like (n,), strictly ascending, from 0 or more to 1
+        No pressure inside the first.
+    pressure : array_like (n,), not negative, in any unit
+
+    Returns
+    -------
+    Law
+
+    Raises
+    ------
+    InputError
+        If they are not such a profile.
+
+    Examples
+    --------
+    >>> law = profile_law([0.0, 1.0], [1.0, 0.0])  # a cone
+    >>> round(law.mean_square, 12)
+    0.15
+    """
+    rho, weight = np.array(radii, dtype=np.float64), np.array(pressure, dtype=np.float64)
+    if not (rho.ndim == 1 and rho.shape == weight.shape and rho.size >= 2):
+        raise InputError(f"{name}: a profile needs two or more rows of rho, W")
+    if not (rho[0] >= 0.0 and rho[-1] == 1.0 and np.all(np.diff(rho) > 0.0)):
+        raise InputError(f"{name}: rho must ascend from 0 or more to 1 (units of the radius)")
+    if not (np.all(weight >= 0.0) and np.all(np.isfinite(weight)) and weight.max() > 0.0):
+        raise InputError(f"{name}: W must be finite, nowhere negative and not all zero")
+    integrals = partial(profile_integrals, radii=rho, pressure=weight)
+    edges = (float(rho[0]), 1.0) if rho[0] > 0.0 else (1.0,)
+    return Law(name, edges, integrals)
+
+
+def _read(path: str) -> tuple[FloatArray, FloatArray]:
+    """Two columns of a CSV file; a first line of words is its header."""
+    try:
+        lines = Path(path).read_text(encoding="utf-8-sig").splitlines()
+        rows = [line.split(",") for line in lines if line.strip() and not line.startswith("#")]
+        header = 0 if _is_number(rows[0][0]) else 1
+        columns = np.array([[float(cell) for cell in row] for row in rows[header:]]).T
+        first, second = columns
+    except OSError as error:
+        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
+    except (ValueError, IndexError):
+        raise InputError(f"{path}: a profile is a CSV file of two columns, rho and W") from None
+    return first, second
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
+
+
+_NAMED: dict[str, Callable[[npt.ArrayLike], PatchIntegrals]] = {
+    "uniform": closed_form.integrals,
+    "galin": partial(quadrature.integrals, law=GALIN),
+    "hertz": partial(quadrature.integrals, law=HERTZ),
+    "ring": ring_integrals,
+}
+
+
+def limit_ratio(law: Law, delta: float = 0.0, gyration: float = 0.5**0.5) -> float:
+    """The ratio rω/v that every motion tends to.
+
+    Parameters
+    ----------
+    law : Law
+    delta : float
+        Dimensionless height, at most ``law.delta_max``.
+    gyration : float
+        Radius of gyration k about the vertical axis in units of r; √½ for a homogeneous puck.
+
+    Returns
+    -------
+    float
+        tan φ₀ with ρ_∥ = (r²/2k²) ρ_ω, from r ω' = −(r²/2k²) J sin φ ρ_ω; inf where spin always
+        outlasts the sliding (as under Hertz's law for k = √½), 0 where it never does.
+
+    Raises
+    ------
+    InputError
+        If the height or the radius of gyration is out of range.
+
+    Examples
+    --------
+    >>> round(limit_ratio(law_of("uniform")), 9), round(limit_ratio(law_of("ring"), 0.0, 1.0), 9)
+    (1.531389372, 1.0)
+    """
+    if not 0.0 < gyration < np.inf:
+        raise InputError(f"the radius of gyration must be positive, in units of r, got {gyration}")
+    low, high = 0.0, 0.5 * np.pi - _LARGEST
+    sliding, spinning = _braking(law, high, delta, gyration)
+    if sliding > spinning:
+        return np.inf
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        sliding, spinning = _braking(law, middle, delta, gyration)
+        low, high = (middle, high) if sliding > spinning else (low, middle)
+    return float(np.tan(low))
+
+
+def _braking(law: Law, phi: float, delta: float, gyration: float) -> tuple[float, float]:
+    """Rates at which v and rω decay, in units of J/Q."""
+    rho = law.resultants(phi, delta)
+    return float(rho.parallel), float(rho.spin) / (2.0 * gyration**2)

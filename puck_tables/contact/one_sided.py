@@ -1,0 +1,304 @@
+"""Resultants of one-sided contact: the floor pushes and never pulls (uniform pressure).
+
+Beyond the height at which contact first opens the pressure is σ = max(0, a + b x + c y) with
+∫σ = N, ∫σ x = (h/2) F_∥, ∫σ y = (h/2) F_⊥.  By the symmetry of the disc the first equation and the
+direction drop out: with σ ∝ ξ = n·(x, y) − d on the loaded part, ⟨f⟩ = ∫ξ f/∫ξ and δ = 2fh/r,
+
+    ⟨(x, y)⟩ = m(d) n(γ) = (δ/4) ⟨u/|u|⟩ ,
+
+two equations for the chord (d, γ), solved by Newton's method; the derivatives are sums over the
+same points, ∂ξ/∂d = −1 and ∂ξ/∂γ = the position along the chord.
+
+δ = 4 is the end: |⟨u/|u|⟩| ≤ 1 and m < 1, and where the puck slides faster than it spins (φ < π/4)
+the load gathers at sin γ = tan φ on the rim as δ → 4, and the puck tips.  Below :data:`FOLD_DELTA`
+the balance has one solution for every slip angle.  Above it the balance has three solutions in a
+sliver just below φ = π/4 (see tests/test_partial.py); there it is refused.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables.contact import closed_form
+from puck_tables.contact.integrals import (
+    FloatArray,
+    PatchIntegrals,
+    SlipDirection,
+    checked_phi,
+    slip_direction,
+)
+from puck_tables.contact.loaded_patch import PatchRule, patch_rule, segment
+from puck_tables.contact.opening import critical_delta
+from puck_tables.contact.resultants import Resultants, checked_delta, moment_balance
+from puck_tables.errors import AccuracyError, ContactError
+from puck_tables.real import broadcast
+
+TIPPING_DELTA = 4.0
+# The cusp of the balance: (φ, δ) = (π/4 − 0.00500, 3.96380), rounded towards safety.
+FOLD_DELTA = 3.9637
+_FOLD_ANGLES = (0.25 * np.pi - 0.00502, 0.25 * np.pi)
+
+_CHUNK = 64
+_STEPS = 60
+_SETTLED = 1e-7  # a step of that size leaves an error of its square
+_EASY_DELTA = 3.9
+_FOLLOWED = 33
+_MAX_TURN = 0.3  # radians a step
+
+
+class Chord(NamedTuple):
+    """The chord that bounds the loaded part: distance d from the centre and bearing γ of the load.
+
+    d ≤ −1 in full contact, where the pressure is (N/πr²)(1 − n·(x, y)/d).
+    """
+
+    offset: FloatArray
+    bearing: FloatArray
+
+
+def checked_height(delta: npt.ArrayLike) -> FloatArray:
+    """``delta`` as an array, refused where the puck tips over.
+
+    Raises
+    ------
+    InputError
+        If a height is not finite or negative.
+    ContactError
+        If a height is 4 or more.
+
+    Examples
+    --------
+    >>> checked_height(4.0)
+    Traceback (most recent call last):
+    ...
+    puck_tables.errors.ContactError: delta = 4: a puck with delta = 2 f h / r >= 4 tips over its \
+leading edge as soon as it slides without spin; choose a lower or broader puck or less friction
+    """
+    height = checked_delta(delta)
+    if not (height < TIPPING_DELTA).all():
+        raise ContactError(
+            f"delta = {height[height >= TIPPING_DELTA].flat[0]:g}: a puck with "
+            "delta = 2 f h / r >= 4 tips over its leading edge as soon as it slides without spin; "
+            "choose a lower or broader puck or less friction"
+        )
+    return height
+
+
+def resultants(phi: npt.ArrayLike, delta: npt.ArrayLike) -> Resultants:
+    """Friction resultants of full and partial contact, 0 ≤ δ < 4.
+
+    Parameters
+    ----------
+    phi : array_like, radians, in [−π/2, π/2]
+    delta : array_like
+        Dimensionless height δ = 2fh/r, broadcast against ``phi``.
+
+    Returns
+    -------
+    Resultants
+        Dimensionless, of the broadcast shape: closed forms (1e-14) up to ``critical_delta(phi)``,
+        beyond it the one-sided balance: 1e-13 for δ ≤ 3.9, 3e-12 at 3.9637, 5e-11 at 3.9999.
+
+    Raises
+    ------
+    InputError
+        If an argument is not finite or out of range.
+    ContactError
+        If δ ≥ 4, or δ > 3.9637 and φ within 0.00502 below π/4, where the balance is not unique.
+
+    References
+    ----------
+    Full contact: Salnikova, Treschev, Gallyamov 2012, section 6.  One-sided pressure: the same
+    balance of moments with σ = max(0, a + b x + c y).
+
+    Examples
+    --------
+    >>> rho = resultants(0.5, 2.0)
+    >>> [round(float(value), 7) for value in rho]
+    [1.0813245, 0.6204802, 0.2196328]
+    """
+    angle, height = broadcast(phi=checked_phi(phi), delta=checked_height(delta))
+    direction = slip_direction(angle)
+    full = np.stack(moment_balance(closed_form.integrals(angle), direction, height))
+    opened = height > critical_delta(angle)
+    if opened.any():
+        full[:, opened] = np.stack(balance(angle[opened], height[opened])[0])
+    return Resultants(*full)
+
+
+def loaded_share(phi: npt.ArrayLike, delta: npt.ArrayLike) -> FloatArray:
+    """The share of the base that carries load: 1 in full contact, towards 0 as the puck tips.
+
+    Parameters
+    ----------
+    phi : array_like, radians, in [−π/2, π/2]
+    delta : array_like
+        Dimensionless height, broadcast against ``phi``.
+
+    Raises
+    ------
+    InputError, ContactError
+        As :func:`resultants`.
+
+    Examples
+    --------
+    >>> loaded_share([0.1, 0.5, 1.3], 2.0).round(6).tolist()
+    [0.64808, 0.660885, 1.0]
+    """
+    angle, height = broadcast(phi=checked_phi(phi), delta=checked_height(delta))
+    share = np.ones(angle.shape)
+    opened = height > critical_delta(angle)
+    if opened.any():
+        share[opened] = segment(balance(angle[opened], height[opened])[1].offset).area / np.pi
+    return share
+
+
+def balance(phi: FloatArray, delta: FloatArray) -> tuple[Resultants, Chord]:
+    """Solve the balance of moments of one-sided contact, by quadrature at every point.
+
+    In full contact it is the linear law, by another way than closed forms.
+
+    Parameters
+    ----------
+    phi : array (n,), radians, in (−π/2, π/2)
+    delta : array (n,), 0 < δ
+
+    Returns
+    -------
+    Resultants, Chord
+        Arrays (n,); the bearing γ is that for φ ≥ 0.
+
+    Raises
+    ------
+    ContactError
+        Where the balance is not unique.
+    AccuracyError
+        If it is not solved; not known to happen for δ < 4.
+
+    Examples
+    --------
+    >>> rho, chord = balance(np.array([0.9]), np.array([2.0]))
+    >>> float(rho.spin[0].round(7)), float(chord.offset[0].round(6))
+    (0.8430539, -0.635143)
+    """
+    size = np.abs(phi)
+    folded = (delta > FOLD_DELTA) & (size > _FOLD_ANGLES[0]) & (size < _FOLD_ANGLES[1])
+    if folded.any():
+        raise ContactError(
+            f"at phi = {phi[folded][0]:g}, delta = {delta[folded][0]:g} the balance of moments has "
+            f"more than one solution: for every phi it has one up to delta = {FOLD_DELTA:g}"
+        )
+    values, chords = np.empty((3, len(phi))), np.empty((2, len(phi)))
+    for start in range(0, len(phi), _CHUNK):
+        part = slice(start, start + _CHUNK)
+        direction = slip_direction(phi[part])
+        chords[:, part] = _solved(direction, delta[part])
+        values[:, part] = _resultants(direction, delta[part], Chord(*chords[:, part]))
+    return Resultants(*values), Chord(*chords)
+
+
+def _guess(direction: SlipDirection, delta: FloatArray) -> Chord:
+    """The tilt of the linear law, as far as the load can move: |⟨(x, y)⟩| = m(d) ≤ δ/4."""
+    a, b, d = closed_form.shape_integrals(direction.ratio, direction.fast_spin.astype(np.float64))
+    p = PatchIntegrals(a, b, b - d, d, d - 2.0 * b)
+    rho = moment_balance(p, direction, delta)
+    sideways = np.sqrt(direction.sin_squared) * rho.perpendicular
+    force = np.sqrt(direction.cos_squared) * np.hypot(rho.parallel, sideways)
+    offset = -1.0 / (delta * force)
+    lever = np.clip(0.25 * delta * force, 0.25, np.minimum(0.245 * delta, 0.98))
+    opened = 1.0 - 7.985 * (1.0 - np.sqrt(1.0 - 0.584 * (1.0 - lever)))  # m(d), fitted
+    bearing = np.arctan2(sideways, rho.parallel)
+    return Chord(np.where(offset > -1.0, opened, offset), bearing)
+
+
+def _solved(direction: SlipDirection, delta: FloatArray) -> Chord:
+    """The chord by Newton's method from a guess; where that fails, followed up from a lower δ."""
+    chord, unsolved = _newton(direction, delta, _guess(direction, delta))
+    if unsolved.any():
+        part = SlipDirection(direction.ratio[unsolved], direction.fast_spin[unsolved])
+        start = np.minimum(_EASY_DELTA, delta[unsolved])
+        followed = _guess(part, start)
+        for share in np.linspace(0.0, 1.0, _FOLLOWED):
+            height = start + share * (delta[unsolved] - start)
+            followed, lost = _newton(part, height, followed)
+        if lost.any():
+            raise AccuracyError(
+                f"the balance of moments was not solved at delta = {height[lost][0]:g}, "
+                f"min(v, r omega)/max(v, r omega) = {part.ratio[lost][0]:g}"
+            )
+        chord.offset[unsolved], chord.bearing[unsolved] = followed
+    return chord
+
+
+def _newton(
+    direction: SlipDirection, delta: FloatArray, start: Chord
+) -> tuple[Chord, npt.NDArray[np.bool_]]:
+    """Newton's method for the points that still move; and which of them never settled."""
+    offset, bearing = start.offset.copy(), start.bearing.copy()
+    moving = np.ones(len(delta), dtype=np.bool_)
+    for _ in range(_STEPS):
+        residual, by_offset, by_bearing = _residual(
+            direction.ratio[moving], direction.fast_spin[moving], delta[moving],
+            offset[moving], bearing[moving],
+        )  # fmt: skip
+        determinant = by_offset[0] * by_bearing[1] - by_offset[1] * by_bearing[0]
+        step = (by_bearing[0] * residual[1] - by_bearing[1] * residual[0]) / determinant
+        turn = (by_offset[1] * residual[0] - by_offset[0] * residual[1]) / determinant
+        room = 1.0 - offset[moving]
+        offset[moving] = 1.0 - np.clip(room - step, 0.5 * room, 2.2 * room)
+        bearing[moving] += np.clip(turn, -_MAX_TURN, _MAX_TURN)
+        moving[moving] = ~((np.abs(step) <= _SETTLED * room) & (np.abs(turn) <= _SETTLED))
+        if not moving.any():
+            break
+    return Chord(offset, bearing), moving
+
+
+def _residual(
+    ratio: FloatArray,
+    fast: npt.NDArray[np.bool_],
+    delta: FloatArray,
+    offset: FloatArray,
+    bearing: FloatArray,
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """M(d) n − (δ/4) ⟨u/|u|⟩ and its derivatives by d and γ, each (2, n)."""
+    rule = patch_rule(ratio, fast, offset, bearing)
+    loaded = segment(offset)
+    normal = np.stack([np.cos(bearing), np.sin(bearing)])
+    tangent = np.stack([-normal[1], normal[0]])
+    slip = np.stack([rule.cos_a, rule.sin_a])
+    sideways = rule.x * tangent[0, :, None] + rule.y * tangent[1, :, None]
+    scale = 0.25 * delta / loaded.load
+    friction = scale * (rule.weight * rule.depth * slip).sum(axis=-1)
+    lever_slope = (loaded.lever * loaded.area - loaded.moment) / loaded.load
+    friction_slope = friction * loaded.area / loaded.load - scale * (rule.weight * slip).sum(-1)
+    return (
+        loaded.lever * normal - friction,
+        lever_slope * normal - friction_slope,
+        loaded.lever * tangent - scale * (rule.weight * sideways * slip).sum(axis=-1),
+    )
+
+
+def _resultants(direction: SlipDirection, delta: FloatArray, chord: Chord) -> FloatArray:
+    """ρ_∥, ρ_⊥, ρ_ω of a solved balance, (3, n), without cancellation for φ → 0."""
+    ratio, fast = direction.ratio, direction.fast_spin
+    rule = patch_rule(ratio, fast, *chord)
+    pressure = rule.weight * rule.depth / segment(chord.offset).load[:, None]
+    across = (pressure * rule.foot).sum(axis=-1)  # F_⊥ s: foot = s sin a
+    sine, cosine = np.sqrt(direction.sin_squared), np.sqrt(direction.cos_squared)
+    # The torque is Σ σ (x sin a − y cos a).  For a centre outside, Σ σ y is taken from the balance,
+    # and with sin a = foot/s all of it is divided by tan φ before it is summed.
+    about_centre = (pressure * rule.along).sum(axis=-1)
+    curving = _curving(rule, ratio)
+    outside = (pressure * curving).sum(axis=-1) - 0.25 * delta * across
+    spin = np.where(fast, about_centre / np.where(fast, sine, 1.0), outside / cosine)
+    return np.stack([
+        (pressure * rule.cos_a).sum(axis=-1) / cosine, across / cosine**2, 2.0 * spin,
+    ])  # fmt: skip
+
+
+def _curving(rule: PatchRule, ratio: FloatArray) -> FloatArray:
+    """(x sin a + y (1 − cos a))/tan φ for a centre of rotation outside."""
+    return rule.foot * (rule.x + ratio[:, None] * rule.y * rule.foot / (1.0 + rule.cos_a))

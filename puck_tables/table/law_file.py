@@ -1,0 +1,221 @@
+"""Table files under any pressure law: the same container, another kind.
+
+Axes ``side`` (regions between the singular lines), ``xi`` (place in the region) and ``delta``;
+functions ``parallel``, ``perpendicular``, ``spin``.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from puck_tables.errors import OutputError, TableError
+from puck_tables.safe_write import write_bytes
+from puck_tables.table.container import (
+    Contents,
+    Field,
+    accuracy_of,
+    check_usable,
+    decode,
+    encode,
+    read_content,
+)
+from puck_tables.table.grid import GRADING_POWER
+from puck_tables.table.law_grid import LawAxis
+from puck_tables.table.law_table import HEIGHTS, LawTable
+from puck_tables.table.table import FUNCTIONS, Accuracy
+
+KIND = "resultants under a pressure law"
+ALGORITHM = "integrals of the law; friction ratios splined on its regions; 1"
+
+_INTERPRETATION = (
+    "Friction on a puck of radius r, height h, mass m sliding with speed v and spin omega on a "
+    "rough plane, Coulomb coefficient f, weight N = m g, whole base loaded by the named pressure "
+    "law, tilted linearly by the moment balance. phi = atan2(r omega, v), delta = 2 f h / r. "
+    "Force on the puck: -f N cos(phi) parallel along its velocity, "
+    "-f N sin(phi) cos(phi) perpendicular across it (to the left), torque -(f N r / 2) sin(phi) "
+    "spin about the vertical. Even in phi. Salnikova, Treschev, Gallyamov 2012, sections 3 and 6."
+)
+_PHI_MAP = (
+    "sides in the order of phi, two for each edge: phi_e = atan(1/edge), tan(phi - phi_e) = "
+    f"extent xi^{GRADING_POWER}, xi = 1 at phi = 0, pi/2 or half way to the next line; cubic "
+    "splines in xi with zero slope at xi = 0 and at phi = 0 and pi/2, else not-a-knot"
+)
+_DELTA_MAP = "delta = delta_max j/3; cubic spline with not-a-knot ends"
+_SPLINED = "1/parallel, perpendicular/parallel, spin/parallel"
+
+
+def save_law_table(
+    table: LawTable, path: str | Path, overwrite: bool = False, command: str = "library call"
+) -> LawTable:
+    """Write a table to an HDF5 file, read it back, and only then give it its name.
+
+    Parameters
+    ----------
+    table : LawTable
+        With a measured accuracy.
+    path : path of the file
+    overwrite : whether an existing file may be replaced
+    command : how it was made, for the record
+
+    Returns
+    -------
+    LawTable
+        As loaded from what was written.
+
+    Raises
+    ------
+    OutputError
+        If the file exists (without ``overwrite``) or cannot be written.
+    TableError
+        If what was written does not read back as the same table.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from puck_tables.contact.laws import law_of
+    >>> from puck_tables.table.law_table import build_law_table
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     table = build_law_table(law_of("annulus:0.8"), cells=8)
+    ...     saved = save_law_table(table, folder + "/washer.h5")
+    >>> saved.passport["pressure_law"]
+    'annulus:0.8'
+    """
+    if table.accuracy is None or not np.all(np.isfinite(table.values)):
+        raise OutputError(
+            "a table without measured accuracy or with a non-finite value is not saved"
+        )
+    content = _encode(table, command)
+    written = _decode(content, str(path))
+    if not np.array_equal(written.values, table.values):
+        raise TableError(f"{path}: the table does not read back as it was written")
+    write_bytes(path, content, overwrite)
+    return written
+
+
+def load_law_table(path: str | Path) -> LawTable:
+    """Read a table under a pressure law.
+
+    Parameters
+    ----------
+    path : path of an HDF5 table file
+
+    Returns
+    -------
+    LawTable
+
+    Raises
+    ------
+    TableError
+        As :func:`puck_tables.load_table`.
+
+    Examples
+    --------
+    >>> load_law_table("/nowhere/table.h5")
+    Traceback (most recent call last):
+    ...
+    puck_tables.errors.TableError: there is no table file /nowhere/table.h5: build one with \
+'puck build-tables -o FILE', or leave --table out to use the tables that come along
+    """
+    return _decode(read_content(path), str(path))
+
+
+def _recipe(name: str, axis: LawAxis, delta_max: float) -> dict[str, Any]:
+    """What determines the values of a table."""
+    return {
+        "kind": KIND, "pressure_law": name, "edges": json.dumps(axis.edges), "phi_map": _PHI_MAP,
+        "delta_map": _DELTA_MAP, "splined": _SPLINED, "cells": axis.cells,
+        "delta_max": delta_max, "algorithm": ALGORITHM,
+    }  # fmt: skip
+
+
+def _encode(table: LawTable, command: str) -> bytes:
+    assert table.accuracy is not None
+    described = {
+        "title": f"Friction resultants of a sliding, spinning puck, pressure law {table.law_name}",
+        "interpretation": _INTERPRETATION,
+        "valid_range": f"|phi| <= pi/2, 0 <= delta <= {table.delta_max:g}; refused outside",
+        "tolerance": table.tolerance,
+        "achieved_accuracy": json.dumps(asdict(table.accuracy)),
+        "method": "closed forms and direct quadrature of the law's five integrals, 1e-13",
+    }
+    axes = [
+        Field(name, values, {"units": "1", "long_name": long_name})
+        for (name, values), long_name in zip(
+            _nodes(table.axis, table.delta_max).items(),
+            ("region, in the order of phi", "place in the region", "dimensionless height 2 f h/r"),
+            strict=True,
+        )
+    ]
+    functions = [
+        Field(
+            name,
+            table.values[..., index],
+            {"units": "1", "max_error": table.accuracy.largest[index]},
+        )
+        for index, name in enumerate(FUNCTIONS)
+    ]
+    recipe = _recipe(table.law_name, table.axis, table.delta_max)
+    return encode(recipe, described, axes, functions, command)
+
+
+def _nodes(axis: LawAxis, delta_max: float) -> dict[str, np.ndarray[Any, np.dtype[np.float64]]]:
+    return {
+        "side": np.arange(float(len(axis.sides))),
+        "xi": np.arange(axis.cells + 1) / axis.cells,
+        "delta": np.linspace(0.0, delta_max, HEIGHTS),
+    }
+
+
+def _axis(attributes: dict[str, Any]) -> LawAxis:
+    edges = tuple(float(edge) for edge in json.loads(attributes["edges"]))
+    if not (edges and edges[-1] == 1.0 and edges[0] > 0.0 and np.all(np.diff(edges) > 0.0)):
+        raise ValueError("edges")
+    return LawAxis(edges, attributes["cells"])
+
+
+def shapes(attributes: dict[str, Any]) -> dict[str, tuple[int, ...]]:
+    """Shapes of the arrays of a file with these attributes.
+
+    Examples
+    --------
+    >>> shapes({"edges": "[0.8, 1.0]", "cells": 8})["spin"]
+    (4, 9, 4)
+    """
+    axis = _axis(attributes)
+    shape = (len(axis.sides), axis.cells + 1, HEIGHTS)
+    return {
+        "side": shape[:1], "xi": shape[1:2], "delta": shape[2:], **dict.fromkeys(FUNCTIONS, shape)
+    }  # fmt: skip
+
+
+def _decode(content: bytes, source: str) -> LawTable:
+    return table_of(decode(content, source, {KIND: shapes}), source)
+
+
+def table_of(contents: Contents, source: str) -> LawTable:
+    """The table that stands in a file.
+
+    Raises
+    ------
+    TableError
+        If this program cannot use it.
+    """
+    attributes = contents.attributes
+    axis, delta_max = _axis(attributes), float(attributes["delta_max"])
+    recipe = _recipe(attributes["pressure_law"], axis, delta_max)
+    check_usable(contents, source, recipe, _nodes(axis, delta_max), positive="parallel")
+    return LawTable(
+        attributes["pressure_law"],
+        axis,
+        delta_max,
+        np.stack([contents.arrays[name] for name in FUNCTIONS], axis=-1),
+        tolerance=attributes["tolerance"],
+        accuracy=Accuracy(**accuracy_of(attributes)),
+        passport=attributes,
+        source=source,
+    )

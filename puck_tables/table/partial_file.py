@@ -1,0 +1,216 @@
+"""Table files of partial contact: the same container as for full contact, another kind.
+
+Axes ``phi`` and ``zeta``; functions ``parallel``, ``perpendicular``, ``spin``.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from functools import cache
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from puck_tables.errors import OutputError, TableError
+from puck_tables.safe_write import write_bytes
+from puck_tables.table.container import (
+    Contents,
+    Field,
+    accuracy_of,
+    check_usable,
+    decode,
+    encode,
+    read_content,
+)
+from puck_tables.table.partial_grid import FAST_END, TOP_DELTA, UPPER_DELTA, ZETA_END, PartialAxes
+from puck_tables.table.partial_table import PartialTable
+from puck_tables.table.table import FUNCTIONS, Accuracy
+
+KIND = "partial contact"
+ALGORITHM = "one-sided balance by quadrature; excess over full contact splined; 1"
+
+_INTERPRETATION = (
+    "Friction on a uniform cylinder (radius r, height h, mass m) sliding with speed v and spin "
+    "omega on a rough plane, Coulomb coefficient f, weight N = m g, part of the base lifted: "
+    "pressure max(0, a + b x + c y), a, b, c from the balance of force and moments. "
+    "phi = atan2(r omega, v), delta = 2 f h / r. "
+    "Force on the puck: -f N cos(phi) parallel along its velocity, "
+    "-f N sin(phi) cos(phi) perpendicular across it (to the left), torque -(f N r / 2) sin(phi) "
+    "spin about the vertical. Even in phi. Full contact at every phi beyond the last, and below "
+    "delta_c(phi): the root of (1 - delta^2 sin^2(phi) p_b p_c)^2 = delta^2 cos^2(phi) p_a^2 "
+    "(1 + delta^2 sin^2(phi) p_b^2) with the integrals p of Salnikova, Treschev, Gallyamov 2012, "
+    "eq. 4.3-4.5; delta_c(0) = 1, delta_c(pi/4) = 1.1591385."
+)
+_PHI_MAP = (
+    f"tan(phi - pi/4) = -xi^4 below pi/4, {FAST_END:g} xi^4 above, xi = i/cells from pi/4; cubic "
+    "splines in xi on either side with zero slope at pi/4 and at phi = 0, not-a-knot at the end"
+)
+_DELTA_MAP = (
+    f"delta = top - (top - delta_c) exp(-zeta^2), top = {TOP_DELTA:g} max(1, delta_c(phi)/"
+    f"delta_c(pi/4)), zeta = {ZETA_END:.15f} j/cells; cubic spline with "
+    "zero slope at zeta = 0, not-a-knot at the end"
+)
+_SPLINED = "parallel, perpendicular, spin less their values in full contact at the same place"
+_LONG_NAMES = {
+    "parallel": "friction resultant along the velocity, rho_parallel",
+    "perpendicular": "friction resultant across the velocity, rho_perpendicular",
+    "spin": "friction torque about the vertical, rho_omega",
+}
+
+
+def save_partial_table(
+    table: PartialTable, path: str | Path, overwrite: bool = False, command: str = "library call"
+) -> PartialTable:
+    """Write a table to an HDF5 file, read it back, and only then give it its name.
+
+    Parameters
+    ----------
+    table : PartialTable
+        With a measured accuracy, as :func:`puck_tables.table.partial_build.build_partial_table`
+        returns it.
+    path : path of the file
+    overwrite : whether an existing file may be replaced
+    command : how it was made, for the record
+
+    Returns
+    -------
+    PartialTable
+        As loaded from what was written.
+
+    Raises
+    ------
+    OutputError
+        If the file exists (without ``overwrite``) or cannot be written.
+    TableError
+        If what was written does not read back as the same table.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from puck_tables.table.partial_build import build_partial_table
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     saved = save_partial_table(build_partial_table(cells=8), folder + "/rough.h5")
+    >>> saved.passport["kind"]
+    'partial contact'
+    """
+    if table.accuracy is None or not np.all(np.isfinite(table.values)):
+        raise OutputError(
+            "a table without measured accuracy or with a non-finite value is not saved"
+        )
+    content = _encode(table, command)
+    written = _decode(content, str(path))
+    if not np.array_equal(written.values, table.values):
+        raise TableError(f"{path}: the table does not read back as it was written")
+    write_bytes(path, content, overwrite)
+    return written
+
+
+def load_partial_table(path: str | Path | None = None) -> PartialTable:
+    """Read a table of partial contact, or the default one that comes with the package.
+
+    Parameters
+    ----------
+    path : path of an HDF5 table file, optional
+
+    Returns
+    -------
+    PartialTable
+
+    Raises
+    ------
+    TableError
+        As :func:`puck_tables.load_table`.
+
+    Examples
+    --------
+    >>> load_partial_table().tolerance
+    1e-06
+    """
+    if path is None:
+        return _default_table()
+    return _decode(read_content(path), str(path))
+
+
+@cache
+def _default_table() -> PartialTable:
+    content = files("puck_tables.tables").joinpath("partial.h5").read_bytes()
+    return _decode(content, "default table of partial contact")
+
+
+def _recipe(axes: PartialAxes) -> dict[str, Any]:
+    """What determines the values of a table."""
+    return {
+        "kind": KIND, "pressure_law": "uniform", "phi_map": _PHI_MAP, "delta_map": _DELTA_MAP,
+        "splined": _SPLINED, "cells": axes.cells, "delta_max": UPPER_DELTA,
+        "algorithm": ALGORITHM,
+    }  # fmt: skip
+
+
+def _encode(table: PartialTable, command: str) -> bytes:
+    assert table.accuracy is not None
+    described = {
+        "title": "Friction resultants of a sliding, spinning puck in partial contact",
+        "interpretation": _INTERPRETATION,
+        "valid_range": f"|phi| <= pi/2, delta_c(phi) <= delta <= {UPPER_DELTA:g}; refused above",
+        "tolerance": table.tolerance,
+        "achieved_accuracy": json.dumps(asdict(table.accuracy)),
+        "method": "Newton on the balance of moments, tanh-sinh and Gauss quadrature, 1e-13",
+    }
+    slip = {"units": "rad", "long_name": "slip angle atan2(r omega, v)"}
+    axes = [
+        Field("phi", table.axes.phi(), slip),
+        Field("zeta", table.axes.zeta(), {"units": "1", "long_name": "place between the heights"}),
+    ]
+    functions = [
+        Field(
+            name,
+            table.values[:, :, index],
+            {
+                "units": "1",
+                "long_name": _LONG_NAMES[name],
+                "max_error": table.accuracy.largest[index],
+            },
+        )
+        for index, name in enumerate(FUNCTIONS)
+    ]
+    return encode(_recipe(table.axes), described, axes, functions, command)
+
+
+def _decode(content: bytes, source: str) -> PartialTable:
+    return table_of(decode(content, source, {KIND: shapes}), source)
+
+
+def shapes(attributes: dict[str, Any]) -> dict[str, tuple[int, ...]]:
+    """Shapes of the arrays of a file with these attributes.
+
+    Examples
+    --------
+    >>> shapes({"cells": 8})["spin"]
+    (17, 9)
+    """
+    shape = PartialAxes(attributes["cells"]).shape
+    return {"phi": shape[:1], "zeta": shape[1:], **dict.fromkeys(FUNCTIONS, shape)}
+
+
+def table_of(contents: Contents, source: str) -> PartialTable:
+    """The table that stands in a file.
+
+    Raises
+    ------
+    TableError
+        If this program cannot use it.
+    """
+    axes = PartialAxes(contents.attributes["cells"])
+    nodes = {"phi": axes.phi(), "zeta": axes.zeta()}
+    check_usable(contents, source, _recipe(axes), nodes, positive="parallel")
+    return PartialTable(
+        axes,
+        np.stack([contents.arrays[name] for name in FUNCTIONS], axis=-1),
+        tolerance=contents.attributes["tolerance"],
+        accuracy=Accuracy(**accuracy_of(contents.attributes)),
+        passport=contents.attributes,
+        source=source,
+    )
