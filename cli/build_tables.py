@@ -1,4 +1,4 @@
-"""``puck build-tables``: tabulate the resultants, or the stops."""
+"""``puck build-tables``: tabulate resultants or stops."""
 
 from __future__ import annotations
 
@@ -14,16 +14,23 @@ from puck_tables.errors import InputError
 @click.command("build-tables")
 @click.option(
     "--kind",
-    type=click.Choice(["resultants", "stops"]),
+    type=click.Choice(["resultants", "stops", "partial"]),
     default="resultants",
     show_default=True,
-    help="Friction resultants, or stops and the way to them.",
+    help="Friction resultants, stops and the way to them, or resultants of partial contact.",
+)
+@click.option(
+    "--pressure",
+    metavar="LAW",
+    help="Resultants under uniform, galin, hertz, ring, annulus:INNER or a profile FILE.csv "
+    "(columns rho in units of r, and W).  [default: uniform]",
 )
 @click.option(
     "--accuracy",
     type=NUMBER,
-    help="Largest error: of resultants 1e-13 to 0.01 [default: 2e-11], of stops 1e-11 to 0.01 in "
-    "units of Q/J and Q^2/J [default: 1e-10].",
+    help="Largest error: of resultants 1e-13 to 0.01 [default: 2e-11; other laws 1e-9], of stops "
+    "1e-11 to 0.01 in units of Q/J and Q^2/J [default: 1e-10], partial 1e-8 to 0.01 "
+    "[default: 1e-6].",
 )
 @click.option("--n-phi", type=int, help="Resultants: number of phi nodes instead, odd, at least 9.")
 @click.option(
@@ -31,14 +38,18 @@ from puck_tables.errors import InputError
     type=int,
     help="Resultants: number of delta nodes, at least 4.  [default: 4, exact]",
 )
-@click.option("--cells", type=int, help="Stops: cells on either side of phi = pi/4 instead.")
+@click.option(
+    "--cells",
+    type=int,
+    help="Other than uniform resultants: cells on a side of a singular line instead.",
+)
 @click.option(
     "-o", "--output", type=FILE, metavar="FILE", help="The table file.  [default: KIND.h5]"
 )
 @click.option("--overwrite", is_flag=True, help="Replace the file if it exists.")
 def build_tables(
-    kind: str, accuracy: float | None, n_phi: int | None, n_delta: int | None, cells: int | None,
-    output: Path | None, overwrite: bool,
+    kind: str, pressure: str | None, accuracy: float | None, n_phi: int | None,
+    n_delta: int | None, cells: int | None, output: Path | None, overwrite: bool,
 ) -> None:  # fmt: skip
     """Tabulate friction resultants or stops, and measure how exact the table is.
 
@@ -46,33 +57,48 @@ def build_tables(
     puck build-tables --accuracy 1e-8 -o coarse.h5
     puck build-tables --n-phi 1025 -o fine.h5
     puck build-tables --kind stops --accuracy 1e-11 -o fine-stops.h5
+    puck build-tables --pressure annulus:0.8 -o stone.h5
     """  # noqa: D301 - click reads the backspace
+    plain = kind == "resultants" and pressure in (None, "uniform")
     options = {"--accuracy": accuracy, "--n-phi": n_phi, "--n-delta": n_delta, "--cells": cells}
     given = {name: value for name, value in options.items() if value is not None}
-    for name in ("--n-phi", "--n-delta") if kind == "stops" else ("--cells",):
+    what = f"--kind {kind}" if pressure is None else f"--pressure {pressure}"
+    if pressure is not None and kind != "resultants":
+        raise InputError(f"--pressure goes with --kind resultants, not with --kind {kind}")
+    for name in ("--cells",) if plain else ("--n-phi", "--n-delta"):
         if name in given:
-            raise InputError(f"{name} does not go with --kind {kind}")
+            raise InputError(f"{name} does not go with {what}")
     path = Path(f"{kind}.h5") if output is None else output
     if path.suffix.lower() != ".h5":
         raise InputError(f"{path}: a table is an HDF5 file: give a name that ends in .h5")
     prepare_outputs(path, overwrite=overwrite)
-    command = " ".join(
-        ["puck build-tables", *(["--kind stops"] if kind == "stops" else [])]
-        + [f"{name} {value}" for name, value in given.items()]
-    )
-    if kind == "stops":
-        from puck_tables.similarity.build import build_stop_table
-        from puck_tables.similarity.file import save_stop_table
+    words = ["puck build-tables"] + ([] if plain else [what])
+    command = " ".join(words + [f"{name} {value}" for name, value in given.items()])
+    with progress("tabulating") as show:
+        if plain:
+            from puck_tables.table.build import build_table
+            from puck_tables.table.file import save_table
 
-        with progress("tabulating") as show:
-            stops = build_stop_table(accuracy, cells, show)
-        text = describe(save_stop_table(stops, path, overwrite, command))
-    else:
-        from puck_tables.table.build import build_table
-        from puck_tables.table.file import save_table
-
-        with progress("tabulating") as show:
             table = build_table(accuracy, n_phi, n_delta, show)
-        text = describe(save_table(table, path, overwrite, command))
+            text = describe(save_table(table, path, overwrite, command))
+        elif kind == "stops":
+            from puck_tables.similarity.build import build_stop_table
+            from puck_tables.similarity.file import save_stop_table
+
+            stops = build_stop_table(accuracy, cells, show)
+            text = describe(save_stop_table(stops, path, overwrite, command))
+        elif kind == "partial":
+            from puck_tables.table.partial_build import build_partial_table
+            from puck_tables.table.partial_file import save_partial_table
+
+            partial = build_partial_table(accuracy, cells, show)
+            text = describe(save_partial_table(partial, path, overwrite, command))
+        else:
+            from puck_tables.contact.laws import law_of
+            from puck_tables.table.law_file import save_law_table
+            from puck_tables.table.law_table import build_law_table
+
+            law = build_law_table(law_of(pressure or ""), accuracy, cells)
+            text = describe(save_law_table(law, path, overwrite, command))
     told(path)
     click.echo(text)

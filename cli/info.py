@@ -9,8 +9,7 @@ import click
 from puck_tables.cli.options import FILE, tables_named
 
 if TYPE_CHECKING:
-    from puck_tables.similarity.stop_table import StopTable
-    from puck_tables.table.table import Table
+    from puck_tables.catalogue import AnyTable
 
 
 @click.command()
@@ -23,20 +22,14 @@ def info(file: Path | None) -> None:
     click.echo("\n\n".join(describe(table) for table in tables_named(file)))
 
 
-def describe(table: Table | StopTable) -> str:
+def describe(table: AnyTable) -> str:
     """A table in a dozen lines.  It was loaded, so its digest is right."""
-    from puck_tables.table.table import FUNCTIONS, Table
+    from puck_tables.catalogue import functions_and_grid
+    from puck_tables.table.table import Accuracy
 
     passport, accuracy = table.passport, table.accuracy
     assert accuracy is not None
-    if isinstance(table, Table):
-        names: tuple[str, ...] = FUNCTIONS
-        grid = f"{table.phi_axis.size} phi x {table.delta_axis.size} delta nodes"
-    else:
-        from puck_tables.similarity.check import NAMES
-
-        names = NAMES
-        grid = f"{table.axis.size} phi x {table.values.shape[1]} delta nodes"
+    names, grid = functions_and_grid(table)
     lines = {
         "table": table.source,
         "holds": f"{passport['kind']} ({', '.join(names)}); {passport['pressure_law']} pressure",
@@ -47,10 +40,9 @@ def describe(table: Table | StopTable) -> str:
     }
     columns = {"largest": accuracy.largest, "rms": accuracy.rms}
     rest = {}
-    if isinstance(table, Table):
-        assert table.accuracy is not None
-        columns["99.9 %"] = table.accuracy.p999
-        rest["entries"] = f"residual {table.accuracy.entry_residual:.1e} at phi = 0, pi/4, pi/2"
+    if isinstance(accuracy, Accuracy):
+        columns["99.9 %"] = accuracy.p999
+        rest["entries"] = f"residual {accuracy.entry_residual:.1e} at elementary entries"
     text = [f"{name:<11} {value}" for name, value in lines.items()]
     text.append(f"{'':<26}" + "".join(f"{name:>10}" for name in columns) + "   at phi, delta")
     for i, name in enumerate(names):

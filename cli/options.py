@@ -15,7 +15,7 @@ import click
 from puck_tables.errors import InputError
 
 if TYPE_CHECKING:
-    from puck_tables.similarity.stop_table import StopTable
+    from puck_tables.catalogue import AnyTable
     from puck_tables.table.table import Table
 
 Command = TypeVar("Command", bound=Callable[..., Any])
@@ -209,11 +209,11 @@ def open_table(path: Path | None) -> Table:
     return load_table(path)
 
 
-def tables_named(path: Path | None) -> list[Table | StopTable]:
-    """The table in a file, of either kind, or those that come along."""
-    from puck_tables.similarity.file import load_any_table, load_stop_table
+def tables_named(path: Path | None) -> list[AnyTable]:
+    """The table in a file, of any kind, or those that come along."""
+    from puck_tables.catalogue import load_any_table, tables_that_come_along
 
-    return [open_table(None), load_stop_table()] if path is None else [load_any_table(path)]
+    return tables_that_come_along() if path is None else [load_any_table(path)]
 
 
 def told(path: Path) -> None:

@@ -27,7 +27,9 @@ if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
 
+    from puck_tables.similarity.stop_table import StopTable
     from puck_tables.stop_map import StopMap
+    from puck_tables.table.table import Table
 
 RANGE = Range()
 INTERRUPTED = 130
@@ -104,7 +106,7 @@ def sweep(
         tuple(x[2] for x in (w0, speed, height_ratio) if isinstance(x, tuple)),
         BYTES_PER_ROW if as_text else BYTES_PER_LAUNCH,
     )
-    table = None if table_path is None else tables_named(table_path)[0]
+    table = None if table_path is None else _table_of_stops(table_path)
     kept = _kept(output) if resume else None
     try:
         with progress("stops") as show:
@@ -131,6 +133,19 @@ def sweep(
     if output is None and plot is None:
         click.echo(map_as_csv(stops), nl=False)
     click.echo(_summary(stops), err=True)
+
+
+def _table_of_stops(path: Path) -> Table | StopTable:
+    """A table that stops can come from."""
+    from puck_tables.similarity.stop_table import StopTable
+    from puck_tables.table.table import Table
+
+    table = tables_named(path)[0]
+    if not isinstance(table, Table | StopTable):
+        raise InputError(
+            f"{path} holds '{table.passport['kind']}': stops come from 'stops' or 'resultants'"
+        )
+    return table
 
 
 def _kept(output: Path | None) -> Path:

@@ -21,22 +21,17 @@ def validate(file: Path | None) -> None:
 
     Resultants: direct quadrature, closed forms, known entries, exact identities.  Stops: the
     integrator, the equations they satisfy with friction by quadrature, elementary solutions.
+    Partial contact and pressure laws: the balance of moments by quadrature.
 
     Without FILE: the tables that come along.  Ends with code 3 if anything is out of a table's own
     tolerance.
     """
-    from puck_tables.similarity.check import validate_stops
-    from puck_tables.table.check import validate as validate_resultants
-    from puck_tables.table.table import Table
+    from puck_tables.catalogue import judge
 
     passed = True
     for table in tables_named(file):
         with progress("validating") as show:
-            report = (
-                validate_resultants(table, show)
-                if isinstance(table, Table)
-                else validate_stops(table, show)
-            )
+            report = judge(table, show)
         click.echo(_lines(report))
         passed = passed and report.passed
     if not passed:

@@ -16,6 +16,10 @@ from puck_tables._version import __version__
 
 if TYPE_CHECKING:
     from puck_tables.aiming import Aim, aim
+    from puck_tables.contact.laws import Law, law_of, profile_law
+    from puck_tables.contact.one_sided import loaded_share
+    from puck_tables.contact.one_sided import resultants as one_sided_resultants
+    from puck_tables.contact.opening import critical_delta
     from puck_tables.contact.resultants import Resultants, is_full_contact
     from puck_tables.kernels.closed_form import resultants
     from puck_tables.motion.limits import (
@@ -39,6 +43,13 @@ if TYPE_CHECKING:
     from puck_tables.table.build import build_table
     from puck_tables.table.check import CheckReport, validate
     from puck_tables.table.file import load_table, save_table
+    from puck_tables.table.law_check import validate_law
+    from puck_tables.table.law_file import load_law_table, save_law_table
+    from puck_tables.table.law_table import LawTable, build_law_table
+    from puck_tables.table.partial_build import build_partial_table
+    from puck_tables.table.partial_check import validate_partial
+    from puck_tables.table.partial_file import load_partial_table, save_partial_table
+    from puck_tables.table.partial_table import PartialTable
     from puck_tables.table.table import Table
     from puck_tables.trajectory import Trajectory, simulate
 
@@ -80,11 +91,30 @@ _HOMES = {
     "load_table": "table.file",
     "save_table": "table.file",
     "Table": "table.table",
+    "Law": "contact.laws",
+    "law_of": "contact.laws",
+    "profile_law": "contact.laws",
+    "loaded_share": "contact.one_sided",
+    "one_sided_resultants": "contact.one_sided:resultants",
+    "critical_delta": "contact.opening",
+    "validate_law": "table.law_check",
+    "load_law_table": "table.law_file",
+    "save_law_table": "table.law_file",
+    "LawTable": "table.law_table",
+    "build_law_table": "table.law_table",
+    "build_partial_table": "table.partial_build",
+    "validate_partial": "table.partial_check",
+    "load_partial_table": "table.partial_file",
+    "save_partial_table": "table.partial_file",
+    "PartialTable": "table.partial_table",
 }
 
 __all__ = [
     "Aim",
     "CheckReport",
+    "Law",
+    "LawTable",
+    "PartialTable",
     "Resultants",
     "States",
     "StopMap",
@@ -95,23 +125,34 @@ __all__ = [
     "__version__",
     "aim",
     "approach_exponent",
+    "build_law_table",
+    "build_partial_table",
     "build_stop_table",
     "build_table",
+    "critical_delta",
     "curvature_slope",
     "elementary_stop_time",
     "flow",
     "is_full_contact",
+    "law_of",
     "limit_angle",
     "limit_ratio",
+    "load_law_table",
+    "load_partial_table",
     "load_stop_table",
     "load_table",
+    "loaded_share",
+    "one_sided_resultants",
     "plot_aim",
     "plot_map",
     "plot_trajectory",
+    "profile_law",
     "regime",
     "resultants",
     "save_aim",
+    "save_law_table",
     "save_map",
+    "save_partial_table",
     "save_stop_table",
     "save_table",
     "save_trajectory",
@@ -120,6 +161,8 @@ __all__ = [
     "stop",
     "sweep",
     "validate",
+    "validate_law",
+    "validate_partial",
     "validate_stops",
 ]
 
@@ -127,7 +170,8 @@ __all__ = [
 def __getattr__(name: str) -> Any:
     if name not in _HOMES:
         raise AttributeError(f"module 'puck_tables' has no attribute {name!r}")
-    value = getattr(import_module(f"puck_tables.{_HOMES[name]}"), name)
+    module, _, original = _HOMES[name].partition(":")
+    value = getattr(import_module(f"puck_tables.{module}"), original or name)
     globals()[name] = value
     return value
 

@@ -390,3 +390,27 @@ def test_closed_stderr_and_full_stdout():
     assert full.returncode == 1
     assert "No space left" in full.stderr
     assert "Traceback" not in full.stderr
+
+
+def test_tables_of_every_kind(folder: Path):
+    for arguments, name, words in (
+        (["--pressure", "annulus:0.8", "--accuracy", "1e-5"], "stone.h5", "annulus:0.8 pressure"),
+        (["--kind", "partial", "--cells", "8"], "partial.h5", "partial contact"),
+        (["--kind", "stops", "--cells", "16"], "stops.h5", "33 phi x 9"),
+    ):
+        built = puck("build-tables", *arguments, "-o", name)
+        assert built.exit_code == 0, built.stderr
+        assert words in built.stdout
+        assert puck("info", name).stdout.splitlines()[1:] == built.stdout.splitlines()[1:]
+    judged = puck("validate", "stone.h5")
+    assert (judged.exit_code, judged.stdout.count("pass")) == (0, 6)
+    refused(
+        puck("simulate", "--v0", "1,0", "--table", "stone.h5"), 1, "not a table of 'resultants'"
+    )
+    refused(puck("sweep", "--table", "partial.h5"), 2, "stops come from")
+    refused(puck("build-tables", "--pressure", "square"), 2, "no pressure law is called 'square'")
+    refused(puck("build-tables", "--pressure", "ring", "--n-phi", "99"), 2, "does not go with")
+    refused(
+        puck("build-tables", "--pressure", "ring", "--kind", "stops"), 2, "--pressure goes with"
+    )
+    refused(puck("build-tables", "--cells", "20"), 2, "--cells does not go with")

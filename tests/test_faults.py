@@ -14,9 +14,9 @@ import numpy as np
 import pytest
 
 from puck_tables import load_stop_table, load_table, save_map, sweep
+from puck_tables.catalogue import load_any_table
 from puck_tables.checkpoint import Checkpoint
 from puck_tables.errors import InputError, OutputError
-from puck_tables.similarity.file import load_any_table
 
 PUCK = [sys.executable, "-c", "from puck_tables.cli.main import main; main()"]
 # integrated, so that there is something to interrupt

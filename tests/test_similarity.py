@@ -25,12 +25,12 @@ from puck_tables import (
     sweep,
     validate_stops,
 )
+from puck_tables.catalogue import load_any_table
 from puck_tables.errors import AccuracyError, InputError, OutputError, TableError
 from puck_tables.similarity.axes import SlipAxis, heights
 from puck_tables.similarity.check import launch_points, launches_at, looked_up
 from puck_tables.similarity.curve import limits, regular_slopes
 from puck_tables.similarity.exact import end_values, exact_stops
-from puck_tables.similarity.file import load_any_table
 from puck_tables.similarity.stop_table import StopTable
 
 

@@ -19,7 +19,6 @@ from puck_tables.real import instance
 from puck_tables.safe_write import write_bytes
 from puck_tables.similarity.axes import HEIGHTS, SlipAxis, heights
 from puck_tables.similarity.stop_table import FUNCTIONS, UPPER_DELTA, StopAccuracy, StopTable
-from puck_tables.table import file as resultants_file
 from puck_tables.table.container import (
     Contents,
     Field,
@@ -29,7 +28,6 @@ from puck_tables.table.container import (
     encode,
     read_content,
 )
-from puck_tables.table.table import Table
 
 KIND = "stops"
 ALGORITHM = "Dormand-Prince with closed forms at 2e-14, curve by Gauss quadrature; 1"
@@ -140,30 +138,6 @@ def load_stop_table(path: str | Path | None = None) -> StopTable:
     return _decode(read_content(path), str(path))
 
 
-def load_any_table(path: str | Path) -> Table | StopTable:
-    """Read a table file of either kind.
-
-    Raises
-    ------
-    TableError
-        As :func:`puck_tables.load_table`.
-
-    Examples
-    --------
-    >>> load_any_table("/nowhere/table.h5")
-    Traceback (most recent call last):
-    ...
-    puck_tables.errors.TableError: there is no table file /nowhere/table.h5: build one with \
-'puck build-tables -o FILE', or leave --table out to use the tables that come along
-    """
-    source = str(path)
-    kinds = {resultants_file.KIND: resultants_file.shapes, KIND: _shapes}
-    contents = decode(read_content(path), source, kinds)
-    if contents.attributes["kind"] == KIND:
-        return _table_of(contents, source)
-    return resultants_file.table_of(contents, source)
-
-
 @cache
 def _default_table() -> StopTable:
     content = files("puck_tables.tables").joinpath("stops.h5").read_bytes()
@@ -171,7 +145,7 @@ def _default_table() -> StopTable:
 
 
 def _decode(content: bytes, source: str) -> StopTable:
-    return _table_of(decode(content, source, {KIND: _shapes}), source)
+    return table_of(decode(content, source, {KIND: shapes}), source)
 
 
 def _recipe(axis: SlipAxis) -> dict[str, Any]:
@@ -182,7 +156,14 @@ def _recipe(axis: SlipAxis) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _shapes(attributes: dict[str, Any]) -> dict[str, tuple[int, ...]]:
+def shapes(attributes: dict[str, Any]) -> dict[str, tuple[int, ...]]:
+    """Shapes of the arrays of a file with these attributes.
+
+    Examples
+    --------
+    >>> shapes({"cells": 8})["time"]
+    (17, 9)
+    """
     shape = (SlipAxis(attributes["cells"]).size, HEIGHTS)
     return {"phi": shape[:1], "delta": shape[1:], **dict.fromkeys(FUNCTIONS, shape)}
 
@@ -218,7 +199,14 @@ def _encode(table: StopTable, command: str) -> bytes:
     return encode(_recipe(table.axis), described, axes, functions, command)
 
 
-def _table_of(contents: Contents, source: str) -> StopTable:
+def table_of(contents: Contents, source: str) -> StopTable:
+    """The stop table that stands in a file.
+
+    Raises
+    ------
+    TableError
+        If this program cannot use it.
+    """
     axis = SlipAxis(contents.attributes["cells"])
     nodes = {"phi": axis.phi(), "delta": heights()}
     check_usable(contents, source, _recipe(axis), nodes, positive="time")

@@ -1,0 +1,57 @@
+"""A table of a pressure law judged by the law itself, by direct quadrature over the patch."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from puck_tables.contact.laws import Law, law_of
+from puck_tables.errors import InputError
+from puck_tables.table.check import Check, CheckReport, worst_of
+from puck_tables.table.law_table import LawTable
+from puck_tables.table.table import FUNCTIONS
+
+
+def validate_law(table: LawTable, law: Law | None = None, points: int = 3000) -> CheckReport:
+    """Judge a table of a pressure law against the law.
+
+    Parameters
+    ----------
+    table : LawTable
+    law : Law, optional
+        Left out: the one of the table's name; a profile must be given, its file does not say it.
+    points : how many random points are compared
+
+    Returns
+    -------
+    CheckReport
+        Deviations at random points and at all distances from the singular lines.
+
+    Raises
+    ------
+    InputError
+        If the law is a profile and is not given.
+
+    Examples
+    --------
+    >>> from puck_tables.table.law_table import build_law_table
+    >>> validate_law(build_law_table(law_of("hertz"), accuracy=1e-5), points=300).passed
+    True
+    """
+    if law is None and table.law_name.lower().endswith(".csv"):
+        raise InputError(f"the table does not hold the profile {table.law_name}: give the law")
+    judge = law_of(table.law_name) if law is None else law
+    rng = np.random.default_rng(41)
+    lines = rng.choice([side.line for side in table.axis.sides], points)
+    near = lines + rng.choice([-1.0, 1.0], points) * 10.0 ** -rng.uniform(0.5, 15.0, points)
+    checks: list[Check] = []
+    for name, phi in (
+        ("quadrature, random points", rng.uniform(0.0, 0.5 * np.pi, points)),
+        ("quadrature, next to the edges", np.clip(near, 0.0, 0.5 * np.pi)),
+    ):
+        delta = table.delta_max * rng.random(points)
+        got, truth = table.resultants(phi, delta), judge.resultants(phi, delta)
+        checks += [
+            worst_of(name, function, np.abs(a - b), phi, delta, table.tolerance)
+            for function, a, b in zip(FUNCTIONS, got, truth, strict=True)
+        ]
+    return CheckReport(table.source, table.tolerance, tuple(checks))
