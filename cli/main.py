@@ -15,6 +15,7 @@ from puck_tables.cli.info import info
 from puck_tables.cli.paper import paper
 from puck_tables.cli.simulate import simulate
 from puck_tables.cli.sweep import sweep
+from puck_tables.cli.tradeoff import tradeoff
 from puck_tables.cli.validate import validate
 
 from puck_tables._version import __version__
@@ -53,5 +54,5 @@ def main() -> None:
     """Motion of a flat puck that slides and spins under dry friction, until it stops."""
 
 
-for _command in (simulate, sweep, build_tables, validate, info, paper):
+for _command in (simulate, sweep, build_tables, validate, info, paper, tradeoff):
     main.add_command(_command)

@@ -21,7 +21,7 @@ MAX_COUNT = 10_000
 _LARGEST_U = 600.0
 _SAMPLED_U = math.log(math.tan(math.radians(80.0)))
 _SLACK = 1e-12
-_CHECK_ACCURACY = 1e-10
+_CHECK_TOL = 1e-10
 
 
 @dataclass(frozen=True)
@@ -30,8 +30,8 @@ class Aim:
 
     Arrays (n,), ordered by spin, the most clockwise first: ``v0`` (n, 2) m/s, ``w0`` rad/s,
     ``speed`` m/s, ``direction`` rad, ``slip_angle`` φ rad, ``stop_time`` s, and ``miss`` m: how far
-    from the target an integration of the launch ends.  ``answer`` is one sentence: what was found, or why
-    nothing can be.
+    from the target an integration of the launch ends.  ``answer`` is one sentence: what was found,
+    or why nothing can be.
     """
 
     target: tuple[float, float]
@@ -268,6 +268,6 @@ def _miss(
     """How far from the target the integrated motion ends."""
     run = simulate(
         (launch[1], launch[2]), launch[0], delta=delta, decel=decel, radius=radius, frames=1,
-        accuracy=_CHECK_ACCURACY,
+        tol=_CHECK_TOL,
     )  # fmt: skip
     return math.dist(run.stop_position, target)
