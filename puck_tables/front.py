@@ -10,9 +10,9 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass, fields
-from functools import cache
+from functools import cache, lru_cache
 from importlib.resources import files
 
 from puck_tables.errors import AccuracyError, TableError
@@ -150,10 +150,11 @@ def pareto(ways: Iterable[Way]) -> list[Way]:
     return front
 
 
+@lru_cache(maxsize=256)
 def choose(
     question: str,
     tol: float,
-    methods: Sequence[str] = (LOOK_UP, *INTEGRATED),
+    methods: tuple[str, ...] = (LOOK_UP, *INTEGRATED),
     added_error: float = 0.0,
 ) -> Choice:
     """The cheapest way to a tolerance, by measured errors.

@@ -157,8 +157,8 @@ def choose_with(
     >>> choose_with("trajectory", 1e-9, "rk4", None).way.method
     'rk4, table'
     """
-    methods = [m for m in (LOOK_UP, *INTEGRATED) if method is None or m.startswith(method)]
+    methods = tuple(m for m in (LOOK_UP, *INTEGRATED) if method is None or m.startswith(method))
     if exact or table is not None:
-        methods = [m for m in methods if m.endswith("closed forms")]
+        methods = tuple(m for m in methods if m.endswith("closed forms"))
     added = 0.0 if table is None else TABLE_FACTOR * table.tolerance
     return choose(question, tol, methods, added)

@@ -339,7 +339,7 @@ def test_tight_simulate(measure: Any, table: Table, source: str) -> None:
 
     def run() -> puck_tables.Trajectory:
         return puck_tables.simulate(
-            LAUNCH[:2], LAUNCH[2], delta=DELTA, tol=TIGHT_ACCURACY, exact=exact,
+            LAUNCH[:2], LAUNCH[2], delta=DELTA, tol=TIGHT_TOL, exact=exact,
             table=None if exact else table,
         )  # fmt: skip
 
