@@ -16,6 +16,7 @@ from puck_tables.errors import InputError
 
 if TYPE_CHECKING:
     from puck_tables.catalogue import AnyTable
+    from puck_tables.front import Choice
     from puck_tables.table.table import Table
 
 Command = TypeVar("Command", bound=Callable[..., Any])
@@ -142,6 +143,23 @@ def table_option(command: Command) -> Command:
         "--table", "table_path", type=FILE, metavar="FILE",
         help="Table file of 'puck build-tables'.  [default: the one that comes along]",
     )(command)  # fmt: skip
+
+
+def explain_option(command: Command) -> Command:
+    """Whether to say what the tolerance led to."""
+    return click.option(
+        "--explain", is_flag=True, help="Say which way was taken, and why (on stderr)."
+    )(command)
+
+
+def explained(choice: Choice | None) -> None:
+    """Say on stderr what the tolerance led to."""
+    click.echo(
+        "no choice: solved in elementary functions, or by the stop table given"
+        if choice is None
+        else choice.why,
+        err=True,
+    )
 
 
 def puck_and_floor(

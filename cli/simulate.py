@@ -14,6 +14,8 @@ from puck_tables.cli.options import (
     NUMBER,
     Times,
     Vector,
+    explain_option,
+    explained,
     open_table,
     output_options,
     prepare_outputs,
@@ -37,19 +39,19 @@ if TYPE_CHECKING:
 @click.option("--frames", type=int, help="Number of states to save.  [default: 101]")
 @click.option("--times", type=Times(), help="Times of the states to save, in s.")
 @click.option(
-    "--accuracy",
+    "--tol",
     type=NUMBER,
     default=1e-9,
     show_default=True,
-    help="Largest error, in units of Q/J (times) and Q^2/J (places), Q = hypot(v0, r w0).",
+    help="Largest error, in units of Q/J (times) and Q^2/J (places), Q = hypot(v0, r w0): the "
+    "cheapest way whose measured error is below it is taken.",
 )
 @click.option(
     "--method",
     type=click.Choice(["adaptive", "rk4"]),
-    default="adaptive",
-    show_default=True,
-    help="Dormand-Prince 5(4), or Runge-Kutta 4.",
+    help="Dormand-Prince 5(4), or Runge-Kutta 4.  [default: the cheaper]",
 )
+@explain_option
 @click.option("--exact", is_flag=True, help="Closed forms instead of the table.")
 @table_option
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
@@ -60,9 +62,9 @@ if TYPE_CHECKING:
 def simulate(
     v0: tuple[float, float], w0: float, radius: float | None, height: float | None,
     friction: float | None, gravity: float | None, mass: float | None, decel: float | None,
-    delta: float | None, frames: int | None, times: tuple[float, ...] | None, accuracy: float,
-    method: str, exact: bool, table_path: Path | None, as_json: bool, output: Path | None,
-    plot: Path | None, overwrite: bool,
+    delta: float | None, frames: int | None, times: tuple[float, ...] | None, tol: float,
+    method: str | None, explain: bool, exact: bool, table_path: Path | None, as_json: bool,
+    output: Path | None, plot: Path | None, overwrite: bool,
 ) -> None:  # fmt: skip
     """Slide one puck until it stops.
 
@@ -91,7 +93,7 @@ def simulate(
     run = run_simulation(
         v0, w0, delta=height_ratio, decel=J, radius=r,
         mass=DEFAULT_MASS if mass is None else mass,
-        frames=frames, times=times, accuracy=accuracy, method=method, exact=exact,
+        frames=frames, times=times, tol=tol, method=method, exact=exact,
         table=None if table_path is None else open_table(table_path),
     )  # fmt: skip
     if output is not None:
@@ -100,6 +102,8 @@ def simulate(
     if plot is not None:
         plot_trajectory(run, plot, overwrite)
         told(plot)
+    if explain:
+        explained(run.choice)
     if as_json:
         click.echo(json.dumps(summary(run), allow_nan=False))
     else:

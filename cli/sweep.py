@@ -11,6 +11,8 @@ from puck_tables.cli.options import (
     NUMBER,
     Range,
     Vector,
+    explain_option,
+    explained,
     output_options,
     prepare_outputs,
     progress,
@@ -42,12 +44,19 @@ INTERRUPTED = 130
 @click.option("--delta", type=RANGE, help="delta = 2 f h / r.  [default: 0.5]")
 @puck_options(mass=False)
 @click.option(
-    "--accuracy",
+    "--tol",
     type=NUMBER,
     default=1e-8,
     show_default=True,
-    help="Largest error, in units of Q/J (times) and Q^2/J (places).",
+    help="Largest error, in units of Q/J (times) and Q^2/J (places): the cheapest way whose "
+    "measured error is below it is taken.",
 )
+@click.option(
+    "--method",
+    type=click.Choice(["look-up", "rk4", "adaptive"]),
+    help="Only this one.  [default: the cheapest]",
+)
+@explain_option
 @click.option("--threads", type=click.IntRange(1, 1024), help="[default: all cores]")
 @table_option
 @click.option(
@@ -67,8 +76,8 @@ def sweep(
     w0: float | tuple[float, float, int] | None, speed: float | tuple[float, float, int] | None,
     v0: tuple[float, float] | None, delta: float | tuple[float, float, int] | None,
     radius: float | None, height: float | None, friction: float | None, gravity: float | None,
-    decel: float | None, accuracy: float, threads: int | None, table_path: Path | None,
-    output: Path | None, resume: bool, plot: Path | None, overwrite: bool,
+    decel: float | None, tol: float, method: str | None, explain: bool, threads: int | None,
+    table_path: Path | None, output: Path | None, resume: bool, plot: Path | None, overwrite: bool,
 ) -> None:  # fmt: skip
     """Map where and when pucks stop.
 
@@ -112,7 +121,7 @@ def sweep(
         with progress("stops") as show:
             stops = run_sweep(
                 None if w0 is None else _values(w0), None if speed is None else _values(speed),
-                v0=v0, delta=_values(height_ratio), decel=J, radius=r, accuracy=accuracy,
+                v0=v0, delta=_values(height_ratio), decel=J, radius=r, tol=tol, method=method,
                 table=table, threads=threads, progress=show, checkpoint=kept,
             )  # fmt: skip
     except KeyboardInterrupt:
@@ -133,6 +142,8 @@ def sweep(
     if output is None and plot is None:
         click.echo(map_as_csv(stops), nl=False)
     click.echo(_summary(stops), err=True)
+    if explain:
+        explained(stops.choice)
 
 
 def _table_of_stops(path: Path) -> Table | StopTable:

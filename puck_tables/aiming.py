@@ -22,7 +22,7 @@ _LARGEST_U = 600.0
 _SAMPLED_U = math.log(math.tan(math.radians(80.0)))
 _SLACK = 1e-12
 _LARGEST_LOG = 709.0
-_CHECK_ACCURACY = 1e-10
+_CHECK_TOL = 1e-10
 
 
 @dataclass(frozen=True)
@@ -296,6 +296,6 @@ def _miss(launch: FloatArray, given: Aim) -> float:
     w0, vx, vy, _ = launch.tolist()
     run = simulate(
         (vx, vy), w0, delta=given.delta, decel=given.decel, radius=given.radius, frames=1,
-        accuracy=_CHECK_ACCURACY,
+        tol=_CHECK_TOL,
     )  # fmt: skip
     return math.dist(run.stop_position, given.target)

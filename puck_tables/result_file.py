@@ -16,8 +16,10 @@ import numpy.typing as npt
 from puck_tables._version import __version__
 from puck_tables.aiming import Aim
 from puck_tables.errors import InputError
+from puck_tables.front import Way, front_as_csv
 from puck_tables.safe_write import write_bytes
 from puck_tables.stop_map import StopMap
+from puck_tables.tradeoff.engine import TradeOff
 from puck_tables.trajectory import Trajectory
 
 FloatArray = npt.NDArray[np.float64]
@@ -157,7 +159,7 @@ def save_map(stops: StopMap, path: str | Path, overwrite: bool = False) -> None:
     else:
         attributes = {
             "title": "Stops of sliding, spinning pucks", **stops.fixed,
-            "accuracy": stops.accuracy, "method": stops.method, "table": stops.table,
+            "tol": stops.tol, "method": stops.method, "table": stops.table,
         }  # fmt: skip
         columns = {name: getattr(stops, name) for name in MAP_COLUMNS}
         content = _hdf5(stops.axes, columns, {**MAP_AXES, **MAP_COLUMNS}, attributes)
@@ -229,6 +231,71 @@ def save_aim(found: Aim, path: str | Path, overwrite: bool = False) -> None:
     write_bytes(path, _csv(AIM_COLUMNS, rows), overwrite)
 
 
+WAY_COLUMNS = {
+    "question": ("", "what was asked"),
+    "method": ("", "how it was answered"),
+    "setting": ("", "with which setting"),
+    "outsider": ("1", "1 for what is not this program"),
+    "error": ("1", "worst error: of resultants, or in units of Q/J and Q^2/J"),
+    "median_error": ("1", "median error over all starts"),
+    "time_error": ("1", "worst error of time"),
+    "place_error": ("1", "worst error of place, or of the resultants"),
+    "ns": ("ns", "median cost of one item on one thread"),
+    "ns_spread": ("ns", "distance between the quartiles of the cost"),
+    "bytes": ("1", "bytes it keeps"),
+    "build_s": ("s", "time to make what it keeps"),
+    "limit_ns": ("ns", "time the machine's peak would allow; 0: not counted"),
+    "limit": ("", "which peak that is"),
+}
+GROWTH_COLUMNS = {
+    "stop_ns": ("ns", "cost of one stop by look-up, in chunks"),
+    "peak_bytes": ("1", "peak memory"),
+}
+
+
+def save_trade_off(measured: TradeOff, path: str | Path, overwrite: bool = False) -> None:
+    """Write a measured trade-off as labelled HDF5, or its ways as CSV, by the ending of the name.
+
+    Raises
+    ------
+    InputError
+        If the ending is neither .h5 nor .csv.
+    OutputError
+        If the file exists (without ``overwrite``) or cannot be written.
+
+    Examples
+    --------
+    >>> save_trade_off(None, "ways.txt")
+    Traceback (most recent call last):
+    ...
+    puck_tables.errors.InputError: ways.txt: the ending of an output file chooses its format: one \
+of .h5, .csv
+    """
+    if kind_of(path, MAP_KINDS) == ".csv":
+        content = front_as_csv(measured.ways).encode()
+    else:
+        content = _hdf5(
+            {"way": [f"{way.question}: {way.name}" for way in measured.ways],
+             "stops": measured.stops},
+            {name: _column(measured.ways, name) for name in WAY_COLUMNS}
+            | {name: getattr(measured, name) for name in GROWTH_COLUMNS},
+            {"way": ("", "question: method (setting)"), "stops": ("1", "stops in one sweep"),
+             **WAY_COLUMNS, **GROWTH_COLUMNS},
+            {"title": "Accuracy against cost of ways to friction resultants, stops and states",
+             "repeats": measured.repeats, "seconds": measured.seconds,
+             "peak_flops": measured.machine.flops, "peak_bandwidth": measured.machine.bandwidth,
+             **{f"machine_{k}": v for k, v in measured.machine.description.items()},
+             **{f"limit_ratio_{k}": v for k, v in measured.limit_ratios.items()}},
+            {**dict.fromkeys(WAY_COLUMNS, ("way",)), **dict.fromkeys(GROWTH_COLUMNS, ("stops",))},
+        )  # fmt: skip
+    write_bytes(path, content, overwrite)
+
+
+def _column(ways: tuple[Way, ...], name: str) -> Any:
+    values = [getattr(way, name) for way in ways]
+    return values if isinstance(values[0], str) else np.asarray(values)
+
+
 def _csv(names: dict[str, tuple[str, str]], rows: Iterator[tuple[Any, ...]]) -> bytes:
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
@@ -242,7 +309,9 @@ def _hdf5(
     columns: dict[str, Any],
     names: dict[str, tuple[str, str]],
     attributes: dict[str, Any],
+    dimensions: dict[str, tuple[str, ...]] | None = None,
 ) -> bytes:
+    """A labelled file; every column has all axes, or those that ``dimensions`` says."""
     import h5py
 
     buffer = io.BytesIO()
@@ -252,7 +321,7 @@ def _hdf5(
             axis.make_scale(name)
         for name, values in columns.items():
             data = file.create_dataset(name, data=values)
-            for position, axis_name in enumerate(axes):
+            for position, axis_name in enumerate(dimensions[name] if dimensions else axes):
                 data.dims[position].attach_scale(file[axis_name])
         for name in (*axes, *columns):
             unit, text = names[name]

@@ -1,7 +1,7 @@
 """One motion in natural units: spin positive, start along x, Q₀ = J = r = 1.
 
 The layer between the compiled loop and :mod:`puck_tables.trajectory`: which regime, which friction
-(table or closed forms), which method, how exact.
+(table or closed forms), which integrator.
 """
 
 from __future__ import annotations
@@ -14,7 +14,8 @@ import numpy.typing as npt
 
 from puck_tables.contact.integrals import SlipDirection
 from puck_tables.contact.resultants import CONTACT_SLACK, pressure_tilt
-from puck_tables.errors import AccuracyError, InputError, PuckError
+from puck_tables.errors import PuckError
+from puck_tables.front import Choice
 from puck_tables.kernels.closed_form import outside_full_contact
 from puck_tables.kernels.spline import cut
 from puck_tables.motion.equations import (
@@ -31,15 +32,12 @@ from puck_tables.motion.equations import (
 from puck_tables.motion.limits import LIMIT_WIDTH, log_ratio
 from puck_tables.motion.path import STOPPED, TURN_SHARE, integrate, states_at
 from puck_tables.motion.steppers import DORMAND_PRINCE, RK4, Tableau
-from puck_tables.solvers import FEWEST_STEPS, RK4_CONSTANT
 from puck_tables.table.check import by_closed_form
 from puck_tables.table.table import Table
 
 FloatArray = npt.NDArray[np.float64]
 
-FINEST_ACCURACY = 1e-13
 CONSTANT_ANGLE = ("A", "B0", "C0", "D")  # regimes with a solution in elementary functions
-METHODS = {"adaptive": DORMAND_PRINCE, "rk4": RK4}
 
 _STEP_LIMIT = 20_000
 
@@ -116,41 +114,33 @@ def run_motion(
     rim: float,
     limit: float,
     friction: Friction,
-    accuracy: float,
-    method: str,
+    choice: Choice,
 ) -> Run:
     """The motion of a launch with speed v and rim speed r|ω| in natural units.
 
-    ``limit`` is ln tan φ₀, where the motion tends to.
+    ``limit`` is ln tan φ₀, where the motion tends to; ``choice`` the integrator and its setting.
 
     Raises
     ------
-    AccuracyError
-        If the accuracy is out of reach.
     ContactError
         If part of the base would be lifted on the way.
 
     Examples
     --------
-    >>> run = run_motion("B", 1.0, 5.0, 0.426, closed_form_friction(0.0), 1e-9, "adaptive")
+    >>> from puck_tables.front import INTEGRATED, choose
+    >>> run = run_motion(
+    ...     "B", 1.0, 5.0, 0.426, closed_form_friction(0.0), choose("trajectory", 1e-9, INTEGRATED)
+    ... )
     >>> round(float(run.stop[T]), 6)  # T(φ) of Q/J
     0.774875
     """
-    if method not in METHODS:
-        raise InputError(f"method must be 'adaptive' or 'rk4', got {method!r}")
-    finest = max(FINEST_ACCURACY, 5.0 * friction.error)
-    if not finest <= accuracy <= 0.01:
-        hint = "" if friction.error == 0.0 else "; closed forms (--exact) reach 1e-13"
-        raise AccuracyError(
-            f"accuracy must be from {finest:.1g} to 0.01 (of Q/J and Q^2/J), got {accuracy:g}{hint}"
-        )
     start = _log_ratio(regime, speed, rim)
     if regime in CONSTANT_ANGLE:
         _check_contact(friction.delta, start)
         return _at_constant_angle(regime, start, closed_form_friction(friction.delta))
     # φ moves monotonically to φ₀ and the tilt falls with φ: the smaller of both is the worst
     _check_contact(friction.delta, min(start, limit))
-    return _integrated(start, friction, accuracy, method)
+    return _integrated(start, friction, choice)
 
 
 def _log_ratio(regime: str, speed: float, rim: float) -> float:
@@ -181,26 +171,28 @@ def _at_constant_angle(regime: str, u: float, friction: Friction) -> Run:
     )
 
 
-def _integrated(u: float, friction: Friction, accuracy: float, method: str) -> Run:
+def _integrated(u: float, friction: Friction, choice: Choice) -> Run:
     """By the integrator; its error from a run of higher accuracy, plus that of the table."""
-    steps, tolerance = 0.0, 0.4 * accuracy
-    if method == "rk4":
-        steps = max(FEWEST_STEPS, math.ceil((RK4_CONSTANT / accuracy) ** 0.25))
-    z, y, result = _steps(u, friction, METHODS[method], steps, tolerance)
-    _, _, finer = _steps(u, friction, METHODS[method], 2.0 * steps, max(0.1 * tolerance, 4e-15))
+    steps, tolerance, tableau = 0.0, 1.0, DORMAND_PRINCE
+    if choice.way.method.startswith("rk4"):
+        steps, tableau = choice.way.number("steps"), RK4
+    else:
+        tolerance = choice.way.number("local")
+    z, y, result = _steps(u, friction, tableau, steps, tolerance)
+    _, _, finer = _steps(u, friction, tableau, 2.0 * steps, max(0.1 * tolerance, 4e-15))
     difference = float(np.abs(result[T : X + 2] - finer[T : X + 2]).max())
     rates = np.empty(SIZE)
     derivatives(0.0, y[-1], friction.cut, friction.delta, rates)
     return Run(
         friction,
-        METHODS[method],
+        tableau,
         z=z,
         y=y,
         stop=result[:SIZE],
         turn_rate=0.25 * float(rates[PSI]),  # at z = 0, dz = −d ln Q/4
         energy_residual=float(result[SIZE]),
         steps=len(z) - 1,
-        error=difference + 0.01 * accuracy + friction.error,
+        error=difference + 0.01 * choice.tol + friction.error,
     )
 
 

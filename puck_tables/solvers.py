@@ -2,28 +2,26 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.errors import AccuracyError
+from puck_tables.errors import AccuracyError, InputError
+from puck_tables.front import COARSEST, INTEGRATED, LOOK_UP, Choice, choose
 from puck_tables.puck import real
 from puck_tables.real import instance
 from puck_tables.similarity.file import load_stop_table
+from puck_tables.similarity.lookup import STOP_POWERS
 from puck_tables.similarity.stop_table import StopTable
+from puck_tables.table.file import load_table
 from puck_tables.table.table import Table
 
 FloatArray = npt.NDArray[np.float64]
 Status = npt.NDArray[np.int8]
 
-COARSEST_ACCURACY = 0.01
-
-# The error of RK4 with N steps is at most 0.29 N⁻⁴ in units of Q/J and Q²/J: that of Simpson's rule
-# for the place in pure sliding, where all else is smaller.  With a margin:
-RK4_CONSTANT = 0.36
-FEWEST_STEPS = 8
+METHODS = (LOOK_UP, "rk4", "adaptive")
+TABLE_FACTOR = 5.0  # an error of the friction enters a stop at most so many times
 
 OUTPUTS = ("stop_time", "stop_x", "stop_y", "path_length", "turn_angle", "body_angle")
 STATUS_MEANINGS = ("stopped", "step_limit", "overflow")
@@ -31,17 +29,17 @@ STATUS_MEANINGS = ("stopped", "step_limit", "overflow")
 
 @dataclass(frozen=True)
 class LookUp:
-    """Stops from a stop table: nothing is integrated."""
+    """Stops from a stop table, as coarse a cut of it as is good enough: nothing is integrated."""
 
     table: StopTable
+    powers: int = STOP_POWERS
+    thinning: int = 1
+    choice: Choice | None = None
     method: str = "look-up"
 
     def first(self, launches: FloatArray) -> tuple[FloatArray, Status]:
         """Stop time, x, y (3, n) and status (n,) of checked launches (6, n)."""
-        from puck_tables.similarity.lookup import fill_stops_by_table
-
-        out = np.empty((3, launches.shape[1]))
-        overflows = fill_stops_by_table(launches, self.table.stop_coefficients, out)
+        out, overflows = self.table.stops(launches, self.powers, self.thinning)
         return _marked(out, launches, overflows)
 
     def all(self, launches: FloatArray) -> tuple[FloatArray, Status]:
@@ -57,10 +55,13 @@ class LookUp:
 
 @dataclass(frozen=True)
 class Integration:
-    """Stops by Runge–Kutta 4 and the resultants."""
+    """Stops by an integrator: Runge–Kutta 4, or the adaptive pair where ``steps`` is 0."""
 
     table: Table
     steps: float
+    tolerance: float
+    exact: bool
+    choice: Choice | None = None
     method: str = "integrated"
 
     def first(self, launches: FloatArray) -> tuple[FloatArray, Status]:
@@ -70,14 +71,15 @@ class Integration:
     def all(self, launches: FloatArray) -> tuple[FloatArray, Status]:
         """All of :data:`OUTPUTS` (6, n) and status (n,) of checked launches (6, n)."""
         from puck_tables.motion.bulk import fill_stops
-        from puck_tables.motion.steppers import RK4
+        from puck_tables.motion.steppers import DORMAND_PRINCE
 
         out = np.empty((len(OUTPUTS), launches.shape[1]))
         status = np.empty(launches.shape[1], np.int8)
-        table = self.table
         fill_stops(
-            launches, RK4, self.steps, table.coefficients, table.delta_axis.upper, out, status
-        )
+            launches, DORMAND_PRINCE, self.steps, self.tolerance,
+            np.empty((2, 0, 0, 3)) if self.exact else self.table.coefficients,
+            self.table.delta_axis.upper, out, status,
+        )  # fmt: skip
         return out, status
 
 
@@ -107,57 +109,77 @@ def fits(launches: FloatArray) -> npt.NDArray[np.bool_]:
     return inside
 
 
-def solver_for(accuracy: float, table: Table | StopTable | None) -> LookUp | Integration:
-    """The way to stops of an accuracy, in units of Q/J and Q²/J.
+def solver_for(
+    tol: float, table: Table | StopTable | None, method: str | None = None
+) -> LookUp | Integration:
+    """The cheapest way to stops within a tolerance, in units of Q/J and Q²/J.
 
     Parameters
     ----------
-    accuracy : largest error
+    tol : largest error
     table : StopTable for look-up, Table for integration
-        Left out: look-up with the default table where it is exact enough, else integration.
+        Left out: the tables that come along, or closed forms.
+    method : 'look-up', 'rk4' or 'adaptive'
+        Left out: any.
 
     Raises
     ------
     AccuracyError
         If it is out of reach.
+    InputError
+        If the method is not known or does not go with the table.
 
     Examples
     --------
-    >>> solver_for(1e-8, None).method
-    'look-up'
+    >>> solver_for(1e-8, None).method, solver_for(1e-12, None).method
+    ('look-up', 'integrated')
     """
-    wanted = real("accuracy", accuracy, "dimensionless")
+    wanted = real("tol", tol, "dimensionless")
     instance("table", table, Table, StopTable, type(None))
-    if isinstance(table, Table):
-        return Integration(table, steps_for(wanted, table))
-    chosen = load_stop_table() if table is None else table
-    if not chosen.tolerance <= wanted <= COARSEST_ACCURACY:
-        raise AccuracyError(
-            f"accuracy must be from {chosen.tolerance:.1g} (that of the stop table) to "
-            f"{COARSEST_ACCURACY:g}, got {wanted:g}: a finer table comes from "
-            "'puck build-tables --kind stops --accuracy A' with A down to 1e-11"
+    if method not in (None, *METHODS):
+        raise InputError(f"method must be one of {', '.join(METHODS)}, got {method!r}")
+    if isinstance(table, StopTable):
+        if method not in (None, LOOK_UP):
+            raise InputError(f"method {method} needs a table of resultants, not of stops")
+        if not table.tolerance <= wanted <= COARSEST:
+            raise AccuracyError(
+                f"tol must be from {table.tolerance:.1g} (that of the stop table) to {COARSEST:g}, "
+                f"got {wanted:g}: a finer table comes from 'puck build-tables --kind stops "
+                "--accuracy A' with A down to 1e-11"
+            )
+        return LookUp(table)
+    if isinstance(table, Table) and method == LOOK_UP:
+        raise InputError("method look-up needs a table of stops, not of resultants")
+    choice = choose_with("stop", wanted, method, table)
+    way = choice.way
+    if way.method == LOOK_UP:
+        return LookUp(
+            load_stop_table(), int(way.number("powers")), int(way.number("thinning")), choice
         )
-    return LookUp(chosen)
+    return Integration(
+        load_table() if table is None else table,
+        steps=way.number("steps") if way.method.startswith("rk4") else 0.0,
+        tolerance=way.number("local") if way.method.startswith("adaptive") else 1.0,
+        exact=way.method.endswith("closed forms") and table is None,
+        choice=choice,
+    )
 
 
-def steps_for(accuracy: float, table: Table) -> float:
-    """How many RK4 steps reach an accuracy (in units of Q/J and Q²/J) with a table.
+def choose_with(
+    question: str, tol: float, method: str | None, table: Table | None, exact: bool = False
+) -> Choice:
+    """The knob, when a method, closed forms or a table of one's own may be asked for.
 
-    Raises
-    ------
-    AccuracyError
-        If it is out of reach.
+    The error of an integration with one's own table is that of the integrator with closed forms
+    and what the table adds: at most five times its own error.
 
     Examples
     --------
-    >>> from puck_tables import load_table
-    >>> steps_for(1e-7, load_table())
-    44.0
+    >>> choose_with("trajectory", 1e-9, "rk4", None).way.method
+    'rk4, table'
     """
-    finest = 5.0 * table.tolerance
-    if not finest <= accuracy <= COARSEST_ACCURACY:
-        raise AccuracyError(
-            f"accuracy must be from {finest:.1g} (five times the table's own error) to 0.01, "
-            f"got {accuracy:g}"
-        )
-    return float(max(FEWEST_STEPS, math.ceil((RK4_CONSTANT / accuracy) ** 0.25)))
+    methods = tuple(m for m in (LOOK_UP, *INTEGRATED) if method is None or m.startswith(method))
+    if exact or table is not None:
+        methods = tuple(m for m in methods if m.endswith("closed forms"))
+    added = 0.0 if table is None else TABLE_FACTOR * table.tolerance
+    return choose(question, tol, methods, added)

@@ -16,12 +16,13 @@ import numpy.typing as npt
 from puck_tables.checkpoint import Checkpoint
 from puck_tables.errors import InputError
 from puck_tables.executor import run_chunks
+from puck_tables.front import Choice
 from puck_tables.kernels.cache import source_digest
 from puck_tables.puck import positive, velocity_array
 from puck_tables.real import finite_array
 from puck_tables.similarity.stop_table import StopTable
 from puck_tables.solvers import OUTPUTS, Integration, LookUp, solver_for
-from puck_tables.stops import DEFAULT_ACCURACY
+from puck_tables.stops import DEFAULT_TOL
 from puck_tables.table.table import Table
 
 FloatArray = npt.NDArray[np.float64]
@@ -44,15 +45,16 @@ class StopMap:
     ``radius`` (m), ``decel`` (m/s²) and, if given instead of a speed, ``v0_x``, ``v0_y`` (m/s).
 
     Arrays: ``stop_time`` s, ``stop_x``, ``stop_y`` m from the launch, ``path_length`` m,
-    ``turn_angle`` rad (until Q has fallen to 1/1000; integrated, to a hundred times the accuracy),
-    ``body_angle`` rad, ``status`` (0: stopped).  ``method`` says how ('look-up', 'integrated'), and
-    ``table`` with which table.
+    ``turn_angle`` rad (until Q has fallen to 1/1000; integrated, to a hundred times the tolerance),
+    ``body_angle`` rad, ``status`` (0: stopped).  ``method`` says how ('look-up', 'integrated'),
+    ``table`` with which table, ``choice`` why.
     """
 
     axes: dict[str, FloatArray]
     fixed: dict[str, float]
-    accuracy: float
+    tol: float
     method: str
+    choice: Choice | None = field(repr=False)
     table: str
     stop_time: FloatArray = field(repr=False)
     stop_x: FloatArray = field(repr=False)
@@ -71,7 +73,8 @@ def sweep(
     delta: npt.ArrayLike = 0.5,
     decel: float = 1.0,
     radius: float = 1.0,
-    accuracy: float = DEFAULT_ACCURACY,
+    tol: float = DEFAULT_TOL,
+    method: str | None = None,
     table: Table | StopTable | None = None,
     threads: int | None = None,
     chunk: int = CHUNK,
@@ -88,9 +91,9 @@ def sweep(
     v0 : (vx, vy), m/s, instead of ``speed``
     delta : number or array (n,), dimensionless height in the table's range
     decel, radius : J = fg in m/s² and m, > 0
-    accuracy : float
+    tol : float
         Largest error in units of Q/J (time) and Q²/J (place).
-    table : StopTable or Table, optional
+    method, table : optional
         As in :func:`puck_tables.stop`.
     threads, chunk : int
         How the work is cut; the numbers do not depend on it, to the last bit.
@@ -110,7 +113,7 @@ def sweep(
         If an argument is not finite or outside its range, the map would not fit in memory, or
         ``checkpoint`` belongs to other work.
     AccuracyError
-        If the accuracy is out of the table's reach.
+        If the tolerance is out of reach.
 
     Examples
     --------
@@ -121,7 +124,7 @@ def sweep(
     for name, count in (("chunk", chunk), ("threads", 1 if threads is None else threads)):
         if not isinstance(count, int) or count < 1:
             raise InputError(f"{name} must be a whole number from 1 on, got {count!r}")
-    solver = solver_for(accuracy, table)
+    solver = solver_for(tol, table, method)
     if v0 is not None and speed is not None:
         raise InputError("v0 and speed both give the velocity: give one of them")
     if w0 is None and speed is None and v0 is None:
@@ -174,7 +177,7 @@ def sweep(
 
         run_chunks(work, size, chunk, threads, progress)
     else:
-        what = _digest(solver, values, {**fixed, "accuracy": accuracy})
+        what = _digest(solver, values, {**fixed, "tol": tol})
         with Checkpoint(checkpoint, what, len(OUTPUTS), size, chunk) as kept:
 
             def work_on(start: int, stop: int) -> None:
@@ -187,8 +190,9 @@ def sweep(
     return StopMap(
         axes=axes,
         fixed=fixed,
-        accuracy=accuracy,
+        tol=tol,
         method=solver.method,
+        choice=solver.choice,
         table=solver.table.source,
         status=status.reshape(shape),
         **results,

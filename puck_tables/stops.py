@@ -16,16 +16,18 @@ from puck_tables.table.table import Table
 
 FloatArray = npt.NDArray[np.float64]
 
-DEFAULT_ACCURACY = 1e-8
+DEFAULT_TOL = 1e-8
 
 
 class Stops:
     """Stops of launches of shape (…).
 
     ``stop_time`` (…) s, ``stop_position`` (…, 2) m from the launch, ``status`` (…) int8, 0 where
-    all is well, ``method`` ('look-up' or 'integrated').  Computed when first asked for:
-    ``path_length`` (…) m, ``body_angle`` (…) rad, ``turn_angle`` (…) rad: how far the heading has
-    turned when Q has fallen to 1/1000 (for δ > 0 it turns on without end).
+    all is well, ``method`` ('look-up' or 'integrated'), ``choice`` (what the tolerance led to, see
+    :class:`puck_tables.front.Choice`; None with a stop table of one's own).
+    Computed when first asked for: ``path_length`` (…) m, ``body_angle`` (…) rad, ``turn_angle``
+    (…) rad: how far the heading has turned when Q has fallen to 1/1000 (for δ > 0 it turns on
+    without end).
     """
 
     def __init__(
@@ -33,7 +35,7 @@ class Stops:
     ) -> None:
         self._values, status = solver.first(launches)
         self._solver, self._launches, self._shape = solver, launches, shape
-        self.method = solver.method
+        self.method, self.choice = solver.method, solver.choice
         self.stop_time: FloatArray = self._values[0].reshape(shape)
         self.stop_position: FloatArray = np.stack([self._row(1), self._row(2)], axis=-1)
         self.status: npt.NDArray[np.int8] = status.reshape(shape)
@@ -59,7 +61,7 @@ class Stops:
 
     @property
     def turn_angle(self) -> FloatArray:
-        """Radians; integrated, good to a hundred times the accuracy only."""
+        """Radians; integrated, good to a hundred times the tolerance only."""
         return self._row(4)
 
     @property
@@ -75,7 +77,8 @@ def stop(
     delta: npt.ArrayLike = 0.5,
     decel: npt.ArrayLike = 1.0,
     radius: npt.ArrayLike = 1.0,
-    accuracy: float = DEFAULT_ACCURACY,
+    tol: float = DEFAULT_TOL,
+    method: str | None = None,
     table: Table | StopTable | None = None,
 ) -> Stops:
     """Where and when pucks stop; everything broadcasts.
@@ -87,11 +90,14 @@ def stop(
     delta : array_like (…), dimensionless height 2fh/r, in the table's range (0 to 1)
     decel : array_like (…), J = fg, m/s², > 0
     radius : array_like (…), m, > 0
-    accuracy : float
-        Largest error in units of Q/J (time) and Q²/J (place), Q = hypot(v, rω).
+    tol : float
+        Largest error in units of Q/J (time) and Q²/J (place), Q = hypot(v, rω); 1e-13 to 0.01.  The
+        cheapest way whose measured error is below it is taken; ``choice`` of the result says which
+        and why.
+    method : 'look-up', 'rk4' or 'adaptive', optional
+        Only this one.
     table : StopTable or Table, optional
-        A stop table: looked up.  A table of resultants: integrated.  Left out: the default stop
-        table.
+        A stop table: looked up.  A table of resultants: integrated.
 
     Returns
     -------
@@ -102,7 +108,7 @@ def stop(
     InputError
         If an argument is not finite, has the wrong shape or lies outside its range.
     AccuracyError
-        If the accuracy is out of the table's reach.
+        If the tolerance is out of reach.
 
     References
     ----------
@@ -114,7 +120,7 @@ def stop(
     >>> result.stop_time.round(6).tolist(), result.method
     ([1.395088, 4.000189], 'look-up')
     """
-    solver = solver_for(accuracy, table)
+    solver = solver_for(tol, table, method)
     velocity = velocity_array(v0)
     columns = broadcast(
         vx=velocity[..., 0],

@@ -9,14 +9,16 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.errors import InputError
+from puck_tables.front import Choice, Way
 from puck_tables.puck import positive, real, velocity_array
 from puck_tables.real import finite_array, instance
+from puck_tables.solvers import choose_with
 from puck_tables.table.file import load_table
 from puck_tables.table.table import Table
 
 FloatArray = npt.NDArray[np.float64]
 
-DEFAULT_ACCURACY = 1e-9
+DEFAULT_TOL = 1e-9
 DEFAULT_FRAMES = 101
 MAX_FRAMES = 1_000_000
 LOOK_UP_FRAMES = 10_000  # from here on states are looked up: 0.2 µs each instead of 4
@@ -38,7 +40,8 @@ class Trajectory:
     * ``limit_angle`` rad: φ₀(δ), which every generic motion approaches;
     * ``kinetic_energy`` J at the launch; ``energy_residual``: the largest difference between
       energy lost and work of friction along the path, as a share of it;
-    * ``method``, ``steps``, and ``error_estimate`` in units of Q/J (times) and Q²/J (places).
+    * ``method``, ``steps``, and ``error_estimate`` in units of Q/J (times) and Q²/J (places);
+      ``choice``: what the tolerance led to (None where the motion is elementary).
 
     Arrays over ``time`` (n,) s: ``x``, ``y`` m; ``heading`` rad (of the velocity; at rest the
     heading of turn_angle); ``orientation`` rad (of the body); ``speed`` v m/s; ``spin`` ω rad/s;
@@ -64,6 +67,7 @@ class Trajectory:
     method: str
     steps: int
     error_estimate: float
+    choice: Choice | None = field(repr=False)
     time: FloatArray = field(repr=False)
     x: FloatArray = field(repr=False)
     y: FloatArray = field(repr=False)
@@ -85,8 +89,8 @@ def simulate(
     mass: float = 1.0,
     frames: int | None = None,
     times: npt.ArrayLike | None = None,
-    accuracy: float = DEFAULT_ACCURACY,
-    method: str = "adaptive",
+    tol: float = DEFAULT_TOL,
+    method: str | None = None,
     exact: bool = False,
     table: Table | None = None,
 ) -> Trajectory:
@@ -105,9 +109,13 @@ def simulate(
         How many states, equally spaced from the launch to the stop (1: the launch); default 101.
     times : array_like, s, ≥ 0, any order, optional
         The times of the states instead; after the stop the puck is at rest.
-    accuracy : float
-        Largest error wanted, in units of Q/J (times) and Q²/J (places).
-    method : 'adaptive' (Dormand–Prince 5(4)) or 'rk4'
+    tol : float
+        Largest error of the stop wanted, in units of Q/J (time) and Q²/J (place); 1e-13 to 0.01.
+        The cheapest integrator whose measured error is below it is taken (a trajectory is
+        integrated and not looked up: it carries an account of its energy); ``choice`` of the result
+        says which and why.
+    method : 'adaptive' (Dormand–Prince 5(4)) or 'rk4', optional
+        Only this one.
     exact : bool
         Closed forms instead of the table.
     table : Table, optional
@@ -124,7 +132,7 @@ def simulate(
     ContactError
         If part of the base would be lifted on the way: the linear pressure law ends there.
     AccuracyError
-        If the accuracy is out of reach of table or method.
+        If the tolerance is out of reach of table or method.
 
     References
     ----------
@@ -158,11 +166,15 @@ def simulate(
     from puck_tables.motion.limits import limit_log_ratio, regime_of
     from puck_tables.run import closed_form_friction, run_motion, table_friction
 
-    friction = (
-        closed_form_friction(height)
-        if exact
-        else table_friction(height, load_table() if table is None else table)
-    )
+    wanted = real("tol", tol, "dimensionless")
+    if method not in (None, "adaptive", "rk4"):
+        raise InputError(f"method must be 'adaptive' or 'rk4', got {method!r}")
+    chosen = load_table() if table is None else table
+    if not exact:
+        chosen.checked_range(height)
+    choice = choose_with("trajectory", wanted, method, table, exact)
+    by_closed_form = exact or (table is None and choice.way.method.endswith("closed forms"))
+    friction = closed_form_friction(height) if by_closed_form else table_friction(height, chosen)
     speed, rim = math.hypot(vx, vy), r * abs(spin)
     q0 = math.hypot(speed, rim)
     limit = limit_log_ratio(height)
@@ -175,8 +187,7 @@ def simulate(
             f"(Q = {q0:g} m/s, J = {J:g} m/s^2): use larger units"
         )
 
-    wanted = real("accuracy", accuracy, "dimensionless")
-    run = run_motion(regime, speed, rim, limit, friction, wanted, method)
+    run = run_motion(regime, speed, rim, limit, friction, choice)
     stop_time = float(run.stop[T] * scale_time)
     moments = _moments(frames, times, stop_time)
     look_up = (
@@ -184,8 +195,8 @@ def simulate(
         and regime in ("B", "C")
         and not exact
         and table is None
-        and method == "adaptive"
-        and wanted >= DEFAULT_ACCURACY
+        and method is None
+        and wanted >= DEFAULT_TOL
     )
     if look_up:
         till_rest = np.where(moments < stop_time, moments, 2.0 * stop_time)
@@ -211,9 +222,11 @@ def simulate(
         limit_angle=math.atan(math.exp(limit)),
         kinetic_energy=energy,
         energy_residual=run.energy_residual,
-        method=_method_name(regime, method, exact) + ("; states by look-up" if look_up else ""),
+        method=_method_name(regime, choice.way, by_closed_form)
+        + ("; states by look-up" if look_up else ""),
         steps=run.steps,
         error_estimate=run.error,
+        choice=choice if regime in ("B", "C") else None,
         time=moments,
         **columns,
     )  # fmt: skip
@@ -295,9 +308,11 @@ def _slip_angle(
     return angle
 
 
-def _method_name(regime: str, method: str, exact: bool) -> str:
-    source = "closed forms" if exact else "table"
+def _method_name(regime: str, way: Way, by_closed_form: bool) -> str:
+    source = "closed forms" if by_closed_form else "table"
     if regime not in ("B", "C"):
         return "exact solution at constant slip angle"
-    stepper = "Dormand-Prince 5(4), adaptive" if method == "adaptive" else "Runge-Kutta 4"
+    stepper = (
+        "Dormand-Prince 5(4), adaptive" if way.method.startswith("adaptive") else "Runge-Kutta 4"
+    )
     return f"{stepper}, {source}"

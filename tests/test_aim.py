@@ -20,9 +20,8 @@ TARGET = (2.0, 0.1)
 
 
 def forward(found) -> np.ndarray:
-    return stop(
-        found.v0, found.w0, delta=found.delta, decel=found.decel, radius=found.radius
-    ).stop_position
+    puck = {"delta": found.delta, "decel": found.decel, "radius": found.radius}
+    return stop(found.v0, found.w0, **puck, tol=1e-11).stop_position
 
 
 @pytest.mark.parametrize("delta", [0.0, 0.5, 1.0])

@@ -164,7 +164,7 @@ def test_build_info_validate(folder: Path):
     judged = puck("validate", "rough.h5")
     assert judged.exit_code == 0
     assert judged.stdout.count("pass") == 12
-    near = puck("simulate", "--v0", "1,0", "--w0", "5", "--table", "rough.h5", "--accuracy", "1e-5",
+    near = puck("simulate", "--v0", "1,0", "--w0", "5", "--table", "rough.h5", "--tol", "1e-5",
                 "--json")  # fmt: skip
     assert json.loads(near.stdout)["stop_time"] == pytest.approx(3.96299205, abs=5e-5)
 
@@ -210,7 +210,7 @@ V0 = ["simulate", "--v0", "1,0"]
         ([*V0, "--frames", "5", "--times", "1"], ["one of them"]),
         ([*V0, "--times", "2:1:5"], ["STOP must be greater"]),
         ([*V0, "--times", "-1,2"], ["times"]),
-        ([*V0, "--w0", "2", "--accuracy", "1e-14"], ["accuracy must be from 1e-10"]),
+        ([*V0, "--w0", "2", "--tol", "1e-14"], ["tol must be from 1e-13"]),
         ([*V0, "--method", "euler"], ["'euler'"]),
         ([*V0, "--exact", "--table", "x.h5"], ["--exact and --table clash"]),
         ([*V0, "-o", "run.xlsx"], [".h5, .csv, .jsonl"]),
@@ -374,7 +374,7 @@ def test_everything_printed_is_ascii():
 def test_the_table_that_is_read_is_never_replaced():
     puck("build-tables", "--accuracy", "1e-6", "-o", "t.h5")
     for command in (["sweep"], V0):
-        result = puck(*command, "--accuracy", "1e-4", "--table", "t.h5", "-o", "t.h5",
+        result = puck(*command, "--tol", "1e-4", "--table", "t.h5", "-o", "t.h5",
                       "--overwrite")  # fmt: skip
         refused(result, 2, "is the table that is read")
     assert load_table("t.h5").tolerance == 1e-6

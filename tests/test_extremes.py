@@ -130,7 +130,7 @@ def test_energy_closes_in_every_regime():
     """The work of friction accounts for the energy to 1e-10 of it, and energy never grows."""
     ratio = float(limit_ratio(0.7))
     for k in (0.0, 1e-200, 1e-6, 0.5, 1.0, ratio, 1.6, 40.0, 1e12):
-        run = simulate((1.0, 0.0), k, delta=0.7, accuracy=1e-11, exact=True, frames=50)
+        run = simulate((1.0, 0.0), k, delta=0.7, tol=1e-11, exact=True, frames=50)
         assert run.energy_residual <= 1e-10
         energy = run.speed**2 + 0.5 * run.spin**2
         assert np.all(np.diff(energy) <= 1e-13 * energy[0])

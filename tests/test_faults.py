@@ -39,7 +39,7 @@ def sweeps_killed(folder: Path, kills: int) -> int:
     """Kill a resumable sweep at random moments until it is done; returns how many kills it took."""
     load = "from puck_tables import *; import numpy as np; from test_faults import GRID; "
     work = (
-        "m = sweep(**GRID, table=load_table(), accuracy=1e-9, threads=1, checkpoint='m.progress'); "
+        "m = sweep(**GRID, table=load_table(), tol=1e-9, threads=1, checkpoint='m.progress'); "
         "save_map(m, 'm.h5', overwrite=True)"
     )
     code = f"import sys; sys.path.insert(0, {str(Path(__file__).parent)!r}); " + load + work
@@ -52,9 +52,9 @@ def sweeps_killed(folder: Path, kills: int) -> int:
 
 
 def check_killed_sweeps(tmp_path: Path, kills: int) -> None:
-    base = sweep(**GRID, table=load_table(), accuracy=1e-9)
+    base = sweep(**GRID, table=load_table(), tol=1e-9)
     assert sweeps_killed(tmp_path, kills) >= 1
-    resumed = sweep(**GRID, table=load_table(), accuracy=1e-9, checkpoint=tmp_path / "m.progress")
+    resumed = sweep(**GRID, table=load_table(), tol=1e-9, checkpoint=tmp_path / "m.progress")
     for name in ("stop_time", "stop_x", "stop_y", "path_length", "turn_angle", "body_angle"):
         assert getattr(resumed, name).tobytes() == getattr(base, name).tobytes()
     import xarray
@@ -113,7 +113,7 @@ def test_resume_on_the_command_line(tmp_path: Path):
     subprocess.run([*PUCK, "build-tables", "--accuracy", "1e-6", "-o", resultants], check=True,
                    capture_output=True)  # fmt: skip
     command = [*PUCK, "sweep", "--speed", "0:2:400", "--w0", "0:5:400", "--table", "rough.h5",
-               "--accuracy", "1e-5", "-o", "m.h5", "--resume", "--threads", "1"]  # fmt: skip
+               "--tol", "1e-5", "-o", "m.h5", "--resume", "--threads", "1"]  # fmt: skip
     process = subprocess.Popen(
         command, cwd=tmp_path, stderr=subprocess.PIPE, text=True,
     )  # fmt: skip

@@ -91,7 +91,7 @@ def test_trajectories(
 ):
     puck = {"delta": delta, "decel": decel, "radius": radius, "exact": True}
     try:
-        run = simulate((vx, vy), w0, **puck, accuracy=accuracy, frames=5)
+        run = simulate((vx, vy), w0, **puck, tol=accuracy, frames=5)
     except PuckError as error:
         assert str(error)
         return
@@ -119,10 +119,10 @@ OPTIONS = {
         "--radius",
         "--decel",
         "--times",
-        "--accuracy",
+        "--tol",
         "--mass",
     ],
-    "sweep": ["--v0", "--w0", "--speed", "--delta", "--radius", "--height", "--accuracy"],
+    "sweep": ["--v0", "--w0", "--speed", "--delta", "--radius", "--height", "--tol"],
     "aim": ["--target", "--w0", "--speed", "--time", "--max-speed", "--max-spin", "--delta"],
 }
 

@@ -30,6 +30,7 @@ from puck_tables.errors import AccuracyError, InputError, OutputError, TableErro
 from puck_tables.similarity.axes import SlipAxis, heights
 from puck_tables.similarity.check import launch_points, launches_at, looked_up
 from puck_tables.similarity.curve import limits, regular_slopes
+from puck_tables.similarity.curve_lookup import STOP_X, STOP_Y
 from puck_tables.similarity.exact import end_values, exact_stops
 from puck_tables.similarity.stop_table import StopTable
 
@@ -51,7 +52,7 @@ def file(tmp_path_factory: pytest.TempPathFactory, rough: StopTable) -> Path:
 
 def test_reference_runs():
     for (delta, k), (time, x, y) in REFERENCE_RUNS.items():
-        result = stop((1.0, 0.0), k, delta=delta)
+        result = stop((1.0, 0.0), k, delta=delta, tol=2e-10)
         q = math.hypot(1.0, k)
         assert result.method == "look-up"
         assert float(result.stop_time) == pytest.approx(time, abs=2e-10 * q)
@@ -83,8 +84,8 @@ def test_integrated_and_looked_up_agree_for_any_puck():
     rng = np.random.default_rng(5)
     v0, w0 = rng.normal(size=(300, 2)), rng.normal(size=300) * 40.0
     puck = {"delta": rng.random(300), "decel": 0.7, "radius": 0.05}
-    one = stop(v0, w0, **puck)
-    two = stop(v0, w0, **puck, accuracy=1e-9, table=load_table())
+    one = stop(v0, w0, **puck, tol=2e-10)
+    two = stop(v0, w0, **puck, tol=1e-9, table=load_table())
     assert two.method == "integrated"
     q = np.hypot(np.hypot(*v0.T), 0.05 * w0)
     assert np.all(np.abs(one.stop_time - two.stop_time) <= 1.2e-9 * q / 0.7)
@@ -188,7 +189,7 @@ def test_states_against_the_integrator():
         v, w = 1.0 / math.hypot(1.0, k), k / math.hypot(1.0, k)
         delta = 0.4 if k > 1.4 else float(rng.choice([0.0, rng.random(), 1.0]))
         shares = np.concatenate([[0.0, 1e-9, 0.5, 1.0 - 1e-6, 1.0 - 1e-9], rng.random(6)])
-        run = simulate((0.0, v), -w, delta=delta, exact=True, accuracy=1e-13,
+        run = simulate((0.0, v), -w, delta=delta, exact=True, tol=1e-13,
                        times=shares * float(stop((0.0, v), w, delta=delta).stop_time))  # fmt: skip
         got = flow((0.0, v), -w, run.time, delta=delta)
         for name in ("x", "y", "speed", "spin", "orientation", "slip_speed"):
@@ -223,11 +224,14 @@ def test_a_state_launched_anew_goes_on():
 
 def test_launch_and_rest_are_exact_in_any_order():
     at = flow((3.0, 4.0), 2.0, [1e9, 0.0, 1e300], radius=0.5)
-    end = stop((3.0, 4.0), 2.0, radius=0.5)
+    end = stop((3.0, 4.0), 2.0, radius=0.5, tol=2e-10)
     assert at.speed.tolist() == [0.0, 5.0, 0.0]
     assert at.spin.tolist() == [0.0, 2.0, 0.0]
     assert (at.x[1], at.y[1], at.orientation[1]) == (0.0, 0.0, 0.0)
-    np.testing.assert_allclose([at.x[0], at.y[2]], end.stop_position, rtol=1e-15)
+    launch = np.array([[3.0], [4.0], [2.0], [0.5], [1.0], [0.5]])
+    known = load_stop_table().known(launch)
+    np.testing.assert_allclose([at.x[0], at.y[2]], known[[STOP_X, STOP_Y], 0], rtol=1e-15)
+    assert np.abs(end.stop_position - known[[STOP_X, STOP_Y], 0]).max() <= 2e-10 * (25 + 1)
     resting = flow((0.0, 0.0), 0.0, [0.0, 1.0])
     assert resting.x.tolist() == resting.speed.tolist() == [0.0, 0.0]
 
@@ -329,14 +333,14 @@ def test_sizes_and_accuracies_out_of_range():
     with pytest.raises(AccuracyError, match="1e-11"):
         build_stop_table(accuracy=1e-13)
     with pytest.raises(AccuracyError, match="--kind stops"):
-        stop((1, 0), 1.0, accuracy=1e-11)
-    with pytest.raises(AccuracyError, match="1e-10"):
-        sweep(accuracy=1e-11)
+        stop((1, 0), 1.0, tol=1e-11, table=load_stop_table())
+    with pytest.raises(AccuracyError, match="closed forms reaches 1e-13"):
+        sweep(tol=1e-11, method="look-up")
 
 
 def test_a_rough_stop_table_says_what_it_can(rough: StopTable):
     with pytest.raises(AccuracyError, match="that of the stop table"):
         stop((1, 0), 1.0, table=rough)
-    found = stop((1, 0), 5.0, delta=1.0, table=rough, accuracy=1e-5)
+    found = stop((1, 0), 5.0, delta=1.0, table=rough, tol=1e-5)
     assert float(found.stop_time) == pytest.approx(4.000188799127, abs=5.2 * rough.tolerance)
-    assert sweep([0.0, 1.0], table=rough, accuracy=1e-4).method == "look-up"
+    assert sweep([0.0, 1.0], table=rough, tol=1e-4).method == "look-up"

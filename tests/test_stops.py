@@ -46,10 +46,10 @@ def test_integration_reaches_the_accuracy_it_promises(table: Table):
     delta = rng.random(400)
     v0 = np.stack([1.0 / np.hypot(1.0, np.exp(u)), 0.0 * u], axis=-1)
     w0 = np.sqrt(1.0 - v0[:, 0] ** 2)
-    truth = stop(v0, w0, delta=delta, accuracy=1e-10)
+    truth = stop(v0, w0, delta=delta, tol=2e-10)
     assert truth.method == "look-up"
     for accuracy in (1e-2, 1e-3, 1e-5, 1e-7, 1e-8):
-        result = stop(v0, w0, delta=delta, accuracy=accuracy, table=table)
+        result = stop(v0, w0, delta=delta, tol=accuracy, table=table)
         assert np.abs(result.stop_time - truth.stop_time).max() <= accuracy + 2e-10
         assert np.abs(result.stop_position - truth.stop_position).max() <= accuracy + 2e-10
 
@@ -78,8 +78,10 @@ def test_bad_launches(arguments: tuple, options: dict, words: str):
 
 
 def test_accuracy_out_of_reach():
-    with pytest.raises(AccuracyError, match=r"1e-10 .*to 0\.01"):
-        stop((1, 0), 1.0, accuracy=1e-12)
+    with pytest.raises(AccuracyError, match=r"1e-13 .*to 0\.01"):
+        stop((1, 0), 1.0, tol=1e-14)
+    with pytest.raises(AccuracyError, match=r"to 0\.01"):
+        stop((1, 0), 1.0, tol=0.1)
 
 
 @pytest.mark.parametrize("way", ["look-up", "integrated"])

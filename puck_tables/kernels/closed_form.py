@@ -21,31 +21,66 @@ from puck_tables.real import broadcast
 
 FloatArray = npt.NDArray[np.float64]
 
-_shape_integrals: Any = inlined(closed_form.shape_integrals)
 _BLOCK = 256
+_HALF_PI_REST = 6.123233995736766e-17  # of π/2 beyond its double
+
+
+_FEW_STEPS = 4  # of the arithmetic-geometric mean: exact to rounding from a modulus k² ≤ 63/64 on
+_NEAR_QUARTER = 1.0 / 64.0
+
+
+def _friction_ratios_with(shape_integrals: Any) -> Any:
+    """:func:`friction_ratios` from p_a, p_b and p_d."""
+
+    def friction_ratios(ratio: float, fast: float, delta: float) -> tuple[float, float, float]:
+        """1/ρ_∥, ρ_⊥/ρ_∥ and ρ_ω/ρ_∥ at a slip direction (:mod:`puck_tables.kernels.spline`)."""
+        p_a, p_b, p_d = shape_integrals(ratio, fast)
+        m = ratio * ratio
+        share = 1.0 / (1.0 + m)
+        cos2 = share * (fast * m + 1.0 - fast)
+        sin2 = share * (fast + (1.0 - fast) * m)
+        inverse = (1.0 - delta * delta * sin2 * p_b * (p_b - p_d)) / p_a
+        spin = 2.0 * (p_d * inverse + delta * delta * cos2 * p_b * (p_d - 2.0 * p_b))
+        return inverse, delta * p_b, spin
+
+    return inlined(friction_ratios)
+
+
+friction_ratios = _friction_ratios_with(inlined(closed_form.shape_integrals))
+_far_ratios = _friction_ratios_with(inlined(closed_form.shape_integrals_with(_FEW_STEPS)))
 
 
 @inlined
-def friction_ratios(ratio: float, fast: float, delta: float) -> tuple[float, float, float]:
-    """1/ρ_∥, ρ_⊥/ρ_∥ and ρ_ω/ρ_∥ at a slip direction (see :mod:`puck_tables.kernels.spline`)."""
-    p_a, p_b, p_d = _shape_integrals(ratio, fast)
+def _slip_ratio(phi: float) -> tuple[float, float]:
+    """The slip ratio of |φ| ≤ π/2 and 1.0 for r|ω| > v; tan by Lambert's continued fraction."""
+    x = abs(phi)
+    fast = 1.0 if x > 0.25 * math.pi else 0.0
+    x = fast * ((0.5 * math.pi - x) + _HALF_PI_REST) + (1.0 - fast) * x
+    y = x * x
+    up = x * (34459425.0 - y * (4729725.0 - y * (135135.0 - y * (990.0 - y))))
+    down = 34459425.0 - y * (16216200.0 - y * (945945.0 - y * (13860.0 - 45.0 * y)))
+    return min(up / down, 1.0), fast
+
+
+@inlined
+def _lifted(ratio: float, fast: float, delta: float, parallel: float, perpendicular: float) -> bool:
+    """Whether part of the base would be pulled."""
     m = ratio * ratio
-    share = 1.0 / (1.0 + m)
-    cos2 = share * (fast * m + 1.0 - fast)
-    sin2 = share * (fast + (1.0 - fast) * m)
-    inverse = (1.0 - delta * delta * sin2 * p_b * (p_b - p_d)) / p_a
-    spin = 2.0 * (p_d * inverse + delta * delta * cos2 * p_b * (p_d - 2.0 * p_b))
-    return inverse, delta * p_b, spin
+    cos2 = (fast * m + 1.0 - fast) / (1.0 + m)
+    tilt = delta * delta * cos2 * (parallel**2 + (1.0 - cos2) * perpendicular**2)
+    return tilt > 1.0 + CONTACT_SLACK
 
 
 @kernel
 def _fill(phi: FloatArray, delta: FloatArray, out: FloatArray) -> int:
     """Resultants at flat arrays of points; returns the first point out of full contact, or -1.
 
-    In blocks: the branch-free second loop is vectorised, the sines of the first are not.
+    In blocks, both loops without a branch, so that they are vectorised; the few points next to
+    φ = π/4 anew, with all steps of the arithmetic-geometric mean.
     """
     ratio = np.empty(_BLOCK)
     fast = np.empty(_BLOCK)
+    which = np.empty(_BLOCK, np.int64)
     first_bad = -1
     for start in range(0, phi.size, _BLOCK):
         angle = phi[start : start + _BLOCK]
@@ -53,20 +88,37 @@ def _fill(phi: FloatArray, delta: FloatArray, out: FloatArray) -> int:
         parallel = out[0, start : start + _BLOCK]
         perpendicular = out[1, start : start + _BLOCK]
         spin = out[2, start : start + _BLOCK]
+        near, high = 0, 0
         for i in range(angle.size):
-            cosine, sine = abs(math.cos(angle[i])), abs(math.sin(angle[i]))
-            fast[i] = 1.0 if sine > cosine else 0.0
-            ratio[i] = min(sine, cosine) / max(sine, cosine)
+            k, side = _slip_ratio(angle[i])
+            ratio[i], fast[i] = k, side
+            near += 1 if 1.0 - k * k < _NEAR_QUARTER else 0
+            high += 1 if height[i] > 1.0 else 0  # up to 1 the whole base is loaded
+        for i in range(angle.size):
+            inverse, across, turning = _far_ratios(ratio[i], fast[i], height[i])
+            along = 1.0 / inverse
+            parallel[i] = along
+            perpendicular[i] = across * along
+            spin[i] = turning * along
+        if near > 0:
+            count = 0
+            for i in range(angle.size):
+                if 1.0 - ratio[i] * ratio[i] < _NEAR_QUARTER:
+                    which[count] = i
+                    count += 1
+            for n in range(count):  # a list, or all points would be computed and most thrown away
+                i = which[n]
+                inverse, across, turning = friction_ratios(ratio[i], fast[i], height[i])
+                along = 1.0 / inverse
+                parallel[i] = along
+                perpendicular[i] = across * along
+                spin[i] = turning * along
         bad = 0
-        for i in range(angle.size):
-            inverse, across, turning = friction_ratios(ratio[i], fast[i], height[i])
-            parallel[i] = 1.0 / inverse
-            perpendicular[i] = across / inverse
-            spin[i] = turning / inverse
-            m = ratio[i] * ratio[i]
-            cos2 = (fast[i] * m + 1.0 - fast[i]) / (1.0 + m)
-            tilt = height[i] * height[i] * cos2 * (1.0 + (1.0 - cos2) * across * across)
-            bad += 1 if tilt > (1.0 + CONTACT_SLACK) * inverse * inverse else 0
+        if high > 0:
+            for i in range(angle.size):
+                bad += (
+                    1 if _lifted(ratio[i], fast[i], height[i], parallel[i], perpendicular[i]) else 0
+                )
         if first_bad < 0 and bad > 0:
             first_bad = start
     return first_bad

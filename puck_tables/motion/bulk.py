@@ -12,6 +12,7 @@ from puck_tables.kernels.spline import cut as cut_table
 from puck_tables.motion.equations import LENGTH, PSI, SIZE, THETA, T, U, X, Y, at_constant_angle
 from puck_tables.motion.limits import log_ratio
 from puck_tables.motion.path import STOPPED, integrate
+from puck_tables.motion.rk4 import to_stop
 from puck_tables.motion.steppers import Tableau
 
 FloatArray = npt.NDArray[np.float64]
@@ -26,6 +27,7 @@ def fill_stops(
     launches: FloatArray,
     tableau: Tableau,
     steps: float,
+    tolerance: float,
     coefficients: FloatArray,
     delta_max: float,
     out: FloatArray,
@@ -33,12 +35,15 @@ def fill_stops(
 ) -> None:
     """Stops of launches (6, n): vx, vy, ω, δ, J, r, into ``out`` (6, n), see solvers.OUTPUTS.
 
+    With about ``steps`` steps of Runge–Kutta 4, or, if that is 0, with the pair ``tableau`` and
+    the local error ``tolerance``.  Empty ``coefficients`` mean closed forms.
     One launch never influences another, so any cutting into chunks gives the same bits.
     """
-    cut = np.empty(2 * 3 * coefficients.shape[2])
+    closed_forms = np.empty(0)  # an empty cut
+    by_table = coefficients.size > 0
+    cut = np.empty(2 * 3 * coefficients.shape[2]) if by_table else closed_forms
     cut_delta = -1.0
     no_z, no_y = np.empty(0), np.empty((0, SIZE))
-    closed_forms = np.empty(0)  # an empty cut
     start = np.empty(SIZE)
     result = np.empty(SIZE + 1)
     for n in range(launches.shape[1]):
@@ -51,7 +56,7 @@ def fill_stops(
             for i in range(6):
                 out[i, n] = 0.0
             continue
-        if delta != cut_delta:
+        if by_table and delta != cut_delta:
             cut_table(coefficients, delta / delta_max, cut)
             cut_delta = delta
         if speed == 0.0 or rim == 0.0:
@@ -59,12 +64,14 @@ def fill_stops(
                 start[i] = 0.0
             start[U] = math.inf if speed == 0.0 else -math.inf
             at_constant_angle(1.0, start, 0.0, closed_forms, delta, result)
+        elif steps > 0.0:
+            to_stop(log_ratio(speed, rim), steps, cut, delta, start, result)
         else:
             code, _ = integrate(
                 log_ratio(speed, rim),
                 tableau,
-                steps,
-                1.0,
+                0.0,
+                tolerance,
                 cut,
                 delta,
                 _STEP_LIMIT,

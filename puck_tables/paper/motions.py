@@ -109,7 +109,7 @@ def random_launches(run: Simulate) -> list[Claim]:
     runs = []
     for _ in range(RANDOM_LAUNCHES):
         v0, w0, delta = rng.normal(size=2), rng.normal(scale=3.0), rng.random()
-        runs.append(run(v0, float(w0), delta=float(delta), exact=True, accuracy=1e-9, frames=1))
+        runs.append(run(v0, float(w0), delta=float(delta), exact=True, tol=1e-9, frames=1))
     bound = 1.0 / float(decline(by_closed_form).min())
     duration = max(r.stop_time / float(r.slip_speed[0]) for r in runs)
     generic = sum(r.regime in ("B", "C") for r in runs)
@@ -188,9 +188,9 @@ def symmetry(run: Simulate) -> list[Claim]:
                 float(np.abs(linear1 - image @ linear).max()),
                 float(abs(angular1 - sign * angular)),
             )
-            one = run(v0, w0, delta=delta, exact=True, accuracy=ACCURACY)
+            one = run(v0, w0, delta=delta, exact=True, tol=ACCURACY)
             times = scale * one.time[:-1]
-            two = run(v1, w1, delta=delta, exact=True, accuracy=ACCURACY, times=times)
+            two = run(v1, w1, delta=delta, exact=True, tol=ACCURACY, times=times)
             expected = np.column_stack([velocity(one) @ image.T, sign * one.spin])[:-1]
             found = np.column_stack([velocity(two), two.spin])
             states = max(states, float(np.abs(found / scale - expected).max()))
@@ -236,7 +236,7 @@ def quadrature(run: Simulate) -> list[Claim]:
             psi = half * float(turn @ weight)
             time = half * float((np.exp(log_q) * pace) @ weight)
             v0 = 1.0 / math.hypot(1.0, first)
-            end = run((v0, 0.0), first * v0, delta=delta, exact=True, accuracy=ACCURACY,
+            end = run((v0, 0.0), first * v0, delta=delta, exact=True, tol=ACCURACY,
                       times=[time])  # fmt: skip
             worst = max(
                 worst,

@@ -19,7 +19,7 @@ class Simulate(Protocol):
     """What :func:`puck_tables.trajectory.simulate` does, or something put to the test."""
 
     def __call__(  # noqa: D102
-        self, v0: npt.ArrayLike, w0: float, *, delta: float, exact: bool, accuracy: float,
+        self, v0: npt.ArrayLike, w0: float, *, delta: float, exact: bool, tol: float,
         frames: int | None = None, times: npt.ArrayLike | None = None,
     ) -> Trajectory: ...  # fmt: skip
 
@@ -44,9 +44,7 @@ def launch(
     v0 = (v * math.cos(heading), v * math.sin(heading))
 
     def run(frames: int | None = None, times: npt.ArrayLike | None = None) -> Trajectory:
-        return simulate(
-            v0, spin, delta=delta, exact=True, accuracy=ACCURACY, frames=frames, times=times
-        )
+        return simulate(v0, spin, delta=delta, exact=True, tol=ACCURACY, frames=frames, times=times)
 
     if shares is None:
         return run()

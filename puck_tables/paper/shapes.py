@@ -128,8 +128,7 @@ def ends_against_spin(run: Simulate, delta: float) -> FloatArray:
     [4.000189, 2.257241, -0.308477]
     """
     stops = [
-        run((1.0, 0.0), float(w0), delta=delta, exact=True, accuracy=ACCURACY, frames=1)
-        for w0 in SPIN
+        run((1.0, 0.0), float(w0), delta=delta, exact=True, tol=ACCURACY, frames=1) for w0 in SPIN
     ]
     return np.array([(r.stop_time, *r.stop_position) for r in stops]).T
 

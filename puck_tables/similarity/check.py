@@ -40,7 +40,7 @@ from puck_tables.similarity.curve_lookup import (
     TURNING,
 )
 from puck_tables.similarity.exact import exact_stops
-from puck_tables.similarity.lookup import CURVE_ROW, fill_stops_by_table
+from puck_tables.similarity.lookup import CURVE_ROW
 from puck_tables.similarity.stop_table import StopAccuracy, StopTable
 from puck_tables.table.check import Check, CheckReport
 
@@ -109,8 +109,7 @@ def looked_up(table: StopTable, u: FloatArray, delta: FloatArray) -> FloatArray:
     [0.98647594, 0.32409373, -0.04297451]
     """
     launches = launches_at(u, delta)
-    stops = np.empty((3, u.size))
-    fill_stops_by_table(launches, table.stop_coefficients, stops)
+    stops, _ = table.stops(launches)
     known = table.known(launches)
     return np.concatenate([stops, known[LENGTH : BODY + 1]]).T
 

@@ -10,26 +10,29 @@ the stop of a launch (vx, vy), ω is
 
 and no direction has to be computed: at rest, in pure sliding and in pure spin nothing is divided
 by zero.  Each function is a cubic spline in ξ (see :mod:`puck_tables.similarity.axes`) whose
-coefficients are polynomials in s = 2δ² − 1: array (2 sides, cells + 3, powers × functions).
+coefficients are polynomials in s = 2δ² − 1.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from functools import cache
 
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.kernels.compile import inlined, kernel, weighted_rows
 from puck_tables.kernels.spline import basis
 
 FloatArray = npt.NDArray[np.float64]
 
 STOP_POWERS = 8
-_DEGREE = STOP_POWERS - 1
+STOP_ROW = 3 * STOP_POWERS  # for states: three functions by eight powers, whole cache lines
 CURVE_ROW = 40  # four functions by nine powers, padded to whole cache lines
-STOP_ROW = 3 * STOP_POWERS  # whole cache lines
 _BLOCK = 128
+_NOTHING = 1e-300  # where nothing moves, 0/0 is 0
+_SMALLEST, _LARGEST = 1e-250, 1e250  # between them squares of speeds lose nothing that counts
 
 
 @inlined
@@ -45,87 +48,94 @@ def slip_place(speed: float, rim: float) -> tuple[int, float]:
 
 
 @inlined
-def _safe(speed2: float, rim2: float) -> bool:
-    """Whether squares of speeds have lost nothing to over- or underflow."""
-    largest = max(speed2, rim2)
-    return 1e-250 < largest < 1e250
+def _place(speed: float, rim: float, cells: float) -> tuple[float, float]:
+    """Cell and place in it; 1 − q may lose digits next to φ = π/4, where slopes in ξ vanish."""
+    q = math.sqrt(math.sqrt(2.0 * min(speed, rim) / (speed + rim + _NOTHING)))
+    p = (1.0 - math.sqrt(max(1.0 - q, 0.0))) * cells
+    cell = np.floor(min(p, cells - 1.0))
+    return cell, p - cell
 
 
-@kernel
-def fill_stops_by_table(launches: FloatArray, coefficients: FloatArray, out: FloatArray) -> int:
-    """Stop time, x, y of launches (6, n): vx, vy, ω, δ, J, r, into ``out`` (3, n).
+def row_width(powers: int) -> int:
+    """Numbers a node holds: T with ``powers`` powers of 2δ² − 1, along and across one fewer."""
+    return 3 * powers - 2
 
-    Returns of how many Q²/J or Q²/(J r) is too large for floating point.  In blocks of three
-    loops, as in :mod:`puck_tables.kernels.spline`: places and weights (vectorised), sums over a
-    cell, results (vectorised).
+
+@cache
+def stops_kernel(powers: int) -> Callable[[FloatArray, FloatArray, FloatArray], int]:
+    """The compiled look-up for stop tables of so many powers of 2δ² − 1.
+
+    The function (launches, coefficients, out): stop time, x, y of launches (6, n): vx, vy, ω, δ, J,
+    r, into ``out`` (3, n); returns of how many Q²/J or Q²/(J r) is too large.  Coefficients: array
+    (2 sides, cells + 3, :func:`row_width`), powers ascending, functions T, along, across.
+
+    In blocks of three loops: places (vectorised), sums over a cell as whole rows
+    (:func:`puck_tables.kernels.compile.weighted_rows`), results (vectorised).  The number of powers
+    is a constant of the compiled code: with it the rows stay in registers.
     """
-    cells = coefficients.shape[1] - 3
-    side_stride = coefficients.shape[1] * STOP_ROW
-    c = coefficients.reshape(-1)
-    first = np.empty(_BLOCK, np.int64)
-    w0, w1, w2, w3 = np.empty(_BLOCK), np.empty(_BLOCK), np.empty(_BLOCK), np.empty(_BLOCK)
-    slip, edge = np.empty(_BLOCK), np.empty(_BLOCK)
-    sums = np.empty(STOP_ROW)
-    overflows = 0
-    for start in range(0, launches.shape[1], _BLOCK):
-        vx = launches[0, start : start + _BLOCK]
-        vy = launches[1, start : start + _BLOCK]
-        spin = launches[2, start : start + _BLOCK]
-        delta = launches[3, start : start + _BLOCK]
-        decel = launches[4, start : start + _BLOCK]
-        radius = launches[5, start : start + _BLOCK]
-        time = out[0, start : start + _BLOCK]
-        x = out[1, start : start + _BLOCK]
-        y = out[2, start : start + _BLOCK]
-        unsafe = 0
-        for n in range(vx.size):
-            speed2 = vx[n] * vx[n] + vy[n] * vy[n]
-            edge[n] = radius[n] * spin[n]
-            rim2 = edge[n] * edge[n]
-            unsafe += 0 if _safe(speed2, rim2) else 1
-            slip[n] = math.sqrt(speed2 + rim2)
-            side, xi = slip_place(math.sqrt(speed2), abs(edge[n]))
-            p = xi * cells
-            i = min(int(p), cells - 1)
-            first[n] = side * side_stride + i * STOP_ROW
-            w0[n], w1[n], w2[n], w3[n] = basis(p - i)
-        if unsafe > 0:  # anew, with care for the largest and smallest numbers
+    width, top = row_width(powers), 3 * powers - 3
+
+    @kernel
+    def fill(launches: FloatArray, coefficients: FloatArray, out: FloatArray) -> int:
+        cells = float(coefficients.shape[1] - 3)
+        side_stride = float(coefficients.shape[1] * width)
+        c = coefficients.reshape(-1)
+        first = np.empty(_BLOCK, np.int64)
+        inside, slip, edge = np.empty(_BLOCK), np.empty(_BLOCK), np.empty(_BLOCK)
+        overflows = 0
+        for start in range(0, launches.shape[1], _BLOCK):
+            vx = launches[0, start : start + _BLOCK]
+            vy = launches[1, start : start + _BLOCK]
+            spin = launches[2, start : start + _BLOCK]
+            delta = launches[3, start : start + _BLOCK]
+            decel = launches[4, start : start + _BLOCK]
+            radius = launches[5, start : start + _BLOCK]
+            time = out[0, start : start + _BLOCK]
+            x = out[1, start : start + _BLOCK]
+            y = out[2, start : start + _BLOCK]
+            unsafe = 0
             for n in range(vx.size):
-                if _safe(vx[n] * vx[n] + vy[n] * vy[n], edge[n] * edge[n]):
-                    continue  # the same bits whatever else is in the block
-                speed = math.hypot(vx[n], vy[n])
-                slip[n] = math.hypot(speed, edge[n])
-                side, xi = slip_place(speed, abs(edge[n]))
-                p = xi * cells
-                i = min(int(p), cells - 1)
-                first[n] = side * side_stride + i * STOP_ROW
-                w0[n], w1[n], w2[n], w3[n] = basis(p - i)
-        for n in range(vx.size):
-            k = np.uint64(first[n])
-            a, b, d, e = w0[n], w1[n], w2[n], w3[n]
-            for m in range(STOP_ROW):
-                o = k + np.uint64(m)
-                sums[m] = (
-                    a * c[o]
-                    + b * c[o + np.uint64(STOP_ROW)]
-                    + d * c[o + np.uint64(2 * STOP_ROW)]
-                    + e * c[o + np.uint64(3 * STOP_ROW)]
-                )
-            s = 2.0 * delta[n] * delta[n] - 1.0
-            f, g, h = sums[3 * _DEGREE], sums[3 * _DEGREE + 1], sums[3 * _DEGREE + 2]
-            for m in range(_DEGREE - 1, -1, -1):
-                f = f * s + sums[3 * m]
-                g = g * s + sums[3 * m + 1]
-                h = h * s + sums[3 * m + 2]
-            time[n], x[n], y[n] = f, g, h
-        for n in range(vx.size):
-            along = slip[n] * (0.5 if edge[n] == 0.0 else x[n])
-            across = delta[n] * edge[n] * y[n]
-            still = vx[n] == 0.0 and vy[n] == 0.0
-            t = 1.0 if edge[n] == 0.0 else (0.75 if still else time[n])
-            scale = slip[n] / decel[n]
-            time[n] = scale * t
-            x[n] = (along * vx[n] - across * vy[n]) / decel[n]
-            y[n] = (along * vy[n] + across * vx[n]) / decel[n]
-            overflows += 0 if math.isfinite(scale * slip[n] / radius[n] + scale * slip[n]) else 1
-    return overflows
+                rim = radius[n] * spin[n]
+                speed2 = vx[n] * vx[n] + vy[n] * vy[n]
+                slip2 = speed2 + rim * rim
+                edge[n] = rim
+                slip[n] = math.sqrt(slip2)
+                unsafe += 0 if (slip2 > _SMALLEST) & (slip2 < _LARGEST) else 1
+                cell, inside[n] = _place(math.sqrt(speed2), abs(rim), cells)
+                first[n] = int(width * cell + (side_stride if rim * rim > speed2 else 0.0))
+            if unsafe > 0:  # anew, with care for the largest and smallest numbers
+                for n in range(vx.size):
+                    slip2 = vx[n] * vx[n] + vy[n] * vy[n] + edge[n] * edge[n]
+                    if (slip2 > _SMALLEST) & (slip2 < _LARGEST):
+                        continue  # the same bits whatever else is in the block
+                    speed = math.hypot(vx[n], vy[n])
+                    slip[n] = math.hypot(speed, edge[n])
+                    side, xi = slip_place(speed, abs(edge[n]))
+                    cell = np.floor(min(xi * cells, cells - 1.0))
+                    inside[n] = xi * cells - cell
+                    first[n] = int(width * cell + side * side_stride)
+            for n in range(vx.size):
+                a, b, d, e = basis(inside[n])
+                row = weighted_rows(c, first[n], a, b, d, e, width)
+                s = 2.0 * delta[n] * delta[n] - 1.0
+                f, g, h = row[top], 0.0, 0.0
+                for m in range(powers - 2, -1, -1):
+                    f = f * s + row[3 * m]
+                    g = g * s + row[3 * m + 1]
+                    h = h * s + row[3 * m + 2]
+                time[n], x[n], y[n] = f, g, h
+            for n in range(vx.size):
+                rim, along, left = edge[n], vx[n], vy[n]
+                scale = slip[n] / decel[n]
+                straight = scale * (0.5 if rim == 0.0 else x[n])
+                across = delta[n] * (rim / decel[n]) * y[n]
+                still = (along == 0.0) & (left == 0.0)
+                t = scale * (1.0 if rim == 0.0 else (0.75 if still else time[n]))
+                place_x = straight * along - across * left
+                place_y = straight * left + across * along
+                time[n], x[n], y[n] = t, place_x, place_y
+                size = scale * slip[n]
+                overflows += 0 if abs(size / radius[n] + size) < math.inf else 1
+        return overflows
+
+    return fill

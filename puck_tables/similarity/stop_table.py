@@ -21,7 +21,13 @@ from puck_tables.similarity.axes import (
     heights,
 )
 from puck_tables.similarity.curve import limits
-from puck_tables.similarity.lookup import CURVE_ROW, STOP_POWERS, STOP_ROW
+from puck_tables.similarity.lookup import (
+    CURVE_ROW,
+    STOP_POWERS,
+    STOP_ROW,
+    row_width,
+    stops_kernel,
+)
 from puck_tables.table.fit import clamped_coefficients
 
 FloatArray = npt.NDArray[np.float64]
@@ -95,7 +101,7 @@ class StopTable:
 
     @cached_property
     def stop_coefficients(self) -> FloatArray:
-        """T, along, across as :func:`fill_stops_by_table` reads them."""
+        """T, along, across as the kernels of curve_lookup read them."""
         return self._coefficients([0, 1, 2], STOP_POWERS, STOP_ROW, by_power=True)
 
     @cached_property
@@ -153,6 +159,57 @@ class StopTable:
         padded[:, :, : ordered.shape[2]] = ordered
         padded.flags.writeable = False
         return padded
+
+    @cached_property
+    def _cuts(self) -> dict[tuple[int, int], FloatArray]:
+        return {}
+
+    def cut(self, powers: int = STOP_POWERS, thinning: int = 1) -> FloatArray:
+        """What :func:`puck_tables.similarity.lookup.stops_kernel` reads, as coarse as wanted.
+
+        Parameters
+        ----------
+        powers : powers of 2δ² − 1 to keep for T; along and across keep one fewer, enough for them
+        thinning : keep every so many nodes of the slip axis; divides ``axis.cells``
+
+        Returns
+        -------
+        array (2, cells/thinning + 3, row_width(powers)), read-only
+        """
+        if (powers, thinning) in self._cuts:
+            return self._cuts[powers, thinning]
+        n = self.axis.cells // thinning
+        values = self.values[::thinning, :, :3]
+        sides = np.stack([values[: n + 1], values[: n - 1 : -1]])
+        splines = np.moveaxis(clamped_coefficients(np.moveaxis(sides, 1, 0)) / 6.0, 2, 0)
+        by_power = np.zeros((powers, *splines.shape[1:]))  # power, node, side, function
+        by_power[..., 0] = height_polynomials(splines[..., 0], powers)
+        by_power[:-1, ..., 1:] = height_polynomials(splines[..., 1:], powers - 1)
+        rows = by_power.transpose(2, 1, 0, 3).reshape(2, n + 3, -1)[:, :, : row_width(powers)]
+        kept = np.ascontiguousarray(rows)
+        kept.flags.writeable = False
+        self._cuts[powers, thinning] = kept
+        return kept
+
+    def stops(
+        self, launches: FloatArray, powers: int = STOP_POWERS, thinning: int = 1
+    ) -> tuple[FloatArray, int]:
+        """Stop time, x, y (3, n) of checked launches (6, n); how many were too large.
+
+        Parameters
+        ----------
+        launches : array (6, n): vx, vy, ω, δ, J, r
+        powers, thinning : see :meth:`cut`
+
+        Examples
+        --------
+        >>> from puck_tables import load_stop_table
+        >>> launch = np.array([[1.0], [0.0], [5.0], [1.0], [1.0], [1.0]])
+        >>> load_stop_table().stops(launch)[0].round(6).ravel().tolist()
+        [4.000189, 2.257241, -0.308477]
+        """
+        out = np.empty((3, launches.shape[1]))
+        return out, stops_kernel(powers)(launches, self.cut(powers, thinning), out)
 
     def known(self, launches: FloatArray) -> FloatArray:
         """What the table knows of checked launches (6, n), see :func:`fill_launches`; (14, n)."""

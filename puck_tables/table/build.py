@@ -71,7 +71,7 @@ def build_table(
         )
     delta_axis = DeltaAxis(DEFAULT_N_DELTA if n_delta is None else n_delta)
     if n_phi is not None:
-        table = _tabulate(PhiAxis(n_phi), delta_axis, progress)
+        table = tabulate(PhiAxis(n_phi), delta_axis, progress)
         measured = measure(table, _half(table))
         return replace(
             table,
@@ -86,14 +86,21 @@ def build_table(
         )
     cells = max(4, math.ceil((_ERROR_CONSTANT / wanted) ** 0.25))
     while True:
-        table = _tabulate(PhiAxis(2 * cells + 1), delta_axis, progress)
+        table = tabulate(PhiAxis(2 * cells + 1), delta_axis, progress)
         measured = measure(table, _half(table))
         if measured.worst <= wanted:
             return replace(table, accuracy=measured, tolerance=wanted)
         cells = math.ceil(1.1 * cells)
 
 
-def _tabulate(phi_axis: PhiAxis, delta_axis: DeltaAxis, progress: Progress | None) -> Table:
+def tabulate(phi_axis: PhiAxis, delta_axis: DeltaAxis, progress: Progress | None = None) -> Table:
+    """Node values by the closed forms, without a measured accuracy.
+
+    Examples
+    --------
+    >>> tabulate(PhiAxis(9), DeltaAxis(4)).values.shape
+    (9, 4, 3)
+    """
     checked_size(phi_axis.size, delta_axis.size)
     nodes = phi_axis.slip_direction()
     values = np.empty((phi_axis.size, delta_axis.size, 3))
@@ -114,7 +121,7 @@ def _half(table: Table) -> Table | None:
     cells = table.phi_axis.cells_per_side // 2
     if cells < 4:
         return None
-    return _tabulate(PhiAxis(2 * cells + 1), table.delta_axis, None)
+    return tabulate(PhiAxis(2 * cells + 1), table.delta_axis, None)
 
 
 def _rounded_up(value: float) -> float:

@@ -7,6 +7,8 @@ import numpy.typing as npt
 
 FloatArray = npt.NDArray[np.float64]
 
+_ROUNDING = 2e-14
+
 
 def clamped_coefficients(values: FloatArray) -> FloatArray:
     """Coefficients of the uniform cubic spline with zero slope at both ends, along axis 0.
@@ -130,3 +132,38 @@ def table_coefficients(resultants: FloatArray) -> FloatArray:
     along_eta = clamped_coefficients(sides)
     along_delta = not_a_knot_coefficients(np.moveaxis(along_eta, 2, 0))
     return np.ascontiguousarray(along_delta.transpose(2, 0, 1, 3)) / 36.0
+
+
+def quadratic_coefficients(resultants: FloatArray, delta: FloatArray) -> FloatArray | None:
+    """The same where the height enters as a polynomial; None where it does not.
+
+    Parameters
+    ----------
+    resultants : array (n_phi, n_delta, 3)
+        ρ_∥, ρ_⊥, ρ_ω at the nodes.
+    delta : array (n_delta,)
+
+    Returns
+    -------
+    array (2, n_eta + 3, 5), as :mod:`puck_tables.kernels.quadratic` reads it, or None
+
+    Examples
+    --------
+    >>> quadratic_coefficients(np.ones((9, 4, 3)), np.linspace(0.0, 1.0, 4)) is None  # ρ_⊥ ∝ δ
+    True
+    """
+    parallel = resultants[:, :, 0]
+    even, odd = np.stack([np.ones_like(delta), delta**2]), delta[None, :]
+    terms = []
+    for values, powers in (
+        (1.0 / parallel, even), (resultants[:, :, 1] / parallel, odd),
+        (resultants[:, :, 2] / parallel, even),
+    ):  # fmt: skip
+        found = values @ np.linalg.pinv(powers)
+        if not np.abs(found @ powers - values).max() <= _ROUNDING:
+            return None
+        terms.append(found)
+    functions = np.concatenate(terms, axis=1)
+    middle = len(functions) // 2
+    sides = np.stack([functions[middle::-1], functions[middle:]], axis=1)
+    return np.ascontiguousarray(np.moveaxis(clamped_coefficients(sides), 0, 1)) / 6.0

@@ -13,7 +13,7 @@ from puck_tables.contact.integrals import checked_phi
 from puck_tables.contact.resultants import Resultants, checked_delta
 from puck_tables.errors import InputError
 from puck_tables.real import broadcast
-from puck_tables.table.fit import table_coefficients
+from puck_tables.table.fit import quadratic_coefficients, table_coefficients
 from puck_tables.table.grid import DeltaAxis, PhiAxis
 
 FloatArray = npt.NDArray[np.float64]
@@ -85,6 +85,14 @@ class Table:
         fitted.flags.writeable = False
         return fitted
 
+    @cached_property
+    def quadratic(self) -> FloatArray | None:
+        """The same where the height enters as a polynomial of degree 2, else None; read-only."""
+        fitted = quadratic_coefficients(self.values, self.delta_axis.nodes())
+        if fitted is not None:
+            fitted.flags.writeable = False
+        return fitted
+
     def checked_range(self, delta: npt.ArrayLike) -> FloatArray:
         """``delta`` as an array, refused outside the range of the table.
 
@@ -124,8 +132,10 @@ class Table:
 
         Notes
         -----
-        Bicubic spline, see :mod:`puck_tables.kernels.spline`.  The resultants: Salnikova,
-        Treschev, Gallyamov 2012, section 6.
+        Cubic splines in φ times polynomials of degree 2 in δ where the nodes allow it, as those of
+        full contact do (:mod:`puck_tables.kernels.quadratic`), else bicubic
+        (:mod:`puck_tables.kernels.spline`).  The resultants: Salnikova, Treschev, Gallyamov 2012,
+        section 6.
 
         Examples
         --------
@@ -133,15 +143,14 @@ class Table:
         >>> float(load_table().resultants(0.0, 0.5).perpendicular.round(12))
         0.125
         """
+        from puck_tables.kernels.quadratic import fill_resultants_quadratic
         from puck_tables.kernels.spline import fill_resultants
 
         angle, height = broadcast(phi=checked_phi(phi), delta=self.checked_range(delta))
         out = np.empty((3, angle.size))
-        fill_resultants(
-            self.coefficients,
-            self.delta_axis.upper,
-            np.ascontiguousarray(angle).reshape(-1),
-            np.ascontiguousarray(height).reshape(-1),
-            out,
-        )
+        phi_, delta_ = (np.ascontiguousarray(axis).reshape(-1) for axis in (angle, height))
+        if self.quadratic is not None:
+            fill_resultants_quadratic(self.quadratic, phi_, delta_, out)
+        else:
+            fill_resultants(self.coefficients, self.delta_axis.upper, phi_, delta_, out)
         return Resultants(*(row.reshape(angle.shape) for row in out))

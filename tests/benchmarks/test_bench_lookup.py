@@ -19,6 +19,7 @@ from puck_tables.contact import closed_form, quadrature
 from puck_tables.contact.integrals import slip_direction
 from puck_tables.contact.resultants import moment_balance
 from puck_tables.kernels.closed_form import _fill
+from puck_tables.kernels.quadratic import fill_resultants_quadratic
 from puck_tables.kernels.spline import fill_resultants
 from puck_tables.table.table import Table
 
@@ -69,12 +70,26 @@ def run(
 
 def test_table_kernel(measure: Any, table: Table, points: tuple[FloatArray, FloatArray]) -> None:
     out = np.empty((3, POINTS))
+    assert table.quadratic is not None
+    coefficients = table.quadratic
+    fill_resultants_quadratic(coefficients, *points, out)
+    error = against_closed_form(out, points)
+    run(
+        measure,
+        "default table, kernel",
+        lambda: fill_resultants_quadratic(coefficients, *points, out),
+        error,
+    )
+
+
+def test_table_bicubic(measure: Any, table: Table, points: tuple[FloatArray, FloatArray]) -> None:
+    out = np.empty((3, POINTS))
     upper = table.delta_axis.upper
     fill_resultants(table.coefficients, upper, *points, out)
     error = against_closed_form(out, points)
     run(
         measure,
-        "default table, kernel",
+        "the same as a bicubic, kernel",
         lambda: fill_resultants(table.coefficients, upper, *points, out),
         error,
     )

@@ -13,8 +13,8 @@ import pytest
 import puck_tables
 from puck_tables import load_stop_table, load_table
 from puck_tables.similarity.curve_lookup import STATE_ROWS, fill_states
-from puck_tables.similarity.lookup import fill_stops_by_table
-from puck_tables.solvers import Integration, LookUp, steps_for
+from puck_tables.similarity.lookup import STOP_POWERS, stops_kernel
+from puck_tables.solvers import LookUp, solver_for
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -42,7 +42,7 @@ def truth(launches: FloatArray) -> FloatArray:
     return np.array([
         [run.stop_time, *run.stop_position]
         for run in (
-            puck_tables.simulate(v[:2], v[2], delta=v[3], exact=True, accuracy=1e-12, frames=1)
+            puck_tables.simulate(v[:2], v[2], delta=v[3], exact=True, tol=1e-12, frames=1)
             for v in few[:, :400].T
         )
     ]).T  # fmt: skip
@@ -57,12 +57,12 @@ def largest_error(stops: FloatArray, launches: FloatArray, truth: FloatArray) ->
 
 @STOPS
 def test_look_up(measure: Any, launches: FloatArray, truth: FloatArray) -> None:
-    table = load_stop_table().stop_coefficients
+    table, fill = load_stop_table().cut(), stops_kernel(STOP_POWERS)
     out = np.empty((3, MANY))
-    fill_stops_by_table(launches, table, out)
+    fill(launches, table, out)
     measure(
         "look-up, kernel: time, x, y",
-        lambda: fill_stops_by_table(launches, table, out),
+        lambda: fill(launches, table, out),
         items=MANY,
         unit="point",
         error=largest_error(out, launches, truth),
@@ -71,13 +71,13 @@ def test_look_up(measure: Any, launches: FloatArray, truth: FloatArray) -> None:
 
 @STOPS
 def test_look_up_two_threads(measure: Any, launches: FloatArray, truth: FloatArray) -> None:
-    table = load_stop_table().stop_coefficients
+    table, fill = load_stop_table().cut(), stops_kernel(STOP_POWERS)
     halves = [np.ascontiguousarray(part) for part in np.split(launches, 2, axis=1)]
     outs = [np.empty((3, MANY // 2)) for _ in halves]
     with ThreadPoolExecutor(2) as pool:
 
         def both() -> None:
-            list(pool.map(lambda half, out: fill_stops_by_table(half, table, out), halves, outs))
+            list(pool.map(lambda half, out: fill(half, table, out), halves, outs))
 
         both()
         error = largest_error(outs[0], launches, truth)
@@ -117,8 +117,7 @@ def test_public_stop(measure: Any, launches: FloatArray, truth: FloatArray) -> N
 
 @STOPS
 def test_integrated(measure: Any, launches: FloatArray, truth: FloatArray) -> None:
-    table = load_table()
-    solver = Integration(table, steps_for(ACCURACY, table))
+    solver = solver_for(ACCURACY, load_table())
     few = np.ascontiguousarray(launches[:, :FEW])
     measure(
         "rival: integrated, RK4 and the table of resultants",

@@ -1,0 +1,110 @@
+"""``puck tradeoff``: accuracy against speed, measured on this machine."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+from puck_tables.cli.options import FILE, output_options, prepare_outputs, progress, told
+
+if TYPE_CHECKING:
+    from puck_tables.front import Way
+    from puck_tables.tradeoff.engine import TradeOff
+
+
+@click.command()
+@click.option("--quick", is_flag=True, help="Fewer repeats and points: under a minute.")
+@click.option(
+    "-o", "--output", "outputs", type=FILE, metavar="FILE", multiple=True,
+    help="Save everything: .h5, or .csv.  May be given twice.",
+)  # fmt: skip
+@output_options
+def tradeoff(quick: bool, outputs: tuple[Path, ...], plot: Path | None, overwrite: bool) -> None:
+    """Measure accuracy against speed of every way to answer.
+
+    Resultants, stops, trajectories and states: by closed forms, tables, integrators, look-up, and
+    by what others do; worst and median error, cost on one thread, memory.  Some minutes.
+
+    \b
+    puck tradeoff --quick
+    puck tradeoff -o tradeoff.h5 -o tradeoff.csv --plot tradeoff.png
+    """  # noqa: D301 - click reads the backspace
+    prepare_outputs(*outputs, plot, overwrite=overwrite)
+    from puck_tables.result_file import MAP_KINDS, kind_of, save_trade_off
+    from puck_tables.tradeoff.engine import measure
+
+    for path in outputs:
+        kind_of(path, MAP_KINDS)
+    if plot is not None:
+        from puck_tables.plots import PICTURE_KINDS, require_matplotlib
+        from puck_tables.tradeoff_picture import plot_trade_off
+
+        kind_of(plot, PICTURE_KINDS)
+        require_matplotlib()
+    with progress("measuring") as show:
+        measured = measure(quick, show)
+    for path in outputs:
+        save_trade_off(measured, path, overwrite)
+        told(path)
+    if plot is not None:
+        plot_trade_off(measured, plot, overwrite)
+        told(plot)
+    click.echo(report(measured))
+
+
+def report(measured: TradeOff) -> str:
+    """The front of every question, the outsiders, how cost grows, and the machine."""
+    from puck_tables.front import pareto
+
+    lines = []
+    for question in dict.fromkeys(way.question for way in measured.ways):
+        ways = [way for way in measured.ways if way.question == question]
+        own = [way for way in ways if not way.outsider]
+        front = pareto(own)
+        lines.append(
+            f"{question + ': the front of ' + str(len(own)) + ' ways':<58}"
+            f"{'worst':>8}{'median':>9}{'cost':>9} {'+-':>3}{'x limit':>9}{'bytes':>9}"
+        )
+        lines += [_line(way) for way in front]
+        outsiders = [way for way in ways if way.outsider]
+        if outsiders:
+            lines.append("  outsiders")
+            lines += [_line(way) for way in outsiders]
+        lines.append("")
+    lines.append(
+        "limit ratio of a flat puck: "
+        + ", ".join(
+            f"{name} {value:.4g}" if math.isfinite(value) else f"{name} none"
+            for name, value in measured.limit_ratios.items()
+        )
+    )
+    growth = zip(measured.stops, measured.stop_ns, measured.peak_bytes, strict=True)
+    lines.append(
+        "stops in chunks: "
+        + "; ".join(f"{n:.0e}: {ns:.1f} ns, {peak / 2**20:.1f} MiB" for n, ns, peak in growth)
+    )
+    machine = measured.machine
+    lines.append(
+        ", ".join(f"{name} {text}" for name, text in machine.description.items())
+        + f"; peaks on one thread {machine.flops / 1e9:.3g} Gflop/s, "
+        f"{machine.bandwidth / 1e9:.3g} GB/s; {measured.repeats} rounds, {measured.seconds:.0f} s"
+    )
+    return "\n".join(lines)
+
+
+def _line(way: Way) -> str:
+    spread = f"{min(999.0, 100.0 * way.ns_spread / way.ns):.0f}%"
+    limit = f"{way.ns / way.limit_ns:.1f}" if way.limit_ns else "-"
+    return (
+        f"  {way.name:<56}{way.error:>8.1e}{way.median_error:>9.1e}{_duration(way.ns):>9}"
+        f"{spread:>5}{limit:>8}{way.bytes or '-':>9}"
+    )
+
+
+def _duration(ns: float) -> str:
+    for scale, unit in ((1e6, "ms"), (1e3, "us")):
+        if ns >= scale:
+            return f"{ns / scale:.3g} {unit}"
+    return f"{ns:.3g} ns"

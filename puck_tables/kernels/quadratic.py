@@ -1,0 +1,74 @@
+"""The table where the height enters as a polynomial: five splines in η and no grid in δ.
+
+In full contact the friction ratios (:mod:`puck_tables.kernels.spline`) are
+
+    1/ρ_∥ = a₀ + a₂ δ²,    ρ_⊥/ρ_∥ = b₁ δ,    ρ_ω/ρ_∥ = c₀ + c₂ δ² ,
+
+with functions of φ alone.  Five cubic splines in η then do what three bicubic ones do, with 20
+products a point instead of 48 and a fifth of the memory.
+
+Coefficients: array (2, η cells + 3, 5) of B-spline weights over 6, in the order a₀, a₂, b₁, c₀, c₂.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables.kernels.compile import kernel
+from puck_tables.kernels.spline import basis, side_and_eta
+
+FloatArray = npt.NDArray[np.float64]
+
+TERMS = 5
+_BLOCK = 128
+
+
+@kernel
+def fill_resultants_quadratic(
+    coefficients: FloatArray, phi: FloatArray, delta: FloatArray, out: FloatArray
+) -> None:
+    """ρ_∥, ρ_⊥, ρ_ω at flat arrays of points into ``out`` (3, n); arguments already checked.
+
+    In blocks of three loops, as in :mod:`puck_tables.kernels.spline`.
+    """
+    n_eta = coefficients.shape[1] - 3
+    c = coefficients.reshape(-1)
+    side_stride = TERMS * (n_eta + 3)
+    first = np.empty(_BLOCK, np.int64)
+    w0, w1, w2, w3 = np.empty(_BLOCK), np.empty(_BLOCK), np.empty(_BLOCK), np.empty(_BLOCK)
+    for start in range(0, phi.size, _BLOCK):
+        angle = phi[start : start + _BLOCK]
+        height = delta[start : start + _BLOCK]
+        parallel = out[0, start : start + _BLOCK]
+        perpendicular = out[1, start : start + _BLOCK]
+        spin = out[2, start : start + _BLOCK]
+        for n in range(angle.size):
+            side, eta = side_and_eta(angle[n])
+            p = eta * n_eta
+            i = min(int(p), n_eta - 1)
+            first[n] = side * side_stride + TERMS * i
+            w0[n], w1[n], w2[n], w3[n] = basis(p - i)
+        for n in range(angle.size):
+            k = np.uint64(first[n])  # unsigned: no test for negative indices
+            f = c[k : k + np.uint64(4 * TERMS)]
+            a, b, d, e = w0[n], w1[n], w2[n], w3[n]
+            h = height[n]
+            h2 = h * h
+            parallel[n] = (
+                a * (f[0] + h2 * f[1])
+                + b * (f[5] + h2 * f[6])
+                + d * (f[10] + h2 * f[11])
+                + e * (f[15] + h2 * f[16])
+            )
+            perpendicular[n] = h * (a * f[2] + b * f[7] + d * f[12] + e * f[17])
+            spin[n] = (
+                a * (f[3] + h2 * f[4])
+                + b * (f[8] + h2 * f[9])
+                + d * (f[13] + h2 * f[14])
+                + e * (f[18] + h2 * f[19])
+            )
+        for n in range(angle.size):
+            parallel[n] = 1.0 / parallel[n]
+            perpendicular[n] *= parallel[n]
+            spin[n] *= parallel[n]

@@ -1,0 +1,1 @@
+"""Accuracy against speed, measured: every way of answering, its rivals, the front."""

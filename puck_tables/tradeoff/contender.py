@@ -1,0 +1,42 @@
+"""What is measured: a way of answering, made ready, with its errors and its work."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Ready:
+    """A way made ready: ``run`` answers ``items`` questions on one thread.
+
+    ``time_error`` and ``place_error`` (n,): at every start of the truth; for resultants the first
+    is zero and the second the largest error of the three.  ``bytes`` it keeps; ``work`` (adds and
+    products, hard operations counted :data:`puck_tables.tradeoff.machine.HARD` times) and
+    ``traffic`` (bytes read and written) for one item, 0 where not counted.
+    """
+
+    run: Callable[[], object]
+    items: int
+    time_error: FloatArray
+    place_error: FloatArray
+    bytes: int = 0
+    work: float = 0.0
+    traffic: float = 0.0
+
+
+@dataclass(frozen=True)
+class Contender:
+    """A way before it is measured; ``build`` makes what it needs, ``ready`` then all else."""
+
+    question: str
+    method: str
+    setting: str
+    build: Callable[[], object]
+    ready: Callable[[object], Ready]
+    outsider: bool = False

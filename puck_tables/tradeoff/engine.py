@@ -1,0 +1,185 @@
+"""All ways measured on this machine: errors once, costs in rounds that share the noise."""
+
+from __future__ import annotations
+
+import time
+import tracemalloc
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables.front import Way
+from puck_tables.motion.limits import limit_ratio
+from puck_tables.similarity.file import load_stop_table
+from puck_tables.similarity.lookup import stops_kernel
+from puck_tables.table.file import load_table
+from puck_tables.tradeoff import resultant_ways, state_ways, stop_ways
+from puck_tables.tradeoff.contender import Contender, Ready
+from puck_tables.tradeoff.machine import Machine, measured_machine
+from puck_tables.tradeoff.models import PADE_MATCHED, fitted_pade, pade_limit_ratio
+from puck_tables.tradeoff.truth import Points, known_starts, random_points
+
+FloatArray = npt.NDArray[np.float64]
+Progress = Callable[[int, int], None]
+
+REPEATS, QUICK_REPEATS = 25, 5
+_POINTS, _QUICK_POINTS = 4000, 1000
+_LARGEST_SWEEP, _QUICK_SWEEP = 8, 6  # powers of ten
+_CHUNK = 10_000
+_POWERS, _THINNING = 6, 2  # the look-up that growth is measured with
+_SHORTEST = 1e-3  # s; below it a round repeats the run
+
+
+@dataclass(frozen=True)
+class TradeOff:
+    """What was measured.
+
+    ``ways``; growth of a sweep by look-up in chunks: ``stops`` (n,), ``stop_ns`` (n,) for each,
+    ``peak_bytes`` (n,) of memory; ``limit_ratios``: rω/v at the stop of a flat puck by name; the
+    ``machine``; ``repeats``; ``seconds`` it all took.
+    """
+
+    ways: tuple[Way, ...]
+    stops: FloatArray
+    stop_ns: FloatArray
+    peak_bytes: FloatArray
+    limit_ratios: dict[str, float]
+    machine: Machine
+    repeats: int
+    seconds: float
+
+
+def measure(quick: bool = False, progress: Progress | None = None) -> TradeOff:
+    """Measure accuracy against cost of every way of answering, on one thread of this machine.
+
+    Parameters
+    ----------
+    quick : bool
+        Fewer repeats and points: under a minute instead of some.
+    progress : callable (done, total), optional
+
+    Returns
+    -------
+    TradeOff
+
+    Notes
+    -----
+    Errors: against :mod:`puck_tables.tradeoff.truth`.  Costs: every round runs every way once (or
+    for a millisecond, if that is longer), in turn; the median over the rounds is reported, with the
+    distance between the quartiles.
+    """
+    begin = time.perf_counter()
+    machine = measured_machine()
+    repeats = QUICK_REPEATS if quick else REPEATS
+    points = random_points(_QUICK_POINTS if quick else _POINTS)
+    chosen = points.delta == 0.0
+    flat = Points(points.phi[chosen], points.delta[chosen], points.resultants[:, chosen])
+    table, stop_table = load_table(), load_stop_table()
+    contenders: list[Contender] = [
+        *resultant_ways.contenders(resultant_ways.Task(points, flat)),
+        *stop_ways.contenders(stop_ways.Task(known_starts(), flat, table, stop_table)),
+        *state_ways.contenders(state_ways.Task(table, stop_table)),
+    ]
+    total, done = 2 * len(contenders) + repeats, 0
+
+    def step(count: int = 1) -> None:
+        nonlocal done
+        done += count
+        if progress is not None:
+            progress(done, total)
+
+    readies, build_seconds = [], []
+    for contender in contenders:
+        start = time.perf_counter()
+        built = contender.build()
+        build_seconds.append(time.perf_counter() - start)
+        readies.append(contender.ready(built))
+        step(2)
+    costs = np.empty((len(readies), repeats))
+    loops = [_loops(ready) for ready in readies]
+    for repeat in range(repeats):
+        for n, (ready, count) in enumerate(zip(readies, loops, strict=True)):
+            costs[n, repeat] = _seconds(ready, count) / (count * ready.items)
+        step()
+    stops, stop_ns, peak_bytes = _growth(_QUICK_SWEEP if quick else _LARGEST_SWEEP)
+    a, b = fitted_pade(flat.phi, flat.resultants)
+    return TradeOff(
+        tuple(
+            _way(contender, ready, seconds, cost, machine)
+            for contender, ready, seconds, cost in zip(
+                contenders, readies, build_seconds, costs, strict=True
+            )
+        ),
+        stops, stop_ns, peak_bytes,
+        {
+            "truth": float(limit_ratio(0.0)),
+            "Pade, slopes matched": pade_limit_ratio(*PADE_MATCHED),
+            "Pade, fitted": pade_limit_ratio(a, b),
+            "limit surface": float("inf"),
+        },
+        machine, repeats, time.perf_counter() - begin,
+    )  # fmt: skip
+
+
+def _loops(ready: Ready) -> int:
+    ready.run()
+    once = _seconds(ready, 1)
+    return max(1, int(_SHORTEST / once))
+
+
+def _seconds(ready: Ready, count: int) -> float:
+    start = time.perf_counter()
+    for _ in range(count):
+        ready.run()
+    return time.perf_counter() - start
+
+
+def _way(
+    contender: Contender, ready: Ready, build: float, costs: FloatArray, machine: Machine
+) -> Way:
+    error = np.maximum(ready.time_error, ready.place_error)
+    low, middle, high = 1e9 * np.quantile(costs, [0.25, 0.5, 0.75])
+    limit_ns, limit = machine.limit(ready.work, ready.traffic)
+    return Way(
+        contender.question, contender.method, contender.setting, int(contender.outsider),
+        error=float(error.max()), median_error=float(np.median(error)),
+        time_error=float(ready.time_error.max()), place_error=float(ready.place_error.max()),
+        ns=float(middle), ns_spread=float(high - low), bytes=ready.bytes, build_s=build,
+        limit_ns=limit_ns, limit=limit,
+    )  # fmt: skip
+
+
+def _growth(largest: int) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Stops by look-up in chunks, from a thousand to 10^largest: ns for each and peak memory."""
+    counts = np.array([10.0**power for power in range(3, largest + 1)])
+    nanoseconds, peaks = np.empty(counts.size), np.empty(counts.size)
+    fill, coefficients = stops_kernel(_POWERS), load_stop_table().cut(_POWERS, _THINNING)
+    fill(np.ones((6, 1)), coefficients, np.empty((3, 1)))  # compiled before the clock starts
+    for n, count in enumerate(counts):
+        tracemalloc.start()
+        rounds = [_sweep(fill, coefficients, int(count)) for _ in range(_growth_rounds(count))]
+        nanoseconds[n] = 1e9 * float(np.median(rounds)) / count
+        peaks[n] = tracemalloc.get_traced_memory()[1]
+        tracemalloc.stop()
+    return counts, nanoseconds, peaks
+
+
+def _growth_rounds(count: float) -> int:
+    return int(np.clip(1e7 / count, 1, 50))
+
+
+def _sweep(
+    fill: Callable[[FloatArray, FloatArray, FloatArray], int], coefficients: FloatArray, count: int
+) -> float:
+    """Seconds for so many stops, a chunk at a time, of which only the longest is kept."""
+    start = time.perf_counter()
+    size = min(_CHUNK, count)
+    launches, out = np.ones((6, size)), np.empty((3, size))
+    launches[2], longest = np.linspace(0.0, 4.0, size), 0.0
+    for first in range(0, count, size):
+        launches[3] = first / count
+        fill(launches, coefficients, out)
+        longest = max(longest, float(out[0].max()))
+    return time.perf_counter() - start

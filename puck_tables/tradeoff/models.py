@@ -1,0 +1,119 @@
+"""Friction of a flat puck (δ = 0) by the simple models of the literature, as resultants.
+
+With c = cos φ, s = sin φ ≥ 0:
+
+* Padé (V. Ph. Zhuravlev 1998; eq. 1.6 of Salnikova, Treschev, Gallyamov 2012):
+  F = F₀ v/(v + a r|ω|), M = M₀ r|ω|/(r|ω| + b v), F₀ = fN, M₀ = (2/3) fNr, so
+  ρ_∥ = 1/(c + a s), ρ_ω = (4/3)/(s + b c).  With the slopes dF/dv at v = 0 and dM/dω at ω = 0
+  right, a = 1 and b = 8/3; fitted for the least worst error of the resultants, a and b follow.
+* ellipsoidal limit surface (Howe, Cutkosky 1996): (F/F₀)² + (M/M₀)² = 1, motion along its normal:
+  ρ_∥ = 1/w, ρ_ω = (8/9)/w, w² = c² + (4/9) s².
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables.kernels.compile import kernel
+from puck_tables.table.grid import DeltaAxis, PhiAxis
+from puck_tables.table.table import Table
+
+FloatArray = npt.NDArray[np.float64]
+
+PADE_MATCHED = (1.0, 8.0 / 3.0)
+
+
+@dataclass(frozen=True)
+class LimitRatios:
+    """Where rω/v ends: by the model, and in truth."""
+
+    model: float
+    truth: float
+
+
+@kernel
+def fill_pade(phi: FloatArray, a: float, b: float, out: FloatArray) -> None:
+    """ρ_∥, ρ_⊥ = 0, ρ_ω at angles 0 ≤ φ ≤ π/2 into ``out`` (3, n)."""
+    for n in range(phi.size):
+        c, s = np.cos(phi[n]), np.sin(phi[n])
+        out[0, n] = 1.0 / (c + a * s)
+        out[1, n] = 0.0
+        out[2, n] = (4.0 / 3.0) / (s + b * c)
+
+
+@kernel
+def fill_limit_surface(phi: FloatArray, out: FloatArray) -> None:
+    """The same for the ellipsoidal limit surface."""
+    for n in range(phi.size):
+        c, s = np.cos(phi[n]), np.sin(phi[n])
+        w = 1.0 / np.sqrt(c * c + (4.0 / 9.0) * s * s)
+        out[0, n] = w
+        out[1, n] = 0.0
+        out[2, n] = (8.0 / 9.0) * w
+
+
+def fitted_pade(phi: FloatArray, resultants: FloatArray) -> tuple[float, float]:
+    """The a and b with the least worst error at given angles.
+
+    Parameters
+    ----------
+    phi : array (n,)
+    resultants : array (3, n), at δ = 0
+
+    Examples
+    --------
+    >>> from puck_tables import resultants
+    >>> phi = np.linspace(0.0, np.pi / 2, 200)
+    >>> [round(x, 3) for x in fitted_pade(phi, np.stack(resultants(phi, 0.0)))]
+    [0.724, 1.516]
+    """
+    from scipy.optimize import minimize_scalar
+
+    c, s = np.cos(phi), np.sin(phi)
+
+    def off_parallel(a: float) -> float:
+        return float(np.abs(1.0 / (c + a * s) - resultants[0]).max())
+
+    def off_spin(b: float) -> float:
+        return float(np.abs((4.0 / 3.0) / (s + b * c) - resultants[2]).max())
+
+    a = minimize_scalar(off_parallel, bounds=(0.3, 1.5), method="bounded").x
+    b = minimize_scalar(off_spin, bounds=(1.5, 4.0), method="bounded").x
+    return float(a), float(b)
+
+
+def pade_limit_ratio(a: float, b: float) -> float:
+    """Tan φ where ρ_∥ = ρ_ω; the true one is 1.531.  The limit surface has none: ρ_∥ > ρ_ω.
+
+    Examples
+    --------
+    >>> round(pade_limit_ratio(*PADE_MATCHED), 12)
+    4.0
+    """
+    return (b - 4.0 / 3.0) / (4.0 * a / 3.0 - 1.0) if a > 0.75 else float("inf")
+
+
+def as_table(model: str, a: float = 1.0, b: float = 8.0 / 3.0, size: int = 1025) -> Table:
+    """A model as a table of resultants, the same at every δ: so the same loops integrate it.
+
+    Parameters
+    ----------
+    model : 'pade' or 'limit surface'
+
+    Examples
+    --------
+    >>> float(as_table("limit surface").resultants(np.pi / 2, 0.0).spin.round(9))
+    1.333333333
+    """
+    axis = PhiAxis(size)
+    phi = axis.nodes()
+    rho = np.empty((3, size))
+    if model == "pade":
+        fill_pade(phi, a, b, rho)
+    else:
+        fill_limit_surface(phi, rho)
+    delta_axis = DeltaAxis(4)
+    return Table(axis, delta_axis, np.repeat(rho.T[:, None, :], delta_axis.size, axis=1))

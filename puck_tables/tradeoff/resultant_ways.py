@@ -1,0 +1,184 @@
+"""Ways to the three resultants at scattered points."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables.contact import closed_form, quadrature
+from puck_tables.contact.integrals import slip_direction
+from puck_tables.contact.resultants import moment_balance
+from puck_tables.kernels.closed_form import _fill as fill_closed_form
+from puck_tables.kernels.quadratic import fill_resultants_quadratic
+from puck_tables.kernels.spline import fill_resultants
+from puck_tables.table.build import tabulate
+from puck_tables.table.grid import DeltaAxis, PhiAxis
+from puck_tables.table.table import Table
+from puck_tables.tradeoff.contender import Contender, Ready
+from puck_tables.tradeoff.machine import HARD
+from puck_tables.tradeoff.models import PADE_MATCHED, fill_limit_surface, fill_pade, fitted_pade
+from puck_tables.tradeoff.truth import Points
+from puck_tables.tradeoff.uniform import fill_uniform, uniform_coefficients
+
+FloatArray = npt.NDArray[np.float64]
+Fill = Callable[[FloatArray, FloatArray, FloatArray], object]  # phi, delta, out (3, n)
+
+QUESTION = "resultants"
+SCATTERED = 40_000
+QUADRATIC, BICUBIC, UNIFORM = "quadratic in delta", "bicubic, graded", "bicubic, uniform"
+_NODES = (17, 33, 65, 129, 257, 513, 991, 2049)
+_POINT_TRAFFIC = 40.0  # bytes: φ, δ in, three numbers out
+# adds and products of one point: φ to η (two roots, one division), weights, last division
+_PLACE_WORK = 22.0 + 3.0 * HARD + 16.0
+_AGM_WORK = 14.0 + 2.0 * HARD  # a step; a root and a division
+
+
+class Task:
+    """Points to answer at: scattered ones for the clock, judged ones for the error."""
+
+    def __init__(self, truth: Points, flat_truth: Points) -> None:
+        rng = np.random.default_rng(7)
+        self.truth, self.flat_truth = truth, flat_truth
+        self.phi, self.delta = rng.uniform(0.0, 0.5 * np.pi, SCATTERED), rng.random(SCATTERED)
+
+    def ready(
+        self, fill: Fill, size: int = 0, work: float = 0.0, traffic: float = 0.0,
+        items: int = SCATTERED, flat: bool = False,
+    ) -> Ready:  # fmt: skip
+        """Ready to answer; ``flat``: judged at δ = 0 alone."""
+        truth = self.flat_truth if flat else self.truth
+        judged = np.empty((3, truth.phi.size))
+        fill(truth.phi, truth.delta, judged)
+        error = truth.errors(judged)
+        out = np.empty((3, items))
+        phi, delta = self.phi[:items].copy(), self.delta[:items].copy()
+        traffic = traffic + _POINT_TRAFFIC if work else 0.0
+        return Ready(lambda: fill(phi, delta, out), items, 0.0 * error, error, size, work, traffic)
+
+    def judge(self) -> Ready:
+        """The truth itself, judged by the closed forms."""
+        judged = np.empty((3, self.truth.phi.size))
+        _plain_closed_form(self.truth.phi, self.truth.delta, judged)
+        return replace(self.ready(_quadrature, items=64), place_error=self.truth.errors(judged))
+
+
+def _tabulated(size: int) -> Table:
+    return tabulate(PhiAxis(size), DeltaAxis(4))
+
+
+def _quadratic(size: int, dtype: type) -> FloatArray:
+    coefficients = _tabulated(size).quadratic
+    assert coefficients is not None
+    return coefficients.astype(dtype)
+
+
+def _bicubic_coefficients(size: int) -> FloatArray:
+    return _tabulated(size).coefficients
+
+
+def _bicubic(c: FloatArray, phi: FloatArray, delta: FloatArray, out: FloatArray) -> None:
+    fill_resultants(c, 1.0, phi, delta, out)
+
+
+def _uniform(c: FloatArray, phi: FloatArray, delta: FloatArray, out: FloatArray) -> None:
+    fill_uniform(c, phi, delta, np.empty(3), out)
+
+
+def _plain_closed_form(phi: FloatArray, delta: FloatArray, out: FloatArray) -> None:
+    out[:] = moment_balance(closed_form.integrals(phi), slip_direction(phi), delta)
+
+
+def _quadrature(phi: FloatArray, delta: FloatArray, out: FloatArray) -> None:
+    out[:] = moment_balance(quadrature.integrals(phi), slip_direction(phi), delta)
+
+
+def contenders(task: Task) -> Iterator[Contender]:
+    """All ways to the resultants."""
+
+    def way(
+        method: str, setting: str, build: Callable[[], Any], ready: Callable[[Any], Ready],
+        outsider: bool = False,
+    ) -> Contender:  # fmt: skip
+        return Contender(QUESTION, method, setting, build, ready, outsider)
+
+    def nothing() -> None:
+        return None
+
+    yield way("direct quadrature", "", nothing, lambda _: task.judge())
+    yield way("closed forms", "", nothing, lambda _: task.ready(
+        fill_closed_form, work=60.0 + 6.0 * HARD + 5.0 * _AGM_WORK, traffic=0.0))  # fmt: skip
+    yield way("closed forms, plain NumPy", "", nothing, lambda _: task.ready(_plain_closed_form))
+    for size in _NODES:
+        yield way(
+            QUADRATIC, f"nodes={size}", partial(_quadratic, size, np.float64),
+            lambda c: task.ready(partial(fill_resultants_quadratic, c), c.nbytes,
+                                 work=_PLACE_WORK + 50.0, traffic=160.0),
+        )  # fmt: skip
+    for size in (257, 991):
+        yield way(
+            QUADRATIC + ", float32", f"nodes={size}", partial(_quadratic, size, np.float32),
+            lambda c: task.ready(partial(fill_resultants_quadratic, c), c.nbytes,
+                                 work=_PLACE_WORK + 50.0, traffic=80.0),
+        )  # fmt: skip
+    for size in (33, 129, 513, 991):
+        yield way(
+            BICUBIC, f"nodes={size}x4", partial(_bicubic_coefficients, size),
+            lambda c: task.ready(
+                partial(_bicubic, c),
+                c.nbytes, work=_PLACE_WORK + 136.0, traffic=384.0,
+            ),
+        )  # fmt: skip
+    for size in (65, 257, 1025, 4097):
+        yield way(
+            UNIFORM, f"nodes={size}x4", partial(uniform_coefficients, size),
+            lambda c: task.ready(
+                partial(_uniform, c), c.nbytes
+            ),
+        )  # fmt: skip
+    yield from _outsiders(task, way)
+
+
+def _outsiders(task: Task, way: Callable[..., Contender]) -> Iterator[Contender]:
+    for size in ((100, 9), (400, 17), (1600, 17)):
+        yield way(
+            "scipy NdBSpline", f"nodes={size[0]}x{size[1]}", partial(_scipy_spline, *size),
+            lambda spline: task.ready(partial(_by_spline, spline), spline.c.nbytes, items=10_000),
+            outsider=True,
+        )  # fmt: skip
+
+    def pade(ab: tuple[float, float]) -> Ready:
+        return task.ready(lambda phi, delta, out: fill_pade(phi, *ab, out), flat=True)
+
+    yield way("Pade, slopes matched", "", lambda: PADE_MATCHED, pade, outsider=True)
+    flat = task.flat_truth
+    yield way(
+        "Pade, fitted", "", lambda: fitted_pade(flat.phi, flat.resultants), pade, outsider=True
+    )
+    yield way(
+        "limit surface", "", lambda: None,
+        lambda _: task.ready(lambda phi, delta, out: fill_limit_surface(phi, out), flat=True),
+        outsider=True,
+    )  # fmt: skip
+
+
+def _scipy_spline(n_phi: int, n_delta: int) -> Any:
+    """Three bicubic splines of the resultants on a uniform grid, as one would write it."""
+    from scipy.interpolate import NdBSpline, make_interp_spline
+
+    phi, delta = np.linspace(0.0, 0.5 * np.pi, n_phi), np.linspace(0.0, 1.0, n_delta)
+    values = np.empty((3, n_phi * n_delta))
+    grid_phi, grid_delta = (grid.ravel() for grid in np.meshgrid(phi, delta, indexing="ij"))
+    _plain_closed_form(grid_phi, grid_delta, values)
+    along_phi = make_interp_spline(phi, np.moveaxis(values.reshape(3, n_phi, n_delta), 0, -1), k=3)
+    along_delta = make_interp_spline(delta, along_phi.c, k=3, axis=1)
+    coefficients = np.ascontiguousarray(np.moveaxis(along_delta.c, 0, 1))
+    return NdBSpline((along_phi.t, along_delta.t), coefficients, 3)
+
+
+def _by_spline(spline: Any, phi: FloatArray, delta: FloatArray, out: FloatArray) -> None:
+    out[:] = spline(np.stack([phi, delta], axis=-1)).T

@@ -1,0 +1,195 @@
+"""Ways to the stop of a launch: looked up, integrated, and what others do."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import partial
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables.front import ADAPTIVE_EXACT, ADAPTIVE_TABLE, LOOK_UP, RK4_EXACT, RK4_TABLE
+from puck_tables.kernels.spline import cut as cut_table
+from puck_tables.motion.bulk import fill_stops
+from puck_tables.motion.equations import SIZE
+from puck_tables.motion.limits import log_ratio
+from puck_tables.motion.path import integrate
+from puck_tables.motion.steppers import DORMAND_PRINCE, RK4
+from puck_tables.similarity.lookup import row_width, stops_kernel
+from puck_tables.similarity.stop_table import StopTable
+from puck_tables.table.table import Table
+from puck_tables.tradeoff.contender import Contender, Ready
+from puck_tables.tradeoff.machine import HARD
+from puck_tables.tradeoff.models import PADE_MATCHED, as_table, fitted_pade
+from puck_tables.tradeoff.rivals import PATCH_GRID, SCIPY_SETTINGS, patch_script, scipy_stop
+from puck_tables.tradeoff.truth import Points, Starts
+
+FloatArray = npt.NDArray[np.float64]
+
+QUESTION, TRAJECTORY = "stop", "trajectory"
+SCATTERED = 40_000
+DELTA = 0.5
+_CUTS = ((2, 6), (3, 6), (4, 6), (5, 3), (6, 2), (6, 1), (7, 1))  # powers, thinning
+_STEPS = (5, 6, 8, 10, 12, 16, 20, 24, 32, 48, 64, 96, 128, 192, 256)
+_STEPS_EXACT = (512, 1024)  # where the table's own error would show
+_LOCAL = (1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12)
+_LOCAL_EXACT = (1e-13, 2e-14)
+_EASY = 16  # starts that outsiders are judged at, none of them adversarial
+# adds and products of one launch: speeds and place (four roots, two divisions), weights, result
+_LAUNCH_WORK = 30.0 + 7.0 * HARD + 16.0 + 20.0
+_LAUNCH_TRAFFIC = 72.0  # bytes: six numbers in, three out
+_STEP_LIMIT = 100_000
+
+
+class Task:
+    """Launches: scattered ones for the clock, those of the truth for the error."""
+
+    def __init__(self, truth: Starts, flat: Points, table: Table, stops: StopTable) -> None:
+        rng = np.random.default_rng(11)
+        self.truth, self.flat = truth, flat
+        self.table, self.stops = table, stops
+        one = np.ones(SCATTERED)
+        self.scattered = np.stack([
+            *rng.uniform(-1.0, 1.0, (2, SCATTERED)), rng.uniform(-5.0, 5.0, SCATTERED),
+            rng.random(SCATTERED), one, one,
+        ])  # fmt: skip
+        self.same_height = self.scattered.copy()
+        self.same_height[3] = DELTA
+        self.judged = truth.launches()
+        size = np.abs(truth.u)
+        moderate = np.flatnonzero((size < 4.0) & (size > 0.05) & (np.abs(truth.u - 0.4) > 0.1))
+        self.easy = truth.some(rng.choice(moderate, _EASY, replace=False))
+        self.flat_starts = truth.some(truth.delta == 0.0)
+
+
+def contenders(task: Task) -> Iterator[Contender]:
+    """All ways to a stop, and to a trajectory with its steps recorded."""
+    for powers, thinning in _CUTS:
+        yield Contender(
+            QUESTION, LOOK_UP, f"powers={powers} thinning={thinning}",
+            partial(_fresh_cut, task.stops, powers, thinning, np.float64),
+            partial(_looked_up, task, powers),
+        )  # fmt: skip
+    for powers, thinning in ((5, 3), (7, 1)):
+        yield Contender(
+            QUESTION, LOOK_UP + ", float32", f"powers={powers} thinning={thinning}",
+            partial(_fresh_cut, task.stops, powers, thinning, np.float32),
+            partial(_looked_up, task, powers),
+        )  # fmt: skip
+    for exact in (False, True):
+        for steps in _STEPS + (_STEPS_EXACT if exact else ()):
+            method, setting = RK4_EXACT if exact else RK4_TABLE, f"steps={steps}"
+            yield from _integrations(task, method, setting, float(steps), 1.0, exact)
+        for local in _LOCAL + (_LOCAL_EXACT if exact else ()):
+            method, setting = ADAPTIVE_EXACT if exact else ADAPTIVE_TABLE, f"local={local:g}"
+            yield from _integrations(task, method, setting, 0.0, local, exact)
+    yield from _outsiders(task)
+
+
+def _fresh_cut(stops: StopTable, powers: int, thinning: int, dtype: type) -> FloatArray:
+    return StopTable(stops.axis, stops.values).cut(powers, thinning).astype(dtype)
+
+
+def _looked_up(task: Task, powers: int, coefficients: object) -> Ready:
+    assert isinstance(coefficients, np.ndarray)
+    fill = stops_kernel(powers)
+    judged = np.empty((3, task.judged.shape[1]))
+    fill(task.judged, coefficients, judged)
+    out = np.empty((3, SCATTERED))
+    columns = row_width(powers)
+    return Ready(
+        lambda: fill(task.scattered, coefficients, out), SCATTERED, *task.truth.errors(judged),
+        bytes=coefficients.nbytes, work=_LAUNCH_WORK + 8.0 * columns + 2.0 * columns,
+        traffic=_LAUNCH_TRAFFIC + 4.0 * columns * coefficients.itemsize,
+    )  # fmt: skip
+
+
+def _integrations(
+    task: Task, method: str, setting: str, steps: float, local: float, exact: bool
+) -> Iterator[Contender]:
+    def coefficients() -> FloatArray:
+        return np.empty((2, 0, 0, 3)) if exact else task.table.coefficients
+
+    def items_for(expensive: float) -> int:
+        return int(np.clip(2000.0 / expensive, 8.0, 1000.0))
+
+    few = items_for(steps / 8.0 if steps else max(1.0, 10.0 - 3.0 * np.log10(local)))
+
+    def stop(built: object) -> Ready:
+        assert isinstance(built, np.ndarray)
+        launches = np.ascontiguousarray(task.same_height[:, :few])
+
+        def run(which: FloatArray) -> FloatArray:
+            out = np.empty((6, which.shape[1]))
+            status = np.empty(which.shape[1], np.int8)
+            fill_stops(which, DORMAND_PRINCE, steps, local, built, 1.0, out, status)
+            return out
+
+        errors = task.truth.errors(run(task.judged)[:3])
+        return Ready(lambda: run(launches), few, *errors, bytes=built.nbytes)
+
+    def trajectory(built: object) -> Ready:
+        assert isinstance(built, np.ndarray)
+        tableau = RK4 if steps else DORMAND_PRINCE
+        z, y, result = np.empty(20_000), np.empty((20_000, SIZE)), np.empty(SIZE + 1)
+        height, cut = -1.0, np.empty(0 if exact else 6 * built.shape[2])
+
+        def run(which: FloatArray) -> FloatArray:
+            nonlocal height
+            out = np.empty((3, which.shape[1]))
+            for n, (vx, vy, spin, delta) in enumerate(which[:4].T):
+                if not exact and delta != height:
+                    cut_table(built, delta, cut)
+                    height = delta
+                u = log_ratio(np.hypot(vx, vy), abs(spin))
+                integrate(u, tableau, steps, local, cut, delta, _STEP_LIMIT, z, y, result)
+                out[:, n] = result[2:5]
+            return out
+
+        generic = np.isfinite(task.truth.u)
+        errors = task.truth.some(generic).errors(run(task.judged[:, generic]))
+        launches = np.ascontiguousarray(task.same_height[:, : min(few, 100)])
+        return Ready(lambda: run(launches), launches.shape[1], *errors, bytes=built.nbytes)
+
+    yield Contender(QUESTION, method, setting, coefficients, stop)
+    yield Contender(TRAJECTORY, method, setting, coefficients, trajectory)
+
+
+def _outsiders(task: Task) -> Iterator[Contender]:
+    def way(method: str, setting: str, stop_of: Callable[..., FloatArray]) -> Contender:
+        def ready(_: object) -> Ready:
+            easy = task.easy.launches()
+            stops = np.stack([stop_of(*launch[:4]) for launch in easy.T], axis=-1)
+            launch = (*task.same_height[:3, 0], DELTA)
+            return Ready(lambda: stop_of(*launch), 1, *task.easy.errors(stops))
+
+        return Contender(QUESTION, method, setting, lambda: None, ready, outsider=True)
+
+    for method, rtol, atol in SCIPY_SETTINGS:
+        yield way(
+            f"scipy {method}, closed forms", f"rtol={rtol:g} atol={atol:g}",
+            partial(scipy_stop, method, rtol, atol),
+        )  # fmt: skip
+    yield way("patches and scipy RK45", f"patches={PATCH_GRID[0]}x{PATCH_GRID[1]}", patch_script)
+
+    def modelled(method: str, build: Callable[[], Table]) -> Contender:
+        def ready(table: object) -> Ready:
+            assert isinstance(table, Table)
+            launches = np.ascontiguousarray(task.same_height[:, :500])
+
+            def run(which: FloatArray) -> FloatArray:
+                out, status = np.empty((6, which.shape[1])), np.empty(which.shape[1], np.int8)
+                fill_stops(which, RK4, 64.0, 1.0, table.coefficients, 1.0, out, status)
+                return out[:3]
+
+            errors = task.flat_starts.errors(run(task.flat_starts.launches()))
+            return Ready(lambda: run(launches), 500, *errors)
+
+        return Contender(QUESTION, method, "", build, ready, outsider=True)
+
+    yield modelled("Pade, slopes matched", lambda: as_table("pade", *PADE_MATCHED))
+    yield modelled(
+        "Pade, fitted",
+        lambda: as_table("pade", *fitted_pade(task.flat.phi, task.flat.resultants)),
+    )
+    yield modelled("limit surface", lambda: as_table("limit surface"))

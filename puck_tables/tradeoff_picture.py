@@ -1,0 +1,152 @@
+"""The picture of a measured trade-off: error against cost, log-log, with the front drawn."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from puck_tables.front import Way, pareto
+from puck_tables.plots import BLUE, COLORS, GREY, PICTURE_KINDS, canvas, save
+from puck_tables.result_file import kind_of
+from puck_tables.tradeoff.engine import TradeOff
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_TITLES = {
+    "resultants": "three resultants at a scattered point",
+    "stop": "stop of a launch (time and place)",
+    "state": "state at a moment",
+}
+_LOWEST = 1e-16
+_PAPER = {"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.4}
+_PIXELS = 100.0 / 72.0  # of a point, as long as the figure is not saved
+_MORE_COLORS = (*COLORS, "#7a5c00", "#00838a", "#a0527a", "#4f4f9a", "#6a8f00")
+
+
+def plot_trade_off(measured: TradeOff, path: str | Path, overwrite: bool = False) -> None:
+    """Draw error against cost for every way: one panel a question, one line a method.
+
+    Every point bears its setting, every method its name; the thick grey line is the front, hollow
+    points are outsiders.
+
+    Parameters
+    ----------
+    measured : TradeOff
+    path : .png, .svg or .pdf
+    overwrite : whether an existing file may be replaced
+
+    Raises
+    ------
+    InputError
+        If the ending is not known.
+    MissingExtraError
+        If matplotlib is not installed.
+    OutputError
+        If the file exists or cannot be written.
+
+    Examples
+    --------
+    >>> plot_trade_off(None, "front.txt")  # doctest: +ELLIPSIS
+    Traceback (most recent call last):
+    ...
+    puck_tables.errors.InputError: front.txt: the ending of an output file chooses its format: ...
+    """
+    kind = kind_of(path, PICTURE_KINDS)
+    figure = canvas(13.0, 17.0)
+    grid = figure.add_gridspec(3, 1, height_ratios=(1.0, 1.35, 0.75))
+    for row, (question, title) in enumerate(_TITLES.items()):
+        _draw(figure.add_subplot(grid[row]), title, [
+            way for way in measured.ways if way.question == question
+        ])  # fmt: skip
+    machine = measured.machine.description
+    figure.suptitle(
+        f"error against cost: {machine['processor']}, one thread, "
+        f"medians of {measured.repeats} rounds"
+    )
+    save(figure, path, kind, overwrite)
+
+
+def _draw(axes: Axes, title: str, ways: list[Way]) -> None:
+    front = pareto(way for way in ways if not way.outsider)
+    axes.plot(
+        [_error(way) for way in front], [way.ns for way in front],
+        color="#d5d5d5", linewidth=9.0, solid_capstyle="round", zorder=1, label="the front",
+    )  # fmt: skip
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.set_xlim(300.0 * max(map(_error, ways)), 0.01 * min(map(_error, ways)))
+    axes.set_ylim(0.3 * min(way.ns for way in ways), 6.0 * max(way.ns for way in ways))
+    methods = list(dict.fromkeys(way.method for way in ways))
+    taken: list[tuple[float, float, float, float]] = []
+    for number, method in enumerate(methods):
+        own = [way for way in ways if way.method == method]
+        color = GREY if own[0].outsider else _MORE_COLORS[number % len(_MORE_COLORS)]
+        error, cost = [_error(way) for way in own], [way.ns for way in own]
+        axes.plot(
+            error, cost, color=color, linewidth=1.0, marker="o", markersize=4.5, zorder=3,
+            markerfacecolor="white" if own[0].outsider else color,
+            linestyle="--" if own[0].outsider else "-",
+        )  # fmt: skip
+        for way in own:
+            axes.annotate(
+                _short(way.setting), (_error(way), way.ns), xytext=(0, -9 if number % 2 else 4),
+                fontsize=5.5, textcoords="offset points", ha="center", color=color, zorder=4,
+            )  # fmt: skip
+        _name(axes, method, own, color, taken)
+    axes.set_xlabel("worst error (left: rough, right: exact)")
+    axes.set_ylabel("ns for one")
+    axes.set_title(title, fontsize=11, color=BLUE, loc="left")
+    axes.grid(color="#eeeeee", linewidth=0.6)
+    axes.legend(frameon=False, loc="upper left", fontsize=8)
+
+
+def _name(
+    axes: Axes, method: str, own: list[Way], color: str,
+    taken: list[tuple[float, float, float, float]],
+) -> None:  # fmt: skip
+    """The name of a method near its line, where no other name stands; boxes in pixels."""
+    width, height = 5.4 * len(method), 11.0
+    ends = sorted(own, key=_error)
+    beside = [(ends[-1], -width - 8.0, -3.0), (ends[0], 8.0, -3.0)]
+    spots = beside + [
+        (way, dx, dy)
+        for dy in (7.0, 19.0, -24.0, 31.0, -36.0, 43.0)
+        for way in (ends[-1], ends[0], ends[len(ends) // 2])
+        for dx in (0.0, -width)
+    ]
+    for way, dx, dy in spots:
+        x, y = axes.transData.transform((_error(way), way.ns))
+        box = (
+            x + _PIXELS * dx,
+            y + _PIXELS * dy,
+            x + _PIXELS * (dx + width),
+            y + _PIXELS * (dy + height),
+        )
+        inside = box[0] >= axes.bbox.x0 and box[2] <= axes.bbox.x1
+        if inside and not any(
+            box[0] < other[2] and other[0] < box[2] and box[1] < other[3] and other[1] < box[3]
+            for other in taken
+        ):
+            break
+    taken.append(box)
+    options: dict[str, Any] = {"fontsize": 8, "color": color, "zorder": 2, "weight": "bold"}
+    axes.annotate(
+        method,
+        (_error(way), way.ns),
+        xytext=(dx, dy),
+        textcoords="offset points",
+        bbox=_PAPER,
+        **options,
+    )
+
+
+def _error(way: Way) -> float:
+    return max(way.error, _LOWEST) if np.isfinite(way.error) else 1.0
+
+
+def _short(setting: str) -> str:
+    """The numbers of a setting."""
+    return " ".join(part.split("=")[1] for part in setting.split())

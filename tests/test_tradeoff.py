@@ -1,0 +1,247 @@
+"""The measuring engine: the shipped errors are what is measured, files and pictures hold."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pandas
+import pytest
+import xarray
+from click.testing import CliRunner
+from puck_tables.cli.main import main
+from puck_tables.cli.tradeoff import report
+
+from puck_tables import load_stop_table, load_table, resultants
+from puck_tables.errors import OutputError
+from puck_tables.front import shipped_front
+from puck_tables.kernels.spline import fill_resultants
+from puck_tables.motion.bulk import fill_stops
+from puck_tables.motion.steppers import DORMAND_PRINCE, RK4
+from puck_tables.result_file import save_trade_off
+from puck_tables.similarity.axes import SlipAxis
+from puck_tables.similarity.exact import exact_stops
+from puck_tables.similarity.stop_table import StopTable
+from puck_tables.tradeoff import engine, resultant_ways, stop_ways
+from puck_tables.tradeoff.machine import measured_machine
+from puck_tables.tradeoff.models import PADE_MATCHED, as_table, pade_limit_ratio
+from puck_tables.tradeoff.truth import Points, known_starts, random_points
+from puck_tables.tradeoff_picture import plot_trade_off
+
+
+@pytest.fixture(scope="module")
+def measured() -> engine.TradeOff:
+    """A result as the engine gives it, with the ways that ship."""
+    machine = replace(measured_machine(), description={"processor": "any", "cores": "1"})
+    sizes = np.array([1e3, 1e4])
+    return engine.TradeOff(
+        shipped_front(), sizes, np.array([20.0, 15.0]), np.array([1e5, 1e6]),
+        {"truth": 1.531, "limit surface": np.inf}, machine, 25, 80.0,
+    )  # fmt: skip
+
+
+def test_errors_are_properties_of_the_ways_and_ship_as_measured():
+    """Every look-up and every fifth contender measured again: the same to the digits shipped."""
+    points = random_points(40)
+    task = stop_ways.Task(known_starts(), points, load_table(), load_stop_table())
+    known = {(way.question, way.name): way for way in shipped_front()}
+    count = 0
+    for number, contender in enumerate(stop_ways.contenders(task)):
+        if contender.outsider or (contender.method != "look-up" and number % 5):
+            continue
+        if contender.question != "stop" or "float32" in contender.method:
+            continue
+        ready = contender.ready(contender.build())
+        worst = max(ready.time_error.max(), ready.place_error.max())
+        way = known["stop", f"{contender.method} ({contender.setting})"]
+        assert worst == pytest.approx(way.error, rel=0.02, abs=2e-14), way.name
+        count += 1
+    assert count >= 7 + 4
+
+
+def test_errors_of_resultants_ship_as_measured():
+    points = random_points(4000)
+    flat = points.delta == 0.0
+    flat_points = Points(points.phi[flat], points.delta[flat], points.resultants[:, flat])
+    task = resultant_ways.Task(points, flat_points)
+    known = {way.name: way for way in shipped_front() if way.question == "resultants"}
+    for contender in resultant_ways.contenders(task):
+        if contender.method in ("quadratic in delta", "bicubic, graded", "limit surface"):
+            error = contender.ready(contender.build()).place_error.max()
+            name = contender.method + (f" ({contender.setting})" if contender.setting else "")
+            assert error == pytest.approx(known[name].error, rel=0.02, abs=1e-14)
+
+
+def test_the_figures_asked_for_are_on_the_front():
+    """Errors and sizes; times are for the benchmarks."""
+    ways = {way.name: way for way in shipped_front() if way.question == "resultants"}
+    table = ways["quadratic in delta (nodes=513)"]
+    assert table.error <= 3e-9
+    assert table.bytes <= 1 << 20
+    assert ways["closed forms"].error <= 1e-14
+    stops = [way for way in shipped_front() if way.question == "stop"]
+    assert any(way.method == "look-up" and way.error <= 3e-9 for way in stops)
+
+
+def test_quadratic_and_bicubic_are_the_same_table():
+    table = load_table()
+    rng = np.random.default_rng(3)
+    phi, delta = rng.uniform(-1.57, 1.57, 3000), rng.random(3000)
+    delta[:50], phi[50:60], phi[60:70] = 0.0, 0.0, 0.5 * np.pi
+    bicubic = np.empty((3, phi.size))
+    fill_resultants(table.coefficients, 1.0, phi, delta, bicubic)
+    np.testing.assert_allclose(np.stack(table.resultants(phi, delta)), bicubic, rtol=0, atol=1e-14)
+    assert table.quadratic is not None
+    assert table.quadratic.nbytes < 0.3 * table.coefficients.nbytes
+
+
+def test_a_table_that_is_not_quadratic_is_read_as_bicubic():
+    model = as_table("pade", *PADE_MATCHED, size=129)  # ρ_⊥ = 0 fits; bend one value
+    values = model.values.copy()
+    values[:, 1, 0] *= 1.01
+    bent = replace(model, values=values)
+    assert bent.quadratic is None
+    assert model.quadratic is not None
+    assert float(bent.resultants(0.0, 1.0 / 3.0).parallel) == pytest.approx(1.01, abs=1e-12)
+
+
+def test_closed_forms_beside_the_singular_angle_do_not_depend_on_the_block():
+    near = 10.0 ** -np.linspace(0.5, 16.0, 200)
+    phi = np.concatenate([0.25 * np.pi - near, 0.25 * np.pi + near])
+    delta = np.linspace(0.0, 1.0, phi.size)
+    together = np.stack(resultants(phi, delta))
+    alone = np.stack([np.stack(resultants(p, d)) for p, d in zip(phi, delta, strict=True)], -1)
+    assert np.array_equal(together, alone)
+    beyond = resultants([1.5, 0.25 * np.pi], [1.4, 1.15])  # above 1, still in full contact
+    assert np.isfinite(np.stack(beyond)).all()
+
+
+def test_vectors_of_the_look_up_are_the_plain_sums():
+    """Hand-made vector code against NumPy, double and single, at every number of powers."""
+    table = StopTable(SlipAxis(47), load_stop_table().values[::6])
+    from puck_tables.similarity.lookup import row_width, slip_place, stops_kernel
+
+    launch = np.array([[0.6], [0.1], [0.9], [0.7], [1.0], [1.0]])
+    for powers in range(2, 8):
+        c = table.cut(powers)
+        out = np.empty((3, 1))
+        stops_kernel(powers)(launch, c, out)
+        side, xi = slip_place.py_func(np.hypot(0.6, 0.1), 0.9)
+        cell, t = divmod(xi * 47, 1.0)
+        weights = [(1 - t) ** 3, 4 - 6 * t**2 + 3 * t**3, 1 + 3 * t + 3 * t**2 - 3 * t**3, t**3]
+        row = weights @ c[side, int(cell) : int(cell) + 4]
+        s = 2 * 0.7**2 - 1
+        time = sum(row[3 * m] * s**m for m in range(powers))
+        q = np.sqrt(0.6**2 + 0.1**2 + 0.9**2)
+        assert row.size == row_width(powers)
+        assert out[0, 0] == pytest.approx(q * time, rel=1e-13)
+        if powers in (2, 7):
+            single = np.empty((3, 1))
+            stops_kernel(powers)(launch, c.astype(np.float32), single)
+            np.testing.assert_allclose(single, out, rtol=1e-6)
+            assert not np.array_equal(single, out)
+
+
+def test_the_look_up_is_found_in_the_cache_of_compiled_code():
+    """Numba keys it by what the function encloses: only plain numbers are the same next time."""
+    from puck_tables.similarity.lookup import stops_kernel
+
+    enclosed = [cell.cell_contents for cell in stops_kernel(6).py_func.__closure__]
+    assert enclosed
+    assert all(type(value) is int for value in enclosed)
+
+
+def test_unrolled_and_general_runge_kutta_take_the_same_steps():
+    from puck_tables.motion.equations import SIZE, T, Y
+    from puck_tables.motion.path import integrate
+    from puck_tables.motion.rk4 import to_stop
+
+    nothing, none = np.empty(0), np.empty((0, SIZE))
+    for u in (-20.0, -2.0, -1e-6, 0.3, 5.0):
+        for delta in (0.0, 0.4, 1.0):
+            state, fast, slow = np.zeros(SIZE), np.zeros(SIZE + 1), np.zeros(SIZE + 1)
+            to_stop(u, 40.0, nothing, delta, state, fast)
+            integrate(u, RK4, 40.0, 1.0, nothing, delta, 10**5, nothing, none, slow)
+            np.testing.assert_allclose(fast[:7], slow[:7], rtol=0, atol=2e-14)
+            exact = exact_stops(np.array([u]), np.array([delta]))[0, :3]
+            assert np.abs(fast[T : Y + 1] - exact).max() <= 2e-7
+
+
+def test_models_of_the_literature():
+    assert pade_limit_ratio(*PADE_MATCHED) == pytest.approx(4.0)
+    table = as_table("limit surface")
+    launch = np.array([[1.0], [0.0], [0.0], [0.0], [1.0], [1.0]])
+    out, status = np.empty((6, 1)), np.empty(1, np.int8)
+    fill_stops(launch, DORMAND_PRINCE, 64.0, 1.0, table.coefficients, 1.0, out, status)
+    assert out[:2, 0] == pytest.approx([1.0, 0.5], abs=1e-9)  # pure sliding is right in any model
+
+
+def test_files(measured: engine.TradeOff, tmp_path: Path):
+    save_trade_off(measured, tmp_path / "t.h5")
+    with xarray.open_dataset(tmp_path / "t.h5", engine="h5netcdf") as data:
+        assert data["error"].dims == ("way",)
+        assert data["stop_ns"].dims == ("stops",)
+        assert data["ns"].attrs["units"] == "ns"
+        chosen = data["error"].sel(way="resultants: closed forms")
+        assert 1e-16 < float(chosen) <= 1e-14
+        assert data.attrs["machine_processor"] == "any"
+    save_trade_off(measured, tmp_path / "t.csv")
+    rows = pandas.read_csv(tmp_path / "t.csv")
+    assert len(rows) == len(measured.ways)
+    assert set(rows.question) == {"resultants", "stop", "trajectory", "state"}
+    with pytest.raises(OutputError, match="exists already"):
+        save_trade_off(measured, tmp_path / "t.csv")
+
+
+def test_picture_and_report(measured: engine.TradeOff, tmp_path: Path):
+    plot_trade_off(measured, tmp_path / "t.png")
+    assert (tmp_path / "t.png").stat().st_size > 50_000
+    text = report(measured)
+    assert text.isascii()
+    for words in (
+        "the front of",
+        "outsiders",
+        "closed forms",
+        "limit surface none",
+        "1e+03: 20.0 ns",
+    ):
+        assert words in text
+
+
+def test_refusals_come_before_the_work(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.chdir(tmp_path)
+    Path("old.csv").write_text("keep")
+    for arguments, code, words in (
+        (["-o", "old.csv"], 1, "exists already"),
+        (["-o", "new.txt"], 2, "one of .h5, .csv"),
+        (["--plot", "new.gif"], 2, "one of .png"),
+        (["-o", "a.h5", "-o", "a.h5"], 2, "two outputs"),
+    ):
+        result = CliRunner().invoke(main, ["tradeoff", "--quick", *arguments])
+        assert result.exit_code == code
+        assert words in result.stderr
+    assert Path("old.csv").read_text() == "keep"
+
+
+def test_every_round_runs_every_way(monkeypatch: pytest.MonkeyPatch):
+    """The engine itself, on two ways and small sizes."""
+
+    def few(task: resultant_ways.Task):
+        for contender in resultant_ways_contenders(task):
+            if contender.method in ("closed forms", "limit surface"):
+                yield contender
+
+    resultant_ways_contenders = resultant_ways.contenders
+    monkeypatch.setattr(engine.resultant_ways, "contenders", few)
+    monkeypatch.setattr(engine.stop_ways, "contenders", lambda task: iter(()))
+    monkeypatch.setattr(engine.state_ways, "contenders", lambda task: iter(()))
+    monkeypatch.setattr(engine, "_QUICK_SWEEP", 4)
+    seen: list[tuple[int, int]] = []
+    result = engine.measure(quick=True, progress=lambda done, total: seen.append((done, total)))
+    assert [way.method for way in result.ways] == ["closed forms", "limit surface"]
+    assert seen[-1][0] == seen[-1][1]
+    assert result.ways[0].error <= 1e-14 < result.ways[1].error
+    assert all(way.ns > 0.0 for way in result.ways)
+    assert result.ways[0].limit in ("arithmetic", "memory")
+    assert result.peak_bytes[-1] <= 2**21
