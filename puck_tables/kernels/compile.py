@@ -19,6 +19,9 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import numba
+from llvmlite import ir
+from numba import types
+from numba.extending import intrinsic
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -104,29 +107,28 @@ def _compile(function: Function, forceinline: bool) -> Function:
     return compiled
 
 
-def weighted_rows(width: int) -> Any:
-    """A compiled function (c, k, a, b, d, e) → the sums a·c[k+m] + b·c[k+width+m] + … as a tuple.
+def _weighted_rows(
+    typing: Any, c: Any, k: Any, a: Any, b: Any, d: Any, e: Any, width: Any
+) -> Any:  # fmt: skip
+    """Compiled (c, k, a, b, d, e, width) → the sums a·c[k+m] + b·c[k+width+m] + … as a tuple.
 
-    Four neighbouring rows of ``width`` numbers of a flat array (of double or single precision),
-    weighted and added as whole vectors.  LLVM does not see by itself that it may (the sums could
-    overwrite the table); in the stop look-up it is worth a fifth of the time.
+    Four neighbouring rows of ``width`` numbers (a constant) of a flat array of double or single
+    precision, weighted and added as whole vectors.  LLVM does not see by itself that it may (the
+    sums could overwrite the table); in the stop look-up it is worth a fifth of the time.
     """
-    from llvmlite import ir
-    from numba import types
-    from numba.extending import intrinsic
-
-    double = ir.VectorType(ir.DoubleType(), width)
+    count = width.literal_value
+    double = ir.VectorType(ir.DoubleType(), count)
     nothing = ir.Constant(double, ir.Undefined)
-    spread = ir.Constant(ir.VectorType(ir.IntType(32), width), [0] * width)
+    spread = ir.Constant(ir.VectorType(ir.IntType(32), count), [0] * count)
     first = ir.Constant(ir.IntType(32), 0)
 
     def build(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         single = signature.args[0].dtype == types.float32
-        stored = ir.VectorType(ir.FloatType(), width) if single else double
+        stored = ir.VectorType(ir.FloatType(), count) if single else double
         data = context.make_array(signature.args[0])(context, builder, args[0]).data
         total = None
         for row in range(4):
-            place = builder.add(args[1], ir.Constant(args[1].type, row * width))
+            place = builder.add(args[1], ir.Constant(args[1].type, row * count))
             values = builder.load(
                 builder.bitcast(builder.gep(data, [place]), stored.as_pointer()),
                 align=4 if single else 8,
@@ -137,12 +139,12 @@ def weighted_rows(width: int) -> Any:
             product = builder.fmul(values, weight, flags=("contract",))
             total = product if row == 0 else builder.fadd(total, product, flags=("contract",))
         parts = [
-            builder.extract_element(total, ir.Constant(ir.IntType(32), i)) for i in range(width)
+            builder.extract_element(total, ir.Constant(ir.IntType(32), i)) for i in range(count)
         ]
         return context.make_tuple(builder, signature.return_type, parts)
 
-    def weighted(typing: Any, c: Any, k: Any, a: Any, b: Any, d: Any, e: Any) -> Any:
-        sums: Any = types.UniTuple(types.float64, width)  # type: ignore[no-untyped-call]
-        return sums(c, k, a, b, d, e), build
+    sums: Any = types.UniTuple(types.float64, count)  # type: ignore[no-untyped-call]
+    return sums(c, k, a, b, d, e, width), build
 
-    return intrinsic(weighted)
+
+weighted_rows: Any = intrinsic(prefer_literal=True)(_weighted_rows)

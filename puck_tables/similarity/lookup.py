@@ -72,7 +72,6 @@ def stops_kernel(powers: int) -> Callable[[FloatArray, FloatArray, FloatArray], 
     is a constant of the compiled code: with it the rows stay in registers.
     """
     width, top = row_width(powers), 3 * powers - 3
-    weighted = weighted_rows(width)
 
     @kernel
     def fill(launches: FloatArray, coefficients: FloatArray, out: FloatArray) -> int:
@@ -115,7 +114,7 @@ def stops_kernel(powers: int) -> Callable[[FloatArray, FloatArray, FloatArray], 
                     first[n] = int(width * cell + side * side_stride)
             for n in range(vx.size):
                 a, b, d, e = basis(inside[n])
-                row = weighted(c, first[n], a, b, d, e)
+                row = weighted_rows(c, first[n], a, b, d, e, width)
                 s = 2.0 * delta[n] * delta[n] - 1.0
                 f, g, h = row[top], 0.0, 0.0
                 for m in range(powers - 2, -1, -1):
