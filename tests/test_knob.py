@@ -89,12 +89,9 @@ def test_nor_with_a_method_of_one_s_choice(starts: dict[str, np.ndarray], method
         assert errors(part, result.stop_time, result.stop_position).max() <= tol
 
 
-@pytest.mark.parametrize("tol", TOLERANCES)
-def test_no_trajectory_is_outside_the_tolerance(starts: dict[str, np.ndarray], tol: float):
-    """Every tenth start, its own at each tolerance."""
+def check_trajectories(starts: dict[str, np.ndarray], tol: float, numbers: range) -> None:
     one = launched(starts, seed=99)
-    first = int(-np.log10(tol)) - 3
-    for n in range(first, 2000, 10):
+    for n in numbers:
         run = simulate(
             one["v0"][n], one["w0"][n], delta=one["delta"][n], decel=one["decel"][n],
             radius=one["radius"][n], tol=tol, frames=1,
@@ -102,6 +99,18 @@ def test_no_trajectory_is_outside_the_tolerance(starts: dict[str, np.ndarray], t
         single = {name: values[n] for name, values in one.items()}
         error = errors(single, run.stop_time, np.array(run.stop_position))
         assert error <= tol, (n, starts["u"][n], starts["delta"][n])
+
+
+@pytest.mark.parametrize("tol", TOLERANCES)
+def test_no_trajectory_is_outside_the_tolerance(starts: dict[str, np.ndarray], tol: float):
+    """Every tenth start, its own at each tolerance."""
+    check_trajectories(starts, tol, range(int(-np.log10(tol)) - 3, 2000, 10))
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("tol", TOLERANCES)
+def test_no_trajectory_of_all_is_outside_the_tolerance(starts: dict[str, np.ndarray], tol: float):
+    check_trajectories(starts, tol, range(2000))
 
 
 def test_the_coarsest_cut_is_not_within_the_finest_tolerance(starts: dict[str, np.ndarray]):
