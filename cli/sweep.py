@@ -136,6 +136,8 @@ def sweep(
         told(output)
     if kept is not None:
         kept.unlink(missing_ok=True)
+    elif output is not None and _kept(output).exists():
+        click.echo(f"{_kept(output)} is left of an interrupted sweep: remove it", err=True)
     if plot is not None:
         plot_map(stops, plot, overwrite)
         told(plot)

@@ -187,7 +187,7 @@ def choose(
         hint = "" if ADAPTIVE_EXACT in methods else "; integration with closed forms reaches 1e-13"
         raise AccuracyError(
             f"tol must be from {_up(best)} (the best of {' / '.join(dict.fromkeys(methods))}) to "
-            f"{COARSEST:g}, in units of Q/J and Q^2/J, got {tol:g}{hint}"
+            f"{COARSEST:g}, in units of Q/J and Q^2/J, got {tol:g}: give a tol in that range{hint}"
         )
     ranked = sorted(known, key=lambda way: way.ns)
     taken = next(way for way in ranked if off[way] <= tol)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -144,8 +144,8 @@ def solver_for(
         if not table.tolerance <= wanted <= COARSEST:
             raise AccuracyError(
                 f"tol must be from {table.tolerance:.1g} (that of the stop table) to {COARSEST:g}, "
-                f"got {wanted:g}: a finer table comes from 'puck build-tables --kind stops "
-                "--accuracy A' with A down to 1e-11"
+                f"got {wanted:g}: give a tol in that range; a finer table comes from "
+                "'puck build-tables --kind stops --accuracy A' with A down to 1e-11"
             )
         return LookUp(table)
     if isinstance(table, Table) and method == LOOK_UP:
@@ -182,4 +182,13 @@ def choose_with(
     if exact or table is not None:
         methods = tuple(m for m in methods if m.endswith("closed forms"))
     added = 0.0 if table is None else TABLE_FACTOR * table.tolerance
-    return choose(question, tol, methods, added)
+    try:
+        choice = choose(question, tol, methods, added)
+    except AccuracyError as error:
+        raise AccuracyError(_with_table(str(error), table)) from None
+    return replace(choice, why=_with_table(choice.why, table))
+
+
+def _with_table(text: str, table: Table | None) -> str:
+    """The knob's words, where a table of one's own stands for the closed forms it measured."""
+    return text if table is None else text.replace("closed forms", f"the table {table.source}")

@@ -11,7 +11,7 @@ from click.testing import CliRunner
 from mpmath import mp
 from puck_tables.cli.main import main
 
-from puck_tables import load_stop_table, load_table, simulate, stop, sweep
+from puck_tables import build_table, load_stop_table, load_table, simulate, stop, sweep
 from puck_tables.errors import AccuracyError, InputError, TableError
 from puck_tables.front import (
     INTEGRATED,
@@ -192,6 +192,14 @@ def test_sweep_and_stop_take_the_same_way():
         alone = stop((3.0, 0.0), 2.0, tol=tol)
         assert grid.choice == alone.choice
         assert grid.stop_time[1, 1] == float(alone.stop_time)
+
+
+def test_a_table_of_one_s_own_is_named_not_closed_forms():
+    found = stop((1, 0), 5.0, table=build_table(accuracy=1e-5), tol=1e-3)
+    assert "the table memory" in found.choice.why
+    assert "closed forms" not in found.choice.why
+    with pytest.raises(AccuracyError, match=r"the table memory.*give a tol in that range"):
+        stop((1, 0), 5.0, table=build_table(accuracy=1e-5))
 
 
 def test_a_stop_table_of_one_s_own_is_taken_whole():

@@ -261,3 +261,17 @@ def test_out_of_range():
     for gyration in (0.0, -1.0, math.nan, math.inf):
         with pytest.raises(InputError, match="gyration"):
             limit_ratio(law_of("ring"), 0.0, gyration)
+
+
+@pytest.mark.parametrize("size", [1e308, 1e-320])
+def test_only_the_shape_of_a_profile_matters(size: float):
+    flat = profile_law([0.0, 1.0], [size, size]).resultants([0.1, 0.9], 0.5)
+    even = profile_law([0.0, 1.0], [1.0, 1.0]).resultants([0.1, 0.9], 0.5)
+    np.testing.assert_array_equal(np.stack(flat), np.stack(even))
+
+
+def test_words_where_numbers_belong_are_said():
+    with pytest.raises(InputError, match="radii must be real numbers"):
+        profile_law("a", "b")
+    with pytest.raises(InputError, match="must be a str"):
+        law_of(3)

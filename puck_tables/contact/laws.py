@@ -29,7 +29,7 @@ from puck_tables.contact.superposition import (
     ring_integrals,
 )
 from puck_tables.errors import InputError
-from puck_tables.real import broadcast
+from puck_tables.real import broadcast, instance, real_array
 
 NAMES = "uniform, galin, hertz, ring, annulus:INNER (0 < INNER < 1), or a CSV file of rho, W"
 _SLACK = 1e-9  # of δ/δ_max: names and files carry twelve digits
@@ -129,6 +129,7 @@ def law_of(text: str) -> Law:
     >>> round(law_of("hertz").mean_square, 12)
     0.2
     """
+    instance("the pressure law", text, str)
     kind, colon, rest = text.partition(":")
     if text in _NAMED:
         return Law(text, (1.0,), _NAMED[text])
@@ -172,14 +173,15 @@ def profile_law(radii: npt.ArrayLike, pressure: npt.ArrayLike, name: str = "prof
     >>> round(law.mean_square, 12)
     0.15
     """
-    rho, weight = np.array(radii, dtype=np.float64), np.array(pressure, dtype=np.float64)
+    rho, weight = real_array("radii", radii, "radii"), real_array("pressure", pressure, "any unit")
     if not (rho.ndim == 1 and rho.shape == weight.shape and rho.size >= 2):
         raise InputError(f"{name}: a profile needs two or more rows of rho, W")
     if not (rho[0] >= 0.0 and rho[-1] == 1.0 and np.all(np.diff(rho) > 0.0)):
         raise InputError(f"{name}: rho must ascend from 0 or more to 1 (units of the radius)")
     if not (np.all(weight >= 0.0) and np.all(np.isfinite(weight)) and weight.max() > 0.0):
         raise InputError(f"{name}: W must be finite, nowhere negative and not all zero")
-    integrals = partial(profile_integrals, radii=rho, pressure=weight)
+    shape = weight / weight.max()  # only the shape matters; the numbers may be of any size
+    integrals = partial(profile_integrals, radii=rho, pressure=shape)
     edges = (float(rho[0]), 1.0) if rho[0] > 0.0 else (1.0,)
     return Law(name, edges, integrals)
 
