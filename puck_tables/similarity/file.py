@@ -14,9 +14,6 @@ from typing import Any
 
 import numpy as np
 
-from puck_tables.errors import OutputError, TableError
-from puck_tables.real import instance
-from puck_tables.safe_write import write_bytes
 from puck_tables.similarity.axes import HEIGHTS, SlipAxis, heights
 from puck_tables.similarity.stop_table import FUNCTIONS, UPPER_DELTA, StopAccuracy, StopTable
 from puck_tables.table.container import (
@@ -26,7 +23,9 @@ from puck_tables.table.container import (
     check_usable,
     decode,
     encode,
+    function_fields,
     read_content,
+    save,
 )
 
 KIND = "stops"
@@ -99,17 +98,7 @@ def save_stop_table(
     >>> saved.passport["kind"]
     'stops'
     """
-    instance("table", table, StopTable)
-    if table.accuracy is None or not np.all(np.isfinite(table.values)):
-        raise OutputError(
-            "a table without measured accuracy or with a non-finite value is not saved"
-        )
-    content = _encode(table, command)
-    written = _decode(content, str(path))
-    if not np.array_equal(written.values, table.values):
-        raise TableError(f"{path}: the table does not read back as it was written")
-    write_bytes(path, content, overwrite)
-    return written
+    return save(table, StopTable, path, overwrite, lambda chosen: _encode(chosen, command), _decode)
 
 
 def load_stop_table(path: str | Path | None = None) -> StopTable:
@@ -184,19 +173,13 @@ def _encode(table: StopTable, command: str) -> bytes:
         ),
         Field("delta", heights(), {"units": "1", "long_name": "dimensionless height 2 f h / r"}),
     ]
-    functions = [
-        Field(
-            name,
-            table.values[:, :, index],
-            {
-                "units": "1",
-                "long_name": _LONG_NAMES[name],
-                "max_error": table.accuracy.largest[index],
-            },
-        )
-        for index, name in enumerate(FUNCTIONS)
-    ]
-    return encode(_recipe(table.axis), described, axes, functions, command)
+    return encode(
+        _recipe(table.axis),
+        described,
+        axes,
+        function_fields(FUNCTIONS, table, _LONG_NAMES),
+        command,
+    )
 
 
 def table_of(contents: Contents, source: str) -> StopTable:

@@ -15,17 +15,19 @@ import io
 import json
 import math
 import platform
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol, TypeVar
 
 import h5py
 import numpy as np
 import numpy.typing as npt
 
 from puck_tables._version import __version__
-from puck_tables.errors import TableError
+from puck_tables.errors import OutputError, TableError
+from puck_tables.real import instance
+from puck_tables.safe_write import write_bytes
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -121,6 +123,83 @@ def encode(
         arrays = {field.name: field.values for field in (*axes, *functions)}
         file.attrs["content_digest"] = _digest(attributes, arrays)
     return sealed(buffer.getvalue())
+
+
+class Saved(Protocol):
+    """What every kind of table has."""
+
+    @property
+    def values(self) -> FloatArray:
+        """Node values."""
+
+    @property
+    def accuracy(self) -> Any:
+        """Measured errors, or None."""
+
+
+AnySaved = TypeVar("AnySaved", bound=Saved)
+
+
+def save(
+    table: AnySaved,
+    kind: type[AnySaved],
+    path: str | Path,
+    overwrite: bool,
+    content_of: Callable[[AnySaved], bytes],
+    table_of: Callable[[bytes, str], AnySaved],
+) -> AnySaved:
+    """Write a table to its file, read it back, and only then give it its name.
+
+    Parameters
+    ----------
+    table : of class ``kind``, with a measured accuracy
+    path, overwrite : as in :func:`puck_tables.save_table`
+    content_of, table_of : how this kind of table becomes bytes, and back
+
+    Returns
+    -------
+    The table as loaded from what was written.
+
+    Raises
+    ------
+    InputError
+        If it is of another class.
+    OutputError
+        If it has no measured accuracy or a non-finite value, or cannot be written.
+    TableError
+        If what was written does not read back as the same table.
+    """
+    instance("table", table, kind)
+    if table.accuracy is None or not np.all(np.isfinite(table.values)):
+        raise OutputError(
+            "a table without measured accuracy or with a non-finite value is not saved"
+        )
+    content = content_of(table)
+    written = table_of(content, str(path))
+    if not np.array_equal(written.values, table.values):
+        raise TableError(f"{path}: the table does not read back as it was written")
+    write_bytes(path, content, overwrite)
+    return written
+
+
+def function_fields(
+    names: Sequence[str], table: Saved, long_names: Mapping[str, str] | None = None
+) -> list[Field]:
+    """The functions of a table, the last axis of its values, with the error of each.
+
+    Examples
+    --------
+    >>> from puck_tables import load_table
+    >>> [field.name for field in function_fields(("parallel", "perpendicular"), load_table())]
+    ['parallel', 'perpendicular']
+    """
+    fields = []
+    for index, name in enumerate(names):
+        attributes = {"units": "1", "max_error": table.accuracy.largest[index]}
+        if long_names is not None:
+            attributes["long_name"] = long_names[name]
+        fields.append(Field(name, table.values[..., index], attributes))
+    return fields
 
 
 def sealed(content: bytes) -> bytes:

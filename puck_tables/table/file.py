@@ -15,9 +15,6 @@ from typing import Any
 
 import numpy as np
 
-from puck_tables.errors import OutputError, TableError
-from puck_tables.real import instance
-from puck_tables.safe_write import write_bytes
 from puck_tables.table.container import (
     Contents,
     Field,
@@ -25,7 +22,9 @@ from puck_tables.table.container import (
     check_usable,
     decode,
     encode,
+    function_fields,
     read_content,
+    save,
 )
 from puck_tables.table.grid import GRADING_POWER, DeltaAxis, PhiAxis
 from puck_tables.table.table import FUNCTIONS, Accuracy, Table
@@ -88,17 +87,7 @@ def save_table(
     >>> saved.passport["pressure_law"]
     'uniform'
     """
-    instance("table", table, Table)
-    if table.accuracy is None or not np.all(np.isfinite(table.values)):
-        raise OutputError(
-            "a table without measured accuracy or with a non-finite value is not saved"
-        )
-    content = _encode(table, command)
-    written = _decode(content, str(path))
-    if not np.array_equal(written.values, table.values):
-        raise TableError(f"{path}: the table does not read back as it was written")
-    write_bytes(path, content, overwrite)
-    return written
+    return save(table, Table, path, overwrite, lambda chosen: _encode(chosen, command), _decode)
 
 
 def load_table(path: str | Path | None = None) -> Table:
@@ -166,19 +155,13 @@ def _encode(table: Table, command: str) -> bytes:
             {"units": "1", "long_name": "dimensionless height 2 f h / r"},
         ),
     ]
-    functions = [
-        Field(
-            name,
-            table.values[:, :, index],
-            {
-                "units": "1",
-                "long_name": _LONG_NAMES[name],
-                "max_error": table.accuracy.largest[index],
-            },
-        )
-        for index, name in enumerate(FUNCTIONS)
-    ]
-    return encode(_recipe(table.phi_axis, table.delta_axis), described, axes, functions, command)
+    return encode(
+        _recipe(table.phi_axis, table.delta_axis),
+        described,
+        axes,
+        function_fields(FUNCTIONS, table, _LONG_NAMES),
+        command,
+    )
 
 
 def _decode(content: bytes, source: str) -> Table:

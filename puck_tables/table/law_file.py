@@ -13,8 +13,6 @@ from typing import Any
 
 import numpy as np
 
-from puck_tables.errors import OutputError, TableError
-from puck_tables.safe_write import write_bytes
 from puck_tables.table.container import (
     Contents,
     Field,
@@ -22,7 +20,9 @@ from puck_tables.table.container import (
     check_usable,
     decode,
     encode,
+    function_fields,
     read_content,
+    save,
 )
 from puck_tables.table.grid import GRADING_POWER
 from puck_tables.table.law_grid import LawAxis
@@ -85,16 +85,7 @@ def save_law_table(
     >>> saved.passport["pressure_law"]
     'annulus:0.8'
     """
-    if table.accuracy is None or not np.all(np.isfinite(table.values)):
-        raise OutputError(
-            "a table without measured accuracy or with a non-finite value is not saved"
-        )
-    content = _encode(table, command)
-    written = _decode(content, str(path))
-    if not np.array_equal(written.values, table.values):
-        raise TableError(f"{path}: the table does not read back as it was written")
-    write_bytes(path, content, overwrite)
-    return written
+    return save(table, LawTable, path, overwrite, lambda chosen: _encode(chosen, command), _decode)
 
 
 def load_law_table(path: str | Path) -> LawTable:
@@ -151,16 +142,8 @@ def _encode(table: LawTable, command: str) -> bytes:
             strict=True,
         )
     ]
-    functions = [
-        Field(
-            name,
-            table.values[..., index],
-            {"units": "1", "max_error": table.accuracy.largest[index]},
-        )
-        for index, name in enumerate(FUNCTIONS)
-    ]
     recipe = _recipe(table.law_name, table.axis, table.delta_max)
-    return encode(recipe, described, axes, functions, command)
+    return encode(recipe, described, axes, function_fields(FUNCTIONS, table), command)
 
 
 def _nodes(axis: LawAxis, delta_max: float) -> dict[str, np.ndarray[Any, np.dtype[np.float64]]]:

@@ -14,8 +14,6 @@ from typing import Any
 
 import numpy as np
 
-from puck_tables.errors import OutputError, TableError
-from puck_tables.safe_write import write_bytes
 from puck_tables.table.container import (
     Contents,
     Field,
@@ -23,7 +21,9 @@ from puck_tables.table.container import (
     check_usable,
     decode,
     encode,
+    function_fields,
     read_content,
+    save,
 )
 from puck_tables.table.partial_grid import FAST_END, TOP_DELTA, UPPER_DELTA, ZETA_END, PartialAxes
 from puck_tables.table.partial_table import PartialTable
@@ -96,16 +96,9 @@ def save_partial_table(
     >>> saved.passport["kind"]
     'partial contact'
     """
-    if table.accuracy is None or not np.all(np.isfinite(table.values)):
-        raise OutputError(
-            "a table without measured accuracy or with a non-finite value is not saved"
-        )
-    content = _encode(table, command)
-    written = _decode(content, str(path))
-    if not np.array_equal(written.values, table.values):
-        raise TableError(f"{path}: the table does not read back as it was written")
-    write_bytes(path, content, overwrite)
-    return written
+    return save(
+        table, PartialTable, path, overwrite, lambda chosen: _encode(chosen, command), _decode
+    )
 
 
 def load_partial_table(path: str | Path | None = None) -> PartialTable:
@@ -164,19 +157,13 @@ def _encode(table: PartialTable, command: str) -> bytes:
         Field("phi", table.axes.phi(), slip),
         Field("zeta", table.axes.zeta(), {"units": "1", "long_name": "place between the heights"}),
     ]
-    functions = [
-        Field(
-            name,
-            table.values[:, :, index],
-            {
-                "units": "1",
-                "long_name": _LONG_NAMES[name],
-                "max_error": table.accuracy.largest[index],
-            },
-        )
-        for index, name in enumerate(FUNCTIONS)
-    ]
-    return encode(_recipe(table.axes), described, axes, functions, command)
+    return encode(
+        _recipe(table.axes),
+        described,
+        axes,
+        function_fields(FUNCTIONS, table, _LONG_NAMES),
+        command,
+    )
 
 
 def _decode(content: bytes, source: str) -> PartialTable:

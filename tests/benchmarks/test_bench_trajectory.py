@@ -35,6 +35,7 @@ from puck_tables.motion.path import integrate
 from puck_tables.motion.steppers import DORMAND_PRINCE
 from puck_tables.solvers import Integration, solver_for
 from puck_tables.table.table import Table
+from puck_tables.tradeoff.rivals import patch_script
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -179,39 +180,6 @@ def note(benchmark: Any, setting: Setting) -> None:
     benchmark.extra_info.update(rtol=setting.rtol, atol=setting.atol, calls=setting.calls)
 
 
-# --- rival B: what one would write without having read anything -----------------------------------
-
-
-def plain_script(vx: float, vy: float, spin: float, delta: float) -> FloatArray:
-    """Stop time and place: friction summed over 20 x 40 patches, scipy's default tolerances."""
-    radial, angular = 20, 40
-    rho = (np.arange(radial) + 0.5) / radial
-    angle = 2.0 * np.pi * (np.arange(angular) + 0.5) / angular
-    x, y = np.outer(rho, np.cos(angle)).ravel(), np.outer(rho, np.sin(angle)).ravel()
-    weight = np.repeat(rho / (rho.sum() * angular), angular)
-
-    def motion(t: float, state: FloatArray) -> list[float]:
-        u, v = state[0] - state[2] * y, state[1] + state[2] * x
-        pull = -weight / np.sqrt(u * u + v * v)
-        u, v = u * pull, v * pull
-        # the friction force F tilts the pressure by -δ F·(x, y), which changes F
-        tilted = np.array([[u @ x, u @ y], [v @ x, v @ y]])
-        force = np.linalg.solve(np.eye(2) + delta * tilted, [u.sum(), v.sum()])
-        pressure = 1.0 - delta * (force[0] * x + force[1] * y)
-        torque = ((x * v - y * u) * pressure).sum()
-        return [force[0], force[1], 2.0 * torque, state[0], state[1]]
-
-    q0 = math.hypot(vx, vy, spin)
-
-    def nearly_stopped(t: float, state: FloatArray) -> float:
-        return math.hypot(*state[:3]) - 1e-3 * q0
-
-    nearly_stopped.terminal = True  # type: ignore[attr-defined]
-    start = [vx, vy, spin, 0.0, 0.0]
-    solution = solve_ivp(motion, (0.0, 2.0 * q0), start, events=nearly_stopped)
-    return np.array([solution.t[-1], solution.y[3, -1], solution.y[4, -1]])
-
-
 # --- one stop -------------------------------------------------------------------------------------
 
 ACCURACY = 1e-6
@@ -298,12 +266,12 @@ def test_stop_rival_scipy(measure: Any, method: str) -> None:
 
 
 @ONE_STOP
-def test_stop_rival_plain_script(measure: Any) -> None:
+def test_stop_rival_patch_script(measure: Any) -> None:
     measure(
         "rival: plain script, 20 x 40 patches",
-        lambda: plain_script(*LAUNCH, DELTA),
+        lambda: patch_script(*LAUNCH, DELTA),
         unit="trajectory",
-        error=error_of(plain_script(*LAUNCH, DELTA), LAUNCH),
+        error=error_of(patch_script(*LAUNCH, DELTA), LAUNCH),
     )
 
 
