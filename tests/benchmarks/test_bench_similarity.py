@@ -129,17 +129,20 @@ def test_integrated(measure: Any, launches: FloatArray, truth: FloatArray) -> No
 
 
 @STATES
-def test_states(measure: Any, launches: FloatArray) -> None:
+@pytest.mark.parametrize("order", ["puck by puck", "in random order"])
+def test_states(measure: Any, launches: FloatArray, order: str) -> None:
     table = load_stop_table()
     few = np.ascontiguousarray(launches[:, :FEW])
     known = table.known(few)
     rng = np.random.default_rng(3)
     which = rng.integers(0, FEW, MANY)
+    if order == "puck by puck":
+        which.sort()
     times = known[0, which] * rng.random(MANY)
     pucks = np.concatenate([few, known]).T.copy()
     out = np.empty((STATE_ROWS, MANY))
     measure(
-        "look-up, kernel: a million states of 4096 pucks",
+        f"look-up, kernel: a million states of 4096 pucks, {order}",
         lambda: fill_states(
             pucks, which, times, table.stop_coefficients, table.curve_coefficients,
             table.time_inverse, out,
