@@ -14,6 +14,7 @@ from puck_tables.cli.aim import aim
 from puck_tables.cli.build_tables import build_tables
 from puck_tables.cli.info import info
 from puck_tables.cli.paper import paper
+from puck_tables.cli.scene import scene
 from puck_tables.cli.simulate import simulate
 from puck_tables.cli.sweep import sweep
 from puck_tables.cli.tradeoff import tradeoff
@@ -64,5 +65,5 @@ def main(ctx: click.Context) -> None:
             click.echo("compiling for this machine, once: some seconds", err=True)
 
 
-for _command in (simulate, sweep, aim, build_tables, validate, info, paper, tradeoff):
+for _command in (simulate, sweep, aim, scene, build_tables, validate, info, paper, tradeoff):
     main.add_command(_command)

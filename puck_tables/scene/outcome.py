@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -39,13 +40,23 @@ COLUMNS = {
 }
 
 
+class Event(NamedTuple):
+    """What happened on the way: when (s), what, which wall, edge or region, where (m)."""
+
+    time: float
+    what: str
+    which: int
+    x: float
+    y: float
+
+
 @dataclass(frozen=True)
 class SceneRun:
     """What happened.
 
     ``end``: 'at rest', 'carried by the floor' (at rest on a moving one), 'time is up' or 'over the
-    edge'; ``end_time`` s; ``events``: (time s, what, which) each, what one of rests, slips,
-    bounces, leans (stays at the wall), border, edge; which the number of the wall, edge or region.
+    edge'; ``end_time`` s; ``events``: what happened, one of rests, slips, bounces, leans (stays at
+    the wall), border, edge.
     ``plan``: the model that was taken, and why.  ``energy_residual``: what the ledger misses, as a
     share of its largest entry.  ``columns``: arrays (n,) by name, units in :data:`COLUMNS`;
     ``last``: the same at the end, numbers.
@@ -55,7 +66,7 @@ class SceneRun:
     plan: Plan
     end: str
     end_time: float
-    events: list[tuple[float, str, int]]
+    events: list[Event]
     energy_residual: float
     steps: int
     last: Mapping[str, float]

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.scene.outcome import COLUMNS, SceneRun, ledger_residual
+from puck_tables.scene.outcome import COLUMNS, Event, SceneRun, ledger_residual
 from puck_tables.scene.plan import Plan, free_puck
 from puck_tables.scene.scene import Scene, launch_velocity
 from puck_tables.trajectory import simulate
@@ -60,12 +60,16 @@ def run_plain(scene: Scene, needed: Scene, plan: Plan, times: FloatArray | None)
     }
     assert list(whole) == list(COLUMNS)
     energy = 0.5 * mass * math.hypot(*start) ** 2 + 0.5 * inertia * scene.launch.spin**2
+    stop_place = (
+        scene.launch.position[0] + run.stop_position[0] + belt[0] * length,
+        scene.launch.position[1] + run.stop_position[1] + belt[1] * length,
+    )
     return SceneRun(
         scene=scene,
         plan=plan,
         end="time is up" if not stops else ("carried by the floor" if moves else "at rest"),
         end_time=float(end_time),
-        events=[(length, "rests", 0)] if stops else [],
+        events=[Event(length, "rests", 0, *stop_place)] if stops else [],
         energy_residual=max(run.energy_residual, ledger_residual(whole, energy)),
         steps=run.steps,
         last={name: float(column[-1]) for name, column in whole.items()},

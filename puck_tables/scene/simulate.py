@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from puck_tables.errors import InputError, PuckError
 from puck_tables.real import finite_array
-from puck_tables.scene.equations import SPIN, VX, VY
+from puck_tables.scene.equations import SPIN, VX, VY, X, Y
 from puck_tables.scene.loop import (
     EVENT_COLUMNS,
     EVENT_LIMIT,
@@ -19,7 +19,7 @@ from puck_tables.scene.loop import (
     STEP_LIMIT,
     TIME_UP,
 )
-from puck_tables.scene.outcome import COLUMNS, ENDS, EVENTS, SceneRun, ledger_residual
+from puck_tables.scene.outcome import COLUMNS, ENDS, EVENTS, Event, SceneRun, ledger_residual
 from puck_tables.scene.plain import run_plain
 from puck_tables.scene.plan import Plan, out_of_reach, plan_for
 from puck_tables.scene.prepare import MAX_EVENTS, Prepared, prepare
@@ -129,7 +129,10 @@ def _integrated(scene: Scene, plan: Plan, times: FloatArray | None) -> SceneRun:
         plan=plan,
         end=ENDS[how],
         end_time=end_time,
-        events=[(float(e[0]), EVENTS[int(e[1])], int(e[2])) for e in events[:count]],
+        events=[
+            Event(float(e[0]), EVENTS[int(e[1])], int(e[2]), float(e[3 + X]), float(e[3 + Y]))
+            for e in events[:count]
+        ],
         energy_residual=ledger_residual(columns, float(energy)),
         steps=steps,
         last={name: float(column[-1]) for name, column in columns.items()},
