@@ -7,7 +7,7 @@ import click
 
 @click.group()
 def scene() -> None:
-    """Scene files: list, show and check them.
+    """Scene files: list, show and check them, and what may stand in them.
 
     A scene is a puck, a floor, a launch and what acts on it, in SI units; 'puck simulate --scene'
     and 'puck sweep --scene' run it.
@@ -34,6 +34,16 @@ def show(name: str) -> None:
     from puck_tables.scene.library import shipped_text
 
     click.echo(shipped_text(name), nl=False)
+
+
+@scene.command()
+def fields() -> None:
+    """List every entry that a scene may have: what is allowed, its default, what it is."""
+    from puck_tables.scene.fields import described
+    from puck_tables.scene.scene import Scene
+
+    for path, allowed, text in described(Scene):
+        click.echo(f"{path:<24} {allowed:<44} {text}".rstrip())
 
 
 @scene.command()

@@ -168,3 +168,33 @@ def _number(kind: Kind, value: Any, path: str, reading: Reading) -> float:
 
 def _one(kind: Kind) -> str:
     return dataclasses.replace(kind, shape="number").allowed()
+
+
+def described(kind: type, prefix: str = "") -> list[tuple[str, str, str]]:
+    """Every entry of a dataclass and its parts: path, what is allowed and its default, what it is.
+
+    Examples
+    --------
+    >>> @dataclass(frozen=True)
+    ... class Body:
+    ...     mass: float = of("number", 1.0, "kg", low=0.0, above=True, doc="all of it")
+    >>> described(Body)
+    [('mass', 'a number > 0 kg  [1]', 'all of it')]
+    """
+    rows = []
+    for spec in dataclasses.fields(kind):
+        what: Kind = spec.metadata["kind"]
+        path = prefix + spec.name
+        if what.shape in ("part", "parts"):
+            rows += described(what.part, f"{path}[0]." if what.shape == "parts" else f"{path}.")
+            continue
+        default = ""
+        if spec.default is MISSING:
+            default = "  (needed)"
+        elif spec.default not in (None, ""):
+            value = spec.default
+            numbers = value if isinstance(value, tuple) else (value,)
+            shown = ", ".join(f"{n:g}" if isinstance(n, float) else str(n) for n in numbers)
+            default = f"  [{shown}]"
+        rows.append((path, what.allowed() + default, spec.metadata["doc"]))
+    return rows
