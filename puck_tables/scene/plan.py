@@ -106,12 +106,13 @@ def plan_for(scene: Scene) -> Plan:
     """
     acting = ingredients(scene)
     if acting:
-        model = "slice of the table at fixed delta, integrated"
+        rough = "no dry friction" not in acting
+        model = "slice of the table at fixed delta, integrated" if rough else "integrated"
+        compiled = [name for name in acting if name != "no dry friction"] + _moving(scene)
+        compiled = ["dry friction", *compiled] if rough else compiled
         lines = [
             f"taken         {model}",
-            f"compiled in   {', '.join(['dry friction', *acting, *_moving(scene)])}"
-            if "no dry friction" not in acting
-            else f"compiled in   {', '.join([*acting[:-1], *_moving(scene)]) or 'inertia alone'}",
+            f"compiled in   {', '.join(compiled) or 'inertia alone'}",
             f"cheaper, no   look-up: not a free puck on a level floor ({', '.join(acting)})",
         ]
         return Plan(model, False, "\n".join(lines))
