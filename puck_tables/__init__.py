@@ -16,6 +16,9 @@ from puck_tables._version import __version__
 
 if TYPE_CHECKING:
     from puck_tables.aiming import Aim, aim
+    from puck_tables.chetaev.motion import ConstrainedMotion, constrained_motion
+    from puck_tables.chetaev.patch_puck import patch_stop, patch_system
+    from puck_tables.chetaev.system import ConstrainedSystem
     from puck_tables.contact.laws import Law, law_of, profile_law
     from puck_tables.contact.one_sided import loaded_share
     from puck_tables.contact.one_sided import resultants as one_sided_resultants
@@ -56,6 +59,11 @@ if TYPE_CHECKING:
 _HOMES = {
     "Aim": "aiming",
     "aim": "aiming",
+    "ConstrainedMotion": "chetaev.motion",
+    "constrained_motion": "chetaev.motion",
+    "patch_stop": "chetaev.patch_puck",
+    "patch_system": "chetaev.patch_puck",
+    "ConstrainedSystem": "chetaev.system",
     "Resultants": "contact.resultants",
     "is_full_contact": "contact.resultants",
     "resultants": "kernels.closed_form",
@@ -112,6 +120,8 @@ _HOMES = {
 __all__ = [
     "Aim",
     "CheckReport",
+    "ConstrainedMotion",
+    "ConstrainedSystem",
     "Law",
     "LawTable",
     "PartialTable",
@@ -129,6 +139,7 @@ __all__ = [
     "build_partial_table",
     "build_stop_table",
     "build_table",
+    "constrained_motion",
     "critical_delta",
     "curvature_slope",
     "elementary_stop_time",
@@ -143,6 +154,8 @@ __all__ = [
     "load_table",
     "loaded_share",
     "one_sided_resultants",
+    "patch_stop",
+    "patch_system",
     "plot_aim",
     "plot_map",
     "plot_trajectory",
