@@ -16,6 +16,9 @@ from puck_tables._version import __version__
 
 if TYPE_CHECKING:
     from puck_tables.aiming import Aim, aim
+    from puck_tables.asperity_picture import plot_asperity
+    from puck_tables.chetaev.asperity import Asperity, AsperityMotion, asperity_motion
+    from puck_tables.chetaev.asperity_curve import AsperityCurve, asperity_curve
     from puck_tables.chetaev.motion import ConstrainedMotion, constrained_motion
     from puck_tables.chetaev.patch_puck import patch_stop, patch_system
     from puck_tables.chetaev.system import ConstrainedSystem
@@ -24,6 +27,7 @@ if TYPE_CHECKING:
     from puck_tables.contact.one_sided import resultants as one_sided_resultants
     from puck_tables.contact.opening import critical_delta
     from puck_tables.contact.resultants import Resultants, is_full_contact
+    from puck_tables.contact.speed_law import SpeedLaw
     from puck_tables.kernels.closed_form import resultants
     from puck_tables.motion.limits import (
         approach_exponent,
@@ -35,7 +39,7 @@ if TYPE_CHECKING:
     )
     from puck_tables.plots import plot_aim, plot_map, plot_trajectory
     from puck_tables.puck import similarity_parameters
-    from puck_tables.result_file import save_aim, save_map, save_trajectory
+    from puck_tables.result_file import save_aim, save_asperity, save_map, save_trajectory
     from puck_tables.similarity.build import build_stop_table
     from puck_tables.similarity.check import validate_stops
     from puck_tables.similarity.file import load_stop_table, save_stop_table
@@ -59,11 +63,18 @@ if TYPE_CHECKING:
 _HOMES = {
     "Aim": "aiming",
     "aim": "aiming",
+    "plot_asperity": "asperity_picture",
+    "Asperity": "chetaev.asperity",
+    "AsperityMotion": "chetaev.asperity",
+    "asperity_motion": "chetaev.asperity",
+    "AsperityCurve": "chetaev.asperity_curve",
+    "asperity_curve": "chetaev.asperity_curve",
     "ConstrainedMotion": "chetaev.motion",
     "constrained_motion": "chetaev.motion",
     "patch_stop": "chetaev.patch_puck",
     "patch_system": "chetaev.patch_puck",
     "ConstrainedSystem": "chetaev.system",
+    "SpeedLaw": "contact.speed_law",
     "Resultants": "contact.resultants",
     "is_full_contact": "contact.resultants",
     "resultants": "kernels.closed_form",
@@ -78,6 +89,7 @@ _HOMES = {
     "plot_trajectory": "plots",
     "similarity_parameters": "puck",
     "save_aim": "result_file",
+    "save_asperity": "result_file",
     "save_map": "result_file",
     "save_trajectory": "result_file",
     "Trajectory": "trajectory",
@@ -119,6 +131,9 @@ _HOMES = {
 
 __all__ = [
     "Aim",
+    "Asperity",
+    "AsperityCurve",
+    "AsperityMotion",
     "CheckReport",
     "ConstrainedMotion",
     "ConstrainedSystem",
@@ -126,6 +141,7 @@ __all__ = [
     "LawTable",
     "PartialTable",
     "Resultants",
+    "SpeedLaw",
     "States",
     "StopMap",
     "StopTable",
@@ -135,6 +151,8 @@ __all__ = [
     "__version__",
     "aim",
     "approach_exponent",
+    "asperity_curve",
+    "asperity_motion",
     "build_law_table",
     "build_partial_table",
     "build_stop_table",
@@ -157,12 +175,14 @@ __all__ = [
     "patch_stop",
     "patch_system",
     "plot_aim",
+    "plot_asperity",
     "plot_map",
     "plot_trajectory",
     "profile_law",
     "regime",
     "resultants",
     "save_aim",
+    "save_asperity",
     "save_law_table",
     "save_map",
     "save_partial_table",
