@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from puck_tables.contact.opening import critical_delta
     from puck_tables.contact.resultants import Resultants, is_full_contact
     from puck_tables.contact.speed_law import SpeedLaw
+    from puck_tables.contact.speed_quadrature import speed_resultants
     from puck_tables.kernels.closed_form import resultants
     from puck_tables.motion.limits import (
         approach_exponent,
@@ -57,6 +58,7 @@ if TYPE_CHECKING:
     from puck_tables.table.partial_check import validate_partial
     from puck_tables.table.partial_file import load_partial_table, save_partial_table
     from puck_tables.table.partial_table import PartialTable
+    from puck_tables.table.speed_table import SpeedTable, build_speed_table
     from puck_tables.table.table import Table
     from puck_tables.trajectory import Trajectory, simulate
 
@@ -75,6 +77,7 @@ _HOMES = {
     "patch_system": "chetaev.patch_puck",
     "ConstrainedSystem": "chetaev.system",
     "SpeedLaw": "contact.speed_law",
+    "speed_resultants": "contact.speed_quadrature",
     "Resultants": "contact.resultants",
     "is_full_contact": "contact.resultants",
     "resultants": "kernels.closed_form",
@@ -110,6 +113,8 @@ _HOMES = {
     "validate": "table.check",
     "load_table": "table.file",
     "save_table": "table.file",
+    "SpeedTable": "table.speed_table",
+    "build_speed_table": "table.speed_table",
     "Table": "table.table",
     "Law": "contact.laws",
     "law_of": "contact.laws",
@@ -142,6 +147,7 @@ __all__ = [
     "PartialTable",
     "Resultants",
     "SpeedLaw",
+    "SpeedTable",
     "States",
     "StopMap",
     "StopTable",
@@ -155,6 +161,7 @@ __all__ = [
     "asperity_motion",
     "build_law_table",
     "build_partial_table",
+    "build_speed_table",
     "build_stop_table",
     "build_table",
     "constrained_motion",
@@ -191,6 +198,7 @@ __all__ = [
     "save_trajectory",
     "similarity_parameters",
     "simulate",
+    "speed_resultants",
     "stop",
     "sweep",
     "validate",

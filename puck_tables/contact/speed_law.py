@@ -125,9 +125,13 @@ class SpeedLaw:
                 f"speed = {u[outside].flat[0]:g} m/s is outside this friction law "
                 f"(0 to {self.top_speed:g} m/s)"
             )
+        return self.extended(u)
+
+    def extended(self, speed: FloatArray) -> FloatArray:
+        """The same without a check: the last piece goes on for what rounding puts beyond it."""
         x = np.asarray(self.speeds)
-        cell = np.clip(np.searchsorted(x, u, side="right") - 1, 0, x.size - 2)
-        c, t = self.coefficients[cell], u - x[cell]
+        cell = np.clip(np.searchsorted(x, speed, side="right") - 1, 0, x.size - 2)
+        c, t = self.coefficients[cell], speed - x[cell]
         return np.asarray(c[..., 0] + t * (c[..., 1] + t * (c[..., 2] + t * c[..., 3])))
 
     @classmethod
