@@ -206,9 +206,9 @@ def test_the_kernel_is_the_table_and_says_where_it_ends(fine):
     for phi, Q in ((0.3, 1.0), (1.2, 0.7), (np.pi / 4, np.sqrt(2.0)), (0.0, 2.0), (np.pi / 2, 0.0)):
         sine, cosine = np.sin(phi), np.cos(phi)
         k, fast = min(sine, cosine) / max(sine, cosine), bool(sine > cosine)
-        found = speed_ratios(fine.coefficients, axis.scale, axis.top, k, fast, Q)
+        found = speed_ratios(fine.coefficients, axis.scale, axis.reach, k, fast, Q)
         assert found == pytest.approx([float(x) for x in fine.resultants(phi, Q)], abs=1e-13)
-    beyond = speed_ratios(fine.coefficients, axis.scale, axis.top, 1.0, False, 1.5)
+    beyond = speed_ratios(fine.coefficients, axis.scale, axis.reach, 1.0, False, 1.5)
     assert np.isnan(beyond).all()
     with pytest.raises(InputError, match="outside this table"):
         fine.resultants(np.pi / 4, 1.5)

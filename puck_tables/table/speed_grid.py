@@ -64,9 +64,14 @@ class SpeedAxis:
                 f"{self.top:g} m/s, got {self.scale:g}"
             )
 
+    @property
+    def reach(self) -> float:
+        """The length of the axis in asinh(U/u₀)."""
+        return math.asinh(self.top / self.scale)
+
     def nodes(self) -> FloatArray:
         """U at the nodes, m/s, ascending from 0."""
         share = np.arange(self.cells + 1) / self.cells
-        speeds = self.scale * np.sinh(share * math.asinh(self.top / self.scale))
+        speeds = self.scale * np.sinh(share * self.reach)
         speeds[-1] = self.top
         return np.asarray(speeds)

@@ -131,7 +131,7 @@ class SpeedTable:
         direction = slip_direction(angle)
         out = np.empty((3, angle.size))
         status = fill_speed(
-            self.coefficients, self.speed_axis.scale, self.speed_axis.top,
+            self.coefficients, self.speed_axis.scale, self.speed_axis.reach,
             np.ravel(direction.ratio), np.ravel(direction.fast_spin), np.ravel(Q).copy(), out,
         )  # fmt: skip
         if status != DONE:
