@@ -58,6 +58,8 @@ if TYPE_CHECKING:
     from puck_tables.table.partial_check import validate_partial
     from puck_tables.table.partial_file import load_partial_table, save_partial_table
     from puck_tables.table.partial_table import PartialTable
+    from puck_tables.table.speed_check import validate_speed
+    from puck_tables.table.speed_file import load_speed_table, save_speed_table
     from puck_tables.table.speed_table import SpeedTable, build_speed_table
     from puck_tables.table.table import Table
     from puck_tables.trajectory import Trajectory, simulate
@@ -113,6 +115,9 @@ _HOMES = {
     "validate": "table.check",
     "load_table": "table.file",
     "save_table": "table.file",
+    "validate_speed": "table.speed_check",
+    "load_speed_table": "table.speed_file",
+    "save_speed_table": "table.speed_file",
     "SpeedTable": "table.speed_table",
     "build_speed_table": "table.speed_table",
     "Table": "table.table",
@@ -175,6 +180,7 @@ __all__ = [
     "limit_ratio",
     "load_law_table",
     "load_partial_table",
+    "load_speed_table",
     "load_stop_table",
     "load_table",
     "loaded_share",
@@ -193,6 +199,7 @@ __all__ = [
     "save_law_table",
     "save_map",
     "save_partial_table",
+    "save_speed_table",
     "save_stop_table",
     "save_table",
     "save_trajectory",
@@ -204,6 +211,7 @@ __all__ = [
     "validate",
     "validate_law",
     "validate_partial",
+    "validate_speed",
     "validate_stops",
 ]
 

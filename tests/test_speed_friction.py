@@ -6,11 +6,21 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
+from puck_tables.cli.main import main
 from scipy.integrate import quad
 
-from puck_tables import SpeedLaw, build_speed_table, resultants, speed_resultants
+from puck_tables import (
+    SpeedLaw,
+    build_speed_table,
+    load_speed_table,
+    resultants,
+    save_speed_table,
+    speed_resultants,
+    validate_speed,
+)
 from puck_tables.contact.speed_quadrature import speed_integrals
-from puck_tables.errors import AccuracyError, ContactError, InputError
+from puck_tables.errors import AccuracyError, ContactError, InputError, OutputError, TableError
 from puck_tables.kernels.speed_spline import speed_ratios
 from puck_tables.table.grid import PhiAxis
 from puck_tables.table.speed_grid import SpeedAxis
@@ -47,14 +57,14 @@ def brute(phi: float, speed: float, law) -> list[float]:
             w = np.hypot(ahead, beta * x)
             return float(law(np.array(speed * w))) * top(x, y) / w
 
-        return 2.0 / np.pi * quad(integrand, 0.0, half, points=points or None, epsabs=1e-10,
+        return 2.0 / np.pi * quad(integrand, 0.0, half, points=points or None, epsabs=1e-9,
                                   epsrel=1e-9, limit=60)[0]  # fmt: skip
 
     marks = (alpha + np.concatenate([[0.0], knots, -knots])) / beta
     points = sorted(float(p) for p in marks if -1.0 < p < 1.0)
     return [
-        quad(lambda y, top=top: strip(y, top), -1.0, 1.0, points=points or None, epsabs=1e-8,
-             epsrel=1e-8, limit=60)[0]
+        quad(lambda y, top=top: strip(y, top), -1.0, 1.0, points=points or None, epsabs=1e-7,
+             epsrel=1e-7, limit=60)[0]
         for top in numerators
     ]  # fmt: skip
 
@@ -69,7 +79,7 @@ def test_integrals_by_brute_force(phi, speed, law):
     p = speed_integrals(phi, speed, law)
     cosine, sine = np.cos(phi), np.sin(phi)
     found = [p.a * cosine, p.b * sine, p.c * sine, p.d * sine, p.e * cosine]
-    assert np.array(found, float) == pytest.approx([a, b, c, d, e], abs=2e-8)
+    assert np.array(found, float) == pytest.approx([a, b, c, d, e], abs=1e-7)
 
 
 @pytest.mark.parametrize("speed", [0.0, 1e-9, 1.0, 2e3])
@@ -236,3 +246,66 @@ def test_bad_input_gets_a_sentence(change, error, message):
     given = {"law": stribeck, "height_ratio": 1.0, "top_speed": 2.0} | change
     with pytest.raises(error, match=message):
         build_speed_table(**given)
+
+
+# Files and commands
+
+
+def test_a_table_file_holds_the_law_and_is_judged_by_it(tmp_path):
+    law = SpeedLaw([0.0, 1.0, 2.0], [0.0, 0.2, 0.1])  # f(0) = 0: friction vanishes at rest
+    table = build_speed_table(law, 0.7, accuracy=1e-3)
+    saved = save_speed_table(table, tmp_path / "speed.h5")
+    again = load_speed_table(tmp_path / "speed.h5")
+    assert (again.values == table.values).all()
+    assert again.accuracy == table.accuracy == saved.accuracy
+    assert again.law is not None
+    assert (again.law.coefficients == law.coefficients).all()
+    assert validate_speed(again).passed
+    wrong = replace(again, values=again.values * 1.01)
+    assert not validate_speed(wrong).passed
+    content = bytearray((tmp_path / "speed.h5").read_bytes())
+    content[len(content) // 2] ^= 1
+    (tmp_path / "bad.h5").write_bytes(content)
+    with pytest.raises(TableError, match="altered"):
+        load_speed_table(tmp_path / "bad.h5")
+
+
+def test_what_a_file_cannot_hold_is_refused(fine, tmp_path):
+    with pytest.raises(OutputError, match="is a function"):
+        save_speed_table(fine, tmp_path / "speed.h5")
+    many = SpeedLaw(np.arange(2001.0), np.full(2001, 0.1))
+    with pytest.raises(OutputError, match="2001 points"):
+        save_speed_table(replace(fine, law=many), tmp_path / "speed.h5")
+    with pytest.raises(InputError, match="give it as law="):
+        validate_speed(fine)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_commands(tmp_path):
+    law, path = tmp_path / "law.csv", tmp_path / "speed.h5"
+    law.write_text("speed,f\n0,0.3\n0.5,0.2\n2,0.2\n")
+
+    def puck(*words):
+        return CliRunner().invoke(main, list(words))
+
+    words = ["build-tables", "--speed-law", str(law), "-o", str(path)]
+    done = puck(*words, "--height-ratio", "0.5", "--accuracy", "1e-3")
+    assert done.exit_code == 0, done.output
+    assert "speed nodes" in done.stdout
+    assert "--height-ratio 0.5" in done.stdout
+    assert puck("info", str(path)).stdout == done.stdout
+    judged = puck("validate", str(path))
+    assert judged.exit_code == 0
+    assert "FAIL" not in judged.stdout
+    for bad, message in (
+        (["build-tables", "--height-ratio", "1"], "goes with --speed-law"),
+        ([*words, "--overwrite", "--cells", "9"], "goes with --accuracy"),
+        ([*words, "--overwrite", "--n-phi", "9"], "does not go with"),
+        ([*words, "--overwrite", "--height-ratio", "9"], "too high"),
+        (["build-tables", "--speed-law", "none.csv", "-o", str(tmp_path / "x.h5")], "cannot read"),
+        (["sweep", "--table", str(path), "--w0", "0:1:3"], "stops come from"),
+    ):
+        done = puck(*bad)
+        assert done.exit_code in (1, 2), done.output
+        assert message in done.stderr
+        assert "Traceback" not in done.output

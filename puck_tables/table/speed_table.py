@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -76,10 +77,10 @@ class SpeedTable:
         F_∥/(N cos φ), F_⊥/(N sin φ cos φ), 2M/(N r sin φ) at the nodes.
     largest_f : float
         Largest f at the speeds of the axis, the unit of the errors.
-    tolerance : float
-        The error that was promised, in that unit.
-    accuracy : SpeedAccuracy
-        The errors that were measured.
+    law : SpeedLaw, optional
+        The friction law; none if it was given as a function.
+    tolerance, accuracy, passport, source
+        As in :class:`puck_tables.table.table.Table`; errors in units of ``largest_f``.
     """
 
     phi_axis: PhiAxis
@@ -87,8 +88,11 @@ class SpeedTable:
     height_ratio: float
     values: FloatArray = field(repr=False)
     largest_f: float
+    law: SpeedLaw | None = None
     tolerance: float = 0.0
     accuracy: SpeedAccuracy | None = None
+    passport: dict[str, Any] = field(default_factory=dict, repr=False)
+    source: str = "memory"
 
     @cached_property
     def coefficients(self) -> FloatArray:
@@ -262,14 +266,16 @@ def tabulate(
         if progress is not None:
             progress(row + 1, phi.size)
     f = speed_resultants(0.0, speeds, law).parallel
-    return SpeedTable(phi_axis, speed_axis, height_ratio, values, float(np.abs(f).max()))
+    points = law if isinstance(law, SpeedLaw) else None
+    return SpeedTable(phi_axis, speed_axis, height_ratio, values, float(np.abs(f).max()), points)
 
 
 def measure(table: SpeedTable, law: Law, seed: int = 1960) -> SpeedAccuracy:
     """The errors of a table against quadrature, at random and adversarial points.
 
-    Adversarial: both sides of φ = π/4 and next to 0 and π/2 at all distances, speeds near 0 and at
-    the knots of the law, and the middles of cells, those next to the ends of the axes above all.
+    Adversarial: both sides of φ = π/4 and next to 0 and π/2 at all distances, speeds near 0, slips
+    that straddle a knot of the law, and the middles of cells, those next to the ends of the axes
+    above all.
 
     Examples
     --------
@@ -298,8 +304,11 @@ def measure(table: SpeedTable, law: Law, seed: int = 1960) -> SpeedAccuracy:
     ])  # fmt: skip
     marks = marks[marks <= speeds[-1]]
     U = np.where(share < 0.5, speeds[-1] * 2.0 * share, rng.choice(marks, phi.size))
-    direction = slip_direction(phi)
-    Q = U * np.sqrt(1.0 + direction.ratio**2) / (1.0 + direction.ratio)
+    ratio = slip_direction(phi).ratio
+    Q = U * np.sqrt(1.0 + ratio**2) / (1.0 + ratio)
+    if isinstance(law, SpeedLaw):
+        about = _about_knots(law, speeds[-1], rng)
+        phi, Q, U = (np.concatenate(pair) for pair in zip((phi, Q, U), about, strict=True))
     truth = np.stack(speed_resultants(phi, Q, law, table.height_ratio))
     weight = np.stack([np.cos(phi), np.sin(phi) * np.cos(phi), np.sin(phi)]) / (
         table.largest_f or 1.0
@@ -325,3 +334,16 @@ def measure(table: SpeedTable, law: Law, seed: int = 1960) -> SpeedAccuracy:
         tuple(np.quantile(errors, 0.999, axis=1).tolist()), tuple(phi[where].tolist()),
         tuple(U[where].tolist()), half_phi, half_speed, int(errors.size),
     )  # fmt: skip
+
+
+def _about_knots(
+    law: SpeedLaw, top: float, rng: np.random.Generator
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """φ, Q and U where part of the base slips slower and part faster than a knot of the law."""
+    knots = np.asarray(law.speeds)[1:]
+    phi = 0.5 * np.pi * 10.0 ** -rng.uniform(0.0, 4.0, 1500)
+    alpha, beta = np.cos(phi), np.sin(phi)
+    Q = rng.choice(knots, phi.size) / (alpha - beta * rng.uniform(-1.0, 1.0, phi.size))
+    U = Q * (alpha + beta)
+    kept = (Q > 0.0) & (top >= U)
+    return phi[kept], Q[kept], U[kept]
