@@ -86,6 +86,11 @@ def test_energy_goes_in_landings_only_and_the_support_is_never_entered(speed, pu
     assert (run.y - asperity.height(run.x)).min() > -1e-12
     assert (run.multiplier >= 0.0).all()
     assert run.lost == pytest.approx(sum(arc.loss for arc in run.arcs))
+    assert (run.time == np.linspace(0.0, 25.0, 101)).all()
+    changes = [arc.time for arc in run.arcs[1:6]]  # asked for at the events themselves
+    if changes:
+        again = asperity_motion(asperity, 0.3, speed, [0.0, *changes])
+        assert again.time == pytest.approx([0.0, *changes], abs=0.0)
     flights = [arc for arc in run.arcs if arc.kind == "fly"]
     assert (len(flights) == 0) == (abs(speed) < 1.0)
 

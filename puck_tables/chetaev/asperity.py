@@ -260,12 +260,13 @@ def _fly(
     """Until the landing, and the states at the times wanted before it."""
     ax, ay = asperity.pull / asperity.mass, -asperity.load / asperity.mass
     flown = landing(asperity, arc, end - arc.time)
-    t = wanted[wanted - arc.time < flown] - arc.time
+    down = arc.time + flown
+    t = wanted[wanted < down] - arc.time
     states = np.stack([
         t + arc.time, arc.x + (arc.vx + 0.5 * ax * t) * t, arc.y + (arc.vy + 0.5 * ay * t) * t,
         arc.vx + ax * t, arc.vy + ay * t, 0.0 * t,
     ])  # fmt: skip
-    if arc.time + flown > end:
+    if down > end:
         return None, states
     x = arc.x + (arc.vx + 0.5 * ax * flown) * flown
     vx, vy = arc.vx + ax * flown, arc.vy + ay * flown
@@ -273,7 +274,7 @@ def _fly(
     # along the support, in the direction (1, incline): kept
     lost = 0.5 * asperity.mass * (vy - incline * vx) ** 2 / (1.0 + incline**2)
     along = (vx + incline * vy) / (1.0 + incline**2)
-    return _contact(asperity, arc.time + flown, x, along, lost), states
+    return _contact(asperity, down, x, along, lost), states
 
 
 def landing(asperity: Asperity, arc: Arc, longest: float) -> float:
@@ -355,9 +356,9 @@ def _slide(
         solver.step()
         start = solver.t_old
         leave = _lift(asperity, at, before, start, solver)
-        inside = wanted[(wanted >= start) & (wanted <= min(solver.t, leave))]
+        inside = wanted[(wanted <= solver.t) & (wanted < leave)]
         columns += [np.array([t, *at(before, start, t)]) for t in inside]
-        wanted = wanted[wanted > min(solver.t, leave)]
+        wanted = wanted[inside.size :]
     t, x, vx = np.array(columns).reshape(-1, 3).T
     exact = asperity.press(x, vx) / (1.0 + asperity.incline(x) ** 2)
     states = np.stack([t, x, asperity.height(x), vx, asperity.incline(x) * vx, exact])

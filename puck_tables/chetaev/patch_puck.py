@@ -261,7 +261,7 @@ def patch_stop(
         return math.hypot(*state[:3]) / start - _LAST
 
     slow.terminal = True  # type: ignore[attr-defined]
-    # angle, place and time settle as the speeds fall: those need the fine scale, not these
+    # the speeds keep their digits down to their last values; angle, place and time are sums
     absolute = tol * np.array([_LAST, _LAST, _LAST, 1.0, start / decel, start / decel, 1.0 / decel])
     absolute[:3] *= start
     absolute[4:] *= (start, start, start)
