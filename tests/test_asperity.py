@@ -179,6 +179,12 @@ def _landing_from(start: float, w: float) -> float:
     return brentq(gap, grid[later - 1], grid[later], xtol=1e-14)
 
 
+def test_flights_too_low_to_be_seen_lose_nothing():
+    means = [held_round(1.0 + low).mean for low in (1e-3, 1e-4, 1e-6, 1e-9, 1e-10, 1e-12, 1e-15)]
+    assert 900.0 < means[0] / means[1] < 1100.0  # like (w − 1)³
+    assert max(means[2:]) < 1e-17
+
+
 def test_hops_once_a_period_have_the_mean_that_they_must():
     for ratio in (1.85, 1.88, 1.9):
         run = held_round(ratio**2)

@@ -32,7 +32,8 @@ FloatArray = npt.NDArray[np.float64]
 _TOL = 1e-13
 _LARGEST_TURN = 0.25  # of θ in one step of sliding, so that no dip of λ is stepped over
 _LOOKS = 6
-_GAP_STEPS = 100_000
+_GAP_STEPS = 1_000_000  # flights that hardly leave the crest take that many
+_NOISE = 2.0**-53
 MAX_ARCS = 100_000
 
 
@@ -297,6 +298,8 @@ def landing(asperity: Asperity, arc: Arc, longest: float) -> float:
         middle, half = 0.5 * (x + arc.x) / asperity.length, 0.5 * (x - arc.x) / asperity.length
         rise = 2.0 * asperity.amplitude * math.sin(middle) * math.sin(half)
         gap = (arc.vy + 0.5 * ay * t) * t - rise
+        if gap <= _NOISE * (abs(arc.vy * t) + abs(ay * t * t) + abs(rise)):
+            return t  # landed, to rounding: also flights too low to be seen
         closing = arc.vy + ay * t - float(asperity.incline(x)) * vx
         fastest = abs(vx) + (abs(ax) * ahead if ax != 0.0 else 0.0)
         bend = -ay + asperity.amplitude / asperity.length**2 * fastest**2 + abs(ax) * asperity.slope
