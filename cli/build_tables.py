@@ -46,10 +46,18 @@ from puck_tables.errors import InputError
 @click.option(
     "-o", "--output", type=FILE, metavar="FILE", help="The table file.  [default: KIND.h5]"
 )
+@click.option(
+    "--speed-law",
+    type=FILE,
+    metavar="FILE",
+    help="Resultants with a coefficient that depends on the slip speed: CSV of speed in m/s and f.",
+)
+@click.option("--height-ratio", type=NUMBER, help="With --speed-law: 2h/r.  [default: 0]")
 @click.option("--overwrite", is_flag=True, help="Replace the file if it exists.")
 def build_tables(
     kind: str, pressure: str | None, accuracy: float | None, n_phi: int | None,
-    n_delta: int | None, cells: int | None, output: Path | None, overwrite: bool,
+    n_delta: int | None, cells: int | None, output: Path | None, speed_law: Path | None,
+    height_ratio: float | None, overwrite: bool,
 ) -> None:  # fmt: skip
     """Tabulate friction resultants or stops, and measure how exact the table is.
 
@@ -58,11 +66,21 @@ def build_tables(
     puck build-tables --n-phi 1025 -o fine.h5
     puck build-tables --kind stops --accuracy 1e-11 -o fine-stops.h5
     puck build-tables --pressure annulus:0.8 -o stone.h5
+    puck build-tables --speed-law law.csv --height-ratio 0.5 -o felt.h5
     """  # noqa: D301 - click reads the backspace
-    plain = kind == "resultants" and pressure in (None, "uniform")
-    options = {"--accuracy": accuracy, "--n-phi": n_phi, "--n-delta": n_delta, "--cells": cells}
+    plain = kind == "resultants" and pressure in (None, "uniform") and speed_law is None
+    options = {
+        "--accuracy": accuracy, "--n-phi": n_phi, "--n-delta": n_delta, "--cells": cells,
+        "--height-ratio": height_ratio,
+    }  # fmt: skip
     given = {name: value for name, value in options.items() if value is not None}
     what = f"--kind {kind}" if pressure is None else f"--pressure {pressure}"
+    if speed_law is not None:
+        if kind != "resultants" or pressure not in (None, "uniform") or cells is not None:
+            raise InputError("--speed-law goes with --accuracy and --height-ratio only")
+        what = f"--speed-law {speed_law}"
+    elif height_ratio is not None:
+        raise InputError("--height-ratio goes with --speed-law")
     if pressure is not None and kind != "resultants":
         raise InputError(f"--pressure goes with --kind resultants, not with --kind {kind}")
     for name in ("--cells",) if plain else ("--n-phi", "--n-delta"):
@@ -81,6 +99,15 @@ def build_tables(
 
             table = build_table(accuracy, n_phi, n_delta, show)
             text = describe(save_table(table, path, overwrite, command))
+        elif speed_law is not None:
+            from puck_tables.contact.speed_law import SpeedLaw
+            from puck_tables.table.speed_file import save_speed_table
+            from puck_tables.table.speed_table import DEFAULT_ACCURACY, build_speed_table
+
+            wanted = DEFAULT_ACCURACY if accuracy is None else accuracy
+            points = SpeedLaw.from_csv(speed_law)
+            speeds = build_speed_table(points, height_ratio or 0.0, accuracy=wanted, progress=show)
+            text = describe(save_speed_table(speeds, path, overwrite, command))
         elif kind == "stops":
             from puck_tables.similarity.build import build_stop_table
             from puck_tables.similarity.file import save_stop_table

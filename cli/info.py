@@ -25,6 +25,7 @@ def info(file: Path | None) -> None:
 def describe(table: AnyTable) -> str:
     """A table in a dozen lines.  It was loaded, so its digest is right."""
     from puck_tables.catalogue import functions_and_grid
+    from puck_tables.table.speed_table import SpeedAccuracy
     from puck_tables.table.table import Accuracy
 
     passport, accuracy = table.passport, table.accuracy
@@ -40,20 +41,30 @@ def describe(table: AnyTable) -> str:
     }
     columns = {"largest": accuracy.largest, "rms": accuracy.rms}
     rest = {}
+    second = "delta"
+    if isinstance(accuracy, SpeedAccuracy):
+        second, places = "v + r|omega|", accuracy.at_speed
+        columns["99.9 %"] = accuracy.p999
+        lines["measured"] = f"at {accuracy.points} points (errors of forces over N largest f):"
+        rest["order"] = (
+            f"half the nodes: {accuracy.half_phi:.1e} in phi, {accuracy.half_speed:.1e} in speed"
+        )
+    else:
+        places = accuracy.at_delta
+        rest["order"] = (
+            f"{accuracy.order:.2f} in phi, against half the cells"
+            if accuracy.order
+            else "not measured: too few cells"
+        )
     if isinstance(accuracy, Accuracy):
         columns["99.9 %"] = accuracy.p999
         rest["entries"] = f"residual {accuracy.entry_residual:.1e} at elementary entries"
     text = [f"{name:<11} {value}" for name, value in lines.items()]
-    text.append(f"{'':<26}" + "".join(f"{name:>10}" for name in columns) + "   at phi, delta")
+    text.append(f"{'':<26}" + "".join(f"{name:>10}" for name in columns) + f"   at phi, {second}")
     for i, name in enumerate(names):
         errors = "".join(f"{values[i]:>10.1e}" for values in columns.values())
-        text.append(
-            f"{'':<11} {name:<14}{errors}   {accuracy.at_phi[i]:.6g}, {accuracy.at_delta[i]:.6g}"
-        )
+        text.append(f"{'':<11} {name:<14}{errors}   {accuracy.at_phi[i]:.6g}, {places[i]:.6g}")
     rest |= {
-        "order": f"{accuracy.order:.2f} in phi, against half the cells"
-        if accuracy.order
-        else "not measured: too few cells",
         "made by": f"{passport['command']}  (puck-tables {passport['package_version']}, "
         f"{passport['created']})",
         "format": f"{passport['format']} {passport['format_version']}",

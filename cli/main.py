@@ -11,6 +11,7 @@ from typing import Any
 
 import click
 from puck_tables.cli.aim import aim
+from puck_tables.cli.asperity import asperity
 from puck_tables.cli.build_tables import build_tables
 from puck_tables.cli.info import info
 from puck_tables.cli.paper import paper
@@ -65,5 +66,7 @@ def main(ctx: click.Context) -> None:
             click.echo("compiling for this machine, once: some seconds", err=True)
 
 
-for _command in (simulate, sweep, aim, scene, build_tables, validate, info, paper, tradeoff):
+for _command in (
+    simulate, sweep, aim, scene, build_tables, validate, info, paper, tradeoff, asperity,
+):  # fmt: skip
     main.add_command(_command)

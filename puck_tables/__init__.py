@@ -16,11 +16,19 @@ from puck_tables._version import __version__
 
 if TYPE_CHECKING:
     from puck_tables.aiming import Aim, aim
+    from puck_tables.asperity_picture import plot_asperity
+    from puck_tables.chetaev.asperity import Asperity, AsperityMotion, asperity_motion
+    from puck_tables.chetaev.asperity_curve import AsperityCurve, asperity_curve
+    from puck_tables.chetaev.motion import ConstrainedMotion, constrained_motion
+    from puck_tables.chetaev.patch_puck import patch_stop, patch_system
+    from puck_tables.chetaev.system import ConstrainedSystem
     from puck_tables.contact.laws import Law, law_of, profile_law
     from puck_tables.contact.one_sided import loaded_share
     from puck_tables.contact.one_sided import resultants as one_sided_resultants
     from puck_tables.contact.opening import critical_delta
     from puck_tables.contact.resultants import Resultants, is_full_contact
+    from puck_tables.contact.speed_law import SpeedLaw
+    from puck_tables.contact.speed_quadrature import speed_resultants
     from puck_tables.kernels.closed_form import resultants
     from puck_tables.motion.limits import (
         approach_exponent,
@@ -32,7 +40,7 @@ if TYPE_CHECKING:
     )
     from puck_tables.plots import plot_aim, plot_map, plot_trajectory
     from puck_tables.puck import similarity_parameters
-    from puck_tables.result_file import save_aim, save_map, save_trajectory
+    from puck_tables.result_file import save_aim, save_asperity, save_map, save_trajectory
     from puck_tables.scene.outcome import SceneRun
     from puck_tables.scene.scene import Scene, scene_from
     from puck_tables.scene.simulate import simulate_scene
@@ -56,12 +64,28 @@ if TYPE_CHECKING:
     from puck_tables.table.partial_check import validate_partial
     from puck_tables.table.partial_file import load_partial_table, save_partial_table
     from puck_tables.table.partial_table import PartialTable
+    from puck_tables.table.speed_check import validate_speed
+    from puck_tables.table.speed_file import load_speed_table, save_speed_table
+    from puck_tables.table.speed_table import SpeedTable, build_speed_table
     from puck_tables.table.table import Table
     from puck_tables.trajectory import Trajectory, simulate
 
 _HOMES = {
     "Aim": "aiming",
     "aim": "aiming",
+    "plot_asperity": "asperity_picture",
+    "Asperity": "chetaev.asperity",
+    "AsperityMotion": "chetaev.asperity",
+    "asperity_motion": "chetaev.asperity",
+    "AsperityCurve": "chetaev.asperity_curve",
+    "asperity_curve": "chetaev.asperity_curve",
+    "ConstrainedMotion": "chetaev.motion",
+    "constrained_motion": "chetaev.motion",
+    "patch_stop": "chetaev.patch_puck",
+    "patch_system": "chetaev.patch_puck",
+    "ConstrainedSystem": "chetaev.system",
+    "SpeedLaw": "contact.speed_law",
+    "speed_resultants": "contact.speed_quadrature",
     "Resultants": "contact.resultants",
     "is_full_contact": "contact.resultants",
     "resultants": "kernels.closed_form",
@@ -76,6 +100,7 @@ _HOMES = {
     "plot_trajectory": "plots",
     "similarity_parameters": "puck",
     "save_aim": "result_file",
+    "save_asperity": "result_file",
     "save_map": "result_file",
     "save_trajectory": "result_file",
     "SceneRun": "scene.outcome",
@@ -106,6 +131,11 @@ _HOMES = {
     "validate": "table.check",
     "load_table": "table.file",
     "save_table": "table.file",
+    "validate_speed": "table.speed_check",
+    "load_speed_table": "table.speed_file",
+    "save_speed_table": "table.speed_file",
+    "SpeedTable": "table.speed_table",
+    "build_speed_table": "table.speed_table",
     "Table": "table.table",
     "Law": "contact.laws",
     "law_of": "contact.laws",
@@ -127,7 +157,12 @@ _HOMES = {
 
 __all__ = [
     "Aim",
+    "Asperity",
+    "AsperityCurve",
+    "AsperityMotion",
     "CheckReport",
+    "ConstrainedMotion",
+    "ConstrainedSystem",
     "Law",
     "LawTable",
     "PartialTable",
@@ -135,6 +170,8 @@ __all__ = [
     "Scene",
     "SceneMap",
     "SceneRun",
+    "SpeedLaw",
+    "SpeedTable",
     "States",
     "StopMap",
     "StopTable",
@@ -144,10 +181,14 @@ __all__ = [
     "__version__",
     "aim",
     "approach_exponent",
+    "asperity_curve",
+    "asperity_motion",
     "build_law_table",
     "build_partial_table",
+    "build_speed_table",
     "build_stop_table",
     "build_table",
+    "constrained_motion",
     "critical_delta",
     "curvature_slope",
     "elementary_stop_time",
@@ -158,11 +199,15 @@ __all__ = [
     "limit_ratio",
     "load_law_table",
     "load_partial_table",
+    "load_speed_table",
     "load_stop_table",
     "load_table",
     "loaded_share",
     "one_sided_resultants",
+    "patch_stop",
+    "patch_system",
     "plot_aim",
+    "plot_asperity",
     "plot_map",
     "plot_scene",
     "plot_scene_map",
@@ -171,11 +216,13 @@ __all__ = [
     "regime",
     "resultants",
     "save_aim",
+    "save_asperity",
     "save_law_table",
     "save_map",
     "save_partial_table",
     "save_scene_map",
     "save_scene_run",
+    "save_speed_table",
     "save_stop_table",
     "save_table",
     "save_trajectory",
@@ -183,12 +230,14 @@ __all__ = [
     "similarity_parameters",
     "simulate",
     "simulate_scene",
+    "speed_resultants",
     "stop",
     "sweep",
     "sweep_scene",
     "validate",
     "validate_law",
     "validate_partial",
+    "validate_speed",
     "validate_stops",
 ]
 

@@ -8,19 +8,21 @@ from pathlib import Path
 from puck_tables.similarity import check as stop_check
 from puck_tables.similarity import file as stop_file
 from puck_tables.similarity.stop_table import StopTable
-from puck_tables.table import check, file, law_file, partial_file
+from puck_tables.table import check, file, law_file, partial_file, speed_file
 from puck_tables.table.check import CheckReport
 from puck_tables.table.container import decode, read_content
 from puck_tables.table.law_check import validate_law
 from puck_tables.table.law_table import LawTable
 from puck_tables.table.partial_check import validate_partial
 from puck_tables.table.partial_table import PartialTable
+from puck_tables.table.speed_check import validate_speed
+from puck_tables.table.speed_table import SpeedTable
 from puck_tables.table.table import FUNCTIONS, Table
 
-AnyTable = Table | StopTable | PartialTable | LawTable
+AnyTable = Table | StopTable | PartialTable | LawTable | SpeedTable
 Progress = Callable[[int, int], None]
 
-_FILES = {module.KIND: module for module in (file, stop_file, partial_file, law_file)}
+_FILES = {module.KIND: module for module in (file, stop_file, partial_file, law_file, speed_file)}
 
 
 def load_any_table(path: str | Path) -> AnyTable:
@@ -71,6 +73,8 @@ def functions_and_grid(table: AnyTable) -> tuple[tuple[str, ...], str]:
         sides, nodes, heights = table.values.shape[:3]
         return FUNCTIONS, f"{sides} sides of {nodes} phi x {heights} delta nodes"
     nodes, heights = table.values.shape[:2]
+    if isinstance(table, SpeedTable):
+        return FUNCTIONS, f"{nodes} phi x {heights} speed nodes"
     return FUNCTIONS, f"{nodes} phi x {heights} delta nodes"
 
 
@@ -86,4 +90,6 @@ def judge(table: AnyTable, progress: Progress | None = None) -> CheckReport:
         return check.validate(table, progress)
     if isinstance(table, StopTable):
         return stop_check.validate_stops(table, progress)
+    if isinstance(table, SpeedTable):
+        return validate_speed(table)
     return validate_law(table) if isinstance(table, LawTable) else validate_partial(table)

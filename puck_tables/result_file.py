@@ -15,6 +15,7 @@ import numpy.typing as npt
 
 from puck_tables._version import __version__
 from puck_tables.aiming import Aim
+from puck_tables.chetaev.asperity_curve import AsperityCurve
 from puck_tables.errors import InputError
 from puck_tables.front import Way, front_as_csv
 from puck_tables.safe_write import write_bytes
@@ -229,6 +230,62 @@ def save_aim(found: Aim, path: str | Path, overwrite: bool = False) -> None:
     kind_of(path, AIM_KINDS)
     rows = zip(*(column.tolist() for column in aim_columns(found).values()), strict=True)
     write_bytes(path, as_csv(AIM_COLUMNS, rows), overwrite)
+
+
+ASPERITY_COLUMNS = {
+    "speed": ("m/s", "speed held along the support"),
+    "crude": ("N", "Coulomb's force, load times a/b"),
+    "greatest": ("N", "greatest force in contact, 0 where the point only hops"),
+    "undriven": ("N", "the same for a point that is not driven"),
+    "mean": ("N", "mean force with all landings"),
+    "landing_phase": ("rad", "x/b of the landing before it slides, nan without one"),
+    "flights_per_period": ("1", "flights in a wavelength"),
+}
+
+
+def save_asperity(curve: AsperityCurve, path: str | Path, overwrite: bool = False) -> None:
+    """Write force against speed as labelled HDF5 or as CSV, by the ending of the name.
+
+    Raises
+    ------
+    InputError
+        If the ending is neither .h5 nor .csv.
+    OutputError
+        If the file exists (without ``overwrite``) or cannot be written.
+
+    Examples
+    --------
+    >>> save_asperity(None, "curve.txt")
+    Traceback (most recent call last):
+    ...
+    puck_tables.errors.InputError: curve.txt: the ending of an output file chooses its format: one \
+of .h5, .csv
+    """
+    if kind_of(path, MAP_KINDS) == ".csv":
+        content = asperity_as_csv(curve).encode()
+    else:
+        columns = {name: getattr(curve, name) for name in ASPERITY_COLUMNS}
+        support = curve.asperity
+        content = _hdf5({"speed": columns.pop("speed")}, columns, ASPERITY_COLUMNS, {
+            "title": "Friction of a point on a wavy one-sided support", "load": support.load,
+            "amplitude": support.amplitude, "length": support.length, "mass": support.mass,
+            "lift_speed": support.lift_speed,
+        })  # fmt: skip
+    write_bytes(path, content, overwrite)
+
+
+def asperity_as_csv(curve: AsperityCurve) -> str:
+    """Force against speed as CSV text.
+
+    Examples
+    --------
+    >>> from puck_tables import Asperity, asperity_curve
+    >>> text = asperity_as_csv(asperity_curve(Asperity(1.0, 4.0, 1.0, 1.0), [0.0, 1.0]))
+    >>> text.splitlines()[1]
+    '0.0,0.25,0.25,0.23529411764705882,0.0,nan,0.0'
+    """
+    columns = [getattr(curve, name).tolist() for name in ASPERITY_COLUMNS]
+    return _csv(ASPERITY_COLUMNS, zip(*columns, strict=True)).decode()
 
 
 WAY_COLUMNS = {

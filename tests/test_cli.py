@@ -248,6 +248,8 @@ COMMANDS = [
     (["sweep", "-o", "{}.h5"], "h5"),
     (["sweep", "--plot", "{}.png"], "png"),
     (["build-tables", "-o", "{}.h5"], "h5"),
+    (["asperity", "-o", "{}.csv"], "csv"),
+    (["asperity", "--plot", "{}.png"], "png"),
 ]
 
 

@@ -328,12 +328,12 @@ def check_usable(
     source: str,
     recipe: dict[str, Any],
     nodes: dict[str, FloatArray],
-    positive: str,
+    positive: str | None = None,
 ) -> None:
     """Refuse a file whose digest is right but whose numbers this program cannot use.
 
     The recipe must be known, the nodes where the splines will look, all values finite and those
-    of ``positive`` greater than zero.
+    of ``positive``, if given, greater than zero.
 
     Raises
     ------
@@ -343,9 +343,9 @@ def check_usable(
     if any(attributes.get(name) != value for name, value in recipe.items()):
         raise TableError(f"{source} was made by a recipe that this program does not know")
     if not (
-        all(np.allclose(arrays[n], at, rtol=0.0, atol=1e-14) for n, at in nodes.items())
+        all(np.allclose(arrays[n], at, rtol=1e-14, atol=1e-14) for n, at in nodes.items())
         and all(np.isfinite(array).all() for array in arrays.values())
-        and (arrays[positive] > 0.0).all()
+        and (positive is None or (arrays[positive] > 0.0).all())
         and 0.0 < attributes["tolerance"] < 1.0
     ):
         raise TableError(f"{source} has axes or values that this program cannot use")

@@ -1,0 +1,107 @@
+"""``puck asperity``: dry friction from a wavy support, force against speed."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+from puck_tables.cli.options import (
+    FILE,
+    NUMBER,
+    Range,
+    output_options,
+    prepare_outputs,
+    progress,
+    told,
+)
+
+from puck_tables.errors import InputError
+
+if TYPE_CHECKING:
+    from puck_tables.chetaev.asperity_curve import AsperityCurve
+
+DEFAULT_COUNT, DEFAULT_TOP = 501, 2.5
+MAX_SPEEDS = 1_000_000
+
+
+@click.command()
+@click.option("--amplitude", type=NUMBER, default=1e-6, show_default=True, help="a in m.")
+@click.option("--wavelength", type=NUMBER, default=2e-5, show_default=True, help="2 pi b in m.")
+@click.option("--load", type=NUMBER, default=1.0, show_default=True, help="-Y in N.")
+@click.option("--mass", type=NUMBER, help="m in kg.  [default: the load is its weight]")
+@click.option("--speeds", type=Range(), help="In m/s.  [default: 0 to 2.5 V0 in 501 steps]")
+@click.option(
+    "-o",
+    "--output",
+    type=FILE,
+    metavar="FILE",
+    help="Save the curve: .h5 or .csv.  Without -o and --plot, CSV goes to stdout.",
+)
+@output_options
+def asperity(
+    amplitude: float, wavelength: float, load: float, mass: float | None,
+    speeds: float | tuple[float, float, int] | None, output: Path | None, plot: Path | None,
+    overwrite: bool,
+) -> None:  # fmt: skip
+    """Draw friction against speed for a point on a wavy one-sided support.
+
+    The point is pressed on y >= -a cos(x/b) and driven along it at a held speed; above V0 it leaves
+    the crests, flies and lands without a rebound.  Columns: Coulomb's force, the greatest force in
+    contact (held speed, and a point not driven), the mean force with all landings, the phase of the
+    landing (nan without one), flights in a period.  Chetaev 1960, section 5.
+
+    \b
+    puck asperity --plot asperity.png
+    puck asperity --amplitude 2e-6 --wavelength 4e-5 --load 5 --speeds 0:0.1:201 -o curve.csv
+    """  # noqa: D301 - click reads the backspace
+    prepare_outputs(output, plot, overwrite=overwrite)
+    from puck_tables.chetaev.asperity import Asperity
+    from puck_tables.chetaev.asperity_curve import asperity_curve
+    from puck_tables.puck import STANDARD_GRAVITY
+    from puck_tables.result_file import MAP_KINDS, asperity_as_csv, kind_of, save_asperity
+
+    if output is not None:
+        kind_of(output, MAP_KINDS)
+    if plot is not None:
+        from puck_tables.asperity_picture import plot_asperity
+        from puck_tables.plots import PICTURE_KINDS, require_matplotlib
+
+        kind_of(plot, PICTURE_KINDS)
+        if isinstance(speeds, float):
+            raise InputError("--plot needs a range: give --speeds START:STOP:COUNT")
+        require_matplotlib()
+    support = Asperity(
+        amplitude,
+        wavelength / (2.0 * math.pi),
+        load,
+        load / STANDARD_GRAVITY if mass is None else mass,
+    )
+    start, stop, count = (
+        (0.0, DEFAULT_TOP * support.lift_speed, DEFAULT_COUNT) if speeds is None
+        else speeds if isinstance(speeds, tuple) else (speeds, speeds, 1)
+    )  # fmt: skip
+    if count > MAX_SPEEDS:
+        raise InputError(f"--speeds asks for {count} speeds: at most {MAX_SPEEDS}")
+    import numpy as np
+
+    with progress("speeds") as show:
+        curve = asperity_curve(support, np.linspace(start, stop, count), show)
+    if output is not None:
+        save_asperity(curve, output, overwrite)
+        told(output)
+    if plot is not None:
+        plot_asperity(curve, plot, overwrite)
+        told(plot)
+    if output is None and plot is None:
+        click.echo(asperity_as_csv(curve), nl=False)
+    click.echo(_summary(curve), err=True)
+
+
+def _summary(curve: AsperityCurve) -> str:
+    support = curve.asperity
+    return (
+        f"a/b = {support.slope:.4g}, Coulomb's force {curve.crude[0]:.4g} N; leaves the crest "
+        f"above V0 = {support.lift_speed:.4g} m/s"
+    )

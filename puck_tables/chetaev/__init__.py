@@ -1,0 +1,1 @@
+"""Constraints with friction after Chetaev: general systems, and dry friction from asperities."""

@@ -1,0 +1,395 @@
+"""A point on a wavy one-sided support: Chetaev's model of what lies behind dry friction.
+
+A point of mass m under a constant force (X, Y), Y < 0, moves on y ≥ −a cos(x/b).  In contact
+
+    m x″ = −λ (a/b) sin(x/b) + X,     m y″ = λ + Y,     λ ≥ 0                               (5.2)
+
+and with y held on the support, a/b = κ, θ = x/b,
+
+    λ = [−Y + m (a/b²) x′² cos θ + X κ sin θ] / [1 + κ² sin² θ]                         (exact)
+    λ ≈ −Y + m (a/b²) x′² cos θ  (leading terms),     λ ≈ −Y  (crude: Coulomb's law).
+
+(The printed exact λ has −mY for −Y and m for 1 in the denominator: its units do not fit.)  Where λ
+falls to 0 the point leaves the support and flies a parabola.  It lands *inelastically*: the
+velocity along the normal is lost, that along the support is kept, and ½ m (normal velocity)² goes
+from the energy.  Between landings the energy is constant.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables.errors import AccuracyError, InputError
+from puck_tables.real import finite_array
+
+FloatArray = npt.NDArray[np.float64]
+
+_TOL = 1e-13
+_LARGEST_TURN = 0.25  # of θ in one step of sliding, so that no dip of λ is stepped over
+_LOOKS = 6
+_GAP_STEPS = 1_000_000  # flights that hardly leave the crest take that many
+_NOISE = 2.0**-53
+MAX_ARCS = 100_000
+
+
+@dataclass(frozen=True)
+class Asperity:
+    """The support and the point on it.
+
+    Parameters
+    ----------
+    amplitude : float, a > 0, m
+    length : float, b > 0, m: the wavelength is 2πb
+    load : float, −Y > 0, N
+    mass : float, m > 0, kg
+    pull : float, X, N
+
+    Raises
+    ------
+    InputError
+        If a number is not finite or not positive.
+
+    Examples
+    --------
+    >>> bumps = Asperity(amplitude=1e-6, length=4e-6, load=1.0, mass=0.1)
+    >>> bumps.slope, round(bumps.lift_speed, 6)  # leaves the crest: x′² = −Y b²/(m a)
+    (0.25, 0.012649)
+    """
+
+    amplitude: float
+    length: float
+    load: float
+    mass: float
+    pull: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name, unit in (("amplitude", "m"), ("length", "m"), ("load", "N"), ("mass", "kg")):
+            value = getattr(self, name)
+            if not 0.0 < value < math.inf:
+                raise InputError(
+                    f"{name} must be a finite number greater than 0 {unit}, got {value:g}"
+                )
+        if not math.isfinite(self.pull):
+            raise InputError(f"pull must be a finite number in N, got {self.pull:g}")
+
+    @property
+    def slope(self) -> float:
+        """κ = a/b: the steepest slope, and Coulomb's coefficient of the crude law."""
+        return self.amplitude / self.length
+
+    @property
+    def lift_speed(self) -> float:
+        """V₀ = b √(−Y/(m a)), m/s: a point that is not pulled leaves the crest above it."""
+        return self.length * math.sqrt(self.load / (self.mass * self.amplitude))
+
+    def height(self, x: Any) -> Any:
+        """−a cos(x/b), m."""
+        return -self.amplitude * np.cos(x / self.length)
+
+    def incline(self, x: Any) -> Any:
+        """dy/dx of the support, κ sin(x/b)."""
+        return self.slope * np.sin(x / self.length)
+
+    def press(self, x: Any, speed: Any) -> Any:
+        """The numerator of λ, N: negative where the support falls away under a flying point."""
+        bend = self.mass * self.amplitude / self.length**2 * speed**2 * np.cos(x / self.length)
+        return self.load + bend + self.pull * self.incline(x)
+
+    def multipliers(self, x: npt.ArrayLike, speed: npt.ArrayLike) -> tuple[FloatArray, ...]:
+        """λ exact, by its leading terms, and crude, in N.
+
+        Parameters
+        ----------
+        x : array_like, m
+        speed : array_like, x′ in m/s, broadcast
+
+        Returns
+        -------
+        three arrays of the broadcast shape
+            Not cut at 0: where λ < 0 there is no contact.
+
+        Examples
+        --------
+        >>> bumps = Asperity(amplitude=1.0, length=1.0, load=2.0, mass=1.0)
+        >>> [float(lam.round(6)) for lam in bumps.multipliers(np.pi / 4, 1.0)]
+        [1.804738, 2.707107, 2.0]
+        """
+        place, rate = np.broadcast_arrays(
+            finite_array("x", x, "m"), finite_array("speed", speed, "m/s")
+        )
+        bend = self.mass * self.amplitude / self.length**2 * rate**2 * np.cos(place / self.length)
+        exact = self.press(place, rate) / (1.0 + self.incline(place) ** 2)
+        return exact, self.load + bend, np.full(place.shape, self.load)
+
+
+class Arc(NamedTuple):
+    """One stretch of a motion: its kind, ``slide`` or ``fly``, when and how it begins, in SI units.
+
+    ``loss`` is the energy lost by the landing at its start, J.
+    """
+
+    kind: str
+    time: float
+    x: float
+    y: float
+    vx: float
+    vy: float
+    loss: float
+
+
+@dataclass(frozen=True)
+class AsperityMotion:
+    """States at given times, and the arcs between lift-offs and landings.
+
+    Attributes
+    ----------
+    time, x, y, vx, vy : arrays (k,), SI units
+    multiplier : array (k,), N
+        λ; 0 in flight.
+    arcs : tuple of Arc
+    lost : float, J
+        Energy lost by all landings.
+    energy_residual : float, J
+        Largest change of ½m(x′² + y′²) − Xx − Yy that no landing accounts for.
+    """
+
+    time: FloatArray
+    x: FloatArray = field(repr=False)
+    y: FloatArray = field(repr=False)
+    vx: FloatArray = field(repr=False)
+    vy: FloatArray = field(repr=False)
+    multiplier: FloatArray = field(repr=False)
+    arcs: tuple[Arc, ...] = field(repr=False)
+    lost: float
+    energy_residual: float
+
+
+def asperity_motion(
+    asperity: Asperity, x: float, speed: float, times: npt.ArrayLike
+) -> AsperityMotion:
+    """Let a point go on the support: it slides, flies and lands.
+
+    Parameters
+    ----------
+    asperity : Asperity
+    x : float, m
+    speed : float
+        x′ at the first of ``times``, along the support, m/s.
+    times : array_like (k,), s
+        At least two, ascending.
+
+    Returns
+    -------
+    AsperityMotion
+        Times of lift-off and landing are exact to about 1e-12 of the time b/x′.
+
+    Raises
+    ------
+    InputError
+        If a number is not finite or the times do not ascend.
+    AccuracyError
+        If 100 000 arcs do not reach the last time.
+
+    References
+    ----------
+    Chetaev 1960, section 5.
+
+    Examples
+    --------
+    >>> bumps = Asperity(amplitude=1.0, length=1.0, load=1.0, mass=1.0)  # V₀ = 1 m/s
+    >>> run = asperity_motion(bumps, np.pi, 1.2, [0.0, 1.0, 10.0])
+    >>> [arc.kind for arc in run.arcs[:2]], float((run.x[1] - run.x[0]).round(12))  # off the crest
+    (['fly', 'slide'], 1.2)
+    """
+    when = finite_array("times", times, "s")
+    if when.ndim != 1 or when.size < 2 or not (np.diff(when) > 0.0).all():
+        raise InputError(
+            "times must be at least two numbers in s, ascending: the first is the start"
+        )
+    place, rate = (
+        float(finite_array(n, v, u)) for n, v, u in (("x", x, "m"), ("speed", speed, "m/s"))
+    )
+    end = float(when[-1])
+    arc = _contact(asperity, float(when[0]), place, rate, 0.0)
+    arcs, pieces = [arc], []
+    while True:
+        wanted = when[(when >= arc.time) & (when <= end)]
+        following, states = (_slide if arc.kind == "slide" else _fly)(asperity, arc, wanted, end)
+        pieces.append(states)
+        if following is None:
+            break
+        if len(arcs) == MAX_ARCS:
+            raise AccuracyError(
+                f"after {MAX_ARCS} slides and flights only t = {following.time:g} s was reached: "
+                "ask for an earlier time"
+            )
+        arc = following
+        arcs.append(arc)
+    t, px, py, vx, vy, lam = np.concatenate(pieces, axis=1)
+    lost = np.array([one.loss for one in arcs]).cumsum()
+    begun = np.array([one.time for one in arcs])
+    energy = 0.5 * asperity.mass * (vx**2 + vy**2) - asperity.pull * px + asperity.load * py
+    energy += lost[np.searchsorted(begun, t, side="right") - 1]
+    return AsperityMotion(
+        t,
+        px,
+        py,
+        vx,
+        vy,
+        lam,
+        tuple(arcs),
+        float(lost[-1]),
+        float(np.abs(energy - energy[0]).max()),
+    )
+
+
+def _contact(asperity: Asperity, time: float, x: float, vx: float, loss: float) -> Arc:
+    """The arc that begins at a place of the support with a velocity along it."""
+    kind = "slide" if asperity.press(x, vx) > 0.0 else "fly"
+    y, vy = float(asperity.height(x)), float(asperity.incline(x)) * vx
+    return Arc(kind, time, x, y, vx, vy, loss)
+
+
+def _fly(
+    asperity: Asperity, arc: Arc, wanted: FloatArray, end: float
+) -> tuple[Arc | None, FloatArray]:
+    """Until the landing, and the states at the times wanted before it."""
+    ax, ay = asperity.pull / asperity.mass, -asperity.load / asperity.mass
+    flown = landing(asperity, arc, end - arc.time)
+    down = arc.time + flown
+    t = wanted[wanted < down] - arc.time
+    states = np.stack([
+        t + arc.time, arc.x + (arc.vx + 0.5 * ax * t) * t, arc.y + (arc.vy + 0.5 * ay * t) * t,
+        arc.vx + ax * t, arc.vy + ay * t, 0.0 * t,
+    ])  # fmt: skip
+    if down > end:
+        return None, states
+    x = arc.x + (arc.vx + 0.5 * ax * flown) * flown
+    vx, vy = arc.vx + ax * flown, arc.vy + ay * flown
+    incline = float(asperity.incline(x))
+    # along the support, in the direction (1, incline): kept
+    lost = 0.5 * asperity.mass * (vy - incline * vx) ** 2 / (1.0 + incline**2)
+    along = (vx + incline * vy) / (1.0 + incline**2)
+    return _contact(asperity, down, x, along, lost), states
+
+
+def landing(asperity: Asperity, arc: Arc, longest: float) -> float:
+    """How long a flight that begins on the support lasts; infinite beyond ``longest``, s.
+
+    The gap below the point is convex while the numerator of λ is negative, and its second
+    derivative never falls below −B: from a gap g closing at the rate g′ it cannot close before the
+    positive root of g + g′h − ½Bh² = 0.  Steps of that length never pass a landing, and end in it
+    like Newton's.
+    """
+    ax, ay = asperity.pull / asperity.mass, -asperity.load / asperity.mass
+    t = _rising(asperity, arc, ax)
+    for _ in range(_GAP_STEPS):
+        if t > longest:
+            return math.inf
+        x, vx = arc.x + (arc.vx + 0.5 * ax * t) * t, arc.vx + ax * t
+        # how far the bound on the speed is to hold
+        ahead = max(abs(vx / ax), math.sqrt(asperity.length / abs(ax))) if ax != 0.0 else math.inf
+        # y − y₀ and the support's own rise: exact for short flights
+        middle, half = 0.5 * (x + arc.x) / asperity.length, 0.5 * (x - arc.x) / asperity.length
+        rise = 2.0 * asperity.amplitude * math.sin(middle) * math.sin(half)
+        gap = (arc.vy + 0.5 * ay * t) * t - rise
+        if gap <= _NOISE * (abs(arc.vy * t) + abs(ay * t * t) + abs(rise)):
+            return t  # landed, to rounding: also flights too low to be seen
+        closing = arc.vy + ay * t - float(asperity.incline(x)) * vx
+        fastest = abs(vx) + (abs(ax) * ahead if ax != 0.0 else 0.0)
+        bend = -ay + asperity.amplitude / asperity.length**2 * fastest**2 + abs(ax) * asperity.slope
+        root = math.sqrt(max(closing * closing + 2.0 * bend * gap, 0.0))
+        step = 2.0 * gap / (root - closing) if closing < 0.0 else (closing + root) / bend
+        step = min(step, ahead)
+        if step <= 4e-16 * t:
+            return t
+        t += step
+    raise AccuracyError(
+        f"the landing of the flight that begins at x = {arc.x:g} m was not found: it grazes a crest"
+    )
+
+
+def _rising(asperity: Asperity, arc: Arc, ax: float) -> float:
+    """A time until which the gap of a flight only grows."""
+    t = asperity.length / max(abs(arc.vx), math.sqrt(abs(ax) * asperity.length), 1e-300)
+    t = min(t, math.sqrt(asperity.mass * asperity.length / asperity.load))
+    looks = np.arange(1, _LOOKS + 1) / _LOOKS
+    while t > 0.0:
+        later = t * looks
+        x = arc.x + (arc.vx + 0.5 * ax * later) * later
+        if (asperity.press(x, arc.vx + ax * later) < 0.0).all():
+            return t
+        t *= 0.5
+    return t
+
+
+def _slide(
+    asperity: Asperity, arc: Arc, wanted: FloatArray, end: float
+) -> tuple[Arc | None, FloatArray]:
+    """Until λ falls to 0, and the states at the times wanted before that."""
+    from scipy.integrate import DOP853, solve_ivp
+
+    def slope(t: float, state: FloatArray) -> FloatArray:
+        x, vx = state
+        lam = asperity.press(x, vx) / (1.0 + asperity.incline(x) ** 2)
+        return np.array([vx, (asperity.pull - lam * asperity.incline(x)) / asperity.mass])
+
+    def at(state: FloatArray, start: float, time: float) -> FloatArray:
+        if time == start:
+            return state
+        return np.asarray(
+            solve_ivp(slope, (start, time), state, "DOP853", rtol=_TOL, atol=_TOL * sizes).y[:, -1]
+        )
+
+    quickest = max(abs(arc.vx), math.sqrt(asperity.load * asperity.amplitude / asperity.mass))
+    sizes = np.array([asperity.length, quickest])
+    state = np.array([arc.x, arc.vx])
+    solver = DOP853(slope, arc.time, state, end, rtol=_TOL, atol=_TOL * sizes)
+    columns: list[FloatArray] = []
+    leave = math.inf
+    while solver.status == "running" and leave == math.inf:
+        before = solver.y.copy()
+        speed = max(abs(before[1]), 0.2 * quickest)
+        solver.max_step = _LARGEST_TURN * asperity.length / speed
+        solver.step()
+        start = solver.t_old
+        leave = _lift(asperity, at, before, start, solver)
+        inside = wanted[(wanted <= solver.t) & (wanted < leave)]
+        columns += [np.array([t, *at(before, start, t)]) for t in inside]
+        wanted = wanted[inside.size :]
+    t, x, vx = np.array(columns).reshape(-1, 3).T
+    exact = asperity.press(x, vx) / (1.0 + asperity.incline(x) ** 2)
+    states = np.stack([t, x, asperity.height(x), vx, asperity.incline(x) * vx, exact])
+    if leave == math.inf:
+        return None, states
+    off_x, off_vx = (float(value) for value in at(before, start, leave))
+    y, vy = float(asperity.height(off_x)), float(asperity.incline(off_x)) * off_vx
+    return Arc("fly", leave, off_x, y, off_vx, vy, 0.0), states
+
+
+def _lift(asperity: Asperity, at: Any, state: FloatArray, start: float, solver: Any) -> float:
+    """When in the last step the numerator of λ passes through zero downwards; infinite if never."""
+    looks = np.linspace(start, solver.t, _LOOKS + 1)
+    press = asperity.press(*solver.dense_output()(looks))
+    below = np.flatnonzero(press[1:] < 0.0)
+    if below.size == 0:
+        return math.inf
+    late = float(looks[below[0] + 1])
+    early = float(looks[below[0]])
+    from scipy.optimize import brentq
+
+    def value(time: float) -> float:
+        return float(asperity.press(*at(state, start, time)))
+
+    if value(early) <= 0.0:
+        return early
+    if value(late) >= 0.0:
+        return math.inf
+    return float(
+        brentq(value, early, late, xtol=1e-15 * max(abs(late), late - early), rtol=8.9e-16)
+    )

@@ -1,0 +1,245 @@
+"""Dry friction from asperities: horizontal force against speed, the speed held by a drive.
+
+A drive keeps x′ = V on the support y ≥ −a cos(x/b).  Then λ of contact is −Y(1 + w cos θ) exactly,
+θ = x/b, with w = (V/V₀)², V₀² = −Y b²/(m a): Chetaev's leading terms.  Everything in units of
+Coulomb's force −Y a/b depends on w alone:
+
+*Greatest force.*  In contact the support resists with (1 + w cos θ) sin θ.  For w ≤ 1 it is in
+contact throughout; for w > 1 the point leaves at θ₀ = π − arccos(1/w), before each crest, flies the
+parabola and lands at θ₁.  If θ₁ lies before the place where the force is greatest,
+cos θ* = (√(1 + 8w²) − 1)/(4w), the greatest force grows with the speed; if beyond, it is that at
+θ₁, and soon falls.
+
+*Mean force.*  The drive's work over whole periods is what the landings lose, ½m(jump of y′)² each.
+Without flight it is 0: smooth asperities dissipate nothing then, and Coulomb's law is a statement
+about the greatest force.  The mean of λ is −Y, so the mean force is never above Coulomb's.
+
+Where λ would be negative at θ₁ the point flies on at once.  As soon as it has slid it leaves at θ₀
+again, so that one such round is the mean for all time.  In some windows of speed it never slides
+again: it falls into a cycle of hops (once a period at sin θ = π/w, for instance, with the mean
+force π/w), whose mean is taken instead; of 2000 hops if there is no cycle.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables.chetaev.asperity import Arc, Asperity, landing
+from puck_tables.contact.speed_law import SpeedLaw
+from puck_tables.errors import InputError
+from puck_tables.real import finite_array
+
+FloatArray = npt.NDArray[np.float64]
+
+_FLIGHTS = 4000
+_LONGEST_CYCLE, _SAME_PHASE = 40, 1e-11
+MAX_SPEED = 1e3  # of V₀: beyond it a flight passes a million periods and its landing is chance
+
+
+class Round(NamedTuple):
+    """What happens between two departures at θ₀ when the speed is held, in dimensionless terms.
+
+    ``landing`` is the phase θ₁ ∈ (−π, π] after which the point slides (NaN if it does not fly or
+    never slides again), ``flights`` and ``periods`` count until it leaves there again, ``mean`` is
+    the mean force over −Y a/b.
+    """
+
+    landing: float
+    slides: bool
+    flights: int
+    periods: int
+    mean: float
+
+
+@dataclass(frozen=True)
+class AsperityCurve:
+    """Horizontal force of the support against the speed; forces in N, resisting positive.
+
+    Attributes
+    ----------
+    asperity : Asperity
+    speed : array (k,), m/s
+    crude : array (k,)
+        Coulomb's force −Y a/b, at every speed.
+    greatest : array (k,)
+        Greatest force in contact at this speed, by the leading terms of λ, which are exact where
+        the speed is held; 0 where it only hops.  Forces of the landing itself, a blow, are left
+        out.
+    undriven : array (k,)
+        The same places with the exact λ of a point that has the speed there and is not driven:
+        less by 1 + κ² sin² θ.
+    mean : array (k,)
+        Mean over all time of the drive's force, landings included.
+    landing_phase : array (k,), rad
+        Phase x/b ∈ (−π, π] of the landing after which it slides; NaN where there is none.
+    flights_per_period : array (k,)
+    """
+
+    asperity: Asperity
+    speed: FloatArray
+    crude: FloatArray = field(repr=False)
+    greatest: FloatArray = field(repr=False)
+    undriven: FloatArray = field(repr=False)
+    mean: FloatArray = field(repr=False)
+    landing_phase: FloatArray = field(repr=False)
+    flights_per_period: FloatArray = field(repr=False)
+
+    def law(self, which: str = "greatest") -> SpeedLaw:
+        """The force over the load as a friction coefficient that depends on the speed.
+
+        Parameters
+        ----------
+        which : 'crude', 'greatest', 'undriven' or 'mean'
+
+        Raises
+        ------
+        InputError
+            If there is no such force, or the speeds do not begin at 0.
+
+        Examples
+        --------
+        >>> bumps = Asperity(amplitude=1e-6, length=4e-6, load=1.0, mass=0.1)
+        >>> law = asperity_curve(bumps, np.linspace(0.0, 0.02, 9)).law()
+        >>> float(law(0.0))  # a/b
+        0.25
+        """
+        if which not in ("crude", "greatest", "undriven", "mean"):
+            raise InputError(f"which must be crude, greatest, undriven or mean, got {which!r}")
+        return SpeedLaw(self.speed, getattr(self, which) / self.asperity.load)
+
+
+def asperity_curve(
+    asperity: Asperity,
+    speed: npt.ArrayLike,
+    progress: Callable[[int, int], None] | None = None,
+) -> AsperityCurve:
+    """Horizontal force of a wavy one-sided support on a point, against its speed.
+
+    Parameters
+    ----------
+    asperity : Asperity
+        Not pulled: the drive does that.
+    speed : array_like (k,), m/s, ascending, from 0 to 1000 V₀
+    progress : callable (done, total), optional
+
+    Returns
+    -------
+    AsperityCurve
+
+    Raises
+    ------
+    InputError
+        If a speed is out of range or the point is pulled.
+
+    References
+    ----------
+    Chetaev 1960, section 5.
+
+    Examples
+    --------
+    >>> bumps = Asperity(amplitude=1.0, length=4.0, load=1.0, mass=1.0)  # a/b = 1/4, V₀ = 4 m/s
+    >>> curve = asperity_curve(bumps, [0.0, 4.0, 6.0, 12.0])
+    >>> curve.greatest.round(6).tolist(), curve.mean.round(6).tolist()
+    ([0.25, 0.32476, 0.470022, 1.004852], [0.0, 0.0, 0.190728, 0.232894])
+    """
+    V = finite_array("speed", speed, "m/s")
+    if asperity.pull != 0.0:
+        raise InputError("pull must be 0 where a drive holds the speed: its force is what is asked")
+    if V.ndim != 1 or V.size == 0 or not (np.diff(V) > 0.0).all():
+        raise InputError("speed must be one or more numbers in m/s, ascending")
+    highest = MAX_SPEED * asperity.lift_speed
+    if V[0] < 0.0 or V[-1] > highest:
+        wrong = V[0] if V[0] < 0.0 else V[-1]
+        raise InputError(
+            f"speed must be from 0 to {highest:g} m/s ({MAX_SPEED:g} times the speed at which the "
+            f"crest is left), got {wrong:g}"
+        )
+    rows = []
+    for done, one in enumerate(V, start=1):
+        w = float(one / asperity.lift_speed) ** 2
+        run = held_round(w)
+        first = -math.pi if math.isnan(run.landing) else run.landing
+        greatest = [greatest_force(w, first, kappa) for kappa in (0.0, asperity.slope)]
+        rows.append((
+            1.0, *(greatest if run.slides else (0.0, 0.0)), run.mean, run.landing,
+            run.flights / run.periods,
+        ))  # fmt: skip
+        if progress is not None:
+            progress(done, V.size)
+    columns = np.array(rows).T
+    columns[:4] *= asperity.load * asperity.slope
+    return AsperityCurve(asperity, V, *columns)
+
+
+def greatest_force(w: float, first: float, slope: float = 0.0) -> float:
+    """Largest (1 + w cos θ) sin θ/(1 + κ² sin² θ) in contact, from ``first`` to the departure.
+
+    With ``slope`` κ = 0 that of the held speed; its places solve an equation of degree 4 in cos θ.
+
+    Examples
+    --------
+    >>> greatest_force(0.0, -np.pi), round(greatest_force(1.0, -np.pi), 12)  # 3√3/4
+    (1.0, 1.299038105677)
+    """
+    squared = slope * slope
+    # (c + w(2c² − 1))(1 + κ²(1 − c²)) − 2κ² c (1 − c²)(1 + wc)
+    turning = np.polysub(
+        np.polymul([2.0 * w, 1.0, -w], [-squared, 0.0, 1.0 + squared]),
+        np.polymul([-2.0 * squared, 0.0, 2.0 * squared, 0.0], [w, 1.0]),
+    )
+    roots = np.roots(turning)
+    cosine = roots[np.abs(roots.imag) < 1e-9].real
+    last = math.pi if w <= 1.0 else math.pi - math.acos(1.0 / w)
+    places = np.arccos(cosine[np.abs(cosine) <= 1.0])
+    places = np.append(places[(places >= first) & (places <= last)], first)
+    force = (1.0 + w * np.cos(places)) * np.sin(places) / (1.0 + squared * np.sin(places) ** 2)
+    return float(force.max())
+
+
+def held_round(w: float) -> Round:
+    """Flights and landings at a held speed, w = (V/V₀)², from a departure at θ₀ on.
+
+    Examples
+    --------
+    >>> run = held_round(2.25)
+    >>> round(run.landing, 6), run.periods, round(run.mean, 6)
+    (0.797713, 1, 0.762913)
+    >>> hopping = held_round(3.61)  # hops once a period at sin θ = π/w: the mean is π/w
+    >>> hopping.slides, round(hopping.mean * 3.61, 9)
+    (False, 3.141592654)
+    """
+    if w <= 1.0:
+        return Round(math.nan, True, 0, 1, 0.0)
+    # a, b, V = 1, so that time is phase: the load is then 1/w
+    unit = Asperity(1.0, 1.0, 1.0 / w, 1.0)
+    start = math.pi - math.acos(1.0 / w)
+    phases = [start]
+    lengths = list[float]()
+    jumps = list[float]()
+    while len(jumps) < _FLIGHTS:
+        incline = math.sin(phases[-1])
+        arc = Arc("fly", 0.0, phases[-1], -math.cos(phases[-1]), 1.0, incline, 0.0)
+        lengths.append(landing(unit, arc, math.inf))
+        late = phases[-1] + lengths[-1]
+        jumps.append((math.sin(late) - (incline - lengths[-1] / w)) ** 2)
+        phases.append(math.remainder(late, 2.0 * math.pi))
+        if 1.0 + w * math.cos(phases[-1]) >= 0.0 and abs(phases[-1]) <= start:
+            lengths.append(start - phases[-1])
+            return _round(w, phases[-1], lengths, jumps)
+        for back in range(1, min(len(jumps) - 1, _LONGEST_CYCLE)):
+            if abs(phases[-1] - phases[-1 - back]) < _SAME_PHASE:
+                return _round(w, math.nan, lengths[-back:], jumps[-back:])
+    half = _FLIGHTS // 2
+    return _round(w, math.nan, lengths[half:], jumps[half:])
+
+
+def _round(w: float, landed: float, lengths: list[float], jumps: list[float]) -> Round:
+    periods = max(round(math.fsum(lengths) / (2.0 * math.pi)), 1)
+    mean = w * math.fsum(jumps) / (4.0 * math.pi * periods)
+    return Round(landed, not math.isnan(landed), len(jumps), periods, mean)

@@ -1,0 +1,289 @@
+"""The puck as a constrained system: N mass points of a rigid disc, each with friction of its own.
+
+Every patch carries the load σ_i and has friction along its velocity u_i, as Chetaev's axiom wants.
+Its multiplier is that of Coulomb's law with the root mean square of the slip over the patch,
+
+    μ_i = −f σ_i/√(|u_i|² + ω² s²),   s² = π r²/(6N): mean square distance in a square of the area.
+
+With |u_i| alone a patch under the centre of rotation sticks, and the puck of few patches turns
+about it: a motion of N points, but not one of a disc.  The 2N − 3 constraints of a rigid body may
+be kept (:func:`patch_system`) or eliminated by Lagrange's method (:func:`patch_stop`), which leaves
+three equations at any N.
+
+Patches lie on rings of equal width, 4(2k − 1) on the k-th, all of one area; a ring's radius is the
+root mean square over its patches, so mass and moment of inertia are those of the disc at any N.
+Sums over them are a midpoint rule in the radius, and the slip of a patch is wrong by the square of
+its width: errors fall as 1/N.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables.chetaev.system import ConstrainedSystem, FloatArray
+from puck_tables.errors import InputError
+from puck_tables.real import finite_array
+
+MAX_RINGS = 256
+# Q of the start at which the rest of the motion is taken as one at constant deceleration
+_LAST = 1e-7
+
+
+def disc_points(rings: int) -> FloatArray:
+    """Places of the patches, in units of the radius.
+
+    Parameters
+    ----------
+    rings : int, from 1 to 256
+
+    Returns
+    -------
+    array (4 rings², 2)
+
+    Raises
+    ------
+    InputError
+        If the number of rings is out of range.
+
+    Examples
+    --------
+    >>> points = disc_points(3)
+    >>> len(points), float((points**2).sum(axis=1).mean().round(12))  # ⟨ρ²⟩ = 1/2 on a disc
+    (36, 0.5)
+    """
+    if not 1 <= rings <= MAX_RINGS:
+        raise InputError(f"rings must be from 1 to {MAX_RINGS}, got {rings}")
+    parts = []
+    for k in range(1, rings + 1):
+        count = 4 * (2 * k - 1)
+        radius = math.sqrt(0.5 * ((k - 1) ** 2 + k**2)) / rings
+        angle = 2.0 * np.pi * (np.arange(count) + 0.5) / count
+        parts.append(radius * np.stack([np.cos(angle), np.sin(angle)], axis=-1))
+    return np.concatenate(parts)
+
+
+def pressures(points: FloatArray, slip: FloatArray, delta: float) -> FloatArray:
+    """Loads of the patches in units of their mean: 1 + b x + c y with the moments balanced.
+
+    Parameters
+    ----------
+    points : array (n, 2)
+        Places from the centre in units of the radius, axes fixed in space.
+    slip : array (n, 2)
+        Friction of each patch over f σ, turned round: directions of slip.
+    delta : float
+        Dimensionless height 2fh/r.
+
+    Returns
+    -------
+    array (n,)
+
+    Raises
+    ------
+    InputError
+        If a patch would have to be pulled down: the model is that of full contact.
+
+    Notes
+    -----
+    Σ σ x = (h/2) f Σ σ u/|u|: two linear equations for (b, c).
+
+    Examples
+    --------
+    >>> points = disc_points(8)
+    >>> ahead = np.tile([1.0, 0.0], (len(points), 1))
+    >>> bool(np.allclose(pressures(points, ahead, 0.5), 1.0 + 0.5 * points[:, 0]))  # b = δ at φ = 0
+    True
+    """
+    if delta == 0.0:
+        return np.ones(len(points))
+    lever = points - 0.25 * delta * slip
+    tilt = np.linalg.solve((lever.T @ points), -lever.sum(axis=0))
+    load = np.asarray(1.0 + points @ tilt)
+    if load.min() < 0.0:
+        raise InputError(
+            f"delta = {delta:g}: a patch would be lifted; patches are for full contact, delta <= 1"
+        )
+    return load
+
+
+def patch_system(
+    rings: int,
+    *,
+    delta: float = 0.0,
+    decel: float = 1.0,
+    radius: float = 1.0,
+    mass: float = 1.0,
+) -> tuple[ConstrainedSystem, FloatArray]:
+    """A sliding puck as 4 rings² mass points, all constraints of the rigid body kept.
+
+    Parameters
+    ----------
+    rings : int
+    delta, decel, radius, mass : float
+        2fh/r in [0, 1], J = fg in m/s², r in m, m in kg.
+
+    Returns
+    -------
+    ConstrainedSystem, array (n, 2)
+        The system, and the places of its points when the centre lies at the origin, m.
+
+    Raises
+    ------
+    InputError
+        If a number is out of range.
+
+    Notes
+    -----
+    With ω taken from the first two points, u_i − u_1 = ω × (x_i − x_1) for the others, and the
+    distance of the two: 2N − 3 constraints, linear in the velocities and independent.
+
+    Examples
+    --------
+    >>> system, points = patch_system(2)
+    >>> len(points), len(system.constraints(points, 0.0)[1])
+    (16, 29)
+    """
+    checked = {"delta": delta, "decel": decel, "radius": radius, "mass": mass}
+    _checked(**checked)
+    points = disc_points(rings) * radius
+    count = len(points)
+    others = np.arange(2, count)
+
+    def rigid(x: FloatArray, t: float) -> tuple[FloatArray, FloatArray]:
+        base = x[1] - x[0]
+        turned = np.stack([-base[1], base[0]])  # ω |base|² = turned·(u_2 − u_1)
+        a = np.zeros((1 + 2 * (count - 2), count, 2), dtype=x.dtype)
+        a[0, 0], a[0, 1] = -base, base
+        arm = (x[2:] - x[0]) / (base @ base)
+        for axis, across in ((0, -arm[:, 1]), (1, arm[:, 0])):
+            rows = 2 * others - 3 + axis
+            a[rows, others, axis] = 1.0
+            a[rows, 0, axis] = -1.0
+            a[rows, 1] -= across[:, None] * turned
+            a[rows, 0] += across[:, None] * turned
+        return a, np.zeros(len(a), dtype=x.dtype)
+
+    def friction(x: FloatArray, v: FloatArray, t: float) -> FloatArray:
+        arm, relative = (x - x.mean(axis=0)) / radius, v - v.mean(axis=0)
+        rim = 2.0 * float((arm[:, 0] * relative[:, 1] - arm[:, 1] * relative[:, 0]).mean())
+        inverse = _inverse_speed(v, rim)
+        load = pressures(arm, v * inverse[:, None], delta)
+        return -load * inverse * (mass * decel / count)
+
+    return ConstrainedSystem(np.full(count, mass / count), rigid, friction=friction), points
+
+
+def patch_stop(
+    v0: npt.ArrayLike,
+    w0: float,
+    rings: int,
+    *,
+    delta: float = 0.0,
+    decel: float = 1.0,
+    radius: float = 1.0,
+    tol: float = 1e-8,
+) -> tuple[float, FloatArray]:
+    """When and where a puck of 4 rings² patches stops.
+
+    Parameters
+    ----------
+    v0 : array_like (2,), m/s
+    w0 : float, rad/s
+    rings : int, from 1 to 256
+    delta, decel, radius : float
+        2fh/r in [0, 1], J = fg in m/s², r in m.
+    tol : float
+        Local relative error of the integration.
+
+    Returns
+    -------
+    float, array (2,)
+        Stop time in s and place in m.
+
+    Raises
+    ------
+    InputError
+        If an argument is out of range.
+
+    Notes
+    -----
+    Lagrange's equations (3.5) for (x, y, θ).  As the friction multipliers depend on the velocities
+    they enter as generalised forces.  Time runs as dt = (Q/J) dτ, in which the stop is infinitely
+    far and every rate stays finite; from 1e-7 of Q on the deceleration is taken as constant.
+
+    References
+    ----------
+    Chetaev 1960, section 3.
+
+    Examples
+    --------
+    >>> time, place = patch_stop((1.0, 0.0), 0.0, 4)  # no spin: exact with any patches
+    >>> round(time, 9), place.round(9)[0].item()
+    (1.0, 0.5)
+    """
+    from scipy.integrate import solve_ivp
+
+    _checked(delta=delta, decel=decel, radius=radius, mass=1.0)
+    velocity = finite_array("v0", v0, "m/s")
+    spin = float(finite_array("w0", w0, "rad/s"))
+    start = math.hypot(*velocity, radius * spin)
+    if velocity.shape != (2,):
+        raise InputError(f"v0 must be two numbers in m/s, got the shape {velocity.shape}")
+    points = disc_points(rings)
+    if start == 0.0:
+        return 0.0, np.zeros(2)
+
+    def rates(state: FloatArray) -> tuple[FloatArray, float, float]:
+        """Acceleration, r times angular acceleration, −dQ/dt."""
+        vx, vy, rim, angle = state[:4]
+        cosine, sine = math.cos(angle), math.sin(angle)
+        places = points @ np.array([[cosine, sine], [-sine, cosine]])
+        slip = np.stack([vx - rim * places[:, 1], vy + rim * places[:, 0]], axis=-1)
+        slip *= _inverse_speed(slip, rim)[:, None]
+        force = pressures(places, slip, delta)[:, None] * slip
+        linear = -decel * force.mean(axis=0)
+        angular = (
+            -2.0 * decel * float((places[:, 0] * force[:, 1] - places[:, 1] * force[:, 0]).mean())
+        )
+        Q = math.sqrt(vx * vx + vy * vy + rim * rim)
+        return linear, angular, -(vx * linear[0] + vy * linear[1] + rim * angular) / Q
+
+    def slope(tau: float, state: FloatArray) -> FloatArray:
+        linear, angular, _ = rates(state)
+        vx, vy, rim = state[:3]
+        scale = math.sqrt(vx * vx + vy * vy + rim * rim) / decel
+        return scale * np.array([*linear, angular, rim / radius, vx, vy, 1.0])
+
+    def slow(tau: float, state: FloatArray) -> float:
+        return math.hypot(*state[:3]) / start - _LAST
+
+    slow.terminal = True  # type: ignore[attr-defined]
+    # the speeds keep their digits down to their last values; angle, place and time are sums
+    absolute = tol * np.array([_LAST, _LAST, _LAST, 1.0, start / decel, start / decel, 1.0 / decel])
+    absolute[:3] *= start
+    absolute[4:] *= (start, start, start)
+    solved = solve_ivp(
+        slope, (0.0, 1e3), np.array([*velocity, radius * spin, 0.0, 0.0, 0.0, 0.0]),
+        method="DOP853", rtol=tol, atol=absolute, events=slow,
+    )  # fmt: skip
+    last = solved.y[:, -1]
+    left = math.hypot(*last[:3]) / rates(last)[2]
+    return float(last[6] + left), last[4:6] + 0.5 * left * last[:2]
+
+
+def _inverse_speed(velocity: FloatArray, rim: float) -> FloatArray:
+    """1/rms slip of the patches of a disc whose rim turns with the speed ``rim``; 0 at rest."""
+    spread = np.pi * rim * rim / (6.0 * len(velocity))
+    speed = np.sqrt((velocity**2).sum(axis=1) + spread)
+    return np.where(speed == 0.0, 0.0, 1.0 / np.where(speed == 0.0, 1.0, speed))
+
+
+def _checked(delta: float, decel: float, radius: float, mass: float) -> None:
+    for name, value in (("decel", decel), ("radius", radius), ("mass", mass)):
+        if not 0.0 < value < math.inf:
+            raise InputError(f"{name} must be a finite number greater than 0, got {value:g}")
+    if not 0.0 <= delta <= 1.0:
+        raise InputError(f"delta must be from 0 to 1 (full contact) for patches, got {delta:g}")

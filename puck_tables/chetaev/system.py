@@ -1,0 +1,237 @@
+"""Point masses under linear velocity constraints with friction: one instant of the motion.
+
+Chetaev's axiom says that the reactions of constraints with friction do no work on the displacements
+that the constraints admit and that are orthogonal to the velocity of every point (1.3).  Each
+reaction is then a smooth part plus a part along the velocity, and the motion obeys
+
+    m_i x_i″ = X_i + Σ_s λ_s a_i^(s) + μ_i x_i′ ,      Σ_i a_i^(s)·x_i′ + e^(s) = 0     (2.3), (2.4)
+
+with the μ given.  Differentiating (2.4) along the motion leaves a symmetric positive definite
+system for the λ,
+
+    Σ_r (Σ_i a_i^(s)·a_i^(r)/m_i) λ_r = −Σ_i a_i^(s)·(X_i + μ_i x_i′)/m_i − d(a·x′ + e)/dt|_x′ .
+
+The same matrix takes a velocity to the nearest admissible one (nearest in the kinetic energy), so
+that rounding and integration never leave (2.4).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables.errors import InputError
+from puck_tables.real import finite_array
+
+FloatArray = npt.NDArray[np.float64]
+Constraints = Callable[[Any, Any], tuple[npt.ArrayLike, npt.ArrayLike]]
+OfState = Callable[[FloatArray, FloatArray, float], npt.ArrayLike]
+
+# Below this share of its own length a constraint is a combination of the others.
+_INDEPENDENT = 1e-6
+_COMPLEX_STEP = 1e-30
+
+
+@dataclass(frozen=True)
+class ConstrainedSystem:
+    """Point masses in the plane or in space, their constraints, forces and friction.
+
+    Parameters
+    ----------
+    masses : array_like (n,), kg, > 0
+    constraints : callable (x, t) → (a, e)
+        ``x`` is (n, d) in m, d = 2 or 3, ``t`` in s; ``a`` is (s, n, d), ``e`` is (s,): the
+        constraints Σ a·x′ + e = 0.  Unless ``rate`` is given it is differentiated by a complex
+        step: it must be made of analytic functions that take complex numbers (NumPy's do).
+    force : callable (x, v, t) → (n, d) or array_like (n, d), N
+        The given forces X; none by default.
+    friction : callable (x, v, t) → (n,) or array_like (n,), kg/s
+        The multipliers μ of the velocities, negative where they brake; zero by default.
+    rate : callable (x, v, t) → (s,), optional
+        d(Σ a·v + e)/dt along the motion at fixed v, for constraints that take no complex numbers.
+
+    Raises
+    ------
+    InputError
+        If a mass is not finite and positive.
+
+    References
+    ----------
+    Chetaev, On certain constraints with friction, 1960, sections 1 and 2.
+
+    Examples
+    --------
+    A bead on a rail at 30° (a is the normal of the rail), pressed by its weight:
+
+    >>> rail = ConstrainedSystem([2.0], lambda x, t: ([[[-0.5, 0.75**0.5]]], [0.0]), [[0.0, -20.0]])
+    >>> now = instant(rail, np.zeros((1, 2)), np.zeros((1, 2)), 0.0)
+    >>> now.multipliers.round(6).tolist()  # 20 N cos 30°
+    [17.320508]
+    """
+
+    masses: npt.ArrayLike
+    constraints: Constraints
+    force: OfState | npt.ArrayLike = 0.0
+    friction: OfState | npt.ArrayLike = 0.0
+    rate: OfState | None = None
+
+    def __post_init__(self) -> None:
+        masses = finite_array("masses", self.masses, "kg")
+        if masses.ndim != 1 or masses.size == 0 or not (masses > 0.0).all():
+            raise InputError(
+                "masses must be one number greater than 0 kg for each point, got an array of shape "
+                f"{masses.shape} with least value {masses.min(initial=np.inf):g}"
+            )
+        object.__setattr__(self, "masses", masses)
+
+
+class Instant(NamedTuple):
+    """What holds at one state: everything in SI units.
+
+    ``velocity`` (n, d) is the admissible velocity nearest to the one given, ``residual`` (s,) what
+    the latter gave in (2.4); ``multipliers`` (s,) are the λ; ``smooth`` and ``friction`` (n, d) the
+    two parts Σ λ a and μ x′ of the reactions; ``matrix`` (s, n, d) and ``drive`` (s,) are a and e.
+    """
+
+    velocity: FloatArray
+    acceleration: FloatArray
+    multipliers: FloatArray
+    smooth: FloatArray
+    friction: FloatArray
+    force: FloatArray
+    matrix: FloatArray
+    drive: FloatArray
+    residual: FloatArray
+
+
+def instant(
+    system: ConstrainedSystem, position: FloatArray, velocity: FloatArray, time: float
+) -> Instant:
+    """Accelerations and multipliers at a state, after its velocity is made admissible.
+
+    Parameters
+    ----------
+    system : ConstrainedSystem
+    position, velocity : arrays (n, d), m and m/s
+    time : float, s
+
+    Returns
+    -------
+    Instant
+
+    Raises
+    ------
+    InputError
+        If a function returns something of another shape or not finite, or the constraints depend
+        on each other.
+    """
+    shape = position.shape
+    a, e = _constraints(system, position, time)
+    count = len(e)
+    flat = a.reshape(count, -1)
+    per_mass = np.repeat(1.0 / np.asarray(system.masses), shape[1])
+    factor = _factor(flat, per_mass, time)
+    residual = flat @ velocity.ravel() + e
+    v = velocity.ravel() - per_mass * (flat.T @ _solve(factor, residual))
+    moving = v.reshape(shape)
+    force = _of_state("force", system.force, position, moving, time, shape)
+    mu = _of_state("friction", system.friction, position, moving, time, shape[:1])
+    friction = mu[:, None] * moving
+    given = (force + friction).ravel()
+    multipliers = -_solve(factor, flat @ (per_mass * given) + rate(system, position, moving, time))
+    smooth = flat.T @ multipliers
+    acceleration = (per_mass * (given + smooth)).reshape(shape)
+    return Instant(
+        moving, acceleration, multipliers, smooth.reshape(shape), friction, force, a, e, residual
+    )
+
+
+def rate(
+    system: ConstrainedSystem, position: FloatArray, velocity: FloatArray, time: float
+) -> FloatArray:
+    """d(Σ a·v + e)/dt along the motion at fixed v, array (s,)."""
+    if system.rate is not None:
+        return np.asarray(system.rate(position, velocity, time), dtype=np.float64)
+    step = 1j * _COMPLEX_STEP
+    try:
+        a, e = system.constraints(position + step * velocity, time + step)
+        turned = np.asarray(a).reshape(-1, velocity.size) @ velocity.ravel() + np.asarray(e)
+    except TypeError as error:
+        raise InputError(
+            "the constraints must take complex numbers, by which they are differentiated; write "
+            f"them with NumPy's functions, or give rate= ({error})"
+        ) from None
+    return np.asarray(turned.imag / _COMPLEX_STEP)
+
+
+def violation(
+    system: ConstrainedSystem, position: FloatArray, velocity: FloatArray, time: float
+) -> FloatArray:
+    """Σ a·v + e at a state, array (s,): zero where the velocity is admissible."""
+    a, e = _constraints(system, position, time)
+    return np.asarray(a.reshape(len(e), -1) @ velocity.ravel() + e)
+
+
+def _constraints(
+    system: ConstrainedSystem, position: FloatArray, time: float
+) -> tuple[FloatArray, FloatArray]:
+    a, e = system.constraints(position, time)
+    drive = np.atleast_1d(np.asarray(e, dtype=np.float64))
+    matrix = np.asarray(a, dtype=np.float64)
+    if drive.ndim != 1 or matrix.shape != (drive.size, *position.shape):
+        raise InputError(
+            f"constraints must return a of shape (s, n, d) = ({drive.size}, "
+            f"{position.shape[0]}, {position.shape[1]}) and e of shape (s,), got {matrix.shape} "
+            f"and {drive.shape}"
+        )
+    if not (np.isfinite(matrix).all() and np.isfinite(drive).all()):
+        raise InputError(f"the constraints are not finite at t = {time:g} s")
+    return matrix, drive
+
+
+def _of_state(
+    name: str, given: OfState | npt.ArrayLike, position: FloatArray, velocity: FloatArray,
+    time: float, shape: tuple[int, ...],
+) -> FloatArray:  # fmt: skip
+    values = np.asarray(given(position, velocity, time) if callable(given) else given, np.float64)
+    if values.shape not in ((), shape):
+        raise InputError(f"{name} must have the shape {shape}, got {values.shape}")
+    if not np.isfinite(values).all():
+        raise InputError(f"{name} is not finite at t = {time:g} s")
+    return np.broadcast_to(values, shape)
+
+
+def _factor(flat: FloatArray, per_mass: FloatArray, time: float) -> tuple[FloatArray, FloatArray]:
+    """Lengths of the constraints, and the Cholesky factor of their normalised Gram matrix."""
+    gram = (flat * per_mass) @ flat.T
+    length = np.sqrt(np.diag(gram))
+    if not (length > 0.0).all():
+        raise InputError(
+            f"constraint {int(np.argmin(length)) + 1} has no coefficients at t = {time:g} s: "
+            "it constrains nothing; leave it out"
+        )
+    try:
+        lower = np.linalg.cholesky(gram / np.outer(length, length))
+        share = np.diag(lower)
+    except np.linalg.LinAlgError:
+        share = np.zeros(1)
+    if len(flat) and share.min() < _INDEPENDENT:
+        which = f" {int(np.argmin(share)) + 1}" if share.size == len(flat) else "s"
+        raise InputError(
+            f"the constraint{which} at t = {time:g} s can be combined from the others: the forces "
+            "of the constraints are not determined; leave the superfluous one out"
+        )
+    return length, lower
+
+
+def _solve(factor: tuple[FloatArray, FloatArray], right: FloatArray) -> FloatArray:
+    from scipy.linalg import cho_solve
+
+    length, lower = factor
+    if right.size == 0:
+        return right
+    return np.asarray(cho_solve((lower, True), right / length, check_finite=False) / length)

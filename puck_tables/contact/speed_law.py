@@ -1,0 +1,227 @@
+"""A friction coefficient that depends on the slip speed: f(|u|) through given points."""
+
+from __future__ import annotations
+
+import csv
+import io
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables.errors import InputError
+from puck_tables.real import finite_array, instance
+from puck_tables.safe_write import write_bytes
+
+FloatArray = npt.NDArray[np.float64]
+
+KINDS = ("cubic", "linear")
+HEADER = ("speed[m/s]", "f[1]")
+_STEEPEST = 3.0  # times the difference, at an end
+
+
+@dataclass(frozen=True)
+class SpeedLaw:
+    """Friction coefficient f against slip speed, through points.
+
+    Parameters
+    ----------
+    speeds : array_like (k,), m/s
+        Ascending from 0, at least two.
+    values : array_like (k,)
+        f ≥ 0 at these speeds.
+    kind : 'cubic' or 'linear'
+        Between the points: a cubic with a continuous slope that rises and falls only where the
+        points do (no overshoot), or straight lines.
+
+    Raises
+    ------
+    InputError
+        If the points are not like that.
+
+    Notes
+    -----
+    The slopes of the cubic are the weighted harmonic means of the neighbouring differences, 0 where
+    these change sign (Fritsch, Butland 1984); at the ends the three-point formula, limited so that
+    no extremum appears (Fritsch, Carlson 1980).
+
+    Examples
+    --------
+    >>> law = SpeedLaw([0.0, 1.0, 2.0], [0.3, 0.2, 0.2])
+    >>> law([0.0, 0.5, 1.5]).round(6).tolist()
+    [0.3, 0.23125, 0.2]
+    """
+
+    speeds: npt.ArrayLike
+    values: npt.ArrayLike
+    kind: str = "cubic"
+
+    def __post_init__(self) -> None:
+        speeds = finite_array("speeds", self.speeds, "m/s").copy()
+        values = finite_array("values", self.values, "units of 1").copy()
+        if speeds.ndim != 1 or speeds.shape != values.shape or speeds.size < 2:
+            raise InputError(
+                "speeds and values must be two lists of one length, at least 2, got the shapes "
+                f"{speeds.shape} and {values.shape}"
+            )
+        if speeds[0] != 0.0 or not (np.diff(speeds) > 0.0).all():
+            raise InputError("speeds must ascend from 0 m/s")
+        if values.min() < 0.0:
+            raise InputError(
+                f"a friction coefficient must not be negative, got {values.min():g} at the speed "
+                f"{speeds[values.argmin()]:g} m/s"
+            )
+        instance("kind", self.kind, str)
+        if self.kind not in KINDS:
+            raise InputError(f"kind must be cubic or linear, got {self.kind!r}")
+        object.__setattr__(self, "speeds", speeds)
+        object.__setattr__(self, "values", values)
+
+    @property
+    def top_speed(self) -> float:
+        """The last speed, m/s; nothing is known beyond it."""
+        return float(np.asarray(self.speeds)[-1])
+
+    @cached_property
+    def coefficients(self) -> FloatArray:
+        """Powers 0 to 3 of (speed − left end) in each interval, array (k − 1, 4)."""
+        x, y = np.asarray(self.speeds), np.asarray(self.values)
+        width = np.diff(x)
+        rise = np.diff(y) / width
+        if self.kind == "linear":
+            return np.stack([y[:-1], rise, 0.0 * rise, 0.0 * rise], axis=-1)
+        slope = _slopes(width, rise)
+        left, right = slope[:-1], slope[1:]
+        return np.stack([
+            y[:-1], left, (3.0 * rise - 2.0 * left - right) / width,
+            (left + right - 2.0 * rise) / width**2,
+        ], axis=-1)  # fmt: skip
+
+    def __call__(self, speed: npt.ArrayLike) -> FloatArray:
+        """The friction coefficient at slip speeds.
+
+        Parameters
+        ----------
+        speed : array_like, m/s, from 0 to ``top_speed``
+
+        Raises
+        ------
+        InputError
+            If a speed lies outside; nothing is extrapolated.
+
+        Examples
+        --------
+        >>> SpeedLaw([0.0, 1.0], [0.3, 0.2])(2.0)
+        Traceback (most recent call last):
+        ...
+        puck_tables.errors.InputError: speed = 2 m/s is outside this friction law (0 to 1 m/s)
+        """
+        u = finite_array("speed", speed, "m/s")
+        outside = (u < 0.0) | (u > self.top_speed)
+        if outside.any():
+            raise InputError(
+                f"speed = {u[outside].flat[0]:g} m/s is outside this friction law "
+                f"(0 to {self.top_speed:g} m/s)"
+            )
+        return self.extended(u)
+
+    def extended(self, speed: FloatArray) -> FloatArray:
+        """The same without a check: the last piece goes on for what rounding puts beyond it."""
+        x = np.asarray(self.speeds)
+        cell = np.clip(np.searchsorted(x, speed, side="right") - 1, 0, x.size - 2)
+        c, t = self.coefficients[cell], speed - x[cell]
+        return np.asarray(c[..., 0] + t * (c[..., 1] + t * (c[..., 2] + t * c[..., 3])))
+
+    @classmethod
+    def from_csv(cls, path: str | Path, kind: str = "cubic") -> SpeedLaw:
+        """Read a law: two columns, speed in m/s and f, with or without a header line.
+
+        Raises
+        ------
+        InputError
+            If the file cannot be read or holds something else.
+
+        Examples
+        --------
+        >>> SpeedLaw.from_csv("/nowhere/law.csv")
+        Traceback (most recent call last):
+        ...
+        puck_tables.errors.InputError: cannot read the friction law /nowhere/law.csv: No such file \
+or directory
+        """
+        try:
+            text = Path(path).read_text(encoding="utf-8-sig")
+        except (OSError, ValueError) as error:
+            reason = getattr(error, "strerror", None) or "it is not text"
+            raise InputError(f"cannot read the friction law {path}: {reason}") from None
+        rows = [row for row in csv.reader(io.StringIO(text)) if row]
+        body = rows[1:] if rows and not _is_number(rows[0][0]) else rows
+        for row in body:
+            if len(row) != 2 or not all(map(_is_number, row)):
+                raise InputError(
+                    f"{path}: each line of a friction law must be a speed in m/s and f, like "
+                    f"0.5,0.12; got '{','.join(row)}'"
+                )
+        points = np.array([[float(cell) for cell in row] for row in body]).reshape(-1, 2)
+        try:
+            return cls(points[:, 0], points[:, 1], kind)
+        except InputError as error:
+            raise InputError(f"{path}: {error}") from None
+
+    def to_csv(self, path: str | Path, overwrite: bool = False) -> None:
+        """Write the points to a CSV file that :meth:`from_csv` reads; the kind is not kept.
+
+        Raises
+        ------
+        OutputError
+            If the file exists (without ``overwrite``) or cannot be written.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> law = SpeedLaw([0.0, 1.0], [0.3, 0.2])
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     law.to_csv(folder + "/law.csv")
+        ...     float(SpeedLaw.from_csv(folder + "/law.csv")(0.25).round(6))
+        0.275
+        """
+        text = io.StringIO()
+        writer = csv.writer(text, lineterminator="\n")
+        writer.writerow(HEADER)
+        rows = zip(np.asarray(self.speeds).tolist(), np.asarray(self.values).tolist(), strict=True)
+        writer.writerows(rows)
+        write_bytes(path, text.getvalue().encode(), overwrite)
+
+
+def _slopes(width: FloatArray, rise: FloatArray) -> FloatArray:
+    """Slopes at the points that keep every interval monotone."""
+    if rise.size == 1:
+        return np.repeat(rise, 2)
+    slope = np.zeros(rise.size + 1)
+    same = rise[1:] * rise[:-1] > 0.0
+    first, second = 2.0 * width[1:] + width[:-1], width[1:] + 2.0 * width[:-1]
+    safe = np.where(same, rise[:-1], 1.0), np.where(same, rise[1:], 1.0)
+    mean = (first + second) / (first / safe[0] + second / safe[1])
+    slope[1:-1] = np.where(same, mean, 0.0)
+    slope[0] = _end_slope(width[0], width[1], rise[0], rise[1])
+    slope[-1] = _end_slope(width[-1], width[-2], rise[-1], rise[-2])
+    return slope
+
+
+def _end_slope(near: float, far: float, first: float, second: float) -> float:
+    slope = ((2.0 * near + far) * first - near * second) / (near + far)
+    if slope * first <= 0.0:
+        return 0.0
+    if first * second <= 0.0 and abs(slope) > _STEEPEST * abs(first):
+        return _STEEPEST * first
+    return slope
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True

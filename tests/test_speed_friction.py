@@ -1,0 +1,311 @@
+"""Friction coefficients that depend on the slip speed: quadrature, exact cases, table."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from puck_tables.cli.main import main
+from scipy.integrate import quad
+
+from puck_tables import (
+    SpeedLaw,
+    build_speed_table,
+    load_speed_table,
+    resultants,
+    save_speed_table,
+    speed_resultants,
+    validate_speed,
+)
+from puck_tables.contact.speed_quadrature import speed_integrals
+from puck_tables.errors import AccuracyError, ContactError, InputError, OutputError, TableError
+from puck_tables.kernels.speed_spline import speed_ratios
+from puck_tables.table.grid import PhiAxis
+from puck_tables.table.speed_grid import SpeedAxis
+from puck_tables.table.speed_table import measure, tabulate
+
+EVERY_PHI = np.array([
+    0.0, 1e-14, 1e-8, 1e-4, 0.01, 0.3, 0.7, np.pi / 4 - 1e-8, np.pi / 4, np.pi / 4 + 1e-8, 0.8,
+    1.2, 1.5, np.pi / 2 - 1e-9, np.pi / 2,
+])  # fmt: skip
+CUBIC = SpeedLaw([0.0, 0.3, 0.7, 1.0, 3.0], [0.3, 0.2, 0.25, 0.25, 0.1])
+LINEAR = SpeedLaw([0.0, 0.3, 0.7, 1.0, 3.0], [0.3, 0.2, 0.25, 0.25, 0.1], "linear")
+
+
+def stribeck(u):
+    return 0.2 + 0.15 * np.exp(-u / 0.2) + 0.01 * u
+
+
+def brute(phi: float, speed: float, law) -> list[float]:
+    """The five integrals over strips of the base across its velocity, by nested adaptive rules."""
+    alpha, beta = np.cos(phi), np.sin(phi)
+    knots = np.asarray(law.speeds) / speed if isinstance(law, SpeedLaw) else np.array([])
+    numerators = (
+        lambda x, y: alpha - beta * y, lambda x, y: beta * x * x,
+        lambda x, y: (alpha - beta * y) * y, lambda x, y: beta * (x * x + y * y) - alpha * y,
+        lambda x, y: (beta * (x * x + y * y) - alpha * y) * y,
+    )  # fmt: skip
+
+    def strip(y: float, top) -> float:
+        half, ahead = np.sqrt(1.0 - y * y), alpha - beta * y
+        inside = np.sqrt(np.maximum(knots**2 - ahead**2, 0.0)) / beta
+        points = sorted(float(p) for p in inside if 0.0 < p < half)
+
+        def integrand(x: float) -> float:
+            w = np.hypot(ahead, beta * x)
+            return float(law(np.array(speed * w))) * top(x, y) / w
+
+        return 2.0 / np.pi * quad(integrand, 0.0, half, points=points or None, epsabs=1e-9,
+                                  epsrel=1e-9, limit=60)[0]  # fmt: skip
+
+    marks = (alpha + np.concatenate([[0.0], knots, -knots])) / beta
+    points = sorted(float(p) for p in marks if -1.0 < p < 1.0)
+    return [
+        quad(lambda y, top=top: strip(y, top), -1.0, 1.0, points=points or None, epsabs=1e-7,
+             epsrel=1e-7, limit=60)[0]
+        for top in numerators
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("phi", "speed", "law"),
+    [(0.4, 0.6, stribeck), (1.1, 0.6, stribeck), (0.6, 0.9, LINEAR), (1.2, 1.1, CUBIC)],
+    ids=["outside", "inside", "corners", "knots"],
+)
+def test_integrals_by_brute_force(phi, speed, law):
+    a, b, c, d, e = brute(phi, speed, law)
+    p = speed_integrals(phi, speed, law)
+    cosine, sine = np.cos(phi), np.sin(phi)
+    found = [p.a * cosine, p.b * sine, p.c * sine, p.d * sine, p.e * cosine]
+    assert np.array(found, float) == pytest.approx([a, b, c, d, e], abs=1e-7)
+
+
+@pytest.mark.parametrize("speed", [0.0, 1e-9, 1.0, 2e3])
+def test_a_constant_coefficient_gives_the_closed_forms(speed):
+    f, g = 0.3, 2.5
+    found = speed_resultants(EVERY_PHI, speed, lambda u: f + 0.0 * u, g)
+    exact = resultants(EVERY_PHI, f * g)
+    assert np.stack(found) == pytest.approx(f * np.stack(exact), abs=1e-14)
+
+
+def test_viscous_friction_is_exact():
+    """f = c|u|: the force is c N u at each point; F = c N v, M = c N r² ω/2 for a level load."""
+    c, Q = 0.2, 1.5
+    p = speed_integrals(EVERY_PHI, Q, lambda u: c * u)
+    for found, exact in zip(p, (1.0, 0.25, -0.25, 0.5, -0.25), strict=True):
+        assert found == pytest.approx(np.full(EVERY_PHI.size, c * Q * exact), abs=1e-12)
+    g = 1.7  # and with the load tilted
+    rho = speed_resultants(EVERY_PHI, Q, lambda u: c * u, g)
+    k = 0.25 * g * c * Q * np.sin(EVERY_PHI)
+    parallel = c * Q / (1.0 + k**2)
+    assert rho.parallel == pytest.approx(parallel, abs=1e-12)
+    assert rho.perpendicular == pytest.approx(0.25 * g * c * Q * parallel, abs=1e-12)
+
+
+def test_the_load_balances_the_moments_with_f_inside():
+    phi, speed, g = 0.9, 0.8, 2.0
+    cosine, sine = np.cos(phi), np.sin(phi)
+    a, b, c, d, e = brute(phi, speed, stribeck)
+    rho = speed_resultants(phi, speed, stribeck, g)
+    along, across = rho.parallel * cosine, rho.perpendicular * sine * cosine
+    tilt, roll = g * along, g * across  # ∫σx = N tilt/4 = (h/2) F∥
+    assert along == pytest.approx(a + roll * c, abs=2e-8)
+    assert across == pytest.approx(tilt * b, abs=2e-8)
+    assert 0.5 * sine * rho.spin == pytest.approx(d + roll * e, abs=2e-8)
+
+
+def test_a_puck_that_only_slides_has_the_coefficient_of_its_speed():
+    speeds = np.array([0.0, 0.1, 0.3, 0.5, 1.0, 2.9])
+    for law in (CUBIC, LINEAR):
+        rho = speed_resultants(0.0, speeds, law, 1.0)
+        assert rho.parallel == pytest.approx(law(speeds), abs=1e-14)
+    # a slow spin: f⟨x²⟩ across the velocity and u f′⟨y²⟩ along it
+    rho = speed_resultants(0.0, speeds, lambda u: 0.2 + 0.3 * u**2, 0.0)
+    exact = 0.5 * (0.2 + 0.3 * speeds**2 + speeds * 0.6 * speeds)
+    assert rho.spin == pytest.approx(exact, abs=1e-9)
+
+
+def test_a_puck_that_only_spins():
+    f = speed_resultants(np.pi / 2, 2.0, CUBIC).spin
+    exact = 4.0 * quad(lambda R: float(CUBIC(2.0 * R)) * R**2, 0.0, 1.0, epsabs=1e-13,
+                       points=[0.15, 0.35, 0.5])[0]  # fmt: skip
+    assert float(f) == pytest.approx(exact, abs=1e-12)
+
+
+def test_too_high_or_too_fast_is_refused():
+    with pytest.raises(ContactError, match="too high"):
+        speed_resultants(0.0, 0.0, CUBIC, 3.4)
+    speed_resultants(0.0, 0.0, CUBIC, 3.3)
+    with pytest.raises(InputError, match="outside this friction law"):
+        speed_resultants(np.pi / 4, 2.5, CUBIC)  # the rim is faster than the centre
+    speed_resultants(0.0, 2.5, CUBIC)
+    for phi, speed in ((2.0, 1.0), (0.0, -1.0), (0.0, np.nan)):
+        with pytest.raises(InputError):
+            speed_resultants(phi, speed, CUBIC)
+    with pytest.raises(InputError, match="finite f"):
+        speed_resultants(0.1, 1.0, lambda u: np.nan * u)
+    with pytest.raises(InputError, match="height_ratio"):
+        speed_resultants(0.1, 1.0, CUBIC, -1.0)
+
+
+# The table
+
+
+@pytest.fixture(scope="module")
+def fine():
+    return tabulate(stribeck, PhiAxis(129), SpeedAxis(64, 2.0, 0.2), 1.0)
+
+
+def test_the_table_converges_with_order_four_in_both_axes(fine):
+    coarse = tabulate(stribeck, PhiAxis(65), SpeedAxis(32, 2.0, 0.2), 1.0)
+    far, near = measure(coarse, stribeck), measure(fine, stribeck)
+    assert near.worst < 1e-5
+    assert np.log2(far.worst / near.worst) > 3.4
+    # in speed alone: on nodes of φ
+    phi, U = np.array([0.0, np.pi / 4, np.pi / 2]), np.linspace(0.0, 2.0, 1201)[:, None]
+    Q = U / (np.cos(phi) + np.sin(phi))
+    exact = np.stack(speed_resultants(phi, Q, stribeck, 1.0))
+    axes = [SpeedAxis(n, 2.0, 0.2) for n in (32, 64, 128)]
+    tables = [tabulate(stribeck, PhiAxis(9), axis, 1.0) for axis in axes]
+    errors = [np.abs(np.stack(t.resultants(phi, Q)) - exact).max() for t in tables]
+    assert (np.log2(np.array(errors[:-1]) / errors[1:]) > 3.7).all()
+    # in φ alone: where nothing depends on the speed
+    errors = [
+        measure(tabulate(lambda u: 0.2 + 0.0 * u, PhiAxis(n), SpeedAxis(8, 1.0, 1.0), 1.0),
+                lambda u: 0.2 + 0.0 * u).worst
+        for n in (65, 129)
+    ]  # fmt: skip
+    assert np.log2(errors[0] / errors[1]) > 3.6
+
+
+def test_the_table_keeps_the_accuracy_that_was_asked_for():
+    table = build_speed_table(stribeck, 1.0, top_speed=2.0, scale=0.2, accuracy=3e-6)
+    assert table.accuracy is not None
+    assert table.accuracy.worst <= 3e-6
+    rng = np.random.default_rng(7)
+    phi, U = rng.uniform(-np.pi / 2, np.pi / 2, 3000), 2.0 * rng.random(3000) ** 2
+    Q = U / (np.cos(phi) + np.abs(np.sin(phi)))
+    gap = np.stack(table.resultants(phi, Q)) - np.stack(speed_resultants(phi, Q, stribeck, 1.0))
+    sine, cosine = np.sin(phi), np.cos(phi)
+    gap *= np.stack([cosine, sine * cosine, sine]) / table.largest_f
+    assert np.abs(gap).max() <= 3e-6
+
+
+def test_a_table_of_a_constant_coefficient_is_the_closed_form():
+    table = build_speed_table(lambda u: 0.4 + 0.0 * u, 2.0, top_speed=3.0, accuracy=1e-6)
+    phi = np.linspace(-np.pi / 2, np.pi / 2, 801)
+    found = np.stack(table.resultants(phi, 2.0))
+    weight = np.stack([np.cos(phi), np.sin(phi) * np.cos(phi), np.sin(phi)])
+    gap = weight * (found - 0.4 * np.stack(resultants(phi, 0.8)))
+    assert np.abs(gap).max() < 0.4e-6
+
+
+def test_the_kinks_of_a_law_are_found_by_the_measure(fine):
+    """The adversarial points see what random ones hardly do."""
+    table = tabulate(CUBIC, PhiAxis(65), SpeedAxis(32, 3.0, 0.3), 0.0)
+    report = measure(table, CUBIC)
+    assert report.worst > 10.0 * max(report.rms)
+    smooth = measure(replace(fine), stribeck)
+    assert report.worst > 3.0 * smooth.worst
+
+
+def test_the_kernel_is_the_table_and_says_where_it_ends(fine):
+    axis = fine.speed_axis
+    for phi, Q in ((0.3, 1.0), (1.2, 0.7), (np.pi / 4, np.sqrt(2.0)), (0.0, 2.0), (np.pi / 2, 0.0)):
+        sine, cosine = np.sin(phi), np.cos(phi)
+        k, fast = min(sine, cosine) / max(sine, cosine), bool(sine > cosine)
+        found = speed_ratios(fine.coefficients, axis.scale, axis.reach, k, fast, Q)
+        assert found == pytest.approx([float(x) for x in fine.resultants(phi, Q)], abs=1e-13)
+    beyond = speed_ratios(fine.coefficients, axis.scale, axis.reach, 1.0, False, 1.5)
+    assert np.isnan(beyond).all()
+    with pytest.raises(InputError, match="outside this table"):
+        fine.resultants(np.pi / 4, 1.5)
+    assert fine.resultants([[0.1], [0.2]], [0.5, 0.6, 0.7]).spin.shape == (2, 3)
+
+
+def test_at_rest_it_is_the_coefficient_at_rest(fine):
+    phi = np.linspace(0.0, np.pi / 2, 50)
+    found = np.stack(fine.resultants(phi, 0.0)) / float(stribeck(0.0))
+    assert found == pytest.approx(np.stack(resultants(phi, float(stribeck(0.0)))), abs=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("change", "error", "message"),
+    [
+        ({"top_speed": None}, InputError, "needs top_speed"),
+        ({"top_speed": -1.0}, InputError, "top_speed must be"),
+        ({"scale": 0.0}, InputError, "scale must be"),
+        ({"accuracy": 1e-12}, AccuracyError, "must be from"),
+        ({"height_ratio": 20.0}, ContactError, "too high"),
+        ({"law": CUBIC, "top_speed": 4.0}, InputError, "outside this friction law"),
+    ],
+)
+def test_bad_input_gets_a_sentence(change, error, message):
+    given = {"law": stribeck, "height_ratio": 1.0, "top_speed": 2.0} | change
+    with pytest.raises(error, match=message):
+        build_speed_table(**given)
+
+
+# Files and commands
+
+
+def test_a_table_file_holds_the_law_and_is_judged_by_it(tmp_path):
+    law = SpeedLaw([0.0, 1.0, 2.0], [0.0, 0.2, 0.1])  # f(0) = 0: friction vanishes at rest
+    table = build_speed_table(law, 0.7, accuracy=1e-3)
+    saved = save_speed_table(table, tmp_path / "speed.h5")
+    again = load_speed_table(tmp_path / "speed.h5")
+    assert (again.values == table.values).all()
+    assert again.accuracy == table.accuracy == saved.accuracy
+    assert again.law is not None
+    assert (again.law.coefficients == law.coefficients).all()
+    assert validate_speed(again).passed
+    wrong = replace(again, values=again.values * 1.01)
+    assert not validate_speed(wrong).passed
+    content = bytearray((tmp_path / "speed.h5").read_bytes())
+    content[len(content) // 2] ^= 1
+    (tmp_path / "bad.h5").write_bytes(content)
+    with pytest.raises(TableError, match="altered"):
+        load_speed_table(tmp_path / "bad.h5")
+
+
+def test_what_a_file_cannot_hold_is_refused(fine, tmp_path):
+    with pytest.raises(OutputError, match="is a function"):
+        save_speed_table(fine, tmp_path / "speed.h5")
+    many = SpeedLaw(np.arange(2001.0), np.full(2001, 0.1))
+    with pytest.raises(OutputError, match="2001 points"):
+        save_speed_table(replace(fine, law=many), tmp_path / "speed.h5")
+    with pytest.raises(InputError, match="give it as law="):
+        validate_speed(fine)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_commands(tmp_path):
+    law, path = tmp_path / "law.csv", tmp_path / "speed.h5"
+    law.write_text("speed,f\n0,0.3\n0.5,0.2\n2,0.2\n")
+
+    def puck(*words):
+        return CliRunner().invoke(main, list(words))
+
+    words = ["build-tables", "--speed-law", str(law), "-o", str(path)]
+    done = puck(*words, "--height-ratio", "0.5", "--accuracy", "1e-3")
+    assert done.exit_code == 0, done.output
+    assert "speed nodes" in done.stdout
+    assert "--height-ratio 0.5" in done.stdout
+    assert puck("info", str(path)).stdout == done.stdout
+    judged = puck("validate", str(path))
+    assert judged.exit_code == 0
+    assert "FAIL" not in judged.stdout
+    for bad, message in (
+        (["build-tables", "--height-ratio", "1"], "goes with --speed-law"),
+        ([*words, "--overwrite", "--cells", "9"], "goes with --accuracy"),
+        ([*words, "--overwrite", "--n-phi", "9"], "does not go with"),
+        ([*words, "--overwrite", "--height-ratio", "9"], "too high"),
+        (["build-tables", "--speed-law", "none.csv", "-o", str(tmp_path / "x.h5")], "cannot read"),
+        (["sweep", "--table", str(path), "--w0", "0:1:3"], "stops come from"),
+    ):
+        done = puck(*bad)
+        assert done.exit_code in (1, 2), done.output
+        assert message in done.stderr
+        assert "Traceback" not in done.output
