@@ -266,7 +266,7 @@ of .h5, .csv
     else:
         columns = {name: getattr(curve, name) for name in ASPERITY_COLUMNS}
         support = curve.asperity
-        content = _hdf5({"speed": columns.pop("speed")}, columns, ASPERITY_COLUMNS, {
+        content = as_hdf5({"speed": columns.pop("speed")}, columns, ASPERITY_COLUMNS, {
             "title": "Friction of a point on a wavy one-sided support", "load": support.load,
             "amplitude": support.amplitude, "length": support.length, "mass": support.mass,
             "lift_speed": support.lift_speed,
@@ -285,7 +285,7 @@ def asperity_as_csv(curve: AsperityCurve) -> str:
     '0.0,0.25,0.25,0.23529411764705882,0.0,nan,0.0'
     """
     columns = [getattr(curve, name).tolist() for name in ASPERITY_COLUMNS]
-    return _csv(ASPERITY_COLUMNS, zip(*columns, strict=True)).decode()
+    return as_csv(ASPERITY_COLUMNS, zip(*columns, strict=True)).decode()
 
 
 WAY_COLUMNS = {
