@@ -16,6 +16,7 @@ from puck_tables.cli.info import info
 from puck_tables.cli.paper import paper
 from puck_tables.cli.simulate import simulate
 from puck_tables.cli.sweep import sweep
+from puck_tables.cli.tables import tables
 from puck_tables.cli.tradeoff import tradeoff
 from puck_tables.cli.validate import validate
 
@@ -64,5 +65,5 @@ def main(ctx: click.Context) -> None:
             click.echo("compiling for this machine, once: some seconds", err=True)
 
 
-for _command in (simulate, sweep, aim, build_tables, validate, info, paper, tradeoff):
+for _command in (simulate, sweep, aim, build_tables, validate, info, tables, paper, tradeoff):
     main.add_command(_command)

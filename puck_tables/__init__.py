@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from puck_tables.states import States, flow
     from puck_tables.stop_map import StopMap, sweep
     from puck_tables.stops import Stops, stop
+    from puck_tables.store import table_for
     from puck_tables.table.build import build_table
     from puck_tables.table.check import CheckReport, validate
     from puck_tables.table.file import load_table, save_table
@@ -76,6 +77,7 @@ _HOMES = {
     "simulate": "trajectory",
     "Stops": "stops",
     "stop": "stops",
+    "table_for": "store",
     "build_stop_table": "similarity.build",
     "validate_stops": "similarity.check",
     "load_stop_table": "similarity.file",
@@ -160,6 +162,7 @@ __all__ = [
     "simulate",
     "stop",
     "sweep",
+    "table_for",
     "validate",
     "validate_law",
     "validate_partial",
