@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import random
 import signal
 import subprocess
@@ -13,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from puck_tables import load_table, save_map, sweep
+from puck_tables import load_table, sweep
 from puck_tables.catalogue import load_any_table
 from puck_tables.checkpoint import Checkpoint
 from puck_tables.errors import InputError, OutputError
@@ -166,10 +165,3 @@ def test_progress_of_other_work_and_of_another_process(tmp_path: Path):
     with pytest.raises(InputError, match="is not what is done"):
         Checkpoint(text, "work", 1, 10, 4)
     assert text.read_text() == "puck"
-
-
-@pytest.mark.skipif(os.geteuid() == 0, reason="root may write anywhere")
-def test_a_read_only_folder_is_said(tmp_path: Path):
-    tmp_path.chmod(0o500)
-    with pytest.raises(OutputError, match="cannot write"):
-        save_map(sweep([0.0, 1.0]), tmp_path / "m.h5")

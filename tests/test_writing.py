@@ -122,10 +122,10 @@ def test_places_where_nothing_can_be_written(name: str, folder: Path):
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="root may write anywhere")
-@pytest.mark.parametrize("name", COMMANDS)
-def test_a_read_only_folder(name: str, folder: Path):
+def test_a_read_only_folder(folder: Path):
     folder.chmod(0o500)
-    assert "cannot " in refused(name, "at")
+    for name in COMMANDS:
+        assert "cannot " in refused(name, "at")
 
 
 def no_room(descriptor: int) -> None:
@@ -193,11 +193,11 @@ def test_no_room_for_compiled_code(folder: Path):
     """A full cache disk costs time, not the answer."""
     code = (
         "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (600, 600))\n"
-        "import puck_tables as p; print(float(p.resultants(0, 1).spin))"
+        "import puck_tables as p; print(float(p.limit_ratio(0.0)))"
     )
     ended = subprocess.run(
         [sys.executable, "-c", code], env={**os.environ, "NUMBA_CACHE_DIR": str(folder)},
         capture_output=True, text=True, check=True,
     )  # fmt: skip
-    assert (ended.stdout, ended.stderr) == ("0.375\n", "")
+    assert (round(float(ended.stdout), 12), ended.stderr) == (1.531389372174, "")
     assert content(folder) == {}
