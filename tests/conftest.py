@@ -8,6 +8,8 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 from puck_tables import Table, build_table, load_table
+from puck_tables.paper.claim import Claim
+from puck_tables.paper.claims import all_claims
 
 QUARTER, HALF = 0.25 * math.pi, 0.5 * math.pi
 ROOT = Path(__file__).resolve().parent.parent
@@ -38,6 +40,17 @@ def corners() -> np.ndarray:
     tiny = [5e-324, 2.2e-308, 1e-300, 1e-155, 1e-100, 1e-30]
     phi = np.concatenate([tiny, near(0.0), near(QUARTER), near(HALF)])
     return np.concatenate([phi, -phi])
+
+
+@pytest.fixture(scope="session")
+def subjects() -> dict[str, list[Claim]]:
+    """The paper's claims, computed once, by subject."""
+    return all_claims()
+
+
+@pytest.fixture(scope="session")
+def claims(subjects: dict[str, list[Claim]]) -> list[Claim]:
+    return [claim for group in subjects.values() for claim in group]
 
 
 @pytest.fixture(scope="session")

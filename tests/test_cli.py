@@ -170,7 +170,7 @@ def test_build_info_validate(folder: Path):
 
 def test_validate_ends_with_3_when_a_table_is_out_of_its_tolerance(monkeypatch: pytest.MonkeyPatch):
     table = replace(load_table(), tolerance=1e-13)
-    monkeypatch.setattr("puck_tables.table.file.load_table", lambda path=None: table)
+    monkeypatch.setattr("puck_tables.catalogue.tables_that_come_along", lambda: [table])
     result = puck("validate")
     assert result.exit_code == 3
     assert "FAIL" in result.stdout
@@ -306,18 +306,6 @@ def test_the_table_that_is_read_is_never_replaced():
                       "--overwrite")  # fmt: skip
         refused(result, 2, "is the table that is read")
     assert load_table("t.h5").tolerance == 1e-6
-
-
-def test_closed_stderr_and_full_stdout():
-    run = " ".join(f'"{part}"' for part in PUCK)
-    subprocess.run(f"{run} sweep --w0 0:1:3 -o a.csv 2>&-", shell=True, check=True)
-    assert Path("a.csv").exists()
-    full = subprocess.run(
-        f"{run} simulate --v0 1,0 > /dev/full", shell=True, capture_output=True, text=True
-    )
-    assert full.returncode == 1
-    assert "No space left" in full.stderr
-    assert "Traceback" not in full.stderr
 
 
 def test_tables_of_every_kind(folder: Path):

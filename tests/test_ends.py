@@ -74,7 +74,7 @@ def test_ctrl_c_ends_with_a_sentence_and_leaves_nothing(name: str, folder: Path)
 
 
 PRINTING = [
-    ["--help"], ["info"], ["tables"], ["tables", "--json"], ["simulate", "--v0", "1,0"],
+    ["--help"], ["info"], ["tables"], ["simulate", "--v0", "1,0"],
     ["simulate", "--v0", "1,0", "--json"], ["sweep"], ["aim", "--target", "2,0.1"],
     ["build-tables", "--accuracy", "1e-4"], ["validate", "rough.h5"], ["paper", "--out", "p"],
 ]  # fmt: skip

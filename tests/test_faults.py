@@ -78,7 +78,7 @@ def check_killed_builds(tmp_path: Path, kills: int) -> None:
         kind = ("resultants", "stops")[count % 2]
         name = f"{count}.h5"
         command = [*PUCK, "build-tables", "--kind", kind, "--accuracy", "1e-5", "-o", name]
-        killed_after(moments.uniform(0.8, 4.0), command, tmp_path)
+        killed_after(moments.uniform(0.5, 2.5), command, tmp_path)
         if (tmp_path / name).exists():
             assert load_any_table(tmp_path / name).tolerance == 1e-5
             whole += 1
@@ -111,7 +111,7 @@ def test_resume_on_the_command_line(tmp_path: Path):
     resultants = tmp_path / "rough.h5"
     subprocess.run([*PUCK, "build-tables", "--accuracy", "1e-6", "-o", resultants], check=True,
                    capture_output=True)  # fmt: skip
-    command = [*PUCK, "sweep", "--speed", "0:2:400", "--w0", "0:5:400", "--table", "rough.h5",
+    command = [*PUCK, "sweep", "--speed", "0:2:250", "--w0", "0:5:250", "--table", "rough.h5",
                "--tol", "1e-5", "-o", "m.h5", "--resume", "--threads", "1"]  # fmt: skip
     process = subprocess.Popen(
         command, cwd=tmp_path, stderr=subprocess.PIPE, text=True,
@@ -126,7 +126,7 @@ def test_resume_on_the_command_line(tmp_path: Path):
         "Interrupted: m.h5.progress keeps what is done; the same command goes on."
     )
     other = subprocess.run(
-        [*command, "--speed", "0:1:400"], cwd=tmp_path, capture_output=True, text=True
+        [*command, "--speed", "0:1:250"], cwd=tmp_path, capture_output=True, text=True
     )
     assert (other.returncode, "begun with" in other.stderr) == (2, True)
     again = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)

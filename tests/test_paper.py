@@ -16,20 +16,9 @@ from puck_tables.contact.integrals import PatchIntegrals
 from puck_tables.contact.resultants import Resultants
 from puck_tables.paper import ends, friction, motions, patch, shapes
 from puck_tables.paper.claim import Claim, as_csv, as_text, equal, farthest, less, more
-from puck_tables.paper.claims import all_claims
 from puck_tables.paper.root import root
 from puck_tables.table.check import by_closed_form
 from puck_tables.trajectory import Trajectory, simulate
-
-
-@pytest.fixture(scope="module")
-def subjects() -> dict[str, list[Claim]]:
-    return all_claims()
-
-
-@pytest.fixture(scope="module")
-def claims(subjects: dict[str, list[Claim]]) -> list[Claim]:
-    return [claim for group in subjects.values() for claim in group]
 
 
 def differing(claims: list[Claim]) -> set[str]:

@@ -13,12 +13,6 @@ from puck_tables.cli.main import main
 
 from puck_tables.paper import figures
 from puck_tables.paper.claim import Claim, equal
-from puck_tables.paper.claims import all_claims
-
-
-@pytest.fixture(scope="module")
-def claims() -> list[Claim]:
-    return [claim for group in all_claims().values() for claim in group]
 
 
 @pytest.fixture(autouse=True)
@@ -34,7 +28,10 @@ def puck(*arguments: str) -> Result:
 FILES = ["claims.csv", *(f"figure_{n:02}.png" for n in range(2, 12))]
 
 
-def test_the_command_writes_prints_and_says_what_it_wrote(claims: list[Claim]):
+def test_the_command_writes_prints_and_says_what_it_wrote(
+    subjects: dict[str, list[Claim]], claims: list[Claim], monkeypatch: pytest.MonkeyPatch
+):
+    monkeypatch.setattr("puck_tables.paper.claims.all_claims", lambda show: subjects)
     result = puck("paper", "--out", "deep/er")
     assert result.exit_code == 0, result.output
     assert sorted(path.name for path in Path("deep/er").iterdir()) == FILES

@@ -16,7 +16,7 @@ import pytest
 from click.testing import CliRunner
 from puck_tables.cli.main import main
 
-from puck_tables import StopTable, build_stop_table, safe_write
+from puck_tables import build_partial_table, build_stop_table, safe_write
 from puck_tables.front import shipped_front
 
 # {} is the output without its ending; the path that is written is the one that follows
@@ -38,7 +38,6 @@ COMMANDS: dict[str, tuple[list[str], str]] = {
     "build law": (["build-tables", "--pressure", "ring", "--cells", "8", "-o", "{}.h5"], "{}.h5"),
     "tradeoff csv": (["tradeoff", "-o", "{}.csv"], "{}.csv"),
     "tradeoff h5": (["tradeoff", "-o", "{}.h5"], "{}.h5"),
-    "tradeoff png": (["tradeoff", "--plot", "{}.png"], "{}.png"),
     "paper": (["paper", "--out", "{}"], "{}/figure_02.png"),
 }  # fmt: skip
 
@@ -58,19 +57,22 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setattr(engine, "measure", lambda quick, show: measured)
     monkeypatch.setattr("puck_tables.paper.claims.all_claims", lambda show: {})
     monkeypatch.setattr(figures, "FIGURES", {2: figures.limit_angles})
-    monkeypatch.setattr("puck_tables.similarity.build.build_stop_table", built_once)
+    monkeypatch.setattr("puck_tables.similarity.build.build_stop_table", once(build_stop_table))
+    monkeypatch.setattr(
+        "puck_tables.table.partial_build.build_partial_table", once(build_partial_table)
+    )
     monkeypatch.chdir(tmp_path)
     return tmp_path
 
 
 @cache
-def small_stop_table() -> StopTable:
-    return build_stop_table(cells=8)
+def built(build: Callable[..., object], cells: int) -> object:
+    return build(cells=cells)
 
 
-def built_once(accuracy: object, cells: int, progress: object) -> StopTable:
-    assert (accuracy, cells) == (None, 8)
-    return small_stop_table()
+def once(build: Callable[..., object]) -> Callable[..., object]:
+    """A builder that builds a table of these cells once."""
+    return lambda accuracy, cells, progress: built(build, cells)
 
 
 def puck(name: str, place: str, *more: str) -> tuple[int, str]:
@@ -173,7 +175,8 @@ def test_a_disk_that_is_really_full(folder: Path):
         "from click.testing import CliRunner\n"
         "from puck_tables.cli.main import main\n"
         "from test_writing import COMMANDS\n"
-        "names = [n for n in COMMANDS if n.split()[0] not in ('tradeoff', 'paper')]\n"
+        "slow = ('tradeoff csv', 'tradeoff h5', 'paper', 'build stops')\n"
+        "names = [n for n in COMMANDS if n not in slow]\n"
         "resource.setrlimit(resource.RLIMIT_FSIZE, (600, 600))\n"
         "for n in names:\n"
         "    r = CliRunner().invoke(main, [p.format('new') for p in COMMANDS[n][0]])\n"
