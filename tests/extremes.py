@@ -161,7 +161,7 @@ def close_to_tipping(gap: float) -> Iterator[float]:
     yield from (np.stack(rho, axis=-1) - truth).ravel()
 
 
-@row("δ = 4 − 1e-2, 1e-3, 1e-4 at φ = 0", "resultants", 1e-10)
+@row("δ = 4 − 1/128, 4 − 1/1024, 4 − 1/8192 at φ = 0", "resultants", 1e-10)
 def one_sided_next_to_tipping() -> Iterator[float]:
     for gap in (2.0**-7, 2.0**-10, 2.0**-13):
         yield from close_to_tipping(gap)
