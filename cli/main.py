@@ -18,6 +18,7 @@ from puck_tables.cli.aim import aim
 from puck_tables.cli.build_tables import build_tables
 from puck_tables.cli.info import info
 from puck_tables.cli.paper import paper
+from puck_tables.cli.scene import scene
 from puck_tables.cli.simulate import simulate
 from puck_tables.cli.sweep import sweep
 from puck_tables.cli.tables import tables
@@ -93,5 +94,6 @@ def main(ctx: click.Context) -> None:
             click.echo("compiling for this machine, once: some seconds", err=True)
 
 
-for _command in (simulate, sweep, aim, build_tables, validate, info, tables, paper, tradeoff):
+_ALL = (simulate, sweep, aim, scene, build_tables, validate, info, tables, paper, tradeoff)
+for _command in _ALL:
     main.add_command(_command)

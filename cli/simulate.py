@@ -24,6 +24,7 @@ from puck_tables.cli.options import (
     table_option,
     told,
 )
+from puck_tables.cli.scene_run import run_scene, scene_options, scene_tables
 
 from puck_tables.errors import InputError
 
@@ -32,7 +33,7 @@ if TYPE_CHECKING:
 
 
 @click.command()
-@click.option("--v0", type=Vector(), required=True, help="Launch velocity in m/s, like 1,0.")
+@click.option("--v0", type=Vector(), help="Launch velocity in m/s, like 1,0.")
 @click.option("--w0", type=NUMBER, default=0.0, show_default=True, help="Launch spin in rad/s.")
 @puck_options(mass=True)
 @click.option("--delta", type=NUMBER, help="delta = 2 f h / r instead.  [default: 0.5]")
@@ -59,20 +60,32 @@ if TYPE_CHECKING:
     "-o", "--output", type=FILE, metavar="FILE", help="Save the states: .h5, .csv or .jsonl."
 )
 @output_options
+@scene_options
+@click.pass_context
 def simulate(
-    v0: tuple[float, float], w0: float, radius: float | None, height: float | None,
+    ctx: click.Context, v0: tuple[float, float] | None, w0: float, radius: float | None,
+    height: float | None,
     friction: float | None, gravity: float | None, mass: float | None, decel: float | None,
     delta: float | None, frames: int | None, times: tuple[float, ...] | None, tol: float,
     method: str | None, explain: bool, exact: bool, table_path: Path | None, as_json: bool,
-    output: Path | None, plot: Path | None, overwrite: bool,
+    output: Path | None, plot: Path | None, overwrite: bool, scene: str | None,
+    changes: tuple[str, ...],
 ) -> None:  # fmt: skip
-    """Slide one puck until it stops.
+    """Slide one puck until it stops, or run a scene.
 
     \b
     puck simulate --v0 1,0 --w0 5
     puck simulate --v0 2,0 --w0 30 --radius 0.0381 --height 0.0254 --friction 0.1
     puck simulate --v0 1,0 --w0 5 --frames 200 -o run.csv --plot run.png
+    puck simulate --scene air-hockey --set launch.spin=100 --plot air-hockey.png
     """  # noqa: D301 - click reads the backspace
+    if scene is not None or changes:
+        prepare_outputs(output, plot, overwrite=overwrite)
+        tables = scene_tables(ctx, scene, changes)
+        run_scene(tables, times, explain, as_json, output, plot, overwrite)
+        return
+    if v0 is None:
+        raise click.MissingParameter(param_hint="'--v0'", param_type="option")
     r, height_ratio, J = puck_and_floor(radius, height, friction, gravity, delta, decel)
     if exact and table_path is not None:
         raise InputError("--exact and --table clash: closed forms need no table")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 from puck_tables.cli.options import (
@@ -22,6 +22,7 @@ from puck_tables.cli.options import (
     tables_named,
     told,
 )
+from puck_tables.cli.scene_run import scene_options, scene_tables, summary_of_map
 
 from puck_tables.errors import InputError
 
@@ -72,14 +73,18 @@ INTERRUPTED = 130
     help="Keep what is done in FILE.progress; the same command goes on from there.",
 )
 @output_options
+@scene_options
+@click.pass_context
 def sweep(
-    w0: float | tuple[float, float, int] | None, speed: float | tuple[float, float, int] | None,
+    ctx: click.Context, w0: float | tuple[float, float, int] | None,
+    speed: float | tuple[float, float, int] | None,
     v0: tuple[float, float] | None, delta: float | tuple[float, float, int] | None,
     radius: float | None, height: float | None, friction: float | None, gravity: float | None,
     decel: float | None, tol: float, method: str | None, explain: bool, threads: int | None,
     table_path: Path | None, output: Path | None, resume: bool, plot: Path | None, overwrite: bool,
+    scene: str | None, changes: tuple[str, ...],
 ) -> None:  # fmt: skip
-    """Map where and when pucks stop.
+    """Map where and when pucks stop, or how a scene ends.
 
     Ranges are START:STOP:COUNT, ends included.  What is left out is fixed at --speed 1 --w0 0
     --delta 0.5 --radius 1 --decel 1; without --w0, --speed and --v0 the map is that of speeds from
@@ -90,7 +95,14 @@ def sweep(
     puck sweep --plot map.png
     puck sweep --v0 1,0 --w0 0:10:101 -o stops.csv
     puck sweep --speed 0:2:201 --w0 -20:20:401 --delta 0:1:5 -o map.h5
+    puck sweep --scene incline --set launch.spin=0:80:81 --set floor.slope=0:0.14:71 --plot map.png
     """  # noqa: D301 - click reads the backspace
+    if scene is not None or changes:
+        prepare_outputs(output, plot, overwrite=overwrite)
+        _sweep_scene(
+            scene_tables(ctx, scene, changes), explain, threads, output, resume, plot, overwrite
+        )
+        return
     r, height_ratio, J = puck_and_floor(radius, height, friction, gravity, delta, decel)
     if v0 is not None and speed is not None:
         raise InputError("--v0 and --speed clash: both give the launch velocity")
@@ -125,19 +137,13 @@ def sweep(
                 table=table, threads=threads, progress=show, checkpoint=kept,
             )  # fmt: skip
     except KeyboardInterrupt:
-        if kept is None or not kept.exists():
-            raise
-        click.echo(f"Interrupted: {kept} keeps what is done; the same command goes on.", err=True)
-        raise SystemExit(INTERRUPTED) from None
+        _interrupted(kept)
     if not (stops.status == 0).any():
         raise InputError("all these launches are too large for floating point: use larger units")
     if output is not None:
         save_map(stops, output, overwrite)
         told(output)
-    if kept is not None:
-        kept.unlink(missing_ok=True)
-    elif output is not None and _kept(output).exists():
-        click.echo(f"{_kept(output)} is left of an interrupted sweep: remove it", err=True)
+    _done_with(kept, output)
     if plot is not None:
         plot_map(stops, plot, overwrite)
         told(plot)
@@ -146,6 +152,60 @@ def sweep(
     click.echo(_summary(stops), err=True)
     if explain:
         explained(stops.choice)
+
+
+def _sweep_scene(
+    tables: dict[str, Any], explain: bool, threads: int | None, output: Path | None, resume: bool,
+    plot: Path | None, overwrite: bool,
+) -> None:  # fmt: skip
+    """A map over a scene, to the end of the command."""
+    from puck_tables.result_file import MAP_KINDS, kind_of
+    from puck_tables.scene.sweep import sweep_scene
+    from puck_tables.scene_file import save_scene_map, scene_map_as_csv
+
+    if output is not None:
+        kind_of(output, MAP_KINDS)
+    if plot is not None:
+        from puck_tables.plots import PICTURE_KINDS, require_matplotlib
+
+        kind_of(plot, PICTURE_KINDS)
+        require_matplotlib()
+    kept = _kept(output) if resume else None
+    try:
+        with progress("runs") as show:
+            stops = sweep_scene(tables, threads=threads, progress=show, checkpoint=kept)
+    except KeyboardInterrupt:
+        _interrupted(kept)
+    if output is not None:
+        save_scene_map(stops, output, overwrite)
+        told(output)
+    _done_with(kept, output)
+    if plot is not None:
+        from puck_tables.scene_picture import plot_scene_map
+
+        plot_scene_map(stops, plot, overwrite)
+        told(plot)
+    if output is None and plot is None:
+        click.echo(scene_map_as_csv(stops), nl=False)
+    click.echo(summary_of_map(stops), err=True)
+    if explain:
+        click.echo(stops.plan.why, err=True)
+
+
+def _interrupted(kept: Path | None) -> NoReturn:
+    """Say what is kept, from within the handling of an interrupt."""
+    if kept is None or not kept.exists():
+        raise
+    click.echo(f"Interrupted: {kept} keeps what is done; the same command goes on.", err=True)
+    raise SystemExit(INTERRUPTED) from None
+
+
+def _done_with(kept: Path | None, output: Path | None) -> None:
+    """Remove what is kept of a sweep that is saved, or say that something is left."""
+    if kept is not None:
+        kept.unlink(missing_ok=True)
+    elif output is not None and _kept(output).exists():
+        click.echo(f"{_kept(output)} is left of an interrupted sweep: remove it", err=True)
 
 
 def _table_of_stops(path: Path) -> Table | StopTable:

@@ -33,6 +33,12 @@ if TYPE_CHECKING:
     from puck_tables.plots import plot_aim, plot_map, plot_trajectory
     from puck_tables.puck import similarity_parameters
     from puck_tables.result_file import save_aim, save_map, save_trajectory
+    from puck_tables.scene.outcome import SceneRun
+    from puck_tables.scene.scene import Scene, scene_from
+    from puck_tables.scene.simulate import simulate_scene
+    from puck_tables.scene.sweep import SceneMap, sweep_scene
+    from puck_tables.scene_file import save_scene_map, save_scene_run
+    from puck_tables.scene_picture import plot_scene, plot_scene_map
     from puck_tables.similarity.build import build_stop_table
     from puck_tables.similarity.check import validate_stops
     from puck_tables.similarity.file import load_stop_table, save_stop_table
@@ -73,6 +79,16 @@ _HOMES = {
     "save_aim": "result_file",
     "save_map": "result_file",
     "save_trajectory": "result_file",
+    "SceneRun": "scene.outcome",
+    "Scene": "scene.scene",
+    "scene_from": "scene.scene",
+    "simulate_scene": "scene.simulate",
+    "SceneMap": "scene.sweep",
+    "sweep_scene": "scene.sweep",
+    "save_scene_map": "scene_file",
+    "save_scene_run": "scene_file",
+    "plot_scene": "scene_picture",
+    "plot_scene_map": "scene_picture",
     "Trajectory": "trajectory",
     "simulate": "trajectory",
     "Stops": "stops",
@@ -118,6 +134,9 @@ __all__ = [
     "LawTable",
     "PartialTable",
     "Resultants",
+    "Scene",
+    "SceneMap",
+    "SceneRun",
     "States",
     "StopMap",
     "StopTable",
@@ -147,6 +166,8 @@ __all__ = [
     "one_sided_resultants",
     "plot_aim",
     "plot_map",
+    "plot_scene",
+    "plot_scene_map",
     "plot_trajectory",
     "profile_law",
     "regime",
@@ -155,13 +176,18 @@ __all__ = [
     "save_law_table",
     "save_map",
     "save_partial_table",
+    "save_scene_map",
+    "save_scene_run",
     "save_stop_table",
     "save_table",
     "save_trajectory",
+    "scene_from",
     "similarity_parameters",
     "simulate",
+    "simulate_scene",
     "stop",
     "sweep",
+    "sweep_scene",
     "table_for",
     "validate",
     "validate_law",

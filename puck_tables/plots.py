@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 
 PICTURE_KINDS = (".png", ".svg", ".pdf")
 
-BLUE, ORANGE, GREEN, GREY = "#0b5fa5", "#d9660c", "#2f8f3a", "#8a8a8a"
-COLORS = (BLUE, ORANGE, GREEN, "#8b2fa0", "#b3202a")
+BLUE, ORANGE, GREEN, GREY, RED = "#0b5fa5", "#d9660c", "#2f8f3a", "#8a8a8a", "#b3202a"
+COLORS = (BLUE, ORANGE, GREEN, "#8b2fa0", RED)
 _MAP_LABELS = {
     "stop_time": "stop time / s",
     "stop_x": "stop x / m",

@@ -121,13 +121,13 @@ def save_trajectory(run: Trajectory, path: str | Path, overwrite: bool = False) 
     columns = {name: getattr(run, name) for name in TRAJECTORY_COLUMNS}
     if kind == ".h5":
         scalars = {n: np.asarray(v) if isinstance(v, list) else v for n, v in summary(run).items()}
-        content = _hdf5(
+        content = as_hdf5(
             {"time": columns.pop("time")}, columns, TRAJECTORY_COLUMNS,
             {"title": "Trajectory of a sliding, spinning puck", **scalars},
         )  # fmt: skip
     elif kind == ".csv":
         rows = zip(*(column.tolist() for column in columns.values()), strict=True)
-        content = _csv(TRAJECTORY_COLUMNS, rows)
+        content = as_csv(TRAJECTORY_COLUMNS, rows)
     else:
         rows = zip(*(column.tolist() for column in columns.values()), strict=True)
         lines = (json.dumps(dict(zip(columns, row, strict=True)), allow_nan=False) for row in rows)
@@ -162,7 +162,7 @@ def save_map(stops: StopMap, path: str | Path, overwrite: bool = False) -> None:
             "tol": stops.tol, "method": stops.method, "table": stops.table,
         }  # fmt: skip
         columns = {name: getattr(stops, name) for name in MAP_COLUMNS}
-        content = _hdf5(stops.axes, columns, {**MAP_AXES, **MAP_COLUMNS}, attributes)
+        content = as_hdf5(stops.axes, columns, {**MAP_AXES, **MAP_COLUMNS}, attributes)
     write_bytes(path, content, overwrite)
 
 
@@ -179,7 +179,7 @@ def map_as_csv(stops: StopMap) -> str:
     columns = [grid.ravel().tolist() for grid in grids]
     columns += [np.ravel(getattr(stops, name)).tolist() for name in MAP_COLUMNS]
     names = {name: MAP_AXES[name] for name in stops.axes}
-    return _csv({**names, **MAP_COLUMNS}, zip(*columns, strict=True)).decode()
+    return as_csv({**names, **MAP_COLUMNS}, zip(*columns, strict=True)).decode()
 
 
 AIM_COLUMNS = {
@@ -228,7 +228,7 @@ def save_aim(found: Aim, path: str | Path, overwrite: bool = False) -> None:
     """
     kind_of(path, AIM_KINDS)
     rows = zip(*(column.tolist() for column in aim_columns(found).values()), strict=True)
-    write_bytes(path, _csv(AIM_COLUMNS, rows), overwrite)
+    write_bytes(path, as_csv(AIM_COLUMNS, rows), overwrite)
 
 
 WAY_COLUMNS = {
@@ -274,7 +274,7 @@ of .h5, .csv
     if kind_of(path, MAP_KINDS) == ".csv":
         content = front_as_csv(measured.ways).encode()
     else:
-        content = _hdf5(
+        content = as_hdf5(
             {"way": [f"{way.question}: {way.name}" for way in measured.ways],
              "stops": measured.stops},
             {name: _column(measured.ways, name) for name in WAY_COLUMNS}
@@ -296,7 +296,14 @@ def _column(ways: tuple[Way, ...], name: str) -> Any:
     return values if isinstance(values[0], str) else np.asarray(values)
 
 
-def _csv(names: dict[str, tuple[str, str]], rows: Iterator[tuple[Any, ...]]) -> bytes:
+def as_csv(names: dict[str, tuple[str, str]], rows: Iterator[tuple[Any, ...]]) -> bytes:
+    """Rows as CSV with a header line ``name[unit]``.
+
+    Examples
+    --------
+    >>> as_csv({"x": ("m", "place")}, iter([(1.5,)])).split()
+    [b'x[m]', b'1.5']
+    """
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow([f"{name}[{unit}]" for name, (unit, _) in names.items()])
@@ -304,14 +311,21 @@ def _csv(names: dict[str, tuple[str, str]], rows: Iterator[tuple[Any, ...]]) -> 
     return text.getvalue().encode()
 
 
-def _hdf5(
+def as_hdf5(
     axes: dict[str, Any],
     columns: dict[str, Any],
     names: dict[str, tuple[str, str]],
     attributes: dict[str, Any],
     dimensions: dict[str, tuple[str, ...]] | None = None,
 ) -> bytes:
-    """A labelled file; every column has all axes, or those that ``dimensions`` says."""
+    """A labelled HDF5 file; every column has all axes, or those that ``dimensions`` says.
+
+    Examples
+    --------
+    >>> units = {"t": ("s", "time"), "x": ("m", "place")}
+    >>> as_hdf5({"t": [0.0, 1.0]}, {"x": [2.0, 3.0]}, units, {"title": "a line"})[1:4]
+    b'HDF'
+    """
     import h5py
 
     buffer = io.BytesIO()

@@ -1,0 +1,63 @@
+"""``puck scene``: the scenes that come along, and whether a scene file is right."""
+
+from __future__ import annotations
+
+import click
+
+
+@click.group()
+def scene() -> None:
+    """Scene files: list, show and check them, and what may stand in them.
+
+    A scene is a puck, a floor, a launch and what acts on it, in SI units; 'puck simulate --scene'
+    and 'puck sweep --scene' run it.
+    """
+
+
+@scene.command("list")
+def list_scenes() -> None:
+    """List the scenes that come along."""
+    from puck_tables.scene.library import shipped_scenes
+
+    for name, title in shipped_scenes().items():
+        click.echo(f"{name:<20} {title}")
+
+
+@scene.command()
+@click.argument("name")
+def show(name: str) -> None:
+    """Print a scene that comes along, to start one of your own from.
+
+    \b
+    puck scene show incline > mine.toml
+    """  # noqa: D301 - click reads the backspace
+    from puck_tables.scene.library import shipped_text
+
+    click.echo(shipped_text(name), nl=False)
+
+
+@scene.command()
+def fields() -> None:
+    """List every entry that a scene may have: what is allowed, its default, what it is."""
+    from puck_tables.scene.fields import described
+    from puck_tables.scene.scene import Scene
+
+    for path, allowed, text in described(Scene):
+        click.echo(f"{path:<24} {allowed:<44} {text}".rstrip())
+
+
+@scene.command()
+@click.argument("name", metavar="FILE|NAME")
+def check(name: str) -> None:
+    """Check a scene: every error at once, or what it holds and how it would be run."""
+    from puck_tables.scene.library import find_scene
+    from puck_tables.scene.plan import out_of_reach, plan_for
+    from puck_tables.scene.prepare import prepare
+    from puck_tables.scene.scene import scene_from
+
+    whole, ranges = scene_from(find_scene(name), name)
+    prepare(whole)  # files and heights
+    click.echo(f"{name}: a scene" + (f", {whole.title}" if whole.title else ""))
+    for path, values in ranges.items():
+        click.echo(f"ranges        {path} from {values[0]:g} to {values[-1]:g}, {values.size}")
+    click.echo(plan_for(out_of_reach(whole)).why)

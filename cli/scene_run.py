@@ -1,0 +1,206 @@
+"""Scenes behind ``puck simulate`` and ``puck sweep``: options as numbers of one, and reports."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+from puck_tables.cli.options import DEFAULT_DECEL, DEFAULT_DELTA, told
+
+from puck_tables.errors import InputError
+
+if TYPE_CHECKING:
+    from puck_tables.scene.outcome import SceneRun
+    from puck_tables.scene.sweep import SceneMap
+
+Command = TypeVar("Command", bound=Callable[..., Any])
+
+PATHS = {
+    "v0": "launch.velocity", "w0": "launch.spin", "speed": "launch.velocity[0]",
+    "radius": "puck.radius", "height": "puck.height", "mass": "puck.mass",
+    "friction": "floor.friction", "gravity": "floor.gravity", "frames": "run.frames",
+    "tol": "run.tol",
+}  # fmt: skip
+KEPT = ("times", "explain", "as_json", "output", "plot", "overwrite", "threads", "resume")
+SCALED = ("delta", "decel")
+
+
+def scene_options(command: Command) -> Command:
+    """A scene, and numbers in it."""
+    for option in (
+        click.option(
+            "--set", "changes", multiple=True, metavar="PATH=VALUE",
+            help="A number of the scene, like floor.slope=0.1 or wall[0].restitution=0.8; as often "
+            "as needed.",
+        ),
+        click.option(
+            "--scene", metavar="FILE|NAME",
+            help="A scene file, or one that comes along (see 'puck scene list'); other options "
+            "change its numbers.",
+        ),
+    ):  # fmt: skip
+        command = option(command)
+    return command
+
+
+def scene_tables(ctx: click.Context, scene: str | None, changes: tuple[str, ...]) -> dict[str, Any]:
+    """The scene that options describe: a file or defaults, then options, then --set.
+
+    Raises
+    ------
+    InputError
+        If an option has no place in a scene.
+    """
+    from puck_tables.scene.library import find_scene
+    from puck_tables.scene.sweep import set_path
+
+    source = click.core.ParameterSource.DEFAULT
+    given = {
+        name: value
+        for name, value in ctx.params.items()
+        if ctx.get_parameter_source(name) is not source and name not in ("scene", "changes", *KEPT)
+    }
+    tables = {} if scene is None else find_scene(scene)
+    if scene is None:
+        tables = _default_tables(given)
+    for name, value in given.items():
+        if name in SCALED and scene is None:
+            continue
+        if name not in PATHS:
+            flag = next(p.opts[0] for p in ctx.command.params if p.name == name)
+            raise InputError(f"{flag} has no place in a scene: leave it out")
+        set_path(tables, PATHS[name], _as_toml(value))
+    for change in changes:
+        path, equals, text = change.partition("=")
+        if not equals or not text:
+            raise InputError(f"--set {change}: write PATH=VALUE, like floor.slope=0.1")
+        set_path(tables, path.strip(), _value(text.strip()))
+    return tables
+
+
+def _default_tables(given: dict[str, Any]) -> dict[str, Any]:
+    """The puck in natural units of the other commands, as dimensions: f = J/g, h = δ r/2f."""
+    from puck_tables.scene.scene import STANDARD_GRAVITY
+
+    real = [name for name in ("height", "friction", "gravity") if name in given]
+    scaled = [name for name in SCALED if name in given]
+    if real and scaled:
+        raise InputError(f"--{real[0]} and --{scaled[0]} clash: give the real or the scaled puck")
+    tables: dict[str, Any] = {"puck": {"radius": 1.0}, "launch": {"velocity": [0.0, 0.0]}}
+    if real:
+        return tables
+    for name in scaled:
+        if isinstance(given[name], tuple):
+            raise InputError(f"--{name} cannot range in a scene: let puck.height range (--set)")
+    radius = given.get("radius", 1.0)
+    if isinstance(radius, tuple) or not radius > 0.0:
+        raise InputError("--radius must be a number greater than 0 m")
+    friction = given.get("decel", DEFAULT_DECEL) / STANDARD_GRAVITY
+    if not friction > 0.0:
+        raise InputError("--decel must be greater than 0 m/s^2")
+    tables["floor"] = {"friction": friction}
+    tables["puck"]["height"] = given.get("delta", DEFAULT_DELTA) * radius / (2.0 * friction)
+    return tables
+
+
+def _as_toml(value: Any) -> Any:
+    """An option's value as a scene file would have it: ranges as text, vectors as lists."""
+    if isinstance(value, tuple) and len(value) == 3:
+        return f"{value[0]!r}:{value[1]!r}:{value[2]}"
+    return list(value) if isinstance(value, tuple) else value
+
+
+def _value(text: str) -> Any:
+    """A value of --set: TOML, or else a text such as a range."""
+    try:
+        return tomllib.loads(f"value = {text}")["value"]
+    except (tomllib.TOMLDecodeError, KeyError):
+        return text
+
+
+def run_scene(
+    tables: dict[str, Any], times: tuple[float, ...] | None, explain: bool, as_json: bool,
+    output: Path | None, plot: Path | None, overwrite: bool,
+) -> None:  # fmt: skip
+    """One run of a scene, to the end of its command."""
+    from puck_tables.result_file import TRAJECTORY_KINDS, kind_of
+    from puck_tables.scene.simulate import simulate_scene, single
+
+    if output is not None:
+        kind_of(output, TRAJECTORY_KINDS)
+    if plot is not None:
+        from puck_tables.plots import PICTURE_KINDS, require_matplotlib
+
+        kind_of(plot, PICTURE_KINDS)
+        require_matplotlib()
+    whole = single(tables)
+    wanted = (0.0,) if output is None and plot is None and times is None else times
+    run = simulate_scene(whole, wanted)
+    if output is not None:
+        from puck_tables.scene_file import save_scene_run
+
+        save_scene_run(run, output, overwrite)
+        told(output)
+    if plot is not None:
+        from puck_tables.scene_picture import plot_scene
+
+        plot_scene(run, plot, overwrite)
+        told(plot)
+    if explain:
+        click.echo(run.plan.why, err=True)
+    if as_json:
+        from puck_tables.scene_file import scene_summary
+
+        click.echo(json.dumps(scene_summary(run), allow_nan=False))
+    else:
+        click.echo(report(run))
+
+
+def report(run: SceneRun) -> str:
+    """A scene run in a dozen lines."""
+    last = run.last
+    lines = {
+        "scene": run.scene.title or "without a title",
+        "end": f"{run.end} after {run.end_time:.9g} s",
+        "place": f"({last['x']:.9g}, {last['y']:.9g}) m, body at {last['orientation']:.6g} rad",
+        "motion": f"v = ({last['vx']:.6g}, {last['vy']:.6g}) m/s, w = {last['spin']:.6g} rad/s",
+        "events": _events(run),
+        "energy": f"{last['kinetic_energy']:.6g} J left; work {_joule(last['work_given'])} by "
+        f"forces, {_joule(last['work_support'])} by supports",
+        "heat": f"{_joule(last['heat_dry'])} dry, {_joule(last['heat_viscous'])} viscous, "
+        f"{_joule(last['heat_impact'])} impacts; ledger misses {run.energy_residual:.1e} of it",
+        "model": run.plan.model + (f", {run.steps} steps" if run.steps else ""),
+    }
+    if run.scene.constraint is not None:
+        reaction = f"({last['lambda_1']:.6g}, {last['lambda_2']:.6g}) N at the end"
+        lines["reaction"] = reaction + ("; at rest the floor shares it" if last["carried"] else "")
+    return "\n".join(f"{name:<9} {text}" for name, text in lines.items())
+
+
+def _joule(energy: float) -> str:
+    return f"{energy:.6g} J"
+
+
+def _events(run: SceneRun) -> str:
+    if not run.events:
+        return "none"
+    told_of = [f"{event.what} ({event.which}) at {event.time:.6g} s" for event in run.events[:6]]
+    more = len(run.events) - 6
+    return ", ".join(told_of) + (f" and {more} more" if more > 0 else "")
+
+
+def summary_of_map(stops: SceneMap) -> str:
+    """A map over a scene in one line."""
+    from puck_tables.scene.outcome import ENDS
+
+    ranged = " x ".join(f"{name} ({values.size})" for name, values in stops.axes.items())
+    counts = ", ".join(
+        f"{int((stops.end == code).sum())} {end}"
+        for code, end in enumerate(ENDS)
+        if (stops.end == code).any()
+    )
+    return f"{stops.title or 'scene'} over {ranged}: {counts}; {stops.plan.model}"

@@ -1,0 +1,56 @@
+"""Many launches of one scene: the compiled loop over the compiled loop."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables.kernels.compile import kernel
+from puck_tables.motion.steppers import Tableau
+from puck_tables.scene.boundaries import BOUNCES, Boundaries
+from puck_tables.scene.equations import SIZE
+from puck_tables.scene.ingredients import Model
+from puck_tables.scene.loop import EVENT_COLUMNS, FRAME_COLUMNS, Ask, follow
+
+FloatArray = npt.NDArray[np.float64]
+
+ENDS_COLUMNS = FRAME_COLUMNS + 1  # the last row, and the number of bounces
+
+
+@kernel
+def follow_many(
+    model: Model,
+    bounds: Boundaries | None,
+    asks: FloatArray,
+    to_the_end: bool,
+    tolerance: float,
+    step_limit: int,
+    event_limit: int,
+    tableau: Tableau,
+    states: FloatArray,
+    regions: npt.NDArray[np.int64],
+    out: FloatArray,
+    status: npt.NDArray[np.int8],
+) -> None:
+    """Ends of launches from ``states`` (n, 10) in ``regions`` (n,) into ``out`` (16, n).
+
+    ``asks`` (n, 12): until when, the scale of speeds, and the scales of the state.  One launch
+    never influences another, so any cutting into chunks gives the same bits.
+    """
+    no_frames = np.empty(0)
+    row = np.empty((1, FRAME_COLUMNS))
+    events = np.empty((event_limit, EVENT_COLUMNS))
+    state = np.empty(SIZE)
+    for n in range(len(states)):
+        state[:] = states[n]
+        ask = Ask(asks[n, 0], to_the_end, tolerance, asks[n, 2:], asks[n, 1], step_limit)
+        how, _, count, _, _, _ = follow(
+            model, bounds, ask, tableau, state, regions[n], no_frames, row, events
+        )
+        bounces = 0
+        for i in range(count):
+            bounces += 1 if events[i, 1] == BOUNCES else 0
+        for i in range(FRAME_COLUMNS):
+            out[i, n] = row[0, i]
+        out[FRAME_COLUMNS, n] = bounces
+        status[n] = how

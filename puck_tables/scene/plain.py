@@ -1,0 +1,77 @@
+"""A scene that is no more than a free puck: its trajectory, moved to where the scene has it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables.scene.outcome import COLUMNS, Event, SceneRun, ledger_residual
+from puck_tables.scene.plan import Plan, free_puck
+from puck_tables.scene.scene import Scene, launch_velocity
+from puck_tables.trajectory import simulate
+
+FloatArray = npt.NDArray[np.float64]
+
+
+def run_plain(scene: Scene, needed: Scene, plan: Plan, times: FloatArray | None) -> SceneRun:
+    """Run it as a free puck in the frame of the floor; on a belt the floor's work is m b·Δv.
+
+    ``needed``: the scene without what the puck does not reach.
+    """
+    free = free_puck(needed)
+    length = simulate(**free, frames=1, tol=scene.run.tol).stop_time
+    limit = scene.run.time
+    moves = any(scene.floor.velocity)
+    stops = limit is None or length <= limit
+    end_time = length if limit is None or (stops and not moves) else limit
+    moments = np.linspace(0.0, end_time, int(scene.run.frames)) if times is None else times
+    if moves or not stops:
+        moments = moments[moments <= end_time]
+    run = simulate(
+        **free, times=np.append(moments, end_time), mass=scene.puck.mass, tol=scene.run.tol
+    )
+    belt = scene.floor.velocity
+    rests = run.time >= length
+    vx = np.where(rests, 0.0, run.speed * np.cos(run.heading)) + belt[0]
+    vy = np.where(rests, 0.0, run.speed * np.sin(run.heading)) + belt[1]
+    start = launch_velocity(scene)
+    mass, inertia = scene.puck.mass, 0.5 * scene.puck.mass * scene.puck.radius**2
+    kept = 0.5 * mass * run.speed**2 + 0.5 * inertia * run.spin**2
+    zero = np.zeros_like(run.time)
+    whole = {
+        "time": run.time,
+        "x": scene.launch.position[0] + run.x + belt[0] * run.time,
+        "y": scene.launch.position[1] + run.y + belt[1] * run.time,
+        "orientation": scene.launch.orientation + run.orientation,
+        "vx": vx,
+        "vy": vy,
+        "spin": run.spin,
+        "work_given": zero,
+        "heat_dry": run.kinetic_energy - kept,
+        "heat_viscous": zero,
+        "work_support": mass * (belt[0] * (vx - start[0]) + belt[1] * (vy - start[1])),
+        "lambda_1": zero,
+        "lambda_2": zero,
+        "carried": np.where(rests, 1.0, 0.0),
+        "heat_impact": zero,
+        "kinetic_energy": 0.5 * mass * (vx * vx + vy * vy) + 0.5 * inertia * run.spin**2,
+    }
+    assert list(whole) == list(COLUMNS)
+    energy = 0.5 * mass * math.hypot(*start) ** 2 + 0.5 * inertia * scene.launch.spin**2
+    stop_place = (
+        scene.launch.position[0] + run.stop_position[0] + belt[0] * length,
+        scene.launch.position[1] + run.stop_position[1] + belt[1] * length,
+    )
+    return SceneRun(
+        scene=scene,
+        plan=plan,
+        end="time is up" if not stops else ("carried by the floor" if moves else "at rest"),
+        end_time=float(end_time),
+        events=[Event(length, "rests", 0, *stop_place)] if stops else [],
+        energy_residual=max(run.energy_residual, ledger_residual(whole, energy)),
+        steps=run.steps,
+        last={name: float(column[-1]) for name, column in whole.items()},
+        columns={name: column[:-1] for name, column in whole.items()},
+    )

@@ -1,0 +1,297 @@
+"""What a scene is: a puck, a floor, a launch, and whatever acts on it.
+
+Numbers are in SI units, angles in radians, counter-clockwise positive.  A scene file is TOML with a
+table for each part; every number may be a range 'START:STOP:COUNT', which a sweep runs through.
+"""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables.errors import InputError
+from puck_tables.scene.fields import Reading, of, read_part
+
+FloatArray = npt.NDArray[np.float64]
+
+STANDARD_GRAVITY = 9.80665
+HOMOGENEOUS = 0.5**0.5
+MAX_FILE = 1 << 20
+MATCH = 1e-9  # how well a launch must fit its constraint, of its speed
+
+
+@dataclass(frozen=True)
+class Puck:
+    """The body: an upright cylinder."""
+
+    radius: float = of("number", unit="m", low=0.0, above=True, doc="of the base")
+    height: float = of("number", 0.0, "m", low=0.0, doc="of the cylinder; 0: no tilt")
+    mass: float = of("number", 1.0, "kg", low=0.0, above=True)
+    gyration: float = of(
+        "number", HOMOGENEOUS, "radii", low=0.0, above=True, high=100.0,
+        doc="radius of gyration about the vertical over the radius",
+    )  # fmt: skip
+    pressure: str = of("text", "uniform", doc="pressure law, as build-tables --pressure takes it")
+
+
+@dataclass(frozen=True)
+class Strips:
+    """Regions of the floor between parallel borders, which the centre of the puck crosses."""
+
+    borders: tuple[float, ...] = of("numbers", unit="m", doc="ascending places along 'direction'")
+    friction: tuple[float, ...] = of("numbers", low=0.0, doc="one more than borders")
+    direction: float = of("number", 0.0, "rad", doc="across the borders, from x")
+
+
+@dataclass(frozen=True)
+class Floor:
+    """The plane: rough, level or sloping, at rest or moving."""
+
+    friction: float = of("number", 0.0, "", low=0.0, high=100.0, doc="Coulomb's coefficient f")
+    gravity: float = of("number", STANDARD_GRAVITY, "m/s^2", low=0.0, above=True)
+    slope: float = of("number", 0.0, "rad", low=0.0, high=math.pi / 2, below=True)
+    downhill: float = of("number", 0.0, "rad", doc="direction of steepest descent, from x")
+    velocity: tuple[float, float] = of("pair", (0.0, 0.0), "m/s", doc="of a belt")
+    turning: float = of("number", 0.0, "rad/s", doc="spin of a turntable")
+    centre: tuple[float, float] = of("pair", (0.0, 0.0), "m", doc="of the turntable")
+    strips: Strips | None = of("part", None, part=Strips)
+
+
+@dataclass(frozen=True)
+class Launch:
+    """Where and how it starts."""
+
+    velocity: tuple[float, float] | None = of("pair", None, "m/s", doc="of the centre")
+    spin: float = of("number", 0.0, "rad/s")
+    position: tuple[float, float] = of("pair", (0.0, 0.0), "m", doc="of the centre")
+    orientation: float = of("number", 0.0, "rad", doc="of the body")
+
+
+@dataclass(frozen=True)
+class Drag:
+    """Viscous friction against the floor, as in an air cushion or a film."""
+
+    sliding: float = of("number", 0.0, "kg/s", low=0.0, doc="force over relative speed")
+    spinning: float = of("number", 0.0, "N m s", low=0.0, doc="torque over relative spin")
+
+
+@dataclass(frozen=True)
+class Force:
+    """A force on the centre and a torque, constant and over time."""
+
+    constant: tuple[float, float] = of("pair", (0.0, 0.0), "N")
+    torque: float = of("number", 0.0, "N m")
+    file: str = of("text", "", doc="CSV of t, Fx, Fy and perhaps torque, straight between rows")
+
+
+@dataclass(frozen=True)
+class Wall:
+    """A straight cushion that the rim of the puck bounces off."""
+
+    point: tuple[float, float] = of("pair", unit="m", doc="any point of it")
+    normal: tuple[float, float] = of("pair", doc="into the field, any length")
+    restitution: float = of("number", 1.0, low=0.0, high=1.0)
+    tangential: float = of(
+        "number", -1.0, low=-1.0, high=1.0, doc="-1: smooth, 0: the rim rolls off, 1: it reverses"
+    )
+    friction: float = of("number", math.inf, low=0.0, doc="limits the tangential impulse")
+
+
+@dataclass(frozen=True)
+class Edge:
+    """A straight boundary that ends the run when the centre passes it."""
+
+    point: tuple[float, float] = of("pair", unit="m", doc="any point of it")
+    normal: tuple[float, float] = of("pair", doc="into the field, any length")
+
+
+@dataclass(frozen=True)
+class Constraint:
+    """A linear constraint on the velocities."""
+
+    kind: str = of("choice", choices=("rail", "pivot", "blade"))
+    angle: float = of(
+        "number", 0.0, "rad",
+        doc="direction of the rail; from the centre to the pivot, or along the blade, in the body",
+    )  # fmt: skip
+    reach: float = of("number", 0.0, "m", low=0.0, doc="from the centre to the pivot")
+    velocity: tuple[float, float] = of("pair", (0.0, 0.0), "m/s", doc="of rail or pivot")
+    side_slip: float = of("number", 0.0, "m/s", doc="of the blade, to its left")
+
+
+@dataclass(frozen=True)
+class Run:
+    """How long, how close, how often."""
+
+    time: float | None = of("number", None, "s", low=0.0, above=True, doc="until rest if left out")
+    frames: float = of("number", 101.0, low=1.0, high=1e6, doc="states to save")
+    tol: float = of("number", 1e-9, low=1e-12, high=1e-2, doc="error wanted, of Q/J and Q^2/J")
+
+
+@dataclass(frozen=True)
+class Scene:
+    """All of it; ``source`` says where it was read."""
+
+    puck: Puck = of("part", part=Puck)
+    floor: Floor = of("part", Floor(), part=Floor)
+    launch: Launch = of("part", Launch(), part=Launch)
+    drag: Drag = of("part", Drag(), part=Drag)
+    force: Force = of("part", Force(), part=Force)
+    wall: tuple[Wall, ...] = of("parts", (), part=Wall)
+    edge: tuple[Edge, ...] = of("parts", (), part=Edge)
+    constraint: Constraint | None = of("part", None, part=Constraint)
+    run: Run = of("part", Run(), part=Run)
+    title: str = of("text", "")
+
+
+def scene_from(data: dict[str, Any], source: str = "scene") -> tuple[Scene, dict[str, FloatArray]]:
+    """A scene from nested tables, and the ranges in it by path.
+
+    Parameters
+    ----------
+    data : dict
+        As a TOML file gives it; see :class:`Scene` for its parts.
+    source : str
+        Its name, for messages.
+
+    Returns
+    -------
+    scene, ranges
+        A field that was given as a range stands at its first value.
+
+    Raises
+    ------
+    InputError
+        If anything is wrong: every error with its path, its value and what is allowed.
+
+    Examples
+    --------
+    >>> scene, ranges = scene_from({"puck": {"radius": 0.04}, "launch": {"spin": "0:10:3"}})
+    >>> scene.puck.mass, ranges["launch.spin"].tolist()
+    (1.0, [0.0, 5.0, 10.0])
+    """
+    reading = Reading([], {})
+    scene = read_part(Scene, data, "", reading)
+    if scene is not None:
+        reading.errors.extend(_disagreements(scene))
+    if scene is None or reading.errors:
+        count = len(reading.errors)
+        head = f"{source}: {count} error{'s' if count != 1 else ''}"
+        raise InputError("\n  ".join([head, *reading.errors]))
+    return scene, reading.ranges
+
+
+def read_scene(path: str | Path) -> dict[str, Any]:
+    """The tables of a scene file.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read or is not TOML.
+    """
+    try:
+        with open(path, "rb") as file:
+            raw = file.read(MAX_FILE + 1)
+    except OSError as error:
+        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
+    if len(raw) > MAX_FILE:
+        raise InputError(f"{path} is larger than {MAX_FILE >> 20} MiB: not a scene file")
+    try:
+        return tomllib.loads(raw.decode("utf-8"))
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
+        raise InputError(f"{path} is not a scene file (TOML): {error}") from None
+
+
+def _disagreements(scene: Scene) -> list[str]:
+    """What is wrong between fields that are each in range."""
+    faults = []
+    strips = scene.floor.strips
+    if strips is not None:
+        if len(strips.friction) != len(strips.borders) + 1 or not strips.borders:
+            faults.append(
+                f"floor.strips.friction = {list(strips.friction)}: must be one number more than "
+                f"floor.strips.borders ({len(strips.borders)})"
+            )
+        if any(b <= a for a, b in zip(strips.borders, strips.borders[1:], strict=False)):
+            faults.append(f"floor.strips.borders = {list(strips.borders)}: must ascend")
+    if not scene.run.frames.is_integer():
+        faults.append(f"run.frames = {scene.run.frames:g}: must be a whole number")
+    lines: list[tuple[str, Wall | Edge]] = [(f"wall[{i}]", w) for i, w in enumerate(scene.wall)]
+    lines += [(f"edge[{i}]", edge) for i, edge in enumerate(scene.edge)]
+    for name, line in lines:
+        if not 1e-100 < math.hypot(*line.normal) < 1e100:
+            faults.append(f"{name}.normal = {list(line.normal)}: must have a direction")
+            continue
+        margin = scene.puck.radius if isinstance(line, Wall) else 0.0
+        gap = distance(line, scene.launch.position) - margin
+        if gap < -1e-12 * max(margin, math.hypot(*line.point)):
+            what = "reaches through it" if margin > 0.0 else "is beyond it"
+            faults.append(
+                f"{name}: the puck at launch.position = {list(scene.launch.position)} "
+                f"{what} by {-gap:.3g} m: move the launch, or turn the normal into the field"
+            )
+    hold = scene.constraint
+    if hold is None:
+        return faults
+    if scene.wall:
+        faults.append("constraint and wall: a scene has one of them, not both")
+    if hold.kind == "pivot" and not hold.reach > 0.0:
+        faults.append(f"constraint.reach = {hold.reach:g}: a pivot needs a number > 0 m")
+    return faults + _misfit(scene, hold)
+
+
+def _misfit(scene: Scene, hold: Constraint) -> list[str]:
+    """A launch that its constraint does not allow."""
+    wanted = launch_velocity(scene)
+    given = scene.launch.velocity
+    if given is None:
+        return []
+    scale = max(math.hypot(*given), math.hypot(*wanted), math.hypot(*hold.velocity))
+    if math.dist(given, wanted) <= MATCH * max(scale, abs(hold.side_slip)):
+        return []
+    return [
+        f"launch.velocity = {list(given)}: the {hold.kind} allows [{wanted[0]:.12g}, "
+        f"{wanted[1]:.12g}] at this spin (leave it out where it follows from the spin)"
+    ]
+
+
+def launch_velocity(scene: Scene) -> tuple[float, float]:
+    """The velocity of the centre at the launch, as the constraint allows it."""
+    vx, vy = scene.launch.velocity or (0.0, 0.0)
+    hold = scene.constraint
+    if hold is None:
+        return vx, vy
+    if hold.kind == "pivot":
+        bearing = scene.launch.orientation + hold.angle
+        rim = scene.launch.spin * hold.reach
+        return (
+            hold.velocity[0] + rim * math.sin(bearing),
+            hold.velocity[1] - rim * math.cos(bearing),
+        )
+    across = hold.side_slip
+    direction = hold.angle
+    if hold.kind == "rail":
+        across = -math.sin(direction) * hold.velocity[0] + math.cos(direction) * hold.velocity[1]
+    else:
+        direction += scene.launch.orientation
+    nx, ny = -math.sin(direction), math.cos(direction)
+    off = nx * vx + ny * vy - across
+    return vx - off * nx, vy - off * ny
+
+
+def distance(line: Wall | Edge, place: tuple[float, float]) -> float:
+    """How far a place is from a line, on the side its normal points to.
+
+    Examples
+    --------
+    >>> distance(Edge((0.0, 1.0), (0.0, -2.0)), (5.0, 0.25))
+    0.75
+    """
+    size = math.hypot(*line.normal)
+    return sum((p - q) * n / size for p, q, n in zip(place, line.point, line.normal, strict=True))

@@ -1,0 +1,155 @@
+"""One scene, from its launch to its end, by the cheapest exact model."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables.errors import InputError, PuckError
+from puck_tables.real import finite_array
+from puck_tables.scene.equations import SPIN, VX, VY, X, Y
+from puck_tables.scene.loop import (
+    EVENT_COLUMNS,
+    EVENT_LIMIT,
+    FRAME_COLUMNS,
+    NOT_FINITE,
+    STEP_LIMIT,
+    TIME_UP,
+)
+from puck_tables.scene.outcome import COLUMNS, ENDS, EVENTS, Event, SceneRun, ledger_residual
+from puck_tables.scene.plain import run_plain
+from puck_tables.scene.plan import Plan, out_of_reach, plan_for
+from puck_tables.scene.prepare import MAX_EVENTS, Prepared, prepare
+from puck_tables.scene.scene import Scene, scene_from
+
+FloatArray = npt.NDArray[np.float64]
+
+
+def simulate_scene(
+    scene: Scene | Mapping[str, Any], times: npt.ArrayLike | None = None
+) -> SceneRun:
+    """Run a scene.
+
+    Parameters
+    ----------
+    scene : Scene or nested tables
+        As :func:`puck_tables.scene.scene.scene_from` takes them.
+    times : array_like, s, ≥ 0, ascending, optional
+        When to save states; else ``run.frames`` of them from the launch to the end.
+
+    Returns
+    -------
+    SceneRun
+        States beyond the end of the run are left out, except at rest.
+
+    Raises
+    ------
+    InputError
+        If the scene is not valid, holds a range, or has not ended after a thousand times its time
+        scale and gives no ``run.time``.
+    PuckError
+        If the motion leaves floating point, or too many events crowd together.
+
+    Notes
+    -----
+    Dry friction by the resultants of Salnikova, Treschev, Gallyamov 2012 at velocities relative to
+    the floor; constraints and energies after Chetaev 1960, eq. 2.3, 2.4 and 4.1.
+
+    Examples
+    --------
+    >>> run = simulate_scene({
+    ...     "puck": {"radius": 0.04}, "floor": {"friction": 0.1, "slope": 0.05},
+    ...     "launch": {"velocity": [1.0, 0.0], "spin": 20.0},
+    ... })
+    >>> run.end, round(run.end_time, 6)
+    ('at rest', 2.329592)
+    """
+    whole = single(scene)
+    moments = None if times is None else _checked(times)
+    needed = out_of_reach(whole)
+    plan = plan_for(needed)
+    if plan.plain:
+        return run_plain(whole, needed, plan, moments)
+    return _integrated(whole, plan, moments)
+
+
+FAILURES = {
+    STEP_LIMIT: "no end after a million steps, at {time:.6g} s: ask for a shorter run.time",
+    EVENT_LIMIT: "10000 events by {time:.6g} s: they crowd together; ask for a shorter run.time",
+    NOT_FINITE: "the motion leaves floating point at {time:.6g} s: use other units",
+}
+
+
+def single(scene: Scene | Mapping[str, Any]) -> Scene:
+    """A scene without ranges.
+
+    Raises
+    ------
+    InputError
+    """
+    if isinstance(scene, Scene):
+        return scene
+    whole, ranges = scene_from(dict(scene))
+    if ranges:
+        raise InputError(
+            f"{', '.join(ranges)}: a range makes many runs; give one number, or run a sweep"
+        )
+    return whole
+
+
+def _checked(times: npt.ArrayLike) -> FloatArray:
+    moments = np.atleast_1d(finite_array("times", times, "s"))
+    if moments.ndim != 1 or not np.all(moments >= 0.0) or not np.all(np.diff(moments) >= 0.0):
+        raise InputError("times must be a list of ascending numbers >= 0 s")
+    return moments
+
+
+def _integrated(scene: Scene, plan: Plan, times: FloatArray | None) -> SceneRun:
+    prepared = prepare(scene, None if times is None or not times.size else float(times[-1]))
+    events = np.empty((MAX_EVENTS, EVENT_COLUMNS))
+    if times is None:
+        _, end_time, *_ = prepared.follow(np.empty(0), np.empty((1, FRAME_COLUMNS)), events)
+        times = np.linspace(0.0, end_time, int(scene.run.frames))
+    rows = np.empty((len(times) + 1, FRAME_COLUMNS))
+    how, end_time, count, steps, reached, _ = prepared.follow(times, rows, events)
+    if how == TIME_UP and scene.run.time is None and not prepared.ask.to_the_end:
+        raise InputError(
+            f"the puck still moves after {end_time:.4g} s, a thousand times the time scale of this "
+            "scene: it may never stop; give run.time"
+        )
+    if how in FAILURES:
+        raise PuckError(FAILURES[how].format(time=end_time))
+    columns = columns_of(rows[: reached + 1], prepared)
+    energy = kinetic(prepared.state[[VX, VY, SPIN]], prepared)
+    return SceneRun(
+        scene=scene,
+        plan=plan,
+        end=ENDS[how],
+        end_time=end_time,
+        events=[
+            Event(float(e[0]), EVENTS[int(e[1])], int(e[2]), float(e[3 + X]), float(e[3 + Y]))
+            for e in events[:count]
+        ],
+        energy_residual=ledger_residual(columns, float(energy)),
+        steps=steps,
+        last={name: float(column[-1]) for name, column in columns.items()},
+        columns={name: column[:-1] for name, column in columns.items()},
+    )
+
+
+def columns_of(rows: FloatArray, prepared: Prepared) -> dict[str, FloatArray]:
+    """Rows of the loop (n, 15) by the names of :data:`COLUMNS`."""
+    columns = dict(zip(list(COLUMNS)[:-1], rows.T, strict=True))
+    columns["kinetic_energy"] = kinetic(rows.T[[1 + VX, 1 + VY, 1 + SPIN]], prepared)
+    return columns
+
+
+def kinetic(velocities: FloatArray, prepared: Prepared) -> FloatArray:
+    """½ m v² + ½ I ω² of rows vx, vy, ω (3, …)."""
+    vx, vy, spin = velocities
+    body = prepared.model.body
+    energy: FloatArray = 0.5 * body.mass * (vx * vx + vy * vy) + 0.5 * body.inertia * spin * spin
+    return energy

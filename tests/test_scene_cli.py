@@ -1,0 +1,127 @@
+"""Scenes from the command line: every scene that comes along, options, ranges, refusals, files."""
+
+import json
+
+import numpy as np
+import pytest
+import xarray
+from click.testing import CliRunner
+from puck_tables.cli.main import main
+
+import puck_tables as pt
+from puck_tables.scene.library import find_scene, shipped_scenes
+
+ENDS = {"air-hockey": "time is up", "turntable": "time is up", "washer-on-conveyor": "carried"}
+
+
+def puck(*arguments):
+    return CliRunner().invoke(main, list(arguments))
+
+
+@pytest.mark.parametrize("name", shipped_scenes())
+def test_every_scene_that_comes_along_runs_and_its_ledger_closes(name, tmp_path):
+    picture = tmp_path / "scene.png"
+    result = puck("simulate", "--scene", name, "--json", "--plot", str(picture))
+    assert result.exit_code == 0, result.stderr
+    told = json.loads(result.stdout)
+    assert told["energy_residual"] < 1e-8
+    assert told["end"].startswith(ENDS.get(name, "at rest"))
+    assert picture.stat().st_size > 10_000
+    assert puck("scene", "check", name).exit_code == 0
+
+
+def test_scenes_are_listed_and_shown():
+    listed = puck("scene", "list").stdout
+    assert len(listed.splitlines()) == len(shipped_scenes()) >= 9
+    assert 'title = "Puck on an incline"' in puck("scene", "show", "incline").stdout
+
+
+def test_options_are_numbers_of_the_scene():
+    by_option = puck("simulate", "--scene", "incline", "--w0", "30", "--friction", "0.2", "--json")
+    changes = ("--set", "launch.spin=30", "--set", "floor.friction=0.2")
+    by_set = puck("simulate", "--scene", "incline", *changes, "--json")
+    assert by_option.stdout == by_set.stdout != ""
+    plain = puck("simulate", "--v0", "1,0", "--w0", "5", "--json")
+    scene = puck("simulate", "--v0", "1,0", "--w0", "5", "--set", "puck.mass=1", "--json")
+    assert json.loads(scene.stdout)["x"] == pytest.approx(
+        json.loads(plain.stdout)["stop_position"][0], rel=1e-12
+    )
+
+
+def test_every_error_is_told_at_once(tmp_path):
+    file = tmp_path / "bad.toml"
+    file.write_text(
+        "[puck]\nradius = -1\nhight = 2\n[floor]\nfriction = 'a'\n[[wall]]\npoint=[0]\n"
+    )
+    for command in (("scene", "check"), ("simulate", "--scene"), ("sweep", "--scene")):
+        result = puck(*command, str(file))
+        assert result.exit_code == 2
+        for part in ("puck.radius = -1", "puck.hight", "floor.friction", "wall[0].normal", "> 0 m"):
+            assert part in result.stderr
+        assert "Traceback" not in result.stderr
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("simulate", "--scene", "nowhere"), "no file nowhere"),
+        (("simulate", "--scene", "incline", "--set", "x"), "PATH=VALUE"),
+        (("simulate", "--scene", "incline", "--set", "floor.slop=1"), "floor.slop: no such entry"),
+        (("simulate", "--scene", "incline", "--set", "wall[3].x=1"), "no such entry to set"),
+        (("simulate", "--scene", "incline", "--set", "launch.spin=0:1:5"), "run a sweep"),
+        (("simulate", "--scene", "incline", "--exact"), "--exact has no place in a scene"),
+        (("simulate", "--scene", "incline", "--set", "floor.slope=0.5"), "it may never stop"),
+        (("sweep", "--scene", "incline"), "no number of the scene is a range"),
+        (("simulate",), "--v0"),
+        (("scene", "show", "nothing"), "there are air-hockey"),
+        (("simulate", "--scene", "pivoted-disc", "--v0", "1,1"), "the pivot allows"),
+        (("simulate", "--scene", "air-hockey", "--set", "launch.position=[9,9]"), "wall[1]"),
+    ],
+)
+def test_refusals_are_one_clear_sentence(arguments, words):
+    result = puck(*arguments)
+    assert result.exit_code == 2
+    assert words in result.stderr
+    assert "Traceback" not in result.stderr
+
+
+def test_above_the_friction_angle_the_run_ends_at_the_time_asked():
+    steep = ("--set", "floor.slope=0.5", "--set", "run.time=3")
+    result = puck("simulate", "--scene", "incline", *steep)
+    assert "time is up after 3 s" in result.stdout
+
+
+def test_a_map_over_a_scene_opens_in_xarray_and_equals_single_runs(tmp_path):
+    file = tmp_path / "map.h5"
+    ranges = ("--set", "floor.slope=0:0.1:3", "--w0", "0:60:4")
+    result = puck("sweep", "--scene", "incline", *ranges, "-o", str(file), "--resume")
+    assert result.exit_code == 0, result.stderr
+    assert list(tmp_path.iterdir()) == [file]
+    with xarray.open_dataset(file, engine="h5netcdf") as data:
+        assert data["x"].shape == (3, 4)
+        tables = find_scene("incline")
+        tables["floor"]["slope"], tables["launch"]["spin"] = 0.05, 40.0
+        single = pt.simulate_scene(tables, [0.0])
+        assert float(data["x"][1, 2]) == single.last["x"]
+        assert float(data["end_time"][1, 2]) == single.end_time
+    table = puck("sweep", "--scene", "incline", *ranges)
+    assert table.stdout.splitlines()[0].startswith("floor.slope,launch.spin,x[m]")
+    assert len(table.stdout.splitlines()) == 13
+    assert "12 at rest" in table.stderr
+
+
+def test_states_of_a_scene_as_files(tmp_path):
+    for ending in (".h5", ".csv", ".jsonl"):
+        file = tmp_path / f"run{ending}"
+        assert (
+            puck("simulate", "--scene", "incline", "--frames", "5", "-o", str(file)).exit_code == 0
+        )
+        again = puck("simulate", "--scene", "incline", "-o", str(file))
+        assert again.exit_code == 1
+        assert "exists" in again.stderr
+    assert len((tmp_path / "run.csv").read_text().splitlines()) == 6
+    with xarray.open_dataset(tmp_path / "run.h5", engine="h5netcdf") as data:
+        rows = [json.loads(line) for line in (tmp_path / "run.jsonl").read_text().splitlines()]
+        assert np.array_equal(data["heat_dry"], [row["heat_dry"] for row in rows])
+        kept = pt.scene_from(json.loads(data.attrs["scene"]))[0]
+        assert pt.simulate_scene(kept, [0.0]).end_time == data.attrs["end_time"]
