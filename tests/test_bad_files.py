@@ -20,16 +20,20 @@ SHIPPED = {name: (files("puck_tables.tables") / f"{name}.h5").read_bytes() for n
            ("resultants", "stops", "partial")}  # fmt: skip
 
 
+class Waited(BaseException):
+    """No command catches it, as it would a TimeoutError."""
+
+
 @pytest.fixture(autouse=True)
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     """An own folder; a command that waits for a file is interrupted."""
     monkeypatch.chdir(tmp_path)
 
     def waited(number: int, frame: object) -> None:
-        raise TimeoutError("the command waits for a file")
+        raise Waited("the command waits for a file")
 
     before = signal.signal(signal.SIGALRM, waited)
-    signal.alarm(30)
+    signal.alarm(20)
     yield tmp_path
     signal.alarm(0)
     signal.signal(signal.SIGALRM, before)
@@ -120,6 +124,19 @@ def test_what_is_no_profile(shape: str, folder: Path):
     MADE[shape](Path("given.csv"))
     before = sorted(folder.iterdir())
     assert "given.csv" in refused(["build-tables", "--pressure", "given.csv"], codes=(2,))
+    assert sorted(folder.iterdir()) == before
+
+
+@pytest.mark.parametrize(
+    "reader", [["simulate", "--scene"], ["sweep", "--scene"], ["scene", "check"]], ids=" ".join
+)
+@pytest.mark.parametrize("shape", MADE)
+def test_what_is_no_scene(shape: str, reader: list[str], folder: Path):
+    MADE[shape](Path("given.toml"))
+    before = sorted(folder.iterdir())
+    result = CliRunner().invoke(main, [*reader, "given.toml"])
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert result.stderr.startswith("Error: ")  # then a line for each error in the scene
     assert sorted(folder.iterdir()) == before
 
 

@@ -36,6 +36,10 @@ LONG = {
     "sweep resumed": (
         "checkpoint", ["sweep", "--speed", "0:2:3000", "--w0", "0:5:3000", "-o", "m.h5", "--resume"]
     ),
+    "scenes": (
+        "scene.sweep",
+        ["sweep", "--scene", "incline", "--set", "launch.spin=0:80:900000", "-o", "m.h5"],
+    ),
     "aim": ("aiming", ["aim", "--target", "2,0.1", "--count", "9000", "-o", "a.csv"]),
     "paper": ("paper.claims", ["paper", "--out", "deep/er"]),
     "tradeoff": ("tradeoff.engine", ["tradeoff", "-o", "t.h5"]),
@@ -74,7 +78,9 @@ def test_ctrl_c_ends_with_a_sentence_and_leaves_nothing(name: str, folder: Path)
 
 
 PRINTING = [
-    ["--help"], ["info"], ["tables"], ["simulate", "--v0", "1,0"],
+    ["--help"], ["info"], ["tables"], ["scene", "list"],
+    ["simulate", "--scene", "incline"],
+    ["simulate", "--v0", "1,0"],
     ["simulate", "--v0", "1,0", "--json"], ["sweep"], ["aim", "--target", "2,0.1"],
     ["build-tables", "--accuracy", "1e-4"], ["validate", "rough.h5"], ["paper", "--out", "p"],
 ]  # fmt: skip

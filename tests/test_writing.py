@@ -25,6 +25,12 @@ COMMANDS: dict[str, tuple[list[str], str]] = {
     "simulate h5": (["simulate", "--v0", "1,0", "-o", "{}.h5"], "{}.h5"),
     "simulate jsonl": (["simulate", "--v0", "1,0", "-o", "{}.jsonl"], "{}.jsonl"),
     "simulate png": (["simulate", "--v0", "1,0", "--plot", "{}.png"], "{}.png"),
+    "scene csv": (["simulate", "--scene", "incline", "-o", "{}.csv"], "{}.csv"),
+    "scene h5": (["simulate", "--scene", "incline", "-o", "{}.h5"], "{}.h5"),
+    "scene png": (["simulate", "--scene", "incline", "--plot", "{}.png"], "{}.png"),
+    "sweep scene": (
+        ["sweep", "--scene", "incline", "--set", "launch.spin=0:9:3", "-o", "{}.h5"], "{}.h5"
+    ),
     "sweep csv": (["sweep", "--w0", "0:1:9", "-o", "{}.csv"], "{}.csv"),
     "sweep h5": (["sweep", "--w0", "0:1:9", "-o", "{}.h5"], "{}.h5"),
     "sweep png": (["sweep", "--w0", "0:1:9", "--plot", "{}.png"], "{}.png"),

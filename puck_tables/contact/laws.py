@@ -30,6 +30,7 @@ from puck_tables.contact.superposition import (
 )
 from puck_tables.errors import InputError
 from puck_tables.real import broadcast, instance, real_array
+from puck_tables.safe_read import read_whole
 
 NAMES = "uniform, galin, hertz, ring, annulus:INNER (0 < INNER < 1), or a CSV file of rho, W"
 _SLACK = 1e-9  # of δ/δ_max: names and files carry twelve digits
@@ -195,11 +196,7 @@ def profile_law(radii: npt.ArrayLike, pressure: npt.ArrayLike, name: str = "prof
 def _read(path: str) -> tuple[FloatArray, FloatArray]:
     """Two columns of a CSV file; a first line of words is its header."""
     try:
-        if Path(path).exists() and not Path(path).is_file():
-            raise InputError(f"cannot read {path}: it is not a regular file")
-        if Path(path).stat().st_size > MAX_PROFILE_BYTES:
-            raise InputError(f"{path} is too large to be a profile")
-        lines = Path(path).read_text(encoding="utf-8-sig").splitlines()
+        lines = read_whole(path, MAX_PROFILE_BYTES).decode("utf-8-sig").splitlines()
         rows = [line.split(",") for line in lines if line.strip() and not line.startswith("#")]
         header = 0 if _is_number(rows[0][0]) else 1
         columns = np.array([[float(cell) for cell in row] for row in rows[header:]]).T

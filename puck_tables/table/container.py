@@ -28,6 +28,7 @@ import numpy.typing as npt
 from puck_tables._version import __version__
 from puck_tables.errors import OutputError, TableError
 from puck_tables.real import instance
+from puck_tables.safe_read import read_whole
 from puck_tables.safe_write import write_bytes
 
 FloatArray = npt.NDArray[np.float64]
@@ -239,11 +240,7 @@ def read_content(path: str | Path) -> bytes:
 'puck build-tables -o FILE', or leave --table out to use the tables that come along
     """
     try:
-        if Path(path).exists() and not Path(path).is_file():
-            raise TableError(f"cannot read {path}: it is not a regular file")
-        if Path(path).stat().st_size > MAX_FILE_BYTES:
-            raise TableError(f"{path} is too large to be a table")
-        return Path(path).read_bytes()
+        return read_whole(path, MAX_FILE_BYTES)
     except FileNotFoundError:
         raise TableError(
             f"there is no table file {path}: build one with 'puck build-tables -o FILE', "
