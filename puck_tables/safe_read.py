@@ -36,7 +36,6 @@ def read_whole(path: str | Path, largest: int) -> bytes:
         found = os.fstat(file.fileno())
         if not stat.S_ISREG(found.st_mode):
             raise OSError(errno.EINVAL, "it is not a regular file", str(path))
-        content = file.read(largest + 1) if found.st_size <= largest else b""
-    if max(found.st_size, len(content)) > largest:
-        raise OSError(errno.EFBIG, f"it is too large, {largest} bytes are the most", str(path))
-    return content
+        if found.st_size > largest:
+            raise OSError(errno.EFBIG, f"it is too large, {largest} bytes are the most", str(path))
+        return file.read(found.st_size)  # not more: what is asked for is allocated before
