@@ -44,7 +44,11 @@ from puck_tables.errors import InputError
     help="Other than uniform resultants: cells on a side of a singular line instead.",
 )
 @click.option(
-    "-o", "--output", type=FILE, metavar="FILE", help="The table file.  [default: KIND.h5]"
+    "-o",
+    "--output",
+    type=FILE,
+    metavar="FILE",
+    help="The table file.  [default: KIND.h5 or LAW.h5, here]",
 )
 @click.option(
     "--speed-law",
@@ -60,6 +64,9 @@ def build_tables(
     height_ratio: float | None, overwrite: bool,
 ) -> None:  # fmt: skip
     """Tabulate friction resultants or stops, and measure how exact the table is.
+
+    The file is written where you stand, or to FILE, for --table, info and validate.  (What the
+    program builds for its own use it keeps elsewhere: see 'puck tables'.)
 
     \b
     puck build-tables --accuracy 1e-8 -o coarse.h5
@@ -86,19 +93,26 @@ def build_tables(
     for name in ("--cells",) if plain else ("--n-phi", "--n-delta"):
         if name in given:
             raise InputError(f"{name} does not go with {what}")
-    path = Path(f"{kind}.h5") if output is None else output
+    law, stem = None, kind if speed_law is None else "speed"
+    if kind == "resultants" and not plain and speed_law is None:
+        from puck_tables.contact.laws import law_of
+        from puck_tables.store import file_stem
+
+        law = law_of(pressure or "")
+        stem = file_stem(law)
+    path = Path(f"{stem}.h5") if output is None else output
     if path.suffix.lower() != ".h5":
         raise InputError(f"{path}: a table is an HDF5 file: give a name that ends in .h5")
     prepare_outputs(path, overwrite=overwrite)
     words = ["puck build-tables"] + ([] if plain else [what])
     command = " ".join(words + [f"{name} {value}" for name, value in given.items()])
     with progress("tabulating") as show:
-        if plain:
-            from puck_tables.table.build import build_table
-            from puck_tables.table.file import save_table
+        if law is not None:
+            from puck_tables.table.law_file import save_law_table
+            from puck_tables.table.law_table import build_law_table
 
-            table = build_table(accuracy, n_phi, n_delta, show)
-            text = describe(save_table(table, path, overwrite, command))
+            by_law = build_law_table(law, accuracy, cells, show)
+            text = describe(save_law_table(by_law, path, overwrite, command))
         elif speed_law is not None:
             from puck_tables.contact.speed_law import SpeedLaw
             from puck_tables.table.speed_file import save_speed_table
@@ -121,11 +135,10 @@ def build_tables(
             partial = build_partial_table(accuracy, cells, show)
             text = describe(save_partial_table(partial, path, overwrite, command))
         else:
-            from puck_tables.contact.laws import law_of
-            from puck_tables.table.law_file import save_law_table
-            from puck_tables.table.law_table import build_law_table
+            from puck_tables.table.build import build_table
+            from puck_tables.table.file import save_table
 
-            law = build_law_table(law_of(pressure or ""), accuracy, cells)
-            text = describe(save_law_table(law, path, overwrite, command))
+            table = build_table(accuracy, n_phi, n_delta, show)
+            text = describe(save_table(table, path, overwrite, command))
     told(path)
     click.echo(text)

@@ -1,11 +1,15 @@
 """The command ``puck``: its commands, and how it ends when something is wrong.
 
 Exit codes: 0 all well; 1 a file or an optional package is at fault; 2 bad input; 3 a table failed
-its validation or a claim of the paper differs; 130 interrupted.
+its validation or a claim of the paper differs; 130 interrupted; 141 nobody reads the results any
+more, as after '| head'.
 """
 
 from __future__ import annotations
 
+import contextlib
+import io
+import os
 import sys
 from typing import Any
 
@@ -18,12 +22,14 @@ from puck_tables.cli.paper import paper
 from puck_tables.cli.scene import scene
 from puck_tables.cli.simulate import simulate
 from puck_tables.cli.sweep import sweep
+from puck_tables.cli.tables import tables
 from puck_tables.cli.tradeoff import tradeoff
 from puck_tables.cli.validate import validate
 
 from puck_tables._version import __version__
 from puck_tables.errors import InputError, PuckError
 
+BROKEN_PIPE = 141  # 128 + SIGPIPE, as shells count
 COMPILED = ("simulate", "sweep", "aim", "build-tables", "validate", "paper")
 
 
@@ -32,6 +38,7 @@ class PuckGroup(click.Group):
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run a command."""
+        _whole_writes()
         try:
             result = super().invoke(ctx)
             if sys.stdout is not None:
@@ -41,8 +48,11 @@ class PuckGroup(click.Group):
             click.echo(f"Error: {click.format_filename(str(error))}", err=True)
             ctx.exit(2 if isinstance(error, InputError) else 1)
         except BrokenPipeError:
-            raise
+            _drop(sys.stdout)
+            _drop(sys.stderr)
+            ctx.exit(BROKEN_PIPE)
         except OSError as error:
+            _drop(sys.stdout)
             click.echo(f"Error: cannot write the results: {error.strerror or error}", err=True)
             ctx.exit(1)
         except MemoryError:
@@ -51,6 +61,25 @@ class PuckGroup(click.Group):
         except KeyboardInterrupt:
             click.echo("Interrupted: nothing more was written.", err=True)
             ctx.exit(130)
+
+
+def _whole_writes() -> None:
+    """Buffer stdout even under PYTHONUNBUFFERED.
+
+    Python drops there, in silence, what a full disk or a closed pipe did not take of one write.
+    """
+    raw = getattr(sys.stdout, "buffer", None)
+    if isinstance(raw, io.RawIOBase):
+        sys.stdout = io.TextIOWrapper(
+            io.BufferedWriter(raw), sys.stdout.encoding, sys.stdout.errors,
+            line_buffering=sys.stdout.isatty(),
+        )  # fmt: skip
+
+
+def _drop(stream: Any) -> None:
+    """What is still buffered is not to be tried again, and complained about, at the exit."""
+    with contextlib.suppress(AttributeError, OSError, ValueError):  # closed, or a test's
+        os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 
 @click.group(cls=PuckGroup, context_settings={"help_option_names": ["-h", "--help"]})
@@ -66,7 +95,8 @@ def main(ctx: click.Context) -> None:
             click.echo("compiling for this machine, once: some seconds", err=True)
 
 
-for _command in (
-    simulate, sweep, aim, scene, build_tables, validate, info, paper, tradeoff, asperity,
-):  # fmt: skip
+_ALL = (
+    simulate, sweep, aim, scene, build_tables, validate, info, tables, paper, tradeoff, asperity,
+)  # fmt: skip
+for _command in _ALL:
     main.add_command(_command)

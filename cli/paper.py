@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import click
@@ -42,29 +44,37 @@ def paper(folder: Path, overwrite: bool) -> None:
     from puck_tables.paper.figures import FIGURES
     from puck_tables.safe_write import write_bytes
 
-    _make_folder(folder)
     table = folder / "claims.csv"
     pictures = {folder / f"figure_{number:02}.png": figure for number, figure in FIGURES.items()}
-    prepare_outputs(table, *pictures, overwrite=overwrite)
-    with progress("claims") as show:
-        claims = all_claims(show)
-    write_bytes(table, as_csv(claims).encode(), overwrite)
-    told(table)
-    with progress("figures") as show:
-        for done, (path, figure) in enumerate(pictures.items(), start=1):
-            draw(figure(), path, overwrite)
-            show(done, len(pictures))
-    for path in pictures:
-        told(path)
+    with _made(folder):
+        prepare_outputs(table, *pictures, overwrite=overwrite)
+        with progress("claims") as show:
+            claims = all_claims(show)
+        write_bytes(table, as_csv(claims).encode(), overwrite)
+        told(table)
+        with progress("figures") as show:
+            for done, (path, figure) in enumerate(pictures.items(), start=1):
+                draw(figure(), path, overwrite)
+                told(path)
+                show(done, len(pictures))
     click.echo(as_text(claims))
     if any(claim.verdict == "DIFFERS" for group in claims.values() for claim in group):
         click.echo("Error: a claim differs that is not a known erratum of the paper", err=True)
         raise SystemExit(DIFFERS)
 
 
-def _make_folder(folder: Path) -> None:
+@contextmanager
+def _made(folder: Path) -> Iterator[None]:
+    """The folder and those above it, gone again if the work ends before a file is in them."""
     try:
+        new = [path for path in (folder, *folder.parents) if not path.exists()]
         folder.mkdir(parents=True, exist_ok=True)
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
         raise OutputError(f"cannot make the folder {folder}: {reason}") from None
+    try:
+        yield
+    finally:
+        with suppress(OSError):  # not empty, as it should be
+            for path in new:
+                path.rmdir()

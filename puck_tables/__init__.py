@@ -54,6 +54,7 @@ if TYPE_CHECKING:
     from puck_tables.states import States, flow
     from puck_tables.stop_map import StopMap, sweep
     from puck_tables.stops import Stops, stop
+    from puck_tables.store import table_for
     from puck_tables.table.build import build_table
     from puck_tables.table.check import CheckReport, validate
     from puck_tables.table.file import load_table, save_table
@@ -117,6 +118,7 @@ _HOMES = {
     "simulate": "trajectory",
     "Stops": "stops",
     "stop": "stops",
+    "table_for": "store",
     "build_stop_table": "similarity.build",
     "validate_stops": "similarity.check",
     "load_stop_table": "similarity.file",
@@ -234,6 +236,7 @@ __all__ = [
     "stop",
     "sweep",
     "sweep_scene",
+    "table_for",
     "validate",
     "validate_law",
     "validate_partial",

@@ -3,8 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from datetime import UTC, datetime
+from importlib.resources import files
 from pathlib import Path
+from typing import NamedTuple
 
+from puck_tables import store
+from puck_tables.errors import TableError
 from puck_tables.similarity import check as stop_check
 from puck_tables.similarity import file as stop_file
 from puck_tables.similarity.stop_table import StopTable
@@ -41,9 +46,12 @@ def load_any_table(path: str | Path) -> AnyTable:
     puck_tables.errors.TableError: there is no table file /nowhere/table.h5: build one with \
 'puck build-tables -o FILE', or leave --table out to use the tables that come along
     """
-    source = str(path)
+    return _table_in(read_content(path), str(path))
+
+
+def _table_in(content: bytes, source: str) -> AnyTable:
     kinds = {kind: module.shapes for kind, module in _FILES.items()}
-    contents = decode(read_content(path), source, kinds)
+    contents = decode(content, source, kinds)
     table: AnyTable = _FILES[contents.attributes["kind"]].table_of(contents, source)
     return table
 
@@ -57,6 +65,57 @@ def tables_that_come_along() -> list[AnyTable]:
     [2e-11, 1e-10, 1e-06]
     """
     return [file.load_table(), stop_file.load_stop_table(), partial_file.load_partial_table()]
+
+
+class Entry(NamedTuple):
+    """A table file in a list: its passport in short; the blanks of a damaged one are None."""
+
+    name: str
+    place: str
+    kind: str | None
+    pressure_law: str | None
+    valid_range: str | None
+    accuracy: float | None
+    bytes: int
+    date: str
+    whole: bool
+
+
+def shipped_and_kept() -> list[Entry]:
+    """The table files that come along, and those kept in the user's cache.
+
+    Examples
+    --------
+    >>> [entry.name for entry in shipped_and_kept() if entry.place == "comes along"]
+    ['partial.h5', 'resultants.h5', 'stops.h5']
+    """
+    folder = files("puck_tables.tables")
+    names = sorted(path.name for path in folder.iterdir() if path.name.endswith(".h5"))
+    shipped = [_entry(name, "comes along", (folder / name).read_bytes(), "") for name in names]
+    return shipped + [entry for path in store.kept_files() if (entry := _kept(path)) is not None]
+
+
+def _kept(path: Path) -> Entry | None:
+    """None if another process has just removed it."""
+    try:
+        date = datetime.fromtimestamp(path.stat().st_mtime, UTC).isoformat(timespec="seconds")
+        return _entry(path.name, str(path.parent), read_content(path), date)
+    except FileNotFoundError:
+        return None
+    except TableError:
+        return Entry(path.name, str(path.parent), None, None, None, None, 0, date, False)
+
+
+def _entry(name: str, place: str, content: bytes, date: str) -> Entry:
+    try:
+        table = _table_in(content, name)
+    except TableError:
+        return Entry(name, place, None, None, None, None, len(content), date, False)
+    said = table.passport
+    return Entry(
+        name, place, said["kind"], said["pressure_law"], said["valid_range"], table.tolerance,
+        len(content), said["created"], True,
+    )  # fmt: skip
 
 
 def functions_and_grid(table: AnyTable) -> tuple[tuple[str, ...], str]:
@@ -84,7 +143,7 @@ def judge(table: AnyTable, progress: Progress | None = None) -> CheckReport:
     Raises
     ------
     InputError
-        If the table is one of a pressure profile: its file does not hold the profile.
+        If the table is of a pressure profile, from before files held it.
     """
     if isinstance(table, Table):
         return check.validate(table, progress)

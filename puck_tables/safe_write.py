@@ -8,6 +8,9 @@ from pathlib import Path
 
 from puck_tables.errors import OutputError
 
+_PREFIX, _SUFFIX = ".puck-", ".part"
+PART_PATTERN = f"{_PREFIX}*{_SUFFIX}"  # of what an end in the middle of writing leaves
+
 
 def check_target(path: str | Path, overwrite: bool = False) -> Path:
     """Refuse an output that could not be written later, before any work is done.
@@ -77,7 +80,7 @@ def write_bytes(path: str | Path, content: bytes, overwrite: bool = False) -> No
     temporary = None
     try:
         with tempfile.NamedTemporaryFile(
-            dir=target.parent, prefix=".puck-", suffix=".part", delete=False
+            dir=target.parent, prefix=_PREFIX, suffix=_SUFFIX, delete=False
         ) as file:
             temporary = Path(file.name)
             file.write(content)

@@ -1,12 +1,17 @@
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
+import numpy as np
 import pytest
 from hypothesis import HealthCheck, settings
 
 from puck_tables import Table, build_table, load_table
+from puck_tables.paper.claim import Claim
+from puck_tables.paper.claims import all_claims
 
+QUARTER, HALF = 0.25 * math.pi, 0.5 * math.pi
 ROOT = Path(__file__).resolve().parent.parent
 
 
@@ -20,6 +25,37 @@ def table() -> Table:
 def rough_table() -> Table:
     """A small table, not saved."""
     return build_table(accuracy=1e-6)
+
+
+def near(point: float) -> np.ndarray:
+    """Doubles on both sides of a point, ever closer, inside [0, π/2]."""
+    gap = 10.0 ** -np.linspace(0.5, 16.0, 63)
+    around = np.concatenate([point - gap, [np.nextafter(point, -1.0), point], point + gap])
+    return around[(around >= 0.0) & (around <= HALF)]
+
+
+@pytest.fixture(scope="session")
+def corners() -> np.ndarray:
+    """Angles where double precision is hardest, both signs."""
+    tiny = [5e-324, 2.2e-308, 1e-300, 1e-155, 1e-100, 1e-30]
+    phi = np.concatenate([tiny, near(0.0), near(QUARTER), near(HALF)])
+    return np.concatenate([phi, -phi])
+
+
+@pytest.fixture(scope="session")
+def subjects() -> dict[str, list[Claim]]:
+    """The paper's claims, computed once, by subject."""
+    return all_claims()
+
+
+@pytest.fixture(scope="session")
+def claims(subjects: dict[str, list[Claim]]) -> list[Claim]:
+    return [claim for group in subjects.values() for claim in group]
+
+
+@pytest.fixture(scope="session")
+def scattered() -> np.ndarray:
+    return np.random.default_rng(46).uniform(-HALF, HALF, 2000)
 
 
 settings.register_profile("default", max_examples=60, deadline=None, derandomize=True)

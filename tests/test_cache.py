@@ -2,50 +2,105 @@
 
 from __future__ import annotations
 
+import importlib
 import os
+import pkgutil
+import re
 import shutil
 import subprocess
 import sys
 import time
 from pathlib import Path
 
+import numba
+import pytest
 from conftest import ROOT
 
+import puck_tables
+from puck_tables.kernels import cache
 
-def spin(package: Path, cache: Path) -> float:
+LIMIT = 1.531389372173909906  # tan φ₀ at δ = 0
+
+
+def limit(package: Path, folder: Path) -> float:
+    """The limit ratio, by a compiled function of puck_tables/motion that calls others."""
     ended = subprocess.run(
-        [sys.executable, "-c", "import puck_tables as p; print(float(p.resultants(0, 1).spin))"],
-        env={**os.environ, "PYTHONPATH": str(package), "NUMBA_CACHE_DIR": str(cache)},
+        [sys.executable, "-c", "import puck_tables as p; print(float(p.limit_ratio(0.0)))"],
+        env={**os.environ, "PYTHONPATH": str(package), "NUMBA_CACHE_DIR": str(folder)},
         cwd=package, capture_output=True, text=True, check=True,
     )  # fmt: skip
-    return float(ended.stdout)
+    return round(float(ended.stdout), 12)
 
 
 def test_an_edit_in_another_file_is_never_stale(tmp_path: Path):
-    package, cache = tmp_path / "source", tmp_path / "cache"
+    package, folder = tmp_path / "source", tmp_path / "cache"
     shutil.copytree(
         ROOT / "puck_tables", package / "puck_tables", ignore=shutil.ignore_patterns("__pycache__")
     )
-    assert spin(package, cache) == 0.375
-    compiled = sorted(cache.rglob("*.nbc"))
+    assert limit(package, folder) == round(LIMIT, 12)
+    compiled = sorted(folder.rglob("*.nbc"))
     assert compiled
-    assert spin(package, cache) == 0.375
-    assert sorted(cache.rglob("*.nbc")) == compiled  # the second run compiled nothing
+    assert limit(package, folder) == round(LIMIT, 12)
+    assert sorted(folder.rglob("*.nbc")) == compiled  # the second run compiled nothing
 
-    # the compiled caller stands in kernels/closed_form.py; edit what it calls, elsewhere
+    # the compiled caller stands in motion/limits.py; edit what it calls, elsewhere
     callee = package / "puck_tables" / "contact" / "closed_form.py"
     text = callee.read_text(encoding="utf-8")
-    edited = text.replace("/ 9.0", "/ 4.5")
+    edited = text.replace("/ 9.0", "/ 9.5")
     assert edited != text
     callee.write_text(edited, encoding="utf-8")
-    assert spin(package, cache) > 0.5
+    assert abs(limit(package, folder) - LIMIT) > 0.01
 
 
-def test_two_processes_may_fill_the_cache_at_once(tmp_path: Path):
-    command = [sys.executable, "-c", "import puck_tables as p; print(p.resultants(0.3, 1.0).spin)"]
+def modules() -> list[str]:
+    walked = pkgutil.walk_packages(puck_tables.__path__, "puck_tables.")
+    return [found.name for found in walked if "puck_tables.cli" not in found.name]
+
+
+def test_an_edit_of_any_file_empties_the_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    """The folder of compiled code has another name then; what was compiled before is not found."""
+    package = tmp_path / "puck_tables"
+    shutil.copytree(ROOT / "puck_tables", package, ignore=shutil.ignore_patterns("__pycache__"))
+    monkeypatch.setattr(cache, "_PACKAGE", package)
+    digest = cache.source_digest.__wrapped__
+    seen = {digest()}
+    kernels = [
+        p for p in package.rglob("*.py") if re.search("^@(kernel|inlined)", p.read_text(), re.M)
+    ]
+    assert {path.parent.name for path in kernels} >= {"kernels", "motion", "similarity", "tradeoff"}
+    for path in kernels:
+        path.write_bytes(path.read_bytes() + b"# edited\n")
+        seen.add(digest())
+    assert len(seen) == len(kernels) + 1
+    kernels[0].rename(kernels[0].with_name("renamed.py"))
+    assert digest() not in seen
+
+
+def test_every_compiled_function_is_kept_in_that_folder():
+    folder = Path(cache.cache_folder() or "")
+    kept = set()
+    for name in modules():
+        for value in vars(importlib.import_module(name)).values():
+            if isinstance(value, numba.core.dispatcher.Dispatcher) and value._cache.cache_path:
+                assert folder in Path(value._cache.cache_path).parents, (name, value)
+                kept.add(value.py_func.__module__.split(".")[1])
+    assert kept >= {"kernels", "motion", "similarity", "tradeoff"}
+
+
+def test_damaged_files_of_the_cache_are_made_again(tmp_path: Path):
+    assert limit(ROOT, tmp_path) == round(LIMIT, 12)
+    index = next(tmp_path.rglob("*.nbi"))
+    whole = index.read_bytes()
+    index.write_bytes(whole[: len(whole) // 2])
+    assert limit(ROOT, tmp_path) == round(LIMIT, 12)
+    assert len(index.read_bytes()) == len(whole)  # healed
+
+
+def test_four_processes_may_fill_the_cache_at_once(tmp_path: Path):
+    command = [sys.executable, "-c", "import puck_tables as p; print(float(p.limit_ratio(0.0)))"]
     env = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
     running = [
-        subprocess.Popen(command, env=env, stdout=subprocess.PIPE, text=True) for _ in range(3)
+        subprocess.Popen(command, env=env, stdout=subprocess.PIPE, text=True) for _ in range(4)
     ]
     printed = {process.communicate()[0] for process in running}
     assert len(printed) == 1
@@ -54,11 +109,11 @@ def test_two_processes_may_fill_the_cache_at_once(tmp_path: Path):
 
 def test_no_writable_folder_still_computes(tmp_path: Path):
     ended = subprocess.run(
-        [sys.executable, "-c", "import puck_tables as p; print(float(p.resultants(0, 1).spin))"],
+        [sys.executable, "-c", "import puck_tables as p; print(float(p.limit_ratio(0.0)))"],
         env={**os.environ, "NUMBA_CACHE_DIR": "/proc/none"}, cwd=tmp_path,
         capture_output=True, text=True, check=True,
     )  # fmt: skip
-    assert ended.stdout == "0.375\n"
+    assert float(ended.stdout) == pytest.approx(LIMIT, abs=1e-14)
 
 
 def test_the_cache_lies_outside_the_package_and_old_ones_go(tmp_path: Path):
@@ -70,7 +125,7 @@ def test_the_cache_lies_outside_the_package_and_old_ones_go(tmp_path: Path):
     environment = {**os.environ, "XDG_CACHE_HOME": str(tmp_path)}
     environment.pop("NUMBA_CACHE_DIR", None)
     subprocess.run(
-        [sys.executable, "-c", "import puck_tables as p; p.resultants(0, 1)"],
+        [sys.executable, "-c", "import puck_tables as p; p.limit_ratio(0.0)"],
         env=environment, check=True,
     )  # fmt: skip
     assert not old.exists()

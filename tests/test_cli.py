@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import signal
 import subprocess
 import sys
 import time
@@ -171,7 +170,7 @@ def test_build_info_validate(folder: Path):
 
 def test_validate_ends_with_3_when_a_table_is_out_of_its_tolerance(monkeypatch: pytest.MonkeyPatch):
     table = replace(load_table(), tolerance=1e-13)
-    monkeypatch.setattr("puck_tables.table.file.load_table", lambda path=None: table)
+    monkeypatch.setattr("puck_tables.catalogue.tables_that_come_along", lambda: [table])
     result = puck("validate")
     assert result.exit_code == 3
     assert "FAIL" in result.stdout
@@ -242,60 +241,9 @@ def test_bad_input_is_one_sentence_and_writes_nothing(
     assert list(folder.iterdir()) == []
 
 
-COMMANDS = [
-    ([*V0, "-o", "{}.csv"], "csv"),
-    ([*V0, "--plot", "{}.png"], "png"),
-    (["sweep", "-o", "{}.h5"], "h5"),
-    (["sweep", "--plot", "{}.png"], "png"),
-    (["build-tables", "-o", "{}.h5"], "h5"),
-    (["asperity", "-o", "{}.csv"], "csv"),
-    (["asperity", "--plot", "{}.png"], "png"),
-]
-
-
-@pytest.mark.parametrize(("command", "ending"), COMMANDS)
-def test_outputs_that_exist_or_cannot_be_written(folder: Path, command: list[str], ending: str):
-    def at(place: str) -> list[str]:
-        return [part.format(place) for part in command]
-
-    Path(f"old.{ending}").write_text("mine")
-    refused(puck(*at("old")), 1, "exists already", "--overwrite")
-    assert Path(f"old.{ending}").read_text() == "mine"
-    refused(puck(*at("none/run")), 1, "the folder", "none does not exist")
-    refused(puck(*at("/proc/run")), 1, "cannot write /proc/run", "in the folder /proc")
-    Path(f"folder.{ending}").mkdir()
-    refused(puck(*at("folder")), 1, "it is a folder")
-    assert puck(*at("old"), "--overwrite").exit_code == 0
-    assert Path(f"old.{ending}").stat().st_size > 1000
-    assert sorted(path.name for path in folder.iterdir()) == [f"folder.{ending}", f"old.{ending}"]
-
-
-@pytest.mark.parametrize(("command", "ending"), COMMANDS)
-def test_full_disk(folder: Path, command: list[str], ending: str, monkeypatch: pytest.MonkeyPatch):
-    def full(descriptor: int) -> None:
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr("os.fsync", full)
-    refused(puck(*(part.format("full") for part in command)), 1, "No space left on device")
-    assert list(folder.iterdir()) == []
-
-
-@pytest.mark.parametrize("command", [["info"], ["validate"], [*V0, "--table"]])
-def test_files_that_are_no_tables(command: list[str]):
-    refused(puck(*command, "none.h5"), 1, "there is no table file none.h5")
-    Path("text.h5").write_text("puck")
-    refused(puck(*command, "text.h5"), 1, "not an HDF5 file")
-    puck("sweep", "--w0", "0:1:3", "-o", "map.h5")
-    refused(puck(*command, "map.h5"), 1, "not a table of this program")
-
-
 def test_pictures_without_matplotlib_say_what_to_install(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     refused(puck(*V0, "--plot", "run.png"), 1, "pip install 'puck-tables[plot]'")
-
-
-def environment() -> dict[str, str]:
-    return {**os.environ, "PYTHONUNBUFFERED": "1"}
 
 
 def test_help_and_version_are_quick_and_load_nothing_heavy():
@@ -319,28 +267,6 @@ def _seconds(argument: str) -> float:
     after = os.times()
     spent = after.children_user + after.children_system
     return spent - before.children_user - before.children_system
-
-
-def test_interrupted_sweep_writes_nothing(folder: Path):
-    process = subprocess.Popen(
-        [*PUCK, "sweep", "--speed", "0:2:5000", "--w0", "0:5:5000", "--threads", "1",
-         "-o", "map.h5"],
-        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment(),
-    )  # fmt: skip
-    time.sleep(3.0)
-    process.send_signal(signal.SIGINT)
-    out, err = process.communicate(timeout=60)
-    assert process.returncode == 130, err
-    assert (out, err.splitlines()[-1]) == ("", "Interrupted: nothing more was written.")
-    assert list(folder.iterdir()) == []
-
-
-def test_a_closed_pipe_is_quiet():
-    command = " ".join(f'"{part}"' for part in PUCK) + " sweep | head -1"
-    ended = subprocess.run(command, shell=True, capture_output=True, text=True, check=True)
-    assert ended.stdout.startswith("speed[m/s],w0[rad/s]")
-    assert "Traceback" not in ended.stderr
-    assert "Broken" not in ended.stderr
 
 
 def test_odd_names_and_numbers(folder: Path):
@@ -383,18 +309,6 @@ def test_the_table_that_is_read_is_never_replaced():
                       "--overwrite")  # fmt: skip
         refused(result, 2, "is the table that is read")
     assert load_table("t.h5").tolerance == 1e-6
-
-
-def test_closed_stderr_and_full_stdout():
-    run = " ".join(f'"{part}"' for part in PUCK)
-    subprocess.run(f"{run} sweep --w0 0:1:3 -o a.csv 2>&-", shell=True, check=True)
-    assert Path("a.csv").exists()
-    full = subprocess.run(
-        f"{run} simulate --v0 1,0 > /dev/full", shell=True, capture_output=True, text=True
-    )
-    assert full.returncode == 1
-    assert "No space left" in full.stderr
-    assert "Traceback" not in full.stderr
 
 
 def test_tables_of_every_kind(folder: Path):

@@ -28,6 +28,7 @@ from puck_tables import (
 from puck_tables.catalogue import load_any_table
 from puck_tables.errors import AccuracyError, InputError, OutputError, TableError
 from puck_tables.similarity.axes import SlipAxis, heights
+from puck_tables.similarity.build import tabulate
 from puck_tables.similarity.check import launch_points, launches_at, looked_up
 from puck_tables.similarity.curve import limits, regular_slopes
 from puck_tables.similarity.curve_lookup import STOP_X, STOP_Y
@@ -75,7 +76,7 @@ def test_order_through_the_singular_angles():
     delta = np.linspace(0.0, 1.0, u.size)
     truth = exact_stops(u, delta)
     errors = [
-        np.abs(looked_up(build_stop_table(cells=n), u, delta) - truth).max(axis=0) for n in (32, 64)
+        np.abs(looked_up(tabulate(SlipAxis(n)), u, delta) - truth).max(axis=0) for n in (32, 64)
     ]
     assert np.all(np.log2(errors[0] / errors[1]) > 3.6)
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import io
 import shutil
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -60,16 +60,24 @@ def test_default_table_ships_small_and_good(table: Table):
     assert table.delta_axis.upper == 1.0
 
 
-def altered(file: Path, to: Path, **attributes: object) -> Path:
+def edited(file: Path, to: Path, edit: Callable[[h5py.File], object]) -> Path:
+    """A copy changed by h5py, which drops the seal."""
     shutil.copy(file, to)
     with h5py.File(to, "r+") as opened:
-        opened.attrs.update(attributes)
+        edit(opened)
     return to
 
 
+def altered(file: Path, to: Path, **attributes: object) -> Path:
+    """A copy with other attributes and a right seal."""
+    path = edited(file, to, lambda opened: opened.attrs.update(attributes))
+    path.write_bytes(sealed(path.read_bytes()))
+    return path
+
+
 def test_newer_format_other_kind_and_stranger_are_refused_by_name(file: Path, tmp_path: Path):
-    newer = altered(file, tmp_path / "newer.h5", format_version="2.0")
-    with pytest.raises(TableError, match=r"format 2\.0, newer than 1\.0.*update puck-tables"):
+    newer = altered(file, tmp_path / "newer.h5", format_version="3.0")
+    with pytest.raises(TableError, match=r"format 3\.0, newer than 2\.0.*update puck-tables"):
         load_table(newer)
     with pytest.raises(TableError, match="holds 'stops'"):
         load_table(altered(file, tmp_path / "kind.h5", kind="stops"))
@@ -77,17 +85,22 @@ def test_newer_format_other_kind_and_stranger_are_refused_by_name(file: Path, tm
         other["x"] = 1.0
     with pytest.raises(TableError, match="not a table of this program"):
         load_table(tmp_path / "other.h5")
-    resealed = tmp_path / "resealed.h5"
-    resealed.write_bytes(sealed(newer.read_bytes()))
-    with pytest.raises(TableError, match=r"format 2\.0"):
-        load_table(resealed)
 
 
-def test_an_untouched_copy_without_its_seal_is_refused(file: Path, tmp_path: Path):
+def test_what_has_no_seal_is_refused_before_hdf5_sees_it(
+    file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    def parsed(*given: object) -> None:
+        raise AssertionError("HDF5 was given a file without a seal")
+
     bare = tmp_path / "bare.h5"
     bare.write_bytes(file.read_bytes().rpartition(b"\npuck-tables")[0])
-    with pytest.raises(TableError, match="digest"):
-        load_table(bare)
+    cut = tmp_path / "cut.h5"
+    cut.write_bytes(file.read_bytes()[:-1])
+    monkeypatch.setattr(h5py, "File", parsed)
+    for path in (bare, cut):
+        with pytest.raises(TableError, match="digest"):
+            load_table(path)
 
 
 def test_a_sealed_file_is_still_checked(rough_table: Table, tmp_path: Path):
@@ -107,25 +120,10 @@ def test_altered_values_text_and_axes_are_refused(file: Path, tmp_path: Path):
         load_table(altered(file, tmp_path / "tolerance.h5", tolerance=1e-12))
     for name in ("parallel", "phi"):
         path = tmp_path / f"{name}.h5"
-        shutil.copy(file, path)
-        with h5py.File(path, "r+") as opened:
-            opened[name][3, ...] *= 1.0 + 1e-15
-        with pytest.raises(TableError, match="digest"):
+        edited(file, path, lambda f, name=name: f[name].write_direct(f[name][...] * (1 + 1e-15)))
+        path.write_bytes(sealed(path.read_bytes()))
+        with pytest.raises(TableError, match="content does not match its digest"):
             load_table(path)
-    absurd = altered(file, tmp_path / "absurd.h5", n_phi=4_000_001)
-    with pytest.raises(TableError, match="damaged"):
-        load_table(absurd)
-    huge = tmp_path / "huge.h5"
-    shutil.copy(file, huge)
-    with h5py.File(huge, "r+") as opened:
-        size = {"phi": (1_000_001,), "delta": (1000,)}
-        for name in ("parallel", "perpendicular", "spin", "phi", "delta"):
-            shape = size.get(name, (1_000_001, 1000))
-            del opened[name]
-            opened.create_dataset(name, shape=shape, dtype="<f8", chunks=True)
-        opened.attrs.update(n_phi=1_000_001, n_delta=1000)
-    with pytest.raises(TableError, match="shorter than its arrays"):
-        load_table(huge)
 
 
 def test_every_flipped_byte_is_refused(file: Path, tmp_path: Path):
@@ -185,9 +183,3 @@ def test_full_disk_leaves_nothing(
     with pytest.raises(OutputError, match="No space left on device"):
         save_table(rough_table, tmp_path / "full.h5")
     assert list(tmp_path.iterdir()) == []
-
-
-def test_unpickles_nothing(file: Path):
-    with h5py.File(io.BytesIO(file.read_bytes())) as opened:
-        kinds = {opened[name].dtype.kind for name in opened}
-    assert kinds == {"f"}

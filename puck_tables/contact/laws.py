@@ -12,7 +12,7 @@ of height δ/(4⟨x²⟩) under uniform pressure.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 
@@ -30,10 +30,12 @@ from puck_tables.contact.superposition import (
 )
 from puck_tables.errors import InputError
 from puck_tables.real import broadcast, instance, real_array
+from puck_tables.safe_read import read_whole
 
 NAMES = "uniform, galin, hertz, ring, annulus:INNER (0 < INNER < 1), or a CSV file of rho, W"
 _SLACK = 1e-9  # of δ/δ_max: names and files carry twelve digits
 _LARGEST = 1e-5  # a limit ratio above 1e5 is none: there the two rates agree to rounding
+MAX_PROFILE_BYTES = 1 << 24
 THINNEST = 1.0 - 1e-6  # inner radius of the thinnest washer; beyond it take the ring
 
 
@@ -49,6 +51,8 @@ class Law:
         Radii at which the law begins, ends or jumps, ascending, the last 1.
     integrals : callable
         From slip angles to :class:`PatchIntegrals`.
+    profile : pair of arrays (n,), optional
+        Radii and pressures of a tabulated law, which its name does not say.
 
     Examples
     --------
@@ -59,6 +63,7 @@ class Law:
     name: str
     edges: tuple[float, ...]
     integrals: Callable[[npt.ArrayLike], PatchIntegrals]
+    profile: tuple[FloatArray, FloatArray] | None = field(default=None, repr=False, compare=False)
 
     @property
     def mean_square(self) -> float:
@@ -97,13 +102,15 @@ class Law:
         >>> float(law_of("ring").resultants(0.0, 1.0).perpendicular.round(12))
         0.25
         """
-        angle, height = broadcast(phi=checked_phi(phi), delta=checked_delta(delta))
+        angle, height = checked_phi(phi), checked_delta(delta)
+        broadcast(phi=angle, delta=height)  # refuses shapes that do not fit
         scaled = height / self.delta_max
         if not np.all(scaled <= 1.0 + _SLACK):
             raise InputError(
                 f"delta = {height[scaled > 1.0 + _SLACK].flat[0]:g} is outside full contact under "
                 f"the pressure law {self.name}: 0 <= delta <= {self.delta_max:g}"
             )
+        # not broadcast before: the integrals are the work, once for each angle
         return moment_balance(self.integrals(angle), slip_direction(angle), scaled)
 
 
@@ -143,7 +150,7 @@ def law_of(text: str) -> Law:
                 f"annulus:{rest}: the inner radius must be a number between 0 and 1 in units of "
                 "the outer (0 is 'uniform', 1 is 'ring')"
             )
-        return Law(f"annulus:{inner:g}", (inner, 1.0), partial(annulus_integrals, inner=inner))
+        return Law(f"annulus:{inner}", (inner, 1.0), partial(annulus_integrals, inner=inner))
     if not text.lower().endswith(".csv"):
         raise InputError(f"no pressure law is called {text!r}: choose {NAMES}")
     return profile_law(*_read(text), name=Path(text).name)
@@ -183,13 +190,13 @@ def profile_law(radii: npt.ArrayLike, pressure: npt.ArrayLike, name: str = "prof
     shape = weight / weight.max()  # only the shape matters; the numbers may be of any size
     integrals = partial(profile_integrals, radii=rho, pressure=shape)
     edges = (float(rho[0]), 1.0) if rho[0] > 0.0 else (1.0,)
-    return Law(name, edges, integrals)
+    return Law(name, edges, integrals, profile=(rho, shape))
 
 
 def _read(path: str) -> tuple[FloatArray, FloatArray]:
     """Two columns of a CSV file; a first line of words is its header."""
     try:
-        lines = Path(path).read_text(encoding="utf-8-sig").splitlines()
+        lines = read_whole(path, MAX_PROFILE_BYTES).decode("utf-8-sig").splitlines()
         rows = [line.split(",") for line in lines if line.strip() and not line.startswith("#")]
         header = 0 if _is_number(rows[0][0]) else 1
         columns = np.array([[float(cell) for cell in row] for row in rows[header:]]).T

@@ -108,6 +108,8 @@ def resultants(phi: npt.ArrayLike, delta: npt.ArrayLike) -> Resultants:
         If an argument is not finite or out of range.
     ContactError
         If δ ≥ 4, or δ > 3.9637 and φ within 0.00502 below π/4, where the balance is not unique.
+    AccuracyError
+        If δ > 3.9999 and the balance could not be solved so near to tipping.
 
     References
     ----------
@@ -226,8 +228,9 @@ def _solved(direction: SlipDirection, delta: FloatArray) -> Chord:
             followed, lost = _newton(part, height, followed)
         if lost.any():
             raise AccuracyError(
-                f"the balance of moments was not solved at delta = {height[lost][0]:g}, "
-                f"min(v, r omega)/max(v, r omega) = {part.ratio[lost][0]:g}"
+                f"the balance of moments was not solved at delta = {height[lost][0]:.17g}, "
+                f"min(v, r omega)/max(v, r omega) = {part.ratio[lost][0]:g}: up to delta = 3.9999 "
+                "it is, nearer to tipping at 4 the load is too close to a point"
             )
         chord.offset[unsolved], chord.bearing[unsolved] = followed
     return chord

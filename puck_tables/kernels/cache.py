@@ -1,4 +1,4 @@
-"""Where compiled code is kept; needs no numba.
+"""The user's cache folder, and where in it compiled code is kept; needs no numba.
 
 numba's own disk cache notices an edit of the file a function stands in, but not an edit of the
 functions it calls from elsewhere.  So the cache folder carries a digest of every source file of
@@ -20,22 +20,35 @@ _PACKAGE = Path(__file__).resolve().parent.parent
 
 
 @cache
-def source_digest() -> str:
-    """Digest of all sources of the package (16 hexadecimal digits)."""
+def source_digest(*folders: str) -> str:
+    """Digest of the sources in these folders of the package, or of all (16 hexadecimal digits)."""
     digest = hashlib.sha256()
-    for path in sorted(_PACKAGE.rglob("*.py")):
+    within = [_PACKAGE / folder for folder in folders] or [_PACKAGE]
+    for path in sorted(path for folder in within for path in folder.rglob("*.py")):
         digest.update(path.relative_to(_PACKAGE).as_posix().encode() + b"\0" + path.read_bytes())
     return digest.hexdigest()[:16]
 
 
-def _user_cache() -> Path:
+def user_cache() -> Path | None:
+    """Where this user's programs keep what they can make again; None where there is no such place.
+
+    ``XDG_CACHE_HOME`` or ``~/.cache``, ``~/Library/Caches`` on macOS, ``LOCALAPPDATA`` on Windows.
+
+    Examples
+    --------
+    >>> user_cache().name
+    'puck-tables'
+    """
     if sys.platform == "win32":
         base = os.environ.get("LOCALAPPDATA") or os.path.expanduser("~/AppData/Local")
     elif sys.platform == "darwin":
         base = os.path.expanduser("~/Library/Caches")
     else:
-        base = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")
-    return Path(base) / "puck-tables"
+        base = os.environ.get("XDG_CACHE_HOME", "")
+        if not os.path.isabs(base):  # unset, or void by the XDG specification
+            base = os.path.expanduser("~/.cache")
+    # where nobody has a home '~' stays: that would be a folder wherever the program stands
+    return Path(base) / "puck-tables" if os.path.isabs(base) else None
 
 
 @cache
@@ -46,7 +59,9 @@ def cache_folder() -> str | None:
     uninstalled package leaves in its folder would hide the one that is installed next.
     """
     chosen = os.environ.get("NUMBA_CACHE_DIR")
-    base = Path(chosen) if chosen else _user_cache()
+    base = Path(chosen) if chosen else user_cache()
+    if base is None:
+        return None
     folder = base / f"compiled-{source_digest()}"
     try:
         if not folder.exists():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable
 from typing import Any, TypeVar
 
@@ -42,9 +43,29 @@ def _compile(function: Function, forceinline: bool) -> Function:
         config.CACHE_DIR = folder
         try:
             compiled.enable_caching()
+            _spare(compiled._cache)
         finally:
             config.CACHE_DIR = before
     return compiled
+
+
+def _spare(cache: Any) -> None:
+    """Make numba do without its files where the disk is full or they are damaged."""
+    load, save = cache.load_overload, cache.save_overload
+
+    def load_if_whole(signature: Any, context: Any) -> Any:
+        try:
+            return load(signature, context)
+        except Exception:  # whatever a damaged file makes numba raise
+            with contextlib.suppress(OSError):
+                cache.flush()
+            return None
+
+    def save_if_room(signature: Any, data: Any) -> None:
+        with contextlib.suppress(OSError):
+            save(signature, data)
+
+    cache.load_overload, cache.save_overload = load_if_whole, save_if_room
 
 
 def _weighted_rows(

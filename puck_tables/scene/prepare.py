@@ -13,6 +13,7 @@ import numpy.typing as npt
 from puck_tables.errors import InputError
 from puck_tables.motion.steppers import DORMAND_PRINCE
 from puck_tables.run import closed_form_friction, table_friction
+from puck_tables.safe_read import read_whole
 from puck_tables.scene.boundaries import Boundaries
 from puck_tables.scene.bulk import follow_many
 from puck_tables.scene.equations import SIZE, SPIN, THETA, VX, VY, X, Y
@@ -39,6 +40,7 @@ LOCAL_SHARE = 0.1  # of the error wanted, per step and in units of the scales
 EXACT_BELOW = 1e-9  # friction by closed forms where a table's error would show
 DEFAULT_TIME = 1000.0  # in units of the time scale, where a scene does not say
 STEP_LIMIT = 1_000_000
+MAX_DRIVE = 1 << 26  # bytes of a file of forces
 MAX_EVENTS = 10_000
 
 
@@ -245,8 +247,9 @@ def read_drive(path: str) -> Drive:
         If it cannot be read, or is no such file.
     """
     try:
-        with open(path, newline="", encoding="utf-8-sig") as file:
-            lines = [row for row in csv.reader(file) if row and not row[0].startswith("#")]
+        text = read_whole(path, MAX_DRIVE).decode("utf-8-sig")
+        table = csv.reader(text.splitlines())
+        lines = [row for row in table if row and not row[0].startswith("#")]
         first = 1 if lines and not _is_number(lines[0][0]) else 0
         rows = np.array([[float(cell) for cell in row] for row in lines[first:]])
     except OSError as error:

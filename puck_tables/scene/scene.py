@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.errors import InputError
+from puck_tables.safe_read import read_whole
 from puck_tables.scene.fields import Reading, of, read_part
 
 FloatArray = npt.NDArray[np.float64]
@@ -196,14 +197,9 @@ def read_scene(path: str | Path) -> dict[str, Any]:
         If it cannot be read or is not TOML.
     """
     try:
-        with open(path, "rb") as file:
-            raw = file.read(MAX_FILE + 1)
+        return tomllib.loads(read_whole(path, MAX_FILE).decode("utf-8"))
     except OSError as error:
         raise InputError(f"cannot read {path}: {error.strerror or error}") from None
-    if len(raw) > MAX_FILE:
-        raise InputError(f"{path} is larger than {MAX_FILE >> 20} MiB: not a scene file")
-    try:
-        return tomllib.loads(raw.decode("utf-8"))
     except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
         raise InputError(f"{path} is not a scene file (TOML): {error}") from None
 

@@ -7,6 +7,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables.executor import run_chunks
 from puck_tables.kernels.compile import kernel
 from puck_tables.motion.equations import LENGTH, SIZE, THETA, T, U, X, Y, at_constant_angle
 from puck_tables.motion.path import STOPPED, integrate
@@ -16,6 +17,7 @@ FloatArray = npt.NDArray[np.float64]
 
 _LOCAL_TOLERANCE = 2e-14
 _STEP_LIMIT = 100_000
+_CHUNK = 64
 
 
 @kernel
@@ -60,7 +62,12 @@ def exact_stops(u: FloatArray, delta: FloatArray) -> FloatArray:
     [0.98647593897, 0.32409372866, -0.04297450852]
     """
     out = np.empty((u.size, 5))
-    _fill_exact_stops(u, delta, DORMAND_PRINCE, _LOCAL_TOLERANCE, out)
+
+    def work(start: int, stop: int) -> None:
+        part = slice(start, stop)
+        _fill_exact_stops(u[part], delta[part], DORMAND_PRINCE, _LOCAL_TOLERANCE, out[part])
+
+    run_chunks(work, u.size, _CHUNK)
     return out
 
 

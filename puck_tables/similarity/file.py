@@ -92,9 +92,8 @@ def save_stop_table(
     Examples
     --------
     >>> import tempfile
-    >>> from puck_tables import build_stop_table
     >>> with tempfile.TemporaryDirectory() as folder:
-    ...     saved = save_stop_table(build_stop_table(cells=16), folder + "/rough.h5")
+    ...     saved = save_stop_table(load_stop_table(), folder + "/copy.h5")
     >>> saved.passport["kind"]
     'stops'
     """

@@ -1,11 +1,12 @@
 """The only door to table files: HDF5 with a passport, refused unless whole and unaltered.
 
-After the HDF5 content stands a line with its sha256, checked before HDF5 reads a byte: damaged
-files can make it hang.  What a kind of table puts into a file stands with that kind.
+After the HDF5 content stands a line with its sha256, the seal.  Nothing without a right one is
+given to HDF5: damaged files can make it hang.  What a kind of table puts into a file stands with
+that kind.
 
 Layout: one dimension scale per axis, one little-endian float64 dataset per function over all axes,
-everything else in attributes of the root.  The file is made and read in memory, so that a failing
-disk leaves no half of one.
+everything else in attributes of the root.  Nothing else is read: no links, no filters, no objects.
+The file is made and read in memory, so that a failing disk leaves no half of one.
 """
 
 from __future__ import annotations
@@ -27,12 +28,13 @@ import numpy.typing as npt
 from puck_tables._version import __version__
 from puck_tables.errors import OutputError, TableError
 from puck_tables.real import instance
+from puck_tables.safe_read import read_whole
 from puck_tables.safe_write import write_bytes
 
 FloatArray = npt.NDArray[np.float64]
 
 FORMAT = "puck-tables"
-FORMAT_VERSION = "1.0"
+FORMAT_VERSION = "2.0"  # the newest that is read; 2 may hold a curve
 MAX_FILE_BYTES = 1 << 31
 _SEAL = b"\npuck-tables sha256 "
 
@@ -73,6 +75,7 @@ def encode(
     axes: list[Field],
     functions: list[Field],
     command: str,
+    curve: tuple[Field, Field] | None = None,
 ) -> bytes:
     """The bytes of a table file.
 
@@ -82,6 +85,7 @@ def encode(
     described : what else the file says: title, interpretation, range, accuracy
     axes, functions : the arrays; every function has all axes as its dimensions
     command : how the table was made
+    curve : a function of one variable besides, as (argument, values)
 
     Returns
     -------
@@ -96,7 +100,7 @@ def encode(
     attributes = {
         "Conventions": "CF-1.11",
         "format": FORMAT,
-        "format_version": FORMAT_VERSION,
+        "format_version": "1.0" if curve is None else "2.0",  # the oldest that will do
         **recipe,
         **described,
         "package_version": __version__,
@@ -108,19 +112,21 @@ def encode(
         "command": command,
         "recipe_digest": recipe_digest(recipe),
     }
+    groups = [(axes, functions)] + ([] if curve is None else [([curve[0]], [curve[1]])])
+    arrays: dict[str, FloatArray] = {}
     buffer = io.BytesIO()
     with h5py.File(buffer, "w") as file:
-        for axis in axes:
-            data = file.create_dataset(axis.name, data=axis.values, dtype="<f8")
-            data.make_scale(axis.name)
-            data.attrs.update(axis.attributes)
-        for function in functions:
-            data = file.create_dataset(function.name, data=function.values, dtype="<f8")
-            for dimension, axis in enumerate(axes):
-                data.dims[dimension].attach_scale(file[axis.name])
-            data.attrs.update(function.attributes)
+        for scales, fields in groups:
+            for field in (*scales, *fields):
+                data = file.create_dataset(field.name, data=field.values, dtype="<f8")
+                data.attrs.update(field.attributes)
+                arrays[field.name] = field.values
+            for axis in scales:
+                file[axis.name].make_scale(axis.name)
+            for function in fields:
+                for dimension, axis in enumerate(scales):
+                    file[function.name].dims[dimension].attach_scale(file[axis.name])
         file.attrs.update(attributes)
-        arrays = {field.name: field.values for field in (*axes, *functions)}
         file.attrs["content_digest"] = _digest(attributes, arrays)
     return sealed(buffer.getvalue())
 
@@ -135,6 +141,10 @@ class Saved(Protocol):
     @property
     def accuracy(self) -> Any:
         """Measured errors, or None."""
+
+    @property
+    def passport(self) -> dict[str, Any]:
+        """What the file says of itself."""
 
 
 AnySaved = TypeVar("AnySaved", bound=Saved)
@@ -230,11 +240,7 @@ def read_content(path: str | Path) -> bytes:
 'puck build-tables -o FILE', or leave --table out to use the tables that come along
     """
     try:
-        if Path(path).exists() and not Path(path).is_file():
-            raise TableError(f"cannot read {path}: it is not a regular file")
-        if Path(path).stat().st_size > MAX_FILE_BYTES:
-            raise TableError(f"{path} is too large to be a table")
-        return Path(path).read_bytes()
+        return read_whole(path, MAX_FILE_BYTES)
     except FileNotFoundError:
         raise TableError(
             f"there is no table file {path}: build one with 'puck build-tables -o FILE', "
@@ -262,15 +268,19 @@ def decode(content: bytes, source: str, kinds: Mapping[str, Shapes]) -> Contents
     if not content.startswith(b"\x89HDF\r\n\x1a\n"):
         raise TableError(f"{source} is not an HDF5 file")
     inside, seal, _ = content.rpartition(_SEAL)
-    altered = TableError(
-        f"{source} was altered or damaged: it does not match its digest; "
-        "build it again with 'puck build-tables'"
-    )
-    if seal and sealed(inside) != content:
-        raise altered
+    if not seal:
+        raise TableError(
+            f"{source} is not a table of this program, or one that was cut or edited: it does not "
+            "end with its digest; give a file made by 'puck build-tables'"
+        )
+    if sealed(inside) != content:
+        raise TableError(
+            f"{source} was altered or damaged: it does not match its digest; "
+            "build it again with 'puck build-tables'"
+        )
     try:
-        with h5py.File(io.BytesIO(content), "r") as file:
-            contents = _read(file, source, kinds)
+        with h5py.File(io.BytesIO(inside), "r") as file:
+            return _read(file, source, kinds)
     except TableError:
         raise
     except Exception as error:  # whatever a damaged file makes h5py raise
@@ -278,13 +288,10 @@ def decode(content: bytes, source: str, kinds: Mapping[str, Shapes]) -> Contents
             f"{source} is damaged and cannot be read as a table ({type(error).__name__}): "
             "build it again with 'puck build-tables'"
         ) from None
-    if not seal:  # edited by another program, which dropped the line; read to name the reason
-        raise altered
-    return contents
 
 
 def _read(file: h5py.File, source: str, kinds: Mapping[str, Shapes]) -> Contents:
-    attributes = {name: _plain(value) for name, value in file.attrs.items()}
+    attributes = {name: _attribute(file, name) for name in file.attrs}
     if attributes.get("format") != FORMAT:
         raise TableError(f"{source} is an HDF5 file but not a table of this program")
     major = str(attributes["format_version"]).split(".")[0]
@@ -301,11 +308,9 @@ def _read(file: h5py.File, source: str, kinds: Mapping[str, Shapes]) -> Contents
             "give a file made by 'puck build-tables'"
         )
     shapes = kinds[kind](attributes)
-    if any(file[n].shape != s or file[n].dtype != "<f8" for n, s in shapes.items()):
-        raise TableError(f"{source} is damaged: its arrays do not fit its axes")
     if 8 * sum(map(math.prod, shapes.values())) > file.id.get_filesize():
         raise TableError(f"{source} is damaged: it is shorter than its arrays")
-    arrays = {name: np.asarray(file[name][...]) for name in shapes}
+    arrays = {name: _array(file, name, shape, source) for name, shape in shapes.items()}
     stated = attributes.pop("content_digest", None)
     if _digest(attributes, arrays) != stated:
         raise TableError(
@@ -313,6 +318,29 @@ def _read(file: h5py.File, source: str, kinds: Mapping[str, Shapes]) -> Contents
             "build it again with 'puck build-tables'"
         )
     return Contents({**attributes, "content_digest": stated}, arrays)
+
+
+def _attribute(file: h5py.File, name: str) -> Any:
+    """A number or a text as a plain Python value; whatever else HDF5 can hold is refused."""
+    stored = file.attrs.get_id(name)
+    if stored.shape != () or not (
+        stored.dtype.kind in "iuf" or h5py.check_string_dtype(stored.dtype) is not None
+    ):
+        raise ValueError(name)
+    value = file.attrs[name]
+    return value.item() if isinstance(value, np.generic) else value
+
+
+def _array(file: h5py.File, name: str, shape: tuple[int, ...], source: str) -> FloatArray:
+    """Numbers that stand plainly in this file: not by a link, elsewhere, or through a filter."""
+    if not isinstance(file.get(name, getlink=True), h5py.HardLink):
+        raise TableError(f"{source} is damaged: {name} is missing or a link")
+    data = file[name]
+    if data.shape != shape or data.dtype != "<f8":
+        raise TableError(f"{source} is damaged: its arrays do not fit its axes")
+    if data.is_virtual or data.external or data.chunks is not None:
+        raise TableError(f"{source} is damaged: {name} does not stand plainly in it")
+    return np.asarray(data[...])
 
 
 def _digest(attributes: dict[str, Any], arrays: dict[str, FloatArray]) -> str:
@@ -361,8 +389,3 @@ def accuracy_of(attributes: dict[str, Any]) -> dict[str, Any]:
     """
     stated = json.loads(attributes["achieved_accuracy"])
     return {key: tuple(v) if isinstance(v, list) else v for key, v in stated.items()}
-
-
-def _plain(value: Any) -> Any:
-    """An attribute as a plain Python value."""
-    return value.item() if isinstance(value, np.generic) else value

@@ -1,11 +1,13 @@
 """Table files under any pressure law: the same container, another kind.
 
 Axes ``side`` (regions between the singular lines), ``xi`` (place in the region) and ``delta``;
-functions ``parallel``, ``perpendicular``, ``spin``.
+functions ``parallel``, ``perpendicular``, ``spin``.  A tabulated law is there too, since format 2:
+``profile_pressure`` over ``profile_radius``.
 """
 
 from __future__ import annotations
 
+import hashlib
 import json
 from dataclasses import asdict
 from pathlib import Path
@@ -26,8 +28,10 @@ from puck_tables.table.container import (
 )
 from puck_tables.table.grid import GRADING_POWER
 from puck_tables.table.law_grid import LawAxis
-from puck_tables.table.law_table import HEIGHTS, LawTable
+from puck_tables.table.law_table import HEIGHTS, FloatArray, LawTable
 from puck_tables.table.table import FUNCTIONS, Accuracy
+
+_RADIUS, _PRESSURE = "profile_radius", "profile_pressure"
 
 KIND = "resultants under a pressure law"
 ALGORITHM = "integrals of the law; friction ratios splined on its regions; 1"
@@ -124,6 +128,17 @@ def _recipe(name: str, axis: LawAxis, delta_max: float) -> dict[str, Any]:
     }  # fmt: skip
 
 
+def profile_digest(radius: FloatArray, pressure: FloatArray) -> str:
+    """Digest of the values of a tabulated law, whatever it is called.
+
+    Examples
+    --------
+    >>> profile_digest(np.array([0.0, 1.0]), np.array([1.0, 0.5]))[:8]
+    'cb1d5201'
+    """
+    return hashlib.sha256(np.stack([radius, pressure]).astype("<f8").tobytes()).hexdigest()
+
+
 def _encode(table: LawTable, command: str) -> bytes:
     assert table.accuracy is not None
     described = {
@@ -143,10 +158,18 @@ def _encode(table: LawTable, command: str) -> bytes:
         )
     ]
     recipe = _recipe(table.law_name, table.axis, table.delta_max)
-    return encode(recipe, described, axes, function_fields(FUNCTIONS, table), command)
+    if table.profile is None:
+        return encode(recipe, described, axes, function_fields(FUNCTIONS, table), command)
+    radius, pressure = table.profile
+    curve = (
+        Field(_RADIUS, radius, {"units": "1", "long_name": "radius in units of that of the puck"}),
+        Field(_PRESSURE, pressure, {"units": "1", "long_name": "pressure, largest 1"}),
+    )
+    recipe |= {"profile_rows": radius.size, "profile_digest": profile_digest(radius, pressure)}
+    return encode(recipe, described, axes, function_fields(FUNCTIONS, table), command, curve)
 
 
-def _nodes(axis: LawAxis, delta_max: float) -> dict[str, np.ndarray[Any, np.dtype[np.float64]]]:
+def _nodes(axis: LawAxis, delta_max: float) -> dict[str, FloatArray]:
     return {
         "side": np.arange(float(len(axis.sides))),
         "xi": np.arange(axis.cells + 1) / axis.cells,
@@ -171,8 +194,11 @@ def shapes(attributes: dict[str, Any]) -> dict[str, tuple[int, ...]]:
     """
     axis = _axis(attributes)
     shape = (len(axis.sides), axis.cells + 1, HEIGHTS)
+    rows = attributes.get("profile_rows", 0)
+    profile = {_RADIUS: (rows,), _PRESSURE: (rows,)} if rows else {}
     return {
-        "side": shape[:1], "xi": shape[1:2], "delta": shape[2:], **dict.fromkeys(FUNCTIONS, shape)
+        "side": shape[:1], "xi": shape[1:2], "delta": shape[2:],
+        **dict.fromkeys(FUNCTIONS, shape), **profile,
     }  # fmt: skip
 
 
@@ -201,4 +227,7 @@ def table_of(contents: Contents, source: str) -> LawTable:
         accuracy=Accuracy(**accuracy_of(attributes)),
         passport=attributes,
         source=source,
+        profile=(contents.arrays[_RADIUS], contents.arrays[_PRESSURE])
+        if _RADIUS in contents.arrays
+        else None,
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
@@ -10,8 +11,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.contact.integrals import checked_phi
-from puck_tables.contact.laws import Law
+from puck_tables.contact.integrals import PatchIntegrals, checked_phi
+from puck_tables.contact.laws import Law, law_of, profile_law
 from puck_tables.contact.resultants import Resultants, checked_delta
 from puck_tables.errors import AccuracyError, InputError
 from puck_tables.real import broadcast
@@ -24,12 +25,15 @@ from puck_tables.table.law_grid import LawAxis
 from puck_tables.table.table import Accuracy
 
 FloatArray = npt.NDArray[np.float64]
+Progress = Callable[[int, int], None]
 
 HEIGHTS = 4  # the splined ratios are polynomials of degree 2 in δ
 DEFAULT_ACCURACY = 1e-9
 FINEST_ACCURACY = 1e-11
 _ERROR_CONSTANT = 1.5  # measured under uniform pressure: largest error × cells⁴
 _MAX_CELLS = 2048
+_POINTS = 2400  # about as many slip angles are measured
+_CHUNK = 256  # angles between two reports of progress
 
 
 @dataclass(frozen=True)
@@ -46,6 +50,8 @@ class LawTable:
         ρ_∥, ρ_⊥, ρ_ω at the nodes of φ and at δ = 0, ⅓, ⅔ and 1 of ``delta_max``.
     tolerance, accuracy, passport, source
         As in :class:`puck_tables.table.table.Table`.
+    profile : pair of arrays (n,), optional
+        Radii and pressures of a tabulated law.
     """
 
     law_name: str
@@ -56,6 +62,24 @@ class LawTable:
     accuracy: Accuracy | None = None
     passport: dict[str, Any] = field(default_factory=dict, repr=False)
     source: str = "memory"
+    profile: tuple[FloatArray, FloatArray] | None = field(default=None, repr=False)
+
+    @property
+    def law(self) -> Law:
+        """The law it is a table of.
+
+        Raises
+        ------
+        InputError
+            If it is a profile and the file, from before format 2, does not hold its values.
+        """
+        if self.profile is not None:
+            return profile_law(*self.profile, name=self.law_name)
+        if self.law_name.lower().endswith(".csv"):
+            raise InputError(
+                f"{self.source} does not hold the profile {self.law_name}: build it again"
+            )
+        return law_of(self.law_name)
 
     @cached_property
     def spline(self) -> tuple[FloatArray, FloatArray]:
@@ -120,7 +144,12 @@ class LawTable:
         return Resultants(*(row.reshape(angle.shape) for row in out))
 
 
-def build_law_table(law: Law, accuracy: float | None = None, cells: int | None = None) -> LawTable:
+def build_law_table(
+    law: Law,
+    accuracy: float | None = None,
+    cells: int | None = None,
+    progress: Progress | None = None,
+) -> LawTable:
     """Tabulate the resultants under a pressure law, and measure how exact the result is.
 
     Parameters
@@ -130,6 +159,8 @@ def build_law_table(law: Law, accuracy: float | None = None, cells: int | None =
         Largest error wanted, from 1e-11 to 0.01; default 1e-9.
     cells : int, optional
         Grid size by hand instead: cells on each side of each singular line, at least 8.
+    progress : callable (done, all), optional
+        Told how many slip angles are done; begins again where a finer grid is needed.
 
     Returns
     -------
@@ -154,8 +185,7 @@ def build_law_table(law: Law, accuracy: float | None = None, cells: int | None =
             f"accuracy = {accuracy:g} and cells = {cells} both fix the grid: give one of them"
         )
     if cells is not None:
-        table = tabulate(law, cells)
-        measured = measure(table, law)
+        table, measured = _tabulate_and_measure(law, cells, progress)
         tolerance = max(1.25 * measured.worst, FINEST_ACCURACY)
         return replace(table, accuracy=measured, tolerance=float(f"{tolerance:.1e}"))
     wanted = DEFAULT_ACCURACY if accuracy is None else accuracy
@@ -166,8 +196,7 @@ def build_law_table(law: Law, accuracy: float | None = None, cells: int | None =
         )
     cells = max(8, 2 * math.ceil(0.5 * (_ERROR_CONSTANT / wanted) ** 0.25))
     while cells <= _MAX_CELLS:
-        table = tabulate(law, cells)
-        measured = measure(table, law)
+        table, measured = _tabulate_and_measure(law, cells, progress)
         if measured.worst <= wanted:
             return replace(table, accuracy=measured, tolerance=wanted)
         cells = 2 * math.ceil(0.6 * cells)
@@ -175,6 +204,33 @@ def build_law_table(law: Law, accuracy: float | None = None, cells: int | None =
         f"an accuracy of {wanted:g} under the pressure law {law.name} would take more than "
         f"{_MAX_CELLS} cells: {measured.worst:.1e} is what {_MAX_CELLS} about give"
     )
+
+
+def _tabulate_and_measure(
+    law: Law, cells: int, progress: Progress | None
+) -> tuple[LawTable, Accuracy]:
+    """A table with what it is worth, in the order of work of its slip angles."""
+    if progress is not None:
+        law = _reporting(law, 2 * len(law.edges) * (cells + 1) + _POINTS, progress)
+    table = tabulate(law, cells)
+    return table, measure(table, law)
+
+
+def _reporting(law: Law, total: int, progress: Progress) -> Law:
+    """The same law, telling how many slip angles it has been asked for."""
+    done = 0
+
+    def integrals(phi: npt.ArrayLike) -> PatchIntegrals:
+        nonlocal done
+        angle = np.ravel(asked := np.asarray(phi, dtype=np.float64))
+        parts = []
+        for start in range(0, angle.size, _CHUNK):
+            parts.append(np.stack(law.integrals(angle[start : start + _CHUNK])))
+            done += parts[-1].shape[1]
+            progress(min(done, total), total)
+        return PatchIntegrals(*np.concatenate(parts, axis=1).reshape(5, *asked.shape))
+
+    return replace(law, integrals=integrals)
 
 
 def tabulate(law: Law, cells: int) -> LawTable:
@@ -189,7 +245,7 @@ def tabulate(law: Law, cells: int) -> LawTable:
     axis = LawAxis(law.edges, cells)
     delta_max = float(f"{law.delta_max:.12g}")
     rho = law.resultants(axis.phi()[..., None], np.linspace(0.0, delta_max, HEIGHTS))
-    return LawTable(law.name, axis, delta_max, np.stack(rho, axis=-1))
+    return LawTable(law.name, axis, delta_max, np.stack(rho, axis=-1), profile=law.profile)
 
 
 def measure(table: LawTable, law: Law, seed: int = 2012) -> Accuracy:

@@ -90,9 +90,8 @@ def save_partial_table(
     Examples
     --------
     >>> import tempfile
-    >>> from puck_tables.table.partial_build import build_partial_table
     >>> with tempfile.TemporaryDirectory() as folder:
-    ...     saved = save_partial_table(build_partial_table(cells=8), folder + "/rough.h5")
+    ...     saved = save_partial_table(load_partial_table(), folder + "/copy.h5")
     >>> saved.passport["kind"]
     'partial contact'
     """

@@ -1,0 +1,81 @@
+"""``puck tables``: the tables there are, and clearing away those that the program has kept."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING
+
+import click
+
+from puck_tables.errors import InputError
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from puck_tables.catalogue import Entry
+
+
+@click.command()
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON list.")
+@click.option("--remove", "names", metavar="NAME", multiple=True, help="Remove a kept table.")
+@click.option("--clean", is_flag=True, help="Remove all kept tables.")
+def tables(as_json: bool, names: tuple[str, ...], clean: bool) -> None:
+    """List the tables that come along, and those the program has built and kept.
+
+    Kept tables lie in the user's cache folder; what is removed there is built again when it is
+    needed.  Tables of 'puck build-tables' are yours and lie where you put them: see 'puck info'.
+
+    \b
+    puck tables
+    puck tables --remove NAME
+    puck tables --clean
+    """  # noqa: D301 - click reads the backspace
+    if clean + bool(names) + as_json > 1:
+        raise InputError("--json, --remove and --clean clash: give one of them")
+    from puck_tables import store
+
+    if names:
+        kept = {path.name: path for path in store.kept_files()}
+        for name in names:
+            if name not in kept:
+                raise InputError(f"no table {name} is kept: 'puck tables' lists those that are")
+        _remove([kept[name] for name in dict.fromkeys(names)])
+    elif clean:
+        _remove([*store.kept_files(), *store.leftovers()])
+    else:
+        from puck_tables.catalogue import shipped_and_kept
+
+        entries = shipped_and_kept()
+        if as_json:
+            click.echo(json.dumps([entry._asdict() for entry in entries]))
+        else:
+            click.echo(_lines(entries))
+
+
+def _remove(paths: list[Path]) -> None:
+    from puck_tables import store
+
+    for path in paths:
+        store.remove(path)
+        click.echo(f"removed {click.format_filename(path)}")
+    if not paths:
+        click.echo("nothing is kept: nothing to remove")
+
+
+def _lines(entries: list[Entry]) -> str:
+    titles = ("name", "holds", "pressure", "accuracy", "kB", "made", "state", "range")
+    rows = [titles]
+    for entry in entries:
+        rows.append((
+            entry.name, entry.kind or "-", entry.pressure_law or "-",
+            "-" if entry.accuracy is None else f"{entry.accuracy:g}",
+            str(round(entry.bytes / 1000)), entry.date[:10] or "-",
+            "whole" if entry.whole else "damaged", entry.valid_range or "-",
+        ))  # fmt: skip
+    widths = [max(len(row[i]) for row in rows) for i in range(len(titles))]
+    lines = [
+        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
+        for row in rows
+    ]
+    places = list(dict.fromkeys(entry.place for entry in entries if entry.place != "comes along"))
+    return "\n".join(lines + [f"kept in {click.format_filename(place)}" for place in places])

@@ -1,0 +1,41 @@
+"""Reading files that others give: regular ones of a bounded size, never waiting for one."""
+
+from __future__ import annotations
+
+import errno
+import os
+import stat
+from pathlib import Path
+
+
+def read_whole(path: str | Path, largest: int) -> bytes:
+    """The bytes of a file.
+
+    Parameters
+    ----------
+    path : path of a regular file
+    largest : how many bytes it may have
+
+    Raises
+    ------
+    OSError
+        With a ``strerror`` that says why: missing, a folder, pipe or device, too large.
+
+    Examples
+    --------
+    >>> read_whole("/dev/zero", 100)
+    Traceback (most recent call last):
+    ...
+    OSError: [Errno 22] it is not a regular file: '/dev/zero'
+    """
+    # not blocking: to open a pipe would wait for who writes to it
+    flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
+    if Path(path).exists() and not Path(path).is_file():
+        raise OSError(errno.EINVAL, "it is not a regular file", str(path))
+    with open(os.open(path, flags), "rb") as file:
+        found = os.fstat(file.fileno())
+        if not stat.S_ISREG(found.st_mode):
+            raise OSError(errno.EINVAL, "it is not a regular file", str(path))
+        if found.st_size > largest:
+            raise OSError(errno.EFBIG, f"it is too large, {largest} bytes are the most", str(path))
+        return file.read(found.st_size)  # not more: what is asked for is allocated before

@@ -1,0 +1,214 @@
+"""Every command that writes, at every place where it cannot: nothing lost, nothing half written."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from puck_tables.cli.main import main
+
+from puck_tables import build_partial_table, build_stop_table, safe_write
+from puck_tables.front import shipped_front
+
+# {} is the output without its ending; the path that is written is the one that follows
+COMMANDS: dict[str, tuple[list[str], str]] = {
+    "simulate csv": (["simulate", "--v0", "1,0", "-o", "{}.csv"], "{}.csv"),
+    "simulate h5": (["simulate", "--v0", "1,0", "-o", "{}.h5"], "{}.h5"),
+    "simulate jsonl": (["simulate", "--v0", "1,0", "-o", "{}.jsonl"], "{}.jsonl"),
+    "simulate png": (["simulate", "--v0", "1,0", "--plot", "{}.png"], "{}.png"),
+    "scene csv": (["simulate", "--scene", "incline", "-o", "{}.csv"], "{}.csv"),
+    "scene h5": (["simulate", "--scene", "incline", "-o", "{}.h5"], "{}.h5"),
+    "scene png": (["simulate", "--scene", "incline", "--plot", "{}.png"], "{}.png"),
+    "sweep scene": (
+        ["sweep", "--scene", "incline", "--set", "launch.spin=0:9:3", "-o", "{}.h5"], "{}.h5"
+    ),
+    "asperity csv": (["asperity", "-o", "{}.csv"], "{}.csv"),
+    "asperity png": (["asperity", "--plot", "{}.png"], "{}.png"),
+    "sweep csv": (["sweep", "--w0", "0:1:9", "-o", "{}.csv"], "{}.csv"),
+    "sweep h5": (["sweep", "--w0", "0:1:9", "-o", "{}.h5"], "{}.h5"),
+    "sweep png": (["sweep", "--w0", "0:1:9", "--plot", "{}.png"], "{}.png"),
+    "sweep resumed": (["sweep", "--w0", "0:1:9", "-o", "{}.h5", "--resume"], "{}.h5"),
+    "aim csv": (["aim", "--target", "2,0.1", "-o", "{}.csv"], "{}.csv"),
+    "aim png": (["aim", "--target", "2,0.1", "--plot", "{}.png"], "{}.png"),
+    "build resultants": (["build-tables", "--accuracy", "1e-5", "-o", "{}.h5"], "{}.h5"),
+    "build stops": (["build-tables", "--kind", "stops", "--cells", "8", "-o", "{}.h5"], "{}.h5"),
+    "build partial": (["build-tables", "--kind", "partial", "--cells", "8", "-o", "{}.h5"],
+                      "{}.h5"),
+    "build law": (["build-tables", "--pressure", "ring", "--cells", "8", "-o", "{}.h5"], "{}.h5"),
+    "tradeoff csv": (["tradeoff", "-o", "{}.csv"], "{}.csv"),
+    "tradeoff h5": (["tradeoff", "-o", "{}.h5"], "{}.h5"),
+    "paper": (["paper", "--out", "{}"], "{}/figure_02.png"),
+}  # fmt: skip
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """An own folder, and little work: what is done there has tests of its own."""
+    from puck_tables.paper import figures
+    from puck_tables.tradeoff import engine
+    from puck_tables.tradeoff.machine import Machine
+
+    machine = Machine({"processor": "any"}, 1e9, 1e9)
+    measured = engine.TradeOff(
+        shipped_front(), np.array([1e3]), np.array([20.0]), np.array([1e5]), {"truth": 1.531},
+        machine, 25, 80.0,
+    )  # fmt: skip
+    monkeypatch.setattr(engine, "measure", lambda quick, show: measured)
+    monkeypatch.setattr("puck_tables.paper.claims.all_claims", lambda show: {})
+    monkeypatch.setattr(figures, "FIGURES", {2: figures.limit_angles})
+    monkeypatch.setattr("puck_tables.similarity.build.build_stop_table", once(build_stop_table))
+    monkeypatch.setattr(
+        "puck_tables.table.partial_build.build_partial_table", once(build_partial_table)
+    )
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@cache
+def built(build: Callable[..., object], cells: int) -> object:
+    return build(cells=cells)
+
+
+def once(build: Callable[..., object]) -> Callable[..., object]:
+    """A builder that builds a table of these cells once."""
+    return lambda accuracy, cells, progress: built(build, cells)
+
+
+def puck(name: str, place: str, *more: str) -> tuple[int, str]:
+    result = CliRunner().invoke(main, [part.format(place) for part in COMMANDS[name][0]] + [*more])
+    assert result.exit_code == 0 or isinstance(result.exception, SystemExit), result.exception
+    return result.exit_code, result.stderr
+
+
+def refused(name: str, place: str, *more: str) -> str:
+    """One sentence on stderr, exit code 1."""
+    code, said = puck(name, place, *more)
+    assert code == 1, said
+    assert said.count("Error: ") == 1
+    assert said.splitlines()[-1].startswith("Error: ")
+    return said
+
+
+def content(folder: Path) -> dict[str, bytes]:
+    return {str(path): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_files_that_exist_are_kept(name: str, folder: Path):
+    path = Path(COMMANDS[name][1].format("old"))
+    path.parent.mkdir(exist_ok=True)
+    path.write_text("mine")
+    assert "exists already; use --overwrite" in refused(name, "old")
+    assert path.read_text() == "mine"
+    code, said = puck(name, "old", "--overwrite")
+    assert (code, f"wrote {path}" in said) == (0, True), said
+    assert path.stat().st_size > 100
+    assert not list(folder.rglob(".puck-*"))
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_places_where_nothing_can_be_written(name: str, folder: Path):
+    """/proc takes no files, not even from root; what is there already is no file to replace."""
+    assert "cannot " in refused(name, "/proc/none")
+    path = Path(COMMANDS[name][1].format("at"))
+    for make in (Path.mkdir, os.mkfifo, lambda path: path.symlink_to("/dev/full")):
+        path.parent.mkdir(exist_ok=True)
+        make(path)
+        said = refused(name, "at", "--overwrite")
+        assert f"cannot write {path}" in said
+        path.rmdir() if path.is_dir() else path.unlink()
+    if name != "paper":  # which makes its folder
+        assert "none does not exist" in refused(name, "none/at")
+    assert content(folder) == {}
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may write anywhere")
+def test_a_read_only_folder(folder: Path):
+    folder.chmod(0o500)
+    for name in COMMANDS:
+        assert "cannot " in refused(name, "at")
+
+
+def no_room(descriptor: int) -> None:
+    raise OSError(28, "No space left on device")
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_a_full_disk(name: str, folder: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr("os.fsync", no_room)
+    assert "No space left on device" in refused(name, "new")
+    left = [] if name != "sweep resumed" else ["new.h5.progress"]  # the work is done: kept
+    assert [path.name for path in folder.iterdir()] == left
+    path = Path(COMMANDS[name][1].format("old"))
+    path.parent.mkdir(exist_ok=True)
+    path.write_text("mine")
+    refused(name, "old", "--overwrite")
+    assert path.read_text() == "mine"
+    assert not list(folder.rglob(".puck-*"))
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_a_folder_that_vanishes_during_the_work(
+    name: str, folder: Path, monkeypatch: pytest.MonkeyPatch
+):
+    target = Path("gone", COMMANDS[name][1].format("new"))
+    target.parent.mkdir(parents=True, exist_ok=name == "paper")
+    true: Callable[..., object] = tempfile.NamedTemporaryFile
+
+    def vanish(**given: object) -> object:
+        shutil.rmtree("gone", ignore_errors=True)
+        return true(**given)
+
+    monkeypatch.setattr(safe_write.tempfile, "NamedTemporaryFile", vanish)
+    if name == "sweep resumed":  # the progress file is met first
+        monkeypatch.setattr("puck_tables.checkpoint.tempfile.NamedTemporaryFile", vanish)
+    assert "No such file or directory" in refused(name, "gone/new")
+    assert not Path("gone").exists()
+
+
+def test_a_disk_that_is_really_full(folder: Path):
+    """No file may grow beyond 600 bytes: what a disk with no room does, without a patch."""
+    code = (
+        "import resource, sys\n"
+        f"sys.path.insert(0, {str(Path(__file__).parent)!r})\n"
+        "from click.testing import CliRunner\n"
+        "from puck_tables.cli.main import main\n"
+        "from test_writing import COMMANDS\n"
+        "slow = ('tradeoff csv', 'tradeoff h5', 'paper', 'build stops')\n"
+        "names = [n for n in COMMANDS if n not in slow]\n"
+        "resource.setrlimit(resource.RLIMIT_FSIZE, (600, 600))\n"
+        "for n in names:\n"
+        "    r = CliRunner().invoke(main, [p.format('new') for p in COMMANDS[n][0]])\n"
+        "    print(r.exit_code, r.stderr.strip().splitlines()[-1])\n"
+    )
+    Path("old.csv").write_text("mine")
+    ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    lines = ended.stdout.splitlines()
+    assert len(lines) == len(COMMANDS) - 4
+    for line in lines:
+        assert line.startswith("1 Error: cannot "), line
+        assert "File too large" in line
+    assert content(folder) == {str(folder / "old.csv"): b"mine"}
+
+
+def test_no_room_for_compiled_code(folder: Path):
+    """A full cache disk costs time, not the answer."""
+    code = (
+        "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (600, 600))\n"
+        "import puck_tables as p; print(float(p.limit_ratio(0.0)))"
+    )
+    ended = subprocess.run(
+        [sys.executable, "-c", code], env={**os.environ, "NUMBA_CACHE_DIR": str(folder)},
+        capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    assert (round(float(ended.stdout), 12), ended.stderr) == (1.531389372174, "")
+    assert content(folder) == {}
