@@ -13,12 +13,14 @@ import numpy.typing as npt
 
 from puck_tables.errors import InputError
 from puck_tables.real import finite_array, instance
+from puck_tables.safe_read import read_whole
 from puck_tables.safe_write import write_bytes
 
 FloatArray = npt.NDArray[np.float64]
 
 KINDS = ("cubic", "linear")
 HEADER = ("speed[m/s]", "f[1]")
+_LARGEST = 1 << 24  # bytes of a file
 _STEEPEST = 3.0  # times the difference, at an end
 
 
@@ -152,7 +154,7 @@ class SpeedLaw:
 or directory
         """
         try:
-            text = Path(path).read_text(encoding="utf-8-sig")
+            text = read_whole(path, _LARGEST).decode("utf-8-sig")
         except (OSError, ValueError) as error:
             reason = getattr(error, "strerror", None) or "it is not text"
             raise InputError(f"cannot read the friction law {path}: {reason}") from None
