@@ -27,6 +27,7 @@ from puck_tables.motion.equations import (
     X,
     at_constant_angle,
     derivatives,
+    inertia,
     kinetic_energy,
 )
 from puck_tables.motion.limits import LIMIT_WIDTH, log_ratio
@@ -156,7 +157,7 @@ def _at_constant_angle(regime: str, u: float, friction: Friction) -> Run:
         at_constant_angle(1.0, start[0], 0.0, friction.cut, friction.delta, stop)
         at_constant_angle(1.0, start[0], TURN_SHARE, friction.cut, friction.delta, turned)
         stop[PSI] = turned[PSI]
-        energy = kinetic_energy(1.0, u)
+        energy = kinetic_energy(1.0, u, inertia(friction.cut))
         residual = abs(stop[WORK] - energy) / energy
     return Run(
         friction,
