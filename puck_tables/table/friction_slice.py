@@ -17,9 +17,8 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.contact import one_sided
-from puck_tables.contact.laws import Law
+from puck_tables.contact.laws import HOMOGENEOUS, Law
 from puck_tables.contact.opening import critical_delta
-from puck_tables.contact.resultants import Resultants
 from puck_tables.errors import ContactError
 from puck_tables.table.law_grid import sides_of
 from puck_tables.table.slip_spline import SlipSpline, slip_spline
@@ -29,7 +28,6 @@ FloatArray = npt.NDArray[np.float64]
 FINEST_ACCURACY = 5e-13  # truth itself is good to 1e-13
 _SAME_LINE = 1e-12  # radians
 _SHARP_DELTA = 3.6
-HOMOGENEOUS = 0.5**0.5  # radius of gyration over r of a homogeneous cylinder about its axis
 
 
 @dataclass(frozen=True)
@@ -89,25 +87,28 @@ class FrictionSlice:
         return np.stack([self.spline.values[0, -1], self.spline.values[-1, -1]])
 
 
-def true_resultants(law: Law, phi: npt.ArrayLike, delta: npt.ArrayLike) -> Resultants:
-    """Friction resultants by closed forms, quadrature and the balance of moments: no table.
-
-    Partial contact is known under uniform pressure.
+def refuse_height(law: Law, delta: float) -> None:
+    """Refuse a height at which the friction is not known at every slip angle.
 
     Raises
     ------
-    InputError, ContactError
-        If an argument is out of range.
+    InputError
+        If it is not a height, or beyond full contact under another law than uniform pressure.
+    ContactError
+        If the puck tips, or its contact is not determined.
 
     Examples
     --------
     >>> from puck_tables.contact.laws import law_of
-    >>> float(true_resultants(law_of("uniform"), 0.5, 2.0).spin.round(7))
-    0.2196328
+    >>> refuse_height(law_of("ring"), 2.0)
     """
-    if law.name == "uniform":
-        return one_sided.resultants(phi, delta)
-    return law.resultants(phi, delta)
+    law.friction(0.0, delta)
+    if law.can_lift and delta > one_sided.FOLD_DELTA:
+        raise ContactError(
+            f"delta = {delta:g}: beyond {one_sided.FOLD_DELTA:g} the balance of moments has more "
+            "than one solution just below phi = pi/4, and the motion is not determined; choose a "
+            "lower or broader puck or less friction"
+        )
 
 
 def opening_angle(delta: float) -> float:
@@ -181,24 +182,18 @@ def friction_slice(law: Law, delta: float, accuracy: float = 1e-9) -> FrictionSl
     >>> from puck_tables.contact.laws import law_of
     >>> found = friction_slice(law_of("uniform"), 2.0, 1e-7)
     >>> inverse, across, spin = found.ratios(np.array([0.5]))[0]
-    >>> round(spin / inverse, 6)  # ρ_ω
+    >>> round(float(spin / inverse), 6)  # ρ_ω
     0.219633
     """
-    if law.name == "uniform" and one_sided.FOLD_DELTA < delta < one_sided.TIPPING_DELTA:
-        raise ContactError(
-            f"delta = {delta:g}: beyond {one_sided.FOLD_DELTA:g} the balance of moments has more "
-            "than one solution just below phi = pi/4, and the motion is not determined; choose a "
-            "lower or broader puck or less friction"
-        )
-    true_resultants(law, 0.0, delta)  # refuses a height out of range
-    opening = opening_angle(delta) if law.name == "uniform" else 0.0
+    refuse_height(law, delta)
+    opening = opening_angle(delta) if law.can_lift else 0.0
     cotangents = list(law.edges[::-1])
-    for line in (opening, _sharpest_bend(delta) if law.name == "uniform" else 0.0):
+    for line in (opening, _sharpest_bend(delta) if law.can_lift else 0.0):
         if line > 0.0 and all(abs(line - math.atan2(1.0, e)) > _SAME_LINE for e in law.edges):
             cotangents = sorted([*cotangents, 1.0 / math.tan(line)], reverse=True)
 
     def ratios(phi: FloatArray) -> FloatArray:
-        rho = true_resultants(law, phi, delta)
+        rho = law.friction(phi, delta)
         return np.stack([1.0 / rho.parallel, rho.perpendicular / rho.parallel,
                          rho.spin / rho.parallel], axis=-1)  # fmt: skip
 

@@ -59,7 +59,7 @@ class SlipSpline:
     @property
     def cells(self) -> int:
         """Cells on each side."""
-        return self.values.shape[1] - 1
+        return int(self.values.shape[1]) - 1
 
     @cached_property
     def cut(self) -> FloatArray:
@@ -86,7 +86,9 @@ class SlipSpline:
 
     def coarser(self) -> SlipSpline:
         """The spline through every other node."""
-        return SlipSpline(self.sides, self.values[:, ::2], self.even, np.inf * self.error)
+        return SlipSpline(
+            self.sides, self.values[:, ::2], self.even, np.full_like(self.error, np.inf)
+        )
 
     def with_inertia(self, square: float, factors: FloatArray) -> FloatArray:
         """A copy of :attr:`cut` with this inertia and the functions multiplied by ``factors``."""
@@ -142,7 +144,7 @@ def slip_spline(
     >>> from puck_tables.table.law_grid import sides_of
     >>> found = slip_spline(lambda phi: np.cos(phi)[:, None] ** 2, sides_of([1.0]), 1e-6, True)
     >>> found.cells, float(found.at(np.array([0.5]))[0, 0].round(6))
-    (16, 0.770151)
+    (64, 0.770151)
     """
     cells = COARSEST_CELLS
     values = _at(functions, sides, np.arange(cells + 1) / cells)
