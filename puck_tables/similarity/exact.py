@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.kernels.compile import kernel
-from puck_tables.motion.equations import LENGTH, SIZE, THETA, T, U, X, Y, at_constant_angle
+from puck_tables.motion.equations import LENGTH, PSI, SIZE, THETA, T, U, X, Y, at_constant_angle
 from puck_tables.motion.path import STOPPED, integrate
 from puck_tables.motion.steppers import DORMAND_PRINCE, Tableau
 
@@ -20,47 +20,56 @@ _STEP_LIMIT = 100_000
 
 @kernel
 def _fill_exact_stops(
-    u: FloatArray, delta: FloatArray, tableau: Tableau, tolerance: float, out: FloatArray
-) -> None:
-    """T, X, Y, path length, body angle of launches at u, δ into ``out`` (n, 5); NaN: no stop."""
-    closed_forms, no_z, no_y = np.empty(0), np.empty(0), np.empty((0, SIZE))
+    u: FloatArray, delta: FloatArray, cut: FloatArray, tableau: Tableau, tolerance: float,
+    out: FloatArray,
+) -> None:  # fmt: skip
+    """T, X, Y, path, body angle, turn of launches at u, δ into ``out`` (n, 6); NaN: no stop."""
+    no_z, no_y = np.empty(0), np.empty((0, SIZE))
     start, result = np.zeros(SIZE), np.empty(SIZE + 1)
     for n in range(u.size):
         status = STOPPED
         if math.isinf(u[n]):
             start[U] = u[n]
-            at_constant_angle(1.0, start, 0.0, closed_forms, delta[n], result)
+            at_constant_angle(1.0, start, 0.0, cut, delta[n], result)
         else:
             status, _ = integrate(
-                u[n], tableau, 0.0, tolerance, closed_forms, delta[n], _STEP_LIMIT,
-                no_z, no_y, result,
+                u[n], tableau, 0.0, tolerance, cut, delta[n], _STEP_LIMIT, no_z, no_y, result,
             )  # fmt: skip
         good = status == STOPPED
         out[n, 0] = result[T] if good else math.nan
         out[n, 1], out[n, 2] = result[X], result[Y]
-        out[n, 3], out[n, 4] = result[LENGTH], result[THETA]
+        out[n, 3], out[n, 4], out[n, 5] = result[LENGTH], result[THETA], result[PSI]
 
 
-def exact_stops(u: FloatArray, delta: FloatArray) -> FloatArray:
-    """Stops in natural units by the integrator with closed forms, to rounding.
+def exact_stops(
+    u: FloatArray,
+    delta: FloatArray,
+    cut: FloatArray | None = None,
+    tolerance: float = _LOCAL_TOLERANCE,
+) -> FloatArray:
+    """Stops in natural units by the integrator, to rounding with closed forms.
 
     Parameters
     ----------
     u : array (n,), ln(rω/v), infinite for pure sliding (−) and pure spin (+)
     delta : array (n,)
+    cut : friction of another kind, see :mod:`puck_tables.motion.equations`
+    tolerance : local error of a step
 
     Returns
     -------
-    array (n, 5)
-        T, X, Y, path length and body angle; error about 1e-15.
+    array (n, 6)
+        T, X, Y, path length, body angle, and the turn until Q has fallen to 1/1000 (at infinite u
+        0); with closed forms the error is about 1e-15.
 
     Examples
     --------
     >>> exact_stops(np.array([0.0]), np.array([1.0])).round(11).tolist()[0][:3]
     [0.98647593897, 0.32409372866, -0.04297450852]
     """
-    out = np.empty((u.size, 5))
-    _fill_exact_stops(u, delta, DORMAND_PRINCE, _LOCAL_TOLERANCE, out)
+    out = np.empty((u.size, 6))
+    friction = np.empty(0) if cut is None else cut
+    _fill_exact_stops(u, delta, friction, DORMAND_PRINCE, tolerance, out)
     return out
 
 
