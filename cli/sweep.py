@@ -11,6 +11,8 @@ from puck_tables.cli.options import (
     NUMBER,
     Range,
     Vector,
+    body_given,
+    body_options,
     explain_option,
     explained,
     output_options,
@@ -43,6 +45,7 @@ INTERRUPTED = 130
 @click.option("--v0", type=Vector(), help="One launch velocity in m/s instead of --speed.")
 @click.option("--delta", type=RANGE, help="delta = 2 f h / r.  [default: 0.5]")
 @puck_options(mass=False)
+@body_options
 @click.option(
     "--tol",
     type=NUMBER,
@@ -76,7 +79,8 @@ def sweep(
     w0: float | tuple[float, float, int] | None, speed: float | tuple[float, float, int] | None,
     v0: tuple[float, float] | None, delta: float | tuple[float, float, int] | None,
     radius: float | None, height: float | None, friction: float | None, gravity: float | None,
-    decel: float | None, tol: float, method: str | None, explain: bool, threads: int | None,
+    decel: float | None, pressure: str, gyration: float | None, tol: float,
+    method: str | None, explain: bool, threads: int | None,
     table_path: Path | None, output: Path | None, resume: bool, plot: Path | None, overwrite: bool,
 ) -> None:  # fmt: skip
     """Map where and when pucks stop.
@@ -90,6 +94,9 @@ def sweep(
     puck sweep --plot map.png
     puck sweep --v0 1,0 --w0 0:10:101 -o stops.csv
     puck sweep --speed 0:2:201 --w0 -20:20:401 --delta 0:1:5 -o map.h5
+    puck sweep --v0 1,0 --w0 0:10:101 --delta 2 -o tall.csv
+
+    Each delta above 1, or with --pressure or --gyration, takes about a second to prepare.
     """  # noqa: D301 - click reads the backspace
     r, height_ratio, J = puck_and_floor(radius, height, friction, gravity, delta, decel)
     if v0 is not None and speed is not None:
@@ -123,6 +130,7 @@ def sweep(
                 None if w0 is None else _values(w0), None if speed is None else _values(speed),
                 v0=v0, delta=_values(height_ratio), decel=J, radius=r, tol=tol, method=method,
                 table=table, threads=threads, progress=show, checkpoint=kept,
+                **body_given(pressure, gyration),
             )  # fmt: skip
     except KeyboardInterrupt:
         if kept is None or not kept.exists():

@@ -51,6 +51,11 @@ class Body:
         """k²/r², exactly ½ for a homogeneous puck."""
         return 0.5 if self.gyration == HOMOGENEOUS else self.gyration**2
 
+    @property
+    def spin_time(self) -> float:
+        """How long pure spin lasts, in units of r|ω|/J: 2k²/(r² ρ_ω(π/2))."""
+        return 2.0 * self.inertia / float(self.law.friction(0.5 * math.pi, 0.0).spin)
+
     def friction(self, accuracy: float) -> FrictionSlice:
         """Its friction over the slip angle."""
         return friction_slice(self.law, self.delta, accuracy)

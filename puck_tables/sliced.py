@@ -19,8 +19,8 @@ from puck_tables.contact.one_sided import loaded_share
 from puck_tables.errors import AccuracyError
 from puck_tables.front import ADAPTIVE_EXACT, COARSEST, RK4_EXACT, Choice, choose
 from puck_tables.kernels.slice_spline import LINE
-from puck_tables.motion.equations import WORK, T, U
-from puck_tables.motion.limits import log_ratio
+from puck_tables.motion.equations import PSI, THETA, WORK, T, U, X, Y
+from puck_tables.motion.limits import log_ratio, regime_of
 from puck_tables.motion.steppers import DORMAND_PRINCE, RK4
 from puck_tables.puck import real
 from puck_tables.run import (
@@ -36,6 +36,7 @@ from puck_tables.table.friction_slice import FINEST_ACCURACY
 FloatArray = npt.NDArray[np.float64]
 
 FINEST_TOL = 1e-11
+STATES_TOL = 1e-9
 # A start this close to the limit ratio (in ln(rω/v)) is the limit motion: truth is good to 1e-13.
 LIMIT_WIDTH = 1e-12
 
@@ -194,3 +195,50 @@ def contact_of(body: Body, regime: str, run: Run) -> Contact:
     ends = np.flatnonzero(run.y[:, U] == found.cut[2 * line, LINE])
     time = float(run.y[ends[0], T]) if ends.size else 0.0
     return Contact(launch, min(launch, last), *((time, None) if lifts else (None, time)))
+
+
+def states_of(body: Body, launch: FloatArray, times: FloatArray) -> FloatArray:
+    """States of one puck at times (n,) s: x, y, heading from that at the launch, body angle, v, ω.
+
+    Parameters
+    ----------
+    body : Body
+    launch : array (6,): vx, vy, ω, δ, J, r
+    times : array (n,), s, ≥ 0
+
+    Returns
+    -------
+    array (6, n)
+
+    Examples
+    --------
+    >>> from puck_tables.body import body_of
+    >>> launch = np.array([1.0, 0.0, 0.0, 2.0, 1.0, 1.0])
+    >>> states_of(body_of("uniform", 2.0, 0.5**0.5), launch, np.array([0.5, 2.0]))[0].tolist()
+    [0.375, 0.5]
+    """
+    vx, vy, spin, _, decel, radius = launch.tolist()
+    speed, rim = math.hypot(vx, vy), radius * abs(spin)
+    q0 = math.hypot(speed, rim)
+    if q0 == 0.0:
+        return np.zeros((6, times.size))
+    regime = regime_of(speed, rim, body.limit, LIMIT_WIDTH)
+    run, _ = run_sliced(body, regime, speed, rim, STATES_TOL)
+    time, length = q0 / decel, q0 / decel * q0
+    q, y = run.states(np.where(times < run.stop[T] * time, times / time, np.inf))
+    k = np.exp(-np.abs(y[:, U]))
+    large = 1.0 / np.sqrt(1.0 + k * k)
+    fast = y[:, U] > 0.0
+    side = -1.0 if spin < 0.0 else 1.0
+    east, north = (vx / speed, vy / speed) if speed > 0.0 else (1.0, 0.0)
+    along, left = length * y[:, X], side * length * y[:, Y]
+    return np.stack(
+        [
+            along * east - left * north,
+            along * north + left * east,
+            side * y[:, PSI],
+            side * y[:, THETA] * (length / radius),
+            q0 * q * np.where(fast, k * large, large),
+            side * (q0 / radius) * q * np.where(fast, large, k * large),
+        ]
+    )

@@ -48,7 +48,6 @@ from puck_tables.kernels.spline import evaluate_cut
 FloatArray = npt.NDArray[np.float64]
 
 SIZE = 8
-_ON_A_LINE = 1e-12
 U, PSI, T, X, Y, THETA, LENGTH, WORK = range(SIZE)
 
 
@@ -84,15 +83,12 @@ def inertia(cut: FloatArray) -> float:
 
 @inlined
 def crossed_line(u: float, new: float, cut: FloatArray) -> tuple[bool, float]:
-    """Whether a singular line lies between u and ``new``, and the u of the first.
-
-    A motion may tend to a line; next to it none is crossed, and rounding does not halt the steps.
-    """
+    """Whether a singular line lies strictly between u and ``new``, and the u of the first."""
     if cut.ndim == 2:
         crossed, first = False, 0.0
         for row in range(0, cut.shape[0], 2):
             line = cut[row, LINE]
-            between = (u - line) * (new - line) < 0.0 and abs(u - line) > _ON_A_LINE
+            between = (u - line) * (new - line) < 0.0
             if between and (not crossed or abs(line - u) < abs(first - u)):
                 crossed, first = True, line
         return crossed, first

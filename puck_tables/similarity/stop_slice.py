@@ -10,7 +10,7 @@ own, integrated.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import lru_cache
 
 import numpy as np
@@ -43,7 +43,8 @@ class StopSlice:
     body : Body
     spline : of :data:`FUNCTIONS`: T; X/cos φ; Y/(sin φ cos φ); path length/cos φ; body angle/sin φ;
         turn/sin φ
-    error : the largest error of the first five, in units of Q/J, Q²/J and Q²/(J r), measured
+    error : the largest error of T, X, Y, path length and body angle, in units of Q/J, Q²/J and
+        Q²/(J r), measured
     """
 
     body: Body
@@ -98,10 +99,11 @@ def stop_slice(body: Body, accuracy: float) -> StopSlice:
         0.6 * accuracy,
         even=False,
         counted=_COUNTED,
+        weights=_factors,
         finest=_FINEST_CELLS,
     )
     error = float(spline.error[_COUNTED].max()) + by_friction
-    return StopSlice(body, replace(spline, error=spline.error), error)
+    return StopSlice(body, spline, error)
 
 
 def _cotangent(phi: float) -> float:
@@ -115,7 +117,14 @@ def _felt(body: Body, friction: FrictionSlice, accuracy: float) -> float:
         _stops(body, friction, friction.for_motion(body.gyration, coarser), phi, 0.1 * accuracy)
         for coarser in (False, True)
     )
-    return 2.0 * float(np.abs(whole - half)[:, _COUNTED].max()) / _COARSER_BY
+    off = np.abs(whole - half) * _factors(phi)
+    return 2.0 * float(off[:, _COUNTED].max()) / _COARSER_BY
+
+
+def _factors(phi: FloatArray) -> FloatArray:
+    """What the functions are multiplied with in a stop, (n, functions)."""
+    cosine, sine = np.cos(phi), np.sin(phi)
+    return np.stack([np.ones_like(sine), cosine, sine * cosine, cosine, sine, sine], axis=-1)
 
 
 def _stops(
@@ -124,13 +133,10 @@ def _stops(
     """The functions at slip angles, by integration; at 0 and π/2 in closed form."""
     at_zero, at_half = phi <= 0.0, phi >= 0.5 * np.pi
     inner = ~(at_zero | at_half)
-    cosine, sine = np.cos(phi[inner]), np.sin(phi[inner])
     out = np.empty((phi.size, len(FUNCTIONS)))
-    stops = exact_stops(
-        np.log(sine / cosine), np.full(cosine.size, body.delta), cut, 0.03 * accuracy
-    )
-    scale = np.stack([np.ones_like(sine), cosine, sine * cosine, cosine, sine, sine], axis=-1)
-    out[inner] = stops / scale
+    u = np.log(np.tan(phi[inner]))
+    stops = exact_stops(u, np.full(u.size, body.delta), cut, 0.03 * accuracy)
+    out[inner] = stops / _factors(phi[inner])
     out[at_zero], out[at_half] = _ends(body, friction)
     return out
 

@@ -20,12 +20,14 @@ from puck_tables.contact import one_sided
 from puck_tables.contact.laws import HOMOGENEOUS, Law
 from puck_tables.contact.opening import critical_delta
 from puck_tables.errors import ContactError
+from puck_tables.kernels.slice_spline import LINE
 from puck_tables.table.law_grid import sides_of
 from puck_tables.table.slip_spline import SlipSpline, slip_spline
 
 FloatArray = npt.NDArray[np.float64]
 
 FINEST_ACCURACY = 5e-13  # truth itself is good to 1e-13
+_AT_THE_LIMIT = 1e-6
 _SAME_LINE = 1e-12  # radians
 _SHARP_DELTA = 3.6
 
@@ -59,8 +61,8 @@ class FrictionSlice:
 
     @cached_property
     def cut(self) -> FloatArray:
-        """What compiled code reads: the pure ratios, inertia of a homogeneous puck."""
-        return self.for_motion(HOMOGENEOUS)
+        """What compiled code reads: the pure ratios, for no motion in particular."""
+        return self.spline.with_inertia(0.5, np.ones(3))
 
     def for_motion(self, gyration: float, coarser: bool = False) -> FloatArray:
         """The same for the motion of a puck with radius of gyration k (in units of r).
@@ -76,7 +78,11 @@ class FrictionSlice:
         spline = self.spline.coarser() if coarser else self.spline
         # exactly 1 and ½ for a homogeneous puck
         square = 0.5 if gyration == HOMOGENEOUS else gyration * gyration
-        return spline.with_inertia(square, np.array([1.0, 1.0, 0.5 / square]))
+        cut = spline.with_inertia(square, np.array([1.0, 1.0, 0.5 / square]))
+        # a line that is the limit of the motion is never crossed: rounding would, again and again
+        limit = np.abs(self.spline.values[:, 0, 2] * (0.5 / square) - 1.0) < _AT_THE_LIMIT
+        cut[limit, LINE] = math.inf
+        return cut
 
     def ratios(self, phi: FloatArray) -> FloatArray:
         """1/ρ_∥, ρ_⊥/ρ_∥, ρ_ω/ρ_∥ at slip angles (n,), (n, 3)."""

@@ -117,6 +117,7 @@ def slip_spline(
     accuracy: float,
     even: bool,
     counted: slice = slice(None),
+    weights: Functions | None = None,
     finest: int = FINEST_CELLS,
 ) -> SlipSpline:
     """Splines of these functions, refined until they are as good as asked.
@@ -128,6 +129,7 @@ def slip_spline(
     accuracy : the largest error allowed in the middle of a cell
     even : see :class:`SlipSpline`
     counted : of which functions it must hold
+    weights : what the errors of the functions are multiplied with before they are judged
     finest : the most cells on a side
 
     Raises
@@ -153,7 +155,10 @@ def slip_spline(
         xi = (np.arange(cells) + 0.5) / cells
         between = _at(functions, sides, xi)
         guess = spline.at(graded(sides, xi).ravel()).reshape(between.shape)
-        error = np.abs(guess - between).max(axis=(0, 1))
+        off = np.abs(guess - between)
+        if weights is not None:
+            off *= _at(weights, sides, xi)
+        error = off.max(axis=(0, 1))
         if error[counted].max() <= accuracy:
             return SlipSpline(sides, values, even, error)
         if 2 * cells > finest:
