@@ -96,13 +96,13 @@ class _Family:
 
     def rows(self, u: FloatArray) -> FloatArray:
         """The same at many u (n,), (n, 4)."""
-        from puck_tables.similarity.exact import exact_stops
+        from puck_tables.similarity.exact import exact_stops, integrated_stops
 
         heights = np.full(u.size, self.delta)
-        if self.body is None:
+        if self._cut is None:
             stops = exact_stops(u, heights)
         else:
-            stops = exact_stops(u, heights, self._cut, _SLICE_LOCAL)
+            stops = integrated_stops(u, heights, self._cut, _SLICE_LOCAL)
         return np.array([self._row(*row) for row in zip(u, *stops[:, :3].T, strict=True)])
 
     def _row(self, u: float, time: float, x: float, y: float) -> tuple[float, float, float, float]:

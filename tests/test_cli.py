@@ -231,7 +231,7 @@ V0 = ["simulate", "--v0", "1,0"]
         (["sweep", "--w0", "0:1:1000000", "--speed", "0:1:1000000"], ["would need", "GiB"]),
         (["sweep", "--v0", "1,0", "--speed", "1"], ["--v0 and --speed clash"]),
         (["sweep", "--speed", "-1:1:5"], ["speed must not be negative"]),
-        (["sweep", "--delta", "0:2:5"], ["outside this table"]),
+        (["sweep", "--delta", "0:4:5"], ["delta = 4", "tips"]),
         (["sweep", "--w0", "1", "--plot", "x.png"], ["needs a range"]),
         (["sweep", "--height", "1", "--delta", "0:1:5"], ["clash"]),
         (["sweep", "-o", "map.jsonl"], [".h5, .csv"]),

@@ -41,36 +41,53 @@ def _fill_exact_stops(
         out[n, 3], out[n, 4], out[n, 5] = result[LENGTH], result[THETA], result[PSI]
 
 
-def exact_stops(
-    u: FloatArray,
-    delta: FloatArray,
-    cut: FloatArray | None = None,
-    tolerance: float = _LOCAL_TOLERANCE,
+def integrated_stops(
+    u: FloatArray, delta: FloatArray, cut: FloatArray, tolerance: float
 ) -> FloatArray:
-    """Stops in natural units by the integrator, to rounding with closed forms.
+    """Stops in natural units by the integrator.
 
     Parameters
     ----------
     u : array (n,), ln(rω/v), infinite for pure sliding (−) and pure spin (+)
     delta : array (n,)
-    cut : friction of another kind, see :mod:`puck_tables.motion.equations`
+    cut : friction, see :mod:`puck_tables.motion.equations`
     tolerance : local error of a step
 
     Returns
     -------
     array (n, 6)
         T, X, Y, path length, body angle, and the turn until Q has fallen to 1/1000 (at infinite u
-        0); with closed forms the error is about 1e-15.
+        0).
+
+    Examples
+    --------
+    >>> integrated_stops(np.array([0.0]), np.array([1.0]), np.empty(0), 1e-9)[0, :3].round(8)
+    array([ 0.98647594,  0.32409373, -0.04297451])
+    """
+    out = np.empty((u.size, 6))
+    _fill_exact_stops(u, delta, cut, DORMAND_PRINCE, tolerance, out)
+    return out
+
+
+def exact_stops(u: FloatArray, delta: FloatArray) -> FloatArray:
+    """Stops in natural units by the integrator with closed forms, to rounding.
+
+    Parameters
+    ----------
+    u : array (n,), ln(rω/v), infinite for pure sliding (−) and pure spin (+)
+    delta : array (n,)
+
+    Returns
+    -------
+    array (n, 5)
+        T, X, Y, path length and body angle; error about 1e-15.
 
     Examples
     --------
     >>> exact_stops(np.array([0.0]), np.array([1.0])).round(11).tolist()[0][:3]
     [0.98647593897, 0.32409372866, -0.04297450852]
     """
-    out = np.empty((u.size, 6))
-    friction = np.empty(0) if cut is None else cut
-    _fill_exact_stops(u, delta, friction, DORMAND_PRINCE, tolerance, out)
-    return out
+    return integrated_stops(u, delta, np.empty(0), _LOCAL_TOLERANCE)[:, :5]
 
 
 def end_values(delta: FloatArray) -> tuple[FloatArray, FloatArray]:

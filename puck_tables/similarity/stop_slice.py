@@ -19,7 +19,7 @@ import numpy.typing as npt
 from puck_tables.body import Body
 from puck_tables.errors import AccuracyError
 from puck_tables.motion.path import TURN_SHARE
-from puck_tables.similarity.exact import exact_stops
+from puck_tables.similarity.exact import integrated_stops
 from puck_tables.table.friction_slice import FINEST_ACCURACY, FrictionSlice
 from puck_tables.table.law_grid import sides_of
 from puck_tables.table.slip_spline import SlipSpline, slip_spline
@@ -135,7 +135,7 @@ def _stops(
     inner = ~(at_zero | at_half)
     out = np.empty((phi.size, len(FUNCTIONS)))
     u = np.log(np.tan(phi[inner]))
-    stops = exact_stops(u, np.full(u.size, body.delta), cut, 0.03 * accuracy)
+    stops = integrated_stops(u, np.full(u.size, body.delta), cut, 0.03 * accuracy)
     out[inner] = stops / _factors(phi[inner])
     out[at_zero], out[at_half] = _ends(body, friction)
     return out
