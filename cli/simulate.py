@@ -156,7 +156,7 @@ def report(run: Trajectory, note: str) -> str:
 def _contact(run: Trajectory) -> str:
     """How much of the base carries load on the way."""
     if run.least_loaded_share == 1.0:
-        return "the whole base is loaded throughout"
+        return "full contact throughout"
     text = f"{100.0 * run.loaded_share:.4g} % of the base loaded at the launch"
     if run.least_loaded_share < run.loaded_share:
         text += f", falling to {100.0 * run.least_loaded_share:.4g} %"

@@ -214,7 +214,8 @@ def states_of(body: Body, launch: FloatArray, times: FloatArray) -> FloatArray:
     --------
     >>> from puck_tables.body import body_of
     >>> launch = np.array([1.0, 0.0, 0.0, 2.0, 1.0, 1.0])
-    >>> states_of(body_of("uniform", 2.0, 0.5**0.5), launch, np.array([0.5, 2.0]))[0].tolist()
+    >>> states = states_of(body_of("uniform", 2.0, 0.5**0.5), launch, np.array([0.5, 2.0]))
+    >>> states[0].round(12).tolist()
     [0.375, 0.5]
     """
     vx, vy, spin, _, decel, radius = launch.tolist()

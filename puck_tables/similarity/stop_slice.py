@@ -81,7 +81,7 @@ def stop_slice(body: Body, accuracy: float) -> StopSlice:
     >>> from puck_tables.body import body_of
     >>> found = stop_slice(body_of("uniform", 2.0, 0.5**0.5), 1e-5)
     >>> float(found.spline.at(np.array([0.5]))[0, 0].round(4)), found.error <= 1e-5
-    (1.1409, True)
+    (1.1458, True)
     """
     of_friction = max(0.1 * accuracy, FINEST_ACCURACY)
     while True:
