@@ -12,6 +12,8 @@ from puck_tables.cli.options import (
     FILE,
     NUMBER,
     Vector,
+    body_given,
+    body_options,
     output_options,
     prepare_outputs,
     puck_and_floor,
@@ -48,6 +50,7 @@ if TYPE_CHECKING:
 )
 @puck_options(mass=False)
 @click.option("--delta", type=NUMBER, help="delta = 2 f h / r instead.  [default: 0.5]")
+@body_options
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 @click.option("-o", "--output", type=FILE, metavar="FILE", help="Save the launches: .csv.")
 @output_options
@@ -55,7 +58,8 @@ def aim(
     target: tuple[float, float], w0: float | None, speed: float | None, stop_time: float | None,
     max_speed: float | None, max_spin: float | None, count: int, radius: float | None,
     height: float | None, friction: float | None, gravity: float | None, decel: float | None,
-    delta: float | None, as_json: bool, output: Path | None, plot: Path | None, overwrite: bool,
+    delta: float | None, pressure: str, gyration: float | None, as_json: bool,
+    output: Path | None, plot: Path | None, overwrite: bool,
 ) -> None:  # fmt: skip
     """Find launches after which a puck comes to rest at a target.
 
@@ -88,7 +92,7 @@ def aim(
 
     found = find_launches(
         target, w0=w0, speed=speed, stop_time=stop_time, max_speed=max_speed, max_spin=max_spin,
-        count=count, delta=height_ratio, decel=J, radius=r,
+        count=count, delta=height_ratio, decel=J, radius=r, **body_given(pressure, gyration),
     )  # fmt: skip
     if output is not None:
         save_aim(found, output, overwrite)
@@ -110,9 +114,12 @@ def aim(
 def _report(found: Aim, note: str) -> str:
     """The answer, and the launches line by line."""
     x, y = found.target
+    kind = ""
+    if found.body is not None:
+        kind = f", pressure {found.body.law.name}, k/r = {found.body.gyration:.6g}"
     text = [
         f"puck    r = {found.radius:g} m, delta = {found.delta:.6g}, "
-        f"J = {found.decel:.6g} m/s^2{note}",
+        f"J = {found.decel:.6g} m/s^2{kind}{note}",
         f"target  ({x:g}, {y:g}) m",
         f"answer  {found.answer}",
     ]

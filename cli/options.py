@@ -127,6 +127,33 @@ def puck_options(mass: bool) -> Callable[[Command], Command]:
     return decorate
 
 
+def body_options(command: Command) -> Command:
+    """The kind of puck: how it presses on the floor and how its mass is spread."""
+    for option in (
+        click.option(
+            "--gyration",
+            type=NUMBER,
+            help="Radius of gyration about the vertical axis over r (a ratio, also with --radius), "
+            "0.1 to 10.  [default: 0.7071, homogeneous]",
+        ),
+        click.option(
+            "--pressure",
+            metavar="LAW",
+            default="uniform",
+            show_default=True,
+            help="Contact pressure: uniform, galin, hertz, ring, annulus:INNER, or a CSV file of "
+            "rho, W.",
+        ),
+    ):
+        command = option(command)
+    return command
+
+
+def body_given(pressure: str, gyration: float | None) -> dict[str, Any]:
+    """The kind of puck as the library takes it."""
+    return {"pressure": pressure} | ({} if gyration is None else {"gyration": gyration})
+
+
 def output_options(command: Command) -> Command:
     """Where results go."""
     for option in (

@@ -14,6 +14,8 @@ from puck_tables.cli.options import (
     NUMBER,
     Times,
     Vector,
+    body_given,
+    body_options,
     explain_option,
     explained,
     open_table,
@@ -37,6 +39,7 @@ if TYPE_CHECKING:
 @click.option("--w0", type=NUMBER, default=0.0, show_default=True, help="Launch spin in rad/s.")
 @puck_options(mass=True)
 @click.option("--delta", type=NUMBER, help="delta = 2 f h / r instead.  [default: 0.5]")
+@body_options
 @click.option("--frames", type=int, help="Number of states to save.  [default: 101]")
 @click.option("--times", type=Times(), help="Times of the states to save, in s.")
 @click.option(
@@ -66,7 +69,8 @@ def simulate(
     ctx: click.Context, v0: tuple[float, float] | None, w0: float, radius: float | None,
     height: float | None,
     friction: float | None, gravity: float | None, mass: float | None, decel: float | None,
-    delta: float | None, frames: int | None, times: tuple[float, ...] | None, tol: float,
+    delta: float | None, pressure: str, gyration: float | None, frames: int | None,
+    times: tuple[float, ...] | None, tol: float,
     method: str | None, explain: bool, exact: bool, table_path: Path | None, as_json: bool,
     output: Path | None, plot: Path | None, overwrite: bool, scene: str | None,
     changes: tuple[str, ...],
@@ -78,6 +82,8 @@ def simulate(
     puck simulate --v0 2,0 --w0 30 --radius 0.0381 --height 0.0254 --friction 0.1
     puck simulate --v0 1,0 --w0 5 --frames 200 -o run.csv --plot run.png
     puck simulate --scene air-hockey --set launch.spin=100 --plot air-hockey.png
+    puck simulate --v0 1,0 --w0 5 --delta 2
+    puck simulate --v0 1,0 --w0 5 --pressure annulus:0.8 --gyration 0.9
     """  # noqa: D301 - click reads the backspace
     if scene is not None or changes:
         prepare_outputs(output, plot, overwrite=overwrite)
@@ -105,7 +111,7 @@ def simulate(
         frames = 1  # a report needs no states
     run = run_simulation(
         v0, w0, delta=height_ratio, decel=J, radius=r,
-        mass=DEFAULT_MASS if mass is None else mass,
+        mass=DEFAULT_MASS if mass is None else mass, **body_given(pressure, gyration),
         frames=frames, times=times, tol=tol, method=method, exact=exact,
         table=None if table_path is None else open_table(table_path),
     )  # fmt: skip
@@ -120,12 +126,13 @@ def simulate(
     if as_json:
         click.echo(json.dumps(summary(run), allow_nan=False))
     else:
-        given = any(x is not None for x in (radius, height, friction, delta, decel))
+        given = any(x is not None for x in (radius, height, friction, delta, decel, gyration))
         click.echo(report(run, "" if given else "   (defaults: see --help for a real puck)"))
 
 
 def report(run: Trajectory, note: str) -> str:
     """The trajectory in a dozen lines."""
+    from puck_tables.body import is_plain
     from puck_tables.motion.limits import REGIMES
 
     q0 = math.hypot(*run.v0, run.radius * run.w0)
@@ -134,18 +141,22 @@ def report(run: Trajectory, note: str) -> str:
         decade = math.degrees(run.turn_rate) * math.log(10.0)
         turn += f" by Q = Q0/1000, then {decade:.4g} deg more for each factor 10 of Q"
     x, y = run.stop_position
+    kind = ""
+    if not is_plain(run.pressure, run.gyration, 0.0):
+        kind = f", pressure {run.pressure}, k/r = {run.gyration:.6g}"
     lines = {
-        "puck": f"r = {run.radius:g} m, delta = {run.delta:.6g}, J = {run.decel:.6g} m/s^2{note}",
+        "puck": f"r = {run.radius:g} m, delta = {run.delta:.6g}, J = {run.decel:.6g} m/s^2{kind}"
+        f"{note}",
         "launch": f"v0 = ({run.v0[0]:g}, {run.v0[1]:g}) m/s, w0 = {run.w0:g} rad/s, "
         f"Q0 = hypot(v0, r w0) = {q0:.6g} m/s",
         "regime": f"{run.regime}: {REGIMES[run.regime]}",
+        "contact": _contact(run),
         "stop time": f"{run.stop_time:.9g} s",
         "stop position": f"({x:.9g}, {y:.9g}) m",
         "path length": f"{run.path_length:.9g} m",
         "heading turned": turn,
         "body turned": f"{run.body_angle:.9g} rad ({run.body_angle / (2 * math.pi):.5g} turns)",
-        "limit angle": f"{math.degrees(run.limit_angle):.7g} deg "
-        f"(r w/v tends to {math.tan(run.limit_angle):.7g})",
+        "limit angle": _limit(run),
         "energy": f"{run.kinetic_energy:.6g} J (m = {run.mass:g} kg), all lost to friction; "
         f"residual {run.energy_residual:.1e} of it",
         "method": run.method + (f", {run.steps} steps" if run.steps else ""),
@@ -153,3 +164,29 @@ def report(run: Trajectory, note: str) -> str:
         f"{run.error_estimate * q0 * q0 / run.decel:.1e} m",
     }
     return "\n".join(f"{name:<15} {text}" for name, text in lines.items())
+
+
+def _contact(run: Trajectory) -> str:
+    """How much of the base carries load on the way."""
+    if run.least_loaded_share == 1.0:
+        return "full contact throughout"
+    text = f"{100.0 * run.loaded_share:.4g} % of the base loaded at the launch"
+    if run.least_loaded_share < run.loaded_share:
+        text += f", falling to {100.0 * run.least_loaded_share:.4g} %"
+    if run.contact_opens is not None:
+        text += f"; lifts at {run.contact_opens:.6g} s"
+    elif run.contact_closes is not None:
+        text += f"; all of it from {run.contact_closes:.6g} s on"
+    else:
+        text += "; part of it lifted throughout"
+    return text
+
+
+def _limit(run: Trajectory) -> str:
+    """Where the ratio of spin to speed tends to."""
+    if run.limit_angle == 0.0:
+        return "none: the spin dies out before the sliding, r w/v tends to 0"
+    if run.limit_angle == 0.5 * math.pi:
+        return "none: the sliding dies out before the spin, r w/v grows without bound"
+    ratio = math.tan(run.limit_angle)
+    return f"{math.degrees(run.limit_angle):.7g} deg (r w/v tends to {ratio:.7g})"

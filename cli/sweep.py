@@ -11,6 +11,8 @@ from puck_tables.cli.options import (
     NUMBER,
     Range,
     Vector,
+    body_given,
+    body_options,
     explain_option,
     explained,
     output_options,
@@ -44,6 +46,7 @@ INTERRUPTED = 130
 @click.option("--v0", type=Vector(), help="One launch velocity in m/s instead of --speed.")
 @click.option("--delta", type=RANGE, help="delta = 2 f h / r.  [default: 0.5]")
 @puck_options(mass=False)
+@body_options
 @click.option(
     "--tol",
     type=NUMBER,
@@ -80,7 +83,8 @@ def sweep(
     speed: float | tuple[float, float, int] | None,
     v0: tuple[float, float] | None, delta: float | tuple[float, float, int] | None,
     radius: float | None, height: float | None, friction: float | None, gravity: float | None,
-    decel: float | None, tol: float, method: str | None, explain: bool, threads: int | None,
+    decel: float | None, pressure: str, gyration: float | None, tol: float,
+    method: str | None, explain: bool, threads: int | None,
     table_path: Path | None, output: Path | None, resume: bool, plot: Path | None, overwrite: bool,
     scene: str | None, changes: tuple[str, ...],
 ) -> None:  # fmt: skip
@@ -95,7 +99,10 @@ def sweep(
     puck sweep --plot map.png
     puck sweep --v0 1,0 --w0 0:10:101 -o stops.csv
     puck sweep --speed 0:2:201 --w0 -20:20:401 --delta 0:1:5 -o map.h5
+    puck sweep --v0 1,0 --w0 0:10:101 --delta 2 -o tall.csv
     puck sweep --scene incline --set launch.spin=0:80:81 --set floor.slope=0:0.14:71 --plot map.png
+
+    Each delta above 1, or with --pressure or --gyration, takes about a second to prepare.
     """  # noqa: D301 - click reads the backspace
     if scene is not None or changes:
         prepare_outputs(output, plot, overwrite=overwrite)
@@ -135,6 +142,7 @@ def sweep(
                 None if w0 is None else _values(w0), None if speed is None else _values(speed),
                 v0=v0, delta=_values(height_ratio), decel=J, radius=r, tol=tol, method=method,
                 table=table, threads=threads, progress=show, checkpoint=kept,
+                **body_given(pressure, gyration),
             )  # fmt: skip
     except KeyboardInterrupt:
         _interrupted(kept)

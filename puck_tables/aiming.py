@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables.body import Body, body_of, is_plain
+from puck_tables.contact.laws import HOMOGENEOUS, Law
+from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import InputError
 from puck_tables.puck import positive, real
 from puck_tables.real import finite_array
-from puck_tables.similarity.file import load_stop_table
 from puck_tables.trajectory import simulate
 
 FloatArray = npt.NDArray[np.float64]
@@ -23,6 +27,9 @@ _SAMPLED_U = math.log(math.tan(math.radians(80.0)))
 _SLACK = 1e-12
 _LARGEST_LOG = 709.0
 _CHECK_TOL = 1e-10
+_SLICE_ACCURACY, _SLICE_LOCAL = 1e-9, 1e-12
+_SLACK_SLICE = 1e-8
+_SCANNED = 481
 
 
 @dataclass(frozen=True)
@@ -32,7 +39,8 @@ class Aim:
     Arrays (n,), ordered by spin, the most clockwise first: ``v0`` (n, 2) m/s, ``w0`` rad/s,
     ``speed`` m/s, ``direction`` rad, ``slip_angle`` φ rad, ``stop_time`` s, and ``miss`` m: how far
     from the target an integration of the launch ends.  ``answer`` is one sentence: what was found,
-    or why nothing can be.
+    or why nothing can be.  ``body``: the kind of puck, None for a homogeneous one under uniform
+    pressure with δ ≤ 1.
     """
 
     target: tuple[float, float]
@@ -44,6 +52,7 @@ class Aim:
     stop_time: FloatArray
     miss: FloatArray
     answer: str
+    body: Body | None = field(default=None, repr=False)
 
     @property
     def speed(self) -> FloatArray:
@@ -71,16 +80,58 @@ class _Family:
     distance: float
     delta: float
     decel: float
+    body: Body | None = None
+
+    @cached_property
+    def _cut(self) -> FloatArray | None:
+        """Friction of a puck that is not plain."""
+        from puck_tables.sliced import friction_of
+
+        return None if self.body is None else friction_of(self.body, _SLICE_ACCURACY).cut
 
     def at(self, u: float) -> tuple[float, float, float, float]:
-        """Ln of speed, rim speed and stop time, and arg(X + iY) for ω > 0; exact to rounding."""
-        from puck_tables.similarity.exact import exact_stops
+        """Ln of speed, rim speed and stop time, and arg(X + iY) for ω > 0."""
+        rows = self.rows(np.array([u]))
+        return rows[0, 0], rows[0, 1], rows[0, 2], rows[0, 3]
 
-        time, x, y = exact_stops(np.array([u]), np.array([self.delta]))[0, :3].tolist()
+    def rows(self, u: FloatArray) -> FloatArray:
+        """The same at many u (n,), (n, 4)."""
+        from puck_tables.similarity.exact import exact_stops, integrated_stops
+
+        heights = np.full(u.size, self.delta)
+        if self._cut is None:
+            stops = exact_stops(u, heights)
+        else:
+            stops = integrated_stops(u, heights, self._cut, _SLICE_LOCAL)
+        return np.array([self._row(*row) for row in zip(u, *stops[:, :3].T, strict=True)])
+
+    def _row(self, u: float, time: float, x: float, y: float) -> tuple[float, float, float, float]:
         log_q = 0.5 * (math.log(self.decel) + math.log(self.distance) - math.log(math.hypot(x, y)))
         larger = log_q - 0.5 * math.log1p(math.exp(-2.0 * abs(u)))
         speed, rim = larger - max(u, 0.0), larger + min(u, 0.0)
         return speed, rim, log_q + math.log(time) - math.log(self.decel), math.atan2(y, x)
+
+    def all_where(self, quantity: int, value: float) -> list[float]:
+        """All u where the speed (0), the rim speed (1) or the stop time (2) has a value.
+
+        Of a plain puck all three are monotonic in u; of tall ones (δ from about 3.5 on, and others)
+        speed and stop time may not be, and more than one launch answers.
+        """
+        if self.body is None or quantity == 1:
+            return [self.where(quantity, value)]
+        from scipy.optimize import brentq
+
+        target = math.log(value)
+        u = np.concatenate([[-_LARGEST_U], np.linspace(-12.0, 12.0, _SCANNED), [_LARGEST_U]])
+        off = self.rows(u)[:, quantity] - target
+        found = [-math.inf] if abs(off[0]) <= _SLACK_SLICE else []
+        for n in np.flatnonzero(off[:-1] * off[1:] < 0.0):
+            if n == 0 and found:
+                continue
+            found.append(float(brentq(
+                lambda x: self.at(x)[quantity] - target, u[n], u[n + 1], xtol=1e-13, rtol=1e-14
+            )))  # fmt: skip
+        return found
 
     def where(self, quantity: int, value: float) -> float:
         """U where the speed (0), the rim speed (1) or the stop time (2) has a value.
@@ -118,6 +169,8 @@ def aim(
     delta: float = 0.5,
     decel: float = 1.0,
     radius: float = 1.0,
+    pressure: str | Law = "uniform",
+    gyration: float = HOMOGENEOUS,
 ) -> Aim:
     """Launches after which a puck comes to rest at a given displacement.
 
@@ -134,14 +187,18 @@ def aim(
     count : how many slip angles a sample has, for each sense of spin
         Equally spaced from the least spin that ``max_speed`` allows (0 without it) to ``max_spin``
         (without it: to φ = 80°).
-    delta : dimensionless height 2fh/r, from 0 to 1
+    delta : dimensionless height 2fh/r
+        Below 3.9637 under uniform pressure, up to the full contact of another law.
     decel, radius : J = fg in m/s² and m, > 0
+    pressure, gyration
+        As :func:`puck_tables.simulate`.
 
     Returns
     -------
     Aim
         With no launch, and the reason in ``answer``, where there is none.  Errors of about 1e-12 of
-        the distance; every launch is integrated and its ``miss`` reported.
+        the distance, 1e-9 for δ > 1 or another kind of puck; every launch is integrated and its
+        ``miss`` reported.
 
     Raises
     ------
@@ -153,7 +210,8 @@ def aim(
     -----
     Displacement = (Q²/J) Rot(ψ)(X, ±Y)(φ, δ), so at each φ the place fixes Q and ψ.  As φ goes from
     0 to π/2 the speed falls from √(2JD) to 0, spin and stop time grow without bound from 0 and
-    √(2D/J), D the distance: each value is met once for each sense of spin.
+    √(2D/J), D the distance: each value is met once for each sense of spin.  For tall pucks, δ
+    from about 3.5 on, speed and time are not monotonic, and a value may be met three times.
 
     References
     ----------
@@ -170,7 +228,9 @@ def aim(
         raise InputError(f"target must be one place (x, y) in m, got shape {place.shape}")
     x, y = place.tolist()
     r, J = positive("radius", radius, "m"), positive("decel", decel, "m/s^2")
-    height = float(load_stop_table().checked_range(real("delta", delta, "dimensionless")))
+    height = float(checked_delta(real("delta", delta, "dimensionless")))
+    plain = is_plain(pressure, gyration, height)
+    body = None if plain else body_of(pressure, height, gyration)
     wishes = {"w0": w0, "speed": speed, "stop_time": stop_time}
     wished = [name for name, value in wishes.items() if value is not None]
     if len(wished) > 1:
@@ -180,11 +240,11 @@ def aim(
     if not isinstance(count, int) or not 1 <= count <= MAX_COUNT:
         raise InputError(f"count must be a whole number from 1 to {MAX_COUNT}, got {count!r}")
     none = np.empty(0)
-    given = Aim((x, y), height, J, r, np.empty((0, 2)), none, none, none, "")
+    given = Aim((x, y), height, J, r, np.empty((0, 2)), none, none, none, "", body)
     distance = math.hypot(x, y)
     if distance == 0.0:
         return _on_the_spot(given, w0, speed, stop_time)
-    family = _Family(distance, height, J)
+    family = _Family(distance, height, J, body)
     slide = math.sqrt(2.0) * math.sqrt(J) * math.sqrt(distance)
     quickest = math.sqrt(2.0) * math.sqrt(distance) / math.sqrt(J)
     us: list[float] = []
@@ -197,7 +257,7 @@ def aim(
     elif speed is not None:
         wanted = positive("speed", speed, "m/s")
         if wanted <= slide * (1.0 + _SLACK):
-            us = [family.where(0, wanted)]
+            us = family.all_where(0, wanted)
         else:
             answer = (
                 f"no launch at {wanted:g} m/s stops {distance:g} m away: the fastest has "
@@ -206,7 +266,7 @@ def aim(
     elif stop_time is not None:
         wanted = positive("stop_time", stop_time, "s")
         if wanted >= quickest * (1.0 - _SLACK):
-            us = [family.where(2, wanted)]
+            us = family.all_where(2, wanted)
         else:
             answer = (
                 f"no launch stops {distance:g} m away after {wanted:g} s: the quickest takes "
@@ -245,8 +305,8 @@ def _found(given: Aim, launches: list[tuple[float, float, float, float]], answer
 
 
 def _on_the_spot(given: Aim, w0: float | None, speed: float | None, stop_time: float | None) -> Aim:
-    """The target is where the puck lies: pure spin stays there, for ¾ r|ω|/J."""
-    turning = 0.75 * given.radius / given.decel
+    """The target is where the puck lies: pure spin stays there, ¾ r|ω|/J for a plain puck."""
+    turning = given.radius / given.decel * (0.75 if given.body is None else given.body.spin_time)
     if w0 is not None:
         spin = real("w0", w0, "rad/s")
         return _found(given, [(spin, 0.0, 0.0, turning * abs(spin))], "")
@@ -291,11 +351,18 @@ def _out_of_bounds(
     )
 
 
+def kind_of_puck(found: Aim) -> dict[str, Any]:
+    """Pressure law and radius of gyration of an aim, as the other functions take them."""
+    if found.body is None:
+        return {}
+    return {"pressure": found.body.law, "gyration": found.body.gyration}
+
+
 def _miss(launch: FloatArray, given: Aim) -> float:
     """How far from the target the integrated motion ends."""
     w0, vx, vy, _ = launch.tolist()
     run = simulate(
         (vx, vy), w0, delta=given.delta, decel=given.decel, radius=given.radius, frames=1,
-        tol=_CHECK_TOL,
+        tol=_CHECK_TOL if given.body is None else _SLICE_ACCURACY, **kind_of_puck(given),
     )  # fmt: skip
     return math.dist(run.stop_position, given.target)

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from puck_tables.aiming import Aim
+from puck_tables.aiming import Aim, kind_of_puck
+from puck_tables.body import is_plain
 from puck_tables.errors import InputError, MissingExtraError
 from puck_tables.result_file import kind_of
 from puck_tables.safe_write import write_bytes
@@ -86,6 +87,9 @@ def plot_trajectory(run: Trajectory, path: str | Path, overwrite: bool = False) 
     speeds.plot(run.time, run.speed, color=BLUE, label="speed v")
     speeds.plot(run.time, run.radius * run.spin, color=ORANGE, label="rim speed rω")
     speeds.axhline(0.0, color=GREY, linewidth=0.6)
+    for moment, text in ((run.contact_opens, "base lifts"), (run.contact_closes, "base down")):
+        if moment is not None:
+            speeds.axvline(moment, color=GREY, linestyle=":", linewidth=1.0, label=text)
     speeds.set_ylabel("m/s")
     speeds.set_xlabel("time / s")
     speeds.legend(frameon=False)
@@ -93,14 +97,8 @@ def plot_trajectory(run: Trajectory, path: str | Path, overwrite: bool = False) 
     moving = run.speed > 0.0
     if moving.any() and run.w0 != 0.0:
         ratio.plot(run.time[moving], np.tan(run.slip_angle[moving]), color=GREEN)
-        limit = math.copysign(math.tan(run.limit_angle), run.w0)
-        ratio.axhline(limit, color=GREY, linestyle="--", linewidth=1.0)
-        above = limit > np.tan(run.slip_angle[moving]).max()
-        ratio.annotate(
-            f"limit {limit:.3f}", (0.02, limit), xycoords=("axes fraction", "data"),
-            xytext=(0, -3 if above else 3), va="top" if above else "bottom",
-            textcoords="offset points", color=GREY, fontsize=9,
-        )  # fmt: skip
+        if run.limit_angle < 0.5 * math.pi:
+            _draw_limit(ratio, run, float(np.tan(run.slip_angle[moving]).max()))
     else:
         ratio.text(
             0.5, 0.5, "spin only" if run.w0 != 0.0 else "no spin",
@@ -110,9 +108,31 @@ def plot_trajectory(run: Trajectory, path: str | Path, overwrite: bool = False) 
     ratio.set_xlabel("time / s")
     figure.suptitle(
         f"v₀ = ({run.v0[0]:g}, {run.v0[1]:g}) m/s, ω₀ = {run.w0:g} rad/s, r = {run.radius:g} m, "
-        f"δ = {run.delta:.4g}, J = {run.decel:.4g} m/s²"
+        f"δ = {run.delta:.4g}, J = {run.decel:.4g} m/s²{_kind(run)}"
     )
     save(figure, path, kind, overwrite)
+
+
+def _kind(run: Trajectory) -> str:
+    """The kind of puck, and how much of its base is loaded, where there is something to say."""
+    text = ""
+    if not is_plain(run.pressure, run.gyration, 0.0):
+        text = f"\npressure {run.pressure}, k/r = {run.gyration:.4g}"
+    if run.least_loaded_share < 1.0:
+        text += f"\nat the least {100.0 * run.least_loaded_share:.3g} % of the base loaded"
+    return text
+
+
+def _draw_limit(panel: Axes, run: Trajectory, largest: float) -> None:
+    """The ratio that the motion tends to."""
+    limit = math.copysign(math.tan(run.limit_angle), run.w0)
+    panel.axhline(limit, color=GREY, linestyle="--", linewidth=1.0)
+    above = limit > largest
+    panel.annotate(
+        f"limit {limit:.3f}", (0.02, limit), xycoords=("axes fraction", "data"),
+        xytext=(0, -3 if above else 3), va="top" if above else "bottom",
+        textcoords="offset points", color=GREY, fontsize=9,
+    )  # fmt: skip
 
 
 def plot_map(stops: StopMap, path: str | Path, overwrite: bool = False) -> None:
@@ -209,7 +229,7 @@ def plot_aim(found: Aim, path: str | Path, overwrite: bool = False) -> None:
     shares = np.linspace(0.0, 1.0, 200)
     states = flow(
         found.v0[:, None, :], found.w0[:, None], found.stop_time[:, None] * shares,
-        delta=found.delta, decel=found.decel, radius=found.radius,
+        delta=found.delta, decel=found.decel, radius=found.radius, **kind_of_puck(found),
     )  # fmt: skip
     for n, w0 in enumerate(found.w0):
         paths.plot(states.x[n], states.y[n], color=colours.to_rgba(w0), linewidth=1.3)

@@ -52,8 +52,9 @@ MAP_AXES = {
 }
 SUMMARY = (
     "regime", "stop_time", "stop_position", "path_length", "turn_angle", "turn_rate", "body_angle",
-    "limit_angle", "kinetic_energy", "energy_residual", "method", "steps", "error_estimate",
-    "v0", "w0", "radius", "delta", "decel", "mass",
+    "limit_angle", "loaded_share", "least_loaded_share", "contact_opens", "contact_closes",
+    "kinetic_energy", "energy_residual", "method", "steps", "error_estimate",
+    "v0", "w0", "radius", "delta", "decel", "mass", "pressure", "gyration",
 )  # fmt: skip
 
 
@@ -121,7 +122,11 @@ def save_trajectory(run: Trajectory, path: str | Path, overwrite: bool = False) 
     kind = kind_of(path, TRAJECTORY_KINDS)
     columns = {name: getattr(run, name) for name in TRAJECTORY_COLUMNS}
     if kind == ".h5":
-        scalars = {n: np.asarray(v) if isinstance(v, list) else v for n, v in summary(run).items()}
+        scalars = {
+            n: np.asarray(v) if isinstance(v, list) else v
+            for n, v in summary(run).items()
+            if v is not None  # contact that never opens or closes
+        }
         content = as_hdf5(
             {"time": columns.pop("time")}, columns, TRAJECTORY_COLUMNS,
             {"title": "Trajectory of a sliding, spinning puck", **scalars},

@@ -27,6 +27,7 @@ from puck_tables.motion.equations import (
     X,
     at_constant_angle,
     derivatives,
+    inertia,
     kinetic_energy,
 )
 from puck_tables.motion.limits import LIMIT_WIDTH, log_ratio
@@ -44,7 +45,7 @@ _STEP_LIMIT = 20_000
 
 @dataclass(frozen=True)
 class Friction:
-    """What the loop reads at one δ: the table cut there, or nothing (closed forms)."""
+    """What the loop reads at one δ: a table cut there, a slice, or nothing (closed forms)."""
 
     delta: float
     cut: FloatArray
@@ -137,7 +138,7 @@ def run_motion(
     start = _log_ratio(regime, speed, rim)
     if regime in CONSTANT_ANGLE:
         _check_contact(friction.delta, start)
-        return _at_constant_angle(regime, start, closed_form_friction(friction.delta))
+        return at_constant_slip(regime, start, closed_form_friction(friction.delta))
     # φ moves monotonically to φ₀ and the tilt falls with φ: the smaller of both is the worst
     _check_contact(friction.delta, min(start, limit))
     return _integrated(start, friction, choice)
@@ -148,7 +149,14 @@ def _log_ratio(regime: str, speed: float, rim: float) -> float:
     return {"A": -math.inf, "B0": math.inf, "C0": -math.inf}.get(regime) or log_ratio(speed, rim)
 
 
-def _at_constant_angle(regime: str, u: float, friction: Friction) -> Run:
+def at_constant_slip(regime: str, u: float, friction: Friction) -> Run:
+    """A motion in elementary functions, u = ln(r|ω|/v) throughout.
+
+    Examples
+    --------
+    >>> float(at_constant_slip("C0", -math.inf, closed_form_friction(0.5)).stop[T])
+    1.0
+    """
     start, stop, turned = np.zeros((1, SIZE)), np.zeros(SIZE), np.zeros(SIZE)
     start[0, U] = stop[U] = u
     residual = 0.0
@@ -156,7 +164,7 @@ def _at_constant_angle(regime: str, u: float, friction: Friction) -> Run:
         at_constant_angle(1.0, start[0], 0.0, friction.cut, friction.delta, stop)
         at_constant_angle(1.0, start[0], TURN_SHARE, friction.cut, friction.delta, turned)
         stop[PSI] = turned[PSI]
-        energy = kinetic_energy(1.0, u)
+        energy = kinetic_energy(1.0, u, inertia(friction.cut))
         residual = abs(stop[WORK] - energy) / energy
     return Run(
         friction,
@@ -178,27 +186,39 @@ def _integrated(u: float, friction: Friction, choice: Choice) -> Run:
         steps, tableau = choice.way.number("steps"), RK4
     else:
         tolerance = choice.way.number("local")
-    z, y, result = _steps(u, friction, tableau, steps, tolerance)
-    _, _, finer = _steps(u, friction, tableau, 2.0 * steps, max(0.1 * tolerance, 4e-15))
+    z, y, result = step_ends(u, friction, tableau, steps, tolerance)
+    _, _, finer = step_ends(u, friction, tableau, 2.0 * steps, max(0.1 * tolerance, 4e-15))
     difference = float(np.abs(result[T : X + 2] - finer[T : X + 2]).max())
-    rates = np.empty(SIZE)
-    derivatives(0.0, y[-1], friction.cut, friction.delta, rates)
     return Run(
         friction,
         tableau,
         z=z,
         y=y,
         stop=result[:SIZE],
-        turn_rate=0.25 * float(rates[PSI]),  # at z = 0, dz = −d ln Q/4
+        turn_rate=turn_rate_at(y[-1], friction),
         energy_residual=float(result[SIZE]),
         steps=len(z) - 1,
         error=difference + 0.01 * choice.tol + friction.error,
     )
 
 
-def _steps(
+def turn_rate_at(state: FloatArray, friction: Friction) -> float:
+    """Turn of the heading for each factor e of Q."""
+    rates = np.empty(SIZE)
+    derivatives(0.0, state, friction.cut, friction.delta, rates)
+    return 0.25 * float(rates[PSI])  # at z = 0, dz = −d ln Q/4
+
+
+def step_ends(
     u: float, friction: Friction, tableau: Tableau, steps: float, tolerance: float
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """The step ends z (n,), y (n, 8) of an integration, and its stop with the energy residual.
+
+    Raises
+    ------
+    PuckError
+        If the stop is not reached.
+    """
     z, y = np.empty(_STEP_LIMIT), np.empty((_STEP_LIMIT, SIZE))
     result = np.empty(SIZE + 1)
     status, count = integrate(

@@ -37,6 +37,20 @@ class LookUp:
     choice: Choice | None = None
     method: str = "look-up"
 
+    @property
+    def source(self) -> str:
+        """What the stops come from, in words."""
+        return self.table.source
+
+    @property
+    def digest(self) -> str:
+        """What determines the bits besides the launches."""
+        return f"{self.method} {self.table.passport.get('content_digest', '')}"
+
+    def checked_range(self, delta: npt.ArrayLike) -> FloatArray:
+        """``delta`` as an array, refused outside the range of the table."""
+        return self.table.checked_range(delta)
+
     def first(self, launches: FloatArray) -> tuple[FloatArray, Status]:
         """Stop time, x, y (3, n) and status (n,) of checked launches (6, n)."""
         out, overflows = self.table.stops(launches, self.powers, self.thinning)
@@ -63,6 +77,20 @@ class Integration:
     exact: bool
     choice: Choice | None = None
     method: str = "integrated"
+
+    @property
+    def source(self) -> str:
+        """What the stops come from, in words."""
+        return self.table.source
+
+    @property
+    def digest(self) -> str:
+        """What determines the bits besides the launches."""
+        return f"{self.method} {self.table.passport.get('content_digest', '')}"
+
+    def checked_range(self, delta: npt.ArrayLike) -> FloatArray:
+        """``delta`` as an array, refused outside the range of the table."""
+        return self.table.checked_range(delta)
 
     def first(self, launches: FloatArray) -> tuple[FloatArray, Status]:
         """The same as :meth:`all`: no part of it comes cheaper."""

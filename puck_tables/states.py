@@ -7,6 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables.body import body_of, is_plain
+from puck_tables.contact.laws import HOMOGENEOUS, Law, law_of
+from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import InputError
 from puck_tables.executor import run_chunks
 from puck_tables.puck import velocity_array
@@ -58,6 +61,8 @@ def flow(
     decel: npt.ArrayLike = 1.0,
     radius: npt.ArrayLike = 1.0,
     table: StopTable | None = None,
+    pressure: str | Law = "uniform",
+    gyration: float = HOMOGENEOUS,
 ) -> States:
     """States of pucks at times after their launches, in any order, also after the stop.
 
@@ -66,11 +71,16 @@ def flow(
     v0 : array_like (…, 2), m/s
     w0 : array_like (…), rad/s, counter-clockwise positive
     t : array_like (…), s, ≥ 0
-    delta : array_like (…), dimensionless height 2fh/r, from 0 to 1
+    delta : array_like (…), dimensionless height 2fh/r
+        Below 3.9637 under uniform pressure, up to the full contact of another law; with a table 0
+        to 1.
     decel : array_like (…), J = fg, m/s², > 0
     radius : array_like (…), m, > 0
     table : StopTable, optional
         The default one if left out.
+    pressure, gyration
+        As :func:`puck_tables.simulate`.  For δ > 1 or another kind of puck each puck is integrated,
+        which takes some milliseconds, and a second for each different height.
 
     Returns
     -------
@@ -101,25 +111,22 @@ def flow(
     >>> states.x.round(6).tolist(), states.spin.round(6).tolist()
     ([1.590682, 0.0, 2.213952], [2.426862, 5.0, 0.0])
     """
-    from puck_tables.similarity.curve_lookup import (
-        PSI,
-        SPEED,
-        SPIN,
-        STATE_ROWS,
-        THETA,
-        X,
-        Y,
-        fill_states,
-    )
+    from puck_tables.similarity.curve_lookup import STATE_ROWS, fill_states
+    from puck_tables.sliced import states_of
 
     instance("table", table, StopTable, type(None))
+    if table is None:
+        highest = float(np.max(checked_delta(delta), initial=0.0))
+        plain = is_plain(pressure, gyration, highest)
+    elif not (plain := is_plain(pressure, gyration, 0.0)):
+        raise InputError("stop tables are of a homogeneous puck under uniform pressure")
     chosen = load_stop_table() if table is None else table
     velocity = velocity_array(v0)
     columns = broadcast(
         vx=velocity[..., 0],
         vy=velocity[..., 1],
         w0=finite_array("w0", w0, "rad/s"),
-        delta=chosen.checked_range(delta),
+        delta=chosen.checked_range(delta) if plain else checked_delta(delta),
         decel=positive_array("decel", decel, "m/s^2"),
         radius=positive_array("radius", radius, "m"),
     )
@@ -131,13 +138,27 @@ def flow(
         raise InputError(
             "v0, w0, radius and decel give a motion too large for floating point: use larger units"
         )
-    known = chosen.known(launches)
     numbers = np.arange(launches.shape[1]).reshape(columns[0].shape)
     which, moments = broadcast(v0=numbers.astype(np.float64), t=times)
     shape = which.shape
     flat_which = np.ascontiguousarray(which, np.int64).reshape(-1)
     flat_moments = np.ascontiguousarray(moments).reshape(-1)
     out = np.empty((STATE_ROWS, flat_which.size))
+    if not plain:
+        law = pressure if isinstance(pressure, Law) else law_of(pressure)
+        bodies = {d: body_of(law, d, gyration) for d in np.unique(launches[3]).tolist()}
+
+        def integrate(start: int, stop: int) -> None:
+            for n in range(start, stop):
+                mine = flat_which == n
+                if mine.any():
+                    out[:, mine] = states_of(
+                        bodies[float(launches[3, n])], launches[:, n], flat_moments[mine]
+                    )
+
+        run_chunks(integrate, launches.shape[1], 1)
+        return _states(out, launches, flat_which, shape)
+    known = chosen.known(launches)
     pucks = np.concatenate([launches, known]).T.copy()
 
     def work(start: int, stop: int) -> None:
@@ -149,16 +170,25 @@ def flow(
         out[:, start:stop] = part
 
     run_chunks(work, flat_which.size, _CHUNK)
+    return _states(out, launches, flat_which, shape)
+
+
+def _states(
+    out: FloatArray, launches: FloatArray, which: npt.NDArray[np.int64], shape: tuple[int, ...]
+) -> States:
+    """Rows of states, headings from those of the launches, in their shape."""
+    from puck_tables.similarity.curve_lookup import PSI, SPEED, SPIN, THETA, X, Y
+
     rows = [row.reshape(shape) for row in out]
     direction = np.where(
-        (columns[0] == 0.0) & (columns[1] == 0.0), 0.0, np.arctan2(columns[1], columns[0])
+        (launches[0] == 0.0) & (launches[1] == 0.0), 0.0, np.arctan2(launches[1], launches[0])
     )
     return States(
         x=rows[X],
         y=rows[Y],
-        heading=rows[PSI] + direction.ravel()[flat_which].reshape(shape),
+        heading=rows[PSI] + direction[which].reshape(shape),
         orientation=rows[THETA],
         speed=rows[SPEED],
         spin=rows[SPIN],
-        radius=launches[5][flat_which].reshape(shape),
+        radius=launches[5][which].reshape(shape),
     )

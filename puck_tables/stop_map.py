@@ -13,7 +13,9 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables.any_stops import HEIGHT_COST, AnyStops
 from puck_tables.checkpoint import Checkpoint
+from puck_tables.contact.laws import HOMOGENEOUS, Law
 from puck_tables.errors import InputError
 from puck_tables.executor import run_chunks
 from puck_tables.front import Choice
@@ -21,8 +23,8 @@ from puck_tables.kernels.cache import source_digest
 from puck_tables.puck import positive, velocity_array
 from puck_tables.real import finite_array
 from puck_tables.similarity.stop_table import StopTable
-from puck_tables.solvers import OUTPUTS, Integration, LookUp, solver_for
-from puck_tables.stops import DEFAULT_TOL
+from puck_tables.solvers import OUTPUTS, Integration, LookUp
+from puck_tables.stops import DEFAULT_TOL, any_solver
 from puck_tables.table.table import Table
 
 FloatArray = npt.NDArray[np.float64]
@@ -76,6 +78,8 @@ def sweep(
     tol: float = DEFAULT_TOL,
     method: str | None = None,
     table: Table | StopTable | None = None,
+    pressure: str | Law = "uniform",
+    gyration: float = HOMOGENEOUS,
     threads: int | None = None,
     chunk: int = CHUNK,
     progress: Progress | None = None,
@@ -89,11 +93,12 @@ def sweep(
     speed : number or array (n,), m/s, ≥ 0, along x
         Without ``w0``, ``speed`` and ``v0``: a map of 41 speeds by 41 spins.
     v0 : (vx, vy), m/s, instead of ``speed``
-    delta : number or array (n,), dimensionless height in the table's range
+    delta : number or array (n,), dimensionless height
+        Below 3.9637 under uniform pressure, up to the full contact of another law.
     decel, radius : J = fg in m/s² and m, > 0
     tol : float
         Largest error in units of Q/J (time) and Q²/J (place).
-    method, table : optional
+    method, table, pressure, gyration : optional
         As in :func:`puck_tables.stop`.
     threads, chunk : int
         How the work is cut; the numbers do not depend on it, to the last bit.
@@ -124,7 +129,7 @@ def sweep(
     for name, count in (("chunk", chunk), ("threads", 1 if threads is None else threads)):
         if not isinstance(count, int) or count < 1:
             raise InputError(f"{name} must be a whole number from 1 on, got {count!r}")
-    solver = solver_for(tol, table, method)
+    solver = any_solver(tol, table, method, pressure, gyration, delta)
     if v0 is not None and speed is not None:
         raise InputError("v0 and speed both give the velocity: give one of them")
     if w0 is None and speed is None and v0 is None:
@@ -149,7 +154,7 @@ def sweep(
             raise InputError(f"{name} must be a number or a list of numbers")
     if "speed" in values and not np.all(values["speed"] >= 0.0):
         raise InputError(f"speed must not be negative, got {values['speed'].min():g} m/s")
-    solver.table.checked_range(values["delta"])
+    solver.checked_range(values["delta"])
     axes = {name: array for name, array in values.items() if array.ndim == 1}
     fixed.update({name: float(array) for name, array in values.items() if array.ndim == 0})
     shape = tuple(array.size for array in axes.values())
@@ -158,6 +163,21 @@ def sweep(
     size = math.prod(shape)
     flat = {name: array.ravel() for name, array in values.items()}
     sizes = tuple(array.size for array in flat.values())
+
+    prepared = 0
+    if isinstance(solver, AnyStops):
+        heights = np.unique(flat["delta"])
+        prepared = HEIGHT_COST * heights.size
+
+        def on_heights(done: int, total: int) -> None:
+            if progress is not None:
+                progress(HEIGHT_COST * done, prepared + size)
+
+        solver.prepare(heights, size // heights.size, threads, on_heights)
+
+    def on_stops(done: int, total: int) -> None:
+        if progress is not None:
+            progress(prepared + done, prepared + size)
 
     def stops_of(start: int, stop: int) -> tuple[FloatArray, npt.NDArray[np.int8]]:
         index = np.unravel_index(np.arange(start, stop), sizes)
@@ -175,7 +195,7 @@ def sweep(
         def work(start: int, stop: int) -> None:
             out[:, start:stop], status[start:stop] = stops_of(start, stop)
 
-        run_chunks(work, size, chunk, threads, progress)
+        run_chunks(work, size, chunk, threads, on_stops)
     else:
         what = _digest(solver, values, {**fixed, "tol": tol})
         with Checkpoint(checkpoint, what, len(OUTPUTS), size, chunk) as kept:
@@ -184,7 +204,7 @@ def sweep(
                 if not kept.is_done(start):
                     kept.put(start, stop, *stops_of(start, stop))
 
-            run_chunks(work_on, size, chunk, threads, progress)
+            run_chunks(work_on, size, chunk, threads, on_stops)
             out[...], status[...] = kept.values, kept.status
     results = {name: row.reshape(shape) for name, row in zip(OUTPUTS, out, strict=True)}
     return StopMap(
@@ -193,19 +213,20 @@ def sweep(
         tol=tol,
         method=solver.method,
         choice=solver.choice,
-        table=solver.table.source,
+        table=solver.source,
         status=status.reshape(shape),
         **results,
     )
 
 
 def _digest(
-    solver: LookUp | Integration, values: dict[str, FloatArray], numbers: dict[str, float]
+    solver: LookUp | Integration | AnyStops,
+    values: dict[str, FloatArray],
+    numbers: dict[str, float],
 ) -> str:
     """What determines the bits of a map."""
     arrays = {name: hashlib.sha256(array.tobytes()).hexdigest() for name, array in values.items()}
-    table = solver.table.passport.get("content_digest", "")
-    what = [solver.method, table, source_digest(), arrays, numbers]
+    what = [solver.digest, source_digest(), arrays, numbers]
     return hashlib.sha256(json.dumps(what, sort_keys=True).encode()).hexdigest()
 
 

@@ -7,6 +7,10 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables.any_stops import AnyStops
+from puck_tables.body import is_plain
+from puck_tables.contact.laws import HOMOGENEOUS, Law
+from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import InputError
 from puck_tables.puck import velocity_array
 from puck_tables.real import broadcast, finite_array
@@ -31,7 +35,7 @@ class Stops:
     """
 
     def __init__(
-        self, solver: LookUp | Integration, launches: FloatArray, shape: tuple[int, ...]
+        self, solver: LookUp | Integration | AnyStops, launches: FloatArray, shape: tuple[int, ...]
     ) -> None:
         self._values, status = solver.first(launches)
         self._solver, self._launches, self._shape = solver, launches, shape
@@ -80,6 +84,8 @@ def stop(
     tol: float = DEFAULT_TOL,
     method: str | None = None,
     table: Table | StopTable | None = None,
+    pressure: str | Law = "uniform",
+    gyration: float = HOMOGENEOUS,
 ) -> Stops:
     """Where and when pucks stop; everything broadcasts.
 
@@ -87,7 +93,10 @@ def stop(
     ----------
     v0 : array_like (…, 2), m/s
     w0 : array_like (…), rad/s, counter-clockwise positive
-    delta : array_like (…), dimensionless height 2fh/r, in the table's range (0 to 1)
+    delta : array_like (…), dimensionless height 2fh/r
+        Below 3.9637 under uniform pressure, up to the full contact of another law; with a table, in
+        its range (0 to 1).  Beyond 1 or for another kind of puck each different height takes about
+        a second to prepare, at most 500 of them.
     decel : array_like (…), J = fg, m/s², > 0
     radius : array_like (…), m, > 0
     tol : float
@@ -98,6 +107,8 @@ def stop(
         Only this one.
     table : StopTable or Table, optional
         A stop table: looked up.  A table of resultants: integrated.
+    pressure, gyration
+        As :func:`puck_tables.simulate`.
 
     Returns
     -------
@@ -120,18 +131,49 @@ def stop(
     >>> result.stop_time.round(6).tolist(), result.method
     ([1.395088, 4.000189], 'look-up')
     """
-    solver = solver_for(tol, table, method)
+    solver = any_solver(tol, table, method, pressure, gyration, delta)
     velocity = velocity_array(v0)
     columns = broadcast(
         vx=velocity[..., 0],
         vy=velocity[..., 1],
         w0=finite_array("w0", w0, "rad/s"),
-        delta=solver.table.checked_range(delta),
+        delta=solver.checked_range(delta),
         decel=positive_array("decel", decel, "m/s^2"),
         radius=positive_array("radius", radius, "m"),
     )
     shape = columns[0].shape
+    if isinstance(solver, AnyStops):
+        solver.prepare(*np.unique(columns[3], return_counts=True))
     return Stops(solver, np.stack([column.ravel() for column in columns]), shape)
+
+
+def any_solver(
+    tol: float, table: Table | StopTable | None, method: str | None, pressure: str | Law,
+    gyration: float, delta: npt.ArrayLike,
+) -> LookUp | Integration | AnyStops:  # fmt: skip
+    """The way to stops of pucks of these kinds.
+
+    Raises
+    ------
+    InputError
+        If a table is given for other pucks than it is of.
+
+    Examples
+    --------
+    >>> type(any_solver(1e-8, None, None, "uniform", HOMOGENEOUS, [0.5, 1.0])).__name__
+    'LookUp'
+    """
+    highest = np.max(checked_delta(delta), initial=0.0)
+    if is_plain(pressure, gyration, float(highest)):
+        return solver_for(tol, table, method)
+    if table is None:
+        return AnyStops(pressure, gyration, tol, method)
+    if not is_plain(pressure, gyration, 0.0):
+        raise InputError(
+            "tables of stops are of a homogeneous puck under uniform pressure: leave out table, or "
+            "pressure and gyration"
+        )
+    return solver_for(tol, table, method)
 
 
 def positive_array(name: str, values: npt.ArrayLike, unit: str) -> FloatArray:

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables.body import Body, body_of, is_plain
+from puck_tables.contact.laws import HOMOGENEOUS, Law
 from puck_tables.errors import InputError
 from puck_tables.front import Choice, Way
 from puck_tables.puck import positive, real, velocity_array
@@ -15,6 +18,10 @@ from puck_tables.real import finite_array, instance
 from puck_tables.solvers import choose_with
 from puck_tables.table.file import load_table
 from puck_tables.table.table import Table
+
+if TYPE_CHECKING:
+    from puck_tables.run import Run
+    from puck_tables.sliced import Contact
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -29,7 +36,7 @@ class Trajectory:
     """A motion from launch to stop.
 
     Scalars (SI): what went in (``v0`` m/s, ``w0`` rad/s, ``radius`` m, ``delta``, ``decel`` m/s²,
-    ``mass`` kg), and
+    ``mass`` kg, ``pressure`` the name of the law, ``gyration`` the radius of gyration over r), and
 
     * ``regime``: A rest, B0 pure spin, C0 pure translation, D limit motion, B, C generic;
     * ``stop_time`` s, ``stop_position`` (2,) m from the launch, ``path_length`` m;
@@ -37,7 +44,11 @@ class Trajectory:
       of its start; for δ > 0 it turns on, by ``turn_rate`` rad for each factor e of Q, and no
       final direction exists;
     * ``body_angle`` rad: how far the puck itself has turned;
-    * ``limit_angle`` rad: φ₀(δ), which every generic motion approaches;
+    * ``limit_angle`` rad: φ₀, which every generic motion approaches; 0 where the spin dies out
+      first, π/2 where the sliding does;
+    * ``loaded_share`` of the base at the launch and the least on the way, ``least_loaded_share``: 1
+      in full contact; ``contact_opens``, ``contact_closes`` s: when part of the base lifts, and
+      when all of it is down again (None: never);
     * ``kinetic_energy`` J at the launch; ``energy_residual``: the largest difference between
       energy lost and work of friction along the path, as a share of it;
     * ``method``, ``steps``, and ``error_estimate`` in units of Q/J (times) and Q²/J (places);
@@ -54,6 +65,8 @@ class Trajectory:
     delta: float
     decel: float
     mass: float
+    pressure: str
+    gyration: float
     regime: str
     stop_time: float
     stop_position: tuple[float, float]
@@ -62,6 +75,10 @@ class Trajectory:
     turn_rate: float
     body_angle: float
     limit_angle: float
+    loaded_share: float
+    least_loaded_share: float
+    contact_opens: float | None
+    contact_closes: float | None
     kinetic_energy: float
     energy_residual: float
     method: str
@@ -87,6 +104,8 @@ def simulate(
     decel: float = 1.0,
     radius: float = 1.0,
     mass: float = 1.0,
+    pressure: str | Law = "uniform",
+    gyration: float = HOMOGENEOUS,
     frames: int | None = None,
     times: npt.ArrayLike | None = None,
     tol: float = DEFAULT_TOL,
@@ -101,25 +120,32 @@ def simulate(
     v0 : (vx, vy), m/s
     w0 : spin, rad/s, counter-clockwise positive
     delta : dimensionless height 2fh/r
-        In the table's range (0 to 1); with ``exact`` also above, where contact stays full.
+        Below 3.9637 under uniform pressure (from 1 on part of the base may lift), up to the full
+        contact of another law.
     decel : J = fg, m/s², > 0
     radius : m, > 0
     mass : kg, > 0; only the energy depends on it
+    pressure : the contact pressure: uniform, galin, hertz, ring, annulus:INNER, a CSV file of ρ, W,
+        or a Law
+    gyration : radius of gyration about the vertical axis over r, 0.1 to 10; √½ for a homogeneous
+        puck
     frames : int, optional
         How many states, equally spaced from the launch to the stop (1: the launch); default 101.
     times : array_like, s, ≥ 0, any order, optional
         The times of the states instead; after the stop the puck is at rest.
     tol : float
-        Largest error of the stop wanted, in units of Q/J (time) and Q²/J (place); 1e-13 to 0.01.
+        Largest error of the stop wanted, in units of Q/J (time) and Q²/J (place); 1e-13 to 0.01,
+        from 1e-11 on for a puck with δ > 1, another law or radius of gyration.
         The cheapest integrator whose measured error is below it is taken (a trajectory is
         integrated and not looked up: it carries an account of its energy); ``choice`` of the result
         says which and why.
     method : 'adaptive' (Dormand–Prince 5(4)) or 'rk4', optional
         Only this one.
     exact : bool
-        Closed forms instead of the table.
+        Closed forms instead of the table: a homogeneous puck under uniform pressure in full
+        contact.
     table : Table, optional
-        The default table if left out.
+        For the same; the default table if left out.
 
     Returns
     -------
@@ -130,7 +156,8 @@ def simulate(
     InputError
         If an argument is not finite, has the wrong shape or lies outside its range.
     ContactError
-        If part of the base would be lifted on the way: the linear pressure law ends there.
+        If the puck tips (δ ≥ 4), its contact is not determined (δ > 3.9637), or, with ``exact``,
+        part of the base would be lifted on the way.
     AccuracyError
         If the tolerance is out of reach of table or method.
 
@@ -151,48 +178,44 @@ def simulate(
     spin = real("w0", w0, "rad/s")
     r, J = positive("radius", radius, "m"), positive("decel", decel, "m/s^2")
     m = positive("mass", mass, "kg")
-    height = real("delta", delta, "dimensionless")
+    height, wanted = real("delta", delta, "dimensionless"), real("tol", tol, "dimensionless")
     instance("table", table, Table, type(None))
     if exact and table is not None:
         raise InputError("exact and table exclude each other: closed forms need no table")
-    _check_frames(frames, times)
-    if not 0.0 <= height < 2.0:
-        raise InputError(
-            f"delta = 2 f h / r must be from 0 to below 2, got {height:g}: the linear pressure law "
-            "of full contact holds at every phi up to 1, and beyond 2 in no motion but pure spin"
-        )
-
-    from puck_tables.motion.equations import LENGTH, PSI, THETA, T, X, Y
-    from puck_tables.motion.limits import limit_log_ratio, regime_of
-    from puck_tables.run import closed_form_friction, run_motion, table_friction
-
-    wanted = real("tol", tol, "dimensionless")
     if method not in (None, "adaptive", "rk4"):
         raise InputError(f"method must be 'adaptive' or 'rk4', got {method!r}")
-    chosen = load_table() if table is None else table
-    if not exact:
-        chosen.checked_range(height)
-    choice = choose_with("trajectory", wanted, method, table, exact)
-    by_closed_form = exact or (table is None and choice.way.method.endswith("closed forms"))
-    friction = closed_form_friction(height) if by_closed_form else table_friction(height, chosen)
+    _check_frames(frames, times)
+    plain = is_plain(pressure, gyration, height)
+    if (exact or table is not None) and not is_plain(pressure, gyration, 0.0):
+        raise InputError(
+            "closed forms and tables are for a homogeneous puck under uniform pressure: leave out "
+            "exact and table, or pressure and gyration"
+        )
+    body = None if plain or exact or table is not None else body_of(pressure, height, gyration)
+    square = 0.5 if body is None else body.inertia
     speed, rim = math.hypot(vx, vy), r * abs(spin)
     q0 = math.hypot(speed, rim)
-    limit = limit_log_ratio(height)
-    regime = regime_of(speed, rim, limit)
     scale_time, scale_length = q0 / J, q0 / J * q0
-    energy = 0.5 * m * (speed * speed + 0.5 * rim * rim)
+    energy = 0.5 * m * (speed * speed + square * rim * rim)
     if not all(map(math.isfinite, (scale_time, scale_length, scale_length / r, q0 / r, energy))):
         raise InputError(
             f"v0, w0, radius, decel and mass give a motion too large for floating point "
             f"(Q = {q0:g} m/s, J = {J:g} m/s^2): use larger units"
         )
 
-    run = run_motion(regime, speed, rim, limit, friction, choice)
+    from puck_tables.motion.equations import LENGTH, PSI, THETA, T, X, Y
+
+    if body is None:
+        solved = _solved_plainly(height, speed, rim, wanted, method, exact, table)
+    else:
+        solved = _solved_by_slice(body, speed, rim, wanted, method)
+    regime, limit, run, contact, choice, source = solved
     stop_time = float(run.stop[T] * scale_time)
     moments = _moments(frames, times, stop_time)
     look_up = (
         moments.size >= LOOK_UP_FRAMES
         and regime in ("B", "C")
+        and body is None
         and not exact
         and table is None
         and method is None
@@ -209,7 +232,10 @@ def simulate(
     east, north = (vx / speed, vy / speed) if speed > 0.0 else (1.0, 0.0)
     end_along, end_left = scale_length * run.stop[X], side * scale_length * run.stop[Y]
     return Trajectory(
-        v0=(vx, vy), w0=spin, radius=r, delta=height, decel=J, mass=m, regime=regime,
+        v0=(vx, vy), w0=spin, radius=r, delta=height, decel=J, mass=m,
+        pressure="uniform" if body is None else body.law.name,
+        gyration=HOMOGENEOUS if body is None else body.gyration,
+        regime=regime,
         stop_time=stop_time,
         stop_position=(
             float(end_along * east - end_left * north) + 0.0,
@@ -220,9 +246,13 @@ def simulate(
         turn_rate=float(side * run.turn_rate) + 0.0,
         body_angle=float(side * run.stop[THETA] * (scale_length / r)) + 0.0,
         limit_angle=math.atan(math.exp(limit)),
+        loaded_share=contact.launch,
+        least_loaded_share=contact.least,
+        contact_opens=None if contact.opens is None else contact.opens * scale_time,
+        contact_closes=None if contact.closes is None else contact.closes * scale_time,
         kinetic_energy=energy,
         energy_residual=run.energy_residual,
-        method=_method_name(regime, choice.way, by_closed_form)
+        method=_method_name(regime, choice.way, source)
         + ("; states by look-up" if look_up else ""),
         steps=run.steps,
         error_estimate=run.error,
@@ -230,6 +260,58 @@ def simulate(
         time=moments,
         **columns,
     )  # fmt: skip
+
+
+class _Solved(NamedTuple):
+    """A motion in natural units; ``limit`` is ln tan φ₀, ``source`` where the friction is from."""
+
+    regime: str
+    limit: float
+    run: Run
+    contact: Contact
+    choice: Choice
+    source: str
+
+
+def _solved_plainly(
+    delta: float, speed: float, rim: float, tol: float, method: str | None, exact: bool,
+    table: Table | None,
+) -> _Solved:  # fmt: skip
+    """A homogeneous puck under uniform pressure in full contact."""
+    from puck_tables.motion.limits import limit_log_ratio, regime_of
+    from puck_tables.run import closed_form_friction, run_motion, table_friction
+    from puck_tables.sliced import Contact
+
+    if not 0.0 <= delta < 2.0:
+        raise InputError(
+            f"delta = 2 f h / r must be from 0 to below 2, got {delta:g}: the linear pressure law "
+            "of full contact holds at every phi up to 1, and beyond 2 in no motion but pure spin"
+        )
+    chosen = load_table() if table is None else table
+    if not exact:
+        chosen.checked_range(delta)
+    choice = choose_with("trajectory", tol, method, table, exact)
+    by_closed_form = exact or (table is None and choice.way.method.endswith("closed forms"))
+    friction = closed_form_friction(delta) if by_closed_form else table_friction(delta, chosen)
+    limit = limit_log_ratio(delta)
+    regime = regime_of(speed, rim, limit)
+    run = run_motion(regime, speed, rim, limit, friction, choice)
+    source = "closed forms" if by_closed_form else "table"
+    return _Solved(regime, limit, run, Contact(), choice, source)
+
+
+def _solved_by_slice(
+    body: Body, speed: float, rim: float, tol: float, method: str | None
+) -> _Solved:
+    """Any other."""
+    from puck_tables.motion.limits import regime_of
+    from puck_tables.sliced import LIMIT_WIDTH, checked_tol, contact_of, run_sliced
+
+    wanted = checked_tol(tol)
+    limit = body.limit
+    regime = regime_of(speed, rim, limit, LIMIT_WIDTH)
+    run, choice = run_sliced(body, regime, speed, rim, wanted, method)
+    return _Solved(regime, limit, run, contact_of(body, regime, run), choice, "slice")
 
 
 def _integrated(
@@ -308,8 +390,7 @@ def _slip_angle(
     return angle
 
 
-def _method_name(regime: str, way: Way, by_closed_form: bool) -> str:
-    source = "closed forms" if by_closed_form else "table"
+def _method_name(regime: str, way: Way, source: str) -> str:
     if regime not in ("B", "C"):
         return "exact solution at constant slip angle"
     stepper = (

@@ -132,7 +132,7 @@ def test_the_target_under_the_puck():
         (((1.0,),), {}, "one place"),
         ((TARGET,), {"speed": -1.0}, "speed must be greater"),
         ((TARGET,), {"max_spin": 0.0}, "max_spin must be greater"),
-        ((TARGET,), {"delta": 1.1}, "outside this table"),
+        ((TARGET,), {"delta": 4.0}, "tips"),
         ((TARGET,), {"count": 0}, "count"),
         ((TARGET,), {"w0": math.inf}, "w0"),
         (((math.nan, 0.0),), {}, "target"),

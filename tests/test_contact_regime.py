@@ -55,7 +55,7 @@ def test_contact_error_names_the_first_bad_point():
     with pytest.raises(ContactError, match=r"phi = 0\.25, delta = 1\.2 "):
         resultants(phi, 1.2)
     with pytest.raises(ContactError):
-        limit_angle([0.5, 1.1])
+        limit_angle([0.5, 4.0])
 
 
 @pytest.mark.parametrize("function", [resultants, is_full_contact])

@@ -252,7 +252,7 @@ def test_states_broadcast_over_pucks_and_times():
     [
         (((1, 0), 1.0, -1.0), {}, "t must not be negative"),
         (((1, 0), 1.0, math.nan), {}, "t must be finite"),
-        (((1, 0), 1.0, 1.0), {"delta": 1.2}, "outside this table"),
+        (((1, 0), 1.0, 1.0), {"delta": 4.2}, "tips"),
         (((1, 0), [1.0, 2.0], [1.0, 2.0, 3.0]), {}, "broadcast"),
         (((1e200, 0), 1.0, 1.0), {}, "too large"),
     ],

@@ -13,13 +13,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from functools import partial
+from functools import lru_cache, partial
 from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.contact import closed_form, quadrature
+from puck_tables.contact import closed_form, one_sided, quadrature
 from puck_tables.contact.integrals import FloatArray, PatchIntegrals, checked_phi, slip_direction
 from puck_tables.contact.pressure import GALIN, HERTZ
 from puck_tables.contact.resultants import Resultants, checked_delta, moment_balance
@@ -36,6 +36,7 @@ NAMES = "uniform, galin, hertz, ring, annulus:INNER (0 < INNER < 1), or a CSV fi
 _SLACK = 1e-9  # of δ/δ_max: names and files carry twelve digits
 _LARGEST = 1e-5  # a limit ratio above 1e5 is none: there the two rates agree to rounding
 MAX_PROFILE_BYTES = 1 << 24
+HOMOGENEOUS = 0.5**0.5  # radius of gyration over r of a homogeneous cylinder about its axis
 THINNEST = 1.0 - 1e-6  # inner radius of the thinnest washer; beyond it take the ring
 
 
@@ -75,6 +76,11 @@ class Law:
         """The height up to which contact is full at every φ: 4⟨x²⟩."""
         return 4.0 * self.mean_square
 
+    @property
+    def can_lift(self) -> bool:
+        """Whether partial contact is known: under uniform pressure."""
+        return self.integrals is closed_form.integrals
+
     def resultants(self, phi: npt.ArrayLike, delta: npt.ArrayLike) -> Resultants:
         """Friction resultants of full contact under this law.
 
@@ -113,6 +119,34 @@ class Law:
         # not broadcast before: the integrals are the work, once for each angle
         return moment_balance(self.integrals(angle), slip_direction(angle), scaled)
 
+    def friction(self, phi: npt.ArrayLike, delta: npt.ArrayLike) -> Resultants:
+        """Friction resultants at every height for which they are known.
+
+        Under uniform pressure that is also beyond full contact
+        (:func:`puck_tables.contact.one_sided.resultants`).
+
+        Parameters
+        ----------
+        phi : array_like, radians, in [−π/2, π/2]
+        delta : array_like
+            Dimensionless height 2fh/r: below 4 under uniform pressure, else at most ``delta_max``.
+
+        Returns
+        -------
+        Resultants
+
+        Raises
+        ------
+        InputError, ContactError
+            If an argument is not finite or outside its range, or the puck tips.
+
+        Examples
+        --------
+        >>> float(law_of("uniform").friction(0.5, 2.0).spin.round(7))
+        0.2196328
+        """
+        return (one_sided.resultants if self.can_lift else self.resultants)(phi, delta)
+
 
 def law_of(text: str) -> Law:
     """The pressure law of a name, or of a CSV file with columns ρ (in units of r) and W.
@@ -150,10 +184,16 @@ def law_of(text: str) -> Law:
                 f"annulus:{rest}: the inner radius must be a number between 0 and 1 in units of "
                 "the outer (0 is 'uniform', 1 is 'ring')"
             )
-        return Law(f"annulus:{inner}", (inner, 1.0), partial(annulus_integrals, inner=inner))
+        return _washer(inner)
     if not text.lower().endswith(".csv"):
         raise InputError(f"no pressure law is called {text!r}: choose {NAMES}")
     return profile_law(*_read(text), name=Path(text).name)
+
+
+@lru_cache(maxsize=64)
+def _washer(inner: float) -> Law:
+    """One law for one inner radius: what is kept by law is found again."""
+    return Law(f"annulus:{inner}", (inner, 1.0), partial(annulus_integrals, inner=inner))
 
 
 def profile_law(radii: npt.ArrayLike, pressure: npt.ArrayLike, name: str = "profile") -> Law:
@@ -224,14 +264,15 @@ _NAMED: dict[str, Callable[[npt.ArrayLike], PatchIntegrals]] = {
 }
 
 
-def limit_ratio(law: Law, delta: float = 0.0, gyration: float = 0.5**0.5) -> float:
+@lru_cache(maxsize=256)
+def limit_ratio(law: Law, delta: float = 0.0, gyration: float = HOMOGENEOUS) -> float:
     """The ratio rω/v that every motion tends to.
 
     Parameters
     ----------
     law : Law
     delta : float
-        Dimensionless height, at most ``law.delta_max``.
+        Dimensionless height, in the range of :meth:`Law.friction`.
     gyration : float
         Radius of gyration k about the vertical axis in units of r; √½ for a homogeneous puck.
 
@@ -239,7 +280,7 @@ def limit_ratio(law: Law, delta: float = 0.0, gyration: float = 0.5**0.5) -> flo
     -------
     float
         tan φ₀ with ρ_∥ = (r²/2k²) ρ_ω, from r ω' = −(r²/2k²) J sin φ ρ_ω; inf where spin always
-        outlasts the sliding (as under Hertz's law for k = √½), 0 where it never does.
+        outlasts the sliding (as under Hertz's law for k = √½, δ = 0), 0 where it never does.
 
     Raises
     ------
@@ -253,18 +294,18 @@ def limit_ratio(law: Law, delta: float = 0.0, gyration: float = 0.5**0.5) -> flo
     """
     if not 0.0 < gyration < np.inf:
         raise InputError(f"the radius of gyration must be positive, in units of r, got {gyration}")
-    low, high = 0.0, 0.5 * np.pi - _LARGEST
-    sliding, spinning = _braking(law, high, delta, gyration)
-    if sliding > spinning:
+    low, high = _LARGEST, 0.5 * np.pi - _LARGEST
+    if not _sliding_decays_faster(law, low, delta, gyration):
+        return 0.0
+    if _sliding_decays_faster(law, high, delta, gyration):
         return np.inf
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        sliding, spinning = _braking(law, middle, delta, gyration)
-        low, high = (middle, high) if sliding > spinning else (low, middle)
+    while low < (middle := 0.5 * (low + high)) < high:
+        faster = _sliding_decays_faster(law, middle, delta, gyration)
+        low, high = (middle, high) if faster else (low, middle)
     return float(np.tan(low))
 
 
-def _braking(law: Law, phi: float, delta: float, gyration: float) -> tuple[float, float]:
-    """Rates at which v and rω decay, in units of J/Q."""
-    rho = law.resultants(phi, delta)
-    return float(rho.parallel), float(rho.spin) / (2.0 * gyration**2)
+def _sliding_decays_faster(law: Law, phi: float, delta: float, gyration: float) -> bool:
+    """Whether v loses a larger share of itself than rω."""
+    rho = law.friction(phi, delta)
+    return bool(rho.parallel > rho.spin / (2.0 * gyration**2))

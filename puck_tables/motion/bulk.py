@@ -36,12 +36,16 @@ def fill_stops(
     """Stops of launches (6, n): vx, vy, ω, δ, J, r, into ``out`` (6, n), see solvers.OUTPUTS.
 
     With about ``steps`` steps of Runge–Kutta 4, or, if that is 0, with the pair ``tableau`` and
-    the local error ``tolerance``.  Empty ``coefficients`` mean closed forms.
+    the local error ``tolerance``.  Empty ``coefficients`` mean closed forms, a matrix is the slice
+    of one kind of puck, which all launches are of.
     One launch never influences another, so any cutting into chunks gives the same bits.
     """
-    closed_forms = np.empty(0)  # an empty cut
-    by_table = coefficients.size > 0
-    cut = np.empty(2 * 3 * coefficients.shape[2]) if by_table else closed_forms
+    if coefficients.ndim == 2:
+        at_ends, cut = coefficients, coefficients
+    else:
+        at_ends = np.empty(0)  # closed forms
+        by_table = coefficients.size > 0
+        cut = np.empty(2 * 3 * coefficients.shape[2]) if by_table else at_ends
     cut_delta = -1.0
     no_z, no_y = np.empty(0), np.empty((0, SIZE))
     start = np.empty(SIZE)
@@ -56,14 +60,15 @@ def fill_stops(
             for i in range(6):
                 out[i, n] = 0.0
             continue
-        if by_table and delta != cut_delta:
-            cut_table(coefficients, delta / delta_max, cut)
-            cut_delta = delta
+        if coefficients.ndim == 4:  # noqa: SIM102 - pruned when compiled
+            if by_table and delta != cut_delta:
+                cut_table(coefficients, delta / delta_max, cut)
+                cut_delta = delta
         if speed == 0.0 or rim == 0.0:
             for i in range(SIZE):
                 start[i] = 0.0
             start[U] = math.inf if speed == 0.0 else -math.inf
-            at_constant_angle(1.0, start, 0.0, closed_forms, delta, result)
+            at_constant_angle(1.0, start, 0.0, at_ends, delta, result)
         elif steps > 0.0:
             to_stop(log_ratio(speed, rim), steps, cut, delta, start, result)
         else:

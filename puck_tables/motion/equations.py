@@ -22,6 +22,14 @@ method of order 4 integrates almost exactly.  u keeps all digits near pure slidi
 spin (+∞), where it moves at constant rate in ln Q.  Only the three friction ratios of the table
 are needed, and one division.
 
+That is a homogeneous puck.  With radius of gyration k about the vertical axis only the equation of
+spin differs, r ω' = −(r²/2k²) J sin φ ρ_ω: then (r²/2k²) ρ_ω stands for ρ_ω, and in the work and
+the kinetic energy k²/r² for ½.
+
+Friction comes as a ``cut``, and its type says which: a flat array, empty for closed forms or a
+table cut at δ; or a matrix, the slice of any other puck (:mod:`puck_tables.kernels.slice_spline`),
+which carries its singular lines and its inertia.
+
 State vector: u, ψ, t, x, y, θ, l, W.
 """
 
@@ -34,6 +42,7 @@ import numpy.typing as npt
 
 from puck_tables.kernels.closed_form import friction_ratios
 from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.kernels.slice_spline import INERTIA, LINE, slice_ratios
 from puck_tables.kernels.spline import evaluate_cut
 
 FloatArray = npt.NDArray[np.float64]
@@ -54,12 +63,47 @@ def slip_ratio(u: float) -> tuple[float, bool, float, float]:
 
 @inlined
 def ratios_at(k: float, fast: bool, cut: FloatArray, delta: float) -> tuple[float, float, float]:
-    """The friction ratios at a slip ratio: from a table cut at δ, or exact if it is empty."""
+    """The friction ratios at a slip ratio: from a cut or a slice, or exact if it is empty."""
+    if cut.ndim == 2:
+        return slice_ratios(k, fast, cut)
     if cut.size == 0:
         return friction_ratios(k, 1.0 if fast else 0.0, delta)
     eta = math.sqrt(math.sqrt((1.0 - k) / (1.0 + k)))
     inverse, across, spin = evaluate_cut(cut, 1 if fast else 0, eta)
     return inverse, (across if delta > 0.0 else 0.0), spin  # a flat puck goes exactly straight
+
+
+@inlined
+def inertia(cut: FloatArray) -> float:
+    """The square of the radius of gyration over r."""
+    if cut.ndim == 2:
+        return cut[0, INERTIA]
+    return 0.5
+
+
+@inlined
+def crossed_line(u: float, new: float, cut: FloatArray) -> tuple[bool, float]:
+    """Whether a singular line lies strictly between u and ``new``, and the u of the first."""
+    if cut.ndim == 2:
+        crossed, first = False, 0.0
+        for row in range(0, cut.shape[0], 2):
+            line = cut[row, LINE]
+            between = (u - line) * (new - line) < 0.0
+            if between and (not crossed or abs(line - u) < abs(first - u)):
+                crossed, first = True, line
+        return crossed, first
+    return u * new < 0.0, 0.0
+
+
+@inlined
+def distance_to_line(u: float, cut: FloatArray) -> float:
+    """How far in u the nearest singular line is."""
+    if cut.ndim == 2:
+        nearest = math.inf
+        for row in range(0, cut.shape[0], 2):
+            nearest = min(nearest, abs(u - cut[row, LINE]))
+        return nearest
+    return abs(u)
 
 
 @kernel
@@ -80,7 +124,7 @@ def derivatives(z: float, y: FloatArray, cut: FloatArray, delta: float, out: Flo
     out[Y] = rate * cosine * math.sin(y[PSI])
     out[THETA] = rate * sine
     out[LENGTH] = rate * cosine
-    out[WORK] = q * q * (cos2 + 0.5 * sin2 * spin) * norm
+    out[WORK] = q * q * (cos2 + inertia(cut) * sin2 * spin) * norm
 
 
 @kernel
@@ -115,11 +159,11 @@ def at_constant_angle(
     half = 0.5 * (q - q_new) * (q + q_new)
     out[THETA] = y[THETA] + half * sine * inverse * norm
     out[LENGTH] = y[LENGTH] + half * cosine * inverse * norm
-    out[WORK] = y[WORK] + half * (cos2 + 0.5 * sin2 * spin) * norm
+    out[WORK] = y[WORK] + half * (cos2 + inertia(cut) * sin2 * spin) * norm
 
 
 @inlined
-def kinetic_energy(q: float, u: float) -> float:
-    """½ (v² + ½ r²ω²) in units of Q₀²."""
+def kinetic_energy(q: float, u: float, square: float) -> float:
+    """½ (v² + k²ω²) in units of Q₀², ``square`` = k²/r²."""
     _, _, cosine, sine = slip_ratio(u)
-    return 0.5 * q * q * (cosine * cosine + 0.5 * sine * sine)
+    return 0.5 * q * q * (cosine * cosine + square * sine * sine)

@@ -8,6 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.contact.closed_form import integrals
+from puck_tables.contact.laws import HOMOGENEOUS, Law, law_of
+from puck_tables.contact.laws import limit_ratio as law_limit_ratio
 from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import ContactError, InputError
 from puck_tables.kernels.closed_form import friction_ratios, resultants
@@ -45,53 +47,62 @@ def limit_log_ratio(delta: float) -> float:
             high = middle
 
 
-def limit_ratio(delta: npt.ArrayLike) -> FloatArray:
-    """The ratio rω/v that every generic motion approaches at its stop, tan φ₀(δ).
+def limit_ratio(
+    delta: npt.ArrayLike, pressure: str | Law = "uniform", gyration: float = HOMOGENEOUS
+) -> FloatArray:
+    """The ratio rω/v that every generic motion approaches at its stop, tan φ₀.
 
     Parameters
     ----------
-    delta : array_like, dimensionless, in [0, 1]
+    delta : array_like, dimensionless height 2fh/r
+        Below 4 under uniform pressure, up to the full contact of another law.
+    pressure : a pressure law, as :func:`puck_tables.law_of` takes it, or a Law
+    gyration : radius of gyration about the vertical axis over r; √½ for a homogeneous puck
 
     Returns
     -------
     array of the same shape
+        0 where the spin dies out before the sliding, inf where the sliding does.
 
     Raises
     ------
     InputError
-        If a height is not finite or negative.
+        If a height or the radius of gyration is out of range, or the law not known.
     ContactError
-        If a height is above 1, where full contact is not certain.
+        If the puck tips.
 
     References
     ----------
-    Salnikova, Treschev, Gallyamov 2012, sections 7–8.
+    Salnikova, Treschev, Gallyamov 2012, sections 3 and 7–8.
 
     Examples
     --------
-    >>> float(limit_ratio(0.0).round(12))
-    1.531389372174
+    >>> float(limit_ratio(0.0).round(12)), float(limit_ratio(2.0).round(9))
+    (1.531389372174, 1.403443712)
+    >>> float(limit_ratio(0.0, "ring", 1.0).round(12))
+    1.0
     """
     height = checked_delta(delta)
-    if not np.all(height <= 1.0):
-        raise ContactError(
-            f"delta = {height[height > 1.0].flat[0]:g}: the limit motion is known for full "
-            "contact, 0 <= delta <= 1"
-        )
-    return np.vectorize(lambda d: math.exp(limit_log_ratio(d)), otypes=[float])(height)
+    if pressure == "uniform" and gyration == HOMOGENEOUS and np.all(height <= 1.0):
+        return np.vectorize(lambda d: math.exp(limit_log_ratio(d)), otypes=[float])(height)
+    law = pressure if isinstance(pressure, Law) else law_of(pressure)
+    return np.vectorize(lambda d: law_limit_ratio(law, d, gyration), otypes=[float])(height)
 
 
-def limit_angle(delta: npt.ArrayLike) -> FloatArray:
+def limit_angle(
+    delta: npt.ArrayLike, pressure: str | Law = "uniform", gyration: float = HOMOGENEOUS
+) -> FloatArray:
     """The slip angle φ₀ that every generic motion approaches at its stop: arctan of limit_ratio.
 
     Parameters
     ----------
-    delta : array_like, dimensionless, in [0, 1]
+    delta, pressure, gyration
+        As :func:`limit_ratio`.
 
     Returns
     -------
-    array of the same shape, radians
-        φ₀ with ρ_∥(φ₀) = ρ_ω(φ₀).
+    array of the shape of ``delta``, radians
+        φ₀ with ρ_∥(φ₀) = (r²/2k²) ρ_ω(φ₀); 0 or π/2 where there is none between.
 
     Raises
     ------
@@ -103,7 +114,17 @@ def limit_angle(delta: npt.ArrayLike) -> FloatArray:
     >>> float(limit_angle(0.5).round(12))
     0.987079101411
     """
-    return np.arctan(limit_ratio(delta))
+    return np.arctan(limit_ratio(delta, pressure, gyration))
+
+
+def _full_contact(delta: npt.ArrayLike) -> FloatArray:
+    height = checked_delta(delta)
+    if not np.all(height <= 1.0):
+        raise ContactError(
+            f"delta = {height[height > 1.0].flat[0]:g}: this is known for full contact, "
+            "0 <= delta <= 1"
+        )
+    return height
 
 
 def curvature_slope(delta: npt.ArrayLike) -> FloatArray:
@@ -120,8 +141,10 @@ def curvature_slope(delta: npt.ArrayLike) -> FloatArray:
 
     Raises
     ------
-    InputError, ContactError
-        As :func:`limit_ratio`.
+    InputError
+        If a height is not finite or negative.
+    ContactError
+        If a height is above 1, where full contact is not certain.
 
     References
     ----------
@@ -132,7 +155,7 @@ def curvature_slope(delta: npt.ArrayLike) -> FloatArray:
     >>> curvature_slope([0.0, 0.5, 1.0]).round(8).tolist()
     [7.06673562, 7.09397854, 7.15668696]
     """
-    angle = limit_angle(delta)
+    angle = limit_angle(_full_contact(delta))
     slope: FloatArray = 2.0 / (np.sin(angle) * integrals(angle).b)
     return slope
 
@@ -152,7 +175,7 @@ def approach_exponent(delta: npt.ArrayLike) -> FloatArray:
     Raises
     ------
     InputError, ContactError
-        As :func:`limit_ratio`.
+        As :func:`curvature_slope`.
 
     Notes
     -----
@@ -164,7 +187,7 @@ def approach_exponent(delta: npt.ArrayLike) -> FloatArray:
     >>> approach_exponent([0.0, 0.5, 1.0]).round(4).tolist()
     [0.6151, 0.6772, 0.8611]
     """
-    u0 = np.log(limit_ratio(delta))
+    u0 = np.log(limit_ratio(_full_contact(delta)))
     step = 0.01
     slope = np.zeros_like(u0)
     for n, weight in enumerate((4 / 5, -1 / 5, 4 / 105, -1 / 280), start=1):
@@ -179,14 +202,22 @@ def _spin_ratio(u: FloatArray, delta: npt.ArrayLike) -> FloatArray:
     return ratio
 
 
-def regime(v0: npt.ArrayLike, w0: float, delta: float = 0.5, radius: float = 1.0) -> str:
+def regime(
+    v0: npt.ArrayLike,
+    w0: float,
+    delta: float = 0.5,
+    radius: float = 1.0,
+    pressure: str | Law = "uniform",
+    gyration: float = HOMOGENEOUS,
+) -> str:
     """Which of the six kinds of motion a launch starts.
 
     Parameters
     ----------
     v0 : (vx, vy), m/s
     w0 : spin, rad/s
-    delta : dimensionless height, in [0, 1]
+    delta, pressure, gyration
+        As :func:`limit_ratio`, a number each.
     radius : m, > 0
 
     Returns
@@ -215,25 +246,33 @@ def regime(v0: npt.ArrayLike, w0: float, delta: float = 0.5, radius: float = 1.0
     spin, r = finite_array("w0", w0, "rad/s"), finite_array("radius", radius, "m")
     if spin.shape != () or r.shape != () or not r > 0.0:
         raise InputError("w0 and radius must be numbers, radius greater than 0 m")
-    limit = math.log(float(limit_ratio(delta)))
+    ratio = float(limit_ratio(delta, pressure, gyration))
+    limit = math.log(ratio) if ratio > 0.0 else -math.inf
     return regime_of(math.hypot(*velocity.tolist()), float(r * abs(spin)), limit)
 
 
 def elementary_stop_time(
-    v0: npt.ArrayLike, w0: float, delta: float = 0.5, decel: float = 1.0, radius: float = 1.0
+    v0: npt.ArrayLike,
+    w0: float,
+    delta: float = 0.5,
+    decel: float = 1.0,
+    radius: float = 1.0,
+    pressure: str | Law = "uniform",
+    gyration: float = HOMOGENEOUS,
 ) -> float | None:
     """The stop time of a launch whose motion is elementary; None for a generic one (B or C).
 
     Parameters
     ----------
-    v0, w0, delta, radius
+    v0, w0, delta, radius, pressure, gyration
         As :func:`regime`.
     decel : J = fg, m/s², > 0
 
     Returns
     -------
     float or None, s
-        A: 0.  C0: v/J.  B0: ¾ r|ω|/J.  D: Q/(J ρ_∥(φ₀)), Q = hypot(v, rω).
+        A: 0.  C0: v/J.  B0: (2k²/r²) r|ω|/(J ρ_ω(π/2)), which is ¾ r|ω|/J for a homogeneous puck
+        under uniform pressure.  D: Q/(J ρ_∥(φ₀)), Q = hypot(v, rω).
 
     Raises
     ------
@@ -249,26 +288,31 @@ def elementary_stop_time(
     >>> elementary_stop_time((3.0, 4.0), 0.0), elementary_stop_time((0.0, 0.0), -2.0, radius=0.5)
     (5.0, 0.75)
     """
-    kind = regime(v0, w0, delta, radius)
+    kind = regime(v0, w0, delta, radius, pressure, gyration)
     deceleration = float(finite_array("decel", decel, "m/s^2"))
     if not deceleration > 0.0:
         raise InputError(f"decel must be greater than 0 m/s^2, got {decel:g}")
     speed, rim = math.hypot(*np.asarray(v0, dtype=np.float64).tolist()), radius * abs(w0)
+    law = pressure if isinstance(pressure, Law) else law_of(pressure)
     if kind == "D":
-        parallel = float(resultants(limit_angle(delta), delta).parallel)
+        parallel = float(law.friction(limit_angle(delta, law, gyration), delta).parallel)
         return math.hypot(speed, rim) / (deceleration * parallel)
-    times = {"A": 0.0, "C0": speed / deceleration, "B0": 0.75 * rim / deceleration}
+    if kind == "B0":
+        square = 0.5 if gyration == HOMOGENEOUS else gyration**2
+        return 2.0 * square / float(law.friction(0.5 * math.pi, 0.0).spin) * rim / deceleration
+    times = {"A": 0.0, "C0": speed / deceleration}
     return times.get(kind)
 
 
-def regime_of(speed: float, rim_speed: float, limit: float) -> str:
+def regime_of(speed: float, rim_speed: float, limit: float, width: float = LIMIT_WIDTH) -> str:
     """The same from v and r|ω|, checked before.
 
     Parameters
     ----------
     speed : v ≥ 0
     rim_speed : r|ω| ≥ 0
-    limit : ln tan φ₀ of the puck
+    limit : ln tan φ₀ of the puck, −inf and inf where there is none between 0 and π/2
+    width : a start this close to it is the limit motion
 
     Returns
     -------
@@ -284,7 +328,7 @@ def regime_of(speed: float, rim_speed: float, limit: float) -> str:
     if rim_speed == 0.0:
         return "C0"
     gap = log_ratio(speed, rim_speed) - limit
-    if abs(gap) <= LIMIT_WIDTH:
+    if abs(gap) <= width:
         return "D"
     return "B" if gap > 0.0 else "C"
 

@@ -2,7 +2,8 @@
 
 Events, all placed exactly on a step end:
 
-* u = 0, the crossing of φ = π/4, where the equations have only one derivative and a bit;
+* every singular line of the friction: u = 0, the crossing of φ = π/4, where the equations have
+  only one derivative and a bit; for other pucks the lines of their slice;
 * Q = TURN_SHARE Q₀, where the turn of the heading is read off (see below);
 * the end of integration, from where the exact motion at constant angle leads to the stop.
 
@@ -25,7 +26,10 @@ from puck_tables.motion.equations import (
     T,
     U,
     at_constant_angle,
+    crossed_line,
     derivatives,
+    distance_to_line,
+    inertia,
     kinetic_energy,
 )
 from puck_tables.motion.steppers import ROWS, Tableau, step
@@ -48,12 +52,12 @@ def q_of(z: float) -> float:
 
 
 @inlined
-def step_length(u: float, steps: float) -> float:
+def step_length(u: float, steps: float, cut: FloatArray) -> float:
     """Length of the next step when about ``steps`` are to be taken in all.
 
-    Like √|u| near the crossing of φ = π/4: steps crowd there so that order 4 survives it.
+    Like √|u − line| near a singular line: steps crowd there so that order 4 survives it.
     """
-    near = math.sqrt(min(abs(u) / _NEAR_CROSSING, 1.0))
+    near = math.sqrt(min(distance_to_line(u, cut) / _NEAR_CROSSING, 1.0))
     return max(near, _CROSSING_FLOOR / steps) / steps
 
 
@@ -78,7 +82,7 @@ def integrate(
     tableau : the method
     steps : about how many steps to take; 0 lets the error estimate choose them
     tolerance : the local error then allowed per step
-    cut, delta : friction ratios at this δ; an empty cut means closed forms
+    cut, delta : friction at this δ, see :mod:`puck_tables.motion.equations`
     step_limit : the most steps
     z_path, y_path : arrays (n,), (n, 8) for the step ends, or empty when nobody wants them
     result : array (8 + 1): the state at the stop (its ψ: the turn), energy residual
@@ -99,7 +103,8 @@ def integrate(
     z_end = max(z_end, 0.5 + 0.5 * TURN_Z)
     turn = 0.0
     turn_read = False
-    energy = kinetic_energy(1.0, u)
+    square = inertia(cut)
+    energy = kinetic_energy(1.0, u, square)
     residual = 0.0
     record = z_path.size > 0
     count = 1
@@ -111,7 +116,7 @@ def integrate(
         if count > step_limit:
             return STEP_LIMIT, count
         if not adaptive:
-            h = step_length(y[U], steps)
+            h = step_length(y[U], steps, cut)
         target = z_end if turn_read else TURN_Z
         # never leave a sliver before the target
         trial = h if z + 1.1 * h < target else target - z
@@ -122,9 +127,9 @@ def integrate(
             if z + h == z:
                 return STEP_LIMIT, count
             continue
-        crossed = y[U] * new[U] < 0.0
+        crossed, line = crossed_line(y[U], new[U], cut)
         if crossed:
-            trial = _land_on_crossing(tableau, z, y, trial, cut, delta, work, new)
+            trial = _land_on_line(tableau, line, z, y, trial, cut, delta, work, new)
         landed = not crossed and trial == target - z
         z = target if landed else z + trial
         for i in range(SIZE):
@@ -140,7 +145,7 @@ def integrate(
         if record:
             if count == z_path.size:
                 return STEP_LIMIT, count
-            lost = energy - kinetic_energy(q_of(z), y[U])
+            lost = energy - kinetic_energy(q_of(z), y[U], square)
             residual = max(residual, abs(lost - y[WORK]) / energy)
             _record(count, z, y, z_path, y_path)
         count += 1
@@ -161,8 +166,9 @@ def _record(n: int, z: float, y: FloatArray, z_path: FloatArray, y_path: FloatAr
 
 
 @kernel
-def _land_on_crossing(
+def _land_on_line(
     tableau: Tableau,
+    line: float,
     z: float,
     y: FloatArray,
     h: float,
@@ -171,19 +177,19 @@ def _land_on_crossing(
     work: FloatArray,
     new: FloatArray,
 ) -> float:
-    """Shorten a step that crosses u = 0 so that it ends there; ``new`` is its end.
+    """Shorten a step that crosses a singular line so that it ends there; ``new`` is its end.
 
     Regula falsi starts, Newton on repeated steps finishes: u(h) is monotonic and nearly straight.
     """
     rate = (new[U] - y[U]) / h
     for _ in range(12):
-        h = min(max(h - new[U] / rate, 0.0), 1.5 * h)
+        h = min(max(h - (new[U] - line) / rate, 0.0), 1.5 * h)
         step(tableau, z, y, h, cut, delta, work, new)
-        if abs(new[U]) < 1e-15:
+        if abs(new[U] - line) < 1e-15:
             break
         derivatives(z + h, new, cut, delta, work[6])
         rate = work[6, U]
-    new[U] = 0.0
+    new[U] = line
     return h
 
 

@@ -21,6 +21,7 @@ from puck_tables.motion.equations import (
     X,
     Y,
     at_constant_angle,
+    crossed_line,
     ratios_at,
     slip_ratio,
 )
@@ -73,30 +74,31 @@ def to_stop(
     ----------
     u : start value, finite
     steps : about how many steps to take
-    cut, delta : friction ratios at this δ; an empty cut means closed forms
+    cut, delta : friction at this δ, see :mod:`puck_tables.motion.equations`
     state, result : arrays (8,), (8 + 1): work space, and the state at the stop (its ψ: the turn)
     """
     y = (u, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     z, turn, turn_read, count = 0.0, 0.0, False, 0
     z_end = max(1.0 - 1.0 / steps, 0.5 + 0.5 * TURN_Z)
     while z < z_end:
-        h = step_length(y[0], steps)
+        h = step_length(y[0], steps, cut)
         target = z_end if turn_read else TURN_Z
         landed = z + 1.1 * h >= target  # never leave a sliver before the target
         if landed:
             h = target - z
         d1 = _rates(z, y[0], y[1], cut, delta)
         new = _step(z, y, d1, h, cut, delta)
-        if y[0] * new[0] < 0.0:  # a step ends exactly where φ = π/4 is crossed
+        crossed, line = crossed_line(y[0], new[0], cut)
+        if crossed:  # a step ends exactly on a singular line
             landed = False
             rate = (new[0] - y[0]) / h
             for _ in range(12):
-                h = min(max(h - new[0] / rate, 0.0), 1.5 * h)
+                h = min(max(h - (new[0] - line) / rate, 0.0), 1.5 * h)
                 new = _step(z, y, d1, h, cut, delta)
-                if abs(new[0]) < 1e-15:
+                if abs(new[0] - line) < 1e-15:
                     break
                 rate = _rates(z + h, new[0], new[1], cut, delta)[0]
-            new = (0.0, new[1], new[2], new[3], new[4], new[5], new[6])
+            new = (line, new[1], new[2], new[3], new[4], new[5], new[6])
         z = target if landed else z + h
         y = new
         count += 1

@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from puck_tables.executor import run_chunks
 from puck_tables.kernels.compile import kernel
-from puck_tables.motion.equations import LENGTH, SIZE, THETA, T, U, X, Y, at_constant_angle
+from puck_tables.motion.equations import LENGTH, PSI, SIZE, THETA, T, U, X, Y, at_constant_angle
 from puck_tables.motion.path import STOPPED, integrate
 from puck_tables.motion.steppers import DORMAND_PRINCE, Tableau
 
@@ -22,25 +22,58 @@ _CHUNK = 64
 
 @kernel
 def _fill_exact_stops(
-    u: FloatArray, delta: FloatArray, tableau: Tableau, tolerance: float, out: FloatArray
-) -> None:
-    """T, X, Y, path length, body angle of launches at u, δ into ``out`` (n, 5); NaN: no stop."""
-    closed_forms, no_z, no_y = np.empty(0), np.empty(0), np.empty((0, SIZE))
+    u: FloatArray, delta: FloatArray, cut: FloatArray, tableau: Tableau, tolerance: float,
+    out: FloatArray,
+) -> None:  # fmt: skip
+    """T, X, Y, path, body angle, turn of launches at u, δ into ``out`` (n, 6); NaN: no stop."""
+    no_z, no_y = np.empty(0), np.empty((0, SIZE))
     start, result = np.zeros(SIZE), np.empty(SIZE + 1)
     for n in range(u.size):
         status = STOPPED
         if math.isinf(u[n]):
             start[U] = u[n]
-            at_constant_angle(1.0, start, 0.0, closed_forms, delta[n], result)
+            at_constant_angle(1.0, start, 0.0, cut, delta[n], result)
         else:
             status, _ = integrate(
-                u[n], tableau, 0.0, tolerance, closed_forms, delta[n], _STEP_LIMIT,
-                no_z, no_y, result,
+                u[n], tableau, 0.0, tolerance, cut, delta[n], _STEP_LIMIT, no_z, no_y, result,
             )  # fmt: skip
         good = status == STOPPED
         out[n, 0] = result[T] if good else math.nan
         out[n, 1], out[n, 2] = result[X], result[Y]
-        out[n, 3], out[n, 4] = result[LENGTH], result[THETA]
+        out[n, 3], out[n, 4], out[n, 5] = result[LENGTH], result[THETA], result[PSI]
+
+
+def integrated_stops(
+    u: FloatArray, delta: FloatArray, cut: FloatArray, tolerance: float
+) -> FloatArray:
+    """Stops in natural units by the integrator.
+
+    Parameters
+    ----------
+    u : array (n,), ln(rω/v), infinite for pure sliding (−) and pure spin (+)
+    delta : array (n,)
+    cut : friction, see :mod:`puck_tables.motion.equations`
+    tolerance : local error of a step
+
+    Returns
+    -------
+    array (n, 6)
+        T, X, Y, path length, body angle, and the turn until Q has fallen to 1/1000 (at infinite u
+        0).
+
+    Examples
+    --------
+    >>> integrated_stops(np.array([0.0]), np.array([1.0]), np.empty(0), 1e-9)[0, :3].round(8)
+    array([ 0.98647594,  0.32409373, -0.04297451])
+    """
+    out = np.empty((u.size, 6))
+
+    def work(start: int, stop: int) -> None:
+        part = slice(start, stop)
+        _fill_exact_stops(u[part], delta[part], cut, DORMAND_PRINCE, tolerance, out[part])
+
+    run_chunks(work, u.size, _CHUNK)
+    return out
 
 
 def exact_stops(u: FloatArray, delta: FloatArray) -> FloatArray:
@@ -61,14 +94,7 @@ def exact_stops(u: FloatArray, delta: FloatArray) -> FloatArray:
     >>> exact_stops(np.array([0.0]), np.array([1.0])).round(11).tolist()[0][:3]
     [0.98647593897, 0.32409372866, -0.04297450852]
     """
-    out = np.empty((u.size, 5))
-
-    def work(start: int, stop: int) -> None:
-        part = slice(start, stop)
-        _fill_exact_stops(u[part], delta[part], DORMAND_PRINCE, _LOCAL_TOLERANCE, out[part])
-
-    run_chunks(work, u.size, _CHUNK)
-    return out
+    return integrated_stops(u, delta, np.empty(0), _LOCAL_TOLERANCE)[:, :5]
 
 
 def end_values(delta: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -11,6 +11,7 @@ With the one edge e = 1 these are the two sides of φ = π/4 of :mod:`puck_table
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -60,19 +61,50 @@ class LawAxis:
     @property
     def sides(self) -> tuple[Side, ...]:
         """The sides in the order of φ: below and above each line."""
-        lines = np.arctan2(1.0, self.edges[::-1])
-        between = 0.5 * (lines[:-1] + lines[1:])
-        ends = np.concatenate([[0.0], np.repeat(between, 2), [0.5 * np.pi]])
-        owners = np.repeat(lines, 2)
-        # tan(end − line) with 1/e = tan line: exact at both ends of the axis
-        extents = np.tan(ends - owners)
-        extents[0], extents[-1] = -1.0, self.edges[0]
-        return tuple(Side(*map(float, side)) for side in zip(owners, ends, extents, strict=True))
+        return sides_of(self.edges[::-1])
 
     def phi(self) -> FloatArray:
         """φ at the nodes, (sides, cells + 1), from each line to the end of its side."""
-        xi = (np.arange(self.cells + 1) / self.cells) ** GRADING_POWER
-        rows = [side.line + np.arctan(side.extent * xi) for side in self.sides]
-        phi = np.stack(rows)
-        phi[:, -1] = [side.end for side in self.sides]
-        return phi
+        return graded(self.sides, np.arange(self.cells + 1) / self.cells)
+
+
+def sides_of(cotangents: Sequence[float], ends_too: bool = False) -> tuple[Side, ...]:
+    """The sides of the singular lines with these cot φ, in the order of φ.
+
+    Parameters
+    ----------
+    cotangents : floats > 0, descending
+    ends_too : whether φ = 0 and π/2 are singular lines besides
+
+    Examples
+    --------
+    >>> [round(side.end, 4) for side in sides_of([1.0], ends_too=True)]
+    [0.3927, 0.3927, 1.1781, 1.1781]
+    """
+    lines = np.arctan2(1.0, cotangents)
+    if ends_too:
+        lines = np.concatenate([[0.0], lines, [0.5 * np.pi]])
+    owners = np.repeat(lines, 2)
+    between = np.repeat(0.5 * (lines[:-1] + lines[1:]), 2)
+    if ends_too:
+        owners, ends = owners[1:-1], between
+        extents = np.tan(ends - owners)
+    else:
+        ends = np.concatenate([[0.0], between, [0.5 * np.pi]])
+        # tan(end − line): exact at both ends of the axis
+        extents = np.tan(ends - owners)
+        extents[0], extents[-1] = -1.0 / cotangents[0], cotangents[-1]
+    return tuple(Side(*map(float, side)) for side in zip(owners, ends, extents, strict=True))
+
+
+def graded(sides: Sequence[Side], xi: FloatArray) -> FloatArray:
+    """φ at ξ ∈ [0, 1] (n,) on every side, (sides, n); ξ = 1 is the end of a side exactly.
+
+    Examples
+    --------
+    >>> graded(sides_of([1.0]), np.array([0.0, 1.0])).round(4).tolist()
+    [[0.7854, 0.0], [0.7854, 1.5708]]
+    """
+    phi = np.stack([side.line + np.arctan(side.extent * xi**GRADING_POWER) for side in sides])
+    phi[:, xi == 1.0] = np.array([[side.end] for side in sides])
+    return phi

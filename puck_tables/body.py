@@ -1,0 +1,101 @@
+"""A puck of any kind: its pressure law, its height, and how its mass is spread."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from puck_tables.contact.laws import HOMOGENEOUS, Law, law_of, limit_ratio
+from puck_tables.contact.resultants import checked_delta
+from puck_tables.errors import InputError
+from puck_tables.puck import real
+from puck_tables.real import instance
+from puck_tables.table.friction_slice import FrictionSlice, friction_slice, refuse_height
+
+SMALLEST_GYRATION, LARGEST_GYRATION = 0.1, 10.0
+
+
+@dataclass(frozen=True)
+class Body:
+    """What the motion of a puck depends on besides its scale.
+
+    Parameters
+    ----------
+    law : Law, the pressure law
+    delta : dimensionless height 2fh/r
+    gyration : radius of gyration about the vertical axis in units of r
+
+    Examples
+    --------
+    >>> round(body_of("ring", 0.0, 1.0).limit_ratio, 9)
+    1.0
+    """
+
+    law: Law
+    delta: float
+    gyration: float
+
+    @property
+    def limit_ratio(self) -> float:
+        """The ratio rω/v that its motions tend to, 0 and inf included."""
+        return limit_ratio(self.law, self.delta, self.gyration)
+
+    @property
+    def limit(self) -> float:
+        """Ln of :attr:`limit_ratio`."""
+        ratio = self.limit_ratio
+        return math.log(ratio) if ratio > 0.0 else -math.inf
+
+    @property
+    def inertia(self) -> float:
+        """k²/r², exactly ½ for a homogeneous puck."""
+        return 0.5 if self.gyration == HOMOGENEOUS else self.gyration**2
+
+    @property
+    def spin_time(self) -> float:
+        """How long pure spin lasts, in units of r|ω|/J: 2k²/(r² ρ_ω(π/2))."""
+        return 2.0 * self.inertia / float(self.law.friction(0.5 * math.pi, 0.0).spin)
+
+    def friction(self, accuracy: float) -> FrictionSlice:
+        """Its friction over the slip angle."""
+        return friction_slice(self.law, self.delta, accuracy)
+
+
+def is_plain(pressure: str | Law, gyration: float, delta: float) -> bool:
+    """Whether a puck is homogeneous, under uniform pressure and never lifts: δ ≤ 1.
+
+    Examples
+    --------
+    >>> is_plain("uniform", HOMOGENEOUS, 0.5), is_plain("ring", HOMOGENEOUS, 0.5)
+    (True, False)
+    """
+    uniform = pressure == "uniform" or (isinstance(pressure, Law) and pressure.can_lift)
+    return uniform and gyration == HOMOGENEOUS and not delta > 1.0
+
+
+def body_of(pressure: str | Law, delta: float, gyration: float) -> Body:
+    """A puck, checked.
+
+    Raises
+    ------
+    InputError
+        If the pressure law is not known or a number is out of range.
+    ContactError
+        If the puck tips, or its contact is not known or not determined.
+
+    Examples
+    --------
+    >>> body_of("hertz", 0.5, 0.6).law.name
+    'hertz'
+    """
+    instance("pressure", pressure, str, Law)
+    law = pressure if isinstance(pressure, Law) else law_of(pressure)
+    radius = real("gyration", gyration, "k/r")
+    if not SMALLEST_GYRATION <= radius <= LARGEST_GYRATION:
+        raise InputError(
+            f"gyration must be the radius of gyration in units of r, from {SMALLEST_GYRATION:g} to "
+            f"{LARGEST_GYRATION:g} (homogeneous: 0.7071, a ring: 1), got {radius:g}"
+        )
+    height = float(checked_delta(real("delta", delta, "units of 2 f h / r")))
+    refuse_height(law, height)
+    return Body(law, height, radius)

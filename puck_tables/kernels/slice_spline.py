@@ -1,0 +1,74 @@
+"""Cubic splines over the slip angle alone, compiled: a table cut down to one puck.
+
+The axis of slip is that of :mod:`puck_tables.table.law_grid`: sides that run from a singular line
+outwards, tan(φ − line) = ± extent η⁴.  No angle is needed to find a place on it: with (c, s) in the
+direction of (v, r|ω|),
+
+    tan(φ − line) = (s cos line − c sin line)/(c cos line + s sin line) .
+
+A slice is a matrix with one row a side, in the order of φ: :data:`HEADER` numbers, then the
+B-spline weights over 6 of its functions, node by node.  It is two-dimensional so that compiled code
+tells it from a flat cut of a table (:func:`puck_tables.kernels.spline.cut`) by its type.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.kernels.spline import basis
+
+FloatArray = npt.NDArray[np.float64]
+
+# Columns of the header: the singular line of a side (cos, sin, ln tan), where the side ends towards
+# larger φ (cos, sin), 1/extent, and the square of the gyration radius over r, the same in all rows.
+LINE_COS, LINE_SIN, LINE, UPPER_COS, UPPER_SIN, INVERSE_EXTENT, INERTIA = range(7)
+HEADER = 8
+RATIOS = 3
+
+
+@inlined
+def slice_place(k: float, fast: bool, cut: FloatArray, functions: int) -> tuple[int, int, float]:
+    """Side, first column and place in the cell of a slip ratio k = min/max of v and r|ω|."""
+    c, s = (k, 1.0) if fast else (1.0, k)
+    side, last = 0, cut.shape[0] - 1
+    while side < last and s * cut[side, UPPER_COS] > c * cut[side, UPPER_SIN]:
+        side += 1
+    across = s * cut[side, LINE_COS] - c * cut[side, LINE_SIN]
+    along = c * cut[side, LINE_COS] + s * cut[side, LINE_SIN]
+    eta = math.sqrt(math.sqrt(abs(across / along) * cut[side, INVERSE_EXTENT]))
+    cells = (cut.shape[1] - HEADER) // functions - 3
+    p = min(eta, 1.0) * cells
+    cell = min(int(p), cells - 1)
+    return side, HEADER + functions * cell, p - cell
+
+
+@inlined
+def slice_ratios(k: float, fast: bool, cut: FloatArray) -> tuple[float, float, float]:
+    """The three friction ratios at a slip ratio."""
+    side, i, place = slice_place(k, fast, cut, RATIOS)
+    w0, w1, w2, w3 = basis(place)
+    row = cut[side]
+    return (
+        w0 * row[i] + w1 * row[i + 3] + w2 * row[i + 6] + w3 * row[i + 9],
+        w0 * row[i + 1] + w1 * row[i + 4] + w2 * row[i + 7] + w3 * row[i + 10],
+        w0 * row[i + 2] + w1 * row[i + 5] + w2 * row[i + 8] + w3 * row[i + 11],
+    )
+
+
+@kernel
+def fill_slice(
+    cut: FloatArray, functions: int, ratio: FloatArray, fast: npt.NDArray[np.bool_], out: FloatArray
+) -> None:
+    """All functions of a slice at slip ratios (n,) into ``out`` (functions, n)."""
+    for n in range(ratio.size):
+        side, i, place = slice_place(ratio[n], fast[n], cut, functions)
+        weights = basis(place)
+        for f in range(functions):
+            total = 0.0
+            for m, w in enumerate(weights):
+                total += w * cut[side, i + functions * m + f]
+            out[f, n] = total

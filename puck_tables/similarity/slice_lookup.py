@@ -1,0 +1,51 @@
+"""Stops of one kind of puck by look-up, compiled."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables.kernels.compile import kernel
+from puck_tables.kernels.slice_spline import slice_place
+from puck_tables.kernels.spline import basis
+
+FloatArray = npt.NDArray[np.float64]
+
+_FUNCTIONS = 6
+_LOWEST = 1e-290
+
+
+@kernel
+def fill_slice_stops(launches: FloatArray, cut: FloatArray, out: FloatArray) -> None:
+    """Stops of launches (6, n): vx, vy, ω, δ, J, r, into ``out`` (6, n), see solvers.OUTPUTS.
+
+    ``cut`` holds the functions of :mod:`puck_tables.similarity.stop_slice`; all launches are of its
+    puck.  No direction is computed and nothing divided by zero.
+    """
+    values = np.empty(_FUNCTIONS)
+    for n in range(launches.shape[1]):
+        vx, vy = launches[0, n], launches[1, n]
+        decel, radius = launches[4, n], launches[5, n]
+        rim = radius * launches[2, n]
+        speed, edge = math.hypot(vx, vy), abs(rim)
+        slip = math.hypot(speed, edge)
+        larger = max(speed, edge)
+        raised = 2.0**200 if larger < _LOWEST else 1.0
+        ratio = (raised * min(speed, edge)) / (raised * larger) if larger > 0.0 else 0.0
+        side, i, place = slice_place(ratio, edge > speed, cut, _FUNCTIONS)
+        for f in range(_FUNCTIONS):
+            values[f] = 0.0
+        for m, w in enumerate(basis(place)):
+            for f in range(_FUNCTIONS):
+                values[f] += w * cut[side, i + _FUNCTIONS * m + f]
+        time, along, across, length, body, turn = values
+        scale = slip / decel
+        straight, left = scale * along, (rim / decel) * across
+        out[0, n] = scale * time
+        out[1, n] = straight * vx - left * vy
+        out[2, n] = straight * vy + left * vx
+        out[3, n] = scale * speed * length
+        out[4, n] = rim / slip * turn if slip > 0.0 and speed > 0.0 else 0.0
+        out[5, n] = scale * (rim / radius) * body

@@ -1,0 +1,177 @@
+"""Splines over the slip angle alone, as fine as asked: how friction and stops of one puck are kept.
+
+The functions are known wherever they are asked for, at some cost.  The axis is that of
+:mod:`puck_tables.table.law_grid`.  It is refined by halving its cells, so that what was computed to
+measure the error of one level, the functions in the middles of the cells, are nodes of the next.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables.contact.integrals import slip_direction
+from puck_tables.errors import AccuracyError
+from puck_tables.kernels.slice_spline import (
+    HEADER,
+    INERTIA,
+    INVERSE_EXTENT,
+    LINE,
+    LINE_COS,
+    LINE_SIN,
+    UPPER_COS,
+    UPPER_SIN,
+    fill_slice,
+)
+from puck_tables.table.fit import clamped_coefficients, half_clamped_coefficients
+from puck_tables.table.law_grid import Side, graded
+
+FloatArray = npt.NDArray[np.float64]
+Functions = Callable[[FloatArray], FloatArray]  # of φ (n,), as (n, functions)
+
+COARSEST_CELLS, FINEST_CELLS = 16, 2048
+
+
+@dataclass(frozen=True)
+class SlipSpline:
+    """Functions of φ ∈ [0, π/2] by cubic splines between singular lines.
+
+    Parameters
+    ----------
+    sides : tuple of Side
+    values : array (sides, cells + 1, functions)
+        At the nodes, from each line outwards.
+    even : whether the functions are even about φ = 0 and π/2 (and these no singular lines)
+    error : array (functions,)
+        The largest error in the middles of the cells.
+    """
+
+    sides: tuple[Side, ...]
+    values: FloatArray = field(repr=False)
+    even: bool
+    error: FloatArray
+
+    @property
+    def cells(self) -> int:
+        """Cells on each side."""
+        return int(self.values.shape[1]) - 1
+
+    @cached_property
+    def cut(self) -> FloatArray:
+        """The matrix that :mod:`puck_tables.kernels.slice_spline` reads; inertia left 0."""
+        cut = np.zeros((len(self.sides), HEADER + self.values.shape[2] * (self.cells + 3)))
+        for n, side in enumerate(self.sides):
+            clamped = self.even and n in (0, len(self.sides) - 1)
+            fit = clamped_coefficients if clamped else half_clamped_coefficients
+            upper = max(side.line, side.end)
+            cut[n, :HEADER] = 0.0
+            cut[n, LINE_COS], cut[n, LINE_SIN] = _direction(side.line)
+            cut[n, LINE] = _log_tangent(side.line)
+            cut[n, UPPER_COS], cut[n, UPPER_SIN] = _direction(upper)
+            cut[n, INVERSE_EXTENT] = 1.0 / abs(side.extent)
+            cut[n, HEADER:] = fit(self.values[n]).ravel() / 6.0
+        return cut
+
+    def at(self, phi: FloatArray) -> FloatArray:
+        """The functions at slip angles (n,), radians, as (n, functions)."""
+        direction = slip_direction(phi)
+        out = np.empty((self.values.shape[2], phi.size))
+        fill_slice(self.cut, self.values.shape[2], direction.ratio, direction.fast_spin, out)
+        return out.T
+
+    def coarser(self) -> SlipSpline:
+        """The spline through every other node."""
+        return SlipSpline(
+            self.sides, self.values[:, ::2], self.even, np.full_like(self.error, np.inf)
+        )
+
+    def with_inertia(self, square: float, factors: FloatArray) -> FloatArray:
+        """A copy of :attr:`cut` with this inertia and the functions multiplied by ``factors``."""
+        cut = self.cut.copy()
+        cut[:, INERTIA] = square
+        cut[:, HEADER:] *= np.tile(factors, self.cells + 3)
+        return cut
+
+
+def _direction(phi: float) -> tuple[float, float]:
+    if phi == 0.25 * math.pi:
+        return math.sqrt(0.5), math.sqrt(0.5)  # equal, so that their difference is exact there
+    return (0.0, 1.0) if phi == 0.5 * math.pi else (math.cos(phi), math.sin(phi))
+
+
+def _log_tangent(phi: float) -> float:
+    cosine, sine = _direction(phi)
+    if sine == 0.0 or cosine == 0.0:
+        return math.copysign(math.inf, sine - cosine)
+    return math.log(sine / cosine)
+
+
+def slip_spline(
+    functions: Functions,
+    sides: tuple[Side, ...],
+    accuracy: float,
+    even: bool,
+    counted: slice = slice(None),
+    weights: Functions | None = None,
+    finest: int = FINEST_CELLS,
+) -> SlipSpline:
+    """Splines of these functions, refined until they are as good as asked.
+
+    Parameters
+    ----------
+    functions : callable, φ (n,) → (n, functions)
+    sides : tuple of Side
+    accuracy : the largest error allowed in the middle of a cell
+    even : see :class:`SlipSpline`
+    counted : of which functions it must hold
+    weights : what the errors of the functions are multiplied with before they are judged
+    finest : the most cells on a side
+
+    Raises
+    ------
+    AccuracyError
+        If so many cells do not suffice.
+
+    Notes
+    -----
+    The error falls like cells⁻⁴.
+
+    Examples
+    --------
+    >>> from puck_tables.table.law_grid import sides_of
+    >>> found = slip_spline(lambda phi: np.cos(phi)[:, None] ** 2, sides_of([1.0]), 1e-6, True)
+    >>> found.cells, float(found.at(np.array([0.5]))[0, 0].round(6))
+    (64, 0.770151)
+    """
+    cells = COARSEST_CELLS
+    values = _at(functions, sides, np.arange(cells + 1) / cells)
+    while True:
+        spline = SlipSpline(sides, values, even, np.zeros(values.shape[2]))
+        xi = (np.arange(cells) + 0.5) / cells
+        between = _at(functions, sides, xi)
+        guess = spline.at(graded(sides, xi).ravel()).reshape(between.shape)
+        off = np.abs(guess - between)
+        if weights is not None:
+            off *= _at(weights, sides, xi)
+        error = off.max(axis=(0, 1))
+        if error[counted].max() <= accuracy:
+            return SlipSpline(sides, values, even, error)
+        if 2 * cells > finest:
+            raise AccuracyError(
+                f"an accuracy of {accuracy:.1g} is out of reach for this puck: {cells} cells give "
+                f"{error[counted].max():.1e}; ask for less"
+            )
+        finer = np.empty((len(sides), 2 * cells + 1, values.shape[2]))
+        finer[:, ::2], finer[:, 1::2] = values, between
+        values, cells = finer, 2 * cells
+
+
+def _at(functions: Functions, sides: tuple[Side, ...], xi: FloatArray) -> FloatArray:
+    """The functions at ξ on every side, (sides, ξ, functions)."""
+    phi = graded(sides, xi)
+    return functions(phi.ravel()).reshape(*phi.shape, -1)

@@ -1,0 +1,180 @@
+"""Stops, maps, states and aims of every puck: against integration with truth friction."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from any_puck import stops_by_truth
+from test_any_puck import PUCKS, launch, starts
+
+from puck_tables import aim, flow, law_of, plot_aim, simulate, stop, sweep
+from puck_tables.any_stops import MANY
+from puck_tables.body import body_of
+from puck_tables.contact.laws import HOMOGENEOUS
+from puck_tables.errors import AccuracyError, InputError
+from puck_tables.similarity.exact import integrated_stops
+from puck_tables.similarity.stop_slice import stop_slice
+from puck_tables.sliced import friction_of
+
+QUICK = [PUCKS[2], PUCKS[5], PUCKS[6], PUCKS[7]]
+
+
+def stops_of(puck: tuple[str, float, float], u: np.ndarray, **options: object) -> np.ndarray:
+    """T, X, Y, path length and body angle (5, n) by ``stop``."""
+    law, delta, gyration = puck
+    launches = [launch(one) for one in u]
+    found = stop(
+        np.array([v for v, _ in launches]), np.array([w for _, w in launches]), delta=delta,
+        pressure=law, gyration=gyration, **options,
+    )  # fmt: skip
+    assert (found.status == 0).all()
+    return np.stack([
+        found.stop_time, *found.stop_position.T, found.path_length, found.body_angle,
+    ])  # fmt: skip
+
+
+@pytest.mark.parametrize("puck", QUICK)
+def test_tol_is_honoured_by_truth_friction(puck: tuple[str, float, float]):
+    judged(puck, (1e-4, 1e-8))
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("puck", PUCKS)
+def test_tol_is_honoured_by_truth_friction_for_all_pucks(puck: tuple[str, float, float]):
+    judged(puck, (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10))
+
+
+def judged(puck: tuple[str, float, float], tolerances: tuple[float, ...]) -> None:
+    u = starts(*puck, np.random.default_rng(8))
+    truth = stops_by_truth(*puck, u)
+    for tol in tolerances:
+        for method in ("look-up", "adaptive", "rk4"):
+            if method == "rk4" and tol < 1e-7:
+                continue
+            error = np.abs(stops_of(puck, u, tol=tol, method=method) - truth)
+            assert error[:3].max() <= tol, (puck, tol, method, u[error[:3].max(axis=0).argmax()])
+            assert error[3:].max() <= 2.0 * tol
+
+
+@pytest.mark.parametrize("puck", PUCKS)
+def test_a_stop_slice_everywhere_against_integration(puck: tuple[str, float, float]):
+    law, delta, gyration = puck
+    body = body_of(*puck)
+    found = stop_slice(body, 1e-6)
+    rng = np.random.default_rng(3)
+    lines = np.array([0.0, *body.friction(1e-3).lines, 0.5 * np.pi])
+    near = rng.choice(lines, 150) + 10.0 ** -rng.uniform(0.5, 12.0, 150) * rng.choice([-1, 1], 150)
+    phi = np.concatenate([rng.uniform(0.0, 0.5 * np.pi, 250), near])
+    phi = phi[(phi > 0.0) & (phi < 0.5 * np.pi)]
+    u = np.log(np.tan(phi))
+    truth = integrated_stops(u, np.full(u.size, delta), friction_of(body, 1e-8).cut, 1e-10)
+    looked_up = stops_of((law, delta, gyration), u, tol=1e-6, method="look-up")
+    assert np.abs(looked_up - truth[:, :5].T).max() <= 1.2 * found.error
+    assert found.error <= 1e-6
+
+
+def test_order_4_of_stop_slices():
+    cells, errors = [], []
+    body = body_of("uniform", 2.0, HOMOGENEOUS)
+    for accuracy in (1e-4, 1e-6, 1e-8):
+        found = stop_slice(body, accuracy)
+        cells.append(found.spline.cells)
+        errors.append(found.spline.error[:5].max())
+    assert -np.polyfit(np.log(cells), np.log(errors), 1)[0] >= 3.6
+
+
+def test_what_is_taken_and_said():
+    few = stop((1.0, 0.0), np.linspace(0.0, 5.0, 20), delta=2.0)
+    many = stop((1.0, 0.0), np.linspace(0.0, 5.0, MANY), delta=2.0)
+    assert (few.method, many.method) == ("integrated", "look-up")
+    assert few.choice.way.error <= 1e-8 >= many.choice.way.error > 0.0
+    assert "slices of pressure uniform" in many.choice.why
+    assert np.abs(few.stop_time[[0, -1]] - many.stop_time[[0, -1]]).max() <= 2e-7
+    both = stop((1.0, 0.0), 1.0, delta=[*np.full(MANY, 2.0), 1.5])
+    assert both.method == "look-up and integrated"
+    plain = stop((1.0, 0.0), 1.0, delta=[0.5, 1.0])
+    assert plain.choice.way.method == "look-up"
+    for options, error, words in (
+        ({"delta": np.linspace(1.0, 3.0, 501)}, InputError, "at most 500"),
+        ({"delta": 4.0}, InputError, "tips"),
+        ({"delta": 2.0, "tol": 1e-12}, AccuracyError, "from 1e-11"),
+        ({"delta": 2.0, "tol": 2e-11, "method": "look-up"}, AccuracyError, "from 1e-10"),
+        ({"delta": 2.0, "method": "euler"}, InputError, "method must be"),
+        ({"pressure": "ring", "delta": 2.1}, InputError, "full contact"),
+    ):
+        with pytest.raises(error, match=words):
+            stop((1.0, 0.0), 1.0, **options)
+    huge = stop((1e200, 0.0), 1.0, delta=2.0)
+    assert huge.status == 2
+    assert np.isnan(huge.stop_time)
+    rest = stop((0.0, 0.0), [0.0, -2.0], delta=2.0)
+    assert rest.stop_time.round(14).tolist() == [0.0, 1.5]
+    assert (rest.stop_position == 0.0).all()
+
+
+def test_a_map_has_the_same_bits_however_it_is_cut(tmp_path: Path):
+    spins, speeds = np.linspace(-3.0, 3.0, 23), np.linspace(0.0, 2.0, 17)
+    seen: list[tuple[int, int]] = []
+    options = {"delta": [0.5, 2.0], "pressure": "uniform", "tol": 1e-6}
+    whole = sweep(spins, speeds, progress=lambda *done: seen.append(done), **options)
+    assert whole.method == "look-up"
+    assert seen == sorted(seen)
+    assert seen[-1][0] == seen[-1][1]
+    for threads, chunk in ((1, 1), (3, 7), (2, 10_000)):
+        again = sweep(spins[:5], speeds[:3], threads=threads, chunk=chunk, **options)
+        other = sweep(spins[:5], speeds[:3], **options)
+        assert again.method == "integrated"
+        np.testing.assert_array_equal(again.stop_x, other.stop_x)
+        cut = sweep(spins, speeds, threads=threads, chunk=max(chunk, 100), **options)
+        for name in ("stop_time", "stop_x", "stop_y", "turn_angle", "body_angle", "path_length"):
+            np.testing.assert_array_equal(getattr(cut, name), getattr(whole, name))
+    kept = sweep(spins, speeds, checkpoint=tmp_path / "kept", **options)
+    np.testing.assert_array_equal(kept.stop_y, whole.stop_y)
+    with pytest.raises(InputError):
+        sweep(spins, speeds, checkpoint=tmp_path / "kept", **{**options, "gyration": 0.9})
+
+
+@pytest.mark.parametrize("puck", [PUCKS[2], PUCKS[6]])
+def test_states_are_those_of_the_trajectory(puck: tuple[str, float, float]):
+    law, delta, gyration = puck
+    options = {"delta": delta, "pressure": law, "gyration": gyration, "radius": 0.3, "decel": 2.0}
+    velocities, spins = np.array([(1.0, 0.5), (0.0, 0.0), (0.2, -0.1)]), np.array([2.0, 3.0, -9.0])
+    times = np.array([0.0, 0.1, 0.3, 50.0])
+    states = flow(velocities[:, None, :], spins[:, None], times, **options)
+    for n in range(3):
+        run = simulate(velocities[n], spins[n], times=times, **options)
+        for name in ("x", "y", "heading", "orientation", "speed", "spin"):
+            error = getattr(states, name)[n] - getattr(run, name)
+            assert np.abs(error).max() <= 1e-8, (n, name)
+
+
+def test_aims_of_other_pucks_hit(tmp_path: Path):
+    for options in (
+        {"delta": 2.0}, {"pressure": "annulus:0.8", "gyration": 0.9}, {"gyration": 2.0, "delta": 0},
+    ):  # fmt: skip
+        for wish in ({"w0": 3.0}, {"speed": 1.5}, {"stop_time": 3.0}, {"count": 3}):
+            found = aim((2.0, 0.3), **wish, **options)
+            assert found.w0.size >= 1
+            assert found.miss.max() <= 1e-8
+    plot_aim(aim((2.0, 0.3), delta=2.0, count=2), tmp_path / "aim.png")
+    turning = float(law_of("hertz").friction(0.5 * math.pi, 0.0).spin)
+    spot = aim((0.0, 0.0), w0=2.0, pressure="hertz")
+    assert spot.stop_time[0] == pytest.approx(2.0 / turning)
+
+
+def test_a_tall_puck_may_be_aimed_in_three_ways():
+    """Just below φ = π/4 the stop time of a puck with δ = 3.9 falls with its spin."""
+    u = np.linspace(-0.5, 0.5, 81)
+    friction = friction_of(body_of("uniform", 3.9, HOMOGENEOUS), 1e-6)
+    stops = integrated_stops(u, np.full(u.size, 3.9), friction.cut, 1e-9)
+    duration = stops[:, 0] / np.sqrt(np.hypot(stops[:, 1], stops[:, 2])) * math.sqrt(2.0)
+    falling = np.flatnonzero(np.diff(duration) < 0.0)
+    assert falling.size > 2
+    middle = duration[[falling[0], falling[-1] + 1]].mean()
+    found = aim((2.0, 0.0), stop_time=float(middle), delta=3.9)
+    assert found.w0.size == 6
+    assert found.miss.max() <= 1e-8
+    assert np.abs(found.stop_time - middle).max() <= 1e-8
