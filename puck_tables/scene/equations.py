@@ -26,12 +26,12 @@ from puck_tables.scene.ingredients import (
     Body,
     Dry,
     Model,
+    Stretch,
     drag_force,
-    drive_force,
     floor_acceleration,
     floor_velocity,
+    given_force,
     held,
-    pull_force,
 )
 
 FloatArray = npt.NDArray[np.float64]
@@ -43,27 +43,41 @@ ROW = SIZE + 2
 
 
 @inlined
-def relative_velocity(model: Model, y: FloatArray) -> tuple[float, float, float]:
-    """Velocity and spin of the puck relative to the floor under it."""
+def slip_speed(model: Model, y: FloatArray) -> float:
+    """Q relative to the floor under the puck."""
     sx, sy, sw = floor_velocity(model.surface, y[X], y[Y])
-    return y[VX] - sx, y[VY] - sy, y[SPIN] - sw
+    return _size(y[VX] - sx, y[VY] - sy, model.body.radius * (y[SPIN] - sw))
+
+
+@inlined
+def slip_rate(model: Model, y: FloatArray, work: FloatArray) -> float:
+    """The size of the change of the relative velocity, from d/dt of the state in work[0]."""
+    turning = model.surface.spin  # under a puck that moves the floor changes its velocity too
+    return _size(
+        work[0, VX] + turning * y[VY],
+        work[0, VY] - turning * y[VX],
+        model.body.radius * work[0, SPIN],
+    )
+
+
+@inlined
+def _size(a: float, b: float, c: float) -> float:
+    return math.sqrt(a * a + b * b + c * c)  # the scales of a scene keep squares in range
 
 
 @kernel
 def dry_friction(
-    dry: Dry | None, radius: float, region: int, ux: float, uy: float, w: float
+    dry: Dry, radius: float, ux: float, uy: float, w: float
 ) -> tuple[float, float, float, float]:
     """Force, torque and the power they take, at velocities relative to the floor."""
-    if dry is None:
+    load, rim = dry.load, radius * abs(w)
+    slip = _size(ux, uy, rim)
+    if load == 0.0 or slip == 0.0:
         return 0.0, 0.0, 0.0, 0.0
-    speed, rim = math.hypot(ux, uy), radius * abs(w)
-    slip = math.hypot(speed, rim)
-    if slip == 0.0:
-        return 0.0, 0.0, 0.0, 0.0
+    speed = _size(ux, uy, 0.0)
     fast = rim > speed
     ratio = speed / rim if fast else rim / speed
-    inverse, across, turning = ratios_at(ratio, fast, dry.cuts[region], dry.delta[region])
-    load = dry.load[region]
+    inverse, across, turning = ratios_at(ratio, fast, dry.cut, dry.delta)
     sine = radius * w / slip
     push = -load / (inverse * slip)
     bend = across * sine
@@ -88,77 +102,38 @@ def against_walls(leaning: FloatArray, fx: float, fy: float) -> tuple[float, flo
     return fx, fy
 
 
-@inlined
-def derivatives(
-    t: float,
-    inside: float,
-    y: FloatArray,
-    model: Model,
-    region: int,
-    leaning: FloatArray,
-    out: FloatArray,
-) -> None:
-    """d/dt of the state while the puck slides, and λ, into ``out`` (12,)."""
+@kernel
+def rates(stretch: Stretch, t: float, y: FloatArray, out: FloatArray, row: int) -> None:
+    """d/dt of the state and λ into out[row] (12,), sliding or carried; then λ is not determined."""
+    model = stretch.model
     body = model.body
     sx, sy, sw = floor_velocity(model.surface, y[X], y[Y])
+    gx, gy, gm = given_force(model, stretch.piece, t)
+    if stretch.carried:
+        ax, ay = floor_acceleration(model.surface, y[X], y[Y])
+        out[row, X], out[row, Y], out[row, THETA] = sx, sy, sw
+        out[row, VX], out[row, VY], out[row, SPIN] = ax, ay, 0.0
+        given = gx * sx + gy * sy + gm * sw
+        out[row, GIVEN], out[row, DRY], out[row, VISCOUS] = given, 0.0, 0.0
+        out[row, SUPPORT] = body.mass * (ax * sx + ay * sy) - given
+        out[row, LAMBDA], out[row, LAMBDA + 1] = 0.0, 0.0
+        return
     ux, uy, w = y[VX] - sx, y[VY] - sy, y[SPIN] - sw
-    px, py, pm = pull_force(model.pull)
-    qx, qy, qm = drive_force(model.drive, t, inside)
-    gx, gy, gm = px + qx, py + qy, pm + qm
-    hx, hy, hm, heat = dry_friction(model.dry, body.radius, region, ux, uy, w)
+    hx, hy, hm, heat = dry_friction(stretch.dry, body.radius, ux, uy, w)
     vx, vy, vm, warmth = drag_force(model.drag, ux, uy, w)
     fx, fy, fm = gx + hx + vx, gy + hy + vy, gm + hm + vm
-    if model.hold is None:
-        fx, fy = against_walls(leaning, fx, fy)
+    fx, fy = against_walls(stretch.leaning, fx, fy)
     rx, ry, rm, first, second, power = held(
         model.hold, body, y[THETA], y[VX], y[VY], y[SPIN], fx, fy, fm
     )
-    out[X], out[Y], out[THETA] = y[VX], y[VY], y[SPIN]
-    out[VX] = (fx + rx) / body.mass
-    out[VY] = (fy + ry) / body.mass
-    out[SPIN] = (fm + rm) / body.inertia
-    out[GIVEN] = gx * y[VX] + gy * y[VY] + gm * y[SPIN]
-    out[DRY] = heat
-    out[VISCOUS] = warmth
-    out[SUPPORT] = (hx + vx) * sx + (hy + vy) * sy + (hm + vm) * sw + power
-    out[LAMBDA], out[LAMBDA + 1] = first, second
-
-
-@inlined
-def carried_rates(t: float, inside: float, y: FloatArray, model: Model, out: FloatArray) -> None:
-    """The same while the puck rests on the floor and is carried with it; λ is not determined."""
-    body = model.body
-    sx, sy, sw = floor_velocity(model.surface, y[X], y[Y])
-    ax, ay = floor_acceleration(model.surface, y[X], y[Y])
-    px, py, pm = pull_force(model.pull)
-    qx, qy, qm = drive_force(model.drive, t, inside)
-    gx, gy, gm = px + qx, py + qy, pm + qm
-    out[X], out[Y], out[THETA] = sx, sy, sw
-    out[VX], out[VY], out[SPIN] = ax, ay, 0.0
-    given = gx * sx + gy * sy + gm * sw
-    out[GIVEN] = given
-    out[DRY] = 0.0
-    out[VISCOUS] = 0.0
-    out[SUPPORT] = body.mass * (ax * sx + ay * sy) - given
-    out[LAMBDA], out[LAMBDA + 1] = 0.0, 0.0
-
-
-@kernel
-def rates(
-    t: float,
-    inside: float,
-    y: FloatArray,
-    model: Model,
-    region: int,
-    leaning: FloatArray,
-    carried: bool,
-    out: FloatArray,
-) -> None:
-    """d/dt of the state, sliding or carried, into ``out`` (12,)."""
-    if carried:
-        carried_rates(t, inside, y, model, out)
-    else:
-        derivatives(t, inside, y, model, region, leaning, out)
+    out[row, X], out[row, Y], out[row, THETA] = y[VX], y[VY], y[SPIN]
+    out[row, VX] = (fx + rx) / body.mass
+    out[row, VY] = (fy + ry) / body.mass
+    out[row, SPIN] = (fm + rm) / body.inertia
+    out[row, GIVEN] = gx * y[VX] + gy * y[VY] + gm * y[SPIN]
+    out[row, DRY], out[row, VISCOUS] = heat, warmth
+    out[row, SUPPORT] = (hx + vx) * sx + (hy + vy) * sy + (hm + vm) * sw + power
+    out[row, LAMBDA], out[row, LAMBDA + 1] = first, second
 
 
 @inlined

@@ -19,16 +19,15 @@ import numpy.typing as npt
 from puck_tables.kernels.compile import inlined, kernel
 from puck_tables.scene.equations import SPIN, THETA, VX, VY, X, Y, against_walls, dry_friction
 from puck_tables.scene.ingredients import (
+    FREE,
     PIVOT,
     RAIL,
     Body,
     Dry,
     Hold,
-    Model,
-    drive_force,
+    Stretch,
     floor_acceleration,
-    floor_velocity,
-    pull_force,
+    given_force,
 )
 
 FloatArray = npt.NDArray[np.float64]
@@ -39,7 +38,7 @@ _ANGLES = 64
 
 @inlined
 def _held_pivot(
-    dry: Dry, hold: Hold, radius: float, region: int, theta: float, fx: float, fy: float,
+    dry: Dry, hold: Hold, radius: float, theta: float, fx: float, fy: float,
     torque: float, slip: FloatArray,
 ) -> bool:  # fmt: skip
     """The same where the only slip is a turn about the pivot: one direction, φ = atan(r/reach)."""
@@ -47,16 +46,16 @@ def _held_pivot(
     reach = hold.reach
     demand = torque - reach * (cosine * fy - sine * fx)
     size = math.hypot(reach, radius)
-    _, _, _, heat = dry_friction(dry, radius, region, reach / size, 0.0, 1.0 / size)
+    _, _, _, heat = dry_friction(dry, radius, reach / size, 0.0, 1.0 / size)
     way = 1.0 if demand >= 0.0 else -1.0
     slip[0], slip[1] = way * reach * sine / size, -way * reach * cosine / size
     slip[2] = way / size
-    return abs(demand) <= size * heat + _SLACK * dry.load[region] * radius
+    return abs(demand) <= size * heat + _SLACK * dry.load * radius
 
 
 @inlined
 def _held_free(
-    dry: Dry, radius: float, region: int, fx: float, fy: float, torque: float, slip: FloatArray
+    dry: Dry, radius: float, fx: float, fy: float, torque: float, slip: FloatArray
 ) -> bool:
     """The same where the puck may slip along the force and turn."""
     force = math.hypot(fx, fy)
@@ -67,7 +66,7 @@ def _held_free(
         for i in range(count):
             phi = low + (high - low) * (i / max(count - 1, 1))
             cosine, sine = math.cos(phi), math.sin(phi)
-            _, _, _, heat = dry_friction(dry, radius, region, cosine, 0.0, sine / radius)
+            _, _, _, heat = dry_friction(dry, radius, cosine, 0.0, sine / radius)
             gain = force * cosine + abs(torque) / radius * sine - heat
             if gain > excess:
                 excess, best = gain, phi
@@ -76,62 +75,43 @@ def _held_free(
     way = 1.0 if torque >= 0.0 else -1.0
     slip[0], slip[1] = math.cos(best) * east, math.cos(best) * north
     slip[2] = way * math.sin(best) / radius
-    return excess <= _SLACK * dry.load[region]
+    return excess <= _SLACK * dry.load
 
 
 @inlined
 def _held_with(
-    dry: Dry, hold: Hold | None, body: Body, region: int, theta: float, ax: float, ay: float,
+    dry: Dry, hold: Hold, body: Body, theta: float, ax: float, ay: float,
     turning: float, fx: float, fy: float, torque: float, slip: FloatArray,
 ) -> bool:  # fmt: skip
     """By kind of constraint; a floor whose motion a constraint forbids never holds the puck."""
-    if hold is None:
-        return _held_free(dry, body.radius, region, fx, fy, torque, slip)
+    if hold.kind == FREE:
+        return _held_free(dry, body.radius, fx, fy, torque, slip)
     cosine, sine = math.cos(theta + hold.angle), math.sin(theta + hold.angle)
     if hold.kind == PIVOT:
         centripetal = turning * turning * hold.reach
         gap = math.hypot(ax - centripetal * cosine, ay - centripetal * sine)
-        holds = _held_pivot(dry, hold, body.radius, region, theta, fx, fy, torque, slip)
+        holds = _held_pivot(dry, hold, body.radius, theta, fx, fy, torque, slip)
         return holds and gap <= 1e-9 * math.hypot(ax, ay)
     ex, ey = (-hold.ay, hold.ax) if hold.kind == RAIL else (cosine, sine)
     along = fx * ex + fy * ey
-    holds = _held_free(dry, body.radius, region, along * ex, along * ey, torque, slip)
+    holds = _held_free(dry, body.radius, along * ex, along * ey, torque, slip)
     return holds and turning == 0.0
 
 
-@inlined
-def _held(
-    dry: Dry | None, t: float, inside: float, y: FloatArray, model: Model, region: int,
-    leaning: FloatArray, slip: FloatArray,
-) -> bool:  # fmt: skip
-    if dry is None:
-        return False
-    body = model.body
-    ax, ay = floor_acceleration(model.surface, y[X], y[Y])
-    _, _, turning = floor_velocity(model.surface, y[X], y[Y])
-    px, py, pm = pull_force(model.pull)
-    qx, qy, qm = drive_force(model.drive, t, inside)
-    fx, fy = against_walls(leaning, px + qx - body.mass * ax, py + qy - body.mass * ay)
-    return _held_with(
-        dry, model.hold, body, region, y[THETA], ax, ay, turning, fx, fy, pm + qm, slip
-    )
-
-
 @kernel
-def held_by_floor(
-    t: float,
-    inside: float,
-    y: FloatArray,
-    model: Model,
-    region: int,
-    leaning: FloatArray,
-    slip: FloatArray,
-) -> bool:
+def held_by_floor(stretch: Stretch, t: float, y: FloatArray, slip: FloatArray) -> bool:
     """Whether friction holds a puck at rest on the floor.
 
     ``slip`` (3,) becomes the direction (vx, vy, ω) in which it starts, scaled to Q = 1.
     """
-    return _held(model.dry, t, inside, y, model, region, leaning, slip)
+    model = stretch.model
+    body = model.body
+    ax, ay = floor_acceleration(model.surface, y[X], y[Y])
+    gx, gy, torque = given_force(model, stretch.piece, t)
+    fx, fy = against_walls(stretch.leaning, gx - body.mass * ax, gy - body.mass * ay)
+    return _held_with(
+        stretch.dry, model.hold, body, y[THETA], ax, ay, model.surface.spin, fx, fy, torque, slip
+    )
 
 
 @kernel
