@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.kernels.compile import inlined, kernel
-from puck_tables.scene.equations import VX, VY, X, Y
+from puck_tables.scene.friction import VX, VY, X, Y
 from puck_tables.scene.impact import rebound
 from puck_tables.scene.ingredients import Body, Stretch
 from puck_tables.scene.steps import step

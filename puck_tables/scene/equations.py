@@ -1,12 +1,6 @@
 """Equations of motion of a puck in a scene, in the laboratory, with the power of every ingredient.
 
-With u, w the velocity and spin relative to the floor, Q = hypot(u, r w), sin φ = r w/Q, dry
-friction is (Salnikova, Treschev, Gallyamov 2012, sections 4–6, with relative velocities)
-
-    F = −f N (ρ_∥ u + sin φ ρ_⊥ u^⊥)/Q,   M = −½ f N r sin φ ρ_ω,   power −f N Q (cos²φ ρ_∥ +
-    ½ sin²φ ρ_ω),
-
-u^⊥ being u turned by +90°.  Given forces act on the centre, so the balance of moments that tilts
+Given forces act on the centre, so the balance of moments that tilts
 the pressure stays that of the free puck.  The state carries, beside position and velocity, the
 energies: work of given forces, heat of dry friction, heat of viscous friction (2f₂
 of Chetaev), work of moving supports and constraints (−f₁, and what dry friction and reactions do
@@ -15,16 +9,26 @@ at the velocity of their support).
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 import numpy.typing as npt
 
 from puck_tables.kernels.compile import inlined, kernel
-from puck_tables.motion.equations import ratios_at
+from puck_tables.scene.friction import (
+    SPIN,
+    THETA,
+    VX,
+    VY,
+    X,
+    Y,
+    against_walls,
+    dry_friction,
+    size,
+)  # fmt: skip
 from puck_tables.scene.ingredients import (
+    SLIDES,
+    STARTS,
+    STOPS,
     Body,
-    Dry,
     Model,
     Stretch,
     drag_force,
@@ -33,11 +37,12 @@ from puck_tables.scene.ingredients import (
     given_force,
     held,
 )
+from puck_tables.scene.rest import excess_at_rest
 
 FloatArray = npt.NDArray[np.float64]
 
 SIZE = 10
-X, Y, THETA, VX, VY, SPIN, GIVEN, DRY, VISCOUS, SUPPORT = range(SIZE)
+GIVEN, DRY, VISCOUS, SUPPORT = range(6, SIZE)
 LAMBDA = SIZE  # the two multipliers follow the state; they are not integrated
 ROW = SIZE + 2
 
@@ -46,14 +51,14 @@ ROW = SIZE + 2
 def slip_speed(model: Model, y: FloatArray) -> float:
     """Q relative to the floor under the puck."""
     sx, sy, sw = floor_velocity(model.surface, y[X], y[Y])
-    return _size(y[VX] - sx, y[VY] - sy, model.body.radius * (y[SPIN] - sw))
+    return size(y[VX] - sx, y[VY] - sy, model.body.radius * (y[SPIN] - sw))
 
 
 @inlined
 def slip_rate(model: Model, y: FloatArray, work: FloatArray) -> float:
     """The size of the change of the relative velocity, from d/dt of the state in work[0]."""
     turning = model.surface.spin  # under a puck that moves the floor changes its velocity too
-    return _size(
+    return size(
         work[0, VX] + turning * y[VY],
         work[0, VY] - turning * y[VX],
         model.body.radius * work[0, SPIN],
@@ -61,61 +66,45 @@ def slip_rate(model: Model, y: FloatArray, work: FloatArray) -> float:
 
 
 @inlined
-def _size(a: float, b: float, c: float) -> float:
-    return math.sqrt(a * a + b * b + c * c)  # the scales of a scene keep squares in range
-
-
-@kernel
-def dry_friction(
-    dry: Dry, radius: float, ux: float, uy: float, w: float
-) -> tuple[float, float, float, float]:
-    """Force, torque and the power they take, at velocities relative to the floor."""
-    load, rim = dry.load, radius * abs(w)
-    slip = _size(ux, uy, rim)
-    if load == 0.0 or slip == 0.0:
-        return 0.0, 0.0, 0.0, 0.0
-    speed = _size(ux, uy, 0.0)
-    fast = rim > speed
-    ratio = speed / rim if fast else rim / speed
-    inverse, across, turning = ratios_at(ratio, fast, dry.cut, dry.delta)
-    sine = radius * w / slip
-    push = -load / (inverse * slip)
-    bend = across * sine
-    cos2 = (speed / slip) * (speed / slip)
-    return (
-        push * (ux - bend * uy),
-        push * (uy + bend * ux),
-        -0.5 * load * radius * sine * turning / inverse,
-        load * slip * (cos2 + 0.5 * sine * sine * turning) / inverse,
-    )
-
-
-@inlined
-def against_walls(leaning: FloatArray, fx: float, fy: float) -> tuple[float, float]:
-    """A force without what the walls that the puck leans on take up; rows of unit normals."""
-    for _ in range(1 if leaning.shape[0] < 2 else 40):  # a corner: each wall turns it to the other
-        for i in range(leaning.shape[0]):
-            push = leaning[i, 0] * fx + leaning[i, 1] * fy
-            if push < 0.0:
-                fx -= push * leaning[i, 0]
-                fy -= push * leaning[i, 1]
-    return fx, fy
+def stopping(model: Model, y: FloatArray, work: FloatArray) -> tuple[float, float, float, float]:
+    """The direction (vx, vy, ω) of the slip, scaled to Q = 1, and the rate of Q."""
+    sx, sy, sw = floor_velocity(model.surface, y[X], y[Y])
+    ux, uy, w, turning = y[VX] - sx, y[VY] - sy, y[SPIN] - sw, model.surface.spin
+    r2 = model.body.radius * model.body.radius
+    q = size(ux, uy, model.body.radius * w)
+    rate = ux * (work[0, VX] + turning * y[VY]) + uy * (work[0, VY] - turning * y[VX])
+    return ux / q, uy / q, w / q, (rate + r2 * w * work[0, SPIN]) / q
 
 
 @kernel
 def rates(stretch: Stretch, t: float, y: FloatArray, out: FloatArray, row: int) -> None:
-    """d/dt of the state and λ into out[row] (12,), sliding or carried; then λ is not determined."""
+    """d/dt of the state and λ into out[row] (12,); λ is not determined at rest.
+
+    Next to rest the puck moves with the floor, and slips in the direction that :mod:`rest` finds
+    (it starts) or that ``way`` gives (it stops): there the direction settles at once, and
+    following it would take steps without number.
+    """
     model = stretch.model
     body = model.body
     sx, sy, sw = floor_velocity(model.surface, y[X], y[Y])
     gx, gy, gm = given_force(model, stretch.piece, t)
-    if stretch.carried:
+    if stretch.mode != SLIDES:
         ax, ay = floor_acceleration(model.surface, y[X], y[Y])
-        out[row, X], out[row, Y], out[row, THETA] = sx, sy, sw
-        out[row, VX], out[row, VY], out[row, SPIN] = ax, ay, 0.0
-        given = gx * sx + gy * sy + gm * sw
-        out[row, GIVEN], out[row, DRY], out[row, VISCOUS] = given, 0.0, 0.0
-        out[row, SUPPORT] = body.mass * (ax * sx + ay * sy) - given
+        nx, ny, nw, gain = 0.0, 0.0, 0.0, 0.0
+        if stretch.mode == STARTS:
+            excess, nx, ny, nw = excess_at_rest(stretch, t, y)
+            gain = max(excess, 0.0) / (body.mass * (nx * nx + ny * ny) + body.inertia * nw * nw)
+        elif stretch.mode == STOPS:
+            nx, ny, nw, gain = stretch.way
+        ax, ay, aw = ax + gain * nx, ay + gain * ny, gain * nw
+        out[row, X], out[row, Y], out[row, THETA] = y[VX], y[VY], y[SPIN]
+        out[row, VX], out[row, VY], out[row, SPIN] = ax, ay, aw
+        # what the floor and what holds the puck there do besides the given forces
+        fx, fy, fm = body.mass * ax - gx, body.mass * ay - gy, body.inertia * aw - gm
+        out[row, GIVEN] = gx * y[VX] + gy * y[VY] + gm * y[SPIN]
+        out[row, DRY] = -(fx * (y[VX] - sx) + fy * (y[VY] - sy) + fm * (y[SPIN] - sw))
+        out[row, VISCOUS] = 0.0
+        out[row, SUPPORT] = fx * sx + fy * sy + fm * sw
         out[row, LAMBDA], out[row, LAMBDA + 1] = 0.0, 0.0
         return
     ux, uy, w = y[VX] - sx, y[VY] - sy, y[SPIN] - sw

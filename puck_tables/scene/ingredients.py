@@ -17,6 +17,8 @@ from puck_tables.kernels.compile import inlined
 FloatArray = npt.NDArray[np.float64]
 
 FREE, RAIL, PIVOT, BLADE = range(4)
+SLIDES, CARRIED, STARTS, STOPS = range(4)
+NO_WAY = (0.0, 0.0, 0.0, 0.0)
 
 
 class Body(NamedTuple):
@@ -109,14 +111,16 @@ class Stretch(NamedTuple):
     """What acts between two events.
 
     ``leaning``: unit normals (n, 2) of the walls that the puck leans on; ``piece``: how many
-    rows of ``model.drive`` have passed; ``carried``: whether the puck rests on the floor.
+    rows of ``model.drive`` have passed; ``mode`` SLIDES, CARRIED (at rest on the floor), STARTS to
+    slip, STOPS: with the constant relative acceleration way[3] times the direction way[:3].
     """
 
     model: Model
     dry: Dry
     leaning: FloatArray
     piece: int
-    carried: bool
+    mode: int
+    way: tuple[float, float, float, float]
 
 
 @inlined

@@ -28,31 +28,33 @@ from puck_tables.scene.boundaries import (
 from puck_tables.scene.equations import (
     ROW,
     SIZE,
-    SPIN,
-    VX,
-    VY,
-    X,
-    Y,
     kinetic_energy,
     rates,
     slip_rate,
     slip_speed,
+    stopping,
 )
+from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.scene.ingredients import (
+    CARRIED,
     FREE,
+    NO_WAY,
+    SLIDES,
+    STARTS,
+    STOPS,
     Dry,
     Model,
     Regions,
     Stretch,
     floor_velocity,
 )
-from puck_tables.scene.rest import held_by_floor, seed
+from puck_tables.scene.rest import SLACK, excess_at_rest, held_by_floor
 from puck_tables.scene.steps import STAGES, step
 
 FloatArray = npt.NDArray[np.float64]
 
 # how a run ends
-AT_REST, CARRIED, TIME_UP, OVER_EDGE, STEP_LIMIT, EVENT_LIMIT, NOT_FINITE = range(7)
+AT_REST, CARRIED_AWAY, TIME_UP, OVER_EDGE, STEP_LIMIT, EVENT_LIMIT, NOT_FINITE = range(7)
 # what happens on the way
 RESTS, SLIPS, LEANS = 0, 1, 3  # and those of boundaries
 
@@ -60,8 +62,8 @@ FRAME_COLUMNS = ROW + 3  # time, state, λ, carried, heat of impacts
 EVENT_COLUMNS = 3 + SIZE  # time, what, which, state
 
 _REST = 1e-13  # of the scale of speeds: as good as at rest
-_SEED = 1e-12
-_NEAR = 0.9  # of the time in which the slip would end, at most, is a step
+_LAST = 30.0  # times the local error: from there a stop goes straight
+_NEAR = 0.5  # of the time in which the slip would end, at most, is a step
 
 
 class Ask(NamedTuple):
@@ -82,7 +84,7 @@ class Ask(NamedTuple):
 @inlined
 def _slipping(
     stretch: Stretch, t: float, h: float, y: FloatArray, scale: FloatArray, work: FloatArray,
-    new: FloatArray, slip: FloatArray,
+    new: FloatArray,
 ) -> float:  # fmt: skip
     """When within a step the floor loses a puck that it carries."""
     low, high = 0.0, h
@@ -91,7 +93,7 @@ def _slipping(
         if middle <= low or middle >= high:
             return high
         step(stretch, t, middle, y, scale, work, new)
-        if held_by_floor(stretch, t + middle, new, slip):
+        if held_by_floor(stretch, t + middle, new):
             low = middle
         else:
             high = middle
@@ -113,7 +115,7 @@ def _framed(
     for i in range(SIZE):
         row[1 + i] = y[i]
     row[1 + SIZE], row[2 + SIZE] = work[1, SIZE], work[1, SIZE + 1]
-    row[1 + ROW] = 1.0 if stretch.carried else 0.0
+    row[1 + ROW] = 1.0 if stretch.mode == CARRIED else 0.0
     row[2 + ROW] = heat
 
 
@@ -144,13 +146,13 @@ def follow(
     how it ended, when, number of events, of steps and of frames reached, heat of impacts
     """
     work, last = np.empty((STAGES, ROW)), np.empty(ROW)
-    new, trial, slip = np.empty(SIZE), np.empty(SIZE), np.empty(3)
+    new, trial = np.empty(SIZE), np.empty(SIZE)
     leans = np.zeros(len(bounds.walls), np.bool_)
     leaning, dry = normals(bounds, leans), _dry(regions, region)
     body, scale, surface, drive = model.body, ask.scale, model.surface, model.drive
     moves = surface.vx != 0.0 or surface.vy != 0.0 or surface.spin != 0.0
     unbounded = len(bounds.walls) + len(bounds.edges) + len(bounds.borders) == 0
-    t, heat, carried, piece = 0.0, 0.0, False, 0
+    t, heat, mode, piece, way = 0.0, 0.0, SLIDES, 0, NO_WAY
     count, steps, frame = 0, 0, 0
     how = TIME_UP
     h = 1e-3 * ask.until
@@ -159,29 +161,41 @@ def follow(
         while piece < len(drive) and drive[piece, 0] <= t:
             piece += 1
         target = min(drive[piece, 0], ask.until) if piece < len(drive) else ask.until
-        if settle and dry.load > 0.0 and slip_speed(model, y) <= _REST * ask.speed:
+        q = slip_speed(model, y)
+        if settle and dry.load > 0.0 and q <= _REST * ask.speed:
             y[VX], y[VY], y[SPIN] = floor_velocity(surface, y[X], y[Y])
-            was = carried
-            carried = held_by_floor(Stretch(model, dry, leaning, piece, True), t, y, slip)
-            if carried != was:
+            was = mode
+            excess = excess_at_rest(Stretch(model, dry, leaning, piece, CARRIED, way), t, y)[0]
+            mode = CARRIED if excess <= SLACK * dry.load else STARTS
+            if excess == math.inf:  # where a constraint leads it the floor does not go
+                mode = SLIDES
+            if (mode == CARRIED) != (was == CARRIED):
                 if count == len(events):
                     how = EVENT_LIMIT
                     break
-                _noted(events[count], t, RESTS if carried else SLIPS, region, y)
+                _noted(events[count], t, RESTS if mode == CARRIED else SLIPS, region, y)
                 count += 1
-            if not carried:
-                seed(y, slip, _SEED * ask.speed)
-            elif piece == len(drive) and (not moves or (unbounded and not ask.to_the_end)):
-                how = CARRIED if moves else AT_REST  # nothing is to come
+            if mode == CARRIED and (
+                piece == len(drive) and (not moves or (unbounded and not ask.to_the_end))
+            ):
+                how = CARRIED_AWAY if moves else AT_REST  # nothing is to come
                 break
             h = max(h, 1e-6 * (target - t))
-        stretch = Stretch(model, dry, leaning, piece, carried)
+        elif settle:
+            mode = SLIDES
+        stretch = Stretch(model, dry, leaning, piece, mode, way)
         if settle or not known:
             rates(stretch, t, y, work, 0)
         settle, known = False, True
-        if not carried and dry.load > 0.0:
-            near, pull = _NEAR * slip_speed(model, y), slip_rate(model, y, work)
-            h = near / pull if h * pull > near else h
+        if mode == SLIDES and dry.load > 0.0:
+            pull = slip_rate(model, y, work)
+            h = _NEAR * q / pull if h * pull > _NEAR * q else h
+            if 0.0 < q <= _LAST * ask.tolerance * ask.speed:
+                way = stopping(model, y, work)
+                if way[3] < 0.0 and held_by_floor(stretch, t, y):
+                    mode, known = STOPS, False
+                    h = -q / way[3]
+                    continue
         # a step
         landed = t + 1.1 * h >= target
         length = target - t if landed else h
@@ -190,6 +204,10 @@ def follow(
         if steps > ask.step_limit:
             how = STEP_LIMIT
             break
+        if mode == STARTS:  # the direction is followed from where that can be seen
+            excess = excess_at_rest(stretch, t + length, new)[0]
+            far = slip_speed(model, new) * excess > ask.tolerance * ask.speed * dry.load
+            error = math.inf if far else error
         if not error <= ask.tolerance:
             shrink = 0.1 if not error < math.inf else max(0.1, 0.9 * (ask.tolerance / error) ** 0.2)
             h = length * shrink
@@ -202,9 +220,9 @@ def follow(
         happens, which, moment = first_crossing(
             bounds, stretch, region, leans, t, length, y, scale, work, new, trial
         )
-        if carried and happens < 0 and not held_by_floor(stretch, t + length, new, slip):
+        if mode == CARRIED and happens < 0 and not held_by_floor(stretch, t + length, new):
             happens, which = SLIPS, region
-            moment = _slipping(stretch, t, length, y, scale, work, trial, slip)
+            moment = _slipping(stretch, t, length, y, scale, work, trial)
         if happens >= 0:
             landed = False
             length = moment
@@ -218,11 +236,18 @@ def follow(
         t = end
         y[:] = new
         work[0] = last
-        known = model.hold.kind == FREE and not carried  # else the step ended a little beside it
+        known = (
+            model.hold.kind == FREE and mode == SLIDES == stretch.mode
+        )  # else the step ended a little beside it
+        q = slip_speed(model, y)
         if landed and target < ask.until:
             settle = True
-        if not carried and slip_speed(model, y) <= _REST * ask.speed:
+        if mode in (SLIDES, STOPS) and q <= _REST * ask.speed:
             settle = True
+        if mode == STARTS:
+            excess = excess_at_rest(stretch, t, y)[0]
+            if q * excess >= 0.1 * ask.tolerance * ask.speed * dry.load or excess <= 0.0:
+                mode = SLIDES
         if left(bounds, y, leans, ask.speed):
             leaning = normals(bounds, leans)
             known = False
@@ -232,8 +257,9 @@ def follow(
         if happens == BORDER:
             region = which
             dry = _dry(regions, region)
+            mode = CARRIED if mode == CARRIED and dry.load > 0.0 else SLIDES
         elif happens == BOUNCES:
-            carried = False
+            mode = SLIDES
             before = kinetic_energy(body, y)
             if bounced(bounds, which, body, y, leans, ask.speed):
                 happens = LEANS
@@ -245,13 +271,11 @@ def follow(
         _noted(events[count], t, happens, which, y)
         count += 1
         if happens == SLIPS:
-            held_by_floor(stretch, t, y, slip)
-            seed(y, slip, _SEED * ask.speed)
-            carried, settle, known = False, False, False
+            mode, settle, known = STARTS, False, False
         if happens == EDGE:
             how = OVER_EDGE
             break
-    stretch = Stretch(model, dry, leaning, piece, carried)
+    stretch = Stretch(model, dry, leaning, piece, mode, way)
     while how == AT_REST and frame < len(frames):  # for ever
         _framed(rows[frame], stretch, frames[frame], y, heat, work)
         frame += 1

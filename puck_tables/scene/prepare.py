@@ -14,7 +14,8 @@ from puck_tables.errors import InputError
 from puck_tables.run import closed_form_friction, table_friction
 from puck_tables.scene.boundaries import Boundaries
 from puck_tables.scene.bulk import follow_many
-from puck_tables.scene.equations import SIZE, SPIN, THETA, VX, VY, X, Y
+from puck_tables.scene.equations import SIZE
+from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
 from puck_tables.scene.ingredients import (
     BLADE,
     FREE,

@@ -9,8 +9,19 @@ import numpy.typing as npt
 
 from puck_tables.kernels.compile import inlined, kernel
 from puck_tables.motion.steppers import DORMAND_PRINCE
-from puck_tables.scene.equations import SIZE, SPIN, THETA, VX, VY, X, Y, rates
-from puck_tables.scene.ingredients import BLADE, FREE, PIVOT, RAIL, Hold, Stretch, floor_velocity
+from puck_tables.scene.equations import SIZE, rates
+from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
+from puck_tables.scene.ingredients import (
+    BLADE,
+    CARRIED,
+    FREE,
+    PIVOT,
+    RAIL,
+    SLIDES,
+    Hold,
+    Stretch,
+    floor_velocity,
+)
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -66,8 +77,8 @@ def step(
         if not share <= largest:
             largest = share
     model = stretch.model
-    if stretch.carried:
+    if stretch.mode == CARRIED:
         new[VX], new[VY], new[SPIN] = floor_velocity(model.surface, new[X], new[Y])
-    else:
+    elif stretch.mode == SLIDES:
         put_right(model.hold, t + h, new)
     return largest
