@@ -18,6 +18,7 @@ FloatArray = npt.NDArray[np.float64]
 
 BOUNCES, BORDER, EDGE = 2, 4, 5  # among what happens on the way
 _LEAN = 1e-9  # of the scale of speeds: a rebound slower than this is none
+_LEFT = 1e-12  # a wall is left
 
 
 class Boundaries(NamedTuple):
@@ -117,7 +118,7 @@ def left(bounds: Boundaries, y: FloatArray, leans: npt.NDArray[np.bool_], speed:
     """Whether the puck has left a wall that it leant on."""
     left = False
     for i in range(leans.size):
-        if leans[i] and _gap(_line(bounds.walls, i, 1.0), y)[1] > 1e-12 * speed:
+        if leans[i] and _gap(_line(bounds.walls, i, 1.0), y)[1] > _LEFT * speed:
             leans[i] = False
             left = True
     return left
@@ -126,19 +127,19 @@ def left(bounds: Boundaries, y: FloatArray, leans: npt.NDArray[np.bool_], speed:
 @inlined
 def bounced(
     bounds: Boundaries, which: int, body: Body, y: FloatArray,
-    leans: npt.NDArray[np.bool_], speed: float,
+    leans: npt.NDArray[np.bool_], speed: float, least: float,
 ) -> bool:  # fmt: skip
-    """Rebound from a wall; whether the puck stays there."""
+    """Rebound from a wall; whether the puck stays there, as it does if slower than ``least``."""
     walls = bounds.walls
     rebound(body, walls[which], y)
-    stays = _gap(_line(walls, which, 1.0), y)[1] <= _LEAN * speed
+    stays = _gap(_line(walls, which, 1.0), y)[1] <= max(_LEAN * speed, least)
     if stays:
         leans[which] = True
     for i in range(leans.size):  # no velocity is left towards or away from where it leans
         away = _gap(_line(walls, i, 1.0), y)[1]
-        if leans[i] and (away < 0.0 or i == which):
-            if abs(away) > _LEAN * speed:
-                leans[i] = False  # it bounces there next
+        if leans[i] and (away < 0.0 or i == which or away > _LEFT * speed):
+            if abs(away) > max(_LEAN * speed, least) or (away > 0.0 and i != which):
+                leans[i] = False  # it bounces there next, or has left already
             else:
                 y[VX] -= away * walls[i, 0]
                 y[VY] -= away * walls[i, 1]

@@ -63,6 +63,7 @@ EVENT_COLUMNS = 3 + SIZE  # time, what, which, state
 
 _REST = 1e-13  # of the scale of speeds: as good as at rest
 _LAST = 30.0  # times the local error: from there a stop goes straight
+_HOP = 1e-14  # of the place: as high as a rebound must be
 _NEAR = 0.5  # of the time in which the slip would end, at most, is a step
 
 
@@ -154,6 +155,7 @@ def follow(
     unbounded = len(bounds.walls) + len(bounds.edges) + len(bounds.borders) == 0
     t, heat, mode, piece, way = 0.0, 0.0, SLIDES, 0, NO_WAY
     count, steps, frame = 0, 0, 0
+    wall, hit = -1, 0.0
     how = TIME_UP
     h = 1e-3 * ask.until
     settle, known = True, False  # whether to look what holds the puck; whether work[0] is there
@@ -261,8 +263,11 @@ def follow(
         elif happens == BOUNCES:
             mode = SLIDES
             before = kinetic_energy(body, y)
-            if bounced(bounds, which, body, y, leans, ask.speed):
+            hops = which == wall and t - hit > 0.0  # too low for the digits of its place: none
+            least = _HOP * (abs(y[X]) + abs(y[Y])) / (t - hit) if hops else 0.0
+            if bounced(bounds, which, body, y, leans, ask.speed, least):
                 happens = LEANS
+            wall, hit = which, t
             leaning = normals(bounds, leans)
             heat += before - kinetic_energy(body, y)
         if count == len(events):
