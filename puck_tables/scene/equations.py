@@ -32,7 +32,6 @@ from puck_tables.scene.ingredients import (
     Model,
     Stretch,
     drag_force,
-    floor_acceleration,
     floor_velocity,
     given_force,
     held,
@@ -89,7 +88,7 @@ def rates(stretch: Stretch, t: float, y: FloatArray, out: FloatArray, row: int) 
     sx, sy, sw = floor_velocity(model.surface, y[X], y[Y])
     gx, gy, gm = given_force(model, stretch.piece, t)
     if stretch.mode != SLIDES:
-        ax, ay = floor_acceleration(model.surface, y[X], y[Y])
+        ax, ay = -sw * y[VY], sw * y[VX]  # of the floor that the puck meets on its way
         nx, ny, nw, gain = 0.0, 0.0, 0.0, 0.0
         if stretch.mode == STARTS:
             excess, nx, ny, nw = excess_at_rest(stretch, t, y)

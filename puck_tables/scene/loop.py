@@ -185,6 +185,7 @@ def follow(
             h = max(h, 1e-6 * (target - t))
         elif settle:
             mode = SLIDES
+        h = -q / way[3] if mode == STOPS else h
         stretch = Stretch(model, dry, leaning, piece, mode, way)
         if settle or not known:
             rates(stretch, t, y, work, 0)
@@ -196,7 +197,6 @@ def follow(
                 way = stopping(model, y, work)
                 if way[3] < 0.0 and held_by_floor(stretch, t, y):
                     mode, known = STOPS, False
-                    h = -q / way[3]
                     continue
         # a step
         landed = t + 1.1 * h >= target

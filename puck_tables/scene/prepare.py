@@ -35,7 +35,7 @@ from puck_tables.table.file import load_table
 
 FloatArray = npt.NDArray[np.float64]
 
-LOCAL_SHARE = 0.1  # of the error wanted, per step and in units of the scales
+LOCAL_SHARE = 0.01  # of the error wanted, per step and in units of the scales
 EXACT_BELOW = 1e-9  # friction by closed forms where a table's error would show
 DEFAULT_TIME = 1000.0  # in units of the time scale, where a scene does not say
 STEP_LIMIT = 1_000_000
