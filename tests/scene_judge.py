@@ -7,6 +7,7 @@ constraints by solving Newton's law and A V′ + A′ V = 0 together.
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -98,7 +99,7 @@ class Judge:
         """States (6, n) at ascending times > 0, with a new start at every corner of the force."""
         knots = [] if self.drive is None else [t for t in self.drive[:, 0] if 0 < t < times[-1]]
         ends, y, found = [0.0, *knots, float(times[-1])], self.start, []
-        for low, high in zip(ends, ends[1:], strict=False):
+        for low, high in pairwise(ends):
             piece, middle = None, 0.5 * (low + high)
             if self.drive is not None and self.drive[0, 0] < middle < self.drive[-1, 0]:
                 i = int(np.searchsorted(self.drive[:, 0], middle))
