@@ -192,7 +192,8 @@ def follow(
         settle, known = False, True
         if mode == SLIDES and dry.load > 0.0:
             pull = slip_rate(model, y, work)
-            h = _NEAR * q / pull if h * pull > _NEAR * q else h
+            near = _NEAR * max(q, _REST * ask.speed)
+            h = near / pull if h * pull > near else h
             if 0.0 < q <= _LAST * ask.tolerance * ask.speed:
                 way = stopping(model, y, work)
                 if way[3] < 0.0 and held_by_floor(stretch, t, y):
