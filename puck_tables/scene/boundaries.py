@@ -9,16 +9,16 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.kernels.compile import inlined, kernel
-from puck_tables.motion.steppers import Tableau
-from puck_tables.scene.equations import VX, VY, X, Y
+from puck_tables.scene.friction import VX, VY, X, Y
 from puck_tables.scene.impact import rebound
-from puck_tables.scene.ingredients import Body, Model
+from puck_tables.scene.ingredients import Body, Stretch
 from puck_tables.scene.steps import step
 
 FloatArray = npt.NDArray[np.float64]
 
 BOUNCES, BORDER, EDGE = 2, 4, 5  # among what happens on the way
 _LEAN = 1e-9  # of the scale of speeds: a rebound slower than this is none
+_LEFT = 1e-12  # a wall is left
 
 
 class Boundaries(NamedTuple):
@@ -34,32 +34,30 @@ class Boundaries(NamedTuple):
     borders: FloatArray
 
 
+class Line(NamedTuple):
+    """One of them: n_x, n_y, c."""
+
+    x: float
+    y: float
+    c: float
+
+
 @inlined
-def _gap(line: FloatArray, y: FloatArray) -> tuple[float, float]:
+def _line(rows: FloatArray, i: int, sign: float) -> Line:
+    return Line(sign * rows[i, 0], sign * rows[i, 1], sign * rows[i, 2])
+
+
+@inlined
+def _gap(line: Line, y: FloatArray) -> tuple[float, float]:
     """Distance from a line on its inner side, and its rate."""
-    return (
-        line[0] * y[X] + line[1] * y[Y] - line[2],
-        line[0] * y[VX] + line[1] * y[VY],
-    )
+    return line.x * y[X] + line.y * y[Y] - line.c, line.x * y[VX] + line.y * y[VY]
 
 
 @kernel
 def _crossing(
-    line: FloatArray,
-    tableau: Tableau,
-    t: float,
-    h: float,
-    inside: float,
-    y: FloatArray,
-    model: Model,
-    region: int,
-    leaning: FloatArray,
-    carried: bool,
-    scale: FloatArray,
-    work: FloatArray,
-    end: FloatArray,
-    new: FloatArray,
-) -> float:
+    line: Line, stretch: Stretch, t: float, h: float, y: FloatArray, scale: FloatArray,
+    work: FloatArray, end: FloatArray, new: FloatArray,
+) -> float:  # fmt: skip
     """When within a step from y to ``end`` the puck first passes a line outwards; inf: never."""
     gap, rate = _gap(line, y)
     last, last_rate = _gap(line, end)
@@ -74,12 +72,12 @@ def _crossing(
             middle = 0.5 * (low + high)
             if middle <= low or middle >= high:
                 break
-            step(tableau, t, middle, inside, y, model, region, leaning, carried, scale, work, new)
+            step(stretch, t, middle, y, scale, work, new)
             if sign * _gap(line, new)[1] < 0.0:
                 low = middle
             else:
                 high = middle
-        step(tableau, t, high, inside, y, model, region, leaning, carried, scale, work, new)
+        step(stretch, t, high, y, scale, work, new)
         if last >= 0.0:
             if _gap(line, new)[0] >= 0.0:
                 return math.inf
@@ -88,7 +86,7 @@ def _crossing(
             low, high = high, h
     guess = 0.5 * (low + high)
     for _ in range(100):
-        step(tableau, t, guess, inside, y, model, region, leaning, carried, scale, work, new)
+        step(stretch, t, guess, y, scale, work, new)
         value, slope = _gap(line, new)
         if value > 0.0:
             low = guess
@@ -104,18 +102,8 @@ def _crossing(
 
 
 @inlined
-def count_walls(bounds: Boundaries | None) -> int:
-    """How many cushions there are."""
-    if bounds is None:
-        return 0
-    return len(bounds.walls)
-
-
-@inlined
-def normals(bounds: Boundaries | None, leans: npt.NDArray[np.bool_]) -> FloatArray:
+def normals(bounds: Boundaries, leans: npt.NDArray[np.bool_]) -> FloatArray:
     """Normals of the walls that the puck leans on."""
-    if bounds is None:
-        return np.empty((0, 2))
     chosen = np.empty((leans.sum(), 2))
     count = 0
     for i in range(leans.size):
@@ -126,15 +114,11 @@ def normals(bounds: Boundaries | None, leans: npt.NDArray[np.bool_]) -> FloatArr
 
 
 @inlined
-def left(
-    bounds: Boundaries | None, y: FloatArray, leans: npt.NDArray[np.bool_], speed: float
-) -> bool:
+def left(bounds: Boundaries, y: FloatArray, leans: npt.NDArray[np.bool_], speed: float) -> bool:
     """Whether the puck has left a wall that it leant on."""
-    if bounds is None:
-        return False
     left = False
     for i in range(leans.size):
-        if leans[i] and _gap(bounds.walls[i], y)[1] > 1e-12 * speed:
+        if leans[i] and _gap(_line(bounds.walls, i, 1.0), y)[1] > _LEFT * speed:
             leans[i] = False
             left = True
     return left
@@ -142,22 +126,20 @@ def left(
 
 @inlined
 def bounced(
-    bounds: Boundaries | None, which: int, body: Body, y: FloatArray,
-    leans: npt.NDArray[np.bool_], speed: float,
+    bounds: Boundaries, which: int, body: Body, y: FloatArray,
+    leans: npt.NDArray[np.bool_], speed: float, least: float,
 ) -> bool:  # fmt: skip
-    """Rebound from a wall; whether the puck stays there."""
-    if bounds is None:
-        return False
+    """Rebound from a wall; whether the puck stays there, as it does if slower than ``least``."""
     walls = bounds.walls
     rebound(body, walls[which], y)
-    stays = _gap(walls[which], y)[1] <= _LEAN * speed
+    stays = _gap(_line(walls, which, 1.0), y)[1] <= max(_LEAN * speed, least)
     if stays:
         leans[which] = True
     for i in range(leans.size):  # no velocity is left towards or away from where it leans
-        away = _gap(walls[i], y)[1]
-        if leans[i] and (away < 0.0 or i == which):
-            if abs(away) > _LEAN * speed:
-                leans[i] = False  # it bounces there next
+        away = _gap(_line(walls, i, 1.0), y)[1]
+        if leans[i] and (away < 0.0 or i == which or away > _LEFT * speed):
+            if abs(away) > max(_LEAN * speed, least) or (away > 0.0 and i != which):
+                leans[i] = False  # it bounces there next, or has left already
             else:
                 y[VX] -= away * walls[i, 0]
                 y[VY] -= away * walls[i, 1]
@@ -166,36 +148,29 @@ def bounced(
 
 @inlined
 def first_crossing(
-    bounds: Boundaries | None, tableau: Tableau, t: float, h: float, inside: float, y: FloatArray,
-    model: Model, region: int, leans: npt.NDArray[np.bool_], leaning: FloatArray, carried: bool,
-    scale: FloatArray, work: FloatArray, end: FloatArray, new: FloatArray,
+    bounds: Boundaries, stretch: Stretch, region: int, leans: npt.NDArray[np.bool_], t: float,
+    h: float, y: FloatArray, scale: FloatArray, work: FloatArray, end: FloatArray, new: FloatArray,
 ) -> tuple[int, int, float]:  # fmt: skip
     """The first wall, edge or border on a step: what, which, when; −1: none."""
-    if bounds is None:
-        return -1, -1, math.inf
     happens, which, moment = -1, -1, math.inf
     walls, edges, borders = bounds.walls, bounds.edges, bounds.borders
-    line = np.empty(3)
     for i in range(len(walls) + len(edges) + len(borders)):
-        what, number, sign, offset = BOUNCES, i, 1.0, 0
+        what, number = BOUNCES, i
         if i < len(walls):
             if leans[i]:
                 continue
-            line[:] = walls[i, :3]
+            line = _line(walls, i, 1.0)
         elif i < len(walls) + len(edges):
             what, number = EDGE, i - len(walls)
-            line[:] = edges[number]
+            line = _line(edges, number, 1.0)
         else:
-            offset = i - len(walls) - len(edges)
-            if offset != region - 1 and offset != region:  # not at this region
+            border = i - len(walls) - len(edges)
+            if border != region - 1 and border != region:  # not at this region
                 continue
             what = BORDER
-            number, sign = (region - 1, 1.0) if offset == region - 1 else (region + 1, -1.0)
-            for j in range(3):
-                line[j] = sign * borders[offset, j]
-        when = _crossing(
-            line, tableau, t, h, inside, y, model, region, leaning, carried, scale, work, end, new
-        )
+            number, sign = (region - 1, 1.0) if border == region - 1 else (region + 1, -1.0)
+            line = _line(borders, border, sign)
+        when = _crossing(line, stretch, t, h, y, scale, work, end, new)
         if when < moment:
             happens, which, moment = what, number, when
     return happens, which, moment

@@ -6,10 +6,9 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.kernels.compile import kernel
-from puck_tables.motion.steppers import Tableau
 from puck_tables.scene.boundaries import BOUNCES, Boundaries
 from puck_tables.scene.equations import SIZE
-from puck_tables.scene.ingredients import Model
+from puck_tables.scene.ingredients import Model, Regions
 from puck_tables.scene.loop import EVENT_COLUMNS, FRAME_COLUMNS, Ask, follow
 
 FloatArray = npt.NDArray[np.float64]
@@ -20,19 +19,19 @@ ENDS_COLUMNS = FRAME_COLUMNS + 1  # the last row, and the number of bounces
 @kernel
 def follow_many(
     model: Model,
-    bounds: Boundaries | None,
+    regions: Regions,
+    bounds: Boundaries,
     asks: FloatArray,
     to_the_end: bool,
     tolerance: float,
     step_limit: int,
     event_limit: int,
-    tableau: Tableau,
     states: FloatArray,
-    regions: npt.NDArray[np.int64],
+    starts: npt.NDArray[np.int64],
     out: FloatArray,
     status: npt.NDArray[np.int8],
 ) -> None:
-    """Ends of launches from ``states`` (n, 10) in ``regions`` (n,) into ``out`` (16, n).
+    """Ends of launches from ``states`` (n, 10) in the regions ``starts`` (n,) into ``out`` (16, n).
 
     ``asks`` (n, 12): until when, the scale of speeds, and the scales of the state.  One launch
     never influences another, so any cutting into chunks gives the same bits.
@@ -45,7 +44,7 @@ def follow_many(
         state[:] = states[n]
         ask = Ask(asks[n, 0], to_the_end, tolerance, asks[n, 2:], asks[n, 1], step_limit)
         how, _, count, _, _, _ = follow(
-            model, bounds, ask, tableau, state, regions[n], no_frames, row, events
+            model, regions, bounds, ask, state, starts[n], no_frames, row, events
         )
         bounces = 0
         for i in range(count):

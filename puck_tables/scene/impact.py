@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.kernels.compile import inlined
-from puck_tables.scene.equations import SPIN, VX, VY
+from puck_tables.scene.friction import SPIN, VX, VY
 from puck_tables.scene.ingredients import Body
 
 FloatArray = npt.NDArray[np.float64]

@@ -1,7 +1,7 @@
-"""What may act on a puck, as the compiled loop reads it; what a scene lacks is None.
+"""What may act on a puck, as the compiled loop reads it; what a scene lacks is zero, or empty.
 
-Branches on None are cut out when the loop is compiled, one loop for each set of ingredients, so
-that an ingredient costs nothing where it is absent.
+One loop serves every scene, so that it is compiled once.  Zeros change no bit of a sum, and beside
+the friction law they cost nothing that can be measured.
 """
 
 from __future__ import annotations
@@ -16,8 +16,9 @@ from puck_tables.kernels.compile import inlined
 
 FloatArray = npt.NDArray[np.float64]
 
-RAIL, PIVOT, BLADE = 0, 1, 2
-NO_REACTION = (0.0, 0.0)
+FREE, RAIL, PIVOT, BLADE = range(4)
+SLIDES, CARRIED, STARTS, STOPS = range(4)
+NO_WAY = (0.0, 0.0, 0.0, 0.0)
 
 
 class Body(NamedTuple):
@@ -28,7 +29,7 @@ class Body(NamedTuple):
     radius: float
 
 
-class Dry(NamedTuple):
+class Regions(NamedTuple):
     """Dry friction in every region of the floor: f N, δ, and the friction ratios at that δ.
 
     ``load``, ``delta``: arrays (regions,); ``cuts``: (regions, …), see
@@ -38,6 +39,14 @@ class Dry(NamedTuple):
     load: FloatArray
     delta: FloatArray
     cuts: FloatArray
+
+
+class Dry(NamedTuple):
+    """Dry friction in one region; no load: none."""
+
+    load: float
+    delta: float
+    cut: FloatArray
 
 
 class Surface(NamedTuple):
@@ -65,22 +74,13 @@ class Pull(NamedTuple):
     torque: float
 
 
-class Drive(NamedTuple):
-    """Force and torque over time, straight between the given moments, nothing before and after."""
-
-    time: FloatArray
-    x: FloatArray
-    y: FloatArray
-    torque: FloatArray
-
-
 class Hold(NamedTuple):
     """A linear constraint on the velocities.
 
-    ``kind`` RAIL: the centre stays on a line with the unit normal (ax, ay).  PIVOT: the body point
-    at distance ``reach`` and at ``angle`` in the body stays at a point, (ax, ay) at the launch.
-    BLADE: no side slip along the body axis at ``angle``.  (vx, vy): velocity of rail or pivot;
-    for the blade vx is the side slip, to the left.
+    ``kind`` FREE: none.  RAIL: the centre stays on a line with the unit normal (ax, ay).  PIVOT:
+    the body point at distance ``reach`` and at ``angle`` in the body stays at a point, (ax, ay) at
+    the launch.  BLADE: no side slip along the body axis at ``angle``.  (vx, vy): velocity of rail
+    or pivot; for the blade vx is the side slip, to the left.
     """
 
     kind: int
@@ -93,22 +93,39 @@ class Hold(NamedTuple):
 
 
 class Model(NamedTuple):
-    """All of them; every one but the body may be None."""
+    """All of them but dry friction and walls.
+
+    ``drive``: rows (n, 4) of time, force and torque over time, straight between the rows and
+    nothing before and after.
+    """
 
     body: Body
-    dry: Dry | None
-    surface: Surface | None
-    drag: Drag | None
-    pull: Pull | None
-    drive: Drive | None
-    hold: Hold | None
+    surface: Surface
+    drag: Drag
+    pull: Pull
+    drive: FloatArray
+    hold: Hold
+
+
+class Stretch(NamedTuple):
+    """What acts between two events.
+
+    ``leaning``: unit normals (n, 2) of the walls that the puck leans on; ``piece``: how many
+    rows of ``model.drive`` have passed; ``mode`` SLIDES, CARRIED (at rest on the floor), STARTS to
+    slip, STOPS: with the constant relative acceleration way[3] times the direction way[:3].
+    """
+
+    model: Model
+    dry: Dry
+    leaning: FloatArray
+    piece: int
+    mode: int
+    way: tuple[float, float, float, float]
 
 
 @inlined
-def floor_velocity(surface: Surface | None, x: float, y: float) -> tuple[float, float, float]:
+def floor_velocity(surface: Surface, x: float, y: float) -> tuple[float, float, float]:
     """Velocity and spin of the floor under the puck."""
-    if surface is None:
-        return 0.0, 0.0, 0.0
     return (
         surface.vx - surface.spin * (y - surface.cy),
         surface.vy + surface.spin * (x - surface.cx),
@@ -117,10 +134,8 @@ def floor_velocity(surface: Surface | None, x: float, y: float) -> tuple[float, 
 
 
 @inlined
-def floor_acceleration(surface: Surface | None, x: float, y: float) -> tuple[float, float]:
+def floor_acceleration(surface: Surface, x: float, y: float) -> tuple[float, float]:
     """Acceleration of the point of the floor under the puck."""
-    if surface is None:
-        return 0.0, 0.0
     return (
         -surface.spin * (surface.vy + surface.spin * (x - surface.cx)),
         surface.spin * (surface.vx - surface.spin * (y - surface.cy)),
@@ -128,20 +143,8 @@ def floor_acceleration(surface: Surface | None, x: float, y: float) -> tuple[flo
 
 
 @inlined
-def knots_of(drive: Drive | None) -> FloatArray:
-    """Moments at which the force has a corner."""
-    if drive is None:
-        return np.empty(0)
-    return drive.time
-
-
-@inlined
-def drag_force(
-    drag: Drag | None, ux: float, uy: float, w: float
-) -> tuple[float, float, float, float]:
+def drag_force(drag: Drag, ux: float, uy: float, w: float) -> tuple[float, float, float, float]:
     """Force, torque and the power they take (Chetaev's 2f₂) at velocities relative to the floor."""
-    if drag is None:
-        return 0.0, 0.0, 0.0, 0.0
     return (
         -drag.sliding * ux,
         -drag.sliding * uy,
@@ -151,38 +154,23 @@ def drag_force(
 
 
 @inlined
-def pull_force(pull: Pull | None) -> tuple[float, float, float]:
-    """Constant force and torque."""
-    if pull is None:
-        return 0.0, 0.0, 0.0
-    return pull.x, pull.y, pull.torque
-
-
-@inlined
-def drive_force(drive: Drive | None, t: float, inside: float) -> tuple[float, float, float]:
-    """Force and torque at a time, on the piece that holds the moment ``inside``.
-
-    A step ends at every knot; its stages all take the piece of the step's middle, so that a jump
-    at a knot is seen from the right side.
-    """
-    if drive is None:
-        return 0.0, 0.0, 0.0
-    time = drive.time
-    last = time.size - 1
-    if inside < time[0] or inside > time[last]:
-        return 0.0, 0.0, 0.0
-    i = min(max(int(np.searchsorted(time, inside)) - 1, 0), last - 1)
-    share = (t - time[i]) / (time[i + 1] - time[i])
+def given_force(model: Model, piece: int, t: float) -> tuple[float, float, float]:
+    """Given force and torque at a time, on the piece of the drive that ``piece`` rows precede."""
+    pull, drive = model.pull, model.drive
+    if piece == 0 or piece == len(drive):
+        return pull.x, pull.y, pull.torque
+    i, j = piece - 1, piece
+    share = (t - drive[i, 0]) / (drive[j, 0] - drive[i, 0])
     return (
-        drive.x[i] + share * (drive.x[i + 1] - drive.x[i]),
-        drive.y[i] + share * (drive.y[i + 1] - drive.y[i]),
-        drive.torque[i] + share * (drive.torque[i + 1] - drive.torque[i]),
+        pull.x + (drive[i, 1] + share * (drive[j, 1] - drive[i, 1])),
+        pull.y + (drive[i, 2] + share * (drive[j, 2] - drive[i, 2])),
+        pull.torque + (drive[i, 3] + share * (drive[j, 3] - drive[i, 3])),
     )
 
 
 @inlined
 def held(
-    hold: Hold | None,
+    hold: Hold,
     body: Body,
     theta: float,
     vx: float,
@@ -197,7 +185,7 @@ def held(
     With the constraint A V = e of the velocities V = (vx, vy, ω), the reaction is Aᵀλ with
     (A M⁻¹ Aᵀ) λ = −A M⁻¹ F − A′ V (Chetaev, eq. 2.3 and 2.4); its power is λ e.
     """
-    if hold is None:
+    if hold.kind == FREE:
         return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     if hold.kind == RAIL:
         reaction = -(hold.ax * fx + hold.ay * fy)

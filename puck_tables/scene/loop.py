@@ -1,9 +1,9 @@
 """From a launch to the end of a scene: an adaptive integrator in time, with events.
 
 Dormand–Prince 5(4).  Next to relative rest, where the direction of friction turns within Q/|Q′|, a
-step is at most half of that: the stop is approached by halves, 43 steps to 1e-13 of the scale of
-speeds, and then taken as reached.  Every event is found on a real step of the method from the last
-step end, by Newton's method within a bracket, and becomes a step end.
+step is at most nine tenths of that: the stop is approached down to 1e-13 of the scale of speeds, in
+13 steps or more, and then taken as reached.  Every event is found on a real step of the method from
+the last step end, by Newton's method within a bracket, and becomes a step end.
 """
 
 from __future__ import annotations
@@ -15,14 +15,12 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.kernels.compile import inlined, kernel
-from puck_tables.motion.steppers import Tableau
 from puck_tables.scene.boundaries import (
     BORDER,
     BOUNCES,
     EDGE,
     Boundaries,
     bounced,
-    count_walls,
     first_crossing,
     left,
     normals,
@@ -30,23 +28,33 @@ from puck_tables.scene.boundaries import (
 from puck_tables.scene.equations import (
     ROW,
     SIZE,
-    SPIN,
-    VX,
-    VY,
-    X,
-    Y,
     kinetic_energy,
     rates,
-    relative_velocity,
+    slip_rate,
+    slip_speed,
+    stopping,
 )
-from puck_tables.scene.ingredients import Model, floor_velocity, knots_of
-from puck_tables.scene.rest import held_by_floor, seed
+from puck_tables.scene.friction import SPIN, VX, VY, X, Y
+from puck_tables.scene.ingredients import (
+    CARRIED,
+    FREE,
+    NO_WAY,
+    SLIDES,
+    STARTS,
+    STOPS,
+    Dry,
+    Model,
+    Regions,
+    Stretch,
+    floor_velocity,
+)
+from puck_tables.scene.rest import SLACK, excess_at_rest, held_by_floor
 from puck_tables.scene.steps import STAGES, step
 
 FloatArray = npt.NDArray[np.float64]
 
 # how a run ends
-AT_REST, CARRIED, TIME_UP, OVER_EDGE, STEP_LIMIT, EVENT_LIMIT, NOT_FINITE = range(7)
+AT_REST, CARRIED_AWAY, TIME_UP, OVER_EDGE, STEP_LIMIT, EVENT_LIMIT, NOT_FINITE = range(7)
 # what happens on the way
 RESTS, SLIPS, LEANS = 0, 1, 3  # and those of boundaries
 
@@ -54,7 +62,9 @@ FRAME_COLUMNS = ROW + 3  # time, state, λ, carried, heat of impacts
 EVENT_COLUMNS = 3 + SIZE  # time, what, which, state
 
 _REST = 1e-13  # of the scale of speeds: as good as at rest
-_SEED = 1e-12
+_LAST = 30.0  # times the local error: from there a stop goes straight
+_HOP = 1e-14  # of the place: as high as a rebound must be
+_NEAR = 0.5  # of the time in which the slip would end, at most, is a step
 
 
 class Ask(NamedTuple):
@@ -74,27 +84,17 @@ class Ask(NamedTuple):
 
 @inlined
 def _slipping(
-    tableau: Tableau,
-    t: float,
-    h: float,
-    inside: float,
-    y: FloatArray,
-    model: Model,
-    region: int,
-    leaning: FloatArray,
-    scale: FloatArray,
-    work: FloatArray,
+    stretch: Stretch, t: float, h: float, y: FloatArray, scale: FloatArray, work: FloatArray,
     new: FloatArray,
-    slip: FloatArray,
-) -> float:
+) -> float:  # fmt: skip
     """When within a step the floor loses a puck that it carries."""
     low, high = 0.0, h
     while True:
         middle = 0.5 * (low + high)
         if middle <= low or middle >= high:
             return high
-        step(tableau, t, middle, inside, y, model, region, leaning, True, scale, work, new)
-        if held_by_floor(t + middle, inside, new, model, region, leaning, slip):
+        step(stretch, t, middle, y, scale, work, new)
+        if held_by_floor(stretch, t + middle, new):
             low = middle
         else:
             high = middle
@@ -109,30 +109,28 @@ def _noted(row: FloatArray, t: float, what: int, which: int, y: FloatArray) -> N
 
 @inlined
 def _framed(
-    row: FloatArray,
-    t: float,
-    inside: float,
-    y: FloatArray,
-    model: Model,
-    region: int,
-    leaning: FloatArray,
-    carried: bool,
-    heat: float,
+    row: FloatArray, stretch: Stretch, t: float, y: FloatArray, heat: float, work: FloatArray
 ) -> None:
+    rates(stretch, t, y, work, 1)
     row[0] = t
-    rates(t, inside, y, model, region, leaning, carried, row[1 : 1 + ROW])
-    for i in range(SIZE):  # the multipliers stay behind the state
+    for i in range(SIZE):
         row[1 + i] = y[i]
-    row[1 + ROW] = 1.0 if carried else 0.0
+    row[1 + SIZE], row[2 + SIZE] = work[1, SIZE], work[1, SIZE + 1]
+    row[1 + ROW] = 1.0 if stretch.mode == CARRIED else 0.0
     row[2 + ROW] = heat
+
+
+@inlined
+def _dry(regions: Regions, region: int) -> Dry:
+    return Dry(regions.load[region], regions.delta[region], regions.cuts[region])
 
 
 @kernel
 def follow(
     model: Model,
-    bounds: Boundaries | None,
+    regions: Regions,
+    bounds: Boundaries,
     ask: Ask,
-    tableau: Tableau,
     y: FloatArray,
     region: int,
     frames: FloatArray,
@@ -148,126 +146,129 @@ def follow(
     -------
     how it ended, when, number of events, of steps and of frames reached, heat of impacts
     """
-    work = np.empty((STAGES + 1, ROW))
-    new, trial, slip = np.empty(SIZE), np.empty(SIZE), np.empty(3)
-    leans = np.zeros(count_walls(bounds), np.bool_)
-    leaning = normals(bounds, leans)
-    body, scale = model.body, ask.scale
-    knots = knots_of(model.drive)
-    t, carried, heat = 0.0, False, 0.0
+    work, last = np.empty((STAGES, ROW)), np.empty(ROW)
+    new, trial = np.empty(SIZE), np.empty(SIZE)
+    leans = np.zeros(len(bounds.walls), np.bool_)
+    leaning, dry = normals(bounds, leans), _dry(regions, region)
+    body, scale, surface, drive = model.body, ask.scale, model.surface, model.drive
+    moves = surface.vx != 0.0 or surface.vy != 0.0 or surface.spin != 0.0
+    unbounded = len(bounds.walls) + len(bounds.edges) + len(bounds.borders) == 0
+    t, heat, mode, piece, way = 0.0, 0.0, SLIDES, 0, NO_WAY
     count, steps, frame = 0, 0, 0
+    wall, hit = -1, 0.0
     how = TIME_UP
     h = 1e-3 * ask.until
-    settle = True  # whether what holds the puck has to be looked at
-    while True:
-        # the piece of time without a knot inside
-        target = ask.until
-        for knot in knots:
-            if t < knot < target:
-                target = knot
-        if target <= t:
-            break
-        inside = 0.5 * (t + target)
-        if model.dry is not None and settle:
-            ux, uy, w = relative_velocity(model, y)
-            if math.hypot(math.hypot(ux, uy), body.radius * w) <= _REST * ask.speed:
-                was = carried
-                y[VX] -= ux
-                y[VY] -= uy
-                y[SPIN] -= w
-                carried = held_by_floor(t, inside, y, model, region, leaning, slip)
-                if carried != was:
-                    if count == len(events):
-                        how = EVENT_LIMIT
-                        break
-                    _noted(events[count], t, RESTS if carried else SLIPS, region, y)
-                    count += 1
-                if not carried:
-                    seed(y, slip, _SEED * ask.speed)
-                else:
-                    still = True  # nothing to come: the end
-                    for knot in knots:
-                        still = still and knot <= t
-                    if model.surface is not None:
-                        still = still and not ask.to_the_end and bounds is None
-                    if still:
-                        how = AT_REST if model.surface is None else CARRIED
-                        break
-                h = max(h, 1e-6 * (target - t))
-        settle = False
-        rates(t, inside, y, model, region, leaning, carried, work[0])
-        if not carried and model.dry is not None:
-            ux, uy, w = relative_velocity(model, y)
-            _, _, turning = floor_velocity(model.surface, y[X], y[Y])
-            slip_speed = math.hypot(math.hypot(ux, uy), body.radius * w)
-            pull = math.hypot(  # of the relative velocity
-                math.hypot(work[0, VX] + turning * y[VY], work[0, VY] - turning * y[VX]),
-                body.radius * work[0, SPIN],
-            )
-            if h * pull > 0.5 * slip_speed:
-                h = 0.5 * slip_speed / pull
+    settle, known = True, False  # whether to look what holds the puck; whether work[0] is there
+    while t < ask.until:
+        while piece < len(drive) and drive[piece, 0] <= t:
+            piece += 1
+        target = min(drive[piece, 0], ask.until) if piece < len(drive) else ask.until
+        q = slip_speed(model, y)
+        if settle and dry.load > 0.0 and q <= _REST * ask.speed:
+            y[VX], y[VY], y[SPIN] = floor_velocity(surface, y[X], y[Y])
+            was = mode
+            excess = excess_at_rest(Stretch(model, dry, leaning, piece, CARRIED, way), t, y)[0]
+            mode = CARRIED if excess <= SLACK * dry.load else STARTS
+            if excess == math.inf:  # where a constraint leads it the floor does not go
+                mode = SLIDES
+            if (mode == CARRIED) != (was == CARRIED):
+                if count == len(events):
+                    how = EVENT_LIMIT
+                    break
+                _noted(events[count], t, RESTS if mode == CARRIED else SLIPS, region, y)
+                count += 1
+            if mode == CARRIED and (
+                piece == len(drive) and (not moves or (unbounded and not ask.to_the_end))
+            ):
+                how = CARRIED_AWAY if moves else AT_REST  # nothing is to come
+                break
+            h = max(h, 1e-6 * (target - t))
+        elif settle:
+            mode = SLIDES
+        h = -q / way[3] if mode == STOPS else h
+        stretch = Stretch(model, dry, leaning, piece, mode, way)
+        if settle or not known:
+            rates(stretch, t, y, work, 0)
+        settle, known = False, True
+        if mode == SLIDES and dry.load > 0.0:
+            pull = slip_rate(model, y, work)
+            near = _NEAR * max(q, _REST * ask.speed)
+            h = near / pull if h * pull > near else h
+            if 0.0 < q <= _LAST * ask.tolerance * ask.speed:
+                way = stopping(model, y, work)
+                if way[3] < 0.0 and held_by_floor(stretch, t, y):
+                    mode, known = STOPS, False
+                    continue
         # a step
         landed = t + 1.1 * h >= target
         length = target - t if landed else h
-        error = step(
-            tableau, t, length, inside, y, model, region, leaning, carried, scale, work, new
-        )
+        error = step(stretch, t, length, y, scale, work, new)
         steps += 1
         if steps > ask.step_limit:
             how = STEP_LIMIT
             break
+        if mode == STARTS:  # the direction is followed from where that can be seen
+            excess = excess_at_rest(stretch, t + length, new)[0]
+            far = slip_speed(model, new) * excess > ask.tolerance * ask.speed * dry.load
+            error = math.inf if far else error
         if not error <= ask.tolerance:
-            shrink = 0.2 if not error < math.inf else max(0.2, 0.9 * (ask.tolerance / error) ** 0.2)
+            shrink = 0.1 if not error < math.inf else max(0.1, 0.9 * (ask.tolerance / error) ** 0.2)
             h = length * shrink
             if (t + h == t and t > 0.0) or h < 1e-300:
                 how = NOT_FINITE
                 break
             continue
         h = length * min(5.0, 5.0 if error == 0.0 else 0.9 * (ask.tolerance / error) ** 0.2)
+        last[:] = work[STAGES - 1]
         happens, which, moment = first_crossing(
-            bounds, tableau, t, length, inside, y, model, region, leans, leaning, carried, scale,
-            work, new, trial,
-        )  # fmt: skip
-        if (carried and happens < 0) and not held_by_floor(
-            t + length, inside, new, model, region, leaning, slip
-        ):
+            bounds, stretch, region, leans, t, length, y, scale, work, new, trial
+        )
+        if mode == CARRIED and happens < 0 and not held_by_floor(stretch, t + length, new):
             happens, which = SLIPS, region
-            moment = _slipping(
-                tableau, t, length, inside, y, model, region, leaning, scale, work, trial, slip
-            )
+            moment = _slipping(stretch, t, length, y, scale, work, trial)
         if happens >= 0:
             landed = False
             length = moment
-            step(tableau, t, length, inside, y, model, region, leaning, carried, scale, work, new)
+            step(stretch, t, length, y, scale, work, new)
         # the frames on it
         end = target if landed else t + length
         while frame < len(frames) and frames[frame] <= end:
-            part = frames[frame] - t
-            step(tableau, t, part, inside, y, model, region, leaning, carried, scale, work, trial)
-            _framed(
-                rows[frame], frames[frame], inside, trial, model, region, leaning, carried, heat
-            )
+            step(stretch, t, frames[frame] - t, y, scale, work, trial)
+            _framed(rows[frame], stretch, frames[frame], trial, heat, work)
             frame += 1
         t = end
-        for i in range(SIZE):
-            y[i] = new[i]
+        y[:] = new
+        work[0] = last
+        known = (
+            model.hold.kind == FREE and mode == SLIDES == stretch.mode
+        )  # else the step ended a little beside it
+        q = slip_speed(model, y)
         if landed and target < ask.until:
             settle = True
-        ux, uy, w = relative_velocity(model, y)
-        if not carried and (math.hypot(math.hypot(ux, uy), body.radius * w) <= _REST * ask.speed):
+        if mode in (SLIDES, STOPS) and q <= _REST * ask.speed:
             settle = True
+        if mode == STARTS:
+            excess = excess_at_rest(stretch, t, y)[0]
+            if q * excess >= 0.1 * ask.tolerance * ask.speed * dry.load or excess <= 0.0:
+                mode = SLIDES
         if left(bounds, y, leans, ask.speed):
             leaning = normals(bounds, leans)
+            known = False
         if happens < 0:
             continue
         settle = True
         if happens == BORDER:
             region = which
+            dry = _dry(regions, region)
+            mode = CARRIED if mode == CARRIED and dry.load > 0.0 else SLIDES
         elif happens == BOUNCES:
-            carried = False
+            mode = SLIDES
             before = kinetic_energy(body, y)
-            if bounced(bounds, which, body, y, leans, ask.speed):
+            hops = which == wall and t - hit > 0.0  # too low for the digits of its place: none
+            least = _HOP * (abs(y[X]) + abs(y[Y])) / (t - hit) if hops else 0.0
+            if bounced(bounds, which, body, y, leans, ask.speed, least):
                 happens = LEANS
+            wall, hit = which, t
             leaning = normals(bounds, leans)
             heat += before - kinetic_energy(body, y)
         if count == len(events):
@@ -276,17 +277,15 @@ def follow(
         _noted(events[count], t, happens, which, y)
         count += 1
         if happens == SLIPS:
-            carried = False
-            held_by_floor(t, inside, y, model, region, leaning, slip)
-            seed(y, slip, _SEED * ask.speed)
-            settle = False
+            mode, settle, known = STARTS, False, False
         if happens == EDGE:
             how = OVER_EDGE
             break
+    stretch = Stretch(model, dry, leaning, piece, mode, way)
     while how == AT_REST and frame < len(frames):  # for ever
-        _framed(rows[frame], frames[frame], t, y, model, region, leaning, carried, heat)
+        _framed(rows[frame], stretch, frames[frame], y, heat, work)
         frame += 1
-    _framed(rows[frame], t, t, y, model, region, leaning, carried, heat)
+    _framed(rows[frame], stretch, t, y, heat, work)
     finite = True
     for i in range(SIZE):
         finite = finite and math.isfinite(y[i])

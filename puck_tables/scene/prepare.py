@@ -11,23 +11,23 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.errors import InputError
-from puck_tables.motion.steppers import DORMAND_PRINCE
 from puck_tables.run import closed_form_friction, table_friction
 from puck_tables.safe_read import read_whole
 from puck_tables.scene.boundaries import Boundaries
 from puck_tables.scene.bulk import follow_many
-from puck_tables.scene.equations import SIZE, SPIN, THETA, VX, VY, X, Y
+from puck_tables.scene.equations import SIZE
+from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
 from puck_tables.scene.ingredients import (
     BLADE,
+    FREE,
     PIVOT,
     RAIL,
     Body,
     Drag,
-    Drive,
-    Dry,
     Hold,
     Model,
     Pull,
+    Regions,
     Surface,
 )
 from puck_tables.scene.loop import Ask, follow
@@ -36,7 +36,7 @@ from puck_tables.table.file import load_table
 
 FloatArray = npt.NDArray[np.float64]
 
-LOCAL_SHARE = 0.1  # of the error wanted, per step and in units of the scales
+LOCAL_SHARE = 0.01  # of the error wanted, per step and in units of the scales
 EXACT_BELOW = 1e-9  # friction by closed forms where a table's error would show
 DEFAULT_TIME = 1000.0  # in units of the time scale, where a scene does not say
 STEP_LIMIT = 1_000_000
@@ -49,7 +49,8 @@ class Prepared:
     """Arguments of the loop for a scene, and for others that are only launched otherwise."""
 
     model: Model
-    bounds: Boundaries | None
+    regions: Regions
+    bounds: Boundaries
     scene: Scene
     state: FloatArray
     ask: Ask
@@ -58,21 +59,21 @@ class Prepared:
         self, frames: FloatArray, rows: FloatArray, events: FloatArray
     ) -> tuple[int, float, int, int, int, float]:
         """Run it, see :func:`puck_tables.scene.loop.follow`."""
-        region = int(self.regions(self.state[None, :])[0])
+        region = int(self.regions_of(self.state[None, :])[0])
         return follow(
-            self.model, self.bounds, self.ask, DORMAND_PRINCE, self.state.copy(), region,
+            self.model, self.regions, self.bounds, self.ask, self.state.copy(), region,
             frames, rows, events,
         )  # fmt: skip
 
     def follow_all(self, states: FloatArray, out: FloatArray, status: npt.NDArray[np.int8]) -> None:
         """Run it from other launches (n, 10), see :func:`puck_tables.scene.bulk.follow_many`."""
         follow_many(
-            self.model, self.bounds, self.asks(states), self.scene.run.time is not None,
-            self.ask.tolerance, STEP_LIMIT, MAX_EVENTS, DORMAND_PRINCE, states,
-            self.regions(states), out, status,
+            self.model, self.regions, self.bounds, self.asks(states),
+            self.scene.run.time is not None, self.ask.tolerance, STEP_LIMIT, MAX_EVENTS, states,
+            self.regions_of(states), out, status,
         )  # fmt: skip
 
-    def regions(self, states: FloatArray) -> npt.NDArray[np.int64]:
+    def regions_of(self, states: FloatArray) -> npt.NDArray[np.int64]:
         """Region of the floor in which launches (n, 10) start."""
         strips = self.scene.floor.strips
         if strips is None:
@@ -83,7 +84,7 @@ class Prepared:
 
     def asks(self, states: FloatArray) -> FloatArray:
         """Time limit, scale of speeds and scales of the state for launches (n, 10); (n, 12)."""
-        return _asks(self.scene, self.model, states)
+        return _asks(self.scene, self.model, self.regions, states)
 
 
 def prepare(scene: Scene, last_time: float | None = None) -> Prepared:
@@ -97,41 +98,37 @@ def prepare(scene: Scene, last_time: float | None = None) -> Prepared:
     """
     puck, floor = scene.puck, scene.floor
     inertia = puck.mass * (puck.gyration * puck.radius) ** 2
-    dry = _dry(scene)
+    regions = _regions(scene)
     weight = puck.mass * floor.gravity
     pull_x = scene.force.constant[0] + weight * math.sin(floor.slope) * math.cos(floor.downhill)
     pull_y = scene.force.constant[1] + weight * math.sin(floor.slope) * math.sin(floor.downhill)
-    pulled = floor.slope > 0.0 or any(scene.force.constant) or scene.force.torque != 0.0
     moves = any(floor.velocity) or floor.turning != 0.0
     drag = scene.drag
     model = Model(
         body=Body(puck.mass, inertia, puck.radius),
-        dry=dry,
-        surface=Surface(*floor.velocity, *floor.centre, floor.turning) if moves else None,
-        drag=Drag(drag.sliding, drag.spinning) if drag.sliding or drag.spinning else None,
-        pull=Pull(pull_x, pull_y, scene.force.torque) if pulled else None,
-        drive=read_drive(scene.force.file) if scene.force.file else None,
+        surface=Surface(*floor.velocity, *floor.centre, floor.turning),
+        drag=Drag(drag.sliding, drag.spinning),
+        pull=Pull(pull_x, pull_y, scene.force.torque),
+        drive=read_drive(scene.force.file) if scene.force.file else np.empty((0, 4)),
         hold=_hold(scene),
     )
     state = np.zeros(SIZE)
     state[[X, Y]], state[THETA] = scene.launch.position, scene.launch.orientation
     state[[VX, VY]], state[SPIN] = launch_velocity(scene), scene.launch.spin
-    asks = _asks(scene, model, state[None, :])[0]
+    asks = _asks(scene, model, regions, state[None, :])[0]
     until, to_the_end = scene.run.time, True
     if until is None:
         to_the_end = moves and last_time is not None
         until = last_time if to_the_end and last_time else float(asks[0])
     tolerance = LOCAL_SHARE * scene.run.tol
     ask = Ask(until, to_the_end, tolerance, asks[2:], float(asks[1]), STEP_LIMIT)
-    return Prepared(model, _bounds(scene), scene, state, ask)
+    return Prepared(model, regions, _bounds(scene), scene, state, ask)
 
 
-def _dry(scene: Scene) -> Dry | None:
+def _regions(scene: Scene) -> Regions:
     """Friction in every region: the friction ratios at the height that each has."""
     puck, floor = scene.puck, scene.floor
     coefficients = [floor.friction] if floor.strips is None else list(floor.strips.friction)
-    if not any(coefficients):
-        return None
     heights = [2.0 * f * puck.height / puck.radius for f in coefficients]
     exact = scene.run.tol < EXACT_BELOW
     table = None if exact else load_table()
@@ -140,14 +137,14 @@ def _dry(scene: Scene) -> Dry | None:
         for d in heights
     ]
     load = puck.mass * floor.gravity * math.cos(floor.slope) * np.array(coefficients)
-    return Dry(load, np.array(heights), np.stack(cuts))
+    return Regions(load, np.array(heights), np.stack(cuts))
 
 
-def _hold(scene: Scene) -> Hold | None:
+def _hold(scene: Scene) -> Hold:
     """The constraint, fixed to where the puck is launched."""
     hold = scene.constraint
     if hold is None:
-        return None
+        return Hold(FREE, *[0.0] * 6)
     if hold.kind == "rail":
         nx, ny = -math.sin(hold.angle), math.cos(hold.angle)
         return Hold(RAIL, nx, ny, 0.0, 0.0, *hold.velocity)
@@ -160,10 +157,8 @@ def _hold(scene: Scene) -> Hold | None:
     )
 
 
-def _bounds(scene: Scene) -> Boundaries | None:
+def _bounds(scene: Scene) -> Boundaries:
     """Walls (moved in by the radius), edges and borders as lines n·x = c."""
-    if not scene.wall and not scene.edge and scene.floor.strips is None:
-        return None
     walls, edges, borders = [], [], []
     for wall in scene.wall:
         nx, ny, c = _line(wall.point, wall.normal)
@@ -192,9 +187,9 @@ def _direction(angle: float) -> tuple[float, float]:
     return math.cos(angle), math.sin(angle)
 
 
-def _asks(scene: Scene, model: Model, states: FloatArray) -> FloatArray:
+def _asks(scene: Scene, model: Model, regions: Regions, states: FloatArray) -> FloatArray:
     """Time limit, scale of speeds and scales of the state for launches (n, 10); (n, 12)."""
-    speed, time = _scales(scene, model, states)
+    speed, time = _scales(scene, model, regions, states)
     radius, length = scene.puck.radius, speed * time
     energy = scene.puck.mass * speed * speed
     until = scene.run.time
@@ -211,16 +206,19 @@ def _asks(scene: Scene, model: Model, states: FloatArray) -> FloatArray:
     return asks
 
 
-def _scales(scene: Scene, model: Model, states: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _scales(
+    scene: Scene, model: Model, regions: Regions, states: FloatArray
+) -> tuple[FloatArray, FloatArray]:
     """Scales of speed and time (n,) of launches, from what moves and from what slows it down."""
     puck, floor = scene.puck, scene.floor
-    rate = 0.0 if model.dry is None else float(model.dry.load.max()) / puck.mass
-    if model.pull is not None:
-        rate = max(rate, math.hypot(model.pull.x, model.pull.y) / puck.mass)
-        rate = max(rate, abs(model.pull.torque) / (puck.mass * puck.radius))
-    if model.drive is not None:
-        rate = max(rate, float(np.hypot(model.drive.x, model.drive.y).max()) / puck.mass)
-        rate = max(rate, float(np.abs(model.drive.torque).max()) / (puck.mass * puck.radius))
+    pull, lever = model.pull, puck.mass * puck.radius
+    rate = max(
+        float(regions.load.max()) / puck.mass,
+        math.hypot(pull.x, pull.y) / puck.mass,
+        abs(pull.torque) / lever,
+        float(np.hypot(model.drive[:, 1], model.drive[:, 2]).max(initial=0.0)) / puck.mass,
+        float(np.abs(model.drive[:, 3]).max(initial=0.0)) / lever,
+    )
     size = puck.radius + np.hypot(states[:, X] - floor.centre[0], states[:, Y] - floor.centre[1])
     speed = np.max([
         np.hypot(states[:, VX] - floor.velocity[0], states[:, VY] - floor.velocity[1]),
@@ -229,7 +227,7 @@ def _scales(scene: Scene, model: Model, states: FloatArray) -> tuple[FloatArray,
     ], axis=0)  # fmt: skip
     speed[speed == 0.0] = math.sqrt(rate * puck.radius) if rate > 0.0 else 1.0
     times = [speed / rate] if rate > 0.0 else []
-    if model.drag is not None and model.drag.sliding > 0.0:
+    if model.drag.sliding > 0.0:
         times.append(np.full_like(speed, puck.mass / model.drag.sliding))
     if floor.turning != 0.0:
         times.append(np.full_like(speed, 1.0 / abs(floor.turning)))
@@ -238,8 +236,8 @@ def _scales(scene: Scene, model: Model, states: FloatArray) -> tuple[FloatArray,
     return speed, np.min(times, axis=0)
 
 
-def read_drive(path: str) -> Drive:
-    """Forces over time from a CSV file of t, Fx, Fy and perhaps torque.
+def read_drive(path: str) -> FloatArray:
+    """Rows (n, 4) of t, Fx, Fy and torque from a CSV file that may lack the torque.
 
     Raises
     ------
@@ -262,9 +260,7 @@ def read_drive(path: str) -> Drive:
             f"{Path(path).name}: forces are a CSV file of t, Fx, Fy and perhaps torque, in s, N "
             "and N m, two rows or more, the times ascending"
         )
-    torque = rows[:, 3] if rows.shape[1] == 4 else np.zeros(len(rows))
-    columns = (rows[:, 0], rows[:, 1], rows[:, 2], torque)
-    return Drive(*(np.ascontiguousarray(column) for column in columns))
+    return np.pad(rows, ((0, 0), (0, 4 - rows.shape[1])))
 
 
 def _is_number(text: str) -> bool:

@@ -1,12 +1,13 @@
 """Whether a puck at rest on its floor stays there, and which way it slips if it does not.
 
-The floor holds the puck while no slip that walls and constraints allow gains energy: with the force
-F and torque T that friction would have to hold, and the power D of dry friction at Q = 1 in the
-direction φ (Salnikova, Treschev, Gallyamov 2012, section 6, at slip zero),
+What friction can take up are the forces and torques (F, T) below those that it has in some slip,
+the curve (Salnikova, Treschev, Gallyamov 2012, section 6)
 
-    F cos φ + (T/r) sin φ ≤ D(φ) = f N (cos²φ ρ_∥ + ½ sin²φ ρ_ω)   for every φ.
+    F(φ) = f N cos φ hypot(ρ_∥, sin φ ρ_⊥),   T(φ) = ½ f N r sin φ ρ_ω .
 
-Without a torque this is F ≤ f N.
+The demand on the floor lies in the direction of one of its points, φ; it is held if it is not
+larger.  If it is larger the puck starts to slip there, at first with the power of the excess.
+Without a torque this is F ≤ f N.  For δ = 0 it is the same as: no slip gains energy.
 """
 
 from __future__ import annotations
@@ -17,126 +18,113 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.kernels.compile import inlined, kernel
-from puck_tables.scene.equations import SPIN, THETA, VX, VY, X, Y, against_walls, dry_friction
+from puck_tables.scene.friction import THETA, X, Y, against_walls, dry_friction
 from puck_tables.scene.ingredients import (
+    FREE,
     PIVOT,
     RAIL,
     Body,
     Dry,
     Hold,
-    Model,
-    drive_force,
+    Stretch,
     floor_acceleration,
-    floor_velocity,
-    pull_force,
+    given_force,
 )
 
 FloatArray = npt.NDArray[np.float64]
 
-_SLACK = 1e-12  # of f N: a demand this close to the limit is held
-_ANGLES = 64
+SLACK = 1e-12  # of f N: a demand this close to the limit is held
+
+Yield = tuple[float, float, float, float]
 
 
 @inlined
-def _held_pivot(
-    dry: Dry, hold: Hold, radius: float, region: int, theta: float, fx: float, fy: float,
-    torque: float, slip: FloatArray,
-) -> bool:  # fmt: skip
+def _pivot_yield(
+    dry: Dry, hold: Hold, radius: float, theta: float, fx: float, fy: float, torque: float
+) -> Yield:
     """The same where the only slip is a turn about the pivot: one direction, φ = atan(r/reach)."""
     cosine, sine = math.cos(theta + hold.angle), math.sin(theta + hold.angle)
     reach = hold.reach
     demand = torque - reach * (cosine * fy - sine * fx)
     size = math.hypot(reach, radius)
-    _, _, _, heat = dry_friction(dry, radius, region, reach / size, 0.0, 1.0 / size)
-    way = 1.0 if demand >= 0.0 else -1.0
-    slip[0], slip[1] = way * reach * sine / size, -way * reach * cosine / size
-    slip[2] = way / size
-    return abs(demand) <= size * heat + _SLACK * dry.load[region] * radius
+    _, _, _, heat = dry_friction(dry, radius, reach / size, 0.0, 1.0 / size)
+    way = (1.0 if demand >= 0.0 else -1.0) / size
+    return abs(demand) / size - heat, way * reach * sine, -way * reach * cosine, way
 
 
 @inlined
-def _held_free(
-    dry: Dry, radius: float, region: int, fx: float, fy: float, torque: float, slip: FloatArray
-) -> bool:
-    """The same where the puck may slip along the force and turn."""
+def _free_yield(
+    dry: Dry, radius: float, fx: float, fy: float, torque: float, guided: bool
+) -> Yield:
+    """The same where the puck may slip and turn; ``guided``: along the force only."""
     force = math.hypot(fx, fy)
     east, north = (fx / force, fy / force) if force > 0.0 else (1.0, 0.0)
-    excess, best = -math.inf, 0.0
-    low, high, count = 0.0, 0.5 * math.pi, (1 if torque == 0.0 else _ANGLES)
-    for _ in range(1 if torque == 0.0 else 6):  # the best angle, six times closer looked at
-        for i in range(count):
-            phi = low + (high - low) * (i / max(count - 1, 1))
-            cosine, sine = math.cos(phi), math.sin(phi)
-            _, _, _, heat = dry_friction(dry, radius, region, cosine, 0.0, sine / radius)
-            gain = force * cosine + abs(torque) / radius * sine - heat
-            if gain > excess:
-                excess, best = gain, phi
-        width = (high - low) / max(count - 1, 1)
-        low, high = max(best - width, 0.0), min(best + width, 0.5 * math.pi)
     way = 1.0 if torque >= 0.0 else -1.0
-    slip[0], slip[1] = math.cos(best) * east, math.cos(best) * north
-    slip[2] = way * math.sin(best) / radius
-    return excess <= _SLACK * dry.load[region]
+    low, high, phi = 0.0, 0.5 * math.pi, (0.0 if torque == 0.0 else 0.25 * math.pi)
+    while True:
+        cosine, sine = math.cos(phi), way * math.sin(phi) / radius
+        along, across, turning, heat = dry_friction(dry, radius, cosine, 0.0, sine)
+        across = 0.0 if guided else across
+        resist = math.hypot(along, across)
+        if torque == 0.0:
+            break
+        if force * abs(turning) < abs(torque) * resist:
+            low = phi
+        else:
+            high = phi
+        phi = 0.5 * (low + high)
+        if phi <= low or phi >= high:
+            break
+    share = math.hypot(radius * force, torque) / math.hypot(radius * resist, turning)
+    # friction is against the force: the slip is turned from it by as much as friction from the slip
+    ex, ey = (-along / resist, across / resist) if resist > 0.0 else (1.0, 0.0)
+    return (
+        (share - 1.0) * heat,
+        cosine * (ex * east - ey * north),
+        cosine * (ex * north + ey * east),
+        sine,
+    )
 
 
 @inlined
-def _held_with(
-    dry: Dry, hold: Hold | None, body: Body, region: int, theta: float, ax: float, ay: float,
-    turning: float, fx: float, fy: float, torque: float, slip: FloatArray,
-) -> bool:  # fmt: skip
+def _yield_with(
+    dry: Dry, hold: Hold, body: Body, theta: float, ax: float, ay: float, turning: float,
+    fx: float, fy: float, torque: float,
+) -> Yield:  # fmt: skip
     """By kind of constraint; a floor whose motion a constraint forbids never holds the puck."""
-    if hold is None:
-        return _held_free(dry, body.radius, region, fx, fy, torque, slip)
+    if hold.kind == FREE:
+        return _free_yield(dry, body.radius, fx, fy, torque, False)
     cosine, sine = math.cos(theta + hold.angle), math.sin(theta + hold.angle)
     if hold.kind == PIVOT:
         centripetal = turning * turning * hold.reach
         gap = math.hypot(ax - centripetal * cosine, ay - centripetal * sine)
-        holds = _held_pivot(dry, hold, body.radius, region, theta, fx, fy, torque, slip)
-        return holds and gap <= 1e-9 * math.hypot(ax, ay)
+        if gap > 1e-9 * math.hypot(ax, ay):
+            return math.inf, 0.0, 0.0, 0.0
+        return _pivot_yield(dry, hold, body.radius, theta, fx, fy, torque)
+    if turning != 0.0:
+        return math.inf, 0.0, 0.0, 0.0
     ex, ey = (-hold.ay, hold.ax) if hold.kind == RAIL else (cosine, sine)
     along = fx * ex + fy * ey
-    holds = _held_free(dry, body.radius, region, along * ex, along * ey, torque, slip)
-    return holds and turning == 0.0
+    return _free_yield(dry, body.radius, along * ex, along * ey, torque, True)
 
 
-@inlined
-def _held(
-    dry: Dry | None, t: float, inside: float, y: FloatArray, model: Model, region: int,
-    leaning: FloatArray, slip: FloatArray,
-) -> bool:  # fmt: skip
-    if dry is None:
-        return False
+@kernel
+def excess_at_rest(stretch: Stretch, t: float, y: FloatArray) -> Yield:
+    """By how much the power of the best slip at Q = 1 exceeds friction, W, and that slip.
+
+    The slip is a direction (vx, vy, ω), scaled to Q = 1; friction holds while nothing exceeds it.
+    """
+    model = stretch.model
     body = model.body
     ax, ay = floor_acceleration(model.surface, y[X], y[Y])
-    _, _, turning = floor_velocity(model.surface, y[X], y[Y])
-    px, py, pm = pull_force(model.pull)
-    qx, qy, qm = drive_force(model.drive, t, inside)
-    fx, fy = against_walls(leaning, px + qx - body.mass * ax, py + qy - body.mass * ay)
-    return _held_with(
-        dry, model.hold, body, region, y[THETA], ax, ay, turning, fx, fy, pm + qm, slip
+    gx, gy, torque = given_force(model, stretch.piece, t)
+    fx, fy = against_walls(stretch.leaning, gx - body.mass * ax, gy - body.mass * ay)
+    return _yield_with(
+        stretch.dry, model.hold, body, y[THETA], ax, ay, model.surface.spin, fx, fy, torque
     )
 
 
-@kernel
-def held_by_floor(
-    t: float,
-    inside: float,
-    y: FloatArray,
-    model: Model,
-    region: int,
-    leaning: FloatArray,
-    slip: FloatArray,
-) -> bool:
-    """Whether friction holds a puck at rest on the floor.
-
-    ``slip`` (3,) becomes the direction (vx, vy, ω) in which it starts, scaled to Q = 1.
-    """
-    return _held(model.dry, t, inside, y, model, region, leaning, slip)
-
-
-@kernel
-def seed(y: FloatArray, slip: FloatArray, speed: float) -> None:
-    """Start to slip: a relative velocity so small that it changes nothing else."""
-    y[VX] += speed * slip[0]
-    y[VY] += speed * slip[1]
-    y[SPIN] += speed * slip[2]
+@inlined
+def held_by_floor(stretch: Stretch, t: float, y: FloatArray) -> bool:
+    """Whether friction holds a puck at rest on the floor."""
+    return excess_at_rest(stretch, t, y)[0] <= SLACK * stretch.dry.load

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from puck_tables.errors import InputError, PuckError
 from puck_tables.real import finite_array
-from puck_tables.scene.equations import SPIN, VX, VY, X, Y
+from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.scene.loop import (
     EVENT_COLUMNS,
     EVENT_LIMIT,

@@ -8,19 +8,31 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.kernels.compile import inlined, kernel
-from puck_tables.motion.steppers import Tableau
-from puck_tables.scene.equations import SIZE, SPIN, THETA, VX, VY, X, Y, rates
-from puck_tables.scene.ingredients import BLADE, PIVOT, RAIL, Hold, Model, floor_velocity
+from puck_tables.motion.steppers import DORMAND_PRINCE
+from puck_tables.scene.equations import SIZE, rates
+from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
+from puck_tables.scene.ingredients import (
+    BLADE,
+    CARRIED,
+    FREE,
+    PIVOT,
+    RAIL,
+    SLIDES,
+    Hold,
+    Stretch,
+    floor_velocity,
+)
 
 FloatArray = npt.NDArray[np.float64]
 
-STAGES = 7
+_A, _C, _E = DORMAND_PRINCE.a, DORMAND_PRINCE.c, DORMAND_PRINCE.e
+STAGES = len(_C)
 
 
 @inlined
-def put_right(hold: Hold | None, t: float, y: FloatArray) -> None:
+def put_right(hold: Hold, t: float, y: FloatArray) -> None:
     """Position and velocity onto the constraint, from which rounding and step errors lead away."""
-    if hold is None:
+    if hold.kind == FREE:
         return
     if hold.kind == RAIL:
         off = hold.ax * (y[VX] - hold.vx) + hold.ay * (y[VY] - hold.vy)
@@ -41,43 +53,32 @@ def put_right(hold: Hold | None, t: float, y: FloatArray) -> None:
 
 @kernel
 def step(
-    tableau: Tableau,
-    t: float,
-    h: float,
-    inside: float,
-    y: FloatArray,
-    model: Model,
-    region: int,
-    leaning: FloatArray,
-    carried: bool,
-    scale: FloatArray,
-    work: FloatArray,
+    stretch: Stretch, t: float, h: float, y: FloatArray, scale: FloatArray, work: FloatArray,
     new: FloatArray,
-) -> float:
+) -> float:  # fmt: skip
     """A step from (t, y) over h into ``new``, put onto the constraint; its error in ``scale``.
 
     On entry work[0] is dy/dt at t.
     """
-    state = work[STAGES]
     for stage in range(1, STAGES):
         for i in range(SIZE):
-            total = 0.0
-            for j in range(stage):
-                total += tableau.a[stage, j] * work[j, i]
-            state[i] = y[i] + h * total
-        rates(t + tableau.c[stage] * h, inside, state, model, region, leaning, carried, work[stage])
+            new[i] = y[i]
+        for j in range(stage):
+            weight = h * _A[stage, j]
+            for i in range(SIZE):
+                new[i] += weight * work[j, i]
+        rates(stretch, t + _C[stage] * h, new, work, stage)
     largest = 0.0
-    for i in range(SIZE):
-        increment, error = 0.0, 0.0
+    for i in range(SIZE):  # the last stage stood at the end of the step
+        error = 0.0
         for j in range(STAGES):
-            increment += tableau.b[j] * work[j, i]
-            error += tableau.e[j] * work[j, i]
-        new[i] = y[i] + h * increment
+            error += _E[j] * work[j, i]
         share = abs(h * error) / scale[i]
         if not share <= largest:
             largest = share
-    if carried:
+    model = stretch.model
+    if stretch.mode == CARRIED:
         new[VX], new[VY], new[SPIN] = floor_velocity(model.surface, new[X], new[Y])
-    else:
+    elif stretch.mode == SLIDES:
         put_right(model.hold, t + h, new)
     return largest

@@ -21,8 +21,9 @@ from puck_tables.errors import InputError
 from puck_tables.executor import Progress, run_chunks
 from puck_tables.kernels.cache import source_digest
 from puck_tables.scene.bulk import ENDS_COLUMNS
-from puck_tables.scene.equations import SIZE, SPIN, THETA, VX, VY, X, Y
-from puck_tables.scene.loop import AT_REST, CARRIED, NOT_FINITE
+from puck_tables.scene.equations import SIZE
+from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
+from puck_tables.scene.loop import AT_REST, CARRIED_AWAY, NOT_FINITE
 from puck_tables.scene.outcome import COLUMNS, ledger
 from puck_tables.scene.plan import Plan, free_puck, plan_for
 from puck_tables.scene.prepare import Prepared, prepare
@@ -215,7 +216,7 @@ class _Case:
             )
         last["orientation"][:] = states[:, THETA] + stops.body_angle
         last["carried"][:] = 1.0
-        status[:] = np.where(stops.status == 0, CARRIED if any(belt) else AT_REST, NOT_FINITE)
+        status[:] = np.where(stops.status == 0, CARRIED_AWAY if any(belt) else AT_REST, NOT_FINITE)
 
 
 def _is_launch(path: str, scene: Scene) -> bool:
