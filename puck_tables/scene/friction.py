@@ -6,7 +6,8 @@ Treschev, Gallyamov 2012, sections 4–6, with relative velocities)
     F = −f N (ρ_∥ u + sin φ ρ_⊥ u^⊥)/Q,   M = −½ f N r sin φ ρ_ω,   power −f N Q (cos²φ ρ_∥ +
     ½ sin²φ ρ_ω),
 
-u^⊥ being u turned by +90°.
+u^⊥ being u turned by +90°.  Where f depends on the slip speed, f ρ are integrals over the base that
+depend on Q too (:mod:`puck_tables.contact.speed_quadrature`).
 """
 
 from __future__ import annotations
@@ -17,8 +18,9 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.kernels.speed_spline import speed_ratios
 from puck_tables.motion.equations import ratios_at
-from puck_tables.scene.ingredients import Dry
+from puck_tables.scene.ingredients import BySpeed, Dry
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -43,17 +45,33 @@ def dry_friction(
     speed = size(ux, uy, 0.0)
     fast = rim > speed
     ratio = speed / rim if fast else rim / speed
-    inverse, across, turning = ratios_at(ratio, fast, dry.cut, dry.delta)
+    if dry.by_speed.normal > 0.0:
+        law = dry.by_speed
+        along, across, turning = speed_ratios(
+            law.coefficients, law.scale, law.reach, ratio, fast, law.moving * slip
+        )
+        along, across, turning = along * law.normal, across * law.normal, turning * law.normal
+    else:
+        inverse, bend, spin = ratios_at(ratio, fast, dry.cut, dry.delta)
+        along = load / inverse
+        across, turning = bend * along, spin * along
     sine = radius * w / slip
-    push = -load / (inverse * slip)
-    bend = across * sine
+    push, bent = along / slip, across * sine / slip
     cos2 = (speed / slip) * (speed / slip)
     return (
-        push * (ux - bend * uy),
-        push * (uy + bend * ux),
-        -0.5 * load * radius * sine * turning / inverse,
-        load * slip * (cos2 + 0.5 * sine * sine * turning) / inverse,
+        bent * uy - push * ux,
+        -push * uy - bent * ux,
+        -0.5 * radius * sine * turning,
+        slip * (cos2 * along + 0.5 * sine * sine * turning),
     )
+
+
+@inlined
+def at_slip_zero(dry: Dry) -> Dry:
+    """The friction that a puck at rest would start against, whatever its coefficient does later."""
+    law = dry.by_speed
+    still = BySpeed(law.coefficients, law.scale, law.reach, law.normal, 0.0)
+    return Dry(dry.load, dry.delta, dry.cut, still)
 
 
 @inlined

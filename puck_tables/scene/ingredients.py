@@ -29,16 +29,31 @@ class Body(NamedTuple):
     radius: float
 
 
+class BySpeed(NamedTuple):
+    """Friction with a coefficient that depends on the slip speed; no ``normal``: there is none.
+
+    ``coefficients``, ``scale``, ``reach``: see :mod:`puck_tables.kernels.speed_spline`; ``normal``:
+    N; ``moving``: 1, or 0 for the friction at slip zero.
+    """
+
+    coefficients: FloatArray
+    scale: float
+    reach: float
+    normal: float
+    moving: float
+
+
 class Regions(NamedTuple):
     """Dry friction in every region of the floor: f N, δ, and the friction ratios at that δ.
 
     ``load``, ``delta``: arrays (regions,); ``cuts``: (regions, …), see
-    :func:`puck_tables.motion.equations.ratios_at`.
+    :func:`puck_tables.motion.equations.ratios_at`; ``by_speed`` takes the place of all.
     """
 
     load: FloatArray
     delta: FloatArray
     cuts: FloatArray
+    by_speed: BySpeed
 
 
 class Dry(NamedTuple):
@@ -47,6 +62,7 @@ class Dry(NamedTuple):
     load: float
     delta: float
     cut: FloatArray
+    by_speed: BySpeed
 
 
 class Surface(NamedTuple):

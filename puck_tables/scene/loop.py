@@ -122,7 +122,7 @@ def _framed(
 
 @inlined
 def _dry(regions: Regions, region: int) -> Dry:
-    return Dry(regions.load[region], regions.delta[region], regions.cuts[region])
+    return Dry(regions.load[region], regions.delta[region], regions.cuts[region], regions.by_speed)
 
 
 @kernel

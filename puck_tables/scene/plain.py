@@ -37,7 +37,8 @@ def run_plain(scene: Scene, needed: Scene, plan: Plan, times: FloatArray | None)
     vx = np.where(rests, 0.0, run.speed * np.cos(run.heading)) + belt[0]
     vy = np.where(rests, 0.0, run.speed * np.sin(run.heading)) + belt[1]
     start = launch_velocity(scene)
-    mass, inertia = scene.puck.mass, 0.5 * scene.puck.mass * scene.puck.radius**2
+    mass = scene.puck.mass
+    inertia = mass * (scene.puck.gyration * scene.puck.radius) ** 2
     kept = 0.5 * mass * run.speed**2 + 0.5 * inertia * run.spin**2
     zero = np.zeros_like(run.time)
     whole = {

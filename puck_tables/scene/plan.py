@@ -2,8 +2,7 @@
 
 The ladder: closed form (rest, pure spin, pure translation, limit motion); look-up (all motions of
 a free puck on a level floor are one curve); and for everything that breaks that symmetry the
-friction ratios at the scene's δ, a slice of the table, integrated with just the ingredients there
-are.  A floor that moves steadily only shifts the frame; walls, edges and borders that the free puck
+friction ratios at the scene's δ, a slice of the table, integrated with what acts.  A floor that moves steadily only shifts the frame; walls, edges and borders that the free puck
 does not reach are not there.
 """
 
@@ -14,7 +13,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from puck_tables.motion.limits import regime
-from puck_tables.scene.scene import HOMOGENEOUS, Floor, Scene, distance, launch_velocity
+from puck_tables.scene.regions import LAW_ACCURACY
+from puck_tables.scene.scene import Floor, Scene, distance, launch_velocity
 from puck_tables.stops import stop
 
 _NAMES = {"A": "rest", "B0": "pure spin", "C0": "pure translation", "D": "the limit motion"}
@@ -32,11 +32,12 @@ class Plan:
 def ingredients(scene: Scene) -> list[str]:
     """What acts beside dry friction on a level floor that moves steadily or not at all.
 
-    Examples
-    --------
-    >>> from puck_tables.scene.scene import Floor, Launch, Puck
-    >>> ingredients(Scene(Puck(1.0), Floor(0.1, slope=0.2), Launch((1.0, 0.0), 5.0)))
-    ['slope']
+        Examples
+        --------
+        >>> from puck_tables.scene.regions import LAW_ACCURACY
+    from puck_tables.scene.scene import Floor, Launch, Puck
+        >>> ingredients(Scene(Puck(1.0), Floor(0.1, slope=0.2), Launch((1.0, 0.0), 5.0)))
+        ['slope']
     """
     floor, force = scene.floor, scene.force
     there = {
@@ -49,8 +50,8 @@ def ingredients(scene: Scene) -> list[str]:
         "walls": bool(scene.wall),
         "edges": bool(scene.edge),
         scene.constraint.kind if scene.constraint else "constraint": scene.constraint is not None,
-        "gyration": scene.puck.gyration != HOMOGENEOUS,
-        "no dry friction": floor.strips is None and floor.friction == 0.0,
+        "friction law": bool(floor.law),
+        "no dry friction": floor.strips is None and floor.friction == 0.0 and not floor.law,
     }
     return [name for name, is_there in there.items() if is_there]
 
@@ -64,6 +65,8 @@ def free_puck(scene: Scene) -> dict[str, Any]:
         "delta": 2.0 * scene.floor.friction * scene.puck.height / scene.puck.radius,
         "decel": scene.floor.friction * scene.floor.gravity,
         "radius": scene.puck.radius,
+        "pressure": scene.puck.pressure,
+        "gyration": scene.puck.gyration,
     }
 
 
@@ -98,26 +101,28 @@ def _without_borders(scene: Scene) -> Floor:
 def plan_for(scene: Scene) -> Plan:
     """The plan for one run.
 
-    Examples
-    --------
-    >>> from puck_tables.scene.scene import Floor, Launch, Puck
-    >>> plan_for(Scene(Puck(1.0), Floor(0.1), Launch((1.0, 0.0), 0.0))).model
-    'closed form: pure translation'
+        Examples
+        --------
+        >>> from puck_tables.scene.regions import LAW_ACCURACY
+    from puck_tables.scene.scene import Floor, Launch, Puck
+        >>> plan_for(Scene(Puck(1.0), Floor(0.1), Launch((1.0, 0.0), 0.0))).model
+        'closed form: pure translation'
     """
     acting = ingredients(scene)
     if acting:
-        rough = "no dry friction" not in acting
-        model = "slice of the table at fixed delta, integrated" if rough else "integrated"
-        compiled = [name for name in acting if name != "no dry friction"] + _moving(scene)
-        compiled = ["dry friction", *compiled] if rough else compiled
+        model = "slice of the table at fixed delta, integrated"
+        if "friction law" in acting:
+            model = f"table of f over slip angle and speed (to {LAW_ACCURACY:g} of f), integrated"
+        elif "no dry friction" in acting:
+            model = "integrated"
         lines = [
             f"taken         {model}",
-            f"compiled in   {', '.join(compiled) or 'inertia alone'}",
-            f"cheaper, no   look-up: not a free puck on a level floor ({', '.join(acting)})",
+            f"acting        {', '.join([*acting, *_moving(scene)])}",
+            "cheaper, no   look-up: not a free puck on a level floor",
         ]
         return Plan(model, False, "\n".join(lines))
     free = free_puck(scene)
-    kind = regime(free["v0"], free["w0"], free["delta"], free["radius"])
+    kind = regime(**{name: value for name, value in free.items() if name != "decel"})
     frame = "in the frame of the belt" if any(scene.floor.velocity) else "a free puck, level floor"
     if kind in _NAMES:
         model = f"closed form: {_NAMES[kind]}"

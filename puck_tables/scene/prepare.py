@@ -11,7 +11,6 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.errors import InputError
-from puck_tables.run import closed_form_friction, table_friction
 from puck_tables.safe_read import read_whole
 from puck_tables.scene.boundaries import Boundaries
 from puck_tables.scene.bulk import follow_many
@@ -31,13 +30,12 @@ from puck_tables.scene.ingredients import (
     Surface,
 )
 from puck_tables.scene.loop import Ask, follow
+from puck_tables.scene.regions import regions_of
 from puck_tables.scene.scene import Scene, launch_velocity
-from puck_tables.table.file import load_table
 
 FloatArray = npt.NDArray[np.float64]
 
 LOCAL_SHARE = 0.01  # of the error wanted, per step and in units of the scales
-EXACT_BELOW = 1e-9  # friction by closed forms where a table's error would show
 DEFAULT_TIME = 1000.0  # in units of the time scale, where a scene does not say
 STEP_LIMIT = 1_000_000
 MAX_DRIVE = 1 << 26  # bytes of a file of forces
@@ -59,7 +57,7 @@ class Prepared:
         self, frames: FloatArray, rows: FloatArray, events: FloatArray
     ) -> tuple[int, float, int, int, int, float]:
         """Run it, see :func:`puck_tables.scene.loop.follow`."""
-        region = int(self.regions_of(self.state[None, :])[0])
+        region = int(self.starts(self.state[None, :])[0])
         return follow(
             self.model, self.regions, self.bounds, self.ask, self.state.copy(), region,
             frames, rows, events,
@@ -70,10 +68,10 @@ class Prepared:
         follow_many(
             self.model, self.regions, self.bounds, self.asks(states),
             self.scene.run.time is not None, self.ask.tolerance, STEP_LIMIT, MAX_EVENTS, states,
-            self.regions_of(states), out, status,
+            self.starts(states), out, status,
         )  # fmt: skip
 
-    def regions_of(self, states: FloatArray) -> npt.NDArray[np.int64]:
+    def starts(self, states: FloatArray) -> npt.NDArray[np.int64]:
         """Region of the floor in which launches (n, 10) start."""
         strips = self.scene.floor.strips
         if strips is None:
@@ -98,7 +96,7 @@ def prepare(scene: Scene, last_time: float | None = None) -> Prepared:
     """
     puck, floor = scene.puck, scene.floor
     inertia = puck.mass * (puck.gyration * puck.radius) ** 2
-    regions = _regions(scene)
+    regions = regions_of(scene)
     weight = puck.mass * floor.gravity
     pull_x = scene.force.constant[0] + weight * math.sin(floor.slope) * math.cos(floor.downhill)
     pull_y = scene.force.constant[1] + weight * math.sin(floor.slope) * math.sin(floor.downhill)
@@ -123,21 +121,6 @@ def prepare(scene: Scene, last_time: float | None = None) -> Prepared:
     tolerance = LOCAL_SHARE * scene.run.tol
     ask = Ask(until, to_the_end, tolerance, asks[2:], float(asks[1]), STEP_LIMIT)
     return Prepared(model, regions, _bounds(scene), scene, state, ask)
-
-
-def _regions(scene: Scene) -> Regions:
-    """Friction in every region: the friction ratios at the height that each has."""
-    puck, floor = scene.puck, scene.floor
-    coefficients = [floor.friction] if floor.strips is None else list(floor.strips.friction)
-    heights = [2.0 * f * puck.height / puck.radius for f in coefficients]
-    exact = scene.run.tol < EXACT_BELOW
-    table = None if exact else load_table()
-    cuts = [
-        (closed_form_friction(d) if table is None else table_friction(d, table)).cut
-        for d in heights
-    ]
-    load = puck.mass * floor.gravity * math.cos(floor.slope) * np.array(coefficients)
-    return Regions(load, np.array(heights), np.stack(cuts))
 
 
 def _hold(scene: Scene) -> Hold:

@@ -18,7 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.kernels.compile import inlined, kernel
-from puck_tables.scene.friction import THETA, X, Y, against_walls, dry_friction
+from puck_tables.scene.friction import THETA, X, Y, against_walls, at_slip_zero, dry_friction
 from puck_tables.scene.ingredients import (
     FREE,
     PIVOT,
@@ -120,7 +120,16 @@ def excess_at_rest(stretch: Stretch, t: float, y: FloatArray) -> Yield:
     gx, gy, torque = given_force(model, stretch.piece, t)
     fx, fy = against_walls(stretch.leaning, gx - body.mass * ax, gy - body.mass * ay)
     return _yield_with(
-        stretch.dry, model.hold, body, y[THETA], ax, ay, model.surface.spin, fx, fy, torque
+        at_slip_zero(stretch.dry),
+        model.hold,
+        body,
+        y[THETA],
+        ax,
+        ay,
+        model.surface.spin,
+        fx,
+        fy,
+        torque,
     )
 
 

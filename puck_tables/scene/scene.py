@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables.contact.laws import HOMOGENEOUS
 from puck_tables.errors import InputError
 from puck_tables.safe_read import read_whole
 from puck_tables.scene.fields import Reading, of, read_part
@@ -22,8 +23,8 @@ from puck_tables.scene.fields import Reading, of, read_part
 FloatArray = npt.NDArray[np.float64]
 
 STANDARD_GRAVITY = 9.80665
-HOMOGENEOUS = 0.5**0.5
 MAX_FILE = 1 << 20
+FILES = (("puck", "pressure"), ("floor", "law"), ("force", "file"))
 MATCH = 1e-9  # how well a launch must fit its constraint, of its speed
 
 
@@ -35,7 +36,7 @@ class Puck:
     height: float = of("number", 0.0, "m", low=0.0, doc="of the cylinder; 0: no tilt")
     mass: float = of("number", 1.0, "kg", low=0.0, above=True)
     gyration: float = of(
-        "number", HOMOGENEOUS, "radii", low=0.0, above=True, high=100.0,
+        "number", HOMOGENEOUS, "radii", low=0.1, high=10.0,
         doc="radius of gyration about the vertical over the radius",
     )  # fmt: skip
     pressure: str = of("text", "uniform", doc="pressure law, as build-tables --pressure takes it")
@@ -62,6 +63,7 @@ class Floor:
     turning: float = of("number", 0.0, "rad/s", doc="spin of a turntable")
     centre: tuple[float, float] = of("pair", (0.0, 0.0), "m", doc="of the turntable")
     strips: Strips | None = of("part", None, part=Strips)
+    law: str = of("text", "", doc="CSV of slip speed in m/s and f, in place of 'friction'")
 
 
 @dataclass(frozen=True)
@@ -197,17 +199,26 @@ def read_scene(path: str | Path) -> dict[str, Any]:
         If it cannot be read or is not TOML.
     """
     try:
-        return tomllib.loads(read_whole(path, MAX_FILE).decode("utf-8"))
+        tables = tomllib.loads(read_whole(path, MAX_FILE).decode("utf-8"))
     except OSError as error:
         raise InputError(f"cannot read {path}: {error.strerror or error}") from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
         raise InputError(f"{path} is not a scene file (TOML): {error}") from None
+    for part, name in FILES:  # beside the scene that names them
+        value = tables.get(part, {}).get(name) if isinstance(tables.get(part), dict) else None
+        if isinstance(value, str) and value.lower().endswith(".csv"):
+            tables[part][name] = str(Path(path).parent / value)
+    return tables
 
 
 def _disagreements(scene: Scene) -> list[str]:
     """What is wrong between fields that are each in range."""
     faults = []
     strips = scene.floor.strips
+    if scene.floor.law and (strips is not None or scene.floor.friction > 0.0):
+        faults.append("floor.law: it takes the place of floor.friction and floor.strips")
+    if scene.floor.law and (scene.puck.pressure != "uniform"):
+        faults.append("floor.law: known under uniform pressure only, not with puck.pressure")
     if strips is not None:
         if len(strips.friction) != len(strips.borders) + 1 or not strips.borders:
             faults.append(

@@ -1,0 +1,89 @@
+"""Dry friction of every region of a scene's floor, for its puck, as the compiled loop reads it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables.body import body_of, is_plain
+from puck_tables.contact.speed_law import SpeedLaw
+from puck_tables.kernels.slice_spline import HEADER, RATIOS
+from puck_tables.run import closed_form_friction, table_friction
+from puck_tables.scene.ingredients import BySpeed, Regions
+from puck_tables.scene.scene import Scene
+from puck_tables.table.file import load_table
+from puck_tables.table.friction_slice import FINEST_ACCURACY
+from puck_tables.table.speed_table import build_speed_table
+
+FloatArray = npt.NDArray[np.float64]
+
+EXACT_BELOW = 1e-9  # friction by closed forms where a table's error would show
+SLICE_SHARE = 0.1  # of the error wanted
+LAW_ACCURACY = 1e-4  # of the largest f: a law of points is worth no more, and takes a second
+
+NO_LAW = BySpeed(np.zeros((2, 4, 4, RATIOS)), 1.0, 1.0, 0.0, 1.0)
+
+
+def regions_of(scene: Scene) -> Regions:
+    """Friction ratios in every region at the height that it has, or by slip speed.
+
+    Raises
+    ------
+    InputError, ContactError
+        If pressure law, gyration or height are out of range, or the friction law cannot be read.
+    AccuracyError
+        If the friction of the puck cannot be tabulated as fine as the scene asks.
+    """
+    puck, floor = scene.puck, scene.floor
+    normal = puck.mass * floor.gravity * math.cos(floor.slope)
+    if floor.law:
+        law = SpeedLaw.from_csv(floor.law)
+        table = build_speed_table(
+            law, 2.0 * puck.height / puck.radius, scale=None, accuracy=LAW_ACCURACY
+        )
+        by_speed = BySpeed(
+            table.coefficients, table.speed_axis.scale, table.speed_axis.reach, normal, 1.0
+        )
+        load = np.array([normal * table.largest_f])
+        return Regions(load, np.zeros(1), closed_form_friction(0.0).cut[None, :], by_speed)
+    coefficients = [floor.friction] if floor.strips is None else list(floor.strips.friction)
+    heights = [2.0 * f * puck.height / puck.radius for f in coefficients]
+    load = normal * np.array(coefficients)
+    if all(is_plain(puck.pressure, puck.gyration, delta) for delta in heights):
+        cuts = np.stack([_plain_cut(scene.run.tol, delta) for delta in heights])
+        return Regions(load, np.array(heights), cuts, NO_LAW)
+    accuracy = max(SLICE_SHARE * scene.run.tol, FINEST_ACCURACY)
+    # how the mass is spread stands in the equations of the scene, not in its friction
+    bodies = [body_of(puck.pressure, delta, puck.gyration) for delta in heights]
+    slices = [body.friction(accuracy).cut for body in bodies]
+    return Regions(load, np.array(heights), _of_one_shape(slices), NO_LAW)
+
+
+def _plain_cut(tol: float, delta: float) -> FloatArray:
+    if tol < EXACT_BELOW:
+        return closed_form_friction(delta).cut
+    return table_friction(delta, load_table()).cut
+
+
+def _of_one_shape(slices: list[FloatArray]) -> FloatArray:
+    """Slices (sides, columns) in one array: cells halved, last sides repeated; the same splines."""
+    columns = max(part.shape[1] for part in slices)
+    sides = max(part.shape[0] for part in slices)
+    filled = []
+    for part in slices:
+        while part.shape[1] < columns:
+            part = _halved(part)
+        filled.append(np.concatenate([part, np.repeat(part[-1:], sides - len(part), axis=0)]))
+    return np.stack(filled)
+
+
+def _halved(part: FloatArray) -> FloatArray:
+    """The same uniform cubic splines on cells of half the width, by knot insertion."""
+    weights = part[:, HEADER:].reshape(len(part), -1, RATIOS)
+    cells = weights.shape[1] - 3
+    finer = np.empty((len(part), 2 * cells + 3, RATIOS))
+    finer[:, 0::2] = 0.5 * (weights[:, :-1] + weights[:, 1:])
+    finer[:, 1::2] = 0.125 * (weights[:, :-2] + 6.0 * weights[:, 1:-1] + weights[:, 2:])
+    return np.concatenate([part[:, :HEADER], finer.reshape(len(part), -1)], axis=1)
