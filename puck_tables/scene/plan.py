@@ -2,8 +2,9 @@
 
 The ladder: closed form (rest, pure spin, pure translation, limit motion); look-up (all motions of
 a free puck on a level floor are one curve); and for everything that breaks that symmetry the
-friction ratios at the scene's δ, a slice of the table, integrated with what acts.  A floor that moves steadily only shifts the frame; walls, edges and borders that the free puck
-does not reach are not there.
+friction ratios at the scene's δ, a slice of the table, integrated with what acts.  A
+floor that moves steadily only shifts the frame; walls, edges and borders that the free puck does
+not reach are not there.
 """
 
 from __future__ import annotations
@@ -32,10 +33,9 @@ class Plan:
 def ingredients(scene: Scene) -> list[str]:
     """What acts beside dry friction on a level floor that moves steadily or not at all.
 
-        Examples
-        --------
-        >>> from puck_tables.scene.regions import LAW_ACCURACY
-    from puck_tables.scene.scene import Floor, Launch, Puck
+    Examples
+    --------
+    >>> from puck_tables.scene.scene import Floor, Launch, Puck
         >>> ingredients(Scene(Puck(1.0), Floor(0.1, slope=0.2), Launch((1.0, 0.0), 5.0)))
         ['slope']
     """
@@ -101,10 +101,9 @@ def _without_borders(scene: Scene) -> Floor:
 def plan_for(scene: Scene) -> Plan:
     """The plan for one run.
 
-        Examples
-        --------
-        >>> from puck_tables.scene.regions import LAW_ACCURACY
-    from puck_tables.scene.scene import Floor, Launch, Puck
+    Examples
+    --------
+    >>> from puck_tables.scene.scene import Floor, Launch, Puck
         >>> plan_for(Scene(Puck(1.0), Floor(0.1), Launch((1.0, 0.0), 0.0))).model
         'closed form: pure translation'
     """
