@@ -15,6 +15,7 @@ from puck_tables.cli.options import (
     body_given,
     body_options,
     output_options,
+    patience,
     prepare_outputs,
     puck_and_floor,
     puck_options,
@@ -90,6 +91,7 @@ def aim(
         require_matplotlib()
     from puck_tables.aiming import aim as find_launches
 
+    patience(height_ratio)
     found = find_launches(
         target, w0=w0, speed=speed, stop_time=stop_time, max_speed=max_speed, max_spin=max_spin,
         count=count, delta=height_ratio, decel=J, radius=r, **body_given(pressure, gyration),

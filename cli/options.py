@@ -154,6 +154,12 @@ def body_given(pressure: str, gyration: float | None) -> dict[str, Any]:
     return {"pressure": pressure} | ({} if gyration is None else {"gyration": gyration})
 
 
+def patience(delta: float) -> None:
+    """Say on stderr that the friction of a very tall puck takes some seconds to work out."""
+    if 3.0 < delta <= 3.96:
+        click.echo("working out the friction of so tall a puck: some seconds", err=True)
+
+
 def output_options(command: Command) -> Command:
     """Where results go."""
     for option in (

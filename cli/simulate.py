@@ -20,6 +20,7 @@ from puck_tables.cli.options import (
     explained,
     open_table,
     output_options,
+    patience,
     prepare_outputs,
     puck_and_floor,
     puck_options,
@@ -109,6 +110,7 @@ def simulate(
 
     if output is None and plot is None and times is None and frames is None:
         frames = 1  # a report needs no states
+    patience(height_ratio)
     run = run_simulation(
         v0, w0, delta=height_ratio, decel=J, radius=r,
         mass=DEFAULT_MASS if mass is None else mass, **body_given(pressure, gyration),

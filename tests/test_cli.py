@@ -337,3 +337,35 @@ def test_tables_of_every_kind(folder: Path):
         puck("build-tables", "--pressure", "ring", "--kind", "stops"), 2, "--pressure goes with"
     )
     refused(puck("build-tables", "--cells", "20"), 2, "--cells does not go with")
+
+
+def test_pucks_of_every_kind():
+    v0 = ["--v0", "1,0", "--tol", "1e-6"]
+    report = puck("simulate", *v0, "--w0", "5", "--delta", "2").stdout
+    for words in ("100 % of the base loaded at the launch, falling to 92.97 %; lifts at 3.7995",
+                  "slice", "delta = 2"):  # fmt: skip
+        assert words in report
+    report = puck("simulate", *v0, "--w0", "0.3", "--delta", "1.2").stdout
+    assert "all of it from 0.9244" in report
+    assert "part of it lifted throughout" in puck("simulate", *v0, "--delta", "2").stdout
+    report = puck("simulate", *v0, "--w0", "1", "--pressure", "ring", "--delta", "0").stdout
+    assert "pressure ring, k/r = 0.707107" in report
+    assert "the spin dies out before the sliding" in report
+    report = puck("simulate", *v0, "--w0", "1", "--pressure", "hertz", "--delta", "0").stdout
+    assert "the sliding dies out before the spin" in report
+    tall = puck("simulate", *v0, "--w0", "5", "--delta", "2", "--json", "-o", "run.h5",
+                "--plot", "run.png")  # fmt: skip
+    found = json.loads(tall.stdout)
+    assert (found["contact_closes"], found["pressure"]) == (None, "uniform")
+    with xarray.open_dataset("run.h5", engine="h5netcdf") as data:
+        assert data.attrs["contact_opens"] == found["contact_opens"]
+        assert "contact_closes" not in data.attrs
+    assert puck("simulate", *v0, "--w0", "1", "--pressure", "ring", "--delta", "0", "--plot",
+                "ring.png").exit_code == 0  # fmt: skip
+    swept = puck("sweep", *v0, "--w0", "0:2:3", "--pressure", "annulus:0.8", "--gyration", "0.9",
+                 "--explain")  # fmt: skip
+    assert len(swept.stdout.splitlines()) == 4
+    assert "slices of pressure annulus:0.8, k/r = 0.9" in swept.stderr
+    aimed = puck("aim", "--target", "2,0.1", "--w0", "5", "--gyration", "1")
+    assert "1 launch" in aimed.stdout
+    assert "k/r = 1" in aimed.stdout
