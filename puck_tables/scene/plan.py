@@ -109,9 +109,9 @@ def plan_for(scene: Scene) -> Plan:
         model = "slice of the table at fixed delta, integrated"
         lines = [
             f"taken         {model}",
-            f"compiled in   {', '.join(['dry friction', *acting, *_moving(scene)])}"
+            f"acting        {', '.join(['dry friction', *acting, *_moving(scene)])}"
             if "no dry friction" not in acting
-            else f"compiled in   {', '.join([*acting[:-1], *_moving(scene)]) or 'inertia alone'}",
+            else f"acting        {', '.join([*acting[:-1], *_moving(scene)]) or 'inertia alone'}",
             f"cheaper, no   look-up: not a free puck on a level floor ({', '.join(acting)})",
         ]
         return Plan(model, False, "\n".join(lines))
