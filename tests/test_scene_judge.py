@@ -138,6 +138,8 @@ def _tol_is_kept(seeds: range) -> None:
         scene["run"] = {"time": scene["run"]["time"], "tol": 1e-12}
         times = simulate_scene(scene).end_time * np.array([0.2, 0.5, 0.8, 1.0])
         best = simulate_scene(scene, times)
+        if best.plan.plain:
+            continue  # a trajectory of the free puck, which has tests of its own
         share = {}
         for tol in (1e-6, 1e-9, 1e-11):
             scene["run"]["tol"] = tol

@@ -63,7 +63,7 @@ EVENT_COLUMNS = 3 + SIZE  # time, what, which, state
 
 _REST = 1e-13  # of the scale of speeds: as good as at rest
 _LAST = 30.0  # times the local error: from there a stop goes straight
-_HOP = 1e-14  # of the place: as high as a rebound must be
+_HOP = 1e-15  # of the place: as high as a rebound must be
 _NEAR = 0.5  # of the time in which the slip would end, at most, is a step
 
 
@@ -123,6 +123,15 @@ def _framed(
 @inlined
 def _dry(regions: Regions, region: int) -> Dry:
     return Dry(regions.load[region], regions.delta[region], regions.cuts[region], regions.by_speed)
+
+
+@inlined
+def _followed(ask: Ask, excess: float) -> float:
+    """The slip from which on its direction is followed, for an excess in units of friction.
+
+    Before that the direction is wrong by about the excess.
+    """
+    return max(0.1 * ask.tolerance / excess, 10.0 * _REST) * ask.speed
 
 
 @kernel
@@ -209,7 +218,7 @@ def follow(
             break
         if mode == STARTS:  # the direction is followed from where that can be seen
             excess = excess_at_rest(stretch, t + length, new)[0]
-            far = slip_speed(model, new) * excess > ask.tolerance * ask.speed * dry.load
+            far = slip_speed(model, new) > 10.0 * _followed(ask, excess / dry.load)
             error = math.inf if far else error
         if not error <= ask.tolerance:
             shrink = 0.1 if not error < math.inf else max(0.1, 0.9 * (ask.tolerance / error) ** 0.2)
@@ -249,7 +258,7 @@ def follow(
             settle = True
         if mode == STARTS:
             excess = excess_at_rest(stretch, t, y)[0]
-            if q * excess >= 0.1 * ask.tolerance * ask.speed * dry.load or excess <= 0.0:
+            if excess <= 0.0 or q >= _followed(ask, excess / dry.load):
                 mode = SLIDES
         if left(bounds, y, leans, ask.speed):
             leaning = normals(bounds, leans)

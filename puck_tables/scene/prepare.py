@@ -172,16 +172,18 @@ def _direction(angle: float) -> tuple[float, float]:
 
 def _asks(scene: Scene, model: Model, regions: Regions, states: FloatArray) -> FloatArray:
     """Time limit, scale of speeds and scales of the state for launches (n, 10); (n, 12)."""
-    speed, time = _scales(scene, model, regions, states)
-    radius, length = scene.puck.radius, speed * time
-    energy = scene.puck.mass * speed * speed
-    until = scene.run.time
-    asks: FloatArray = np.stack([
-        np.full_like(speed, until) if until is not None else DEFAULT_TIME * time, speed,
-        length, length, length / radius, speed, speed, speed / radius,
-        energy, energy, energy, energy,
-    ], axis=1)  # fmt: skip
-    if not (np.all(np.isfinite(asks)) and np.all(asks > 0.0)):
+    with np.errstate(over="ignore", invalid="ignore"):
+        speed, time = _scales(scene, model, regions, states)
+        radius, length = scene.puck.radius, speed * time
+        energy = scene.puck.mass * speed * speed
+        until = scene.run.time
+        asks: FloatArray = np.stack([
+            np.full_like(speed, until) if until is not None else DEFAULT_TIME * time, speed,
+            length, length, length / radius, speed, speed, speed / radius,
+            energy, energy, energy, energy,
+        ], axis=1)  # fmt: skip
+    squares = np.all(speed > 1e-140) and np.all(speed < 1e140)  # of 1e-13 of it, too
+    if not (np.all(np.isfinite(asks)) and np.all(asks > 0.0) and squares):
         raise InputError(
             "this scene is too large or too small for floating point (speeds of "
             f"{speed.max():g} m/s, times of {time.max():g} s): use other units"

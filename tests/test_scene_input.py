@@ -1,0 +1,98 @@
+"""Bad scenes: every error at once, each with its path, its value and what is allowed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from puck_tables.errors import InputError
+from puck_tables.scene.scene import scene_from
+
+GOOD: dict[str, Any] = {"puck": {"radius": 0.04}, "launch": {"velocity": [1.0, 0.0]}}
+
+
+def fault(data: dict[str, Any]) -> str:
+    with pytest.raises(InputError) as caught:
+        scene_from(data, "my.toml")
+    return str(caught.value)
+
+
+def test_every_error_at_once() -> None:
+    text = fault({
+        "puck": {"radius": -1.0, "colour": "red"},
+        "floor": {"friction": "rough", "velocity": [1.0], "slope": 2.0},
+        "launch": {"spin": True, "position": [0.0, "here"]},
+        "wall": [{"point": [1.0, 0.0], "normal": [0.0, 1.0], "restitution": 2.0}, 7],
+        "constraint": {"kind": "glue"},
+        "run": {"tol": float("nan")},
+        "extra": {},
+    })  # fmt: skip
+    lines = text.splitlines()
+    assert lines[0] == "my.toml: 12 errors"
+    for expected in (
+        "puck.radius = -1.0: must be a number > 0 m",
+        "puck.colour: no such entry (there are: radius, height, mass, gyration, pressure)",
+        "floor.friction = 'rough': must be a number >= 0 and <= 100",
+        "floor.velocity = [1.0]: must be two numbers [x, y] in m/s",
+        "floor.slope = 2.0: must be a number >= 0 and < 1.5708 rad",
+        "launch.spin = True: must be a number in rad/s",
+        "launch.position[1] = 'here': must be a number in m",
+        "wall[0].restitution = 2.0: must be a number >= 0 and <= 1",
+        "wall[1] = 7: must be a table",
+        "constraint.kind = 'glue': must be one of rail, pivot, blade",
+        "run.tol = nan: must be a number >= 1e-12 and <= 0.01",
+        "extra: no such entry",
+    ):
+        assert any(line.strip().startswith(expected) for line in lines[1:]), (expected, text)
+
+
+@pytest.mark.parametrize(
+    ("more", "said"),
+    [
+        ({"puck": {}}, "puck.radius is missing: it must be a number > 0 m"),
+        ({"launch": {"velocity": [10**400, 0]}}, "launch.velocity[0] = "),
+        ({"floor": {"strips": {"borders": [0.0], "friction": [0.1]}}}, "must be one number more"),
+        ({"floor": {"strips": {"borders": [1.0, 0.0], "friction": [1, 1, 1]}}}, "must ascend"),
+        ({"floor": {"strips": {"borders": [], "friction": [0.1]}}}, "must be one number more"),
+        ({"run": {"frames": 2.5}}, "run.frames = 2.5: must be a whole number"),
+        ({"run": {"time": 0.0}}, "run.time = 0.0: must be a number > 0 s"),
+        ({"wall": [{"point": [0, 0], "normal": [0, 0]}]}, "wall[0].normal = [0.0, 0.0]: must have"),
+        ({"wall": [{"point": [0.01, 0], "normal": [-1, 0]}]}, "reaches through it by 0.03 m"),
+        ({"edge": [{"point": [-1, 0], "normal": [-1, 0]}]}, "is beyond it by 1 m"),
+        ({"constraint": {"kind": "pivot"}}, "constraint.reach = 0: a pivot needs a number > 0 m"),
+        ({"constraint": {"kind": "rail", "angle": 1.0}}, "launch.velocity = [1.0, 0.0]: the rail"),
+        (
+            {
+                "constraint": {"kind": "rail"},
+                "wall": [{"point": [9, 0], "normal": [-1, 0]}],
+            },
+            "constraint and wall: a scene has one of them",
+        ),
+        ({"launch": {"spin": "0:1:1"}}, "launch.spin = '0:1:1': must be a range of 2 to 1000000"),
+        ({"launch": {"spin": "0:1"}}, "or a range 'START:STOP:COUNT' of them"),
+        ({"puck": []}, "puck = []: must be a table"),
+        ({"wall": {"point": [9, 0]}}, "must be a list of tables, [[wall]]"),
+    ],
+)
+def test_one_clear_sentence(more: dict[str, Any], said: str) -> None:
+    assert said in fault({**GOOD, **more})
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["", "0,1\n1,2\n", "0,1,2\n", "0,1,2\n0,1,2\n", "1,0,0\n0,0,0\n", "0,nan,0\n1,0,0\n",
+     "0,1,2\n1,2\n", "a,b,c\nd,e,f\n", "\x00"],
+)  # fmt: skip
+def test_a_file_of_forces_that_is_none(text: str, tmp_path: Path) -> None:
+    from puck_tables.scene.simulate import simulate_scene
+
+    path = tmp_path / "force.csv"
+    path.write_text(text)
+    scene = {**GOOD, "force": {"file": str(path)}}
+    with pytest.raises(InputError, match=r"force\.csv: forces are a CSV file of t, Fx, Fy"):
+        simulate_scene(scene)
+    path.unlink()
+    with pytest.raises(InputError, match="cannot read"):
+        simulate_scene(scene)

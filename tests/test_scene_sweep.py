@@ -1,0 +1,114 @@
+"""Maps over scenes: the same bits however they are cut, single runs, and after any interruption."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from puck_tables.errors import InputError
+from puck_tables.scene.simulate import simulate_scene
+from puck_tables.scene.sweep import SceneMap, set_path, sweep_scene
+
+
+def tables() -> dict[str, Any]:
+    """Launches onto a wall on an incline of strips, with ranges in nested places."""
+    return {
+        "puck": {"radius": 0.2, "height": 0.3},
+        "floor": {
+            "slope": 0.05,
+            "strips": {"borders": [0.5], "friction": [0.2, "0.1:0.3:3"]},
+        },
+        "launch": {"velocity": ["1:3:5", 0.4], "spin": "-5:5:4"},
+        "wall": [{"point": [1.5, 0.0], "normal": [-1.0, 0.0], "restitution": "0.2:0.8:2"}],
+    }  # fmt: skip
+
+
+def same(one: SceneMap, other: SceneMap) -> bool:
+    return np.array_equal(one.end, other.end) and all(
+        np.array_equal(column, other.columns[name]) for name, column in one.columns.items()
+    )
+
+
+@pytest.fixture(scope="module")
+def whole() -> SceneMap:
+    return sweep_scene(tables())
+
+
+def test_axes_are_the_ranges(whole: SceneMap) -> None:
+    assert list(whole.axes) == [
+        "floor.strips.friction[1]", "launch.velocity[0]", "launch.spin", "wall[0].restitution",
+    ]  # fmt: skip
+    assert whole.end.shape == (3, 5, 4, 2)
+
+
+@pytest.mark.parametrize(("threads", "chunk"), [(1, 7), (2, 1), (2, 33), (3, 1000)])
+def test_same_bits_however_it_is_cut(whole: SceneMap, threads: int, chunk: int) -> None:
+    assert same(whole, sweep_scene(tables(), threads=threads, chunk=chunk))
+
+
+@pytest.mark.parametrize("index", [(0, 0, 0, 0), (1, 4, 2, 1), (2, 3, 3, 0)])
+def test_same_bits_as_single_runs(whole: SceneMap, index: tuple[int, ...]) -> None:
+    single = tables()
+    for (path, values), i in zip(whole.axes.items(), index, strict=True):
+        set_path(single, path, float(values[i]))
+    run = simulate_scene(single)
+    for name, value in run.last.items():
+        if name != "time":
+            assert whole.columns[name][index] == value, name
+    assert whole.columns["end_time"][index] == run.end_time
+    assert whole.columns["bounces"][index] == sum(e[1] == "bounces" for e in run.events)
+
+
+def test_look_up_agrees_with_single_runs() -> None:
+    scene = {
+        "puck": {"radius": 0.2, "height": 0.3}, "floor": {"friction": 0.2, "velocity": [0.3, 0.1]},
+        "launch": {"velocity": ["1:3:3", 0.4], "spin": 4.0},
+    }  # fmt: skip
+    ends = sweep_scene(scene)
+    for i, speed in enumerate((1.0, 2.0, 3.0)):
+        set_path(scene, "launch.velocity[0]", speed)
+        run = simulate_scene(scene)
+        for name in ("x", "y", "orientation", "vx", "vy", "heat_dry", "work_support"):
+            assert ends.columns[name][i] == pytest.approx(run.last[name], rel=1e-7, abs=1e-7), name
+        assert ends.columns["end_time"][i] == pytest.approx(run.end_time, rel=1e-8)
+
+
+class Cut(Exception):
+    """The end of the process, as far as the sweep can tell."""
+
+
+def test_it_goes_on_after_an_interruption(whole: SceneMap, tmp_path: Path) -> None:
+    path, calls = tmp_path / "kept", []
+
+    def stop(done: int, total: int) -> None:
+        calls.append(done)
+        if done > total // 3:
+            raise Cut
+
+    with pytest.raises(Cut):
+        sweep_scene(tables(), threads=1, chunk=10, checkpoint=path, progress=stop)
+    assert path.exists() and len(calls) < 12
+    assert same(whole, sweep_scene(tables(), threads=2, chunk=10, checkpoint=path))
+    assert same(whole, sweep_scene(tables(), chunk=10, checkpoint=path))  # nothing left to do
+
+
+def test_a_scene_without_a_range_is_no_sweep() -> None:
+    with pytest.raises(InputError, match="no number of the scene is a range"):
+        sweep_scene({"puck": {"radius": 1.0}})
+
+
+def test_a_range_with_one_bad_end_is_refused() -> None:
+    scene = tables()
+    scene["wall"][0]["restitution"] = "0.5:1.5:3"
+    with pytest.raises(
+        InputError, match=r"wall\[0\]\.restitution = '0\.5:1\.5:3': must be a range"
+    ):
+        sweep_scene(scene)
+
+
+def test_a_range_is_no_single_run() -> None:
+    with pytest.raises(InputError, match=r"launch\.spin: a range makes many runs"):
+        simulate_scene({"puck": {"radius": 1.0}, "launch": {"spin": "0:1:2"}})
