@@ -39,11 +39,17 @@ MAX_SPEEDS = 1_000_000
     metavar="FILE",
     help="Save the curve: .h5 or .csv.  Without -o and --plot, CSV goes to stdout.",
 )
+@click.option(
+    "--law",
+    type=FILE,
+    metavar="FILE",
+    help="Save greatest force over load against speed: a CSV that floor.law of a scene takes.",
+)
 @output_options
 def asperity(
     amplitude: float, wavelength: float, load: float, mass: float | None,
-    speeds: float | tuple[float, float, int] | None, output: Path | None, plot: Path | None,
-    overwrite: bool,
+    speeds: float | tuple[float, float, int] | None, output: Path | None, law: Path | None,
+    plot: Path | None, overwrite: bool,
 ) -> None:  # fmt: skip
     """Draw friction against speed for a point on a wavy one-sided support.
 
@@ -55,8 +61,9 @@ def asperity(
     \b
     puck asperity --plot asperity.png
     puck asperity --amplitude 2e-6 --wavelength 4e-5 --load 5 --speeds 0:0.1:201 -o curve.csv
+    puck asperity --wavelength 0.001 --amplitude 1e-5 --speeds 0:0.5:41 --law rough.csv
     """  # noqa: D301 - click reads the backspace
-    prepare_outputs(output, plot, overwrite=overwrite)
+    prepare_outputs(output, law, plot, overwrite=overwrite)
     from puck_tables.chetaev.asperity import Asperity
     from puck_tables.chetaev.asperity_curve import asperity_curve
     from puck_tables.puck import STANDARD_GRAVITY
@@ -91,10 +98,13 @@ def asperity(
     if output is not None:
         save_asperity(curve, output, overwrite)
         told(output)
+    if law is not None:
+        curve.law().to_csv(law, overwrite)
+        told(law)
     if plot is not None:
         plot_asperity(curve, plot, overwrite)
         told(plot)
-    if output is None and plot is None:
+    if output is None and law is None and plot is None:
         click.echo(asperity_as_csv(curve), nl=False)
     click.echo(_summary(curve), err=True)
 

@@ -125,3 +125,24 @@ def test_states_of_a_scene_as_files(tmp_path):
         assert np.array_equal(data["heat_dry"], [row["heat_dry"] for row in rows])
         kept = pt.scene_from(json.loads(data.attrs["scene"]))[0]
         assert pt.simulate_scene(kept, [0.0]).end_time == data.attrs["end_time"]
+
+
+def test_the_curve_of_an_asperity_is_the_friction_law_of_a_scene(tmp_path):
+    law = tmp_path / "rough.csv"
+    rough = ("--amplitude", "1e-5", "--wavelength", "1e-3", "--speeds", "0:0.2:21")
+    assert puck("asperity", *rough, "--law", str(law)).exit_code == 0
+    scene = tmp_path / "rough.toml"
+    scene.write_text(
+        "[puck]\nradius = 0.01\n[floor]\nlaw = 'rough.csv'\n"  # beside the scene
+        "[launch]\nvelocity = [0.09, 0.0]\nspin = 9.0\n"
+    )
+    result = puck("simulate", "--scene", str(scene), "--json", "--explain")
+    assert result.exit_code == 0, result.stderr
+    told = json.loads(result.stdout)
+    assert (told["end"], told["energy_residual"] < 1e-8) == ("at rest", True)
+    assert "f over slip angle and speed" in result.stderr
+    slow = f"{0.9 * 2 * np.pi * 1e-5 / 1e-3}"  # Coulomb's a/b is a bound for the slow ones
+    assert told["end_time"] < 0.18 / (float(slow) * 9.80665)
+    fast = puck("simulate", "--scene", str(scene), "--set", "launch.velocity=[0.3,0]")
+    assert fast.exit_code == 2
+    assert "0.2 m/s" in fast.stderr

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import InputError, PuckError
 from puck_tables.real import finite_array
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
@@ -119,6 +120,12 @@ def _integrated(scene: Scene, plan: Plan, times: FloatArray | None) -> SceneRun:
         raise InputError(
             f"the puck still moves after {end_time:.4g} s, a thousand times the time scale of this "
             "scene: it may never stop; give run.time"
+        )
+    if how == NOT_FINITE and scene.floor.law:
+        top = SpeedLaw.from_csv(scene.floor.law).top_speed
+        raise InputError(
+            f"at {end_time:.6g} s the rim slips faster than the friction law {scene.floor.law} "
+            f"goes ({top:g} m/s): nothing is known beyond; give it more speeds"
         )
     if how in FAILURES:
         raise PuckError(FAILURES[how].format(time=end_time))

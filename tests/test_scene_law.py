@@ -1,0 +1,106 @@
+"""Scenes of every puck: friction laws over the slip speed, other pressures, tall pucks, strips."""
+
+import math
+
+import numpy as np
+import pytest
+
+import puck_tables as pt
+from puck_tables.scene.regions import LAW_ACCURACY, regions_of
+from puck_tables.scene.scene import STANDARD_GRAVITY, scene_from
+
+PUCK = {"radius": 0.04, "height": 0.02, "mass": 0.2}
+LAUNCH = {"velocity": [0.8, 0.1], "spin": 12.0}
+
+
+def law(folder, rows):
+    path = folder / "law.csv"
+    path.write_text("".join(f"{u},{f}\n" for u, f in rows))
+    return str(path)
+
+
+def test_a_constant_law_is_a_coefficient(tmp_path):
+    by_law = {"law": law(tmp_path, [(0.0, 0.15), (1.0, 0.15), (3.0, 0.15)])}
+    runs = [
+        pt.simulate_scene({"puck": PUCK, "floor": {**floor, "slope": 0.05}, "launch": LAUNCH})
+        for floor in (by_law, {"friction": 0.15})
+    ]
+    assert runs[0].end == runs[1].end == "at rest"
+    for name in ("time", "x", "y", "orientation", "heat_dry"):
+        assert runs[0].last[name] == pytest.approx(runs[1].last[name], rel=5 * LAW_ACCURACY)
+    assert runs[0].energy_residual < 1e-8
+
+
+def test_a_coefficient_in_proportion_to_speed_is_viscous(tmp_path):
+    rate = 0.5  # f = rate · u: the motion decays like exp(−rate g t), sliding and spin apart
+    points = [(u, rate * u) for u in (0.0, 0.5, 1.0, 2.0)]
+    run = pt.simulate_scene({
+        "puck": {"radius": 0.04}, "floor": {"law": law(tmp_path, points)}, "launch": LAUNCH,
+        "run": {"time": 0.4},
+    })  # fmt: skip
+    left = math.exp(-rate * STANDARD_GRAVITY * 0.4)
+    assert run.end == "time is up"
+    assert run.last["vx"] == pytest.approx(0.8 * left, rel=2e-4)
+    assert run.last["spin"] == pytest.approx(12.0 * left, rel=2e-4)
+    assert run.energy_residual < 1e-8
+
+
+def test_the_slope_that_a_law_holds_is_that_of_slip_zero(tmp_path):
+    rows = [(0.0, 0.3), (0.2, 0.1), (2.0, 0.1)]
+    for slope, stays in ((0.99 * math.atan(0.3), True), (1.01 * math.atan(0.3), False)):
+        floor = {"law": law(tmp_path, rows), "slope": slope}
+        run = pt.simulate_scene({"puck": {"radius": 0.04}, "floor": floor, "run": {"time": 0.3}})
+        assert (run.end == "at rest") is stays
+        assert (run.last["x"] == 0.0) is stays
+
+
+@pytest.mark.parametrize(
+    "puck",
+    [
+        {"radius": 0.04, "height": 0.25},  # δ = 1.875: part of the base lifts
+        {"radius": 0.04, "height": 0.02, "pressure": "annulus:0.8", "gyration": 0.9},
+        {"radius": 0.04, "height": 0.01, "pressure": "galin", "gyration": 0.6},
+    ],
+)
+def test_other_pucks_integrated_as_scenes_go_as_they_go_free(puck):
+    free = {"puck": puck, "floor": {"friction": 0.15}, "launch": LAUNCH}
+    held = pt.simulate_scene({**free, "drag": {"sliding": 1e-300}})
+    plain = pt.simulate_scene(free)
+    assert (held.plan.plain, plain.plan.plain) == (False, True)
+    scale = 0.94**2 / (0.15 * STANDARD_GRAVITY)
+    assert held.end_time == pytest.approx(plain.end_time, abs=3e-9)
+    for name in ("x", "y"):
+        assert held.last[name] == pytest.approx(plain.last[name], abs=2e-9 * scale)
+
+
+def test_slices_of_strips_are_brought_to_one_shape_and_stay_the_same_splines():
+    strips = {"borders": [0.1, 0.2], "friction": [0.02, 0.2, 0.1]}
+    puck = {"radius": 0.04, "height": 0.25}
+    scene, _ = scene_from({"puck": puck, "floor": {"strips": strips}, "launch": LAUNCH})
+    regions = regions_of(scene)
+    from puck_tables.kernels.slice_spline import slice_ratios
+
+    for n, delta in enumerate(2 * np.array(strips["friction"]) * 0.25 / 0.04):
+        for phi in np.linspace(0.01, 1.56, 41):
+            k = min(math.tan(phi), 1.0 / math.tan(phi))
+            inverse, across, spin = slice_ratios(k, phi > math.pi / 4, regions.cuts[n])
+            truth = pt.one_sided_resultants(phi, delta)
+            assert inverse == pytest.approx(float(1.0 / truth.parallel), abs=2e-9)
+            assert across == pytest.approx(float(truth.perpendicular / truth.parallel), abs=2e-9)
+            assert spin == pytest.approx(float(truth.spin / truth.parallel), abs=2e-9)
+    run = pt.simulate_scene({"puck": puck, "floor": {"strips": strips}, "launch": LAUNCH})
+    assert [event.what for event in run.events] == ["border", "border", "rests"]
+    assert run.energy_residual < 1e-8
+
+
+@pytest.mark.parametrize(
+    ("floor", "words"),
+    [
+        ({"law": "none.csv"}, "none.csv"),
+        ({"law": "none.csv", "friction": 0.1}, "takes the place"),
+        ({"law": "none.csv", "strips": {"borders": [1.0], "friction": [0.1, 0.2]}}, "place"),
+    ],
+)
+def test_laws_that_cannot_be_are_refused(floor, words):
+    with pytest.raises(pt.errors.PuckError, match=words):
+        pt.simulate_scene({"puck": PUCK, "floor": floor, "launch": LAUNCH})
