@@ -19,7 +19,7 @@ from puck_tables.errors import AccuracyError, InputError
 from puck_tables.executor import Progress, run_chunks
 from puck_tables.front import ADAPTIVE_EXACT, LOOK_UP, RK4_EXACT, Choice, choose
 from puck_tables.similarity.stop_slice import FINEST_SLICE, StopSlice, stop_slice
-from puck_tables.sliced import checked_tol, friction_of
+from puck_tables.sliced import LOOSEST_LOCAL, checked_tol, friction_of
 from puck_tables.solvers import METHODS, OUTPUTS, fits
 from puck_tables.table.friction_slice import FINEST_ACCURACY
 
@@ -188,7 +188,7 @@ def _settled(body: Body, tol: float, method: str | None) -> _Integrated:
     stepper = RK4_EXACT if method == "rk4" else ADAPTIVE_EXACT
     known = choose("stop", tol, (stepper,)).way
     steps = known.number("steps") if method == "rk4" else 0.0
-    local = 1.0 if method == "rk4" else known.number("local")
+    local = 1.0 if method == "rk4" else min(known.number("local"), LOOSEST_LOCAL)
     accuracy = max(0.5 * tol, FINEST_ACCURACY)
     probes = _probes(body)
     while True:
@@ -196,7 +196,7 @@ def _settled(body: Body, tol: float, method: str | None) -> _Integrated:
         answers = [
             _answered(_Integrated(*setting, 0.0), probes)[0][:3]
             for setting in (
-                (cut, steps, local), (cut, 2.0 * steps, max(0.1 * local, _FINEST_LOCAL)),
+                (cut, steps, local), (cut, 2.0 * steps, max(0.01 * local, _FINEST_LOCAL)),
                 (coarse, steps, local),
             )
         ]  # fmt: skip

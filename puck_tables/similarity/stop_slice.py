@@ -31,6 +31,7 @@ FINEST_SLICE = 1e-10  # as fine as stops are looked up; beyond, they are integra
 _COUNTED = slice(0, 5)  # the turn, until Q has fallen to 1/1000, is what it is
 _FINEST_CELLS = 1024
 _SAMPLE = 48
+_LOOSEST_LOCAL = 1e-7  # see sliced.LOOSEST_LOCAL
 _COARSER_BY = 8.0
 
 
@@ -135,7 +136,9 @@ def _stops(
     inner = ~(at_zero | at_half)
     out = np.empty((phi.size, len(FUNCTIONS)))
     u = np.log(np.tan(phi[inner]))
-    stops = integrated_stops(u, np.full(u.size, body.delta), cut, 0.03 * accuracy)
+    stops = integrated_stops(
+        u, np.full(u.size, body.delta), cut, min(0.03 * accuracy, _LOOSEST_LOCAL)
+    )
     out[inner] = stops / _factors(phi[inner])
     out[at_zero], out[at_half] = _ends(body, friction)
     return out
