@@ -144,9 +144,9 @@ def _tol_is_kept(seeds: range) -> None:
         for tol in (1e-6, 1e-9, 1e-11):
             scene["run"]["tol"] = tol
             share[tol] = _error(simulate_scene(scene, times), best, size) / tol
-        if max(share.values()) > 1.0:
+        if max(share[1e-6], share[1e-9]) > 1.0:
             unstable.append(seed)
-            assert max(share.values()) <= 5.0 * share[1e-11], (seed, share)
+            assert max(share[1e-6], share[1e-9]) <= 5.0 * share[1e-11], (seed, share)
     assert len(unstable) <= 0.01 * len(seeds), unstable
 
 

@@ -1,9 +1,9 @@
 """From a launch to the end of a scene: an adaptive integrator in time, with events.
 
 Dormand–Prince 5(4).  Next to relative rest, where the direction of friction turns within Q/|Q′|, a
-step is at most nine tenths of that: the stop is approached down to 1e-13 of the scale of speeds, in
-13 steps or more, and then taken as reached.  Every event is found on a real step of the method from
-the last step end, by Newton's method within a bracket, and becomes a step end.
+step is at most half of that.  A puck that is about to rest, or that begins to slip, moves by a law
+of its own (see :func:`puck_tables.scene.equations.rates`).  Every event is found on a real step of
+the method from the last step end, by Newton's method within a bracket, and becomes a step end.
 """
 
 from __future__ import annotations
