@@ -13,9 +13,11 @@ import math
 from dataclasses import dataclass, replace
 from typing import Any
 
+from puck_tables.body import is_plain
 from puck_tables.motion.limits import regime
 from puck_tables.scene.regions import LAW_ACCURACY
 from puck_tables.scene.scene import Floor, Scene, distance, launch_velocity
+from puck_tables.sliced import FINEST_TOL
 from puck_tables.stops import stop
 
 _NAMES = {"A": "rest", "B0": "pure spin", "C0": "pure translation", "D": "the limit motion"}
@@ -39,7 +41,8 @@ def ingredients(scene: Scene) -> list[str]:
         >>> ingredients(Scene(Puck(1.0), Floor(0.1, slope=0.2), Launch((1.0, 0.0), 5.0)))
         ['slope']
     """
-    floor, force = scene.floor, scene.force
+    floor, force, puck = scene.floor, scene.force, scene.puck
+    homogeneous_and_uniform = is_plain(puck.pressure, puck.gyration, height_ratio(scene))
     there = {
         "slope": floor.slope > 0.0,
         "turntable": floor.turning != 0.0,
@@ -51,9 +54,23 @@ def ingredients(scene: Scene) -> list[str]:
         "edges": bool(scene.edge),
         scene.constraint.kind if scene.constraint else "constraint": scene.constraint is not None,
         "friction law": bool(floor.law),
+        "a tolerance finer than for free pucks of this kind": not homogeneous_and_uniform
+        and scene.run.tol < FINEST_TOL,
         "no dry friction": floor.strips is None and floor.friction == 0.0 and not floor.law,
     }
     return [name for name, is_there in there.items() if is_there]
+
+
+def height_ratio(scene: Scene) -> float:
+    """δ = 2fh/r on the floor outside of strips.
+
+    Examples
+    --------
+    >>> from puck_tables.scene.scene import Floor, Puck
+    >>> height_ratio(Scene(Puck(0.5, 1.0), Floor(0.1)))
+    0.4
+    """
+    return 2.0 * scene.floor.friction * scene.puck.height / scene.puck.radius
 
 
 def free_puck(scene: Scene) -> dict[str, Any]:
@@ -62,7 +79,7 @@ def free_puck(scene: Scene) -> dict[str, Any]:
     return {
         "v0": (vx - scene.floor.velocity[0], vy - scene.floor.velocity[1]),
         "w0": scene.launch.spin,
-        "delta": 2.0 * scene.floor.friction * scene.puck.height / scene.puck.radius,
+        "delta": height_ratio(scene),
         "decel": scene.floor.friction * scene.floor.gravity,
         "radius": scene.puck.radius,
         "pressure": scene.puck.pressure,
