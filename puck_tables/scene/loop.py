@@ -291,6 +291,8 @@ def follow(
             how = OVER_EDGE
             break
     stretch = Stretch(model, dry, leaning, piece, mode, way)
+    if how == TIME_UP and mode == CARRIED and moves:
+        how = CARRIED_AWAY
     while how == AT_REST and frame < len(frames):  # for ever
         _framed(rows[frame], stretch, frames[frame], y, heat, work)
         frame += 1
