@@ -54,6 +54,15 @@ def slip_speed(model: Model, y: FloatArray) -> float:
 
 
 @inlined
+def slip_side(model: Model, y: FloatArray) -> float:
+    """(r|w| − u)/(r|w| + u), relative to the floor: 0 where φ = π/4, and within rounding of it."""
+    sx, sy, sw = floor_velocity(model.surface, y[X], y[Y])
+    speed, rim = size(y[VX] - sx, y[VY] - sy, 0.0), model.body.radius * abs(y[SPIN] - sw)
+    side = (rim - speed) / (rim + speed) if rim + speed > 0.0 else 0.0
+    return side if abs(side) > 1e-11 else 0.0
+
+
+@inlined
 def slip_rate(model: Model, y: FloatArray, work: FloatArray) -> float:
     """The size of the change of the relative velocity, from d/dt of the state in work[0]."""
     turning = model.surface.spin  # under a puck that moves the floor changes its velocity too

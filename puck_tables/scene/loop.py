@@ -31,6 +31,7 @@ from puck_tables.scene.equations import (
     kinetic_energy,
     rates,
     slip_rate,
+    slip_side,
     slip_speed,
     stopping,
 )
@@ -98,6 +99,32 @@ def _slipping(
             low = middle
         else:
             high = middle
+
+
+@inlined
+def _equal_speeds(
+    stretch: Stretch, t: float, h: float, y: FloatArray, scale: FloatArray, work: FloatArray,
+    new: FloatArray,
+) -> float:  # fmt: skip
+    """When within a step φ passes π/4, where friction has one derivative and a bit; ``new`` then.
+
+    By the method of false position, with the weight of an end that stays halved (Illinois).
+    """
+    low, high = 0.0, h
+    first, last = slip_side(stretch.model, y), slip_side(stretch.model, new)
+    sign = 1.0 if last > 0.0 else -1.0
+    for _ in range(60):
+        middle = (low * last - high * first) / (last - first)
+        if not low < middle < high or high - low <= 1e-12 * h:
+            break
+        step(stretch, t, middle, y, scale, work, new)
+        value = slip_side(stretch.model, new)
+        if sign * value > 0.0:
+            high, last, first = middle, value, 0.5 * first
+        else:
+            low, first, last = middle, value, 0.5 * last
+    step(stretch, t, high, y, scale, work, new)
+    return high
 
 
 @inlined
@@ -228,6 +255,9 @@ def follow(
                 break
             continue
         h = length * min(5.0, 5.0 if error == 0.0 else 0.9 * (ask.tolerance / error) ** 0.2)
+        if mode == SLIDES and slip_side(model, y) * slip_side(model, new) < 0.0:
+            landed = False
+            length = _equal_speeds(stretch, t, length, y, scale, work, new)
         last[:] = work[STAGES - 1]
         happens, which, moment = first_crossing(
             bounds, stretch, region, leans, t, length, y, scale, work, new, trial
