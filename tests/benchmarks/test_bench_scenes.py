@@ -1,0 +1,83 @@
+"""Scenes: what an ingredient costs beside the free puck, and a sweep with two of them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+import puck_tables as pt
+from puck_tables.scene.plan import ingredients
+from puck_tables.scene.prepare import prepare
+from puck_tables.scene.scene import scene_from
+from puck_tables.scene.sweep import LAUNCH
+
+ONE = pytest.mark.benchmark(group="one launch in a scene, 1600 at once, one thread")
+SWEEP = pytest.mark.benchmark(group="a scene with slope and drag, 100 x 100 launches")
+
+PUCK = {"radius": 0.04, "height": 0.02, "mass": 0.2}
+SIDE = 40
+RANGES = {"launch.velocity[0]": (0.1, 2.0), "launch.spin": (-50.0, 50.0)}
+
+SCENES: dict[str, dict[str, Any]] = {
+    "free puck, by the loop of scenes": {},
+    "slope": {"floor": {"friction": 0.1, "slope": 0.03}},
+    "belt": {"floor": {"friction": 0.1, "velocity": [0.2, 0.1]}},
+    "turntable": {"floor": {"friction": 0.1, "turning": 0.5}, "run": {"time": 2.0}},
+    "strips": {"floor": {"strips": {"borders": [0.2, 0.4], "friction": [0.1, 0.05, 0.1]}}},
+    "drag": {"drag": {"sliding": 0.05, "spinning": 1e-6}},
+    "force": {"force": {"constant": [0.01, 0.0]}},
+    "wall": {"wall": [{"point": [0.3, 0.0], "normal": [-1.0, 0.0], "restitution": 0.8}]},
+    "edge": {"edge": [{"point": [9.0, 0.0], "normal": [-1.0, 0.0]}]},
+    "blade": {"constraint": {"kind": "blade"}},
+}
+
+
+def whole(parts: dict[str, Any], **launch: Any) -> dict[str, Any]:
+    return {"puck": PUCK, "floor": {"friction": 0.1}, "launch": launch, **parts}
+
+
+@ONE
+def test_the_plain_integrator(measure: Any) -> None:
+    import numpy as np
+
+    speed, spin = np.meshgrid(*(np.linspace(*ends, SIDE) for ends in RANGES.values()))
+    v0 = np.stack([speed.ravel(), 0.0 * speed.ravel()], axis=-1)
+
+    def run() -> None:
+        pt.stop(v0, spin.ravel(), delta=0.1, decel=0.980665, radius=0.04, tol=1e-9,
+                method="adaptive")  # fmt: skip
+
+    measure("plain integrator (stop, adaptive)", run, items=SIDE * SIDE, unit="trajectory")
+
+
+@ONE
+@pytest.mark.parametrize("name", SCENES)
+def test_one_ingredient(measure: Any, name: str) -> None:
+    import numpy as np
+
+    scene, _ = scene_from(whole(SCENES[name], velocity=[1.0, 0.0]))
+    assert bool(ingredients(scene)) is (name not in ("free puck, by the loop of scenes", "belt"))
+    prepared = prepare(scene)
+    states = np.tile(prepared.state, (SIDE * SIDE, 1))
+    grid = np.meshgrid(*(np.linspace(*ends, SIDE) for ends in RANGES.values()))
+    for path, values in zip(RANGES, grid, strict=True):
+        states[:, LAUNCH[path]] = values.ravel()
+    out, status = np.empty((16, SIDE * SIDE)), np.empty(SIDE * SIDE, np.int8)
+    measure(
+        name, lambda: prepared.follow_all(states, out, status), items=SIDE * SIDE, unit="trajectory"
+    )
+    assert not np.isnan(out).any()
+
+
+@SWEEP
+@pytest.mark.parametrize("threads", [1, 2])
+def test_sweep(measure: Any, threads: int) -> None:
+    slope_and_drag = {**SCENES["slope"], **SCENES["drag"]}
+    tables = whole(slope_and_drag, velocity=["0.1:2:100", 0.0], spin="-50:50:100")
+    found = pt.sweep_scene(tables)
+    assert found.columns["energy_residual"].max() < 1e-8
+    measure(
+        f"{threads} thread{'s' if threads > 1 else ''}",
+        lambda: pt.sweep_scene(tables, threads=threads), items=10_000, unit="trajectory",
+    )  # fmt: skip
