@@ -30,7 +30,6 @@ from puck_tables._version import __version__
 from puck_tables.errors import InputError, PuckError
 
 BROKEN_PIPE = 141  # 128 + SIGPIPE, as shells count
-COMPILED = ("simulate", "sweep", "aim", "build-tables", "validate", "paper")
 
 
 class PuckGroup(click.Group):
@@ -84,15 +83,12 @@ def _drop(stream: Any) -> None:
 
 @click.group(cls=PuckGroup, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(__version__, package_name="puck-tables", prog_name="puck")
-@click.pass_context
-def main(ctx: click.Context) -> None:
+def main() -> None:
     """Motion of a flat puck that slides and spins under dry friction, until it stops."""
-    asks_help = any(word in ("-h", "--help") for word in sys.argv)
-    if ctx.invoked_subcommand in COMPILED and not asks_help:
-        from puck_tables.kernels.cache import is_empty
+    from puck_tables.kernels.cache import announcements
 
-        if is_empty():
-            click.echo("compiling for this machine, once: some seconds", err=True)
+    words = "compiling for this machine, once: up to a minute"
+    announcements[:] = [lambda: click.echo(words, err=True)]
 
 
 _ALL = (

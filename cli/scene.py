@@ -50,13 +50,17 @@ def fields() -> None:
 @click.argument("name", metavar="FILE|NAME")
 def check(name: str) -> None:
     """Check a scene: every error at once, or what it holds and how it would be run."""
+    from puck_tables.contact.speed_law import SpeedLaw
     from puck_tables.scene.library import find_scene
     from puck_tables.scene.plan import out_of_reach, plan_for
     from puck_tables.scene.prepare import prepare
     from puck_tables.scene.scene import scene_from
 
     whole, ranges = scene_from(find_scene(name), name)
-    prepare(whole)  # files and heights
+    if whole.floor.law:  # its table takes a while
+        SpeedLaw.from_csv(whole.floor.law)
+    else:
+        prepare(whole)  # files and heights
     click.echo(f"{name}: a scene" + (f", {whole.title}" if whole.title else ""))
     for path, values in ranges.items():
         click.echo(f"ranges        {path} from {values[0]:g} to {values[-1]:g}, {values.size}")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import tomllib
 from collections.abc import Callable
 from pathlib import Path
@@ -15,6 +16,7 @@ from puck_tables.errors import InputError
 
 if TYPE_CHECKING:
     from puck_tables.scene.outcome import SceneRun
+    from puck_tables.scene.scene import Scene
     from puck_tables.scene.sweep import SceneMap
 
 Command = TypeVar("Command", bound=Callable[..., Any])
@@ -67,18 +69,26 @@ def scene_tables(ctx: click.Context, scene: str | None, changes: tuple[str, ...]
     tables = {} if scene is None else find_scene(scene)
     if scene is None:
         tables = _default_tables(given)
+    named: dict[str, str] = {}
     for name, value in given.items():
         if name in SCALED and scene is None:
             continue
         if name not in PATHS:
             flag = next(p.opts[0] for p in ctx.command.params if p.name == name)
-            raise InputError(f"{flag} has no place in a scene: leave it out")
+            hint = " (puck.height and floor.friction set it)" if name in SCALED else ""
+            raise InputError(f"{flag} has no place in a scene{hint}: leave it out")
+        named[PATHS[name]] = f"--{name}"
         set_path(tables, PATHS[name], _as_toml(value))
     for change in changes:
         path, equals, text = change.partition("=")
         if not equals or not text:
             raise InputError(f"--set {change}: write PATH=VALUE, like floor.slope=0.1")
-        set_path(tables, path.strip(), _value(text.strip()))
+        path = path.strip()
+        clash = named.get(path) or named.get(path.partition("[")[0])
+        if clash is not None:
+            raise InputError(f"{clash} and --set {path} clash: both give {path}")
+        named[path] = "--set"
+        set_path(tables, path, _value(text.strip()))
     return tables
 
 
@@ -118,12 +128,13 @@ def _value(text: str) -> Any:
     """A value of --set: TOML, or else a text such as a range."""
     try:
         return tomllib.loads(f"value = {text}")["value"]
-    except (tomllib.TOMLDecodeError, KeyError):
+    except (ValueError, KeyError, RecursionError):
         return text
 
 
 def run_scene(
-    tables: dict[str, Any], times: tuple[float, ...] | None, explain: bool, as_json: bool,
+    tables: dict[str, Any], source: str, times: tuple[float, ...] | None, explain: bool,
+    as_json: bool,
     output: Path | None, plot: Path | None, overwrite: bool,
 ) -> None:  # fmt: skip
     """One run of a scene, to the end of its command."""
@@ -137,7 +148,7 @@ def run_scene(
 
         kind_of(plot, PICTURE_KINDS)
         require_matplotlib()
-    whole = single(tables)
+    whole = single(tables, source)
     wanted = (0.0,) if output is None and plot is None and times is None else times
     run = simulate_scene(whole, wanted)
     if output is not None:
@@ -164,7 +175,8 @@ def report(run: SceneRun) -> str:
     """A scene run in a dozen lines."""
     last = run.last
     lines = {
-        "scene": run.scene.title or "without a title",
+        "scene": _title(run.scene.title) or "without a title",
+        "puck": _puck(run.scene),
         "end": f"{run.end} after {run.end_time:.9g} s",
         "place": f"({last['x']:.9g}, {last['y']:.9g}) m, body at {last['orientation']:.6g} rad",
         "motion": f"v = ({last['vx']:.6g}, {last['vy']:.6g}) m/s, w = {last['spin']:.6g} rad/s",
@@ -179,6 +191,25 @@ def report(run: SceneRun) -> str:
         reaction = f"({last['lambda_1']:.6g}, {last['lambda_2']:.6g}) N at the end"
         lines["reaction"] = reaction + ("; at rest the floor shares it" if last["carried"] else "")
     return "\n".join(f"{name:<9} {text}" for name, text in lines.items())
+
+
+def _title(text: str) -> str:
+    """A title without what a terminal would obey."""
+    return "".join(sign for sign in text if sign.isprintable())
+
+
+def _puck(scene: Scene) -> str:
+    """Radius, heights and decelerations, one for each strip of floor."""
+    strips = scene.floor.strips
+    coefficients = [scene.floor.friction] if strips is None else list(strips.friction)
+    puck, normal = scene.puck, scene.floor.gravity * math.cos(scene.floor.slope)
+    heights = [2.0 * f * puck.height / puck.radius for f in coefficients]
+    words = f"r = {puck.radius:g} m, m = {puck.mass:g} kg"
+    if scene.floor.law:
+        return f"{words}, friction by {scene.floor.law}"
+    words += f", delta = {', '.join(f'{delta:.4g}' for delta in heights)}, "
+    words += f"f N/m = {', '.join(f'{f * normal:.6g}' for f in coefficients)} m/s^2"
+    return words + ("; part of the base may lift" if max(heights) > 1.0 else "")
 
 
 def _joule(energy: float) -> str:
@@ -203,4 +234,4 @@ def summary_of_map(stops: SceneMap) -> str:
         for code, end in enumerate(ENDS)
         if (stops.end == code).any()
     )
-    return f"{stops.title or 'scene'} over {ranged}: {counts}; {stops.plan.model}"
+    return f"{_title(stops.title) or 'scene'} over {ranged}: {counts}; {stops.plan.model}"

@@ -89,7 +89,7 @@ def simulate(
     if scene is not None or changes:
         prepare_outputs(output, plot, overwrite=overwrite)
         tables = scene_tables(ctx, scene, changes)
-        run_scene(tables, times, explain, as_json, output, plot, overwrite)
+        run_scene(tables, scene or "scene", times, explain, as_json, output, plot, overwrite)
         return
     if v0 is None:
         raise click.MissingParameter(param_hint="'--v0'", param_type="option")

@@ -7,12 +7,14 @@ the package: after any edit, nothing compiled before can be found.
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import os
 import shutil
 import sys
 import tempfile
 import time
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 
@@ -81,13 +83,20 @@ def _forget_unused(base: Path) -> None:
             shutil.rmtree(folder, ignore_errors=True)
 
 
-def is_empty() -> bool:
-    """Whether nothing of this version has been compiled yet on this machine.
+# Called once, when something is compiled because it is not kept yet.
+announcements: list[Callable[[], None]] = []
+
+
+def compiling() -> None:
+    """Tell those who asked that something is being compiled; an error of theirs is no error here.
 
     Examples
     --------
-    >>> isinstance(is_empty(), bool)
-    True
+    >>> heard: list[str] = []
+    >>> announcements.append(lambda: heard.append("compiling"))
+    >>> compiling(), compiling(), heard
+    (None, None, ['compiling'])
     """
-    folder = cache_folder()
-    return folder is None or not any(Path(folder).iterdir())
+    while announcements:
+        with contextlib.suppress(Exception):
+            announcements.pop()()

@@ -9,11 +9,26 @@ from typing import Any, TypeVar
 import numba
 from llvmlite import ir
 from numba import types
+from numba.core import event
 from numba.extending import intrinsic
 
-from puck_tables.kernels.cache import cache_folder
+from puck_tables.kernels.cache import cache_folder, compiling
 
 Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+class _Announcer(event.Listener):
+    """Hears of what is compiled; what the cache holds is not, and what is pasted in is soon done."""
+
+    def on_start(self, event: Any) -> None:
+        if type(event.data["dispatcher"]._cache).__name__ != "NullCache":
+            compiling()
+
+    def on_end(self, event: Any) -> None:
+        pass
+
+
+event.register("numba:compile", _Announcer())  # type: ignore[no-untyped-call]
 
 
 def kernel(function: Function) -> Function:

@@ -77,10 +77,15 @@ def at_slip_zero(dry: Dry) -> Dry:
 @inlined
 def against_walls(leaning: FloatArray, fx: float, fy: float) -> tuple[float, float]:
     """A force without what the walls that the puck leans on take up; rows of unit normals."""
-    for _ in range(1 if leaning.shape[0] < 2 else 40):  # a corner: each wall turns it to the other
-        for i in range(leaning.shape[0]):
-            push = leaning[i, 0] * fx + leaning[i, 1] * fy
-            if push < 0.0:
-                fx -= push * leaning[i, 0]
-                fy -= push * leaning[i, 1]
-    return fx, fy
+    pushed = False
+    for i in range(leaning.shape[0]):
+        push = leaning[i, 0] * fx + leaning[i, 1] * fy
+        if push < 0.0:
+            pushed = True
+            free, ex, ey = True, fx - push * leaning[i, 0], fy - push * leaning[i, 1]
+            for j in range(leaning.shape[0]):
+                other = leaning[j, 0] * ex + leaning[j, 1] * ey
+                free = free and (j == i or other >= -1e-15 * size(fx, fy, 0.0))
+            if free:
+                return ex, ey  # along this wall
+    return (0.0, 0.0) if pushed else (fx, fy)  # held in a corner

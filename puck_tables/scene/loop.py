@@ -192,6 +192,8 @@ def follow(
     t, heat, mode, piece, way = 0.0, 0.0, SLIDES, 0, NO_WAY
     count, steps, frame = 0, 0, 0
     wall, hit = -1, 0.0
+    # by so much longer than the centre a spin takes to brake
+    slow = max(1.0, 2.0 * body.inertia / (body.mass * body.radius * body.radius))
     how = TIME_UP
     h = 1e-3 * ask.until
     settle, known = True, False  # whether to look what holds the puck; whether work[0] is there
@@ -230,7 +232,7 @@ def follow(
             pull = slip_rate(model, y, work)
             near = _NEAR * max(q, _REST * ask.speed)
             h = near / pull if h * pull > near else h
-            if 0.0 < q <= _LAST * ask.tolerance * ask.speed:
+            if 0.0 < q <= _LAST * ask.tolerance * ask.speed / slow:
                 way = stopping(model, y, work)
                 if way[3] < 0.0 and held_by_floor(stretch, t, y):
                     mode, known = STOPS, False

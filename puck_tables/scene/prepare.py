@@ -116,7 +116,7 @@ def prepare(scene: Scene, last_time: float | None = None) -> Prepared:
     asks = _asks(scene, model, regions, state[None, :])[0]
     until, to_the_end = scene.run.time, True
     if until is None:
-        to_the_end = moves and last_time is not None
+        to_the_end = moves and bool(last_time)
         until = last_time if to_the_end and last_time else float(asks[0])
     tolerance = LOCAL_SHARE * scene.run.tol
     ask = Ask(until, to_the_end, tolerance, asks[2:], float(asks[1]), STEP_LIMIT)
@@ -175,11 +175,12 @@ def _asks(scene: Scene, model: Model, regions: Regions, states: FloatArray) -> F
     with np.errstate(over="ignore", invalid="ignore"):
         speed, time = _scales(scene, model, regions, states)
         radius, length = scene.puck.radius, speed * time
+        slow = max(1.0, 2.0 * scene.puck.gyration**2)  # by as much longer a spin takes to brake
         energy = scene.puck.mass * speed * speed
         until = scene.run.time
         asks: FloatArray = np.stack([
             np.full_like(speed, until) if until is not None else DEFAULT_TIME * time, speed,
-            length, length, length / radius, speed, speed, speed / radius,
+            length, length, length / radius, speed, speed, speed / (slow * radius),
             energy, energy, energy, energy,
         ], axis=1)  # fmt: skip
     squares = np.all(speed > 1e-140) and np.all(speed < 1e140)  # of 1e-13 of it, too

@@ -3,25 +3,28 @@
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
 
 from puck_tables.body import body_of, is_plain
 from puck_tables.contact.speed_law import SpeedLaw
+from puck_tables.errors import InputError
 from puck_tables.kernels.slice_spline import HEADER, RATIOS
 from puck_tables.run import closed_form_friction, table_friction
 from puck_tables.scene.ingredients import BySpeed, Regions
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.scene import Scene, launch_velocity
 from puck_tables.table.file import load_table
 from puck_tables.table.friction_slice import FINEST_ACCURACY
-from puck_tables.table.speed_table import build_speed_table
+from puck_tables.table.speed_table import SpeedTable, build_speed_table
 
 FloatArray = npt.NDArray[np.float64]
 
 EXACT_BELOW = 1e-9  # friction by closed forms where a table's error would show
 SLICE_SHARE = 0.1  # of the error wanted
 LAW_ACCURACY = 1e-4  # of the largest f: a law of points is worth no more, and takes a second
+LAW_NODES = 40_000  # a law with jumps is as good as they allow, in ten seconds
 
 NO_LAW = BySpeed(np.zeros((2, 4, 4, RATIOS)), 1.0, 1.0, 0.0, 1.0)
 
@@ -40,9 +43,14 @@ def regions_of(scene: Scene) -> Regions:
     normal = puck.mass * floor.gravity * math.cos(floor.slope)
     if floor.law:
         law = SpeedLaw.from_csv(floor.law)
-        table = build_speed_table(
-            law, 2.0 * puck.height / puck.radius, scale=None, accuracy=LAW_ACCURACY
-        )
+        fastest = math.hypot(*slip_at_launch(scene)[:2]) + abs(slip_at_launch(scene)[2])
+        if fastest > law.top_speed:
+            raise InputError(
+                f"the rim slips at {fastest:.6g} m/s at the launch, faster than the friction law "
+                f"{floor.law} goes ({law.top_speed:g} m/s): nothing is known beyond; give it more"
+            )
+        points = np.stack([np.asarray(law.speeds), np.asarray(law.values)], axis=1)
+        table = _law_table(tuple(map(tuple, points.tolist())), 2.0 * puck.height / puck.radius)
         by_speed = BySpeed(
             table.coefficients, table.speed_axis.scale, table.speed_axis.reach, normal, 1.0
         )
@@ -59,6 +67,25 @@ def regions_of(scene: Scene) -> Regions:
     bodies = [body_of(puck.pressure, delta, puck.gyration) for delta in heights]
     slices = [body.friction(accuracy).cut for body in bodies]
     return Regions(load, np.array(heights), _of_one_shape(slices), NO_LAW)
+
+
+@lru_cache(maxsize=8)
+def _law_table(points: tuple[tuple[float, float], ...], height_ratio: float) -> SpeedTable:
+    """Kept by the points of the law: a sweep asks for it again and again."""
+    speeds, values = zip(*points, strict=True)
+    law = SpeedLaw(speeds, values)
+    return build_speed_table(law, height_ratio, accuracy=LAW_ACCURACY, most_nodes=LAW_NODES)
+
+
+def slip_at_launch(scene: Scene) -> tuple[float, float, float]:
+    """Velocity of the centre and rim speed relative to the floor at the launch, m/s."""
+    floor, (x, y) = scene.floor, scene.launch.position
+    vx, vy = launch_velocity(scene)
+    return (
+        vx - floor.velocity[0] + floor.turning * (y - floor.centre[1]),
+        vy - floor.velocity[1] - floor.turning * (x - floor.centre[0]),
+        scene.puck.radius * (scene.launch.spin - floor.turning),
+    )
 
 
 def _plain_cut(tol: float, delta: float) -> FloatArray:

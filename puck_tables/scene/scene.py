@@ -199,10 +199,10 @@ def read_scene(path: str | Path) -> dict[str, Any]:
         If it cannot be read or is not TOML.
     """
     try:
-        tables = tomllib.loads(read_whole(path, MAX_FILE).decode("utf-8"))
+        tables = tomllib.loads(read_whole(path, MAX_FILE).decode("utf-8-sig"))
     except OSError as error:
         raise InputError(f"cannot read {path}: {error.strerror or error}") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
+    except (ValueError, RecursionError) as error:  # not TOML, not text, or numbers without end
         raise InputError(f"{path} is not a scene file (TOML): {error}") from None
     for part, name in FILES:  # beside the scene that names them
         value = tables.get(part, {}).get(name) if isinstance(tables.get(part), dict) else None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import InputError, PuckError
 from puck_tables.real import finite_array
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
+from puck_tables.scene.library import find_scene
 from puck_tables.scene.loop import (
     EVENT_COLUMNS,
     EVENT_LIMIT,
@@ -22,7 +24,7 @@ from puck_tables.scene.loop import (
 )
 from puck_tables.scene.outcome import COLUMNS, ENDS, EVENTS, Event, SceneRun, ledger_residual
 from puck_tables.scene.plain import run_plain
-from puck_tables.scene.plan import Plan, out_of_reach, plan_for
+from puck_tables.scene.plan import Plan, ingredients, out_of_reach, plan_for
 from puck_tables.scene.prepare import MAX_EVENTS, Prepared, prepare
 from puck_tables.scene.scene import Scene, scene_from
 
@@ -30,14 +32,15 @@ FloatArray = npt.NDArray[np.float64]
 
 
 def simulate_scene(
-    scene: Scene | Mapping[str, Any], times: npt.ArrayLike | None = None
+    scene: Scene | Mapping[str, Any] | str | Path, times: npt.ArrayLike | None = None
 ) -> SceneRun:
     """Run a scene.
 
     Parameters
     ----------
-    scene : Scene or nested tables
-        As :func:`puck_tables.scene.scene.scene_from` takes them.
+    scene : Scene, nested tables, or a name
+        Tables as :func:`puck_tables.scene.scene.scene_from` takes them; a name is that of a scene
+        file, or of a scene that comes along.
     times : array_like, s, ≥ 0, ascending, optional
         When to save states; else ``run.frames`` of them from the launch to the end.
 
@@ -79,13 +82,14 @@ def simulate_scene(
 
 FAILURES = {
     STEP_LIMIT: "no end after a million steps, at {time:.6g} s: ask for a shorter run.time",
-    EVENT_LIMIT: "10000 events by {time:.6g} s: they crowd together; ask for a shorter run.time",
+    EVENT_LIMIT: "10000 events by {time:.6g} s: they crowd together without end (rebounds, or a "
+    "border); move the launch, or end the run before with run.time",
     NOT_FINITE: "the motion leaves floating point at {time:.6g} s: use other units",
 }
 
 
-def single(scene: Scene | Mapping[str, Any]) -> Scene:
-    """A scene without ranges.
+def single(scene: Scene | Mapping[str, Any] | str | Path, source: str = "scene") -> Scene:
+    """A scene without ranges; ``source``: its name, for messages.
 
     Raises
     ------
@@ -93,7 +97,9 @@ def single(scene: Scene | Mapping[str, Any]) -> Scene:
     """
     if isinstance(scene, Scene):
         return scene
-    whole, ranges = scene_from(dict(scene))
+    if isinstance(scene, str | Path):
+        scene, source = find_scene(str(scene)), str(scene)
+    whole, ranges = scene_from(dict(scene), source)
     if ranges:
         raise InputError(
             f"{', '.join(ranges)}: a range makes many runs; give one number, or run a sweep"
@@ -108,8 +114,22 @@ def _checked(times: npt.ArrayLike) -> FloatArray:
     return moments
 
 
+def refuse_endless(scene: Scene) -> None:
+    """Refuse a scene without friction that says neither where nor when it ends.
+
+    Raises
+    ------
+    InputError
+    """
+    if scene.run.time is None and not scene.edge and "no dry friction" in ingredients(scene):
+        raise InputError(
+            "nothing brings this scene to rest (floor.friction is 0): give run.time, or friction"
+        )
+
+
 def _integrated(scene: Scene, plan: Plan, times: FloatArray | None) -> SceneRun:
     prepared = prepare(scene, None if times is None or not times.size else float(times[-1]))
+    refuse_endless(scene)
     events = np.empty((MAX_EVENTS, EVENT_COLUMNS))
     if times is None:
         _, end_time, *_ = prepared.follow(np.empty(0), np.empty((1, FRAME_COLUMNS)), events)
@@ -121,7 +141,7 @@ def _integrated(scene: Scene, plan: Plan, times: FloatArray | None) -> SceneRun:
             f"the puck still moves after {end_time:.4g} s, a thousand times the time scale of this "
             "scene: it may never stop; give run.time"
         )
-    if how == NOT_FINITE and scene.floor.law:
+    if how == NOT_FINITE and scene.floor.law:  # a state beyond the law is never reached
         top = SpeedLaw.from_csv(scene.floor.law).top_speed
         raise InputError(
             f"at {end_time:.6g} s the rim slips faster than the friction law {scene.floor.law} "

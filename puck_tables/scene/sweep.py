@@ -23,11 +23,13 @@ from puck_tables.kernels.cache import source_digest
 from puck_tables.scene.bulk import ENDS_COLUMNS
 from puck_tables.scene.equations import SIZE
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
-from puck_tables.scene.loop import AT_REST, CARRIED_AWAY, NOT_FINITE
+from puck_tables.scene.library import find_scene
+from puck_tables.scene.loop import AT_REST, CARRIED_AWAY, NOT_FINITE, OVER_EDGE, TIME_UP
 from puck_tables.scene.outcome import COLUMNS, ledger
 from puck_tables.scene.plan import Plan, free_puck, plan_for
 from puck_tables.scene.prepare import Prepared, prepare
 from puck_tables.scene.scene import Scene, launch_velocity, scene_from
+from puck_tables.scene.simulate import refuse_endless
 from puck_tables.stop_map import check_memory
 from puck_tables.stops import stop
 
@@ -53,7 +55,7 @@ class SceneMap:
 
     ``axes``: values by path; ``columns``: arrays of the shape of the axes by name, units in
     :data:`RESULTS`; ``end``: index of :data:`puck_tables.scene.outcome.ENDS`; ``plan``: the model
-    of the first launch.
+    of the last one.
     """
 
     title: str
@@ -64,7 +66,7 @@ class SceneMap:
 
 
 def sweep_scene(
-    tables: Mapping[str, Any],
+    tables: Mapping[str, Any] | str | Path,
     *,
     threads: int | None = None,
     chunk: int = CHUNK,
@@ -75,7 +77,7 @@ def sweep_scene(
 
     Parameters
     ----------
-    tables : nested tables
+    tables : nested tables, or the name of a scene file
         As :func:`puck_tables.scene.scene.scene_from` takes them, with 'START:STOP:COUNT' for one
         number or more.
     threads, chunk : int
@@ -102,8 +104,12 @@ def sweep_scene(
     >>> stops.columns["x"].round(6).tolist()
     [0.509858, 2.039432]
     """
-    whole = copy.deepcopy(dict(tables))
-    first, axes = scene_from(whole)
+    source = "scene"
+    if isinstance(tables, str | Path):
+        tables, source = find_scene(str(tables)), str(tables)
+    found = dict(tables)
+    first, axes = scene_from(found, source)
+    whole = copy.deepcopy(found)
     if not axes:
         raise InputError(
             "no number of the scene is a range: write one as 'START:STOP:COUNT' (such as "
@@ -138,11 +144,16 @@ def sweep_scene(
                 end += 1
             part = {path: values[path][begin:end] for path in inner}
             out[:, begin:end], status[begin:end] = case(numbers).ends(part, end - begin)
+            if first.run.time is None and (status[begin:end] == TIME_UP).any():
+                raise InputError(
+                    "a run of this sweep still moves after a thousand times its time scale: it may "
+                    "never stop; give run.time"
+                )
             begin = end
         return out, status
 
     out, status = np.empty((len(RESULTS), size)), np.empty(size, np.int8)
-    plan = case(tuple(float(axes[path][0]) for path in outer)).plan
+    plan = case(tuple(float(axes[path][-1]) for path in outer)).plan
     if checkpoint is None:
 
         def work(start: int, stop: int) -> None:
@@ -168,6 +179,10 @@ class _Case:
     def __init__(self, scene: Scene) -> None:
         self.scene, self.plan = scene, plan_for(scene)
         self.by_look_up = self.plan.plain and scene.run.time is None
+        if self.by_look_up:
+            self.plan = Plan("free pucks: stop look-up", True, self.plan.why)
+        else:
+            refuse_endless(scene)
         self.prepared: Prepared | None = None if self.by_look_up else prepare(scene)
 
     def ends(
@@ -190,13 +205,15 @@ class _Case:
             self._look_up(states, rows, status)
         else:
             self.prepared.follow_all(states, rows, status)
+            rows[:, status > OVER_EDGE] = np.nan  # how it failed stands in ``end``
         last = dict(zip(list(COLUMNS)[:-1], rows[:-1], strict=True))
         last["kinetic_energy"] = 0.5 * mass * (last["vx"] ** 2 + last["vy"] ** 2)
         last["kinetic_energy"] += 0.5 * inertia * last["spin"] ** 2
         if self.prepared is None:  # nothing is integrated: heat is what else is not there
             last["heat_dry"][:] = energy + last["work_support"] - last["kinetic_energy"]
-        missing, largest = ledger(last, energy)
-        residual = missing / np.where(largest > 0.0, largest, 1.0)
+        with np.errstate(all="ignore"):  # runs that failed are not a number
+            missing, largest = ledger(last, energy)
+            residual = missing / np.where(largest > 0.0, largest, 1.0)
         results = [last[name] for name in COLUMNS if name != "time"]
         return np.stack([*results, rows[-1], residual, last["time"]]), status
 
@@ -257,7 +274,10 @@ def set_path(tables: dict[str, Any], path: str, value: Any) -> None:
             else:
                 at = at[step]
         except (IndexError, TypeError, KeyError):
-            raise InputError(f"{path}: the scene has no such entry to set") from None
+            raise InputError(
+                f"{path}: the scene has no such entry to set; 'puck scene fields' lists what may "
+                "be, walls and edges are written in a file"
+            ) from None
 
 
 def _digest(tables: Mapping[str, Any]) -> str:

@@ -153,6 +153,7 @@ def build_speed_table(
     top_speed: float | None = None,
     scale: float | None = None,
     accuracy: float = DEFAULT_ACCURACY,
+    most_nodes: int | None = None,
     progress: Progress | None = None,
 ) -> SpeedTable:
     """Tabulate friction with a coefficient that depends on the slip speed, in full contact.
@@ -170,6 +171,9 @@ def build_speed_table(
         logarithmically above.  Default: the first speed of a ``SpeedLaw``, or ``top_speed``.
     accuracy : float
         Largest error wanted of F/N and 2M/(N r), in units of the largest f; 1e-10 to 0.01.
+    most_nodes : int, optional
+        Stop there with the accuracy that is reached, ``accuracy.worst`` of the result, where a law
+        with jumps would take ever more.
     progress : callable (done, total), optional
         Called with rows of slip angles of the grid that is being filled.
 
@@ -220,6 +224,8 @@ def build_speed_table(
         measured = measure(table, law)
         if _SAFETY * measured.worst <= accuracy:
             return replace(table, tolerance=accuracy, accuracy=measured)
+        if most_nodes is not None and 2 * size > most_nodes:
+            return replace(table, tolerance=_SAFETY * measured.worst, accuracy=measured)
         larger = 0 if measured.half_phi > measured.half_speed else 1
         for axis, half in enumerate((measured.half_phi, measured.half_speed)):
             if axis == larger or half > 0.3 * max(measured.half_phi, measured.half_speed):
