@@ -18,7 +18,7 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 class _Announcer(event.Listener):
-    """Hears of what is compiled; what the cache holds is not, and what is pasted in is soon done."""
+    """Hears of what is compiled anew; what is only pasted into others is soon done."""
 
     def on_start(self, event: Any) -> None:
         if type(event.data["dispatcher"]._cache).__name__ != "NullCache":
