@@ -15,6 +15,7 @@ MAIN = "from puck_tables.cli.main import main; main(prog_name='puck')"
 # interrupts itself a moment after the module that does the work was loaded, however slow that was
 INTERRUPTED = """
 import os, signal, sys, threading, time
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a suite in the background ignores it
 def interrupt():
     while {marker!r} not in sys.modules:
         time.sleep(0.01)
