@@ -94,7 +94,7 @@ def scene_tables(ctx: click.Context, scene: str | None, changes: tuple[str, ...]
 
 def _default_tables(given: dict[str, Any]) -> dict[str, Any]:
     """The puck in natural units of the other commands, as dimensions: f = J/g, h = δ r/2f."""
-    from puck_tables.scene.scene import STANDARD_GRAVITY
+    from puck_tables.puck import STANDARD_GRAVITY
 
     real = [name for name in ("height", "friction", "gravity") if name in given]
     scaled = [name for name in SCALED if name in given]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import errno
 import os
 import stat
@@ -39,3 +40,51 @@ def read_whole(path: str | Path, largest: int) -> bytes:
         if found.st_size > largest:
             raise OSError(errno.EFBIG, f"it is too large, {largest} bytes are the most", str(path))
         return file.read(found.st_size)  # not more: what is asked for is allocated before
+
+
+def read_rows(path: str | Path, largest: int) -> list[list[str]]:
+    """The cells of a CSV file of numbers, row by row, without header, comments (#) and blank lines.
+
+    Parameters
+    ----------
+    path : path of a regular file
+    largest : how many bytes it may have
+
+    Raises
+    ------
+    OSError
+        As :func:`read_whole`.
+    ValueError
+        If it is not text, or no CSV.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = Path(folder, "law.csv")
+    ...     _ = file.write_bytes(b"speed,f;0,0.3;;1,0.2".replace(b";", b"%c" % 10))
+    ...     read_rows(file, 100)
+    [['0', '0.3'], ['1', '0.2']]
+    """
+    text = read_whole(path, largest).decode("utf-8-sig")
+    try:
+        cells = list(csv.reader(text.splitlines()))
+    except csv.Error as error:
+        raise ValueError(str(error)) from None
+    rows = [row for row in cells if any(map(str.strip, row)) and not row[0].startswith("#")]
+    return rows[1:] if rows and not is_number(rows[0][0]) else rows
+
+
+def is_number(text: str) -> bool:
+    """Whether a cell is a number.
+
+    Examples
+    --------
+    >>> is_number("1e-3"), is_number("speed")
+    (True, False)
+    """
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 import puck_tables as pt
+from puck_tables.puck import STANDARD_GRAVITY
 from puck_tables.scene.regions import LAW_ACCURACY, regions_of
-from puck_tables.scene.scene import STANDARD_GRAVITY, scene_from
+from puck_tables.scene.scene import scene_from
 
 PUCK = {"radius": 0.04, "height": 0.02, "mass": 0.2}
 LAUNCH = {"velocity": [0.8, 0.1], "spin": 12.0}

@@ -30,7 +30,7 @@ from puck_tables.contact.superposition import (
 )
 from puck_tables.errors import InputError
 from puck_tables.real import broadcast, instance, real_array
-from puck_tables.safe_read import read_whole
+from puck_tables.safe_read import read_rows
 
 NAMES = "uniform, galin, hertz, ring, annulus:INNER (0 < INNER < 1), or a CSV file of rho, W"
 _SLACK = 1e-9  # of δ/δ_max: names and files carry twelve digits
@@ -236,24 +236,13 @@ def profile_law(radii: npt.ArrayLike, pressure: npt.ArrayLike, name: str = "prof
 def _read(path: str) -> tuple[FloatArray, FloatArray]:
     """Two columns of a CSV file; a first line of words is its header."""
     try:
-        lines = read_whole(path, MAX_PROFILE_BYTES).decode("utf-8-sig").splitlines()
-        rows = [line.split(",") for line in lines if line.strip() and not line.startswith("#")]
-        header = 0 if _is_number(rows[0][0]) else 1
-        columns = np.array([[float(cell) for cell in row] for row in rows[header:]]).T
-        first, second = columns
+        rows = read_rows(path, MAX_PROFILE_BYTES)
+        first, second = np.array([[float(cell) for cell in row] for row in rows]).T
     except OSError as error:
         raise InputError(f"cannot read {path}: {error.strerror or error}") from None
-    except (ValueError, IndexError):
+    except ValueError:
         raise InputError(f"{path}: a profile is a CSV file of two columns, rho and W") from None
     return first, second
-
-
-def _is_number(text: str) -> bool:
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True
 
 
 _NAMED: dict[str, Callable[[npt.ArrayLike], PatchIntegrals]] = {

@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from puck_tables.errors import InputError
 from puck_tables.real import finite_array, instance
-from puck_tables.safe_read import read_whole
+from puck_tables.safe_read import is_number, read_rows
 from puck_tables.safe_write import write_bytes
 
 FloatArray = npt.NDArray[np.float64]
@@ -154,19 +154,17 @@ class SpeedLaw:
 or directory
         """
         try:
-            text = read_whole(path, _LARGEST).decode("utf-8-sig")
+            rows = read_rows(path, _LARGEST)
         except (OSError, ValueError) as error:
             reason = getattr(error, "strerror", None) or "it is not text"
             raise InputError(f"cannot read the friction law {path}: {reason}") from None
-        rows = [row for row in csv.reader(io.StringIO(text)) if row]
-        body = rows[1:] if rows and not _is_number(rows[0][0]) else rows
-        for row in body:
-            if len(row) != 2 or not all(map(_is_number, row)):
+        for row in rows:
+            if len(row) != 2 or not all(map(is_number, row)):
                 raise InputError(
                     f"{path}: each line of a friction law must be a speed in m/s and f, like "
                     f"0.5,0.12; got '{','.join(row)}'"
                 )
-        points = np.array([[float(cell) for cell in row] for row in body]).reshape(-1, 2)
+        points = np.array([[float(cell) for cell in row] for row in rows]).reshape(-1, 2)
         try:
             return cls(points[:, 0], points[:, 1], kind)
         except InputError as error:
@@ -219,11 +217,3 @@ def _end_slope(near: float, far: float, first: float, second: float) -> float:
     if first * second <= 0.0 and abs(slope) > _STEEPEST * abs(first):
         return _STEEPEST * first
     return slope
-
-
-def _is_number(text: str) -> bool:
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.errors import InputError
-from puck_tables.safe_read import read_whole
+from puck_tables.safe_read import read_rows
 from puck_tables.scene.boundaries import Boundaries
 from puck_tables.scene.bulk import follow_many
 from puck_tables.scene.equations import SIZE
@@ -231,14 +230,10 @@ def read_drive(path: str) -> FloatArray:
         If it cannot be read, or is no such file.
     """
     try:
-        text = read_whole(path, MAX_DRIVE).decode("utf-8-sig")
-        table = csv.reader(text.splitlines())
-        lines = [row for row in table if row and not row[0].startswith("#")]
-        first = 1 if lines and not _is_number(lines[0][0]) else 0
-        rows = np.array([[float(cell) for cell in row] for row in lines[first:]])
+        rows = np.array([[float(cell) for cell in row] for row in read_rows(path, MAX_DRIVE)])
     except OSError as error:
         raise InputError(f"cannot read {path}: {error.strerror or error}") from None
-    except (ValueError, UnicodeDecodeError, csv.Error):
+    except ValueError:
         rows = np.empty((0, 0))
     good = rows.ndim == 2 and len(rows) >= 2 and rows.shape[1] in (3, 4)
     if not (good and np.all(np.isfinite(rows)) and np.all(np.diff(rows[:, 0]) > 0.0)):
@@ -247,11 +242,3 @@ def read_drive(path: str) -> FloatArray:
             "and N m, two rows or more, the times ascending"
         )
     return np.pad(rows, ((0, 0), (0, 4 - rows.shape[1])))
-
-
-def _is_number(text: str) -> bool:
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True

@@ -17,12 +17,12 @@ import numpy.typing as npt
 
 from puck_tables.contact.laws import HOMOGENEOUS
 from puck_tables.errors import InputError
+from puck_tables.puck import STANDARD_GRAVITY
 from puck_tables.safe_read import read_whole
 from puck_tables.scene.fields import Reading, of, read_part
 
 FloatArray = npt.NDArray[np.float64]
 
-STANDARD_GRAVITY = 9.80665
 MAX_FILE = 1 << 20
 FILES = (("puck", "pressure"), ("floor", "law"), ("force", "file"))
 MATCH = 1e-9  # how well a launch must fit its constraint, of its speed
