@@ -1,4 +1,10 @@
-"""Straight lines in the plane: cushions, edges, borders, and when a puck gets to them."""
+"""Straight lines in the plane: cushions, edges, borders, and when a puck gets to them.
+
+On a step the gap to a line is followed by the polynomial of degree 5 with its value, rate and
+acceleration at both ends.  Between the turning points of that polynomial the gap is monotonic, so
+that none is passed and passed back unseen; the gaps there, and the crossing, are then taken on real
+steps of the method.
+"""
 
 from __future__ import annotations
 
@@ -9,16 +15,17 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.scene.cushions import FRICTION, GRIP, LEAN_COLUMNS, NX, NY, RIM, TANGENTIAL
+from puck_tables.scene.equations import SIZE
 from puck_tables.scene.friction import VX, VY, X, Y
-from puck_tables.scene.impact import rebound
-from puck_tables.scene.ingredients import Body, Stretch
-from puck_tables.scene.steps import step
+from puck_tables.scene.ingredients import Stretch, carried_along
+from puck_tables.scene.steps import STAGES, step
 
 FloatArray = npt.NDArray[np.float64]
 
 BOUNCES, BORDER, EDGE = 2, 4, 5  # among what happens on the way
-_LEAN = 1e-9  # of the scale of speeds: a rebound slower than this is none
-_LEFT = 1e-12  # a wall is left
+DEGREE = 5
+_SHORTEST = 1e-10  # of a step: turning points closer than this are one
 
 
 class Boundaries(NamedTuple):
@@ -35,59 +42,159 @@ class Boundaries(NamedTuple):
 
 
 class Line(NamedTuple):
-    """One of them: n_x, n_y, c."""
+    """One of them: n_x, n_y, and how far the puck is from it at the start of a step."""
 
     x: float
     y: float
-    c: float
+    gap: float
+
+
+class Arc(NamedTuple):
+    """Velocity and acceleration in the laboratory at both ends of a step, and its way."""
+
+    vx: float
+    vy: float
+    ax: float
+    ay: float
+    last_vx: float
+    last_vy: float
+    last_ax: float
+    last_ay: float
+    dx: float
+    dy: float
 
 
 @inlined
-def _line(rows: FloatArray, i: int, sign: float) -> Line:
-    return Line(sign * rows[i, 0], sign * rows[i, 1], sign * rows[i, 2])
+def _arc(stretch: Stretch, work: FloatArray, end: FloatArray) -> Arc:
+    first, last, surface = work[0], work[STAGES - 1], stretch.model.surface
+    cx, cy = carried_along(surface, first[X], first[Y])
+    dx, dy = carried_along(surface, last[X], last[Y])
+    return Arc(
+        first[X], first[Y], first[VX] + cx, first[VY] + cy,
+        last[X], last[Y], last[VX] + dx, last[VY] + dy,
+        end[SIZE], end[SIZE + 1],
+    )  # fmt: skip
 
 
 @inlined
-def _gap(line: Line, y: FloatArray) -> tuple[float, float]:
-    """Distance from a line on its inner side, and its rate."""
-    return line.x * y[X] + line.y * y[Y] - line.c, line.x * y[VX] + line.y * y[VY]
+def _gap_polynomial(line: Line, arc: Arc, h: float, out: FloatArray) -> bool:
+    """Its six coefficients in Bernstein's basis; whether it might fall below 0 on the step."""
+    rate, bend = line.x * arc.vx + line.y * arc.vy, line.x * arc.ax + line.y * arc.ay
+    last = line.gap + (line.x * arc.dx + line.y * arc.dy)
+    last_rate = line.x * arc.last_vx + line.y * arc.last_vy
+    last_bend = line.x * arc.last_ax + line.y * arc.last_ay
+    out[0] = line.gap
+    out[1] = line.gap + 0.2 * h * rate
+    out[2] = line.gap + 0.4 * h * rate + 0.05 * h * h * bend
+    out[3] = last - 0.4 * h * last_rate + 0.05 * h * h * last_bend
+    out[4] = last - 0.2 * h * last_rate
+    out[5] = last
+    below = line.gap < 0.0 and rate <= 0.0
+    for i in range(1, DEGREE + 1):
+        below = below or not out[i] >= 0.0
+    return below
+
+
+@inlined
+def _value(b: FloatArray, degree: int, s: float) -> float:
+    """A polynomial in Bernstein's basis, by Horner's scheme."""
+    left, power, choose, total = 1.0 - s, 1.0, 1.0, b[0]
+    for i in range(1, degree + 1):
+        power *= s
+        choose *= (degree - i + 1) / i
+        total = total * left + choose * power * b[i]
+    return total
+
+
+@kernel
+def _turning_points(b: FloatArray, out: FloatArray) -> int:
+    """Where in (0, 1) the derivative of the gap polynomial vanishes, ascending into ``out``.
+
+    Bernstein coefficients of one sign mean no root, one change of sign one root; else the interval
+    is halved (de Casteljau).
+    """
+    degree, count, waiting = DEGREE - 1, 0, 1
+    stack, spans = np.empty((64, DEGREE)), np.empty((64, 2))
+    slope = np.empty(DEGREE)
+    for i in range(DEGREE):
+        slope[i] = b[i + 1] - b[i]
+        stack[0, i] = slope[i]
+    spans[0, 0], spans[0, 1] = 0.0, 1.0
+    while waiting > 0 and count < len(out):
+        waiting -= 1
+        low, high = spans[waiting, 0], spans[waiting, 1]
+        part = stack[waiting].copy()
+        changes, sign = 0, 0.0
+        if low > 0.0 and part[0] == 0.0:  # the halves meet at a root
+            out[count] = low
+            count += 1
+            if count == len(out):
+                break
+        for i in range(DEGREE):
+            if part[i] != 0.0:
+                now = 1.0 if part[i] > 0.0 else -1.0
+                changes += 1 if now == -sign else 0
+                sign = now
+        if changes == 0:
+            continue
+        if changes == 1 and part[0] * part[degree] < 0.0:
+            left, right = low, high
+            while True:
+                middle = 0.5 * (left + right)
+                if middle <= left or middle >= right or right - left <= 1e-3 * _SHORTEST:
+                    break
+                if (_value(slope, degree, middle) > 0.0) == (part[0] > 0.0):
+                    left = middle
+                else:
+                    right = middle
+            out[count] = 0.5 * (left + right)
+            count += 1
+            continue
+        middle = 0.5 * (low + high)
+        if high - low <= _SHORTEST or waiting + 2 > len(stack):
+            out[count] = middle
+            count += 1
+            continue
+        for i in range(DEGREE):  # the right half is looked at later
+            stack[waiting, degree - i] = part[degree - i]
+            stack[waiting + 1, i] = part[0]
+            for j in range(degree - i):
+                part[j] = 0.5 * (part[j] + part[j + 1])
+        spans[waiting, 0], spans[waiting, 1] = middle, high
+        spans[waiting + 1, 0], spans[waiting + 1, 1] = low, middle
+        waiting += 2
+    return count
 
 
 @kernel
 def _crossing(
-    line: Line, stretch: Stretch, t: float, h: float, y: FloatArray, scale: FloatArray,
-    work: FloatArray, end: FloatArray, new: FloatArray,
+    line: Line, gaps: FloatArray, stretch: Stretch, t: float, h: float, y: FloatArray,
+    scale: FloatArray, work: FloatArray, new: FloatArray,
 ) -> float:  # fmt: skip
-    """When within a step from y to ``end`` the puck first passes a line outwards; inf: never."""
-    gap, rate = _gap(line, y)
-    last, last_rate = _gap(line, end)
-    low, high = 0.0, h
-    if gap <= 0.0 and rate <= 0.0 and last < 0.0:
-        return 0.0
-    if last >= 0.0 and not (rate < 0.0 and last_rate > 0.0):
+    """When within a step of which ``gaps`` is the polynomial a line is first passed; inf: never."""
+    turns = np.empty(8)
+    count = _turning_points(gaps, turns)
+    low, high, found = 0.0, h, False
+    for k in range(count + 1):
+        value = gaps[DEGREE]
+        moment = h
+        if k < count:
+            moment = h * turns[k]
+            step(stretch, t, moment, y, scale, work, new)
+            value = line.gap + (line.x * new[SIZE] + line.y * new[SIZE + 1])
+        if value < 0.0:
+            high, found = moment, True
+            break
+        low = moment
+    if not found:
         return math.inf
-    if last >= 0.0 or gap <= 0.0:  # in and out again, or away and back: find the turning point
-        sign = 1.0 if last >= 0.0 else -1.0
-        for _ in range(60):
-            middle = 0.5 * (low + high)
-            if middle <= low or middle >= high:
-                break
-            step(stretch, t, middle, y, scale, work, new)
-            if sign * _gap(line, new)[1] < 0.0:
-                low = middle
-            else:
-                high = middle
-        step(stretch, t, high, y, scale, work, new)
-        if last >= 0.0:
-            if _gap(line, new)[0] >= 0.0:
-                return math.inf
-            low = 0.0
-        else:
-            low, high = high, h
+    if low == 0.0 and line.gap <= 0.0:
+        return 0.0
     guess = 0.5 * (low + high)
     for _ in range(100):
         step(stretch, t, guess, y, scale, work, new)
-        value, slope = _gap(line, new)
+        value = line.gap + (line.x * new[SIZE] + line.y * new[SIZE + 1])
+        slope = line.x * work[STAGES - 1, X] + line.y * work[STAGES - 1, Y]
         if value > 0.0:
             low = guess
         else:
@@ -102,75 +209,79 @@ def _crossing(
 
 
 @inlined
-def normals(bounds: Boundaries, leans: npt.NDArray[np.bool_]) -> FloatArray:
-    """Normals of the walls that the puck leans on."""
-    chosen = np.empty((leans.sum(), 2))
-    count = 0
-    for i in range(leans.size):
-        if leans[i]:
-            chosen[count, 0], chosen[count, 1] = bounds.walls[i, 0], bounds.walls[i, 1]
-            count += 1
-    return chosen
-
-
-@inlined
-def left(bounds: Boundaries, y: FloatArray, leans: npt.NDArray[np.bool_], speed: float) -> bool:
-    """Whether the puck has left a wall that it leant on."""
-    left = False
-    for i in range(leans.size):
-        if leans[i] and _gap(_line(bounds.walls, i, 1.0), y)[1] > _LEFT * speed:
-            leans[i] = False
-            left = True
-    return left
-
-
-@inlined
-def bounced(
-    bounds: Boundaries, which: int, body: Body, y: FloatArray,
-    leans: npt.NDArray[np.bool_], speed: float, least: float,
-) -> bool:  # fmt: skip
-    """Rebound from a wall; whether the puck stays there, as it does if slower than ``least``."""
-    walls = bounds.walls
-    rebound(body, walls[which], y)
-    stays = _gap(_line(walls, which, 1.0), y)[1] <= max(_LEAN * speed, least)
-    if stays:
-        leans[which] = True
-    for i in range(leans.size):  # no velocity is left towards or away from where it leans
-        away = _gap(_line(walls, i, 1.0), y)[1]
-        if leans[i] and (away < 0.0 or i == which or away > _LEFT * speed):
-            if abs(away) > max(_LEAN * speed, least) or (away > 0.0 and i != which):
-                leans[i] = False  # it bounces there next, or has left already
-            else:
-                y[VX] -= away * walls[i, 0]
-                y[VY] -= away * walls[i, 1]
-    return stays
-
-
-@inlined
 def first_crossing(
-    bounds: Boundaries, stretch: Stretch, region: int, leans: npt.NDArray[np.bool_], t: float,
-    h: float, y: FloatArray, scale: FloatArray, work: FloatArray, end: FloatArray, new: FloatArray,
+    bounds: Boundaries, room: FloatArray, region: int, leans: npt.NDArray[np.bool_],
+    stretch: Stretch, t: float, h: float, y: FloatArray, scale: FloatArray, work: FloatArray,
+    end: FloatArray, gaps: FloatArray, new: FloatArray,
 ) -> tuple[int, int, float]:  # fmt: skip
-    """The first wall, edge or border on a step: what, which, when; −1: none."""
+    """The first wall, edge or border on a step to ``end``: what, which, when; −1: none.
+
+    ``room``: how far the puck is from every wall at the start, counted from the last impact there.
+    """
     happens, which, moment = -1, -1, math.inf
     walls, edges, borders = bounds.walls, bounds.edges, bounds.borders
+    arc = _arc(stretch, work, end)
     for i in range(len(walls) + len(edges) + len(borders)):
         what, number = BOUNCES, i
         if i < len(walls):
             if leans[i]:
                 continue
-            line = _line(walls, i, 1.0)
+            line = Line(walls[i, 0], walls[i, 1], room[i])
         elif i < len(walls) + len(edges):
             what, number = EDGE, i - len(walls)
-            line = _line(edges, number, 1.0)
+            line = _line(edges, number, 1.0, y)
         else:
             border = i - len(walls) - len(edges)
             if border != region - 1 and border != region:  # not at this region
                 continue
             what = BORDER
             number, sign = (region - 1, 1.0) if border == region - 1 else (region + 1, -1.0)
-            line = _line(borders, border, sign)
-        when = _crossing(line, stretch, t, h, y, scale, work, end, new)
+            line = _line(borders, border, sign, y)
+        if not _gap_polynomial(line, arc, h, gaps):
+            continue
+        when = _crossing(line, gaps, stretch, t, h, y, scale, work, new)
         if when < moment:
             happens, which, moment = what, number, when
     return happens, which, moment
+
+
+@inlined
+def _line(rows: FloatArray, i: int, sign: float, y: FloatArray) -> Line:
+    gap = rows[i, 0] * y[X] + rows[i, 1] * y[Y] - rows[i, 2]
+    return Line(sign * rows[i, 0], sign * rows[i, 1], sign * gap)
+
+
+@inlined
+def rooms(bounds: Boundaries, y: FloatArray) -> FloatArray:
+    """How far the puck is from every wall."""
+    room = np.empty(len(bounds.walls))
+    for i in range(room.size):
+        room[i] = _line(bounds.walls, i, 1.0, y).gap
+    return room
+
+
+@inlined
+def touched(
+    bounds: Boundaries, leans: npt.NDArray[np.bool_], rims: FloatArray, share: FloatArray
+) -> FloatArray:
+    """The walls that the puck leans on, rows (n, 4): normal, friction at the rim, its slip.
+
+    ``share``: of the force that a wall bears, on average; less than 1 while rebounds die out.
+    """
+    chosen = np.empty((leans.sum(), LEAN_COLUMNS))
+    count = 0
+    for i in range(leans.size):
+        if leans[i]:
+            wall = bounds.walls[i]
+            smooth = wall[TANGENTIAL] == -1.0
+            chosen[count, NX], chosen[count, NY] = wall[NX], wall[NY]
+            chosen[count, GRIP] = 0.0 if smooth else wall[FRICTION] * share[i]
+            chosen[count, RIM] = rims[i]
+            count += 1
+    return chosen
+
+
+@inlined
+def outward(bounds: Boundaries, i: int, y: FloatArray) -> float:
+    """How fast a state in the laboratory goes away from a wall."""
+    return bounds.walls[i, NX] * y[VX] + bounds.walls[i, NY] * y[VY]

@@ -1,10 +1,12 @@
-"""Equations of motion of a puck in a scene, in the laboratory, with the power of every ingredient.
+"""Equations of motion of a puck in a scene, with the power of every ingredient.
 
-Given forces act on the centre, so the balance of moments that tilts
-the pressure stays that of the free puck.  The state carries, beside position and velocity, the
-energies: work of given forces, heat of dry friction, heat of viscous friction (2f₂
-of Chetaev), work of moving supports and constraints (−f₁, and what dry friction and reactions do
-at the velocity of their support).
+The state holds place and angle in the laboratory, and velocity and spin *relative to the floor*
+under the puck: so a slip keeps all its digits however fast the floor moves.  With s the velocity of
+the floor there and Ω its spin, x′ = v = u + s and u′ = F/m − Ω × v.  Given forces act on the
+centre, so the balance of moments that tilts the pressure stays that of the free puck.  The state
+carries the energies too: work of given forces, heat of dry friction (of the floor and of the rim
+on a cushion), heat of viscous friction (2f₂ of Chetaev), work of moving supports and constraints
+(−f₁, and what dry friction and reactions do at the velocity of their support).
 """
 
 from __future__ import annotations
@@ -13,30 +15,21 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.kernels.compile import inlined, kernel
-from puck_tables.scene.friction import (
-    SPIN,
-    THETA,
-    VX,
-    VY,
-    X,
-    Y,
-    against_walls,
-    dry_friction,
-    size,
-)  # fmt: skip
+from puck_tables.scene.cushions import wall_reaction
+from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y, dry_friction, size
 from puck_tables.scene.ingredients import (
+    CARRIED,
     SLIDES,
-    STARTS,
-    STOPS,
     Body,
+    Dry,
     Model,
     Stretch,
+    carried_along,
     drag_force,
     floor_velocity,
     given_force,
     held,
 )
-from puck_tables.scene.rest import excess_at_rest
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -49,93 +42,101 @@ ROW = SIZE + 2
 @inlined
 def slip_speed(model: Model, y: FloatArray) -> float:
     """Q relative to the floor under the puck."""
-    sx, sy, sw = floor_velocity(model.surface, y[X], y[Y])
-    return size(y[VX] - sx, y[VY] - sy, model.body.radius * (y[SPIN] - sw))
+    return size(y[VX], y[VY], model.body.radius * y[SPIN])
 
 
 @inlined
 def slip_side(model: Model, y: FloatArray) -> float:
-    """(r|w| − u)/(r|w| + u), relative to the floor: 0 where φ = π/4, and within rounding of it."""
-    sx, sy, sw = floor_velocity(model.surface, y[X], y[Y])
-    speed, rim = size(y[VX] - sx, y[VY] - sy, 0.0), model.body.radius * abs(y[SPIN] - sw)
+    """(r|w| − u)/(r|w| + u): 0 where φ = π/4, and within rounding of it."""
+    speed, rim = size(y[VX], y[VY], 0.0), model.body.radius * abs(y[SPIN])
     side = (rim - speed) / (rim + speed) if rim + speed > 0.0 else 0.0
     return side if abs(side) > 1e-11 else 0.0
 
 
 @inlined
-def slip_rate(model: Model, y: FloatArray, work: FloatArray) -> float:
-    """The size of the change of the relative velocity, from d/dt of the state in work[0]."""
-    turning = model.surface.spin  # under a puck that moves the floor changes its velocity too
-    return size(
-        work[0, VX] + turning * y[VY],
-        work[0, VY] - turning * y[VX],
-        model.body.radius * work[0, SPIN],
-    )
+def slip_rate(model: Model, work: FloatArray) -> float:
+    """The size of the change of the slip, from d/dt of the state in work[0]."""
+    return size(work[0, VX], work[0, VY], model.body.radius * work[0, SPIN])
+
+
+@inlined
+def settling_rate(model: Model, dry: Dry, slip: float) -> float:
+    """How fast, at most, the direction of a slip and what is damped settle, 1/s."""
+    body, drag = model.body, model.drag
+    lever = body.mass * body.radius * body.radius / body.inertia
+    rate = drag.sliding / body.mass + drag.spinning / body.inertia
+    if slip > 0.0:
+        rate += dry.load / body.mass * max(1.0, 0.5 * lever) / slip
+    return rate
 
 
 @inlined
 def stopping(model: Model, y: FloatArray, work: FloatArray) -> tuple[float, float, float, float]:
-    """The direction (vx, vy, ω) of the slip, scaled to Q = 1, and the rate of Q."""
-    sx, sy, sw = floor_velocity(model.surface, y[X], y[Y])
-    ux, uy, w, turning = y[VX] - sx, y[VY] - sy, y[SPIN] - sw, model.surface.spin
+    """The direction (ux, uy, w) of the slip, scaled to Q = 1, and the rate of Q."""
     r2 = model.body.radius * model.body.radius
-    q = size(ux, uy, model.body.radius * w)
-    rate = ux * (work[0, VX] + turning * y[VY]) + uy * (work[0, VY] - turning * y[VX])
-    return ux / q, uy / q, w / q, (rate + r2 * w * work[0, SPIN]) / q
+    q = slip_speed(model, y)
+    rate = y[VX] * work[0, VX] + y[VY] * work[0, VY] + r2 * y[SPIN] * work[0, SPIN]
+    return y[VX] / q, y[VY] / q, y[SPIN] / q, rate / q
 
 
 @kernel
 def rates(stretch: Stretch, t: float, y: FloatArray, out: FloatArray, row: int) -> None:
     """d/dt of the state and λ into out[row] (12,); λ is not determined at rest.
 
-    Next to rest the puck moves with the floor, and slips in the direction that :mod:`rest` finds
-    (it starts) or that ``way`` gives (it stops): there the direction settles at once, and
-    following it would take steps without number.
+    At rest the puck moves with the floor.  What is about to rest slips in the direction that
+    ``way`` gives: to follow how that settles would take steps without number.
     """
     model = stretch.model
     body = model.body
-    sx, sy, sw = floor_velocity(model.surface, y[X], y[Y])
+    sx, sy, turning = floor_velocity(model.surface, y[X], y[Y])
+    vx, vy, spin = y[VX] + sx, y[VY] + sy, y[SPIN] + turning
+    cx, cy = carried_along(model.surface, vx, vy)
     gx, gy, gm = given_force(model, stretch.piece, t)
+    out[row, X], out[row, Y], out[row, THETA] = vx, vy, spin
+    out[row, GIVEN] = gx * vx + gy * vy + gm * spin
     if stretch.mode != SLIDES:
-        ax, ay = -sw * y[VY], sw * y[VX]  # of the floor that the puck meets on its way
-        nx, ny, nw, gain = 0.0, 0.0, 0.0, 0.0
-        if stretch.mode == STARTS:
-            excess, nx, ny, nw = excess_at_rest(stretch, t, y)
-            gain = max(excess, 0.0) / (body.mass * (nx * nx + ny * ny) + body.inertia * nw * nw)
-        elif stretch.mode == STOPS:
-            nx, ny, nw, gain = stretch.way
-        ax, ay, aw = ax + gain * nx, ay + gain * ny, gain * nw
-        out[row, X], out[row, Y], out[row, THETA] = y[VX], y[VY], y[SPIN]
+        nx, ny, nw, gain = stretch.way
+        gain = 0.0 if stretch.mode == CARRIED else gain
+        ax, ay, aw = gain * nx, gain * ny, gain * nw
         out[row, VX], out[row, VY], out[row, SPIN] = ax, ay, aw
-        # what the floor and what holds the puck there do besides the given forces
-        fx, fy, fm = body.mass * ax - gx, body.mass * ay - gy, body.inertia * aw - gm
-        out[row, GIVEN] = gx * y[VX] + gy * y[VY] + gm * y[SPIN]
-        out[row, DRY] = -(fx * (y[VX] - sx) + fy * (y[VY] - sy) + fm * (y[SPIN] - sw))
+        fx, fy, fm = gx - body.mass * cx, gy - body.mass * cy, gm
+        rx, ry, rm = wall_reaction(body, stretch.leaning, fx, fy, fm)
+        # what the floor and what holds the puck there do besides the given forces and the walls
+        fx, fy, fm = body.mass * ax - fx - rx, body.mass * ay - fy - ry, body.inertia * aw - fm - rm
+        rim = -(rx * vx + ry * vy + rm * spin)
+        out[row, DRY] = rim - (fx * y[VX] + fy * y[VY] + fm * y[SPIN])
         out[row, VISCOUS] = 0.0
-        out[row, SUPPORT] = fx * sx + fy * sy + fm * sw
+        out[row, SUPPORT] = fx * sx + fy * sy + fm * turning
         out[row, LAMBDA], out[row, LAMBDA + 1] = 0.0, 0.0
         return
-    ux, uy, w = y[VX] - sx, y[VY] - sy, y[SPIN] - sw
-    hx, hy, hm, heat = dry_friction(stretch.dry, body.radius, ux, uy, w)
-    vx, vy, vm, warmth = drag_force(model.drag, ux, uy, w)
-    fx, fy, fm = gx + hx + vx, gy + hy + vy, gm + hm + vm
-    fx, fy = against_walls(stretch.leaning, fx, fy)
-    rx, ry, rm, first, second, power = held(
-        model.hold, body, y[THETA], y[VX], y[VY], y[SPIN], fx, fy, fm
-    )
-    out[row, X], out[row, Y], out[row, THETA] = y[VX], y[VY], y[SPIN]
-    out[row, VX] = (fx + rx) / body.mass
-    out[row, VY] = (fy + ry) / body.mass
+    hx, hy, hm, heat = dry_friction(stretch.dry, body.radius, y[VX], y[VY], y[SPIN])
+    dx, dy, dm, warmth = drag_force(model.drag, y[VX], y[VY], y[SPIN])
+    fx, fy, fm = gx + hx + dx, gy + hy + dy, gm + hm + dm
+    if stretch.leaning.shape[0] > 0:
+        rx, ry, rm = wall_reaction(body, stretch.leaning, fx, fy, fm)
+        heat -= rx * vx + ry * vy + rm * spin
+        fx, fy, fm = fx + rx, fy + ry, fm + rm
+    rx, ry, rm, first, second, power = held(model.hold, body, model.surface, y, fx, fy, fm)
+    out[row, VX] = (fx + rx) / body.mass - cx
+    out[row, VY] = (fy + ry) / body.mass - cy
     out[row, SPIN] = (fm + rm) / body.inertia
-    out[row, GIVEN] = gx * y[VX] + gy * y[VY] + gm * y[SPIN]
     out[row, DRY], out[row, VISCOUS] = heat, warmth
-    out[row, SUPPORT] = (hx + vx) * sx + (hy + vy) * sy + (hm + vm) * sw + power
+    out[row, SUPPORT] = (hx + dx) * sx + (hy + dy) * sy + (hm + dm) * turning + power
     out[row, LAMBDA], out[row, LAMBDA + 1] = first, second
 
 
 @inlined
+def to_laboratory(model: Model, y: FloatArray, sign: float) -> None:
+    """Relative velocities of a state into those of the laboratory; ``sign`` −1: and back."""
+    sx, sy, turning = floor_velocity(model.surface, y[X], y[Y])
+    y[VX] += sign * sx
+    y[VY] += sign * sy
+    y[SPIN] += sign * turning
+
+
+@inlined
 def kinetic_energy(body: Body, y: FloatArray) -> float:
-    """½ m v² + ½ I ω²."""
+    """½ m v² + ½ I ω² of a state in the laboratory."""
     return 0.5 * body.mass * (y[VX] * y[VX] + y[VY] * y[VY]) + (
         0.5 * body.inertia * y[SPIN] * y[SPIN]
     )

@@ -24,7 +24,7 @@ from puck_tables.scene.ingredients import BySpeed, Dry
 
 FloatArray = npt.NDArray[np.float64]
 
-X, Y, THETA, VX, VY, SPIN = range(6)  # of a state
+X, Y, THETA, VX, VY, SPIN = range(6)  # of a state; in the loop the last three over the floor
 
 
 @inlined
@@ -72,20 +72,3 @@ def at_slip_zero(dry: Dry) -> Dry:
     law = dry.by_speed
     still = BySpeed(law.coefficients, law.scale, law.reach, law.normal, 0.0)
     return Dry(dry.load, dry.delta, dry.cut, still)
-
-
-@inlined
-def against_walls(leaning: FloatArray, fx: float, fy: float) -> tuple[float, float]:
-    """A force without what the walls that the puck leans on take up; rows of unit normals."""
-    pushed = False
-    for i in range(leaning.shape[0]):
-        push = leaning[i, 0] * fx + leaning[i, 1] * fy
-        if push < 0.0:
-            pushed = True
-            free, ex, ey = True, fx - push * leaning[i, 0], fy - push * leaning[i, 1]
-            for j in range(leaning.shape[0]):
-                other = leaning[j, 0] * ex + leaning[j, 1] * ey
-                free = free and (j == i or other >= -1e-15 * size(fx, fy, 0.0))
-            if free:
-                return ex, ey  # along this wall
-    return (0.0, 0.0) if pushed else (fx, fy)  # held in a corner

@@ -17,7 +17,7 @@ from puck_tables.kernels.compile import inlined
 FloatArray = npt.NDArray[np.float64]
 
 FREE, RAIL, PIVOT, BLADE = range(4)
-SLIDES, CARRIED, STARTS, STOPS = range(4)
+SLIDES, CARRIED, STOPS = range(3)
 NO_WAY = (0.0, 0.0, 0.0, 0.0)
 
 
@@ -95,8 +95,8 @@ class Hold(NamedTuple):
 
     ``kind`` FREE: none.  RAIL: the centre stays on a line with the unit normal (ax, ay).  PIVOT:
     the body point at distance ``reach`` and at ``angle`` in the body stays at a point, (ax, ay) at
-    the launch.  BLADE: no side slip along the body axis at ``angle``.  (vx, vy): velocity of rail
-    or pivot; for the blade vx is the side slip, to the left.
+    the launch.  BLADE: no side slip over the floor along the body axis at ``angle``.  (vx, vy):
+    velocity of rail or pivot; for the blade vx is the side slip, to the left.
     """
 
     kind: int
@@ -126,9 +126,11 @@ class Model(NamedTuple):
 class Stretch(NamedTuple):
     """What acts between two events.
 
-    ``leaning``: unit normals (n, 2) of the walls that the puck leans on; ``piece``: how many
-    rows of ``model.drive`` have passed; ``mode`` SLIDES, CARRIED (at rest on the floor), STARTS to
-    slip, STOPS: with the constant relative acceleration way[3] times the direction way[:3].
+    ``leaning``: the walls that the puck leans on, rows (n, 4), see
+    :func:`puck_tables.scene.cushions.wall_reaction`; ``piece``: how many rows of ``model.drive``
+    have passed; ``mode`` SLIDES, CARRIED (at rest on the floor), STOPS: with the constant relative
+    acceleration way[3] times the direction way[:3]; ``stiff``: whether the direction of the slip
+    settles much faster than the slip changes.
     """
 
     model: Model
@@ -137,6 +139,7 @@ class Stretch(NamedTuple):
     piece: int
     mode: int
     way: tuple[float, float, float, float]
+    stiff: bool
 
 
 @inlined
@@ -150,12 +153,9 @@ def floor_velocity(surface: Surface, x: float, y: float) -> tuple[float, float, 
 
 
 @inlined
-def floor_acceleration(surface: Surface, x: float, y: float) -> tuple[float, float]:
-    """Acceleration of the point of the floor under the puck."""
-    return (
-        -surface.spin * (surface.vy + surface.spin * (x - surface.cx)),
-        surface.spin * (surface.vx - surface.spin * (y - surface.cy)),
-    )
+def carried_along(surface: Surface, vx: float, vy: float) -> tuple[float, float]:
+    """How fast the velocity of the floor under a puck changes while the puck moves at (vx, vy)."""
+    return -surface.spin * vy, surface.spin * vx
 
 
 @inlined
@@ -186,20 +186,13 @@ def given_force(model: Model, piece: int, t: float) -> tuple[float, float, float
 
 @inlined
 def held(
-    hold: Hold,
-    body: Body,
-    theta: float,
-    vx: float,
-    vy: float,
-    spin: float,
-    fx: float,
-    fy: float,
-    torque: float,
-) -> tuple[float, float, float, float, float, float]:
+    hold: Hold, body: Body, surface: Surface, y: FloatArray, fx: float, fy: float, torque: float
+) -> tuple[float, float, float, float, float, float]:  # fmt: skip
     """Force and torque of the constraint, its multipliers, and the power it puts in.
 
     With the constraint A V = e of the velocities V = (vx, vy, ω), the reaction is Aᵀλ with
-    (A M⁻¹ Aᵀ) λ = −A M⁻¹ F − A′ V (Chetaev, eq. 2.3 and 2.4); its power is λ e.
+    (A M⁻¹ Aᵀ) λ = −A M⁻¹ F − A′ V (Chetaev, eq. 2.3 and 2.4); its power is λ e.  Rail and pivot
+    stand in the laboratory; a blade grips the floor, so its V and e are relative to it.
     """
     if hold.kind == FREE:
         return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
@@ -207,11 +200,16 @@ def held(
         reaction = -(hold.ax * fx + hold.ay * fy)
         power = reaction * (hold.ax * hold.vx + hold.ay * hold.vy)
         return reaction * hold.ax, reaction * hold.ay, 0.0, reaction, 0.0, power
-    cosine, sine = math.cos(theta + hold.angle), math.sin(theta + hold.angle)
+    cosine, sine = math.cos(y[2] + hold.angle), math.sin(y[2] + hold.angle)
+    spin = y[5] + surface.spin
     if hold.kind == BLADE:
-        # n = (−sin, cos), n′ V = −ω (cos, sin)·v
-        reaction = sine * fx - cosine * fy + body.mass * spin * (cosine * vx + sine * vy)
-        return -reaction * sine, reaction * cosine, 0.0, reaction, 0.0, reaction * hold.vx
+        # n = (−sin, cos), n′ u = −ω (cos, sin)·u
+        sx, sy, _ = floor_velocity(surface, y[0], y[1])
+        cx, cy = carried_along(surface, y[3] + sx, y[4] + sy)
+        swing = spin * (cosine * y[3] + sine * y[4])
+        reaction = sine * fx - cosine * fy + body.mass * (swing - sine * cx + cosine * cy)
+        power = reaction * (hold.vx - sine * sx + cosine * sy)
+        return -reaction * sine, reaction * cosine, 0.0, reaction, 0.0, power
     # the pivot: in axes along and across the arm only one multiplier meets the inertia
     reach = hold.reach
     along = -(cosine * fx + sine * fy) + body.mass * spin * spin * reach

@@ -1,9 +1,11 @@
 """From a launch to the end of a scene: an adaptive integrator in time, with events.
 
-Dormand–Prince 5(4).  Next to relative rest, where the direction of friction turns within Q/|Q′|, a
-step is at most half of that.  A puck that is about to rest, or that begins to slip, moves by a law
-of its own (see :func:`puck_tables.scene.equations.rates`).  Every event is found on a real step of
-the method from the last step end, by Newton's method within a bracket, and becomes a step end.
+Dormand–Prince 5(4), or Radau IIA where the direction of the slip settles much faster than the slip
+changes (next to the limit of what friction holds).  Next to relative rest, where the direction of
+friction turns within Q/|Q′|, a step is at most half of that, and at the very end a slip stops on a
+straight line.  Every event is found on a real step of the method from the last step end and becomes
+a step end.  Rebounds that die out are a geometric series, of which only the first are taken one by
+one (see :mod:`puck_tables.scene.settle`).
 """
 
 from __future__ import annotations
@@ -18,30 +20,29 @@ from puck_tables.kernels.compile import inlined, kernel
 from puck_tables.scene.boundaries import (
     BORDER,
     BOUNCES,
+    DEGREE,
     EDGE,
     Boundaries,
-    bounced,
     first_crossing,
-    left,
-    normals,
+    rooms,
 )
+from puck_tables.scene.cushions import GRIP, NX, NY, RIM, rim_slip
 from puck_tables.scene.equations import (
     ROW,
     SIZE,
     kinetic_energy,
     rates,
+    settling_rate,
     slip_rate,
     slip_side,
     slip_speed,
     stopping,
+    to_laboratory,
 )
-from puck_tables.scene.friction import SPIN, VX, VY, X, Y
+from puck_tables.scene.friction import SPIN, VX, VY
 from puck_tables.scene.ingredients import (
     CARRIED,
-    FREE,
-    NO_WAY,
     SLIDES,
-    STARTS,
     STOPS,
     Dry,
     Model,
@@ -50,12 +51,20 @@ from puck_tables.scene.ingredients import (
     floor_velocity,
 )
 from puck_tables.scene.rest import SLACK, excess_at_rest, held_by_floor
-from puck_tables.scene.steps import STAGES, step
+from puck_tables.scene.settle import (
+    bounced,
+    contacts_at,
+    departed,
+    rims_after,
+    settled,
+    touching,
+)
+from puck_tables.scene.steps import STAGES, WIDE, step
 
 FloatArray = npt.NDArray[np.float64]
 
 # how a run ends
-AT_REST, CARRIED_AWAY, TIME_UP, OVER_EDGE, STEP_LIMIT, EVENT_LIMIT, NOT_FINITE = range(7)
+AT_REST, CARRIED_AWAY, TIME_UP, OVER_EDGE, STEP_LIMIT, EVENT_LIMIT, NOT_FINITE, HALTED = range(8)
 # what happens on the way
 RESTS, SLIPS, LEANS = 0, 1, 3  # and those of boundaries
 
@@ -64,8 +73,12 @@ EVENT_COLUMNS = 3 + SIZE  # time, what, which, state
 
 _REST = 1e-13  # of the scale of speeds: as good as at rest
 _LAST = 30.0  # times the local error: from there a stop goes straight
-_HOP = 1e-15  # of the place: as high as a rebound must be
+_SLOW = 1e-3  # of friction: what brakes less comes closer to rest before it goes straight
 _NEAR = 0.5  # of the time in which the slip would end, at most, is a step
+_STIFF, _MILD = 2.0, 0.7  # of the time in which a slip settles: longer steps are implicit
+_SWING = 0.05  # rad that a carried puck turns, at most, in a step
+_NO_WAY = (0.0, 0.0, 0.0, 0.0)
+_EQUAL = -1  # watched: equal speeds of centre and rim; else the rim on a wall that is leant on
 
 
 class Ask(NamedTuple):
@@ -84,12 +97,27 @@ class Ask(NamedTuple):
 
 
 @inlined
-def _slipping(
+def _lost(
     stretch: Stretch, t: float, h: float, y: FloatArray, scale: FloatArray, work: FloatArray,
     new: FloatArray,
 ) -> float:  # fmt: skip
-    """When within a step the floor loses a puck that it carries."""
-    low, high = 0.0, h
+    """When within a step to ``new`` the floor loses a puck that it carries; inf: it does not.
+
+    On a floor that turns the demand swings: it is looked at where a parabola has its top, too.
+    """
+    slack = SLACK * stretch.dry.load
+    first, last = excess_at_rest(stretch, t, y)[0], excess_at_rest(stretch, t + h, new)[0]
+    low, high = 0.0, h if last > slack else math.inf
+    if stretch.model.surface.spin != 0.0 and last <= slack:
+        step(stretch, t, 0.5 * h, y, scale, work, new)
+        middle = excess_at_rest(stretch, t + 0.5 * h, new)[0]
+        bend = 2.0 * (first - 2.0 * middle + last)
+        top = 0.25 - (last - first) / (2.0 * bend) + 0.25 if bend < 0.0 else 0.5
+        top = min(max(top, 0.0), 1.0) * h
+        step(stretch, t, top, y, scale, work, new)
+        high = top if excess_at_rest(stretch, t + top, new)[0] > slack else math.inf
+    if high == math.inf:
+        return high
     while True:
         middle = 0.5 * (low + high)
         if middle <= low or middle >= high:
@@ -102,23 +130,33 @@ def _slipping(
 
 
 @inlined
-def _equal_speeds(
-    stretch: Stretch, t: float, h: float, y: FloatArray, scale: FloatArray, work: FloatArray,
-    new: FloatArray,
+def _watched(stretch: Stretch, what: int, y: FloatArray) -> float:
+    model = stretch.model
+    if what == _EQUAL:
+        return slip_side(model, y)
+    sx, sy, turning = floor_velocity(model.surface, y[0], y[1])
+    lean = stretch.leaning[what]
+    return rim_slip(model.body, lean[NX], lean[NY], y[VX] + sx, y[VY] + sy, y[SPIN] + turning)
+
+
+@inlined
+def _zero(
+    stretch: Stretch, what: int, t: float, h: float, y: FloatArray, scale: FloatArray,
+    work: FloatArray, new: FloatArray,
 ) -> float:  # fmt: skip
-    """When within a step φ passes π/4, where friction has one derivative and a bit; ``new`` then.
+    """When within a step what is watched passes 0; ``new`` then.
 
     By the method of false position, with the weight of an end that stays halved (Illinois).
     """
     low, high = 0.0, h
-    first, last = slip_side(stretch.model, y), slip_side(stretch.model, new)
+    first, last = _watched(stretch, what, y), _watched(stretch, what, new)
     sign = 1.0 if last > 0.0 else -1.0
     for _ in range(60):
         middle = (low * last - high * first) / (last - first)
         if not low < middle < high or high - low <= 1e-12 * h:
             break
         step(stretch, t, middle, y, scale, work, new)
-        value = slip_side(stretch.model, new)
+        value = _watched(stretch, what, new)
         if sign * value > 0.0:
             high, last, first = middle, value, 0.5 * first
         else:
@@ -128,10 +166,11 @@ def _equal_speeds(
 
 
 @inlined
-def _noted(row: FloatArray, t: float, what: int, which: int, y: FloatArray) -> None:
+def _noted(row: FloatArray, model: Model, t: float, what: int, which: int, y: FloatArray) -> None:
     row[0], row[1], row[2] = t, what, which
     for i in range(SIZE):
         row[3 + i] = y[i]
+    to_laboratory(model, row[3:], 1.0)
 
 
 @inlined
@@ -142,6 +181,7 @@ def _framed(
     row[0] = t
     for i in range(SIZE):
         row[1 + i] = y[i]
+    to_laboratory(stretch.model, row[1:], 1.0)
     row[1 + SIZE], row[2 + SIZE] = work[1, SIZE], work[1, SIZE + 1]
     row[1 + ROW] = 1.0 if stretch.mode == CARRIED else 0.0
     row[2 + ROW] = heat
@@ -153,12 +193,25 @@ def _dry(regions: Regions, region: int) -> Dry:
 
 
 @inlined
-def _followed(ask: Ask, excess: float) -> float:
-    """The slip from which on its direction is followed, for an excess in units of friction.
+def _goes_straight(
+    stretch: Stretch, ask: Ask, t: float, q: float, pull: float, slow: float, y: FloatArray,
+    work: FloatArray,
+) -> tuple[float, float, float, float]:  # fmt: skip
+    """The way of a slip that is about to stop: its direction and rate; no rate: not yet.
 
-    Before that the direction is wrong by about the excess.
+    What brakes slowly takes so long that its direction must have settled, and all else be small.
     """
-    return max(0.1 * ask.tolerance / excess, 10.0 * _REST) * ask.speed
+    if not 0.0 < q <= max(_LAST * ask.tolerance / slow, 2.0 * _REST) * ask.speed:
+        return _NO_WAY
+    way = stopping(stretch.model, y, work)
+    quick = way[3] < -_SLOW * stretch.dry.load / stretch.model.body.mass / slow
+    across = math.sqrt(max(pull * pull - way[3] * way[3], 0.0))
+    if not (quick and across <= -way[3]) and q > 2.0 * _REST * ask.speed:
+        return _NO_WAY
+    for i in range(stretch.leaning.shape[0]):  # the rim may stick before
+        if stretch.leaning[i, GRIP] > 0.0 and q > 2.0 * _REST * ask.speed:
+            return _NO_WAY
+    return way if way[3] < 0.0 and held_by_floor(stretch, t, y) else _NO_WAY
 
 
 @kernel
@@ -169,74 +222,95 @@ def follow(
     ask: Ask,
     y: FloatArray,
     region: int,
+    halt: npt.NDArray[np.bool_],
     frames: FloatArray,
     rows: FloatArray,
     events: FloatArray,
 ) -> tuple[int, float, int, int, int, float]:
-    """Run a scene from the state ``y`` (10,), which becomes the last one.
+    """Run a scene from the state ``y`` (10,) in the laboratory.
 
-    ``frames`` (n,): ascending times for ``rows`` (n + 1, 15), the last of them the end;
-    ``events`` (m, 13).
+    ``halt`` (1,): becomes true when somebody wants it to end; ``frames`` (n,): ascending times for
+    ``rows`` (n + 1, 15), the last of them the end; ``events`` (m, 13).
 
     Returns
     -------
     how it ended, when, number of events, of steps and of frames reached, heat of impacts
     """
-    work, last = np.empty((STAGES, ROW)), np.empty(ROW)
-    new, trial = np.empty(SIZE), np.empty(SIZE)
-    leans = np.zeros(len(bounds.walls), np.bool_)
-    leaning, dry = normals(bounds, leans), _dry(regions, region)
+    work, last, gaps = np.empty((STAGES, ROW)), np.empty(ROW), np.empty(DEGREE + 1)
+    state, new, trial = np.empty(WIDE), np.empty(WIDE), np.empty(WIDE)
+    state[:SIZE] = y
+    y = state
     body, scale, surface, drive = model.body, ask.scale, model.surface, model.drive
     moves = surface.vx != 0.0 or surface.vy != 0.0 or surface.spin != 0.0
     unbounded = len(bounds.walls) + len(bounds.edges) + len(bounds.borders) == 0
-    t, heat, mode, piece, way = 0.0, 0.0, SLIDES, 0, NO_WAY
+    contacts = contacts_at(bounds, rooms(bounds, y), body, y, ask.speed)
+    leaning, dry = touching(bounds, contacts), _dry(regions, region)
+    to_laboratory(model, y, -1.0)
+    t, heat, mode, piece, way, stiff = 0.0, 0.0, SLIDES, 0, _NO_WAY, False
+    resting, calm = False, 0.0  # whether its rest is noted; when rebounds have died out
     count, steps, frame = 0, 0, 0
-    wall, hit = -1, 0.0
     # by so much longer than the centre a spin takes to brake
     slow = max(1.0, 2.0 * body.inertia / (body.mass * body.radius * body.radius))
     how = TIME_UP
-    h = 1e-3 * ask.until
+    h = 1e-3 * min(ask.until, scale[0] / ask.speed)
     settle, known = True, False  # whether to look what holds the puck; whether work[0] is there
     while t < ask.until:
+        if halt[0]:
+            how = HALTED
+            break
         while piece < len(drive) and drive[piece, 0] <= t:
             piece += 1
         target = min(drive[piece, 0], ask.until) if piece < len(drive) else ask.until
+        if calm > t:
+            target = min(target, calm)
         q = slip_speed(model, y)
         if settle and dry.load > 0.0 and q <= _REST * ask.speed:
-            y[VX], y[VY], y[SPIN] = floor_velocity(surface, y[X], y[Y])
-            was = mode
-            excess = excess_at_rest(Stretch(model, dry, leaning, piece, CARRIED, way), t, y)[0]
-            mode = CARRIED if excess <= SLACK * dry.load else STARTS
+            y[VX] = y[VY] = y[SPIN] = 0.0
+            mode = CARRIED
+            excess, nx, ny, nw = excess_at_rest(
+                Stretch(model, dry, leaning, piece, CARRIED, _NO_WAY, False), t, y
+            )
             if excess == math.inf:  # where a constraint leads it the floor does not go
-                mode = SLIDES
-            if (mode == CARRIED) != (was == CARRIED):
+                mode, stiff = SLIDES, False
+            elif excess > SLACK * dry.load:
+                mode, stiff = SLIDES, True
+                first = 4.0 * _REST * ask.speed
+                y[VX], y[VY], y[SPIN] = first * nx, first * ny, first * nw
+                q = first
+            if (mode == CARRIED) != resting and (t >= calm or mode != CARRIED):
                 if count == len(events):
                     how = EVENT_LIMIT
                     break
-                _noted(events[count], t, RESTS if mode == CARRIED else SLIPS, region, y)
+                resting = mode == CARRIED
+                _noted(events[count], model, t, RESTS if resting else SLIPS, region, y)
                 count += 1
-            if mode == CARRIED and (
-                piece == len(drive) and (not moves or (unbounded and not ask.to_the_end))
+            if (
+                mode == CARRIED
+                and t >= calm
+                and (piece == len(drive) and (not moves or (unbounded and not ask.to_the_end)))
             ):
                 how = CARRIED_AWAY if moves else AT_REST  # nothing is to come
                 break
             h = max(h, 1e-6 * (target - t))
+            known = False
         elif settle:
             mode = SLIDES
+            resting = False
         h = -q / way[3] if mode == STOPS else h
-        stretch = Stretch(model, dry, leaning, piece, mode, way)
+        if mode == CARRIED and surface.spin != 0.0:
+            h = min(h, _SWING / abs(surface.spin))
+        stretch = Stretch(model, dry, leaning, piece, mode, way, stiff and mode == SLIDES)
         if settle or not known:
             rates(stretch, t, y, work, 0)
         settle, known = False, True
         if mode == SLIDES and dry.load > 0.0:
-            pull = slip_rate(model, y, work)
+            pull = slip_rate(model, work)
             near = _NEAR * max(q, _REST * ask.speed)
             h = near / pull if h * pull > near else h
-            if 0.0 < q <= _LAST * ask.tolerance * ask.speed / slow:
-                way = stopping(model, y, work)
-                if way[3] < 0.0 and held_by_floor(stretch, t, y):
-                    mode, known = STOPS, False
-                    continue
+            way = _goes_straight(stretch, ask, t, q, pull, slow, y, work)
+            if way[3] < 0.0:
+                mode, known = STOPS, False
+                continue
         # a step
         landed = t + 1.1 * h >= target
         length = target - t if landed else h
@@ -245,31 +319,38 @@ def follow(
         if steps > ask.step_limit:
             how = STEP_LIMIT
             break
-        if mode == STARTS:  # the direction is followed from where that can be seen
-            excess = excess_at_rest(stretch, t + length, new)[0]
-            far = slip_speed(model, new) > 10.0 * _followed(ask, excess / dry.load)
-            error = math.inf if far else error
+        power = 0.25 if stretch.stiff else 0.2
         if not error <= ask.tolerance:
-            shrink = 0.1 if not error < math.inf else max(0.1, 0.9 * (ask.tolerance / error) ** 0.2)
+            shrink = 0.1
+            if error < math.inf:
+                shrink = max(0.1, 0.9 * (ask.tolerance / error) ** power)
             h = length * shrink
             if (t + h == t and t > 0.0) or h < 1e-300:
                 how = NOT_FINITE
                 break
             continue
-        h = length * min(5.0, 5.0 if error == 0.0 else 0.9 * (ask.tolerance / error) ** 0.2)
+        h = length * min(5.0, 5.0 if error == 0.0 else 0.9 * (ask.tolerance / error) ** power)
         if mode == SLIDES and slip_side(model, y) * slip_side(model, new) < 0.0:
             landed = False
-            length = _equal_speeds(stretch, t, length, y, scale, work, new)
+            length = _zero(stretch, _EQUAL, t, length, y, scale, work, new)
+        stuck = -1
+        for i in range(leaning.shape[0]):
+            lean = leaning[i]
+            if lean[GRIP] > 0.0 and lean[RIM] * _watched(stretch, i, new) < 0.0:
+                landed, stuck = False, i
+                length = _zero(stretch, i, t, length, y, scale, work, new)
         last[:] = work[STAGES - 1]
         happens, which, moment = first_crossing(
-            bounds, stretch, region, leans, t, length, y, scale, work, new, trial
-        )
-        if mode == CARRIED and happens < 0 and not held_by_floor(stretch, t + length, new):
-            happens, which = SLIPS, region
-            moment = _slipping(stretch, t, length, y, scale, work, trial)
+            bounds, contacts.room, region, contacts.leans, stretch, t, length, y, scale, work, new,
+            gaps, trial,
+        )  # fmt: skip
+        if mode == CARRIED and happens < 0 and t >= calm:
+            trial[:] = new
+            moment = _lost(stretch, t, length, y, scale, work, trial)
+            if moment < math.inf:
+                happens, which = SLIPS, region
         if happens >= 0:
-            landed = False
-            length = moment
+            landed, stuck, length = False, -1, moment
             step(stretch, t, length, y, scale, work, new)
         # the frames on it
         end = target if landed else t + length
@@ -278,23 +359,34 @@ def follow(
             _framed(rows[frame], stretch, frames[frame], trial, heat, work)
             frame += 1
         t = end
-        y[:] = new
+        for i in range(SIZE):
+            y[i] = new[i]
+        for i in range(len(contacts.room)):
+            if not contacts.leans[i]:
+                contacts.room[i] += (
+                    bounds.walls[i, NX] * new[SIZE] + bounds.walls[i, NY] * new[SIZE + 1]
+                )
         work[0] = last
-        known = (
-            model.hold.kind == FREE and mode == SLIDES == stretch.mode
-        )  # else the step ended a little beside it
+        known = happens < 0 and mode == SLIDES and model.hold.kind == 0 and leaning.shape[0] == 0
         q = slip_speed(model, y)
-        if landed and target < ask.until:
+        if stretch.stiff or mode == SLIDES:
+            reach = length * settling_rate(model, dry, q)
+            stiff = reach > _MILD if stretch.stiff else reach > _STIFF
+        if landed and (target < ask.until or t == calm):
             settle = True
         if mode in (SLIDES, STOPS) and q <= _REST * ask.speed:
             settle = True
-        if mode == STARTS:
-            excess = excess_at_rest(stretch, t, y)[0]
-            if excess <= 0.0 or q >= _followed(ask, excess / dry.load):
-                mode = SLIDES
-        if left(bounds, y, leans, ask.speed):
-            leaning = normals(bounds, leans)
-            known = False
+        if leaning.shape[0] > 0:
+            to_laboratory(model, y, 1.0)
+            changed = rims_after(bounds, contacts, body, y, stuck, ask.speed)
+            changed = departed(bounds, contacts, y, ask.speed) or changed
+            to_laboratory(model, y, -1.0)
+            if 0.0 < calm <= t:
+                calm = 0.0
+                settled(contacts)
+                changed = True
+            if changed:
+                leaning = touching(bounds, contacts)
         if happens < 0:
             continue
         settle = True
@@ -302,27 +394,31 @@ def follow(
             region = which
             dry = _dry(regions, region)
             mode = CARRIED if mode == CARRIED and dry.load > 0.0 else SLIDES
+            contacts.chain[0] = -1
         elif happens == BOUNCES:
             mode = SLIDES
+            to_laboratory(model, y, 1.0)
             before = kinetic_energy(body, y)
-            hops = which == wall and t - hit > 0.0  # too low for the digits of its place: none
-            least = _HOP * (abs(y[X]) + abs(y[Y])) / (t - hit) if hops else 0.0
-            if bounced(bounds, which, body, y, leans, ask.speed, least):
-                happens = LEANS
-            wall, hit = which, t
-            leaning = normals(bounds, leans)
+            rest_time = bounced(
+                bounds, contacts, which, body, y, t, ask.speed, scale[0] / ask.speed, ask.tolerance
+            )
             heat += before - kinetic_energy(body, y)
+            to_laboratory(model, y, -1.0)
+            if rest_time >= 0.0:
+                happens = LEANS
+                calm = max(calm, t + rest_time) if rest_time > 0.0 else calm
+            leaning = touching(bounds, contacts)
         if count == len(events):
             how = EVENT_LIMIT
             break
-        _noted(events[count], t, happens, which, y)
-        count += 1
         if happens == SLIPS:
-            mode, settle, known = STARTS, False, False
+            continue  # noted when it is known how
+        _noted(events[count], model, t, happens, which, y)
+        count += 1
         if happens == EDGE:
             how = OVER_EDGE
             break
-    stretch = Stretch(model, dry, leaning, piece, mode, way)
+    stretch = Stretch(model, dry, leaning, piece, mode, way, False)
     if how == TIME_UP and mode == CARRIED and moves:
         how = CARRIED_AWAY
     while how == AT_REST and frame < len(frames):  # for ever

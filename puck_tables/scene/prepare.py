@@ -13,37 +13,46 @@ from puck_tables.errors import InputError
 from puck_tables.safe_read import read_rows
 from puck_tables.scene.boundaries import Boundaries
 from puck_tables.scene.bulk import follow_many
+from puck_tables.scene.cushions import LEAN_COLUMNS
 from puck_tables.scene.equations import SIZE
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
 from puck_tables.scene.ingredients import (
     BLADE,
+    CARRIED,
     FREE,
     PIVOT,
     RAIL,
     Body,
     Drag,
+    Dry,
     Hold,
     Model,
     Pull,
     Regions,
+    Stretch,
     Surface,
 )
 from puck_tables.scene.loop import Ask, follow
-from puck_tables.scene.regions import regions_of
+from puck_tables.scene.regions import friction_error, regions_of
+from puck_tables.scene.rest import excess_at_rest
 from puck_tables.scene.scene import Scene, launch_velocity
 
 FloatArray = npt.NDArray[np.float64]
 
 LOCAL_SHARE = 0.01  # of the error wanted, per step and in units of the scales
-DEFAULT_TIME = 1000.0  # in units of the time scale, where a scene does not say
+DEFAULT_TIME = 1000.0  # times what the least friction takes, where a scene does not say
+RELATIVE_REST = 1e-12  # of the speeds of puck and floor: their difference is rounding
 STEP_LIMIT = 1_000_000
 MAX_DRIVE = 1 << 26  # bytes of a file of forces
-MAX_EVENTS = 10_000
+MAX_EVENTS = 100_000
 
 
 @dataclass(frozen=True)
 class Prepared:
-    """Arguments of the loop for a scene, and for others that are only launched otherwise."""
+    """Arguments of the loop for a scene, and for others that are only launched otherwise.
+
+    ``speed``, ``rate``: Q in m/s and J in m/s², to which its tolerance refers.
+    """
 
     model: Model
     regions: Regions
@@ -51,23 +60,35 @@ class Prepared:
     scene: Scene
     state: FloatArray
     ask: Ask
+    speed: float
+    rate: float
 
     def follow(
-        self, frames: FloatArray, rows: FloatArray, events: FloatArray
+        self, frames: FloatArray, rows: FloatArray, events: FloatArray, coarser: float = 1.0
     ) -> tuple[int, float, int, int, int, float]:
-        """Run it, see :func:`puck_tables.scene.loop.follow`."""
+        """Run it, see :func:`puck_tables.scene.loop.follow`.
+
+        ``coarser``: with so many times the error per step, and friction wrong by what its ratios
+        may be: a twin to see what errors grow to.
+        """
         region = int(self.starts(self.state[None, :])[0])
+        ask = self.ask._replace(tolerance=coarser * self.ask.tolerance)
+        off = 1.0 if coarser == 1.0 else 1.0 + friction_error(self.scene)
+        regions = self.regions._replace(
+            load=off * self.regions.load,
+            by_speed=self.regions.by_speed._replace(normal=off * self.regions.by_speed.normal),
+        )
         return follow(
-            self.model, self.regions, self.bounds, self.ask, self.state.copy(), region,
-            frames, rows, events,
+            self.model, regions, self.bounds, ask, self.state.copy(), region,
+            np.zeros(1, np.bool_), frames, rows, events,
         )  # fmt: skip
 
     def follow_all(self, states: FloatArray, out: FloatArray, status: npt.NDArray[np.int8]) -> None:
         """Run it from other launches (n, 10), see :func:`puck_tables.scene.bulk.follow_many`."""
         follow_many(
             self.model, self.regions, self.bounds, self.asks(states),
-            self.scene.run.time is not None, self.ask.tolerance, STEP_LIMIT, MAX_EVENTS, states,
-            self.starts(states), out, status,
+            self.scene.run.time is not None, self.ask.tolerance, STEP_LIMIT, MAX_EVENTS,
+            np.zeros(1, np.bool_), states, self.starts(states), out, status,
         )  # fmt: skip
 
     def starts(self, states: FloatArray) -> npt.NDArray[np.int64]:
@@ -119,7 +140,9 @@ def prepare(scene: Scene, last_time: float | None = None) -> Prepared:
         until = last_time if to_the_end and last_time else float(asks[0])
     tolerance = LOCAL_SHARE * scene.run.tol
     ask = Ask(until, to_the_end, tolerance, asks[2:], float(asks[1]), STEP_LIMIT)
-    return Prepared(model, regions, _bounds(scene), scene, state, ask)
+    speed, rate, _ = _scales(scene, model, regions, state[None, :])
+    bounds = _bounds(scene)
+    return Prepared(model, regions, bounds, scene, state, ask, float(speed[0]), float(rate[0]))
 
 
 def _hold(scene: Scene) -> Hold:
@@ -171,15 +194,24 @@ def _direction(angle: float) -> tuple[float, float]:
 
 def _asks(scene: Scene, model: Model, regions: Regions, states: FloatArray) -> FloatArray:
     """Time limit, scale of speeds and scales of the state for launches (n, 10); (n, 12)."""
-    with np.errstate(over="ignore", invalid="ignore"):
-        speed, time = _scales(scene, model, regions, states)
-        radius, length = scene.puck.radius, speed * time
+    with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+        speed, rate, floor = _scales(scene, model, regions, states)
+        radius, mass = scene.puck.radius, scene.puck.mass
+        time = speed / rate
+        length = speed * time
         slow = max(1.0, 2.0 * scene.puck.gyration**2)  # by as much longer a spin takes to brake
-        energy = scene.puck.mass * speed * speed
+        # what rounding leaves of places far out, and of what a fast floor does
+        ulp = 4e-16 / (LOCAL_SHARE * scene.run.tol)
+        turning = abs(scene.floor.turning)
+        place = np.maximum(length, ulp * (np.hypot(states[:, X], states[:, Y]) + floor * time))
+        swift = np.maximum(speed, ulp * turning * floor * time)
+        angle = np.maximum(length / radius, ulp * turning * time)
+        energy = mass * speed * (speed + floor)
         until = scene.run.time
         asks: FloatArray = np.stack([
-            np.full_like(speed, until) if until is not None else DEFAULT_TIME * time, speed,
-            length, length, length / radius, speed, speed, speed / (slow * radius),
+            np.full_like(speed, until) if until is not None
+            else DEFAULT_TIME * _slowest(scene, model, regions, speed, rate),
+            speed, place, place, angle, swift, swift, swift / (slow * radius),
             energy, energy, energy, energy,
         ], axis=1)  # fmt: skip
     squares = np.all(speed > 1e-140) and np.all(speed < 1e140)  # of 1e-13 of it, too
@@ -193,32 +225,77 @@ def _asks(scene: Scene, model: Model, regions: Regions, states: FloatArray) -> F
 
 def _scales(
     scene: Scene, model: Model, regions: Regions, states: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Scales of speed and time (n,) of launches, from what moves and from what slows it down."""
-    puck, floor = scene.puck, scene.floor
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Scales of the slip and of what changes it, and the speed of the floor; (n,) of launches.
+
+    ``tol`` refers to the first two: Q is the slip at the launch over the floor, or of the floor
+    against a rail or pivot; where there is none, what the rate J brings over a radius.  J is the
+    largest of friction, given forces and what a turning floor asks, over the mass.
+    """
+    puck, floor, hold = scene.puck, scene.floor, model.hold
     pull, lever = model.pull, puck.mass * puck.radius
-    rate = max(
+    arm = states[:, [X, Y]] - floor.centre
+    sx = floor.velocity[0] - floor.turning * arm[:, 1]
+    sy = floor.velocity[1] + floor.turning * arm[:, 0]
+    ground = np.hypot(sx, sy)
+    slips = [
+        np.hypot(states[:, VX] - sx, states[:, VY] - sy),
+        puck.radius * np.abs(states[:, SPIN] - floor.turning),
+    ]
+    if hold.kind in (RAIL, PIVOT):
+        slips.append(np.hypot(hold.vx - sx, hold.vy - sy))
+    speed = np.max(slips, axis=0)
+    lab = np.maximum(ground, np.hypot(states[:, VX], states[:, VY]))
+    speed[speed <= RELATIVE_REST * (lab + puck.radius * abs(floor.turning))] = 0.0
+    rate = np.full_like(speed, max(
         float(regions.load.max()) / puck.mass,
         math.hypot(pull.x, pull.y) / puck.mass,
         abs(pull.torque) / lever,
         float(np.hypot(model.drive[:, 1], model.drive[:, 2]).max(initial=0.0)) / puck.mass,
         float(np.abs(model.drive[:, 3]).max(initial=0.0)) / lever,
-    )
-    size = puck.radius + np.hypot(states[:, X] - floor.centre[0], states[:, Y] - floor.centre[1])
-    speed = np.max([
-        np.hypot(states[:, VX] - floor.velocity[0], states[:, VY] - floor.velocity[1]),
-        np.hypot(states[:, VX], states[:, VY]), puck.radius * np.abs(states[:, SPIN]),
-        np.full(len(states), math.hypot(*floor.velocity)), abs(floor.turning) * size,
+    ))  # fmt: skip
+    rate = np.max([
+        rate, abs(floor.turning) * ground, speed * model.drag.sliding / puck.mass,
+        speed * abs(floor.turning),
     ], axis=0)  # fmt: skip
-    speed[speed == 0.0] = math.sqrt(rate * puck.radius) if rate > 0.0 else 1.0
-    times = [speed / rate] if rate > 0.0 else []
+    still = speed == 0.0
+    speed[still] = np.where(rate[still] > 0.0, np.sqrt(rate[still] * puck.radius), 1.0)
+    run = 1.0 if scene.run.time is None else scene.run.time
+    rate = np.where(rate > 0.0, rate, speed / run)
+    return speed, rate, ground
+
+
+def _slowest(
+    scene: Scene, model: Model, regions: Regions, speed: FloatArray, rate: FloatArray
+) -> FloatArray:
+    """In what time, at most, a motion of this scene should come to rest, s (n,).
+
+    From all speed that the launch, the floor and forces over time can give, and from the least that
+    any part of the floor leaves to brake it.
+    """
+    puck, drive, floor = scene.puck, model.drive, scene.floor
+    fast = speed + math.hypot(*floor.velocity)
+    last = 0.0
+    if len(drive):
+        force = np.hypot(drive[:, 1], drive[:, 2]) + np.abs(drive[:, 3]) / puck.radius
+        fast = fast + float(np.trapezoid(force, drive[:, 0])) / puck.mass
+        last = max(float(drive[-1, 0]), 0.0)
+    brakes = []
+    for number in range(len(regions.load)):
+        load = float(regions.load[number])
+        if load > 0.0:
+            dry = Dry(load, regions.delta[number], regions.cuts[number], regions.by_speed)
+            at_rest = Stretch(
+                model, dry, np.empty((0, LEAN_COLUMNS)), 0, CARRIED, (0.0, 0.0, 0.0, 0.0), False
+            )
+            excess = abs(float(excess_at_rest(at_rest, 0.0, np.zeros(SIZE))[0]))
+            brakes.append(min(excess, load) if math.isfinite(excess) else load)
+    slow = max(1.0, 2.0 * puck.gyration**2)
+    brake = [b / puck.mass / slow for b in brakes if b > 1e-9 * regions.load.max()]
+    time = fast / (min(brake) if brake else rate)
     if model.drag.sliding > 0.0:
-        times.append(np.full_like(speed, puck.mass / model.drag.sliding))
-    if floor.turning != 0.0:
-        times.append(np.full_like(speed, 1.0 / abs(floor.turning)))
-    if not times:
-        times = [np.full_like(speed, 1.0 if scene.run.time is None else scene.run.time)]
-    return speed, np.min(times, axis=0)
+        time = np.maximum(time, puck.mass / model.drag.sliding)
+    return np.maximum(time, speed / rate) + last
 
 
 def read_drive(path: str) -> FloatArray:

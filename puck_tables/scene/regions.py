@@ -22,6 +22,7 @@ from puck_tables.table.speed_table import SpeedTable, build_speed_table
 FloatArray = npt.NDArray[np.float64]
 
 EXACT_BELOW = 1e-9  # friction by closed forms where a table's error would show
+CLOSED_FORM_ERROR, TABLE_ERROR = 1e-14, 2e-11
 SLICE_SHARE = 0.1  # of the error wanted
 LAW_ACCURACY = 1e-4  # of the largest f: a law of points is worth no more, and takes a second
 LAW_NODES = 40_000  # a law with jumps is as good as they allow, in ten seconds
@@ -62,11 +63,23 @@ def regions_of(scene: Scene) -> Regions:
     if all(is_plain(puck.pressure, puck.gyration, delta) for delta in heights):
         cuts = np.stack([_plain_cut(scene.run.tol, delta) for delta in heights])
         return Regions(load, np.array(heights), cuts, NO_LAW)
-    accuracy = max(SLICE_SHARE * scene.run.tol, FINEST_ACCURACY)
+    accuracy = friction_error(scene)
     # how the mass is spread stands in the equations of the scene, not in its friction
     bodies = [body_of(puck.pressure, delta, puck.gyration) for delta in heights]
     slices = [body.friction(accuracy).cut for body in bodies]
     return Regions(load, np.array(heights), _of_one_shape(slices), NO_LAW)
+
+
+def friction_error(scene: Scene) -> float:
+    """How wrong the friction ratios of :func:`regions_of` may be."""
+    puck, floor = scene.puck, scene.floor
+    if floor.law:
+        return LAW_ACCURACY
+    coefficients = [floor.friction] if floor.strips is None else floor.strips.friction
+    heights = [2.0 * f * puck.height / puck.radius for f in coefficients]
+    if all(is_plain(puck.pressure, puck.gyration, delta) for delta in heights):
+        return CLOSED_FORM_ERROR if scene.run.tol < EXACT_BELOW else TABLE_ERROR
+    return max(SLICE_SHARE * scene.run.tol, FINEST_ACCURACY)
 
 
 @lru_cache(maxsize=8)

@@ -18,8 +18,10 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.kernels.compile import inlined, kernel
-from puck_tables.scene.friction import THETA, X, Y, against_walls, at_slip_zero, dry_friction
+from puck_tables.scene.cushions import GRIP, NX, NY, RIM, wall_reaction
+from puck_tables.scene.friction import THETA, X, Y, at_slip_zero, dry_friction, size
 from puck_tables.scene.ingredients import (
+    BLADE,
     FREE,
     PIVOT,
     RAIL,
@@ -27,7 +29,8 @@ from puck_tables.scene.ingredients import (
     Dry,
     Hold,
     Stretch,
-    floor_acceleration,
+    carried_along,
+    floor_velocity,
     given_force,
 )
 
@@ -46,10 +49,10 @@ def _pivot_yield(
     cosine, sine = math.cos(theta + hold.angle), math.sin(theta + hold.angle)
     reach = hold.reach
     demand = torque - reach * (cosine * fy - sine * fx)
-    size = math.hypot(reach, radius)
-    _, _, _, heat = dry_friction(dry, radius, reach / size, 0.0, 1.0 / size)
-    way = (1.0 if demand >= 0.0 else -1.0) / size
-    return abs(demand) / size - heat, way * reach * sine, -way * reach * cosine, way
+    length = math.hypot(reach, radius)
+    _, _, _, heat = dry_friction(dry, radius, reach / length, 0.0, 1.0 / length)
+    way = (1.0 if demand >= 0.0 else -1.0) / length
+    return abs(demand) / length - heat, way * reach * sine, -way * reach * cosine, way
 
 
 @inlined
@@ -87,13 +90,11 @@ def _free_yield(
 
 
 @inlined
-def _yield_with(
+def _constrained_yield(
     dry: Dry, hold: Hold, body: Body, theta: float, ax: float, ay: float, turning: float,
     fx: float, fy: float, torque: float,
 ) -> Yield:  # fmt: skip
     """By kind of constraint; a floor whose motion a constraint forbids never holds the puck."""
-    if hold.kind == FREE:
-        return _free_yield(dry, body.radius, fx, fy, torque, False)
     cosine, sine = math.cos(theta + hold.angle), math.sin(theta + hold.angle)
     if hold.kind == PIVOT:
         centripetal = turning * turning * hold.reach
@@ -101,36 +102,70 @@ def _yield_with(
         if gap > 1e-9 * math.hypot(ax, ay):
             return math.inf, 0.0, 0.0, 0.0
         return _pivot_yield(dry, hold, body.radius, theta, fx, fy, torque)
-    if turning != 0.0:
+    if (hold.kind == RAIL and turning != 0.0) or (hold.kind == BLADE and hold.vx != 0.0):
         return math.inf, 0.0, 0.0, 0.0
     ex, ey = (-hold.ay, hold.ax) if hold.kind == RAIL else (cosine, sine)
     along = fx * ex + fy * ey
     return _free_yield(dry, body.radius, along * ex, along * ey, torque, True)
 
 
+@inlined
+def _rim_yield(
+    dry: Dry, body: Body, nx: float, ny: float, most: float, fx: float, fy: float, torque: float
+) -> Yield:
+    """Along one wall whose rim friction takes up to ``most`` N: it takes what is best for rest.
+
+    The power of the best slip is convex in that friction, so its least is found by thirds.
+    """
+    along = nx * fy - ny * fx
+    most = min(most, abs(along) + abs(torque) / body.radius)  # more is never of use
+    low, high = -most, most
+    for _ in range(80):
+        left, right = low + (high - low) / 3.0, high - (high - low) / 3.0
+        one = _free_yield(
+            dry, body.radius, -ny * (along + left), nx * (along + left),
+            torque - body.radius * left, True,
+        )[0]  # fmt: skip
+        two = _free_yield(
+            dry, body.radius, -ny * (along + right), nx * (along + right),
+            torque - body.radius * right, True,
+        )[0]  # fmt: skip
+        if one <= two:
+            high = right
+        else:
+            low = left
+    rim = 0.5 * (low + high)
+    return _free_yield(
+        dry, body.radius, -ny * (along + rim), nx * (along + rim), torque - body.radius * rim, True
+    )
+
+
 @kernel
 def excess_at_rest(stretch: Stretch, t: float, y: FloatArray) -> Yield:
     """By how much the power of the best slip at Q = 1 exceeds friction, W, and that slip.
 
-    The slip is a direction (vx, vy, ω), scaled to Q = 1; friction holds while nothing exceeds it.
+    The slip is a direction (ux, uy, w), scaled to Q = 1; friction holds while nothing exceeds it.
     """
     model = stretch.model
     body = model.body
-    ax, ay = floor_acceleration(model.surface, y[X], y[Y])
+    sx, sy, turning = floor_velocity(model.surface, y[X], y[Y])
+    ax, ay = carried_along(model.surface, sx, sy)
     gx, gy, torque = given_force(model, stretch.piece, t)
-    fx, fy = against_walls(stretch.leaning, gx - body.mass * ax, gy - body.mass * ay)
-    return _yield_with(
-        at_slip_zero(stretch.dry),
-        model.hold,
-        body,
-        y[THETA],
-        ax,
-        ay,
-        model.surface.spin,
-        fx,
-        fy,
-        torque,
-    )
+    fx, fy = gx - body.mass * ax, gy - body.mass * ay
+    dry = at_slip_zero(stretch.dry)
+    if model.hold.kind != FREE:
+        return _constrained_yield(dry, model.hold, body, y[THETA], ax, ay, turning, fx, fy, torque)
+    pushes, nx, ny, most, rolls = 0, 0.0, 0.0, 0.0, False
+    for i in range(stretch.leaning.shape[0]):
+        push = -(stretch.leaning[i, NX] * fx + stretch.leaning[i, NY] * fy)
+        if push > 1e-15 * size(fx, fy, 0.0):
+            pushes += 1
+            nx, ny = stretch.leaning[i, NX], stretch.leaning[i, NY]
+            most, rolls = stretch.leaning[i, GRIP] * push, stretch.leaning[i, RIM] == 0.0
+    if pushes == 1 and rolls and most > 0.0:
+        return _rim_yield(dry, body, nx, ny, most, fx, fy, torque)
+    rx, ry, rm = wall_reaction(body, stretch.leaning, fx, fy, torque)
+    return _free_yield(dry, body.radius, fx + rx, fy + ry, torque + rm, pushes > 0)
 
 
 @inlined

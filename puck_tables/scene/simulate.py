@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,7 @@ import numpy.typing as npt
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import InputError, PuckError
 from puck_tables.real import finite_array
-from puck_tables.scene.friction import SPIN, VX, VY, X, Y
+from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
 from puck_tables.scene.library import find_scene
 from puck_tables.scene.loop import (
     EVENT_COLUMNS,
@@ -26,6 +27,7 @@ from puck_tables.scene.outcome import COLUMNS, ENDS, EVENTS, Event, SceneRun, le
 from puck_tables.scene.plain import run_plain
 from puck_tables.scene.plan import Plan, ingredients, out_of_reach, plan_for
 from puck_tables.scene.prepare import MAX_EVENTS, Prepared, prepare
+from puck_tables.scene.regions import friction_error
 from puck_tables.scene.scene import Scene, scene_from
 
 FloatArray = npt.NDArray[np.float64]
@@ -80,9 +82,14 @@ def simulate_scene(
     return _integrated(whole, plan, moments)
 
 
+COARSER = 30.0  # the steps of a twin may err by so much more
+FINER = (1.0, 1 / 30, 1 / 900, 1 / 27000)  # of the tolerance asked: tried one after the other
+FINEST = 1e-13
+PROBES = 7  # states on the way that are compared too
+
 FAILURES = {
     STEP_LIMIT: "no end after a million steps, at {time:.6g} s: ask for a shorter run.time",
-    EVENT_LIMIT: "10000 events by {time:.6g} s: they crowd together without end (rebounds, or a "
+    EVENT_LIMIT: "100000 events by {time:.6g} s: they crowd together without end (rebounds, or a "
     "border); move the launch, or end the run before with run.time",
     NOT_FINITE: "the motion leaves floating point at {time:.6g} s: use other units",
 }
@@ -128,27 +135,23 @@ def refuse_endless(scene: Scene) -> None:
 
 
 def _integrated(scene: Scene, plan: Plan, times: FloatArray | None) -> SceneRun:
-    prepared = prepare(scene, None if times is None or not times.size else float(times[-1]))
+    """Run it, at ever finer tolerances until a coarser twin tells that the error asked is kept."""
     refuse_endless(scene)
+    last = None if times is None or not times.size else float(times[-1])
     events = np.empty((MAX_EVENTS, EVENT_COLUMNS))
+    asked = scene.run.tol
+    for finer in FINER:
+        tol = max(asked * finer, FINEST)
+        prepared = prepare(replace(scene, run=replace(scene.run, tol=tol)), last)
+        estimate = _estimate(prepared, events)
+        if estimate <= asked or tol == FINEST:
+            break
     if times is None:
         _, end_time, *_ = prepared.follow(np.empty(0), np.empty((1, FRAME_COLUMNS)), events)
         times = np.linspace(0.0, end_time, int(scene.run.frames))
     rows = np.empty((len(times) + 1, FRAME_COLUMNS))
     how, end_time, count, steps, reached, _ = prepared.follow(times, rows, events)
-    if how == TIME_UP and scene.run.time is None and not prepared.ask.to_the_end:
-        raise InputError(
-            f"the puck still moves after {end_time:.4g} s, a thousand times the time scale of this "
-            "scene: it may never stop; give run.time"
-        )
-    if how == NOT_FINITE and scene.floor.law:  # a state beyond the law is never reached
-        top = SpeedLaw.from_csv(scene.floor.law).top_speed
-        raise InputError(
-            f"at {end_time:.6g} s the rim slips faster than the friction law {scene.floor.law} "
-            f"goes ({top:g} m/s): nothing is known beyond; give it more speeds"
-        )
-    if how in FAILURES:
-        raise PuckError(FAILURES[how].format(time=end_time))
+    _refuse_failed(scene, how, end_time, prepared.ask.to_the_end)
     columns = columns_of(rows[: reached + 1], prepared)
     energy = kinetic(prepared.state[[VX, VY, SPIN]], prepared)
     return SceneRun(
@@ -161,10 +164,54 @@ def _integrated(scene: Scene, plan: Plan, times: FloatArray | None) -> SceneRun:
             for e in events[:count]
         ],
         energy_residual=ledger_residual(columns, float(energy)),
+        error_estimate=estimate,
+        speed_scale=prepared.speed,
+        rate_scale=prepared.rate,
         steps=steps,
         last={name: float(column[-1]) for name, column in columns.items()},
         columns={name: column[:-1] for name, column in columns.items()},
     )
+
+
+def _estimate(prepared: Prepared, events: FloatArray) -> float:
+    """How far a coarser twin is from a run, in units of Q/J and Q²/J: at its end, and on the way.
+
+    Errors grow alike in both, and its own are much larger.
+    """
+    ends = [np.empty((PROBES + 1, FRAME_COLUMNS)) for _ in range(2)]
+    how, end_time, *_ = prepared.follow(np.empty(0), ends[0], events, COARSER)
+    probes = end_time * np.arange(1, PROBES + 1) / (PROBES + 1)
+    reached = [
+        prepared.follow(probes, rows, events, coarser)[4]
+        for rows, coarser in zip(ends, (COARSER, 1.0), strict=True)
+    ]
+    both = min(reached)
+    states = [
+        np.concatenate([rows[:both], rows[n : n + 1]])
+        for rows, n in zip(ends, reached, strict=True)
+    ]
+    gap = np.abs(states[0] - states[1])
+    radius, unit = prepared.model.body.radius, prepared.speed / prepared.rate
+    place = np.hypot(gap[:, 1 + X], gap[:, 1 + Y]) + radius * gap[:, 1 + THETA]
+    worst = max(gap[-1, 0] / unit, place.max() / (prepared.speed * unit))
+    return float(worst + friction_error(prepared.scene))
+
+
+def _refuse_failed(scene: Scene, how: int, end_time: float, to_the_end: bool) -> None:
+    """Say why a run has no end."""
+    if how == TIME_UP and scene.run.time is None and not to_the_end:
+        raise InputError(
+            f"the puck still moves after {end_time:.4g} s, a thousand times what friction should "
+            "take to stop it: it may never stop; give run.time"
+        )
+    if how == NOT_FINITE and scene.floor.law:  # a state beyond the law is never reached
+        top = SpeedLaw.from_csv(scene.floor.law).top_speed
+        raise InputError(
+            f"at {end_time:.6g} s the rim slips faster than the friction law {scene.floor.law} "
+            f"goes ({top:g} m/s): nothing is known beyond; give it more speeds"
+        )
+    if how in FAILURES:
+        raise PuckError(FAILURES[how].format(time=end_time))
 
 
 def columns_of(rows: FloatArray, prepared: Prepared) -> dict[str, FloatArray]:

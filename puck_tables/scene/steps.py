@@ -1,4 +1,7 @@
-"""One step of Dormand–Prince 5(4) in time, put onto the constraint at its end."""
+"""One step in time: Dormand–Prince 5(4), or where the slip settles fast, Radau IIA of order 5.
+
+A step ends on the constraint, and off the walls that the puck leans on.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +12,8 @@ import numpy.typing as npt
 
 from puck_tables.kernels.compile import inlined, kernel
 from puck_tables.motion.steppers import DORMAND_PRINCE
-from puck_tables.scene.equations import SIZE, rates
+from puck_tables.scene.cushions import keep_off
+from puck_tables.scene.equations import SIZE, rates, to_laboratory
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
 from puck_tables.scene.ingredients import (
     BLADE,
@@ -20,22 +24,24 @@ from puck_tables.scene.ingredients import (
     SLIDES,
     Hold,
     Stretch,
+    Surface,
     floor_velocity,
 )
+from puck_tables.scene.radau import radau_step
 
 FloatArray = npt.NDArray[np.float64]
 
 _A, _C, _E = DORMAND_PRINCE.a, DORMAND_PRINCE.c, DORMAND_PRINCE.e
 STAGES = len(_C)
+WIDE = SIZE + 2  # of a new state: with the way of the step, exact however far out it is
 
 
 @inlined
-def put_right(hold: Hold, t: float, y: FloatArray) -> None:
+def _put_right(hold: Hold, surface: Surface, t: float, y: FloatArray) -> None:
     """Position and velocity onto the constraint, from which rounding and step errors lead away."""
-    if hold.kind == FREE:
-        return
     if hold.kind == RAIL:
-        off = hold.ax * (y[VX] - hold.vx) + hold.ay * (y[VY] - hold.vy)
+        sx, sy, _ = floor_velocity(surface, y[X], y[Y])
+        off = hold.ax * (y[VX] - (hold.vx - sx)) + hold.ay * (y[VY] - (hold.vy - sy))
         y[VX] -= off * hold.ax
         y[VY] -= off * hold.ay
         return
@@ -47,19 +53,18 @@ def put_right(hold: Hold, t: float, y: FloatArray) -> None:
     if hold.kind == PIVOT:
         y[X] = hold.ax + hold.vx * t - hold.reach * cosine
         y[Y] = hold.ay + hold.vy * t - hold.reach * sine
-        y[VX] = hold.vx + y[SPIN] * hold.reach * sine
-        y[VY] = hold.vy - y[SPIN] * hold.reach * cosine
+        sx, sy, turning = floor_velocity(surface, y[X], y[Y])
+        rim = turning * hold.reach
+        y[VX] = y[SPIN] * hold.reach * sine + (hold.vx + rim * sine - sx)
+        y[VY] = -y[SPIN] * hold.reach * cosine + (hold.vy - rim * cosine - sy)
 
 
-@kernel
-def step(
+@inlined
+def _explicit_step(
     stretch: Stretch, t: float, h: float, y: FloatArray, scale: FloatArray, work: FloatArray,
     new: FloatArray,
 ) -> float:  # fmt: skip
-    """A step from (t, y) over h into ``new``, put onto the constraint; its error in ``scale``.
-
-    On entry work[0] is dy/dt at t.
-    """
+    """Dormand–Prince; the error in ``scale``.  The last stage stands at the end of the step."""
     for stage in range(1, STAGES):
         for i in range(SIZE):
             new[i] = y[i]
@@ -68,17 +73,44 @@ def step(
             for i in range(SIZE):
                 new[i] += weight * work[j, i]
         rates(stretch, t + _C[stage] * h, new, work, stage)
+    new[SIZE], new[SIZE + 1] = 0.0, 0.0
+    for j in range(STAGES - 1):
+        weight = h * _A[STAGES - 1, j]
+        new[SIZE] += weight * work[j, X]
+        new[SIZE + 1] += weight * work[j, Y]
     largest = 0.0
-    for i in range(SIZE):  # the last stage stood at the end of the step
+    for i in range(SIZE):
         error = 0.0
         for j in range(STAGES):
             error += _E[j] * work[j, i]
         share = abs(h * error) / scale[i]
         if not share <= largest:
             largest = share
+    return largest
+
+
+@kernel
+def step(
+    stretch: Stretch, t: float, h: float, y: FloatArray, scale: FloatArray, work: FloatArray,
+    new: FloatArray,
+) -> float:  # fmt: skip
+    """A step from (t, y) over h into ``new`` (12,), the state and dx, dy; its error in ``scale``.
+
+    On entry work[0] is dy/dt at t; on return work[STAGES − 1] is that at the end.
+    """
+    if stretch.stiff:
+        error = radau_step(stretch, t, h, y, scale, work, new)
+        rates(stretch, t + h, new, work, STAGES - 1)
+    else:
+        error = _explicit_step(stretch, t, h, y, scale, work, new)
     model = stretch.model
     if stretch.mode == CARRIED:
-        new[VX], new[VY], new[SPIN] = floor_velocity(model.surface, new[X], new[Y])
+        new[VX] = new[VY] = new[SPIN] = 0.0
     elif stretch.mode == SLIDES:
-        put_right(model.hold, t + h, new)
-    return largest
+        if model.hold.kind != FREE:
+            _put_right(model.hold, model.surface, t + h, new)
+        if stretch.leaning.shape[0] > 0:
+            to_laboratory(model, new, 1.0)
+            keep_off(stretch.leaning, new)
+            to_laboratory(model, new, -1.0)
+    return error

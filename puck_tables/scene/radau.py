@@ -1,0 +1,178 @@
+"""A step of Radau IIA, order 5, for slips whose direction settles much faster than they change.
+
+The three stages z_i = y(t + c_i h) − y solve z = h A f(y + z).  Only velocities and spin are stiff:
+Newton's iteration uses the Jacobian of their rates at the start of the step, by differences, and
+takes the rest along.  The error is that of Hairer and Wanner (Solving Ordinary Differential
+Equations II, IV.8), (μ/h − J)⁻¹ (f₀ + Σ e_i z_i/h).
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.scene.equations import SIZE, rates, slip_speed
+from puck_tables.scene.friction import SPIN, VX, X
+from puck_tables.scene.ingredients import Stretch
+
+FloatArray = npt.NDArray[np.float64]
+
+_ROOT = math.sqrt(6.0)
+_A = np.array([
+    [(88 - 7 * _ROOT) / 360, (296 - 169 * _ROOT) / 1800, (-2 + 3 * _ROOT) / 225],
+    [(296 + 169 * _ROOT) / 1800, (88 + 7 * _ROOT) / 360, (-2 - 3 * _ROOT) / 225],
+    [(16 - _ROOT) / 36, (16 + _ROOT) / 36, 1 / 9],
+])  # fmt: skip
+_C = _A.sum(axis=1)
+_ERROR = np.array([-13 - 7 * _ROOT, -13 + 7 * _ROOT, -1.0]) / 3.0
+_MU = 3.0 + 3.0 ** (2 / 3) - 3.0 ** (1 / 3)
+_STIFF = 3  # vx, vy, spin
+_NUDGE = 1e-7  # of the slip: of the differences
+_ITERATIONS = 12
+_RELATIVE = 1e-3  # of the slip: no step is worse
+
+
+@inlined
+def _factored(matrix: FloatArray, order: npt.NDArray[np.int64]) -> bool:
+    """LU with row pivoting in place; whether it can be solved."""
+    size = matrix.shape[0]
+    for k in range(size):
+        best = k
+        for i in range(k + 1, size):
+            best = i if abs(matrix[i, k]) > abs(matrix[best, k]) else best
+        order[k] = best
+        if not abs(matrix[best, k]) > 0.0:
+            return False
+        for j in range(size):
+            matrix[k, j], matrix[best, j] = matrix[best, j], matrix[k, j]
+        for i in range(k + 1, size):
+            matrix[i, k] /= matrix[k, k]
+            for j in range(k + 1, size):
+                matrix[i, j] -= matrix[i, k] * matrix[k, j]
+    return True
+
+
+@inlined
+def _solve(matrix: FloatArray, order: npt.NDArray[np.int64], b: FloatArray) -> None:
+    size = matrix.shape[0]
+    for k in range(size):
+        b[k], b[order[k]] = b[order[k]], b[k]
+    for i in range(size):
+        for j in range(i):
+            b[i] -= matrix[i, j] * b[j]
+    for i in range(size - 1, -1, -1):
+        for j in range(i + 1, size):
+            b[i] -= matrix[i, j] * b[j]
+        b[i] /= matrix[i, i]
+
+
+@inlined
+def _jacobian(
+    stretch: Stretch, t: float, y: FloatArray, at: FloatArray, rows: FloatArray, out: FloatArray
+) -> None:
+    """∂(vx, vy, spin)′/∂(vx, vy, spin) at (t, y) by one-sided differences into ``out`` (3, 3)."""
+    slip, radius = slip_speed(stretch.model, y), stretch.model.body.radius
+    rates(stretch, t, y, rows, 0)
+    for j in range(_STIFF):
+        nudge = _NUDGE * (slip if slip > 0.0 else 1.0) / (radius if VX + j == SPIN else 1.0)
+        at[:SIZE] = y[:SIZE]
+        at[VX + j] += nudge
+        rates(stretch, t, at, rows, 1)
+        for i in range(_STIFF):
+            out[i, j] = (rows[1, VX + i] - rows[0, VX + i]) / nudge
+
+
+@kernel
+def radau_step(
+    stretch: Stretch, t: float, h: float, y: FloatArray, scale: FloatArray, work: FloatArray,
+    new: FloatArray,
+) -> float:  # fmt: skip
+    """A step from (t, y) over h into ``new`` (12,), the state and dx, dy; its error in ``scale``.
+
+    inf: Newton's iteration did not converge.  On entry work[0] is dy/dt at t.
+    """
+    rows, z, at = np.empty((3, work.shape[1])), np.empty((3, SIZE)), np.empty(SIZE)
+    jacobian, step = np.empty((_STIFF, _STIFF)), np.empty(3 * _STIFF)
+    matrix, order = np.empty((3 * _STIFF, 3 * _STIFF)), np.empty(3 * _STIFF, np.int64)
+    _jacobian(stretch, t, y, at, rows, jacobian)
+    for i in range(3 * _STIFF):
+        for j in range(3 * _STIFF):
+            part = h * _A[i // _STIFF, j // _STIFF] * jacobian[i % _STIFF, j % _STIFF]
+            matrix[i, j] = (1.0 if i == j else 0.0) - part
+    if not _factored(matrix, order):
+        return math.inf
+    for stage in range(3):
+        for i in range(SIZE):
+            z[stage, i] = h * _C[stage] * work[0, i]
+    before = math.inf
+    for iteration in range(_ITERATIONS):
+        for stage in range(3):
+            for i in range(SIZE):
+                at[i] = y[i] + z[stage, i]
+            rates(stretch, t + _C[stage] * h, at, rows, stage)
+        largest = 0.0
+        for stage in range(3):
+            for i in range(SIZE):
+                whole = 0.0
+                for j in range(3):
+                    whole += _A[stage, j] * rows[j, i]
+                whole *= h
+                if VX <= i < VX + _STIFF:
+                    step[_STIFF * stage + i - VX] = whole - z[stage, i]
+                else:
+                    change = abs(whole - z[stage, i]) / scale[i]
+                    largest = max(largest, change)
+                    z[stage, i] = whole
+        _solve(matrix, order, step)
+        for stage in range(3):
+            for i in range(_STIFF):
+                change = abs(step[_STIFF * stage + i]) / scale[VX + i]
+                largest = change if not change <= largest else largest
+                z[stage, VX + i] += step[_STIFF * stage + i]
+        if largest <= 1e-15 or (iteration > 1 and largest >= 0.5 * before and largest <= 1e-13):
+            break
+        if not largest < math.inf or (iteration > 2 and largest > 0.9 * before):
+            return math.inf
+        before = largest
+    else:
+        return math.inf
+    for i in range(SIZE):
+        new[i] = y[i] + z[2, i]
+    new[SIZE], new[SIZE + 1] = z[2, X], z[2, X + 1]
+    return _error(stretch, h, y, scale, work, z, new, jacobian)
+
+
+@inlined
+def _error(
+    stretch: Stretch, h: float, y: FloatArray, scale: FloatArray, work: FloatArray, z: FloatArray,
+    new: FloatArray, jacobian: FloatArray,
+) -> float:  # fmt: skip
+    """In ``scale``, and of velocities also against the slip that is left."""
+    matrix, order, b = np.empty((3, 3)), np.empty(3, np.int64), np.empty(3)
+    for i in range(_STIFF):
+        for j in range(_STIFF):
+            matrix[i, j] = (_MU / h if i == j else 0.0) - jacobian[i, j]
+    if not _factored(matrix, order):
+        return math.inf
+    largest = 0.0
+    for i in range(SIZE):
+        defect = work[0, i]
+        for j in range(3):
+            defect += _ERROR[j] * z[j, i] / h
+        if VX <= i < VX + _STIFF:
+            b[i - VX] = defect
+        else:
+            largest = max(largest, abs(defect) * h / _MU / scale[i])
+    _solve(matrix, order, b)
+    left = max(slip_speed(stretch.model, y), slip_speed(stretch.model, new))
+    for i in range(_STIFF):
+        size = scale[VX + i]
+        error = abs(b[i]) / size
+        relative = abs(b[i]) * (stretch.model.body.radius if VX + i == SPIN else 1.0)
+        if relative > _RELATIVE * left:
+            error = max(error, 1.0)  # more than any tolerance
+        largest = error if not error <= largest else largest
+    return largest

@@ -1,0 +1,155 @@
+"""Walls that a puck touches: which it leans on, and rebounds that die out.
+
+Rebounds from a wall towards which the puck is driven are a geometric series: each is slower than
+the last by a factor q < 1 (the restitution, and what friction takes on the way), and takes less
+time by the same factor.  So the rest of the series takes τ q/(1 − q) after a rebound that took τ,
+and on average the wall bears the force towards it, less the momentum that is left to be taken.
+From where that rest is so short that nothing else changes in it, up to its square, the puck leans.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables.kernels.compile import inlined
+from puck_tables.scene.boundaries import Boundaries, outward, touched
+from puck_tables.scene.cushions import NX, NY, PLACE, keep_off, rebound, rim_slip
+from puck_tables.scene.friction import SPIN, VX, VY, X, Y
+from puck_tables.scene.ingredients import Body
+
+FloatArray = npt.NDArray[np.float64]
+
+_STILL = 1e-13  # of the scale of speeds: no speed
+_LEFT = 1e-12  # a wall is left, or a rim slides
+
+
+class Contacts(NamedTuple):
+    """What is known of every wall; arrays (n,).
+
+    ``leans``: whether the puck leans on it; ``rim``: −1, 0, 1, how the rim then slides; ``share``:
+    of the force that it bears; ``room``: how far the puck is from it, counted from the last impact;
+    ``hit``, ``pace``: when that was, and how fast the puck left; ``chain`` (1,): the wall that was
+    hit last.
+    """
+
+    leans: npt.NDArray[np.bool_]
+    rim: FloatArray
+    share: FloatArray
+    room: FloatArray
+    hit: FloatArray
+    pace: FloatArray
+    chain: npt.NDArray[np.int64]
+
+
+@inlined
+def _rim_of(body: Body, wall: FloatArray, y: FloatArray, speed: float) -> float:
+    slip = rim_slip(body, wall[NX], wall[NY], y[VX], y[VY], y[SPIN])
+    if abs(slip) <= _LEFT * speed:
+        return 0.0
+    return 1.0 if slip > 0.0 else -1.0
+
+
+@inlined
+def contacts_at(
+    bounds: Boundaries, room: FloatArray, body: Body, y: FloatArray, speed: float
+) -> Contacts:
+    """At a launch ``y``, in the laboratory: it leans where it touches and does not move away."""
+    count = room.size
+    contacts = Contacts(
+        np.zeros(count, np.bool_), np.zeros(count), np.ones(count), room, np.zeros(count),
+        np.zeros(count), np.full(1, -1),
+    )  # fmt: skip
+    for i in range(count):
+        wall = bounds.walls[i]
+        rounding = 4e-16 * (abs(wall[NX] * y[X]) + abs(wall[NY] * y[Y]) + abs(wall[PLACE]))
+        if abs(room[i]) <= rounding:
+            room[i] = 0.0
+            if abs(outward(bounds, i, y)) <= _STILL * speed:
+                contacts.leans[i] = True
+                contacts.rim[i] = _rim_of(body, wall, y, speed)
+    return contacts
+
+
+@inlined
+def touching(bounds: Boundaries, contacts: Contacts) -> FloatArray:
+    """The walls that the puck leans on, see :func:`puck_tables.scene.boundaries.touched`."""
+    return touched(bounds, contacts.leans, contacts.rim, contacts.share)
+
+
+@inlined
+def settled(contacts: Contacts) -> None:
+    """The rebounds have died out: walls bear all of the force."""
+    contacts.share[:] = 1.0
+
+
+@inlined
+def departed(bounds: Boundaries, contacts: Contacts, y: FloatArray, speed: float) -> bool:
+    """Whether the puck, in the laboratory, has left a wall that it leant on."""
+    left = False
+    for i in range(contacts.leans.size):
+        if contacts.leans[i] and outward(bounds, i, y) > _LEFT * speed:
+            contacts.leans[i] = False
+            contacts.room[i] = 0.0
+            left = True
+    return left
+
+
+@inlined
+def rims_after(
+    bounds: Boundaries, contacts: Contacts, body: Body, y: FloatArray, stuck: int, speed: float
+) -> bool:
+    """Whether a rim has begun to slide along a wall, or has stopped: that of row ``stuck``."""
+    changed, row = False, 0
+    for i in range(contacts.leans.size):
+        if not contacts.leans[i]:
+            continue
+        now = 0.0 if row == stuck else contacts.rim[i]
+        if now == 0.0 and row != stuck:
+            now = _rim_of(body, bounds.walls[i], y, speed)
+        changed = changed or now != contacts.rim[i]
+        contacts.rim[i] = now
+        row += 1
+    return changed
+
+
+@inlined
+def bounced(
+    bounds: Boundaries, contacts: Contacts, which: int, body: Body, y: FloatArray, t: float,
+    speed: float, time: float, tolerance: float,
+) -> float:  # fmt: skip
+    """Rebound of a puck, in the laboratory, from a wall.
+
+    How long the rebounds go on if the puck leans on the wall from now on; −1: it does not.
+    ``speed`` and ``time``: scales; ``tolerance``: local error in units of them.
+    """
+    came = -outward(bounds, which, y)
+    rebound(body, bounds.walls[which], y)
+    goes = outward(bounds, which, y)
+    rest_time = -1.0
+    if goes <= max(0.01 * tolerance, _STILL) * speed:
+        rest_time = 0.0
+    elif contacts.chain[0] == which and goes < contacts.pace[which] and goes <= 0.01 * speed:
+        hop = t - contacts.hit[which]
+        ratio = goes / contacts.pace[which]
+        rest = hop * ratio / (1.0 - ratio)
+        if hop > 0.0 and rest * rest <= tolerance * time * time:
+            rest_time = rest
+            drive = (contacts.pace[which] + came) / hop
+            contacts.share[which] = min(max(1.0 - goes / (drive * rest), 0.0), 1.0)
+    contacts.room[which] = 0.0
+    contacts.hit[which], contacts.pace[which], contacts.chain[0] = t, goes, which
+    if rest_time >= 0.0:
+        contacts.leans[which] = True
+    for i in range(contacts.leans.size):  # an impact may push it off others, or into them
+        if contacts.leans[i] and i != which and abs(outward(bounds, i, y)) > _STILL * speed:
+            contacts.leans[i] = False
+            contacts.room[i] = 0.0
+    if rest_time >= 0.0:
+        keep_off(touching(bounds, contacts), y)
+        for i in range(contacts.leans.size):
+            if contacts.leans[i]:
+                contacts.rim[i] = _rim_of(body, bounds.walls[i], y, speed)
+    return rest_time
