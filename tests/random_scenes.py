@@ -96,6 +96,11 @@ def _hold(scene: dict[str, Any], rng: np.random.Generator) -> None:
         nx, ny = -math.sin(angle), math.cos(angle)
         if kind == "rail" and moves:
             across = nx * hold["velocity"][0] + ny * hold["velocity"][1]
+        if kind == "blade":  # over the floor
+            floor, (x, y) = scene["floor"], launch["position"]
+            turning, (cx, cy) = floor.get("turning", 0.0), floor.get("centre", (0.0, 0.0))
+            vx, vy = floor.get("velocity", (0.0, 0.0))
+            across += nx * (vx - turning * (y - cy)) + ny * (vy + turning * (x - cx))
         launch["velocity"] = [along * ny + across * nx, -along * nx + across * ny]
     scene["constraint"] = hold
 

@@ -72,8 +72,11 @@ class Judge:
         if kind == "rail":
             return np.array([[-math.sin(angle), math.cos(angle), 0.0]]), np.zeros(1)
         c, s, (vx, vy, w) = math.cos(y[2] + angle), math.sin(y[2] + angle), y[3:]
-        if kind == "blade":
-            return np.array([[-s, c, 0.0]]), np.array([-w * (c * vx + s * vy)])
+        if kind == "blade":  # over the floor, whose velocity there changes by Ω × v
+            n, (sx, sy, _) = np.array([-s, c]), self.floor(y[:2])
+            change = n @ (self.turning * np.array([-vy, vx]))
+            drift = -w * (c * (vx - sx) + s * (vy - sy)) - change
+            return np.array([[-s, c, 0.0]]), np.array([drift])
         arm = self.hold["reach"]
         return (
             np.array([[1.0, 0.0, -arm * s], [0.0, 1.0, arm * c]]),

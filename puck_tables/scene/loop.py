@@ -72,6 +72,7 @@ FRAME_COLUMNS = ROW + 3  # time, state, λ, carried, heat of impacts
 EVENT_COLUMNS = 3 + SIZE  # time, what, which, state
 
 _REST = 1e-13  # of the scale of speeds: as good as at rest
+_FIRST = 1e-16  # of it: what a slip begins with, for its direction
 _LAST = 30.0  # times the local error: from there a stop goes straight
 _SLOW = 1e-3  # of friction: what brakes less comes closer to rest before it goes straight
 _NEAR = 0.5  # of the time in which the slip would end, at most, is a step
@@ -234,7 +235,8 @@ def follow(
 
     Returns
     -------
-    how it ended, when, number of events, of steps and of frames reached, heat of impacts
+    how it ended, when, number of events, of steps and of frames reached, sum of the errors of steps
+    in units of ``ask.scale``
     """
     work, last, gaps = np.empty((STAGES, ROW)), np.empty(ROW), np.empty(DEGREE + 1)
     state, new, trial = np.empty(WIDE), np.empty(WIDE), np.empty(WIDE)
@@ -248,7 +250,7 @@ def follow(
     to_laboratory(model, y, -1.0)
     t, heat, mode, piece, way, stiff = 0.0, 0.0, SLIDES, 0, _NO_WAY, False
     resting, calm = False, 0.0  # whether its rest is noted; when rebounds have died out
-    count, steps, frame = 0, 0, 0
+    count, steps, frame, wrong = 0, 0, 0, 0.0
     # by so much longer than the centre a spin takes to brake
     slow = max(1.0, 2.0 * body.inertia / (body.mass * body.radius * body.radius))
     how = TIME_UP
@@ -274,7 +276,7 @@ def follow(
                 mode, stiff = SLIDES, False
             elif excess > SLACK * dry.load:
                 mode, stiff = SLIDES, True
-                first = 4.0 * _REST * ask.speed
+                first = _FIRST * ask.speed
                 y[VX], y[VY], y[SPIN] = first * nx, first * ny, first * nw
                 q = first
             if (mode == CARRIED) != resting and (t >= calm or mode != CARRIED):
@@ -339,6 +341,7 @@ def follow(
             if lean[GRIP] > 0.0 and lean[RIM] * _watched(stretch, i, new) < 0.0:
                 landed, stuck = False, i
                 length = _zero(stretch, i, t, length, y, scale, work, new)
+        wrong += error
         last[:] = work[STAGES - 1]
         happens, which, moment = first_crossing(
             bounds, contacts.room, region, contacts.leans, stretch, t, length, y, scale, work, new,
@@ -368,13 +371,13 @@ def follow(
                 )
         work[0] = last
         known = happens < 0 and mode == SLIDES and model.hold.kind == 0 and leaning.shape[0] == 0
-        q = slip_speed(model, y)
+        before_it, q = q, slip_speed(model, y)
         if stretch.stiff or mode == SLIDES:
             reach = length * settling_rate(model, dry, q)
             stiff = reach > _MILD if stretch.stiff else reach > _STIFF
         if landed and (target < ask.until or t == calm):
             settle = True
-        if mode in (SLIDES, STOPS) and q <= _REST * ask.speed:
+        if mode in (SLIDES, STOPS) and q <= _REST * ask.speed and q < before_it:
             settle = True
         if leaning.shape[0] > 0:
             to_laboratory(model, y, 1.0)
@@ -428,4 +431,4 @@ def follow(
     finite = True
     for i in range(SIZE):
         finite = finite and math.isfinite(y[i])
-    return (how if finite else NOT_FINITE), t, count, steps, frame, heat
+    return (how if finite else NOT_FINITE), t, count, steps, frame, wrong

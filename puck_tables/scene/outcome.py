@@ -58,10 +58,11 @@ class SceneRun:
     edge'; ``end_time`` s; ``events``: what happened, one of rests, slips, bounces, leans (stays at
     the wall), border, edge.
     ``plan``: the model that was taken, and why.  ``energy_residual``: what the ledger misses, as a
-    share of its largest entry.  ``error_estimate``: of the end time in units of Q/J and of places in
-    Q²/J, ``speed_scale`` = Q in m/s and ``rate_scale`` = J in m/s² (the slip at the launch and the
-    largest of friction, forces and what a turning floor asks over the mass; without slip Q² = J r);
-    it is above ``run.tol`` where the motion amplifies errors so much that tol cannot be kept.
+    share of its largest entry.  ``error_estimate``: of the end time in
+    units of Q/J and of places in Q²/J, with ``speed_scale`` = Q in m/s and ``rate_scale`` = J in
+    m/s² (the slip at the launch, and the largest of friction, forces and what a turning floor asks
+    over the mass; without slip Q² = J r).  It is above ``run.tol`` where the motion amplifies
+    errors so much that tol cannot be kept.
     ``columns``: arrays (n,) by name, units in :data:`COLUMNS`;
     ``last``: the same at the end, numbers.
     """

@@ -33,6 +33,7 @@ _STIFF = 3  # vx, vy, spin
 _NUDGE = 1e-7  # of the slip: of the differences
 _ITERATIONS = 12
 _RELATIVE = 1e-3  # of the slip: no step is worse
+_SURE = 1e-6  # of it: how well the stages are known
 
 
 @inlined
@@ -107,7 +108,7 @@ def radau_step(
     for stage in range(3):
         for i in range(SIZE):
             z[stage, i] = h * _C[stage] * work[0, i]
-    before = math.inf
+    before, slip_scale = math.inf, scale[VX]
     for iteration in range(_ITERATIONS):
         for stage in range(3):
             for i in range(SIZE):
@@ -127,12 +128,18 @@ def radau_step(
                     largest = max(largest, change)
                     z[stage, i] = whole
         _solve(matrix, order, step)
+        moved = 0.0
         for stage in range(3):
             for i in range(_STIFF):
                 change = abs(step[_STIFF * stage + i]) / scale[VX + i]
                 largest = change if not change <= largest else largest
+                moved = max(moved, change * slip_scale)
                 z[stage, VX + i] += step[_STIFF * stage + i]
-        if largest <= 1e-15 or (iteration > 1 and largest >= 0.5 * before and largest <= 1e-13):
+        for i in range(SIZE):
+            at[i] = y[i] + z[2, i]
+        sure = moved <= _SURE * max(slip_speed(stretch.model, y), slip_speed(stretch.model, at))
+        stalls = iteration > 1 and largest >= 0.5 * before and largest <= 1e-13
+        if sure and (largest <= 1e-15 or stalls):
             break
         if not largest < math.inf or (iteration > 2 and largest > 0.9 * before):
             return math.inf

@@ -125,7 +125,7 @@ class Constraint:
     )  # fmt: skip
     reach: float = of("number", 0.0, "m", low=0.0, doc="from the centre to the pivot")
     velocity: tuple[float, float] = of("pair", (0.0, 0.0), "m/s", doc="of rail or pivot")
-    side_slip: float = of("number", 0.0, "m/s", doc="of the blade, to its left")
+    side_slip: float = of("number", 0.0, "m/s", doc="of the blade over the floor, to its left")
 
 
 @dataclass(frozen=True)
@@ -281,15 +281,27 @@ def launch_velocity(scene: Scene) -> tuple[float, float]:
             hold.velocity[0] + rim * math.sin(bearing),
             hold.velocity[1] - rim * math.cos(bearing),
         )
-    across = hold.side_slip
-    direction = hold.angle
-    if hold.kind == "rail":
-        across = -math.sin(direction) * hold.velocity[0] + math.cos(direction) * hold.velocity[1]
-    else:
+    direction, side_slip, support = hold.angle, hold.side_slip, hold.velocity
+    if hold.kind == "blade":  # it grips the floor
         direction += scene.launch.orientation
+        support = floor_at(scene.floor, scene.launch.position)
     nx, ny = -math.sin(direction), math.cos(direction)
-    off = nx * vx + ny * vy - across
+    off = nx * (vx - support[0]) + ny * (vy - support[1]) - side_slip
     return vx - off * nx, vy - off * ny
+
+
+def floor_at(floor: Floor, place: tuple[float, float]) -> tuple[float, float]:
+    """Velocity of the floor at a place, m/s.
+
+    Examples
+    --------
+    >>> floor_at(Floor(velocity=(1.0, 0.0), turning=2.0), (0.0, 0.5))
+    (0.0, 0.0)
+    """
+    return (
+        floor.velocity[0] - floor.turning * (place[1] - floor.centre[1]),
+        floor.velocity[1] + floor.turning * (place[0] - floor.centre[0]),
+    )
 
 
 def distance(line: Wall | Edge, place: tuple[float, float]) -> float:

@@ -151,5 +151,9 @@ def bounced(
         keep_off(touching(bounds, contacts), y)
         for i in range(contacts.leans.size):
             if contacts.leans[i]:
+                wall = bounds.walls[i]
+                off = wall[NX] * y[X] + wall[NY] * y[Y] - wall[PLACE]  # rounding of the rebounds
+                y[X] -= off * wall[NX]
+                y[Y] -= off * wall[NY]
                 contacts.rim[i] = _rim_of(body, bounds.walls[i], y, speed)
     return rest_time

@@ -85,6 +85,7 @@ def simulate_scene(
 COARSER = 30.0  # the steps of a twin may err by so much more
 FINER = (1.0, 1 / 30, 1 / 900, 1 / 27000)  # of the tolerance asked: tried one after the other
 FINEST = 1e-13
+STEP_SHARE = 0.1  # of the sum of the errors of steps, which are those of order 4
 PROBES = 7  # states on the way that are compared too
 
 FAILURES = {
@@ -180,11 +181,14 @@ def _estimate(prepared: Prepared, events: FloatArray) -> float:
     """
     ends = [np.empty((PROBES + 1, FRAME_COLUMNS)) for _ in range(2)]
     how, end_time, *_ = prepared.follow(np.empty(0), ends[0], events, COARSER)
+    if how in (TIME_UP, STEP_LIMIT):  # else the run itself tells
+        _refuse_failed(prepared.scene, how, end_time, prepared.ask.to_the_end)
     probes = end_time * np.arange(1, PROBES + 1) / (PROBES + 1)
-    reached = [
-        prepared.follow(probes, rows, events, coarser)[4]
+    both_runs = [
+        prepared.follow(probes, rows, events, coarser)
         for rows, coarser in zip(ends, (COARSER, 1.0), strict=True)
     ]
+    reached = [run[4] for run in both_runs]
     both = min(reached)
     states = [
         np.concatenate([rows[:both], rows[n : n + 1]])
@@ -194,15 +198,16 @@ def _estimate(prepared: Prepared, events: FloatArray) -> float:
     radius, unit = prepared.model.body.radius, prepared.speed / prepared.rate
     place = np.hypot(gap[:, 1 + X], gap[:, 1 + Y]) + radius * gap[:, 1 + THETA]
     worst = max(gap[-1, 0] / unit, place.max() / (prepared.speed * unit))
-    return float(worst + friction_error(prepared.scene))
+    # where events end the steps both may take the same: the errors of steps tell then
+    return float(worst + STEP_SHARE * both_runs[1][5] + friction_error(prepared.scene))
 
 
 def _refuse_failed(scene: Scene, how: int, end_time: float, to_the_end: bool) -> None:
     """Say why a run has no end."""
-    if how == TIME_UP and scene.run.time is None and not to_the_end:
+    if how in (TIME_UP, STEP_LIMIT) and scene.run.time is None and not to_the_end:
+        long = "a million steps" if how == STEP_LIMIT else "a thousand times what friction takes"
         raise InputError(
-            f"the puck still moves after {end_time:.4g} s, a thousand times what friction should "
-            "take to stop it: it may never stop; give run.time"
+            f"the puck still moves after {end_time:.4g} s, {long}: it may never stop; give run.time"
         )
     if how == NOT_FINITE and scene.floor.law:  # a state beyond the law is never reached
         top = SpeedLaw.from_csv(scene.floor.law).top_speed

@@ -106,6 +106,8 @@ def step(
     model = stretch.model
     if stretch.mode == CARRIED:
         new[VX] = new[VY] = new[SPIN] = 0.0
+        if model.surface.spin == 0.0:  # straight on: what looks like an error is rounding
+            error = 0.0
     elif stretch.mode == SLIDES:
         if model.hold.kind != FREE:
             _put_right(model.hold, model.surface, t + h, new)

@@ -1,0 +1,195 @@
+"""Stick and slip next to the limit of friction, speeds that cancel, and honest estimates."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from random_scenes import draw
+
+from puck_tables.contact.integrals import slip_direction
+from puck_tables.contact.quadrature import integrals
+from puck_tables.contact.resultants import moment_balance
+from puck_tables.scene.prepare import prepare
+from puck_tables.scene.scene import scene_from
+from puck_tables.scene.simulate import simulate_scene
+
+G = 9.80665
+
+
+def friction_at(phi: float) -> tuple[float, float]:
+    """Force and torque of a flat puck in a slip, in units of f N and f N r."""
+    rho = moment_balance(integrals(phi), slip_direction(phi), 0.0)
+    return math.cos(phi) * float(rho.parallel), 0.5 * math.sin(phi) * float(rho.spin)
+
+
+@pytest.mark.parametrize("gap", [0.1, 1e-3, 1e-6])
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+def test_slips_that_go_straight_next_to_the_limit(gap: float, side: float) -> None:
+    """A demand along what friction has at φ₀, where 2T/F = tan φ₀, keeps a disc's slip at φ₀.
+
+    The acceleration (F/m, r T/I) of the excess is then in the direction of the slip, and
+    Q′ = (share − 1) F/(m cos φ₀).
+    """
+    low, high = 0.1, 1.4
+    for _ in range(100):
+        phi = 0.5 * (low + high)
+        force, torque = friction_at(phi)
+        low, high = (phi, high) if 2.0 * torque / force < math.tan(phi) else (low, phi)
+    mass, f, q0 = 2.0, 0.3, 0.01
+    load, share = f * mass * G, 1.0 + side * gap
+    scene: dict[str, Any] = {
+        "puck": {"radius": 1.0, "mass": mass}, "floor": {"friction": f},
+        "force": {"constant": [share * force * load, 0.0], "torque": share * torque * load},
+        "launch": {"velocity": [q0 * math.cos(phi), 0.0], "spin": q0 * math.sin(phi)},
+    }  # fmt: skip
+    rate = side * gap * force * load / (mass * math.cos(phi))
+    if side < 0.0:
+        run = simulate_scene(scene)
+        assert run.end == "at rest"
+        assert run.end_time == pytest.approx(-q0 / rate, rel=1e-12 / gap + 1e-9)
+    else:
+        scene["run"] = {"time": 3.0}
+        run = simulate_scene(scene)
+        q = math.hypot(run.last["vx"], run.last["spin"])
+        assert q == pytest.approx(q0 + 3.0 * rate, rel=1e-9)
+    assert run.steps < 20_000
+
+
+def test_friction_that_turns_while_forces_change(tmp_path: Path) -> None:
+    """Slips from rest under forces and a torque over time: one answer at every tolerance."""
+    path = tmp_path / "force.csv"
+    path.write_text("0,0,0,0\n1,.5,.5,.01\n2,.9,-.3,.003\n3,0,0,0\n")
+    for launch in ({}, {"velocity": [0.3, 0.0], "spin": 20.0}):
+        scene = {
+            "puck": {"radius": 0.04, "height": 0.02, "mass": 0.2}, "floor": {"friction": 0.3},
+            "force": {"file": str(path)}, "launch": launch,
+        }  # fmt: skip
+        best = simulate_scene({**scene, "run": {"tol": 1e-12}})
+        for tol in (1e-4, 4.64e-7, 2.2e-7, 1e-9):
+            run = simulate_scene({**scene, "run": {"tol": tol}})
+            time = run.speed_scale / run.rate_scale
+            assert abs(run.end_time - best.end_time) <= tol * time
+            off = math.hypot(run.last["x"] - best.last["x"], run.last["y"] - best.last["y"])
+            assert off <= tol * run.speed_scale * time
+            assert run.error_estimate <= tol
+            assert run.steps < 4000
+
+
+def test_rest_as_the_force_reaches_what_friction_holds(tmp_path: Path) -> None:
+    path = tmp_path / "force.csv"
+    np.savetxt(path, [[0, -3, 0], [10, -3 + 17.1864406779661, 0]], delimiter=",", fmt="%.17g")
+    run = simulate_scene({
+        "puck": {"radius": 0.01}, "floor": {"friction": 0.1},
+        "launch": {"velocity": [1.0, 0.3], "position": [0.01, 0.0]},
+        "wall": [{"point": [0, 0], "normal": [1, 0], "restitution": 0.5}],
+        "force": {"file": str(path)}, "run": {"time": 3.0},
+    })  # fmt: skip
+    slips = (0.1 * G + 3.0) / 1.71864406779661
+    assert [event.what for event in run.events][-2:] == ["rests", "slips"]
+    assert run.events[-1].time == pytest.approx(slips, rel=1e-11)
+
+
+@pytest.mark.parametrize("tol", [1e-2, 1e-6, 1e-9])
+def test_a_pivot_at_the_centre_of_a_turntable(tol: float) -> None:
+    """It turns about one point with the floor: the slip w falls at a constant rate to 0."""
+    reach, turning, spin = 0.1, 3.0, -1.0
+    phi = math.atan2(0.1, reach)
+    force, torque = friction_at(phi)
+    rate = 0.2 * G * (torque * 0.1 + reach * force) / (0.5 * 0.1**2 + reach**2)
+    run = simulate_scene({
+        "puck": {"radius": 0.1},
+        "floor": {"friction": 0.2, "turning": turning, "centre": [reach, 0]},
+        "launch": {"spin": spin}, "constraint": {"kind": "pivot", "reach": reach},
+        "run": {"time": 1.0, "tol": tol},
+    })  # fmt: skip
+    assert run.end == "carried by the floor"
+    rests = (turning - spin) / rate
+    assert run.events[0].time == pytest.approx(rests, abs=tol * run.speed_scale / run.rate_scale)
+
+
+@pytest.mark.parametrize("tol", [1e-4, 1e-7])
+def test_tol_is_of_the_slip_on_a_fast_belt(tol: float) -> None:
+    """50 m/s of belt, a slip of 1.4 cm/s: as on a belt at rest, but for the rounding of 50."""
+    belt, slip = 50.0, [0.014, 0.003]
+    scene: dict[str, Any] = {
+        "puck": {"radius": 0.05, "height": 0.02}, "floor": {"friction": 0.3},
+        "launch": {"velocity": slip, "spin": 0.1},
+        "wall": [{"point": [0, -10], "normal": [0, 1]}], "run": {"tol": 1e-11, "time": 0.01},
+    }  # fmt: skip
+    still = simulate_scene(scene)
+    scene["floor"]["velocity"] = [belt, 0.0]
+    scene["launch"]["velocity"] = [belt + slip[0], slip[1]]
+    scene["run"]["tol"] = tol
+    run = simulate_scene(scene)
+    time = run.speed_scale / run.rate_scale
+    rounding = belt * 1e-15
+    assert abs(run.events[0].time - still.events[0].time) <= tol * time + rounding / run.rate_scale
+    assert abs(run.last["y"] - still.last["y"]) <= tol * run.speed_scale * time + rounding * time
+
+
+def blow(folder: Path) -> dict[str, Any]:
+    (folder / "blow.csv").write_text("0,2000,0\n1e-4,2000,0\n")
+    return {
+        "puck": {"radius": 0.05, "mass": 0.2}, "floor": {"friction": 0.3},
+        "force": {"file": str(folder / "blow.csv")},
+    }  # fmt: skip
+
+
+def test_what_stops_late_is_not_refused(tmp_path: Path) -> None:
+    strips = {"borders": [0.1], "friction": [0.9, 5e-4]}
+    run = simulate_scene({
+        "puck": {"radius": 0.05}, "floor": {"strips": strips}, "launch": {"velocity": [2.0, 0.0]},
+    })  # fmt: skip
+    at_border = math.sqrt(4.0 - 2.0 * 0.9 * G * 0.1)
+    assert run.end_time == pytest.approx((2.0 - at_border) / (0.9 * G) + at_border / (5e-4 * G))
+    run = simulate_scene(blow(tmp_path))
+    after = 2000 / 0.2 * 1e-4 - 0.3 * G * 1e-4
+    assert run.end_time == pytest.approx(1e-4 + after / (0.3 * G), rel=1e-9)
+    slope = math.atan(0.3 * (1.0 - 1e-4))
+    run = simulate_scene({
+        "puck": {"radius": 0.05}, "floor": {"friction": 0.3, "slope": slope},
+        "launch": {"velocity": [1.0, 0.0]},
+    })  # fmt: skip
+    brake = G * (0.3 * math.cos(slope) - math.sin(slope))
+    assert run.end_time == pytest.approx(1.0 / brake, rel=1e-9)
+
+
+def _estimates(seeds: range, folder: Path) -> list[float]:
+    """Errors of random scenes over their own estimates."""
+    shares = []
+    for seed in seeds:
+        scene = draw(seed, folder)
+        scene["run"]["tol"] = 1e-12
+        best = simulate_scene(scene)
+        for tol in (1e-4, 1e-7):
+            scene["run"]["tol"] = tol
+            run = simulate_scene(scene)
+            speed, rate = run.speed_scale, run.rate_scale
+            error = max(
+                abs(run.end_time - best.end_time) * rate / speed,
+                math.hypot(run.last["x"] - best.last["x"], run.last["y"] - best.last["y"])
+                * rate / speed**2,
+            )  # fmt: skip
+            unsure = best.error_estimate + 1e-12
+            shares.append(max(error - unsure, 0.0) / run.error_estimate)
+    return shares
+
+
+def test_no_estimate_is_too_small(tmp_path: Path) -> None:
+    assert max(_estimates(range(3000, 3040), tmp_path)) <= 2.0
+
+
+@pytest.mark.nightly
+def test_no_estimate_of_many_is_too_small(tmp_path: Path) -> None:
+    assert max(_estimates(range(4000, 5000), tmp_path)) <= 2.0
+
+
+def test_prepared_scales_are_those_reported() -> None:
+    scene, _ = scene_from({"puck": {"radius": 0.1}, "floor": {"friction": 0.2, "slope": 0.1}})
+    prepared = prepare(scene)
+    assert prepared.speed == pytest.approx(math.sqrt(prepared.rate * 0.1))
+    assert prepared.rate == pytest.approx(0.2 * G * math.cos(0.1))
