@@ -1,4 +1,4 @@
-"""No wall, edge or border is missed: random scenes whose paths are cubics, judged by their roots."""
+"""No wall, edge or border is missed: paths that are cubics, judged by their roots."""
 
 from pathlib import Path
 

@@ -101,7 +101,7 @@ def free_state(scene: dict[str, Any], when: float) -> tuple[np.ndarray, np.ndarr
 
 
 def truth(scene: dict[str, Any], shift: float = 0.0, turn: float = 0.0) -> tuple:
-    """How it ends, when, events (n, 5), size of the path, fastest speed, last state; lines moved."""
+    """How it ends, when, events (n, 5), size of path, fastest speed, last state; lines moved."""
     puck, launch = scene["puck"], scene["launch"]
     walls, edges, borders = lines(scene)
     walls[:, 2] += shift
@@ -125,7 +125,7 @@ def truth(scene: dict[str, Any], shift: float = 0.0, turn: float = 0.0) -> tuple
 def prepared(seed: int, index: int) -> dict[str, Any]:
     """A scene that ends before its rebounds settle, and before 300 events."""
     scene = draw(seed, index)
-    how, when, events, *_ = truth(scene)
+    how, _, events, *_ = truth(scene)
     if how in (SETTLES, MANY):
         keep = events[min(len(events) - 1, 300), 0]
         scene["run"]["time"] = float(0.999 * keep)
@@ -146,7 +146,7 @@ def certain(scene: dict[str, Any], tol: float) -> tuple[np.ndarray, np.ndarray, 
 
 
 def verdict(scene: dict[str, Any], tol: float, folder: Path) -> tuple[str, str, int]:
-    """'right', 'missed', 'invented', 'late' or 'refused', in words, and how many events were sure."""
+    """'right', 'missed', 'invented', 'late' or 'refused', in words, and the number of events."""
     events, spread, sure = certain(scene, tol)
     span = scene["run"]["time"]
     run, words = engine(scene, tol, folder)
