@@ -189,8 +189,7 @@ def gathered(law, cosine, sine, g):
 def moments(law, g):
     """S (3, 3): ∫ w g_i g_j over the loaded part."""
     s = np.zeros((3, 3))
-    cut, one, two = _rim(g)
-    if cut == 0:
+    if _rim(g)[0] == 0:
         second = 0.25 if law == UNIFORM else (0.2 if law == HERTZ else 0.5)
         s[0, 0], s[1, 1], s[2, 2] = 1.0, second, second
         return s

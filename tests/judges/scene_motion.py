@@ -1,8 +1,8 @@
 """Equations of a puck in a scene for the judge: slip relative to the floor as the unknown.
 
 State y (6,): place from ``base``, angle, and velocity and spin relative to the floor, so that a
-slow slip on a fast floor keeps its digits.  A wall that the puck leans on takes the force into it, and
-where it is rough its rim feels Coulomb's friction there: what infinitely many small rebounds give.
+slow slip on a fast floor keeps its digits.  A wall that the puck leans on takes the force into it, and where
+it is rough its rim feels Coulomb's friction there: what infinitely many small rebounds give.
 """
 
 from __future__ import annotations
@@ -173,4 +173,29 @@ def slow_way(world, ctx, base, t, y, guess, out, fr):
         for i in range(3):
             n[i] = trial[i] / math.sqrt(size)
     ctx[MODE] = mode
+    return n, gain
+
+
+@njit(cache=True)
+def best_way(world, ctx, base, t, y, guess, out, fr):
+    """:func:`slow_way`, and of the ways that a rim on a rough wall can go the one that grows."""
+    if ctx[LEAN] < 0 or ctx[RIM] == SMOOTH or ctx[OTHER] >= 0:
+        return slow_way(world, ctx, base, t, y, guess, out, fr)
+    wall = world.walls[ctx[LEAN]]
+    was, n, gain = ctx[RIM], guess, -math.inf
+    for rim in (1, -1, STICKS):
+        for sign in (1.0, -1.0):
+            ctx[RIM] = rim
+            turn = sign * math.sqrt(0.5) if rim == STICKS else -0.6 * rim
+            along = sign * math.sqrt(0.5) if rim == STICKS else 0.8 * rim
+            trial = np.array([-wall[1] * along, wall[0] * along, turn])
+            way, growth = slow_way(world, ctx, base, t, y, trial, out, fr)
+            slip = wall[0] * way[1] - wall[1] * way[0] - way[2]
+            push, _, grip = rates(
+                world, ctx, base, t, y, way[0], way[1], way[2] / world.body[2], out, fr
+            )
+            fits = abs(grip) <= wall[5] * push if rim == STICKS else rim * slip > 0.0
+            if fits and growth > gain:
+                n, gain, was = way, growth, rim
+    ctx[RIM] = was
     return n, gain

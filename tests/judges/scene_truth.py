@@ -1,4 +1,4 @@
-"""A scene from launch to end, by the judge: order 8, small steps, every event sampled and refined."""
+"""A scene from launch to end, by the judge: order 8, every event sampled and refined."""
 
 from __future__ import annotations
 
@@ -26,10 +26,9 @@ from scene_motion import (
     SMOOTH,
     STICKS,
     World,
-    driven,
+    best_way,
     floor_at,
     rates,
-    slow_way,
 )
 from scipy.integrate._ivp import dop853_coefficients as dop
 
@@ -156,7 +155,7 @@ def test(world, ctx, base, t, y, which, out, fr, speed):
         return ctx[RIM] * rim_slip(world, wall, base, y) + 1e-15 * speed, 0.0
     # whether the floor still holds
     guess = np.array([0.6, 0.0, 0.8])
-    _, gain = slow_way(world, ctx, base, t, y, guess, out, fr)
+    _, gain = best_way(world, ctx, base, t, y, guess, out, fr)
     return -gain, 0.0
 
 
@@ -177,7 +176,8 @@ def tested(world, ctx, which):
         return ctx[OTHER] >= 0 and ctx[MODE] == SLIDES
     if which == 2:
         return ctx[LEAN] >= 0 and ctx[RIM] != SMOOTH and ctx[OTHER] < 0 and ctx[MODE] == SLIDES
-    return ctx[MODE] == RESTS
+    changes = world.floor[4] != 0.0 or 0 < ctx[PIECE] < len(world.drive)
+    return ctx[MODE] == RESTS and changes
 
 
 @njit(cache=True)
@@ -200,8 +200,11 @@ def first_event(world, ctx, base, t, h, y, f, at, out, fr, speed):
             dense(y, f, high, at)
             after, pace = test(world, ctx, base, t + high * h, at, which, out, fr, speed)
             a, b, broken = low, high, after < 0.0 and (value >= 0.0 or (line and rate > 0.0))
-            if line and rate != 0.0 and rate * pace < 0.0 and (
-                (rate < 0.0 and after >= 0.0) or (rate > 0.0 and after < 0.0)
+            if (
+                line
+                and rate != 0.0
+                and rate * pace < 0.0
+                and ((rate < 0.0 and after >= 0.0) or (rate > 0.0 and after < 0.0))
             ):  # a turning point of the gap
                 p, q = low, high
                 while True:
@@ -304,7 +307,7 @@ def begins(world, ctx, base, t, y, n, gain, speed, until, out, fr):
         wait = q / gain
     else:
         eps = 1e-7 * max(until - t, 0.0)
-        _, later = slow_way(world, ctx, base, t + eps, y, n, out, fr)
+        _, later = best_way(world, ctx, base, t + eps, y, n, out, fr)
         pace = (later - gain) / eps if eps > 0.0 else 0.0
         if gain * gain + 2.0 * q * pace <= 0.0 or (gain <= 0.0 and pace <= 0.0):
             return math.inf  # it would stop again before it has moved
@@ -312,7 +315,7 @@ def begins(world, ctx, base, t, y, n, gain, speed, until, out, fr):
             wait = q / gain
         else:
             wait = (-gain + math.sqrt(gain * gain + 2.0 * q * pace)) / pace
-        n, _ = slow_way(world, ctx, base, t + wait, y, n, out, fr)
+        n, _ = best_way(world, ctx, base, t + wait, y, n, out, fr)
     sx, sy = floor_at(world, base[0] + y[0], base[1] + y[1])
     y[0] += wait * sx
     y[1] += wait * sy
@@ -361,15 +364,13 @@ def follow(world, start, until, frames, states, events, tol, speed, length, limi
                 n = np.array([0.6, 0.0, 0.8])
             else:
                 n = np.array([y[3] / q, y[4] / q, r * y[5] / q])
-            if ctx[LEAN] >= 0:
-                was = ctx[RIM]
             toward = 0.0  # how fast the slip ends
             if ctx[MODE] == SLIDES and q > 0.0:
                 rates(world, ctx, base, t, y, y[3], y[4], y[5], out, fr)
                 toward = -(y[3] * out[3] + y[4] * out[4] + r * r * y[5] * out[5]) / q
             held = True
-            for way in range(2):  # from the slip that is, and from another
-                n, gain = slow_way(world, ctx, base, t, y, n, out, fr)
+            for _ in range(2):  # from the slip that is, and from another
+                n, gain = best_way(world, ctx, base, t, y, n, out, fr)
                 if gain > 0.0:
                     held = False
                     break
@@ -558,7 +559,7 @@ def follow(world, start, until, frames, states, events, tol, speed, length, limi
             events[count] = np.array([t, SLIP, ctx[REGION], px, py])
             count += 1
             guess = np.array([0.6, 0.0, 0.8])
-            n, gain = slow_way(world, ctx, base, t, y, guess, out, fr)
+            n, gain = best_way(world, ctx, base, t, y, guess, out, fr)
             ctx[MODE] = SLIDES
             begun = begins(world, ctx, base, t, y, n, max(gain, 0.0), speed, target, out, fr)
             if begun == math.inf:
@@ -671,6 +672,7 @@ def truth(
     )
     return {
         "end": ENDS[how], "time": when, "events": events[:count].copy(),
-        "states": states[:reached], "steps": steps, "speed": max(fastest, 1e-300),
-        "rate": sharpest,
+        "states": states[:reached], "steps": steps,
+        "speed": fastest if fastest > 0.0 else speed,
+        "rate": sharpest if sharpest > 0.0 else max(sharp, speed / until),
     }  # fmt: skip
