@@ -311,10 +311,8 @@ def begins(world, ctx, base, t, y, n, gain, speed, until, out, fr):
         pace = (later - gain) / eps if eps > 0.0 else 0.0
         if gain * gain + 2.0 * q * pace <= 0.0 or (gain <= 0.0 and pace <= 0.0):
             return math.inf  # it would stop again before it has moved
-        if pace == 0.0:
-            wait = q / gain
-        else:
-            wait = (-gain + math.sqrt(gain * gain + 2.0 * q * pace)) / pace
+        root = math.sqrt(gain * gain + 2.0 * q * pace)
+        wait = 2.0 * q / (gain + root)
         n, _ = best_way(world, ctx, base, t + wait, y, n, out, fr)
     sx, sy = floor_at(world, base[0] + y[0], base[1] + y[1])
     y[0] += wait * sx

@@ -123,6 +123,11 @@ def _top(scene: dict[str, Any]) -> float:
     return float(scene["limit"]["span"] * (share - 1.0) / share)
 
 
+def closeness(scene: dict[str, Any]) -> float:
+    """Tolerance above the rounding of the force that is left, and far below what is allowed."""
+    return max(1e-10, 1e-14 / abs(scene["limit"]["share"] - 1.0))
+
+
 def cartesian(
     scene: dict[str, Any],
     slider: Slider,
@@ -144,9 +149,10 @@ def cartesian(
 
     ends.terminal, ends.direction = True, -1.0  # type: ignore[attr-defined]
     y = np.array([*(z / size), *(u / size)])
+    close = closeness(scene)
     kinks = [_top(scene)] if scene["class"] == "peak" else []
     for stop in [k for k in kinks if k > t] + [until]:
-        run = solve_ivp(rates, (t, stop), y, "Radau", events=ends, rtol=3e-12, atol=1e-14)
+        run = solve_ivp(rates, (t, stop), y, "Radau", events=ends, rtol=close, atol=1e-2 * close)
         if not run.success:
             raise ValueError(run.message)
         t, y = float(run.t[-1]), run.y[:, -1]
@@ -192,7 +198,7 @@ def by_direction(
     for extra in pieces:
         run = solve_ivp(
             rates, (0.0, 1e30), y, "BDF", events=[ends, *([extra] if extra else [])],
-            rtol=1e-10, atol=1e-12,
+            rtol=closeness(scene), atol=1e-2 * closeness(scene),
         )  # fmt: skip
         y = run.y[:, -1]
         if run.status != 1:
