@@ -1,8 +1,8 @@
 """Equations of a puck in a scene for the judge: slip relative to the floor as the unknown.
 
 State y (6,): place from ``base``, angle, and velocity and spin relative to the floor, so that a
-slow slip on a fast floor keeps its digits.  A wall that the puck leans on takes the force into it; its rim feels Coulomb's
-friction where the wall is rough: what infinitely many small rebounds give.
+slow slip on a fast floor keeps its digits.  A wall that the puck leans on takes the force into
+it; its rim feels Coulomb's friction where the wall is rough, as of infinitely many small rebounds.
 """
 
 from __future__ import annotations

@@ -3,8 +3,8 @@
 A force and a torque of a share of what friction has in the slip n.  'stops': constant, share < 1,
 from a small slip in another direction.  'starts': constant, share > 1, from rest: uniformly
 accelerated along the slip that keeps its direction, in closed form.  'peak': straight up to share
-> 1 and down again: slips when the share is 1, rests later.  Where there is no closed form, two ways
-of the judge's own (Radau in Cartesian velocities; BDF in direction and ln Q) must agree.
+> 1 and down again: slips when the share is 1, rests later (in closed form next to 1).  Elsewhere
+two ways of the judge's own (Radau in Cartesian velocities; BDF in direction and ln Q) must agree.
 
 The allowed error is tol of the motion's own time and length over |share − 1|, by which a change of
 the force is amplified.
@@ -233,6 +233,18 @@ def truth(scene: dict[str, Any], second: bool = False) -> dict[str, Any]:
             "rests": rests, "slips": None, "way": way * turn, "time": rests,
             "length": size * rests,
         }  # fmt: skip
+    if share <= 1.0002:
+        # the growth of the slip is straight over time, up and down, but for a share of share − 1
+        top = _top(scene)
+        n, gain = slider.steady(_pull(scene, top), n)
+        pace, after = gain / top, (1.0 + math.sqrt(2.0)) * top
+        way = pace * (
+            top**3 / 6.0 + top * top * after / 2.0 + top * after**2 / 2.0 - after**3 / 6.0
+        )
+        return {
+            "rests": span / share + top + after, "slips": span / share, "way": way * n * turn,
+            "time": top + after, "length": way, "doubt": 3.0 * (share - 1.0),
+        }  # fmt: skip
     # the slip begins along the one that keeps its direction, for its size is next to nothing
     wait = 1e-3 * _top(scene)
     speed = 0.0
@@ -257,16 +269,18 @@ def judged(
     run, words = engine(bare, tol, folder)
     if run is None:
         return "refused", math.inf, words, 10**6
-    grown = tol / abs(scene["limit"]["share"] - 1.0)
+    grown = tol / abs(scene["limit"]["share"] - 1.0) + best.get("doubt", 0.0)
     radius = scene["puck"]["radius"]
     found = np.array([run.last["x"], run.last["y"], radius * run.last["orientation"]])
     true = best["way"] * [1.0, 1.0, radius]
-    shares = {"way": float(np.max(np.abs(found - true))) / (grown * best["length"])}
+    shares = {
+        "way": float(np.max(np.abs(found - true))) / max(grown * best["length"], 1e-14 * radius)
+    }
     for name in ("rests", "slips"):
         times = [event.time for event in run.events if event.what == name]
         if best[name] is not None and best[name] > 0.0:
             off = abs(times[-1] - best[name]) if times else math.inf
-            shares[name] = off / (grown * best["time"])
+            shares[name] = off / max(grown * best["time"], 1e-11 * scene["limit"]["span"])
     worst = max(shares, key=lambda name: shares[name])
     why = f"{worst}: {shares[worst]:.3g} of what is allowed; {run.end}, {run.steps} steps"
     return ("right" if shares[worst] <= 1.0 else "wrong"), shares[worst], why, run.steps
