@@ -1,0 +1,184 @@
+"""Every ingredient of a scene in pairs and triples, against the judge's own integrator.
+
+The verdict is error <= tol * max(1, amplification): how much the judge's end moves when the launch
+and the forces change by 1e-7 of themselves, over that.  Units: the fastest slip and the sharpest
+acceleration along the way.
+
+python tests/judges/pairs_judge.py --count 300 --seed 1 --tol 1e-4 --tol 1e-6 --tol 1e-9
+"""
+
+from __future__ import annotations
+
+import math
+import tempfile
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from report import arguments, table
+from verdicts import judged, known
+
+INGREDIENTS = (
+    "slope", "belt", "turntable", "strips", "drag", "force", "force over time", "smooth wall",
+    "rough wall", "edge", "rail", "pivot", "blade", "tall", "gyration", "pressure", "from rest",
+)  # fmt: skip
+_HOLDS = {"rail", "pivot", "blade"}
+_CLASHES = [
+    {"blade", "belt"}, {"blade", "turntable"}, {"tall", "pressure"}, {"rail", "pivot"},
+    {"rail", "blade"}, {"pivot", "blade"}, {"smooth wall", "rough wall"},
+    *({hold, wall} for hold in _HOLDS for wall in ("smooth wall", "rough wall")),
+]  # fmt: skip
+
+
+def chosen(rng: np.random.Generator) -> list[str]:
+    """Two or three ingredients that go together."""
+    while True:
+        names = sorted(rng.choice(INGREDIENTS, int(rng.integers(2, 4)), replace=False).tolist())
+        if not any(clash <= set(names) for clash in _CLASHES):
+            return names
+
+
+def draw(seed: int, index: int) -> dict[str, Any]:
+    """A scene; ``class``: its ingredients."""
+    rng = np.random.default_rng([seed, index, 11])
+    names = chosen(rng)
+    radius = float(10.0 ** rng.uniform(-2.0, -0.5))
+    mass, friction = float(10.0 ** rng.uniform(-1.0, 0.5)), float(rng.choice([0.1, 0.3]))
+    weight = 9.80665 * mass
+    delta = float(rng.choice([1.5, 2.5, 3.0]) if "tall" in names else rng.choice([0.0, 0.5]))
+    speed = float(10.0 ** rng.uniform(-0.7, 0.5))
+    way = rng.uniform(-math.pi, math.pi)
+    ahead = np.array([math.cos(way), math.sin(way)])
+    stop = speed**2 / (2.0 * friction * 9.80665)
+    spin = float(rng.choice([0.0, 1.0, -1.0, 4.0])) * speed / radius
+    velocity = speed * ahead
+    floor: dict[str, Any] = {"friction": friction}
+    puck = {"radius": radius, "mass": mass, "height": delta * radius / (2.0 * friction)}
+    scene: dict[str, Any] = {"class": " + ".join(names), "puck": puck, "floor": floor}
+    duration = 4.0 * speed / (friction * 9.80665)
+    if "gyration" in names:
+        puck["gyration"] = float(rng.choice([0.3, 0.5, 1.0, 2.0, 3.0]))
+    if "pressure" in names:
+        puck["pressure"] = str(rng.choice(["ring", "hertz"]))
+    if "from rest" in names:
+        velocity, spin = np.zeros(2), 0.0
+    if "slope" in names:
+        floor["slope"] = float(math.atan(friction * rng.choice([0.3, 0.9, 1.1, 1.5])))
+        floor["downhill"] = float(rng.uniform(-math.pi, math.pi))
+    if "belt" in names:
+        belt = rng.choice([0.5, 1.0, 20.0]) * speed * rng.normal(size=2)
+        floor["velocity"] = belt.tolist()
+        if math.hypot(*belt) > 10.0 * speed or rng.random() < 0.3:
+            velocity = velocity + belt
+    if "turntable" in names:
+        floor["turning"] = float(rng.normal() * friction * 9.80665 / speed)
+        floor["centre"] = (stop * rng.normal(size=2)).tolist()
+    if "drag" in names:
+        rate = mass * friction * 9.80665 / speed
+        scene["drag"] = {
+            "sliding": float(rate * rng.uniform(0.0, 2.0)),
+            "spinning": float(rate * radius**2 * rng.uniform(0.0, 1.0)),
+        }
+    if "force" in names:
+        scene["force"] = {
+            "constant": (friction * weight * rng.choice([0.3, 0.9]) * rng.normal(size=2)).tolist(),
+            "torque": float(0.3 * friction * weight * radius * rng.normal()),
+        }
+    if "force over time" in names:
+        rows = np.zeros((5, 4))
+        rows[:, 0] = np.sort(rng.uniform(-0.1, 1.0, 5)) * duration + 0.01 * np.arange(5)
+        rows[:, 1:] = friction * weight * rng.normal(size=(5, 3))
+        rows[:, 3] *= 0.3 * radius
+        scene["drive"] = rows.tolist()
+    if "strips" in names:
+        middle = float(ahead @ (0.4 * stop * ahead))
+        wide = float(stop * rng.choice([0.003, 0.1, 0.5]))
+        shares = [[1.0, 0.5, 1.0], [0.5, 1.0, 0.5], [1.0, 0.0, 1.0]][int(rng.integers(3))]
+        del floor["friction"]
+        floor["strips"] = {
+            "borders": [middle, middle + wide], "friction": [s * friction for s in shares],
+            "direction": float(way + rng.uniform(-1.0, 1.0)),
+        }  # fmt: skip
+    launch: dict[str, Any] = {
+        "velocity": velocity.tolist(), "spin": spin,
+        "orientation": float(rng.uniform(-math.pi, math.pi)),
+    }  # fmt: skip
+    if names and ("smooth wall" in names or "rough wall" in names):
+        walls = []
+        for turn in rng.choice(
+            [[0.0], [0.7, -0.7], [0.3, 2.2]][int(rng.integers(3))], 1 + int(rng.integers(2))
+        ):
+            n = -np.array([math.cos(way + turn), math.sin(way + turn)])
+            wall = {
+                "point": (-(radius + stop * rng.uniform(0.05, 0.6)) * n).tolist(),
+                "normal": n.tolist(), "restitution": float(rng.choice([0.3, 0.7, 0.9, 1.0])),
+            }  # fmt: skip
+            if "rough wall" in names:
+                wall["tangential"] = float(rng.choice([-0.5, 0.0, 0.5]))
+                wall["friction"] = float(rng.choice([0.1, 0.5]))
+            walls.append(wall)
+        scene["wall"] = walls
+    if "edge" in names:
+        turn = rng.uniform(-1.4, 1.4)
+        n = -np.array([math.cos(way + turn), math.sin(way + turn)])
+        scene["edge"] = [
+            {"point": (-stop * rng.uniform(0.1, 1.0) * n).tolist(), "normal": n.tolist()}
+        ]
+    held = [name for name in names if name in _HOLDS]
+    if held:
+        hold: dict[str, Any] = {"kind": held[0], "angle": float(rng.uniform(-math.pi, math.pi))}
+        angle = hold["angle"] + (launch["orientation"] if held[0] == "blade" else 0.0)
+        along = np.array([math.cos(angle), math.sin(angle)])
+        launch["velocity"] = ((velocity @ along) * along).tolist()
+        if held[0] == "pivot":
+            hold["reach"] = float(radius * rng.uniform(0.2, 3.0))
+            del launch["velocity"]
+            if "from rest" not in names:
+                launch["spin"] = float(rng.choice([-1.0, 1.0]) * speed / radius)
+        scene["constraint"] = hold
+    scene["launch"] = launch
+    scene["run"] = {"time": float(duration), "frames": 1}
+    return scene
+
+
+def main() -> None:
+    args = arguments(__doc__, [1e-4, 1e-6, 1e-9])
+    rows = {tol: [0, 0, 0, 0, 0.0] for tol in args.tol}
+    faults, gave_up, wild, clock = [], 0, 0, time.perf_counter()
+    with tempfile.TemporaryDirectory() as folder:
+        for index in range(args.count):
+            scene = draw(args.seed, index)
+            best = known(scene, limit=40_000)
+            if best is None:
+                gave_up += 1
+                continue
+            if not best["stable"] or best["amplification"] > 1e5:
+                wild += 1  # other lines are met after a change of 1e-7
+                continue
+            for tol in args.tol:
+                word, share, why = judged(scene, best, tol, Path(folder))
+                row = rows[tol]
+                row[0] += 1
+                row[1] += word == "wrong"
+                row[2] += word == "end"
+                row[3] += word == "refused"
+                row[4] = max(row[4], share if math.isfinite(share) else 0.0)
+                if word != "right":
+                    faults.append((
+                        f"{word}: {scene['class']}",
+                        f"tol {tol:g}, index {index}, {share:.3g}× (amplification "
+                        f"{best['amplification']:.3g}, doubt {best['doubt']:.1g}): {why}", scene,
+                    ))  # fmt: skip
+    table(
+        ["tol", "scenes", "wrong", "other end", "refused", "largest error / allowed"],
+        [[f"{tol:g}", *row[:4], f"{row[4]:.3g}"] for tol, row in rows.items()], faults, args.show,
+    )  # fmt: skip
+    print(
+        f"\nthe judge gave up on {gave_up} of {args.count}, left out {wild} that amplify without "
+        f"bound; {time.perf_counter() - clock:.0f} s"
+    )
+
+
+if __name__ == "__main__":
+    main()

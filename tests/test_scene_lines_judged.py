@@ -1,0 +1,42 @@
+"""No wall, edge or border is missed: paths that are cubics, judged by their roots."""
+
+from pathlib import Path
+
+import lines_judge
+import numpy as np
+import pytest
+
+
+def test_the_judge_knows_a_puck_that_dips_into_a_wall_and_comes_back():
+    scene = {
+        "puck": {"radius": 0.01, "mass": 1.0, "gyration": 0.7}, "floor": {"friction": 0.0},
+        "launch": {"velocity": [1.0, 0.2], "spin": 0.0, "position": [0.01, 0.0]},
+        "wall": [{"point": [0.0, 0.0], "normal": [1.0, 0.0], "restitution": 0.5}],
+        "run": {"time": 1.9, "frames": 1},
+        "drive": [[0.0, -4.0, 0.0, 0.0], [10.0, 55.0478678698, 0.0, 0.0]],
+    }  # fmt: skip
+    events = lines_judge.truth(scene)[2]
+    assert events[0, 1] == lines_judge.BOUNCES
+    t = events[0, 0]  # the place of the centre, by hand
+    assert abs(t - 2.0 * t**2 + 5.90478678698 * t**3 / 6.0) <= 1e-12
+    assert round(t, 10) == 0.8881217896
+
+
+def faults(count: int, seed: int, tol: float, folder: Path) -> list[str]:
+    found = []
+    for index in range(count):
+        word, why, _ = lines_judge.verdict(lines_judge.prepared(seed, index), tol, folder)
+        if word != "right":
+            found.append(f"{index}: {word}: {why}")
+    return found
+
+
+@pytest.mark.parametrize("tol", [1e-3, 1e-6, 1e-9])
+def test_no_boundary_is_missed(tol, tmp_path):
+    assert faults(200, 1, tol, tmp_path) == []
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("tol", 10.0 ** -np.arange(3.0, 11.0))
+def test_no_boundary_is_missed_in_thousands(tol, tmp_path):
+    assert faults(2000, 2, float(tol), tmp_path) == []
