@@ -7,7 +7,7 @@ import pytest
 
 import puck_tables as pt
 from puck_tables.puck import STANDARD_GRAVITY
-from puck_tables.scene.regions import LAW_ACCURACY, regions_of
+from puck_tables.scene.regions import regions_of
 from puck_tables.scene.scene import scene_from
 
 PUCK = {"radius": 0.04, "height": 0.02, "mass": 0.2}
@@ -28,8 +28,8 @@ def test_a_constant_law_is_a_coefficient(tmp_path):
     ]
     assert runs[0].end == runs[1].end == "at rest"
     for name in ("time", "x", "y", "orientation", "heat_dry"):
-        assert runs[0].last[name] == pytest.approx(runs[1].last[name], rel=5 * LAW_ACCURACY)
-    assert runs[0].energy_residual < 1e-8
+        assert runs[0].last[name] == pytest.approx(runs[1].last[name], rel=1e-9)
+    assert runs[0].energy_residual < 1e-9
 
 
 def test_a_coefficient_in_proportion_to_speed_is_viscous(tmp_path):
@@ -41,8 +41,8 @@ def test_a_coefficient_in_proportion_to_speed_is_viscous(tmp_path):
     })  # fmt: skip
     left = math.exp(-rate * STANDARD_GRAVITY * 0.4)
     assert run.end == "time is up"
-    assert run.last["vx"] == pytest.approx(0.8 * left, rel=2e-4)
-    assert run.last["spin"] == pytest.approx(12.0 * left, rel=2e-4)
+    assert run.last["vx"] == pytest.approx(0.8 * left, rel=1e-9)
+    assert run.last["spin"] == pytest.approx(12.0 * left, rel=1e-9)
     assert run.energy_residual < 1e-8
 
 
