@@ -66,7 +66,8 @@ class _Filled:
         xi, zeta = self._probes
         direction, self.speeds = self.patch.place(xi, zeta)
         found = np.empty((xi.size, 4))
-        fill_patch(quintic_coefficients(self.values).ravel(), *self.cells, xi, zeta, found)
+        along, across = self.cells
+        fill_patch(quintic_coefficients(self.values).ravel(), along, across, xi, zeta, found)
         truth = _truth(
             self._law, self.patch.top, direction.ratio, bool(self.patch.fast), self.speeds
         )
@@ -95,7 +96,12 @@ class _Filled:
 
     def good(self, accuracy: float) -> bool:
         """Whether it is as good as asked wherever that was looked at."""
-        return self.worst <= accuracy and max(self.missed) <= accuracy
+        return self.badness <= accuracy
+
+    @property
+    def badness(self) -> float:
+        """The largest error that was seen, or is to be feared."""
+        return max(self.worst, *self.missed)
 
     def size_with(self, axes: list[int]) -> int:
         """How many nodes it has once these axes are refined."""
@@ -203,9 +209,15 @@ def build_speed_table(
 
     _each(parts, _Filled.fill, tell)
     while pending := [part for part in parts if part.lacks(goal)]:
-        if sum(part.size_with(part.lacks(goal)) for part in parts) > MAX_NODES:
+        chosen, room = [], MAX_NODES - sum(part.nodes for part in parts)
+        for part in sorted(pending, key=lambda part: -part.badness):
+            room -= part.size_with(part.lacks(goal)) - part.nodes
+            if room < 0:
+                break
+            chosen.append(part)
+        if not chosen:
             raise _out_of_reach(parts, accuracy)
-        _each(pending, lambda part: part.refine(part.lacks(goal)), tell)
+        _each(chosen, lambda part: part.refine(part.lacks(goal)), tell)
     if not all(part.good(goal) for part in parts):
         raise _out_of_reach(parts, accuracy)
     points = law if isinstance(law, SpeedLaw) else None
@@ -225,7 +237,7 @@ def _each(parts: list[_Filled], work: Callable[[_Filled], None], tell: Callable[
 
 
 def _out_of_reach(parts: list[_Filled], accuracy: float) -> AccuracyError:
-    reached = _SAFETY * max(max(part.worst, *part.missed) for part in parts)
+    reached = _SAFETY * max(part.badness for part in parts)
     return AccuracyError(
         f"an accuracy of {accuracy:g} is out of reach for this friction law with its "
         f"corners: {_rounded_up(reached):g} can be reached",
