@@ -30,7 +30,7 @@ from puck_tables.errors import InputError
     type=NUMBER,
     help="Largest error: of resultants 1e-13 to 0.01 [default: 2e-11; other laws 1e-9], of stops "
     "1e-11 to 0.01 in units of Q/J and Q^2/J [default: 1e-10], partial 1e-8 to 0.01 "
-    "[default: 1e-6].",
+    "[default: 1e-6], with --speed-law 1e-13 to 0.01 of the largest f [default: 1e-6].",
 )
 @click.option("--n-phi", type=int, help="Resultants: number of phi nodes instead, odd, at least 9.")
 @click.option(
@@ -56,12 +56,11 @@ from puck_tables.errors import InputError
     metavar="FILE",
     help="Resultants with a coefficient that depends on the slip speed: CSV of speed in m/s and f.",
 )
-@click.option("--height-ratio", type=NUMBER, help="With --speed-law: 2h/r.  [default: 0]")
 @click.option("--overwrite", is_flag=True, help="Replace the file if it exists.")
 def build_tables(
     kind: str, pressure: str | None, accuracy: float | None, n_phi: int | None,
     n_delta: int | None, cells: int | None, output: Path | None, speed_law: Path | None,
-    height_ratio: float | None, overwrite: bool,
+    overwrite: bool,
 ) -> None:  # fmt: skip
     """Tabulate friction resultants or stops, and measure how exact the table is.
 
@@ -73,21 +72,21 @@ def build_tables(
     puck build-tables --n-phi 1025 -o fine.h5
     puck build-tables --kind stops --accuracy 1e-11 -o fine-stops.h5
     puck build-tables --pressure annulus:0.8 -o stone.h5
-    puck build-tables --speed-law law.csv --height-ratio 0.5 -o felt.h5
+    puck build-tables --speed-law law.csv -o felt.h5
     """  # noqa: D301 - click reads the backspace
     plain = kind == "resultants" and pressure in (None, "uniform") and speed_law is None
     options = {
-        "--accuracy": accuracy, "--n-phi": n_phi, "--n-delta": n_delta, "--cells": cells,
-        "--height-ratio": height_ratio,
-    }  # fmt: skip
+        "--accuracy": accuracy,
+        "--n-phi": n_phi,
+        "--n-delta": n_delta,
+        "--cells": cells,
+    }
     given = {name: value for name, value in options.items() if value is not None}
     what = f"--kind {kind}" if pressure is None else f"--pressure {pressure}"
     if speed_law is not None:
         if kind != "resultants" or pressure not in (None, "uniform") or cells is not None:
-            raise InputError("--speed-law goes with --accuracy and --height-ratio only")
+            raise InputError("--speed-law goes with --accuracy only")
         what = f"--speed-law {speed_law}"
-    elif height_ratio is not None:
-        raise InputError("--height-ratio goes with --speed-law")
     if pressure is not None and kind != "resultants":
         raise InputError(f"--pressure goes with --kind resultants, not with --kind {kind}")
     for name in ("--cells",) if plain else ("--n-phi", "--n-delta"):
@@ -115,12 +114,12 @@ def build_tables(
             text = describe(save_law_table(by_law, path, overwrite, command))
         elif speed_law is not None:
             from puck_tables.contact.speed_law import SpeedLaw
+            from puck_tables.table.speed_build import DEFAULT_ACCURACY, build_speed_table
             from puck_tables.table.speed_file import save_speed_table
-            from puck_tables.table.speed_table import DEFAULT_ACCURACY, build_speed_table
 
             wanted = DEFAULT_ACCURACY if accuracy is None else accuracy
             points = SpeedLaw.from_csv(speed_law)
-            speeds = build_speed_table(points, height_ratio or 0.0, accuracy=wanted, progress=show)
+            speeds = build_speed_table(points, accuracy=wanted, progress=show)
             text = describe(save_speed_table(speeds, path, overwrite, command))
         elif kind == "stops":
             from puck_tables.similarity.build import build_stop_table

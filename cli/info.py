@@ -45,10 +45,7 @@ def describe(table: AnyTable) -> str:
     if isinstance(accuracy, SpeedAccuracy):
         second, places = "v + r|omega|", accuracy.at_speed
         columns["99.9 %"] = accuracy.p999
-        lines["measured"] = f"at {accuracy.points} points (errors of forces over N largest f):"
-        rest["order"] = (
-            f"half the nodes: {accuracy.half_phi:.1e} in phi, {accuracy.half_speed:.1e} in speed"
-        )
+        lines["measured"] = f"at {accuracy.points} points (errors over the largest f):"
     else:
         places = accuracy.at_delta
         rest["order"] = (

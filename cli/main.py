@@ -18,6 +18,7 @@ from puck_tables.cli.aim import aim
 from puck_tables.cli.asperity import asperity
 from puck_tables.cli.build_tables import build_tables
 from puck_tables.cli.info import info
+from puck_tables.cli.options import said_first
 from puck_tables.cli.paper import paper
 from puck_tables.cli.scene import scene
 from puck_tables.cli.simulate import simulate
@@ -28,6 +29,7 @@ from puck_tables.cli.validate import validate
 
 from puck_tables._version import __version__
 from puck_tables.errors import InputError, PuckError
+from puck_tables.waiting import watchers
 
 BROKEN_PIPE = 141  # 128 + SIGPIPE, as shells count
 
@@ -89,6 +91,7 @@ def main() -> None:
 
     words = "compiling for this machine, once: up to a minute"
     announcements[:] = [lambda: click.echo(words, err=True)]
+    watchers[:] = [said_first]
 
 
 _ALL = (

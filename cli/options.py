@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 import sys
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -24,6 +25,7 @@ Progress = Callable[[int, int], None]
 
 DEFAULT_RADIUS, DEFAULT_DELTA, DEFAULT_DECEL, DEFAULT_MASS = 1.0, 0.5, 1.0, 1.0
 MAX_COUNT = 1_000_000_000
+QUIET_TIME, BETWEEN_LINES = 2.0, 10.0  # s, where stderr is no terminal
 
 
 class Number(click.ParamType):
@@ -274,13 +276,33 @@ def told(path: Path) -> None:
 
 @contextmanager
 def progress(label: str) -> Iterator[Progress]:
-    """A progress bar on stderr, silent where stderr is no terminal."""
-    if sys.stderr is None or not sys.stderr.isatty():
+    """A progress bar on stderr; where that is no terminal a line now and then, if it takes long."""
+    if sys.stderr is None:
         yield lambda done, total: None
+        return
+    if not sys.stderr.isatty():
+        due = time.monotonic() + QUIET_TIME
+
+        def say(done: int, total: int) -> None:
+            nonlocal due
+            if time.monotonic() >= due:
+                click.echo(f"{label}: {100 * done // total} %", err=True)
+                due = time.monotonic() + BETWEEN_LINES
+
+        yield say
         return
     with click.progressbar(length=1000, label=label, file=sys.stderr, show_pos=False) as bar:
 
         def show(done: int, total: int) -> None:
             bar.update(1000 * done // total - bar.pos)
 
+        yield show
+
+
+@contextmanager
+def said_first(label: str) -> Iterator[Progress]:
+    """The same for work that nobody asked for by name: said before it begins."""
+    if sys.stderr is not None and not sys.stderr.isatty():
+        click.echo(label, err=True)
+    with progress(label) as show:
         yield show

@@ -65,9 +65,10 @@ if TYPE_CHECKING:
     from puck_tables.table.partial_check import validate_partial
     from puck_tables.table.partial_file import load_partial_table, save_partial_table
     from puck_tables.table.partial_table import PartialTable
+    from puck_tables.table.speed_build import build_speed_table
     from puck_tables.table.speed_check import validate_speed
     from puck_tables.table.speed_file import load_speed_table, save_speed_table
-    from puck_tables.table.speed_table import SpeedTable, build_speed_table
+    from puck_tables.table.speed_table import SpeedTable
     from puck_tables.table.table import Table
     from puck_tables.trajectory import Trajectory, simulate
 
@@ -137,7 +138,7 @@ _HOMES = {
     "load_speed_table": "table.speed_file",
     "save_speed_table": "table.speed_file",
     "SpeedTable": "table.speed_table",
-    "build_speed_table": "table.speed_table",
+    "build_speed_table": "table.speed_build",
     "Table": "table.table",
     "Law": "contact.laws",
     "law_of": "contact.laws",

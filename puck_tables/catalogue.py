@@ -21,7 +21,7 @@ from puck_tables.table.law_table import LawTable
 from puck_tables.table.partial_check import validate_partial
 from puck_tables.table.partial_table import PartialTable
 from puck_tables.table.speed_check import validate_speed
-from puck_tables.table.speed_table import SpeedTable
+from puck_tables.table.speed_table import INTEGRALS, SpeedTable
 from puck_tables.table.table import FUNCTIONS, Table
 
 AnyTable = Table | StopTable | PartialTable | LawTable | SpeedTable
@@ -131,9 +131,9 @@ def functions_and_grid(table: AnyTable) -> tuple[tuple[str, ...], str]:
     if isinstance(table, LawTable):
         sides, nodes, heights = table.values.shape[:3]
         return FUNCTIONS, f"{sides} sides of {nodes} phi x {heights} delta nodes"
-    nodes, heights = table.values.shape[:2]
     if isinstance(table, SpeedTable):
-        return FUNCTIONS, f"{nodes} phi x {heights} speed nodes"
+        return INTEGRALS, f"{len(table.values)} nodes in {len(table.cells)} patches"
+    nodes, heights = table.values.shape[:2]
     return FUNCTIONS, f"{nodes} phi x {heights} delta nodes"
 
 

@@ -16,7 +16,14 @@ class ContactError(InputError):
 
 
 class AccuracyError(InputError):
-    """The accuracy asked for is out of reach of the chosen method."""
+    """The accuracy asked for is out of reach of the chosen method.
+
+    ``reachable``: the one that is not, where that is known.
+    """
+
+    def __init__(self, message: str, reachable: float | None = None) -> None:
+        super().__init__(message)
+        self.reachable = reachable
 
 
 class TableError(PuckError):

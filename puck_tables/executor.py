@@ -5,11 +5,17 @@ from __future__ import annotations
 import os
 import signal
 import threading
+import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from contextlib import contextmanager
 
 Progress = Callable[[int, int], None]
+
+_FIRST_SLICE, _GROWTH = 4, 8.0  # items; times the slice before
+_SLICE_TIME = 0.2  # s
+_LOOK = 0.2  # s between two looks for Ctrl-C while all threads work
+_this_thread = threading.local()  # holds the event that says that its run was given up
 
 
 def run_chunks(
@@ -33,7 +39,8 @@ def run_chunks(
     Raises
     ------
     Exception
-        The first that a chunk raises; chunks not yet begun are dropped, also on Ctrl-C.
+        The first that a chunk raises; chunks not yet begun are dropped, also on Ctrl-C, and those
+        that run end where they next call :func:`keep_on`.
 
     Examples
     --------
@@ -52,6 +59,52 @@ def run_chunks(
         _run(work, items, chunk, count, progress, check)
 
 
+def in_slices(work: Callable[[int, int], None], items: int) -> None:
+    """Call ``work(start, stop)`` for slices of ``range(items)`` that take some 0.2 s each.
+
+    Compiled loops do not hear Ctrl-C; between the slices it is heard.
+
+    Parameters
+    ----------
+    work : callable (start, stop)
+        Must not depend on the cutting.
+    items : int
+
+    Examples
+    --------
+    >>> seen = []
+    >>> in_slices(lambda a, b: seen.append((a, b)), 6)
+    >>> seen[0], seen[-1][1]
+    ((0, 4), 6)
+    """
+    start, size = 0, _FIRST_SLICE
+    while start < items:
+        stop = min(start + size, items)
+        begin = time.perf_counter()
+        work(start, stop)
+        keep_on()
+        took = max(time.perf_counter() - begin, 1e-9)
+        size = max(1, int(min(_GROWTH, _SLICE_TIME / took) * (stop - start)))
+        start = stop
+
+
+def keep_on() -> None:
+    """Do nothing, or end a chunk whose run was given up.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        In a thread of :func:`run_chunks` that is not to finish its work.
+
+    Examples
+    --------
+    >>> keep_on()
+    """
+    given_up = getattr(_this_thread, "given_up", None)
+    if given_up is not None and given_up.is_set():
+        raise KeyboardInterrupt
+
+
 def _run(
     work: Callable[[int, int], None],
     items: int,
@@ -60,7 +113,12 @@ def _run(
     progress: Progress | None,
     check: Callable[[], None],
 ) -> None:
-    pool = ThreadPoolExecutor(max_workers=count)
+    given_up = threading.Event()
+
+    def join() -> None:
+        _this_thread.given_up = given_up
+
+    pool = ThreadPoolExecutor(max_workers=count, initializer=join)
     waiting: set[Future[None]] = set()
     sizes: dict[Future[None], int] = {}
     done_items = 0
@@ -74,25 +132,26 @@ def _run(
                 continue
             while len(waiting) >= 2 * count or (stop == items and waiting):
                 check()
-                finished, waiting = wait(waiting, return_when=FIRST_COMPLETED)
+                finished, waiting = wait(waiting, timeout=_LOOK, return_when=FIRST_COMPLETED)
                 for one in finished:
                     one.result()
                     done_items += sizes.pop(one)
-                if progress is not None:
+                if progress is not None and finished:
                     progress(done_items, items)
     finally:
+        given_up.set()
         pool.shutdown(wait=True, cancel_futures=True)
 
 
 @contextmanager
 def _interrupt_noted() -> Iterator[Callable[[], None]]:
-    """Ctrl-C is noted, and raised between chunks.
+    """Ctrl-C is noted, and raised between looks at the threads.
 
     Raised at once it could strike where Python swallows it, such as in a weak reference's callback
     inside the thread pool, and the work would go on.
     """
     if threading.current_thread() is not threading.main_thread():
-        yield lambda: None
+        yield keep_on  # a chunk of another run
         return
     noted = False
 

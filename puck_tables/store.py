@@ -17,7 +17,10 @@ from functools import cache
 from pathlib import Path
 from typing import TypeVar
 
+import numpy as np
+
 from puck_tables.contact.laws import Law, law_of
+from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import InputError, OutputError, TableError
 from puck_tables.kernels.cache import source_digest, user_cache
 from puck_tables.real import real_array
@@ -25,6 +28,11 @@ from puck_tables.safe_write import PART_PATTERN
 from puck_tables.table.container import Saved, recipe_digest
 from puck_tables.table.law_file import ALGORITHM, load_law_table, profile_digest, save_law_table
 from puck_tables.table.law_table import DEFAULT_ACCURACY, LawTable, build_law_table
+from puck_tables.table.speed_build import build_speed_table
+from puck_tables.table.speed_file import ALGORITHM as SPEED_ALGORITHM
+from puck_tables.table.speed_file import load_speed_table, save_speed_table
+from puck_tables.table.speed_table import SpeedTable
+from puck_tables.waiting import watched
 
 Progress = Callable[[int, int], None]
 AnyKept = TypeVar("AnyKept", bound=Saved)
@@ -96,6 +104,47 @@ def table_for(
         build=lambda: build_law_table(law, wanted, progress=progress),
         save=lambda table, path: save_law_table(table, path, overwrite=True, command=command),
         load=load_law_table,
+    )
+
+
+def speed_table_for(law: SpeedLaw, accuracy: float) -> SpeedTable:
+    """The table of friction by a law over the slip speed: read if it is kept, else built.
+
+    Parameters
+    ----------
+    law : SpeedLaw
+    accuracy : float
+        As :func:`puck_tables.build_speed_table` takes it.
+
+    Raises
+    ------
+    AccuracyError
+        If the accuracy is out of reach.
+
+    Examples
+    --------
+    >>> table = speed_table_for(SpeedLaw([0.0, 1.0], [0.2, 0.3]), 1e-6)
+    >>> float(table.resultants(0.0, 0.5).parallel.round(6))
+    0.25
+    """
+    points = [np.asarray(part).tolist() for part in (law.speeds, law.values)]
+    recipe = {
+        "kind": law.kind, "points": points, "accuracy": accuracy, "algorithm": SPEED_ALGORITHM,
+        "sources": source_digest("contact", "kernels", "table"),
+    }  # fmt: skip
+    digest = recipe_digest(recipe)[:16]
+    command = f"a scene with this friction law, to {accuracy:g}; recipe {digest}"
+
+    def build() -> SpeedTable:
+        with watched("tabulating the friction law, once") as progress:
+            return build_speed_table(law, accuracy=accuracy, progress=progress)
+
+    return fetch(
+        f"slip-speed-{accuracy:g}-{digest}.h5",
+        command,
+        build=build,
+        save=lambda table, path: save_speed_table(table, path, overwrite=True, command=command),
+        load=load_speed_table,
     )
 
 

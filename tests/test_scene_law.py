@@ -1,14 +1,19 @@
 """Scenes of every puck: friction laws over the slip speed, other pressures, tall pucks, strips."""
 
 import math
+import re
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
+from puck_tables.cli.main import main
+from scipy.integrate import solve_ivp
 
 import puck_tables as pt
 from puck_tables.puck import STANDARD_GRAVITY
-from puck_tables.scene.regions import LAW_ACCURACY, regions_of
+from puck_tables.scene.regions import _kept_table, regions_of
 from puck_tables.scene.scene import scene_from
+from puck_tables.table import speed_build
 
 PUCK = {"radius": 0.04, "height": 0.02, "mass": 0.2}
 LAUNCH = {"velocity": [0.8, 0.1], "spin": 12.0}
@@ -28,8 +33,8 @@ def test_a_constant_law_is_a_coefficient(tmp_path):
     ]
     assert runs[0].end == runs[1].end == "at rest"
     for name in ("time", "x", "y", "orientation", "heat_dry"):
-        assert runs[0].last[name] == pytest.approx(runs[1].last[name], rel=5 * LAW_ACCURACY)
-    assert runs[0].energy_residual < 1e-8
+        assert runs[0].last[name] == pytest.approx(runs[1].last[name], rel=1e-9)
+    assert runs[0].energy_residual < 1e-9
 
 
 def test_a_coefficient_in_proportion_to_speed_is_viscous(tmp_path):
@@ -41,8 +46,8 @@ def test_a_coefficient_in_proportion_to_speed_is_viscous(tmp_path):
     })  # fmt: skip
     left = math.exp(-rate * STANDARD_GRAVITY * 0.4)
     assert run.end == "time is up"
-    assert run.last["vx"] == pytest.approx(0.8 * left, rel=2e-4)
-    assert run.last["spin"] == pytest.approx(12.0 * left, rel=2e-4)
+    assert run.last["vx"] == pytest.approx(0.8 * left, rel=1e-9)
+    assert run.last["spin"] == pytest.approx(12.0 * left, rel=1e-9)
     assert run.energy_residual < 1e-8
 
 
@@ -105,3 +110,76 @@ def test_slices_of_strips_are_brought_to_one_shape_and_stay_the_same_splines():
 def test_laws_that_cannot_be_are_refused(floor, words):
     with pytest.raises(pt.errors.PuckError, match=words):
         pt.simulate_scene({"puck": PUCK, "floor": floor, "launch": LAUNCH})
+
+
+def by_quadrature(points, puck, launch, times):
+    """Place and velocity at times by DOP853 with friction from quadrature: no table, no events."""
+    friction = pt.SpeedLaw(*points)
+    radius, height, g = puck["radius"], puck["height"], STANDARD_GRAVITY
+
+    def rates(t, y):
+        vx, vy, w = y[3:]
+        v, rim = math.hypot(vx, vy), radius * abs(w)
+        phi, Q = math.atan2(rim, v), math.hypot(v, rim)
+        rho = pt.speed_resultants(phi, Q, friction, 2.0 * height / radius)
+        sine = math.copysign(rim / Q, w)
+        along, left = g * float(rho.parallel) / Q, g * sine * float(rho.perpendicular) / Q
+        turning = 2.0 / radius**2 * 0.5 * g * radius * sine * float(rho.spin)
+        return [vx, vy, w, -along * vx + left * vy, -along * vy - left * vx, -turning]
+
+    start = [0.0, 0.0, 0.0, *launch["velocity"], launch["spin"]]
+    return solve_ivp(
+        rates, (0.0, times[-1]), start, "DOP853", times, rtol=1e-12, atol=1e-13, max_step=0.02
+    ).y
+
+
+@pytest.mark.parametrize("tol", [1e-6, 1e-9])
+def test_a_law_with_corners_keeps_the_tolerance_of_the_scene(tmp_path, tol):
+    points = [0.0, 0.2, 0.5, 0.9, 2.0], [0.3, 0.12, 0.2, 0.2, 0.1]
+    times = [0.1, 0.2, 0.3]
+    floor = {"law": law(tmp_path, zip(*points, strict=True))}
+    truth = by_quadrature(points, PUCK, LAUNCH, times)
+    run = pt.simulate_scene(
+        {"puck": PUCK, "floor": floor, "launch": LAUNCH, "run": {"tol": tol}}, times
+    )
+    for name, row in zip(("x", "y", "orientation", "vx", "vy", "spin"), truth, strict=True):
+        unit = 0.94 if name in ("x", "y", "vx", "vy") else 0.94 / PUCK["radius"]
+        assert run.columns[name] == pytest.approx(row, abs=tol * unit)
+
+
+def test_the_table_of_a_law_is_built_once_kept_and_listed(tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    path = law(tmp_path, [(0.0, 0.2), (0.7, 0.1), (2.0, 0.15)])
+    scene = tmp_path / "scene.toml"
+    scene.write_text(
+        f"[puck]\nradius = 0.04\n[floor]\nlaw = {path!r}\n[launch]\nvelocity = [1.0, 0.0]\n"
+    )
+    words = ["simulate", "--scene", str(scene), "--w0", "9", "--tol", "1e-5"]
+    said = []
+    for _ in range(2):
+        _kept_table.cache_clear()
+        done = CliRunner().invoke(main, words)
+        assert done.exit_code == 0, done.output
+        said.append("tabulating the friction law" in done.stderr)
+    assert said == [True, False]
+    assert "slip-speed-1e-06" in CliRunner().invoke(main, ["tables"]).stdout
+    (kept,) = (tmp_path / "cache" / "puck-tables" / "tables").iterdir()
+    kept.write_bytes(kept.read_bytes()[:-100])
+    _kept_table.cache_clear()
+    done = CliRunner().invoke(main, words)
+    assert done.exit_code == 0
+    assert "is damaged: it is built again" in done.stderr
+
+
+def test_a_tolerance_that_the_corners_do_not_allow_is_refused_with_one_that_they_do(
+    tmp_path, monkeypatch
+):
+    monkeypatch.setattr(speed_build, "MAX_NODES", 100_000)
+    rows = [(0.0, 0.3), (0.3, 0.3), (0.301, 0.1), (2.0, 0.1)]
+    floor = {"law": law(tmp_path, rows)}
+    scene = {"puck": {"radius": 0.04}, "floor": floor, "launch": LAUNCH}
+    with pytest.raises(pt.errors.AccuracyError, match="out of reach with the corners") as refused:
+        pt.simulate_scene(scene)
+    tol = float(re.search(r"--tol\) of (\S+) or more", str(refused.value)).group(1))
+    assert 1e-9 < tol < 1e-2
+    assert pt.simulate_scene({**scene, "run": {"tol": tol}}).end == "at rest"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from dataclasses import replace
 
 import numpy as np
@@ -19,12 +20,15 @@ from puck_tables import (
     speed_resultants,
     validate_speed,
 )
+from puck_tables.contact.integrals import slip_direction
 from puck_tables.contact.speed_quadrature import speed_integrals
 from puck_tables.errors import AccuracyError, ContactError, InputError, OutputError, TableError
+from puck_tables.kernels.speed_quadrature import fill_integrals
 from puck_tables.kernels.speed_spline import speed_ratios
-from puck_tables.table.grid import PhiAxis
-from puck_tables.table.speed_grid import SpeedAxis
-from puck_tables.table.speed_table import measure, tabulate
+from puck_tables.table import speed_build
+from puck_tables.table.speed_build import _Filled
+from puck_tables.table.speed_grid import patches_of
+from puck_tables.table.speed_table import SpeedTable
 
 EVERY_PHI = np.array([
     0.0, 1e-14, 1e-8, 1e-4, 0.01, 0.3, 0.7, np.pi / 4 - 1e-8, np.pi / 4, np.pi / 4 + 1e-8, 0.8,
@@ -153,82 +157,161 @@ def test_too_high_or_too_fast_is_refused():
 # The table
 
 
+def gap(table, phi, speed, law):
+    """Largest error of the four integrals as they enter the forces, over the largest f."""
+    got, truth = table.integrals(phi, speed), speed_integrals(phi, speed, law)
+    sine, cosine = np.abs(np.sin(phi)), np.cos(phi)
+    return max(
+        float(np.max(weight * np.abs(getattr(got, name) - getattr(truth, name))))
+        for name, weight in zip("abde", (cosine, sine, sine, cosine), strict=True)
+    ) / table.largest_f  # fmt: skip
+
+
+def slips(table, seed, count=2000):
+    """φ and Q anywhere, next to 0, π/4, π/2, and where a rim slips at a corner of the law."""
+    rng = np.random.default_rng(seed)
+    near = rng.choice([0.0, np.pi / 4, np.pi / 2], count)
+    near = np.clip(near + rng.normal(size=count) * 10.0 ** -rng.uniform(1, 12, count), 0, np.pi / 2)
+    U = table.top * rng.random(2 * count) ** rng.choice([1.0, 3.0], 2 * count)
+    corner = rng.choice(table.breaks[1:], count) * (1.0 - 10.0 ** -rng.uniform(0, 9, count))
+    other = rng.choice(table.breaks[1:], count) * rng.random(count) ** 0.3
+    fast, slow = np.maximum(corner, other), np.minimum(corner, other)
+    about = np.pi / 4 + rng.choice([-1.0, 1.0], count) * np.arctan(slow / fast)
+    phi = np.concatenate([rng.uniform(0.0, np.pi / 2, count), near, about])
+    return phi, np.concatenate([U, fast]) / (np.cos(phi) + np.sin(phi)) * (1.0 - 1e-15)
+
+
 @pytest.fixture(scope="module")
 def fine():
-    return tabulate(stribeck, PhiAxis(129), SpeedAxis(64, 2.0, 0.2), 1.0)
+    return build_speed_table(CUBIC, accuracy=1e-9)
 
 
-def test_the_table_converges_with_order_four_in_both_axes(fine):
-    coarse = tabulate(stribeck, PhiAxis(65), SpeedAxis(32, 2.0, 0.2), 1.0)
-    far, near = measure(coarse, stribeck), measure(fine, stribeck)
-    assert near.worst < 1e-5
-    assert np.log2(far.worst / near.worst) > 3.4
-    # in speed alone: on nodes of φ
-    phi, U = np.array([0.0, np.pi / 4, np.pi / 2]), np.linspace(0.0, 2.0, 1201)[:, None]
-    Q = U / (np.cos(phi) + np.sin(phi))
-    exact = np.stack(speed_resultants(phi, Q, stribeck, 1.0))
-    axes = [SpeedAxis(n, 2.0, 0.2) for n in (32, 64, 128)]
-    tables = [tabulate(stribeck, PhiAxis(9), axis, 1.0) for axis in axes]
-    errors = [np.abs(np.stack(t.resultants(phi, Q)) - exact).max() for t in tables]
-    assert (np.log2(np.array(errors[:-1]) / errors[1:]) > 3.7).all()
-    # in φ alone: where nothing depends on the speed
-    errors = [
-        measure(tabulate(lambda u: 0.2 + 0.0 * u, PhiAxis(n), SpeedAxis(8, 1.0, 1.0), 1.0),
-                lambda u: 0.2 + 0.0 * u).worst
-        for n in (65, 129)
-    ]  # fmt: skip
-    assert np.log2(errors[0] / errors[1]) > 3.6
+@pytest.fixture(scope="module")
+def smooth():
+    return build_speed_table(stribeck, top_speed=2.0, scale=0.2, accuracy=1e-5)
 
 
-def test_the_table_keeps_the_accuracy_that_was_asked_for():
-    table = build_speed_table(stribeck, 1.0, top_speed=2.0, scale=0.2, accuracy=3e-6)
-    assert table.accuracy is not None
-    assert table.accuracy.worst <= 3e-6
-    rng = np.random.default_rng(7)
-    phi, U = rng.uniform(-np.pi / 2, np.pi / 2, 3000), 2.0 * rng.random(3000) ** 2
-    Q = U / (np.cos(phi) + np.abs(np.sin(phi)))
-    gap = np.stack(table.resultants(phi, Q)) - np.stack(speed_resultants(phi, Q, stribeck, 1.0))
-    sine, cosine = np.sin(phi), np.cos(phi)
-    gap *= np.stack([cosine, sine * cosine, sine]) / table.largest_f
-    assert np.abs(gap).max() <= 3e-6
+@pytest.mark.parametrize("law", [CUBIC, LINEAR], ids=["cubic", "linear"])
+def test_the_compiled_integrals_are_those_of_numpy(law):
+    rng = np.random.default_rng(3)
+    phi = np.concatenate([EVERY_PHI, rng.uniform(0.0, np.pi / 2, 300)])
+    Q = 3.0 * rng.random(phi.size) ** 2 / (np.cos(phi) + np.sin(phi))
+    direction = slip_direction(phi)
+    out = np.empty((phi.size, 4))
+    fill_integrals(
+        np.asarray(law.speeds), law.coefficients, direction.ratio, direction.fast_spin, Q, out
+    )
+    p, sine, cosine = speed_integrals(phi, Q, law), np.sin(phi), np.cos(phi)
+    for found, truth, weight in zip(
+        out.T, (p.a, p.b, p.d, p.e), (cosine, sine, sine, cosine), strict=True
+    ):
+        assert weight * found == pytest.approx(weight * truth, abs=1e-14)
 
 
-def test_a_table_of_a_constant_coefficient_is_the_closed_form():
-    table = build_speed_table(lambda u: 0.4 + 0.0 * u, 2.0, top_speed=3.0, accuracy=1e-6)
+def test_the_grid_is_cut_at_the_corners_so_that_order_four_holds():
+    """On the patches of a law with corners, all halved alike."""
+    errors = []
+    for cells in (10, 20, 40):
+        parts = [_Filled(patch, CUBIC, 0.3, n) for n, patch in enumerate(patches_of(CUBIC.speeds))]
+        for part in parts:
+            part.cells = [cells, cells]
+            part.fill()
+        values = np.concatenate([part.values.reshape(-1, 4) for part in parts])
+        sizes = np.array([part.cells for part in parts])
+        table = SpeedTable(np.asarray(CUBIC.speeds), sizes, values, 0.3, CUBIC)
+        errors.append(gap(table, *slips(table, 8), CUBIC))
+    assert (np.log2(np.array(errors[:-1]) / errors[1:]) > 3.9).all()
+    assert errors[-1] < 3e-7
+
+
+@pytest.mark.parametrize(
+    ("law", "accuracy"),
+    [(CUBIC, 1e-3), (CUBIC, 1e-9), (LINEAR, 1e-5), (SpeedLaw([0.0, 2.0], [0.2, 0.5]), 1e-12),
+     (SpeedLaw([0.0, 1e-5, 2.0], [0.4, 0.2, 0.2]), 1e-6),
+     (SpeedLaw([0.0, 0.5, 0.51, 2.0], [0.3, 0.3, 0.1, 0.1]), 1e-7),
+     (SpeedLaw([0.0, 1.0, 2.0, 3.0], [0.0, 0.3, 0.0, 0.3]), 1e-7)],
+    ids=["coarse", "fine", "corners", "two", "steep start", "step", "down to nothing"],
+)  # fmt: skip
+def test_the_table_keeps_the_accuracy_that_was_asked_for(law, accuracy):
+    table = build_speed_table(law, accuracy=accuracy)
+    assert table.accuracy.worst <= accuracy
+    assert gap(table, *slips(table, 7), law) <= accuracy
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("seed", range(12))
+def test_so_do_tables_of_measured_laws(seed):
+    rng = np.random.default_rng(seed)
+    count = int(rng.integers(3, 25))
+    speeds = np.concatenate([[0.0], np.cumsum(rng.exponential(size=count) ** 2)])
+    law = SpeedLaw(speeds, 0.2 * (1.0 + 0.1 * rng.normal(size=count + 1)).clip(0.0))
+    table = build_speed_table(law, accuracy=1e-8)
+    assert gap(table, *slips(table, seed), law) <= 1e-8
+
+
+def test_a_law_given_as_a_function(smooth):
+    assert smooth.accuracy.worst <= 1e-5
+    assert gap(smooth, *slips(smooth, 6), stribeck) <= 1e-5
+
+
+def test_a_table_of_a_constant_coefficient_is_the_closed_form_at_every_height():
+    table = build_speed_table(SpeedLaw([0.0, 3.0], [0.4, 0.4]), accuracy=1e-10)
     phi = np.linspace(-np.pi / 2, np.pi / 2, 801)
-    found = np.stack(table.resultants(phi, 2.0))
     weight = np.stack([np.cos(phi), np.sin(phi) * np.cos(phi), np.sin(phi)])
-    gap = weight * (found - 0.4 * np.stack(resultants(phi, 0.8)))
-    assert np.abs(gap).max() < 0.4e-6
+    for g in (0.0, 1.0, 2.5):
+        found = np.stack(table.resultants(phi, 2.0, g))
+        error = weight * (found - 0.4 * np.stack(resultants(phi, 0.4 * g)))
+        assert np.abs(error).max() < 1e-9
 
 
-def test_the_kinks_of_a_law_are_found_by_the_measure(fine):
-    """The adversarial points see what random ones hardly do."""
-    table = tabulate(CUBIC, PhiAxis(65), SpeedAxis(32, 3.0, 0.3), 0.0)
-    report = measure(table, CUBIC)
-    assert report.worst > 10.0 * max(report.rms)
-    smooth = measure(replace(fine), stribeck)
-    assert report.worst > 3.0 * smooth.worst
+def test_too_fine_is_refused_with_what_can_be_reached_and_that_can(monkeypatch):
+    monkeypatch.setattr(speed_build, "MAX_NODES", 100_000)
+    law = SpeedLaw([0.0, 0.3, 0.301, 2.0], [0.3, 0.3, 0.1, 0.1], "linear")
+    with pytest.raises(AccuracyError, match="can be reached") as refused:
+        build_speed_table(law, accuracy=1e-11)
+    assert refused.value.reachable > 1e-11
+    table = build_speed_table(law, accuracy=refused.value.reachable)
+    assert table.accuracy.worst <= refused.value.reachable
+
+
+def test_progress_rises_and_does_not_wait_at_the_end():
+    heard = []
+
+    def hear(done, total):
+        heard.append((time.monotonic(), done / total))
+
+    begin = time.monotonic()
+    build_speed_table(CUBIC, accuracy=1e-10, progress=hear)
+    times, shares = zip(*heard, strict=True)
+    assert list(shares) == sorted(shares)
+    assert 0.0 <= shares[0] < 0.5 < shares[-1] <= 1.0
+    at_the_end = [moment for moment, share in heard if share >= 0.99]
+    assert not at_the_end or times[-1] - at_the_end[0] < 0.5 * (time.monotonic() - begin)
 
 
 def test_the_kernel_is_the_table_and_says_where_it_ends(fine):
-    axis = fine.speed_axis
     for phi, Q in ((0.3, 1.0), (1.2, 0.7), (np.pi / 4, np.sqrt(2.0)), (0.0, 2.0), (np.pi / 2, 0.0)):
         sine, cosine = np.sin(phi), np.cos(phi)
         k, fast = min(sine, cosine) / max(sine, cosine), bool(sine > cosine)
-        found = speed_ratios(fine.coefficients, axis.scale, axis.reach, k, fast, Q)
-        assert found == pytest.approx([float(x) for x in fine.resultants(phi, Q)], abs=1e-13)
-    beyond = speed_ratios(fine.coefficients, axis.scale, axis.reach, 1.0, False, 1.5)
-    assert np.isnan(beyond).all()
+        found = speed_ratios(*fine.compiled, fine.breaks, 1.0, k, fast, Q)
+        rho = fine.resultants(phi, Q, 1.0)
+        assert found == pytest.approx([float(x) for x in rho], abs=1e-13)
+    for beyond in (2.2, 1e300, np.inf, np.nan):
+        assert np.isnan(speed_ratios(*fine.compiled, fine.breaks, 0.0, 1.0, False, beyond)).all()
     with pytest.raises(InputError, match="outside this table"):
-        fine.resultants(np.pi / 4, 1.5)
+        fine.resultants(np.pi / 4, 2.2)
+    with pytest.raises(ContactError, match="too high"):
+        fine.resultants(0.0, 0.0, 3.4)
+    with pytest.raises(ContactError, match="too high"):
+        fine.refuse_height(3.4)
+    fine.refuse_height(3.0)
     assert fine.resultants([[0.1], [0.2]], [0.5, 0.6, 0.7]).spin.shape == (2, 3)
 
 
 def test_at_rest_it_is_the_coefficient_at_rest(fine):
     phi = np.linspace(0.0, np.pi / 2, 50)
-    found = np.stack(fine.resultants(phi, 0.0)) / float(stribeck(0.0))
-    assert found == pytest.approx(np.stack(resultants(phi, float(stribeck(0.0)))), abs=1e-4)
+    found = np.stack(fine.resultants(phi, 0.0, 1.0)) / 0.3
+    assert found == pytest.approx(np.stack(resultants(phi, 0.3)), abs=1e-8)
 
 
 @pytest.mark.parametrize(
@@ -237,13 +320,12 @@ def test_at_rest_it_is_the_coefficient_at_rest(fine):
         ({"top_speed": None}, InputError, "needs top_speed"),
         ({"top_speed": -1.0}, InputError, "top_speed must be"),
         ({"scale": 0.0}, InputError, "scale must be"),
-        ({"accuracy": 1e-12}, AccuracyError, "must be from"),
-        ({"height_ratio": 20.0}, ContactError, "too high"),
+        ({"accuracy": 1e-14}, AccuracyError, "must be from"),
         ({"law": CUBIC, "top_speed": 4.0}, InputError, "outside this friction law"),
     ],
 )
 def test_bad_input_gets_a_sentence(change, error, message):
-    given = {"law": stribeck, "height_ratio": 1.0, "top_speed": 2.0} | change
+    given = {"law": stribeck, "top_speed": 2.0} | change
     with pytest.raises(error, match=message):
         build_speed_table(**given)
 
@@ -253,7 +335,7 @@ def test_bad_input_gets_a_sentence(change, error, message):
 
 def test_a_table_file_holds_the_law_and_is_judged_by_it(tmp_path):
     law = SpeedLaw([0.0, 1.0, 2.0], [0.0, 0.2, 0.1])  # f(0) = 0: friction vanishes at rest
-    table = build_speed_table(law, 0.7, accuracy=1e-3)
+    table = build_speed_table(law, accuracy=1e-3)
     saved = save_speed_table(table, tmp_path / "speed.h5")
     again = load_speed_table(tmp_path / "speed.h5")
     assert (again.values == table.values).all()
@@ -270,14 +352,14 @@ def test_a_table_file_holds_the_law_and_is_judged_by_it(tmp_path):
         load_speed_table(tmp_path / "bad.h5")
 
 
-def test_what_a_file_cannot_hold_is_refused(fine, tmp_path):
+def test_what_a_file_cannot_hold_is_refused(fine, smooth, tmp_path):
     with pytest.raises(OutputError, match="is a function"):
-        save_speed_table(fine, tmp_path / "speed.h5")
+        save_speed_table(smooth, tmp_path / "speed.h5")
     many = SpeedLaw(np.arange(2001.0), np.full(2001, 0.1))
     with pytest.raises(OutputError, match="2001 points"):
         save_speed_table(replace(fine, law=many), tmp_path / "speed.h5")
     with pytest.raises(InputError, match="give it as law="):
-        validate_speed(fine)
+        validate_speed(smooth)
     assert list(tmp_path.iterdir()) == []
 
 
@@ -289,19 +371,17 @@ def test_the_commands(tmp_path):
         return CliRunner().invoke(main, list(words))
 
     words = ["build-tables", "--speed-law", str(law), "-o", str(path)]
-    done = puck(*words, "--height-ratio", "0.5", "--accuracy", "1e-3")
+    done = puck(*words, "--accuracy", "1e-3")
     assert done.exit_code == 0, done.output
-    assert "speed nodes" in done.stdout
-    assert "--height-ratio 0.5" in done.stdout
+    assert "nodes in" in done.stdout
+    assert "--accuracy 0.001" in done.stdout
     assert puck("info", str(path)).stdout == done.stdout
     judged = puck("validate", str(path))
     assert judged.exit_code == 0
     assert "FAIL" not in judged.stdout
     for bad, message in (
-        (["build-tables", "--height-ratio", "1"], "goes with --speed-law"),
         ([*words, "--overwrite", "--cells", "9"], "goes with --accuracy"),
         ([*words, "--overwrite", "--n-phi", "9"], "does not go with"),
-        ([*words, "--overwrite", "--height-ratio", "9"], "too high"),
         (["build-tables", "--speed-law", "none.csv", "-o", str(tmp_path / "x.h5")], "cannot read"),
         (["sweep", "--table", str(path), "--w0", "0:1:3"], "stops come from"),
     ):

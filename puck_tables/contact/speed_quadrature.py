@@ -38,7 +38,7 @@ from puck_tables.contact.integrals import (
     checked_phi,
     slip_direction,
 )
-from puck_tables.contact.resultants import Resultants, moment_balance
+from puck_tables.contact.resultants import Resultants, moment_balance, pressure_tilt
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import ContactError, InputError
 from puck_tables.real import broadcast, real_array
@@ -142,15 +142,23 @@ def speed_resultants(
     p = speed_integrals(phi, speed, law)
     direction = slip_direction(np.broadcast_to(checked_phi(phi), p.a.shape))
     rho = moment_balance(p, direction, g)
-    perpendicular = rho.perpendicular
-    force = np.hypot(rho.parallel, np.sqrt(direction.sin_squared) * perpendicular)
-    tilt = g * np.sqrt(direction.cos_squared) * force
+    refuse_lifting(pressure_tilt(rho, direction, g), g)
+    return rho
+
+
+def refuse_lifting(tilt: FloatArray, height_ratio: float) -> None:
+    """Refuse a load that tilts by more than 1: part of the base would have to be pulled down.
+
+    Raises
+    ------
+    ContactError
+    """
     if not (tilt <= 1.0 + CONTACT_SLACK).all():
         raise ContactError(
-            f"2h/r = {g:g} is too high for this friction law: part of the base would lift (the "
-            f"pressure tilts by {float(tilt.max()):g} > 1); choose a lower puck or less friction"
+            f"2h/r = {height_ratio:g} is too high for this friction law: part of the base would "
+            f"lift (the pressure tilts by {float(tilt.max()):g} > 1); choose a lower puck or less "
+            "friction"
         )
-    return rho
 
 
 def checked_speed(speed: npt.ArrayLike) -> FloatArray:

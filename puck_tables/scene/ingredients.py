@@ -32,13 +32,14 @@ class Body(NamedTuple):
 class BySpeed(NamedTuple):
     """Friction with a coefficient that depends on the slip speed; no ``normal``: there is none.
 
-    ``coefficients``, ``scale``, ``reach``: see :mod:`puck_tables.kernels.speed_spline`; ``normal``:
-    N; ``moving``: 1, or 0 for the friction at slip zero.
+    ``coefficients``, ``layout``, ``breaks``: see :mod:`puck_tables.kernels.speed_spline`;
+    ``height_ratio``: 2h/r; ``normal``: N; ``moving``: 1, or 0 for the friction at slip zero.
     """
 
     coefficients: FloatArray
-    scale: float
-    reach: float
+    layout: npt.NDArray[np.int64]
+    breaks: FloatArray
+    height_ratio: float
     normal: float
     moving: float
 

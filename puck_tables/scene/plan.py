@@ -15,7 +15,6 @@ from typing import Any
 
 from puck_tables.body import is_plain
 from puck_tables.motion.limits import regime
-from puck_tables.scene.regions import LAW_ACCURACY
 from puck_tables.scene.scene import Floor, Scene, distance, launch_velocity
 from puck_tables.sliced import FINEST_TOL
 from puck_tables.stops import stop
@@ -128,7 +127,7 @@ def plan_for(scene: Scene) -> Plan:
     if acting:
         model = "slice of the table at fixed delta, integrated"
         if "friction law" in acting:
-            model = f"table of f over slip angle and speed (to {LAW_ACCURACY:g} of f), integrated"
+            model = "table of f over slip angle and speed, integrated"
         elif "no dry friction" in acting:
             model = "integrated"
         lines = [

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import threading
 from functools import lru_cache
 
 import numpy as np
@@ -10,24 +11,27 @@ import numpy.typing as npt
 
 from puck_tables.body import body_of, is_plain
 from puck_tables.contact.speed_law import SpeedLaw
-from puck_tables.errors import InputError
+from puck_tables.errors import AccuracyError, InputError
 from puck_tables.kernels.slice_spline import HEADER, RATIOS
 from puck_tables.run import closed_form_friction, table_friction
 from puck_tables.scene.ingredients import BySpeed, Regions
 from puck_tables.scene.scene import Scene, launch_velocity
+from puck_tables.store import speed_table_for
 from puck_tables.table.file import load_table
 from puck_tables.table.friction_slice import FINEST_ACCURACY
-from puck_tables.table.speed_table import SpeedTable, build_speed_table
+from puck_tables.table.speed_build import FINEST_ACCURACY as FINEST_LAW
+from puck_tables.table.speed_table import SpeedTable
 
 FloatArray = npt.NDArray[np.float64]
 
 EXACT_BELOW = 1e-9  # friction by closed forms where a table's error would show
 CLOSED_FORM_ERROR, TABLE_ERROR = 1e-14, 2e-11
 SLICE_SHARE = 0.1  # of the error wanted
-LAW_ACCURACY = 1e-4  # of the largest f: a law of points is worth no more, and takes a second
-LAW_NODES = 40_000  # a law with jumps is as good as they allow, in ten seconds
+LAW_SHARE = 0.1  # of it, too: the largest error of the friction at any slip, in units of f N
 
-NO_LAW = BySpeed(np.zeros((2, 4, 4, RATIOS)), 1.0, 1.0, 0.0, 1.0)
+NO_LAW = BySpeed(np.zeros(0), np.zeros((0, 3), np.int64), np.zeros(0), 0.0, 0.0, 1.0)
+
+_one_at_a_time = threading.Lock()  # the threads of a sweep need the same table
 
 
 def regions_of(scene: Scene) -> Regions:
@@ -50,11 +54,9 @@ def regions_of(scene: Scene) -> Regions:
                 f"the rim slips at {fastest:.6g} m/s at the launch, faster than the friction law "
                 f"{floor.law} goes ({law.top_speed:g} m/s): nothing is known beyond; give it more"
             )
-        points = np.stack([np.asarray(law.speeds), np.asarray(law.values)], axis=1)
-        table = _law_table(tuple(map(tuple, points.tolist())), 2.0 * puck.height / puck.radius)
-        by_speed = BySpeed(
-            table.coefficients, table.speed_axis.scale, table.speed_axis.reach, normal, 1.0
-        )
+        table, height_ratio = _law_table(law, scene), 2.0 * puck.height / puck.radius
+        table.refuse_height(height_ratio)
+        by_speed = BySpeed(*table.compiled, table.breaks, height_ratio, normal, 1.0)
         load = np.array([normal * table.largest_f])
         return Regions(load, np.zeros(1), closed_form_friction(0.0).cut[None, :], by_speed)
     coefficients = [floor.friction] if floor.strips is None else list(floor.strips.friction)
@@ -74,7 +76,7 @@ def friction_error(scene: Scene) -> float:
     """How wrong the friction ratios of :func:`regions_of` may be."""
     puck, floor = scene.puck, scene.floor
     if floor.law:
-        return LAW_ACCURACY
+        return max(LAW_SHARE * scene.run.tol, FINEST_LAW)
     coefficients = [floor.friction] if floor.strips is None else floor.strips.friction
     heights = [2.0 * f * puck.height / puck.radius for f in coefficients]
     if all(is_plain(puck.pressure, puck.gyration, delta) for delta in heights):
@@ -82,12 +84,32 @@ def friction_error(scene: Scene) -> float:
     return max(SLICE_SHARE * scene.run.tol, FINEST_ACCURACY)
 
 
+def _law_table(law: SpeedLaw, scene: Scene) -> SpeedTable:
+    """The table of a friction law that the scene's tolerance asks for.
+
+    Raises
+    ------
+    AccuracyError
+        If the law has too many corners for so fine a tolerance; it says which can be reached.
+    """
+    points = tuple(map(tuple, np.stack([law.speeds, law.values], axis=1).tolist()))
+    try:
+        with _one_at_a_time:
+            return _kept_table(points, friction_error(scene))
+    except AccuracyError as error:
+        finest = 1e-2 if error.reachable is None else error.reachable / LAW_SHARE
+        raise AccuracyError(
+            f"tol = {scene.run.tol:g} is out of reach with the corners of the friction law "
+            f"{scene.floor.law}: give run.tol (or --tol) of {finest:.1g} or more, or a law with "
+            "fewer points"
+        ) from None
+
+
 @lru_cache(maxsize=8)
-def _law_table(points: tuple[tuple[float, float], ...], height_ratio: float) -> SpeedTable:
+def _kept_table(points: tuple[tuple[float, float], ...], accuracy: float) -> SpeedTable:
     """Kept by the points of the law: a sweep asks for it again and again."""
     speeds, values = zip(*points, strict=True)
-    law = SpeedLaw(speeds, values)
-    return build_speed_table(law, height_ratio, accuracy=LAW_ACCURACY, most_nodes=LAW_NODES)
+    return speed_table_for(SpeedLaw(speeds, values), accuracy)
 
 
 def slip_at_launch(scene: Scene) -> tuple[float, float, float]:

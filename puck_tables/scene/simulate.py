@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -11,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.contact.speed_law import SpeedLaw
-from puck_tables.errors import InputError, PuckError
+from puck_tables.errors import AccuracyError, InputError, PuckError
 from puck_tables.real import finite_array
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
 from puck_tables.scene.library import find_scene
@@ -141,9 +142,16 @@ def _integrated(scene: Scene, plan: Plan, times: FloatArray | None) -> SceneRun:
     last = None if times is None or not times.size else float(times[-1])
     events = np.empty((MAX_EVENTS, EVENT_COLUMNS))
     asked = scene.run.tol
+    estimate = math.inf
     for finer in FINER:
         tol = max(asked * finer, FINEST)
-        prepared = prepare(replace(scene, run=replace(scene.run, tol=tol)), last)
+        try:
+            closer = prepare(replace(scene, run=replace(scene.run, tol=tol)), last)
+        except AccuracyError:
+            if finer == 1.0:
+                raise
+            break  # a friction law that is known no better
+        prepared = closer
         estimate = _estimate(prepared, events)
         if estimate <= asked or tol == FINEST:
             break

@@ -1,7 +1,8 @@
 """Table files of friction that depends on the slip speed: the same container, another kind.
 
-Axes ``phi`` and ``fastest`` (v + r|ω|); functions ``parallel``, ``perpendicular``, ``spin``, with f
-inside.  The friction law is kept in the file, so that the table can be judged from it alone.
+Functions ``p_a``, ``p_b``, ``p_d``, ``p_e``, with f inside, over the nodes of all patches, and how
+often each patch was halved along its two axes.  The friction law is kept in the file, so that the
+table can be judged from it alone.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.contact.speed_law import SpeedLaw
-from puck_tables.errors import OutputError
+from puck_tables.errors import OutputError, TableError
 from puck_tables.real import instance
 from puck_tables.table.container import (
     Contents,
@@ -28,31 +29,34 @@ from puck_tables.table.container import (
     read_content,
     save,
 )
-from puck_tables.table.grid import GRADING_POWER, PhiAxis
-from puck_tables.table.speed_grid import SpeedAxis
-from puck_tables.table.speed_table import SpeedAccuracy, SpeedTable
-from puck_tables.table.table import FUNCTIONS
+from puck_tables.table.speed_build import COARSEST_CELLS, HALVINGS
+from puck_tables.table.speed_grid import patches_of
+from puck_tables.table.speed_table import INTEGRALS, SpeedAccuracy, SpeedTable
+
+FloatArray = npt.NDArray[np.float64]
 
 MAX_POINTS = 2000  # HDF5 keeps no longer attribute
 KIND = "friction with f(slip speed)"
-ALGORITHM = "one integral over circles about the centre of rotation; splined on both sides; 1"
+ALGORITHM = "one integral over circles about the centre of rotation; quintic splines in patches; 2"
 
 _INTERPRETATION = (
     "Friction on a puck of radius r, height h, mass m sliding with speed v and spin omega on a "
-    "rough plane whose coefficient f depends on the local slip speed by the law in law_speeds, "
+    "rough plane whose coefficient f depends on the local slip speed u by the law in law_speeds, "
     "law_values, law_kind; weight N = m g, uniform pressure tilted linearly by the moment balance. "
-    "phi = atan2(r omega, v). Force on the puck: -N cos(phi) parallel along its velocity, "
-    "-N sin(phi) cos(phi) perpendicular across it (to the left), torque -(N r/2) sin(phi) spin "
-    "about the vertical. Even in phi. Salnikova, Treschev, Gallyamov 2012, section 5, with f "
-    "inside the integrals."
+    "phi = atan2(r omega, v), Q = hypot(v, r omega), slip directions (e_x, e_y) in units of r: "
+    "cos(phi) p_a = mean of f e_x, sin(phi) p_b = mean of f e_y x, sin(phi) p_d = mean of f (x e_y "
+    "- y e_x), cos(phi) p_e = mean of f (x e_y - y e_x) y, p_c = p_b - p_d. With g = 2h/r, D = 1 - "
+    "g^2 sin^2(phi) p_b p_c: force -N cos(phi) p_a/D along the velocity, -N sin(phi) cos(phi) g "
+    "p_a p_b/D across it (to the left), torque -N r sin(phi) (p_d + g^2 cos^2(phi) p_a p_b p_e/D). "
+    "Even in phi. Salnikova, Treschev, Gallyamov 2012, section 5, with f inside the integrals."
 )
-_PHI_MAP = (
-    f"tan(phi - pi/4) = sign(xi) abs(xi)^{GRADING_POWER}, xi = (i - n)/n, i = 0 ... 2n; cubic "
-    "splines in xi on each side, zero slope at pi/4, not-a-knot at 0 and pi/2"
-)
-_SPEED_MAP = (
-    "fastest = scale sinh(j/cells asinh(top/scale)), j = 0 ... cells; cubic spline in j with "
-    "not-a-knot ends"
+_MAP = (
+    "U = v + r|omega|, W = |v - r|omega||; patches between the breaks b_k of U and W, for r|omega| "
+    "< v and then for >, slab of U after slab. U <= b_1: U = b_1 xi, W = U zeta^4. b_k <= U <= "
+    "b_k+1: U = b_k + (b_k+1 - b_k) xi^p; W = b_1/2 zeta^4, then W = b_l - (b_l - left end)(1 - "
+    "zeta)^p up to b_k, p = 2 (3 where r|omega| < v and l = k); last U, W = b_k + (b_k+1 - b_k)(xi,"
+    " zeta). Nodes uniform in xi and zeta, zeta fastest; quintic not-a-knot splines in both. Cells "
+    f"= {COARSEST_CELLS} 2^halvings; halvings of a patch = 16 along xi + along zeta"
 )
 
 
@@ -85,7 +89,7 @@ def save_speed_table(
     Examples
     --------
     >>> import tempfile
-    >>> from puck_tables.table.speed_table import build_speed_table
+    >>> from puck_tables.table.speed_build import build_speed_table
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     table = build_speed_table(SpeedLaw([0.0, 1.0], [0.2, 0.3]), accuracy=1e-4)
     ...     saved = save_speed_table(table, folder + "/speed.h5")
@@ -135,17 +139,13 @@ def load_speed_table(path: str | Path) -> SpeedTable:
     return _decode(read_content(path), str(path))
 
 
-def _recipe(
-    law: SpeedLaw, phi_axis: PhiAxis, speed_axis: SpeedAxis, height_ratio: float
-) -> dict[str, Any]:
-    """What determines the values of a table."""
+def _recipe(law: SpeedLaw, breaks: FloatArray) -> dict[str, Any]:
+    """What determines the values of a table, besides how often its patches are halved."""
     return {
         "kind": KIND, "pressure_law": "uniform", "law_kind": law.kind,
         "law_speeds": json.dumps(np.asarray(law.speeds).tolist()),
         "law_values": json.dumps(np.asarray(law.values).tolist()),
-        "phi_map": _PHI_MAP, "speed_map": _SPEED_MAP, "n_phi": phi_axis.size,
-        "cells": speed_axis.cells, "top": speed_axis.top, "scale": speed_axis.scale,
-        "height_ratio": height_ratio, "algorithm": ALGORITHM,
+        "map": _MAP, "breaks": json.dumps(breaks.tolist()), "algorithm": ALGORITHM,
     }  # fmt: skip
 
 
@@ -154,29 +154,22 @@ def _encode(table: SpeedTable, command: str) -> bytes:
     described = {
         "title": "Friction of a sliding, spinning puck whose coefficient depends on the slip speed",
         "interpretation": _INTERPRETATION,
-        "valid_range": f"|phi| <= pi/2, 0 <= v + r|omega| <= {table.speed_axis.top:g} m/s at "
-        f"2h/r = {table.height_ratio:g}; refused outside",
+        "valid_range": f"|phi| <= pi/2, 0 <= v + r|omega| <= {table.top:g} m/s; refused outside",
         "tolerance": table.tolerance,
         "largest_f": table.largest_f,
         "achieved_accuracy": json.dumps(asdict(table.accuracy)),
-        "method": "quadrature over circles about the centre of rotation, 1e-13",
+        "method": "quadrature over circles about the centre of rotation, 1e-14",
+        "nodes": len(table.values),
+        "patches": len(table.cells),
     }
-    nodes = _nodes(table.phi_axis, table.speed_axis)
-    axes = [
-        Field("phi", nodes["phi"], {"units": "rad", "long_name": "slip angle atan2(r omega, v)"}),
-        Field("fastest", nodes["fastest"], {"units": "m/s", "long_name": "fastest slip v + r|w|"}),
-    ]
-    recipe = _recipe(table.law, table.phi_axis, table.speed_axis, table.height_ratio)
-    return encode(recipe, described, axes, function_fields(FUNCTIONS, table), command)
-
-
-def _nodes(phi_axis: PhiAxis, speed_axis: SpeedAxis) -> dict[str, npt.NDArray[np.float64]]:
-    return {"phi": phi_axis.nodes(), "fastest": speed_axis.nodes()}
-
-
-def _axes(attributes: dict[str, Any]) -> tuple[PhiAxis, SpeedAxis]:
-    speeds = SpeedAxis(attributes["cells"], attributes["top"], attributes["scale"])
-    return PhiAxis(attributes["n_phi"]), speeds
+    node = Field("node", np.arange(float(len(table.values))), {"units": "1"})
+    patch = Field("patch", np.arange(float(len(table.cells))), {"units": "1"})
+    halvings = np.log2(table.cells / COARSEST_CELLS) @ [16.0, 1.0]
+    recipe = _recipe(table.law, table.breaks)
+    return encode(
+        recipe, described, [node], function_fields(INTEGRALS, table), command,
+        (patch, Field("halvings", halvings, {"units": "1"})),
+    )  # fmt: skip
 
 
 def shapes(attributes: dict[str, Any]) -> dict[str, tuple[int, ...]]:
@@ -184,12 +177,11 @@ def shapes(attributes: dict[str, Any]) -> dict[str, tuple[int, ...]]:
 
     Examples
     --------
-    >>> shapes({"n_phi": 9, "cells": 4, "top": 1.0, "scale": 1.0})["spin"]
-    (9, 5)
+    >>> shapes({"nodes": 500, "patches": 2})["p_d"]
+    (500,)
     """
-    phi_axis, speed_axis = _axes(attributes)
-    shape = (phi_axis.size, speed_axis.cells + 1)
-    return {"phi": shape[:1], "fastest": shape[1:], **dict.fromkeys(FUNCTIONS, shape)}
+    nodes, patches = (attributes["nodes"],), (attributes["patches"],)
+    return {"node": nodes, **dict.fromkeys(INTEGRALS, nodes), "patch": patches, "halvings": patches}
 
 
 def _decode(content: bytes, source: str) -> SpeedTable:
@@ -204,16 +196,30 @@ def table_of(contents: Contents, source: str) -> SpeedTable:
     TableError
         If this program cannot use it.
     """
-    attributes = contents.attributes
-    axes, height_ratio = _axes(attributes), float(attributes["height_ratio"])
-    speeds, values = (json.loads(attributes[name]) for name in ("law_speeds", "law_values"))
+    attributes, arrays = contents
+    breaks, speeds, values = (
+        np.array(json.loads(attributes[name])) for name in ("breaks", "law_speeds", "law_values")
+    )
     law = SpeedLaw(speeds, values, attributes["law_kind"])
-    recipe = _recipe(law, *axes, height_ratio)
-    check_usable(contents, source, recipe, _nodes(*axes))
+    recipe = _recipe(law, breaks)
+    halvings = arrays["halvings"]
+    nodes = np.arange(float(attributes["nodes"]))
+    patches = np.arange(float(attributes["patches"]))
+    check_usable(contents, source, recipe, {"node": nodes, "patch": patches})
+    codes = halvings.astype(np.int64)
+    cells = COARSEST_CELLS << np.stack([codes // 16, codes % 16], axis=-1)
+    if not (
+        breaks.ndim == 1 and breaks[0] == 0.0 and np.all(np.diff(breaks) > 0.0)
+        and breaks[-1] <= law.top_speed and len(patches) == len(patches_of(breaks))
+        and np.array_equal(codes, halvings) and codes.min() >= 0 and codes.max() < 256
+        and cells.max() <= COARSEST_CELLS << HALVINGS
+        and (cells + 1).prod(axis=1).sum() == len(nodes)
+    ):  # fmt: skip
+        raise TableError(f"{source} has axes or values that this program cannot use")
     return SpeedTable(
-        *axes,
-        height_ratio,
-        np.stack([contents.arrays[name] for name in FUNCTIONS], axis=-1),
+        breaks,
+        cells,
+        np.stack([arrays[name] for name in INTEGRALS], axis=-1),
         attributes["largest_f"],
         law,
         tolerance=attributes["tolerance"],

@@ -1,42 +1,113 @@
-"""The axis of speeds of a table where the friction coefficient depends on the slip speed.
+"""The patches of a table where the friction coefficient depends on the slip speed.
 
-The variable is the fastest slip of the base, U = v + r|ω| = Q(cos φ + |sin φ|): a friction law
-that is known up to U_max is used whole, and never beyond, at every slip angle.  The nodes are
-
-    U_j = u₀ sinh(j/n · asinh(U_max/u₀)),   j = 0 … n,
-
-uniform below the scale u₀ on which f varies first, logarithmic above, and 0 is a node: there f is
-f(0) and the table is that of a constant coefficient.
+Where the integrals are singular, and in which coordinates they are not, stands in
+:mod:`puck_tables.kernels.speed_spline`; here is the way back, from the coordinates of a patch to
+the slip of the puck, and the choice of the breaks b_k.  Besides the corners of the law there are
+breaks of convenience, so that no patch is wider than twice its distance from slip zero, the scale
+on which anything varies there.
 """
 
 from __future__ import annotations
 
-import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables.contact.integrals import SlipDirection
+from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import InputError
+from puck_tables.kernels.speed_spline import CORNER_POWER, EDGE_POWER
 
 FloatArray = npt.NDArray[np.float64]
 
-MAX_CELLS = 8192
+MOST_CORNERS = 40  # patches grow with their square; weaker ones are left to the splines
+_STEEPEST = 3.0  # between neighbouring breaks
 _LEAST_SCALE = 1e-9  # of the top speed
+_SAME = 1e-9  # two corners as near as this to each other are one
 
 
 @dataclass(frozen=True)
-class SpeedAxis:
-    """Speeds U from 0 to ``top``.
+class Patch:
+    """A part of the plane of slips on which the integrals are smooth.
 
     Parameters
     ----------
-    cells : int
-        At least 4.
-    top : float
-        U_max, m/s.
-    scale : float
-        u₀, m/s: the least speed at which f varies; from 1e-9 of ``top``.
+    breaks : array (k + 1,), m/s
+    slab : which interval of the breaks U = v + r|ω| lies in
+    part : which part of the slips W = |v − r|ω||, 0 … slab + 1; the last up to W = U
+    fast : whether r|ω| > v
+    """
+
+    breaks: FloatArray
+    slab: int
+    part: int
+    fast: bool
+
+    @property
+    def top(self) -> float:
+        """The fastest slip in it, m/s."""
+        return float(self.breaks[self.slab + 1])
+
+    def place(self, xi: FloatArray, zeta: FloatArray) -> tuple[SlipDirection, FloatArray]:
+        """Slip direction and Q in m/s at coordinates in [0, 1] that broadcast.
+
+        In the last part of a slab W > U stands for the mirror image, that has the same integrals.
+        """
+        b, k = self.breaks, self.slab
+        if k == 0:
+            tau = zeta**4
+            ratio = (1.0 - tau) / (1.0 + tau)
+            Q = b[1] * xi * np.sqrt(1.0 + ratio**2) / (1.0 + ratio)
+        else:
+            width = b[k + 1] - b[k]
+            mirrored = self.part == k + 1
+            power = edge_power(k, self.part, self.fast)
+            U = b[k] + width * (xi if mirrored else xi**power)
+            if mirrored:
+                W = b[k] + width * zeta
+            elif self.part == 0:
+                W = 0.5 * b[1] * zeta**4
+            else:
+                low = 0.5 * b[1] if self.part == 1 else b[self.part - 1]
+                W = b[self.part] - (b[self.part] - low) * (1.0 - zeta) ** power
+            ratio, Q = np.abs(U - W) / (U + W), np.sqrt(0.5 * (U**2 + W**2))
+        ratio, Q = np.broadcast_arrays(ratio, Q)
+        return SlipDirection(ratio, np.full(ratio.shape, self.fast)), Q
+
+
+def edge_power(slab: int, part: int, fast: bool) -> int:
+    """How strongly the nodes of a patch crowd at its singular edges."""
+    return CORNER_POWER if part == slab and not fast else EDGE_POWER
+
+
+def patches_of(breaks: FloatArray) -> tuple[Patch, ...]:
+    """The patches between breaks, in the order in which compiled code numbers them.
+
+    Examples
+    --------
+    >>> len(patches_of(np.array([0.0, 1.0, 2.0])))
+    8
+    """
+    return tuple(
+        Patch(breaks, slab, part, fast)
+        for fast in (False, True)
+        for slab in range(len(breaks) - 1)
+        for part in range(slab + 2 if slab > 0 else 1)
+    )
+
+
+def breaks_of(
+    law: SpeedLaw | Callable[..., object], top_speed: float | None, scale: float | None
+) -> FloatArray:
+    """Speeds from 0 to the top between which patches lie, m/s.
+
+    Parameters
+    ----------
+    law : SpeedLaw, or callable
+    top_speed : m/s; needed for a callable
+    scale : the speed below which a callable is nearly cubic, m/s; default ``top_speed``
 
     Raises
     ------
@@ -45,33 +116,53 @@ class SpeedAxis:
 
     Examples
     --------
-    >>> SpeedAxis(4, top=10.0, scale=0.1).nodes().round(4).tolist()
-    [0.0, 0.1747, 0.7036, 2.6583, 10.0]
+    >>> breaks_of(SpeedLaw([0.0, 1.0, 6.0], [0.3, 0.2, 0.2]), None, None).round(3).tolist()
+    [0.0, 1.0, 2.449, 6.0]
     """
-
-    cells: int
-    top: float
-    scale: float
-
-    def __post_init__(self) -> None:
-        if not 4 <= self.cells <= MAX_CELLS:
-            raise InputError(f"cells of speed must be from 4 to {MAX_CELLS}, got {self.cells}")
-        if not 0.0 < self.top < math.inf:
-            raise InputError(f"top_speed must be finite and greater than 0 m/s, got {self.top:g}")
-        if not _LEAST_SCALE * self.top <= self.scale < math.inf:
+    if isinstance(law, SpeedLaw):
+        top = law.top_speed if top_speed is None else float(top_speed)
+        if top > law.top_speed:
             raise InputError(
-                f"scale must be finite and at least {_LEAST_SCALE:g} of the top speed "
-                f"{self.top:g} m/s, got {self.scale:g}"
+                f"top_speed = {top:g} m/s is outside this friction law (0 to {law.top_speed:g} m/s)"
             )
+        corners = _corners(law)
+    else:
+        if top_speed is None:
+            raise InputError("a friction law given as a function needs top_speed= in m/s")
+        top = float(top_speed)
+        corners = np.empty(0)
+    if not 0.0 < top < np.inf:
+        raise InputError(f"top_speed must be finite and greater than 0 m/s, got {top:g}")
+    if scale is not None:
+        if not _LEAST_SCALE * top <= scale < np.inf:
+            raise InputError(
+                f"scale must be finite and at least {_LEAST_SCALE:g} of the top speed {top:g} m/s, "
+                f"got {scale:g}"
+            )
+        corners = np.union1d(corners, [scale])
+    found = [0.0]
+    for corner in (*corners[corners < (1.0 - _SAME) * top], top):
+        if corner <= found[-1] * (1.0 + _SAME):
+            continue
+        if found[-1] > 0.0:
+            steps = int(np.ceil(np.log(corner / found[-1]) / np.log(_STEEPEST)))
+            found += np.geomspace(found[-1], corner, steps + 1)[1:-1].tolist()
+        found.append(float(corner))
+    return np.array(found)
 
-    @property
-    def reach(self) -> float:
-        """The length of the axis in asinh(U/u₀)."""
-        return math.asinh(self.top / self.scale)
 
-    def nodes(self) -> FloatArray:
-        """U at the nodes, m/s, ascending from 0."""
-        share = np.arange(self.cells + 1) / self.cells
-        speeds = self.scale * np.sinh(share * self.reach)
-        speeds[-1] = self.top
-        return np.asarray(speeds)
+def _corners(law: SpeedLaw) -> FloatArray:
+    """The inner points of a law, or the first and those where a derivative jumps the most."""
+    speeds = np.asarray(law.speeds)
+    inner = speeds[1:-1]
+    if inner.size <= MOST_CORNERS:
+        return np.asarray(inner)
+    c, width = law.coefficients, np.diff(speeds)
+    ends = (
+        c[:, 1] + width * (2.0 * c[:, 2] + width * 3.0 * c[:, 3]),
+        c[:, 2] + 3.0 * width * c[:, 3],
+    )
+    reach = 0.5 * (width[1:] + width[:-1])
+    jump = np.abs(c[1:, 1] - ends[0][:-1]) * reach + np.abs(c[1:, 2] - ends[1][:-1]) * reach**2
+    strongest = np.argsort(-jump)[: MOST_CORNERS - 1]
+    return np.union1d(inner[:1], inner[strongest])

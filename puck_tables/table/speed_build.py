@@ -1,0 +1,310 @@
+"""Building a table of friction that depends on the slip speed: each patch as fine as it needs."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables.contact.speed_law import SpeedLaw
+from puck_tables.contact.speed_quadrature import SpeedFunction, speed_integrals
+from puck_tables.errors import AccuracyError
+from puck_tables.executor import keep_on, run_chunks
+from puck_tables.kernels.speed_quadrature import fill_integrals
+from puck_tables.kernels.speed_spline import fill_patch
+from puck_tables.table.speed_fit import missed_by_half, quintic_coefficients
+from puck_tables.table.speed_grid import Patch, breaks_of, patches_of
+from puck_tables.table.speed_table import SpeedAccuracy, SpeedTable
+
+FloatArray = npt.NDArray[np.float64]
+Law = SpeedLaw | SpeedFunction
+Progress = Callable[[int, int], None]
+
+DEFAULT_ACCURACY = 1e-6
+FINEST_ACCURACY, COARSEST_ACCURACY = 1e-13, 0.01
+COARSEST_CELLS, HALVINGS = 10, 6
+MAX_NODES = 2_000_000
+_ORDER = 64.0  # to the power 6, of what half the nodes miss: the spline's own share
+_ALSO = 0.2  # of what the other axis misses: refined too
+_PROBES = 100  # random points of a patch
+_SAFETY = 2.0  # for points that were not measured
+_BETWEEN_WORDS = 0.1  # s
+_AT_ONCE = 20_000  # nodes between two looks whether to go on: some 0.1 s
+
+
+class _Filled:
+    """One patch with its node values, and how good the spline through them is."""
+
+    def __init__(self, patch: Patch, law: Law, unit: float, number: int):
+        self._law, self._unit = law, unit
+        self.patch = patch
+        self.cells = [COARSEST_CELLS, COARSEST_CELLS]
+        self._probes = _probes(np.random.default_rng([1960, number]), patch)
+        self.missed: list[float] = []  # nothing is known yet
+
+    @property
+    def nodes(self) -> int:
+        """How many it has so far."""
+        return (self.cells[0] + 1) * (self.cells[1] + 1) if self.missed else 0
+
+    def fill(self) -> None:
+        """The coarsest grid."""
+        self.values = self._at(*(np.arange(n + 1) / n for n in self.cells))
+        self._judge()
+
+    def _at(self, xi: FloatArray, zeta: FloatArray) -> FloatArray:
+        """The integrals on a grid, (ξ, ζ, 4)."""
+        direction, Q = self.patch.place(xi[:, None], zeta)
+        fast = bool(self.patch.fast)
+        return _truth(self._law, self.patch.top, direction.ratio, fast, Q)
+
+    def _judge(self) -> None:
+        """Errors (4, probes) of the spline, and what is missed along ξ and ζ by half the nodes."""
+        xi, zeta = self._probes
+        direction, self.speeds = self.patch.place(xi, zeta)
+        found = np.empty((xi.size, 4))
+        along, across = self.cells
+        fill_patch(quintic_coefficients(self.values).ravel(), along, across, xi, zeta, found)
+        truth = _truth(
+            self._law, self.patch.top, direction.ratio, bool(self.patch.fast), self.speeds
+        )
+        cosine, sine = np.sqrt(direction.cos_squared), np.sqrt(direction.sin_squared)
+        weights = np.stack([cosine, sine, sine, cosine], axis=-1) / self._unit
+        self.errors = np.abs(weights * (found - truth))
+        self.phi = np.arctan2(sine, cosine)
+        self.worst = float(self.errors.max())
+        nodes = [np.arange(n + 1) / n for n in self.cells]
+        at_nodes, _ = self.patch.place(nodes[0][:, None], nodes[1])
+        cosine, sine = np.sqrt(at_nodes.cos_squared), np.sqrt(at_nodes.sin_squared)
+        weights = np.stack([cosine, sine, sine, cosine], axis=-1) / self._unit
+        by_half = (
+            np.abs(missed_by_half(self.values) * weights[1::2]),
+            np.abs(missed_by_half(self.values.swapaxes(0, 1)) * weights.swapaxes(0, 1)[1::2]),
+        )
+        self.missed = [float(part.max()) / _ORDER for part in by_half]
+
+    def lacks(self, accuracy: float) -> list[int]:
+        """The axes along which it has too few nodes."""
+        if self.good(accuracy):
+            return []
+        most = max(self.missed)
+        axes = [axis for axis in (0, 1) if self.missed[axis] >= _ALSO * most]
+        return [axis for axis in axes if self.cells[axis] < COARSEST_CELLS << HALVINGS]
+
+    def good(self, accuracy: float) -> bool:
+        """Whether it is as good as asked wherever that was looked at."""
+        return self.badness <= accuracy
+
+    @property
+    def badness(self) -> float:
+        """The largest error that was seen, or is to be feared."""
+        return max(self.worst, *self.missed)
+
+    def size_with(self, axes: list[int]) -> int:
+        """How many nodes it has once these axes are refined."""
+        u, w = (2 * n if axis in axes else n for axis, n in enumerate(self.cells))
+        return (u + 1) * (w + 1)
+
+    def refine(self, axes: list[int]) -> None:
+        """Halve the cells along these axes."""
+        for axis in axes:
+            n = self.cells[axis]
+            between = [np.arange(m + 1) / m for m in self.cells]
+            between[axis] = (np.arange(n) + 0.5) / n
+            shape = list(self.values.shape)
+            shape[axis] = 2 * n + 1
+            finer = np.moveaxis(np.empty(shape), axis, 0)
+            finer[::2] = np.moveaxis(self.values, axis, 0)
+            finer[1::2] = np.moveaxis(self._at(*between), axis, 0)
+            self.values = np.ascontiguousarray(np.moveaxis(finer, 0, axis))
+            self.cells[axis] = 2 * n
+        self._judge()
+
+    def nodes_in_the_end(self, accuracy: float) -> float:
+        """How many it will have, as far as can be told."""
+        u, w = self.cells
+        for part in self.missed:
+            if part > accuracy:
+                halvings = math.ceil(math.log2(part / accuracy) / 6.0)
+                u, w = (u << halvings, w) if part == self.missed[0] else (u, w << halvings)
+        return (u + 1.0) * (w + 1.0)
+
+
+def build_speed_table(
+    law: Law,
+    *,
+    top_speed: float | None = None,
+    scale: float | None = None,
+    accuracy: float = DEFAULT_ACCURACY,
+    progress: Progress | None = None,
+) -> SpeedTable:
+    """Tabulate friction with a coefficient that depends on the slip speed, in full contact.
+
+    Parameters
+    ----------
+    law : SpeedLaw, or callable from speeds in m/s to f
+    top_speed : float, optional
+        The fastest slip v + r|ω| of the table, m/s; needed for a callable, otherwise that of the
+        law.
+    scale : float, optional
+        The speed below which a callable is nearly a cubic, m/s.  Default: ``top_speed``.
+    accuracy : float
+        Largest error wanted of the friction integrals (cos φ p_a, sin φ p_b, sin φ p_d, cos φ p_e)
+        in units of the largest f; 1e-13 to 0.01.
+    progress : callable (done, total), optional
+        Told of nodes; how many they will be is an estimate that improves.
+
+    Returns
+    -------
+    SpeedTable
+        With the errors that were measured.  It serves pucks of every height.
+
+    Raises
+    ------
+    InputError
+        If a number is out of range or the law gives no f.
+    AccuracyError
+        If the accuracy is out of range or would take more than 2 million nodes; it says which
+        accuracy can be reached.
+
+    Notes
+    -----
+    The grid is cut at the corners of the law: the error falls with order 4 and more for cubic and
+    smooth laws, with order 2 to 4 where f itself has corners (linear laws).
+
+    References
+    ----------
+    Salnikova, Treschev, Gallyamov 2012, section 5, with f(|u|) kept under the integrals.
+
+    Examples
+    --------
+    >>> law = SpeedLaw([0.0, 0.5, 1.0, 3.0], [0.3, 0.22, 0.2, 0.25])
+    >>> table = build_speed_table(law, accuracy=1e-8)
+    >>> table.accuracy.worst < 1e-8, table.top
+    (True, 3.0)
+    """
+    if not FINEST_ACCURACY <= accuracy <= COARSEST_ACCURACY:
+        raise AccuracyError(
+            f"the accuracy of a table of speeds must be from {FINEST_ACCURACY:g} to "
+            f"{COARSEST_ACCURACY:g} (of the largest f), got {accuracy:g}"
+        )
+    breaks = breaks_of(law, top_speed, scale)
+    largest = _largest(law, float(breaks[-1]))
+    goal = accuracy / _SAFETY
+    patches = patches_of(breaks)
+    parts = [_Filled(patch, law, largest or 1.0, n) for n, patch in enumerate(patches)]
+    share, told = 0.0, 0.0
+
+    def tell() -> None:
+        nonlocal share, told
+        if progress is None or time.monotonic() < told + _BETWEEN_WORDS:
+            return
+        told = time.monotonic()
+        done = sum(part.nodes for part in parts)
+        share = max(share, done / sum(part.nodes_in_the_end(goal) for part in parts))
+        progress(int(1000 * min(share, 1.0)), 1000)
+
+    _each(parts, _Filled.fill, tell)
+    while pending := [part for part in parts if part.lacks(goal)]:
+        chosen, room = [], MAX_NODES - sum(part.nodes for part in parts)
+        for part in sorted(pending, key=lambda part: -part.badness):
+            room -= part.size_with(part.lacks(goal)) - part.nodes
+            if room < 0:
+                break
+            chosen.append(part)
+        if not chosen:
+            raise _out_of_reach(parts, accuracy)
+        _each(chosen, lambda part: part.refine(part.lacks(goal)), tell)
+    if not all(part.good(goal) for part in parts):
+        raise _out_of_reach(parts, accuracy)
+    points = law if isinstance(law, SpeedLaw) else None
+    cells = np.array([part.cells for part in parts], np.int64)
+    values = np.concatenate([part.values.reshape(-1, 4) for part in parts])
+    return SpeedTable(breaks, cells, values, largest, points, accuracy, _measured(parts))
+
+
+def _each(parts: list[_Filled], work: Callable[[_Filled], None], tell: Callable[[], None]) -> None:
+    """Do it to every patch, on several threads."""
+
+    def some(start: int, stop: int) -> None:
+        for part in parts[start:stop]:
+            work(part)
+
+    run_chunks(some, len(parts), 1, progress=lambda done, total: tell())
+
+
+def _out_of_reach(parts: list[_Filled], accuracy: float) -> AccuracyError:
+    reached = _SAFETY * max(part.badness for part in parts)
+    return AccuracyError(
+        f"an accuracy of {accuracy:g} is out of reach for this friction law with its "
+        f"corners: {_rounded_up(reached):g} can be reached",
+        reachable=_rounded_up(reached),
+    )
+
+
+def _rounded_up(value: float) -> float:
+    """To one digit.
+
+    Examples
+    --------
+    >>> _rounded_up(2.1e-7)
+    3e-07
+    """
+    power = int(np.floor(np.log10(value)))
+    return float(f"{int(np.ceil(value / 10.0**power - 1e-9))}e{power}")
+
+
+def _largest(law: Law, top: float) -> float:
+    """The largest f up to a speed: at a point of a law that does not overshoot, or sampled."""
+    if isinstance(law, SpeedLaw):
+        speeds = np.asarray(law.speeds)
+        return float(law.extended(np.append(speeds[speeds < top], top)).max())
+    speeds = top * np.linspace(0.0, 1.0, 1001) ** 3
+    return float(np.abs(speed_integrals(0.0, speeds, law).a).max())
+
+
+def _truth(law: Law, top: float, ratio: FloatArray, fast: bool, speed: FloatArray) -> FloatArray:
+    """p_a, p_b, p_d, p_e by quadrature, (…, 4); ``top``: what the slip goes up to, m/s."""
+    if not isinstance(law, SpeedLaw):
+        phi = np.arctan2(1.0, ratio) if fast else np.arctan(ratio)
+        p = speed_integrals(phi, speed, law)
+        return np.stack([p.a, p.b, p.d, p.e], axis=-1)
+    speeds = np.asarray(law.speeds)
+    pieces = int(np.count_nonzero(speeds[:-1] < top))  # a corner at the top is not yet passed
+    flat, Q = np.ravel(ratio).copy(), np.ravel(speed).copy()
+    out = np.empty((flat.size, 4))
+    each = max(1, _AT_ONCE // max(1, pieces // 4))
+    for start in range(0, flat.size, each):
+        keep_on()
+        part = slice(start, start + each)
+        fill_integrals(
+            speeds[: pieces + 1], law.coefficients[:pieces], flat[part],
+            np.full(len(flat[part]), fast), Q[part], out[part],
+        )  # fmt: skip
+    return out.reshape(*np.shape(ratio), 4)
+
+
+def _probes(rng: np.random.Generator, patch: Patch) -> tuple[FloatArray, FloatArray]:
+    """Points of a patch, ξ and ζ: anywhere, and next to all edges and corners."""
+    share = rng.random((2, _PROBES))
+    near = rng.random((2, _PROBES)) ** 6
+    edge = np.where(rng.random((2, _PROBES)) < 0.5, near, 1.0 - near)
+    xi, zeta = np.where(rng.random((2, _PROBES)) < 0.5, share, edge)
+    if patch.slab > 0 and patch.part == patch.slab + 1:  # one half mirrors the other
+        return np.maximum(xi, zeta), np.minimum(xi, zeta)
+    return xi, zeta
+
+
+def _measured(parts: list[_Filled]) -> SpeedAccuracy:
+    errors = np.concatenate([part.errors for part in parts])
+    phi = np.concatenate([part.phi for part in parts])
+    U = np.concatenate([part.speeds for part in parts]) * (np.cos(phi) + np.sin(phi))
+    where = errors.argmax(axis=0)
+    return SpeedAccuracy(
+        tuple(errors.max(axis=0).tolist()), tuple(np.sqrt((errors**2).mean(axis=0)).tolist()),
+        tuple(np.quantile(errors, 0.999, axis=0).tolist()), tuple(phi[where].tolist()),
+        tuple(U[where].tolist()), int(errors.size),
+    )  # fmt: skip
