@@ -130,8 +130,9 @@ class Stretch(NamedTuple):
     ``leaning``: the walls that the puck leans on, rows (n, 4), see
     :func:`puck_tables.scene.cushions.wall_reaction`; ``piece``: how many rows of ``model.drive``
     have passed; ``mode`` SLIDES, CARRIED (at rest on the floor), STOPS: with the constant relative
-    acceleration way[3] times the direction way[:3]; ``stiff``: whether the direction of the slip
-    settles much faster than the slip changes.
+    acceleration way[3] times the direction way[:3]; ``newton``: 0 for explicit steps; for implicit
+    ones, where the slip settles much faster than it changes, how well to solve their equations, in
+    units of the scales.
     """
 
     model: Model
@@ -140,7 +141,7 @@ class Stretch(NamedTuple):
     piece: int
     mode: int
     way: tuple[float, float, float, float]
-    stiff: bool
+    newton: float
 
 
 @inlined

@@ -76,7 +76,9 @@ _FIRST = 1e-16  # of it: what a slip begins with, for its direction
 _LAST = 30.0  # times the local error: from there a stop goes straight
 _SLOW = 1e-3  # of friction: what brakes less comes closer to rest before it goes straight
 _NEAR = 0.5  # of the time in which the slip would end, at most, is a step
-_STIFF, _MILD = 2.0, 0.7  # of the time in which a slip settles: longer steps are implicit
+_STIFF, _MILD = 0.8, 0.3  # of the time in which a slip settles: longer steps are implicit,
+_SLOWLY = 0.1  # if the slip changes by less than this of itself meanwhile
+_NEWTON, _FINEST_NEWTON = 1e-3, 1e-15  # of the local error: how well implicit steps are solved
 _SWING = 0.05  # rad that a carried puck turns, at most, in a step
 _NO_WAY = (0.0, 0.0, 0.0, 0.0)
 _EQUAL = -1  # watched: equal speeds of centre and rim; else the rim on a wall that is leant on
@@ -270,7 +272,7 @@ def follow(
             y[VX] = y[VY] = y[SPIN] = 0.0
             mode = CARRIED
             excess, nx, ny, nw = excess_at_rest(
-                Stretch(model, dry, leaning, piece, CARRIED, _NO_WAY, False), t, y
+                Stretch(model, dry, leaning, piece, CARRIED, _NO_WAY, 0.0), t, y
             )
             if excess == math.inf:  # where a constraint leads it the floor does not go
                 mode, stiff = SLIDES, False
@@ -301,7 +303,8 @@ def follow(
         h = -q / way[3] if mode == STOPS else h
         if mode == CARRIED and surface.spin != 0.0:
             h = min(h, _SWING / abs(surface.spin))
-        stretch = Stretch(model, dry, leaning, piece, mode, way, stiff and mode == SLIDES)
+        newton = max(_NEWTON * ask.tolerance, _FINEST_NEWTON) if stiff and mode == SLIDES else 0.0
+        stretch = Stretch(model, dry, leaning, piece, mode, way, newton)
         if settle or not known:
             rates(stretch, t, y, work, 0)
         settle, known = False, True
@@ -321,9 +324,9 @@ def follow(
         if steps > ask.step_limit:
             how = STEP_LIMIT
             break
-        power = 0.25 if stretch.stiff else 0.2
+        power = 0.25 if newton > 0.0 else 0.2
         if not error <= ask.tolerance:
-            shrink = 0.1
+            shrink = 0.25 if newton > 0.0 else 0.1
             if error < math.inf:
                 shrink = max(0.1, 0.9 * (ask.tolerance / error) ** power)
             h = length * shrink
@@ -372,9 +375,10 @@ def follow(
         work[0] = last
         known = happens < 0 and mode == SLIDES and model.hold.kind == 0 and leaning.shape[0] == 0
         before_it, q = q, slip_speed(model, y)
-        if stretch.stiff or mode == SLIDES:
+        if newton > 0.0 or mode == SLIDES:
             reach = length * settling_rate(model, dry, q)
-            stiff = reach > _MILD if stretch.stiff else reach > _STIFF
+            slowly = slip_rate(model, work) < _SLOWLY * settling_rate(model, dry, q) * q
+            stiff = slowly and reach > (_MILD if newton > 0.0 else _STIFF)
         if landed and (target < ask.until or t == calm):
             settle = True
         if mode in (SLIDES, STOPS) and q <= _REST * ask.speed and q < before_it:
@@ -421,7 +425,7 @@ def follow(
         if happens == EDGE:
             how = OVER_EDGE
             break
-    stretch = Stretch(model, dry, leaning, piece, mode, way, False)
+    stretch = Stretch(model, dry, leaning, piece, mode, way, 0.0)
     if how == TIME_UP and mode == CARRIED and moves:
         how = CARRIED_AWAY
     while how == AT_REST and frame < len(frames):  # for ever

@@ -40,6 +40,7 @@ from puck_tables.scene.scene import Scene, launch_velocity
 FloatArray = npt.NDArray[np.float64]
 
 LOCAL_SHARE = 0.01  # of the error wanted, per step and in units of the scales
+FINEST_LOCAL = 3e-14  # rounding
 DEFAULT_TIME = 1000.0  # times what the least friction takes, where a scene does not say
 RELATIVE_REST = 1e-12  # of the speeds of puck and floor: their difference is rounding
 STEP_LIMIT = 1_000_000
@@ -138,7 +139,7 @@ def prepare(scene: Scene, last_time: float | None = None) -> Prepared:
     if until is None:
         to_the_end = moves and bool(last_time)
         until = last_time if to_the_end and last_time else float(asks[0])
-    tolerance = LOCAL_SHARE * scene.run.tol
+    tolerance = max(LOCAL_SHARE * scene.run.tol, FINEST_LOCAL)
     ask = Ask(until, to_the_end, tolerance, asks[2:], float(asks[1]), STEP_LIMIT)
     speed, rate, _ = _scales(scene, model, regions, state[None, :])
     bounds = _bounds(scene)
@@ -201,7 +202,7 @@ def _asks(scene: Scene, model: Model, regions: Regions, states: FloatArray) -> F
         length = speed * time
         slow = max(1.0, 2.0 * scene.puck.gyration**2)  # by as much longer a spin takes to brake
         # what rounding leaves of places far out, and of what a fast floor does
-        ulp = 4e-16 / (LOCAL_SHARE * scene.run.tol)
+        ulp = 4e-16 / max(LOCAL_SHARE * scene.run.tol, FINEST_LOCAL)
         turning = abs(scene.floor.turning)
         place = np.maximum(length, ulp * (np.hypot(states[:, X], states[:, Y]) + floor * time))
         swift = np.maximum(speed, ulp * turning * floor * time)
@@ -286,7 +287,7 @@ def _slowest(
         if load > 0.0:
             dry = Dry(load, regions.delta[number], regions.cuts[number], regions.by_speed)
             at_rest = Stretch(
-                model, dry, np.empty((0, LEAN_COLUMNS)), 0, CARRIED, (0.0, 0.0, 0.0, 0.0), False
+                model, dry, np.empty((0, LEAN_COLUMNS)), 0, CARRIED, (0.0, 0.0, 0.0, 0.0), 0.0
             )
             excess = abs(float(excess_at_rest(at_rest, 0.0, np.zeros(SIZE))[0]))
             brakes.append(min(excess, load) if math.isfinite(excess) else load)

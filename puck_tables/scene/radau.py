@@ -33,6 +33,7 @@ _STIFF = 3  # vx, vy, spin
 _NUDGE = 1e-7  # of the slip: of the differences
 _ITERATIONS = 12
 _RELATIVE = 1e-3  # of the slip: no step is worse
+_ROUNDING = 1e-12  # of the scales: what no iteration makes better
 _SURE = 1e-6  # of it: how well the stages are known
 
 
@@ -138,8 +139,8 @@ def radau_step(
         for i in range(SIZE):
             at[i] = y[i] + z[2, i]
         sure = moved <= _SURE * max(slip_speed(stretch.model, y), slip_speed(stretch.model, at))
-        stalls = iteration > 1 and largest >= 0.5 * before and largest <= 1e-13
-        if sure and (largest <= 1e-15 or stalls):
+        stalls = iteration > 1 and largest >= 0.3 * before and largest <= _ROUNDING
+        if sure and (largest <= stretch.newton or stalls):
             break
         if not largest < math.inf or (iteration > 2 and largest > 0.9 * before):
             return math.inf

@@ -85,7 +85,7 @@ def simulate_scene(
 
 COARSER = 30.0  # the steps of a twin may err by so much more
 FINER = (1.0, 1 / 30, 1 / 900, 1 / 27000)  # of the tolerance asked: tried one after the other
-FINEST = 1e-13
+FINEST = 1e-12
 STEP_SHARE = 0.1  # of the sum of the errors of steps, which are those of order 4
 PROBES = 7  # states on the way that are compared too
 
@@ -144,7 +144,7 @@ def _integrated(scene: Scene, plan: Plan, times: FloatArray | None) -> SceneRun:
     asked = scene.run.tol
     estimate = math.inf
     for finer in FINER:
-        tol = max(asked * finer, FINEST)
+        tol = max(asked * finer, min(asked, FINEST))
         try:
             closer = prepare(replace(scene, run=replace(scene.run, tol=tol)), last)
         except AccuracyError:
@@ -153,7 +153,7 @@ def _integrated(scene: Scene, plan: Plan, times: FloatArray | None) -> SceneRun:
             break  # a friction law that is known no better
         prepared = closer
         estimate = _estimate(prepared, events)
-        if estimate <= asked or tol == FINEST:
+        if estimate <= asked or tol <= FINEST:
             break
     if times is None:
         _, end_time, *_ = prepared.follow(np.empty(0), np.empty((1, FRAME_COLUMNS)), events)

@@ -98,7 +98,7 @@ def step(
 
     On entry work[0] is dy/dt at t; on return work[STAGES − 1] is that at the end.
     """
-    if stretch.stiff:
+    if stretch.newton > 0.0:
         error = radau_step(stretch, t, h, y, scale, work, new)
         rates(stretch, t + h, new, work, STAGES - 1)
     else:
