@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +12,7 @@ import numpy.typing as npt
 
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import InputError, PuckError
-from puck_tables.real import finite_array
+from puck_tables.real import finite_array, instance
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.scene.library import find_scene
 from puck_tables.scene.loop import (
@@ -26,7 +27,7 @@ from puck_tables.scene.outcome import COLUMNS, ENDS, EVENTS, Event, SceneRun, le
 from puck_tables.scene.plain import run_plain
 from puck_tables.scene.plan import Plan, ingredients, out_of_reach, plan_for
 from puck_tables.scene.prepare import MAX_EVENTS, Prepared, prepare
-from puck_tables.scene.scene import Scene, scene_from
+from puck_tables.scene.scene import Scene, files_of, scene_from
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -73,11 +74,14 @@ def simulate_scene(
     """
     whole = single(scene)
     moments = None if times is None else _checked(times)
+    files = files_of(whole)
     needed = out_of_reach(whole)
     plan = plan_for(needed)
     if plan.plain:
-        return run_plain(whole, needed, plan, moments)
-    return _integrated(whole, plan, moments)
+        run = run_plain(whole, needed, plan, moments)
+    else:
+        run = _integrated(whole, plan, moments)
+    return replace(run, files=files)
 
 
 FAILURES = {
@@ -95,16 +99,28 @@ def single(scene: Scene | Mapping[str, Any] | str | Path, source: str = "scene")
     ------
     InputError
     """
-    if isinstance(scene, Scene):
-        return scene
-    if isinstance(scene, str | Path):
-        scene, source = find_scene(str(scene)), str(scene)
-    whole, ranges = scene_from(dict(scene), source)
+    found, name = named(scene, source)
+    whole, ranges = scene_from(found, name)
     if ranges:
         raise InputError(
             f"{', '.join(ranges)}: a range makes many runs; give one number, or run a sweep"
         )
     return whole
+
+
+def named(
+    scene: Scene | Mapping[str, Any] | str | Path, source: str = "scene"
+) -> tuple[Scene | Mapping[str, Any], str]:
+    """A scene that is given, or that a file or one that comes along holds; and its name.
+
+    Raises
+    ------
+    InputError
+    """
+    instance("the scene", scene, Scene, Mapping, str, Path)
+    if isinstance(scene, str | Path):
+        return find_scene(str(scene)), str(scene)
+    return scene, source
 
 
 def _checked(times: npt.ArrayLike) -> FloatArray:
@@ -114,22 +130,17 @@ def _checked(times: npt.ArrayLike) -> FloatArray:
     return moments
 
 
-def refuse_endless(scene: Scene) -> None:
-    """Refuse a scene without friction that says neither where nor when it ends.
-
-    Raises
-    ------
-    InputError
-    """
-    if scene.run.time is None and not scene.edge and "no dry friction" in ingredients(scene):
-        raise InputError(
-            "nothing brings this scene to rest (floor.friction is 0): give run.time, or friction"
-        )
+def is_endless(scene: Scene) -> bool:
+    """Whether a scene has no friction and says neither where nor when it ends."""
+    return scene.run.time is None and not scene.edge and "no dry friction" in ingredients(scene)
 
 
 def _integrated(scene: Scene, plan: Plan, times: FloatArray | None) -> SceneRun:
     prepared = prepare(scene, None if times is None or not times.size else float(times[-1]))
-    refuse_endless(scene)
+    if is_endless(scene):
+        raise InputError(
+            "nothing brings this scene to rest (floor.friction is 0): give run.time, or friction"
+        )
     events = np.empty((MAX_EVENTS, EVENT_COLUMNS))
     if times is None:
         _, end_time, *_ = prepared.follow(np.empty(0), np.empty((1, FRAME_COLUMNS)), events)
