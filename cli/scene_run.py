@@ -58,8 +58,8 @@ def scene_tables(ctx: click.Context, scene: str | None, changes: tuple[str, ...]
     InputError
         If an option has no place in a scene.
     """
-    from puck_tables.scene.library import find_scene
     from puck_tables.scene.entries import set_path
+    from puck_tables.scene.library import find_scene
 
     source = click.core.ParameterSource.DEFAULT
     given = {

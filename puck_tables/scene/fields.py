@@ -13,7 +13,7 @@ import unicodedata
 from collections.abc import Mapping
 from dataclasses import MISSING, dataclass, field
 from numbers import Real
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -99,7 +99,8 @@ def of(shape: str, default: Any = MISSING, unit: str = "", doc: str = "", **limi
     )
 
 
-class Range(NamedTuple):
+@dataclass(frozen=True)
+class Range:
     """START:STOP:COUNT; its numbers are made when all ranges of a scene have been counted."""
 
     start: float

@@ -60,8 +60,8 @@ class SceneRun:
     the wall), border, edge.
     ``plan``: the model that was taken, and why.  ``energy_residual``: what the ledger misses, as a
     share of its largest entry.  ``columns``: arrays (n,) by name, units in :data:`COLUMNS`;
-    ``last``: the same at the end, numbers.  ``files``: what stood in the files that the scene names,
-    by the path of the entry.
+    ``last``: the same at the end, numbers.  ``files``: what stood in the files that the scene
+    names, by the path of the entry.
     """
 
     scene: Scene
