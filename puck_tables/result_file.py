@@ -35,7 +35,7 @@ TRAJECTORY_COLUMNS = {
     "speed": ("m/s", "speed of the centre, v"),
     "spin": ("rad/s", "angular velocity omega, counter-clockwise"),
     "slip_speed": ("m/s", "Q = hypot(v, r omega)"),
-    "slip_angle": ("rad", "phi = atan2(r omega, v), at rest the one it stopped with"),
+    "slip_angle": ("rad", "phi = atan2(r omega, v), 0 at rest"),
 }
 MAP_COLUMNS = {
     "stop_time": ("s", "time from launch to stop"),
