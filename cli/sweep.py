@@ -189,7 +189,7 @@ def _sweep_scene(
         told(output)
     _done_with(kept, output)
     if plot is not None:
-        from puck_tables.scene_picture import plot_scene_map
+        from puck_tables.scene_map_picture import plot_scene_map
 
         plot_scene_map(stops, plot, overwrite)
         told(plot)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -115,7 +115,7 @@ class Trajectory:
         [1.590682, 0.0]
         """
         moments = checked_times(times)
-        states = _integrated(
+        states: dict[str, Any] = _integrated(
             self.motion, moments, self.stop_time, self.v0, self.w0, self.decel, self.radius
         )
         return replace(self, time=moments, **states)
