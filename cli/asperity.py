@@ -74,7 +74,7 @@ def asperity(
         kind_of(output, MAP_KINDS)
     if plot is not None:
         from puck_tables.asperity_picture import plot_asperity
-        from puck_tables.plots import PICTURE_KINDS, require_matplotlib
+        from puck_tables.drawing import PICTURE_KINDS, require_matplotlib
 
         kind_of(plot, PICTURE_KINDS)
         if isinstance(speeds, float):
@@ -118,7 +118,7 @@ def _summary(curve: AsperityCurve) -> str:
     )
     if curve.leaps > MOST_LEAPS:
         text += (
-            f"\nbetween {curve.leaps} of {curve.speed.size - 1} neighbouring speeds the force leaps: "
-            "it varies faster than they show; give more speeds, or lower ones"
+            f"\nbetween {curve.leaps} of {curve.speed.size - 1} neighbouring speeds the force "
+            "leaps: it varies faster than they show; give more speeds, or lower ones"
         )
     return text

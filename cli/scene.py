@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import click
-from puck_tables.cli.scene_run import printable
+from puck_tables.cli.options import printable
 
 
 @click.group()

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
-from puck_tables.cli.options import DEFAULT_DECEL, DEFAULT_DELTA, told
+from puck_tables.cli.options import DEFAULT_DECEL, DEFAULT_DELTA, printable, told
 
 from puck_tables.errors import InputError
 
@@ -145,7 +145,7 @@ def run_scene(
     if output is not None:
         kind_of(output, TRAJECTORY_KINDS)
     if plot is not None:
-        from puck_tables.plots import PICTURE_KINDS, require_matplotlib
+        from puck_tables.drawing import PICTURE_KINDS, require_matplotlib
 
         kind_of(plot, PICTURE_KINDS)
         require_matplotlib()
@@ -216,17 +216,6 @@ def _written(value: Any) -> str:
     if isinstance(value, tuple):
         return f"({', '.join(map(_written, value))})"
     return f"{value:.9g}" if isinstance(value, float) else printable(str(value))
-
-
-def printable(text: str) -> str:
-    """A text without what a terminal would obey.
-
-    Examples
-    --------
-    >>> printable("a" + chr(27) + "[2Jb")
-    'a[2Jb'
-    """
-    return "".join(sign for sign in text if sign.isprintable())
 
 
 def _friction(scene: Scene) -> str:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.plots import COLORS, GREY, PICTURE_KINDS, canvas, save, shaded, titled
+from puck_tables.drawing import COLORS, GREY, PICTURE_KINDS, canvas, save, shaded, titled
 from puck_tables.result_file import kind_of
 
 FloatArray = npt.NDArray[np.float64]

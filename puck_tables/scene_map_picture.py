@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.plots import (
+from puck_tables.drawing import (
     BLUE,
     GREEN,
     ORANGE,
@@ -29,8 +29,13 @@ from puck_tables.scene.sweep import SceneMap
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_MAPS = {"end_time": "end time / s", "x": "end x / m", "y": "end y / m",
-         "orientation": "orientation at the end / rad", "heat_dry": "heat of dry friction / J"}  # fmt: skip
+_MAPS = {
+    "end_time": "end time / s",
+    "x": "end x / m",
+    "y": "end y / m",
+    "orientation": "orientation at the end / rad",
+    "heat_dry": "heat of dry friction / J",
+}
 _LOOKS = (
     (BLUE, "o"), (GREEN, "^"), (ORANGE, "D"), (RED, "v"), ("#555555", "x"), ("#8b2fa0", "x"),
     ("black", "x"), ("#c8a415", "x"), ("#b8b8b8", "x"),

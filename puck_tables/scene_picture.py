@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.errors import InputError
-from puck_tables.plots import (
+from puck_tables.drawing import (
     BLUE,
     GREEN,
     GREY,
@@ -22,6 +21,7 @@ from puck_tables.plots import (
     save,
     titled,
 )
+from puck_tables.errors import InputError
 from puck_tables.result_file import kind_of
 from puck_tables.scene.outcome import SceneRun
 from puck_tables.scene.scene import files_of

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.plots import BLUE, GREY, LAUNCH, ORANGE, RED, STOP
+from puck_tables.drawing import BLUE, GREY, LAUNCH, ORANGE, RED, STOP
 from puck_tables.scene.outcome import SceneRun
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.scene import Edge, Scene, Wall
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -43,12 +44,8 @@ def draw_plane(axes: Axes, run: SceneRun, columns: dict[str, FloatArray]) -> Non
     _draw_floor(axes, scene, box)
     axes.plot(x, y, color=BLUE, linewidth=1.4, zorder=3)
     _draw_pucks(axes, scene, columns)
-    for n, wall in enumerate(scene.wall):
-        label = {} if n else {"label": "wall"}
-        _draw_line(axes, wall.point, wall.normal, box, color="black", linewidth=2.5, **label)
-    for n, edge in enumerate(scene.edge):
-        label = {} if n else {"label": "edge"}
-        _draw_line(axes, edge.point, edge.normal, box, color=RED, linestyle="--", **label)
+    _draw_lines(axes, scene.wall, box, "wall", color="black", linewidth=2.5)
+    _draw_lines(axes, scene.edge, box, "edge", color=RED, linestyle="--")
     turns = [event for event in run.events if event.what in ("bounces", "leans")][:_MARKED]
     if turns:
         axes.plot(
@@ -93,7 +90,7 @@ def _draw_pucks(axes: Axes, scene: Scene, columns: dict[str, FloatArray]) -> Non
         dx, dy = radius * math.cos(angle[n]), radius * math.sin(angle[n])
         back = 1.0 if blade else 0.0
         style: dict[str, Any] = {"color": _PURPLE, "linewidth": 1.6} if blade else {"color": GREY}
-        label = {"label": "blade"} if blade and n == chosen[0] else {}
+        label: dict[str, Any] = {"label": "blade"} if blade and n == chosen[0] else {}
         axes.plot(
             [x[n] - back * dx, x[n] + dx], [y[n] - back * dy, y[n] + dy], zorder=2,
             **{"linewidth": 0.8, **style}, **label,
@@ -125,7 +122,7 @@ def _draw_strips(axes: Axes, scene: Scene, box: Box) -> None:
                          (low, along + half))
         ]  # fmt: skip
         shade = 0.97 - 0.22 * friction / highest
-        label = {} if friction in told else {"label": f"f = {friction:g}"}
+        label: dict[str, Any] = {} if friction in told else {"label": f"f = {friction:g}"}
         told.add(friction)
         axes.add_patch(
             Polygon(
@@ -226,19 +223,29 @@ def _free_corners(
     return sorted(corners, key=lambda at: -float(np.hypot(x - at[0], y - at[1]).min()))
 
 
+def _draw_lines(
+    axes: Axes, lines: Sequence[Wall | Edge], box: Box, label: str, **style: Any
+) -> None:
+    """Walls or edges; the first that is in sight bears the label."""
+    for line in lines:
+        if _draw_line(axes, line.point, line.normal, box, label=label, **style):
+            label = ""
+
+
 def _draw_line(
     axes: Axes, point: tuple[float, float], normal: tuple[float, float], box: Box, **style: Any
-) -> None:
-    """A line, drawn only where it is in sight."""
+) -> bool:
+    """A line, drawn only where it is in sight; whether it is."""
     size = math.hypot(*normal)
     nx, ny = normal[0] / size, normal[1] / size
     middle = ((box.left + box.right) / 2, (box.low + box.high) / 2)
     half = math.hypot(box.right - box.left, box.high - box.low)
     off = nx * (middle[0] - point[0]) + ny * (middle[1] - point[1])
     if abs(off) > half:
-        return
+        return False
     foot = (middle[0] - off * nx, middle[1] - off * ny)
     axes.plot(
         [foot[0] - half * ny, foot[0] + half * ny], [foot[1] + half * nx, foot[1] - half * nx],
         zorder=1, **style,
     )  # fmt: skip
+    return True

@@ -246,8 +246,14 @@ def read_scene(path: str | Path) -> dict[str, Any]:
         tables = tomllib.loads(read_whole(path, MAX_FILE).decode("utf-8-sig"))
     except OSError as error:
         raise InputError(f"cannot read {path}: {error.strerror or error}") from None
-    except (ValueError, RecursionError) as error:  # not TOML, not text, or numbers without end
+    except UnicodeDecodeError as error:
+        raise InputError(f"{path} is not text in UTF-8: see its byte {error.start}") from None
+    except tomllib.TOMLDecodeError as error:
         raise InputError(f"{path} is not a scene file (TOML): {error}") from None
+    except (ValueError, RecursionError):
+        raise InputError(
+            f"{path}: a number in it has thousands of digits, or its lists are nested too deeply"
+        ) from None
     for part, name, kind in FILES:  # beside the scene that names them
         value = tables.get(part, {}).get(name) if isinstance(tables.get(part), dict) else None
         if isinstance(value, str) and kind.names_file(value):

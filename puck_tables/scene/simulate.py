@@ -13,6 +13,7 @@ import numpy.typing as npt
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import InputError, PuckError
 from puck_tables.real import finite_array, instance
+from puck_tables.scene.equations import ROW
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.scene.library import find_scene
 from puck_tables.scene.loop import (
@@ -20,6 +21,7 @@ from puck_tables.scene.loop import (
     EVENT_LIMIT,
     FRAME_COLUMNS,
     NOT_FINITE,
+    RESTS,
     STEP_LIMIT,
     TIME_UP,
 )
@@ -148,10 +150,7 @@ def _integrated(scene: Scene, plan: Plan, times: FloatArray | None) -> SceneRun:
     rows = np.empty((len(times) + 1, FRAME_COLUMNS))
     how, end_time, count, steps, reached, _ = prepared.follow(times, rows, events)
     if how == TIME_UP and scene.run.time is None and not prepared.ask.to_the_end:
-        raise InputError(
-            f"the puck still moves after {end_time:.4g} s, a thousand times the time scale of this "
-            "scene: it may never stop; give run.time"
-        )
+        raise InputError(_without_end(end_time, rows[reached], events[:count], prepared))
     if how == NOT_FINITE and scene.floor.law:  # a state beyond the law is never reached
         top = SpeedLaw.from_csv(scene.floor.law).top_speed
         raise InputError(
@@ -176,6 +175,19 @@ def _integrated(scene: Scene, plan: Plan, times: FloatArray | None) -> SceneRun:
         last={name: float(column[-1]) for name, column in columns.items()},
         columns={name: column[:-1] for name, column in columns.items()},
     )
+
+
+def _without_end(end_time: float, row: FloatArray, events: FloatArray, prepared: Prepared) -> str:
+    """What to say of a run that has not ended within its time limit."""
+    limit = f"{end_time:.4g} s, a thousand times the time scale of this scene"
+    drive = prepared.model.drive
+    if row[1 + ROW] == 1.0 and len(drive):  # at rest, but the force may move it again
+        rests = events[events[:, 1] == RESTS, 0]
+        return (
+            f"the puck rests from {rests[-1]:.6g} s on, but force.file goes on until "
+            f"{drive[-1, 0]:g} s, beyond {limit}: give run.time, or leave out its last rows"
+        )
+    return f"the puck still moves after {limit}: it may never stop; give run.time"
 
 
 def columns_of(rows: FloatArray, prepared: Prepared) -> dict[str, FloatArray]:
