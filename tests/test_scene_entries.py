@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +13,7 @@ import pytest
 from puck_tables.errors import InputError, PuckError
 from puck_tables.scene import scene as parts
 from puck_tables.scene.entries import as_toml, set_path, tables_of
-from puck_tables.scene.fields import Kind, described, of
+from puck_tables.scene.fields import described, of
 from puck_tables.scene.library import find_scene, shipped_scenes
 from puck_tables.scene.plan import ingredients, plan_for
 from puck_tables.scene.scene import Scene, scene_from
@@ -131,23 +131,41 @@ class BumpyWall(parts.Wall):
 
 @dataclass(frozen=True)
 class BumpyScene(Scene):
-    bumps: Bumps | None = field(
-        default=None, metadata={"kind": Kind("part", part=Bumps), "doc": ""}
-    )
+    bumps: Bumps | None = of("part", None, part=Bumps)
+
+
+@dataclass(frozen=True)
+class SceneOfBumpyFloor(Scene):
+    floor: BumpyFloor = of("part", BumpyFloor(), part=BumpyFloor)
+
+
+@dataclass(frozen=True)
+class SceneOfBumpyWalls(Scene):
+    wall: tuple[BumpyWall, ...] = of("parts", (), part=BumpyWall)
 
 
 @pytest.mark.parametrize(
-    ("made", "path"),
+    ("kind", "path"),
     [
-        (BumpyScene(parts.Puck(1.0), bumps=Bumps(0.1)), "bumps.height"),
-        (Scene(parts.Puck(1.0), BumpyFloor(0.1, bumps=0.1)), "floor.bumps"),
-        (Scene(parts.Puck(1.0), wall=(BumpyWall((9.0, 0.0), (-1.0, 0.0)),)), "wall.bumps"),
+        (BumpyScene, "bumps.height"), (SceneOfBumpyFloor, "floor.bumps"),
+        (SceneOfBumpyWalls, "wall.bumps"),
     ],
-)
-def test_an_ingredient_that_the_plan_does_not_know_is_an_error(made: Scene, path: str) -> None:
+)  # fmt: skip
+def test_an_ingredient_that_the_plan_does_not_know_is_an_error(kind: Any, path: str) -> None:
     for ask in (ingredients, plan_for):
         with pytest.raises(PuckError, match=rf"^{path}: the plan of a run knows no such"):
-            ask(made)
+            ask(kind(parts.Puck(1.0)))  # whether it is there or not
+
+
+def test_an_ingredient_that_a_scene_does_not_have_is_an_error() -> None:
+    for made, path in (
+        (BumpyScene(parts.Puck(1.0), bumps=Bumps(0.1)), "bumps"),
+        (BumpyScene(parts.Puck(1.0)), "bumps"),
+        (Scene(parts.Puck(1.0), BumpyFloor(0.1, bumps=0.1)), "floor.bumps"),
+        (Scene(parts.Puck(1.0), wall=(BumpyWall((9.0, 0.0), (-1.0, 0.0)),)), r"wall\[0\].bumps"),
+    ):
+        with pytest.raises(InputError, match=rf"{path}: no such entry"):
+            simulate_scene(made)
 
 
 @pytest.mark.parametrize("name", shipped_scenes())

@@ -12,6 +12,7 @@ import re
 import unicodedata
 from collections.abc import Mapping
 from dataclasses import MISSING, dataclass, field
+from functools import lru_cache
 from numbers import Real
 from typing import Any, TypeVar
 
@@ -70,11 +71,13 @@ class Kind:
         below = value < self.high if self.below else value <= self.high
         return above and below and not math.isnan(value)
 
-    def bars(self, sign: str) -> bool:
-        """Whether a text may not hold a character: control codes and halves of pairs; files NUL."""
+    def takes(self, text: str) -> bool:
+        """Whether a text holds no control codes and halves of pairs; a name of a file no NUL."""
         if self.file is not None:
-            return sign == "\0"
-        return unicodedata.category(sign) in ("Cc", "Cs")
+            return "\0" not in text
+        return text.isprintable() or not any(
+            unicodedata.category(sign) in ("Cc", "Cs") for sign in text
+        )
 
     def names_file(self, text: str) -> bool:
         """Whether a text is the name of a file.
@@ -136,15 +139,26 @@ def _shown(value: Any) -> str:
     return shown if len(shown) <= _SHOWN else shown[: _SHOWN - 3] + "..."
 
 
+@lru_cache(maxsize=64)
+def _specs(kind: type) -> dict[str, dataclasses.Field[Any]]:
+    return {spec.name: spec for spec in dataclasses.fields(kind)}
+
+
 def read_part(kind: type[T], data: Any, path: str, reading: Reading) -> T | None:
     """A dataclass from a table, or from an unchecked one; None if something in it is wrong."""
+    this: Any = kind
+    known = _specs(this)
     if isinstance(data, kind):
-        data = {f.name: getattr(data, f.name) for f in dataclasses.fields(data)}  # type: ignore[arg-type]
+        theirs: Any = type(data)
+        data = {  # what is left at its default needs no check
+            name: getattr(data, name)
+            for name, spec in _specs(theirs).items()
+            if name not in known or getattr(data, name) is not spec.default
+        }
     if not isinstance(data, Mapping):
         wrong = f"a table or a {kind.__name__}" if dataclasses.is_dataclass(data) else "a table"
         reading.fault(path or kind.__name__.lower(), data, wrong)
         return None
-    known = {f.name: f for f in dataclasses.fields(kind)}  # type: ignore[arg-type]
     prefix = f"{path}." if path else ""
     for name in data:
         if name not in known:
@@ -169,7 +183,7 @@ def _read(kind: Kind, value: Any, path: str, reading: Reading, default: Any) -> 
     if kind.shape == "part":
         return read_part(kind.part, value, path, reading)
     if kind.shape in ("text", "choice"):
-        good = isinstance(value, str) and not any(map(kind.bars, value))
+        good = isinstance(value, str) and kind.takes(value)
         if not good or (kind.choices and value not in kind.choices):
             reading.fault(path, value, kind.allowed())
         return value
@@ -215,7 +229,9 @@ def _number(kind: Kind, value: Any, path: str, reading: Reading, default: Any) -
         else:
             reading.ranges[path] = Range(start, stop, count)
         return start
-    if isinstance(value, bool | np.timedelta64) or not isinstance(value, Real):
+    if type(value) not in (float, int) and (
+        isinstance(value, bool | np.timedelta64) or not isinstance(value, Real)
+    ):
         reading.fault(path, value, _one(kind))
         return math.nan
     try:

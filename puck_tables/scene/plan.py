@@ -10,14 +10,15 @@ not reach are not there.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, fields, is_dataclass, replace
+from collections.abc import Callable
+from dataclasses import dataclass, fields, replace
 from functools import lru_cache
 from typing import Any, NamedTuple
 
 from puck_tables.body import is_plain
 from puck_tables.errors import PuckError
 from puck_tables.motion.limits import regime
+from puck_tables.scene.fields import Kind
 from puck_tables.scene.regions import LAW_ACCURACY
 from puck_tables.scene.scene import Floor, Scene, distance, launch_velocity
 from puck_tables.sliced import FINEST_TOL
@@ -98,8 +99,8 @@ def ingredients(scene: Scene) -> list[str]:
     >>> ingredients(Scene(Puck(1.0), Floor(0.1, slope=0.2), Launch((1.0, 0.0), 5.0)))
     ['slope']
     """
-    stray = _stray(frozenset(_parts(scene, "")))
-    if stray:
+    kind: Any = type(scene)
+    if stray := _stray(kind):
         raise PuckError(f"{', '.join(stray)}: the plan of a run knows no such ingredient")
     there = [one.name for one in INGREDIENTS if one.acts(scene)]
     if scene.constraint is not None:
@@ -113,26 +114,17 @@ def ingredients(scene: Scene) -> list[str]:
     return there
 
 
-def _parts(part: Any, path: str) -> Iterator[tuple[str, type]]:
-    """The dataclasses that make a scene, each with the path where it stands."""
-    yield path, type(part)
-    for spec in fields(part):
-        value = getattr(part, spec.name)
-        for item in value if isinstance(value, tuple) else (value,):
-            if is_dataclass(item):
-                yield from _parts(item, f"{path}{spec.name}.")
-
-
-@lru_cache(maxsize=256)
-def _stray(parts: frozenset[tuple[str, type]]) -> list[str]:
-    """Entries of them that are not known here; a part is known by its entries."""
-    entries = [
-        f"{path}{spec.name}"
-        for path, kind in parts
-        for spec in fields(kind)
-        if spec.metadata["kind"].shape not in ("part", "parts")
-    ]
-    return sorted(set(entries) - KNOWN)
+@lru_cache(maxsize=16)
+def _stray(kind: type, path: str = "") -> list[str]:
+    """Entries that a scene, or a part of it, may have and that are not known here."""
+    found = []
+    for spec in fields(kind):
+        what: Kind = spec.metadata["kind"]
+        if what.part is not None:
+            found += _stray(what.part, f"{path}{spec.name}.")
+        elif f"{path}{spec.name}" not in KNOWN:
+            found.append(f"{path}{spec.name}")
+    return found
 
 
 def height_ratio(scene: Scene) -> float:
