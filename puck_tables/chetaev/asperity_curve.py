@@ -99,7 +99,7 @@ class AsperityCurve:
         --------
         >>> bumps = Asperity(amplitude=1.0, length=4.0, load=1.0, mass=1.0)
         >>> asperity_curve(bumps, [0.0, 5.0, 10.0]).leaps
-        1
+        2
         """
         return int((np.abs(np.diff(self.mean)) > LEAP * self.crude[1:]).sum())
 
