@@ -85,7 +85,8 @@ def aim(
     if output is not None:
         kind_of(output, AIM_KINDS)
     if plot is not None:
-        from puck_tables.plots import PICTURE_KINDS, plot_aim, require_matplotlib
+        from puck_tables.drawing import PICTURE_KINDS, require_matplotlib
+        from puck_tables.plots import plot_aim
 
         kind_of(plot, PICTURE_KINDS)
         require_matplotlib()

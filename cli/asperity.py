@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 DEFAULT_COUNT, DEFAULT_TOP = 501, 2.5
 MAX_SPEEDS = 1_000_000
+MOST_LEAPS = 5  # more are no single steps of the force
 
 
 @click.command()
@@ -60,8 +61,8 @@ def asperity(
 
     \b
     puck asperity --plot asperity.png
-    puck asperity --amplitude 2e-6 --wavelength 4e-5 --load 5 --speeds 0:0.1:201 -o curve.csv
-    puck asperity --wavelength 0.001 --amplitude 1e-5 --speeds 0:0.5:41 --law rough.csv
+    puck asperity --amplitude 2e-6 --wavelength 4e-5 --load 5 --speeds 0:0.03:301 -o curve.csv
+    puck asperity --wavelength 0.001 --amplitude 1e-5 --speeds 0:0.2:41 --law rough.csv
     """  # noqa: D301 - click reads the backspace
     prepare_outputs(output, law, plot, overwrite=overwrite)
     from puck_tables.chetaev.asperity import Asperity
@@ -73,7 +74,7 @@ def asperity(
         kind_of(output, MAP_KINDS)
     if plot is not None:
         from puck_tables.asperity_picture import plot_asperity
-        from puck_tables.plots import PICTURE_KINDS, require_matplotlib
+        from puck_tables.drawing import PICTURE_KINDS, require_matplotlib
 
         kind_of(plot, PICTURE_KINDS)
         if isinstance(speeds, float):
@@ -111,7 +112,13 @@ def asperity(
 
 def _summary(curve: AsperityCurve) -> str:
     support = curve.asperity
-    return (
+    text = (
         f"a/b = {support.slope:.4g}, Coulomb's force {curve.crude[0]:.4g} N; leaves the crest "
         f"above V0 = {support.lift_speed:.4g} m/s"
     )
+    if curve.leaps > MOST_LEAPS:
+        text += (
+            f"\nbetween {curve.leaps} of {curve.speed.size - 1} neighbouring speeds the force "
+            "leaps: it varies faster than they show; give more speeds, or lower ones"
+        )
+    return text

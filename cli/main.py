@@ -18,7 +18,7 @@ from puck_tables.cli.aim import aim
 from puck_tables.cli.asperity import asperity
 from puck_tables.cli.build_tables import build_tables
 from puck_tables.cli.info import info
-from puck_tables.cli.options import said_first
+from puck_tables.cli.options import printable, said_first
 from puck_tables.cli.paper import paper
 from puck_tables.cli.scene import scene
 from puck_tables.cli.simulate import simulate
@@ -46,7 +46,7 @@ class PuckGroup(click.Group):
                 sys.stdout.flush()
             return result
         except PuckError as error:
-            click.echo(f"Error: {click.format_filename(str(error))}", err=True)
+            click.echo(f"Error: {printable(click.format_filename(str(error)))}", err=True)
             ctx.exit(2 if isinstance(error, InputError) else 1)
         except BrokenPipeError:
             _drop(sys.stdout)

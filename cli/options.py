@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 import re
 import sys
 import time
@@ -251,7 +252,7 @@ def prepare_outputs(*paths: Path | None, overwrite: bool, table: Path | None = N
         raise InputError(f"{chosen[0]} is named for two outputs: give two file names")
     for path in chosen:
         check_target(path, overwrite)
-        if table is not None and path.exists() and table.exists() and path.samefile(table):
+        if table is not None and path.exists() and os.path.exists(table) and path.samefile(table):
             raise InputError(f"{path} is the table that is read: give the output another name")
 
 
@@ -267,6 +268,18 @@ def tables_named(path: Path | None) -> list[AnyTable]:
     from puck_tables.catalogue import load_any_table, tables_that_come_along
 
     return tables_that_come_along() if path is None else [load_any_table(path)]
+
+
+def printable(text: str) -> str:
+    """Lines of a text without what a terminal would obey.
+
+    Examples
+    --------
+    >>> printable("a" + chr(27) + "[2Jb")
+    'a[2Jb'
+    """
+    lines = ("".join(sign for sign in line if sign.isprintable()) for line in text.split("\n"))
+    return "\n".join(lines)
 
 
 def told(path: Path) -> None:

@@ -35,7 +35,7 @@ def paper(folder: Path, overwrite: bool) -> None:
     \b
     puck paper --out paper
     """  # noqa: D301 - click reads the backspace
-    from puck_tables.plots import require_matplotlib
+    from puck_tables.drawing import require_matplotlib
 
     require_matplotlib()
     from puck_tables.panels import draw

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
-from puck_tables.cli.options import DEFAULT_DECEL, DEFAULT_DELTA, told
+from puck_tables.cli.options import DEFAULT_DECEL, DEFAULT_DELTA, printable, told
 
 from puck_tables.errors import InputError
 
@@ -29,6 +29,7 @@ PATHS = {
 }  # fmt: skip
 KEPT = ("times", "explain", "as_json", "output", "plot", "overwrite", "threads", "resume")
 SCALED = ("delta", "decel")
+MOST_PARTS = 16  # of a scene in a report
 
 
 def scene_options(command: Command) -> Command:
@@ -57,8 +58,8 @@ def scene_tables(ctx: click.Context, scene: str | None, changes: tuple[str, ...]
     InputError
         If an option has no place in a scene.
     """
+    from puck_tables.scene.entries import set_path
     from puck_tables.scene.library import find_scene
-    from puck_tables.scene.sweep import set_path
 
     source = click.core.ParameterSource.DEFAULT
     given = {
@@ -144,7 +145,7 @@ def run_scene(
     if output is not None:
         kind_of(output, TRAJECTORY_KINDS)
     if plot is not None:
-        from puck_tables.plots import PICTURE_KINDS, require_matplotlib
+        from puck_tables.drawing import PICTURE_KINDS, require_matplotlib
 
         kind_of(plot, PICTURE_KINDS)
         require_matplotlib()
@@ -172,11 +173,12 @@ def run_scene(
 
 
 def report(run: SceneRun) -> str:
-    """A scene run in a dozen lines."""
+    """A scene run and what went in, each with its unit."""
     last = run.last
     lines = {
-        "scene": _title(run.scene.title) or "without a title",
-        "puck": _puck(run.scene),
+        "scene": printable(run.scene.title) or "without a title",
+        **_inputs(run.scene),
+        "friction": _friction(run.scene),
         "end": f"{run.end} after {run.end_time:.9g} s",
         "place": f"({last['x']:.9g}, {last['y']:.9g}) m, body at {last['orientation']:.6g} rad",
         "motion": f"v = ({last['vx']:.6g}, {last['vy']:.6g}) m/s, w = {last['spin']:.6g} rad/s",
@@ -190,24 +192,41 @@ def report(run: SceneRun) -> str:
     if run.scene.constraint is not None:
         reaction = f"({last['lambda_1']:.6g}, {last['lambda_2']:.6g}) N at the end"
         lines["reaction"] = reaction + ("; at rest the floor shares it" if last["carried"] else "")
-    return "\n".join(f"{name:<9} {text}" for name, text in lines.items())
+    return "\n".join(f"{name:<10} {text}" for name, text in lines.items())
 
 
-def _title(text: str) -> str:
-    """A title without what a terminal would obey."""
-    return "".join(sign for sign in text if sign.isprintable())
+def _inputs(scene: Scene) -> dict[str, str]:
+    """What a scene says, a line for each of its parts, without what is left at its default."""
+    from puck_tables.scene.entries import entries
+
+    parts: dict[str, list[str]] = {}
+    for entry in entries(scene):
+        part, dot, name = entry.path.partition(".")
+        if dot and entry.value != entry.default and entry.value is not None:
+            unit = f" {entry.kind.unit}" if entry.kind.unit else ""
+            parts.setdefault(part, []).append(f"{name} {_written(entry.value)}{unit}")
+    lines = {part: ", ".join(told_of) for part, told_of in parts.items()}
+    most = list(lines)[:MOST_PARTS]
+    return {part: lines[part] for part in most} | (
+        {"further": f"{len(lines) - len(most)} parts more"} if len(lines) > len(most) else {}
+    )
 
 
-def _puck(scene: Scene) -> str:
-    """Radius, heights and decelerations, one for each strip of floor."""
+def _written(value: Any) -> str:
+    if isinstance(value, tuple):
+        return f"({', '.join(map(_written, value))})"
+    return f"{value:.9g}" if isinstance(value, float) else printable(str(value))
+
+
+def _friction(scene: Scene) -> str:
+    """Heights and decelerations, one for each strip of floor."""
     strips = scene.floor.strips
     coefficients = [scene.floor.friction] if strips is None else list(strips.friction)
     puck, normal = scene.puck, scene.floor.gravity * math.cos(scene.floor.slope)
     heights = [2.0 * f * puck.height / puck.radius for f in coefficients]
-    words = f"r = {puck.radius:g} m, m = {puck.mass:g} kg"
     if scene.floor.law:
-        return f"{words}, friction by {scene.floor.law}"
-    words += f", delta = {', '.join(f'{delta:.4g}' for delta in heights)}, "
+        return f"by slip speed, {printable(scene.floor.law)}"
+    words = f"delta = {', '.join(f'{delta:.4g}' for delta in heights)}, "
     words += f"f N/m = {', '.join(f'{f * normal:.6g}' for f in coefficients)} m/s^2"
     return words + ("; part of the base may lift" if max(heights) > 1.0 else "")
 
@@ -225,7 +244,7 @@ def _events(run: SceneRun) -> str:
 
 
 def summary_of_map(stops: SceneMap) -> str:
-    """A map over a scene in one line."""
+    """A map over a scene in one line, and one for each way in which runs have no end."""
     from puck_tables.scene.outcome import ENDS
 
     ranged = " x ".join(f"{name} ({values.size})" for name, values in stops.axes.items())
@@ -234,4 +253,5 @@ def summary_of_map(stops: SceneMap) -> str:
         for code, end in enumerate(ENDS)
         if (stops.end == code).any()
     )
-    return f"{_title(stops.title) or 'scene'} over {ranged}: {counts}; {stops.plan.model}"
+    head = f"{printable(stops.scene.title) or 'scene'} over {ranged}: {counts}; {stops.plan.model}"
+    return "\n".join([head, *stops.without_end()])

@@ -102,7 +102,8 @@ def simulate(
     if output is not None:
         kind_of(output, TRAJECTORY_KINDS)
     if plot is not None:
-        from puck_tables.plots import PICTURE_KINDS, plot_trajectory, require_matplotlib
+        from puck_tables.drawing import PICTURE_KINDS, require_matplotlib
+        from puck_tables.plots import plot_trajectory
 
         kind_of(plot, PICTURE_KINDS)
         require_matplotlib()

@@ -121,7 +121,8 @@ def sweep(
     if output is not None:
         kind_of(output, MAP_KINDS)
     if plot is not None:
-        from puck_tables.plots import PICTURE_KINDS, plot_map, require_matplotlib
+        from puck_tables.drawing import PICTURE_KINDS, require_matplotlib
+        from puck_tables.plots import plot_map
 
         kind_of(plot, PICTURE_KINDS)
         if not any(isinstance(x, tuple) for x in (w0, speed, height_ratio)) and (
@@ -174,7 +175,7 @@ def _sweep_scene(
     if output is not None:
         kind_of(output, MAP_KINDS)
     if plot is not None:
-        from puck_tables.plots import PICTURE_KINDS, require_matplotlib
+        from puck_tables.drawing import PICTURE_KINDS, require_matplotlib
 
         kind_of(plot, PICTURE_KINDS)
         require_matplotlib()
@@ -189,7 +190,7 @@ def _sweep_scene(
         told(output)
     _done_with(kept, output)
     if plot is not None:
-        from puck_tables.scene_picture import plot_scene_map
+        from puck_tables.scene_map_picture import plot_scene_map
 
         plot_scene_map(stops, plot, overwrite)
         told(plot)

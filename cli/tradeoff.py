@@ -38,7 +38,7 @@ def tradeoff(quick: bool, outputs: tuple[Path, ...], plot: Path | None, overwrit
     for path in outputs:
         kind_of(path, MAP_KINDS)
     if plot is not None:
-        from puck_tables.plots import PICTURE_KINDS, require_matplotlib
+        from puck_tables.drawing import PICTURE_KINDS, require_matplotlib
         from puck_tables.tradeoff_picture import plot_trade_off
 
         kind_of(plot, PICTURE_KINDS)

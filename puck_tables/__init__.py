@@ -46,7 +46,8 @@ if TYPE_CHECKING:
     from puck_tables.scene.simulate import simulate_scene
     from puck_tables.scene.sweep import SceneMap, sweep_scene
     from puck_tables.scene_file import save_scene_map, save_scene_run
-    from puck_tables.scene_picture import plot_scene, plot_scene_map
+    from puck_tables.scene_map_picture import plot_scene_map
+    from puck_tables.scene_picture import plot_scene
     from puck_tables.similarity.build import build_stop_table
     from puck_tables.similarity.check import validate_stops
     from puck_tables.similarity.file import load_stop_table, save_stop_table
@@ -114,7 +115,7 @@ _HOMES = {
     "save_scene_map": "scene_file",
     "save_scene_run": "scene_file",
     "plot_scene": "scene_picture",
-    "plot_scene_map": "scene_picture",
+    "plot_scene_map": "scene_map_picture",
     "Trajectory": "trajectory",
     "simulate": "trajectory",
     "Stops": "stops",

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.chetaev.asperity_curve import AsperityCurve
+from puck_tables.chetaev.asperity_curve import LEAP, AsperityCurve
 from puck_tables.panels import Curve, Panel, Picture, draw
 
 
@@ -42,18 +42,16 @@ def plot_asperity(curve: AsperityCurve, path: str | Path, overwrite: bool = Fals
     unit = support.load * support.slope
     coulomb = Curve(scaled, curve.crude / unit, "Coulomb, |Y| a/b", dashed=True)
     across = "speed V/V₀  (above 1 the point leaves the crests)"
-    landed = curve.landing_phase.copy()  # a line that breaks where the phase leaps
-    landed[1:][np.abs(np.diff(landed)) > 0.5 * np.pi] = np.nan
     panels = [
         Panel(across, "greatest force / (|Y| a/b)", [
-            Curve(scaled, curve.greatest / unit, "held speed:\n−Y + m(a/b²)V² cos θ"),
-            Curve(scaled, curve.undriven / unit, "not driven:\nexact λ"), coulomb,
+            Curve(scaled, curve.greatest / unit, "held speed:\n−Y + m(a/b²)V² cos θ", leap=1.0),
+            Curve(scaled, curve.undriven / unit, "not driven:\nexact λ", leap=1.0), coulomb,
         ], "greatest force in contact (none where the point only hops)"),
         Panel(across, "mean force / (|Y| a/b)", [
-            Curve(scaled, curve.mean / unit, "mean, with\nall landings"), coulomb,
+            Curve(scaled, curve.mean / unit, "mean, with\nall landings", leap=LEAP), coulomb,
         ], "mean force: what landings lose; never above Coulomb's"),
         Panel(across, "landing θ₁ / rad", [
-            Curve(scaled, landed, "lands at θ₁,\nthen slides"),
+            Curve(scaled, curve.landing_phase, "lands at θ₁,\nthen slides", leap=1.0),
             Curve(scaled, steepest(scaled), "greatest force\non a rise, θ*", dashed=True),
         ], "on the next rise: trough 0, steepest slope π/2, crest π"),
     ]  # fmt: skip

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.plots import COLORS, GREY, PICTURE_KINDS, canvas, save
+from puck_tables.drawing import COLORS, GREY, PICTURE_KINDS, canvas, save, shaded, titled
 from puck_tables.result_file import kind_of
 
 FloatArray = npt.NDArray[np.float64]
@@ -21,7 +21,8 @@ class Curve:
     """A curve, or points if it has a ``marker`` (``hollow`` or not).
 
     ``shade`` from 0 to 1 gives its place in a family of curves, light to dark; without it colours
-    go by turns.  A ``dashed`` curve is a thin grey line for reference.
+    go by turns.  A ``dashed`` curve is a thin grey line for reference.  Where neighbours differ by
+    more than ``leap`` they are dots: a line between them would be made up.
     """
 
     x: FloatArray
@@ -31,6 +32,7 @@ class Curve:
     dashed: bool = False
     marker: str = ""
     hollow: bool = False
+    leap: float = np.inf
 
 
 @dataclass(frozen=True)
@@ -87,7 +89,16 @@ def draw(picture: Picture, path: str | Path, overwrite: bool = False) -> None:
     for row, panel in enumerate(picture.panels, start=1):
         axes = figure.add_subplot(count, 1, row)
         for number, curve in enumerate(panel.curves):
-            axes.plot(curve.x, curve.y, label=curve.label or None, **_look(curve, number))
+            look = _look(curve, number)
+            leaps = np.flatnonzero(np.abs(np.diff(curve.y)) > curve.leap)
+            x = np.insert(curve.x, leaps + 1, np.nan)
+            y = np.insert(curve.y, leaps + 1, np.nan)
+            axes.plot(x, y, label=curve.label or None, **look)
+            beside = np.union1d(leaps, leaps + 1)
+            axes.plot(
+                curve.x[beside], curve.y[beside], linestyle="", marker=".", markersize=4,
+                color=look["color"],
+            )  # fmt: skip
         axes.set_xlabel(panel.x_label)
         axes.set_ylabel(panel.y_label)
         axes.set_title(panel.title, fontsize=10)
@@ -100,7 +111,7 @@ def draw(picture: Picture, path: str | Path, overwrite: bool = False) -> None:
             axes.axhline(0.0, color=GREY, linewidth=0.8, zorder=1)
         if any(curve.label for curve in panel.curves):
             axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
-    figure.suptitle(picture.title)
+    titled(figure, picture.title)
     save(figure, path, kind, overwrite)
 
 
@@ -110,8 +121,7 @@ def _look(curve: Curve, number: int) -> dict[str, Any]:
         return {"color": GREY, "linestyle": "--", "linewidth": 1.2}
     color: Any = COLORS[number % len(COLORS)]
     if curve.shade is not None:
-        light, dark = np.array([0.62, 0.80, 0.94]), np.array([0.02, 0.17, 0.38])
-        color = tuple(light + curve.shade * (dark - light))
+        color = shaded(curve.shade)
     if curve.marker:
         face = "white" if curve.hollow else color
         return {"color": color, "linestyle": "", "marker": curve.marker, "markersize": 8,

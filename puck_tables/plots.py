@@ -1,31 +1,39 @@
-"""The only door to matplotlib: pictures of trajectories and maps."""
+"""Pictures of trajectories, maps of stops, and aims."""
 
 from __future__ import annotations
 
-import io
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from puck_tables.aiming import Aim, kind_of_puck
 from puck_tables.body import is_plain
-from puck_tables.errors import InputError, MissingExtraError
+from puck_tables.drawing import (
+    BLUE,
+    FEW,
+    GREEN,
+    GREY,
+    LAUNCH,
+    ORANGE,
+    PICTURE_KINDS,
+    STOP,
+    canvas,
+    draw_over,
+    legend_below,
+    save,
+    titled,
+)
+from puck_tables.errors import InputError
 from puck_tables.result_file import kind_of
-from puck_tables.safe_write import write_bytes
 from puck_tables.states import flow
 from puck_tables.stop_map import StopMap
 from puck_tables.trajectory import Trajectory
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
-PICTURE_KINDS = (".png", ".svg", ".pdf")
-
-BLUE, ORANGE, GREEN, GREY, RED = "#0b5fa5", "#d9660c", "#2f8f3a", "#8a8a8a", "#b3202a"
-COLORS = (BLUE, ORANGE, GREEN, "#8b2fa0", RED)
 _MAP_LABELS = {
     "stop_time": "stop time / s",
     "stop_x": "stop x / m",
@@ -34,23 +42,9 @@ _MAP_LABELS = {
     "turn_angle": "turn of heading / rad",
     "body_angle": "turn of body / rad",
 }
-_AXIS_LABELS = {"delta": "height δ = 2fh/r", "speed": "speed v₀ / m/s", "w0": "spin ω₀ / rad/s"}
+_AXIS_LABELS = {"delta": "height δ", "speed": "speed v₀ / m/s", "w0": "spin ω₀ / rad/s"}
 _PUCKS_DRAWN = 9
-
-
-def require_matplotlib() -> None:
-    """Refuse before any work is done if pictures cannot be drawn.
-
-    Raises
-    ------
-    MissingExtraError
-    """
-    try:
-        import matplotlib  # noqa: F401
-    except ImportError:
-        raise MissingExtraError(
-            "pictures need matplotlib: pip install 'puck-tables[plot]'"
-        ) from None
+_STATES_DRAWN = 1001
 
 
 def plot_trajectory(run: Trajectory, path: str | Path, overwrite: bool = False) -> None:
@@ -59,7 +53,7 @@ def plot_trajectory(run: Trajectory, path: str | Path, overwrite: bool = False) 
     Parameters
     ----------
     run : Trajectory
-        With a few dozen states or more.
+        The whole motion is drawn, whatever states it has.
     path : .png, .svg or .pdf
     overwrite : whether an existing file may be replaced
 
@@ -80,6 +74,7 @@ def plot_trajectory(run: Trajectory, path: str | Path, overwrite: bool = False) 
     ...     plot_trajectory(simulate((1.0, 0.0), 5.0), folder + "/run.png")
     """
     kind = kind_of(path, PICTURE_KINDS)
+    run = run.at(np.linspace(0.0, run.stop_time, _STATES_DRAWN))
     figure = canvas(9.5, 7.6)
     grid = figure.add_gridspec(2, 2, height_ratios=(1.15, 1.0))
     _draw_path(figure.add_subplot(grid[0, :]), run)
@@ -92,7 +87,7 @@ def plot_trajectory(run: Trajectory, path: str | Path, overwrite: bool = False) 
             speeds.axvline(moment, color=GREY, linestyle=":", linewidth=1.0, label=text)
     speeds.set_ylabel("m/s")
     speeds.set_xlabel("time / s")
-    speeds.legend(frameon=False)
+    legend_below(speeds)
     ratio = figure.add_subplot(grid[1, 1], sharex=speeds)
     moving = run.speed > 0.0
     if moving.any() and run.w0 != 0.0:
@@ -106,9 +101,10 @@ def plot_trajectory(run: Trajectory, path: str | Path, overwrite: bool = False) 
         )  # fmt: skip
     ratio.set_ylabel("rω/v")
     ratio.set_xlabel("time / s")
-    figure.suptitle(
+    titled(
+        figure,
         f"v₀ = ({run.v0[0]:g}, {run.v0[1]:g}) m/s, ω₀ = {run.w0:g} rad/s, r = {run.radius:g} m, "
-        f"δ = {run.delta:.4g}, J = {run.decel:.4g} m/s²{_kind(run)}"
+        f"δ = {run.delta:.4g}, J = {run.decel:.4g} m/s²{_kind(run)}",
     )
     save(figure, path, kind, overwrite)
 
@@ -136,7 +132,7 @@ def _draw_limit(panel: Axes, run: Trajectory, largest: float) -> None:
 
 
 def plot_map(stops: StopMap, path: str | Path, overwrite: bool = False) -> None:
-    """Draw stops: maps when two quantities are ranged, curves when one is.
+    """Draw stops: maps when two quantities are ranged, curves when one is or one has few values.
 
     With three ranged quantities the maps are drawn at the middle value of the first.
 
@@ -175,17 +171,15 @@ def plot_map(stops: StopMap, path: str | Path, overwrite: bool = False) -> None:
         fixed[name] = float(nodes[middle])
         left_out = f" (one of {axes.pop(name).size} values of {name})"
         values = {key: value[middle] for key, value in values.items()}
-    figure = canvas(11.0, 6.4)
+    figure = canvas(11.0, 6.8)
     panels = figure.subplots(2, 3, sharex=True)
+    labels = {name: _AXIS_LABELS[name] for name in axes}
     for panel, (name, value) in zip(panels.flat, values.items(), strict=True):
-        if len(axes) == 1:
-            _draw_curve(panel, next(iter(axes.items())), name, value)
-        else:
-            _draw_map(figure, panel, axes, name, value)
-    across = list(axes)[-1]
-    for panel in panels[-1]:
-        panel.set_xlabel(_AXIS_LABELS[across])
-    figure.suptitle(_fixed_title(fixed) + left_out)
+        draw_over(figure, panel, axes, labels, value, _MAP_LABELS[name])
+    if any(panel.get_legend_handles_labels()[1] for panel in panels.flat):
+        handles, words = panels.flat[0].get_legend_handles_labels()
+        figure.legend(handles, words, loc="outside lower center", ncols=FEW, frameon=False)
+    titled(figure, _fixed_title(fixed) + left_out)
     save(figure, path, kind, overwrite)
 
 
@@ -233,7 +227,7 @@ def plot_aim(found: Aim, path: str | Path, overwrite: bool = False) -> None:
     )  # fmt: skip
     for n, w0 in enumerate(found.w0):
         paths.plot(states.x[n], states.y[n], color=colours.to_rgba(w0), linewidth=1.3)
-    paths.plot(0.0, 0.0, "o", color=GREY, markersize=5)
+    paths.plot(0.0, 0.0, **LAUNCH)
     paths.plot(*found.target, "x", color="black", markersize=8, markeredgewidth=1.8, zorder=5)
     outwards = 1 if found.target[0] >= 0.0 else -1  # labels stand clear of the paths
     for text, place, side in (
@@ -252,9 +246,10 @@ def plot_aim(found: Aim, path: str | Path, overwrite: bool = False) -> None:
     launches.scatter(found.w0, found.speed, c=colours.to_rgba(found.w0), zorder=2)
     launches.set(xlabel="launch spin ω₀ / rad/s", ylabel="launch speed v₀ / m/s")
     launches.set_ylim(bottom=0.0)
-    figure.suptitle(
+    titled(
+        figure,
         f"launches that stop at ({found.target[0]:g}, {found.target[1]:g}) m: "
-        f"r = {found.radius:g} m, δ = {found.delta:.4g}, J = {found.decel:.4g} m/s²"
+        f"r = {found.radius:g} m, δ = {found.delta:.4g}, J = {found.decel:.4g} m/s²",
     )
     save(figure, path, kind, overwrite)
 
@@ -276,32 +271,14 @@ def _draw_path(axes: Axes, run: Trajectory) -> None:
             [x, x + radius * math.cos(angle)], [y, y + radius * math.sin(angle)],
             color=ORANGE, linewidth=1.4,
         )  # fmt: skip
-    axes.plot(run.x[0], run.y[0], "o", color=BLUE, markersize=4)
-    axes.plot(*run.stop_position, "s", color=BLUE, markersize=5)
+    axes.plot(run.x[0], run.y[0], **LAUNCH, label="launch")
+    axes.plot(*run.stop_position, **STOP, label="stop")
     axes.set_aspect("equal", adjustable="datalim")
     axes.margins(0.12)
     axes.set_xlabel("x / m")
     axes.set_ylabel("y / m")
-    size = "puck to scale" if true_size else "puck not to scale"
-    axes.set_title(f"path (● launch, ■ stop; {size})", fontsize=10)
-
-
-def _draw_curve(axes: Axes, axis: tuple[str, Any], name: str, value: Any) -> None:
-    axes.plot(axis[1], value, color=BLUE, marker="." if axis[1].size < 30 else "")
-    axes.set_ylabel(_MAP_LABELS[name])
-    axes.grid(color="#dddddd", linewidth=0.6)
-
-
-def _draw_map(figure: Figure, axes: Axes, grid: dict[str, Any], name: str, value: Any) -> None:
-    (down, rows), (_, columns) = grid.items()
-    largest = float(np.nanmax(np.abs(value)))
-    signed = float(np.nanmin(value)) < 0.0 < float(np.nanmax(value))
-    limits: dict[str, Any] = {"vmin": -largest, "vmax": largest, "cmap": "RdBu_r"} if signed else {}
-    mesh = axes.pcolormesh(columns, rows, value, shading="nearest", rasterized=True, **limits)
-    figure.colorbar(mesh, ax=axes)
-    axes.set_title(_MAP_LABELS[name], fontsize=10)
-    if axes.get_subplotspec().is_first_col():  # type: ignore[union-attr]
-        axes.set_ylabel(_AXIS_LABELS[down])
+    axes.set_title("puck to scale" if true_size else "puck not to scale", fontsize=10)
+    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
 
 
 def _fixed_title(fixed: dict[str, float]) -> str:
@@ -312,41 +289,3 @@ def _fixed_title(fixed: dict[str, float]) -> str:
         parts.append(f"v₀ = ({fixed['v0_x']:g}, {fixed['v0_y']:g}) m/s")
     parts += [f"{units[n][0]} = {v:.4g}{units[n][1]}" for n, v in fixed.items() if n in units]
     return "stops at " + ", ".join(parts)
-
-
-def canvas(width: float, height: float) -> Figure:
-    """An empty figure; sizes in inches.
-
-    Raises
-    ------
-    MissingExtraError
-        If matplotlib is not installed.
-
-    Examples
-    --------
-    >>> canvas(4.0, 3.0).axes
-    []
-    """
-    require_matplotlib()
-    from matplotlib.figure import Figure
-
-    return Figure(figsize=(width, height), layout="constrained")
-
-
-def save(figure: Figure, path: str | Path, kind: str, overwrite: bool) -> None:
-    """Write a figure whole or not at all; ``kind`` is the ending of the file.
-
-    Raises
-    ------
-    OutputError
-        If the file exists (without ``overwrite``) or cannot be written.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     save(canvas(4.0, 3.0), folder + "/empty.png", ".png", overwrite=False)
-    """
-    buffer = io.BytesIO()
-    figure.savefig(buffer, format=kind[1:], dpi=130)
-    write_bytes(path, buffer.getvalue(), overwrite)

@@ -19,6 +19,7 @@ from puck_tables.chetaev.asperity_curve import AsperityCurve
 from puck_tables.errors import InputError
 from puck_tables.front import Way, front_as_csv
 from puck_tables.safe_write import write_bytes
+from puck_tables.solvers import STATUS_MEANINGS
 from puck_tables.stop_map import StopMap
 from puck_tables.tradeoff.engine import TradeOff
 from puck_tables.trajectory import Trajectory
@@ -34,7 +35,7 @@ TRAJECTORY_COLUMNS = {
     "speed": ("m/s", "speed of the centre, v"),
     "spin": ("rad/s", "angular velocity omega, counter-clockwise"),
     "slip_speed": ("m/s", "Q = hypot(v, r omega)"),
-    "slip_angle": ("rad", "phi = atan2(r omega, v)"),
+    "slip_angle": ("rad", "phi = atan2(r omega, v), 0 at rest"),
 }
 MAP_COLUMNS = {
     "stop_time": ("s", "time from launch to stop"),
@@ -168,7 +169,10 @@ def save_map(stops: StopMap, path: str | Path, overwrite: bool = False) -> None:
             "tol": stops.tol, "method": stops.method, "table": stops.table,
         }  # fmt: skip
         columns = {name: getattr(stops, name) for name in MAP_COLUMNS}
-        content = as_hdf5(stops.axes, columns, {**MAP_AXES, **MAP_COLUMNS}, attributes)
+        content = as_hdf5(
+            stops.axes, columns, {**MAP_AXES, **MAP_COLUMNS}, attributes,
+            flags={"status": STATUS_MEANINGS},
+        )  # fmt: skip
     write_bytes(path, content, overwrite)
 
 
@@ -379,8 +383,12 @@ def as_hdf5(
     names: dict[str, tuple[str, str]],
     attributes: dict[str, Any],
     dimensions: dict[str, tuple[str, ...]] | None = None,
+    flags: dict[str, tuple[str, ...]] | None = None,
+    texts: dict[str, str] | None = None,
 ) -> bytes:
     """A labelled HDF5 file; every column has all axes, or those that ``dimensions`` says.
+
+    ``flags``: what the values 0, 1, … of a column mean; ``texts``: texts of any length by name.
 
     Examples
     --------
@@ -402,9 +410,13 @@ def as_hdf5(
         for name in (*axes, *columns):
             unit, text = names[name]
             file[name].attrs.update(units=unit, long_name=text)
-        if "status" in columns:
-            file["status"].attrs["flag_values"] = np.array([0, 1, 2], np.int8)
-            file["status"].attrs["flag_meanings"] = "stopped step_limit overflow"
+        for name, meanings in (flags or {}).items():
+            file[name].attrs["flag_values"] = np.arange(len(meanings), dtype=np.int8)
+            words = (meaning.replace(" ", "_") for meaning in meanings)
+            file[name].attrs["flag_meanings"] = " ".join(words)
+        for name, text in (texts or {}).items():  # an attribute holds no more than 64 kB
+            file.create_dataset(name, data=text, dtype=h5py.string_dtype())
+            file[name].attrs["long_name"] = names[name][1]
         file.attrs.update({
             "Conventions": "CF-1.11", "source": f"puck-tables {__version__}",
             "created": datetime.now(UTC).isoformat(timespec="seconds"), **attributes,

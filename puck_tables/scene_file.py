@@ -2,61 +2,69 @@
 
 from __future__ import annotations
 
-import dataclasses
 import json
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from puck_tables.result_file import MAP_KINDS, TRAJECTORY_KINDS, as_csv, as_hdf5, kind_of
 from puck_tables.safe_write import write_bytes
+from puck_tables.scene.entries import as_toml, entry_at, tables_of, units_of
 from puck_tables.scene.outcome import COLUMNS, ENDS, SceneRun
 from puck_tables.scene.scene import Scene
 from puck_tables.scene.sweep import RESULTS, SceneMap
 
+FloatArray = npt.NDArray[np.float64]
+
 END = {"end": ("1", "how it ends: " + ", ".join(f"{i} {end}" for i, end in enumerate(ENDS)))}
+EVENT_UNITS = {"time": "s", "what": "1", "which": "1", "x": "m", "y": "m"}
 
 
 def scene_summary(run: SceneRun) -> dict[str, Any]:
-    """The scalars of a scene run, ready for JSON.
+    """The scalars of a scene run with its inputs and all units, ready for JSON.
 
     Examples
     --------
     >>> from puck_tables.scene.simulate import simulate_scene
     >>> floor, launch = {"friction": 0.1}, {"velocity": [1.0, 0.0]}
     >>> run = simulate_scene({"puck": {"radius": 0.04}, "floor": floor, "launch": launch})
-    >>> scene_summary(run)["end"]
-    'at rest'
+    >>> told = scene_summary(run)
+    >>> told["end"], told["scene"]["launch"]["velocity"], told["units"]["scene.launch.velocity"]
+    ('at rest', [1.0, 0.0], 'm/s')
     """
+    last = {name: value for name, value in run.last.items() if name != "time"}
     return {
         "title": run.scene.title,
         "end": run.end,
         "end_time": run.end_time,
-        **{name: value for name, value in run.last.items() if name != "time"},
+        **last,
         "events": [event._asdict() for event in run.events],
         "energy_residual": run.energy_residual,
         "steps": run.steps,
         "model": run.plan.model,
+        "scene": tables_of(run.scene),
+        "units": {
+            "end_time": "s",
+            **{name: COLUMNS[name][0] for name in last},
+            **{f"events.{name}": unit for name, unit in EVENT_UNITS.items()},
+            **{f"scene.{path}": unit for path, unit in units_of(run.scene).items()},
+        },
     }
 
 
-def scene_as_json(scene: Scene) -> str:
-    """A scene as JSON: nested tables that :func:`puck_tables.scene.scene.scene_from` takes.
-
-    Examples
-    --------
-    >>> from puck_tables.scene.scene import Puck
-    >>> json.loads(scene_as_json(Scene(Puck(0.04))))["puck"]["radius"]
-    0.04
-    """
-
-    def lean(value: Any) -> Any:
-        if isinstance(value, dict):
-            return {k: lean(v) for k, v in value.items() if v is not None and v != float("inf")}
-        return [lean(v) for v in value] if isinstance(value, list | tuple) else value
-
-    return json.dumps(lean(dataclasses.asdict(scene)))
+def _texts(
+    scene: Scene, ranges: Mapping[str, FloatArray], files: Mapping[str, str]
+) -> tuple[dict[str, str], dict[str, tuple[str, str]]]:
+    """A scene as a scene file, the files it names, and what they are."""
+    texts = {"scene": as_toml(scene, ranges)}
+    names = {"scene": ("", "the scene as a scene file (TOML)")}
+    for path, text in files.items():
+        texts[_plain(path)] = text
+        names[_plain(path)] = ("", f"what stands in the file that {path} of the scene names")
+    return texts, names
 
 
 def save_scene_run(run: SceneRun, path: str | Path, overwrite: bool = False) -> None:
@@ -115,9 +123,11 @@ def _run_as_hdf5(run: SceneRun) -> bytes:
             "event_what": ("1", "rests, slips, bounces, leans, border or edge"),
             "event_which": ("1", "number of the wall, the edge or the region"),
         }
-    scalars = {n: v for n, v in scene_summary(run).items() if n not in (*names, "events")}
-    attributes = {**scalars, "title": run.scene.title or "Scene", "scene": scene_as_json(run.scene)}
-    return as_hdf5(axes, columns, names, attributes, dimensions)
+    left = (*names, "events", "scene", "units", "title")
+    scalars = {n: v for n, v in scene_summary(run).items() if n not in left}
+    texts, about = _texts(run.scene, {}, run.files)
+    attributes = {"title": run.scene.title or "Scene", **scalars}
+    return as_hdf5(axes, columns, {**names, **about}, attributes, dimensions, texts=texts)
 
 
 def save_scene_map(stops: SceneMap, path: str | Path, overwrite: bool = False) -> None:
@@ -143,13 +153,17 @@ def save_scene_map(stops: SceneMap, path: str | Path, overwrite: bool = False) -
         write_bytes(path, scene_map_as_csv(stops).encode(), overwrite)
         return
     axes = {_plain(path): values for path, values in stops.axes.items()}
-    names = {
-        name: ("1", f"{path} of the scene") for name, path in zip(axes, stops.axes, strict=True)
-    }
-    attributes = {"title": stops.title or "Scene", "model": stops.plan.model}
+    names = {}
+    for at in stops.axes:
+        entry = entry_at(stops.scene, at)
+        text = f"{at} of the scene" + (f", {entry.doc}" if entry.doc else "")
+        names[_plain(at)] = (entry.kind.unit or "1", text)
+    attributes = {"title": stops.scene.title or "Scene", "model": stops.plan.model}
+    texts, about = _texts(stops.scene, stops.axes, stops.files)
     content = as_hdf5(
-        axes, {**stops.columns, "end": stops.end}, {**names, **RESULTS, **END}, attributes
-    )
+        axes, {**stops.columns, "end": stops.end}, {**names, **RESULTS, **END, **about},
+        attributes, flags={"end": ENDS}, texts=texts,
+    )  # fmt: skip
     write_bytes(path, content, overwrite)
 
 
@@ -181,4 +195,6 @@ def scene_map_as_csv(stops: SceneMap) -> str:
     ends = [ENDS[code] for code in stops.end.ravel()]
     header = as_csv({**RESULTS, **END}, iter(())).decode()
     body = as_csv({}, zip(*columns, ends, strict=True)).decode().split("\n", 1)[1]
-    return ",".join([*stops.axes, header]) + body
+    units = [entry_at(stops.scene, path).kind.unit or "1" for path in stops.axes]
+    named = [f"{path}[{unit}]" for path, unit in zip(stops.axes, units, strict=True)]
+    return ",".join([*named, header]) + body

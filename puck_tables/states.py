@@ -30,7 +30,8 @@ class States:
 
     ``x``, ``y`` m from the launch; ``heading`` rad, of the velocity (at rest that of the moment
     when Q had fallen to 1/1000); ``orientation`` rad, how far the body has turned; ``speed`` v m/s;
-    ``spin`` ω rad/s.  ``slip_speed`` Q = hypot(v, rω) m/s and ``slip_angle`` φ rad follow.
+    ``spin`` ω rad/s.  ``slip_speed`` Q = hypot(v, rω) m/s and ``slip_angle`` φ rad follow, both 0
+    at rest.
     """
 
     x: FloatArray

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from puck_tables.drawing import BLUE, COLORS, GREY, PICTURE_KINDS, canvas, save
 from puck_tables.front import Way, pareto
-from puck_tables.plots import BLUE, COLORS, GREY, PICTURE_KINDS, canvas, save
 from puck_tables.result_file import kind_of
 from puck_tables.tradeoff.engine import TradeOff
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, NamedTuple
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -56,7 +56,8 @@ class Trajectory:
 
     Arrays over ``time`` (n,) s: ``x``, ``y`` m; ``heading`` rad (of the velocity; at rest the
     heading of turn_angle); ``orientation`` rad (of the body); ``speed`` v m/s; ``spin`` ω rad/s;
-    ``slip_speed`` Q m/s; ``slip_angle`` φ rad (at rest its limit).
+    ``slip_speed`` Q m/s; ``slip_angle`` φ = atan2(rω, v) rad, and so 0 at rest (what it tends to is
+    ``limit_angle``).  :meth:`at` gives the states of the same motion at other times.
     """
 
     v0: tuple[float, float]
@@ -94,6 +95,30 @@ class Trajectory:
     spin: FloatArray = field(repr=False)
     slip_speed: FloatArray = field(repr=False)
     slip_angle: FloatArray = field(repr=False)
+    motion: Run = field(repr=False, compare=False)
+
+    def at(self, times: npt.ArrayLike) -> Trajectory:
+        """The same motion with its states at other times; nothing is integrated again.
+
+        Parameters
+        ----------
+        times : array_like, s, ≥ 0, any order
+
+        Raises
+        ------
+        InputError
+            If they are not such times.
+
+        Examples
+        --------
+        >>> simulate((1.0, 0.0), 5.0, frames=1).at([2.0, 0.0]).x.round(6).tolist()
+        [1.590682, 0.0]
+        """
+        moments = checked_times(times)
+        states: dict[str, Any] = _integrated(
+            self.motion, moments, self.stop_time, self.v0, self.w0, self.decel, self.radius
+        )
+        return replace(self, time=moments, **states)
 
 
 def simulate(
@@ -223,11 +248,9 @@ def simulate(
     )
     if look_up:
         till_rest = np.where(moments < stop_time, moments, 2.0 * stop_time)
-        columns = _looked_up((vx, vy), spin, till_rest, height, J, r, math.atan(math.exp(limit)))
+        columns = _looked_up((vx, vy), spin, till_rest, height, J, r)
     else:
-        scaled = np.where(moments < stop_time, moments, np.inf) / (scale_time if q0 > 0.0 else 1.0)
-        q, states = run.states(scaled)
-        columns = _integrated(q, states, (vx, vy), spin, q0, scale_length, r, regime, limit)
+        columns = _integrated(run, moments, stop_time, (vx, vy), spin, J, r)
     side = -1.0 if spin < 0.0 else 1.0
     east, north = (vx / speed, vy / speed) if speed > 0.0 else (1.0, 0.0)
     end_along, end_left = scale_length * run.stop[X], side * scale_length * run.stop[Y]
@@ -258,6 +281,7 @@ def simulate(
         error_estimate=run.error,
         choice=choice if regime in ("B", "C") else None,
         time=moments,
+        motion=run,
         **columns,
     )  # fmt: skip
 
@@ -315,14 +339,18 @@ def _solved_by_slice(
 
 
 def _integrated(
-    q: FloatArray, states: FloatArray, v0: tuple[float, float], spin: float, q0: float,
-    scale_length: float, radius: float, regime: str, limit: float,
+    run: Run, moments: FloatArray, stop_time: float, v0: tuple[float, float], spin: float,
+    decel: float, radius: float,
 ) -> dict[str, FloatArray]:  # fmt: skip
-    """States in natural units as the columns of a trajectory."""
+    """States of a motion in natural units as the columns of a trajectory."""
     from puck_tables.motion.equations import PSI, THETA, U, X, Y
 
     side = -1.0 if spin < 0.0 else 1.0
     speed = math.hypot(*v0)
+    q0 = math.hypot(speed, radius * abs(spin))
+    scale_length = q0 / decel * q0
+    scaled = np.where(moments < stop_time, moments, np.inf) / (q0 / decel if q0 > 0.0 else 1.0)
+    q, states = run.states(scaled)
     heading0 = math.atan2(v0[1], v0[0]) if speed > 0.0 else 0.0
     east, north = (v0[0] / speed, v0[1] / speed) if speed > 0.0 else (1.0, 0.0)
     along, left = scale_length * states[:, X], side * scale_length * states[:, Y]
@@ -335,25 +363,20 @@ def _integrated(
         "speed": q0 * q * cosine,
         "spin": side * (q0 / radius) * q * sine + 0.0,
         "slip_speed": q0 * q,
-        "slip_angle": side * _slip_angle(states[:, U], regime, limit, q > 0.0) + 0.0,
+        "slip_angle": np.where(q > 0.0, side * np.arctan2(sine, cosine), 0.0) + 0.0,
     }
 
 
 def _looked_up(
     v0: tuple[float, float], spin: float, moments: FloatArray, delta: float, decel: float,
-    radius: float, limit_angle: float,
+    radius: float,
 ) -> dict[str, FloatArray]:  # fmt: skip
     """The same by look-up: for many states the cheaper way."""
     from puck_tables.states import flow
 
     states = flow(v0, spin, moments, delta=delta, decel=decel, radius=radius)
     names = ("x", "y", "heading", "orientation", "speed", "spin", "slip_speed", "slip_angle")
-    columns = {name: getattr(states, name) for name in names}
-    at_rest = states.slip_speed == 0.0
-    columns["slip_angle"] = np.where(
-        at_rest, math.copysign(limit_angle, spin), columns["slip_angle"]
-    )
-    return columns
+    return {name: getattr(states, name) for name in names}
 
 
 def _check_frames(frames: int | None, times: npt.ArrayLike | None) -> None:
@@ -366,6 +389,21 @@ def _check_frames(frames: int | None, times: npt.ArrayLike | None) -> None:
 def _moments(frames: int | None, times: npt.ArrayLike | None, stop_time: float) -> FloatArray:
     if times is None:
         return np.linspace(0.0, stop_time, DEFAULT_FRAMES if frames is None else frames)
+    return checked_times(times)
+
+
+def checked_times(times: npt.ArrayLike) -> FloatArray:
+    """Times of states, s, as an array (n,).
+
+    Raises
+    ------
+    InputError
+
+    Examples
+    --------
+    >>> checked_times(2)
+    array([2.])
+    """
     moments = np.atleast_1d(finite_array("times", times, "s"))
     if moments.ndim != 1 or moments.size == 0 or not np.all(moments >= 0.0):
         raise InputError("times must be a list of numbers >= 0 s")
@@ -377,17 +415,6 @@ def _direction(u: FloatArray) -> tuple[FloatArray, FloatArray]:
     k = np.exp(-np.abs(u))
     large = 1.0 / np.sqrt(1.0 + k * k)
     return np.where(u > 0.0, k * large, large), np.where(u > 0.0, large, k * large)
-
-
-def _slip_angle(
-    u: FloatArray, regime: str, limit: float, moving: npt.NDArray[np.bool_]
-) -> FloatArray:
-    """|φ|; at rest its limit, which for a puck that never moved is 0."""
-    with np.errstate(over="ignore"):
-        angle: FloatArray = np.arctan(np.exp(u))
-    if regime in ("B", "C"):
-        angle = np.where(moving, angle, math.atan(math.exp(limit)))
-    return angle
 
 
 def _method_name(regime: str, way: Way, source: str) -> str:

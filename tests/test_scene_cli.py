@@ -1,6 +1,7 @@
 """Scenes from the command line: every scene that comes along, options, ranges, refusals, files."""
 
 import json
+import tomllib
 
 import numpy as np
 import pytest
@@ -105,7 +106,7 @@ def test_a_map_over_a_scene_opens_in_xarray_and_equals_single_runs(tmp_path):
         assert float(data["x"][1, 2]) == single.last["x"]
         assert float(data["end_time"][1, 2]) == single.end_time
     table = puck("sweep", "--scene", "incline", *ranges)
-    assert table.stdout.splitlines()[0].startswith("floor.slope,launch.spin,x[m]")
+    assert table.stdout.splitlines()[0].startswith("floor.slope[rad],launch.spin[rad/s],x[m]")
     assert len(table.stdout.splitlines()) == 13
     assert "12 at rest" in table.stderr
 
@@ -123,7 +124,7 @@ def test_states_of_a_scene_as_files(tmp_path):
     with xarray.open_dataset(tmp_path / "run.h5", engine="h5netcdf") as data:
         rows = [json.loads(line) for line in (tmp_path / "run.jsonl").read_text().splitlines()]
         assert np.array_equal(data["heat_dry"], [row["heat_dry"] for row in rows])
-        kept = pt.scene_from(json.loads(data.attrs["scene"]))[0]
+        kept = tomllib.loads(data["scene"].item())
         assert pt.simulate_scene(kept, [0.0]).end_time == data.attrs["end_time"]
 
 

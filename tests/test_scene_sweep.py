@@ -9,8 +9,10 @@ import numpy as np
 import pytest
 
 from puck_tables.errors import InputError
+from puck_tables.scene.entries import set_path
+from puck_tables.scene.outcome import ENDS
 from puck_tables.scene.simulate import simulate_scene
-from puck_tables.scene.sweep import SceneMap, set_path, sweep_scene
+from puck_tables.scene.sweep import SceneMap, sweep_scene
 
 
 def tables() -> dict[str, Any]:
@@ -112,3 +114,55 @@ def test_a_range_with_one_bad_end_is_refused() -> None:
 def test_a_range_is_no_single_run() -> None:
     with pytest.raises(InputError, match=r"launch\.spin: a range makes many runs"):
         simulate_scene({"puck": {"radius": 1.0}, "launch": {"spin": "0:1:2"}})
+
+
+def test_runs_that_never_stop_get_a_status_and_the_others_go_on() -> None:
+    scene = tables()
+    scene["floor"] = {"friction": 0.2, "slope": "0:0.4:5"}
+    scene["wall"] = []
+    ends = sweep_scene(scene)
+    steep = np.tan(ends.axes["floor.slope"]) > 0.2
+    assert list(np.unique(ends.end[~steep])) == [ENDS.index("at rest")]
+    assert list(np.unique(ends.end[steep])) == [ENDS.index("no end found")]
+    assert np.isnan(ends.columns["x"][steep]).all() and np.isfinite(ends.columns["x"][~steep]).all()
+    told = ends.without_end()
+    assert len(told) == 1
+    assert "60 of 100 runs: no end found; the first at floor.slope = 0.2" in told[0]
+    assert "give run.time" in told[0]
+
+
+@pytest.mark.parametrize(
+    ("path", "values", "word", "said"),
+    [
+        ("floor.friction", "0:0.3:4", "no end found", "floor.friction = 0"),
+        ("puck.height", "0.1:4:5", "refused", "tips over"),
+        ("launch.position[0]", "0:2:5", "refused", "reaches through it by"),
+        ("launch.spin", "1:1e200:3", "refused", "too large or too small for floating point"),
+    ],
+)
+def test_no_run_takes_the_others_along(path: str, values: str, word: str, said: str) -> None:
+    scene: dict[str, Any] = {
+        "puck": {"radius": 0.2}, "floor": {"friction": 0.3},
+        "launch": {"velocity": [1.0, 0.0], "position": [0.0, 0.0]},
+        "wall": [{"point": [1.5, 0.0], "normal": [-1.0, 0.0]}],
+    }  # fmt: skip
+    set_path(scene, path, values)
+    ends = sweep_scene(scene)
+    good = ends.end == ENDS.index("at rest")
+    assert 1 <= good.sum() < ends.end.size
+    assert set(ends.end[~good]) == {ENDS.index(word)}
+    assert said in ends.without_end()[0]
+    for i in np.flatnonzero(good):
+        set_path(scene, path, float(ends.axes[path][i]))
+        alone = simulate_scene(scene, [0.0])  # which may take it for a free puck
+        assert ends.columns["x"][i] == pytest.approx(alone.last["x"], abs=1e-8)
+
+
+def test_a_sweep_in_which_nothing_has_an_end_is_refused() -> None:
+    scene = {"puck": {"radius": 1.0}, "launch": {"velocity": [1.0, 0.0], "spin": "0:1:2"}}
+    with pytest.raises(InputError, match=r"no run of this sweep has an end\n  2 of 2 runs: no end"):
+        sweep_scene(scene)
+    scene["floor"] = {"friction": "4:5:2"}
+    scene["puck"]["height"] = 1.0
+    with pytest.raises(InputError, match="every run of this sweep is refused, the first: delta"):
+        sweep_scene(scene)

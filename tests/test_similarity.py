@@ -270,7 +270,22 @@ def test_many_frames_are_looked_up():
     for name in ("x", "y", "orientation", "spin", "slip_speed"):
         error = np.abs(getattr(run, name)[::1000] - getattr(few, name)).max()
         assert error <= 2e-9 * 26.0, name
-    assert run.slip_angle[-1] == few.slip_angle[-1] == -run.limit_angle
+    assert run.slip_angle[-1] == few.slip_angle[-1] == 0.0
+
+
+@pytest.mark.parametrize(
+    ("v0", "w0"), [((1.0, 0.3), -5.0), ((1.0, 0.0), 0.0), ((0.0, 0.0), 2.0), ((0.0, 0.0), 0.0)]
+)
+def test_the_slip_angle_is_that_of_the_velocities_everywhere(v0: tuple[float, float], w0: float):
+    times = [0.0, 0.3, 50.0]
+    run, states = simulate(v0, w0, times=times), flow(v0, w0, times)
+    assert run.slip_angle[-1] == states.slip_angle[-1] == 0.0
+    for found in (run, states):
+        expected = np.arctan2(found.radius * found.spin, found.speed)
+        np.testing.assert_allclose(found.slip_angle, expected, rtol=1e-13)
+    again = simulate(v0, w0, frames=1).at(times)
+    for name in ("time", "x", "y", "heading", "orientation", "spin", "slip_angle"):
+        assert np.array_equal(getattr(again, name), getattr(run, name)), name
 
 
 # ---- the table and its file

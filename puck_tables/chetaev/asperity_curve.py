@@ -39,6 +39,7 @@ FloatArray = npt.NDArray[np.float64]
 
 _FLIGHTS = 4000
 _LONGEST_CYCLE, _SAME_PHASE = 40, 1e-11
+LEAP = 0.2  # of Coulomb's force: by so much the mean force at neighbouring speeds may differ
 MAX_SPEED = 1e3  # of V₀: beyond it a flight passes a million periods and its landing is chance
 
 
@@ -89,6 +90,18 @@ class AsperityCurve:
     mean: FloatArray = field(repr=False)
     landing_phase: FloatArray = field(repr=False)
     flights_per_period: FloatArray = field(repr=False)
+
+    @property
+    def leaps(self) -> int:
+        """Between how many neighbouring speeds the mean force leaps: what it does there is lost.
+
+        Examples
+        --------
+        >>> bumps = Asperity(amplitude=1.0, length=4.0, load=1.0, mass=1.0)
+        >>> asperity_curve(bumps, [0.0, 5.0, 10.0]).leaps
+        2
+        """
+        return int((np.abs(np.diff(self.mean)) > LEAP * self.crude[1:]).sum())
 
     def law(self, which: str = "greatest") -> SpeedLaw:
         """The force over the load as a friction coefficient that depends on the speed.

@@ -156,13 +156,14 @@ or directory
         try:
             rows = read_rows(path, _LARGEST)
         except (OSError, ValueError) as error:
-            reason = getattr(error, "strerror", None) or "it is not text"
+            reason = "it is not text" if isinstance(error, UnicodeDecodeError) else str(error)
+            reason = getattr(error, "strerror", None) or reason
             raise InputError(f"cannot read the friction law {path}: {reason}") from None
         for row in rows:
             if len(row) != 2 or not all(map(is_number, row)):
                 raise InputError(
                     f"{path}: each line of a friction law must be a speed in m/s and f, like "
-                    f"0.5,0.12; got '{','.join(row)}'"
+                    f"0.5,0.12; got '{','.join(row)[:60]}'"
                 )
         points = np.array([[float(cell) for cell in row] for row in rows]).reshape(-1, 2)
         try:

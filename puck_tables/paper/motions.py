@@ -151,14 +151,17 @@ def special_launches(run: Simulate) -> list[Claim]:
 def spin_keeps_its_sign(motions: list[Trajectory]) -> list[Claim]:
     """Result 1, corollary 6: ω never changes its sign.
 
-    Measured as sin φ(t)/sin φ(0), which stays away from zero up to the stop.
+    Measured as sin φ(t)/sin φ(0), which stays away from zero as long as the puck moves.
 
     Examples
     --------
     >>> spin_keeps_its_sign([launch(simulate, 8.0, 1.0)])[0].margin > 0.8
     True
     """
-    smallest = min(float((np.sin(r.slip_angle) / np.sin(r.slip_angle[0])).min()) for r in motions)
+    smallest = min(
+        float((np.sin(r.slip_angle[r.slip_speed > 0.0]) / np.sin(r.slip_angle[0])).min())
+        for r in motions
+    )
     return [
         more("result 1", "w keeps its sign (smallest sin phi(t)/sin phi(0))", 0.0, smallest),
     ]

@@ -1,7 +1,7 @@
-"""From plain values (TOML) to dataclasses, with every error at once.
+"""From plain values (TOML) or dataclasses to checked dataclasses, with every error at once.
 
 What a field allows stands in its metadata, beside its name and its default; one walk over the
-dataclasses checks a whole scene.
+dataclasses checks a whole scene, wherever it comes from.
 """
 
 from __future__ import annotations
@@ -9,7 +9,11 @@ from __future__ import annotations
 import dataclasses
 import math
 import re
+import unicodedata
+from collections.abc import Mapping
 from dataclasses import MISSING, dataclass, field
+from functools import lru_cache
+from numbers import Real
 from typing import Any, TypeVar
 
 import numpy as np
@@ -19,7 +23,8 @@ FloatArray = npt.NDArray[np.float64]
 T = TypeVar("T")
 
 RANGE = re.compile(r"([^:]+):([^:]+):([0-9]{1,9})")
-MAX_COUNT = 1_000_000
+MAX_COUNT = 1_000_000  # numbers of one range
+_SHOWN = 60  # characters of a value in a message
 
 
 @dataclass(frozen=True)
@@ -34,6 +39,7 @@ class Kind:
     below: bool = False
     choices: tuple[str, ...] = ()
     part: Any = None
+    file: str | None = None  # a text that names a file where it ends so
 
     def allowed(self) -> str:
         """What is allowed, in words.
@@ -44,7 +50,7 @@ class Kind:
         'a number > 0 m'
         """
         if self.shape == "text":
-            return "a text"
+            return "a text without " + ("control characters" if self.file is None else "NUL")
         if self.shape == "choice":
             return "one of " + ", ".join(self.choices)
         words = {"number": "a number", "pair": "two numbers [x, y]", "numbers": "a list of numbers"}
@@ -65,6 +71,24 @@ class Kind:
         below = value < self.high if self.below else value <= self.high
         return above and below and not math.isnan(value)
 
+    def takes(self, text: str) -> bool:
+        """Whether a text holds no control codes and halves of pairs; a name of a file no NUL."""
+        if self.file is not None:
+            return "\0" not in text
+        return text.isprintable() or not any(
+            unicodedata.category(sign) in ("Cc", "Cs") for sign in text
+        )
+
+    def names_file(self, text: str) -> bool:
+        """Whether a text is the name of a file.
+
+        Examples
+        --------
+        >>> Kind("text", file=".csv").names_file("rough.CSV"), Kind("text", file="").names_file("")
+        (True, False)
+        """
+        return self.file is not None and bool(text) and text.lower().endswith(self.file)
+
 
 def of(shape: str, default: Any = MISSING, unit: str = "", doc: str = "", **limits: Any) -> Any:
     """A dataclass field with what it allows."""
@@ -78,36 +102,76 @@ def of(shape: str, default: Any = MISSING, unit: str = "", doc: str = "", **limi
     )
 
 
+@dataclass(frozen=True)
+class Range:
+    """START:STOP:COUNT; its numbers are made when all ranges of a scene have been counted."""
+
+    start: float
+    stop: float
+    count: int
+
+    def numbers(self) -> FloatArray:
+        """The numbers, ends included, array (count,)."""
+        return np.linspace(self.start, self.stop, self.count)
+
+
 @dataclass
 class Reading:
     """What a walk gathers: errors, and the numbers that were given as ranges."""
 
     errors: list[str]
-    ranges: dict[str, FloatArray]
+    ranges: dict[str, Range]
 
     def fault(self, path: str, value: Any, allowed: str) -> None:
         """Note an error."""
-        shown = repr(value) if not isinstance(value, dict) else "a table"
-        shown = shown if len(shown) <= 60 else shown[:57] + "..."
-        self.errors.append(f"{path} = {shown}: must be {allowed}")
+        self.errors.append(f"{path} = {_shown(value)}: must be {allowed}")
+
+
+def _shown(value: Any) -> str:
+    """A value in a message, however large, deep or odd it is."""
+    if isinstance(value, Mapping):
+        return "a table"
+    plain = value.item() if isinstance(value, np.generic) else value
+    try:
+        shown = repr(plain)
+    except (ValueError, RecursionError):  # integers of thousands of digits, lists without end
+        shown = "a whole number of thousands of digits" if isinstance(value, int) else "a list"
+    return shown if len(shown) <= _SHOWN else shown[: _SHOWN - 3] + "..."
+
+
+@lru_cache(maxsize=64)
+def _specs(kind: type) -> dict[str, dataclasses.Field[Any]]:
+    return {spec.name: spec for spec in dataclasses.fields(kind)}
 
 
 def read_part(kind: type[T], data: Any, path: str, reading: Reading) -> T | None:
-    """A dataclass from a table; None if something in it is wrong."""
-    if not isinstance(data, dict):
-        reading.fault(path, data, "a table")
+    """A dataclass from a table, or from an unchecked one; None if something in it is wrong."""
+    this: Any = kind
+    known = _specs(this)
+    if isinstance(data, kind):
+        theirs: Any = type(data)
+        data = {  # what is left at its default needs no check
+            name: getattr(data, name)
+            for name, spec in _specs(theirs).items()
+            if name not in known or getattr(data, name) is not spec.default
+        }
+    if not isinstance(data, Mapping):
+        wrong = f"a table or a {kind.__name__}" if dataclasses.is_dataclass(data) else "a table"
+        reading.fault(path or kind.__name__.lower(), data, wrong)
         return None
-    known = {f.name: f for f in dataclasses.fields(kind)}  # type: ignore[arg-type]
     prefix = f"{path}." if path else ""
     for name in data:
         if name not in known:
             near = ", ".join(known)
-            reading.errors.append(f"{prefix}{name}: no such entry (there are: {near})")
+            shown = name if isinstance(name, str) and name.isprintable() else _shown(name)
+            reading.errors.append(f"{prefix}{shown[:_SHOWN]}: no such entry (there are: {near})")
     before = len(reading.errors)
     values: dict[str, Any] = {}
     for name, spec in known.items():
-        if name in data:
-            values[name] = _read(spec.metadata["kind"], data[name], prefix + name, reading)
+        if name in data and not (data[name] is None and spec.default is None):
+            values[name] = _read(
+                spec.metadata["kind"], data[name], prefix + name, reading, spec.default
+            )
         elif spec.default is MISSING and spec.default_factory is MISSING:
             what: Kind = spec.metadata["kind"]
             needed = "a table" if what.shape == "part" else what.allowed()
@@ -115,30 +179,41 @@ def read_part(kind: type[T], data: Any, path: str, reading: Reading) -> T | None
     return kind(**values) if len(reading.errors) == before else None
 
 
-def _read(kind: Kind, value: Any, path: str, reading: Reading) -> Any:
+def _read(kind: Kind, value: Any, path: str, reading: Reading, default: Any) -> Any:
     if kind.shape == "part":
         return read_part(kind.part, value, path, reading)
-    if kind.shape == "parts":
-        if not isinstance(value, list):
-            reading.fault(path, value, f"a list of tables, [[{path}]]")
-            return ()
-        return tuple(
-            read_part(kind.part, item, f"{path}[{i}]", reading) for i, item in enumerate(value)
-        )
     if kind.shape in ("text", "choice"):
-        if not isinstance(value, str) or (kind.choices and value not in kind.choices):
+        good = isinstance(value, str) and kind.takes(value)
+        if not good or (kind.choices and value not in kind.choices):
             reading.fault(path, value, kind.allowed())
         return value
     if kind.shape == "number":
-        return _number(kind, value, path, reading)
+        return _number(kind, value, path, reading, default)
+    items = _items(value)
+    if kind.shape == "parts":
+        if items is None:
+            reading.fault(path, value, f"a list of tables, [[{path}]]")
+            return ()
+        return tuple(
+            read_part(kind.part, item, f"{path}[{i}]", reading) for i, item in enumerate(items)
+        )
     count = 2 if kind.shape == "pair" else None
-    if not isinstance(value, list) or (count is not None and len(value) != count):
+    if items is None or (count is not None and len(items) != count):
         reading.fault(path, value, kind.allowed())
         return (0.0, 0.0)
-    return tuple(_number(kind, item, f"{path}[{i}]", reading) for i, item in enumerate(value))
+    return tuple(_number(kind, item, f"{path}[{i}]", reading, None) for i, item in enumerate(items))
 
 
-def _number(kind: Kind, value: Any, path: str, reading: Reading) -> float:
+def _items(value: Any) -> list[Any] | None:
+    """What stands in a list, a tuple or an array of one dimension."""
+    if isinstance(value, np.ndarray):
+        return list(value) if value.ndim == 1 else None
+    return list(value) if isinstance(value, list | tuple) else None
+
+
+def _number(kind: Kind, value: Any, path: str, reading: Reading, default: Any) -> float:
+    if isinstance(value, np.ndarray) and value.ndim == 0 and not np.ma.is_masked(value):
+        value = value[()]
     if isinstance(value, str):
         match = RANGE.fullmatch(value.strip())
         try:
@@ -149,19 +224,21 @@ def _number(kind: Kind, value: Any, path: str, reading: Reading) -> float:
             return math.nan
         if not 2 <= count <= MAX_COUNT:
             reading.fault(path, value, f"a range of 2 to {MAX_COUNT} numbers")
-        elif not (kind.holds(start) and kind.holds(stop) and math.isfinite(start + stop)):
+        elif not (kind.holds(start) and kind.holds(stop) and math.isfinite(stop - start)):
             reading.fault(path, value, f"a range within: {_one(kind)}")
         else:
-            reading.ranges[path] = np.linspace(start, stop, count)
+            reading.ranges[path] = Range(start, stop, count)
         return start
-    if isinstance(value, bool) or not isinstance(value, int | float):
+    if type(value) not in (float, int) and (
+        isinstance(value, bool | np.timedelta64) or not isinstance(value, Real)
+    ):
         reading.fault(path, value, _one(kind))
         return math.nan
     try:
         number = float(value)
     except OverflowError:
         number = math.inf
-    if not kind.holds(number) or not math.isfinite(number):
+    if number != default and not (kind.holds(number) and math.isfinite(number)):
         reading.fault(path, value, _one(kind))
     return number
 

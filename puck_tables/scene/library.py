@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import tomllib
 from importlib.resources import files
-from pathlib import Path
 from typing import Any
 
 from puck_tables.errors import InputError
@@ -54,13 +54,17 @@ def find_scene(name: str) -> dict[str, Any]:
     >>> find_scene("incline")["floor"]["friction"]
     0.15
     """
-    if name in _names() and not Path(name).exists():
-        return tomllib.loads(shipped_text(name))
-    if not Path(name).exists():
+    try:
+        os.stat(name)
+    except FileNotFoundError:
+        if name in _names():
+            return tomllib.loads(shipped_text(name))
         raise InputError(
             f"no file {name}, and no scene of that name comes along: there are "
             f"{', '.join(_names())}"
-        )
+        ) from None
+    except (OSError, ValueError) as error:
+        raise InputError(f"cannot read {name}: {getattr(error, 'strerror', error)}") from None
     return read_scene(name)
 
 

@@ -64,7 +64,8 @@ from puck_tables.scene.steps import STAGES, WIDE, step
 FloatArray = npt.NDArray[np.float64]
 
 # how a run ends
-AT_REST, CARRIED_AWAY, TIME_UP, OVER_EDGE, STEP_LIMIT, EVENT_LIMIT, NOT_FINITE, HALTED = range(8)
+AT_REST, CARRIED_AWAY, TIME_UP, OVER_EDGE, STEP_LIMIT, EVENT_LIMIT, NOT_FINITE = range(7)
+HALTED = -1  # from outside
 # what happens on the way
 RESTS, SLIPS, LEANS = 0, 1, 3  # and those of boundaries
 

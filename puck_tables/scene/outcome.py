@@ -16,8 +16,9 @@ FloatArray = npt.NDArray[np.float64]
 
 ENDS = (
     "at rest", "carried by the floor", "time is up", "over the edge", "step limit", "event limit",
-    "not finite",
+    "not finite", "no end found", "refused",
 )  # fmt: skip
+NO_END, REFUSED = len(ENDS) - 2, len(ENDS) - 1  # of a run in a sweep, which goes on
 EVENTS = ("rests", "slips", "bounces", "leans", "border", "edge")
 
 COLUMNS = {
@@ -64,7 +65,8 @@ class SceneRun:
     over the mass; without slip Q² = J r).  It is above ``run.tol`` where the motion amplifies
     errors so much that tol cannot be kept.
     ``columns``: arrays (n,) by name, units in :data:`COLUMNS`;
-    ``last``: the same at the end, numbers.
+    ``last``: the same at the end, numbers.  ``files``: what stood in the files that the scene
+    names, by the path of the entry.
     """
 
     scene: Scene
@@ -79,6 +81,7 @@ class SceneRun:
     steps: int
     last: Mapping[str, float]
     columns: Mapping[str, FloatArray] = field(repr=False)
+    files: Mapping[str, str] = field(default_factory=dict, repr=False)
 
 
 def ledger(

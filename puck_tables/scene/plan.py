@@ -10,11 +10,15 @@ not reach are not there.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
-from typing import Any
+from collections.abc import Callable
+from dataclasses import dataclass, fields, replace
+from functools import lru_cache
+from typing import Any, NamedTuple
 
 from puck_tables.body import is_plain
+from puck_tables.errors import PuckError
 from puck_tables.motion.limits import regime
+from puck_tables.scene.fields import Kind
 from puck_tables.scene.scene import Floor, Scene, distance, launch_velocity
 from puck_tables.sliced import FINEST_TOL
 from puck_tables.stops import stop
@@ -31,33 +35,95 @@ class Plan:
     why: str
 
 
+class Ingredient(NamedTuple):
+    """What may act: its name, the entries of a scene that describe it, and whether it is there."""
+
+    name: str
+    paths: tuple[str, ...]
+    acts: Callable[[Scene], bool]
+
+
+# every entry that a scene may have, so that none can be left out by mistake: first those that the
+# motion of a free puck on a level floor takes into account
+FREE = (
+    "title", "puck.radius", "puck.height", "puck.mass", "puck.gyration", "puck.pressure",
+    "floor.friction", "floor.gravity", "floor.velocity",
+    "launch.velocity", "launch.spin", "launch.position", "launch.orientation",
+    "run.time", "run.frames", "run.tol",
+)  # fmt: skip
+INGREDIENTS = (
+    Ingredient("slope", ("floor.slope", "floor.downhill"), lambda s: s.floor.slope > 0.0),
+    Ingredient("turntable", ("floor.turning", "floor.centre"), lambda s: s.floor.turning != 0.0),
+    Ingredient(
+        "strips", ("floor.strips.borders", "floor.strips.friction", "floor.strips.direction"),
+        lambda s: s.floor.strips is not None,
+    ),
+    Ingredient(
+        "drag", ("drag.sliding", "drag.spinning"),
+        lambda s: s.drag.sliding > 0.0 or s.drag.spinning > 0.0,
+    ),
+    Ingredient(
+        "force", ("force.constant", "force.torque"),
+        lambda s: any(s.force.constant) or s.force.torque != 0.0,
+    ),
+    Ingredient("force over time", ("force.file",), lambda s: bool(s.force.file)),
+    Ingredient(
+        "walls",
+        ("wall.point", "wall.normal", "wall.restitution", "wall.tangential", "wall.friction"),
+        lambda s: bool(s.wall),
+    ),
+    Ingredient("edges", ("edge.point", "edge.normal"), lambda s: bool(s.edge)),
+    Ingredient(
+        "constraint",
+        ("constraint.kind", "constraint.angle", "constraint.reach", "constraint.velocity",
+         "constraint.side_slip"),
+        lambda s: s.constraint is not None,
+    ),
+    Ingredient("friction law", ("floor.law",), lambda s: bool(s.floor.law)),
+)  # fmt: skip
+KNOWN = frozenset([*FREE, *(path for one in INGREDIENTS for path in one.paths)])
+
+
 def ingredients(scene: Scene) -> list[str]:
     """What acts beside dry friction on a level floor that moves steadily or not at all.
+
+    Raises
+    ------
+    PuckError
+        If an entry of the scene belongs to nothing that is known here: it would be left out.
 
     Examples
     --------
     >>> from puck_tables.scene.scene import Floor, Launch, Puck
-        >>> ingredients(Scene(Puck(1.0), Floor(0.1, slope=0.2), Launch((1.0, 0.0), 5.0)))
-        ['slope']
+    >>> ingredients(Scene(Puck(1.0), Floor(0.1, slope=0.2), Launch((1.0, 0.0), 5.0)))
+    ['slope']
     """
-    floor, force, puck = scene.floor, scene.force, scene.puck
-    homogeneous_and_uniform = is_plain(puck.pressure, puck.gyration, height_ratio(scene))
-    there = {
-        "slope": floor.slope > 0.0,
-        "turntable": floor.turning != 0.0,
-        "strips": floor.strips is not None,
-        "drag": scene.drag.sliding > 0.0 or scene.drag.spinning > 0.0,
-        "force": any(force.constant) or force.torque != 0.0,
-        "force over time": bool(force.file),
-        "walls": bool(scene.wall),
-        "edges": bool(scene.edge),
-        scene.constraint.kind if scene.constraint else "constraint": scene.constraint is not None,
-        "friction law": bool(floor.law),
-        "a tolerance finer than for free pucks of this kind": not homogeneous_and_uniform
-        and scene.run.tol < FINEST_TOL,
-        "no dry friction": floor.strips is None and floor.friction == 0.0 and not floor.law,
-    }
-    return [name for name, is_there in there.items() if is_there]
+    kind: Any = type(scene)
+    if stray := _stray(kind):
+        raise PuckError(f"{', '.join(stray)}: the plan of a run knows no such ingredient")
+    there = [one.name for one in INGREDIENTS if one.acts(scene)]
+    if scene.constraint is not None:
+        there[there.index("constraint")] = scene.constraint.kind
+    puck = scene.puck
+    plain = is_plain(puck.pressure, puck.gyration, height_ratio(scene))
+    if not plain and scene.run.tol < FINEST_TOL:
+        there.append("a tolerance finer than for free pucks of this kind")
+    if scene.floor.strips is None and scene.floor.friction == 0.0 and not scene.floor.law:
+        there.append("no dry friction")
+    return there
+
+
+@lru_cache(maxsize=16)
+def _stray(kind: type, path: str = "") -> list[str]:
+    """Entries that a scene, or a part of it, may have and that are not known here."""
+    found = []
+    for spec in fields(kind):
+        what: Kind = spec.metadata["kind"]
+        if what.part is not None:
+            found += _stray(what.part, f"{path}{spec.name}.")
+        elif f"{path}{spec.name}" not in KNOWN:
+            found.append(f"{path}{spec.name}")
+    return found
 
 
 def height_ratio(scene: Scene) -> float:
@@ -120,8 +186,8 @@ def plan_for(scene: Scene) -> Plan:
     Examples
     --------
     >>> from puck_tables.scene.scene import Floor, Launch, Puck
-        >>> plan_for(Scene(Puck(1.0), Floor(0.1), Launch((1.0, 0.0), 0.0))).model
-        'closed form: pure translation'
+    >>> plan_for(Scene(Puck(1.0), Floor(0.1), Launch((1.0, 0.0), 0.0))).model
+    'closed form: pure translation'
     """
     acting = ingredients(scene)
     if acting:

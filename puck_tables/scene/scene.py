@@ -6,11 +6,13 @@ table for each part; every number may be a range 'START:STOP:COUNT', which a swe
 
 from __future__ import annotations
 
+import dataclasses
 import math
 import tomllib
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -24,7 +26,8 @@ from puck_tables.scene.fields import Reading, of, read_part
 FloatArray = npt.NDArray[np.float64]
 
 MAX_FILE = 1 << 20
-FILES = (("puck", "pressure"), ("floor", "law"), ("force", "file"))
+MAX_NAMED = 1 << 26  # bytes of a file that a scene names
+MAX_RUNS = 1_000_000_000  # of one sweep
 MATCH = 1e-9  # how well a launch must fit its constraint, of its speed
 
 
@@ -36,10 +39,12 @@ class Puck:
     height: float = of("number", 0.0, "m", low=0.0, doc="of the cylinder; 0: no tilt")
     mass: float = of("number", 1.0, "kg", low=0.0, above=True)
     gyration: float = of(
-        "number", HOMOGENEOUS, "radii", low=0.1, high=10.0,
+        "number", HOMOGENEOUS, low=0.1, high=10.0,
         doc="radius of gyration about the vertical over the radius",
     )  # fmt: skip
-    pressure: str = of("text", "uniform", doc="pressure law, as build-tables --pressure takes it")
+    pressure: str = of(
+        "text", "uniform", file=".csv", doc="pressure law, as build-tables --pressure takes it"
+    )
 
 
 @dataclass(frozen=True)
@@ -63,7 +68,7 @@ class Floor:
     turning: float = of("number", 0.0, "rad/s", doc="spin of a turntable")
     centre: tuple[float, float] = of("pair", (0.0, 0.0), "m", doc="of the turntable")
     strips: Strips | None = of("part", None, part=Strips)
-    law: str = of("text", "", doc="CSV of slip speed in m/s and f, in place of 'friction'")
+    law: str = of("text", "", file="", doc="CSV of slip speed in m/s and f, in place of 'friction'")
 
 
 @dataclass(frozen=True)
@@ -90,7 +95,9 @@ class Force:
 
     constant: tuple[float, float] = of("pair", (0.0, 0.0), "N")
     torque: float = of("number", 0.0, "N m")
-    file: str = of("text", "", doc="CSV of t, Fx, Fy and perhaps torque, straight between rows")
+    file: str = of(
+        "text", "", file="", doc="CSV of t, Fx, Fy and perhaps torque, straight between rows"
+    )
 
 
 @dataclass(frozen=True)
@@ -139,7 +146,9 @@ class Run:
 
 @dataclass(frozen=True)
 class Scene:
-    """All of it; ``source`` says where it was read."""
+    """All of it; ``checked``: made by :func:`scene_from`, which finds nothing wrong with it."""
+
+    checked: ClassVar[bool] = False
 
     puck: Puck = of("part", part=Puck)
     floor: Floor = of("part", Floor(), part=Floor)
@@ -153,13 +162,25 @@ class Scene:
     title: str = of("text", "")
 
 
-def scene_from(data: dict[str, Any], source: str = "scene") -> tuple[Scene, dict[str, FloatArray]]:
-    """A scene from nested tables, and the ranges in it by path.
+FILES = tuple(
+    (part.name, spec.name, spec.metadata["kind"])
+    for part in dataclasses.fields(Scene)
+    if part.metadata["kind"].shape == "part"
+    for spec in dataclasses.fields(part.metadata["kind"].part)
+    if spec.metadata["kind"].file is not None
+)
+
+
+def scene_from(
+    data: Mapping[str, Any] | Scene, source: str = "scene"
+) -> tuple[Scene, dict[str, FloatArray]]:
+    """A checked scene from nested tables or an unchecked one, and the ranges in it by path.
 
     Parameters
     ----------
-    data : dict
-        As a TOML file gives it; see :class:`Scene` for its parts.
+    data : mapping or Scene
+        As a TOML file gives it, or a :class:`Scene`, whose parts may also be tables.  Numbers may
+        be numpy scalars, lists may be tuples or arrays of one dimension.
     source : str
         Its name, for messages.
 
@@ -178,16 +199,44 @@ def scene_from(data: dict[str, Any], source: str = "scene") -> tuple[Scene, dict
     >>> scene, ranges = scene_from({"puck": {"radius": 0.04}, "launch": {"spin": "0:10:3"}})
     >>> scene.puck.mass, ranges["launch.spin"].tolist()
     (1.0, [0.0, 5.0, 10.0])
+    >>> scene_from(Scene(Puck(np.float32(0.5)), launch=Launch(np.zeros(2))))[0].launch.velocity
+    (0.0, 0.0)
+    """
+    if isinstance(data, Scene) and data.checked:
+        return data, {}
+    scene, ranges = scene_with_ranges(data, source)
+    faults = _disagreements(scene)
+    if faults:
+        raise _refusal(source, faults)
+    object.__setattr__(scene, "checked", True)
+    return scene, ranges
+
+
+def scene_with_ranges(
+    data: Mapping[str, Any] | Scene, source: str
+) -> tuple[Scene, dict[str, FloatArray]]:
+    """The same, its entries checked one by one only: what they say together is up to the ranges.
+
+    Raises
+    ------
+    InputError
     """
     reading = Reading([], {})
     scene = read_part(Scene, data, "", reading)
-    if scene is not None:
-        reading.errors.extend(_disagreements(scene))
+    runs = math.prod(found.count for found in reading.ranges.values())
+    if runs > MAX_RUNS:  # before their numbers are made
+        reading.errors.append(
+            f"{len(reading.ranges)} ranges ({', '.join(list(reading.ranges)[:3])} ...) make more "
+            f"than {MAX_RUNS:g} runs: give fewer or shorter ones"
+        )
     if scene is None or reading.errors:
-        count = len(reading.errors)
-        head = f"{source}: {count} error{'s' if count != 1 else ''}"
-        raise InputError("\n  ".join([head, *reading.errors]))
-    return scene, reading.ranges
+        raise _refusal(source, reading.errors)
+    return scene, {path: found.numbers() for path, found in reading.ranges.items()}
+
+
+def _refusal(source: str, faults: list[str]) -> InputError:
+    head = f"{source}: {len(faults)} error{'s' if len(faults) != 1 else ''}"
+    return InputError("\n  ".join([head, *faults]))
 
 
 def read_scene(path: str | Path) -> dict[str, Any]:
@@ -202,13 +251,44 @@ def read_scene(path: str | Path) -> dict[str, Any]:
         tables = tomllib.loads(read_whole(path, MAX_FILE).decode("utf-8-sig"))
     except OSError as error:
         raise InputError(f"cannot read {path}: {error.strerror or error}") from None
-    except (ValueError, RecursionError) as error:  # not TOML, not text, or numbers without end
+    except UnicodeDecodeError as error:
+        raise InputError(f"{path} is not text in UTF-8: see its byte {error.start}") from None
+    except tomllib.TOMLDecodeError as error:
         raise InputError(f"{path} is not a scene file (TOML): {error}") from None
-    for part, name in FILES:  # beside the scene that names them
+    except (ValueError, RecursionError):
+        raise InputError(
+            f"{path}: a number in it has thousands of digits, or its lists are nested too deeply"
+        ) from None
+    for part, name, kind in FILES:  # beside the scene that names them
         value = tables.get(part, {}).get(name) if isinstance(tables.get(part), dict) else None
-        if isinstance(value, str) and value.lower().endswith(".csv"):
+        if isinstance(value, str) and kind.names_file(value):
             tables[part][name] = str(Path(path).parent / value)
     return tables
+
+
+def files_of(scene: Scene) -> dict[str, str]:
+    """What stands in the files that a scene names, by the path of the entry that names them.
+
+    Raises
+    ------
+    InputError
+        If one cannot be read.
+
+    Examples
+    --------
+    >>> files_of(Scene(Puck(0.04)))
+    {}
+    """
+    texts = {}
+    for part, name, kind in FILES:
+        file = getattr(getattr(scene, part), name)
+        if kind.names_file(file):
+            try:
+                text = read_whole(file, MAX_NAMED).decode("utf-8-sig", "replace")
+            except OSError as error:
+                raise InputError(f"cannot read {file}: {error.strerror or error}") from None
+            texts[f"{part}.{name}"] = text.replace("\0", "\ufffd")
+    return texts
 
 
 def _disagreements(scene: Scene) -> list[str]:

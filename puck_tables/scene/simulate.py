@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import AccuracyError, InputError, PuckError
-from puck_tables.real import finite_array
+from puck_tables.real import finite_array, instance
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
 from puck_tables.scene.library import find_scene
 from puck_tables.scene.loop import (
@@ -29,7 +29,7 @@ from puck_tables.scene.plain import run_plain
 from puck_tables.scene.plan import Plan, ingredients, out_of_reach, plan_for
 from puck_tables.scene.prepare import MAX_EVENTS, Prepared, prepare
 from puck_tables.scene.regions import friction_error
-from puck_tables.scene.scene import Scene, scene_from
+from puck_tables.scene.scene import Scene, files_of, scene_from
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -76,11 +76,14 @@ def simulate_scene(
     """
     whole = single(scene)
     moments = None if times is None else _checked(times)
+    files = files_of(whole)
     needed = out_of_reach(whole)
     plan = plan_for(needed)
     if plan.plain:
-        return run_plain(whole, needed, plan, moments)
-    return _integrated(whole, plan, moments)
+        run = run_plain(whole, needed, plan, moments)
+    else:
+        run = _integrated(whole, plan, moments)
+    return replace(run, files=files)
 
 
 COARSER = 30.0  # the steps of a twin may err by so much more
@@ -104,16 +107,28 @@ def single(scene: Scene | Mapping[str, Any] | str | Path, source: str = "scene")
     ------
     InputError
     """
-    if isinstance(scene, Scene):
-        return scene
-    if isinstance(scene, str | Path):
-        scene, source = find_scene(str(scene)), str(scene)
-    whole, ranges = scene_from(dict(scene), source)
+    found, name = named(scene, source)
+    whole, ranges = scene_from(found, name)
     if ranges:
         raise InputError(
             f"{', '.join(ranges)}: a range makes many runs; give one number, or run a sweep"
         )
     return whole
+
+
+def named(
+    scene: Scene | Mapping[str, Any] | str | Path, source: str = "scene"
+) -> tuple[Scene | Mapping[str, Any], str]:
+    """A scene that is given, or that a file or one that comes along holds; and its name.
+
+    Raises
+    ------
+    InputError
+    """
+    instance("the scene", scene, Scene, Mapping, str, Path)
+    if isinstance(scene, str | Path):
+        return find_scene(str(scene)), str(scene)
+    return scene, source
 
 
 def _checked(times: npt.ArrayLike) -> FloatArray:
@@ -123,22 +138,17 @@ def _checked(times: npt.ArrayLike) -> FloatArray:
     return moments
 
 
-def refuse_endless(scene: Scene) -> None:
-    """Refuse a scene without friction that says neither where nor when it ends.
-
-    Raises
-    ------
-    InputError
-    """
-    if scene.run.time is None and not scene.edge and "no dry friction" in ingredients(scene):
-        raise InputError(
-            "nothing brings this scene to rest (floor.friction is 0): give run.time, or friction"
-        )
+def is_endless(scene: Scene) -> bool:
+    """Whether a scene has no friction and says neither where nor when it ends."""
+    return scene.run.time is None and not scene.edge and "no dry friction" in ingredients(scene)
 
 
 def _integrated(scene: Scene, plan: Plan, times: FloatArray | None) -> SceneRun:
     """Run it, at ever finer tolerances until a coarser twin tells that the error asked is kept."""
-    refuse_endless(scene)
+    if is_endless(scene):
+        raise InputError(
+            "nothing brings this scene to rest (floor.friction is 0): give run.time, or friction"
+        )
     last = None if times is None or not times.size else float(times[-1])
     events = np.empty((MAX_EVENTS, EVENT_COLUMNS))
     asked = scene.run.tol

@@ -6,8 +6,7 @@ import copy
 import hashlib
 import json
 import math
-import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
@@ -21,15 +20,21 @@ from puck_tables.errors import InputError
 from puck_tables.executor import Progress, run_chunks
 from puck_tables.kernels.cache import source_digest
 from puck_tables.scene.bulk import ENDS_COLUMNS
+from puck_tables.scene.entries import as_toml, set_path, tables_of
 from puck_tables.scene.equations import SIZE
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
-from puck_tables.scene.library import find_scene
 from puck_tables.scene.loop import AT_REST, CARRIED_AWAY, NOT_FINITE, OVER_EDGE, TIME_UP
-from puck_tables.scene.outcome import COLUMNS, ledger
+from puck_tables.scene.outcome import COLUMNS, ENDS, NO_END, REFUSED, ledger
 from puck_tables.scene.plan import Plan, free_puck, plan_for
 from puck_tables.scene.prepare import Prepared, prepare
-from puck_tables.scene.scene import Scene, launch_velocity, scene_from
-from puck_tables.scene.simulate import refuse_endless
+from puck_tables.scene.scene import (
+    Scene,
+    files_of,
+    launch_velocity,
+    scene_from,
+    scene_with_ranges,
+)
+from puck_tables.scene.simulate import FAILURES, is_endless, named
 from puck_tables.stop_map import check_memory
 from puck_tables.stops import stop
 
@@ -53,20 +58,48 @@ RESULTS = {
 class SceneMap:
     """Ends of a scene over its ranges.
 
-    ``axes``: values by path; ``columns``: arrays of the shape of the axes by name, units in
-    :data:`RESULTS`; ``end``: index of :data:`puck_tables.scene.outcome.ENDS`; ``plan``: the model
-    of the last one.
+    ``scene``: the scene, its ranges at their first values; ``axes``: their values by path;
+    ``columns``: arrays of the shape of the axes by name, units in :data:`RESULTS`, NaN for a run
+    without an end; ``end``: index of :data:`puck_tables.scene.outcome.ENDS`; ``plan``: the model of
+    the last one that is valid; ``refusal``: what is wrong with the first run that is not;
+    ``files``: what stands in the files that the scene names, by path.
     """
 
-    title: str
+    scene: Scene
     axes: Mapping[str, FloatArray]
     plan: Plan
     columns: Mapping[str, FloatArray] = field(repr=False)
     end: npt.NDArray[np.int8] = field(repr=False)
+    refusal: str = field(default="", repr=False)
+    files: Mapping[str, str] = field(default_factory=dict, repr=False)
+
+    def without_end(self) -> list[str]:
+        """A line for each way in which runs have no end: how many, the first, and what to do."""
+        lines = []
+        for code in range(OVER_EDGE + 1, len(ENDS)):
+            found = np.argwhere(self.end == code)
+            if found.size:
+                run = f"{len(found)} of {self.end.size} runs: {ENDS[code]}; the first at "
+                lines.append(run + self.run_at(found[0]) + ": " + self._advice(code))
+        return lines
+
+    def run_at(self, index: Iterable[int]) -> str:
+        """The numbers of one run in words."""
+        places = zip(self.axes.items(), index, strict=True)
+        return ", ".join(f"{path} = {values[i]:.10g}" for (path, values), i in places)
+
+    def _advice(self, code: int) -> str:
+        if code == REFUSED:
+            return self.refusal
+        if code == NO_END:
+            return "none by a thousand times its time scale, it may never stop; give run.time"
+        if code == NOT_FINITE and self.scene.floor.law:
+            return "its rim slips faster than the friction law goes; give the law more speeds"
+        return FAILURES[code].partition(": ")[2] or FAILURES[code]
 
 
 def sweep_scene(
-    tables: Mapping[str, Any] | str | Path,
+    scene: Scene | Mapping[str, Any] | str | Path,
     *,
     threads: int | None = None,
     chunk: int = CHUNK,
@@ -77,9 +110,9 @@ def sweep_scene(
 
     Parameters
     ----------
-    tables : nested tables, or the name of a scene file
-        As :func:`puck_tables.scene.scene.scene_from` takes them, with 'START:STOP:COUNT' for one
-        number or more.
+    scene : Scene, nested tables, or a name
+        As :func:`puck_tables.simulate_scene` takes it, with 'START:STOP:COUNT' for one number or
+        more.
     threads, chunk : int
         How the work is cut; the numbers do not depend on it, to the last bit.
     progress : callable (done, total), optional
@@ -89,11 +122,13 @@ def sweep_scene(
     Returns
     -------
     SceneMap
+        A run that has no end, or that is refused, is named in :meth:`SceneMap.without_end`.
 
     Raises
     ------
     InputError
-        If a scene is not valid, nothing ranges, or the map would not fit in memory.
+        If the scene is not valid, no run of it has an end, nothing ranges, or the map would not fit
+        in memory.
 
     Examples
     --------
@@ -104,12 +139,8 @@ def sweep_scene(
     >>> stops.columns["x"].round(6).tolist()
     [0.509858, 2.039432]
     """
-    source = "scene"
-    if isinstance(tables, str | Path):
-        tables, source = find_scene(str(tables)), str(tables)
-    found = dict(tables)
-    first, axes = scene_from(found, source)
-    whole = copy.deepcopy(found)
+    found, source = named(scene)
+    first, axes = scene_with_ranges(found, source)
     if not axes:
         raise InputError(
             "no number of the scene is a range: write one as 'START:STOP:COUNT' (such as "
@@ -118,42 +149,65 @@ def sweep_scene(
     shape = tuple(values.size for values in axes.values())
     check_memory(shape, BYTES)
     size = math.prod(shape)
+    files = files_of(first)
+    whole = tables_of(first)
     inner = [path for path in axes if _is_launch(path, first)]
     outer = [path for path in axes if path not in inner]
 
     @lru_cache(maxsize=8)
-    def case(numbers: tuple[float, ...]) -> _Case:
+    def case(numbers: tuple[float, ...]) -> _Case | InputError:
         changed = copy.deepcopy(whole)
         for path, number in zip(outer, numbers, strict=True):
             set_path(changed, path, number)
-        return _Case(scene_from(changed)[0])
+        try:
+            return _Case(scene_from(changed, source)[0])
+        except InputError as error:
+            return error
+
+    def together(
+        numbers: tuple[float, ...], part: Mapping[str, FloatArray], count: int
+    ) -> tuple[FloatArray, npt.NDArray[np.int8]]:
+        one = case(numbers)
+        try:
+            if isinstance(one, _Case):
+                return one.ends(part, count)
+        except InputError:  # one of these launches
+            if count > 1:
+                alone = [{path: values[i : i + 1] for path, values in part.items()}
+                         for i in range(count)]  # fmt: skip
+                ends = [together(numbers, launch, 1) for launch in alone]
+                return np.hstack([e[0] for e in ends]), np.hstack([e[1] for e in ends])
+        return np.full((len(RESULTS), count), np.nan), np.full(count, REFUSED, np.int8)
+
+    def split(start: int, stop: int) -> tuple[list[tuple[float, ...]], dict[str, FloatArray]]:
+        place = dict(zip(axes, np.unravel_index(np.arange(start, stop), shape), strict=True))
+        values = {path: axes[path][place[path]] for path in axes}
+        numbers = zip(*(values[path].tolist() for path in outer), strict=True)
+        launches = {path: values[path] for path in inner}
+        return list(numbers) or [()] * (stop - start), launches
 
     def ends_of(start: int, stop: int) -> tuple[FloatArray, npt.NDArray[np.int8]]:
-        index = np.unravel_index(np.arange(start, stop), shape)
-        place = dict(zip(axes, index, strict=True))
-        values = {path: axes[path][place[path]] for path in axes}
-        out = np.empty((len(RESULTS), stop - start))
-        status = np.empty(stop - start, np.int8)
+        numbers, launches = split(start, stop)
+        out, status = np.empty((len(RESULTS), stop - start)), np.empty(stop - start, np.int8)
         begin = 0
         while begin < stop - start:  # launches that differ in nothing but the launch, together
-            numbers = tuple(float(values[path][begin]) for path in outer)
             end = begin + 1
-            while end < stop - start and all(
-                values[path][end] == number for path, number in zip(outer, numbers, strict=True)
-            ):
+            while end < stop - start and numbers[end] == numbers[begin]:
                 end += 1
-            part = {path: values[path][begin:end] for path in inner}
-            out[:, begin:end], status[begin:end] = case(numbers).ends(part, end - begin)
-            if first.run.time is None and (status[begin:end] == TIME_UP).any():
-                raise InputError(
-                    "a run of this sweep still moves after a thousand times its time scale: it may "
-                    "never stop; give run.time"
-                )
+            part = {path: values[begin:end] for path, values in launches.items()}
+            out[:, begin:end], status[begin:end] = together(numbers[begin], part, end - begin)
             begin = end
         return out, status
 
+    def refusal_of(run: int) -> str:
+        numbers, launch = split(run, run + 1)
+        try:
+            one = case(numbers[0])
+            return str(one) if isinstance(one, InputError) else str(one.ends(launch, 1))
+        except InputError as error:
+            return str(error)
+
     out, status = np.empty((len(RESULTS), size)), np.empty(size, np.int8)
-    plan = case(tuple(float(axes[path][-1]) for path in outer)).plan
     if checkpoint is None:
 
         def work(start: int, stop: int) -> None:
@@ -161,7 +215,9 @@ def sweep_scene(
 
         run_chunks(work, size, chunk, threads, progress)
     else:
-        with Checkpoint(checkpoint, _digest(whole), len(RESULTS), size, chunk) as kept:
+        with Checkpoint(
+            checkpoint, _digest(as_toml(first, axes)), len(RESULTS), size, chunk
+        ) as kept:
 
             def work_on(start: int, stop: int) -> None:
                 if not kept.is_done(start):
@@ -169,8 +225,17 @@ def sweep_scene(
 
             run_chunks(work_on, size, chunk, threads, progress)
             out[...], status[...] = kept.values, kept.status
+    refused, valid = np.flatnonzero(status == REFUSED), np.flatnonzero(status != REFUSED)
+    refusal = refusal_of(int(refused[0])) if refused.size else ""
+    if not valid.size:
+        raise InputError(f"every run of this sweep is refused, the first: {refusal}")
+    last = case(split(int(valid[-1]), int(valid[-1]) + 1)[0][0])
+    assert isinstance(last, _Case)
     columns = {name: row.reshape(shape) for name, row in zip(RESULTS, out, strict=True)}
-    return SceneMap(first.title, axes, plan, columns, status.reshape(shape))
+    ends = SceneMap(first, axes, last.plan, columns, status.reshape(shape), refusal, files)
+    if (status > OVER_EDGE).all():
+        raise InputError("\n  ".join(["no run of this sweep has an end", *ends.without_end()]))
+    return ends
 
 
 class _Case:
@@ -181,8 +246,7 @@ class _Case:
         self.by_look_up = self.plan.plain and scene.run.time is None
         if self.by_look_up:
             self.plan = Plan("free pucks: stop look-up", True, self.plan.why)
-        else:
-            refuse_endless(scene)
+        self.endless = is_endless(scene)
         self.prepared: Prepared | None = None if self.by_look_up else prepare(scene)
 
     def ends(
@@ -197,15 +261,20 @@ class _Case:
             states[:, LAUNCH[path]] = values
         mass = scene.puck.mass
         inertia = mass * (scene.puck.gyration * scene.puck.radius) ** 2
-        energy = 0.5 * mass * (states[:, VX] ** 2 + states[:, VY] ** 2)
-        energy += 0.5 * inertia * states[:, SPIN] ** 2
+        with np.errstate(over="ignore"):  # of launches that leave floating point
+            energy = 0.5 * mass * (states[:, VX] ** 2 + states[:, VY] ** 2)
+            energy += 0.5 * inertia * states[:, SPIN] ** 2
         status = np.empty(count, np.int8)
         rows = np.empty((ENDS_COLUMNS, count))
-        if self.prepared is None:
+        if self.endless:
+            status[:] = NO_END
+        elif self.prepared is None:
             self._look_up(states, rows, status)
         else:
             self.prepared.follow_all(states, rows, status)
-            rows[:, status > OVER_EDGE] = np.nan  # how it failed stands in ``end``
+            if scene.run.time is None:
+                status[status == TIME_UP] = NO_END
+        rows[:, status > OVER_EDGE] = np.nan  # how it failed stands in ``end``
         last = dict(zip(list(COLUMNS)[:-1], rows[:-1], strict=True))
         last["kinetic_energy"] = 0.5 * mass * (last["vx"] ** 2 + last["vy"] ** 2)
         last["kinetic_energy"] += 0.5 * inertia * last["spin"] ** 2
@@ -242,45 +311,7 @@ def _is_launch(path: str, scene: Scene) -> bool:
     return path in LAUNCH and scene.constraint is None and not fixed
 
 
-def set_path(tables: dict[str, Any], path: str, value: Any) -> None:
-    """Put a value at a path such as launch.velocity[0] or wall[1].restitution.
-
-    Raises
-    ------
-    InputError
-        If the path leads nowhere.
-
-    Examples
-    --------
-    >>> tables = {"launch": {"velocity": [1.0, 0.0]}}
-    >>> set_path(tables, "launch.velocity[0]", 2.0)
-    >>> set_path(tables, "floor.slope", 0.1)
-    >>> tables
-    {'launch': {'velocity': [2.0, 0.0]}, 'floor': {'slope': 0.1}}
-    """
-    if not re.fullmatch(r"\w+(\[\d{1,6}\])?(\.\w+(\[\d{1,6}\])?)*", path):
-        raise InputError(f"{path!r} is no path: write one like launch.spin or wall[0].restitution")
-    steps: list[str | int] = [
-        int(number) if number else name for name, number in re.findall(r"(\w+)|\[(\d+)\]", path)
-    ]
-    at: Any = tables
-    for step, following in zip(steps, [*steps[1:], None], strict=True):
-        try:
-            if following is None:
-                at[step] = value
-            elif isinstance(step, str) and step not in at:
-                at[step] = {} if isinstance(following, str) else [0.0, 0.0]
-                at = at[step]
-            else:
-                at = at[step]
-        except (IndexError, TypeError, KeyError):
-            raise InputError(
-                f"{path}: the scene has no such entry to set; 'puck scene fields' lists what may "
-                "be, walls and edges are written in a file"
-            ) from None
-
-
-def _digest(tables: Mapping[str, Any]) -> str:
+def _digest(scene: str) -> str:
     """What determines the bits of a map."""
-    text = json.dumps([tables, source_digest()], sort_keys=True, default=str)
+    text = json.dumps([scene, source_digest()])
     return hashlib.sha256(text.encode()).hexdigest()

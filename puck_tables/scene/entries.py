@@ -1,0 +1,184 @@
+"""The entries of a scene one by one: what they are, and the scene as tables and as TOML again."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import re
+from collections.abc import Iterator, Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables.errors import InputError
+from puck_tables.scene.fields import Kind
+from puck_tables.scene.scene import Scene
+
+FloatArray = npt.NDArray[np.float64]
+
+
+class Entry(NamedTuple):
+    """One entry: its path, its value (None: left out), what it allows, what it is, its default."""
+
+    path: str
+    value: Any
+    kind: Kind
+    doc: str
+    default: Any
+
+
+def entries(part: Any, prefix: str = "") -> Iterator[Entry]:
+    """Every entry of a scene or of a part of it, also those left out.
+
+    Examples
+    --------
+    >>> from puck_tables.scene.scene import Edge
+    >>> [entry.path for entry in entries(Edge((0.0, 1.0), (0.0, -1.0)), "edge[0].")]
+    ['edge[0].point', 'edge[0].normal']
+    """
+    for spec in dataclasses.fields(part):
+        kind: Kind = spec.metadata["kind"]
+        value, path = getattr(part, spec.name), prefix + spec.name
+        if kind.shape == "part" and value is not None:
+            yield from entries(value, f"{path}.")
+        elif kind.shape == "parts":
+            for i, item in enumerate(value):
+                yield from entries(item, f"{path}[{i}].")
+        else:
+            yield Entry(path, value, kind, spec.metadata["doc"], spec.default)
+
+
+def units_of(scene: Scene) -> dict[str, str]:
+    """Units of the entries of a scene by path, all walls or edges under one.
+
+    Examples
+    --------
+    >>> from puck_tables.scene.scene import Puck
+    >>> units_of(Scene(Puck(0.04)))["launch.spin"]
+    'rad/s'
+    """
+    measured = ("number", "pair", "numbers")
+    return {
+        re.sub(r"\[\d+\]", "", entry.path): entry.kind.unit or "1"
+        for entry in entries(scene)
+        if entry.kind.shape in measured
+    }
+
+
+def entry_at(scene: Scene, path: str) -> Entry:
+    """The entry of a path, or of the list of numbers that the path leads into.
+
+    Examples
+    --------
+    >>> from puck_tables.scene.scene import Puck
+    >>> entry_at(Scene(Puck(0.04)), "launch.position[1]").kind.unit
+    'm'
+    """
+    whole = re.sub(r"\[\d+\]$", "", path)
+    return next(entry for entry in entries(scene) if entry.path == whole)
+
+
+def tables_of(part: Any) -> dict[str, Any]:
+    """A scene as nested tables that :func:`puck_tables.scene.scene.scene_from` takes.
+
+    What is left out stays out, and so does a number without bound.
+
+    Examples
+    --------
+    >>> from puck_tables.scene.scene import Puck
+    >>> tables_of(Scene(Puck(0.04)))["floor"]["velocity"]
+    [0.0, 0.0]
+    """
+    tables: dict[str, Any] = {}
+    for spec in dataclasses.fields(part):
+        value = getattr(part, spec.name)
+        if dataclasses.is_dataclass(value):
+            value = tables_of(value)
+        elif isinstance(value, tuple):
+            value = [tables_of(v) if dataclasses.is_dataclass(v) else v for v in value]
+        if value is not None and value != np.inf and value != []:
+            tables[spec.name] = value
+    return tables
+
+
+def as_toml(scene: Scene, ranges: Mapping[str, FloatArray]) -> str:
+    """A scene as the text of a scene file, with its ranges as 'START:STOP:COUNT'.
+
+    Examples
+    --------
+    >>> from puck_tables.scene.scene import Puck
+    >>> as_toml(Scene(Puck(0.04)), {"puck.height": np.array([0.0, 0.5, 1.0])}).splitlines()[:5]
+    ['title = ""', '', '[puck]', 'radius = 0.04', 'height = "0.0:1.0:3"']
+    """
+    tables = tables_of(scene)
+    for path, values in ranges.items():
+        set_path(tables, path, f"{float(values[0])!r}:{float(values[-1])!r}:{values.size}")
+    return "\n".join(_lines(tables, "")).lstrip("\n") + "\n"
+
+
+def set_path(tables: dict[str, Any], path: str, value: Any) -> None:
+    """Put a value at a path such as launch.velocity[0] or wall[1].restitution.
+
+    Raises
+    ------
+    InputError
+        If the path leads nowhere.
+
+    Examples
+    --------
+    >>> tables = {"launch": {"velocity": [1.0, 0.0]}}
+    >>> set_path(tables, "launch.velocity[0]", 2.0)
+    >>> set_path(tables, "floor.slope", 0.1)
+    >>> tables
+    {'launch': {'velocity': [2.0, 0.0]}, 'floor': {'slope': 0.1}}
+    """
+    if not re.fullmatch(r"\w+(\[\d{1,6}\])?(\.\w+(\[\d{1,6}\])?)*", path):
+        raise InputError(f"{path!r} is no path: write one like launch.spin or wall[0].restitution")
+    steps: list[str | int] = [
+        int(number) if number else name for name, number in re.findall(r"(\w+)|\[(\d+)\]", path)
+    ]
+    at: Any = tables
+    for step, following in zip(steps, [*steps[1:], None], strict=True):
+        try:
+            if following is None:
+                at[step] = value
+            elif isinstance(step, str) and step not in at:
+                at[step] = {} if isinstance(following, str) else [0.0, 0.0]
+                at = at[step]
+            else:
+                at = at[step]
+        except (IndexError, TypeError, KeyError):
+            raise InputError(
+                f"{path}: the scene has no such entry to set; 'puck scene fields' lists what may "
+                "be, walls and edges are written in a file"
+            ) from None
+
+
+def _lines(table: Mapping[str, Any], path: str) -> Iterator[str]:
+    """A table line by line: its own entries first, for what follows a header belongs to it."""
+    inner = {name: value for name, value in table.items() if _holds_tables(value)}
+    for name, value in table.items():
+        if name not in inner:
+            yield f"{name} = {_value(value)}"
+    for name, value in inner.items():
+        for part in value if isinstance(value, list) else [value]:
+            header = f"{path}{name}"
+            yield f"\n[[{header}]]" if isinstance(value, list) else f"\n[{header}]"
+            yield from _lines(part, f"{header}.")
+
+
+def _holds_tables(value: Any) -> bool:
+    return isinstance(value, dict) or (
+        isinstance(value, list) and bool(value) and isinstance(value[0], dict)
+    )
+
+
+def _value(value: Any) -> str:
+    """A number, a text or a list of them; a TOML text escapes like one of JSON."""
+    if isinstance(value, list):
+        return f"[{', '.join(map(_value, value))}]"
+    if not isinstance(value, str):
+        return repr(float(value))
+    text = value.encode("utf-8", "backslashreplace").decode()  # names of files may be no text
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")

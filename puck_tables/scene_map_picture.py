@@ -1,0 +1,149 @@
+"""Pictures of maps over a scene: where and when it ends, and how."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables.drawing import (
+    BLUE,
+    GREEN,
+    ORANGE,
+    PICTURE_KINDS,
+    RED,
+    canvas,
+    draw_over,
+    save,
+    titled,
+)
+from puck_tables.result_file import kind_of
+from puck_tables.scene.entries import entry_at
+from puck_tables.scene.loop import CARRIED_AWAY
+from puck_tables.scene.outcome import ENDS
+from puck_tables.scene.sweep import SceneMap
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_MAPS = {
+    "end_time": "end time / s",
+    "x": "end x / m",
+    "y": "end y / m",
+    "orientation": "orientation at the end / rad",
+    "heat_dry": "heat of dry friction / J",
+}
+_LOOKS = (
+    (BLUE, "o"), (GREEN, "^"), (ORANGE, "D"), (RED, "v"), ("#555555", "x"), ("#8b2fa0", "x"),
+    ("black", "x"), ("#c8a415", "x"), ("#b8b8b8", "x"),
+)  # fmt: skip
+_HATCH = "///"
+_LEGEND_ROW = 5  # entries
+
+
+def plot_scene_map(stops: SceneMap, path: str | Path, overwrite: bool = False) -> None:
+    """Draw ends of a scene: maps when two numbers range, curves when one does or has few values.
+
+    The last panel says how each run ends, by colour, and so do the marks on curves; a run without
+    an end has no other values.  With more than two ranges, the maps are drawn at the middle of the
+    first ones.
+
+    Raises
+    ------
+    InputError
+        If the ending is not known.
+    MissingExtraError
+        If matplotlib is not installed.
+    OutputError
+        If the file exists or cannot be written.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from puck_tables.scene.sweep import sweep_scene
+    >>> floor, launch = {"friction": 0.1}, {"velocity": ["1:2:9", 0.0]}
+    >>> stops = sweep_scene({"puck": {"radius": 0.04}, "floor": floor, "launch": launch})
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     plot_scene_map(stops, folder + "/map.png")
+    """
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
+    kind = kind_of(path, PICTURE_KINDS)
+    figure = canvas(12.0, 7.6)
+    panels = figure.subplots(2, 3, sharex=True)
+    names = list(stops.axes)
+    fixed = {name: stops.axes[name].size // 2 for name in names[:-2]}
+    place = tuple(fixed.values())
+    axes = {name: stops.axes[name] for name in names[-2:]}
+    units = {name: entry_at(stops.scene, name).kind.unit for name in names}
+    labels = {name: f"{name} / {unit}" if unit else name for name, unit in units.items()}
+    end = stops.end[place]
+    for panel, (name, text) in zip(panels.flat, _MAPS.items(), strict=False):
+        values = stops.columns[name][place]
+        draw_over(figure, panel, axes, labels, values, text)
+        if panel.lines:
+            _mark_ends(panel, axes, values, end)
+        else:
+            _hatch(panel, axes, end)
+    curves, words = panels.flat[0].get_legend_handles_labels()
+    _draw_ends(panels.flat[len(_MAPS)], axes, labels, end)
+    for code in np.unique(end).tolist():
+        color, marker = _LOOKS[code]
+        curves.append(Line2D([], [], color=color, marker=marker, linestyle=""))
+        words.append(ENDS[code])
+    if not panels.flat[0].lines and (end > CARRIED_AWAY).any():
+        curves.append(Patch(facecolor="white", edgecolor="black", hatch=_HATCH))
+        words.append("not at rest at the end")
+    figure.legend(curves, words, loc="outside lower center", ncols=_LEGEND_ROW, frameon=False)
+    at = ", ".join(f"{name} = {stops.axes[name][n]:g} {units[name]}" for name, n in fixed.items())
+    titled(figure, (stops.scene.title or "Scene") + (f" at {at}" if at else ""))
+    save(figure, path, kind, overwrite)
+
+
+def _mark_ends(
+    panel: Axes, axes: Mapping[str, Any], values: Any, end: npt.NDArray[np.int8]
+) -> None:
+    """Marks on curves that say how each run ends."""
+    across = max(reversed(list(axes)), key=lambda name: axes[name].size)
+    places = np.meshgrid(*axes.values(), indexing="ij")[list(axes).index(across)]
+    for line in panel.lines:
+        line.set_marker("")
+    for code in np.unique(end).tolist():
+        color, marker = _LOOKS[code]
+        mine = end == code
+        panel.plot(
+            places[mine], values[mine], color=color, marker=marker, markersize=4, linestyle="",
+            zorder=3,
+        )  # fmt: skip
+
+
+def _hatch(panel: Axes, axes: Mapping[str, Any], end: npt.NDArray[np.int8]) -> None:
+    """Hatch what is no rest on a map."""
+    rows, columns = axes.values()
+    moving = (end > CARRIED_AWAY).astype(np.float64)
+    if moving.any():
+        panel.contourf(columns, rows, moving, levels=[0.5, 1.5], colors="none", hatches=[_HATCH])
+
+
+def _draw_ends(
+    panel: Axes, axes: Mapping[str, Any], labels: Mapping[str, str], end: npt.NDArray[np.int8]
+) -> None:
+    """How each run ends: a patch of colour for it, over one axis or two."""
+    from matplotlib.colors import ListedColormap
+
+    names = list(axes)
+    rows, codes = (axes[names[0]], end) if len(names) == 2 else (np.arange(2), np.array([end, end]))
+    panel.pcolormesh(
+        axes[names[-1]], rows, codes, shading="nearest", rasterized=True,
+        cmap=ListedColormap([color for color, _ in _LOOKS]), vmin=-0.5, vmax=len(_LOOKS) - 0.5,
+    )  # fmt: skip
+    panel.set_title("how it ends", fontsize=10)
+    panel.set_xlabel(labels[names[-1]])
+    if len(names) == 2:
+        panel.set_ylabel(labels[names[0]])
+    else:
+        panel.set_yticks([])

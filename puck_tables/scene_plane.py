@@ -1,0 +1,251 @@
+"""The plane of a scene as a panel: the path, and all that stands or acts there, each labelled."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables.drawing import BLUE, GREY, LAUNCH, ORANGE, RED, STOP
+from puck_tables.scene.outcome import SceneRun
+from puck_tables.scene.scene import Edge, Scene, Wall
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+FloatArray = npt.NDArray[np.float64]
+
+_PUCKS_DRAWN = 12
+_SHAPE = 2.2  # width of the panel over its height
+_ARROWS = (9, 5)  # of a moving floor, across and up
+_PURPLE = "#8b2fa0"
+_LEGEND_ROW = 4  # entries
+_MARKED = 2000  # impacts: more would be one blot
+
+
+class Box(NamedTuple):
+    """What is in sight, m."""
+
+    left: float
+    right: float
+    low: float
+    high: float
+
+
+def draw_plane(axes: Axes, run: SceneRun, columns: dict[str, FloatArray]) -> None:
+    """Draw the plane of a run; ``columns``: its states close to each other, (n,) by name."""
+    scene, radius = run.scene, run.scene.puck.radius
+    x, y = columns["x"], columns["y"]
+    box = _box(x, y, 1.6 * radius)
+    _draw_strips(axes, scene, box)
+    _draw_floor(axes, scene, box)
+    axes.plot(x, y, color=BLUE, linewidth=1.4, zorder=3)
+    _draw_pucks(axes, scene, columns)
+    _draw_lines(axes, scene.wall, box, "wall", color="black", linewidth=2.5)
+    _draw_lines(axes, scene.edge, box, "edge", color=RED, linestyle="--")
+    turns = [event for event in run.events if event.what in ("bounces", "leans")][:_MARKED]
+    if turns:
+        axes.plot(
+            [e.x for e in turns], [e.y for e in turns], ".", markersize=6, color=RED, zorder=4,
+            label="impact of the rim",
+        )  # fmt: skip
+    _draw_constraint(axes, scene, columns, box, run.end_time)
+    _draw_pulls(axes, scene, x, y, box)
+    axes.plot(x[0], y[0], **LAUNCH, label="launch")
+    axes.plot(x[-1], y[-1], **STOP, label=run.end)
+    axes.set(xlabel="x / m", ylabel="y / m", xlim=box[:2], ylim=box[2:])
+    axes.set_aspect("equal")
+    axes.legend(
+        loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=_LEGEND_ROW, frameon=False,
+        fontsize=9,
+    )  # fmt: skip
+
+
+def _box(x: FloatArray, y: FloatArray, margin: float) -> Box:
+    """Limits of the plane around a path, of the shape of the panel."""
+    middle = ((x.min() + x.max()) / 2, (y.min() + y.max()) / 2)
+    wide, high = float(np.ptp(x)) / 2 + margin, float(np.ptp(y)) / 2 + margin
+    wide, high = 1.05 * max(wide, _SHAPE * high), 1.05 * max(high, wide / _SHAPE)
+    return Box(middle[0] - wide, middle[0] + wide, middle[1] - high, middle[1] + high)
+
+
+def _draw_pucks(axes: Axes, scene: Scene, columns: dict[str, FloatArray]) -> None:
+    """The puck at some places of its path, with a mark on it, or the blade that leads it."""
+    from matplotlib.patches import Circle
+
+    x, y, radius = columns["x"], columns["y"], scene.puck.radius
+    hold = scene.constraint
+    blade = hold is not None and hold.kind == "blade"
+    angle = columns["orientation"] + (hold.angle if hold is not None and blade else 0.0)
+    way = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x), np.diff(y)))])
+    count = min(_PUCKS_DRAWN, max(2, int(way[-1] / (2.2 * radius)) + 1))
+    chosen = np.unique(np.searchsorted(way, np.linspace(0.0, way[-1], count)).clip(0, x.size - 1))
+    for n in chosen:
+        axes.add_patch(
+            Circle((x[n], y[n]), radius, fill=False, color=GREY, linewidth=0.8, zorder=2)
+        )
+        dx, dy = radius * math.cos(angle[n]), radius * math.sin(angle[n])
+        back = 1.0 if blade else 0.0
+        style: dict[str, Any] = {"color": _PURPLE, "linewidth": 1.6} if blade else {"color": GREY}
+        label: dict[str, Any] = {"label": "blade"} if blade and n == chosen[0] else {}
+        axes.plot(
+            [x[n] - back * dx, x[n] + dx], [y[n] - back * dy, y[n] + dy], zorder=2,
+            **{"linewidth": 0.8, **style}, **label,
+        )  # fmt: skip
+
+
+def _draw_strips(axes: Axes, scene: Scene, box: Box) -> None:
+    """Strips of different friction, darker where it is higher."""
+    from matplotlib.patches import Polygon
+
+    strips = scene.floor.strips
+    if strips is None:
+        return
+    across = (math.cos(strips.direction), math.sin(strips.direction))
+    middle = ((box.left + box.right) / 2, (box.low + box.high) / 2)
+    half = math.hypot(box.right - box.left, box.high - box.low)
+    centre = across[0] * middle[0] + across[1] * middle[1]
+    along = across[0] * middle[1] - across[1] * middle[0]
+    ends = [centre - half, *strips.borders, centre + half]
+    highest = max(strips.friction) or 1.0
+    told: set[float] = set()
+    for low, high, friction in zip(ends, ends[1:], strips.friction, strict=False):
+        low, high = max(low, centre - half), min(high, centre + half)
+        if low >= high:
+            continue
+        corners = [
+            (s * across[0] - t * across[1], s * across[1] + t * across[0])
+            for s, t in ((low, along - half), (high, along - half), (high, along + half),
+                         (low, along + half))
+        ]  # fmt: skip
+        shade = 0.97 - 0.22 * friction / highest
+        label: dict[str, Any] = {} if friction in told else {"label": f"f = {friction:g}"}
+        told.add(friction)
+        axes.add_patch(
+            Polygon(
+                corners, facecolor=(shade, shade, shade), edgecolor="#707070", linewidth=0.8,
+                zorder=0, **label,
+            )
+        )  # fmt: skip
+
+
+def _draw_floor(axes: Axes, scene: Scene, box: Box) -> None:
+    """Arrows of a moving floor, and the centre of a turntable."""
+    floor = scene.floor
+    if not any(floor.velocity) and floor.turning == 0.0:
+        return
+    across, up = _ARROWS
+    x, y = np.meshgrid(
+        np.linspace(box.left, box.right, 2 * across + 1)[1::2],
+        np.linspace(box.low, box.high, 2 * up + 1)[1::2],
+    )
+    vx = floor.velocity[0] - floor.turning * (y - floor.centre[1])
+    vy = floor.velocity[1] + floor.turning * (x - floor.centre[0])
+    words = []
+    if any(floor.velocity):
+        words.append(f"belt ({floor.velocity[0]:g}, {floor.velocity[1]:g}) m/s")
+    if floor.turning != 0.0:
+        words.append(f"turntable {floor.turning:g} rad/s")
+    fastest = float(np.hypot(vx, vy).max())
+    cell = (box.right - box.left) / across
+    axes.quiver(
+        x, y, vx, vy, color="#b9cfe0", angles="xy", scale_units="xy",
+        scale=fastest / (0.7 * cell), width=0.003, zorder=1,
+    )  # fmt: skip
+    axes.plot([], [], color="#b9cfe0", marker=">", label="floor: " + ", ".join(words))
+    if floor.turning != 0.0:
+        axes.plot(
+            *floor.centre, "+", color="#4a7fa8", markersize=12, markeredgewidth=1.6, zorder=2,
+            linestyle="", label="centre of the turntable",
+        )  # fmt: skip
+
+
+def _draw_constraint(
+    axes: Axes, scene: Scene, columns: dict[str, FloatArray], box: Box, end_time: float
+) -> None:
+    """The rail at the launch, or the pivot with its way."""
+    hold, start = scene.constraint, scene.launch.position
+    if hold is None or hold.kind == "blade":
+        return
+    moving = f", moving at ({hold.velocity[0]:g}, {hold.velocity[1]:g}) m/s"
+    words = hold.kind + (moving if any(hold.velocity) else "")
+    if hold.kind == "rail":
+        normal = (-math.sin(hold.angle), math.cos(hold.angle))
+        _draw_line(axes, start, normal, box, color=_PURPLE, linewidth=1.2, linestyle="-.",
+                   label=words)  # fmt: skip
+        return
+    bearing = scene.launch.orientation + hold.angle
+    at = (start[0] + hold.reach * math.cos(bearing), start[1] + hold.reach * math.sin(bearing))
+    way = [at, tuple(p + v * end_time for p, v in zip(at, hold.velocity, strict=True))]
+    axes.plot(*zip(*way, strict=True), color=_PURPLE, linewidth=1.2, linestyle="-.", zorder=2)
+    axes.plot(*at, "P", color=_PURPLE, markersize=8, zorder=5, linestyle="", label=words)
+
+
+def _draw_pulls(axes: Axes, scene: Scene, x: FloatArray, y: FloatArray, box: Box) -> None:
+    """Slope and constant force as arrows in corners that the path leaves free; what else pulls."""
+    pulls = []
+    if scene.floor.slope > 0.0:
+        pulls.append((scene.floor.downhill, f"downhill, slope {scene.floor.slope:.4g} rad", ORANGE))
+    fx, fy = scene.force.constant
+    if fx != 0.0 or fy != 0.0:
+        pulls.append((math.atan2(fy, fx), f"force ({fx:g}, {fy:g}) N", RED))
+    size = 0.12 * (box.high - box.low)
+    free = _free_corners(x, y, box, 1.6 * size)
+    for (angle, words, color), (px, py) in zip(pulls, free, strict=False):
+        dx, dy = size * math.cos(angle), size * math.sin(angle)
+        axes.annotate(
+            "", (px + dx, py + dy), xytext=(px - dx, py - dy), zorder=4,
+            arrowprops={"arrowstyle": "-|>", "color": color, "linewidth": 2.0},
+        )  # fmt: skip
+        axes.plot([], [], color=color, marker=">", label=words)
+    for there, words in (
+        (scene.force.torque != 0.0, f"torque {scene.force.torque:g} N m"),
+        (bool(scene.force.file), "force over time"),
+        (scene.drag.sliding > 0.0 or scene.drag.spinning > 0.0, "viscous drag"),
+        (bool(scene.floor.law), "friction by slip speed"),
+    ):
+        if there:
+            axes.plot([], [], linestyle="", label=words)
+
+
+def _free_corners(
+    x: FloatArray, y: FloatArray, box: Box, inset: float
+) -> list[tuple[float, float]]:
+    """Places in the four corners, those farthest from the path first."""
+    corners = [
+        (px, py)
+        for px in (box.left + inset, box.right - inset)
+        for py in (box.high - inset, box.low + inset)
+    ]
+    return sorted(corners, key=lambda at: -float(np.hypot(x - at[0], y - at[1]).min()))
+
+
+def _draw_lines(
+    axes: Axes, lines: Sequence[Wall | Edge], box: Box, label: str, **style: Any
+) -> None:
+    """Walls or edges; the first that is in sight bears the label."""
+    for line in lines:
+        if _draw_line(axes, line.point, line.normal, box, label=label, **style):
+            label = ""
+
+
+def _draw_line(
+    axes: Axes, point: tuple[float, float], normal: tuple[float, float], box: Box, **style: Any
+) -> bool:
+    """A line, drawn only where it is in sight; whether it is."""
+    size = math.hypot(*normal)
+    nx, ny = normal[0] / size, normal[1] / size
+    middle = ((box.left + box.right) / 2, (box.low + box.high) / 2)
+    half = math.hypot(box.right - box.left, box.high - box.low)
+    off = nx * (middle[0] - point[0]) + ny * (middle[1] - point[1])
+    if abs(off) > half:
+        return False
+    foot = (middle[0] - off * nx, middle[1] - off * ny)
+    axes.plot(
+        [foot[0] - half * ny, foot[0] + half * ny], [foot[1] + half * nx, foot[1] - half * nx],
+        zorder=1, **style,
+    )  # fmt: skip
+    return True

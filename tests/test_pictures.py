@@ -1,0 +1,234 @@
+"""Pictures show what was computed: the motion itself, all that is in the plane, and how it ends."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from matplotlib.collections import QuadMesh
+from matplotlib.figure import Figure
+from matplotlib.ticker import ScalarFormatter
+
+from puck_tables import drawing, limit_ratio, plots, simulate, sweep
+from puck_tables import scene_map_picture as scene_maps
+from puck_tables import scene_picture as scenes
+from puck_tables.chetaev.asperity import Asperity
+from puck_tables.chetaev.asperity_curve import asperity_curve
+from puck_tables.errors import InputError
+from puck_tables.scene.library import find_scene
+from puck_tables.scene.simulate import simulate_scene
+from puck_tables.scene.sweep import sweep_scene
+
+
+@pytest.fixture
+def drawn(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Any:
+    """Draws, and gives the figure that was saved."""
+
+    def draw(plot: Any, result: Any) -> Figure:
+        kept: list[Figure] = []
+
+        def save(figure: Figure, *rest: Any) -> None:
+            kept.append(figure)
+            drawing.save(figure, *rest)
+
+        for module in (scenes, scene_maps, plots):
+            monkeypatch.setattr(module, "save", save)
+        plot(result, tmp_path / f"{len(list(tmp_path.iterdir()))}.png")
+        return kept[0]
+
+    return draw
+
+
+def words(figure: Figure) -> set[str]:
+    legends = [axes.get_legend() for axes in figure.axes] + list(figure.legends)
+    return {text.get_text() for legend in legends if legend for text in legend.get_texts()}
+
+
+def marks(axes: Any, look: dict[str, Any]) -> list[tuple[float, float]]:
+    """Where a panel bears a mark."""
+    return [
+        (float(line.get_xdata()[0]), float(line.get_ydata()[0]))
+        for line in axes.lines
+        if line.get_marker() == look["marker"] and line.get_color() == look["color"]
+        and len(line.get_xdata()) == 1
+    ]  # fmt: skip
+
+
+def curve(axes: Any) -> np.ndarray:
+    """The longest line of a panel, (n, 2)."""
+    return np.asarray(max((line.get_xydata() for line in axes.lines), key=len))
+
+
+@pytest.mark.parametrize(
+    "asked", [{"times": [0.5, 1.0, 1.5]}, {"times": [3.0, 1.0, 2.0, 0.0]}, {"frames": 1}]
+)
+def test_a_trajectory_is_drawn_whole_whatever_states_it_has(drawn: Any, asked: Any) -> None:
+    run = simulate((1.0, 0.3), 5.0, **asked)
+    figure = drawn(plots.plot_trajectory, run)
+    path = figure.axes[0]
+    assert marks(path, drawing.LAUNCH) == [(0.0, 0.0)]
+    assert marks(path, drawing.STOP) == [run.stop_position]
+    fine = simulate((1.0, 0.3), 5.0, frames=2001)
+    line = curve(path)
+    gap = np.hypot(line[:, None, 0] - fine.x, line[:, None, 1] - fine.y).min(axis=0)
+    assert gap.max() < run.path_length / 500  # half the way between two of its points
+    time = curve(figure.axes[1])[:, 0]
+    assert np.all(np.diff(time) > 0.0) and time[-1] == run.stop_time
+
+
+def test_few_frames_do_not_cut_a_bouncing_path_off_its_walls(drawn: Any) -> None:
+    tables = find_scene("air-hockey")
+    tables["run"]["frames"] = 3
+    run = simulate_scene(tables)
+    figure = drawn(scenes.plot_scene, run)
+    line = curve(figure.axes[0])
+    bounces = [event for event in run.events if event.what == "bounces"]
+    assert len(bounces) > 3
+    for event in bounces:
+        assert np.hypot(line[:, 0] - event.x, line[:, 1] - event.y).min() < 1e-12
+    assert marks(figure.axes[0], drawing.LAUNCH) == [(0.4, 0.3)]
+    assert marks(figure.axes[0], drawing.STOP) == [(run.last["x"], run.last["y"])]
+    speed = curve(figure.axes[1])  # which leaps at an impact
+    leap = np.flatnonzero(np.diff(speed[:, 0]) < 1e-12)
+    assert len(leap) >= len(bounces) and np.abs(np.diff(speed[:, 1])[leap]).max() > 0.3
+
+
+def test_a_path_of_many_turns_is_round(drawn: Any) -> None:
+    tables = {
+        "puck": {"radius": 0.02}, "floor": {"friction": 0.5, "turning": 9.0},
+        "launch": {"position": [0.05, 0.0], "velocity": [0.0, 0.45], "spin": 9.0},
+        "run": {"time": 60.0, "frames": 5},
+    }  # fmt: skip
+    figure = drawn(scenes.plot_scene, simulate_scene(tables))
+    line = curve(figure.axes[0])
+    assert np.abs(np.hypot(line[:, 0], line[:, 1]) - 0.05).max() < 1e-6
+    assert np.hypot(*np.diff(line, axis=0).T).max() < 0.05 * 2.0 * np.pi / 50
+
+
+WORDS = {
+    "turntable": "floor: turntable 5 rad/s",
+    "washer-on-conveyor": "floor: belt (0.5, 0) m/s",
+    "coin-on-rail": "rail",
+    "pivoted-disc": "pivot",
+    "skate-blade": "blade",
+    "incline": "downhill, slope 0.1 rad",
+    "wet-patch": "f = 0.06",
+    "shuffleboard": "edge",
+    "air-hockey": "wall",
+}
+
+
+@pytest.mark.parametrize("name", WORDS)
+def test_all_that_is_in_the_plane_is_labelled_and_no_legend_lies_on_a_panel(
+    drawn: Any, name: str
+) -> None:
+    figure = drawn(scenes.plot_scene, simulate_scene(name))
+    assert {WORDS[name], "launch"} <= words(figure)
+    _legends_stand_outside(figure)
+
+
+def _legends_stand_outside(figure: Figure) -> None:
+    figure.draw_without_rendering()
+    legends = [axes.get_legend() for axes in figure.axes] + list(figure.legends)
+    boxes = [legend.get_window_extent() for legend in legends if legend]
+    assert boxes
+    for box in boxes:
+        assert not any(box.overlaps(axes.get_window_extent()) for axes in figure.axes)
+        assert figure.bbox.x0 <= box.x0 and box.x1 <= figure.bbox.x1
+        assert figure.bbox.y0 <= box.y0 and box.y1 <= figure.bbox.y1
+
+
+def test_what_pulls_is_labelled(drawn: Any, tmp_path: Path) -> None:
+    (tmp_path / "force.csv").write_text("t,Fx,Fy\n0,0.1,0\n1,0,0\n")
+    tables = {
+        "puck": {"radius": 0.02}, "floor": {"friction": 0.5},
+        "launch": {"velocity": [1.0, 0.0]}, "drag": {"sliding": 0.1},
+        "force": {"constant": [0.1, 0.2], "torque": 1e-3, "file": str(tmp_path / "force.csv")},
+    }  # fmt: skip
+    run = simulate_scene(tables)
+    told = words(drawn(scenes.plot_scene, run))
+    assert {"force (0.1, 0.2) N", "torque 0.001 N m", "force over time", "viscous drag"} <= told
+    (tmp_path / "force.csv").write_text("t,Fx,Fy\n0,0.5,0\n1,0,0\n")
+    with pytest.raises(InputError, match="has changed since the run"):
+        drawn(scenes.plot_scene, run)
+
+
+@pytest.mark.parametrize("delta", [0.0, 0.5])
+def test_no_axis_has_an_offset_or_shows_rounding(drawn: Any, delta: float) -> None:
+    ratio = float(limit_ratio(delta))
+    figure = drawn(plots.plot_trajectory, simulate((1.0, 0.0), ratio, delta=delta))
+    for axes in figure.axes:
+        for axis in (axes.xaxis, axes.yaxis):
+            formatter = axis.get_major_formatter()
+            assert isinstance(formatter, ScalarFormatter) and formatter.offset == 0
+    low, high = figure.axes[2].get_ylim()  # the ratio, which is constant
+    assert low < ratio < high and high - low > 0.01 * ratio
+
+
+def incline(slopes: str, spins: str) -> Any:
+    tables = find_scene("incline")
+    tables["floor"]["slope"], tables["launch"]["spin"] = slopes, spins
+    return sweep_scene(tables)
+
+
+def test_few_values_are_curves_with_marks_for_ends(drawn: Any) -> None:
+    stops = incline("0:0.2:5", "0:80:9")
+    figure = drawn(scene_maps.plot_scene_map, stops)
+    assert {"at rest", "no end found", "floor.slope: 0.15 rad"} <= words(figure)
+    assert not any(isinstance(c, QuadMesh) for c in figure.axes[0].collections)
+    _legends_stand_outside(figure)
+    plain = drawn(plots.plot_map, sweep(np.linspace(0, 5, 9), np.array([1.0, 2.0]), delta=0.3))
+    assert len(plain.axes[0].lines) == 2 and not plain.axes[0].collections
+    _legends_stand_outside(plain)
+
+
+@pytest.mark.parametrize("ranges", [("0:0.2:9", "0:80:9"), ("0.05:0.2:9", "10:20:2")])
+def test_maps_tell_ends_apart(drawn: Any, ranges: tuple[str, str]) -> None:
+    stops = incline(*ranges)
+    figure = drawn(scene_maps.plot_scene_map, stops)
+    assert {"at rest", "no end found"} <= words(figure)
+    mesh = next(
+        c for axes in figure.axes if axes.get_title() == "how it ends"
+        for c in axes.collections if isinstance(c, QuadMesh)
+    )  # fmt: skip
+    assert np.array_equal(np.asarray(mesh.get_array()).reshape(stops.end.shape), stops.end)
+    colors = mesh.cmap(mesh.norm(np.arange(9)))
+    assert len({tuple(color) for color in colors}) == 9
+
+
+TITLES = ["$x_1^{", "a $\\frac{1}{2}$ b", "\N{ICE HOCKEY STICK AND PUCK} \u05d0"]
+
+
+@pytest.mark.parametrize("title", TITLES)
+def test_titles_are_drawn_as_they_stand(drawn: Any, title: str) -> None:
+    tables = find_scene("incline")
+    tables["title"] = title
+    figure = drawn(scenes.plot_scene, simulate_scene(tables))
+    assert figure.get_suptitle().startswith(f"{title}: at rest after")
+    tables["launch"]["spin"] = "0:60:3"
+    assert drawn(scene_maps.plot_scene_map, sweep_scene(tables)).get_suptitle() == title
+
+
+def test_the_examples_of_asperity_show_all_that_happens() -> None:
+    from puck_tables.cli.asperity import asperity
+
+    found = re.findall(r"puck asperity .*?(?=puck asperity|$)", asperity.help, re.DOTALL)
+    assert len(found) == 3
+    for example in found:
+        given = dict(re.findall(r"--(\w+) (\S+)", example))
+        length = float(given.get("wavelength", 2e-5)) / (2.0 * np.pi)
+        load = float(given.get("load", 1.0))
+        bumps = Asperity(float(given.get("amplitude", 1e-6)), length, load, load / 9.80665)
+        start, stop, count = given.get("speeds", f"0:{2.5 * bumps.lift_speed}:501").split(":")
+        speeds = np.linspace(float(start), float(stop), int(count))
+        curves = asperity_curve(bumps, speeds)
+        between = asperity_curve(bumps, 0.5 * (speeds[1:] + speeds[:-1]))
+        for name in ("mean", "greatest"):
+            values = getattr(curves, name)
+            error = np.abs(getattr(between, name) - 0.5 * (values[1:] + values[:-1]))
+            assert (error / curves.crude[1:]).max() < 0.02, (example, name)
+    coarse = asperity_curve(bumps, np.linspace(0.0, 7.0 * bumps.lift_speed, 201))
+    assert coarse.leaps > 20 and curves.leaps == 0

@@ -1,0 +1,252 @@
+"""No entry of a scene is dropped, in reading, planning, running or writing."""
+
+from __future__ import annotations
+
+import tomllib
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from puck_tables.errors import InputError, PuckError
+from puck_tables.scene import scene as parts
+from puck_tables.scene.entries import as_toml, set_path, tables_of
+from puck_tables.scene.fields import described, of
+from puck_tables.scene.library import find_scene, shipped_scenes
+from puck_tables.scene.plan import ingredients, plan_for
+from puck_tables.scene.scene import Scene, scene_from
+from puck_tables.scene.simulate import simulate_scene
+from puck_tables.scene.sweep import sweep_scene
+
+FREE: dict[str, Any] = {
+    "puck": {"radius": 0.04, "height": 0.03, "mass": 0.2},
+    "floor": {"friction": 0.2},
+    "launch": {"velocity": [0.8, 0.3], "spin": 30.0},
+}
+MOVING = {"floor": {"turning": 2.0, "centre": [0.1, 0.2]}, "run": {"time": 0.5}}
+STRIPS = {"floor": {"friction": 0.0, "strips": {"borders": [0.03], "friction": [0.2, 0.1]}}}
+WALL = {"wall": [{"point": [0.1, 0.0], "normal": [-1.0, 0.1], "tangential": 0.2}]}
+EDGE = {"edge": [{"point": [0.05, 0.0], "normal": [-1.0, 0.0]}]}
+HELD = {"launch": {"velocity": None}, "run": {"time": 0.5}}
+RAIL = {**HELD, "constraint": {"kind": "rail", "velocity": [0.0, 0.1]}}
+PIVOT = {**HELD, "constraint": {"kind": "pivot", "reach": 0.02}}
+BLADE = {**HELD, "constraint": {"kind": "blade"}, "launch": {"velocity": [0.8, 0.0]}}
+
+# a scene in which an entry matters, and another value for it
+CASES: dict[str, tuple[dict[str, Any], Any]] = {
+    "puck.radius": ({}, 0.05),
+    "puck.height": ({}, 0.01),
+    "puck.mass": ({}, 0.3),
+    "puck.gyration": ({}, 0.9),
+    "puck.pressure": ({}, "ring"),
+    "floor.friction": ({}, 0.3),
+    "floor.gravity": ({}, 3.7),
+    "floor.slope": ({}, 0.1),
+    "floor.downhill": ({"floor": {"slope": 0.1}}, 1.0),
+    "floor.velocity": ({}, [0.1, 0.2]),
+    "floor.turning": (MOVING, 1.0),
+    "floor.centre": (MOVING, [0.3, 0.2]),
+    "floor.strips.borders": (STRIPS, [0.06]),
+    "floor.strips.friction": (STRIPS, [0.2, 0.3]),
+    "floor.strips.direction": (STRIPS, 1.0),
+    "launch.velocity": ({}, [0.8, 0.4]),
+    "launch.spin": ({}, 20.0),
+    "launch.position": ({}, [1.0, 0.0]),
+    "launch.orientation": ({}, 1.0),
+    "drag.sliding": ({}, 0.1),
+    "drag.spinning": ({}, 1e-4),
+    "force.constant": ({}, [0.1, 0.0]),
+    "force.torque": ({}, 1e-3),
+    "wall[0].point": (WALL, [0.15, 0.0]),
+    "wall[0].normal": (WALL, [-1.0, -0.1]),
+    "wall[0].restitution": (WALL, 0.5),
+    "wall[0].tangential": (WALL, 0.5),
+    "wall[0].friction": (WALL, 0.05),
+    "edge[0].point": (EDGE, [0.04, 0.0]),
+    "edge[0].normal": (EDGE, [-1.0, -1.0]),
+    "constraint.kind": (BLADE, "rail"),
+    "constraint.angle": ({**BLADE, **HELD, "floor": {"slope": 0.1}}, 1.0),
+    "constraint.reach": (PIVOT, 0.03),
+    "constraint.velocity": (RAIL, [0.0, 0.3]),
+    "constraint.side_slip": ({**BLADE, **HELD}, 0.1),
+    "run.time": ({}, 0.1),
+}
+FILES = {
+    "floor.law": ({"floor": {"friction": 0.0}}, "speed,f\n0,0.2\n5,0.1\n"),
+    "force.file": ({}, "t,Fx,Fy\n0,0.1,0\n1,0,0\n"),
+}
+NO_PHYSICS = {"title", "run.frames", "run.tol"}
+
+
+def whole(more: dict[str, Any]) -> dict[str, Any]:
+    tables = {name: dict(part) for name, part in FREE.items()}
+    for name, part in more.items():
+        tables[name] = {**tables.get(name, {}), **part} if isinstance(part, dict) else part
+    return tables
+
+
+def end_of(tables: dict[str, Any]) -> dict[str, float]:
+    run = simulate_scene(tables, [0.0])
+    return {**run.last, "end_time": run.end_time}
+
+
+def test_the_cases_below_are_all_entries() -> None:
+    assert {path for path, _, _ in described(Scene)} == {*CASES, *FILES, *NO_PHYSICS}
+
+
+@pytest.mark.parametrize("path", CASES)
+def test_every_entry_changes_the_motion(path: str) -> None:
+    tables, value = CASES[path]
+    changed = tables_of(scene_from(whole(tables))[0])
+    set_path(changed, path, value)
+    assert end_of(changed) != end_of(whole(tables))
+
+
+@pytest.mark.parametrize("path", FILES)
+def test_every_file_changes_the_motion(path: str, tmp_path: Path) -> None:
+    tables, text = FILES[path]
+    file = tmp_path / "given.csv"
+    file.write_text(text)
+    changed = whole(tables)
+    set_path(changed, path, str(file))
+    assert end_of(changed) != end_of(whole({**tables, "run": {"time": 1.0}}))
+
+
+@dataclass(frozen=True)
+class Bumps:
+    height: float = of("number", 0.0, "m")
+
+
+@dataclass(frozen=True)
+class BumpyFloor(parts.Floor):
+    bumps: float = of("number", 0.0, "m")
+
+
+@dataclass(frozen=True)
+class BumpyWall(parts.Wall):
+    bumps: float = of("number", 0.0, "m")
+
+
+@dataclass(frozen=True)
+class BumpyScene(Scene):
+    bumps: Bumps | None = of("part", None, part=Bumps)
+
+
+@dataclass(frozen=True)
+class SceneOfBumpyFloor(Scene):
+    floor: BumpyFloor = of("part", BumpyFloor(), part=BumpyFloor)
+
+
+@dataclass(frozen=True)
+class SceneOfBumpyWalls(Scene):
+    wall: tuple[BumpyWall, ...] = of("parts", (), part=BumpyWall)
+
+
+@pytest.mark.parametrize(
+    ("kind", "path"),
+    [
+        (BumpyScene, "bumps.height"), (SceneOfBumpyFloor, "floor.bumps"),
+        (SceneOfBumpyWalls, "wall.bumps"),
+    ],
+)  # fmt: skip
+def test_an_ingredient_that_the_plan_does_not_know_is_an_error(kind: Any, path: str) -> None:
+    for ask in (ingredients, plan_for):
+        with pytest.raises(PuckError, match=rf"^{path}: the plan of a run knows no such"):
+            ask(kind(parts.Puck(1.0)))  # whether it is there or not
+
+
+def test_an_ingredient_that_a_scene_does_not_have_is_an_error() -> None:
+    for made, path in (
+        (BumpyScene(parts.Puck(1.0), bumps=Bumps(0.1)), "bumps"),
+        (BumpyScene(parts.Puck(1.0)), "bumps"),
+        (Scene(parts.Puck(1.0), BumpyFloor(0.1, bumps=0.1)), "floor.bumps"),
+        (Scene(parts.Puck(1.0), wall=(BumpyWall((9.0, 0.0), (-1.0, 0.0)),)), r"wall\[0\].bumps"),
+    ):
+        with pytest.raises(InputError, match=rf"{path}: no such entry"):
+            simulate_scene(made)
+
+
+@pytest.mark.parametrize("name", shipped_scenes())
+def test_a_scene_written_as_toml_is_the_scene(name: str) -> None:
+    scene, _ = scene_from(find_scene(name))
+    assert scene_from(tomllib.loads(as_toml(scene, {})))[0] == scene
+
+
+def test_texts_and_ranges_survive_in_toml() -> None:
+    tables = whole({"floor": {"slope": "0.1:0.30000000000000004:7"}})
+    tables["title"] = 'A "puck" \\ ünïcode \N{SNOWMAN} $x_1$'
+    scene, ranges = scene_from(tables)
+    again, same = scene_from(tomllib.loads(as_toml(scene, ranges)))
+    assert again == scene
+    assert same["floor.slope"].tolist() == ranges["floor.slope"].tolist()
+
+
+def test_numpy_numbers_arrays_and_tuples_are_numbers_and_lists() -> None:
+    plain = whole(WALL)
+    numpy: dict[str, Any] = {
+        "puck": parts.Puck(np.float64(0.04), np.array(0.03), np.float64(0.2)),
+        "floor": {"friction": np.float64(0.2)},
+        "launch": {"velocity": np.array([0.8, 0.3]), "spin": np.int64(30)},
+        "wall": (parts.Wall((np.float64(0.1), 0), np.array([-1.0, 0.1]), tangential=0.2),),
+    }
+    assert scene_from(numpy) == scene_from(plain)
+    assert simulate_scene(Scene(**numpy), [0.0]).last == simulate_scene(plain, [0.0]).last
+
+
+@pytest.mark.parametrize("use", [simulate_scene, sweep_scene])
+def test_a_scene_made_from_dataclasses_is_checked_like_a_file(use: Any) -> None:
+    made = Scene(
+        parts.Puck(-1.0, np.nan, pressure=7),  # type: ignore[arg-type]
+        launch=parts.Launch(velocity=np.zeros((2, 1)), spin=np.bool_(True)),  # type: ignore[arg-type]
+        wall=[parts.Wall((1.0, 0.0), (1.0,)), parts.Edge((0.0, 0.0), (0.0, 1.0))],  # type: ignore[arg-type]
+        force=parts.Force(constant=np.ma.array([1.0, 2.0], mask=[False, True])),
+        run=None,  # type: ignore[arg-type]
+    )
+    with pytest.raises(InputError) as caught:
+        use(made)
+    lines = [line.strip() for line in str(caught.value).splitlines()]
+    assert lines[0] == "scene: 9 errors"
+    for said in (
+        "puck.radius = -1.0: must be a number > 0 m", "puck.height = nan:", "puck.pressure = 7:",
+        "launch.velocity = array(", "launch.spin = True", "wall[0].normal = (1.0,)",
+        "wall[1] = Edge(", "force.constant[1] = masked:", "run = None: must be a table",
+    ):  # fmt: skip
+        assert any(line.startswith(said) for line in lines), (said, lines)
+
+
+def test_what_disagrees_in_dataclasses_is_told_too() -> None:
+    good = scene_from(whole({}))[0]
+    with pytest.raises(InputError, match=r"wall\[0\]: the puck at launch\.position"):
+        simulate_scene(replace(good, wall=(parts.Wall((0.0, 0.0), (1.0, 0.0)),)))
+
+
+def test_no_scene_at_all_is_a_sentence() -> None:
+    for wrong in (7, None, [1, 2], b"incline"):
+        with pytest.raises(InputError, match="the scene must be a Scene or a Mapping"):
+            simulate_scene(wrong)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("tables", "said"),
+    [
+        ({"puck": {"radius": 10**5000}}, "puck.radius = a whole number of thousands of digits"),
+        ({"launch": {"velocity": [10**5000]}}, "launch.velocity = a list: must be two numbers"),
+        ({"puck": {"radius": 1.0}, "title": "a\0b"}, r"title = 'a\x00b': must be a text without"),
+        ({"puck": {"radius": 1.0}, "title": "\udcff"}, "title = "),
+        ({"puck": {"radius": 1.0, "pressure": "\0.csv"}}, "puck.pressure = "),
+        ({"puck": {"radius": 1.0, "\x1b[31m": 1.0}}, r"puck.'\x1b[31m': no such entry"),
+    ],
+)
+def test_what_cannot_be_shown_is_told_nevertheless(tables: dict[str, Any], said: str) -> None:
+    with pytest.raises(InputError) as caught:
+        scene_from(tables)
+    assert said in str(caught.value)
+    assert all(sign.isprintable() or sign == "\n" for sign in str(caught.value))
+
+
+def test_ranges_are_counted_before_they_are_made() -> None:
+    wall = {"point": ["1:2:1000000", "1:2:1000000"], "normal": ["-1:1:1000000", 1.0]}
+    with pytest.raises(InputError, match=r"3000 ranges \(wall\[0\]\.point.* than 1e\+09"):
+        scene_from({"puck": {"radius": 0.01}, "wall": [wall] * 1000})  # 24 GB if made

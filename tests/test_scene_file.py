@@ -1,0 +1,96 @@
+"""Files of scenes say all: units, meanings, and the scene itself with the files that it names."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray
+from click.testing import CliRunner
+from puck_tables.cli.main import main
+
+from puck_tables.scene.outcome import ENDS
+from puck_tables.scene.scene import scene_from
+from puck_tables.scene.simulate import simulate_scene
+from puck_tables.scene.sweep import sweep_scene
+from puck_tables.scene_file import save_scene_map, save_scene_run
+
+FORCE = "t,Fx,Fy\n0,0.1,0\n# Gewicht\n1,0,0\n"
+
+
+def tables(folder: Path) -> dict[str, Any]:
+    (folder / "force.csv").write_text(FORCE)
+    return {
+        "title": "Ünter einer Kraft",
+        "puck": {"radius": 0.04, "mass": 0.2, "gyration": "0.5:0.9:3"},
+        "floor": {"friction": 0.2, "slope": "0:0.4:3"},
+        "launch": {"velocity": [1.0, 0.3], "spin": "0:30:2"},
+        "force": {"file": str(folder / "force.csv")},
+    }
+
+
+def test_a_map_has_units_meanings_and_its_scene(tmp_path: Path) -> None:
+    stops = sweep_scene(tables(tmp_path))
+    save_scene_map(stops, tmp_path / "map.h5")
+    with xarray.open_dataset(tmp_path / "map.h5", engine="h5netcdf") as data:
+        assert data["floor_slope"].attrs["units"] == "rad"
+        assert data["launch_spin"].attrs["units"] == "rad/s"
+        assert data["puck_gyration"].attrs["units"] == "1"
+        assert "radius of gyration" in data["puck_gyration"].attrs["long_name"]
+        meanings = data["end"].attrs["flag_meanings"].split()
+        assert len(meanings) == len(data["end"].attrs["flag_values"]) == len(ENDS)
+        found = {meanings[code] for code in np.unique(data["end"])}
+        assert found == {"at_rest", "no_end_found"}
+        assert data["force_file"].item() == FORCE
+        kept = tomllib.loads(data["scene"].item())
+    assert kept["title"] == "Ünter einer Kraft"
+    again = sweep_scene(kept)
+    assert np.array_equal(again.columns["x"], stops.columns["x"], equal_nan=True)
+    save_scene_map(stops, tmp_path / "map.csv")
+    head = (tmp_path / "map.csv").read_text().splitlines()[0]
+    assert head.startswith("puck.gyration[1],floor.slope[rad],launch.spin[rad/s],x[m]")
+
+
+def test_a_run_has_its_scene_however_long(tmp_path: Path) -> None:
+    wall = {"point": [90.123456789, 0.0], "normal": [-1.0, 0.123456789]}
+    scene = {**tables(tmp_path), "wall": [wall] * 1500}  # 64 kB is the most of an attribute
+    scene["puck"]["gyration"], scene["floor"]["slope"], scene["launch"]["spin"] = 0.5, 0.1, 3.0
+    run = simulate_scene(scene)
+    save_scene_run(run, tmp_path / "run.h5")
+    with xarray.open_dataset(tmp_path / "run.h5", engine="h5netcdf") as data:
+        assert len(data["scene"].item()) > 1 << 16
+        assert data["force_file"].item() == FORCE
+        assert scene_from(tomllib.loads(data["scene"].item()))[0] == run.scene
+    (tmp_path / "force.csv").write_text("t,Fx,Fy\n0,9,0\n1,0,0\n")
+    save_scene_run(run, tmp_path / "later.h5")  # what was run, not what stands there now
+    with xarray.open_dataset(tmp_path / "later.h5", engine="h5netcdf") as data:
+        assert data["force_file"].item() == FORCE
+
+
+def test_json_and_report_carry_inputs_and_units() -> None:
+    told = CliRunner().invoke(main, ["simulate", "--scene", "air-hockey", "--json"])
+    run = json.loads(told.stdout)
+    assert run["scene"]["wall"][1]["restitution"] == 0.85
+    units = run["units"]
+    assert (units["heat_dry"], units["spin"], units["scene.wall.point"]) == ("J", "rad/s", "m")
+    numbers = {name for name, value in run.items() if isinstance(value, float)}
+    assert numbers - {"energy_residual"} <= set(units)
+    assert simulate_scene(run["scene"], [0.0]).last["x"] == run["x"]
+    text = CliRunner().invoke(main, ["simulate", "--scene", "air-hockey"]).stdout
+    for part in (
+        "launch     velocity (2, 1.3) m/s, spin -30 rad/s", "drag       sliding 0.006 kg/s",
+        "wall[3]    point (0, 1) m", "run        time 10 s",
+    ):  # fmt: skip
+        assert part in text
+
+
+def test_the_command_names_the_runs_without_an_end() -> None:
+    steep = ("--set", "floor.slope=0.1:0.3:3", "--set", "launch.spin=30")
+    result = CliRunner().invoke(main, ["sweep", "--scene", "incline", *steep])
+    assert result.exit_code == 0
+    assert "1 at rest, 2 no end found" in result.stderr
+    assert "2 of 3 runs: no end found; the first at floor.slope = 0.2: none by" in result.stderr
+    assert result.stdout.count("no end found") == 2
