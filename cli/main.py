@@ -10,6 +10,7 @@ from __future__ import annotations
 import contextlib
 import io
 import os
+import signal
 import sys
 from typing import Any
 
@@ -22,6 +23,7 @@ from puck_tables.cli.options import printable, said_first
 from puck_tables.cli.paper import paper
 from puck_tables.cli.scene import scene
 from puck_tables.cli.simulate import simulate
+from puck_tables.cli.start import INTERRUPTED, end_at_once, last_words
 from puck_tables.cli.sweep import sweep
 from puck_tables.cli.tables import tables
 from puck_tables.cli.tradeoff import tradeoff
@@ -40,6 +42,9 @@ class PuckGroup(click.Group):
     def invoke(self, ctx: click.Context) -> Any:
         """Run a command."""
         _whole_writes()
+        at_start = signal.getsignal(signal.SIGINT) is end_at_once
+        if at_start:
+            signal.signal(signal.SIGINT, signal.default_int_handler)
         try:
             result = super().invoke(ctx)
             if sys.stdout is not None:
@@ -60,8 +65,11 @@ class PuckGroup(click.Group):
             click.echo("Error: not enough memory: ask for fewer points", err=True)
             ctx.exit(1)
         except KeyboardInterrupt:
-            click.echo("Interrupted: nothing more was written.", err=True)
-            ctx.exit(130)
+            click.echo(last_words[-1](), err=True)
+            ctx.exit(INTERRUPTED)
+        finally:
+            if at_start:
+                signal.signal(signal.SIGINT, end_at_once)
 
 
 def _whole_writes() -> None:
@@ -92,6 +100,7 @@ def main() -> None:
     words = "compiling for this machine, once: up to a minute"
     announcements[:] = [lambda: click.echo(words, err=True)]
     watchers[:] = [said_first]
+    del last_words[1:]
 
 
 _ALL = (

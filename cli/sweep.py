@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any
 
 import click
 from puck_tables.cli.options import (
@@ -25,6 +25,7 @@ from puck_tables.cli.options import (
     told,
 )
 from puck_tables.cli.scene_run import scene_options, scene_tables, summary_of_map
+from puck_tables.cli.start import last_words
 
 from puck_tables.errors import InputError
 
@@ -37,7 +38,6 @@ if TYPE_CHECKING:
     from puck_tables.table.table import Table
 
 RANGE = Range()
-INTERRUPTED = 130
 
 
 @click.command()
@@ -136,17 +136,14 @@ def sweep(
         BYTES_PER_ROW if as_text else BYTES_PER_LAUNCH,
     )
     table = None if table_path is None else _table_of_stops(table_path)
-    kept = _kept(output) if resume else None
-    try:
-        with progress("stops") as show:
-            stops = run_sweep(
-                None if w0 is None else _values(w0), None if speed is None else _values(speed),
-                v0=v0, delta=_values(height_ratio), decel=J, radius=r, tol=tol, method=method,
-                table=table, threads=threads, progress=show, checkpoint=kept,
-                **body_given(pressure, gyration),
-            )  # fmt: skip
-    except KeyboardInterrupt:
-        _interrupted(kept)
+    kept = _going_on(output) if resume else None
+    with progress("stops") as show:
+        stops = run_sweep(
+            None if w0 is None else _values(w0), None if speed is None else _values(speed),
+            v0=v0, delta=_values(height_ratio), decel=J, radius=r, tol=tol, method=method,
+            table=table, threads=threads, progress=show, checkpoint=kept,
+            **body_given(pressure, gyration),
+        )  # fmt: skip
     if not (stops.status == 0).any():
         raise InputError("all these launches are too large for floating point: use larger units")
     if output is not None:
@@ -179,12 +176,9 @@ def _sweep_scene(
 
         kind_of(plot, PICTURE_KINDS)
         require_matplotlib()
-    kept = _kept(output) if resume else None
-    try:
-        with progress("runs") as show:
-            stops = sweep_scene(tables, threads=threads, progress=show, checkpoint=kept)
-    except KeyboardInterrupt:
-        _interrupted(kept)
+    kept = _going_on(output) if resume else None
+    with progress("runs") as show:
+        stops = sweep_scene(tables, threads=threads, progress=show, checkpoint=kept)
     if output is not None:
         save_scene_map(stops, output, overwrite)
         told(output)
@@ -199,14 +193,6 @@ def _sweep_scene(
     click.echo(summary_of_map(stops), err=True)
     if explain:
         click.echo(stops.plan.why, err=True)
-
-
-def _interrupted(kept: Path | None) -> NoReturn:
-    """Say what is kept, from within the handling of an interrupt."""
-    if kept is None or not kept.exists():
-        raise
-    click.echo(f"Interrupted: {kept} keeps what is done; the same command goes on.", err=True)
-    raise SystemExit(INTERRUPTED) from None
 
 
 def _done_with(kept: Path | None, output: Path | None) -> None:
@@ -235,6 +221,14 @@ def _kept(output: Path | None) -> Path:
     if output is None:
         raise InputError("--resume needs -o FILE: what is done is kept beside it")
     return output.with_name(output.name + ".progress")
+
+
+def _going_on(output: Path | None) -> Path:
+    """The same, and what is said of it after Ctrl-C."""
+    kept = _kept(output)
+    words = f"Interrupted: {kept} keeps what is done; the same command goes on."
+    last_words.append(lambda: words if kept.exists() else last_words[0]())
+    return kept
 
 
 def _values(given: float | tuple[float, float, int]) -> npt.NDArray[np.float64]:

@@ -16,8 +16,9 @@ from puck_tables.body import Body, body_of
 from puck_tables.contact.laws import Law, law_of
 from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import AccuracyError, InputError
-from puck_tables.executor import Progress, run_chunks
+from puck_tables.executor import Progress, in_slices, run_chunks
 from puck_tables.front import ADAPTIVE_EXACT, LOOK_UP, RK4_EXACT, Choice, choose
+from puck_tables.real import rounded_up
 from puck_tables.similarity.stop_slice import FINEST_SLICE, StopSlice, stop_slice
 from puck_tables.sliced import LOOSEST_LOCAL, checked_tol, friction_of
 from puck_tables.solvers import METHODS, OUTPUTS, fits
@@ -173,7 +174,16 @@ def _answered(ready: StopSlice | _Integrated, launches: FloatArray) -> tuple[Flo
     if isinstance(ready, StopSlice):
         fill_slice_stops(launches, ready.spline.cut, out)
     else:
-        fill_stops(launches, DORMAND_PRINCE, ready.steps, ready.local, ready.cut, 1.0, out, status)
+
+        def work(start: int, stop: int) -> None:
+            some, part = np.ascontiguousarray(launches[:, start:stop]), out[:, start:stop].copy()
+            fill_stops(
+                some, DORMAND_PRINCE, ready.steps, ready.local, ready.cut, 1.0, part,
+                status[start:stop],
+            )  # fmt: skip
+            out[:, start:stop] = part
+
+        in_slices(work, launches.shape[1])
     return out, status
 
 
@@ -208,8 +218,8 @@ def _settled(body: Body, tol: float, method: str | None) -> _Integrated:
             accuracy = max(0.1 * accuracy, FINEST_ACCURACY)
         elif by_slice > by_steps or steps >= _MOST_STEPS or local <= _FINEST_LOCAL:
             raise AccuracyError(
-                f"tol = {tol:g} is out of reach for these pucks, {by_steps + by_slice:.1e} was: "
-                "ask for less"
+                f"tol = {tol:g} is out of reach for these pucks: give tol (--tol) of "
+                f"{rounded_up(2.0 * (by_steps + by_slice)):g} or more"
             )
         else:
             steps, local = 2.0 * steps, max(0.1 * local, _FINEST_LOCAL)

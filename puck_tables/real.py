@@ -95,3 +95,15 @@ def broadcast(**arrays: FloatArray) -> list[FloatArray]:
     except ValueError:
         shapes = ", ".join(f"{name} {array.shape}" for name, array in arrays.items())
         raise InputError(f"shapes do not broadcast: {shapes}") from None
+
+
+def rounded_up(value: float) -> float:
+    """A number > 0 to one digit, not less.
+
+    Examples
+    --------
+    >>> rounded_up(2.1e-7)
+    3e-07
+    """
+    power = int(np.floor(np.log10(value)))
+    return float(f"{int(np.ceil(value / 10.0**power - 1e-9))}e{power}")

@@ -23,6 +23,7 @@ from puck_tables.motion.equations import PSI, THETA, WORK, T, U, X, Y
 from puck_tables.motion.limits import log_ratio, regime_of
 from puck_tables.motion.steppers import DORMAND_PRINCE, RK4
 from puck_tables.puck import real
+from puck_tables.real import rounded_up
 from puck_tables.run import (
     CONSTANT_ANGLE,
     Friction,
@@ -45,6 +46,7 @@ LOOSEST_LOCAL = 1e-7
 _FINEST_LOCAL = 1e-15
 _MOST_STEPS = 4096
 _SAFETY = 2.0
+_FROM_FRICTION = 20.0  # tol that surely goes with an error of the friction
 _COARSER_BY = 8.0  # half as many cells are 16 times as bad; half of that is believed
 
 
@@ -84,8 +86,23 @@ def checked_tol(tol: float) -> float:
 
 
 def friction_of(body: Body, accuracy: float, coarser: bool = False) -> Friction:
-    """The friction of a puck as the integrator reads it."""
-    found = body.friction(accuracy)
+    """The friction of a puck as the integrator reads it.
+
+    Raises
+    ------
+    AccuracyError
+        If its pressure law is too rough for it; it says which ``tol`` is not.
+    """
+    try:
+        found = body.friction(accuracy)
+    except AccuracyError as error:
+        if error.reachable is None:
+            raise
+        finest = rounded_up(_FROM_FRICTION * error.reachable)
+        raise AccuracyError(
+            f"an error of {accuracy:.1g} of the friction is out of reach under the pressure law "
+            f"{body.law.name}: give tol (--tol) of {finest:g} or more"
+        ) from None
     return Friction(body.delta, found.for_motion(body.gyration, coarser), found.error)
 
 
@@ -135,7 +152,8 @@ def run_sliced(
             accuracy = max(0.1 * accuracy, FINEST_ACCURACY)
         elif by_slice > by_steps or steps >= _MOST_STEPS or local <= _FINEST_LOCAL:
             raise AccuracyError(
-                f"tol = {tol:g} is out of reach for this puck, {error:.1e} was: ask for less"
+                f"tol = {tol:g} is out of reach for this puck: give tol (--tol) of "
+                f"{rounded_up(2.0 * error):g} or more"
             )
         else:
             steps, local = 2.0 * steps, max(0.1 * local, _FINEST_LOCAL)

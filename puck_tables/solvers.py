@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.errors import AccuracyError, InputError
+from puck_tables.executor import in_slices
 from puck_tables.front import COARSEST, INTEGRATED, LOOK_UP, Choice, choose
 from puck_tables.puck import real
 from puck_tables.real import instance
@@ -103,11 +104,17 @@ class Integration:
 
         out = np.empty((len(OUTPUTS), launches.shape[1]))
         status = np.empty(launches.shape[1], np.int8)
-        fill_stops(
-            launches, DORMAND_PRINCE, self.steps, self.tolerance,
-            np.empty((2, 0, 0, 3)) if self.exact else self.table.coefficients,
-            self.table.delta_axis.upper, out, status,
-        )  # fmt: skip
+        coefficients = np.empty((2, 0, 0, 3)) if self.exact else self.table.coefficients
+
+        def work(start: int, stop: int) -> None:
+            some, part = np.ascontiguousarray(launches[:, start:stop]), out[:, start:stop].copy()
+            fill_stops(
+                some, DORMAND_PRINCE, self.steps, self.tolerance, coefficients,
+                self.table.delta_axis.upper, part, status[start:stop],
+            )  # fmt: skip
+            out[:, start:stop] = part
+
+        in_slices(work, launches.shape[1])
         return out, status
 
 

@@ -27,6 +27,7 @@ from puck_tables.contact.superposition import (
     annulus_integrals,
     profile_integrals,
     ring_integrals,
+    spread,
 )
 from puck_tables.errors import InputError
 from puck_tables.real import broadcast, instance, real_array
@@ -34,6 +35,9 @@ from puck_tables.safe_read import read_rows
 
 NAMES = "uniform, galin, hertz, ring, annulus:INNER (0 < INNER < 1), or a CSV file of rho, W"
 _SLACK = 1e-9  # of δ/δ_max: names and files carry twelve digits
+_LEAST_STEP = 1e-12  # between the radii of a profile
+_LEAST_SPREAD = 2.5e-7  # root mean square, of the radius at which its load stands
+_MOST_BENDS, _STRAIGHT = 40, 1e-12  # the latter of the largest pressure
 _LARGEST = 1e-5  # a limit ratio above 1e5 is none: there the two rates agree to rounding
 MAX_PROFILE_BYTES = 1 << 24
 HOMOGENEOUS = 0.5**0.5  # radius of gyration over r of a homogeneous cylinder about its axis
@@ -227,10 +231,32 @@ def profile_law(radii: npt.ArrayLike, pressure: npt.ArrayLike, name: str = "prof
         raise InputError(f"{name}: rho must ascend from 0 or more to 1 (units of the radius)")
     if not (np.all(weight >= 0.0) and np.all(np.isfinite(weight)) and weight.max() > 0.0):
         raise InputError(f"{name}: W must be finite, nowhere negative and not all zero")
+    if np.diff(rho).min() < _LEAST_STEP:
+        raise InputError(
+            f"{name}: two radii are nearer than {_LEAST_STEP:g} to each other (units of the "
+            "radius): a step of the pressure needs that much room"
+        )
     shape = weight / weight.max()  # only the shape matters; the numbers may be of any size
+    if spread(rho, shape) < _LEAST_SPREAD:
+        raise InputError(
+            f"{name}: the load lies on a ring or spot thinner than {1.0 - THINNEST:.0e} of the "
+            "radius, and rounding would tell its friction: give a broader one, or take 'ring'"
+        )
     integrals = partial(profile_integrals, radii=rho, pressure=shape)
-    edges = (float(rho[0]), 1.0) if rho[0] > 0.0 else (1.0,)
-    return Law(name, edges, integrals, profile=(rho, shape))
+    return Law(name, _edges(rho, shape), integrals, profile=(rho, shape))
+
+
+def _edges(radii: FloatArray, pressure: FloatArray) -> tuple[float, ...]:
+    """Where a profile begins, bends (the most, if it does so often) and ends.
+
+    At a bend the resultants are like x³ ln|x|: splines across it lose their order.
+    """
+    slope = np.concatenate([[0.0], np.diff(pressure) / np.diff(radii)])
+    bend = np.abs(np.diff(slope))[1:] * np.minimum(np.diff(radii)[:-1], np.diff(radii)[1:])
+    sharp = np.flatnonzero(bend > _STRAIGHT)
+    sharp = sharp[np.argsort(-bend[sharp], kind="stable")[:_MOST_BENDS]]
+    begins = radii[:1][radii[:1] > 0.0]
+    return tuple(np.union1d(np.append(begins, 1.0), radii[1:-1][sharp]).tolist())
 
 
 def _read(path: str) -> tuple[FloatArray, FloatArray]:

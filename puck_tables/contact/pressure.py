@@ -80,15 +80,25 @@ class PressureLaw:
 
 UNIFORM = PressureLaw("uniform", np.ones_like)
 
+
+def _galin(rho: FloatArray) -> FloatArray:
+    return np.asarray(0.5 / np.sqrt((1.0 - rho) * (1.0 + rho)))
+
+
+def _galin_moments(square: FloatArray) -> tuple[FloatArray, FloatArray]:
+    return np.full_like(square, 0.5 * np.pi), 0.25 * np.pi * square
+
+
+def _hertz(rho: FloatArray) -> FloatArray:
+    return np.asarray(1.5 * np.sqrt((1.0 - rho) * (1.0 + rho)))
+
+
+def _hertz_moments(square: FloatArray) -> tuple[FloatArray, FloatArray]:
+    return 0.75 * np.pi * square, 0.1875 * np.pi * square**2
+
+
 # The pressure under a rigid flat punch on an elastic floor, infinite at the rim (Galin 1953), and
-# under a ball of large radius (Hertz 1881); ∫ l² dl/√(L² − l²) = π L²/2 and its like.
-GALIN = PressureLaw(
-    "galin",
-    lambda rho: 0.5 / np.sqrt((1.0 - rho) * (1.0 + rho)),
-    lambda square: (np.full_like(square, 0.5 * np.pi), 0.25 * np.pi * square),
-)
-HERTZ = PressureLaw(
-    "hertz",
-    lambda rho: 1.5 * np.sqrt((1.0 - rho) * (1.0 + rho)),
-    lambda square: (0.75 * np.pi * square, 0.1875 * np.pi * square**2),
-)
+# under a ball of large radius (Hertz 1881); ∫ l² dl/√(L² − l²) = π L²/2 and its like.  Functions
+# with names: a law goes to other processes.
+GALIN = PressureLaw("galin", _galin, _galin_moments)
+HERTZ = PressureLaw("hertz", _hertz, _hertz_moments)

@@ -26,7 +26,6 @@ def follow_many(
     tolerance: float,
     step_limit: int,
     event_limit: int,
-    halt: npt.NDArray[np.bool_],
     states: FloatArray,
     starts: npt.NDArray[np.int64],
     out: FloatArray,
@@ -34,9 +33,8 @@ def follow_many(
 ) -> None:
     """Ends of launches from ``states`` (n, 10) in the regions ``starts`` (n,) into ``out`` (16, n).
 
-    ``asks`` (n, 12): until when, the scale of speeds, and the scales of the state; ``halt`` (1,):
-    becomes true when somebody wants it to end.  One launch never influences another, so any cutting
-    into chunks gives the same bits.
+    ``asks`` (n, 12): until when, the scale of speeds, and the scales of the state.  One launch
+    never influences another, so any cutting into chunks gives the same bits.
     """
     no_frames = np.empty(0)
     row = np.empty((1, FRAME_COLUMNS))
@@ -46,7 +44,7 @@ def follow_many(
         state[:] = states[n]
         ask = Ask(asks[n, 0], to_the_end, tolerance, asks[n, 2:], asks[n, 1], step_limit)
         how, _, count, _, _, _ = follow(
-            model, regions, bounds, ask, state, starts[n], halt, no_frames, row, events
+            model, regions, bounds, ask, state, starts[n], no_frames, row, events
         )
         bounces = 0
         for i in range(count):

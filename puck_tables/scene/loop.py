@@ -65,7 +65,6 @@ FloatArray = npt.NDArray[np.float64]
 
 # how a run ends
 AT_REST, CARRIED_AWAY, TIME_UP, OVER_EDGE, STEP_LIMIT, EVENT_LIMIT, NOT_FINITE = range(7)
-HALTED = -1  # from outside
 # what happens on the way
 RESTS, SLIPS, LEANS = 0, 1, 3  # and those of boundaries
 
@@ -226,15 +225,14 @@ def follow(
     ask: Ask,
     y: FloatArray,
     region: int,
-    halt: npt.NDArray[np.bool_],
     frames: FloatArray,
     rows: FloatArray,
     events: FloatArray,
 ) -> tuple[int, float, int, int, int, float]:
     """Run a scene from the state ``y`` (10,) in the laboratory.
 
-    ``halt`` (1,): becomes true when somebody wants it to end; ``frames`` (n,): ascending times for
-    ``rows`` (n + 1, 15), the last of them the end; ``events`` (m, 13).
+    ``frames`` (n,): ascending times for ``rows`` (n + 1, 15), the last of them the end; ``events``
+    (m, 13).
 
     Returns
     -------
@@ -260,9 +258,6 @@ def follow(
     h = 1e-3 * min(ask.until, scale[0] / ask.speed)
     settle, known = True, False  # whether to look what holds the puck; whether work[0] is there
     while t < ask.until:
-        if halt[0]:
-            how = HALTED
-            break
         while piece < len(drive) and drive[piece, 0] <= t:
             piece += 1
         target = min(drive[piece, 0], ask.until) if piece < len(drive) else ask.until

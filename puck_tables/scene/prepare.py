@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.errors import InputError
+from puck_tables.executor import in_slices
 from puck_tables.safe_read import read_rows
 from puck_tables.scene.boundaries import Boundaries
 from puck_tables.scene.bulk import follow_many
@@ -81,16 +82,23 @@ class Prepared:
         )
         return follow(
             self.model, regions, self.bounds, ask, self.state.copy(), region,
-            np.zeros(1, np.bool_), frames, rows, events,
+            frames, rows, events,
         )  # fmt: skip
 
     def follow_all(self, states: FloatArray, out: FloatArray, status: npt.NDArray[np.int8]) -> None:
         """Run it from other launches (n, 10), see :func:`puck_tables.scene.bulk.follow_many`."""
-        follow_many(
-            self.model, self.regions, self.bounds, self.asks(states),
-            self.scene.run.time is not None, self.ask.tolerance, STEP_LIMIT, MAX_EVENTS,
-            np.zeros(1, np.bool_), states, self.starts(states), out, status,
-        )  # fmt: skip
+        asks, starts = self.asks(states), self.starts(states)
+
+        def work(start: int, stop: int) -> None:
+            part = out[:, start:stop].copy()
+            follow_many(
+                self.model, self.regions, self.bounds, asks[start:stop],
+                self.scene.run.time is not None, self.ask.tolerance, STEP_LIMIT, MAX_EVENTS,
+                states[start:stop], starts[start:stop], part, status[start:stop],
+            )  # fmt: skip
+            out[:, start:stop] = part
+
+        in_slices(work, len(states))
 
     def starts(self, states: FloatArray) -> npt.NDArray[np.int64]:
         """Region of the floor in which launches (n, 10) start."""

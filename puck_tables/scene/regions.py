@@ -13,6 +13,7 @@ from puck_tables.body import body_of, is_plain
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import AccuracyError, InputError
 from puck_tables.kernels.slice_spline import HEADER, RATIOS
+from puck_tables.real import rounded_up
 from puck_tables.run import closed_form_friction, table_friction
 from puck_tables.scene.ingredients import BySpeed, Regions
 from puck_tables.scene.scene import Scene, launch_velocity
@@ -68,7 +69,15 @@ def regions_of(scene: Scene) -> Regions:
     accuracy = friction_error(scene)
     # how the mass is spread stands in the equations of the scene, not in its friction
     bodies = [body_of(puck.pressure, delta, puck.gyration) for delta in heights]
-    slices = [body.friction(accuracy).cut for body in bodies]
+    try:
+        slices = [body.friction(accuracy).cut for body in bodies]
+    except AccuracyError as error:
+        if error.reachable is None:
+            raise
+        raise AccuracyError(
+            f"tol = {scene.run.tol:g} is out of reach under the pressure law {puck.pressure}: give "
+            f"run.tol (or --tol) of {rounded_up(error.reachable / SLICE_SHARE):g} or more"
+        ) from None
     return Regions(load, np.array(heights), _of_one_shape(slices), NO_LAW)
 
 
@@ -97,10 +106,12 @@ def _law_table(law: SpeedLaw, scene: Scene) -> SpeedTable:
         with _one_at_a_time:
             return _kept_table(points, friction_error(scene))
     except AccuracyError as error:
-        finest = 1e-2 if error.reachable is None else error.reachable / LAW_SHARE
+        if error.reachable is None:
+            raise
+        finest = rounded_up(error.reachable / LAW_SHARE)
         raise AccuracyError(
             f"tol = {scene.run.tol:g} is out of reach with the corners of the friction law "
-            f"{scene.floor.law}: give run.tol (or --tol) of {finest:.1g} or more, or a law with "
+            f"{scene.floor.law}: give run.tol (or --tol) of {finest:g} or more, or a law with "
             "fewer points"
         ) from None
 

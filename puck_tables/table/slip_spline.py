@@ -164,7 +164,8 @@ def slip_spline(
         if 2 * cells > finest:
             raise AccuracyError(
                 f"an accuracy of {accuracy:.1g} is out of reach for this puck: {cells} cells give "
-                f"{error[counted].max():.1e}; ask for less"
+                f"{error[counted].max():.1e}; ask for less",
+                reachable=float(error[counted].max()),
             )
         finer = np.empty((len(sides), 2 * cells + 1, values.shape[2]))
         finer[:, ::2], finer[:, 1::2] = values, between

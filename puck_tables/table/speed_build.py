@@ -15,6 +15,7 @@ from puck_tables.errors import AccuracyError
 from puck_tables.executor import keep_on, run_chunks
 from puck_tables.kernels.speed_quadrature import fill_integrals
 from puck_tables.kernels.speed_spline import fill_patch
+from puck_tables.real import rounded_up
 from puck_tables.table.speed_fit import missed_by_half, quintic_coefficients
 from puck_tables.table.speed_grid import Patch, breaks_of, patches_of
 from puck_tables.table.speed_table import SpeedAccuracy, SpeedTable
@@ -240,21 +241,9 @@ def _out_of_reach(parts: list[_Filled], accuracy: float) -> AccuracyError:
     reached = _SAFETY * max(part.badness for part in parts)
     return AccuracyError(
         f"an accuracy of {accuracy:g} is out of reach for this friction law with its "
-        f"corners: {_rounded_up(reached):g} can be reached",
-        reachable=_rounded_up(reached),
+        f"corners: {rounded_up(reached):g} can be reached",
+        reachable=rounded_up(reached),
     )
-
-
-def _rounded_up(value: float) -> float:
-    """To one digit.
-
-    Examples
-    --------
-    >>> _rounded_up(2.1e-7)
-    3e-07
-    """
-    power = int(np.floor(np.log10(value)))
-    return float(f"{int(np.ceil(value / 10.0**power - 1e-9))}e{power}")
 
 
 def _largest(law: Law, top: float) -> float:

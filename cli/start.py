@@ -1,0 +1,58 @@
+"""Where the command ``puck`` begins: Ctrl-C ends it within a second, with a sentence, at any time.
+
+Until a command runs, and when it has run, there is nothing to clean up: it ends at once.  In
+between Python raises KeyboardInterrupt, but only when compiled code or a compiler gives it the
+chance; for those that do not there is a thread that hears of the signal by itself.  What is on disk
+is whole at every moment, so nothing is lost by it.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:  # the less is imported before the handler stands, the better
+    from collections.abc import Callable
+    from types import FrameType
+
+INTERRUPTED = 130
+PATIENCE = 0.7  # s
+
+# what is said then, by the last of them; a command may have better ones
+last_words: list[Callable[[], str]] = [lambda: "Interrupted: nothing more was written."]
+
+
+def end_at_once(number: int, frame: FrameType | None) -> None:
+    """What Ctrl-C does while nothing runs yet, or any more."""
+    os.write(2, f"{last_words[-1]()}\n".encode())
+    os._exit(INTERRUPTED)
+
+
+def _watch() -> None:
+    """End the process some time after Ctrl-C, unless it has ended by then."""
+    import socket
+    import threading
+    import time
+
+    hears, tells = socket.socketpair()
+    tells.setblocking(False)
+
+    def wait() -> None:
+        while tells.fileno() >= 0 and (heard := hears.recv(1)):
+            if heard[0] == signal.SIGINT:
+                time.sleep(PATIENCE)
+                end_at_once(signal.SIGINT, None)
+
+    signal.set_wakeup_fd(tells.fileno(), warn_on_full_buffer=False)
+    threading.Thread(target=wait, daemon=True).start()
+
+
+def main() -> None:
+    """Import the commands and run one."""
+    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:  # unless it is ignored
+        signal.signal(signal.SIGINT, end_at_once)
+        _watch()
+    from puck_tables.cli.main import main as command
+
+    command()
