@@ -37,6 +37,7 @@ SIZE = 10
 GIVEN, DRY, VISCOUS, SUPPORT = range(6, SIZE)
 LAMBDA = SIZE  # the two multipliers follow the state; they are not integrated
 ROW = SIZE + 2
+FIRST, SECOND = np.int64(0), np.int64(1)  # rows; plain numbers would compile rates once for each
 
 
 @inlined

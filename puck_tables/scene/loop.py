@@ -28,7 +28,9 @@ from puck_tables.scene.boundaries import (
 )
 from puck_tables.scene.cushions import GRIP, NX, NY, RIM, rim_slip
 from puck_tables.scene.equations import (
+    FIRST,
     ROW,
+    SECOND,
     SIZE,
     kinetic_energy,
     rates,
@@ -81,7 +83,7 @@ _SLOWLY = 0.1  # if the slip changes by less than this of itself meanwhile
 _NEWTON, _FINEST_NEWTON = 1e-3, 1e-15  # of the local error: how well implicit steps are solved
 _SWING = 0.05  # rad that a carried puck turns, at most, in a step
 _NO_WAY = (0.0, 0.0, 0.0, 0.0)
-_EQUAL = -1  # watched: equal speeds of centre and rim; else the rim on a wall that is leant on
+_NOTHING, _EQUAL = -2, -1  # watched: equal speeds of centre and rim; else the rim on a wall
 
 
 class Ask(NamedTuple):
@@ -99,7 +101,7 @@ class Ask(NamedTuple):
     step_limit: int
 
 
-@inlined
+@kernel
 def _lost(
     stretch: Stretch, t: float, h: float, y: FloatArray, scale: FloatArray, work: FloatArray,
     new: FloatArray,
@@ -142,7 +144,7 @@ def _watched(stretch: Stretch, what: int, y: FloatArray) -> float:
     return rim_slip(model.body, lean[NX], lean[NY], y[VX] + sx, y[VY] + sy, y[SPIN] + turning)
 
 
-@inlined
+@kernel
 def _zero(
     stretch: Stretch, what: int, t: float, h: float, y: FloatArray, scale: FloatArray,
     work: FloatArray, new: FloatArray,
@@ -180,12 +182,12 @@ def _noted(row: FloatArray, model: Model, t: float, what: int, which: int, y: Fl
 def _framed(
     row: FloatArray, stretch: Stretch, t: float, y: FloatArray, heat: float, work: FloatArray
 ) -> None:
-    rates(stretch, t, y, work, 1)
+    rates(stretch, t, y, work, SECOND)
     row[0] = t
     for i in range(SIZE):
         row[1 + i] = y[i]
     to_laboratory(stretch.model, row[1:], 1.0)
-    row[1 + SIZE], row[2 + SIZE] = work[1, SIZE], work[1, SIZE + 1]
+    row[1 + SIZE], row[2 + SIZE] = work[SECOND, SIZE], work[SECOND, SIZE + 1]
     row[1 + ROW] = 1.0 if stretch.mode == CARRIED else 0.0
     row[2 + ROW] = heat
 
@@ -302,7 +304,7 @@ def follow(
         newton = max(_NEWTON * ask.tolerance, _FINEST_NEWTON) if stiff and mode == SLIDES else 0.0
         stretch = Stretch(model, dry, leaning, piece, mode, way, newton)
         if settle or not known:
-            rates(stretch, t, y, work, 0)
+            rates(stretch, t, y, work, FIRST)
         settle, known = False, True
         if mode == SLIDES and dry.load > 0.0:
             pull = slip_rate(model, work)
@@ -331,15 +333,18 @@ def follow(
                 break
             continue
         h = length * min(5.0, 5.0 if error == 0.0 else 0.9 * (ask.tolerance / error) ** power)
-        if mode == SLIDES and slip_side(model, y) * slip_side(model, new) < 0.0:
-            landed = False
-            length = _zero(stretch, _EQUAL, t, length, y, scale, work, new)
         stuck = -1
-        for i in range(leaning.shape[0]):
-            lean = leaning[i]
-            if lean[GRIP] > 0.0 and lean[RIM] * _watched(stretch, i, new) < 0.0:
-                landed, stuck = False, i
-                length = _zero(stretch, i, t, length, y, scale, work, new)
+        for passed in range(1 + leaning.shape[0]):
+            what = _NOTHING
+            if passed == 0 and mode == SLIDES:
+                what = _EQUAL if slip_side(model, y) * slip_side(model, new) < 0.0 else what
+            for i in range(leaning.shape[0]):
+                turns = leaning[i, RIM] * _watched(stretch, i, new) < 0.0
+                if what == _NOTHING and leaning[i, GRIP] > 0.0 and turns:
+                    what = i
+            if what != _NOTHING:
+                landed, stuck = False, what
+                length = _zero(stretch, what, t, length, y, scale, work, new)
         wrong += error
         last[:] = work[STAGES - 1]
         happens, which, moment = first_crossing(

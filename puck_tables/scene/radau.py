@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.kernels.compile import inlined, kernel
-from puck_tables.scene.equations import SIZE, rates, slip_speed
+from puck_tables.scene.equations import FIRST, SECOND, SIZE, rates, slip_speed
 from puck_tables.scene.friction import SPIN, VX, X
 from puck_tables.scene.ingredients import Stretch
 
@@ -77,12 +77,12 @@ def _jacobian(
 ) -> None:
     """∂(vx, vy, spin)′/∂(vx, vy, spin) at (t, y) by one-sided differences into ``out`` (3, 3)."""
     slip, radius = slip_speed(stretch.model, y), stretch.model.body.radius
-    rates(stretch, t, y, rows, 0)
+    rates(stretch, t, y, rows, FIRST)
     for j in range(_STIFF):
         nudge = _NUDGE * (slip if slip > 0.0 else 1.0) / (radius if VX + j == SPIN else 1.0)
         at[:SIZE] = y[:SIZE]
         at[VX + j] += nudge
-        rates(stretch, t, at, rows, 1)
+        rates(stretch, t, at, rows, SECOND)
         for i in range(_STIFF):
             out[i, j] = (rows[1, VX + i] - rows[0, VX + i]) / nudge
 

@@ -55,7 +55,7 @@ def _pivot_yield(
     return abs(demand) / length - heat, way * reach * sine, -way * reach * cosine, way
 
 
-@inlined
+@kernel
 def _free_yield(
     dry: Dry, radius: float, fx: float, fy: float, torque: float, guided: bool
 ) -> Yield:
@@ -92,7 +92,7 @@ def _free_yield(
 @inlined
 def _constrained_yield(
     dry: Dry, hold: Hold, body: Body, theta: float, ax: float, ay: float, turning: float,
-    fx: float, fy: float, torque: float,
+    fx: float, fy: float, torque: float, guided: bool,
 ) -> Yield:  # fmt: skip
     """By kind of constraint; a floor whose motion a constraint forbids never holds the puck."""
     cosine, sine = math.cos(theta + hold.angle), math.sin(theta + hold.angle)
@@ -106,13 +106,14 @@ def _constrained_yield(
         return math.inf, 0.0, 0.0, 0.0
     ex, ey = (-hold.ay, hold.ax) if hold.kind == RAIL else (cosine, sine)
     along = fx * ex + fy * ey
-    return _free_yield(dry, body.radius, along * ex, along * ey, torque, True)
+    return _free_yield(dry, body.radius, along * ex, along * ey, torque, guided)
 
 
 @inlined
 def _rim_yield(
-    dry: Dry, body: Body, nx: float, ny: float, most: float, fx: float, fy: float, torque: float
-) -> Yield:
+    dry: Dry, body: Body, nx: float, ny: float, most: float, fx: float, fy: float, torque: float,
+    guided: bool,
+) -> Yield:  # fmt: skip
     """Along one wall whose rim friction takes up to ``most`` N: it takes what is best for rest.
 
     The power of the best slip is convex in that friction, so its least is found by thirds.
@@ -124,11 +125,11 @@ def _rim_yield(
         left, right = low + (high - low) / 3.0, high - (high - low) / 3.0
         one = _free_yield(
             dry, body.radius, -ny * (along + left), nx * (along + left),
-            torque - body.radius * left, True,
+            torque - body.radius * left, guided,
         )[0]  # fmt: skip
         two = _free_yield(
             dry, body.radius, -ny * (along + right), nx * (along + right),
-            torque - body.radius * right, True,
+            torque - body.radius * right, guided,
         )[0]  # fmt: skip
         if one <= two:
             high = right
@@ -136,8 +137,9 @@ def _rim_yield(
             low = left
     rim = 0.5 * (low + high)
     return _free_yield(
-        dry, body.radius, -ny * (along + rim), nx * (along + rim), torque - body.radius * rim, True
-    )
+        dry, body.radius, -ny * (along + rim), nx * (along + rim), torque - body.radius * rim,
+        guided,
+    )  # fmt: skip
 
 
 @kernel
@@ -153,8 +155,11 @@ def excess_at_rest(stretch: Stretch, t: float, y: FloatArray) -> Yield:
     gx, gy, torque = given_force(model, stretch.piece, t)
     fx, fy = gx - body.mass * ax, gy - body.mass * ay
     dry = at_slip_zero(stretch.dry)
-    if model.hold.kind != FREE:
-        return _constrained_yield(dry, model.hold, body, y[THETA], ax, ay, turning, fx, fy, torque)
+    guided = model.hold.kind != FREE
+    if guided:
+        return _constrained_yield(
+            dry, model.hold, body, y[THETA], ax, ay, turning, fx, fy, torque, guided
+        )
     pushes, nx, ny, most, rolls = 0, 0.0, 0.0, 0.0, False
     for i in range(stretch.leaning.shape[0]):
         push = -(stretch.leaning[i, NX] * fx + stretch.leaning[i, NY] * fy)
@@ -162,10 +167,11 @@ def excess_at_rest(stretch: Stretch, t: float, y: FloatArray) -> Yield:
             pushes += 1
             nx, ny = stretch.leaning[i, NX], stretch.leaning[i, NY]
             most, rolls = stretch.leaning[i, GRIP] * push, stretch.leaning[i, RIM] == 0.0
+    guided = pushes > 0
     if pushes == 1 and rolls and most > 0.0:
-        return _rim_yield(dry, body, nx, ny, most, fx, fy, torque)
+        return _rim_yield(dry, body, nx, ny, most, fx, fy, torque, guided)
     rx, ry, rm = wall_reaction(body, stretch.leaning, fx, fy, torque)
-    return _free_yield(dry, body.radius, fx + rx, fy + ry, torque + rm, pushes > 0)
+    return _free_yield(dry, body.radius, fx + rx, fy + ry, torque + rm, guided)
 
 
 @inlined
