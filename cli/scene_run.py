@@ -187,6 +187,7 @@ def report(run: SceneRun) -> str:
         f"forces, {_joule(last['work_support'])} by supports",
         "heat": f"{_joule(last['heat_dry'])} dry, {_joule(last['heat_viscous'])} viscous, "
         f"{_joule(last['heat_impact'])} impacts; ledger misses {run.energy_residual:.1e} of it",
+        "error": _error(run),
         "model": run.plan.model + (f", {run.steps} steps" if run.steps else ""),
     }
     if run.scene.constraint is not None:
@@ -229,6 +230,16 @@ def _friction(scene: Scene) -> str:
     words = f"delta = {', '.join(f'{delta:.4g}' for delta in heights)}, "
     words += f"f N/m = {', '.join(f'{f * normal:.6g}' for f in coefficients)} m/s^2"
     return words + ("; part of the base may lift" if max(heights) > 1.0 else "")
+
+
+def _error(run: SceneRun) -> str:
+    """The estimate, and what tol means here; a word where it could not be kept."""
+    time = run.speed_scale / run.rate_scale if run.rate_scale > 0.0 else 0.0
+    place, tol = run.speed_scale * time, run.scene.run.tol
+    words = f"about {run.error_estimate * time:.1e} s, {run.error_estimate * place:.1e} m; "
+    if run.error_estimate > tol:
+        words += f"tol = {tol:g} is out of reach, this motion amplifies errors; "
+    return words + f"Q = {run.speed_scale:.4g} m/s, J = {run.rate_scale:.4g} m/s^2"
 
 
 def _joule(energy: float) -> str:

@@ -122,10 +122,17 @@ def _corner(one: FloatArray, other: FloatArray, fx: float, fy: float) -> tuple[f
 
 
 @inlined
-def keep_off(leaning: FloatArray, y: FloatArray) -> None:
+def keep_out(leaning: FloatArray, y: FloatArray) -> None:
+    """Take the velocity, in the laboratory, into walls that the puck leans on: it is rounding."""
+    for i in range(leaning.shape[0]):
+        off = min(leaning[i, NX] * y[VX] + leaning[i, NY] * y[VY], 0.0)
+        y[VX] -= off * leaning[i, NX]
+        y[VY] -= off * leaning[i, NY]
+
+
+@inlined
+def come_to_lean(leaning: FloatArray, y: FloatArray) -> None:
     """Take the velocity, in the laboratory, towards and away from walls that the puck leans on."""
-    if leaning.shape[0] == 0:
-        return
     nx, ny = leaning[0, NX], leaning[0, NY]
     off = nx * y[VX] + ny * y[VY]
     y[VX] -= off * nx

@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from puck_tables.kernels.compile import inlined
 from puck_tables.scene.boundaries import Boundaries, outward, touched
-from puck_tables.scene.cushions import NX, NY, PLACE, keep_off, rebound, rim_slip
+from puck_tables.scene.cushions import NX, NY, PLACE, come_to_lean, rebound, rim_slip
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.scene.ingredients import Body
 
@@ -148,7 +148,7 @@ def bounced(
             contacts.leans[i] = False
             contacts.room[i] = 0.0
     if rest_time >= 0.0:
-        keep_off(touching(bounds, contacts), y)
+        come_to_lean(touching(bounds, contacts), y)
         for i in range(contacts.leans.size):
             if contacts.leans[i]:
                 wall = bounds.walls[i]

@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from puck_tables.kernels.compile import inlined, kernel
 from puck_tables.motion.steppers import DORMAND_PRINCE
-from puck_tables.scene.cushions import keep_off
+from puck_tables.scene.cushions import keep_out
 from puck_tables.scene.equations import SIZE, rates, to_laboratory
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
 from puck_tables.scene.ingredients import (
@@ -113,6 +113,6 @@ def step(
             _put_right(model.hold, model.surface, t + h, new)
         if stretch.leaning.shape[0] > 0:
             to_laboratory(model, new, 1.0)
-            keep_off(stretch.leaning, new)
+            keep_out(stretch.leaning, new)
             to_laboratory(model, new, -1.0)
     return error
