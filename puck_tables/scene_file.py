@@ -51,6 +51,8 @@ def scene_summary(run: SceneRun) -> dict[str, Any]:
         "scene": tables_of(run.scene),
         "units": {
             "end_time": "s",
+            "speed_scale": "m/s",
+            "rate_scale": "m/s^2",
             **{name: COLUMNS[name][0] for name in last},
             **{f"events.{name}": unit for name, unit in EVENT_UNITS.items()},
             **{f"scene.{path}": unit for path, unit in units_of(run.scene).items()},

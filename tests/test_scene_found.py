@@ -83,7 +83,7 @@ def test_names_files_and_clashes(tmp_path):
     file.write_text("[puck]\nradius = 1" + "0" * 5000 + "\n")
     twice = ["--set", "launch.spin=1", "--set", "launch.spin=2"]
     for arguments, words in (
-        (["simulate", "--scene", str(file)], "not a scene file"),
+        (["simulate", "--scene", str(file)], "thousands of digits"),
         (["simulate", "--scene", "incline", "--set", "floor.friction=" + "9" * 5000], "friction"),
         (["simulate", "--scene", "incline", "--w0", "1", "--set", "launch.spin=2"], "clash"),
         (["simulate", "--scene", "incline", *twice], "clash"),

@@ -101,7 +101,7 @@ def test_it_ends_and_the_ledger_closes(what: dict[str, Any]) -> None:
 @pytest.mark.parametrize("gap", [0.0, 1e-9])
 def test_bounces_without_end_are_refused(gap: float) -> None:
     """Hard walls with no room between them."""
-    with pytest.raises(PuckError, match=r"10000 events by .* they crowd together"):
+    with pytest.raises(PuckError, match=r"100000 events by .* they crowd together"):
         simulate_scene(scene(wall=[wall(0, 0.5 + gap, 0, -1), wall(0, -0.5, 0, 1)]))
 
 

@@ -81,6 +81,7 @@ _NEAR = 0.5  # of the time in which the slip would end, at most, is a step
 _STIFF, _MILD = 0.8, 0.3  # of the time in which a slip settles: longer steps are implicit,
 _SLOWLY = 0.1  # if the slip changes by less than this of itself meanwhile
 _NEWTON, _FINEST_NEWTON = 1e-3, 1e-15  # of the local error: how well implicit steps are solved
+_MARGIN = 0.2  # of friction
 _SWING = 0.05  # rad that a carried puck turns, at most, in a step
 _NO_WAY = (0.0, 0.0, 0.0, 0.0)
 _NOTHING, _EQUAL = -2, -1  # watched: equal speeds of centre and rim; else the rim on a wall
@@ -132,6 +133,24 @@ def _lost(
             low = middle
         else:
             high = middle
+
+
+@inlined
+def _rests_on(model: Model, dry: Dry, leaning: FloatArray, piece: int, y: FloatArray) -> bool:
+    """Whether the floor, at rest, holds a puck whatever forces are still to come.
+
+    Between two rows a force lies between theirs; a curve that bulges inwards is given a margin.
+    """
+    flat = dry.delta == 0.0 and dry.by_speed.normal == 0.0
+    level, rows = (SLACK if flat else -_MARGIN) * dry.load, len(model.drive)
+    if piece == rows:
+        return True
+    for row in range(piece, rows + 1):  # at last what is left when the rows have ended
+        at = row if row == rows else max(row, 1)
+        stretch = Stretch(model, dry, leaning, at, CARRIED, _NO_WAY, 0.0)
+        if excess_at_rest(stretch, model.drive[min(row, rows - 1), 0], y)[0] > level:
+            return False
+    return True
 
 
 @inlined

@@ -33,7 +33,8 @@ _STIFF = 3  # vx, vy, spin
 _NUDGE = 1e-7  # of the slip: of the differences
 _ITERATIONS = 12
 _RELATIVE = 1e-3  # of the slip: no step is worse
-_ROUNDING = 1e-12  # of the scales: what no iteration makes better
+_ROUNDING = 1e-12  # of the scales: what no iteration makes better, and
+_NOISE = 1e-14  # of what friction alone would do in the step
 _SURE = 1e-6  # of it: how well the stages are known
 
 
@@ -110,6 +111,9 @@ def radau_step(
         for i in range(SIZE):
             z[stage, i] = h * _C[stage] * work[0, i]
     before, slip_scale = math.inf, scale[VX]
+    dry, body = stretch.dry, stretch.model.body
+    rounding = _ROUNDING + _NOISE * abs(h) * dry.load / (body.mass * slip_scale)
+    new[:] = math.nan
     for iteration in range(_ITERATIONS):
         for stage in range(3):
             for i in range(SIZE):
@@ -139,7 +143,7 @@ def radau_step(
         for i in range(SIZE):
             at[i] = y[i] + z[2, i]
         sure = moved <= _SURE * max(slip_speed(stretch.model, y), slip_speed(stretch.model, at))
-        stalls = iteration > 1 and largest >= 0.3 * before and largest <= _ROUNDING
+        stalls = iteration > 1 and largest >= 0.3 * before and largest <= rounding
         if sure and (largest <= stretch.newton or stalls):
             break
         if not largest < math.inf or (iteration > 2 and largest > 0.9 * before):

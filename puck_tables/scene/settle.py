@@ -5,6 +5,7 @@ the last by a factor q < 1 (the restitution, and what friction takes on the way)
 time by the same factor.  So the rest of the series takes τ q/(1 − q) after a rebound that took τ,
 and on average the wall bears the force towards it, less the momentum that is left to be taken.
 From where that rest is so short that nothing else changes in it, up to its square, the puck leans.
+Between two walls that leave it no room impacts follow each other at one place: there it is stuck.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from puck_tables.scene.ingredients import Body
 FloatArray = npt.NDArray[np.float64]
 
 _STILL = 1e-13  # of the scale of speeds: no speed
+_JAM = 50  # impacts on two walls at one place: it is stuck between them
 _LEFT = 1e-12  # a wall is left, or a rim slides
 
 
@@ -31,8 +33,8 @@ class Contacts(NamedTuple):
 
     ``leans``: whether the puck leans on it; ``rim``: −1, 0, 1, how the rim then slides; ``share``:
     of the force that it bears; ``room``: how far the puck is from it, counted from the last impact;
-    ``hit``, ``pace``: when that was, and how fast the puck left; ``chain`` (1,): the wall that was
-    hit last.
+    ``hit``, ``pace``: when that was, and how fast the puck left; ``chain`` (2,): the wall that was
+    hit last, and how many impacts before it were at the same place.
     """
 
     leans: npt.NDArray[np.bool_]
@@ -60,7 +62,7 @@ def contacts_at(
     count = room.size
     contacts = Contacts(
         np.zeros(count, np.bool_), np.zeros(count), np.ones(count), room, np.zeros(count),
-        np.zeros(count), np.full(1, -1),
+        np.zeros(count), np.array([-1, 0]),
     )  # fmt: skip
     for i in range(count):
         wall = bounds.walls[i]
@@ -125,12 +127,20 @@ def bounced(
     How long the rebounds go on if the puck leans on the wall from now on; −1: it does not.
     ``speed`` and ``time``: scales; ``tolerance``: local error in units of them.
     """
+    before = contacts.chain[0]
+    here = 4e-16 * (abs(y[X]) + abs(y[Y]))  # rounding: no room left between two walls
+    jams = before >= 0 and before != which and contacts.room[before] <= here
+    contacts.chain[1] = contacts.chain[1] + 1 if jams else 0
     came = -outward(bounds, which, y)
     rebound(body, bounds.walls[which], y)
     goes = outward(bounds, which, y)
     rest_time = -1.0
     if goes <= max(0.01 * tolerance, _STILL) * speed:
         rest_time = 0.0
+    elif contacts.chain[1] >= _JAM:
+        rest_time = 0.0
+        contacts.leans[before] = True
+        contacts.room[before] = 0.0
     elif contacts.chain[0] == which and goes < contacts.pace[which] and goes <= 0.01 * speed:
         hop = t - contacts.hit[which]
         ratio = goes / contacts.pace[which]
@@ -144,7 +154,12 @@ def bounced(
     if rest_time >= 0.0:
         contacts.leans[which] = True
     for i in range(contacts.leans.size):  # an impact may push it off others, or into them
-        if contacts.leans[i] and i != which and abs(outward(bounds, i, y)) > _STILL * speed:
+        if (
+            contacts.chain[1] < _JAM
+            and contacts.leans[i]
+            and i != which
+            and abs(outward(bounds, i, y)) > _STILL * speed
+        ):
             contacts.leans[i] = False
             contacts.room[i] = 0.0
     if rest_time >= 0.0:

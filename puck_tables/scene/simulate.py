@@ -144,27 +144,10 @@ def is_endless(scene: Scene) -> bool:
 
 
 def _integrated(scene: Scene, plan: Plan, times: FloatArray | None) -> SceneRun:
-    """Run it, at ever finer tolerances until a coarser twin tells that the error asked is kept."""
-    if is_endless(scene):
-        raise InputError(
-            "nothing brings this scene to rest (floor.friction is 0): give run.time, or friction"
-        )
+    """Run it at a tolerance of which a coarser twin tells that the error asked is kept."""
     last = None if times is None or not times.size else float(times[-1])
     events = np.empty((MAX_EVENTS, EVENT_COLUMNS))
-    asked = scene.run.tol
-    estimate = math.inf
-    for finer in FINER:
-        tol = max(asked * finer, min(asked, FINEST))
-        try:
-            closer = prepare(replace(scene, run=replace(scene.run, tol=tol)), last)
-        except AccuracyError:
-            if finer == 1.0:
-                raise
-            break  # a friction law that is known no better
-        prepared = closer
-        estimate = _estimate(prepared, events)
-        if estimate <= asked or tol <= FINEST:
-            break
+    prepared, estimate = _close_enough(scene, last, events)
     if times is None:
         _, end_time, *_ = prepared.follow(np.empty(0), np.empty((1, FRAME_COLUMNS)), events)
         times = np.linspace(0.0, end_time, int(scene.run.frames))
@@ -190,6 +173,32 @@ def _integrated(scene: Scene, plan: Plan, times: FloatArray | None) -> SceneRun:
         last={name: float(column[-1]) for name, column in columns.items()},
         columns={name: column[:-1] for name, column in columns.items()},
     )
+
+
+def _close_enough(scene: Scene, last: float | None, events: FloatArray) -> tuple[Prepared, float]:
+    """The scene at the coarsest tolerance that keeps the one asked, and its error estimate.
+
+    Where finer steps help no more, rounding or what is known of friction has the last word.
+    """
+    asked = scene.run.tol
+    prepared, estimate = prepare(scene, last), math.inf
+    if is_endless(scene):
+        raise InputError(
+            "nothing brings this scene to rest (floor.friction is 0): give run.time, or friction"
+        )
+    for finer in FINER:
+        tol = max(asked * finer, min(asked, FINEST))
+        try:
+            closer = prepare(replace(scene, run=replace(scene.run, tol=tol)), last)
+        except AccuracyError:  # a friction law is known no better
+            break
+        better = _estimate(closer, events)
+        if not better <= 0.5 * estimate and estimate < math.inf:
+            break
+        prepared, estimate = closer, better
+        if estimate <= asked or tol <= FINEST:
+            break
+    return prepared, estimate
 
 
 def _estimate(prepared: Prepared, events: FloatArray) -> float:
