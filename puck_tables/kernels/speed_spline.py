@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.kernels.compile import inlined, kernel
-from puck_tables.kernels.spline import basis
+from puck_tables.kernels.spline import basis, cell_at
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -37,10 +37,10 @@ def speed_ratios(
     if not (xi <= _ROUNDING):
         return math.nan, math.nan, math.nan
     p = math.sqrt(math.sqrt((1.0 - ratio) / (1.0 + ratio))) * n_eta
-    i = min(int(p), n_eta - 1)
+    i = cell_at(p, n_eta)
     u = basis(p - i)
     q = min(xi, 1.0) * n_speed
-    j = min(int(q), n_speed - 1)
+    j = cell_at(q, n_speed)
     parallel, across, turning = 0.0, 0.0, 0.0
     for k, v in enumerate(basis(q - j)):
         row = coefficients[1 if fast else 0, j + k]
