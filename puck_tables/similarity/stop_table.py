@@ -28,6 +28,8 @@ from puck_tables.similarity.lookup import (
     row_width,
     stops_kernel,
 )
+from puck_tables.similarity.node_equations import missed_by_curve
+from puck_tables.table.container import refuse_wrong
 from puck_tables.table.fit import clamped_coefficients
 
 FloatArray = npt.NDArray[np.float64]
@@ -106,7 +108,16 @@ class StopTable:
 
     @cached_property
     def curve_coefficients(self) -> FloatArray:
-        """Body angle, S/δ, path length, κR as the kernels of curve_lookup read them."""
+        """Body angle, S/δ, path length, κR as the kernels of curve_lookup read them.
+
+        Raises
+        ------
+        TableError
+            If κR or S/δ are wrong.
+        """
+        height = int(np.random.default_rng().integers(HEIGHTS))
+        missed, allowed = missed_by_curve(self.axis, self.values, height)
+        refuse_wrong(self.source, missed, allowed, "the curve of all motions")
         return self._coefficients([4, 6, 3, 5], HEIGHTS, CURVE_ROW, by_power=False)
 
     @cached_property

@@ -15,20 +15,24 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.contact.speed_law import SpeedLaw
-from puck_tables.errors import OutputError
+from puck_tables.errors import OutputError, TableError
 from puck_tables.real import instance
 from puck_tables.table.container import (
     Contents,
+    Kind,
     Field,
     accuracy_of,
     check_usable,
-    decode,
     encode,
     function_fields,
     read_content,
+    read_table,
+    refuse_wrong,
     save,
 )
 from puck_tables.table.grid import GRADING_POWER, PhiAxis
+from puck_tables.table.oddities import odd_nodes
+from puck_tables.table.speed_check import node_errors
 from puck_tables.table.speed_grid import SpeedAxis
 from puck_tables.table.speed_table import SpeedAccuracy, SpeedTable
 from puck_tables.table.table import FUNCTIONS
@@ -50,6 +54,9 @@ _PHI_MAP = (
     f"tan(phi - pi/4) = sign(xi) abs(xi)^{GRADING_POWER}, xi = (i - n)/n, i = 0 ... 2n; cubic "
     "splines in xi on each side, zero slope at pi/4, not-a-knot at 0 and pi/2"
 )
+_LARGEST = 1e3  # of a value over the largest f
+# how many nodes are compared with the law as a file is read, and how well that is known
+_NODES, _NODE_ERROR = 20, 1e-9
 _SPEED_MAP = (
     "fastest = scale sinh(j/cells asinh(top/scale)), j = 0 ... cells; cubic spline in j with "
     "not-a-knot ends"
@@ -193,7 +200,8 @@ def shapes(attributes: dict[str, Any]) -> dict[str, tuple[int, ...]]:
 
 
 def _decode(content: bytes, source: str) -> SpeedTable:
-    return table_of(decode(content, source, {KIND: shapes}), source)
+    table: SpeedTable = read_table(content, source, {KIND: STORED})
+    return table
 
 
 def table_of(contents: Contents, source: str) -> SpeedTable:
@@ -205,19 +213,48 @@ def table_of(contents: Contents, source: str) -> SpeedTable:
         If this program cannot use it.
     """
     attributes = contents.attributes
-    axes, height_ratio = _axes(attributes), float(attributes["height_ratio"])
+    axes, height_ratio = _axes(attributes), attributes["height_ratio"]
     speeds, values = (json.loads(attributes[name]) for name in ("law_speeds", "law_values"))
     law = SpeedLaw(speeds, values, attributes["law_kind"])
     recipe = _recipe(law, *axes, height_ratio)
-    check_usable(contents, source, recipe, _nodes(*axes))
-    return SpeedTable(
+    unit = attributes["largest_f"] or 1.0
+    check_usable(contents, source, recipe, _nodes(*axes), (-_LARGEST * unit, _LARGEST * unit), 0.0)
+    table = SpeedTable(
         *axes,
         height_ratio,
         np.stack([contents.arrays[name] for name in FUNCTIONS], axis=-1),
         attributes["largest_f"],
         law,
         tolerance=attributes["tolerance"],
-        accuracy=SpeedAccuracy(**accuracy_of(attributes)),
+        accuracy=accuracy_of(attributes, SpeedAccuracy, len(FUNCTIONS)),
         passport=attributes,
         source=source,
     )
+    _check_some(table)
+    return table
+
+
+def _check_some(table: SpeedTable) -> None:
+    """Refuse a table that is not of its law, as far as some nodes tell."""
+    assert table.law is not None
+    speeds = table.speed_axis.nodes()
+    largest = float(np.max(table.law(speeds)))
+    if abs(table.largest_f - largest) > _NODE_ERROR * largest:
+        raise TableError(
+            f"{table.source} says that f is {table.largest_f:g} at most, by its law it is "
+            f"{largest:g}: it was altered"
+        )
+    rng = np.random.default_rng()
+    rows, columns = table.values.shape[:2]
+    odd = odd_nodes(table.values, (0, 1), _NODES)
+    row = np.concatenate([odd[:, 0], rng.integers(0, rows, _NODES)])
+    column = np.concatenate([odd[:, 1], rng.integers(0, columns, _NODES)])
+    error = node_errors(table, row, column)
+    refuse_wrong(table.source, error, _NODE_ERROR, "the friction law")
+
+
+STORED = Kind(
+    {"law_kind": str, "law_speeds": str, "law_values": str, "speed_map": str, "n_phi": int,
+     "cells": int, "top": float, "scale": float, "height_ratio": float, "largest_f": float},
+    shapes, table_of,
+)  # fmt: skip
