@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import copy
-import hashlib
-import json
 import math
 import re
 from collections.abc import Mapping
@@ -16,10 +14,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.checkpoint import Checkpoint
+from puck_tables.checkpoint import Checkpoint, files_named, work_digest
 from puck_tables.errors import InputError
 from puck_tables.executor import Progress, run_chunks
-from puck_tables.kernels.cache import source_digest
 from puck_tables.scene.bulk import ENDS_COLUMNS
 from puck_tables.scene.equations import SIZE
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
@@ -152,23 +149,35 @@ def sweep_scene(
             begin = end
         return out, status
 
-    out, status = np.empty((len(RESULTS), size)), np.empty(size, np.int8)
+    read = files_named(whole)
+
+    def whole_ends(start: int, stop: int) -> tuple[FloatArray, npt.NDArray[np.int8]]:
+        found = ends_of(start, stop)
+        if files_named(whole) != read:
+            raise InputError(
+                f"a file that this scene names was changed while it was swept ({', '.join(read)}): "
+                "begin again"
+            )
+        return found
+
     plan = case(tuple(float(axes[path][-1]) for path in outer)).plan
     if checkpoint is None:
+        out, status = np.empty((len(RESULTS), size)), np.empty(size, np.int8)
 
         def work(start: int, stop: int) -> None:
-            out[:, start:stop], status[start:stop] = ends_of(start, stop)
+            out[:, start:stop], status[start:stop] = whole_ends(start, stop)
 
         run_chunks(work, size, chunk, threads, progress)
     else:
-        with Checkpoint(checkpoint, _digest(whole), len(RESULTS), size, chunk) as kept:
+        digest = work_digest(scene=whole, files=read)
+        with Checkpoint(checkpoint, digest, len(RESULTS), size, chunk) as kept:
 
             def work_on(start: int, stop: int) -> None:
                 if not kept.is_done(start):
-                    kept.put(start, stop, *ends_of(start, stop))
+                    kept.put(start, stop, *whole_ends(start, stop))
 
             run_chunks(work_on, size, chunk, threads, progress)
-            out[...], status[...] = kept.values, kept.status
+            out, status = kept.values, kept.status
     columns = {name: row.reshape(shape) for name, row in zip(RESULTS, out, strict=True)}
     return SceneMap(first.title, axes, plan, columns, status.reshape(shape))
 
@@ -278,9 +287,3 @@ def set_path(tables: dict[str, Any], path: str, value: Any) -> None:
                 f"{path}: the scene has no such entry to set; 'puck scene fields' lists what may "
                 "be, walls and edges are written in a file"
             ) from None
-
-
-def _digest(tables: Mapping[str, Any]) -> str:
-    """What determines the bits of a map."""
-    text = json.dumps([tables, source_digest()], sort_keys=True, default=str)
-    return hashlib.sha256(text.encode()).hexdigest()
