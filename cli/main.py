@@ -18,6 +18,7 @@ from puck_tables.cli.aim import aim
 from puck_tables.cli.asperity import asperity
 from puck_tables.cli.build_tables import build_tables
 from puck_tables.cli.info import info
+from puck_tables.cli.options import printable
 from puck_tables.cli.paper import paper
 from puck_tables.cli.scene import scene
 from puck_tables.cli.simulate import simulate
@@ -35,16 +36,33 @@ BROKEN_PIPE = 141  # 128 + SIGPIPE, as shells count
 class PuckGroup(click.Group):
     """A group that ends every refusal with one sentence and an exit code."""
 
+    def main(self, *args: Any, **named: Any) -> Any:
+        """Run the program; help and usage, too, are written whole or not at all."""
+        _whole_writes()
+        try:
+            try:
+                return super().main(*args, **named)
+            finally:
+                if sys.stdout is not None:
+                    sys.stdout.flush()
+        except BrokenPipeError:
+            _drop(sys.stdout)
+            _drop(sys.stderr)
+            raise SystemExit(BROKEN_PIPE) from None
+        except OSError as error:
+            _drop(sys.stdout)
+            click.echo(f"Error: {_told(error)}", err=True)
+            raise SystemExit(1) from None
+
     def invoke(self, ctx: click.Context) -> Any:
         """Run a command."""
-        _whole_writes()
         try:
             result = super().invoke(ctx)
             if sys.stdout is not None:
                 sys.stdout.flush()
             return result
         except PuckError as error:
-            click.echo(f"Error: {click.format_filename(str(error))}", err=True)
+            click.echo(f"Error: {printable(click.format_filename(str(error)))}", err=True)
             ctx.exit(2 if isinstance(error, InputError) else 1)
         except BrokenPipeError:
             _drop(sys.stdout)
@@ -52,7 +70,7 @@ class PuckGroup(click.Group):
             ctx.exit(BROKEN_PIPE)
         except OSError as error:
             _drop(sys.stdout)
-            click.echo(f"Error: cannot write the results: {error.strerror or error}", err=True)
+            click.echo(f"Error: {_told(error)}", err=True)
             ctx.exit(1)
         except MemoryError:
             click.echo("Error: not enough memory: ask for fewer points", err=True)
@@ -60,6 +78,12 @@ class PuckGroup(click.Group):
         except KeyboardInterrupt:
             click.echo("Interrupted: nothing more was written.", err=True)
             ctx.exit(130)
+
+
+def _told(error: OSError) -> str:
+    """What failed: a file that the system names, or else what was printed."""
+    what = "write the results" if error.filename is None else f"use {error.filename}"
+    return printable(f"cannot {what}: {error.strerror or error}")
 
 
 def _whole_writes() -> None:

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
-from puck_tables.cli.options import DEFAULT_DECEL, DEFAULT_DELTA, told
+from puck_tables.cli.options import DEFAULT_DECEL, DEFAULT_DELTA, printable, told
 
 from puck_tables.errors import InputError
 
@@ -92,6 +92,13 @@ def scene_tables(ctx: click.Context, scene: str | None, changes: tuple[str, ...]
     return tables
 
 
+def files_read(scene: str | None, tables: dict[str, Any]) -> list[str]:
+    """The files that a run of a scene reads: its own, and those that it names."""
+    from puck_tables.checkpoint import files_named
+
+    return [*([] if scene is None else [scene]), *files_named(tables)]
+
+
 def _default_tables(given: dict[str, Any]) -> dict[str, Any]:
     """The puck in natural units of the other commands, as dimensions: f = J/g, h = δ r/2f."""
     from puck_tables.puck import STANDARD_GRAVITY
@@ -162,20 +169,20 @@ def run_scene(
         plot_scene(run, plot, overwrite)
         told(plot)
     if explain:
-        click.echo(run.plan.why, err=True)
+        click.echo(printable(run.plan.why), err=True)
     if as_json:
         from puck_tables.scene_file import scene_summary
 
         click.echo(json.dumps(scene_summary(run), allow_nan=False))
     else:
-        click.echo(report(run))
+        click.echo(printable(report(run)))
 
 
 def report(run: SceneRun) -> str:
     """A scene run in a dozen lines."""
     last = run.last
     lines = {
-        "scene": _title(run.scene.title) or "without a title",
+        "scene": run.scene.title or "without a title",
         "puck": _puck(run.scene),
         "end": f"{run.end} after {run.end_time:.9g} s",
         "place": f"({last['x']:.9g}, {last['y']:.9g}) m, body at {last['orientation']:.6g} rad",
@@ -191,11 +198,6 @@ def report(run: SceneRun) -> str:
         reaction = f"({last['lambda_1']:.6g}, {last['lambda_2']:.6g}) N at the end"
         lines["reaction"] = reaction + ("; at rest the floor shares it" if last["carried"] else "")
     return "\n".join(f"{name:<9} {text}" for name, text in lines.items())
-
-
-def _title(text: str) -> str:
-    """A title without what a terminal would obey."""
-    return "".join(sign for sign in text if sign.isprintable())
 
 
 def _puck(scene: Scene) -> str:
@@ -234,4 +236,4 @@ def summary_of_map(stops: SceneMap) -> str:
         for code, end in enumerate(ENDS)
         if (stops.end == code).any()
     )
-    return f"{_title(stops.title) or 'scene'} over {ranged}: {counts}; {stops.plan.model}"
+    return f"{stops.title or 'scene'} over {ranged}: {counts}; {stops.plan.model}"

@@ -27,7 +27,9 @@ from puck_tables.table.table import FUNCTIONS, Table
 AnyTable = Table | StopTable | PartialTable | LawTable | SpeedTable
 Progress = Callable[[int, int], None]
 
-_KINDS = {module.KIND: module.STORED for module in (file, stop_file, partial_file, law_file, speed_file)}
+_KINDS = {
+    module.KIND: module.STORED for module in (file, stop_file, partial_file, law_file, speed_file)
+}
 
 
 def load_any_table(path: str | Path) -> AnyTable:

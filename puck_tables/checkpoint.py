@@ -81,9 +81,7 @@ def files_named(value: Any) -> dict[str, str]:
         value = list(value.values())
     if isinstance(value, list | tuple):
         return {name: digest for item in value for name, digest in files_named(item).items()}
-    if not isinstance(value, str) or not (
-        value.lower().endswith(".csv") or os.path.isfile(value)
-    ):
+    if not isinstance(value, str) or not (value.lower().endswith(".csv") or os.path.isfile(value)):
         return {}
     try:
         content = read_whole(value, _LARGEST_FILE)

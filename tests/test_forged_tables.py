@@ -67,7 +67,8 @@ def in_one_node(name: str, place: tuple[int, ...], change: float) -> Edit:
 @pytest.mark.parametrize(
     ("kind", "name", "place", "change"),
     [
-        ("resultants", "spin", (7, 2), 1e-5), ("stops", "turn", (20, 8), 1e-2), ("partial", "spin", (9, 11), 0.05),
+        ("resultants", "spin", (7, 2), 1e-5), ("stops", "turn", (20, 8), 1e-2),
+        ("partial", "spin", (9, 11), 0.05),
         ("law", "parallel", (2, 5, 1), 1e-3), ("speed", "spin", (11, 3), 0.02),
     ],
 )  # fmt: skip

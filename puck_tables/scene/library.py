@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import tomllib
 from importlib.resources import files
-from pathlib import Path
 from typing import Any
 
 from puck_tables.errors import InputError
@@ -54,9 +54,16 @@ def find_scene(name: str) -> dict[str, Any]:
     >>> find_scene("incline")["floor"]["friction"]
     0.15
     """
-    if name in _names() and not Path(name).exists():
+    try:
+        os.lstat(name)
+        is_missing = False
+    except FileNotFoundError:
+        is_missing = True
+    except (OSError, ValueError):  # there may be one; read_scene says what hinders
+        is_missing = False
+    if is_missing and name in _names():
         return tomllib.loads(shipped_text(name))
-    if not Path(name).exists():
+    if is_missing:
         raise InputError(
             f"no file {name}, and no scene of that name comes along: there are "
             f"{', '.join(_names())}"

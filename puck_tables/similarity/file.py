@@ -20,8 +20,8 @@ from puck_tables.similarity.node_equations import missed_by_stops
 from puck_tables.similarity.stop_table import FUNCTIONS, UPPER_DELTA, StopAccuracy, StopTable
 from puck_tables.table.container import (
     Contents,
-    Kind,
     Field,
+    Kind,
     accuracy_of,
     check_usable,
     encode,

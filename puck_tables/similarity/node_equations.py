@@ -1,6 +1,6 @@
 """The equations that stops and the curve satisfy, at every node of a stop table at once.
 
-Along a motion everything goes with ln Q, and du/d ln Q = −ρ(u) (:mod:`puck_tables.similarity.curve`).
+Along a motion everything goes with ln Q, du/d ln Q = −ρ(u) (:mod:`puck_tables.similarity.curve`).
 What is left of time, way and angle gives, with N as there, s = sin φ, c = cos φ and dψ/d ln Q = h,
 
     T − ρ T_u = N/ρ_∥,        (2 + i h) Z − ρ Z_u = c N/ρ_∥   (Z = X + iY),

@@ -303,9 +303,7 @@ def validate(
         part = slice(start, start + 500)
         parts.append(np.stack(by_quadrature(phi[part], delta[part])))
         step()
-    compare(
-        "direct quadrature", phi, delta, Resultants(*np.concatenate(parts, axis=1)), allowed
-    )
+    compare("direct quadrature", phi, delta, Resultants(*np.concatenate(parts, axis=1)), allowed)
     step()
 
     phi, delta = adversarial_points(table.phi_axis, upper, 40_000, seed=None)

@@ -414,7 +414,8 @@ def accuracy_of(attributes: dict[str, Any], kind: type[AnyAccuracy], functions: 
     Examples
     --------
     >>> from puck_tables.similarity.stop_table import StopAccuracy
-    >>> text = '{"largest": [1], "rms": [1], "at_phi": [0], "at_delta": [0], "order": 4, "points": 9}'
+    >>> lists = {name: [1.0] for name in ("largest", "rms", "at_phi", "at_delta")}
+    >>> text = json.dumps({**lists, "order": 4, "points": 9})
     >>> accuracy_of({"achieved_accuracy": text}, StopAccuracy, 1).order
     4
     """

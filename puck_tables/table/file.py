@@ -18,8 +18,8 @@ import numpy as np
 from puck_tables.table.check import by_closed_form
 from puck_tables.table.container import (
     Contents,
-    Kind,
     Field,
+    Kind,
     accuracy_of,
     check_usable,
     encode,

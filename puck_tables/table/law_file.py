@@ -19,8 +19,8 @@ from puck_tables.contact.laws import law_of
 from puck_tables.errors import InputError, TableError
 from puck_tables.table.container import (
     Contents,
-    Kind,
     Field,
+    Kind,
     accuracy_of,
     check_usable,
     encode,

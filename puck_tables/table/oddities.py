@@ -49,7 +49,7 @@ def odd_nodes(values: FloatArray, axes: tuple[int, ...], count: int) -> FloatArr
         for shift in range(_ORDER + 1):
             node = place.copy()
             node[:, 0] += shift
-            order = list(range(1, axis + 1)) + [0] + list(range(axis + 1, node.shape[1]))
+            order = [*range(1, axis + 1), 0, *range(axis + 1, node.shape[1])]
             centres.append(node[:, order])
     found = np.concatenate(centres) if centres else np.empty((0, values.ndim - 1), np.int64)
     return np.unique(found, axis=0)[:count]

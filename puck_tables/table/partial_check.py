@@ -21,7 +21,9 @@ FloatArray = npt.NDArray[np.float64]
 _COARSEST, _NODE = 0.01, 1e-10  # the most a table may promise; how well its nodes are known
 
 
-def adversarial_points(axes: PartialAxes, count: int, seed: int | None) -> tuple[FloatArray, FloatArray]:
+def adversarial_points(
+    axes: PartialAxes, count: int, seed: int | None
+) -> tuple[FloatArray, FloatArray]:
     """Points of partial contact where a table is worst, and random ones.
 
     Parameters
@@ -135,8 +137,8 @@ def validate_partial(table: PartialTable, points: int = 3000) -> CheckReport:
     -------
     CheckReport
         Deviations from the balance by quadrature at random and adversarial points, all over the
-        table (other points at every call) and at the nodes that fit their neighbours least, from the closed
-        forms of full contact where contact opens, and from ρ_∥ = 1, ρ_⊥ = δ/4 at φ = 0.
+        table (other points at every call) and at the nodes that fit their neighbours least, from
+        the closed forms of full contact where contact opens, and from ρ_∥ = 1, ρ_⊥ = δ/4 at φ = 0.
 
     Examples
     --------
@@ -154,7 +156,7 @@ def validate_partial(table: PartialTable, points: int = 3000) -> CheckReport:
         for function, row in zip(FUNCTIONS, error, strict=True):
             checks.append(worst_of(name, function, row, phi, delta, allowed))
     # all nodes are looked at: those that do not fit their neighbours are compared
-    odd = odd_nodes(table.values[:, 1:], (0, 1), points // 2) + [0, 1]
+    odd = odd_nodes(table.values[:, 1:], (0, 1), points // 2) + np.array([0, 1])
     phi, delta = table.axes.phi()[odd[:, 0]], table.axes.delta()[odd[:, 0], odd[:, 1]]
     error = np.abs(table.values[odd[:, 0], odd[:, 1]].T - np.stack(balance(phi, delta)[0]))
     for function, row in zip(FUNCTIONS, error, strict=True):
@@ -165,9 +167,7 @@ def validate_partial(table: PartialTable, points: int = 3000) -> CheckReport:
     truth = moment_balance(closed_form.integrals(phi), slip_direction(phi), delta)
     error = np.abs(np.stack(table.resultants(phi, delta)) - np.stack(truth))
     for function, row in zip(FUNCTIONS, error, strict=True):
-        checks.append(
-            worst_of("closed forms at the opening", function, row, phi, delta, allowed)
-        )
+        checks.append(worst_of("closed forms at the opening", function, row, phi, delta, allowed))
     error, delta = _sliding(table)
     for function, row in zip(FUNCTIONS[:2], error, strict=True):
         checks.append(worst_of("pure sliding", function, row, 0.0 * delta, delta, allowed))

@@ -21,8 +21,8 @@ from puck_tables.contact.opening import critical_delta
 from puck_tables.contact.resultants import moment_balance
 from puck_tables.table.container import (
     Contents,
-    Kind,
     Field,
+    Kind,
     accuracy_of,
     check_usable,
     encode,
@@ -220,7 +220,7 @@ def _check_some(table: PartialTable) -> None:
     rng = np.random.default_rng()
     rows, columns = table.axes.shape
     # at the opening itself, ζ = 0, the balance is that of full contact
-    odd = odd_nodes(table.values[:, 1:], (1, 0), _NODES) + [0, 1]
+    odd = odd_nodes(table.values[:, 1:], (1, 0), _NODES) + np.array([0, 1])
     row = np.concatenate([odd[:, 0], rng.integers(0, rows, _NODES)])
     column = np.concatenate([odd[:, 1], rng.integers(1, columns, _NODES)])
     phi, delta = table.axes.phi()[row], table.axes.delta()[row, column]

@@ -24,9 +24,9 @@ FloatArray = npt.NDArray[np.float64]
 Value = int | float | str
 
 _SIGNATURE = b"\x89HDF\r\n\x1a\n"
-_FLOAT = bytes.fromhex("11203f0008000000" "00004000340b0034ff030000")  # little-endian double
-_INTEGER = bytes.fromhex("1008000008000000" "00004000")  # little-endian, signed, 64 bits
-_TEXT = bytes.fromhex("1901010010000000" "10000000" "01000000" "00000800")  # UTF-8, any length
+_FLOAT = bytes.fromhex("11203f000800000000004000340b0034ff030000")  # little-endian double
+_INTEGER = bytes.fromhex("100800000800000000004000")  # little-endian, signed, 64 bits
+_TEXT = bytes.fromhex("1901010010000000100000000100000000000800")  # UTF-8, any length
 # messages of an object header
 _SPACE, _TYPE, _EXTERNAL, _LAYOUT, _FILTERS, _ATTRIBUTE, _MORE, _GROUP = (
     0x01, 0x03, 0x07, 0x08, 0x0B, 0x0C, 0x10, 0x11,
@@ -99,9 +99,9 @@ class PlainFile:
         found = {kind: at for kind, at, _ in messages}
         if len([1 for kind, _, _ in messages if kind in (_SPACE, _TYPE, _LAYOUT)]) != 3:
             raise ValueError("its arrays do not fit its axes")
-        if not self._content.startswith(_FLOAT, found[_TYPE]) or self._shape(
-            found[_SPACE]
-        ) != list(shape):
+        if not self._content.startswith(_FLOAT, found[_TYPE]) or self._shape(found[_SPACE]) != list(
+            shape
+        ):
             raise ValueError("its arrays do not fit its axes")
         version, layout = self._unpack("<BB", found[_LAYOUT])
         if version != 3 or layout != _CONTIGUOUS or _FILTERS in found or _EXTERNAL in found:

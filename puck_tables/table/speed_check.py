@@ -63,10 +63,10 @@ def validate_speed(
     near = rng.choice([0.0, 0.25 * np.pi, 0.5 * np.pi], points)
     near += rng.choice([-1.0, 1.0], points) * 10.0 ** -rng.uniform(0.5, 15.0, points)
     checks: list[Check] = []
-    U = speeds[-1] * rng.random(points) ** rng.choice([1.0, 4.0], points)
+    any_speed = speeds[-1] * rng.random(points) ** rng.choice([1.0, 4.0], points)
     for name, phi, U in (
-        ("quadrature, random points", rng.uniform(0.0, 0.5 * np.pi, points), U),
-        ("quadrature, next to 0, pi/4, pi/2", np.clip(near, 0.0, 0.5 * np.pi), U),
+        ("quadrature, random points", rng.uniform(0.0, 0.5 * np.pi, points), any_speed),
+        ("quadrature, next to 0, pi/4, pi/2", np.clip(near, 0.0, 0.5 * np.pi), any_speed),
         ("quadrature, every cell", *in_every_cell(nodes, speeds, rng, 3 * points)),
         ("quadrature, the oddest nodes", *_oddest(table, points)),
     ):

@@ -19,8 +19,8 @@ from puck_tables.errors import OutputError, TableError
 from puck_tables.real import instance
 from puck_tables.table.container import (
     Contents,
-    Kind,
     Field,
+    Kind,
     accuracy_of,
     check_usable,
     encode,
