@@ -193,7 +193,7 @@ def test_nothing_that_a_terminal_obeys_comes_from_files(folder: Path):
     Path("bad.toml").write_text(text + f'[drag]\n"{red}" = 1\n')
     for arguments in (
         "scene check red.toml", "scene check bad.toml", "simulate --scene red.toml --explain",
-        "sweep --scene red.toml --set launch.spin=0:1:3 --plot a.png --explain",
+        "sweep --scene red.toml --set launch.spin=0:1:3 -o a.csv --explain",
     ):  # fmt: skip
         ended = puck(*arguments.split())
         assert "\x1b" not in ended.output

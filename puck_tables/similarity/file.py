@@ -22,15 +22,13 @@ from puck_tables.table.container import (
     Contents,
     Field,
     Kind,
-    accuracy_of,
-    check_usable,
     encode,
     function_fields,
     read_content,
     read_table,
-    refuse_wrong,
     save,
 )
+from puck_tables.table.usable import accuracy_of, check_usable, refuse_wrong
 
 KIND = "stops"
 ALGORITHM = "Dormand-Prince with closed forms at 2e-14, curve by Gauss quadrature; 1"

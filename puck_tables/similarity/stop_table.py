@@ -29,8 +29,8 @@ from puck_tables.similarity.lookup import (
     stops_kernel,
 )
 from puck_tables.similarity.node_equations import missed_by_curve
-from puck_tables.table.container import refuse_wrong
 from puck_tables.table.fit import clamped_coefficients
+from puck_tables.table.usable import refuse_wrong
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -11,7 +11,6 @@ The file is made and read in memory, so that a failing disk leaves no half of on
 
 from __future__ import annotations
 
-import dataclasses
 import hashlib
 import io
 import json
@@ -22,7 +21,6 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, NamedTuple, Protocol, TypeVar
 
-import h5py
 import numpy as np
 import numpy.typing as npt
 
@@ -119,6 +117,8 @@ def encode(
     >>> encode({"kind": "none"}, {}, [line], [], "by hand")[1:4]
     b'HDF'
     """
+    import h5py  # not needed where tables are only read
+
     attributes = {
         "Conventions": "CF-1.11",
         "format": FORMAT,
@@ -333,7 +333,7 @@ def _read(content: bytes, source: str, kinds: Mapping[str, Kind]) -> Any:
             "give a file made by 'puck build-tables'"
         )
     kind = kinds[name]
-    for entry, type_ in (_ENTRIES | kind.entries).items():
+    for entry, type_ in {**_ENTRIES, **kind.entries}.items():
         found = attributes.get(entry)
         if type(found) is not type_ or (isinstance(found, float) and not math.isfinite(found)):
             raise ValueError(f"its entry {entry} is missing or no {_WORDS[type_]}")
@@ -356,101 +356,3 @@ def _digest(attributes: dict[str, Any], arrays: dict[str, FloatArray]) -> str:
         digest.update(json.dumps(array.shape).encode())
         digest.update(np.ascontiguousarray(array, dtype="<f8").tobytes())
     return digest.hexdigest()
-
-
-def check_usable(
-    contents: Contents,
-    source: str,
-    recipe: dict[str, Any],
-    nodes: dict[str, FloatArray],
-    bounds: tuple[float, float],
-    finest: float,
-) -> None:
-    """Refuse a file whose digest is right but whose numbers this program cannot use.
-
-    Parameters
-    ----------
-    contents, source : what was read, from where
-    recipe : that of a table with these axes
-    nodes : where the splines will look, by axis
-    bounds : between which all other values of such tables lie
-    finest : no table on such a grid is more exact
-
-    Raises
-    ------
-    TableError
-    """
-    attributes, arrays = contents
-    known = {**recipe, "recipe_digest": recipe_digest(recipe)}
-    if any(attributes.get(name) != value for name, value in known.items()):
-        raise TableError(f"{source} was made by a recipe that this program does not know")
-    low, high = bounds
-    values = [array for name, array in arrays.items() if name not in nodes]
-    if not (
-        all(np.allclose(arrays[n], at, rtol=1e-14, atol=1e-14) for n, at in nodes.items())
-        and all(np.all((array >= low) & (array <= high)) for array in values)
-        and finest < attributes["tolerance"] < 1.0
-    ):
-        raise TableError(f"{source} has axes or values that this program cannot use")
-
-
-AnyAccuracy = TypeVar("AnyAccuracy")
-
-
-def accuracy_of(attributes: dict[str, Any], kind: type[AnyAccuracy], functions: int) -> AnyAccuracy:
-    """The measured accuracy in a file.
-
-    Parameters
-    ----------
-    attributes : those of the file
-    kind : the dataclass it is read as
-    functions : how many numbers its lists must have
-
-    Raises
-    ------
-    ValueError
-        If it is not like that.
-
-    Examples
-    --------
-    >>> from puck_tables.similarity.stop_table import StopAccuracy
-    >>> lists = {name: [1.0] for name in ("largest", "rms", "at_phi", "at_delta")}
-    >>> text = json.dumps({**lists, "order": 4, "points": 9})
-    >>> accuracy_of({"achieved_accuracy": text}, StopAccuracy, 1).order
-    4
-    """
-    stated = json.loads(attributes["achieved_accuracy"])
-    entries = {f.name: f.type for f in dataclasses.fields(kind)}  # type: ignore[arg-type]
-    if not isinstance(stated, dict) or stated.keys() != entries.keys():
-        raise ValueError("its measured accuracy is not complete")
-    for name, found in stated.items():
-        numbers = found if isinstance(found, list) else [found]
-        is_list = str(entries[name]).startswith("tuple")
-        if is_list != isinstance(found, list) or (is_list and len(found) != functions):
-            raise ValueError(f"its measured accuracy has another {name}")
-        if not all(type(n) in (int, float) and not math.isnan(n) for n in numbers):
-            raise ValueError(f"its measured accuracy has a {name} that is no number")
-    return kind(**{k: tuple(v) if isinstance(v, list) else v for k, v in stated.items()})
-
-
-def refuse_wrong(source: str, error: FloatArray, allowed: float, what: str) -> None:
-    """Refuse a table of which a few values, compared with the truth, are wrong.
-
-    Raises
-    ------
-    TableError
-        If an error is larger than what is allowed, or no number.
-
-    Examples
-    --------
-    >>> refuse_wrong("my.h5", np.array([1e-3]), 1e-9, "closed forms")
-    Traceback (most recent call last):
-    ...
-    puck_tables.errors.TableError: my.h5 holds wrong numbers (off by 0.001 from closed forms): it \
-was altered; build it again with 'puck build-tables'
-    """
-    if not np.all(error <= allowed):
-        raise TableError(
-            f"{source} holds wrong numbers (off by {np.max(error):.2g} from {what}): it was "
-            "altered; build it again with 'puck build-tables'"
-        )

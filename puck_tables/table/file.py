@@ -20,18 +20,16 @@ from puck_tables.table.container import (
     Contents,
     Field,
     Kind,
-    accuracy_of,
-    check_usable,
     encode,
     function_fields,
     read_content,
     read_table,
-    refuse_wrong,
     save,
 )
 from puck_tables.table.grid import GRADING_POWER, DeltaAxis, PhiAxis
 from puck_tables.table.oddities import odd_nodes
 from puck_tables.table.table import FUNCTIONS, Accuracy, Table
+from puck_tables.table.usable import accuracy_of, check_usable, refuse_wrong
 
 KIND = "resultants"
 ALGORITHM = "elliptic integrals; friction ratios splined; 1"

@@ -21,13 +21,10 @@ from puck_tables.table.container import (
     Contents,
     Field,
     Kind,
-    accuracy_of,
-    check_usable,
     encode,
     function_fields,
     read_content,
     read_table,
-    refuse_wrong,
     save,
 )
 from puck_tables.table.grid import GRADING_POWER
@@ -35,6 +32,7 @@ from puck_tables.table.law_grid import LawAxis
 from puck_tables.table.law_table import HEIGHTS, FloatArray, LawTable
 from puck_tables.table.oddities import odd_nodes
 from puck_tables.table.table import FUNCTIONS, Accuracy
+from puck_tables.table.usable import accuracy_of, check_usable, refuse_wrong
 
 _RADIUS, _PRESSURE = "profile_radius", "profile_pressure"
 

@@ -11,7 +11,7 @@ _ORDER, _APART = 4, 5  # of the differences; beyond so many nodes they do not sh
 _NOTHING = 1e-13
 
 
-def odd_nodes(values: FloatArray, axes: tuple[int, ...], count: int) -> FloatArray:
+def odd_nodes(values: FloatArray, axes: tuple[int, ...], count: int) -> npt.NDArray[np.int64]:
     """Nodes where fourth differences are largest against those of their neighbours.
 
     An altered value stands in five of the differences along an axis, and in no others.  Nothing is
@@ -52,4 +52,4 @@ def odd_nodes(values: FloatArray, axes: tuple[int, ...], count: int) -> FloatArr
             order = [*range(1, axis + 1), 0, *range(axis + 1, node.shape[1])]
             centres.append(node[:, order])
     found = np.concatenate(centres) if centres else np.empty((0, values.ndim - 1), np.int64)
-    return np.unique(found, axis=0)[:count]
+    return np.unique(found, axis=0)[:count].astype(np.int64)

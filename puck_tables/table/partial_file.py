@@ -23,19 +23,17 @@ from puck_tables.table.container import (
     Contents,
     Field,
     Kind,
-    accuracy_of,
-    check_usable,
     encode,
     function_fields,
     read_content,
     read_table,
-    refuse_wrong,
     save,
 )
 from puck_tables.table.oddities import odd_nodes
 from puck_tables.table.partial_grid import FAST_END, TOP_DELTA, UPPER_DELTA, ZETA_END, PartialAxes
 from puck_tables.table.partial_table import PartialTable
 from puck_tables.table.table import FUNCTIONS, Accuracy
+from puck_tables.table.usable import accuracy_of, check_usable, refuse_wrong
 
 KIND = "partial contact"
 ALGORITHM = "one-sided balance by quadrature; excess over full contact splined; 1"

@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -112,7 +113,7 @@ class PlainFile:
             raise ValueError("it is shorter than its arrays")
         return np.frombuffer(self._content, "<f8", count, at).astype(np.float64).reshape(shape)
 
-    def _unpack(self, form: str, at: int) -> tuple[int, ...]:
+    def _unpack(self, form: str, at: int) -> tuple[Any, ...]:
         try:
             return struct.unpack_from(form, self._content, at)
         except struct.error:
@@ -130,7 +131,7 @@ class PlainFile:
         if version != 1 or count > _MOST:
             raise ValueError("an object header of another version")
         parts = [(header + 16, size)]
-        seen = set()
+        seen: set[int] = set()
         while parts:
             at, size = parts.pop(0)
             if at in seen:
@@ -209,7 +210,8 @@ class PlainFile:
         if mark != b"HEAP" or version != 0 or size > _MOST_NAMES:
             raise ValueError("no names")
         objects: dict[str, int] = {}
-        seen, waiting = set(), [tree]
+        seen: set[int] = set()
+        waiting = [tree]
         while waiting:
             node = waiting.pop()
             if node in seen or len(seen) > _MOST_NODES:

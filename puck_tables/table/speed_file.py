@@ -21,13 +21,10 @@ from puck_tables.table.container import (
     Contents,
     Field,
     Kind,
-    accuracy_of,
-    check_usable,
     encode,
     function_fields,
     read_content,
     read_table,
-    refuse_wrong,
     save,
 )
 from puck_tables.table.grid import GRADING_POWER, PhiAxis
@@ -36,6 +33,7 @@ from puck_tables.table.speed_check import node_errors
 from puck_tables.table.speed_grid import SpeedAxis
 from puck_tables.table.speed_table import SpeedAccuracy, SpeedTable
 from puck_tables.table.table import FUNCTIONS
+from puck_tables.table.usable import accuracy_of, check_usable, refuse_wrong
 
 MAX_POINTS = 2000  # HDF5 keeps no longer attribute
 KIND = "friction with f(slip speed)"
