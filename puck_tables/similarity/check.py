@@ -41,7 +41,7 @@ from puck_tables.similarity.curve_lookup import (
 )
 from puck_tables.similarity.exact import exact_stops
 from puck_tables.similarity.lookup import CURVE_ROW
-from puck_tables.similarity.node_equations import missed_by_curve, missed_by_stops
+from puck_tables.similarity.node_equations import all_slopes, missed_by_curve, missed_by_stops
 from puck_tables.similarity.stop_table import StopAccuracy, StopTable
 from puck_tables.table.check import Check, CheckReport
 
@@ -293,7 +293,7 @@ def _at_nodes(table: StopTable) -> list[Check]:
     slow = np.log(np.maximum(ratio_at(np.arange(axis.cells + 1) / axis.cells), 1e-300))
     u, delta = np.broadcast_arrays(np.stack([slow, -slow])[..., None], heights())
     missed, allowed = missed_by_stops(axis, table.values)
-    of_curve = [missed_by_curve(axis, table.values, j) for j in range(HEIGHTS)]
+    of_curve = [missed_by_curve(axis, table.values, j, all_slopes) for j in range(HEIGHTS)]
     by_curve, allowed_curve = np.stack([one for one, _ in of_curve], axis=2), of_curve[0][1]
     columns = [(missed[..., i], allowed) for i in range(5)]
     columns += [(by_curve[..., i], allowed_curve) for i in range(2)]

@@ -16,7 +16,11 @@ import numpy as np
 
 from puck_tables.similarity.axes import HEIGHTS, SlipAxis, heights
 from puck_tables.similarity.exact import end_values
-from puck_tables.similarity.node_equations import missed_by_stops
+from puck_tables.similarity.node_equations import (
+    missed_by_curve,
+    missed_by_stops,
+    slopes_off_the_limit,
+)
 from puck_tables.similarity.stop_table import FUNCTIONS, UPPER_DELTA, StopAccuracy, StopTable
 from puck_tables.table.container import (
     Contents,
@@ -211,13 +215,16 @@ def table_of(contents: Contents, source: str) -> StopTable:
 def _check_some(table: StopTable) -> None:
     """Refuse a table with wrong values, as far as the equations between its nodes show them.
 
-    Its curve is looked at where it is first used: the limits it needs would take a second here.
+    Nothing compiled is called: that would take a second.
     """
     axis, values = table.axis, table.values
     ends = np.abs(values[[0, -1], :, :5] - np.stack(end_values(heights())))
     refuse_wrong(table.source, ends, _NODE_ERROR, "elementary solutions")
     refuse_wrong(table.source, np.abs(values[axis.cells, :, 5:]), _NODE_ERROR, "the curve's origin")
     refuse_wrong(table.source, *missed_by_stops(axis, values), "the equations of motion")
+    height = int(np.random.default_rng().integers(HEIGHTS))
+    missed = missed_by_curve(axis, values, height, slopes_off_the_limit)
+    refuse_wrong(table.source, *missed, "the curve of all motions")
 
 
 STORED = Kind({"delta_map": str, "cells": int, "n_delta": int, "delta_max": float},

@@ -28,9 +28,7 @@ from puck_tables.similarity.lookup import (
     row_width,
     stops_kernel,
 )
-from puck_tables.similarity.node_equations import missed_by_curve
 from puck_tables.table.fit import clamped_coefficients
-from puck_tables.table.usable import refuse_wrong
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -108,16 +106,7 @@ class StopTable:
 
     @cached_property
     def curve_coefficients(self) -> FloatArray:
-        """Body angle, S/δ, path length, κR as the kernels of curve_lookup read them.
-
-        Raises
-        ------
-        TableError
-            If κR or S/δ are wrong.
-        """
-        height = int(np.random.default_rng().integers(HEIGHTS))
-        missed, allowed = missed_by_curve(self.axis, self.values, height)
-        refuse_wrong(self.source, missed, allowed, "the curve of all motions")
+        """Body angle, S/δ, path length, κR as the kernels of curve_lookup read them."""
         return self._coefficients([4, 6, 3, 5], HEIGHTS, CURVE_ROW, by_power=False)
 
     @cached_property
