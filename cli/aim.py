@@ -79,7 +79,7 @@ def aim(
     ]
     if len(picked) > 1:
         raise InputError(f"{picked[0]} and {picked[1]} clash: each picks a launch")
-    prepare_outputs(output, plot, overwrite=overwrite)
+    prepare_outputs(output, plot, overwrite=overwrite, inputs=(pressure,))
     from puck_tables.result_file import AIM_KINDS, aim_columns, kind_of, save_aim
 
     if output is not None:

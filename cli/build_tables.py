@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 from puck_tables.cli.info import describe
-from puck_tables.cli.options import FILE, NUMBER, prepare_outputs, progress, told
+from puck_tables.cli.options import FILE, NUMBER, prepare_outputs, printable, progress, told
 
 from puck_tables.errors import InputError
 
@@ -102,7 +102,7 @@ def build_tables(
     path = Path(f"{stem}.h5") if output is None else output
     if path.suffix.lower() != ".h5":
         raise InputError(f"{path}: a table is an HDF5 file: give a name that ends in .h5")
-    prepare_outputs(path, overwrite=overwrite)
+    prepare_outputs(path, overwrite=overwrite, inputs=(speed_law, pressure))
     words = ["puck build-tables"] + ([] if plain else [what])
     command = " ".join(words + [f"{name} {value}" for name, value in given.items()])
     with progress("tabulating") as show:
@@ -140,4 +140,4 @@ def build_tables(
             table = build_table(accuracy, n_phi, n_delta, show)
             text = describe(save_table(table, path, overwrite, command))
     told(path)
-    click.echo(text)
+    click.echo(printable(text))

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
-from puck_tables.cli.options import FILE, tables_named
+from puck_tables.cli.options import FILE, printable, tables_named
 
 if TYPE_CHECKING:
     from puck_tables.catalogue import AnyTable
@@ -19,7 +19,7 @@ def info(file: Path | None) -> None:
 
     Without FILE: the tables that come along.
     """
-    click.echo("\n\n".join(describe(table) for table in tables_named(file)))
+    click.echo(printable("\n\n".join(describe(table) for table in tables_named(file))))
 
 
 def describe(table: AnyTable) -> str:

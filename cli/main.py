@@ -39,9 +39,26 @@ BROKEN_PIPE = 141  # 128 + SIGPIPE, as shells count
 class PuckGroup(click.Group):
     """A group that ends every refusal with one sentence and an exit code."""
 
+    def main(self, *args: Any, **named: Any) -> Any:
+        """Run the program; help and usage, too, are written whole or not at all."""
+        _whole_writes()
+        try:
+            try:
+                return super().main(*args, **named)
+            finally:
+                if sys.stdout is not None:
+                    sys.stdout.flush()
+        except BrokenPipeError:
+            _drop(sys.stdout)
+            _drop(sys.stderr)
+            raise SystemExit(BROKEN_PIPE) from None
+        except OSError as error:
+            _drop(sys.stdout)
+            click.echo(f"Error: {_told(error)}", err=True)
+            raise SystemExit(1) from None
+
     def invoke(self, ctx: click.Context) -> Any:
         """Run a command."""
-        _whole_writes()
         at_start = signal.getsignal(signal.SIGINT) is end_at_once
         if at_start:
             signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -59,7 +76,7 @@ class PuckGroup(click.Group):
             ctx.exit(BROKEN_PIPE)
         except OSError as error:
             _drop(sys.stdout)
-            click.echo(f"Error: cannot write the results: {error.strerror or error}", err=True)
+            click.echo(f"Error: {_told(error)}", err=True)
             ctx.exit(1)
         except MemoryError:
             click.echo("Error: not enough memory: ask for fewer points", err=True)
@@ -70,6 +87,12 @@ class PuckGroup(click.Group):
         finally:
             if at_start:
                 signal.signal(signal.SIGINT, end_at_once)
+
+
+def _told(error: OSError) -> str:
+    """What failed: a file that the system names, or else what was printed."""
+    what = "write the results" if error.filename is None else f"use {error.filename}"
+    return printable(f"cannot {what}: {error.strerror or error}")
 
 
 def _whole_writes() -> None:

@@ -7,7 +7,7 @@ import os
 import re
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -190,12 +190,8 @@ def explain_option(command: Command) -> Command:
 
 def explained(choice: Choice | None) -> None:
     """Say on stderr what the tolerance led to."""
-    click.echo(
-        "no choice: solved in elementary functions, or by the stop table given"
-        if choice is None
-        else choice.why,
-        err=True,
-    )
+    none = "no choice: solved in elementary functions, or by the stop table given"
+    click.echo(none if choice is None else printable(choice.why), err=True)
 
 
 def puck_and_floor(
@@ -243,17 +239,51 @@ def puck_and_floor(
     )
 
 
-def prepare_outputs(*paths: Path | None, overwrite: bool, table: Path | None = None) -> None:
-    """Refuse outputs that could not be written or would replace the table that is read."""
+def prepare_outputs(
+    *paths: Path | None, overwrite: bool, inputs: Iterable[Path | str | None] = ()
+) -> None:
+    """Refuse outputs that could not be written, or would replace another or what is read.
+
+    Parameters
+    ----------
+    paths : the outputs
+    overwrite : whether files that exist may be replaced
+    inputs : the files that the command reads; names that are no files are left out
+    """
     from puck_tables.safe_write import check_target
 
-    chosen = [path for path in paths if path is not None]
-    if len({path.absolute() for path in chosen}) < len(chosen):
-        raise InputError(f"{chosen[0]} is named for two outputs: give two file names")
-    for path in chosen:
-        check_target(path, overwrite)
-        if table is not None and path.exists() and os.path.exists(table) and path.samefile(table):
-            raise InputError(f"{path} is the table that is read: give the output another name")
+    chosen: list[Path] = []
+    for path in paths:
+        if path is None:
+            continue
+        target = check_target(path, overwrite)
+        for other in chosen:
+            if _same(target, other):
+                raise InputError(f"{path} is named for two outputs: give two file names")
+        for read in inputs:
+            if read is not None and os.path.isfile(read) and _same(target, Path(read)):
+                raise InputError(f"{path} is read by this command: give the output another name")
+        chosen.append(path)
+
+
+def _same(one: Path, other: Path) -> bool:
+    """Whether two names lead to one file, that may not be there yet."""
+    if os.path.exists(one) and os.path.exists(other):
+        return os.path.samefile(one, other)
+    return os.path.realpath(one) == os.path.realpath(other)
+
+
+def printable(text: str) -> str:
+    r"""A text, perhaps from a file, without what a terminal would obey.
+
+    Examples
+    --------
+    >>> printable("red: " + chr(27) + "[31m")
+    'red: \\x1b[31m'
+    """
+    return "".join(
+        sign if sign.isprintable() or sign == "\n" else repr(sign)[1:-1] for sign in text
+    )
 
 
 def open_table(path: Path | None) -> Table:
@@ -268,18 +298,6 @@ def tables_named(path: Path | None) -> list[AnyTable]:
     from puck_tables.catalogue import load_any_table, tables_that_come_along
 
     return tables_that_come_along() if path is None else [load_any_table(path)]
-
-
-def printable(text: str) -> str:
-    """Lines of a text without what a terminal would obey.
-
-    Examples
-    --------
-    >>> printable("a" + chr(27) + "[2Jb")
-    'a[2Jb'
-    """
-    lines = ("".join(sign for sign in line if sign.isprintable()) for line in text.split("\n"))
-    return "\n".join(lines)
 
 
 def told(path: Path) -> None:

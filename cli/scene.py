@@ -62,7 +62,7 @@ def check(name: str) -> None:
         SpeedLaw.from_csv(whole.floor.law)
     else:
         prepare(whole)  # files and heights
-    click.echo(f"{name}: a scene" + (f", {printable(whole.title)}" if whole.title else ""))
+    click.echo(printable(f"{name}: a scene" + (f", {whole.title}" if whole.title else "")))
     for path, values in ranges.items():
         click.echo(f"ranges        {path} from {values[0]:g} to {values[-1]:g}, {values.size}")
-    click.echo(plan_for(out_of_reach(whole)).why)
+    click.echo(printable(plan_for(out_of_reach(whole)).why))

@@ -93,6 +93,13 @@ def scene_tables(ctx: click.Context, scene: str | None, changes: tuple[str, ...]
     return tables
 
 
+def files_read(scene: str | None, tables: dict[str, Any]) -> list[str]:
+    """The files that a run of a scene reads: its own, and those that it names."""
+    from puck_tables.checkpoint import files_named
+
+    return [*([] if scene is None else [scene]), *files_named(tables)]
+
+
 def _default_tables(given: dict[str, Any]) -> dict[str, Any]:
     """The puck in natural units of the other commands, as dimensions: f = J/g, h = δ r/2f."""
     from puck_tables.puck import STANDARD_GRAVITY
@@ -163,20 +170,20 @@ def run_scene(
         plot_scene(run, plot, overwrite)
         told(plot)
     if explain:
-        click.echo(run.plan.why, err=True)
+        click.echo(printable(run.plan.why), err=True)
     if as_json:
         from puck_tables.scene_file import scene_summary
 
         click.echo(json.dumps(scene_summary(run), allow_nan=False))
     else:
-        click.echo(report(run))
+        click.echo(printable(report(run)))
 
 
 def report(run: SceneRun) -> str:
     """A scene run and what went in, each with its unit."""
     last = run.last
     lines = {
-        "scene": printable(run.scene.title) or "without a title",
+        "scene": run.scene.title or "without a title",
         **_inputs(run.scene),
         "friction": _friction(run.scene),
         "end": f"{run.end} after {run.end_time:.9g} s",
@@ -216,7 +223,7 @@ def _inputs(scene: Scene) -> dict[str, str]:
 def _written(value: Any) -> str:
     if isinstance(value, tuple):
         return f"({', '.join(map(_written, value))})"
-    return f"{value:.9g}" if isinstance(value, float) else printable(str(value))
+    return f"{value:.9g}" if isinstance(value, float) else str(value)
 
 
 def _friction(scene: Scene) -> str:
@@ -226,7 +233,7 @@ def _friction(scene: Scene) -> str:
     puck, normal = scene.puck, scene.floor.gravity * math.cos(scene.floor.slope)
     heights = [2.0 * f * puck.height / puck.radius for f in coefficients]
     if scene.floor.law:
-        return f"by slip speed, {printable(scene.floor.law)}"
+        return f"by slip speed, {scene.floor.law}"
     words = f"delta = {', '.join(f'{delta:.4g}' for delta in heights)}, "
     words += f"f N/m = {', '.join(f'{f * normal:.6g}' for f in coefficients)} m/s^2"
     return words + ("; part of the base may lift" if max(heights) > 1.0 else "")
@@ -264,5 +271,5 @@ def summary_of_map(stops: SceneMap) -> str:
         for code, end in enumerate(ENDS)
         if (stops.end == code).any()
     )
-    head = f"{printable(stops.scene.title) or 'scene'} over {ranged}: {counts}; {stops.plan.model}"
+    head = f"{stops.scene.title or 'scene'} over {ranged}: {counts}; {stops.plan.model}"
     return "\n".join([head, *stops.without_end()])

@@ -22,12 +22,13 @@ from puck_tables.cli.options import (
     output_options,
     patience,
     prepare_outputs,
+    printable,
     puck_and_floor,
     puck_options,
     table_option,
     told,
 )
-from puck_tables.cli.scene_run import run_scene, scene_options, scene_tables
+from puck_tables.cli.scene_run import files_read, run_scene, scene_options, scene_tables
 
 from puck_tables.errors import InputError
 
@@ -87,8 +88,8 @@ def simulate(
     puck simulate --v0 1,0 --w0 5 --pressure annulus:0.8 --gyration 0.9
     """  # noqa: D301 - click reads the backspace
     if scene is not None or changes:
-        prepare_outputs(output, plot, overwrite=overwrite)
         tables = scene_tables(ctx, scene, changes)
+        prepare_outputs(output, plot, overwrite=overwrite, inputs=files_read(scene, tables))
         run_scene(tables, scene or "scene", times, explain, as_json, output, plot, overwrite)
         return
     if v0 is None:
@@ -96,7 +97,7 @@ def simulate(
     r, height_ratio, J = puck_and_floor(radius, height, friction, gravity, delta, decel)
     if exact and table_path is not None:
         raise InputError("--exact and --table clash: closed forms need no table")
-    prepare_outputs(output, plot, overwrite=overwrite, table=table_path)
+    prepare_outputs(output, plot, overwrite=overwrite, inputs=(table_path, pressure))
     from puck_tables.result_file import TRAJECTORY_KINDS, kind_of, save_trajectory, summary
 
     if output is not None:
@@ -130,7 +131,8 @@ def simulate(
         click.echo(json.dumps(summary(run), allow_nan=False))
     else:
         given = any(x is not None for x in (radius, height, friction, delta, decel, gyration))
-        click.echo(report(run, "" if given else "   (defaults: see --help for a real puck)"))
+        note = "" if given else "   (defaults: see --help for a real puck)"
+        click.echo(printable(report(run, note)))
 
 
 def report(run: Trajectory, note: str) -> str:

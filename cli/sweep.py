@@ -17,6 +17,7 @@ from puck_tables.cli.options import (
     explained,
     output_options,
     prepare_outputs,
+    printable,
     progress,
     puck_and_floor,
     puck_options,
@@ -24,7 +25,7 @@ from puck_tables.cli.options import (
     tables_named,
     told,
 )
-from puck_tables.cli.scene_run import scene_options, scene_tables, summary_of_map
+from puck_tables.cli.scene_run import files_read, scene_options, scene_tables, summary_of_map
 from puck_tables.cli.start import last_words
 
 from puck_tables.errors import InputError
@@ -105,15 +106,14 @@ def sweep(
     Each delta above 1, or with --pressure or --gyration, takes about a second to prepare.
     """  # noqa: D301 - click reads the backspace
     if scene is not None or changes:
-        prepare_outputs(output, plot, overwrite=overwrite)
-        _sweep_scene(
-            scene_tables(ctx, scene, changes), explain, threads, output, resume, plot, overwrite
-        )
+        tables = scene_tables(ctx, scene, changes)
+        prepare_outputs(output, plot, overwrite=overwrite, inputs=files_read(scene, tables))
+        _sweep_scene(tables, explain, threads, output, resume, plot, overwrite)
         return
     r, height_ratio, J = puck_and_floor(radius, height, friction, gravity, delta, decel)
     if v0 is not None and speed is not None:
         raise InputError("--v0 and --speed clash: both give the launch velocity")
-    prepare_outputs(output, plot, overwrite=overwrite, table=table_path)
+    prepare_outputs(output, plot, overwrite=overwrite, inputs=(table_path, pressure))
     from puck_tables.result_file import MAP_KINDS, kind_of, map_as_csv, save_map
     from puck_tables.stop_map import BYTES_PER_LAUNCH, BYTES_PER_ROW, check_memory
     from puck_tables.stop_map import sweep as run_sweep
@@ -155,7 +155,7 @@ def sweep(
         told(plot)
     if output is None and plot is None:
         click.echo(map_as_csv(stops), nl=False)
-    click.echo(_summary(stops), err=True)
+    click.echo(printable(_summary(stops)), err=True)
     if explain:
         explained(stops.choice)
 
@@ -190,9 +190,9 @@ def _sweep_scene(
         told(plot)
     if output is None and plot is None:
         click.echo(scene_map_as_csv(stops), nl=False)
-    click.echo(summary_of_map(stops), err=True)
+    click.echo(printable(summary_of_map(stops)), err=True)
     if explain:
-        click.echo(stops.plan.why, err=True)
+        click.echo(printable(stops.plan.why), err=True)
 
 
 def _done_with(kept: Path | None, output: Path | None) -> None:

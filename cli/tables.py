@@ -6,6 +6,7 @@ import json
 from typing import TYPE_CHECKING
 
 import click
+from puck_tables.cli.options import printable
 
 from puck_tables.errors import InputError
 
@@ -49,7 +50,7 @@ def tables(as_json: bool, names: tuple[str, ...], clean: bool) -> None:
         if as_json:
             click.echo(json.dumps([entry._asdict() for entry in entries]))
         else:
-            click.echo(_lines(entries))
+            click.echo(printable(_lines(entries)))
 
 
 def _remove(paths: list[Path]) -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
-from puck_tables.cli.options import FILE, progress, tables_named
+from puck_tables.cli.options import FILE, printable, progress, tables_named
 
 if TYPE_CHECKING:
     from puck_tables.table.check import CheckReport
@@ -32,7 +32,7 @@ def validate(file: Path | None) -> None:
     for table in tables_named(file):
         with progress("validating") as show:
             report = judge(table, show)
-        click.echo(_lines(report))
+        click.echo(printable(_lines(report)))
         passed = passed and report.passed
     if not passed:
         click.echo("Error: the table is out of its own tolerance", err=True)

@@ -8,6 +8,7 @@ kind of puck alone, so that the numbers do not depend on how the work is cut.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -74,11 +75,14 @@ class AnyStops:
         return f"slices of pressure {self._law.name}, k/r = {self._gyration:g}"
 
     @property
-    def digest(self) -> str:
+    def work(self) -> dict[str, Any]:
         """What determines the bits besides the launches."""
-        phi = np.linspace(0.0, 0.5 * np.pi, 7)
-        friction = np.stack(self._law.friction(phi, 0.0)).tobytes().hex()
-        return f"{self._law.name} {friction} {self._gyration!r} {self.tol!r} {self._wanted}"
+        phi = np.linspace(0.0, 0.5 * np.pi, 99)
+        return {
+            "by": self._wanted, "law": self._law.name, "edges": self._law.edges,
+            "friction": np.stack(self._law.friction(phi, 0.0)), "profile": self._law.profile,
+            "gyration": self._gyration, "tol": self.tol,
+        }  # fmt: skip
 
     @property
     def method(self) -> str:

@@ -15,7 +15,7 @@ from puck_tables.similarity import file as stop_file
 from puck_tables.similarity.stop_table import StopTable
 from puck_tables.table import check, file, law_file, partial_file, speed_file
 from puck_tables.table.check import CheckReport
-from puck_tables.table.container import decode, read_content
+from puck_tables.table.container import read_content, read_table
 from puck_tables.table.law_check import validate_law
 from puck_tables.table.law_table import LawTable
 from puck_tables.table.partial_check import validate_partial
@@ -27,7 +27,9 @@ from puck_tables.table.table import FUNCTIONS, Table
 AnyTable = Table | StopTable | PartialTable | LawTable | SpeedTable
 Progress = Callable[[int, int], None]
 
-_FILES = {module.KIND: module for module in (file, stop_file, partial_file, law_file, speed_file)}
+_KINDS = {
+    module.KIND: module.STORED for module in (file, stop_file, partial_file, law_file, speed_file)
+}
 
 
 def load_any_table(path: str | Path) -> AnyTable:
@@ -50,9 +52,7 @@ def load_any_table(path: str | Path) -> AnyTable:
 
 
 def _table_in(content: bytes, source: str) -> AnyTable:
-    kinds = {kind: module.shapes for kind, module in _FILES.items()}
-    contents = decode(content, source, kinds)
-    table: AnyTable = _FILES[contents.attributes["kind"]].table_of(contents, source)
+    table: AnyTable = read_table(content, source, _KINDS)
     return table
 
 

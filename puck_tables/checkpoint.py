@@ -1,38 +1,105 @@
 """What is done of long work, kept in a file, so that it goes on after any end.
 
-One file: a header of one page that says which work it belongs to, one number for each chunk (0: not
-done; else its checksum and a set bit), then the results.  A chunk is taken for done only if its
-checksum is right, so an end at any moment, even of the machine, costs at most the chunks on hand.
+One file: a header of one page that says which work it belongs to, by a digest of everything that
+determines its results; then for each chunk its checksum and its results.  A chunk is taken for done
+only if its checksum is right, so an end at any moment, even of the machine, costs at most the
+chunks on hand.
 """
 
 from __future__ import annotations
 
 import contextlib
+import errno
+import hashlib
+import io
 import json
 import os
+import platform
+import sys
 import tempfile
+import threading
 import zlib
+from collections.abc import Mapping
+from importlib.metadata import version
 from pathlib import Path
 from types import TracebackType
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from puck_tables.errors import InputError, OutputError
+from puck_tables.kernels.cache import source_digest
+from puck_tables.safe_read import read_whole
 
 FloatArray = npt.NDArray[np.float64]
 
-_PAGE = 4096
-_DONE = 1 << 32
+_PAGE, _MARK = 4096, 8
+_LARGEST_FILE = 1 << 26
+
+
+def work_digest(**what: Any) -> str:
+    """Digest of everything that determines the bits of a long work.
+
+    Parameters
+    ----------
+    what : numbers, texts, None, arrays, and lists and mappings of them
+        The arguments, by content: not the name of a file, but what :func:`files_named` reads of it.
+        The sources of the package and what compiles and runs them are added here.
+
+    Examples
+    --------
+    >>> work_digest(tol=1e-8, w0=np.arange(3)) == work_digest(tol=1e-8, w0=np.arange(3.0))
+    False
+    """
+    runs = [source_digest(), version("numba"), version("llvmlite"), np.__version__,
+            platform.machine(), platform.processor(), sys.version]  # fmt: skip
+    text = json.dumps([what, runs], sort_keys=True, default=_told_apart)
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def _told_apart(value: Any) -> Any:
+    """An array as a digest of all that it is; whatever else JSON does not know is refused."""
+    if isinstance(value, np.ndarray | np.generic):
+        array = np.asarray(value)
+        content = hashlib.sha256(np.ascontiguousarray(array).tobytes()).hexdigest()
+        return [str(array.dtype), array.shape, content]
+    if isinstance(value, Mapping):
+        return dict(value)
+    raise TypeError(f"{type(value).__name__} does not say what it is")
+
+
+def files_named(value: Any) -> dict[str, str]:
+    """Digests of the content of all files whose names stand anywhere in a nested structure.
+
+    Examples
+    --------
+    >>> files_named({"force": {"file": "/nowhere/force.csv"}, "wall": [{"x": 1.0}]})
+    {'/nowhere/force.csv': 'cannot be read'}
+    """
+    if isinstance(value, Mapping):
+        value = list(value.values())
+    if isinstance(value, list | tuple):
+        return {name: digest for item in value for name, digest in files_named(item).items()}
+    if not isinstance(value, str) or not (value.lower().endswith(".csv") or os.path.isfile(value)):
+        return {}
+    try:
+        content = read_whole(value, _LARGEST_FILE)
+    except (OSError, ValueError):  # whoever needs it says why
+        return {value: "cannot be read"}
+    return {value: hashlib.sha256(content).hexdigest()}
 
 
 class Checkpoint:
     """Results (rows, items) and status (items,) of chunked work, in a file; a context manager.
 
+    What is done is in memory too (``values``, ``status``): the file may be cut or removed by others
+    while the work goes on.
+
     Parameters
     ----------
     path : where it is kept; gone on with if it exists and belongs to the same work
-    digest : what the work is
+    digest : what the work is, see :func:`work_digest`
     rows, items, chunk : its size and how it is cut
 
     Raises
@@ -58,43 +125,59 @@ class Checkpoint:
             {"puck-tables": "progress", "digest": digest, "rows": rows, "items": items,
              "chunk": chunk}, sort_keys=True,
         ).encode()  # fmt: skip
-        chunks = -(-items // chunk)
-        sizes = (_PAGE, 8 * chunks, items, -(_PAGE + 8 * chunks + items) % 8, 8 * rows * items)
-        marks, status, _, values = np.cumsum(sizes)[:-1].tolist()
-        total = sum(sizes)
+        total = _PAGE + _MARK * -(-items // chunk) + (8 * rows + 1) * items
         try:
             _create_unless_there(self.path, header, total)
-            self._lock = _locked(self.path)
+            self._file = _locked(self.path)
         except OSError as error:
             raise OutputError(f"cannot keep {self.path}: {error.strerror or error}") from None
-        try:
-            if self.path.stat().st_size != total or not _begins_with(self.path, header):
-                raise InputError(
-                    f"{self.path} is not what is done of this sweep: give the arguments it was "
-                    "begun with, or remove it"
-                )
-            memory = np.memmap(self.path, np.uint8, "r+")
-        except BaseException:
-            os.close(self._lock)
-            raise
-        self._memory = memory
-        self.marks = memory[marks:status].view(np.uint64)
-        self.status = memory[status : status + items].view(np.int8)
-        self.values: FloatArray = memory[values:].view(np.float64).reshape(rows, items)
+        if os.fstat(self._file.fileno()).st_size != total or not _begins_with(self._file, header):
+            self._file.close()
+            raise InputError(
+                f"{self.path} is not what is done of this work: give the arguments and files it "
+                "was begun with, or remove it"
+            )
+        self._one_at_a_time = threading.Lock()
+        self._block = _MARK + (8 * rows + 1) * chunk
+        self.values: FloatArray = np.full((rows, items), np.nan)
+        self.status: npt.NDArray[np.int8] = np.zeros(items, np.int8)
 
     def is_done(self, start: int) -> bool:
-        """Whether the chunk from ``start`` is there, whole."""
-        mark = int(self.marks[start // self.chunk])
-        return mark != 0 and mark == self._sum(start, min(start + self.chunk, self.items))
+        """Whether the chunk from ``start`` is there, whole; then it is in memory, too."""
+        stop = min(start + self.chunk, self.items)
+        count, rows = stop - start, len(self.values)
+        with self._one_at_a_time:
+            self._file.seek(self._place(start))
+            block = self._file.read(_MARK + (8 * rows + 1) * count)
+        content = block[_MARK:]
+        if len(content) < (8 * rows + 1) * count or block[:_MARK] != _mark(content):
+            return False
+        values = np.frombuffer(content, np.float64, rows * count)
+        self.values[:, start:stop] = values.reshape(rows, count)
+        self.status[start:stop] = np.frombuffer(content, np.int8, count, 8 * rows * count)
+        return True
 
     def put(self, start: int, stop: int, values: FloatArray, status: npt.NDArray[np.int8]) -> None:
-        """Keep the results of a chunk."""
-        self.values[:, start:stop], self.status[start:stop] = values, status
-        self.marks[start // self.chunk] = self._sum(start, stop)
+        """Keep the results of a chunk.
 
-    def _sum(self, start: int, stop: int) -> int:
-        crc = zlib.crc32(self.status[start:stop].tobytes())
-        return _DONE | zlib.crc32(np.ascontiguousarray(self.values[:, start:stop]).tobytes(), crc)
+        Raises
+        ------
+        OutputError
+            If the disk does not take them; what was kept before stays.
+        """
+        self.values[:, start:stop], self.status[start:stop] = values, status
+        content = np.ascontiguousarray(values).tobytes() + status.tobytes()
+        block = _mark(content) + content
+        try:
+            with self._one_at_a_time:
+                self._file.seek(self._place(start))
+                if self._file.write(block) != len(block):
+                    raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        except OSError as error:
+            raise OutputError(f"cannot keep {self.path}: {error.strerror or error}") from None
+
+    def _place(self, start: int) -> int:
+        return _PAGE + self._block * (start // self.chunk)
 
     def __enter__(self) -> Checkpoint:
         return self
@@ -105,8 +188,14 @@ class Checkpoint:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        self._memory.flush()
-        os.close(self._lock)
+        with contextlib.suppress(OSError):
+            os.fsync(self._file.fileno())
+        self._file.close()
+
+
+def _mark(content: bytes) -> bytes:
+    """What stands before a whole chunk: never zeros, and hardly before another content."""
+    return b"done" + zlib.crc32(content).to_bytes(4, "little")
 
 
 def _create_unless_there(path: Path, header: bytes, total: int) -> None:
@@ -123,21 +212,21 @@ def _create_unless_there(path: Path, header: bytes, total: int) -> None:
             os.link(file.name, path)
 
 
-def _locked(path: Path) -> int:
-    """An open, exclusively locked descriptor, where the system has locks."""
-    descriptor = os.open(path, os.O_RDWR)
+def _locked(path: Path) -> io.FileIO:
+    """The file opened, exclusively locked where the system has locks."""
+    file = io.FileIO(path, "r+")
     try:
         import fcntl
 
-        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        fcntl.flock(file.fileno(), fcntl.LOCK_EX | fcntl.LOCK_NB)
     except ImportError:
         pass
     except OSError:
-        os.close(descriptor)
+        file.close()
         raise InputError(f"another process is at work on {path}: wait for it to end") from None
-    return descriptor
+    return file
 
 
-def _begins_with(path: Path, header: bytes) -> bool:
-    with open(path, "rb") as file:
-        return file.read(_PAGE) == header.ljust(_PAGE, b"\0")
+def _begins_with(file: io.FileIO, header: bytes) -> bool:
+    file.seek(0)
+    return file.read(_PAGE) == header.ljust(_PAGE, b"\0")

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
+import secrets
+import stat
 import tempfile
 from pathlib import Path
 
@@ -52,11 +55,11 @@ def check_target(path: str | Path, overwrite: bool = False) -> Path:
             )
         with tempfile.TemporaryFile(dir=folder):
             pass
-    except (OSError, ValueError) as error:
+    except (OSError, ValueError) as error:  # also where the folder one stands in is gone
         if isinstance(error, OutputError):
             raise
         reason = getattr(error, "strerror", None) or error
-        raise OutputError(f"cannot write {path} in the folder {folder}: {reason}") from None
+        raise OutputError(f"cannot write {path} in its folder: {reason}") from None
     return target
 
 
@@ -79,14 +82,14 @@ def write_bytes(path: str | Path, content: bytes, overwrite: bool = False) -> No
     target = check_target(path, overwrite)
     temporary = None
     try:
-        with tempfile.NamedTemporaryFile(
-            dir=target.parent, prefix=_PREFIX, suffix=_SUFFIX, delete=False
-        ) as file:
-            temporary = Path(file.name)
+        before = target.stat() if target.exists() else None
+        temporary, descriptor = _part(target.parent, private=before is not None)
+        with open(descriptor, "wb") as file:
             file.write(content)
             file.flush()
             os.fsync(file.fileno())
-        temporary.chmod(0o666 & ~_umask())
+        if before is not None:
+            _give_rights(temporary, before)
         if overwrite:
             temporary.replace(target)
         else:
@@ -100,6 +103,25 @@ def write_bytes(path: str | Path, content: bytes, overwrite: bool = False) -> No
             temporary.unlink(missing_ok=True)
 
 
+def _part(folder: Path, private: bool) -> tuple[Path, int]:
+    """A new file under a name of its own, open for writing.
+
+    The system takes the umask from its rights: to ask for the umask is to change it, for all
+    threads, for a moment.
+    """
+    flags = os.O_RDWR | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
+    path = folder / f"{_PREFIX}{secrets.token_hex(8)}{_SUFFIX}"
+    return path, os.open(path, flags, 0o600 if private else 0o666)
+
+
+def _give_rights(path: Path, like: os.stat_result) -> None:
+    """The owner and the rights of the file that is replaced."""
+    if hasattr(os, "chown") and (like.st_uid, like.st_gid) != (os.geteuid(), os.getegid()):
+        with contextlib.suppress(OSError):  # only root may give files away
+            os.chown(path, like.st_uid, like.st_gid)
+    path.chmod(stat.S_IMODE(like.st_mode) & 0o777)
+
+
 def _rename_new(temporary: Path, target: Path) -> None:
     try:
         os.link(temporary, target)
@@ -109,9 +131,3 @@ def _rename_new(temporary: Path, target: Path) -> None:
         temporary.replace(target)
         return
     temporary.unlink()
-
-
-def _umask() -> int:
-    mask = os.umask(0o022)
-    os.umask(mask)
-    return mask

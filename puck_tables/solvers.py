@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -44,9 +45,12 @@ class LookUp:
         return self.table.source
 
     @property
-    def digest(self) -> str:
+    def work(self) -> dict[str, Any]:
         """What determines the bits besides the launches."""
-        return f"{self.method} {self.table.passport.get('content_digest', '')}"
+        return {
+            "by": self.method, "values": self.table.values, "powers": self.powers,
+            "thinning": self.thinning,
+        }  # fmt: skip
 
     def checked_range(self, delta: npt.ArrayLike) -> FloatArray:
         """``delta`` as an array, refused outside the range of the table."""
@@ -85,9 +89,12 @@ class Integration:
         return self.table.source
 
     @property
-    def digest(self) -> str:
+    def work(self) -> dict[str, Any]:
         """What determines the bits besides the launches."""
-        return f"{self.method} {self.table.passport.get('content_digest', '')}"
+        return {
+            "by": self.method, "values": self.table.values, "upper": self.table.delta_axis.upper,
+            "steps": self.steps, "tolerance": self.tolerance, "exact": self.exact,
+        }  # fmt: skip
 
     def checked_range(self, delta: npt.ArrayLike) -> FloatArray:
         """``delta`` as an array, refused outside the range of the table."""

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 import math
 import os
 from collections.abc import Callable
@@ -14,16 +12,15 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.any_stops import HEIGHT_COST, AnyStops
-from puck_tables.checkpoint import Checkpoint
+from puck_tables.checkpoint import Checkpoint, work_digest
 from puck_tables.contact.laws import HOMOGENEOUS, Law
 from puck_tables.errors import InputError
 from puck_tables.executor import run_chunks
 from puck_tables.front import Choice
-from puck_tables.kernels.cache import source_digest
 from puck_tables.puck import positive, velocity_array
 from puck_tables.real import finite_array
 from puck_tables.similarity.stop_table import StopTable
-from puck_tables.solvers import OUTPUTS, Integration, LookUp
+from puck_tables.solvers import OUTPUTS
 from puck_tables.stops import DEFAULT_TOL, any_solver
 from puck_tables.table.table import Table
 
@@ -189,15 +186,15 @@ def sweep(
         ])  # fmt: skip
         return solver.all(launches)
 
-    out, status = np.empty((len(OUTPUTS), size)), np.empty(size, np.int8)
     if checkpoint is None:
+        out, status = np.empty((len(OUTPUTS), size)), np.empty(size, np.int8)
 
         def work(start: int, stop: int) -> None:
             out[:, start:stop], status[start:stop] = stops_of(start, stop)
 
         run_chunks(work, size, chunk, threads, on_stops)
     else:
-        what = _digest(solver, values, {**fixed, "tol": tol})
+        what = work_digest(solver=solver.work, launches=values, numbers={**fixed, "tol": tol})
         with Checkpoint(checkpoint, what, len(OUTPUTS), size, chunk) as kept:
 
             def work_on(start: int, stop: int) -> None:
@@ -205,7 +202,7 @@ def sweep(
                     kept.put(start, stop, *stops_of(start, stop))
 
             run_chunks(work_on, size, chunk, threads, on_stops)
-            out[...], status[...] = kept.values, kept.status
+            out, status = kept.values, kept.status
     results = {name: row.reshape(shape) for name, row in zip(OUTPUTS, out, strict=True)}
     return StopMap(
         axes=axes,
@@ -217,17 +214,6 @@ def sweep(
         status=status.reshape(shape),
         **results,
     )
-
-
-def _digest(
-    solver: LookUp | Integration | AnyStops,
-    values: dict[str, FloatArray],
-    numbers: dict[str, float],
-) -> str:
-    """What determines the bits of a map."""
-    arrays = {name: hashlib.sha256(array.tobytes()).hexdigest() for name, array in values.items()}
-    what = [solver.digest, source_digest(), arrays, numbers]
-    return hashlib.sha256(json.dumps(what, sort_keys=True).encode()).hexdigest()
 
 
 def check_memory(shape: tuple[int, ...], per_launch: int = BYTES_PER_LAUNCH) -> None:

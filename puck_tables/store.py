@@ -9,11 +9,10 @@ kept is built and used all the same.
 from __future__ import annotations
 
 import re
-import sys
+import stat
 import time
 from collections.abc import Callable
 from dataclasses import replace
-from functools import cache
 from pathlib import Path
 from typing import TypeVar
 
@@ -22,7 +21,8 @@ import numpy as np
 from puck_tables.contact.laws import Law, law_of
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import InputError, OutputError, TableError
-from puck_tables.kernels.cache import source_digest, user_cache
+from puck_tables.kernels.cache import source_digest
+from puck_tables.own_folder import make_private, refuse_shared, say, user_cache
 from puck_tables.real import real_array
 from puck_tables.safe_write import PART_PATTERN
 from puck_tables.table.container import Saved, recipe_digest
@@ -183,22 +183,43 @@ def fetch(
         say("there is no cache folder for built tables on this machine: this one is not kept")
         return build()
     path = folder / name
-    if path.exists():
-        try:
-            kept = load(path)
-            if kept.passport.get("command") == command:
-                return kept
-            say(f"{path} is another table than its name says: it is built again")
-        except TableError:
-            say(f"{path} is damaged: it is built again")
+    try:
+        make_private(folder.parent)
+        make_private(folder)
+        if _is_kept(path):
+            try:
+                kept = load(path)
+                if kept.passport.get("command") == command:
+                    return kept
+                say(f"{path} is another table than its name says: it is built again")
+            except TableError:
+                say(f"{path} is damaged: it is built again")
+    except OSError as error:
+        say(f"the table is used but not kept for the next time: {error.strerror or error}")
+        return build()
     table = build()
     try:
-        folder.mkdir(parents=True, exist_ok=True)
         return save(table, path)
     except OSError as error:
         reason = str(error) if isinstance(error, OutputError) else error.strerror or str(error)
         say(f"the table is used but not kept for the next time: {reason}")
         return table
+
+
+def _is_kept(path: Path) -> bool:
+    """Whether a file is there; a link, a pipe or an empty folder in its place is taken away."""
+    try:
+        mode = path.lstat().st_mode
+    except FileNotFoundError:
+        return False
+    if stat.S_ISREG(mode):
+        return True
+    say(f"{path} is no file: it is removed, and the table built again")
+    if stat.S_ISDIR(mode):
+        path.rmdir()
+    else:
+        path.unlink()
+    return False
 
 
 def tables_folder() -> Path | None:
@@ -222,7 +243,7 @@ def kept_files() -> list[Path]:
     True
     """
     folder = tables_folder()
-    if folder is None or not folder.is_dir():
+    if folder is None or not _is_ours(folder):
         return []
     return sorted(
         path
@@ -231,10 +252,20 @@ def kept_files() -> list[Path]:
     )
 
 
+def _is_ours(folder: Path) -> bool:
+    """Whether there is such a folder, and it is safe to read and to remove files there."""
+    try:
+        refuse_shared(folder)
+        return folder.is_dir()
+    except OSError as error:
+        say(f"{folder} is not used: {error.strerror or error}")
+        return False
+
+
 def leftovers() -> list[Path]:
     """What builders that were killed while writing have left in the cache more than a day ago."""
     folder = tables_folder()
-    if folder is None or not folder.is_dir():
+    if folder is None or not _is_ours(folder):
         return []
     parts = folder.glob(PART_PATTERN)
     return sorted(path for path in parts if path.stat().st_mtime < time.time() - 86400)
@@ -256,10 +287,3 @@ def remove(path: Path) -> None:
         path.unlink(missing_ok=True)
     except OSError as error:
         raise OutputError(f"cannot remove {path}: {error.strerror or error}") from None
-
-
-@cache
-def say(text: str) -> None:
-    """A sentence on stderr, once."""
-    if sys.stderr is not None:
-        print(text, file=sys.stderr)

@@ -38,10 +38,10 @@ def test_an_edit_in_another_file_is_never_stale(tmp_path: Path):
         ROOT / "puck_tables", package / "puck_tables", ignore=shutil.ignore_patterns("__pycache__")
     )
     assert limit(package, folder) == round(LIMIT, 12)
-    compiled = sorted(folder.rglob("*.nbc"))
+    compiled = sorted(folder.rglob("*.code"))
     assert compiled
     assert limit(package, folder) == round(LIMIT, 12)
-    assert sorted(folder.rglob("*.nbc")) == compiled  # the second run compiled nothing
+    assert sorted(folder.rglob("*.code")) == compiled  # the second run compiled nothing
 
     # the compiled caller stands in motion/limits.py; edit what it calls, elsewhere
     callee = package / "puck_tables" / "contact" / "closed_form.py"
@@ -82,18 +82,9 @@ def test_every_compiled_function_is_kept_in_that_folder():
     for name in modules():
         for value in vars(importlib.import_module(name)).values():
             if isinstance(value, numba.core.dispatcher.Dispatcher) and value._cache.cache_path:
-                assert folder in Path(value._cache.cache_path).parents, (name, value)
+                assert folder == Path(value._cache.cache_path), (name, value)
                 kept.add(value.py_func.__module__.split(".")[1])
     assert kept >= {"kernels", "motion", "similarity", "tradeoff"}
-
-
-def test_damaged_files_of_the_cache_are_made_again(tmp_path: Path):
-    assert limit(ROOT, tmp_path) == round(LIMIT, 12)
-    index = next(tmp_path.rglob("*.nbi"))
-    whole = index.read_bytes()
-    index.write_bytes(whole[: len(whole) // 2])
-    assert limit(ROOT, tmp_path) == round(LIMIT, 12)
-    assert len(index.read_bytes()) == len(whole)  # healed
 
 
 def test_four_processes_may_fill_the_cache_at_once(tmp_path: Path):
@@ -114,6 +105,8 @@ def test_no_writable_folder_still_computes(tmp_path: Path):
         capture_output=True, text=True, check=True,
     )  # fmt: skip
     assert float(ended.stdout) == pytest.approx(LIMIT, abs=1e-14)
+    assert len(ended.stderr.splitlines()) == 1
+    assert "compiled code is not kept for the next time" in ended.stderr
 
 
 def test_the_cache_lies_outside_the_package_and_old_ones_go(tmp_path: Path):
@@ -130,7 +123,7 @@ def test_the_cache_lies_outside_the_package_and_old_ones_go(tmp_path: Path):
     )  # fmt: skip
     assert not old.exists()
     assert recent.exists()
-    assert len(list(cache.glob("*/*/*.nbc"))) > 0
+    assert len(list(cache.glob("*/*.code"))) > 0
     # nothing but Python's own byte code appears beside the sources
     beside = {path.suffix for path in (ROOT / "puck_tables").glob("**/__pycache__/*")}
     assert beside <= {".pyc"}

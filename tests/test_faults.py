@@ -143,7 +143,7 @@ def test_a_damaged_chunk_is_done_again(tmp_path: Path):
             stop = min(start + 4, 10)
             kept.put(start, stop, np.ones((1, stop - start)), np.zeros(stop - start, np.int8))
     content = bytearray(path.read_bytes())
-    content[-8] ^= 1  # the last number
+    content[-10] ^= 1  # in the last number, before two states
     path.write_bytes(content)
     with Checkpoint(path, "work", 1, 10, 4) as kept:
         assert [kept.is_done(start) for start in (0, 4, 8)] == [True, True, False]

@@ -102,7 +102,12 @@ def test_the_digest_of_sources_sees_what_computes_a_table(tmp_path: Path):
     assert len(seen) == 3
 
 
-@pytest.mark.parametrize("harm", ["flip", "cut", "empty", "text", "folder", "another"])
+HARMS = (
+    "flip", "cut", "empty", "text", "folder", "full folder", "pipe", "link", "another",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("harm", HARMS)
 def test_a_damaged_one_is_said_and_built_again(
     harm: str, kept: Path, builds: list[str], capsys: pytest.CaptureFixture[str]
 ):
@@ -111,9 +116,19 @@ def test_a_damaged_one_is_said_and_built_again(
     content = path.read_bytes()
     if harm == "flip":
         path.write_bytes(content[:5000] + bytes([content[5000] ^ 4]) + content[5001:])
-    elif harm == "folder":
+    elif "folder" in harm:
         path.unlink()
         path.mkdir()
+        if harm == "full folder":
+            (path / "mine").write_text("mine")
+    elif harm == "pipe":
+        path.unlink()
+        os.mkfifo(path)
+    elif harm == "link":
+        other = kept.parent / "mine.txt"
+        other.write_text("mine")
+        path.unlink()
+        path.symlink_to(other)
     elif harm == "another":  # whole, but not what its name says
         pt.table_for("ring", accuracy=1e-3)
         (other,) = set(kept.iterdir()) - {path}
@@ -128,9 +143,12 @@ def test_a_damaged_one_is_said_and_built_again(
     said = capsys.readouterr()
     assert said.out == ""
     assert f"{path} is " in said.err
-    assert "it is built again" in said.err
-    if harm == "folder":
+    assert "built again" in said.err
+    if harm == "link":
+        assert other.read_text() == "mine"
+    if harm == "full folder":
         assert "not kept for the next time" in said.err
+        assert (path / "mine").read_text() == "mine"
     else:
         pt.table_for("ring", accuracy=1e-4)
         assert len(builds) == 2

@@ -162,13 +162,18 @@ def test_a_folder_that_vanishes_during_the_work(
 ):
     target = Path("gone", COMMANDS[name][1].format("new"))
     target.parent.mkdir(parents=True, exist_ok=name == "paper")
-    true: Callable[..., object] = tempfile.NamedTemporaryFile
+    true: Callable[..., object] = safe_write._part
+    kept: Callable[..., object] = tempfile.NamedTemporaryFile
 
-    def vanish(**given: object) -> object:
+    def gone(*given: object, **named: object) -> object:
         shutil.rmtree("gone", ignore_errors=True)
-        return true(**given)
+        return true(*given, **named)
 
-    monkeypatch.setattr(safe_write.tempfile, "NamedTemporaryFile", vanish)
+    def vanish(**named: object) -> object:
+        shutil.rmtree("gone", ignore_errors=True)
+        return kept(**named)
+
+    monkeypatch.setattr(safe_write, "_part", gone)
     if name == "sweep resumed":  # the progress file is met first
         monkeypatch.setattr("puck_tables.checkpoint.tempfile.NamedTemporaryFile", vanish)
     assert "No such file or directory" in refused(name, "gone/new")

@@ -1,4 +1,4 @@
-"""The user's cache folder, and where in it compiled code is kept; needs no numba.
+"""Where compiled code is kept, and the digest of the sources it comes from; needs no numba.
 
 numba's own disk cache notices an edit of the file a function stands in, but not an edit of the
 functions it calls from elsewhere.  So the cache folder carries a digest of every source file of
@@ -11,12 +11,13 @@ import contextlib
 import hashlib
 import os
 import shutil
-import sys
 import tempfile
 import time
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
+
+from puck_tables.own_folder import make_private, say, user_cache
 
 _PACKAGE = Path(__file__).resolve().parent.parent
 
@@ -31,49 +32,31 @@ def source_digest(*folders: str) -> str:
     return digest.hexdigest()[:16]
 
 
-def user_cache() -> Path | None:
-    """Where this user's programs keep what they can make again; None where there is no such place.
-
-    ``XDG_CACHE_HOME`` or ``~/.cache``, ``~/Library/Caches`` on macOS, ``LOCALAPPDATA`` on Windows.
-
-    Examples
-    --------
-    >>> user_cache().name
-    'puck-tables'
-    """
-    if sys.platform == "win32":
-        base = os.environ.get("LOCALAPPDATA") or os.path.expanduser("~/AppData/Local")
-    elif sys.platform == "darwin":
-        base = os.path.expanduser("~/Library/Caches")
-    else:
-        base = os.environ.get("XDG_CACHE_HOME", "")
-        if not os.path.isabs(base):  # unset, or void by the XDG specification
-            base = os.path.expanduser("~/.cache")
-    # where nobody has a home '~' stays: that would be a folder wherever the program stands
-    return Path(base) / "puck-tables" if os.path.isabs(base) else None
-
-
 @cache
-def cache_folder() -> str | None:
-    """Where compiled code is kept; None where no folder can be written.
+def cache_folder() -> Path | None:
+    """Where compiled code is kept; None, with a sentence on stderr, where no folder will do.
 
     ``NUMBA_CACHE_DIR`` if set, else the user's cache folder.  Never beside the package: what an
     uninstalled package leaves in its folder would hide the one that is installed next.
     """
     chosen = os.environ.get("NUMBA_CACHE_DIR")
-    base = Path(chosen) if chosen else user_cache()
+    base = Path(chosen).absolute() if chosen else user_cache()
     if base is None:
+        say("there is no cache folder for compiled code on this machine: it is not kept")
         return None
     folder = base / f"compiled-{source_digest()}"
     try:
+        if not chosen:
+            make_private(base)
         if not folder.exists():
             _forget_unused(base)
-            folder.mkdir(parents=True, exist_ok=True)
+        make_private(folder)
         os.utime(folder)
         tempfile.TemporaryFile(dir=folder).close()
-    except OSError:
+    except OSError as error:
+        say(f"compiled code is not kept for the next time: {error.strerror or error}")
         return None
-    return str(folder)
+    return folder
 
 
 def _forget_unused(base: Path) -> None:

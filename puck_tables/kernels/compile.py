@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 from collections.abc import Callable
 from typing import Any, TypeVar
 
@@ -12,7 +11,8 @@ from numba import types
 from numba.core import event
 from numba.extending import intrinsic
 
-from puck_tables.kernels.cache import cache_folder, compiling
+from puck_tables.kernels.cache import compiling
+from puck_tables.kernels.kept_code import KeptCode
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -51,36 +51,9 @@ def _compile(function: Function, forceinline: bool) -> Function:
     compiled: Any = numba.njit(
         nogil=True, fastmath={"contract"}, error_model="numpy", forceinline=forceinline
     )(function)
-    folder = None if forceinline else cache_folder()
-    if folder is not None and hasattr(compiled, "enable_caching"):
-        config: Any = numba.config
-        before = config.CACHE_DIR
-        config.CACHE_DIR = folder
-        try:
-            compiled.enable_caching()
-            _spare(compiled._cache)
-        finally:
-            config.CACHE_DIR = before
+    if not forceinline and hasattr(compiled, "enable_caching"):  # not where compiling is off
+        compiled._cache = KeptCode(function)
     return compiled
-
-
-def _spare(cache: Any) -> None:
-    """Make numba do without its files where the disk is full or they are damaged."""
-    load, save = cache.load_overload, cache.save_overload
-
-    def load_if_whole(signature: Any, context: Any) -> Any:
-        try:
-            return load(signature, context)
-        except Exception:  # whatever a damaged file makes numba raise
-            with contextlib.suppress(OSError):
-                cache.flush()
-            return None
-
-    def save_if_room(signature: Any, data: Any) -> None:
-        with contextlib.suppress(OSError):
-            save(signature, data)
-
-    cache.load_overload, cache.save_overload = load_if_whole, save_if_room
 
 
 def _weighted_rows(

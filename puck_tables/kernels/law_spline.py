@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.kernels.compile import inlined, kernel
-from puck_tables.kernels.spline import basis, side_and_eta
+from puck_tables.kernels.spline import basis, cell_at, side_and_eta
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -37,10 +37,10 @@ def law_ratios(
     n_delta, n_eta = coefficients.shape[1] - 3, coefficients.shape[2] - 3
     side, eta = law_side_and_eta(phi, sides)
     p = eta * n_eta
-    i = min(int(p), n_eta - 1)
+    i = cell_at(p, n_eta)
     u = basis(p - i)
     q = delta_share * n_delta
-    j = min(int(q), n_delta - 1)
+    j = cell_at(q, n_delta)
     inverse, across, turning = 0.0, 0.0, 0.0
     for k, v in enumerate(basis(q - j)):
         row = coefficients[side, j + k]

@@ -20,7 +20,7 @@ import numpy.typing as npt
 
 from puck_tables.kernels.closed_form import friction_ratios
 from puck_tables.kernels.compile import inlined, kernel
-from puck_tables.kernels.spline import basis, side_and_eta
+from puck_tables.kernels.spline import basis, cell_at, side_and_eta
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -42,7 +42,7 @@ def partial_excess(
     p = eta / ends[side] * n_eta
     if p > n_eta:  # full contact at every height of the table
         return False, 0.0, 0.0, 0.0
-    i = min(int(p), n_eta - 1)
+    i = cell_at(p, n_eta)
     u0, u1, u2, u3 = basis(p - i)
     critical = 1.0 / math.sqrt(
         u0 * opening[side, i] + u1 * opening[side, i + 1]
@@ -53,7 +53,7 @@ def partial_excess(
     top = ends[4] * max(1.0, critical / ends[3])
     zeta = math.sqrt(math.log((top - critical) / (top - delta)))
     q = zeta / ends[2] * n_zeta
-    j = min(int(q), n_zeta - 1)
+    j = cell_at(q, n_zeta)
     v0, v1, v2, v3 = basis(q - j)
     parallel, perpendicular, spin = 0.0, 0.0, 0.0
     for k, v in enumerate((v0, v1, v2, v3)):

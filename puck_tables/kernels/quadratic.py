@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.kernels.compile import kernel
-from puck_tables.kernels.spline import basis, side_and_eta
+from puck_tables.kernels.spline import basis, cell_at, side_and_eta
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -46,7 +46,7 @@ def fill_resultants_quadratic(
         for n in range(angle.size):
             side, eta = side_and_eta(angle[n])
             p = eta * n_eta
-            i = min(int(p), n_eta - 1)
+            i = cell_at(p, n_eta)
             first[n] = side * side_stride + TERMS * i
             w0[n], w1[n], w2[n], w3[n] = basis(p - i)
         for n in range(angle.size):

@@ -19,7 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.kernels.compile import inlined, kernel
-from puck_tables.kernels.spline import basis
+from puck_tables.kernels.spline import basis, cell_at
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -42,7 +42,7 @@ def slice_place(k: float, fast: bool, cut: FloatArray, functions: int) -> tuple[
     eta = math.sqrt(math.sqrt(abs(across / along) * cut[side, INVERSE_EXTENT]))
     cells = (cut.shape[1] - HEADER) // functions - 3
     p = min(eta, 1.0) * cells
-    cell = min(int(p), cells - 1)
+    cell = cell_at(p, cells)
     return side, HEADER + functions * cell, p - cell
 
 

@@ -26,6 +26,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.kernels.spline import cell_at
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -59,7 +60,7 @@ def _spline(
     """Four functions at ξ, ζ in one patch; what rounding puts outside goes to the edge."""
     p = min(max(xi, 0.0), 1.0) * cells_u
     q = min(max(zeta, 0.0), 1.0) * cells_w
-    i, j = min(int(p), cells_u - 1), min(int(q), cells_w - 1)
+    i, j = cell_at(p, cells_u), cell_at(q, cells_w)
     u, w = quintic(p - i), quintic(q - j)
     width = 4 * (cells_w + DEGREE)
     first = offset + i * width + 4 * j

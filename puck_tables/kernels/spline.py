@@ -42,6 +42,17 @@ def basis(t: float) -> tuple[float, float, float, float]:
 
 
 @inlined
+def cell_at(place: float, cells: int) -> int:
+    """The cell of a place in [0, cells]: always one of them, also for what is no number.
+
+    Where a place is no number the weights are none either, and so is what is looked up.
+    """
+    inside = place if place > 0.0 else 0.0
+    last = cells - 1.0
+    return int(inside if inside < last else last)
+
+
+@inlined
 def side_and_eta(phi: float) -> tuple[int, float]:
     """Side and graded coordinate η of an angle |φ| ≤ π/2; tan by Lambert's continued fraction."""
     x = abs(phi) - 0.25 * math.pi
@@ -89,9 +100,9 @@ def fill_resultants(
         for n in range(angle.size):
             side, eta = side_and_eta(angle[n])
             p = eta * n_eta
-            i = min(int(p), n_eta - 1)
+            i = cell_at(p, n_eta)
             q = height[n] / delta_max * n_delta
-            j = min(int(q), n_delta - 1)
+            j = cell_at(q, n_delta)
             first[n] = (side * (n_delta + 3) + j) * row + 3 * i
             w0[n], w1[n], w2[n], w3[n] = basis(p - i)
             v0[n], v1[n], v2[n], v3[n] = basis(q - j)
@@ -117,7 +128,7 @@ def cut(coefficients: FloatArray, delta_share: float, out: FloatArray) -> None:
     """Contract the δ axis once for a run at fixed δ/δ_max: ``out`` is flat, 2·3·(n_eta + 3)."""
     n_delta = coefficients.shape[1] - 3
     q = delta_share * n_delta
-    j = min(int(q), n_delta - 1)
+    j = cell_at(q, n_delta)
     w0, w1, w2, w3 = basis(q - j)
     k = 0
     for side in range(2):
@@ -138,6 +149,6 @@ def evaluate_cut(cut_: FloatArray, side: int, eta: float) -> tuple[float, float,
     row = cut_.size // 2
     n_eta = row // 3 - 3
     p = eta * n_eta
-    i = min(int(p), n_eta - 1)
+    i = cell_at(p, n_eta)
     w0, w1, w2, w3 = basis(p - i)
     return _row(cut_, np.uint64(side * row + 3 * i), w0, w1, w2, w3)

@@ -55,7 +55,7 @@ def find_scene(name: str) -> dict[str, Any]:
     0.15
     """
     try:
-        os.stat(name)
+        os.lstat(name)
     except FileNotFoundError:
         if name in _names():
             return tomllib.loads(shipped_text(name))

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import copy
-import hashlib
-import json
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
@@ -15,12 +13,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.checkpoint import Checkpoint
+from puck_tables.checkpoint import Checkpoint, files_named, work_digest
 from puck_tables.errors import InputError
 from puck_tables.executor import Progress, run_chunks
-from puck_tables.kernels.cache import source_digest
 from puck_tables.scene.bulk import ENDS_COLUMNS
-from puck_tables.scene.entries import as_toml, set_path, tables_of
+from puck_tables.scene.entries import set_path, tables_of
 from puck_tables.scene.equations import SIZE
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
 from puck_tables.scene.loop import AT_REST, CARRIED_AWAY, NOT_FINITE, OVER_EDGE, TIME_UP
@@ -149,8 +146,8 @@ def sweep_scene(
     shape = tuple(values.size for values in axes.values())
     check_memory(shape, BYTES)
     size = math.prod(shape)
-    files = files_of(first)
     whole = tables_of(first)
+    read, files = files_named(whole), files_of(first)
     inner = [path for path in axes if _is_launch(path, first)]
     outer = [path for path in axes if path not in inner]
 
@@ -207,24 +204,32 @@ def sweep_scene(
         except InputError as error:
             return str(error)
 
-    out, status = np.empty((len(RESULTS), size)), np.empty(size, np.int8)
+    def whole_ends(start: int, stop: int) -> tuple[FloatArray, npt.NDArray[np.int8]]:
+        found = ends_of(start, stop)
+        if files_named(whole) != read:
+            raise InputError(
+                f"a file that this scene names was changed while it was swept ({', '.join(read)}): "
+                "begin again"
+            )
+        return found
+
     if checkpoint is None:
+        out, status = np.empty((len(RESULTS), size)), np.empty(size, np.int8)
 
         def work(start: int, stop: int) -> None:
-            out[:, start:stop], status[start:stop] = ends_of(start, stop)
+            out[:, start:stop], status[start:stop] = whole_ends(start, stop)
 
         run_chunks(work, size, chunk, threads, progress)
     else:
-        with Checkpoint(
-            checkpoint, _digest(as_toml(first, axes)), len(RESULTS), size, chunk
-        ) as kept:
+        digest = work_digest(scene=whole, axes=list(axes.items()), files=read)
+        with Checkpoint(checkpoint, digest, len(RESULTS), size, chunk) as kept:
 
             def work_on(start: int, stop: int) -> None:
                 if not kept.is_done(start):
-                    kept.put(start, stop, *ends_of(start, stop))
+                    kept.put(start, stop, *whole_ends(start, stop))
 
             run_chunks(work_on, size, chunk, threads, progress)
-            out[...], status[...] = kept.values, kept.status
+            out, status = kept.values, kept.status
     refused, valid = np.flatnonzero(status == REFUSED), np.flatnonzero(status != REFUSED)
     refusal = refusal_of(int(refused[0])) if refused.size else ""
     if not valid.size:
@@ -309,9 +314,3 @@ def _is_launch(path: str, scene: Scene) -> bool:
     """Whether a range only changes the launch, and nothing has to be checked or fixed to it."""
     fixed = path.startswith("launch.position") and bool(scene.wall or scene.edge)
     return path in LAUNCH and scene.constraint is None and not fixed
-
-
-def _digest(scene: str) -> str:
-    """What determines the bits of a map."""
-    text = json.dumps([scene, source_digest()])
-    return hashlib.sha256(text.encode()).hexdigest()

@@ -26,7 +26,7 @@ from puck_tables.contact.resultants import moment_balance
 from puck_tables.kernels.spline import basis
 from puck_tables.motion.limits import limit_ratio
 from puck_tables.real import instance
-from puck_tables.similarity.axes import HEIGHTS, SlipAxis
+from puck_tables.similarity.axes import HEIGHTS, SlipAxis, heights, ratio_at
 from puck_tables.similarity.curve import limits, regular_parts
 from puck_tables.similarity.curve_lookup import (
     BODY,
@@ -41,6 +41,7 @@ from puck_tables.similarity.curve_lookup import (
 )
 from puck_tables.similarity.exact import exact_stops
 from puck_tables.similarity.lookup import CURVE_ROW
+from puck_tables.similarity.node_equations import all_slopes, missed_by_curve, missed_by_stops
 from puck_tables.similarity.stop_table import StopAccuracy, StopTable
 from puck_tables.table.check import Check, CheckReport
 
@@ -53,9 +54,15 @@ _REFINED = 3
 _NODES = chebyshev.chebpts1(14)
 # How many times the tolerance an equation between several values may be off.
 EQUATION_FACTOR = 4.0
+# largest error × cells⁴ of stops and of the curve, about twice what was measured, and the errors of
+# the polynomials in δ²
+_CEILING, _POLYNOMIAL = 1.6, 5e-12
+_CURVE_CEILING, _CURVE_POLYNOMIAL = 10.0, 2e-10
 
 
-def launch_points(axis: SlipAxis, random_points: int, seed: int) -> tuple[FloatArray, FloatArray]:
+def launch_points(
+    axis: SlipAxis, random_points: int, seed: int | None
+) -> tuple[FloatArray, FloatArray]:
     """Launches (u, δ) where a stop table is worst: cell middles, ends, both sides of π/4.
 
     Examples
@@ -185,7 +192,8 @@ def validate_stops(table: StopTable, progress: Progress | None = None) -> CheckR
     Returns
     -------
     CheckReport
-        Against the integrator with closed forms; against the equations that T, X + iY, ln Q and
+        Against the integrator with closed forms, in every cell of slip and at points that are other
+        ones at every call; against the equations that T, X + iY, ln Q and
         ψ satisfy, with resultants by direct quadrature; against elementary values at φ = 0, π/2
         and at the limit angle.
 
@@ -201,21 +209,31 @@ def validate_stops(table: StopTable, progress: Progress | None = None) -> CheckR
         if progress is not None:
             progress(done, 3)
 
-    u, delta = launch_points(table.axis, 1500, seed=8)
-    error = np.abs(looked_up(table, u, delta) - exact_stops(u, delta))
-    checks = [
-        _check("integrator", name, column, u, delta, table.tolerance)
-        for name, column in zip(NAMES, error.T, strict=False)
-    ]
+    rng = np.random.default_rng()
+    cells = table.axis.cells
+    allowed = min(table.tolerance, _CEILING / cells**4 + _POLYNOMIAL)
+    checks = []
+    for route, (u, delta) in (
+        ("integrator", launch_points(table.axis, 750, seed=None)),
+        ("integrator, every cell", _in_every_cell(table.axis, rng)),
+    ):
+        error = np.abs(looked_up(table, u, delta) - exact_stops(u, delta))
+        checks += [
+            _check(route, name, column, u, delta, allowed)
+            for name, column in zip(NAMES, error.T, strict=False)
+        ]
     step(1)
-    checks += _equations(table, np.random.default_rng(3), 400)
+    checks += _equations(table, rng, 400, allowed, _CURVE_CEILING / cells**4 + _CURVE_POLYNOMIAL)
+    checks += _at_nodes(table)
     step(2)
-    checks += _elementary(table)
+    checks += _elementary(table, allowed)
     step(3)
     return CheckReport(table.source, table.tolerance, tuple(checks))
 
 
-def _equations(table: StopTable, rng: np.random.Generator, count: int) -> list[Check]:
+def _equations(
+    table: StopTable, rng: np.random.Generator, count: int, allowed: float, by_curve: float
+) -> list[Check]:
     delta = rng.random(count)
     start = rng.choice([-1.0, 1.0], count) * np.exp(rng.uniform(-9.0, 3.5, count))
     limit = np.array([limits(float(d)).u for d in delta])
@@ -247,17 +265,42 @@ def _equations(table: StopTable, rng: np.random.Generator, count: int) -> list[C
         - end_q**2 * turned * (last[:, 1] + 1j * last[:, 2])
     )  # fmt: skip
     curve = _along_curve(table, end, delta) - _along_curve(table, start, delta)
-    measured = table.tolerance if table.accuracy is None else table.accuracy.states
     return [
-        _check("equation", name, np.abs(residual), start, delta, EQUATION_FACTOR * allowed)
-        for name, residual, allowed in (
-            ("time", rest_time, table.tolerance),
-            ("x", rest_place.real, table.tolerance),
-            ("y", rest_place.imag, table.tolerance),
-            ("curve", curve[0] - log_q[-1], measured),
-            ("turn", curve[1] - psi[-1], measured),
+        _check("equation", name, np.abs(residual), start, delta, EQUATION_FACTOR * most)
+        for name, residual, most in (
+            ("time", rest_time, allowed),
+            ("x", rest_place.real, allowed),
+            ("y", rest_place.imag, allowed),
+            ("curve", curve[0] - log_q[-1], by_curve),
+            ("turn", curve[1] - psi[-1], by_curve),
         )
     ]  # fmt: skip
+
+
+def _in_every_cell(axis: SlipAxis, rng: np.random.Generator) -> tuple[FloatArray, FloatArray]:
+    """Two launches (u, δ) in every cell of slip, one of them at a height of the table."""
+    shape = 4, axis.cells
+    xi = (np.arange(axis.cells) + rng.random(shape)) / axis.cells
+    u = np.log(ratio_at(xi)) * np.array([[1.0], [-1.0], [1.0], [-1.0]])
+    delta = rng.random(shape)
+    delta[2:] = rng.choice(heights(), shape)[2:]
+    return u.ravel(), delta.ravel()
+
+
+def _at_nodes(table: StopTable) -> list[Check]:
+    """All node values in the equations they satisfy, see ``node_equations``."""
+    axis = table.axis
+    slow = np.log(np.maximum(ratio_at(np.arange(axis.cells + 1) / axis.cells), 1e-300))
+    u, delta = np.broadcast_arrays(np.stack([slow, -slow])[..., None], heights())
+    missed, allowed = missed_by_stops(axis, table.values)
+    of_curve = [missed_by_curve(axis, table.values, j, all_slopes) for j in range(HEIGHTS)]
+    by_curve, allowed_curve = np.stack([one for one, _ in of_curve], axis=2), of_curve[0][1]
+    columns = [(missed[..., i], allowed) for i in range(5)]
+    columns += [(by_curve[..., i], allowed_curve) for i in range(2)]
+    return [
+        _check("equation, every node", name, error.ravel(), u.ravel(), delta.ravel(), most)
+        for name, (error, most) in zip(NAMES, columns, strict=True)
+    ]
 
 
 def _along_curve(table: StopTable, u: FloatArray, delta: FloatArray) -> FloatArray:
@@ -274,7 +317,7 @@ def _integrals(values: npt.NDArray[np.inexact]) -> npt.NDArray[np.inexact]:
     return chebyshev.chebval(np.append(_NODES, 1.0), primitive).T
 
 
-def _elementary(table: StopTable) -> list[Check]:
+def _elementary(table: StopTable, allowed: float) -> list[Check]:
     """T, X, path and body angle of pure sliding and pure spin; T and X + iY of the limit motion."""
     delta = np.linspace(0.0, 1.0, 41)
     checks = []
@@ -298,7 +341,7 @@ def _elementary(table: StopTable) -> list[Check]:
         (0, "time", 1.0 / rho.parallel), (1, "x", spiral.real), (2, "y", spiral.imag),
     ):  # fmt: skip
         error = np.abs(got[:, column] - value)
-        checks.append(_check("limit motion", name, error, u0, delta, table.tolerance))
+        checks.append(_check("limit motion", name, error, u0, delta, allowed))
     return checks
 
 

@@ -25,7 +25,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.kernels.compile import inlined, kernel
-from puck_tables.kernels.spline import basis
+from puck_tables.kernels.spline import basis, cell_at
 from puck_tables.similarity.axes import HEIGHTS
 from puck_tables.similarity.lookup import CURVE_ROW, STOP_POWERS, slip_place
 
@@ -51,7 +51,7 @@ STATE_ROWS = 6
 @inlined
 def _cell(xi: float, cells: int) -> tuple[int, float, float, float, float]:
     p = xi * cells
-    i = min(int(p), cells - 1)
+    i = cell_at(p, cells)
     w0, w1, w2, w3 = basis(p - i)
     return i, w0, w1, w2, w3
 

@@ -15,18 +15,24 @@ from typing import Any
 import numpy as np
 
 from puck_tables.similarity.axes import HEIGHTS, SlipAxis, heights
+from puck_tables.similarity.exact import end_values
+from puck_tables.similarity.node_equations import (
+    missed_by_curve,
+    missed_by_stops,
+    slopes_off_the_limit,
+)
 from puck_tables.similarity.stop_table import FUNCTIONS, UPPER_DELTA, StopAccuracy, StopTable
 from puck_tables.table.container import (
     Contents,
     Field,
-    accuracy_of,
-    check_usable,
-    decode,
+    Kind,
     encode,
     function_fields,
     read_content,
+    read_table,
     save,
 )
+from puck_tables.table.usable import accuracy_of, check_usable, refuse_wrong
 
 KIND = "stops"
 ALGORITHM = "Dormand-Prince with closed forms at 2e-14, curve by Gauss quadrature; 1"
@@ -53,6 +59,7 @@ _DELTA_MAP = (
     "delta = sin(pi (2 j + 1)/(4 n_delta)); polynomial in delta^2, degree 7 for stops, "
     "8 for the curve"
 )
+_LARGEST, _NODE_ERROR = 10.0, 1e-12  # of a value, and how well some are known
 _LONG_NAMES = {
     "time": "stop time J t/Q",
     "along": "displacement along the launch velocity J x/(Q^2 cos(phi))",
@@ -133,7 +140,8 @@ def _default_table() -> StopTable:
 
 
 def _decode(content: bytes, source: str) -> StopTable:
-    return table_of(decode(content, source, {KIND: shapes}), source)
+    table: StopTable = read_table(content, source, {KIND: STORED})
+    return table
 
 
 def _recipe(axis: SlipAxis) -> dict[str, Any]:
@@ -191,12 +199,33 @@ def table_of(contents: Contents, source: str) -> StopTable:
     """
     axis = SlipAxis(contents.attributes["cells"])
     nodes = {"phi": axis.phi(), "delta": heights()}
-    check_usable(contents, source, _recipe(axis), nodes, positive="time")
-    return StopTable(
+    check_usable(contents, source, _recipe(axis), nodes, (-_LARGEST, _LARGEST), 0.1 / axis.cells**4)
+    table = StopTable(
         axis,
         np.stack([contents.arrays[name] for name in FUNCTIONS], axis=-1),
         tolerance=contents.attributes["tolerance"],
-        accuracy=StopAccuracy(**accuracy_of(contents.attributes)),
+        accuracy=accuracy_of(contents.attributes, StopAccuracy, len(FUNCTIONS)),
         passport=contents.attributes,
         source=source,
     )
+    _check_some(table)
+    return table
+
+
+def _check_some(table: StopTable) -> None:
+    """Refuse a table with wrong values, as far as the equations between its nodes show them.
+
+    Nothing compiled is called: that would take a second.
+    """
+    axis, values = table.axis, table.values
+    ends = np.abs(values[[0, -1], :, :5] - np.stack(end_values(heights())))
+    refuse_wrong(table.source, ends, _NODE_ERROR, "elementary solutions")
+    refuse_wrong(table.source, np.abs(values[axis.cells, :, 5:]), _NODE_ERROR, "the curve's origin")
+    refuse_wrong(table.source, *missed_by_stops(axis, values), "the equations of motion")
+    height = int(np.random.default_rng().integers(HEIGHTS))
+    missed = missed_by_curve(axis, values, height, slopes_off_the_limit)
+    refuse_wrong(table.source, *missed, "the curve of all motions")
+
+
+STORED = Kind({"delta_map": str, "cells": int, "n_delta": int, "delta_max": float},
+              shapes, table_of)  # fmt: skip

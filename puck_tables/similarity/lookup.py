@@ -52,8 +52,17 @@ def _place(speed: float, rim: float, cells: float) -> tuple[float, float]:
     """Cell and place in it; 1 − q may lose digits next to φ = π/4, where slopes in ξ vanish."""
     q = math.sqrt(math.sqrt(2.0 * min(speed, rim) / (speed + rim + _NOTHING)))
     p = (1.0 - math.sqrt(max(1.0 - q, 0.0))) * cells
-    cell = np.floor(min(p, cells - 1.0))
+    cell = _cell(p, cells)
     return cell, p - cell
+
+
+@inlined
+def _cell(place: float, cells: float) -> float:
+    """As :func:`puck_tables.kernels.spline.cell_at`, without leaving floating point."""
+    inside = place if place > 0.0 else 0.0
+    last = cells - 1.0
+    cell: float = np.floor(inside if inside < last else last)
+    return cell
 
 
 def row_width(powers: int) -> int:
@@ -111,7 +120,7 @@ def stops_kernel(powers: int) -> Callable[[FloatArray, FloatArray, FloatArray], 
                     speed = math.hypot(vx[n], vy[n])
                     slip[n] = math.hypot(speed, edge[n])
                     side, xi = slip_place(speed, abs(edge[n]))
-                    cell = np.floor(min(xi * cells, cells - 1.0))
+                    cell = _cell(xi * cells, cells)
                     inside[n] = xi * cells - cell
                     first[n] = int(width * cell + side * side_stride)
             for n in range(vx.size):

@@ -1,8 +1,8 @@
 """The only door to table files: HDF5 with a passport, refused unless whole and unaltered.
 
 After the HDF5 content stands a line with its sha256, the seal.  Nothing without a right one is
-given to HDF5: damaged files can make it hang.  What a kind of table puts into a file stands with
-that kind.
+read, and what is read is never given to the HDF5 library, which wrong metadata can make hang
+(:mod:`puck_tables.table.plain_hdf5`).  What a kind of table puts into a file stands with that kind.
 
 Layout: one dimension scale per axis, one little-endian float64 dataset per function over all axes,
 everything else in attributes of the root.  Nothing else is read: no links, no filters, no objects.
@@ -21,7 +21,6 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, NamedTuple, Protocol, TypeVar
 
-import h5py
 import numpy as np
 import numpy.typing as npt
 
@@ -30,6 +29,7 @@ from puck_tables.errors import OutputError, TableError
 from puck_tables.real import instance
 from puck_tables.safe_read import read_whole
 from puck_tables.safe_write import write_bytes
+from puck_tables.table.plain_hdf5 import PlainFile
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -54,8 +54,28 @@ class Contents(NamedTuple):
     arrays: dict[str, FloatArray]
 
 
-# From the attributes of a file of one kind to the shapes of its arrays, axes first.
-Shapes = Callable[[dict[str, Any]], dict[str, tuple[int, ...]]]
+class Kind(NamedTuple):
+    """How the tables of one kind stand in files.
+
+    ``entries``: the attributes it has besides those of all kinds, and their types; ``shapes``: from
+    the attributes to the shapes of the arrays, axes first; ``table_of``: the table of what was read
+    from a source.
+    """
+
+    entries: Mapping[str, type]
+    shapes: Callable[[dict[str, Any]], dict[str, tuple[int, ...]]]
+    table_of: Callable[[Contents, str], Any]
+
+
+# what every kind of table says of itself
+_ENTRIES: Mapping[str, type] = dict.fromkeys(
+    (
+        "format", "format_version", "kind", "pressure_law", "algorithm", "title",
+        "interpretation", "valid_range", "achieved_accuracy", "method", "package_version",
+        "library_versions", "created", "command", "recipe_digest", "content_digest",
+    ), str,
+) | {"tolerance": float}  # fmt: skip
+_WORDS = {int: "whole number", float: "finite number", str: "text"}
 
 
 def recipe_digest(recipe: dict[str, Any]) -> str:
@@ -97,6 +117,8 @@ def encode(
     >>> encode({"kind": "none"}, {}, [line], [], "by hand")[1:4]
     b'HDF'
     """
+    import h5py  # not needed where tables are only read
+
     attributes = {
         "Conventions": "CF-1.11",
         "format": FORMAT,
@@ -250,17 +272,18 @@ def read_content(path: str | Path) -> bytes:
         raise TableError(f"cannot read {path}: {error.strerror or error}") from None
 
 
-def decode(content: bytes, source: str, kinds: Mapping[str, Shapes]) -> Contents:
-    """What stands in the bytes of a table file of one of these kinds.
+def read_table(content: bytes, source: str, kinds: Mapping[str, Kind]) -> Any:
+    """The table in the bytes of a file, of one of these kinds.
 
     Raises
     ------
     TableError
-        If they are not a table, of another kind or a newer format, or altered.
+        If they are not a table, of another kind or a newer format, altered, or none that this
+        program can use.
 
     Examples
     --------
-    >>> decode(b"puck", "my.h5", {})
+    >>> read_table(b"puck", "my.h5", {})
     Traceback (most recent call last):
     ...
     puck_tables.errors.TableError: my.h5 is not an HDF5 file
@@ -279,68 +302,52 @@ def decode(content: bytes, source: str, kinds: Mapping[str, Shapes]) -> Contents
             "build it again with 'puck build-tables'"
         )
     try:
-        with h5py.File(io.BytesIO(inside), "r") as file:
-            return _read(file, source, kinds)
+        with np.errstate(all="ignore"):  # numbers that no table has are refused in the end
+            return _read(inside, source, kinds)
     except TableError:
         raise
-    except Exception as error:  # whatever a damaged file makes h5py raise
+    except Exception as error:  # whatever numbers and texts of any kind and size lead to
+        reason = str(error) if type(error) is ValueError else type(error).__name__
         raise TableError(
-            f"{source} is damaged and cannot be read as a table ({type(error).__name__}): "
+            f"{source} is damaged and cannot be read as a table ({reason}): "
             "build it again with 'puck build-tables'"
         ) from None
 
 
-def _read(file: h5py.File, source: str, kinds: Mapping[str, Shapes]) -> Contents:
-    attributes = {name: _attribute(file, name) for name in file.attrs}
+def _read(content: bytes, source: str, kinds: Mapping[str, Kind]) -> Any:
+    file = PlainFile(content)
+    attributes: dict[str, Any] = dict(file.attributes)
     if attributes.get("format") != FORMAT:
         raise TableError(f"{source} is an HDF5 file but not a table of this program")
-    major = str(attributes["format_version"]).split(".")[0]
-    if not major.isdigit() or int(major) > int(FORMAT_VERSION.split(".")[0]):
+    major = str(attributes.get("format_version")).split(".")[0]
+    if major.isdecimal() and int(major) > int(FORMAT_VERSION.split(".")[0]):
         raise TableError(
             f"{source} has table format {attributes['format_version']}, newer than "
             f"{FORMAT_VERSION} of this program: update puck-tables"
         )
-    kind = str(attributes.get("kind"))
-    if kind not in kinds:
-        wanted = " or ".join(f"'{name}'" for name in kinds)
+    name = str(attributes.get("kind"))
+    if name not in kinds:
+        wanted = " or ".join(f"'{kind}'" for kind in kinds)
         raise TableError(
-            f"{source} holds '{kind}', not a table of {wanted}: "
+            f"{source} holds '{name}', not a table of {wanted}: "
             "give a file made by 'puck build-tables'"
         )
-    shapes = kinds[kind](attributes)
-    if 8 * sum(map(math.prod, shapes.values())) > file.id.get_filesize():
-        raise TableError(f"{source} is damaged: it is shorter than its arrays")
-    arrays = {name: _array(file, name, shape, source) for name, shape in shapes.items()}
-    stated = attributes.pop("content_digest", None)
+    kind = kinds[name]
+    for entry, type_ in {**_ENTRIES, **kind.entries}.items():
+        found = attributes.get(entry)
+        if type(found) is not type_ or (isinstance(found, float) and not math.isfinite(found)):
+            raise ValueError(f"its entry {entry} is missing or no {_WORDS[type_]}")
+    shapes = kind.shapes(attributes)
+    if 8 * sum(map(math.prod, shapes.values())) > len(content):
+        raise ValueError("it is shorter than its arrays")
+    arrays = {array: file.array(array, shape) for array, shape in shapes.items()}
+    stated = attributes.pop("content_digest")
     if _digest(attributes, arrays) != stated:
         raise TableError(
             f"{source} was altered or damaged: its content does not match its digest; "
             "build it again with 'puck build-tables'"
         )
-    return Contents({**attributes, "content_digest": stated}, arrays)
-
-
-def _attribute(file: h5py.File, name: str) -> Any:
-    """A number or a text as a plain Python value; whatever else HDF5 can hold is refused."""
-    stored = file.attrs.get_id(name)
-    if stored.shape != () or not (
-        stored.dtype.kind in "iuf" or h5py.check_string_dtype(stored.dtype) is not None
-    ):
-        raise ValueError(name)
-    value = file.attrs[name]
-    return value.item() if isinstance(value, np.generic) else value
-
-
-def _array(file: h5py.File, name: str, shape: tuple[int, ...], source: str) -> FloatArray:
-    """Numbers that stand plainly in this file: not by a link, elsewhere, or through a filter."""
-    if not isinstance(file.get(name, getlink=True), h5py.HardLink):
-        raise TableError(f"{source} is damaged: {name} is missing or a link")
-    data = file[name]
-    if data.shape != shape or data.dtype != "<f8":
-        raise TableError(f"{source} is damaged: its arrays do not fit its axes")
-    if data.is_virtual or data.external or data.chunks is not None:
-        raise TableError(f"{source} is damaged: {name} does not stand plainly in it")
-    return np.asarray(data[...])
+    return kind.table_of(Contents({**attributes, "content_digest": stated}, arrays), source)
 
 
 def _digest(attributes: dict[str, Any], arrays: dict[str, FloatArray]) -> str:
@@ -349,43 +356,3 @@ def _digest(attributes: dict[str, Any], arrays: dict[str, FloatArray]) -> str:
         digest.update(json.dumps(array.shape).encode())
         digest.update(np.ascontiguousarray(array, dtype="<f8").tobytes())
     return digest.hexdigest()
-
-
-def check_usable(
-    contents: Contents,
-    source: str,
-    recipe: dict[str, Any],
-    nodes: dict[str, FloatArray],
-    positive: str | None = None,
-) -> None:
-    """Refuse a file whose digest is right but whose numbers this program cannot use.
-
-    The recipe must be known, the nodes where the splines will look, all values finite and those
-    of ``positive``, if given, greater than zero.
-
-    Raises
-    ------
-    TableError
-    """
-    attributes, arrays = contents
-    if any(attributes.get(name) != value for name, value in recipe.items()):
-        raise TableError(f"{source} was made by a recipe that this program does not know")
-    if not (
-        all(np.allclose(arrays[n], at, rtol=1e-14, atol=1e-14) for n, at in nodes.items())
-        and all(np.isfinite(array).all() for array in arrays.values())
-        and (positive is None or (arrays[positive] > 0.0).all())
-        and 0.0 < attributes["tolerance"] < 1.0
-    ):
-        raise TableError(f"{source} has axes or values that this program cannot use")
-
-
-def accuracy_of(attributes: dict[str, Any]) -> dict[str, Any]:
-    """The measured accuracy as its class takes it: lists become tuples.
-
-    Examples
-    --------
-    >>> accuracy_of({"achieved_accuracy": '{"order": 4, "rms": [1]}'})
-    {'order': 4, 'rms': (1,)}
-    """
-    stated = json.loads(attributes["achieved_accuracy"])
-    return {key: tuple(v) if isinstance(v, list) else v for key, v in stated.items()}

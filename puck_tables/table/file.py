@@ -15,19 +15,21 @@ from typing import Any
 
 import numpy as np
 
+from puck_tables.table.check import by_closed_form
 from puck_tables.table.container import (
     Contents,
     Field,
-    accuracy_of,
-    check_usable,
-    decode,
+    Kind,
     encode,
     function_fields,
     read_content,
+    read_table,
     save,
 )
 from puck_tables.table.grid import GRADING_POWER, DeltaAxis, PhiAxis
+from puck_tables.table.oddities import odd_nodes
 from puck_tables.table.table import FUNCTIONS, Accuracy, Table
+from puck_tables.table.usable import accuracy_of, check_usable, refuse_wrong
 
 KIND = "resultants"
 ALGORITHM = "elliptic integrals; friction ratios splined; 1"
@@ -46,6 +48,8 @@ _PHI_MAP = (
 )
 _DELTA_MAP = "delta = delta_max j/(n_delta - 1); cubic spline with not-a-knot ends"
 _SPLINED = "1/parallel, perpendicular/parallel, spin/parallel"
+# how much of a large table is compared with the truth as it is read, and how well that is known
+_ROWS, _COLUMNS, _NODE_ERROR = 2001, 8, 1e-12
 _LONG_NAMES = {
     "parallel": "friction resultant along the velocity, rho_parallel",
     "perpendicular": "friction resultant across the velocity, rho_perpendicular",
@@ -165,7 +169,8 @@ def _encode(table: Table, command: str) -> bytes:
 
 
 def _decode(content: bytes, source: str) -> Table:
-    return table_of(decode(content, source, {KIND: shapes}), source)
+    table: Table = read_table(content, source, {KIND: STORED})
+    return table
 
 
 def shapes(attributes: dict[str, Any]) -> dict[str, tuple[int, ...]]:
@@ -195,13 +200,36 @@ def table_of(contents: Contents, source: str) -> Table:
     """
     phi_axis, delta_axis = _axes(contents.attributes)
     nodes = {"phi": phi_axis.nodes(), "delta": delta_axis.nodes()}
-    check_usable(contents, source, _recipe(phi_axis, delta_axis), nodes, positive="parallel")
-    return Table(
+    check_usable(contents, source, _recipe(phi_axis, delta_axis), nodes, (0.0, 2.0),
+                 0.25 / phi_axis.cells_per_side**4)  # fmt: skip
+    table = Table(
         phi_axis,
         delta_axis,
         np.stack([contents.arrays[name] for name in FUNCTIONS], axis=-1),
         tolerance=contents.attributes["tolerance"],
-        accuracy=Accuracy(**accuracy_of(contents.attributes)),
+        accuracy=accuracy_of(contents.attributes, Accuracy, len(FUNCTIONS)),
         passport=contents.attributes,
         source=source,
     )
+    _check_some(table)
+    return table
+
+
+def _check_some(table: Table) -> None:
+    """Refuse a table with wrong values, as far as a millisecond of closed forms finds them."""
+    rows = np.arange(table.phi_axis.size)
+    if rows.size > _ROWS:
+        odd = odd_nodes(table.values[:, [0, -1]], (0,), _ROWS)[:, 0]
+        rows = np.unique(np.concatenate([[0, rows.size // 2, rows.size - 1], odd,
+                                         np.random.default_rng().choice(rows, 500)]))  # fmt: skip
+    columns = np.arange(table.delta_axis.size)
+    if columns.size > _COLUMNS:
+        columns = np.random.default_rng().choice(columns, _COLUMNS)
+    phi, delta = table.phi_axis.nodes()[rows, None], table.delta_axis.nodes()[columns]
+    truth = np.stack(by_closed_form(phi, delta), axis=-1)
+    error = np.abs(table.values[rows[:, None], columns] - truth)
+    refuse_wrong(table.source, error, _NODE_ERROR, "the closed forms")
+
+
+STORED = Kind({"delta_map": str, "splined": str, "n_phi": int, "n_delta": int, "delta_max": float},
+              shapes, table_of)  # fmt: skip

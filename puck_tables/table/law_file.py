@@ -15,21 +15,24 @@ from typing import Any
 
 import numpy as np
 
+from puck_tables.contact.laws import law_of
+from puck_tables.errors import InputError, TableError
 from puck_tables.table.container import (
     Contents,
     Field,
-    accuracy_of,
-    check_usable,
-    decode,
+    Kind,
     encode,
     function_fields,
     read_content,
+    read_table,
     save,
 )
 from puck_tables.table.grid import GRADING_POWER
 from puck_tables.table.law_grid import LawAxis
 from puck_tables.table.law_table import HEIGHTS, FloatArray, LawTable
+from puck_tables.table.oddities import odd_nodes
 from puck_tables.table.table import FUNCTIONS, Accuracy
+from puck_tables.table.usable import accuracy_of, check_usable, refuse_wrong
 
 _RADIUS, _PRESSURE = "profile_radius", "profile_pressure"
 
@@ -49,6 +52,9 @@ _PHI_MAP = (
     f"extent xi^{GRADING_POWER}, xi = 1 at phi = 0, pi/2 or half way to the next line; cubic "
     "splines in xi with zero slope at xi = 0 and at phi = 0 and pi/2, else not-a-knot"
 )
+_LARGEST = 1e3  # of a resultant: 64 stands in an extreme profile
+# how many slip angles are compared with the law as a file is read, and how well that is known
+_NODES, _NODE_ERROR, _SAME = 30, 1e-10, 1e-10
 _DELTA_MAP = "delta = delta_max j/3; cubic spline with not-a-knot ends"
 _SPLINED = "1/parallel, perpendicular/parallel, spin/parallel"
 
@@ -165,8 +171,15 @@ def _encode(table: LawTable, command: str) -> bytes:
         Field(_RADIUS, radius, {"units": "1", "long_name": "radius in units of that of the puck"}),
         Field(_PRESSURE, pressure, {"units": "1", "long_name": "pressure, largest 1"}),
     )
-    recipe |= {"profile_rows": radius.size, "profile_digest": profile_digest(radius, pressure)}
+    recipe |= _profile_recipe(table.profile)
     return encode(recipe, described, axes, function_fields(FUNCTIONS, table), command, curve)
+
+
+def _profile_recipe(profile: tuple[FloatArray, FloatArray] | None) -> dict[str, Any]:
+    """What a tabulated law adds to the recipe."""
+    if profile is None:
+        return {}
+    return {"profile_rows": profile[0].size, "profile_digest": profile_digest(*profile)}
 
 
 def _nodes(axis: LawAxis, delta_max: float) -> dict[str, FloatArray]:
@@ -195,6 +208,8 @@ def shapes(attributes: dict[str, Any]) -> dict[str, tuple[int, ...]]:
     axis = _axis(attributes)
     shape = (len(axis.sides), axis.cells + 1, HEIGHTS)
     rows = attributes.get("profile_rows", 0)
+    if type(rows) is not int or rows < 0:
+        raise ValueError("its profile has no number of rows")
     profile = {_RADIUS: (rows,), _PRESSURE: (rows,)} if rows else {}
     return {
         "side": shape[:1], "xi": shape[1:2], "delta": shape[2:],
@@ -203,7 +218,8 @@ def shapes(attributes: dict[str, Any]) -> dict[str, tuple[int, ...]]:
 
 
 def _decode(content: bytes, source: str) -> LawTable:
-    return table_of(decode(content, source, {KIND: shapes}), source)
+    table: LawTable = read_table(content, source, {KIND: STORED})
+    return table
 
 
 def table_of(contents: Contents, source: str) -> LawTable:
@@ -215,19 +231,60 @@ def table_of(contents: Contents, source: str) -> LawTable:
         If this program cannot use it.
     """
     attributes = contents.attributes
-    axis, delta_max = _axis(attributes), float(attributes["delta_max"])
-    recipe = _recipe(attributes["pressure_law"], axis, delta_max)
-    check_usable(contents, source, recipe, _nodes(axis, delta_max), positive="parallel")
-    return LawTable(
-        attributes["pressure_law"],
+    axis, delta_max = _axis(attributes), attributes["delta_max"]
+    name = attributes["pressure_law"]
+    nodes = _nodes(axis, delta_max)
+    profile = None
+    if _RADIUS in contents.arrays:
+        profile = contents.arrays[_RADIUS], contents.arrays[_PRESSURE]
+        if _is_named(name):
+            raise TableError(f"{source} holds a profile that is not the law it names, {name}")
+        nodes |= {_RADIUS: profile[0], _PRESSURE: profile[1]}
+    recipe = _recipe(name, axis, delta_max) | _profile_recipe(profile)
+    check_usable(contents, source, recipe, nodes, (0.0, _LARGEST), 0.1 / axis.cells**4)
+    table = LawTable(
+        name,
         axis,
         delta_max,
         np.stack([contents.arrays[name] for name in FUNCTIONS], axis=-1),
         tolerance=attributes["tolerance"],
-        accuracy=Accuracy(**accuracy_of(attributes)),
+        accuracy=accuracy_of(attributes, Accuracy, len(FUNCTIONS)),
         passport=attributes,
         source=source,
-        profile=(contents.arrays[_RADIUS], contents.arrays[_PRESSURE])
-        if _RADIUS in contents.arrays
-        else None,
+        profile=profile,
     )
+    if profile is not None or _is_named(name):  # else the file is from before format 2
+        _check_some(table)
+    return table
+
+
+def _is_named(name: str) -> bool:
+    """Whether a law is known by its name."""
+    try:
+        return not name.lower().endswith(".csv") and law_of(name).name == name
+    except InputError:
+        return False
+
+
+def _check_some(table: LawTable) -> None:
+    """Refuse a table that is not of its law, as far as some slip angles tell."""
+    law = table.law
+    if law.edges != table.axis.edges or abs(law.delta_max / table.delta_max - 1.0) > _SAME:
+        raise TableError(f"{table.source} is not of the pressure law that it names, {law.name}")
+    rng = np.random.default_rng()
+    sides, cells = table.values.shape[:2]
+    odd = odd_nodes(table.values, (1,), _NODES)
+    side = np.concatenate([odd[:, 0], rng.integers(0, sides, _NODES)])
+    place = np.concatenate([odd[:, 1], rng.integers(0, cells, _NODES)])
+    heights = np.linspace(0.0, table.delta_max, HEIGHTS)
+    truth = np.stack(law.resultants(table.axis.phi()[side, place, None], heights), axis=-1)
+    error = np.abs(table.values[side, place] - truth)
+    refuse_wrong(table.source, error, _NODE_ERROR, f"the law {law.name}")
+    parallel = table.values[..., :1]  # in full contact the ratios are polynomials of degree 2 in δ
+    ratios = np.concatenate([1.0 / parallel, table.values[..., 1:] / parallel], axis=-1)
+    bent = np.abs(np.diff(ratios, 3, axis=2)) / (1.0 + np.abs(ratios).max(axis=2, keepdims=True))
+    refuse_wrong(table.source, bent, _NODE_ERROR, "polynomials of the height")
+
+
+STORED = Kind({"delta_map": str, "splined": str, "edges": str, "cells": int, "delta_max": float},
+              shapes, table_of)  # fmt: skip

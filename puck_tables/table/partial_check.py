@@ -11,21 +11,26 @@ from puck_tables.contact.one_sided import balance
 from puck_tables.contact.opening import critical_delta
 from puck_tables.contact.resultants import moment_balance
 from puck_tables.table.check import Check, CheckReport, worst_of
+from puck_tables.table.oddities import odd_nodes
 from puck_tables.table.partial_grid import FAST_END, UPPER_DELTA, ZETA_END, PartialAxes, height_at
 from puck_tables.table.partial_table import PartialTable
 from puck_tables.table.table import FUNCTIONS, Accuracy
 
 FloatArray = npt.NDArray[np.float64]
 
+_COARSEST, _NODE = 0.01, 1e-10  # the most a table may promise; how well its nodes are known
 
-def adversarial_points(axes: PartialAxes, count: int, seed: int) -> tuple[FloatArray, FloatArray]:
+
+def adversarial_points(
+    axes: PartialAxes, count: int, seed: int | None
+) -> tuple[FloatArray, FloatArray]:
     """Points of partial contact where a table is worst, and random ones.
 
     Parameters
     ----------
     axes : whose cells are probed
     count : about how many
-    seed : of the random generator
+    seed : of the random generator; None: other points at every call
 
     Returns
     -------
@@ -131,8 +136,9 @@ def validate_partial(table: PartialTable, points: int = 3000) -> CheckReport:
     Returns
     -------
     CheckReport
-        Deviations from the balance by quadrature at random and adversarial points, from the closed
-        forms of full contact where contact opens, and from ρ_∥ = 1, ρ_⊥ = δ/4 at φ = 0.
+        Deviations from the balance by quadrature at random and adversarial points, all over the
+        table (other points at every call) and at the nodes that fit their neighbours least, from
+        the closed forms of full contact where contact opens, and from ρ_∥ = 1, ρ_⊥ = δ/4 at φ = 0.
 
     Examples
     --------
@@ -141,23 +147,49 @@ def validate_partial(table: PartialTable, points: int = 3000) -> CheckReport:
     True
     """
     checks: list[Check] = []
-    phi, delta = adversarial_points(table.axes, points, seed=7)
-    error = np.abs(np.stack(table.resultants(phi, delta)) - np.stack(balance(phi, delta)[0]))
+    allowed = min(table.tolerance, _COARSEST)
+    for name, (phi, delta) in (
+        ("one-sided balance", adversarial_points(table.axes, points, seed=None)),
+        ("the same, all over the table", _all_over(table, points // 2)),
+    ):
+        error = np.abs(np.stack(table.resultants(phi, delta)) - np.stack(balance(phi, delta)[0]))
+        for function, row in zip(FUNCTIONS, error, strict=True):
+            checks.append(worst_of(name, function, row, phi, delta, allowed))
+    # all nodes are looked at: those that do not fit their neighbours are compared
+    odd = odd_nodes(table.values[:, 1:], (0, 1), points // 2) + np.array([0, 1])
+    phi, delta = table.axes.phi()[odd[:, 0]], table.axes.delta()[odd[:, 0], odd[:, 1]]
+    error = np.abs(table.values[odd[:, 0], odd[:, 1]].T - np.stack(balance(phi, delta)[0]))
     for function, row in zip(FUNCTIONS, error, strict=True):
-        checks.append(worst_of("one-sided balance", function, row, phi, delta, table.tolerance))
+        checks.append(worst_of("the oddest nodes", function, row, phi, delta, _NODE))
     phi = np.linspace(0.0, 1.2, 2001)
     delta = critical_delta(phi) * (1.0 + 1e-12)
     phi, delta = phi[delta < UPPER_DELTA], delta[delta < UPPER_DELTA]
     truth = moment_balance(closed_form.integrals(phi), slip_direction(phi), delta)
     error = np.abs(np.stack(table.resultants(phi, delta)) - np.stack(truth))
     for function, row in zip(FUNCTIONS, error, strict=True):
-        checks.append(
-            worst_of("closed forms at the opening", function, row, phi, delta, table.tolerance)
-        )
+        checks.append(worst_of("closed forms at the opening", function, row, phi, delta, allowed))
     error, delta = _sliding(table)
     for function, row in zip(FUNCTIONS[:2], error, strict=True):
-        checks.append(worst_of("pure sliding", function, row, 0.0 * delta, delta, table.tolerance))
+        checks.append(worst_of("pure sliding", function, row, 0.0 * delta, delta, allowed))
     return CheckReport(table.source, table.tolerance, tuple(checks))
+
+
+def _all_over(table: PartialTable, count: int) -> tuple[FloatArray, FloatArray]:
+    """One random point in each of about so many equal parts of the table."""
+    rng = np.random.default_rng()
+    nodes, zeta = table.axes.phi(), table.axes.zeta()
+    rows, columns = nodes.size - 1, zeta.size - 1
+    step = max(1, round((rows * columns / count) ** 0.5))
+    row, column = (
+        grid.ravel() for grid in np.mgrid[0:rows:step, 0:columns:step].astype(np.float64)
+    )
+    row = np.minimum(row + step * rng.random(row.size), rows * (1.0 - 1e-12))
+    column = np.minimum(column + step * rng.random(column.size), columns * (1.0 - 1e-12))
+    i = row.astype(np.int64)
+    phi = nodes[i] + (row - i) * np.diff(nodes)[i]
+    delta = height_at(critical_delta(phi), zeta[-1] * column / columns)
+    kept = (delta > critical_delta(phi)) & (delta <= UPPER_DELTA)
+    return phi[kept], delta[kept]
 
 
 def _sliding(table: PartialTable) -> tuple[FloatArray, FloatArray]:

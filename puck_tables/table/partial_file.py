@@ -14,20 +14,26 @@ from typing import Any
 
 import numpy as np
 
+from puck_tables.contact import closed_form
+from puck_tables.contact.integrals import slip_direction
+from puck_tables.contact.one_sided import balance
+from puck_tables.contact.opening import critical_delta
+from puck_tables.contact.resultants import moment_balance
 from puck_tables.table.container import (
     Contents,
     Field,
-    accuracy_of,
-    check_usable,
-    decode,
+    Kind,
     encode,
     function_fields,
     read_content,
+    read_table,
     save,
 )
+from puck_tables.table.oddities import odd_nodes
 from puck_tables.table.partial_grid import FAST_END, TOP_DELTA, UPPER_DELTA, ZETA_END, PartialAxes
 from puck_tables.table.partial_table import PartialTable
 from puck_tables.table.table import FUNCTIONS, Accuracy
+from puck_tables.table.usable import accuracy_of, check_usable, refuse_wrong
 
 KIND = "partial contact"
 ALGORITHM = "one-sided balance by quadrature; excess over full contact splined; 1"
@@ -54,6 +60,8 @@ _DELTA_MAP = (
     "zero slope at zeta = 0, not-a-knot at the end"
 )
 _SPLINED = "parallel, perpendicular, spin less their values in full contact at the same place"
+# how many balances are solved as a file is read, and how well they are known
+_NODES, _NODE_ERROR = 4, 1e-10
 _LONG_NAMES = {
     "parallel": "friction resultant along the velocity, rho_parallel",
     "perpendicular": "friction resultant across the velocity, rho_perpendicular",
@@ -166,7 +174,8 @@ def _encode(table: PartialTable, command: str) -> bytes:
 
 
 def _decode(content: bytes, source: str) -> PartialTable:
-    return table_of(decode(content, source, {KIND: shapes}), source)
+    table: PartialTable = read_table(content, source, {KIND: STORED})
+    return table
 
 
 def shapes(attributes: dict[str, Any]) -> dict[str, tuple[int, ...]]:
@@ -191,12 +200,36 @@ def table_of(contents: Contents, source: str) -> PartialTable:
     """
     axes = PartialAxes(contents.attributes["cells"])
     nodes = {"phi": axes.phi(), "zeta": axes.zeta()}
-    check_usable(contents, source, _recipe(axes), nodes, positive="parallel")
-    return PartialTable(
+    check_usable(contents, source, _recipe(axes), nodes, (0.0, 10.0), 50.0 / axes.cells**4)
+    table = PartialTable(
         axes,
         np.stack([contents.arrays[name] for name in FUNCTIONS], axis=-1),
         tolerance=contents.attributes["tolerance"],
-        accuracy=Accuracy(**accuracy_of(contents.attributes)),
+        accuracy=accuracy_of(contents.attributes, Accuracy, len(FUNCTIONS)),
         passport=contents.attributes,
         source=source,
     )
+    _check_some(table)
+    return table
+
+
+def _check_some(table: PartialTable) -> None:
+    """Refuse a table with wrong values, as far as a few balances of moments find them."""
+    rng = np.random.default_rng()
+    rows, columns = table.axes.shape
+    # at the opening itself, ζ = 0, the balance is that of full contact
+    odd = odd_nodes(table.values[:, 1:], (1, 0), _NODES) + np.array([0, 1])
+    row = np.concatenate([odd[:, 0], rng.integers(0, rows, _NODES)])
+    column = np.concatenate([odd[:, 1], rng.integers(1, columns, _NODES)])
+    phi, delta = table.axes.phi()[row], table.axes.delta()[row, column]
+    truth = np.stack(balance(phi, delta)[0], axis=-1)
+    error = np.abs(table.values[row, column] - truth)
+    refuse_wrong(table.source, error, _NODE_ERROR, "the balance of moments")
+    phi = table.axes.phi()
+    full = moment_balance(closed_form.integrals(phi), slip_direction(phi), critical_delta(phi))
+    error = np.abs(table.values[:, 0] - np.stack(full, axis=-1))
+    refuse_wrong(table.source, error, _NODE_ERROR, "the closed forms where contact opens")
+
+
+STORED = Kind({"delta_map": str, "splined": str, "cells": int, "delta_max": float},
+              shapes, table_of)  # fmt: skip

@@ -60,7 +60,7 @@ class _Filled:
         """The integrals on a grid, (ξ, ζ, 4)."""
         direction, Q = self.patch.place(xi[:, None], zeta)
         fast = bool(self.patch.fast)
-        return _truth(self._law, self.patch.top, direction.ratio, fast, Q)
+        return truth_at(self._law, self.patch.top, direction.ratio, fast, Q)
 
     def _judge(self) -> None:
         """Errors (4, probes) of the spline, and what is missed along ξ and ζ by half the nodes."""
@@ -69,7 +69,7 @@ class _Filled:
         found = np.empty((xi.size, 4))
         along, across = self.cells
         fill_patch(quintic_coefficients(self.values).ravel(), along, across, xi, zeta, found)
-        truth = _truth(
+        truth = truth_at(
             self._law, self.patch.top, direction.ratio, bool(self.patch.fast), self.speeds
         )
         cosine, sine = np.sqrt(direction.cos_squared), np.sqrt(direction.sin_squared)
@@ -193,7 +193,7 @@ def build_speed_table(
             f"{COARSEST_ACCURACY:g} (of the largest f), got {accuracy:g}"
         )
     breaks = breaks_of(law, top_speed, scale)
-    largest = _largest(law, float(breaks[-1]))
+    largest = largest_f(law, float(breaks[-1]))
     goal = accuracy / _SAFETY
     patches = patches_of(breaks)
     parts = [_Filled(patch, law, largest or 1.0, n) for n, patch in enumerate(patches)]
@@ -246,8 +246,14 @@ def _out_of_reach(parts: list[_Filled], accuracy: float) -> AccuracyError:
     )
 
 
-def _largest(law: Law, top: float) -> float:
-    """The largest f up to a speed: at a point of a law that does not overshoot, or sampled."""
+def largest_f(law: Law, top: float) -> float:
+    """The largest f up to a speed: at a point of a law that does not overshoot, or sampled.
+
+    Examples
+    --------
+    >>> largest_f(SpeedLaw([0.0, 1.0], [0.2, 0.3]), 0.5)
+    0.25
+    """
     if isinstance(law, SpeedLaw):
         speeds = np.asarray(law.speeds)
         return float(law.extended(np.append(speeds[speeds < top], top)).max())
@@ -255,23 +261,25 @@ def _largest(law: Law, top: float) -> float:
     return float(np.abs(speed_integrals(0.0, speeds, law).a).max())
 
 
-def _truth(law: Law, top: float, ratio: FloatArray, fast: bool, speed: FloatArray) -> FloatArray:
+def truth_at(
+    law: Law, top: float, ratio: FloatArray, fast: npt.ArrayLike, speed: FloatArray
+) -> FloatArray:
     """p_a, p_b, p_d, p_e by quadrature, (…, 4); ``top``: what the slip goes up to, m/s."""
     if not isinstance(law, SpeedLaw):
-        phi = np.arctan2(1.0, ratio) if fast else np.arctan(ratio)
-        p = speed_integrals(phi, speed, law)
+        p = speed_integrals(np.where(fast, np.arctan2(1.0, ratio), np.arctan(ratio)), speed, law)
         return np.stack([p.a, p.b, p.d, p.e], axis=-1)
     speeds = np.asarray(law.speeds)
     pieces = int(np.count_nonzero(speeds[:-1] < top))  # a corner at the top is not yet passed
     flat, Q = np.ravel(ratio).copy(), np.ravel(speed).copy()
+    inside = np.array(np.broadcast_to(fast, flat.shape), bool)
     out = np.empty((flat.size, 4))
     each = max(1, _AT_ONCE // max(1, pieces // 4))
     for start in range(0, flat.size, each):
         keep_on()
         part = slice(start, start + each)
         fill_integrals(
-            speeds[: pieces + 1], law.coefficients[:pieces], flat[part],
-            np.full(len(flat[part]), fast), Q[part], out[part],
+            speeds[: pieces + 1], law.coefficients[:pieces], flat[part], inside[part], Q[part],
+            out[part],
         )  # fmt: skip
     return out.reshape(*np.shape(ratio), 4)
 

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.kernels.compile import kernel
-from puck_tables.kernels.spline import basis
+from puck_tables.kernels.spline import basis, cell_at
 from puck_tables.table.check import by_closed_form
 from puck_tables.table.fit import clamped_coefficients, not_a_knot_coefficients
 
@@ -48,7 +48,7 @@ def fill_uniform(
     scale = cells_phi / (0.5 * np.pi)
     for n in range(phi.size):
         p, q = phi[n] * scale, delta[n] * cells_delta
-        i, j = min(int(p), cells_phi - 1), min(int(q), cells_delta - 1)
+        i, j = cell_at(p, cells_phi), cell_at(q, cells_delta)
         a, b, d, e = basis(p - i)
         v = basis(q - j)
         for f in range(3):

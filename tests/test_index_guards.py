@@ -1,0 +1,119 @@
+"""Look-ups in compiled code stay within their tables, whatever the floats they get."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from puck_tables import SpeedLaw, build_speed_table, load_stop_table, load_table
+from puck_tables.body import body_of
+from puck_tables.contact.laws import law_of
+from puck_tables.kernels.compile import kernel
+from puck_tables.kernels.law_spline import fill_law
+from puck_tables.kernels.partial_spline import fill_partial
+from puck_tables.kernels.quadratic import fill_resultants_quadratic
+from puck_tables.kernels.slice_spline import fill_slice
+from puck_tables.kernels.speed_spline import fill_patch, fill_speed
+from puck_tables.kernels.spline import cell_at, cut, fill_resultants
+from puck_tables.similarity.curve_lookup import LAUNCH_COLUMNS, LAUNCH_ROWS, fill_states
+from puck_tables.similarity.lookup import stops_kernel
+from puck_tables.similarity.slice_lookup import fill_slice_stops
+from puck_tables.table.friction_slice import friction_slice
+from puck_tables.table.law_table import tabulate
+from puck_tables.table.partial_file import load_partial_table
+from puck_tables.tradeoff.uniform import fill_uniform, uniform_coefficients
+
+WILD = np.array([
+    np.nan, -np.nan, np.inf, -np.inf, 1e308, -1e308, 1e19, -1e19, 5e9, -5e9, -1.0, -5e-324, 0.0,
+    0.5, 1.0, 1.0000001, 2.0, 1e3,
+])  # fmt: skip
+
+
+def test_every_float_has_a_cell():
+    @kernel
+    def cells(places: np.ndarray, count: int, out: np.ndarray) -> None:
+        for n in range(places.size):
+            out[n] = cell_at(places[n], count)
+
+    out = np.empty(WILD.size, np.int64)
+    cells(WILD, 7, out)
+    good = np.clip(np.nan_to_num(WILD), 0, 6).astype(int)
+    np.testing.assert_array_equal(out, good)
+
+
+def look_up_everything() -> None:
+    """All look-ups at all pairs of wild numbers, and in tables of wild numbers."""
+    first, second = (axis.ravel().copy() for axis in np.meshgrid(WILD, WILD))
+    n = first.size
+    out, out4, out6 = np.empty((3, n)), np.empty((4, n)), np.empty((6, n))
+    fast = np.arange(n) % 2 == 0
+    table, stops, partial = load_table(), load_stop_table(), load_partial_table()
+    law = tabulate(law_of("annulus:0.5"), 8)
+    wild = np.random.default_rng(1).choice(WILD, (2, 11, 19, 3))
+    for c in (table.coefficients, wild):
+        fill_resultants(c, 1.0, first, second, out)
+        for share in WILD:
+            cut(c, share, np.empty(6 * c.shape[2]))
+    fill_resultants_quadratic(table.quadratic, first, second, out)
+    fill_law(*law.spline, law.delta_max, first, second, out)
+    fill_partial(*partial.spline, first, second, out)
+    opening = np.random.default_rng(2).choice(WILD, (2, 19))
+    fill_partial(wild, opening, partial.spline[2], first, second, out)
+    speeds = build_speed_table(SpeedLaw([0.0, 0.5, 2.0], [0.3, 0.2, 0.25]), accuracy=1e-2)
+    coefficients, layout = speeds.compiled
+    breaks = np.random.default_rng(5).choice(WILD, (20, speeds.breaks.size))
+    for edges in (speeds.breaks, *breaks):
+        for c in (coefficients, np.random.default_rng(6).choice(WILD, coefficients.size)):
+            fill_speed(c, layout, edges, first, fast, second, out4)
+    fill_patch(coefficients, *layout[0, 1:], first, second, np.empty((n, 4)))
+    piece = friction_slice(law_of("uniform"), 0.5, 1e-4).spline
+    hostile = np.where(np.random.default_rng(3).random(piece.cut.shape) < 0.5, 1e308, piece.cut)
+    for c in (piece.cut, hostile):
+        fill_slice(c, 3, first, fast, out)
+    fill_uniform(uniform_coefficients(9), first, second, np.empty(3), out)
+    one = np.ones(n)
+    for launches in (
+        np.stack([first, second, 0.0 * one, 0.5 * one, one, one]),
+        np.stack([first, 0.0 * one, second, 0.5 * one, one, one]),
+        np.stack([one, one, one, first, second, one]),
+        np.stack([one, one, one, 0.5 * one, first, second]),
+    ):  # fmt: skip
+        for powers in (4, 8):
+            stops_kernel(powers)(launches, stops.cut(powers, 1), out)
+        stops.known(launches)
+        fill_slice_stops(launches, body_stops(), out6)
+        pucks = np.ones((n, LAUNCH_COLUMNS + LAUNCH_ROWS))
+        pucks[:, LAUNCH_COLUMNS:] = np.random.default_rng(4).choice(WILD, (n, LAUNCH_ROWS))
+        fill_states(
+            pucks, np.arange(n), np.abs(first), stops.stop_coefficients, stops.curve_coefficients,
+            stops.time_inverse, out6,
+        )  # fmt: skip
+
+
+def body_stops() -> np.ndarray:
+    from puck_tables.similarity.stop_slice import stop_slice
+
+    return stop_slice(body_of(law_of("uniform"), 0.5, 0.9), 1e-4).spline.cut
+
+
+def look_up_in_a_process(**environment: str) -> None:
+    code = "import test_index_guards as t; t.look_up_everything()"
+    ended = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True,
+        env={**os.environ, "PYTHONPATH": os.path.dirname(__file__), **environment},
+    )  # fmt: skip
+    assert ended.returncode == 0, ended.stderr[-2000:]
+
+
+def test_no_look_up_leaves_its_table():
+    look_up_in_a_process()
+
+
+@pytest.mark.nightly
+def test_no_look_up_leaves_its_table_by_the_compilers_own_check():
+    """The same with numba's test of every index, which raises."""
+    look_up_in_a_process(NUMBA_BOUNDSCHECK="1")

@@ -1,0 +1,178 @@
+"""What lies in the cache of compiled code is run only if it is whole and nobody else's."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from puck_tables.errors import InputError
+from puck_tables.kernels import cache, kept_code
+from puck_tables.kernels.compile import kernel
+from puck_tables.own_folder import make_private, refuse_shared, say
+
+LIMIT = 1.531389372173909906  # tan φ₀ at δ = 0
+COMMAND = [sys.executable, "-c", "import puck_tables as p; print(float(p.limit_ratio(0.0)))"]
+
+
+def run(folder: Path, **environment: str) -> subprocess.CompletedProcess[str]:
+    ended = subprocess.run(
+        COMMAND, env={**os.environ, "NUMBA_CACHE_DIR": str(folder), **environment},
+        capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    assert float(ended.stdout) == pytest.approx(LIMIT, abs=1e-14)
+    return ended
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder of compiled code of this test's own."""
+    monkeypatch.setattr(kept_code, "cache_folder", lambda: tmp_path)
+    return tmp_path
+
+
+def compiled() -> Callable[[float], float]:
+    """The same function, as a program that starts anew has it."""
+
+    def third(x: float) -> float:
+        return x / 3.0
+
+    return kernel(third)
+
+
+def test_every_flipped_bit_is_compiled_anew(folder: Path):
+    assert compiled()(6.0) == 2.0
+    (path,) = folder.iterdir()
+    whole = path.read_bytes()
+    again = compiled()
+    assert again(6.0) == 2.0
+    assert sum(again.stats.cache_hits.values()) == 1  # what is whole is used
+    rng = np.random.default_rng(9)
+    for position in [*range(40), *rng.integers(40, len(whole), 40), len(whole) - 1]:
+        harmed = bytearray(whole)
+        harmed[position] ^= 1 << rng.integers(8)
+        path.write_bytes(harmed)
+        loaded = compiled()
+        assert loaded(6.0) == 2.0
+        assert not loaded.stats.cache_hits
+        assert path.read_bytes() != bytes(harmed)  # healed
+
+
+@pytest.mark.parametrize("content", [b"", b"short", bytes(32), bytes(1000)])
+def test_what_is_no_compiled_code_is_replaced(content: bytes, folder: Path):
+    compiled()(6.0)
+    (path,) = folder.iterdir()
+    path.write_bytes(content)
+    assert compiled()(6.0) == 2.0
+    assert len(path.read_bytes()) > 1000
+
+
+def test_code_of_another_function_under_this_name_is_not_taken(folder: Path):
+    compiled()(6.0)
+    (path,) = folder.iterdir()
+
+    def double(x: float) -> float:
+        return 2.0 * x
+
+    kernel(double)(1.0)
+    (other,) = set(folder.iterdir()) - {path}
+    other.replace(path)
+    assert compiled()(6.0) == 2.0
+
+
+def test_a_full_disk_still_computes(folder: Path, monkeypatch: pytest.MonkeyPatch):
+    def full(*given: object, **named: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("os.replace", full)
+    assert compiled()(6.0) == 2.0
+    assert list(folder.iterdir()) == []
+
+
+def test_the_folder_is_private(tmp_path: Path):
+    os.umask(before := os.umask(0))
+    run(tmp_path / "cache")
+    (folder,) = (tmp_path / "cache").iterdir()
+    assert folder.stat().st_mode & 0o777 == 0o700
+    assert {path.stat().st_mode & 0o077 for path in folder.iterdir()} == {0}
+    assert os.umask(before) == before
+
+
+@pytest.mark.parametrize("mode", [0o777, 0o707, 0o770])
+def test_a_folder_that_others_may_write_is_not_used(mode: int, tmp_path: Path):
+    shared = tmp_path / "shared"
+    shared.mkdir()
+    shared.chmod(mode)
+    if mode == 0o770:
+        if os.geteuid() != 0:
+            pytest.skip("needs another group")
+        os.chown(shared, 0, 12345)
+    said = run(shared).stderr
+    assert "others may write to the folder" in said
+    assert str(shared) in said
+    assert list(shared.iterdir()) == []
+
+
+def test_a_planted_folder_is_not_used(tmp_path: Path):
+    """Others made it before, by the name that ours would have."""
+    mine = tmp_path / f"compiled-{cache.source_digest()}"
+    mine.mkdir()
+    mine.chmod(0o777)
+    planted = mine / "planted.code"
+    planted.write_bytes(b"planted")
+    assert "others may write to the folder" in run(tmp_path).stderr
+    assert list(mine.iterdir()) == [planted]
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root can give files away")
+def test_a_folder_of_somebody_else_is_not_used(tmp_path: Path):
+    other = tmp_path / "other"
+    other.mkdir()
+    os.chown(other, 12345, 12345)
+    with pytest.raises(PermissionError, match="belongs to another user"):
+        make_private(other)
+    with pytest.raises(PermissionError, match="belongs to another user"):
+        make_private(other / "deep" / "below")
+    assert list(other.iterdir()) == []
+    link = tmp_path / "link"
+    link.symlink_to(tmp_path)
+    os.chown(link, 12345, 12345, follow_symlinks=False)  # it may lead elsewhere tomorrow
+    with pytest.raises(PermissionError, match="belongs to another user"):
+        refuse_shared(link / "cache")
+
+
+def test_a_folder_below_one_like_tmp_is_used(tmp_path: Path):
+    tmp_path.chmod(0o1777)
+    make_private(tmp_path / "kept")
+    with pytest.raises(PermissionError, match="others may write"):
+        make_private(tmp_path)
+
+
+def test_the_users_cache_is_judged_alike(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    from puck_tables import store
+
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    tmp_path.chmod(0o777)
+    say.cache_clear()
+    said: list[str] = []
+    monkeypatch.setattr(store, "say", said.append)
+    assert store.table_for("ring", 1e-4).tolerance == 1e-4
+    assert "others may write" in said[0]
+    assert list(tmp_path.iterdir()) == []
+    assert store.kept_files() == []
+    with pytest.raises(InputError, match="no table"):
+        store.remove(tmp_path / "x")
+
+
+def test_nothing_appears_beside_the_package_where_no_folder_will_do(tmp_path: Path):
+    """numba's own cache would turn to __pycache__ there, and serve stale code after edits."""
+    from conftest import ROOT
+
+    run(Path("/proc/none"), HOME="/proc/none")
+    beside = {path.suffix for path in (ROOT / "puck_tables").glob("**/__pycache__/*")}
+    assert beside <= {".pyc"}
