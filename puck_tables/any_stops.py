@@ -19,7 +19,7 @@ from puck_tables.errors import AccuracyError, InputError
 from puck_tables.executor import Progress, run_chunks
 from puck_tables.front import ADAPTIVE_EXACT, LOOK_UP, RK4_EXACT, Choice, choose
 from puck_tables.similarity.stop_slice import FINEST_SLICE, StopSlice, stop_slice
-from puck_tables.sliced import LOOSEST_LOCAL, checked_tol, friction_of
+from puck_tables.sliced import LOOSEST_LOCAL, checked_tol, friction_of, unseen_tail
 from puck_tables.solvers import METHODS, OUTPUTS, fits
 from puck_tables.table.friction_slice import FINEST_ACCURACY
 
@@ -200,7 +200,7 @@ def _settled(body: Body, tol: float, method: str | None) -> _Integrated:
                 (coarse, steps, local),
             )
         ]  # fmt: skip
-        by_steps = 2.0 * float(np.abs(answers[0] - answers[1]).max())
+        by_steps = 2.0 * (float(np.abs(answers[0] - answers[1]).max()) + unseen_tail(steps, local))
         by_slice = 2.0 * float(np.abs(answers[0] - answers[2]).max()) / 8.0
         if by_steps + by_slice <= tol:
             return _Integrated(cut, steps, local, by_steps + by_slice)

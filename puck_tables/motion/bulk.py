@@ -77,6 +77,7 @@ def fill_stops(
                 tableau,
                 0.0,
                 tolerance,
+                1.0,
                 cut,
                 delta,
                 _STEP_LIMIT,
