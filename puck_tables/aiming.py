@@ -27,6 +27,7 @@ from puck_tables.similarity.section import (
     plain_section,
     section_of,
 )
+from puck_tables.solvers import fits
 from puck_tables.table.file import load_table
 
 FloatArray = npt.NDArray[np.float64]
@@ -37,6 +38,9 @@ _SAMPLED_U = math.log(math.tan(math.radians(80.0)))
 _SLACK = 1e-12
 _LEAST_LOG, _LARGEST_LOG = -708.0, 709.0
 _CHECK_LOCAL = 1e-11
+_TOO_LARGE = (
+    "target, decel and radius ask for launches out of the range of floating point: use larger units"
+)
 
 
 @dataclass(frozen=True)
@@ -317,6 +321,10 @@ def _found(given: Aim, launches: list[tuple[float, float, float, float]], answer
     if not answer:
         answer = f"{len(rows)} launch{'' if len(rows) == 1 else 'es'}"
     found = replace(given, v0=rows[:, 1:3], w0=rows[:, 0], stop_time=rows[:, 3], answer=answer)
+    puck = [np.full(len(rows), value) for value in (given.delta, given.decel, given.radius)]
+    longest = 2.0 if given.body is None else given.body.longest
+    if not fits(np.stack([*found.v0.T, found.w0, *puck]), longest).all():
+        raise InputError(_TOO_LARGE)
     return replace(found, miss=_misses(found))
 
 
@@ -345,10 +353,7 @@ def _moderate(number: float, cause: float) -> float:
 
 def _number(log: float) -> float:
     if not _LEAST_LOG < log < _LARGEST_LOG:
-        raise InputError(
-            "target, decel and radius ask for launches out of the range of floating point: use "
-            f"{'larger' if log > 0.0 else 'smaller'} units"
-        )
+        raise InputError(_TOO_LARGE if log > 0.0 else _TOO_LARGE.replace("larger", "smaller"))
     return math.exp(log)
 
 
@@ -395,13 +400,16 @@ def _misses(found: Aim) -> FloatArray:
         cut = table_friction(found.delta, load_table()).cut
     else:
         cut = friction_of(found.body, SLICE_ACCURACY).cut
+    distance = math.hypot(*found.target)
+    if distance == 0.0:
+        return np.zeros(found.w0.size)
     with np.errstate(divide="ignore"):
-        speed = np.log(found.speed)
-        rim = np.log(np.abs(found.w0)) + math.log(found.radius)
+        speed, rim = np.log(found.speed), np.log(np.abs(found.w0)) + math.log(found.radius)
     u = rim - speed
     stops = integrated_stops(u, np.full(u.size, found.delta), cut, _CHECK_LOCAL, cosine_of(u))
     log_q = np.maximum(speed, rim) + 0.5 * np.log1p(np.exp(-2.0 * np.abs(u)))
-    length = np.exp(2.0 * log_q - math.log(found.decel))
-    left = stops[:, 1] + 1j * np.copysign(1.0, found.w0) * stops[:, 2]
-    miss: FloatArray = np.abs(length * np.exp(1j * found.direction) * left - complex(*found.target))
+    way = stops[:, 1] + 1j * np.copysign(1.0, found.w0) * stops[:, 2]
+    # logarithms: Q²/J may be far larger than the distance
+    way *= np.exp(2.0 * log_q - math.log(found.decel) - math.log(distance) + 1j * found.direction)
+    miss: FloatArray = distance * np.abs(way - complex(*found.target) / distance)
     return miss

@@ -157,7 +157,7 @@ class AnyStops:
         for delta in np.unique(launches[3]):
             mine = launches[3] == delta
             out[:, mine], status[mine] = _answered(self._ready[float(delta)], launches[:, mine])
-        lost = ~fits(launches)
+        lost = ~fits(launches, body_of(self._law, 0.0, self._gyration).longest)
         status[lost] = _OVERFLOW
         out[:, status != 0] = np.nan
         return out, status

@@ -32,9 +32,10 @@ MATCH = 1e-9  # how well a launch must fit its constraint, of its speed
 class Puck:
     """The body: an upright cylinder."""
 
-    radius: float = of("number", unit="m", low=0.0, above=True, doc="of the base")
+    # between 1e-100 and 1e100 the moment of inertia and its inverse are within floating point
+    radius: float = of("number", unit="m", low=1e-100, high=1e100, doc="of the base")
     height: float = of("number", 0.0, "m", low=0.0, doc="of the cylinder; 0: no tilt")
-    mass: float = of("number", 1.0, "kg", low=0.0, above=True)
+    mass: float = of("number", 1.0, "kg", low=1e-100, high=1e100)
     gyration: float = of(
         "number", HOMOGENEOUS, "radii", low=0.1, high=10.0,
         doc="radius of gyration about the vertical over the radius",

@@ -50,7 +50,7 @@ STATE_ROWS = 6
 
 @inlined
 def _cell(xi: float, cells: int) -> tuple[int, float, float, float, float]:
-    p = xi * cells
+    p = xi * cells if xi > 0.0 else 0.0  # a motion too large has no place: never an index
     i = min(int(p), cells - 1)
     w0, w1, w2, w3 = basis(p - i)
     return i, w0, w1, w2, w3

@@ -70,6 +70,8 @@ class Section:
         Both ends are the same where it turns just there, and −∞ where the slide without spin has
         the value.  A value beyond a turn by 1e-9 counts as met there: so it may have been printed.
         """
+        if not math.isfinite(value):
+            return []
         u, off, found = self.u, self.values[:, quantity] - value, []
         if quantity != RIM:
             above = np.flatnonzero(np.abs(self.values[:, quantity] - SLIDE) > _ROUNDED)
