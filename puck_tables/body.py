@@ -54,7 +54,7 @@ class Body:
     @property
     def longest(self) -> float:
         """More than any motion lasts, in units of Q/J, and than it moves, in units of Q²/J."""
-        return max(2.0, 4.0 * self.inertia)
+        return max(4.0, 4.0 * self.inertia)
 
     @property
     def spin_time(self) -> float:

@@ -25,9 +25,7 @@ def refuse_mask(name: str, values: object) -> None:
     puck_tables.errors.InputError: w0 has masked values: leave them out, as w0.compressed() does
     """
     if np.ma.is_masked(values):
-        raise InputError(
-            f"{name} has masked values: leave them out, as {name}.compressed() does"
-        )
+        raise InputError(f"{name} has masked values: leave them out, as {name}.compressed() does")
 
 
 def real_array(name: str, values: npt.ArrayLike, unit: str) -> FloatArray:
