@@ -170,8 +170,8 @@ def unseen_tail(steps: float, local: float) -> float:
 
     Examples
     --------
-    >>> unseen_tail(0.0, 1e-9), unseen_tail(10.0, 1.0)
-    (1e-11, 6.25e-06)
+    >>> unseen_tail(0.0, 1e-8), unseen_tail(10.0, 1.0)
+    (1e-10, 6.25e-06)
     """
     return 0.01 * local if steps == 0.0 else (2.0 * steps) ** -4.0
 

@@ -9,7 +9,7 @@ import pytest
 from any_puck import motion_by_truth
 from test_any_puck import launch
 
-from puck_tables import flow, law_of, simulate, stop
+from puck_tables import flow, law_of, limit_ratio, simulate, stop
 from puck_tables.errors import AccuracyError
 
 JUDGE = 3e-12  # of the longest motion: what scipy is off
@@ -79,7 +79,7 @@ def test_the_limit_motion_and_pure_motions_report_what_they_are_off():
         run = simulate((0.0, 0.0), 1.0, **options)
         turning = 2.0 * gyration**2 / float(law_of(law).friction(0.5 * math.pi, 0.0).spin)
         assert abs(run.stop_time - turning) <= 2.0 * run.error_estimate
-        ratio = math.tan(run.limit_angle)
+        ratio = float(limit_ratio(delta, law, gyration))
         if 0.0 < ratio < math.inf:
             limit = simulate((1.0, 0.0), ratio, **options)  # D, or by rounding next to it
             along = float(law_of(law).friction(math.atan(ratio), delta).parallel)

@@ -26,16 +26,16 @@ FloatArray = npt.NDArray[np.float64]
 MAX_FILE = 1 << 20
 FILES = (("puck", "pressure"), ("floor", "law"), ("force", "file"))
 MATCH = 1e-9  # how well a launch must fit its constraint, of its speed
+_SMALLEST, _LARGEST = 1e-100, 1e100
 
 
 @dataclass(frozen=True)
 class Puck:
     """The body: an upright cylinder."""
 
-    # between 1e-100 and 1e100 the moment of inertia and its inverse are within floating point
-    radius: float = of("number", unit="m", low=1e-100, high=1e100, doc="of the base")
+    radius: float = of("number", unit="m", low=0.0, above=True, doc="of the base")
     height: float = of("number", 0.0, "m", low=0.0, doc="of the cylinder; 0: no tilt")
-    mass: float = of("number", 1.0, "kg", low=1e-100, high=1e100)
+    mass: float = of("number", 1.0, "kg", low=0.0, above=True)
     gyration: float = of(
         "number", HOMOGENEOUS, "radii", low=0.1, high=10.0,
         doc="radius of gyration about the vertical over the radius",
@@ -215,6 +215,12 @@ def read_scene(path: str | Path) -> dict[str, Any]:
 def _disagreements(scene: Scene) -> list[str]:
     """What is wrong between fields that are each in range."""
     faults = []
+    for name, value in (("radius", scene.puck.radius), ("mass", scene.puck.mass)):
+        if not _SMALLEST <= value <= _LARGEST:  # the moment of inertia and its inverse are numbers
+            faults.append(
+                f"puck.{name} = {value:g}: must be from {_SMALLEST:g} to {_LARGEST:g} in a scene, "
+                "use other units"
+            )
     strips = scene.floor.strips
     if scene.floor.law and (strips is not None or scene.floor.friction > 0.0):
         faults.append("floor.law: it takes the place of floor.friction and floor.strips")
