@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -16,20 +16,31 @@ from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import InputError
 from puck_tables.puck import positive, real
 from puck_tables.real import finite_array
-from puck_tables.trajectory import simulate
+from puck_tables.similarity.exact import integrated_stops
+from puck_tables.similarity.section import (
+    RIM,
+    SLICE_ACCURACY,
+    SPEED,
+    TIME,
+    Section,
+    cosine_of,
+    plain_section,
+    section_of,
+)
+from puck_tables.solvers import fits
+from puck_tables.table.file import load_table
 
 FloatArray = npt.NDArray[np.float64]
 
 DEFAULT_COUNT = 8
 MAX_COUNT = 10_000
-_LARGEST_U = 600.0
 _SAMPLED_U = math.log(math.tan(math.radians(80.0)))
 _SLACK = 1e-12
-_LARGEST_LOG = 709.0
-_CHECK_TOL = 1e-10
-_SLICE_ACCURACY, _SLICE_LOCAL = 1e-9, 1e-12
-_SLACK_SLICE = 1e-8
-_SCANNED = 481
+_LEAST_LOG, _LARGEST_LOG = -708.0, 709.0
+_CHECK_LOCAL = 1e-11
+_TOO_LARGE = (
+    "target, decel and radius ask for launches out of the range of floating point: use larger units"
+)
 
 
 @dataclass(frozen=True)
@@ -74,87 +85,60 @@ class Aim:
 class _Family:
     """The launches that stop at distance D, by u = ln(r|ω|/v): one for each u and sense of spin.
 
-    From displacement = (Q²/J) Rot(ψ)(X, Y): Q² = J D/|X + iY|, ψ = bearing − arg(X ± iY).
+    From displacement = (Q²/J) Rot(ψ)(X, Y): Q² = J D/|X + iY|, ψ = bearing − arg(X ± iY).  Speeds
+    are √(JD) and times √(D/J) times those of the section; all here are logarithms.
     """
 
     distance: float
-    delta: float
     decel: float
-    body: Body | None = None
+    section: Section
 
-    @cached_property
-    def _cut(self) -> FloatArray | None:
-        """Friction of a puck that is not plain."""
-        from puck_tables.sliced import friction_of
-
-        return None if self.body is None else friction_of(self.body, _SLICE_ACCURACY).cut
+    @property
+    def scales(self) -> FloatArray:
+        """Of speed, rim speed and time; 0 for the angle."""
+        half_j, half_d = 0.5 * math.log(self.decel), 0.5 * math.log(self.distance)
+        return np.array([half_j + half_d, half_j + half_d, half_d - half_j, 0.0])
 
     def at(self, u: float) -> tuple[float, float, float, float]:
-        """Ln of speed, rim speed and stop time, and arg(X + iY) for ω > 0."""
-        rows = self.rows(np.array([u]))
-        return rows[0, 0], rows[0, 1], rows[0, 2], rows[0, 3]
-
-    def rows(self, u: FloatArray) -> FloatArray:
-        """The same at many u (n,), (n, 4)."""
-        from puck_tables.similarity.exact import exact_stops, integrated_stops
-
-        heights = np.full(u.size, self.delta)
-        if self._cut is None:
-            stops = exact_stops(u, heights)
-        else:
-            stops = integrated_stops(u, heights, self._cut, _SLICE_LOCAL)
-        return np.array([self._row(*row) for row in zip(u, *stops[:, :3].T, strict=True)])
-
-    def _row(self, u: float, time: float, x: float, y: float) -> tuple[float, float, float, float]:
-        log_q = 0.5 * (math.log(self.decel) + math.log(self.distance) - math.log(math.hypot(x, y)))
-        larger = log_q - 0.5 * math.log1p(math.exp(-2.0 * abs(u)))
-        speed, rim = larger - max(u, 0.0), larger + min(u, 0.0)
-        return speed, rim, log_q + math.log(time) - math.log(self.decel), math.atan2(y, x)
+        """Speed, rim speed, stop time, and arg(X + iY) for ω > 0."""
+        speed, rim, time, bend = (self.section.rows(np.array([u]))[0] + self.scales).tolist()
+        return speed, rim, time, bend
 
     def all_where(self, quantity: int, value: float) -> list[float]:
-        """All u where the speed (0), the rim speed (1) or the stop time (2) has a value.
-
-        Of a plain puck all three are monotonic in u; of tall ones (δ from about 3.5 on, and others)
-        speed and stop time may not be, and more than one launch answers.
-        """
-        if self.body is None or quantity == 1:
-            return [self.where(quantity, value)]
+        """All u where a quantity of the section has a value; −∞ is a slide without spin."""
         from scipy.optimize import brentq
 
-        target = math.log(value)
-        u = np.concatenate([[-_LARGEST_U], np.linspace(-12.0, 12.0, _SCANNED), [_LARGEST_U]])
-        off = self.rows(u)[:, quantity] - target
-        found = [-math.inf] if abs(off[0]) <= _SLACK_SLICE else []
-        for n in np.flatnonzero(off[:-1] * off[1:] < 0.0):
-            if n == 0 and found:
+        wanted = value - float(self.scales[quantity])
+
+        def off(u: float) -> float:
+            return float(self.section.rows(np.array([u]))[0, quantity]) - wanted
+
+        roots = [
+            low if low == high else float(brentq(off, low, high, xtol=1e-14, rtol=1e-15))
+            for low, high in self.section.brackets(quantity, wanted)
+        ]
+        return sorted(set(roots))
+
+    def extreme(self, quantity: int) -> tuple[float, float]:
+        """The greatest speed or the least time of all, and the rim speed there."""
+        u, value = self.section.extreme(quantity)
+        return value + float(self.scales[quantity]), self.at(u)[RIM]
+
+    def ranges(self, fastest: float, widest: float) -> list[tuple[float, float]]:
+        """The u, interval by interval, where speed and rim speed are within these bounds."""
+        ends = {-math.inf, math.inf}
+        for quantity, bound in ((SPEED, fastest), (RIM, widest)):
+            if bound < math.inf:
+                ends.update(self.all_where(quantity, bound))
+        within: list[tuple[float, float]] = []
+        for low, high in pairwise(sorted(ends)):
+            between = 0.5 * (max(low, min(high, 0.0) - 2.0) + min(high, max(low, 0.0) + 2.0))
+            speed, rim, _, _ = self.at(between)
+            if speed > fastest or rim > widest:
                 continue
-            found.append(float(brentq(
-                lambda x: self.at(x)[quantity] - target, u[n], u[n + 1], xtol=1e-13, rtol=1e-14
-            )))  # fmt: skip
-        return found
-
-    def where(self, quantity: int, value: float) -> float:
-        """U where the speed (0), the rim speed (1) or the stop time (2) has a value.
-
-        All three are monotonic in u: speed falls, rim speed and stop time grow.  −∞, a slide
-        without spin, where speed or stop time is that of it.
-        """
-        from scipy.optimize import brentq
-
-        target = math.log(value)
-
-        def difference(u: float) -> float:
-            return self.at(u)[quantity] - target
-
-        low, high = difference(-_LARGEST_U), difference(_LARGEST_U)
-        if quantity != 1 and abs(low) <= _SLACK:
-            return -math.inf
-        if low * high > 0.0:
-            raise InputError(
-                "that takes a launch whose ratio of spin to speed is beyond 1e-260 to 1e260: "
-                "out of the range of floating point"
-            )
-        return float(brentq(difference, -_LARGEST_U, _LARGEST_U, xtol=1e-14, rtol=1e-15))
+            joined = within and within[-1][1] == low
+            within[-1:] = [(within[-1][0], high)] if joined else [*within[-1:], (low, high)]
+        return within
 
 
 def aim(
@@ -186,7 +170,8 @@ def aim(
     max_speed, max_spin : bounds on speed (m/s) and on |spin| (rad/s)
     count : how many slip angles a sample has, for each sense of spin
         Equally spaced from the least spin that ``max_speed`` allows (0 without it) to ``max_spin``
-        (without it: to φ = 80°).
+        (without it: to φ = 80°).  Where the bounds allow several ranges of slip angles, each has
+        its share, at least one.
     delta : dimensionless height 2fh/r
         Below 3.9637 under uniform pressure, up to the full contact of another law.
     decel, radius : J = fg in m/s² and m, > 0
@@ -211,7 +196,9 @@ def aim(
     Displacement = (Q²/J) Rot(ψ)(X, ±Y)(φ, δ), so at each φ the place fixes Q and ψ.  As φ goes from
     0 to π/2 the speed falls from √(2JD) to 0, spin and stop time grow without bound from 0 and
     √(2D/J), D the distance: each value is met once for each sense of spin.  For tall pucks, δ
-    from about 3.5 on, speed and time are not monotonic, and a value may be met three times.
+    from about 3.5 on, speed and time are not monotonic: a value may be met several times, and a
+    launch with spin may be faster than any without.  All are found
+    (:mod:`puck_tables.similarity.section`).
 
     References
     ----------
@@ -244,94 +231,134 @@ def aim(
     distance = math.hypot(x, y)
     if distance == 0.0:
         return _on_the_spot(given, w0, speed, stop_time)
-    family = _Family(distance, height, J, body)
-    slide = math.sqrt(2.0) * math.sqrt(J) * math.sqrt(distance)
-    quickest = math.sqrt(2.0) * math.sqrt(distance) / math.sqrt(J)
+    if distance == math.inf:
+        raise InputError(
+            f"target must be at most {np.finfo(float).max:.2g} m away, got ({x:g}, {y:g}): "
+            "use larger units"
+        )
+    family = _Family(distance, J, plain_section(height) if body is None else section_of(body))
+    bounds = math.log(fastest), math.log(widest) + math.log(r)
     us: list[float] = []
     senses: tuple[float, ...] = (-1.0, 1.0)
     answer = ""
     if w0 is not None:
         spin = real("w0", w0, "rad/s")
         senses = (math.copysign(1.0, spin),)
-        us = [-math.inf if spin == 0.0 else family.where(1, r * abs(spin))]
+        us = [-math.inf]
+        if spin != 0.0:
+            us = _found_roots(family.all_where(RIM, math.log(abs(spin)) + math.log(r)))
     elif speed is not None:
-        wanted = positive("speed", speed, "m/s")
-        if wanted <= slide * (1.0 + _SLACK):
-            us = family.all_where(0, wanted)
-        else:
-            answer = (
-                f"no launch at {wanted:g} m/s stops {distance:g} m away: the fastest has "
-                f"{slide:.9g} m/s and no spin"
-            )
+        us, answer = _met(family, SPEED, positive("speed", speed, "m/s"), r)
     elif stop_time is not None:
-        wanted = positive("stop_time", stop_time, "s")
-        if wanted >= quickest * (1.0 - _SLACK):
-            us = family.all_where(2, wanted)
-        else:
-            answer = (
-                f"no launch stops {distance:g} m away after {wanted:g} s: the quickest takes "
-                f"{quickest:.9g} s and has no spin"
-            )
+        us, answer = _met(family, TIME, positive("stop_time", stop_time, "s"), r)
     else:
-        least = -math.inf if fastest >= slide else family.where(0, fastest)
-        most = family.where(1, r * widest) if widest < math.inf else max(least + 1.0, _SAMPLED_U)
-        if least <= most:
-            first, last = np.arctan(np.exp([least, most])).tolist()
-            with np.errstate(divide="ignore"):
-                us = np.log(np.tan(np.linspace(first, last, count))).tolist()
-    allowed = [u for u in us if _within(family, u, fastest, r * widest)]
+        us = _sample(family.ranges(*bounds), count)
+    allowed = [u for u in us if _within(family, u, bounds)]
     if not allowed and not answer:
         answer = _out_of_bounds(family, us, fastest, widest, r)
     bearing = math.atan2(y, x)
     launches = []
     for u in allowed:
         log_speed, log_rim, log_time, bend = family.at(u)
-        v, spin, time = _number(log_speed), _number(log_rim) / r, _number(log_time)
+        v, time = _number(log_speed), _number(log_time)
+        spin = _number(log_rim - math.log(r)) if u > -math.inf else 0.0
         for sense in senses if u > -math.inf else (1.0,):
             heading = bearing - sense * bend
             launches.append((sense * spin, v * math.cos(heading), v * math.sin(heading), time))
     return _found(given, launches, answer)
 
 
+def _found_roots(us: list[float]) -> list[float]:
+    """The same, refused where there is none though there must be one."""
+    if not us:
+        raise InputError(
+            "that takes a launch whose ratio of spin to speed is beyond 1e-260 to 1e260: "
+            "out of the range of floating point"
+        )
+    return us
+
+
+def _met(family: _Family, quantity: int, wanted: float, radius: float) -> tuple[list[float], str]:
+    """All u with this speed or stop time, or why there is none."""
+    us = family.all_where(quantity, math.log(wanted))
+    best, log_rim = family.extreme(quantity)
+    if us or (math.log(wanted) > best) != (quantity == SPEED):
+        return _found_roots(us), ""
+    spin = "no spin"
+    if log_rim > -math.inf:
+        spin = f"a spin of {_number(log_rim - math.log(radius)):.9g} rad/s either way"
+    if quantity == SPEED:
+        return [], (
+            f"no launch at {wanted:g} m/s stops {family.distance:g} m away: the fastest has "
+            f"{_number(best):.9g} m/s and {spin}"
+        )
+    return [], (
+        f"no launch stops {family.distance:g} m away after {wanted:g} s: the quickest takes "
+        f"{_number(best):.9g} s and has {spin}"
+    )
+
+
+def _sample(ranges: list[tuple[float, float]], count: int) -> list[float]:
+    """Equally spaced slip angles, as u: each range has its share of them, at least one."""
+    if not ranges:
+        return []
+    ends = [(low, high if high < math.inf else max(low + 1.0, _SAMPLED_U)) for low, high in ranges]
+    angles = [(math.atan(math.exp(low)), math.atan(math.exp(high))) for low, high in ends]
+    shares = [1] * len(ranges)
+    for _ in range(count - len(ranges)):
+        densest = max(range(len(ranges)), key=lambda n: (angles[n][1] - angles[n][0]) / shares[n])
+        shares[densest] += 1
+    us: list[float] = []
+    for (low, high), (first, last), share in zip(ends, angles, shares, strict=True):
+        inner = np.log(np.tan(np.linspace(first, last, share)[1:-1])).tolist()
+        us += [low, *inner, high] if share > 1 else [low]  # the ends to the last digit
+    return us
+
+
 def _found(given: Aim, launches: list[tuple[float, float, float, float]], answer: str) -> Aim:
     """The aim with its launches (ω, vx, vy, stop time), each integrated for its miss."""
     rows = np.array(sorted(launches)).reshape(-1, 4)
-    miss = np.array([_miss(row, given) for row in rows])
     if not answer:
         answer = f"{len(rows)} launch{'' if len(rows) == 1 else 'es'}"
-    return replace(
-        given, v0=rows[:, 1:3], w0=rows[:, 0], stop_time=rows[:, 3], miss=miss, answer=answer
-    )
+    found = replace(given, v0=rows[:, 1:3], w0=rows[:, 0], stop_time=rows[:, 3], answer=answer)
+    puck = [np.full(len(rows), value) for value in (given.delta, given.decel, given.radius)]
+    longest = 2.0 if given.body is None else given.body.longest
+    if not fits(np.stack([*found.v0.T, found.w0, *puck]), longest).all():
+        raise InputError(_TOO_LARGE)
+    return replace(found, miss=_misses(found))
 
 
 def _on_the_spot(given: Aim, w0: float | None, speed: float | None, stop_time: float | None) -> Aim:
     """The target is where the puck lies: pure spin stays there, ¾ r|ω|/J for a plain puck."""
-    turning = given.radius / given.decel * (0.75 if given.body is None else given.body.spin_time)
+    factor = 0.75 if given.body is None else given.body.spin_time
     if w0 is not None:
         spin = real("w0", w0, "rad/s")
-        return _found(given, [(spin, 0.0, 0.0, turning * abs(spin))], "")
+        time = _moderate(given.radius * abs(spin) / given.decel * factor, spin)
+        return _found(given, [(spin, 0.0, 0.0, time)], "")
     if stop_time is not None:
         time = positive("stop_time", stop_time, "s")
-        return _found(given, [(s * time / turning, 0.0, 0.0, time) for s in (-1.0, 1.0)], "")
+        spin = _moderate(time / factor * given.decel / given.radius, time)
+        return _found(given, [(s * spin, 0.0, 0.0, time) for s in (-1.0, 1.0)], "")
     if speed is not None:
         return _found(given, [], "no launch with speed comes to rest where it began")
     return _found(given, [], "the target is where the puck lies: any spin alone stays there")
 
 
+def _moderate(number: float, cause: float) -> float:
+    """A number, refused where it left floating point."""
+    if not math.isfinite(number) or (number == 0.0 and cause != 0.0):
+        raise InputError("radius and decel give a spin out of floating point: use other units")
+    return number
+
+
 def _number(log: float) -> float:
-    if log > _LARGEST_LOG:
-        raise InputError(
-            "target and decel ask for launches too large for floating point: use larger units"
-        )
+    if not _LEAST_LOG < log < _LARGEST_LOG:
+        raise InputError(_TOO_LARGE if log > 0.0 else _TOO_LARGE.replace("larger", "smaller"))
     return math.exp(log)
 
 
-def _within(family: _Family, u: float, fastest: float, widest: float) -> bool:
-    log_speed, log_rim, _, _ = family.at(u)
-    return (
-        _number(log_speed) <= fastest * (1.0 + _SLACK)
-        and _number(log_rim) <= widest * (1.0 + _SLACK)
-    )  # fmt: skip
+def _within(family: _Family, u: float, bounds: tuple[float, float]) -> bool:
+    return all(value <= bound + _SLACK for value, bound in zip(family.at(u), bounds, strict=False))
 
 
 def _out_of_bounds(
@@ -339,15 +366,18 @@ def _out_of_bounds(
 ) -> str:
     """Why the bounds leave nothing, in a sentence."""
     if us:
-        log_speed, log_rim, _, _ = family.at(us[0])
-        return (
-            f"the launch asked for takes {_number(log_speed):.9g} m/s and "
-            f"{_number(log_rim) / radius:.9g} rad/s: out of the bounds"
-        )
-    _, log_rim, _, _ = family.at(family.where(0, fastest))
+        taken = []
+        for u in us:
+            log_speed, log_rim, _, _ = family.at(u)
+            spin = 0.0 if u == -math.inf else _number(log_rim - math.log(radius))
+            taken.append(f"{_number(log_speed):.9g} m/s and {spin:.9g} rad/s")
+        return f"the launch asked for takes {' or '.join(taken)}: out of the bounds"
+    roots = _found_roots(family.all_where(SPEED, math.log(fastest)))
+    log_rim = min(family.at(u)[RIM] for u in roots)
     return (
         f"no launch stops {family.distance:g} m away with at most {fastest:g} m/s and "
-        f"{widest:g} rad/s: at {fastest:g} m/s it takes {_number(log_rim) / radius:.9g} rad/s"
+        f"{widest:g} rad/s: at {fastest:g} m/s it takes {_number(log_rim - math.log(radius)):.9g} "
+        "rad/s"
     )
 
 
@@ -358,11 +388,28 @@ def kind_of_puck(found: Aim) -> dict[str, Any]:
     return {"pressure": found.body.law, "gyration": found.body.gyration}
 
 
-def _miss(launch: FloatArray, given: Aim) -> float:
-    """How far from the target the integrated motion ends."""
-    w0, vx, vy, _ = launch.tolist()
-    run = simulate(
-        (vx, vy), w0, delta=given.delta, decel=given.decel, radius=given.radius, frames=1,
-        tol=_CHECK_TOL if given.body is None else _SLICE_ACCURACY, **kind_of_puck(given),
-    )  # fmt: skip
-    return math.dist(run.stop_position, given.target)
+def _misses(found: Aim) -> FloatArray:
+    """How far from the target the integrated motions end: from the launches as they are given.
+
+    Friction of a plain puck is that of the table, where the launches were found with closed forms.
+    """
+    from puck_tables.run import table_friction
+    from puck_tables.sliced import friction_of
+
+    if found.body is None:
+        cut = table_friction(found.delta, load_table()).cut
+    else:
+        cut = friction_of(found.body, SLICE_ACCURACY).cut
+    distance = math.hypot(*found.target)
+    if distance == 0.0:
+        return np.zeros(found.w0.size)
+    with np.errstate(divide="ignore"):
+        speed, rim = np.log(found.speed), np.log(np.abs(found.w0)) + math.log(found.radius)
+    u = rim - speed
+    stops = integrated_stops(u, np.full(u.size, found.delta), cut, _CHECK_LOCAL, cosine_of(u))
+    log_q = np.maximum(speed, rim) + 0.5 * np.log1p(np.exp(-2.0 * np.abs(u)))
+    way = stops[:, 1] + 1j * np.copysign(1.0, found.w0) * stops[:, 2]
+    # logarithms: Q²/J may be far larger than the distance
+    way *= np.exp(2.0 * log_q - math.log(found.decel) - math.log(distance) + 1j * found.direction)
+    miss: FloatArray = distance * np.abs(way - complex(*found.target) / distance)
+    return miss

@@ -21,7 +21,7 @@ from puck_tables.executor import Progress, in_slices, run_chunks
 from puck_tables.front import ADAPTIVE_EXACT, LOOK_UP, RK4_EXACT, Choice, choose
 from puck_tables.real import rounded_up
 from puck_tables.similarity.stop_slice import FINEST_SLICE, StopSlice, stop_slice
-from puck_tables.sliced import LOOSEST_LOCAL, checked_tol, friction_of
+from puck_tables.sliced import LOOSEST_LOCAL, checked_tol, friction_of, unseen_tail
 from puck_tables.solvers import METHODS, OUTPUTS, fits
 from puck_tables.table.friction_slice import FINEST_ACCURACY
 
@@ -162,7 +162,7 @@ class AnyStops:
         for delta in np.unique(launches[3]):
             mine = launches[3] == delta
             out[:, mine], status[mine] = _answered(self._ready[float(delta)], launches[:, mine])
-        lost = ~fits(launches)
+        lost = ~fits(launches, body_of(self._law, 0.0, self._gyration).longest)
         status[lost] = _OVERFLOW
         out[:, status != 0] = np.nan
         return out, status
@@ -214,7 +214,7 @@ def _settled(body: Body, tol: float, method: str | None) -> _Integrated:
                 (coarse, steps, local),
             )
         ]  # fmt: skip
-        by_steps = 2.0 * float(np.abs(answers[0] - answers[1]).max())
+        by_steps = 2.0 * (float(np.abs(answers[0] - answers[1]).max()) + unseen_tail(steps, local))
         by_slice = 2.0 * float(np.abs(answers[0] - answers[2]).max()) / 8.0
         if by_steps + by_slice <= tol:
             return _Integrated(cut, steps, local, by_steps + by_slice)

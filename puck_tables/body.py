@@ -52,6 +52,11 @@ class Body:
         return 0.5 if self.gyration == HOMOGENEOUS else self.gyration**2
 
     @property
+    def longest(self) -> float:
+        """More than any motion lasts, in units of Q/J, and than it moves, in units of Q²/J."""
+        return max(4.0, 4.0 * self.inertia)
+
+    @property
     def spin_time(self) -> float:
         """How long pure spin lasts, in units of r|ω|/J: 2k²/(r² ρ_ω(π/2))."""
         return 2.0 * self.inertia / float(self.law.friction(0.5 * math.pi, 0.0).spin)

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.errors import InputError
-from puck_tables.real import finite_array
+from puck_tables.real import finite_array, refuse_mask
 
 STANDARD_GRAVITY = 9.80665
 
@@ -43,6 +43,7 @@ def real(name: str, value: float, unit: str) -> float:
     >>> real("w0", 5, "rad/s")
     5.0
     """
+    refuse_mask(name, value)
     try:
         number = float(value)
     except (TypeError, ValueError, OverflowError):

@@ -10,6 +10,24 @@ from puck_tables.errors import InputError
 FloatArray = npt.NDArray[np.float64]
 
 
+def refuse_mask(name: str, values: object) -> None:
+    """Refuse masked values: no function here can carry a mask through to its results.
+
+    Raises
+    ------
+    InputError
+
+    Examples
+    --------
+    >>> refuse_mask("w0", np.ma.masked_array([1.0, 2.0], [False, True]))
+    Traceback (most recent call last):
+    ...
+    puck_tables.errors.InputError: w0 has masked values: leave them out, as w0.compressed() does
+    """
+    if np.ma.is_masked(values):
+        raise InputError(f"{name} has masked values: leave them out, as {name}.compressed() does")
+
+
 def real_array(name: str, values: npt.ArrayLike, unit: str) -> FloatArray:
     """Values as an array of float64; texts, complex numbers and dates are refused.
 
@@ -22,19 +40,20 @@ def real_array(name: str, values: npt.ArrayLike, unit: str) -> FloatArray:
     Raises
     ------
     InputError
-        If the values are not real numbers that fit a double.
+        If the values are not real numbers that fit a double, or some are masked.
 
     Examples
     --------
     >>> real_array("w0", [1, 2], "rad/s")
     array([1., 2.])
     """
+    refuse_mask(name, values)
     try:
         array = np.asarray(values)
         if array.dtype.kind not in "buif":
             raise TypeError
         return array.astype(np.float64)
-    except (TypeError, ValueError, OverflowError):
+    except (TypeError, ValueError, OverflowError, UserWarning):  # the last: a masked one in a list
         raise InputError(f"{name} must be real numbers in {unit}") from None
 
 

@@ -222,8 +222,9 @@ def step_ends(
     z, y = np.empty(_STEP_LIMIT), np.empty((_STEP_LIMIT, SIZE))
     result = np.empty(SIZE + 1)
     status, count = integrate(
-        u, tableau, float(steps), tolerance, friction.cut, friction.delta, _STEP_LIMIT, z, y, result
-    )
+        u, tableau, float(steps), tolerance, 1.0, friction.cut, friction.delta, _STEP_LIMIT, z, y,
+        result,
+    )  # fmt: skip
     if status != STOPPED:
         raise PuckError(
             f"the integration did not reach the stop in {_STEP_LIMIT} steps: ask for less accuracy"

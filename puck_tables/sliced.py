@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -19,9 +20,9 @@ from puck_tables.contact.one_sided import loaded_share
 from puck_tables.errors import AccuracyError
 from puck_tables.front import ADAPTIVE_EXACT, COARSEST, RK4_EXACT, Choice, choose
 from puck_tables.kernels.slice_spline import LINE
-from puck_tables.motion.equations import PSI, THETA, WORK, T, U, X, Y
+from puck_tables.motion.equations import LENGTH, PSI, THETA, WORK, T, U, X, Y
 from puck_tables.motion.limits import log_ratio, regime_of
-from puck_tables.motion.steppers import DORMAND_PRINCE, RK4
+from puck_tables.motion.steppers import DORMAND_PRINCE, RK4, Tableau
 from puck_tables.puck import real
 from puck_tables.real import rounded_up
 from puck_tables.run import (
@@ -45,9 +46,12 @@ LIMIT_WIDTH = 1e-12
 LOOSEST_LOCAL = 1e-7
 _FINEST_LOCAL = 1e-15
 _MOST_STEPS = 4096
-_SAFETY = 2.0
+_SAFETY = 1.5  # states between the moments compared
+_ROUNDING = 1e-14  # of a motion as long as Q/J
+_UNSEEN_SHARE = 0.1  # of the error of a slice: two coarse ones may err alike
+_MOMENTS = 16  # at which two motions are compared
+_COARSER_BY = 4.0  # half as many cells are 16 times as bad; a quarter of that is believed
 _FROM_FRICTION = 20.0  # tol that surely goes with an error of the friction
-_COARSER_BY = 8.0  # half as many cells are 16 times as bad; half of that is believed
 
 
 @dataclass(frozen=True)
@@ -85,6 +89,7 @@ def checked_tol(tol: float) -> float:
     return wanted
 
 
+@lru_cache(maxsize=64)
 def friction_of(body: Body, accuracy: float, coarser: bool = False) -> Friction:
     """The friction of a puck as the integrator reads it.
 
@@ -129,7 +134,8 @@ def run_sliced(
         u = ends[regime] if regime in ends else log_ratio(speed, rim)
         friction = friction_of(body, accuracy)
         run = at_constant_slip(regime, u, friction)
-        error = 4.0 * friction.error if regime == "D" else 1e-15
+        share = 4.0 * friction.error * max(1.0, 0.5 / body.inertia) if regime == "D" else 0.0
+        error = (share + _ROUNDING) * max(1.0, float(run.stop[T]))
         return replace(run, error=error), _choice(body, accuracy, ADAPTIVE_EXACT, "", error, tol)
     u = log_ratio(speed, rim)
     stepper = RK4_EXACT if method == "rk4" else ADAPTIVE_EXACT
@@ -139,13 +145,12 @@ def run_sliced(
     local = 1.0 if method == "rk4" else min(known.number("local"), LOOSEST_LOCAL)
     while True:
         friction = friction_of(body, accuracy)
-        z, y, result = step_ends(u, friction, tableau, steps, local)
-        _, _, finer = step_ends(u, friction, tableau, 2.0 * steps, max(0.01 * local, _FINEST_LOCAL))
-        coarse = friction_of(body, accuracy, coarser=True)
-        _, _, other = step_ends(u, coarse, tableau, steps, local)
-        by_steps = float(np.abs(result - finer)[T:WORK].max())
-        by_slice = float(np.abs(result - other)[T:WORK].max()) / _COARSER_BY
-        error = _SAFETY * (by_steps + by_slice) + 1e-14
+        run = _run(u, friction, tableau, steps, local)
+        finer = _run(u, friction, tableau, 2.0 * steps, max(0.01 * local, _FINEST_LOCAL))
+        by_steps = _apart(run, finer) + unseen_tail(steps, local)
+        other = _run(u, friction_of(body, accuracy, coarser=True), tableau, steps, local)
+        by_slice = _apart(run, other) / _COARSER_BY + _UNSEEN_SHARE * friction.error
+        error = _SAFETY * by_steps + by_slice + _ROUNDING * max(1.0, float(run.stop[T]))
         if error <= tol:
             break
         if by_slice > by_steps and accuracy > FINEST_ACCURACY:
@@ -156,9 +161,16 @@ def run_sliced(
                 f"{rounded_up(2.0 * error):g} or more"
             )
         else:
-            steps, local = 2.0 * steps, max(0.1 * local, _FINEST_LOCAL)
+            gain = min(max(0.5 * tol / error, 0.1), 0.5)  # an error falls like the local one
+            steps, local = math.ceil(steps / gain**0.25), max(gain * local, _FINEST_LOCAL)
     setting = f"steps={steps:g}" if method == "rk4" else f"local={local:g}"
-    run = Run(
+    return replace(run, error=error), _choice(body, accuracy, stepper, setting, error, tol)
+
+
+def _run(u: float, friction: Friction, tableau: Tableau, steps: float, local: float) -> Run:
+    """A motion by one setting of the integrator, its error not known."""
+    z, y, result = step_ends(u, friction, tableau, steps, local)
+    return Run(
         friction,
         tableau,
         z=z,
@@ -167,9 +179,45 @@ def run_sliced(
         turn_rate=turn_rate_at(y[-1], friction),
         energy_residual=float(result[-1]),
         steps=len(z) - 1,
-        error=error,
+        error=math.inf,
     )
-    return run, _choice(body, accuracy, stepper, setting, error, tol)
+
+
+def unseen_tail(steps: float, local: float) -> float:
+    """What two settings of the integrator may miss alike: the last of Q, at constant angle.
+
+    Examples
+    --------
+    >>> unseen_tail(0.0, 1e-8), unseen_tail(10.0, 1.0)
+    (1e-10, 6.25e-06)
+    """
+    return 0.01 * local if steps == 0.0 else (2.0 * steps) ** -4.0
+
+
+def _apart(one: Run, other: Run) -> float:
+    """How far two motions of a launch are apart: at the stop, and at moments of the first."""
+    speed, rim = _speeds((1.0 - one.z) ** 4, one.y[:, U])
+    # where the speeds change most, errors of the time count most
+    way = np.cumsum(np.abs(np.diff(speed)) + np.abs(np.diff(rim)))
+    at = 1 + np.unique(np.searchsorted(way, np.linspace(0.02, 0.98, _MOMENTS) * way[-1]))
+    here, speed, rim = one.y[at], speed[at], rim[at]
+    q_there, there = other.states(here[:, T])
+    speed_there, rim_there = _speeds(q_there, there[:, U])
+    off = [
+        (one.stop - other.stop)[T:WORK],
+        *(here - there)[:, [X, Y, THETA, LENGTH]].T,
+        speed - speed_there,
+        rim - rim_there,
+        np.minimum(speed, speed_there) * (here - there)[:, PSI],
+    ]
+    return max(float(np.abs(row).max()) for row in off)
+
+
+def _speeds(q: FloatArray, u: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """V and r|ω| from Q and u, to the last digits at both ends."""
+    k = np.exp(-np.abs(u))
+    large = q / np.sqrt(1.0 + k * k)
+    return np.where(u > 0.0, k * large, large), np.where(u > 0.0, large, k * large)
 
 
 def _choice(
@@ -247,9 +295,7 @@ def states_of(body: Body, launch: FloatArray, times: FloatArray) -> FloatArray:
     run, _ = run_sliced(body, regime, speed, rim, STATES_TOL)
     time, length = q0 / decel, q0 / decel * q0
     q, y = run.states(np.where(times < run.stop[T] * time, times / time, np.inf))
-    k = np.exp(-np.abs(y[:, U]))
-    large = 1.0 / np.sqrt(1.0 + k * k)
-    fast = y[:, U] > 0.0
+    slower, turning = _speeds(q, y[:, U])
     side = -1.0 if spin < 0.0 else 1.0
     east, north = (vx / speed, vy / speed) if speed > 0.0 else (1.0, 0.0)
     along, left = length * y[:, X], side * length * y[:, Y]
@@ -259,7 +305,7 @@ def states_of(body: Body, launch: FloatArray, times: FloatArray) -> FloatArray:
             along * north + left * east,
             side * y[:, PSI],
             side * y[:, THETA] * (length / radius),
-            q0 * q * np.where(fast, k * large, large),
-            side * (q0 / radius) * q * np.where(fast, large, k * large),
+            q0 * slower,
+            side * (q0 * turning / radius),  # Q/r may overflow where ω does not
         ]
     )

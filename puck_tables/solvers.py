@@ -135,8 +135,10 @@ def _marked(out: FloatArray, launches: FloatArray, overflows: int) -> tuple[Floa
     return out, status
 
 
-def fits(launches: FloatArray) -> npt.NDArray[np.bool_]:
-    """Whether Q²/J and Q²/(J r) of launches (6, n) are within floating point, (n,).
+def fits(launches: FloatArray, longest: float = 2.0) -> npt.NDArray[np.bool_]:
+    """Whether Q/J, Q²/J and Q²/(J r) of launches (6, n) are within floating point, (n,).
+
+    ``longest``: how many times as large times, places and angles may get.
 
     Examples
     --------
@@ -146,7 +148,7 @@ def fits(launches: FloatArray) -> npt.NDArray[np.bool_]:
     vx, vy, spin, _, decel, radius = launches
     with np.errstate(over="ignore", invalid="ignore"):
         slip = np.hypot(np.hypot(vx, vy), radius * spin)
-        size = slip / decel * slip
+        size = longest * slip / decel * slip
         inside: npt.NDArray[np.bool_] = np.isfinite(size / radius + size)
     return inside
 

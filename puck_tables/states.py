@@ -135,7 +135,8 @@ def flow(
     if not np.all(times >= 0.0):
         raise InputError(f"t must not be negative, got {times.min():g} s")
     launches = np.stack([column.ravel() for column in columns])
-    if not fits(launches).all():
+    longest = 2.0 if plain else body_of(pressure, 0.0, gyration).longest
+    if not fits(launches, longest).all():
         raise InputError(
             "v0, w0, radius and decel give a motion too large for floating point: use larger units"
         )

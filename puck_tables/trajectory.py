@@ -222,7 +222,9 @@ def simulate(
     q0 = math.hypot(speed, rim)
     scale_time, scale_length = q0 / J, q0 / J * q0
     energy = 0.5 * m * (speed * speed + square * rim * rim)
-    if not all(map(math.isfinite, (scale_time, scale_length, scale_length / r, q0 / r, energy))):
+    longest = 2.0 if body is None else body.longest
+    sizes = (longest * scale_time, longest * scale_length, longest * scale_length / r, energy)
+    if not all(map(math.isfinite, sizes)):
         raise InputError(
             f"v0, w0, radius, decel and mass give a motion too large for floating point "
             f"(Q = {q0:g} m/s, J = {J:g} m/s^2): use larger units"
@@ -361,7 +363,7 @@ def _integrated(
         "heading": heading0 + side * states[:, PSI],
         "orientation": side * states[:, THETA] * (scale_length / radius) + 0.0,
         "speed": q0 * q * cosine,
-        "spin": side * (q0 / radius) * q * sine + 0.0,
+        "spin": side * (q0 * q * sine / radius) + 0.0,  # Q/r may overflow where ω does not
         "slip_speed": q0 * q,
         "slip_angle": np.where(q > 0.0, side * np.arctan2(sine, cosine), 0.0) + 0.0,
     }

@@ -17,6 +17,26 @@ def stops_by_truth(
     law: str, delta: float, gyration: float, u: np.ndarray, rtol: float = 3e-13
 ) -> np.ndarray:
     """T, X, Y, path length and body angle of launches at u = ln(rω/v), Q = 1; (5, n)."""
+    return _motion(law, delta, gyration, u, rtol)[-1, 3:]
+
+
+def motion_by_truth(
+    law: str, delta: float, gyration: float, u: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """T, X, Y, path length and body angle (5,), and v, ψ, rω, t, x, y, θ of states (n, 7)."""
+    fast = min(1.0, gyration**2)
+    moments = np.concatenate([fast * np.geomspace(0.01, 5.0, 12), np.geomspace(0.1, 12.0, 12)])
+    rows = _motion(law, delta, gyration, np.array([u]), 3e-14, np.sort(moments))[:, :, 0]
+    states = np.delete(rows[:-1], 6, axis=1)
+    states[:, [0, 2]] = np.exp(states[:, [0, 2]])
+    return rows[-1, 3:], states
+
+
+def _motion(
+    law: str, delta: float, gyration: float, u: np.ndarray, rtol: float,
+    moments: np.ndarray | None = None,
+) -> np.ndarray:  # fmt: skip
+    """Ln v, ψ, ln rω, t, x, y, path length, θ at τ ``moments`` and at the stop, (…, 8, n)."""
     pressure, n = law_of(law), u.size
     large = -0.5 * np.log1p(np.exp(-2.0 * np.abs(u)))
     start = np.zeros((8, n))
@@ -34,8 +54,10 @@ def stops_by_truth(
         ])  # fmt: skip
 
     slowest = 1.0 / min(1.0, 0.3 / gyration**2)
+    end = 30.0 * slowest
     solution = solve_ivp(
-        rates, (0.0, 30.0 * slowest), start.ravel(), "DOP853", rtol=rtol, atol=1e-14,
+        rates, (0.0, end), start.ravel(), "DOP853", rtol=rtol, atol=1e-14,
+        t_eval=np.append([] if moments is None else moments, end),
     )  # fmt: skip
     assert solution.success
-    return solution.y[:, -1].reshape(8, n)[3:]
+    return solution.y.T.reshape(-1, 8, n)

@@ -308,7 +308,7 @@ def a_million_steps() -> Iterator[float]:
 
     result, none = np.empty(SIZE + 1), np.empty(0)
     status, steps = integrate(
-        0.7, RK4, 1e6, 1.0, none, HEIGHT, 3_000_000, none, np.empty((0, SIZE)), result
+        0.7, RK4, 1e6, 1.0, 1.0, none, HEIGHT, 3_000_000, none, np.empty((0, SIZE)), result
     )
     if status != STOPPED or steps < 900_000:
         yield math.nan

@@ -277,7 +277,9 @@ def test_speed_and_spin_keep_their_digits_at_both_ends():
         assert simulate((tiny, 0), 1.0, frames=2).speed[0] == pytest.approx(tiny, rel=1e-12)
         assert simulate((1, 0), tiny, frames=2).spin[0] == pytest.approx(tiny, rel=1e-12)
     with pytest.raises(InputError, match="too large for floating point"):
-        simulate((1e-8, 0), 1e154, radius=5e-324)
+        simulate((1e-7, 0), 1e154, radius=5e-324)
+    tiny = simulate((1e-8, 0), 1e154, radius=5e-324, frames=2)  # only Q/r overflows
+    assert tiny.spin[0] == pytest.approx(1e154, rel=1e-12)
     with pytest.raises(InputError, match="w0 must be a number"):
         simulate((1, 0), 10**400)
 

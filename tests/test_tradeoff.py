@@ -162,7 +162,7 @@ def test_unrolled_and_general_runge_kutta_take_the_same_steps():
         for delta in (0.0, 0.4, 1.0):
             state, fast, slow = np.zeros(SIZE), np.zeros(SIZE + 1), np.zeros(SIZE + 1)
             to_stop(u, 40.0, nothing, delta, state, fast)
-            integrate(u, RK4, 40.0, 1.0, nothing, delta, 10**5, nothing, none, slow)
+            integrate(u, RK4, 40.0, 1.0, 1.0, nothing, delta, 10**5, nothing, none, slow)
             np.testing.assert_allclose(fast[:7], slow[:7], rtol=0, atol=2e-14)
             exact = exact_stops(np.array([u]), np.array([delta]))[0, :3]
             assert np.abs(fast[T : Y + 1] - exact).max() <= 2e-7

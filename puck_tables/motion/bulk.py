@@ -60,6 +60,11 @@ def fill_stops(
             for i in range(6):
                 out[i, n] = 0.0
             continue
+        if not q0 < math.inf:
+            status[n] = OVERFLOW
+            for i in range(6):
+                out[i, n] = math.nan
+            continue
         if coefficients.ndim == 4:  # noqa: SIM102 - pruned when compiled
             if by_table and delta != cut_delta:
                 cut_table(coefficients, delta / delta_max, cut)
@@ -77,6 +82,7 @@ def fill_stops(
                 tableau,
                 0.0,
                 tolerance,
+                1.0,
                 cut,
                 delta,
                 _STEP_LIMIT,

@@ -82,6 +82,12 @@ def inertia(cut: FloatArray) -> float:
 
 
 @inlined
+def slowest_stop(cut: FloatArray) -> float:
+    """About the longest that any motion lasts, in units of Q/J: pure spin of much inertia, or 1."""
+    return max(1.0, 2.0 * inertia(cut))
+
+
+@inlined
 def crossed_line(u: float, new: float, cut: FloatArray) -> tuple[bool, float]:
     """Whether a singular line lies strictly between u and ``new``, and the u of the first."""
     if cut.ndim == 2:

@@ -25,12 +25,15 @@ from puck_tables.motion.equations import (
     WORK,
     T,
     U,
+    X,
+    Y,
     at_constant_angle,
     crossed_line,
     derivatives,
     distance_to_line,
     inertia,
     kinetic_energy,
+    slowest_stop,
 )
 from puck_tables.motion.steppers import ROWS, Tableau, step
 
@@ -52,6 +55,17 @@ def q_of(z: float) -> float:
 
 
 @inlined
+def end_of_steps(steps: float, tolerance: float, cut: FloatArray) -> float:
+    """The z from where the motion at constant angle leads to the stop.
+
+    What it neglects is at most what is left of Q times the longest stop: a puck of much inertia may
+    slide to a crawl with hardly any spin, and then spins for long.
+    """
+    left = max(tolerance, 1e-16) ** 0.25 if steps == 0.0 else 1.0 / steps
+    return max(1.0 - left / slowest_stop(cut) ** 0.25, 0.5 + 0.5 * TURN_Z)
+
+
+@inlined
 def step_length(u: float, steps: float, cut: FloatArray) -> float:
     """Length of the next step when about ``steps`` are to be taken in all.
 
@@ -67,6 +81,7 @@ def integrate(
     tableau: Tableau,
     steps: float,
     tolerance: float,
+    place_unit: float,
     cut: FloatArray,
     delta: float,
     step_limit: int,
@@ -82,6 +97,8 @@ def integrate(
     tableau : the method
     steps : about how many steps to take; 0 lets the error estimate choose them
     tolerance : the local error then allowed per step
+    place_unit : what errors of the place are measured in, 1 for Q₀²/J; a launch of nearly pure spin
+        moves by that times cos φ only
     cut, delta : friction at this δ, see :mod:`puck_tables.motion.equations`
     step_limit : the most steps
     z_path, y_path : arrays (n,), (n, 8) for the step ends, or empty when nobody wants them
@@ -99,8 +116,7 @@ def integrate(
         y[i] = 0.0
     y[U] = u
     z = 0.0
-    z_end = 1.0 - (max(tolerance, 1e-16) ** 0.25 if adaptive else 1.0 / steps)
-    z_end = max(z_end, 0.5 + 0.5 * TURN_Z)
+    z_end = end_of_steps(steps, tolerance, cut)
     turn = 0.0
     turn_read = False
     square = inertia(cut)
@@ -121,6 +137,8 @@ def integrate(
         # never leave a sliver before the target
         trial = h if z + 1.1 * h < target else target - z
         error = step(tableau, z, y, trial, cut, delta, work, new)
+        if place_unit < 1.0:
+            error = max(error, _place_error(tableau, trial, work) / place_unit)
         if adaptive and not error <= tolerance:
             shrink = 0.2 if not error < math.inf else max(0.2, 0.9 * (tolerance / error) ** 0.2)
             h = trial * shrink
@@ -156,6 +174,16 @@ def integrate(
     result[PSI] = turn
     result[SIZE] = max(residual, abs(energy - result[WORK]) / energy)
     return STOPPED, count
+
+
+@inlined
+def _place_error(tableau: Tableau, h: float, work: FloatArray) -> float:
+    """The local error estimate of the place in a step just done."""
+    along, left = 0.0, 0.0
+    for stage in range(tableau.b.size):
+        along += tableau.e[stage] * work[stage, X]
+        left += tableau.e[stage] * work[stage, Y]
+    return abs(h) * (abs(along) + abs(left))
 
 
 @inlined

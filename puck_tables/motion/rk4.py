@@ -25,7 +25,7 @@ from puck_tables.motion.equations import (
     ratios_at,
     slip_ratio,
 )
-from puck_tables.motion.path import TURN_Z, q_of, step_length
+from puck_tables.motion.path import TURN_Z, end_of_steps, q_of, step_length
 
 FloatArray = npt.NDArray[np.float64]
 State = tuple[float, float, float, float, float, float, float]  # u, ψ, t, x, y, θ, path length
@@ -79,7 +79,7 @@ def to_stop(
     """
     y = (u, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     z, turn, turn_read, count = 0.0, 0.0, False, 0
-    z_end = max(1.0 - 1.0 / steps, 0.5 + 0.5 * TURN_Z)
+    z_end = end_of_steps(steps, 1.0, cut)
     while z < z_end:
         h = step_length(y[0], steps, cut)
         target = z_end if turn_read else TURN_Z

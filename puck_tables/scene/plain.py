@@ -7,6 +7,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables.errors import InputError
 from puck_tables.scene.outcome import COLUMNS, Event, SceneRun, ledger_residual
 from puck_tables.scene.plan import Plan, free_puck
 from puck_tables.scene.scene import Scene, launch_velocity
@@ -36,9 +37,15 @@ def run_plain(scene: Scene, needed: Scene, plan: Plan, times: FloatArray | None)
     rests = run.time >= length
     vx = np.where(rests, 0.0, run.speed * np.cos(run.heading)) + belt[0]
     vy = np.where(rests, 0.0, run.speed * np.sin(run.heading)) + belt[1]
-    start = launch_velocity(scene)
+    start, spin = launch_velocity(scene), scene.launch.spin
     mass = scene.puck.mass
     inertia = mass * (scene.puck.gyration * scene.puck.radius) ** 2
+    energy = 0.5 * mass * (start[0] * start[0] + start[1] * start[1]) + 0.5 * inertia * spin * spin
+    if not max(energy, spin * spin, float(run.speed[0]) ** 2) < math.inf:
+        raise InputError(
+            f"launch.velocity = {list(start)} and launch.spin = {spin:g} are too large for "
+            "floating point: use other units"
+        )
     kept = 0.5 * mass * run.speed**2 + 0.5 * inertia * run.spin**2
     zero = np.zeros_like(run.time)
     whole = {
@@ -60,7 +67,6 @@ def run_plain(scene: Scene, needed: Scene, plan: Plan, times: FloatArray | None)
         "kinetic_energy": 0.5 * mass * (vx * vx + vy * vy) + 0.5 * inertia * run.spin**2,
     }
     assert list(whole) == list(COLUMNS)
-    energy = 0.5 * mass * math.hypot(*start) ** 2 + 0.5 * inertia * scene.launch.spin**2
     stop_place = (
         scene.launch.position[0] + run.stop_position[0] + belt[0] * length,
         scene.launch.position[1] + run.stop_position[1] + belt[1] * length,

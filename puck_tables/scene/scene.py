@@ -29,6 +29,7 @@ MAX_FILE = 1 << 20
 MAX_NAMED = 1 << 26  # bytes of a file that a scene names
 MAX_RUNS = 1_000_000_000  # of one sweep
 MATCH = 1e-9  # how well a launch must fit its constraint, of its speed
+_SMALLEST, _LARGEST = 1e-100, 1e100
 
 
 @dataclass(frozen=True)
@@ -294,6 +295,12 @@ def files_of(scene: Scene) -> dict[str, str]:
 def _disagreements(scene: Scene) -> list[str]:
     """What is wrong between fields that are each in range."""
     faults = []
+    for name, value in (("radius", scene.puck.radius), ("mass", scene.puck.mass)):
+        if not _SMALLEST <= value <= _LARGEST:  # the moment of inertia and its inverse are numbers
+            faults.append(
+                f"puck.{name} = {value:g}: must be from {_SMALLEST:g} to {_LARGEST:g} in a scene, "
+                "use other units"
+            )
     strips = scene.floor.strips
     if scene.floor.law and (strips is not None or scene.floor.friction > 0.0):
         faults.append("floor.law: it takes the place of floor.friction and floor.strips")

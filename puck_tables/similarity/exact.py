@@ -22,8 +22,8 @@ _CHUNK = 64
 
 @kernel
 def _fill_exact_stops(
-    u: FloatArray, delta: FloatArray, cut: FloatArray, tableau: Tableau, tolerance: float,
-    out: FloatArray,
+    u: FloatArray, delta: FloatArray, place_unit: FloatArray, cut: FloatArray, tableau: Tableau,
+    tolerance: float, out: FloatArray,
 ) -> None:  # fmt: skip
     """T, X, Y, path, body angle, turn of launches at u, δ into ``out`` (n, 6); NaN: no stop."""
     no_z, no_y = np.empty(0), np.empty((0, SIZE))
@@ -35,7 +35,8 @@ def _fill_exact_stops(
             at_constant_angle(1.0, start, 0.0, cut, delta[n], result)
         else:
             status, _ = integrate(
-                u[n], tableau, 0.0, tolerance, cut, delta[n], _STEP_LIMIT, no_z, no_y, result,
+                u[n], tableau, 0.0, tolerance, place_unit[n], cut, delta[n], _STEP_LIMIT, no_z,
+                no_y, result,
             )  # fmt: skip
         good = status == STOPPED
         out[n, 0] = result[T] if good else math.nan
@@ -44,8 +45,9 @@ def _fill_exact_stops(
 
 
 def integrated_stops(
-    u: FloatArray, delta: FloatArray, cut: FloatArray, tolerance: float
-) -> FloatArray:
+    u: FloatArray, delta: FloatArray, cut: FloatArray, tolerance: float,
+    place_unit: float | FloatArray = 1.0,
+) -> FloatArray:  # fmt: skip
     """Stops in natural units by the integrator.
 
     Parameters
@@ -54,6 +56,8 @@ def integrated_stops(
     delta : array (n,)
     cut : friction, see :mod:`puck_tables.motion.equations`
     tolerance : local error of a step
+    place_unit : array (n,) or 1, what local errors of the place are measured in
+        With cos φ places next to pure spin, all as small as that, keep their digits.
 
     Returns
     -------
@@ -67,10 +71,13 @@ def integrated_stops(
     array([ 0.98647594,  0.32409373, -0.04297451])
     """
     out = np.empty((u.size, 6))
+    unit = np.ascontiguousarray(np.broadcast_to(place_unit, u.shape), np.float64)
 
     def work(start: int, stop: int) -> None:
         part = slice(start, stop)
-        _fill_exact_stops(u[part], delta[part], cut, DORMAND_PRINCE, tolerance, out[part])
+        _fill_exact_stops(
+            u[part], delta[part], unit[part], cut, DORMAND_PRINCE, tolerance, out[part]
+        )
 
     run_chunks(work, u.size, _CHUNK)
     return out

@@ -38,13 +38,16 @@ _SMALLEST, _LARGEST = 1e-250, 1e250  # between them squares of speeds lose nothi
 @inlined
 def slip_place(speed: float, rim: float) -> tuple[int, float]:
     """Side (1: r|ω| > v) and ξ of a motion; 1 − q without cancellation next to φ = π/4."""
-    raised = 2.0**200 if speed + rim < 1e-290 else 1.0  # the inverse of the least would overflow
+    # the inverse of the least would overflow, and the sum of the largest
+    raised = 2.0**200 if speed + rim < 1e-290 else 1.0
+    raised = 0.25 if speed + rim > 1e307 else raised
     speed, rim = raised * speed, raised * rim
     total = speed + rim
     inverse = 1.0 / total if total > 0.0 else 0.0
     q = math.sqrt(math.sqrt(2.0 * min(speed, rim) * inverse))
     rest = abs(speed - rim) * inverse / ((1.0 + q) * (1.0 + q * q))
-    return (1 if rim > speed else 0), 1.0 - math.sqrt(rest)
+    xi = 1.0 - math.sqrt(rest)
+    return (1 if rim > speed else 0), (xi if xi > 0.0 else 0.0)  # an overflow has a place, too
 
 
 @inlined
@@ -143,7 +146,7 @@ def stops_kernel(powers: int) -> Callable[[FloatArray, FloatArray, FloatArray], 
                 place_x = straight * along - across * left
                 place_y = straight * left + across * along
                 time[n], x[n], y[n] = t, place_x, place_y
-                size = scale * slip[n]
+                size = 2.0 * scale * slip[n]  # as solvers.fits
                 overflows += 0 if abs(size / radius[n] + size) < math.inf else 1
         return overflows
 

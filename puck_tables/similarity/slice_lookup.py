@@ -31,6 +31,10 @@ def fill_slice_stops(launches: FloatArray, cut: FloatArray, out: FloatArray) -> 
         rim = radius * launches[2, n]
         speed, edge = math.hypot(vx, vy), abs(rim)
         slip = math.hypot(speed, edge)
+        if not slip < math.inf:
+            for f in range(_FUNCTIONS):
+                out[f, n] = math.nan
+            continue
         larger = max(speed, edge)
         raised = 2.0**200 if larger < _LOWEST else 1.0
         ratio = (raised * min(speed, edge)) / (raised * larger) if larger > 0.0 else 0.0

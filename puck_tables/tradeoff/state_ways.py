@@ -60,7 +60,7 @@ class Task:
             q, states = np.empty(_MOMENTS), np.empty((_MOMENTS, SIZE))
             for n, (vx, _, spin) in enumerate(self.launches[:3].T):
                 _, count = integrate(
-                    log_ratio(vx, spin), DORMAND_PRINCE, 0.0, local, cut, DELTA, z.size, z, y,
+                    log_ratio(vx, spin), DORMAND_PRINCE, 0.0, local, 1.0, cut, DELTA, z.size, z, y,
                     result,
                 )  # fmt: skip
                 states_at(

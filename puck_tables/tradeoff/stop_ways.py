@@ -142,7 +142,7 @@ def _integrations(
                     cut_table(built, delta, cut)
                     height = delta
                 u = log_ratio(np.hypot(vx, vy), abs(spin))
-                integrate(u, tableau, steps, local, cut, delta, _STEP_LIMIT, z, y, result)
+                integrate(u, tableau, steps, local, 1.0, cut, delta, _STEP_LIMIT, z, y, result)
                 out[:, n] = result[2:5]
             return out
 

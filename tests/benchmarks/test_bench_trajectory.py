@@ -293,7 +293,8 @@ def test_tight_integrator(measure: Any, table: Table, source: str) -> None:
 
     def run() -> tuple[int, int]:
         return integrate(
-            u, DORMAND_PRINCE, 0.0, 0.4 * TIGHT_ACCURACY, cut, DELTA, s.size, s, y, result
+            u, DORMAND_PRINCE, 0.0, 0.4 * TIGHT_ACCURACY, 1.0, cut, DELTA, s.size, s, y,
+            result,
         )  # fmt: skip
 
     _, count = run()
