@@ -29,7 +29,7 @@ EXACT_BELOW = 1e-9  # friction by closed forms where a table's error would show
 SLICE_SHARE = 0.1  # of the error wanted
 LAW_SHARE = 0.1  # of it, too: the largest error of the friction at any slip, in units of f N
 
-NO_LAW = BySpeed(np.zeros(0), np.zeros((0, 3), np.int64), np.zeros(0), 0.0, 0.0, 1.0)
+NO_LAW = BySpeed(np.zeros(0), 0.0, 0.0, 1.0)
 
 _one_at_a_time = threading.Lock()  # the threads of a sweep need the same table
 
@@ -56,7 +56,7 @@ def regions_of(scene: Scene) -> Regions:
             )
         table, height_ratio = _law_table(law, scene), 2.0 * puck.height / puck.radius
         table.refuse_height(height_ratio)
-        by_speed = BySpeed(*table.compiled, table.breaks, height_ratio, normal, 1.0)
+        by_speed = BySpeed(table.compiled, height_ratio, normal, 1.0)
         load = np.array([normal * table.largest_f])
         return Regions(load, np.zeros(1), closed_form_friction(0.0).cut[None, :], by_speed)
     coefficients = [floor.friction] if floor.strips is None else list(floor.strips.friction)
