@@ -37,6 +37,7 @@ NAMES = "uniform, galin, hertz, ring, annulus:INNER (0 < INNER < 1), or a CSV fi
 _SLACK = 1e-9  # of δ/δ_max: names and files carry twelve digits
 _LEAST_STEP = 1e-12  # between the radii of a profile
 _LEAST_SPREAD = 2.5e-7  # root mean square, of the radius at which its load stands
+_TIP = 1e-5  # the least radius that matters there
 _MOST_BENDS, _STRAIGHT = 40, 1e-12  # the latter of the largest pressure
 _LARGEST = 1e-5  # a limit ratio above 1e5 is none: there the two rates agree to rounding
 MAX_PROFILE_BYTES = 1 << 24
@@ -249,14 +250,18 @@ def profile_law(radii: npt.ArrayLike, pressure: npt.ArrayLike, name: str = "prof
 def _edges(radii: FloatArray, pressure: FloatArray) -> tuple[float, ...]:
     """Where a profile begins, bends (the most, if it does so often) and ends.
 
-    At a bend the resultants are like x³ ln|x|: splines across it lose their order.
+    At a bend the resultants are like x³ ln|x|: splines across it lose their order.  At a tip in the
+    middle, next to φ = π/2, the friction ratios are like x² ln|x|: radii that shrink towards it.
     """
     slope = np.concatenate([[0.0], np.diff(pressure) / np.diff(radii)])
     bend = np.abs(np.diff(slope))[1:] * np.minimum(np.diff(radii)[:-1], np.diff(radii)[1:])
     sharp = np.flatnonzero(bend > _STRAIGHT)
     sharp = sharp[np.argsort(-bend[sharp], kind="stable")[:_MOST_BENDS]]
-    begins = radii[:1][radii[:1] > 0.0]
-    return tuple(np.union1d(np.append(begins, 1.0), radii[1:-1][sharp]).tolist())
+    ends = np.append(radii[:1][radii[:1] > 0.0], 1.0)
+    if radii[0] == 0.0 and abs(slope[1]) * radii[1] > _STRAIGHT:
+        shrinking = radii[1] * 0.1 ** np.arange(1.0, 6.0)
+        ends = np.append(ends, shrinking[shrinking > _TIP])
+    return tuple(np.union1d(ends, radii[1:-1][sharp]).tolist())
 
 
 def _read(path: str) -> tuple[FloatArray, FloatArray]:

@@ -56,14 +56,13 @@ def _compile(function: Function, forceinline: bool) -> Function:
     return compiled
 
 
-def _weighted_rows(
-    typing: Any, c: Any, k: Any, a: Any, b: Any, d: Any, e: Any, width: Any
-) -> Any:  # fmt: skip
-    """Compiled (c, k, a, b, d, e, width) → the sums a·c[k+m] + b·c[k+width+m] + … as a tuple.
+def _weighted_rows(typing: Any, c: Any, k: Any, weights: Any, width: Any) -> Any:
+    """Compiled (c, k, (a, b, …), width) → the sums a·c[k+m] + b·c[k+width+m] + … as a tuple.
 
-    Four neighbouring rows of ``width`` numbers (a constant) of a flat array of double or single
-    precision, weighted and added as whole vectors.  LLVM does not see by itself that it may (the
-    sums could overwrite the table); in the stop look-up it is worth a fifth of the time.
+    Neighbouring rows, as many as weights, of ``width`` numbers (a constant) of a flat array of
+    double or single precision, weighted and added as whole vectors.  LLVM does not see by itself
+    that it may (the sums could overwrite the table); in the stop look-up it is worth a fifth of the
+    time.
     """
     count = width.literal_value
     double = ir.VectorType(ir.DoubleType(), count)
@@ -76,14 +75,15 @@ def _weighted_rows(
         stored = ir.VectorType(ir.FloatType(), count) if single else double
         data = context.make_array(signature.args[0])(context, builder, args[0]).data
         total = None
-        for row in range(4):
+        for row in range(len(signature.args[2])):
             place = builder.add(args[1], ir.Constant(args[1].type, row * count))
             values = builder.load(
                 builder.bitcast(builder.gep(data, [place]), stored.as_pointer()),
                 align=4 if single else 8,
             )
             values = builder.fpext(values, double) if single else values
-            weight = builder.insert_element(nothing, args[2 + row], first)
+            weight = builder.extract_value(args[2], row)
+            weight = builder.insert_element(nothing, weight, first)
             weight = builder.shuffle_vector(weight, nothing, spread)
             product = builder.fmul(values, weight, flags=("contract",))
             total = product if row == 0 else builder.fadd(total, product, flags=("contract",))
@@ -93,7 +93,7 @@ def _weighted_rows(
         return context.make_tuple(builder, signature.return_type, parts)
 
     sums: Any = types.UniTuple(types.float64, count)  # type: ignore[no-untyped-call]
-    return sums(c, k, a, b, d, e, width), build
+    return sums(c, k, weights, width), build
 
 
 weighted_rows: Any = intrinsic(prefer_literal=True)(_weighted_rows)

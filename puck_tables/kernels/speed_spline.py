@@ -25,17 +25,30 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.kernels.compile import inlined, kernel, weighted_rows
 from puck_tables.kernels.spline import cell_at
 
 FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
 
 DONE, TOO_FAST = 0, 1
 DEGREE = 5
 EDGE_POWER, CORNER_POWER = 2, 3
-OFFSET, CELLS_U, CELLS_W = range(3)  # columns of a layout: first coefficient, cells
 _ROUNDING = 1.0 + 1e-12
+
+
+def packed(
+    breaks: FloatArray, cells: npt.NDArray[np.int64], coefficients: list[FloatArray]
+) -> FloatArray:
+    """A table as one array: a loop that hands it on counts the references of one.
+
+    The number of breaks, the breaks, for each patch where its coefficients begin and its cells
+    along ξ and ζ, and the coefficients.
+    """
+    sizes = np.array([part.size for part in coefficients])
+    header = 1 + len(breaks) + 3 * len(cells)
+    begins = header + np.concatenate([[0], np.cumsum(sizes)[:-1]])
+    layout = np.concatenate([begins[:, None], cells], axis=1).ravel()
+    return np.concatenate([[len(breaks)], breaks, layout, *[c.ravel() for c in coefficients]])
 
 
 @inlined
@@ -65,30 +78,20 @@ def _spline(
     width = 4 * (cells_w + DEGREE)
     first = offset + i * width + 4 * j
     a, b, d, e = 0.0, 0.0, 0.0, 0.0
-    for m, share in enumerate(u):
-        c = coefficients[first + m * width : first + m * width + 24]
-        a += share * (
-            w[0] * c[0] + w[1] * c[4] + w[2] * c[8] + w[3] * c[12] + w[4] * c[16] + w[5] * c[20]
-        )
-        b += share * (
-            w[0] * c[1] + w[1] * c[5] + w[2] * c[9] + w[3] * c[13] + w[4] * c[17] + w[5] * c[21]
-        )
-        d += share * (
-            w[0] * c[2] + w[1] * c[6] + w[2] * c[10] + w[3] * c[14] + w[4] * c[18] + w[5] * c[22]
-        )
-        e += share * (
-            w[0] * c[3] + w[1] * c[7] + w[2] * c[11] + w[3] * c[15] + w[4] * c[19] + w[5] * c[23]
-        )
+    for share in u:
+        row = weighted_rows(coefficients, first, w, 4)
+        a, b, d, e = a + share * row[0], b + share * row[1], d + share * row[2], e + share * row[3]
+        first += width
     return a, b, d, e
 
 
 @inlined
-def _below(breaks: FloatArray, u: float, last: int) -> int:
+def _below(table: FloatArray, u: float, last: int) -> int:
     """The interval of the breaks in which a speed lies, at most ``last``."""
     low, high = 0, last + 1
     while high - low > 1:
         middle = (low + high) // 2
-        if u >= breaks[middle]:
+        if u >= table[1 + middle]:
             low = middle
         else:
             high = middle
@@ -96,34 +99,40 @@ def _below(breaks: FloatArray, u: float, last: int) -> int:
 
 
 @inlined
+def _first_of(slab: int) -> int:
+    """Number of the first patch of a slab, on one side of r|ω| = v."""
+    return 0 if slab == 0 else 1 + (slab - 1) * slab // 2 + 2 * (slab - 1)
+
+
+@inlined
 def patch_and_place(
-    breaks: FloatArray, patches: int, ratio: float, fast: bool, speed: float
+    table: FloatArray, ratio: float, fast: bool, speed: float
 ) -> tuple[int, float, float]:
     """Number of the patch, ξ and ζ; a negative number beyond the last break.
 
-    ``patches``: how many there are on both sides of r|ω| = v; ``ratio``, ``fast``, ``speed``: as in
+    ``table``: see :func:`packed`; ``ratio``, ``fast``, ``speed``: as in
     :func:`speed_integrals_at`.
     """
+    slabs = int(table[0]) - 1
     along = speed / math.sqrt(1.0 + ratio * ratio)
     U, W = along * (1.0 + ratio), along * (1.0 - ratio)
-    if not (breaks[-1] * _ROUNDING >= U):
+    if not (table[1 + slabs] * _ROUNDING >= U):
         return -1, 0.0, 0.0
-    first = patches // 2 if fast else 0
-    k = _below(breaks, U, len(breaks) - 2)
+    k = _below(table, U, slabs - 1)
+    first = _first_of(k) + (_first_of(slabs) if fast else 0)
     if k == 0:
-        return first, U / breaks[1], math.sqrt(math.sqrt((1.0 - ratio) / (1.0 + ratio)))
-    first += 1 + (k - 1) * k // 2 + 2 * (k - 1)
-    width = breaks[k + 1] - breaks[k]
-    if breaks[k] <= W:
-        return first + k + 1, (U - breaks[k]) / width, (W - breaks[k]) / width
-    low = _below(breaks, W, k - 1)
-    start, part = breaks[low], low + 1
+        return first, U / table[2], math.sqrt(math.sqrt((1.0 - ratio) / (1.0 + ratio)))
+    width = table[2 + k] - table[1 + k]
+    if table[1 + k] <= W:
+        return first + k + 1, (U - table[1 + k]) / width, (W - table[1 + k]) / width
+    low = _below(table, W, k - 1)
+    start, part = table[1 + low], low + 1
     if low == 0:
-        share = 2.0 * W / breaks[1]
+        share = 2.0 * W / table[2]
         if share <= 1.0:
-            return first, math.sqrt((U - breaks[k]) / width), math.sqrt(math.sqrt(share))
-        start = 0.5 * breaks[1]
-    x, z = (U - breaks[k]) / width, (breaks[part] - W) / (breaks[part] - start)
+            return first, math.sqrt((U - table[1 + k]) / width), math.sqrt(math.sqrt(share))
+        start = 0.5 * table[2]
+    x, z = (U - table[1 + k]) / width, (table[1 + part] - W) / (table[1 + part] - start)
     if part == k and not fast:
         return first + part, np.cbrt(x), 1.0 - np.cbrt(z)
     return first + part, math.sqrt(x), 1.0 - math.sqrt(z)
@@ -131,30 +140,26 @@ def patch_and_place(
 
 @inlined
 def speed_integrals_at(
-    coefficients: FloatArray, layout: IntArray, breaks: FloatArray,
-    ratio: float, fast: bool, speed: float,
-) -> tuple[float, float, float, float]:  # fmt: skip
+    table: FloatArray, ratio: float, fast: bool, speed: float
+) -> tuple[float, float, float, float]:
     """p_a, p_b, p_d, p_e of :mod:`puck_tables.contact.speed_quadrature`; NaN beyond the table.
 
     ``ratio`` = min(v, r|ω|)/max(v, r|ω|) ∈ [0, 1], ``fast`` whether r|ω| > v, ``speed`` =
     Q = hypot(v, rω) in m/s.
     """
-    patch, xi, zeta = patch_and_place(breaks, len(layout), ratio, fast, speed)
+    patch, xi, zeta = patch_and_place(table, ratio, fast, speed)
     if patch < 0:
         return math.nan, math.nan, math.nan, math.nan
-    return _spline(
-        coefficients, layout[patch, OFFSET], layout[patch, CELLS_U], layout[patch, CELLS_W],
-        xi, zeta,
-    )  # fmt: skip
+    place = 1 + int(table[0]) + 3 * patch
+    return _spline(table, int(table[place]), int(table[place + 1]), int(table[place + 2]), xi, zeta)
 
 
-@inlined
+@kernel
 def speed_ratios(
-    coefficients: FloatArray, layout: IntArray, breaks: FloatArray, height_ratio: float,
-    ratio: float, fast: bool, speed: float,
-) -> tuple[float, float, float]:  # fmt: skip
+    table: FloatArray, height_ratio: float, ratio: float, fast: bool, speed: float
+) -> tuple[float, float, float]:
     """F_∥/(N cos φ), F_⊥/(N sin φ cos φ) and 2M/(N r sin φ), the load tilted as 2h/r has it."""
-    a, b, d, e = speed_integrals_at(coefficients, layout, breaks, ratio, fast, speed)
+    a, b, d, e = speed_integrals_at(table, ratio, fast, speed)
     small = ratio * ratio / (1.0 + ratio * ratio)
     large = 1.0 / (1.0 + ratio * ratio)
     cos2, sin2 = (small, large) if fast else (large, small)
@@ -166,13 +171,13 @@ def speed_ratios(
 
 @kernel
 def fill_speed(
-    coefficients: FloatArray, layout: IntArray, breaks: FloatArray,
-    ratio: FloatArray, fast: npt.NDArray[np.bool_], speed: FloatArray, out: FloatArray,
+    table: FloatArray, ratio: FloatArray, fast: npt.NDArray[np.bool_], speed: FloatArray,
+    out: FloatArray,
 ) -> int:  # fmt: skip
     """p_a, p_b, p_d, p_e at flat arrays of points into ``out`` (4, n); a status."""
     status = DONE
     for n in range(ratio.size):
-        a, b, d, e = speed_integrals_at(coefficients, layout, breaks, ratio[n], fast[n], speed[n])
+        a, b, d, e = speed_integrals_at(table, ratio[n], fast[n], speed[n])
         out[0, n], out[1, n], out[2, n], out[3, n] = a, b, d, e
         if a != a:
             status = TOO_FAST

@@ -11,6 +11,8 @@ on a cushion), heat of viscous friction (2f₂ of Chetaev), work of moving suppo
 
 from __future__ import annotations
 
+from typing import cast
+
 import numpy as np
 import numpy.typing as npt
 
@@ -37,7 +39,8 @@ SIZE = 10
 GIVEN, DRY, VISCOUS, SUPPORT = range(6, SIZE)
 LAMBDA = SIZE  # the two multipliers follow the state; they are not integrated
 ROW = SIZE + 2
-FIRST, SECOND = np.int64(0), np.int64(1)  # rows; plain numbers would compile rates once for each
+# rows; plain numbers would compile ``rates`` once for each
+FIRST, SECOND = cast(int, np.int64(0)), cast(int, np.int64(1))
 
 
 @inlined

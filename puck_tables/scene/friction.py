@@ -48,9 +48,8 @@ def dry_friction(
     if dry.by_speed.normal > 0.0:
         law = dry.by_speed
         along, across, turning = speed_ratios(
-            law.coefficients, law.layout, law.breaks, law.height_ratio, ratio, fast,
-            law.moving * slip,
-        )  # fmt: skip
+            law.table, law.height_ratio, ratio, fast, law.moving * slip
+        )
         along, across, turning = along * law.normal, across * law.normal, turning * law.normal
     else:
         inverse, bend, spin = ratios_at(ratio, fast, dry.cut, dry.delta)
@@ -71,5 +70,5 @@ def dry_friction(
 def at_slip_zero(dry: Dry) -> Dry:
     """The friction that a puck at rest would start against, whatever its coefficient does later."""
     law = dry.by_speed
-    still = BySpeed(law.coefficients, law.layout, law.breaks, law.height_ratio, law.normal, 0.0)
+    still = BySpeed(law.table, law.height_ratio, law.normal, 0.0)
     return Dry(dry.load, dry.delta, dry.cut, still)

@@ -32,13 +32,11 @@ class Body(NamedTuple):
 class BySpeed(NamedTuple):
     """Friction with a coefficient that depends on the slip speed; no ``normal``: there is none.
 
-    ``coefficients``, ``layout``, ``breaks``: see :mod:`puck_tables.kernels.speed_spline`;
-    ``height_ratio``: 2h/r; ``normal``: N; ``moving``: 1, or 0 for the friction at slip zero.
+    ``table``: see :func:`puck_tables.kernels.speed_spline.packed`; ``height_ratio``: 2h/r;
+    ``normal``: N; ``moving``: 1, or 0 for the friction at slip zero.
     """
 
-    coefficients: FloatArray
-    layout: npt.NDArray[np.int64]
-    breaks: FloatArray
+    table: FloatArray
     height_ratio: float
     normal: float
     moving: float

@@ -30,7 +30,7 @@ CLOSED_FORM_ERROR, TABLE_ERROR = 1e-14, 2e-11
 SLICE_SHARE = 0.1  # of the error wanted
 LAW_SHARE = 0.1  # of it, too: the largest error of the friction at any slip, in units of f N
 
-NO_LAW = BySpeed(np.zeros(0), np.zeros((0, 3), np.int64), np.zeros(0), 0.0, 0.0, 1.0)
+NO_LAW = BySpeed(np.zeros(0), 0.0, 0.0, 1.0)
 
 _one_at_a_time = threading.Lock()  # the threads of a sweep need the same table
 
@@ -57,7 +57,7 @@ def regions_of(scene: Scene) -> Regions:
             )
         table, height_ratio = _law_table(law, scene), 2.0 * puck.height / puck.radius
         table.refuse_height(height_ratio)
-        by_speed = BySpeed(*table.compiled, table.breaks, height_ratio, normal, 1.0)
+        by_speed = BySpeed(table.compiled, height_ratio, normal, 1.0)
         load = np.array([normal * table.largest_f])
         return Regions(load, np.zeros(1), closed_form_friction(0.0).cut[None, :], by_speed)
     coefficients = [floor.friction] if floor.strips is None else list(floor.strips.friction)

@@ -128,7 +128,7 @@ def stops_kernel(powers: int) -> Callable[[FloatArray, FloatArray, FloatArray], 
                     first[n] = int(width * cell + side * side_stride)
             for n in range(vx.size):
                 a, b, d, e = basis(inside[n])
-                row = weighted_rows(c, first[n], a, b, d, e, width)
+                row = weighted_rows(c, first[n], (a, b, d, e), width)
                 s = 2.0 * delta[n] * delta[n] - 1.0
                 f, g, h = row[top], 0.0, 0.0
                 for m in range(powers - 2, -1, -1):

@@ -30,6 +30,7 @@ COARSEST_CELLS, HALVINGS = 10, 6
 MAX_NODES = 2_000_000
 _ORDER = 64.0  # to the power 6, of what half the nodes miss: the spline's own share
 _ALSO = 0.2  # of what the other axis misses: refined too
+_NEXT = 0.03  # of the largest error: refined in the same round
 _PROBES = 100  # random points of a patch
 _SAFETY = 2.0  # for points that were not measured
 _BETWEEN_WORDS = 0.1  # s
@@ -211,7 +212,10 @@ def build_speed_table(
     _each(parts, _Filled.fill, tell)
     while pending := [part for part in parts if part.lacks(goal)]:
         chosen, room = [], MAX_NODES - sum(part.nodes for part in parts)
+        worst = max(part.badness for part in pending)
         for part in sorted(pending, key=lambda part: -part.badness):
+            if part.badness < _NEXT * worst:
+                break  # not before the worst are mended: there may be no room for all
             room -= part.size_with(part.lacks(goal)) - part.nodes
             if room < 0:
                 break

@@ -19,7 +19,7 @@ from puck_tables.contact.speed_quadrature import (
     refuse_lifting,
 )
 from puck_tables.errors import InputError
-from puck_tables.kernels.speed_spline import DONE, fill_speed
+from puck_tables.kernels.speed_spline import DONE, fill_speed, packed
 from puck_tables.real import broadcast
 from puck_tables.table.speed_fit import quintic_coefficients
 from puck_tables.table.speed_grid import Patch, patches_of
@@ -93,12 +93,9 @@ class SpeedTable:
         return patches_of(self.breaks)
 
     @cached_property
-    def compiled(self) -> tuple[FloatArray, IntArray]:
-        """Coefficients and layout as :mod:`puck_tables.kernels.speed_spline` reads them."""
-        parts = [quintic_coefficients(values).ravel() for values in self.by_patch()]
-        ends = np.cumsum([0] + [part.size for part in parts])
-        layout = np.concatenate([ends[:-1, None], self.cells], axis=1)
-        return np.concatenate(parts), np.ascontiguousarray(layout, np.int64)
+    def compiled(self) -> FloatArray:
+        """As :func:`puck_tables.kernels.speed_spline.packed` has it."""
+        return packed(self.breaks, self.cells, [quintic_coefficients(v) for v in self.by_patch()])
 
     def by_patch(self) -> list[FloatArray]:
         """Node values of every patch, (ξ nodes, ζ nodes, 4)."""
@@ -125,7 +122,7 @@ class SpeedTable:
         direction = slip_direction(angle)
         out = np.empty((4, angle.size))
         status = fill_speed(
-            *self.compiled, self.breaks, np.ravel(direction.ratio), np.ravel(direction.fast_spin),
+            self.compiled, np.ravel(direction.ratio), np.ravel(direction.fast_spin),
             np.ravel(Q).copy(), out,
         )  # fmt: skip
         if status != DONE:
