@@ -25,6 +25,7 @@ from puck_tables.similarity.section import (
     Section,
     cosine_of,
     plain_section,
+    sample,
     section_of,
 )
 from puck_tables.solvers import fits
@@ -34,7 +35,6 @@ FloatArray = npt.NDArray[np.float64]
 
 DEFAULT_COUNT = 8
 MAX_COUNT = 10_000
-_SAMPLED_U = math.log(math.tan(math.radians(80.0)))
 _SLACK = 1e-12
 _LEAST_LOG, _LARGEST_LOG = -708.0, 709.0
 _CHECK_LOCAL = 1e-11
@@ -232,10 +232,7 @@ def aim(
     if distance == 0.0:
         return _on_the_spot(given, w0, speed, stop_time)
     if distance == math.inf:
-        raise InputError(
-            f"target must be at most {np.finfo(float).max:.2g} m away, got ({x:g}, {y:g}): "
-            "use larger units"
-        )
+        raise InputError(f"target ({x:g}, {y:g}) m is too far for floating point: use larger units")
     family = _Family(distance, J, plain_section(height) if body is None else section_of(body))
     bounds = math.log(fastest), math.log(widest) + math.log(r)
     us: list[float] = []
@@ -252,7 +249,7 @@ def aim(
     elif stop_time is not None:
         us, answer = _met(family, TIME, positive("stop_time", stop_time, "s"), r)
     else:
-        us = _sample(family.ranges(*bounds), count)
+        us = sample(family.ranges(*bounds), count)
     allowed = [u for u in us if _within(family, u, bounds)]
     if not allowed and not answer:
         answer = _out_of_bounds(family, us, fastest, widest, r)
@@ -296,23 +293,6 @@ def _met(family: _Family, quantity: int, wanted: float, radius: float) -> tuple[
         f"no launch stops {family.distance:g} m away after {wanted:g} s: the quickest takes "
         f"{_number(best):.9g} s and has {spin}"
     )
-
-
-def _sample(ranges: list[tuple[float, float]], count: int) -> list[float]:
-    """Equally spaced slip angles, as u: each range has its share of them, at least one."""
-    if not ranges:
-        return []
-    ends = [(low, high if high < math.inf else max(low + 1.0, _SAMPLED_U)) for low, high in ranges]
-    angles = [(math.atan(math.exp(low)), math.atan(math.exp(high))) for low, high in ends]
-    shares = [1] * len(ranges)
-    for _ in range(count - len(ranges)):
-        densest = max(range(len(ranges)), key=lambda n: (angles[n][1] - angles[n][0]) / shares[n])
-        shares[densest] += 1
-    us: list[float] = []
-    for (low, high), (first, last), share in zip(ends, angles, shares, strict=True):
-        inner = np.log(np.tan(np.linspace(first, last, share)[1:-1])).tolist()
-        us += [low, *inner, high] if share > 1 else [low]  # the ends to the last digit
-    return us
 
 
 def _found(given: Aim, launches: list[tuple[float, float, float, float]], answer: str) -> Aim:

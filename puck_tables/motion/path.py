@@ -176,7 +176,7 @@ def integrate(
     return STOPPED, count
 
 
-@inlined
+@kernel
 def _place_error(tableau: Tableau, h: float, work: FloatArray) -> float:
     """The local error estimate of the place in a step just done."""
     along, left = 0.0, 0.0

@@ -34,6 +34,7 @@ BEND = 3  # arg Z, no quantity to be met
 LARGEST_U = 600.0  # beyond, ratios of spin to speed leave floating point
 SLICE_ACCURACY = 5e-10
 _LOCAL = 1e-12
+_SAMPLED_U = math.log(math.tan(math.radians(80.0)))  # as far as is sampled without a bound
 _SCANNED, _SPACING = 36.0, 0.25
 _RESOLVED = 1e-8
 _NARROWEST = 1e-7
@@ -151,6 +152,29 @@ def section_of(body: Body) -> Section:
     values = np.concatenate([values, _values(body, body.delta, more)])
     order = np.argsort(u, kind="stable")
     return Section(body.delta, body, u[order], values[order])
+
+
+def sample(ranges: list[tuple[float, float]], count: int) -> list[float]:
+    """Equally spaced slip angles, as u: each range of u has its share of them, at least one.
+
+    Examples
+    --------
+    >>> [round(u, 3) for u in sample([(-math.inf, 0.0), (1.0, math.inf)], 5)]
+    [-inf, -1.317, -0.549, 0.0, 1.0]
+    """
+    if not ranges:
+        return []
+    ends = [(low, high if high < math.inf else max(low + 1.0, _SAMPLED_U)) for low, high in ranges]
+    angles = [(math.atan(math.exp(low)), math.atan(math.exp(high))) for low, high in ends]
+    shares = [1] * len(ranges)
+    for _ in range(count - len(ranges)):
+        densest = max(range(len(ranges)), key=lambda n: (angles[n][1] - angles[n][0]) / shares[n])
+        shares[densest] += 1
+    us: list[float] = []
+    for (low, high), (first, last), share in zip(ends, angles, shares, strict=True):
+        inner = np.log(np.tan(np.linspace(first, last, share)[1:-1])).tolist()
+        us += [low, *inner, high] if share > 1 else [low]  # the ends to the last digit
+    return us
 
 
 def _first_nodes(body: Body) -> FloatArray:
