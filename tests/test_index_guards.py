@@ -17,7 +17,7 @@ from puck_tables.kernels.law_spline import fill_law
 from puck_tables.kernels.partial_spline import fill_partial
 from puck_tables.kernels.quadratic import fill_resultants_quadratic
 from puck_tables.kernels.slice_spline import fill_slice
-from puck_tables.kernels.speed_spline import fill_patch, fill_speed
+from puck_tables.kernels.speed_spline import fill_speed
 from puck_tables.kernels.spline import cell_at, cut, fill_resultants
 from puck_tables.similarity.curve_lookup import LAUNCH_COLUMNS, LAUNCH_ROWS, fill_states
 from puck_tables.similarity.lookup import stops_kernel
@@ -64,12 +64,13 @@ def look_up_everything() -> None:
     opening = np.random.default_rng(2).choice(WILD, (2, 19))
     fill_partial(wild, opening, partial.spline[2], first, second, out)
     speeds = build_speed_table(SpeedLaw([0.0, 0.5, 2.0], [0.3, 0.2, 0.25]), accuracy=1e-2)
-    coefficients, layout = speeds.compiled
-    breaks = np.random.default_rng(5).choice(WILD, (20, speeds.breaks.size))
-    for edges in (speeds.breaks, *breaks):
-        for c in (coefficients, np.random.default_rng(6).choice(WILD, coefficients.size)):
-            fill_speed(c, layout, edges, first, fast, second, out4)
-    fill_patch(coefficients, *layout[0, 1:], first, second, np.empty((n, 4)))
+    wild_table = speeds.compiled.copy()
+    places = wild_table[1:]
+    places[places.size // 2 :] = np.random.default_rng(6).choice(
+        WILD, places.size - places.size // 2
+    )
+    for c in (speeds.compiled, wild_table):
+        fill_speed(c, first, fast, second, out4)
     piece = friction_slice(law_of("uniform"), 0.5, 1e-4).spline
     hostile = np.where(np.random.default_rng(3).random(piece.cut.shape) < 0.5, 1e308, piece.cut)
     for c in (piece.cut, hostile):

@@ -77,7 +77,7 @@ def test_json_and_report_carry_inputs_and_units() -> None:
     units = run["units"]
     assert (units["heat_dry"], units["spin"], units["scene.wall.point"]) == ("J", "rad/s", "m")
     numbers = {name for name, value in run.items() if isinstance(value, float)}
-    assert numbers - {"energy_residual"} <= set(units)
+    assert numbers - {"energy_residual", "error_estimate"} <= set(units)
     assert simulate_scene(run["scene"], [0.0]).last["x"] == run["x"]
     text = CliRunner().invoke(main, ["simulate", "--scene", "air-hockey"]).stdout
     for part in (

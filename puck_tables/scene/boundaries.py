@@ -65,14 +65,14 @@ class Arc(NamedTuple):
 
 
 @inlined
-def _arc(stretch: Stretch, work: FloatArray, end: FloatArray) -> Arc:
-    first, last, surface = work[0], work[STAGES - 1], stretch.model.surface
-    cx, cy = carried_along(surface, first[X], first[Y])
-    dx, dy = carried_along(surface, last[X], last[Y])
+def _arc(stretch: Stretch, work: FloatArray, new: FloatArray) -> Arc:
+    surface, end = stretch.model.surface, STAGES - 1
+    cx, cy = carried_along(surface, work[0, X], work[0, Y])
+    dx, dy = carried_along(surface, work[end, X], work[end, Y])
     return Arc(
-        first[X], first[Y], first[VX] + cx, first[VY] + cy,
-        last[X], last[Y], last[VX] + dx, last[VY] + dy,
-        end[SIZE], end[SIZE + 1],
+        work[0, X], work[0, Y], work[0, VX] + cx, work[0, VY] + cy,
+        work[end, X], work[end, Y], work[end, VX] + dx, work[end, VY] + dy,
+        new[SIZE], new[SIZE + 1],
     )  # fmt: skip
 
 

@@ -23,7 +23,6 @@ from puck_tables.scene.ingredients import (
     CARRIED,
     SLIDES,
     Body,
-    Dry,
     Model,
     Stretch,
     carried_along,
@@ -44,41 +43,41 @@ FIRST, SECOND = cast(int, np.int64(0)), cast(int, np.int64(1))
 
 
 @inlined
-def slip_speed(model: Model, y: FloatArray) -> float:
+def slip_speed(radius: float, y: FloatArray) -> float:
     """Q relative to the floor under the puck."""
-    return size(y[VX], y[VY], model.body.radius * y[SPIN])
+    return size(y[VX], y[VY], radius * y[SPIN])
 
 
 @inlined
-def slip_side(model: Model, y: FloatArray) -> float:
+def slip_side(radius: float, y: FloatArray) -> float:
     """(r|w| − u)/(r|w| + u): 0 where φ = π/4, and within rounding of it."""
-    speed, rim = size(y[VX], y[VY], 0.0), model.body.radius * abs(y[SPIN])
+    speed, rim = size(y[VX], y[VY], 0.0), radius * abs(y[SPIN])
     side = (rim - speed) / (rim + speed) if rim + speed > 0.0 else 0.0
     return side if abs(side) > 1e-11 else 0.0
 
 
 @inlined
-def slip_rate(model: Model, work: FloatArray) -> float:
+def slip_rate(radius: float, work: FloatArray) -> float:
     """The size of the change of the slip, from d/dt of the state in work[0]."""
-    return size(work[0, VX], work[0, VY], model.body.radius * work[0, SPIN])
+    return size(work[0, VX], work[0, VY], radius * work[0, SPIN])
 
 
 @inlined
-def settling_rate(model: Model, dry: Dry, slip: float) -> float:
-    """How fast, at most, the direction of a slip and what is damped settle, 1/s."""
+def settling_rates(model: Model, load: float) -> tuple[float, float]:
+    """How fast, at most, what is damped settles, 1/s, and times the slip its direction, m/s²."""
     body, drag = model.body, model.drag
     lever = body.mass * body.radius * body.radius / body.inertia
-    rate = drag.sliding / body.mass + drag.spinning / body.inertia
-    if slip > 0.0:
-        rate += dry.load / body.mass * max(1.0, 0.5 * lever) / slip
-    return rate
+    return (
+        drag.sliding / body.mass + drag.spinning / body.inertia,
+        load / body.mass * max(1.0, 0.5 * lever),
+    )
 
 
 @inlined
-def stopping(model: Model, y: FloatArray, work: FloatArray) -> tuple[float, float, float, float]:
+def stopping(radius: float, y: FloatArray, work: FloatArray) -> tuple[float, float, float, float]:
     """The direction (ux, uy, w) of the slip, scaled to Q = 1, and the rate of Q."""
-    r2 = model.body.radius * model.body.radius
-    q = slip_speed(model, y)
+    r2 = radius * radius
+    q = slip_speed(radius, y)
     rate = y[VX] * work[0, VX] + y[VY] * work[0, VY] + r2 * y[SPIN] * work[0, SPIN]
     return y[VX] / q, y[VY] / q, y[SPIN] / q, rate / q
 

@@ -34,7 +34,7 @@ from puck_tables.scene.equations import (
     SIZE,
     kinetic_energy,
     rates,
-    settling_rate,
+    settling_rates,
     slip_rate,
     slip_side,
     slip_speed,
@@ -44,6 +44,7 @@ from puck_tables.scene.equations import (
 from puck_tables.scene.friction import SPIN, VX, VY
 from puck_tables.scene.ingredients import (
     CARRIED,
+    FREE,
     SLIDES,
     STOPS,
     Dry,
@@ -157,7 +158,7 @@ def _rests_on(model: Model, dry: Dry, leaning: FloatArray, piece: int, y: FloatA
 def _watched(stretch: Stretch, what: int, y: FloatArray) -> float:
     model = stretch.model
     if what == _EQUAL:
-        return slip_side(model, y)
+        return slip_side(model.body.radius, y)
     sx, sy, turning = floor_velocity(model.surface, y[0], y[1])
     lean = stretch.leaning[what]
     return rim_slip(model.body, lean[NX], lean[NY], y[VX] + sx, y[VY] + sy, y[SPIN] + turning)
@@ -225,9 +226,7 @@ def _goes_straight(
 
     What brakes slowly takes so long that its direction must have settled, and all else be small.
     """
-    if not 0.0 < q <= max(_LAST * ask.tolerance / slow, 2.0 * _REST) * ask.speed:
-        return _NO_WAY
-    way = stopping(stretch.model, y, work)
+    way = stopping(stretch.model.body.radius, y, work)
     quick = way[3] < -_SLOW * stretch.dry.load / stretch.model.body.mass / slow
     across = math.sqrt(max(pull * pull - way[3] * way[3], 0.0))
     if not (quick and across <= -way[3]) and q > 2.0 * _REST * ask.speed:
@@ -265,26 +264,34 @@ def follow(
     state[:SIZE] = y
     y = state
     body, scale, surface, drive = model.body, ask.scale, model.surface, model.drive
+    radius, held_there = body.radius, model.hold.kind != FREE
     moves = surface.vx != 0.0 or surface.vy != 0.0 or surface.spin != 0.0
+    pull_there = model.pull.x != 0.0 or model.pull.y != 0.0 or len(drive) > 0
+    swings = surface.spin != 0.0 and pull_there  # else what a turning floor asks is constant
     unbounded = len(bounds.walls) + len(bounds.edges) + len(bounds.borders) == 0
     contacts = contacts_at(bounds, rooms(bounds, y), body, y, ask.speed)
     leaning, dry = touching(bounds, contacts), _dry(regions, region)
+    room, leans = contacts.room, contacts.leans
     to_laboratory(model, y, -1.0)
     t, heat, mode, piece, way, stiff = 0.0, 0.0, SLIDES, 0, _NO_WAY, False
     resting, calm = False, 0.0  # whether its rest is noted; when rebounds have died out
     count, steps, frame, wrong = 0, 0, 0, 0.0
     # by so much longer than the centre a spin takes to brake
     slow = max(1.0, 2.0 * body.inertia / (body.mass * body.radius * body.radius))
+    straight = max(_LAST * ask.tolerance / slow, 2.0 * _REST) * ask.speed
+    damps, turns = settling_rates(model, dry.load)
     how = TIME_UP
     h = 1e-3 * min(ask.until, scale[0] / ask.speed)
     settle, known = True, False  # whether to look what holds the puck; whether work[0] is there
+    newton = 0.0
+    stretch = Stretch(model, dry, leaning, piece, mode, way, newton)
     while t < ask.until:
         while piece < len(drive) and drive[piece, 0] <= t:
             piece += 1
         target = min(drive[piece, 0], ask.until) if piece < len(drive) else ask.until
         if calm > t:
             target = min(target, calm)
-        q = slip_speed(model, y)
+        q = slip_speed(radius, y)
         if settle and dry.load > 0.0 and q <= _REST * ask.speed:
             y[VX] = y[VY] = y[SPIN] = 0.0
             mode = CARRIED
@@ -305,31 +312,33 @@ def follow(
                 resting = mode == CARRIED
                 _noted(events[count], model, t, RESTS if resting else SLIPS, region, y)
                 count += 1
-            if (
-                mode == CARRIED
-                and t >= calm
-                and (piece == len(drive) and (not moves or (unbounded and not ask.to_the_end)))
-            ):
-                how = CARRIED_AWAY if moves else AT_REST  # nothing is to come
-                break
+            if mode == CARRIED and t >= calm:
+                alone = piece == len(drive) and unbounded and not ask.to_the_end
+                if alone if moves else _rests_on(model, dry, leaning, piece, y):
+                    how = CARRIED_AWAY if moves else AT_REST  # nothing is to come
+                    break
             h = max(h, 1e-6 * (target - t))
             known = False
         elif settle:
             mode = SLIDES
             resting = False
         h = -q / way[3] if mode == STOPS else h
-        if mode == CARRIED and surface.spin != 0.0:
+        if mode == CARRIED and swings:
             h = min(h, _SWING / abs(surface.spin))
-        newton = max(_NEWTON * ask.tolerance, _FINEST_NEWTON) if stiff and mode == SLIDES else 0.0
-        stretch = Stretch(model, dry, leaning, piece, mode, way, newton)
         if settle or not known:
+            newton = 0.0
+            if stiff and mode == SLIDES:
+                newton = max(_NEWTON * ask.tolerance, _FINEST_NEWTON)
+            stretch = Stretch(model, dry, leaning, piece, mode, way, newton)
             rates(stretch, t, y, work, FIRST)
         settle, known = False, True
         if mode == SLIDES and dry.load > 0.0:
-            pull = slip_rate(model, work)
+            pull = slip_rate(radius, work)
             near = _NEAR * max(q, _REST * ask.speed)
             h = near / pull if h * pull > near else h
-            way = _goes_straight(stretch, ask, t, q, pull, slow, y, work)
+            way = _NO_WAY
+            if 0.0 < q <= straight:
+                way = _goes_straight(stretch, ask, t, q, pull, slow, y, work)
             if way[3] < 0.0:
                 mode, known = STOPS, False
                 continue
@@ -356,20 +365,21 @@ def follow(
         for passed in range(1 + leaning.shape[0]):
             what = _NOTHING
             if passed == 0 and mode == SLIDES:
-                what = _EQUAL if slip_side(model, y) * slip_side(model, new) < 0.0 else what
+                what = _EQUAL if slip_side(radius, y) * slip_side(radius, new) < 0.0 else what
             for i in range(leaning.shape[0]):
-                turns = leaning[i, RIM] * _watched(stretch, i, new) < 0.0
-                if what == _NOTHING and leaning[i, GRIP] > 0.0 and turns:
+                passes = leaning[i, RIM] * _watched(stretch, i, new) < 0.0
+                if what == _NOTHING and leaning[i, GRIP] > 0.0 and passes:
                     what = i
             if what != _NOTHING:
                 landed, stuck = False, what
                 length = _zero(stretch, what, t, length, y, scale, work, new)
         wrong += error
         last[:] = work[STAGES - 1]
-        happens, which, moment = first_crossing(
-            bounds, contacts.room, region, contacts.leans, stretch, t, length, y, scale, work, new,
-            gaps, trial,
-        )  # fmt: skip
+        happens, which, moment = -1, -1, math.inf
+        if not unbounded:
+            happens, which, moment = first_crossing(
+                bounds, room, region, leans, stretch, t, length, y, scale, work, new, gaps, trial
+            )
         if mode == CARRIED and happens < 0 and t >= calm:
             trial[:] = new
             moment = _lost(stretch, t, length, y, scale, work, trial)
@@ -387,18 +397,17 @@ def follow(
         t = end
         for i in range(SIZE):
             y[i] = new[i]
-        for i in range(len(contacts.room)):
-            if not contacts.leans[i]:
-                contacts.room[i] += (
-                    bounds.walls[i, NX] * new[SIZE] + bounds.walls[i, NY] * new[SIZE + 1]
-                )
+        for i in range(room.size):
+            if not leans[i]:
+                room[i] += bounds.walls[i, NX] * new[SIZE] + bounds.walls[i, NY] * new[SIZE + 1]
         work[0] = last
-        known = happens < 0 and mode == SLIDES and model.hold.kind == 0 and leaning.shape[0] == 0
-        before_it, q = q, slip_speed(model, y)
+        known = happens < 0 and mode == SLIDES and not held_there and leaning.shape[0] == 0
+        before_it, q = q, slip_speed(radius, y)
         if newton > 0.0 or mode == SLIDES:
-            reach = length * settling_rate(model, dry, q)
-            slowly = slip_rate(model, work) < _SLOWLY * settling_rate(model, dry, q) * q
-            stiff = slowly and reach > (_MILD if newton > 0.0 else _STIFF)
+            reach = length * (damps + turns / q if q > 0.0 else damps)
+            slowly = slip_rate(radius, work) < _SLOWLY * (damps * q + turns)
+            was, stiff = stiff, slowly and reach > (_MILD if newton > 0.0 else _STIFF)
+            known = known and stiff == was
         if landed and (target < ask.until or t == calm):
             settle = True
         if mode in (SLIDES, STOPS) and q <= _REST * ask.speed and q < before_it:
@@ -420,6 +429,7 @@ def follow(
         if happens == BORDER:
             region = which
             dry = _dry(regions, region)
+            damps, turns = settling_rates(model, dry.load)
             mode = CARRIED if mode == CARRIED and dry.load > 0.0 else SLIDES
             contacts.chain[0] = -1
         elif happens == BOUNCES:

@@ -77,7 +77,7 @@ def _jacobian(
     stretch: Stretch, t: float, y: FloatArray, at: FloatArray, rows: FloatArray, out: FloatArray
 ) -> None:
     """∂(vx, vy, spin)′/∂(vx, vy, spin) at (t, y) by one-sided differences into ``out`` (3, 3)."""
-    slip, radius = slip_speed(stretch.model, y), stretch.model.body.radius
+    slip, radius = slip_speed(stretch.model.body.radius, y), stretch.model.body.radius
     rates(stretch, t, y, rows, FIRST)
     for j in range(_STIFF):
         nudge = _NUDGE * (slip if slip > 0.0 else 1.0) / (radius if VX + j == SPIN else 1.0)
@@ -142,7 +142,7 @@ def radau_step(
                 z[stage, VX + i] += step[_STIFF * stage + i]
         for i in range(SIZE):
             at[i] = y[i] + z[2, i]
-        sure = moved <= _SURE * max(slip_speed(stretch.model, y), slip_speed(stretch.model, at))
+        sure = moved <= _SURE * max(slip_speed(body.radius, y), slip_speed(body.radius, at))
         stalls = iteration > 1 and largest >= 0.3 * before and largest <= rounding
         if sure and (largest <= stretch.newton or stalls):
             break
@@ -179,11 +179,12 @@ def _error(
         else:
             largest = max(largest, abs(defect) * h / _MU / scale[i])
     _solve(matrix, order, b)
-    left = max(slip_speed(stretch.model, y), slip_speed(stretch.model, new))
+    radius = stretch.model.body.radius
+    left = max(slip_speed(radius, y), slip_speed(radius, new))
     for i in range(_STIFF):
         size = scale[VX + i]
         error = abs(b[i]) / size
-        relative = abs(b[i]) * (stretch.model.body.radius if VX + i == SPIN else 1.0)
+        relative = abs(b[i]) * (radius if VX + i == SPIN else 1.0)
         if relative > _RELATIVE * left:
             error = max(error, 1.0)  # more than any tolerance
         largest = error if not error <= largest else largest

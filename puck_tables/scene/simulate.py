@@ -208,7 +208,7 @@ def _estimate(prepared: Prepared, events: FloatArray) -> float:
     """
     ends = [np.empty((PROBES + 1, FRAME_COLUMNS)) for _ in range(2)]
     how, end_time, *_ = prepared.follow(np.empty(0), ends[0], events, COARSER)
-    if how in (TIME_UP, STEP_LIMIT):  # else the run itself tells
+    if how in (TIME_UP, STEP_LIMIT, EVENT_LIMIT):  # else the run itself tells
         _refuse_failed(prepared.scene, how, end_time, prepared.ask.to_the_end)
     probes = end_time * np.arange(1, PROBES + 1) / (PROBES + 1)
     both_runs = [
