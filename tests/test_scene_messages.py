@@ -80,7 +80,7 @@ def test_a_puck_that_rests_does_not_still_move(tmp_path: Path) -> None:
     force.write_text("t,Fx,Fy\n0,0.3,0\n0.5,0,0\n1e6,0,0\n")
     scene = tmp_path / "scene.toml"
     scene.write_text(HEAD + '[force]\nfile = "force.csv"\n')
-    assert "at rest after 0.701055" in puck("simulate", "--scene", str(scene)).stdout
+    assert "at rest after 0.70105" in puck("simulate", "--scene", str(scene)).stdout
     with pytest.raises(InputError, match="still moves after"):
         simulate_scene({"puck": {"radius": 1.0}, "floor": {"friction": 0.1, "slope": 0.3}})
 
