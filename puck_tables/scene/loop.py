@@ -26,7 +26,7 @@ from puck_tables.scene.boundaries import (
     first_crossing,
     rooms,
 )
-from puck_tables.scene.cushions import GRIP, NX, NY, RIM, rim_slip
+from puck_tables.scene.cushions import GRIP, NX, NY, RIM
 from puck_tables.scene.equations import (
     FIRST,
     ROW,
@@ -51,8 +51,8 @@ from puck_tables.scene.ingredients import (
     Model,
     Regions,
     Stretch,
-    floor_velocity,
 )
+from puck_tables.scene.moments import EQUAL, lost, rests_on, watched, zero
 from puck_tables.scene.rest import SLACK, excess_at_rest, held_by_floor
 from puck_tables.scene.settle import (
     bounced,
@@ -82,10 +82,9 @@ _NEAR = 0.5  # of the time in which the slip would end, at most, is a step
 _STIFF, _MILD = 0.8, 0.3  # of the time in which a slip settles: longer steps are implicit,
 _SLOWLY = 0.1  # if the slip changes by less than this of itself meanwhile
 _NEWTON, _FINEST_NEWTON = 1e-3, 1e-15  # of the local error: how well implicit steps are solved
-_MARGIN = 0.2  # of friction
 _SWING = 0.05  # rad that a carried puck turns, at most, in a step
 _NO_WAY = (0.0, 0.0, 0.0, 0.0)
-_NOTHING, _EQUAL = -2, -1  # watched: equal speeds of centre and rim; else the rim on a wall
+_NOTHING = -2  # is watched
 
 
 class Ask(NamedTuple):
@@ -101,93 +100,6 @@ class Ask(NamedTuple):
     scale: FloatArray
     speed: float
     step_limit: int
-
-
-@kernel
-def _lost(
-    stretch: Stretch, t: float, h: float, y: FloatArray, scale: FloatArray, work: FloatArray,
-    new: FloatArray,
-) -> float:  # fmt: skip
-    """When within a step to ``new`` the floor loses a puck that it carries; inf: it does not.
-
-    On a floor that turns the demand swings: it is looked at where a parabola has its top, too.
-    """
-    slack = SLACK * stretch.dry.load
-    first, last = excess_at_rest(stretch, t, y)[0], excess_at_rest(stretch, t + h, new)[0]
-    low, high = 0.0, h if last > slack else math.inf
-    if stretch.model.surface.spin != 0.0 and last <= slack:
-        step(stretch, t, 0.5 * h, y, scale, work, new)
-        middle = excess_at_rest(stretch, t + 0.5 * h, new)[0]
-        bend = 2.0 * (first - 2.0 * middle + last)
-        top = 0.25 - (last - first) / (2.0 * bend) + 0.25 if bend < 0.0 else 0.5
-        top = min(max(top, 0.0), 1.0) * h
-        step(stretch, t, top, y, scale, work, new)
-        high = top if excess_at_rest(stretch, t + top, new)[0] > slack else math.inf
-    if high == math.inf:
-        return high
-    while True:
-        middle = 0.5 * (low + high)
-        if middle <= low or middle >= high:
-            return high
-        step(stretch, t, middle, y, scale, work, new)
-        if held_by_floor(stretch, t + middle, new):
-            low = middle
-        else:
-            high = middle
-
-
-@inlined
-def _rests_on(model: Model, dry: Dry, leaning: FloatArray, piece: int, y: FloatArray) -> bool:
-    """Whether the floor, at rest, holds a puck whatever forces are still to come.
-
-    Between two rows a force lies between theirs; a curve that bulges inwards is given a margin.
-    """
-    flat = dry.delta == 0.0 and dry.by_speed.normal == 0.0
-    level, rows = (SLACK if flat else -_MARGIN) * dry.load, len(model.drive)
-    if piece == rows:
-        return True
-    for row in range(piece, rows + 1):  # at last what is left when the rows have ended
-        at = row if row == rows else max(row, 1)
-        stretch = Stretch(model, dry, leaning, at, CARRIED, _NO_WAY, 0.0)
-        if excess_at_rest(stretch, model.drive[min(row, rows - 1), 0], y)[0] > level:
-            return False
-    return True
-
-
-@inlined
-def _watched(stretch: Stretch, what: int, y: FloatArray) -> float:
-    model = stretch.model
-    if what == _EQUAL:
-        return slip_side(model.body.radius, y)
-    sx, sy, turning = floor_velocity(model.surface, y[0], y[1])
-    lean = stretch.leaning[what]
-    return rim_slip(model.body, lean[NX], lean[NY], y[VX] + sx, y[VY] + sy, y[SPIN] + turning)
-
-
-@kernel
-def _zero(
-    stretch: Stretch, what: int, t: float, h: float, y: FloatArray, scale: FloatArray,
-    work: FloatArray, new: FloatArray,
-) -> float:  # fmt: skip
-    """When within a step what is watched passes 0; ``new`` then.
-
-    By the method of false position, with the weight of an end that stays halved (Illinois).
-    """
-    low, high = 0.0, h
-    first, last = _watched(stretch, what, y), _watched(stretch, what, new)
-    sign = 1.0 if last > 0.0 else -1.0
-    for _ in range(60):
-        middle = (low * last - high * first) / (last - first)
-        if not low < middle < high or high - low <= 1e-12 * h:
-            break
-        step(stretch, t, middle, y, scale, work, new)
-        value = _watched(stretch, what, new)
-        if sign * value > 0.0:
-            high, last, first = middle, value, 0.5 * first
-        else:
-            low, first, last = middle, value, 0.5 * last
-    step(stretch, t, high, y, scale, work, new)
-    return high
 
 
 @inlined
@@ -314,7 +226,7 @@ def follow(
                 count += 1
             if mode == CARRIED and t >= calm:
                 alone = piece == len(drive) and unbounded and not ask.to_the_end
-                if alone if moves else _rests_on(model, dry, leaning, piece, y):
+                if alone if moves else rests_on(model, dry, leaning, piece, y):
                     how = CARRIED_AWAY if moves else AT_REST  # nothing is to come
                     break
             h = max(h, 1e-6 * (target - t))
@@ -365,14 +277,14 @@ def follow(
         for passed in range(1 + leaning.shape[0]):
             what = _NOTHING
             if passed == 0 and mode == SLIDES:
-                what = _EQUAL if slip_side(radius, y) * slip_side(radius, new) < 0.0 else what
+                what = EQUAL if slip_side(radius, y) * slip_side(radius, new) < 0.0 else what
             for i in range(leaning.shape[0]):
-                passes = leaning[i, RIM] * _watched(stretch, i, new) < 0.0
+                passes = leaning[i, RIM] * watched(stretch, i, new) < 0.0
                 if what == _NOTHING and leaning[i, GRIP] > 0.0 and passes:
                     what = i
             if what != _NOTHING:
                 landed, stuck = False, what
-                length = _zero(stretch, what, t, length, y, scale, work, new)
+                length = zero(stretch, what, t, length, y, scale, work, new)
         wrong += error
         last[:] = work[STAGES - 1]
         happens, which, moment = -1, -1, math.inf
@@ -382,7 +294,7 @@ def follow(
             )
         if mode == CARRIED and happens < 0 and t >= calm:
             trial[:] = new
-            moment = _lost(stretch, t, length, y, scale, work, trial)
+            moment = lost(stretch, t, length, y, scale, work, trial)
             if moment < math.inf:
                 happens, which = SLIPS, region
         if happens >= 0:

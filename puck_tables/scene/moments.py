@@ -1,0 +1,110 @@
+"""When in a step something happens that is no line: the floor lets go, a rim stops, φ = π/4."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.scene.cushions import NX, NY, rim_slip
+from puck_tables.scene.equations import slip_side
+from puck_tables.scene.friction import SPIN, VX, VY
+from puck_tables.scene.ingredients import CARRIED, Dry, Model, Stretch, floor_velocity
+from puck_tables.scene.rest import SLACK, excess_at_rest, held_by_floor
+from puck_tables.scene.steps import step
+
+FloatArray = npt.NDArray[np.float64]
+
+EQUAL = -1  # watched: equal speeds of centre and rim; else the rim on a wall that is leant on
+_MARGIN = 0.2  # of friction
+_NO_WAY = (0.0, 0.0, 0.0, 0.0)
+
+
+@kernel
+def lost(
+    stretch: Stretch, t: float, h: float, y: FloatArray, scale: FloatArray, work: FloatArray,
+    new: FloatArray,
+) -> float:  # fmt: skip
+    """When within a step to ``new`` the floor loses a puck that it carries; inf: it does not.
+
+    On a floor that turns the demand swings: it is looked at where a parabola has its top, too.
+    """
+    slack = SLACK * stretch.dry.load
+    first, last = excess_at_rest(stretch, t, y)[0], excess_at_rest(stretch, t + h, new)[0]
+    low, high = 0.0, h if last > slack else math.inf
+    if stretch.model.surface.spin != 0.0 and last <= slack:
+        step(stretch, t, 0.5 * h, y, scale, work, new)
+        middle = excess_at_rest(stretch, t + 0.5 * h, new)[0]
+        bend = 2.0 * (first - 2.0 * middle + last)
+        top = 0.25 - (last - first) / (2.0 * bend) + 0.25 if bend < 0.0 else 0.5
+        top = min(max(top, 0.0), 1.0) * h
+        step(stretch, t, top, y, scale, work, new)
+        high = top if excess_at_rest(stretch, t + top, new)[0] > slack else math.inf
+    if high == math.inf:
+        return high
+    while True:
+        middle = 0.5 * (low + high)
+        if middle <= low or middle >= high:
+            return high
+        step(stretch, t, middle, y, scale, work, new)
+        if held_by_floor(stretch, t + middle, new):
+            low = middle
+        else:
+            high = middle
+
+
+@inlined
+def rests_on(model: Model, dry: Dry, leaning: FloatArray, piece: int, y: FloatArray) -> bool:
+    """Whether the floor, at rest, holds a puck whatever forces are still to come.
+
+    Between two rows a force lies between theirs; a curve that bulges inwards is given a margin.
+    """
+    flat = dry.delta == 0.0 and dry.by_speed.normal == 0.0
+    level, rows = (SLACK if flat else -_MARGIN) * dry.load, len(model.drive)
+    if piece == rows:
+        return True
+    for row in range(piece, rows + 1):  # at last what is left when the rows have ended
+        at = row if row == rows else max(row, 1)
+        stretch = Stretch(model, dry, leaning, at, CARRIED, _NO_WAY, 0.0)
+        if excess_at_rest(stretch, model.drive[min(row, rows - 1), 0], y)[0] > level:
+            return False
+    return True
+
+
+@inlined
+def watched(stretch: Stretch, what: int, y: FloatArray) -> float:
+    """What changes its sign at a moment that is looked for."""
+    model = stretch.model
+    if what == EQUAL:
+        return slip_side(model.body.radius, y)
+    sx, sy, turning = floor_velocity(model.surface, y[0], y[1])
+    lean = stretch.leaning[what]
+    return rim_slip(model.body, lean[NX], lean[NY], y[VX] + sx, y[VY] + sy, y[SPIN] + turning)
+
+
+@kernel
+def zero(
+    stretch: Stretch, what: int, t: float, h: float, y: FloatArray, scale: FloatArray,
+    work: FloatArray, new: FloatArray,
+) -> float:  # fmt: skip
+    """When within a step what is watched passes 0; ``new`` then.
+
+    By the method of false position, with the weight of an end that stays halved (Illinois).
+    """
+    low, high = 0.0, h
+    first, last = watched(stretch, what, y), watched(stretch, what, new)
+    sign = 1.0 if last > 0.0 else -1.0
+    for _ in range(60):
+        middle = (low * last - high * first) / (last - first)
+        if not low < middle < high or high - low <= 1e-12 * h:
+            break
+        step(stretch, t, middle, y, scale, work, new)
+        value = watched(stretch, what, new)
+        if sign * value > 0.0:
+            high, last, first = middle, value, 0.5 * first
+        else:
+            low, first, last = middle, value, 0.5 * last
+    step(stretch, t, high, y, scale, work, new)
+    return high
