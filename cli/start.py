@@ -10,10 +10,12 @@ from __future__ import annotations
 
 import os
 import signal
+import sys
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:  # the less is imported before the handler stands, the better
     from collections.abc import Callable
+    from sys import UnraisableHookArgs
     from types import FrameType
 
 INTERRUPTED = 130
@@ -48,10 +50,17 @@ def _watch() -> None:
     threading.Thread(target=wait, daemon=True).start()
 
 
+def _ignored(what: UnraisableHookArgs) -> None:
+    """A compiler may drop KeyboardInterrupt in a place that Python then talks about."""
+    if not issubclass(what.exc_type, KeyboardInterrupt):
+        sys.__unraisablehook__(what)
+
+
 def main() -> None:
     """Import the commands and run one."""
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:  # unless it is ignored
         signal.signal(signal.SIGINT, end_at_once)
+        sys.unraisablehook = _ignored
         _watch()
     from puck_tables.cli.main import main as command
 

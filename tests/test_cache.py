@@ -65,7 +65,9 @@ def test_an_edit_of_any_file_empties_the_cache(tmp_path: Path, monkeypatch: pyte
     digest = cache.source_digest.__wrapped__
     seen = {digest()}
     kernels = [
-        p for p in package.rglob("*.py") if re.search("^@(kernel|inlined)", p.read_text(), re.M)
+        p
+        for p in package.rglob("*.py")
+        if re.search("^@(kernel|inlined|allocating)", p.read_text(), re.M)
     ]
     assert {path.parent.name for path in kernels} >= {"kernels", "motion", "similarity", "tradeoff"}
     for path in kernels:

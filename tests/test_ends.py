@@ -60,7 +60,8 @@ def test_ctrl_c_ends_with_a_sentence_and_leaves_nothing(name: str, folder: Path)
     if name == "build law":
         rows = [f"{i / 300},{1.0 - 1e-6 * i * i}" for i in range(301)]
         Path("hill.csv").write_text("\n".join(rows))
-    code = INTERRUPTED.format(marker=f"puck_tables.{module}", seconds=0.3) + MAIN
+    code = INTERRUPTED.format(marker=f"puck_tables.{module}", seconds=0.3)
+    code += "from puck_tables.cli.start import main; main()"
     ended = subprocess.run(
         [sys.executable, "-c", code, *arguments], capture_output=True, text=True, timeout=60
     )

@@ -16,7 +16,7 @@ from puck_tables.contact.resultants import (
     checked_delta,
 )
 from puck_tables.errors import ContactError
-from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.kernels.compile import allocating, inlined
 from puck_tables.real import broadcast
 
 FloatArray = npt.NDArray[np.float64]
@@ -71,7 +71,7 @@ def _lifted(ratio: float, fast: float, delta: float, parallel: float, perpendicu
     return tilt > 1.0 + CONTACT_SLACK
 
 
-@kernel
+@allocating
 def _fill(phi: FloatArray, delta: FloatArray, out: FloatArray) -> int:
     """Resultants at flat arrays of points; returns the first point out of full contact, or -1.
 

@@ -34,23 +34,32 @@ event.register("numba:compile", _Announcer())  # type: ignore[no-untyped-call]
 def kernel(function: Function) -> Function:
     """Compile a function: no Python objects, no GIL, IEEE rules except fused multiply-add.
 
-    Division by zero gives inf or NaN as in NumPy; kernels report trouble by status codes.
+    It works in the arrays that it is given, and neither makes arrays nor gives any to a function
+    that does: it is compiled without counting references, which in a loop over small steps takes
+    longer than the steps.  Division by zero gives inf or NaN as in NumPy; kernels report trouble by
+    status codes.
     """
-    return _compile(function, forceinline=False)
+    return _compile(function, forceinline=False, counts=False)
 
 
 def inlined(function: Function) -> Function:
-    """Compile a function that is pasted into every caller, so that loops over it vectorise.
+    """Compile a kernel that is pasted into every caller, so that loops over it vectorise.
 
     The callers keep what was compiled; it needs no cache of its own.
     """
-    return _compile(function, forceinline=True)
+    return _compile(function, forceinline=True, counts=False)
 
 
-def _compile(function: Function, forceinline: bool) -> Function:
+def allocating(function: Function) -> Function:
+    """Compile a function that makes arrays; it calls kernels that return numbers only."""
+    return _compile(function, forceinline=False, counts=True)
+
+
+def _compile(function: Function, forceinline: bool, counts: bool) -> Function:
     compiled: Any = numba.njit(
-        nogil=True, fastmath={"contract"}, error_model="numpy", forceinline=forceinline
-    )(function)
+        nogil=True, fastmath={"contract"}, error_model="numpy", forceinline=forceinline,
+        _nrt=counts,
+    )(function)  # fmt: skip
     if not forceinline and hasattr(compiled, "enable_caching"):  # not where compiling is off
         compiled._cache = KeptCode(function)
     return compiled

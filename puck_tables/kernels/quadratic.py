@@ -15,7 +15,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.kernels.compile import kernel
+from puck_tables.kernels.compile import allocating
 from puck_tables.kernels.spline import basis, cell_at, side_and_eta
 
 FloatArray = npt.NDArray[np.float64]
@@ -24,7 +24,7 @@ TERMS = 5
 _BLOCK = 128
 
 
-@kernel
+@allocating
 def fill_resultants_quadratic(
     coefficients: FloatArray, phi: FloatArray, delta: FloatArray, out: FloatArray
 ) -> None:

@@ -13,7 +13,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.kernels.compile import allocating, inlined, kernel
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -251,7 +251,7 @@ def _centre_outside(
     out[2], out[3] = unit * spin, unit * tilted
 
 
-@kernel
+@allocating
 def fill_integrals(
     breaks: FloatArray, pieces: FloatArray, ratio: FloatArray, fast: npt.NDArray[np.bool_],
     speed: FloatArray, out: FloatArray,

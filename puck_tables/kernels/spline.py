@@ -27,7 +27,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.kernels.compile import allocating, inlined, kernel
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -74,7 +74,7 @@ def _row(
     )
 
 
-@kernel
+@allocating
 def fill_resultants(
     coefficients: FloatArray, delta_max: float, phi: FloatArray, delta: FloatArray, out: FloatArray
 ) -> None:

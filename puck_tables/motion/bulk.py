@@ -7,7 +7,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.kernels.compile import kernel
+from puck_tables.kernels.compile import allocating
 from puck_tables.kernels.spline import cut as cut_table
 from puck_tables.motion.equations import LENGTH, PSI, SIZE, THETA, T, U, X, Y, at_constant_angle
 from puck_tables.motion.limits import log_ratio
@@ -22,7 +22,7 @@ OVERFLOW = 2  # index of solvers.STATUS_MEANINGS
 _STEP_LIMIT = 100_000
 
 
-@kernel
+@allocating
 def fill_stops(
     launches: FloatArray,
     tableau: Tableau,

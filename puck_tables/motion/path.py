@@ -18,7 +18,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.kernels.compile import allocating, inlined, kernel
 from puck_tables.motion.equations import (
     PSI,
     SIZE,
@@ -75,7 +75,7 @@ def step_length(u: float, steps: float, cut: FloatArray) -> float:
     return max(near, _CROSSING_FLOOR / steps) / steps
 
 
-@kernel
+@allocating
 def integrate(
     u: float,
     tableau: Tableau,
@@ -221,7 +221,7 @@ def _land_on_line(
     return h
 
 
-@kernel
+@allocating
 def states_at(
     times: FloatArray,
     z_path: FloatArray,

@@ -14,8 +14,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.kernels.compile import inlined, kernel
-from puck_tables.scene.cushions import FRICTION, GRIP, LEAN_COLUMNS, NX, NY, RIM, TANGENTIAL
+from puck_tables.kernels.compile import allocating, inlined
+from puck_tables.scene.cushions import NX, NY
 from puck_tables.scene.equations import SIZE
 from puck_tables.scene.friction import VX, VY, X, Y
 from puck_tables.scene.ingredients import Stretch, carried_along
@@ -106,7 +106,7 @@ def _value(b: FloatArray, degree: int, s: float) -> float:
     return total
 
 
-@kernel
+@allocating
 def _turning_points(b: FloatArray, out: FloatArray) -> int:
     """Where in (0, 1) the derivative of the gap polynomial vanishes, ascending into ``out``.
 
@@ -166,7 +166,7 @@ def _turning_points(b: FloatArray, out: FloatArray) -> int:
     return count
 
 
-@kernel
+@allocating
 def _crossing(
     line: Line, gaps: FloatArray, stretch: Stretch, t: float, h: float, y: FloatArray,
     scale: FloatArray, work: FloatArray, new: FloatArray,
@@ -252,33 +252,9 @@ def _line(rows: FloatArray, i: int, sign: float, y: FloatArray) -> Line:
 
 
 @inlined
-def rooms(bounds: Boundaries, y: FloatArray) -> FloatArray:
-    """How far the puck is from every wall."""
-    room = np.empty(len(bounds.walls))
-    for i in range(room.size):
-        room[i] = _line(bounds.walls, i, 1.0, y).gap
-    return room
-
-
-@inlined
-def touched(
-    bounds: Boundaries, leans: npt.NDArray[np.bool_], rims: FloatArray, share: FloatArray
-) -> FloatArray:
-    """The walls that the puck leans on, rows (n, 4): normal, friction at the rim, its slip.
-
-    ``share``: of the force that a wall bears, on average; less than 1 while rebounds die out.
-    """
-    chosen = np.empty((leans.sum(), LEAN_COLUMNS))
-    count = 0
-    for i in range(leans.size):
-        if leans[i]:
-            wall = bounds.walls[i]
-            smooth = wall[TANGENTIAL] == -1.0
-            chosen[count, NX], chosen[count, NY] = wall[NX], wall[NY]
-            chosen[count, GRIP] = 0.0 if smooth else wall[FRICTION] * share[i]
-            chosen[count, RIM] = rims[i]
-            count += 1
-    return chosen
+def room_to(bounds: Boundaries, i: int, y: FloatArray) -> float:
+    """How far the puck is from a wall."""
+    return _line(bounds.walls, i, 1.0, y).gap
 
 
 @inlined

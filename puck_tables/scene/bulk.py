@@ -5,18 +5,17 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.kernels.compile import kernel
+from puck_tables.kernels.compile import allocating
 from puck_tables.scene.boundaries import BOUNCES, Boundaries
-from puck_tables.scene.equations import SIZE
 from puck_tables.scene.ingredients import Model, Regions
-from puck_tables.scene.loop import EVENT_COLUMNS, FRAME_COLUMNS, Ask, follow
+from puck_tables.scene.loop import EVENT_COLUMNS, FRAME_COLUMNS, Ask, desk_for, follow
 
 FloatArray = npt.NDArray[np.float64]
 
 ENDS_COLUMNS = FRAME_COLUMNS + 1  # the last row, and the number of bounces
 
 
-@kernel
+@allocating
 def follow_many(
     model: Model,
     regions: Regions,
@@ -39,12 +38,11 @@ def follow_many(
     no_frames = np.empty(0)
     row = np.empty((1, FRAME_COLUMNS))
     events = np.empty((event_limit, EVENT_COLUMNS))
-    state = np.empty(SIZE)
+    desk = desk_for(bounds)
     for n in range(len(states)):
-        state[:] = states[n]
         ask = Ask(asks[n, 0], to_the_end, tolerance, asks[n, 2:], asks[n, 1], step_limit)
         how, _, count, _, _, _ = follow(
-            model, regions, bounds, ask, state, starts[n], no_frames, row, events
+            model, regions, bounds, ask, states[n], starts[n], no_frames, row, events, desk
         )
         bounces = 0
         for i in range(count):

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.kernels.compile import allocating, inlined, kernel
 from puck_tables.scene.boundaries import (
     BORDER,
     BOUNCES,
@@ -24,7 +24,6 @@ from puck_tables.scene.boundaries import (
     EDGE,
     Boundaries,
     first_crossing,
-    rooms,
 )
 from puck_tables.scene.cushions import GRIP, NX, NY, RIM
 from puck_tables.scene.equations import (
@@ -55,9 +54,11 @@ from puck_tables.scene.ingredients import (
 from puck_tables.scene.moments import EQUAL, lost, rests_on, watched, zero
 from puck_tables.scene.rest import SLACK, excess_at_rest, held_by_floor
 from puck_tables.scene.settle import (
+    Contacts,
     bounced,
-    contacts_at,
+    contacts_for,
     departed,
+    look_at_walls,
     rims_after,
     settled,
     touching,
@@ -100,6 +101,31 @@ class Ask(NamedTuple):
     scale: FloatArray
     speed: float
     step_limit: int
+
+
+class Desk(NamedTuple):
+    """Arrays to work in.
+
+    Rates of the stages of a step (7, 12) and at its end (12,), a gap polynomial (6,), the state at
+    the start and the end of a step and at a trial (12,), what is known of the walls.
+    """
+
+    work: FloatArray
+    last: FloatArray
+    gaps: FloatArray
+    y: FloatArray
+    new: FloatArray
+    trial: FloatArray
+    contacts: Contacts
+
+
+@allocating
+def desk_for(bounds: Boundaries) -> Desk:
+    """A desk for a scene with these boundaries."""
+    return Desk(
+        np.empty((STAGES, ROW)), np.empty(ROW), np.empty(DEGREE + 1), np.empty(WIDE),
+        np.empty(WIDE), np.empty(WIDE), contacts_for(len(bounds.walls)),
+    )  # fmt: skip
 
 
 @inlined
@@ -155,34 +181,35 @@ def follow(
     regions: Regions,
     bounds: Boundaries,
     ask: Ask,
-    y: FloatArray,
+    start: FloatArray,
     region: int,
     frames: FloatArray,
     rows: FloatArray,
     events: FloatArray,
+    desk: Desk,
 ) -> tuple[int, float, int, int, int, float]:
-    """Run a scene from the state ``y`` (10,) in the laboratory.
+    """Run a scene from the state ``start`` (10,) in the laboratory.
 
     ``frames`` (n,): ascending times for ``rows`` (n + 1, 15), the last of them the end; ``events``
-    (m, 13).
+    (m, 13); ``desk``: to work on, see :func:`desk_for`.
 
     Returns
     -------
     how it ended, when, number of events, of steps and of frames reached, sum of the errors of steps
     in units of ``ask.scale``
     """
-    work, last, gaps = np.empty((STAGES, ROW)), np.empty(ROW), np.empty(DEGREE + 1)
-    state, new, trial = np.empty(WIDE), np.empty(WIDE), np.empty(WIDE)
-    state[:SIZE] = y
-    y = state
+    work, last, gaps, y, new, trial, contacts = desk
+    for i in range(SIZE):
+        y[i] = start[i]
     body, scale, surface, drive = model.body, ask.scale, model.surface, model.drive
     radius, held_there = body.radius, model.hold.kind != FREE
     moves = surface.vx != 0.0 or surface.vy != 0.0 or surface.spin != 0.0
     pull_there = model.pull.x != 0.0 or model.pull.y != 0.0 or len(drive) > 0
     swings = surface.spin != 0.0 and pull_there  # else what a turning floor asks is constant
     unbounded = len(bounds.walls) + len(bounds.edges) + len(bounds.borders) == 0
-    contacts = contacts_at(bounds, rooms(bounds, y), body, y, ask.speed)
-    leaning, dry = touching(bounds, contacts), _dry(regions, region)
+    look_at_walls(bounds, contacts, body, y, ask.speed)
+    leaning = contacts.rows[: touching(bounds, contacts)]
+    dry = _dry(regions, region)
     room, leans = contacts.room, contacts.leans
     to_laboratory(model, y, -1.0)
     t, heat, mode, piece, way, stiff = 0.0, 0.0, SLIDES, 0, _NO_WAY, False
@@ -286,14 +313,16 @@ def follow(
                 landed, stuck = False, what
                 length = zero(stretch, what, t, length, y, scale, work, new)
         wrong += error
-        last[:] = work[STAGES - 1]
+        for i in range(ROW):
+            last[i] = work[STAGES - 1, i]
         happens, which, moment = -1, -1, math.inf
         if not unbounded:
             happens, which, moment = first_crossing(
                 bounds, room, region, leans, stretch, t, length, y, scale, work, new, gaps, trial
             )
         if mode == CARRIED and happens < 0 and t >= calm:
-            trial[:] = new
+            for i in range(WIDE):
+                trial[i] = new[i]
             moment = lost(stretch, t, length, y, scale, work, trial)
             if moment < math.inf:
                 happens, which = SLIPS, region
@@ -312,7 +341,8 @@ def follow(
         for i in range(room.size):
             if not leans[i]:
                 room[i] += bounds.walls[i, NX] * new[SIZE] + bounds.walls[i, NY] * new[SIZE + 1]
-        work[0] = last
+        for i in range(ROW):
+            work[0, i] = last[i]
         known = happens < 0 and mode == SLIDES and not held_there and leaning.shape[0] == 0
         before_it, q = q, slip_speed(radius, y)
         if newton > 0.0 or mode == SLIDES:
@@ -334,7 +364,7 @@ def follow(
                 settled(contacts)
                 changed = True
             if changed:
-                leaning = touching(bounds, contacts)
+                leaning = contacts.rows[: touching(bounds, contacts)]
         if happens < 0:
             continue
         settle = True
@@ -356,7 +386,7 @@ def follow(
             if rest_time >= 0.0:
                 happens = LEANS
                 calm = max(calm, t + rest_time) if rest_time > 0.0 else calm
-            leaning = touching(bounds, contacts)
+            leaning = contacts.rows[: touching(bounds, contacts)]
         if count == len(events):
             how = EVENT_LIMIT
             break

@@ -33,7 +33,7 @@ from puck_tables.scene.ingredients import (
     Stretch,
     Surface,
 )
-from puck_tables.scene.loop import Ask, follow
+from puck_tables.scene.loop import Ask, desk_for, follow
 from puck_tables.scene.regions import friction_error, regions_of
 from puck_tables.scene.rest import excess_at_rest
 from puck_tables.scene.scene import Scene, launch_velocity
@@ -81,8 +81,8 @@ class Prepared:
             by_speed=self.regions.by_speed._replace(normal=off * self.regions.by_speed.normal),
         )
         return follow(
-            self.model, regions, self.bounds, ask, self.state.copy(), region,
-            frames, rows, events,
+            self.model, regions, self.bounds, ask, self.state, region, frames, rows, events,
+            desk_for(self.bounds),
         )  # fmt: skip
 
     def follow_all(self, states: FloatArray, out: FloatArray, status: npt.NDArray[np.int8]) -> None:

@@ -13,7 +13,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.kernels.compile import allocating, inlined
 from puck_tables.scene.equations import FIRST, SECOND, SIZE, rates, slip_speed
 from puck_tables.scene.friction import SPIN, VX, X
 from puck_tables.scene.ingredients import Stretch
@@ -81,14 +81,15 @@ def _jacobian(
     rates(stretch, t, y, rows, FIRST)
     for j in range(_STIFF):
         nudge = _NUDGE * (slip if slip > 0.0 else 1.0) / (radius if VX + j == SPIN else 1.0)
-        at[:SIZE] = y[:SIZE]
+        for i in range(SIZE):
+            at[i] = y[i]
         at[VX + j] += nudge
         rates(stretch, t, at, rows, SECOND)
         for i in range(_STIFF):
             out[i, j] = (rows[1, VX + i] - rows[0, VX + i]) / nudge
 
 
-@kernel
+@allocating
 def radau_step(
     stretch: Stretch, t: float, h: float, y: FloatArray, scale: FloatArray, work: FloatArray,
     new: FloatArray,
@@ -154,16 +155,20 @@ def radau_step(
     for i in range(SIZE):
         new[i] = y[i] + z[2, i]
     new[SIZE], new[SIZE + 1] = z[2, X], z[2, X + 1]
-    return _error(stretch, h, y, scale, work, z, new, jacobian)
+    matrix, order = matrix[:_STIFF, :_STIFF], order[:_STIFF]
+    return _error(stretch, h, y, scale, work, z, new, jacobian, matrix, order, step[:_STIFF])
 
 
 @inlined
 def _error(
     stretch: Stretch, h: float, y: FloatArray, scale: FloatArray, work: FloatArray, z: FloatArray,
-    new: FloatArray, jacobian: FloatArray,
+    new: FloatArray, jacobian: FloatArray, matrix: FloatArray, order: npt.NDArray[np.int64],
+    b: FloatArray,
 ) -> float:  # fmt: skip
-    """In ``scale``, and of velocities also against the slip that is left."""
-    matrix, order, b = np.empty((3, 3)), np.empty(3, np.int64), np.empty(3)
+    """In ``scale``, and of velocities also against the slip that is left.
+
+    Worked out in ``matrix`` (3, 3), ``order`` (3,) and ``b`` (3,).
+    """
     for i in range(_STIFF):
         for j in range(_STIFF):
             matrix[i, j] = (_MU / h if i == j else 0.0) - jacobian[i, j]

@@ -15,9 +15,21 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.kernels.compile import inlined
-from puck_tables.scene.boundaries import Boundaries, outward, touched
-from puck_tables.scene.cushions import NX, NY, PLACE, come_to_lean, rebound, rim_slip
+from puck_tables.kernels.compile import allocating, inlined
+from puck_tables.scene.boundaries import Boundaries, outward, room_to
+from puck_tables.scene.cushions import (
+    FRICTION,
+    GRIP,
+    LEAN_COLUMNS,
+    NX,
+    NY,
+    PLACE,
+    RIM,
+    TANGENTIAL,
+    come_to_lean,
+    rebound,
+    rim_slip,
+)
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.scene.ingredients import Body
 
@@ -34,7 +46,8 @@ class Contacts(NamedTuple):
     ``leans``: whether the puck leans on it; ``rim``: −1, 0, 1, how the rim then slides; ``share``:
     of the force that it bears; ``room``: how far the puck is from it, counted from the last impact;
     ``hit``, ``pace``: when that was, and how fast the puck left; ``chain`` (2,): the wall that was
-    hit last, and how many impacts before it were at the same place.
+    hit last, and how many impacts before it were at the same place; ``rows``: room for
+    :func:`touching`.
     """
 
     leans: npt.NDArray[np.bool_]
@@ -44,6 +57,16 @@ class Contacts(NamedTuple):
     hit: FloatArray
     pace: FloatArray
     chain: npt.NDArray[np.int64]
+    rows: FloatArray
+
+
+@allocating
+def contacts_for(walls: int) -> Contacts:
+    """With so many walls, none of them looked at."""
+    return Contacts(
+        np.zeros(walls, np.bool_), np.zeros(walls), np.ones(walls), np.zeros(walls),
+        np.zeros(walls), np.zeros(walls), np.zeros(2, np.int64), np.empty((walls, LEAN_COLUMNS)),
+    )  # fmt: skip
 
 
 @inlined
@@ -55,30 +78,36 @@ def _rim_of(body: Body, wall: FloatArray, y: FloatArray, speed: float) -> float:
 
 
 @inlined
-def contacts_at(
-    bounds: Boundaries, room: FloatArray, body: Body, y: FloatArray, speed: float
-) -> Contacts:
+def look_at_walls(
+    bounds: Boundaries, contacts: Contacts, body: Body, y: FloatArray, speed: float
+) -> None:
     """At a launch ``y``, in the laboratory: it leans where it touches and does not move away."""
-    count = room.size
-    contacts = Contacts(
-        np.zeros(count, np.bool_), np.zeros(count), np.ones(count), room, np.zeros(count),
-        np.zeros(count), np.array([-1, 0]),
-    )  # fmt: skip
-    for i in range(count):
+    contacts.chain[0], contacts.chain[1] = -1, 0
+    for i in range(contacts.leans.size):
         wall = bounds.walls[i]
+        contacts.leans[i], contacts.rim[i], contacts.share[i] = False, 0.0, 1.0
+        contacts.room[i] = room_to(bounds, i, y)
         rounding = 4e-16 * (abs(wall[NX] * y[X]) + abs(wall[NY] * y[Y]) + abs(wall[PLACE]))
-        if abs(room[i]) <= rounding:
-            room[i] = 0.0
+        if abs(contacts.room[i]) <= rounding:
+            contacts.room[i] = 0.0
             if abs(outward(bounds, i, y)) <= _STILL * speed:
                 contacts.leans[i] = True
                 contacts.rim[i] = _rim_of(body, wall, y, speed)
-    return contacts
 
 
 @inlined
-def touching(bounds: Boundaries, contacts: Contacts) -> FloatArray:
-    """The walls that the puck leans on, see :func:`puck_tables.scene.boundaries.touched`."""
-    return touched(bounds, contacts.leans, contacts.rim, contacts.share)
+def touching(bounds: Boundaries, contacts: Contacts) -> int:
+    """How many walls the puck leans on, and into ``rows``: normal, friction at the rim, its slip."""
+    count = 0
+    for i in range(contacts.leans.size):
+        if contacts.leans[i]:
+            wall, row = bounds.walls[i], contacts.rows[count]
+            smooth = wall[TANGENTIAL] == -1.0
+            row[NX], row[NY] = wall[NX], wall[NY]
+            row[GRIP] = 0.0 if smooth else wall[FRICTION] * contacts.share[i]
+            row[RIM] = contacts.rim[i]
+            count += 1
+    return count
 
 
 @inlined
@@ -163,7 +192,7 @@ def bounced(
             contacts.leans[i] = False
             contacts.room[i] = 0.0
     if rest_time >= 0.0:
-        come_to_lean(touching(bounds, contacts), y)
+        come_to_lean(contacts.rows[: touching(bounds, contacts)], y)
         for i in range(contacts.leans.size):
             if contacts.leans[i]:
                 wall = bounds.walls[i]

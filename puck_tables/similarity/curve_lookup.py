@@ -24,7 +24,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.kernels.compile import allocating, inlined
 from puck_tables.kernels.spline import basis, cell_at
 from puck_tables.similarity.axes import HEIGHTS
 from puck_tables.similarity.lookup import CURVE_ROW, STOP_POWERS, slip_place
@@ -169,7 +169,7 @@ def _inverse_sum(c: FloatArray, side: int, xi: float, s: float, sums: FloatArray
     return _polynomial(sums, 0, s)
 
 
-@kernel
+@allocating
 def fill_inverse(
     stops: FloatArray, curve: FloatArray, constants: FloatArray, with_time: bool,
     deltas: FloatArray, out: FloatArray,
@@ -221,7 +221,7 @@ def _heading(side: int, double_share: float, delta: float, turning: float, part:
     return turning / slow * log_plus + (turning - spin_turn) / fast * log_minus + delta * part
 
 
-@kernel
+@allocating
 def fill_launches(
     launches: FloatArray, stops: FloatArray, curve: FloatArray, turn_inverse: FloatArray,
     constants: FloatArray, turn_share: float, out: FloatArray,
@@ -324,7 +324,7 @@ def _fill_state(
     out[SPEED], out[SPIN] = speed, around * rim / radius
 
 
-@kernel
+@allocating
 def fill_states(
     pucks: FloatArray, which: npt.NDArray[np.int64], times: FloatArray,
     stops: FloatArray, curve: FloatArray, time_inverse: FloatArray, out: FloatArray,

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.executor import run_chunks
-from puck_tables.kernels.compile import kernel
+from puck_tables.kernels.compile import allocating
 from puck_tables.motion.equations import LENGTH, PSI, SIZE, THETA, T, U, X, Y, at_constant_angle
 from puck_tables.motion.path import STOPPED, integrate
 from puck_tables.motion.steppers import DORMAND_PRINCE, Tableau
@@ -20,7 +20,7 @@ _STEP_LIMIT = 100_000
 _CHUNK = 64
 
 
-@kernel
+@allocating
 def _fill_exact_stops(
     u: FloatArray, delta: FloatArray, place_unit: FloatArray, cut: FloatArray, tableau: Tableau,
     tolerance: float, out: FloatArray,

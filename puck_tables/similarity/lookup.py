@@ -22,7 +22,7 @@ from functools import cache
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.kernels.compile import inlined, kernel, weighted_rows
+from puck_tables.kernels.compile import allocating, inlined, weighted_rows
 from puck_tables.kernels.spline import basis
 
 FloatArray = npt.NDArray[np.float64]
@@ -87,7 +87,7 @@ def stops_kernel(powers: int) -> Callable[[FloatArray, FloatArray, FloatArray], 
     """
     width, top = row_width(powers), 3 * powers - 3
 
-    @kernel
+    @allocating
     def fill(launches: FloatArray, coefficients: FloatArray, out: FloatArray) -> int:
         cells = float(coefficients.shape[1] - 3)
         side_stride = float(coefficients.shape[1] * width)

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.kernels.compile import kernel
+from puck_tables.kernels.compile import allocating
 from puck_tables.kernels.slice_spline import slice_place
 from puck_tables.kernels.spline import basis
 
@@ -17,7 +17,7 @@ _FUNCTIONS = 6
 _LOWEST = 1e-290
 
 
-@kernel
+@allocating
 def fill_slice_stops(launches: FloatArray, cut: FloatArray, out: FloatArray) -> None:
     """Stops of launches (6, n): vx, vy, ω, δ, J, r, into ``out`` (6, n), see solvers.OUTPUTS.
 

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.kernels.closed_form import friction_ratios
-from puck_tables.kernels.compile import kernel
+from puck_tables.kernels.compile import allocating
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -32,7 +32,7 @@ class _Trembles(Exception):
     """Stepped over the stop, where friction jumps, and now to and fro about it."""
 
 
-@kernel
+@allocating
 def rates(t: float, state: FloatArray, delta: float) -> FloatArray:
     """d/dt of vx, vy, ω, x, y, friction by the compiled closed forms."""
     vx, vy, spin = state[0], state[1], state[2]
