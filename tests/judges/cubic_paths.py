@@ -141,7 +141,9 @@ def follow(mass, inertia, radius, drive, pull, until, walls, edges, borders, sta
             count += 1
             nx, ny = walls[chosen, 0], walls[chosen, 1]
             fall = -(nx * vx + ny * vy)
-            if fall < 1e-3 * fastest:
+            corner = count > 1 and events[count - 2, 1] == BOUNCES
+            corner = corner and t - events[count - 2, 0] <= 1e-9 * until
+            if fall < 1e-3 * fastest or corner:  # what follows is not this judge's to say
                 return SETTLES, t, count, extent, fastest
             normal = (1.0 + walls[chosen, 3]) * mass * fall
             slip = nx * vy - ny * vx - radius * spin
