@@ -12,14 +12,13 @@ from puck_tables.cli.options import (
     FILE,
     NUMBER,
     Vector,
-    body_given,
     body_options,
+    deliver,
     output_options,
     patience,
     prepare_outputs,
-    puck_and_floor,
+    puck_given,
     puck_options,
-    told,
 )
 
 from puck_tables.errors import InputError
@@ -73,42 +72,24 @@ def aim(
     puck aim --target 2,0.1 --time 3
     puck aim --target 2,0.1 --max-speed 1.5 --max-spin 10 --plot aim.png
     """  # noqa: D301 - click reads the backspace
-    r, height_ratio, J = puck_and_floor(radius, height, friction, gravity, delta, decel)
     picked = [
         n for n, v in (("--w0", w0), ("--speed", speed), ("--time", stop_time)) if v is not None
     ]
     if len(picked) > 1:
         raise InputError(f"{picked[0]} and {picked[1]} clash: each picks a launch")
-    prepare_outputs(output, plot, overwrite=overwrite, inputs=(pressure,))
-    from puck_tables.result_file import AIM_KINDS, aim_columns, kind_of, save_aim
-
-    if output is not None:
-        kind_of(output, AIM_KINDS)
-    if plot is not None:
-        from puck_tables.drawing import PICTURE_KINDS, require_matplotlib
-        from puck_tables.plots import plot_aim
-
-        kind_of(plot, PICTURE_KINDS)
-        require_matplotlib()
-    from puck_tables.aiming import aim as find_launches
-
-    patience(height_ratio)
-    found = find_launches(
-        target, w0=w0, speed=speed, stop_time=stop_time, max_speed=max_speed, max_spin=max_spin,
-        count=count, delta=height_ratio, decel=J, radius=r, **body_given(pressure, gyration),
+    prepare_outputs(output, plot=plot, overwrite=overwrite, inputs=(pressure,))
+    puck = puck_given(radius, height, friction, gravity, delta, decel, pressure, gyration)
+    patience(puck.delta)
+    found = puck.aim(
+        target, spin=w0, speed=speed, stop_time=stop_time, max_speed=max_speed, max_spin=max_spin,
+        count=count,
     )  # fmt: skip
-    if output is not None:
-        save_aim(found, output, overwrite)
-        told(output)
-    if plot is not None and found.w0.size:
-        plot_aim(found, plot, overwrite)
-        told(plot)
-    elif plot is not None:
+    something = found.launch_spin.size > 0
+    deliver(found, output, plot if something else None, overwrite)
+    if plot is not None and not something:
         click.echo(f"no picture: there is nothing to draw in {plot}", err=True)
     if as_json:
-        launches = {name: column.tolist() for name, column in aim_columns(found).items()}
-        puck = {"delta": found.delta, "decel": found.decel, "radius": found.radius}
-        click.echo(json.dumps({"target": found.target, **puck, "answer": found.answer, **launches}))
+        click.echo(json.dumps(found.summary()))
     else:
         given = any(x is not None for x in (radius, height, friction, delta, decel))
         click.echo(_report(found, "" if given else "   (defaults: see --help for a real puck)"))
@@ -116,26 +97,28 @@ def aim(
 
 def _report(found: Aim, note: str) -> str:
     """The answer, and the launches line by line."""
+    from puck_tables.body import is_plain
+
     x, y = found.target
-    kind = ""
-    if found.body is not None:
-        kind = f", pressure {found.body.law.name}, k/r = {found.body.gyration:.6g}"
+    puck, kind = found.puck, ""
+    if not is_plain(puck.pressure, puck.gyration, puck.delta):
+        kind = f", pressure {puck.body.law.name}, k/r = {puck.gyration:.6g}"
     text = [
-        f"puck    r = {found.radius:g} m, delta = {found.delta:.6g}, "
-        f"J = {found.decel:.6g} m/s^2{kind}{note}",
+        f"puck    r = {puck.radius:g} m, delta = {puck.delta:.6g}, "
+        f"J = {puck.decel:.6g} m/s^2{kind}{note}",
         f"target  ({x:g}, {y:g}) m",
         f"answer  {found.answer}",
     ]
-    if found.w0.size:
+    if found.launch_spin.size:
         text.append(
             f"\n{'w0 rad/s':>13} {'v0 x m/s':>12} {'v0 y m/s':>12} {'speed m/s':>12}"
             f" {'heading deg':>11} {'phi deg':>8} {'time s':>12} {'miss m':>7}"
         )
-    for n in range(found.w0.size):
-        degrees = [math.degrees(a) for a in (found.direction[n], found.slip_angle[n])]
+    for n in range(found.launch_spin.size):
+        degrees = [math.degrees(a) for a in (found.launch_heading[n], found.launch_slip_angle[n])]
         text.append(
-            f"{found.w0[n]:>13.6g} {found.v0[n, 0]:>12.6g} {found.v0[n, 1]:>12.6g}"
-            f" {found.speed[n]:>12.6g} {degrees[0]:>11.5f} {degrees[1]:>8.3f}"
+            f"{found.launch_spin[n]:>13.6g} {found.launch_vx[n]:>12.6g} {found.launch_vy[n]:>12.6g}"
+            f" {found.launch_speed[n]:>12.6g} {degrees[0]:>11.5f} {degrees[1]:>8.3f}"
             f" {found.stop_time[n]:>12.6g} {found.miss[n]:>7.0e}"
         )
     return "\n".join(text)

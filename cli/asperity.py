@@ -11,6 +11,7 @@ from puck_tables.cli.options import (
     FILE,
     NUMBER,
     Range,
+    deliver,
     output_options,
     prepare_outputs,
     progress,
@@ -64,22 +65,14 @@ def asperity(
     puck asperity --amplitude 2e-6 --wavelength 4e-5 --load 5 --speeds 0:0.03:301 -o curve.csv
     puck asperity --wavelength 0.001 --amplitude 1e-5 --speeds 0:0.2:41 --law rough.csv
     """  # noqa: D301 - click reads the backspace
-    prepare_outputs(output, law, plot, overwrite=overwrite)
+    prepare_outputs(output, plot=plot, others=(law,), overwrite=overwrite)
+    if plot is not None and isinstance(speeds, float):
+        raise InputError("--plot needs a range: give --speeds START:STOP:COUNT")
+    from puck_tables.body import STANDARD_GRAVITY
     from puck_tables.chetaev.asperity import Asperity
     from puck_tables.chetaev.asperity_curve import asperity_curve
-    from puck_tables.puck import STANDARD_GRAVITY
-    from puck_tables.result_file import MAP_KINDS, asperity_as_csv, kind_of, save_asperity
+    from puck_tables.io.csv import encode
 
-    if output is not None:
-        kind_of(output, MAP_KINDS)
-    if plot is not None:
-        from puck_tables.asperity_picture import plot_asperity
-        from puck_tables.drawing import PICTURE_KINDS, require_matplotlib
-
-        kind_of(plot, PICTURE_KINDS)
-        if isinstance(speeds, float):
-            raise InputError("--plot needs a range: give --speeds START:STOP:COUNT")
-        require_matplotlib()
     support = Asperity(
         amplitude,
         wavelength / (2.0 * math.pi),
@@ -96,17 +89,12 @@ def asperity(
 
     with progress("speeds") as show:
         curve = asperity_curve(support, np.linspace(start, stop, count), show)
-    if output is not None:
-        save_asperity(curve, output, overwrite)
-        told(output)
+    deliver(curve, output, plot, overwrite)
     if law is not None:
         curve.law().to_csv(law, overwrite)
         told(law)
-    if plot is not None:
-        plot_asperity(curve, plot, overwrite)
-        told(plot)
     if output is None and law is None and plot is None:
-        click.echo(asperity_as_csv(curve), nl=False)
+        click.echo(encode(curve.dataset()).decode(), nl=False)
     click.echo(_summary(curve), err=True)
 
 
@@ -118,7 +106,7 @@ def _summary(curve: AsperityCurve) -> str:
     )
     if curve.leaps > MOST_LEAPS:
         text += (
-            f"\nbetween {curve.leaps} of {curve.speed.size - 1} neighbouring speeds the force "
+            f"\nbetween {curve.leaps} of {curve.held_speed.size - 1} neighbouring speeds the force "
             "leaps: it varies faster than they show; give more speeds, or lower ones"
         )
     return text

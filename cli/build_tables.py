@@ -102,7 +102,7 @@ def build_tables(
     path = Path(f"{stem}.h5") if output is None else output
     if path.suffix.lower() != ".h5":
         raise InputError(f"{path}: a table is an HDF5 file: give a name that ends in .h5")
-    prepare_outputs(path, overwrite=overwrite, inputs=(speed_law, pressure))
+    prepare_outputs(others=(path,), overwrite=overwrite, inputs=(speed_law, pressure))
     words = ["puck build-tables"] + ([] if plain else [what])
     command = " ".join(words + [f"{name} {value}" for name, value in given.items()])
     with progress("tabulating") as show:

@@ -18,13 +18,14 @@ from puck_tables.errors import InputError
 
 if TYPE_CHECKING:
     from puck_tables.catalogue import AnyTable
-    from puck_tables.front import Choice
+    from puck_tables.puck import Puck
+    from puck_tables.result import Result
     from puck_tables.table.table import Table
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 Progress = Callable[[int, int], None]
 
-DEFAULT_RADIUS, DEFAULT_DELTA, DEFAULT_DECEL, DEFAULT_MASS = 1.0, 0.5, 1.0, 1.0
+DEFAULT_DELTA, DEFAULT_DECEL = 0.5, 1.0
 MAX_COUNT = 1_000_000_000
 QUIET_TIME, BETWEEN_LINES = 2.0, 10.0  # s, where stderr is no terminal
 
@@ -152,11 +153,6 @@ def body_options(command: Command) -> Command:
     return command
 
 
-def body_given(pressure: str, gyration: float | None) -> dict[str, Any]:
-    """The kind of puck as the library takes it."""
-    return {"pressure": pressure} | ({} if gyration is None else {"gyration": gyration})
-
-
 def patience(delta: float) -> None:
     """Say on stderr that the friction of a very tall puck takes some seconds to work out."""
     if 3.0 < delta <= 3.96:
@@ -188,27 +184,32 @@ def explain_option(command: Command) -> Command:
     )(command)
 
 
-def explained(choice: Choice | None) -> None:
-    """Say on stderr what the tolerance led to."""
-    none = "no choice: solved in elementary functions, or by the stop table given"
-    click.echo(none if choice is None else printable(choice.why), err=True)
+def explained(result: Result) -> None:
+    """Say on stderr how a result was got."""
+    click.echo(printable(result.explain()), err=True)
 
 
-def puck_and_floor(
+def puck_given(
     radius: float | None,
     height: float | None,
     friction: float | None,
     gravity: float | None,
-    delta: Any,
+    delta: float | None,
     decel: float | None,
-) -> tuple[float, Any, float]:
-    """Radius, δ and J from either set of options.
+    pressure: str,
+    gyration: float | None,
+    mass: float | None = None,
+) -> Puck:
+    """The puck from either set of options: by its dimensions and friction, or by δ and J.
 
     Raises
     ------
     InputError
         If options of both sets are given (naming two of them), or one set is not complete.
     """
+    from puck_tables.puck import Puck
+
+    kind = {"pressure": pressure, "gyration": gyration, "mass": mass}
     real = {"--height": height, "--friction": friction, "--gravity": gravity}
     scaled = {"--delta": delta, "--decel": decel}
     given_real = [name for name, value in real.items() if value is not None]
@@ -226,34 +227,35 @@ def puck_and_floor(
                 f"{given_real[0]} needs {' and '.join(missing)} too: a real puck is given by "
                 "--radius --height --friction (and --gravity)"
             )
-        from puck_tables.puck import STANDARD_GRAVITY, similarity_parameters
+        dimensions = {"radius": radius, "height": height, "friction": friction, "gravity": gravity}
+        return Puck(**_only(**dimensions, **kind))
+    return Puck.similar(**_only(radius=radius, delta=delta, decel=decel, **kind))
 
-        assert radius is not None and height is not None and friction is not None
-        g = STANDARD_GRAVITY if gravity is None else gravity
-        height_ratio, J = similarity_parameters(radius, height, friction, g)
-        return radius, height_ratio, J
-    return (
-        DEFAULT_RADIUS if radius is None else radius,
-        DEFAULT_DELTA if delta is None else delta,
-        DEFAULT_DECEL if decel is None else decel,
-    )
+
+def _only(**values: Any) -> dict[str, Any]:
+    """Those that were given."""
+    return {name: value for name, value in values.items() if value is not None}
 
 
 def prepare_outputs(
-    *paths: Path | None, overwrite: bool, inputs: Iterable[Path | str | None] = ()
-) -> None:
-    """Refuse outputs that could not be written, or would replace another or what is read.
+    *outputs: Path | None, plot: Path | None = None, others: Iterable[Path | None] = (),
+    overwrite: bool, inputs: Iterable[Path | str | None] = (),
+) -> None:  # fmt: skip
+    """Refuse, before any work, what could not be written, or would replace what is read.
 
     Parameters
     ----------
-    paths : the outputs
-    overwrite : whether files that exist may be replaced
+    outputs : files of results, in the format that the ending says
+    plot : a picture
+    others : further files that are written
+    overwrite : whether existing files may be replaced
     inputs : the files that the command reads; names that are no files are left out
     """
+    from puck_tables.io.formats import encoder_for
     from puck_tables.safe_write import check_target
 
     chosen: list[Path] = []
-    for path in paths:
+    for path in (*outputs, plot, *others):
         if path is None:
             continue
         target = check_target(path, overwrite)
@@ -264,6 +266,24 @@ def prepare_outputs(
             if read is not None and os.path.isfile(read) and _same(target, Path(read)):
                 raise InputError(f"{path} is read by this command: give the output another name")
         chosen.append(path)
+    for path in outputs:
+        if path is not None:
+            encoder_for(path)
+    if plot is not None:
+        from puck_tables.plot.style import checked_kind, require_matplotlib
+
+        checked_kind(plot)
+        require_matplotlib()
+
+
+def deliver(result: Result, output: Path | None, plot: Path | None, overwrite: bool) -> None:
+    """Save and draw a result, and say so on stderr."""
+    if output is not None:
+        result.save(output, overwrite)
+        told(output)
+    if plot is not None:
+        result.plot(plot, overwrite=overwrite)
+        told(plot)
 
 
 def _same(one: Path, other: Path) -> bool:

@@ -35,26 +35,26 @@ def paper(folder: Path, overwrite: bool) -> None:
     \b
     puck paper --out paper
     """  # noqa: D301 - click reads the backspace
-    from puck_tables.drawing import require_matplotlib
+    from puck_tables.plot.style import require_matplotlib, save_figure
 
     require_matplotlib()
-    from puck_tables.panels import draw
     from puck_tables.paper.claim import as_csv, as_text
     from puck_tables.paper.claims import all_claims
     from puck_tables.paper.figures import FIGURES
+    from puck_tables.plot.panels import draw
     from puck_tables.safe_write import write_bytes
 
     table = folder / "claims.csv"
     pictures = {folder / f"figure_{number:02}.png": figure for number, figure in FIGURES.items()}
     with _made(folder):
-        prepare_outputs(table, *pictures, overwrite=overwrite)
+        prepare_outputs(others=(table, *pictures), overwrite=overwrite)
         with progress("claims") as show:
             claims = all_claims(show)
         write_bytes(table, as_csv(claims).encode(), overwrite)
         told(table)
         with progress("figures") as show:
             for done, (path, figure) in enumerate(pictures.items(), start=1):
-                draw(figure(), path, overwrite)
+                save_figure(draw(figure()), path, overwrite)
                 told(path)
                 show(done, len(pictures))
     click.echo(as_text(claims))

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
-from puck_tables.cli.options import DEFAULT_DECEL, DEFAULT_DELTA, printable, told
+from puck_tables.cli.options import DEFAULT_DECEL, DEFAULT_DELTA, deliver, explained, printable
 
 from puck_tables.errors import InputError
 
@@ -102,7 +102,7 @@ def files_read(scene: str | None, tables: dict[str, Any]) -> list[str]:
 
 def _default_tables(given: dict[str, Any]) -> dict[str, Any]:
     """The puck in natural units of the other commands, as dimensions: f = J/g, h = δ r/2f."""
-    from puck_tables.puck import STANDARD_GRAVITY
+    from puck_tables.body import STANDARD_GRAVITY
 
     real = [name for name in ("height", "friction", "gravity") if name in given]
     scaled = [name for name in SCALED if name in given]
@@ -146,35 +146,16 @@ def run_scene(
     output: Path | None, plot: Path | None, overwrite: bool,
 ) -> None:  # fmt: skip
     """One run of a scene, to the end of its command."""
-    from puck_tables.result_file import TRAJECTORY_KINDS, kind_of
     from puck_tables.scene.simulate import simulate_scene, single
 
-    if output is not None:
-        kind_of(output, TRAJECTORY_KINDS)
-    if plot is not None:
-        from puck_tables.drawing import PICTURE_KINDS, require_matplotlib
-
-        kind_of(plot, PICTURE_KINDS)
-        require_matplotlib()
     whole = single(tables, source)
     wanted = (0.0,) if output is None and plot is None and times is None else times
     run = simulate_scene(whole, wanted)
-    if output is not None:
-        from puck_tables.scene_file import save_scene_run
-
-        save_scene_run(run, output, overwrite)
-        told(output)
-    if plot is not None:
-        from puck_tables.scene_picture import plot_scene
-
-        plot_scene(run, plot, overwrite)
-        told(plot)
+    deliver(run, output, plot, overwrite)
     if explain:
-        click.echo(printable(run.plan.why), err=True)
+        explained(run)
     if as_json:
-        from puck_tables.scene_file import scene_summary
-
-        click.echo(json.dumps(scene_summary(run), allow_nan=False))
+        click.echo(json.dumps(run.summary(), allow_nan=False))
     else:
         click.echo(printable(report(run)))
 

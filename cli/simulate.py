@@ -9,13 +9,12 @@ from typing import TYPE_CHECKING
 
 import click
 from puck_tables.cli.options import (
-    DEFAULT_MASS,
     FILE,
     NUMBER,
     Times,
     Vector,
-    body_given,
     body_options,
+    deliver,
     explain_option,
     explained,
     open_table,
@@ -23,10 +22,9 @@ from puck_tables.cli.options import (
     patience,
     prepare_outputs,
     printable,
-    puck_and_floor,
+    puck_given,
     puck_options,
     table_option,
-    told,
 )
 from puck_tables.cli.scene_run import files_read, run_scene, scene_options, scene_tables
 
@@ -62,7 +60,11 @@ if TYPE_CHECKING:
 @table_option
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 @click.option(
-    "-o", "--output", type=FILE, metavar="FILE", help="Save the states: .h5, .csv or .jsonl."
+    "-o",
+    "--output",
+    type=FILE,
+    metavar="FILE",
+    help="Save: .h5, .csv, .jsonl or .parquet.",
 )
 @output_options
 @scene_options
@@ -89,46 +91,27 @@ def simulate(
     """  # noqa: D301 - click reads the backspace
     if scene is not None or changes:
         tables = scene_tables(ctx, scene, changes)
-        prepare_outputs(output, plot, overwrite=overwrite, inputs=files_read(scene, tables))
+        prepare_outputs(output, plot=plot, overwrite=overwrite, inputs=files_read(scene, tables))
         run_scene(tables, scene or "scene", times, explain, as_json, output, plot, overwrite)
         return
     if v0 is None:
         raise click.MissingParameter(param_hint="'--v0'", param_type="option")
-    r, height_ratio, J = puck_and_floor(radius, height, friction, gravity, delta, decel)
     if exact and table_path is not None:
         raise InputError("--exact and --table clash: closed forms need no table")
-    prepare_outputs(output, plot, overwrite=overwrite, inputs=(table_path, pressure))
-    from puck_tables.result_file import TRAJECTORY_KINDS, kind_of, save_trajectory, summary
-
-    if output is not None:
-        kind_of(output, TRAJECTORY_KINDS)
-    if plot is not None:
-        from puck_tables.drawing import PICTURE_KINDS, require_matplotlib
-        from puck_tables.plots import plot_trajectory
-
-        kind_of(plot, PICTURE_KINDS)
-        require_matplotlib()
-    from puck_tables.trajectory import simulate as run_simulation
-
+    prepare_outputs(output, plot=plot, overwrite=overwrite, inputs=(table_path, pressure))
+    puck = puck_given(radius, height, friction, gravity, delta, decel, pressure, gyration, mass)
     if output is None and plot is None and times is None and frames is None:
         frames = 1  # a report needs no states
-    patience(height_ratio)
-    run = run_simulation(
-        v0, w0, delta=height_ratio, decel=J, radius=r,
-        mass=DEFAULT_MASS if mass is None else mass, **body_given(pressure, gyration),
-        frames=frames, times=times, tol=tol, method=method, exact=exact,
+    patience(puck.delta)
+    run = puck.simulate(
+        v0, w0, frames=frames, times=times, tol=tol, method=method, exact=exact,
         table=None if table_path is None else open_table(table_path),
     )  # fmt: skip
-    if output is not None:
-        save_trajectory(run, output, overwrite)
-        told(output)
-    if plot is not None:
-        plot_trajectory(run, plot, overwrite)
-        told(plot)
+    deliver(run, output, plot, overwrite)
     if explain:
-        explained(run.choice)
+        explained(run)
     if as_json:
-        click.echo(json.dumps(summary(run), allow_nan=False))
+        click.echo(json.dumps(run.summary(), allow_nan=False))
     else:
         given = any(x is not None for x in (radius, height, friction, delta, decel, gyration))
         note = "" if given else "   (defaults: see --help for a real puck)"
@@ -140,19 +123,20 @@ def report(run: Trajectory, note: str) -> str:
     from puck_tables.body import is_plain
     from puck_tables.motion.limits import REGIMES
 
-    q0 = math.hypot(*run.v0, run.radius * run.w0)
+    puck, (vx, vy), w0 = run.puck, run.launch_velocity, run.launch_spin
+    q0 = math.hypot(vx, vy, puck.radius * w0)
     turn = f"{math.degrees(run.turn_angle):.5g} deg"
     if run.turn_rate != 0.0:
         decade = math.degrees(run.turn_rate) * math.log(10.0)
         turn += f" by Q = Q0/1000, then {decade:.4g} deg more for each factor 10 of Q"
     x, y = run.stop_position
     kind = ""
-    if not is_plain(run.pressure, run.gyration, 0.0):
-        kind = f", pressure {run.pressure}, k/r = {run.gyration:.6g}"
+    if not is_plain(puck.pressure, puck.gyration, 0.0):
+        kind = f", pressure {puck.body.law.name}, k/r = {puck.gyration:.6g}"
     lines = {
-        "puck": f"r = {run.radius:g} m, delta = {run.delta:.6g}, J = {run.decel:.6g} m/s^2{kind}"
+        "puck": f"r = {puck.radius:g} m, delta = {puck.delta:.6g}, J = {puck.decel:.6g} m/s^2{kind}"
         f"{note}",
-        "launch": f"v0 = ({run.v0[0]:g}, {run.v0[1]:g}) m/s, w0 = {run.w0:g} rad/s, "
+        "launch": f"v0 = ({vx:g}, {vy:g}) m/s, w0 = {w0:g} rad/s, "
         f"Q0 = hypot(v0, r w0) = {q0:.6g} m/s",
         "regime": f"{run.regime}: {REGIMES[run.regime]}",
         "contact": _contact(run),
@@ -162,11 +146,11 @@ def report(run: Trajectory, note: str) -> str:
         "heading turned": turn,
         "body turned": f"{run.body_angle:.9g} rad ({run.body_angle / (2 * math.pi):.5g} turns)",
         "limit angle": _limit(run),
-        "energy": f"{run.kinetic_energy:.6g} J (m = {run.mass:g} kg), all lost to friction; "
+        "energy": f"{run.kinetic_energy:.6g} J (m = {puck.mass:g} kg), all lost to friction; "
         f"residual {run.energy_residual:.1e} of it",
         "method": run.method + (f", {run.steps} steps" if run.steps else ""),
-        "error estimate": f"{run.error_estimate * q0 / run.decel:.1e} s, "
-        f"{run.error_estimate * q0 * q0 / run.decel:.1e} m",
+        "error estimate": f"{run.error_estimate * q0 / puck.decel:.1e} s, "
+        f"{run.error_estimate * q0 * q0 / puck.decel:.1e} m",
     }
     return "\n".join(f"{name:<15} {text}" for name, text in lines.items())
 

@@ -11,19 +11,18 @@ from puck_tables.cli.options import (
     NUMBER,
     Range,
     Vector,
-    body_given,
     body_options,
+    deliver,
     explain_option,
     explained,
     output_options,
     prepare_outputs,
     printable,
     progress,
-    puck_and_floor,
+    puck_given,
     puck_options,
     table_option,
     tables_named,
-    told,
 )
 from puck_tables.cli.scene_run import files_read, scene_options, scene_tables, summary_of_map
 from puck_tables.cli.start import last_words
@@ -69,7 +68,7 @@ RANGE = Range()
     "--output",
     type=FILE,
     metavar="FILE",
-    help="Save the map: .h5 or .csv.  Without -o and --plot, CSV goes to stdout.",
+    help="Save the map: .h5, .csv, .jsonl or .parquet.  Without -o and --plot, CSV goes to stdout.",
 )
 @click.option(
     "--resume",
@@ -107,57 +106,43 @@ def sweep(
     """  # noqa: D301 - click reads the backspace
     if scene is not None or changes:
         tables = scene_tables(ctx, scene, changes)
-        prepare_outputs(output, plot, overwrite=overwrite, inputs=files_read(scene, tables))
+        prepare_outputs(output, plot=plot, overwrite=overwrite, inputs=files_read(scene, tables))
         _sweep_scene(tables, explain, threads, output, resume, plot, overwrite)
         return
-    r, height_ratio, J = puck_and_floor(radius, height, friction, gravity, delta, decel)
     if v0 is not None and speed is not None:
         raise InputError("--v0 and --speed clash: both give the launch velocity")
-    prepare_outputs(output, plot, overwrite=overwrite, inputs=(table_path, pressure))
-    from puck_tables.result_file import MAP_KINDS, kind_of, map_as_csv, save_map
+    prepare_outputs(output, plot=plot, overwrite=overwrite, inputs=(table_path, pressure))
+    from puck_tables.io.csv import encode
     from puck_tables.stop_map import BYTES_PER_LAUNCH, BYTES_PER_ROW, check_memory
-    from puck_tables.stop_map import sweep as run_sweep
 
-    if output is not None:
-        kind_of(output, MAP_KINDS)
-    if plot is not None:
-        from puck_tables.drawing import PICTURE_KINDS, require_matplotlib
-        from puck_tables.plots import plot_map
-
-        kind_of(plot, PICTURE_KINDS)
-        if not any(isinstance(x, tuple) for x in (w0, speed, height_ratio)) and (
-            w0 is not None or speed is not None or v0 is not None
-        ):
-            raise InputError("--plot needs a range: give --w0, --speed or --delta START:STOP:COUNT")
-        require_matplotlib()
-    as_text = plot is None if output is None else output.suffix.lower() == ".csv"
+    lowest = delta[0] if isinstance(delta, tuple) else delta
+    puck = puck_given(radius, height, friction, gravity, lowest, decel, pressure, gyration)
+    given = any(x is not None for x in (w0, speed, v0))
+    if plot is not None and given and not any(isinstance(x, tuple) for x in (w0, speed, delta)):
+        raise InputError("--plot needs a range: give --w0, --speed or --delta START:STOP:COUNT")
+    as_text = plot is None if output is None else output.suffix.lower() != ".h5"
     check_memory(
-        tuple(x[2] for x in (w0, speed, height_ratio) if isinstance(x, tuple)),
+        tuple(x[2] for x in (w0, speed, delta) if isinstance(x, tuple)),
         BYTES_PER_ROW if as_text else BYTES_PER_LAUNCH,
     )
     table = None if table_path is None else _table_of_stops(table_path)
     kept = _going_on(output) if resume else None
     with progress("stops") as show:
-        stops = run_sweep(
+        stops = puck.sweep(
             None if w0 is None else _values(w0), None if speed is None else _values(speed),
-            v0=v0, delta=_values(height_ratio), decel=J, radius=r, tol=tol, method=method,
-            table=table, threads=threads, progress=show, checkpoint=kept,
-            **body_given(pressure, gyration),
+            velocity=v0, delta=_values(delta) if isinstance(delta, tuple) else None, tol=tol,
+            method=method, table=table, threads=threads, progress=show, checkpoint=kept,
         )  # fmt: skip
     if not (stops.status == 0).any():
         raise InputError("all these launches are too large for floating point: use larger units")
-    if output is not None:
-        save_map(stops, output, overwrite)
-        told(output)
+    deliver(stops, output, None, overwrite)
     _done_with(kept, output)
-    if plot is not None:
-        plot_map(stops, plot, overwrite)
-        told(plot)
+    deliver(stops, None, plot, overwrite)
     if output is None and plot is None:
-        click.echo(map_as_csv(stops), nl=False)
+        click.echo(encode(stops.dataset()).decode(), nl=False)
     click.echo(printable(_summary(stops)), err=True)
     if explain:
-        explained(stops.choice)
+        explained(stops)
 
 
 def _sweep_scene(
@@ -165,34 +150,20 @@ def _sweep_scene(
     plot: Path | None, overwrite: bool,
 ) -> None:  # fmt: skip
     """A map over a scene, to the end of the command."""
-    from puck_tables.result_file import MAP_KINDS, kind_of
+    from puck_tables.io.csv import encode
     from puck_tables.scene.sweep import sweep_scene
-    from puck_tables.scene_file import save_scene_map, scene_map_as_csv
 
-    if output is not None:
-        kind_of(output, MAP_KINDS)
-    if plot is not None:
-        from puck_tables.drawing import PICTURE_KINDS, require_matplotlib
-
-        kind_of(plot, PICTURE_KINDS)
-        require_matplotlib()
     kept = _going_on(output) if resume else None
     with progress("runs") as show:
         stops = sweep_scene(tables, threads=threads, progress=show, checkpoint=kept)
-    if output is not None:
-        save_scene_map(stops, output, overwrite)
-        told(output)
+    deliver(stops, output, None, overwrite)
     _done_with(kept, output)
-    if plot is not None:
-        from puck_tables.scene_map_picture import plot_scene_map
-
-        plot_scene_map(stops, plot, overwrite)
-        told(plot)
+    deliver(stops, None, plot, overwrite)
     if output is None and plot is None:
-        click.echo(scene_map_as_csv(stops), nl=False)
+        click.echo(encode(stops.dataset()).decode(), nl=False)
     click.echo(printable(summary_of_map(stops)), err=True)
     if explain:
-        click.echo(printable(stops.plan.why), err=True)
+        explained(stops)
 
 
 def _done_with(kept: Path | None, output: Path | None) -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
-from puck_tables.cli.options import FILE, output_options, prepare_outputs, progress, told
+from puck_tables.cli.options import FILE, deliver, output_options, prepare_outputs, progress
 
 if TYPE_CHECKING:
     from puck_tables.front import Way
@@ -31,26 +31,14 @@ def tradeoff(quick: bool, outputs: tuple[Path, ...], plot: Path | None, overwrit
     puck tradeoff --quick
     puck tradeoff -o tradeoff.h5 -o tradeoff.csv --plot tradeoff.png
     """  # noqa: D301 - click reads the backspace
-    prepare_outputs(*outputs, plot, overwrite=overwrite)
-    from puck_tables.result_file import MAP_KINDS, kind_of, save_trade_off
+    prepare_outputs(*outputs, plot=plot, overwrite=overwrite)
     from puck_tables.tradeoff.engine import measure
 
-    for path in outputs:
-        kind_of(path, MAP_KINDS)
-    if plot is not None:
-        from puck_tables.drawing import PICTURE_KINDS, require_matplotlib
-        from puck_tables.tradeoff_picture import plot_trade_off
-
-        kind_of(plot, PICTURE_KINDS)
-        require_matplotlib()
     with progress("measuring") as show:
         measured = measure(quick, show)
     for path in outputs:
-        save_trade_off(measured, path, overwrite)
-        told(path)
-    if plot is not None:
-        plot_trade_off(measured, plot, overwrite)
-        told(plot)
+        deliver(measured, path, None, overwrite)
+    deliver(measured, None, plot, overwrite)
     click.echo(report(measured))
 
 

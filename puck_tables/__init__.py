@@ -2,9 +2,10 @@
 
 Importing the package stays light: numpy and numba are loaded when something is computed.
 
->>> import puck_tables
->>> round(puck_tables.simulate((1.0, 0.0), 5.0, delta=1.0).stop_time, 8)
-4.0001888
+>>> import puck_tables as pt
+>>> puck = pt.Puck(radius=0.0381, height=0.0254, friction=0.1)  # ice hockey
+>>> round(puck.simulate((2.0, 0.0), spin=30.0).stop_time, 6)
+2.345288
 """
 
 from __future__ import annotations
@@ -15,8 +16,7 @@ from typing import TYPE_CHECKING, Any
 from puck_tables._version import __version__
 
 if TYPE_CHECKING:
-    from puck_tables.aiming import Aim, aim
-    from puck_tables.asperity_picture import plot_asperity
+    from puck_tables.aiming import Aim
     from puck_tables.chetaev.asperity import Asperity, AsperityMotion, asperity_motion
     from puck_tables.chetaev.asperity_curve import AsperityCurve, asperity_curve
     from puck_tables.chetaev.motion import ConstrainedMotion, constrained_motion
@@ -38,22 +38,18 @@ if TYPE_CHECKING:
         limit_ratio,
         regime,
     )
-    from puck_tables.plots import plot_aim, plot_map, plot_trajectory
-    from puck_tables.puck import similarity_parameters
-    from puck_tables.result_file import save_aim, save_asperity, save_map, save_trajectory
+    from puck_tables.puck import Puck
+    from puck_tables.result import Result
     from puck_tables.scene.outcome import SceneRun
     from puck_tables.scene.scene import Scene, scene_from
     from puck_tables.scene.simulate import simulate_scene
     from puck_tables.scene.sweep import SceneMap, sweep_scene
-    from puck_tables.scene_file import save_scene_map, save_scene_run
-    from puck_tables.scene_map_picture import plot_scene_map
-    from puck_tables.scene_picture import plot_scene
     from puck_tables.similarity.build import build_stop_table
     from puck_tables.similarity.check import validate_stops
     from puck_tables.similarity.file import load_stop_table, save_stop_table
     from puck_tables.similarity.stop_table import StopTable
-    from puck_tables.states import States, flow
-    from puck_tables.stop_map import StopMap, sweep
+    from puck_tables.states import States, states
+    from puck_tables.stop_map import StopMap
     from puck_tables.stops import Stops, stop
     from puck_tables.store import table_for
     from puck_tables.table.build import build_table
@@ -71,12 +67,10 @@ if TYPE_CHECKING:
     from puck_tables.table.speed_file import load_speed_table, save_speed_table
     from puck_tables.table.speed_table import SpeedTable
     from puck_tables.table.table import Table
-    from puck_tables.trajectory import Trajectory, simulate
+    from puck_tables.trajectory import Trajectory
 
 _HOMES = {
     "Aim": "aiming",
-    "aim": "aiming",
-    "plot_asperity": "asperity_picture",
     "Asperity": "chetaev.asperity",
     "AsperityMotion": "chetaev.asperity",
     "asperity_motion": "chetaev.asperity",
@@ -87,10 +81,16 @@ _HOMES = {
     "patch_stop": "chetaev.patch_puck",
     "patch_system": "chetaev.patch_puck",
     "ConstrainedSystem": "chetaev.system",
-    "SpeedLaw": "contact.speed_law",
-    "speed_resultants": "contact.speed_quadrature",
+    "Law": "contact.laws",
+    "law_of": "contact.laws",
+    "profile_law": "contact.laws",
+    "loaded_share": "contact.one_sided",
+    "one_sided_resultants": "contact.one_sided:resultants",
+    "critical_delta": "contact.opening",
     "Resultants": "contact.resultants",
     "is_full_contact": "contact.resultants",
+    "SpeedLaw": "contact.speed_law",
+    "speed_resultants": "contact.speed_quadrature",
     "resultants": "kernels.closed_form",
     "approach_exponent": "motion.limits",
     "curvature_slope": "motion.limits",
@@ -98,55 +98,30 @@ _HOMES = {
     "limit_angle": "motion.limits",
     "limit_ratio": "motion.limits",
     "regime": "motion.limits",
-    "plot_aim": "plots",
-    "plot_map": "plots",
-    "plot_trajectory": "plots",
-    "similarity_parameters": "puck",
-    "save_aim": "result_file",
-    "save_asperity": "result_file",
-    "save_map": "result_file",
-    "save_trajectory": "result_file",
+    "Puck": "puck",
+    "Result": "result",
     "SceneRun": "scene.outcome",
     "Scene": "scene.scene",
     "scene_from": "scene.scene",
     "simulate_scene": "scene.simulate",
     "SceneMap": "scene.sweep",
     "sweep_scene": "scene.sweep",
-    "save_scene_map": "scene_file",
-    "save_scene_run": "scene_file",
-    "plot_scene": "scene_picture",
-    "plot_scene_map": "scene_map_picture",
-    "Trajectory": "trajectory",
-    "simulate": "trajectory",
-    "Stops": "stops",
-    "stop": "stops",
-    "table_for": "store",
     "build_stop_table": "similarity.build",
     "validate_stops": "similarity.check",
     "load_stop_table": "similarity.file",
     "save_stop_table": "similarity.file",
     "StopTable": "similarity.stop_table",
     "States": "states",
-    "flow": "states",
+    "states": "states",
     "StopMap": "stop_map",
-    "sweep": "stop_map",
+    "Stops": "stops",
+    "stop": "stops",
+    "table_for": "store",
     "build_table": "table.build",
     "CheckReport": "table.check",
     "validate": "table.check",
     "load_table": "table.file",
     "save_table": "table.file",
-    "validate_speed": "table.speed_check",
-    "load_speed_table": "table.speed_file",
-    "save_speed_table": "table.speed_file",
-    "SpeedTable": "table.speed_table",
-    "build_speed_table": "table.speed_build",
-    "Table": "table.table",
-    "Law": "contact.laws",
-    "law_of": "contact.laws",
-    "profile_law": "contact.laws",
-    "loaded_share": "contact.one_sided",
-    "one_sided_resultants": "contact.one_sided:resultants",
-    "critical_delta": "contact.opening",
     "validate_law": "table.law_check",
     "load_law_table": "table.law_file",
     "save_law_table": "table.law_file",
@@ -157,6 +132,13 @@ _HOMES = {
     "load_partial_table": "table.partial_file",
     "save_partial_table": "table.partial_file",
     "PartialTable": "table.partial_table",
+    "build_speed_table": "table.speed_build",
+    "validate_speed": "table.speed_check",
+    "load_speed_table": "table.speed_file",
+    "save_speed_table": "table.speed_file",
+    "SpeedTable": "table.speed_table",
+    "Table": "table.table",
+    "Trajectory": "trajectory",
 }
 
 __all__ = [
@@ -170,6 +152,8 @@ __all__ = [
     "Law",
     "LawTable",
     "PartialTable",
+    "Puck",
+    "Result",
     "Resultants",
     "Scene",
     "SceneMap",
@@ -183,7 +167,6 @@ __all__ = [
     "Table",
     "Trajectory",
     "__version__",
-    "aim",
     "approach_exponent",
     "asperity_curve",
     "asperity_motion",
@@ -196,7 +179,6 @@ __all__ = [
     "critical_delta",
     "curvature_slope",
     "elementary_stop_time",
-    "flow",
     "is_full_contact",
     "law_of",
     "limit_angle",
@@ -210,33 +192,19 @@ __all__ = [
     "one_sided_resultants",
     "patch_stop",
     "patch_system",
-    "plot_aim",
-    "plot_asperity",
-    "plot_map",
-    "plot_scene",
-    "plot_scene_map",
-    "plot_trajectory",
     "profile_law",
     "regime",
     "resultants",
-    "save_aim",
-    "save_asperity",
     "save_law_table",
-    "save_map",
     "save_partial_table",
-    "save_scene_map",
-    "save_scene_run",
     "save_speed_table",
     "save_stop_table",
     "save_table",
-    "save_trajectory",
     "scene_from",
-    "similarity_parameters",
-    "simulate",
     "simulate_scene",
     "speed_resultants",
+    "states",
     "stop",
-    "sweep",
     "sweep_scene",
     "table_for",
     "validate",

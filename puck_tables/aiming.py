@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.body import Body, body_of, is_plain
-from puck_tables.contact.laws import HOMOGENEOUS, Law
-from puck_tables.contact.resultants import checked_delta
+from puck_tables.body import is_plain
+from puck_tables.columns import COLUMNS as VARIABLES
 from puck_tables.errors import InputError
-from puck_tables.puck import positive, real
-from puck_tables.real import finite_array
+from puck_tables.io.dataset import Dataset, variable
+from puck_tables.puck import PUCK_UNITS, Puck
+from puck_tables.real import finite_array, positive, real
+from puck_tables.result import Result
 from puck_tables.similarity.exact import integrated_stops
 from puck_tables.similarity.section import (
     RIM,
@@ -33,7 +34,10 @@ from puck_tables.table.file import load_table
 
 FloatArray = npt.NDArray[np.float64]
 
-DEFAULT_COUNT = 8
+COLUMNS = (
+    "launch_spin", "launch_vx", "launch_vy", "launch_speed", "launch_heading", "launch_slip_angle",
+    "stop_time", "miss",
+)  # fmt: skip
 MAX_COUNT = 10_000
 _SLACK = 1e-12
 _LEAST_LOG, _LARGEST_LOG = -708.0, 709.0
@@ -43,42 +47,75 @@ _TOO_LARGE = (
 )
 
 
-@dataclass(frozen=True)
-class Aim:
-    """Launches that come to rest at ``target`` (2,) m from where they start.
+@dataclass(frozen=True, eq=False, repr=False)
+class Aim(Result):
+    """Launches of a ``puck`` that come to rest at ``target`` (2,) m from where they start.
 
-    Arrays (n,), ordered by spin, the most clockwise first: ``v0`` (n, 2) m/s, ``w0`` rad/s,
-    ``speed`` m/s, ``direction`` rad, ``slip_angle`` φ rad, ``stop_time`` s, and ``miss`` m: how far
-    from the target an integration of the launch ends.  ``answer`` is one sentence: what was found,
-    or why nothing can be.  ``body``: the kind of puck, None for a homogeneous one under uniform
-    pressure with δ ≤ 1.
+    Arrays (n,), ordered by spin, the most clockwise first: ``launch_velocity`` (n, 2) m/s,
+    ``launch_spin`` rad/s, ``launch_speed`` m/s, ``launch_heading`` rad, ``launch_slip_angle`` φ
+    rad, ``stop_time`` s, and ``miss`` m: how far from the target an integration of the launch ends.
+    ``answer`` is one sentence: what was found, or why nothing can be.
     """
 
+    puck: Puck
     target: tuple[float, float]
-    delta: float
-    decel: float
-    radius: float
-    v0: FloatArray
-    w0: FloatArray
+    launch_velocity: FloatArray
+    launch_spin: FloatArray
     stop_time: FloatArray
     miss: FloatArray
     answer: str
-    body: Body | None = field(default=None, repr=False)
+
+    picture: ClassVar[str] = "aim"
+
+    def __repr__(self) -> str:
+        return f"Aim(at ({self.target[0]:g}, {self.target[1]:g}) m: {self.answer})"
 
     @property
-    def speed(self) -> FloatArray:
+    def launch_vx(self) -> FloatArray:
+        """Launch velocity along x, m/s."""
+        return self.launch_velocity[:, 0]
+
+    @property
+    def launch_vy(self) -> FloatArray:
+        """Launch velocity along y, m/s."""
+        return self.launch_velocity[:, 1]
+
+    @property
+    def launch_speed(self) -> FloatArray:
         """Launch speed, m/s."""
-        return np.hypot(self.v0[:, 0], self.v0[:, 1])
+        return np.hypot(self.launch_vx, self.launch_vy)
 
     @property
-    def direction(self) -> FloatArray:
-        """Of the velocity at the launch, rad."""
-        return np.arctan2(self.v0[:, 1], self.v0[:, 0])
+    def launch_heading(self) -> FloatArray:
+        """Direction of the velocity at the launch, rad."""
+        return np.arctan2(self.launch_vy, self.launch_vx)
 
     @property
-    def slip_angle(self) -> FloatArray:
+    def launch_slip_angle(self) -> FloatArray:
         """Slip angle atan2(rω, v) at the launch, rad."""
-        return np.arctan2(self.radius * self.w0, self.speed)
+        return np.arctan2(self.puck.radius * self.launch_spin, self.launch_speed)
+
+    def explain(self) -> str:
+        """What was found, or why nothing can be."""
+        return self.answer
+
+    def summary(self) -> dict[str, Any]:
+        """The launches with what went in, and the units of all, ready for JSON."""
+        names = {name: VARIABLES[name].unit for name in COLUMNS}
+        return {
+            "target": list(self.target), **self.puck.described(), "answer": self.answer,
+            **{name: getattr(self, name).tolist() for name in COLUMNS},
+            "units": {"target": "m", **PUCK_UNITS, **names},
+        }  # fmt: skip
+
+    def dataset(self) -> Dataset:
+        """One row a launch; puck and target as attributes."""
+        columns = {name: variable(name, getattr(self, name), ("launch",)) for name in COLUMNS}
+        attributes = {
+            "title": "Launches that come to rest at a target", "target": list(self.target),
+            "answer": self.answer, **self.puck.described(),
+        }  # fmt: skip
+        return Dataset({}, columns, attributes)
 
 
 @dataclass(frozen=True)
@@ -142,83 +179,16 @@ class _Family:
 
 
 def aim(
-    target: npt.ArrayLike,
-    *,
-    w0: float | None = None,
-    speed: float | None = None,
-    stop_time: float | None = None,
-    max_speed: float | None = None,
-    max_spin: float | None = None,
-    count: int = DEFAULT_COUNT,
-    delta: float = 0.5,
-    decel: float = 1.0,
-    radius: float = 1.0,
-    pressure: str | Law = "uniform",
-    gyration: float = HOMOGENEOUS,
-) -> Aim:
-    """Launches after which a puck comes to rest at a given displacement.
-
-    They are a family: one for each slip angle and sense of spin.  A spin, a speed or a stop time
-    picks one or two of it; without any, a sample is given.
-
-    Parameters
-    ----------
-    target : (x, y), m from the launch
-    w0 : spin wanted, rad/s, with its sign
-    speed : launch speed wanted, m/s
-    stop_time : duration wanted, s
-    max_speed, max_spin : bounds on speed (m/s) and on |spin| (rad/s)
-    count : how many slip angles a sample has, for each sense of spin
-        Equally spaced from the least spin that ``max_speed`` allows (0 without it) to ``max_spin``
-        (without it: to φ = 80°).  Where the bounds allow several ranges of slip angles, each has
-        its share, at least one.
-    delta : dimensionless height 2fh/r
-        Below 3.9637 under uniform pressure, up to the full contact of another law.
-    decel, radius : J = fg in m/s² and m, > 0
-    pressure, gyration
-        As :func:`puck_tables.simulate`.
-
-    Returns
-    -------
-    Aim
-        With no launch, and the reason in ``answer``, where there is none.  Errors of about 1e-12 of
-        the distance, 1e-9 for δ > 1 or another kind of puck; every launch is integrated and its
-        ``miss`` reported.
-
-    Raises
-    ------
-    InputError
-        If an argument is not finite or outside its range, or two of ``w0``, ``speed`` and
-        ``stop_time`` are given.
-
-    Notes
-    -----
-    Displacement = (Q²/J) Rot(ψ)(X, ±Y)(φ, δ), so at each φ the place fixes Q and ψ.  As φ goes from
-    0 to π/2 the speed falls from √(2JD) to 0, spin and stop time grow without bound from 0 and
-    √(2D/J), D the distance: each value is met once for each sense of spin.  For tall pucks, δ
-    from about 3.5 on, speed and time are not monotonic: a value may be met several times, and a
-    launch with spin may be faster than any without.  All are found
-    (:mod:`puck_tables.similarity.section`).
-
-    References
-    ----------
-    Salnikova, Treschev, Gallyamov 2012, section 2: the symmetry of the motion.
-
-    Examples
-    --------
-    >>> found = aim((2.0, 0.1), w0=5.0)
-    >>> found.v0.round(6).tolist(), found.stop_time.round(6).tolist()
-    ([[0.899671, 0.109151]], [3.927704])
-    """
+    puck: Puck, target: npt.ArrayLike, *, spin: float | None, speed: float | None,
+    stop_time: float | None, max_speed: float | None, max_spin: float | None, count: int,
+) -> Aim:  # fmt: skip
+    """Launches after which a puck comes to rest at a target: :meth:`puck_tables.Puck.aim`."""
     place = finite_array("target", target, "m")
     if place.shape != (2,):
         raise InputError(f"target must be one place (x, y) in m, got shape {place.shape}")
     x, y = place.tolist()
-    r, J = positive("radius", radius, "m"), positive("decel", decel, "m/s^2")
-    height = float(checked_delta(real("delta", delta, "dimensionless")))
-    plain = is_plain(pressure, gyration, height)
-    body = None if plain else body_of(pressure, height, gyration)
-    wishes = {"w0": w0, "speed": speed, "stop_time": stop_time}
+    r, J = puck.radius, puck.decel
+    wishes = {"spin": spin, "speed": speed, "stop_time": stop_time}
     wished = [name for name, value in wishes.items() if value is not None]
     if len(wished) > 1:
         raise InputError(f"{wished[0]} and {wished[1]} both pick a launch: give one of them")
@@ -227,23 +197,25 @@ def aim(
     if not isinstance(count, int) or not 1 <= count <= MAX_COUNT:
         raise InputError(f"count must be a whole number from 1 to {MAX_COUNT}, got {count!r}")
     none = np.empty(0)
-    given = Aim((x, y), height, J, r, np.empty((0, 2)), none, none, none, "", body)
+    given = Aim(puck, (x, y), np.empty((0, 2)), none, none, none, "")
     distance = math.hypot(x, y)
     if distance == 0.0:
-        return _on_the_spot(given, w0, speed, stop_time)
+        return _on_the_spot(given, spin, speed, stop_time)
     if distance == math.inf:
         raise InputError(f"target ({x:g}, {y:g}) m is too far for floating point: use larger units")
-    family = _Family(distance, J, plain_section(height) if body is None else section_of(body))
+    plain = _is_plain(puck)
+    section = plain_section(puck.delta) if plain else section_of(puck.body)
+    family = _Family(distance, J, section)
     bounds = math.log(fastest), math.log(widest) + math.log(r)
     us: list[float] = []
     senses: tuple[float, ...] = (-1.0, 1.0)
     answer = ""
-    if w0 is not None:
-        spin = real("w0", w0, "rad/s")
-        senses = (math.copysign(1.0, spin),)
+    if spin is not None:
+        wanted = real("spin", spin, "rad/s")
+        senses = (math.copysign(1.0, wanted),)
         us = [-math.inf]
-        if spin != 0.0:
-            us = _found_roots(family.all_where(RIM, math.log(abs(spin)) + math.log(r)))
+        if wanted != 0.0:
+            us = _found_roots(family.all_where(RIM, math.log(abs(wanted)) + math.log(r)))
     elif speed is not None:
         us, answer = _met(family, SPEED, positive("speed", speed, "m/s"), r)
     elif stop_time is not None:
@@ -258,10 +230,10 @@ def aim(
     for u in allowed:
         log_speed, log_rim, log_time, bend = family.at(u)
         v, time = _number(log_speed), _number(log_time)
-        spin = _number(log_rim - math.log(r)) if u > -math.inf else 0.0
+        turning = _number(log_rim - math.log(r)) if u > -math.inf else 0.0
         for sense in senses if u > -math.inf else (1.0,):
             heading = bearing - sense * bend
-            launches.append((sense * spin, v * math.cos(heading), v * math.sin(heading), time))
+            launches.append((sense * turning, v * math.cos(heading), v * math.sin(heading), time))
     return _found(given, launches, answer)
 
 
@@ -300,25 +272,32 @@ def _found(given: Aim, launches: list[tuple[float, float, float, float]], answer
     rows = np.array(sorted(launches)).reshape(-1, 4)
     if not answer:
         answer = f"{len(rows)} launch{'' if len(rows) == 1 else 'es'}"
-    found = replace(given, v0=rows[:, 1:3], w0=rows[:, 0], stop_time=rows[:, 3], answer=answer)
-    puck = [np.full(len(rows), value) for value in (given.delta, given.decel, given.radius)]
-    longest = 2.0 if given.body is None else given.body.longest
-    if not fits(np.stack([*found.v0.T, found.w0, *puck]), longest).all():
+    found = replace(
+        given, launch_velocity=rows[:, 1:3], launch_spin=rows[:, 0], stop_time=rows[:, 3],
+        answer=answer,
+    )  # fmt: skip
+    puck = given.puck
+    same = [np.full(len(rows), value) for value in (puck.delta, puck.decel, puck.radius)]
+    launched = np.stack([*found.launch_velocity.T, found.launch_spin, *same])
+    if not fits(launched, 2.0 if _is_plain(puck) else puck.body.longest).all():
         raise InputError(_TOO_LARGE)
     return replace(found, miss=_misses(found))
 
 
-def _on_the_spot(given: Aim, w0: float | None, speed: float | None, stop_time: float | None) -> Aim:
+def _on_the_spot(
+    given: Aim, spin: float | None, speed: float | None, stop_time: float | None
+) -> Aim:
     """The target is where the puck lies: pure spin stays there, ¾ r|ω|/J for a plain puck."""
-    factor = 0.75 if given.body is None else given.body.spin_time
-    if w0 is not None:
-        spin = real("w0", w0, "rad/s")
-        time = _moderate(given.radius * abs(spin) / given.decel * factor, spin)
-        return _found(given, [(spin, 0.0, 0.0, time)], "")
+    puck = given.puck
+    factor = 0.75 if _is_plain(puck) else puck.body.spin_time
+    if spin is not None:
+        wanted = real("spin", spin, "rad/s")
+        time = _moderate(puck.radius * abs(wanted) / puck.decel * factor, wanted)
+        return _found(given, [(wanted, 0.0, 0.0, time)], "")
     if stop_time is not None:
         time = positive("stop_time", stop_time, "s")
-        spin = _moderate(time / factor * given.decel / given.radius, time)
-        return _found(given, [(s * spin, 0.0, 0.0, time) for s in (-1.0, 1.0)], "")
+        turning = _moderate(time / factor * puck.decel / puck.radius, time)
+        return _found(given, [(s * turning, 0.0, 0.0, time) for s in (-1.0, 1.0)], "")
     if speed is not None:
         return _found(given, [], "no launch with speed comes to rest where it began")
     return _found(given, [], "the target is where the puck lies: any spin alone stays there")
@@ -361,11 +340,8 @@ def _out_of_bounds(
     )
 
 
-def kind_of_puck(found: Aim) -> dict[str, Any]:
-    """Pressure law and radius of gyration of an aim, as the other functions take them."""
-    if found.body is None:
-        return {}
-    return {"pressure": found.body.law, "gyration": found.body.gyration}
+def _is_plain(puck: Puck) -> bool:
+    return is_plain(puck.pressure, puck.gyration, puck.delta)
 
 
 def _misses(found: Aim) -> FloatArray:
@@ -376,20 +352,23 @@ def _misses(found: Aim) -> FloatArray:
     from puck_tables.run import table_friction
     from puck_tables.sliced import friction_of
 
-    if found.body is None:
-        cut = table_friction(found.delta, load_table()).cut
+    puck = found.puck
+    if _is_plain(puck):
+        cut = table_friction(puck.delta, load_table()).cut
     else:
-        cut = friction_of(found.body, SLICE_ACCURACY).cut
+        cut = friction_of(puck.body, SLICE_ACCURACY).cut
     distance = math.hypot(*found.target)
     if distance == 0.0:
-        return np.zeros(found.w0.size)
+        return np.zeros(found.launch_spin.size)
     with np.errstate(divide="ignore"):
-        speed, rim = np.log(found.speed), np.log(np.abs(found.w0)) + math.log(found.radius)
+        speed = np.log(found.launch_speed)
+        rim = np.log(np.abs(found.launch_spin)) + math.log(puck.radius)
     u = rim - speed
-    stops = integrated_stops(u, np.full(u.size, found.delta), cut, _CHECK_LOCAL, cosine_of(u))
+    stops = integrated_stops(u, np.full(u.size, puck.delta), cut, _CHECK_LOCAL, cosine_of(u))
     log_q = np.maximum(speed, rim) + 0.5 * np.log1p(np.exp(-2.0 * np.abs(u)))
-    way = stops[:, 1] + 1j * np.copysign(1.0, found.w0) * stops[:, 2]
+    way = stops[:, 1] + 1j * np.copysign(1.0, found.launch_spin) * stops[:, 2]
     # logarithms: Q²/J may be far larger than the distance
-    way *= np.exp(2.0 * log_q - math.log(found.decel) - math.log(distance) + 1j * found.direction)
+    scale = 2.0 * log_q - math.log(puck.decel) - math.log(distance)
+    way *= np.exp(scale + 1j * found.launch_heading)
     miss: FloatArray = distance * np.abs(way - complex(*found.target) / distance)
     return miss

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from puck_tables.contact.laws import HOMOGENEOUS, Law, law_of, limit_ratio
 from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import InputError
-from puck_tables.puck import real
-from puck_tables.real import instance
+from puck_tables.real import instance, real
 from puck_tables.table.friction_slice import FrictionSlice, friction_slice, refuse_height
 
+STANDARD_GRAVITY = 9.80665
 SMALLEST_GYRATION, LARGEST_GYRATION = 0.1, 10.0
 
 

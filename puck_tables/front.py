@@ -78,26 +78,8 @@ class Choice:
     why: str
 
 
-def front_as_csv(ways: Iterable[Way]) -> str:
-    """Ways as CSV text with a header line.
-
-    Examples
-    --------
-    >>> front_as_csv([]).startswith("question,method,setting,outsider,error")
-    True
-    """
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    names = [field.name for field in fields(Way)]
-    writer.writerow(names)
-    for way in ways:
-        values = [getattr(way, name) for name in names]
-        writer.writerow([f"{v:.3g}" if isinstance(v, float) else v for v in values])
-    return text.getvalue()
-
-
 def ways_from_csv(text: str) -> tuple[Way, ...]:
-    """The inverse of :func:`front_as_csv`.
+    """Ways from what ``puck tradeoff -o front.csv`` saved.
 
     Raises
     ------
@@ -106,13 +88,16 @@ def ways_from_csv(text: str) -> tuple[Way, ...]:
 
     Examples
     --------
-    >>> ways_from_csv(front_as_csv([]))
+    >>> ways_from_csv("question,method")
     ()
     """
     kinds = {"str": str, "int": int, "float": float}
     readers = {field.name: kinds[str(field.type)] for field in fields(Way)}
     try:
-        rows = list(csv.DictReader(io.StringIO(text)))
+        rows = [
+            {name.partition("[")[0]: value for name, value in row.items()}
+            for row in csv.DictReader(io.StringIO(text))
+        ]
         return tuple(Way(**{n: read(row[n]) for n, read in readers.items()}) for row in rows)
     except (KeyError, TypeError, ValueError):
         raise TableError("the file of measured ways is damaged: install the package anew") from None

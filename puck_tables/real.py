@@ -1,6 +1,8 @@
-"""Arrays of real numbers from whatever a caller passes, or a sentence that says what is wrong."""
+"""Real numbers and arrays of them from whatever a caller passes, or a sentence what is wrong."""
 
 from __future__ import annotations
+
+import math
 
 import numpy as np
 import numpy.typing as npt
@@ -19,10 +21,10 @@ def refuse_mask(name: str, values: object) -> None:
 
     Examples
     --------
-    >>> refuse_mask("w0", np.ma.masked_array([1.0, 2.0], [False, True]))
+    >>> refuse_mask("spin", np.ma.masked_array([1.0, 2.0], [False, True]))
     Traceback (most recent call last):
     ...
-    puck_tables.errors.InputError: w0 has masked values: leave them out, as w0.compressed() does
+    puck_tables.errors.InputError: spin has masked values: leave them out, as spin.compressed() does
     """
     if np.ma.is_masked(values):
         raise InputError(f"{name} has masked values: leave them out, as {name}.compressed() does")
@@ -126,3 +128,82 @@ def rounded_up(value: float) -> float:
     """
     power = int(np.floor(np.log10(value)))
     return float(f"{int(np.ceil(value / 10.0**power - 1e-9))}e{power}")
+
+
+def positive(name: str, value: float, unit: str) -> float:
+    """A finite number greater than zero.
+
+    Raises
+    ------
+    InputError
+
+    Examples
+    --------
+    >>> positive("radius", 0.04, "m")
+    0.04
+    """
+    number = real(name, value, unit)
+    if not number > 0.0:
+        raise InputError(f"{name} must be greater than 0 ({unit}), got {number:g}")
+    return number
+
+
+def real(name: str, value: float, unit: str) -> float:
+    """A finite number.
+
+    Raises
+    ------
+    InputError
+
+    Examples
+    --------
+    >>> real("spin", 5, "rad/s")
+    5.0
+    """
+    refuse_mask(name, value)
+    try:
+        number = float(value)
+    except (TypeError, ValueError, OverflowError):
+        raise InputError(f"{name} must be a number ({unit}), got {value!r:.60}") from None
+    if not math.isfinite(number):
+        raise InputError(f"{name} must be a finite number ({unit}), got {number}")
+    return number
+
+
+def velocity_array(velocity: npt.ArrayLike) -> npt.NDArray[np.float64]:
+    """Velocities of shape (…, 2), m/s.
+
+    Raises
+    ------
+    InputError
+
+    Examples
+    --------
+    >>> velocity_array((1, 0))
+    array([1., 0.])
+    """
+    array = finite_array("velocity", velocity, "m/s")
+    if array.ndim == 0 or array.shape[-1] != 2:
+        raise InputError(
+            f"velocity must have two components (vx, vy) in m/s, got an array of {array.shape}"
+        )
+    return array
+
+
+def one_velocity(velocity: npt.ArrayLike) -> tuple[float, float]:
+    """One velocity (vx, vy), m/s.
+
+    Raises
+    ------
+    InputError
+
+    Examples
+    --------
+    >>> one_velocity([1, 0])
+    (1.0, 0.0)
+    """
+    array = velocity_array(velocity)
+    if array.shape != (2,):
+        raise InputError(f"velocity must be one (vx, vy) in m/s, got an array of {array.shape}")
+    vx, vy = array.tolist()
+    return vx, vy

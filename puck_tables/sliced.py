@@ -23,8 +23,7 @@ from puck_tables.kernels.slice_spline import LINE
 from puck_tables.motion.equations import LENGTH, PSI, THETA, WORK, T, U, X, Y
 from puck_tables.motion.limits import log_ratio, regime_of
 from puck_tables.motion.steppers import DORMAND_PRINCE, RK4, Tableau
-from puck_tables.puck import real
-from puck_tables.real import rounded_up
+from puck_tables.real import real, rounded_up
 from puck_tables.run import (
     CONSTANT_ANGLE,
     Friction,

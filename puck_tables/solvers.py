@@ -11,8 +11,7 @@ import numpy.typing as npt
 from puck_tables.errors import AccuracyError, InputError
 from puck_tables.executor import in_slices
 from puck_tables.front import COARSEST, INTEGRATED, LOOK_UP, Choice, choose
-from puck_tables.puck import real
-from puck_tables.real import instance
+from puck_tables.real import instance, real
 from puck_tables.similarity.file import load_stop_table
 from puck_tables.similarity.lookup import STOP_POWERS
 from puck_tables.similarity.stop_table import StopTable

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -12,8 +13,9 @@ from puck_tables.contact.laws import HOMOGENEOUS, Law, law_of
 from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import InputError
 from puck_tables.executor import run_chunks
-from puck_tables.puck import velocity_array
-from puck_tables.real import broadcast, finite_array, instance
+from puck_tables.io.dataset import Dataset, variable
+from puck_tables.real import broadcast, finite_array, instance, velocity_array
+from puck_tables.result import Result
 from puck_tables.similarity.file import load_stop_table
 from puck_tables.similarity.stop_table import StopTable
 from puck_tables.solvers import fits
@@ -24,16 +26,17 @@ FloatArray = npt.NDArray[np.float64]
 _CHUNK = 1 << 15
 
 
-@dataclass(frozen=True)
-class States:
-    """States of pucks, arrays of one shape.
+@dataclass(frozen=True, eq=False, repr=False)
+class States(Result):
+    """States of pucks at the times asked for, arrays of one shape.
 
-    ``x``, ``y`` m from the launch; ``heading`` rad, of the velocity (at rest that of the moment
-    when Q had fallen to 1/1000); ``orientation`` rad, how far the body has turned; ``speed`` v m/s;
-    ``spin`` ω rad/s.  ``slip_speed`` Q = hypot(v, rω) m/s and ``slip_angle`` φ rad follow, both 0
-    at rest.
+    ``time`` s; ``x``, ``y`` m from the launch; ``heading`` rad, of the velocity (at rest that of
+    the moment when Q had fallen to 1/1000); ``orientation`` rad, how far the body has turned;
+    ``speed`` v m/s; ``spin`` ω rad/s.  ``vx``, ``vy`` m/s, ``slip_speed`` Q = hypot(v, rω) m/s and
+    ``slip_angle`` φ rad follow, 0 at rest.
     """
 
+    time: FloatArray
     x: FloatArray
     y: FloatArray
     heading: FloatArray
@@ -41,6 +44,21 @@ class States:
     speed: FloatArray
     spin: FloatArray
     radius: FloatArray
+
+    picture: ClassVar[str] = "states"
+
+    def __repr__(self) -> str:
+        return f"States({self.x.size} states of shape {self.x.shape})"
+
+    @property
+    def vx(self) -> FloatArray:
+        """Velocity along x, m/s."""
+        return self.speed * np.cos(self.heading)
+
+    @property
+    def vy(self) -> FloatArray:
+        """Velocity along y, m/s."""
+        return self.speed * np.sin(self.heading)
 
     @property
     def slip_speed(self) -> FloatArray:
@@ -52,11 +70,26 @@ class States:
         """Φ = atan2(rω, v), rad; 0 at rest."""
         return np.arctan2(self.radius * self.spin, self.speed)
 
+    def explain(self) -> str:
+        """How they were got."""
+        return "looked up, to 1e-9 of Q, Q^2/J and Q^2/(J r)"
 
-def flow(
-    v0: npt.ArrayLike,
-    w0: npt.ArrayLike,
-    t: npt.ArrayLike,
+    def dataset(self) -> Dataset:
+        """The states, over as many axes as they have."""
+        dims = tuple(f"axis_{n}" for n in range(self.x.ndim)) or ("state",)
+        shape = self.x.shape or (1,)
+        names = (
+            "time", "x", "y", "vx", "vy", "heading", "orientation", "speed", "spin", "slip_speed",
+            "slip_angle",
+        )  # fmt: skip
+        columns = {n: variable(n, getattr(self, n).reshape(shape), dims) for n in names}
+        return Dataset({}, columns, {"title": "States of sliding, spinning pucks"})
+
+
+def states(
+    velocity: npt.ArrayLike,
+    spin: npt.ArrayLike,
+    time: npt.ArrayLike,
     *,
     delta: npt.ArrayLike = 0.5,
     decel: npt.ArrayLike = 1.0,
@@ -69,9 +102,9 @@ def flow(
 
     Parameters
     ----------
-    v0 : array_like (…, 2), m/s
-    w0 : array_like (…), rad/s, counter-clockwise positive
-    t : array_like (…), s, ≥ 0
+    velocity : array_like (…, 2), m/s
+    spin : array_like (…), rad/s, counter-clockwise positive
+    time : array_like (…), s, ≥ 0
     delta : array_like (…), dimensionless height 2fh/r
         Below 3.9637 under uniform pressure, up to the full contact of another law; with a table 0
         to 1.
@@ -80,16 +113,16 @@ def flow(
     table : StopTable, optional
         The default one if left out.
     pressure, gyration
-        As :func:`puck_tables.simulate`.  For δ > 1 or another kind of puck each puck is integrated,
+        As :class:`puck_tables.Puck`.  For δ > 1 or another kind of puck each puck is integrated,
         which takes some milliseconds, and a second for each different height.
 
     Returns
     -------
     States
-        Of the shape to which the pucks and ``t`` broadcast: for every time of every puck give the
-        pucks one axis more, ``flow(v0[:, None, :], w0[:, None], t)``.  With the default table, and
-        of every other puck, errors stay below 1e-9 of Q, Q²/J (places) and Q²/(J r) (body angle);
-        of the heading, times v/Q.
+        Of the shape to which the pucks and ``time`` broadcast: for every time of every puck give
+        the pucks one axis more, ``states(velocity[:, None, :], spin[:, None], time)``.  With the
+        default table, and of every other puck, errors stay below 1e-9 of Q, Q²/J (places) and
+        Q²/(J r) (body angle); of the heading, times v/Q.
 
     Raises
     ------
@@ -108,8 +141,8 @@ def flow(
 
     Examples
     --------
-    >>> states = flow((1.0, 0.0), 5.0, [2.0, 0.0, 99.0])
-    >>> states.x.round(6).tolist(), states.spin.round(6).tolist()
+    >>> found = states((1.0, 0.0), 5.0, [2.0, 0.0, 99.0])
+    >>> found.x.round(6).tolist(), found.spin.round(6).tolist()
     ([1.590682, 0.0, 2.213952], [2.426862, 5.0, 0.0])
     """
     from puck_tables.similarity.curve_lookup import STATE_ROWS, fill_states
@@ -122,26 +155,27 @@ def flow(
     elif not (plain := is_plain(pressure, gyration, 0.0)):
         raise InputError("stop tables are of a homogeneous puck under uniform pressure")
     chosen = load_stop_table() if table is None else table
-    velocity = velocity_array(v0)
+    velocities = velocity_array(velocity)
     columns = broadcast(
-        vx=velocity[..., 0],
-        vy=velocity[..., 1],
-        w0=finite_array("w0", w0, "rad/s"),
+        vx=velocities[..., 0],
+        vy=velocities[..., 1],
+        spin=finite_array("spin", spin, "rad/s"),
         delta=chosen.checked_range(delta) if plain else checked_delta(delta),
         decel=positive_array("decel", decel, "m/s^2"),
         radius=positive_array("radius", radius, "m"),
     )
-    times = finite_array("t", t, "s")
+    times = finite_array("time", time, "s")
     if not np.all(times >= 0.0):
-        raise InputError(f"t must not be negative, got {times.min():g} s")
+        raise InputError(f"time must not be negative, got {times.min():g} s")
     launches = np.stack([column.ravel() for column in columns])
     longest = 2.0 if plain else body_of(pressure, 0.0, gyration).longest
     if not fits(launches, longest).all():
         raise InputError(
-            "v0, w0, radius and decel give a motion too large for floating point: use larger units"
+            "velocity, spin, radius and decel give a motion too large for floating point: "
+            "use larger units"
         )
     numbers = np.arange(launches.shape[1]).reshape(columns[0].shape)
-    which, moments = broadcast(v0=numbers.astype(np.float64), t=times)
+    which, moments = broadcast(velocity=numbers.astype(np.float64), time=times)
     shape = which.shape
     flat_which = np.ascontiguousarray(which, np.int64).reshape(-1)
     flat_moments = np.ascontiguousarray(moments).reshape(-1)
@@ -159,7 +193,7 @@ def flow(
                     )
 
         run_chunks(integrate, launches.shape[1], 1)
-        return _states(out, launches, flat_which, shape)
+        return _states(out, moments, launches, flat_which, shape)
     known = chosen.known(launches)
     pucks = np.concatenate([launches, known]).T.copy()
 
@@ -172,12 +206,13 @@ def flow(
         out[:, start:stop] = part
 
     run_chunks(work, flat_which.size, _CHUNK)
-    return _states(out, launches, flat_which, shape)
+    return _states(out, moments, launches, flat_which, shape)
 
 
 def _states(
-    out: FloatArray, launches: FloatArray, which: npt.NDArray[np.int64], shape: tuple[int, ...]
-) -> States:
+    out: FloatArray, moments: FloatArray, launches: FloatArray, which: npt.NDArray[np.int64],
+    shape: tuple[int, ...],
+) -> States:  # fmt: skip
     """Rows of states, headings from those of the launches, in their shape."""
     from puck_tables.similarity.curve_lookup import PSI, SPEED, SPIN, THETA, X, Y
 
@@ -186,6 +221,7 @@ def _states(
         (launches[0] == 0.0) & (launches[1] == 0.0), 0.0, np.arctan2(launches[1], launches[0])
     )
     return States(
+        time=np.array(moments).reshape(shape),
         x=rows[X],
         y=rows[Y],
         heading=rows[PSI] + direction[which].reshape(shape),

@@ -7,41 +7,45 @@ import os
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
 from puck_tables.any_stops import HEIGHT_COST, AnyStops
 from puck_tables.checkpoint import Checkpoint, work_digest
-from puck_tables.contact.laws import HOMOGENEOUS, Law
+from puck_tables.columns import COLUMNS
+from puck_tables.contact.laws import Law
 from puck_tables.errors import InputError
 from puck_tables.executor import run_chunks
 from puck_tables.front import Choice
-from puck_tables.puck import positive, velocity_array
-from puck_tables.real import finite_array
+from puck_tables.io.dataset import Dataset, variable
+from puck_tables.real import finite_array, one_velocity, positive
+from puck_tables.result import Result
 from puck_tables.similarity.stop_table import StopTable
-from puck_tables.solvers import OUTPUTS
-from puck_tables.stops import DEFAULT_TOL, any_solver
+from puck_tables.solvers import OUTPUTS, STATUS_MEANINGS
+from puck_tables.stops import any_solver
 from puck_tables.table.table import Table
 
 FloatArray = npt.NDArray[np.float64]
 Progress = Callable[[int, int], None]
 
-CHUNK = 1024
 # Arrays, the encoded HDF5 file and working copies; as text (CSV) much more.
 BYTES_PER_LAUNCH, BYTES_PER_ROW = 130, 750
 
+_ARGUMENTS = {"delta": "delta", "launch_speed": "speed", "launch_spin": "spin"}
 DEFAULT_SPEED = np.linspace(0.0, 2.0, 41)
 DEFAULT_SPIN = np.linspace(-4.0, 4.0, 41)
 
 
-@dataclass(frozen=True)
-class StopMap:
+@dataclass(frozen=True, eq=False, repr=False)
+class StopMap(Result):
     """Stops over a grid of launches.
 
     ``axes`` maps the ranged quantities, in the order of the arrays' dimensions, to their values:
-    of ``delta`` (1), ``speed`` (m/s, along x) and ``w0`` (rad/s).  ``fixed`` holds the others, with
-    ``radius`` (m), ``decel`` (m/s²) and, if given instead of a speed, ``v0_x``, ``v0_y`` (m/s).
+    of ``delta`` (1), ``launch_speed`` (m/s, along x) and ``launch_spin`` (rad/s).  ``fixed`` holds
+    the others, with ``radius`` (m), ``decel`` (m/s²) and, if given instead of a speed,
+    ``launch_vx``, ``launch_vy`` (m/s).
 
     Arrays: ``stop_time`` s, ``stop_x``, ``stop_y`` m from the launch, ``path_length`` m,
     ``turn_angle`` rad (until Q has fallen to 1/1000; integrated, to a hundred times the tolerance),
@@ -63,94 +67,64 @@ class StopMap:
     body_angle: FloatArray = field(repr=False)
     status: npt.NDArray[np.int8] = field(repr=False)
 
+    picture: ClassVar[str] = "stop_map"
+
+    def __repr__(self) -> str:
+        ranged = " x ".join(f"{name} ({values.size})" for name, values in self.axes.items())
+        return f"StopMap({ranged or 'one launch'}, by {self.method})"
+
+    def explain(self) -> str:
+        """Which method was taken, and why."""
+        return "looked up in the stop table given" if self.choice is None else self.choice.why
+
+    def dataset(self) -> Dataset:
+        """The stops over what was ranged; the rest as attributes."""
+        dims = tuple(self.axes)
+        axes = {name: variable(name, values, (name,)) for name, values in self.axes.items()}
+        columns = {name: variable(name, getattr(self, name), dims) for name in OUTPUTS}
+        columns["status"] = variable("status", self.status, dims, STATUS_MEANINGS)
+        attributes = {
+            "title": "Stops of sliding, spinning pucks", **self.fixed,
+            "tol": self.tol, "method": self.method, "table": self.table,
+        }  # fmt: skip
+        return Dataset(axes, columns, attributes)
+
 
 def sweep(
-    w0: npt.ArrayLike | None = None,
-    speed: npt.ArrayLike | None = None,
-    *,
-    v0: npt.ArrayLike | None = None,
-    delta: npt.ArrayLike = 0.5,
-    decel: float = 1.0,
-    radius: float = 1.0,
-    tol: float = DEFAULT_TOL,
-    method: str | None = None,
-    table: Table | StopTable | None = None,
-    pressure: str | Law = "uniform",
-    gyration: float = HOMOGENEOUS,
-    threads: int | None = None,
-    chunk: int = CHUNK,
-    progress: Progress | None = None,
-    checkpoint: str | Path | None = None,
-) -> StopMap:
-    """Stops of all combinations of spins, speeds and heights.
-
-    Parameters
-    ----------
-    w0 : number or array (n,), rad/s
-    speed : number or array (n,), m/s, ≥ 0, along x
-        Without ``w0``, ``speed`` and ``v0``: a map of 41 speeds by 41 spins.
-    v0 : (vx, vy), m/s, instead of ``speed``
-    delta : number or array (n,), dimensionless height
-        Below 3.9637 under uniform pressure, up to the full contact of another law.
-    decel, radius : J = fg in m/s² and m, > 0
-    tol : float
-        Largest error in units of Q/J (time) and Q²/J (place).
-    method, table, pressure, gyration : optional
-        As in :func:`puck_tables.stop`.
-    threads, chunk : int
-        How the work is cut; the numbers do not depend on it, to the last bit.
-    progress : callable (done, total), optional
-    checkpoint : path, optional
-        A file that keeps what is done: called again with the same arguments, the work goes on from
-        there.  It stays until you remove it.
-
-    Returns
-    -------
-    StopMap
-        One dimension for each argument that is an array.
-
-    Raises
-    ------
-    InputError
-        If an argument is not finite or outside its range, the map would not fit in memory, or
-        ``checkpoint`` belongs to other work.
-    AccuracyError
-        If the tolerance is out of reach.
-
-    Examples
-    --------
-    >>> stops = sweep([0.0, 1.0, 2.0], v0=(1.0, 0.0), delta=0.0)
-    >>> stops.stop_x.round(4).tolist()
-    [0.5, 0.6374, 0.9835]
-    """
+    spin: npt.ArrayLike | None, speed: npt.ArrayLike | None, *, velocity: npt.ArrayLike | None,
+    delta: npt.ArrayLike, decel: float, radius: float, pressure: str | Law, gyration: float,
+    tol: float, method: str | None, table: Table | StopTable | None, threads: int | None,
+    chunk: int, progress: Progress | None, checkpoint: str | Path | None,
+) -> StopMap:  # fmt: skip
+    """Stops of all combinations of spins, speeds and heights: :meth:`puck_tables.Puck.sweep`."""
     for name, count in (("chunk", chunk), ("threads", 1 if threads is None else threads)):
         if not isinstance(count, int) or count < 1:
             raise InputError(f"{name} must be a whole number from 1 on, got {count!r}")
     solver = any_solver(tol, table, method, pressure, gyration, delta)
-    if v0 is not None and speed is not None:
-        raise InputError("v0 and speed both give the velocity: give one of them")
-    if w0 is None and speed is None and v0 is None:
-        w0, speed = DEFAULT_SPIN, DEFAULT_SPEED
+    if velocity is not None and speed is not None:
+        raise InputError("velocity and speed both give the velocity: give one of them")
+    if spin is None and speed is None and velocity is None:
+        spin, speed = DEFAULT_SPIN, DEFAULT_SPEED
     fixed = {"decel": positive("decel", decel, "m/s^2"), "radius": positive("radius", radius, "m")}
     direction = (1.0, 0.0)
     given: dict[str, npt.ArrayLike] = {"delta": delta}
-    if v0 is None:
-        given["speed"] = 1.0 if speed is None else speed
+    if velocity is None:
+        given["launch_speed"] = 1.0 if speed is None else speed
     else:
-        velocity = velocity_array(v0)
-        if velocity.shape != (2,):
-            raise InputError(f"v0 must be one velocity (vx, vy), got shape {velocity.shape}")
-        direction = (float(velocity[0]), float(velocity[1]))
-        fixed["v0_x"], fixed["v0_y"] = direction
-    given["w0"] = 0.0 if w0 is None else w0
+        direction = one_velocity(velocity)
+        fixed["launch_vx"], fixed["launch_vy"] = direction
+    given["launch_spin"] = 0.0 if spin is None else spin
 
-    units = {"delta": "", "speed": "m/s", "w0": "rad/s"}
-    values = {name: finite_array(name, value, units[name]) for name, value in given.items()}
+    values = {
+        name: finite_array(_ARGUMENTS[name], value, COLUMNS[name].unit)
+        for name, value in given.items()
+    }
     for name, array in values.items():
         if array.ndim > 1 or array.size == 0:
-            raise InputError(f"{name} must be a number or a list of numbers")
-    if "speed" in values and not np.all(values["speed"] >= 0.0):
-        raise InputError(f"speed must not be negative, got {values['speed'].min():g} m/s")
+            raise InputError(f"{_ARGUMENTS[name]} must be a number or a list of numbers")
+    speeds = values.get("launch_speed", np.zeros(1))
+    if not np.all(speeds >= 0.0):
+        raise InputError(f"speed must not be negative, got {speeds.min():g} m/s")
     solver.checked_range(values["delta"])
     axes = {name: array for name, array in values.items() if array.ndim == 1}
     fixed.update({name: float(array) for name, array in values.items() if array.ndim == 0})
@@ -179,9 +153,9 @@ def sweep(
     def stops_of(start: int, stop: int) -> tuple[FloatArray, npt.NDArray[np.int8]]:
         index = np.unravel_index(np.arange(start, stop), sizes)
         launch = {name: flat[name][i] for name, i in zip(flat, index, strict=True)}
-        along = launch.get("speed", np.ones(stop - start))
+        along = launch.get("launch_speed", np.ones(stop - start))
         launches = np.stack([
-            along * direction[0], along * direction[1], launch["w0"], launch["delta"],
+            along * direction[0], along * direction[1], launch["launch_spin"], launch["delta"],
             np.full(stop - start, decel), np.full(stop - start, radius),
         ])  # fmt: skip
         return solver.all(launches)

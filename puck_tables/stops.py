@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import cached_property
+from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -12,18 +12,20 @@ from puck_tables.body import is_plain
 from puck_tables.contact.laws import HOMOGENEOUS, Law
 from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import InputError
-from puck_tables.puck import velocity_array
-from puck_tables.real import broadcast, finite_array
+from puck_tables.io.dataset import Dataset, variable
+from puck_tables.real import broadcast, finite_array, velocity_array
+from puck_tables.result import Result
 from puck_tables.similarity.stop_table import StopTable
-from puck_tables.solvers import Integration, LookUp, solver_for
+from puck_tables.solvers import OUTPUTS, STATUS_MEANINGS, Integration, LookUp, solver_for
 from puck_tables.table.table import Table
 
 FloatArray = npt.NDArray[np.float64]
 
 DEFAULT_TOL = 1e-8
+_LAUNCHES = ("launch_vx", "launch_vy", "launch_spin", "delta")
 
 
-class Stops:
+class Stops(Result):
     """Stops of launches of shape (…).
 
     ``stop_time`` (…) s, ``stop_position`` (…, 2) m from the launch, ``status`` (…) int8, 0 where
@@ -34,24 +36,31 @@ class Stops:
     without end).
     """
 
+    picture: ClassVar[str] = "stops"
+
     def __init__(
         self, solver: LookUp | Integration | AnyStops, launches: FloatArray, shape: tuple[int, ...]
     ) -> None:
         self._values, status = solver.first(launches)
-        self._solver, self._launches, self._shape = solver, launches, shape
+        self._solver: LookUp | Integration | AnyStops | None = solver
+        self._launches, self._shape = launches, shape
         self.method, self.choice = solver.method, solver.choice
         self.stop_time: FloatArray = self._values[0].reshape(shape)
         self.stop_position: FloatArray = np.stack([self._row(1), self._row(2)], axis=-1)
         self.status: npt.NDArray[np.int8] = status.reshape(shape)
 
     def __repr__(self) -> str:
-        return f"Stops({self._shape}, {self.method})"
+        return f"Stops({self.status.size} launches of shape {self._shape}, by {self.method})"
 
-    @cached_property
+    def __getstate__(self) -> dict[str, Any]:
+        """The results alone: tables stay where they are."""
+        return {**self.__dict__, "_values": self._all, "_solver": None}
+
+    @property
     def _all(self) -> FloatArray:
-        if len(self._values) > 3:
-            return self._values
-        return self._solver.all(self._launches)[0]
+        if len(self._values) == 3 and self._solver is not None:
+            self._values = self._solver.all(self._launches)[0]
+        return self._values
 
     def _row(self, index: int) -> FloatArray:
         values = self._values if index < 3 else self._all
@@ -73,10 +82,25 @@ class Stops:
         """Radians."""
         return self._row(5)
 
+    def explain(self) -> str:
+        """Which method was taken, and why."""
+        return "looked up in the stop table given" if self.choice is None else self.choice.why
+
+    def dataset(self) -> Dataset:
+        """Launches and their stops, over as many axes as the launches have."""
+        dims = tuple(f"axis_{n}" for n in range(len(self._shape))) or ("launch",)
+        shape = self._shape or (1,)
+        launches = dict(zip(_LAUNCHES, self._launches, strict=False))
+        columns = {**launches, **dict(zip(OUTPUTS, self._all, strict=True))}
+        variables = {n: variable(n, row.reshape(shape), dims) for n, row in columns.items()}
+        status = self.status.reshape(shape)
+        variables["status"] = variable("status", status, dims, STATUS_MEANINGS)
+        return Dataset({}, variables, {"title": "Stops of launches", "method": self.method})
+
 
 def stop(
-    v0: npt.ArrayLike,
-    w0: npt.ArrayLike,
+    velocity: npt.ArrayLike,
+    spin: npt.ArrayLike = 0.0,
     *,
     delta: npt.ArrayLike = 0.5,
     decel: npt.ArrayLike = 1.0,
@@ -91,8 +115,8 @@ def stop(
 
     Parameters
     ----------
-    v0 : array_like (…, 2), m/s
-    w0 : array_like (…), rad/s, counter-clockwise positive
+    velocity : array_like (…, 2), m/s
+    spin : array_like (…), rad/s, counter-clockwise positive
     delta : array_like (…), dimensionless height 2fh/r
         Below 3.9637 under uniform pressure, up to the full contact of another law; with a table, in
         its range (0 to 1).  Beyond 1 or for another kind of puck each different height takes about
@@ -101,14 +125,14 @@ def stop(
     radius : array_like (…), m, > 0
     tol : float
         Largest error in units of Q/J (time) and Q²/J (place), Q = hypot(v, rω); 1e-13 to 0.01.  The
-        cheapest way whose measured error is below it is taken; ``choice`` of the result says which
-        and why.
+        cheapest way whose measured error is below it is taken; ``explain()`` of the result says
+        which and why.
     method : 'look-up', 'rk4' or 'adaptive', optional
         Only this one.
     table : StopTable or Table, optional
         A stop table: looked up.  A table of resultants: integrated.
     pressure, gyration
-        As :func:`puck_tables.simulate`.
+        As :class:`puck_tables.Puck`.
 
     Returns
     -------
@@ -132,11 +156,11 @@ def stop(
     ([1.395088, 4.000189], 'look-up')
     """
     solver = any_solver(tol, table, method, pressure, gyration, delta)
-    velocity = velocity_array(v0)
+    velocities = velocity_array(velocity)
     columns = broadcast(
-        vx=velocity[..., 0],
-        vy=velocity[..., 1],
-        w0=finite_array("w0", w0, "rad/s"),
+        vx=velocities[..., 0],
+        vy=velocities[..., 1],
+        spin=finite_array("spin", spin, "rad/s"),
         delta=solver.checked_range(delta),
         decel=positive_array("decel", decel, "m/s^2"),
         radius=positive_array("radius", radius, "m"),

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.body import Body, body_of, is_plain
-from puck_tables.contact.laws import HOMOGENEOUS, Law
+from puck_tables.body import Body, is_plain
 from puck_tables.errors import InputError
 from puck_tables.front import Choice, Way
-from puck_tables.puck import positive, real, velocity_array
-from puck_tables.real import finite_array, instance
+from puck_tables.io.dataset import Dataset, variable
+from puck_tables.puck import PUCK_UNITS, Puck
+from puck_tables.real import finite_array, instance, one_velocity, real
+from puck_tables.result import Result
 from puck_tables.solvers import choose_with
 from puck_tables.table.file import load_table
 from puck_tables.table.table import Table
@@ -25,18 +26,27 @@ if TYPE_CHECKING:
 
 FloatArray = npt.NDArray[np.float64]
 
+STATES = (
+    "x", "y", "vx", "vy", "heading", "orientation", "speed", "spin", "slip_speed", "slip_angle",
+)  # fmt: skip
+SCALARS = {  # and their units
+    "regime": "", "stop_time": "s", "stop_position": "m", "path_length": "m", "turn_angle": "rad",
+    "turn_rate": "rad", "body_angle": "rad", "limit_angle": "rad", "loaded_share": "1",
+    "least_loaded_share": "1", "contact_opens": "s", "contact_closes": "s", "kinetic_energy": "J",
+    "energy_residual": "1", "method": "", "steps": "1", "error_estimate": "1",
+    "launch_velocity": "m/s", "launch_spin": "rad/s",
+}  # fmt: skip
 DEFAULT_TOL = 1e-9
 DEFAULT_FRAMES = 101
 MAX_FRAMES = 1_000_000
 LOOK_UP_FRAMES = 10_000  # from here on states are looked up: 0.2 µs each instead of 4
 
 
-@dataclass(frozen=True)
-class Trajectory:
+@dataclass(frozen=True, eq=False, repr=False)
+class Trajectory(Result):
     """A motion from launch to stop.
 
-    Scalars (SI): what went in (``v0`` m/s, ``w0`` rad/s, ``radius`` m, ``delta``, ``decel`` m/s²,
-    ``mass`` kg, ``pressure`` the name of the law, ``gyration`` the radius of gyration over r), and
+    ``puck``, ``launch_velocity`` (2,) m/s, ``launch_spin`` rad/s: what went in.  Scalars (SI):
 
     * ``regime``: A rest, B0 pure spin, C0 pure translation, D limit motion, B, C generic;
     * ``stop_time`` s, ``stop_position`` (2,) m from the launch, ``path_length`` m;
@@ -54,20 +64,16 @@ class Trajectory:
     * ``method``, ``steps``, and ``error_estimate`` in units of Q/J (times) and Q²/J (places);
       ``choice``: what the tolerance led to (None where the motion is elementary).
 
-    Arrays over ``time`` (n,) s: ``x``, ``y`` m; ``heading`` rad (of the velocity; at rest the
-    heading of turn_angle); ``orientation`` rad (of the body); ``speed`` v m/s; ``spin`` ω rad/s;
-    ``slip_speed`` Q m/s; ``slip_angle`` φ = atan2(rω, v) rad, and so 0 at rest (what it tends to is
-    ``limit_angle``).  :meth:`at` gives the states of the same motion at other times.
+    Arrays over ``time`` (n,) s: ``x``, ``y`` m; ``vx``, ``vy`` m/s; ``heading`` rad (of the
+    velocity; at rest the heading of turn_angle); ``orientation`` rad (of the body); ``speed`` v
+    m/s; ``spin`` ω rad/s; ``slip_speed`` Q m/s; ``slip_angle`` φ = atan2(rω, v) rad, and so 0 at
+    rest (what it tends to is ``limit_angle``).  Called with times it gives the states of the same
+    motion there.
     """
 
-    v0: tuple[float, float]
-    w0: float
-    radius: float
-    delta: float
-    decel: float
-    mass: float
-    pressure: str
-    gyration: float
+    puck: Puck
+    launch_velocity: tuple[float, float]
+    launch_spin: float
     regime: str
     stop_time: float
     stop_position: tuple[float, float]
@@ -97,7 +103,9 @@ class Trajectory:
     slip_angle: FloatArray = field(repr=False)
     motion: Run = field(repr=False, compare=False)
 
-    def at(self, times: npt.ArrayLike) -> Trajectory:
+    picture: ClassVar[str] = "trajectory"
+
+    def __call__(self, times: npt.ArrayLike) -> Trajectory:
         """The same motion with its states at other times; nothing is integrated again.
 
         Parameters
@@ -111,116 +119,88 @@ class Trajectory:
 
         Examples
         --------
-        >>> simulate((1.0, 0.0), 5.0, frames=1).at([2.0, 0.0]).x.round(6).tolist()
+        >>> Puck.similar().simulate((1.0, 0.0), 5.0, frames=1)([2.0, 0.0]).x.round(6).tolist()
         [1.590682, 0.0]
         """
         moments = checked_times(times)
         states: dict[str, Any] = _integrated(
-            self.motion, moments, self.stop_time, self.v0, self.w0, self.decel, self.radius
-        )
+            self.motion, moments, self.stop_time, self.launch_velocity, self.launch_spin,
+            self.puck.decel, self.puck.radius,
+        )  # fmt: skip
         return replace(self, time=moments, **states)
+
+    @property
+    def vx(self) -> FloatArray:
+        """Velocity along x, m/s."""
+        return self.speed * np.cos(self.heading)
+
+    @property
+    def vy(self) -> FloatArray:
+        """Velocity along y, m/s."""
+        return self.speed * np.sin(self.heading)
+
+    def __repr__(self) -> str:
+        x, y = self.stop_position
+        return (
+            f"Trajectory(regime {self.regime}, stops after {self.stop_time:.6g} s at ({x:.6g}, "
+            f"{y:.6g}) m, {self.time.size} states)"
+        )
+
+    def explain(self) -> str:
+        """Which method was taken, and why."""
+        if self.choice is None:
+            return "solved in elementary functions: the slip angle is constant"
+        return self.choice.why
+
+    def summary(self) -> dict[str, Any]:
+        """The scalars with what went in, and the units of all, ready for JSON.
+
+        Examples
+        --------
+        >>> Puck.similar().simulate((1.0, 0.0)).summary()["stop_position"]
+        [0.5, 0.0]
+        """
+        values = {name: getattr(self, name) for name in SCALARS}
+        units = {name: unit for name, unit in {**SCALARS, **PUCK_UNITS}.items() if unit}
+        listed = {n: list(v) if isinstance(v, tuple) else v for n, v in values.items()}
+        return {**listed, **self.puck.described(), "units": units}
+
+    def dataset(self) -> Dataset:
+        """States over time; the scalars as attributes."""
+        columns = {name: variable(name, getattr(self, name), ("time",)) for name in STATES}
+        scalars = {
+            n: np.asarray(v) if isinstance(v, list) else v
+            for n, v in self.summary().items()
+            if v is not None and n != "units"  # None: contact that never opens or closes
+        }
+        attributes = {"title": "Trajectory of a sliding, spinning puck", **scalars}
+        return Dataset({"time": variable("time", self.time, ("time",))}, columns, attributes)
 
 
 def simulate(
-    v0: npt.ArrayLike,
-    w0: float,
-    *,
-    delta: float = 0.5,
-    decel: float = 1.0,
-    radius: float = 1.0,
-    mass: float = 1.0,
-    pressure: str | Law = "uniform",
-    gyration: float = HOMOGENEOUS,
-    frames: int | None = None,
-    times: npt.ArrayLike | None = None,
-    tol: float = DEFAULT_TOL,
-    method: str | None = None,
-    exact: bool = False,
-    table: Table | None = None,
-) -> Trajectory:
-    """The motion of one puck until it stops.
-
-    Parameters
-    ----------
-    v0 : (vx, vy), m/s
-    w0 : spin, rad/s, counter-clockwise positive
-    delta : dimensionless height 2fh/r
-        Below 3.9637 under uniform pressure (from 1 on part of the base may lift), up to the full
-        contact of another law.
-    decel : J = fg, m/s², > 0
-    radius : m, > 0
-    mass : kg, > 0; only the energy depends on it
-    pressure : the contact pressure: uniform, galin, hertz, ring, annulus:INNER, a CSV file of ρ, W,
-        or a Law
-    gyration : radius of gyration about the vertical axis over r, 0.1 to 10; √½ for a homogeneous
-        puck
-    frames : int, optional
-        How many states, equally spaced from the launch to the stop (1: the launch); default 101.
-    times : array_like, s, ≥ 0, any order, optional
-        The times of the states instead; after the stop the puck is at rest.
-    tol : float
-        Largest error of the stop wanted, in units of Q/J (time) and Q²/J (place); 1e-13 to 0.01,
-        from 1e-11 on for a puck with δ > 1, another law or radius of gyration.  Of these the states
-        on the way keep it too, speed and rω in units of Q; those of other pucks may be off by 3
-        times that (measured: 2.8, launched next to φ = π/4).
-        The cheapest integrator whose measured error is below it is taken (a trajectory is
-        integrated and not looked up: it carries an account of its energy); ``choice`` of the result
-        says which and why.
-    method : 'adaptive' (Dormand–Prince 5(4)) or 'rk4', optional
-        Only this one.
-    exact : bool
-        Closed forms instead of the table: a homogeneous puck under uniform pressure in full
-        contact.
-    table : Table, optional
-        For the same; the default table if left out.
-
-    Returns
-    -------
-    Trajectory
-
-    Raises
-    ------
-    InputError
-        If an argument is not finite, has the wrong shape or lies outside its range.
-    ContactError
-        If the puck tips (δ ≥ 4), its contact is not determined (δ > 3.9637), or, with ``exact``,
-        part of the base would be lifted on the way.
-    AccuracyError
-        If the tolerance is out of reach of table or method.
-
-    References
-    ----------
-    Salnikova, Treschev, Gallyamov 2012, eq. 6.2–6.7.
-
-    Examples
-    --------
-    >>> run = simulate((1.0, 0.0), 5.0)
-    >>> run.regime, round(run.stop_time, 8), round(run.stop_position[0], 8)
-    ('B', 3.96299205, 2.21395163)
-    """
-    velocity = velocity_array(v0)
-    if velocity.shape != (2,):
-        raise InputError(f"v0 must be one velocity (vx, vy) in m/s, got shape {velocity.shape}")
-    vx, vy = (float(component) for component in velocity)
-    spin = real("w0", w0, "rad/s")
-    r, J = positive("radius", radius, "m"), positive("decel", decel, "m/s^2")
-    m = positive("mass", mass, "kg")
-    height, wanted = real("delta", delta, "dimensionless"), real("tol", tol, "dimensionless")
+    puck: Puck, velocity: npt.ArrayLike, spin: float, *, frames: int | None,
+    times: npt.ArrayLike | None, tol: float, method: str | None, exact: bool, table: Table | None,
+) -> Trajectory:  # fmt: skip
+    """The motion of a puck until it stops, as :meth:`puck_tables.Puck.simulate` has it."""
+    vx, vy = one_velocity(velocity)
+    w = real("spin", spin, "rad/s")
+    r, J, m, height = puck.radius, puck.decel, puck.mass, puck.delta
+    wanted = real("tol", tol, "dimensionless")
     instance("table", table, Table, type(None))
     if exact and table is not None:
         raise InputError("exact and table exclude each other: closed forms need no table")
     if method not in (None, "adaptive", "rk4"):
         raise InputError(f"method must be 'adaptive' or 'rk4', got {method!r}")
     _check_frames(frames, times)
-    plain = is_plain(pressure, gyration, height)
-    if (exact or table is not None) and not is_plain(pressure, gyration, 0.0):
+    plain = is_plain(puck.pressure, puck.gyration, height)
+    if (exact or table is not None) and not is_plain(puck.pressure, puck.gyration, 0.0):
         raise InputError(
             "closed forms and tables are for a homogeneous puck under uniform pressure: leave out "
             "exact and table, or pressure and gyration"
         )
-    body = None if plain or exact or table is not None else body_of(pressure, height, gyration)
+    body = None if plain or exact or table is not None else puck.body
     square = 0.5 if body is None else body.inertia
-    speed, rim = math.hypot(vx, vy), r * abs(spin)
+    speed, rim = math.hypot(vx, vy), r * abs(w)
     q0 = math.hypot(speed, rim)
     scale_time, scale_length = q0 / J, q0 / J * q0
     energy = 0.5 * m * (speed * speed + square * rim * rim)
@@ -228,7 +208,7 @@ def simulate(
     sizes = (longest * scale_time, longest * scale_length, longest * scale_length / r, energy)
     if not all(map(math.isfinite, sizes)):
         raise InputError(
-            f"v0, w0, radius, decel and mass give a motion too large for floating point "
+            f"velocity, spin, radius, decel and mass give a motion too large for floating point "
             f"(Q = {q0:g} m/s, J = {J:g} m/s^2): use larger units"
         )
 
@@ -252,16 +232,16 @@ def simulate(
     )
     if look_up:
         till_rest = np.where(moments < stop_time, moments, 2.0 * stop_time)
-        columns = _looked_up((vx, vy), spin, till_rest, height, J, r)
+        columns = _looked_up((vx, vy), w, till_rest, height, J, r)
     else:
-        columns = _integrated(run, moments, stop_time, (vx, vy), spin, J, r)
-    side = -1.0 if spin < 0.0 else 1.0
+        columns = _integrated(run, moments, stop_time, (vx, vy), w, J, r)
+    side = -1.0 if w < 0.0 else 1.0
     east, north = (vx / speed, vy / speed) if speed > 0.0 else (1.0, 0.0)
     end_along, end_left = scale_length * run.stop[X], side * scale_length * run.stop[Y]
     return Trajectory(
-        v0=(vx, vy), w0=spin, radius=r, delta=height, decel=J, mass=m,
-        pressure="uniform" if body is None else body.law.name,
-        gyration=HOMOGENEOUS if body is None else body.gyration,
+        puck=puck,
+        launch_velocity=(vx, vy),
+        launch_spin=w,
         regime=regime,
         stop_time=stop_time,
         stop_position=(
@@ -376,11 +356,11 @@ def _looked_up(
     radius: float,
 ) -> dict[str, FloatArray]:  # fmt: skip
     """The same by look-up: for many states the cheaper way."""
-    from puck_tables.states import flow
+    from puck_tables.states import states
 
-    states = flow(v0, spin, moments, delta=delta, decel=decel, radius=radius)
+    found = states(v0, spin, moments, delta=delta, decel=decel, radius=radius)
     names = ("x", "y", "heading", "orientation", "speed", "spin", "slip_speed", "slip_angle")
-    return {name: getattr(states, name) for name in names}
+    return {name: getattr(found, name) for name in names}
 
 
 def _check_frames(frames: int | None, times: npt.ArrayLike | None) -> None:

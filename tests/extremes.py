@@ -19,6 +19,7 @@ import mpmath
 import numpy as np
 import strips
 from mpmath import mp, mpf
+from pucks import simulate
 
 import puck_tables as pt
 
@@ -184,8 +185,8 @@ V0, W0, DELTA = (0.6, -0.4), 1.7, 0.3
 
 @row("Q, r, J, mass and their products from 1e-306 to 1e306", "relative, to Q = r = J = 1", 1e-14)
 def answers_are_scale_free() -> Iterator[float]:
-    base, run = pt.stop(V0, W0, delta=DELTA), pt.simulate(V0, W0, delta=DELTA, frames=1)
-    state = pt.flow(V0, W0, 0.4, delta=DELTA)
+    base, run = pt.stop(V0, W0, delta=DELTA), simulate(V0, W0, delta=DELTA, frames=1)
+    state = pt.states(V0, W0, 0.4, delta=DELTA)
     for speed, decel, radius, mass in scales().tolist():
         with mp.workdps(40):
             v, j, r, m = (mpf(x) for x in (speed, decel, radius, mass))
@@ -193,8 +194,8 @@ def answers_are_scale_free() -> Iterator[float]:
             seconds, metres = v / j, v * v / j
             units = {"delta": DELTA, "decel": decel, "radius": radius}
             found = pt.stop(v0, w0, **units)
-            moved = pt.simulate(v0, w0, **units, mass=mass, frames=1)
-            there = pt.flow(v0, w0, float(mpf(0.4) * seconds), **units)
+            moved = simulate(v0, w0, **units, mass=mass, frames=1)
+            there = pt.states(v0, w0, float(mpf(0.4) * seconds), **units)
             for got, wanted, unit in (
                 (found.stop_time, base.stop_time, seconds),
                 (found.stop_position[0], base.stop_position[0], metres),
@@ -216,7 +217,7 @@ def zeros_of_either_sign() -> Iterator[float]:
     yield float(signed.stop_time - base.stop_time)
     yield from signed.stop_position - base.stop_position
     for w0 in (0.0, -0.0):
-        run = pt.simulate((0.0, -0.0), w0)
+        run = simulate((0.0, -0.0), w0)
         yield from (run.stop_time, *run.stop_position, run.body_angle, run.path_length)
 
 
@@ -225,8 +226,8 @@ def pure_spin() -> Iterator[float]:
     times = np.array([0.0, 1e-300, 0.1, 0.5, math.nextafter(1.5, 0.0), 1.5, 2.0, 1e9])
     for w0, radius in ((-2.0, 1.0), (2e100, 1e-100), (2e-100, 1e100)):
         left = np.maximum(0.0, 1.0 - times / 1.5)
-        states = pt.flow((0.0, 0.0), w0, times, radius=radius)
-        run = pt.simulate((0.0, -0.0), w0, radius=radius, times=times)
+        states = pt.states((0.0, 0.0), w0, times, radius=radius)
+        run = simulate((0.0, -0.0), w0, radius=radius, times=times)
         for found in (states, run):
             yield from found.spin / w0 - left
             yield from found.orientation * radius / math.copysign(1.5, w0) - (1.0 - left**2)
@@ -249,7 +250,7 @@ def on_the_limit_angle() -> Iterator[float]:
                 left = 1 - mpf(time) / stop_time
                 place = size * mp.cos(phi) * stop_time / (2 + 1j * share)
                 place *= 1 - left ** (2 + 1j * share)
-                state = pt.flow((1.0, 0.0), float(mp.exp(u0)), time, delta=delta)
+                state = pt.states((1.0, 0.0), float(mp.exp(u0)), time, delta=delta)
                 yield (float(state.speed) - float(left)) / float(size)
                 yield (float(state.spin) - float(left * mp.exp(u0))) / float(size)
                 yield float(abs(place - mpmath.mpc(float(state.x), float(state.y))) / size**2)
@@ -260,7 +261,7 @@ def on_the_limit_angle() -> Iterator[float]:
 @row("one frame only: the launch itself", "Q", 1e-15)
 def one_frame() -> Iterator[float]:
     for w0 in (0.0, -5.0, 0.3, 1e-300):
-        first = pt.simulate((1.0, 0.0), w0, frames=1)
+        first = simulate((1.0, 0.0), w0, frames=1)
         yield from (first.time.size - 1, *first.time, *first.x, *first.y, *(first.speed - 1.0))
         yield from (first.spin - w0) / math.hypot(1.0, w0)
 
@@ -268,12 +269,12 @@ def one_frame() -> Iterator[float]:
 @row("states asked for at the stop, after it, at 1e9 s and 1e300 s", "any motion", 0.0)
 def after_the_stop() -> Iterator[float]:
     for w0 in (0.0, -5.0, 0.3):
-        end = pt.simulate((1.0, 0.0), w0).stop_time
+        end = simulate((1.0, 0.0), w0).stop_time
         times = [end, math.nextafter(end, 9.0), 1e9, 1e300]
-        run = pt.simulate((1.0, 0.0), w0, times=times)
+        run = simulate((1.0, 0.0), w0, times=times)
         yield from (*(run.x - run.stop_position[0]), *(run.y - run.stop_position[1]))
         yield from (*run.speed, *run.spin)
-        late = pt.flow((1.0, 0.0), w0, times[2:])
+        late = pt.states((1.0, 0.0), w0, times[2:])
         yield from (*np.diff(late.x), *np.diff(late.y), *late.speed, *late.spin)
 
 

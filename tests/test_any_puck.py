@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 from any_puck import stops_by_truth
+from pucks import simulate
 
 from puck_tables import (
     elementary_stop_time,
@@ -16,7 +17,6 @@ from puck_tables import (
     loaded_share,
     one_sided_resultants,
     regime,
-    simulate,
 )
 from puck_tables.body import body_of
 from puck_tables.contact.laws import HOMOGENEOUS

@@ -8,9 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from any_puck import stops_by_truth
+from pucks import aim, simulate, sweep
 from test_any_puck import PUCKS, launch, starts
 
-from puck_tables import aim, flow, law_of, plot_aim, simulate, stop, sweep
+from puck_tables import law_of, states, stop
 from puck_tables.any_stops import MANY
 from puck_tables.body import body_of
 from puck_tables.contact.laws import HOMOGENEOUS
@@ -143,11 +144,11 @@ def test_states_are_those_of_the_trajectory(puck: tuple[str, float, float]):
     options = {"delta": delta, "pressure": law, "gyration": gyration, "radius": 0.3, "decel": 2.0}
     velocities, spins = np.array([(1.0, 0.5), (0.0, 0.0), (0.2, -0.1)]), np.array([2.0, 3.0, -9.0])
     times = np.array([0.0, 0.1, 0.3, 50.0])
-    states = flow(velocities[:, None, :], spins[:, None], times, **options)
+    found = states(velocities[:, None, :], spins[:, None], times, **options)
     for n in range(3):
         run = simulate(velocities[n], spins[n], times=times, **options)
         for name in ("x", "y", "heading", "orientation", "speed", "spin"):
-            error = getattr(states, name)[n] - getattr(run, name)
+            error = getattr(found, name)[n] - getattr(run, name)
             assert np.abs(error).max() <= 1e-8, (n, name)
 
 
@@ -155,13 +156,13 @@ def test_aims_of_other_pucks_hit(tmp_path: Path):
     for options in (
         {"delta": 2.0}, {"pressure": "annulus:0.8", "gyration": 0.9}, {"gyration": 2.0, "delta": 0},
     ):  # fmt: skip
-        for wish in ({"w0": 3.0}, {"speed": 1.5}, {"stop_time": 3.0}, {"count": 3}):
+        for wish in ({"spin": 3.0}, {"speed": 1.5}, {"stop_time": 3.0}, {"count": 3}):
             found = aim((2.0, 0.3), **wish, **options)
-            assert found.w0.size >= 1
+            assert found.launch_spin.size >= 1
             assert found.miss.max() <= 1e-8
-    plot_aim(aim((2.0, 0.3), delta=2.0, count=2), tmp_path / "aim.png")
+    aim((2.0, 0.3), delta=2.0, count=2).plot(tmp_path / "aim.png")
     turning = float(law_of("hertz").friction(0.5 * math.pi, 0.0).spin)
-    spot = aim((0.0, 0.0), w0=2.0, pressure="hertz")
+    spot = aim((0.0, 0.0), spin=2.0, pressure="hertz")
     assert spot.stop_time[0] == pytest.approx(2.0 / turning)
 
 
@@ -175,6 +176,6 @@ def test_a_tall_puck_may_be_aimed_in_three_ways():
     assert falling.size > 2
     middle = duration[[falling[0], falling[-1] + 1]].mean()
     found = aim((2.0, 0.0), stop_time=float(middle), delta=3.9)
-    assert found.w0.size == 6
+    assert found.launch_spin.size == 6
     assert found.miss.max() <= 1e-8
     assert np.abs(found.stop_time - middle).max() <= 1e-8

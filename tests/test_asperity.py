@@ -198,7 +198,7 @@ def test_the_mean_force_is_never_above_coulombs():
     curve = asperity_curve(UNIT, np.linspace(0.0, 8.0, 400))
     assert (curve.mean <= curve.crude * (1.0 + 1e-12)).all()
     assert curve.mean.max() > 0.999
-    assert (curve.mean[curve.speed <= 1.0] == 0.0).all()
+    assert (curve.mean[curve.held_speed <= 1.0] == 0.0).all()
 
 
 def test_the_greatest_force_grows_from_coulombs_then_falls_after_the_landing_has_passed_it():
@@ -338,7 +338,7 @@ def test_the_command(tmp_path):
     done = puck("--speeds", "0:0.02:5", "--mass", "0.1", "--load", "2")
     assert done.exit_code == 0
     lines = done.stdout.splitlines()
-    assert lines[0].startswith("speed[m/s],crude[N],greatest[N]")
+    assert lines[0].startswith("held_speed[m/s],crude[N],greatest[N]")
     assert len(lines) == 6
     assert "V0 =" in done.stderr
     out = tmp_path / "curve.h5"
@@ -349,7 +349,7 @@ def test_the_command(tmp_path):
     import xarray
 
     with xarray.open_dataset(out, engine="h5netcdf") as data:
-        assert data["mean"].dims == ("speed",)
+        assert data["mean"].dims == ("held_speed",)
         assert data["mean"].attrs["units"] == "N"
         assert float(data.attrs["amplitude"]) == 1e-6
     assert (tmp_path / "a.png").stat().st_size > 20_000

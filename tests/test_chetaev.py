@@ -329,14 +329,14 @@ def test_patches_that_only_slide_can_be_displaced_sideways():
 
 
 @pytest.mark.parametrize(
-    ("v0", "w0", "delta"),
+    ("velocity", "spin", "delta"),
     [((1, 0), 0.2, 0.0), ((1, 0), 1.0, 0.0), ((1, 0), 1.0, 0.8), ((0.6, -0.8), -5, 0.8)],
 )  # fmt: skip
-def test_patches_converge_to_the_puck_with_order_one_in_their_number(v0, w0, delta):
-    exact = stop(v0, w0, delta=delta, tol=1e-10)
+def test_patches_converge_to_the_puck_with_order_one_in_their_number(velocity, spin, delta):
+    exact = stop(velocity, spin, delta=delta, tol=1e-10)
     errors = []
     for rings in (4, 8, 16, 32):
-        time, place = patch_stop(v0, w0, rings, delta=delta)
+        time, place = patch_stop(velocity, spin, rings, delta=delta)
         errors.append([abs(time - exact.stop_time), np.hypot(*(place - exact.stop_position))])
     order = np.log2(np.array(errors[:-1]) / errors[1:])  # in a patch's width: N quadruples
     assert (order > 1.7).all()
@@ -346,7 +346,7 @@ def test_patches_converge_to_the_puck_with_order_one_in_their_number(v0, w0, del
 
 def test_bad_patches_get_a_sentence():
     for change in ({"rings": 0}, {"delta": 1.5}, {"decel": 0.0}, {"radius": float("nan")}):
-        given = {"v0": (1.0, 0.0), "w0": 1.0, "rings": 3} | change
+        given = {"velocity": (1.0, 0.0), "spin": 1.0, "rings": 3} | change
         with pytest.raises(InputError):
             patch_stop(**given)
     with pytest.raises(InputError, match="finite"):

@@ -15,8 +15,9 @@ import pytest
 import xarray
 from click.testing import CliRunner, Result
 from puck_tables.cli.main import main
+from pucks import simulate
 
-from puck_tables import load_table, simulate
+from puck_tables import load_table
 
 PUCK = [sys.executable, "-c", "from puck_tables.cli.main import main; main(prog_name='puck')"]
 
@@ -100,7 +101,8 @@ def test_saved_trajectories_open_elsewhere(folder: Path, ending: str):
     else:
         frame = pandas.read_json(name, lines=True)
         assert set(frame.columns) == {
-            "time", "x", "y", "heading", "orientation", "speed", "spin", "slip_speed", "slip_angle",
+            "time", "x", "y", "vx", "vy", "heading", "orientation", "speed", "spin", "slip_speed",
+            "slip_angle",
         }  # fmt: skip
         x = frame["x"].to_numpy()
     np.testing.assert_allclose(x, simulate((1, 0), 5.0, frames=20).x, rtol=1e-12)
@@ -128,12 +130,12 @@ def test_sweep_writes_labelled_maps_and_draws_them():
     assert result.exit_code == 0
     assert result.stdout == ""
     with xarray.open_dataset("map.h5", engine="h5netcdf") as data:
-        assert dict(data.sizes) == {"delta": 3, "speed": 5, "w0": 7}
-        assert data.stop_time.dims == ("delta", "speed", "w0")
+        assert dict(data.sizes) == {"delta": 3, "launch_speed": 5, "launch_spin": 7}
+        assert data.stop_time.dims == ("delta", "launch_speed", "launch_spin")
         assert data.stop_x.attrs["units"] == "m"
-        assert data.w0.attrs["units"] == "rad/s"
+        assert data.launch_spin.attrs["units"] == "rad/s"
         assert data.status.attrs["flag_meanings"] == "stopped step_limit overflow"
-        at = data.sel(delta=0.5, speed=1.0, w0=-2.0)
+        at = data.sel(delta=0.5, launch_speed=1.0, launch_spin=-2.0)
         run = simulate((1, 0), -2.0)
         assert float(at.stop_time) == pytest.approx(run.stop_time, abs=1e-6)
         assert float(at.stop_y) == pytest.approx(run.stop_position[1], abs=1e-6)
@@ -143,7 +145,7 @@ def test_sweep_writes_labelled_maps_and_draws_them():
 def test_sweep_prints_csv_without_an_output():
     result = puck("sweep", "--w0", "0:10:3", "--v0", "1,0", "--delta", "1")
     rows = result.stdout.splitlines()
-    assert rows[0].startswith("w0[rad/s],stop_time[s],stop_x[m],stop_y[m]")
+    assert rows[0].startswith("launch_spin[rad/s],stop_time[s],stop_x[m],stop_y[m]")
     assert len(rows) == 4
     assert float(rows[2].split(",")[1]) == pytest.approx(4.000188799127, abs=1e-6)
     assert "3 stopped" in result.stderr
@@ -201,7 +203,7 @@ V0 = ["simulate", "--v0", "1,0"]
         ([*V0, "--pressure", "ring", "--exact"], ["leave out", "uniform pressure"]),
         ([*V0, "--gyration", "0"], ["gyration", "0.1 to 10"]),
         ([*V0, "--delta", "2", "--tol", "1e-13"], ["tol must be from 1e-11"]),
-        ([*V0, "--delta", "-0.1"], ["delta", "from 0 to below 2"]),
+        ([*V0, "--delta", "-0.1"], ["delta", "must not be negative"]),
         ([*V0, "--delta", "2", "--exact"], ["delta", "from 0 to below 2"]),
         (["build-tables", "-o", "table.csv"], ["ends in .h5"]),
         ([*V0, "--delta", "1.1", "--exact"], ["part of the base is lifted", "law of full contact"]),
@@ -232,7 +234,7 @@ V0 = ["simulate", "--v0", "1,0"]
         (["sweep", "--delta", "0:4:5"], ["delta = 4", "tips"]),
         (["sweep", "--w0", "1", "--plot", "x.png"], ["needs a range"]),
         (["sweep", "--height", "1", "--delta", "0:1:5"], ["clash"]),
-        (["sweep", "-o", "map.jsonl"], [".h5, .csv"]),
+        (["sweep", "-o", "map.txt"], [".h5, .csv"]),
         (["build-tables", "--n-phi", "100"], ["odd"]),
         (["build-tables", "--accuracy", "1e-20"], ["1e-13"]),
         (["build-tables", "--accuracy", "1e-6", "--n-phi", "65"], ["both fix the grid"]),

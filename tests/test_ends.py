@@ -113,7 +113,9 @@ def test_a_reader_that_has_gone_is_no_trouble(arguments: list[str]):
     os.close(write)
     assert ended.returncode == (1 if arguments == ["--help"] else 141)  # help is click's
     for line in (ended.stderr or "").splitlines():
-        assert line.startswith(("wrote ", "compiling ", "validating: ")), ended.stderr
+        assert line.startswith(("wrote ", "compiling ", "validating: ", "tabulating: ")), (
+            ended.stderr
+        )
 
 
 @pytest.mark.parametrize("unbuffered", ["", "1"])
@@ -123,7 +125,7 @@ def test_the_first_lines_are_read(unbuffered: str):
         command, shell=True, capture_output=True, text=True, check=True,
         env={**os.environ, "PYTHONUNBUFFERED": unbuffered},
     )  # fmt: skip
-    assert ended.stdout.startswith("w0[rad/s],stop_time[s]")
+    assert ended.stdout.startswith("launch_spin[rad/s],stop_time[s]")
     assert ended.stdout.count("\n") == 2
     assert ended.stderr.removeprefix(COMPILING) == ""
 

@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 from extremes import ROWS, Row
+from pucks import simulate
 
 import puck_tables as pt
 from puck_tables.errors import AccuracyError, ContactError, InputError
@@ -57,22 +58,25 @@ def test_beyond_the_ends_there_is_a_sentence():
             pt.one_sided_resultants(0.3, delta)
     with pytest.raises(AccuracyError, match=r"up to delta = 3\.9999 it is"):
         pt.one_sided_resultants(0.3, math.nextafter(4.0, 0.0))
-    for motion in ({"v0": (1e160, 0.0), "w0": 0.0}, {"v0": (1.0, 0.0), "w0": 1e308, "radius": 1e9}):
+    for motion in (
+        {"velocity": (1e160, 0.0), "spin": 0.0},
+        {"velocity": (1.0, 0.0), "spin": 1e308, "radius": 1e9},
+    ):
         with pytest.raises(InputError, match="too large for floating point"):
-            pt.simulate(**motion)
+            simulate(**motion)
         with pytest.raises(InputError, match="too large for floating point"):
-            pt.flow(**motion, t=1.0)
+            pt.states(**motion, time=1.0)
         stops = pt.stop(**motion)
         assert (stops.status == 2).all()
         assert np.isnan(stops.stop_time).all()
     with pytest.raises(InputError, match="too large for floating point"):
-        pt.simulate((1e100, 0.0), 0.0, mass=1e150)
+        simulate((1e100, 0.0), 0.0, mass=1e150)
 
 
 def test_places_too_small_for_floating_point_are_zero():
     """Q²/J under 5e-324 rounds to 0; times and speeds keep their digits."""
     for speed in (1e-170, 1e-290):
-        found, run = pt.stop((speed, 0.0), speed), pt.simulate((speed, 0.0), speed)
+        found, run = pt.stop((speed, 0.0), speed), simulate((speed, 0.0), speed)
         base = pt.stop((1.0, 0.0), 1.0)
         assert float(found.stop_time) / speed == pytest.approx(float(base.stop_time), rel=1e-14)
         assert run.stop_time / speed == pytest.approx(float(base.stop_time), abs=1e-8)
@@ -95,7 +99,7 @@ def test_no_jump_where_one_cell_meets_the_next():
 def test_on_the_limit_ratio_nothing_moves_away():
     for delta in (0.0, 0.4, 1.0):
         ratio = float(pt.limit_ratio(delta))
-        run = pt.simulate((1.0, 0.0), ratio, delta=delta, exact=True, frames=9)
+        run = simulate((1.0, 0.0), ratio, delta=delta, exact=True, frames=9)
         assert run.regime == "D"
         moving = run.speed > 0.0
         assert moving[:-1].all()

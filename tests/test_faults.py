@@ -11,15 +11,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from pucks import sweep
 
-from puck_tables import load_table, sweep
+from puck_tables import load_table
 from puck_tables.catalogue import load_any_table
 from puck_tables.checkpoint import Checkpoint
 from puck_tables.errors import InputError, OutputError
 
 PUCK = [sys.executable, "-c", "from puck_tables.cli.main import main; main()"]
 # integrated, so that there is something to interrupt
-GRID = {"w0": np.linspace(-3.0, 3.0, 150), "speed": np.linspace(0.0, 2.0, 150)}
+GRID = {"spin": np.linspace(-3.0, 3.0, 150), "speed": np.linspace(0.0, 2.0, 150)}
 
 
 def killed_after(seconds: float, command: list[str], folder: Path) -> int:
@@ -36,10 +37,10 @@ def killed_after(seconds: float, command: list[str], folder: Path) -> int:
 
 def sweeps_killed(folder: Path, kills: int) -> int:
     """Kill a resumable sweep at random moments until it is done; returns how many kills it took."""
-    load = "from puck_tables import *; import numpy as np; from test_faults import GRID; "
+    load = "from puck_tables import load_table; from test_faults import GRID, sweep; "
     work = (
         "m = sweep(**GRID, table=load_table(), tol=1e-9, threads=1, checkpoint='m.progress'); "
-        "save_map(m, 'm.h5', overwrite=True)"
+        "m.save('m.h5', overwrite=True)"
     )
     code = f"import sys; sys.path.insert(0, {str(Path(__file__).parent)!r}); " + load + work
     moments = random.Random(12)

@@ -9,8 +9,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from pucks import aim, simulate, sweep
 
-from puck_tables import aim, flow, limit_ratio, resultants, simulate, simulate_scene, stop, sweep
+from puck_tables import limit_ratio, resultants, simulate_scene, states, stop
 from puck_tables.errors import InputError
 
 LARGEST = 1.7976931348623157e308
@@ -36,7 +37,7 @@ def test_what_overflows_by_the_length_of_a_motion_only():
         assert np.isnan(found.stop_time)
     assert stop((1e-9, 0.0), 5e-9, decel=4e-317).status == 2
     for ask in (lambda **o: simulate((1e-10, 0.0), 1e-8, **o),
-                lambda **o: flow((1e-10, 0.0), 1e-8, 1.0, **o)):  # fmt: skip
+                lambda **o: states((1e-10, 0.0), 1e-8, 1.0, **o)):  # fmt: skip
         with pytest.raises(InputError, match="too large"):
             ask(decel=1e-315, gyration=3.0)
 
@@ -55,9 +56,9 @@ def test_the_largest_speeds_are_looked_up_as_others():
 @pytest.mark.parametrize("options", [{}, {"delta": 2.0}, {"gyration": 3.0}])
 def test_a_spin_is_kept_where_only_slip_over_radius_overflows(options: dict):
     puck = {"radius": 1e-310, "decel": 1e300, **options}
-    states = flow((1.0, 0.0), 1e300, [0.0, 2.5e-301], **puck)
+    seen = states((1.0, 0.0), 1e300, [0.0, 2.5e-301], **puck)
     run = simulate((1.0, 0.0), 1e300, times=[0.0, 2.5e-301], **puck)
-    for found in (states, run):
+    for found in (seen, run):
         assert np.isfinite(found.spin).all()
         assert found.spin[0] == pytest.approx(1e300, rel=1e-12)
 
@@ -66,10 +67,10 @@ def test_masked_values_are_refused_alike():
     masked = np.ma.masked_array([0.1, 0.2, 0.3], [False, True, False])
     for ask in (
         lambda: stop((1.0, 0.0), masked), lambda: stop((1.0, 0.0), 1.0, delta=masked),
-        lambda: flow((1.0, 0.0), 1.0, masked), lambda: flow((1.0, 0.0), masked, 1.0),
+        lambda: states((1.0, 0.0), 1.0, masked), lambda: states((1.0, 0.0), masked, 1.0),
         lambda: sweep(masked, 1.0), lambda: resultants(masked, 0.5), lambda: limit_ratio(masked),
         lambda: simulate((1.0, 0.0), 1.0, times=masked), lambda: simulate((1, 0), masked[1]),
-        lambda: aim(masked[:2]), lambda: aim((2.0, 0.1), w0=masked[1]),
+        lambda: aim(masked[:2]), lambda: aim((2.0, 0.1), spin=masked[1]),
         lambda: simulate((1.0, 0.0), 1.0, delta=np.ma.masked),
     ):  # fmt: skip
         with pytest.raises(InputError, match="masked"):
@@ -117,7 +118,7 @@ for puck in ({}, {"delta": 1.0}, {"delta": 2.0}, {"gyration": 3.0}):
                 assert np.isfinite(getattr(found, name)[good]).all(), (puck, tol, method, name)
     for n in range(60):
         try:
-            pt.flow(v[n], w[n], [0.0, 1e-9, 1.0, 1e300], decel=J[n], radius=r[n], **puck)
+            pt.states(v[n], w[n], [0.0, 1e-9, 1.0, 1e300], decel=J[n], radius=r[n], **puck)
         except PuckError:
             pass
 """

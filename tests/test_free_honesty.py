@@ -7,9 +7,10 @@ import math
 import numpy as np
 import pytest
 from any_puck import motion_by_truth
+from pucks import simulate
 from test_any_puck import launch
 
-from puck_tables import flow, law_of, limit_ratio, simulate, stop
+from puck_tables import law_of, limit_ratio, states, stop
 from puck_tables.errors import AccuracyError
 
 JUDGE = 3e-12  # of the longest motion: what scipy is off
@@ -64,13 +65,13 @@ def test_states_between_launch_and_stop_keep_tol(puck: tuple[str, float, float],
         judged(*puck, u, tol)
 
 
-def test_flow_of_other_pucks_is_as_exact_as_it_says():
+def test_states_of_other_pucks_is_as_exact_as_it_says():
     for puck in (("annulus:0.7", 0.5, 0.4), ("uniform", 0.5, 0.15)):
         v0, w0 = launch(0.5)
-        _, states = motion_by_truth(*puck, 0.5)
-        found = flow(v0, w0, states[:, 3], pressure=puck[0], delta=puck[1], gyration=puck[2])
+        _, true = motion_by_truth(*puck, 0.5)
+        found = states(v0, w0, true[:, 3], pressure=puck[0], delta=puck[1], gyration=puck[2])
         for got, at in ((found.speed, 0), (found.spin, 2), (found.x, 4), (found.y, 5)):
-            assert np.abs(got - states[:, at]).max() <= 1e-9
+            assert np.abs(got - true[:, at]).max() <= 1e-9
 
 
 def test_the_limit_motion_and_pure_motions_report_what_they_are_off():

@@ -15,8 +15,9 @@ from click.testing import CliRunner
 from hypothesis import given
 from hypothesis import strategies as st
 from puck_tables.cli.main import main
+from pucks import aim, simulate
 
-from puck_tables import aim, flow, resultants, simulate, stop
+from puck_tables import resultants, states, stop
 from puck_tables.errors import PuckError
 
 HARD = [
@@ -55,7 +56,7 @@ def test_states(
 ):
     puck = {"delta": delta, "decel": decel, "radius": radius}
     try:
-        found = flow((vx, vy), w0, times, **puck)
+        found = states((vx, vy), w0, times, **puck)
     except PuckError as error:
         assert str(error)
         return
@@ -70,15 +71,15 @@ def test_aims(
     x: float, y: float, delta: float, decel: float, w0: float | None, max_speed: float | None
 ):
     try:
-        found = aim((x, y), delta=delta, decel=decel, w0=w0, max_speed=max_speed, count=2)
+        found = aim((x, y), delta=delta, decel=decel, spin=w0, max_speed=max_speed, count=2)
     except PuckError as error:
         assert str(error)
         return
     assert found.answer
-    assert np.isfinite(found.v0).all()
-    assert np.isfinite(found.w0).all()
-    if found.w0.size:
-        q = np.hypot(found.speed, found.w0)
+    assert np.isfinite(found.launch_velocity).all()
+    assert np.isfinite(found.launch_spin).all()
+    if found.launch_spin.size:
+        q = np.hypot(found.launch_speed, found.launch_spin)
         scale = (q / decel * q).max()
         assert found.miss.max() <= 1e-9 * scale + 1e-300
 

@@ -92,7 +92,7 @@ def test_chunks_that_never_end_are_given_up(work):
 
 
 def test_slices_change_no_bit(monkeypatch):
-    launches = {"v0": (1.0, 0.0), "w0": np.linspace(0.0, 9.0, 37), "tol": 1e-7}
+    launches = {"velocity": (1.0, 0.0), "spin": np.linspace(0.0, 9.0, 37), "tol": 1e-7}
     for kind in ({"method": "adaptive"}, {"method": "rk4"}, {"delta": 1.5, "method": "rk4"}):
         whole = stop(**launches, **kind)
         monkeypatch.setattr(executor, "_FIRST_SLICE", 1)

@@ -10,15 +10,15 @@ import pytest
 from click.testing import CliRunner
 from mpmath import mp
 from puck_tables.cli.main import main
+from pucks import simulate, sweep
 
-from puck_tables import build_table, load_stop_table, load_table, simulate, stop, sweep
+from puck_tables import build_table, load_stop_table, load_table, stop
 from puck_tables.errors import AccuracyError, InputError, TableError
 from puck_tables.front import (
     INTEGRATED,
     LOOK_UP,
     MARGIN,
     choose,
-    front_as_csv,
     pareto,
     shipped_front,
     ways_from_csv,
@@ -149,9 +149,8 @@ def test_what_it_cannot_reach_it_says():
             stop((1, 0), 1.0, **options)
 
 
-def test_the_shipped_front_reads_back_and_damage_is_named():
+def test_the_shipped_front_is_read_and_damage_is_named():
     ways = shipped_front()
-    assert ways_from_csv(front_as_csv(ways)) == ways
     assert {way.question for way in ways} == {"resultants", "stop", "trajectory", "state"}
     with pytest.raises(TableError, match="damaged"):
         ways_from_csv("question,method\nstop,look-up\n")

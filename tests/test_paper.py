@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from conftest import ROOT
+from pucks import simulate
 
 from puck_tables.contact import closed_form, quadrature
 from puck_tables.contact.integrals import PatchIntegrals
@@ -17,8 +18,9 @@ from puck_tables.contact.resultants import Resultants
 from puck_tables.paper import ends, friction, motions, patch, shapes
 from puck_tables.paper.claim import Claim, as_csv, as_text, equal, farthest, less, more
 from puck_tables.paper.root import root
+from puck_tables.paper.runs import ACCURACY
 from puck_tables.table.check import by_closed_form
-from puck_tables.trajectory import Trajectory, simulate
+from puck_tables.trajectory import Trajectory
 
 
 def differing(claims: list[Claim]) -> set[str]:
@@ -137,7 +139,7 @@ def changed_motions(
 ) -> Callable[..., Trajectory]:
     def run(v0: Any, w0: float, **given: Any) -> Trajectory:
         given = {**given, **{name: f * given.get(name, 1.0) for name, f in factor.items()}}
-        return change(simulate(v0, w0, **given))
+        return change(simulate(v0, w0, exact=True, tol=ACCURACY, **given))
 
     return run
 
@@ -190,7 +192,7 @@ def test_wrong_motions_are_found_out(name: str):
         (changed_motions(lambda r: replace(r, heading=0.0 * r.heading)), {"Cor. 13", "result 7"}),
         (changed_motions(lambda r: replace(r, spin=-r.spin)), {"result 4"}),
         (changed_motions(lambda r: replace(r, speed=r.speed**1.1)), {"result 4", "Cor. 9"}),
-        (changed_motions(lambda r: replace(r, spin=np.sin(r.w0) * r.speed)), {"result 5"}),
+        (changed_motions(lambda r: replace(r, spin=np.sin(r.launch_spin) * r.speed)), {"result 5"}),
         (changed_motions(lambda r: replace(r, slip_speed=r.slip_speed + 1e-6)), {"result 8"}),
         (changed_motions(lambda r: replace(r, heading=r.heading - 1e-9 * r.time)), {"result 7"}),
     ],

@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from pucks import simulate
 from reference import REFERENCE_RUNS
 
 from puck_tables.paper import figures
-from puck_tables.trajectory import simulate
 
 
 def test_stops_of_figure_4_and_paths_of_figure_3():

@@ -11,35 +11,22 @@ import pytest
 from matplotlib.collections import QuadMesh
 from matplotlib.figure import Figure
 from matplotlib.ticker import ScalarFormatter
+from pucks import simulate, sweep
 
-from puck_tables import drawing, limit_ratio, plots, simulate, sweep
-from puck_tables import scene_map_picture as scene_maps
-from puck_tables import scene_picture as scenes
+from puck_tables import limit_ratio
 from puck_tables.chetaev.asperity import Asperity
 from puck_tables.chetaev.asperity_curve import asperity_curve
 from puck_tables.errors import InputError
+from puck_tables.plot import style
 from puck_tables.scene.library import find_scene
 from puck_tables.scene.simulate import simulate_scene
 from puck_tables.scene.sweep import sweep_scene
 
 
 @pytest.fixture
-def drawn(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Any:
-    """Draws, and gives the figure that was saved."""
-
-    def draw(plot: Any, result: Any) -> Figure:
-        kept: list[Figure] = []
-
-        def save(figure: Figure, *rest: Any) -> None:
-            kept.append(figure)
-            drawing.save(figure, *rest)
-
-        for module in (scenes, scene_maps, plots):
-            monkeypatch.setattr(module, "save", save)
-        plot(result, tmp_path / f"{len(list(tmp_path.iterdir()))}.png")
-        return kept[0]
-
-    return draw
+def drawn(tmp_path: Path) -> Any:
+    """Draws into a file, and gives the figure that was saved."""
+    return lambda result: result.plot(tmp_path / f"{len(list(tmp_path.iterdir()))}.png")
 
 
 def words(figure: Figure) -> set[str]:
@@ -67,10 +54,10 @@ def curve(axes: Any) -> np.ndarray:
 )
 def test_a_trajectory_is_drawn_whole_whatever_states_it_has(drawn: Any, asked: Any) -> None:
     run = simulate((1.0, 0.3), 5.0, **asked)
-    figure = drawn(plots.plot_trajectory, run)
+    figure = drawn(run)
     path = figure.axes[0]
-    assert marks(path, drawing.LAUNCH) == [(0.0, 0.0)]
-    assert marks(path, drawing.STOP) == [run.stop_position]
+    assert marks(path, style.LAUNCH) == [(0.0, 0.0)]
+    assert marks(path, style.STOP) == [run.stop_position]
     fine = simulate((1.0, 0.3), 5.0, frames=2001)
     line = curve(path)
     gap = np.hypot(line[:, None, 0] - fine.x, line[:, None, 1] - fine.y).min(axis=0)
@@ -83,14 +70,14 @@ def test_few_frames_do_not_cut_a_bouncing_path_off_its_walls(drawn: Any) -> None
     tables = find_scene("air-hockey")
     tables["run"]["frames"] = 3
     run = simulate_scene(tables)
-    figure = drawn(scenes.plot_scene, run)
+    figure = drawn(run)
     line = curve(figure.axes[0])
     bounces = [event for event in run.events if event.what == "bounces"]
     assert len(bounces) > 3
     for event in bounces:
         assert np.hypot(line[:, 0] - event.x, line[:, 1] - event.y).min() < 1e-12
-    assert marks(figure.axes[0], drawing.LAUNCH) == [(0.4, 0.3)]
-    assert marks(figure.axes[0], drawing.STOP) == [(run.last["x"], run.last["y"])]
+    assert marks(figure.axes[0], style.LAUNCH) == [(0.4, 0.3)]
+    assert marks(figure.axes[0], style.STOP) == [(run.last["x"], run.last["y"])]
     speed = curve(figure.axes[1])  # which leaps at an impact
     leap = np.flatnonzero(np.diff(speed[:, 0]) < 1e-12)
     assert len(leap) >= len(bounces) and np.abs(np.diff(speed[:, 1])[leap]).max() > 0.3
@@ -102,7 +89,7 @@ def test_a_path_of_many_turns_is_round(drawn: Any) -> None:
         "launch": {"position": [0.05, 0.0], "velocity": [0.0, 0.45], "spin": 9.0},
         "run": {"time": 60.0, "frames": 5},
     }  # fmt: skip
-    figure = drawn(scenes.plot_scene, simulate_scene(tables))
+    figure = drawn(simulate_scene(tables))
     line = curve(figure.axes[0])
     assert np.abs(np.hypot(line[:, 0], line[:, 1]) - 0.05).max() < 1e-6
     assert np.hypot(*np.diff(line, axis=0).T).max() < 0.05 * 2.0 * np.pi / 50
@@ -125,7 +112,7 @@ WORDS = {
 def test_all_that_is_in_the_plane_is_labelled_and_no_legend_lies_on_a_panel(
     drawn: Any, name: str
 ) -> None:
-    figure = drawn(scenes.plot_scene, simulate_scene(name))
+    figure = drawn(simulate_scene(name))
     assert {WORDS[name], "launch"} <= words(figure)
     _legends_stand_outside(figure)
 
@@ -149,17 +136,17 @@ def test_what_pulls_is_labelled(drawn: Any, tmp_path: Path) -> None:
         "force": {"constant": [0.1, 0.2], "torque": 1e-3, "file": str(tmp_path / "force.csv")},
     }  # fmt: skip
     run = simulate_scene(tables)
-    told = words(drawn(scenes.plot_scene, run))
+    told = words(drawn(run))
     assert {"force (0.1, 0.2) N", "torque 0.001 N m", "force over time", "viscous drag"} <= told
     (tmp_path / "force.csv").write_text("t,Fx,Fy\n0,0.5,0\n1,0,0\n")
     with pytest.raises(InputError, match="has changed since the run"):
-        drawn(scenes.plot_scene, run)
+        drawn(run)
 
 
 @pytest.mark.parametrize("delta", [0.0, 0.5])
 def test_no_axis_has_an_offset_or_shows_rounding(drawn: Any, delta: float) -> None:
     ratio = float(limit_ratio(delta))
-    figure = drawn(plots.plot_trajectory, simulate((1.0, 0.0), ratio, delta=delta))
+    figure = drawn(simulate((1.0, 0.0), ratio, delta=delta))
     for axes in figure.axes:
         for axis in (axes.xaxis, axes.yaxis):
             formatter = axis.get_major_formatter()
@@ -176,11 +163,11 @@ def incline(slopes: str, spins: str) -> Any:
 
 def test_few_values_are_curves_with_marks_for_ends(drawn: Any) -> None:
     stops = incline("0:0.2:5", "0:80:9")
-    figure = drawn(scene_maps.plot_scene_map, stops)
+    figure = drawn(stops)
     assert {"at rest", "no end found", "floor.slope: 0.15 rad"} <= words(figure)
     assert not any(isinstance(c, QuadMesh) for c in figure.axes[0].collections)
     _legends_stand_outside(figure)
-    plain = drawn(plots.plot_map, sweep(np.linspace(0, 5, 9), np.array([1.0, 2.0]), delta=0.3))
+    plain = drawn(sweep(np.linspace(0, 5, 9), np.array([1.0, 2.0]), delta=0.3))
     assert len(plain.axes[0].lines) == 2 and not plain.axes[0].collections
     _legends_stand_outside(plain)
 
@@ -188,7 +175,7 @@ def test_few_values_are_curves_with_marks_for_ends(drawn: Any) -> None:
 @pytest.mark.parametrize("ranges", [("0:0.2:9", "0:80:9"), ("0.05:0.2:9", "10:20:2")])
 def test_maps_tell_ends_apart(drawn: Any, ranges: tuple[str, str]) -> None:
     stops = incline(*ranges)
-    figure = drawn(scene_maps.plot_scene_map, stops)
+    figure = drawn(stops)
     assert {"at rest", "no end found"} <= words(figure)
     mesh = next(
         c for axes in figure.axes if axes.get_title() == "how it ends"
@@ -206,10 +193,10 @@ TITLES = ["$x_1^{", "a $\\frac{1}{2}$ b", "\N{ICE HOCKEY STICK AND PUCK} \u05d0"
 def test_titles_are_drawn_as_they_stand(drawn: Any, title: str) -> None:
     tables = find_scene("incline")
     tables["title"] = title
-    figure = drawn(scenes.plot_scene, simulate_scene(tables))
+    figure = drawn(simulate_scene(tables))
     assert figure.get_suptitle().startswith(f"{title}: at rest after")
     tables["launch"]["spin"] = "0:60:3"
-    assert drawn(scene_maps.plot_scene_map, sweep_scene(tables)).get_suptitle() == title
+    assert drawn(sweep_scene(tables)).get_suptitle() == title
 
 
 def test_the_examples_of_asperity_show_all_that_happens() -> None:

@@ -9,16 +9,17 @@ from typing import Any
 
 import numpy as np
 import pytest
+from pucks import sweep
 
-from puck_tables import build_table, load_stop_table, load_table, profile_law, sweep, sweep_scene
+from puck_tables import build_table, load_stop_table, load_table, profile_law, sweep_scene
 from puck_tables import checkpoint as kept_work
 from puck_tables.checkpoint import Checkpoint, work_digest
 from puck_tables.errors import InputError, OutputError
 
 W0 = np.linspace(0.1, 5.0, 7)
-PLAIN: dict[str, Any] = {"w0": W0, "speed": [0.5, 1.0], "delta": 0.5, "tol": 1e-8}
-INTEGRATED: dict[str, Any] = {"w0": W0, "v0": (1.0, 0.0), "tol": 1e-5, "method": "rk4"}
-OTHER: dict[str, Any] = {"w0": W0, "v0": (1.0, 0.0), "pressure": "ring", "tol": 1e-5}
+PLAIN: dict[str, Any] = {"spin": W0, "speed": [0.5, 1.0], "delta": 0.5, "tol": 1e-8}
+INTEGRATED: dict[str, Any] = {"spin": W0, "velocity": (1.0, 0.0), "tol": 1e-5, "method": "rk4"}
+OTHER: dict[str, Any] = {"spin": W0, "velocity": (1.0, 0.0), "pressure": "ring", "tol": 1e-5}
 
 
 def changed_table() -> Any:
@@ -30,15 +31,15 @@ def changed_table() -> Any:
 
 
 CHANGES: list[tuple[dict[str, Any], dict[str, Any]]] = [
-    (PLAIN, {"w0": np.nextafter(W0, 9.0)}), (PLAIN, {"w0": W0[::-1].copy()}),
+    (PLAIN, {"spin": np.nextafter(W0, 9.0)}), (PLAIN, {"spin": W0[::-1].copy()}),
     (PLAIN, {"speed": [0.5, 1.5]}), (PLAIN, {"delta": 0.5000001}), (PLAIN, {"radius": 2.0}),
     (PLAIN, {"decel": 2.0}), (PLAIN, {"tol": 1e-4}), (PLAIN, {"method": "adaptive"}),
     (PLAIN, {"method": "rk4"}), (PLAIN, {"table": changed_table}),
     (PLAIN, {"table": load_table}), (PLAIN, {"gyration": 0.9}), (PLAIN, {"pressure": "ring"}),
     (PLAIN, {"chunk": 5}),
     (INTEGRATED, {"method": "adaptive"}), (INTEGRATED, {"method": None}),
-    (INTEGRATED, {"tol": 1e-6}), (INTEGRATED, {"v0": (1.0, 1e-9)}),
-    (INTEGRATED, {"v0": (0.0, 1.0)}),
+    (INTEGRATED, {"tol": 1e-6}), (INTEGRATED, {"velocity": (1.0, 1e-9)}),
+    (INTEGRATED, {"velocity": (0.0, 1.0)}),
     (INTEGRATED, {"table": lambda: build_table(accuracy=1e-9)}),
     (OTHER, {"pressure": "annulus:0.9"}), (OTHER, {"gyration": 1.0}), (OTHER, {"tol": 1e-4}),
     (OTHER, {"method": "adaptive"}), (OTHER, {"method": "rk4"}),

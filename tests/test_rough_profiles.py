@@ -9,6 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from pucks import simulate
 from scipy.integrate import quad, solve_ivp
 
 import puck_tables as pt
@@ -27,7 +28,7 @@ def measured(seed: int, noise: float = 0.03):
 def test_a_profile_with_noise_works_at_the_default_tolerance():
     """Against an integrator that has friction straight from the law."""
     law = measured(0)
-    run = pt.simulate((1.0, 0.0), 5.0, delta=0.5, pressure=law)
+    run = simulate((1.0, 0.0), 5.0, delta=0.5, pressure=law)
 
     def rates(_, y):
         log_v, turn, log_w = y[:3]
@@ -75,10 +76,10 @@ def test_a_tolerance_out_of_reach_is_refused_with_one_that_is_not(monkeypatch):
     monkeypatch.setattr(friction_slice, "slip_spline", partial(slip_spline, finest=64))
     law = measured(1, noise=0.3)
     with pytest.raises(AccuracyError, match="--tol") as refused:
-        pt.simulate((1.0, 0.0), 5.0, delta=0.2, pressure=law)
+        simulate((1.0, 0.0), 5.0, delta=0.2, pressure=law)
     tol = float(re.search(r"--tol\) of (\S+) or more", str(refused.value)).group(1))
     assert 1e-9 < tol < 1e-4
-    assert pt.simulate((1.0, 0.0), 5.0, delta=0.2, pressure=law, tol=tol).stop_time > 0.0
+    assert simulate((1.0, 0.0), 5.0, delta=0.2, pressure=law, tol=tol).stop_time > 0.0
 
 
 @pytest.mark.parametrize("pressure", [[1.0, 0.2, 0.3], [0.1, 1.0, 0.0]])
@@ -88,7 +89,7 @@ def test_a_tip_in_the_middle_costs_no_order(pressure):
     errors = [friction_slice.friction_slice(law, 0.2, tol).error for tol in (1e-6, 1e-9)]
     cells = [friction_slice.friction_slice(law, 0.2, tol).spline.cells for tol in (1e-6, 1e-9)]
     assert np.log(errors[0] / errors[1]) / np.log(cells[1] / cells[0]) > 3.5
-    assert pt.simulate((1.0, 0.0), 5.0, delta=0.2, pressure=law, tol=1e-11).stop_time > 0.0
+    assert simulate((1.0, 0.0), 5.0, delta=0.2, pressure=law, tol=1e-11).stop_time > 0.0
 
 
 @pytest.mark.parametrize(
@@ -112,8 +113,8 @@ def test_profiles_thinner_than_rounding_are_refused(radii, pressure, words):
 @pytest.mark.parametrize("thin", [2e-6, 1e-4, 1e-2])
 def test_thin_rings_are_nearly_the_ring(thin):
     law = pt.profile_law([1.0 - thin, 1.0], [1.0, 1.0])
-    found = pt.simulate((1.0, 0.0), 1.0, pressure=law, tol=1e-6, gyration=1.0).stop_time
-    ring = pt.simulate((1.0, 0.0), 1.0, pressure="ring", tol=1e-6, gyration=1.0).stop_time
+    found = simulate((1.0, 0.0), 1.0, pressure=law, tol=1e-6, gyration=1.0).stop_time
+    ring = simulate((1.0, 0.0), 1.0, pressure="ring", tol=1e-6, gyration=1.0).stop_time
     assert found == pytest.approx(ring, abs=2.0 * thin + 2e-6)
 
 
@@ -121,7 +122,7 @@ def test_thin_rings_are_nearly_the_ring(thin):
 def test_every_law_and_its_results_go_to_other_processes(name):
     law = pickle.loads(pickle.dumps(pt.law_of(name)))
     assert float(law.integrals(0.3).b) == float(pt.law_of(name).integrals(0.3).b)
-    run = pt.simulate((1.0, 0.0), 1.0, pressure=name, delta=0.1, tol=1e-6)
+    run = simulate((1.0, 0.0), 1.0, pressure=name, delta=0.1, tol=1e-6)
     assert pickle.loads(pickle.dumps(run)).stop_time == run.stop_time
 
 

@@ -106,7 +106,7 @@ def test_a_map_over_a_scene_opens_in_xarray_and_equals_single_runs(tmp_path):
         assert float(data["x"][1, 2]) == single.last["x"]
         assert float(data["end_time"][1, 2]) == single.end_time
     table = puck("sweep", "--scene", "incline", *ranges)
-    assert table.stdout.splitlines()[0].startswith("floor.slope[rad],launch.spin[rad/s],x[m]")
+    assert table.stdout.splitlines()[0].startswith("floor_slope[rad],launch_spin[rad/s],x[m]")
     assert len(table.stdout.splitlines()) == 13
     assert "12 at rest" in table.stderr
 

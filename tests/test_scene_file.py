@@ -16,7 +16,6 @@ from puck_tables.scene.outcome import ENDS
 from puck_tables.scene.scene import scene_from
 from puck_tables.scene.simulate import simulate_scene
 from puck_tables.scene.sweep import sweep_scene
-from puck_tables.scene_file import save_scene_map, save_scene_run
 
 FORCE = "t,Fx,Fy\n0,0.1,0\n# Gewicht\n1,0,0\n"
 
@@ -34,7 +33,7 @@ def tables(folder: Path) -> dict[str, Any]:
 
 def test_a_map_has_units_meanings_and_its_scene(tmp_path: Path) -> None:
     stops = sweep_scene(tables(tmp_path))
-    save_scene_map(stops, tmp_path / "map.h5")
+    stops.save(tmp_path / "map.h5")
     with xarray.open_dataset(tmp_path / "map.h5", engine="h5netcdf") as data:
         assert data["floor_slope"].attrs["units"] == "rad"
         assert data["launch_spin"].attrs["units"] == "rad/s"
@@ -49,9 +48,9 @@ def test_a_map_has_units_meanings_and_its_scene(tmp_path: Path) -> None:
     assert kept["title"] == "Ünter einer Kraft"
     again = sweep_scene(kept)
     assert np.array_equal(again.columns["x"], stops.columns["x"], equal_nan=True)
-    save_scene_map(stops, tmp_path / "map.csv")
+    stops.save(tmp_path / "map.csv")
     head = (tmp_path / "map.csv").read_text().splitlines()[0]
-    assert head.startswith("puck.gyration[1],floor.slope[rad],launch.spin[rad/s],x[m]")
+    assert head.startswith("puck_gyration[1],floor_slope[rad],launch_spin[rad/s],x[m]")
 
 
 def test_a_run_has_its_scene_however_long(tmp_path: Path) -> None:
@@ -59,13 +58,13 @@ def test_a_run_has_its_scene_however_long(tmp_path: Path) -> None:
     scene = {**tables(tmp_path), "wall": [wall] * 1500}  # 64 kB is the most of an attribute
     scene["puck"]["gyration"], scene["floor"]["slope"], scene["launch"]["spin"] = 0.5, 0.1, 3.0
     run = simulate_scene(scene)
-    save_scene_run(run, tmp_path / "run.h5")
+    run.save(tmp_path / "run.h5")
     with xarray.open_dataset(tmp_path / "run.h5", engine="h5netcdf") as data:
         assert len(data["scene"].item()) > 1 << 16
         assert data["force_file"].item() == FORCE
         assert scene_from(tomllib.loads(data["scene"].item()))[0] == run.scene
     (tmp_path / "force.csv").write_text("t,Fx,Fy\n0,9,0\n1,0,0\n")
-    save_scene_run(run, tmp_path / "later.h5")  # what was run, not what stands there now
+    run.save(tmp_path / "later.h5")  # what was run, not what stands there now
     with xarray.open_dataset(tmp_path / "later.h5", engine="h5netcdf") as data:
         assert data["force_file"].item() == FORCE
 

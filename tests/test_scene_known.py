@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from pucks import simulate
 
-from puck_tables import resultants, simulate
+from puck_tables import resultants
 from puck_tables.scene.outcome import SceneRun
 from puck_tables.scene.simulate import simulate_scene
 

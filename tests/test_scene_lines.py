@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from pucks import simulate
 from test_scene_known import G, event, scene
 
-from puck_tables import simulate
 from puck_tables.scene.simulate import simulate_scene
 
 WALL = {"point": [2.0, 0.0], "normal": [-1.0, 0.0]}

@@ -6,8 +6,9 @@ import math
 
 import numpy as np
 import pytest
+from pucks import simulate, sweep
 
-from puck_tables import Table, load_stop_table, simulate, stop, sweep
+from puck_tables import Table, load_stop_table, stop
 from puck_tables.errors import AccuracyError, InputError
 from puck_tables.executor import run_chunks
 from puck_tables.stop_map import check_memory
@@ -64,7 +65,7 @@ def test_overflow_is_a_named_status():
     ("arguments", "options", "words"),
     [
         (((1, 0, 0), 1.0), {}, "two components"),
-        (((1, 0), [1.0, math.inf]), {}, "w0"),
+        (((1, 0), [1.0, math.inf]), {}, "spin"),
         (((1, 0), 1.0), {"delta": 1.5, "table": load_stop_table()}, "outside this table"),
         (((1, 0), 1.0), {"delta": -0.5}, "delta"),
         (((1, 0), 1.0), {"radius": [1.0, 0.0]}, "radius"),
@@ -88,7 +89,7 @@ def test_accuracy_out_of_reach():
 def test_same_bits_for_any_threads_and_chunks(way: str, table: Table):
     chosen = table if way == "integrated" else None
     grid = {
-        "w0": np.linspace(-3, 3, 23),
+        "spin": np.linspace(-3, 3, 23),
         "speed": np.linspace(0, 2, 17),
         "delta": np.array([0.0, 0.4, 1.0]),
     }
@@ -97,24 +98,30 @@ def test_same_bits_for_any_threads_and_chunks(way: str, table: Table):
         other = sweep(threads=threads, chunk=chunk, table=chosen, **grid)
         for name in ARRAYS:
             assert getattr(other, name).tobytes() == getattr(base, name).tobytes()
-    alone = stop((grid["speed"][5], 0.0), grid["w0"][3], delta=0.4, table=chosen)
+    alone = stop((grid["speed"][5], 0.0), grid["spin"][3], delta=0.4, table=chosen)
     assert float(alone.stop_time) == base.stop_time[1, 5, 3]
 
 
 def test_axes_only_of_what_is_ranged():
-    assert list(sweep().axes) == ["speed", "w0"]
+    assert list(sweep().axes) == ["launch_speed", "launch_spin"]
     assert sweep().stop_time.shape == (41, 41)
-    assert list(sweep([1.0, 2.0], v0=(0.0, 1.0)).axes) == ["w0"]
-    assert list(sweep(1.0, [0.5, 1.0], delta=[0.0, 1.0]).axes) == ["delta", "speed"]
+    assert list(sweep([1.0, 2.0], velocity=(0.0, 1.0)).axes) == ["launch_spin"]
+    assert list(sweep(1.0, [0.5, 1.0], delta=[0.0, 1.0]).axes) == ["delta", "launch_speed"]
     single = sweep(1.0, 2.0)
     assert single.stop_time.shape == ()
-    assert single.fixed == {"decel": 1.0, "radius": 1.0, "delta": 0.5, "speed": 2.0, "w0": 1.0}
+    assert single.fixed == {
+        "decel": 1.0,
+        "radius": 1.0,
+        "delta": 0.5,
+        "launch_speed": 2.0,
+        "launch_spin": 1.0,
+    }
 
 
 def test_figure_4_of_the_paper():
     """v0 = (1, 0), J = 1: final x, y and stop time against ω(0) are nearly linear from 2 on."""
     w0 = np.linspace(0, 10, 101)
-    stops = sweep(w0, v0=(1.0, 0.0), delta=1.0)
+    stops = sweep(w0, velocity=(1.0, 0.0), delta=1.0)
     assert stops.stop_time[0] == pytest.approx(1.0, abs=1e-9)
     assert stops.stop_x[0] == pytest.approx(0.5, abs=1e-9)
     assert np.all(np.diff(stops.stop_time) > 0.0)
@@ -128,17 +135,17 @@ def test_figure_4_of_the_paper():
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        ({"v0": (1, 0), "speed": 1.0}, "give one of them"),
+        ({"velocity": (1, 0), "speed": 1.0}, "give one of them"),
         ({"speed": [-1.0, 1.0]}, "negative"),
-        ({"w0": [[1.0]]}, "list of numbers"),
-        ({"w0": []}, "list of numbers"),
+        ({"spin": [[1.0]]}, "list of numbers"),
+        ({"spin": []}, "list of numbers"),
         ({"chunk": 0}, "chunk must be"),
         ({"chunk": -5}, "chunk must be"),
         ({"threads": 0}, "threads must be"),
         ({"threads": "2"}, "threads must be"),
         ({"delta": [0.0, 4.0]}, "tips"),
         ({"radius": -1.0}, "radius"),
-        ({"v0": ((1, 0), (2, 0))}, "one velocity"),
+        ({"velocity": ((1, 0), (2, 0))}, "velocity must be one"),
     ],
 )
 def test_bad_maps(options: dict, words: str):

@@ -19,7 +19,6 @@ from puck_tables.front import shipped_front
 from puck_tables.kernels.spline import fill_resultants
 from puck_tables.motion.bulk import fill_stops
 from puck_tables.motion.steppers import DORMAND_PRINCE, RK4
-from puck_tables.result_file import save_trade_off
 from puck_tables.similarity.axes import SlipAxis
 from puck_tables.similarity.exact import exact_stops
 from puck_tables.similarity.stop_table import StopTable
@@ -27,7 +26,6 @@ from puck_tables.tradeoff import engine, resultant_ways, stop_ways
 from puck_tables.tradeoff.machine import measured_machine
 from puck_tables.tradeoff.models import PADE_MATCHED, as_table, pade_limit_ratio
 from puck_tables.tradeoff.truth import Points, known_starts, random_points
-from puck_tables.tradeoff_picture import plot_trade_off
 
 
 @pytest.fixture(scope="module")
@@ -178,7 +176,7 @@ def test_models_of_the_literature():
 
 
 def test_files(measured: engine.TradeOff, tmp_path: Path):
-    save_trade_off(measured, tmp_path / "t.h5")
+    measured.save(tmp_path / "t.h5")
     with xarray.open_dataset(tmp_path / "t.h5", engine="h5netcdf") as data:
         assert data["error"].dims == ("way",)
         assert data["stop_ns"].dims == ("stops",)
@@ -186,16 +184,16 @@ def test_files(measured: engine.TradeOff, tmp_path: Path):
         chosen = data["error"].sel(way="resultants: closed forms")
         assert 1e-16 < float(chosen) <= 1e-14
         assert data.attrs["machine_processor"] == "any"
-    save_trade_off(measured, tmp_path / "t.csv")
+    measured.save(tmp_path / "t.csv")
     rows = pandas.read_csv(tmp_path / "t.csv")
     assert len(rows) == len(measured.ways)
     assert set(rows.question) == {"resultants", "stop", "trajectory", "state"}
     with pytest.raises(OutputError, match="exists already"):
-        save_trade_off(measured, tmp_path / "t.csv")
+        measured.save(tmp_path / "t.csv")
 
 
 def test_picture_and_report(measured: engine.TradeOff, tmp_path: Path):
-    plot_trade_off(measured, tmp_path / "t.png")
+    measured.plot(tmp_path / "t.png")
     assert (tmp_path / "t.png").stat().st_size > 50_000
     text = report(measured)
     assert text.isascii()

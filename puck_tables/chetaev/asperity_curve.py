@@ -25,7 +25,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -33,10 +33,13 @@ import numpy.typing as npt
 from puck_tables.chetaev.asperity import Arc, Asperity, landing
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import InputError
+from puck_tables.io.dataset import Dataset, variable
 from puck_tables.real import finite_array
+from puck_tables.result import Result
 
 FloatArray = npt.NDArray[np.float64]
 
+CURVES = ("crude", "greatest", "undriven", "mean", "landing_phase", "flights_per_period")
 _FLIGHTS = 4000
 _LONGEST_CYCLE, _SAME_PHASE = 40, 1e-11
 LEAP = 0.2  # of Coulomb's force: by so much the mean force at neighbouring speeds may differ
@@ -58,14 +61,14 @@ class Round(NamedTuple):
     mean: float
 
 
-@dataclass(frozen=True)
-class AsperityCurve:
+@dataclass(frozen=True, eq=False, repr=False)
+class AsperityCurve(Result):
     """Horizontal force of the support against the speed; forces in N, resisting positive.
 
     Attributes
     ----------
     asperity : Asperity
-    speed : array (k,), m/s
+    held_speed : array (k,), m/s
     crude : array (k,)
         Coulomb's force −Y a/b, at every speed.
     greatest : array (k,)
@@ -83,13 +86,34 @@ class AsperityCurve:
     """
 
     asperity: Asperity
-    speed: FloatArray
+    held_speed: FloatArray
     crude: FloatArray = field(repr=False)
     greatest: FloatArray = field(repr=False)
     undriven: FloatArray = field(repr=False)
     mean: FloatArray = field(repr=False)
     landing_phase: FloatArray = field(repr=False)
     flights_per_period: FloatArray = field(repr=False)
+
+    picture: ClassVar[str] = "asperity"
+
+    def __repr__(self) -> str:
+        return (
+            f"AsperityCurve({self.held_speed.size} speeds, V0 = {self.asperity.lift_speed:.4g} m/s)"
+        )
+
+    def explain(self) -> str:
+        """How it was got."""
+        return "leading terms of the force, and every landing: Chetaev 1960, section 5"
+
+    def dataset(self) -> Dataset:
+        """Forces over the speed; the support as attributes."""
+        dims, support = ("held_speed",), self.asperity
+        columns = {name: variable(name, getattr(self, name), dims) for name in CURVES}
+        return Dataset({"held_speed": variable("held_speed", self.held_speed, dims)}, columns, {
+            "title": "Friction of a point on a wavy one-sided support", "load": support.load,
+            "amplitude": support.amplitude, "length": support.length, "mass": support.mass,
+            "lift_speed": support.lift_speed,
+        })  # fmt: skip
 
     @property
     def leaps(self) -> int:
@@ -124,7 +148,7 @@ class AsperityCurve:
         """
         if which not in ("crude", "greatest", "undriven", "mean"):
             raise InputError(f"which must be crude, greatest, undriven or mean, got {which!r}")
-        return SpeedLaw(self.speed, getattr(self, which) / self.asperity.load)
+        return SpeedLaw(self.held_speed, getattr(self, which) / self.asperity.load)
 
 
 def asperity_curve(

@@ -177,8 +177,8 @@ def patch_system(
 
 
 def patch_stop(
-    v0: npt.ArrayLike,
-    w0: float,
+    velocity: npt.ArrayLike,
+    spin: float,
     rings: int,
     *,
     delta: float = 0.0,
@@ -190,8 +190,8 @@ def patch_stop(
 
     Parameters
     ----------
-    v0 : array_like (2,), m/s
-    w0 : float, rad/s
+    velocity : array_like (2,), m/s
+    spin : float, rad/s
     rings : int, from 1 to 256
     delta, decel, radius : float
         2fh/r in [0, 1], J = fg in m/s², r in m.
@@ -227,11 +227,11 @@ def patch_stop(
     from scipy.integrate import solve_ivp
 
     _checked(delta=delta, decel=decel, radius=radius, mass=1.0)
-    velocity = finite_array("v0", v0, "m/s")
-    spin = float(finite_array("w0", w0, "rad/s"))
+    velocity = finite_array("velocity", velocity, "m/s")
+    spin = float(finite_array("spin", spin, "rad/s"))
     start = math.hypot(*velocity, radius * spin)
     if velocity.shape != (2,):
-        raise InputError(f"v0 must be two numbers in m/s, got the shape {velocity.shape}")
+        raise InputError(f"velocity must be two numbers in m/s, got the shape {velocity.shape}")
     points = disc_points(rings)
     if start == 0.0:
         return 0.0, np.zeros(2)

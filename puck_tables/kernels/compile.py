@@ -56,9 +56,9 @@ def allocating(function: Function) -> Function:
 
 
 def _compile(function: Function, forceinline: bool, counts: bool) -> Function:
+    options: dict[str, Any] = {"forceinline": forceinline, "_nrt": counts}
     compiled: Any = numba.njit(
-        nogil=True, fastmath={"contract"}, error_model="numpy", forceinline=forceinline,
-        _nrt=counts,
+        nogil=True, fastmath={"contract"}, error_model="numpy", **options
     )(function)  # fmt: skip
     if not forceinline and hasattr(compiled, "enable_caching"):  # not where compiling is off
         compiled._cache = KeptCode(function)

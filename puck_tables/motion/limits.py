@@ -11,10 +11,10 @@ from puck_tables.contact.closed_form import integrals
 from puck_tables.contact.laws import HOMOGENEOUS, Law, law_of
 from puck_tables.contact.laws import limit_ratio as law_limit_ratio
 from puck_tables.contact.resultants import checked_delta
-from puck_tables.errors import ContactError, InputError
+from puck_tables.errors import ContactError
 from puck_tables.kernels.closed_form import friction_ratios, resultants
 from puck_tables.kernels.compile import kernel
-from puck_tables.real import finite_array
+from puck_tables.real import one_velocity, positive, real
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -203,8 +203,8 @@ def _spin_ratio(u: FloatArray, delta: npt.ArrayLike) -> FloatArray:
 
 
 def regime(
-    v0: npt.ArrayLike,
-    w0: float,
+    velocity: npt.ArrayLike,
+    spin: float,
     delta: float = 0.5,
     radius: float = 1.0,
     pressure: str | Law = "uniform",
@@ -214,8 +214,8 @@ def regime(
 
     Parameters
     ----------
-    v0 : (vx, vy), m/s
-    w0 : spin, rad/s
+    velocity : (vx, vy), m/s
+    spin : rad/s
     delta, pressure, gyration
         As :func:`limit_ratio`, a number each.
     radius : m, > 0
@@ -240,20 +240,16 @@ def regime(
     >>> regime((1.0, 0.0), 5.0), regime((3.0, 4.0), 0.0)
     ('B', 'C0')
     """
-    velocity = finite_array("v0", v0, "m/s")
-    if velocity.shape != (2,):
-        raise InputError(f"v0 must be one velocity (vx, vy) in m/s, got shape {velocity.shape}")
-    spin, r = finite_array("w0", w0, "rad/s"), finite_array("radius", radius, "m")
-    if spin.shape != () or r.shape != () or not r > 0.0:
-        raise InputError("w0 and radius must be numbers, radius greater than 0 m")
+    components = one_velocity(velocity)
+    turning, r = real("spin", spin, "rad/s"), positive("radius", radius, "m")
     ratio = float(limit_ratio(delta, pressure, gyration))
     limit = math.log(ratio) if ratio > 0.0 else -math.inf
-    return regime_of(math.hypot(*velocity.tolist()), float(r * abs(spin)), limit)
+    return regime_of(math.hypot(*components), r * abs(turning), limit)
 
 
 def elementary_stop_time(
-    v0: npt.ArrayLike,
-    w0: float,
+    velocity: npt.ArrayLike,
+    spin: float,
     delta: float = 0.5,
     decel: float = 1.0,
     radius: float = 1.0,
@@ -264,7 +260,7 @@ def elementary_stop_time(
 
     Parameters
     ----------
-    v0, w0, delta, radius, pressure, gyration
+    velocity, spin, delta, radius, pressure, gyration
         As :func:`regime`.
     decel : J = fg, m/s², > 0
 
@@ -288,11 +284,9 @@ def elementary_stop_time(
     >>> elementary_stop_time((3.0, 4.0), 0.0), elementary_stop_time((0.0, 0.0), -2.0, radius=0.5)
     (5.0, 0.75)
     """
-    kind = regime(v0, w0, delta, radius, pressure, gyration)
-    deceleration = float(finite_array("decel", decel, "m/s^2"))
-    if not deceleration > 0.0:
-        raise InputError(f"decel must be greater than 0 m/s^2, got {decel:g}")
-    speed, rim = math.hypot(*np.asarray(v0, dtype=np.float64).tolist()), radius * abs(w0)
+    kind = regime(velocity, spin, delta, radius, pressure, gyration)
+    deceleration = positive("decel", decel, "m/s^2")
+    speed, rim = math.hypot(*one_velocity(velocity)), radius * abs(spin)
     law = pressure if isinstance(pressure, Law) else law_of(pressure)
     if kind == "D":
         parallel = float(law.friction(limit_angle(delta, law, gyration), delta).parallel)

@@ -15,9 +15,16 @@ from puck_tables.contact.resultants import Resultants
 from puck_tables.motion.limits import approach_exponent, curvature_slope, limit_angle
 from puck_tables.paper.claim import Claim, equal, farthest, more
 from puck_tables.paper.root import power
-from puck_tables.paper.runs import Simulate, curvature_radius, launch, slip_ratio, time_left
+from puck_tables.paper.runs import (
+    Simulate,
+    curvature_radius,
+    launch,
+    simulate,
+    slip_ratio,
+    time_left,
+)
 from puck_tables.table.check import by_closed_form
-from puck_tables.trajectory import Trajectory, simulate
+from puck_tables.trajectory import Trajectory
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -134,10 +141,10 @@ def radius_slope(run: Trajectory) -> float:
     >>> round(radius_slope(motion), 4)  # −Λ(1)
     -7.1567
     """
-    rho = by_closed_form(run.slip_angle, run.delta)
+    rho = by_closed_form(run.slip_angle, run.puck.delta)
     radius = curvature_radius(rho.perpendicular, run)
     cosine = np.cos(run.slip_angle)
-    fall = (cosine**2 * rho.parallel + (1.0 - cosine**2) * rho.spin) * run.decel
+    fall = (cosine**2 * rho.parallel + (1.0 - cosine**2) * rho.spin) * run.puck.decel
     mean = float((cosine / fall) @ (1.0, 4.0, 1.0)) / 6.0
     path = 0.5 * float(run.slip_speed[0] ** 2 - run.slip_speed[2] ** 2) * mean
     return float(radius[2] - radius[0]) / path

@@ -15,14 +15,14 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.contact.closed_form import integrals
-from puck_tables.motion.limits import limit_angle, limit_ratio
-from puck_tables.panels import Curve, Panel, Picture
+from puck_tables.motion.limits import limit_angle
 from puck_tables.paper.friction import slip_angle_rate
 from puck_tables.paper.patch import HEIGHTS, PHI, pressure_reserve
+from puck_tables.paper.runs import simulate
 from puck_tables.paper.shapes import SPIN, ends_against_spin
-from puck_tables.puck import similarity_parameters
+from puck_tables.plot.panels import Curve, Panel, Picture
+from puck_tables.puck import Puck
 from puck_tables.table.check import by_closed_form
-from puck_tables.trajectory import simulate
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -63,7 +63,7 @@ def paths(delta: float = 1.0) -> Picture:
     """
     curves = []
     for speed, spin in LAUNCHES:
-        run = simulate((speed, 0.0), spin, delta=delta, exact=True, frames=400)
+        run = Puck.similar(delta=delta).simulate((speed, 0.0), spin, exact=True, frames=400)
         curves.append(Curve(run.x, run.y, f"v = {speed:g}, ω = {spin:g} ({run.regime})"))
     return Picture(
         f"Paths of the centre: counter-clockwise spin bends them right (Fig. 3; δ = {delta:g})",
@@ -110,24 +110,20 @@ def ratio_against_time(
     >>> round(delta, 6), round(float(curves[-1].y[0]), 6)
     (0.253333, 1.526615)
     """
-    delta, decel = similarity_parameters(radius, height, friction)
-    limit = float(limit_ratio(delta))
+    puck = Puck(radius, height, friction)
     curves = []
     for ratio in (6.0, 3.0, 0.75, 0.25):
-        trial = simulate(
-            (1.0, 0.0), ratio / radius, delta=delta, decel=decel, radius=radius, exact=True,
-            frames=1,
-        )  # fmt: skip
+        trial = puck.simulate((1.0, 0.0), ratio / radius, exact=True, frames=1)
         speed = duration / trial.stop_time  # times are proportional to speeds
         spin = ratio * speed / radius
-        run = simulate(
-            (speed, 0.0), spin, delta=delta, decel=decel, radius=radius, exact=True,
-            times=duration * (1.0 - np.linspace(1.0, 0.0, frames, endpoint=False) ** 2),
-        )  # fmt: skip
+        times = duration * (1.0 - np.linspace(1.0, 0.0, frames, endpoint=False) ** 2)
+        run = puck.simulate((speed, 0.0), spin, exact=True, times=times)
         label = f"v = {speed:.2g} m/s, ω = {spin:.2g} rad/s"
         curves.append(Curve(run.time, radius * run.spin / run.speed, label))
     ends = np.array([0.0, duration])
-    return delta, [*curves, Curve(ends, np.full(2, limit), f"limit {limit:.3f}", dashed=True)]
+    limit = puck.limit_ratio
+    curves.append(Curve(ends, np.full(2, limit), f"limit {limit:.3f}", dashed=True))
+    return puck.delta, curves
 
 
 def steel_puck() -> Picture:

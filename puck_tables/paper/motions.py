@@ -11,15 +11,15 @@ from puck_tables.paper.claim import Claim, equal, farthest, less, more
 from puck_tables.paper.friction import decline, excess
 from puck_tables.paper.root import power
 from puck_tables.paper.runs import (
-    ACCURACY,
     Simulate,
     launch,
+    simulate,
     slip_ratio,
     time_left,
     velocity,
 )
 from puck_tables.table.check import by_closed_form
-from puck_tables.trajectory import Trajectory, simulate
+from puck_tables.trajectory import Trajectory
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -109,7 +109,7 @@ def random_launches(run: Simulate) -> list[Claim]:
     runs = []
     for _ in range(RANDOM_LAUNCHES):
         v0, w0, delta = rng.normal(size=2), rng.normal(scale=3.0), rng.random()
-        runs.append(run(v0, float(w0), delta=float(delta), exact=True, tol=1e-9, frames=1))
+        runs.append(run(v0, float(w0), delta=float(delta), frames=1))
     bound = 1.0 / float(decline(by_closed_form).min())
     duration = max(r.stop_time / float(r.slip_speed[0]) for r in runs)
     generic = sum(r.regime in ("B", "C") for r in runs)
@@ -191,9 +191,9 @@ def symmetry(run: Simulate) -> list[Claim]:
                 float(np.abs(linear1 - image @ linear).max()),
                 float(abs(angular1 - sign * angular)),
             )
-            one = run(v0, w0, delta=delta, exact=True, tol=ACCURACY)
+            one = run(v0, w0, delta=delta)
             times = scale * one.time[:-1]
-            two = run(v1, w1, delta=delta, exact=True, tol=ACCURACY, times=times)
+            two = run(v1, w1, delta=delta, times=times)
             expected = np.column_stack([velocity(one) @ image.T, sign * one.spin])[:-1]
             found = np.column_stack([velocity(two), two.spin])
             states = max(states, float(np.abs(found / scale - expected).max()))
@@ -239,7 +239,7 @@ def quadrature(run: Simulate) -> list[Claim]:
             psi = half * float(turn @ weight)
             time = half * float((np.exp(log_q) * pace) @ weight)
             v0 = 1.0 / math.hypot(1.0, first)
-            end = run((v0, 0.0), first * v0, delta=delta, exact=True, tol=ACCURACY,
+            end = run((v0, 0.0), first * v0, delta=delta,
                       times=[time])  # fmt: skip
             worst = max(
                 worst,
@@ -286,10 +286,10 @@ def bending(motions: list[Trajectory]) -> list[Claim]:
         return [
             float((-side * np.diff(r.heading[:-1])).min())
             for r in motions
-            if r.delta > 0.0 and r.w0 * side > 0.0
+            if r.puck.delta > 0.0 and r.launch_spin * side > 0.0
         ]
 
-    straight = max(float(np.abs(r.y).max()) for r in motions if r.delta == 0.0)
+    straight = max(float(np.abs(r.y).max()) for r in motions if r.puck.delta == 0.0)
     found = [equal("result 6", "straight for delta = 0 (largest |y|)", 0.0, straight, 1e-15)]
     for side, sign, name in ((1.0, ">", "right"), (-1.0, "<", "left")):
         if steps := turns(side):

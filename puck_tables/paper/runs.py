@@ -8,6 +8,7 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables.puck import Puck
 from puck_tables.trajectory import Trajectory
 
 FloatArray = npt.NDArray[np.float64]
@@ -16,12 +17,27 @@ ACCURACY = 1e-13
 
 
 class Simulate(Protocol):
-    """What :func:`puck_tables.trajectory.simulate` does, or something put to the test."""
+    """What :func:`simulate` does, or something put to the test."""
 
     def __call__(  # noqa: D102
-        self, v0: npt.ArrayLike, w0: float, *, delta: float, exact: bool, tol: float,
-        frames: int | None = None, times: npt.ArrayLike | None = None,
+        self, velocity: npt.ArrayLike, spin: float, *, delta: float, frames: int | None = None,
+        times: npt.ArrayLike | None = None,
     ) -> Trajectory: ...  # fmt: skip
+
+
+def simulate(
+    velocity: npt.ArrayLike, spin: float, *, delta: float, frames: int | None = None,
+    times: npt.ArrayLike | None = None,
+) -> Trajectory:  # fmt: skip
+    """The motion with r = J = 1 by closed forms.
+
+    Examples
+    --------
+    >>> simulate((1.0, 0.0), 0.0, delta=0.5).stop_time
+    1.0
+    """
+    puck = Puck.similar(delta=delta)
+    return puck.simulate(velocity, spin, exact=True, tol=ACCURACY, frames=frames, times=times)
 
 
 def launch(
@@ -35,7 +51,6 @@ def launch(
 
     Examples
     --------
-    >>> from puck_tables import simulate
     >>> launch(simulate, 5.0, 0.5, shares=[1.0, 0.0]).slip_speed.tolist()
     [1.0, 0.0]
     """
@@ -44,7 +59,7 @@ def launch(
     v0 = (v * math.cos(heading), v * math.sin(heading))
 
     def run(frames: int | None = None, times: npt.ArrayLike | None = None) -> Trajectory:
-        return simulate(v0, spin, delta=delta, exact=True, tol=ACCURACY, frames=frames, times=times)
+        return simulate(v0, spin, delta=delta, frames=frames, times=times)
 
     if shares is None:
         return run()
@@ -56,11 +71,10 @@ def velocity(run: Trajectory) -> FloatArray:
 
     Examples
     --------
-    >>> from puck_tables import simulate
-    >>> velocity(simulate((3.0, 4.0), 0.0))[0].round(12).tolist()
+    >>> velocity(simulate((3.0, 4.0), 0.0, delta=0.5))[0].round(12).tolist()
     [3.0, 4.0]
     """
-    return np.stack([run.speed * np.cos(run.heading), run.speed * np.sin(run.heading)], axis=-1)
+    return np.stack([run.vx, run.vy], axis=-1)
 
 
 def time_left(run: Trajectory) -> FloatArray:
@@ -68,8 +82,7 @@ def time_left(run: Trajectory) -> FloatArray:
 
     Examples
     --------
-    >>> from puck_tables import simulate
-    >>> time_left(simulate((1.0, 0.0), 0.0, times=[0.25])).tolist()
+    >>> time_left(simulate((1.0, 0.0), 0.0, delta=0.5, times=[0.25])).tolist()
     [0.75]
     """
     return run.stop_time - run.time
@@ -80,11 +93,10 @@ def slip_ratio(run: Trajectory) -> FloatArray:
 
     Examples
     --------
-    >>> from puck_tables import simulate
-    >>> float(slip_ratio(simulate((1.0, 0.0), 5.0, frames=1))[0].round(12))
+    >>> float(slip_ratio(simulate((1.0, 0.0), 5.0, delta=0.5, frames=1))[0].round(12))
     5.0
     """
-    return run.radius * run.spin / run.speed  # tan φ would lose digits next to π/2
+    return run.puck.radius * run.spin / run.speed  # tan φ would lose digits next to π/2
 
 
 def curvature_radius(friction_across: FloatArray, run: Trajectory) -> FloatArray:
@@ -92,11 +104,12 @@ def curvature_radius(friction_across: FloatArray, run: Trajectory) -> FloatArray
 
     Examples
     --------
-    >>> from puck_tables import resultants, simulate
+    >>> from puck_tables import resultants
     >>> run = simulate((1.0, 0.0), 1.0, delta=1.0, frames=1)
     >>> across = resultants(run.slip_angle, 1.0).perpendicular
     >>> float(curvature_radius(across, run)[0].round(6))  # Q² = 2, ρ_⊥ = 0.37941 at π/4
     5.271341
     """
     phi = run.slip_angle
-    return np.asarray(run.slip_speed**2 * np.cos(phi) / (np.sin(phi) * friction_across * run.decel))
+    across = np.sin(phi) * friction_across * run.puck.decel
+    return np.asarray(run.slip_speed**2 * np.cos(phi) / across)

@@ -4,13 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables.columns import COLUMNS
+from puck_tables.errors import InputError
+from puck_tables.io.dataset import Dataset, variable
+from puck_tables.result import Result
+from puck_tables.scene.entries import as_toml, tables_of, units_of
 from puck_tables.scene.plan import Plan
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.scene import Scene, files_of
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -21,24 +26,13 @@ ENDS = (
 NO_END, REFUSED = len(ENDS) - 2, len(ENDS) - 1  # of a run in a sweep, which goes on
 EVENTS = ("rests", "slips", "bounces", "leans", "border", "edge")
 
-COLUMNS = {
-    "time": ("s", "time since the launch"),
-    "x": ("m", "place of the centre along x"),
-    "y": ("m", "place of the centre along y"),
-    "orientation": ("rad", "angle of the body, counter-clockwise"),
-    "vx": ("m/s", "velocity of the centre along x"),
-    "vy": ("m/s", "velocity of the centre along y"),
-    "spin": ("rad/s", "angular velocity, counter-clockwise"),
-    "work_given": ("J", "work of gravity and of given forces"),
-    "heat_dry": ("J", "heat of dry friction"),
-    "heat_viscous": ("J", "heat of viscous friction, 2 f2"),
-    "work_support": ("J", "work of moving floor and constraints, -f1"),
-    "lambda_1": ("N", "reaction of the constraint: across rail or blade, along x for a pivot"),
-    "lambda_2": ("N", "reaction of the pivot along y"),
-    "carried": ("1", "1: at rest on the floor, which then shares the reaction"),
-    "heat_impact": ("J", "energy lost in impacts"),
-    "kinetic_energy": ("J", "of the centre and of the spin"),
-}
+# rows of the compiled loop, and what follows from them
+LEDGER = (
+    "time", "x", "y", "orientation", "vx", "vy", "spin", "work_given", "heat_dry", "heat_viscous",
+    "work_support", "lambda_1", "lambda_2", "carried", "heat_impact", "kinetic_energy",
+)  # fmt: skip
+DERIVED = ("speed", "heading", "slip_speed", "slip_angle")
+EVENT_UNITS = {"time": "s", "what": "1", "which": "1", "x": "m", "y": "m"}
 
 
 class Event(NamedTuple):
@@ -51,8 +45,8 @@ class Event(NamedTuple):
     y: float
 
 
-@dataclass(frozen=True)
-class SceneRun:
+@dataclass(frozen=True, eq=False, repr=False)
+class SceneRun(Result):
     """What happened.
 
     ``end``: 'at rest', 'carried by the floor' (at rest on a moving one), 'time is up' or 'over the
@@ -64,9 +58,10 @@ class SceneRun:
     m/s² (the slip at the launch, and the largest of friction, forces and what a turning floor asks
     over the mass; without slip Q² = J r).  It is above ``run.tol`` where the motion amplifies
     errors so much that tol cannot be kept.
-    ``columns``: arrays (n,) by name, units in :data:`COLUMNS`;
-    ``last``: the same at the end, numbers.  ``files``: what stood in the files that the scene
-    names, by the path of the entry.
+    ``columns``: arrays (n,) over time by name, each also an attribute (``run.x``); ``heading``,
+    ``slip_speed`` and ``slip_angle`` are of the motion in the laboratory, 0 at rest there.
+    ``last``: the columns at the end, numbers.  ``files``: what stood in the files that the scene
+    names, by the path of the entry.  Called with times it gives the same run with its states there.
     """
 
     scene: Scene
@@ -82,6 +77,138 @@ class SceneRun:
     last: Mapping[str, float]
     columns: Mapping[str, FloatArray] = field(repr=False)
     files: Mapping[str, str] = field(default_factory=dict, repr=False)
+
+    picture: ClassVar[str] = "scene"
+
+    def __call__(self, times: npt.ArrayLike) -> SceneRun:
+        """The same run with its states at other times, s, ascending.
+
+        Those after its end are left out, unless it rests there.
+
+        Raises
+        ------
+        InputError
+            If they are no such times, or a file that the scene names has changed since the run.
+        """
+        from puck_tables.scene.simulate import simulate_scene
+
+        if files_of(self.scene) != self.files:
+            raise InputError("a file that the scene names has changed since the run: run it again")
+        return simulate_scene(self.scene, times)
+
+    def __repr__(self) -> str:
+        title = f"{self.scene.title}: " if self.scene.title else ""
+        return (
+            f"SceneRun({title}{self.end} after {self.end_time:.6g} s at ({self.last['x']:.6g}, "
+            f"{self.last['y']:.6g}) m, {len(self.events)} events)"
+        )
+
+    def __getattr__(self, name: str) -> FloatArray:
+        """A column by its name."""
+        if name in DERIVED:
+            return self._derived()[name]
+        return column_of(self, name)
+
+    def _derived(self) -> dict[str, FloatArray]:
+        of, rim = self.columns, self.scene.puck.radius * self.columns["spin"]
+        speed = np.hypot(of["vx"], of["vy"])
+        return {
+            "speed": speed,
+            "heading": np.arctan2(of["vy"] + 0.0, of["vx"] + 0.0),
+            "slip_speed": np.hypot(speed, rim),
+            "slip_angle": np.arctan2(rim, speed),
+        }
+
+    def explain(self) -> str:
+        """The model that was taken, and why."""
+        return self.plan.why
+
+    def summary(self) -> dict[str, Any]:
+        """The scalars with what went in, and the units of all, ready for JSON.
+
+        Examples
+        --------
+        >>> from puck_tables.scene.simulate import simulate_scene
+        >>> floor, launch = {"friction": 0.1}, {"velocity": [1.0, 0.0]}
+        >>> run = simulate_scene({"puck": {"radius": 0.04}, "floor": floor, "launch": launch})
+        >>> told = run.summary()
+        >>> told["end"], told["scene"]["launch"]["velocity"], told["units"]["scene.launch.velocity"]
+        ('at rest', [1.0, 0.0], 'm/s')
+        """
+        last = {name: value for name, value in self.last.items() if name != "time"}
+        return {
+            "title": self.scene.title,
+            "end": self.end,
+            "end_time": self.end_time,
+            **last,
+            "events": [event._asdict() for event in self.events],
+            "energy_residual": self.energy_residual,
+            "error_estimate": self.error_estimate,
+            "speed_scale": self.speed_scale,
+            "rate_scale": self.rate_scale,
+            "steps": self.steps,
+            "model": self.plan.model,
+            "scene": tables_of(self.scene),
+            "units": {
+                "end_time": "s",
+                "speed_scale": "m/s",
+                "rate_scale": "m/s^2",
+                **{name: COLUMNS[name].unit for name in last},
+                **{f"events.{name}": unit for name, unit in EVENT_UNITS.items()},
+                **{f"scene.{path}": unit for path, unit in units_of(self.scene).items()},
+            },
+        }
+
+    def dataset(self) -> Dataset:
+        """States over time and events; scalars as attributes; the scene and its files as texts."""
+        columns = {**self.columns, **self._derived()}
+        over_time = {name: variable(name, row, ("time",)) for name, row in columns.items()}
+        axes = {"time": over_time.pop("time")}
+        if self.events:
+            axes["event"] = variable("event", np.arange(len(self.events)), ("event",))
+            for name in ("time", "what", "which"):
+                values = [getattr(event, name) for event in self.events]
+                row: Any = values if name == "what" else np.array(values)
+                over_time[f"event_{name}"] = variable(f"event_{name}", row, ("event",))
+        left_out = (*columns, "events", "scene", "units", "title")
+        scalars = {n: v for n, v in self.summary().items() if n not in left_out}
+        attributes = {"title": self.scene.title or "Scene", **scalars}
+        return Dataset(axes, over_time, attributes, scene_texts(self.scene, {}, self.files))
+
+
+def column_of(result: Any, name: str) -> FloatArray:
+    """A column as an attribute of a result of a scene.
+
+    Raises
+    ------
+    AttributeError
+    """
+    columns: Mapping[str, FloatArray] = result.__dict__.get("columns", {})
+    if name not in columns:
+        raise AttributeError(f"{type(result).__name__} has no {name}")
+    return columns[name]
+
+
+def plain_name(path: str) -> str:
+    """A path of a scene as a name: no brackets or dots, which other programs stumble over.
+
+    Examples
+    --------
+    >>> plain_name("launch.velocity[0]")
+    'launch_velocity_0'
+    """
+    return path.replace("[", "_").replace("]", "").replace(".", "_")
+
+
+def scene_texts(
+    scene: Scene, ranges: Mapping[str, FloatArray], files: Mapping[str, str]
+) -> dict[str, tuple[str, str]]:
+    """A scene as a scene file, the files it names, and what they are."""
+    named = {
+        plain_name(path): (text, f"what stands in the file that {path} of the scene names")
+        for path, text in files.items()
+    }
+    return {"scene": (as_toml(scene, ranges), "the scene as a scene file (TOML)"), **named}
 
 
 def ledger(

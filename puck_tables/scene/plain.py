@@ -8,10 +8,9 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.errors import InputError
-from puck_tables.scene.outcome import COLUMNS, Event, SceneRun, ledger_residual
-from puck_tables.scene.plan import Plan, free_puck
+from puck_tables.scene.outcome import LEDGER, Event, SceneRun, ledger_residual
+from puck_tables.scene.plan import Plan, free_puck, free_velocity
 from puck_tables.scene.scene import Scene, launch_velocity
-from puck_tables.trajectory import simulate
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -21,8 +20,9 @@ def run_plain(scene: Scene, needed: Scene, plan: Plan, times: FloatArray | None)
 
     ``needed``: the scene without what the puck does not reach.
     """
-    free = free_puck(needed)
-    length = simulate(**free, frames=1, tol=scene.run.tol).stop_time
+    free, velocity, spin = free_puck(needed), free_velocity(needed), needed.launch.spin
+    free_run = free.simulate(velocity, spin, frames=1, tol=scene.run.tol)
+    length = free_run.stop_time
     limit = scene.run.time
     moves = any(scene.floor.velocity)
     stops = limit is None or length <= limit
@@ -30,14 +30,12 @@ def run_plain(scene: Scene, needed: Scene, plan: Plan, times: FloatArray | None)
     moments = np.linspace(0.0, end_time, int(scene.run.frames)) if times is None else times
     if moves or not stops:
         moments = moments[moments <= end_time]
-    run = simulate(
-        **free, times=np.append(moments, end_time), mass=scene.puck.mass, tol=scene.run.tol
-    )
+    run = free_run(np.append(moments, end_time))
     belt = scene.floor.velocity
     rests = run.time >= length
     vx = np.where(rests, 0.0, run.speed * np.cos(run.heading)) + belt[0]
     vy = np.where(rests, 0.0, run.speed * np.sin(run.heading)) + belt[1]
-    start, spin = launch_velocity(scene), scene.launch.spin
+    start = launch_velocity(scene)
     mass = scene.puck.mass
     inertia = mass * (scene.puck.gyration * scene.puck.radius) ** 2
     energy = 0.5 * mass * (start[0] * start[0] + start[1] * start[1]) + 0.5 * inertia * spin * spin
@@ -66,7 +64,7 @@ def run_plain(scene: Scene, needed: Scene, plan: Plan, times: FloatArray | None)
         "heat_impact": zero,
         "kinetic_energy": 0.5 * mass * (vx * vx + vy * vy) + 0.5 * inertia * run.spin**2,
     }
-    assert list(whole) == list(COLUMNS)
+    assert tuple(whole) == LEDGER
     stop_place = (
         scene.launch.position[0] + run.stop_position[0] + belt[0] * length,
         scene.launch.position[1] + run.stop_position[1] + belt[1] * length,
@@ -79,8 +77,8 @@ def run_plain(scene: Scene, needed: Scene, plan: Plan, times: FloatArray | None)
         events=[Event(length, "rests", 0, *stop_place)] if stops else [],
         energy_residual=max(run.energy_residual, ledger_residual(whole, energy)),
         error_estimate=run.error_estimate,
-        speed_scale=math.hypot(*free["v0"], scene.puck.radius * free["w0"]),
-        rate_scale=free["decel"],
+        speed_scale=math.hypot(*velocity, scene.puck.radius * spin),
+        rate_scale=free.decel,
         steps=run.steps,
         last={name: float(column[-1]) for name, column in whole.items()},
         columns={name: column[:-1] for name, column in whole.items()},

@@ -17,11 +17,10 @@ from typing import Any, NamedTuple
 
 from puck_tables.body import is_plain
 from puck_tables.errors import PuckError
-from puck_tables.motion.limits import regime
+from puck_tables.puck import Puck
 from puck_tables.scene.fields import Kind
 from puck_tables.scene.scene import Floor, Scene, distance, launch_velocity
 from puck_tables.sliced import FINEST_TOL
-from puck_tables.stops import stop
 
 _NAMES = {"A": "rest", "B0": "pure spin", "C0": "pure translation", "D": "the limit motion"}
 
@@ -138,18 +137,19 @@ def height_ratio(scene: Scene) -> float:
     return 2.0 * scene.floor.friction * scene.puck.height / scene.puck.radius
 
 
-def free_puck(scene: Scene) -> dict[str, Any]:
-    """The arguments of a free puck's motion, in the frame of the floor."""
+def free_puck(scene: Scene) -> Puck:
+    """The puck on its floor, where nothing else acts."""
+    puck, floor = scene.puck, scene.floor
+    return Puck(
+        puck.radius, puck.height, floor.friction, puck.mass, floor.gravity, puck.pressure,
+        puck.gyration,
+    )  # fmt: skip
+
+
+def free_velocity(scene: Scene) -> tuple[float, float]:
+    """The launch velocity in the frame of the floor, m/s."""
     vx, vy = launch_velocity(scene)
-    return {
-        "v0": (vx - scene.floor.velocity[0], vy - scene.floor.velocity[1]),
-        "w0": scene.launch.spin,
-        "delta": height_ratio(scene),
-        "decel": scene.floor.friction * scene.floor.gravity,
-        "radius": scene.puck.radius,
-        "pressure": scene.puck.pressure,
-        "gyration": scene.puck.gyration,
-    }
+    return vx - scene.floor.velocity[0], vy - scene.floor.velocity[1]
 
 
 def out_of_reach(scene: Scene) -> Scene:
@@ -157,7 +157,8 @@ def out_of_reach(scene: Scene) -> Scene:
     bare = replace(scene, wall=(), edge=(), floor=_without_borders(scene))
     if bare == scene or ingredients(bare) or any(scene.floor.velocity):
         return scene
-    way = float(stop(**free_puck(bare)).path_length) * (1.0 + 1e-6)
+    stopped = free_puck(bare).stop(free_velocity(bare), bare.launch.spin)
+    way = float(stopped.path_length) * (1.0 + 1e-6)
     place, radius = scene.launch.position, scene.puck.radius
     room = [distance(wall, place) - radius for wall in scene.wall]
     room += [distance(edge, place) for edge in scene.edge]
@@ -202,8 +203,7 @@ def plan_for(scene: Scene) -> Plan:
             "cheaper, no   look-up: not a free puck on a level floor",
         ]
         return Plan(model, False, "\n".join(lines))
-    free = free_puck(scene)
-    kind = regime(**{name: value for name, value in free.items() if name != "decel"})
+    kind = free_puck(scene).regime(free_velocity(scene), scene.launch.spin)
     frame = "in the frame of the belt" if any(scene.floor.velocity) else "a free puck, level floor"
     if kind in _NAMES:
         model = f"closed form: {_NAMES[kind]}"

@@ -97,7 +97,7 @@ def look_at_walls(
 
 @inlined
 def touching(bounds: Boundaries, contacts: Contacts) -> int:
-    """How many walls the puck leans on, and into ``rows``: normal, friction at the rim, its slip."""
+    """How many walls the puck leans on; into ``rows``: normal, friction at the rim, its slip."""
     count = 0
     for i in range(contacts.leans.size):
         if contacts.leans[i]:

@@ -24,7 +24,7 @@ from puck_tables.scene.loop import (
     STEP_LIMIT,
     TIME_UP,
 )
-from puck_tables.scene.outcome import COLUMNS, ENDS, EVENTS, Event, SceneRun, ledger_residual
+from puck_tables.scene.outcome import ENDS, EVENTS, LEDGER, Event, SceneRun, ledger_residual
 from puck_tables.scene.plain import run_plain
 from puck_tables.scene.plan import Plan, ingredients, out_of_reach, plan_for
 from puck_tables.scene.prepare import MAX_EVENTS, Prepared, prepare
@@ -247,8 +247,8 @@ def _refuse_failed(scene: Scene, how: int, end_time: float, to_the_end: bool) ->
 
 
 def columns_of(rows: FloatArray, prepared: Prepared) -> dict[str, FloatArray]:
-    """Rows of the loop (n, 15) by the names of :data:`COLUMNS`."""
-    columns = dict(zip(list(COLUMNS)[:-1], rows.T, strict=True))
+    """Rows of the loop (n, 15) by the names of :data:`LEDGER`."""
+    columns = dict(zip(LEDGER[:-1], rows.T, strict=True))
     columns["kinetic_energy"] = kinetic(rows.T[[1 + VX, 1 + VY, 1 + SPIN]], prepared)
     return columns
 

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -16,12 +16,23 @@ import numpy.typing as npt
 from puck_tables.checkpoint import Checkpoint, files_named, work_digest
 from puck_tables.errors import InputError
 from puck_tables.executor import Progress, run_chunks
+from puck_tables.io.dataset import Dataset, Variable, variable
+from puck_tables.result import Result
 from puck_tables.scene.bulk import ENDS_COLUMNS
-from puck_tables.scene.entries import set_path, tables_of
+from puck_tables.scene.entries import entry_at, set_path, tables_of
 from puck_tables.scene.equations import SIZE
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
 from puck_tables.scene.loop import AT_REST, CARRIED_AWAY, NOT_FINITE, OVER_EDGE, TIME_UP
-from puck_tables.scene.outcome import COLUMNS, ENDS, NO_END, REFUSED, ledger
+from puck_tables.scene.outcome import (
+    ENDS,
+    LEDGER,
+    NO_END,
+    REFUSED,
+    column_of,
+    ledger,
+    plain_name,
+    scene_texts,
+)
 from puck_tables.scene.plan import Plan, free_puck, plan_for
 from puck_tables.scene.prepare import Prepared, prepare
 from puck_tables.scene.scene import (
@@ -33,7 +44,6 @@ from puck_tables.scene.scene import (
 )
 from puck_tables.scene.simulate import FAILURES, is_endless, named
 from puck_tables.stop_map import check_memory
-from puck_tables.stops import stop
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -43,20 +53,15 @@ LAUNCH = {
     "launch.velocity[0]": VX, "launch.velocity[1]": VY, "launch.spin": SPIN,
     "launch.position[0]": X, "launch.position[1]": Y, "launch.orientation": THETA,
 }  # fmt: skip
-RESULTS = {
-    **{name: text for name, text in COLUMNS.items() if name != "time"},
-    "bounces": ("1", "rebounds from walls"),
-    "energy_residual": ("1", "what the energy ledger misses, of its largest entry"),
-    "end_time": ("s", "when it ends"),
-}
+RESULTS = (*LEDGER[1:], "bounces", "energy_residual", "end_time")
 
 
-@dataclass(frozen=True)
-class SceneMap:
+@dataclass(frozen=True, eq=False, repr=False)
+class SceneMap(Result):
     """Ends of a scene over its ranges.
 
     ``scene``: the scene, its ranges at their first values; ``axes``: their values by path;
-    ``columns``: arrays of the shape of the axes by name, units in :data:`RESULTS`, NaN for a run
+    ``columns``: arrays of the shape of the axes by name, units as everywhere, NaN for a run
     without an end; ``end``: index of :data:`puck_tables.scene.outcome.ENDS`; ``plan``: the model of
     the last one that is valid; ``refusal``: what is wrong with the first run that is not;
     ``files``: what stands in the files that the scene names, by path.
@@ -69,6 +74,33 @@ class SceneMap:
     end: npt.NDArray[np.int8] = field(repr=False)
     refusal: str = field(default="", repr=False)
     files: Mapping[str, str] = field(default_factory=dict, repr=False)
+
+    picture: ClassVar[str] = "scene_map"
+
+    def __repr__(self) -> str:
+        ranged = " x ".join(f"{path} ({values.size})" for path, values in self.axes.items())
+        return f"SceneMap({self.scene.title or 'scene'} over {ranged}, {self.plan.model})"
+
+    def __getattr__(self, name: str) -> FloatArray:
+        """A column by its name."""
+        return column_of(self, name)
+
+    def explain(self) -> str:
+        """The model that was taken, and why."""
+        return self.plan.why
+
+    def dataset(self) -> Dataset:
+        """The results over what ranges; the scene and its files as texts."""
+        dims = tuple(plain_name(path) for path in self.axes)
+        axes = {}
+        for path, values in self.axes.items():
+            entry, name = entry_at(self.scene, path), plain_name(path)
+            text = f"{path} of the scene" + (f", {entry.doc}" if entry.doc else "")
+            axes[name] = Variable(values, (name,), entry.kind.unit or "1", text)
+        columns = {name: variable(name, values, dims) for name, values in self.columns.items()}
+        columns["end"] = variable("end", self.end, dims, ENDS)
+        attributes = {"title": self.scene.title or "Scene", "model": self.plan.model}
+        return Dataset(axes, columns, attributes, scene_texts(self.scene, self.axes, self.files))
 
     def without_end(self) -> list[str]:
         """A line for each way in which runs have no end: how many, the first, and what to do."""
@@ -280,7 +312,7 @@ class _Case:
             if scene.run.time is None:
                 status[status == TIME_UP] = NO_END
         rows[:, status > OVER_EDGE] = np.nan  # how it failed stands in ``end``
-        last = dict(zip(list(COLUMNS)[:-1], rows[:-1], strict=True))
+        last = dict(zip(LEDGER[:-1], rows[:-1], strict=True))
         last["kinetic_energy"] = 0.5 * mass * (last["vx"] ** 2 + last["vy"] ** 2)
         last["kinetic_energy"] += 0.5 * inertia * last["spin"] ** 2
         if self.prepared is None:  # nothing is integrated: heat is what else is not there
@@ -288,16 +320,15 @@ class _Case:
         with np.errstate(all="ignore"):  # runs that failed are not a number
             missing, largest = ledger(last, energy)
             residual = missing / np.where(largest > 0.0, largest, 1.0)
-        results = [last[name] for name in COLUMNS if name != "time"]
+        results = [last[name] for name in LEDGER[1:]]
         return np.stack([*results, rows[-1], residual, last["time"]]), status
 
     def _look_up(self, states: FloatArray, rows: FloatArray, status: npt.NDArray[np.int8]) -> None:
         belt = self.scene.floor.velocity
-        free = free_puck(self.scene)
-        free |= {"v0": states[:, [VX, VY]] - belt, "w0": states[:, SPIN]}
-        stops = stop(**free, tol=self.scene.run.tol)
+        velocities, spins = states[:, [VX, VY]] - belt, states[:, SPIN]
+        stops = free_puck(self.scene).stop(velocities, spins, tol=self.scene.run.tol)
         rows[...] = 0.0
-        last = dict(zip(list(COLUMNS)[:-1], rows[:-1], strict=True))
+        last = dict(zip(LEDGER[:-1], rows[:-1], strict=True))
         last["time"][:] = stops.stop_time
         for i, name in enumerate(("x", "y")):
             last[name][:] = states[:, i] + stops.stop_position[:, i] + belt[i] * stops.stop_time

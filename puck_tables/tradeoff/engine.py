@@ -5,13 +5,16 @@ from __future__ import annotations
 import time
 import tracemalloc
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
 from puck_tables.front import Way
+from puck_tables.io.dataset import Dataset, variable
 from puck_tables.motion.limits import limit_ratio
+from puck_tables.result import Result
 from puck_tables.similarity.file import load_stop_table
 from puck_tables.similarity.lookup import stops_kernel
 from puck_tables.table.file import load_table
@@ -32,8 +35,8 @@ _POWERS, _THINNING = 6, 2  # the look-up that growth is measured with
 _SHORTEST = 1e-3  # s; below it a round repeats the run
 
 
-@dataclass(frozen=True)
-class TradeOff:
+@dataclass(frozen=True, eq=False, repr=False)
+class TradeOff(Result):
     """What was measured.
 
     ``ways``; growth of a sweep by look-up in chunks: ``stops`` (n,), ``stop_ns`` (n,) for each,
@@ -49,6 +52,41 @@ class TradeOff:
     machine: Machine
     repeats: int
     seconds: float
+
+    picture: ClassVar[str] = "tradeoff"
+
+    def __repr__(self) -> str:
+        return f"TradeOff({len(self.ways)} ways, {self.repeats} rounds)"
+
+    def explain(self) -> str:
+        """How it was got."""
+        return f"medians of {self.repeats} rounds on one thread of this machine"
+
+    def dataset(self) -> Dataset:
+        """Every way with its errors and costs; the growth of a sweep; the machine as attributes."""
+        names = [field.name for field in fields(Way)]
+        columns = {name: variable(name, _values(self.ways, name), ("way",)) for name in names}
+        growth = {
+            name: variable(name, getattr(self, name), ("stops",))
+            for name in ("stop_ns", "peak_bytes")
+        }
+        told = [f"{way.question}: {way.name}" for way in self.ways]
+        axes = {
+            "way": variable("way", told, ("way",)),
+            "stops": variable("stops", self.stops, ("stops",)),
+        }
+        return Dataset(axes, columns | growth, {
+            "title": "Accuracy against cost of ways to friction resultants, stops and states",
+            "repeats": self.repeats, "seconds": self.seconds,
+            "peak_flops": self.machine.flops, "peak_bandwidth": self.machine.bandwidth,
+            **{f"machine_{k}": v for k, v in self.machine.description.items()},
+            **{f"limit_ratio_{k}": v for k, v in self.limit_ratios.items()},
+        })  # fmt: skip
+
+
+def _values(ways: tuple[Way, ...], name: str) -> Any:
+    values = [getattr(way, name) for way in ways]
+    return values if isinstance(values[0], str) else np.asarray(values)
 
 
 def measure(quick: bool = False, progress: Progress | None = None) -> TradeOff:

@@ -3,24 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.drawing import (
+from puck_tables.plot.style import (
     BLUE,
     GREEN,
     ORANGE,
-    PICTURE_KINDS,
     RED,
     canvas,
     draw_over,
-    save,
     titled,
 )
-from puck_tables.result_file import kind_of
 from puck_tables.scene.entries import entry_at
 from puck_tables.scene.loop import CARRIED_AWAY
 from puck_tables.scene.outcome import ENDS
@@ -28,6 +24,7 @@ from puck_tables.scene.sweep import SceneMap
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 _MAPS = {
     "end_time": "end time / s",
@@ -44,35 +41,16 @@ _HATCH = "///"
 _LEGEND_ROW = 5  # entries
 
 
-def plot_scene_map(stops: SceneMap, path: str | Path, overwrite: bool = False) -> None:
-    """Draw ends of a scene: maps when two numbers range, curves when one does or has few values.
+def draw(stops: SceneMap) -> Figure:
+    """Maps when two numbers range, curves when one does or has few values.
 
     The last panel says how each run ends, by colour, and so do the marks on curves; a run without
     an end has no other values.  With more than two ranges, the maps are drawn at the middle of the
     first ones.
-
-    Raises
-    ------
-    InputError
-        If the ending is not known.
-    MissingExtraError
-        If matplotlib is not installed.
-    OutputError
-        If the file exists or cannot be written.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> from puck_tables.scene.sweep import sweep_scene
-    >>> floor, launch = {"friction": 0.1}, {"velocity": ["1:2:9", 0.0]}
-    >>> stops = sweep_scene({"puck": {"radius": 0.04}, "floor": floor, "launch": launch})
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     plot_scene_map(stops, folder + "/map.png")
     """
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
-    kind = kind_of(path, PICTURE_KINDS)
     figure = canvas(12.0, 7.6)
     panels = figure.subplots(2, 3, sharex=True)
     names = list(stops.axes)
@@ -101,7 +79,16 @@ def plot_scene_map(stops: SceneMap, path: str | Path, overwrite: bool = False) -
     figure.legend(curves, words, loc="outside lower center", ncols=_LEGEND_ROW, frameon=False)
     at = ", ".join(f"{name} = {stops.axes[name][n]:g} {units[name]}" for name, n in fixed.items())
     titled(figure, (stops.scene.title or "Scene") + (f" at {at}" if at else ""))
-    save(figure, path, kind, overwrite)
+    return figure
+
+
+def draw_on(axes: Axes, stops: SceneMap) -> None:
+    """How each run ends, by colour; with more than two ranges at the middle of the first ones."""
+    names = list(stops.axes)
+    place = tuple(stops.axes[name].size // 2 for name in names[:-2])
+    ranged = {name: stops.axes[name] for name in names[-2:]}
+    labels = {name: f"{name} / {entry_at(stops.scene, name).kind.unit or 1}" for name in ranged}
+    _draw_ends(axes, ranged, labels, stops.end[place])
 
 
 def _mark_ends(

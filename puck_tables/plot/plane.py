@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.drawing import BLUE, GREY, LAUNCH, ORANGE, RED, STOP
+from puck_tables.plot.style import BLUE, GREY, LAUNCH, ORANGE, RED, STOP
 from puck_tables.scene.outcome import SceneRun
 from puck_tables.scene.scene import Edge, Scene, Wall
 

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from puck_tables.drawing import BLUE, COLORS, GREY, PICTURE_KINDS, canvas, save
 from puck_tables.front import Way, pareto
-from puck_tables.result_file import kind_of
+from puck_tables.plot.style import BLUE, COLORS, GREY, canvas
 from puck_tables.tradeoff.engine import TradeOff
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 _TITLES = {
     "resultants": "three resultants at a scattered point",
@@ -26,47 +25,28 @@ _PIXELS = 100.0 / 72.0  # of a point, as long as the figure is not saved
 _MORE_COLORS = (*COLORS, "#7a5c00", "#00838a", "#a0527a", "#4f4f9a", "#6a8f00")
 
 
-def plot_trade_off(measured: TradeOff, path: str | Path, overwrite: bool = False) -> None:
-    """Draw error against cost for every way: one panel a question, one line a method.
+def draw(measured: TradeOff) -> Figure:
+    """Error against cost for every way: one panel a question, one line a method.
 
     Every point bears its setting, every method its name; the thick grey line is the front, hollow
     points are outsiders.
-
-    Parameters
-    ----------
-    measured : TradeOff
-    path : .png, .svg or .pdf
-    overwrite : whether an existing file may be replaced
-
-    Raises
-    ------
-    InputError
-        If the ending is not known.
-    MissingExtraError
-        If matplotlib is not installed.
-    OutputError
-        If the file exists or cannot be written.
-
-    Examples
-    --------
-    >>> plot_trade_off(None, "front.txt")  # doctest: +ELLIPSIS
-    Traceback (most recent call last):
-    ...
-    puck_tables.errors.InputError: front.txt: the ending of an output file chooses its format: ...
     """
-    kind = kind_of(path, PICTURE_KINDS)
     figure = canvas(13.0, 17.0)
     grid = figure.add_gridspec(3, 1, height_ratios=(1.0, 1.35, 0.75))
-    for row, (question, title) in enumerate(_TITLES.items()):
-        _draw(figure.add_subplot(grid[row]), title, [
-            way for way in measured.ways if way.question == question
-        ])  # fmt: skip
+    for row, question in enumerate(_TITLES):
+        draw_on(figure.add_subplot(grid[row]), measured, question)
     machine = measured.machine.description
     figure.suptitle(
         f"error against cost: {machine['processor']}, one thread, "
         f"medians of {measured.repeats} rounds"
     )
-    save(figure, path, kind, overwrite)
+    return figure
+
+
+def draw_on(axes: Axes, measured: TradeOff, question: str = "stop") -> None:
+    """One question alone."""
+    ways = [way for way in measured.ways if way.question == question]
+    _draw(axes, _TITLES[question], ways)
 
 
 def _draw(axes: Axes, title: str, ways: list[Way]) -> None:

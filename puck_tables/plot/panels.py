@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.drawing import COLORS, GREY, PICTURE_KINDS, canvas, save, shaded, titled
-from puck_tables.result_file import kind_of
+from puck_tables.plot.style import COLORS, GREY, canvas, shaded, titled
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -58,61 +60,48 @@ class Picture:
     height: float = 4.2
 
 
-def draw(picture: Picture, path: str | Path, overwrite: bool = False) -> None:
-    """Draw a picture.
-
-    Parameters
-    ----------
-    picture : Picture
-    path : .png, .svg or .pdf
-    overwrite : whether an existing file may be replaced
-
-    Raises
-    ------
-    InputError
-        If the ending is not known.
-    MissingExtraError
-        If matplotlib is not installed.
-    OutputError
-        If the file exists or cannot be written.
+def draw(picture: Picture) -> Figure:
+    """The panels of a picture.
 
     Examples
     --------
-    >>> import tempfile
     >>> line = Curve(np.array([0.0, 1.0]), np.array([0.0, 2.0]), "twice")
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     draw(Picture("A line", [Panel("x / m", "y / m", [line])]), folder + "/line.png")
+    >>> len(draw(Picture("A line", [Panel("x / m", "y / m", [line])])).axes)
+    1
     """
-    kind = kind_of(path, PICTURE_KINDS)
     count = len(picture.panels)
     figure = canvas(8.6, picture.height * count)
     for row, panel in enumerate(picture.panels, start=1):
-        axes = figure.add_subplot(count, 1, row)
-        for number, curve in enumerate(panel.curves):
-            look = _look(curve, number)
-            leaps = np.flatnonzero(np.abs(np.diff(curve.y)) > curve.leap)
-            x = np.insert(curve.x, leaps + 1, np.nan)
-            y = np.insert(curve.y, leaps + 1, np.nan)
-            axes.plot(x, y, label=curve.label or None, **look)
-            beside = np.union1d(leaps, leaps + 1)
-            axes.plot(
-                curve.x[beside], curve.y[beside], linestyle="", marker=".", markersize=4,
-                color=look["color"],
-            )  # fmt: skip
-        axes.set_xlabel(panel.x_label)
-        axes.set_ylabel(panel.y_label)
-        axes.set_title(panel.title, fontsize=10)
-        axes.margins(y=0.08)
-        axes.grid(color="#e4e4e4", linewidth=0.6)
-        if panel.x_ticks is not None:
-            axes.set_xticks(list(panel.x_ticks), list(panel.x_ticks.values()))
-        low, high = axes.get_ylim()
-        if low < 0.0 < high:
-            axes.axhline(0.0, color=GREY, linewidth=0.8, zorder=1)
-        if any(curve.label for curve in panel.curves):
-            axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
+        draw_panel(figure.add_subplot(count, 1, row), panel)
     titled(figure, picture.title)
-    save(figure, path, kind, overwrite)
+    return figure
+
+
+def draw_panel(axes: Axes, panel: Panel) -> None:
+    """Draw the curves of a panel on given axes."""
+    for number, curve in enumerate(panel.curves):
+        look = _look(curve, number)
+        leaps = np.flatnonzero(np.abs(np.diff(curve.y)) > curve.leap)
+        x = np.insert(curve.x, leaps + 1, np.nan)
+        y = np.insert(curve.y, leaps + 1, np.nan)
+        axes.plot(x, y, label=curve.label or None, **look)
+        beside = np.union1d(leaps, leaps + 1)
+        axes.plot(
+            curve.x[beside], curve.y[beside], linestyle="", marker=".", markersize=4,
+            color=look["color"],
+        )  # fmt: skip
+    axes.set_xlabel(panel.x_label)
+    axes.set_ylabel(panel.y_label)
+    axes.set_title(panel.title, fontsize=10)
+    axes.margins(y=0.08)
+    axes.grid(color="#e4e4e4", linewidth=0.6)
+    if panel.x_ticks is not None:
+        axes.set_xticks(list(panel.x_ticks), list(panel.x_ticks.values()))
+    low, high = axes.get_ylim()
+    if low < 0.0 < high:
+        axes.axhline(0.0, color=GREY, linewidth=0.8, zorder=1)
+    if any(curve.label for curve in panel.curves):
+        axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
 
 
 def _look(curve: Curve, number: int) -> dict[str, Any]:

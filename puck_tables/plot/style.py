@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from puck_tables.errors import MissingExtraError
+from puck_tables.io.formats import ending_of
 from puck_tables.safe_write import write_bytes
 
 if TYPE_CHECKING:
@@ -104,11 +105,29 @@ def _plain_axes(axes: Axes) -> None:
             (axes.set_xlim if axis is axes.xaxis else axes.set_ylim)(low - wide, high + wide)
 
 
-def save(figure: Figure, path: str | Path, kind: str, overwrite: bool) -> None:
-    """Write a figure whole or not at all; ``kind`` is the ending of the file.
+def checked_kind(path: str | Path) -> str:
+    """The ending of a picture's name.
 
     Raises
     ------
+    InputError
+        If pictures have no such ending.
+
+    Examples
+    --------
+    >>> checked_kind("run.png")
+    '.png'
+    """
+    return ending_of(path, PICTURE_KINDS)
+
+
+def save_figure(figure: Figure, path: str | Path, overwrite: bool = False) -> None:
+    """Write a figure whole or not at all.
+
+    Raises
+    ------
+    InputError
+        If the ending of the name is none of pictures.
     OutputError
         If the file exists (without ``overwrite``) or cannot be written.
 
@@ -116,8 +135,9 @@ def save(figure: Figure, path: str | Path, kind: str, overwrite: bool) -> None:
     --------
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
-    ...     save(canvas(4.0, 3.0), folder + "/empty.png", ".png", overwrite=False)
+    ...     save_figure(canvas(4.0, 3.0), folder + "/empty.png")
     """
+    kind = checked_kind(path)
     buffer = io.BytesIO()
     for axes in figure.axes:
         _plain_axes(axes)

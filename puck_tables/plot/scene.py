@@ -3,33 +3,27 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.drawing import (
+from puck_tables.plot.plane import draw_plane
+from puck_tables.plot.style import (
     BLUE,
     GREEN,
     GREY,
     ORANGE,
-    PICTURE_KINDS,
     RED,
     canvas,
     legend_below,
-    save,
     titled,
 )
-from puck_tables.errors import InputError
-from puck_tables.result_file import kind_of
 from puck_tables.scene.outcome import SceneRun
-from puck_tables.scene.scene import files_of
-from puck_tables.scene.simulate import simulate_scene
-from puck_tables.scene_plane import draw_plane
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -46,30 +40,11 @@ _STATES_A_TURN, _MOST_STATES = 60, 50_000
 _EVENTS_DRAWN = 60  # as lines over time
 
 
-def plot_scene(run: SceneRun, path: str | Path, overwrite: bool = False) -> None:
-    """Draw a scene run: its path among all that is in the plane; speeds; and the energy ledger.
+def draw(run: SceneRun) -> Figure:
+    """The path among all that is in the plane; speeds; and the energy ledger.
 
     The whole motion is drawn, with every event, whatever states the run has: it is run again.
-
-    Raises
-    ------
-    InputError
-        If the ending is not known, or a file that the scene names has changed since the run.
-    MissingExtraError
-        If matplotlib is not installed.
-    OutputError
-        If the file exists or cannot be written.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> from puck_tables.scene.simulate import simulate_scene
-    >>> floor, launch = {"friction": 0.1}, {"velocity": [1.0, 0.0]}
-    >>> run = simulate_scene({"puck": {"radius": 0.04}, "floor": floor, "launch": launch})
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     plot_scene(run, folder + "/scene.png")
     """
-    kind = kind_of(path, PICTURE_KINDS)
     columns = states_drawn(run)
     figure = canvas(10.0, 9.0)
     grid = figure.add_gridspec(2, 2, height_ratios=(1.35, 1.0))
@@ -90,19 +65,16 @@ def plot_scene(run: SceneRun, path: str | Path, overwrite: bool = False) -> None
         legend_below(axes)
     title = run.scene.title or "Scene"
     titled(figure, f"{title}: {run.end} after {run.end_time:.4g} s")
-    save(figure, path, kind, overwrite)
+    return figure
+
+
+def draw_on(axes: Axes, run: SceneRun) -> None:
+    """The plane alone."""
+    draw_plane(axes, run, states_drawn(run))
 
 
 def states_drawn(run: SceneRun) -> dict[str, FloatArray]:
-    """States of a run so close that lines between them are its curves, before and after events.
-
-    Raises
-    ------
-    InputError
-        If a file that the scene names has changed since the run.
-    """
-    if files_of(run.scene) != run.files:
-        raise InputError("a file that the scene names has changed since the run: run it again")
+    """States of a run so close that lines between them are its curves, before and after events."""
     scene = run.scene
     turns = (
         abs(run.last["orientation"] - scene.launch.orientation)
@@ -114,7 +86,7 @@ def states_drawn(run: SceneRun) -> dict[str, FloatArray]:
         [np.linspace(0.0, run.end_time, count), events, np.nextafter(events, np.inf)]
     )
     times = np.unique(times[times <= run.end_time])
-    return dict(simulate_scene(scene, times).columns)
+    return dict(run(times).columns)
 
 
 def _draw_events(axes: Axes, run: SceneRun) -> None:

@@ -2,47 +2,42 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
 from puck_tables.chetaev.asperity_curve import LEAP, AsperityCurve
-from puck_tables.panels import Curve, Panel, Picture, draw
+from puck_tables.plot.panels import Curve, Panel, Picture, draw_panel
+from puck_tables.plot.panels import draw as panels_drawn
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 
-def plot_asperity(curve: AsperityCurve, path: str | Path, overwrite: bool = False) -> None:
-    """Draw greatest force, mean force and phase of landing against the speed.
-
-    Parameters
-    ----------
-    curve : AsperityCurve
-    path : .png, .svg or .pdf
-    overwrite : whether an existing file may be replaced
-
-    Raises
-    ------
-    InputError
-        If the ending is not known.
-    MissingExtraError
-        If matplotlib is not installed.
-    OutputError
-        If the file exists or cannot be written.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> from puck_tables import Asperity, asperity_curve
-    >>> curve = asperity_curve(Asperity(1.0, 4.0, 1.0, 1.0), np.linspace(0.0, 9.0, 50))
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     plot_asperity(curve, folder + "/curve.png")
-    """
+def draw(curve: AsperityCurve) -> Figure:
+    """Greatest force, mean force and phase of landing against the speed."""
     support = curve.asperity
-    scaled = curve.speed / support.lift_speed
+    title = (
+        f"a = {support.amplitude:.4g} m, 2πb = {2.0 * np.pi * support.length:.4g} m, "
+        f"|Y| = {support.load:.4g} N, m = {support.mass:.4g} kg: V₀ = {support.lift_speed:.4g} m/s"
+    )
+    return panels_drawn(Picture(title, _panels(curve), 3.4))
+
+
+def draw_on(axes: Axes, curve: AsperityCurve) -> None:
+    """The greatest force alone."""
+    draw_panel(axes, _panels(curve)[0])
+
+
+def _panels(curve: AsperityCurve) -> list[Panel]:
+    support = curve.asperity
+    scaled = curve.held_speed / support.lift_speed
     unit = support.load * support.slope
     coulomb = Curve(scaled, curve.crude / unit, "Coulomb, |Y| a/b", dashed=True)
     across = "speed V/V₀  (above 1 the point leaves the crests)"
-    panels = [
+    return [
         Panel(across, "greatest force / (|Y| a/b)", [
             Curve(scaled, curve.greatest / unit, "held speed:\n−Y + m(a/b²)V² cos θ", leap=1.0),
             Curve(scaled, curve.undriven / unit, "not driven:\nexact λ", leap=1.0), coulomb,
@@ -55,11 +50,6 @@ def plot_asperity(curve: AsperityCurve, path: str | Path, overwrite: bool = Fals
             Curve(scaled, steepest(scaled), "greatest force\non a rise, θ*", dashed=True),
         ], "on the next rise: trough 0, steepest slope π/2, crest π"),
     ]  # fmt: skip
-    title = (
-        f"a = {support.amplitude:.4g} m, 2πb = {2.0 * np.pi * support.length:.4g} m, "
-        f"|Y| = {support.load:.4g} N, m = {support.mass:.4g} kg: V₀ = {support.lift_speed:.4g} m/s"
-    )
-    draw(Picture(title, panels, 3.4), path, overwrite)
 
 
 def steepest(scaled: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:

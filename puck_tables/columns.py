@@ -1,0 +1,110 @@
+"""Every quantity of a result by name: its unit, how a picture labels it, and what it is.
+
+One name means one thing in all results, files, pictures and messages.  A new column of a result is
+a line here and the value in the result's ``dataset``.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+
+class Column(NamedTuple):
+    """Unit ('1': a pure number, '': a text), short label, and what it is."""
+
+    unit: str
+    label: str
+    long_name: str
+
+    @property
+    def axis(self) -> str:
+        """The label of an axis of a picture."""
+        return self.label if self.unit in ("", "1") else f"{self.label} / {self.unit}"
+
+
+COLUMNS = {
+    # states
+    "time": Column("s", "time", "time since the launch"),
+    "x": Column("m", "x", "place of the centre along x, of a free puck from its launch"),
+    "y": Column("m", "y", "place of the centre along y, of a free puck from its launch"),
+    "vx": Column("m/s", "velocity x", "velocity of the centre along x"),
+    "vy": Column("m/s", "velocity y", "velocity of the centre along y"),
+    "speed": Column("m/s", "speed v", "speed of the centre, v"),
+    "heading": Column("rad", "heading", "direction of the velocity from x, counter-clockwise"),
+    "orientation": Column("rad", "orientation", "angle of the body, counter-clockwise"),
+    "spin": Column("rad/s", "spin ω", "angular velocity omega, counter-clockwise"),
+    "slip_speed": Column("m/s", "Q", "Q = hypot(v, r omega)"),
+    "slip_angle": Column("rad", "φ", "phi = atan2(r omega, v), 0 at rest"),
+    # launches
+    "delta": Column("1", "height δ", "dimensionless height 2 f h / r"),
+    "launch_vx": Column("m/s", "launch velocity x", "launch velocity along x"),
+    "launch_vy": Column("m/s", "launch velocity y", "launch velocity along y"),
+    "launch_speed": Column("m/s", "launch speed v₀", "launch speed, in sweeps along x"),
+    "launch_spin": Column("rad/s", "launch spin ω₀", "launch spin, counter-clockwise"),
+    "launch_heading": Column("rad", "launch heading", "direction of the launch velocity from x"),
+    "launch_slip_angle": Column("rad", "launch φ", "phi = atan2(r omega, v) at the launch"),
+    # stops
+    "stop_time": Column("s", "stop time", "time from launch to stop"),
+    "stop_x": Column("m", "stop x", "displacement along x at the stop"),
+    "stop_y": Column("m", "stop y", "displacement along y at the stop"),
+    "path_length": Column("m", "path length", "length of the path"),
+    "turn_angle": Column(
+        "rad", "turn of heading", "turn of the heading until Q has fallen to 1/1000"
+    ),
+    "body_angle": Column("rad", "turn of body", "angle the body has turned"),
+    "status": Column("1", "status", "what became of the launch"),
+    "miss": Column("m", "miss", "distance from the target at which an integration ends"),
+    # scenes
+    "work_given": Column("J", "work of forces", "work of gravity and of given forces"),
+    "heat_dry": Column("J", "heat of dry friction", "heat of dry friction"),
+    "heat_viscous": Column("J", "heat of viscous friction", "heat of viscous friction, 2 f2"),
+    "work_support": Column("J", "work of supports", "work of moving floor and constraints, -f1"),
+    "lambda_1": Column(
+        "N", "reaction 1", "reaction of the constraint: across rail or blade, along x for a pivot"
+    ),
+    "lambda_2": Column("N", "reaction 2", "reaction of the pivot along y"),
+    "carried": Column("1", "carried", "1: at rest on the floor, which then shares the reaction"),
+    "heat_impact": Column("J", "energy lost in impacts", "energy lost in impacts"),
+    "kinetic_energy": Column("J", "kinetic energy", "of the centre and of the spin"),
+    "bounces": Column("1", "bounces", "rebounds from walls"),
+    "energy_residual": Column(
+        "1", "energy residual", "what the energy ledger misses, of its largest entry"
+    ),
+    "end_time": Column("s", "end time", "when it ends"),
+    "end": Column("1", "end", "how it ends"),
+    "event": Column("1", "event", "number of the event"),
+    "event_time": Column("s", "event time", "when it happens"),
+    "event_what": Column("", "event", "rests, slips, bounces, leans, border or edge"),
+    "event_which": Column("1", "which", "number of the wall, the edge or the region"),
+    # a point on a wavy support
+    "held_speed": Column("m/s", "speed V", "speed held along the support"),
+    "crude": Column("N", "Coulomb's force", "Coulomb's force, load times a/b"),
+    "greatest": Column(
+        "N", "greatest force", "greatest force in contact, 0 where the point only hops"
+    ),
+    "undriven": Column("N", "greatest force, not driven", "the same for a point not driven"),
+    "mean": Column("N", "mean force", "mean force with all landings"),
+    "landing_phase": Column(
+        "rad", "landing θ₁", "x/b of the landing before it slides, nan without one"
+    ),
+    "flights_per_period": Column("1", "flights", "flights in a wavelength"),
+    # the measured trade-off
+    "way": Column("", "way", "question: method (setting)"),
+    "question": Column("", "question", "what was asked"),
+    "method": Column("", "method", "how it was answered"),
+    "setting": Column("", "setting", "with which setting"),
+    "outsider": Column("1", "outsider", "1 for what is not this program"),
+    "error": Column("1", "error", "worst error: of resultants, or in units of Q/J and Q^2/J"),
+    "median_error": Column("1", "median error", "median error over all starts"),
+    "time_error": Column("1", "error of time", "worst error of time"),
+    "place_error": Column("1", "error of place", "worst error of place, or of the resultants"),
+    "ns": Column("ns", "cost", "median cost of one item on one thread"),
+    "ns_spread": Column("ns", "spread of cost", "distance between the quartiles of the cost"),
+    "bytes": Column("1", "bytes", "bytes it keeps"),
+    "build_s": Column("s", "time to build", "time to make what it keeps"),
+    "limit_ns": Column("ns", "limit", "time the machine's peak would allow; 0: not counted"),
+    "limit": Column("", "limit", "which peak that is"),
+    "stops": Column("1", "stops", "stops in one sweep"),
+    "stop_ns": Column("ns", "cost of a stop", "cost of one stop by look-up, in chunks"),
+    "peak_bytes": Column("1", "peak memory", "peak memory"),
+}

@@ -1,0 +1,95 @@
+"""The neutral form of every result: named arrays over named axes, with units and attributes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables.columns import COLUMNS
+
+
+@dataclass(frozen=True)
+class Variable:
+    """Values over axes.
+
+    ``values``: an array, or a list of texts; ``dims``: the names of its axes; ``unit``: '1' for a
+    pure number, '' for a text; ``flags``: what the values 0, 1, … mean, of a code.
+    """
+
+    values: Any
+    dims: tuple[str, ...]
+    unit: str
+    long_name: str
+    flags: tuple[str, ...] = ()
+
+    def readable(self) -> npt.NDArray[Any]:
+        """The values, codes as words."""
+        if self.flags:
+            words: npt.NDArray[Any] = np.asarray(self.flags)[np.asarray(self.values)]
+            return words
+        return np.asarray(self.values)
+
+
+def variable(
+    name: str, values: Any, dims: tuple[str, ...], flags: tuple[str, ...] = ()
+) -> Variable:
+    """A variable with the unit and the words that its name has in the registry of columns.
+
+    Examples
+    --------
+    >>> variable("stop_time", [1.0], ("launch",)).unit
+    's'
+    """
+    column = COLUMNS[name]
+    return Variable(values, dims, column.unit, column.long_name, flags)
+
+
+@dataclass(frozen=True)
+class Dataset:
+    """Axes, columns over them, scalars, and texts of any length; all by name.
+
+    The dimensions of the first column are those of the table that a text format writes; columns
+    with others (the events of a scene) are in HDF5 and xarray only.
+    """
+
+    axes: Mapping[str, Variable]
+    columns: Mapping[str, Variable]
+    attributes: Mapping[str, Any] = field(default_factory=dict)
+    texts: Mapping[str, tuple[str, str]] = field(default_factory=dict)
+
+    def table(self) -> dict[str, Variable]:
+        """The columns of a flat table: the axes, repeated as needed, then the rest; one row each.
+
+        Examples
+        --------
+        >>> launches = variable("launch_spin", np.array([1.0, 2.0]), ("launch_spin",))
+        >>> times = variable("stop_time", np.array([3.0, 4.0]), ("launch_spin",))
+        >>> Dataset({"launch_spin": launches}, {"stop_time": times}).table()["stop_time"].values
+        array([3., 4.])
+        """
+        dims = next(iter(self.columns.values())).dims
+        axes = [self.axes[name] for name in dims if name in self.axes]
+        grids = np.meshgrid(*(axis.readable() for axis in axes), indexing="ij") if axes else []
+        named = [name for name in dims if name in self.axes]
+        whole = {
+            name: (axis, grid.ravel()) for name, axis, grid in zip(named, axes, grids, strict=True)
+        }
+        whole |= {
+            name: (column, np.ravel(column.readable()))
+            for name, column in self.columns.items()
+            if column.dims == dims
+        }
+        return {
+            name: Variable(values, ("row",), one.unit, one.long_name)
+            for name, (one, values) in whole.items()
+        }
+
+    def rows(self) -> tuple[dict[str, Variable], Iterator[tuple[Any, ...]]]:
+        """The flat table and its rows as Python numbers and texts."""
+        table = self.table()
+        columns: Sequence[list[Any]] = [one.values.tolist() for one in table.values()]
+        return table, zip(*columns, strict=True)

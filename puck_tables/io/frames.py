@@ -1,0 +1,75 @@
+"""Results as objects of xarray and pandas, with their units."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from puck_tables.errors import MissingExtraError
+from puck_tables.io.dataset import Dataset, Variable
+
+if TYPE_CHECKING:
+    import pandas
+    import xarray
+
+
+def to_xarray(dataset: Dataset) -> xarray.Dataset:
+    """Every column over its axes; units and long names as attributes.
+
+    Raises
+    ------
+    MissingExtraError
+        If xarray is not installed.
+
+    Examples
+    --------
+    >>> from puck_tables.io.dataset import variable
+    >>> time, x = (variable(name, [0.0, 1.0], ("time",)) for name in ("time", "x"))
+    >>> to_xarray(Dataset({"time": time}, {"x": x})).x.units
+    'm'
+    """
+    try:
+        import xarray
+    except ImportError:
+        raise MissingExtraError("to_xarray needs xarray: pip install xarray") from None
+    attributes = {name: value for name, value in dataset.attributes.items() if value is not None}
+    attributes |= {name: text for name, (text, _) in dataset.texts.items()}
+    return xarray.Dataset(
+        {name: _labelled(one) for name, one in dataset.columns.items()},
+        {name: _labelled(one) for name, one in dataset.axes.items()},
+        attributes,
+    )
+
+
+def _labelled(one: Variable) -> tuple[Any, ...]:
+    attributes: dict[str, Any] = {"units": one.unit or "1", "long_name": one.long_name}
+    if one.flags:
+        attributes["flag_values"] = np.arange(len(one.flags), dtype=np.int8)
+        attributes["flag_meanings"] = " ".join(flag.replace(" ", "_") for flag in one.flags)
+    return one.dims, np.asarray(one.values), attributes
+
+
+def to_pandas(dataset: Dataset) -> pandas.DataFrame:
+    """The flat table, one row a state, a launch or a run; units in ``attrs``.
+
+    Raises
+    ------
+    MissingExtraError
+        If pandas is not installed.
+
+    Examples
+    --------
+    >>> from puck_tables.io.dataset import variable
+    >>> frame = to_pandas(Dataset({}, {"x": variable("x", [0.0, 1.0], ("time",))}))
+    >>> frame.x.tolist(), frame.attrs["units"]
+    ([0.0, 1.0], {'x': 'm'})
+    """
+    try:
+        import pandas
+    except ImportError:
+        raise MissingExtraError("to_pandas needs pandas: pip install pandas") from None
+    table = dataset.table()
+    frame = pandas.DataFrame({name: one.values for name, one in table.items()})
+    frame.attrs["units"] = {name: one.unit for name, one in table.items()}
+    return frame
