@@ -48,28 +48,11 @@ if TYPE_CHECKING:
     from puck_tables.scene_file import save_scene_map, save_scene_run
     from puck_tables.scene_map_picture import plot_scene_map
     from puck_tables.scene_picture import plot_scene
-    from puck_tables.similarity.build import build_stop_table
-    from puck_tables.similarity.check import validate_stops
-    from puck_tables.similarity.file import load_stop_table, save_stop_table
-    from puck_tables.similarity.stop_table import StopTable
     from puck_tables.states import States, flow
     from puck_tables.stop_map import StopMap, sweep
     from puck_tables.stops import Stops, stop
     from puck_tables.store import table_for
-    from puck_tables.table.build import build_table
-    from puck_tables.table.check import CheckReport, validate
-    from puck_tables.table.file import load_table, save_table
-    from puck_tables.table.law_check import validate_law
-    from puck_tables.table.law_file import load_law_table, save_law_table
-    from puck_tables.table.law_table import LawTable, build_law_table
-    from puck_tables.table.partial_build import build_partial_table
-    from puck_tables.table.partial_check import validate_partial
-    from puck_tables.table.partial_file import load_partial_table, save_partial_table
-    from puck_tables.table.partial_table import PartialTable
-    from puck_tables.table.speed_build import build_speed_table
-    from puck_tables.table.speed_check import validate_speed
-    from puck_tables.table.speed_file import load_speed_table, save_speed_table
-    from puck_tables.table.speed_table import SpeedTable
+    from puck_tables.table.check import CheckReport
     from puck_tables.table.table import Table
     from puck_tables.trajectory import Trajectory, simulate
 
@@ -121,25 +104,11 @@ _HOMES = {
     "Stops": "stops",
     "stop": "stops",
     "table_for": "store",
-    "build_stop_table": "similarity.build",
-    "validate_stops": "similarity.check",
-    "load_stop_table": "similarity.file",
-    "save_stop_table": "similarity.file",
-    "StopTable": "similarity.stop_table",
     "States": "states",
     "flow": "states",
     "StopMap": "stop_map",
     "sweep": "stop_map",
-    "build_table": "table.build",
     "CheckReport": "table.check",
-    "validate": "table.check",
-    "load_table": "table.file",
-    "save_table": "table.file",
-    "validate_speed": "table.speed_check",
-    "load_speed_table": "table.speed_file",
-    "save_speed_table": "table.speed_file",
-    "SpeedTable": "table.speed_table",
-    "build_speed_table": "table.speed_build",
     "Table": "table.table",
     "Law": "contact.laws",
     "law_of": "contact.laws",
@@ -147,16 +116,6 @@ _HOMES = {
     "loaded_share": "contact.one_sided",
     "one_sided_resultants": "contact.one_sided:resultants",
     "critical_delta": "contact.opening",
-    "validate_law": "table.law_check",
-    "load_law_table": "table.law_file",
-    "save_law_table": "table.law_file",
-    "LawTable": "table.law_table",
-    "build_law_table": "table.law_table",
-    "build_partial_table": "table.partial_build",
-    "validate_partial": "table.partial_check",
-    "load_partial_table": "table.partial_file",
-    "save_partial_table": "table.partial_file",
-    "PartialTable": "table.partial_table",
 }
 
 __all__ = [
@@ -168,17 +127,13 @@ __all__ = [
     "ConstrainedMotion",
     "ConstrainedSystem",
     "Law",
-    "LawTable",
-    "PartialTable",
     "Resultants",
     "Scene",
     "SceneMap",
     "SceneRun",
     "SpeedLaw",
-    "SpeedTable",
     "States",
     "StopMap",
-    "StopTable",
     "Stops",
     "Table",
     "Trajectory",
@@ -187,11 +142,6 @@ __all__ = [
     "approach_exponent",
     "asperity_curve",
     "asperity_motion",
-    "build_law_table",
-    "build_partial_table",
-    "build_speed_table",
-    "build_stop_table",
-    "build_table",
     "constrained_motion",
     "critical_delta",
     "curvature_slope",
@@ -201,11 +151,6 @@ __all__ = [
     "law_of",
     "limit_angle",
     "limit_ratio",
-    "load_law_table",
-    "load_partial_table",
-    "load_speed_table",
-    "load_stop_table",
-    "load_table",
     "loaded_share",
     "one_sided_resultants",
     "patch_stop",
@@ -221,14 +166,9 @@ __all__ = [
     "resultants",
     "save_aim",
     "save_asperity",
-    "save_law_table",
     "save_map",
-    "save_partial_table",
     "save_scene_map",
     "save_scene_run",
-    "save_speed_table",
-    "save_stop_table",
-    "save_table",
     "save_trajectory",
     "scene_from",
     "similarity_parameters",
@@ -239,11 +179,6 @@ __all__ = [
     "sweep",
     "sweep_scene",
     "table_for",
-    "validate",
-    "validate_law",
-    "validate_partial",
-    "validate_speed",
-    "validate_stops",
 ]
 
 

@@ -29,7 +29,7 @@ from puck_tables.similarity.section import (
     section_of,
 )
 from puck_tables.solvers import fits
-from puck_tables.table.file import load_table
+from puck_tables.table.resultant_table import ResultantTable
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -377,7 +377,7 @@ def _misses(found: Aim) -> FloatArray:
     from puck_tables.sliced import friction_of
 
     if found.body is None:
-        cut = table_friction(found.delta, load_table()).cut
+        cut = table_friction(found.delta, ResultantTable.shipped()).cut
     else:
         cut = friction_of(found.body, SLICE_ACCURACY).cut
     distance = math.hypot(*found.target)

@@ -182,7 +182,7 @@ def _answered(ready: StopSlice | _Integrated, launches: FloatArray) -> tuple[Flo
         def work(start: int, stop: int) -> None:
             some, part = np.ascontiguousarray(launches[:, start:stop]), out[:, start:stop].copy()
             fill_stops(
-                some, DORMAND_PRINCE, ready.steps, ready.local, ready.cut, 1.0, part,
+                some, DORMAND_PRINCE, ready.steps, ready.local, ready.cut, part,
                 status[start:stop],
             )  # fmt: skip
             out[:, start:stop] = part

@@ -14,7 +14,6 @@ from puck_tables.errors import InputError
 from puck_tables.executor import run_chunks
 from puck_tables.puck import velocity_array
 from puck_tables.real import broadcast, finite_array, instance
-from puck_tables.similarity.file import load_stop_table
 from puck_tables.similarity.stop_table import StopTable
 from puck_tables.solvers import fits
 from puck_tables.stops import positive_array
@@ -77,7 +76,7 @@ def flow(
         to 1.
     decel : array_like (…), J = fg, m/s², > 0
     radius : array_like (…), m, > 0
-    table : StopTable, optional
+    table : Table of stops, optional
         The default one if left out.
     pressure, gyration
         As :func:`puck_tables.simulate`.  For δ > 1 or another kind of puck each puck is integrated,
@@ -121,7 +120,7 @@ def flow(
         plain = is_plain(pressure, gyration, highest)
     elif not (plain := is_plain(pressure, gyration, 0.0)):
         raise InputError("stop tables are of a homogeneous puck under uniform pressure")
-    chosen = load_stop_table() if table is None else table
+    chosen = StopTable.shipped() if table is None else table
     velocity = velocity_array(v0)
     columns = broadcast(
         vx=velocity[..., 0],

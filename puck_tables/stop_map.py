@@ -22,7 +22,7 @@ from puck_tables.real import finite_array
 from puck_tables.similarity.stop_table import StopTable
 from puck_tables.solvers import OUTPUTS
 from puck_tables.stops import DEFAULT_TOL, any_solver
-from puck_tables.table.table import Table
+from puck_tables.table.resultant_table import ResultantTable
 
 FloatArray = npt.NDArray[np.float64]
 Progress = Callable[[int, int], None]
@@ -74,7 +74,7 @@ def sweep(
     radius: float = 1.0,
     tol: float = DEFAULT_TOL,
     method: str | None = None,
-    table: Table | StopTable | None = None,
+    table: ResultantTable | StopTable | None = None,
     pressure: str | Law = "uniform",
     gyration: float = HOMOGENEOUS,
     threads: int | None = None,

@@ -16,7 +16,7 @@ from puck_tables.puck import velocity_array
 from puck_tables.real import broadcast, finite_array
 from puck_tables.similarity.stop_table import StopTable
 from puck_tables.solvers import Integration, LookUp, solver_for
-from puck_tables.table.table import Table
+from puck_tables.table.resultant_table import ResultantTable
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -83,7 +83,7 @@ def stop(
     radius: npt.ArrayLike = 1.0,
     tol: float = DEFAULT_TOL,
     method: str | None = None,
-    table: Table | StopTable | None = None,
+    table: ResultantTable | StopTable | None = None,
     pressure: str | Law = "uniform",
     gyration: float = HOMOGENEOUS,
 ) -> Stops:
@@ -105,8 +105,8 @@ def stop(
         and why.
     method : 'look-up', 'rk4' or 'adaptive', optional
         Only this one.
-    table : StopTable or Table, optional
-        A stop table: looked up.  A table of resultants: integrated.
+    table : Table, optional
+        Of stops: looked up.  Of resultants: integrated.
     pressure, gyration
         As :func:`puck_tables.simulate`.
 
@@ -148,7 +148,7 @@ def stop(
 
 
 def any_solver(
-    tol: float, table: Table | StopTable | None, method: str | None, pressure: str | Law,
+    tol: float, table: ResultantTable | StopTable | None, method: str | None, pressure: str | Law,
     gyration: float, delta: npt.ArrayLike,
 ) -> LookUp | Integration | AnyStops:  # fmt: skip
     """The way to stops of pucks of these kinds.

@@ -16,8 +16,7 @@ from puck_tables.front import Choice, Way
 from puck_tables.puck import positive, real, velocity_array
 from puck_tables.real import finite_array, instance
 from puck_tables.solvers import choose_with
-from puck_tables.table.file import load_table
-from puck_tables.table.table import Table
+from puck_tables.table.resultant_table import ResultantTable
 
 if TYPE_CHECKING:
     from puck_tables.run import Run
@@ -136,7 +135,7 @@ def simulate(
     tol: float = DEFAULT_TOL,
     method: str | None = None,
     exact: bool = False,
-    table: Table | None = None,
+    table: ResultantTable | None = None,
 ) -> Trajectory:
     """The motion of one puck until it stops.
 
@@ -171,7 +170,7 @@ def simulate(
     exact : bool
         Closed forms instead of the table: a homogeneous puck under uniform pressure in full
         contact.
-    table : Table, optional
+    table : Table of resultants, optional
         For the same; the default table if left out.
 
     Returns
@@ -206,7 +205,7 @@ def simulate(
     r, J = positive("radius", radius, "m"), positive("decel", decel, "m/s^2")
     m = positive("mass", mass, "kg")
     height, wanted = real("delta", delta, "dimensionless"), real("tol", tol, "dimensionless")
-    instance("table", table, Table, type(None))
+    instance("table", table, ResultantTable, type(None))
     if exact and table is not None:
         raise InputError("exact and table exclude each other: closed forms need no table")
     if method not in (None, "adaptive", "rk4"):
@@ -303,7 +302,7 @@ class _Solved(NamedTuple):
 
 def _solved_plainly(
     delta: float, speed: float, rim: float, tol: float, method: str | None, exact: bool,
-    table: Table | None,
+    table: ResultantTable | None,
 ) -> _Solved:  # fmt: skip
     """A homogeneous puck under uniform pressure in full contact."""
     from puck_tables.motion.limits import limit_log_ratio, regime_of
@@ -315,7 +314,7 @@ def _solved_plainly(
             f"delta = 2 f h / r must be from 0 to below 2, got {delta:g}: the linear pressure law "
             "of full contact holds at every phi up to 1, and beyond 2 in no motion but pure spin"
         )
-    chosen = load_table() if table is None else table
+    chosen = ResultantTable.shipped() if table is None else table
     if not exact:
         chosen.checked_range(delta)
     choice = choose_with("trajectory", tol, method, table, exact)

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from puck_tables import Table, load_stop_table, simulate, stop, sweep
+from puck_tables import Table, simulate, stop, sweep
 from puck_tables.errors import AccuracyError, InputError
 from puck_tables.executor import run_chunks
 from puck_tables.stop_map import check_memory
@@ -65,7 +65,7 @@ def test_overflow_is_a_named_status():
     [
         (((1, 0, 0), 1.0), {}, "two components"),
         (((1, 0), [1.0, math.inf]), {}, "w0"),
-        (((1, 0), 1.0), {"delta": 1.5, "table": load_stop_table()}, "outside this table"),
+        (((1, 0), 1.0), {"delta": 1.5, "table": Table.shipped("stops")}, "outside this table"),
         (((1, 0), 1.0), {"delta": -0.5}, "delta"),
         (((1, 0), 1.0), {"radius": [1.0, 0.0]}, "radius"),
         (((1, 0), 1.0), {"decel": 0.0}, "decel"),

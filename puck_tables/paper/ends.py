@@ -11,12 +11,12 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables.contact.closed_form import by_closed_form
 from puck_tables.contact.resultants import Resultants
 from puck_tables.motion.limits import approach_exponent, curvature_slope, limit_angle
 from puck_tables.paper.claim import Claim, equal, farthest, more
 from puck_tables.paper.root import power
 from puck_tables.paper.runs import Simulate, curvature_radius, launch, slip_ratio, time_left
-from puck_tables.table.check import by_closed_form
 from puck_tables.trajectory import Trajectory, simulate
 
 FloatArray = npt.NDArray[np.float64]

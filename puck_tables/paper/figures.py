@@ -14,14 +14,13 @@ from collections.abc import Callable
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.contact.closed_form import integrals
+from puck_tables.contact.closed_form import by_closed_form, integrals
 from puck_tables.motion.limits import limit_angle, limit_ratio
 from puck_tables.panels import Curve, Panel, Picture
 from puck_tables.paper.friction import slip_angle_rate
 from puck_tables.paper.patch import HEIGHTS, PHI, pressure_reserve
 from puck_tables.paper.shapes import SPIN, ends_against_spin
 from puck_tables.puck import similarity_parameters
-from puck_tables.table.check import by_closed_form
 from puck_tables.trajectory import simulate
 
 FloatArray = npt.NDArray[np.float64]

@@ -21,7 +21,7 @@ from puck_tables.contact.laws import HOMOGENEOUS, Law
 from puck_tables.contact.opening import critical_delta
 from puck_tables.errors import ContactError
 from puck_tables.kernels.slice_spline import LINE
-from puck_tables.table.law_grid import sides_of
+from puck_tables.table.slip_axis import sides_of
 from puck_tables.table.slip_spline import SlipSpline, slip_spline
 
 FloatArray = npt.NDArray[np.float64]

@@ -1,7 +1,7 @@
 """Splines over the slip angle alone, as fine as asked: how friction and stops of one puck are kept.
 
-The functions are known wherever they are asked for, at some cost.  The axis is that of
-:mod:`puck_tables.table.law_grid`.  It is refined by halving its cells, so that what was computed to
+The functions are known wherever they are asked for, at some cost.  The axis
+(:mod:`puck_tables.table.slip_axis`) is refined by halving its cells, so that what was computed to
 measure the error of one level, the functions in the middles of the cells, are nodes of the next.
 """
 
@@ -28,8 +28,8 @@ from puck_tables.kernels.slice_spline import (
     UPPER_SIN,
     fill_slice,
 )
-from puck_tables.table.fit import clamped_coefficients, half_clamped_coefficients
-from puck_tables.table.law_grid import Side, graded
+from puck_tables.table.fit import sided_coefficients
+from puck_tables.table.slip_axis import Side, graded
 
 FloatArray = npt.NDArray[np.float64]
 Functions = Callable[[FloatArray], FloatArray]  # of φ (n,), as (n, functions)
@@ -65,16 +65,13 @@ class SlipSpline:
     def cut(self) -> FloatArray:
         """The matrix that :mod:`puck_tables.kernels.slice_spline` reads; inertia left 0."""
         cut = np.zeros((len(self.sides), HEADER + self.values.shape[2] * (self.cells + 3)))
+        cut[:, HEADER:] = sided_coefficients(self.values, self.even).reshape(len(cut), -1) / 6.0
         for n, side in enumerate(self.sides):
-            clamped = self.even and n in (0, len(self.sides) - 1)
-            fit = clamped_coefficients if clamped else half_clamped_coefficients
             upper = max(side.line, side.end)
-            cut[n, :HEADER] = 0.0
             cut[n, LINE_COS], cut[n, LINE_SIN] = _direction(side.line)
             cut[n, LINE] = _log_tangent(side.line)
             cut[n, UPPER_COS], cut[n, UPPER_SIN] = _direction(upper)
             cut[n, INVERSE_EXTENT] = 1.0 / abs(side.extent)
-            cut[n, HEADER:] = fit(self.values[n]).ravel() / 6.0
         return cut
 
     def at(self, phi: FloatArray) -> FloatArray:
@@ -143,7 +140,7 @@ def slip_spline(
 
     Examples
     --------
-    >>> from puck_tables.table.law_grid import sides_of
+    >>> from puck_tables.table.slip_axis import sides_of
     >>> found = slip_spline(lambda phi: np.cos(phi)[:, None] ** 2, sides_of([1.0]), 1e-6, True)
     >>> found.cells, float(found.at(np.array([0.5]))[0, 0].round(6))
     (64, 0.770151)
