@@ -10,7 +10,8 @@ from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import InputError
 from puck_tables.puck import real
 from puck_tables.real import instance
-from puck_tables.table.friction_slice import FrictionSlice, friction_slice, refuse_height
+from puck_tables.store import friction_for
+from puck_tables.table.friction_slice import FrictionSlice, refuse_height
 
 SMALLEST_GYRATION, LARGEST_GYRATION = 0.1, 10.0
 
@@ -63,7 +64,7 @@ class Body:
 
     def friction(self, accuracy: float) -> FrictionSlice:
         """Its friction over the slip angle."""
-        return friction_slice(self.law, self.delta, accuracy)
+        return friction_for(self.law, self.delta, accuracy)
 
 
 def is_plain(pressure: str | Law, gyration: float, delta: float) -> bool:

@@ -14,6 +14,7 @@ import time
 from collections.abc import Callable
 from dataclasses import replace
 from datetime import UTC, datetime
+from functools import lru_cache
 from importlib.resources import files
 from pathlib import Path
 from typing import Any, NamedTuple, TypeVar, overload
@@ -28,6 +29,7 @@ from puck_tables.own_folder import make_private, refuse_shared, say, user_cache
 from puck_tables.real import real_array
 from puck_tables.safe_write import PART_PATTERN
 from puck_tables.table.file import read_content, recipe_digest
+from puck_tables.table.friction_slice import FrictionSlice, friction_slice, refuse_height
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.table.speed_table import SpeedTable
 from puck_tables.table.table import Progress, Table
@@ -116,10 +118,7 @@ def table_for(
     wanted = None
     if accuracy is not None:
         wanted = real_array("accuracy", accuracy, "an absolute error").item()
-    digest = recipe_digest({
-        **of, "accuracy": wanted, "algorithm": kind.algorithm,
-        "sources": source_digest("contact", "kernels", "table"),
-    })[:16]  # fmt: skip
+    digest = _digest(kind, {**of, "accuracy": wanted})
     asked = "default" if wanted is None else f"{wanted:g}"
 
     def build() -> ResultantTable | SpeedTable:
@@ -131,6 +130,44 @@ def table_for(
     return fetch(
         f"{stem}-{asked}-{digest}.h5", f"table_for({said}, {asked}), recipe {digest}", kind, build
     )
+
+
+@lru_cache(maxsize=64)
+def friction_for(law: Law, delta: float, accuracy: float) -> FrictionSlice:
+    """The friction of one puck: where that takes long, read if it is kept, else built.
+
+    Parameters
+    ----------
+    law, delta, accuracy : as in :func:`puck_tables.table.friction_slice.friction_slice`
+
+    Raises
+    ------
+    InputError, ContactError, AccuracyError
+        As there.
+
+    Examples
+    --------
+    >>> friction_for(law_of("ring"), 0.5, 1e-6).grid  # under other laws it takes no time
+    '257 phi nodes'
+    """
+    if not (law.can_lift and delta > 1.0):
+        return friction_slice(law, delta, accuracy)
+    refuse_height(law, delta)
+    digest = _digest(
+        FrictionSlice, {"pressure_law": law.name, "delta": delta, "accuracy": accuracy}
+    )
+    return fetch(
+        f"{file_stem(law)}-{delta:g}-{accuracy:g}-{digest}.h5",
+        f"friction of a puck with delta = {delta:g}, to {accuracy:g}; recipe {digest}",
+        FrictionSlice,
+        lambda: friction_slice(law, delta, accuracy),
+    )
+
+
+def _digest(kind: type[Table], recipe: dict[str, Any]) -> str:
+    """Of all that determines a table, and of the sources that compute it."""
+    sources = source_digest("contact", "kernels", "table")
+    return recipe_digest({**recipe, "algorithm": kind.algorithm, "sources": sources})[:16]
 
 
 def file_stem(law: Law) -> str:

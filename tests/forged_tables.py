@@ -40,7 +40,7 @@ def forged(content: bytes, edit: Edit) -> bytes:
     recipe_names = {
         "kind", "pressure_law", "algorithm", "phi_map", "delta_map", "splined", "map", "n_phi",
         "cells", "profile_rows", "law_kind", "law_speeds", "law_values", "breaks", "nodes",
-        "patches", "largest_f",
+        "patches", "largest_f", "delta", "cotangents",
     }  # fmt: skip
     if "recipe_digest" in attributes:
         recipe = {name: value for name, value in attributes.items() if name in recipe_names}
@@ -64,6 +64,10 @@ def content_digest(attributes: dict[str, object], arrays: dict[str, np.ndarray])
             "profile_pressure",
         ),
         "stops": ("phi", "delta", "time", "along", "across", "length", "body", "curve", "turn"),
+        "friction slice": (
+            "phi", "inverse_parallel", "perpendicular_share", "spin_share", "profile_radius",
+            "profile_pressure",
+        ),
         "speed": ("node", "p_a", "p_b", "p_d", "p_e", "patch", "halvings"),
     }  # fmt: skip
     digest = hashlib.sha256(json.dumps(attributes, sort_keys=True, default=str).encode())

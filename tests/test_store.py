@@ -235,6 +235,31 @@ def test_progress_is_told():
     assert told == sorted(told, key=lambda pair: pair[::-1])  # a finer grid begins anew
 
 
+def test_the_friction_of_a_tall_puck_is_kept(kept: Path, monkeypatch: pytest.MonkeyPatch):
+    built: list[float] = []
+    true = store.friction_slice
+
+    def counted(law: pt.Law, delta: float, accuracy: float) -> pt.Table:
+        built.append(delta)
+        return true(law, delta, accuracy)
+
+    monkeypatch.setattr(store, "friction_slice", counted)
+    first = pt.simulate((1.0, 0.0), 5.0, delta=1.5, tol=1e-5)
+    times = len(built)
+    assert times == len(list(kept.iterdir())) > 0
+    store.friction_for.cache_clear()  # as in another process
+    again = pt.simulate((1.0, 0.0), 5.0, delta=1.5, tol=1e-5)
+    assert len(built) == times
+    assert again.stop_time == first.stop_time
+    other = pt.simulate((1.0, 0.0), 5.0, delta=1.5000001, tol=1e-5)
+    assert len(built) > times
+    assert other.stop_time != first.stop_time
+    listed = puck("tables").stdout
+    assert listed.count("friction slice") == len(list(kept.iterdir()))
+    pt.simulate((1.0, 0.0), 5.0, delta=0.5, pressure="ring", tol=1e-5)
+    assert "ring" not in puck("tables").stdout  # made in no time
+
+
 def test_listed_removed_and_cleaned(kept: Path, tmp_path: Path):
     for law in ("ring", "hertz"):
         pt.table_for(law, accuracy=1e-4)

@@ -27,6 +27,7 @@ GRIDS = {
     "washer": ({"phi": 49, "delta": 4}, "spin", "49 phi x 4 delta nodes"),
     "profile": ({"phi": 145, "delta": 4, "profile_radius": 3}, "spin", "145 phi x 4 delta nodes"),
     "stops": ({"phi": 33, "delta": 9}, "time", "33 phi x 9 delta nodes"),
+    "slice": ({"phi": 129}, "spin_share", "129 phi nodes"),
     "speed": ({"node": 1936, "patch": 16}, "p_d", "1936 nodes in 16 patches"),
 }
 every_kind = pytest.mark.parametrize("kind", KINDS)
@@ -241,6 +242,9 @@ def test_what_is_no_table_is_refused(tmp_path: Path):
         ("hertz", {"accuracy": 1e-14}, AccuracyError, "from 1e-11"),
         ("stops", {"accuracy": 1e-13}, AccuracyError, "from 1e-11"),
         (LAW, {"accuracy": 1e-14}, AccuracyError, "from 1e-13"),
+        (("uniform", 2.0), {"accuracy": 1e-15}, AccuracyError, "from 5e-13"),
+        (("uniform", 3.98), {}, InputError, "more than one solution"),
+        (("ring", 2.5), {}, InputError, "outside full contact"),
         ("square", {}, InputError, "no pressure law is called 'square'"),
         (7, {}, InputError, "not of 7"),
     ],
@@ -292,6 +296,6 @@ def test_the_tables_that_come_along():
         table = Table.shipped(kind)
         assert table.kind == kind
         assert table.accuracy.worst <= table.tolerance == most
-    for kind in ("speed", "partial", "../tables/stops"):
+    for kind in ("speed", "partial", "../tables/stops", "friction slice"):
         with pytest.raises(InputError, match="comes along"):
             Table.shipped(kind)

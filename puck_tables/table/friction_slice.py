@@ -9,45 +9,113 @@ the edge of the loaded part is not felt: the pressure is zero there.)
 
 from __future__ import annotations
 
+import json
 import math
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping
+from dataclasses import KW_ONLY, dataclass, replace
 from functools import cached_property, lru_cache
+from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
 from puck_tables.contact import one_sided
-from puck_tables.contact.laws import HOMOGENEOUS, Law
+from puck_tables.contact.laws import HOMOGENEOUS, Law, law_of
 from puck_tables.contact.opening import critical_delta
-from puck_tables.errors import ContactError
+from puck_tables.contact.resultants import checked_delta
+from puck_tables.errors import AccuracyError, ContactError
 from puck_tables.kernels.slice_spline import LINE
-from puck_tables.table.slip_axis import sides_of
+from puck_tables.table.build import COARSEST
+from puck_tables.table.check import Check, CheckReport, compared
+from puck_tables.table.law_record import (
+    law_in_file,
+    profile_curve,
+    profile_rows,
+    profile_shapes,
+    unsaveable_law,
+)
+from puck_tables.table.oddities import odd_nodes
+from puck_tables.table.slip_axis import GRADING_POWER, LawAxis, sides_of
 from puck_tables.table.slip_spline import SlipSpline, slip_spline
+from puck_tables.table.table import Axis, Progress, Table
 
 FloatArray = npt.NDArray[np.float64]
 
-FINEST_ACCURACY = 5e-13  # truth itself is good to 1e-13
+DEFAULT_ACCURACY, FINEST_ACCURACY = 1e-9, 5e-13  # truth itself is good to 1e-13
+_LARGEST, _ROUNDING = 1e3, 1e-12  # of a ratio
+_NODES, _NODE_ERROR = 6, 1e-10  # how many are compared as a file is read, and how well known
 _AT_THE_LIMIT = 1e-6
 _SAME_LINE = 1e-12  # radians
 _SHARP_DELTA = 3.6
 
 
-@dataclass(frozen=True)
-class FrictionSlice:
+@dataclass(frozen=True, eq=False, repr=False)
+class FrictionSlice(Table):
     """The friction ratios of a puck over its slip angle.
 
     Parameters
     ----------
+    values : array (nodes of φ, 3)
+        1/ρ_∥, ρ_⊥/ρ_∥, ρ_ω/ρ_∥.
     law : Law
     delta : dimensionless height 2fh/r
-    opening : the slip angle up to which part of the base is lifted, radians; 0 where none ever is
-    spline : of 1/ρ_∥, ρ_⊥/ρ_∥, ρ_ω/ρ_∥
+    cotangents : cot φ of the singular lines, ascending
     """
 
+    _: KW_ONLY
     law: Law
     delta: float
-    opening: float
-    spline: SlipSpline = field(repr=False)
+    cotangents: tuple[float, ...]
+
+    kind = "friction slice"
+    algorithm = "one-sided balance by quadrature, or integrals of the law; 1"
+    functions: ClassVar[Mapping[str, str]] = {
+        "inverse_parallel": "1/rho_parallel",
+        "perpendicular_share": "rho_perpendicular/rho_parallel",
+        "spin_share": "rho_omega/rho_parallel",
+    }
+    second = "delta"
+    quantities = tuple(functions)
+    words: ClassVar[Mapping[str, str]] = {
+        "title": "Friction of one sliding, spinning puck",
+        "interpretation": (
+            "Ratios of the friction resultants rho of a puck under the named pressure law, at one "
+            "height delta = 2 f h / r, over phi = atan2(r omega, v): force on the puck "
+            "-f N cos(phi) rho_parallel along its velocity, -f N sin(phi) cos(phi) "
+            "rho_perpendicular across it (to the left), torque -(f N r / 2) sin(phi) rho_omega. "
+            "Even in phi. Where part of the base lifts the pressure is max(0, a + b x + c y). "
+            "Salnikova, Treschev, Gallyamov 2012, section 6."
+        ),
+        "method": "balance of moments by quadrature, 1e-13",
+        "phi_map": f"two sides for each line: tan(phi - line) = extent xi^{GRADING_POWER}",
+    }
+    entries: ClassVar[Mapping[str, type]] = {
+        "n_phi": int, "profile_rows": int, "delta": float, "cotangents": str,
+    }  # fmt: skip
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        lines = np.array(self.cotangents)
+        if not (lines.size and lines[0] > 0.0 and np.all(np.diff(lines) > 0.0)):
+            raise ValueError("its lines are none")
+        if (len(self.values) - 1) % (2 * lines.size) or not np.isfinite(lines[-1]):
+            raise ValueError("its nodes are not those of its lines")
+
+    @cached_property
+    def axis(self) -> LawAxis:
+        """The slip angles of its nodes."""
+        cells = (len(self.values) - 1) // (2 * len(self.cotangents))
+        return LawAxis(self.cotangents, cells)
+
+    @cached_property
+    def spline(self) -> SlipSpline:
+        """Through the nodes."""
+        return SlipSpline(self.axis.sides, self.axis.by_side(self.values), True, self.accuracy)
+
+    @cached_property
+    def opening(self) -> float:
+        """The slip angle up to which part of the base is lifted, radians; 0 where none ever is."""
+        return opening_angle(self.delta) if self.law.can_lift else 0.0
 
     @property
     def error(self) -> float:
@@ -91,6 +159,138 @@ class FrictionSlice:
     def at_ends(self) -> FloatArray:
         """The same at φ = 0 and π/2, (2, 3), as tabulated: without an error of the spline."""
         return np.stack([self.spline.values[0, -1], self.spline.values[-1, -1]])
+
+    def validate(self, progress: Progress | None = None, points: int = 600) -> CheckReport:
+        """Judge the slice by the law.
+
+        Parameters
+        ----------
+        progress : callable (done, total), optional
+        points : how many are compared at random, and as many next to the lines, in cells and at
+            nodes
+        """
+        rng = np.random.default_rng()
+        nodes = self.axis.nodes()
+        near = rng.choice([*self.lines, 0.0, 0.5 * np.pi], points)
+        near += rng.choice([-1.0, 1.0], points) * 10.0 ** -rng.uniform(0.3, 15.0, points)
+        some = rng.permutation(nodes.size - 1)[:points]
+        inside = nodes[some] + rng.random(some.size) * np.diff(nodes)[some]
+        odd = self._odd_nodes(points // 2)
+        allowed = min(self.tolerance, COARSEST)
+        routes = (
+            ("the law, random points", rng.uniform(0.0, 0.5 * np.pi, points), allowed),
+            ("the law, next to the lines", np.clip(near, 0.0, 0.5 * np.pi), allowed),
+            ("the law, in the cells", inside, allowed),
+            ("the law, the oddest nodes", nodes[odd], max(allowed, _NODE_ERROR)),
+        )
+        checks: list[Check] = []
+        for done, (name, phi, most) in enumerate(routes, 1):
+            errors = (self.ratios(phi) - _ratios(self.law, phi, self.delta)).T
+            checks += compared(name, self.quantities, errors, phi, 0.0 * phi + self.delta, most)
+            if progress is not None:
+                progress(done, len(routes))
+        return CheckReport(self.source, self.tolerance, tuple(checks))
+
+    def _odd_nodes(self, count: int) -> npt.NDArray[np.int64]:
+        """Numbers of nodes that fit their neighbours least."""
+        odd = odd_nodes(self.axis.by_side(self.values), (1,), count)
+        return np.unique(self.axis.numbers[odd[:, 0], odd[:, 1]])
+
+    # the record of the kind
+
+    @classmethod
+    def is_of(cls, of: object) -> bool:
+        """A pressure law and a height."""
+        return isinstance(of, tuple) and len(of) == 2 and isinstance(of[0], Law | str)
+
+    @classmethod
+    def built(cls, of: Any, accuracy: float | None = None, **how: Any) -> FrictionSlice:
+        """The friction of one puck, see :meth:`puck_tables.Table.build`."""
+        law = of[0] if isinstance(of[0], Law) else law_of(of[0])
+        wanted = DEFAULT_ACCURACY if accuracy is None else accuracy
+        if not FINEST_ACCURACY <= wanted <= COARSEST:
+            raise AccuracyError(
+                f"accuracy must be from {FINEST_ACCURACY:g} to {COARSEST:g} (an absolute error of "
+                f"the friction ratios), got {wanted:g}"
+            )
+        return friction_slice(law, float(checked_delta(of[1])), wanted, **how)
+
+    @property
+    def pressure_law(self) -> str:
+        """The name of the pressure law."""
+        return self.law.name
+
+    @property
+    def grid(self) -> str:
+        """How many nodes it has, in words."""
+        return f"{len(self.values)} phi nodes"
+
+    @property
+    def valid_range(self) -> str:
+        """Where it holds, in words."""
+        return f"|phi| <= pi/2, delta = {self.delta:g} only"
+
+    @property
+    def axes(self) -> dict[str, Axis]:
+        """Slip angle."""
+        return {"phi": Axis(self.axis.nodes(), "rad", "slip angle atan2(r omega, v)")}
+
+    @property
+    def parameters(self) -> dict[str, int | float | str]:
+        """Height, lines and nodes, and how many rows a tabulated law has."""
+        return {
+            "n_phi": len(self.values), "profile_rows": profile_rows(self.law),
+            "delta": self.delta, "cotangents": json.dumps(self.cotangents),
+        }  # fmt: skip
+
+    @property
+    def curve(self) -> dict[str, Axis]:
+        """A tabulated law."""
+        return profile_curve(self.law)
+
+    @property
+    def bounds(self) -> tuple[float, float, float]:
+        """Of the values and of the accuracy."""
+        return -_ROUNDING, _LARGEST, 0.1 * FINEST_ACCURACY
+
+    @classmethod
+    def shapes(cls, attributes: dict[str, Any]) -> dict[str, tuple[int, ...]]:
+        """Shapes of the arrays of a file with these attributes.
+
+        Examples
+        --------
+        >>> FrictionSlice.shapes({"n_phi": 33, "profile_rows": 0})["phi"]
+        (33,)
+        """
+        nodes = (attributes["n_phi"],)
+        return {"phi": nodes, **dict.fromkeys(cls.functions, nodes), **profile_shapes(attributes)}
+
+    @classmethod
+    def fields(cls, attributes: dict[str, Any], arrays: dict[str, FloatArray]) -> dict[str, Any]:
+        """Law, height and lines of a file."""
+        law, lines = law_in_file(attributes, arrays), json.loads(attributes["cotangents"])
+        refuse_height(law, attributes["delta"])
+        lines = tuple(float(line) for line in lines)
+        return {"law": law, "delta": attributes["delta"], "cotangents": lines}
+
+    @property
+    def unsaveable(self) -> str | None:
+        """A law that is a function."""
+        return unsaveable_law(self.law)
+
+    def spot_checks(self) -> Iterator[tuple[FloatArray, float, str]]:
+        """Of nodes, those that fit their neighbours least among them."""
+        nodes = np.random.default_rng().integers(0, len(self.values), _NODES)
+        nodes = np.concatenate([self._odd_nodes(_NODES), nodes])
+        truth = _ratios(self.law, self.axis.nodes()[nodes], self.delta)
+        yield np.abs(self.values[nodes] - truth), _NODE_ERROR, f"the law {self.law.name}"
+
+
+def _ratios(law: Law, phi: FloatArray, delta: float) -> FloatArray:
+    """The friction ratios by the law, (n, 3)."""
+    rho = law.friction(phi, delta)
+    return np.stack([1.0 / rho.parallel, rho.perpendicular / rho.parallel,
+                     rho.spin / rho.parallel], axis=-1)  # fmt: skip
 
 
 def refuse_height(law: Law, delta: float) -> None:
@@ -156,7 +356,7 @@ def _sharpest_bend(delta: float) -> float:
 
 
 @lru_cache(maxsize=64)
-def friction_slice(law: Law, delta: float, accuracy: float = 1e-9) -> FrictionSlice:
+def friction_slice(law: Law, delta: float, accuracy: float = DEFAULT_ACCURACY) -> FrictionSlice:
     """Tabulate the friction of one puck.
 
     Parameters
@@ -197,12 +397,13 @@ def friction_slice(law: Law, delta: float, accuracy: float = 1e-9) -> FrictionSl
     for line in (opening, _sharpest_bend(delta) if law.can_lift else 0.0):
         if line > 0.0 and all(abs(line - math.atan2(1.0, e)) > _SAME_LINE for e in law.edges):
             cotangents = sorted([*cotangents, 1.0 / math.tan(line)], reverse=True)
-
-    def ratios(phi: FloatArray) -> FloatArray:
-        rho = law.friction(phi, delta)
-        return np.stack([1.0 / rho.parallel, rho.perpendicular / rho.parallel,
-                         rho.spin / rho.parallel], axis=-1)  # fmt: skip
-
-    return FrictionSlice(
-        law, delta, opening, slip_spline(ratios, sides_of(cotangents), accuracy, even=True)
+    spline = slip_spline(
+        lambda phi: _ratios(law, phi, delta), sides_of(cotangents), accuracy, even=True
     )
+    assert spline.accuracy is not None
+    lines = tuple(cotangents[::-1])
+    return FrictionSlice(
+        LawAxis(lines, spline.cells).joined(spline.values), law=law, delta=delta,
+        cotangents=lines, tolerance=accuracy,
+        accuracy=replace(spline.accuracy, at_second=3 * (delta,)),
+    )  # fmt: skip

@@ -17,12 +17,19 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.contact.integrals import checked_phi
-from puck_tables.contact.laws import Law, law_of, profile_law
+from puck_tables.contact.laws import Law, law_of
 from puck_tables.contact.resultants import Resultants, checked_delta
 from puck_tables.errors import InputError
 from puck_tables.real import broadcast
 from puck_tables.table.check import CheckReport
 from puck_tables.table.fit import height_terms, sided_coefficients
+from puck_tables.table.law_record import (
+    law_in_file,
+    profile_curve,
+    profile_rows,
+    profile_shapes,
+    unsaveable_law,
+)
 from puck_tables.table.oddities import odd_nodes
 from puck_tables.table.slip_axis import GRADING_POWER, LawAxis
 from puck_tables.table.table import KINDS, Axis, Progress, Table
@@ -31,7 +38,6 @@ FloatArray = npt.NDArray[np.float64]
 
 HEIGHTS = 4
 _UNIFORM = "uniform"
-_RADIUS, _PRESSURE = "profile_radius", "profile_pressure"
 _LARGEST = 1e3  # of a resultant: 64 stands in an extreme profile
 _FINEST = 0.1  # no table is better than so many times cells⁻⁴
 # how many slip angles are compared with closed forms or with quadrature as a file is read, and how
@@ -261,19 +267,12 @@ class ResultantTable(Table):
     @property
     def parameters(self) -> dict[str, int | float | str]:
         """How many nodes, and how many rows a tabulated law has."""
-        rows = 0 if self.law.profile is None else self.law.profile[0].size
-        return {"n_phi": len(self.values), "profile_rows": rows}
+        return {"n_phi": len(self.values), "profile_rows": profile_rows(self.law)}
 
     @property
     def curve(self) -> dict[str, Axis]:
         """A tabulated law."""
-        if self.law.profile is None:
-            return {}
-        radius, pressure = self.law.profile
-        return {
-            _RADIUS: Axis(radius, "1", "radius in units of that of the puck"),
-            _PRESSURE: Axis(pressure, "1", "pressure, largest 1"),
-        }
+        return profile_curve(self.law)
 
     @property
     def bounds(self) -> tuple[float, float, float]:
@@ -289,35 +288,19 @@ class ResultantTable(Table):
         >>> ResultantTable.shapes({"n_phi": 33, "profile_rows": 0})["spin"]
         (33, 4)
         """
-        nodes, rows = attributes["n_phi"], attributes["profile_rows"]
-        if rows < 0:
-            raise ValueError("its profile has no number of rows")
-        profile = {_RADIUS: (rows,), _PRESSURE: (rows,)} if rows else {}
+        nodes = attributes["n_phi"]
         functions = dict.fromkeys(cls.functions, (nodes, HEIGHTS))
-        return {"phi": (nodes,), "delta": (HEIGHTS,), **functions, **profile}
+        return {"phi": (nodes,), "delta": (HEIGHTS,), **functions, **profile_shapes(attributes)}
 
     @classmethod
     def fields(cls, attributes: dict[str, Any], arrays: dict[str, FloatArray]) -> dict[str, Any]:
         """The law of a file: no other file is read for it."""
-        name = attributes["pressure_law"]
-        named = not name.lower().endswith(".csv") and _known(name)
-        if _RADIUS not in arrays:
-            if not named:
-                raise ValueError("it neither names nor holds its pressure law")
-            return {"law": law_of(name)}
-        if named:
-            raise ValueError(f"it holds a profile that is not the law it names, {name}")
-        return {"law": profile_law(arrays[_RADIUS], arrays[_PRESSURE], name=name)}
+        return {"law": law_in_file(attributes, arrays)}
 
     @property
     def unsaveable(self) -> str | None:
         """A law that is a function."""
-        if self.law.profile is not None or _known(self.law.name):
-            return None
-        return (
-            f"the pressure law {self.law.name} is a function, which a file cannot hold: give it as "
-            "a profile (profile_law)"
-        )
+        return unsaveable_law(self.law)
 
     def spot_checks(self) -> Iterator[tuple[FloatArray, float, str]]:
         """Of nodes, those that fit their neighbours least among them."""
@@ -345,11 +328,3 @@ class ResultantTable(Table):
 def full_contact(law: Law) -> float:
     """The height up to which contact is full under a law, as tables have it: twelve digits."""
     return float(f"{law.delta_max:.12g}")
-
-
-def _known(name: str) -> bool:
-    """Whether a law is known by its name."""
-    try:
-        return law_of(name).name == name
-    except InputError:
-        return False

@@ -43,7 +43,7 @@ class LawAxis:
     Parameters
     ----------
     edges : tuple of float
-        Radii of the edges of the load, ascending, the last 1.
+        Radii of the edges of the load, ascending, the last 1; more generally cot φ of the lines.
     cells : int
         Cells on each side of each singular line, at least 4.
 
@@ -92,6 +92,12 @@ class LawAxis:
     def by_side(self, values: FloatArray) -> FloatArray:
         """Values at the nodes (size, …) from each line outwards, (sides, cells + 1, …)."""
         return values[self.numbers]
+
+    def joined(self, by_side: FloatArray) -> FloatArray:
+        """The way back."""
+        values = np.empty((self.size, *by_side.shape[2:]))
+        values[self.numbers] = by_side
+        return values
 
 
 def sides_of(cotangents: Sequence[float], ends_too: bool = False) -> tuple[Side, ...]:

@@ -30,6 +30,7 @@ from puck_tables.kernels.slice_spline import (
 )
 from puck_tables.table.fit import sided_coefficients
 from puck_tables.table.slip_axis import Side, graded
+from puck_tables.table.table import Accuracy
 
 FloatArray = npt.NDArray[np.float64]
 Functions = Callable[[FloatArray], FloatArray]  # of φ (n,), as (n, functions)
@@ -47,14 +48,21 @@ class SlipSpline:
     values : array (sides, cells + 1, functions)
         At the nodes, from each line outwards.
     even : whether the functions are even about φ = 0 and π/2 (and these no singular lines)
-    error : array (functions,)
-        The largest error in the middles of the cells.
+    accuracy : Accuracy, optional
+        The errors in the middles of the cells; none while they are not known.
     """
 
     sides: tuple[Side, ...]
     values: FloatArray = field(repr=False)
     even: bool
-    error: FloatArray
+    accuracy: Accuracy | None = None
+
+    @property
+    def error(self) -> FloatArray:
+        """The largest error of each function."""
+        if self.accuracy is None:
+            return np.full(self.values.shape[2], np.inf)
+        return np.array(self.accuracy.largest)
 
     @property
     def cells(self) -> int:
@@ -83,9 +91,7 @@ class SlipSpline:
 
     def coarser(self) -> SlipSpline:
         """The spline through every other node."""
-        return SlipSpline(
-            self.sides, self.values[:, ::2], self.even, np.full_like(self.error, np.inf)
-        )
+        return SlipSpline(self.sides, self.values[:, ::2], self.even)
 
     def with_inertia(self, square: float, factors: FloatArray) -> FloatArray:
         """A copy of :attr:`cut` with this inertia and the functions multiplied by ``factors``."""
@@ -148,7 +154,7 @@ def slip_spline(
     cells = COARSEST_CELLS
     values = _at(functions, sides, np.arange(cells + 1) / cells)
     while True:
-        spline = SlipSpline(sides, values, even, np.zeros(values.shape[2]))
+        spline = SlipSpline(sides, values, even)
         xi = (np.arange(cells) + 0.5) / cells
         between = _at(functions, sides, xi)
         guess = spline.at(graded(sides, xi).ravel()).reshape(between.shape)
@@ -157,7 +163,8 @@ def slip_spline(
             off *= _at(weights, sides, xi)
         error = off.max(axis=(0, 1))
         if error[counted].max() <= accuracy:
-            return SlipSpline(sides, values, even, error)
+            errors, phi = off.reshape(-1, off.shape[2]).T, graded(sides, xi).ravel()
+            return SlipSpline(sides, values, even, Accuracy.of(errors, phi, 0.0 * phi, None))
         if 2 * cells > finest:
             raise AccuracyError(
                 f"an accuracy of {accuracy:.1g} is out of reach for this puck: {cells} cells give "
