@@ -6,6 +6,7 @@ import os
 import signal
 import subprocess
 import sys
+from importlib.resources import files
 from pathlib import Path
 
 import pytest
@@ -33,7 +34,7 @@ LONG = {
     "build law": (
         "table.resultant_check", ["build-tables", "--pressure", "hill.csv", "-o", "n.h5"]
     ),
-    "validate": ("similarity.check", ["validate"]),
+    "validate": ("similarity.check", ["validate", str(files("puck_tables.tables") / "stops.h5")]),
     "sweep": ("stop_map", ["sweep", "--speed", "0:2:5000", "--w0", "0:5:5000", "-o", "m.h5"]),
     "sweep resumed": (
         "checkpoint", ["sweep", "--speed", "0:2:3000", "--w0", "0:5:3000", "-o", "m.h5", "--resume"]
