@@ -106,7 +106,7 @@ def stop(
     method : 'look-up', 'rk4' or 'adaptive', optional
         Only this one.
     table : Table, optional
-        Of stops: looked up.  Of resultants: integrated.
+        Of stops: looked up.  Of resultants, under the pressure law of the puck: integrated.
     pressure, gyration
         As :func:`puck_tables.simulate`.
 
@@ -166,9 +166,10 @@ def any_solver(
     highest = np.max(checked_delta(delta), initial=0.0)
     if is_plain(pressure, gyration, float(highest)):
         return solver_for(tol, table, method)
-    if table is None:
-        return AnyStops(pressure, gyration, tol, method)
-    if not is_plain(pressure, gyration, 0.0):
+    plain = is_plain(pressure, gyration, 0.0)
+    if table is None or (isinstance(table, ResultantTable) and not plain):
+        return AnyStops(pressure, gyration, tol, method, table)
+    if not plain:
         raise InputError(
             "tables of stops are of a homogeneous puck under uniform pressure: leave out table, or "
             "pressure and gyration"

@@ -171,7 +171,7 @@ def simulate(
         Closed forms instead of the table: a homogeneous puck under uniform pressure in full
         contact.
     table : Table of resultants, optional
-        For the same; the default table if left out.
+        Under the pressure law of the puck.  Left out: the default table, or the law itself.
 
     Returns
     -------
@@ -212,12 +212,13 @@ def simulate(
         raise InputError(f"method must be 'adaptive' or 'rk4', got {method!r}")
     _check_frames(frames, times)
     plain = is_plain(pressure, gyration, height)
-    if (exact or table is not None) and not is_plain(pressure, gyration, 0.0):
+    if exact and not is_plain(pressure, gyration, 0.0):
         raise InputError(
-            "closed forms and tables are for a homogeneous puck under uniform pressure: leave out "
-            "exact and table, or pressure and gyration"
+            "closed forms are for a homogeneous puck under uniform pressure: leave out exact, or "
+            "pressure and gyration"
         )
-    body = None if plain or exact or table is not None else body_of(pressure, height, gyration)
+    by_table = table is not None and is_plain(pressure, gyration, 0.0)
+    body = None if plain or exact or by_table else body_of(pressure, height, gyration, table)
     square = 0.5 if body is None else body.inertia
     speed, rim = math.hypot(vx, vy), r * abs(spin)
     q0 = math.hypot(speed, rim)

@@ -7,11 +7,12 @@ import math
 import numpy as np
 import pytest
 
+import puck_tables as pt
 from puck_tables import Table, resultants
 from puck_tables.contact import quadrature
 from puck_tables.contact.closed_form import by_closed_form
 from puck_tables.contact.integrals import slip_direction
-from puck_tables.contact.laws import law_of, profile_law
+from puck_tables.contact.laws import HOMOGENEOUS, law_of, profile_law
 from puck_tables.contact.opening import critical_delta
 from puck_tables.contact.pressure import GALIN, HERTZ
 from puck_tables.contact.resultants import moment_balance
@@ -270,3 +271,54 @@ def test_a_table_of_another_law_is_not_taken_for_a_plain_puck():
     ):
         with pytest.raises(InputError, match="under the pressure law hertz, not uniform"):
             asked()
+
+
+# ---- motions that read it
+
+
+@pytest.mark.parametrize(
+    ("law", "delta", "gyration"), [("annulus:0.8", 1.0, 0.9), ("hertz", 0.5, HOMOGENEOUS),
+                                   ("uniform", 0.5, 0.9), ("cone", 0.3, HOMOGENEOUS)]
+)  # fmt: skip
+def test_motions_read_a_table_under_any_law(law: str, delta: float, gyration: float):
+    pressure = profile_law([0.0, 1.0], [1.0, 0.0], name="cone") if law == "cone" else law_of(law)
+    table = Table.build(pressure, 1e-9)
+    kind = {"delta": delta, "pressure": pressure, "gyration": gyration}
+    by_law, by_table = (
+        pt.simulate((1.0, 0.0), 5.0, **kind, tol=1e-7, table=one) for one in (None, table)
+    )
+    scale = math.hypot(1.0, 5.0)
+    assert abs(by_table.stop_time - by_law.stop_time) <= 1e-7 * scale
+    assert abs(by_table.stop_time - by_law.stop_time) > 0.0  # it is the table that was read
+    np.testing.assert_allclose(by_table.stop_position, by_law.stop_position, atol=1e-7 * scale**2)
+    spins = np.array([0.0, 0.5, 5.0])
+    stops = pt.stop((1.0, 0.0), spins, **kind, tol=1e-7, table=table)
+    truth = pt.stop((1.0, 0.0), spins, **kind, tol=1e-9)
+    q = np.hypot(1.0, spins)
+    assert np.all(np.abs(stops.stop_time - truth.stop_time) <= 1.1e-7 * q)
+    swept = pt.sweep(w0=spins, v0=(1.0, 0.0), **kind, tol=1e-7, table=table)
+    assert "memory" in swept.table
+    np.testing.assert_array_equal(swept.stop_time, stops.stop_time)
+
+
+def test_motions_refuse_a_table_of_another_puck_or_too_coarse():
+    table, motion = Table.build("hertz", 1e-6), ((1.0, 0.0), 5.0)
+    for given, words in (
+        ({"pressure": "ring", "delta": 0.5}, "law hertz, not ring"),
+        ({"gyration": 0.9, "delta": 0.5}, "law hertz, not uniform"),
+        ({"delta": 0.5}, "law hertz, not uniform"),
+        ({"pressure": "hertz", "delta": 0.9}, "outside"),
+        ({"pressure": "hertz", "delta": 0.5}, "out of reach.*give tol"),
+    ):
+        for call in (pt.simulate, pt.stop):
+            with pytest.raises(InputError, match=words):
+                call(*motion, **given, table=table).stop_time  # noqa: B018 - stops come when asked
+    odd = Table.build("hertz", cells=101)
+    with pytest.raises(InputError, match="odd number of cells"):
+        pt.simulate(*motion, pressure="hertz", delta=0.5, tol=1e-3, table=odd)
+    with pytest.raises(InputError, match="homogeneous puck under uniform pressure"):
+        pt.stop(*motion, pressure="hertz", delta=0.5, table=Table.shipped("stops"))
+    one = Table.build(profile_law([0.0, 1.0], [1.0, 0.5], name="a.csv"), 1e-4)
+    changed = profile_law([0.0, 1.0], [1.0, 0.6], name="a.csv")
+    with pytest.raises(InputError, match=r"not a\.csv as it is now"):
+        pt.simulate(*motion, pressure=changed, delta=0.5, tol=1e-2, table=one)

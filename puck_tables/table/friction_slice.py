@@ -23,10 +23,11 @@ from puck_tables.contact import one_sided
 from puck_tables.contact.laws import HOMOGENEOUS, Law, law_of
 from puck_tables.contact.opening import critical_delta
 from puck_tables.contact.resultants import checked_delta
-from puck_tables.errors import AccuracyError, ContactError
+from puck_tables.errors import AccuracyError, ContactError, InputError
 from puck_tables.kernels.slice_spline import LINE
 from puck_tables.table.build import COARSEST
 from puck_tables.table.check import Check, CheckReport, compared
+from puck_tables.table.fit import height_terms
 from puck_tables.table.law_record import (
     law_in_file,
     profile_curve,
@@ -35,9 +36,10 @@ from puck_tables.table.law_record import (
     unsaveable_law,
 )
 from puck_tables.table.oddities import odd_nodes
+from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.table.slip_axis import GRADING_POWER, LawAxis, sides_of
 from puck_tables.table.slip_spline import SlipSpline, slip_spline
-from puck_tables.table.table import Axis, Progress, Table
+from puck_tables.table.table import Accuracy, Axis, Progress, Table
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -284,6 +286,51 @@ class FrictionSlice(Table):
         nodes = np.concatenate([self._odd_nodes(_NODES), nodes])
         truth = _ratios(self.law, self.axis.nodes()[nodes], self.delta)
         yield np.abs(self.values[nodes] - truth), _NODE_ERROR, f"the law {self.law.name}"
+
+
+def slice_of(table: ResultantTable, delta: float, accuracy: float) -> FrictionSlice:
+    """The section of a table of resultants at one height: the table is all that is asked.
+
+    Parameters
+    ----------
+    table : of the puck's pressure law
+    delta : dimensionless height 2fh/r
+    accuracy : the largest error of a friction ratio
+
+    Raises
+    ------
+    InputError
+        If the height is outside the table, or the table of an odd number of cells.
+    AccuracyError
+        If the table is not so exact.
+
+    Examples
+    --------
+    >>> table = ResultantTable.build("ring", 1e-7)
+    >>> inverse, across, spin = slice_of(table, 1.0, 1e-6).ratios(np.array([0.0]))[0]
+    >>> round(float(across / inverse), 6)  # ρ_⊥
+    0.25
+    """
+    table.checked_range(delta, table.law.name)
+    if table.axis.cells % 2:
+        raise InputError(
+            f"{table.source} has an odd number of cells ({table.axis.cells}), which motions cannot "
+            "halve to see what it contributes to an error: build one with --accuracy"
+        )
+    a0, a2, b1, c0, c2 = height_terms(table.values, table.heights).T
+    values = np.stack([a0 + a2 * delta**2, b1 * delta, c0 + c2 * delta**2], axis=-1)
+    # an error of ρ_∥ stands in every ratio
+    error = table.tolerance * float(values[:, 0].max() * (1.0 + values.max()))
+    if error > accuracy:
+        raise AccuracyError(
+            f"{table.source} gives the friction ratios to {error:.1g}, not to {accuracy:.1g}: "
+            "give a finer table, or a larger tol (--tol)", reachable=error,
+        )  # fmt: skip
+    everywhere = (error,) * 3, (error,) * 3, (error,) * 3, (0.0,) * 3, (delta,) * 3
+    return FrictionSlice(
+        values, law=table.law, delta=delta, cotangents=table.law.edges, tolerance=error,
+        accuracy=Accuracy(*everywhere, promised=3, order=0.0, points=0), source=table.source,
+    )  # fmt: skip
 
 
 def _ratios(law: Law, phi: FloatArray, delta: float) -> FloatArray:

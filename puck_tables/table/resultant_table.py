@@ -150,10 +150,7 @@ class ResultantTable(Table):
             of another law.
         """
         if self.law.name != law:
-            raise InputError(
-                f"{self.source} is a table under the pressure law {self.law.name}, not {law}: "
-                "give a table of that law"
-            )
+            self.refuse_other(law_of(law))
         height = checked_delta(delta)
         if not np.all(height <= self.delta_max):
             raise InputError(
@@ -162,6 +159,22 @@ class ResultantTable(Table):
                 "does not stay loaded at every phi; where it does, use the closed forms (--exact)"
             )
         return height
+
+    def refuse_other(self, law: Law) -> None:
+        """Refuse to be the table of another pressure law.
+
+        Raises
+        ------
+        InputError
+        """
+        mine, other = (one.profile for one in (self.law, law))
+        same = mine is None or (other is not None and np.array_equal(mine, other))
+        if not (same and (self.law.name, self.law.edges) == (law.name, law.edges)):
+            raise InputError(
+                f"{self.source} is a table under the pressure law {self.law.name}, not "
+                f"{law.name}{'' if self.law.name != law.name else ' as it is now'}: give a table "
+                "of that law"
+            )
 
     def resultants(self, phi: npt.ArrayLike, delta: npt.ArrayLike) -> Resultants:
         """Interpolated resultants ρ_∥, ρ_⊥, ρ_ω.
