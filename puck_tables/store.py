@@ -148,7 +148,7 @@ def friction_for(law: Law, delta: float, accuracy: float) -> FrictionSlice:
     Examples
     --------
     >>> friction_for(law_of("ring"), 0.5, 1e-6).grid  # under other laws it takes no time
-    '257 phi nodes'
+    '129 phi nodes'
     """
     if not (law.can_lift and delta > 1.0):
         return friction_slice(law, delta, accuracy)

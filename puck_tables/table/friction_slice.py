@@ -306,7 +306,7 @@ def slice_of(table: ResultantTable, delta: float, accuracy: float) -> FrictionSl
 
     Examples
     --------
-    >>> table = ResultantTable.build("ring", 1e-7)
+    >>> table = ResultantTable.build("ring", 1e-8)
     >>> inverse, across, spin = slice_of(table, 1.0, 1e-6).ratios(np.array([0.0]))[0]
     >>> round(float(across / inverse), 6)  # ρ_⊥
     0.25
