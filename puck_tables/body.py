@@ -11,8 +11,9 @@ from puck_tables.errors import InputError
 from puck_tables.puck import real
 from puck_tables.real import instance
 from puck_tables.store import friction_for
-from puck_tables.table.friction_slice import FrictionSlice, refuse_height, slice_of
+from puck_tables.table.friction_slice import FrictionSlice, slice_of
 from puck_tables.table.resultant_table import ResultantTable
+from puck_tables.table.singular_lines import refuse_height
 
 SMALLEST_GYRATION, LARGEST_GYRATION = 0.1, 10.0
 

@@ -29,8 +29,9 @@ from puck_tables.own_folder import make_private, refuse_shared, say, user_cache
 from puck_tables.real import real_array
 from puck_tables.safe_write import PART_PATTERN
 from puck_tables.table.file import read_content, recipe_digest
-from puck_tables.table.friction_slice import FrictionSlice, friction_slice, refuse_height
+from puck_tables.table.friction_slice import FrictionSlice, friction_slice
 from puck_tables.table.resultant_table import ResultantTable
+from puck_tables.table.singular_lines import refuse_height
 from puck_tables.table.speed_table import SpeedTable
 from puck_tables.table.table import Progress, Table
 from puck_tables.waiting import watched

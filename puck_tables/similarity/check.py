@@ -47,9 +47,10 @@ from puck_tables.similarity.exact import end_values, exact_stops
 from puck_tables.similarity.lookup import CURVE_ROW
 from puck_tables.similarity.node_equations import all_slopes, missed_by_curve, missed_by_stops
 from puck_tables.similarity.stop_table import STOPS, StopTable
+from puck_tables.table.accuracy import Accuracy
 from puck_tables.table.build import Goal, built
 from puck_tables.table.check import Check, CheckReport, compared
-from puck_tables.table.table import Accuracy, Progress
+from puck_tables.table.table import Progress
 
 FloatArray = npt.NDArray[np.float64]
 

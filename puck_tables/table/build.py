@@ -8,7 +8,8 @@ from dataclasses import dataclass, replace
 from typing import TypeVar
 
 from puck_tables.errors import AccuracyError, InputError
-from puck_tables.table.table import Accuracy, Table
+from puck_tables.table.accuracy import Accuracy
+from puck_tables.table.table import Table
 
 AnyTable = TypeVar("AnyTable", bound=Table)
 

@@ -31,6 +31,7 @@ from puck_tables._version import __version__
 from puck_tables.errors import OutputError, TableError
 from puck_tables.safe_read import read_whole
 from puck_tables.safe_write import write_bytes
+from puck_tables.table.accuracy import Accuracy
 from puck_tables.table.plain_hdf5 import PlainFile
 
 if TYPE_CHECKING:
@@ -227,7 +228,7 @@ def decode(content: bytes, source: str, kinds: tuple[str, ...]) -> Table:
 
 
 def _read(content: bytes, source: str, kinds: tuple[str, ...]) -> Table:
-    from puck_tables.table.table import Accuracy, kind_named
+    from puck_tables.table.table import kind_named
 
     file = PlainFile(content)
     attributes: dict[str, Any] = dict(file.attributes)

@@ -1,10 +1,7 @@
 """Friction of one puck: its three friction ratios over the slip angle, straight from truth.
 
-For a pressure law and a height δ the ratios 1/ρ_∥, ρ_⊥/ρ_∥, ρ_ω/ρ_∥ are functions of φ alone.  They
-are singular on a few lines: where the instantaneous centre of rotation crosses an edge of the load,
-tan φ = 1/edge, and where contact opens, δ_c(φ) = δ, across which partial and full contact part like
-x^(5/2).  Between them they are analytic.  (That in partial contact the centre of rotation crosses
-the edge of the loaded part is not felt: the pressure is zero there.)
+For a pressure law and a height δ the ratios 1/ρ_∥, ρ_⊥/ρ_∥, ρ_ω/ρ_∥ are functions of φ alone,
+analytic between a few lines (:mod:`puck_tables.table.singular_lines`).
 """
 
 from __future__ import annotations
@@ -19,27 +16,20 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.contact import one_sided
 from puck_tables.contact.laws import HOMOGENEOUS, Law, law_of
-from puck_tables.contact.opening import critical_delta
 from puck_tables.contact.resultants import checked_delta
-from puck_tables.errors import AccuracyError, ContactError, InputError
+from puck_tables.errors import AccuracyError, InputError
 from puck_tables.kernels.slice_spline import LINE
+from puck_tables.table.accuracy import Accuracy
 from puck_tables.table.build import COARSEST
 from puck_tables.table.check import Check, CheckReport, compared
 from puck_tables.table.fit import height_terms
-from puck_tables.table.law_record import (
-    law_in_file,
-    profile_curve,
-    profile_rows,
-    profile_shapes,
-    unsaveable_law,
-)
-from puck_tables.table.oddities import odd_nodes
+from puck_tables.table.law_table import LawTable
 from puck_tables.table.resultant_table import ResultantTable
+from puck_tables.table.singular_lines import lines_of, opening_angle, refuse_height
 from puck_tables.table.slip_axis import GRADING_POWER, LawAxis, sides_of
 from puck_tables.table.slip_spline import SlipSpline, slip_spline
-from puck_tables.table.table import Accuracy, Axis, Progress, Table
+from puck_tables.table.table import Axis, Progress
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -47,12 +37,10 @@ DEFAULT_ACCURACY, FINEST_ACCURACY = 1e-9, 5e-13  # truth itself is good to 1e-13
 _LARGEST, _ROUNDING = 1e3, 1e-12  # of a ratio
 _NODES, _NODE_ERROR = 6, 1e-10  # how many are compared as a file is read, and how well known
 _AT_THE_LIMIT = 1e-6
-_SAME_LINE = 1e-12  # radians
-_SHARP_DELTA = 3.6
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class FrictionSlice(Table):
+class FrictionSlice(LawTable):
     """The friction ratios of a puck over its slip angle.
 
     Parameters
@@ -65,7 +53,6 @@ class FrictionSlice(Table):
     """
 
     _: KW_ONLY
-    law: Law
     delta: float
     cotangents: tuple[float, ...]
 
@@ -91,23 +78,12 @@ class FrictionSlice(Table):
         "method": "balance of moments by quadrature, 1e-13",
         "phi_map": f"two sides for each line: tan(phi - line) = extent xi^{GRADING_POWER}",
     }
-    entries: ClassVar[Mapping[str, type]] = {
-        "n_phi": int, "profile_rows": int, "delta": float, "cotangents": str,
-    }  # fmt: skip
+    entries: ClassVar[Mapping[str, type]] = {**LawTable.entries, "delta": float, "cotangents": str}
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        lines = np.array(self.cotangents)
-        if not (lines.size and lines[0] > 0.0 and np.all(np.diff(lines) > 0.0)):
-            raise ValueError("its lines are none")
-        if (len(self.values) - 1) % (2 * lines.size) or not np.isfinite(lines[-1]):
-            raise ValueError("its nodes are not those of its lines")
-
-    @cached_property
-    def axis(self) -> LawAxis:
-        """The slip angles of its nodes."""
-        cells = (len(self.values) - 1) // (2 * len(self.cotangents))
-        return LawAxis(self.cotangents, cells)
+    @property
+    def lines_at(self) -> tuple[float, ...]:
+        """Where it is singular."""
+        return self.cotangents
 
     @cached_property
     def spline(self) -> SlipSpline:
@@ -177,7 +153,7 @@ class FrictionSlice(Table):
         near += rng.choice([-1.0, 1.0], points) * 10.0 ** -rng.uniform(0.3, 15.0, points)
         some = rng.permutation(nodes.size - 1)[:points]
         inside = nodes[some] + rng.random(some.size) * np.diff(nodes)[some]
-        odd = self._odd_nodes(points // 2)
+        odd = self.odd_nodes(points // 2)
         allowed = min(self.tolerance, COARSEST)
         routes = (
             ("the law, random points", rng.uniform(0.0, 0.5 * np.pi, points), allowed),
@@ -192,11 +168,6 @@ class FrictionSlice(Table):
             if progress is not None:
                 progress(done, len(routes))
         return CheckReport(self.source, self.tolerance, tuple(checks))
-
-    def _odd_nodes(self, count: int) -> npt.NDArray[np.int64]:
-        """Numbers of nodes that fit their neighbours least."""
-        odd = odd_nodes(self.axis.by_side(self.values), (1,), count)
-        return np.unique(self.axis.numbers[odd[:, 0], odd[:, 1]])
 
     # the record of the kind
 
@@ -218,11 +189,6 @@ class FrictionSlice(Table):
         return friction_slice(law, float(checked_delta(of[1])), wanted, **how)
 
     @property
-    def pressure_law(self) -> str:
-        """The name of the pressure law."""
-        return self.law.name
-
-    @property
     def grid(self) -> str:
         """How many nodes it has, in words."""
         return f"{len(self.values)} phi nodes"
@@ -239,16 +205,9 @@ class FrictionSlice(Table):
 
     @property
     def parameters(self) -> dict[str, int | float | str]:
-        """Height, lines and nodes, and how many rows a tabulated law has."""
-        return {
-            "n_phi": len(self.values), "profile_rows": profile_rows(self.law),
-            "delta": self.delta, "cotangents": json.dumps(self.cotangents),
-        }  # fmt: skip
-
-    @property
-    def curve(self) -> dict[str, Axis]:
-        """A tabulated law."""
-        return profile_curve(self.law)
+        """Those of its law, height and lines."""
+        lines = json.dumps(self.cotangents)
+        return {**super().parameters, "delta": self.delta, "cotangents": lines}
 
     @property
     def bounds(self) -> tuple[float, float, float]:
@@ -256,34 +215,17 @@ class FrictionSlice(Table):
         return -_ROUNDING, _LARGEST, 0.1 * FINEST_ACCURACY
 
     @classmethod
-    def shapes(cls, attributes: dict[str, Any]) -> dict[str, tuple[int, ...]]:
-        """Shapes of the arrays of a file with these attributes.
-
-        Examples
-        --------
-        >>> FrictionSlice.shapes({"n_phi": 33, "profile_rows": 0})["phi"]
-        (33,)
-        """
-        nodes = (attributes["n_phi"],)
-        return {"phi": nodes, **dict.fromkeys(cls.functions, nodes), **profile_shapes(attributes)}
-
-    @classmethod
     def fields(cls, attributes: dict[str, Any], arrays: dict[str, FloatArray]) -> dict[str, Any]:
         """Law, height and lines of a file."""
-        law, lines = law_in_file(attributes, arrays), json.loads(attributes["cotangents"])
-        refuse_height(law, attributes["delta"])
-        lines = tuple(float(line) for line in lines)
-        return {"law": law, "delta": attributes["delta"], "cotangents": lines}
-
-    @property
-    def unsaveable(self) -> str | None:
-        """A law that is a function."""
-        return unsaveable_law(self.law)
+        found = super().fields(attributes, arrays)
+        refuse_height(found["law"], attributes["delta"])
+        lines = tuple(float(line) for line in json.loads(attributes["cotangents"]))
+        return found | {"delta": attributes["delta"], "cotangents": lines}
 
     def spot_checks(self) -> Iterator[tuple[FloatArray, float, str]]:
         """Of nodes, those that fit their neighbours least among them."""
         nodes = np.random.default_rng().integers(0, len(self.values), _NODES)
-        nodes = np.concatenate([self._odd_nodes(_NODES), nodes])
+        nodes = np.concatenate([self.odd_nodes(_NODES), nodes])
         truth = _ratios(self.law, self.axis.nodes()[nodes], self.delta)
         yield np.abs(self.values[nodes] - truth), _NODE_ERROR, f"the law {self.law.name}"
 
@@ -340,68 +282,6 @@ def _ratios(law: Law, phi: FloatArray, delta: float) -> FloatArray:
                      rho.spin / rho.parallel], axis=-1)  # fmt: skip
 
 
-def refuse_height(law: Law, delta: float) -> None:
-    """Refuse a height at which the friction is not known at every slip angle.
-
-    Raises
-    ------
-    InputError
-        If it is not a height, or beyond full contact under another law than uniform pressure.
-    ContactError
-        If the puck tips, or its contact is not determined.
-
-    Examples
-    --------
-    >>> from puck_tables.contact.laws import law_of
-    >>> refuse_height(law_of("ring"), 2.0)
-    """
-    law.friction(0.0, delta)
-    if law.can_lift and delta > one_sided.FOLD_DELTA:
-        raise ContactError(
-            f"delta = {delta:g}: beyond {one_sided.FOLD_DELTA:g} the balance of moments has more "
-            "than one solution just below phi = pi/4, and the motion is not determined; choose a "
-            "lower or broader puck or less friction"
-        )
-
-
-def opening_angle(delta: float) -> float:
-    """The slip angle φ_c with δ_c(φ_c) = δ, up to which part of the base is lifted; 0 if δ ≤ 1.
-
-    Examples
-    --------
-    >>> round(opening_angle(1.15913851), 6)  # π/4
-    0.785398
-    """
-    if delta <= 1.0:
-        return 0.0
-    low, high = 0.0, 0.5 * math.pi
-    while True:
-        middle = 0.5 * (low + high)
-        if not low < middle < high:
-            return high
-        if critical_delta(middle) < delta:
-            low = middle
-        else:
-            high = middle
-
-
-def _sharpest_bend(delta: float) -> float:
-    """Where just below π/4 the ratios of a puck next to tipping bend most; 0 for lower ones.
-
-    They are analytic there, but towards the fold of the balance (δ = 3.9638) on a scale that
-    shrinks to nothing.  Nodes crowded there make the spline at δ = 3.9 240 times as good.
-    """
-    if delta < _SHARP_DELTA:
-        return 0.0
-    low, high = 0.25 * math.pi - 0.1, 0.25 * math.pi - 0.002
-    while high - low > 1e-6:
-        phi = np.linspace(low, high, 33)
-        rho = one_sided.resultants(phi, delta)
-        n = int(np.abs(np.diff(rho.perpendicular / rho.parallel, 2)).argmax())
-        low, high = float(phi[max(n - 2, 0)]), float(phi[min(n + 3, 32)])
-    return low
-
-
 @lru_cache(maxsize=64)
 def friction_slice(law: Law, delta: float, accuracy: float = DEFAULT_ACCURACY) -> FrictionSlice:
     """Tabulate the friction of one puck.
@@ -438,19 +318,13 @@ def friction_slice(law: Law, delta: float, accuracy: float = DEFAULT_ACCURACY) -
     >>> round(float(spin / inverse), 6)  # ρ_ω
     0.219633
     """
-    refuse_height(law, delta)
-    opening = opening_angle(delta) if law.can_lift else 0.0
-    cotangents = list(law.edges[::-1])
-    for line in (opening, _sharpest_bend(delta) if law.can_lift else 0.0):
-        if line > 0.0 and all(abs(line - math.atan2(1.0, e)) > _SAME_LINE for e in law.edges):
-            cotangents = sorted([*cotangents, 1.0 / math.tan(line)], reverse=True)
+    cotangents = lines_of(law, delta)
     spline = slip_spline(
-        lambda phi: _ratios(law, phi, delta), sides_of(cotangents), accuracy, even=True
+        lambda phi: _ratios(law, phi, delta), sides_of(cotangents[::-1]), accuracy, even=True
     )
     assert spline.accuracy is not None
-    lines = tuple(cotangents[::-1])
     return FrictionSlice(
-        LawAxis(lines, spline.cells).joined(spline.values), law=law, delta=delta,
-        cotangents=lines, tolerance=accuracy,
+        LawAxis(cotangents, spline.cells).joined(spline.values), law=law, delta=delta,
+        cotangents=cotangents, tolerance=accuracy,
         accuracy=replace(spline.accuracy, at_second=3 * (delta,)),
     )  # fmt: skip

@@ -12,11 +12,12 @@ from puck_tables.contact import quadrature
 from puck_tables.contact.integrals import slip_direction
 from puck_tables.contact.laws import Law
 from puck_tables.contact.resultants import Resultants, moment_balance
+from puck_tables.table.accuracy import Accuracy
 from puck_tables.table.build import COARSEST, Goal, built
 from puck_tables.table.check import Check, CheckReport, compared
 from puck_tables.table.resultant_table import HEIGHTS, ResultantTable, full_contact
 from puck_tables.table.slip_axis import LawAxis
-from puck_tables.table.table import Accuracy, Progress
+from puck_tables.table.table import Progress
 
 FloatArray = npt.NDArray[np.float64]
 Tell = Callable[[int], None]

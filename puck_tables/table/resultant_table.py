@@ -9,7 +9,7 @@ one height is three.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import KW_ONLY, dataclass
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar
 
@@ -23,16 +23,9 @@ from puck_tables.errors import InputError
 from puck_tables.real import broadcast
 from puck_tables.table.check import CheckReport
 from puck_tables.table.fit import height_terms, sided_coefficients
-from puck_tables.table.law_record import (
-    law_in_file,
-    profile_curve,
-    profile_rows,
-    profile_shapes,
-    unsaveable_law,
-)
-from puck_tables.table.oddities import odd_nodes
-from puck_tables.table.slip_axis import GRADING_POWER, LawAxis
-from puck_tables.table.table import KINDS, Axis, Progress, Table
+from puck_tables.table.law_table import LawTable
+from puck_tables.table.slip_axis import GRADING_POWER
+from puck_tables.table.table import KINDS, Axis, Progress
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -55,7 +48,7 @@ _INTERPRETATION = (
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ResultantTable(Table):
+class ResultantTable(LawTable):
     """Friction resultants under a pressure law, 0 ≤ δ ≤ 4⟨x²⟩, with the spline through them.
 
     Parameters
@@ -64,9 +57,6 @@ class ResultantTable(Table):
         ρ_∥, ρ_⊥, ρ_ω at the nodes of ``axis`` and at δ = 0, ⅓, ⅔ and 1 of ``delta_max``.
     law : Law
     """
-
-    _: KW_ONLY
-    law: Law
 
     kind = "resultants"
     algorithm = "integrals of the law; friction ratios splined on its sides; 2"
@@ -90,17 +80,11 @@ class ResultantTable(Table):
         "delta_map": "delta = delta_max j/3; polynomials of degree 2",
         "splined": "1/parallel, perpendicular/parallel, spin/parallel",
     }
-    entries: ClassVar[Mapping[str, type]] = {"n_phi": int, "profile_rows": int}
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        if (len(self.values) - 1) % (2 * len(self.law.edges)):
-            raise ValueError("its nodes are not those of its law")
-
-    @cached_property
-    def axis(self) -> LawAxis:
-        """The slip angles of its nodes."""
-        return LawAxis(self.law.edges, (len(self.values) - 1) // (2 * len(self.law.edges)))
+    @property
+    def lines_at(self) -> tuple[float, ...]:
+        """Where the centre of rotation crosses an edge of the load."""
+        return self.law.edges
 
     @cached_property
     def delta_max(self) -> float:
@@ -202,7 +186,7 @@ class ResultantTable(Table):
 
         Examples
         --------
-        >>> float(Table.shipped().resultants(0.0, 0.5).perpendicular.round(12))
+        >>> float(ResultantTable.shipped().resultants(0.0, 0.5).perpendicular.round(12))
         0.125
         """
         from puck_tables.kernels.quadratic import fill_resultants
@@ -233,7 +217,7 @@ class ResultantTable(Table):
 
         Examples
         --------
-        >>> Table.shipped().validate(points=50).passed
+        >>> ResultantTable.shipped().validate(points=50).passed
         True
         """
         from puck_tables.table.resultant_check import judged
@@ -255,11 +239,6 @@ class ResultantTable(Table):
         return tabulated(of if isinstance(of, Law) else law_of(of), accuracy, **how)
 
     @property
-    def pressure_law(self) -> str:
-        """The name of the pressure law."""
-        return self.law.name
-
-    @property
     def grid(self) -> str:
         """How many nodes it has, in words."""
         return f"{len(self.values)} phi x {HEIGHTS} delta nodes"
@@ -278,16 +257,6 @@ class ResultantTable(Table):
         }
 
     @property
-    def parameters(self) -> dict[str, int | float | str]:
-        """How many nodes, and how many rows a tabulated law has."""
-        return {"n_phi": len(self.values), "profile_rows": profile_rows(self.law)}
-
-    @property
-    def curve(self) -> dict[str, Axis]:
-        """A tabulated law."""
-        return profile_curve(self.law)
-
-    @property
     def bounds(self) -> tuple[float, float, float]:
         """Of the values and of the accuracy."""
         return 0.0, _LARGEST, _FINEST / self.axis.cells**4
@@ -301,19 +270,11 @@ class ResultantTable(Table):
         >>> ResultantTable.shapes({"n_phi": 33, "profile_rows": 0})["spin"]
         (33, 4)
         """
-        nodes = attributes["n_phi"]
-        functions = dict.fromkeys(cls.functions, (nodes, HEIGHTS))
-        return {"phi": (nodes,), "delta": (HEIGHTS,), **functions, **profile_shapes(attributes)}
-
-    @classmethod
-    def fields(cls, attributes: dict[str, Any], arrays: dict[str, FloatArray]) -> dict[str, Any]:
-        """The law of a file: no other file is read for it."""
-        return {"law": law_in_file(attributes, arrays)}
-
-    @property
-    def unsaveable(self) -> str | None:
-        """A law that is a function."""
-        return unsaveable_law(self.law)
+        shapes = super().shapes(attributes)
+        functions = dict.fromkeys(cls.functions, (*shapes["phi"], HEIGHTS))
+        return {"phi": shapes["phi"], "delta": (HEIGHTS,), **functions, **{
+            name: shape for name, shape in shapes.items() if name not in ("phi", *functions)
+        }}  # fmt: skip
 
     def spot_checks(self) -> Iterator[tuple[FloatArray, float, str]]:
         """Of nodes, those that fit their neighbours least among them."""
@@ -321,13 +282,8 @@ class ResultantTable(Table):
         most, known = (_MOST_EXACT, _EXACT) if exact else (_MOST, _KNOWN)
         rows = np.arange(len(self.values))
         if rows.size > most:
-            side, node = odd_nodes(self.axis.by_side(self.values[:, [0, -1]]), (1,), most // 2).T[
-                :2
-            ]
-            rows = np.unique(np.concatenate([
-                [0, rows.size - 1], self.axis.numbers[side, node],
-                np.random.default_rng().choice(rows, most // 4),
-            ]))  # fmt: skip
+            some = np.random.default_rng().choice(rows, most // 4)
+            rows = np.unique([0, rows.size - 1, *self.odd_nodes(most // 2), *some])
         truth = self.law.resultants(self.axis.nodes()[rows, None], self.heights)
         what = "the closed forms" if exact else f"the law {self.law.name}"
         yield np.abs(self.values[rows] - np.stack(truth, axis=-1)), known, what

@@ -28,9 +28,9 @@ from puck_tables.kernels.slice_spline import (
     UPPER_SIN,
     fill_slice,
 )
+from puck_tables.table.accuracy import Accuracy
 from puck_tables.table.fit import sided_coefficients
 from puck_tables.table.slip_axis import Side, graded
-from puck_tables.table.table import Accuracy
 
 FloatArray = npt.NDArray[np.float64]
 Functions = Callable[[FloatArray], FloatArray]  # of φ (n,), as (n, functions)

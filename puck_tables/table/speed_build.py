@@ -16,11 +16,12 @@ from puck_tables.executor import keep_on, run_chunks
 from puck_tables.kernels.speed_quadrature import fill_integrals
 from puck_tables.kernels.speed_spline import fill_patch
 from puck_tables.real import rounded_up
+from puck_tables.table.accuracy import Accuracy
 from puck_tables.table.build import COARSEST
 from puck_tables.table.speed_fit import missed_by_half, quintic_coefficients
 from puck_tables.table.speed_grid import COARSEST_CELLS, HALVINGS, Patch, breaks_of, patches_of
 from puck_tables.table.speed_table import SpeedTable
-from puck_tables.table.table import Accuracy, Progress
+from puck_tables.table.table import Progress
 
 FloatArray = npt.NDArray[np.float64]
 Law = SpeedLaw | SpeedFunction
