@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import json
 from pathlib import Path
 
 import h5py
@@ -10,13 +11,14 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 from forged_tables import Edit, forged, honest, outcome, random_edit
-from kinds_of_table import KINDS, answers
+from kinds_of_table import KINDS, answers, small
 from puck_tables.cli.main import main
 
 from puck_tables import Table, store, table_for
 from puck_tables.errors import TableError
 from puck_tables.own_folder import say
 from puck_tables.table.file import sealed
+from puck_tables.table.slip_axis import LawAxis
 
 
 @pytest.fixture(scope="module")
@@ -106,6 +108,35 @@ def test_what_a_file_says_is_no_yardstick(folder: Path, tmp_path: Path):
     path.write_bytes(forged(honest("speed", folder), unit))
     with pytest.raises(TableError, match=r"off by 1e.09 from the largest f of its law"):
         Table.load(path)
+
+
+def test_a_slice_with_other_lines_or_too_few_cells_is_refused(folder: Path, tmp_path: Path):
+    """Its nodes alone are right: between them the spline would not be."""
+    path = tmp_path / "forged.h5"
+    table = small("slice")
+
+    def on(axis: LawAxis, tolerance: float) -> Edit:
+        def edit(attributes: dict[str, object], arrays: dict[str, np.ndarray]) -> None:
+            nodes = axis.nodes()
+            rho = table.law.friction(nodes, table.delta)
+            ratios = 1.0 / rho.parallel, rho.perpendicular / rho.parallel, rho.spin / rho.parallel
+            arrays.update(zip(("phi", *table.functions), (nodes, *ratios), strict=True))
+            attributes["n_phi"], attributes["tolerance"] = nodes.size, tolerance
+            attributes["cotangents"] = json.dumps(axis.edges)
+
+        return edit
+
+    for axis, tolerance, words in (
+        (LawAxis(table.cotangents, 32), 1e-5, ""),
+        (LawAxis((1.0,), 64), 1e-5, "its lines are not those of its puck"),
+        (LawAxis(table.cotangents, 4), 1e-6, "cannot use"),
+    ):
+        path.write_bytes(forged(honest("slice", folder), on(axis, tolerance)))
+        if words:
+            with pytest.raises(TableError, match=words):
+                Table.load(path)
+        else:
+            Table.load(path)
 
 
 def test_a_profile_may_not_call_itself_by_the_name_of_a_law(folder: Path, tmp_path: Path):

@@ -26,7 +26,7 @@ from puck_tables.table.check import Check, CheckReport, compared
 from puck_tables.table.fit import height_terms
 from puck_tables.table.law_table import LawTable
 from puck_tables.table.resultant_table import ResultantTable
-from puck_tables.table.singular_lines import lines_of, opening_angle, refuse_height
+from puck_tables.table.singular_lines import lines_of, opening_angle, singular_lines
 from puck_tables.table.slip_axis import GRADING_POWER, LawAxis, sides_of
 from puck_tables.table.slip_spline import SlipSpline, slip_spline
 from puck_tables.table.table import Axis, Progress
@@ -36,6 +36,7 @@ FloatArray = npt.NDArray[np.float64]
 DEFAULT_ACCURACY, FINEST_ACCURACY = 1e-9, 5e-13  # truth itself is good to 1e-13
 _LARGEST, _ROUNDING = 1e3, 1e-12  # of a ratio
 _NODES, _NODE_ERROR = 6, 1e-10  # how many are compared as a file is read, and how well known
+_SAME, _CONSTANT = 1e-9, 1e-3  # of lines; no slice is better than the latter times cells⁻⁴
 _AT_THE_LIMIT = 1e-6
 
 
@@ -212,14 +213,16 @@ class FrictionSlice(LawTable):
     @property
     def bounds(self) -> tuple[float, float, float]:
         """Of the values and of the accuracy."""
-        return -_ROUNDING, _LARGEST, 0.1 * FINEST_ACCURACY
+        return -_ROUNDING, _LARGEST, max(0.1 * FINEST_ACCURACY, _CONSTANT / self.axis.cells**4)
 
     @classmethod
     def fields(cls, attributes: dict[str, Any], arrays: dict[str, FloatArray]) -> dict[str, Any]:
         """Law, height and lines of a file."""
         found = super().fields(attributes, arrays)
-        refuse_height(found["law"], attributes["delta"])
         lines = tuple(float(line) for line in json.loads(attributes["cotangents"]))
+        needed = np.array(singular_lines(found["law"], attributes["delta"]))
+        if np.any(np.abs(np.subtract.outer(needed, lines)).min(axis=1) > _SAME * needed):
+            raise ValueError("its lines are not those of its puck")
         return found | {"delta": attributes["delta"], "cotangents": lines}
 
     def spot_checks(self) -> Iterator[tuple[FloatArray, float, str]]:

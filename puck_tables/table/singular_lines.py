@@ -22,7 +22,9 @@ _SHARP_DELTA = 3.6
 
 
 def lines_of(law: Law, delta: float) -> tuple[float, ...]:
-    """The cotangents of the lines of a puck, ascending.
+    """The cotangents of the lines of a puck between which splines lie, ascending.
+
+    Besides the singular ones that where a puck next to tipping bends most.
 
     Raises
     ------
@@ -35,13 +37,30 @@ def lines_of(law: Law, delta: float) -> tuple[float, ...]:
     >>> lines_of(law_of("annulus:0.8"), 0.5)
     (0.8, 1.0)
     """
+    singular = singular_lines(law, delta)
+    bend = _sharpest_bend(delta) if law.can_lift else 0.0
+    return tuple(sorted([*singular, *([1.0 / math.tan(bend)] if bend > 0.0 else [])]))
+
+
+def singular_lines(law: Law, delta: float) -> tuple[float, ...]:
+    """Those of them across which the ratios are not analytic, found at once.
+
+    Raises
+    ------
+    InputError, ContactError
+        If the height is out of range.
+
+    Examples
+    --------
+    >>> from puck_tables.contact.laws import law_of
+    >>> [round(line, 6) for line in singular_lines(law_of("uniform"), 2.0)]
+    [0.566906, 1.0]
+    """
     refuse_height(law, delta)
-    cotangents = list(law.edges)
-    if law.can_lift:
-        for line in (opening_angle(delta), _sharpest_bend(delta)):
-            if line > 0.0 and all(abs(line - math.atan2(1.0, e)) > _SAME_LINE for e in law.edges):
-                cotangents.append(1.0 / math.tan(line))
-    return tuple(sorted(cotangents))
+    opening = opening_angle(delta) if law.can_lift else 0.0
+    if opening == 0.0 or any(abs(opening - math.atan2(1.0, e)) <= _SAME_LINE for e in law.edges):
+        return law.edges
+    return tuple(sorted([*law.edges, 1.0 / math.tan(opening)]))
 
 
 def refuse_height(law: Law, delta: float) -> None:
