@@ -17,9 +17,9 @@ import click
 from puck_tables.errors import InputError
 
 if TYPE_CHECKING:
-    from puck_tables.catalogue import AnyTable
     from puck_tables.puck import Puck
     from puck_tables.result import Result
+    from puck_tables.table.resultant_table import ResultantTable
     from puck_tables.table.table import Table
 
 Command = TypeVar("Command", bound=Callable[..., Any])
@@ -306,18 +306,18 @@ def printable(text: str) -> str:
     )
 
 
-def open_table(path: Path | None) -> Table:
+def open_table(path: Path | None) -> ResultantTable:
     """The table of resultants asked for."""
-    from puck_tables.table.file import load_table
+    from puck_tables.table.resultant_table import ResultantTable
 
-    return load_table(path)
+    return ResultantTable.shipped() if path is None else ResultantTable.load(path)
 
 
-def tables_named(path: Path | None) -> list[AnyTable]:
+def tables_named(path: Path | None) -> list[Table]:
     """The table in a file, of any kind, or those that come along."""
-    from puck_tables.catalogue import load_any_table, tables_that_come_along
+    from puck_tables.table.table import Table
 
-    return tables_that_come_along() if path is None else [load_any_table(path)]
+    return [Table.shipped(), Table.shipped("stops")] if path is None else [Table.load(path)]
 
 
 def told(path: Path) -> None:

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
     from puck_tables.similarity.stop_table import StopTable
     from puck_tables.stop_map import StopMap
-    from puck_tables.table.table import Table
+    from puck_tables.table.resultant_table import ResultantTable
 
 RANGE = Range()
 
@@ -174,16 +174,14 @@ def _done_with(kept: Path | None, output: Path | None) -> None:
         click.echo(f"{_kept(output)} is left of an interrupted sweep: remove it", err=True)
 
 
-def _table_of_stops(path: Path) -> Table | StopTable:
+def _table_of_stops(path: Path) -> ResultantTable | StopTable:
     """A table that stops can come from."""
     from puck_tables.similarity.stop_table import StopTable
-    from puck_tables.table.table import Table
+    from puck_tables.table.resultant_table import ResultantTable
 
     table = tables_named(path)[0]
-    if not isinstance(table, Table | StopTable):
-        raise InputError(
-            f"{path} holds '{table.passport['kind']}': stops come from 'stops' or 'resultants'"
-        )
+    if not isinstance(table, ResultantTable | StopTable):
+        raise InputError(f"{path} holds '{table.kind}': stops come from 'stops' or 'resultants'")
     return table
 
 

@@ -13,7 +13,7 @@ from puck_tables.errors import InputError
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from puck_tables.catalogue import Entry
+    from puck_tables.store import Entry
 
 
 @click.command()
@@ -44,9 +44,7 @@ def tables(as_json: bool, names: tuple[str, ...], clean: bool) -> None:
     elif clean:
         _remove([*store.kept_files(), *store.leftovers()])
     else:
-        from puck_tables.catalogue import shipped_and_kept
-
-        entries = shipped_and_kept()
+        entries = store.shipped_and_kept()
         if as_json:
             click.echo(json.dumps([entry._asdict() for entry in entries]))
         else:

@@ -44,28 +44,11 @@ if TYPE_CHECKING:
     from puck_tables.scene.scene import Scene, scene_from
     from puck_tables.scene.simulate import simulate_scene
     from puck_tables.scene.sweep import SceneMap, sweep_scene
-    from puck_tables.similarity.build import build_stop_table
-    from puck_tables.similarity.check import validate_stops
-    from puck_tables.similarity.file import load_stop_table, save_stop_table
-    from puck_tables.similarity.stop_table import StopTable
     from puck_tables.states import States, states
     from puck_tables.stop_map import StopMap
     from puck_tables.stops import Stops, stop
     from puck_tables.store import table_for
-    from puck_tables.table.build import build_table
-    from puck_tables.table.check import CheckReport, validate
-    from puck_tables.table.file import load_table, save_table
-    from puck_tables.table.law_check import validate_law
-    from puck_tables.table.law_file import load_law_table, save_law_table
-    from puck_tables.table.law_table import LawTable, build_law_table
-    from puck_tables.table.partial_build import build_partial_table
-    from puck_tables.table.partial_check import validate_partial
-    from puck_tables.table.partial_file import load_partial_table, save_partial_table
-    from puck_tables.table.partial_table import PartialTable
-    from puck_tables.table.speed_build import build_speed_table
-    from puck_tables.table.speed_check import validate_speed
-    from puck_tables.table.speed_file import load_speed_table, save_speed_table
-    from puck_tables.table.speed_table import SpeedTable
+    from puck_tables.table.check import CheckReport
     from puck_tables.table.table import Table
     from puck_tables.trajectory import Trajectory
 
@@ -106,37 +89,13 @@ _HOMES = {
     "simulate_scene": "scene.simulate",
     "SceneMap": "scene.sweep",
     "sweep_scene": "scene.sweep",
-    "build_stop_table": "similarity.build",
-    "validate_stops": "similarity.check",
-    "load_stop_table": "similarity.file",
-    "save_stop_table": "similarity.file",
-    "StopTable": "similarity.stop_table",
     "States": "states",
     "states": "states",
     "StopMap": "stop_map",
     "Stops": "stops",
     "stop": "stops",
     "table_for": "store",
-    "build_table": "table.build",
     "CheckReport": "table.check",
-    "validate": "table.check",
-    "load_table": "table.file",
-    "save_table": "table.file",
-    "validate_law": "table.law_check",
-    "load_law_table": "table.law_file",
-    "save_law_table": "table.law_file",
-    "LawTable": "table.law_table",
-    "build_law_table": "table.law_table",
-    "build_partial_table": "table.partial_build",
-    "validate_partial": "table.partial_check",
-    "load_partial_table": "table.partial_file",
-    "save_partial_table": "table.partial_file",
-    "PartialTable": "table.partial_table",
-    "build_speed_table": "table.speed_build",
-    "validate_speed": "table.speed_check",
-    "load_speed_table": "table.speed_file",
-    "save_speed_table": "table.speed_file",
-    "SpeedTable": "table.speed_table",
     "Table": "table.table",
     "Trajectory": "trajectory",
 }
@@ -150,8 +109,6 @@ __all__ = [
     "ConstrainedMotion",
     "ConstrainedSystem",
     "Law",
-    "LawTable",
-    "PartialTable",
     "Puck",
     "Result",
     "Resultants",
@@ -159,10 +116,8 @@ __all__ = [
     "SceneMap",
     "SceneRun",
     "SpeedLaw",
-    "SpeedTable",
     "States",
     "StopMap",
-    "StopTable",
     "Stops",
     "Table",
     "Trajectory",
@@ -170,11 +125,6 @@ __all__ = [
     "approach_exponent",
     "asperity_curve",
     "asperity_motion",
-    "build_law_table",
-    "build_partial_table",
-    "build_speed_table",
-    "build_stop_table",
-    "build_table",
     "constrained_motion",
     "critical_delta",
     "curvature_slope",
@@ -183,11 +133,6 @@ __all__ = [
     "law_of",
     "limit_angle",
     "limit_ratio",
-    "load_law_table",
-    "load_partial_table",
-    "load_speed_table",
-    "load_stop_table",
-    "load_table",
     "loaded_share",
     "one_sided_resultants",
     "patch_stop",
@@ -195,11 +140,6 @@ __all__ = [
     "profile_law",
     "regime",
     "resultants",
-    "save_law_table",
-    "save_partial_table",
-    "save_speed_table",
-    "save_stop_table",
-    "save_table",
     "scene_from",
     "simulate_scene",
     "speed_resultants",
@@ -207,11 +147,6 @@ __all__ = [
     "stop",
     "sweep_scene",
     "table_for",
-    "validate",
-    "validate_law",
-    "validate_partial",
-    "validate_speed",
-    "validate_stops",
 ]
 
 

@@ -30,7 +30,7 @@ from puck_tables.similarity.section import (
     section_of,
 )
 from puck_tables.solvers import fits
-from puck_tables.table.file import load_table
+from puck_tables.table.resultant_table import ResultantTable
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -354,7 +354,7 @@ def _misses(found: Aim) -> FloatArray:
 
     puck = found.puck
     if _is_plain(puck):
-        cut = table_friction(puck.delta, load_table()).cut
+        cut = table_friction(puck.delta, ResultantTable.shipped()).cut
     else:
         cut = friction_of(puck.body, SLICE_ACCURACY).cut
     distance = math.hypot(*found.target)

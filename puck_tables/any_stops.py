@@ -24,6 +24,7 @@ from puck_tables.similarity.stop_slice import FINEST_SLICE, StopSlice, stop_slic
 from puck_tables.sliced import LOOSEST_LOCAL, checked_tol, friction_of, unseen_tail
 from puck_tables.solvers import METHODS, OUTPUTS, fits
 from puck_tables.table.friction_slice import FINEST_ACCURACY
+from puck_tables.table.resultant_table import ResultantTable
 
 FloatArray = npt.NDArray[np.float64]
 Status = npt.NDArray[np.int8]
@@ -51,11 +52,14 @@ class AnyStops:
 
     Parameters
     ----------
-    pressure, gyration, tol, method
+    pressure, gyration, tol, method, table
         As :func:`puck_tables.stop` takes them.
     """
 
-    def __init__(self, pressure: str | Law, gyration: float, tol: float, method: str | None):
+    def __init__(
+        self, pressure: str | Law, gyration: float, tol: float, method: str | None,
+        table: ResultantTable | None = None,
+    ) -> None:  # fmt: skip
         if method not in (None, *METHODS):
             raise InputError(f"method must be one of {', '.join(METHODS)}, got {method!r}")
         self.tol = checked_tol(tol)
@@ -66,13 +70,14 @@ class AnyStops:
             )
         self._law = pressure if isinstance(pressure, Law) else law_of(pressure)
         self._gyration = body_of(self._law, 0.0, gyration).gyration
-        self._wanted = method
+        self._wanted, self._table = method, table
         self._ready: dict[float, StopSlice | _Integrated] = {}
 
     @property
     def source(self) -> str:
         """What the stops come from, in words."""
-        return f"slices of pressure {self._law.name}, k/r = {self._gyration:g}"
+        of = "" if self._table is None else f" of {self._table.source}"
+        return f"slices{of} of pressure {self._law.name}, k/r = {self._gyration:g}"
 
     @property
     def work(self) -> dict[str, Any]:
@@ -82,6 +87,7 @@ class AnyStops:
             "by": self._wanted, "law": self._law.name, "edges": self._law.edges,
             "friction": np.stack(self._law.friction(phi, 0.0)), "profile": self._law.profile,
             "gyration": self._gyration, "tol": self.tol,
+            "table": None if self._table is None else self._table.values,
         }  # fmt: skip
 
     @property
@@ -101,7 +107,7 @@ class AnyStops:
         """
         height = checked_delta(delta)
         if height.size:
-            body_of(self._law, float(height.max()), self._gyration)
+            body_of(self._law, float(height.max()), self._gyration, self._table)
         return height
 
     def prepare(
@@ -123,7 +129,7 @@ class AnyStops:
         run_chunks(work, delta.size, 1, threads, progress)
 
     def _made(self, delta: float, launches: int) -> StopSlice | _Integrated:
-        body = body_of(self._law, delta, self._gyration)
+        body = body_of(self._law, delta, self._gyration, self._table)
         if self._wanted == LOOK_UP:
             return stop_slice(body, self.tol)
         if self._wanted is None and launches >= MANY and self.tol >= FINEST_SLICE:
@@ -182,7 +188,7 @@ def _answered(ready: StopSlice | _Integrated, launches: FloatArray) -> tuple[Flo
         def work(start: int, stop: int) -> None:
             some, part = np.ascontiguousarray(launches[:, start:stop]), out[:, start:stop].copy()
             fill_stops(
-                some, DORMAND_PRINCE, ready.steps, ready.local, ready.cut, 1.0, part,
+                some, DORMAND_PRINCE, ready.steps, ready.local, ready.cut, part,
                 status[start:stop],
             )  # fmt: skip
             out[:, start:stop] = part

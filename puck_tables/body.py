@@ -9,7 +9,10 @@ from puck_tables.contact.laws import HOMOGENEOUS, Law, law_of, limit_ratio
 from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import InputError
 from puck_tables.real import instance, real
-from puck_tables.table.friction_slice import FrictionSlice, friction_slice, refuse_height
+from puck_tables.store import friction_for
+from puck_tables.table.friction_slice import FrictionSlice, slice_of
+from puck_tables.table.resultant_table import ResultantTable
+from puck_tables.table.singular_lines import refuse_height
 
 STANDARD_GRAVITY = 9.80665
 SMALLEST_GYRATION, LARGEST_GYRATION = 0.1, 10.0
@@ -24,6 +27,7 @@ class Body:
     law : Law, the pressure law
     delta : dimensionless height 2fh/r
     gyration : radius of gyration about the vertical axis in units of r
+    table : of its friction, where one was given; else friction comes from the law itself
 
     Examples
     --------
@@ -34,6 +38,7 @@ class Body:
     law: Law
     delta: float
     gyration: float
+    table: ResultantTable | None = None
 
     @property
     def limit_ratio(self) -> float:
@@ -63,7 +68,9 @@ class Body:
 
     def friction(self, accuracy: float) -> FrictionSlice:
         """Its friction over the slip angle."""
-        return friction_slice(self.law, self.delta, accuracy)
+        if self.table is not None:
+            return slice_of(self.table, self.delta, accuracy)
+        return friction_for(self.law, self.delta, accuracy)
 
 
 def is_plain(pressure: str | Law, gyration: float, delta: float) -> bool:
@@ -78,13 +85,15 @@ def is_plain(pressure: str | Law, gyration: float, delta: float) -> bool:
     return uniform and gyration == HOMOGENEOUS and not delta > 1.0
 
 
-def body_of(pressure: str | Law, delta: float, gyration: float) -> Body:
-    """A puck, checked.
+def body_of(
+    pressure: str | Law, delta: float, gyration: float, table: ResultantTable | None = None
+) -> Body:
+    """A puck, checked; ``table``: where its friction comes from, if not from the law itself.
 
     Raises
     ------
     InputError
-        If the pressure law is not known or a number is out of range.
+        If the pressure law is not known, a number is out of range, or the table of another law.
     ContactError
         If the puck tips, or its contact is not known or not determined.
 
@@ -103,4 +112,7 @@ def body_of(pressure: str | Law, delta: float, gyration: float) -> Body:
         )
     height = float(checked_delta(real("delta", delta, "units of 2 f h / r")))
     refuse_height(law, height)
-    return Body(law, height, radius)
+    if table is not None:
+        table.refuse_other(law)
+        table.checked_range(height, law.name)
+    return Body(law, height, radius, table)

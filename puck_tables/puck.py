@@ -19,7 +19,6 @@ from puck_tables.real import positive, real
 
 if TYPE_CHECKING:
     from puck_tables.aiming import Aim
-    from puck_tables.similarity.stop_table import StopTable
     from puck_tables.states import States
     from puck_tables.stop_map import StopMap
     from puck_tables.stops import Stops
@@ -221,8 +220,8 @@ class Puck:
         exact : bool
             Closed forms instead of the table: a homogeneous puck under uniform pressure in full
             contact.
-        table : Table, optional
-            For the same; the default table if left out.
+        table : Table of resultants, optional
+            Under the pressure law of the puck.  Left out: the default table, or the law itself.
 
         Returns
         -------
@@ -260,7 +259,7 @@ class Puck:
         *,
         tol: float = 1e-8,
         method: str | None = None,
-        table: Table | StopTable | None = None,
+        table: Table | None = None,
     ) -> Stops:
         """Where and when launches of this puck stop; velocity and spin broadcast.
 
@@ -291,7 +290,7 @@ class Puck:
         spin: npt.ArrayLike,
         time: npt.ArrayLike,
         *,
-        table: StopTable | None = None,
+        table: Table | None = None,
     ) -> States:
         """States of this puck at any times after launches, by look-up; all broadcasts.
 
@@ -300,7 +299,7 @@ class Puck:
         velocity : array_like (…, 2), m/s
         spin : array_like (…), rad/s
         time : array_like (…), s, ≥ 0
-        table : StopTable, optional
+        table : Table of stops, optional
 
         Returns
         -------
@@ -323,7 +322,7 @@ class Puck:
         delta: npt.ArrayLike | None = None,
         tol: float = 1e-8,
         method: str | None = None,
-        table: Table | StopTable | None = None,
+        table: Table | None = None,
         threads: int | None = None,
         chunk: int = 1024,
         progress: Progress | None = None,

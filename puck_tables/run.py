@@ -12,12 +12,12 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables.contact.closed_form import by_closed_form
 from puck_tables.contact.integrals import SlipDirection
 from puck_tables.contact.resultants import CONTACT_SLACK, pressure_tilt
 from puck_tables.errors import PuckError
 from puck_tables.front import Choice
 from puck_tables.kernels.closed_form import outside_full_contact
-from puck_tables.kernels.spline import cut
 from puck_tables.motion.equations import (
     PSI,
     SIZE,
@@ -33,8 +33,7 @@ from puck_tables.motion.equations import (
 from puck_tables.motion.limits import LIMIT_WIDTH, log_ratio
 from puck_tables.motion.path import STOPPED, TURN_SHARE, integrate, states_at
 from puck_tables.motion.steppers import DORMAND_PRINCE, RK4, Tableau
-from puck_tables.table.check import by_closed_form
-from puck_tables.table.table import Table
+from puck_tables.table.resultant_table import ResultantTable
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -63,24 +62,20 @@ def closed_form_friction(delta: float) -> Friction:
     return Friction(delta, np.empty(0), 0.0)
 
 
-def table_friction(delta: float, table: Table) -> Friction:
+def table_friction(delta: float, table: ResultantTable) -> Friction:
     """Friction by a table.
 
     Raises
     ------
     InputError
-        If δ is outside its range.
+        If δ is outside its range, or it is of another pressure law.
 
     Examples
     --------
-    >>> from puck_tables import load_table
-    >>> table_friction(0.5, load_table()).error
+    >>> table_friction(0.5, ResultantTable.shipped()).error
     2e-11
     """
-    table.checked_range(delta)
-    contracted = np.empty(6 * table.coefficients.shape[2])
-    cut(table.coefficients, delta / table.delta_axis.upper, contracted)
-    return Friction(delta, contracted, table.tolerance)
+    return Friction(delta, table.section(delta), table.tolerance)
 
 
 @dataclass(frozen=True)

@@ -12,11 +12,9 @@ from puck_tables.errors import AccuracyError, InputError
 from puck_tables.executor import in_slices
 from puck_tables.front import COARSEST, INTEGRATED, LOOK_UP, Choice, choose
 from puck_tables.real import instance, real
-from puck_tables.similarity.file import load_stop_table
 from puck_tables.similarity.lookup import STOP_POWERS
 from puck_tables.similarity.stop_table import StopTable
-from puck_tables.table.file import load_table
-from puck_tables.table.table import Table
+from puck_tables.table.resultant_table import ResultantTable
 
 FloatArray = npt.NDArray[np.float64]
 Status = npt.NDArray[np.int8]
@@ -75,7 +73,7 @@ class LookUp:
 class Integration:
     """Stops by an integrator: Runge–Kutta 4, or the adaptive pair where ``steps`` is 0."""
 
-    table: Table
+    table: ResultantTable
     steps: float
     tolerance: float
     exact: bool
@@ -91,8 +89,8 @@ class Integration:
     def work(self) -> dict[str, Any]:
         """What determines the bits besides the launches."""
         return {
-            "by": self.method, "values": self.table.values, "upper": self.table.delta_axis.upper,
-            "steps": self.steps, "tolerance": self.tolerance, "exact": self.exact,
+            "by": self.method, "values": self.table.values, "steps": self.steps,
+            "tolerance": self.tolerance, "exact": self.exact,
         }  # fmt: skip
 
     def checked_range(self, delta: npt.ArrayLike) -> FloatArray:
@@ -110,13 +108,13 @@ class Integration:
 
         out = np.empty((len(OUTPUTS), launches.shape[1]))
         status = np.empty(launches.shape[1], np.int8)
-        coefficients = np.empty((2, 0, 0, 3)) if self.exact else self.table.coefficients
+        coefficients = np.empty((2, 0, 5)) if self.exact else self.table.columns
 
         def work(start: int, stop: int) -> None:
             some, part = np.ascontiguousarray(launches[:, start:stop]), out[:, start:stop].copy()
             fill_stops(
                 some, DORMAND_PRINCE, self.steps, self.tolerance, coefficients,
-                self.table.delta_axis.upper, part, status[start:stop],
+                part, status[start:stop],
             )  # fmt: skip
             out[:, start:stop] = part
 
@@ -153,14 +151,14 @@ def fits(launches: FloatArray, longest: float = 2.0) -> npt.NDArray[np.bool_]:
 
 
 def solver_for(
-    tol: float, table: Table | StopTable | None, method: str | None = None
+    tol: float, table: ResultantTable | StopTable | None, method: str | None = None
 ) -> LookUp | Integration:
     """The cheapest way to stops within a tolerance, in units of Q/J and Q²/J.
 
     Parameters
     ----------
     tol : largest error
-    table : StopTable for look-up, Table for integration
+    table : StopTable for look-up, ResultantTable for integration
         Left out: the tables that come along, or closed forms.
     method : 'look-up', 'rk4' or 'adaptive'
         Left out: any.
@@ -178,7 +176,7 @@ def solver_for(
     ('look-up', 'integrated')
     """
     wanted = real("tol", tol, "dimensionless")
-    instance("table", table, Table, StopTable, type(None))
+    instance("table", table, ResultantTable, StopTable, type(None))
     if method not in (None, *METHODS):
         raise InputError(f"method must be one of {', '.join(METHODS)}, got {method!r}")
     if isinstance(table, StopTable):
@@ -191,16 +189,18 @@ def solver_for(
                 "'puck build-tables --kind stops --accuracy A' with A down to 1e-11"
             )
         return LookUp(table)
-    if isinstance(table, Table) and method == LOOK_UP:
+    if isinstance(table, ResultantTable):
+        table.checked_range(0.0)  # refuses one of another pressure law
+    if isinstance(table, ResultantTable) and method == LOOK_UP:
         raise InputError("method look-up needs a table of stops, not of resultants")
     choice = choose_with("stop", wanted, method, table)
     way = choice.way
     if way.method == LOOK_UP:
         return LookUp(
-            load_stop_table(), int(way.number("powers")), int(way.number("thinning")), choice
+            StopTable.shipped(), int(way.number("powers")), int(way.number("thinning")), choice
         )
     return Integration(
-        load_table() if table is None else table,
+        ResultantTable.shipped() if table is None else table,
         steps=way.number("steps") if way.method.startswith("rk4") else 0.0,
         tolerance=way.number("local") if way.method.startswith("adaptive") else 1.0,
         exact=way.method.endswith("closed forms") and table is None,
@@ -209,7 +209,7 @@ def solver_for(
 
 
 def choose_with(
-    question: str, tol: float, method: str | None, table: Table | None, exact: bool = False
+    question: str, tol: float, method: str | None, table: ResultantTable | None, exact: bool = False
 ) -> Choice:
     """The knob, when a method, closed forms or a table of one's own may be asked for.
 
@@ -232,6 +232,6 @@ def choose_with(
     return replace(choice, why=_with_table(choice.why, table))
 
 
-def _with_table(text: str, table: Table | None) -> str:
+def _with_table(text: str, table: ResultantTable | None) -> str:
     """The knob's words, where a table of one's own stands for the closed forms it measured."""
     return text if table is None else text.replace("closed forms", f"the table {table.source}")

@@ -16,7 +16,6 @@ from puck_tables.executor import run_chunks
 from puck_tables.io.dataset import Dataset, variable
 from puck_tables.real import broadcast, finite_array, instance, velocity_array
 from puck_tables.result import Result
-from puck_tables.similarity.file import load_stop_table
 from puck_tables.similarity.stop_table import StopTable
 from puck_tables.solvers import fits
 from puck_tables.stops import positive_array
@@ -110,7 +109,7 @@ def states(
         to 1.
     decel : array_like (…), J = fg, m/s², > 0
     radius : array_like (…), m, > 0
-    table : StopTable, optional
+    table : Table of stops, optional
         The default one if left out.
     pressure, gyration
         As :class:`puck_tables.Puck`.  For δ > 1 or another kind of puck each puck is integrated,
@@ -154,7 +153,7 @@ def states(
         plain = is_plain(pressure, gyration, highest)
     elif not (plain := is_plain(pressure, gyration, 0.0)):
         raise InputError("stop tables are of a homogeneous puck under uniform pressure")
-    chosen = load_stop_table() if table is None else table
+    chosen = StopTable.shipped() if table is None else table
     velocities = velocity_array(velocity)
     columns = broadcast(
         vx=velocities[..., 0],

@@ -25,7 +25,7 @@ from puck_tables.result import Result
 from puck_tables.similarity.stop_table import StopTable
 from puck_tables.solvers import OUTPUTS, STATUS_MEANINGS
 from puck_tables.stops import any_solver
-from puck_tables.table.table import Table
+from puck_tables.table.resultant_table import ResultantTable
 
 FloatArray = npt.NDArray[np.float64]
 Progress = Callable[[int, int], None]
@@ -93,7 +93,7 @@ class StopMap(Result):
 def sweep(
     spin: npt.ArrayLike | None, speed: npt.ArrayLike | None, *, velocity: npt.ArrayLike | None,
     delta: npt.ArrayLike, decel: float, radius: float, pressure: str | Law, gyration: float,
-    tol: float, method: str | None, table: Table | StopTable | None, threads: int | None,
+    tol: float, method: str | None, table: ResultantTable | StopTable | None, threads: int | None,
     chunk: int, progress: Progress | None, checkpoint: str | Path | None,
 ) -> StopMap:  # fmt: skip
     """Stops of all combinations of spins, speeds and heights: :meth:`puck_tables.Puck.sweep`."""

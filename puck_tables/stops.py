@@ -17,7 +17,7 @@ from puck_tables.real import broadcast, finite_array, velocity_array
 from puck_tables.result import Result
 from puck_tables.similarity.stop_table import StopTable
 from puck_tables.solvers import OUTPUTS, STATUS_MEANINGS, Integration, LookUp, solver_for
-from puck_tables.table.table import Table
+from puck_tables.table.resultant_table import ResultantTable
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -107,7 +107,7 @@ def stop(
     radius: npt.ArrayLike = 1.0,
     tol: float = DEFAULT_TOL,
     method: str | None = None,
-    table: Table | StopTable | None = None,
+    table: ResultantTable | StopTable | None = None,
     pressure: str | Law = "uniform",
     gyration: float = HOMOGENEOUS,
 ) -> Stops:
@@ -129,8 +129,8 @@ def stop(
         which and why.
     method : 'look-up', 'rk4' or 'adaptive', optional
         Only this one.
-    table : StopTable or Table, optional
-        A stop table: looked up.  A table of resultants: integrated.
+    table : Table, optional
+        Of stops: looked up.  Of resultants, under the pressure law of the puck: integrated.
     pressure, gyration
         As :class:`puck_tables.Puck`.
 
@@ -172,7 +172,7 @@ def stop(
 
 
 def any_solver(
-    tol: float, table: Table | StopTable | None, method: str | None, pressure: str | Law,
+    tol: float, table: ResultantTable | StopTable | None, method: str | None, pressure: str | Law,
     gyration: float, delta: npt.ArrayLike,
 ) -> LookUp | Integration | AnyStops:  # fmt: skip
     """The way to stops of pucks of these kinds.
@@ -190,9 +190,10 @@ def any_solver(
     highest = np.max(checked_delta(delta), initial=0.0)
     if is_plain(pressure, gyration, float(highest)):
         return solver_for(tol, table, method)
-    if table is None:
-        return AnyStops(pressure, gyration, tol, method)
-    if not is_plain(pressure, gyration, 0.0):
+    plain = is_plain(pressure, gyration, 0.0)
+    if table is None or (isinstance(table, ResultantTable) and not plain):
+        return AnyStops(pressure, gyration, tol, method, table)
+    if not plain:
         raise InputError(
             "tables of stops are of a homogeneous puck under uniform pressure: leave out table, or "
             "pressure and gyration"

@@ -13,8 +13,11 @@ import stat
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from datetime import UTC, datetime
+from functools import lru_cache
+from importlib.resources import files
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, NamedTuple, TypeVar, overload
 
 import numpy as np
 
@@ -25,39 +28,50 @@ from puck_tables.kernels.cache import source_digest
 from puck_tables.own_folder import make_private, refuse_shared, say, user_cache
 from puck_tables.real import real_array
 from puck_tables.safe_write import PART_PATTERN
-from puck_tables.table.container import Saved, recipe_digest
-from puck_tables.table.law_file import ALGORITHM, load_law_table, profile_digest, save_law_table
-from puck_tables.table.law_table import DEFAULT_ACCURACY, LawTable, build_law_table
-from puck_tables.table.speed_build import build_speed_table
-from puck_tables.table.speed_file import ALGORITHM as SPEED_ALGORITHM
-from puck_tables.table.speed_file import load_speed_table, save_speed_table
+from puck_tables.table.file import read_content, recipe_digest
+from puck_tables.table.friction_slice import FrictionSlice, friction_slice
+from puck_tables.table.resultant_table import ResultantTable
+from puck_tables.table.singular_lines import refuse_height
 from puck_tables.table.speed_table import SpeedTable
+from puck_tables.table.table import Progress, Table
 from puck_tables.waiting import watched
 
-Progress = Callable[[int, int], None]
-AnyKept = TypeVar("AnyKept", bound=Saved)
+AnyTable = TypeVar("AnyTable", bound=Table)
 
 _NAME = re.compile(r"[\w.+-]+-[0-9a-f]{16}\.h5")
 
 
+@overload
 def table_for(
-    pressure: str | Law, accuracy: float | None = None, progress: Progress | None = None
-) -> LawTable:
-    """The table of friction resultants under a pressure law: read if it is kept, else built.
+    law: str | Law, accuracy: float | None = None, progress: Progress | None = None
+) -> ResultantTable: ...
+
+
+@overload
+def table_for(
+    law: SpeedLaw, accuracy: float | None = None, progress: Progress | None = None
+) -> SpeedTable: ...
+
+
+def table_for(
+    law: str | Law | SpeedLaw, accuracy: float | None = None, progress: Progress | None = None
+) -> ResultantTable | SpeedTable:
+    """The table of a law: read if it is kept, else built.
 
     Parameters
     ----------
-    pressure : str or Law
-        As :func:`puck_tables.law_of` takes it, or a law of :func:`puck_tables.profile_law`, which
-        is known by its values, not by its name.
+    law : str, Law or SpeedLaw
+        A pressure law as :func:`puck_tables.law_of` takes it, or one of
+        :func:`puck_tables.profile_law`, which is known by its values, not by its name; or a
+        friction law over the slip speed.
     accuracy : float, optional
-        Largest error, from 1e-11 to 0.01; default 1e-9.
+        Largest error, as :meth:`puck_tables.Table.build` takes it.
     progress : callable (done, all), optional
         Told while the table is built.
 
     Returns
     -------
-    LawTable
+    Table
 
     Raises
     ------
@@ -80,72 +94,81 @@ def table_for(
     >>> table = table_for("annulus:0.8", accuracy=1e-6)
     >>> float(table.resultants(0.0, 1.0).perpendicular.round(5))
     0.25
-    """
-    if isinstance(pressure, Law) and pressure.profile is None:
-        raise InputError(
-            f"the law {pressure.name} is given by a function, which cannot be told from another: "
-            "give its name, or build_law_table(law)"
-        )
-    law = pressure if isinstance(pressure, Law) else law_of(pressure)
-    asked = DEFAULT_ACCURACY if accuracy is None else accuracy
-    wanted = real_array("accuracy", asked, "an absolute error").item()
-    recipe = {
-        "pressure_law": law.name, "edges": law.edges, "accuracy": wanted, "algorithm": ALGORITHM,
-        "sources": source_digest("contact", "kernels", "table"),
-    }  # fmt: skip
-    if (profile := law.profile) is not None:
-        law = replace(law, name="profile")
-        recipe |= {"pressure_law": law.name, "profile": profile_digest(*profile)}
-    digest = recipe_digest(recipe)[:16]
-    command = f"table_for({law.name!r}, {wanted:g}), recipe {digest}"
-    return fetch(
-        f"{file_stem(law)}-{wanted:g}-{digest}.h5",
-        command,
-        build=lambda: build_law_table(law, wanted, progress=progress),
-        save=lambda table, path: save_law_table(table, path, overwrite=True, command=command),
-        load=load_law_table,
-    )
-
-
-def speed_table_for(law: SpeedLaw, accuracy: float) -> SpeedTable:
-    """The table of friction by a law over the slip speed: read if it is kept, else built.
-
-    Parameters
-    ----------
-    law : SpeedLaw
-    accuracy : float
-        As :func:`puck_tables.build_speed_table` takes it.
-
-    Raises
-    ------
-    AccuracyError
-        If the accuracy is out of reach.
-
-    Examples
-    --------
-    >>> table = speed_table_for(SpeedLaw([0.0, 1.0], [0.2, 0.3]), 1e-6)
+    >>> table = table_for(SpeedLaw([0.0, 1.0], [0.2, 0.3]), 1e-6)
     >>> float(table.resultants(0.0, 0.5).parallel.round(6))
     0.25
     """
-    points = [np.asarray(part).tolist() for part in (law.speeds, law.values)]
-    recipe = {
-        "kind": law.kind, "points": points, "accuracy": accuracy, "algorithm": SPEED_ALGORITHM,
-        "sources": source_digest("contact", "kernels", "table"),
-    }  # fmt: skip
-    digest = recipe_digest(recipe)[:16]
-    command = f"a scene with this friction law, to {accuracy:g}; recipe {digest}"
+    kind: type[ResultantTable] | type[SpeedTable]
+    if isinstance(law, SpeedLaw):
+        kind, stem, said = SpeedTable, "slip-speed", "a friction law over the slip speed"
+        points = [np.asarray(part).tolist() for part in (law.speeds, law.values)]
+        of: dict[str, Any] = {"kind": law.kind, "points": points}
+    else:
+        if isinstance(law, Law) and law.profile is None:
+            raise InputError(
+                f"the law {law.name} is given by a function, which cannot be told from another: "
+                "give its name, or Table.build(law)"
+            )
+        law = law if isinstance(law, Law) else law_of(law)
+        if law.profile is not None:
+            law = replace(law, name="profile")
+        kind, stem, said = ResultantTable, file_stem(law), law.name
+        of = {"pressure_law": law.name, "edges": law.edges}
+        if law.profile is not None:
+            of["profile"] = [part.tolist() for part in law.profile]
+    wanted = None
+    if accuracy is not None:
+        wanted = real_array("accuracy", accuracy, "an absolute error").item()
+    digest = _digest(kind, {**of, "accuracy": wanted})
+    asked = "default" if wanted is None else f"{wanted:g}"
 
-    def build() -> SpeedTable:
-        with watched("tabulating the friction law, once") as progress:
-            return build_speed_table(law, accuracy=accuracy, progress=progress)
+    def build() -> ResultantTable | SpeedTable:
+        if progress is not None or kind is ResultantTable:
+            return kind.build(law, wanted, progress=progress)
+        with watched("tabulating the friction law, once") as show:
+            return kind.build(law, wanted, progress=show)
 
     return fetch(
-        f"slip-speed-{accuracy:g}-{digest}.h5",
-        command,
-        build=build,
-        save=lambda table, path: save_speed_table(table, path, overwrite=True, command=command),
-        load=load_speed_table,
+        f"{stem}-{asked}-{digest}.h5", f"table_for({said}, {asked}), recipe {digest}", kind, build
     )
+
+
+@lru_cache(maxsize=64)
+def friction_for(law: Law, delta: float, accuracy: float) -> FrictionSlice:
+    """The friction of one puck: where that takes long, read if it is kept, else built.
+
+    Parameters
+    ----------
+    law, delta, accuracy : as in :func:`puck_tables.table.friction_slice.friction_slice`
+
+    Raises
+    ------
+    InputError, ContactError, AccuracyError
+        As there.
+
+    Examples
+    --------
+    >>> friction_for(law_of("ring"), 0.5, 1e-6).grid  # under other laws it takes no time
+    '129 phi nodes'
+    """
+    if not (law.can_lift and delta > 1.0):
+        return friction_slice(law, delta, accuracy)
+    refuse_height(law, delta)
+    digest = _digest(
+        FrictionSlice, {"pressure_law": law.name, "delta": delta, "accuracy": accuracy}
+    )
+    return fetch(
+        f"{file_stem(law)}-{delta:g}-{accuracy:g}-{digest}.h5",
+        f"friction of a puck with delta = {delta:g}, to {accuracy:g}; recipe {digest}",
+        FrictionSlice,
+        lambda: friction_slice(law, delta, accuracy),
+    )
+
+
+def _digest(kind: type[Table], recipe: dict[str, Any]) -> str:
+    """Of all that determines a table, and of the sources that compute it."""
+    sources = source_digest("contact", "kernels", "table")
+    return recipe_digest({**recipe, "algorithm": kind.algorithm, "sources": sources})[:16]
 
 
 def file_stem(law: Law) -> str:
@@ -159,20 +182,15 @@ def file_stem(law: Law) -> str:
     return re.sub(r"[^\w.+-]", "-", law.name.removesuffix(".csv"))
 
 
-def fetch(
-    name: str,
-    command: str,
-    build: Callable[[], AnyKept],
-    save: Callable[[AnyKept, Path], AnyKept],
-    load: Callable[[Path], AnyKept],
-) -> AnyKept:
+def fetch(name: str, command: str, kind: type[AnyTable], build: Callable[[], AnyTable]) -> AnyTable:
     """A table from the user's cache, built and put there unless it is.
 
     Parameters
     ----------
     name : file name, ending in the digest of the recipe
     command : how it is made, with that digest: what the file must say of itself
-    build, save, load : how its kind is made, and gets into and out of a file
+    kind : of table
+    build : how it is made
 
     Returns
     -------
@@ -188,8 +206,8 @@ def fetch(
         make_private(folder)
         if _is_kept(path):
             try:
-                kept = load(path)
-                if kept.passport.get("command") == command:
+                kept = kind.load(path)
+                if kept.metadata.get("command") == command:
                     return kept
                 say(f"{path} is another table than its name says: it is built again")
             except TableError:
@@ -199,7 +217,7 @@ def fetch(
         return build()
     table = build()
     try:
-        return save(table, path)
+        return table.save(path, overwrite=True, command=command)
     except OSError as error:
         reason = str(error) if isinstance(error, OutputError) else error.strerror or str(error)
         say(f"the table is used but not kept for the next time: {reason}")
@@ -287,3 +305,53 @@ def remove(path: Path) -> None:
         path.unlink(missing_ok=True)
     except OSError as error:
         raise OutputError(f"cannot remove {path}: {error.strerror or error}") from None
+
+
+class Entry(NamedTuple):
+    """A table file in a list: its metadata in short; the blanks of a damaged one are None."""
+
+    name: str
+    place: str
+    kind: str | None
+    pressure_law: str | None
+    valid_range: str | None
+    accuracy: float | None
+    bytes: int
+    date: str
+    whole: bool
+
+
+def shipped_and_kept() -> list[Entry]:
+    """The table files that come along, and those kept in the user's cache.
+
+    Examples
+    --------
+    >>> [entry.name for entry in shipped_and_kept() if entry.place == "comes along"]
+    ['resultants.h5', 'stops.h5']
+    """
+    folder = files("puck_tables.tables")
+    names = sorted(path.name for path in folder.iterdir() if path.name.endswith(".h5"))
+    shipped = [_entry(name, "comes along", (folder / name).read_bytes(), "") for name in names]
+    return shipped + [entry for path in kept_files() if (entry := _kept(path)) is not None]
+
+
+def _kept(path: Path) -> Entry | None:
+    """None if another process has just removed it."""
+    try:
+        date = datetime.fromtimestamp(path.stat().st_mtime, UTC).isoformat(timespec="seconds")
+        return _entry(path.name, str(path.parent), read_content(path), date)
+    except FileNotFoundError:
+        return None
+    except TableError:
+        return Entry(path.name, str(path.parent), None, None, None, None, 0, date, False)
+
+
+def _entry(name: str, place: str, content: bytes, date: str) -> Entry:
+    try:
+        table = Table.read(content, name)
+    except TableError:
+        return Entry(name, place, None, None, None, None, len(content), date, False)
+    return Entry(
+        name, place, table.kind, table.pressure_law, table.valid_range, table.tolerance,
+        len(content), table.metadata["created"], True,
+    )  # fmt: skip

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.body import Body, is_plain
+from puck_tables.body import Body, body_of, is_plain
 from puck_tables.errors import InputError
 from puck_tables.front import Choice, Way
 from puck_tables.io.dataset import Dataset, variable
@@ -17,8 +17,7 @@ from puck_tables.puck import PUCK_UNITS, Puck
 from puck_tables.real import finite_array, instance, one_velocity, real
 from puck_tables.result import Result
 from puck_tables.solvers import choose_with
-from puck_tables.table.file import load_table
-from puck_tables.table.table import Table
+from puck_tables.table.resultant_table import ResultantTable
 
 if TYPE_CHECKING:
     from puck_tables.run import Run
@@ -179,26 +178,30 @@ class Trajectory(Result):
 
 def simulate(
     puck: Puck, velocity: npt.ArrayLike, spin: float, *, frames: int | None,
-    times: npt.ArrayLike | None, tol: float, method: str | None, exact: bool, table: Table | None,
+    times: npt.ArrayLike | None, tol: float, method: str | None, exact: bool,
+    table: ResultantTable | None,
 ) -> Trajectory:  # fmt: skip
     """The motion of a puck until it stops, as :meth:`puck_tables.Puck.simulate` has it."""
     vx, vy = one_velocity(velocity)
     w = real("spin", spin, "rad/s")
     r, J, m, height = puck.radius, puck.decel, puck.mass, puck.delta
     wanted = real("tol", tol, "dimensionless")
-    instance("table", table, Table, type(None))
+    instance("table", table, ResultantTable, type(None))
     if exact and table is not None:
         raise InputError("exact and table exclude each other: closed forms need no table")
     if method not in (None, "adaptive", "rk4"):
         raise InputError(f"method must be 'adaptive' or 'rk4', got {method!r}")
     _check_frames(frames, times)
     plain = is_plain(puck.pressure, puck.gyration, height)
-    if (exact or table is not None) and not is_plain(puck.pressure, puck.gyration, 0.0):
+    if exact and not is_plain(puck.pressure, puck.gyration, 0.0):
         raise InputError(
-            "closed forms and tables are for a homogeneous puck under uniform pressure: leave out "
-            "exact and table, or pressure and gyration"
+            "closed forms are for a homogeneous puck under uniform pressure: leave out exact, or "
+            "pressure and gyration"
         )
-    body = None if plain or exact or table is not None else puck.body
+    by_table = table is not None and is_plain(puck.pressure, puck.gyration, 0.0)
+    body = None
+    if not (plain or exact or by_table):
+        body = body_of(puck.pressure, height, puck.gyration, table)
     square = 0.5 if body is None else body.inertia
     speed, rim = math.hypot(vx, vy), r * abs(w)
     q0 = math.hypot(speed, rim)
@@ -283,7 +286,7 @@ class _Solved(NamedTuple):
 
 def _solved_plainly(
     delta: float, speed: float, rim: float, tol: float, method: str | None, exact: bool,
-    table: Table | None,
+    table: ResultantTable | None,
 ) -> _Solved:  # fmt: skip
     """A homogeneous puck under uniform pressure in full contact."""
     from puck_tables.motion.limits import limit_log_ratio, regime_of
@@ -295,7 +298,7 @@ def _solved_plainly(
             f"delta = 2 f h / r must be from 0 to below 2, got {delta:g}: the linear pressure law "
             "of full contact holds at every phi up to 1, and beyond 2 in no motion but pure spin"
         )
-    chosen = load_table() if table is None else table
+    chosen = ResultantTable.shipped() if table is None else table
     if not exact:
         chosen.checked_range(delta)
     choice = choose_with("trajectory", tol, method, table, exact)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, settings
 
-from puck_tables import Table, build_table, load_table
+from puck_tables import Table
 from puck_tables.paper.claim import Claim
 from puck_tables.paper.claims import all_claims
 
@@ -18,13 +18,13 @@ ROOT = Path(__file__).resolve().parent.parent
 @pytest.fixture(scope="session")
 def table() -> Table:
     """The default table."""
-    return load_table()
+    return Table.shipped()
 
 
 @pytest.fixture(scope="session")
 def rough_table() -> Table:
     """A small table, not saved."""
-    return build_table(accuracy=1e-6)
+    return Table.build(accuracy=1e-6)
 
 
 def near(point: float) -> np.ndarray:

@@ -108,7 +108,7 @@ def resultants_next_to_the_special_angles() -> Iterator[float]:
 
 @row("the same from the default table", "resultants", 2e-11)
 def table_next_to_the_special_angles() -> Iterator[float]:
-    rho = pt.load_table().resultants(np.array(angles())[:, None], np.array(HEIGHTS))
+    rho = pt.Table.shipped().resultants(np.array(angles())[:, None], np.array(HEIGHTS))
     yield from (np.stack(rho, axis=-1) - exact_frictions()).ravel()
 
 
@@ -284,7 +284,7 @@ HEIGHT = 0.37
 @cache
 def known_stops() -> tuple[np.ndarray, np.ndarray]:
     """Launches u = ln(rω/v) on edges of cells, the last 0.7, and T, X, Y by the script, 1e-13."""
-    ratio = pt.load_stop_table().axis.ratio()
+    ratio = pt.Table.shipped("stops").axis.ratio()
     ratio = ratio[np.linspace(1, ratio.size - 2, 12).astype(int)]
     u = np.concatenate([np.log(ratio), -np.log(ratio), [0.7]])
     return u, judge().stops(u, HEIGHT)
@@ -296,7 +296,7 @@ def launches_on_the_edges_of_cells() -> Iterator[float]:
     rim, speed = np.exp(np.minimum(u, 0.0)), np.exp(-np.maximum(u, 0.0))
     size = np.hypot(rim, speed)
     v0 = np.stack([speed / size, 0.0 * speed], axis=-1)
-    found = pt.stop(v0, -rim / size, delta=HEIGHT, table=pt.load_stop_table())
+    found = pt.stop(v0, -rim / size, delta=HEIGHT, table=pt.Table.shipped("stops"))
     yield from found.stop_time - truth[:, 0]
     yield from (found.stop_position - truth[:, 1:] * [1.0, -1.0]).ravel()
 

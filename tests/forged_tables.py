@@ -5,59 +5,25 @@ from __future__ import annotations
 import io
 import json
 from collections.abc import Callable
-from functools import cache
 from pathlib import Path
 
 import h5py
 import numpy as np
+from kinds_of_table import answers, small
 
-from puck_tables import (
-    SpeedLaw,
-    build_law_table,
-    build_speed_table,
-    build_stop_table,
-    build_table,
-    law_of,
-    profile_law,
-    save_law_table,
-    save_stop_table,
-    save_table,
-)
-from puck_tables.catalogue import AnyTable, judge, load_any_table
+from puck_tables import Table
 from puck_tables.errors import InputError, TableError
-from puck_tables.similarity.stop_table import StopTable
-from puck_tables.table.container import FORMAT, recipe_digest, sealed
-from puck_tables.table.partial_build import build_partial_table
-from puck_tables.table.partial_file import save_partial_table
-from puck_tables.table.partial_table import PartialTable
-from puck_tables.table.speed_file import save_speed_table
-from puck_tables.table.speed_table import SpeedTable
+from puck_tables.table.file import FORMAT, recipe_digest, sealed
 
 Edit = Callable[[dict[str, object], dict[str, np.ndarray]], None]
-AXES = (
-    "phi", "delta", "side", "xi", "zeta", "node", "patch", "profile_radius", "profile_pressure",
-)  # fmt: skip
-KINDS = ("resultants", "stops", "partial", "law", "profile", "speed")
+AXES = ("phi", "delta", "node", "patch", "profile_radius", "profile_pressure")
 
 
-@cache
 def honest(kind: str, folder: Path) -> bytes:
     """The bytes of a small table of a kind."""
     path = folder / f"{kind}.h5"
-    if kind == "resultants":
-        save_table(build_table(accuracy=1e-6), path)
-    elif kind == "stops":
-        save_stop_table(build_stop_table(cells=16), path)
-    elif kind == "partial":
-        save_partial_table(build_partial_table(cells=16), path)
-    elif kind == "law":
-        save_law_table(build_law_table(law_of("annulus:0.8"), cells=12), path)
-    elif kind == "profile":
-        law = profile_law([0.0, 0.5, 1.0], [1.0, 2.0, 0.5], name="stone.csv")
-        save_law_table(build_law_table(law, cells=12), path)
-    else:
-        law = SpeedLaw([0.0, 0.5, 2.0], [0.3, 0.2, 0.25])
-        save_speed_table(build_speed_table(law, accuracy=1e-3), path)
+    if not path.exists():
+        small(kind).save(path)
     return path.read_bytes()
 
 
@@ -72,9 +38,9 @@ def forged(content: bytes, edit: Edit) -> bytes:
     edit(attributes, arrays)
     attributes.pop("content_digest", None)
     recipe_names = {
-        "kind", "pressure_law", "phi_map", "delta_map", "splined", "n_phi", "n_delta", "delta_max",
-        "algorithm", "cells", "edges", "profile_rows", "profile_digest", "law_kind", "law_speeds",
-        "law_values", "map", "breaks",
+        "kind", "pressure_law", "algorithm", "phi_map", "delta_map", "splined", "map", "n_phi",
+        "cells", "profile_rows", "law_kind", "law_speeds", "law_values", "breaks", "nodes",
+        "patches", "largest_f", "delta", "cotangents",
     }  # fmt: skip
     if "recipe_digest" in attributes:
         recipe = {name: value for name, value in attributes.items() if name in recipe_names}
@@ -93,16 +59,16 @@ def content_digest(attributes: dict[str, object], arrays: dict[str, np.ndarray])
     import hashlib
 
     kinds = {
-        "resultants": ("phi", "delta", "parallel", "perpendicular", "spin"),
-        "stops": ("phi", "delta", "time", "along", "across", "length", "body", "curve", "turn"),
-        "partial contact": ("phi", "zeta", "parallel", "perpendicular", "spin"),
-        "resultants under a pressure law": (
-            "side", "xi", "delta", "parallel", "perpendicular", "spin", "profile_radius",
+        "resultants": (
+            "phi", "delta", "parallel", "perpendicular", "spin", "profile_radius",
             "profile_pressure",
         ),
-        "friction with f(slip speed)": (
-            "node", "p_a", "p_b", "p_d", "p_e", "patch", "halvings",
+        "stops": ("phi", "delta", "time", "along", "across", "length", "body", "curve", "turn"),
+        "friction slice": (
+            "phi", "inverse_parallel", "perpendicular_share", "spin_share", "profile_radius",
+            "profile_pressure",
         ),
+        "speed": ("node", "p_a", "p_b", "p_d", "p_e", "patch", "halvings"),
     }  # fmt: skip
     digest = hashlib.sha256(json.dumps(attributes, sort_keys=True, default=str).encode())
     for name in kinds.get(str(attributes.get("kind")), ()):
@@ -174,7 +140,7 @@ def random_edit(kind: str, rng: np.random.Generator) -> tuple[str, Edit]:
         attributes[name] = type(old)(new) if abs(new) < 2.0**62 else float(new)
 
     def text(attributes: dict[str, object], arrays: dict[str, np.ndarray]) -> None:
-        names = ["pressure_law", "achieved_accuracy", "kind", "format_version", "edges",
+        names = ["pressure_law", "achieved_accuracy", "kind", "format_version",
                  "law_speeds", "law_values", "law_kind", "breaks"]  # fmt: skip
         present = [name for name in names if name in attributes]
         attributes[present[int(share[0] * len(present))]] = str(rng.choice([
@@ -197,39 +163,22 @@ def random_edit(kind: str, rng: np.random.Generator) -> tuple[str, Edit]:
     return f"{kind}: {edit.__name__} {factor:g} {share.round(3).tolist()}", edit
 
 
-def answers(table: AnyTable) -> np.ndarray:
-    """What a table says at fixed places of its range."""
-    rng = np.random.default_rng(5)
-    phi = np.concatenate([rng.uniform(0.0, 1.5707, 3000), [0.0, 0.25 * np.pi]])
-    share = rng.random(phi.size)
-    if isinstance(table, StopTable):
-        rim, one = np.tan(phi), np.ones(phi.size)
-        launches = np.stack([np.cos(phi), 0.0 * one, np.sin(phi), share, one, one])
-        return np.concatenate([table.stops(launches)[0], table.known(launches)[3:6] + 0.0 * rim])
-    if isinstance(table, PartialTable):
-        return np.stack(table.resultants(phi, 3.9 * share))
-    if isinstance(table, SpeedTable):
-        return np.stack(table.resultants(phi, table.top * share / np.sqrt(2.0), 0.5))
-    top = getattr(table, "delta_max", 1.0)
-    return np.stack(table.resultants(phi, top * share))
-
-
-def outcome(content: bytes, truth: AnyTable, folder: Path) -> str:
+def outcome(content: bytes, truth: Table, folder: Path) -> str:
     """What becomes of a forged table: refused, failed by validate, right, or WRONG and passed."""
     path = folder / "forged.h5"
     path.write_bytes(content)
     try:
-        table = load_any_table(path)
+        table = Table.load(path)
         found = answers(table)
     except (TableError, InputError):
         return "refused"
     same = type(table) is type(truth)
     allowed = min(table.tolerance, 0.01) + truth.tolerance
-    scale = 100.0 if isinstance(truth, StopTable) else 1.0  # of the turn, which is less exact
+    scale = 100.0 if truth.kind == "stops" else 1.0  # of the turn, which is less exact
     with np.errstate(invalid="ignore"):
         right = same and bool(np.all(np.abs(found - answers(truth)) <= scale * allowed))
     try:
-        report = judge(table)
+        report = table.validate()
     except (TableError, InputError):
         return "refused"
     if not report.passed:

@@ -24,8 +24,9 @@ from puck_tables.errors import AccuracyError, ContactError, InputError
 from puck_tables.motion.steppers import DORMAND_PRINCE, RK4
 from puck_tables.run import step_ends
 from puck_tables.sliced import friction_of
-from puck_tables.table.friction_slice import friction_slice, opening_angle
-from puck_tables.table.law_grid import graded
+from puck_tables.table.friction_slice import friction_slice
+from puck_tables.table.singular_lines import opening_angle
+from puck_tables.table.slip_axis import graded
 from puck_tables.trajectory import Trajectory
 
 PUCKS = [

@@ -12,12 +12,13 @@ from pathlib import Path
 import h5py
 import pytest
 from click.testing import CliRunner
+from kinds_of_table import small
 from puck_tables.cli.main import main
 
-from puck_tables.table.container import sealed
+from puck_tables.table.file import sealed
 
 SHIPPED = {name: (files("puck_tables.tables") / f"{name}.h5").read_bytes() for name in
-           ("resultants", "stops", "partial")}  # fmt: skip
+           ("resultants", "stops")}  # fmt: skip
 
 
 class Waited(BaseException):
@@ -110,13 +111,20 @@ def test_what_is_no_table(shape: str, reader: list[str], folder: Path):
     assert sorted(folder.iterdir()) == before
 
 
-@pytest.mark.parametrize(("kind", "reader"), [
-    ("stops", READERS[2]), ("partial", READERS[2]), ("partial", READERS[3]),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("kind", "reader"), [("stops", READERS[2]), ("speed", READERS[2]), ("speed", READERS[3])]
+)
 def test_a_table_of_the_wrong_kind(kind: str, reader: list[str]):
-    Path("given.h5").write_bytes(SHIPPED[kind])
+    small(kind).save("given.h5")
     said = refused([*reader, "given.h5"], codes=(1, 2))
     assert f"holds '{kind}" in said
+
+
+@pytest.mark.parametrize("reader", READERS[2:], ids=lambda reader: reader[0])
+def test_a_table_of_another_puck(reader: list[str]):
+    small("washer").save("given.h5")
+    said = refused([*reader, "given.h5"], codes=(2,))
+    assert "given.h5 is a table under the pressure law annulus:0.8, not uniform" in said
 
 
 @pytest.mark.parametrize("shape", MADE)

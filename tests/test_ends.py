@@ -6,6 +6,7 @@ import os
 import signal
 import subprocess
 import sys
+from importlib.resources import files
 from pathlib import Path
 
 import pytest
@@ -24,16 +25,16 @@ def interrupt():
 threading.Thread(target=interrupt, daemon=True).start()
 """
 LONG = {
-    "build resultants": ("table.build", ["build-tables", "--n-phi", "400001", "-o", "new.h5"]),
+    "build resultants": (
+        "table.resultant_check", ["build-tables", "--cells", "60000", "-o", "n.h5"]
+    ),
     "build stops": (
-        "similarity.build", ["build-tables", "--kind", "stops", "--accuracy", "1e-11", "-o", "n.h5"]
+        "similarity.check", ["build-tables", "--kind", "stops", "--accuracy", "1e-11", "-o", "n.h5"]
     ),
-    "build partial": (
-        "table.partial_build",
-        ["build-tables", "--kind", "partial", "--accuracy", "1e-8", "-o", "new.h5"],
+    "build law": (
+        "table.resultant_check", ["build-tables", "--pressure", "hill.csv", "-o", "n.h5"]
     ),
-    "build law": ("table.law_table", ["build-tables", "--pressure", "hill.csv", "-o", "new.h5"]),
-    "validate": ("catalogue", ["validate"]),
+    "validate": ("similarity.check", ["validate", str(files("puck_tables.tables") / "stops.h5")]),
     "sweep": ("stop_map", ["sweep", "--speed", "0:2:5000", "--w0", "0:5:5000", "-o", "m.h5"]),
     "sweep resumed": (
         "checkpoint", ["sweep", "--speed", "0:2:3000", "--w0", "0:5:3000", "-o", "m.h5", "--resume"]
@@ -100,9 +101,9 @@ NO_CLAIMS = (  # the work of 'puck paper' has tests of its own
 def test_a_reader_that_has_gone_is_no_trouble(arguments: list[str]):
     """As after '| true': silence, and the code that shells give to a broken pipe."""
     if arguments[0] == "validate":
-        from puck_tables import build_table, save_table
+        from puck_tables import Table
 
-        save_table(build_table(accuracy=1e-4), "rough.h5")
+        Table.build(accuracy=1e-4).save("rough.h5")
     read, write = os.pipe()
     os.close(read)
     code = (NO_CLAIMS if arguments[0] == "paper" else "") + MAIN

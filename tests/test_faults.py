@@ -13,8 +13,7 @@ import numpy as np
 import pytest
 from pucks import sweep
 
-from puck_tables import load_table
-from puck_tables.catalogue import load_any_table
+from puck_tables import Table
 from puck_tables.checkpoint import Checkpoint
 from puck_tables.errors import InputError, OutputError
 
@@ -37,9 +36,9 @@ def killed_after(seconds: float, command: list[str], folder: Path) -> int:
 
 def sweeps_killed(folder: Path, kills: int) -> int:
     """Kill a resumable sweep at random moments until it is done; returns how many kills it took."""
-    load = "from puck_tables import load_table; from test_faults import GRID, sweep; "
+    load = "from puck_tables import Table; from test_faults import GRID, sweep; "
     work = (
-        "m = sweep(**GRID, table=load_table(), tol=1e-9, threads=1, checkpoint='m.progress'); "
+        "m = sweep(**GRID, table=Table.shipped(), tol=1e-9, threads=1, checkpoint='m.progress'); "
         "m.save('m.h5', overwrite=True)"
     )
     code = f"import sys; sys.path.insert(0, {str(Path(__file__).parent)!r}); " + load + work
@@ -52,9 +51,9 @@ def sweeps_killed(folder: Path, kills: int) -> int:
 
 
 def check_killed_sweeps(tmp_path: Path, kills: int) -> None:
-    base = sweep(**GRID, table=load_table(), tol=1e-9)
+    base = sweep(**GRID, table=Table.shipped(), tol=1e-9)
     assert sweeps_killed(tmp_path, kills) >= 1
-    resumed = sweep(**GRID, table=load_table(), tol=1e-9, checkpoint=tmp_path / "m.progress")
+    resumed = sweep(**GRID, table=Table.shipped(), tol=1e-9, checkpoint=tmp_path / "m.progress")
     for name in ("stop_time", "stop_x", "stop_y", "path_length", "turn_angle", "body_angle"):
         assert getattr(resumed, name).tobytes() == getattr(base, name).tobytes()
     import xarray
@@ -81,7 +80,7 @@ def check_killed_builds(tmp_path: Path, kills: int) -> None:
         command = [*PUCK, "build-tables", "--kind", kind, "--accuracy", "1e-5", "-o", name]
         killed_after(moments.uniform(0.5, 2.5), command, tmp_path)
         if (tmp_path / name).exists():
-            assert load_any_table(tmp_path / name).tolerance == 1e-5
+            assert Table.load(tmp_path / name).tolerance == 1e-5
             whole += 1
     assert whole < kills  # some kills came in time
 
@@ -104,7 +103,7 @@ def test_two_builders_at_one_file(tmp_path: Path):
     errors = [process.communicate()[1].decode() for process in both]
     assert sorted(process.returncode for process in both) == [0, 1]
     assert sum("exists already" in error or "cannot write" in error for error in errors) == 1
-    assert load_table(tmp_path / "one.h5").tolerance == 1e-5
+    assert Table.load(tmp_path / "one.h5").tolerance == 1e-5
     assert [path.name for path in tmp_path.iterdir()] == ["one.h5"]
 
 

@@ -9,23 +9,25 @@ import sys
 import numpy as np
 import pytest
 
-from puck_tables import SpeedLaw, build_speed_table, load_stop_table, load_table
+from puck_tables import SpeedLaw, Table
 from puck_tables.body import body_of
 from puck_tables.contact.laws import law_of
 from puck_tables.kernels.compile import kernel
-from puck_tables.kernels.law_spline import fill_law
-from puck_tables.kernels.partial_spline import fill_partial
-from puck_tables.kernels.quadratic import fill_resultants_quadratic
+from puck_tables.kernels.quadratic import cut, fill_resultants
 from puck_tables.kernels.slice_spline import fill_slice
 from puck_tables.kernels.speed_spline import fill_speed
-from puck_tables.kernels.spline import cell_at, cut, fill_resultants
+from puck_tables.kernels.spline import cell_at
 from puck_tables.similarity.curve_lookup import LAUNCH_COLUMNS, LAUNCH_ROWS, fill_states
 from puck_tables.similarity.lookup import stops_kernel
 from puck_tables.similarity.slice_lookup import fill_slice_stops
 from puck_tables.table.friction_slice import friction_slice
-from puck_tables.table.law_table import tabulate
-from puck_tables.table.partial_file import load_partial_table
-from puck_tables.tradeoff.uniform import fill_uniform, uniform_coefficients
+from puck_tables.table.resultant_check import tabulate
+from puck_tables.tradeoff.bicubic import (
+    fill_graded,
+    fill_uniform,
+    graded_coefficients,
+    uniform_coefficients,
+)
 
 WILD = np.array([
     np.nan, -np.nan, np.inf, -np.inf, 1e308, -1e308, 1e19, -1e19, 5e9, -5e9, -1.0, -5e-324, 0.0,
@@ -51,19 +53,18 @@ def look_up_everything() -> None:
     n = first.size
     out, out4, out6 = np.empty((3, n)), np.empty((4, n)), np.empty((6, n))
     fast = np.arange(n) % 2 == 0
-    table, stops, partial = load_table(), load_stop_table(), load_partial_table()
-    law = tabulate(law_of("annulus:0.5"), 8)
+    table, stops = Table.shipped(), Table.shipped("stops")
+    for law in (law_of("uniform"), law_of("annulus:0.5")):
+        small = tabulate(law, 8)
+        sides, columns = np.array(small.axis.sides), small.columns
+        for c in (columns, np.random.default_rng(1).choice(WILD, columns.shape)):
+            fill_resultants(c, sides, first, second, out)
+            for height in WILD:
+                cut(c, height, np.empty(3 * c[..., 0].size))
     wild = np.random.default_rng(1).choice(WILD, (2, 11, 19, 3))
-    for c in (table.coefficients, wild):
-        fill_resultants(c, 1.0, first, second, out)
-        for share in WILD:
-            cut(c, share, np.empty(6 * c.shape[2]))
-    fill_resultants_quadratic(table.quadratic, first, second, out)
-    fill_law(*law.spline, law.delta_max, first, second, out)
-    fill_partial(*partial.spline, first, second, out)
-    opening = np.random.default_rng(2).choice(WILD, (2, 19))
-    fill_partial(wild, opening, partial.spline[2], first, second, out)
-    speeds = build_speed_table(SpeedLaw([0.0, 0.5, 2.0], [0.3, 0.2, 0.25]), accuracy=1e-2)
+    for c in (graded_coefficients(table), wild):
+        fill_graded(c, 1.0, first, second, out)
+    speeds = Table.build(SpeedLaw([0.0, 0.5, 2.0], [0.3, 0.2, 0.25]), 1e-2)
     wild_table = speeds.compiled.copy()
     places = wild_table[1:]
     places[places.size // 2 :] = np.random.default_rng(6).choice(

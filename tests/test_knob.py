@@ -12,7 +12,7 @@ from mpmath import mp
 from puck_tables.cli.main import main
 from pucks import simulate, sweep
 
-from puck_tables import build_table, load_stop_table, load_table, stop
+from puck_tables import Table, stop
 from puck_tables.errors import AccuracyError, InputError, TableError
 from puck_tables.front import (
     INTEGRATED,
@@ -23,7 +23,6 @@ from puck_tables.front import (
     shipped_front,
     ways_from_csv,
 )
-from puck_tables.similarity.axes import SlipAxis
 from puck_tables.similarity.stop_table import StopTable
 
 GOLDEN = Path(__file__).parent / "golden"
@@ -139,11 +138,11 @@ def test_what_it_cannot_reach_it_says():
     with pytest.raises(AccuracyError, match=r"to 0\.01"):
         choose("stop", 0.5)
     with pytest.raises(AccuracyError, match="tol must be from 1"):
-        stop((1, 0), 1.0, tol=1e-11, table=load_table())
+        stop((1, 0), 1.0, tol=1e-11, table=Table.shipped())
     for options, words in (
         ({"method": "euler"}, "method must be one of"),
-        ({"method": "look-up", "table": load_table()}, "needs a table of stops"),
-        ({"method": "rk4", "table": load_stop_table()}, "needs a table of resultants"),
+        ({"method": "look-up", "table": Table.shipped()}, "needs a table of stops"),
+        ({"method": "rk4", "table": Table.shipped("stops")}, "needs a table of resultants"),
     ):
         with pytest.raises(InputError, match=words):
             stop((1, 0), 1.0, **options)
@@ -194,15 +193,15 @@ def test_sweep_and_stop_take_the_same_way():
 
 
 def test_a_table_of_one_s_own_is_named_not_closed_forms():
-    found = stop((1, 0), 5.0, table=build_table(accuracy=1e-5), tol=1e-3)
+    found = stop((1, 0), 5.0, table=Table.build(accuracy=1e-5), tol=1e-3)
     assert "the table memory" in found.choice.why
     assert "closed forms" not in found.choice.why
     with pytest.raises(AccuracyError, match=r"the table memory.*give a tol in that range"):
-        stop((1, 0), 5.0, table=build_table(accuracy=1e-5))
+        stop((1, 0), 5.0, table=Table.build(accuracy=1e-5))
 
 
 def test_a_stop_table_of_one_s_own_is_taken_whole():
-    own = StopTable(SlipAxis(47), load_stop_table().values[::6], tolerance=2e-7)
+    own = StopTable(Table.shipped("stops").values[::6], tolerance=2e-7)
     result = stop((1, 0), 5.0, table=own, tol=1e-3)
     assert result.choice is None
     assert abs(float(result.stop_time) - 3.96299205) <= 5.2 * own.tolerance

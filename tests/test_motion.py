@@ -12,11 +12,11 @@ from pucks import simulate
 from reference import REFERENCE_RUNS, states
 
 from puck_tables import (
+    Table,
     approach_exponent,
     curvature_slope,
     limit_angle,
     limit_ratio,
-    load_table,
     regime,
     resultants,
     stop,
@@ -299,7 +299,7 @@ def test_above_delta_1_the_law_holds_state_by_state():
     with pytest.raises(ContactError):
         simulate((1, 0), 0.0, delta=1.01, exact=True)
     with pytest.raises(InputError, match="outside this table"):
-        simulate((1, 0), 8.0, delta=1.2, table=load_table())
+        simulate((1, 0), 8.0, delta=1.2, table=Table.shipped())
 
 
 @pytest.mark.parametrize(
@@ -335,7 +335,7 @@ def test_bad_launches(arguments: tuple, error: type, words: str):
         ({"times": [math.nan]}, InputError, "times"),
         ({"tol": 1e-16}, AccuracyError, "1e-13"),
         ({"tol": 1e-16, "exact": True}, AccuracyError, "1e-13"),
-        ({"tol": 1e-11, "table": load_table()}, AccuracyError, "of the table|1.1e-10"),
+        ({"tol": 1e-11, "table": Table.shipped()}, AccuracyError, "of the table|1.1e-10"),
         ({"method": "euler"}, InputError, "method"),
         ({"tol": "fine"}, InputError, "tol must be a number"),
         ({"frames": 2.5}, InputError, "frames"),

@@ -13,13 +13,13 @@ from conftest import ROOT
 from pucks import simulate
 
 from puck_tables.contact import closed_form, quadrature
+from puck_tables.contact.closed_form import by_closed_form
 from puck_tables.contact.integrals import PatchIntegrals
 from puck_tables.contact.resultants import Resultants
 from puck_tables.paper import ends, friction, motions, patch, shapes
 from puck_tables.paper.claim import Claim, as_csv, as_text, equal, farthest, less, more
 from puck_tables.paper.root import root
 from puck_tables.paper.runs import ACCURACY
-from puck_tables.table.check import by_closed_form
 from puck_tables.trajectory import Trajectory
 
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from pucks import sweep
 
-from puck_tables import build_table, load_stop_table, load_table, profile_law, sweep_scene
+from puck_tables import Table, profile_law, sweep_scene
 from puck_tables import checkpoint as kept_work
 from puck_tables.checkpoint import Checkpoint, work_digest
 from puck_tables.errors import InputError, OutputError
@@ -24,7 +24,7 @@ OTHER: dict[str, Any] = {"spin": W0, "velocity": (1.0, 0.0), "pressure": "ring",
 
 def changed_table() -> Any:
     """As the one that comes along, but in one bit."""
-    table = load_stop_table()
+    table = Table.shipped("stops")
     values = table.values.copy()
     values[5, 5, 0] = np.nextafter(values[5, 5, 0], 2.0)
     return replace(table, values=values)
@@ -35,12 +35,12 @@ CHANGES: list[tuple[dict[str, Any], dict[str, Any]]] = [
     (PLAIN, {"speed": [0.5, 1.5]}), (PLAIN, {"delta": 0.5000001}), (PLAIN, {"radius": 2.0}),
     (PLAIN, {"decel": 2.0}), (PLAIN, {"tol": 1e-4}), (PLAIN, {"method": "adaptive"}),
     (PLAIN, {"method": "rk4"}), (PLAIN, {"table": changed_table}),
-    (PLAIN, {"table": load_table}), (PLAIN, {"gyration": 0.9}), (PLAIN, {"pressure": "ring"}),
+    (PLAIN, {"table": Table.shipped}), (PLAIN, {"gyration": 0.9}), (PLAIN, {"pressure": "ring"}),
     (PLAIN, {"chunk": 5}),
     (INTEGRATED, {"method": "adaptive"}), (INTEGRATED, {"method": None}),
     (INTEGRATED, {"tol": 1e-6}), (INTEGRATED, {"velocity": (1.0, 1e-9)}),
     (INTEGRATED, {"velocity": (0.0, 1.0)}),
-    (INTEGRATED, {"table": lambda: build_table(accuracy=1e-9)}),
+    (INTEGRATED, {"table": lambda: Table.build(accuracy=1e-9)}),
     (OTHER, {"pressure": "annulus:0.9"}), (OTHER, {"gyration": 1.0}), (OTHER, {"tol": 1e-4}),
     (OTHER, {"method": "adaptive"}), (OTHER, {"method": "rk4"}),
     (OTHER, {"pressure": lambda: profile_law([0.0, 1.0], [1.0, 0.5])}),

@@ -3,33 +3,18 @@
 from __future__ import annotations
 
 import math
-import shutil
 from dataclasses import replace
-from pathlib import Path
 
-import h5py
 import numpy as np
 import pytest
-import xarray
 from pucks import simulate, sweep
 from reference import REFERENCE_RUNS
 from reference import states as reference_states
 
-from puck_tables import (
-    build_stop_table,
-    limit_ratio,
-    load_stop_table,
-    load_table,
-    save_stop_table,
-    states,
-    stop,
-    validate_stops,
-)
-from puck_tables.catalogue import load_any_table
-from puck_tables.errors import AccuracyError, InputError, OutputError, TableError
+from puck_tables import Table, limit_ratio, states, stop
+from puck_tables.errors import AccuracyError, InputError
 from puck_tables.similarity.axes import SlipAxis, heights
-from puck_tables.similarity.build import tabulate
-from puck_tables.similarity.check import launch_points, launches_at, looked_up
+from puck_tables.similarity.check import launch_points, launches_at, looked_up, tabulate
 from puck_tables.similarity.curve import limits, regular_slopes
 from puck_tables.similarity.curve_lookup import STOP_X, STOP_Y
 from puck_tables.similarity.exact import end_values, exact_stops
@@ -38,14 +23,7 @@ from puck_tables.similarity.stop_table import StopTable
 
 @pytest.fixture(scope="module")
 def rough() -> StopTable:
-    return build_stop_table(cells=32)
-
-
-@pytest.fixture(scope="module")
-def file(tmp_path_factory: pytest.TempPathFactory, rough: StopTable) -> Path:
-    path = tmp_path_factory.mktemp("stops") / "rough.h5"
-    save_stop_table(rough, path, command="puck build-tables --kind stops --cells 32")
-    return path
+    return Table.build("stops", cells=32)
 
 
 # ---- stops
@@ -62,7 +40,7 @@ def test_reference_runs():
 
 def test_default_table_at_adversarial_points():
     """Down to 1e-16 from φ = 0, π/4, π/2 and from δ = 0, 1: far inside 3e-9."""
-    table = load_stop_table()
+    table = Table.shipped("stops")
     u, delta = launch_points(table.axis, 600, seed=99)
     error = np.abs(looked_up(table, u, delta) - exact_stops(u, delta)).max(axis=0)
     assert np.all(error <= 1.1e-10)
@@ -86,7 +64,7 @@ def test_integrated_and_looked_up_agree_for_any_puck():
     v0, w0 = rng.normal(size=(300, 2)), rng.normal(size=300) * 40.0
     puck = {"delta": rng.random(300), "decel": 0.7, "radius": 0.05}
     one = stop(v0, w0, **puck, tol=2e-10)
-    two = stop(v0, w0, **puck, tol=1e-9, table=load_table())
+    two = stop(v0, w0, **puck, tol=1e-9, table=Table.shipped())
     assert two.method == "integrated"
     q = np.hypot(np.hypot(*v0.T), 0.05 * w0)
     assert np.all(np.abs(one.stop_time - two.stop_time) <= 1.2e-9 * q / 0.7)
@@ -134,16 +112,15 @@ def test_subnormal_and_oversized_launches():
 def test_a_table_of_the_wrong_kind_is_said():
     for call in (
         lambda: stop((1, 0), 1.0, table="coarse.h5"),
-        lambda: states((1, 0), 1.0, 1.0, table=load_table()),
-        lambda: simulate((1, 0), 1.0, table=load_stop_table()),
-        lambda: validate_stops(load_table()),
+        lambda: states((1, 0), 1.0, 1.0, table=Table.shipped()),
+        lambda: simulate((1, 0), 1.0, table=Table.shipped("stops")),
     ):
         with pytest.raises(InputError, match=r"table must be a .*, got a"):
             call()
 
 
 def test_pure_motions_are_exact_by_either_way():
-    for table in (None, load_table()):
+    for table in (None, Table.shipped()):
         result = stop([(1, 0), (0, 0), (0, 2), (0, 0)], [0, 1, 0, 0], delta=0.7, table=table)
         assert result.stop_time.tolist() == [1.0, 0.75, 2.0, 0.0]
         assert result.stop_position.tolist() == [[0.5, 0.0], [0.0, 0.0], [0.0, 2.0], [0.0, 0.0]]
@@ -230,7 +207,7 @@ def test_launch_and_rest_are_exact_in_any_order():
     assert at.spin.tolist() == [0.0, 2.0, 0.0]
     assert (at.x[1], at.y[1], at.orientation[1]) == (0.0, 0.0, 0.0)
     launch = np.array([[3.0], [4.0], [2.0], [0.5], [1.0], [0.5]])
-    known = load_stop_table().known(launch)
+    known = Table.shipped("stops").known(launch)
     np.testing.assert_allclose([at.x[0], at.y[2]], known[[STOP_X, STOP_Y], 0], rtol=1e-15)
     assert np.abs(end.stop_position - known[[STOP_X, STOP_Y], 0]).max() <= 2e-10 * (25 + 1)
     resting = states((0.0, 0.0), 0.0, [0.0, 1.0])
@@ -288,68 +265,33 @@ def test_the_slip_angle_is_that_of_the_velocities_everywhere(v0: tuple[float, fl
         assert np.array_equal(getattr(again, name), getattr(run, name)), name
 
 
-# ---- the table and its file
+# ---- the table
 
 
 def test_validation_passes_and_can_fail(rough: StopTable):
-    assert validate_stops(rough).passed
+    assert rough.validate().passed
     bent = rough.values.copy()
     bent[20, 4, 0] += 1e-4
-    report = validate_stops(replace(rough, values=bent))
+    report = replace(rough, values=bent).validate()
     failed = {(check.name, check.function) for check in report.checks if not check.passed}
     assert {("integrator", "time"), ("equation", "time")} <= failed
     bent = rough.values.copy()
     bent[40, 4, 5] += 1e-3
-    report = validate_stops(replace(rough, values=bent))
+    report = replace(rough, values=bent).validate()
     failed = {c.function for c in report.checks if not c.passed}
     assert "curve" in failed
     assert failed <= {"curve", "turn"}
-
-
-def test_round_trip_and_xarray(file: Path, rough: StopTable):
-    loaded = load_stop_table(file)
-    np.testing.assert_array_equal(loaded.values, rough.values)
-    assert loaded.accuracy == rough.accuracy
-    assert loaded.passport["kind"] == "stops"
-    with xarray.open_dataset(file, engine="h5netcdf") as data:
-        assert dict(data.sizes) == {"phi": 65, "delta": 9}
-        assert float(data.time[0, 0]) == 1.0
-        assert "Displacement" in data.attrs["interpretation"]
-
-
-def test_shipped_tables_take_less_than_a_megabyte():
-    from importlib.resources import files
-
-    folder = files("puck_tables.tables")
-    sizes = [len(folder.joinpath(name).read_bytes()) for name in ("resultants.h5", "stops.h5")]
-    assert sum(sizes) <= 1_000_000
-
-
-def test_kinds_are_told_apart(file: Path, tmp_path: Path):
-    with pytest.raises(TableError, match="holds 'stops', not a table of 'resultants'"):
-        load_table(file)
-    assert load_any_table(file).tolerance == load_stop_table(file).tolerance
-    edited = tmp_path / "edited.h5"
-    shutil.copy(file, edited)
-    with h5py.File(edited, "r+") as opened:
-        opened["time"][3, 3] += 1e-12
-    with pytest.raises(TableError, match="digest"):
-        load_any_table(edited)
-    with pytest.raises(OutputError, match="exists already"):
-        save_stop_table(load_stop_table(file), file)
-    with pytest.raises(TableError, match="cannot use"):
-        save_stop_table(replace(load_stop_table(file), tolerance=2.0), tmp_path / "bad.h5")
 
 
 def test_sizes_and_accuracies_out_of_range():
     with pytest.raises(InputError, match="cells must be from 8"):
         SlipAxis(7)
     with pytest.raises(InputError, match="both fix the grid"):
-        build_stop_table(accuracy=1e-5, cells=32)
+        Table.build("stops", 1e-5, cells=32)
     with pytest.raises(AccuracyError, match="1e-11"):
-        build_stop_table(accuracy=1e-13)
+        Table.build("stops", 1e-13)
     with pytest.raises(AccuracyError, match="--kind stops"):
-        stop((1, 0), 1.0, tol=1e-11, table=load_stop_table())
+        stop((1, 0), 1.0, tol=1e-11, table=Table.shipped("stops"))
     with pytest.raises(AccuracyError, match="closed forms reaches 1e-13"):
         sweep(tol=1e-11, method="look-up")
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from pucks import simulate, sweep
 
-from puck_tables import Table, load_stop_table, stop
+from puck_tables import Table, stop
 from puck_tables.errors import AccuracyError, InputError
 from puck_tables.executor import run_chunks
 from puck_tables.stop_map import check_memory
@@ -66,7 +66,7 @@ def test_overflow_is_a_named_status():
     [
         (((1, 0, 0), 1.0), {}, "two components"),
         (((1, 0), [1.0, math.inf]), {}, "spin"),
-        (((1, 0), 1.0), {"delta": 1.5, "table": load_stop_table()}, "outside this table"),
+        (((1, 0), 1.0), {"delta": 1.5, "table": Table.shipped("stops")}, "outside this table"),
         (((1, 0), 1.0), {"delta": -0.5}, "delta"),
         (((1, 0), 1.0), {"radius": [1.0, 0.0]}, "radius"),
         (((1, 0), 1.0), {"decel": 0.0}, "decel"),

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner, Result
 from puck_tables.cli.main import main
+from pucks import simulate
 
 import puck_tables as pt
 from puck_tables import store
@@ -35,13 +36,13 @@ def kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def builds(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """The laws that were tabulated."""
     names: list[str] = []
-    true = store.build_law_table
+    true = store.ResultantTable.built
 
-    def counted(law: pt.Law, *given: object, **named: object) -> pt.LawTable:
-        names.append(law.name)
-        return true(law, *given, **named)
+    def counted(of: pt.Law, *given: object, **named: object) -> pt.Table:
+        names.append(of.name)
+        return true(of, *given, **named)
 
-    monkeypatch.setattr(store, "build_law_table", counted)
+    monkeypatch.setattr(store.ResultantTable, "built", counted)
     return names
 
 
@@ -66,8 +67,8 @@ def test_built_once_then_read(kept: Path, builds: list[str], capsys: pytest.Capt
 def test_inner_radii_that_differ_late_are_two_laws(builds: list[str]):
     a, b = (pt.table_for(f"annulus:0.812345{d}", accuracy=1e-4) for d in (6, 7))
     assert len(builds) == 2
-    assert a.law_name != b.law_name
-    assert pt.validate_law(a, points=200).passed
+    assert a.pressure_law != b.pressure_law
+    assert a.validate(points=200).passed
 
 
 def test_a_profile_is_its_values_not_its_name(
@@ -84,7 +85,7 @@ def test_a_profile_is_its_values_not_its_name(
     assert other.resultants(0.5, 0.5).spin != tables[0].resultants(0.5, 0.5).spin
     same = pt.table_for(pt.profile_law([0.0, 0.5, 1.0], [2.0, 2.0, 1.001]), accuracy=1e-4)
     assert len(builds) == 2
-    assert pt.validate_law(same, points=200).passed
+    assert same.validate(points=200).passed
 
 
 def test_a_table_of_other_sources_is_not_todays(builds: list[str], monkeypatch: pytest.MonkeyPatch):
@@ -212,7 +213,7 @@ def test_builders_at_once_leave_one_whole_table(kept: Path):
     assert [process.returncode for process in running] == [0] * 3
     assert len({out for out, _ in said}) == 1
     (path,) = kept.iterdir()
-    assert pt.load_law_table(path).tolerance == 1e-6
+    assert pt.Table.load(path).tolerance == 1e-6
 
 
 def test_bad_requests():
@@ -232,7 +233,33 @@ def test_progress_is_told():
     pt.table_for("ring", accuracy=1e-4, progress=lambda done, total: told.append((done, total)))
     assert len(told) > 3
     assert all(0 < done <= total for done, total in told)
-    assert told == sorted(told)
+    assert told == sorted(told, key=lambda pair: pair[::-1])  # a finer grid begins anew
+
+
+def test_the_friction_of_a_tall_puck_is_kept(kept: Path, monkeypatch: pytest.MonkeyPatch):
+    built: list[float] = []
+    true = store.friction_slice
+
+    def counted(law: pt.Law, delta: float, accuracy: float) -> pt.Table:
+        built.append(delta)
+        return true(law, delta, accuracy)
+
+    monkeypatch.setattr(store, "friction_slice", counted)
+    store.friction_for.cache_clear()  # other tests have asked for the same
+    first = simulate((1.0, 0.0), 5.0, delta=1.5, tol=1e-5)
+    times = len(built)
+    assert times == len(list(kept.iterdir())) > 0
+    store.friction_for.cache_clear()  # as in another process
+    again = simulate((1.0, 0.0), 5.0, delta=1.5, tol=1e-5)
+    assert len(built) == times
+    assert again.stop_time == first.stop_time
+    other = simulate((1.0, 0.0), 5.0, delta=1.5000001, tol=1e-5)
+    assert len(built) > times
+    assert other.stop_time != first.stop_time
+    listed = puck("tables").stdout
+    assert listed.count("friction slice") == len(list(kept.iterdir()))
+    simulate((1.0, 0.0), 5.0, delta=0.5, pressure="ring", tol=1e-5)
+    assert "ring" not in puck("tables").stdout  # made in no time
 
 
 def test_listed_removed_and_cleaned(kept: Path, tmp_path: Path):
@@ -246,14 +273,14 @@ def test_listed_removed_and_cleaned(kept: Path, tmp_path: Path):
     mine[2].symlink_to(mine[1])
     listed = json.loads(puck("tables", "--json").stdout)
     found = {entry["name"]: entry for entry in listed}
-    assert set(found) == {"partial.h5", "resultants.h5", "stops.h5", *names}
+    assert set(found) == {"resultants.h5", "stops.h5", *names}
     assert [found[name]["whole"] for name in names] == [False, True]
     ring = found[names[1]]
     assert (ring["pressure_law"], ring["accuracy"]) == ("ring", 1e-4)
     assert (ring["bytes"], ring["place"]) == ((kept / names[1]).stat().st_size, str(kept))
     shown = puck("tables")
     assert shown.output.isascii()
-    assert [line.split()[0] for line in shown.stdout.splitlines()[4:6]] == names
+    assert [line.split()[0] for line in shown.stdout.splitlines()[3:5]] == names
     assert "damaged" in shown.stdout
     assert f"kept in {kept}" in shown.stdout
 

@@ -13,16 +13,15 @@ from click.testing import CliRunner
 from puck_tables.cli.main import main
 from puck_tables.cli.tradeoff import report
 
-from puck_tables import load_stop_table, load_table, resultants
+from puck_tables import Table, resultants
 from puck_tables.errors import OutputError
 from puck_tables.front import shipped_front
-from puck_tables.kernels.spline import fill_resultants
 from puck_tables.motion.bulk import fill_stops
 from puck_tables.motion.steppers import DORMAND_PRINCE, RK4
-from puck_tables.similarity.axes import SlipAxis
 from puck_tables.similarity.exact import exact_stops
 from puck_tables.similarity.stop_table import StopTable
 from puck_tables.tradeoff import engine, resultant_ways, stop_ways
+from puck_tables.tradeoff.bicubic import fill_graded, graded_coefficients
 from puck_tables.tradeoff.machine import measured_machine
 from puck_tables.tradeoff.models import PADE_MATCHED, as_table, pade_limit_ratio
 from puck_tables.tradeoff.truth import Points, known_starts, random_points
@@ -42,7 +41,7 @@ def measured() -> engine.TradeOff:
 def test_errors_are_properties_of_the_ways_and_ship_as_measured():
     """Every look-up and every fifth contender measured again: the same to the digits shipped."""
     points = random_points(40)
-    task = stop_ways.Task(known_starts(), points, load_table(), load_stop_table())
+    task = stop_ways.Task(known_starts(), points, Table.shipped(), Table.shipped("stops"))
     known = {(way.question, way.name): way for way in shipped_front()}
     count = 0
     for number, contender in enumerate(stop_ways.contenders(task)):
@@ -83,25 +82,14 @@ def test_the_figures_asked_for_are_on_the_front():
 
 
 def test_quadratic_and_bicubic_are_the_same_table():
-    table = load_table()
+    table = Table.shipped()
     rng = np.random.default_rng(3)
     phi, delta = rng.uniform(-1.57, 1.57, 3000), rng.random(3000)
     delta[:50], phi[50:60], phi[60:70] = 0.0, 0.0, 0.5 * np.pi
-    bicubic = np.empty((3, phi.size))
-    fill_resultants(table.coefficients, 1.0, phi, delta, bicubic)
+    rival, bicubic = graded_coefficients(table), np.empty((3, phi.size))
+    fill_graded(rival, 1.0, phi, delta, bicubic)
     np.testing.assert_allclose(np.stack(table.resultants(phi, delta)), bicubic, rtol=0, atol=1e-14)
-    assert table.quadratic is not None
-    assert table.quadratic.nbytes < 0.3 * table.coefficients.nbytes
-
-
-def test_a_table_that_is_not_quadratic_is_read_as_bicubic():
-    model = as_table("pade", *PADE_MATCHED, size=129)  # ρ_⊥ = 0 fits; bend one value
-    values = model.values.copy()
-    values[:, 1, 0] *= 1.01
-    bent = replace(model, values=values)
-    assert bent.quadratic is None
-    assert model.quadratic is not None
-    assert float(bent.resultants(0.0, 1.0 / 3.0).parallel) == pytest.approx(1.01, abs=1e-12)
+    assert table.columns.nbytes < 0.3 * rival.nbytes
 
 
 def test_closed_forms_beside_the_singular_angle_do_not_depend_on_the_block():
@@ -117,7 +105,7 @@ def test_closed_forms_beside_the_singular_angle_do_not_depend_on_the_block():
 
 def test_vectors_of_the_look_up_are_the_plain_sums():
     """Hand-made vector code against NumPy, double and single, at every number of powers."""
-    table = StopTable(SlipAxis(47), load_stop_table().values[::6])
+    table = StopTable(Table.shipped("stops").values[::6])
     from puck_tables.similarity.lookup import row_width, slip_place, stops_kernel
 
     launch = np.array([[0.6], [0.1], [0.9], [0.7], [1.0], [1.0]])
@@ -171,7 +159,7 @@ def test_models_of_the_literature():
     table = as_table("limit surface")
     launch = np.array([[1.0], [0.0], [0.0], [0.0], [1.0], [1.0]])
     out, status = np.empty((6, 1)), np.empty(1, np.int8)
-    fill_stops(launch, DORMAND_PRINCE, 64.0, 1.0, table.coefficients, 1.0, out, status)
+    fill_stops(launch, DORMAND_PRINCE, 64.0, 1.0, table.columns, out, status)
     assert out[:2, 0] == pytest.approx([1.0, 0.5], abs=1e-9)  # pure sliding is right in any model
 
 

@@ -16,8 +16,9 @@ import pytest
 from click.testing import CliRunner
 from puck_tables.cli.main import main
 
-from puck_tables import build_partial_table, build_stop_table, safe_write
+from puck_tables import safe_write
 from puck_tables.front import shipped_front
+from puck_tables.similarity.stop_table import StopTable
 
 # {} is the output without its ending; the path that is written is the one that follows
 COMMANDS: dict[str, tuple[list[str], str]] = {
@@ -41,8 +42,6 @@ COMMANDS: dict[str, tuple[list[str], str]] = {
     "aim png": (["aim", "--target", "2,0.1", "--plot", "{}.png"], "{}.png"),
     "build resultants": (["build-tables", "--accuracy", "1e-5", "-o", "{}.h5"], "{}.h5"),
     "build stops": (["build-tables", "--kind", "stops", "--cells", "8", "-o", "{}.h5"], "{}.h5"),
-    "build partial": (["build-tables", "--kind", "partial", "--cells", "8", "-o", "{}.h5"],
-                      "{}.h5"),
     "build law": (["build-tables", "--pressure", "ring", "--cells", "8", "-o", "{}.h5"], "{}.h5"),
     "tradeoff csv": (["tradeoff", "-o", "{}.csv"], "{}.csv"),
     "tradeoff h5": (["tradeoff", "-o", "{}.h5"], "{}.h5"),
@@ -65,22 +64,12 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setattr(engine, "measure", lambda quick, show: measured)
     monkeypatch.setattr("puck_tables.paper.claims.all_claims", lambda show: {})
     monkeypatch.setattr(figures, "FIGURES", {2: figures.limit_angles})
-    monkeypatch.setattr("puck_tables.similarity.build.build_stop_table", once(build_stop_table))
+    true = cache(StopTable.built)
     monkeypatch.setattr(
-        "puck_tables.table.partial_build.build_partial_table", once(build_partial_table)
+        StopTable, "built", lambda of, accuracy, cells, progress: true(of, cells=cells)
     )
     monkeypatch.chdir(tmp_path)
     return tmp_path
-
-
-@cache
-def built(build: Callable[..., object], cells: int) -> object:
-    return build(cells=cells)
-
-
-def once(build: Callable[..., object]) -> Callable[..., object]:
-    """A builder that builds a table of these cells once."""
-    return lambda accuracy, cells, progress: built(build, cells)
 
 
 def puck(name: str, place: str, *more: str) -> tuple[int, str]:

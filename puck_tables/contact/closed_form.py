@@ -21,6 +21,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.contact.integrals import FloatArray, PatchIntegrals, slip_direction
+from puck_tables.contact.resultants import Resultants, moment_balance
 
 ShapeIntegrals = Callable[[FloatArray, FloatArray], tuple[FloatArray, FloatArray, FloatArray]]
 
@@ -121,3 +122,14 @@ def integrals(phi: npt.ArrayLike) -> PatchIntegrals:
     direction = slip_direction(phi)
     a, b, d = shape_integrals(direction.ratio, direction.fast_spin.astype(np.float64))
     return PatchIntegrals(a, b, b - d, d, d - 2.0 * b)
+
+
+def by_closed_form(phi: npt.ArrayLike, delta: npt.ArrayLike) -> Resultants:
+    """Resultants by elliptic integrals, uncompiled.
+
+    Examples
+    --------
+    >>> float(by_closed_form(0.0, 1.0).spin)
+    0.375
+    """
+    return moment_balance(integrals(phi), slip_direction(phi), delta)

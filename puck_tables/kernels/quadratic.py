@@ -1,13 +1,15 @@
-"""The table where the height enters as a polynomial: five splines in η and no grid in δ.
+"""The table of friction resultants as compiled code reads it: five splines over the slip angle.
 
-In full contact the friction ratios (:mod:`puck_tables.kernels.spline`) are
+In full contact the *friction ratios* are polynomials of the height under every pressure law,
 
     1/ρ_∥ = a₀ + a₂ δ²,    ρ_⊥/ρ_∥ = b₁ δ,    ρ_ω/ρ_∥ = c₀ + c₂ δ² ,
 
-with functions of φ alone.  Five cubic splines in η then do what three bicubic ones do, with 20
-products a point instead of 48 and a fifth of the memory.
+with functions of φ alone.  They are also what the equations of motion need.  Five cubic splines in
+η then do what three bicubic ones do, with 20 products a point instead of 48 and a fifth of the
+memory.
 
-Coefficients: array (2, η cells + 3, 5) of B-spline weights over 6, in the order a₀, a₂, b₁, c₀, c₂.
+Coefficients: array (sides, η cells + 3, 5) of B-spline weights over 6, in the order a₀, a₂, b₁, c₀,
+c₂; sides: rows of line, end and extent as in :mod:`puck_tables.table.slip_axis`.
 """
 
 from __future__ import annotations
@@ -15,26 +17,40 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.kernels.compile import allocating
+from puck_tables.kernels.compile import allocating, inlined, kernel
 from puck_tables.kernels.spline import basis, cell_at, side_and_eta
 
 FloatArray = npt.NDArray[np.float64]
 
 TERMS = 5
 _BLOCK = 128
+_QUARTER = 0.25 * np.pi
+
+
+@inlined
+def _side_and_eta(phi: float, sides: FloatArray) -> tuple[int, float]:
+    """Side and η ∈ [0, 1] of an angle |φ| ≤ π/2."""
+    angle = abs(phi)
+    side = 0
+    while side < len(sides) - 1 and angle > max(sides[side, 0], sides[side, 1]):
+        side += 1
+    _, eta = side_and_eta(_QUARTER + angle - sides[side, 0])
+    return side, min(eta / abs(sides[side, 2]) ** 0.25, 1.0)
 
 
 @allocating
-def fill_resultants_quadratic(
-    coefficients: FloatArray, phi: FloatArray, delta: FloatArray, out: FloatArray
+def fill_resultants(
+    coefficients: FloatArray, sides: FloatArray, phi: FloatArray, delta: FloatArray, out: FloatArray
 ) -> None:
     """ρ_∥, ρ_⊥, ρ_ω at flat arrays of points into ``out`` (3, n); arguments already checked.
 
-    In blocks of three loops, as in :mod:`puck_tables.kernels.spline`.
+    In blocks of three loops: where and with which weights (vectorised where π/4 is the only line),
+    the sums (short dependency chains: one point does not wait for another), the division.
     """
     n_eta = coefficients.shape[1] - 3
     c = coefficients.reshape(-1)
     side_stride = TERMS * (n_eta + 3)
+    one_line = len(sides) == 2
     first = np.empty(_BLOCK, np.int64)
     w0, w1, w2, w3 = np.empty(_BLOCK), np.empty(_BLOCK), np.empty(_BLOCK), np.empty(_BLOCK)
     for start in range(0, phi.size, _BLOCK):
@@ -43,12 +59,20 @@ def fill_resultants_quadratic(
         parallel = out[0, start : start + _BLOCK]
         perpendicular = out[1, start : start + _BLOCK]
         spin = out[2, start : start + _BLOCK]
-        for n in range(angle.size):
-            side, eta = side_and_eta(angle[n])
-            p = eta * n_eta
-            i = cell_at(p, n_eta)
-            first[n] = side * side_stride + TERMS * i
-            w0[n], w1[n], w2[n], w3[n] = basis(p - i)
+        if one_line:
+            for n in range(angle.size):
+                side, eta = side_and_eta(angle[n])
+                p = eta * n_eta
+                i = cell_at(p, n_eta)
+                first[n] = side * side_stride + TERMS * i
+                w0[n], w1[n], w2[n], w3[n] = basis(p - i)
+        else:
+            for n in range(angle.size):
+                side, eta = _side_and_eta(angle[n], sides)
+                p = eta * n_eta
+                i = cell_at(p, n_eta)
+                first[n] = side * side_stride + TERMS * i
+                w0[n], w1[n], w2[n], w3[n] = basis(p - i)
         for n in range(angle.size):
             k = np.uint64(first[n])  # unsigned: no test for negative indices
             f = c[k : k + np.uint64(4 * TERMS)]
@@ -72,3 +96,16 @@ def fill_resultants_quadratic(
             parallel[n] = 1.0 / parallel[n]
             perpendicular[n] *= parallel[n]
             spin[n] *= parallel[n]
+
+
+@kernel
+def cut(coefficients: FloatArray, delta: float, out: FloatArray) -> None:
+    """The section at one height, for a run: ``out`` is flat, sides·(η cells + 3)·3."""
+    k = 0
+    for side in range(coefficients.shape[0]):
+        for i in range(coefficients.shape[1]):
+            row = coefficients[side, i]
+            out[k] = row[0] + delta * delta * row[1]
+            out[k + 1] = delta * row[2]
+            out[k + 2] = row[3] + delta * delta * row[4]
+            k += 3

@@ -1,6 +1,6 @@
 """Cubic splines over the slip angle alone, compiled: a table cut down to one puck.
 
-The axis of slip is that of :mod:`puck_tables.table.law_grid`: sides that run from a singular line
+The axis of slip is that of :mod:`puck_tables.table.slip_axis`: sides that run from a singular line
 outwards, tan(φ − line) = ± extent η⁴.  No angle is needed to find a place on it: with (c, s) in the
 direction of (v, r|ω|),
 
@@ -8,7 +8,7 @@ direction of (v, r|ω|),
 
 A slice is a matrix with one row a side, in the order of φ: :data:`HEADER` numbers, then the
 B-spline weights over 6 of its functions, node by node.  It is two-dimensional so that compiled code
-tells it from a flat cut of a table (:func:`puck_tables.kernels.spline.cut`) by its type.
+tells it from a flat cut of a table (:func:`puck_tables.kernels.quadratic.cut`) by its type.
 """
 
 from __future__ import annotations

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.kernels.compile import allocating
-from puck_tables.kernels.spline import cut as cut_table
+from puck_tables.kernels.quadratic import cut as cut_table
 from puck_tables.motion.equations import LENGTH, PSI, SIZE, THETA, T, U, X, Y, at_constant_angle
 from puck_tables.motion.limits import log_ratio
 from puck_tables.motion.path import STOPPED, integrate
@@ -29,15 +29,14 @@ def fill_stops(
     steps: float,
     tolerance: float,
     coefficients: FloatArray,
-    delta_max: float,
     out: FloatArray,
     status: npt.NDArray[np.int8],
 ) -> None:
     """Stops of launches (6, n): vx, vy, ω, δ, J, r, into ``out`` (6, n), see solvers.OUTPUTS.
 
     With about ``steps`` steps of Runge–Kutta 4, or, if that is 0, with the pair ``tableau`` and
-    the local error ``tolerance``.  Empty ``coefficients`` mean closed forms, a matrix is the slice
-    of one kind of puck, which all launches are of.
+    the local error ``tolerance``.  ``coefficients``: those of a table of resultants, empty for
+    closed forms; a matrix is the slice of one kind of puck, which all launches are of.
     One launch never influences another, so any cutting into chunks gives the same bits.
     """
     if coefficients.ndim == 2:
@@ -45,7 +44,7 @@ def fill_stops(
     else:
         at_ends = np.empty(0)  # closed forms
         by_table = coefficients.size > 0
-        cut = np.empty(2 * 3 * coefficients.shape[2]) if by_table else at_ends
+        cut = np.empty(2 * 3 * coefficients.shape[1]) if by_table else at_ends
     cut_delta = -1.0
     no_z, no_y = np.empty(0), np.empty((0, SIZE))
     start = np.empty(SIZE)
@@ -65,9 +64,9 @@ def fill_stops(
             for i in range(6):
                 out[i, n] = math.nan
             continue
-        if coefficients.ndim == 4:  # noqa: SIM102 - pruned when compiled
+        if coefficients.ndim == 3:  # noqa: SIM102 - pruned when compiled
             if by_table and delta != cut_delta:
-                cut_table(coefficients, delta / delta_max, cut)
+                cut_table(coefficients, delta, cut)
                 cut_delta = delta
         if speed == 0.0 or rim == 0.0:
             for i in range(SIZE):

@@ -14,7 +14,7 @@ from collections.abc import Callable
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.contact.closed_form import integrals
+from puck_tables.contact.closed_form import by_closed_form, integrals
 from puck_tables.motion.limits import limit_angle
 from puck_tables.paper.friction import slip_angle_rate
 from puck_tables.paper.patch import HEIGHTS, PHI, pressure_reserve
@@ -22,7 +22,6 @@ from puck_tables.paper.runs import simulate
 from puck_tables.paper.shapes import SPIN, ends_against_spin
 from puck_tables.plot.panels import Curve, Panel, Picture
 from puck_tables.puck import Puck
-from puck_tables.table.check import by_closed_form
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -8,12 +8,12 @@ from collections.abc import Callable
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables.contact.closed_form import by_closed_form
 from puck_tables.contact.resultants import Resultants
 from puck_tables.motion.limits import approach_exponent, curvature_slope, limit_angle
 from puck_tables.paper.claim import Claim, at_least, equal, less, more
 from puck_tables.paper.patch import ANGLES, HEIGHTS, PHI
 from puck_tables.paper.root import root
-from puck_tables.table.check import by_closed_form
 
 FloatArray = npt.NDArray[np.float64]
 Friction = Callable[[npt.ArrayLike, npt.ArrayLike], Resultants]

@@ -7,6 +7,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables.contact.closed_form import by_closed_form
 from puck_tables.paper.claim import Claim, equal, farthest, less, more
 from puck_tables.paper.friction import decline, excess
 from puck_tables.paper.root import power
@@ -18,7 +19,6 @@ from puck_tables.paper.runs import (
     time_left,
     velocity,
 )
-from puck_tables.table.check import by_closed_form
 from puck_tables.trajectory import Trajectory
 
 FloatArray = npt.NDArray[np.float64]

@@ -7,10 +7,10 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables.contact.closed_form import by_closed_form
 from puck_tables.motion.limits import curvature_slope, limit_ratio
 from puck_tables.paper.claim import Claim, equal, farthest, more
 from puck_tables.paper.runs import Simulate, curvature_radius, launch, simulate
-from puck_tables.table.check import by_closed_form
 from puck_tables.trajectory import Trajectory
 
 FloatArray = npt.NDArray[np.float64]

@@ -17,9 +17,9 @@ from puck_tables.real import rounded_up
 from puck_tables.run import closed_form_friction, table_friction
 from puck_tables.scene.ingredients import BySpeed, Regions
 from puck_tables.scene.scene import Scene, launch_velocity
-from puck_tables.store import speed_table_for
-from puck_tables.table.file import load_table
+from puck_tables.store import table_for
 from puck_tables.table.friction_slice import FINEST_ACCURACY
+from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.table.speed_build import FINEST_ACCURACY as FINEST_LAW
 from puck_tables.table.speed_table import SpeedTable
 
@@ -120,7 +120,7 @@ def _law_table(law: SpeedLaw, scene: Scene) -> SpeedTable:
 def _kept_table(points: tuple[tuple[float, float], ...], accuracy: float) -> SpeedTable:
     """Kept by the points of the law: a sweep asks for it again and again."""
     speeds, values = zip(*points, strict=True)
-    return speed_table_for(SpeedLaw(speeds, values), accuracy)
+    return table_for(SpeedLaw(speeds, values), accuracy)
 
 
 def slip_at_launch(scene: Scene) -> tuple[float, float, float]:
@@ -137,7 +137,7 @@ def slip_at_launch(scene: Scene) -> tuple[float, float, float]:
 def _plain_cut(tol: float, delta: float) -> FloatArray:
     if tol < EXACT_BELOW:
         return closed_form_friction(delta).cut
-    return table_friction(delta, load_table()).cut
+    return table_friction(delta, ResultantTable.shipped()).cut
 
 
 def _of_one_shape(slices: list[FloatArray]) -> FloatArray:

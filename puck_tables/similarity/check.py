@@ -1,4 +1,8 @@
-"""A stop table judged: by the integrator, by the equations it satisfies, by elementary values.
+"""A stop table built, measured and judged.
+
+Node values are stops integrated one by one to rounding, not solutions of the linear equations that
+T and X + iY satisfy: the integrator exists, reaches 1e-15 with closed forms at a local tolerance of
+2e-14, and leaves those equations to judge by.
 
 The equations.  On the way from a to b along a motion, with ln Q as in
 :mod:`puck_tables.similarity.curve`,
@@ -14,7 +18,7 @@ code with the closed forms that the table was built from.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
@@ -23,9 +27,9 @@ from numpy.polynomial import chebyshev
 from puck_tables.contact import quadrature
 from puck_tables.contact.integrals import slip_direction
 from puck_tables.contact.resultants import moment_balance
+from puck_tables.executor import run_chunks
 from puck_tables.kernels.spline import basis
 from puck_tables.motion.limits import limit_ratio
-from puck_tables.real import instance
 from puck_tables.similarity.axes import HEIGHTS, SlipAxis, heights, ratio_at
 from puck_tables.similarity.curve import limits, regular_parts
 from puck_tables.similarity.curve_lookup import (
@@ -39,16 +43,20 @@ from puck_tables.similarity.curve_lookup import (
     TURN_SUM,
     TURNING,
 )
-from puck_tables.similarity.exact import exact_stops
+from puck_tables.similarity.exact import end_values, exact_stops
 from puck_tables.similarity.lookup import CURVE_ROW
 from puck_tables.similarity.node_equations import all_slopes, missed_by_curve, missed_by_stops
-from puck_tables.similarity.stop_table import StopAccuracy, StopTable
-from puck_tables.table.check import Check, CheckReport
+from puck_tables.similarity.stop_table import STOPS, StopTable
+from puck_tables.table.accuracy import Accuracy
+from puck_tables.table.build import Goal, built
+from puck_tables.table.check import Check, CheckReport, compared
+from puck_tables.table.table import Progress
 
 FloatArray = npt.NDArray[np.float64]
-Progress = Callable[[int, int], None]
 
-NAMES = ("time", "x", "y", "path", "body", "curve", "turn")
+_GOAL = Goal(1e-10, 1e-11, "in units of Q/J and Q^2/J", 0.62, 1 << 12)
+_CHUNK = 64
+NAMES = StopTable.quantities
 _RANDOM, _CURVE_HEIGHTS = 1500, (0.0, 0.05, 0.3, 0.62, 0.9, 0.99, 1.0)
 _REFINED = 3
 _NODES = chebyshev.chebpts1(14)
@@ -111,8 +119,8 @@ def looked_up(table: StopTable, u: FloatArray, delta: FloatArray) -> FloatArray:
 
     Examples
     --------
-    >>> from puck_tables import load_stop_table
-    >>> looked_up(load_stop_table(), np.array([0.0]), np.array([1.0])).round(8).tolist()[0][:3]
+    >>> from puck_tables import Table
+    >>> looked_up(Table.shipped("stops"), np.array([0.0]), np.array([1.0])).round(8).tolist()[0][:3]
     [0.98647594, 0.32409373, -0.04297451]
     """
     launches = launches_at(u, delta)
@@ -121,48 +129,81 @@ def looked_up(table: StopTable, u: FloatArray, delta: FloatArray) -> FloatArray:
     return np.concatenate([stops, known[LENGTH : BODY + 1]]).T
 
 
-def measure(table: StopTable, half: StopTable | None) -> StopAccuracy:
+def tabulated(
+    accuracy: float | None = None, cells: int | None = None, progress: Progress | None = None
+) -> StopTable:
+    """A table of stops, see :meth:`puck_tables.Table.build`."""
+    return built(lambda n: tabulate(SlipAxis(n), progress), measured, _GOAL, accuracy, cells)
+
+
+def tabulate(axis: SlipAxis, progress: Progress | None = None) -> StopTable:
+    """The node values of a stop table, without a measured accuracy.
+
+    Examples
+    --------
+    >>> tabulate(SlipAxis(8)).values[8, :, 0].round(6).tolist()[::4]  # T at π/4
+    [0.948026, 0.967044, 0.98618]
+    """
+    delta = heights()
+    log_k = np.log(axis.ratio()[1:])
+    inner = np.concatenate([log_k, -log_k[-2::-1]])  # all nodes but the two ends
+    u, height = (grid.ravel() for grid in np.meshgrid(inner, delta, indexing="ij"))
+    stops = np.empty((u.size, 5))
+
+    def work(start: int, stop: int) -> None:
+        stops[start:stop] = exact_stops(u[start:stop], height[start:stop])
+
+    run_chunks(work, u.size, _CHUNK, None, progress)
+    shaped = stops.reshape(inner.size, HEIGHTS, 5)
+    values = np.empty((axis.size, HEIGHTS, len(StopTable.functions)))
+    large = 1.0 / np.hypot(1.0, np.exp(-np.abs(inner)))
+    small = large * np.exp(-np.abs(inner))
+    cosine = np.where(inner > 0.0, small, large)[:, None]
+    sine = np.where(inner > 0.0, large, small)[:, None]
+    values[1:-1, :, 0] = shaped[:, :, 0]
+    values[1:-1, :, 1] = shaped[:, :, 1] / cosine
+    values[1:-1, :, 2] = shaped[:, :, 2] / (delta * sine * cosine)
+    values[1:-1, :, 3] = shaped[:, :, 3] / cosine
+    values[1:-1, :, 4] = shaped[:, :, 4] / sine
+    values[[0, -1], :, :5] = np.stack(end_values(delta))
+    for j, one in enumerate(delta):
+        parts = regular_parts(axis, float(one))
+        values[:, j, 5] = limits(float(one)).kappa * parts[:, 0]
+        values[:, j, 6] = parts[:, 1] / one
+    return StopTable(values)
+
+
+def measured(table: StopTable) -> Accuracy:
     """Errors of a table against the integrator and, for the curve, against quadrature.
 
     Examples
     --------
-    >>> from puck_tables.similarity.build import tabulate
-    >>> measure(tabulate(SlipAxis(16)), None).worst < 2e-5
+    >>> measured(tabulate(SlipAxis(16))).worst < 2e-5
     True
     """
     u, delta = launch_points(table.axis, _RANDOM, seed=20)
     reference = exact_stops(u, delta)
-    error = np.abs(looked_up(table, u, delta) - reference)
+    coarse = None
+    if table.axis.cells % 2 == 0 and table.axis.cells >= 16:
+        half = looked_up(replace(table, values=table.values[::2]), u, delta)
+        coarse = np.abs(half - reference)[:, :1].T
     phi = np.arctan(np.exp(np.minimum(u, 700.0)))
-    largest, rms, at_phi, at_delta = [], [], [], []
-    for column in error.T:
-        worst = int(np.argmax(np.where(np.isnan(column), np.inf, column)))
-        largest.append(float(column[worst]))
-        rms.append(float(np.sqrt(np.mean(column**2))))
-        at_phi.append(float(phi[worst]))
-        at_delta.append(float(delta[worst]))
+    errors = np.abs(looked_up(table, u, delta) - reference).T
+    stops = Accuracy.of(errors, phi, delta, None)
     between = SlipAxis(_REFINED * table.axis.cells)
-    for function, factor in ((CURVE_SUM, True), (TURN_SUM, False)):
-        deviation = np.stack(
-            [
-                np.abs(
-                    _curve_between(table, function, d)
-                    - regular_parts(between, d)[:, 0 if factor else 1]
-                    * (limits(d).kappa if factor else 1.0)
-                )
-                for d in _CURVE_HEIGHTS
-            ]
-        )
-        height, node = np.unravel_index(int(np.argmax(deviation)), deviation.shape)
-        largest.append(float(deviation.max()))
-        rms.append(float(np.sqrt(np.mean(deviation**2))))
-        at_phi.append(float(between.phi()[node]))
-        at_delta.append(_CURVE_HEIGHTS[height])
-    order = 0.0  # not measured
-    if half is not None:
-        coarse = np.abs(looked_up(half, u, delta) - reference)[:, 0].max()
-        order = math.log2(coarse / largest[0])
-    return StopAccuracy(tuple(largest), tuple(rms), tuple(at_phi), tuple(at_delta), order, u.size)
+    deviation = np.empty((2, len(_CURVE_HEIGHTS), between.size))
+    for row, one in enumerate(_CURVE_HEIGHTS):
+        parts = regular_parts(between, one)
+        deviation[0, row] = _curve_between(table, CURVE_SUM, one) - limits(one).kappa * parts[:, 0]
+        deviation[1, row] = _curve_between(table, TURN_SUM, one) - parts[:, 1]
+    nodes, height = np.broadcast_arrays(between.phi(), np.array(_CURVE_HEIGHTS)[:, None])
+    curve = Accuracy.of(np.abs(deviation).reshape(2, -1), nodes.ravel(), height.ravel(), None)
+    both = {
+        field: getattr(stops, field) + getattr(curve, field)
+        for field in ("largest", "rms", "p999", "at_phi", "at_second")
+    }
+    order = 0.0 if coarse is None else math.log2(coarse.max() / stops.largest[0])
+    return replace(stops, **both, order=order)
 
 
 def _curve_between(table: StopTable, function: int, delta: float) -> FloatArray:
@@ -181,29 +222,8 @@ def _curve_between(table: StopTable, function: int, delta: float) -> FloatArray:
     return values * (delta if function == TURN_SUM else 1.0)
 
 
-def validate_stops(table: StopTable, progress: Progress | None = None) -> CheckReport:
-    """Judge a stop table by independent routes.
-
-    Parameters
-    ----------
-    table : StopTable
-    progress : callable (done, total), optional
-
-    Returns
-    -------
-    CheckReport
-        Against the integrator with closed forms, in every cell of slip and at points that are other
-        ones at every call; against the equations that T, X + iY, ln Q and
-        ψ satisfy, with resultants by direct quadrature; against elementary values at φ = 0, π/2
-        and at the limit angle.
-
-    Examples
-    --------
-    >>> from puck_tables import load_stop_table
-    >>> validate_stops(load_stop_table()).passed
-    True
-    """
-    instance("table", table, StopTable)
+def judged(table: StopTable, progress: Progress | None) -> CheckReport:
+    """The report of :meth:`StopTable.validate`."""
 
     def step(done: int) -> None:
         if progress is not None:
@@ -217,11 +237,8 @@ def validate_stops(table: StopTable, progress: Progress | None = None) -> CheckR
         ("integrator", launch_points(table.axis, 750, seed=None)),
         ("integrator, every cell", _in_every_cell(table.axis, rng)),
     ):
-        error = np.abs(looked_up(table, u, delta) - exact_stops(u, delta))
-        checks += [
-            _check(route, name, column, u, delta, allowed)
-            for name, column in zip(NAMES, error.T, strict=False)
-        ]
+        errors = (looked_up(table, u, delta) - exact_stops(u, delta)).T
+        checks += _checks(route, NAMES[:STOPS], errors, u, delta, allowed)
     step(1)
     checks += _equations(table, rng, 400, allowed, _CURVE_CEILING / cells**4 + _CURVE_POLYNOMIAL)
     checks += _at_nodes(table)
@@ -265,16 +282,12 @@ def _equations(
         - end_q**2 * turned * (last[:, 1] + 1j * last[:, 2])
     )  # fmt: skip
     curve = _along_curve(table, end, delta) - _along_curve(table, start, delta)
+    stops = np.stack([rest_time, rest_place.real, rest_place.imag])
+    by_way = np.stack([curve[0] - log_q[-1], curve[1] - psi[-1]])
     return [
-        _check("equation", name, np.abs(residual), start, delta, EQUATION_FACTOR * most)
-        for name, residual, most in (
-            ("time", rest_time, allowed),
-            ("x", rest_place.real, allowed),
-            ("y", rest_place.imag, allowed),
-            ("curve", curve[0] - log_q[-1], by_curve),
-            ("turn", curve[1] - psi[-1], by_curve),
-        )
-    ]  # fmt: skip
+        *_checks("equation", NAMES[:3], stops, start, delta, EQUATION_FACTOR * allowed),
+        *_checks("equation", NAMES[STOPS:], by_way, start, delta, EQUATION_FACTOR * by_curve),
+    ]
 
 
 def _in_every_cell(axis: SlipAxis, rng: np.random.Generator) -> tuple[FloatArray, FloatArray]:
@@ -295,11 +308,13 @@ def _at_nodes(table: StopTable) -> list[Check]:
     missed, allowed = missed_by_stops(axis, table.values)
     of_curve = [missed_by_curve(axis, table.values, j, all_slopes) for j in range(HEIGHTS)]
     by_curve, allowed_curve = np.stack([one for one, _ in of_curve], axis=2), of_curve[0][1]
-    columns = [(missed[..., i], allowed) for i in range(5)]
-    columns += [(by_curve[..., i], allowed_curve) for i in range(2)]
+    places = u.ravel(), delta.ravel()
+    of_stops, of_curves = (
+        np.moveaxis(m, -1, 0).reshape(m.shape[-1], -1) for m in (missed, by_curve)
+    )
     return [
-        _check("equation, every node", name, error.ravel(), u.ravel(), delta.ravel(), most)
-        for name, (error, most) in zip(NAMES, columns, strict=True)
+        *_checks("equation, every node", NAMES[:STOPS], of_stops, *places, allowed),
+        *_checks("equation, every node", NAMES[STOPS:], of_curves, *places, allowed_curve),
     ]
 
 
@@ -326,28 +341,25 @@ def _elementary(table: StopTable, allowed: float) -> list[Check]:
         (math.inf, (0.75, 0.0, 0.0, 0.0, 0.375)),
     ):
         at = np.full_like(delta, u)
-        error = np.abs(looked_up(table, at, delta) - values)
-        checks += [
-            _check("pure motion", name, column, at, delta, 0.0)
-            for name, column in zip(NAMES, error.T, strict=False)
-        ]
+        errors = (looked_up(table, at, delta) - values).T
+        checks += _checks("pure motion", NAMES[:STOPS], errors, at, delta, 0.0)
     u0 = np.log(limit_ratio(delta))
     phi = np.arctan(np.exp(u0))
     rho = moment_balance(quadrature.integrals(phi), slip_direction(phi), delta)
     turning = np.sin(phi) * rho.perpendicular / rho.parallel
     spiral = np.cos(phi) / (rho.parallel * (2.0 + 1j * turning))
-    got = looked_up(table, u0, delta)
-    for column, name, value in (
-        (0, "time", 1.0 / rho.parallel), (1, "x", spiral.real), (2, "y", spiral.imag),
-    ):  # fmt: skip
-        error = np.abs(got[:, column] - value)
-        checks.append(_check("limit motion", name, error, u0, delta, allowed))
-    return checks
+    errors = looked_up(table, u0, delta)[:, :3].T - [1.0 / rho.parallel, spiral.real, spiral.imag]
+    return checks + _checks("limit motion", NAMES[:3], errors, u0, delta, allowed)
 
 
-def _check(
-    route: str, name: str, error: FloatArray, u: FloatArray, delta: FloatArray, allowed: float
-) -> Check:
-    worst = int(np.argmax(np.where(np.isnan(error), np.inf, error)))
-    phi = math.atan(math.exp(min(float(u[worst]), 700.0)))
-    return Check(route, name, error.size, float(error[worst]), allowed, phi, float(delta[worst]))
+def _checks(
+    route: str,
+    names: tuple[str, ...],
+    errors: FloatArray,
+    u: FloatArray,
+    delta: FloatArray,
+    allowed: float,
+) -> list[Check]:
+    """Lines of the report for errors (functions, points) at launches u."""
+    phi = np.arctan(np.exp(np.minimum(u, 700.0)))
+    return compared(route, names, errors, phi, delta, allowed)

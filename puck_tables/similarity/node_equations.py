@@ -47,8 +47,8 @@ def missed_by_stops(axis: SlipAxis, values: FloatArray) -> tuple[FloatArray, flo
 
     Examples
     --------
-    >>> from puck_tables import load_stop_table
-    >>> table = load_stop_table()
+    >>> from puck_tables.similarity.stop_table import StopTable
+    >>> table = StopTable.shipped()
     >>> missed, allowed = missed_by_stops(table.axis, table.values)
     >>> bool(missed.max() < allowed < 1e-7)
     True
@@ -99,8 +99,8 @@ def missed_by_curve(
 
     Examples
     --------
-    >>> from puck_tables import load_stop_table
-    >>> table = load_stop_table()
+    >>> from puck_tables.similarity.stop_table import StopTable
+    >>> table = StopTable.shipped()
     >>> missed, allowed = missed_by_curve(table.axis, table.values, 4, slopes_off_the_limit)
     >>> bool(missed.max() < allowed < 1e-6)
     True

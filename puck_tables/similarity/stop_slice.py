@@ -21,7 +21,7 @@ from puck_tables.errors import AccuracyError
 from puck_tables.motion.path import TURN_SHARE
 from puck_tables.similarity.exact import integrated_stops
 from puck_tables.table.friction_slice import FINEST_ACCURACY, FrictionSlice
-from puck_tables.table.law_grid import sides_of
+from puck_tables.table.slip_axis import sides_of
 from puck_tables.table.slip_spline import SlipSpline, slip_spline
 
 FloatArray = npt.NDArray[np.float64]

@@ -1,11 +1,12 @@
-"""A stop table in memory: axes, node values, and the splines through them."""
+"""The table of stops: where and when any puck stops, and how it gets there, over φ and δ."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -28,76 +29,83 @@ from puck_tables.similarity.lookup import (
     row_width,
     stops_kernel,
 )
+from puck_tables.table.check import CheckReport
 from puck_tables.table.fit import clamped_coefficients
+from puck_tables.table.table import Axis, Progress, Table
 
 FloatArray = npt.NDArray[np.float64]
 
 _CHUNK = 1 << 15
 
-FUNCTIONS = ("time", "along", "across", "length", "body", "curve", "turn")
 UPPER_DELTA = 1.0
+STOPS = 5  # of the functions are of stops; the others of the curve of all motions
+_LARGEST, _NODE_ERROR = 10.0, 1e-12  # of a value, and how well some are known
+_INTERPRETATION = (
+    "Where and when a uniform cylinder (radius r, height h) launched with speed v and spin omega "
+    "on a rough plane stops, whole base loaded. Q = hypot(v, r omega), "
+    "phi = atan2(r omega, v) >= 0, delta = 2 f h / r, J = f g. "
+    "Stop time = (Q/J) time. Displacement along the launch velocity = "
+    "(Q^2/J) cos(phi) along, to its left = (Q^2/J) delta sin(phi) cos(phi) across. Path length = "
+    "(Q^2/J) cos(phi) length, body angle = (Q^2/(J r)) sin(phi) body. For omega < 0 the mirror "
+    "image. Along a motion, with c = (r omega - v)/(r omega + v) and c0 its limit, ln Q = "
+    "(ln|c - c0| + curve)/kappa - ln(1 + c)/A - ln(1 - c)/B and heading = h0 ln Q "
+    "+ (h0/A) ln(1 + c) + ((h0 - h1)/B) ln(1 - c) + delta turn, up to constants; "
+    "A = 1/2 + delta^2/8, B = (9 + 4 delta^2)/(36 + 4 delta^2), h1 = 9 delta/(36 + 4 delta^2), "
+    "kappa = d ln|c - c0|/d ln Q and h0 = d heading/d ln Q at c0. "
+    "Salnikova, Treschev, Gallyamov 2012, eq. 6.2-6.7 and section 7."
+)
 
 
-@dataclass(frozen=True)
-class StopAccuracy:
-    """Errors of a stop table that were measured, not promised; dimensionless.
-
-    One entry each for T, X, Y, path length and body angle, in units of Q/J, Q²/J and Q²/(J r), and
-    for κR and S of the curve: the largest and the root mean square over random and adversarial
-    points, and where the largest stands; the order of T against a table of half as many cells.
-    """
-
-    largest: tuple[float, ...]
-    rms: tuple[float, ...]
-    at_phi: tuple[float, ...]
-    at_delta: tuple[float, ...]
-    order: float
-    points: int
-
-    @property
-    def worst(self) -> float:
-        """The largest error of a stop."""
-        return max(self.largest[:5])
-
-    @property
-    def states(self) -> float:
-        """The largest error of anything that a state on the way is found with."""
-        return max(self.largest)
-
-
-@dataclass(frozen=True)
-class StopTable:
+@dataclass(frozen=True, eq=False, repr=False)
+class StopTable(Table):
     """Where and when any puck stops, as functions of slip angle φ and height δ alone.
 
     Parameters
     ----------
-    axis : SlipAxis
     values : array (2 cells + 1, 9, 7)
         At the nodes of φ (ascending) and of δ (:func:`puck_tables.similarity.axes.heights`):
         ``time`` T; ``along`` X/cos φ; ``across`` Y/(δ sin φ cos φ); ``length`` path/cos φ; ``body``
         angle/sin φ (all: :mod:`puck_tables.similarity.lookup`); ``curve`` κR; ``turn`` S/δ
         (:mod:`puck_tables.similarity.curve`).
-    tolerance : float
-        The error the table promises for stops; 0 while it is not known.
-    accuracy : StopAccuracy or None
-        The errors that were measured when it was built.
-    passport : dict
-        What else its file says.
-    source : str
-        Where it came from, for messages.
+
+    Notes
+    -----
+    Errors are those of T, X, Y, path and body angle in units of Q/J, Q²/J and Q²/(J r), for which
+    the tolerance is promised, and of κR and S.
     """
 
-    axis: SlipAxis
-    values: FloatArray = field(repr=False)
-    tolerance: float = 0.0
-    accuracy: StopAccuracy | None = None
-    passport: dict[str, Any] = field(default_factory=dict, repr=False)
-    source: str = "memory"
+    kind = "stops"
+    algorithm = "Dormand-Prince with closed forms at 2e-14, curve by Gauss quadrature; 1"
+    functions: ClassVar[Mapping[str, str]] = {
+        "time": "stop time J t/Q",
+        "along": "displacement along the launch velocity J x/(Q^2 cos(phi))",
+        "across": "displacement to its left J y/(Q^2 delta sin(phi) cos(phi))",
+        "length": "path length J l/(Q^2 cos(phi))",
+        "body": "body angle J r theta/(Q^2 sin(phi))",
+        "curve": "regular part of ln Q along a motion, times kappa",
+        "turn": "regular part of the heading along a motion, over delta",
+    }
+    second = "delta"
+    quantities = ("time", "x", "y", "path", "body", "curve", "turn")
+    words: ClassVar[Mapping[str, str]] = {
+        "title": "Stops of a sliding, spinning puck",
+        "interpretation": _INTERPRETATION,
+        "method": "stops integrated with closed forms to 1e-15, curve by quadrature to 1e-14",
+        "phi_map": (
+            "tan(phi) below pi/4, cot(phi) above = q^4/(2 - q^4), q = xi (2 - xi), xi = i/cells "
+            "from either end; cubic splines with zero end slopes in xi on either side of pi/4"
+        ),
+        "delta_map": (
+            "delta = sin(pi (2 j + 1)/36); polynomial in delta^2, degree 7 for stops, 8 for the "
+            "curve"
+        ),
+    }
+    entries: ClassVar[Mapping[str, type]] = {"cells": int}
 
-    def __post_init__(self) -> None:
-        values = self.values.view()
-        values.flags.writeable = False
-        object.__setattr__(self, "values", values)
+    @cached_property
+    def axis(self) -> SlipAxis:
+        """The slip angles of its nodes."""
+        return SlipAxis(len(self.values) // 2)
 
     @cached_property
     def stop_coefficients(self) -> FloatArray:
@@ -203,9 +211,9 @@ class StopTable:
 
         Examples
         --------
-        >>> from puck_tables import load_stop_table
+        >>> from puck_tables import Table
         >>> launch = np.array([[1.0], [0.0], [5.0], [1.0], [1.0], [1.0]])
-        >>> load_stop_table().stops(launch)[0].round(6).ravel().tolist()
+        >>> Table.shipped("stops").stops(launch)[0].round(6).ravel().tolist()
         [4.000189, 2.257241, -0.308477]
         """
         out = np.empty((3, launches.shape[1]))
@@ -244,3 +252,99 @@ class StopTable:
                 "every motion"
             )
         return height
+
+    def validate(self, progress: Progress | None = None) -> CheckReport:
+        """Judge the table by independent routes.
+
+        Parameters
+        ----------
+        progress : callable (done, total), optional
+
+        Returns
+        -------
+        CheckReport
+            Against the integrator with closed forms, in every cell of slip and at points that are
+            other ones at every call; against the equations that T, X + iY, ln Q and ψ satisfy, with
+            resultants by direct quadrature; against elementary values at φ = 0, π/2 and at the
+            limit angle.
+        """
+        from puck_tables.similarity.check import judged
+
+        return judged(self, progress)
+
+    # the record of the kind
+
+    @classmethod
+    def is_of(cls, of: object) -> bool:
+        """Its name."""
+        return isinstance(of, str) and of == cls.kind
+
+    @classmethod
+    def built(cls, of: Any, accuracy: float | None = None, **how: Any) -> StopTable:
+        """A table of stops, see :meth:`puck_tables.Table.build`."""
+        from puck_tables.similarity.check import tabulated
+
+        return tabulated(accuracy, **how)
+
+    @property
+    def grid(self) -> str:
+        """How many nodes it has, in words."""
+        return f"{len(self.values)} phi x {HEIGHTS} delta nodes"
+
+    @property
+    def valid_range(self) -> str:
+        """Where it holds, in words."""
+        return f"|phi| <= pi/2, 0 <= delta <= {UPPER_DELTA:g}; refused outside"
+
+    @property
+    def axes(self) -> dict[str, Axis]:
+        """Slip angle and height."""
+        return {
+            "phi": Axis(self.axis.phi(), "rad", "slip angle atan2(r omega, v)"),
+            "delta": Axis(heights(), "1", "dimensionless height 2 f h / r"),
+        }
+
+    @property
+    def parameters(self) -> dict[str, int | float | str]:
+        """How many cells."""
+        return {"cells": self.axis.cells}
+
+    @property
+    def bounds(self) -> tuple[float, float, float]:
+        """Of the values and of the accuracy."""
+        return -_LARGEST, _LARGEST, 0.1 / self.axis.cells**4
+
+    @classmethod
+    def shapes(cls, attributes: dict[str, Any]) -> dict[str, tuple[int, ...]]:
+        """Shapes of the arrays of a file with these attributes.
+
+        Examples
+        --------
+        >>> StopTable.shapes({"cells": 8})["time"]
+        (17, 9)
+        """
+        shape = 2 * attributes["cells"] + 1, HEIGHTS
+        return {"phi": shape[:1], "delta": shape[1:], **dict.fromkeys(cls.functions, shape)}
+
+    @classmethod
+    def fields(cls, attributes: dict[str, Any], arrays: dict[str, FloatArray]) -> dict[str, Any]:
+        """Nothing."""
+        return {}
+
+    def spot_checks(self) -> Iterator[tuple[FloatArray, float, str]]:
+        """As far as the equations between its nodes show what is wrong."""
+        from puck_tables.similarity.exact import end_values
+        from puck_tables.similarity.node_equations import (
+            missed_by_curve,
+            missed_by_stops,
+            slopes_off_the_limit,
+        )
+
+        axis, values = self.axis, self.values
+        ends = np.abs(values[[0, -1], :, :STOPS] - np.stack(end_values(heights())))
+        yield ends, _NODE_ERROR, "elementary solutions"
+        yield np.abs(values[axis.cells, :, STOPS:]), _NODE_ERROR, "the curve's origin"
+        yield *missed_by_stops(axis, values), "the equations of motion"
+        height = int(np.random.default_rng().integers(HEIGHTS))
+        missed = missed_by_curve(axis, values, height, slopes_off_the_limit)
+        yield *missed, "the curve of all motions"

@@ -1,127 +1,89 @@
-"""Law and grid to node values: building a table to an asked accuracy."""
+"""Building a table to an asked accuracy: grids refined until what is measured is good enough."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from typing import TypeVar
 
-import numpy as np
-
-from puck_tables.contact import closed_form
-from puck_tables.contact.integrals import PatchIntegrals, SlipDirection
-from puck_tables.contact.resultants import moment_balance
 from puck_tables.errors import AccuracyError, InputError
-from puck_tables.table.check import measure
-from puck_tables.table.grid import DeltaAxis, PhiAxis, checked_size
+from puck_tables.table.accuracy import Accuracy
 from puck_tables.table.table import Table
 
-Progress = Callable[[int, int], None]
+AnyTable = TypeVar("AnyTable", bound=Table)
 
-DEFAULT_ACCURACY = 2e-11
-FINEST_ACCURACY = 1e-13
-DEFAULT_N_DELTA = 4  # exact in full contact, see puck_tables.kernels.spline
-_ERROR_CONSTANT = 1.2  # measured: largest error × (cells per side)⁴
-_ROWS = 4096
+COARSEST = 0.01  # what a table may promise at most
+_LEAST_CELLS = 8
 
 
-def build_table(
-    accuracy: float | None = None,
-    n_phi: int | None = None,
-    n_delta: int | None = None,
-    progress: Progress | None = None,
-) -> Table:
-    """Tabulate the friction resultants on a graded grid, and measure how exact the result is.
+@dataclass(frozen=True)
+class Goal:
+    """What a kind of table on a grid can reach: errors fall like cells⁻⁴.
+
+    ``default`` and ``finest`` accuracy in these ``units``; ``constant``: error × cells⁴, measured;
+    ``most_cells``: where a grid becomes too large; ``safety``: how much larger errors may be where
+    they were not measured.
+    """
+
+    default: float
+    finest: float
+    units: str
+    constant: float
+    most_cells: int
+    safety: float = 1.0
+
+
+def built(
+    at: Callable[[int], AnyTable],
+    measured: Callable[[AnyTable], Accuracy],
+    goal: Goal,
+    accuracy: float | None,
+    cells: int | None,
+) -> AnyTable:
+    """A table as exact as asked, or on a grid as fine as asked, with what was measured.
 
     Parameters
     ----------
-    accuracy : float, optional
-        Largest error wanted in ρ_∥, ρ_⊥, ρ_ω (dimensionless), from 1e-13 to 0.01; default 2e-11.
-    n_phi, n_delta : int, optional
-        Grid sizes by hand instead: ``n_phi`` odd and ≥ 9, ``n_delta`` ≥ 4.  ``n_delta`` alone
-        may go with ``accuracy``.
-    progress : callable (done, total), optional
-        Called as node rows are computed.
-
-    Returns
-    -------
-    Table
-        With ``accuracy`` measured at random and adversarial points.
+    at : the table with so many cells on each side of a singular line
+    measured : the errors of such a table
+    goal : what the kind can reach
+    accuracy, cells : one of them, or none for the default accuracy
 
     Raises
     ------
     InputError
-        If both ``accuracy`` and ``n_phi`` are given or a size is out of range.
+        If both are given or the number of cells is out of range.
     AccuracyError
         If the accuracy is out of reach.
-
-    Notes
-    -----
-    Node values come from the closed forms (2e-15); the error of the spline falls like n_phi⁻⁴.
-
-    Examples
-    --------
-    >>> table = build_table(accuracy=1e-6)
-    >>> table.phi_axis.size, table.accuracy.worst <= 1e-6
-    (69, True)
     """
-    if accuracy is not None and n_phi is not None:
-        raise InputError(
-            f"accuracy = {accuracy:g} and n_phi = {n_phi} both fix the grid: give one of them"
-        )
-    delta_axis = DeltaAxis(DEFAULT_N_DELTA if n_delta is None else n_delta)
-    if n_phi is not None:
-        table = tabulate(PhiAxis(n_phi), delta_axis, progress)
-        measured = measure(table, _half(table))
-        return replace(
-            table,
-            accuracy=measured,
-            tolerance=_rounded_up(max(1.25 * measured.worst, FINEST_ACCURACY)),
-        )
-    wanted = DEFAULT_ACCURACY if accuracy is None else accuracy
-    if not FINEST_ACCURACY <= wanted <= 0.01:
+    if cells is not None:
+        if accuracy is not None:
+            raise InputError(
+                f"accuracy = {accuracy:g} and cells = {cells} both fix the grid: give one of them"
+            )
+        table = at(cells)
+        found = measured(table)
+        promised = _rounded_up(max(1.25 * found.worst, goal.finest))
+        return replace(table, accuracy=found, tolerance=promised)
+    wanted = goal.default if accuracy is None else accuracy
+    if not goal.finest <= wanted <= COARSEST:
         raise AccuracyError(
-            f"accuracy must be from {FINEST_ACCURACY:g} to 0.01 (an absolute error of the "
-            f"dimensionless resultants), got {wanted:g}"
+            f"accuracy must be from {goal.finest:g} to {COARSEST:g} ({goal.units}), got {wanted:g}"
         )
-    cells = max(4, math.ceil((_ERROR_CONSTANT / wanted) ** 0.25))
-    while True:
-        table = tabulate(PhiAxis(2 * cells + 1), delta_axis, progress)
-        measured = measure(table, _half(table))
-        if measured.worst <= wanted:
-            return replace(table, accuracy=measured, tolerance=wanted)
-        cells = math.ceil(1.1 * cells)
-
-
-def tabulate(phi_axis: PhiAxis, delta_axis: DeltaAxis, progress: Progress | None = None) -> Table:
-    """Node values by the closed forms, without a measured accuracy.
-
-    Examples
-    --------
-    >>> tabulate(PhiAxis(9), DeltaAxis(4)).values.shape
-    (9, 4, 3)
-    """
-    checked_size(phi_axis.size, delta_axis.size)
-    nodes = phi_axis.slip_direction()
-    values = np.empty((phi_axis.size, delta_axis.size, 3))
-    for start in range(0, phi_axis.size, _ROWS):
-        rows = slice(start, start + _ROWS)
-        direction = SlipDirection(nodes.ratio[rows, None], nodes.fast_spin[rows, None])
-        a, b, d = closed_form.shape_integrals(
-            direction.ratio, direction.fast_spin.astype(np.float64)
-        )
-        p = PatchIntegrals(a, b, b - d, d, d - 2.0 * b)
-        values[rows] = np.stack(moment_balance(p, direction, delta_axis.nodes()), axis=-1)
-        if progress is not None:
-            progress(min(start + _ROWS, phi_axis.size), phi_axis.size)
-    return Table(phi_axis, delta_axis, values)
-
-
-def _half(table: Table) -> Table | None:
-    cells = table.phi_axis.cells_per_side // 2
-    if cells < 4:
-        return None
-    return tabulate(PhiAxis(2 * cells + 1), table.delta_axis, None)
+    # even, so that every other node is a grid as well: it tells the order
+    cells = max(_LEAST_CELLS, 2 * math.ceil(0.5 * (goal.constant / wanted) ** 0.25))
+    while cells <= goal.most_cells:
+        table = at(cells)
+        found = measured(table)
+        if goal.safety * found.worst <= wanted:
+            return replace(table, accuracy=found, tolerance=wanted)
+        cells = 2 * math.ceil(0.55 * cells)
+    raise AccuracyError(
+        f"an accuracy of {wanted:g} would take more than {goal.most_cells} cells: "
+        f"{found.worst:.1e} is what so many about give",
+        reachable=found.worst,
+    )
 
 
 def _rounded_up(value: float) -> float:

@@ -1,235 +1,315 @@
-"""Table files of friction resultants.
+"""The only door to table files: HDF5 with metadata, refused unless whole, unaltered and usable.
 
-Axes ``phi`` and ``delta``; functions ``parallel``, ``perpendicular``, ``spin``.  How files are
-sealed, checked and refused stands in :mod:`puck_tables.table.container`.
+After the HDF5 content stands a line with its sha256, the seal.  Nothing without a right one is
+read, and what is read is never given to the HDF5 library, which wrong metadata can make hang
+(:mod:`puck_tables.table.plain_hdf5`).  Whoever can write a file can make its digests right: so the
+recipe must be known, what the file says of itself complete, every value such as tables of its kind
+have, and some of them, those that fit their neighbours least among them, agree with the truth.
+
+Layout: one dimension scale per axis, one little-endian float64 dataset per function over all axes,
+everything else in attributes of the root.  Nothing else is read: no links, no filters, no objects.
+The file is made and read in memory, so that a failing disk leaves no half of one.
 """
 
 from __future__ import annotations
 
+import hashlib
+import io
 import json
+import math
+import platform
+from collections.abc import Mapping
 from dataclasses import asdict
-from functools import cache
-from importlib.resources import files
+from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import numpy.typing as npt
 
-from puck_tables.table.check import by_closed_form
-from puck_tables.table.container import (
-    Contents,
-    Field,
-    Kind,
-    encode,
-    function_fields,
-    read_content,
-    read_table,
-    save,
-)
-from puck_tables.table.grid import GRADING_POWER, DeltaAxis, PhiAxis
-from puck_tables.table.oddities import odd_nodes
-from puck_tables.table.table import FUNCTIONS, Accuracy, Table
-from puck_tables.table.usable import accuracy_of, check_usable, refuse_wrong
+from puck_tables._version import __version__
+from puck_tables.errors import OutputError, TableError
+from puck_tables.safe_read import read_whole
+from puck_tables.safe_write import write_bytes
+from puck_tables.table.accuracy import Accuracy
+from puck_tables.table.plain_hdf5 import PlainFile
 
-KIND = "resultants"
-ALGORITHM = "elliptic integrals; friction ratios splined; 1"
+if TYPE_CHECKING:
+    from puck_tables.table.table import Axis, Table
 
-_INTERPRETATION = (
-    "Friction on a uniform cylinder (radius r, height h, mass m) sliding with speed v and spin "
-    "omega on a rough plane, Coulomb coefficient f, weight N = m g, whole base loaded, uniform "
-    "pressure tilted linearly by the moment balance. phi = atan2(r omega, v), delta = 2 f h / r. "
-    "Force on the puck: -f N cos(phi) parallel along its velocity, "
-    "-f N sin(phi) cos(phi) perpendicular across it (to the left), torque -(f N r / 2) sin(phi) "
-    "spin about the vertical. Even in phi. Salnikova, Treschev, Gallyamov 2012, section 6."
-)
-_PHI_MAP = (
-    f"tan(phi - pi/4) = sign(xi) |xi|^{GRADING_POWER}, xi = (i - n)/n, i = 0 ... 2n; cubic splines "
-    "with zero end slopes in xi on either side of pi/4"
-)
-_DELTA_MAP = "delta = delta_max j/(n_delta - 1); cubic spline with not-a-knot ends"
-_SPLINED = "1/parallel, perpendicular/parallel, spin/parallel"
-# how much of a large table is compared with the truth as it is read, and how well that is known
-_ROWS, _COLUMNS, _NODE_ERROR = 2001, 8, 1e-12
-_LONG_NAMES = {
-    "parallel": "friction resultant along the velocity, rho_parallel",
-    "perpendicular": "friction resultant across the velocity, rho_perpendicular",
-    "spin": "friction torque about the vertical, rho_omega",
-}
+FloatArray = npt.NDArray[np.float64]
+
+FORMAT, FORMAT_VERSION = "puck-tables", "3.0"
+MAX_FILE_BYTES = 1 << 31
+_SEAL = b"\npuck-tables sha256 "
+
+# what every kind of table says of itself, besides its recipe
+_ENTRIES: Mapping[str, type] = dict.fromkeys(
+    (
+        "format", "format_version", "title", "interpretation", "valid_range", "achieved_accuracy",
+        "method", "package_version", "library_versions", "created", "command", "recipe_digest",
+        "content_digest",
+    ), str,
+) | {"tolerance": float}  # fmt: skip
+_SAID = ("title", "interpretation", "method")  # of a kind's words; the others are of the recipe
+_WORDS = {int: "whole number", float: "finite number", str: "text"}
+_SAME = 1e-14  # of axes
 
 
-def save_table(
-    table: Table, path: str | Path, overwrite: bool = False, command: str = "library call"
-) -> Table:
-    """Write a table to an HDF5 file, read it back, and only then give it its name.
-
-    Parameters
-    ----------
-    table : Table
-        With a measured accuracy, as :func:`puck_tables.build_table` returns it.
-    path : path of the file
-    overwrite : whether an existing file may be replaced
-    command : how it was made, for the record
-
-    Returns
-    -------
-    Table
-        As loaded from what was written.
-
-    Raises
-    ------
-    OutputError
-        If the file exists (without ``overwrite``) or cannot be written.
-    TableError
-        If what was written does not read back as the same table.
+def recipe_digest(recipe: dict[str, Any]) -> str:
+    """Digest of what determines the values of a table.
 
     Examples
     --------
-    >>> import tempfile
-    >>> from puck_tables import build_table
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     saved = save_table(build_table(accuracy=1e-6), folder + "/rough.h5")
-    >>> saved.passport["pressure_law"]
-    'uniform'
+    >>> recipe_digest({})[:8]
+    '44136fa3'
     """
-    return save(table, Table, path, overwrite, lambda chosen: _encode(chosen, command), _decode)
+    return hashlib.sha256(json.dumps(recipe, sort_keys=True).encode()).hexdigest()
 
 
-def load_table(path: str | Path | None = None) -> Table:
-    """Read a table file, or the default table that comes with the package.
-
-    Parameters
-    ----------
-    path : path of an HDF5 table file, optional
-
-    Returns
-    -------
-    Table
-
-    Raises
-    ------
-    TableError
-        If the file is missing, not a table, of another kind or a newer format, or altered:
-        its digest is checked at every load.
+def sealed(content: bytes) -> bytes:
+    r"""HDF5 content with the line that proves it whole.
 
     Examples
     --------
-    >>> table = load_table()
-    >>> table.phi_axis.size, table.delta_axis.size
-    (991, 4)
+    >>> sealed(b"")[:20]
+    b'\npuck-tables sha256 '
     """
-    if path is None:
-        return _default_table()
-    return _decode(read_content(path), str(path))
+    return content + _SEAL + hashlib.sha256(content).hexdigest().encode() + b"\n"
 
 
-@cache
-def _default_table() -> Table:
-    content = files("puck_tables.tables").joinpath("resultants.h5").read_bytes()
-    return _decode(content, "default table")
+def save(table: Table, path: str | Path, overwrite: bool, command: str) -> Table:
+    """Write a table, see :meth:`puck_tables.Table.save`."""
+    if table.accuracy is None or not np.all(np.isfinite(table.values)):
+        raise OutputError(
+            "a table without measured accuracy or with a non-finite value is not saved"
+        )
+    if table.unsaveable is not None:
+        raise OutputError(table.unsaveable)
+    content = encode(table, command)
+    written = decode(content, str(path), (table.kind,))
+    if not np.array_equal(written.values, table.values):
+        raise TableError(f"{path}: the table does not read back as it was written")
+    write_bytes(path, content, overwrite)
+    return written
 
 
-def _recipe(phi_axis: PhiAxis, delta_axis: DeltaAxis) -> dict[str, Any]:
+def encode(table: Table, command: str) -> bytes:
+    """The bytes of the file of a table with a measured accuracy, sealed."""
+    import h5py  # not needed where tables are only read
+
+    assert table.accuracy is not None
+    recipe = _recipe(table)
+    attributes = {
+        "Conventions": "CF-1.11",
+        "format": FORMAT,
+        "format_version": FORMAT_VERSION,
+        **recipe,
+        **{name: table.words[name] for name in _SAID},
+        "valid_range": table.valid_range,
+        "tolerance": table.tolerance,
+        "achieved_accuracy": json.dumps(asdict(table.accuracy)),
+        "package_version": __version__,
+        "library_versions": (
+            f"python {platform.python_version()}, numpy {np.__version__}, h5py {h5py.__version__}, "
+            f"HDF5 {h5py.version.hdf5_version}"
+        ),
+        "created": datetime.now(UTC).isoformat(timespec="seconds"),
+        "command": command,
+        "recipe_digest": recipe_digest(recipe),
+    }
+    arrays: dict[str, FloatArray] = {}
+    buffer = io.BytesIO()
+    with h5py.File(buffer, "w") as file:
+
+        def write(name: str, values: FloatArray, **said: str | float) -> None:
+            file.create_dataset(name, data=values, dtype="<f8").attrs.update(said)
+            arrays[name] = values
+
+        def write_axis(name: str, axis: Axis) -> None:
+            write(name, axis.values, units=axis.units, long_name=axis.long_name)
+
+        for name, axis in table.axes.items():
+            write_axis(name, axis)
+            file[name].make_scale(name)
+        for column, (name, long_name) in enumerate(table.functions.items()):
+            largest = table.accuracy.largest[column]
+            values = table.values[..., column]
+            write(name, values, units="1", long_name=long_name, max_error=largest)
+            for dimension, axis_name in enumerate(table.axes):
+                file[name].dims[dimension].attach_scale(file[axis_name])
+        for name, axis in table.curve.items():
+            write_axis(name, axis)
+        if table.curve:
+            argument, function = table.curve
+            file[argument].make_scale(argument)
+            file[function].dims[0].attach_scale(file[argument])
+        file.attrs.update(attributes)
+        file.attrs["content_digest"] = _digest(attributes, arrays)
+    return sealed(buffer.getvalue())
+
+
+def _recipe(table: Table) -> dict[str, Any]:
     """What determines the values of a table."""
+    maps = {name: text for name, text in table.words.items() if name not in _SAID}
     return {
-        "kind": KIND, "pressure_law": "uniform", "phi_map": _PHI_MAP, "delta_map": _DELTA_MAP,
-        "splined": _SPLINED, "n_phi": phi_axis.size, "n_delta": delta_axis.size,
-        "delta_max": 1.0, "algorithm": ALGORITHM,
+        "kind": table.kind, "pressure_law": table.pressure_law, "algorithm": table.algorithm,
+        **maps, **table.parameters,
     }  # fmt: skip
 
 
-def _encode(table: Table, command: str) -> bytes:
-    assert table.accuracy is not None
-    described = {
-        "title": "Friction resultants of a sliding, spinning puck",
-        "interpretation": _INTERPRETATION,
-        "valid_range": f"|phi| <= pi/2, 0 <= delta <= {table.delta_axis.upper:g}; refused outside",
-        "tolerance": table.tolerance,
-        "achieved_accuracy": json.dumps(asdict(table.accuracy)),
-        "method": "closed forms (complete elliptic integrals by the AGM), 2e-15",
-    }
-    axes = [
-        Field(
-            "phi",
-            table.phi_axis.nodes(),
-            {"units": "rad", "long_name": "slip angle atan2(r omega, v)"},
-        ),
-        Field(
-            "delta",
-            table.delta_axis.nodes(),
-            {"units": "1", "long_name": "dimensionless height 2 f h / r"},
-        ),
-    ]
-    return encode(
-        _recipe(table.phi_axis, table.delta_axis),
-        described,
-        axes,
-        function_fields(FUNCTIONS, table, _LONG_NAMES),
-        command,
-    )
-
-
-def _decode(content: bytes, source: str) -> Table:
-    table: Table = read_table(content, source, {KIND: STORED})
-    return table
-
-
-def shapes(attributes: dict[str, Any]) -> dict[str, tuple[int, ...]]:
-    """Shapes of the arrays of a file with these attributes.
-
-    Examples
-    --------
-    >>> shapes({"n_phi": 9, "n_delta": 4, "delta_max": 1.0})["spin"]
-    (9, 4)
-    """
-    phi_axis, delta_axis = _axes(attributes)
-    shape = (phi_axis.size, delta_axis.size)
-    return {"phi": shape[:1], "delta": shape[1:], **dict.fromkeys(FUNCTIONS, shape)}
-
-
-def _axes(attributes: dict[str, Any]) -> tuple[PhiAxis, DeltaAxis]:
-    return PhiAxis(attributes["n_phi"]), DeltaAxis(attributes["n_delta"], attributes["delta_max"])
-
-
-def table_of(contents: Contents, source: str) -> Table:
-    """The table that stands in a file.
+def read_content(path: str | Path) -> bytes:
+    """The bytes of a table file.
 
     Raises
     ------
     TableError
-        If this program cannot use it.
+        If it is missing, no regular file, too large or cannot be read.
+
+    Examples
+    --------
+    >>> read_content("/nowhere/table.h5")
+    Traceback (most recent call last):
+    ...
+    puck_tables.errors.TableError: there is no table file /nowhere/table.h5: build one with \
+'puck build-tables -o FILE', or leave --table out to use the tables that come along
     """
-    phi_axis, delta_axis = _axes(contents.attributes)
-    nodes = {"phi": phi_axis.nodes(), "delta": delta_axis.nodes()}
-    check_usable(contents, source, _recipe(phi_axis, delta_axis), nodes, (0.0, 2.0),
-                 0.25 / phi_axis.cells_per_side**4)  # fmt: skip
-    table = Table(
-        phi_axis,
-        delta_axis,
-        np.stack([contents.arrays[name] for name in FUNCTIONS], axis=-1),
-        tolerance=contents.attributes["tolerance"],
-        accuracy=accuracy_of(contents.attributes, Accuracy, len(FUNCTIONS)),
-        passport=contents.attributes,
+    try:
+        return read_whole(path, MAX_FILE_BYTES)
+    except FileNotFoundError:
+        raise TableError(
+            f"there is no table file {path}: build one with 'puck build-tables -o FILE', "
+            "or leave --table out to use the tables that come along"
+        ) from None
+    except OSError as error:
+        raise TableError(f"cannot read {path}: {error.strerror or error}") from None
+
+
+def decode(content: bytes, source: str, kinds: tuple[str, ...]) -> Table:
+    """The table in the bytes of a file, of one of these kinds.
+
+    Raises
+    ------
+    TableError
+        If they are not a table, of another kind or format, altered, or none that this program can
+        use.
+
+    Examples
+    --------
+    >>> decode(b"puck", "my.h5", ("stops",))
+    Traceback (most recent call last):
+    ...
+    puck_tables.errors.TableError: my.h5 is not an HDF5 file
+    """
+    if not content.startswith(b"\x89HDF\r\n\x1a\n"):
+        raise TableError(f"{source} is not an HDF5 file")
+    inside, seal, _ = content.rpartition(_SEAL)
+    if not seal:
+        raise TableError(
+            f"{source} is not a table of this program, or one that was cut or edited: it does not "
+            "end with its digest; give a file made by 'puck build-tables'"
+        )
+    if sealed(inside) != content:
+        raise TableError(
+            f"{source} was altered or damaged: it does not match its digest; "
+            "build it again with 'puck build-tables'"
+        )
+    try:
+        with np.errstate(all="ignore"):  # numbers that no table has are refused in the end
+            return _read(inside, source, kinds)
+    except TableError:
+        raise
+    except Exception as error:  # whatever numbers and texts of any kind and size lead to
+        reason = str(error) if type(error) is ValueError else type(error).__name__
+        raise TableError(
+            f"{source} is damaged and cannot be read as a table ({reason}): "
+            "build it again with 'puck build-tables'"
+        ) from None
+
+
+def _read(content: bytes, source: str, kinds: tuple[str, ...]) -> Table:
+    from puck_tables.table.table import kind_named
+
+    file = PlainFile(content)
+    attributes: dict[str, Any] = dict(file.attributes)
+    _refuse_format(attributes, source)
+    name = str(attributes.get("kind"))
+    if name not in kinds:
+        wanted = " or ".join(f"'{kind}'" for kind in kinds)
+        raise TableError(
+            f"{source} holds '{name}', not a table of {wanted}: "
+            "give a file made by 'puck build-tables'"
+        )
+    kind = kind_named(name)
+    texts = dict.fromkeys(("kind", "pressure_law", "algorithm", *kind.words), str)
+    for entry, type_ in {**_ENTRIES, **texts, **kind.entries}.items():
+        found = attributes.get(entry)
+        if type(found) is not type_ or (isinstance(found, float) and not math.isfinite(found)):
+            raise ValueError(f"its entry {entry} is missing or no {_WORDS[type_]}")
+    shapes = kind.shapes(attributes)
+    if min(map(min, shapes.values())) < 1:
+        raise ValueError("it has an array without numbers")
+    if 8 * sum(map(math.prod, shapes.values())) > len(content):
+        raise ValueError("it is shorter than its arrays")
+    arrays = {array: file.array(array, shape) for array, shape in shapes.items()}
+    stated = attributes.pop("content_digest")
+    if _digest(attributes, arrays) != stated:
+        raise TableError(
+            f"{source} was altered or damaged: its content does not match its digest; "
+            "build it again with 'puck build-tables'"
+        )
+    table = kind(
+        np.stack([arrays[function] for function in kind.functions], axis=-1),
+        **kind.fields(attributes, arrays),
+        tolerance=attributes["tolerance"],
+        accuracy=Accuracy.read(attributes["achieved_accuracy"], len(kind.functions)),
+        metadata={**attributes, "content_digest": stated},
         source=source,
     )
-    _check_some(table)
+    _refuse_unusable(table, arrays)
     return table
 
 
-def _check_some(table: Table) -> None:
-    """Refuse a table with wrong values, as far as a millisecond of closed forms finds them."""
-    rows = np.arange(table.phi_axis.size)
-    if rows.size > _ROWS:
-        odd = odd_nodes(table.values[:, [0, -1]], (0,), _ROWS)[:, 0]
-        rows = np.unique(np.concatenate([[0, rows.size // 2, rows.size - 1], odd,
-                                         np.random.default_rng().choice(rows, 500)]))  # fmt: skip
-    columns = np.arange(table.delta_axis.size)
-    if columns.size > _COLUMNS:
-        columns = np.random.default_rng().choice(columns, _COLUMNS)
-    phi, delta = table.phi_axis.nodes()[rows, None], table.delta_axis.nodes()[columns]
-    truth = np.stack(by_closed_form(phi, delta), axis=-1)
-    error = np.abs(table.values[rows[:, None], columns] - truth)
-    refuse_wrong(table.source, error, _NODE_ERROR, "the closed forms")
+def _refuse_format(attributes: dict[str, Any], source: str) -> None:
+    if attributes.get("format") != FORMAT:
+        raise TableError(f"{source} is an HDF5 file but not a table of this program")
+    major, ours = (
+        str(version).split(".")[0] for version in (attributes.get("format_version"), FORMAT_VERSION)
+    )
+    if major.isdecimal() and major != ours:
+        newer = int(major) > int(ours)
+        raise TableError(
+            f"{source} has table format {attributes['format_version']}, "
+            f"{'newer' if newer else 'older'} than {FORMAT_VERSION} of this program: "
+            + ("update puck-tables" if newer else "build it again with 'puck build-tables'")
+        )
 
 
-STORED = Kind({"delta_map": str, "splined": str, "n_phi": int, "n_delta": int, "delta_max": float},
-              shapes, table_of)  # fmt: skip
+def _refuse_unusable(table: Table, arrays: dict[str, FloatArray]) -> None:
+    """Refuse a file whose digest is right but whose numbers this program cannot use."""
+    recipe = _recipe(table)
+    known = {**recipe, "recipe_digest": recipe_digest(recipe)}
+    if any(table.metadata.get(name) != value for name, value in known.items()):
+        raise TableError(f"{table.source} was made by a recipe that this program does not know")
+    low, high, finest = table.bounds
+    fixed = table.axes | table.curve
+    if not (
+        all(np.allclose(arrays[n], a.values, rtol=_SAME, atol=_SAME) for n, a in fixed.items())
+        and np.all((table.values >= low) & (table.values <= high))
+        and finest < table.tolerance < 1.0
+    ):
+        raise TableError(f"{table.source} has axes or values that this program cannot use")
+    for error, allowed, what in table.spot_checks():
+        if not np.all(error <= allowed):
+            raise TableError(
+                f"{table.source} holds wrong numbers (off by {np.max(error):.2g} from {what}): it "
+                "was altered; build it again with 'puck build-tables'"
+            )
+
+
+def _digest(attributes: dict[str, Any], arrays: dict[str, FloatArray]) -> str:
+    digest = hashlib.sha256(json.dumps(attributes, sort_keys=True).encode())
+    for array in arrays.values():
+        digest.update(json.dumps(array.shape).encode())
+        digest.update(np.ascontiguousarray(array, dtype="<f8").tobytes())
+    return digest.hexdigest()

@@ -7,8 +7,6 @@ import numpy.typing as npt
 
 FloatArray = npt.NDArray[np.float64]
 
-_ROUNDING = 2e-14
-
 
 def clamped_coefficients(values: FloatArray) -> FloatArray:
     """Coefficients of the uniform cubic spline with zero slope at both ends, along axis 0.
@@ -38,28 +36,6 @@ def clamped_coefficients(values: FloatArray) -> FloatArray:
     spectrum /= symbol.reshape(-1, *([1] * (values.ndim - 1)))
     c = np.fft.irfft(spectrum, 2 * n, axis=0)[: n + 1]
     return np.concatenate([c[1:2], c, c[-2:-1]])
-
-
-def not_a_knot_coefficients(values: FloatArray) -> FloatArray:
-    """Coefficients of the uniform cubic spline with not-a-knot ends, along axis 0.
-
-    Parameters
-    ----------
-    values : array (n + 1, …), n ≥ 3
-
-    Returns
-    -------
-    array (n + 3, …); cubics are reproduced exactly
-
-    Examples
-    --------
-    >>> c = not_a_knot_coefficients(np.arange(4.0) ** 3)
-    >>> float(((c[1] + 23 * c[2] + 23 * c[3] + c[4]) / 48).round(12))  # at 1.5
-    3.375
-    """
-    system = _interpolation(len(values))
-    system[0, :5] = system[-1, -5:] = _JUMP
-    return _solved(system, values)
 
 
 def half_clamped_coefficients(values: FloatArray) -> FloatArray:
@@ -95,82 +71,54 @@ _ROOT = -2.0 + 3.0**0.5
 _JUMP = (1.0, -4.0, 6.0, -4.0, 1.0)  # of the third derivative at the last inner knots
 
 
-def _interpolation(size: int) -> FloatArray:
-    """The system for coefficients, first and last row left free for the ends."""
-    system = np.zeros((size + 2, size + 2))
-    rows = np.arange(size)
-    for offset, weight in enumerate((1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0)):
-        system[rows + 1, rows + offset] = weight
-    return system
-
-
-def _solved(system: FloatArray, values: FloatArray) -> FloatArray:
-    right = np.zeros((len(values) + 2, *values.shape[1:]))
-    right[1:-1] = values
-    flat = np.linalg.solve(system, right.reshape(len(values) + 2, -1))
-    return np.asarray(flat, dtype=np.float64).reshape(right.shape)
-
-
-def table_coefficients(resultants: FloatArray) -> FloatArray:
-    """Spline coefficients of the friction ratios from tabulated resultants.
+def sided_coefficients(values: FloatArray, even: bool) -> FloatArray:
+    """Coefficients on the sides of singular lines: slopes in ξ vanish at the lines.
 
     Parameters
     ----------
-    resultants : array (n_phi, n_delta, 3)
-        ρ_∥, ρ_⊥, ρ_ω at the nodes.
+    values : array (sides, n + 1, …), from each line outwards
+    even : whether they also vanish at φ = 0 and π/2, where the first and the last side end
 
     Returns
     -------
-    array (2, n_delta + 2, n_eta + 3, 3)
-        As :mod:`puck_tables.kernels.spline` reads it (B-spline weights over 36); side 0 is
-        φ < π/4, η grows away from π/4.
+    array (sides, n + 3, …)
 
     Examples
     --------
-    >>> table_coefficients(np.ones((9, 4, 3))).shape
-    (2, 6, 7, 3)
+    >>> sided_coefficients(np.ones((4, 9, 2)), even=True).round(12).max()
+    np.float64(1.0)
     """
-    parallel = resultants[:, :, 0]
-    ratios = np.stack(
-        [1.0 / parallel, resultants[:, :, 1] / parallel, resultants[:, :, 2] / parallel], axis=-1
-    )
-    middle = len(ratios) // 2
-    sides = np.stack([ratios[middle::-1], ratios[middle:]], axis=1)  # (eta, side, delta, function)
-    along_eta = clamped_coefficients(sides)
-    along_delta = not_a_knot_coefficients(np.moveaxis(along_eta, 2, 0))
-    return np.ascontiguousarray(along_delta.transpose(2, 0, 1, 3)) / 36.0
+    ends = (0, len(values) - 1) if even else ()
+    return np.stack([
+        clamped_coefficients(side) if k in ends else half_clamped_coefficients(side)
+        for k, side in enumerate(values)
+    ])  # fmt: skip
 
 
-def quadratic_coefficients(resultants: FloatArray, delta: FloatArray) -> FloatArray | None:
-    """The same where the height enters as a polynomial; None where it does not.
+def height_terms(resultants: FloatArray, delta: FloatArray) -> FloatArray:
+    """The friction ratios as polynomials of the height: a₀, a₂, b₁, c₀, c₂ of
+
+        1/ρ_∥ = a₀ + a₂ δ²,    ρ_⊥/ρ_∥ = b₁ δ,    ρ_ω/ρ_∥ = c₀ + c₂ δ² .
 
     Parameters
     ----------
-    resultants : array (n_phi, n_delta, 3)
-        ρ_∥, ρ_⊥, ρ_ω at the nodes.
-    delta : array (n_delta,)
+    resultants : array (…, n, 3)
+        ρ_∥, ρ_⊥, ρ_ω in full contact.
+    delta : array (n,), the heights
 
     Returns
     -------
-    array (2, n_eta + 3, 5), as :mod:`puck_tables.kernels.quadratic` reads it, or None
+    array (…, 5)
 
     Examples
     --------
-    >>> quadratic_coefficients(np.ones((9, 4, 3)), np.linspace(0.0, 1.0, 4)) is None  # ρ_⊥ ∝ δ
-    True
+    >>> delta = np.linspace(0.0, 1.0, 4)
+    >>> sliding = np.stack([0 * delta + 1, delta / 4, (4 - delta**2) / 8], axis=-1)  # at φ = 0
+    >>> height_terms(sliding, delta).round(12).tolist()
+    [1.0, 0.0, 0.25, 0.5, -0.125]
     """
-    parallel = resultants[:, :, 0]
-    even, odd = np.stack([np.ones_like(delta), delta**2]), delta[None, :]
-    terms = []
-    for values, powers in (
-        (1.0 / parallel, even), (resultants[:, :, 1] / parallel, odd),
-        (resultants[:, :, 2] / parallel, even),
-    ):  # fmt: skip
-        found = values @ np.linalg.pinv(powers)
-        if not np.abs(found @ powers - values).max() <= _ROUNDING:
-            return None
-        terms.append(found)
-    functions = np.concatenate(terms, axis=1)
-    middle = len(functions) // 2
-    sides = np.stack([functions[middle::-1], functions[middle:]], axis=1)
-    return np.ascontiguousarray(np.moveaxis(clamped_coefficients(sides), 0, 1)) / 6.0
+    parallel, across, spin = np.moveaxis(resultants, -1, 0)
+    even = np.linalg.pinv(np.stack([np.ones_like(delta), delta**2]))
+    odd = np.linalg.pinv(delta[None, :])
+    terms = (1.0 / parallel) @ even, (across / parallel) @ odd, (spin / parallel) @ even
+    return np.concatenate(terms, axis=-1)

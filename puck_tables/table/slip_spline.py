@@ -1,7 +1,7 @@
 """Splines over the slip angle alone, as fine as asked: how friction and stops of one puck are kept.
 
-The functions are known wherever they are asked for, at some cost.  The axis is that of
-:mod:`puck_tables.table.law_grid`.  It is refined by halving its cells, so that what was computed to
+The functions are known wherever they are asked for, at some cost.  The axis
+(:mod:`puck_tables.table.slip_axis`) is refined by halving its cells, so that what was computed to
 measure the error of one level, the functions in the middles of the cells, are nodes of the next.
 """
 
@@ -28,8 +28,9 @@ from puck_tables.kernels.slice_spline import (
     UPPER_SIN,
     fill_slice,
 )
-from puck_tables.table.fit import clamped_coefficients, half_clamped_coefficients
-from puck_tables.table.law_grid import Side, graded
+from puck_tables.table.accuracy import Accuracy
+from puck_tables.table.fit import sided_coefficients
+from puck_tables.table.slip_axis import Side, graded
 
 FloatArray = npt.NDArray[np.float64]
 Functions = Callable[[FloatArray], FloatArray]  # of φ (n,), as (n, functions)
@@ -47,14 +48,21 @@ class SlipSpline:
     values : array (sides, cells + 1, functions)
         At the nodes, from each line outwards.
     even : whether the functions are even about φ = 0 and π/2 (and these no singular lines)
-    error : array (functions,)
-        The largest error in the middles of the cells.
+    accuracy : Accuracy, optional
+        The errors in the middles of the cells; none while they are not known.
     """
 
     sides: tuple[Side, ...]
     values: FloatArray = field(repr=False)
     even: bool
-    error: FloatArray
+    accuracy: Accuracy | None = None
+
+    @property
+    def error(self) -> FloatArray:
+        """The largest error of each function."""
+        if self.accuracy is None:
+            return np.full(self.values.shape[2], np.inf)
+        return np.array(self.accuracy.largest)
 
     @property
     def cells(self) -> int:
@@ -65,16 +73,13 @@ class SlipSpline:
     def cut(self) -> FloatArray:
         """The matrix that :mod:`puck_tables.kernels.slice_spline` reads; inertia left 0."""
         cut = np.zeros((len(self.sides), HEADER + self.values.shape[2] * (self.cells + 3)))
+        cut[:, HEADER:] = sided_coefficients(self.values, self.even).reshape(len(cut), -1) / 6.0
         for n, side in enumerate(self.sides):
-            clamped = self.even and n in (0, len(self.sides) - 1)
-            fit = clamped_coefficients if clamped else half_clamped_coefficients
             upper = max(side.line, side.end)
-            cut[n, :HEADER] = 0.0
             cut[n, LINE_COS], cut[n, LINE_SIN] = _direction(side.line)
             cut[n, LINE] = _log_tangent(side.line)
             cut[n, UPPER_COS], cut[n, UPPER_SIN] = _direction(upper)
             cut[n, INVERSE_EXTENT] = 1.0 / abs(side.extent)
-            cut[n, HEADER:] = fit(self.values[n]).ravel() / 6.0
         return cut
 
     def at(self, phi: FloatArray) -> FloatArray:
@@ -86,9 +91,7 @@ class SlipSpline:
 
     def coarser(self) -> SlipSpline:
         """The spline through every other node."""
-        return SlipSpline(
-            self.sides, self.values[:, ::2], self.even, np.full_like(self.error, np.inf)
-        )
+        return SlipSpline(self.sides, self.values[:, ::2], self.even)
 
     def with_inertia(self, square: float, factors: FloatArray) -> FloatArray:
         """A copy of :attr:`cut` with this inertia and the functions multiplied by ``factors``."""
@@ -143,7 +146,7 @@ def slip_spline(
 
     Examples
     --------
-    >>> from puck_tables.table.law_grid import sides_of
+    >>> from puck_tables.table.slip_axis import sides_of
     >>> found = slip_spline(lambda phi: np.cos(phi)[:, None] ** 2, sides_of([1.0]), 1e-6, True)
     >>> found.cells, float(found.at(np.array([0.5]))[0, 0].round(6))
     (64, 0.770151)
@@ -151,7 +154,7 @@ def slip_spline(
     cells = COARSEST_CELLS
     values = _at(functions, sides, np.arange(cells + 1) / cells)
     while True:
-        spline = SlipSpline(sides, values, even, np.zeros(values.shape[2]))
+        spline = SlipSpline(sides, values, even)
         xi = (np.arange(cells) + 0.5) / cells
         between = _at(functions, sides, xi)
         guess = spline.at(graded(sides, xi).ravel()).reshape(between.shape)
@@ -160,7 +163,8 @@ def slip_spline(
             off *= _at(weights, sides, xi)
         error = off.max(axis=(0, 1))
         if error[counted].max() <= accuracy:
-            return SlipSpline(sides, values, even, error)
+            errors, phi = off.reshape(-1, off.shape[2]).T, graded(sides, xi).ravel()
+            return SlipSpline(sides, values, even, Accuracy.of(errors, phi, 0.0 * phi, None))
         if 2 * cells > finest:
             raise AccuracyError(
                 f"an accuracy of {accuracy:.1g} is out of reach for this puck: {cells} cells give "

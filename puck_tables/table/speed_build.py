@@ -16,17 +16,18 @@ from puck_tables.executor import keep_on, run_chunks
 from puck_tables.kernels.speed_quadrature import fill_integrals
 from puck_tables.kernels.speed_spline import fill_patch
 from puck_tables.real import rounded_up
+from puck_tables.table.accuracy import Accuracy
+from puck_tables.table.build import COARSEST
 from puck_tables.table.speed_fit import missed_by_half, quintic_coefficients
-from puck_tables.table.speed_grid import Patch, breaks_of, patches_of
-from puck_tables.table.speed_table import SpeedAccuracy, SpeedTable
+from puck_tables.table.speed_grid import COARSEST_CELLS, HALVINGS, Patch, breaks_of, patches_of
+from puck_tables.table.speed_table import SpeedTable
+from puck_tables.table.table import Progress
 
 FloatArray = npt.NDArray[np.float64]
 Law = SpeedLaw | SpeedFunction
-Progress = Callable[[int, int], None]
 
 DEFAULT_ACCURACY = 1e-6
-FINEST_ACCURACY, COARSEST_ACCURACY = 1e-13, 0.01
-COARSEST_CELLS, HALVINGS = 10, 6
+FINEST_ACCURACY = 1e-13
 MAX_NODES = 2_000_000
 _ORDER = 64.0  # to the power 6, of what half the nodes miss: the spline's own share
 _ALSO = 0.2  # of what the other axis misses: refined too
@@ -135,34 +136,22 @@ class _Filled:
         return (u + 1.0) * (w + 1.0)
 
 
-def build_speed_table(
+def tabulated(
     law: Law,
-    *,
+    accuracy: float | None = None,
     top_speed: float | None = None,
     scale: float | None = None,
-    accuracy: float = DEFAULT_ACCURACY,
     progress: Progress | None = None,
 ) -> SpeedTable:
-    """Tabulate friction with a coefficient that depends on the slip speed, in full contact.
+    """Friction with a coefficient that depends on the slip speed, in full contact, tabulated.
+
+    The grid is cut at the corners of the law, and every patch is as fine as it needs.
 
     Parameters
     ----------
-    law : SpeedLaw, or callable from speeds in m/s to f
-    top_speed : float, optional
-        The fastest slip v + r|ω| of the table, m/s; needed for a callable, otherwise that of the
-        law.
-    scale : float, optional
-        The speed below which a callable is nearly a cubic, m/s.  Default: ``top_speed``.
-    accuracy : float
-        Largest error wanted of the friction integrals (cos φ p_a, sin φ p_b, sin φ p_d, cos φ p_e)
-        in units of the largest f; 1e-13 to 0.01.
+    law, accuracy, top_speed, scale : as in :meth:`puck_tables.Table.build`
     progress : callable (done, total), optional
         Told of nodes; how many they will be is an estimate that improves.
-
-    Returns
-    -------
-    SpeedTable
-        With the errors that were measured.  It serves pucks of every height.
 
     Raises
     ------
@@ -172,26 +161,17 @@ def build_speed_table(
         If the accuracy is out of range or would take more than 2 million nodes; it says which
         accuracy can be reached.
 
-    Notes
-    -----
-    The grid is cut at the corners of the law: the error falls with order 4 and more for cubic and
-    smooth laws, with order 2 to 4 where f itself has corners (linear laws).
-
-    References
-    ----------
-    Salnikova, Treschev, Gallyamov 2012, section 5, with f(|u|) kept under the integrals.
-
     Examples
     --------
-    >>> law = SpeedLaw([0.0, 0.5, 1.0, 3.0], [0.3, 0.22, 0.2, 0.25])
-    >>> table = build_speed_table(law, accuracy=1e-8)
+    >>> table = tabulated(SpeedLaw([0.0, 0.5, 1.0, 3.0], [0.3, 0.22, 0.2, 0.25]), 1e-8)
     >>> table.accuracy.worst < 1e-8, table.top
     (True, 3.0)
     """
-    if not FINEST_ACCURACY <= accuracy <= COARSEST_ACCURACY:
+    accuracy = DEFAULT_ACCURACY if accuracy is None else accuracy
+    if not FINEST_ACCURACY <= accuracy <= COARSEST:
         raise AccuracyError(
             f"the accuracy of a table of speeds must be from {FINEST_ACCURACY:g} to "
-            f"{COARSEST_ACCURACY:g} (of the largest f), got {accuracy:g}"
+            f"{COARSEST:g} (of the largest f), got {accuracy:g}"
         )
     breaks = breaks_of(law, top_speed, scale)
     largest = largest_f(law, float(breaks[-1]))
@@ -228,7 +208,10 @@ def build_speed_table(
     points = law if isinstance(law, SpeedLaw) else None
     cells = np.array([part.cells for part in parts], np.int64)
     values = np.concatenate([part.values.reshape(-1, 4) for part in parts])
-    return SpeedTable(breaks, cells, values, largest, points, accuracy, _measured(parts))
+    return SpeedTable(
+        values, breaks=breaks, cells=cells, largest_f=largest, law=points, tolerance=accuracy,
+        accuracy=_measured(parts),
+    )  # fmt: skip
 
 
 def _each(parts: list[_Filled], work: Callable[[_Filled], None], tell: Callable[[], None]) -> None:
@@ -299,13 +282,8 @@ def _probes(rng: np.random.Generator, patch: Patch) -> tuple[FloatArray, FloatAr
     return xi, zeta
 
 
-def _measured(parts: list[_Filled]) -> SpeedAccuracy:
-    errors = np.concatenate([part.errors for part in parts])
+def _measured(parts: list[_Filled]) -> Accuracy:
+    errors = np.concatenate([part.errors for part in parts]).T
     phi = np.concatenate([part.phi for part in parts])
-    U = np.concatenate([part.speeds for part in parts]) * (np.cos(phi) + np.sin(phi))
-    where = errors.argmax(axis=0)
-    return SpeedAccuracy(
-        tuple(errors.max(axis=0).tolist()), tuple(np.sqrt((errors**2).mean(axis=0)).tolist()),
-        tuple(np.quantile(errors, 0.999, axis=0).tolist()), tuple(phi[where].tolist()),
-        tuple(U[where].tolist()), int(errors.size),
-    )  # fmt: skip
+    fastest = np.concatenate([part.speeds for part in parts]) * (np.cos(phi) + np.sin(phi))
+    return Accuracy.of(errors, phi, fastest, None)

@@ -8,52 +8,23 @@ import numpy.typing as npt
 from puck_tables.contact.integrals import SlipDirection
 from puck_tables.contact.speed_quadrature import SpeedFunction, speed_integrals
 from puck_tables.errors import InputError
-from puck_tables.table.check import Check, CheckReport, worst_of
+from puck_tables.table.build import COARSEST
+from puck_tables.table.check import Check, CheckReport, compared
 from puck_tables.table.oddities import odd_nodes
-from puck_tables.table.speed_build import COARSEST_ACCURACY, largest_f, truth_at
-from puck_tables.table.speed_table import INTEGRALS, SpeedTable
+from puck_tables.table.speed_build import largest_f, truth_at
+from puck_tables.table.speed_table import SpeedTable
+from puck_tables.table.table import Progress
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 BoolArray = npt.NDArray[np.bool_]
 
 
-def validate_speed(
-    table: SpeedTable, law: SpeedFunction | None = None, points: int = 2000
+def judged(
+    table: SpeedTable, law: SpeedFunction | None, points: int, progress: Progress | None
 ) -> CheckReport:
-    """Judge a table of friction that depends on the slip speed.
-
-    Parameters
-    ----------
-    table : SpeedTable
-    law : callable, optional
-        The friction law, where the table was made of a function and does not hold it.
-    points : how many points are compared at random, as many next to φ = 0, π/4, π/2, as many where
-        a rim slips at one of the breaks, and as many or more in all patches alike; besides, the
-        nodes that fit their neighbours least
-
-    Returns
-    -------
-    CheckReport
-        Deviations of cos φ p_a, sin φ p_b, sin φ p_d and cos φ p_e in units of the largest f of the
-        law; the second place of a deviation is v + r|ω| in m/s.
-
-    Raises
-    ------
-    InputError
-        If the law is a function and is not given.
-
-    Examples
-    --------
-    >>> from puck_tables.table.speed_build import build_speed_table
-    >>> def f(u):
-    ...     return 0.2 + 0.1 * u
-    >>> table = build_speed_table(f, top_speed=1.0, accuracy=1e-4)
-    >>> validate_speed(table, f, points=300).passed
-    True
-    """
-    judge = table.law if law is None else law
-    if judge is None:
+    """The report of :meth:`SpeedTable.validate`."""
+    if law is None:
         raise InputError("the friction law of this table is a function: give it as law=")
     rng = np.random.default_rng()
     near = rng.choice([0.0, 0.25 * np.pi, 0.5 * np.pi], points)
@@ -72,26 +43,25 @@ def validate_speed(
     anywhere = _phi_and_fastest(*_slips(table, patches, rng.random((2, patches.size))))
     odd = oddest(table, points // 20)
     at_odd = _phi_and_fastest(*_slips(table, odd[:, 0], _places(table, odd)))
-    unit = largest_f(judge, table.top) or 1.0  # what the table says of it is not asked
-    allowed = min(table.tolerance, COARSEST_ACCURACY)
+    unit = largest_f(law, table.top) or 1.0  # what the table says of it is not asked
+    allowed = min(table.tolerance, COARSEST)
     checks: list[Check] = []
-    for name, phi, speeds in (
+    routes = (
         ("quadrature, random points", rng.uniform(0.0, 0.5 * np.pi, points), U[0]),
         ("quadrature, next to 0, pi/4, pi/2", np.clip(near, 0.0, 0.5 * np.pi), U[1]),
         ("quadrature, a rim at a break", np.clip(equal, 0.0, 0.5 * np.pi), fastest),
         ("quadrature, in every patch", *anywhere),
         ("quadrature, the oddest nodes", *at_odd),
-    ):
+    )
+    for done, (name, phi, speeds) in enumerate(routes, 1):
         cosine, sine = np.cos(phi), np.sin(phi)
         Q = speeds / (cosine + sine) * (1.0 - 1e-15)
-        got, truth = table.integrals(phi, Q), speed_integrals(phi, Q, judge)
-        checks += [
-            worst_of(name, integral, weight / unit * np.abs(a - b), phi, speeds, allowed)
-            for integral, weight, a, b in zip(
-                INTEGRALS, (cosine, sine, sine, cosine), (got.a, got.b, got.d, got.e),
-                (truth.a, truth.b, truth.d, truth.e), strict=True,
-            )
-        ]  # fmt: skip
+        got, truth = table.integrals(phi, Q), speed_integrals(phi, Q, law)
+        off = np.stack([got.a - truth.a, got.b - truth.b, got.d - truth.d, got.e - truth.e])
+        errors = np.stack([cosine, sine, sine, cosine]) / unit * off
+        checks += compared(name, table.quantities, errors, phi, speeds, allowed)
+        if progress is not None:
+            progress(done, len(routes))
     return CheckReport(table.source, table.tolerance, tuple(checks))
 
 
@@ -115,8 +85,8 @@ def node_errors(table: SpeedTable, nodes: IntArray) -> FloatArray:
 
     Examples
     --------
-    >>> from puck_tables import SpeedLaw, build_speed_table
-    >>> table = build_speed_table(SpeedLaw([0.0, 1.0], [0.2, 0.3]), accuracy=1e-4)
+    >>> from puck_tables import SpeedLaw
+    >>> table = SpeedTable.build(SpeedLaw([0.0, 1.0], [0.2, 0.3]), accuracy=1e-4)
     >>> bool(node_errors(table, np.array([[0, 3, 1], [1, 2, 2]])).max() < 1e-14)
     True
     """

@@ -22,6 +22,7 @@ from puck_tables.kernels.speed_spline import CORNER_POWER, EDGE_POWER
 
 FloatArray = npt.NDArray[np.float64]
 
+COARSEST_CELLS, HALVINGS = 10, 6  # cells of a patch along an axis, and how often they are halved
 MOST_CORNERS = 40  # patches grow with their square; weaker ones are left to the splines
 _STEEPEST = 3.0  # between neighbouring breaks
 _LEAST_SCALE = 1e-9  # of the top speed

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import KW_ONLY, dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -21,66 +23,91 @@ from puck_tables.contact.speed_quadrature import (
 from puck_tables.errors import InputError
 from puck_tables.kernels.speed_spline import DONE, fill_speed, packed
 from puck_tables.real import broadcast
+from puck_tables.table.check import CheckReport
 from puck_tables.table.speed_fit import quintic_coefficients
-from puck_tables.table.speed_grid import Patch, patches_of
+from puck_tables.table.speed_grid import COARSEST_CELLS, HALVINGS, Patch, patch_count, patches_of
+from puck_tables.table.table import Axis, Progress, Table
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
-INTEGRALS = ("p_a", "p_b", "p_d", "p_e")
+MAX_POINTS = 2000  # of a law in a file: HDF5 keeps no longer attribute
+_LARGEST = 10.0  # of a value, over the largest f and u f'
+# how many nodes are compared with the law as a file is read, and how well that is known
+_NODES, _NODE_ERROR = 20, 1e-9
+_FINEST = 5e-14  # no table is better
+_INTERPRETATION = (
+    "Friction on a puck of radius r, height h, mass m sliding with speed v and spin omega on a "
+    "rough plane whose coefficient f depends on the local slip speed u by the law in law_speeds, "
+    "law_values, law_kind; weight N = m g, uniform pressure tilted linearly by the moment balance. "
+    "phi = atan2(r omega, v), Q = hypot(v, r omega), slip directions (e_x, e_y) in units of r: "
+    "cos(phi) p_a = mean of f e_x, sin(phi) p_b = mean of f e_y x, sin(phi) p_d = mean of f (x e_y "
+    "- y e_x), cos(phi) p_e = mean of f (x e_y - y e_x) y, p_c = p_b - p_d. With g = 2h/r, D = 1 - "
+    "g^2 sin^2(phi) p_b p_c: force -N cos(phi) p_a/D along the velocity, -N sin(phi) cos(phi) g "
+    "p_a p_b/D across it (to the left), torque -N r sin(phi) (p_d + g^2 cos^2(phi) p_a p_b p_e/D). "
+    "Even in phi. Salnikova, Treschev, Gallyamov 2012, section 5, with f inside the integrals."
+)
+_MAP = (
+    "U = v + r|omega|, W = |v - r|omega||; patches between the breaks b_k of U and W, for r|omega| "
+    "< v and then for >, slab of U after slab. U <= b_1: U = b_1 xi, W = U zeta^4. b_k <= U <= "
+    "b_k+1: U = b_k + (b_k+1 - b_k) xi^p; W = b_1/2 zeta^4, then W = b_l - (b_l - left end)(1 - "
+    "zeta)^p up to b_k, p = 2 (3 where r|omega| < v and l = k); last U, W = b_k + (b_k+1 - b_k)(xi,"
+    " zeta). Nodes uniform in xi and zeta, zeta fastest; quintic not-a-knot splines in both. Cells "
+    f"= {COARSEST_CELLS} 2^halvings; halvings of a patch = 16 along xi + along zeta"
+)
 
 
-@dataclass(frozen=True)
-class SpeedAccuracy:
-    """Errors of a table against quadrature, measured, in units of the largest f of the law.
-
-    One entry for each of cos φ p_a, sin φ p_b, sin φ p_d and cos φ p_e: largest, root mean square
-    and 99.9 % error over random points in every patch, and where the largest stands (φ, and
-    v + r|ω| in m/s).
-    """
-
-    largest: tuple[float, ...]
-    rms: tuple[float, ...]
-    p999: tuple[float, ...]
-    at_phi: tuple[float, ...]
-    at_speed: tuple[float, ...]
-    points: int
-
-    @property
-    def worst(self) -> float:
-        """The largest of the four largest errors."""
-        return max(self.largest)
-
-
-@dataclass(frozen=True)
-class SpeedTable:
+@dataclass(frozen=True, eq=False, repr=False)
+class SpeedTable(Table):
     """The friction integrals at all slips of one law f(|u|), for pucks of every height.
 
     Parameters
     ----------
+    values : array (nodes, 4)
+        p_a, p_b, p_d, p_e at the nodes of all patches, one after the other, ζ running fastest.
     breaks : array (k + 1,), m/s
         Speeds from 0 to the top between which the patches lie.
     cells : integer array (patches, 2)
         Cells along ξ and ζ of every patch, see :mod:`puck_tables.kernels.speed_spline`.
-    values : array (nodes, 4)
-        p_a, p_b, p_d, p_e at the nodes of all patches, one after the other, ζ running fastest.
     largest_f : float
         Largest f of the law up to the top, the unit of the errors.
     law : SpeedLaw, optional
         The friction law; none if it was given as a function.
-    tolerance, accuracy, passport, source
-        As in :class:`puck_tables.table.table.Table`; errors in units of ``largest_f``.
+
+    Notes
+    -----
+    Errors are those of cos φ p_a, sin φ p_b, sin φ p_d and cos φ p_e in units of ``largest_f``.
     """
 
+    _: KW_ONLY
     breaks: FloatArray
     cells: IntArray = field(repr=False)
-    values: FloatArray = field(repr=False)
     largest_f: float
     law: SpeedLaw | None = None
-    tolerance: float = 0.0
-    accuracy: SpeedAccuracy | None = None
-    passport: dict[str, Any] = field(default_factory=dict, repr=False)
-    source: str = "memory"
+
+    kind = "speed"
+    algorithm = (
+        "one integral over circles about the centre of rotation; quintic splines in patches; 2"
+    )
+    functions: ClassVar[Mapping[str, str]] = {
+        "p_a": "mean of f e_x, over cos(phi)",
+        "p_b": "mean of f e_y x, over sin(phi)",
+        "p_d": "mean of f (x e_y - y e_x), over sin(phi)",
+        "p_e": "mean of f (x e_y - y e_x) y, over cos(phi)",
+    }
+    second = "v + r|omega|"
+    errors = "errors over the largest f"
+    quantities = ("cos p_a", "sin p_b", "sin p_d", "cos p_e")
+    words: ClassVar[Mapping[str, str]] = {
+        "title": "Friction of a sliding, spinning puck whose coefficient depends on the slip speed",
+        "interpretation": _INTERPRETATION,
+        "method": "quadrature over circles about the centre of rotation, 1e-14",
+        "map": _MAP,
+    }
+    entries: ClassVar[Mapping[str, type]] = {
+        "law_kind": str, "law_speeds": str, "law_values": str, "breaks": str, "nodes": int,
+        "patches": int, "largest_f": float,
+    }  # fmt: skip
 
     @property
     def top(self) -> float:
@@ -160,8 +187,8 @@ class SpeedTable:
 
         Examples
         --------
-        >>> from puck_tables import build_speed_table
-        >>> table = build_speed_table(lambda u: 0.2 + 0.1 * u, top_speed=2.0, accuracy=1e-4)
+        >>> from puck_tables import Table
+        >>> table = Table.build(lambda u: 0.2 + 0.1 * u, accuracy=1e-4, top_speed=2.0)
         >>> float(table.resultants(0.0, 1.0).parallel.round(4))  # a puck that only slides: f(v)
         0.3
         """
@@ -188,3 +215,162 @@ class SpeedTable:
             rho = moment_balance(PatchIntegrals(a, b, b - d, d, e), direction, height_ratio)
             tilts.append(pressure_tilt(rho, direction, height_ratio).max())
         refuse_lifting(np.array(tilts), height_ratio)
+
+    def validate(
+        self, progress: Progress | None = None, points: int = 2000, law: Any = None
+    ) -> CheckReport:
+        """Judge the table by quadrature.
+
+        Parameters
+        ----------
+        progress : callable (done, total), optional
+        points : how many points are compared at random, as many next to φ = 0, π/4, π/2, as many
+            where a rim slips at one of the breaks, and as many or more in all patches alike;
+            besides, the nodes that fit their neighbours least
+        law : callable, optional
+            The friction law, where the table was made of a function and does not hold it.
+
+        Returns
+        -------
+        CheckReport
+            Deviations of cos φ p_a, sin φ p_b, sin φ p_d and cos φ p_e in units of the largest f of
+            the law; the second place of a deviation is v + r|ω| in m/s.
+
+        Raises
+        ------
+        InputError
+            If the law is a function and is not given.
+
+        Examples
+        --------
+        >>> def f(u):
+        ...     return 0.2 + 0.1 * u
+        >>> table = SpeedTable.build(f, top_speed=1.0, accuracy=1e-4)
+        >>> table.validate(points=300, law=f).passed
+        True
+        """
+        from puck_tables.table.speed_check import judged
+
+        return judged(self, self.law if law is None else law, points, progress)
+
+    # the record of the kind
+
+    @classmethod
+    def is_of(cls, of: object) -> bool:
+        """Friction laws over the slip speed: points or functions."""
+        return isinstance(of, SpeedLaw) or callable(of)
+
+    @classmethod
+    def built(cls, of: Any, accuracy: float | None = None, **how: Any) -> SpeedTable:
+        """A table of a friction law, see :meth:`puck_tables.Table.build`."""
+        from puck_tables.table.speed_build import tabulated
+
+        return tabulated(of, accuracy, **how)
+
+    @property
+    def grid(self) -> str:
+        """How many nodes it has, in words."""
+        return f"{len(self.values)} nodes in {len(self.cells)} patches"
+
+    @property
+    def valid_range(self) -> str:
+        """Where it holds, in words."""
+        return f"|phi| <= pi/2, 0 <= v + r|omega| <= {self.top:g} m/s; refused outside"
+
+    @property
+    def axes(self) -> dict[str, Axis]:
+        """The numbers of the nodes."""
+        return {"node": Axis(np.arange(float(len(self.values))), "1", "node of a patch")}
+
+    @property
+    def parameters(self) -> dict[str, int | float | str]:
+        """The law and the grid."""
+        assert self.law is not None
+        return {
+            "law_kind": self.law.kind,
+            "law_speeds": json.dumps(np.asarray(self.law.speeds).tolist()),
+            "law_values": json.dumps(np.asarray(self.law.values).tolist()),
+            "breaks": json.dumps(self.breaks.tolist()), "nodes": len(self.values),
+            "patches": len(self.cells), "largest_f": self.largest_f,
+        }  # fmt: skip
+
+    @property
+    def curve(self) -> dict[str, Axis]:
+        """How often each patch was halved along its two axes."""
+        halvings = np.log2(self.cells / COARSEST_CELLS) @ [16.0, 1.0]
+        return {
+            "patch": Axis(np.arange(float(len(self.cells))), "1", "patch"),
+            "halvings": Axis(halvings, "1", "16 times those along xi, and those along zeta"),
+        }
+
+    @property
+    def bounds(self) -> tuple[float, float, float]:
+        """Of the values, each a mean of f, of u f', or of both; and of the accuracy."""
+        assert self.law is not None
+        speeds, f = np.asarray(self.law.speeds), np.asarray(self.law.values)
+        steepest = float(np.max(speeds[1:] * np.abs(np.diff(f) / np.diff(speeds))))
+        largest = _LARGEST * (float(f.max()) + steepest)
+        return -largest, largest, _FINEST
+
+    @classmethod
+    def shapes(cls, attributes: dict[str, Any]) -> dict[str, tuple[int, ...]]:
+        """Shapes of the arrays of a file with these attributes.
+
+        Examples
+        --------
+        >>> SpeedTable.shapes({"nodes": 500, "patches": 2})["p_d"]
+        (500,)
+        """
+        nodes, patches = (attributes["nodes"],), (attributes["patches"],)
+        functions = dict.fromkeys(cls.functions, nodes)
+        return {"node": nodes, **functions, "patch": patches, "halvings": patches}
+
+    @classmethod
+    def fields(cls, attributes: dict[str, Any], arrays: dict[str, FloatArray]) -> dict[str, Any]:
+        """Law and grid of a file."""
+        breaks, speeds, values = (
+            np.array(json.loads(attributes[name]), np.float64)
+            for name in ("breaks", "law_speeds", "law_values")
+        )
+        law = SpeedLaw(speeds, values, attributes["law_kind"])
+        codes = np.clip(np.nan_to_num(arrays["halvings"]), 0.0, 255.0).astype(np.int64)
+        cells = COARSEST_CELLS << np.minimum(np.stack([codes // 16, codes % 16], axis=-1), HALVINGS)
+        if not (
+            breaks.ndim == 1 and breaks.size > 1 and breaks[0] == 0.0
+            and np.all(np.diff(breaks) > 0.0) and breaks[-1] <= law.top_speed
+            and attributes["patches"] == patch_count(breaks)
+            and (cells + 1).prod(axis=1).sum() == attributes["nodes"]
+        ):  # fmt: skip
+            raise ValueError("its patches are not those of its law")
+        largest = attributes["largest_f"]
+        return {"breaks": breaks, "cells": cells, "largest_f": largest, "law": law}
+
+    @property
+    def unsaveable(self) -> str | None:
+        """A law that is a function, or of too many points."""
+        if self.law is None:
+            return (
+                "the friction law of this table is a function, which a file cannot hold: give the "
+                "law as a SpeedLaw of points"
+            )
+        if np.size(self.law.speeds) > MAX_POINTS:
+            return (
+                f"the friction law has {np.size(self.law.speeds)} points: a file holds "
+                f"{MAX_POINTS}; give it with fewer"
+            )
+        return None
+
+    def spot_checks(self) -> Iterator[tuple[FloatArray, float, str]]:
+        """The largest f, and nodes of which some fit their neighbours least."""
+        from puck_tables.table.speed_build import largest_f
+        from puck_tables.table.speed_check import node_errors, oddest
+
+        assert self.law is not None
+        largest = largest_f(self.law, self.top)
+        off = np.array([abs(self.largest_f - largest)])
+        yield off, _NODE_ERROR * largest, f"the largest f of its law, {largest:g}"
+        rng = np.random.default_rng()
+        patch = rng.integers(0, len(self.cells), _NODES)
+        place = rng.integers(0, self.cells[patch].T + 1)
+        nodes = np.concatenate([oddest(self, _NODES), np.stack([patch, *place], axis=-1)])
+        yield node_errors(self, nodes), _NODE_ERROR, "the friction law"

@@ -1,156 +1,348 @@
-"""A table in memory: axes, node values, passport and the spline through them."""
+"""What every table is: functions over the slip angle and at most one second axis.
+
+A table is node values, splined between, judged against a truth.  What is particular to a kind (its
+axes, how a node is computed, what is splined, its truth) stands with the kind, a subclass; how
+tables are built, saved, read and refused is the same for all.
+"""
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
-from typing import Any
+from functools import cache
+from importlib import import_module
+from importlib.resources import files
+from pathlib import Path
+from typing import Any, ClassVar, NamedTuple, Self, cast
 
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.contact.integrals import checked_phi
-from puck_tables.contact.resultants import Resultants, checked_delta
 from puck_tables.errors import InputError
-from puck_tables.real import broadcast
-from puck_tables.table.fit import quadratic_coefficients, table_coefficients
-from puck_tables.table.grid import DeltaAxis, PhiAxis
+from puck_tables.real import instance
+from puck_tables.table import file
+from puck_tables.table.accuracy import Accuracy
+from puck_tables.table.check import CheckReport
 
 FloatArray = npt.NDArray[np.float64]
+Progress = Callable[[int, int], None]
 
-FUNCTIONS = ("parallel", "perpendicular", "spin")
-
-
-@dataclass(frozen=True)
-class Accuracy:
-    """Errors of a table that were measured, not promised; dimensionless.
-
-    One entry a function in the order of :data:`FUNCTIONS`: largest, root mean square and 99.9 %
-    error over random and adversarial points, where the largest stands, the largest residual at
-    the closed-form entries φ = 0, π/4, π/2, and the order against a grid of half as many cells.
-    """
-
-    largest: tuple[float, ...]
-    rms: tuple[float, ...]
-    p999: tuple[float, ...]
-    at_phi: tuple[float, ...]
-    at_delta: tuple[float, ...]
-    entry_residual: float
-    order: float
-    points: int
-
-    @property
-    def worst(self) -> float:
-        """The largest error of the three resultants."""
-        return max(self.largest)
+# where every kind of table is at home
+KINDS = {
+    "resultants": "puck_tables.table.resultant_table:ResultantTable",
+    "stops": "puck_tables.similarity.stop_table:StopTable",
+    "speed": "puck_tables.table.speed_table:SpeedTable",
+    "friction slice": "puck_tables.table.friction_slice:FrictionSlice",
+}
 
 
-@dataclass(frozen=True)
-class Table:
-    """Friction resultants on a (φ, δ) grid with the bicubic spline through them.
+class Axis(NamedTuple):
+    """An axis in a file: its values and what they are."""
+
+    values: FloatArray
+    units: str
+    long_name: str
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Table(ABC):
+    """A table: build one, save it, load it, ask it, judge it.
 
     Parameters
     ----------
-    phi_axis, delta_axis
-        The axes.
-    values : array (n_phi, n_delta, 3)
-        ρ_∥, ρ_⊥, ρ_ω at the nodes.
+    values : array (nodes of φ, nodes of the second axis, functions)
+        At the nodes; read-only.
     tolerance : float
         The error the table promises; 0 while it is not known.
     accuracy : Accuracy or None
         The errors that were measured when it was built.
-    passport : dict
-        What else its file says: format, pressure law, provenance, digests.
+    metadata : dict
+        What its file says of it.
     source : str
         Where it came from, for messages.
+
+    Examples
+    --------
+    >>> table = Table.build("annulus:0.8", accuracy=1e-5)
+    >>> table
+    <Table of resultants: annulus:0.8 pressure, 89 phi x 4 delta nodes, to 1e-05, memory>
+    >>> float(table.resultants(0.0, 1.0).perpendicular.round(6)), table.validate().passed
+    (0.25, True)
     """
 
-    phi_axis: PhiAxis
-    delta_axis: DeltaAxis
-    values: FloatArray = field(repr=False)
-    tolerance: float = 0.0
-    accuracy: Accuracy | None = None
-    passport: dict[str, Any] = field(default_factory=dict, repr=False)
-    source: str = "memory"
+    values: FloatArray
+    tolerance: float = field(default=0.0, kw_only=True)
+    accuracy: Accuracy | None = field(default=None, kw_only=True)
+    metadata: dict[str, Any] = field(default_factory=dict, kw_only=True)
+    source: str = field(default="memory", kw_only=True)
+
+    # the record of a kind, as its files have it
+    kind: ClassVar[str]
+    algorithm: ClassVar[str]
+    functions: ClassVar[Mapping[str, str]]  # names, and what they are
+    second: ClassVar[str]  # the second axis, in words for a report
+    errors: ClassVar[str] = "absolute errors"  # what they are, in such words
+    quantities: ClassVar[tuple[str, ...]]  # what has them
+    words: ClassVar[Mapping[str, str]]  # title, interpretation, method, maps of the axes
+    entries: ClassVar[Mapping[str, type]]  # what determines the values besides
 
     def __post_init__(self) -> None:
         values = self.values.view()
         values.flags.writeable = False
         object.__setattr__(self, "values", values)
 
-    @cached_property
-    def coefficients(self) -> FloatArray:
-        """Spline coefficients as the kernels read them, fitted at first use; read-only."""
-        fitted = table_coefficients(self.values)
-        fitted.flags.writeable = False
-        return fitted
+    def __repr__(self) -> str:
+        return (
+            f"<Table of {self.kind}: {self.pressure_law} pressure, {self.grid}, "
+            f"to {self.tolerance:g}, {self.source}>"
+        )
 
-    @cached_property
-    def quadratic(self) -> FloatArray | None:
-        """The same where the height enters as a polynomial of degree 2, else None; read-only."""
-        fitted = quadratic_coefficients(self.values, self.delta_axis.nodes())
-        if fitted is not None:
-            fitted.flags.writeable = False
-        return fitted
-
-    def checked_range(self, delta: npt.ArrayLike) -> FloatArray:
-        """``delta`` as an array, refused outside the range of the table.
-
-        Raises
-        ------
-        InputError
-            If a height is not finite, negative or above the largest of the table.
-        """
-        height = checked_delta(delta)
-        if not np.all(height <= self.delta_axis.upper):
-            raise InputError(
-                f"delta = {height[height > self.delta_axis.upper].flat[0]!s} is outside this table "
-                f"(0 <= delta <= {self.delta_axis.upper:g}): the linear pressure law of full "
-                "contact holds at every phi only up to 1; where it still holds beyond, "
-                "use the closed forms (--exact)"
-            )
-        return height
-
-    def resultants(self, phi: npt.ArrayLike, delta: npt.ArrayLike) -> Resultants:
-        """Interpolated resultants ρ_∥, ρ_⊥, ρ_ω.
+    @classmethod
+    def build(cls, of: Any = "uniform", accuracy: float | None = None, **how: Any) -> Self:
+        """Tabulate, and measure how exact the result is.
 
         Parameters
         ----------
-        phi : array_like, radians, in [−π/2, π/2]
-        delta : array_like, dimensionless, in the table's range
-            Broadcast against ``phi``.
+        of : what it is a table of
+            A pressure law (:class:`puck_tables.Law`, or as :func:`puck_tables.law_of` takes it):
+            the friction resultants in full contact.  ``"stops"``: stops and the way to them.  A
+            :class:`puck_tables.SpeedLaw`, or a function from speeds in m/s to f: friction with a
+            coefficient that depends on the slip speed.  A pair of a pressure law and a height δ:
+            the friction of one puck, under uniform pressure also where part of its base lifts.
+        accuracy : float, optional
+            Largest error wanted, up to 0.01.  Resultants (dimensionless): from 1e-13, default
+            2e-11, under another law than uniform pressure 1e-11 and 1e-9.  Stops (in units of
+            Q/J, Q²/J and Q²/(J r)): from 1e-11, default 1e-10.  Speed (over the largest f): from
+            1e-13, default 1e-6.  One puck (of its friction ratios): from 5e-13, default 1e-9.
+        cells : int, optional
+            Resultants and stops: grid size by hand instead, cells on each side of each singular
+            line, from 4 (stops: 8) on.
+        top_speed, scale : float, optional
+            Speed: the fastest slip v + r|ω|, m/s, and the speed below which a function is nearly a
+            cubic; a function needs the first.
+        progress : callable (done, total), optional
 
         Returns
         -------
-        Resultants
-            Dimensionless arrays of the broadcast shape; ``accuracy`` says how exact.
+        Table
+            With ``accuracy`` measured at random and adversarial points.
 
         Raises
         ------
         InputError
-            If an argument is not finite or outside its range; nothing is extrapolated.
+            If it is none of these or a number is out of range.
+        AccuracyError
+            If the accuracy is out of reach.
 
         Notes
         -----
-        Cubic splines in φ times polynomials of degree 2 in δ where the nodes allow it, as those of
-        full contact do (:mod:`puck_tables.kernels.quadratic`), else bicubic
-        (:mod:`puck_tables.kernels.spline`).  The resultants: Salnikova, Treschev, Gallyamov 2012,
-        section 6.
+        The error falls like cells⁻⁴; under a friction law over the slip speed with order 4 and
+        more, 2 to 4 where the law itself has corners.
+
+        References
+        ----------
+        Salnikova, Treschev, Gallyamov 2012, sections 3, 5, 6 and 7.
 
         Examples
         --------
-        >>> from puck_tables import load_table
-        >>> float(load_table().resultants(0.0, 0.5).perpendicular.round(12))
-        0.125
+        >>> table = Table.build(accuracy=1e-6)
+        >>> table.grid, table.accuracy.worst <= 1e-6
+        ('69 phi x 4 delta nodes', True)
         """
-        from puck_tables.kernels.quadratic import fill_resultants_quadratic
-        from puck_tables.kernels.spline import fill_resultants
+        for kind in map(kind_named, KINDS) if cls is Table else (cls,):
+            if kind.is_of(of):
+                return cast(Self, kind.built(of, accuracy, **how))
+        raise InputError(
+            f"a table is built of a pressure law, a friction law over the slip speed or 'stops', "
+            f"not of {of!r}"
+        )
 
-        angle, height = broadcast(phi=checked_phi(phi), delta=self.checked_range(delta))
-        out = np.empty((3, angle.size))
-        phi_, delta_ = (np.ascontiguousarray(axis).reshape(-1) for axis in (angle, height))
-        if self.quadratic is not None:
-            fill_resultants_quadratic(self.quadratic, phi_, delta_, out)
-        else:
-            fill_resultants(self.coefficients, self.delta_axis.upper, phi_, delta_, out)
-        return Resultants(*(row.reshape(angle.shape) for row in out))
+    @classmethod
+    def load(cls, path: str | Path) -> Self:
+        """Read a table file.
+
+        Parameters
+        ----------
+        path : path of an HDF5 table file
+
+        Raises
+        ------
+        TableError
+            If the file is missing, not a table, of another kind or format, or altered: its digest
+            is checked at every load, and so are some of its values.
+
+        Examples
+        --------
+        >>> Table.load("/nowhere/table.h5")
+        Traceback (most recent call last):
+        ...
+        puck_tables.errors.TableError: there is no table file /nowhere/table.h5: build one with \
+'puck build-tables -o FILE', or leave --table out to use the tables that come along
+        """
+        return cls.read(file.read_content(path), str(path))
+
+    @classmethod
+    def shipped(cls, kind: str = "resultants") -> Self:
+        """A table that comes with the package.
+
+        Parameters
+        ----------
+        kind : ``"resultants"`` (uniform pressure) or ``"stops"``
+
+        Raises
+        ------
+        InputError
+            If none of that kind does.
+
+        Examples
+        --------
+        >>> Table.shipped().tolerance, Table.shipped("stops").tolerance
+        (2e-11, 1e-10)
+        """
+        return cast(Self, _shipped(kind if cls is Table else cls.kind))
+
+    @classmethod
+    def read(cls, content: bytes, source: str) -> Self:
+        """The table in the bytes of a file from a source; see :meth:`load`."""
+        kinds = tuple(KINDS) if cls is Table else (cls.kind,)
+        return cast(Self, file.decode(content, source, kinds))
+
+    def save(
+        self, path: str | Path, overwrite: bool = False, command: str = "library call"
+    ) -> Self:
+        """Write the table to an HDF5 file, read it back, and only then give it its name.
+
+        Parameters
+        ----------
+        path : path of the file
+        overwrite : whether an existing file may be replaced
+        command : how it was made, for the record
+
+        Returns
+        -------
+        Table
+            As loaded from what was written.
+
+        Raises
+        ------
+        OutputError
+            If the file exists (without ``overwrite``) or cannot be written, or the table has no
+            measured accuracy, a value that is not finite, or a law that no file can hold.
+        TableError
+            If what was written does not read back as the same table.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     saved = Table.build(accuracy=1e-6).save(folder + "/rough.h5")
+        >>> saved.metadata["pressure_law"]
+        'uniform'
+        """
+        return cast(Self, file.save(self, path, overwrite, command))
+
+    @abstractmethod
+    def validate(self, progress: Progress | None = None) -> CheckReport:
+        """Judge the table by truths that share no code with it.
+
+        The points are other ones at every call, and the bounds are the kind's own: what a file
+        says of itself is no yardstick.
+        """
+
+    # what a kind says
+
+    @classmethod
+    @abstractmethod
+    def is_of(cls, of: object) -> bool:
+        """Whether tables of this kind are built of such a thing."""
+
+    @classmethod
+    @abstractmethod
+    def built(cls, of: Any, accuracy: float | None, **how: Any) -> Self:
+        """Such a table, see :meth:`build`."""
+
+    @property
+    def pressure_law(self) -> str:
+        """The name of the pressure law."""
+        return "uniform"
+
+    @property
+    @abstractmethod
+    def grid(self) -> str:
+        """How many nodes it has, in words."""
+
+    @property
+    @abstractmethod
+    def valid_range(self) -> str:
+        """Where it holds, in words; beyond it look-ups are refused."""
+
+    @property
+    @abstractmethod
+    def axes(self) -> dict[str, Axis]:
+        """The axes of the functions, in their order."""
+
+    @property
+    def parameters(self) -> dict[str, int | float | str]:
+        """What determines the values besides the record: the values of ``entries``."""
+        return {}
+
+    @property
+    def curve(self) -> dict[str, Axis]:
+        """An argument and a function of it besides, or nothing."""
+        return {}
+
+    @property
+    @abstractmethod
+    def bounds(self) -> tuple[float, float, float]:
+        """Between which two numbers all values lie, and what no such table is better than."""
+
+    @classmethod
+    @abstractmethod
+    def shapes(cls, attributes: dict[str, Any]) -> dict[str, tuple[int, ...]]:
+        """Shapes of the arrays of a file with these attributes: axes, functions, curve."""
+
+    @classmethod
+    @abstractmethod
+    def fields(cls, attributes: dict[str, Any], arrays: dict[str, FloatArray]) -> dict[str, Any]:
+        """What the constructor needs besides the values, from a file.
+
+        Raises
+        ------
+        ValueError
+            If there is no such table.
+        """
+
+    @property
+    def unsaveable(self) -> str | None:
+        """Why no file can hold the table, in a sentence; None where one can."""
+        return None
+
+    @abstractmethod
+    def spot_checks(self) -> Iterator[tuple[FloatArray, float, str]]:
+        """Errors of some values, what is allowed, and against what: in a few milliseconds.
+
+        Run at every load, so that nothing compiled is called: that would take a second.
+        """
+
+
+def kind_named(name: str) -> type[Table]:
+    """The class of a kind.
+
+    Examples
+    --------
+    >>> kind_named("stops").__name__
+    'StopTable'
+    """
+    module, _, found = KINDS[name].partition(":")
+    kind: type[Table] = getattr(import_module(module), found)
+    return kind
+
+
+@cache
+def _shipped(kind: str) -> Table:
+    instance("kind", kind, str)
+    place = files("puck_tables.tables").joinpath(f"{kind}.h5")
+    if kind not in KINDS or not place.is_file():
+        raise InputError(f"no table of {kind!r} comes along: there are 'resultants' and 'stops'")
+    return kind_named(kind).read(place.read_bytes(), f"default table of {kind}")

@@ -15,9 +15,9 @@ from puck_tables.front import Way
 from puck_tables.io.dataset import Dataset, variable
 from puck_tables.motion.limits import limit_ratio
 from puck_tables.result import Result
-from puck_tables.similarity.file import load_stop_table
 from puck_tables.similarity.lookup import stops_kernel
-from puck_tables.table.file import load_table
+from puck_tables.similarity.stop_table import StopTable
+from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.tradeoff import resultant_ways, state_ways, stop_ways
 from puck_tables.tradeoff.contender import Contender, Ready
 from puck_tables.tradeoff.machine import Machine, measured_machine
@@ -114,7 +114,7 @@ def measure(quick: bool = False, progress: Progress | None = None) -> TradeOff:
     points = random_points(_QUICK_POINTS if quick else _POINTS)
     chosen = points.delta == 0.0
     flat = Points(points.phi[chosen], points.delta[chosen], points.resultants[:, chosen])
-    table, stop_table = load_table(), load_stop_table()
+    table, stop_table = ResultantTable.shipped(), StopTable.shipped()
     contenders: list[Contender] = [
         *resultant_ways.contenders(resultant_ways.Task(points, flat)),
         *stop_ways.contenders(stop_ways.Task(known_starts(), flat, table, stop_table)),
@@ -193,7 +193,7 @@ def _growth(largest: int) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Stops by look-up in chunks, from a thousand to 10^largest: ns for each and peak memory."""
     counts = np.array([10.0**power for power in range(3, largest + 1)])
     nanoseconds, peaks = np.empty(counts.size), np.empty(counts.size)
-    fill, coefficients = stops_kernel(_POWERS), load_stop_table().cut(_POWERS, _THINNING)
+    fill, coefficients = stops_kernel(_POWERS), StopTable.shipped().cut(_POWERS, _THINNING)
     fill(np.ones((6, 1)), coefficients, np.empty((3, 1)))  # compiled before the clock starts
     for n, count in enumerate(counts):
         tracemalloc.start()

@@ -17,9 +17,10 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables.contact.laws import law_of
 from puck_tables.kernels.compile import kernel
-from puck_tables.table.grid import DeltaAxis, PhiAxis
-from puck_tables.table.table import Table
+from puck_tables.table.resultant_table import HEIGHTS, ResultantTable
+from puck_tables.table.slip_axis import LawAxis
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -96,7 +97,7 @@ def pade_limit_ratio(a: float, b: float) -> float:
     return (b - 4.0 / 3.0) / (4.0 * a / 3.0 - 1.0) if a > 0.75 else float("inf")
 
 
-def as_table(model: str, a: float = 1.0, b: float = 8.0 / 3.0, size: int = 1025) -> Table:
+def as_table(model: str, a: float = 1.0, b: float = 8.0 / 3.0, cells: int = 512) -> ResultantTable:
     """A model as a table of resultants, the same at every δ: so the same loops integrate it.
 
     Parameters
@@ -108,12 +109,11 @@ def as_table(model: str, a: float = 1.0, b: float = 8.0 / 3.0, size: int = 1025)
     >>> float(as_table("limit surface").resultants(np.pi / 2, 0.0).spin.round(9))
     1.333333333
     """
-    axis = PhiAxis(size)
-    phi = axis.nodes()
-    rho = np.empty((3, size))
+    law = law_of("uniform")
+    phi = LawAxis(law.edges, cells).nodes()
+    rho = np.empty((3, phi.size))
     if model == "pade":
         fill_pade(phi, a, b, rho)
     else:
         fill_limit_surface(phi, rho)
-    delta_axis = DeltaAxis(4)
-    return Table(axis, delta_axis, np.repeat(rho.T[:, None, :], delta_axis.size, axis=1))
+    return ResultantTable(np.repeat(rho.T[:, None, :], HEIGHTS, axis=1), law=law)

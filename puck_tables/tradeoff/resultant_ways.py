@@ -12,18 +12,22 @@ import numpy.typing as npt
 
 from puck_tables.contact import closed_form, quadrature
 from puck_tables.contact.integrals import slip_direction
+from puck_tables.contact.laws import law_of
 from puck_tables.contact.resultants import moment_balance
 from puck_tables.kernels.closed_form import _fill as fill_closed_form
-from puck_tables.kernels.quadratic import fill_resultants_quadratic
-from puck_tables.kernels.spline import fill_resultants
-from puck_tables.table.build import tabulate
-from puck_tables.table.grid import DeltaAxis, PhiAxis
-from puck_tables.table.table import Table
+from puck_tables.kernels.quadratic import fill_resultants
+from puck_tables.table.resultant_check import tabulate
+from puck_tables.table.resultant_table import ResultantTable
+from puck_tables.tradeoff.bicubic import (
+    fill_graded,
+    fill_uniform,
+    graded_coefficients,
+    uniform_coefficients,
+)
 from puck_tables.tradeoff.contender import Contender, Ready
 from puck_tables.tradeoff.machine import HARD
 from puck_tables.tradeoff.models import PADE_MATCHED, fill_limit_surface, fill_pade, fitted_pade
 from puck_tables.tradeoff.truth import Points
-from puck_tables.tradeoff.uniform import fill_uniform, uniform_coefficients
 
 FloatArray = npt.NDArray[np.float64]
 Fill = Callable[[FloatArray, FloatArray, FloatArray], object]  # phi, delta, out (3, n)
@@ -67,22 +71,27 @@ class Task:
         return replace(self.ready(_quadrature, items=64), place_error=self.truth.errors(judged))
 
 
-def _tabulated(size: int) -> Table:
-    return tabulate(PhiAxis(size), DeltaAxis(4))
+def _tabulated(size: int) -> ResultantTable:
+    return tabulate(law_of("uniform"), size // 2)
 
 
-def _quadratic(size: int, dtype: type) -> FloatArray:
-    coefficients = _tabulated(size).quadratic
-    assert coefficients is not None
-    return coefficients.astype(dtype)
+_SIDES = np.array(_tabulated(9).axis.sides)
+
+
+def _quadratic_columns(size: int, dtype: type) -> FloatArray:
+    return _tabulated(size).columns.astype(dtype)
+
+
+def _quadratic(c: FloatArray, phi: FloatArray, delta: FloatArray, out: FloatArray) -> None:
+    fill_resultants(c, _SIDES, phi, delta, out)
 
 
 def _bicubic_coefficients(size: int) -> FloatArray:
-    return _tabulated(size).coefficients
+    return graded_coefficients(_tabulated(size))
 
 
 def _bicubic(c: FloatArray, phi: FloatArray, delta: FloatArray, out: FloatArray) -> None:
-    fill_resultants(c, 1.0, phi, delta, out)
+    fill_graded(c, 1.0, phi, delta, out)
 
 
 def _uniform(c: FloatArray, phi: FloatArray, delta: FloatArray, out: FloatArray) -> None:
@@ -115,14 +124,14 @@ def contenders(task: Task) -> Iterator[Contender]:
     yield way("closed forms, plain NumPy", "", nothing, lambda _: task.ready(_plain_closed_form))
     for size in _NODES:
         yield way(
-            QUADRATIC, f"nodes={size}", partial(_quadratic, size, np.float64),
-            lambda c: task.ready(partial(fill_resultants_quadratic, c), c.nbytes,
+            QUADRATIC, f"nodes={size}", partial(_quadratic_columns, size, np.float64),
+            lambda c: task.ready(partial(_quadratic, c), c.nbytes,
                                  work=_PLACE_WORK + 50.0, traffic=160.0),
         )  # fmt: skip
     for size in (257, 991):
         yield way(
-            QUADRATIC + ", float32", f"nodes={size}", partial(_quadratic, size, np.float32),
-            lambda c: task.ready(partial(fill_resultants_quadratic, c), c.nbytes,
+            QUADRATIC + ", float32", f"nodes={size}", partial(_quadratic_columns, size, np.float32),
+            lambda c: task.ready(partial(_quadratic, c), c.nbytes,
                                  work=_PLACE_WORK + 50.0, traffic=80.0),
         )  # fmt: skip
     for size in (33, 129, 513, 991):

@@ -9,13 +9,12 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.front import ADAPTIVE_EXACT, ADAPTIVE_TABLE, LOOK_UP
-from puck_tables.kernels.spline import cut as cut_table
 from puck_tables.motion.equations import SIZE
 from puck_tables.motion.limits import log_ratio
 from puck_tables.motion.path import integrate, states_at
 from puck_tables.motion.steppers import DORMAND_PRINCE
 from puck_tables.similarity.stop_table import StopTable
-from puck_tables.table.table import Table
+from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.tradeoff.contender import Contender, Ready
 from puck_tables.tradeoff.rivals import rates
 
@@ -36,7 +35,7 @@ class Task:
     moment; the look-up shares nothing with it but the stops its table was built from.
     """
 
-    def __init__(self, table: Table, stops: StopTable) -> None:
+    def __init__(self, table: ResultantTable, stops: StopTable) -> None:
         rng = np.random.default_rng(5)
         self.table, self.stops = table, stops
         angle = np.concatenate([rng.uniform(0.05, 1.5, _PUCKS - 2), [1e-3, 1.57]])
@@ -50,9 +49,7 @@ class Task:
 
     def integrated(self, local: float, exact: bool) -> Run:
         """Step ends of every puck, and from them every moment."""
-        cut = np.empty(0 if exact else 6 * self.table.coefficients.shape[2])
-        if not exact:
-            cut_table(self.table.coefficients, DELTA, cut)
+        cut = np.empty(0) if exact else self.table.section(DELTA)
         z, y, result = np.empty(20_000), np.empty((20_000, SIZE)), np.empty(SIZE + 1)
 
         def run() -> FloatArray:
@@ -126,7 +123,7 @@ def contenders(task: Task) -> Iterator[Contender]:
     yield way(LOOK_UP, "", task.looked_up, sum(table.nbytes for table in tables))
     for exact, method in ((False, ADAPTIVE_TABLE), (True, ADAPTIVE_EXACT)):
         for local in _LOCAL:
-            size = 0 if exact else task.table.coefficients.nbytes
+            size = 0 if exact else task.table.columns.nbytes
             yield way(
                 method, f"local={local:g}",
                 partial(task.integrated, local, exact), size,

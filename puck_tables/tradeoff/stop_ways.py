@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.front import ADAPTIVE_EXACT, ADAPTIVE_TABLE, LOOK_UP, RK4_EXACT, RK4_TABLE
-from puck_tables.kernels.spline import cut as cut_table
+from puck_tables.kernels.quadratic import cut as cut_table
 from puck_tables.motion.bulk import fill_stops
 from puck_tables.motion.equations import SIZE
 from puck_tables.motion.limits import log_ratio
@@ -17,7 +17,7 @@ from puck_tables.motion.path import integrate
 from puck_tables.motion.steppers import DORMAND_PRINCE, RK4
 from puck_tables.similarity.lookup import row_width, stops_kernel
 from puck_tables.similarity.stop_table import StopTable
-from puck_tables.table.table import Table
+from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.tradeoff.contender import Contender, Ready
 from puck_tables.tradeoff.machine import HARD
 from puck_tables.tradeoff.models import PADE_MATCHED, as_table, fitted_pade
@@ -44,7 +44,9 @@ _STEP_LIMIT = 100_000
 class Task:
     """Launches: scattered ones for the clock, those of the truth for the error."""
 
-    def __init__(self, truth: Starts, flat: Points, table: Table, stops: StopTable) -> None:
+    def __init__(
+        self, truth: Starts, flat: Points, table: ResultantTable, stops: StopTable
+    ) -> None:
         rng = np.random.default_rng(11)
         self.truth, self.flat = truth, flat
         self.table, self.stops = table, stops
@@ -87,7 +89,7 @@ def contenders(task: Task) -> Iterator[Contender]:
 
 
 def _fresh_cut(stops: StopTable, powers: int, thinning: int, dtype: type) -> FloatArray:
-    return StopTable(stops.axis, stops.values).cut(powers, thinning).astype(dtype)
+    return StopTable(stops.values).cut(powers, thinning).astype(dtype)
 
 
 def _looked_up(task: Task, powers: int, coefficients: object) -> Ready:
@@ -108,7 +110,7 @@ def _integrations(
     task: Task, method: str, setting: str, steps: float, local: float, exact: bool
 ) -> Iterator[Contender]:
     def coefficients() -> FloatArray:
-        return np.empty((2, 0, 0, 3)) if exact else task.table.coefficients
+        return np.empty((2, 0, 5)) if exact else task.table.columns
 
     def items_for(expensive: float) -> int:
         return int(np.clip(2000.0 / expensive, 8.0, 1000.0))
@@ -122,7 +124,7 @@ def _integrations(
         def run(which: FloatArray) -> FloatArray:
             out = np.empty((6, which.shape[1]))
             status = np.empty(which.shape[1], np.int8)
-            fill_stops(which, DORMAND_PRINCE, steps, local, built, 1.0, out, status)
+            fill_stops(which, DORMAND_PRINCE, steps, local, built, out, status)
             return out
 
         errors = task.truth.errors(run(task.judged)[:3])
@@ -132,7 +134,7 @@ def _integrations(
         assert isinstance(built, np.ndarray)
         tableau = RK4 if steps else DORMAND_PRINCE
         z, y, result = np.empty(20_000), np.empty((20_000, SIZE)), np.empty(SIZE + 1)
-        height, cut = -1.0, np.empty(0 if exact else 6 * built.shape[2])
+        height, cut = -1.0, np.empty(0 if exact else 6 * built.shape[1])
 
         def run(which: FloatArray) -> FloatArray:
             nonlocal height
@@ -172,14 +174,14 @@ def _outsiders(task: Task) -> Iterator[Contender]:
         )  # fmt: skip
     yield way("patches and scipy RK45", f"patches={PATCH_GRID[0]}x{PATCH_GRID[1]}", patch_script)
 
-    def modelled(method: str, build: Callable[[], Table]) -> Contender:
+    def modelled(method: str, build: Callable[[], ResultantTable]) -> Contender:
         def ready(table: object) -> Ready:
-            assert isinstance(table, Table)
+            assert isinstance(table, ResultantTable)
             launches = np.ascontiguousarray(task.same_height[:, :500])
 
             def run(which: FloatArray) -> FloatArray:
                 out, status = np.empty((6, which.shape[1])), np.empty(which.shape[1], np.int8)
-                fill_stops(which, RK4, 64.0, 1.0, table.coefficients, 1.0, out, status)
+                fill_stops(which, RK4, 64.0, 1.0, table.columns, out, status)
                 return out[:3]
 
             errors = task.flat_starts.errors(run(task.flat_starts.launches()))

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from puck_tables import load_stop_table
+from puck_tables import Table
 from puck_tables.front import shipped_front
 from puck_tables.similarity.exact import exact_stops
 from puck_tables.similarity.lookup import stops_kernel
@@ -35,7 +35,7 @@ def launches(count: int, rng: np.random.Generator) -> FloatArray:
 @pytest.mark.parametrize(("powers", "thinning"), CUTS)
 def test_look_up(measure: Any, rng: np.random.Generator, powers: int, thinning: int) -> None:
     columns, out = launches(LAUNCHES, rng), np.empty((3, LAUNCHES))
-    fill, coefficients = stops_kernel(powers), load_stop_table().cut(powers, thinning)
+    fill, coefficients = stops_kernel(powers), Table.shipped("stops").cut(powers, thinning)
     fill(columns, coefficients, out)
     some = columns[:, :500]
     speed = np.hypot(some[0], some[1])
@@ -52,7 +52,7 @@ def test_look_up(measure: Any, rng: np.random.Generator, powers: int, thinning: 
 def test_growth(measure: Any, rng: np.random.Generator, count: int) -> None:
     chunk = min(count, 10_000)
     columns, out = launches(chunk, rng), np.empty((3, chunk))
-    fill, coefficients = stops_kernel(6), load_stop_table().cut(6, 2)
+    fill, coefficients = stops_kernel(6), Table.shipped("stops").cut(6, 2)
 
     def sweep() -> None:
         for _ in range(count // chunk):

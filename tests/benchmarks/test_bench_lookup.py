@@ -19,9 +19,9 @@ from puck_tables.contact import closed_form, quadrature
 from puck_tables.contact.integrals import slip_direction
 from puck_tables.contact.resultants import moment_balance
 from puck_tables.kernels.closed_form import _fill
-from puck_tables.kernels.quadratic import fill_resultants_quadratic
-from puck_tables.kernels.spline import fill_resultants
-from puck_tables.table.table import Table
+from puck_tables.kernels.quadratic import fill_resultants
+from puck_tables.table.resultant_table import ResultantTable
+from puck_tables.tradeoff.bicubic import fill_graded, graded_coefficients
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -68,34 +68,39 @@ def run(
     measure(name, function, items=POINTS, unit="point", error=error)
 
 
-def test_table_kernel(measure: Any, table: Table, points: tuple[FloatArray, FloatArray]) -> None:
+def test_table_kernel(
+    measure: Any, table: ResultantTable, points: tuple[FloatArray, FloatArray]
+) -> None:
     out = np.empty((3, POINTS))
-    assert table.quadratic is not None
-    coefficients = table.quadratic
-    fill_resultants_quadratic(coefficients, *points, out)
+    columns, sides = table.columns, np.array(table.axis.sides)
+    fill_resultants(columns, sides, *points, out)
     error = against_closed_form(out, points)
     run(
         measure,
         "default table, kernel",
-        lambda: fill_resultants_quadratic(coefficients, *points, out),
+        lambda: fill_resultants(columns, sides, *points, out),
         error,
     )
 
 
-def test_table_bicubic(measure: Any, table: Table, points: tuple[FloatArray, FloatArray]) -> None:
+def test_table_bicubic(
+    measure: Any, table: ResultantTable, points: tuple[FloatArray, FloatArray]
+) -> None:
     out = np.empty((3, POINTS))
-    upper = table.delta_axis.upper
-    fill_resultants(table.coefficients, upper, *points, out)
+    coefficients = graded_coefficients(table)
+    fill_graded(coefficients, 1.0, *points, out)
     error = against_closed_form(out, points)
     run(
         measure,
         "the same as a bicubic, kernel",
-        lambda: fill_resultants(table.coefficients, upper, *points, out),
+        lambda: fill_graded(coefficients, 1.0, *points, out),
         error,
     )
 
 
-def test_table_public(measure: Any, table: Table, points: tuple[FloatArray, FloatArray]) -> None:
+def test_table_public(
+    measure: Any, table: ResultantTable, points: tuple[FloatArray, FloatArray]
+) -> None:
     error = against_closed_form(np.stack(table.resultants(*points)), points)
     run(measure, "default table, Table.resultants", lambda: table.resultants(*points), error)
 

@@ -11,7 +11,7 @@ import numpy.typing as npt
 import pytest
 
 import puck_tables
-from puck_tables import load_stop_table, load_table
+from puck_tables import Table
 from puck_tables.similarity.curve_lookup import STATE_ROWS, fill_states
 from puck_tables.similarity.lookup import STOP_POWERS, stops_kernel
 from puck_tables.solvers import LookUp, solver_for
@@ -57,7 +57,7 @@ def largest_error(stops: FloatArray, launches: FloatArray, truth: FloatArray) ->
 
 @STOPS
 def test_look_up(measure: Any, launches: FloatArray, truth: FloatArray) -> None:
-    table, fill = load_stop_table().cut(), stops_kernel(STOP_POWERS)
+    table, fill = Table.shipped("stops").cut(), stops_kernel(STOP_POWERS)
     out = np.empty((3, MANY))
     fill(launches, table, out)
     measure(
@@ -71,7 +71,7 @@ def test_look_up(measure: Any, launches: FloatArray, truth: FloatArray) -> None:
 
 @STOPS
 def test_look_up_two_threads(measure: Any, launches: FloatArray, truth: FloatArray) -> None:
-    table, fill = load_stop_table().cut(), stops_kernel(STOP_POWERS)
+    table, fill = Table.shipped("stops").cut(), stops_kernel(STOP_POWERS)
     halves = [np.ascontiguousarray(part) for part in np.split(launches, 2, axis=1)]
     outs = [np.empty((3, MANY // 2)) for _ in halves]
     with ThreadPoolExecutor(2) as pool:
@@ -86,7 +86,7 @@ def test_look_up_two_threads(measure: Any, launches: FloatArray, truth: FloatArr
 
 @STOPS
 def test_look_up_all(measure: Any, launches: FloatArray, truth: FloatArray) -> None:
-    solver = LookUp(load_stop_table())
+    solver = LookUp(Table.shipped("stops"))
     part = np.ascontiguousarray(launches[:, : 1 << 16])
     error = largest_error(solver.all(part)[0], launches, truth)
     measure(
@@ -117,7 +117,7 @@ def test_public_stop(measure: Any, launches: FloatArray, truth: FloatArray) -> N
 
 @STOPS
 def test_integrated(measure: Any, launches: FloatArray, truth: FloatArray) -> None:
-    solver = solver_for(ACCURACY, load_table())
+    solver = solver_for(ACCURACY, Table.shipped())
     few = np.ascontiguousarray(launches[:, :FEW])
     measure(
         "rival: integrated, RK4 and the table of resultants",
@@ -131,7 +131,7 @@ def test_integrated(measure: Any, launches: FloatArray, truth: FloatArray) -> No
 @STATES
 @pytest.mark.parametrize("order", ["puck by puck", "in random order"])
 def test_states(measure: Any, launches: FloatArray, order: str) -> None:
-    table = load_stop_table()
+    table = Table.shipped("stops")
     few = np.ascontiguousarray(launches[:, :FEW])
     known = table.known(few)
     rng = np.random.default_rng(3)
@@ -159,7 +159,7 @@ def test_frames(measure: Any, frames: int) -> None:
     times = np.linspace(0.0, 3.9, frames)
     measure(
         f"{name}, {frames} times",
-        (lambda: puck_tables.flow((1.0, 0.0), 5.0, times))
+        (lambda: puck_tables.states((1.0, 0.0), 5.0, times))
         if frames > 10_000
         else (lambda: puck_tables.simulate((1.0, 0.0), 5.0, times=times)),
         items=frames,
@@ -172,6 +172,6 @@ def test_map(measure: Any, tmp_path: Path) -> None:
     spin, speed = np.linspace(-5.0, 5.0, 1000), np.linspace(0.0, 2.0, 1000)
 
     def map_to_file() -> None:
-        puck_tables.save_map(puck_tables.sweep(spin, speed), tmp_path / "map.h5", overwrite=True)
+        puck_tables.Puck.similar().sweep(spin, speed).save(tmp_path / "map.h5", overwrite=True)
 
     measure("sweep and save_map, 1000 x 1000", map_to_file, unit="map")

@@ -28,13 +28,12 @@ from scipy.integrate import solve_ivp
 
 import puck_tables
 from puck_tables.kernels.closed_form import friction_ratios
-from puck_tables.kernels.spline import cut as cut_table
 from puck_tables.motion.equations import SIZE, T, X, Y
 from puck_tables.motion.limits import log_ratio
 from puck_tables.motion.path import integrate
 from puck_tables.motion.steppers import DORMAND_PRINCE
 from puck_tables.solvers import Integration, solver_for
-from puck_tables.table.table import Table
+from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.tradeoff.rivals import patch_script
 
 FloatArray = npt.NDArray[np.float64]
@@ -202,7 +201,7 @@ def test_stop_kernel(measure: Any, launches: FloatArray, way: str) -> None:
 
 
 @ONE_STOP
-def test_stop_public(measure: Any, table: Table, launches: FloatArray) -> None:
+def test_stop_public(measure: Any, table: ResultantTable, launches: FloatArray) -> None:
     velocity, spin = launches[:, :2].copy(), launches[:, 2].copy()
 
     def stop() -> puck_tables.Stops:
@@ -220,7 +219,7 @@ def test_stop_public(measure: Any, table: Table, launches: FloatArray) -> None:
 
 @ONE_STOP
 @pytest.mark.parametrize("given", [True, False], ids=["table_given", "table_read"])
-def test_stop_public_single(measure: Any, table: Table, given: bool) -> None:
+def test_stop_public_single(measure: Any, table: ResultantTable, given: bool) -> None:
     chosen = table if given else None
 
     def stop() -> puck_tables.Stops:
@@ -283,11 +282,10 @@ TIGHT_TOL = 2e-10  # with a table of one's own its error counts five times
 
 @TIGHT
 @pytest.mark.parametrize("source", ["table", "closed forms"])
-def test_tight_integrator(measure: Any, table: Table, source: str) -> None:
+def test_tight_integrator(measure: Any, table: ResultantTable, source: str) -> None:
     cut = NOTHING
     if source == "table":
-        cut = np.empty(6 * table.coefficients.shape[2])
-        cut_table(table.coefficients, DELTA / table.delta_axis.upper, cut)
+        cut = table.section(DELTA)
     s, y, result = np.empty(20_000), np.empty((20_000, SIZE)), np.empty(SIZE + 1)
     u, q = log_ratio(math.hypot(*LAUNCH[:2]), abs(LAUNCH[2])), math.hypot(*LAUNCH)
 
@@ -305,7 +303,7 @@ def test_tight_integrator(measure: Any, table: Table, source: str) -> None:
 
 @TIGHT
 @pytest.mark.parametrize("source", ["table", "closed forms"])
-def test_tight_simulate(measure: Any, table: Table, source: str) -> None:
+def test_tight_simulate(measure: Any, table: ResultantTable, source: str) -> None:
     exact = source != "table"
 
     def run() -> puck_tables.Trajectory:

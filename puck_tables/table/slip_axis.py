@@ -1,4 +1,4 @@
-"""Slip axis of a table under any pressure law: regions from the law, nodes crowded at their edges.
+"""The axis of slip angles: cut at the singular lines of a pressure law, nodes crowded there.
 
 The instantaneous centre of rotation crosses an edge of the load, at radius e, where cot φ = e; the
 resultants are singular on these lines and analytic between them.  Every interval between two lines
@@ -6,7 +6,9 @@ is halved, so that each *side* of the axis runs from one singular line φ_e outw
 
     tan(φ − φ_e) = ± E ξ⁴,   ξ = i/n from the line,   ξ = 1 at φ = 0, π/2 or half way.
 
-With the one edge e = 1 these are the two sides of φ = π/4 of :mod:`puck_tables.table.grid`.
+Uniform pressure has the one edge e = 1, the two sides of φ = π/4.  There the resultants behave like
+x² ln|x|: the fourth power crowds the nodes so that a cubic spline in ξ keeps order 4; a square is
+not enough (its slope tends to 4 only like 4 − 1/ln n), a cube needs a cube root.
 """
 
 from __future__ import annotations
@@ -19,10 +21,10 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.errors import InputError
-from puck_tables.table.grid import GRADING_POWER
 
 FloatArray = npt.NDArray[np.float64]
 
+GRADING_POWER = 4
 MAX_CELLS = 1 << 16
 
 
@@ -36,19 +38,25 @@ class Side(NamedTuple):
 
 @dataclass(frozen=True)
 class LawAxis:
-    """The slip angles of a table under a law with these edges.
+    """The slip angles of a table under a law with these edges, ascending from 0 to π/2.
 
     Parameters
     ----------
     edges : tuple of float
-        Radii of the edges of the load, ascending, the last 1.
+        Radii of the edges of the load, ascending, the last 1; more generally cot φ of the lines.
     cells : int
         Cells on each side of each singular line, at least 4.
 
+    Raises
+    ------
+    InputError
+        If there are too few or too many.
+
     Examples
     --------
-    >>> [round(side.end, 4) for side in LawAxis((0.5, 1.0), 8).sides]
-    [0.0, 0.9463, 0.9463, 1.5708]
+    >>> axis = LawAxis((1.0,), 4)
+    >>> axis.size, axis.nodes().round(4).tolist()[:4]
+    (9, [0.0, 0.479, 0.723, 0.7815])
     """
 
     edges: tuple[float, ...]
@@ -63,9 +71,33 @@ class LawAxis:
         """The sides in the order of φ: below and above each line."""
         return sides_of(self.edges[::-1])
 
-    def phi(self) -> FloatArray:
-        """φ at the nodes, (sides, cells + 1), from each line to the end of its side."""
-        return graded(self.sides, np.arange(self.cells + 1) / self.cells)
+    @property
+    def size(self) -> int:
+        """Number of nodes; neighbouring sides share one."""
+        return 2 * len(self.edges) * self.cells + 1
+
+    def nodes(self) -> FloatArray:
+        """φ at the nodes, radians; 0, the lines and π/2 exactly."""
+        by_side = graded(self.sides, np.arange(self.cells + 1) / self.cells)
+        by_side[::2] = by_side[::2, ::-1]
+        return np.append(by_side[:, :-1], by_side[-1, -1])
+
+    @property
+    def numbers(self) -> npt.NDArray[np.int64]:
+        """Numbers of the nodes from each line outwards, (sides, cells + 1)."""
+        first = self.cells * np.arange(2 * len(self.edges))[:, None]
+        outwards = np.arange(self.cells + 1)
+        return first + np.where(np.arange(len(first))[:, None] % 2, outwards, outwards[::-1])
+
+    def by_side(self, values: FloatArray) -> FloatArray:
+        """Values at the nodes (size, …) from each line outwards, (sides, cells + 1, …)."""
+        return values[self.numbers]
+
+    def joined(self, by_side: FloatArray) -> FloatArray:
+        """The way back."""
+        values = np.empty((self.size, *by_side.shape[2:]))
+        values[self.numbers] = by_side
+        return values
 
 
 def sides_of(cotangents: Sequence[float], ends_too: bool = False) -> tuple[Side, ...]:

@@ -1,0 +1,125 @@
+"""Where the friction of one puck is singular over its slip angle, and where it is not known.
+
+The lines are those where the instantaneous centre of rotation crosses an edge of the load,
+tan φ = 1/edge, and where contact opens, δ_c(φ) = δ, across which partial and full contact part like
+x^(5/2).  Between them the friction ratios are analytic.  (That in partial contact the centre of
+rotation crosses the edge of the loaded part is not felt: the pressure is zero there.)
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from puck_tables.contact import one_sided
+from puck_tables.contact.laws import Law
+from puck_tables.contact.opening import critical_delta
+from puck_tables.errors import ContactError
+
+_SAME_LINE = 1e-12  # radians
+_SHARP_DELTA = 3.6
+
+
+def lines_of(law: Law, delta: float) -> tuple[float, ...]:
+    """The cotangents of the lines of a puck between which splines lie, ascending.
+
+    Besides the singular ones that where a puck next to tipping bends most.
+
+    Raises
+    ------
+    InputError, ContactError
+        If the height is out of range.
+
+    Examples
+    --------
+    >>> from puck_tables.contact.laws import law_of
+    >>> lines_of(law_of("annulus:0.8"), 0.5)
+    (0.8, 1.0)
+    """
+    singular = singular_lines(law, delta)
+    bend = _sharpest_bend(delta) if law.can_lift else 0.0
+    return tuple(sorted([*singular, *([1.0 / math.tan(bend)] if bend > 0.0 else [])]))
+
+
+def singular_lines(law: Law, delta: float) -> tuple[float, ...]:
+    """Those of them across which the ratios are not analytic, found at once.
+
+    Raises
+    ------
+    InputError, ContactError
+        If the height is out of range.
+
+    Examples
+    --------
+    >>> from puck_tables.contact.laws import law_of
+    >>> [round(line, 6) for line in singular_lines(law_of("uniform"), 2.0)]
+    [0.566906, 1.0]
+    """
+    refuse_height(law, delta)
+    opening = opening_angle(delta) if law.can_lift else 0.0
+    if opening == 0.0 or any(abs(opening - math.atan2(1.0, e)) <= _SAME_LINE for e in law.edges):
+        return law.edges
+    return tuple(sorted([*law.edges, 1.0 / math.tan(opening)]))
+
+
+def refuse_height(law: Law, delta: float) -> None:
+    """Refuse a height at which the friction is not known at every slip angle.
+
+    Raises
+    ------
+    InputError
+        If it is not a height, or beyond full contact under another law than uniform pressure.
+    ContactError
+        If the puck tips, or its contact is not determined.
+
+    Examples
+    --------
+    >>> from puck_tables.contact.laws import law_of
+    >>> refuse_height(law_of("ring"), 2.0)
+    """
+    law.friction(0.0, delta)
+    if law.can_lift and delta > one_sided.FOLD_DELTA:
+        raise ContactError(
+            f"delta = {delta:g}: beyond {one_sided.FOLD_DELTA:g} the balance of moments has more "
+            "than one solution just below phi = pi/4, and the motion is not determined; choose a "
+            "lower or broader puck or less friction"
+        )
+
+
+def opening_angle(delta: float) -> float:
+    """The slip angle φ_c with δ_c(φ_c) = δ, up to which part of the base is lifted; 0 if δ ≤ 1.
+
+    Examples
+    --------
+    >>> round(opening_angle(1.15913851), 6)  # π/4
+    0.785398
+    """
+    if delta <= 1.0:
+        return 0.0
+    low, high = 0.0, 0.5 * math.pi
+    while True:
+        middle = 0.5 * (low + high)
+        if not low < middle < high:
+            return high
+        if critical_delta(middle) < delta:
+            low = middle
+        else:
+            high = middle
+
+
+def _sharpest_bend(delta: float) -> float:
+    """Where just below π/4 the ratios of a puck next to tipping bend most; 0 for lower ones.
+
+    They are analytic there, but towards the fold of the balance (δ = 3.9638) on a scale that
+    shrinks to nothing.  Nodes crowded there make the spline at δ = 3.9 240 times as good.
+    """
+    if delta < _SHARP_DELTA:
+        return 0.0
+    low, high = 0.25 * math.pi - 0.1, 0.25 * math.pi - 0.002
+    while high - low > 1e-6:
+        phi = np.linspace(low, high, 33)
+        rho = one_sided.resultants(phi, delta)
+        n = int(np.abs(np.diff(rho.perpendicular / rho.parallel, 2)).argmax())
+        low, high = float(phi[max(n - 2, 0)]), float(phi[min(n + 3, 32)])
+    return low

@@ -1,0 +1,172 @@
+"""Bicubic tables over φ and δ: what the polynomials of the height and the graded axis are worth."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables.contact.closed_form import by_closed_form
+from puck_tables.kernels.compile import allocating, inlined, kernel
+from puck_tables.kernels.spline import basis, cell_at, side_and_eta
+from puck_tables.table.fit import clamped_coefficients
+from puck_tables.table.resultant_table import ResultantTable
+
+FloatArray = npt.NDArray[np.float64]
+
+_BLOCK = 128
+
+
+def graded_coefficients(table: ResultantTable) -> FloatArray:
+    """B-spline weights over 36 of the friction ratios at the nodes of a table with one edge.
+
+    Examples
+    --------
+    >>> graded_coefficients(ResultantTable.shipped()).shape[::3]
+    (2, 3)
+    """
+    sides = np.moveaxis(table.axis.by_side(_ratios(table.values)), 0, 1)
+    along_delta = not_a_knot_coefficients(np.moveaxis(clamped_coefficients(sides), 2, 0))
+    return np.ascontiguousarray(along_delta.transpose(2, 0, 1, 3)) / 36.0
+
+
+def _ratios(resultants: FloatArray) -> FloatArray:
+    parallel = resultants[..., :1]
+    return np.concatenate([1.0 / parallel, resultants[..., 1:] / parallel], axis=-1)
+
+
+def not_a_knot_coefficients(values: FloatArray) -> FloatArray:
+    """Coefficients of the uniform cubic spline with not-a-knot ends, along axis 0.
+
+    Parameters
+    ----------
+    values : array (n + 1, …), n ≥ 3
+
+    Returns
+    -------
+    array (n + 3, …); cubics are reproduced exactly
+
+    Examples
+    --------
+    >>> c = not_a_knot_coefficients(np.arange(4.0) ** 3)
+    >>> float(((c[1] + 23 * c[2] + 23 * c[3] + c[4]) / 48).round(12))  # at 1.5
+    3.375
+    """
+    size = len(values)
+    system, right = np.zeros((size + 2, size + 2)), np.zeros((size + 2, *values.shape[1:]))
+    rows = np.arange(size)
+    for offset, weight in enumerate((1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0)):
+        system[rows + 1, rows + offset] = weight
+    system[0, :5] = system[-1, -5:] = (1.0, -4.0, 6.0, -4.0, 1.0)
+    right[1:-1] = values
+    flat = np.linalg.solve(system, right.reshape(size + 2, -1))
+    return np.asarray(flat, dtype=np.float64).reshape(right.shape)
+
+
+def uniform_coefficients(n_phi: int, n_delta: int = 4) -> FloatArray:
+    """B-spline weights over 36 of the friction ratios on [0, π/2] × [0, 1].
+
+    Parameters
+    ----------
+    n_phi, n_delta : numbers of nodes
+
+    Returns
+    -------
+    array (n_delta + 2, n_phi + 2, 3)
+
+    Examples
+    --------
+    >>> uniform_coefficients(9).shape
+    (6, 11, 3)
+    """
+    phi, delta = np.linspace(0.0, 0.5 * np.pi, n_phi), np.linspace(0.0, 1.0, n_delta)
+    rho = by_closed_form(phi[:, None], delta)
+    along_phi = clamped_coefficients(_ratios(np.stack(rho, axis=-1)))
+    along_delta = not_a_knot_coefficients(np.moveaxis(along_phi, 1, 0))
+    return np.ascontiguousarray(along_delta) / 36.0
+
+
+@kernel
+def fill_uniform(
+    c: FloatArray, phi: FloatArray, delta: FloatArray, sums: FloatArray, out: FloatArray
+) -> None:
+    """ρ_∥, ρ_⊥, ρ_ω at points with 0 ≤ φ ≤ π/2 into ``out`` (3, n); ``sums`` (3,) is work space."""
+    cells_delta, cells_phi = c.shape[0] - 3, c.shape[1] - 3
+    scale = cells_phi / (0.5 * np.pi)
+    for n in range(phi.size):
+        p, q = phi[n] * scale, delta[n] * cells_delta
+        i, j = cell_at(p, cells_phi), cell_at(q, cells_delta)
+        a, b, d, e = basis(p - i)
+        v = basis(q - j)
+        for f in range(3):
+            sums[f] = 0.0
+            for m in range(4):
+                sums[f] += v[m] * (
+                    a * c[j + m, i, f]
+                    + b * c[j + m, i + 1, f]
+                    + d * c[j + m, i + 2, f]
+                    + e * c[j + m, i + 3, f]
+                )
+        out[0, n] = 1.0 / sums[0]
+        out[1, n] = sums[1] * out[0, n]
+        out[2, n] = sums[2] * out[0, n]
+
+
+@inlined
+def _row(
+    c: FloatArray, k: np.uint64, w0: float, w1: float, w2: float, w3: float
+) -> tuple[float, float, float]:
+    """Three functions at once from four neighbouring coefficients each."""
+    return (
+        w0 * c[k] + w1 * c[k + 3] + w2 * c[k + 6] + w3 * c[k + 9],
+        w0 * c[k + 1] + w1 * c[k + 4] + w2 * c[k + 7] + w3 * c[k + 10],
+        w0 * c[k + 2] + w1 * c[k + 5] + w2 * c[k + 8] + w3 * c[k + 11],
+    )
+
+
+@allocating
+def fill_graded(
+    coefficients: FloatArray, delta_max: float, phi: FloatArray, delta: FloatArray, out: FloatArray
+) -> None:
+    """ρ_∥, ρ_⊥, ρ_ω at flat arrays of points into ``out`` (3, n); arguments already checked.
+
+    In blocks of three loops: where and with which weights (vectorised), the sums (short dependency
+    chains: one point does not wait for another), the division (vectorised).
+    """
+    n_delta, n_eta = coefficients.shape[1] - 3, coefficients.shape[2] - 3
+    c = coefficients.reshape(-1)
+    row = 3 * (n_eta + 3)
+    step = np.uint64(row)
+    first = np.empty(_BLOCK, np.int64)
+    w = np.empty((8, _BLOCK))
+    w0, w1, w2, w3 = w[0], w[1], w[2], w[3]
+    v0, v1, v2, v3 = w[4], w[5], w[6], w[7]
+    for start in range(0, phi.size, _BLOCK):
+        angle = phi[start : start + _BLOCK]
+        height = delta[start : start + _BLOCK]
+        parallel = out[0, start : start + _BLOCK]
+        perpendicular = out[1, start : start + _BLOCK]
+        spin = out[2, start : start + _BLOCK]
+        for n in range(angle.size):
+            side, eta = side_and_eta(angle[n])
+            p = eta * n_eta
+            i = cell_at(p, n_eta)
+            q = height[n] / delta_max * n_delta
+            j = cell_at(q, n_delta)
+            first[n] = (side * (n_delta + 3) + j) * row + 3 * i
+            w0[n], w1[n], w2[n], w3[n] = basis(p - i)
+            v0[n], v1[n], v2[n], v3[n] = basis(q - j)
+        for n in range(angle.size):
+            k = np.uint64(first[n])  # unsigned: no test for negative indices
+            a, b, d, e = w0[n], w1[n], w2[n], w3[n]
+            f0, g0, h0 = _row(c, k, a, b, d, e)
+            f1, g1, h1 = _row(c, k + step, a, b, d, e)
+            f2, g2, h2 = _row(c, k + step + step, a, b, d, e)
+            f3, g3, h3 = _row(c, k + step + step + step, a, b, d, e)
+            a, b, d, e = v0[n], v1[n], v2[n], v3[n]
+            parallel[n] = a * f0 + b * f1 + d * f2 + e * f3
+            perpendicular[n] = a * g0 + b * g1 + d * g2 + e * g3
+            spin[n] = a * h0 + b * h1 + d * h2 + e * h3
+        for n in range(angle.size):
+            parallel[n] = 1.0 / parallel[n]
+            perpendicular[n] *= parallel[n]
+            spin[n] *= parallel[n]

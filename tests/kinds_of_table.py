@@ -1,0 +1,43 @@
+"""A small table of every kind, for the tests that hold for all of them."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+
+from puck_tables import SpeedLaw, Table, profile_law
+
+LAW = SpeedLaw([0.0, 0.5, 2.0], [0.3, 0.2, 0.25])
+KINDS = ("resultants", "washer", "profile", "stops", "speed", "slice")
+
+
+@cache
+def small(kind: str) -> Table:
+    """A coarse table; by name: its kind, or resultants under a law."""
+    if kind == "speed":
+        return Table.build(LAW, 1e-3)
+    if kind == "profile":
+        law = profile_law([0.0, 0.5, 1.0], [1.0, 2.0, 0.5], name="stone.csv")
+        return Table.build(law, cells=12)
+    if kind == "slice":
+        return Table.build(("uniform", 2.0), 1e-5)
+    if kind == "washer":
+        return Table.build("annulus:0.8", cells=12)
+    return Table.build("stops", cells=16) if kind == "stops" else Table.build(accuracy=1e-6)
+
+
+def answers(table: Table) -> np.ndarray:
+    """What a table says at fixed places of its range."""
+    rng = np.random.default_rng(5)
+    phi = np.concatenate([rng.uniform(0.0, 1.5707, 3000), [0.0, 0.25 * np.pi]])
+    share = rng.random(phi.size)
+    if table.kind == "stops":
+        rim, one = np.tan(phi), np.ones(phi.size)
+        launches = np.stack([np.cos(phi), 0.0 * one, np.sin(phi), share, one, one])
+        return np.concatenate([table.stops(launches)[0], table.known(launches)[3:6] + 0.0 * rim])
+    if table.kind == "friction slice":
+        return table.ratios(phi).T
+    if table.kind == "speed":
+        return np.stack(table.resultants(phi, table.top * share / np.sqrt(2.0), 0.5))
+    return np.stack(table.resultants(phi, table.delta_max * share))
