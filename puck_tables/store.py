@@ -12,6 +12,7 @@ import re
 import stat
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import replace
 from datetime import UTC, datetime
 from functools import lru_cache
@@ -38,6 +39,7 @@ from puck_tables.waiting import watched
 
 AnyTable = TypeVar("AnyTable", bound=Table)
 
+MOST_TALL, _TALL = 200, "tall"  # how many slices of friction are kept, some 100 kB each
 _NAME = re.compile(r"[\w.+-]+-[0-9a-f]{16}\.h5")
 
 
@@ -157,12 +159,25 @@ def friction_for(law: Law, delta: float, accuracy: float) -> FrictionSlice:
     digest = _digest(
         FrictionSlice, {"pressure_law": law.name, "delta": delta, "accuracy": accuracy}
     )
+
+    def build() -> FrictionSlice:
+        _forget_oldest()
+        return friction_slice(law, delta, accuracy)
+
     return fetch(
-        f"{file_stem(law)}-{delta:g}-{accuracy:g}-{digest}.h5",
+        f"{_TALL}-{delta:g}-{accuracy:g}-{digest}.h5",
         f"friction of a puck with delta = {delta:g}, to {accuracy:g}; recipe {digest}",
         FrictionSlice,
-        lambda: friction_slice(law, delta, accuracy),
+        build,
     )
+
+
+def _forget_oldest() -> None:
+    """Make room for one more: a sweep over many heights shall not fill the disk."""
+    tall = [path for path in kept_files() if path.name.startswith(_TALL)]
+    with suppress(OSError):  # another process may be at it
+        for path in sorted(tall, key=lambda path: path.stat().st_mtime)[: 1 - MOST_TALL or None]:
+            path.unlink(missing_ok=True)
 
 
 def _digest(kind: type[Table], recipe: dict[str, Any]) -> str:

@@ -258,6 +258,10 @@ def test_the_friction_of_a_tall_puck_is_kept(kept: Path, monkeypatch: pytest.Mon
     assert other.stop_time != first.stop_time
     listed = puck("tables").stdout
     assert listed.count("friction slice") == len(list(kept.iterdir()))
+    monkeypatch.setattr(store, "MOST_TALL", 3)
+    for delta in (1.1, 1.2, 1.3):
+        store.friction_for(pt.law_of("uniform"), delta, 1e-4)
+    assert sorted(path.name[:8] for path in kept.iterdir()) == ["tall-1.1", "tall-1.2", "tall-1.3"]
     simulate((1.0, 0.0), 5.0, delta=0.5, pressure="ring", tol=1e-5)
     assert "ring" not in puck("tables").stdout  # made in no time
 
