@@ -15,7 +15,6 @@ from puck_tables.cli.options import (
     body_options,
     deliver,
     output_options,
-    patience,
     prepare_outputs,
     puck_given,
     puck_options,
@@ -79,7 +78,6 @@ def aim(
         raise InputError(f"{picked[0]} and {picked[1]} clash: each picks a launch")
     prepare_outputs(output, plot=plot, overwrite=overwrite, inputs=(pressure,))
     puck = puck_given(radius, height, friction, gravity, delta, decel, pressure, gyration)
-    patience(puck.delta)
     found = puck.aim(
         target, spin=w0, speed=speed, stop_time=stop_time, max_speed=max_speed, max_spin=max_spin,
         count=count,

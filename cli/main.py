@@ -36,6 +36,12 @@ from puck_tables.waiting import watchers
 BROKEN_PIPE = 141  # 128 + SIGPIPE, as shells count
 
 
+MEANT = {  # what others call an option
+    "--omega": "--w0", "--spin": "--w0", "--velocity": "--v0", "--mu": "--friction",
+    "--tolerance": "--tol", "--slope": "--set floor.slope=5deg",
+}  # fmt: skip
+
+
 class PuckGroup(click.Group):
     """A group that ends every refusal with one sentence and an exit code."""
 
@@ -67,6 +73,11 @@ class PuckGroup(click.Group):
             if sys.stdout is not None:
                 sys.stdout.flush()
             return result
+        except click.NoSuchOption as error:
+            meant = MEANT.get(error.option_name)
+            if meant is not None:
+                error.possibilities = [meant]
+            raise
         except PuckError as error:
             click.echo(f"Error: {printable(click.format_filename(str(error)))}", err=True)
             ctx.exit(2 if isinstance(error, InputError) else 1)

@@ -153,12 +153,6 @@ def body_options(command: Command) -> Command:
     return command
 
 
-def patience(delta: float) -> None:
-    """Say on stderr that the friction of a very tall puck takes some seconds to work out."""
-    if 3.0 < delta <= 3.96:
-        click.echo("working out the friction of so tall a puck: some seconds", err=True)
-
-
 def output_options(command: Command) -> Command:
     """Where results go."""
     for option in (

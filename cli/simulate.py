@@ -19,7 +19,6 @@ from puck_tables.cli.options import (
     explained,
     open_table,
     output_options,
-    patience,
     prepare_outputs,
     printable,
     puck_given,
@@ -102,7 +101,6 @@ def simulate(
     puck = puck_given(radius, height, friction, gravity, delta, decel, pressure, gyration, mass)
     if output is None and plot is None and times is None and frames is None:
         frames = 1  # a report needs no states
-    patience(puck.delta)
     run = puck.simulate(
         v0, w0, frames=frames, times=times, tol=tol, method=method, exact=exact,
         table=None if table_path is None else open_table(table_path),
@@ -152,7 +150,31 @@ def report(run: Trajectory, note: str) -> str:
         "error estimate": f"{run.error_estimate * q0 / puck.decel:.1e} s, "
         f"{run.error_estimate * q0 * q0 / puck.decel:.1e} m",
     }
-    return "\n".join(f"{name:<15} {text}" for name, text in lines.items())
+    table = "\n".join(f"{name:<15} {text}" for name, text in lines.items())
+    return f"{plainly(run)}\n\n{table}"
+
+
+def plainly(run: Trajectory) -> str:
+    """What happens, in two sentences that need no other word than those of the command."""
+    (vx, vy), (x, y) = run.launch_velocity, run.stop_position
+    if run.stop_time == 0.0:
+        return "The puck lies still.\nGive it a velocity (--v0) or a spin (--w0)."
+    if vx == vy == 0.0:
+        turns = abs(run.body_angle) / (2.0 * math.pi)
+        return f"The puck spins on the spot and stops after {run.stop_time:.4g} s.\n" + (
+            f"It turns {turns:.4g} times."
+        )
+    first = f"The puck stops after {run.stop_time:.4g} s, {math.hypot(x, y):.4g} m from its launch."
+    aside = math.degrees(math.atan2(vx * y - vy * x, vx * x + vy * y))
+    if run.launch_spin == 0.0:
+        return first + "\nWithout spin its path is straight."
+    side = "left" if aside > 0.0 else "right"
+    bent = (
+        f"It bends to the {side}: it lies {abs(aside):.3g} degrees off the line it was sent along"
+    )
+    if abs(aside) < 1e-9:
+        bent = "Its path is straight"
+    return f"{first}\n{bent}; sliding and spinning end together."
 
 
 def _contact(run: Trajectory) -> str:

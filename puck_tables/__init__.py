@@ -29,6 +29,15 @@ if TYPE_CHECKING:
     from puck_tables.contact.resultants import Resultants, is_full_contact
     from puck_tables.contact.speed_law import SpeedLaw
     from puck_tables.contact.speed_quadrature import speed_resultants
+    from puck_tables.errors import (
+        AccuracyError,
+        ContactError,
+        InputError,
+        MissingExtraError,
+        OutputError,
+        PuckError,
+        TableError,
+    )
     from puck_tables.kernels.closed_form import resultants
     from puck_tables.motion.limits import (
         approach_exponent,
@@ -53,6 +62,13 @@ if TYPE_CHECKING:
     from puck_tables.trajectory import Trajectory
 
 _HOMES = {
+    "AccuracyError": "errors",
+    "ContactError": "errors",
+    "InputError": "errors",
+    "MissingExtraError": "errors",
+    "OutputError": "errors",
+    "PuckError": "errors",
+    "TableError": "errors",
     "Aim": "aiming",
     "Asperity": "chetaev.asperity",
     "AsperityMotion": "chetaev.asperity",
@@ -101,6 +117,7 @@ _HOMES = {
 }
 
 __all__ = [
+    "AccuracyError",
     "Aim",
     "Asperity",
     "AsperityCurve",
@@ -108,8 +125,13 @@ __all__ = [
     "CheckReport",
     "ConstrainedMotion",
     "ConstrainedSystem",
+    "ContactError",
+    "InputError",
     "Law",
+    "MissingExtraError",
+    "OutputError",
     "Puck",
+    "PuckError",
     "Result",
     "Resultants",
     "Scene",
@@ -120,6 +142,7 @@ __all__ = [
     "StopMap",
     "Stops",
     "Table",
+    "TableError",
     "Trajectory",
     "__version__",
     "approach_exponent",

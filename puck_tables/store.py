@@ -12,7 +12,7 @@ import re
 import stat
 import time
 from collections.abc import Callable
-from contextlib import suppress
+from contextlib import nullcontext, suppress
 from dataclasses import replace
 from datetime import UTC, datetime
 from functools import lru_cache
@@ -39,6 +39,7 @@ from puck_tables.waiting import watched
 
 AnyTable = TypeVar("AnyTable", bound=Table)
 
+SLOW_DELTA = 3.0  # from here on a slice takes some seconds
 MOST_TALL, _TALL = 200, "tall"  # how many slices of friction are kept, some 100 kB each
 _NAME = re.compile(r"[\w.+-]+-[0-9a-f]{16}\.h5")
 
@@ -162,7 +163,9 @@ def friction_for(law: Law, delta: float, accuracy: float) -> FrictionSlice:
 
     def build() -> FrictionSlice:
         _forget_oldest()
-        return friction_slice(law, delta, accuracy)
+        words = "working out the friction of so tall a puck, once"
+        with watched(words) if delta > SLOW_DELTA else nullcontext():
+            return friction_slice(law, delta, accuracy)
 
     return fetch(
         f"{_TALL}-{delta:g}-{accuracy:g}-{digest}.h5",

@@ -23,6 +23,7 @@ FloatArray = npt.NDArray[np.float64]
 T = TypeVar("T")
 
 RANGE = re.compile(r"([^:]+):([^:]+):([0-9]{1,9})")
+DEGREES = re.compile(r"([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?) ?deg")
 MAX_COUNT = 1_000_000  # numbers of one range
 _SHOWN = 60  # characters of a value in a message
 
@@ -214,10 +215,12 @@ def _items(value: Any) -> list[Any] | None:
 def _number(kind: Kind, value: Any, path: str, reading: Reading, default: Any) -> float:
     if isinstance(value, np.ndarray) and value.ndim == 0 and not np.ma.is_masked(value):
         value = value[()]
+    if isinstance(value, str) and kind.unit == "rad" and DEGREES.fullmatch(value.strip()):
+        value = _angle(value.strip(), kind)
     if isinstance(value, str):
         match = RANGE.fullmatch(value.strip())
         try:
-            start, stop = float(match[1]), float(match[2])  # type: ignore[index]
+            start, stop = (_angle(match[n], kind) for n in (1, 2))  # type: ignore[index]
             count = int(match[3])  # type: ignore[index]
         except (TypeError, ValueError):
             reading.fault(path, value, f"{_one(kind)}, or a range 'START:STOP:COUNT' of them")
@@ -239,8 +242,23 @@ def _number(kind: Kind, value: Any, path: str, reading: Reading, default: Any) -
     except OverflowError:
         number = math.inf
     if number != default and not (kind.holds(number) and math.isfinite(number)):
-        reading.fault(path, value, _one(kind))
+        allowed = _one(kind)
+        if kind.unit == "rad" and kind.holds(math.radians(number)):
+            allowed += f" (if degrees are meant write '{number:g}deg')"
+        reading.fault(path, value, allowed)
     return number
+
+
+def _angle(text: str, kind: Kind) -> float:
+    """A number; an angle may be in degrees.
+
+    Examples
+    --------
+    >>> _angle("180deg", Kind("number", "rad")), _angle("2", Kind("number", "m"))
+    (3.141592653589793, 2.0)
+    """
+    degrees = kind.unit == "rad" and DEGREES.fullmatch(text.strip())
+    return math.radians(float(degrees[1])) if degrees else float(text)
 
 
 def _one(kind: Kind) -> str:

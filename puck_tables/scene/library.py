@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import tomllib
+from difflib import get_close_matches
 from importlib.resources import files
 from typing import Any
 
@@ -37,7 +38,7 @@ def shipped_text(name: str) -> str:
     'title = "Puck on an incline"'
     """
     if name not in _names():
-        raise InputError(f"no scene {name!r} comes along: there are {', '.join(_names())}")
+        raise InputError(f"no scene {name!r} comes along{_meant(name)}: there are {_listed()}")
     return (_folder() / f"{name}.toml").read_text(encoding="utf-8")
 
 
@@ -60,8 +61,8 @@ def find_scene(name: str) -> dict[str, Any]:
         if name in _names():
             return tomllib.loads(shipped_text(name))
         raise InputError(
-            f"no file {name}, and no scene of that name comes along: there are "
-            f"{', '.join(_names())}"
+            f"no file {name}, and no scene of that name comes along{_meant(name)}: there are "
+            f"{_listed()}"
         ) from None
     except (OSError, ValueError) as error:
         raise InputError(f"cannot read {name}: {getattr(error, 'strerror', error)}") from None
@@ -70,6 +71,22 @@ def find_scene(name: str) -> dict[str, Any]:
 
 def _folder() -> Any:
     return files("puck_tables.scene") / "examples"
+
+
+def _meant(name: str) -> str:
+    """What a misspelt name may have been meant to be, in words.
+
+    Examples
+    --------
+    >>> _meant("airhockey")
+    ' (did you mean air-hockey?)'
+    """
+    near = get_close_matches(name, _names(), 1, 0.7)
+    return f" (did you mean {near[0]}?)" if near else ""
+
+
+def _listed() -> str:
+    return ", ".join(_names())
 
 
 def _names() -> list[str]:
