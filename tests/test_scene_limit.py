@@ -55,7 +55,8 @@ def test_slips_that_go_straight_next_to_the_limit(gap: float, side: float) -> No
         scene["run"] = {"time": 3.0}
         run = simulate_scene(scene)
         q = math.hypot(run.last["vx"], run.last["spin"])
-        assert q == pytest.approx(q0 + 3.0 * rate, rel=1e-9)
+        known = 3.0 * f * G * 2e-11  # what the table leaves open of friction, over 3 s
+        assert q == pytest.approx(q0 + 3.0 * rate, rel=1e-9, abs=known)
     assert run.steps < 20_000
 
 
