@@ -25,12 +25,13 @@ from puck_tables.scene.boundaries import (
     Boundaries,
     first_crossing,
 )
-from puck_tables.scene.cushions import GRIP, NX, NY, RIM
+from puck_tables.scene.cushions import NX, NY
 from puck_tables.scene.equations import (
     FIRST,
     ROW,
     SECOND,
     SIZE,
+    acting_force,
     kinetic_energy,
     rates,
     settling_rates,
@@ -40,7 +41,7 @@ from puck_tables.scene.equations import (
     stopping,
     to_laboratory,
 )
-from puck_tables.scene.friction import SPIN, VX, VY
+from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.scene.ingredients import (
     CARRIED,
     FREE,
@@ -50,14 +51,18 @@ from puck_tables.scene.ingredients import (
     Model,
     Regions,
     Stretch,
+    floor_velocity,
 )
-from puck_tables.scene.moments import EQUAL, lost, rests_on, watched, zero
-from puck_tables.scene.rest import SLACK, excess_at_rest, held_by_floor
+from puck_tables.scene.leaning import GRIP, RIM
+from puck_tables.scene.moments import EQUAL, lost, rests_on, settle_way, watched, zero
+from puck_tables.scene.rest import SLACK, excess_at_rest
 from puck_tables.scene.settle import (
     Contacts,
     bounced,
     contacts_for,
     departed,
+    gripped,
+    look_at_rims,
     look_at_walls,
     rims_after,
     settled,
@@ -79,6 +84,9 @@ _REST = 1e-13  # of the scale of speeds: as good as at rest
 _FIRST = 1e-16  # of it: what a slip begins with, for its direction
 _LAST = 30.0  # times the local error: from there a stop goes straight
 _SLOW = 1e-3  # of friction: what brakes less comes closer to rest before it goes straight
+_SETTLED = 1e-4  # of its rate: a slip whose direction does not change
+_LOST = 1e-10  # of the scale of speeds: rounding of places turns the slip
+_FAR = 10.0  # times the slip: a rim that slides so fast does not stop before
 _NEAR = 0.5  # of the time in which the slip would end, at most, is a step
 _STIFF, _MILD = 0.8, 0.3  # of the time in which a slip settles: longer steps are implicit,
 _SLOWLY = 0.1  # if the slip changes by less than this of itself meanwhile
@@ -165,14 +173,24 @@ def _goes_straight(
     What brakes slowly takes so long that its direction must have settled, and all else be small.
     """
     way = stopping(stretch.model.body.radius, y, work)
-    quick = way[3] < -_SLOW * stretch.dry.load / stretch.model.body.mass / slow
+    leaning, still = stretch.leaning.shape[0] > 0, q <= 2.0 * _REST * ask.speed
     across = math.sqrt(max(pull * pull - way[3] * way[3], 0.0))
-    if not (quick and across <= -way[3]) and q > 2.0 * _REST * ask.speed:
+    quick = way[3] < -_SLOW * stretch.dry.load / stretch.model.body.mass / slow
+    excess = excess_at_rest(stretch, t, y)[0] if way[3] < 0.0 else 0.0
+    if leaning and excess == math.inf:  # it goes through rest, for the floor goes into the wall
+        still = across <= _SETTLED * -way[3] or q <= _LOST * ask.speed
+        quick = False
+    elif excess > SLACK * stretch.dry.load:
+        return _NO_WAY
+    if not (quick and across <= -way[3]) and not still:
         return _NO_WAY
     for i in range(stretch.leaning.shape[0]):  # the rim may stick before
-        if stretch.leaning[i, GRIP] > 0.0 and q > 2.0 * _REST * ask.speed:
+        sticks = abs(watched(stretch, i, y)) <= _FAR * q
+        rolls = stretch.leaning[i, RIM] == 0.0 and excess == math.inf  # and goes on to
+        unsure = stretch.leaning[i, GRIP] > 0.0 and sticks and not rolls
+        if unsure and q > 2.0 * _REST * ask.speed:
             return _NO_WAY
-    return way if way[3] < 0.0 and held_by_floor(stretch, t, y) else _NO_WAY
+    return way if way[3] < 0.0 else _NO_WAY
 
 
 @kernel
@@ -230,20 +248,48 @@ def follow(
         target = min(drive[piece, 0], ask.until) if piece < len(drive) else ask.until
         if calm > t:
             target = min(target, calm)
+        if settle and leaning.shape[0] > 0:
+            stretch = Stretch(model, dry, leaning, piece, mode, way, 0.0)
+            fx, fy = acting_force(stretch, t, y)
+            to_laboratory(model, y, 1.0)
+            before = kinetic_energy(body, y)
+            if gripped(bounds, contacts, body, fx, fy, y, ask.speed):
+                heat += before - kinetic_energy(body, y)
+                departed(bounds, contacts, y, ask.speed)
+                leaning, mode = contacts.rows[: touching(bounds, contacts)], SLIDES
+            to_laboratory(model, y, -1.0)
         q = slip_speed(radius, y)
         if settle and dry.load > 0.0 and q <= _REST * ask.speed:
             y[VX] = y[VY] = y[SPIN] = 0.0
             mode = CARRIED
+            if leaning.shape[0] > 0:
+                to_laboratory(model, y, 1.0)
+                look_at_rims(bounds, contacts, body, y, ask.speed)
+                to_laboratory(model, y, -1.0)
+                y[VX] = y[VY] = y[SPIN] = 0.0
+                leaning = contacts.rows[: touching(bounds, contacts)]
             excess, nx, ny, nw = excess_at_rest(
                 Stretch(model, dry, leaning, piece, CARRIED, _NO_WAY, 0.0), t, y
             )
-            if excess == math.inf:  # where a constraint leads it the floor does not go
+            if excess == math.inf and held_there:  # it is led where the floor does not go
                 mode, stiff = SLIDES, False
+            elif excess == math.inf:  # the floor goes into a wall, and under the puck
+                mode, stiff = SLIDES, True
+                sx, sy, _ = floor_velocity(surface, y[X], y[Y])
+                off, q = -(nx * sx + ny * sy), 2.0 * _REST * ask.speed
+                if abs(off) > q:
+                    y[VX], y[VY], q = off * nx, off * ny, abs(off)
+                else:
+                    y[VX], y[VY] = q * nx, q * ny
+                    stretch = Stretch(model, dry, leaning, piece, SLIDES, _NO_WAY, 0.0)
+                    settle_way(stretch, t, q, y, work)
             elif excess > SLACK * dry.load:
                 mode, stiff = SLIDES, True
-                first = _FIRST * ask.speed
-                y[VX], y[VY], y[SPIN] = first * nx, first * ny, first * nw
-                q = first
+                q = _FIRST * ask.speed if leaning.shape[0] == 0 else 2.0 * _REST * ask.speed
+                y[VX], y[VY], y[SPIN] = q * nx, q * ny, q * nw
+                if leaning.shape[0] > 0:
+                    stretch = Stretch(model, dry, leaning, piece, SLIDES, _NO_WAY, 0.0)
+                    settle_way(stretch, t, q, y, work)
             if (mode == CARRIED) != resting and (t >= calm or mode != CARRIED):
                 if count == len(events):
                     how = EVENT_LIMIT
@@ -356,13 +402,16 @@ def follow(
             settle = True
         if leaning.shape[0] > 0:
             to_laboratory(model, y, 1.0)
+            before = kinetic_energy(body, y)
             changed = rims_after(bounds, contacts, body, y, stuck, ask.speed)
-            changed = departed(bounds, contacts, y, ask.speed) or changed
-            to_laboratory(model, y, -1.0)
             if 0.0 < calm <= t:
                 calm = 0.0
-                settled(contacts)
+                settled(bounds, contacts, body, y, ask.speed)
                 changed = True
+            if mode != STOPS:  # its last slip is rounding
+                changed = departed(bounds, contacts, y, ask.speed) or changed
+            heat += before - kinetic_energy(body, y)
+            to_laboratory(model, y, -1.0)
             if changed:
                 leaning = contacts.rows[: touching(bounds, contacts)]
         if happens < 0:
@@ -386,6 +435,8 @@ def follow(
             if rest_time >= 0.0:
                 happens = LEANS
                 calm = max(calm, t + rest_time) if rest_time > 0.0 else calm
+                share = ask.speed * rest_time / scale[0]
+                wrong += share * share
             leaning = contacts.rows[: touching(bounds, contacts)]
         if count == len(events):
             how = EVENT_LIMIT

@@ -9,8 +9,8 @@ import numpy.typing as npt
 
 from puck_tables.kernels.compile import inlined, kernel
 from puck_tables.scene.cushions import NX, NY, rim_slip
-from puck_tables.scene.equations import slip_side
-from puck_tables.scene.friction import SPIN, VX, VY
+from puck_tables.scene.equations import SECOND, rates, slip_side
+from puck_tables.scene.friction import SPIN, VX, VY, size
 from puck_tables.scene.ingredients import CARRIED, Dry, Model, Stretch, floor_velocity
 from puck_tables.scene.rest import SLACK, excess_at_rest, held_by_floor
 from puck_tables.scene.steps import step
@@ -18,6 +18,7 @@ from puck_tables.scene.steps import step
 FloatArray = npt.NDArray[np.float64]
 
 EQUAL = -1  # watched: equal speeds of centre and rim; else the rim on a wall that is leant on
+_TURNS, _SETTLED = 3000, 1e-12  # at most; of friction: a direction stays
 _MARGIN = 0.2  # of friction
 _NO_WAY = (0.0, 0.0, 0.0, 0.0)
 
@@ -108,3 +109,28 @@ def zero(
             low, first, last = middle, value, 0.5 * last
     step(stretch, t, high, y, scale, work, new)
     return high
+
+
+@kernel
+def settle_way(stretch: Stretch, t: float, q: float, y: FloatArray, work: FloatArray) -> None:
+    """Turn a slip of size q that begins into the direction that it keeps.
+
+    A small slip turns by Q n′ = a − (a·n) n, much faster than it grows; that is followed.
+    """
+    radius = stretch.model.body.radius
+    load, mass = stretch.dry.load, stretch.model.body.mass
+    pace, before = 0.3 * mass / load, math.inf
+    for _ in range(_TURNS):
+        rates(stretch, t, y, work, SECOND)
+        wx, wy, ww = y[VX] / q, y[VY] / q, radius * y[SPIN] / q
+        ax, ay, aw = work[SECOND, VX], work[SECOND, VY], radius * work[SECOND, SPIN]
+        gain = ax * wx + ay * wy + aw * ww
+        ox, oy, ow = ax - gain * wx, ay - gain * wy, aw - gain * ww
+        off = size(ox, oy, ow)
+        if not off > _SETTLED * load / mass:
+            return
+        pace *= 0.7 if off > before else 1.03
+        before = off
+        wx, wy, ww = wx + pace * ox, wy + pace * oy, ww + pace * ow
+        whole = q / size(wx, wy, ww)
+        y[VX], y[VY], y[SPIN] = whole * wx, whole * wy, whole * ww / radius
