@@ -336,6 +336,12 @@ def follow(
             how = STEP_LIMIT
             break
         power = 0.25 if newton > 0.0 else 0.2
+        lifts = 0.0  # off a wall that the puck leant on: from where it leaves, it may come back
+        for i in range(leaning.shape[0]):
+            lifts = max(lifts, leaning[i, NX] * new[SIZE] + leaning[i, NY] * new[SIZE + 1])
+        if lifts > ask.tolerance * scale[0] and error <= ask.tolerance:
+            h = 0.25 * length
+            continue
         if not error <= ask.tolerance:
             shrink = 0.25 if newton > 0.0 else 0.1
             if error < math.inf:
@@ -385,8 +391,7 @@ def follow(
         for i in range(SIZE):
             y[i] = new[i]
         for i in range(room.size):
-            if not leans[i]:
-                room[i] += bounds.walls[i, NX] * new[SIZE] + bounds.walls[i, NY] * new[SIZE + 1]
+            room[i] += bounds.walls[i, NX] * new[SIZE] + bounds.walls[i, NY] * new[SIZE + 1]
         for i in range(ROW):
             work[0, i] = last[i]
         known = happens < 0 and mode == SLIDES and not held_there and leaning.shape[0] == 0

@@ -5,7 +5,8 @@ the last by a factor q < 1 (the restitution, and what friction takes on the way)
 time by the same factor.  So the rest of the series takes τ q/(1 − q) after a rebound that took τ.
 From where that rest is so short that nothing else changes in it, up to its square, the puck leans;
 what the rest of the rebounds does to a rough rim is summed in :mod:`puck_tables.scene.series`.
-Between two walls that leave it no room impacts follow each other at one place: there it is stuck.
+Between two walls that leave it no room, where it is slow enough, or where impacts follow each other
+at one place, the puck comes to lie in their corner.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ from puck_tables.scene.cushions import (
     rim_compliance,
     rim_slip,
 )
-from puck_tables.scene.friction import SPIN, VX, VY, X, Y
+from puck_tables.scene.friction import SPIN, VX, VY, X, Y, size
 from puck_tables.scene.ingredients import Body
 from puck_tables.scene.leaning import GRIP, LEAN_COLUMNS, LOCKS, RIM, come_to_lean, push_of
 from puck_tables.scene.series import rest_of_rim
@@ -38,6 +39,7 @@ FloatArray = npt.NDArray[np.float64]
 
 _STILL = 1e-13  # of the scale of speeds: no speed
 _JAM = 50  # impacts on two walls at one place: it is stuck between them
+_PARALLEL = 1e-12  # walls between which no corner is
 _LEFT = 1e-12  # a wall is left, or a rim slides
 
 
@@ -149,7 +151,6 @@ def departed(bounds: Boundaries, contacts: Contacts, y: FloatArray, speed: float
     for i in range(contacts.leans.size):
         if contacts.leans[i] and outward(bounds, i, y) > _LEFT * speed:
             contacts.leans[i] = contacts.dying[i] = False
-            contacts.room[i] = 0.0
             left = True
     return left
 
@@ -179,6 +180,30 @@ def rims_after(
 
 
 @inlined
+def _corner_near(bounds: Boundaries, contacts: Contacts, which: int, reach: float) -> int:
+    """Another wall within ``reach``, with which the wall that is hit makes a corner; −1: none."""
+    wall = bounds.walls[which]
+    for i in range(contacts.leans.size):
+        other = bounds.walls[i]
+        crosses = abs(wall[NX] * other[NY] - wall[NY] * other[NX]) > _PARALLEL
+        if crosses and (contacts.leans[i] or contacts.room[i] <= reach):
+            return i
+    return -1
+
+
+@inlined
+def _into_corner(one: FloatArray, other: FloatArray, y: FloatArray) -> None:
+    """Put a state at rest to where two walls leave it no room."""
+    cross = one[NX] * other[NY] - one[NY] * other[NX]
+    if abs(cross) > _PARALLEL:
+        first = one[PLACE] - (one[NX] * y[X] + one[NY] * y[Y])
+        second = other[PLACE] - (other[NX] * y[X] + other[NY] * y[Y])
+        y[X] += (first * other[NY] - second * one[NY]) / cross
+        y[Y] += (second * one[NX] - first * other[NX]) / cross
+        y[VX] = y[VY] = 0.0
+
+
+@inlined
 def bounced(
     bounds: Boundaries, contacts: Contacts, which: int, body: Body, y: FloatArray, t: float,
     speed: float, time: float, tolerance: float,
@@ -198,12 +223,13 @@ def bounced(
     goes = outward(bounds, which, y)
     slides = rim_slip(body, wall[NX], wall[NY], y[VX], y[VY], y[SPIN])
     rest_time = -1.0
-    if goes <= max(0.01 * tolerance, _STILL) * speed:
+    corner = _corner_near(bounds, contacts, which, max(tolerance, _STILL) * speed * time)
+    if corner >= 0 and size(y[VX], y[VY], 0.0) > max(tolerance, _STILL) * speed:
+        corner = -1
+    if contacts.chain[1] >= _JAM:
+        corner = before
+    if goes <= max(0.01 * tolerance, _STILL) * speed or corner >= 0:
         rest_time = 0.0
-    elif contacts.chain[1] >= _JAM:
-        rest_time = 0.0
-        contacts.leans[before] = True
-        contacts.room[before] = 0.0
     elif contacts.chain[0] == which and goes < contacts.pace[which] and goes <= 0.01 * speed:
         hop = t - contacts.hit[which]
         ratio = goes / contacts.pace[which]
@@ -222,11 +248,14 @@ def bounced(
     contacts.hit[which], contacts.pace[which], contacts.chain[0] = t, goes, which
     if rest_time >= 0.0:
         contacts.leans[which] = True
+    if corner >= 0:
+        contacts.leans[corner], contacts.room[corner] = True, 0.0
+        _into_corner(wall, bounds.walls[corner], y)
     for i in range(contacts.leans.size):  # an impact may push it off others, or into them
         if (
-            contacts.chain[1] < _JAM
-            and contacts.leans[i]
+            contacts.leans[i]
             and i != which
+            and i != corner
             and abs(outward(bounds, i, y)) > _STILL * speed
         ):
             contacts.leans[i] = contacts.dying[i] = False
