@@ -6,8 +6,8 @@ Coulomb's friction at the rim, −μ N against its slip, or what keeps it still 
 One wall bears the puck where it alone keeps it out of all others.  Else two do, in a corner, where
 the centre can go nowhere: there the reactions N₁, N₂ and the rim forces T₁, T₂ have to balance the
 force, and r (T₁ + T₂) bears a torque.  Of all (T₁, T₂) within |T_i| ≤ μ_i N_i, a convex region, the
-corners tell what torques are borne; rims that press a puck between two walls by themselves, without
-a force that does it, are left out.
+corners tell what torques are borne, and the directions in which it is unbounded: there the rims
+lock the puck between the walls.
 """
 
 from __future__ import annotations
@@ -158,6 +158,16 @@ def still_torques(
         good, along = _alone(one if i == 0 else other, fx, fy)
         if good:
             holds, low, high = True, min(low, along), max(high, along)
+    for i in range(4):  # a limit of one wall's friction against which the other can push
+        wall, facing = (one, other) if i < 2 else (other, one)
+        slide = (1.0 - 2.0 * (i % 2)) * wall[GRIP]
+        whole = size(1.0, slide, 0.0)
+        ex, ey = (wall[NX] + slide * wall[NY]) / whole, (wall[NY] - slide * wall[NX]) / whole
+        push = -(facing[NX] * ex + facing[NY] * ey)
+        along = facing[NY] * ex - facing[NX] * ey
+        if push > _CLOSE and abs(along) <= facing[GRIP] * push:
+            low = -math.inf if along < slide / whole else low
+            high = math.inf if along > slide / whole else high
     return holds, low, high
 
 
