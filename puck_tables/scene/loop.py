@@ -255,7 +255,6 @@ def follow(
             before = kinetic_energy(body, y)
             if gripped(bounds, contacts, body, fx, fy, y, ask.speed):
                 heat += before - kinetic_energy(body, y)
-                departed(bounds, contacts, y, ask.speed)
                 leaning, mode = contacts.rows[: touching(bounds, contacts)], SLIDES
             to_laboratory(model, y, -1.0)
         q = slip_speed(radius, y)

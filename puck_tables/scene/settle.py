@@ -32,7 +32,7 @@ from puck_tables.scene.cushions import (
 )
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y, size
 from puck_tables.scene.ingredients import Body
-from puck_tables.scene.leaning import GRIP, LEAN_COLUMNS, LOCKS, RIM, come_to_lean, push_of
+from puck_tables.scene.leaning import GRIP, LEAN_COLUMNS, LOCKS, RIM, come_to_lean
 from puck_tables.scene.series import rest_of_rim
 
 FloatArray = npt.NDArray[np.float64]
@@ -281,19 +281,25 @@ def gripped(
 
     What is a state in the laboratory goes on without the slip; in a corner nothing goes on.
     """
-    count, found = touching(bounds, contacts), False
-    for i in range(count):
-        row = contacts.rows[i]
-        if row[RIM] == 0.0 or row[GRIP] < LOCKS or push_of(row, 1.0, 0.0, 0.0, fx, fy) == 0.0:
+    found = False
+    for i in range(contacts.leans.size):
+        wall = bounds.walls[i]
+        nx, ny = wall[NX], wall[NY]
+        grips = wall[TANGENTIAL] != -1.0 and wall[FRICTION] >= LOCKS and not contacts.dying[i]
+        if not (contacts.leans[i] and contacts.rim[i] != 0.0 and grips):
+            continue
+        if -(nx * fx + ny * fy) <= _LEFT * size(fx, fy, 0.0):
             continue
         found = True
-        push_rim(
-            body, row[NX], row[NY], -rim_slip(body, row[NX], row[NY], y[VX], y[VY], y[SPIN]), y
-        )
-        for j in range(count):
-            other = contacts.rows[j]
-            if j != i and other[NX] * y[VX] + other[NY] * y[VY] < -_LEFT * speed:
+        vx, vy = y[VX], y[VY]
+        push_rim(body, nx, ny, -rim_slip(body, nx, ny, vx, vy, y[SPIN]), y)
+        for j in range(contacts.leans.size):
+            other = bounds.walls[j]
+            change = other[NX] * (y[VX] - vx) + other[NY] * (y[VY] - vy)
+            if contacts.leans[j] and j != i and change < -_LEFT * speed:
                 y[VX] = y[VY] = y[SPIN] = 0.0
+            elif j != i and change > _LEFT * speed:
+                contacts.leans[j] = contacts.dying[j] = False
     if found:
         look_at_rims(bounds, contacts, body, y, speed)
     return found
