@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog
 
+from puck_tables.scene.cushions import rest_of_rim
 from puck_tables.scene.leaning import still_torques
 from puck_tables.scene.library import find_scene
-from puck_tables.scene.series import rest_of_rim
 from puck_tables.scene.simulate import simulate_scene
 
 

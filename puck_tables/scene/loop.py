@@ -38,7 +38,6 @@ from puck_tables.scene.equations import (
     slip_rate,
     slip_side,
     slip_speed,
-    stopping,
     to_laboratory,
 )
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
@@ -54,7 +53,16 @@ from puck_tables.scene.ingredients import (
     floor_velocity,
 )
 from puck_tables.scene.leaning import GRIP, RIM
-from puck_tables.scene.moments import EQUAL, lost, rests_on, settle_way, watched, zero
+from puck_tables.scene.moments import (
+    EQUAL,
+    REST,
+    goes_straight,
+    lost,
+    rests_on,
+    settle_way,
+    watched,
+    zero,
+)
 from puck_tables.scene.rest import SLACK, excess_at_rest
 from puck_tables.scene.settle import (
     Contacts,
@@ -73,20 +81,15 @@ from puck_tables.scene.steps import STAGES, WIDE, step
 FloatArray = npt.NDArray[np.float64]
 
 # how a run ends
-AT_REST, CARRIED_AWAY, TIME_UP, OVER_EDGE, STEP_LIMIT, EVENT_LIMIT, NOT_FINITE = range(7)
+ATREST, CARRIED_AWAY, TIME_UP, OVER_EDGE, STEP_LIMIT, EVENT_LIMIT, NOT_FINITE = range(7)
 # what happens on the way
 RESTS, SLIPS, LEANS = 0, 1, 3  # and those of boundaries
 
 FRAME_COLUMNS = ROW + 3  # time, state, λ, carried, heat of impacts
 EVENT_COLUMNS = 3 + SIZE  # time, what, which, state
 
-_REST = 1e-13  # of the scale of speeds: as good as at rest
 _FIRST = 1e-16  # of it: what a slip begins with, for its direction
 _LAST = 30.0  # times the local error: from there a stop goes straight
-_SLOW = 1e-3  # of friction: what brakes less comes closer to rest before it goes straight
-_SETTLED = 1e-4  # of its rate: a slip whose direction does not change
-_LOST = 1e-10  # of the scale of speeds: rounding of places turns the slip
-_FAR = 10.0  # times the slip: a rim that slides so fast does not stop before
 _NEAR = 0.5  # of the time in which the slip would end, at most, is a step
 _STIFF, _MILD = 0.8, 0.3  # of the time in which a slip settles: longer steps are implicit,
 _SLOWLY = 0.1  # if the slip changes by less than this of itself meanwhile
@@ -163,36 +166,6 @@ def _dry(regions: Regions, region: int) -> Dry:
     return Dry(regions.load[region], regions.delta[region], regions.cuts[region], regions.by_speed)
 
 
-@inlined
-def _goes_straight(
-    stretch: Stretch, ask: Ask, t: float, q: float, pull: float, slow: float, y: FloatArray,
-    work: FloatArray,
-) -> tuple[float, float, float, float]:  # fmt: skip
-    """The way of a slip that is about to stop: its direction and rate; no rate: not yet.
-
-    What brakes slowly takes so long that its direction must have settled, and all else be small.
-    """
-    way = stopping(stretch.model.body.radius, y, work)
-    leaning, still = stretch.leaning.shape[0] > 0, q <= 2.0 * _REST * ask.speed
-    across = math.sqrt(max(pull * pull - way[3] * way[3], 0.0))
-    quick = way[3] < -_SLOW * stretch.dry.load / stretch.model.body.mass / slow
-    excess = excess_at_rest(stretch, t, y)[0] if way[3] < 0.0 else 0.0
-    if leaning and excess == math.inf:  # it goes through rest, for the floor goes into the wall
-        still = across <= _SETTLED * -way[3] or q <= _LOST * ask.speed
-        quick = False
-    elif excess > SLACK * stretch.dry.load:
-        return _NO_WAY
-    if not (quick and across <= -way[3]) and not still:
-        return _NO_WAY
-    for i in range(stretch.leaning.shape[0]):  # the rim may stick before
-        sticks = abs(watched(stretch, i, y)) <= _FAR * q
-        rolls = stretch.leaning[i, RIM] == 0.0 and excess == math.inf  # and goes on to
-        unsure = stretch.leaning[i, GRIP] > 0.0 and sticks and not rolls
-        if unsure and q > 2.0 * _REST * ask.speed:
-            return _NO_WAY
-    return way if way[3] < 0.0 else _NO_WAY
-
-
 @kernel
 def follow(
     model: Model,
@@ -235,7 +208,7 @@ def follow(
     count, steps, frame, wrong = 0, 0, 0, 0.0
     # by so much longer than the centre a spin takes to brake
     slow = max(1.0, 2.0 * body.inertia / (body.mass * body.radius * body.radius))
-    straight = max(_LAST * ask.tolerance / slow, 2.0 * _REST) * ask.speed
+    straight = max(_LAST * ask.tolerance / slow, 2.0 * REST) * ask.speed
     damps, turns = settling_rates(model, dry.load)
     how = TIME_UP
     h = 1e-3 * min(ask.until, scale[0] / ask.speed)
@@ -258,7 +231,7 @@ def follow(
                 leaning, mode = contacts.rows[: touching(bounds, contacts)], SLIDES
             to_laboratory(model, y, -1.0)
         q = slip_speed(radius, y)
-        if settle and dry.load > 0.0 and q <= _REST * ask.speed:
+        if settle and dry.load > 0.0 and q <= REST * ask.speed:
             y[VX] = y[VY] = y[SPIN] = 0.0
             mode = CARRIED
             if leaning.shape[0] > 0:
@@ -275,7 +248,7 @@ def follow(
             elif excess == math.inf:  # the floor goes into a wall, and under the puck
                 mode, stiff = SLIDES, True
                 sx, sy, _ = floor_velocity(surface, y[X], y[Y])
-                off, q = -(nx * sx + ny * sy), 2.0 * _REST * ask.speed
+                off, q = -(nx * sx + ny * sy), 2.0 * REST * ask.speed
                 if abs(off) > q:
                     y[VX], y[VY], q = off * nx, off * ny, abs(off)
                 else:
@@ -284,7 +257,7 @@ def follow(
                     settle_way(stretch, t, q, y, work)
             elif excess > SLACK * dry.load:
                 mode, stiff = SLIDES, True
-                q = _FIRST * ask.speed if leaning.shape[0] == 0 else 2.0 * _REST * ask.speed
+                q = _FIRST * ask.speed if leaning.shape[0] == 0 else 2.0 * REST * ask.speed
                 y[VX], y[VY], y[SPIN] = q * nx, q * ny, q * nw
                 if leaning.shape[0] > 0:
                     stretch = Stretch(model, dry, leaning, piece, SLIDES, _NO_WAY, 0.0)
@@ -299,7 +272,7 @@ def follow(
             if mode == CARRIED and t >= calm:
                 alone = piece == len(drive) and unbounded and not ask.to_the_end
                 if alone if moves else rests_on(model, dry, leaning, piece, y):
-                    how = CARRIED_AWAY if moves else AT_REST  # nothing is to come
+                    how = CARRIED_AWAY if moves else ATREST  # nothing is to come
                     break
             h = max(h, 1e-6 * (target - t))
             known = False
@@ -318,11 +291,11 @@ def follow(
         settle, known = False, True
         if mode == SLIDES and dry.load > 0.0:
             pull = slip_rate(radius, work)
-            near = _NEAR * max(q, _REST * ask.speed)
+            near = _NEAR * max(q, REST * ask.speed)
             h = near / pull if h * pull > near else h
             way = _NO_WAY
             if 0.0 < q <= straight:
-                way = _goes_straight(stretch, ask, t, q, pull, slow, y, work)
+                way = goes_straight(stretch, ask.speed, t, q, pull, slow, y, work)
             if way[3] < 0.0:
                 mode, known = STOPS, False
                 continue
@@ -402,7 +375,7 @@ def follow(
             known = known and stiff == was
         if landed and (target < ask.until or t == calm):
             settle = True
-        if mode in (SLIDES, STOPS) and q <= _REST * ask.speed and q < before_it:
+        if mode in (SLIDES, STOPS) and q <= REST * ask.speed and q < before_it:
             settle = True
         if leaning.shape[0] > 0:
             to_laboratory(model, y, 1.0)
@@ -455,7 +428,7 @@ def follow(
     stretch = Stretch(model, dry, leaning, piece, mode, way, 0.0)
     if how == TIME_UP and mode == CARRIED and moves:
         how = CARRIED_AWAY
-    while how == AT_REST and frame < len(frames):  # for ever
+    while how == ATREST and frame < len(frames):  # for ever
         _framed(rows[frame], stretch, frames[frame], y, heat, work)
         frame += 1
     _framed(rows[frame], stretch, t, y, heat, work)

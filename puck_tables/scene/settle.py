@@ -4,7 +4,7 @@ Rebounds from a wall towards which the puck is driven are a geometric series: ea
 the last by a factor q < 1 (the restitution, and what friction takes on the way), and takes less
 time by the same factor.  So the rest of the series takes τ q/(1 − q) after a rebound that took τ.
 From where that rest is so short that nothing else changes in it, up to its square, the puck leans;
-what the rest of the rebounds does to a rough rim is summed in :mod:`puck_tables.scene.series`.
+what the rest of the rebounds does to a rough rim is summed up.
 Between two walls that leave it no room, where it is slow enough, or where impacts follow each other
 at one place, the puck comes to lie in their corner.
 """
@@ -27,13 +27,13 @@ from puck_tables.scene.cushions import (
     TANGENTIAL,
     push_rim,
     rebound,
+    rest_of_rim,
     rim_compliance,
     rim_slip,
 )
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y, size
 from puck_tables.scene.ingredients import Body
 from puck_tables.scene.leaning import GRIP, LEAN_COLUMNS, LOCKS, RIM, come_to_lean
-from puck_tables.scene.series import rest_of_rim
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -26,7 +26,7 @@ def draw(seed: int, index: int) -> dict[str, Any]:
     """A puck that is driven against one wall; ``class``: of what kind."""
     rng = np.random.default_rng([seed, index, 7])
     kind, rough = KINDS[index % 4], bool(index // 4 % 2)
-    restitution = float(rng.choice(STEEP + [0.3, 0.5, 0.7, 0.8, 0.9, 0.97, 0.99, 0.999]))
+    restitution = float(rng.choice([*STEEP, 0.3, 0.5, 0.7, 0.8, 0.9, 0.97, 0.99, 0.999]))
     friction = float(rng.choice([0.0, 0.05, 0.1, 0.3]))
     if kind in ("belt", "turntable"):
         friction = max(friction, 0.05)
