@@ -81,7 +81,7 @@ from puck_tables.scene.steps import STAGES, WIDE, step
 FloatArray = npt.NDArray[np.float64]
 
 # how a run ends
-ATREST, CARRIED_AWAY, TIME_UP, OVER_EDGE, STEP_LIMIT, EVENT_LIMIT, NOT_FINITE = range(7)
+AT_REST, CARRIED_AWAY, TIME_UP, OVER_EDGE, STEP_LIMIT, EVENT_LIMIT, NOT_FINITE = range(7)
 # what happens on the way
 RESTS, SLIPS, LEANS = 0, 1, 3  # and those of boundaries
 
@@ -272,7 +272,7 @@ def follow(
             if mode == CARRIED and t >= calm:
                 alone = piece == len(drive) and unbounded and not ask.to_the_end
                 if alone if moves else rests_on(model, dry, leaning, piece, y):
-                    how = CARRIED_AWAY if moves else ATREST  # nothing is to come
+                    how = CARRIED_AWAY if moves else AT_REST  # nothing is to come
                     break
             h = max(h, 1e-6 * (target - t))
             known = False
@@ -428,7 +428,7 @@ def follow(
     stretch = Stretch(model, dry, leaning, piece, mode, way, 0.0)
     if how == TIME_UP and mode == CARRIED and moves:
         how = CARRIED_AWAY
-    while how == ATREST and frame < len(frames):  # for ever
+    while how == AT_REST and frame < len(frames):  # for ever
         _framed(rows[frame], stretch, frames[frame], y, heat, work)
         frame += 1
     _framed(rows[frame], stretch, t, y, heat, work)
