@@ -1,4 +1,4 @@
-"""A puck against straight cushions: impacts, and sustained contact.
+"""A puck against straight cushions: impacts, and the rim along them.
 
 With n the unit normal of the wall, into the field, and τ = (−n_y, n_x), the rim touches the wall at
 −r n and slides along it with u = v·τ − r ω.  The impulses of an impact are
@@ -8,27 +8,32 @@ With n the unit normal of the wall, into the field, and τ = (−n_y, n_x), the 
 e the restitution, e_τ the tangential one (−1: a smooth wall, 0: the rim rolls off, 1: u reversed),
 μ the friction of the cushion.  They act at the rim, so v and ω change by P/m and −r P_τ/I.
 
-Sustained contact is the limit of small rebounds: a reaction N ≥ 0 that takes the force towards the
-wall, and Coulomb's friction at the rim, −μ N against u, or what keeps u = 0 if that is less.
+Of rebounds that die out each next normal impulse is that before times q, P q, P q², …, and so are
+the hops τ, τ q, …  Between two of them what acts changes the rim's slip u at a steady rate a, and
+each changes it by −(1 + e_τ) u, at most by μ c P_j (c the compliance of the rim).  All this is of
+the order of the rest of the time R, or is a slip that is reversed without end; so the impulses are
+given as one at the start, such that the puck gets as far as with all of them, and one at the end.
+That is right up to R².
 """
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.kernels.compile import inlined
-from puck_tables.scene.friction import SPIN, VX, VY, size
+from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.scene.friction import SPIN, VX, VY
 from puck_tables.scene.ingredients import Body
 
 FloatArray = npt.NDArray[np.float64]
 
-# columns of a wall (its place moved in by the radius), and of a wall that the puck leans on
+# columns of a wall, its place moved in by the radius
 NX, NY, PLACE, RESTITUTION, TANGENTIAL, FRICTION = range(6)
-GRIP, RIM = 2, 3  # the friction coefficient at the rim; −1, 0, 1: the rim slides back, rolls, on
-LEAN_COLUMNS = 4
 
-_LEVEL = 1e-15  # of a force: as good as none
+_LONGEST = 200_000  # rebounds that are taken one by one
+_NOTHING = 1e-18  # of the first: no impulse
 
 
 @inlined
@@ -57,86 +62,57 @@ def rim_compliance(body: Body) -> float:
 
 
 @inlined
-def _rim_force(
-    body: Body, lean: FloatArray, push: float, fx: float, fy: float, torque: float
-) -> float:
-    """Friction along a wall that pushes with ``push`` while (fx, fy, torque) act on the puck."""
-    most = lean[GRIP] * push
-    if lean[RIM] != 0.0:
-        return -lean[RIM] * most
-    along = lean[NX] * fy - lean[NY] * fx
-    rolls = body.radius * torque / body.inertia - along / body.mass
-    return min(max(rolls / rim_compliance(body), -most), most)
+def push_rim(body: Body, nx: float, ny: float, change: float, y: FloatArray) -> None:
+    """Change the rim's slip along a wall by an impulse there; ``y`` in the laboratory."""
+    along = change / rim_compliance(body)
+    y[VX] -= along * ny / body.mass
+    y[VY] += along * nx / body.mass
+    y[SPIN] -= body.radius * along / body.inertia
 
 
-@inlined
-def wall_reaction(
-    body: Body, leaning: FloatArray, fx: float, fy: float, torque: float
-) -> tuple[float, float, float]:
-    """Force and torque of the walls that the puck leans on, rows (n, 4), against what acts.
+@kernel
+def rest_of_rim(
+    slip: float, rate: float, hop: float, ratio: float, most: float, tangential: float
+) -> tuple[float, float, bool]:
+    """Changes of the rim's slip over the rest of a series: on average, in all; whether it rolls.
 
-    One wall, if it alone keeps the puck out of all; else two, which hold it.
+    ``slip``: after the last rebound; ``rate``: m/s² by what else acts; ``hop``: s to the next one;
+    ``ratio``: of each to the one before; ``most``: m/s that the next one may change; ``tangential``
+    : restitution e_τ.
     """
-    count, level = leaning.shape[0], _LEVEL * size(fx, fy, 0.0)
-    pushed = False
-    for i in range(count):
-        nx, ny = leaning[i, NX], leaning[i, NY]
-        push = -(nx * fx + ny * fy)
-        if push <= 0.0:
-            continue
-        pushed = True
-        along = _rim_force(body, leaning[i], push, fx, fy, torque)
-        rx, ry = push * nx - along * ny, push * ny + along * nx
-        free = True
-        for j in range(count):
-            other = leaning[j, NX] * (fx + rx) + leaning[j, NY] * (fy + ry)
-            free = free and (j == i or other >= -level)
-        if free:
-            return rx, ry, -body.radius * along
-    if not pushed:
-        return 0.0, 0.0, 0.0
-    for i in range(count):
-        for j in range(i + 1, count):
-            first, second = _corner(leaning[i], leaning[j], fx, fy)
-            if first >= -level and second >= -level:
-                grip = leaning[i, GRIP] * max(first, 0.0) + leaning[j, GRIP] * max(second, 0.0)
-                side = leaning[i, RIM]
-                if side == 0.0:  # it neither moves nor turns, up to what the rim can bear
-                    turning = min(max(-torque, -body.radius * grip), body.radius * grip)
-                else:
-                    turning = side * body.radius * grip
-                return -fx, -fy, turning
-    return -fx, -fy, 0.0  # between more walls than two: held
-
-
-@inlined
-def _corner(one: FloatArray, other: FloatArray, fx: float, fy: float) -> tuple[float, float]:
-    """Reactions of two walls that hold a puck against a force, friction at both rims included."""
-    slide, glide = one[RIM] * one[GRIP], other[RIM] * other[GRIP]
-    ax, ay = one[NX] + slide * one[NY], one[NY] - slide * one[NX]
-    bx, by = other[NX] + glide * other[NY], other[NY] - glide * other[NX]
-    det = ax * by - ay * bx
-    if abs(det) <= _LEVEL * size(ax, ay, 0.0) * size(bx, by, 0.0):
-        return -1.0, -1.0
-    return (bx * fy - by * fx) / det, (ay * fx - ax * fy) / det
-
-
-@inlined
-def keep_out(leaning: FloatArray, y: FloatArray) -> None:
-    """Take the velocity, in the laboratory, into walls that the puck leans on: it is rounding."""
-    for i in range(leaning.shape[0]):
-        off = min(leaning[i, NX] * y[VX] + leaning[i, NY] * y[VY], 0.0)
-        y[VX] -= off * leaning[i, NX]
-        y[VY] -= off * leaning[i, NY]
-
-
-@inlined
-def come_to_lean(leaning: FloatArray, y: FloatArray) -> None:
-    """Take the velocity, in the laboratory, towards and away from walls that the puck leans on."""
-    nx, ny = leaning[0, NX], leaning[0, NY]
-    off = nx * y[VX] + ny * y[VY]
-    y[VX] -= off * nx
-    y[VY] -= off * ny
-    for i in range(1, leaning.shape[0]):
-        if abs(nx * leaning[i, NY] - ny * leaning[i, NX]) > 1e-12:  # a corner: nowhere to go
-            y[VX] = y[VY] = 0.0
+    total, area, u, tau, cap = 0.0, 0.0, slip, hop, most
+    for _ in range(_LONGEST):
+        area += total * tau
+        u += rate * tau
+        tau *= ratio
+        wish = -(1.0 + tangential) * u
+        change = min(max(wish, -cap), cap)
+        total += change
+        u += change
+        cap *= ratio
+        left = tau / (1.0 - ratio)
+        if change != wish:
+            budget = cap / (1.0 - ratio)
+            least = abs(u) - abs(rate) * left - budget
+            if (1.0 + tangential) * least >= cap:  # it slides for good
+                sign = 1.0 if u > 0.0 else -1.0
+                area += total * left - sign * budget * (left - tau / (1.0 - ratio * ratio))
+                total -= sign * budget
+                return area * (1.0 - ratio) / hop, total, False
+        elif cap == math.inf:
+            grows = abs(u)
+        else:
+            share = abs(tangential) / ratio
+            grows = (abs(u) + abs(rate) * tau / (1.0 - share)) if share < 1.0 else math.inf
+        if change == wish and (1.0 + tangential) * grows <= cap:  # reversed for good
+            # u_j → −e_τ (u_j + a τ_j): one part follows the hops, the rest is reversed
+            gap = ratio + tangential
+            part = -tangential * rate / gap if abs(gap) > 1e-3 else 0.0
+            squares = tau / (1.0 - ratio * ratio)
+            area += (total - u) * left + (u - part * tau) * tau / (1.0 + tangential * ratio)
+            area += part * tau * squares - rate * left * (left - squares)
+            total -= u + rate * left
+            return area * (1.0 - ratio) / hop, total, True
+        if cap <= _NOTHING * most and tau <= _NOTHING * hop:
+            break
+    return area * (1.0 - ratio) / hop, total, abs(u) <= 1e-15 * (abs(slip) + most)

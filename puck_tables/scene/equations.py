@@ -17,7 +17,6 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.kernels.compile import inlined, kernel
-from puck_tables.scene.cushions import wall_reaction
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y, dry_friction, size
 from puck_tables.scene.ingredients import (
     CARRIED,
@@ -31,6 +30,7 @@ from puck_tables.scene.ingredients import (
     given_force,
     held,
 )
+from puck_tables.scene.leaning import wall_reaction
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -82,6 +82,16 @@ def stopping(radius: float, y: FloatArray, work: FloatArray) -> tuple[float, flo
     return y[VX] / q, y[VY] / q, y[SPIN] / q, rate / q
 
 
+@inlined
+def acting_force(stretch: Stretch, t: float, y: FloatArray) -> tuple[float, float]:
+    """All force on the puck but that of walls and constraints."""
+    model = stretch.model
+    gx, gy, _ = given_force(model, stretch.piece, t)
+    hx, hy, _, _ = dry_friction(stretch.dry, model.body.radius, y[VX], y[VY], y[SPIN])
+    dx, dy, _, _ = drag_force(model.drag, y[VX], y[VY], y[SPIN])
+    return gx + hx + dx, gy + hy + dy
+
+
 @kernel
 def rates(stretch: Stretch, t: float, y: FloatArray, out: FloatArray, row: int) -> None:
     """d/dt of the state and λ into out[row] (12,); λ is not determined at rest.
@@ -103,7 +113,7 @@ def rates(stretch: Stretch, t: float, y: FloatArray, out: FloatArray, row: int) 
         ax, ay, aw = gain * nx, gain * ny, gain * nw
         out[row, VX], out[row, VY], out[row, SPIN] = ax, ay, aw
         fx, fy, fm = gx - body.mass * cx, gy - body.mass * cy, gm
-        rx, ry, rm = wall_reaction(body, stretch.leaning, fx, fy, fm)
+        rx, ry, rm = wall_reaction(body, stretch.leaning, cx + ax, cy + ay, fx, fy, fm)
         # what the floor and what holds the puck there do besides the given forces and the walls
         fx, fy, fm = body.mass * ax - fx - rx, body.mass * ay - fy - ry, body.inertia * aw - fm - rm
         rim = -(rx * vx + ry * vy + rm * spin)
@@ -116,7 +126,7 @@ def rates(stretch: Stretch, t: float, y: FloatArray, out: FloatArray, row: int) 
     dx, dy, dm, warmth = drag_force(model.drag, y[VX], y[VY], y[SPIN])
     fx, fy, fm = gx + hx + dx, gy + hy + dy, gm + hm + dm
     if stretch.leaning.shape[0] > 0:
-        rx, ry, rm = wall_reaction(body, stretch.leaning, fx, fy, fm)
+        rx, ry, rm = wall_reaction(body, stretch.leaning, 0.0, 0.0, fx, fy, fm)
         heat -= rx * vx + ry * vy + rm * spin
         fx, fy, fm = fx + rx, fy + ry, fm + rm
     rx, ry, rm, first, second, power = held(model.hold, body, model.surface, y, fx, fy, fm)

@@ -125,8 +125,8 @@ class Model(NamedTuple):
 class Stretch(NamedTuple):
     """What acts between two events.
 
-    ``leaning``: the walls that the puck leans on, rows (n, 4), see
-    :func:`puck_tables.scene.cushions.wall_reaction`; ``piece``: how many rows of ``model.drive``
+    ``leaning``: the walls that the puck leans on, rows (n, 5), see
+    :func:`puck_tables.scene.leaning.wall_reaction`; ``piece``: how many rows of ``model.drive``
     have passed; ``mode`` SLIDES, CARRIED (at rest on the floor), STOPS: with the constant relative
     acceleration way[3] times the direction way[:3]; ``newton``: 0 for explicit steps; for implicit
     ones, where the slip settles much faster than it changes, how well to solve their equations, in

@@ -25,22 +25,22 @@ from puck_tables.scene.boundaries import (
     Boundaries,
     first_crossing,
 )
-from puck_tables.scene.cushions import GRIP, NX, NY, RIM
+from puck_tables.scene.cushions import NX, NY
 from puck_tables.scene.equations import (
     FIRST,
     ROW,
     SECOND,
     SIZE,
+    acting_force,
     kinetic_energy,
     rates,
     settling_rates,
     slip_rate,
     slip_side,
     slip_speed,
-    stopping,
     to_laboratory,
 )
-from puck_tables.scene.friction import SPIN, VX, VY
+from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.scene.ingredients import (
     CARRIED,
     FREE,
@@ -50,14 +50,27 @@ from puck_tables.scene.ingredients import (
     Model,
     Regions,
     Stretch,
+    floor_velocity,
 )
-from puck_tables.scene.moments import EQUAL, lost, rests_on, watched, zero
-from puck_tables.scene.rest import SLACK, excess_at_rest, held_by_floor
+from puck_tables.scene.leaning import GRIP, RIM
+from puck_tables.scene.moments import (
+    EQUAL,
+    REST,
+    goes_straight,
+    lost,
+    rests_on,
+    settle_way,
+    watched,
+    zero,
+)
+from puck_tables.scene.rest import SLACK, excess_at_rest
 from puck_tables.scene.settle import (
     Contacts,
     bounced,
     contacts_for,
     departed,
+    gripped,
+    look_at_rims,
     look_at_walls,
     rims_after,
     settled,
@@ -75,10 +88,8 @@ RESTS, SLIPS, LEANS = 0, 1, 3  # and those of boundaries
 FRAME_COLUMNS = ROW + 3  # time, state, λ, carried, heat of impacts
 EVENT_COLUMNS = 3 + SIZE  # time, what, which, state
 
-_REST = 1e-13  # of the scale of speeds: as good as at rest
 _FIRST = 1e-16  # of it: what a slip begins with, for its direction
 _LAST = 30.0  # times the local error: from there a stop goes straight
-_SLOW = 1e-3  # of friction: what brakes less comes closer to rest before it goes straight
 _NEAR = 0.5  # of the time in which the slip would end, at most, is a step
 _STIFF, _MILD = 0.8, 0.3  # of the time in which a slip settles: longer steps are implicit,
 _SLOWLY = 0.1  # if the slip changes by less than this of itself meanwhile
@@ -155,26 +166,6 @@ def _dry(regions: Regions, region: int) -> Dry:
     return Dry(regions.load[region], regions.delta[region], regions.cuts[region], regions.by_speed)
 
 
-@inlined
-def _goes_straight(
-    stretch: Stretch, ask: Ask, t: float, q: float, pull: float, slow: float, y: FloatArray,
-    work: FloatArray,
-) -> tuple[float, float, float, float]:  # fmt: skip
-    """The way of a slip that is about to stop: its direction and rate; no rate: not yet.
-
-    What brakes slowly takes so long that its direction must have settled, and all else be small.
-    """
-    way = stopping(stretch.model.body.radius, y, work)
-    quick = way[3] < -_SLOW * stretch.dry.load / stretch.model.body.mass / slow
-    across = math.sqrt(max(pull * pull - way[3] * way[3], 0.0))
-    if not (quick and across <= -way[3]) and q > 2.0 * _REST * ask.speed:
-        return _NO_WAY
-    for i in range(stretch.leaning.shape[0]):  # the rim may stick before
-        if stretch.leaning[i, GRIP] > 0.0 and q > 2.0 * _REST * ask.speed:
-            return _NO_WAY
-    return way if way[3] < 0.0 and held_by_floor(stretch, t, y) else _NO_WAY
-
-
 @kernel
 def follow(
     model: Model,
@@ -217,7 +208,7 @@ def follow(
     count, steps, frame, wrong = 0, 0, 0, 0.0
     # by so much longer than the centre a spin takes to brake
     slow = max(1.0, 2.0 * body.inertia / (body.mass * body.radius * body.radius))
-    straight = max(_LAST * ask.tolerance / slow, 2.0 * _REST) * ask.speed
+    straight = max(_LAST * ask.tolerance / slow, 2.0 * REST) * ask.speed
     damps, turns = settling_rates(model, dry.load)
     how = TIME_UP
     h = 1e-3 * min(ask.until, scale[0] / ask.speed)
@@ -230,20 +221,47 @@ def follow(
         target = min(drive[piece, 0], ask.until) if piece < len(drive) else ask.until
         if calm > t:
             target = min(target, calm)
+        if settle and leaning.shape[0] > 0:
+            stretch = Stretch(model, dry, leaning, piece, mode, way, 0.0)
+            fx, fy = acting_force(stretch, t, y)
+            to_laboratory(model, y, 1.0)
+            before = kinetic_energy(body, y)
+            if gripped(bounds, contacts, body, fx, fy, y, ask.speed):
+                heat += before - kinetic_energy(body, y)
+                leaning, mode = contacts.rows[: touching(bounds, contacts)], SLIDES
+            to_laboratory(model, y, -1.0)
         q = slip_speed(radius, y)
-        if settle and dry.load > 0.0 and q <= _REST * ask.speed:
+        if settle and dry.load > 0.0 and q <= REST * ask.speed:
             y[VX] = y[VY] = y[SPIN] = 0.0
             mode = CARRIED
+            if leaning.shape[0] > 0:
+                to_laboratory(model, y, 1.0)
+                look_at_rims(bounds, contacts, body, y, ask.speed)
+                to_laboratory(model, y, -1.0)
+                y[VX] = y[VY] = y[SPIN] = 0.0
+                leaning = contacts.rows[: touching(bounds, contacts)]
             excess, nx, ny, nw = excess_at_rest(
                 Stretch(model, dry, leaning, piece, CARRIED, _NO_WAY, 0.0), t, y
             )
-            if excess == math.inf:  # where a constraint leads it the floor does not go
+            if excess == math.inf and held_there:  # it is led where the floor does not go
                 mode, stiff = SLIDES, False
+            elif excess == math.inf:  # the floor goes into a wall, and under the puck
+                mode, stiff = SLIDES, True
+                sx, sy, _ = floor_velocity(surface, y[X], y[Y])
+                off, q = -(nx * sx + ny * sy), 2.0 * REST * ask.speed
+                if abs(off) > q:
+                    y[VX], y[VY], q = off * nx, off * ny, abs(off)
+                else:
+                    y[VX], y[VY] = q * nx, q * ny
+                    stretch = Stretch(model, dry, leaning, piece, SLIDES, _NO_WAY, 0.0)
+                    settle_way(stretch, t, q, y, work)
             elif excess > SLACK * dry.load:
                 mode, stiff = SLIDES, True
-                first = _FIRST * ask.speed
-                y[VX], y[VY], y[SPIN] = first * nx, first * ny, first * nw
-                q = first
+                q = _FIRST * ask.speed if leaning.shape[0] == 0 else 2.0 * REST * ask.speed
+                y[VX], y[VY], y[SPIN] = q * nx, q * ny, q * nw
+                if leaning.shape[0] > 0:
+                    stretch = Stretch(model, dry, leaning, piece, SLIDES, _NO_WAY, 0.0)
+                    settle_way(stretch, t, q, y, work)
             if (mode == CARRIED) != resting and (t >= calm or mode != CARRIED):
                 if count == len(events):
                     how = EVENT_LIMIT
@@ -273,11 +291,11 @@ def follow(
         settle, known = False, True
         if mode == SLIDES and dry.load > 0.0:
             pull = slip_rate(radius, work)
-            near = _NEAR * max(q, _REST * ask.speed)
+            near = _NEAR * max(q, REST * ask.speed)
             h = near / pull if h * pull > near else h
             way = _NO_WAY
             if 0.0 < q <= straight:
-                way = _goes_straight(stretch, ask, t, q, pull, slow, y, work)
+                way = goes_straight(stretch, ask.speed, t, q, pull, slow, y, work)
             if way[3] < 0.0:
                 mode, known = STOPS, False
                 continue
@@ -290,6 +308,12 @@ def follow(
             how = STEP_LIMIT
             break
         power = 0.25 if newton > 0.0 else 0.2
+        lifts = 0.0  # off a wall that the puck leant on: from where it leaves, it may come back
+        for i in range(leaning.shape[0]):
+            lifts = max(lifts, leaning[i, NX] * new[SIZE] + leaning[i, NY] * new[SIZE + 1])
+        if lifts > ask.tolerance * scale[0] and error <= ask.tolerance:
+            h = 0.25 * length
+            continue
         if not error <= ask.tolerance:
             shrink = 0.25 if newton > 0.0 else 0.1
             if error < math.inf:
@@ -339,8 +363,7 @@ def follow(
         for i in range(SIZE):
             y[i] = new[i]
         for i in range(room.size):
-            if not leans[i]:
-                room[i] += bounds.walls[i, NX] * new[SIZE] + bounds.walls[i, NY] * new[SIZE + 1]
+            room[i] += bounds.walls[i, NX] * new[SIZE] + bounds.walls[i, NY] * new[SIZE + 1]
         for i in range(ROW):
             work[0, i] = last[i]
         known = happens < 0 and mode == SLIDES and not held_there and leaning.shape[0] == 0
@@ -352,17 +375,20 @@ def follow(
             known = known and stiff == was
         if landed and (target < ask.until or t == calm):
             settle = True
-        if mode in (SLIDES, STOPS) and q <= _REST * ask.speed and q < before_it:
+        if mode in (SLIDES, STOPS) and q <= REST * ask.speed and q < before_it:
             settle = True
         if leaning.shape[0] > 0:
             to_laboratory(model, y, 1.0)
+            before = kinetic_energy(body, y)
             changed = rims_after(bounds, contacts, body, y, stuck, ask.speed)
-            changed = departed(bounds, contacts, y, ask.speed) or changed
-            to_laboratory(model, y, -1.0)
             if 0.0 < calm <= t:
                 calm = 0.0
-                settled(contacts)
+                settled(bounds, contacts, body, y, ask.speed)
                 changed = True
+            if mode != STOPS:  # its last slip is rounding
+                changed = departed(bounds, contacts, y, ask.speed) or changed
+            heat += before - kinetic_energy(body, y)
+            to_laboratory(model, y, -1.0)
             if changed:
                 leaning = contacts.rows[: touching(bounds, contacts)]
         if happens < 0:
@@ -386,6 +412,8 @@ def follow(
             if rest_time >= 0.0:
                 happens = LEANS
                 calm = max(calm, t + rest_time) if rest_time > 0.0 else calm
+                share = ask.speed * rest_time / scale[0]
+                wrong += share * share
             leaning = contacts.rows[: touching(bounds, contacts)]
         if count == len(events):
             how = EVENT_LIMIT

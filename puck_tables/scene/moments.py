@@ -9,17 +9,30 @@ import numpy.typing as npt
 
 from puck_tables.kernels.compile import inlined, kernel
 from puck_tables.scene.cushions import NX, NY, rim_slip
-from puck_tables.scene.equations import slip_side
-from puck_tables.scene.friction import SPIN, VX, VY
-from puck_tables.scene.ingredients import CARRIED, Dry, Model, Stretch, floor_velocity
+from puck_tables.scene.equations import SECOND, rates, slip_side, stopping
+from puck_tables.scene.friction import SPIN, VX, VY, size
+from puck_tables.scene.ingredients import (
+    CARRIED,
+    NO_WAY,
+    Dry,
+    Model,
+    Stretch,
+    floor_velocity,
+)
+from puck_tables.scene.leaning import GRIP, RIM
 from puck_tables.scene.rest import SLACK, excess_at_rest, held_by_floor
 from puck_tables.scene.steps import step
 
 FloatArray = npt.NDArray[np.float64]
 
 EQUAL = -1  # watched: equal speeds of centre and rim; else the rim on a wall that is leant on
+_TURNS, _SETTLED = 3000, 1e-12  # at most; of friction: a direction stays
+_SLOW = 1e-3  # of friction: what brakes less comes closer to rest before it goes straight
+_STEADY = 1e-4  # of its rate: a slip whose direction does not change
+_LOST = 1e-10  # of the scale of speeds: rounding of places turns the slip
+_FAR = 10.0  # times the slip: a rim that slides so fast does not stop before
+REST = 1e-13  # of the scale of speeds: as good as at rest
 _MARGIN = 0.2  # of friction
-_NO_WAY = (0.0, 0.0, 0.0, 0.0)
 
 
 @kernel
@@ -67,7 +80,7 @@ def rests_on(model: Model, dry: Dry, leaning: FloatArray, piece: int, y: FloatAr
         return True
     for row in range(piece, rows + 1):  # at last what is left when the rows have ended
         at = row if row == rows else max(row, 1)
-        stretch = Stretch(model, dry, leaning, at, CARRIED, _NO_WAY, 0.0)
+        stretch = Stretch(model, dry, leaning, at, CARRIED, NO_WAY, 0.0)
         if excess_at_rest(stretch, model.drive[min(row, rows - 1), 0], y)[0] > level:
             return False
     return True
@@ -108,3 +121,58 @@ def zero(
             low, first, last = middle, value, 0.5 * last
     step(stretch, t, high, y, scale, work, new)
     return high
+
+
+@kernel
+def settle_way(stretch: Stretch, t: float, q: float, y: FloatArray, work: FloatArray) -> None:
+    """Turn a slip of size q that begins into the direction that it keeps.
+
+    A small slip turns by Q n′ = a − (a·n) n, much faster than it grows; that is followed.
+    """
+    radius = stretch.model.body.radius
+    load, mass = stretch.dry.load, stretch.model.body.mass
+    pace, before = 0.3 * mass / load, math.inf
+    for _ in range(_TURNS):
+        rates(stretch, t, y, work, SECOND)
+        wx, wy, ww = y[VX] / q, y[VY] / q, radius * y[SPIN] / q
+        ax, ay, aw = work[SECOND, VX], work[SECOND, VY], radius * work[SECOND, SPIN]
+        gain = ax * wx + ay * wy + aw * ww
+        ox, oy, ow = ax - gain * wx, ay - gain * wy, aw - gain * ww
+        off = size(ox, oy, ow)
+        if not off > _SETTLED * load / mass:
+            return
+        pace *= 0.7 if off > before else 1.03
+        before = off
+        wx, wy, ww = wx + pace * ox, wy + pace * oy, ww + pace * ow
+        whole = q / size(wx, wy, ww)
+        y[VX], y[VY], y[SPIN] = whole * wx, whole * wy, whole * ww / radius
+
+
+@inlined
+def goes_straight(
+    stretch: Stretch, speed: float, t: float, q: float, pull: float, slow: float, y: FloatArray,
+    work: FloatArray,
+) -> tuple[float, float, float, float]:  # fmt: skip
+    """The way of a slip that is about to stop: its direction and rate; no rate: not yet.
+
+    What brakes slowly takes so long that its direction must have settled, and all else be small.
+    """
+    way = stopping(stretch.model.body.radius, y, work)
+    leaning, still = stretch.leaning.shape[0] > 0, q <= 2.0 * REST * speed
+    across = math.sqrt(max(pull * pull - way[3] * way[3], 0.0))
+    quick = way[3] < -_SLOW * stretch.dry.load / stretch.model.body.mass / slow
+    excess = excess_at_rest(stretch, t, y)[0] if way[3] < 0.0 else 0.0
+    if leaning and excess == math.inf:  # it goes through rest, for the floor goes into the wall
+        still = across <= _STEADY * -way[3] or q <= _LOST * speed
+        quick = False
+    elif excess > SLACK * stretch.dry.load:
+        return NO_WAY
+    if not (quick and across <= -way[3]) and not still:
+        return NO_WAY
+    for i in range(stretch.leaning.shape[0]):  # the rim may stick before
+        sticks = abs(watched(stretch, i, y)) <= _FAR * q
+        rolls = stretch.leaning[i, RIM] == 0.0 and excess == math.inf  # and goes on to
+        unsure = stretch.leaning[i, GRIP] > 0.0 and sticks and not rolls
+        if unsure and q > 2.0 * REST * speed:
+            return NO_WAY
+    return way if way[3] < 0.0 else NO_WAY

@@ -14,7 +14,6 @@ from puck_tables.executor import in_slices
 from puck_tables.safe_read import read_rows
 from puck_tables.scene.boundaries import Boundaries
 from puck_tables.scene.bulk import follow_many
-from puck_tables.scene.cushions import LEAN_COLUMNS
 from puck_tables.scene.equations import SIZE
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
 from puck_tables.scene.ingredients import (
@@ -33,6 +32,7 @@ from puck_tables.scene.ingredients import (
     Stretch,
     Surface,
 )
+from puck_tables.scene.leaning import LEAN_COLUMNS
 from puck_tables.scene.loop import Ask, desk_for, follow
 from puck_tables.scene.regions import friction_error, regions_of
 from puck_tables.scene.rest import excess_at_rest

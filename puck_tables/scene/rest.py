@@ -18,8 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.kernels.compile import inlined, kernel
-from puck_tables.scene.cushions import GRIP, NX, NY, RIM, wall_reaction
-from puck_tables.scene.friction import THETA, X, Y, at_slip_zero, dry_friction, size
+from puck_tables.scene.friction import THETA, X, Y, at_slip_zero, dry_friction
 from puck_tables.scene.ingredients import (
     BLADE,
     FREE,
@@ -32,6 +31,15 @@ from puck_tables.scene.ingredients import (
     carried_along,
     floor_velocity,
     given_force,
+)
+from puck_tables.scene.leaning import (
+    GRIP,
+    NX,
+    NY,
+    RIM,
+    push_of,
+    still_torques,
+    wall_reaction,
 )
 
 FloatArray = npt.NDArray[np.float64]
@@ -142,6 +150,63 @@ def _rim_yield(
     )  # fmt: skip
 
 
+@inlined
+def _wall_yield(
+    dry: Dry, body: Body, leaning: FloatArray, ax: float, ay: float, fx: float, fy: float,
+    torque: float,
+) -> Yield:  # fmt: skip
+    """Where one wall pushes; of a rim that slides along it the friction is known."""
+    for i in range(leaning.shape[0]):
+        lean = leaning[i]
+        push = push_of(lean, body.mass, ax, ay, fx, fy)
+        if push > 0.0 and lean[RIM] == 0.0 and lean[GRIP] > 0.0:
+            most = lean[GRIP] * push
+            return _rim_yield(dry, body, lean[NX], lean[NY], most, fx, fy, torque, True)
+    rx, ry, rm = wall_reaction(body, leaning, ax, ay, fx, fy, torque)
+    return _free_yield(dry, body.radius, fx + rx, fy + ry, torque + rm, True)
+
+
+@kernel
+def _corner_yield(
+    dry: Dry, body: Body, leaning: FloatArray, ax: float, ay: float, fx: float, fy: float,
+    torque: float,
+) -> Yield:  # fmt: skip
+    """Where more walls push: two of them hold the force and the floor what torque is left.
+
+    Or one wall and the floor do, or the puck slips along one wall, off the others.
+    """
+    radius, count = body.radius, leaning.shape[0]
+    _, _, _, heat = dry_friction(dry, radius, 0.0, 0.0, 1.0 / radius)
+    best = (math.inf, 0.0, 0.0, 0.0)
+    for i in range(count):
+        for j in range(i + 1, count):
+            if leaning[i, RIM] != 0.0 or leaning[j, RIM] != 0.0:
+                continue
+            holds, low, high = still_torques(leaning[i], leaning[j], fx, fy)
+            need = torque / radius
+            over = max(need - high, low - need, 0.0)
+            if holds and over - heat < best[0]:
+                best = (over - heat, 0.0, 0.0, (1.0 if need > high else -1.0) / radius)
+    if best[0] <= SLACK * dry.load:
+        return best
+    for i in range(count):
+        push = push_of(leaning[i], body.mass, ax, ay, fx, fy)
+        if push == 0.0 or leaning[i, RIM] != 0.0:
+            continue
+        nx, ny = leaning[i, NX], leaning[i, NY]
+        one = _rim_yield(dry, body, nx, ny, leaning[i, GRIP] * push, fx, fy, torque, True)
+        off = True
+        for j in range(count):
+            away = leaning[j, NX] * one[1] + leaning[j, NY] * one[2]
+            off = off and (j == i or away >= -1e-12)
+        if one[0] <= SLACK * dry.load or (off and one[0] < best[0]):
+            best = one
+    if best[0] < math.inf:
+        return best
+    rx, ry, rm = wall_reaction(body, leaning, ax, ay, fx, fy, torque)
+    return _free_yield(dry, radius, fx + rx, fy + ry, torque + rm, True)
+
+
 @kernel
 def excess_at_rest(stretch: Stretch, t: float, y: FloatArray) -> Yield:
     """By how much the power of the best slip at Q = 1 exceeds friction, W, and that slip.
@@ -160,18 +225,17 @@ def excess_at_rest(stretch: Stretch, t: float, y: FloatArray) -> Yield:
         return _constrained_yield(
             dry, model.hold, body, y[THETA], ax, ay, turning, fx, fy, torque, guided
         )
-    pushes, nx, ny, most, rolls = 0, 0.0, 0.0, 0.0, False
-    for i in range(stretch.leaning.shape[0]):
-        push = -(stretch.leaning[i, NX] * fx + stretch.leaning[i, NY] * fy)
-        if push > 1e-15 * size(fx, fy, 0.0):
-            pushes += 1
-            nx, ny = stretch.leaning[i, NX], stretch.leaning[i, NY]
-            most, rolls = stretch.leaning[i, GRIP] * push, stretch.leaning[i, RIM] == 0.0
-    guided = pushes > 0
-    if pushes == 1 and rolls and most > 0.0:
-        return _rim_yield(dry, body, nx, ny, most, fx, fy, torque, guided)
-    rx, ry, rm = wall_reaction(body, stretch.leaning, fx, fy, torque)
-    return _free_yield(dry, body.radius, fx + rx, fy + ry, torque + rm, guided)
+    leaning, pushes, slack = stretch.leaning, 0, SLACK * dry.load
+    for i in range(leaning.shape[0]):
+        nx, ny = leaning[i, NX], leaning[i, NY]
+        if body.mass * (nx * ax + ny * ay) < -slack:  # the floor goes into the wall
+            return math.inf, nx, ny, 0.0
+        pushes += 1 if push_of(leaning[i], body.mass, ax, ay, fx, fy) > 0.0 else 0
+    if pushes > 1:
+        return _corner_yield(dry, body, leaning, ax, ay, fx, fy, torque)
+    if pushes == 1:
+        return _wall_yield(dry, body, leaning, ax, ay, fx, fy, torque)
+    return _free_yield(dry, body.radius, fx, fy, torque, False)
 
 
 @inlined

@@ -12,7 +12,6 @@ import numpy.typing as npt
 
 from puck_tables.kernels.compile import inlined, kernel
 from puck_tables.motion.steppers import DORMAND_PRINCE
-from puck_tables.scene.cushions import keep_out
 from puck_tables.scene.equations import SIZE, rates, to_laboratory
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
 from puck_tables.scene.ingredients import (
@@ -23,16 +22,20 @@ from puck_tables.scene.ingredients import (
     RAIL,
     SLIDES,
     Hold,
+    Model,
     Stretch,
     Surface,
+    carried_along,
     floor_velocity,
 )
+from puck_tables.scene.leaning import keep_on
 from puck_tables.scene.radau import radau_step
 
 FloatArray = npt.NDArray[np.float64]
 
 _A, _C, _E = DORMAND_PRINCE.a, DORMAND_PRINCE.c, DORMAND_PRINCE.e
 STAGES = len(_C)
+_LEVEL = 1e-12  # of the scale of accelerations: none
 WIDE = SIZE + 2  # of a new state: with the way of the step, exact however far out it is
 
 
@@ -57,6 +60,13 @@ def _put_right(hold: Hold, surface: Surface, t: float, y: FloatArray) -> None:
         rim = turning * hold.reach
         y[VX] = y[SPIN] * hold.reach * sine + (hold.vx + rim * sine - sx)
         y[VY] = -y[SPIN] * hold.reach * cosine + (hold.vy - rim * cosine - sy)
+
+
+@inlined
+def _accelerations(model: Model, work: FloatArray, row: int) -> tuple[float, float, float]:
+    """Of the centre in the laboratory, and of the spin."""
+    cx, cy = carried_along(model.surface, work[row, X], work[row, Y])
+    return work[row, VX] + cx, work[row, VY] + cy, work[row, SPIN]
 
 
 @inlined
@@ -112,7 +122,9 @@ def step(
         if model.hold.kind != FREE:
             _put_right(model.hold, model.surface, t + h, new)
         if stretch.leaning.shape[0] > 0:
+            level = _LEVEL * scale[VX] * scale[VX] / scale[X]
+            first, last = _accelerations(model, work, 0), _accelerations(model, work, STAGES - 1)
             to_laboratory(model, new, 1.0)
-            keep_out(stretch.leaning, new)
+            keep_on(model.body, stretch.leaning, first, last, level, new, SIZE)
             to_laboratory(model, new, -1.0)
     return error

@@ -19,13 +19,14 @@ from report import arguments, table
 from verdicts import judged, known
 
 KINDS = ("slope", "force", "belt", "turntable")
+STEEP = [0.0017, 0.02, 0.1]  # most of the speed is lost at once
 
 
 def draw(seed: int, index: int) -> dict[str, Any]:
     """A puck that is driven against one wall; ``class``: of what kind."""
     rng = np.random.default_rng([seed, index, 7])
     kind, rough = KINDS[index % 4], bool(index // 4 % 2)
-    restitution = float(rng.choice([0.3, 0.5, 0.7, 0.8, 0.9, 0.97, 0.99, 0.999]))
+    restitution = float(rng.choice([*STEEP, 0.3, 0.5, 0.7, 0.8, 0.9, 0.97, 0.99, 0.999]))
     friction = float(rng.choice([0.0, 0.05, 0.1, 0.3]))
     if kind in ("belt", "turntable"):
         friction = max(friction, 0.05)
@@ -78,7 +79,7 @@ def draw(seed: int, index: int) -> dict[str, Any]:
         "restitution": restitution,
     }  # fmt: skip
     if rough:
-        wall["tangential"] = float(rng.choice([-0.5, 0.0, 0.5, 1.0]))
+        wall["tangential"] = float(rng.choice([-0.93, -0.5, 0.0, 0.3, 0.5, 0.9, 1.0]))
         wall["friction"] = float(rng.choice([0.05, 0.2, 1.0]))
     elif rng.random() < 0.5:
         wall |= {"tangential": 0.0, "friction": 0.0}

@@ -1,0 +1,183 @@
+"""Rough walls: rims after rebounds that die out, corners, and floors that go into a wall."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.optimize import linprog
+
+from puck_tables.scene.cushions import rest_of_rim
+from puck_tables.scene.leaning import still_torques
+from puck_tables.scene.library import find_scene
+from puck_tables.scene.simulate import simulate_scene
+
+
+@pytest.mark.parametrize("ratio", [0.002, 0.1, 0.5, 0.9, 0.99])
+def test_the_rest_of_a_series_is_the_sum_of_its_rebounds(ratio: float) -> None:
+    """Every rebound one by one: −(1 + e_τ) u, at most what the next impulse gives."""
+    rng = np.random.default_rng(5)
+    for _ in range(60):
+        tangential, hop = rng.uniform(-0.99, 1.0), 1e-4 * 10.0 ** rng.uniform(-1.0, 1.0)
+        rate, most = rng.uniform(-3.0, 3.0), 10.0 ** rng.uniform(-6.0, -2.0)
+        slip = rng.choice([1.0, 1e-3, 1e-5, 0.0]) * rng.uniform(-1.0, 1.0)
+        if abs(ratio + tangential) < 2e-3:
+            continue
+        u, total, area, tau, cap = slip, 0.0, 0.0, hop, most
+        while tau > 1e-19 * hop:
+            area += total * tau
+            u += rate * tau
+            tau *= ratio
+            change = min(max(-(1.0 + tangential) * u, -cap), cap)
+            total, u, cap = total + change, u + change, cap * ratio
+        mean, last, rolls = rest_of_rim(slip, rate, hop, ratio, most, tangential)
+        assert abs(last - total) <= 1e-12
+        assert abs(mean - area * (1.0 - ratio) / hop) <= 1e-12
+        assert not rolls or abs(u) <= 1e-13
+
+
+def leaning_rim(restitution: float, tangential: float, tol: float) -> Any:
+    return simulate_scene({
+        "puck": {"radius": 0.05}, "floor": {"friction": 0.0},
+        "launch": {"velocity": [0.5, -0.3], "spin": 10.0, "position": [0.0, 0.35]},
+        "force": {"constant": [0.7, -1.5]},
+        "wall": [{"point": [0, 0], "normal": [0, 1], "restitution": restitution,
+                  "tangential": tangential}],
+        "run": {"time": 4.0, "tol": tol, "frames": 1},
+    })  # fmt: skip
+
+
+def hand_summed(restitution: float, tangential: float) -> float:
+    """x at 4 s: without a floor all hops are parabolas, and at the end the rim rolls."""
+    m, r = 1.0, 0.05
+    inertia = 0.5 * m * r * r
+    compliance = 1.0 / m + r * r / inertia
+    fall = (-0.3 + math.sqrt(0.09 + 2.0 * 1.5 * 0.3)) / 1.5
+    t, x, vx, spin, vn = fall, 0.5 * fall + 0.35 * fall**2, 0.5 + 0.7 * fall, 10.0, 0.3 + 1.5 * fall
+    while vn > 1e-13:
+        # n = (0, 1): τ = (−1, 0)
+        along = -(1.0 + tangential) * (-vx - r * spin) / compliance
+        vx, spin, vn = vx - along / m, spin - r * along / inertia, restitution * vn
+        hop = 2.0 * vn / 1.5
+        t, x, vx = t + hop, x + vx * hop + 0.35 * hop**2, vx + 0.7 * hop
+    roll = (m * vx - inertia * spin / r) / (m + inertia / (r * r))
+    rest = 4.0 - t
+    return x + roll * rest + 0.5 * 0.7 / (m + inertia / (r * r)) * rest**2
+
+
+@pytest.mark.parametrize("tol", [1e-3, 1e-7, 1e-9, 1e-11])
+@pytest.mark.parametrize(
+    "case", [(0.025, -0.93), (0.0017, 0.9), (0.1, 0.5), (0.01, 0.335), (0.3, 0.5)]
+)
+def test_a_rough_rim_that_settles_is_where_all_rebounds_bring_it(
+    case: tuple[float, float], tol: float
+) -> None:
+    run = leaning_rim(*case, tol)
+    error = abs(run.last["x"] - hand_summed(*case)) / (run.speed_scale**2 / run.rate_scale)
+    assert error <= tol and error <= 2.0 * run.error_estimate + 1e-12
+
+
+@pytest.mark.parametrize("rim", [{}, {"tangential": 1.0, "friction": 1.0}, {"tangential": -0.5}])
+@pytest.mark.parametrize("tol", [1e-3, 1e-6, 1e-9, 1e-11])
+def test_a_turning_floor_carries_no_puck_into_a_wall(rim: dict[str, float], tol: float) -> None:
+    wall = {"point": [0.0, 0.0], "normal": [0.0, 1.0], "restitution": 0.0, **rim}
+    run = simulate_scene({
+        "puck": {"radius": 0.1}, "floor": {"friction": 0.2, "turning": 0.77},
+        "launch": {"velocity": [0.844, -0.148], "spin": 16.0, "position": [0.0, 0.3]},
+        "force": {"constant": [-0.82, -2.8]}, "wall": [wall],
+        "run": {"time": 3.0, "tol": tol},
+    }, np.linspace(0.0, 3.0, 301))  # fmt: skip
+    assert run.columns["y"].min() >= 0.1 - 1e-13
+    assert run.end == "time is up"  # it leans, and the floor slips under it
+    assert len([event for event in run.events if event.what == "leans"]) == 1
+    assert run.energy_residual < max(1e-8, 0.1 * tol)
+
+
+def test_a_floor_that_leads_off_a_wall_carries_a_puck_off() -> None:
+    """The centre of the turntable is on the far side: the carried circle bends off the wall."""
+    run = simulate_scene({
+        "puck": {"radius": 0.1}, "floor": {"friction": 0.5, "turning": 1.0, "centre": [0.0, 1.0]},
+        "launch": {"velocity": [0.9, 0.0], "spin": 1.0, "position": [0.0, 0.1]},
+        "wall": [{"point": [0.0, 0.0], "normal": [0.0, 1.0]}], "run": {"time": 1.0},
+    })  # fmt: skip
+    assert run.end == "carried by the floor"
+    assert run.last["x"] == pytest.approx(0.9 * math.sin(1.0), rel=1e-9)
+    assert run.last["y"] == pytest.approx(1.0 - 0.9 * math.cos(1.0), rel=1e-9)
+
+
+def test_what_two_rough_walls_bear_is_what_a_linear_program_finds() -> None:
+    rng, seen = np.random.default_rng(0), 0
+    for _ in range(400):
+        one = rng.uniform(0.0, 7.0)
+        angles = (one, one + rng.uniform(0.1, 3.0) * rng.choice([-1.0, 1.0]))
+        grips = [float(rng.choice([0.0, rng.uniform(0, 2), rng.uniform(2, 30)])) for _ in range(2)]
+        force = rng.normal(size=2)
+        rows = [
+            np.array([math.cos(a), math.sin(a), 0.0, grip, 0.0])
+            for a, grip in zip(angles, grips, strict=True)
+        ]
+        holds, low, high = still_torques(rows[0], rows[1], force[0], force[1])
+        sides = [(row, sign * row[3]) for row in rows for sign in (1.0, -1.0)]
+        edges = np.array([[r[0] - rim * r[1], r[1] + rim * r[0]] for r, rim in sides])
+        rims = np.array([rim for _, rim in sides])
+        least, most = (
+            linprog(sign * rims, A_eq=edges.T, b_eq=-force, bounds=[(0, None)] * 4)
+            for sign in (1.0, -1.0)
+        )
+        assert holds == (least.status != 2)
+        if holds:
+            seen += 1
+            expected = [
+                found.fun * sign if found.status == 0 else -sign * math.inf
+                for found, sign in ((least, 1.0), (most, -1.0))
+            ]
+            assert [low, high] == pytest.approx(expected, rel=1e-6, abs=1e-6)
+    assert seen > 100
+
+
+@pytest.mark.parametrize("slope", [0.02, 0.05, 0.1])
+@pytest.mark.parametrize("downhill", [0.3, -0.8, 2.0, 4.0])
+def test_a_tilted_air_hockey_table_ends_at_rest(slope: float, downhill: float) -> None:
+    scene: dict[str, Any] = dict(find_scene("air-hockey"))
+    scene["floor"] = {
+        **scene.get("floor", {}),
+        "slope": slope,
+        "downhill": downhill,
+        "friction": 0.01,
+    }
+    scene["run"] = {**scene.get("run", {}), "time": 60.0, "frames": 1, "tol": 1e-6}
+    assert simulate_scene(scene).end == "at rest"
+
+
+@pytest.mark.parametrize("tol", [1e-3, 1e-6, 1e-9])
+def test_rough_walls_hold_a_puck_in_their_corner(tol: float) -> None:
+    walls = [
+        {"point": [0, 0], "normal": normal, "restitution": 0.0, "tangential": 0.5}
+        for normal in ([1, 0], [0, 1])
+    ]
+    run = simulate_scene({
+        "puck": {"radius": 0.05}, "floor": {"friction": 0.1},
+        "launch": {"velocity": [0, -0.5], "spin": 10.0, "position": [0.4, 0.6]},
+        "force": {"constant": [-1.5, -1.0]}, "wall": walls,
+        "run": {"time": 3.0, "tol": tol, "frames": 1},
+    })  # fmt: skip
+    assert run.end == "at rest" and run.steps < 2000
+
+
+def test_a_puck_that_leaves_a_wall_keeps_its_distance_to_it() -> None:
+    """Pulled off at once after an impact without restitution; each impact is at its wall."""
+    run = simulate_scene({
+        "puck": {"radius": 0.1}, "launch": {"velocity": [0.3, -1.0], "position": [0.0, 0.5]},
+        "force": {"constant": [0.0, 1.0]}, "run": {"time": 8.0},
+        "wall": [
+            {"point": [0.0, 0.0], "normal": [0.0, 1.0], "restitution": 0.0},
+            {"point": [0.0, 1.0], "normal": [0.0, -1.0], "restitution": 0.0},
+        ],
+    })  # fmt: skip
+    for event in run.events:
+        if event.what in ("bounces", "leans"):
+            gap = event.y - 0.1 if event.which == 0 else 0.9 - event.y
+            assert abs(gap) <= 1e-14
+    assert run.last["y"] == pytest.approx(0.9, abs=1e-14)
