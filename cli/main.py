@@ -75,9 +75,9 @@ class PuckGroup(click.Group):
             return result
         except click.NoSuchOption as error:
             meant = MEANT.get(error.option_name)
-            if meant is not None:
-                error.possibilities = [meant]
-            raise
+            if meant is None:
+                raise
+            raise click.NoSuchOption(error.option_name, None, [meant], error.ctx) from None
         except PuckError as error:
             click.echo(f"Error: {printable(click.format_filename(str(error)))}", err=True)
             ctx.exit(2 if isinstance(error, InputError) else 1)
