@@ -77,7 +77,8 @@ class PuckGroup(click.Group):
             meant = MEANT.get(error.option_name)
             if meant is None:
                 raise
-            raise click.NoSuchOption(error.option_name, None, [meant], error.ctx) from None
+            words = f"No such option '{error.option_name}'. Did you mean '{meant}'?"
+            raise click.NoSuchOption(error.option_name, words, ctx=error.ctx) from None
         except PuckError as error:
             click.echo(f"Error: {printable(click.format_filename(str(error)))}", err=True)
             ctx.exit(2 if isinstance(error, InputError) else 1)
