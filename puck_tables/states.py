@@ -44,7 +44,7 @@ class States(Result):
     spin: FloatArray
     radius: FloatArray
 
-    picture: ClassVar[str] = "states"
+    picture: ClassVar[str] = "places"
 
     def __repr__(self) -> str:
         return f"States({self.x.size} states of shape {self.x.shape})"

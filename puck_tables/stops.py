@@ -36,7 +36,7 @@ class Stops(Result):
     without end).
     """
 
-    picture: ClassVar[str] = "stops"
+    picture: ClassVar[str] = "places"
 
     def __init__(
         self, solver: LookUp | Integration | AnyStops, launches: FloatArray, shape: tuple[int, ...]

@@ -50,7 +50,7 @@ def side_and_eta(phi: float) -> tuple[int, float]:
 
 
 @inlined
-def _row(
+def row_sums(
     c: FloatArray, k: np.uint64, w0: float, w1: float, w2: float, w3: float
 ) -> tuple[float, float, float]:
     """Three functions at once from four neighbouring coefficients each."""
@@ -69,4 +69,4 @@ def evaluate_cut(cut_: FloatArray, side: int, eta: float) -> tuple[float, float,
     p = eta * n_eta
     i = cell_at(p, n_eta)
     w0, w1, w2, w3 = basis(p - i)
-    return _row(cut_, np.uint64(side * row + 3 * i), w0, w1, w2, w3)
+    return row_sums(cut_, np.uint64(side * row + 3 * i), w0, w1, w2, w3)

@@ -6,8 +6,8 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.contact.closed_form import by_closed_form
-from puck_tables.kernels.compile import allocating, inlined, kernel
-from puck_tables.kernels.spline import basis, cell_at, side_and_eta
+from puck_tables.kernels.compile import allocating, kernel
+from puck_tables.kernels.spline import basis, cell_at, row_sums, side_and_eta
 from puck_tables.table.fit import clamped_coefficients
 from puck_tables.table.resultant_table import ResultantTable
 
@@ -111,18 +111,6 @@ def fill_uniform(
         out[2, n] = sums[2] * out[0, n]
 
 
-@inlined
-def _row(
-    c: FloatArray, k: np.uint64, w0: float, w1: float, w2: float, w3: float
-) -> tuple[float, float, float]:
-    """Three functions at once from four neighbouring coefficients each."""
-    return (
-        w0 * c[k] + w1 * c[k + 3] + w2 * c[k + 6] + w3 * c[k + 9],
-        w0 * c[k + 1] + w1 * c[k + 4] + w2 * c[k + 7] + w3 * c[k + 10],
-        w0 * c[k + 2] + w1 * c[k + 5] + w2 * c[k + 8] + w3 * c[k + 11],
-    )
-
-
 @allocating
 def fill_graded(
     coefficients: FloatArray, delta_max: float, phi: FloatArray, delta: FloatArray, out: FloatArray
@@ -158,10 +146,10 @@ def fill_graded(
         for n in range(angle.size):
             k = np.uint64(first[n])  # unsigned: no test for negative indices
             a, b, d, e = w0[n], w1[n], w2[n], w3[n]
-            f0, g0, h0 = _row(c, k, a, b, d, e)
-            f1, g1, h1 = _row(c, k + step, a, b, d, e)
-            f2, g2, h2 = _row(c, k + step + step, a, b, d, e)
-            f3, g3, h3 = _row(c, k + step + step + step, a, b, d, e)
+            f0, g0, h0 = row_sums(c, k, a, b, d, e)
+            f1, g1, h1 = row_sums(c, k + step, a, b, d, e)
+            f2, g2, h2 = row_sums(c, k + step + step, a, b, d, e)
+            f3, g3, h3 = row_sums(c, k + step + step + step, a, b, d, e)
             a, b, d, e = v0[n], v1[n], v2[n], v3[n]
             parallel[n] = a * f0 + b * f1 + d * f2 + e * f3
             perpendicular[n] = a * g0 + b * g1 + d * g2 + e * g3
