@@ -23,7 +23,7 @@ from puck_tables.cli.options import (
 from puck_tables.errors import InputError
 
 if TYPE_CHECKING:
-    from puck_tables.aiming import Aim
+    from puck_tables.stopping.aim import Aim
 
 
 @click.command()
@@ -95,7 +95,7 @@ def aim(
 
 def _report(found: Aim, note: str) -> str:
     """The answer, and the launches line by line."""
-    from puck_tables.body import is_plain
+    from puck_tables.motion.body import is_plain
 
     x, y = found.target
     puck, kind = found.puck, ""

@@ -68,10 +68,10 @@ def asperity(
     prepare_outputs(output, plot=plot, others=(law,), overwrite=overwrite)
     if plot is not None and isinstance(speeds, float):
         raise InputError("--plot needs a range: give --speeds START:STOP:COUNT")
-    from puck_tables.body import STANDARD_GRAVITY
     from puck_tables.chetaev.asperity import Asperity
     from puck_tables.chetaev.asperity_curve import asperity_curve
     from puck_tables.io.csv import encode
+    from puck_tables.motion.body import STANDARD_GRAVITY
 
     support = Asperity(
         amplitude,

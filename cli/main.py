@@ -29,9 +29,9 @@ from puck_tables.cli.tables import tables
 from puck_tables.cli.tradeoff import tradeoff
 from puck_tables.cli.validate import validate
 
+from puck_tables._core.waiting import watchers
 from puck_tables._version import __version__
 from puck_tables.errors import InputError, PuckError
-from puck_tables.waiting import watchers
 
 BROKEN_PIPE = 141  # 128 + SIGPIPE, as shells count
 

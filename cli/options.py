@@ -245,8 +245,8 @@ def prepare_outputs(
     overwrite : whether existing files may be replaced
     inputs : the files that the command reads; names that are no files are left out
     """
+    from puck_tables._core.safe_write import check_target
     from puck_tables.io.formats import encoder_for
-    from puck_tables.safe_write import check_target
 
     chosen: list[Path] = []
     for path in (*outputs, plot, *others):

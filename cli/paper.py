@@ -38,11 +38,11 @@ def paper(folder: Path, overwrite: bool) -> None:
     from puck_tables.plot.style import require_matplotlib, save_figure
 
     require_matplotlib()
+    from puck_tables._core.safe_write import write_bytes
     from puck_tables.paper.claim import as_csv, as_text
     from puck_tables.paper.claims import all_claims
     from puck_tables.paper.figures import FIGURES
     from puck_tables.plot.panels import draw
-    from puck_tables.safe_write import write_bytes
 
     table = folder / "claims.csv"
     pictures = {folder / f"figure_{number:02}.png": figure for number, figure in FIGURES.items()}

@@ -95,14 +95,14 @@ def scene_tables(ctx: click.Context, scene: str | None, changes: tuple[str, ...]
 
 def files_read(scene: str | None, tables: dict[str, Any]) -> list[str]:
     """The files that a run of a scene reads: its own, and those that it names."""
-    from puck_tables.checkpoint import files_named
+    from puck_tables._core.checkpoint import files_named
 
     return [*([] if scene is None else [scene]), *files_named(tables)]
 
 
 def _default_tables(given: dict[str, Any]) -> dict[str, Any]:
     """The puck in natural units of the other commands, as dimensions: f = J/g, h = δ r/2f."""
-    from puck_tables.body import STANDARD_GRAVITY
+    from puck_tables.motion.body import STANDARD_GRAVITY
 
     real = [name for name in ("height", "friction", "gravity") if name in given]
     scaled = [name for name in SCALED if name in given]

@@ -118,7 +118,7 @@ def simulate(
 
 def report(run: Trajectory, note: str) -> str:
     """The trajectory in a dozen lines."""
-    from puck_tables.body import is_plain
+    from puck_tables.motion.body import is_plain
     from puck_tables.motion.limits import REGIMES
 
     puck, (vx, vy), w0 = run.puck, run.launch_velocity, run.launch_spin

@@ -33,8 +33,8 @@ if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
 
-    from puck_tables.similarity.stop_table import StopTable
-    from puck_tables.stop_map import StopMap
+    from puck_tables.stopping.stop_table import StopTable
+    from puck_tables.stopping.sweep import StopMap
     from puck_tables.table.resultant_table import ResultantTable
 
 RANGE = Range()
@@ -113,7 +113,7 @@ def sweep(
         raise InputError("--v0 and --speed clash: both give the launch velocity")
     prepare_outputs(output, plot=plot, overwrite=overwrite, inputs=(table_path, pressure))
     from puck_tables.io.csv import encode
-    from puck_tables.stop_map import BYTES_PER_LAUNCH, BYTES_PER_ROW, check_memory
+    from puck_tables.stopping.sweep import BYTES_PER_LAUNCH, BYTES_PER_ROW, check_memory
 
     lowest = delta[0] if isinstance(delta, tuple) else delta
     puck = puck_given(radius, height, friction, gravity, lowest, decel, pressure, gyration)
@@ -176,7 +176,7 @@ def _done_with(kept: Path | None, output: Path | None) -> None:
 
 def _table_of_stops(path: Path) -> ResultantTable | StopTable:
     """A table that stops can come from."""
-    from puck_tables.similarity.stop_table import StopTable
+    from puck_tables.stopping.stop_table import StopTable
     from puck_tables.table.resultant_table import ResultantTable
 
     table = tables_named(path)[0]
@@ -207,7 +207,7 @@ def _values(given: float | tuple[float, float, int]) -> npt.NDArray[np.float64]:
 
 
 def _summary(stops: StopMap) -> str:
-    from puck_tables.solvers import STATUS_MEANINGS
+    from puck_tables.stopping.solvers import STATUS_MEANINGS
 
     ranged = " x ".join(f"{name} ({values.size})" for name, values in stops.axes.items())
     fixed = ", ".join(f"{name} = {value:g}" for name, value in stops.fixed.items())

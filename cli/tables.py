@@ -13,7 +13,7 @@ from puck_tables.errors import InputError
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from puck_tables.store import Entry
+    from puck_tables.table.store import Entry
 
 
 @click.command()
@@ -33,7 +33,7 @@ def tables(as_json: bool, names: tuple[str, ...], clean: bool) -> None:
     """  # noqa: D301 - click reads the backspace
     if clean + bool(names) + as_json > 1:
         raise InputError("--json, --remove and --clean clash: give one of them")
-    from puck_tables import store
+    from puck_tables.table import store
 
     if names:
         kept = {path.name: path for path in store.kept_files()}
@@ -52,7 +52,7 @@ def tables(as_json: bool, names: tuple[str, ...], clean: bool) -> None:
 
 
 def _remove(paths: list[Path]) -> None:
-    from puck_tables import store
+    from puck_tables.table import store
 
     for path in paths:
         store.remove(path)

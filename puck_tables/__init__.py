@@ -16,7 +16,6 @@ from typing import TYPE_CHECKING, Any
 from puck_tables._version import __version__
 
 if TYPE_CHECKING:
-    from puck_tables.aiming import Aim
     from puck_tables.chetaev.asperity import Asperity, AsperityMotion, asperity_motion
     from puck_tables.chetaev.asperity_curve import AsperityCurve, asperity_curve
     from puck_tables.chetaev.motion import ConstrainedMotion, constrained_motion
@@ -53,11 +52,12 @@ if TYPE_CHECKING:
     from puck_tables.scene.scene import Scene, scene_from
     from puck_tables.scene.simulate import simulate_scene
     from puck_tables.scene.sweep import SceneMap, sweep_scene
-    from puck_tables.states import States, states
-    from puck_tables.stop_map import StopMap
-    from puck_tables.stops import Stops, stop
-    from puck_tables.store import table_for
+    from puck_tables.stopping.aim import Aim
+    from puck_tables.stopping.states import States, states
+    from puck_tables.stopping.stops import Stops, stop
+    from puck_tables.stopping.sweep import StopMap
     from puck_tables.table.check import CheckReport
+    from puck_tables.table.store import table_for
     from puck_tables.table.table import Table
     from puck_tables.trajectory import Trajectory
 
@@ -69,7 +69,7 @@ _HOMES = {
     "OutputError": "errors",
     "PuckError": "errors",
     "TableError": "errors",
-    "Aim": "aiming",
+    "Aim": "stopping.aim",
     "Asperity": "chetaev.asperity",
     "AsperityMotion": "chetaev.asperity",
     "asperity_motion": "chetaev.asperity",
@@ -105,12 +105,12 @@ _HOMES = {
     "simulate_scene": "scene.simulate",
     "SceneMap": "scene.sweep",
     "sweep_scene": "scene.sweep",
-    "States": "states",
-    "states": "states",
-    "StopMap": "stop_map",
-    "Stops": "stops",
-    "stop": "stops",
-    "table_for": "store",
+    "States": "stopping.states",
+    "states": "stopping.states",
+    "StopMap": "stopping.sweep",
+    "Stops": "stopping.stops",
+    "stop": "stopping.stops",
+    "table_for": "table.store",
     "CheckReport": "table.check",
     "Table": "table.table",
     "Trajectory": "trajectory",

@@ -11,17 +11,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy.typing as npt
 
-from puck_tables.body import STANDARD_GRAVITY, Body, body_of
+from puck_tables._core.executor import Progress
+from puck_tables._core.real import positive, real
 from puck_tables.contact.laws import HOMOGENEOUS, Law
 from puck_tables.errors import InputError
-from puck_tables.executor import Progress
-from puck_tables.real import positive, real
+from puck_tables.motion.body import STANDARD_GRAVITY, Body, body_of
 
 if TYPE_CHECKING:
-    from puck_tables.aiming import Aim
-    from puck_tables.states import States
-    from puck_tables.stop_map import StopMap
-    from puck_tables.stops import Stops
+    from puck_tables.stopping.aim import Aim
+    from puck_tables.stopping.states import States
+    from puck_tables.stopping.stops import Stops
+    from puck_tables.stopping.sweep import StopMap
     from puck_tables.table.table import Table
     from puck_tables.trajectory import Trajectory
 
@@ -279,7 +279,7 @@ class Puck:
         >>> Puck.similar(delta=1.0).stop((1.0, 0.0), [1.0, 5.0]).stop_time.round(6).tolist()
         [1.395088, 4.000189]
         """
-        stops: Stops = _verb("stops", "stop")(
+        stops: Stops = _verb("stopping.stops", "stop")(
             velocity, spin, **self._kind(), tol=tol, method=method, table=table
         )
         return stops
@@ -310,7 +310,9 @@ class Puck:
         >>> Puck.similar().states((1.0, 0.0), 5.0, [2.0, 0.0]).x.round(6).tolist()
         [1.590682, 0.0]
         """
-        found: States = _verb("states", "states")(velocity, spin, time, **self._kind(), table=table)
+        found: States = _verb("stopping.states", "states")(
+            velocity, spin, time, **self._kind(), table=table
+        )
         return found
 
     def sweep(
@@ -368,7 +370,7 @@ class Puck:
         >>> stops.stop_x.round(4).tolist()
         [0.5, 0.6374, 0.9835]
         """
-        stops: StopMap = _verb("stop_map", "sweep")(
+        stops: StopMap = _verb("stopping.sweep", "sweep")(
             spin, speed, velocity=velocity, **{**self._kind(), **_given(delta=delta)}, tol=tol,
             method=method, table=table, threads=threads, chunk=chunk, progress=progress,
             checkpoint=checkpoint,
@@ -434,7 +436,7 @@ class Puck:
         >>> found.launch_velocity.round(6).tolist(), found.stop_time.round(6).tolist()
         ([[0.899671, 0.109151]], [3.927704])
         """
-        found: Aim = _verb("aiming", "aim")(
+        found: Aim = _verb("stopping.aim", "aim")(
             self, target, spin=spin, speed=speed, stop_time=stop_time, max_speed=max_speed,
             max_spin=max_spin, count=count,
         )  # fmt: skip

@@ -9,19 +9,19 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.body import Body, body_of, is_plain
+from puck_tables._core.real import finite_array, instance, one_velocity, real
+from puck_tables.accuracy.front import Choice, Way
 from puck_tables.errors import InputError
-from puck_tables.front import Choice, Way
 from puck_tables.io.dataset import Dataset, variable
+from puck_tables.motion.body import Body, body_of, is_plain
 from puck_tables.puck import PUCK_UNITS, Puck
-from puck_tables.real import finite_array, instance, one_velocity, real
 from puck_tables.result import Result
-from puck_tables.solvers import choose_with
+from puck_tables.stopping.solvers import choose_with
 from puck_tables.table.resultant_table import ResultantTable
 
 if TYPE_CHECKING:
-    from puck_tables.run import Run
-    from puck_tables.sliced import Contact
+    from puck_tables.motion.run import Run
+    from puck_tables.motion.sliced import Contact
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -290,8 +290,8 @@ def _solved_plainly(
 ) -> _Solved:  # fmt: skip
     """A homogeneous puck under uniform pressure in full contact."""
     from puck_tables.motion.limits import limit_log_ratio, regime_of
-    from puck_tables.run import closed_form_friction, run_motion, table_friction
-    from puck_tables.sliced import Contact
+    from puck_tables.motion.run import closed_form_friction, run_motion, table_friction
+    from puck_tables.motion.sliced import Contact
 
     if not 0.0 <= delta < 2.0:
         raise InputError(
@@ -316,7 +316,7 @@ def _solved_by_slice(
 ) -> _Solved:
     """Any other."""
     from puck_tables.motion.limits import regime_of
-    from puck_tables.sliced import LIMIT_WIDTH, checked_tol, contact_of, run_sliced
+    from puck_tables.motion.sliced import LIMIT_WIDTH, checked_tol, contact_of, run_sliced
 
     wanted = checked_tol(tol)
     limit = body.limit
@@ -359,7 +359,7 @@ def _looked_up(
     radius: float,
 ) -> dict[str, FloatArray]:  # fmt: skip
     """The same by look-up: for many states the cheaper way."""
-    from puck_tables.states import states
+    from puck_tables.stopping.states import states
 
     found = states(v0, spin, moments, delta=delta, decel=decel, radius=radius)
     names = ("x", "y", "heading", "orientation", "speed", "spin", "slip_speed", "slip_angle")

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from puck_tables import Puck
-from puck_tables.aiming import Aim
-from puck_tables.stop_map import StopMap
+from puck_tables.stopping.aim import Aim
+from puck_tables.stopping.sweep import StopMap
 from puck_tables.trajectory import Trajectory
 
 KIND = ("delta", "decel", "radius", "mass", "pressure", "gyration")

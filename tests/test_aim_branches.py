@@ -10,10 +10,10 @@ from any_puck import stops_by_truth
 from pucks import aim, simulate
 
 from puck_tables import stop
-from puck_tables.body import body_of
 from puck_tables.contact.laws import HOMOGENEOUS
 from puck_tables.errors import InputError
-from puck_tables.similarity.section import RIM, SPEED, TIME, section_of
+from puck_tables.motion.body import body_of
+from puck_tables.stopping.section import RIM, SPEED, TIME, section_of
 
 U = np.linspace(-6.0, 4.0, 401)
 

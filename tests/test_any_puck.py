@@ -18,12 +18,12 @@ from puck_tables import (
     one_sided_resultants,
     regime,
 )
-from puck_tables.body import body_of
 from puck_tables.contact.laws import HOMOGENEOUS
 from puck_tables.errors import AccuracyError, ContactError, InputError
+from puck_tables.motion.body import body_of
+from puck_tables.motion.run import step_ends
+from puck_tables.motion.sliced import friction_of
 from puck_tables.motion.steppers import DORMAND_PRINCE, RK4
-from puck_tables.run import step_ends
-from puck_tables.sliced import friction_of
 from puck_tables.table.friction_slice import friction_slice
 from puck_tables.table.singular_lines import opening_angle
 from puck_tables.table.slip_axis import graded

@@ -12,13 +12,13 @@ from pucks import aim, simulate, sweep
 from test_any_puck import PUCKS, launch, starts
 
 from puck_tables import law_of, states, stop
-from puck_tables.any_stops import MANY
-from puck_tables.body import body_of
 from puck_tables.contact.laws import HOMOGENEOUS
 from puck_tables.errors import AccuracyError, InputError
-from puck_tables.similarity.exact import integrated_stops
-from puck_tables.similarity.stop_slice import stop_slice
-from puck_tables.sliced import friction_of
+from puck_tables.motion.body import body_of
+from puck_tables.motion.sliced import friction_of
+from puck_tables.stopping.any_stops import MANY
+from puck_tables.stopping.exact import integrated_stops
+from puck_tables.stopping.stop_slice import stop_slice
 
 QUICK = [PUCKS[2], PUCKS[5], PUCKS[6], PUCKS[7]]
 

@@ -17,7 +17,8 @@ import pytest
 from conftest import ROOT
 
 import puck_tables
-from puck_tables.kernels import cache
+from puck_tables._core import sources
+from puck_tables.kernels.cache import cache_folder
 
 LIMIT = 1.531389372173909906  # tan φ₀ at δ = 0
 
@@ -61,15 +62,15 @@ def test_an_edit_of_any_file_empties_the_cache(tmp_path: Path, monkeypatch: pyte
     """The folder of compiled code has another name then; what was compiled before is not found."""
     package = tmp_path / "puck_tables"
     shutil.copytree(ROOT / "puck_tables", package, ignore=shutil.ignore_patterns("__pycache__"))
-    monkeypatch.setattr(cache, "_PACKAGE", package)
-    digest = cache.source_digest.__wrapped__
+    monkeypatch.setattr(sources, "_PACKAGE", package)
+    digest = sources.source_digest.__wrapped__
     seen = {digest()}
     kernels = [
         p
         for p in package.rglob("*.py")
         if re.search("^@(kernel|inlined|allocating)", p.read_text(), re.M)
     ]
-    assert {path.parent.name for path in kernels} >= {"kernels", "motion", "similarity", "tradeoff"}
+    assert {path.parent.name for path in kernels} >= {"kernels", "motion", "stopping", "tradeoff"}
     for path in kernels:
         path.write_bytes(path.read_bytes() + b"# edited\n")
         seen.add(digest())
@@ -79,14 +80,14 @@ def test_an_edit_of_any_file_empties_the_cache(tmp_path: Path, monkeypatch: pyte
 
 
 def test_every_compiled_function_is_kept_in_that_folder():
-    folder = Path(cache.cache_folder() or "")
+    folder = Path(cache_folder() or "")
     kept = set()
     for name in modules():
         for value in vars(importlib.import_module(name)).values():
             if isinstance(value, numba.core.dispatcher.Dispatcher) and value._cache.cache_path:
                 assert folder == Path(value._cache.cache_path), (name, value)
                 kept.add(value.py_func.__module__.split(".")[1])
-    assert kept >= {"kernels", "motion", "similarity", "tradeoff"}
+    assert kept >= {"kernels", "motion", "stopping", "tradeoff"}
 
 
 def test_four_processes_may_fill_the_cache_at_once(tmp_path: Path):

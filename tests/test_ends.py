@@ -29,21 +29,22 @@ LONG = {
         "table.resultant_check", ["build-tables", "--cells", "60000", "-o", "n.h5"]
     ),
     "build stops": (
-        "similarity.check", ["build-tables", "--kind", "stops", "--accuracy", "1e-11", "-o", "n.h5"]
+        "stopping.check", ["build-tables", "--kind", "stops", "--accuracy", "1e-11", "-o", "n.h5"]
     ),
     "build law": (
         "table.resultant_check", ["build-tables", "--pressure", "hill.csv", "-o", "n.h5"]
     ),
-    "validate": ("similarity.check", ["validate", str(files("puck_tables.tables") / "stops.h5")]),
-    "sweep": ("stop_map", ["sweep", "--speed", "0:2:5000", "--w0", "0:5:5000", "-o", "m.h5"]),
+    "validate": ("stopping.check", ["validate", str(files("puck_tables.tables") / "stops.h5")]),
+    "sweep": ("stopping.sweep", ["sweep", "--speed", "0:2:5000", "--w0", "0:5:5000", "-o", "m.h5"]),
     "sweep resumed": (
-        "checkpoint", ["sweep", "--speed", "0:2:3000", "--w0", "0:5:3000", "-o", "m.h5", "--resume"]
+        "_core.checkpoint",
+        ["sweep", "--speed", "0:2:3000", "--w0", "0:5:3000", "-o", "m.h5", "--resume"],
     ),
     "scenes": (
         "scene.sweep",
         ["sweep", "--scene", "incline", "--set", "launch.spin=0:80:900000", "-o", "m.h5"],
     ),
-    "aim": ("aiming", ["aim", "--target", "2,0.1", "--count", "9000", "-o", "a.csv"]),
+    "aim": ("stopping.aim", ["aim", "--target", "2,0.1", "--count", "9000", "-o", "a.csv"]),
     "paper": ("paper.claims", ["paper", "--out", "deep/er"]),
     "tradeoff": ("tradeoff.engine", ["tradeoff", "-o", "t.h5"]),
 }  # fmt: skip

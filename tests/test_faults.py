@@ -14,7 +14,7 @@ import pytest
 from pucks import sweep
 
 from puck_tables import Table
-from puck_tables.checkpoint import Checkpoint
+from puck_tables._core.checkpoint import Checkpoint
 from puck_tables.errors import InputError, OutputError
 
 PUCK = [sys.executable, "-c", "from puck_tables.cli.main import main; main()"]

@@ -12,8 +12,8 @@ import pytest
 from click.testing import CliRunner, Result
 from puck_tables.cli.main import main
 
+from puck_tables._core.safe_write import check_target, write_bytes
 from puck_tables.errors import OutputError
-from puck_tables.safe_write import check_target, write_bytes
 
 PUCK = [sys.executable, "-m", "puck_tables.cli.main"]
 SCENE = """
@@ -113,7 +113,7 @@ def test_new_files_have_the_rights_of_the_umask_from_all_threads(folder: Path):
     """In a process of its own: the umask is one for all threads."""
     code = (
         "import os, threading\n"
-        "from puck_tables.safe_write import write_bytes\n"
+        "from puck_tables._core.safe_write import write_bytes\n"
         "os.umask(0o077)\n"
         "def work(n):\n"
         "    for k in range(60):\n"

@@ -14,9 +14,10 @@ from forged_tables import Edit, forged, honest, outcome, random_edit
 from kinds_of_table import KINDS, answers, small
 from puck_tables.cli.main import main
 
-from puck_tables import Table, store, table_for
+from puck_tables import Table, table_for
+from puck_tables._core.own_folder import say
 from puck_tables.errors import TableError
-from puck_tables.own_folder import say
+from puck_tables.table import store
 from puck_tables.table.file import sealed
 from puck_tables.table.slip_axis import LawAxis
 

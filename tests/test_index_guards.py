@@ -10,16 +10,16 @@ import numpy as np
 import pytest
 
 from puck_tables import SpeedLaw, Table
-from puck_tables.body import body_of
 from puck_tables.contact.laws import law_of
 from puck_tables.kernels.compile import kernel
 from puck_tables.kernels.quadratic import cut, fill_resultants
 from puck_tables.kernels.slice_spline import fill_slice
 from puck_tables.kernels.speed_spline import fill_speed
 from puck_tables.kernels.spline import cell_at
-from puck_tables.similarity.curve_lookup import LAUNCH_COLUMNS, LAUNCH_ROWS, fill_states
-from puck_tables.similarity.lookup import stops_kernel
-from puck_tables.similarity.slice_lookup import fill_slice_stops
+from puck_tables.motion.body import body_of
+from puck_tables.stopping.curve_lookup import LAUNCH_COLUMNS, LAUNCH_ROWS, fill_states
+from puck_tables.stopping.lookup import stops_kernel
+from puck_tables.stopping.slice_lookup import fill_slice_stops
 from puck_tables.table.friction_slice import friction_slice
 from puck_tables.table.resultant_check import tabulate
 from puck_tables.tradeoff.bicubic import (
@@ -97,7 +97,7 @@ def look_up_everything() -> None:
 
 
 def body_stops() -> np.ndarray:
-    from puck_tables.similarity.stop_slice import stop_slice
+    from puck_tables.stopping.stop_slice import stop_slice
 
     return stop_slice(body_of(law_of("uniform"), 0.5, 0.9), 1e-4).spline.cut
 

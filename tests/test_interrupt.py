@@ -9,7 +9,8 @@ import sys
 import numpy as np
 import pytest
 
-from puck_tables import executor, stop
+from puck_tables import stop
+from puck_tables._core import executor
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="signals of another kind")
 
@@ -58,7 +59,7 @@ def test_while_a_command_runs(then):
 
 
 def test_a_resumable_sweep_says_that_it_goes_on_even_when_it_is_deaf(tmp_path):
-    code = AT_IMPORT.format(name="puck_tables.similarity.curve_lookup", then=DEAF)
+    code = AT_IMPORT.format(name="puck_tables.stopping.curve_lookup", then=DEAF)
     words = ["sweep", "--w0", "0:1:11", "-o", "m.h5", "--resume"]
     done = interrupted(code, *words, folder=tmp_path)
     assert done.returncode == 130
@@ -71,7 +72,7 @@ def test_a_resumable_sweep_says_that_it_goes_on_even_when_it_is_deaf(tmp_path):
 
 CHUNKS = """
 import os, signal, threading, time
-from puck_tables.executor import in_slices, run_chunks
+from puck_tables._core.executor import in_slices, run_chunks
 signal.signal(signal.SIGINT, signal.default_int_handler)
 def endless(start, stop):
     in_slices(lambda a, b: time.sleep(0.05), 1_000_000_000)

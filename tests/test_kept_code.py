@@ -11,10 +11,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from puck_tables._core.own_folder import make_private, refuse_shared, say
+from puck_tables._core.sources import source_digest
 from puck_tables.errors import InputError
-from puck_tables.kernels import cache, kept_code
+from puck_tables.kernels import kept_code
 from puck_tables.kernels.compile import kernel
-from puck_tables.own_folder import make_private, refuse_shared, say
 
 LIMIT = 1.531389372173909906  # tan φ₀ at δ = 0
 COMMAND = [sys.executable, "-c", "import puck_tables as p; print(float(p.limit_ratio(0.0)))"]
@@ -120,7 +121,7 @@ def test_a_folder_that_others_may_write_is_not_used(mode: int, tmp_path: Path):
 
 def test_a_planted_folder_is_not_used(tmp_path: Path):
     """Others made it before, by the name that ours would have."""
-    mine = tmp_path / f"compiled-{cache.source_digest()}"
+    mine = tmp_path / f"compiled-{source_digest()}"
     mine.mkdir()
     mine.chmod(0o777)
     planted = mine / "planted.code"
@@ -154,7 +155,7 @@ def test_a_folder_below_one_like_tmp_is_used(tmp_path: Path):
 
 
 def test_the_users_cache_is_judged_alike(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    from puck_tables import store
+    from puck_tables.table import store
 
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     tmp_path.chmod(0o777)

@@ -13,8 +13,7 @@ from puck_tables.cli.main import main
 from pucks import simulate, sweep
 
 from puck_tables import Table, stop
-from puck_tables.errors import AccuracyError, InputError, TableError
-from puck_tables.front import (
+from puck_tables.accuracy.front import (
     INTEGRATED,
     LOOK_UP,
     MARGIN,
@@ -23,7 +22,8 @@ from puck_tables.front import (
     shipped_front,
     ways_from_csv,
 )
-from puck_tables.similarity.stop_table import StopTable
+from puck_tables.errors import AccuracyError, InputError, TableError
+from puck_tables.stopping.stop_table import StopTable
 
 GOLDEN = Path(__file__).parent / "golden"
 TOLERANCES = 10.0 ** -np.arange(3, 12)

@@ -18,8 +18,8 @@ from puck_tables.contact.opening import critical_delta
 from puck_tables.contact.pressure import GALIN, HERTZ
 from puck_tables.contact.resultants import moment_balance
 from puck_tables.errors import InputError
-from puck_tables.run import table_friction
-from puck_tables.solvers import solver_for
+from puck_tables.motion.run import table_friction
+from puck_tables.stopping.solvers import solver_for
 from puck_tables.table.fit import clamped_coefficients, height_terms
 from puck_tables.table.resultant_check import adversarial_points, tabulate
 from puck_tables.table.slip_axis import LawAxis

@@ -16,9 +16,9 @@ import xarray
 from matplotlib.figure import Figure
 
 from puck_tables import Asperity, Puck, asperity_curve, simulate_scene, states, stop, sweep_scene
-from puck_tables.columns import COLUMNS
+from puck_tables.accuracy.front import shipped_front
 from puck_tables.errors import ContactError, InputError, OutputError
-from puck_tables.front import shipped_front
+from puck_tables.io.columns import COLUMNS
 from puck_tables.io.formats import FORMATS
 from puck_tables.result import Result
 from puck_tables.tradeoff.engine import TradeOff

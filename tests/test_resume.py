@@ -12,8 +12,8 @@ import pytest
 from pucks import sweep
 
 from puck_tables import Table, profile_law, sweep_scene
-from puck_tables import checkpoint as kept_work
-from puck_tables.checkpoint import Checkpoint, work_digest
+from puck_tables._core import checkpoint as kept_work
+from puck_tables._core.checkpoint import Checkpoint, work_digest
 from puck_tables.errors import InputError, OutputError
 
 W0 = np.linspace(0.1, 5.0, 7)

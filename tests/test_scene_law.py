@@ -10,7 +10,7 @@ from puck_tables.cli.main import main
 from scipy.integrate import solve_ivp
 
 import puck_tables as pt
-from puck_tables.body import STANDARD_GRAVITY
+from puck_tables.motion.body import STANDARD_GRAVITY
 from puck_tables.scene.regions import _kept_table, regions_of
 from puck_tables.scene.scene import scene_from
 from puck_tables.table import speed_build

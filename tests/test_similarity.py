@@ -13,12 +13,12 @@ from reference import states as reference_states
 
 from puck_tables import Table, limit_ratio, states, stop
 from puck_tables.errors import AccuracyError, InputError
-from puck_tables.similarity.axes import SlipAxis, heights
-from puck_tables.similarity.check import launch_points, launches_at, looked_up, tabulate
-from puck_tables.similarity.curve import limits, regular_slopes
-from puck_tables.similarity.curve_lookup import STOP_X, STOP_Y
-from puck_tables.similarity.exact import end_values, exact_stops
-from puck_tables.similarity.stop_table import StopTable
+from puck_tables.stopping.axes import SlipAxis, heights
+from puck_tables.stopping.check import launch_points, launches_at, looked_up, tabulate
+from puck_tables.stopping.curve import limits, regular_slopes
+from puck_tables.stopping.curve_lookup import STOP_X, STOP_Y
+from puck_tables.stopping.exact import end_values, exact_stops
+from puck_tables.stopping.stop_table import StopTable
 
 
 @pytest.fixture(scope="module")

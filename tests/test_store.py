@@ -16,9 +16,9 @@ from puck_tables.cli.main import main
 from pucks import simulate
 
 import puck_tables as pt
-from puck_tables import store
 from puck_tables.errors import AccuracyError, InputError
 from puck_tables.kernels.cache import cache_folder
+from puck_tables.table import store
 
 RADII = np.linspace(0.0, 1.0, 5)
 
@@ -96,10 +96,10 @@ def test_a_table_of_other_sources_is_not_todays(builds: list[str], monkeypatch: 
 
 
 def test_the_digest_of_sources_sees_what_computes_a_table(tmp_path: Path):
-    from puck_tables.kernels import cache
+    from puck_tables._core.sources import source_digest
 
     parts = ("contact", "kernels", "table")
-    seen = {cache.source_digest(*parts), cache.source_digest(), cache.source_digest("motion")}
+    seen = {source_digest(*parts), source_digest(), source_digest("motion")}
     assert len(seen) == 3
 
 

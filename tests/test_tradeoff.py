@@ -14,12 +14,12 @@ from puck_tables.cli.main import main
 from puck_tables.cli.tradeoff import report
 
 from puck_tables import Table, resultants
+from puck_tables.accuracy.front import shipped_front
 from puck_tables.errors import OutputError
-from puck_tables.front import shipped_front
 from puck_tables.motion.bulk import fill_stops
 from puck_tables.motion.steppers import DORMAND_PRINCE, RK4
-from puck_tables.similarity.exact import exact_stops
-from puck_tables.similarity.stop_table import StopTable
+from puck_tables.stopping.exact import exact_stops
+from puck_tables.stopping.stop_table import StopTable
 from puck_tables.tradeoff import engine, resultant_ways, stop_ways
 from puck_tables.tradeoff.bicubic import fill_graded, graded_coefficients
 from puck_tables.tradeoff.machine import measured_machine
@@ -106,7 +106,7 @@ def test_closed_forms_beside_the_singular_angle_do_not_depend_on_the_block():
 def test_vectors_of_the_look_up_are_the_plain_sums():
     """Hand-made vector code against NumPy, double and single, at every number of powers."""
     table = StopTable(Table.shipped("stops").values[::6])
-    from puck_tables.similarity.lookup import row_width, slip_place, stops_kernel
+    from puck_tables.stopping.lookup import row_width, slip_place, stops_kernel
 
     launch = np.array([[0.6], [0.1], [0.9], [0.7], [1.0], [1.0]])
     for powers in range(2, 8):
@@ -131,7 +131,7 @@ def test_vectors_of_the_look_up_are_the_plain_sums():
 
 def test_the_look_up_is_found_in_the_cache_of_compiled_code():
     """Numba keys it by what the function encloses: only plain numbers are the same next time."""
-    from puck_tables.similarity.lookup import stops_kernel
+    from puck_tables.stopping.lookup import stops_kernel
 
     enclosed = [cell.cell_contents for cell in stops_kernel(6).py_func.__closure__]
     assert enclosed

@@ -16,9 +16,9 @@ import pytest
 from click.testing import CliRunner
 from puck_tables.cli.main import main
 
-from puck_tables import safe_write
-from puck_tables.front import shipped_front
-from puck_tables.similarity.stop_table import StopTable
+from puck_tables._core import safe_write
+from puck_tables.accuracy.front import shipped_front
+from puck_tables.stopping.stop_table import StopTable
 
 # {} is the output without its ending; the path that is written is the one that follows
 COMMANDS: dict[str, tuple[list[str], str]] = {
@@ -164,7 +164,7 @@ def test_a_folder_that_vanishes_during_the_work(
 
     monkeypatch.setattr(safe_write, "_part", gone)
     if name == "sweep resumed":  # the progress file is met first
-        monkeypatch.setattr("puck_tables.checkpoint.tempfile.NamedTemporaryFile", vanish)
+        monkeypatch.setattr("puck_tables._core.checkpoint.tempfile.NamedTemporaryFile", vanish)
     assert "No such file or directory" in refused(name, "gone/new")
     assert not Path("gone").exists()
 

@@ -24,8 +24,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.real import finite_array
 from puck_tables.errors import AccuracyError, InputError
-from puck_tables.real import finite_array
 
 FloatArray = npt.NDArray[np.float64]
 

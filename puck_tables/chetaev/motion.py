@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.real import finite_array
 from puck_tables.chetaev.system import (
     ConstrainedSystem,
     FloatArray,
@@ -22,7 +23,6 @@ from puck_tables.chetaev.system import (
     violation,
 )
 from puck_tables.errors import AccuracyError, InputError
-from puck_tables.real import finite_array
 
 FINEST, COARSEST = 1e-13, 1e-2
 _ADMISSIBLE = 1e-9  # of the speeds, at the start

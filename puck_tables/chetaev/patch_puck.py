@@ -23,9 +23,9 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.real import finite_array
 from puck_tables.chetaev.system import ConstrainedSystem, FloatArray
 from puck_tables.errors import InputError
-from puck_tables.real import finite_array
 
 MAX_RINGS = 256
 # Q of the start at which the rest of the motion is taken as one at constant deceleration

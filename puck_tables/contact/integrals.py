@@ -17,8 +17,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.real import real_array
 from puck_tables.errors import InputError
-from puck_tables.real import real_array
 
 FloatArray = npt.NDArray[np.float64]
 

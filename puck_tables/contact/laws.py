@@ -19,6 +19,8 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.real import broadcast, instance, real_array
+from puck_tables._core.safe_read import read_rows
 from puck_tables.contact import closed_form, one_sided, quadrature
 from puck_tables.contact.integrals import FloatArray, PatchIntegrals, checked_phi, slip_direction
 from puck_tables.contact.pressure import GALIN, HERTZ
@@ -30,8 +32,6 @@ from puck_tables.contact.superposition import (
     spread,
 )
 from puck_tables.errors import InputError
-from puck_tables.real import broadcast, instance, real_array
-from puck_tables.safe_read import read_rows
 
 NAMES = "uniform, galin, hertz, ring, annulus:INNER (0 < INNER < 1), or a CSV file of rho, W"
 _SLACK = 1e-9  # of δ/δ_max: names and files carry twelve digits

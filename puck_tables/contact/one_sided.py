@@ -22,6 +22,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.real import broadcast
 from puck_tables.contact import closed_form
 from puck_tables.contact.integrals import (
     FloatArray,
@@ -34,7 +35,6 @@ from puck_tables.contact.loaded_patch import PatchRule, patch_rule, segment
 from puck_tables.contact.opening import critical_delta
 from puck_tables.contact.resultants import Resultants, checked_delta, moment_balance
 from puck_tables.errors import AccuracyError, ContactError
-from puck_tables.real import broadcast
 
 TIPPING_DELTA = 4.0
 # The cusp of the balance: (φ, δ) = (π/4 − 0.00500, 3.96380), rounded towards safety.

@@ -18,6 +18,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.real import broadcast, real_array
 from puck_tables.contact.integrals import (
     FloatArray,
     PatchIntegrals,
@@ -26,7 +27,6 @@ from puck_tables.contact.integrals import (
     slip_direction,
 )
 from puck_tables.errors import InputError
-from puck_tables.real import broadcast, real_array
 
 # How far rounding may push the pressure below zero where it just touches it (δ = 1, φ = 0).
 CONTACT_SLACK = 1e-12

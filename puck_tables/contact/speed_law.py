@@ -11,10 +11,10 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.real import finite_array, instance
+from puck_tables._core.safe_read import is_number, read_rows
+from puck_tables._core.safe_write import write_bytes
 from puck_tables.errors import InputError
-from puck_tables.real import finite_array, instance
-from puck_tables.safe_read import is_number, read_rows
-from puck_tables.safe_write import write_bytes
 
 FloatArray = npt.NDArray[np.float64]
 

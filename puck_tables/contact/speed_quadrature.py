@@ -31,6 +31,7 @@ from collections.abc import Callable
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.real import broadcast, real_array
 from puck_tables.contact.integrals import (
     FloatArray,
     PatchIntegrals,
@@ -41,7 +42,6 @@ from puck_tables.contact.integrals import (
 from puck_tables.contact.resultants import Resultants, moment_balance, pressure_tilt
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import ContactError, InputError
-from puck_tables.real import broadcast, real_array
 
 SpeedFunction = Callable[[FloatArray], npt.ArrayLike]
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.columns import COLUMNS
+from puck_tables.io.columns import COLUMNS
 
 
 @dataclass(frozen=True)

@@ -10,9 +10,9 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
+from puck_tables._core.safe_write import write_bytes
 from puck_tables.errors import InputError
 from puck_tables.io.dataset import Dataset
-from puck_tables.safe_write import write_bytes
 
 FORMATS = {".h5": "hdf5", ".csv": "csv", ".jsonl": "jsonl", ".parquet": "parquet"}
 

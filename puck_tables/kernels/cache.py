@@ -1,4 +1,4 @@
-"""Where compiled code is kept, and the digest of the sources it comes from; needs no numba.
+"""Where compiled code is kept; needs no numba.
 
 numba's own disk cache notices an edit of the file a function stands in, but not an edit of the
 functions it calls from elsewhere.  So the cache folder carries a digest of every source file of
@@ -8,7 +8,6 @@ the package: after any edit, nothing compiled before can be found.
 from __future__ import annotations
 
 import contextlib
-import hashlib
 import os
 import shutil
 import tempfile
@@ -17,19 +16,8 @@ from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 
-from puck_tables.own_folder import make_private, say, user_cache
-
-_PACKAGE = Path(__file__).resolve().parent.parent
-
-
-@cache
-def source_digest(*folders: str) -> str:
-    """Digest of the sources in these folders of the package, or of all (16 hexadecimal digits)."""
-    digest = hashlib.sha256()
-    within = [_PACKAGE / folder for folder in folders] or [_PACKAGE]
-    for path in sorted(path for folder in within for path in folder.rglob("*.py")):
-        digest.update(path.relative_to(_PACKAGE).as_posix().encode() + b"\0" + path.read_bytes())
-    return digest.hexdigest()[:16]
+from puck_tables._core.own_folder import make_private, say, user_cache
+from puck_tables._core.sources import source_digest
 
 
 @cache

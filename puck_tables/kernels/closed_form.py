@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.real import broadcast
 from puck_tables.contact import closed_form
 from puck_tables.contact.integrals import checked_phi
 from puck_tables.contact.resultants import (
@@ -17,7 +18,6 @@ from puck_tables.contact.resultants import (
 )
 from puck_tables.errors import ContactError
 from puck_tables.kernels.compile import allocating, inlined
-from puck_tables.real import broadcast
 
 FloatArray = npt.NDArray[np.float64]
 

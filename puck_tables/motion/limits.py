@@ -7,6 +7,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.real import one_velocity, positive, real
 from puck_tables.contact.closed_form import integrals
 from puck_tables.contact.laws import HOMOGENEOUS, Law, law_of
 from puck_tables.contact.laws import limit_ratio as law_limit_ratio
@@ -14,7 +15,6 @@ from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import ContactError
 from puck_tables.kernels.closed_form import friction_ratios, resultants
 from puck_tables.kernels.compile import kernel
-from puck_tables.real import one_velocity, positive, real
 
 FloatArray = npt.NDArray[np.float64]
 

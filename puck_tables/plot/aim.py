@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from puck_tables.aiming import Aim
-from puck_tables.columns import COLUMNS
 from puck_tables.errors import InputError
+from puck_tables.io.columns import COLUMNS
 from puck_tables.plot.style import BLUE, GREY, LAUNCH, ORANGE, canvas, titled
+from puck_tables.stopping.aim import Aim
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

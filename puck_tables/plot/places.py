@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from puck_tables.columns import COLUMNS
+from puck_tables.io.columns import COLUMNS
 from puck_tables.plot.style import LAUNCH, canvas, legend_below
-from puck_tables.states import States
-from puck_tables.stops import Stops
+from puck_tables.stopping.states import States
+from puck_tables.stopping.stops import Stops
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

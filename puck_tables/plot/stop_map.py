@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from puck_tables.columns import COLUMNS
 from puck_tables.errors import InputError
+from puck_tables.io.columns import COLUMNS
 from puck_tables.plot.style import FEW, canvas, draw_over, titled
-from puck_tables.solvers import OUTPUTS
-from puck_tables.stop_map import StopMap
+from puck_tables.stopping.solvers import OUTPUTS
+from puck_tables.stopping.sweep import StopMap
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

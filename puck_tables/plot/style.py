@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from puck_tables._core.safe_write import write_bytes
 from puck_tables.errors import MissingExtraError
 from puck_tables.io.formats import ending_of
-from puck_tables.safe_write import write_bytes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from puck_tables.body import is_plain
+from puck_tables.motion.body import is_plain
 from puck_tables.plot.style import (
     BLUE,
     GREEN,

@@ -9,8 +9,8 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.columns import COLUMNS
 from puck_tables.errors import InputError
+from puck_tables.io.columns import COLUMNS
 from puck_tables.io.dataset import Dataset, variable
 from puck_tables.result import Result
 from puck_tables.scene.entries import as_toml, tables_of, units_of

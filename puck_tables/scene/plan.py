@@ -15,12 +15,12 @@ from dataclasses import dataclass, fields, replace
 from functools import lru_cache
 from typing import Any, NamedTuple
 
-from puck_tables.body import is_plain
 from puck_tables.errors import PuckError
+from puck_tables.motion.body import is_plain
+from puck_tables.motion.sliced import FINEST_TOL
 from puck_tables.puck import Puck
 from puck_tables.scene.fields import Kind
 from puck_tables.scene.scene import Floor, Scene, distance, launch_velocity
-from puck_tables.sliced import FINEST_TOL
 
 _NAMES = {"A": "rest", "B0": "pure spin", "C0": "pure translation", "D": "the limit motion"}
 

@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.executor import in_slices
+from puck_tables._core.safe_read import read_rows
 from puck_tables.errors import InputError
-from puck_tables.executor import in_slices
-from puck_tables.safe_read import read_rows
 from puck_tables.scene.boundaries import Boundaries
 from puck_tables.scene.bulk import follow_many
 from puck_tables.scene.equations import SIZE

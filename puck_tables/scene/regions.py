@@ -9,19 +9,19 @@ from functools import lru_cache
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.body import body_of, is_plain
+from puck_tables._core.real import rounded_up
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import AccuracyError, InputError
 from puck_tables.kernels.slice_spline import HEADER, RATIOS
-from puck_tables.real import rounded_up
-from puck_tables.run import closed_form_friction, table_friction
+from puck_tables.motion.body import body_of, is_plain
+from puck_tables.motion.run import closed_form_friction, table_friction
 from puck_tables.scene.ingredients import BySpeed, Regions
 from puck_tables.scene.scene import Scene, launch_velocity
-from puck_tables.store import table_for
 from puck_tables.table.friction_slice import FINEST_ACCURACY
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.table.speed_build import FINEST_ACCURACY as FINEST_LAW
 from puck_tables.table.speed_table import SpeedTable
+from puck_tables.table.store import table_for
 
 FloatArray = npt.NDArray[np.float64]
 

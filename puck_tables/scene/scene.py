@@ -17,10 +17,10 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.body import STANDARD_GRAVITY
+from puck_tables._core.safe_read import read_whole
 from puck_tables.contact.laws import HOMOGENEOUS
 from puck_tables.errors import InputError
-from puck_tables.safe_read import read_whole
+from puck_tables.motion.body import STANDARD_GRAVITY
 from puck_tables.scene.fields import Reading, of, read_part
 
 FloatArray = npt.NDArray[np.float64]

@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.real import finite_array, instance
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import AccuracyError, InputError, PuckError
-from puck_tables.real import finite_array, instance
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
 from puck_tables.scene.library import find_scene
 from puck_tables.scene.loop import (

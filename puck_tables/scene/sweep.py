@@ -13,9 +13,9 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.checkpoint import Checkpoint, files_named, work_digest
+from puck_tables._core.checkpoint import Checkpoint, files_named, work_digest
+from puck_tables._core.executor import Progress, run_chunks
 from puck_tables.errors import InputError
-from puck_tables.executor import Progress, run_chunks
 from puck_tables.io.dataset import Dataset, Variable, variable
 from puck_tables.result import Result
 from puck_tables.scene.bulk import ENDS_COLUMNS
@@ -43,7 +43,7 @@ from puck_tables.scene.scene import (
     scene_with_ranges,
 )
 from puck_tables.scene.simulate import FAILURES, is_endless, named
-from puck_tables.stop_map import check_memory
+from puck_tables.stopping.sweep import check_memory
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -27,10 +27,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.safe_read import read_whole
+from puck_tables._core.safe_write import write_bytes
 from puck_tables._version import __version__
 from puck_tables.errors import OutputError, TableError
-from puck_tables.safe_read import read_whole
-from puck_tables.safe_write import write_bytes
 from puck_tables.table.accuracy import Accuracy
 from puck_tables.table.plain_hdf5 import PlainFile
 

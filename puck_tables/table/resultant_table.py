@@ -16,11 +16,11 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.real import broadcast
 from puck_tables.contact.integrals import checked_phi
 from puck_tables.contact.laws import Law, law_of
 from puck_tables.contact.resultants import Resultants, checked_delta
 from puck_tables.errors import InputError
-from puck_tables.real import broadcast
 from puck_tables.table.check import CheckReport
 from puck_tables.table.fit import height_terms, sided_coefficients
 from puck_tables.table.law_table import LawTable

@@ -9,13 +9,13 @@ from collections.abc import Callable
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.executor import keep_on, run_chunks
+from puck_tables._core.real import rounded_up
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.contact.speed_quadrature import SpeedFunction, speed_integrals
 from puck_tables.errors import AccuracyError
-from puck_tables.executor import keep_on, run_chunks
 from puck_tables.kernels.speed_quadrature import fill_integrals
 from puck_tables.kernels.speed_spline import fill_patch
-from puck_tables.real import rounded_up
 from puck_tables.table.accuracy import Accuracy
 from puck_tables.table.build import COARSEST
 from puck_tables.table.speed_fit import missed_by_half, quintic_coefficients

@@ -11,6 +11,7 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.real import broadcast
 from puck_tables.contact.integrals import PatchIntegrals, checked_phi, slip_direction
 from puck_tables.contact.resultants import Resultants, moment_balance, pressure_tilt
 from puck_tables.contact.speed_law import SpeedLaw
@@ -22,7 +23,6 @@ from puck_tables.contact.speed_quadrature import (
 )
 from puck_tables.errors import InputError
 from puck_tables.kernels.speed_spline import DONE, fill_speed, packed
-from puck_tables.real import broadcast
 from puck_tables.table.check import CheckReport
 from puck_tables.table.speed_fit import quintic_coefficients
 from puck_tables.table.speed_grid import COARSEST_CELLS, HALVINGS, Patch, patch_count, patches_of

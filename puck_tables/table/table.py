@@ -19,8 +19,8 @@ from typing import Any, ClassVar, NamedTuple, Self, cast
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.real import instance
 from puck_tables.errors import InputError
-from puck_tables.real import instance
 from puck_tables.table import file
 from puck_tables.table.accuracy import Accuracy
 from puck_tables.table.check import CheckReport
@@ -31,7 +31,7 @@ Progress = Callable[[int, int], None]
 # where every kind of table is at home
 KINDS = {
     "resultants": "puck_tables.table.resultant_table:ResultantTable",
-    "stops": "puck_tables.similarity.stop_table:StopTable",
+    "stops": "puck_tables.stopping.stop_table:StopTable",
     "speed": "puck_tables.table.speed_table:SpeedTable",
     "friction slice": "puck_tables.table.friction_slice:FrictionSlice",
 }

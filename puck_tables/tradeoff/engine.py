@@ -11,12 +11,12 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.front import Way
+from puck_tables.accuracy.front import Way
 from puck_tables.io.dataset import Dataset, variable
 from puck_tables.motion.limits import limit_ratio
 from puck_tables.result import Result
-from puck_tables.similarity.lookup import stops_kernel
-from puck_tables.similarity.stop_table import StopTable
+from puck_tables.stopping.lookup import stops_kernel
+from puck_tables.stopping.stop_table import StopTable
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.tradeoff import resultant_ways, state_ways, stop_ways
 from puck_tables.tradeoff.contender import Contender, Ready

@@ -8,12 +8,12 @@ from functools import partial
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.front import ADAPTIVE_EXACT, ADAPTIVE_TABLE, LOOK_UP
+from puck_tables.accuracy.front import ADAPTIVE_EXACT, ADAPTIVE_TABLE, LOOK_UP
 from puck_tables.motion.equations import SIZE
 from puck_tables.motion.limits import log_ratio
 from puck_tables.motion.path import integrate, states_at
 from puck_tables.motion.steppers import DORMAND_PRINCE
-from puck_tables.similarity.stop_table import StopTable
+from puck_tables.stopping.stop_table import StopTable
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.tradeoff.contender import Contender, Ready
 from puck_tables.tradeoff.rivals import rates
@@ -71,7 +71,7 @@ class Task:
 
     def looked_up(self) -> Run:
         """Every moment from the stop table."""
-        from puck_tables.similarity.curve_lookup import STATE_ROWS, fill_states
+        from puck_tables.stopping.curve_lookup import STATE_ROWS, fill_states
 
         which = np.repeat(np.arange(_PUCKS), _MOMENTS)
         moments, out = self.times.ravel(), np.empty((STATE_ROWS, _PUCKS * _MOMENTS))

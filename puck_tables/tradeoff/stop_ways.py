@@ -8,15 +8,15 @@ from functools import partial
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.front import ADAPTIVE_EXACT, ADAPTIVE_TABLE, LOOK_UP, RK4_EXACT, RK4_TABLE
+from puck_tables.accuracy.front import ADAPTIVE_EXACT, ADAPTIVE_TABLE, LOOK_UP, RK4_EXACT, RK4_TABLE
 from puck_tables.kernels.quadratic import cut as cut_table
 from puck_tables.motion.bulk import fill_stops
 from puck_tables.motion.equations import SIZE
 from puck_tables.motion.limits import log_ratio
 from puck_tables.motion.path import integrate
 from puck_tables.motion.steppers import DORMAND_PRINCE, RK4
-from puck_tables.similarity.lookup import row_width, stops_kernel
-from puck_tables.similarity.stop_table import StopTable
+from puck_tables.stopping.lookup import row_width, stops_kernel
+from puck_tables.stopping.stop_table import StopTable
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.tradeoff.contender import Contender, Ready
 from puck_tables.tradeoff.machine import HARD

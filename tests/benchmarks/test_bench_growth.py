@@ -9,9 +9,9 @@ import numpy.typing as npt
 import pytest
 
 from puck_tables import Table
-from puck_tables.front import shipped_front
-from puck_tables.similarity.exact import exact_stops
-from puck_tables.similarity.lookup import stops_kernel
+from puck_tables.accuracy.front import shipped_front
+from puck_tables.stopping.exact import exact_stops
+from puck_tables.stopping.lookup import stops_kernel
 
 FloatArray = npt.NDArray[np.float64]
 

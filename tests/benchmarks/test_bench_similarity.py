@@ -12,9 +12,9 @@ import pytest
 
 import puck_tables
 from puck_tables import Table
-from puck_tables.similarity.curve_lookup import STATE_ROWS, fill_states
-from puck_tables.similarity.lookup import STOP_POWERS, stops_kernel
-from puck_tables.solvers import LookUp, solver_for
+from puck_tables.stopping.curve_lookup import STATE_ROWS, fill_states
+from puck_tables.stopping.lookup import STOP_POWERS, stops_kernel
+from puck_tables.stopping.solvers import LookUp, solver_for
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -159,7 +159,7 @@ def test_frames(measure: Any, frames: int) -> None:
     times = np.linspace(0.0, 3.9, frames)
     measure(
         f"{name}, {frames} times",
-        (lambda: puck_tables.states((1.0, 0.0), 5.0, times))
+        (lambda: puck_tables.stopping.states((1.0, 0.0), 5.0, times))
         if frames > 10_000
         else (lambda: puck_tables.simulate((1.0, 0.0), 5.0, times=times)),
         items=frames,

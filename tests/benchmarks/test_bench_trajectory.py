@@ -32,7 +32,7 @@ from puck_tables.motion.equations import SIZE, T, X, Y
 from puck_tables.motion.limits import log_ratio
 from puck_tables.motion.path import integrate
 from puck_tables.motion.steppers import DORMAND_PRINCE
-from puck_tables.solvers import Integration, solver_for
+from puck_tables.stopping.solvers import Integration, solver_for
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.tradeoff.rivals import patch_script
 

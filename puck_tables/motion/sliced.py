@@ -15,16 +15,15 @@ from functools import lru_cache
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.body import Body
+from puck_tables._core.real import real, rounded_up
+from puck_tables.accuracy.front import ADAPTIVE_EXACT, COARSEST, RK4_EXACT, Choice, choose
 from puck_tables.contact.one_sided import loaded_share
 from puck_tables.errors import AccuracyError
-from puck_tables.front import ADAPTIVE_EXACT, COARSEST, RK4_EXACT, Choice, choose
 from puck_tables.kernels.slice_spline import LINE
+from puck_tables.motion.body import Body
 from puck_tables.motion.equations import LENGTH, PSI, THETA, WORK, T, U, X, Y
 from puck_tables.motion.limits import log_ratio, regime_of
-from puck_tables.motion.steppers import DORMAND_PRINCE, RK4, Tableau
-from puck_tables.real import real, rounded_up
-from puck_tables.run import (
+from puck_tables.motion.run import (
     CONSTANT_ANGLE,
     Friction,
     Run,
@@ -32,6 +31,7 @@ from puck_tables.run import (
     step_ends,
     turn_rate_at,
 )
+from puck_tables.motion.steppers import DORMAND_PRINCE, RK4, Tableau
 from puck_tables.table.friction_slice import FINEST_ACCURACY
 
 FloatArray = npt.NDArray[np.float64]
@@ -122,7 +122,7 @@ def run_sliced(
 
     Examples
     --------
-    >>> from puck_tables.body import body_of
+    >>> from puck_tables.motion.body import body_of
     >>> run, choice = run_sliced(body_of("uniform", 2.0, 0.5**0.5), "C", 0.8, 0.6, 1e-6)
     >>> round(float(run.stop[T]), 5), run.error <= 1e-6
     (1.13721, True)
@@ -242,7 +242,7 @@ def contact_of(body: Body, regime: str, run: Run) -> Contact:
 
     Examples
     --------
-    >>> from puck_tables.body import body_of
+    >>> from puck_tables.motion.body import body_of
     >>> body = body_of("uniform", 2.0, 0.5**0.5)
     >>> run, _ = run_sliced(body, "C0", 1.0, 0.0, 1e-6)
     >>> round(contact_of(body, "C0", run).least, 6)
@@ -279,7 +279,7 @@ def states_of(body: Body, launch: FloatArray, times: FloatArray) -> FloatArray:
 
     Examples
     --------
-    >>> from puck_tables.body import body_of
+    >>> from puck_tables.motion.body import body_of
     >>> launch = np.array([1.0, 0.0, 0.0, 2.0, 1.0, 1.0])
     >>> states = states_of(body_of("uniform", 2.0, 0.5**0.5), launch, np.array([0.5, 2.0]))
     >>> states[0].round(12).tolist()

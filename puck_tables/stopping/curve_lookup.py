@@ -4,7 +4,7 @@ The signed number
 
     N = sign(c − c₀) exp(κ (ln Q + ln T)) / (its modulus at φ = π/4)
 
-(ln Q of :mod:`puck_tables.similarity.curve`) falls along every motion like the κ-th power of the
+(ln Q of :mod:`puck_tables.stopping.curve`) falls along every motion like the κ-th power of the
 time that is left, N ∝ (t₀ − t)^κ, and is one and the same monotonic function of c for both generic
 classes: negative below the limit ratio, −1 at π/4, positive above.  Its inverse is tabulated, so a
 state at a time is found without solving anything.  Without ln T the same holds for Q itself.
@@ -26,8 +26,8 @@ import numpy.typing as npt
 
 from puck_tables.kernels.compile import allocating, inlined
 from puck_tables.kernels.spline import basis, cell_at
-from puck_tables.similarity.axes import HEIGHTS
-from puck_tables.similarity.lookup import CURVE_ROW, STOP_POWERS, slip_place
+from puck_tables.stopping.axes import HEIGHTS
+from puck_tables.stopping.lookup import CURVE_ROW, STOP_POWERS, slip_place
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -9,7 +9,7 @@ the stop of a launch (vx, vy), ω is
     t = (Q/J) T,    x = (Q · along · vx − δ rω · across · vy)/J,    y likewise,
 
 and no direction has to be computed: at rest, in pure sliding and in pure spin nothing is divided
-by zero.  Each function is a cubic spline in ξ (see :mod:`puck_tables.similarity.axes`) whose
+by zero.  Each function is a cubic spline in ξ (see :mod:`puck_tables.stopping.axes`) whose
 coefficients are polynomials in s = 2δ² − 1.
 """
 

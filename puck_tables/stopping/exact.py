@@ -7,7 +7,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.executor import run_chunks
+from puck_tables._core.executor import run_chunks
 from puck_tables.kernels.compile import allocating
 from puck_tables.motion.equations import LENGTH, PSI, SIZE, THETA, T, U, X, Y, at_constant_angle
 from puck_tables.motion.path import STOPPED, integrate

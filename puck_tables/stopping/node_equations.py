@@ -1,6 +1,6 @@
 """The equations that stops and the curve satisfy, at every node of a stop table at once.
 
-Along a motion everything goes with ln Q, du/d ln Q = −ρ(u) (:mod:`puck_tables.similarity.curve`).
+Along a motion everything goes with ln Q, du/d ln Q = −ρ(u) (:mod:`puck_tables.stopping.curve`).
 What is left of time, way and angle gives, with N as there, s = sin φ, c = cos φ and dψ/d ln Q = h,
 
     T − ρ T_u = N/ρ_∥,        (2 + i h) Z − ρ Z_u = c N/ρ_∥   (Z = X + iY),
@@ -22,8 +22,8 @@ import numpy.typing as npt
 from puck_tables.contact import closed_form
 from puck_tables.contact.integrals import PatchIntegrals, SlipDirection
 from puck_tables.contact.resultants import moment_balance
-from puck_tables.similarity.axes import SlipAxis, heights, ratio_at
-from puck_tables.similarity.curve import limits, rates, regular_slopes
+from puck_tables.stopping.axes import SlipAxis, heights, ratio_at
+from puck_tables.stopping.curve import limits, rates, regular_slopes
 
 FloatArray = npt.NDArray[np.float64]
 Slopes = Callable[[FloatArray, float], tuple[float, FloatArray]]
@@ -39,7 +39,7 @@ def missed_by_stops(axis: SlipAxis, values: FloatArray) -> tuple[FloatArray, flo
     Parameters
     ----------
     axis : SlipAxis
-    values : array (2 cells + 1, 9, 7), as in :class:`puck_tables.similarity.StopTable`
+    values : array (2 cells + 1, 9, 7), as in :class:`puck_tables.stopping.stop_table.StopTable`
 
     Returns
     -------
@@ -47,7 +47,7 @@ def missed_by_stops(axis: SlipAxis, values: FloatArray) -> tuple[FloatArray, flo
 
     Examples
     --------
-    >>> from puck_tables.similarity.stop_table import StopTable
+    >>> from puck_tables.stopping.stop_table import StopTable
     >>> table = StopTable.shipped()
     >>> missed, allowed = missed_by_stops(table.axis, table.values)
     >>> bool(missed.max() < allowed < 1e-7)
@@ -99,7 +99,7 @@ def missed_by_curve(
 
     Examples
     --------
-    >>> from puck_tables.similarity.stop_table import StopTable
+    >>> from puck_tables.stopping.stop_table import StopTable
     >>> table = StopTable.shipped()
     >>> missed, allowed = missed_by_curve(table.axis, table.values, 4, slopes_off_the_limit)
     >>> bool(missed.max() < allowed < 1e-6)

@@ -12,11 +12,11 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables.accuracy.front import Choice
 from puck_tables.contact.closed_form import by_closed_form
 from puck_tables.contact.integrals import SlipDirection
 from puck_tables.contact.resultants import CONTACT_SLACK, pressure_tilt
 from puck_tables.errors import PuckError
-from puck_tables.front import Choice
 from puck_tables.kernels.closed_form import outside_full_contact
 from puck_tables.motion.equations import (
     PSI,
@@ -123,7 +123,7 @@ def run_motion(
 
     Examples
     --------
-    >>> from puck_tables.front import INTEGRATED, choose
+    >>> from puck_tables.accuracy.front import INTEGRATED, choose
     >>> run = run_motion(
     ...     "B", 1.0, 5.0, 0.426, closed_form_friction(0.0), choose("trajectory", 1e-9, INTEGRATED)
     ... )

@@ -8,17 +8,17 @@ from typing import ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.body import body_of, is_plain
+from puck_tables._core.executor import run_chunks
+from puck_tables._core.real import broadcast, finite_array, instance, velocity_array
 from puck_tables.contact.laws import HOMOGENEOUS, Law, law_of
 from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import InputError
-from puck_tables.executor import run_chunks
 from puck_tables.io.dataset import Dataset, variable
-from puck_tables.real import broadcast, finite_array, instance, velocity_array
+from puck_tables.motion.body import body_of, is_plain
 from puck_tables.result import Result
-from puck_tables.similarity.stop_table import StopTable
-from puck_tables.solvers import fits
-from puck_tables.stops import positive_array
+from puck_tables.stopping.solvers import fits
+from puck_tables.stopping.stop_table import StopTable
+from puck_tables.stopping.stops import positive_array
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -132,7 +132,7 @@ def states(
     Notes
     -----
     All motions of a puck of height δ are one curve, up to rotation, reflection and scale; the time
-    that is left says where on it a state stands (:mod:`puck_tables.similarity.curve_lookup`).
+    that is left says where on it a state stands (:mod:`puck_tables.stopping.curve_lookup`).
 
     References
     ----------
@@ -144,8 +144,8 @@ def states(
     >>> found.x.round(6).tolist(), found.spin.round(6).tolist()
     ([1.590682, 0.0, 2.213952], [2.426862, 5.0, 0.0])
     """
-    from puck_tables.similarity.curve_lookup import STATE_ROWS, fill_states
-    from puck_tables.sliced import states_of
+    from puck_tables.motion.sliced import states_of
+    from puck_tables.stopping.curve_lookup import STATE_ROWS, fill_states
 
     instance("table", table, StopTable, type(None))
     if table is None:
@@ -213,7 +213,7 @@ def _states(
     shape: tuple[int, ...],
 ) -> States:  # fmt: skip
     """Rows of states, headings from those of the launches, in their shape."""
-    from puck_tables.similarity.curve_lookup import PSI, SPEED, SPIN, THETA, X, Y
+    from puck_tables.stopping.curve_lookup import PSI, SPEED, SPIN, THETA, X, Y
 
     rows = [row.reshape(shape) for row in out]
     direction = np.where(

@@ -7,16 +7,16 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.any_stops import AnyStops
-from puck_tables.body import is_plain
+from puck_tables._core.real import broadcast, finite_array, velocity_array
 from puck_tables.contact.laws import HOMOGENEOUS, Law
 from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import InputError
 from puck_tables.io.dataset import Dataset, variable
-from puck_tables.real import broadcast, finite_array, velocity_array
+from puck_tables.motion.body import is_plain
 from puck_tables.result import Result
-from puck_tables.similarity.stop_table import StopTable
-from puck_tables.solvers import OUTPUTS, STATUS_MEANINGS, Integration, LookUp, solver_for
+from puck_tables.stopping.any_stops import AnyStops
+from puck_tables.stopping.solvers import OUTPUTS, STATUS_MEANINGS, Integration, LookUp, solver_for
+from puck_tables.stopping.stop_table import StopTable
 from puck_tables.table.resultant_table import ResultantTable
 
 FloatArray = npt.NDArray[np.float64]
@@ -30,7 +30,7 @@ class Stops(Result):
 
     ``stop_time`` (…) s, ``stop_position`` (…, 2) m from the launch, ``status`` (…) int8, 0 where
     all is well, ``method`` ('look-up' or 'integrated'), ``choice`` (what the tolerance led to, see
-    :class:`puck_tables.front.Choice`; None with a stop table of one's own).
+    :class:`puck_tables.accuracy.front.Choice`; None with a stop table of one's own).
     Computed when first asked for: ``path_length`` (…) m, ``body_angle`` (…) rad, ``turn_angle``
     (…) rad: how far the heading has turned when Q has fallen to 1/1000 (for δ > 0 it turns on
     without end).

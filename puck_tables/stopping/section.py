@@ -5,8 +5,8 @@ All launches of a puck that stop at distance D are one curve over u, with J = D 
     ln Q = −½ ln|Z|,   Z = X + iY,   ln v = ln Q + ln cos φ,   ln r|ω| = ln v + u,
     ln t₀ = ln Q + ln T.
 
-T and Z obey linear equations in u (:mod:`puck_tables.similarity`), so that the derivatives of the
-curve need nothing but its values and the friction,
+T and Z obey linear equations in u (:mod:`puck_tables.stopping.curve`), so that the derivatives of
+the curve need nothing but its values and the friction,
 
     (ρ_∥ − σ) (ln v, ln r|ω|, ln t₀)′ = ½ cos φ Re(1/Z) − (ρ_∥, σ, 1/T),   σ = (r²/2k²) ρ_ω .
 
@@ -24,8 +24,8 @@ from functools import lru_cache
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.body import Body
-from puck_tables.similarity.exact import exact_stops, integrated_stops
+from puck_tables.motion.body import Body
+from puck_tables.stopping.exact import exact_stops, integrated_stops
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -118,7 +118,7 @@ def section_of(body: Body) -> Section:
 
     Examples
     --------
-    >>> from puck_tables.body import body_of
+    >>> from puck_tables.motion.body import body_of
     >>> u, fastest = section_of(body_of("uniform", 3.9, 0.1)).extreme(SPEED)
     >>> u > -4.0, fastest > 0.5 * math.log(2.0)
     (True, True)

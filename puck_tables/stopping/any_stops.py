@@ -13,16 +13,16 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.body import Body, body_of
+from puck_tables._core.executor import Progress, in_slices, run_chunks
+from puck_tables._core.real import rounded_up
+from puck_tables.accuracy.front import ADAPTIVE_EXACT, LOOK_UP, RK4_EXACT, Choice, choose
 from puck_tables.contact.laws import Law, law_of
 from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import AccuracyError, InputError
-from puck_tables.executor import Progress, in_slices, run_chunks
-from puck_tables.front import ADAPTIVE_EXACT, LOOK_UP, RK4_EXACT, Choice, choose
-from puck_tables.real import rounded_up
-from puck_tables.similarity.stop_slice import FINEST_SLICE, StopSlice, stop_slice
-from puck_tables.sliced import LOOSEST_LOCAL, checked_tol, friction_of, unseen_tail
-from puck_tables.solvers import METHODS, OUTPUTS, fits
+from puck_tables.motion.body import Body, body_of
+from puck_tables.motion.sliced import LOOSEST_LOCAL, checked_tol, friction_of, unseen_tail
+from puck_tables.stopping.solvers import METHODS, OUTPUTS, fits
+from puck_tables.stopping.stop_slice import FINEST_SLICE, StopSlice, stop_slice
 from puck_tables.table.friction_slice import FINEST_ACCURACY
 from puck_tables.table.resultant_table import ResultantTable
 
@@ -162,7 +162,7 @@ class AnyStops:
         return self.all(launches)
 
     def all(self, launches: FloatArray) -> tuple[FloatArray, Status]:
-        """All of :data:`puck_tables.solvers.OUTPUTS` (6, n) and status (n,) of launches (6, n)."""
+        """All of the outputs of a stop (6, n) and status (n,) of launches (6, n)."""
         out = np.empty((len(OUTPUTS), launches.shape[1]))
         status = np.zeros(launches.shape[1], np.int8)
         for delta in np.unique(launches[3]):
@@ -177,7 +177,7 @@ class AnyStops:
 def _answered(ready: StopSlice | _Integrated, launches: FloatArray) -> tuple[FloatArray, Status]:
     from puck_tables.motion.bulk import fill_stops
     from puck_tables.motion.steppers import DORMAND_PRINCE
-    from puck_tables.similarity.slice_lookup import fill_slice_stops
+    from puck_tables.stopping.slice_lookup import fill_slice_stops
 
     out = np.empty((len(OUTPUTS), launches.shape[1]))
     status = np.zeros(launches.shape[1], np.int8)

@@ -10,15 +10,15 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.body import is_plain
-from puck_tables.columns import COLUMNS as VARIABLES
+from puck_tables._core.real import finite_array, positive, real
 from puck_tables.errors import InputError
+from puck_tables.io.columns import COLUMNS as VARIABLES
 from puck_tables.io.dataset import Dataset, variable
+from puck_tables.motion.body import is_plain
 from puck_tables.puck import PUCK_UNITS, Puck
-from puck_tables.real import finite_array, positive, real
 from puck_tables.result import Result
-from puck_tables.similarity.exact import integrated_stops
-from puck_tables.similarity.section import (
+from puck_tables.stopping.exact import integrated_stops
+from puck_tables.stopping.section import (
     RIM,
     SLICE_ACCURACY,
     SPEED,
@@ -29,7 +29,7 @@ from puck_tables.similarity.section import (
     sample,
     section_of,
 )
-from puck_tables.solvers import fits
+from puck_tables.stopping.solvers import fits
 from puck_tables.table.resultant_table import ResultantTable
 
 FloatArray = npt.NDArray[np.float64]
@@ -349,8 +349,8 @@ def _misses(found: Aim) -> FloatArray:
 
     Friction of a plain puck is that of the table, where the launches were found with closed forms.
     """
-    from puck_tables.run import table_friction
-    from puck_tables.sliced import friction_of
+    from puck_tables.motion.run import table_friction
+    from puck_tables.motion.sliced import friction_of
 
     puck = found.puck
     if _is_plain(puck):

@@ -21,7 +21,7 @@ _LOWEST = 1e-290
 def fill_slice_stops(launches: FloatArray, cut: FloatArray, out: FloatArray) -> None:
     """Stops of launches (6, n): vx, vy, ω, δ, J, r, into ``out`` (6, n), see solvers.OUTPUTS.
 
-    ``cut`` holds the functions of :mod:`puck_tables.similarity.stop_slice`; all launches are of its
+    ``cut`` holds the functions of :mod:`puck_tables.stopping.stop_slice`; all launches are of its
     puck.  No direction is computed and nothing divided by zero.
     """
     values = np.empty(_FUNCTIONS)

@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.executor import in_slices
+from puck_tables._core.real import instance, real
+from puck_tables.accuracy.front import COARSEST, INTEGRATED, LOOK_UP, Choice, choose
 from puck_tables.errors import AccuracyError, InputError
-from puck_tables.executor import in_slices
-from puck_tables.front import COARSEST, INTEGRATED, LOOK_UP, Choice, choose
-from puck_tables.real import instance, real
-from puck_tables.similarity.lookup import STOP_POWERS
-from puck_tables.similarity.stop_table import StopTable
+from puck_tables.stopping.lookup import STOP_POWERS
+from puck_tables.stopping.stop_table import StopTable
 from puck_tables.table.resultant_table import ResultantTable
 
 FloatArray = npt.NDArray[np.float64]
@@ -60,7 +60,7 @@ class LookUp:
 
     def all(self, launches: FloatArray) -> tuple[FloatArray, Status]:
         """All of :data:`OUTPUTS` (6, n) and status (n,) of checked launches (6, n)."""
-        from puck_tables.similarity.curve_lookup import BODY, LENGTH, TURN
+        from puck_tables.stopping.curve_lookup import BODY, LENGTH, TURN
 
         known = self.table.known(launches)
         first, status = self.first(launches)

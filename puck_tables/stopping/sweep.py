@@ -12,19 +12,19 @@ from typing import ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.any_stops import HEIGHT_COST, AnyStops
-from puck_tables.checkpoint import Checkpoint, work_digest
-from puck_tables.columns import COLUMNS
+from puck_tables._core.checkpoint import Checkpoint, work_digest
+from puck_tables._core.executor import run_chunks
+from puck_tables._core.real import finite_array, one_velocity, positive
+from puck_tables.accuracy.front import Choice
 from puck_tables.contact.laws import Law
 from puck_tables.errors import InputError
-from puck_tables.executor import run_chunks
-from puck_tables.front import Choice
+from puck_tables.io.columns import COLUMNS
 from puck_tables.io.dataset import Dataset, variable
-from puck_tables.real import finite_array, one_velocity, positive
 from puck_tables.result import Result
-from puck_tables.similarity.stop_table import StopTable
-from puck_tables.solvers import OUTPUTS, STATUS_MEANINGS
-from puck_tables.stops import any_solver
+from puck_tables.stopping.any_stops import HEIGHT_COST, AnyStops
+from puck_tables.stopping.solvers import OUTPUTS, STATUS_MEANINGS
+from puck_tables.stopping.stop_table import StopTable
+from puck_tables.stopping.stops import any_solver
 from puck_tables.table.resultant_table import ResultantTable
 
 FloatArray = npt.NDArray[np.float64]

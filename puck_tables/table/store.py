@@ -22,20 +22,20 @@ from typing import Any, NamedTuple, TypeVar, overload
 
 import numpy as np
 
+from puck_tables._core.own_folder import make_private, refuse_shared, say, user_cache
+from puck_tables._core.real import real_array
+from puck_tables._core.safe_write import PART_PATTERN
+from puck_tables._core.sources import source_digest
+from puck_tables._core.waiting import watched
 from puck_tables.contact.laws import Law, law_of
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import InputError, OutputError, TableError
-from puck_tables.kernels.cache import source_digest
-from puck_tables.own_folder import make_private, refuse_shared, say, user_cache
-from puck_tables.real import real_array
-from puck_tables.safe_write import PART_PATTERN
 from puck_tables.table.file import read_content, recipe_digest
 from puck_tables.table.friction_slice import FrictionSlice, friction_slice
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.table.singular_lines import refuse_height
 from puck_tables.table.speed_table import SpeedTable
 from puck_tables.table.table import Progress, Table
-from puck_tables.waiting import watched
 
 AnyTable = TypeVar("AnyTable", bound=Table)
 

@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from puck_tables._core.real import instance, real
 from puck_tables.contact.laws import HOMOGENEOUS, Law, law_of, limit_ratio
 from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import InputError
-from puck_tables.real import instance, real
-from puck_tables.store import friction_for
 from puck_tables.table.friction_slice import FrictionSlice, slice_of
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.table.singular_lines import refuse_height
+from puck_tables.table.store import friction_for
 
 STANDARD_GRAVITY = 9.80665
 SMALLEST_GYRATION, LARGEST_GYRATION = 0.1, 10.0

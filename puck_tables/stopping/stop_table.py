@@ -11,18 +11,18 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.executor import run_chunks
 from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import InputError
-from puck_tables.executor import run_chunks
-from puck_tables.similarity.axes import (
+from puck_tables.stopping.axes import (
     CONSTANT_HEIGHTS,
     HEIGHTS,
     SlipAxis,
     height_polynomials,
     heights,
 )
-from puck_tables.similarity.curve import limits
-from puck_tables.similarity.lookup import (
+from puck_tables.stopping.curve import limits
+from puck_tables.stopping.lookup import (
     CURVE_ROW,
     STOP_POWERS,
     STOP_ROW,
@@ -63,10 +63,10 @@ class StopTable(Table):
     Parameters
     ----------
     values : array (2 cells + 1, 9, 7)
-        At the nodes of φ (ascending) and of δ (:func:`puck_tables.similarity.axes.heights`):
+        At the nodes of φ (ascending) and of δ (:func:`puck_tables.stopping.axes.heights`):
         ``time`` T; ``along`` X/cos φ; ``across`` Y/(δ sin φ cos φ); ``length`` path/cos φ; ``body``
-        angle/sin φ (all: :mod:`puck_tables.similarity.lookup`); ``curve`` κR; ``turn`` S/δ
-        (:mod:`puck_tables.similarity.curve`).
+        angle/sin φ (all: :mod:`puck_tables.stopping.lookup`); ``curve`` κR; ``turn`` S/δ
+        (:mod:`puck_tables.stopping.curve`).
 
     Notes
     -----
@@ -141,7 +141,7 @@ class StopTable(Table):
         return self._inverse(with_time=False)
 
     def _inverse(self, with_time: bool) -> FloatArray:
-        from puck_tables.similarity.curve_lookup import fill_inverse
+        from puck_tables.stopping.curve_lookup import fill_inverse
 
         values = np.empty((2, self.axis.cells + 1, HEIGHTS))
         fill_inverse(
@@ -173,7 +173,7 @@ class StopTable(Table):
         return {}
 
     def cut(self, powers: int = STOP_POWERS, thinning: int = 1) -> FloatArray:
-        """What :func:`puck_tables.similarity.lookup.stops_kernel` reads, as coarse as wanted.
+        """What :func:`puck_tables.stopping.lookup.stops_kernel` reads, as coarse as wanted.
 
         Parameters
         ----------
@@ -222,7 +222,7 @@ class StopTable(Table):
     def known(self, launches: FloatArray) -> FloatArray:
         """What the table knows of checked launches (6, n), see :func:`fill_launches`; (14, n)."""
         from puck_tables.motion.path import TURN_SHARE
-        from puck_tables.similarity.curve_lookup import LAUNCH_ROWS, fill_launches
+        from puck_tables.stopping.curve_lookup import LAUNCH_ROWS, fill_launches
 
         out = np.empty((LAUNCH_ROWS, launches.shape[1]))
         tables = (
@@ -268,7 +268,7 @@ class StopTable(Table):
             resultants by direct quadrature; against elementary values at φ = 0, π/2 and at the
             limit angle.
         """
-        from puck_tables.similarity.check import judged
+        from puck_tables.stopping.check import judged
 
         return judged(self, progress)
 
@@ -282,7 +282,7 @@ class StopTable(Table):
     @classmethod
     def built(cls, of: Any, accuracy: float | None = None, **how: Any) -> StopTable:
         """A table of stops, see :meth:`puck_tables.Table.build`."""
-        from puck_tables.similarity.check import tabulated
+        from puck_tables.stopping.check import tabulated
 
         return tabulated(accuracy, **how)
 
@@ -333,8 +333,8 @@ class StopTable(Table):
 
     def spot_checks(self) -> Iterator[tuple[FloatArray, float, str]]:
         """As far as the equations between its nodes show what is wrong."""
-        from puck_tables.similarity.exact import end_values
-        from puck_tables.similarity.node_equations import (
+        from puck_tables.stopping.exact import end_values
+        from puck_tables.stopping.node_equations import (
             missed_by_curve,
             missed_by_stops,
             slopes_off_the_limit,

@@ -1,7 +1,7 @@
 """Stops of one kind of puck, looked up: everything about them over the slip angle alone.
 
 For one pressure law, height and radius of gyration the stop of every launch follows from functions
-of φ (:mod:`puck_tables.similarity.lookup`, where they depend on δ besides).  They inherit the lines
+of φ (:mod:`puck_tables.stopping.lookup`, where they depend on δ besides).  They inherit the lines
 of the friction, and are singular at φ = 0 and π/2, where they carry broken powers, 1/(1 − σ(0)) and
 σ(π/2)/(σ(π/2) − 1) with σ = (r²/2k²) ρ_ω/ρ_∥; at φ₀ they are analytic.  Each node is a stop of its
 own, integrated.
@@ -16,10 +16,10 @@ from functools import lru_cache
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.body import Body
 from puck_tables.errors import AccuracyError
+from puck_tables.motion.body import Body
 from puck_tables.motion.path import TURN_SHARE
-from puck_tables.similarity.exact import integrated_stops
+from puck_tables.stopping.exact import integrated_stops
 from puck_tables.table.friction_slice import FINEST_ACCURACY, FrictionSlice
 from puck_tables.table.slip_axis import sides_of
 from puck_tables.table.slip_spline import SlipSpline, slip_spline
@@ -79,7 +79,7 @@ def stop_slice(body: Body, accuracy: float) -> StopSlice:
 
     Examples
     --------
-    >>> from puck_tables.body import body_of
+    >>> from puck_tables.motion.body import body_of
     >>> found = stop_slice(body_of("uniform", 2.0, 0.5**0.5), 1e-5)
     >>> float(found.spline.at(np.array([0.5]))[0, 0].round(4)), found.error <= 1e-5
     (1.1458, True)

@@ -5,7 +5,7 @@ T and X + iY satisfy: the integrator exists, reaches 1e-15 with closed forms at 
 2e-14, and leaves those equations to judge by.
 
 The equations.  On the way from a to b along a motion, with ln Q as in
-:mod:`puck_tables.similarity.curve`,
+:mod:`puck_tables.stopping.curve`,
 
     T(a) = ∫ Q/Q_a · N/(ρ_∥ ρ) du + (Q_b/Q_a) T(b)
     Z(a) = ∫ (Q/Q_a)² cos φ e^{i(ψ − ψ_a)} N/(ρ_∥ ρ) du + (Q_b/Q_a)² e^{i(ψ_b − ψ_a)} Z(b)
@@ -24,15 +24,15 @@ import numpy as np
 import numpy.typing as npt
 from numpy.polynomial import chebyshev
 
+from puck_tables._core.executor import run_chunks
 from puck_tables.contact import quadrature
 from puck_tables.contact.integrals import slip_direction
 from puck_tables.contact.resultants import moment_balance
-from puck_tables.executor import run_chunks
 from puck_tables.kernels.spline import basis
 from puck_tables.motion.limits import limit_ratio
-from puck_tables.similarity.axes import HEIGHTS, SlipAxis, heights, ratio_at
-from puck_tables.similarity.curve import limits, regular_parts
-from puck_tables.similarity.curve_lookup import (
+from puck_tables.stopping.axes import HEIGHTS, SlipAxis, heights, ratio_at
+from puck_tables.stopping.curve import limits, regular_parts
+from puck_tables.stopping.curve_lookup import (
     BODY,
     CURVE_SUM,
     HEADING,
@@ -43,10 +43,10 @@ from puck_tables.similarity.curve_lookup import (
     TURN_SUM,
     TURNING,
 )
-from puck_tables.similarity.exact import end_values, exact_stops
-from puck_tables.similarity.lookup import CURVE_ROW
-from puck_tables.similarity.node_equations import all_slopes, missed_by_curve, missed_by_stops
-from puck_tables.similarity.stop_table import STOPS, StopTable
+from puck_tables.stopping.exact import end_values, exact_stops
+from puck_tables.stopping.lookup import CURVE_ROW
+from puck_tables.stopping.node_equations import all_slopes, missed_by_curve, missed_by_stops
+from puck_tables.stopping.stop_table import STOPS, StopTable
 from puck_tables.table.accuracy import Accuracy
 from puck_tables.table.build import Goal, built
 from puck_tables.table.check import Check, CheckReport, compared

@@ -28,9 +28,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.safe_read import read_whole
+from puck_tables._core.sources import source_digest
 from puck_tables.errors import InputError, OutputError
-from puck_tables.kernels.cache import source_digest
-from puck_tables.safe_read import read_whole
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -28,7 +28,7 @@ from numpy.polynomial import chebyshev
 
 from puck_tables.contact.closed_form import shape_integrals
 from puck_tables.motion.limits import limit_log_ratio
-from puck_tables.similarity.axes import SlipAxis, ratio_at
+from puck_tables.stopping.axes import SlipAxis, ratio_at
 
 FloatArray = npt.NDArray[np.float64]
 

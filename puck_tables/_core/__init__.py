@@ -1,0 +1,1 @@
+"""Arrays, parallel work, files and caches: nothing of physics."""

@@ -1,0 +1,1 @@
+"""Methods, and what each costs and errs."""

@@ -1,1 +1,0 @@
-"""The motion's symmetry at work: stops and states by look-up, nothing integrated."""

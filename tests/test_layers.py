@@ -1,0 +1,103 @@
+"""The plan of the house: which rooms a room may import, and where the doors to libraries are."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+# From the ground up: a room imports what its line names, and every name stands on a line before.
+ROOMS = {
+    "errors": "",
+    "_version": "",
+    "_core": "errors",
+    "contact": "_core errors",
+    "io": "_core _version errors",
+    "result": "io",
+    "accuracy": "errors",
+    "chetaev": "_core contact errors io result",
+    "kernels": "_core contact errors",
+    "table": "_core _version contact errors kernels",
+    "motion": "_core accuracy contact errors kernels table",
+    "puck": "_core contact errors motion",
+    "stopping": "_core accuracy contact errors io kernels motion puck result table",
+    "trajectory": "_core accuracy errors io motion puck result stopping table",
+    "scene": "_core contact errors io kernels motion puck result stopping table",
+    "tradeoff": "_version accuracy contact io kernels motion result stopping table",
+    "plot": "_core accuracy chetaev errors io motion scene stopping tradeoff trajectory",
+    "paper": "contact motion plot puck trajectory",
+    "cli": "_core _version accuracy chetaev contact errors io kernels motion paper plot puck scene "
+    "stopping table tradeoff",
+    "__init__": "_version",
+}
+DOORS = {
+    "numba": {"kernels.compile", "kernels.kept_code"},
+    "llvmlite": {"kernels.compile"},
+    "h5py": {"io.hdf5", "table.file"},
+    "xarray": {"io.frames"},
+    "pandas": {"io.frames"},
+    "pyarrow": {"io.parquet"},
+    "matplotlib": {"plot"},
+    "scipy": {"chetaev", "stopping", "table.speed_fit", "tradeoff"},
+    "click": {"cli"},
+}
+
+
+def modules() -> dict[str, Path]:
+    """The files of the package by their names in it."""
+    found = {}
+    for base, prefix in ((ROOT / "puck_tables", ()), (ROOT / "cli", ("cli",))):
+        for path in base.rglob("*.py"):
+            found[".".join([*prefix, *path.relative_to(base).with_suffix("").parts])] = path
+    return found
+
+
+def imported(path: Path) -> Iterator[str]:
+    """What a file imports anywhere in it, but for types."""
+    waiting: list[ast.AST] = [ast.parse(path.read_text(encoding="utf-8"))]
+    while waiting:
+        node = waiting.pop()
+        if isinstance(node, ast.If) and getattr(node.test, "id", "") == "TYPE_CHECKING":
+            continue
+        if isinstance(node, ast.ImportFrom):
+            assert not node.level, f"{path}: imports are absolute"
+            yield node.module or ""
+        elif isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        waiting += ast.iter_child_nodes(node)
+
+
+def test_the_plan_names_every_room_and_no_circle():
+    rooms = {name.partition(".")[0] for name in modules()}
+    assert rooms == set(ROOMS)
+    for n, (room, allowed) in enumerate(ROOMS.items()):
+        assert set(allowed.split()) <= set(list(ROOMS)[:n]), room
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_a_room_imports_only_what_it_may(room: str):
+    for name, path in modules().items():
+        if name.partition(".")[0] == room:
+            for module in imported(path):
+                top, _, rest = module.partition(".")
+                if top == "puck_tables" and rest:
+                    assert rest.partition(".")[0] in {room, *ROOMS[room].split()}, (name, module)
+
+
+@pytest.mark.parametrize("library", DOORS)
+def test_a_library_has_its_doors(library: str):
+    through = {
+        name for name, path in modules().items()
+        if any(module.partition(".")[0] == library for module in imported(path))
+    }  # fmt: skip
+    doors = DOORS[library]
+    assert {name for name in through if not {name, name.partition(".")[0]} & doors} == set()
+    assert doors <= through | {name.partition(".")[0] for name in through}, "a door nobody uses"
+
+
+def test_few_modules_lie_flat():
+    flat = {path.stem for path in (ROOT / "puck_tables").glob("*.py")} - {"__init__"}
+    assert len(flat) <= 8, flat
