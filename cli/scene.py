@@ -40,7 +40,7 @@ def show(name: str) -> None:
 @scene.command()
 def fields() -> None:
     """List every entry that a scene may have: what is allowed, its default, what it is."""
-    from puck_tables.scene.fields import described
+    from puck_tables._core.fields import described
     from puck_tables.scene.scene import Scene
 
     for path, allowed, text in described(Scene):
@@ -51,18 +51,18 @@ def fields() -> None:
 @click.argument("name", metavar="FILE|NAME")
 def check(name: str) -> None:
     """Check a scene: every error at once, or what it holds and how it would be run."""
-    from puck_tables.contact.speed_law import SpeedLaw
-    from puck_tables.scene.library import find_scene
     from puck_tables.scene.plan import out_of_reach, plan_for
     from puck_tables.scene.prepare import prepare
-    from puck_tables.scene.scene import scene_from
+    from puck_tables.scene.regions import speed_law
+    from puck_tables.scene.scene import Scene
+    from puck_tables.scene.sweep import axes_of
 
-    whole, ranges = scene_from(find_scene(name), name)
+    whole = Scene.load(name)
     if whole.floor.law:  # its table takes a while
-        SpeedLaw.from_csv(whole.floor.law)
+        speed_law(whole)
     else:
         prepare(whole)  # files and heights
     click.echo(printable(f"{name}: a scene" + (f", {whole.title}" if whole.title else "")))
-    for path, values in ranges.items():
+    for path, values in axes_of(whole).items():
         click.echo(f"ranges        {path} from {values[0]:g} to {values[-1]:g}, {values.size}")
     click.echo(printable(plan_for(out_of_reach(whole)).why))

@@ -24,7 +24,7 @@ Command = TypeVar("Command", bound=Callable[..., Any])
 PATHS = {
     "v0": "launch.velocity", "w0": "launch.spin", "speed": "launch.velocity[0]",
     "radius": "puck.radius", "height": "puck.height", "mass": "puck.mass",
-    "friction": "floor.friction", "gravity": "floor.gravity", "frames": "run.frames",
+    "friction": "puck.friction", "gravity": "puck.gravity", "frames": "run.frames",
     "tol": "run.tol",
 }  # fmt: skip
 KEPT = ("times", "explain", "as_json", "output", "plot", "overwrite", "threads", "resume")
@@ -76,7 +76,7 @@ def scene_tables(ctx: click.Context, scene: str | None, changes: tuple[str, ...]
             continue
         if name not in PATHS:
             flag = next(p.opts[0] for p in ctx.command.params if p.name == name)
-            hint = " (puck.height and floor.friction set it)" if name in SCALED else ""
+            hint = " (puck.height and puck.friction set it)" if name in SCALED else ""
             raise InputError(f"{flag} has no place in a scene{hint}: leave it out")
         named[PATHS[name]] = f"--{name}"
         set_path(tables, PATHS[name], _as_toml(value))
@@ -120,7 +120,7 @@ def _default_tables(given: dict[str, Any]) -> dict[str, Any]:
     friction = given.get("decel", DEFAULT_DECEL) / STANDARD_GRAVITY
     if not friction > 0.0:
         raise InputError("--decel must be greater than 0 m/s^2")
-    tables["floor"] = {"friction": friction}
+    tables["puck"]["friction"] = friction
     tables["puck"]["height"] = given.get("delta", DEFAULT_DELTA) * radius / (2.0 * friction)
     return tables
 
@@ -146,11 +146,10 @@ def run_scene(
     output: Path | None, plot: Path | None, overwrite: bool,
 ) -> None:  # fmt: skip
     """One run of a scene, to the end of its command."""
-    from puck_tables.scene.simulate import simulate_scene, single
+    from puck_tables.scene.scene import Scene
 
-    whole = single(tables, source)
     wanted = (0.0,) if output is None and plot is None and times is None else times
-    run = simulate_scene(whole, wanted)
+    run = Scene.from_tables(tables, source).simulate(wanted)
     deliver(run, output, plot, overwrite)
     if explain:
         explained(run)
@@ -209,15 +208,14 @@ def _written(value: Any) -> str:
 
 def _friction(scene: Scene) -> str:
     """Heights and decelerations, one for each strip of floor."""
-    strips = scene.floor.strips
-    coefficients = [scene.floor.friction] if strips is None else list(strips.friction)
-    puck, normal = scene.puck, scene.floor.gravity * math.cos(scene.floor.slope)
-    heights = [2.0 * f * puck.height / puck.radius for f in coefficients]
+    normal = scene.puck.gravity * math.cos(scene.floor.slope)
     if scene.floor.law:
-        return f"by slip speed, {scene.floor.law}"
-    words = f"delta = {', '.join(f'{delta:.4g}' for delta in heights)}, "
-    words += f"f N/m = {', '.join(f'{f * normal:.6g}' for f in coefficients)} m/s^2"
-    return words + ("; part of the base may lift" if max(heights) > 1.0 else "")
+        from puck_tables.scene.regions import law_name
+
+        return f"by slip speed, {law_name(scene)}"
+    words = f"delta = {', '.join(f'{delta:.4g}' for delta in scene.heights)}, "
+    words += f"f N/m = {', '.join(f'{f * normal:.6g}' for f in scene.frictions)} m/s^2"
+    return words + ("; part of the base may lift" if max(scene.heights) > 1.0 else "")
 
 
 def _error(run: SceneRun) -> str:

@@ -151,11 +151,11 @@ def _sweep_scene(
 ) -> None:  # fmt: skip
     """A map over a scene, to the end of the command."""
     from puck_tables.io.csv import encode
-    from puck_tables.scene.sweep import sweep_scene
+    from puck_tables.scene.scene import Scene
 
     kept = _going_on(output) if resume else None
     with progress("runs") as show:
-        stops = sweep_scene(tables, threads=threads, progress=show, checkpoint=kept)
+        stops = Scene.from_tables(tables).sweep(threads=threads, progress=show, checkpoint=kept)
     deliver(stops, output, None, overwrite)
     _done_with(kept, output)
     deliver(stops, None, plot, overwrite)

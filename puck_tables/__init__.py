@@ -49,9 +49,19 @@ if TYPE_CHECKING:
     from puck_tables.puck import Puck
     from puck_tables.result import Result
     from puck_tables.scene.outcome import SceneRun
-    from puck_tables.scene.scene import Scene, scene_from
-    from puck_tables.scene.simulate import simulate_scene
-    from puck_tables.scene.sweep import SceneMap, sweep_scene
+    from puck_tables.scene.parts import (
+        Constraint,
+        Drag,
+        Edge,
+        Floor,
+        Force,
+        Launch,
+        Run,
+        Strips,
+        Wall,
+    )
+    from puck_tables.scene.scene import Scene
+    from puck_tables.scene.sweep import SceneMap
     from puck_tables.stopping.aim import Aim
     from puck_tables.stopping.states import States, states
     from puck_tables.stopping.stops import Stops, stop
@@ -101,10 +111,16 @@ _HOMES = {
     "Result": "result",
     "SceneRun": "scene.outcome",
     "Scene": "scene.scene",
-    "scene_from": "scene.scene",
-    "simulate_scene": "scene.simulate",
+    "Constraint": "scene.parts",
+    "Drag": "scene.parts",
+    "Edge": "scene.parts",
+    "Floor": "scene.parts",
+    "Force": "scene.parts",
+    "Launch": "scene.parts",
+    "Run": "scene.parts",
+    "Strips": "scene.parts",
+    "Wall": "scene.parts",
     "SceneMap": "scene.sweep",
-    "sweep_scene": "scene.sweep",
     "States": "stopping.states",
     "states": "stopping.states",
     "StopMap": "stopping.sweep",
@@ -125,8 +141,14 @@ __all__ = [
     "CheckReport",
     "ConstrainedMotion",
     "ConstrainedSystem",
+    "Constraint",
     "ContactError",
+    "Drag",
+    "Edge",
+    "Floor",
+    "Force",
     "InputError",
+    "Launch",
     "Law",
     "MissingExtraError",
     "OutputError",
@@ -134,6 +156,7 @@ __all__ = [
     "PuckError",
     "Result",
     "Resultants",
+    "Run",
     "Scene",
     "SceneMap",
     "SceneRun",
@@ -141,9 +164,11 @@ __all__ = [
     "States",
     "StopMap",
     "Stops",
+    "Strips",
     "Table",
     "TableError",
     "Trajectory",
+    "Wall",
     "__version__",
     "approach_exponent",
     "asperity_curve",
@@ -163,12 +188,9 @@ __all__ = [
     "profile_law",
     "regime",
     "resultants",
-    "scene_from",
-    "simulate_scene",
     "speed_resultants",
     "states",
     "stop",
-    "sweep_scene",
     "table_for",
 ]
 

@@ -12,10 +12,18 @@ from typing import TYPE_CHECKING, Any
 import numpy.typing as npt
 
 from puck_tables._core.executor import Progress
+from puck_tables._core.fields import of
+from puck_tables._core.reading import Reading, given_in, mark_checked, read_values
 from puck_tables._core.real import positive, real
 from puck_tables.contact.laws import HOMOGENEOUS, Law
 from puck_tables.errors import InputError
-from puck_tables.motion.body import STANDARD_GRAVITY, Body, body_of
+from puck_tables.motion.body import (
+    LARGEST_GYRATION,
+    SMALLEST_GYRATION,
+    STANDARD_GRAVITY,
+    Body,
+    body_of,
+)
 
 if TYPE_CHECKING:
     from puck_tables.stopping.aim import Aim
@@ -39,8 +47,9 @@ class Puck:
     ----------
     radius, height : m
         Of the base, > 0, and of the centre of mass over the floor, ≥ 0.
-    friction : Coulomb coefficient f, > 0
-    mass : kg, > 0; only energies depend on it
+    friction : Coulomb coefficient f, ≥ 0
+        0, where it is left out: a puck that never stops by itself, for scenes alone.
+    mass : kg, > 0; of a free puck only energies depend on it
     gravity : m/s², > 0
     pressure : contact pressure: uniform, galin, hertz, ring, annulus:INNER, a CSV file of ρ, W, or
         a Law
@@ -70,27 +79,37 @@ class Puck:
     2.345288
     """
 
-    radius: float
-    height: float
-    friction: float
-    mass: float = 1.0
-    gravity: float = STANDARD_GRAVITY
-    pressure: str | Law = "uniform"
-    gyration: float = HOMOGENEOUS
+    radius: float = of("number", unit="m", low=0.0, above=True, doc="of the base")
+    height: float = of("number", 0.0, "m", low=0.0, doc="of the centre over the floor; 0: no tilt")
+    friction: float = of("number", 0.0, low=0.0, doc="Coulomb's coefficient f")
+    mass: float = of("number", 1.0, "kg", low=0.0, above=True)
+    gravity: float = of("number", STANDARD_GRAVITY, "m/s^2", low=0.0, above=True)
+    pressure: str | Law = of(
+        "text", "uniform", file=".csv", objects=(Law,),
+        doc="pressure law, as build-tables --pressure takes it",
+    )  # fmt: skip
+    gyration: float = of(
+        "number", HOMOGENEOUS, low=SMALLEST_GYRATION, high=LARGEST_GYRATION,
+        doc="radius of gyration about the vertical over the radius",
+    )  # fmt: skip
 
     def __post_init__(self) -> None:
-        for name, unit in _UNITS.items():
-            value = real(name, getattr(self, name), unit)
-            if name != "height" or value < 0.0:
-                value = positive(name, value, unit)
+        reading = Reading([], None)
+        values = read_values(type(self), given_in(self, {}), "", reading)
+        if values is None:
+            raise InputError("; ".join(reading.errors))
+        for name, value in values.items():
             object.__setattr__(self, name, value)
-        if not (math.isfinite(self.delta) and 0.0 < self.decel < math.inf):
+        if not (math.isfinite(self.delta) and self.decel < math.inf) or (
+            self.decel == 0.0 and self.friction > 0.0
+        ):
             raise InputError(
                 f"radius {self.radius:g} m, height {self.height:g} m, friction {self.friction:g} "
                 f"and gravity {self.gravity:g} m/s^2 give delta = {self.delta:g} and J = "
                 f"{self.decel:g} m/s^2: out of the range of floating point"
             )
         object.__setattr__(self, "gyration", self.body.gyration)
+        mark_checked(self)
 
     @classmethod
     def similar(
@@ -246,6 +265,7 @@ class Puck:
         >>> run.regime, round(run.stop_time, 8), round(run.stop_position[0], 8)
         ('B', 3.96299205, 2.21395163)
         """
+        self.refuse_frictionless()
         run: Trajectory = _verb("trajectory", "simulate")(
             self, velocity, spin, frames=frames, times=times, tol=tol, method=method, exact=exact,
             table=table,
@@ -436,11 +456,24 @@ class Puck:
         >>> found.launch_velocity.round(6).tolist(), found.stop_time.round(6).tolist()
         ([[0.899671, 0.109151]], [3.927704])
         """
+        self.refuse_frictionless()
         found: Aim = _verb("stopping.aim", "aim")(
             self, target, spin=spin, speed=speed, stop_time=stop_time, max_speed=max_speed,
             max_spin=max_spin, count=count,
         )  # fmt: skip
         return found
+
+    def refuse_frictionless(self) -> None:
+        """Refuse what asks for the stop of a puck that nothing brakes.
+
+        Raises
+        ------
+        InputError
+        """
+        if self.friction == 0.0:
+            raise InputError(
+                "a puck with friction = 0 never stops: give friction > 0, or put it into a Scene"
+            )
 
     def described(self) -> dict[str, Any]:
         """Its numbers by name, with δ and J, as results and files carry them."""
@@ -453,16 +486,17 @@ class Puck:
 
     def _kind(self) -> dict[str, Any]:
         """As the functions over arrays of pucks take it."""
+        self.refuse_frictionless()
         return {
             "delta": self.delta, "decel": self.decel, "radius": self.radius,
             "pressure": self.pressure, "gyration": self.gyration,
         }  # fmt: skip
 
 
-_UNITS = {
-    "radius": "m", "height": "m", "friction": "dimensionless", "mass": "kg", "gravity": "m/s^2",
+PUCK_UNITS = {
+    "radius": "m", "height": "m", "friction": "1", "mass": "kg", "gravity": "m/s^2", "delta": "1",
+    "decel": "m/s^2", "gyration": "1",
 }  # fmt: skip
-PUCK_UNITS = {**_UNITS, "friction": "1", "delta": "1", "decel": "m/s^2", "gyration": "1"}
 
 
 def _given(**values: Any) -> dict[str, Any]:

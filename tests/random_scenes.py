@@ -26,7 +26,8 @@ def draw(seed: int, folder: Path | None = None, *, smooth: bool = False) -> dict
     if chance(0.3):
         puck["gyration"] = rng.uniform(0.3, 1.0)
     mass, weight = puck["mass"], puck["mass"] * 9.80665
-    floor: dict[str, Any] = {"friction": float(friction)}
+    puck["friction"] = float(friction)
+    floor: dict[str, Any] = {}
     speed = 10.0 ** rng.uniform(-1.0, 0.7)
     launch: dict[str, Any] = {
         "velocity": [float(v) for v in speed * rng.normal(size=2)],
@@ -59,7 +60,7 @@ def draw(seed: int, folder: Path | None = None, *, smooth: bool = False) -> dict
         table[:, 3] *= 0.3 * radius
         path = folder / f"force-{seed}.csv"
         np.savetxt(path, table, delimiter=",", fmt="%.17g")
-        scene.setdefault("force", {})["file"] = str(path)
+        scene.setdefault("force", {})["over_time"] = str(path)
     if chance(0.3):
         _hold(scene, rng)
     elif not smooth and chance(0.6):

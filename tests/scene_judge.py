@@ -22,10 +22,10 @@ class Judge:
     """State: x, y, θ, vx, vy, ω."""
 
     def __init__(self, scene: dict[str, Any]) -> None:
-        puck, floor, launch = scene["puck"], scene["floor"], scene["launch"]
+        puck, floor, launch = scene["puck"], scene.get("floor", {}), scene["launch"]
         self.m, self.r = puck.get("mass", 1.0), puck["radius"]
         self.inertia = self.m * (puck.get("gyration", math.sqrt(0.5)) * self.r) ** 2
-        self.f, g = floor.get("friction", 0.0), floor.get("gravity", 9.80665)
+        self.f, g = puck.get("friction", 0.0), puck.get("gravity", 9.80665)
         self.delta = 2.0 * self.f * puck.get("height", 0.0) / self.r
         slope, down = floor.get("slope", 0.0), floor.get("downhill", 0.0)
         self.load = self.f * self.m * g * math.cos(slope)
@@ -37,7 +37,9 @@ class Judge:
         self.turning = floor.get("turning", 0.0)
         drag = scene.get("drag", {})
         self.drag = np.array([drag.get("sliding", 0.0)] * 2 + [drag.get("spinning", 0.0)])
-        self.drive = np.loadtxt(force["file"], delimiter=",") if force.get("file") else None
+        self.drive = (
+            np.loadtxt(force["over_time"], delimiter=",") if force.get("over_time") else None
+        )
         self.hold = scene.get("constraint")
         self.start = np.array([
             *launch.get("position", (0.0, 0.0)), launch.get("orientation", 0.0),

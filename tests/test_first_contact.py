@@ -8,7 +8,7 @@ import pytest
 from click.testing import CliRunner, Result
 from puck_tables.cli.main import main
 
-from puck_tables import InputError, scene_from
+from puck_tables import InputError, Scene
 
 SCENE = {"puck": {"radius": 0.04}, "launch": {"velocity": [1.0, 0.0]}}
 
@@ -35,8 +35,8 @@ def test_the_report_begins_with_two_plain_sentences(launch: list[str], first: st
 
 
 def test_degrees_are_understood_and_asked_for():
-    floor = {"friction": 0.2, "slope": "30deg", "downhill": "-90 deg"}
-    scene = scene_from({**SCENE, "floor": floor})[0]
+    floor = {"slope": "30deg", "downhill": "-90 deg"}
+    scene = Scene.from_tables({**SCENE, "floor": floor})
     assert scene.floor.slope == math.radians(30.0)
     assert scene.floor.downhill == -0.5 * math.pi
     swept = puck("sweep", "--scene", "incline", "--set", "floor.slope=0deg:5deg:2")
@@ -44,9 +44,9 @@ def test_degrees_are_understood_and_asked_for():
         "0.0", str(math.radians(5.0))
     ]  # fmt: skip
     with pytest.raises(InputError, match=r"slope = 30: .*if degrees are meant write '30deg'"):
-        scene_from({**SCENE, "floor": {"slope": 30}})
+        Scene.from_tables({**SCENE, "floor": {"slope": 30}})
     with pytest.raises(InputError, match="radius = '3deg': must be a number > 0 m"):
-        scene_from({**SCENE, "puck": {"radius": "3deg"}, "floor": {}})
+        Scene.from_tables({**SCENE, "puck": {"radius": "3deg"}, "floor": {}})
 
 
 def test_what_was_meant_is_guessed():

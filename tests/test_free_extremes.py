@@ -10,8 +10,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from pucks import aim, simulate, sweep
+from scenes import simulate_scene
 
-from puck_tables import limit_ratio, resultants, simulate_scene, states, stop
+from puck_tables import limit_ratio, resultants, states, stop
 from puck_tables.errors import InputError
 
 LARGEST = 1.7976931348623157e308
@@ -93,8 +94,8 @@ def test_masked_values_are_refused_alike():
 @pytest.mark.parametrize("slope", [0.0, 0.1])
 def test_scenes_out_of_floating_point_are_refused(change: dict, slope: float):
     scene = {
-        "puck": {"radius": 0.04, "height": 0.02, "mass": 0.2},
-        "floor": {"friction": 0.15, "slope": slope},
+        "puck": {"radius": 0.04, "height": 0.02, "mass": 0.2, "friction": 0.15},
+        "floor": {"slope": slope},
         "launch": {"velocity": [1.0, 0.0], "spin": 60.0}, **change,
     }  # fmt: skip
     with pytest.raises(InputError):

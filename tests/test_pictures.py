@@ -12,6 +12,7 @@ from matplotlib.collections import QuadMesh
 from matplotlib.figure import Figure
 from matplotlib.ticker import ScalarFormatter
 from pucks import simulate, sweep
+from scenes import simulate_scene, sweep_scene
 
 from puck_tables import limit_ratio
 from puck_tables.chetaev.asperity import Asperity
@@ -19,8 +20,6 @@ from puck_tables.chetaev.asperity_curve import asperity_curve
 from puck_tables.errors import InputError
 from puck_tables.plot import style
 from puck_tables.scene.library import find_scene
-from puck_tables.scene.simulate import simulate_scene
-from puck_tables.scene.sweep import sweep_scene
 
 
 @pytest.fixture
@@ -85,7 +84,7 @@ def test_few_frames_do_not_cut_a_bouncing_path_off_its_walls(drawn: Any) -> None
 
 def test_a_path_of_many_turns_is_round(drawn: Any) -> None:
     tables = {
-        "puck": {"radius": 0.02}, "floor": {"friction": 0.5, "turning": 9.0},
+        "puck": {"radius": 0.02, "friction": 0.5}, "floor": {"turning": 9.0},
         "launch": {"position": [0.05, 0.0], "velocity": [0.0, 0.45], "spin": 9.0},
         "run": {"time": 60.0, "frames": 5},
     }  # fmt: skip
@@ -131,9 +130,9 @@ def _legends_stand_outside(figure: Figure) -> None:
 def test_what_pulls_is_labelled(drawn: Any, tmp_path: Path) -> None:
     (tmp_path / "force.csv").write_text("t,Fx,Fy\n0,0.1,0\n1,0,0\n")
     tables = {
-        "puck": {"radius": 0.02}, "floor": {"friction": 0.5},
+        "puck": {"radius": 0.02, "friction": 0.5},
         "launch": {"velocity": [1.0, 0.0]}, "drag": {"sliding": 0.1},
-        "force": {"constant": [0.1, 0.2], "torque": 1e-3, "file": str(tmp_path / "force.csv")},
+        "force": {"constant": [0.1, 0.2], "torque": 1e-3, "over_time": str(tmp_path / "force.csv")},
     }  # fmt: skip
     run = simulate_scene(tables)
     told = words(drawn(run))

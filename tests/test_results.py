@@ -14,8 +14,9 @@ import pandas
 import pytest
 import xarray
 from matplotlib.figure import Figure
+from scenes import simulate_scene, sweep_scene
 
-from puck_tables import Asperity, Puck, asperity_curve, simulate_scene, states, stop, sweep_scene
+from puck_tables import Asperity, Puck, asperity_curve, states, stop
 from puck_tables.accuracy.front import shipped_front
 from puck_tables.errors import ContactError, InputError, OutputError
 from puck_tables.io.columns import COLUMNS
@@ -26,7 +27,7 @@ from puck_tables.tradeoff.machine import Machine
 
 PUCK = Puck.similar(delta=0.8)
 SCENE = {
-    "puck": {"radius": 0.04}, "floor": {"friction": 0.1},
+    "puck": {"radius": 0.04, "friction": 0.1},
     "launch": {"velocity": [1.0, 0.0], "spin": 20.0},
     "wall": [{"point": [0.3, 0.0], "normal": [-1.0, 0.0], "restitution": 0.5}],
 }  # fmt: skip

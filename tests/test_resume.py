@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 import pytest
 from pucks import sweep
+from scenes import sweep_scene
 
-from puck_tables import Table, profile_law, sweep_scene
+from puck_tables import Table, profile_law
 from puck_tables._core import checkpoint as kept_work
 from puck_tables._core.checkpoint import Checkpoint, work_digest
 from puck_tables.errors import InputError, OutputError
@@ -87,9 +88,11 @@ def scene_of(folder: Path) -> dict[str, Any]:
     (folder / "force.csv").write_text("t,Fx,Fy\n0,0.01,0\n9,0,0\n")
     (folder / "profile.csv").write_text("0,1\n1,0.5\n")
     return {
-        "puck": {"radius": 0.04, "mass": 0.2, "pressure": str(folder / "profile.csv")},
-        "floor": {"friction": 0.15, "slope": "0.01:0.05:3"},
-        "force": {"file": str(folder / "force.csv")},
+        "puck": {
+            "radius": 0.04, "mass": 0.2, "friction": 0.15, "pressure": str(folder / "profile.csv"),
+        },
+        "floor": {"slope": "0.01:0.05:3"},
+        "force": {"over_time": str(folder / "force.csv")},
         "launch": {"velocity": [0.5, 0.1], "spin": 3.0}, "run": {"tol": 1e-4},
     }  # fmt: skip
 
@@ -106,14 +109,14 @@ SCENE_CHANGES = {
     "the force": edited("force.csv", "t,Fx,Fy\n0,0.01,0\n9,0,0.0001\n"),
     "the profile": edited("profile.csv", "0,1\n1,0.6\n"),
     "a range": put("floor", "slope", "0.01:0.06:3"),
-    "the friction": put("floor", "friction", 0.16),
+    "the friction": put("puck", "friction", 0.16),
     "the radius": put("puck", "radius", 0.05),
     "the mass": put("puck", "mass", 0.3),
     "the spin": put("launch", "spin", 3.0000001),
     "the velocity": put("launch", "velocity", [0.5, 0.2]),
     "the tolerance": put("run", "tol", 1e-5),
     "a time": put("run", "time", 100.0),
-    "a file in place of another": put("force", "file", ""),
+    "a file in place of another": put("force", "over_time", ""),
 }
 
 

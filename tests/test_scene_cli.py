@@ -8,8 +8,8 @@ import pytest
 import xarray
 from click.testing import CliRunner
 from puck_tables.cli.main import main
+from scenes import simulate_scene
 
-import puck_tables as pt
 from puck_tables.scene.library import find_scene, shipped_scenes
 
 ENDS = {"air-hockey": "time is up", "turntable": "time is up", "washer-on-conveyor": "carried"}
@@ -39,7 +39,7 @@ def test_scenes_are_listed_and_shown():
 
 def test_options_are_numbers_of_the_scene():
     by_option = puck("simulate", "--scene", "incline", "--w0", "30", "--friction", "0.2", "--json")
-    changes = ("--set", "launch.spin=30", "--set", "floor.friction=0.2")
+    changes = ("--set", "launch.spin=30", "--set", "puck.friction=0.2")
     by_set = puck("simulate", "--scene", "incline", *changes, "--json")
     assert by_option.stdout == by_set.stdout != ""
     plain = puck("simulate", "--v0", "1,0", "--w0", "5", "--json")
@@ -51,13 +51,11 @@ def test_options_are_numbers_of_the_scene():
 
 def test_every_error_is_told_at_once(tmp_path):
     file = tmp_path / "bad.toml"
-    file.write_text(
-        "[puck]\nradius = -1\nhight = 2\n[floor]\nfriction = 'a'\n[[wall]]\npoint=[0]\n"
-    )
+    file.write_text("[puck]\nradius = -1\nhight = 2\nfriction = 'a'\n[[wall]]\npoint=[0]\n")
     for command in (("scene", "check"), ("simulate", "--scene"), ("sweep", "--scene")):
         result = puck(*command, str(file))
         assert result.exit_code == 2
-        for part in ("puck.radius = -1", "puck.hight", "floor.friction", "wall[0].normal", "> 0 m"):
+        for part in ("puck.radius = -1", "puck.hight", "puck.friction", "wall[0].normal", "> 0 m"):
             assert part in result.stderr
         assert "Traceback" not in result.stderr
 
@@ -102,7 +100,7 @@ def test_a_map_over_a_scene_opens_in_xarray_and_equals_single_runs(tmp_path):
         assert data["x"].shape == (3, 4)
         tables = find_scene("incline")
         tables["floor"]["slope"], tables["launch"]["spin"] = 0.05, 40.0
-        single = pt.simulate_scene(tables, [0.0])
+        single = simulate_scene(tables, [0.0])
         assert float(data["x"][1, 2]) == single.last["x"]
         assert float(data["end_time"][1, 2]) == single.end_time
     table = puck("sweep", "--scene", "incline", *ranges)
@@ -125,7 +123,7 @@ def test_states_of_a_scene_as_files(tmp_path):
         rows = [json.loads(line) for line in (tmp_path / "run.jsonl").read_text().splitlines()]
         assert np.array_equal(data["heat_dry"], [row["heat_dry"] for row in rows])
         kept = tomllib.loads(data["scene"].item())
-        assert pt.simulate_scene(kept, [0.0]).end_time == data.attrs["end_time"]
+        assert simulate_scene(kept, [0.0]).end_time == data.attrs["end_time"]
 
 
 def test_the_curve_of_an_asperity_is_the_friction_law_of_a_scene(tmp_path):

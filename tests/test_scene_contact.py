@@ -8,8 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-
-from puck_tables.scene.simulate import simulate_scene
+from scenes import simulate_scene
 
 G = 9.80665
 
@@ -20,7 +19,7 @@ def events(run: Any, what: str) -> list[float]:
 
 def forces(folder: Path, rows: list[list[float]]) -> dict[str, str]:
     np.savetxt(folder / "force.csv", rows, delimiter=",", fmt="%.17g")
-    return {"file": str(folder / "force.csv")}
+    return {"over_time": str(folder / "force.csv")}
 
 
 @pytest.mark.parametrize("tol", [1e-3, 1e-6, 1e-9])
@@ -43,7 +42,7 @@ def test_rebounds_straight_down_a_slope_die_out(restitution: float) -> None:
     r, f, slope, v0 = 0.04, 0.1, 0.4, 0.5
     up, down = (G * (math.sin(slope) + s * f * math.cos(slope)) for s in (1.0, -1.0))
     run = simulate_scene({
-        "puck": {"radius": r}, "floor": {"friction": f, "slope": slope},
+        "puck": {"radius": r, "friction": f}, "floor": {"slope": slope},
         "launch": {"velocity": [v0, 0.0]},
         "wall": [{"point": [0.2, 0], "normal": [-1, 0], "restitution": restitution}],
     })  # fmt: skip
@@ -104,7 +103,7 @@ def test_oblique_rebounds_end_as_leaning_begins(restitution: float) -> None:
 def test_a_wedge_holds_a_puck_that_is_pushed_into_it(friction: float, restitution: float) -> None:
     half, r = 0.1, 0.02
     run = simulate_scene({
-        "puck": {"radius": r, "mass": 0.5}, "floor": {"friction": friction},
+        "puck": {"radius": r, "mass": 0.5, "friction": friction},
         "launch": {"velocity": [1.0, 0.3], "spin": 30.0, "position": [-0.5, 0.0]},
         "force": {"constant": [5.0, 0.0]},
         "wall": [
@@ -129,7 +128,7 @@ def test_a_rough_corner_stops_a_spin() -> None:
         for normal in ([1, 0], [0, 1])
     ]
     run = simulate_scene({
-        "puck": {"radius": r, "mass": m}, "floor": {"friction": 0.0},
+        "puck": {"radius": r, "mass": m, "friction": 0.0},
         "launch": {"velocity": [0.0, 0.0], "spin": spin, "position": [r, r]},
         "force": {"constant": [-4.0, -3.0]}, "wall": walls, "run": {"time": 0.05},
     })  # fmt: skip
@@ -145,7 +144,7 @@ def test_a_rough_corner_stops_a_spin() -> None:
 def test_a_blade_grips_the_floor_it_stands_on() -> None:
     """At rest on a turntable, across the way that it goes: carried, not held back."""
     run = simulate_scene({
-        "puck": {"radius": 0.1}, "floor": {"friction": 0.3, "turning": 1.0},
+        "puck": {"radius": 0.1, "friction": 0.3}, "floor": {"turning": 1.0},
         "launch": {"velocity": [0.0, 0.5], "spin": 1.0, "position": [0.5, 0.0]},
         "constraint": {"kind": "blade"}, "run": {"time": 1.0},
     })  # fmt: skip

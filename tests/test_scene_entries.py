@@ -9,24 +9,23 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scenes import simulate_scene
 
+from puck_tables import Puck
+from puck_tables._core.fields import described, of
 from puck_tables.errors import InputError, PuckError
-from puck_tables.scene import scene as parts
+from puck_tables.scene import parts
 from puck_tables.scene.entries import as_toml, set_path, tables_of
-from puck_tables.scene.fields import described, of
-from puck_tables.scene.library import find_scene, shipped_scenes
+from puck_tables.scene.library import shipped_scenes
 from puck_tables.scene.plan import ingredients, plan_for
-from puck_tables.scene.scene import Scene, scene_from
-from puck_tables.scene.simulate import simulate_scene
-from puck_tables.scene.sweep import sweep_scene
+from puck_tables.scene.scene import Scene
 
 FREE: dict[str, Any] = {
-    "puck": {"radius": 0.04, "height": 0.03, "mass": 0.2},
-    "floor": {"friction": 0.2},
+    "puck": {"radius": 0.04, "height": 0.03, "mass": 0.2, "friction": 0.2},
     "launch": {"velocity": [0.8, 0.3], "spin": 30.0},
 }
 MOVING = {"floor": {"turning": 2.0, "centre": [0.1, 0.2]}, "run": {"time": 0.5}}
-STRIPS = {"floor": {"friction": 0.0, "strips": {"borders": [0.03], "friction": [0.2, 0.1]}}}
+STRIPS = {"floor": {"strips": {"borders": [0.03], "friction": [0.2, 0.1]}}}
 WALL = {"wall": [{"point": [0.1, 0.0], "normal": [-1.0, 0.1], "tangential": 0.2}]}
 EDGE = {"edge": [{"point": [0.05, 0.0], "normal": [-1.0, 0.0]}]}
 HELD = {"launch": {"velocity": None}, "run": {"time": 0.5}}
@@ -41,8 +40,8 @@ CASES: dict[str, tuple[dict[str, Any], Any]] = {
     "puck.mass": ({}, 0.3),
     "puck.gyration": ({}, 0.9),
     "puck.pressure": ({}, "ring"),
-    "floor.friction": ({}, 0.3),
-    "floor.gravity": ({}, 3.7),
+    "puck.friction": ({}, 0.3),
+    "puck.gravity": ({}, 3.7),
     "floor.slope": ({}, 0.1),
     "floor.downhill": ({"floor": {"slope": 0.1}}, 1.0),
     "floor.velocity": ({}, [0.1, 0.2]),
@@ -74,8 +73,8 @@ CASES: dict[str, tuple[dict[str, Any], Any]] = {
     "run.time": ({}, 0.1),
 }
 FILES = {
-    "floor.law": ({"floor": {"friction": 0.0}}, "speed,f\n0,0.2\n5,0.1\n"),
-    "force.file": ({}, "t,Fx,Fy\n0,0.1,0\n1,0,0\n"),
+    "floor.law": ({"puck": {"friction": 0.0}}, "speed,f\n0,0.2\n5,0.1\n"),
+    "force.over_time": ({}, "t,Fx,Fy\n0,0.1,0\n1,0,0\n"),
 }
 NO_PHYSICS = {"title", "run.frames", "run.tol"}
 
@@ -99,7 +98,7 @@ def test_the_cases_below_are_all_entries() -> None:
 @pytest.mark.parametrize("path", CASES)
 def test_every_entry_changes_the_motion(path: str) -> None:
     tables, value = CASES[path]
-    changed = tables_of(scene_from(whole(tables))[0])
+    changed = tables_of(Scene.from_tables(whole(tables)))
     set_path(changed, path, value)
     assert end_of(changed) != end_of(whole(tables))
 
@@ -129,19 +128,19 @@ class BumpyWall(parts.Wall):
     bumps: float = of("number", 0.0, "m")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class BumpyScene(Scene):
     bumps: Bumps | None = of("part", None, part=Bumps)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class SceneOfBumpyFloor(Scene):
     floor: BumpyFloor = of("part", BumpyFloor(), part=BumpyFloor)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class SceneOfBumpyWalls(Scene):
-    wall: tuple[BumpyWall, ...] = of("parts", (), part=BumpyWall)
+    walls: tuple[BumpyWall, ...] = of("parts", (), part=BumpyWall, table="wall")
 
 
 @pytest.mark.parametrize(
@@ -152,60 +151,58 @@ class SceneOfBumpyWalls(Scene):
     ],
 )  # fmt: skip
 def test_an_ingredient_that_the_plan_does_not_know_is_an_error(kind: Any, path: str) -> None:
-    for ask in (ingredients, plan_for):
+    scene = kind(Puck(1.0, friction=0.1))  # whether it is there or not
+    for ask in (ingredients, plan_for, Scene.simulate):
         with pytest.raises(PuckError, match=rf"^{path}: the plan of a run knows no such"):
-            ask(kind(parts.Puck(1.0)))  # whether it is there or not
+            ask(scene)
 
 
 def test_an_ingredient_that_a_scene_does_not_have_is_an_error() -> None:
+    wall = BumpyWall((9.0, 0.0), (-1.0, 0.0))
     for made, path in (
-        (BumpyScene(parts.Puck(1.0), bumps=Bumps(0.1)), "bumps"),
-        (BumpyScene(parts.Puck(1.0)), "bumps"),
-        (Scene(parts.Puck(1.0), BumpyFloor(0.1, bumps=0.1)), "floor.bumps"),
-        (Scene(parts.Puck(1.0), wall=(BumpyWall((9.0, 0.0), (-1.0, 0.0)),)), r"wall\[0\].bumps"),
+        ({"floor": BumpyFloor(slope=0.1, bumps=0.1)}, "floor.bumps"),
+        ({"walls": (wall,)}, r"wall\[0\].bumps"),
     ):
         with pytest.raises(InputError, match=rf"{path}: no such entry"):
-            simulate_scene(made)
+            Scene(Puck(1.0), **made)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("name", shipped_scenes())
 def test_a_scene_written_as_toml_is_the_scene(name: str) -> None:
-    scene, _ = scene_from(find_scene(name))
-    assert scene_from(tomllib.loads(as_toml(scene, {})))[0] == scene
+    scene = Scene.load(name)
+    assert Scene.from_tables(tomllib.loads(as_toml(scene))) == scene
 
 
 def test_texts_and_ranges_survive_in_toml() -> None:
     tables = whole({"floor": {"slope": "0.1:0.30000000000000004:7"}})
     tables["title"] = 'A "puck" \\ ünïcode \N{SNOWMAN} $x_1$'
-    scene, ranges = scene_from(tables)
-    again, same = scene_from(tomllib.loads(as_toml(scene, ranges)))
+    scene = Scene.from_tables(tables)
+    again = Scene.from_tables(tomllib.loads(as_toml(scene)))
     assert again == scene
-    assert same["floor.slope"].tolist() == ranges["floor.slope"].tolist()
+    assert again.ranges["floor.slope"].tolist() == scene.ranges["floor.slope"].tolist()
 
 
 def test_numpy_numbers_arrays_and_tuples_are_numbers_and_lists() -> None:
     plain = whole(WALL)
     numpy: dict[str, Any] = {
-        "puck": parts.Puck(np.float64(0.04), np.array(0.03), np.float64(0.2)),
-        "floor": {"friction": np.float64(0.2)},
+        "puck": Puck(np.float64(0.04), np.array(0.03), np.float64(0.2), mass=0.2),
         "launch": {"velocity": np.array([0.8, 0.3]), "spin": np.int64(30)},
         "wall": (parts.Wall((np.float64(0.1), 0), np.array([-1.0, 0.1]), tangential=0.2),),
     }
-    assert scene_from(numpy) == scene_from(plain)
-    assert simulate_scene(Scene(**numpy), [0.0]).last == simulate_scene(plain, [0.0]).last
+    assert Scene.from_tables(numpy) == Scene.from_tables(plain)
+    numpy["walls"] = numpy.pop("wall")
+    assert Scene(**numpy).simulate([0.0]).last == simulate_scene(plain, [0.0]).last
 
 
-@pytest.mark.parametrize("use", [simulate_scene, sweep_scene])
-def test_a_scene_made_from_dataclasses_is_checked_like_a_file(use: Any) -> None:
-    made = Scene(
-        parts.Puck(-1.0, np.nan, pressure=7),  # type: ignore[arg-type]
-        launch=parts.Launch(velocity=np.zeros((2, 1)), spin=np.bool_(True)),  # type: ignore[arg-type]
-        wall=[parts.Wall((1.0, 0.0), (1.0,)), parts.Edge((0.0, 0.0), (0.0, 1.0))],  # type: ignore[arg-type]
-        force=parts.Force(constant=np.ma.array([1.0, 2.0], mask=[False, True])),
-        run=None,  # type: ignore[arg-type]
-    )
+def test_a_scene_made_from_dataclasses_is_checked_like_a_file() -> None:
     with pytest.raises(InputError) as caught:
-        use(made)
+        Scene(
+            {"radius": -1.0, "height": np.nan, "pressure": 7},  # type: ignore[arg-type]
+            launch=parts.Launch(velocity=np.zeros((2, 1)), spin=np.bool_(True)),  # type: ignore[arg-type]
+            walls=[parts.Wall((1.0, 0.0), (1.0,)), parts.Edge((0.0, 0.0), (0.0, 1.0))],  # type: ignore[arg-type]
+            force=parts.Force(constant=np.ma.array([1.0, 2.0], mask=[False, True])),
+            run=None,  # type: ignore[arg-type]
+        )
     lines = [line.strip() for line in str(caught.value).splitlines()]
     assert lines[0] == "scene: 9 errors"
     for said in (
@@ -217,15 +214,17 @@ def test_a_scene_made_from_dataclasses_is_checked_like_a_file(use: Any) -> None:
 
 
 def test_what_disagrees_in_dataclasses_is_told_too() -> None:
-    good = scene_from(whole({}))[0]
+    good = Scene.from_tables(whole({}))
     with pytest.raises(InputError, match=r"wall\[0\]: the puck at launch\.position"):
-        simulate_scene(replace(good, wall=(parts.Wall((0.0, 0.0), (1.0, 0.0)),)))
+        replace(good, walls=(parts.Wall((0.0, 0.0), (1.0, 0.0)),))
 
 
 def test_no_scene_at_all_is_a_sentence() -> None:
     for wrong in (7, None, [1, 2], b"incline"):
-        with pytest.raises(InputError, match="the scene must be a Scene or a Mapping"):
-            simulate_scene(wrong)  # type: ignore[arg-type]
+        with pytest.raises(InputError, match="scene: a scene is a table of tables, got"):
+            Scene.from_tables(wrong)  # type: ignore[arg-type]
+        with pytest.raises(InputError, match=r"puck = .*: must be a table"):
+            Scene(wrong)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(
@@ -241,7 +240,7 @@ def test_no_scene_at_all_is_a_sentence() -> None:
 )
 def test_what_cannot_be_shown_is_told_nevertheless(tables: dict[str, Any], said: str) -> None:
     with pytest.raises(InputError) as caught:
-        scene_from(tables)
+        Scene.from_tables(tables)
     assert said in str(caught.value)
     assert all(sign.isprintable() or sign == "\n" for sign in str(caught.value))
 
@@ -249,4 +248,4 @@ def test_what_cannot_be_shown_is_told_nevertheless(tables: dict[str, Any], said:
 def test_ranges_are_counted_before_they_are_made() -> None:
     wall = {"point": ["1:2:1000000", "1:2:1000000"], "normal": ["-1:1:1000000", 1.0]}
     with pytest.raises(InputError, match=r"3000 ranges \(wall\[0\]\.point.* than 1e\+09"):
-        scene_from({"puck": {"radius": 0.01}, "wall": [wall] * 1000})  # 24 GB if made
+        Scene.from_tables({"puck": {"radius": 0.01}, "wall": [wall] * 1000})  # 24 GB if made

@@ -11,11 +11,10 @@ import numpy as np
 import xarray
 from click.testing import CliRunner
 from puck_tables.cli.main import main
+from scenes import simulate_scene, sweep_scene
 
+from puck_tables import Scene
 from puck_tables.scene.outcome import ENDS
-from puck_tables.scene.scene import scene_from
-from puck_tables.scene.simulate import simulate_scene
-from puck_tables.scene.sweep import sweep_scene
 
 FORCE = "t,Fx,Fy\n0,0.1,0\n# Gewicht\n1,0,0\n"
 
@@ -24,10 +23,10 @@ def tables(folder: Path) -> dict[str, Any]:
     (folder / "force.csv").write_text(FORCE)
     return {
         "title": "Ünter einer Kraft",
-        "puck": {"radius": 0.04, "mass": 0.2, "gyration": "0.5:0.9:3"},
-        "floor": {"friction": 0.2, "slope": "0:0.4:3"},
+        "puck": {"radius": 0.04, "mass": 0.2, "gyration": "0.5:0.9:3", "friction": 0.2},
+        "floor": {"slope": "0:0.4:3"},
         "launch": {"velocity": [1.0, 0.3], "spin": "0:30:2"},
-        "force": {"file": str(folder / "force.csv")},
+        "force": {"over_time": str(folder / "force.csv")},
     }
 
 
@@ -43,7 +42,7 @@ def test_a_map_has_units_meanings_and_its_scene(tmp_path: Path) -> None:
         assert len(meanings) == len(data["end"].attrs["flag_values"]) == len(ENDS)
         found = {meanings[code] for code in np.unique(data["end"])}
         assert found == {"at_rest", "no_end_found"}
-        assert data["force_file"].item() == FORCE
+        assert data["force_over_time"].item() == FORCE
         kept = tomllib.loads(data["scene"].item())
     assert kept["title"] == "Ünter einer Kraft"
     again = sweep_scene(kept)
@@ -61,12 +60,12 @@ def test_a_run_has_its_scene_however_long(tmp_path: Path) -> None:
     run.save(tmp_path / "run.h5")
     with xarray.open_dataset(tmp_path / "run.h5", engine="h5netcdf") as data:
         assert len(data["scene"].item()) > 1 << 16
-        assert data["force_file"].item() == FORCE
-        assert scene_from(tomllib.loads(data["scene"].item()))[0] == run.scene
+        assert data["force_over_time"].item() == FORCE
+        assert Scene.from_tables(tomllib.loads(data["scene"].item())) == run.scene
     (tmp_path / "force.csv").write_text("t,Fx,Fy\n0,9,0\n1,0,0\n")
     run.save(tmp_path / "later.h5")  # what was run, not what stands there now
     with xarray.open_dataset(tmp_path / "later.h5", engine="h5netcdf") as data:
-        assert data["force_file"].item() == FORCE
+        assert data["force_over_time"].item() == FORCE
 
 
 def test_json_and_report_carry_inputs_and_units() -> None:

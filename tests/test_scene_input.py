@@ -7,22 +7,22 @@ from typing import Any
 
 import pytest
 
+from puck_tables import Scene
 from puck_tables.errors import InputError
-from puck_tables.scene.scene import scene_from
 
 GOOD: dict[str, Any] = {"puck": {"radius": 0.04}, "launch": {"velocity": [1.0, 0.0]}}
 
 
 def fault(data: dict[str, Any]) -> str:
     with pytest.raises(InputError) as caught:
-        scene_from(data, "my.toml")
+        Scene.from_tables(data, "my.toml")
     return str(caught.value)
 
 
 def test_every_error_at_once() -> None:
     text = fault({
-        "puck": {"radius": -1.0, "colour": "red"},
-        "floor": {"friction": "rough", "velocity": [1.0], "slope": 2.0},
+        "puck": {"radius": -1.0, "colour": "red", "friction": "rough"},
+        "floor": {"velocity": [1.0], "slope": 2.0},
         "launch": {"spin": True, "position": [0.0, "here"]},
         "wall": [{"point": [1.0, 0.0], "normal": [0.0, 1.0], "restitution": 2.0}, 7],
         "constraint": {"kind": "glue"},
@@ -33,8 +33,8 @@ def test_every_error_at_once() -> None:
     assert lines[0] == "my.toml: 12 errors"
     for expected in (
         "puck.radius = -1.0: must be a number > 0 m",
-        "puck.colour: no such entry (there are: radius, height, mass, gyration, pressure)",
-        "floor.friction = 'rough': must be a number >= 0 and <= 100",
+        "puck.colour: no such entry (there are: radius, height, friction, mass, gravity, ",
+        "puck.friction = 'rough': must be a number >= 0",
         "floor.velocity = [1.0]: must be two numbers [x, y] in m/s",
         "floor.slope = 2.0: must be a number >= 0 and < 1.5708 rad",
         "launch.spin = True: must be a number in rad/s",
@@ -86,12 +86,12 @@ def test_one_clear_sentence(more: dict[str, Any], said: str) -> None:
      "0,1,2\n1,2\n", "a,b,c\nd,e,f\n", "\x00"],
 )  # fmt: skip
 def test_a_file_of_forces_that_is_none(text: str, tmp_path: Path) -> None:
-    from puck_tables.scene.simulate import simulate_scene
+    from scenes import simulate_scene
 
     path = tmp_path / "force.csv"
     path.write_text(text)
-    scene = {**GOOD, "force": {"file": str(path)}}
-    with pytest.raises(InputError, match=r"force\.csv: forces are a CSV file of t, Fx, Fy"):
+    scene = {**GOOD, "force": {"over_time": str(path)}}
+    with pytest.raises(InputError, match=r"force\.csv: forces are a CSV file or rows of t, Fx, Fy"):
         simulate_scene(scene)
     path.unlink()
     with pytest.raises(InputError, match="cannot read"):

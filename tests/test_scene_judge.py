@@ -9,18 +9,18 @@ import numpy as np
 import pytest
 from random_scenes import draw
 from scene_judge import Judge
+from scenes import simulate_scene
 
+from puck_tables import Scene
 from puck_tables.scene.outcome import SceneRun
 from puck_tables.scene.prepare import prepare
-from puck_tables.scene.scene import scene_from
-from puck_tables.scene.simulate import simulate_scene
 
 NAMES = ("x", "y", "orientation", "vx", "vy", "spin")
 
 
 def scales(scene: dict[str, Any]) -> np.ndarray:
     """Q²/J, Q²/(J r), Q, Q/r of the launch, for x, y, θ, vx, vy, ω."""
-    prepared = prepare(scene_from(scene)[0])
+    prepared = prepare(Scene.from_tables(scene))
     state, surface = prepared.state, prepared.model.surface
     rim = prepared.model.body.radius * state[5]
     q = math.hypot(state[3] - surface.vx, state[4] - surface.vy, rim) / prepared.ask.speed
@@ -30,8 +30,7 @@ def scales(scene: dict[str, Any]) -> np.ndarray:
 def puck(**more: Any) -> dict[str, Any]:
     """A puck with spin and tilt, and what else there is."""
     scene: dict[str, Any] = {
-        "puck": {"radius": 0.5, "height": 0.6, "mass": 2.0},
-        "floor": {"friction": 0.3},
+        "puck": {"radius": 0.5, "height": 0.6, "mass": 2.0, "friction": 0.3},
         "launch": {"velocity": [2.0, 1.0], "spin": 4.0, "orientation": 0.3},
         "run": {"time": 2.0},
     }
@@ -43,7 +42,7 @@ def puck(**more: Any) -> dict[str, Any]:
 SMOOTH = {
     "incline": puck(floor={"slope": 0.2, "downhill": 1.0}),
     "steep, washer": puck(floor={"slope": 0.6}, puck={"gyration": 0.9}),
-    "drag": puck(drag={"sliding": 1.0, "spinning": 0.2}, floor={"friction": 0.05}),
+    "drag": puck(drag={"sliding": 1.0, "spinning": 0.2}, puck={"friction": 0.05}),
     "belt and drag": puck(floor={"velocity": [0.5, -1.0]}, drag={"sliding": 0.4}),
     "turntable": puck(floor={"turning": 1.5, "centre": [0.2, 0.4]}),
     "force and torque": puck(force={"constant": [1.0, -2.0], "torque": 0.7}),
@@ -105,7 +104,7 @@ def test_force_over_time_as_the_judge_has_it(tmp_path: Any) -> None:
     table = [[-0.1, 0, 0, 0], [0.3, 8, 0, 1], [0.5, 0, -6, 0], [0.9, 2, 2, -1]]
     path = tmp_path / "force.csv"
     np.savetxt(path, table, delimiter=",")
-    scene = puck(force={"file": str(path)})
+    scene = puck(force={"over_time": str(path)})
     times = np.array([0.2, 0.3, 0.45, 0.5, 0.55])
     states = Judge(scene).states(times)
     for tol in (1e-6, 1e-9, 1e-11):

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 from pucks import simulate
+from scenes import simulate_scene
 
 from puck_tables import resultants
 from puck_tables.scene.outcome import SceneRun
-from puck_tables.scene.simulate import simulate_scene
 
 G = 9.80665
 
@@ -19,7 +19,7 @@ G = 9.80665
 def scene(**parts: Any) -> dict[str, Any]:
     """A puck of 1 m and 1 kg on f = 0.2, launched along x, and what else there is."""
     whole: dict[str, Any] = {
-        "puck": {"radius": 1.0}, "floor": {"friction": 0.2},
+        "puck": {"radius": 1.0, "friction": 0.2},
         "launch": {"velocity": [3.0, 0.0]}, "run": {"tol": 1e-11},
     }  # fmt: skip
     for part, values in parts.items():
@@ -187,7 +187,7 @@ def test_a_blade_on_ice_goes_in_circles() -> None:
     """No friction: speed and spin are constant, the radius is v/ω, the reaction m v ω."""
     run = simulate_scene(
         scene(
-            floor={"friction": 0.0}, launch={"spin": 2.0}, constraint={"kind": "blade"},
+            puck={"friction": 0.0}, launch={"spin": 2.0}, constraint={"kind": "blade"},
             run={"time": 4.0},
         ),
         [1.0, 2.5],
@@ -227,7 +227,7 @@ def test_a_triangle_of_force_moves_and_stops_it(tmp_path: Any) -> None:
     hold, peak = 0.2 * G, 4.0
     path = tmp_path / "force.csv"
     np.savetxt(path, [[0, 0, 0], [1, peak, 0], [2, 0, 0]], delimiter=",")
-    run = simulate_scene(scene(launch={"velocity": [0.0, 0.0]}, force={"file": str(path)}))
+    run = simulate_scene(scene(launch={"velocity": [0.0, 0.0]}, force={"over_time": str(path)}))
     slips = hold / peak
     assert event(run, "slips") == pytest.approx(slips, rel=1e-10)
     fast = 0.5 * peak * (1.0 - slips) ** 2  # the speed at t = 1

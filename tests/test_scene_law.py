@@ -7,12 +7,13 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 from puck_tables.cli.main import main
+from scenes import simulate_scene
 from scipy.integrate import solve_ivp
 
 import puck_tables as pt
+from puck_tables import Scene
 from puck_tables.motion.body import STANDARD_GRAVITY
 from puck_tables.scene.regions import _kept_table, regions_of
-from puck_tables.scene.scene import scene_from
 from puck_tables.table import speed_build
 
 PUCK = {"radius": 0.04, "height": 0.02, "mass": 0.2}
@@ -28,8 +29,8 @@ def law(folder, rows):
 def test_a_constant_law_is_a_coefficient(tmp_path):
     by_law = {"law": law(tmp_path, [(0.0, 0.15), (1.0, 0.15), (3.0, 0.15)])}
     runs = [
-        pt.simulate_scene({"puck": PUCK, "floor": {**floor, "slope": 0.05}, "launch": LAUNCH})
-        for floor in (by_law, {"friction": 0.15})
+        simulate_scene({"puck": puck, "floor": {**floor, "slope": 0.05}, "launch": LAUNCH})
+        for puck, floor in ((PUCK, by_law), ({**PUCK, "friction": 0.15}, {}))
     ]
     assert runs[0].end == runs[1].end == "at rest"
     for name in ("time", "x", "y", "orientation", "heat_dry"):
@@ -40,7 +41,7 @@ def test_a_constant_law_is_a_coefficient(tmp_path):
 def test_a_coefficient_in_proportion_to_speed_is_viscous(tmp_path):
     rate = 0.5  # f = rate · u: the motion decays like exp(−rate g t), sliding and spin apart
     points = [(u, rate * u) for u in (0.0, 0.5, 1.0, 2.0)]
-    run = pt.simulate_scene({
+    run = simulate_scene({
         "puck": {"radius": 0.04}, "floor": {"law": law(tmp_path, points)}, "launch": LAUNCH,
         "run": {"time": 0.4},
     })  # fmt: skip
@@ -55,7 +56,7 @@ def test_the_slope_that_a_law_holds_is_that_of_slip_zero(tmp_path):
     rows = [(0.0, 0.3), (0.2, 0.1), (2.0, 0.1)]
     for slope, stays in ((0.99 * math.atan(0.3), True), (1.01 * math.atan(0.3), False)):
         floor = {"law": law(tmp_path, rows), "slope": slope}
-        run = pt.simulate_scene({"puck": {"radius": 0.04}, "floor": floor, "run": {"time": 0.3}})
+        run = simulate_scene({"puck": {"radius": 0.04}, "floor": floor, "run": {"time": 0.3}})
         assert (run.end == "at rest") is stays
         assert (run.last["x"] == 0.0) is stays
 
@@ -69,9 +70,9 @@ def test_the_slope_that_a_law_holds_is_that_of_slip_zero(tmp_path):
     ],
 )
 def test_other_pucks_integrated_as_scenes_go_as_they_go_free(puck):
-    free = {"puck": puck, "floor": {"friction": 0.15}, "launch": LAUNCH}
-    held = pt.simulate_scene({**free, "drag": {"sliding": 1e-300}})
-    plain = pt.simulate_scene(free)
+    free = {"puck": {**puck, "friction": 0.15}, "launch": LAUNCH}
+    held = simulate_scene({**free, "drag": {"sliding": 1e-300}})
+    plain = simulate_scene(free)
     assert (held.plan.plain, plain.plan.plain) == (False, True)
     scale = 0.94**2 / (0.15 * STANDARD_GRAVITY)
     assert held.end_time == pytest.approx(plain.end_time, abs=3e-9)
@@ -82,7 +83,7 @@ def test_other_pucks_integrated_as_scenes_go_as_they_go_free(puck):
 def test_slices_of_strips_are_brought_to_one_shape_and_stay_the_same_splines():
     strips = {"borders": [0.1, 0.2], "friction": [0.02, 0.2, 0.1]}
     puck = {"radius": 0.04, "height": 0.25}
-    scene, _ = scene_from({"puck": puck, "floor": {"strips": strips}, "launch": LAUNCH})
+    scene = Scene.from_tables({"puck": puck, "floor": {"strips": strips}, "launch": LAUNCH})
     regions = regions_of(scene)
     from puck_tables.kernels.slice_spline import slice_ratios
 
@@ -94,7 +95,7 @@ def test_slices_of_strips_are_brought_to_one_shape_and_stay_the_same_splines():
             assert inverse == pytest.approx(float(1.0 / truth.parallel), abs=2e-9)
             assert across == pytest.approx(float(truth.perpendicular / truth.parallel), abs=2e-9)
             assert spin == pytest.approx(float(truth.spin / truth.parallel), abs=2e-9)
-    run = pt.simulate_scene({"puck": puck, "floor": {"strips": strips}, "launch": LAUNCH})
+    run = simulate_scene({"puck": puck, "floor": {"strips": strips}, "launch": LAUNCH})
     assert [event.what for event in run.events] == ["border", "border", "rests"]
     assert run.energy_residual < 1e-8
 
@@ -109,7 +110,7 @@ def test_slices_of_strips_are_brought_to_one_shape_and_stay_the_same_splines():
 )
 def test_laws_that_cannot_be_are_refused(floor, words):
     with pytest.raises(pt.errors.PuckError, match=words):
-        pt.simulate_scene({"puck": PUCK, "floor": floor, "launch": LAUNCH})
+        simulate_scene({"puck": PUCK, "floor": floor, "launch": LAUNCH})
 
 
 def by_quadrature(points, puck, launch, times):
@@ -139,7 +140,7 @@ def test_a_law_with_corners_keeps_the_tolerance_of_the_scene(tmp_path, tol):
     times = [0.1, 0.2, 0.3]
     floor = {"law": law(tmp_path, zip(*points, strict=True))}
     truth = by_quadrature(points, PUCK, LAUNCH, times)
-    run = pt.simulate_scene(
+    run = simulate_scene(
         {"puck": PUCK, "floor": floor, "launch": LAUNCH, "run": {"tol": tol}}, times
     )
     for name, row in zip(("x", "y", "orientation", "vx", "vy", "spin"), truth, strict=True):
@@ -179,7 +180,7 @@ def test_a_tolerance_that_the_corners_do_not_allow_is_refused_with_one_that_they
     floor = {"law": law(tmp_path, rows)}
     scene = {"puck": {"radius": 0.04}, "floor": floor, "launch": LAUNCH}
     with pytest.raises(pt.errors.AccuracyError, match="out of reach with the corners") as refused:
-        pt.simulate_scene(scene)
+        simulate_scene(scene)
     tol = float(re.search(r"--tol\) of (\S+) or more", str(refused.value)).group(1))
     assert 1e-9 < tol < 1e-2
-    assert pt.simulate_scene({**scene, "run": {"tol": tol}}).end == "at rest"
+    assert simulate_scene({**scene, "run": {"tol": tol}}).end == "at rest"

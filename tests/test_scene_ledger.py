@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from random_scenes import draw
+from scenes import simulate_scene
 
 from puck_tables.scene.outcome import ENDS
-from puck_tables.scene.simulate import simulate_scene
 
 
 def _closes(seeds: range, folder: Path) -> set[str]:

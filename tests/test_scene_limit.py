@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 import pytest
 from random_scenes import draw
+from scenes import simulate_scene
 
+from puck_tables import Scene
 from puck_tables.contact.integrals import slip_direction
 from puck_tables.contact.quadrature import integrals
 from puck_tables.contact.resultants import moment_balance
 from puck_tables.scene.prepare import prepare
-from puck_tables.scene.scene import scene_from
-from puck_tables.scene.simulate import simulate_scene
 
 G = 9.80665
 
@@ -42,7 +42,7 @@ def test_slips_that_go_straight_next_to_the_limit(gap: float, side: float) -> No
     mass, f, q0 = 2.0, 0.3, 0.01
     load, share = f * mass * G, 1.0 + side * gap
     scene: dict[str, Any] = {
-        "puck": {"radius": 1.0, "mass": mass}, "floor": {"friction": f},
+        "puck": {"radius": 1.0, "mass": mass, "friction": f},
         "force": {"constant": [share * force * load, 0.0], "torque": share * torque * load},
         "launch": {"velocity": [q0 * math.cos(phi), 0.0], "spin": q0 * math.sin(phi)},
     }  # fmt: skip
@@ -66,8 +66,8 @@ def test_friction_that_turns_while_forces_change(tmp_path: Path) -> None:
     path.write_text("0,0,0,0\n1,.5,.5,.01\n2,.9,-.3,.003\n3,0,0,0\n")
     for launch in ({}, {"velocity": [0.3, 0.0], "spin": 20.0}):
         scene = {
-            "puck": {"radius": 0.04, "height": 0.02, "mass": 0.2}, "floor": {"friction": 0.3},
-            "force": {"file": str(path)}, "launch": launch,
+            "puck": {"radius": 0.04, "height": 0.02, "mass": 0.2, "friction": 0.3},
+            "force": {"over_time": str(path)}, "launch": launch,
         }  # fmt: skip
         best = simulate_scene({**scene, "run": {"tol": 1e-12}})
         for tol in (1e-4, 4.64e-7, 2.2e-7, 1e-9):
@@ -84,10 +84,10 @@ def test_rest_as_the_force_reaches_what_friction_holds(tmp_path: Path) -> None:
     path = tmp_path / "force.csv"
     np.savetxt(path, [[0, -3, 0], [10, -3 + 17.1864406779661, 0]], delimiter=",", fmt="%.17g")
     run = simulate_scene({
-        "puck": {"radius": 0.01}, "floor": {"friction": 0.1},
+        "puck": {"radius": 0.01, "friction": 0.1},
         "launch": {"velocity": [1.0, 0.3], "position": [0.01, 0.0]},
         "wall": [{"point": [0, 0], "normal": [1, 0], "restitution": 0.5}],
-        "force": {"file": str(path)}, "run": {"time": 3.0},
+        "force": {"over_time": str(path)}, "run": {"time": 3.0},
     })  # fmt: skip
     slips = (0.1 * G + 3.0) / 1.71864406779661
     assert [event.what for event in run.events][-2:] == ["rests", "slips"]
@@ -102,8 +102,8 @@ def test_a_pivot_at_the_centre_of_a_turntable(tol: float) -> None:
     force, torque = friction_at(phi)
     rate = 0.2 * G * (torque * 0.1 + reach * force) / (0.5 * 0.1**2 + reach**2)
     run = simulate_scene({
-        "puck": {"radius": 0.1},
-        "floor": {"friction": 0.2, "turning": turning, "centre": [reach, 0]},
+        "puck": {"radius": 0.1, "friction": 0.2},
+        "floor": {"turning": turning, "centre": [reach, 0]},
         "launch": {"spin": spin}, "constraint": {"kind": "pivot", "reach": reach},
         "run": {"time": 1.0, "tol": tol},
     })  # fmt: skip
@@ -117,7 +117,7 @@ def test_tol_is_of_the_slip_on_a_fast_belt(tol: float) -> None:
     """50 m/s of belt, a slip of 1.4 cm/s: as on a belt at rest, but for the rounding of 50."""
     belt, slip = 50.0, [0.014, 0.003]
     scene: dict[str, Any] = {
-        "puck": {"radius": 0.05, "height": 0.02}, "floor": {"friction": 0.3},
+        "puck": {"radius": 0.05, "height": 0.02, "friction": 0.3},
         "launch": {"velocity": slip, "spin": 0.1},
         "wall": [{"point": [0, -10], "normal": [0, 1]}], "run": {"tol": 1e-11, "time": 0.01},
     }  # fmt: skip
@@ -135,8 +135,8 @@ def test_tol_is_of_the_slip_on_a_fast_belt(tol: float) -> None:
 def blow(folder: Path) -> dict[str, Any]:
     (folder / "blow.csv").write_text("0,2000,0\n1e-4,2000,0\n")
     return {
-        "puck": {"radius": 0.05, "mass": 0.2}, "floor": {"friction": 0.3},
-        "force": {"file": str(folder / "blow.csv")},
+        "puck": {"radius": 0.05, "mass": 0.2, "friction": 0.3},
+        "force": {"over_time": str(folder / "blow.csv")},
     }  # fmt: skip
 
 
@@ -152,7 +152,7 @@ def test_what_stops_late_is_not_refused(tmp_path: Path) -> None:
     assert run.end_time == pytest.approx(1e-4 + after / (0.3 * G), rel=1e-9)
     slope = math.atan(0.3 * (1.0 - 1e-4))
     run = simulate_scene({
-        "puck": {"radius": 0.05}, "floor": {"friction": 0.3, "slope": slope},
+        "puck": {"radius": 0.05, "friction": 0.3}, "floor": {"slope": slope},
         "launch": {"velocity": [1.0, 0.0]},
     })  # fmt: skip
     brake = G * (0.3 * math.cos(slope) - math.sin(slope))
@@ -190,7 +190,7 @@ def test_no_estimate_of_many_is_too_small(tmp_path: Path) -> None:
 
 
 def test_prepared_scales_are_those_reported() -> None:
-    scene, _ = scene_from({"puck": {"radius": 0.1}, "floor": {"friction": 0.2, "slope": 0.1}})
+    scene = Scene.from_tables({"puck": {"radius": 0.1, "friction": 0.2}, "floor": {"slope": 0.1}})
     prepared = prepare(scene)
     assert prepared.speed == pytest.approx(math.sqrt(prepared.rate * 0.1))
     assert prepared.rate == pytest.approx(0.2 * G * math.cos(0.1))

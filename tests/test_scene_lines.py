@@ -8,9 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 from pucks import simulate
+from scenes import simulate_scene
 from test_scene_known import G, event, scene
-
-from puck_tables.scene.simulate import simulate_scene
 
 WALL = {"point": [2.0, 0.0], "normal": [-1.0, 0.0]}
 
@@ -42,8 +41,8 @@ def test_impulses_of_a_rough_wall(friction: float) -> None:
             "friction": friction}  # fmt: skip
     run = simulate_scene(
         scene(
-            wall=[wall], floor={"friction": 0.0}, run={"time": 1.0},
-            puck={"mass": 2.0, "radius": 0.3},
+            wall=[wall], run={"time": 1.0},
+            puck={"mass": 2.0, "radius": 0.3, "friction": 0.0},
             launch={"velocity": [1.0, 2.0], "spin": 4.0},
         )
     )  # fmt: skip

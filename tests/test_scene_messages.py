@@ -8,14 +8,12 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner, Result
 from puck_tables.cli.main import main
+from scenes import simulate_scene
 
 from puck_tables.errors import InputError
 from puck_tables.scene.library import find_scene
-from puck_tables.scene.simulate import simulate_scene
 
-HEAD = (
-    "[puck]\nradius = 0.04\nmass = 0.2\n[floor]\nfriction = 0.2\n[launch]\nvelocity = [1.0, 0.0]\n"
-)
+HEAD = "[puck]\nradius = 0.04\nmass = 0.2\nfriction = 0.2\n[launch]\nvelocity = [1.0, 0.0]\n"
 
 
 def puck(*arguments: str) -> Result:
@@ -68,7 +66,7 @@ def test_a_field_of_a_csv_file_that_is_too_long(tmp_path: Path) -> None:
     file = tmp_path / "wide.csv"
     file.write_text("t,Fx,Fy\n0," + "1" * 200_000 + ",0\n1,0,0\n")
     for entry in ("force.file", "floor.law", "puck.pressure"):
-        law = ("--set", "floor.friction=0") if entry == "floor.law" else ()
+        law = ("--set", "puck.friction=0") if entry == "floor.law" else ()
         result = puck("simulate", "--v0", "1,0", *law, "--set", f"{entry}={file}")
         assert result.exit_code == 2
         assert "CSV file" in result.stderr or "field larger than" in result.stderr
@@ -82,7 +80,7 @@ def test_a_puck_that_rests_does_not_still_move(tmp_path: Path) -> None:
     scene.write_text(HEAD + '[force]\nfile = "force.csv"\n')
     assert "at rest after 0.70105" in puck("simulate", "--scene", str(scene)).stdout
     with pytest.raises(InputError, match="still moves after"):
-        simulate_scene({"puck": {"radius": 1.0}, "floor": {"friction": 0.1, "slope": 0.3}})
+        simulate_scene({"puck": {"radius": 1.0, "friction": 0.1}, "floor": {"slope": 0.3}})
 
 
 def test_what_cannot_be_read_is_no_result_that_cannot_be_written() -> None:

@@ -12,7 +12,7 @@ from verdicts import judged, known
 
 def test_the_judge_sums_rebounds_on_a_slope():
     scene = {
-        "puck": {"radius": 0.04}, "floor": {"friction": 0.1, "slope": 0.4},
+        "puck": {"radius": 0.04, "friction": 0.1}, "floor": {"slope": 0.4},
         "launch": {"velocity": [0.5, 0.0]}, "run": {"time": 3.0},
         "wall": [{"point": [0.2, 0.0], "normal": [-1.0, 0.0], "restitution": 0.9}],
     }  # fmt: skip

@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scenes import simulate_scene
 from scipy.optimize import minimize_scalar
 
 from puck_tables.contact.integrals import slip_direction
 from puck_tables.contact.quadrature import integrals
 from puck_tables.contact.resultants import moment_balance
-from puck_tables.scene.simulate import simulate_scene
 
 G = 9.80665
 
@@ -20,8 +20,13 @@ G = 9.80665
 def scene(force: float, torque: float, **parts: Any) -> dict[str, Any]:
     """A puck at rest, r = 1 m, f m g = 1 N, under a force along a slanting line and a torque."""
     return {
-        "puck": {"radius": 1.0, "mass": 1.0 / (0.2 * G), "height": parts.pop("height", 0.0)},
-        "floor": {"friction": 0.2, **parts.pop("floor", {})},
+        "puck": {
+            "radius": 1.0,
+            "mass": 1.0 / (0.2 * G),
+            "height": parts.pop("height", 0.0),
+            "friction": 0.2,
+        },
+        "floor": {**parts.pop("floor", {})},
         "force": {"constant": [0.8 * force, 0.6 * force], "torque": torque},
         "run": {"time": 1e-3},
         **parts,
@@ -97,7 +102,7 @@ def test_a_torque_that_grows_slips_and_follows_its_law(tmp_path: Any) -> None:
     """Spin alone: slips at (2/3) f N r, then I ω′ = T − (2/3) f N r."""
     path = tmp_path / "torque.csv"
     np.savetxt(path, [[0, 0, 0, 0], [2, 0, 0, 2]], delimiter=",")
-    whole = scene(0.0, 0.0) | {"force": {"file": str(path)}, "run": {"time": 1.5}}
+    whole = scene(0.0, 0.0) | {"force": {"over_time": str(path)}, "run": {"time": 1.5}}
     run = simulate_scene(whole)
     assert run.events[0][1] == "rests" and run.events[1][1] == "slips"
     assert run.events[1][0] == pytest.approx(2.0 / 3.0, rel=1e-9)
@@ -109,7 +114,7 @@ def test_a_force_that_grows_beside_a_torque(tmp_path: Any) -> None:
     """The slow start of a slip whose direction turns: no steps without number."""
     path = tmp_path / "force.csv"
     np.savetxt(path, [[0, 0, 0, 0.3], [1, 1.2, 0.1, 0.3]], delimiter=",")
-    whole = scene(0.0, 0.0, height=1.0) | {"force": {"file": str(path)}, "run": {"time": 1.0}}
+    whole = scene(0.0, 0.0, height=1.0) | {"force": {"over_time": str(path)}, "run": {"time": 1.0}}
     run = simulate_scene(whole)
     assert run.steps < 20_000
     assert run.energy_residual < 1e-9

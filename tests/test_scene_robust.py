@@ -8,16 +8,16 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scenes import simulate_scene
 
 from puck_tables.errors import InputError, PuckError
-from puck_tables.scene.simulate import simulate_scene
 
 G = 9.80665
 
 
 def scene(**parts: Any) -> dict[str, Any]:
     whole: dict[str, Any] = {
-        "puck": {"radius": 0.5}, "floor": {"friction": 0.2},
+        "puck": {"radius": 0.5, "friction": 0.2},
         "launch": {"velocity": [2.0, 0.5], "spin": 3.0},
     }  # fmt: skip
     for part, values in parts.items():
@@ -81,8 +81,8 @@ CLOSED = {
         floor={"strips": {"borders": [1.0, 2.0], "friction": [0.0, 0.0, 0.3]}}
     ),
     "a short run": scene(wall=[wall(9.0, 0, -1, 0)], run={"time": 1e-9}),
-    "ice": scene(floor={"friction": 0.0}, drag={"sliding": 0.3}, run={"time": 5.0}),
-    "nothing acts": scene(floor={"friction": 0.0}, run={"time": 5.0}),
+    "ice": scene(puck={"friction": 0.0}, drag={"sliding": 0.3}, run={"time": 5.0}),
+    "nothing acts": scene(puck={"friction": 0.0}, run={"time": 5.0}),
 }  # fmt: skip
 
 
@@ -135,7 +135,8 @@ def test_units_do_not_matter(mass: float, length: float, time: float) -> None:
     )  # fmt: skip
     other = copy.deepcopy(one)
     other["puck"] = {"radius": 0.5 * length, "height": 0.4 * length, "mass": 2.0 * mass}
-    other["floor"] |= {"gravity": G * length / time**2, "turning": 0.3 / time}
+    other["puck"]["gravity"] = G * length / time**2
+    other["floor"] |= {"turning": 0.3 / time}
     other["launch"] = {"velocity": [2.0 * speed, 0.5 * speed], "spin": 3.0 / time}
     other["drag"] = {"sliding": 0.2 * mass / time, "spinning": 0.1 * mass * length**2 / time}
     other["force"] = {
@@ -163,7 +164,7 @@ def test_knots_before_the_launch_and_beyond_the_end(first: float, tmp_path: Any)
     """A constant force in a file is that force while it lasts."""
     path = tmp_path / "force.csv"
     np.savetxt(path, [[first, 1.5, 0.0], [1e3, 1.5, 0.0]], delimiter=",")
-    run = simulate_scene(scene(force={"file": str(path)}, run={"time": 0.8}))
+    run = simulate_scene(scene(force={"over_time": str(path)}, run={"time": 0.8}))
     halves = simulate_scene(scene(force={"constant": [1.5, 0.0]}, run={"time": 0.8}))
     if first <= 0.0:
         for name in ("x", "y", "spin"):

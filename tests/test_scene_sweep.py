@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scenes import simulate_scene, sweep_scene
 
 from puck_tables.errors import InputError
 from puck_tables.scene.entries import set_path
 from puck_tables.scene.outcome import ENDS
-from puck_tables.scene.simulate import simulate_scene
-from puck_tables.scene.sweep import SceneMap, sweep_scene
+from puck_tables.scene.sweep import SceneMap
 
 
 def tables() -> dict[str, Any]:
@@ -66,7 +66,7 @@ def test_same_bits_as_single_runs(whole: SceneMap, index: tuple[int, ...]) -> No
 
 def test_look_up_agrees_with_single_runs() -> None:
     scene = {
-        "puck": {"radius": 0.2, "height": 0.3}, "floor": {"friction": 0.2, "velocity": [0.3, 0.1]},
+        "puck": {"radius": 0.2, "height": 0.3, "friction": 0.2}, "floor": {"velocity": [0.3, 0.1]},
         "launch": {"velocity": ["1:3:3", 0.4], "spin": 4.0},
     }  # fmt: skip
     ends = sweep_scene(scene)
@@ -118,7 +118,8 @@ def test_a_range_is_no_single_run() -> None:
 
 def test_runs_that_never_stop_get_a_status_and_the_others_go_on() -> None:
     scene = tables()
-    scene["floor"] = {"friction": 0.2, "slope": "0:0.4:5"}
+    scene["puck"]["friction"] = 0.2
+    scene["floor"] = {"slope": "0:0.4:5"}
     scene["wall"] = []
     ends = sweep_scene(scene)
     steep = np.tan(ends.axes["floor.slope"]) > 0.2
@@ -134,7 +135,7 @@ def test_runs_that_never_stop_get_a_status_and_the_others_go_on() -> None:
 @pytest.mark.parametrize(
     ("path", "values", "word", "said"),
     [
-        ("floor.friction", "0:0.3:4", "no end found", "floor.friction = 0"),
+        ("puck.friction", "0:0.3:4", "no end found", "puck.friction = 0"),
         ("puck.height", "0.1:4:5", "refused", "tips over"),
         ("launch.position[0]", "0:2:5", "refused", "reaches through it by"),
         ("launch.spin", "1:1e200:3", "refused", "too large or too small for floating point"),
@@ -142,7 +143,7 @@ def test_runs_that_never_stop_get_a_status_and_the_others_go_on() -> None:
 )
 def test_no_run_takes_the_others_along(path: str, values: str, word: str, said: str) -> None:
     scene: dict[str, Any] = {
-        "puck": {"radius": 0.2}, "floor": {"friction": 0.3},
+        "puck": {"radius": 0.2, "friction": 0.3},
         "launch": {"velocity": [1.0, 0.0], "position": [0.0, 0.0]},
         "wall": [{"point": [1.5, 0.0], "normal": [-1.0, 0.0]}],
     }  # fmt: skip
@@ -162,7 +163,7 @@ def test_a_sweep_in_which_nothing_has_an_end_is_refused() -> None:
     scene = {"puck": {"radius": 1.0}, "launch": {"velocity": [1.0, 0.0], "spin": "0:1:2"}}
     with pytest.raises(InputError, match=r"no run of this sweep has an end\n  2 of 2 runs: no end"):
         sweep_scene(scene)
-    scene["floor"] = {"friction": "4:5:2"}
+    scene["puck"]["friction"] = "4:5:2"
     scene["puck"]["height"] = 1.0
-    with pytest.raises(InputError, match="every run of this sweep is refused, the first: delta"):
+    with pytest.raises(InputError, match="puck: delta = 8: a puck with delta"):
         sweep_scene(scene)

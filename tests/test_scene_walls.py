@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scenes import simulate_scene
 from scipy.optimize import linprog
 
 from puck_tables.scene.cushions import rest_of_rim
 from puck_tables.scene.leaning import still_torques
 from puck_tables.scene.library import find_scene
-from puck_tables.scene.simulate import simulate_scene
 
 
 @pytest.mark.parametrize("ratio", [0.002, 0.1, 0.5, 0.9, 0.99])
@@ -40,7 +40,7 @@ def test_the_rest_of_a_series_is_the_sum_of_its_rebounds(ratio: float) -> None:
 
 def leaning_rim(restitution: float, tangential: float, tol: float) -> Any:
     return simulate_scene({
-        "puck": {"radius": 0.05}, "floor": {"friction": 0.0},
+        "puck": {"radius": 0.05, "friction": 0.0},
         "launch": {"velocity": [0.5, -0.3], "spin": 10.0, "position": [0.0, 0.35]},
         "force": {"constant": [0.7, -1.5]},
         "wall": [{"point": [0, 0], "normal": [0, 1], "restitution": restitution,
@@ -84,7 +84,7 @@ def test_a_rough_rim_that_settles_is_where_all_rebounds_bring_it(
 def test_a_turning_floor_carries_no_puck_into_a_wall(rim: dict[str, float], tol: float) -> None:
     wall = {"point": [0.0, 0.0], "normal": [0.0, 1.0], "restitution": 0.0, **rim}
     run = simulate_scene({
-        "puck": {"radius": 0.1}, "floor": {"friction": 0.2, "turning": 0.77},
+        "puck": {"radius": 0.1, "friction": 0.2}, "floor": {"turning": 0.77},
         "launch": {"velocity": [0.844, -0.148], "spin": 16.0, "position": [0.0, 0.3]},
         "force": {"constant": [-0.82, -2.8]}, "wall": [wall],
         "run": {"time": 3.0, "tol": tol},
@@ -98,7 +98,7 @@ def test_a_turning_floor_carries_no_puck_into_a_wall(rim: dict[str, float], tol:
 def test_a_floor_that_leads_off_a_wall_carries_a_puck_off() -> None:
     """The centre of the turntable is on the far side: the carried circle bends off the wall."""
     run = simulate_scene({
-        "puck": {"radius": 0.1}, "floor": {"friction": 0.5, "turning": 1.0, "centre": [0.0, 1.0]},
+        "puck": {"radius": 0.1, "friction": 0.5}, "floor": {"turning": 1.0, "centre": [0.0, 1.0]},
         "launch": {"velocity": [0.9, 0.0], "spin": 1.0, "position": [0.0, 0.1]},
         "wall": [{"point": [0.0, 0.0], "normal": [0.0, 1.0]}], "run": {"time": 1.0},
     })  # fmt: skip
@@ -158,7 +158,7 @@ def test_rough_walls_hold_a_puck_in_their_corner(tol: float) -> None:
         for normal in ([1, 0], [0, 1])
     ]
     run = simulate_scene({
-        "puck": {"radius": 0.05}, "floor": {"friction": 0.1},
+        "puck": {"radius": 0.05, "friction": 0.1},
         "launch": {"velocity": [0, -0.5], "spin": 10.0, "position": [0.4, 0.6]},
         "force": {"constant": [-1.5, -1.0]}, "wall": walls,
         "run": {"time": 3.0, "tol": tol, "frames": 1},

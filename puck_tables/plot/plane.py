@@ -11,7 +11,8 @@ import numpy.typing as npt
 
 from puck_tables.plot.style import BLUE, GREY, LAUNCH, ORANGE, RED, STOP
 from puck_tables.scene.outcome import SceneRun
-from puck_tables.scene.scene import Edge, Scene, Wall
+from puck_tables.scene.parts import Edge, Wall
+from puck_tables.scene.scene import Scene
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -44,8 +45,8 @@ def draw_plane(axes: Axes, run: SceneRun, columns: dict[str, FloatArray]) -> Non
     _draw_floor(axes, scene, box)
     axes.plot(x, y, color=BLUE, linewidth=1.4, zorder=3)
     _draw_pucks(axes, scene, columns)
-    _draw_lines(axes, scene.wall, box, "wall", color="black", linewidth=2.5)
-    _draw_lines(axes, scene.edge, box, "edge", color=RED, linestyle="--")
+    _draw_lines(axes, scene.walls, box, "wall", color="black", linewidth=2.5)
+    _draw_lines(axes, scene.edges, box, "edge", color=RED, linestyle="--")
     turns = [event for event in run.events if event.what in ("bounces", "leans")][:_MARKED]
     if turns:
         axes.plot(
@@ -203,7 +204,7 @@ def _draw_pulls(axes: Axes, scene: Scene, x: FloatArray, y: FloatArray, box: Box
         axes.plot([], [], color=color, marker=">", label=words)
     for there, words in (
         (scene.force.torque != 0.0, f"torque {scene.force.torque:g} N m"),
-        (bool(scene.force.file), "force over time"),
+        (bool(scene.force.over_time), "force over time"),
         (scene.drag.sliding > 0.0 or scene.drag.spinning > 0.0, "viscous drag"),
         (bool(scene.floor.law), "friction by slip speed"),
     ):

@@ -17,7 +17,6 @@ from puck_tables.plot.style import (
     draw_over,
     titled,
 )
-from puck_tables.scene.entries import entry_at
 from puck_tables.scene.loop import CARRIED_AWAY
 from puck_tables.scene.outcome import ENDS
 from puck_tables.scene.sweep import SceneMap
@@ -57,7 +56,7 @@ def draw(stops: SceneMap) -> Figure:
     fixed = {name: stops.axes[name].size // 2 for name in names[:-2]}
     place = tuple(fixed.values())
     axes = {name: stops.axes[name] for name in names[-2:]}
-    units = {name: entry_at(stops.scene, name).kind.unit for name in names}
+    units = {name: stops.scene.unit_of(name) for name in names}
     labels = {name: f"{name} / {unit}" if unit else name for name, unit in units.items()}
     end = stops.end[place]
     for panel, (name, text) in zip(panels.flat, _MAPS.items(), strict=False):
@@ -87,7 +86,7 @@ def draw_on(axes: Axes, stops: SceneMap) -> None:
     names = list(stops.axes)
     place = tuple(stops.axes[name].size // 2 for name in names[:-2])
     ranged = {name: stops.axes[name] for name in names[-2:]}
-    labels = {name: f"{name} / {entry_at(stops.scene, name).kind.unit or 1}" for name in ranged}
+    labels = {name: f"{name} / {stops.scene.unit_of(name) or 1}" for name in ranged}
     _draw_ends(axes, ranged, labels, stops.end[place])
 
 

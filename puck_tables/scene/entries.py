@@ -6,16 +6,26 @@ import dataclasses
 import json
 import re
 from collections.abc import Iterator, Mapping
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.fields import Kind, specs
+from puck_tables._core.real import finite_array
 from puck_tables.errors import InputError
-from puck_tables.scene.fields import Kind
-from puck_tables.scene.scene import Scene
+
+if TYPE_CHECKING:
+    from puck_tables.scene.scene import Scene
 
 FloatArray = npt.NDArray[np.float64]
+
+BATCH = "launch"  # the axis of many launches
+# what a launch is, in the order of the columns of a batch
+LAUNCH = (
+    "launch.velocity[0]", "launch.velocity[1]", "launch.spin", "launch.position[0]",
+    "launch.position[1]", "launch.orientation",
+)  # fmt: skip
 
 
 class Entry(NamedTuple):
@@ -33,13 +43,13 @@ def entries(part: Any, prefix: str = "") -> Iterator[Entry]:
 
     Examples
     --------
-    >>> from puck_tables.scene.scene import Edge
+    >>> from puck_tables.scene.parts import Edge
     >>> [entry.path for entry in entries(Edge((0.0, 1.0), (0.0, -1.0)), "edge[0].")]
     ['edge[0].point', 'edge[0].normal']
     """
-    for spec in dataclasses.fields(part):
+    for name, spec in specs(type(part)).items():
         kind: Kind = spec.metadata["kind"]
-        value, path = getattr(part, spec.name), prefix + spec.name
+        value, path = getattr(part, spec.name), prefix + name
         if kind.shape == "part" and value is not None:
             yield from entries(value, f"{path}.")
         elif kind.shape == "parts":
@@ -54,7 +64,7 @@ def units_of(scene: Scene) -> dict[str, str]:
 
     Examples
     --------
-    >>> from puck_tables.scene.scene import Puck
+    >>> from puck_tables import Puck, Scene
     >>> units_of(Scene(Puck(0.04)))["launch.spin"]
     'rad/s'
     """
@@ -71,7 +81,7 @@ def entry_at(scene: Scene, path: str) -> Entry:
 
     Examples
     --------
-    >>> from puck_tables.scene.scene import Puck
+    >>> from puck_tables import Puck, Scene
     >>> entry_at(Scene(Puck(0.04)), "launch.position[1]").kind.unit
     'm'
     """
@@ -80,41 +90,86 @@ def entry_at(scene: Scene, path: str) -> Entry:
 
 
 def tables_of(part: Any) -> dict[str, Any]:
-    """A scene as nested tables that :func:`puck_tables.scene.scene.scene_from` takes.
+    """A scene as nested tables that :meth:`puck_tables.Scene.from_tables` takes, without ranges.
 
     What is left out stays out, and so does a number without bound.
 
     Examples
     --------
-    >>> from puck_tables.scene.scene import Puck
+    >>> from puck_tables import Puck, Scene
     >>> tables_of(Scene(Puck(0.04)))["floor"]["velocity"]
     [0.0, 0.0]
     """
     tables: dict[str, Any] = {}
-    for spec in dataclasses.fields(part):
-        value = getattr(part, spec.name)
-        if dataclasses.is_dataclass(value):
-            value = tables_of(value)
-        elif isinstance(value, tuple):
-            value = [tables_of(v) if dataclasses.is_dataclass(v) else v for v in value]
-        if value is not None and value != np.inf and value != []:
-            tables[spec.name] = value
+    for name, spec in specs(type(part)).items():
+        value = _plain(getattr(part, spec.name))
+        if value is not None and value != [] and not (isinstance(value, float) and value == np.inf):
+            tables[name] = value
     return tables
 
 
-def as_toml(scene: Scene, ranges: Mapping[str, FloatArray]) -> str:
-    """A scene as the text of a scene file, with its ranges as 'START:STOP:COUNT'.
+def _plain(value: Any) -> Any:
+    """A record as a table, a tuple as a list."""
+    if isinstance(value, Mapping):
+        return {name: _plain(one) for name, one in value.items()}
+    if isinstance(value, tuple | list | np.ndarray):
+        return [_plain(one) for one in value]
+    read = dataclasses.is_dataclass(value) and bool(specs(type(value)))
+    return tables_of(value) if read else value
+
+
+def as_toml(scene: Scene) -> str:
+    """A scene as the text of a scene file, with its ranges.
+
+    A pressure law or friction law that is a function stands there by its name.
 
     Examples
     --------
-    >>> from puck_tables.scene.scene import Puck
-    >>> as_toml(Scene(Puck(0.04)), {"puck.height": np.array([0.0, 0.5, 1.0])}).splitlines()[:5]
+    >>> from puck_tables import Puck, Scene
+    >>> scene = Scene(Puck(0.04), ranges={"puck.height": np.array([0.0, 0.5, 1.0])})
+    >>> as_toml(scene).splitlines()[:5]
     ['title = ""', '', '[puck]', 'radius = 0.04', 'height = "0.0:1.0:3"']
     """
     tables = tables_of(scene)
-    for path, values in ranges.items():
-        set_path(tables, path, f"{float(values[0])!r}:{float(values[-1])!r}:{values.size}")
+    for path, values in scene.ranges.items():
+        for entry, column in columns_of(path, values):
+            set_path(tables, entry, column.tolist() if path == BATCH else _range(column))
     return "\n".join(_lines(tables, "")).lstrip("\n") + "\n"
+
+
+def _range(values: FloatArray) -> str | list[float]:
+    """As 'START:STOP:COUNT' where that gives the same numbers."""
+    first, last = float(values[0]), float(values[-1])
+    if values.size > 1 and np.array_equal(values, np.linspace(first, last, values.size)):
+        return f"{first!r}:{last!r}:{values.size}"
+    return [float(value) for value in values]
+
+
+def columns_of(path: str, values: Any) -> list[tuple[str, Any]]:
+    """What ranges along an axis: entries by path, and what they take.
+
+    Raises
+    ------
+    InputError
+        If many launches are not rows of six numbers.
+
+    Examples
+    --------
+    >>> [path for path, _ in columns_of("launch", np.zeros((2, 6)))][:2]
+    ['launch.velocity', 'launch.spin']
+    """
+    if path != BATCH:
+        return [(path, values)]
+    rows = finite_array("ranges['launch']", values, "m/s, rad/s, m and rad")
+    if rows.ndim != 2 or rows.shape[1] != len(LAUNCH):
+        raise InputError(
+            f"ranges['launch'] has the shape {rows.shape}: must be rows of vx, vy, spin, x, y and "
+            "orientation"
+        )
+    return [
+        ("launch.velocity", rows[:, 0:2]), ("launch.spin", rows[:, 2]),
+        ("launch.position", rows[:, 3:5]), ("launch.orientation", rows[:, 5]),
+    ]  # fmt: skip
 
 
 def set_path(tables: dict[str, Any], path: str, value: Any) -> None:
@@ -178,7 +233,8 @@ def _value(value: Any) -> str:
     """A number, a text or a list of them; a TOML text escapes like one of JSON."""
     if isinstance(value, list):
         return f"[{', '.join(map(_value, value))}]"
-    if not isinstance(value, str):
+    if isinstance(value, int | float | np.number):
         return repr(float(value))
+    value = value if isinstance(value, str) else str(value.name)
     text = value.encode("utf-8", "backslashreplace").decode()  # names of files may be no text
     return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")

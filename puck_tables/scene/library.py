@@ -6,10 +6,23 @@ import os
 import tomllib
 from difflib import get_close_matches
 from importlib.resources import files
+from pathlib import Path
 from typing import Any
 
+from puck_tables._core.fields import specs
+from puck_tables._core.safe_read import read_whole
 from puck_tables.errors import InputError
-from puck_tables.scene.scene import read_scene
+from puck_tables.scene.scene import Scene
+
+MAX_FILE = 1 << 20
+MAX_NAMED = 1 << 26  # bytes of a file that a scene names
+FILES = tuple(
+    (part, name, spec.metadata["kind"])
+    for part, whole in specs(Scene).items()
+    if whole.metadata["kind"].shape == "part"
+    for name, spec in specs(whole.metadata["kind"].part).items()
+    if spec.metadata["kind"].file is not None
+)
 
 
 def shipped_scenes() -> dict[str, str]:
@@ -52,7 +65,7 @@ def find_scene(name: str) -> dict[str, Any]:
 
     Examples
     --------
-    >>> find_scene("incline")["floor"]["friction"]
+    >>> find_scene("incline")["puck"]["friction"]
     0.15
     """
     try:
@@ -91,3 +104,56 @@ def _listed() -> str:
 
 def _names() -> list[str]:
     return sorted(item.name[:-5] for item in _folder().iterdir() if item.name.endswith(".toml"))
+
+
+def read_scene(path: str | Path) -> dict[str, Any]:
+    """The tables of a scene file.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read or is not TOML.
+    """
+    try:
+        tables = tomllib.loads(read_whole(path, MAX_FILE).decode("utf-8-sig"))
+    except OSError as error:
+        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
+    except UnicodeDecodeError as error:
+        raise InputError(f"{path} is not text in UTF-8: see its byte {error.start}") from None
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(f"{path} is not a scene file (TOML): {error}") from None
+    except (ValueError, RecursionError):
+        raise InputError(
+            f"{path}: a number in it has thousands of digits, or its lists are nested too deeply"
+        ) from None
+    for part, name, kind in FILES:  # beside the scene that names them
+        value = tables.get(part, {}).get(name) if isinstance(tables.get(part), dict) else None
+        if isinstance(value, str) and kind.names_file(value):
+            tables[part][name] = str(Path(path).parent / value)
+    return tables
+
+
+def files_of(scene: Scene) -> dict[str, str]:
+    """What stands in the files that a scene names, by the path of the entry that names them.
+
+    Raises
+    ------
+    InputError
+        If one cannot be read.
+
+    Examples
+    --------
+    >>> from puck_tables.puck import Puck
+    >>> files_of(Scene(Puck(0.04)))
+    {}
+    """
+    texts = {}
+    for part, name, kind in FILES:
+        file = getattr(getattr(scene, part), name)
+        if kind.names_file(file):
+            try:
+                text = read_whole(file, MAX_NAMED).decode("utf-8-sig", "replace")
+            except OSError as error:
+                raise InputError(f"cannot read {file}: {error.strerror or error}") from None
+            texts[f"{part}.{name}"] = text.replace("\0", "\ufffd")
+    return texts

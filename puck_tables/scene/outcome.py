@@ -14,8 +14,9 @@ from puck_tables.io.columns import COLUMNS
 from puck_tables.io.dataset import Dataset, variable
 from puck_tables.result import Result
 from puck_tables.scene.entries import as_toml, tables_of, units_of
+from puck_tables.scene.library import files_of
 from puck_tables.scene.plan import Plan
-from puck_tables.scene.scene import Scene, files_of
+from puck_tables.scene.scene import Scene
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -90,11 +91,9 @@ class SceneRun(Result):
         InputError
             If they are no such times, or a file that the scene names has changed since the run.
         """
-        from puck_tables.scene.simulate import simulate_scene
-
         if files_of(self.scene) != self.files:
             raise InputError("a file that the scene names has changed since the run: run it again")
-        return simulate_scene(self.scene, times)
+        return self.scene.simulate(times)
 
     def __repr__(self) -> str:
         title = f"{self.scene.title}: " if self.scene.title else ""
@@ -128,10 +127,9 @@ class SceneRun(Result):
 
         Examples
         --------
-        >>> from puck_tables.scene.simulate import simulate_scene
-        >>> floor, launch = {"friction": 0.1}, {"velocity": [1.0, 0.0]}
-        >>> run = simulate_scene({"puck": {"radius": 0.04}, "floor": floor, "launch": launch})
-        >>> told = run.summary()
+        >>> from puck_tables import Launch, Puck
+        >>> scene = Scene(Puck(0.04, friction=0.1), launch=Launch((1.0, 0.0)))
+        >>> told = scene.simulate().summary()
         >>> told["end"], told["scene"]["launch"]["velocity"], told["units"]["scene.launch.velocity"]
         ('at rest', [1.0, 0.0], 'm/s')
         """
@@ -173,7 +171,7 @@ class SceneRun(Result):
         left_out = (*columns, "events", "scene", "units", "title")
         scalars = {n: v for n, v in self.summary().items() if n not in left_out}
         attributes = {"title": self.scene.title or "Scene", **scalars}
-        return Dataset(axes, over_time, attributes, scene_texts(self.scene, {}, self.files))
+        return Dataset(axes, over_time, attributes, scene_texts(self.scene, self.files))
 
 
 def column_of(result: Any, name: str) -> FloatArray:
@@ -200,15 +198,13 @@ def plain_name(path: str) -> str:
     return path.replace("[", "_").replace("]", "").replace(".", "_")
 
 
-def scene_texts(
-    scene: Scene, ranges: Mapping[str, FloatArray], files: Mapping[str, str]
-) -> dict[str, tuple[str, str]]:
+def scene_texts(scene: Scene, files: Mapping[str, str]) -> dict[str, tuple[str, str]]:
     """A scene as a scene file, the files it names, and what they are."""
     named = {
         plain_name(path): (text, f"what stands in the file that {path} of the scene names")
         for path, text in files.items()
     }
-    return {"scene": (as_toml(scene, ranges), "the scene as a scene file (TOML)"), **named}
+    return {"scene": (as_toml(scene), "the scene as a scene file (TOML)"), **named}
 
 
 def ledger(

@@ -8,9 +8,10 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.errors import InputError
+from puck_tables.scene.agreement import launch_velocity
 from puck_tables.scene.outcome import LEDGER, Event, SceneRun, ledger_residual
-from puck_tables.scene.plan import Plan, free_puck, free_velocity
-from puck_tables.scene.scene import Scene, launch_velocity
+from puck_tables.scene.plan import Plan, free_velocity
+from puck_tables.scene.scene import Scene
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -20,7 +21,7 @@ def run_plain(scene: Scene, needed: Scene, plan: Plan, times: FloatArray | None)
 
     ``needed``: the scene without what the puck does not reach.
     """
-    free, velocity, spin = free_puck(needed), free_velocity(needed), needed.launch.spin
+    free, velocity, spin = needed.puck, free_velocity(needed), needed.launch.spin
     free_run = free.simulate(velocity, spin, frames=1, tol=scene.run.tol)
     length = free_run.stop_time
     limit = scene.run.time

@@ -11,16 +11,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any, NamedTuple
 
+from puck_tables._core.fields import Kind, specs
 from puck_tables.errors import PuckError
 from puck_tables.motion.body import is_plain
 from puck_tables.motion.sliced import FINEST_TOL
-from puck_tables.puck import Puck
-from puck_tables.scene.fields import Kind
-from puck_tables.scene.scene import Floor, Scene, distance, launch_velocity
+from puck_tables.scene.agreement import distance, launch_velocity
+from puck_tables.scene.scene import Scene
 
 _NAMES = {"A": "rest", "B0": "pure spin", "C0": "pure translation", "D": "the limit motion"}
 
@@ -45,8 +45,8 @@ class Ingredient(NamedTuple):
 # every entry that a scene may have, so that none can be left out by mistake: first those that the
 # motion of a free puck on a level floor takes into account
 FREE = (
-    "title", "puck.radius", "puck.height", "puck.mass", "puck.gyration", "puck.pressure",
-    "floor.friction", "floor.gravity", "floor.velocity",
+    "title", "puck.radius", "puck.height", "puck.friction", "puck.mass", "puck.gravity",
+    "puck.pressure", "puck.gyration", "floor.velocity",
     "launch.velocity", "launch.spin", "launch.position", "launch.orientation",
     "run.time", "run.frames", "run.tol",
 )  # fmt: skip
@@ -65,13 +65,13 @@ INGREDIENTS = (
         "force", ("force.constant", "force.torque"),
         lambda s: any(s.force.constant) or s.force.torque != 0.0,
     ),
-    Ingredient("force over time", ("force.file",), lambda s: bool(s.force.file)),
+    Ingredient("force over time", ("force.over_time",), lambda s: bool(s.force.over_time)),
     Ingredient(
         "walls",
         ("wall.point", "wall.normal", "wall.restitution", "wall.tangential", "wall.friction"),
-        lambda s: bool(s.wall),
+        lambda s: bool(s.walls),
     ),
-    Ingredient("edges", ("edge.point", "edge.normal"), lambda s: bool(s.edge)),
+    Ingredient("edges", ("edge.point", "edge.normal"), lambda s: bool(s.edges)),
     Ingredient(
         "constraint",
         ("constraint.kind", "constraint.angle", "constraint.reach", "constraint.velocity",
@@ -93,8 +93,8 @@ def ingredients(scene: Scene) -> list[str]:
 
     Examples
     --------
-    >>> from puck_tables.scene.scene import Floor, Launch, Puck
-    >>> ingredients(Scene(Puck(1.0), Floor(0.1, slope=0.2), Launch((1.0, 0.0), 5.0)))
+    >>> from puck_tables import Floor, Launch, Puck
+    >>> ingredients(Scene(Puck(1.0, friction=0.1), Floor(slope=0.2), Launch((1.0, 0.0), 5.0)))
     ['slope']
     """
     kind: Any = type(scene)
@@ -104,10 +104,10 @@ def ingredients(scene: Scene) -> list[str]:
     if scene.constraint is not None:
         there[there.index("constraint")] = scene.constraint.kind
     puck = scene.puck
-    plain = is_plain(puck.pressure, puck.gyration, height_ratio(scene))
+    plain = is_plain(puck.pressure, puck.gyration, puck.delta)
     if not plain and scene.run.tol < FINEST_TOL:
         there.append("a tolerance finer than for free pucks of this kind")
-    if scene.floor.strips is None and scene.floor.friction == 0.0 and not scene.floor.law:
+    if scene.floor.strips is None and puck.friction == 0.0 and not scene.floor.law:
         there.append("no dry friction")
     return there
 
@@ -116,34 +116,13 @@ def ingredients(scene: Scene) -> list[str]:
 def _stray(kind: type, path: str = "") -> list[str]:
     """Entries that a scene, or a part of it, may have and that are not known here."""
     found = []
-    for spec in fields(kind):
+    for name, spec in specs(kind).items():
         what: Kind = spec.metadata["kind"]
         if what.part is not None:
-            found += _stray(what.part, f"{path}{spec.name}.")
-        elif f"{path}{spec.name}" not in KNOWN:
-            found.append(f"{path}{spec.name}")
+            found += _stray(what.part, f"{path}{name}.")
+        elif f"{path}{name}" not in KNOWN:
+            found.append(f"{path}{name}")
     return found
-
-
-def height_ratio(scene: Scene) -> float:
-    """δ = 2fh/r on the floor outside of strips.
-
-    Examples
-    --------
-    >>> from puck_tables.scene.scene import Floor, Puck
-    >>> height_ratio(Scene(Puck(0.5, 1.0), Floor(0.1)))
-    0.4
-    """
-    return 2.0 * scene.floor.friction * scene.puck.height / scene.puck.radius
-
-
-def free_puck(scene: Scene) -> Puck:
-    """The puck on its floor, where nothing else acts."""
-    puck, floor = scene.puck, scene.floor
-    return Puck(
-        puck.radius, puck.height, floor.friction, puck.mass, floor.gravity, puck.pressure,
-        puck.gyration,
-    )  # fmt: skip
 
 
 def free_velocity(scene: Scene) -> tuple[float, float]:
@@ -154,14 +133,14 @@ def free_velocity(scene: Scene) -> tuple[float, float]:
 
 def out_of_reach(scene: Scene) -> Scene:
     """The scene without the walls, edges and borders that its puck, then free, never meets."""
-    bare = replace(scene, wall=(), edge=(), floor=_without_borders(scene))
+    bare = _without_boundaries(scene)
     if bare == scene or ingredients(bare) or any(scene.floor.velocity):
         return scene
-    stopped = free_puck(bare).stop(free_velocity(bare), bare.launch.spin)
+    stopped = bare.puck.stop(free_velocity(bare), bare.launch.spin)
     way = float(stopped.path_length) * (1.0 + 1e-6)
     place, radius = scene.launch.position, scene.puck.radius
-    room = [distance(wall, place) - radius for wall in scene.wall]
-    room += [distance(edge, place) for edge in scene.edge]
+    room = [distance(wall, place) - radius for wall in scene.walls]
+    room += [distance(edge, place) for edge in scene.edges]
     strips = scene.floor.strips
     if strips is not None:
         across = (math.cos(strips.direction), math.sin(strips.direction))
@@ -170,15 +149,18 @@ def out_of_reach(scene: Scene) -> Scene:
     return bare if way < min(room) else scene
 
 
-def _without_borders(scene: Scene) -> Floor:
-    """The floor with the friction of the region in which the puck starts."""
+def _without_boundaries(scene: Scene) -> Scene:
+    """The scene with the friction of the region in which the puck starts."""
     strips = scene.floor.strips
     if strips is None:
-        return scene.floor
+        return replace(scene, walls=(), edges=())
     across = (math.cos(strips.direction), math.sin(strips.direction))
     along = across[0] * scene.launch.position[0] + across[1] * scene.launch.position[1]
-    region = sum(along >= border for border in strips.borders)
-    return replace(scene.floor, strips=None, friction=strips.friction[region])
+    friction = strips.friction[sum(along >= border for border in strips.borders)]
+    return replace(
+        scene, walls=(), edges=(), puck=replace(scene.puck, friction=friction),
+        floor=replace(scene.floor, strips=None),
+    )  # fmt: skip
 
 
 def plan_for(scene: Scene) -> Plan:
@@ -186,8 +168,8 @@ def plan_for(scene: Scene) -> Plan:
 
     Examples
     --------
-    >>> from puck_tables.scene.scene import Floor, Launch, Puck
-    >>> plan_for(Scene(Puck(1.0), Floor(0.1), Launch((1.0, 0.0), 0.0))).model
+    >>> from puck_tables import Launch, Puck
+    >>> plan_for(Scene(Puck(1.0, friction=0.1), launch=Launch((1.0, 0.0)))).model
     'closed form: pure translation'
     """
     acting = ingredients(scene)
@@ -203,7 +185,7 @@ def plan_for(scene: Scene) -> Plan:
             "cheaper, no   look-up: not a free puck on a level floor",
         ]
         return Plan(model, False, "\n".join(lines))
-    kind = free_puck(scene).regime(free_velocity(scene), scene.launch.spin)
+    kind = scene.puck.regime(free_velocity(scene), scene.launch.spin)
     frame = "in the frame of the belt" if any(scene.floor.velocity) else "a free puck, level floor"
     if kind in _NAMES:
         model = f"closed form: {_NAMES[kind]}"

@@ -12,6 +12,7 @@ import numpy.typing as npt
 from puck_tables._core.executor import in_slices
 from puck_tables._core.safe_read import read_rows
 from puck_tables.errors import InputError
+from puck_tables.scene.agreement import launch_velocity
 from puck_tables.scene.boundaries import Boundaries
 from puck_tables.scene.bulk import follow_many
 from puck_tables.scene.equations import SIZE
@@ -34,9 +35,10 @@ from puck_tables.scene.ingredients import (
 )
 from puck_tables.scene.leaning import LEAN_COLUMNS
 from puck_tables.scene.loop import Ask, desk_for, follow
+from puck_tables.scene.parts import Rows
 from puck_tables.scene.regions import friction_error, regions_of
 from puck_tables.scene.rest import excess_at_rest
-from puck_tables.scene.scene import Scene, launch_velocity
+from puck_tables.scene.scene import Scene
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -126,7 +128,7 @@ def prepare(scene: Scene, last_time: float | None = None) -> Prepared:
     puck, floor = scene.puck, scene.floor
     inertia = puck.mass * (puck.gyration * puck.radius) ** 2
     regions = regions_of(scene)
-    weight = puck.mass * floor.gravity
+    weight = puck.mass * puck.gravity
     pull_x = scene.force.constant[0] + weight * math.sin(floor.slope) * math.cos(floor.downhill)
     pull_y = scene.force.constant[1] + weight * math.sin(floor.slope) * math.sin(floor.downhill)
     moves = any(floor.velocity) or floor.turning != 0.0
@@ -136,7 +138,7 @@ def prepare(scene: Scene, last_time: float | None = None) -> Prepared:
         surface=Surface(*floor.velocity, *floor.centre, floor.turning),
         drag=Drag(drag.sliding, drag.spinning),
         pull=Pull(pull_x, pull_y, scene.force.torque),
-        drive=read_drive(scene.force.file) if scene.force.file else np.empty((0, 4)),
+        drive=drive_of(scene.force.over_time) if scene.force.over_time else np.empty((0, 4)),
         hold=_hold(scene),
     )
     state = np.zeros(SIZE)
@@ -174,13 +176,13 @@ def _hold(scene: Scene) -> Hold:
 def _bounds(scene: Scene) -> Boundaries:
     """Walls (moved in by the radius), edges and borders as lines n·x = c."""
     walls, edges, borders = [], [], []
-    for wall in scene.wall:
+    for wall in scene.walls:
         nx, ny, c = _line(wall.point, wall.normal)
         walls.append([
             nx, ny, c + scene.puck.radius, wall.restitution, wall.tangential,
             min(wall.friction, 1e300),
         ])  # fmt: skip
-    for edge in scene.edge:
+    for edge in scene.edges:
         edges.append(_line(edge.point, edge.normal))
     if scene.floor.strips is not None:
         across = _direction(scene.floor.strips.direction)
@@ -307,8 +309,8 @@ def _slowest(
     return np.maximum(time, speed / rate) + last
 
 
-def read_drive(path: str) -> FloatArray:
-    """Rows (n, 4) of t, Fx, Fy and torque from a CSV file that may lack the torque.
+def drive_of(given: str | Rows) -> FloatArray:
+    """Rows (n, 4) of t, Fx, Fy and torque, given or from a CSV file; they may lack the torque.
 
     Raises
     ------
@@ -316,15 +318,17 @@ def read_drive(path: str) -> FloatArray:
         If it cannot be read, or is no such file.
     """
     try:
-        rows = np.array([[float(cell) for cell in row] for row in read_rows(path, MAX_DRIVE)])
+        cells = read_rows(given, MAX_DRIVE) if isinstance(given, str) else given
+        rows = np.array([[float(cell) for cell in row] for row in cells])
     except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
+        raise InputError(f"cannot read {given}: {error.strerror or error}") from None
     except ValueError:
         rows = np.empty((0, 0))
     good = rows.ndim == 2 and len(rows) >= 2 and rows.shape[1] in (3, 4)
     if not (good and np.all(np.isfinite(rows)) and np.all(np.diff(rows[:, 0]) > 0.0)):
         raise InputError(
-            f"{Path(path).name}: forces are a CSV file of t, Fx, Fy and perhaps torque, in s, N "
-            "and N m, two rows or more, the times ascending"
+            f"{Path(given).name if isinstance(given, str) else 'force.over_time'}: forces are a "
+            "CSV file or rows of t, Fx, Fy and perhaps torque, in s, N and N m, two rows or more, "
+            "the times ascending"
         )
     return np.pad(rows, ((0, 0), (0, 4 - rows.shape[1])))

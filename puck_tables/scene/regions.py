@@ -15,8 +15,9 @@ from puck_tables.errors import AccuracyError, InputError
 from puck_tables.kernels.slice_spline import HEADER, RATIOS
 from puck_tables.motion.body import body_of, is_plain
 from puck_tables.motion.run import closed_form_friction, table_friction
+from puck_tables.scene.agreement import launch_velocity
 from puck_tables.scene.ingredients import BySpeed, Regions
-from puck_tables.scene.scene import Scene, launch_velocity
+from puck_tables.scene.scene import Scene
 from puck_tables.table.friction_slice import FINEST_ACCURACY
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.table.speed_build import FINEST_ACCURACY as FINEST_LAW
@@ -46,23 +47,23 @@ def regions_of(scene: Scene) -> Regions:
         If the friction of the puck cannot be tabulated as fine as the scene asks.
     """
     puck, floor = scene.puck, scene.floor
-    normal = puck.mass * floor.gravity * math.cos(floor.slope)
+    normal = puck.mass * puck.gravity * math.cos(floor.slope)
     if floor.law:
-        law = SpeedLaw.from_csv(floor.law)
+        law = speed_law(scene)
         fastest = math.hypot(*slip_at_launch(scene)[:2]) + abs(slip_at_launch(scene)[2])
         if fastest > law.top_speed:
             raise InputError(
                 f"the rim slips at {fastest:.6g} m/s at the launch, faster than the friction law "
-                f"{floor.law} goes ({law.top_speed:g} m/s): nothing is known beyond; give it more"
+                f"{law_name(scene)} goes ({law.top_speed:g} m/s): nothing is known beyond; give it "
+                "more"
             )
         table, height_ratio = _law_table(law, scene), 2.0 * puck.height / puck.radius
         table.refuse_height(height_ratio)
         by_speed = BySpeed(table.compiled, height_ratio, normal, 1.0)
         load = np.array([normal * table.largest_f])
         return Regions(load, np.zeros(1), closed_form_friction(0.0).cut[None, :], by_speed)
-    coefficients = [floor.friction] if floor.strips is None else list(floor.strips.friction)
-    heights = [2.0 * f * puck.height / puck.radius for f in coefficients]
-    load = normal * np.array(coefficients)
+    heights = scene.heights
+    load = normal * np.array(scene.frictions)
     if all(is_plain(puck.pressure, puck.gyration, delta) for delta in heights):
         cuts = np.stack([_plain_cut(scene.run.tol, delta) for delta in heights])
         return Regions(load, np.array(heights), cuts, NO_LAW)
@@ -83,14 +84,41 @@ def regions_of(scene: Scene) -> Regions:
 
 def friction_error(scene: Scene) -> float:
     """How wrong the friction ratios of :func:`regions_of` may be."""
-    puck, floor = scene.puck, scene.floor
-    if floor.law:
+    puck = scene.puck
+    if scene.floor.law:
         return max(LAW_SHARE * scene.run.tol, FINEST_LAW)
-    coefficients = [floor.friction] if floor.strips is None else floor.strips.friction
-    heights = [2.0 * f * puck.height / puck.radius for f in coefficients]
-    if all(is_plain(puck.pressure, puck.gyration, delta) for delta in heights):
+    if all(is_plain(puck.pressure, puck.gyration, delta) for delta in scene.heights):
         return CLOSED_FORM_ERROR if scene.run.tol < EXACT_BELOW else TABLE_ERROR
     return max(SLICE_SHARE * scene.run.tol, FINEST_ACCURACY)
+
+
+def speed_law(scene: Scene) -> SpeedLaw:
+    """The friction law of a scene that has one, from its file or its rows.
+
+    Raises
+    ------
+    InputError
+        If it is no such law.
+    """
+    law = scene.floor.law
+    if isinstance(law, str):
+        return SpeedLaw.from_csv(law)
+    if any(len(row) != 2 for row in law):
+        raise InputError("floor.law: each row must be two numbers, slip speed in m/s and f")
+    speeds, values = zip(*law, strict=True)
+    return SpeedLaw(speeds, values)
+
+
+def law_name(scene: Scene) -> str:
+    """The friction law of a scene in a message.
+
+    Examples
+    --------
+    >>> from puck_tables import Floor, Puck
+    >>> law_name(Scene(Puck(1.0), Floor(law=[[0.0, 0.1], [1.0, 0.2]])))
+    'floor.law'
+    """
+    return scene.floor.law if isinstance(scene.floor.law, str) else "floor.law"
 
 
 def _law_table(law: SpeedLaw, scene: Scene) -> SpeedTable:
@@ -111,7 +139,7 @@ def _law_table(law: SpeedLaw, scene: Scene) -> SpeedTable:
         finest = rounded_up(error.reachable / LAW_SHARE)
         raise AccuracyError(
             f"tol = {scene.run.tol:g} is out of reach with the corners of the friction law "
-            f"{scene.floor.law}: give run.tol (or --tol) of {finest:g} or more, or a law with "
+            f"{law_name(scene)}: give run.tol (or --tol) of {finest:g} or more, or a law with "
             "fewer points"
         ) from None
 

@@ -1,194 +1,53 @@
-"""What a scene is: a puck, a floor, a launch, and whatever acts on it.
-
-Numbers are in SI units, angles in radians, counter-clockwise positive.  A scene file is TOML with a
-table for each part; every number may be a range 'START:STOP:COUNT', which a sweep runs through.
-"""
+"""A scene: a puck, a floor, a launch, and whatever acts on it."""
 
 from __future__ import annotations
 
-import dataclasses
 import math
-import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from importlib import import_module
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables._core.safe_read import read_whole
-from puck_tables.contact.laws import HOMOGENEOUS
+from puck_tables._core.executor import Progress
+from puck_tables._core.fields import of, specs
+from puck_tables._core.reading import Range, Reading, given_in, read_values
 from puck_tables.errors import InputError
-from puck_tables.motion.body import STANDARD_GRAVITY
-from puck_tables.scene.fields import Reading, of, read_part
+from puck_tables.puck import Puck
+from puck_tables.scene.agreement import disagreements
+from puck_tables.scene.entries import BATCH, LAUNCH, columns_of, entry_at, set_path, tables_of
+from puck_tables.scene.parts import Constraint, Drag, Edge, Floor, Force, Launch, Run, Wall
+
+if TYPE_CHECKING:
+    from puck_tables.scene.outcome import SceneRun
+    from puck_tables.scene.sweep import SceneMap
 
 FloatArray = npt.NDArray[np.float64]
 
-MAX_FILE = 1 << 20
-MAX_NAMED = 1 << 26  # bytes of a file that a scene names
 MAX_RUNS = 1_000_000_000  # of one sweep
-MATCH = 1e-9  # how well a launch must fit its constraint, of its speed
-_SMALLEST, _LARGEST = 1e-100, 1e100
 
 
-@dataclass(frozen=True)
-class Puck:
-    """The body: an upright cylinder."""
-
-    radius: float = of("number", unit="m", low=0.0, above=True, doc="of the base")
-    height: float = of("number", 0.0, "m", low=0.0, doc="of the cylinder; 0: no tilt")
-    mass: float = of("number", 1.0, "kg", low=0.0, above=True)
-    gyration: float = of(
-        "number", HOMOGENEOUS, low=0.1, high=10.0,
-        doc="radius of gyration about the vertical over the radius",
-    )  # fmt: skip
-    pressure: str = of(
-        "text", "uniform", file=".csv", doc="pressure law, as build-tables --pressure takes it"
-    )
-
-
-@dataclass(frozen=True)
-class Strips:
-    """Regions of the floor between parallel borders, which the centre of the puck crosses."""
-
-    borders: tuple[float, ...] = of("numbers", unit="m", doc="ascending places along 'direction'")
-    friction: tuple[float, ...] = of("numbers", low=0.0, doc="one more than borders")
-    direction: float = of("number", 0.0, "rad", doc="across the borders, from x")
-
-
-@dataclass(frozen=True)
-class Floor:
-    """The plane: rough, level or sloping, at rest or moving."""
-
-    friction: float = of("number", 0.0, "", low=0.0, high=100.0, doc="Coulomb's coefficient f")
-    gravity: float = of("number", STANDARD_GRAVITY, "m/s^2", low=0.0, above=True)
-    slope: float = of("number", 0.0, "rad", low=0.0, high=math.pi / 2, below=True)
-    downhill: float = of("number", 0.0, "rad", doc="direction of steepest descent, from x")
-    velocity: tuple[float, float] = of("pair", (0.0, 0.0), "m/s", doc="of a belt")
-    turning: float = of("number", 0.0, "rad/s", doc="spin of a turntable")
-    centre: tuple[float, float] = of("pair", (0.0, 0.0), "m", doc="of the turntable")
-    strips: Strips | None = of("part", None, part=Strips)
-    law: str = of("text", "", file="", doc="CSV of slip speed in m/s and f, in place of 'friction'")
-
-
-@dataclass(frozen=True)
-class Launch:
-    """Where and how it starts."""
-
-    velocity: tuple[float, float] | None = of("pair", None, "m/s", doc="of the centre")
-    spin: float = of("number", 0.0, "rad/s")
-    position: tuple[float, float] = of("pair", (0.0, 0.0), "m", doc="of the centre")
-    orientation: float = of("number", 0.0, "rad", doc="of the body")
-
-
-@dataclass(frozen=True)
-class Drag:
-    """Viscous friction against the floor, as in an air cushion or a film."""
-
-    sliding: float = of("number", 0.0, "kg/s", low=0.0, doc="force over relative speed")
-    spinning: float = of("number", 0.0, "N m s", low=0.0, doc="torque over relative spin")
-
-
-@dataclass(frozen=True)
-class Force:
-    """A force on the centre and a torque, constant and over time."""
-
-    constant: tuple[float, float] = of("pair", (0.0, 0.0), "N")
-    torque: float = of("number", 0.0, "N m")
-    file: str = of(
-        "text", "", file="", doc="CSV of t, Fx, Fy and perhaps torque, straight between rows"
-    )
-
-
-@dataclass(frozen=True)
-class Wall:
-    """A straight cushion that the rim of the puck bounces off."""
-
-    point: tuple[float, float] = of("pair", unit="m", doc="any point of it")
-    normal: tuple[float, float] = of("pair", doc="into the field, any length")
-    restitution: float = of("number", 1.0, low=0.0, high=1.0)
-    tangential: float = of(
-        "number", -1.0, low=-1.0, high=1.0, doc="-1: smooth, 0: the rim rolls off, 1: it reverses"
-    )
-    friction: float = of("number", math.inf, low=0.0, doc="limits the tangential impulse")
-
-
-@dataclass(frozen=True)
-class Edge:
-    """A straight boundary that ends the run when the centre passes it."""
-
-    point: tuple[float, float] = of("pair", unit="m", doc="any point of it")
-    normal: tuple[float, float] = of("pair", doc="into the field, any length")
-
-
-@dataclass(frozen=True)
-class Constraint:
-    """A linear constraint on the velocities."""
-
-    kind: str = of("choice", choices=("rail", "pivot", "blade"))
-    angle: float = of(
-        "number", 0.0, "rad",
-        doc="direction of the rail; from the centre to the pivot, or along the blade, in the body",
-    )  # fmt: skip
-    reach: float = of("number", 0.0, "m", low=0.0, doc="from the centre to the pivot")
-    velocity: tuple[float, float] = of("pair", (0.0, 0.0), "m/s", doc="of rail or pivot")
-    side_slip: float = of("number", 0.0, "m/s", doc="of the blade over the floor, to its left")
-
-
-@dataclass(frozen=True)
-class Run:
-    """How long, how close, how often."""
-
-    time: float | None = of("number", None, "s", low=0.0, above=True, doc="until rest if left out")
-    frames: float = of("number", 101.0, low=1.0, high=1e6, doc="states to save")
-    tol: float = of("number", 1e-9, low=1e-12, high=1e-2, doc="error wanted, of Q/J and Q^2/J")
-
-
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Scene:
-    """All of it; ``checked``: made by :func:`scene_from`, which finds nothing wrong with it."""
-
-    checked: ClassVar[bool] = False
-
-    puck: Puck = of("part", part=Puck)
-    floor: Floor = of("part", Floor(), part=Floor)
-    launch: Launch = of("part", Launch(), part=Launch)
-    drag: Drag = of("part", Drag(), part=Drag)
-    force: Force = of("part", Force(), part=Force)
-    wall: tuple[Wall, ...] = of("parts", (), part=Wall)
-    edge: tuple[Edge, ...] = of("parts", (), part=Edge)
-    constraint: Constraint | None = of("part", None, part=Constraint)
-    run: Run = of("part", Run(), part=Run)
-    title: str = of("text", "")
-
-
-FILES = tuple(
-    (part.name, spec.name, spec.metadata["kind"])
-    for part in dataclasses.fields(Scene)
-    if part.metadata["kind"].shape == "part"
-    for spec in dataclasses.fields(part.metadata["kind"].part)
-    if spec.metadata["kind"].file is not None
-)
-
-
-def scene_from(
-    data: Mapping[str, Any] | Scene, source: str = "scene"
-) -> tuple[Scene, dict[str, FloatArray]]:
-    """A checked scene from nested tables or an unchecked one, and the ranges in it by path.
+    """A puck on a floor, its launch, and whatever acts on it: checked when it is made.
 
     Parameters
     ----------
-    data : mapping or Scene
-        As a TOML file gives it, or a :class:`Scene`, whose parts may also be tables.  Numbers may
-        be numpy scalars, lists may be tuples or arrays of one dimension.
-    source : str
-        Its name, for messages.
+    puck : Puck
+    floor, launch, drag, force, run, title : optional
+        As :mod:`puck_tables.scene.parts` has them.
+    walls, edges : sequences of Wall, of Edge, optional
+    constraint : Constraint, optional
+    ranges : mapping, optional
+        Values of numbers that take several, by path, such as ``{"puck.height": [0.0, 0.01]}``.
 
-    Returns
-    -------
-    scene, ranges
-        A field that was given as a range stands at its first value.
+    Parts may also be tables.  Numbers may be numpy scalars; where a number stands a list, an array
+    or a text 'START:STOP:COUNT' is a range, a dimension of :meth:`sweep`.  Such a number stands at
+    its first value (its last, where no puck can have the first), its values in ``ranges``.  Many launches at once are velocities (n, 2), see
+    :class:`puck_tables.Launch`: their range is ``launch``, rows of vx, vy, spin, x, y, orientation.
 
     Raises
     ------
@@ -197,207 +56,283 @@ def scene_from(
 
     Examples
     --------
-    >>> scene, ranges = scene_from({"puck": {"radius": 0.04}, "launch": {"spin": "0:10:3"}})
-    >>> scene.puck.mass, ranges["launch.spin"].tolist()
-    (1.0, [0.0, 5.0, 10.0])
-    >>> scene_from(Scene(Puck(np.float32(0.5)), launch=Launch(np.zeros(2))))[0].launch.velocity
-    (0.0, 0.0)
+    >>> puck = Puck(radius=0.04, friction=0.1)
+    >>> scene = Scene(puck, Floor(slope=0.05), Launch((1.0, 0.0), spin=20.0))
+    >>> round(scene.simulate().end_time, 6)
+    2.329592
+    >>> Scene(puck, launch=Launch(spin=[0.0, 5.0])).ranges["launch.spin"].tolist()
+    [0.0, 5.0]
     """
-    if isinstance(data, Scene) and data.checked:
-        return data, {}
-    scene, ranges = scene_with_ranges(data, source)
-    faults = _disagreements(scene)
-    if faults:
-        raise _refusal(source, faults)
-    object.__setattr__(scene, "checked", True)
-    return scene, ranges
 
+    puck: Puck = of("part", part=Puck)
+    floor: Floor = of("part", Floor(), part=Floor)
+    launch: Launch = of("part", Launch(), part=Launch)
+    drag: Drag = of("part", Drag(), part=Drag)
+    force: Force = of("part", Force(), part=Force)
+    walls: tuple[Wall, ...] = of("parts", (), part=Wall, table="wall")
+    edges: tuple[Edge, ...] = of("parts", (), part=Edge, table="edge")
+    constraint: Constraint | None = of("part", None, part=Constraint)
+    run: Run = of("part", Run(), part=Run)
+    title: str = of("text", "")
+    ranges: Mapping[str, FloatArray] = field(default_factory=dict)
 
-def scene_with_ranges(
-    data: Mapping[str, Any] | Scene, source: str
-) -> tuple[Scene, dict[str, FloatArray]]:
-    """The same, its entries checked one by one only: what they say together is up to the ranges.
+    def __post_init__(self) -> None:
+        tables = given_in(self, {})
+        if self.ranges:  # as if they stood where their numbers are
+            tables = tables_of(self)
+            for path, values in self.ranges.items():
+                for entry, column in columns_of(path, values):
+                    set_path(tables, entry, column)
+        self._fill(tables, "scene")
 
-    Raises
-    ------
-    InputError
-    """
-    reading = Reading([], {})
-    scene = read_part(Scene, data, "", reading)
-    runs = math.prod(found.count for found in reading.ranges.values())
-    if runs > MAX_RUNS:  # before their numbers are made
-        reading.errors.append(
-            f"{len(reading.ranges)} ranges ({', '.join(list(reading.ranges)[:3])} ...) make more "
-            f"than {MAX_RUNS:g} runs: give fewer or shorter ones"
+    @classmethod
+    def from_tables(cls, tables: Mapping[str, Any], source: str = "scene") -> Scene:
+        """A scene from nested tables, as a TOML file gives them; walls stand under ``wall``.
+
+        ``source``: its name, for messages.
+
+        Raises
+        ------
+        InputError
+            As for the class.
+
+        Examples
+        --------
+        >>> Scene.from_tables({"puck": {"radius": 0.04, "height": "0:0.01:2"}}).ranges
+        {'puck.height': array([0.  , 0.01])}
+        """
+        if not isinstance(tables, Mapping):
+            raise InputError(f"{source}: a scene is a table of tables, got {type(tables).__name__}")
+        scene = object.__new__(cls)
+        scene._fill(tables, source)
+        return scene
+
+    @classmethod
+    def load(cls, name: str | Path) -> Scene:
+        """A scene from a TOML file, or one that is shipped, by its name.
+
+        Raises
+        ------
+        InputError
+            If there is neither, or anything in it is wrong.
+
+        Examples
+        --------
+        >>> Scene.load("incline").title
+        'Puck on an incline'
+        """
+        find: Any = import_module("puck_tables.scene.library").find_scene
+        return cls.from_tables(find(str(name)), str(name))
+
+    def simulate(self, times: npt.ArrayLike | None = None) -> SceneRun:
+        """Run it, from the launch to the end.
+
+        Parameters
+        ----------
+        times : array_like, s, ≥ 0, ascending, optional
+            When to save states; else ``run.frames`` of them from the launch to the end.
+
+        Returns
+        -------
+        SceneRun
+            States beyond the end of the run are left out, except at rest.
+
+        Raises
+        ------
+        InputError
+            If a number of it is a range, or it has not ended after a thousand times its time scale
+            and gives no ``run.time``.
+        PuckError
+            If the motion leaves floating point, or too many events crowd together.
+
+        Notes
+        -----
+        Dry friction by the resultants of Salnikova, Treschev, Gallyamov 2012 at velocities relative
+        to the floor; constraints and energies after Chetaev 1960, eq. 2.3, 2.4 and 4.1.
+
+        Examples
+        --------
+        >>> run = Scene.load("incline").simulate()
+        >>> run.end, round(run.end_time, 6)
+        ('at rest', 1.609966)
+        """
+        run: SceneRun = import_module("puck_tables.scene.simulate").simulate(self, times)
+        return run
+
+    def sweep(
+        self,
+        *,
+        threads: int | None = None,
+        chunk: int = 256,
+        progress: Progress | None = None,
+        checkpoint: str | Path | None = None,
+    ) -> SceneMap:
+        """Run it for all combinations of the numbers in it that are ranges.
+
+        Parameters
+        ----------
+        threads, chunk : int
+            How the work is cut; the numbers do not depend on it, to the last bit.
+        progress : callable (done, total), optional
+        checkpoint : path, optional
+            A file that keeps what is done: called again with the same scene, the work goes on.
+
+        Returns
+        -------
+        SceneMap
+            A run that has no end, or that is refused, is named in :meth:`SceneMap.without_end`.
+
+        Raises
+        ------
+        InputError
+            If no run of it has an end, nothing ranges, or the map would not fit in memory.
+
+        Examples
+        --------
+        >>> puck, velocities = Puck(0.04, friction=0.1), [[1.0, 0.0], [0.0, 2.0]]
+        >>> Scene(puck, launch=Launch(velocities, spin=[0.0, 9.0])).sweep().y.round(6).tolist()
+        [0.0, 2.061084]
+        """
+        stops: SceneMap = import_module("puck_tables.scene.sweep").sweep(
+            self, threads=threads, chunk=chunk, progress=progress, checkpoint=checkpoint
         )
-    if scene is None or reading.errors:
-        raise _refusal(source, reading.errors)
-    return scene, {path: found.numbers() for path, found in reading.ranges.items()}
+        return stops
+
+    def __eq__(self, other: object) -> bool:
+        """Whether both say the same, ranges included."""
+        if type(other) is not type(self):
+            return NotImplemented
+        parts = (spec.name for spec in specs(type(self)).values())
+        same = all(getattr(self, name) == getattr(other, name) for name in parts)
+        theirs: Any = other.ranges
+        return same and list(self.ranges) == list(theirs) and all(
+            np.array_equal(values, theirs[path]) for path, values in self.ranges.items()
+        )  # fmt: skip
+
+    __hash__ = None  # type: ignore[assignment]  # ranges are arrays
+
+    @property
+    def frictions(self) -> tuple[float, ...]:
+        """Coulomb's coefficient in each region of the floor: of strips, else that of the puck.
+
+        Examples
+        --------
+        >>> Scene(Puck(1.0, friction=0.1)).frictions
+        (0.1,)
+        """
+        strips = self.floor.strips
+        return (self.puck.friction,) if strips is None else strips.friction
+
+    @property
+    def heights(self) -> list[float]:
+        """δ = 2fh/r in each region of the floor.
+
+        Examples
+        --------
+        >>> Scene(Puck(0.5, 1.0, 0.1)).heights
+        [0.4]
+        """
+        puck = self.puck
+        return [2.0 * friction * puck.height / puck.radius for friction in self.frictions]
+
+    def single(self) -> Scene:
+        """Itself, if no number of it is a range.
+
+        Raises
+        ------
+        InputError
+        """
+        if self.ranges:
+            raise InputError(
+                f"{', '.join(self.ranges)}: a range makes many runs; give one number, or run a "
+                "sweep"
+            )
+        return self
+
+    def at(self, numbers: Mapping[str, Any]) -> Scene:
+        """The scene without ranges, with other numbers, by path.
+
+        Raises
+        ------
+        InputError
+            If they do not fit it.
+
+        Examples
+        --------
+        >>> Scene(Puck(0.04)).at({"launch.spin": 5.0}).launch.spin
+        5.0
+        """
+        tables = tables_of(self)
+        for path, number in numbers.items():
+            set_path(tables, path, number)
+        return type(self).from_tables(tables)
+
+    def unit_of(self, path: str) -> str:
+        """The unit of what ranges along an axis, '' of a number without one.
+
+        Examples
+        --------
+        >>> Scene(Puck(0.04)).unit_of("launch.position[1]")
+        'm'
+        """
+        return "" if path == BATCH else entry_at(self, path).kind.unit
+
+    def _fill(self, tables: Mapping[str, Any], source: str) -> None:
+        """Check all that is given, and take it."""
+        found: dict[str, Range] = {}
+        reading = Reading([], found)
+        values = read_values(type(self), tables, "", reading)
+        batch = _batch(reading.batches, found, reading.errors)
+        runs = math.prod([one.count for one in found.values()], start=max(len(batch), 1))
+        if runs > MAX_RUNS:  # before their numbers are made
+            reading.errors.append(
+                f"{len(found)} ranges ({', '.join(list(found)[:3])} ...) make more than "
+                f"{MAX_RUNS:g} runs: give fewer or shorter ones"
+            )
+        if values is None or reading.errors:
+            raise _refusal(reading.errors, source)
+        for spec in specs(type(self)).values():
+            object.__setattr__(self, spec.name, values.get(spec.name, spec.default))
+        axes = {path: one.numbers() for path, one in found.items()}
+        if len(batch):
+            axes = {BATCH: _launches(self.launch, batch), **axes}
+        object.__setattr__(self, "ranges", axes)
+        if not axes and (faults := disagreements(self)):  # else they are up to each run
+            raise _refusal(faults, source)
 
 
-def _refusal(source: str, faults: list[str]) -> InputError:
+def _refusal(faults: list[str], source: str) -> InputError:
     head = f"{source}: {len(faults)} error{'s' if len(faults) != 1 else ''}"
     return InputError("\n  ".join([head, *faults]))
 
 
-def read_scene(path: str | Path) -> dict[str, Any]:
-    """The tables of a scene file.
-
-    Raises
-    ------
-    InputError
-        If it cannot be read or is not TOML.
-    """
-    try:
-        tables = tomllib.loads(read_whole(path, MAX_FILE).decode("utf-8-sig"))
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
-    except UnicodeDecodeError as error:
-        raise InputError(f"{path} is not text in UTF-8: see its byte {error.start}") from None
-    except tomllib.TOMLDecodeError as error:
-        raise InputError(f"{path} is not a scene file (TOML): {error}") from None
-    except (ValueError, RecursionError):
-        raise InputError(
-            f"{path}: a number in it has thousands of digits, or its lists are nested too deeply"
-        ) from None
-    for part, name, kind in FILES:  # beside the scene that names them
-        value = tables.get(part, {}).get(name) if isinstance(tables.get(part), dict) else None
-        if isinstance(value, str) and kind.names_file(value):
-            tables[part][name] = str(Path(path).parent / value)
-    return tables
-
-
-def files_of(scene: Scene) -> dict[str, str]:
-    """What stands in the files that a scene names, by the path of the entry that names them.
-
-    Raises
-    ------
-    InputError
-        If one cannot be read.
-
-    Examples
-    --------
-    >>> files_of(Scene(Puck(0.04)))
-    {}
-    """
-    texts = {}
-    for part, name, kind in FILES:
-        file = getattr(getattr(scene, part), name)
-        if kind.names_file(file):
-            try:
-                text = read_whole(file, MAX_NAMED).decode("utf-8-sig", "replace")
-            except OSError as error:
-                raise InputError(f"cannot read {file}: {error.strerror or error}") from None
-            texts[f"{part}.{name}"] = text.replace("\0", "\ufffd")
-    return texts
-
-
-def _disagreements(scene: Scene) -> list[str]:
-    """What is wrong between fields that are each in range."""
-    faults = []
-    for name, value in (("radius", scene.puck.radius), ("mass", scene.puck.mass)):
-        if not _SMALLEST <= value <= _LARGEST:  # the moment of inertia and its inverse are numbers
-            faults.append(
-                f"puck.{name} = {value:g}: must be from {_SMALLEST:g} to {_LARGEST:g} in a scene, "
-                "use other units"
+def _batch(
+    pairs: Mapping[str, FloatArray], ranges: dict[str, Range], errors: list[str]
+) -> dict[str, FloatArray]:
+    """What belongs to many launches, by path; it is no range of its own then."""
+    if not pairs:
+        return {}
+    count = len(next(iter(pairs.values())))
+    numbers: dict[str, FloatArray] = {
+        path: ranges.pop(path).numbers()
+        for path in ("launch.spin", "launch.orientation")
+        if path in ranges and ranges[path].listed
+    }
+    batch: dict[str, FloatArray] = {**pairs, **numbers}
+    for path, values in batch.items():
+        if len(values) != count:
+            errors.append(
+                f"{path}: {len(values)} values for {count} launches: give one for each, or a range "
+                "'START:STOP:COUNT' for all of them"
             )
-    strips = scene.floor.strips
-    if scene.floor.law and (strips is not None or scene.floor.friction > 0.0):
-        faults.append("floor.law: it takes the place of floor.friction and floor.strips")
-    if scene.floor.law and (scene.puck.pressure != "uniform"):
-        faults.append("floor.law: known under uniform pressure only, not with puck.pressure")
-    if strips is not None:
-        if len(strips.friction) != len(strips.borders) + 1 or not strips.borders:
-            faults.append(
-                f"floor.strips.friction = {list(strips.friction)}: must be one number more than "
-                f"floor.strips.borders ({len(strips.borders)})"
-            )
-        if any(b <= a for a, b in zip(strips.borders, strips.borders[1:], strict=False)):
-            faults.append(f"floor.strips.borders = {list(strips.borders)}: must ascend")
-    if not scene.run.frames.is_integer():
-        faults.append(f"run.frames = {scene.run.frames:g}: must be a whole number")
-    lines: list[tuple[str, Wall | Edge]] = [(f"wall[{i}]", w) for i, w in enumerate(scene.wall)]
-    lines += [(f"edge[{i}]", edge) for i, edge in enumerate(scene.edge)]
-    for name, line in lines:
-        if not 1e-100 < math.hypot(*line.normal) < 1e100:
-            faults.append(f"{name}.normal = {list(line.normal)}: must have a direction")
-            continue
-        margin = scene.puck.radius if isinstance(line, Wall) else 0.0
-        gap = distance(line, scene.launch.position) - margin
-        if gap < -1e-12 * max(margin, math.hypot(*line.point)):
-            what = "reaches through it" if margin > 0.0 else "is beyond it"
-            faults.append(
-                f"{name}: the puck at launch.position = {list(scene.launch.position)} "
-                f"{what} by {-gap:.3g} m: move the launch, or turn the normal into the field"
-            )
-    hold = scene.constraint
-    if hold is None:
-        return faults
-    if scene.wall:
-        faults.append("constraint and wall: a scene has one of them, not both")
-    if hold.kind == "pivot" and not hold.reach > 0.0:
-        faults.append(f"constraint.reach = {hold.reach:g}: a pivot needs a number > 0 m")
-    return faults + _misfit(scene, hold)
+    return batch
 
 
-def _misfit(scene: Scene, hold: Constraint) -> list[str]:
-    """A launch that its constraint does not allow."""
-    wanted = launch_velocity(scene)
-    given = scene.launch.velocity
-    if given is None:
-        return []
-    scale = max(math.hypot(*given), math.hypot(*wanted), math.hypot(*hold.velocity))
-    if math.dist(given, wanted) <= MATCH * max(scale, abs(hold.side_slip)):
-        return []
-    return [
-        f"launch.velocity = {list(given)}: the {hold.kind} allows [{wanted[0]:.12g}, "
-        f"{wanted[1]:.12g}] at this spin (leave it out where it follows from the spin)"
-    ]
-
-
-def launch_velocity(scene: Scene) -> tuple[float, float]:
-    """The velocity of the centre at the launch, as the constraint allows it."""
-    vx, vy = scene.launch.velocity or (0.0, 0.0)
-    hold = scene.constraint
-    if hold is None:
-        return vx, vy
-    if hold.kind == "pivot":
-        bearing = scene.launch.orientation + hold.angle
-        rim = scene.launch.spin * hold.reach
-        return (
-            hold.velocity[0] + rim * math.sin(bearing),
-            hold.velocity[1] - rim * math.cos(bearing),
-        )
-    direction, side_slip, support = hold.angle, hold.side_slip, hold.velocity
-    if hold.kind == "blade":  # it grips the floor
-        direction += scene.launch.orientation
-        support = floor_at(scene.floor, scene.launch.position)
-    nx, ny = -math.sin(direction), math.cos(direction)
-    off = nx * (vx - support[0]) + ny * (vy - support[1]) - side_slip
-    return vx - off * nx, vy - off * ny
-
-
-def floor_at(floor: Floor, place: tuple[float, float]) -> tuple[float, float]:
-    """Velocity of the floor at a place, m/s.
-
-    Examples
-    --------
-    >>> floor_at(Floor(velocity=(1.0, 0.0), turning=2.0), (0.0, 0.5))
-    (0.0, 0.0)
-    """
-    return (
-        floor.velocity[0] - floor.turning * (place[1] - floor.centre[1]),
-        floor.velocity[1] + floor.turning * (place[0] - floor.centre[0]),
-    )
-
-
-def distance(line: Wall | Edge, place: tuple[float, float]) -> float:
-    """How far a place is from a line, on the side its normal points to.
-
-    Examples
-    --------
-    >>> distance(Edge((0.0, 1.0), (0.0, -2.0)), (5.0, 0.25))
-    0.75
-    """
-    size = math.hypot(*line.normal)
-    return sum((p - q) * n / size for p, q, n in zip(place, line.point, line.normal, strict=True))
+def _launches(launch: Launch, batch: Mapping[str, FloatArray]) -> FloatArray:
+    """Rows of vx, vy, spin, x, y, orientation, array (n, 6)."""
+    rows = np.empty((len(next(iter(batch.values()))), len(LAUNCH)))
+    rows[:, 0:2] = batch.get("launch.velocity", launch.velocity or (0.0, 0.0))
+    rows[:, 2] = batch.get("launch.spin", launch.spin)
+    rows[:, 3:5] = batch.get("launch.position", launch.position)
+    rows[:, 5] = batch.get("launch.orientation", launch.orientation)
+    return rows

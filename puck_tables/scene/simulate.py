@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import replace
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables._core.real import finite_array, instance
-from puck_tables.contact.speed_law import SpeedLaw
+from puck_tables._core.real import finite_array
 from puck_tables.errors import AccuracyError, InputError, PuckError
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
-from puck_tables.scene.library import find_scene
+from puck_tables.scene.library import files_of
 from puck_tables.scene.loop import (
     EVENT_COLUMNS,
     EVENT_LIMIT,
@@ -28,53 +24,15 @@ from puck_tables.scene.outcome import ENDS, EVENTS, LEDGER, Event, SceneRun, led
 from puck_tables.scene.plain import run_plain
 from puck_tables.scene.plan import Plan, ingredients, out_of_reach, plan_for
 from puck_tables.scene.prepare import MAX_EVENTS, Prepared, prepare
-from puck_tables.scene.regions import friction_error
-from puck_tables.scene.scene import Scene, files_of, scene_from
+from puck_tables.scene.regions import friction_error, law_name, speed_law
+from puck_tables.scene.scene import Scene
 
 FloatArray = npt.NDArray[np.float64]
 
 
-def simulate_scene(
-    scene: Scene | Mapping[str, Any] | str | Path, times: npt.ArrayLike | None = None
-) -> SceneRun:
-    """Run a scene.
-
-    Parameters
-    ----------
-    scene : Scene, nested tables, or a name
-        Tables as :func:`puck_tables.scene.scene.scene_from` takes them; a name is that of a scene
-        file, or of a scene that comes along.
-    times : array_like, s, ≥ 0, ascending, optional
-        When to save states; else ``run.frames`` of them from the launch to the end.
-
-    Returns
-    -------
-    SceneRun
-        States beyond the end of the run are left out, except at rest.
-
-    Raises
-    ------
-    InputError
-        If the scene is not valid, holds a range, or has not ended after a thousand times its time
-        scale and gives no ``run.time``.
-    PuckError
-        If the motion leaves floating point, or too many events crowd together.
-
-    Notes
-    -----
-    Dry friction by the resultants of Salnikova, Treschev, Gallyamov 2012 at velocities relative to
-    the floor; constraints and energies after Chetaev 1960, eq. 2.3, 2.4 and 4.1.
-
-    Examples
-    --------
-    >>> run = simulate_scene({
-    ...     "puck": {"radius": 0.04}, "floor": {"friction": 0.1, "slope": 0.05},
-    ...     "launch": {"velocity": [1.0, 0.0], "spin": 20.0},
-    ... })
-    >>> run.end, round(run.end_time, 6)
-    ('at rest', 2.329592)
-    """
-    whole = single(scene)
+def simulate(scene: Scene, times: npt.ArrayLike | None = None) -> SceneRun:
+    """A run of a scene, as :meth:`puck_tables.Scene.simulate` has it."""
+    whole = scene.single()
     moments = None if times is None else _checked(times)
     files = files_of(whole)
     needed = out_of_reach(whole)
@@ -100,37 +58,6 @@ FAILURES = {
 }
 
 
-def single(scene: Scene | Mapping[str, Any] | str | Path, source: str = "scene") -> Scene:
-    """A scene without ranges; ``source``: its name, for messages.
-
-    Raises
-    ------
-    InputError
-    """
-    found, name = named(scene, source)
-    whole, ranges = scene_from(found, name)
-    if ranges:
-        raise InputError(
-            f"{', '.join(ranges)}: a range makes many runs; give one number, or run a sweep"
-        )
-    return whole
-
-
-def named(
-    scene: Scene | Mapping[str, Any] | str | Path, source: str = "scene"
-) -> tuple[Scene | Mapping[str, Any], str]:
-    """A scene that is given, or that a file or one that comes along holds; and its name.
-
-    Raises
-    ------
-    InputError
-    """
-    instance("the scene", scene, Scene, Mapping, str, Path)
-    if isinstance(scene, str | Path):
-        return find_scene(str(scene)), str(scene)
-    return scene, source
-
-
 def _checked(times: npt.ArrayLike) -> FloatArray:
     moments = np.atleast_1d(finite_array("times", times, "s"))
     if moments.ndim != 1 or not np.all(moments >= 0.0) or not np.all(np.diff(moments) >= 0.0):
@@ -140,7 +67,7 @@ def _checked(times: npt.ArrayLike) -> FloatArray:
 
 def is_endless(scene: Scene) -> bool:
     """Whether a scene has no friction and says neither where nor when it ends."""
-    return scene.run.time is None and not scene.edge and "no dry friction" in ingredients(scene)
+    return scene.run.time is None and not scene.edges and "no dry friction" in ingredients(scene)
 
 
 def _integrated(scene: Scene, plan: Plan, times: FloatArray | None) -> SceneRun:
@@ -184,7 +111,7 @@ def _close_enough(scene: Scene, last: float | None, events: FloatArray) -> tuple
     prepared, estimate = prepare(scene, last), math.inf
     if is_endless(scene):
         raise InputError(
-            "nothing brings this scene to rest (floor.friction is 0): give run.time, or friction"
+            "nothing brings this scene to rest (puck.friction is 0): give run.time, or friction"
         )
     for finer in FINER:
         tol = max(asked * finer, min(asked, FINEST))
@@ -237,9 +164,9 @@ def _refuse_failed(scene: Scene, how: int, end_time: float, to_the_end: bool) ->
             f"the puck still moves after {end_time:.4g} s, {long}: it may never stop; give run.time"
         )
     if how == NOT_FINITE and scene.floor.law:  # a state beyond the law is never reached
-        top = SpeedLaw.from_csv(scene.floor.law).top_speed
+        top = speed_law(scene).top_speed
         raise InputError(
-            f"at {end_time:.6g} s the rim slips faster than the friction law {scene.floor.law} "
+            f"at {end_time:.6g} s the rim slips faster than the friction law {law_name(scene)} "
             f"goes ({top:g} m/s): nothing is known beyond; give it more speeds"
         )
     if how in FAILURES:

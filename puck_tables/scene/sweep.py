@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
@@ -15,13 +14,16 @@ import numpy.typing as npt
 
 from puck_tables._core.checkpoint import Checkpoint, files_named, work_digest
 from puck_tables._core.executor import Progress, run_chunks
+from puck_tables.contact.laws import Law
 from puck_tables.errors import InputError
 from puck_tables.io.dataset import Dataset, Variable, variable
 from puck_tables.result import Result
+from puck_tables.scene.agreement import launch_velocity
 from puck_tables.scene.bulk import ENDS_COLUMNS
-from puck_tables.scene.entries import entry_at, set_path, tables_of
+from puck_tables.scene.entries import BATCH, LAUNCH, entry_at, tables_of
 from puck_tables.scene.equations import SIZE
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
+from puck_tables.scene.library import files_of
 from puck_tables.scene.loop import AT_REST, CARRIED_AWAY, NOT_FINITE, OVER_EDGE, TIME_UP
 from puck_tables.scene.outcome import (
     ENDS,
@@ -33,26 +35,17 @@ from puck_tables.scene.outcome import (
     plain_name,
     scene_texts,
 )
-from puck_tables.scene.plan import Plan, free_puck, plan_for
+from puck_tables.scene.plan import Plan, plan_for
 from puck_tables.scene.prepare import Prepared, prepare
-from puck_tables.scene.scene import (
-    Scene,
-    files_of,
-    launch_velocity,
-    scene_from,
-    scene_with_ranges,
-)
-from puck_tables.scene.simulate import FAILURES, is_endless, named
+from puck_tables.scene.scene import Scene
+from puck_tables.scene.simulate import FAILURES, is_endless
 from puck_tables.stopping.sweep import check_memory
 
 FloatArray = npt.NDArray[np.float64]
 
 CHUNK = 256
 BYTES = 8 * 4 * ENDS_COLUMNS
-LAUNCH = {
-    "launch.velocity[0]": VX, "launch.velocity[1]": VY, "launch.spin": SPIN,
-    "launch.position[0]": X, "launch.position[1]": Y, "launch.orientation": THETA,
-}  # fmt: skip
+STATE = (VX, VY, SPIN, X, Y, THETA)  # where the numbers of LAUNCH stand in a state
 RESULTS = (*LEDGER[1:], "bounces", "energy_residual", "end_time")
 
 
@@ -60,15 +53,14 @@ RESULTS = (*LEDGER[1:], "bounces", "energy_residual", "end_time")
 class SceneMap(Result):
     """Ends of a scene over its ranges.
 
-    ``scene``: the scene, its ranges at their first values; ``axes``: their values by path;
-    ``columns``: arrays of the shape of the axes by name, units as everywhere, NaN for a run
-    without an end; ``end``: index of :data:`puck_tables.scene.outcome.ENDS`; ``plan``: the model of
-    the last one that is valid; ``refusal``: what is wrong with the first run that is not;
-    ``files``: what stands in the files that the scene names, by path.
+    ``scene``: the scene with its ranges; ``axes``: their values by path (of many launches their
+    numbers from 0 on); ``columns``: arrays of the shape of the axes by name, units as everywhere,
+    NaN for a run without an end; ``end``: index of :data:`puck_tables.scene.outcome.ENDS`;
+    ``plan``: the model of the last one that is valid; ``refusal``: what is wrong with the first run
+    that is not; ``files``: what stands in the files that the scene names, by path.
     """
 
     scene: Scene
-    axes: Mapping[str, FloatArray]
     plan: Plan
     columns: Mapping[str, FloatArray] = field(repr=False)
     end: npt.NDArray[np.int8] = field(repr=False)
@@ -76,6 +68,11 @@ class SceneMap(Result):
     files: Mapping[str, str] = field(default_factory=dict, repr=False)
 
     picture: ClassVar[str] = "scene_map"
+
+    @property
+    def axes(self) -> dict[str, FloatArray]:
+        """What ranges, by path."""
+        return axes_of(self.scene)
 
     def __repr__(self) -> str:
         ranged = " x ".join(f"{path} ({values.size})" for path, values in self.axes.items())
@@ -92,15 +89,25 @@ class SceneMap(Result):
     def dataset(self) -> Dataset:
         """The results over what ranges; the scene and its files as texts."""
         dims = tuple(plain_name(path) for path in self.axes)
-        axes = {}
+        axes, columns = {}, {}
         for path, values in self.axes.items():
-            entry, name = entry_at(self.scene, path), plain_name(path)
-            text = f"{path} of the scene" + (f", {entry.doc}" if entry.doc else "")
-            axes[name] = Variable(values, (name,), entry.kind.unit or "1", text)
-        columns = {name: variable(name, values, dims) for name, values in self.columns.items()}
+            axes[plain_name(path)] = self._along(path, values, plain_name(path))
+        if BATCH in self.axes:
+            for path, values in zip(LAUNCH, self.scene.ranges[BATCH].T, strict=True):
+                if path not in self.axes:
+                    columns[plain_name(path)] = self._along(path, values, BATCH)
+        columns |= {name: variable(name, values, dims) for name, values in self.columns.items()}
         columns["end"] = variable("end", self.end, dims, ENDS)
         attributes = {"title": self.scene.title or "Scene", "model": self.plan.model}
-        return Dataset(axes, columns, attributes, scene_texts(self.scene, self.axes, self.files))
+        return Dataset(axes, columns, attributes, scene_texts(self.scene, self.files))
+
+    def _along(self, path: str, values: FloatArray, axis: str) -> Variable:
+        """Numbers of the scene along an axis."""
+        if path == BATCH:
+            return Variable(values, (axis,), "1", "number of the launch")
+        doc = entry_at(self.scene, path).doc
+        text = f"{path} of the scene" + (f", {doc}" if doc else "")
+        return Variable(values, (axis,), self.scene.unit_of(path) or "1", text)
 
     def without_end(self) -> list[str]:
         """A line for each way in which runs have no end: how many, the first, and what to do."""
@@ -127,69 +134,51 @@ class SceneMap(Result):
         return FAILURES[code].partition(": ")[2] or FAILURES[code]
 
 
-def sweep_scene(
-    scene: Scene | Mapping[str, Any] | str | Path,
-    *,
-    threads: int | None = None,
-    chunk: int = CHUNK,
-    progress: Progress | None = None,
-    checkpoint: str | Path | None = None,
-) -> SceneMap:
-    """Run a scene for all combinations of the numbers in it that are ranges.
-
-    Parameters
-    ----------
-    scene : Scene, nested tables, or a name
-        As :func:`puck_tables.simulate_scene` takes it, with 'START:STOP:COUNT' for one number or
-        more.
-    threads, chunk : int
-        How the work is cut; the numbers do not depend on it, to the last bit.
-    progress : callable (done, total), optional
-    checkpoint : path, optional
-        A file that keeps what is done: called again with the same scene, the work goes on.
-
-    Returns
-    -------
-    SceneMap
-        A run that has no end, or that is refused, is named in :meth:`SceneMap.without_end`.
-
-    Raises
-    ------
-    InputError
-        If the scene is not valid, no run of it has an end, nothing ranges, or the map would not fit
-        in memory.
+def axes_of(scene: Scene) -> dict[str, FloatArray]:
+    """What ranges in a scene, by path; many launches by their numbers from 0 on.
 
     Examples
     --------
-    >>> stops = sweep_scene({
-    ...     "puck": {"radius": 0.04}, "floor": {"friction": 0.1},
-    ...     "launch": {"velocity": ["1:2:2", 0.0]},
-    ... })
-    >>> stops.columns["x"].round(6).tolist()
-    [0.509858, 2.039432]
+    >>> from puck_tables import Launch, Puck
+    >>> axes_of(Scene(Puck(1.0), launch=Launch([[1.0, 0.0], [2.0, 0.0]])))
+    {'launch': array([0., 1.])}
     """
-    found, source = named(scene)
-    first, axes = scene_with_ranges(found, source)
+    return {
+        path: np.arange(float(len(values))) if path == BATCH else values
+        for path, values in scene.ranges.items()
+    }
+
+
+def sweep(
+    scene: Scene, *, threads: int | None = None, chunk: int = CHUNK,
+    progress: Progress | None = None, checkpoint: str | Path | None = None,
+) -> SceneMap:  # fmt: skip
+    """The map over a scene, as :meth:`puck_tables.Scene.sweep` has it."""
+    axes = axes_of(scene)
     if not axes:
         raise InputError(
-            "no number of the scene is a range: write one as 'START:STOP:COUNT' (such as "
-            "launch.spin = '0:10:101')"
+            "no number of the scene is a range: write one as 'START:STOP:COUNT' or as a list (such "
+            "as launch.spin = '0:10:101')"
         )
     shape = tuple(values.size for values in axes.values())
     check_memory(shape, BYTES)
     size = math.prod(shape)
-    whole = tables_of(first)
-    read, files = files_named(whole), files_of(first)
-    inner = [path for path in axes if _is_launch(path, first)]
+    whole = tables_of(scene)
+    read, files = files_named(whole), files_of(scene)
+    inner = [path for path in axes if _is_launch(path, scene)]
     outer = [path for path in axes if path not in inner]
+    batch = scene.ranges.get(BATCH, np.empty((0, len(LAUNCH))))
 
     @lru_cache(maxsize=8)
     def case(numbers: tuple[float, ...]) -> _Case | InputError:
-        changed = copy.deepcopy(whole)
+        changed: dict[str, float] = {}
         for path, number in zip(outer, numbers, strict=True):
-            set_path(changed, path, number)
+            if path == BATCH:
+                changed |= zip(LAUNCH, batch[int(number)].tolist(), strict=True)
+            else:
+                changed[path] = number
         try:
-            return _Case(scene_from(changed, source)[0])
+            return _Case(scene.at(changed))
         except InputError as error:
             return error
 
@@ -211,6 +200,8 @@ def sweep_scene(
     def split(start: int, stop: int) -> tuple[list[tuple[float, ...]], dict[str, FloatArray]]:
         place = dict(zip(axes, np.unravel_index(np.arange(start, stop), shape), strict=True))
         values = {path: axes[path][place[path]] for path in axes}
+        if BATCH in inner:
+            values[BATCH] = batch[place[BATCH]]
         numbers = zip(*(values[path].tolist() for path in outer), strict=True)
         launches = {path: values[path] for path in inner}
         return list(numbers) or [()] * (stop - start), launches
@@ -253,7 +244,10 @@ def sweep_scene(
 
         run_chunks(work, size, chunk, threads, progress)
     else:
-        digest = work_digest(scene=whole, axes=list(axes.items()), files=read)
+        law = _told_apart(scene) if isinstance(scene.puck.pressure, Law) else None
+        puck = {**whole["puck"], "pressure": law or scene.puck.pressure}
+        ranges = list(scene.ranges.items())
+        digest = work_digest(scene={**whole, "puck": puck}, axes=ranges, files=read)
         with Checkpoint(checkpoint, digest, len(RESULTS), size, chunk) as kept:
 
             def work_on(start: int, stop: int) -> None:
@@ -269,7 +263,7 @@ def sweep_scene(
     last = case(split(int(valid[-1]), int(valid[-1]) + 1)[0][0])
     assert isinstance(last, _Case)
     columns = {name: row.reshape(shape) for name, row in zip(RESULTS, out, strict=True)}
-    ends = SceneMap(first, axes, last.plan, columns, status.reshape(shape), refusal, files)
+    ends = SceneMap(scene, last.plan, columns, status.reshape(shape), refusal, files)
     if (status > OVER_EDGE).all():
         raise InputError("\n  ".join(["no run of this sweep has an end", *ends.without_end()]))
     return ends
@@ -295,7 +289,7 @@ class _Case:
         states[:, [X, Y]], states[:, THETA] = scene.launch.position, scene.launch.orientation
         states[:, [VX, VY]], states[:, SPIN] = launch_velocity(scene), scene.launch.spin
         for path, values in launches.items():
-            states[:, LAUNCH[path]] = values
+            states[:, list(STATE) if path == BATCH else STATE[LAUNCH.index(path)]] = values
         mass = scene.puck.mass
         inertia = mass * (scene.puck.gyration * scene.puck.radius) ** 2
         with np.errstate(over="ignore"):  # of launches that leave floating point
@@ -326,7 +320,7 @@ class _Case:
     def _look_up(self, states: FloatArray, rows: FloatArray, status: npt.NDArray[np.int8]) -> None:
         belt = self.scene.floor.velocity
         velocities, spins = states[:, [VX, VY]] - belt, states[:, SPIN]
-        stops = free_puck(self.scene).stop(velocities, spins, tol=self.scene.run.tol)
+        stops = self.scene.puck.stop(velocities, spins, tol=self.scene.run.tol)
         rows[...] = 0.0
         last = dict(zip(LEDGER[:-1], rows[:-1], strict=True))
         last["time"][:] = stops.stop_time
@@ -343,5 +337,13 @@ class _Case:
 
 def _is_launch(path: str, scene: Scene) -> bool:
     """Whether a range only changes the launch, and nothing has to be checked or fixed to it."""
-    fixed = path.startswith("launch.position") and bool(scene.wall or scene.edge)
-    return path in LAUNCH and scene.constraint is None and not fixed
+    moves = path.startswith("launch.position") or path == BATCH
+    fixed = moves and bool(scene.walls or scene.edges)
+    return path in (*LAUNCH, BATCH) and scene.constraint is None and not fixed
+
+
+def _told_apart(scene: Scene) -> dict[str, Any]:
+    """What tells a pressure law that is given as an object from another."""
+    law = scene.puck.body.law
+    ratios = np.stack(law.friction(np.linspace(0.0, 0.5 * np.pi, 99), 0.0))
+    return {"name": law.name, "edges": law.edges, "profile": law.profile, "friction": ratios}

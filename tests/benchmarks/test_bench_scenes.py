@@ -5,25 +5,27 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
+from scenes import sweep_scene
 
 import puck_tables as pt
+from puck_tables import Scene
+from puck_tables.scene.entries import LAUNCH
 from puck_tables.scene.plan import ingredients
 from puck_tables.scene.prepare import prepare
-from puck_tables.scene.scene import scene_from
-from puck_tables.scene.sweep import LAUNCH
+from puck_tables.scene.sweep import STATE
 
 ONE = pytest.mark.benchmark(group="one launch in a scene, 1600 at once, one thread")
 SWEEP = pytest.mark.benchmark(group="a scene with slope and drag, 100 x 100 launches")
 
-PUCK = {"radius": 0.04, "height": 0.02, "mass": 0.2}
+PUCK = {"radius": 0.04, "height": 0.02, "mass": 0.2, "friction": 0.1}
 SIDE = 40
 RANGES = {"launch.velocity[0]": (0.1, 2.0), "launch.spin": (-50.0, 50.0)}
 
 SCENES: dict[str, dict[str, Any]] = {
     "free puck, by the loop of scenes": {},
-    "slope": {"floor": {"friction": 0.1, "slope": 0.03}},
-    "belt": {"floor": {"friction": 0.1, "velocity": [0.2, 0.1]}},
-    "turntable": {"floor": {"friction": 0.1, "turning": 0.5}, "run": {"time": 2.0}},
+    "slope": {"floor": {"slope": 0.03}},
+    "belt": {"floor": {"velocity": [0.2, 0.1]}},
+    "turntable": {"floor": {"turning": 0.5}, "run": {"time": 2.0}},
     "strips": {"floor": {"strips": {"borders": [0.2, 0.4], "friction": [0.1, 0.05, 0.1]}}},
     "drag": {"drag": {"sliding": 0.05, "spinning": 1e-6}},
     "force": {"force": {"constant": [0.01, 0.0]}},
@@ -34,7 +36,7 @@ SCENES: dict[str, dict[str, Any]] = {
 
 
 def whole(parts: dict[str, Any], **launch: Any) -> dict[str, Any]:
-    return {"puck": PUCK, "floor": {"friction": 0.1}, "launch": launch, **parts}
+    return {"puck": PUCK, "launch": launch, **parts}
 
 
 @ONE
@@ -56,13 +58,13 @@ def test_the_plain_integrator(measure: Any) -> None:
 def test_one_ingredient(measure: Any, name: str) -> None:
     import numpy as np
 
-    scene, _ = scene_from(whole(SCENES[name], velocity=[1.0, 0.0]))
+    scene = Scene.from_tables(whole(SCENES[name], velocity=[1.0, 0.0]))
     assert bool(ingredients(scene)) is (name not in ("free puck, by the loop of scenes", "belt"))
     prepared = prepare(scene)
     states = np.tile(prepared.state, (SIDE * SIDE, 1))
     grid = np.meshgrid(*(np.linspace(*ends, SIDE) for ends in RANGES.values()))
     for path, values in zip(RANGES, grid, strict=True):
-        states[:, LAUNCH[path]] = values.ravel()
+        states[:, STATE[LAUNCH.index(path)]] = values.ravel()
     out, status = np.empty((16, SIDE * SIDE)), np.empty(SIDE * SIDE, np.int8)
     measure(
         name, lambda: prepared.follow_all(states, out, status), items=SIDE * SIDE, unit="trajectory"
@@ -75,9 +77,9 @@ def test_one_ingredient(measure: Any, name: str) -> None:
 def test_sweep(measure: Any, threads: int) -> None:
     slope_and_drag = {**SCENES["slope"], **SCENES["drag"]}
     tables = whole(slope_and_drag, velocity=["0.1:2:100", 0.0], spin="-50:50:100")
-    found = pt.sweep_scene(tables)
+    found = sweep_scene(tables)
     assert found.columns["energy_residual"].max() < 1e-8
     measure(
         f"{threads} thread{'s' if threads > 1 else ''}",
-        lambda: pt.sweep_scene(tables, threads=threads), items=10_000, unit="trajectory",
+        lambda: sweep_scene(tables, threads=threads), items=10_000, unit="trajectory",
     )  # fmt: skip

@@ -33,8 +33,12 @@ def draw(seed: int, index: int) -> dict[str, Any]:
     rows[:, 3] *= radius
     heading = rng.uniform(-math.pi, math.pi)
     scene: dict[str, Any] = {
-        "puck": {"radius": radius, "mass": mass, "gyration": float(rng.uniform(0.3, 1.5))},
-        "floor": {"friction": 0.0},
+        "puck": {
+            "radius": radius,
+            "mass": mass,
+            "gyration": float(rng.uniform(0.3, 1.5)),
+            "friction": 0.0,
+        },
         "launch": {
             "velocity": [speed * math.cos(heading), speed * math.sin(heading)],
             "spin": float(rng.choice([0.0, 1.0, -3.0])) * speed / radius,

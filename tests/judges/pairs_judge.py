@@ -53,8 +53,11 @@ def draw(seed: int, index: int) -> dict[str, Any]:
     stop = speed**2 / (2.0 * friction * 9.80665)
     spin = float(rng.choice([0.0, 1.0, -1.0, 4.0])) * speed / radius
     velocity = speed * ahead
-    floor: dict[str, Any] = {"friction": friction}
-    puck = {"radius": radius, "mass": mass, "height": delta * radius / (2.0 * friction)}
+    floor: dict[str, Any] = {}
+    puck = {
+        "radius": radius, "mass": mass, "height": delta * radius / (2.0 * friction),
+        "friction": friction,
+    }  # fmt: skip
     scene: dict[str, Any] = {"class": " + ".join(names), "puck": puck, "floor": floor}
     duration = 4.0 * speed / (friction * 9.80665)
     if "gyration" in names:
@@ -95,7 +98,7 @@ def draw(seed: int, index: int) -> dict[str, Any]:
         middle = float(ahead @ (0.4 * stop * ahead))
         wide = float(stop * rng.choice([0.003, 0.1, 0.5]))
         shares = [[1.0, 0.5, 1.0], [0.5, 1.0, 0.5], [1.0, 0.0, 1.0]][int(rng.integers(3))]
-        del floor["friction"]
+        del puck["friction"]
         floor["strips"] = {
             "borders": [middle, middle + wide], "friction": [s * friction for s in shares],
             "direction": float(way + rng.uniform(-1.0, 1.0)),

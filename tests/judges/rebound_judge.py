@@ -42,8 +42,9 @@ def draw(seed: int, index: int) -> dict[str, Any]:
         "puck": {
             "radius": radius, "mass": mass, "gyration": float(rng.choice([0.5, 0.7071, 1.0])),
             "height": float(rng.choice([0.0, 0.0, 0.5])) * radius / max(2.0 * friction, 0.1),
+            "friction": friction,
         },
-        "floor": {"friction": friction},
+
         "launch": {},
     }  # fmt: skip
     extra = float(rng.choice([0.05, 0.3, 1.0]))  # acceleration, over friction

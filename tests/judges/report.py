@@ -31,7 +31,7 @@ def written(scene: dict[str, Any], folder: Path, **run: Any) -> dict[str, Any]:
         path = folder / "drive.csv"
         rows = [",".join(repr(float(cell)) for cell in row) for row in scene["drive"]]
         path.write_text("\n".join(rows) + "\n")
-        whole["force"] = {**scene.get("force", {}), "file": str(path)}
+        whole["force"] = {**scene.get("force", {}), "over_time": str(path)}
     return whole
 
 
@@ -39,11 +39,12 @@ def engine(
     scene: dict[str, Any], tol: float, folder: Path, times: np.ndarray | None = None
 ) -> tuple[Any, str]:
     """The engine's run, or None and its words."""
-    import puck_tables as pt
+    from scenes import simulate_scene
+
     from puck_tables.errors import PuckError
 
     try:
-        return pt.simulate_scene(written(scene, folder, tol=tol), times), ""
+        return simulate_scene(written(scene, folder, tol=tol), times), ""
     except (PuckError, ArithmeticError, ValueError) as error:
         return None, f"{type(error).__name__}: {error}"
 

@@ -314,14 +314,14 @@ def world_of(scene: dict[str, Any]) -> tuple[World, np.ndarray]:
     puck, floor, launch = scene["puck"], scene.get("floor", {}), scene.get("launch", {})
     m, r = puck.get("mass", 1.0), puck["radius"]
     inertia = m * (puck.get("gyration", math.sqrt(0.5)) * r) ** 2
-    g = floor.get("gravity", 9.80665)
+    g = puck.get("gravity", 9.80665)
     slope, down = floor.get("slope", 0.0), floor.get("downhill", 0.0)
     force, drag = scene.get("force", {}), scene.get("drag", {})
     pull = np.array([*force.get("constant", (0.0, 0.0)), force.get("torque", 0.0)], float)
     pull[:2] += m * g * math.sin(slope) * np.array([math.cos(down), math.sin(down)])
     walls, edges, borders = lines(scene)
     strips = floor.get("strips")
-    frictions = strips["friction"] if strips else [floor.get("friction", 0.0)]
+    frictions = strips["friction"] if strips else [puck.get("friction", 0.0)]
     tables = []
     for f in frictions:
         delta = round(2.0 * f * puck.get("height", 0.0) / r, 13)

@@ -35,7 +35,7 @@ class Slider:
     """Accelerations (ax, ay, r ω′) of a puck that slips at n, by friction alone, and by a pull."""
 
     def __init__(self, scene: dict[str, Any]) -> None:
-        puck, self.f = scene["puck"], scene["floor"]["friction"]
+        puck, self.f = scene["puck"], scene["puck"]["friction"]
         self.m, self.r = puck["mass"], puck["radius"]
         self.inertia = self.m * (puck["gyration"] * self.r) ** 2
         self.ends, self.series = tabled("uniform", round(2 * self.f * puck["height"] / self.r, 13))
@@ -76,9 +76,9 @@ def draw(seed: int, index: int) -> dict[str, Any]:
     friction, delta = float(rng.choice([0.1, 0.3])), float(rng.choice([0.0, 0.5, 1.0, 2.0, 3.0]))
     puck = {
         "radius": radius, "mass": mass, "height": delta * radius / (2.0 * friction),
-        "gyration": float(rng.choice([0.5, math.sqrt(0.5), 1.0])),
+        "gyration": float(rng.choice([0.5, math.sqrt(0.5), 1.0])), "friction": friction,
     }  # fmt: skip
-    scene: dict[str, Any] = {"class": kind, "puck": puck, "floor": {"friction": friction}}
+    scene: dict[str, Any] = {"class": kind, "puck": puck}
     slider = Slider(scene)
     phi, psi = float(rng.choice([0.0, 0.3, 0.7, 0.9, 1.3])), rng.uniform(-math.pi, math.pi)
     n = np.array([math.cos(phi) * math.cos(psi), math.cos(phi) * math.sin(psi), math.sin(phi)])

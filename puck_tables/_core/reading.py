@@ -1,23 +1,20 @@
-"""From plain values (TOML) or dataclasses to checked dataclasses, with every error at once.
-
-What a field allows stands in its metadata, beside its name and its default; one walk over the
-dataclasses checks a whole scene, wherever it comes from.
-"""
+"""From plain values (TOML) or dataclasses to checked dataclasses, with every error at once."""
 
 from __future__ import annotations
 
 import dataclasses
 import math
 import re
-import unicodedata
 from collections.abc import Mapping
 from dataclasses import MISSING, dataclass, field
-from functools import lru_cache
 from numbers import Real
 from typing import Any, TypeVar
 
 import numpy as np
 import numpy.typing as npt
+
+from puck_tables._core.fields import Kind, specs
+from puck_tables.errors import PuckError
 
 FloatArray = npt.NDArray[np.float64]
 T = TypeVar("T")
@@ -29,99 +26,29 @@ _SHOWN = 60  # characters of a value in a message
 
 
 @dataclass(frozen=True)
-class Kind:
-    """What a field takes: ``shape`` number, pair, numbers, text, choice, part, parts."""
-
-    shape: str
-    unit: str = ""
-    low: float = -math.inf
-    high: float = math.inf
-    above: bool = False  # greater than ``low``, not equal to it
-    below: bool = False
-    choices: tuple[str, ...] = ()
-    part: Any = None
-    file: str | None = None  # a text that names a file where it ends so
-
-    def allowed(self) -> str:
-        """What is allowed, in words.
-
-        Examples
-        --------
-        >>> Kind("number", "m", 0.0, above=True).allowed()
-        'a number > 0 m'
-        """
-        if self.shape == "text":
-            return "a text without " + ("control characters" if self.file is None else "NUL")
-        if self.shape == "choice":
-            return "one of " + ", ".join(self.choices)
-        words = {"number": "a number", "pair": "two numbers [x, y]", "numbers": "a list of numbers"}
-        unit = f" {self.unit}" if self.unit else ""
-        low = f"{'>' if self.above else '>='} {self.low:g}"
-        high = f"{'<' if self.below else '<='} {self.high:g}"
-        if self.low > -math.inf and self.high < math.inf:
-            return f"{words[self.shape]} {low} and {high}{unit}"
-        if self.low > -math.inf:
-            return f"{words[self.shape]} {low}{unit}"
-        if self.high < math.inf:
-            return f"{words[self.shape]} {high}{unit}"
-        return f"{words[self.shape]}{f' in{unit}' if unit else ''}"
-
-    def holds(self, value: float) -> bool:
-        """Whether a number is allowed."""
-        above = value > self.low if self.above else value >= self.low
-        below = value < self.high if self.below else value <= self.high
-        return above and below and not math.isnan(value)
-
-    def takes(self, text: str) -> bool:
-        """Whether a text holds no control codes and halves of pairs; a name of a file no NUL."""
-        if self.file is not None:
-            return "\0" not in text
-        return text.isprintable() or not any(
-            unicodedata.category(sign) in ("Cc", "Cs") for sign in text
-        )
-
-    def names_file(self, text: str) -> bool:
-        """Whether a text is the name of a file.
-
-        Examples
-        --------
-        >>> Kind("text", file=".csv").names_file("rough.CSV"), Kind("text", file="").names_file("")
-        (True, False)
-        """
-        return self.file is not None and bool(text) and text.lower().endswith(self.file)
-
-
-def of(shape: str, default: Any = MISSING, unit: str = "", doc: str = "", **limits: Any) -> Any:
-    """A dataclass field with what it allows."""
-    metadata = {"kind": Kind(shape, unit, **limits), "doc": doc}
-    if isinstance(default, list | dict):
-        return field(default_factory=lambda: type(default)(default), metadata=metadata)
-    return (
-        field(metadata=metadata)
-        if default is MISSING
-        else field(default=default, metadata=metadata)
-    )
-
-
-@dataclass(frozen=True)
 class Range:
-    """START:STOP:COUNT; its numbers are made when all ranges of a scene have been counted."""
+    """START:STOP:COUNT or a list; its numbers are made when all ranges have been counted."""
 
     start: float
     stop: float
     count: int
+    listed: tuple[float, ...] = ()
 
     def numbers(self) -> FloatArray:
         """The numbers, ends included, array (count,)."""
-        return np.linspace(self.start, self.stop, self.count)
+        return np.array(self.listed or np.linspace(self.start, self.stop, self.count))
 
 
 @dataclass
 class Reading:
-    """What a walk gathers: errors, and the numbers that were given as ranges."""
+    """What a walk gathers: errors, ranges by path, and pairs of which many were given, by path.
+
+    ``ranges`` None: a number is one number.
+    """
 
     errors: list[str]
-    ranges: dict[str, Range]
+    ranges: dict[str, Range] | None
+    batches: dict[str, FloatArray] = field(default_factory=dict)
 
     def fault(self, path: str, value: Any, allowed: str) -> None:
         """Note an error."""
@@ -140,54 +67,92 @@ def _shown(value: Any) -> str:
     return shown if len(shown) <= _SHOWN else shown[: _SHOWN - 3] + "..."
 
 
-@lru_cache(maxsize=64)
-def _specs(kind: type) -> dict[str, dataclasses.Field[Any]]:
-    return {spec.name: spec for spec in dataclasses.fields(kind)}
-
-
 def read_part(kind: type[T], data: Any, path: str, reading: Reading) -> T | None:
     """A dataclass from a table, or from an unchecked one; None if something in it is wrong."""
-    this: Any = kind
-    known = _specs(this)
+    if type(data) is kind and "_checked" in vars(data):
+        return data
     if isinstance(data, kind):
-        theirs: Any = type(data)
-        data = {  # what is left at its default needs no check
-            name: getattr(data, name)
-            for name, spec in _specs(theirs).items()
-            if name not in known or getattr(data, name) is not spec.default
-        }
+        data = given_in(data, specs(kind))
     if not isinstance(data, Mapping):
         wrong = f"a table or a {kind.__name__}" if dataclasses.is_dataclass(data) else "a table"
         reading.fault(path or kind.__name__.lower(), data, wrong)
         return None
+    values = read_values(kind, data, path, reading)
+    if values is None:
+        return None
+    try:
+        part = kind(**values)
+    except PuckError as error:  # one that judges itself; of a range one end may do
+        last = {
+            name: (reading.ranges or {})[f"{path}.{name}"].stop
+            for name in values
+            if f"{path}.{name}" in (reading.ranges or {})
+        }
+        try:
+            if not last:
+                raise
+            part = kind(**{**values, **last})
+        except PuckError:
+            reading.errors.append(f"{path}: {error}")
+            return None
+    mark_checked(part)
+    return part
+
+
+def mark_checked(part: Any) -> None:
+    """Note that a frozen dataclass holds what :func:`read_values` found, which stays so."""
+    object.__setattr__(part, "_checked", True)
+
+
+def given_in(part: Any, known: Mapping[str, Any]) -> dict[str, Any]:
+    """The values of a dataclass by their names in tables; what is left at its default is left out.
+
+    Fields that are not ``known`` are told of, whatever they hold.
+    """
+    return {
+        name: getattr(part, spec.name)
+        for name, spec in specs(type(part)).items()
+        if name not in known or getattr(part, spec.name) is not spec.default
+    }
+
+
+def read_values(
+    kind: type, data: Mapping[str, Any], path: str, reading: Reading
+) -> dict[str, Any] | None:
+    """The values of a dataclass by field from a table; None if something in it is wrong."""
+    known = specs(kind)
     prefix = f"{path}." if path else ""
+    before = len(reading.errors)
     for name in data:
         if name not in known:
             near = ", ".join(known)
             shown = name if isinstance(name, str) and name.isprintable() else _shown(name)
             reading.errors.append(f"{prefix}{shown[:_SHOWN]}: no such entry (there are: {near})")
-    before = len(reading.errors)
     values: dict[str, Any] = {}
     for name, spec in known.items():
         if name in data and not (data[name] is None and spec.default is None):
-            values[name] = _read(
+            values[spec.name] = _read(
                 spec.metadata["kind"], data[name], prefix + name, reading, spec.default
             )
         elif spec.default is MISSING and spec.default_factory is MISSING:
             what: Kind = spec.metadata["kind"]
             needed = "a table" if what.shape == "part" else what.allowed()
             reading.errors.append(f"{prefix}{name} is missing: it must be {needed}")
-    return kind(**values) if len(reading.errors) == before else None
+    return values if len(reading.errors) == before else None
 
 
 def _read(kind: Kind, value: Any, path: str, reading: Reading, default: Any) -> Any:
+    if value is default or (kind.objects and isinstance(value, kind.objects)):
+        return value
     if kind.shape == "part":
         return read_part(kind.part, value, path, reading)
-    if kind.shape in ("text", "choice"):
+    if kind.shape in ("text", "choice") or (kind.shape == "rows" and isinstance(value, str)):
         good = isinstance(value, str) and kind.takes(value)
         if not good or (kind.choices and value not in kind.choices):
             reading.fault(path, value, kind.allowed())
         return value
+    if kind.shape == "rows":
+        return _rows(kind, value, path, reading)
     if kind.shape == "number":
         return _number(kind, value, path, reading, default)
     items = _items(value)
@@ -198,11 +163,41 @@ def _read(kind: Kind, value: Any, path: str, reading: Reading, default: Any) -> 
         return tuple(
             read_part(kind.part, item, f"{path}[{i}]", reading) for i, item in enumerate(items)
         )
+    many = _pairs(value) if kind.batch and reading.ranges is not None else None
+    if many is not None and np.isfinite(many).all():
+        reading.batches[path] = many
+        return (float(many[0, 0]), float(many[0, 1]))
     count = 2 if kind.shape == "pair" else None
     if items is None or (count is not None and len(items) != count):
-        reading.fault(path, value, kind.allowed())
+        several = " (or many of them, one for each launch)" if kind.batch else ""
+        reading.fault(path, value, kind.allowed() + several)
         return (0.0, 0.0)
     return tuple(_number(kind, item, f"{path}[{i}]", reading, None) for i, item in enumerate(items))
+
+
+def _rows(kind: Kind, value: Any, path: str, reading: Reading) -> tuple[tuple[float, ...], ...]:
+    """A table of numbers, as it may stand in a CSV file."""
+    try:
+        rows = np.array(value, dtype=np.float64)
+    except (TypeError, ValueError, OverflowError):
+        rows = np.empty(0)
+    if np.ma.is_masked(value) or rows.ndim != 2 or not rows.size or not np.isfinite(rows).all():
+        reading.fault(path, value, kind.allowed())
+        return ()
+    return tuple(map(tuple, rows.tolist()))
+
+
+def _pairs(value: Any) -> FloatArray | None:
+    """Many pairs of numbers, array (n, 2), where a value is no single one."""
+    items = list(value) if isinstance(value, np.ndarray) and value.ndim == 2 else _items(value)
+    if not items or not all(isinstance(item, list | tuple | np.ndarray) for item in items):
+        return None
+    try:
+        pairs = np.array(items)
+    except ValueError:  # of different lengths: ranges
+        return None
+    fits = pairs.shape == (len(items), 2) and pairs.dtype.kind in "iuf"
+    return pairs.astype(np.float64) if fits and not np.ma.is_masked(value) else None
 
 
 def _items(value: Any) -> list[Any] | None:
@@ -215,9 +210,11 @@ def _items(value: Any) -> list[Any] | None:
 def _number(kind: Kind, value: Any, path: str, reading: Reading, default: Any) -> float:
     if isinstance(value, np.ndarray) and value.ndim == 0 and not np.ma.is_masked(value):
         value = value[()]
+    if reading.ranges is not None and (items := _items(value)) is not None:
+        return _listed(kind, items, path, reading)
     if isinstance(value, str) and kind.unit == "rad" and DEGREES.fullmatch(value.strip()):
         value = _angle(value.strip(), kind)
-    if isinstance(value, str):
+    if isinstance(value, str) and reading.ranges is not None:
         match = RANGE.fullmatch(value.strip())
         try:
             start, stop = (_angle(match[n], kind) for n in (1, 2))  # type: ignore[index]
@@ -249,6 +246,19 @@ def _number(kind: Kind, value: Any, path: str, reading: Reading, default: Any) -
     return number
 
 
+def _listed(kind: Kind, items: list[Any], path: str, reading: Reading) -> float:
+    """A range as a list; the first of its numbers."""
+    alone = Reading(reading.errors, None)
+    if not 1 <= len(items) <= MAX_COUNT:
+        reading.fault(path, items, f"{_one(kind)}, or a list of 1 to {MAX_COUNT} of them")
+        return math.nan
+    before = len(reading.errors)
+    numbers = [_number(kind, n, f"{path}[{i}]", alone, None) for i, n in enumerate(items)]
+    if reading.ranges is not None and len(reading.errors) == before:
+        reading.ranges[path] = Range(numbers[0], numbers[-1], len(numbers), tuple(numbers))
+    return numbers[0]
+
+
 def _angle(text: str, kind: Kind) -> float:
     """A number; an angle may be in degrees.
 
@@ -263,33 +273,3 @@ def _angle(text: str, kind: Kind) -> float:
 
 def _one(kind: Kind) -> str:
     return dataclasses.replace(kind, shape="number").allowed()
-
-
-def described(kind: type, prefix: str = "") -> list[tuple[str, str, str]]:
-    """Every entry of a dataclass and its parts: path, what is allowed and its default, what it is.
-
-    Examples
-    --------
-    >>> @dataclass(frozen=True)
-    ... class Body:
-    ...     mass: float = of("number", 1.0, "kg", low=0.0, above=True, doc="all of it")
-    >>> described(Body)
-    [('mass', 'a number > 0 kg  [1]', 'all of it')]
-    """
-    rows = []
-    for spec in dataclasses.fields(kind):
-        what: Kind = spec.metadata["kind"]
-        path = prefix + spec.name
-        if what.shape in ("part", "parts"):
-            rows += described(what.part, f"{path}[0]." if what.shape == "parts" else f"{path}.")
-            continue
-        default = ""
-        if spec.default is MISSING:
-            default = "  (needed)"
-        elif spec.default not in (None, ""):
-            value = spec.default
-            numbers = value if isinstance(value, tuple) else (value,)
-            shown = ", ".join(f"{n:g}" if isinstance(n, float) else str(n) for n in numbers)
-            default = f"  [{shown}]"
-        rows.append((path, what.allowed() + default, spec.metadata["doc"]))
-    return rows

@@ -1,0 +1,121 @@
+"""The parts of a scene besides its puck: plain records of what a user says.
+
+Numbers are in SI units, angles in radians, counter-clockwise positive.  They are checked when a
+:class:`puck_tables.scene.scene.Scene` is made of them.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from puck_tables._core.fields import of
+
+Rows = tuple[tuple[float, ...], ...]
+
+
+@dataclass(frozen=True)
+class Strips:
+    """Regions of the floor between parallel borders, which the centre of the puck crosses."""
+
+    borders: tuple[float, ...] = of("numbers", unit="m", doc="ascending places along 'direction'")
+    friction: tuple[float, ...] = of("numbers", low=0.0, doc="one more than borders")
+    direction: float = of("number", 0.0, "rad", doc="across the borders, from x")
+
+
+@dataclass(frozen=True)
+class Floor:
+    """The plane: level or sloping, at rest or moving, of one friction or of several.
+
+    Examples
+    --------
+    >>> Floor(slope=0.1, velocity=(0.5, 0.0)).downhill
+    0.0
+    """
+
+    slope: float = of("number", 0.0, "rad", low=0.0, high=math.pi / 2, below=True)
+    downhill: float = of("number", 0.0, "rad", doc="direction of steepest descent, from x")
+    velocity: tuple[float, float] = of("pair", (0.0, 0.0), "m/s", doc="of a belt")
+    turning: float = of("number", 0.0, "rad/s", doc="spin of a turntable")
+    centre: tuple[float, float] = of("pair", (0.0, 0.0), "m", doc="of the turntable")
+    strips: Strips | None = of("part", None, part=Strips)
+    law: str | Rows = of(
+        "rows", "", file="", doc="CSV or rows of slip speed in m/s and f, in place of friction"
+    )
+
+
+@dataclass(frozen=True)
+class Launch:
+    """Where and how it starts.
+
+    Velocities (n, 2) are many launches; positions (n, 2), spins and orientations (n,) go with them
+    one by one.  Any other list or array in place of a number is a range of its own.
+    """
+
+    velocity: tuple[float, float] | None = of("pair", None, "m/s", doc="of the centre", batch=True)
+    spin: float = of("number", 0.0, "rad/s")
+    position: tuple[float, float] = of("pair", (0.0, 0.0), "m", doc="of the centre", batch=True)
+    orientation: float = of("number", 0.0, "rad", doc="of the body")
+
+
+@dataclass(frozen=True)
+class Drag:
+    """Viscous friction against the floor, as in an air cushion or a film."""
+
+    sliding: float = of("number", 0.0, "kg/s", low=0.0, doc="force over relative speed")
+    spinning: float = of("number", 0.0, "N m s", low=0.0, doc="torque over relative spin")
+
+
+@dataclass(frozen=True)
+class Force:
+    """A force on the centre and a torque, constant and over time."""
+
+    constant: tuple[float, float] = of("pair", (0.0, 0.0), "N")
+    torque: float = of("number", 0.0, "N m")
+    over_time: str | Rows = of(
+        "rows", "", file="", doc="CSV or rows of t, Fx, Fy and perhaps torque, straight between"
+    )
+
+
+@dataclass(frozen=True)
+class Wall:
+    """A straight cushion that the rim of the puck bounces off."""
+
+    point: tuple[float, float] = of("pair", unit="m", doc="any point of it")
+    normal: tuple[float, float] = of("pair", doc="into the field, any length")
+    restitution: float = of("number", 1.0, low=0.0, high=1.0)
+    tangential: float = of(
+        "number", -1.0, low=-1.0, high=1.0, doc="-1: smooth, 0: the rim rolls off, 1: it reverses"
+    )
+    friction: float = of("number", math.inf, low=0.0, doc="limits the tangential impulse")
+
+
+@dataclass(frozen=True)
+class Edge:
+    """A straight boundary that ends the run when the centre passes it."""
+
+    point: tuple[float, float] = of("pair", unit="m", doc="any point of it")
+    normal: tuple[float, float] = of("pair", doc="into the field, any length")
+
+
+@dataclass(frozen=True)
+class Constraint:
+    """A linear constraint on the velocities."""
+
+    kind: str = of("choice", choices=("rail", "pivot", "blade"))
+    angle: float = of(
+        "number", 0.0, "rad",
+        doc="direction of the rail; from the centre to the pivot, or along the blade, in the body",
+    )  # fmt: skip
+    reach: float = of("number", 0.0, "m", low=0.0, doc="from the centre to the pivot")
+    velocity: tuple[float, float] = of("pair", (0.0, 0.0), "m/s", doc="of rail or pivot")
+    side_slip: float = of("number", 0.0, "m/s", doc="of the blade over the floor, to its left")
+
+
+@dataclass(frozen=True)
+class Run:
+    """How long, how close, how often."""
+
+    time: float | None = of("number", None, "s", low=0.0, above=True, doc="until rest if left out")
+    frames: float = of("number", 101.0, low=1.0, high=1e6, doc="states to save")
+    tol: float = of("number", 1e-9, low=1e-12, high=1e-2, doc="error wanted, of Q/J and Q^2/J")

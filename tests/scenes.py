@@ -1,0 +1,23 @@
+"""Scenes given as tables, run or swept in one call."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from puck_tables import Scene, SceneMap, SceneRun
+
+
+def simulate_scene(tables: Any, times: Any = None) -> SceneRun:
+    """A run of a scene: its tables, itself, or the name of one that is shipped."""
+    return made(tables).simulate(times)
+
+
+def sweep_scene(tables: Any, **how: Any) -> SceneMap:
+    """The map over its ranges."""
+    return made(tables).sweep(**how)
+
+
+def made(tables: Any) -> Scene:
+    if isinstance(tables, Scene):
+        return tables
+    return Scene.load(tables) if isinstance(tables, str) else Scene.from_tables(tables)
