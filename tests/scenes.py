@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 from puck_tables import Scene, SceneMap, SceneRun
@@ -20,4 +21,4 @@ def sweep_scene(tables: Any, **how: Any) -> SceneMap:
 def made(tables: Any) -> Scene:
     if isinstance(tables, Scene):
         return tables
-    return Scene.load(tables) if isinstance(tables, str) else Scene.from_tables(tables)
+    return Scene.load(tables) if isinstance(tables, str | Path) else Scene.from_tables(tables)

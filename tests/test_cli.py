@@ -201,7 +201,7 @@ V0 = ["simulate", "--v0", "1,0"]
         ([*V0, "--pressure", "hertz", "--delta", "0.9"], ["full contact", "hertz", "0.8"]),
         ([*V0, "--pressure", "foam"], ["foam", "annulus:INNER"]),
         ([*V0, "--pressure", "ring", "--exact"], ["leave out", "uniform pressure"]),
-        ([*V0, "--gyration", "0"], ["gyration", "0.1 to 10"]),
+        ([*V0, "--gyration", "0"], ["gyration", ">= 0.1 and <= 10"]),
         ([*V0, "--delta", "2", "--tol", "1e-13"], ["tol must be from 1e-11"]),
         ([*V0, "--delta", "-0.1"], ["delta", "must not be negative"]),
         ([*V0, "--delta", "2", "--exact"], ["delta", "from 0 to below 2"]),

@@ -104,7 +104,6 @@ def test_slices_of_strips_are_brought_to_one_shape_and_stay_the_same_splines():
     ("floor", "words"),
     [
         ({"law": "none.csv"}, "none.csv"),
-        ({"law": "none.csv", "friction": 0.1}, "takes the place"),
         ({"law": "none.csv", "strips": {"borders": [1.0], "friction": [0.1, 0.2]}}, "place"),
     ],
 )

@@ -122,7 +122,7 @@ def test_tol_is_of_the_slip_on_a_fast_belt(tol: float) -> None:
         "wall": [{"point": [0, -10], "normal": [0, 1]}], "run": {"tol": 1e-11, "time": 0.01},
     }  # fmt: skip
     still = simulate_scene(scene)
-    scene["floor"]["velocity"] = [belt, 0.0]
+    scene["floor"] = {"velocity": [belt, 0.0]}
     scene["launch"]["velocity"] = [belt + slip[0], slip[1]]
     scene["run"]["tol"] = tol
     run = simulate_scene(scene)

@@ -126,7 +126,7 @@ def test_what_is_absent_changes_no_bit(more: dict[str, Any], slope: float) -> No
     if slope and "slope" in more.get("floor", {}):
         return
     base = scene(launch={"velocity": [2.0, 1.0], "spin": 3.0}, puck={"height": 1.0})
-    base["floor"]["slope"] = slope
+    base["floor"] = {"slope": slope}
     whole = {**base, **more, "floor": {**base["floor"], **more.get("floor", {})}}
     plain, run = simulate_scene(base), simulate_scene(whole)
     assert run.end_time == plain.end_time

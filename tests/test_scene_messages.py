@@ -65,9 +65,8 @@ def test_a_title_is_any_line_of_text(title: str, tmp_path: Path) -> None:
 def test_a_field_of_a_csv_file_that_is_too_long(tmp_path: Path) -> None:
     file = tmp_path / "wide.csv"
     file.write_text("t,Fx,Fy\n0," + "1" * 200_000 + ",0\n1,0,0\n")
-    for entry in ("force.file", "floor.law", "puck.pressure"):
-        law = ("--set", "puck.friction=0") if entry == "floor.law" else ()
-        result = puck("simulate", "--v0", "1,0", *law, "--set", f"{entry}={file}")
+    for entry in ("force.over_time", "floor.law", "puck.pressure"):
+        result = puck("simulate", "--v0", "1,0", "--set", f"{entry}={file}")
         assert result.exit_code == 2
         assert "CSV file" in result.stderr or "field larger than" in result.stderr
         assert len(result.stderr) < 500
@@ -77,7 +76,7 @@ def test_a_puck_that_rests_does_not_still_move(tmp_path: Path) -> None:
     force = tmp_path / "force.csv"
     force.write_text("t,Fx,Fy\n0,0.3,0\n0.5,0,0\n1e6,0,0\n")
     scene = tmp_path / "scene.toml"
-    scene.write_text(HEAD + '[force]\nfile = "force.csv"\n')
+    scene.write_text(HEAD + '[force]\nover_time = "force.csv"\n')
     assert "at rest after 0.70105" in puck("simulate", "--scene", str(scene)).stdout
     with pytest.raises(InputError, match="still moves after"):
         simulate_scene({"puck": {"radius": 1.0, "friction": 0.1}, "floor": {"slope": 0.3}})

@@ -134,7 +134,7 @@ def test_units_do_not_matter(mass: float, length: float, time: float) -> None:
         wall=[wall(1.0, 0, -1, 0, restitution=0.6, tangential=0.2)], run={"time": 2.0},
     )  # fmt: skip
     other = copy.deepcopy(one)
-    other["puck"] = {"radius": 0.5 * length, "height": 0.4 * length, "mass": 2.0 * mass}
+    other["puck"] |= {"radius": 0.5 * length, "height": 0.4 * length, "mass": 2.0 * mass}
     other["puck"]["gravity"] = G * length / time**2
     other["floor"] |= {"turning": 0.3 / time}
     other["launch"] = {"velocity": [2.0 * speed, 0.5 * speed], "spin": 3.0 / time}

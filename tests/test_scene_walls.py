@@ -141,12 +141,8 @@ def test_what_two_rough_walls_bear_is_what_a_linear_program_finds() -> None:
 @pytest.mark.parametrize("downhill", [0.3, -0.8, 2.0, 4.0])
 def test_a_tilted_air_hockey_table_ends_at_rest(slope: float, downhill: float) -> None:
     scene: dict[str, Any] = dict(find_scene("air-hockey"))
-    scene["floor"] = {
-        **scene.get("floor", {}),
-        "slope": slope,
-        "downhill": downhill,
-        "friction": 0.01,
-    }
+    scene["puck"]["friction"] = 0.01
+    scene["floor"] = {**scene.get("floor", {}), "slope": slope, "downhill": downhill}
     scene["run"] = {**scene.get("run", {}), "time": 60.0, "frames": 1, "tol": 1e-6}
     assert simulate_scene(scene).end == "at rest"
 

@@ -46,8 +46,9 @@ class Scene:
 
     Parts may also be tables.  Numbers may be numpy scalars; where a number stands a list, an array
     or a text 'START:STOP:COUNT' is a range, a dimension of :meth:`sweep`.  Such a number stands at
-    its first value (its last, where no puck can have the first), its values in ``ranges``.  Many launches at once are velocities (n, 2), see
-    :class:`puck_tables.Launch`: their range is ``launch``, rows of vx, vy, spin, x, y, orientation.
+    its first value (its last, where no puck can have the first), its values in ``ranges``.  Many
+    launches at once are velocities (n, 2), see :class:`puck_tables.Launch`: their range is
+    ``launch``, rows of vx, vy, spin, x, y, orientation.
 
     Raises
     ------
@@ -154,7 +155,7 @@ class Scene:
         --------
         >>> run = Scene.load("incline").simulate()
         >>> run.end, round(run.end_time, 6)
-        ('at rest', 1.609966)
+        ('at rest', 2.253703)
         """
         run: SceneRun = import_module("puck_tables.scene.simulate").simulate(self, times)
         return run
@@ -191,7 +192,7 @@ class Scene:
         --------
         >>> puck, velocities = Puck(0.04, friction=0.1), [[1.0, 0.0], [0.0, 2.0]]
         >>> Scene(puck, launch=Launch(velocities, spin=[0.0, 9.0])).sweep().y.round(6).tolist()
-        [0.0, 2.061084]
+        [0.0, 2.056068]
         """
         stops: SceneMap = import_module("puck_tables.scene.sweep").sweep(
             self, threads=threads, chunk=chunk, progress=progress, checkpoint=checkpoint

@@ -52,7 +52,7 @@ def draw(seed: int, index: int) -> dict[str, Any]:
     pull = angle + lean
     strength = friction + extra
     if kind == "slope":
-        scene["floor"] |= {"slope": float(math.atan(strength)), "downhill": float(pull)}
+        scene["floor"] = {"slope": float(math.atan(strength)), "downhill": float(pull)}
         rate = 9.80665 * math.cos(math.atan(strength)) * extra
     elif kind == "force":
         force = strength * weight * np.array([math.cos(pull), math.sin(pull)])
@@ -62,12 +62,12 @@ def draw(seed: int, index: int) -> dict[str, Any]:
         rate = 9.80665 * extra
     elif kind == "belt":
         belt = float(rng.choice([0.3, 2.0])) * (ahead + 0.3 * lean * left)
-        scene["floor"]["velocity"] = belt.tolist()
+        scene["floor"] = {"velocity": belt.tolist()}
         rate = 9.80665 * friction
     else:
         turning = float(rng.choice([-1.0, 1.0]) * rng.uniform(1.0, 5.0))
         back = math.copysign(1.0, turning) * left * rng.uniform(0.2, 0.6)
-        scene["floor"] |= {"turning": turning, "centre": back.tolist()}
+        scene["floor"] = {"turning": turning, "centre": back.tolist()}
         rate = 9.80665 * friction
     speed = float(math.sqrt(2.0 * rate * gap) * rng.choice([0.0, 0.5, 2.0]))
     velocity = speed * (ahead + rng.choice([0.0, 0.3, -1.0]) * left)
