@@ -107,6 +107,8 @@ def finite(text: str, kind: click.ParamType, param: Any, ctx: Any) -> float:
     return number
 
 
+HUGE = 10.0  # m, of a real puck: millimetres were meant
+
 NUMBER = Number()
 FILE = click.Path(readable=False, path_type=Path)
 
@@ -222,6 +224,9 @@ def puck_given(
                 "--radius --height --friction (and --gravity)"
             )
         dimensions = {"radius": radius, "height": height, "friction": friction, "gravity": gravity}
+        for name, value in (("radius", radius), ("height", height)):
+            if value is not None and value > HUGE:
+                click.echo(f"a {name} of {value:g} m: lengths are in metres", err=True)
         return Puck(**_only(**dimensions, **kind))
     return Puck.similar(**_only(radius=radius, delta=delta, decel=decel, **kind))
 

@@ -53,3 +53,11 @@ def test_what_was_meant_is_guessed():
     assert "did you mean air-hockey?" in puck("simulate", "--scene", "airhockey").stderr
     assert "Did you mean '--w0'?" in puck("simulate", "--v0", "1,0", "--omega", "5").stderr
     assert "did you mean" not in puck("simulate", "--scene", "zzz").stderr
+
+
+def test_a_huge_puck_is_asked_for():
+    real = ("--height", "0.025", "--friction", "0.1", "--v0", "2,0")
+    huge = puck("simulate", "--radius", "38", *real)
+    assert huge.exit_code == 0
+    assert huge.stderr.startswith("a radius of 38 m: lengths are in metres")
+    assert "metres" not in puck("simulate", "--radius", "0.038", *real).stderr

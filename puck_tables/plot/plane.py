@@ -202,14 +202,14 @@ def _draw_pulls(axes: Axes, scene: Scene, x: FloatArray, y: FloatArray, box: Box
             arrowprops={"arrowstyle": "-|>", "color": color, "linewidth": 2.0},
         )  # fmt: skip
         axes.plot([], [], color=color, marker=">", label=words)
-    for there, words in (
+    unseen = (
         (scene.force.torque != 0.0, f"torque {scene.force.torque:g} N m"),
         (bool(scene.force.over_time), "force over time"),
         (scene.drag.sliding > 0.0 or scene.drag.spinning > 0.0, "viscous drag"),
         (bool(scene.floor.law), "friction by slip speed"),
-    ):
-        if there:
-            axes.plot([], [], linestyle="", label=words)
+    )
+    if also := [words for there, words in unseen if there]:
+        axes.set_title(f"also acting: {', '.join(also)}", fontsize=9, loc="left")
 
 
 def _free_corners(

@@ -68,6 +68,8 @@ def find_scene(name: str) -> dict[str, Any]:
     >>> find_scene("incline")["puck"]["friction"]
     0.15
     """
+    if not name.strip():
+        raise InputError(f"the name of the scene is empty: give a file, or one of {_listed()}")
     try:
         os.lstat(name)
     except FileNotFoundError:

@@ -107,7 +107,9 @@ class Constraint:
         "number", 0.0, "rad",
         doc="direction of the rail; from the centre to the pivot, or along the blade, in the body",
     )  # fmt: skip
-    reach: float = of("number", 0.0, "m", low=0.0, doc="from the centre to the pivot")
+    reach: float = of(
+        "number", 0.0, "m", low=0.0, doc="from the centre to the pivot, which needs one > 0"
+    )
     velocity: tuple[float, float] = of("pair", (0.0, 0.0), "m/s", doc="of rail or pivot")
     side_slip: float = of("number", 0.0, "m/s", doc="of the blade over the floor, to its left")
 
