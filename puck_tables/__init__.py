@@ -1,6 +1,9 @@
 """Exact motion of a flat puck that slides and spins under dry friction, until it stops.
 
-Importing the package stays light: numpy and numba are loaded when something is computed.
+Importing the package stays light: numpy and numba are loaded when something is computed.  The names
+here are what most need; :mod:`puck_tables.contact` holds more of the friction of a contact,
+:mod:`puck_tables.motion` what can be said of motions without following them,
+:mod:`puck_tables.chetaev` constraints with friction, and friction from asperities.
 
 >>> import puck_tables as pt
 >>> puck = pt.Puck(radius=0.0381, height=0.0254, friction=0.1)  # ice hockey
@@ -10,24 +13,15 @@ Importing the package stays light: numpy and numba are loaded when something is 
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+from puck_tables._core.lazy import lazily
 from puck_tables._version import __version__
 
 if TYPE_CHECKING:
-    from puck_tables.chetaev.asperity import Asperity, AsperityMotion, asperity_motion
-    from puck_tables.chetaev.asperity_curve import AsperityCurve, asperity_curve
-    from puck_tables.chetaev.motion import ConstrainedMotion, constrained_motion
-    from puck_tables.chetaev.patch_puck import patch_stop, patch_system
-    from puck_tables.chetaev.system import ConstrainedSystem
+    from puck_tables import chetaev, contact, motion
     from puck_tables.contact.laws import Law, law_of, profile_law
-    from puck_tables.contact.one_sided import loaded_share
-    from puck_tables.contact.one_sided import resultants as one_sided_resultants
-    from puck_tables.contact.opening import critical_delta
-    from puck_tables.contact.resultants import Resultants, is_full_contact
     from puck_tables.contact.speed_law import SpeedLaw
-    from puck_tables.contact.speed_quadrature import speed_resultants
     from puck_tables.errors import (
         AccuracyError,
         ContactError,
@@ -38,14 +32,6 @@ if TYPE_CHECKING:
         TableError,
     )
     from puck_tables.kernels.closed_form import resultants
-    from puck_tables.motion.limits import (
-        approach_exponent,
-        curvature_slope,
-        elementary_stop_time,
-        limit_angle,
-        limit_ratio,
-        regime,
-    )
     from puck_tables.puck import Puck
     from puck_tables.result import Result
     from puck_tables.scene.outcome import SceneRun
@@ -73,74 +59,50 @@ if TYPE_CHECKING:
 
 _HOMES = {
     "AccuracyError": "errors",
-    "ContactError": "errors",
-    "InputError": "errors",
-    "MissingExtraError": "errors",
-    "OutputError": "errors",
-    "PuckError": "errors",
-    "TableError": "errors",
     "Aim": "stopping.aim",
-    "Asperity": "chetaev.asperity",
-    "AsperityMotion": "chetaev.asperity",
-    "asperity_motion": "chetaev.asperity",
-    "AsperityCurve": "chetaev.asperity_curve",
-    "asperity_curve": "chetaev.asperity_curve",
-    "ConstrainedMotion": "chetaev.motion",
-    "constrained_motion": "chetaev.motion",
-    "patch_stop": "chetaev.patch_puck",
-    "patch_system": "chetaev.patch_puck",
-    "ConstrainedSystem": "chetaev.system",
-    "Law": "contact.laws",
-    "law_of": "contact.laws",
-    "profile_law": "contact.laws",
-    "loaded_share": "contact.one_sided",
-    "one_sided_resultants": "contact.one_sided:resultants",
-    "critical_delta": "contact.opening",
-    "Resultants": "contact.resultants",
-    "is_full_contact": "contact.resultants",
-    "SpeedLaw": "contact.speed_law",
-    "speed_resultants": "contact.speed_quadrature",
-    "resultants": "kernels.closed_form",
-    "approach_exponent": "motion.limits",
-    "curvature_slope": "motion.limits",
-    "elementary_stop_time": "motion.limits",
-    "limit_angle": "motion.limits",
-    "limit_ratio": "motion.limits",
-    "regime": "motion.limits",
-    "Puck": "puck",
-    "Result": "result",
-    "SceneRun": "scene.outcome",
-    "Scene": "scene.scene",
+    "CheckReport": "table.check",
     "Constraint": "scene.parts",
+    "ContactError": "errors",
     "Drag": "scene.parts",
     "Edge": "scene.parts",
     "Floor": "scene.parts",
     "Force": "scene.parts",
+    "InputError": "errors",
     "Launch": "scene.parts",
+    "Law": "contact.laws",
+    "MissingExtraError": "errors",
+    "OutputError": "errors",
+    "Puck": "puck",
+    "PuckError": "errors",
+    "Result": "result",
     "Run": "scene.parts",
-    "Strips": "scene.parts",
-    "Wall": "scene.parts",
+    "Scene": "scene.scene",
     "SceneMap": "scene.sweep",
+    "SceneRun": "scene.outcome",
+    "SpeedLaw": "contact.speed_law",
     "States": "stopping.states",
-    "states": "stopping.states",
     "StopMap": "stopping.sweep",
     "Stops": "stopping.stops",
+    "Strips": "scene.parts",
+    "Table": "table.table",
+    "TableError": "errors",
+    "Trajectory": "trajectory",
+    "Wall": "scene.parts",
+    "chetaev": "",
+    "contact": "",
+    "law_of": "contact.laws",
+    "motion": "",
+    "profile_law": "contact.laws",
+    "resultants": "kernels.closed_form",
+    "states": "stopping.states",
     "stop": "stopping.stops",
     "table_for": "table.store",
-    "CheckReport": "table.check",
-    "Table": "table.table",
-    "Trajectory": "trajectory",
 }
 
 __all__ = [
     "AccuracyError",
     "Aim",
-    "Asperity",
-    "AsperityCurve",
-    "AsperityMotion",
     "CheckReport",
-    "ConstrainedMotion",
-    "ConstrainedSystem",
     "Constraint",
     "ContactError",
     "Drag",
@@ -155,7 +117,6 @@ __all__ = [
     "Puck",
     "PuckError",
     "Result",
-    "Resultants",
     "Run",
     "Scene",
     "SceneMap",
@@ -170,39 +131,15 @@ __all__ = [
     "Trajectory",
     "Wall",
     "__version__",
-    "approach_exponent",
-    "asperity_curve",
-    "asperity_motion",
-    "constrained_motion",
-    "critical_delta",
-    "curvature_slope",
-    "elementary_stop_time",
-    "is_full_contact",
+    "chetaev",
+    "contact",
     "law_of",
-    "limit_angle",
-    "limit_ratio",
-    "loaded_share",
-    "one_sided_resultants",
-    "patch_stop",
-    "patch_system",
+    "motion",
     "profile_law",
-    "regime",
     "resultants",
-    "speed_resultants",
     "states",
     "stop",
     "table_for",
 ]
 
-
-def __getattr__(name: str) -> Any:
-    if name not in _HOMES:
-        raise AttributeError(f"module 'puck_tables' has no attribute {name!r}")
-    module, _, original = _HOMES[name].partition(":")
-    value = getattr(import_module(f"puck_tables.{module}"), original or name)
-    globals()[name] = value
-    return value
-
-
-def __dir__() -> list[str]:
-    return __all__
+__getattr__, __dir__ = lazily(__name__, _HOMES)

@@ -116,11 +116,11 @@ def table_next_to_the_special_angles() -> Iterator[float]:
 def resultants_where_contact_opens() -> Iterator[float]:
     """The linear law is exact before, and off by (δ/δ_c − 1)^(5/2), below 1e-14, behind."""
     for phi in (1e-300, 1e-8, 0.3, QUARTER, 1.0, 1.2):
-        critical = float(pt.critical_delta(phi))
+        critical = float(pt.contact.critical_delta(phi))
         for gap in (1e-15, 1e-12, 1e-9, 1e-6):
             for side in (-1.0, 1.0):
                 delta = critical * (1.0 + side * gap)
-                rho = pt.one_sided_resultants(phi, delta)
+                rho = pt.contact.one_sided_resultants(phi, delta)
                 yield from np.array(rho) - exact_friction(phi, delta)
 
 
@@ -130,7 +130,7 @@ def one_sided_against_strips(delta: float) -> Iterator[float]:
     for phi in (0.2, 0.5, 0.7, QUARTER - 0.006, QUARTER + 1e-3, 0.9):
         _, chord = balance(np.array([phi]), np.array([delta]))
         start = round(float(chord.offset[0]), 3), round(float(chord.bearing[0]), 3)
-        rho = pt.one_sided_resultants(phi, delta)
+        rho = pt.contact.one_sided_resultants(phi, delta)
         yield from np.array(rho) - strips.resultants(phi, delta, start)
 
 
@@ -158,7 +158,7 @@ def close_to_tipping(gap: float) -> Iterator[float]:
         d = mp.findroot(lambda x: mean(x, 1) - delta / 4, (1 - gap / 2, 1 - gap / 3))
         spin = 2 * mean(d, 2) - delta**2 / 8
         truth = [1.0, float(delta / 4), float(spin)]
-    rho = pt.one_sided_resultants([0.0, 1e-300, -5e-324], 4.0 - gap)
+    rho = pt.contact.one_sided_resultants([0.0, 1e-300, -5e-324], 4.0 - gap)
     yield from (np.stack(rho, axis=-1) - truth).ravel()
 
 

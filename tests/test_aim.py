@@ -14,8 +14,9 @@ from puck_tables.cli.main import main
 from pucks import aim, simulate
 from reference import states
 
-from puck_tables import limit_ratio, stop
+from puck_tables import stop
 from puck_tables.errors import InputError
+from puck_tables.motion import limit_ratio
 
 TARGET = (2.0, 0.1)
 

@@ -9,17 +9,11 @@ import pytest
 from any_puck import stops_by_truth
 from pucks import simulate
 
-from puck_tables import (
-    elementary_stop_time,
-    law_of,
-    limit_angle,
-    limit_ratio,
-    loaded_share,
-    one_sided_resultants,
-    regime,
-)
+from puck_tables import law_of
+from puck_tables.contact import loaded_share, one_sided_resultants
 from puck_tables.contact.laws import HOMOGENEOUS
 from puck_tables.errors import AccuracyError, ContactError, InputError
+from puck_tables.motion import elementary_stop_time, limit_angle, limit_ratio, regime
 from puck_tables.motion.body import body_of
 from puck_tables.motion.run import step_ends
 from puck_tables.motion.sliced import friction_of

@@ -12,7 +12,8 @@ from puck_tables.cli.main import main
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from puck_tables import Asperity, SpeedLaw, asperity_curve, asperity_motion
+from puck_tables import SpeedLaw
+from puck_tables.chetaev import Asperity, asperity_curve, asperity_motion
 from puck_tables.chetaev.asperity_curve import greatest_force, held_round
 from puck_tables.errors import InputError, OutputError
 

@@ -26,7 +26,7 @@ LIMIT = 1.531389372173909906  # tan φ₀ at δ = 0
 def limit(package: Path, folder: Path) -> float:
     """The limit ratio, by a compiled function of puck_tables/motion that calls others."""
     ended = subprocess.run(
-        [sys.executable, "-c", "import puck_tables as p; print(float(p.limit_ratio(0.0)))"],
+        [sys.executable, "-c", "import puck_tables as p; print(float(p.motion.limit_ratio(0.0)))"],
         env={**os.environ, "PYTHONPATH": str(package), "NUMBA_CACHE_DIR": str(folder)},
         cwd=package, capture_output=True, text=True, check=True,
     )  # fmt: skip
@@ -91,7 +91,11 @@ def test_every_compiled_function_is_kept_in_that_folder():
 
 
 def test_four_processes_may_fill_the_cache_at_once(tmp_path: Path):
-    command = [sys.executable, "-c", "import puck_tables as p; print(float(p.limit_ratio(0.0)))"]
+    command = [
+        sys.executable,
+        "-c",
+        "import puck_tables as p; print(float(p.motion.limit_ratio(0.0)))",
+    ]
     env = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
     running = [
         subprocess.Popen(command, env=env, stdout=subprocess.PIPE, text=True) for _ in range(4)
@@ -103,7 +107,7 @@ def test_four_processes_may_fill_the_cache_at_once(tmp_path: Path):
 
 def test_no_writable_folder_still_computes(tmp_path: Path):
     ended = subprocess.run(
-        [sys.executable, "-c", "import puck_tables as p; print(float(p.limit_ratio(0.0)))"],
+        [sys.executable, "-c", "import puck_tables as p; print(float(p.motion.limit_ratio(0.0)))"],
         env={**os.environ, "NUMBA_CACHE_DIR": "/proc/none"}, cwd=tmp_path,
         capture_output=True, text=True, check=True,
     )  # fmt: skip
@@ -121,7 +125,7 @@ def test_the_cache_lies_outside_the_package_and_old_ones_go(tmp_path: Path):
     environment = {**os.environ, "XDG_CACHE_HOME": str(tmp_path)}
     environment.pop("NUMBA_CACHE_DIR", None)
     subprocess.run(
-        [sys.executable, "-c", "import puck_tables as p; p.limit_ratio(0.0)"],
+        [sys.executable, "-c", "import puck_tables as p; p.motion.limit_ratio(0.0)"],
         env=environment, check=True,
     )  # fmt: skip
     assert not old.exists()

@@ -7,7 +7,8 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.interpolate import make_interp_spline
 
-from puck_tables import ConstrainedSystem, constrained_motion, patch_stop, patch_system, stop
+from puck_tables import stop
+from puck_tables.chetaev import ConstrainedSystem, constrained_motion, patch_stop, patch_system
 from puck_tables.chetaev.system import instant
 from puck_tables.errors import AccuracyError, InputError
 

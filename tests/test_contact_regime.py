@@ -7,9 +7,10 @@ import math
 import numpy as np
 import pytest
 
-from puck_tables import is_full_contact, limit_angle, resultants
-from puck_tables.contact import closed_form, quadrature
+from puck_tables import resultants
+from puck_tables.contact import closed_form, is_full_contact, quadrature
 from puck_tables.errors import ContactError, InputError
+from puck_tables.motion import limit_angle
 
 QUARTER, HALF = 0.25 * math.pi, 0.5 * math.pi
 

@@ -50,14 +50,14 @@ def test_resultants_at_and_below_the_smallest_double():
 
 
 def test_beyond_the_ends_there_is_a_sentence():
-    critical = float(pt.critical_delta(0.3))
+    critical = float(pt.contact.critical_delta(0.3))
     with pytest.raises(ContactError, match="part of the base is lifted"):
         pt.resultants(0.3, critical * (1.0 + 1e-9))
     for delta in (4.0, math.nextafter(4.0, 5.0), 1e70):
         with pytest.raises(ContactError, match="tips over"):
-            pt.one_sided_resultants(0.3, delta)
+            pt.contact.one_sided_resultants(0.3, delta)
     with pytest.raises(AccuracyError, match=r"up to delta = 3\.9999 it is"):
-        pt.one_sided_resultants(0.3, math.nextafter(4.0, 0.0))
+        pt.contact.one_sided_resultants(0.3, math.nextafter(4.0, 0.0))
     for motion in (
         {"velocity": (1e160, 0.0), "spin": 0.0},
         {"velocity": (1.0, 0.0), "spin": 1e308, "radius": 1e9},
@@ -98,7 +98,7 @@ def test_no_jump_where_one_cell_meets_the_next():
 
 def test_on_the_limit_ratio_nothing_moves_away():
     for delta in (0.0, 0.4, 1.0):
-        ratio = float(pt.limit_ratio(delta))
+        ratio = float(pt.motion.limit_ratio(delta))
         run = simulate((1.0, 0.0), ratio, delta=delta, exact=True, frames=9)
         assert run.regime == "D"
         moving = run.speed > 0.0

@@ -12,8 +12,9 @@ import pytest
 from pucks import aim, simulate, sweep
 from scenes import simulate_scene
 
-from puck_tables import limit_ratio, resultants, states, stop
+from puck_tables import resultants, states, stop
 from puck_tables.errors import InputError
+from puck_tables.motion import limit_ratio
 
 LARGEST = 1.7976931348623157e308
 

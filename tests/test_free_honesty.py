@@ -10,8 +10,9 @@ from any_puck import motion_by_truth
 from pucks import simulate
 from test_any_puck import launch
 
-from puck_tables import law_of, limit_ratio, states, stop
+from puck_tables import law_of, states, stop
 from puck_tables.errors import AccuracyError
+from puck_tables.motion import limit_ratio
 
 JUDGE = 3e-12  # of the longest motion: what scipy is off
 

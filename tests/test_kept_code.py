@@ -18,7 +18,7 @@ from puck_tables.kernels import kept_code
 from puck_tables.kernels.compile import kernel
 
 LIMIT = 1.531389372173909906  # tan φ₀ at δ = 0
-COMMAND = [sys.executable, "-c", "import puck_tables as p; print(float(p.limit_ratio(0.0)))"]
+COMMAND = [sys.executable, "-c", "import puck_tables as p; print(float(p.motion.limit_ratio(0.0)))"]
 
 
 def run(folder: Path, **environment: str) -> subprocess.CompletedProcess[str]:

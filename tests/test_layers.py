@@ -31,7 +31,7 @@ ROOMS = {
     "paper": "contact motion plot puck trajectory",
     "cli": "_core _version accuracy chetaev contact errors io kernels motion paper plot puck scene "
     "stopping table tradeoff",
-    "__init__": "_version",
+    "__init__": "_core _version",
 }
 DOORS = {
     "numba": {"kernels.compile", "kernels.kept_code"},

@@ -11,17 +11,9 @@ from hypothesis import strategies as st
 from pucks import simulate
 from reference import REFERENCE_RUNS, states
 
-from puck_tables import (
-    Table,
-    approach_exponent,
-    curvature_slope,
-    limit_angle,
-    limit_ratio,
-    regime,
-    resultants,
-    stop,
-)
+from puck_tables import Table, resultants, stop
 from puck_tables.errors import AccuracyError, ContactError, InputError
+from puck_tables.motion import approach_exponent, curvature_slope, limit_angle, limit_ratio, regime
 
 
 def deviation(run: object, truth: tuple[float, float, float]) -> float:

@@ -14,10 +14,10 @@ from matplotlib.ticker import ScalarFormatter
 from pucks import simulate, sweep
 from scenes import simulate_scene, sweep_scene
 
-from puck_tables import limit_ratio
 from puck_tables.chetaev.asperity import Asperity
 from puck_tables.chetaev.asperity_curve import asperity_curve
 from puck_tables.errors import InputError
+from puck_tables.motion import limit_ratio
 from puck_tables.plot import style
 from puck_tables.scene.library import find_scene
 

@@ -16,8 +16,9 @@ import xarray
 from matplotlib.figure import Figure
 from scenes import simulate_scene, sweep_scene
 
-from puck_tables import Asperity, Puck, asperity_curve, states, stop
+from puck_tables import Puck, states, stop
 from puck_tables.accuracy.front import shipped_front
+from puck_tables.chetaev import Asperity, asperity_curve
 from puck_tables.errors import ContactError, InputError, OutputError
 from puck_tables.io.columns import COLUMNS
 from puck_tables.io.formats import FORMATS

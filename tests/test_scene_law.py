@@ -91,7 +91,7 @@ def test_slices_of_strips_are_brought_to_one_shape_and_stay_the_same_splines():
         for phi in np.linspace(0.01, 1.56, 41):
             k = min(math.tan(phi), 1.0 / math.tan(phi))
             inverse, across, spin = slice_ratios(k, phi > math.pi / 4, regions.cuts[n])
-            truth = pt.one_sided_resultants(phi, delta)
+            truth = pt.contact.one_sided_resultants(phi, delta)
             assert inverse == pytest.approx(float(1.0 / truth.parallel), abs=2e-9)
             assert across == pytest.approx(float(truth.perpendicular / truth.parallel), abs=2e-9)
             assert spin == pytest.approx(float(truth.spin / truth.parallel), abs=2e-9)
@@ -121,7 +121,7 @@ def by_quadrature(points, puck, launch, times):
         vx, vy, w = y[3:]
         v, rim = math.hypot(vx, vy), radius * abs(w)
         phi, Q = math.atan2(rim, v), math.hypot(v, rim)
-        rho = pt.speed_resultants(phi, Q, friction, 2.0 * height / radius)
+        rho = pt.contact.speed_resultants(phi, Q, friction, 2.0 * height / radius)
         sine = math.copysign(rim / Q, w)
         along, left = g * float(rho.parallel) / Q, g * sine * float(rho.perpendicular) / Q
         turning = 2.0 / radius**2 * 0.5 * g * radius * sine * float(rho.spin)

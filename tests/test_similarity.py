@@ -11,8 +11,9 @@ from pucks import simulate, sweep
 from reference import REFERENCE_RUNS
 from reference import states as reference_states
 
-from puck_tables import Table, limit_ratio, states, stop
+from puck_tables import Table, states, stop
 from puck_tables.errors import AccuracyError, InputError
+from puck_tables.motion import limit_ratio
 from puck_tables.stopping.axes import SlipAxis, heights
 from puck_tables.stopping.check import launch_points, launches_at, looked_up, tabulate
 from puck_tables.stopping.curve import limits, regular_slopes

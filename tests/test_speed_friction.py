@@ -11,7 +11,8 @@ from click.testing import CliRunner
 from puck_tables.cli.main import main
 from scipy.integrate import quad
 
-from puck_tables import SpeedLaw, Table, resultants, speed_resultants
+from puck_tables import SpeedLaw, Table, resultants
+from puck_tables.contact import speed_resultants
 from puck_tables.contact.integrals import slip_direction
 from puck_tables.contact.speed_quadrature import speed_integrals
 from puck_tables.errors import AccuracyError, ContactError, InputError, OutputError

@@ -198,7 +198,7 @@ def test_no_room_for_compiled_code(folder: Path):
     """A full cache disk costs time, not the answer."""
     code = (
         "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (600, 600))\n"
-        "import puck_tables as p; print(float(p.limit_ratio(0.0)))"
+        "import puck_tables as p; print(float(p.motion.limit_ratio(0.0)))"
     )
     ended = subprocess.run(
         [sys.executable, "-c", code], env={**os.environ, "NUMBA_CACHE_DIR": str(folder)},

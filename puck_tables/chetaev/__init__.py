@@ -1,1 +1,40 @@
 """Constraints with friction after Chetaev: general systems, and dry friction from asperities."""
+
+from typing import TYPE_CHECKING
+
+from puck_tables._core.lazy import lazily
+
+if TYPE_CHECKING:
+    from puck_tables.chetaev.asperity import Asperity, AsperityMotion, asperity_motion
+    from puck_tables.chetaev.asperity_curve import AsperityCurve, asperity_curve
+    from puck_tables.chetaev.motion import ConstrainedMotion, constrained_motion
+    from puck_tables.chetaev.patch_puck import patch_stop, patch_system
+    from puck_tables.chetaev.system import ConstrainedSystem
+
+_HOMES = {
+    "Asperity": "asperity",
+    "AsperityCurve": "asperity_curve",
+    "AsperityMotion": "asperity",
+    "ConstrainedMotion": "motion",
+    "ConstrainedSystem": "system",
+    "asperity_curve": "asperity_curve",
+    "asperity_motion": "asperity",
+    "constrained_motion": "motion",
+    "patch_stop": "patch_puck",
+    "patch_system": "patch_puck",
+}
+
+__all__ = [
+    "Asperity",
+    "AsperityCurve",
+    "AsperityMotion",
+    "ConstrainedMotion",
+    "ConstrainedSystem",
+    "asperity_curve",
+    "asperity_motion",
+    "constrained_motion",
+    "patch_stop",
+    "patch_system",
+]
+
+__getattr__, __dir__ = lazily(__name__, _HOMES)

@@ -1,1 +1,32 @@
 """What the floor does to the puck: slow, trusted, independent of the compiled code."""
+
+from typing import TYPE_CHECKING
+
+from puck_tables._core.lazy import lazily
+
+if TYPE_CHECKING:
+    from puck_tables.contact.one_sided import loaded_share
+    from puck_tables.contact.one_sided import resultants as one_sided_resultants
+    from puck_tables.contact.opening import critical_delta
+    from puck_tables.contact.resultants import Resultants, is_full_contact
+    from puck_tables.contact.speed_quadrature import speed_resultants
+
+_HOMES = {
+    "Resultants": "resultants",
+    "critical_delta": "opening",
+    "is_full_contact": "resultants",
+    "loaded_share": "one_sided",
+    "one_sided_resultants": "one_sided:resultants",
+    "speed_resultants": "speed_quadrature",
+}
+
+__all__ = [
+    "Resultants",
+    "critical_delta",
+    "is_full_contact",
+    "loaded_share",
+    "one_sided_resultants",
+    "speed_resultants",
+]
+
+__getattr__, __dir__ = lazily(__name__, _HOMES)

@@ -1,1 +1,35 @@
 """The hot loop: equations of motion, steppers, events; everything compiled."""
+
+from typing import TYPE_CHECKING
+
+from puck_tables._core.lazy import lazily
+
+if TYPE_CHECKING:
+    from puck_tables.motion.limits import (
+        approach_exponent,
+        curvature_slope,
+        elementary_stop_time,
+        limit_angle,
+        limit_ratio,
+        regime,
+    )
+
+_HOMES = {
+    "approach_exponent": "limits",
+    "curvature_slope": "limits",
+    "elementary_stop_time": "limits",
+    "limit_angle": "limits",
+    "limit_ratio": "limits",
+    "regime": "limits",
+}
+
+__all__ = [
+    "approach_exponent",
+    "curvature_slope",
+    "elementary_stop_time",
+    "limit_angle",
+    "limit_ratio",
+    "regime",
+]
+
+__getattr__, __dir__ = lazily(__name__, _HOMES)

@@ -1,0 +1,39 @@
+"""Names of a package that are loaded when they are asked for."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Mapping
+from importlib import import_module
+from typing import Any
+
+
+def lazily(
+    package: str, homes: Mapping[str, str]
+) -> tuple[Callable[[str], Any], Callable[[], list[str]]]:
+    """``__getattr__`` and ``__dir__`` of a package.
+
+    Parameters
+    ----------
+    package : its ``__name__``
+    homes : modules of it by the names that they hold; ``module:name`` if it has another one there,
+        and nothing for a module itself
+
+    Examples
+    --------
+    >>> get, listed = lazily("puck_tables", {"Puck": "puck", "contact": ""})
+    >>> get("Puck").__name__, get("contact").__name__, "Puck" in listed()
+    ('Puck', 'puck_tables.contact', True)
+    """
+
+    def get(name: str) -> Any:
+        if name not in homes:
+            raise AttributeError(f"module {package!r} has no attribute {name!r}")
+        module, _, original = homes[name].partition(":")
+        value: Any = import_module(f"{package}.{module or name}")
+        if module:
+            value = getattr(value, original or name)
+        setattr(sys.modules[package], name, value)
+        return value
+
+    return get, lambda: sorted({*vars(sys.modules[package]), *homes})
