@@ -2,7 +2,7 @@
 
 The ladder: closed form (rest, pure spin, pure translation, limit motion); look-up (all motions of
 a free puck on a level floor are one curve); and for everything that breaks that symmetry the
-friction ratios at the scene's δ, a slice of the table, integrated with what acts.  A
+friction ratios at the scene's δ, a section of the table, integrated with what acts.  A
 floor that moves steadily only shifts the frame; walls, edges and borders that the free puck does
 not reach are not there.
 """
@@ -174,29 +174,28 @@ def plan_for(scene: Scene) -> Plan:
     """
     acting = ingredients(scene)
     if acting:
-        model = "slice of the table at fixed delta, integrated"
+        model = "friction at fixed delta, integrated"
         if "friction law" in acting:
-            model = "table of f over slip angle and speed, integrated"
+            model = "friction by slip speed, integrated"
         elif "no dry friction" in acting:
             model = "integrated"
-        lines = [
-            f"taken         {model}",
-            f"acting        {', '.join([*acting, *_moving(scene)])}",
-            "cheaper, no   look-up: not a free puck on a level floor",
-        ]
-        return Plan(model, False, "\n".join(lines))
+        why = (
+            f"Taken: {model}; what acts: {', '.join([*acting, *_moving(scene)])}.\n"
+            "A look-up would be cheaper, but it is of free pucks on a level floor."
+        )
+        return Plan(model, False, why)
     kind = scene.puck.regime(free_velocity(scene), scene.launch.spin)
     frame = "in the frame of the belt" if any(scene.floor.velocity) else "a free puck, level floor"
     if kind in _NAMES:
         model = f"closed form: {_NAMES[kind]}"
-        return Plan(model, True, f"taken         {model}, {frame}\ncheaper, no   there is none")
-    model = "free puck: similarity, slice of the table"
-    lines = [
-        f"taken         {model}, {frame}",
-        f"cheaper, no   closed form: generic motion ({kind})",
-        "dearer        integration in the laboratory: nothing here breaks the similarity",
-    ]
-    return Plan(model, True, "\n".join(lines))
+        return Plan(model, True, f"Taken: {model}; {frame}.\nNothing is cheaper.")
+    model = "free puck, by similarity"
+    why = (
+        f"Taken: {model}; {frame}.\n"
+        f"A closed form would be cheaper, but the motion is generic ({kind}).\n"
+        "Integration in the laboratory would tell no more: nothing here breaks the similarity."
+    )
+    return Plan(model, True, why)
 
 
 def _moving(scene: Scene) -> list[str]:
