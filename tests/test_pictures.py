@@ -138,7 +138,7 @@ def test_what_pulls_is_labelled(drawn: Any, tmp_path: Path) -> None:
     figure = drawn(run)
     assert "force (0.1, 0.2) N" in words(figure)
     title = figure.axes[0].get_title("left")
-    assert title == "also acting: torque 0.001 N m, force over time, viscous drag"
+    assert title == "also acting: drag, force over time, torque 0.001 N m"
     (tmp_path / "force.csv").write_text("t,Fx,Fy\n0,0.5,0\n1,0,0\n")
     with pytest.raises(InputError, match="has changed since the run"):
         drawn(run)

@@ -84,10 +84,14 @@ class Kind:
 
 def of(
     shape: str, default: Any = MISSING, unit: str = "", doc: str = "", table: str = "",
-    **limits: Any,
+    acts: str | None = None, **limits: Any,
 ) -> Any:  # fmt: skip
-    """A dataclass field with what it allows; ``table``: its name in tables, if it is another."""
-    metadata = {"kind": Kind(shape, unit, **limits), "doc": doc, "table": table}
+    """A dataclass field with what it allows.
+
+    ``table``: its name in tables, if it is another; ``acts``: what acts where it is not left at its
+    default, '' where it only tells how.
+    """
+    metadata = {"kind": Kind(shape, unit, **limits), "doc": doc, "table": table, "acts": acts}
     if isinstance(default, list | dict):
         return field(default_factory=lambda: type(default)(default), metadata=metadata)
     return (

@@ -12,6 +12,7 @@ import numpy.typing as npt
 from puck_tables.plot.style import BLUE, GREY, LAUNCH, ORANGE, RED, STOP
 from puck_tables.scene.outcome import SceneRun
 from puck_tables.scene.parts import Edge, Wall
+from puck_tables.scene.plan import acting
 from puck_tables.scene.scene import Scene
 
 if TYPE_CHECKING:
@@ -20,6 +21,8 @@ if TYPE_CHECKING:
 FloatArray = npt.NDArray[np.float64]
 
 _PUCKS_DRAWN = 12
+# ingredients that are seen in the plane; others are named above it
+_DRAWN = ("slope", "turntable", "strips", "force", "walls", "edges", "rail", "pivot", "blade")
 _SHAPE = 2.2  # width of the panel over its height
 _ARROWS = (9, 5)  # of a moving floor, across and up
 _PURPLE = "#8b2fa0"
@@ -202,13 +205,10 @@ def _draw_pulls(axes: Axes, scene: Scene, x: FloatArray, y: FloatArray, box: Box
             arrowprops={"arrowstyle": "-|>", "color": color, "linewidth": 2.0},
         )  # fmt: skip
         axes.plot([], [], color=color, marker=">", label=words)
-    unseen = (
-        (scene.force.torque != 0.0, f"torque {scene.force.torque:g} N m"),
-        (bool(scene.force.over_time), "force over time"),
-        (scene.drag.sliding > 0.0 or scene.drag.spinning > 0.0, "viscous drag"),
-        (bool(scene.floor.law), "friction by slip speed"),
-    )
-    if also := [words for there, words in unseen if there]:
+    also = [name for name in acting(scene) if name not in _DRAWN]
+    if scene.force.torque != 0.0:
+        also.append(f"torque {scene.force.torque:g} N m")
+    if also:
         axes.set_title(f"also acting: {', '.join(also)}", fontsize=9, loc="left")
 
 

@@ -29,13 +29,14 @@ LAUNCH = (
 
 
 class Entry(NamedTuple):
-    """One entry: its path, its value (None: left out), what it allows, what it is, its default."""
+    """One entry: path, value (None: left out), what it allows, what it is, default, what acts."""
 
     path: str
     value: Any
     kind: Kind
     doc: str
     default: Any
+    acts: str | None
 
 
 def entries(part: Any, prefix: str = "") -> Iterator[Entry]:
@@ -56,7 +57,8 @@ def entries(part: Any, prefix: str = "") -> Iterator[Entry]:
             for i, item in enumerate(value):
                 yield from entries(item, f"{path}[{i}].")
         else:
-            yield Entry(path, value, kind, spec.metadata["doc"], spec.default)
+            doc, acts = spec.metadata["doc"], spec.metadata["acts"]
+            yield Entry(path, value, kind, doc, spec.default, acts)
 
 
 def units_of(scene: Scene) -> dict[str, str]:

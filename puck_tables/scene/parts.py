@@ -18,9 +18,11 @@ Rows = tuple[tuple[float, ...], ...]
 class Strips:
     """Regions of the floor between parallel borders, which the centre of the puck crosses."""
 
-    borders: tuple[float, ...] = of("numbers", unit="m", doc="ascending places along 'direction'")
-    friction: tuple[float, ...] = of("numbers", low=0.0, doc="one more than borders")
-    direction: float = of("number", 0.0, "rad", doc="across the borders, from x")
+    borders: tuple[float, ...] = of(
+        "numbers", unit="m", doc="ascending places along 'direction'", acts="strips"
+    )
+    friction: tuple[float, ...] = of("numbers", low=0.0, doc="one more than borders", acts="")
+    direction: float = of("number", 0.0, "rad", doc="across the borders, from x", acts="")
 
 
 @dataclass(frozen=True)
@@ -33,14 +35,18 @@ class Floor:
     0.0
     """
 
-    slope: float = of("number", 0.0, "rad", low=0.0, high=math.pi / 2, below=True)
-    downhill: float = of("number", 0.0, "rad", doc="direction of steepest descent, from x")
-    velocity: tuple[float, float] = of("pair", (0.0, 0.0), "m/s", doc="of a belt")
-    turning: float = of("number", 0.0, "rad/s", doc="spin of a turntable")
-    centre: tuple[float, float] = of("pair", (0.0, 0.0), "m", doc="of the turntable")
+    slope: float = of("number", 0.0, "rad", low=0.0, high=math.pi / 2, below=True, acts="slope")
+    downhill: float = of("number", 0.0, "rad", doc="direction of steepest descent, from x", acts="")
+    velocity: tuple[float, float] = of("pair", (0.0, 0.0), "m/s", doc="of a belt", acts="")
+    turning: float = of("number", 0.0, "rad/s", doc="spin of a turntable", acts="turntable")
+    centre: tuple[float, float] = of("pair", (0.0, 0.0), "m", doc="of the turntable", acts="")
     strips: Strips | None = of("part", None, part=Strips)
     law: str | Rows = of(
-        "rows", "", file="", doc="CSV or rows of slip speed in m/s and f, in place of friction"
+        "rows",
+        "",
+        file="",
+        doc="CSV or rows of slip speed in m/s and f, in place of friction",
+        acts="friction law",
     )
 
 
@@ -62,18 +68,26 @@ class Launch:
 class Drag:
     """Viscous friction against the floor, as in an air cushion or a film."""
 
-    sliding: float = of("number", 0.0, "kg/s", low=0.0, doc="force over relative speed")
-    spinning: float = of("number", 0.0, "N m s", low=0.0, doc="torque over relative spin")
+    sliding: float = of(
+        "number", 0.0, "kg/s", low=0.0, doc="force over relative speed", acts="drag"
+    )
+    spinning: float = of(
+        "number", 0.0, "N m s", low=0.0, doc="torque over relative spin", acts="drag"
+    )
 
 
 @dataclass(frozen=True)
 class Force:
     """A force on the centre and a torque, constant and over time."""
 
-    constant: tuple[float, float] = of("pair", (0.0, 0.0), "N")
-    torque: float = of("number", 0.0, "N m")
+    constant: tuple[float, float] = of("pair", (0.0, 0.0), "N", acts="force")
+    torque: float = of("number", 0.0, "N m", acts="force")
     over_time: str | Rows = of(
-        "rows", "", file="", doc="CSV or rows of t, Fx, Fy and perhaps torque, straight between"
+        "rows",
+        "",
+        file="",
+        doc="CSV or rows of t, Fx, Fy and perhaps torque, straight between",
+        acts="force over time",
     )
 
 
@@ -81,37 +95,50 @@ class Force:
 class Wall:
     """A straight cushion that the rim of the puck bounces off."""
 
-    point: tuple[float, float] = of("pair", unit="m", doc="any point of it")
-    normal: tuple[float, float] = of("pair", doc="into the field, any length")
-    restitution: float = of("number", 1.0, low=0.0, high=1.0)
+    point: tuple[float, float] = of("pair", unit="m", doc="any point of it", acts="walls")
+    normal: tuple[float, float] = of("pair", doc="into the field, any length", acts="")
+    restitution: float = of("number", 1.0, low=0.0, high=1.0, acts="")
     tangential: float = of(
-        "number", -1.0, low=-1.0, high=1.0, doc="-1: smooth, 0: the rim rolls off, 1: it reverses"
+        "number",
+        -1.0,
+        low=-1.0,
+        high=1.0,
+        doc="-1: smooth, 0: the rim rolls off, 1: it reverses",
+        acts="",
     )
-    friction: float = of("number", math.inf, low=0.0, doc="limits the tangential impulse")
+    friction: float = of("number", math.inf, low=0.0, doc="limits the tangential impulse", acts="")
 
 
 @dataclass(frozen=True)
 class Edge:
     """A straight boundary that ends the run when the centre passes it."""
 
-    point: tuple[float, float] = of("pair", unit="m", doc="any point of it")
-    normal: tuple[float, float] = of("pair", doc="into the field, any length")
+    point: tuple[float, float] = of("pair", unit="m", doc="any point of it", acts="edges")
+    normal: tuple[float, float] = of("pair", doc="into the field, any length", acts="")
 
 
 @dataclass(frozen=True)
 class Constraint:
     """A linear constraint on the velocities."""
 
-    kind: str = of("choice", choices=("rail", "pivot", "blade"))
+    kind: str = of("choice", choices=("rail", "pivot", "blade"), acts="constraint")
     angle: float = of(
         "number", 0.0, "rad",
         doc="direction of the rail; from the centre to the pivot, or along the blade, in the body",
+        acts="",
     )  # fmt: skip
     reach: float = of(
-        "number", 0.0, "m", low=0.0, doc="from the centre to the pivot, which needs one > 0"
+        "number",
+        0.0,
+        "m",
+        low=0.0,
+        doc="from the centre to the pivot, which needs one > 0",
+        acts="",
     )
-    velocity: tuple[float, float] = of("pair", (0.0, 0.0), "m/s", doc="of rail or pivot")
-    side_slip: float = of("number", 0.0, "m/s", doc="of the blade over the floor, to its left")
+    velocity: tuple[float, float] = of("pair", (0.0, 0.0), "m/s", doc="of rail or pivot", acts="")
+    side_slip: float = of(
+        "number", 0.0, "m/s", doc="of the blade over the floor, to its left", acts=""
+    )
 
 
 @dataclass(frozen=True)

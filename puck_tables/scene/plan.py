@@ -10,16 +10,16 @@ not reach are not there.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import Any
 
-from puck_tables._core.fields import Kind, specs
+from puck_tables._core.fields import specs
 from puck_tables.errors import PuckError
 from puck_tables.motion.body import is_plain
 from puck_tables.motion.sliced import FINEST_TOL
 from puck_tables.scene.agreement import distance, launch_velocity
+from puck_tables.scene.entries import entries
 from puck_tables.scene.scene import Scene
 
 _NAMES = {"A": "rest", "B0": "pure spin", "C0": "pure translation", "D": "the limit motion"}
@@ -34,53 +34,8 @@ class Plan:
     why: str
 
 
-class Ingredient(NamedTuple):
-    """What may act: its name, the entries of a scene that describe it, and whether it is there."""
-
-    name: str
-    paths: tuple[str, ...]
-    acts: Callable[[Scene], bool]
-
-
-# every entry that a scene may have, so that none can be left out by mistake: first those that the
-# motion of a free puck on a level floor takes into account
-FREE = (
-    "title", "puck.radius", "puck.height", "puck.friction", "puck.mass", "puck.gravity",
-    "puck.pressure", "puck.gyration", "floor.velocity",
-    "launch.velocity", "launch.spin", "launch.position", "launch.orientation",
-    "run.time", "run.frames", "run.tol",
-)  # fmt: skip
-INGREDIENTS = (
-    Ingredient("slope", ("floor.slope", "floor.downhill"), lambda s: s.floor.slope > 0.0),
-    Ingredient("turntable", ("floor.turning", "floor.centre"), lambda s: s.floor.turning != 0.0),
-    Ingredient(
-        "strips", ("floor.strips.borders", "floor.strips.friction", "floor.strips.direction"),
-        lambda s: s.floor.strips is not None,
-    ),
-    Ingredient(
-        "drag", ("drag.sliding", "drag.spinning"),
-        lambda s: s.drag.sliding > 0.0 or s.drag.spinning > 0.0,
-    ),
-    Ingredient(
-        "force", ("force.constant", "force.torque"),
-        lambda s: any(s.force.constant) or s.force.torque != 0.0,
-    ),
-    Ingredient("force over time", ("force.over_time",), lambda s: bool(s.force.over_time)),
-    Ingredient(
-        "walls",
-        ("wall.point", "wall.normal", "wall.restitution", "wall.tangential", "wall.friction"),
-        lambda s: bool(s.walls),
-    ),
-    Ingredient("edges", ("edge.point", "edge.normal"), lambda s: bool(s.edges)),
-    Ingredient(
-        "constraint",
-        ("constraint.kind", "constraint.angle", "constraint.reach", "constraint.velocity",
-         "constraint.side_slip"),
-        lambda s: s.constraint is not None,
-    ),
-    Ingredient("friction law", ("floor.law",), lambda s: bool(s.floor.law)),
-)  # fmt: skip
-KNOWN = frozenset([*FREE, *(path for one in INGREDIENTS for path in one.paths)])
+# what the motion of a free puck on a level floor takes into account
+FREE = ("title", "puck", "launch", "run")
 
 
 def ingredients(scene: Scene) -> list[str]:
@@ -89,7 +44,7 @@ def ingredients(scene: Scene) -> list[str]:
     Raises
     ------
     PuckError
-        If an entry of the scene belongs to nothing that is known here: it would be left out.
+        As :func:`acting`.
 
     Examples
     --------
@@ -97,12 +52,7 @@ def ingredients(scene: Scene) -> list[str]:
     >>> ingredients(Scene(Puck(1.0, friction=0.1), Floor(slope=0.2), Launch((1.0, 0.0), 5.0)))
     ['slope']
     """
-    kind: Any = type(scene)
-    if stray := _stray(kind):
-        raise PuckError(f"{', '.join(stray)}: the plan of a run knows no such ingredient")
-    there = [one.name for one in INGREDIENTS if one.acts(scene)]
-    if scene.constraint is not None:
-        there[there.index("constraint")] = scene.constraint.kind
+    there = acting(scene)
     puck = scene.puck
     plain = is_plain(puck.pressure, puck.gyration, puck.delta)
     if not plain and scene.run.tol < FINEST_TOL:
@@ -112,17 +62,42 @@ def ingredients(scene: Scene) -> list[str]:
     return there
 
 
+def acting(scene: Scene) -> list[str]:
+    """What a scene says that acts, in its order.
+
+    Raises
+    ------
+    PuckError
+        If an entry of the scene does not say what acts with it: it would be left out.
+
+    Examples
+    --------
+    >>> from puck_tables import Drag, Puck
+    >>> acting(Scene(Puck(1.0), drag=Drag(sliding=0.1)))
+    ['drag']
+    """
+    kind: Any = type(scene)
+    if stray := _stray(kind):
+        raise PuckError(f"{', '.join(stray)}: the plan of a run knows no such ingredient")
+    told_of = (entry for entry in entries(scene) if entry.value is not None and entry.acts)
+    there = list(dict.fromkeys(one.acts or "" for one in told_of if one.value != one.default))
+    if scene.constraint is not None:
+        there[there.index("constraint")] = scene.constraint.kind
+    return there
+
+
 @lru_cache(maxsize=16)
-def _stray(kind: type, path: str = "") -> list[str]:
-    """Entries that a scene, or a part of it, may have and that are not known here."""
-    found = []
-    for name, spec in specs(kind).items():
-        what: Kind = spec.metadata["kind"]
-        if what.part is not None:
-            found += _stray(what.part, f"{path}{name}.")
-        elif f"{path}{name}" not in KNOWN:
-            found.append(f"{path}{name}")
-    return found
+def _stray(kind: Any) -> list[str]:
+    """Entries that a scene, or a part of it, may have and that do not say what acts with them."""
+    return [path for name in specs(kind) if name not in FREE for path in _mute(kind, name, name)]
+
+
+def _mute(kind: Any, name: str, path: str) -> list[str]:
+    spec = specs(kind)[name]
+    part = spec.metadata["kind"].part
+    if part is None:
+        return [path] if spec.metadata["acts"] is None else []
+    return [one for inner in specs(part) for one in _mute(part, inner, f"{path}.{inner}")]
 
 
 def free_velocity(scene: Scene) -> tuple[float, float]:
@@ -172,15 +147,15 @@ def plan_for(scene: Scene) -> Plan:
     >>> plan_for(Scene(Puck(1.0, friction=0.1), launch=Launch((1.0, 0.0)))).model
     'closed form: pure translation'
     """
-    acting = ingredients(scene)
-    if acting:
+    acts = ingredients(scene)
+    if acts:
         model = "friction at fixed delta, integrated"
-        if "friction law" in acting:
+        if "friction law" in acts:
             model = "friction by slip speed, integrated"
-        elif "no dry friction" in acting:
+        elif "no dry friction" in acts:
             model = "integrated"
         why = (
-            f"Taken: {model}; what acts: {', '.join([*acting, *_moving(scene)])}.\n"
+            f"Taken: {model}; what acts: {', '.join([*acts, *_moving(scene)])}.\n"
             "A look-up would be cheaper, but it is of free pucks on a level floor."
         )
         return Plan(model, False, why)
