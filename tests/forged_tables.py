@@ -64,7 +64,7 @@ def content_digest(attributes: dict[str, object], arrays: dict[str, np.ndarray])
             "profile_pressure",
         ),
         "stops": ("phi", "delta", "time", "along", "across", "length", "body", "curve", "turn"),
-        "friction slice": (
+        "friction section": (
             "phi", "inverse_parallel", "perpendicular_share", "spin_share", "profile_radius",
             "profile_pressure",
         ),

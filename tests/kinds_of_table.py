@@ -9,7 +9,7 @@ import numpy as np
 from puck_tables import SpeedLaw, Table, profile_law
 
 LAW = SpeedLaw([0.0, 0.5, 2.0], [0.3, 0.2, 0.25])
-KINDS = ("resultants", "washer", "profile", "stops", "speed", "slice")
+KINDS = ("resultants", "washer", "profile", "stops", "speed", "section")
 
 
 @cache
@@ -20,7 +20,7 @@ def small(kind: str) -> Table:
     if kind == "profile":
         law = profile_law([0.0, 0.5, 1.0], [1.0, 2.0, 0.5], name="stone.csv")
         return Table.build(law, cells=12)
-    if kind == "slice":
+    if kind == "section":
         return Table.build(("uniform", 2.0), 1e-5)
     if kind == "washer":
         return Table.build("annulus:0.8", cells=12)
@@ -36,7 +36,7 @@ def answers(table: Table) -> np.ndarray:
         rim, one = np.tan(phi), np.ones(phi.size)
         launches = np.stack([np.cos(phi), 0.0 * one, np.sin(phi), share, one, one])
         return np.concatenate([table.stops(launches)[0], table.known(launches)[3:6] + 0.0 * rim])
-    if table.kind == "friction slice":
+    if table.kind == "friction section":
         return table.ratios(phi).T
     if table.kind == "speed":
         return np.stack(table.resultants(phi, table.top * share / np.sqrt(2.0), 0.5))

@@ -238,13 +238,13 @@ def test_progress_is_told():
 
 def test_the_friction_of_a_tall_puck_is_kept(kept: Path, monkeypatch: pytest.MonkeyPatch):
     built: list[float] = []
-    true = store.friction_slice
+    true = store.friction_section
 
     def counted(law: pt.Law, delta: float, accuracy: float) -> pt.Table:
         built.append(delta)
         return true(law, delta, accuracy)
 
-    monkeypatch.setattr(store, "friction_slice", counted)
+    monkeypatch.setattr(store, "friction_section", counted)
     store.friction_for.cache_clear()  # other tests have asked for the same
     first = simulate((1.0, 0.0), 5.0, delta=1.5, tol=1e-5)
     times = len(built)
@@ -257,7 +257,7 @@ def test_the_friction_of_a_tall_puck_is_kept(kept: Path, monkeypatch: pytest.Mon
     assert len(built) > times
     assert other.stop_time != first.stop_time
     listed = puck("tables").stdout
-    assert listed.count("friction slice") == len(list(kept.iterdir()))
+    assert listed.count("friction section") == len(list(kept.iterdir()))
     monkeypatch.setattr(store, "MOST_TALL", 3)
     for delta in (1.1, 1.2, 1.3):
         store.friction_for(pt.law_of("uniform"), delta, 1e-4)

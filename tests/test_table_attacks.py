@@ -118,7 +118,7 @@ ABSURD: dict[str, list[dict[str, object]]] = {
                    {"n_phi": 1e12}, {"n_phi": 2**63 - 1}, {"n_phi": 70}],
     "profile": [{"profile_rows": 10**12}, {"profile_rows": -1}, {"profile_rows": 0},
                 {"pressure_law": "annulus:1e-300"}, {"profile_rows": "nan"}],
-    "slice": [{"n_phi": 10**12}, {"n_phi": 0}, {"delta": 1e300}, {"delta": -1.0},
+    "section": [{"n_phi": 10**12}, {"n_phi": 0}, {"delta": 1e300}, {"delta": -1.0},
               {"cotangents": "[]"}, {"cotangents": "[" * 50_000}, {"cotangents": "[NaN]"},
               {"cotangents": "[1.0, 1.0]"}, {"cotangents": "[0.0, Infinity]"}],
     "stops": [{"cells": 10**12}, {"cells": -8}, {"cells": 0}, {"cells": 1e300}],

@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 
 from puck_tables.errors import PuckError
 from puck_tables.motion.body import is_plain
-from puck_tables.motion.sliced import FINEST_TOL
+from puck_tables.motion.friction import FINEST_TOL
 from puck_tables.puck import Puck
 from puck_tables.scene.fields import Kind
 from puck_tables.scene.scene import Floor, Scene, distance, launch_velocity

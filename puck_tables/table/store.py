@@ -31,7 +31,7 @@ from puck_tables.contact.laws import Law, law_of
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import InputError, OutputError, TableError
 from puck_tables.table.file import read_content, recipe_digest
-from puck_tables.table.friction_slice import FrictionSlice, friction_slice
+from puck_tables.table.friction_section import FrictionSection, friction_section
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.table.singular_lines import refuse_height
 from puck_tables.table.speed_table import SpeedTable
@@ -137,12 +137,12 @@ def table_for(
 
 
 @lru_cache(maxsize=64)
-def friction_for(law: Law, delta: float, accuracy: float) -> FrictionSlice:
+def friction_for(law: Law, delta: float, accuracy: float) -> FrictionSection:
     """The friction of one puck: where that takes long, read if it is kept, else built.
 
     Parameters
     ----------
-    law, delta, accuracy : as in :func:`puck_tables.table.friction_slice.friction_slice`
+    law, delta, accuracy : as in :func:`puck_tables.table.friction_section.friction_section`
 
     Raises
     ------
@@ -155,22 +155,22 @@ def friction_for(law: Law, delta: float, accuracy: float) -> FrictionSlice:
     '129 phi nodes'
     """
     if not (law.can_lift and delta > 1.0):
-        return friction_slice(law, delta, accuracy)
+        return friction_section(law, delta, accuracy)
     refuse_height(law, delta)
     digest = _digest(
-        FrictionSlice, {"pressure_law": law.name, "delta": delta, "accuracy": accuracy}
+        FrictionSection, {"pressure_law": law.name, "delta": delta, "accuracy": accuracy}
     )
 
-    def build() -> FrictionSlice:
+    def build() -> FrictionSection:
         _forget_oldest()
         words = "working out the friction of so tall a puck, once"
         with watched(words) if delta > SLOW_DELTA else nullcontext():
-            return friction_slice(law, delta, accuracy)
+            return friction_section(law, delta, accuracy)
 
     return fetch(
         f"{_TALL}-{delta:g}-{accuracy:g}-{digest}.h5",
         f"friction of a puck with delta = {delta:g}, to {accuracy:g}; recipe {digest}",
-        FrictionSlice,
+        FrictionSection,
         build,
     )
 

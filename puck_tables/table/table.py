@@ -33,7 +33,7 @@ KINDS = {
     "resultants": "puck_tables.table.resultant_table:ResultantTable",
     "stops": "puck_tables.stopping.stop_table:StopTable",
     "speed": "puck_tables.table.speed_table:SpeedTable",
-    "friction slice": "puck_tables.table.friction_slice:FrictionSlice",
+    "friction section": "puck_tables.table.friction_section:FrictionSection",
 }
 
 

@@ -19,7 +19,7 @@ import numpy.typing as npt
 from puck_tables.contact.laws import HOMOGENEOUS, Law, law_of
 from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import AccuracyError, InputError
-from puck_tables.kernels.slice_spline import LINE
+from puck_tables.kernels.section_spline import LINE
 from puck_tables.table.accuracy import Accuracy
 from puck_tables.table.build import COARSEST
 from puck_tables.table.check import Check, CheckReport, compared
@@ -41,7 +41,7 @@ _AT_THE_LIMIT = 1e-6
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class FrictionSlice(LawTable):
+class FrictionSection(LawTable):
     """The friction ratios of a puck over its slip angle.
 
     Parameters
@@ -57,7 +57,7 @@ class FrictionSlice(LawTable):
     delta: float
     cotangents: tuple[float, ...]
 
-    kind = "friction slice"
+    kind = "friction section"
     algorithm = "one-sided balance by quadrature, or integrals of the law; 1"
     functions: ClassVar[Mapping[str, str]] = {
         "inverse_parallel": "1/rho_parallel",
@@ -178,7 +178,7 @@ class FrictionSlice(LawTable):
         return isinstance(of, tuple) and len(of) == 2 and isinstance(of[0], Law | str)
 
     @classmethod
-    def built(cls, of: Any, accuracy: float | None = None, **how: Any) -> FrictionSlice:
+    def built(cls, of: Any, accuracy: float | None = None, **how: Any) -> FrictionSection:
         """The friction of one puck, see :meth:`puck_tables.Table.build`."""
         law = of[0] if isinstance(of[0], Law) else law_of(of[0])
         wanted = DEFAULT_ACCURACY if accuracy is None else accuracy
@@ -187,7 +187,7 @@ class FrictionSlice(LawTable):
                 f"accuracy must be from {FINEST_ACCURACY:g} to {COARSEST:g} (an absolute error of "
                 f"the friction ratios), got {wanted:g}"
             )
-        return friction_slice(law, float(checked_delta(of[1])), wanted, **how)
+        return friction_section(law, float(checked_delta(of[1])), wanted, **how)
 
     @property
     def grid(self) -> str:
@@ -233,7 +233,7 @@ class FrictionSlice(LawTable):
         yield np.abs(self.values[nodes] - truth), _NODE_ERROR, f"the law {self.law.name}"
 
 
-def slice_of(table: ResultantTable, delta: float, accuracy: float) -> FrictionSlice:
+def section_of_table(table: ResultantTable, delta: float, accuracy: float) -> FrictionSection:
     """The section of a table of resultants at one height: the table is all that is asked.
 
     Parameters
@@ -252,7 +252,7 @@ def slice_of(table: ResultantTable, delta: float, accuracy: float) -> FrictionSl
     Examples
     --------
     >>> table = ResultantTable.build("ring", 1e-8)
-    >>> inverse, across, spin = slice_of(table, 1.0, 1e-6).ratios(np.array([0.0]))[0]
+    >>> inverse, across, spin = section_of_table(table, 1.0, 1e-6).ratios(np.array([0.0]))[0]
     >>> round(float(across / inverse), 6)  # ρ_⊥
     0.25
     """
@@ -272,7 +272,7 @@ def slice_of(table: ResultantTable, delta: float, accuracy: float) -> FrictionSl
             "give a finer table, or a larger tol (--tol)", reachable=error,
         )  # fmt: skip
     everywhere = (error,) * 3, (error,) * 3, (error,) * 3, (0.0,) * 3, (delta,) * 3
-    return FrictionSlice(
+    return FrictionSection(
         values, law=table.law, delta=delta, cotangents=table.law.edges, tolerance=error,
         accuracy=Accuracy(*everywhere, promised=3, order=0.0, points=0), source=table.source,
     )  # fmt: skip
@@ -286,7 +286,7 @@ def _ratios(law: Law, phi: FloatArray, delta: float) -> FloatArray:
 
 
 @lru_cache(maxsize=64)
-def friction_slice(law: Law, delta: float, accuracy: float = DEFAULT_ACCURACY) -> FrictionSlice:
+def friction_section(law: Law, delta: float, accuracy: float = DEFAULT_ACCURACY) -> FrictionSection:
     """Tabulate the friction of one puck.
 
     Parameters
@@ -298,7 +298,7 @@ def friction_slice(law: Law, delta: float, accuracy: float = DEFAULT_ACCURACY) -
 
     Returns
     -------
-    FrictionSlice
+    FrictionSection
         Kept: the same call again costs nothing.
 
     Raises
@@ -316,7 +316,7 @@ def friction_slice(law: Law, delta: float, accuracy: float = DEFAULT_ACCURACY) -
     Examples
     --------
     >>> from puck_tables.contact.laws import law_of
-    >>> found = friction_slice(law_of("uniform"), 2.0, 1e-7)
+    >>> found = friction_section(law_of("uniform"), 2.0, 1e-7)
     >>> inverse, across, spin = found.ratios(np.array([0.5]))[0]
     >>> round(float(spin / inverse), 6)  # ρ_ω
     0.219633
@@ -326,7 +326,7 @@ def friction_slice(law: Law, delta: float, accuracy: float = DEFAULT_ACCURACY) -
         lambda phi: _ratios(law, phi, delta), sides_of(cotangents[::-1]), accuracy, even=True
     )
     assert spline.accuracy is not None
-    return FrictionSlice(
+    return FrictionSection(
         LawAxis(cotangents, spline.cells).joined(spline.values), law=law, delta=delta,
         cotangents=cotangents, tolerance=accuracy,
         accuracy=replace(spline.accuracy, at_second=3 * (delta,)),

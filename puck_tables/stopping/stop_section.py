@@ -18,25 +18,25 @@ import numpy.typing as npt
 
 from puck_tables.errors import AccuracyError
 from puck_tables.motion.body import Body
+from puck_tables.motion.friction import LOOSEST_LOCAL
 from puck_tables.motion.path import TURN_SHARE
 from puck_tables.stopping.exact import integrated_stops
-from puck_tables.table.friction_slice import FINEST_ACCURACY, FrictionSlice
+from puck_tables.table.friction_section import FINEST_ACCURACY, FrictionSection
 from puck_tables.table.slip_axis import sides_of
 from puck_tables.table.slip_spline import SlipSpline, slip_spline
 
 FloatArray = npt.NDArray[np.float64]
 
 FUNCTIONS = ("time", "along", "across", "length", "body", "turn")
-FINEST_SLICE = 1e-10  # as fine as stops are looked up; beyond, they are integrated
+FINEST_SECTION = 1e-10  # as fine as stops are looked up; beyond, they are integrated
 _COUNTED = slice(0, 5)  # the turn, until Q has fallen to 1/1000, is what it is
 _FINEST_CELLS = 1024
 _SAMPLE = 48
-_LOOSEST_LOCAL = 1e-7  # see sliced.LOOSEST_LOCAL
 _COARSER_BY = 8.0
 
 
 @dataclass(frozen=True)
-class StopSlice:
+class StopSection:
     """Where and when any puck of one kind stops, as functions of its slip angle.
 
     Parameters
@@ -53,13 +53,18 @@ class StopSlice:
     error: float
 
     @property
+    def cut(self) -> FloatArray:
+        """What compiled code reads."""
+        return self.spline.cut
+
+    @property
     def turn_error(self) -> float:
         """The same of the turn, radians."""
         return float(self.spline.error[-1])
 
 
 @lru_cache(maxsize=64)
-def stop_slice(body: Body, accuracy: float) -> StopSlice:
+def stop_section_for(body: Body, accuracy: float) -> StopSection:
     """Tabulate the stops of one kind of puck.
 
     Parameters
@@ -80,14 +85,14 @@ def stop_slice(body: Body, accuracy: float) -> StopSlice:
     Examples
     --------
     >>> from puck_tables.motion.body import body_of
-    >>> found = stop_slice(body_of("uniform", 2.0, 0.5**0.5), 1e-5)
+    >>> found = stop_section_for(body_of("uniform", 2.0, 0.5**0.5), 1e-5)
     >>> float(found.spline.at(np.array([0.5]))[0, 0].round(4)), found.error <= 1e-5
     (1.1458, True)
     """
     of_friction = max(0.1 * accuracy, FINEST_ACCURACY)
     while True:
         friction = body.friction(of_friction)
-        by_friction = _felt(body, friction, accuracy)
+        by_friction = _error_of_friction(body, friction, accuracy)
         if by_friction <= 0.3 * accuracy:
             break
         if of_friction <= FINEST_ACCURACY:
@@ -104,14 +109,14 @@ def stop_slice(body: Body, accuracy: float) -> StopSlice:
         finest=_FINEST_CELLS,
     )
     error = float(spline.error[_COUNTED].max()) + by_friction
-    return StopSlice(body, spline, error)
+    return StopSection(body, spline, error)
 
 
 def _cotangent(phi: float) -> float:
     return 1.0 if phi == 0.25 * math.pi else 1.0 / math.tan(phi)
 
 
-def _felt(body: Body, friction: FrictionSlice, accuracy: float) -> float:
+def _error_of_friction(body: Body, friction: FrictionSection, accuracy: float) -> float:
     """What the error of the friction does to stops anywhere."""
     phi = np.linspace(0.0, 0.5 * np.pi, _SAMPLE + 2)[1:-1]
     whole, half = (
@@ -129,7 +134,7 @@ def _factors(phi: FloatArray) -> FloatArray:
 
 
 def _stops(
-    body: Body, friction: FrictionSlice, cut: FloatArray, phi: FloatArray, accuracy: float
+    body: Body, friction: FrictionSection, cut: FloatArray, phi: FloatArray, accuracy: float
 ) -> FloatArray:
     """The functions at slip angles, by integration; at 0 and π/2 in closed form."""
     at_zero, at_half = phi <= 0.0, phi >= 0.5 * np.pi
@@ -137,14 +142,14 @@ def _stops(
     out = np.empty((phi.size, len(FUNCTIONS)))
     u = np.log(np.tan(phi[inner]))
     stops = integrated_stops(
-        u, np.full(u.size, body.delta), cut, min(0.03 * accuracy, _LOOSEST_LOCAL)
+        u, np.full(u.size, body.delta), cut, min(0.03 * accuracy, LOOSEST_LOCAL)
     )
     out[inner] = stops / _factors(phi[inner])
     out[at_zero], out[at_half] = _ends(body, friction)
     return out
 
 
-def _ends(body: Body, friction: FrictionSlice) -> tuple[FloatArray, FloatArray]:
+def _ends(body: Body, friction: FrictionSection) -> tuple[FloatArray, FloatArray]:
     """The functions at φ → 0 and φ → π/2, elementary.
 
     Next to pure sliding v falls like t₀ − t and rω like its power σ(0); next to pure spin rω falls
