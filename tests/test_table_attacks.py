@@ -121,6 +121,8 @@ ABSURD: dict[str, list[dict[str, object]]] = {
     "section": [{"n_phi": 10**12}, {"n_phi": 0}, {"delta": 1e300}, {"delta": -1.0},
               {"cotangents": "[]"}, {"cotangents": "[" * 50_000}, {"cotangents": "[NaN]"},
               {"cotangents": "[1.0, 1.0]"}, {"cotangents": "[0.0, Infinity]"}],
+    "stop section": [{"n_phi": 10**12}, {"n_phi": 3}, {"gyration": 1e300}, {"gyration": -1.0},
+                     {"gyration": 0.05}, {"friction_error": -1.0}, {"delta": 3.0}],
     "stops": [{"cells": 10**12}, {"cells": -8}, {"cells": 0}, {"cells": 1e300}],
     "speed": [{"nodes": 10**12}, {"nodes": -1}, {"patches": 0}, {"breaks": "[" * 50_000},
               {"law_speeds": "[]"}, {"law_values": "null"}],

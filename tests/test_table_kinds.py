@@ -28,6 +28,7 @@ GRIDS = {
     "profile": ({"phi": 145, "delta": 4, "profile_radius": 3}, "spin", "145 phi x 4 delta nodes"),
     "stops": ({"phi": 33, "delta": 9}, "time", "33 phi x 9 delta nodes"),
     "section": ({"phi": 129}, "spin_share", "129 phi nodes"),
+    "stop section": ({"phi": 129}, "along", "129 phi nodes"),
     "speed": ({"node": 1936, "patch": 16}, "p_d", "1936 nodes in 16 patches"),
 }
 every_kind = pytest.mark.parametrize("kind", KINDS)

@@ -6,7 +6,7 @@ direction of (v, r|ω|),
 
     tan(φ − line) = (s cos line − c sin line)/(c cos line + s sin line) .
 
-A slice is a matrix with one row a side, in the order of φ: :data:`HEADER` numbers, then the
+A section is a matrix with one row a side, in the order of φ: :data:`HEADER` numbers, then the
 B-spline weights over 6 of its functions, node by node.  It is two-dimensional so that compiled code
 tells it from a flat cut of a table (:func:`puck_tables.kernels.quadratic.cut`) by its type.
 """
@@ -63,7 +63,7 @@ def section_ratios(k: float, fast: bool, cut: FloatArray) -> tuple[float, float,
 def fill_section(
     cut: FloatArray, functions: int, ratio: FloatArray, fast: npt.NDArray[np.bool_], out: FloatArray
 ) -> None:
-    """All functions of a slice at slip ratios (n,) into ``out`` (functions, n)."""
+    """All functions of a section at slip ratios (n,) into ``out`` (functions, n)."""
     for n in range(ratio.size):
         side, i, place = section_place(ratio[n], fast[n], cut, functions)
         weights = basis(place)

@@ -3,7 +3,7 @@
 Events, all placed exactly on a step end:
 
 * every singular line of the friction: u = 0, the crossing of φ = π/4, where the equations have
-  only one derivative and a bit; for other pucks the lines of their slice;
+  only one derivative and a bit; for other pucks the lines of their section;
 * Q = TURN_SHARE Q₀, where the turn of the heading is read off (see below);
 * the end of integration, from where the exact motion at constant angle leads to the stop.
 

@@ -6,10 +6,9 @@ analytic between a few lines (:mod:`puck_tables.table.singular_lines`).
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import KW_ONLY, dataclass, replace
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import Any, ClassVar
 
@@ -22,26 +21,26 @@ from puck_tables.errors import AccuracyError, InputError
 from puck_tables.kernels.section_spline import LINE
 from puck_tables.table.accuracy import Accuracy
 from puck_tables.table.build import COARSEST
-from puck_tables.table.check import Check, CheckReport, compared
+from puck_tables.table.check import CheckReport
 from puck_tables.table.fit import height_terms
-from puck_tables.table.law_table import LawTable
 from puck_tables.table.resultant_table import ResultantTable
-from puck_tables.table.singular_lines import lines_of, opening_angle, singular_lines
+from puck_tables.table.section_table import SectionTable
+from puck_tables.table.singular_lines import lines_of, opening_angle
 from puck_tables.table.slip_axis import GRADING_POWER, LawAxis, sides_of
-from puck_tables.table.slip_spline import SlipSpline, slip_spline
-from puck_tables.table.table import Axis, Progress
+from puck_tables.table.slip_spline import slip_spline
+from puck_tables.table.table import Progress
 
 FloatArray = npt.NDArray[np.float64]
 
 DEFAULT_ACCURACY, FINEST_ACCURACY = 1e-9, 5e-13  # truth itself is good to 1e-13
 _LARGEST, _ROUNDING = 1e3, 1e-12  # of a ratio
 _NODES, _NODE_ERROR = 6, 1e-10  # how many are compared as a file is read, and how well known
-_SAME, _CONSTANT = 1e-9, 1e-3  # of lines; no slice is better than the latter times cells⁻⁴
+_CONSTANT = 1e-3  # no section is better than so many times cells⁻⁴
 _AT_THE_LIMIT = 1e-6
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class FrictionSection(LawTable):
+class FrictionSection(SectionTable):
     """The friction ratios of a puck over its slip angle.
 
     Parameters
@@ -53,10 +52,6 @@ class FrictionSection(LawTable):
     cotangents : cot φ of the singular lines, ascending
     """
 
-    _: KW_ONLY
-    delta: float
-    cotangents: tuple[float, ...]
-
     kind = "friction section"
     algorithm = "one-sided balance by quadrature, or integrals of the law; 1"
     functions: ClassVar[Mapping[str, str]] = {
@@ -64,7 +59,6 @@ class FrictionSection(LawTable):
         "perpendicular_share": "rho_perpendicular/rho_parallel",
         "spin_share": "rho_omega/rho_parallel",
     }
-    second = "delta"
     quantities = tuple(functions)
     words: ClassVar[Mapping[str, str]] = {
         "title": "Friction of one sliding, spinning puck",
@@ -79,17 +73,6 @@ class FrictionSection(LawTable):
         "method": "balance of moments by quadrature, 1e-13",
         "phi_map": f"two sides for each line: tan(phi - line) = extent xi^{GRADING_POWER}",
     }
-    entries: ClassVar[Mapping[str, type]] = {**LawTable.entries, "delta": float, "cotangents": str}
-
-    @property
-    def lines_at(self) -> tuple[float, ...]:
-        """Where it is singular."""
-        return self.cotangents
-
-    @cached_property
-    def spline(self) -> SlipSpline:
-        """Through the nodes."""
-        return SlipSpline(self.axis.sides, self.axis.by_side(self.values), True, self.accuracy)
 
     @cached_property
     def opening(self) -> float:
@@ -140,7 +123,7 @@ class FrictionSection(LawTable):
         return np.stack([self.spline.values[0, -1], self.spline.values[-1, -1]])
 
     def validate(self, progress: Progress | None = None, points: int = 600) -> CheckReport:
-        """Judge the slice by the law.
+        """Judge the section by the law.
 
         Parameters
         ----------
@@ -148,27 +131,11 @@ class FrictionSection(LawTable):
         points : how many are compared at random, and as many next to the lines, in cells and at
             nodes
         """
-        rng = np.random.default_rng()
-        nodes = self.axis.nodes()
-        near = rng.choice([*self.lines, 0.0, 0.5 * np.pi], points)
-        near += rng.choice([-1.0, 1.0], points) * 10.0 ** -rng.uniform(0.3, 15.0, points)
-        some = rng.permutation(nodes.size - 1)[:points]
-        inside = nodes[some] + rng.random(some.size) * np.diff(nodes)[some]
-        odd = self.odd_nodes(points // 2)
         allowed = min(self.tolerance, COARSEST)
-        routes = (
-            ("the law, random points", rng.uniform(0.0, 0.5 * np.pi, points), allowed),
-            ("the law, next to the lines", np.clip(near, 0.0, 0.5 * np.pi), allowed),
-            ("the law, in the cells", inside, allowed),
-            ("the law, the oddest nodes", nodes[odd], max(allowed, _NODE_ERROR)),
-        )
-        checks: list[Check] = []
-        for done, (name, phi, most) in enumerate(routes, 1):
-            errors = (self.ratios(phi) - _ratios(self.law, phi, self.delta)).T
-            checks += compared(name, self.quantities, errors, phi, 0.0 * phi + self.delta, most)
-            if progress is not None:
-                progress(done, len(routes))
-        return CheckReport(self.source, self.tolerance, tuple(checks))
+        return self.judged(
+            lambda phi: self.ratios(phi) - friction_ratios(self.law, phi, self.delta), "the law", points,
+            allowed, max(allowed, _NODE_ERROR), progress,
+        )  # fmt: skip
 
     # the record of the kind
 
@@ -190,46 +157,15 @@ class FrictionSection(LawTable):
         return friction_section(law, float(checked_delta(of[1])), wanted, **how)
 
     @property
-    def grid(self) -> str:
-        """How many nodes it has, in words."""
-        return f"{len(self.values)} phi nodes"
-
-    @property
-    def valid_range(self) -> str:
-        """Where it holds, in words."""
-        return f"|phi| <= pi/2, delta = {self.delta:g} only"
-
-    @property
-    def axes(self) -> dict[str, Axis]:
-        """Slip angle."""
-        return {"phi": Axis(self.axis.nodes(), "rad", "slip angle atan2(r omega, v)")}
-
-    @property
-    def parameters(self) -> dict[str, int | float | str]:
-        """Those of its law, height and lines."""
-        lines = json.dumps(self.cotangents)
-        return {**super().parameters, "delta": self.delta, "cotangents": lines}
-
-    @property
     def bounds(self) -> tuple[float, float, float]:
         """Of the values and of the accuracy."""
         return -_ROUNDING, _LARGEST, max(0.1 * FINEST_ACCURACY, _CONSTANT / self.axis.cells**4)
-
-    @classmethod
-    def fields(cls, attributes: dict[str, Any], arrays: dict[str, FloatArray]) -> dict[str, Any]:
-        """Law, height and lines of a file."""
-        found = super().fields(attributes, arrays)
-        lines = tuple(float(line) for line in json.loads(attributes["cotangents"]))
-        needed = np.array(singular_lines(found["law"], attributes["delta"]))
-        if np.any(np.abs(np.subtract.outer(needed, lines)).min(axis=1) > _SAME * needed):
-            raise ValueError("its lines are not those of its puck")
-        return found | {"delta": attributes["delta"], "cotangents": lines}
 
     def spot_checks(self) -> Iterator[tuple[FloatArray, float, str]]:
         """Of nodes, those that fit their neighbours least among them."""
         nodes = np.random.default_rng().integers(0, len(self.values), _NODES)
         nodes = np.concatenate([self.odd_nodes(_NODES), nodes])
-        truth = _ratios(self.law, self.axis.nodes()[nodes], self.delta)
+        truth = friction_ratios(self.law, self.axis.nodes()[nodes], self.delta)
         yield np.abs(self.values[nodes] - truth), _NODE_ERROR, f"the law {self.law.name}"
 
 
@@ -278,7 +214,7 @@ def section_of_table(table: ResultantTable, delta: float, accuracy: float) -> Fr
     )  # fmt: skip
 
 
-def _ratios(law: Law, phi: FloatArray, delta: float) -> FloatArray:
+def friction_ratios(law: Law, phi: FloatArray, delta: float) -> FloatArray:
     """The friction ratios by the law, (n, 3)."""
     rho = law.friction(phi, delta)
     return np.stack([1.0 / rho.parallel, rho.perpendicular / rho.parallel,
@@ -323,7 +259,10 @@ def friction_section(law: Law, delta: float, accuracy: float = DEFAULT_ACCURACY)
     """
     cotangents = lines_of(law, delta)
     spline = slip_spline(
-        lambda phi: _ratios(law, phi, delta), sides_of(cotangents[::-1]), accuracy, even=True
+        lambda phi: friction_ratios(law, phi, delta),
+        sides_of(cotangents[::-1]),
+        accuracy,
+        even=True,
     )
     assert spline.accuracy is not None
     return FrictionSection(
