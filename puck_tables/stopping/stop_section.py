@@ -214,7 +214,7 @@ class StopSection(SectionTable):
         time, along, across, length, body, _ = there[:, 2].T
         dt, dx, dy, dl, db, _ = (both[:, None] * by_xi).T
         # dc/du = −s² c, ds/du = c² s
-        return np.abs(np.stack([
+        missed = np.stack([
             stretch * (time - way) - rate * dt,
             c * (stretch * (2.0 * along - turn * s * across - way)
                  - rate * (dx - stretch * s**2 * along)),
@@ -222,7 +222,8 @@ class StopSection(SectionTable):
                  - rate * s * (dy + stretch * (c**2 - s**2) * across)),
             c * (stretch * (2.0 * length - way) - rate * (dl - stretch * s**2 * length)),
             s * (stretch * (2.0 * body - way) - rate * (db + stretch * c**2 * body)),
-        ], axis=-1))  # fmt: skip
+        ], axis=-1)  # fmt: skip
+        return np.asarray(np.abs(missed))
 
 
 @lru_cache(maxsize=64)

@@ -132,10 +132,13 @@ class FrictionSection(SectionTable):
             nodes
         """
         allowed = min(self.tolerance, COARSEST)
-        return self.judged(
-            lambda phi: self.ratios(phi) - friction_ratios(self.law, phi, self.delta), "the law", points,
-            allowed, max(allowed, _NODE_ERROR), progress,
-        )  # fmt: skip
+
+        def off(phi: FloatArray) -> FloatArray:
+            missed: FloatArray = self.ratios(phi) - friction_ratios(self.law, phi, self.delta)
+            return missed
+
+        at_nodes = max(allowed, _NODE_ERROR)
+        return self.judged(off, "the law", points, allowed, at_nodes, progress)
 
     # the record of the kind
 

@@ -184,8 +184,8 @@ def kept_section(
     rooms : whose sources determine the values, besides those of tables
     """
     if law.profile is not None:
-        law = replace(law, name="profile")
         recipe = {**recipe, "profile": [part.tolist() for part in law.profile]}
+        law = replace(law, name="profile")
     elif not is_named(law):
         return build(law)
     digest = _digest(kind, {**recipe, "pressure_law": law.name}, rooms)
