@@ -242,7 +242,8 @@ class SolverPerHeight:
     @property
     def work(self) -> dict[str, Any]:
         """What determines the bits besides the launches."""
-        return {str(n): solver.work for n, solver in enumerate(self._all)}
+        solvers = {str(n): solver.work for n, solver in enumerate(self._all)}
+        return {"asked": self._wanted or "any", **solvers}
 
     @property
     def selections(self) -> tuple[Selection, ...]:
