@@ -7,9 +7,9 @@ error of a motion.  Which a puck has is asked once, in :func:`source_of`.
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
 from functools import lru_cache
-from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -108,19 +108,21 @@ def section_friction(body: Body, accuracy: float, coarser: bool = False) -> Fric
     return Friction(Source.SECTION, body.delta, cut, found.error)
 
 
-class FrictionSource(Protocol):
+class FrictionSource(ABC):
     """Friction at one height, as fine as is asked.
 
     ``limit``: ln of the ratio rω/v that motions tend to; ``limit_width``: a start so close to it is
     the limit motion.
     """
 
-    @property
-    def limit(self) -> float: ...  # noqa: D102 - see the class
+    limit_width: float
 
     @property
-    def limit_width(self) -> float: ...  # noqa: D102
+    @abstractmethod
+    def limit(self) -> float:
+        """Ln of the ratio rω/v that motions tend to."""
 
+    @abstractmethod
     def selected(self, question: str, tol: float, method: Method | None) -> Selection:
         """The integrator to begin with.
 
@@ -130,20 +132,25 @@ class FrictionSource(Protocol):
             If the tolerance is out of reach.
         """
 
+    @abstractmethod
     def first(self, selection: Selection) -> Setting:
         """The setting of the integrator and the accuracy of the friction to begin with."""
 
+    @abstractmethod
     def told(self, selection: Selection, setting: Setting, error: Estimate) -> Selection:
         """What was taken in the end, with its error."""
 
+    @abstractmethod
     def next_accuracy(self, accuracy: float) -> float | None:
         """The accuracy to try after one; None where that is the finest."""
 
+    @abstractmethod
     def friction(self, accuracy: float) -> Friction:
         """Friction with an error of about so much."""
 
     def coarser(self, accuracy: float) -> Friction | None:
         """The same of half as many cells; None where the error of the friction is known."""
+        return None
 
     def refuse(self, least_log_ratio: float) -> None:
         """Refuse a motion whose least ln(r|ω|/v) is outside what the friction holds for.
@@ -152,13 +159,15 @@ class FrictionSource(Protocol):
         ------
         ContactError
         """
+        return
 
+    @abstractmethod
     def at_constant_angle(self, tol: float) -> tuple[Friction, float, float]:
         """Friction for an elementary motion, its error at the limit angle, and of rounding."""
 
 
 @dataclass(frozen=True)
-class FullContact:
+class FullContact(FrictionSource):
     """Closed forms, or a table where that is cheaper: a plain puck.
 
     Parameters
@@ -212,9 +221,6 @@ class FullContact:
             return closed_form_friction(self.delta)
         return table_friction(self.delta, self.table or ResultantTable.shipped())
 
-    def coarser(self, accuracy: float) -> None:
-        """Its error is known."""
-
     def refuse(self, least_log_ratio: float) -> None:
         """Above δ = 1 the linear law of pressure holds state by state: refuse where it does not."""
         u = least_log_ratio
@@ -232,7 +238,7 @@ class FullContact:
 
 
 @dataclass(frozen=True)
-class Sections:
+class Sections(FrictionSource):
     """The section of a table at the height of a puck, made for it and as fine as it needs."""
 
     body: Body
@@ -286,9 +292,6 @@ class Sections:
     def coarser(self, accuracy: float) -> Friction:
         """Of half as many cells."""
         return section_friction(self.body, accuracy, coarser=True)
-
-    def refuse(self, least_log_ratio: float) -> None:
-        """It holds at every slip angle."""
 
     def at_constant_angle(self, tol: float) -> tuple[Friction, float, float]:
         """A section, whose error shows at the limit angle."""

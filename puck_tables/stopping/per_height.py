@@ -121,7 +121,8 @@ class SolverPerHeight:
         AccuracyError
             If the tolerance is out of reach.
         """
-        others = delta[delta > self._plain_up_to]
+        all_plain = not delta.size or float(delta.max()) <= self._plain_up_to
+        others = delta[:0] if all_plain else delta[delta > self._plain_up_to]
         self._launches = each * (delta.size - others.size), each * others.size
         if others.size < delta.size or not delta.size:
             self._prepare_plain()
@@ -187,13 +188,14 @@ class SolverPerHeight:
 
     def _made(self, body: Body, launches: int) -> StopSolver:
         """A solver for the launches of one height that is not plain."""
-        if self._wanted is Method.LOOK_UP:
-            return SectionLookUp(stop_section_for(body, self.tol))
-        if self._wanted is None and launches >= MANY and self.tol >= FINEST_SECTION:
+        look_up = self._wanted is Method.LOOK_UP
+        if look_up or (not self._wanted and launches >= MANY and self.tol >= FINEST_SECTION):
             try:
-                return SectionLookUp(stop_section_for(body, self.tol))
-            except AccuracyError:
-                pass  # functions too steep for a spline; the integrator knows nothing of that
+                section = stop_section_for(body, self.tol)
+                return SectionLookUp(section, section.error)
+            except AccuracyError:  # functions too steep for a spline: not so for the integrator
+                if look_up:
+                    raise
         return integration_of(body, self.tol, self._wanted)
 
     def first(self, launches: FloatArray) -> tuple[FloatArray, Status]:
@@ -242,8 +244,9 @@ class SolverPerHeight:
     @property
     def work(self) -> dict[str, Any]:
         """What determines the bits besides the launches."""
-        solvers = {str(n): solver.work for n, solver in enumerate(self._all)}
-        return {"asked": self._wanted or "any", **solvers}
+        plain = {} if self._plain is None else {"plain": self._plain.work}
+        others = {repr(height): self._sections[height].work for height in sorted(self._sections)}
+        return {"asked": self._wanted or "any", **plain, **others}
 
     @property
     def selections(self) -> tuple[Selection, ...]:

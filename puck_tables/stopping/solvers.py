@@ -5,8 +5,9 @@ A new one is a class here or beside, and its place in :mod:`puck_tables.stopping
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -26,31 +27,31 @@ STATUS_MEANINGS = ("stopped", "step_limit", "overflow")
 _OVERFLOW = STATUS_MEANINGS.index("overflow")
 
 
-class StopSolver(Protocol):
+class StopSolver(ABC):
     """Stops of launches of the heights that it is for.
 
     ``method``: how; ``error``: the largest, as promised or measured.
     """
 
-    @property
-    def method(self) -> Method: ...  # noqa: D102 - see the class
+    method: Method
+    error: float
 
     @property
-    def error(self) -> float: ...  # noqa: D102
-
-    @property
+    @abstractmethod
     def work(self) -> dict[str, Any]:
         """What determines the bits besides the launches."""
 
-    def first(self, launches: FloatArray) -> tuple[FloatArray, Status]:
-        """Stop time, x, y (3, n), or all of the outputs if they cost no more; status (n,)."""
-
+    @abstractmethod
     def all(self, launches: FloatArray) -> tuple[FloatArray, Status]:
         """All of :data:`OUTPUTS` (6, n) and status (n,) of checked launches (6, n)."""
 
+    def first(self, launches: FloatArray) -> tuple[FloatArray, Status]:
+        """Stop time, x, y (3, n), or all of the outputs if they cost no more; status (n,)."""
+        return self.all(launches)
+
 
 @dataclass(frozen=True)
-class LookUp:
+class LookUp(StopSolver):
     """Stops from a stop table, as coarse a cut of it as is good enough: nothing is integrated."""
 
     table: StopTable
@@ -87,25 +88,17 @@ class LookUp:
 
 
 @dataclass(frozen=True)
-class SectionLookUp:
+class SectionLookUp(StopSolver):
     """Stops of the pucks of one height from a stop section."""
 
     section: StopSection
+    error: float
     method: Method = Method.LOOK_UP
-
-    @property
-    def error(self) -> float:
-        """As it was measured."""
-        return self.section.error
 
     @property
     def work(self) -> dict[str, Any]:
         """The section."""
         return {"by": self.method, "section": self.section.cut}
-
-    def first(self, launches: FloatArray) -> tuple[FloatArray, Status]:
-        """All of the outputs: none comes cheaper."""
-        return self.all(launches)
 
     def all(self, launches: FloatArray) -> tuple[FloatArray, Status]:
         """All of the outputs (6, n) and status (n,)."""
@@ -119,7 +112,7 @@ class SectionLookUp:
 
 
 @dataclass(frozen=True)
-class Integration:
+class Integration(StopSolver):
     """Stops by an integrator.
 
     ``coefficients``: of a table of resultants, empty for closed forms, or the matrix of a section,
@@ -139,10 +132,6 @@ class Integration:
             "by": self.method, "values": self.coefficients, "steps": self.stepping.steps,
             "tolerance": self.stepping.local,
         }  # fmt: skip
-
-    def first(self, launches: FloatArray) -> tuple[FloatArray, Status]:
-        """All of the outputs: none comes cheaper."""
-        return self.all(launches)
 
     def all(self, launches: FloatArray) -> tuple[FloatArray, Status]:
         """All of the outputs (6, n) and status (n,)."""

@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import KW_ONLY, dataclass, replace
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import Any, ClassVar
 
 import numpy as np
@@ -102,12 +102,12 @@ class StopSection(SectionTable):
         """What compiled code reads."""
         return self.spline.cut
 
-    @property
+    @cached_property
     def body(self) -> Body:
         """The puck."""
         return body_of(self.law, self.delta, self.gyration)
 
-    @property
+    @cached_property
     def error(self) -> float:
         """The largest error of time, place, path and body angle, measured."""
         return float(self.spline.error[_COUNTED].max()) + self.friction_error
