@@ -95,12 +95,9 @@ def aim(
 
 def _report(found: Aim, note: str) -> str:
     """The answer, and the launches line by line."""
-    from puck_tables.motion.body import is_plain
-
     x, y = found.target
-    puck, kind = found.puck, ""
-    if not is_plain(puck.pressure, puck.gyration, puck.delta):
-        kind = f", pressure {puck.body.law.name}, k/r = {puck.gyration:.6g}"
+    puck = found.puck
+    kind = f", {puck.body.kind}" if puck.body.kind else ""
     text = [
         f"puck    r = {puck.radius:g} m, delta = {puck.delta:.6g}, "
         f"J = {puck.decel:.6g} m/s^2{kind}{note}",

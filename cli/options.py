@@ -176,7 +176,7 @@ def table_option(command: Command) -> Command:
 def explain_option(command: Command) -> Command:
     """Whether to say what the tolerance led to."""
     return click.option(
-        "--explain", is_flag=True, help="Say which way was taken, and why (on stderr)."
+        "--explain", is_flag=True, help="Say which method was taken, and why (on stderr)."
     )(command)
 
 

@@ -27,6 +27,7 @@ from puck_tables.cli.options import (
 )
 from puck_tables.cli.scene_run import files_read, run_scene, scene_options, scene_tables
 
+from puck_tables.accuracy.methods import INTEGRATORS
 from puck_tables.errors import InputError
 
 if TYPE_CHECKING:
@@ -47,11 +48,11 @@ if TYPE_CHECKING:
     default=1e-9,
     show_default=True,
     help="Largest error, in units of Q/J (times) and Q^2/J (places), Q = hypot(v0, r w0): the "
-    "cheapest way whose measured error is below it is taken.",
+    "cheapest method whose measured error is below it is taken.",
 )
 @click.option(
     "--method",
-    type=click.Choice(["adaptive", "rk4"]),
+    type=click.Choice([method.value for method in INTEGRATORS]),
     help="Dormand-Prince 5(4), or Runge-Kutta 4.  [default: the cheaper]",
 )
 @explain_option
@@ -118,7 +119,6 @@ def simulate(
 
 def report(run: Trajectory, note: str) -> str:
     """The trajectory in a dozen lines."""
-    from puck_tables.motion.body import is_plain
     from puck_tables.motion.limits import REGIMES
 
     puck, (vx, vy), w0 = run.puck, run.launch_velocity, run.launch_spin
@@ -128,9 +128,7 @@ def report(run: Trajectory, note: str) -> str:
         decade = math.degrees(run.turn_rate) * math.log(10.0)
         turn += f" by Q = Q0/1000, then {decade:.4g} deg more for each factor 10 of Q"
     x, y = run.stop_position
-    kind = ""
-    if not is_plain(puck.pressure, puck.gyration, 0.0):
-        kind = f", pressure {puck.body.law.name}, k/r = {puck.gyration:.6g}"
+    kind = f", {puck.body.kind}" if puck.body.kind else ""
     lines = {
         "puck": f"r = {puck.radius:g} m, delta = {puck.delta:.6g}, J = {puck.decel:.6g} m/s^2{kind}"
         f"{note}",

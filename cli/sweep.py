@@ -27,6 +27,7 @@ from puck_tables.cli.options import (
 from puck_tables.cli.scene_run import files_read, scene_options, scene_tables, summary_of_map
 from puck_tables.cli.start import last_words
 
+from puck_tables.accuracy.methods import METHODS
 from puck_tables.errors import InputError
 
 if TYPE_CHECKING:
@@ -52,12 +53,12 @@ RANGE = Range()
     type=NUMBER,
     default=1e-8,
     show_default=True,
-    help="Largest error, in units of Q/J (times) and Q^2/J (places): the cheapest way whose "
+    help="Largest error, in units of Q/J (times) and Q^2/J (places): the cheapest method whose "
     "measured error is below it is taken.",
 )
 @click.option(
     "--method",
-    type=click.Choice(["look-up", "rk4", "adaptive"]),
+    type=click.Choice([method.value for method in METHODS]),
     help="Only this one.  [default: the cheapest]",
 )
 @explain_option

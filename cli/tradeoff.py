@@ -10,7 +10,7 @@ import click
 from puck_tables.cli.options import FILE, deliver, output_options, prepare_outputs, progress
 
 if TYPE_CHECKING:
-    from puck_tables.accuracy.front import Way
+    from puck_tables.accuracy.front import Measured
     from puck_tables.tradeoff.engine import TradeOff
 
 
@@ -82,7 +82,7 @@ def report(measured: TradeOff) -> str:
     return "\n".join(lines)
 
 
-def _line(way: Way) -> str:
+def _line(way: Measured) -> str:
     spread = f"{min(999.0, 100.0 * way.ns_spread / way.ns):.0f}%"
     limit = f"{way.ns / way.limit_ns:.1f}" if way.limit_ns else "-"
     return (

@@ -4,24 +4,25 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.real import finite_array, instance, one_velocity, real
-from puck_tables.accuracy.front import Choice, Way
+from puck_tables.accuracy.front import Selection
+from puck_tables.accuracy.methods import INTEGRATORS, method_named
 from puck_tables.errors import InputError
 from puck_tables.io.dataset import Dataset, variable
-from puck_tables.motion.body import Body, body_of, is_plain
+from puck_tables.motion.body import Body, body_of
+from puck_tables.motion.frame import Frame, direction, frame_of
+from puck_tables.motion.state import U
 from puck_tables.puck import PUCK_UNITS, Puck
 from puck_tables.result import Result
-from puck_tables.stopping.solvers import choose_with
 from puck_tables.table.resultant_table import ResultantTable
 
 if TYPE_CHECKING:
     from puck_tables.motion.run import Run
-    from puck_tables.motion.sliced import Contact
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -61,7 +62,7 @@ class Trajectory(Result):
     * ``kinetic_energy`` J at the launch; ``energy_residual``: the largest difference between
       energy lost and work of friction along the path, as a share of it;
     * ``method``, ``steps``, and ``error_estimate`` in units of Q/J (times) and Q²/J (places);
-      ``choice``: what the tolerance led to (None where the motion is elementary).
+      ``selection``: the method selected for the tolerance (None where the motion is elementary).
 
     Arrays over ``time`` (n,) s: ``x``, ``y`` m; ``vx``, ``vy`` m/s; ``heading`` rad (of the
     velocity; at rest the heading of turn_angle); ``orientation`` rad (of the body); ``speed`` v
@@ -90,7 +91,7 @@ class Trajectory(Result):
     method: str
     steps: int
     error_estimate: float
-    choice: Choice | None = field(repr=False)
+    selection: Selection | None = field(repr=False)
     time: FloatArray = field(repr=False)
     x: FloatArray = field(repr=False)
     y: FloatArray = field(repr=False)
@@ -122,10 +123,8 @@ class Trajectory(Result):
         [1.590682, 0.0]
         """
         moments = checked_times(times)
-        states: dict[str, Any] = _integrated(
-            self.motion, moments, self.stop_time, self.launch_velocity, self.launch_spin,
-            self.puck.decel, self.puck.radius,
-        )  # fmt: skip
+        frame = frame_of(self.launch_velocity, self.launch_spin, self.puck.decel, self.puck.radius)
+        states: dict[str, Any] = _integrated(self.motion, frame, moments, self.stop_time)
         return replace(self, time=moments, **states)
 
     @property
@@ -147,9 +146,9 @@ class Trajectory(Result):
 
     def explain(self) -> str:
         """Which method was taken, and why."""
-        if self.choice is None:
+        if self.selection is None:
             return "solved in elementary functions: the slip angle is constant"
-        return self.choice.why
+        return self.selection.explanation
 
     def summary(self) -> dict[str, Any]:
         """The scalars with what went in, and the units of all, ready for JSON.
@@ -182,186 +181,103 @@ def simulate(
     table: ResultantTable | None,
 ) -> Trajectory:  # fmt: skip
     """The motion of a puck until it stops, as :meth:`puck_tables.Puck.simulate` has it."""
-    vx, vy = one_velocity(velocity)
-    w = real("spin", spin, "rad/s")
-    r, J, m, height = puck.radius, puck.decel, puck.mass, puck.delta
+    launch, w = one_velocity(velocity), real("spin", spin, "rad/s")
     wanted = real("tol", tol, "dimensionless")
     instance("table", table, ResultantTable, type(None))
     if exact and table is not None:
         raise InputError("exact and table exclude each other: closed forms need no table")
-    if method not in (None, "adaptive", "rk4"):
-        raise InputError(f"method must be 'adaptive' or 'rk4', got {method!r}")
+    stepper = method_named(method, INTEGRATORS)
     _check_frames(frames, times)
-    plain = is_plain(puck.pressure, puck.gyration, height)
-    if exact and not is_plain(puck.pressure, puck.gyration, 0.0):
-        raise InputError(
-            "closed forms are for a homogeneous puck under uniform pressure: leave out exact, or "
-            "pressure and gyration"
-        )
-    by_table = table is not None and is_plain(puck.pressure, puck.gyration, 0.0)
-    body = None
-    if not (plain or exact or by_table):
-        body = body_of(puck.pressure, height, puck.gyration, table)
-    square = 0.5 if body is None else body.inertia
-    speed, rim = math.hypot(vx, vy), r * abs(w)
-    q0 = math.hypot(speed, rim)
-    scale_time, scale_length = q0 / J, q0 / J * q0
-    energy = 0.5 * m * (speed * speed + square * rim * rim)
-    longest = 2.0 if body is None else body.longest
-    sizes = (longest * scale_time, longest * scale_length, longest * scale_length / r, energy)
-    if not all(map(math.isfinite, sizes)):
-        raise InputError(
-            f"velocity, spin, radius, decel and mass give a motion too large for floating point "
-            f"(Q = {q0:g} m/s, J = {J:g} m/s^2): use larger units"
-        )
+    frame = frame_of(launch, w, puck.decel, puck.radius)
+    body = puck.body
+    if table is not None and not body.has_closed_forms:
+        body = body_of(puck.pressure, puck.delta, puck.gyration, table)
+    energy = 0.5 * puck.mass * (frame.speed * frame.speed + body.inertia * frame.rim * frame.rim)
+    _refuse_too_large(frame, body, energy, puck.decel)
 
-    from puck_tables.motion.equations import LENGTH, PSI, THETA, T, X, Y
+    from puck_tables.motion.contact import contact_of
+    from puck_tables.motion.friction import source_of
+    from puck_tables.motion.limits import regime_of
+    from puck_tables.motion.run import GENERIC, solve
+    from puck_tables.motion.state import LENGTH, PSI, THETA, T, X, Y
 
-    if body is None:
-        solved = _solved_plainly(height, speed, rim, wanted, method, exact, table)
-    else:
-        solved = _solved_by_slice(body, speed, rim, wanted, method)
-    regime, limit, run, contact, choice, source = solved
-    stop_time = float(run.stop[T] * scale_time)
+    source = source_of(body, table, exact)
+    regime = regime_of(frame.speed, frame.rim, source.limit, source.limit_width)
+    generic = regime in GENERIC
+    run, selection = solve(source, regime, frame.speed, frame.rim, wanted, stepper)
+    contact = contact_of(body, regime, run)
+    stop_time = float(run.stop[T] * frame.time)
     moments = _moments(frames, times, stop_time)
-    look_up = (
-        moments.size >= LOOK_UP_FRAMES
-        and regime in ("B", "C")
-        and body is None
-        and not exact
-        and table is None
-        and method is None
-        and wanted >= DEFAULT_TOL
-    )
+    default = not exact and table is None and method is None and wanted >= DEFAULT_TOL
+    look_up = moments.size >= LOOK_UP_FRAMES and generic and body.is_plain and default
     if look_up:
-        till_rest = np.where(moments < stop_time, moments, 2.0 * stop_time)
-        columns = _looked_up((vx, vy), w, till_rest, height, J, r)
+        columns = _looked_up(puck, launch, w, moments, stop_time)
     else:
-        columns = _integrated(run, moments, stop_time, (vx, vy), w, J, r)
-    side = -1.0 if w < 0.0 else 1.0
-    east, north = (vx / speed, vy / speed) if speed > 0.0 else (1.0, 0.0)
-    end_along, end_left = scale_length * run.stop[X], side * scale_length * run.stop[Y]
+        columns = _integrated(run, frame, moments, stop_time)
+    title = "exact solution at constant slip angle"
+    if generic:
+        title = f"{selection.method.words}, {run.friction.source}"
+    x, y = frame.place(run.stop[X], run.stop[Y])
     return Trajectory(
         puck=puck,
-        launch_velocity=(vx, vy),
+        launch_velocity=launch,
         launch_spin=w,
         regime=regime,
         stop_time=stop_time,
-        stop_position=(
-            float(end_along * east - end_left * north) + 0.0,
-            float(end_along * north + end_left * east) + 0.0,
-        ),
-        path_length=float(run.stop[LENGTH] * scale_length),
-        turn_angle=float(side * run.stop[PSI]) + 0.0,
-        turn_rate=float(side * run.turn_rate) + 0.0,
-        body_angle=float(side * run.stop[THETA] * (scale_length / r)) + 0.0,
-        limit_angle=math.atan(math.exp(limit)),
+        stop_position=(float(x), float(y)),
+        path_length=float(run.stop[LENGTH] * frame.length),
+        turn_angle=float(frame.side * run.stop[PSI]) + 0.0,
+        turn_rate=float(frame.side * run.turn_rate) + 0.0,
+        body_angle=float(frame.side * run.stop[THETA] * (frame.length / puck.radius)) + 0.0,
+        limit_angle=math.atan(math.exp(source.limit)),
         loaded_share=contact.launch,
         least_loaded_share=contact.least,
-        contact_opens=None if contact.opens is None else contact.opens * scale_time,
-        contact_closes=None if contact.closes is None else contact.closes * scale_time,
+        contact_opens=None if contact.opens is None else contact.opens * frame.time,
+        contact_closes=None if contact.closes is None else contact.closes * frame.time,
         kinetic_energy=energy,
         energy_residual=run.energy_residual,
-        method=_method_name(regime, choice.way, source)
-        + ("; states by look-up" if look_up else ""),
+        method=title + ("; states by look-up" if look_up else ""),
         steps=run.steps,
         error_estimate=run.error,
-        choice=choice if regime in ("B", "C") else None,
+        selection=selection if generic else None,
         time=moments,
         motion=run,
         **columns,
-    )  # fmt: skip
+    )
 
 
-class _Solved(NamedTuple):
-    """A motion in natural units; ``limit`` is ln tan φ₀, ``source`` where the friction is from."""
-
-    regime: str
-    limit: float
-    run: Run
-    contact: Contact
-    choice: Choice
-    source: str
-
-
-def _solved_plainly(
-    delta: float, speed: float, rim: float, tol: float, method: str | None, exact: bool,
-    table: ResultantTable | None,
-) -> _Solved:  # fmt: skip
-    """A homogeneous puck under uniform pressure in full contact."""
-    from puck_tables.motion.limits import limit_log_ratio, regime_of
-    from puck_tables.motion.run import closed_form_friction, run_motion, table_friction
-    from puck_tables.motion.sliced import Contact
-
-    if not 0.0 <= delta < 2.0:
+def _refuse_too_large(frame: Frame, body: Body, energy: float, decel: float) -> None:
+    """Refuse a motion that leaves floating point."""
+    times, lengths = body.longest * frame.time, body.longest * frame.length
+    if not all(map(math.isfinite, (times, lengths, lengths / frame.radius, energy))):
         raise InputError(
-            f"delta = 2 f h / r must be from 0 to below 2, got {delta:g}: the linear pressure law "
-            "of full contact holds at every phi up to 1, and beyond 2 in no motion but pure spin"
+            f"velocity, spin, radius, decel and mass give a motion too large for floating point "
+            f"(Q = {frame.slip:g} m/s, J = {decel:g} m/s^2): use larger units"
         )
-    chosen = ResultantTable.shipped() if table is None else table
-    if not exact:
-        chosen.checked_range(delta)
-    choice = choose_with("trajectory", tol, method, table, exact)
-    by_closed_form = exact or (table is None and choice.way.method.endswith("closed forms"))
-    friction = closed_form_friction(delta) if by_closed_form else table_friction(delta, chosen)
-    limit = limit_log_ratio(delta)
-    regime = regime_of(speed, rim, limit)
-    run = run_motion(regime, speed, rim, limit, friction, choice)
-    source = "closed forms" if by_closed_form else "table"
-    return _Solved(regime, limit, run, Contact(), choice, source)
-
-
-def _solved_by_slice(
-    body: Body, speed: float, rim: float, tol: float, method: str | None
-) -> _Solved:
-    """Any other."""
-    from puck_tables.motion.limits import regime_of
-    from puck_tables.motion.sliced import LIMIT_WIDTH, checked_tol, contact_of, run_sliced
-
-    wanted = checked_tol(tol)
-    limit = body.limit
-    regime = regime_of(speed, rim, limit, LIMIT_WIDTH)
-    run, choice = run_sliced(body, regime, speed, rim, wanted, method)
-    return _Solved(regime, limit, run, contact_of(body, regime, run), choice, "slice")
 
 
 def _integrated(
-    run: Run, moments: FloatArray, stop_time: float, v0: tuple[float, float], spin: float,
-    decel: float, radius: float,
-) -> dict[str, FloatArray]:  # fmt: skip
+    run: Run, frame: Frame, moments: FloatArray, stop_time: float
+) -> dict[str, FloatArray]:
     """States of a motion in natural units as the columns of a trajectory."""
-    from puck_tables.motion.equations import PSI, THETA, U, X, Y
-
-    side = -1.0 if spin < 0.0 else 1.0
-    speed = math.hypot(*v0)
-    q0 = math.hypot(speed, radius * abs(spin))
-    scale_length = q0 / decel * q0
-    scaled = np.where(moments < stop_time, moments, np.inf) / (q0 / decel if q0 > 0.0 else 1.0)
-    q, states = run.states(scaled)
-    heading0 = math.atan2(v0[1], v0[0]) if speed > 0.0 else 0.0
-    east, north = (v0[0] / speed, v0[1] / speed) if speed > 0.0 else (1.0, 0.0)
-    along, left = scale_length * states[:, X], side * scale_length * states[:, Y]
-    cosine, sine = _direction(states[:, U])
+    q, natural = run.states(frame.natural_times(moments, stop_time))
+    x, y, turn, orientation, speed, spin = frame.states(q, natural)
+    cosine, sine = direction(natural[:, U])
+    slip_angle = np.where(q > 0.0, frame.side * np.arctan2(sine, cosine), 0.0) + 0.0
     return {
-        "x": along * east - left * north + 0.0,
-        "y": along * north + left * east + 0.0,
-        "heading": heading0 + side * states[:, PSI],
-        "orientation": side * states[:, THETA] * (scale_length / radius) + 0.0,
-        "speed": q0 * q * cosine,
-        "spin": side * (q0 * q * sine / radius) + 0.0,  # Q/r may overflow where ω does not
-        "slip_speed": q0 * q,
-        "slip_angle": np.where(q > 0.0, side * np.arctan2(sine, cosine), 0.0) + 0.0,
-    }
+        "x": x, "y": y, "heading": frame.heading + turn, "orientation": orientation,
+        "speed": speed, "spin": spin, "slip_speed": frame.slip * q, "slip_angle": slip_angle,
+    }  # fmt: skip
 
 
 def _looked_up(
-    v0: tuple[float, float], spin: float, moments: FloatArray, delta: float, decel: float,
-    radius: float,
-) -> dict[str, FloatArray]:  # fmt: skip
-    """The same by look-up: for many states the cheaper way."""
+    puck: Puck, launch: tuple[float, float], spin: float, moments: FloatArray, stop_time: float
+) -> dict[str, FloatArray]:
+    """The same by look-up: cheaper for many states."""
     from puck_tables.stopping.states import states
 
-    found = states(v0, spin, moments, delta=delta, decel=decel, radius=radius)
+    till_rest = np.where(moments < stop_time, moments, 2.0 * stop_time)
+    found = states(launch, spin, till_rest, delta=puck.delta, decel=puck.decel, radius=puck.radius)
     names = ("x", "y", "heading", "orientation", "speed", "spin", "slip_speed", "slip_angle")
     return {name: getattr(found, name) for name in names}
 
@@ -395,19 +311,3 @@ def checked_times(times: npt.ArrayLike) -> FloatArray:
     if moments.ndim != 1 or moments.size == 0 or not np.all(moments >= 0.0):
         raise InputError("times must be a list of numbers >= 0 s")
     return moments
-
-
-def _direction(u: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Cos φ and sin φ from u = ln tan φ, to the last digits at both ends."""
-    k = np.exp(-np.abs(u))
-    large = 1.0 / np.sqrt(1.0 + k * k)
-    return np.where(u > 0.0, k * large, large), np.where(u > 0.0, large, k * large)
-
-
-def _method_name(regime: str, way: Way, source: str) -> str:
-    if regime not in ("B", "C"):
-        return "exact solution at constant slip angle"
-    stepper = (
-        "Dormand-Prince 5(4), adaptive" if way.method.startswith("adaptive") else "Runge-Kutta 4"
-    )
-    return f"{stepper}, {source}"

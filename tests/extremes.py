@@ -303,8 +303,8 @@ def launches_on_the_edges_of_cells() -> Iterator[float]:
 
 @row("Runge–Kutta 4 with 1e6 steps", "Q/J, Q²/J", 1e-11)
 def a_million_steps() -> Iterator[float]:
-    from puck_tables.motion.equations import SIZE
     from puck_tables.motion.path import STOPPED, integrate
+    from puck_tables.motion.state import SIZE
     from puck_tables.motion.steppers import RK4
 
     result, none = np.empty(SIZE + 1), np.empty(0)

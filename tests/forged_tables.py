@@ -40,7 +40,7 @@ def forged(content: bytes, edit: Edit) -> bytes:
     recipe_names = {
         "kind", "pressure_law", "algorithm", "phi_map", "delta_map", "splined", "map", "n_phi",
         "cells", "profile_rows", "law_kind", "law_speeds", "law_values", "breaks", "nodes",
-        "patches", "largest_f", "delta", "cotangents",
+        "patches", "largest_f", "delta", "cotangents", "gyration", "friction_error",
     }  # fmt: skip
     if "recipe_digest" in attributes:
         recipe = {name: value for name, value in attributes.items() if name in recipe_names}
@@ -64,8 +64,12 @@ def content_digest(attributes: dict[str, object], arrays: dict[str, np.ndarray])
             "profile_pressure",
         ),
         "stops": ("phi", "delta", "time", "along", "across", "length", "body", "curve", "turn"),
-        "friction slice": (
+        "friction section": (
             "phi", "inverse_parallel", "perpendicular_share", "spin_share", "profile_radius",
+            "profile_pressure",
+        ),
+        "stop section": (
+            "phi", "time", "along", "across", "length", "body", "turn", "profile_radius",
             "profile_pressure",
         ),
         "speed": ("node", "p_a", "p_b", "p_d", "p_e", "patch", "halvings"),
@@ -174,7 +178,9 @@ def outcome(content: bytes, truth: Table, folder: Path) -> str:
         return "refused"
     same = type(table) is type(truth)
     allowed = min(table.tolerance, 0.01) + truth.tolerance
-    scale = 100.0 if truth.kind == "stops" else 1.0  # of the turn, which is less exact
+    scale = (
+        100.0 if truth.kind in ("stops", "stop section") else 1.0
+    )  # of the turn, which is less exact
     with np.errstate(invalid="ignore"):
         right = same and bool(np.all(np.abs(found - answers(truth)) <= scale * allowed))
     try:

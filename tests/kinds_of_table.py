@@ -9,7 +9,7 @@ import numpy as np
 from puck_tables import SpeedLaw, Table, profile_law
 
 LAW = SpeedLaw([0.0, 0.5, 2.0], [0.3, 0.2, 0.25])
-KINDS = ("resultants", "washer", "profile", "stops", "speed", "slice")
+KINDS = ("resultants", "washer", "profile", "stops", "speed", "section", "stop section")
 
 
 @cache
@@ -20,8 +20,10 @@ def small(kind: str) -> Table:
     if kind == "profile":
         law = profile_law([0.0, 0.5, 1.0], [1.0, 2.0, 0.5], name="stone.csv")
         return Table.build(law, cells=12)
-    if kind == "slice":
+    if kind == "section":
         return Table.build(("uniform", 2.0), 1e-5)
+    if kind == "stop section":
+        return Table.build(("hertz", 0.5, 0.8), 1e-5)
     if kind == "washer":
         return Table.build("annulus:0.8", cells=12)
     return Table.build("stops", cells=16) if kind == "stops" else Table.build(accuracy=1e-6)
@@ -36,7 +38,10 @@ def answers(table: Table) -> np.ndarray:
         rim, one = np.tan(phi), np.ones(phi.size)
         launches = np.stack([np.cos(phi), 0.0 * one, np.sin(phi), share, one, one])
         return np.concatenate([table.stops(launches)[0], table.known(launches)[3:6] + 0.0 * rim])
-    if table.kind == "friction slice":
+    if table.kind == "stop section":
+        c, s = np.cos(phi), np.sin(phi)
+        return table.spline.at(phi).T * np.stack([np.ones_like(c), c, s * c, c, s, s])
+    if table.kind == "friction section":
         return table.ratios(phi).T
     if table.kind == "speed":
         return np.stack(table.resultants(phi, table.top * share / np.sqrt(2.0), 0.5))

@@ -13,7 +13,7 @@ from puck_tables import stop
 from puck_tables.contact.laws import HOMOGENEOUS
 from puck_tables.errors import InputError
 from puck_tables.motion.body import body_of
-from puck_tables.stopping.section import RIM, SPEED, TIME, section_of
+from puck_tables.stopping.launch_curve import RIM, SPEED, TIME, launch_curve
 
 U = np.linspace(-6.0, 4.0, 401)
 
@@ -75,7 +75,7 @@ def test_the_fastest_launch_of_a_tall_puck_spins():
 
 def test_between_two_folds_both_ranges_are_sampled():
     """δ = 3.9: the speed falls, grows and falls: a bound may leave two ranges of slip angles."""
-    section = section_of(body_of("uniform", 3.9, HOMOGENEOUS))
+    section = launch_curve(body_of("uniform", 3.9, HOMOGENEOUS))
     turns = [n for n in range(1, section.u.size - 1)
              if -1.0 < section.u[n] < 0.5
              and (section.values[n, SPEED] - section.values[n - 1, SPEED])

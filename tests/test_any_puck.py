@@ -15,10 +15,10 @@ from puck_tables.contact.laws import HOMOGENEOUS
 from puck_tables.errors import AccuracyError, ContactError, InputError
 from puck_tables.motion import elementary_stop_time, limit_angle, limit_ratio, regime
 from puck_tables.motion.body import body_of
-from puck_tables.motion.run import step_ends
-from puck_tables.motion.sliced import friction_of
-from puck_tables.motion.steppers import DORMAND_PRINCE, RK4
-from puck_tables.table.friction_slice import friction_slice
+from puck_tables.motion.friction import section_friction
+from puck_tables.motion.run import integrated
+from puck_tables.motion.steppers import DORMAND_PRINCE, RK4, Stepping
+from puck_tables.table.friction_section import friction_section
 from puck_tables.table.singular_lines import opening_angle
 from puck_tables.table.slip_axis import graded
 from puck_tables.trajectory import Trajectory
@@ -43,7 +43,7 @@ def numbers(run: Trajectory) -> np.ndarray:
 
 def starts(law: str, delta: float, gyration: float, rng: np.random.Generator) -> np.ndarray:
     """Next to every singular line and φ₀ on both sides, next to both ends, and anywhere."""
-    lines = np.log(np.tan(friction_slice(law_of(law), delta, 0.01).lines))
+    lines = np.log(np.tan(friction_section(law_of(law), delta, 0.01).lines))
     ratio = float(limit_ratio(delta, law, gyration))
     centres = [*lines, math.log(ratio)] if 0.0 < ratio < math.inf else list(lines)
     near = [c + s * 10.0 ** -rng.uniform(0.5, 9.0) for c in centres for s in (-1.0, 1.0)]
@@ -78,10 +78,10 @@ def judged(puck: tuple[str, float, float], tolerances: tuple[float, ...]) -> Non
 
 
 @pytest.mark.parametrize("puck", PUCKS)
-def test_a_friction_slice_is_as_exact_as_it_says_and_of_order_4(puck: tuple[str, float, float]):
+def test_a_friction_section_is_as_exact_as_it_says_and_of_order_4(puck: tuple[str, float, float]):
     law, delta, _ = puck
     pressure = law_of(law)
-    found = friction_slice(pressure, delta, 1e-5 if delta > 3.8 else 1e-7)
+    found = friction_section(pressure, delta, 1e-5 if delta > 3.8 else 1e-7)
     rng = np.random.default_rng(1)
     distance = 10.0 ** -rng.uniform(0.3, 15.0, 60) * rng.choice([-1.0, 1.0], 60)
     phi = np.concatenate([
@@ -105,16 +105,15 @@ def test_a_friction_slice_is_as_exact_as_it_says_and_of_order_4(puck: tuple[str,
 @pytest.mark.parametrize("puck", [*PUCKS[1:4], *PUCKS[5:9]])
 def test_rk4_keeps_order_4_across_every_line(puck: tuple[str, float, float]):
     """From both ends of slip towards φ₀, every line on the way is crossed."""
-    friction = friction_of(body_of(*puck), 1e-7)
+    friction = section_friction(body_of(*puck), 1e-7)
     crossed = 0
     for u in (-4.0, 4.0):
-        truth = step_ends(u, friction, DORMAND_PRINCE, 0.0, 1e-14)
+        truth = integrated(u, friction, Stepping(DORMAND_PRINCE, 0.0, 1e-14))
         lines = friction.cut[::2, 2]
-        crossed += sum(bool((truth[1][:, 0] == line).any()) for line in lines)
+        crossed += sum(bool((truth.y[:, 0] == line).any()) for line in lines)
         counts = np.array([60.0, 85.0, 120.0, 170.0, 240.0, 340.0])
-        errors = [
-            np.abs(step_ends(u, friction, RK4, n, 1.0)[2] - truth[2])[2:5].max() for n in counts
-        ]
+        stops = [integrated(u, friction, Stepping(RK4, n, 1.0)).stop for n in counts]
+        errors = [np.abs(stop - truth.stop)[2:5].max() for stop in stops]
         order = -np.polyfit(np.log(counts), np.log(errors), 1)[0]
         assert order >= 3.6, (puck, u, errors)
     # a line at φ₀ is never reached, and stands at infinity
@@ -198,11 +197,11 @@ def test_the_limit_motion_is_a_spiral_in_closed_form(puck: tuple[str, float, flo
 @pytest.mark.parametrize("puck", PUCKS)
 def test_energy_is_accounted_for_and_never_grows(puck: tuple[str, float, float]):
     law, delta, gyration = puck
-    friction = friction_of(body_of(*puck), 1e-5)  # the account closes with any friction
+    friction = section_friction(body_of(*puck), 1e-5)  # the account closes with any friction
     for u in (-12.0, -0.5, 0.3, 3.0):
-        z, y, result = step_ends(u, friction, DORMAND_PRINCE, 0.0, 1e-12)
-        assert result[-1] <= 1e-10
-        energy = kinetic_energy_of(z, y[:, 0], gyration)
+        run = integrated(u, friction, Stepping(DORMAND_PRINCE, 0.0, 1e-12))
+        assert run.energy_residual <= 1e-10
+        energy = kinetic_energy_of(run.z, run.y[:, 0], gyration)
         assert np.all(np.diff(energy) < 0.0)
     options = {"delta": delta, "pressure": law, "gyration": gyration, "tol": 1e-6}
     for w0 in (0.0, 0.6, 20.0):
@@ -270,7 +269,7 @@ def test_continuous_through_delta_1_and_the_line_where_contact_opens():
     found = [numbers(simulate((1, 0), ratio * (1.0 + e), delta=2.0)) for e in (-1e-9, 0.0, 1e-9)]
     assert np.abs(found[0] - found[1]).max() <= 2e-8
     assert np.abs(found[2] - found[1]).max() <= 2e-8
-    for line in friction_slice(law_of("annulus:0.5"), 0.5, 0.01).lines:
+    for line in friction_section(law_of("annulus:0.5"), 0.5, 0.01).lines:
         on, off = (
             numbers(simulate((1, 0), math.tan(line) * e, delta=0.5, pressure="annulus:0.5"))
             for e in (1.0, 1.0 + 1e-10)
@@ -278,12 +277,12 @@ def test_continuous_through_delta_1_and_the_line_where_contact_opens():
         assert np.abs(on - off).max() <= 1e-8
 
 
-def test_a_slice_of_the_plain_puck_is_the_plain_puck():
-    """The slice against the closed forms, by the way that other pucks go."""
+def test_a_section_of_the_plain_puck_is_the_plain_puck():
+    """A section against the closed forms, by the method of other pucks."""
     for w0 in (0.2, 5.0):
         plain = simulate((1, 0), w0, delta=0.7, exact=True, tol=1e-12)
         nearly = simulate((1, 0), w0, delta=0.7, gyration=HOMOGENEOUS + 1e-15, tol=1e-10)
-        assert "slice" in nearly.method
+        assert "section" in nearly.method
         assert np.abs(numbers(nearly) - numbers(plain)).max() <= 1e-10 * (1.0 + w0**2)
 
 

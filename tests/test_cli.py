@@ -338,7 +338,7 @@ def test_pucks_of_every_kind():
     v0 = ["--v0", "1,0", "--tol", "1e-6"]
     report = puck("simulate", *v0, "--w0", "5", "--delta", "2").stdout
     for words in ("100 % of the base loaded at the launch, falling to 92.97 %; lifts at 3.7995",
-                  "slice", "delta = 2"):  # fmt: skip
+                  "section", "delta = 2"):  # fmt: skip
         assert words in report
     report = puck("simulate", *v0, "--w0", "0.3", "--delta", "1.2").stdout
     assert "all of it from 0.9244" in report
@@ -360,7 +360,7 @@ def test_pucks_of_every_kind():
     swept = puck("sweep", *v0, "--w0", "0:2:3", "--pressure", "annulus:0.8", "--gyration", "0.9",
                  "--explain")  # fmt: skip
     assert len(swept.stdout.splitlines()) == 4
-    assert "slices of pressure annulus:0.8, k/r = 0.9" in swept.stderr
+    assert "sections of pressure annulus:0.8, k/r = 0.9" in swept.stderr
     aimed = puck("aim", "--target", "2,0.1", "--w0", "5", "--gyration", "1")
     assert "1 launch" in aimed.stdout
     assert "k/r = 1" in aimed.stdout

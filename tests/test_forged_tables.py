@@ -72,7 +72,8 @@ def in_one_node(name: str, place: tuple[int, ...], change: float) -> Edit:
     [
         ("resultants", "spin", (7, 2), 1e-5), ("stops", "turn", (20, 8), 1e-2),
         ("washer", "parallel", (29, 1), 1e-3), ("profile", "spin", (101, 2), 1e-3),
-        ("speed", "p_d", (1234,), 0.02), ("slice", "spin_share", (40,), 1e-3),
+        ("speed", "p_d", (1234,), 0.02), ("section", "spin_share", (40,), 1e-3),
+        ("stop section", "along", (40,), 1e-2),
     ],
 )  # fmt: skip
 def test_one_altered_node_does_not_pass(
@@ -111,10 +112,10 @@ def test_what_a_file_says_is_no_yardstick(folder: Path, tmp_path: Path):
         Table.load(path)
 
 
-def test_a_slice_with_other_lines_or_too_few_cells_is_refused(folder: Path, tmp_path: Path):
+def test_a_section_with_other_lines_or_too_few_cells_is_refused(folder: Path, tmp_path: Path):
     """Its nodes alone are right: between them the spline would not be."""
     path = tmp_path / "forged.h5"
-    table = small("slice")
+    table = small("section")
 
     def on(axis: LawAxis, tolerance: float) -> Edit:
         def edit(attributes: dict[str, object], arrays: dict[str, np.ndarray]) -> None:
@@ -132,7 +133,7 @@ def test_a_slice_with_other_lines_or_too_few_cells_is_refused(folder: Path, tmp_
         (LawAxis((1.0,), 64), 1e-5, "its lines are not those of its puck"),
         (LawAxis(table.cotangents, 4), 1e-6, "cannot use"),
     ):
-        path.write_bytes(forged(honest("slice", folder), on(axis, tolerance)))
+        path.write_bytes(forged(honest("section", folder), on(axis, tolerance)))
         if words:
             with pytest.raises(TableError, match=words):
                 Table.load(path)

@@ -13,14 +13,14 @@ from puck_tables import SpeedLaw, Table
 from puck_tables.contact.laws import law_of
 from puck_tables.kernels.compile import kernel
 from puck_tables.kernels.quadratic import cut, fill_resultants
-from puck_tables.kernels.slice_spline import fill_slice
+from puck_tables.kernels.section_spline import fill_section
 from puck_tables.kernels.speed_spline import fill_speed
 from puck_tables.kernels.spline import cell_at
 from puck_tables.motion.body import body_of
 from puck_tables.stopping.curve_lookup import LAUNCH_COLUMNS, LAUNCH_ROWS, fill_states
 from puck_tables.stopping.lookup import stops_kernel
-from puck_tables.stopping.slice_lookup import fill_slice_stops
-from puck_tables.table.friction_slice import friction_slice
+from puck_tables.stopping.section_lookup import fill_section_stops
+from puck_tables.table.friction_section import friction_section
 from puck_tables.table.resultant_check import tabulate
 from puck_tables.tradeoff.bicubic import (
     fill_graded,
@@ -72,10 +72,10 @@ def look_up_everything() -> None:
     )
     for c in (speeds.compiled, wild_table):
         fill_speed(c, first, fast, second, out4)
-    piece = friction_slice(law_of("uniform"), 0.5, 1e-4).spline
+    piece = friction_section(law_of("uniform"), 0.5, 1e-4).spline
     hostile = np.where(np.random.default_rng(3).random(piece.cut.shape) < 0.5, 1e308, piece.cut)
     for c in (piece.cut, hostile):
-        fill_slice(c, 3, first, fast, out)
+        fill_section(c, 3, first, fast, out)
     fill_uniform(uniform_coefficients(9), first, second, np.empty(3), out)
     one = np.ones(n)
     for launches in (
@@ -87,7 +87,7 @@ def look_up_everything() -> None:
         for powers in (4, 8):
             stops_kernel(powers)(launches, stops.cut(powers, 1), out)
         stops.known(launches)
-        fill_slice_stops(launches, body_stops(), out6)
+        fill_section_stops(launches, body_stops(), out6)
         pucks = np.ones((n, LAUNCH_COLUMNS + LAUNCH_ROWS))
         pucks[:, LAUNCH_COLUMNS:] = np.random.default_rng(4).choice(WILD, (n, LAUNCH_ROWS))
         fill_states(
@@ -97,9 +97,9 @@ def look_up_everything() -> None:
 
 
 def body_stops() -> np.ndarray:
-    from puck_tables.stopping.stop_slice import stop_slice
+    from puck_tables.stopping.stop_section import stop_section_for
 
-    return stop_slice(body_of(law_of("uniform"), 0.5, 0.9), 1e-4).spline.cut
+    return stop_section_for(body_of(law_of("uniform"), 0.5, 0.9), 1e-4).spline.cut
 
 
 def look_up_in_a_process(**environment: str) -> None:

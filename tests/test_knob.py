@@ -13,15 +13,8 @@ from puck_tables.cli.main import main
 from pucks import simulate, sweep
 
 from puck_tables import Table, stop
-from puck_tables.accuracy.front import (
-    INTEGRATED,
-    LOOK_UP,
-    MARGIN,
-    choose,
-    pareto,
-    shipped_front,
-    ways_from_csv,
-)
+from puck_tables.accuracy.front import MARGIN, front_from_csv, pareto, select, shipped_front
+from puck_tables.accuracy.methods import INTEGRATED, LOOK_UP
 from puck_tables.errors import AccuracyError, InputError, TableError
 from puck_tables.stopping.stop_table import StopTable
 
@@ -72,7 +65,7 @@ def test_no_stop_is_outside_the_tolerance(starts: dict[str, np.ndarray], tol: fl
         one["v0"], one["w0"], delta=one["delta"], decel=one["decel"], radius=one["radius"], tol=tol
     )
     assert errors(one, result.stop_time, result.stop_position).max() <= tol
-    assert (result.choice.way.method == LOOK_UP) == (tol > 5e-10)
+    assert (result.selections[0].scheme == LOOK_UP) == (tol > 5e-10)
 
 
 @pytest.mark.parametrize("method", ["rk4", "adaptive", "look-up"])
@@ -84,7 +77,7 @@ def test_nor_with_a_method_of_one_s_choice(starts: dict[str, np.ndarray], method
             part["v0"], part["w0"], delta=part["delta"], decel=part["decel"],
             radius=part["radius"], tol=tol, method=method,
         )  # fmt: skip
-        assert result.choice.way.method.startswith(method)
+        assert result.selections[0].method == method
         assert errors(part, result.stop_time, result.stop_position).max() <= tol
 
 
@@ -124,19 +117,21 @@ def test_the_coarsest_cut_is_not_within_the_finest_tolerance(starts: dict[str, n
 def test_the_cheapest_that_is_close_enough_is_taken():
     for question, methods in (("stop", (LOOK_UP, *INTEGRATED)), ("trajectory", INTEGRATED)):
         for tol in 10.0 ** -np.linspace(2, 12.9, 60):
-            way = choose(question, tol, methods).way
-            assert MARGIN * way.error <= tol
-            for other in shipped_front():
-                if other.question == question and other.method in methods and other.ns < way.ns:
+            taken = select(question, tol, methods)
+            assert MARGIN * taken.error <= tol
+            rows = [row for row in shipped_front() if row.question == question]
+            (row,) = (r for r in rows if r.scheme == taken.scheme and r.setting == taken.setting)
+            for other in rows:
+                if other.scheme in methods and other.ns < row.ns:
                     assert MARGIN * other.error > tol
 
 
 def test_what_it_cannot_reach_it_says():
     for methods, words in (((LOOK_UP,), "closed forms reaches 1e-13"), (INTEGRATED, "1e-13")):
         with pytest.raises(AccuracyError, match=words):
-            choose("stop", 1e-14, methods)
+            select("stop", 1e-14, methods)
     with pytest.raises(AccuracyError, match=r"to 0\.01"):
-        choose("stop", 0.5)
+        select("stop", 0.5)
     with pytest.raises(AccuracyError, match="tol must be from 1"):
         stop((1, 0), 1.0, tol=1e-11, table=Table.shipped())
     for options, words in (
@@ -152,9 +147,9 @@ def test_the_shipped_front_is_read_and_damage_is_named():
     ways = shipped_front()
     assert {way.question for way in ways} == {"resultants", "stop", "trajectory", "state"}
     with pytest.raises(TableError, match="damaged"):
-        ways_from_csv("question,method\nstop,look-up\n")
+        front_from_csv("question,method\nstop,look-up\n")
     front = pareto(way for way in ways if way.question == "stop" and not way.outsider)
-    assert front[0].method == LOOK_UP
+    assert front[0].scheme == LOOK_UP
     assert front[-1].method == "adaptive, closed forms"
 
 
@@ -165,37 +160,37 @@ def test_explain():
     result = puck("sweep", "--w0", "1", "--speed", "1", "--tol", "1e-7", "--explain")
     assert result.exit_code == 0
     for words in (
-        "asked",
-        "error <= 1e-07",
-        "taken         look-up (powers=",
-        "measured",
-        "cheaper",
+        "Asked: an error of at most 1e-07",
+        "Taken: look-up (powers=",
+        "when measured.",
+        "A cheaper method, look-up (powers=",
+        "A closer method, ",
     ):
         assert words in result.stderr
-    assert "taken" not in result.stdout
+    assert "Taken" not in result.stdout
     result = puck("simulate", "--v0", "1,0", "--w0", "5", "--tol", "1e-12", "--explain")
-    assert "taken         adaptive, closed forms (local=" in result.stderr
+    assert "Taken: adaptive, closed forms (local=" in result.stderr
     result = puck("simulate", "--v0", "1,0", "--explain")
     assert "elementary functions" in result.stderr
     result = puck("sweep", "--w0", "1", "--method", "look-up", "--tol", "1e-12")
     assert result.exit_code == 2
     assert result.stderr.startswith("Error: tol must be from 1.")
     result = puck("sweep", "--w0", "1", "--method", "rk4", "--tol", "1e-4", "--explain")
-    assert "taken         rk4" in result.stderr
+    assert "Taken: rk4" in result.stderr
 
 
 def test_sweep_and_stop_take_the_same_way():
     for tol in (1e-3, 1e-6, 1e-9, 1e-11):
         grid = sweep([0.5, 2.0], [1.0, 3.0], tol=tol)
         alone = stop((3.0, 0.0), 2.0, tol=tol)
-        assert grid.choice == alone.choice
+        assert grid.selections == alone.selections
         assert grid.stop_time[1, 1] == float(alone.stop_time)
 
 
 def test_a_table_of_one_s_own_is_named_not_closed_forms():
     found = stop((1, 0), 5.0, table=Table.build(accuracy=1e-5), tol=1e-3)
-    assert "the table memory" in found.choice.why
-    assert "closed forms" not in found.choice.why
+    assert "the table memory" in found.explain()
+    assert "closed forms" not in found.explain()
     with pytest.raises(AccuracyError, match=r"the table memory.*give a tol in that range"):
         stop((1, 0), 5.0, table=Table.build(accuracy=1e-5))
 
@@ -203,7 +198,7 @@ def test_a_table_of_one_s_own_is_named_not_closed_forms():
 def test_a_stop_table_of_one_s_own_is_taken_whole():
     own = StopTable(Table.shipped("stops").values[::6], tolerance=2e-7)
     result = stop((1, 0), 5.0, table=own, tol=1e-3)
-    assert result.choice is None
+    assert result.selections == ()
     assert abs(float(result.stop_time) - 3.96299205) <= 5.2 * own.tolerance
     with pytest.raises(AccuracyError, match="2e-07"):
         stop((1, 0), 5.0, table=own, tol=1e-8)

@@ -41,7 +41,7 @@ def test_rk4_keeps_order_4_across_the_singular_angle(k: float, delta: float):
     accuracies = 10.0 ** -np.arange(5.5, 10.5, 0.5)
     runs = [simulate((1, 0), k, delta=delta, exact=True, tol=a, method="rk4") for a in accuracies]
     errors = [deviation(run, target) for run in runs]
-    steps = [run.choice.way.number("steps") for run in runs]
+    steps = [run.selection.number("steps") for run in runs]
     assert len(set(steps)) >= 8
     order = -np.polyfit(np.log(steps), np.log(errors), 1)[0]
     assert order >= 3.8, (order, errors)

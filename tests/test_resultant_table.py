@@ -9,7 +9,7 @@ import pytest
 from pucks import simulate, sweep
 
 import puck_tables as pt
-from puck_tables import Table, resultants
+from puck_tables import Table, resultants, stop
 from puck_tables.contact import quadrature
 from puck_tables.contact.closed_form import by_closed_form
 from puck_tables.contact.integrals import slip_direction
@@ -18,8 +18,7 @@ from puck_tables.contact.opening import critical_delta
 from puck_tables.contact.pressure import GALIN, HERTZ
 from puck_tables.contact.resultants import moment_balance
 from puck_tables.errors import InputError
-from puck_tables.motion.run import table_friction
-from puck_tables.stopping.solvers import solver_for
+from puck_tables.motion.friction import table_friction
 from puck_tables.table.fit import clamped_coefficients, height_terms
 from puck_tables.table.resultant_check import adversarial_points, tabulate
 from puck_tables.table.slip_axis import LawAxis
@@ -268,7 +267,7 @@ def test_a_table_of_another_law_is_not_taken_for_a_plain_puck():
     for asked in (
         lambda: table_friction(0.5, hertz),
         lambda: hertz.section(0.5),
-        lambda: solver_for(1e-8, hertz),
+        lambda: stop((1.0, 0.0), 1.0, delta=0.5, table=hertz),
     ):
         with pytest.raises(InputError, match="under the pressure law hertz, not uniform"):
             asked()

@@ -14,7 +14,7 @@ from scipy.integrate import quad, solve_ivp
 
 import puck_tables as pt
 from puck_tables.errors import AccuracyError, InputError
-from puck_tables.table import friction_slice
+from puck_tables.table import friction_section
 from puck_tables.table.slip_spline import slip_spline
 
 RADII = np.linspace(0.0, 1.0, 21)
@@ -73,7 +73,7 @@ def test_integrals_of_a_rough_profile_by_their_definition():
 
 
 def test_a_tolerance_out_of_reach_is_refused_with_one_that_is_not(monkeypatch):
-    monkeypatch.setattr(friction_slice, "slip_spline", partial(slip_spline, finest=64))
+    monkeypatch.setattr(friction_section, "slip_spline", partial(slip_spline, finest=64))
     law = measured(1, noise=0.3)
     with pytest.raises(AccuracyError, match="--tol") as refused:
         simulate((1.0, 0.0), 5.0, delta=0.2, pressure=law)
@@ -84,10 +84,10 @@ def test_a_tolerance_out_of_reach_is_refused_with_one_that_is_not(monkeypatch):
 
 @pytest.mark.parametrize("pressure", [[1.0, 0.2, 0.3], [0.1, 1.0, 0.0]])
 def test_a_tip_in_the_middle_costs_no_order(pressure):
-    """A load that is not flat at the centre: its slice halves its error sixteenfold."""
+    """A load that is not flat at the centre: its section halves its error sixteenfold."""
     law = pt.profile_law([0.0, 0.5, 1.0], pressure)
-    errors = [friction_slice.friction_slice(law, 0.2, tol).error for tol in (1e-6, 1e-9)]
-    cells = [friction_slice.friction_slice(law, 0.2, tol).spline.cells for tol in (1e-6, 1e-9)]
+    errors = [friction_section.friction_section(law, 0.2, tol).error for tol in (1e-6, 1e-9)]
+    cells = [friction_section.friction_section(law, 0.2, tol).spline.cells for tol in (1e-6, 1e-9)]
     assert np.log(errors[0] / errors[1]) / np.log(cells[1] / cells[0]) > 3.5
     assert simulate((1.0, 0.0), 5.0, delta=0.2, pressure=law, tol=1e-11).stop_time > 0.0
 

@@ -85,12 +85,12 @@ def test_slices_of_strips_are_brought_to_one_shape_and_stay_the_same_splines():
     puck = {"radius": 0.04, "height": 0.25}
     scene = Scene.from_tables({"puck": puck, "floor": {"strips": strips}, "launch": LAUNCH})
     regions = regions_of(scene)
-    from puck_tables.kernels.slice_spline import slice_ratios
+    from puck_tables.kernels.section_spline import section_ratios
 
     for n, delta in enumerate(2 * np.array(strips["friction"]) * 0.25 / 0.04):
         for phi in np.linspace(0.01, 1.56, 41):
             k = min(math.tan(phi), 1.0 / math.tan(phi))
-            inverse, across, spin = slice_ratios(k, phi > math.pi / 4, regions.cuts[n])
+            inverse, across, spin = section_ratios(k, phi > math.pi / 4, regions.cuts[n])
             truth = pt.contact.one_sided_resultants(phi, delta)
             assert inverse == pytest.approx(float(1.0 / truth.parallel), abs=2e-9)
             assert across == pytest.approx(float(truth.perpendicular / truth.parallel), abs=2e-9)

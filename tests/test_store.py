@@ -7,6 +7,7 @@ import os
 import re
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +19,7 @@ from pucks import simulate
 import puck_tables as pt
 from puck_tables.errors import AccuracyError, InputError
 from puck_tables.kernels.cache import cache_folder
+from puck_tables.stopping import stop_section
 from puck_tables.table import store
 
 RADII = np.linspace(0.0, 1.0, 5)
@@ -29,6 +31,7 @@ def kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     monkeypatch.setattr("sys.platform", "linux")
     store.say.cache_clear()
+    stop_section.stop_section_for.cache_clear()  # other tests have asked for the same
     return tmp_path / "cache" / "puck-tables" / "tables"
 
 
@@ -238,13 +241,13 @@ def test_progress_is_told():
 
 def test_the_friction_of_a_tall_puck_is_kept(kept: Path, monkeypatch: pytest.MonkeyPatch):
     built: list[float] = []
-    true = store.friction_slice
+    true = store.friction_section
 
     def counted(law: pt.Law, delta: float, accuracy: float) -> pt.Table:
         built.append(delta)
         return true(law, delta, accuracy)
 
-    monkeypatch.setattr(store, "friction_slice", counted)
+    monkeypatch.setattr(store, "friction_section", counted)
     store.friction_for.cache_clear()  # other tests have asked for the same
     first = simulate((1.0, 0.0), 5.0, delta=1.5, tol=1e-5)
     times = len(built)
@@ -257,13 +260,54 @@ def test_the_friction_of_a_tall_puck_is_kept(kept: Path, monkeypatch: pytest.Mon
     assert len(built) > times
     assert other.stop_time != first.stop_time
     listed = puck("tables").stdout
-    assert listed.count("friction slice") == len(list(kept.iterdir()))
-    monkeypatch.setattr(store, "MOST_TALL", 3)
+    assert listed.count("friction section") == len(list(kept.iterdir()))
+    monkeypatch.setattr(store, "MOST_SECTIONS", 3)
     for delta in (1.1, 1.2, 1.3):
         store.friction_for(pt.law_of("uniform"), delta, 1e-4)
     assert sorted(path.name[:8] for path in kept.iterdir()) == ["tall-1.1", "tall-1.2", "tall-1.3"]
     simulate((1.0, 0.0), 5.0, delta=0.5, pressure="ring", tol=1e-5)
     assert "ring" not in puck("tables").stdout  # made in no time
+
+
+def test_stops_of_other_pucks_are_kept(kept: Path, monkeypatch: pytest.MonkeyPatch):
+    """The second sweep over a height, pressure or gyration prepares nothing anew."""
+    pucks = (
+        {"delta": 1.5}, {"pressure": "ring", "delta": 0.5}, {"delta": 0.5, "gyration": 0.9},
+        {"pressure": pt.profile_law([0.0, 1.0], [1.0, 0.5], name="stone.csv"), "delta": 0.4},
+    )  # fmt: skip
+    launches = (1.0, 0.0), np.linspace(0.0, 4.0, 301)
+    first = [pt.stop(*launches, tol=1e-5, **one) for one in pucks]
+    names = [path.name for path in kept.iterdir() if path.name.startswith("stops-")]
+    assert len(names) == len(pucks)
+    stop_section.stop_section_for.cache_clear()  # as in another process
+
+    def refused(*what: object) -> None:
+        raise AssertionError("it is tabulated again")
+
+    monkeypatch.setattr(stop_section, "stop_section", refused)
+    for one, before in zip(pucks, first, strict=True):
+        again = pt.stop(*launches, tol=1e-5, **one)
+        np.testing.assert_array_equal(again.stop_time, before.stop_time)
+        np.testing.assert_array_equal(again.turn_angle, before.turn_angle)
+        assert again.selections == before.selections
+    with pytest.raises(AssertionError, match="tabulated again"):
+        pt.stop(*launches, tol=1e-6, **pucks[0])
+    assert puck("tables").stdout.count("stop section") == len(pucks)
+    own = pt.Table.build("ring", 1e-8)
+    with pytest.raises(AssertionError, match="tabulated again"):  # of a table of one's own: not
+        pt.stop(*launches, tol=1e-5, table=own, **pucks[1])
+
+
+def test_a_law_that_borrows_a_name_is_not_taken_for_it(kept: Path):
+    """Its stops are neither read nor kept under that name."""
+    launches = (1.0, 0.0), np.linspace(0.0, 4.0, 301)
+    true = pt.stop(*launches, tol=1e-5, pressure="ring", delta=0.5)
+    false = replace(pt.law_of("galin"), name="ring")
+    stops = pt.stop(*launches, tol=1e-5, pressure=false, delta=0.5)
+    assert np.abs(stops.stop_time - true.stop_time).max() > 1e-3
+    galin = pt.stop(*launches, tol=1e-5, pressure="galin", delta=0.5)
+    np.testing.assert_array_equal(stops.stop_time, galin.stop_time)
+    assert len([path for path in kept.iterdir() if path.name.startswith("stops-")]) == 2
 
 
 def test_listed_removed_and_cleaned(kept: Path, tmp_path: Path):

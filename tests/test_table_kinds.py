@@ -27,7 +27,8 @@ GRIDS = {
     "washer": ({"phi": 49, "delta": 4}, "spin", "49 phi x 4 delta nodes"),
     "profile": ({"phi": 145, "delta": 4, "profile_radius": 3}, "spin", "145 phi x 4 delta nodes"),
     "stops": ({"phi": 33, "delta": 9}, "time", "33 phi x 9 delta nodes"),
-    "slice": ({"phi": 129}, "spin_share", "129 phi nodes"),
+    "section": ({"phi": 129}, "spin_share", "129 phi nodes"),
+    "stop section": ({"phi": 129}, "along", "129 phi nodes"),
     "speed": ({"node": 1936, "patch": 16}, "p_d", "1936 nodes in 16 patches"),
 }
 every_kind = pytest.mark.parametrize("kind", KINDS)
@@ -296,6 +297,6 @@ def test_the_tables_that_come_along():
         table = Table.shipped(kind)
         assert table.kind == kind
         assert table.accuracy.worst <= table.tolerance == most
-    for kind in ("speed", "partial", "../tables/stops", "friction slice"):
+    for kind in ("speed", "partial", "../tables/stops", "friction section"):
         with pytest.raises(InputError, match="comes along"):
             Table.shipped(kind)

@@ -139,9 +139,9 @@ def test_the_look_up_is_found_in_the_cache_of_compiled_code():
 
 
 def test_unrolled_and_general_runge_kutta_take_the_same_steps():
-    from puck_tables.motion.equations import SIZE, T, Y
     from puck_tables.motion.path import integrate
     from puck_tables.motion.rk4 import to_stop
+    from puck_tables.motion.state import SIZE, T, Y
 
     nothing, none = np.empty(0), np.empty((0, SIZE))
     for u in (-20.0, -2.0, -1e-6, 0.3, 5.0):

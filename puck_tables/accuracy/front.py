@@ -1,8 +1,8 @@
-"""The measured front: what each way of answering costs and how far off it is; and the knob.
+"""The accuracy-cost front: what each method costs and errs, measured; and the selection by it.
 
 The file ``tables/front.csv`` holds what ``puck tradeoff`` measured once.  Errors are properties of
-a way and hold everywhere; costs are those of the machine that measured, and only their order
-matters here.  The knob takes the cheapest way whose measured error, times a margin for what the
+a method and hold everywhere; costs are those of the machine that measured, and only their order
+matters here.  Selected is the cheapest method whose measured error, times a margin for what the
 measurement did not see, is within the tolerance.
 """
 
@@ -15,23 +15,20 @@ from dataclasses import dataclass, fields
 from functools import cache, lru_cache
 from importlib.resources import files
 
+from puck_tables.accuracy.methods import INTEGRATED, LOOK_UP, MEASURED, Method, Scheme, Source
 from puck_tables.errors import AccuracyError, TableError
 
 COARSEST, FINEST = 0.01, 1e-13
 MARGIN = 1.5  # errors are measured at a thousand starts: others may be a little worse
-
-LOOK_UP = "look-up"
-RK4_TABLE, RK4_EXACT = "rk4, table", "rk4, closed forms"
-ADAPTIVE_TABLE, ADAPTIVE_EXACT = "adaptive, table", "adaptive, closed forms"
-INTEGRATED = (RK4_TABLE, RK4_EXACT, ADAPTIVE_TABLE, ADAPTIVE_EXACT)
+UNITS = "of Q/J (times) and Q^2/J (places)"
 
 
 @dataclass(frozen=True)
-class Way:
-    """One way of answering a question, measured.
+class Measured:
+    """One method of answering a question, measured.
 
     ``question``: resultants (three at a point), stop, trajectory, state.  ``method`` and
-    ``setting`` name the way; ``outsider`` is 1 for what is not this program.  Errors are absolute
+    ``setting`` name it; ``outsider`` is 1 for what is not this program.  Errors are absolute
     and dimensionless: of the resultants, or in units of Q/J (time) and Q²/J (place); ``error`` is
     the worst, ``median_error`` the median over all starts.  ``ns`` is the median cost of one item
     on one thread in nanoseconds, ``ns_spread`` the distance between the quartiles, ``limit_ns`` the
@@ -53,33 +50,56 @@ class Way:
     limit_ns: float
     limit: str
 
+    @property
+    def scheme(self) -> Scheme | None:
+        """Which of the schemes that can be selected it measured, if any."""
+        return MEASURED.get(self.method)
+
+    @property
+    def name(self) -> str:
+        """Method and setting."""
+        return named(self.method, self.setting)
+
+
+@dataclass(frozen=True)
+class Selection:
+    """The method selected for a tolerance: its setting, its error, and why (``explanation``)."""
+
+    scheme: Scheme
+    setting: str
+    error: float
+    tol: float
+    explanation: str
+
+    @property
+    def method(self) -> Method:
+        """The method alone."""
+        return self.scheme.method
+
     def number(self, name: str) -> float:
         """A number of the setting, which reads like ``powers=6 thinning=2``.
 
         Examples
         --------
-        >>> choose("stop", 1e-8).way.number("powers") >= 5
+        >>> select("stop", 1e-8).number("powers") >= 5
         True
         """
         return float(dict(part.split("=") for part in self.setting.split())[name])
 
-    @property
-    def name(self) -> str:
-        """Method and setting."""
-        return f"{self.method} ({self.setting})" if self.setting else self.method
+
+def named(method: str, setting: str) -> str:
+    """Method and setting in words.
+
+    Examples
+    --------
+    >>> named("rk4, table", "steps=8")
+    'rk4, table (steps=8)'
+    """
+    return f"{method} ({setting})" if setting else method
 
 
-@dataclass(frozen=True)
-class Choice:
-    """What the knob took, and why (``why``: lines of text)."""
-
-    way: Way
-    tol: float
-    why: str
-
-
-def ways_from_csv(text: str) -> tuple[Way, ...]:
-    """Ways from what ``puck tradeoff -o front.csv`` saved.
+def front_from_csv(text: str) -> tuple[Measured, ...]:
+    """The front from what ``puck tradeoff -o front.csv`` saved.
 
     Raises
     ------
@@ -88,111 +108,127 @@ def ways_from_csv(text: str) -> tuple[Way, ...]:
 
     Examples
     --------
-    >>> ways_from_csv("question,method")
+    >>> front_from_csv("question,method")
     ()
     """
     kinds = {"str": str, "int": int, "float": float}
-    readers = {field.name: kinds[str(field.type)] for field in fields(Way)}
+    readers = {field.name: kinds[str(field.type)] for field in fields(Measured)}
     try:
         rows = [
             {name.partition("[")[0]: value for name, value in row.items()}
             for row in csv.DictReader(io.StringIO(text))
         ]
-        return tuple(Way(**{n: read(row[n]) for n, read in readers.items()}) for row in rows)
+        return tuple(Measured(**{n: read(row[n]) for n, read in readers.items()}) for row in rows)
     except (KeyError, TypeError, ValueError):
-        raise TableError("the file of measured ways is damaged: install the package anew") from None
+        raise TableError("the measured front is damaged: install the package anew") from None
 
 
 @cache
-def shipped_front() -> tuple[Way, ...]:
+def shipped_front() -> tuple[Measured, ...]:
     """What came with the package.
 
     Examples
     --------
-    >>> {way.question for way in shipped_front()} >= {"resultants", "stop", "trajectory", "state"}
+    >>> {row.question for row in shipped_front()} >= {"resultants", "stop", "trajectory", "state"}
     True
     """
     try:
         text = (files("puck_tables.tables") / "front.csv").read_text(encoding="utf-8")
     except OSError:
         raise TableError("tables/front.csv is missing: install the package anew") from None
-    return ways_from_csv(text)
+    return front_from_csv(text)
 
 
-def pareto(ways: Iterable[Way]) -> list[Way]:
+def pareto(rows: Iterable[Measured]) -> list[Measured]:
     """Those that no other beats in both error and cost, the cheapest first.
 
     Examples
     --------
-    >>> front = pareto(way for way in shipped_front() if way.question == "stop")
+    >>> front = pareto(row for row in shipped_front() if row.question == "stop")
     >>> all(a.error > b.error for a, b in zip(front[:-1], front[1:]))
     True
     """
-    front: list[Way] = []
-    for way in sorted(ways, key=lambda way: (way.ns, way.error)):
-        if not front or way.error < front[-1].error:
-            front.append(way)
+    front: list[Measured] = []
+    for row in sorted(rows, key=lambda row: (row.ns, row.error)):
+        if not front or row.error < front[-1].error:
+            front.append(row)
     return front
 
 
 @lru_cache(maxsize=256)
-def choose(
+def select(
     question: str,
     tol: float,
-    methods: tuple[str, ...] = (LOOK_UP, *INTEGRATED),
-    added_error: float = 0.0,
-) -> Choice:
-    """The cheapest way to a tolerance, by measured errors.
+    schemes: tuple[Scheme, ...] = (LOOK_UP, *INTEGRATED),
+    own_table: tuple[str, float] | None = None,
+) -> Selection:
+    """The cheapest method to a tolerance, by measured errors.
 
     Parameters
     ----------
     question : 'stop' or 'trajectory'
     tol : largest error wanted, in units of Q/J (times) and Q²/J (places), 1e-13 to 0.01
-    methods : the methods that may be taken
-    added_error : what the answer is off besides, such as by a table of one's own
-
-    Returns
-    -------
-    Choice
+    schemes : what may be selected
+    own_table : the name of a table that stands where closed forms were measured, and what it adds
+        to the error
 
     Raises
     ------
     AccuracyError
-        If the tolerance is out of reach of these methods.
+        If the tolerance is out of reach of these schemes.
 
     Examples
     --------
-    >>> choose("stop", 1e-6).way.method, choose("stop", 1e-12).way.method
+    >>> select("stop", 1e-6).scheme.name, select("stop", 1e-12).scheme.name
     ('look-up', 'adaptive, closed forms')
     """
-    known = [w for w in shipped_front() if w.question == question and w.method in methods]
-    off = {way: MARGIN * way.error + added_error for way in known}
+    added = 0.0 if own_table is None else own_table[1]
+    rows = [row for row in shipped_front() if row.question == question and row.scheme in schemes]
+    off = {row: MARGIN * row.error + added for row in rows}
     best = max(FINEST, min(off.values()))
     if not best <= tol <= COARSEST:
-        hint = "" if ADAPTIVE_EXACT in methods else "; integration with closed forms reaches 1e-13"
+        names = " / ".join(_told_scheme(scheme, own_table) for scheme in schemes)
+        exact = Scheme(Method.ADAPTIVE, Source.CLOSED_FORMS)
+        hint = "" if exact in schemes else "; integration with closed forms reaches 1e-13"
         raise AccuracyError(
-            f"tol must be from {_up(best)} (the best of {' / '.join(dict.fromkeys(methods))}) to "
-            f"{COARSEST:g}, in units of Q/J and Q^2/J, got {tol:g}: give a tol in that range{hint}"
+            f"tol must be from {_up(best)} (the best of {names}) to {COARSEST:g}, in units of Q/J "
+            f"and Q^2/J, got {tol:g}: give a tol in that range{hint}"
         )
-    ranked = sorted(known, key=lambda way: way.ns)
-    taken = next(way for way in ranked if off[way] <= tol)
-    cheaper = [way for way in ranked if way.ns < taken.ns]
-    dearer = next((w for w in pareto(known) if w.ns > taken.ns and w.error < taken.error), None)
+    ranked = sorted(rows, key=lambda row: row.ns)
+    taken = next(row for row in ranked if off[row] <= tol)
+    cheaper = min(
+        (row for row in ranked if row.ns < taken.ns), key=lambda row: row.error, default=None
+    )
+    closer = next((r for r in pareto(rows) if r.ns > taken.ns and r.error < taken.error), None)
     lines = [
-        f"asked         error <= {tol:.3g} of Q/J (times) and Q^2/J (places)",
-        f"taken         {_told(taken)}",
-        f"measured      {taken.error:.2g} at the worst of the starts, x {MARGIN:g} for those not "
-        f"measured{f', + {added_error:.2g} of the table' if added_error else ''}",
+        f"Asked: an error of at most {tol:.3g} {UNITS}.",
+        f"Taken: {_told(taken, own_table)}, {_duration(taken.ns)} when measured.",
+        f"It errs by {taken.error:.2g} at the worst of the starts; times {MARGIN:g} for those not "
+        f"measured{f', plus {added:.2g} of the table' if added else ''}, that is within the "
+        "tolerance.",
     ]
-    if cheaper:
-        lines.append(f"cheaper, no   {_told(min(cheaper, key=lambda way: way.error))}")
-    if dearer is not None:
-        lines.append(f"closer, dear  {_told(dearer)}")
-    return Choice(taken, tol, "\n".join(lines))
+    if cheaper is not None:
+        lines.append(
+            f"A cheaper method, {_told(cheaper, own_table)}, errs by {cheaper.error:.2g} (times "
+            f"{MARGIN:g}), more than the tolerance asks."
+        )
+    if closer is not None:
+        lines.append(
+            f"A closer method, {_told(closer, own_table)}, errs by {closer.error:.2g} and costs "
+            f"more: {_duration(closer.ns)}."
+        )
+    scheme = MEASURED[taken.method]
+    return Selection(scheme, taken.setting, taken.error, tol, "\n".join(lines))
 
 
-def _told(way: Way) -> str:
-    return f"{way.name}: error {way.error:.2g}, {_duration(way.ns)} when measured"
+def _told_scheme(scheme: Scheme, own_table: tuple[str, float] | None) -> str:
+    if own_table is None or scheme.source is None:
+        return scheme.name
+    return f"{scheme.method}, the table {own_table[0]}"
+
+
+def _told(row: Measured, own_table: tuple[str, float] | None) -> str:
+    return named(_told_scheme(MEASURED[row.method], own_table), row.setting)
 
 
 def _duration(ns: float) -> str:

@@ -14,6 +14,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import lru_cache, partial
+from itertools import count
 from pathlib import Path
 
 import numpy as np
@@ -39,6 +40,7 @@ _LEAST_STEP = 1e-12  # between the radii of a profile
 _LEAST_SPREAD = 2.5e-7  # root mean square, of the radius at which its load stands
 _TIP = 1e-5  # the least radius that matters there
 _MOST_BENDS, _STRAIGHT = 40, 1e-12  # the latter of the largest pressure
+_SECANTS = 14
 _LARGEST = 1e-5  # a limit ratio above 1e5 is none: there the two rates agree to rounding
 MAX_PROFILE_BYTES = 1 << 24
 HOMOGENEOUS = 0.5**0.5  # radius of gyration over r of a homogeneous cylinder about its axis
@@ -315,17 +317,29 @@ def limit_ratio(law: Law, delta: float = 0.0, gyration: float = HOMOGENEOUS) -> 
     if not 0.0 < gyration < np.inf:
         raise InputError(f"the radius of gyration must be positive, in units of r, got {gyration}")
     low, high = _LARGEST, 0.5 * np.pi - _LARGEST
-    if not _sliding_decays_faster(law, low, delta, gyration):
+    above, below = (_sliding_decays_faster(law, phi, delta, gyration) for phi in (low, high))
+    if not above > 0.0:
         return 0.0
-    if _sliding_decays_faster(law, high, delta, gyration):
+    if below > 0.0:
         return np.inf
-    while low < (middle := 0.5 * (low + high)) < high:
-        faster = _sliding_decays_faster(law, middle, delta, gyration)
-        low, high = (middle, high) if faster else (low, middle)
-    return float(np.tan(low))
+    side = 0
+    for step in count():  # regula falsi (Illinois) as far as it goes, then halves
+        middle = (above * high - below * low) / (above - below) if step < _SECANTS else low
+        if not low < middle < high:
+            middle = 0.5 * (low + high)
+        if not low < middle < high:
+            return float(np.tan(low))
+        found = _sliding_decays_faster(law, middle, delta, gyration)
+        if found > 0.0:
+            low, above, below = middle, found, 0.5 * below if side > 0 else below
+            side = 1
+        else:
+            high, below, above = middle, found, 0.5 * above if side < 0 else above
+            side = -1
+    raise AssertionError
 
 
-def _sliding_decays_faster(law: Law, phi: float, delta: float, gyration: float) -> bool:
-    """Whether v loses a larger share of itself than rω."""
+def _sliding_decays_faster(law: Law, phi: float, delta: float, gyration: float) -> float:
+    """By how much the share of itself that v loses is larger than that of rω."""
     rho = law.friction(phi, delta)
-    return bool(rho.parallel > rho.spin / (2.0 * gyration**2))
+    return float(rho.parallel - rho.spin / (2.0 * gyration**2))

@@ -16,6 +16,7 @@ import re
 import sys
 import tempfile
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -46,6 +47,7 @@ class KeptCode(_Cache):
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """What was compiled for a signature, or None."""
+        _leave_out_blas()
         target_context.refresh()
         key = self._key(sig, target_context.codegen())
         path = self._path(key)
@@ -96,6 +98,25 @@ class KeptCode(_Cache):
 
     def flush(self) -> None:
         """Nothing to do: what is damaged is never read."""
+
+
+@cache
+def _leave_out_blas() -> None:
+    """Keep numba from loading scipy's linear algebra, which takes as long as numpy.
+
+    It looks for a BLAS as it first compiles or reads anything; no kernel multiplies matrices.
+    """
+    from numba.np import linalg
+
+    def no_blas() -> None:
+        raise ImportError
+
+    found: Any = linalg.ensure_blas
+    linalg.ensure_blas = no_blas
+    try:
+        import numba.np.arraymath  # noqa: F401 - it asks as it is imported
+    finally:
+        linalg.ensure_blas = found
 
 
 def _write(path: Path, content: bytes) -> None:

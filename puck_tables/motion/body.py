@@ -1,21 +1,51 @@
-"""A puck of any kind: its pressure law, its height, and how its mass is spread."""
+"""What the motion of a puck depends on besides its scale: its law, height and spread of mass."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 from puck_tables._core.real import instance, real
 from puck_tables.contact.laws import HOMOGENEOUS, Law, law_of, limit_ratio
 from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import InputError
-from puck_tables.table.friction_slice import FrictionSlice, slice_of
+from puck_tables.table.friction_section import FrictionSection, section_of_table
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.table.singular_lines import refuse_height
 from puck_tables.table.store import friction_for
 
 STANDARD_GRAVITY = 9.80665
 SMALLEST_GYRATION, LARGEST_GYRATION = 0.1, 10.0
+_FULL_CONTACT = 1.0  # δ up to which a plain puck lies on its whole base in every motion
+
+
+def plain_up_to(pressure: str | Law, gyration: float) -> float:
+    """The height up to which closed forms and the shipped tables hold for a kind of puck.
+
+    Returns
+    -------
+    float
+        1 for a homogeneous puck under uniform pressure, −inf for any other.
+
+    Examples
+    --------
+    >>> plain_up_to("uniform", HOMOGENEOUS), plain_up_to("ring", HOMOGENEOUS)
+    (1.0, -inf)
+    """
+    uniform = pressure == "uniform" or (isinstance(pressure, Law) and pressure.can_lift)
+    return _FULL_CONTACT if uniform and gyration == HOMOGENEOUS else -math.inf
+
+
+def is_plain(pressure: str | Law, gyration: float, delta: float) -> bool:
+    """Whether closed forms and the shipped tables hold for a puck of this height.
+
+    Examples
+    --------
+    >>> is_plain("uniform", HOMOGENEOUS, 0.5), is_plain("ring", HOMOGENEOUS, 0.5)
+    (True, False)
+    """
+    return not delta > plain_up_to(pressure, gyration)
 
 
 @dataclass(frozen=True)
@@ -41,6 +71,29 @@ class Body:
     table: ResultantTable | None = None
 
     @property
+    def is_plain(self) -> bool:
+        """Whether closed forms and the shipped tables hold for it."""
+        return is_plain(self.law, self.gyration, self.delta)
+
+    @property
+    def has_closed_forms(self) -> bool:
+        """Whether it is homogeneous and under uniform pressure, of whatever height."""
+        return plain_up_to(self.law, self.gyration) > 0.0
+
+    @property
+    def kind(self) -> str:
+        """Pressure and gyration in words; empty for a homogeneous puck under uniform pressure.
+
+        Examples
+        --------
+        >>> body_of("ring", 0.0, 1.0).kind
+        'pressure ring, k/r = 1'
+        """
+        if self.has_closed_forms:
+            return ""
+        return f"pressure {self.law.name}, k/r = {self.gyration:.6g}"
+
+    @cached_property
     def limit_ratio(self) -> float:
         """The ratio rω/v that its motions tend to, 0 and inf included."""
         return limit_ratio(self.law, self.delta, self.gyration)
@@ -59,30 +112,20 @@ class Body:
     @property
     def longest(self) -> float:
         """More than any motion lasts, in units of Q/J, and than it moves, in units of Q²/J."""
-        return max(4.0, 4.0 * self.inertia)
+        return 2.0 if self.is_plain else max(4.0, 4.0 * self.inertia)
 
     @property
     def spin_time(self) -> float:
         """How long pure spin lasts, in units of r|ω|/J: 2k²/(r² ρ_ω(π/2))."""
+        if self.is_plain:
+            return 0.75
         return 2.0 * self.inertia / float(self.law.friction(0.5 * math.pi, 0.0).spin)
 
-    def friction(self, accuracy: float) -> FrictionSlice:
+    def friction(self, accuracy: float) -> FrictionSection:
         """Its friction over the slip angle."""
         if self.table is not None:
-            return slice_of(self.table, self.delta, accuracy)
+            return section_of_table(self.table, self.delta, accuracy)
         return friction_for(self.law, self.delta, accuracy)
-
-
-def is_plain(pressure: str | Law, gyration: float, delta: float) -> bool:
-    """Whether a puck is homogeneous, under uniform pressure and never lifts: δ ≤ 1.
-
-    Examples
-    --------
-    >>> is_plain("uniform", HOMOGENEOUS, 0.5), is_plain("ring", HOMOGENEOUS, 0.5)
-    (True, False)
-    """
-    uniform = pressure == "uniform" or (isinstance(pressure, Law) and pressure.can_lift)
-    return uniform and gyration == HOMOGENEOUS and not delta > 1.0
 
 
 def body_of(

@@ -9,10 +9,11 @@ import numpy.typing as npt
 
 from puck_tables.kernels.compile import allocating
 from puck_tables.kernels.quadratic import cut as cut_table
-from puck_tables.motion.equations import LENGTH, PSI, SIZE, THETA, T, U, X, Y, at_constant_angle
+from puck_tables.motion.equations import at_constant_angle
 from puck_tables.motion.limits import log_ratio
 from puck_tables.motion.path import STOPPED, integrate
 from puck_tables.motion.rk4 import to_stop
+from puck_tables.motion.state import LENGTH, PSI, SIZE, THETA, T, U, X, Y
 from puck_tables.motion.steppers import Tableau
 
 FloatArray = npt.NDArray[np.float64]
@@ -34,9 +35,9 @@ def fill_stops(
 ) -> None:
     """Stops of launches (6, n): vx, vy, ω, δ, J, r, into ``out`` (6, n), see solvers.OUTPUTS.
 
-    With about ``steps`` steps of Runge–Kutta 4, or, if that is 0, with the pair ``tableau`` and
-    the local error ``tolerance``.  ``coefficients``: those of a table of resultants, empty for
-    closed forms; a matrix is the slice of one kind of puck, which all launches are of.
+    By ``tableau`` with about ``steps`` steps, or, if that is 0, with the local error ``tolerance``.
+    ``coefficients``: those of a table of resultants, empty for closed forms; a matrix is the
+    section of one kind of puck, which all launches are of.
     One launch never influences another, so any cutting into chunks gives the same bits.
     """
     if coefficients.ndim == 2:
@@ -73,22 +74,13 @@ def fill_stops(
                 start[i] = 0.0
             start[U] = math.inf if speed == 0.0 else -math.inf
             at_constant_angle(1.0, start, 0.0, at_ends, delta, result)
-        elif steps > 0.0:
+        elif steps > 0.0 and tableau.unrolled:
             to_stop(log_ratio(speed, rim), steps, cut, delta, start, result)
         else:
             code, _ = integrate(
-                log_ratio(speed, rim),
-                tableau,
-                0.0,
-                tolerance,
-                1.0,
-                cut,
-                delta,
-                _STEP_LIMIT,
-                no_z,
-                no_y,
-                result,
-            )
+                log_ratio(speed, rim), tableau, steps, tolerance, 1.0, cut, delta, _STEP_LIMIT,
+                no_z, no_y, result,
+            )  # fmt: skip
             status[n] = code
         side = 1.0 if spin >= 0.0 else -1.0
         ex, ey = (vx / speed, vy / speed) if speed > 0.0 else (1.0, 0.0)

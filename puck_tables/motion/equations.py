@@ -27,10 +27,10 @@ spin differs, r ω' = −(r²/2k²) J sin φ ρ_ω: then (r²/2k²) ρ_ω stands
 the kinetic energy k²/r² for ½.
 
 Friction comes as a ``cut``, and its type says which: a flat array, empty for closed forms or a
-table cut at δ; or a matrix, the slice of any other puck (:mod:`puck_tables.kernels.slice_spline`),
-which carries its singular lines and its inertia.
+table cut at δ; or a matrix, the section of any other puck
+(:mod:`puck_tables.kernels.section_spline`), which carries its singular lines and its inertia.
 
-State vector: u, ψ, t, x, y, θ, l, W.
+State vector: u, ψ, t, x, y, θ, l, W (:mod:`puck_tables.motion.state`).
 """
 
 from __future__ import annotations
@@ -42,13 +42,11 @@ import numpy.typing as npt
 
 from puck_tables.kernels.closed_form import friction_ratios
 from puck_tables.kernels.compile import inlined, kernel
-from puck_tables.kernels.slice_spline import INERTIA, LINE, slice_ratios
+from puck_tables.kernels.section_spline import INERTIA, LINE, section_ratios
 from puck_tables.kernels.spline import evaluate_cut
+from puck_tables.motion.state import LENGTH, PSI, THETA, WORK, T, U, X, Y
 
 FloatArray = npt.NDArray[np.float64]
-
-SIZE = 8
-U, PSI, T, X, Y, THETA, LENGTH, WORK = range(SIZE)
 
 
 @inlined
@@ -63,9 +61,9 @@ def slip_ratio(u: float) -> tuple[float, bool, float, float]:
 
 @inlined
 def ratios_at(k: float, fast: bool, cut: FloatArray, delta: float) -> tuple[float, float, float]:
-    """The friction ratios at a slip ratio: from a cut or a slice, or exact if it is empty."""
+    """The friction ratios at a slip ratio: from a cut or a section, or exact if it is empty."""
     if cut.ndim == 2:
-        return slice_ratios(k, fast, cut)
+        return section_ratios(k, fast, cut)
     if cut.size == 0:
         return friction_ratios(k, 1.0 if fast else 0.0, delta)
     eta = math.sqrt(math.sqrt((1.0 - k) / (1.0 + k)))

@@ -3,7 +3,7 @@
 Events, all placed exactly on a step end:
 
 * every singular line of the friction: u = 0, the crossing of φ = π/4, where the equations have
-  only one derivative and a bit; for other pucks the lines of their slice;
+  only one derivative and a bit; for other pucks the lines of their section;
 * Q = TURN_SHARE Q₀, where the turn of the heading is read off (see below);
 * the end of integration, from where the exact motion at constant angle leads to the stop.
 
@@ -20,13 +20,6 @@ import numpy.typing as npt
 
 from puck_tables.kernels.compile import allocating, inlined, kernel
 from puck_tables.motion.equations import (
-    PSI,
-    SIZE,
-    WORK,
-    T,
-    U,
-    X,
-    Y,
     at_constant_angle,
     crossed_line,
     derivatives,
@@ -35,6 +28,7 @@ from puck_tables.motion.equations import (
     kinetic_energy,
     slowest_stop,
 )
+from puck_tables.motion.state import PSI, SIZE, WORK, T, U, X, Y
 from puck_tables.motion.steppers import ROWS, Tableau, step
 
 FloatArray = npt.NDArray[np.float64]
@@ -109,6 +103,7 @@ def integrate(
     status, number of step ends
     """
     adaptive = steps == 0.0
+    exponent = 1.0 / tableau.order
     work = np.empty((ROWS, SIZE))
     y = np.empty(SIZE)
     new = np.empty(SIZE)
@@ -140,7 +135,9 @@ def integrate(
         if place_unit < 1.0:
             error = max(error, _place_error(tableau, trial, work) / place_unit)
         if adaptive and not error <= tolerance:
-            shrink = 0.2 if not error < math.inf else max(0.2, 0.9 * (tolerance / error) ** 0.2)
+            shrink = (
+                0.2 if not error < math.inf else max(0.2, 0.9 * (tolerance / error) ** exponent)
+            )
             h = trial * shrink
             if z + h == z:
                 return STEP_LIMIT, count
@@ -152,7 +149,7 @@ def integrate(
         z = target if landed else z + trial
         for i in range(SIZE):
             y[i] = new[i]
-        if adaptive and not crossed:  # the pair's last stage is the next step's first
+        if tableau.reused and adaptive and not crossed:  # the last stage is the next one's first
             for i in range(SIZE):
                 work[0, i] = work[tableau.b.size - 1, i]
         else:
@@ -168,7 +165,7 @@ def integrate(
             _record(count, z, y, z_path, y_path)
         count += 1
         if adaptive and not crossed:
-            grow = 5.0 if error == 0.0 else 0.9 * (tolerance / error) ** 0.2
+            grow = 5.0 if error == 0.0 else 0.9 * (tolerance / error) ** exponent
             h = min(trial * min(5.0, max(0.2, grow)), 0.5 * (1.0 - z))
     at_constant_angle(q_of(z), y, 0.0, cut, delta, result)
     result[PSI] = turn

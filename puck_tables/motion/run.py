@@ -1,81 +1,43 @@
 """One motion in natural units: spin positive, start along x, Q₀ = J = r = 1.
 
-The layer between the compiled loop and :mod:`puck_tables.trajectory`: which regime, which friction
-(table or closed forms), which integrator.
+The layer between the compiled loop and :mod:`puck_tables.trajectory`: elementary motions, and
+integrated ones as fine as the tolerance asks.  Nobody has measured beforehand how far off a motion
+is for every law and height.  Where friction is a section it is measured on the motion itself, by a
+run of higher accuracy and by one with a coarser section.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.accuracy.front import Choice
-from puck_tables.contact.closed_form import by_closed_form
-from puck_tables.contact.integrals import SlipDirection
-from puck_tables.contact.resultants import CONTACT_SLACK, pressure_tilt
+from puck_tables.accuracy.front import Selection
+from puck_tables.accuracy.methods import Method
 from puck_tables.errors import PuckError
-from puck_tables.kernels.closed_form import outside_full_contact
-from puck_tables.motion.equations import (
-    PSI,
-    SIZE,
-    WORK,
-    T,
-    U,
-    X,
-    at_constant_angle,
-    derivatives,
-    inertia,
-    kinetic_energy,
-)
-from puck_tables.motion.limits import LIMIT_WIDTH, log_ratio
+from puck_tables.motion.equations import at_constant_angle, derivatives, inertia, kinetic_energy
+from puck_tables.motion.frame import direction
+from puck_tables.motion.friction import Friction, FrictionSource
+from puck_tables.motion.limits import log_ratio
 from puck_tables.motion.path import STOPPED, TURN_SHARE, integrate, states_at
-from puck_tables.motion.steppers import DORMAND_PRINCE, RK4, Tableau
-from puck_tables.table.resultant_table import ResultantTable
+from puck_tables.motion.solve import FINEST_LOCAL, Estimate, Setting, close_enough, refined
+from puck_tables.motion.state import LENGTH, PSI, SIZE, THETA, WORK, T, U, X, Y
+from puck_tables.motion.steppers import DORMAND_PRINCE, Stepping, Tableau
 
 FloatArray = npt.NDArray[np.float64]
 
-CONSTANT_ANGLE = ("A", "B0", "C0", "D")  # regimes with a solution in elementary functions
+GENERIC = ("B", "C")  # regimes that are integrated; the others are elementary
 
+_FINEST_TWIN = 4e-15
 _STEP_LIMIT = 20_000
-
-
-@dataclass(frozen=True)
-class Friction:
-    """What the loop reads at one δ: a table cut there, a slice, or nothing (closed forms)."""
-
-    delta: float
-    cut: FloatArray
-    error: float
-
-
-def closed_form_friction(delta: float) -> Friction:
-    """Friction by the closed forms.
-
-    Examples
-    --------
-    >>> closed_form_friction(0.5).error
-    0.0
-    """
-    return Friction(delta, np.empty(0), 0.0)
-
-
-def table_friction(delta: float, table: ResultantTable) -> Friction:
-    """Friction by a table.
-
-    Raises
-    ------
-    InputError
-        If δ is outside its range, or it is of another pressure law.
-
-    Examples
-    --------
-    >>> table_friction(0.5, ResultantTable.shipped()).error
-    2e-11
-    """
-    return Friction(delta, table.section(delta), table.tolerance)
+_SAFETY = 1.5  # states between the moments compared
+_ROUNDING = 1e-14  # of a motion as long as Q/J
+_UNSEEN_SHARE = 0.1  # of the error of a section: two coarse ones may err alike
+_MOMENTS = 16  # at which two motions are compared
+_COARSER_BY = 4.0  # half as many cells are 16 times as bad; a quarter of that is believed
 
 
 @dataclass(frozen=True)
@@ -104,44 +66,42 @@ class Run:
         return q, y
 
 
-def run_motion(
-    regime: str,
-    speed: float,
-    rim: float,
-    limit: float,
-    friction: Friction,
-    choice: Choice,
-) -> Run:
-    """The motion of a launch with speed v and rim speed r|ω| in natural units.
-
-    ``limit`` is ln tan φ₀, where the motion tends to; ``choice`` the integrator and its setting.
+def solve(
+    source: FrictionSource, regime: str, speed: float, rim: float, tol: float,
+    method: Method | None = None,
+) -> tuple[Run, Selection]:  # fmt: skip
+    """The motion of a launch with speed v and rim speed r|ω| in natural units, and how it was got.
 
     Raises
     ------
+    AccuracyError
+        If the tolerance is out of reach.
     ContactError
-        If part of the base would be lifted on the way.
+        If part of the base would be lifted on the way, where that is not computed.
 
     Examples
     --------
-    >>> from puck_tables.accuracy.front import INTEGRATED, choose
-    >>> run = run_motion(
-    ...     "B", 1.0, 5.0, 0.426, closed_form_friction(0.0), choose("trajectory", 1e-9, INTEGRATED)
-    ... )
-    >>> round(float(run.stop[T]), 6)  # T(φ) of Q/J
-    0.774875
+    >>> from puck_tables.motion.body import body_of
+    >>> from puck_tables.motion.friction import source_of
+    >>> run, selection = solve(source_of(body_of("uniform", 0.0, 0.5**0.5)), "B", 1.0, 5.0, 1e-9)
+    >>> round(float(run.stop[T]), 6), selection.scheme.name  # T(φ) of Q/J
+    (0.774875, 'adaptive, table')
     """
-    start = _log_ratio(regime, speed, rim)
-    if regime in CONSTANT_ANGLE:
-        _check_contact(friction.delta, start)
-        return at_constant_slip(regime, start, closed_form_friction(friction.delta))
+    selection = source.selected("trajectory", tol, method)
+    u = {"A": -math.inf, "B0": math.inf, "C0": -math.inf}.get(regime) or log_ratio(speed, rim)
+    if regime not in GENERIC:
+        source.refuse(u)
+        friction, at_limit, rounding = source.at_constant_angle(tol)
+        run = at_constant_slip(regime, u, friction)
+        error = (rounding + (at_limit if regime == "D" else 0.0)) * max(1.0, float(run.stop[T]))
+        return replace(run, error=error), selection
     # φ moves monotonically to φ₀ and the tilt falls with φ: the smaller of both is the worst
-    _check_contact(friction.delta, min(start, limit))
-    return _integrated(start, friction, choice)
-
-
-def _log_ratio(regime: str, speed: float, rim: float) -> float:
-    """U = ln(r|ω|/v); rest counts as sliding."""
-    return {"A": -math.inf, "B0": math.inf, "C0": -math.inf}.get(regime) or log_ratio(speed, rim)
+    source.refuse(min(u, source.limit))
+    attempt = partial(_attempt, source, u, tol)
+    finer = partial(refined, tol=tol, friction=source.next_accuracy)
+    first = source.first(selection)
+    run, estimate, setting = close_enough(first, attempt, finer, tol, "this puck")
+    return replace(run, error=estimate.total), source.told(selection, setting, estimate)
 
 
 def at_constant_slip(regime: str, u: float, friction: Friction) -> Run:
@@ -149,6 +109,7 @@ def at_constant_slip(regime: str, u: float, friction: Friction) -> Run:
 
     Examples
     --------
+    >>> from puck_tables.motion.friction import closed_form_friction
     >>> float(at_constant_slip("C0", -math.inf, closed_form_friction(0.5)).stop[T])
     1.0
     """
@@ -161,78 +122,104 @@ def at_constant_slip(regime: str, u: float, friction: Friction) -> Run:
         stop[PSI] = turned[PSI]
         energy = kinetic_energy(1.0, u, inertia(friction.cut))
         residual = abs(stop[WORK] - energy) / energy
-    return Run(
-        friction,
-        DORMAND_PRINCE,
-        z=np.zeros(1),
-        y=start,
-        stop=stop,
-        turn_rate=-turned[PSI] / math.log(TURN_SHARE),
-        energy_residual=residual,
-        steps=0,
-        error=2.0 * LIMIT_WIDTH if regime == "D" else 1e-15,
-    )
+    rate = -turned[PSI] / math.log(TURN_SHARE)
+    return Run(friction, DORMAND_PRINCE, np.zeros(1), start, stop, rate, residual, 0, math.inf)
 
 
-def _integrated(u: float, friction: Friction, choice: Choice) -> Run:
-    """By the integrator; its error from a run of higher accuracy, plus that of the table."""
-    steps, tolerance, tableau = 0.0, 1.0, DORMAND_PRINCE
-    if choice.way.method.startswith("rk4"):
-        steps, tableau = choice.way.number("steps"), RK4
-    else:
-        tolerance = choice.way.number("local")
-    z, y, result = step_ends(u, friction, tableau, steps, tolerance)
-    _, _, finer = step_ends(u, friction, tableau, 2.0 * steps, max(0.1 * tolerance, 4e-15))
-    difference = float(np.abs(result[T : X + 2] - finer[T : X + 2]).max())
-    return Run(
-        friction,
-        tableau,
-        z=z,
-        y=y,
-        stop=result[:SIZE],
-        turn_rate=turn_rate_at(y[-1], friction),
-        energy_residual=float(result[SIZE]),
-        steps=len(z) - 1,
-        error=difference + 0.01 * choice.tol + friction.error,
-    )
-
-
-def turn_rate_at(state: FloatArray, friction: Friction) -> float:
-    """Turn of the heading for each factor e of Q."""
-    rates = np.empty(SIZE)
-    derivatives(0.0, state, friction.cut, friction.delta, rates)
-    return 0.25 * float(rates[PSI])  # at z = 0, dz = −d ln Q/4
-
-
-def step_ends(
-    u: float, friction: Friction, tableau: Tableau, steps: float, tolerance: float
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """The step ends z (n,), y (n, 8) of an integration, and its stop with the energy residual.
+def integrated(u: float, friction: Friction, stepping: Stepping) -> Run:
+    """A motion by one setting of the integrator, its error not known.
 
     Raises
     ------
     PuckError
         If the stop is not reached.
+
+    Examples
+    --------
+    >>> from puck_tables.motion.friction import closed_form_friction
+    >>> from puck_tables.motion.steppers import RK4
+    >>> run = integrated(0.0, closed_form_friction(1.0), Stepping(RK4, 64.0, 1.0))
+    >>> float(run.stop[T].round(6))
+    0.986476
     """
     z, y = np.empty(_STEP_LIMIT), np.empty((_STEP_LIMIT, SIZE))
     result = np.empty(SIZE + 1)
     status, count = integrate(
-        u, tableau, float(steps), tolerance, 1.0, friction.cut, friction.delta, _STEP_LIMIT, z, y,
-        result,
+        u, stepping.tableau, float(stepping.steps), stepping.local, 1.0, friction.cut,
+        friction.delta, _STEP_LIMIT, z, y, result,
     )  # fmt: skip
     if status != STOPPED:
         raise PuckError(
             f"the integration did not reach the stop in {_STEP_LIMIT} steps: ask for less accuracy"
         )
-    return z[:count].copy(), y[:count].copy(), result
+    rates = np.empty(SIZE)  # at z = 0, dz = −d ln Q/4
+    derivatives(0.0, y[count - 1], friction.cut, friction.delta, rates)
+    return Run(
+        friction,
+        stepping.tableau,
+        z=z[:count].copy(),
+        y=y[:count].copy(),
+        stop=result[:SIZE],
+        turn_rate=0.25 * float(rates[PSI]),
+        energy_residual=float(result[SIZE]),
+        steps=count - 1,
+        error=math.inf,
+    )
 
 
-def _check_contact(delta: float, u: float) -> None:
-    """Above δ = 1 the linear law holds state by state: refuse a u that lies outside it."""
-    if delta <= 1.0:
-        return
-    direction = SlipDirection(np.asarray(math.exp(-abs(u))), np.asarray(u > 0.0))
-    phi = math.atan(math.exp(min(u, 700.0)))
-    tilt = pressure_tilt(by_closed_form(phi, delta), direction, delta)
-    if not tilt <= 1.0 + CONTACT_SLACK:
-        raise outside_full_contact(phi, delta)
+def _attempt(
+    source: FrictionSource, u: float, tol: float, setting: Setting
+) -> tuple[Run, Estimate]:
+    """A motion by one setting, and its error: by a run of higher accuracy, and by its friction.
+
+    Where the error of the friction is known the stop is compared; else whole motions are, also with
+    one by a coarser section.
+    """
+    stepping, friction = setting.stepping, source.friction(setting.accuracy)
+    run = integrated(u, friction, stepping)
+    coarser = source.coarser(setting.accuracy)
+    if coarser is None:
+        finer = integrated(u, friction, stepping.finer(2.0, 0.1, _FINEST_TWIN))
+        difference = float(np.abs(run.stop[T : X + 2] - finer.stop[T : X + 2]).max())
+        return run, Estimate(difference + 0.01 * tol, friction.error)
+    finer = integrated(u, friction, stepping.finer(2.0, 0.01, FINEST_LOCAL))
+    by_steps = _SAFETY * (apart(run, finer) + unseen_tail(stepping))
+    by_friction = apart(run, integrated(u, coarser, stepping)) / _COARSER_BY
+    rounding = _ROUNDING * max(1.0, float(run.stop[T]))
+    return run, Estimate(by_steps, by_friction + _UNSEEN_SHARE * friction.error, rounding)
+
+
+def unseen_tail(stepping: Stepping) -> float:
+    """What two settings of the integrator may miss alike: the last of Q, at constant angle.
+
+    Examples
+    --------
+    >>> unseen_tail(Stepping(DORMAND_PRINCE, 0.0, 1e-8))
+    1e-10
+    """
+    return (2.0 * stepping.steps) ** -4.0 if stepping.fixed else 0.01 * stepping.local
+
+
+def apart(one: Run, other: Run) -> float:
+    """How far two motions of a launch are apart: at the stop, and at moments of the first."""
+    speed, rim = _speeds((1.0 - one.z) ** 4, one.y[:, U])
+    # where the speeds change most, errors of the time count most
+    way = np.cumsum(np.abs(np.diff(speed)) + np.abs(np.diff(rim)))
+    at = 1 + np.unique(np.searchsorted(way, np.linspace(0.02, 0.98, _MOMENTS) * way[-1]))
+    here, speed, rim = one.y[at], speed[at], rim[at]
+    q_there, there = other.states(here[:, T])
+    speed_there, rim_there = _speeds(q_there, there[:, U])
+    off = [
+        (one.stop - other.stop)[T:WORK],
+        *(here - there)[:, [X, Y, THETA, LENGTH]].T,
+        speed - speed_there,
+        rim - rim_there,
+        np.minimum(speed, speed_there) * (here - there)[:, PSI],
+    ]
+    return max(float(np.abs(row).max()) for row in off)
+
+
+def _speeds(q: FloatArray, u: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """V and r|ω| from Q and u."""
+    cosine, sine = direction(u)
+    return q * cosine, q * sine

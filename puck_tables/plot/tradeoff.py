@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from puck_tables.accuracy.front import Way, pareto
+from puck_tables.accuracy.front import Measured, pareto
 from puck_tables.plot.style import BLUE, COLORS, GREY, canvas
 from puck_tables.tradeoff.engine import TradeOff
 
@@ -49,7 +49,7 @@ def draw_on(axes: Axes, measured: TradeOff, question: str = "stop") -> None:
     _draw(axes, _TITLES[question], ways)
 
 
-def _draw(axes: Axes, title: str, ways: list[Way]) -> None:
+def _draw(axes: Axes, title: str, ways: list[Measured]) -> None:
     front = pareto(way for way in ways if not way.outsider)
     axes.plot(
         [_error(way) for way in front], [way.ns for way in front],
@@ -84,7 +84,7 @@ def _draw(axes: Axes, title: str, ways: list[Way]) -> None:
 
 
 def _name(
-    axes: Axes, method: str, own: list[Way], color: str,
+    axes: Axes, method: str, own: list[Measured], color: str,
     taken: list[tuple[float, float, float, float]],
 ) -> None:  # fmt: skip
     """The name of a method near its line, where no other name stands; boxes in pixels."""
@@ -123,7 +123,7 @@ def _name(
     )
 
 
-def _error(way: Way) -> float:
+def _error(way: Measured) -> float:
     return max(way.error, _LOWEST) if np.isfinite(way.error) else 1.0
 
 

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from puck_tables.motion.body import is_plain
 from puck_tables.plot.style import (
     BLUE,
     GREEN,
@@ -79,8 +78,8 @@ def _whole(run: Trajectory) -> Trajectory:
 def _kind(run: Trajectory) -> str:
     """The kind of puck, and how much of its base is loaded, where there is something to say."""
     text = ""
-    if not is_plain(run.puck.pressure, run.puck.gyration, 0.0):
-        text = f"\npressure {run.puck.body.law.name}, k/r = {run.puck.gyration:.4g}"
+    if run.puck.body.kind:
+        text = f"\n{run.puck.body.kind}"
     if run.least_loaded_share < 1.0:
         text += f"\nat the least {100.0 * run.least_loaded_share:.3g} % of the base loaded"
     return text

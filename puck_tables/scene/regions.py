@@ -12,13 +12,13 @@ import numpy.typing as npt
 from puck_tables._core.real import rounded_up
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import AccuracyError, InputError
-from puck_tables.kernels.slice_spline import HEADER, RATIOS
+from puck_tables.kernels.section_spline import HEADER, RATIOS
 from puck_tables.motion.body import body_of, is_plain
-from puck_tables.motion.run import closed_form_friction, table_friction
+from puck_tables.motion.friction import closed_form_friction, table_friction
 from puck_tables.scene.agreement import launch_velocity
 from puck_tables.scene.ingredients import BySpeed, Regions
 from puck_tables.scene.scene import Scene
-from puck_tables.table.friction_slice import FINEST_ACCURACY
+from puck_tables.table.friction_section import FINEST_ACCURACY
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.table.speed_build import FINEST_ACCURACY as FINEST_LAW
 from puck_tables.table.speed_table import SpeedTable

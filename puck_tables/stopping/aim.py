@@ -14,23 +14,20 @@ from puck_tables._core.real import finite_array, positive, real
 from puck_tables.errors import InputError
 from puck_tables.io.columns import COLUMNS as VARIABLES
 from puck_tables.io.dataset import Dataset, variable
-from puck_tables.motion.body import is_plain
 from puck_tables.puck import PUCK_UNITS, Puck
 from puck_tables.result import Result
 from puck_tables.stopping.exact import integrated_stops
-from puck_tables.stopping.section import (
+from puck_tables.stopping.launch_curve import (
     RIM,
-    SLICE_ACCURACY,
+    SECTION_ACCURACY,
     SPEED,
     TIME,
-    Section,
+    LaunchCurve,
     cosine_of,
-    plain_section,
+    launch_curve,
     sample,
-    section_of,
 )
 from puck_tables.stopping.solvers import fits
-from puck_tables.table.resultant_table import ResultantTable
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -123,12 +120,12 @@ class _Family:
     """The launches that stop at distance D, by u = ln(r|ω|/v): one for each u and sense of spin.
 
     From displacement = (Q²/J) Rot(ψ)(X, Y): Q² = J D/|X + iY|, ψ = bearing − arg(X ± iY).  Speeds
-    are √(JD) and times √(D/J) times those of the section; all here are logarithms.
+    are √(JD) and times √(D/J) times those of the curve; all here are logarithms.
     """
 
     distance: float
     decel: float
-    section: Section
+    curve: LaunchCurve
 
     @property
     def scales(self) -> FloatArray:
@@ -138,27 +135,27 @@ class _Family:
 
     def at(self, u: float) -> tuple[float, float, float, float]:
         """Speed, rim speed, stop time, and arg(X + iY) for ω > 0."""
-        speed, rim, time, bend = (self.section.rows(np.array([u]))[0] + self.scales).tolist()
+        speed, rim, time, bend = (self.curve.rows(np.array([u]))[0] + self.scales).tolist()
         return speed, rim, time, bend
 
     def all_where(self, quantity: int, value: float) -> list[float]:
-        """All u where a quantity of the section has a value; −∞ is a slide without spin."""
+        """All u where a quantity of the curve has a value; −∞ is a slide without spin."""
         from scipy.optimize import brentq
 
         wanted = value - float(self.scales[quantity])
 
         def off(u: float) -> float:
-            return float(self.section.rows(np.array([u]))[0, quantity]) - wanted
+            return float(self.curve.rows(np.array([u]))[0, quantity]) - wanted
 
         roots = [
             low if low == high else float(brentq(off, low, high, xtol=1e-14, rtol=1e-15))
-            for low, high in self.section.brackets(quantity, wanted)
+            for low, high in self.curve.brackets(quantity, wanted)
         ]
         return sorted(set(roots))
 
     def extreme(self, quantity: int) -> tuple[float, float]:
         """The greatest speed or the least time of all, and the rim speed there."""
-        u, value = self.section.extreme(quantity)
+        u, value = self.curve.extreme(quantity)
         return value + float(self.scales[quantity]), self.at(u)[RIM]
 
     def ranges(self, fastest: float, widest: float) -> list[tuple[float, float]]:
@@ -203,9 +200,7 @@ def aim(
         return _on_the_spot(given, spin, speed, stop_time)
     if distance == math.inf:
         raise InputError(f"target ({x:g}, {y:g}) m is too far for floating point: use larger units")
-    plain = _is_plain(puck)
-    section = plain_section(puck.delta) if plain else section_of(puck.body)
-    family = _Family(distance, J, section)
+    family = _Family(distance, J, launch_curve(puck.body))
     bounds = math.log(fastest), math.log(widest) + math.log(r)
     us: list[float] = []
     senses: tuple[float, ...] = (-1.0, 1.0)
@@ -279,7 +274,7 @@ def _found(given: Aim, launches: list[tuple[float, float, float, float]], answer
     puck = given.puck
     same = [np.full(len(rows), value) for value in (puck.delta, puck.decel, puck.radius)]
     launched = np.stack([*found.launch_velocity.T, found.launch_spin, *same])
-    if not fits(launched, 2.0 if _is_plain(puck) else puck.body.longest).all():
+    if not fits(launched, puck.body.longest).all():
         raise InputError(_TOO_LARGE)
     return replace(found, miss=_misses(found))
 
@@ -289,7 +284,7 @@ def _on_the_spot(
 ) -> Aim:
     """The target is where the puck lies: pure spin stays there, ¾ r|ω|/J for a plain puck."""
     puck = given.puck
-    factor = 0.75 if _is_plain(puck) else puck.body.spin_time
+    factor = puck.body.spin_time
     if spin is not None:
         wanted = real("spin", spin, "rad/s")
         time = _moderate(puck.radius * abs(wanted) / puck.decel * factor, wanted)
@@ -340,23 +335,15 @@ def _out_of_bounds(
     )
 
 
-def _is_plain(puck: Puck) -> bool:
-    return is_plain(puck.pressure, puck.gyration, puck.delta)
-
-
 def _misses(found: Aim) -> FloatArray:
     """How far from the target the integrated motions end: from the launches as they are given.
 
     Friction of a plain puck is that of the table, where the launches were found with closed forms.
     """
-    from puck_tables.motion.run import table_friction
-    from puck_tables.motion.sliced import friction_of
+    from puck_tables.motion.friction import source_of
 
     puck = found.puck
-    if _is_plain(puck):
-        cut = table_friction(puck.delta, ResultantTable.shipped()).cut
-    else:
-        cut = friction_of(puck.body, SLICE_ACCURACY).cut
+    cut = source_of(puck.body).friction(SECTION_ACCURACY).cut
     distance = math.hypot(*found.target)
     if distance == 0.0:
         return np.zeros(found.launch_spin.size)

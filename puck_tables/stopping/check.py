@@ -35,7 +35,7 @@ from puck_tables.stopping.curve import limits, regular_parts
 from puck_tables.stopping.curve_lookup import (
     BODY,
     CURVE_SUM,
-    HEADING,
+    HEADING0,
     KAPPA,
     LENGTH,
     LOG_N,
@@ -322,7 +322,7 @@ def _along_curve(table: StopTable, u: FloatArray, delta: FloatArray) -> FloatArr
     """Ln Q and ψ by the table, each up to a function of δ, (2, n)."""
     known = table.known(launches_at(u, delta))
     log_q = known[LOG_N] / known[KAPPA] - np.log(known[T_LAUNCH])
-    return np.stack([log_q, known[TURNING] * log_q + known[HEADING]])
+    return np.stack([log_q, known[TURNING] * log_q + known[HEADING0]])
 
 
 def _integrals(values: npt.NDArray[np.inexact]) -> npt.NDArray[np.inexact]:

@@ -26,6 +26,7 @@ import numpy.typing as npt
 
 from puck_tables.kernels.compile import allocating, inlined
 from puck_tables.kernels.spline import basis, cell_at
+from puck_tables.motion.state import HEADING, ORIENTATION, PUCK_X, PUCK_Y, SPEED, SPIN
 from puck_tables.stopping.axes import HEIGHTS
 from puck_tables.stopping.lookup import CURVE_ROW, STOP_POWERS, slip_place
 
@@ -40,12 +41,9 @@ _SMALLEST_SHARE = 1e-300  # of the slower motion; less is a limit reached long b
 
 # rows of what is known of a launch
 TIME, STOP_X, STOP_Y, LENGTH, BODY, TURN = range(6)
-SLIP, SPEED0, T_LAUNCH, LOG_N, SIGN_N, HEADING, KAPPA, TURNING = range(6, 14)
+SLIP, SPEED0, T_LAUNCH, LOG_N, SIGN_N, HEADING0, KAPPA, TURNING = range(6, 14)
 LAUNCH_ROWS = 14
 LAUNCH_COLUMNS = 6  # vx, vy, ω, δ, J, r
-# rows of a state
-X, Y, PSI, THETA, SPEED, SPIN = range(6)
-STATE_ROWS = 6
 
 
 @inlined
@@ -269,7 +267,7 @@ def fill_launches(
         sign = 1.0 if side == 1 and 1.0 - double_share > c0 else -1.0
         log_n = _log_n(side, double_share, c0, kappa, delta, r, 0.0)
         heading = _heading(side, double_share, delta, turning, part)
-        out[SIGN_N, n], out[HEADING, n] = sign, heading
+        out[SIGN_N, n], out[HEADING0, n] = sign, heading
         out[KAPPA, n], out[TURNING, n] = kappa, turning
         out[LOG_N, n] = log_n + kappa * (math.log(t) - quarter)
         if delta > 0.0:
@@ -295,9 +293,9 @@ def _fill_state(
     if side < 0:
         left = 1.0 - time / known[TIME] if time < known[TIME] else 0.0
         done = (1.0 - left) * (1.0 + left)
-        out[X], out[Y], out[THETA] = x * done, y * done, body * done
+        out[PUCK_X], out[PUCK_Y], out[ORIENTATION] = x * done, y * done, body * done
         out[SPEED], out[SPIN] = left * known[SPEED0], left * spin
-        out[PSI] = known[TURN] if left == 0.0 else 0.0
+        out[HEADING] = known[TURN] if left == 0.0 else 0.0
         return
     around = 1.0 if spin > 0.0 else -1.0
     fall = left * known[T_LAUNCH] / found[0]
@@ -309,7 +307,7 @@ def _fill_state(
     heading = 0.0
     if delta > 0.0:
         regular = _heading(side, double_share, delta, known[TURNING], found[4])
-        heading = around * (known[TURNING] * math.log(fall) + regular - known[HEADING])
+        heading = around * (known[TURNING] * math.log(fall) + regular - known[HEADING0])
     cosine, sine = math.cos(heading), math.sin(heading)
     # the way that is left, along and across the new heading
     along = found[1] * slip / decel * speed
@@ -317,10 +315,10 @@ def _fill_state(
     east, north = vx / known[SPEED0], vy / known[SPEED0]
     ahead = along * cosine - across * sine
     aside = along * sine + across * cosine
-    out[X] = x - (ahead * east - aside * north)
-    out[Y] = y - (ahead * north + aside * east)
-    out[PSI] = heading
-    out[THETA] = body - around * found[3] * (slip / decel) * (rim / radius)
+    out[PUCK_X] = x - (ahead * east - aside * north)
+    out[PUCK_Y] = y - (ahead * north + aside * east)
+    out[HEADING] = heading
+    out[ORIENTATION] = body - around * found[3] * (slip / decel) * (rim / radius)
     out[SPEED], out[SPIN] = speed, around * rim / radius
 
 

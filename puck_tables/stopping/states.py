@@ -1,7 +1,8 @@
-"""The state of any puck at any time, by look-up: nothing is integrated."""
+"""The state of any puck at any time: of plain pucks by look-up, of others by integration."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -14,14 +15,30 @@ from puck_tables.contact.laws import HOMOGENEOUS, Law, law_of
 from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import InputError
 from puck_tables.io.dataset import Dataset, variable
-from puck_tables.motion.body import body_of, is_plain
+from puck_tables.motion.body import Body, body_of, plain_up_to
+from puck_tables.motion.frame import frame_of
+from puck_tables.motion.friction import source_of
+from puck_tables.motion.limits import regime_of
+from puck_tables.motion.run import solve
+from puck_tables.motion.state import (
+    HEADING,
+    ORIENTATION,
+    PUCK_X,
+    PUCK_Y,
+    SPEED,
+    SPIN,
+    STATE_ROWS,
+    T,
+)
 from puck_tables.result import Result
+from puck_tables.stopping.per_height import refuse_many
 from puck_tables.stopping.solvers import fits
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.stopping.stops import positive_array
 
 FloatArray = npt.NDArray[np.float64]
 
+TOL = 1e-9
 _CHUNK = 1 << 15
 
 
@@ -43,6 +60,7 @@ class States(Result):
     speed: FloatArray
     spin: FloatArray
     radius: FloatArray
+    explanation: str = ""
 
     picture: ClassVar[str] = "places"
 
@@ -71,7 +89,7 @@ class States(Result):
 
     def explain(self) -> str:
         """How they were got."""
-        return "looked up, to 1e-9 of Q, Q^2/J and Q^2/(J r)"
+        return self.explanation
 
     def dataset(self) -> Dataset:
         """The states, over as many axes as they have."""
@@ -144,22 +162,19 @@ def states(
     >>> found.x.round(6).tolist(), found.spin.round(6).tolist()
     ([1.590682, 0.0, 2.213952], [2.426862, 5.0, 0.0])
     """
-    from puck_tables.motion.sliced import states_of
-    from puck_tables.stopping.curve_lookup import STATE_ROWS, fill_states
-
     instance("table", table, StopTable, type(None))
-    if table is None:
-        highest = float(np.max(checked_delta(delta), initial=0.0))
-        plain = is_plain(pressure, gyration, highest)
-    elif not (plain := is_plain(pressure, gyration, 0.0)):
-        raise InputError("stop tables are of a homogeneous puck under uniform pressure")
+    highest = plain_up_to(pressure, gyration)
+    if table is not None:
+        if not highest > 0.0:
+            raise InputError("stop tables are of a homogeneous puck under uniform pressure")
+        highest = math.inf  # it refuses itself what it does not hold
     chosen = StopTable.shipped() if table is None else table
     velocities = velocity_array(velocity)
     columns = broadcast(
         vx=velocities[..., 0],
         vy=velocities[..., 1],
         spin=finite_array("spin", spin, "rad/s"),
-        delta=chosen.checked_range(delta) if plain else checked_delta(delta),
+        delta=checked_delta(delta) if table is None else table.checked_range(delta),
         decel=positive_array("decel", decel, "m/s^2"),
         radius=positive_array("radius", radius, "m"),
     )
@@ -167,7 +182,9 @@ def states(
     if not np.all(times >= 0.0):
         raise InputError(f"time must not be negative, got {times.min():g} s")
     launches = np.stack([column.ravel() for column in columns])
-    longest = 2.0 if plain else body_of(pressure, 0.0, gyration).longest
+    plain = launches[3] <= highest
+    bodies = _bodies(pressure, gyration, launches[3, ~plain])
+    longest = max((body.longest for body in bodies.values()), default=2.0)
     if not fits(launches, longest).all():
         raise InputError(
             "velocity, spin, radius and decel give a motion too large for floating point: "
@@ -178,54 +195,119 @@ def states(
     shape = which.shape
     flat_which = np.ascontiguousarray(which, np.int64).reshape(-1)
     flat_moments = np.ascontiguousarray(moments).reshape(-1)
-    out = np.empty((STATE_ROWS, flat_which.size))
-    if not plain:
-        law = pressure if isinstance(pressure, Law) else law_of(pressure)
-        bodies = {d: body_of(law, d, gyration) for d in np.unique(launches[3]).tolist()}
+    if not bodies:
+        found = _looked_up(chosen, launches, flat_which, flat_moments)
+    else:
+        found = np.empty((STATE_ROWS, flat_which.size))
+        looked = plain[flat_which]
+        number = np.cumsum(plain) - 1  # of a plain puck among such
+        found[:, looked] = _looked_up(
+            chosen, launches[:, plain], number[flat_which[looked]], flat_moments[looked]
+        )
+        _integrate(bodies, launches, np.flatnonzero(~plain), flat_which, flat_moments, found)
+    words = [f"{count} pucks {how}" for count, how in
+             ((plain.sum(), "looked up"), ((~plain).sum(), "integrated")) if count]  # fmt: skip
+    explanation = " and ".join(words) + ", to 1e-9 of Q, Q^2/J and Q^2/(J r)"
+    return _states(found, moments, launches, flat_which, shape, explanation)
 
-        def integrate(start: int, stop: int) -> None:
-            for n in range(start, stop):
-                mine = flat_which == n
-                if mine.any():
-                    out[:, mine] = states_of(
-                        bodies[float(launches[3, n])], launches[:, n], flat_moments[mine]
-                    )
 
-        run_chunks(integrate, launches.shape[1], 1)
-        return _states(out, moments, launches, flat_which, shape)
-    known = chosen.known(launches)
-    pucks = np.concatenate([launches, known]).T.copy()
+def _bodies(pressure: str | Law, gyration: float, delta: FloatArray) -> dict[float, Body]:
+    """The pucks of these heights."""
+    heights = np.unique(delta)
+    refuse_many(heights)
+    if not heights.size:
+        return {}
+    law = pressure if isinstance(pressure, Law) else law_of(pressure)
+    return {height: body_of(law, height, gyration) for height in heights.tolist()}
+
+
+def _looked_up(
+    table: StopTable, launches: FloatArray, which: npt.NDArray[np.int64], moments: FloatArray
+) -> FloatArray:
+    """States (6, n) of plain pucks ``which`` (n,) at ``moments`` (n,)."""
+    from puck_tables.stopping.curve_lookup import fill_states
+
+    pucks = np.concatenate([launches, table.known(launches)]).T.copy()
+    out = np.empty((STATE_ROWS, which.size))
 
     def work(start: int, stop: int) -> None:
         part = np.empty((STATE_ROWS, stop - start))
         fill_states(
-            pucks, flat_which[start:stop], flat_moments[start:stop],
-            chosen.stop_coefficients, chosen.curve_coefficients, chosen.time_inverse, part,
+            pucks, which[start:stop], moments[start:stop], table.stop_coefficients,
+            table.curve_coefficients, table.time_inverse, part,
         )  # fmt: skip
         out[:, start:stop] = part
 
-    run_chunks(work, flat_which.size, _CHUNK)
-    return _states(out, moments, launches, flat_which, shape)
+    run_chunks(work, which.size, _CHUNK)
+    return out
+
+
+def _integrate(
+    bodies: dict[float, Body], launches: FloatArray, pucks: npt.NDArray[np.int64],
+    which: npt.NDArray[np.int64], moments: FloatArray, out: FloatArray,
+) -> None:  # fmt: skip
+    """States of other ``pucks``, each integrated, into their places in ``out`` (6, n)."""
+    order = np.argsort(which, kind="stable")
+    first = np.searchsorted(which[order], pucks)
+    last = np.searchsorted(which[order], pucks, side="right")
+
+    def work(start: int, stop: int) -> None:
+        for n in range(start, stop):
+            mine, launch = order[first[n] : last[n]], launches[:, pucks[n]]
+            if mine.size:
+                out[:, mine] = states_of(bodies[float(launch[3])], launch, moments[mine])
+
+    run_chunks(work, pucks.size, 1)
+
+
+def states_of(body: Body, launch: FloatArray, times: FloatArray) -> FloatArray:
+    """States of one puck at times (n,) s, integrated.
+
+    Parameters
+    ----------
+    body : Body
+    launch : array (6,): vx, vy, ω, δ, J, r
+    times : array (n,), s, ≥ 0
+
+    Returns
+    -------
+    array (6, n)
+        x, y, heading from that at the launch, body angle, v, ω.
+
+    Examples
+    --------
+    >>> launch = np.array([1.0, 0.0, 0.0, 2.0, 1.0, 1.0])
+    >>> states = states_of(body_of("uniform", 2.0, 0.5**0.5), launch, np.array([0.5, 2.0]))
+    >>> states[0].round(12).tolist()
+    [0.375, 0.5]
+    """
+    vx, vy, spin, _, decel, radius = launch.tolist()
+    frame = frame_of((vx, vy), spin, decel, radius)
+    if frame.slip == 0.0:
+        return np.zeros((STATE_ROWS, times.size))
+    source = source_of(body)
+    regime = regime_of(frame.speed, frame.rim, source.limit, source.limit_width)
+    run, _ = solve(source, regime, frame.speed, frame.rim, TOL)
+    return frame.states(*run.states(frame.natural_times(times, float(run.stop[T]) * frame.time)))
 
 
 def _states(
     out: FloatArray, moments: FloatArray, launches: FloatArray, which: npt.NDArray[np.int64],
-    shape: tuple[int, ...],
+    shape: tuple[int, ...], explanation: str,
 ) -> States:  # fmt: skip
     """Rows of states, headings from those of the launches, in their shape."""
-    from puck_tables.stopping.curve_lookup import PSI, SPEED, SPIN, THETA, X, Y
-
     rows = [row.reshape(shape) for row in out]
     direction = np.where(
         (launches[0] == 0.0) & (launches[1] == 0.0), 0.0, np.arctan2(launches[1], launches[0])
     )
     return States(
         time=np.array(moments).reshape(shape),
-        x=rows[X],
-        y=rows[Y],
-        heading=rows[PSI] + direction[which].reshape(shape),
-        orientation=rows[THETA],
+        x=rows[PUCK_X],
+        y=rows[PUCK_Y],
+        heading=rows[HEADING] + direction[which].reshape(shape),
+        orientation=rows[ORIENTATION],
         speed=rows[SPEED],
         spin=rows[SPIN],
         radius=launches[5][which].reshape(shape),
+        explanation=explanation,
     )

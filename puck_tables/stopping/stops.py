@@ -9,13 +9,11 @@ import numpy.typing as npt
 
 from puck_tables._core.real import broadcast, finite_array, velocity_array
 from puck_tables.contact.laws import HOMOGENEOUS, Law
-from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import InputError
 from puck_tables.io.dataset import Dataset, variable
-from puck_tables.motion.body import is_plain
 from puck_tables.result import Result
-from puck_tables.stopping.any_stops import AnyStops
-from puck_tables.stopping.solvers import OUTPUTS, STATUS_MEANINGS, Integration, LookUp, solver_for
+from puck_tables.stopping.per_height import SolverPerHeight
+from puck_tables.stopping.solvers import OUTPUTS, STATUS_MEANINGS
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.table.resultant_table import ResultantTable
 
@@ -29,8 +27,9 @@ class Stops(Result):
     """Stops of launches of shape (…).
 
     ``stop_time`` (…) s, ``stop_position`` (…, 2) m from the launch, ``status`` (…) int8, 0 where
-    all is well, ``method`` ('look-up' or 'integrated'), ``choice`` (what the tolerance led to, see
-    :class:`puck_tables.accuracy.front.Choice`; None with a stop table of one's own).
+    all is well, ``method`` ('look-up', 'integrated', or both where heights differ), ``selections``
+    (what was selected for the tolerance, see :class:`puck_tables.accuracy.front.Selection`; empty
+    with a stop table of one's own).
     Computed when first asked for: ``path_length`` (…) m, ``body_angle`` (…) rad, ``turn_angle``
     (…) rad: how far the heading has turned when Q has fallen to 1/1000 (for δ > 0 it turns on
     without end).
@@ -39,12 +38,13 @@ class Stops(Result):
     picture: ClassVar[str] = "places"
 
     def __init__(
-        self, solver: LookUp | Integration | AnyStops, launches: FloatArray, shape: tuple[int, ...]
+        self, solver: SolverPerHeight, launches: FloatArray, shape: tuple[int, ...]
     ) -> None:
         self._values, status = solver.first(launches)
-        self._solver: LookUp | Integration | AnyStops | None = solver
+        self._solver: SolverPerHeight | None = solver
         self._launches, self._shape = launches, shape
-        self.method, self.choice = solver.method, solver.choice
+        self.method, self.selections = solver.method, solver.selections
+        self._explanation = solver.explanation
         self.stop_time: FloatArray = self._values[0].reshape(shape)
         self.stop_position: FloatArray = np.stack([self._row(1), self._row(2)], axis=-1)
         self.status: npt.NDArray[np.int8] = status.reshape(shape)
@@ -84,7 +84,7 @@ class Stops(Result):
 
     def explain(self) -> str:
         """Which method was taken, and why."""
-        return "looked up in the stop table given" if self.choice is None else self.choice.why
+        return self._explanation
 
     def dataset(self) -> Dataset:
         """Launches and their stops, over as many axes as the launches have."""
@@ -120,12 +120,12 @@ def stop(
     delta : array_like (…), dimensionless height 2fh/r
         Below 3.9637 under uniform pressure, up to the full contact of another law; with a table, in
         its range (0 to 1).  Beyond 1 or for another kind of puck each different height takes about
-        a second to prepare, at most 500 of them.
+        a second to prepare, at most 500 of them; the others are looked up as if they were alone.
     decel : array_like (…), J = fg, m/s², > 0
     radius : array_like (…), m, > 0
     tol : float
         Largest error in units of Q/J (time) and Q²/J (place), Q = hypot(v, rω); 1e-13 to 0.01.  The
-        cheapest way whose measured error is below it is taken; ``explain()`` of the result says
+        cheapest method whose measured error is below it is taken; ``explain()`` of the result says
         which and why.
     method : 'look-up', 'rk4' or 'adaptive', optional
         Only this one.
@@ -155,7 +155,7 @@ def stop(
     >>> result.stop_time.round(6).tolist(), result.method
     ([1.395088, 4.000189], 'look-up')
     """
-    solver = any_solver(tol, table, method, pressure, gyration, delta)
+    solver = SolverPerHeight(pressure, gyration, tol, method, table)
     velocities = velocity_array(velocity)
     columns = broadcast(
         vx=velocities[..., 0],
@@ -166,39 +166,9 @@ def stop(
         radius=positive_array("radius", radius, "m"),
     )
     shape = columns[0].shape
-    if isinstance(solver, AnyStops):
-        solver.prepare(*np.unique(columns[3], return_counts=True))
-    return Stops(solver, np.stack([column.ravel() for column in columns]), shape)
-
-
-def any_solver(
-    tol: float, table: ResultantTable | StopTable | None, method: str | None, pressure: str | Law,
-    gyration: float, delta: npt.ArrayLike,
-) -> LookUp | Integration | AnyStops:  # fmt: skip
-    """The way to stops of pucks of these kinds.
-
-    Raises
-    ------
-    InputError
-        If a table is given for other pucks than it is of.
-
-    Examples
-    --------
-    >>> type(any_solver(1e-8, None, None, "uniform", HOMOGENEOUS, [0.5, 1.0])).__name__
-    'LookUp'
-    """
-    highest = np.max(checked_delta(delta), initial=0.0)
-    if is_plain(pressure, gyration, float(highest)):
-        return solver_for(tol, table, method)
-    plain = is_plain(pressure, gyration, 0.0)
-    if table is None or (isinstance(table, ResultantTable) and not plain):
-        return AnyStops(pressure, gyration, tol, method, table)
-    if not plain:
-        raise InputError(
-            "tables of stops are of a homogeneous puck under uniform pressure: leave out table, or "
-            "pressure and gyration"
-        )
-    return solver_for(tol, table, method)
+    launches = np.stack([column.ravel() for column in columns])
+    solver.prepare(launches[3])
+    return Stops(solver, launches, shape)
 
 
 def positive_array(name: str, values: npt.ArrayLike, unit: str) -> FloatArray:

@@ -15,16 +15,15 @@ import numpy.typing as npt
 from puck_tables._core.checkpoint import Checkpoint, work_digest
 from puck_tables._core.executor import run_chunks
 from puck_tables._core.real import finite_array, one_velocity, positive
-from puck_tables.accuracy.front import Choice
+from puck_tables.accuracy.front import Selection
 from puck_tables.contact.laws import Law
 from puck_tables.errors import InputError
 from puck_tables.io.columns import COLUMNS
 from puck_tables.io.dataset import Dataset, variable
 from puck_tables.result import Result
-from puck_tables.stopping.any_stops import HEIGHT_COST, AnyStops
+from puck_tables.stopping.per_height import HEIGHT_COST, SolverPerHeight
 from puck_tables.stopping.solvers import OUTPUTS, STATUS_MEANINGS
 from puck_tables.stopping.stop_table import StopTable
-from puck_tables.stopping.stops import any_solver
 from puck_tables.table.resultant_table import ResultantTable
 
 FloatArray = npt.NDArray[np.float64]
@@ -49,15 +48,17 @@ class StopMap(Result):
 
     Arrays: ``stop_time`` s, ``stop_x``, ``stop_y`` m from the launch, ``path_length`` m,
     ``turn_angle`` rad (until Q has fallen to 1/1000; integrated, to a hundred times the tolerance),
-    ``body_angle`` rad, ``status`` (0: stopped).  ``method`` says how ('look-up', 'integrated'),
-    ``table`` with which table, ``choice`` why.
+    ``body_angle`` rad, ``status`` (0: stopped).  ``method`` says how ('look-up', 'integrated', or
+    both where heights differ), ``table`` with which table, ``selections`` what was selected for
+    the tolerance.
     """
 
     axes: dict[str, FloatArray]
     fixed: dict[str, float]
     tol: float
     method: str
-    choice: Choice | None = field(repr=False)
+    selections: tuple[Selection, ...] = field(repr=False)
+    explanation: str = field(repr=False)
     table: str
     stop_time: FloatArray = field(repr=False)
     stop_x: FloatArray = field(repr=False)
@@ -75,7 +76,7 @@ class StopMap(Result):
 
     def explain(self) -> str:
         """Which method was taken, and why."""
-        return "looked up in the stop table given" if self.choice is None else self.choice.why
+        return self.explanation
 
     def dataset(self) -> Dataset:
         """The stops over what was ranged; the rest as attributes."""
@@ -100,7 +101,7 @@ def sweep(
     for name, count in (("chunk", chunk), ("threads", 1 if threads is None else threads)):
         if not isinstance(count, int) or count < 1:
             raise InputError(f"{name} must be a whole number from 1 on, got {count!r}")
-    solver = any_solver(tol, table, method, pressure, gyration, delta)
+    solver = SolverPerHeight(pressure, gyration, tol, method, table)
     if velocity is not None and speed is not None:
         raise InputError("velocity and speed both give the velocity: give one of them")
     if spin is None and speed is None and velocity is None:
@@ -135,16 +136,14 @@ def sweep(
     flat = {name: array.ravel() for name, array in values.items()}
     sizes = tuple(array.size for array in flat.values())
 
-    prepared = 0
-    if isinstance(solver, AnyStops):
-        heights = np.unique(flat["delta"])
-        prepared = HEIGHT_COST * heights.size
+    each = size // values["delta"].size
+    prepared = HEIGHT_COST * solver.heights_to_prepare(flat["delta"])
 
-        def on_heights(done: int, total: int) -> None:
-            if progress is not None:
-                progress(HEIGHT_COST * done, prepared + size)
+    def on_heights(done: int, total: int) -> None:
+        if progress is not None:
+            progress(HEIGHT_COST * done, prepared + size)
 
-        solver.prepare(heights, size // heights.size, threads, on_heights)
+    solver.prepare(flat["delta"], each, threads, on_heights)
 
     def on_stops(done: int, total: int) -> None:
         if progress is not None:
@@ -183,7 +182,8 @@ def sweep(
         fixed=fixed,
         tol=tol,
         method=solver.method,
-        choice=solver.choice,
+        selections=solver.selections,
+        explanation=solver.explanation,
         table=solver.source,
         status=status.reshape(shape),
         **results,

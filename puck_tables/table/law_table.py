@@ -19,6 +19,7 @@ from puck_tables.table.table import Axis, Table
 
 FloatArray = npt.NDArray[np.float64]
 
+_PROBES = np.linspace(0.0, 0.5 * np.pi, 33)
 _RADIUS, _PRESSURE = "profile_radius", "profile_pressure"
 
 
@@ -36,6 +37,7 @@ class LawTable(Table):
     _: KW_ONLY
     law: Law
 
+    ends_too: ClassVar[bool] = False  # whether φ = 0 and π/2 are singular lines besides
     entries: ClassVar[Mapping[str, type]] = {"n_phi": int, "profile_rows": int}
 
     def __post_init__(self) -> None:
@@ -43,7 +45,7 @@ class LawTable(Table):
         lines = np.array(self.lines_at)
         if not (lines.size and lines[0] > 0.0 and np.all(np.diff(lines) > 0.0)):
             raise ValueError("its lines are none")
-        if (len(self.values) - 1) % (2 * lines.size) or not np.isfinite(lines[-1]):
+        if (len(self.values) - 1) % self._sides or not np.isfinite(lines[-1]):
             raise ValueError("its nodes are not those of its lines")
 
     @property
@@ -54,7 +56,11 @@ class LawTable(Table):
     @cached_property
     def axis(self) -> LawAxis:
         """The slip angles of its nodes."""
-        return LawAxis(self.lines_at, (len(self.values) - 1) // (2 * len(self.lines_at)))
+        return LawAxis(self.lines_at, (len(self.values) - 1) // self._sides, self.ends_too)
+
+    @property
+    def _sides(self) -> int:
+        return 2 * (len(self.lines_at) + self.ends_too)
 
     @property
     def pressure_law(self) -> str:
@@ -117,8 +123,25 @@ class LawTable(Table):
         return np.unique(self.axis.numbers[odd[:, 0], odd[:, 1]])
 
 
+def is_named(law: Law) -> bool:
+    """Whether a law is the one that its name says, and no other that was given this name.
+
+    Examples
+    --------
+    >>> from dataclasses import replace
+    >>> is_named(law_of("ring")), is_named(replace(law_of("hertz"), name="ring"))
+    (True, False)
+    """
+    if not _known(law.name):
+        return False
+    meant = law_of(law.name)
+    return meant.edges == law.edges and all(
+        np.array_equal(one, other)
+        for one, other in zip(meant.integrals(_PROBES), law.integrals(_PROBES), strict=True)
+    )
+
+
 def _known(name: str) -> bool:
-    """Whether a law is known by its name."""
     try:
         return law_of(name).name == name
     except InputError:

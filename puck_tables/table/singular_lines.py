@@ -9,6 +9,7 @@ rotation crosses the edge of the loaded part is not felt: the pressure is zero t
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 
 import numpy as np
 
@@ -63,6 +64,7 @@ def singular_lines(law: Law, delta: float) -> tuple[float, ...]:
     return tuple(sorted([*law.edges, 1.0 / math.tan(opening)]))
 
 
+@lru_cache(maxsize=1024)
 def refuse_height(law: Law, delta: float) -> None:
     """Refuse a height at which the friction is not known at every slip angle.
 
@@ -87,6 +89,7 @@ def refuse_height(law: Law, delta: float) -> None:
         )
 
 
+@lru_cache(maxsize=1024)
 def opening_angle(delta: float) -> float:
     """The slip angle φ_c with δ_c(φ_c) = δ, up to which part of the base is lifted; 0 if δ ≤ 1.
 

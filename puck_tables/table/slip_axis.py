@@ -46,6 +46,8 @@ class LawAxis:
         Radii of the edges of the load, ascending, the last 1; more generally cot φ of the lines.
     cells : int
         Cells on each side of each singular line, at least 4.
+    ends_too : bool
+        Whether φ = 0 and π/2 are singular lines besides.
 
     Raises
     ------
@@ -61,6 +63,7 @@ class LawAxis:
 
     edges: tuple[float, ...]
     cells: int
+    ends_too: bool = False
 
     def __post_init__(self) -> None:
         if not 4 <= self.cells <= MAX_CELLS:
@@ -69,25 +72,31 @@ class LawAxis:
     @property
     def sides(self) -> tuple[Side, ...]:
         """The sides in the order of φ: below and above each line."""
-        return sides_of(self.edges[::-1])
+        return sides_of(self.edges[::-1], self.ends_too)
 
     @property
     def size(self) -> int:
         """Number of nodes; neighbouring sides share one."""
-        return 2 * len(self.edges) * self.cells + 1
+        return len(self.sides) * self.cells + 1
 
     def nodes(self) -> FloatArray:
         """φ at the nodes, radians; 0, the lines and π/2 exactly."""
         by_side = graded(self.sides, np.arange(self.cells + 1) / self.cells)
-        by_side[::2] = by_side[::2, ::-1]
+        falls = self._falls
+        by_side[falls] = by_side[falls, ::-1]
         return np.append(by_side[:, :-1], by_side[-1, -1])
+
+    @property
+    def _falls(self) -> npt.NDArray[np.bool_]:
+        """Which sides run from their line towards smaller φ."""
+        return np.array([side.end < side.line for side in self.sides])
 
     @property
     def numbers(self) -> npt.NDArray[np.int64]:
         """Numbers of the nodes from each line outwards, (sides, cells + 1)."""
-        first = self.cells * np.arange(2 * len(self.edges))[:, None]
+        first = self.cells * np.arange(len(self.sides))[:, None]
         outwards = np.arange(self.cells + 1)
-        return first + np.where(np.arange(len(first))[:, None] % 2, outwards, outwards[::-1])
+        return first + np.where(self._falls[:, None], outwards[::-1], outwards)
 
     def by_side(self, values: FloatArray) -> FloatArray:
         """Values at the nodes (size, …) from each line outwards, (sides, cells + 1, …)."""

@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from puck_tables.contact.integrals import slip_direction
 from puck_tables.errors import AccuracyError
-from puck_tables.kernels.slice_spline import (
+from puck_tables.kernels.section_spline import (
     HEADER,
     INERTIA,
     INVERSE_EXTENT,
@@ -26,7 +26,7 @@ from puck_tables.kernels.slice_spline import (
     LINE_SIN,
     UPPER_COS,
     UPPER_SIN,
-    fill_slice,
+    fill_section,
 )
 from puck_tables.table.accuracy import Accuracy
 from puck_tables.table.fit import sided_coefficients
@@ -71,7 +71,7 @@ class SlipSpline:
 
     @cached_property
     def cut(self) -> FloatArray:
-        """The matrix that :mod:`puck_tables.kernels.slice_spline` reads; inertia left 0."""
+        """The matrix that :mod:`puck_tables.kernels.section_spline` reads; inertia left 0."""
         cut = np.zeros((len(self.sides), HEADER + self.values.shape[2] * (self.cells + 3)))
         cut[:, HEADER:] = sided_coefficients(self.values, self.even).reshape(len(cut), -1) / 6.0
         for n, side in enumerate(self.sides):
@@ -86,7 +86,7 @@ class SlipSpline:
         """The functions at slip angles (n,), radians, as (n, functions)."""
         direction = slip_direction(phi)
         out = np.empty((self.values.shape[2], phi.size))
-        fill_slice(self.cut, self.values.shape[2], direction.ratio, direction.fast_spin, out)
+        fill_section(self.cut, self.values.shape[2], direction.ratio, direction.fast_spin, out)
         return out.T
 
     def coarser(self) -> SlipSpline:

@@ -31,7 +31,8 @@ from puck_tables.contact.laws import Law, law_of
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import InputError, OutputError, TableError
 from puck_tables.table.file import read_content, recipe_digest
-from puck_tables.table.friction_slice import FrictionSlice, friction_slice
+from puck_tables.table.friction_section import FrictionSection, friction_section
+from puck_tables.table.law_table import is_named
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.table.singular_lines import refuse_height
 from puck_tables.table.speed_table import SpeedTable
@@ -39,8 +40,8 @@ from puck_tables.table.table import Progress, Table
 
 AnyTable = TypeVar("AnyTable", bound=Table)
 
-SLOW_DELTA = 3.0  # from here on a slice takes some seconds
-MOST_TALL, _TALL = 200, "tall"  # how many slices of friction are kept, some 100 kB each
+SLOW_DELTA = 3.0  # from here on a section takes some seconds
+MOST_SECTIONS = 200  # of either kind are kept, some 100 kB each
 _NAME = re.compile(r"[\w.+-]+-[0-9a-f]{16}\.h5")
 
 
@@ -137,12 +138,12 @@ def table_for(
 
 
 @lru_cache(maxsize=64)
-def friction_for(law: Law, delta: float, accuracy: float) -> FrictionSlice:
+def friction_for(law: Law, delta: float, accuracy: float) -> FrictionSection:
     """The friction of one puck: where that takes long, read if it is kept, else built.
 
     Parameters
     ----------
-    law, delta, accuracy : as in :func:`puck_tables.table.friction_slice.friction_slice`
+    law, delta, accuracy : as in :func:`puck_tables.table.friction_section.friction_section`
 
     Raises
     ------
@@ -155,37 +156,60 @@ def friction_for(law: Law, delta: float, accuracy: float) -> FrictionSlice:
     '129 phi nodes'
     """
     if not (law.can_lift and delta > 1.0):
-        return friction_slice(law, delta, accuracy)
+        return friction_section(law, delta, accuracy)
     refuse_height(law, delta)
-    digest = _digest(
-        FrictionSlice, {"pressure_law": law.name, "delta": delta, "accuracy": accuracy}
-    )
 
-    def build() -> FrictionSlice:
-        _forget_oldest()
+    def build(law: Law) -> FrictionSection:
         words = "working out the friction of so tall a puck, once"
         with watched(words) if delta > SLOW_DELTA else nullcontext():
-            return friction_slice(law, delta, accuracy)
+            return friction_section(law, delta, accuracy)
 
-    return fetch(
-        f"{_TALL}-{delta:g}-{accuracy:g}-{digest}.h5",
-        f"friction of a puck with delta = {delta:g}, to {accuracy:g}; recipe {digest}",
-        FrictionSlice,
-        build,
-    )
+    recipe = {"delta": delta, "accuracy": accuracy}
+    return kept_section(FrictionSection, law, f"tall-{delta:g}-{accuracy:g}", recipe, build)
 
 
-def _forget_oldest() -> None:
+def kept_section(
+    kind: type[AnyTable], law: Law, stem: str, recipe: dict[str, Any],
+    build: Callable[[Law], AnyTable], rooms: tuple[str, ...] = (),
+) -> AnyTable:  # fmt: skip
+    """A section for one puck: read if it is kept, else built; the last :data:`MOST_SECTIONS` are.
+
+    Parameters
+    ----------
+    kind : of table
+    law : the pressure law; of one that is given by a function nothing is kept
+    stem : of the file name; up to its first - it says what is kept
+    recipe : what determines the values besides the law
+    build : how it is made, of the law as the file has it
+    rooms : whose sources determine the values, besides those of tables
+    """
+    if law.profile is not None:
+        recipe = {**recipe, "profile": [part.tolist() for part in law.profile]}
+        law = replace(law, name="profile")
+    elif not is_named(law):
+        return build(law)
+    digest = _digest(kind, {**recipe, "pressure_law": law.name}, rooms)
+
+    def build_and_make_room() -> AnyTable:
+        _forget_oldest(stem.partition("-")[0])
+        return build(law)
+
+    command = f"{kind.kind} {stem} under pressure {law.name}; recipe {digest}"
+    return fetch(f"{stem}-{digest}.h5", command, kind, build_and_make_room)
+
+
+def _forget_oldest(what: str) -> None:
     """Make room for one more: a sweep over many heights shall not fill the disk."""
-    tall = [path for path in kept_files() if path.name.startswith(_TALL)]
+    files = [path for path in kept_files() if path.name.startswith(f"{what}-")]
     with suppress(OSError):  # another process may be at it
-        for path in sorted(tall, key=lambda path: path.stat().st_mtime)[: 1 - MOST_TALL or None]:
+        oldest = sorted(files, key=lambda path: path.stat().st_mtime)
+        for path in oldest[: 1 - MOST_SECTIONS or None]:
             path.unlink(missing_ok=True)
 
 
-def _digest(kind: type[Table], recipe: dict[str, Any]) -> str:
+def _digest(kind: type[Table], recipe: dict[str, Any], rooms: tuple[str, ...] = ()) -> str:
     """Of all that determines a table, and of the sources that compute it."""
-    sources = source_digest("contact", "kernels", "table")
+    sources = source_digest("contact", "kernels", "table", *rooms)
     return recipe_digest({**recipe, "algorithm": kind.algorithm, "sources": sources})[:16]
 
 

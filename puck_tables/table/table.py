@@ -33,7 +33,8 @@ KINDS = {
     "resultants": "puck_tables.table.resultant_table:ResultantTable",
     "stops": "puck_tables.stopping.stop_table:StopTable",
     "speed": "puck_tables.table.speed_table:SpeedTable",
-    "friction slice": "puck_tables.table.friction_slice:FrictionSlice",
+    "friction section": "puck_tables.table.friction_section:FrictionSection",
+    "stop section": "puck_tables.stopping.stop_section:StopSection",
 }
 
 
@@ -109,12 +110,14 @@ class Table(ABC):
             the friction resultants in full contact.  ``"stops"``: stops and the way to them.  A
             :class:`puck_tables.SpeedLaw`, or a function from speeds in m/s to f: friction with a
             coefficient that depends on the slip speed.  A pair of a pressure law and a height δ:
-            the friction of one puck, under uniform pressure also where part of its base lifts.
+            the friction of one puck, under uniform pressure also where part of its base lifts;
+            with a radius of gyration (in units of r) as a third, its stops.
         accuracy : float, optional
             Largest error wanted, up to 0.01.  Resultants (dimensionless): from 1e-13, default
             2e-11, under another law than uniform pressure 1e-11 and 1e-9.  Stops (in units of
             Q/J, Q²/J and Q²/(J r)): from 1e-11, default 1e-10.  Speed (over the largest f): from
-            1e-13, default 1e-6.  One puck (of its friction ratios): from 5e-13, default 1e-9.
+            1e-13, default 1e-6.  One puck (of its friction ratios): from 5e-13, default 1e-9; of
+            its stops, as above, from 1e-10, default 1e-8.
         cells : int, optional
             Resultants and stops: grid size by hand instead, cells on each side of each singular
             line, from 4 (stops: 8) on.

@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.accuracy.front import Way
+from puck_tables.accuracy.front import Measured
 from puck_tables.io.dataset import Dataset, variable
 from puck_tables.motion.limits import limit_ratio
 from puck_tables.result import Result
@@ -44,7 +44,7 @@ class TradeOff(Result):
     ``machine``; ``repeats``; ``seconds`` it all took.
     """
 
-    ways: tuple[Way, ...]
+    ways: tuple[Measured, ...]
     stops: FloatArray
     stop_ns: FloatArray
     peak_bytes: FloatArray
@@ -64,7 +64,7 @@ class TradeOff(Result):
 
     def dataset(self) -> Dataset:
         """Every way with its errors and costs; the growth of a sweep; the machine as attributes."""
-        names = [field.name for field in fields(Way)]
+        names = [field.name for field in fields(Measured)]
         columns = {name: variable(name, _values(self.ways, name), ("way",)) for name in names}
         growth = {
             name: variable(name, getattr(self, name), ("stops",))
@@ -84,7 +84,7 @@ class TradeOff(Result):
         })  # fmt: skip
 
 
-def _values(ways: tuple[Way, ...], name: str) -> Any:
+def _values(ways: tuple[Measured, ...], name: str) -> Any:
     values = [getattr(way, name) for way in ways]
     return values if isinstance(values[0], str) else np.asarray(values)
 
@@ -176,11 +176,11 @@ def _seconds(ready: Ready, count: int) -> float:
 
 def _way(
     contender: Contender, ready: Ready, build: float, costs: FloatArray, machine: Machine
-) -> Way:
+) -> Measured:
     error = np.maximum(ready.time_error, ready.place_error)
     low, middle, high = 1e9 * np.quantile(costs, [0.25, 0.5, 0.75])
     limit_ns, limit = machine.limit(ready.work, ready.traffic)
-    return Way(
+    return Measured(
         contender.question, contender.method, contender.setting, int(contender.outsider),
         error=float(error.max()), median_error=float(np.median(error)),
         time_error=float(ready.time_error.max()), place_error=float(ready.place_error.max()),

@@ -8,10 +8,10 @@ from functools import partial
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.accuracy.front import ADAPTIVE_EXACT, ADAPTIVE_TABLE, LOOK_UP
-from puck_tables.motion.equations import SIZE
+from puck_tables.accuracy.methods import LOOK_UP, Method, Scheme, Source
 from puck_tables.motion.limits import log_ratio
 from puck_tables.motion.path import integrate, states_at
+from puck_tables.motion.state import SIZE, STATE_ROWS
 from puck_tables.motion.steppers import DORMAND_PRINCE
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.table.resultant_table import ResultantTable
@@ -71,7 +71,7 @@ class Task:
 
     def looked_up(self) -> Run:
         """Every moment from the stop table."""
-        from puck_tables.stopping.curve_lookup import STATE_ROWS, fill_states
+        from puck_tables.stopping.curve_lookup import fill_states
 
         which = np.repeat(np.arange(_PUCKS), _MOMENTS)
         moments, out = self.times.ravel(), np.empty((STATE_ROWS, _PUCKS * _MOMENTS))
@@ -120,8 +120,9 @@ def contenders(task: Task) -> Iterator[Contender]:
 
     stops = task.stops
     tables = (stops.stop_coefficients, stops.curve_coefficients, stops.time_inverse)
-    yield way(LOOK_UP, "", task.looked_up, sum(table.nbytes for table in tables))
-    for exact, method in ((False, ADAPTIVE_TABLE), (True, ADAPTIVE_EXACT)):
+    yield way(LOOK_UP.name, "", task.looked_up, sum(table.nbytes for table in tables))
+    for source in (Source.TABLE, Source.CLOSED_FORMS):
+        method, exact = Scheme(Method.ADAPTIVE, source).name, source is Source.CLOSED_FORMS
         for local in _LOCAL:
             size = 0 if exact else task.table.columns.nbytes
             yield way(

@@ -8,13 +8,13 @@ from functools import partial
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.accuracy.front import ADAPTIVE_EXACT, ADAPTIVE_TABLE, LOOK_UP, RK4_EXACT, RK4_TABLE
+from puck_tables.accuracy.methods import INTEGRATED, LOOK_UP, Source
 from puck_tables.kernels.quadratic import cut as cut_table
 from puck_tables.motion.bulk import fill_stops
-from puck_tables.motion.equations import SIZE
 from puck_tables.motion.limits import log_ratio
 from puck_tables.motion.path import integrate
-from puck_tables.motion.steppers import DORMAND_PRINCE, RK4
+from puck_tables.motion.state import SIZE
+from puck_tables.motion.steppers import RK4, TABLEAUS, Stepping
 from puck_tables.stopping.lookup import row_width, stops_kernel
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.table.resultant_table import ResultantTable
@@ -68,23 +68,26 @@ def contenders(task: Task) -> Iterator[Contender]:
     """All ways to a stop, and to a trajectory with its steps recorded."""
     for powers, thinning in _CUTS:
         yield Contender(
-            QUESTION, LOOK_UP, f"powers={powers} thinning={thinning}",
+            QUESTION, LOOK_UP.name, f"powers={powers} thinning={thinning}",
             partial(_fresh_cut, task.stops, powers, thinning, np.float64),
             partial(_looked_up, task, powers),
         )  # fmt: skip
     for powers, thinning in ((5, 3), (7, 1)):
         yield Contender(
-            QUESTION, LOOK_UP + ", float32", f"powers={powers} thinning={thinning}",
+            QUESTION, LOOK_UP.name + ", float32", f"powers={powers} thinning={thinning}",
             partial(_fresh_cut, task.stops, powers, thinning, np.float32),
             partial(_looked_up, task, powers),
         )  # fmt: skip
-    for exact in (False, True):
-        for steps in _STEPS + (_STEPS_EXACT if exact else ()):
-            method, setting = RK4_EXACT if exact else RK4_TABLE, f"steps={steps}"
-            yield from _integrations(task, method, setting, float(steps), 1.0, exact)
-        for local in _LOCAL + (_LOCAL_EXACT if exact else ()):
-            method, setting = ADAPTIVE_EXACT if exact else ADAPTIVE_TABLE, f"local={local:g}"
-            yield from _integrations(task, method, setting, 0.0, local, exact)
+    for scheme in INTEGRATED:
+        exact, tableau = scheme.source is Source.CLOSED_FORMS, TABLEAUS[scheme.method]
+        if tableau.e.any():
+            for local in _LOCAL + (_LOCAL_EXACT if exact else ()):
+                stepping = Stepping(tableau, 0.0, local)
+                yield from _integrations(task, scheme.name, f"local={local:g}", stepping, exact)
+        else:
+            for steps in _STEPS + (_STEPS_EXACT if exact else ()):
+                stepping = Stepping(tableau, float(steps), 1.0)
+                yield from _integrations(task, scheme.name, f"steps={steps}", stepping, exact)
     yield from _outsiders(task)
 
 
@@ -107,7 +110,7 @@ def _looked_up(task: Task, powers: int, coefficients: object) -> Ready:
 
 
 def _integrations(
-    task: Task, method: str, setting: str, steps: float, local: float, exact: bool
+    task: Task, method: str, setting: str, stepping: Stepping, exact: bool
 ) -> Iterator[Contender]:
     def coefficients() -> FloatArray:
         return np.empty((2, 0, 5)) if exact else task.table.columns
@@ -115,6 +118,7 @@ def _integrations(
     def items_for(expensive: float) -> int:
         return int(np.clip(2000.0 / expensive, 8.0, 1000.0))
 
+    tableau, steps, local = stepping
     few = items_for(steps / 8.0 if steps else max(1.0, 10.0 - 3.0 * np.log10(local)))
 
     def stop(built: object) -> Ready:
@@ -124,7 +128,7 @@ def _integrations(
         def run(which: FloatArray) -> FloatArray:
             out = np.empty((6, which.shape[1]))
             status = np.empty(which.shape[1], np.int8)
-            fill_stops(which, DORMAND_PRINCE, steps, local, built, out, status)
+            fill_stops(which, tableau, steps, local, built, out, status)
             return out
 
         errors = task.truth.errors(run(task.judged)[:3])
@@ -132,7 +136,6 @@ def _integrations(
 
     def trajectory(built: object) -> Ready:
         assert isinstance(built, np.ndarray)
-        tableau = RK4 if steps else DORMAND_PRINCE
         z, y, result = np.empty(20_000), np.empty((20_000, SIZE)), np.empty(SIZE + 1)
         height, cut = -1.0, np.empty(0 if exact else 6 * built.shape[1])
 

@@ -12,9 +12,12 @@ import pytest
 
 import puck_tables
 from puck_tables import Table
-from puck_tables.stopping.curve_lookup import STATE_ROWS, fill_states
+from puck_tables.contact.laws import HOMOGENEOUS
+from puck_tables.motion.state import STATE_ROWS
+from puck_tables.stopping.curve_lookup import fill_states
 from puck_tables.stopping.lookup import STOP_POWERS, stops_kernel
-from puck_tables.stopping.solvers import LookUp, solver_for
+from puck_tables.stopping.per_height import SolverPerHeight
+from puck_tables.stopping.solvers import LookUp
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -117,8 +120,9 @@ def test_public_stop(measure: Any, launches: FloatArray, truth: FloatArray) -> N
 
 @STOPS
 def test_integrated(measure: Any, launches: FloatArray, truth: FloatArray) -> None:
-    solver = solver_for(ACCURACY, Table.shipped())
+    solver = SolverPerHeight("uniform", HOMOGENEOUS, ACCURACY, None, Table.shipped())
     few = np.ascontiguousarray(launches[:, :FEW])
+    solver.prepare(few[3])
     measure(
         "rival: integrated, RK4 and the table of resultants",
         lambda: solver.all(few),

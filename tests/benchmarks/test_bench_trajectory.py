@@ -15,7 +15,6 @@ import sys
 import sysconfig
 import warnings
 from collections.abc import Callable
-from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -27,12 +26,16 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import puck_tables
+from puck_tables.accuracy.methods import Method
+from puck_tables.contact.laws import HOMOGENEOUS
 from puck_tables.kernels.closed_form import friction_ratios
-from puck_tables.motion.equations import SIZE, T, X, Y
+from puck_tables.motion.friction import integration_selected
 from puck_tables.motion.limits import log_ratio
 from puck_tables.motion.path import integrate
-from puck_tables.motion.steppers import DORMAND_PRINCE
-from puck_tables.stopping.solvers import Integration, solver_for
+from puck_tables.motion.state import SIZE, T, X, Y
+from puck_tables.motion.steppers import DORMAND_PRINCE, stepping_of
+from puck_tables.stopping.per_height import SolverPerHeight
+from puck_tables.stopping.solvers import Integration
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.tradeoff.rivals import patch_script
 
@@ -187,12 +190,13 @@ ACCURACY = 1e-6
 @ONE_STOP
 @pytest.mark.parametrize("way", ["look-up", "rk4", "adaptive"])
 def test_stop_kernel(measure: Any, launches: FloatArray, way: str) -> None:
-    solver = solver_for(ACCURACY, None, way)
+    solver = SolverPerHeight("uniform", HOMOGENEOUS, ACCURACY, way, None)
     columns = np.ascontiguousarray(launches.T)
+    solver.prepare(columns[3])
     out, status = solver.first(columns)
     assert not status.any()
     measure(
-        f"{solver.choice.way.name}, 1000 launches",
+        f"{solver.selections[0].scheme.name}, 1000 launches",
         lambda: solver.first(columns),
         items=LAUNCHES,
         unit="trajectory",
@@ -237,9 +241,8 @@ def test_stop_public_single(measure: Any, table: ResultantTable, given: bool) ->
 
 @ONE_STOP
 def test_stop_closed_forms(measure: Any, launches: FloatArray) -> None:
-    chosen = solver_for(ACCURACY, None, "rk4")
-    assert isinstance(chosen, Integration)
-    exact = replace(chosen, exact=True)
+    selection = integration_selected("stop", ACCURACY, Method.RK4, None, exact=True)
+    exact = Integration(np.empty((2, 0, 5)), stepping_of(selection), Method.RK4)
     columns = np.ascontiguousarray(launches.T)
     measure(
         "closed forms in the same loop, 1000 launches",

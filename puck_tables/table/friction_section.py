@@ -6,10 +6,9 @@ analytic between a few lines (:mod:`puck_tables.table.singular_lines`).
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import KW_ONLY, dataclass, replace
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import Any, ClassVar
 
@@ -19,29 +18,29 @@ import numpy.typing as npt
 from puck_tables.contact.laws import HOMOGENEOUS, Law, law_of
 from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import AccuracyError, InputError
-from puck_tables.kernels.slice_spline import LINE
+from puck_tables.kernels.section_spline import LINE
 from puck_tables.table.accuracy import Accuracy
 from puck_tables.table.build import COARSEST
-from puck_tables.table.check import Check, CheckReport, compared
+from puck_tables.table.check import CheckReport
 from puck_tables.table.fit import height_terms
-from puck_tables.table.law_table import LawTable
 from puck_tables.table.resultant_table import ResultantTable
-from puck_tables.table.singular_lines import lines_of, opening_angle, singular_lines
+from puck_tables.table.section_table import SectionTable
+from puck_tables.table.singular_lines import lines_of, opening_angle
 from puck_tables.table.slip_axis import GRADING_POWER, LawAxis, sides_of
-from puck_tables.table.slip_spline import SlipSpline, slip_spline
-from puck_tables.table.table import Axis, Progress
+from puck_tables.table.slip_spline import slip_spline
+from puck_tables.table.table import Progress
 
 FloatArray = npt.NDArray[np.float64]
 
 DEFAULT_ACCURACY, FINEST_ACCURACY = 1e-9, 5e-13  # truth itself is good to 1e-13
 _LARGEST, _ROUNDING = 1e3, 1e-12  # of a ratio
 _NODES, _NODE_ERROR = 6, 1e-10  # how many are compared as a file is read, and how well known
-_SAME, _CONSTANT = 1e-9, 1e-3  # of lines; no slice is better than the latter times cells⁻⁴
+_CONSTANT = 1e-3  # no section is better than so many times cells⁻⁴
 _AT_THE_LIMIT = 1e-6
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class FrictionSlice(LawTable):
+class FrictionSection(SectionTable):
     """The friction ratios of a puck over its slip angle.
 
     Parameters
@@ -53,18 +52,13 @@ class FrictionSlice(LawTable):
     cotangents : cot φ of the singular lines, ascending
     """
 
-    _: KW_ONLY
-    delta: float
-    cotangents: tuple[float, ...]
-
-    kind = "friction slice"
+    kind = "friction section"
     algorithm = "one-sided balance by quadrature, or integrals of the law; 1"
     functions: ClassVar[Mapping[str, str]] = {
         "inverse_parallel": "1/rho_parallel",
         "perpendicular_share": "rho_perpendicular/rho_parallel",
         "spin_share": "rho_omega/rho_parallel",
     }
-    second = "delta"
     quantities = tuple(functions)
     words: ClassVar[Mapping[str, str]] = {
         "title": "Friction of one sliding, spinning puck",
@@ -79,17 +73,6 @@ class FrictionSlice(LawTable):
         "method": "balance of moments by quadrature, 1e-13",
         "phi_map": f"two sides for each line: tan(phi - line) = extent xi^{GRADING_POWER}",
     }
-    entries: ClassVar[Mapping[str, type]] = {**LawTable.entries, "delta": float, "cotangents": str}
-
-    @property
-    def lines_at(self) -> tuple[float, ...]:
-        """Where it is singular."""
-        return self.cotangents
-
-    @cached_property
-    def spline(self) -> SlipSpline:
-        """Through the nodes."""
-        return SlipSpline(self.axis.sides, self.axis.by_side(self.values), True, self.accuracy)
 
     @cached_property
     def opening(self) -> float:
@@ -140,7 +123,7 @@ class FrictionSlice(LawTable):
         return np.stack([self.spline.values[0, -1], self.spline.values[-1, -1]])
 
     def validate(self, progress: Progress | None = None, points: int = 600) -> CheckReport:
-        """Judge the slice by the law.
+        """Judge the section by the law.
 
         Parameters
         ----------
@@ -148,27 +131,14 @@ class FrictionSlice(LawTable):
         points : how many are compared at random, and as many next to the lines, in cells and at
             nodes
         """
-        rng = np.random.default_rng()
-        nodes = self.axis.nodes()
-        near = rng.choice([*self.lines, 0.0, 0.5 * np.pi], points)
-        near += rng.choice([-1.0, 1.0], points) * 10.0 ** -rng.uniform(0.3, 15.0, points)
-        some = rng.permutation(nodes.size - 1)[:points]
-        inside = nodes[some] + rng.random(some.size) * np.diff(nodes)[some]
-        odd = self.odd_nodes(points // 2)
         allowed = min(self.tolerance, COARSEST)
-        routes = (
-            ("the law, random points", rng.uniform(0.0, 0.5 * np.pi, points), allowed),
-            ("the law, next to the lines", np.clip(near, 0.0, 0.5 * np.pi), allowed),
-            ("the law, in the cells", inside, allowed),
-            ("the law, the oddest nodes", nodes[odd], max(allowed, _NODE_ERROR)),
-        )
-        checks: list[Check] = []
-        for done, (name, phi, most) in enumerate(routes, 1):
-            errors = (self.ratios(phi) - _ratios(self.law, phi, self.delta)).T
-            checks += compared(name, self.quantities, errors, phi, 0.0 * phi + self.delta, most)
-            if progress is not None:
-                progress(done, len(routes))
-        return CheckReport(self.source, self.tolerance, tuple(checks))
+
+        def off(phi: FloatArray) -> FloatArray:
+            missed: FloatArray = self.ratios(phi) - friction_ratios(self.law, phi, self.delta)
+            return missed
+
+        at_nodes = max(allowed, _NODE_ERROR)
+        return self.judged(off, "the law", points, allowed, at_nodes, progress)
 
     # the record of the kind
 
@@ -178,7 +148,7 @@ class FrictionSlice(LawTable):
         return isinstance(of, tuple) and len(of) == 2 and isinstance(of[0], Law | str)
 
     @classmethod
-    def built(cls, of: Any, accuracy: float | None = None, **how: Any) -> FrictionSlice:
+    def built(cls, of: Any, accuracy: float | None = None, **how: Any) -> FrictionSection:
         """The friction of one puck, see :meth:`puck_tables.Table.build`."""
         law = of[0] if isinstance(of[0], Law) else law_of(of[0])
         wanted = DEFAULT_ACCURACY if accuracy is None else accuracy
@@ -187,53 +157,22 @@ class FrictionSlice(LawTable):
                 f"accuracy must be from {FINEST_ACCURACY:g} to {COARSEST:g} (an absolute error of "
                 f"the friction ratios), got {wanted:g}"
             )
-        return friction_slice(law, float(checked_delta(of[1])), wanted, **how)
-
-    @property
-    def grid(self) -> str:
-        """How many nodes it has, in words."""
-        return f"{len(self.values)} phi nodes"
-
-    @property
-    def valid_range(self) -> str:
-        """Where it holds, in words."""
-        return f"|phi| <= pi/2, delta = {self.delta:g} only"
-
-    @property
-    def axes(self) -> dict[str, Axis]:
-        """Slip angle."""
-        return {"phi": Axis(self.axis.nodes(), "rad", "slip angle atan2(r omega, v)")}
-
-    @property
-    def parameters(self) -> dict[str, int | float | str]:
-        """Those of its law, height and lines."""
-        lines = json.dumps(self.cotangents)
-        return {**super().parameters, "delta": self.delta, "cotangents": lines}
+        return friction_section(law, float(checked_delta(of[1])), wanted, **how)
 
     @property
     def bounds(self) -> tuple[float, float, float]:
         """Of the values and of the accuracy."""
         return -_ROUNDING, _LARGEST, max(0.1 * FINEST_ACCURACY, _CONSTANT / self.axis.cells**4)
 
-    @classmethod
-    def fields(cls, attributes: dict[str, Any], arrays: dict[str, FloatArray]) -> dict[str, Any]:
-        """Law, height and lines of a file."""
-        found = super().fields(attributes, arrays)
-        lines = tuple(float(line) for line in json.loads(attributes["cotangents"]))
-        needed = np.array(singular_lines(found["law"], attributes["delta"]))
-        if np.any(np.abs(np.subtract.outer(needed, lines)).min(axis=1) > _SAME * needed):
-            raise ValueError("its lines are not those of its puck")
-        return found | {"delta": attributes["delta"], "cotangents": lines}
-
     def spot_checks(self) -> Iterator[tuple[FloatArray, float, str]]:
         """Of nodes, those that fit their neighbours least among them."""
         nodes = np.random.default_rng().integers(0, len(self.values), _NODES)
         nodes = np.concatenate([self.odd_nodes(_NODES), nodes])
-        truth = _ratios(self.law, self.axis.nodes()[nodes], self.delta)
+        truth = friction_ratios(self.law, self.axis.nodes()[nodes], self.delta)
         yield np.abs(self.values[nodes] - truth), _NODE_ERROR, f"the law {self.law.name}"
 
 
-def slice_of(table: ResultantTable, delta: float, accuracy: float) -> FrictionSlice:
+def section_of_table(table: ResultantTable, delta: float, accuracy: float) -> FrictionSection:
     """The section of a table of resultants at one height: the table is all that is asked.
 
     Parameters
@@ -252,7 +191,7 @@ def slice_of(table: ResultantTable, delta: float, accuracy: float) -> FrictionSl
     Examples
     --------
     >>> table = ResultantTable.build("ring", 1e-8)
-    >>> inverse, across, spin = slice_of(table, 1.0, 1e-6).ratios(np.array([0.0]))[0]
+    >>> inverse, across, spin = section_of_table(table, 1.0, 1e-6).ratios(np.array([0.0]))[0]
     >>> round(float(across / inverse), 6)  # ρ_⊥
     0.25
     """
@@ -272,13 +211,13 @@ def slice_of(table: ResultantTable, delta: float, accuracy: float) -> FrictionSl
             "give a finer table, or a larger tol (--tol)", reachable=error,
         )  # fmt: skip
     everywhere = (error,) * 3, (error,) * 3, (error,) * 3, (0.0,) * 3, (delta,) * 3
-    return FrictionSlice(
+    return FrictionSection(
         values, law=table.law, delta=delta, cotangents=table.law.edges, tolerance=error,
         accuracy=Accuracy(*everywhere, promised=3, order=0.0, points=0), source=table.source,
     )  # fmt: skip
 
 
-def _ratios(law: Law, phi: FloatArray, delta: float) -> FloatArray:
+def friction_ratios(law: Law, phi: FloatArray, delta: float) -> FloatArray:
     """The friction ratios by the law, (n, 3)."""
     rho = law.friction(phi, delta)
     return np.stack([1.0 / rho.parallel, rho.perpendicular / rho.parallel,
@@ -286,7 +225,7 @@ def _ratios(law: Law, phi: FloatArray, delta: float) -> FloatArray:
 
 
 @lru_cache(maxsize=64)
-def friction_slice(law: Law, delta: float, accuracy: float = DEFAULT_ACCURACY) -> FrictionSlice:
+def friction_section(law: Law, delta: float, accuracy: float = DEFAULT_ACCURACY) -> FrictionSection:
     """Tabulate the friction of one puck.
 
     Parameters
@@ -298,7 +237,7 @@ def friction_slice(law: Law, delta: float, accuracy: float = DEFAULT_ACCURACY) -
 
     Returns
     -------
-    FrictionSlice
+    FrictionSection
         Kept: the same call again costs nothing.
 
     Raises
@@ -316,17 +255,20 @@ def friction_slice(law: Law, delta: float, accuracy: float = DEFAULT_ACCURACY) -
     Examples
     --------
     >>> from puck_tables.contact.laws import law_of
-    >>> found = friction_slice(law_of("uniform"), 2.0, 1e-7)
+    >>> found = friction_section(law_of("uniform"), 2.0, 1e-7)
     >>> inverse, across, spin = found.ratios(np.array([0.5]))[0]
     >>> round(float(spin / inverse), 6)  # ρ_ω
     0.219633
     """
     cotangents = lines_of(law, delta)
     spline = slip_spline(
-        lambda phi: _ratios(law, phi, delta), sides_of(cotangents[::-1]), accuracy, even=True
+        lambda phi: friction_ratios(law, phi, delta),
+        sides_of(cotangents[::-1]),
+        accuracy,
+        even=True,
     )
     assert spline.accuracy is not None
-    return FrictionSlice(
+    return FrictionSection(
         LawAxis(cotangents, spline.cells).joined(spline.values), law=law, delta=delta,
         cotangents=cotangents, tolerance=accuracy,
         accuracy=replace(spline.accuracy, at_second=3 * (delta,)),

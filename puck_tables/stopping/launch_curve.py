@@ -32,7 +32,7 @@ FloatArray = npt.NDArray[np.float64]
 SPEED, RIM, TIME = range(3)
 BEND = 3  # arg Z, no quantity to be met
 LARGEST_U = 600.0  # beyond, ratios of spin to speed leave floating point
-SLICE_ACCURACY = 5e-10
+SECTION_ACCURACY = 5e-10
 _LOCAL = 1e-12
 _SAMPLED_U = math.log(math.tan(math.radians(80.0)))  # as far as is sampled without a bound
 _SCANNED, _SPACING = 36.0, 0.25
@@ -45,25 +45,23 @@ _ROUNDED = 1e-9  # values closer than this to the slide's are rounding
 
 
 @dataclass(frozen=True)
-class Section:
+class LaunchCurve:
     """Ln v, ln r|ω| and ln t₀ of all launches that stop at distance 1 m, J = 1 m/s².
 
     Parameters
     ----------
-    delta : dimensionless height 2fh/r
-    body : Body, or None for a homogeneous puck under uniform pressure, δ ≤ 1
+    body : Body
     u : array (n,), ascending; between two all three quantities are monotonic
     values : array (n, 3)
     """
 
-    delta: float
-    body: Body | None
+    body: Body
     u: FloatArray = field(repr=False)
     values: FloatArray = field(repr=False)
 
     def rows(self, u: FloatArray) -> FloatArray:
         """Ln v, ln r|ω|, ln t₀ and arg Z for ω > 0, at u (n,), (n, 4); u = −∞ slides."""
-        return np.column_stack(_curve(u, _stops(self.body, self.delta, u)))
+        return np.column_stack(_logs(u, _stops(self.body, u)))
 
     def brackets(self, quantity: int, value: float) -> list[tuple[float, float]]:
         """Where a quantity has a value: intervals of u with one such place in each.
@@ -100,29 +98,22 @@ class Section:
         return float(self.u[n]), float(self.values[n, quantity])
 
 
-def plain_section(delta: float) -> Section:
-    """Of a homogeneous puck under uniform pressure, δ ≤ 1: the quantities never turn.
-
-    Examples
-    --------
-    >>> plain_section(0.5).brackets(RIM, 1.0)
-    [(-600.0, 600.0)]
-    """
-    u = np.array([-LARGEST_U, LARGEST_U])
-    return Section(delta, None, u, _values(None, delta, u))
-
-
 @lru_cache(maxsize=64)
-def section_of(body: Body) -> Section:
-    """Of any other puck: kept, the same call again costs nothing.
+def launch_curve(body: Body) -> LaunchCurve:
+    """Of a puck: kept, the same call again costs nothing.
 
     Examples
     --------
     >>> from puck_tables.motion.body import body_of
-    >>> u, fastest = section_of(body_of("uniform", 3.9, 0.1)).extreme(SPEED)
+    >>> launch_curve(body_of("uniform", 0.5, 0.5**0.5)).brackets(RIM, 1.0)
+    [(-600.0, 600.0)]
+    >>> u, fastest = launch_curve(body_of("uniform", 3.9, 0.1)).extreme(SPEED)
     >>> u > -4.0, fastest > 0.5 * math.log(2.0)
     (True, True)
     """
+    ends = np.array([-LARGEST_U, LARGEST_U])
+    if body.is_plain:  # the quantities never turn
+        return LaunchCurve(body, ends, _values(body, ends))
     u = _first_nodes(body)
     values, slopes = _with_slopes(body, u)
     fresh = np.ones(u.size - 1, bool)
@@ -146,12 +137,11 @@ def section_of(body: Body) -> Section:
         both = n + np.arange(n.size)
         fresh[both], fresh[both + 1] = True, True
     turns = np.unique(_turns(u, values, slopes))
-    ends = np.array([-LARGEST_U, LARGEST_U])
     more = np.concatenate([ends, turns])
     u = np.concatenate([u, more])
-    values = np.concatenate([values, _values(body, body.delta, more)])
+    values = np.concatenate([values, _values(body, more)])
     order = np.argsort(u, kind="stable")
-    return Section(body.delta, body, u[order], values[order])
+    return LaunchCurve(body, u[order], values[order])
 
 
 def sample(ranges: list[tuple[float, float]], count: int) -> list[float]:
@@ -179,7 +169,7 @@ def sample(ranges: list[tuple[float, float]], count: int) -> list[float]:
 
 def _first_nodes(body: Body) -> FloatArray:
     """Everywhere, and next to the lines of the friction on both sides; none next to the limit."""
-    lines = np.log(np.tan(np.array(body.friction(SLICE_ACCURACY).lines)))
+    lines = np.log(np.tan(np.array(body.friction(SECTION_ACCURACY).lines)))
     near = np.outer([-1.0, 1.0], 10.0 ** -np.arange(1.0, 6.5, 0.5)).ravel()
     steps = round(2.0 * _SCANNED / _SPACING) + 1
     u = np.concatenate([
@@ -207,16 +197,16 @@ def _turns(u: FloatArray, values: FloatArray, slopes: FloatArray) -> FloatArray:
     return turns
 
 
-def _stops(body: Body | None, delta: float, u: FloatArray) -> FloatArray:
+def _stops(body: Body, u: FloatArray) -> FloatArray:
     """T, X, Y at u (n,), (n, 3)."""
-    heights = np.full(u.size, delta)
-    if body is None:
+    heights = np.full(u.size, body.delta)
+    if body.is_plain:
         return exact_stops(u, heights)[:, :3]
-    cut = body.friction(SLICE_ACCURACY).for_motion(body.gyration)
+    cut = body.friction(SECTION_ACCURACY).for_motion(body.gyration)
     return integrated_stops(u, heights, cut, _LOCAL, cosine_of(u))[:, :3]
 
 
-def _curve(u: FloatArray, stops: FloatArray) -> tuple[FloatArray, ...]:
+def _logs(u: FloatArray, stops: FloatArray) -> tuple[FloatArray, ...]:
     """Ln v, ln r|ω|, ln t₀ and arg Z from stops."""
     time, x, y = stops.T
     log_q = -0.5 * np.log(np.hypot(x, y))
@@ -233,16 +223,16 @@ def cosine_of(u: FloatArray) -> FloatArray:
     return cosine
 
 
-def _values(body: Body | None, delta: float, u: FloatArray) -> FloatArray:
-    return np.column_stack(_curve(u, _stops(body, delta, u))[:BEND])
+def _values(body: Body, u: FloatArray) -> FloatArray:
+    return np.column_stack(_logs(u, _stops(body, u))[:BEND])
 
 
 def _with_slopes(body: Body, u: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Values and their derivatives, both (n, 3); the derivatives NaN next to the limit."""
-    stops = _stops(body, body.delta, u)
-    values = np.column_stack(_curve(u, stops)[:BEND])
+    stops = _stops(body, u)
+    values = np.column_stack(_logs(u, stops)[:BEND])
     time, x, y = stops.T
-    inverse, _, spin = body.friction(SLICE_ACCURACY).ratios(np.arctan(np.exp(u))).T
+    inverse, _, spin = body.friction(SECTION_ACCURACY).ratios(np.arctan(np.exp(u))).T
     along = 1.0 / inverse
     turning = 0.5 / body.inertia * spin * along
     common = 0.5 * cosine_of(u) * x / (x * x + y * y)

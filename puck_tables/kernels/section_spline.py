@@ -6,7 +6,7 @@ direction of (v, r|ω|),
 
     tan(φ − line) = (s cos line − c sin line)/(c cos line + s sin line) .
 
-A slice is a matrix with one row a side, in the order of φ: :data:`HEADER` numbers, then the
+A section is a matrix with one row a side, in the order of φ: :data:`HEADER` numbers, then the
 B-spline weights over 6 of its functions, node by node.  It is two-dimensional so that compiled code
 tells it from a flat cut of a table (:func:`puck_tables.kernels.quadratic.cut`) by its type.
 """
@@ -31,7 +31,7 @@ RATIOS = 3
 
 
 @inlined
-def slice_place(k: float, fast: bool, cut: FloatArray, functions: int) -> tuple[int, int, float]:
+def section_place(k: float, fast: bool, cut: FloatArray, functions: int) -> tuple[int, int, float]:
     """Side, first column and place in the cell of a slip ratio k = min/max of v and r|ω|."""
     c, s = (k, 1.0) if fast else (1.0, k)
     side, last = 0, cut.shape[0] - 1
@@ -47,9 +47,9 @@ def slice_place(k: float, fast: bool, cut: FloatArray, functions: int) -> tuple[
 
 
 @inlined
-def slice_ratios(k: float, fast: bool, cut: FloatArray) -> tuple[float, float, float]:
+def section_ratios(k: float, fast: bool, cut: FloatArray) -> tuple[float, float, float]:
     """The three friction ratios at a slip ratio."""
-    side, i, place = slice_place(k, fast, cut, RATIOS)
+    side, i, place = section_place(k, fast, cut, RATIOS)
     w0, w1, w2, w3 = basis(place)
     row = cut[side]
     return (
@@ -60,12 +60,12 @@ def slice_ratios(k: float, fast: bool, cut: FloatArray) -> tuple[float, float, f
 
 
 @kernel
-def fill_slice(
+def fill_section(
     cut: FloatArray, functions: int, ratio: FloatArray, fast: npt.NDArray[np.bool_], out: FloatArray
 ) -> None:
-    """All functions of a slice at slip ratios (n,) into ``out`` (functions, n)."""
+    """All functions of a section at slip ratios (n,) into ``out`` (functions, n)."""
     for n in range(ratio.size):
-        side, i, place = slice_place(ratio[n], fast[n], cut, functions)
+        side, i, place = section_place(ratio[n], fast[n], cut, functions)
         weights = basis(place)
         for f in range(functions):
             total = 0.0

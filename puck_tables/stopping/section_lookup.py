@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.kernels.compile import allocating
-from puck_tables.kernels.slice_spline import slice_place
+from puck_tables.kernels.section_spline import section_place
 from puck_tables.kernels.spline import basis
 
 FloatArray = npt.NDArray[np.float64]
@@ -18,10 +18,10 @@ _LOWEST = 1e-290
 
 
 @allocating
-def fill_slice_stops(launches: FloatArray, cut: FloatArray, out: FloatArray) -> None:
+def fill_section_stops(launches: FloatArray, cut: FloatArray, out: FloatArray) -> None:
     """Stops of launches (6, n): vx, vy, ω, δ, J, r, into ``out`` (6, n), see solvers.OUTPUTS.
 
-    ``cut`` holds the functions of :mod:`puck_tables.stopping.stop_slice`; all launches are of its
+    ``cut`` holds the functions of :mod:`puck_tables.stopping.stop_section`; all launches are of its
     puck.  No direction is computed and nothing divided by zero.
     """
     values = np.empty(_FUNCTIONS)
@@ -38,7 +38,7 @@ def fill_slice_stops(launches: FloatArray, cut: FloatArray, out: FloatArray) -> 
         larger = max(speed, edge)
         raised = 2.0**200 if larger < _LOWEST else 1.0
         ratio = (raised * min(speed, edge)) / (raised * larger) if larger > 0.0 else 0.0
-        side, i, place = slice_place(ratio, edge > speed, cut, _FUNCTIONS)
+        side, i, place = section_place(ratio, edge > speed, cut, _FUNCTIONS)
         for f in range(_FUNCTIONS):
             values[f] = 0.0
         for m, w in enumerate(basis(place)):

@@ -1,0 +1,352 @@
+"""For each height the solver of stops that fits it.
+
+Plain pucks are looked up in the stop table that comes along, or integrated where it is not exact
+enough.  Every other height needs preparation: a stop section where its launches are many, a setting
+of the integrator that was tried where they are few.  All is made before the first launch is
+answered and depends on the kind of puck alone, so that the numbers do not depend on how the work is
+cut.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables._core.executor import Progress, run_chunks
+from puck_tables._core.real import instance, real
+from puck_tables.accuracy.front import COARSEST, UNITS, Selection, select
+from puck_tables.accuracy.methods import INTEGRATED, LOOK_UP, Method, Scheme, Source, method_named
+from puck_tables.contact.laws import Law, law_of
+from puck_tables.contact.resultants import checked_delta
+from puck_tables.errors import AccuracyError, InputError
+from puck_tables.motion.body import Body, body_of, plain_up_to
+from puck_tables.motion.friction import Sections, integration_selected
+from puck_tables.motion.run import unseen_tail
+from puck_tables.motion.solve import FINEST_LOCAL, Estimate, Setting, close_enough, refined
+from puck_tables.motion.steppers import stepping_of
+from puck_tables.stopping.solvers import (
+    OUTPUTS,
+    Integration,
+    LookUp,
+    SectionLookUp,
+    Status,
+    StopSolver,
+)
+from puck_tables.stopping.stop_section import FINEST_SECTION, stop_section_for
+from puck_tables.stopping.stop_table import StopTable
+from puck_tables.table.resultant_table import ResultantTable
+
+FloatArray = npt.NDArray[np.float64]
+AnyTable = ResultantTable | StopTable | None
+
+MANY = 300  # launches of one height from which on a stop section costs less than integrating them
+MOST_HEIGHTS = 500
+HEIGHT_COST = 2000  # launches that take as long as the preparation of a height
+_PROBES = 40
+
+
+class SolverPerHeight:
+    """Stops of the pucks of one pressure law and radius of gyration, of any heights.
+
+    Parameters
+    ----------
+    pressure, gyration, tol, method, table
+        As :func:`puck_tables.stop` takes them.
+
+    Raises
+    ------
+    InputError
+        If the method is not known, or the table is of other pucks.
+
+    Examples
+    --------
+    >>> solver = SolverPerHeight("uniform", 0.5**0.5, 1e-6, None, None)
+    >>> solver.prepare(np.array([0.5, 1.0, 1.5]))
+    >>> solver.method
+    'look-up and integrated'
+    """
+
+    def __init__(
+        self, pressure: str | Law, gyration: float, tol: float, method: str | None, table: AnyTable
+    ) -> None:
+        self.tol = real("tol", tol, "dimensionless")
+        instance("table", table, ResultantTable, StopTable, type(None))
+        self._wanted = method_named(method)
+        self._pressure, self._gyration, self._table = pressure, gyration, table
+        self._plain_up_to = plain_up_to(pressure, gyration)
+        self._law_table: ResultantTable | None = None
+        if table is not None and self._plain_up_to > 0.0:
+            self._plain_up_to = math.inf  # it refuses itself what it does not hold
+        elif isinstance(table, StopTable):
+            raise InputError(
+                "tables of stops are of a homogeneous puck under uniform pressure: leave out "
+                "table, or pressure and gyration"
+            )
+        else:
+            self._law_table = table
+        self._plain: StopSolver | None = None
+        self._plain_selection: Selection | None = None
+        self._plain_source = ""
+        self._sections: dict[float, StopSolver] = {}
+        self._launches = 0, 0  # of plain heights, of others
+
+    def checked_range(self, delta: npt.ArrayLike) -> FloatArray:
+        """``delta`` as an array, refused where the friction is not known.
+
+        Raises
+        ------
+        InputError, ContactError
+        """
+        if self._table is not None and self._law_table is None:
+            return self._table.checked_range(delta)
+        height = checked_delta(delta)
+        if height.size and height.max() > self._plain_up_to:
+            self._body(float(height.max()))
+        return height
+
+    def prepare(
+        self, delta: FloatArray, each: int = 1, threads: int | None = None,
+        progress: Progress | None = None,
+    ) -> None:  # fmt: skip
+        """Make what launches of heights ``delta`` (n,) need, ``each`` times so many.
+
+        Raises
+        ------
+        InputError
+            If too many heights need preparation.
+        AccuracyError
+            If the tolerance is out of reach.
+        """
+        all_plain = not delta.size or float(delta.max()) <= self._plain_up_to
+        others = delta[:0] if all_plain else delta[delta > self._plain_up_to]
+        self._launches = each * (delta.size - others.size), each * others.size
+        if others.size < delta.size or not delta.size:
+            self._prepare_plain()
+        if not others.size:
+            return
+        if self._wanted is Method.LOOK_UP and self.tol < FINEST_SECTION:
+            raise AccuracyError(
+                f"tol must be from {FINEST_SECTION:g} on for look-up of such pucks, got "
+                f"{self.tol:g}: give a tol in that range, or another method"
+            )
+        heights, counts = np.unique(others, return_counts=True)
+        refuse_many(heights)
+        law = self._pressure if isinstance(self._pressure, Law) else law_of(self._pressure)
+
+        def work(start: int, stop: int) -> None:
+            for height, count in zip(heights[start:stop], counts[start:stop], strict=True):
+                body = body_of(law, float(height), self._gyration, self._law_table)
+                self._sections[body.delta] = self._made(body, each * int(count))
+
+        run_chunks(work, heights.size, 1, threads, progress)
+
+    def heights_to_prepare(self, delta: FloatArray) -> int:
+        """How many different heights need preparation."""
+        return int(np.unique(delta[delta > self._plain_up_to]).size)
+
+    def _body(self, delta: float) -> Body:
+        return body_of(self._pressure, delta, self._gyration, self._law_table)
+
+    def _prepare_plain(self) -> None:
+        table, wanted = self._table, self._wanted
+        if isinstance(table, StopTable):
+            if wanted not in (None, Method.LOOK_UP):
+                raise InputError(f"method {wanted} needs a table of resultants, not of stops")
+            if not table.tolerance <= self.tol <= COARSEST:
+                raise AccuracyError(
+                    f"tol must be from {table.tolerance:.1g} (that of the stop table) to "
+                    f"{COARSEST:g}, got {self.tol:g}: give a tol in that range; a finer table "
+                    "comes from 'puck build-tables --kind stops --accuracy A' with A down to 1e-11"
+                )
+            self._plain, self._plain_source = LookUp(table, error=table.tolerance), table.source
+            return
+        if table is not None and wanted is Method.LOOK_UP:
+            raise InputError("method look-up needs a table of stops, not of resultants")
+        if table is None and wanted in (None, Method.LOOK_UP):
+            schemes = (LOOK_UP,) if wanted is Method.LOOK_UP else (LOOK_UP, *INTEGRATED)
+            selection = select("stop", self.tol, schemes)
+        else:
+            selection = integration_selected("stop", self.tol, wanted, table)
+        self._plain_selection = selection
+        if selection.method is Method.LOOK_UP:
+            shipped = StopTable.shipped()
+            powers, thinning = int(selection.number("powers")), int(selection.number("thinning"))
+            self._plain = LookUp(shipped, powers, thinning, selection.error)
+            self._plain_source = shipped.source
+            return
+        coefficients = np.empty((2, 0, 5))
+        self._plain_source = Source.CLOSED_FORMS
+        if table is not None or selection.scheme.source is Source.TABLE:
+            resultants = table or ResultantTable.shipped()
+            coefficients, self._plain_source = resultants.columns, resultants.source
+        stepping = stepping_of(selection)
+        self._plain = Integration(coefficients, stepping, selection.method, selection.error)
+
+    def _made(self, body: Body, launches: int) -> StopSolver:
+        """A solver for the launches of one height that is not plain."""
+        look_up = self._wanted is Method.LOOK_UP
+        if look_up or (not self._wanted and launches >= MANY and self.tol >= FINEST_SECTION):
+            try:
+                section = stop_section_for(body, self.tol)
+                return SectionLookUp(section, section.error)
+            except AccuracyError:  # functions too steep for a spline: not so for the integrator
+                if look_up:
+                    raise
+        return integration_of(body, self.tol, self._wanted)
+
+    def first(self, launches: FloatArray) -> tuple[FloatArray, Status]:
+        """Stop time, x, y (3, n), or all of the outputs if they cost no more; status (n,)."""
+        if not self._sections and self._plain is not None:
+            return self._plain.first(launches)
+        return self.all(launches)
+
+    def all(self, launches: FloatArray) -> tuple[FloatArray, Status]:
+        """All of the outputs of a stop (6, n) and status (n,) of launches (6, n)."""
+        if not self._sections and self._plain is not None:
+            return self._plain.all(launches)
+        out = np.empty((len(OUTPUTS), launches.shape[1]))
+        status = np.empty(launches.shape[1], np.int8)
+        plain = launches[3] <= self._plain_up_to
+        parts: list[tuple[StopSolver | None, npt.NDArray[np.bool_]]] = [(self._plain, plain)]
+        heights = np.unique(launches[3, ~plain]).tolist()
+        parts += [(self._sections[height], launches[3] == height) for height in heights]
+        for solver, mine in parts:
+            if solver is not None and mine.any():
+                out[:, mine], status[mine] = solver.all(launches[:, mine])
+        return out, status
+
+    @property
+    def _all(self) -> list[StopSolver]:
+        plain = [] if self._plain is None else [self._plain]
+        return [*plain, *self._sections.values()]
+
+    @property
+    def method(self) -> str:
+        """'look-up', 'integrated' or both."""
+        looked = {solver.method is Method.LOOK_UP for solver in self._all}
+        names = ((True, Method.LOOK_UP.value), (False, "integrated"))
+        return " and ".join(name for one, name in names if one in looked)
+
+    @property
+    def source(self) -> str:
+        """What the stops come from, in words."""
+        sources = [self._plain_source] if self._plain is not None else []
+        if self._sections:
+            of = "" if self._law_table is None else f" of {self._law_table.source}"
+            body = self._body(next(iter(self._sections)))
+            sources.append(f"sections{of} of pressure {body.law.name}, k/r = {body.gyration:g}")
+        return "; ".join(sources)
+
+    @property
+    def work(self) -> dict[str, Any]:
+        """What determines the bits besides the launches."""
+        plain = {} if self._plain is None else {"plain": self._plain.work}
+        others = {repr(height): self._sections[height].work for height in sorted(self._sections)}
+        return {"asked": self._wanted or "any", **plain, **others}
+
+    @property
+    def selections(self) -> tuple[Selection, ...]:
+        """What was selected for the tolerance: for plain heights, and for the others."""
+        found = [] if self._plain_selection is None else [self._plain_selection]
+        for looked in (True, False):
+            solvers = [
+                one for one in self._sections.values() if (one.method is Method.LOOK_UP) == looked
+            ]
+            if solvers:
+                found.append(self._of_sections(solvers))
+        return tuple(found)
+
+    def _of_sections(self, solvers: list[StopSolver]) -> Selection:
+        """What was selected for heights that are not plain, and their largest error."""
+        error = max(solver.error for solver in solvers)
+        scheme = Scheme(solvers[0].method, Source.SECTION)
+        what = "height" if len(solvers) == 1 else "heights"
+        few_or_many = f"less than {MANY}"
+        if scheme.method is Method.LOOK_UP:
+            few_or_many = f"{MANY} or more"
+        why = "" if self._wanted else f", with {few_or_many} launches each"
+        explanation = (
+            f"Asked: an error of at most {self.tol:.3g} {UNITS}.\n"
+            f"Taken: {scheme.name}, for {len(solvers)} {what}{why}.\n"
+            f"It errs by {error:.2g} at the worst, measured against integration of higher accuracy."
+        )
+        return Selection(scheme, "", error, self.tol, explanation)
+
+    @property
+    def explanation(self) -> str:
+        """What was taken for how many launches, and why."""
+        texts = [selection.explanation for selection in self.selections]
+        if self._plain is not None and self._plain_selection is None:
+            texts.insert(0, "looked up in the stop table given")
+        plain, others = self._launches
+        if not (plain and others):
+            return "\n".join(texts)
+        words = [
+            f"{plain} of {plain + others} launches, of heights delta <= {self._plain_up_to:g}:",
+            f"{others} of {plain + others} launches, of heights above:",
+        ]
+        return "\n".join([words[0], texts[0], words[1], *texts[1:]])
+
+
+def refuse_many(heights: FloatArray) -> None:
+    """Refuse more different heights than can be prepared.
+
+    Raises
+    ------
+    InputError
+    """
+    if heights.size > MOST_HEIGHTS:
+        raise InputError(
+            f"{heights.size} different delta are too many for such pucks, each takes about a "
+            f"second to prepare: give at most {MOST_HEIGHTS}"
+        )
+
+
+def integration_of(body: Body, tol: float, method: Method | None = None) -> Integration:
+    """An integration good for every launch of a puck, tried at both sides of singular lines.
+
+    Raises
+    ------
+    AccuracyError
+        If none is.
+
+    Examples
+    --------
+    >>> integration_of(body_of("ring", 0.5, 1.0), 1e-6).error <= 1e-6
+    True
+    """
+    source, probes = Sections(body), _probes(body)
+    selection = source.selected("stop", tol, method)
+
+    def attempt(setting: Setting) -> tuple[Integration, Estimate]:
+        stepping = setting.stepping
+        cut, coarse = source.friction(setting.accuracy).cut, source.coarser(setting.accuracy).cut
+        finer = stepping.finer(2.0, 0.01, FINEST_LOCAL)
+        found, by_finer, by_coarse = (
+            Integration(*how, selection.method, longest=body.longest)
+            for how in ((cut, stepping), (cut, finer), (coarse, stepping))
+        )
+        answer = found.all(probes)[0][:3]
+        steps, friction = (
+            2.0 * float(np.abs(answer - other.all(probes)[0][:3]).max())
+            for other in (by_finer, by_coarse)
+        )
+        return found, Estimate(steps + 2.0 * unseen_tail(stepping), friction / 8.0)
+
+    finer = partial(refined, tol=tol, friction=source.next_accuracy)
+    found, error, _ = close_enough(source.first(selection), attempt, finer, tol, "these pucks")
+    return Integration(found.coefficients, found.stepping, found.method, error.total, body.longest)
+
+
+def _probes(body: Body) -> FloatArray:
+    """Launches (6, n) with Q = J = r = 1: anywhere, and next to all lines and both ends."""
+    lines = np.array([0.0, *body.friction(COARSEST).lines, 0.5 * np.pi])
+    near = (lines[:, None] + np.outer([-1.0, 1.0], 10.0 ** -np.arange(1.0, 8.0)).ravel()).ravel()
+    phi = np.concatenate([np.linspace(0.01, 1.56, _PROBES), near])
+    phi = phi[(phi > 0.0) & (phi < 0.5 * np.pi)]
+    one = np.ones(phi.size)
+    return np.stack([np.cos(phi), 0.0 * one, np.sin(phi), body.delta * one, one, one])

@@ -1,0 +1,372 @@
+"""Stops of one kind of puck, looked up: everything about them over the slip angle alone.
+
+For one pressure law, height and radius of gyration the stop of every launch follows from functions
+of φ (:mod:`puck_tables.stopping.lookup`, where they depend on δ besides).  They inherit the lines
+of the friction, and are singular at φ = 0 and π/2, where they carry broken powers, 1/(1 − σ(0)) and
+σ(π/2)/(σ(π/2) − 1) with σ = (r²/2k²) ρ_ω/ρ_∥; at φ₀ they are analytic.  Each node is a stop of its
+own, integrated.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import KW_ONLY, dataclass, replace
+from functools import cached_property, lru_cache
+from typing import Any, ClassVar
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables._core.real import real
+from puck_tables.accuracy.front import COARSEST
+from puck_tables.contact.laws import Law
+from puck_tables.errors import AccuracyError
+from puck_tables.motion.body import Body, body_of
+from puck_tables.motion.friction import LOOSEST_LOCAL
+from puck_tables.motion.path import TURN_SHARE
+from puck_tables.motion.solve import Estimate, close_enough
+from puck_tables.stopping.exact import integrated_stops
+from puck_tables.table.check import CheckReport
+from puck_tables.table.friction_section import FINEST_ACCURACY, FrictionSection, friction_ratios
+from puck_tables.table.section_table import SectionTable
+from puck_tables.table.slip_axis import GRADING_POWER, LawAxis, sides_of
+from puck_tables.table.slip_spline import slip_spline
+from puck_tables.table.store import kept_section
+from puck_tables.table.table import Progress
+
+FloatArray = npt.NDArray[np.float64]
+
+FINEST_SECTION = 1e-10  # as fine as stops are looked up; beyond, they are integrated
+DEFAULT_ACCURACY = 1e-8
+_COUNTED = slice(0, 5)  # the turn, until Q has fallen to 1/1000, is what it is
+_TURN = 0.01  # its errors count a hundredth
+_FINEST_CELLS = 1024
+_SAMPLE = 48
+_COARSER_BY = 8.0
+_SHARE_OF_FRICTION, _SHARE_OF_SPLINE = 0.3, 0.6  # of the accuracy
+_LARGEST, _NODES = 1e4, 6  # of a value; how many nodes are compared as a file is read
+_END = 1e-9  # how well the values at φ = 0 and π/2 are known
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class StopSection(SectionTable):
+    """Where and when any puck of one kind stops, as functions of its slip angle.
+
+    Parameters
+    ----------
+    values : array (nodes of φ, 6)
+        T; X/cos φ; Y/(sin φ cos φ); path length/cos φ; body angle/sin φ; turn/sin φ.
+    law, delta, cotangents
+        As :class:`puck_tables.table.section_table.SectionTable`.
+    gyration : radius of gyration about the vertical axis in units of r
+    friction_error : what the error of the friction contributes, measured
+    """
+
+    _: KW_ONLY
+    gyration: float
+    friction_error: float = 0.0
+
+    kind = "stop section"
+    algorithm = "Dormand-Prince with a friction section; 1"
+    functions: ClassVar[Mapping[str, str]] = {
+        "time": "stop time J t/Q",
+        "along": "displacement along the launch velocity J x/(Q^2 cos(phi))",
+        "across": "displacement to its left J y/(Q^2 sin(phi) cos(phi))",
+        "length": "path length J l/(Q^2 cos(phi))",
+        "body": "body angle J r theta/(Q^2 sin(phi))",
+        "turn": "turn until Q has fallen to 1/1000, over sin(phi)",
+    }
+    quantities = ("time", "x", "y", "path", "body", "turn")
+    words: ClassVar[Mapping[str, str]] = {
+        "title": "Stops of one sliding, spinning puck",
+        "interpretation": (
+            "Where and when a puck under the named pressure law, of height delta = 2 f h / r and "
+            "radius of gyration k = gyration r, launched with Q = hypot(v, r omega) and "
+            "phi = atan2(r omega, v) >= 0 stops: the functions say how, J = f g. For omega < 0 the "
+            "mirror image. Salnikova, Treschev, Gallyamov 2012, section 7."
+        ),
+        "method": "stops integrated, friction as fine as needed",
+        "phi_map": (
+            "two sides for each line, of phi = 0 and pi/2 one: "
+            f"tan(phi - line) = extent xi^{GRADING_POWER}"
+        ),
+    }
+    entries: ClassVar[Mapping[str, type]] = {
+        **SectionTable.entries, "gyration": float, "friction_error": float,
+    }  # fmt: skip
+    ends_too = True
+
+    @property
+    def cut(self) -> FloatArray:
+        """What compiled code reads."""
+        return self.spline.cut
+
+    @cached_property
+    def body(self) -> Body:
+        """The puck."""
+        return body_of(self.law, self.delta, self.gyration)
+
+    @cached_property
+    def error(self) -> float:
+        """The largest error of time, place, path and body angle, measured."""
+        return float(self.spline.error[_COUNTED].max()) + self.friction_error
+
+    def validate(self, progress: Progress | None = None, points: int = 300) -> CheckReport:
+        """Judge the section by integration with friction ten times as fine.
+
+        Parameters
+        ----------
+        progress : callable (done, total), optional
+        points : how many are compared at random, and as many next to the lines, in cells and at
+            nodes
+        """
+        allowed = min(self.tolerance, COARSEST)
+        body = self.body
+        friction = body.friction(max(0.01 * allowed, FINEST_ACCURACY))
+        cut, counts = friction.for_motion(body.gyration), np.array([1.0] * 5 + [_TURN])
+
+        def off(phi: FloatArray) -> FloatArray:
+            truth = _stops(body, friction, cut, phi, 0.1 * allowed)
+            missed: FloatArray = (self.spline.at(phi) - truth) * _factors(phi) * counts
+            return missed
+
+        return self.judged(off, "integration", points, allowed, allowed, progress)
+
+    # the record of the kind
+
+    @classmethod
+    def is_of(cls, of: object) -> bool:
+        """A pressure law, a height and a radius of gyration."""
+        return isinstance(of, tuple) and len(of) == 3 and isinstance(of[0], Law | str)
+
+    @classmethod
+    def built(cls, of: Any, accuracy: float | None = None, **how: Any) -> StopSection:
+        """The stops of one kind of puck, see :meth:`puck_tables.Table.build`."""
+        wanted = DEFAULT_ACCURACY if accuracy is None else real("accuracy", accuracy, "Q^2/J")
+        if not FINEST_SECTION <= wanted <= COARSEST:
+            raise AccuracyError(
+                f"accuracy must be from {FINEST_SECTION:g} to {COARSEST:g} (an absolute error in "
+                f"units of Q/J and Q^2/J), got {wanted:g}"
+            )
+        return stop_section(body_of(*of), wanted, **how)
+
+    @property
+    def parameters(self) -> dict[str, int | float | str]:
+        """Those of its puck."""
+        own = {"gyration": self.gyration, "friction_error": self.friction_error}
+        return {**super().parameters, **own}
+
+    @property
+    def bounds(self) -> tuple[float, float, float]:
+        """Of the values and of the accuracy."""
+        return -_LARGEST, _LARGEST, 0.1 * FINEST_SECTION
+
+    @classmethod
+    def fields(cls, attributes: dict[str, Any], arrays: dict[str, FloatArray]) -> dict[str, Any]:
+        """Its puck, from a file."""
+        found = super().fields(attributes, arrays)
+        gyration, error = attributes["gyration"], attributes["friction_error"]
+        body_of(found["law"], attributes["delta"], gyration)
+        if not 0.0 <= error <= COARSEST:
+            raise ValueError("its error of the friction is none")
+        return found | {"gyration": gyration, "friction_error": error}
+
+    def spot_checks(self) -> Iterator[tuple[FloatArray, float, str]]:
+        """Of nodes, those that fit their neighbours least among them, by the equations of motion.
+
+        The turn until Q has fallen so far obeys none of its own; at the ends it is elementary.
+        """
+        truth = friction_ratios(self.law, np.array([0.0, 0.5 * np.pi]), self.delta)
+        ends = np.abs(self.values[[0, -1]] - np.stack(_ends(self.body, truth)))
+        yield ends, _END * max(1.0, float(np.abs(self.values).max())), "elementary solutions"
+        random = np.random.default_rng().integers(0, len(self.values), _NODES)
+        odd = np.concatenate([self.odd_nodes(_NODES), random])
+        # measured: at most 0.43 of it is missed by right values, which are integrated with steps
+        allowed = min(self.tolerance, COARSEST) * self.axis.cells
+        yield self._missed(odd), allowed, "the equations of motion"
+
+    def _missed(self, nodes: npt.NDArray[np.int64]) -> FloatArray:
+        """What the functions about nodes miss of the equations of motion, (n, 5).
+
+        With the derivatives by ξ from five neighbours, as in
+        :mod:`puck_tables.stopping.node_equations`; all is multiplied with dφ/dξ sin φ cos φ, and
+        with what the functions are in a stop.
+        """
+        cells = self.axis.cells
+        side = np.minimum(nodes // cells, len(self.axis.sides) - 1)
+        rises = self.axis.numbers[side, 0] == side * cells
+        place = np.where(rises, nodes - side * cells, (side + 1) * cells - nodes)
+        place = np.clip(place, 2, cells - 2)
+        around = self.axis.numbers[side[:, None], place[:, None] + np.arange(-2, 3)]
+        there = self.values[around]
+        by_xi = (there[:, 0] - 8.0 * there[:, 1] + 8.0 * there[:, 3] - there[:, 4]) * (cells / 12.0)
+        extent = np.array([one.extent for one in self.axis.sides])[side]
+        xi = place / cells
+        stretch = GRADING_POWER * extent * xi**3 / (1.0 + extent**2 * xi**8)  # dφ/dξ
+        phi = self.axis.nodes()[around[:, 2]]
+        rho = self.law.friction(phi, self.delta)
+        c, s = np.cos(phi), np.sin(phi)
+        spin = 0.5 / self.body.inertia * rho.spin / rho.parallel
+        norm = 1.0 / (c**2 + s**2 * spin)
+        rate, way = (1.0 - spin) * norm, norm / rho.parallel
+        turn, both = s * rho.perpendicular / rho.parallel * norm, s * c
+        time, along, across, length, body, _ = there[:, 2].T
+        dt, dx, dy, dl, db, _ = (both[:, None] * by_xi).T
+        # dc/du = −s² c, ds/du = c² s
+        missed = np.stack([
+            stretch * (time - way) - rate * dt,
+            c * (stretch * (2.0 * along - turn * s * across - way)
+                 - rate * (dx - stretch * s**2 * along)),
+            c * (stretch * (2.0 * s * across + turn * along)
+                 - rate * s * (dy + stretch * (c**2 - s**2) * across)),
+            c * (stretch * (2.0 * length - way) - rate * (dl - stretch * s**2 * length)),
+            s * (stretch * (2.0 * body - way) - rate * (db + stretch * c**2 * body)),
+        ], axis=-1)  # fmt: skip
+        return np.asarray(np.abs(missed))
+
+
+@lru_cache(maxsize=64)
+def stop_section_for(body: Body, accuracy: float) -> StopSection:
+    """The stops of one kind of puck: read if they are kept, else tabulated.
+
+    Parameters
+    ----------
+    body : Body
+    accuracy : the largest error, in units of Q/J (time), Q²/J (place, path), Q²/(J r) (body angle)
+
+    Raises
+    ------
+    AccuracyError
+        If it is out of reach.
+
+    Examples
+    --------
+    >>> found = stop_section_for(body_of("uniform", 2.0, 0.5**0.5), 1e-5)
+    >>> float(found.spline.at(np.array([0.5]))[0, 0].round(4)), found.error <= 1e-5
+    (1.1458, True)
+    """
+    if body.table is not None:  # one's own
+        return stop_section(body, accuracy)
+    return kept_section(
+        StopSection, body.law, f"stops-{body.delta:g}-{body.gyration:g}-{accuracy:g}",
+        {"delta": body.delta, "gyration": body.gyration, "accuracy": accuracy},
+        lambda law: stop_section(replace(body, law=law), accuracy), ("motion", "stopping"),
+    )  # fmt: skip
+
+
+def stop_section(body: Body, accuracy: float, progress: Progress | None = None) -> StopSection:
+    """Tabulate the stops of one kind of puck.
+
+    Parameters
+    ----------
+    body, accuracy
+        As :func:`stop_section_for`.
+    progress : callable (done, total), optional
+
+    Raises
+    ------
+    AccuracyError
+        If it is out of reach.
+
+    Notes
+    -----
+    The error is measured in the middles of all cells against integrated stops; what the friction
+    section behind them contributes, against one of half as many cells.
+    """
+
+    def attempt(of_friction: float) -> tuple[FrictionSection, Estimate]:
+        friction = body.friction(of_friction)
+        error = _error_of_friction(body, friction, accuracy)
+        return friction, Estimate(0.0, error / _SHARE_OF_FRICTION)
+
+    def finer(of_friction: float, error: Estimate) -> float | None:
+        if of_friction <= FINEST_ACCURACY:
+            return None
+        return max(0.1 * of_friction, FINEST_ACCURACY)
+
+    first = max(0.1 * accuracy, FINEST_ACCURACY)
+    friction, error, _ = close_enough(first, attempt, finer, accuracy, "look-up of such pucks")
+    lines = tuple(_cotangent(line) for line in friction.lines)  # in the order of φ
+    done = 0
+
+    def functions(phi: FloatArray) -> FloatArray:
+        nonlocal done
+        done += phi.size
+        if progress is not None:
+            progress(done, max(done, _FINEST_CELLS))
+        return _stops(body, friction, friction.for_motion(body.gyration), phi, accuracy)
+
+    spline = slip_spline(
+        functions, sides_of(lines, ends_too=True), _SHARE_OF_SPLINE * accuracy, even=False,
+        counted=_COUNTED, weights=_factors, finest=_FINEST_CELLS,
+    )  # fmt: skip
+    assert spline.accuracy is not None
+    measured = replace(spline.accuracy, promised=5, at_second=6 * (body.delta,))
+    axis = LawAxis(lines[::-1], spline.cells, ends_too=True)
+    return StopSection(
+        axis.joined(spline.values), law=body.law, delta=body.delta, cotangents=lines[::-1],
+        gyration=body.gyration, friction_error=_SHARE_OF_FRICTION * error.total,
+        tolerance=accuracy, accuracy=measured,
+    )  # fmt: skip
+
+
+def _cotangent(phi: float) -> float:
+    return 1.0 if phi == 0.25 * math.pi else 1.0 / math.tan(phi)
+
+
+def _error_of_friction(body: Body, friction: FrictionSection, accuracy: float) -> float:
+    """What the error of the friction does to stops anywhere."""
+    phi = np.linspace(0.0, 0.5 * np.pi, _SAMPLE + 2)[1:-1]
+    whole, half = (
+        _stops(body, friction, friction.for_motion(body.gyration, coarser), phi, 0.1 * accuracy)
+        for coarser in (False, True)
+    )
+    off = np.abs(whole - half) * _factors(phi)
+    return 2.0 * float(off[:, _COUNTED].max()) / _COARSER_BY
+
+
+def _factors(phi: FloatArray) -> FloatArray:
+    """What the functions are multiplied with in a stop, (n, functions)."""
+    cosine, sine = np.cos(phi), np.sin(phi)
+    return np.stack([np.ones_like(sine), cosine, sine * cosine, cosine, sine, sine], axis=-1)
+
+
+def _stops(
+    body: Body, friction: FrictionSection, cut: FloatArray, phi: FloatArray, accuracy: float
+) -> FloatArray:
+    """The functions at slip angles, by integration; at 0 and π/2 in closed form."""
+    at_zero, at_half = phi <= 0.0, phi >= 0.5 * np.pi
+    inner = ~(at_zero | at_half)
+    out = np.empty((phi.size, len(StopSection.functions)))
+    u = np.log(np.tan(phi[inner]))
+    stops = integrated_stops(
+        u, np.full(u.size, body.delta), cut, min(0.03 * accuracy, LOOSEST_LOCAL)
+    )
+    out[inner] = stops / _factors(phi[inner])
+    out[at_zero], out[at_half] = _ends(body, friction.at_ends())
+    return out
+
+
+def _ends(body: Body, ratios: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """The functions at φ → 0 and φ → π/2, elementary, from the friction ratios there (2, 3).
+
+    Next to pure sliding v falls like t₀ − t and rω like its power σ(0); next to pure spin rω falls
+    linearly and the complex velocity like its power (ρ_∥ + iρ_⊥)/s, s = (r²/2k²) ρ_ω.
+    """
+    (inverse, across, spin), (inverse_h, across_h, spin_h) = ratios
+    factor = 0.5 / body.inertia
+    left, power = across / inverse, factor * spin
+    log_share = math.log(TURN_SHARE)
+    gap = power - 1.0
+    # (1 − q^gap)/gap: the turn of a rim speed that falls like the power σ(0) of the speed
+    swung = -math.expm1(gap * log_share) / gap if gap != 0.0 else -log_share
+    slow = [1.0, 0.5, -0.5 * left / (power + 1.0), 0.5, 1.0 / (power + 1.0), -left * swung]
+    rate = factor * spin_h / inverse_h
+    along, left = 1.0 / inverse_h, across_h / inverse_h
+    modulus = (rate + along) ** 2 + left**2
+    fast = [
+        1.0 / rate, (rate + along) / modulus, -left / modulus, 1.0 / (rate + along), 0.5 / rate,
+        left / rate * log_share,
+    ]  # fmt: skip
+    return np.array(slow), np.array(fast)
