@@ -209,7 +209,7 @@ def follow(world, start, until, frames, states, events, tol, speed, length, limi
             nx, ny = world.walls[which, 0], world.walls[which, 1]
             sx, sy = floor_at(world, base[0], base[1])
             inward = nx * (out[3] - turn * out[1]) + ny * (out[4] + turn * out[0])
-            settles = fall < 1e-9 * speed or world.walls[which, 3] == 0.0
+            settles = fall < 1e-12 * speed or world.walls[which, 3] == 0.0
             what = BOUNCE
             if settles and inward <= 0.0:
                 y[:] = y_before
