@@ -121,6 +121,12 @@ def follow(world, start, until, frames, states, events, tol, speed, length, limi
                     events[count] = np.array([t, REST, ctx[REGION], base[0] + y[0], base[1] + y[1]])
                     count += 1
                     y[3], y[4], y[5] = 0.0, 0.0, 0.0
+                    if ctx[LEAN] >= 0 and ctx[OTHER] < 0 and turn != 0.0:
+                        wall = world.walls[ctx[LEAN]]
+                        arm = base + y[:2] - world.floor[2:4]
+                        if wall[0] * arm[0] + wall[1] * arm[1] < 0.0:  # carried off it
+                            rebased(base, y)
+                            ctx[LAST], ctx[LEAN], ctx[RIM] = ctx[LEAN], -1, SMOOTH
                 h = max(h, 0.02 * (target - t))
             else:
                 if ctx[MODE] == RESTS:
@@ -209,7 +215,7 @@ def follow(world, start, until, frames, states, events, tol, speed, length, limi
             nx, ny = world.walls[which, 0], world.walls[which, 1]
             sx, sy = floor_at(world, base[0], base[1])
             inward = nx * (out[3] - turn * out[1]) + ny * (out[4] + turn * out[0])
-            settles = fall < 1e-12 * speed or world.walls[which, 3] == 0.0
+            settles = fall < 1e-11 * speed or world.walls[which, 3] == 0.0
             what = BOUNCE
             if settles and inward <= 0.0:
                 y[:] = y_before
