@@ -95,6 +95,7 @@ _STIFF, _MILD = 0.8, 0.3  # of the time in which a slip settles: longer steps ar
 _SLOWLY = 0.1  # if the slip changes by less than this of itself meanwhile
 _NEWTON, _FINEST_NEWTON = 1e-3, 1e-15  # of the local error: how well implicit steps are solved
 _SWING = 0.05  # rad that a carried puck turns, at most, in a step
+_OTHER, _OTHER_FIRST = 1.4, 0.5  # times these, and the first step, in a twin
 _NO_WAY = (0.0, 0.0, 0.0, 0.0)
 _NOTHING = -2  # is watched
 
@@ -103,7 +104,8 @@ class Ask(NamedTuple):
     """What is asked of a run.
 
     ``until``: s; ``to_the_end``: go on to it also when carried; ``tolerance``: local error per step
-    in units of ``scale`` (10,); ``speed``: the scale of speeds, m/s; ``step_limit``.
+    in units of ``scale`` (10,); ``speed``: the scale of speeds, m/s; ``step_limit``; ``twin``:
+    whether no step is to be that of the run without, also where no error limits it.
     """
 
     until: float
@@ -112,6 +114,7 @@ class Ask(NamedTuple):
     scale: FloatArray
     speed: float
     step_limit: int
+    twin: bool
 
 
 class Desk(NamedTuple):
@@ -212,6 +215,9 @@ def follow(
     damps, turns = settling_rates(model, dry.load)
     how = TIME_UP
     h = 1e-3 * min(ask.until, scale[0] / ask.speed)
+    reach, swing, halved = _NEAR, _SWING, False  # halved: the step that ends here is cut in two
+    if ask.twin:
+        h, reach, swing = _OTHER_FIRST * h, _OTHER * reach, _OTHER * swing
     settle, known = True, False  # whether to look what holds the puck; whether work[0] is there
     newton = 0.0
     stretch = Stretch(model, dry, leaning, piece, mode, way, newton)
@@ -281,7 +287,7 @@ def follow(
             resting = False
         h = -q / way[3] if mode == STOPS else h
         if mode == CARRIED and swings:
-            h = min(h, _SWING / abs(surface.spin))
+            h = min(h, swing / abs(surface.spin))
         if settle or not known:
             newton = 0.0
             if stiff and mode == SLIDES:
@@ -291,7 +297,7 @@ def follow(
         settle, known = False, True
         if mode == SLIDES and dry.load > 0.0:
             pull = slip_rate(radius, work)
-            near = _NEAR * max(q, REST * ask.speed)
+            near = reach * max(q, REST * ask.speed)
             h = near / pull if h * pull > near else h
             way = _NO_WAY
             if 0.0 < q <= straight:
@@ -324,7 +330,7 @@ def follow(
                 break
             continue
         h = length * min(5.0, 5.0 if error == 0.0 else 0.9 * (ask.tolerance / error) ** power)
-        stuck = -1
+        stuck, cut = -1, landed
         for passed in range(1 + leaning.shape[0]):
             what = _NOTHING
             if passed == 0 and mode == SLIDES:
@@ -334,7 +340,7 @@ def follow(
                 if what == _NOTHING and leaning[i, GRIP] > 0.0 and passes:
                     what = i
             if what != _NOTHING:
-                landed, stuck = False, what
+                landed, stuck, cut = False, what, True
                 length = zero(stretch, what, t, length, y, scale, work, new)
         wrong += error
         for i in range(ROW):
@@ -351,8 +357,14 @@ def follow(
             if moment < math.inf:
                 happens, which = SLIPS, region
         if happens >= 0:
-            landed, stuck, length = False, -1, moment
+            landed, stuck, cut, length = False, -1, True, moment
+        halved = ask.twin and cut and not halved
+        if halved:
+            landed, stuck, happens, length = False, -1, -1, 0.5 * length
+        if halved or happens >= 0:
             step(stretch, t, length, y, scale, work, new)
+            for i in range(ROW):
+                last[i] = work[STAGES - 1, i]
         # the frames on it
         end = target if landed else t + length
         while frame < len(frames) and frames[frame] <= end:
@@ -369,9 +381,9 @@ def follow(
         known = happens < 0 and mode == SLIDES and not held_there and leaning.shape[0] == 0
         before_it, q = q, slip_speed(radius, y)
         if newton > 0.0 or mode == SLIDES:
-            reach = length * (damps + turns / q if q > 0.0 else damps)
+            settles = length * (damps + turns / q if q > 0.0 else damps)
             slowly = slip_rate(radius, work) < _SLOWLY * (damps * q + turns)
-            was, stiff = stiff, slowly and reach > (_MILD if newton > 0.0 else _STIFF)
+            was, stiff = stiff, slowly and settles > (_MILD if newton > 0.0 else _STIFF)
             known = known and stiff == was
         if landed and (target < ask.until or t == calm):
             settle = True
@@ -405,8 +417,9 @@ def follow(
             to_laboratory(model, y, 1.0)
             before = kinetic_energy(body, y)
             rest_time = bounced(
-                bounds, contacts, which, body, y, t, ask.speed, scale[0] / ask.speed, ask.tolerance
-            )
+                bounds, contacts, which, body, y, t, floor_velocity(surface, y[X], y[Y]), ask.speed,
+                scale[0] / ask.speed, ask.tolerance,
+            )  # fmt: skip
             heat += before - kinetic_energy(body, y)
             to_laboratory(model, y, -1.0)
             if rest_time >= 0.0:

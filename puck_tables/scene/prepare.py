@@ -70,12 +70,13 @@ class Prepared:
     ) -> tuple[int, float, int, int, int, float]:
         """Run it, see :func:`puck_tables.scene.loop.follow`.
 
-        ``coarser``: with so many times the error per step, and friction wrong by what its ratios
-        may be: a twin to see what errors grow to.
+        ``coarser``: with so many times the error per step, no step the same, and friction wrong by
+        what its ratios may be: a twin to see what errors grow to.
         """
         region = int(self.starts(self.state[None, :])[0])
-        ask = self.ask._replace(tolerance=coarser * self.ask.tolerance)
-        off = 1.0 if coarser == 1.0 else 1.0 + friction_error(self.scene)
+        twin = coarser != 1.0
+        ask = self.ask._replace(tolerance=coarser * self.ask.tolerance, twin=twin)
+        off = 1.0 + friction_error(self.scene) if twin else 1.0
         regions = self.regions._replace(
             load=off * self.regions.load,
             by_speed=self.regions.by_speed._replace(normal=off * self.regions.by_speed.normal),
@@ -148,7 +149,7 @@ def prepare(scene: Scene, last_time: float | None = None) -> Prepared:
         to_the_end = moves and bool(last_time)
         until = last_time if to_the_end and last_time else float(asks[0])
     tolerance = max(LOCAL_SHARE * scene.run.tol, FINEST_LOCAL)
-    ask = Ask(until, to_the_end, tolerance, asks[2:], float(asks[1]), STEP_LIMIT)
+    ask = Ask(until, to_the_end, tolerance, asks[2:], float(asks[1]), STEP_LIMIT, False)
     speed, rate, _ = _scales(scene, model, regions, state[None, :])
     bounds = _bounds(scene)
     return Prepared(model, regions, bounds, scene, state, ask, float(speed[0]), float(rate[0]))

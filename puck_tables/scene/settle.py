@@ -204,14 +204,33 @@ def _into_corner(one: FloatArray, other: FloatArray, y: FloatArray) -> None:
 
 
 @inlined
+def _doubt(
+    body: Body, wall: FloatArray, y: FloatArray, ground: tuple[float, float, float], hops: float,
+    changes: float,
+) -> float:  # fmt: skip
+    """By how much the velocity may be wrong where a puck leans, but rebounds at up to ``hops``.
+
+    Rebounds turn the slip of a puck that leans, and with it the friction of the floor, by hops/slip
+    at most, to and fro.  In a slip that is none, and that no ``changes`` make one, there is nothing
+    to turn.
+    """
+    nx, ny, (sx, sy, turning) = wall[NX], wall[NY], ground
+    along = nx * (y[VY] - sy) - ny * (y[VX] - sx)
+    slip = size(along, nx * sx + ny * sy, body.radius * (y[SPIN] - turning))
+    share = hops / slip if slip > hops else 1.0
+    return min(hops * share * share, slip + changes)
+
+
+@inlined
 def bounced(
     bounds: Boundaries, contacts: Contacts, which: int, body: Body, y: FloatArray, t: float,
-    speed: float, time: float, tolerance: float,
+    ground: tuple[float, float, float], speed: float, time: float, tolerance: float,
 ) -> float:  # fmt: skip
     """Rebound of a puck, in the laboratory, from a wall.
 
     How long the rebounds go on if the puck leans on the wall from now on; −1: it does not.
-    ``speed`` and ``time``: scales; ``tolerance``: local error in units of them.
+    ``ground``: velocity and spin of the floor; ``speed`` and ``time``: scales; ``tolerance``: local
+    error in units of them.
     """
     before = contacts.chain[0]
     here = 4e-16 * (abs(y[X]) + abs(y[Y]))  # rounding: no room left between two walls
@@ -234,7 +253,9 @@ def bounced(
         hop = t - contacts.hit[which]
         ratio = goes / contacts.pace[which]
         rest = hop * ratio / (1.0 - ratio)
-        if hop > 0.0 and rest * rest <= tolerance * time * time:
+        changes = (abs(slips - contacts.slid[which]) + abs(slides - slips)) * ratio / (1.0 - ratio)
+        doubt = _doubt(body, wall, y, ground, speed * rest / time, changes)
+        if hop > 0.0 and rest * rest <= tolerance * time * time and doubt <= tolerance * speed:
             rest_time = rest
             if wall[TANGENTIAL] != -1.0:
                 most = wall[FRICTION] * (1.0 + wall[RESTITUTION]) * body.mass * came * ratio
