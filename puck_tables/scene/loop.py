@@ -89,13 +89,13 @@ FRAME_COLUMNS = ROW + 3  # time, state, λ, carried, heat of impacts
 EVENT_COLUMNS = 3 + SIZE  # time, what, which, state
 
 _FIRST = 1e-16  # of it: what a slip begins with, for its direction
+_QUICK = 0.01  # of friction: a slip that grows faster has its direction from the first
 _LAST = 30.0  # times the local error: from there a stop goes straight
 _NEAR = 0.5  # of the time in which the slip would end, at most, is a step
 _STIFF, _MILD = 0.8, 0.3  # of the time in which a slip settles: longer steps are implicit,
 _SLOWLY = 0.1  # if the slip changes by less than this of itself meanwhile
 _NEWTON, _FINEST_NEWTON = 1e-3, 1e-15  # of the local error: how well implicit steps are solved
 _SWING = 0.05  # rad that a carried puck turns, at most, in a step
-_OTHER, _OTHER_FIRST = 1.4, 0.5  # times these, and the first step, in a twin
 _NO_WAY = (0.0, 0.0, 0.0, 0.0)
 _NOTHING = -2  # is watched
 
@@ -105,7 +105,8 @@ class Ask(NamedTuple):
 
     ``until``: s; ``to_the_end``: go on to it also when carried; ``tolerance``: local error per step
     in units of ``scale`` (10,); ``speed``: the scale of speeds, m/s; ``step_limit``; ``twin``:
-    whether no step is to be that of the run without, also where no error limits it.
+    0, or the share of the first step, and of those that end at an event, after which it is cut in
+    two, so that no step is that of the run without, also where no error limits it.
     """
 
     until: float
@@ -114,7 +115,7 @@ class Ask(NamedTuple):
     scale: FloatArray
     speed: float
     step_limit: int
-    twin: bool
+    twin: float
 
 
 class Desk(NamedTuple):
@@ -216,8 +217,8 @@ def follow(
     how = TIME_UP
     h = 1e-3 * min(ask.until, scale[0] / ask.speed)
     reach, swing, halved = _NEAR, _SWING, False  # halved: the step that ends here is cut in two
-    if ask.twin:
-        h, reach, swing = _OTHER_FIRST * h, _OTHER * reach, _OTHER * swing
+    if ask.twin > 0.0:
+        h, reach, swing = ask.twin * h, (1.0 + ask.twin) * reach, (1.0 + ask.twin) * swing
     settle, known = True, False  # whether to look what holds the puck; whether work[0] is there
     newton = 0.0
     stretch = Stretch(model, dry, leaning, piece, mode, way, newton)
@@ -263,9 +264,10 @@ def follow(
                     settle_way(stretch, t, q, y, work)
             elif excess > SLACK * dry.load:
                 mode, stiff = SLIDES, True
-                q = _FIRST * ask.speed if leaning.shape[0] == 0 else 2.0 * REST * ask.speed
+                quick = leaning.shape[0] > 0 or excess > _QUICK * dry.load
+                q = 2.0 * REST * ask.speed if quick else _FIRST * ask.speed
                 y[VX], y[VY], y[SPIN] = q * nx, q * ny, q * nw
-                if leaning.shape[0] > 0:
+                if quick:
                     stretch = Stretch(model, dry, leaning, piece, SLIDES, _NO_WAY, 0.0)
                     settle_way(stretch, t, q, y, work)
             if (mode == CARRIED) != resting and (t >= calm or mode != CARRIED):
@@ -342,7 +344,6 @@ def follow(
             if what != _NOTHING:
                 landed, stuck, cut = False, what, True
                 length = zero(stretch, what, t, length, y, scale, work, new)
-        wrong += error
         for i in range(ROW):
             last[i] = work[STAGES - 1, i]
         happens, which, moment = -1, -1, math.inf
@@ -358,13 +359,14 @@ def follow(
                 happens, which = SLIPS, region
         if happens >= 0:
             landed, stuck, cut, length = False, -1, True, moment
-        halved = ask.twin and cut and not halved
+        halved = ask.twin > 0.0 and cut and not halved
         if halved:
-            landed, stuck, happens, length = False, -1, -1, 0.5 * length
+            landed, stuck, happens, length = False, -1, -1, ask.twin * length
         if halved or happens >= 0:
-            step(stretch, t, length, y, scale, work, new)
+            error = step(stretch, t, length, y, scale, work, new)
             for i in range(ROW):
                 last[i] = work[STAGES - 1, i]
+        wrong += error
         # the frames on it
         end = target if landed else t + length
         while frame < len(frames) and frames[frame] <= end:

@@ -26,7 +26,7 @@ from puck_tables.scene.loop import (
 from puck_tables.scene.outcome import ENDS, EVENTS, LEDGER, Event, SceneRun, ledger_residual
 from puck_tables.scene.plain import run_plain
 from puck_tables.scene.plan import Plan, ingredients, out_of_reach, plan_for
-from puck_tables.scene.prepare import MAX_EVENTS, Prepared, prepare
+from puck_tables.scene.prepare import MAX_EVENTS, Prepared, Twin, prepare
 from puck_tables.scene.regions import friction_error
 from puck_tables.scene.scene import Scene, files_of, scene_from
 
@@ -85,7 +85,8 @@ def simulate_scene(
     return replace(run, files=files)
 
 
-COARSER = 30.0  # the steps of a twin may err by so much more
+# two, for one may err as the run does by chance
+TWINS = (Twin(30.0, 0.5), Twin(8.0, 0.3))
 FINER = (1.0, 1 / 30, 1 / 900, 1 / 27000)  # of the tolerance asked: tried one after the other
 FINEST = 1e-12
 STEP_SHARE = 0.1  # of the sum of the errors of steps, which are those of order 4
@@ -156,10 +157,10 @@ class _Followed(NamedTuple):
 
 
 def _followed(
-    prepared: Prepared, times: FloatArray, events: FloatArray, coarser: float = 1.0
+    prepared: Prepared, times: FloatArray, events: FloatArray, twin: Twin | None = None
 ) -> _Followed:
     rows = np.empty((len(times) + 1, FRAME_COLUMNS))
-    how, end_time, count, steps, reached, wrong = prepared.follow(times, rows, events, coarser)
+    how, end_time, count, steps, reached, wrong = prepared.follow(times, rows, events, twin)
     return _Followed(how, end_time, count, steps, wrong, rows[:reached], rows[reached])
 
 
@@ -224,7 +225,7 @@ def _close_enough(
 def _estimated(
     prepared: Prepared, times: FloatArray | None, events: FloatArray
 ) -> tuple[_Followed, float]:
-    """A run, and how far a coarser twin is from it, in units of Q/J and Q²/J, on the way and last.
+    """A run, and how far coarser twins are from it, in units of Q/J and Q²/J, on the way and last.
 
     Errors grow alike in both, and its own are much larger.
     """
@@ -233,21 +234,25 @@ def _estimated(
     if times is None:
         times = np.linspace(0.0, first.end_time, int(prepared.scene.run.frames))
     probes = first.end_time * np.arange(1, PROBES + 1) / (PROBES + 1)
-    twin = _followed(prepared, probes, events, COARSER)
+    twins = [_followed(prepared, probes, events, twin) for twin in TWINS]
     both = np.concatenate([probes, times])
     order = np.argsort(both, kind="stable")
     run = _followed(prepared, both[order], events)
     probed = order[: len(run.states)] < PROBES
-    seen = min(int(probed.sum()), len(twin.states))
+    gap = max(_gap(prepared, twin, run._replace(states=run.states[probed])) for twin in twins)
+    error = gap + STEP_SHARE * run.wrong + friction_error(prepared.scene)
+    return run._replace(states=run.states[~probed]), error
+
+
+def _gap(prepared: Prepared, twin: _Followed, run: _Followed) -> float:
+    """How far apart two runs are at the states that both reached, and at their ends."""
+    seen = min(len(twin.states), len(run.states))
     gap = np.abs(
-        np.vstack([twin.states[:seen], twin.last])
-        - np.vstack([run.states[probed][:seen], run.last])
+        np.vstack([twin.states[:seen], twin.last]) - np.vstack([run.states[:seen], run.last])
     )
     radius, unit = prepared.model.body.radius, prepared.speed / prepared.rate
     place = np.hypot(gap[:, 1 + X], gap[:, 1 + Y]) + radius * gap[:, 1 + THETA]
-    worst = max(gap[-1, 0] / unit, place.max() / (prepared.speed * unit))
-    error = float(worst + STEP_SHARE * run.wrong + friction_error(prepared.scene))
-    return run._replace(states=run.states[~probed]), error
+    return float(max(gap[-1, 0] / unit, place.max() / (prepared.speed * unit)))
 
 
 def _refuse_failed(scene: Scene, how: int, end_time: float, to_the_end: bool) -> None:
