@@ -38,6 +38,7 @@ from puck_tables.scene.leaning import GRIP, LEAN_COLUMNS, LOCKS, RIM, come_to_le
 FloatArray = npt.NDArray[np.float64]
 
 _STILL = 1e-13  # of the scale of speeds: no speed
+_SLOWEST = 1e-12  # of it: rebounds next to what is rest on the floor
 _JAM = 50  # impacts on two walls at one place: it is stuck between them
 _PARALLEL = 1e-12  # walls between which no corner is
 _LEFT = 1e-12  # a wall is left, or a rim slides
@@ -247,15 +248,17 @@ def bounced(
         corner = -1
     if contacts.chain[1] >= _JAM:
         corner = before
-    if goes <= max(0.01 * tolerance, _STILL) * speed or corner >= 0:
+    tiny = goes <= max(0.01 * tolerance, _SLOWEST) * speed
+    if tiny or corner >= 0:
         rest_time = 0.0
-    elif contacts.chain[0] == which and goes < contacts.pace[which] and goes <= 0.01 * speed:
+    if corner < 0 and before == which and goes < contacts.pace[which] and goes <= 0.01 * speed:
         hop = t - contacts.hit[which]
         ratio = goes / contacts.pace[which]
         rest = hop * ratio / (1.0 - ratio)
         changes = (abs(slips - contacts.slid[which]) + abs(slides - slips)) * ratio / (1.0 - ratio)
         doubt = _doubt(body, wall, y, ground, speed * rest / time, changes)
-        if hop > 0.0 and rest * rest <= tolerance * time * time and doubt <= tolerance * speed:
+        short = hop > 0.0 and rest * rest <= tolerance * time * time
+        if short and (tiny or doubt <= tolerance * speed):
             rest_time = rest
             if wall[TANGENTIAL] != -1.0:
                 most = wall[FRICTION] * (1.0 + wall[RESTITUTION]) * body.mass * came * ratio
