@@ -39,6 +39,7 @@ FloatArray = npt.NDArray[np.float64]
 
 _STILL = 1e-13  # of the scale of speeds: no speed
 _SLOWEST = 1e-12  # of it: rebounds next to what is rest on the floor
+_AT_ONCE = 100_000  # impacts between walls without restitution, at most
 _JAM = 50  # impacts on two walls at one place: it is stuck between them
 _PARALLEL = 1e-12  # walls between which no corner is
 _LEFT = 1e-12  # a wall is left, or a rim slides
@@ -193,6 +194,21 @@ def _corner_near(bounds: Boundaries, contacts: Contacts, which: int, reach: floa
 
 
 @inlined
+def _dead_ahead(
+    bounds: Boundaries, contacts: Contacts, which: int, y: FloatArray, here: float, speed: float
+) -> int:
+    """A wall without restitution into which a puck at another such goes at once; −1: none."""
+    if bounds.walls[which, RESTITUTION] > 0.0:
+        return -1
+    for i in range(contacts.leans.size):
+        touches = i == which or contacts.leans[i] or contacts.room[i] <= here
+        dead = bounds.walls[i, RESTITUTION] == 0.0
+        if touches and dead and outward(bounds, i, y) < -_STILL * speed:
+            return i
+    return -1
+
+
+@inlined
 def _into_corner(one: FloatArray, other: FloatArray, y: FloatArray) -> None:
     """Put a state at rest to where two walls leave it no room."""
     cross = one[NX] * other[NY] - one[NY] * other[NX]
@@ -239,7 +255,11 @@ def bounced(
     contacts.chain[1] = contacts.chain[1] + 1 if jams else 0
     wall, came = bounds.walls[which], -outward(bounds, which, y)
     slips = rim_slip(body, wall[NX], wall[NY], y[VX], y[VY], y[SPIN])
-    rebound(body, wall, y)
+    hits, again = which, 0
+    while hits >= 0 and again < _AT_ONCE:
+        rebound(body, bounds.walls[hits], y)
+        hits = _dead_ahead(bounds, contacts, which, y, here, speed)
+        again += 1
     goes = outward(bounds, which, y)
     slides = rim_slip(body, wall[NX], wall[NY], y[VX], y[VY], y[SPIN])
     rest_time = -1.0
@@ -275,6 +295,8 @@ def bounced(
     if corner >= 0:
         contacts.leans[corner], contacts.room[corner] = True, 0.0
         _into_corner(wall, bounds.walls[corner], y)
+        if body.radius * abs(y[SPIN]) <= _LEFT * speed:  # rims that roll on both
+            y[SPIN] = 0.0
     for i in range(contacts.leans.size):  # an impact may push it off others, or into them
         if (
             contacts.leans[i]

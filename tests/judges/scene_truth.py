@@ -376,21 +376,24 @@ def truth(
 ) -> dict[str, Any]:  # fmt: skip
     """``end``, ``time``, ``events`` (n, 5), ``states`` (n, 7), the scales of slip and acceleration.
 
-    ``change`` (9,): relative changes of the launch (6) and of the forces (3).
+    ``change`` (9,): relative changes of the launch (6), of its velocity also in units of the slip,
+    and of the forces (3).
     """
     world, start = world_of(scene)
     r, m = world.body[2], world.body[0]
-    if change is not None:
-        start = start * (1.0 + change[:6])
-        world = world._replace(
-            pull=world.pull * (1.0 + change[6:]),
-            drive=world.drive * np.array([1.0, *(1.0 + change[6:])]),
-        )
     sx = world.floor[0] - world.floor[4] * (start[1] - world.floor[3])
     sy = world.floor[1] + world.floor[4] * (start[0] - world.floor[2])
     slip = math.sqrt(
         (start[3] - sx) ** 2 + (start[4] - sy) ** 2 + (r * (start[5] - world.floor[4])) ** 2
     )
+    if change is not None:
+        start = start * (1.0 + change[:6])
+        if world.hold[0] == FREE:  # a launch at rest is uncertain, too
+            start[3:] += slip * change[3:6] / np.array([1.0, 1.0, r])
+        world = world._replace(
+            pull=world.pull * (1.0 + change[6:]),
+            drive=world.drive * np.array([1.0, *(1.0 + change[6:])]),
+        )
     rows = world.drive[:, 1:] if len(world.drive) else np.zeros((1, 3))
     sharp = max(
         float(world.loads.max()) / m,
