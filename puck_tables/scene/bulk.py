@@ -40,7 +40,7 @@ def follow_many(
     events = np.empty((event_limit, EVENT_COLUMNS))
     desk = desk_for(bounds)
     for n in range(len(states)):
-        ask = Ask(asks[n, 0], to_the_end, tolerance, asks[n, 2:], asks[n, 1], step_limit)
+        ask = Ask(asks[n, 0], to_the_end, tolerance, asks[n, 2:], asks[n, 1], step_limit, 0.0)
         how, _, count, _, _, _ = follow(
             model, regions, bounds, ask, states[n], starts[n], no_frames, row, events, desk
         )

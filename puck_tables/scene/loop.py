@@ -89,6 +89,7 @@ FRAME_COLUMNS = ROW + 3  # time, state, λ, carried, heat of impacts
 EVENT_COLUMNS = 3 + SIZE  # time, what, which, state
 
 _FIRST = 1e-16  # of it: what a slip begins with, for its direction
+_QUICK = 0.01  # of friction: a slip that grows faster has its direction from the first
 _LAST = 30.0  # times the local error: from there a stop goes straight
 _NEAR = 0.5  # of the time in which the slip would end, at most, is a step
 _STIFF, _MILD = 0.8, 0.3  # of the time in which a slip settles: longer steps are implicit,
@@ -103,7 +104,9 @@ class Ask(NamedTuple):
     """What is asked of a run.
 
     ``until``: s; ``to_the_end``: go on to it also when carried; ``tolerance``: local error per step
-    in units of ``scale`` (10,); ``speed``: the scale of speeds, m/s; ``step_limit``.
+    in units of ``scale`` (10,); ``speed``: the scale of speeds, m/s; ``step_limit``; ``twin``:
+    0, or the share of the first step, and of those that end at an event, after which it is cut in
+    two, so that no step is that of the run without, also where no error limits it.
     """
 
     until: float
@@ -112,6 +115,7 @@ class Ask(NamedTuple):
     scale: FloatArray
     speed: float
     step_limit: int
+    twin: float
 
 
 class Desk(NamedTuple):
@@ -212,6 +216,9 @@ def follow(
     damps, turns = settling_rates(model, dry.load)
     how = TIME_UP
     h = 1e-3 * min(ask.until, scale[0] / ask.speed)
+    reach, swing, halved = _NEAR, _SWING, False  # halved: the step that ends here is cut in two
+    if ask.twin > 0.0:
+        h, reach, swing = ask.twin * h, (1.0 + ask.twin) * reach, (1.0 + ask.twin) * swing
     settle, known = True, False  # whether to look what holds the puck; whether work[0] is there
     newton = 0.0
     stretch = Stretch(model, dry, leaning, piece, mode, way, newton)
@@ -257,9 +264,10 @@ def follow(
                     settle_way(stretch, t, q, y, work)
             elif excess > SLACK * dry.load:
                 mode, stiff = SLIDES, True
-                q = _FIRST * ask.speed if leaning.shape[0] == 0 else 2.0 * REST * ask.speed
+                quick = leaning.shape[0] > 0 or excess > _QUICK * dry.load
+                q = 2.0 * REST * ask.speed if quick else _FIRST * ask.speed
                 y[VX], y[VY], y[SPIN] = q * nx, q * ny, q * nw
-                if leaning.shape[0] > 0:
+                if quick:
                     stretch = Stretch(model, dry, leaning, piece, SLIDES, _NO_WAY, 0.0)
                     settle_way(stretch, t, q, y, work)
             if (mode == CARRIED) != resting and (t >= calm or mode != CARRIED):
@@ -281,7 +289,7 @@ def follow(
             resting = False
         h = -q / way[3] if mode == STOPS else h
         if mode == CARRIED and swings:
-            h = min(h, _SWING / abs(surface.spin))
+            h = min(h, swing / abs(surface.spin))
         if settle or not known:
             newton = 0.0
             if stiff and mode == SLIDES:
@@ -291,7 +299,7 @@ def follow(
         settle, known = False, True
         if mode == SLIDES and dry.load > 0.0:
             pull = slip_rate(radius, work)
-            near = _NEAR * max(q, REST * ask.speed)
+            near = reach * max(q, REST * ask.speed)
             h = near / pull if h * pull > near else h
             way = _NO_WAY
             if 0.0 < q <= straight:
@@ -324,7 +332,7 @@ def follow(
                 break
             continue
         h = length * min(5.0, 5.0 if error == 0.0 else 0.9 * (ask.tolerance / error) ** power)
-        stuck = -1
+        stuck, cut = -1, landed
         for passed in range(1 + leaning.shape[0]):
             what = _NOTHING
             if passed == 0 and mode == SLIDES:
@@ -334,9 +342,8 @@ def follow(
                 if what == _NOTHING and leaning[i, GRIP] > 0.0 and passes:
                     what = i
             if what != _NOTHING:
-                landed, stuck = False, what
+                landed, stuck, cut = False, what, True
                 length = zero(stretch, what, t, length, y, scale, work, new)
-        wrong += error
         for i in range(ROW):
             last[i] = work[STAGES - 1, i]
         happens, which, moment = -1, -1, math.inf
@@ -351,8 +358,15 @@ def follow(
             if moment < math.inf:
                 happens, which = SLIPS, region
         if happens >= 0:
-            landed, stuck, length = False, -1, moment
-            step(stretch, t, length, y, scale, work, new)
+            landed, stuck, cut, length = False, -1, True, moment
+        halved = ask.twin > 0.0 and cut and not halved
+        if halved:
+            landed, stuck, happens, length = False, -1, -1, ask.twin * length
+        if halved or happens >= 0:
+            error = step(stretch, t, length, y, scale, work, new)
+            for i in range(ROW):
+                last[i] = work[STAGES - 1, i]
+        wrong += error
         # the frames on it
         end = target if landed else t + length
         while frame < len(frames) and frames[frame] <= end:
@@ -369,9 +383,9 @@ def follow(
         known = happens < 0 and mode == SLIDES and not held_there and leaning.shape[0] == 0
         before_it, q = q, slip_speed(radius, y)
         if newton > 0.0 or mode == SLIDES:
-            reach = length * (damps + turns / q if q > 0.0 else damps)
+            settles = length * (damps + turns / q if q > 0.0 else damps)
             slowly = slip_rate(radius, work) < _SLOWLY * (damps * q + turns)
-            was, stiff = stiff, slowly and reach > (_MILD if newton > 0.0 else _STIFF)
+            was, stiff = stiff, slowly and settles > (_MILD if newton > 0.0 else _STIFF)
             known = known and stiff == was
         if landed and (target < ask.until or t == calm):
             settle = True
@@ -405,8 +419,9 @@ def follow(
             to_laboratory(model, y, 1.0)
             before = kinetic_energy(body, y)
             rest_time = bounced(
-                bounds, contacts, which, body, y, t, ask.speed, scale[0] / ask.speed, ask.tolerance
-            )
+                bounds, contacts, which, body, y, t, floor_velocity(surface, y[X], y[Y]), ask.speed,
+                scale[0] / ask.speed, ask.tolerance,
+            )  # fmt: skip
             heat += before - kinetic_energy(body, y)
             to_laboratory(model, y, -1.0)
             if rest_time >= 0.0:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -51,6 +52,16 @@ MAX_DRIVE = 1 << 26  # bytes of a file of forces
 MAX_EVENTS = 100_000
 
 
+class Twin(NamedTuple):
+    """A run with so many times the error per step, and none of its steps the same.
+
+    ``share``: see :class:`puck_tables.scene.loop.Ask`.
+    """
+
+    coarser: float
+    share: float
+
+
 @dataclass(frozen=True)
 class Prepared:
     """Arguments of the loop for a scene, and for others that are only launched otherwise.
@@ -68,16 +79,18 @@ class Prepared:
     rate: float
 
     def follow(
-        self, frames: FloatArray, rows: FloatArray, events: FloatArray, coarser: float = 1.0
+        self, frames: FloatArray, rows: FloatArray, events: FloatArray, twin: Twin | None = None
     ) -> tuple[int, float, int, int, int, float]:
         """Run it, see :func:`puck_tables.scene.loop.follow`.
 
-        ``coarser``: with so many times the error per step, and friction wrong by what its ratios
-        may be: a twin to see what errors grow to.
+        ``twin``: otherwise, to see what errors grow to; also with friction wrong by what its ratios
+        may be.
         """
         region = int(self.starts(self.state[None, :])[0])
-        ask = self.ask._replace(tolerance=coarser * self.ask.tolerance)
-        off = 1.0 if coarser == 1.0 else 1.0 + friction_error(self.scene)
+        ask, off = self.ask, 1.0
+        if twin is not None:
+            ask = ask._replace(tolerance=twin.coarser * ask.tolerance, twin=twin.share)
+            off = 1.0 + friction_error(self.scene)
         regions = self.regions._replace(
             load=off * self.regions.load,
             by_speed=self.regions.by_speed._replace(normal=off * self.regions.by_speed.normal),
@@ -150,7 +163,7 @@ def prepare(scene: Scene, last_time: float | None = None) -> Prepared:
         to_the_end = moves and bool(last_time)
         until = last_time if to_the_end and last_time else float(asks[0])
     tolerance = max(LOCAL_SHARE * scene.run.tol, FINEST_LOCAL)
-    ask = Ask(until, to_the_end, tolerance, asks[2:], float(asks[1]), STEP_LIMIT)
+    ask = Ask(until, to_the_end, tolerance, asks[2:], float(asks[1]), STEP_LIMIT, 0.0)
     speed, rate, _ = _scales(scene, model, regions, state[None, :])
     bounds = _bounds(scene)
     return Prepared(model, regions, bounds, scene, state, ask, float(speed[0]), float(rate[0]))

@@ -38,6 +38,8 @@ from puck_tables.scene.leaning import GRIP, LEAN_COLUMNS, LOCKS, RIM, come_to_le
 FloatArray = npt.NDArray[np.float64]
 
 _STILL = 1e-13  # of the scale of speeds: no speed
+_SLOWEST = 1e-12  # of it: rebounds next to what is rest on the floor
+_AT_ONCE = 100_000  # impacts between walls without restitution, at most
 _JAM = 50  # impacts on two walls at one place: it is stuck between them
 _PARALLEL = 1e-12  # walls between which no corner is
 _LEFT = 1e-12  # a wall is left, or a rim slides
@@ -192,6 +194,21 @@ def _corner_near(bounds: Boundaries, contacts: Contacts, which: int, reach: floa
 
 
 @inlined
+def _dead_ahead(
+    bounds: Boundaries, contacts: Contacts, which: int, y: FloatArray, here: float, speed: float
+) -> int:
+    """A wall without restitution into which a puck at another such goes at once; −1: none."""
+    if bounds.walls[which, RESTITUTION] > 0.0:
+        return -1
+    for i in range(contacts.leans.size):
+        touches = i == which or contacts.leans[i] or contacts.room[i] <= here
+        dead = bounds.walls[i, RESTITUTION] == 0.0
+        if touches and dead and outward(bounds, i, y) < -_STILL * speed:
+            return i
+    return -1
+
+
+@inlined
 def _into_corner(one: FloatArray, other: FloatArray, y: FloatArray) -> None:
     """Put a state at rest to where two walls leave it no room."""
     cross = one[NX] * other[NY] - one[NY] * other[NX]
@@ -204,14 +221,33 @@ def _into_corner(one: FloatArray, other: FloatArray, y: FloatArray) -> None:
 
 
 @inlined
+def _doubt(
+    body: Body, wall: FloatArray, y: FloatArray, ground: tuple[float, float, float], hops: float,
+    changes: float,
+) -> float:  # fmt: skip
+    """By how much the velocity may be wrong where a puck leans, but rebounds at up to ``hops``.
+
+    Rebounds turn the slip of a puck that leans, and with it the friction of the floor, by hops/slip
+    at most, to and fro.  In a slip that is none, and that no ``changes`` make one, there is nothing
+    to turn.
+    """
+    nx, ny, (sx, sy, turning) = wall[NX], wall[NY], ground
+    along = nx * (y[VY] - sy) - ny * (y[VX] - sx)
+    slip = size(along, nx * sx + ny * sy, body.radius * (y[SPIN] - turning))
+    share = hops / slip if slip > hops else 1.0
+    return min(hops * share * share, slip + changes)
+
+
+@inlined
 def bounced(
     bounds: Boundaries, contacts: Contacts, which: int, body: Body, y: FloatArray, t: float,
-    speed: float, time: float, tolerance: float,
+    ground: tuple[float, float, float], speed: float, time: float, tolerance: float,
 ) -> float:  # fmt: skip
     """Rebound of a puck, in the laboratory, from a wall.
 
     How long the rebounds go on if the puck leans on the wall from now on; −1: it does not.
-    ``speed`` and ``time``: scales; ``tolerance``: local error in units of them.
+    ``ground``: velocity and spin of the floor; ``speed`` and ``time``: scales; ``tolerance``: local
+    error in units of them.
     """
     before = contacts.chain[0]
     here = 4e-16 * (abs(y[X]) + abs(y[Y]))  # rounding: no room left between two walls
@@ -219,7 +255,11 @@ def bounced(
     contacts.chain[1] = contacts.chain[1] + 1 if jams else 0
     wall, came = bounds.walls[which], -outward(bounds, which, y)
     slips = rim_slip(body, wall[NX], wall[NY], y[VX], y[VY], y[SPIN])
-    rebound(body, wall, y)
+    hits, again = which, 0
+    while hits >= 0 and again < _AT_ONCE:
+        rebound(body, bounds.walls[hits], y)
+        hits = _dead_ahead(bounds, contacts, which, y, here, speed)
+        again += 1
     goes = outward(bounds, which, y)
     slides = rim_slip(body, wall[NX], wall[NY], y[VX], y[VY], y[SPIN])
     rest_time = -1.0
@@ -228,13 +268,17 @@ def bounced(
         corner = -1
     if contacts.chain[1] >= _JAM:
         corner = before
-    if goes <= max(0.01 * tolerance, _STILL) * speed or corner >= 0:
+    tiny = goes <= max(0.01 * tolerance, _SLOWEST) * speed
+    if tiny or corner >= 0:
         rest_time = 0.0
-    elif contacts.chain[0] == which and goes < contacts.pace[which] and goes <= 0.01 * speed:
+    if corner < 0 and before == which and goes < contacts.pace[which] and goes <= 0.01 * speed:
         hop = t - contacts.hit[which]
         ratio = goes / contacts.pace[which]
         rest = hop * ratio / (1.0 - ratio)
-        if hop > 0.0 and rest * rest <= tolerance * time * time:
+        changes = (abs(slips - contacts.slid[which]) + abs(slides - slips)) * ratio / (1.0 - ratio)
+        doubt = _doubt(body, wall, y, ground, speed * rest / time, changes)
+        short = hop > 0.0 and rest * rest <= tolerance * time * time
+        if short and (tiny or doubt <= tolerance * speed):
             rest_time = rest
             if wall[TANGENTIAL] != -1.0:
                 most = wall[FRICTION] * (1.0 + wall[RESTITUTION]) * body.mass * came * ratio
@@ -251,6 +295,8 @@ def bounced(
     if corner >= 0:
         contacts.leans[corner], contacts.room[corner] = True, 0.0
         _into_corner(wall, bounds.walls[corner], y)
+        if body.radius * abs(y[SPIN]) <= _LEFT * speed:  # rims that roll on both
+            y[SPIN] = 0.0
     for i in range(contacts.leans.size):  # an impact may push it off others, or into them
         if (
             contacts.leans[i]

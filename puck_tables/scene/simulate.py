@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -23,7 +23,7 @@ from puck_tables.scene.loop import (
 from puck_tables.scene.outcome import ENDS, EVENTS, LEDGER, Event, SceneRun, ledger_residual
 from puck_tables.scene.plain import run_plain
 from puck_tables.scene.plan import Plan, ingredients, out_of_reach, plan_for
-from puck_tables.scene.prepare import MAX_EVENTS, Prepared, prepare
+from puck_tables.scene.prepare import MAX_EVENTS, Prepared, Twin, prepare
 from puck_tables.scene.regions import friction_error, law_name, speed_law
 from puck_tables.scene.scene import Scene
 
@@ -44,11 +44,13 @@ def simulate(scene: Scene, times: npt.ArrayLike | None = None) -> SceneRun:
     return replace(run, files=files)
 
 
-COARSER = 30.0  # the steps of a twin may err by so much more
+# two, for one may err as the run does by chance
+TWINS = (Twin(30.0, 0.5), Twin(8.0, 0.3))
 FINER = (1.0, 1 / 30, 1 / 900, 1 / 27000)  # of the tolerance asked: tried one after the other
 FINEST = 1e-12
 STEP_SHARE = 0.1  # of the sum of the errors of steps, which are those of order 4
 PROBES = 7  # states on the way that are compared too
+MOST_IN_VAIN = 2  # finer tolerances in a row that do not halve the estimate
 
 FAILURES = {
     STEP_LIMIT: "no end after a million steps, at {time:.6g} s: ask for a shorter run.time",
@@ -70,90 +72,115 @@ def is_endless(scene: Scene) -> bool:
     return scene.run.time is None and not scene.edges and "no dry friction" in ingredients(scene)
 
 
+class _Followed(NamedTuple):
+    """One run: how it ended, its states at the times asked and at the end, and the rest."""
+
+    how: int
+    end_time: float
+    events: int
+    steps: int
+    wrong: float
+    states: FloatArray
+    last: FloatArray
+
+
+def _followed(
+    prepared: Prepared, times: FloatArray, events: FloatArray, twin: Twin | None = None
+) -> _Followed:
+    rows = np.empty((len(times) + 1, FRAME_COLUMNS))
+    how, end_time, count, steps, reached, wrong = prepared.follow(times, rows, events, twin)
+    return _Followed(how, end_time, count, steps, wrong, rows[:reached], rows[reached])
+
+
 def _integrated(scene: Scene, plan: Plan, times: FloatArray | None) -> SceneRun:
     """Run it at a tolerance of which a coarser twin tells that the error asked is kept."""
-    last = None if times is None or not times.size else float(times[-1])
-    events = np.empty((MAX_EVENTS, EVENT_COLUMNS))
-    prepared, estimate = _close_enough(scene, last, events)
-    if times is None:
-        _, end_time, *_ = prepared.follow(np.empty(0), np.empty((1, FRAME_COLUMNS)), events)
-        times = np.linspace(0.0, end_time, int(scene.run.frames))
-    rows = np.empty((len(times) + 1, FRAME_COLUMNS))
-    how, end_time, count, steps, reached, _ = prepared.follow(times, rows, events)
-    _refuse_failed(scene, how, end_time, prepared.ask.to_the_end)
-    columns = columns_of(rows[: reached + 1], prepared)
+    if is_endless(scene):
+        raise InputError(
+            "nothing brings this scene to rest (puck.friction is 0): give run.time, or friction"
+        )
+    prepared, run, estimate, events = _close_enough(scene, times)
+    columns = columns_of(np.vstack([run.states, run.last]), prepared)
     energy = kinetic(prepared.state[[VX, VY, SPIN]], prepared)
     return SceneRun(
         scene=scene,
         plan=plan,
-        end=ENDS[how],
-        end_time=end_time,
+        end=ENDS[run.how],
+        end_time=run.end_time,
         events=[
             Event(float(e[0]), EVENTS[int(e[1])], int(e[2]), float(e[3 + X]), float(e[3 + Y]))
-            for e in events[:count]
+            for e in events
         ],
         energy_residual=ledger_residual(columns, float(energy)),
         error_estimate=estimate,
         speed_scale=prepared.speed,
         rate_scale=prepared.rate,
-        steps=steps,
+        steps=run.steps,
         last={name: float(column[-1]) for name, column in columns.items()},
         columns={name: column[:-1] for name, column in columns.items()},
     )
 
 
-def _close_enough(scene: Scene, last: float | None, events: FloatArray) -> tuple[Prepared, float]:
-    """The scene at the coarsest tolerance that keeps the one asked, and its error estimate.
+def _close_enough(
+    scene: Scene, times: FloatArray | None
+) -> tuple[Prepared, _Followed, float, FloatArray]:
+    """The scene at the coarsest tolerance that keeps the one asked, its run, estimate and events.
 
     Where finer steps help no more, rounding or what is known of friction has the last word.
     """
     asked = scene.run.tol
-    prepared, estimate = prepare(scene, last), math.inf
-    if is_endless(scene):
-        raise InputError(
-            "nothing brings this scene to rest (puck.friction is 0): give run.time, or friction"
-        )
+    last = None if times is None or not times.size else float(times[-1])
+    room = np.empty((MAX_EVENTS, EVENT_COLUMNS))
+    best, in_vain = None, 0
     for finer in FINER:
         tol = max(asked * finer, min(asked, FINEST))
         try:
-            closer = prepare(replace(scene, run=replace(scene.run, tol=tol)), last)
+            prepared = prepare(replace(scene, run=replace(scene.run, tol=tol)), last)
         except AccuracyError:  # a friction law is known no better
+            if best is None:
+                raise
             break
-        better = _estimate(closer, events)
-        if not better <= 0.5 * estimate and estimate < math.inf:
+        run, estimate = _estimated(prepared, times, room)
+        if best is None or estimate <= 0.5 * best[2]:
+            best, in_vain = (prepared, run, estimate, room[: run.events].copy()), 0
+        else:
+            in_vain += 1
+        if estimate <= asked or tol <= FINEST or in_vain == MOST_IN_VAIN:
             break
-        prepared, estimate = closer, better
-        if estimate <= asked or tol <= FINEST:
-            break
-    return prepared, estimate
+    assert best is not None  # of the first tolerance
+    return best
 
 
-def _estimate(prepared: Prepared, events: FloatArray) -> float:
-    """How far a coarser twin is from a run, in units of Q/J and Q²/J: at its end, and on the way.
+def _estimated(
+    prepared: Prepared, times: FloatArray | None, events: FloatArray
+) -> tuple[_Followed, float]:
+    """A run, and how far coarser twins are from it, in units of Q/J and Q²/J, on the way and last.
 
     Errors grow alike in both, and its own are much larger.
     """
-    ends = [np.empty((PROBES + 1, FRAME_COLUMNS)) for _ in range(2)]
-    how, end_time, *_ = prepared.follow(np.empty(0), ends[0], events, COARSER)
-    if how in (TIME_UP, STEP_LIMIT, EVENT_LIMIT):  # else the run itself tells
-        _refuse_failed(prepared.scene, how, end_time, prepared.ask.to_the_end)
-    probes = end_time * np.arange(1, PROBES + 1) / (PROBES + 1)
-    both_runs = [
-        prepared.follow(probes, rows, events, coarser)
-        for rows, coarser in zip(ends, (COARSER, 1.0), strict=True)
-    ]
-    reached = [run[4] for run in both_runs]
-    both = min(reached)
-    states = [
-        np.concatenate([rows[:both], rows[n : n + 1]])
-        for rows, n in zip(ends, reached, strict=True)
-    ]
-    gap = np.abs(states[0] - states[1])
+    first = _followed(prepared, np.empty(0), events)
+    _refuse_failed(prepared.scene, first.how, first.end_time, prepared.ask.to_the_end)
+    if times is None:
+        times = np.linspace(0.0, first.end_time, int(prepared.scene.run.frames))
+    probes = first.end_time * np.arange(1, PROBES + 1) / (PROBES + 1)
+    twins = [_followed(prepared, probes, events, twin) for twin in TWINS]
+    both = np.concatenate([probes, times])
+    order = np.argsort(both, kind="stable")
+    run = _followed(prepared, both[order], events)
+    probed = order[: len(run.states)] < PROBES
+    gap = max(_gap(prepared, twin, run._replace(states=run.states[probed])) for twin in twins)
+    error = gap + STEP_SHARE * run.wrong + friction_error(prepared.scene)
+    return run._replace(states=run.states[~probed]), error
+
+
+def _gap(prepared: Prepared, twin: _Followed, run: _Followed) -> float:
+    """How far apart two runs are at the states that both reached, and at their ends."""
+    seen = min(len(twin.states), len(run.states))
+    gap = np.abs(
+        np.vstack([twin.states[:seen], twin.last]) - np.vstack([run.states[:seen], run.last])
+    )
     radius, unit = prepared.model.body.radius, prepared.speed / prepared.rate
     place = np.hypot(gap[:, 1 + X], gap[:, 1 + Y]) + radius * gap[:, 1 + THETA]
-    worst = max(gap[-1, 0] / unit, place.max() / (prepared.speed * unit))
-    # where events end the steps both may take the same: the errors of steps tell then
-    return float(worst + STEP_SHARE * both_runs[1][5] + friction_error(prepared.scene))
+    return float(max(gap[-1, 0] / unit, place.max() / (prepared.speed * unit)))
 
 
 def _refuse_failed(scene: Scene, how: int, end_time: float, to_the_end: bool) -> None:

@@ -1,7 +1,7 @@
 """Rebounds that settle: on slopes, under forces, on belts and turntables, smooth and rough walls.
 
-The judge follows every rebound down to 1e-9 of the speed, in places measured from the wall; what is
-left is one impact and a lean, with Coulomb's friction at the rim: what many small impacts give.
+The judge follows every rebound down to 1e-11 of the speed, in places measured from the wall; what
+is left is one impact and a lean, with Coulomb's friction at the rim: what many small impacts give.
 
 python tests/judges/rebound_judge.py --count 60 --seed 1 --tol 1e-9
 """

@@ -109,7 +109,11 @@ def first_event(world, ctx, base, t, h, y, f, at, out, fr, speed):
         line = which < total
         low = 0.0
         value, rate = test(world, ctx, base, t, y, which, out, fr, speed)
+        if line and ctx[MODE] == RESTS and value <= 0.0 and abs(rate) <= 1e-12 * speed:
+            rate = 0.0  # rounding, where a floor that turns carries it off
         if line and value <= 0.0 and rate < 0.0:
+            return which, 0.0
+        if total <= which < total + 2 and value < 0.0:  # a wall does not pull
             return which, 0.0
         for i in range(SAMPLES):
             high = (i + 1.0) / SAMPLES

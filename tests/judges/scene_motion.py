@@ -141,7 +141,7 @@ def slow_way(world, ctx, base, t, y, guess, out, fr):
     n = guess.copy()
     mode = ctx[MODE]
     ctx[MODE] = SLIDES
-    gain, step, before = 0.0, 0.0, math.inf
+    gain, step, before, last = 0.0, 0.0, math.inf, -math.inf
     a, trial = np.empty(3), np.empty(3)
     for again in range(3000):
         rates(world, ctx, base, t, y, n[0], n[1], n[2] / r, out, fr)
@@ -161,11 +161,11 @@ def slow_way(world, ctx, base, t, y, guess, out, fr):
             step = 0.3 / max(whole, friction, 1e-300)
         if off <= 2e-14 * whole or (off > 0.99 * before and off < 1e-12 * whole):
             break
-        if off > before:
+        if off > before and gain < last:  # too far; away from an unstable way off grows, too
             step *= 0.7
         else:
             step *= 1.03
-        before = off
+        before, last = off, gain
         size = 0.0
         for i in range(3):
             trial[i] = n[i] + step * (a[i] - gain * n[i])

@@ -121,6 +121,12 @@ def follow(world, start, until, frames, states, events, tol, speed, length, limi
                     events[count] = np.array([t, REST, ctx[REGION], base[0] + y[0], base[1] + y[1]])
                     count += 1
                     y[3], y[4], y[5] = 0.0, 0.0, 0.0
+                    if ctx[LEAN] >= 0 and ctx[OTHER] < 0 and turn != 0.0:
+                        wall = world.walls[ctx[LEAN]]
+                        arm = base + y[:2] - world.floor[2:4]
+                        if wall[0] * arm[0] + wall[1] * arm[1] < 0.0:  # carried off it
+                            rebased(base, y)
+                            ctx[LAST], ctx[LEAN], ctx[RIM] = ctx[LEAN], -1, SMOOTH
                 h = max(h, 0.02 * (target - t))
             else:
                 if ctx[MODE] == RESTS:
@@ -209,7 +215,7 @@ def follow(world, start, until, frames, states, events, tol, speed, length, limi
             nx, ny = world.walls[which, 0], world.walls[which, 1]
             sx, sy = floor_at(world, base[0], base[1])
             inward = nx * (out[3] - turn * out[1]) + ny * (out[4] + turn * out[0])
-            settles = fall < 1e-9 * speed or world.walls[which, 3] == 0.0
+            settles = fall < 1e-11 * speed or world.walls[which, 3] == 0.0
             what = BOUNCE
             if settles and inward <= 0.0:
                 y[:] = y_before
@@ -370,21 +376,24 @@ def truth(
 ) -> dict[str, Any]:  # fmt: skip
     """``end``, ``time``, ``events`` (n, 5), ``states`` (n, 7), the scales of slip and acceleration.
 
-    ``change`` (9,): relative changes of the launch (6) and of the forces (3).
+    ``change`` (9,): relative changes of the launch (6), of its velocity also in units of the slip,
+    and of the forces (3).
     """
     world, start = world_of(scene)
     r, m = world.body[2], world.body[0]
-    if change is not None:
-        start = start * (1.0 + change[:6])
-        world = world._replace(
-            pull=world.pull * (1.0 + change[6:]),
-            drive=world.drive * np.array([1.0, *(1.0 + change[6:])]),
-        )
     sx = world.floor[0] - world.floor[4] * (start[1] - world.floor[3])
     sy = world.floor[1] + world.floor[4] * (start[0] - world.floor[2])
     slip = math.sqrt(
         (start[3] - sx) ** 2 + (start[4] - sy) ** 2 + (r * (start[5] - world.floor[4])) ** 2
     )
+    if change is not None:
+        start = start * (1.0 + change[:6])
+        if world.hold[0] == FREE:  # a launch at rest is uncertain, too
+            start[3:] += slip * change[3:6] / np.array([1.0, 1.0, r])
+        world = world._replace(
+            pull=world.pull * (1.0 + change[6:]),
+            drive=world.drive * np.array([1.0, *(1.0 + change[6:])]),
+        )
     rows = world.drive[:, 1:] if len(world.drive) else np.zeros((1, 3))
     sharp = max(
         float(world.loads.max()) / m,
