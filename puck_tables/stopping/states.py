@@ -288,7 +288,8 @@ def states_of(body: Body, launch: FloatArray, times: FloatArray) -> FloatArray:
     source = source_of(body)
     regime = regime_of(frame.speed, frame.rim, source.limit, source.limit_width)
     run, _ = solve(source, regime, frame.speed, frame.rim, TOL)
-    return frame.states(*run.states(frame.natural_times(times, float(run.stop[T]) * frame.time)))
+    natural = run.states(frame.natural_times(times, float(run.stop[T]) * frame.time))
+    return np.stack(frame.states(*natural))
 
 
 def _states(
