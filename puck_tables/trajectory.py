@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -15,14 +15,15 @@ from puck_tables.accuracy.methods import INTEGRATORS, method_named
 from puck_tables.errors import InputError
 from puck_tables.io.dataset import Dataset, variable
 from puck_tables.motion.body import Body, body_of
-from puck_tables.motion.frame import Frame, direction, frame_of
-from puck_tables.motion.state import U
+from puck_tables.motion.contact import contact_of
+from puck_tables.motion.frame import Frame, frame_of
+from puck_tables.motion.friction import source_of
+from puck_tables.motion.limits import regime_of
+from puck_tables.motion.run import GENERIC, Run, solve
+from puck_tables.motion.state import LENGTH, PSI, THETA, T, U, X, Y
 from puck_tables.puck import PUCK_UNITS, Puck
 from puck_tables.result import Result
 from puck_tables.table.resultant_table import ResultantTable
-
-if TYPE_CHECKING:
-    from puck_tables.motion.run import Run
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -39,6 +40,7 @@ SCALARS = {  # and their units
 DEFAULT_TOL = 1e-9
 DEFAULT_FRAMES = 101
 MAX_FRAMES = 1_000_000
+_LARGEST_U = 700.0  # of ln tan φ; beyond, φ is π/2
 LOOK_UP_FRAMES = 10_000  # from here on states are looked up: 0.2 µs each instead of 4
 
 
@@ -195,12 +197,6 @@ def simulate(
     energy = 0.5 * puck.mass * (frame.speed * frame.speed + body.inertia * frame.rim * frame.rim)
     _refuse_too_large(frame, body, energy, puck.decel)
 
-    from puck_tables.motion.contact import contact_of
-    from puck_tables.motion.friction import source_of
-    from puck_tables.motion.limits import regime_of
-    from puck_tables.motion.run import GENERIC, solve
-    from puck_tables.motion.state import LENGTH, PSI, THETA, T, X, Y
-
     source = source_of(body, table, exact)
     regime = regime_of(frame.speed, frame.rim, source.limit, source.limit_width)
     generic = regime in GENERIC
@@ -262,8 +258,8 @@ def _integrated(
     """States of a motion in natural units as the columns of a trajectory."""
     q, natural = run.states(frame.natural_times(moments, stop_time))
     x, y, turn, orientation, speed, spin = frame.states(q, natural)
-    cosine, sine = direction(natural[:, U])
-    slip_angle = np.where(q > 0.0, frame.side * np.arctan2(sine, cosine), 0.0) + 0.0
+    phi = np.arctan(np.exp(np.minimum(natural[:, U], _LARGEST_U)))
+    slip_angle = np.where(q > 0.0, frame.side * phi, 0.0) + 0.0
     return {
         "x": x, "y": y, "heading": frame.heading + turn, "orientation": orientation,
         "speed": speed, "spin": spin, "slip_speed": frame.slip * q, "slip_angle": slip_angle,

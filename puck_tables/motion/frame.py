@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.motion.state import PSI, STATE_ROWS, THETA, U, X, Y
+from puck_tables.motion.state import PSI, THETA, U, X, Y
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -48,21 +48,19 @@ class Frame(NamedTuple):
         scaled: FloatArray = np.where(times < stop_time, times, np.inf) / (self.time or 1.0)
         return scaled
 
-    def states(self, q: FloatArray, y: FloatArray) -> FloatArray:
+    def states(self, q: FloatArray, y: FloatArray) -> tuple[FloatArray, ...]:
         """States of the puck from Q/Q₀ (n,) and natural states (n, 8).
 
         Returns
         -------
-        array (6, n)
+        six arrays (n,)
             x, y m; heading rad, from that at the launch; body angle rad; v m/s; ω rad/s.
         """
         cosine, sine = direction(y[:, U])
         turned = self.side * y[:, THETA] * (self.length / self.radius) + 0.0
         spin = self.side * (self.slip * q * sine / self.radius) + 0.0  # Q/r may overflow, ω not
-        rows = *self.place(y[:, X], y[:, Y]), self.side * y[:, PSI], turned
-        found = np.stack([*rows, self.slip * q * cosine, spin])
-        assert len(found) == STATE_ROWS
-        return found
+        speed = self.slip * q * cosine
+        return *self.place(y[:, X], y[:, Y]), self.side * y[:, PSI], turned, speed, spin
 
 
 def frame_of(velocity: tuple[float, float], spin: float, decel: float, radius: float) -> Frame:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -116,6 +116,7 @@ class FrictionSource(ABC):
     """
 
     limit_width: float
+    is_measured: bool  # whether the measured front is of such friction
 
     @property
     @abstractmethod
@@ -181,8 +182,9 @@ class FullContact(FrictionSource):
     table: ResultantTable | None = None
     exact: bool = False
     limit_width = LIMIT_WIDTH
+    is_measured = True
 
-    @property
+    @cached_property
     def limit(self) -> float:
         """Ln of the ratio rω/v that motions tend to."""
         return limit_log_ratio(self.delta)
@@ -200,10 +202,7 @@ class FullContact(FrictionSource):
         return Setting(stepping_of(selection), accuracy)
 
     def told(self, selection: Selection, setting: Setting, error: Estimate) -> Selection:
-        """As selected, unless the motion needed more."""
-        first = self.first(selection)
-        if (setting.words, setting.accuracy) == (first.words, first.accuracy):
-            return selection
+        """More than what was selected."""
         source = Source.TABLE if setting.accuracy else Source.CLOSED_FORMS
         scheme = Scheme(selection.method, source)
         more = f"This motion needed more: {named(scheme.name, setting.words)}."
@@ -243,6 +242,7 @@ class Sections(FrictionSource):
 
     body: Body
     limit_width = _SECTION_WIDTH  # its truth is good to 1e-13
+    is_measured = False
 
     @property
     def limit(self) -> float:
@@ -356,7 +356,14 @@ def integration_selected(
     >>> integration_selected("trajectory", 1e-9, Method.RK4, None).scheme.name
     'rk4, table'
     """
-    sources = (Source.CLOSED_FORMS,) if exact or table is not None else tuple(Source)
     own = None if table is None else (table.source, TABLE_FACTOR * table.tolerance)
+    return _selected(question, tol, method, own, exact or table is not None)
+
+
+@lru_cache(maxsize=256)
+def _selected(
+    question: str, tol: float, method: Method | None, own: tuple[str, float] | None, exact: bool
+) -> Selection:
+    sources = (Source.CLOSED_FORMS,) if exact else (Source.TABLE, Source.CLOSED_FORMS)
     methods = INTEGRATORS if method is None else (method,)
     return select(question, tol, schemes_of(methods, sources), own)

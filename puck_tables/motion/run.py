@@ -9,7 +9,7 @@ run of higher accuracy and by one with a coarser section.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -40,7 +40,7 @@ _MOMENTS = 16  # at which two motions are compared
 _COARSER_BY = 4.0  # half as many cells are 16 times as bad; a quarter of that is believed
 
 
-@dataclass(frozen=True)
+@dataclass
 class Run:
     """Step ends (z, state) from launch to stop; ``stop`` is the state there, its ψ the turn."""
 
@@ -94,14 +94,18 @@ def solve(
         friction, at_limit, rounding = source.at_constant_angle(tol)
         run = at_constant_slip(regime, u, friction)
         error = (rounding + (at_limit if regime == "D" else 0.0)) * max(1.0, float(run.stop[T]))
-        return replace(run, error=error), selection
+        run.error = error
+        return run, selection
     # φ moves monotonically to φ₀ and the tilt falls with φ: the smaller of both is the worst
     source.refuse(min(u, source.limit))
     attempt = partial(_attempt, source, u, tol)
     finer = partial(refined, tol=tol, friction=source.next_accuracy)
     first = source.first(selection)
     run, estimate, setting = close_enough(first, attempt, finer, tol, "this puck")
-    return replace(run, error=estimate.total), source.told(selection, setting, estimate)
+    if setting is not first or not source.is_measured:
+        selection = source.told(selection, setting, estimate)
+    run.error = estimate.total
+    return run, selection
 
 
 def at_constant_slip(regime: str, u: float, friction: Friction) -> Run:

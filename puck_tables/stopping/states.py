@@ -34,7 +34,7 @@ from puck_tables.result import Result
 from puck_tables.stopping.per_height import refuse_many
 from puck_tables.stopping.solvers import fits
 from puck_tables.stopping.stop_table import StopTable
-from puck_tables.stopping.stops import positive_array
+from puck_tables.stopping.stops import as_rows, positive_array
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -181,7 +181,7 @@ def states(
     times = finite_array("time", time, "s")
     if not np.all(times >= 0.0):
         raise InputError(f"time must not be negative, got {times.min():g} s")
-    launches = np.stack([column.ravel() for column in columns])
+    launches = as_rows(columns)
     plain = launches[3] <= highest
     bodies = _bodies(pressure, gyration, launches[3, ~plain])
     longest = max((body.longest for body in bodies.values()), default=2.0)
@@ -288,7 +288,8 @@ def states_of(body: Body, launch: FloatArray, times: FloatArray) -> FloatArray:
     source = source_of(body)
     regime = regime_of(frame.speed, frame.rim, source.limit, source.limit_width)
     run, _ = solve(source, regime, frame.speed, frame.rim, TOL)
-    return frame.states(*run.states(frame.natural_times(times, float(run.stop[T]) * frame.time)))
+    natural = run.states(frame.natural_times(times, float(run.stop[T]) * frame.time))
+    return np.stack(frame.states(*natural))
 
 
 def _states(

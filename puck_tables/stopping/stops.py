@@ -166,9 +166,23 @@ def stop(
         radius=positive_array("radius", radius, "m"),
     )
     shape = columns[0].shape
-    launches = np.stack([column.ravel() for column in columns])
+    launches = as_rows(columns)
     solver.prepare(launches[3])
     return Stops(solver, launches, shape)
+
+
+def as_rows(columns: list[FloatArray]) -> FloatArray:
+    """Arrays of one shape as the rows of a matrix.
+
+    Examples
+    --------
+    >>> as_rows([np.array([[1.0, 2.0]]), np.array([[3.0, 4.0]])]).tolist()
+    [[1.0, 2.0], [3.0, 4.0]]
+    """
+    rows = np.empty((len(columns), *columns[0].shape))
+    for n, column in enumerate(columns):
+        rows[n] = column
+    return rows.reshape(len(columns), -1)
 
 
 def positive_array(name: str, values: npt.ArrayLike, unit: str) -> FloatArray:
