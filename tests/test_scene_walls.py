@@ -181,3 +181,24 @@ def test_a_puck_that_leaves_a_wall_keeps_its_distance_to_it() -> None:
             gap = event.y - 0.1 if event.which == 0 else 0.9 - event.y
             assert abs(gap) <= 1e-14
     assert run.last["y"] == pytest.approx(0.9, abs=1e-14)
+
+
+@pytest.mark.parametrize("half", [0.1, 0.3, 0.6])
+@pytest.mark.parametrize("rim", [{}, {"tangential": 0.0, "friction": 0.3}])
+def test_walls_without_restitution_catch_a_puck_at_once(half: float, rim: dict[str, float]) -> None:
+    walls = [
+        {
+            "point": [1.0, 0.0], "normal": [-math.sin(half), -side * math.cos(half)],
+            "restitution": 0.0, **rim,
+        }
+        for side in (1.0, -1.0)
+    ]  # fmt: skip
+    run = simulate_scene({
+        "puck": {"radius": 0.02, "mass": 0.5}, "floor": {"friction": 0.1}, "wall": walls,
+        "launch": {"velocity": [1.0, 0.3], "spin": 30.0, "position": [-0.5, 0.0]},
+        "force": {"constant": [5.0, 0.0]}, "run": {"time": 5.0},
+    })  # fmt: skip
+    assert [(event.what, event.which) for event in run.events[:2]] == [("leans", 0), ("leans", 1)]
+    assert [event.what for event in run.events[2:]] == ["rests"] and run.end == "at rest"
+    assert run.last["x"] == pytest.approx(1.0 - 0.02 / math.sin(half), rel=1e-12)
+    assert run.error_estimate <= 1e-8
