@@ -297,12 +297,11 @@ def follow(
             happens, which, moment = first_crossing(
                 bounds, room, region, leans, stretch, t, length, y, scale, work, new, gaps, trial
             )
-        if mode == CARRIED and happens < 0 and t >= calm:
-            for i in range(WIDE):
-                trial[i] = new[i]
-            moment = lost(stretch, t, length, y, scale, work, trial)
-            if moment < math.inf:
-                happens, which = SLIPS, region
+        if mode == CARRIED and t >= calm:  # also before what it is carried to
+            step(stretch, t, min(moment, length), y, scale, work, trial)
+            slips = lost(stretch, t, min(moment, length), y, scale, work, trial)
+            if slips < math.inf:
+                happens, which, moment = SLIPS, region, slips
         if happens >= 0:
             landed, stuck, cut, length = False, -1, True, moment
         halved = ask.twin > 0.0 and cut and not halved
