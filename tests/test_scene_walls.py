@@ -14,6 +14,8 @@ from puck_tables.scene.cushions import rest_of_rim
 from puck_tables.scene.leaning import still_torques
 from puck_tables.scene.library import find_scene
 
+G = 9.80665
+
 
 @pytest.mark.parametrize("ratio", [0.002, 0.1, 0.5, 0.9, 0.99])
 def test_the_rest_of_a_series_is_the_sum_of_its_rebounds(ratio: float) -> None:
@@ -177,3 +179,49 @@ def test_a_puck_that_leaves_a_wall_keeps_its_distance_to_it() -> None:
             gap = event.y - 0.1 if event.which == 0 else 0.9 - event.y
             assert abs(gap) <= 1e-14
     assert run.last["y"] == pytest.approx(0.9, abs=1e-14)
+
+
+@pytest.mark.parametrize("half", [0.1, 0.3, 0.6])
+@pytest.mark.parametrize("rim", [{}, {"tangential": 0.0, "friction": 0.3}])
+def test_walls_without_restitution_catch_a_puck_at_once(half: float, rim: dict[str, float]) -> None:
+    walls = [
+        {
+            "point": [1.0, 0.0], "normal": [-math.sin(half), -side * math.cos(half)],
+            "restitution": 0.0, **rim,
+        }
+        for side in (1.0, -1.0)
+    ]  # fmt: skip
+    run = simulate_scene({
+        "puck": {"radius": 0.02, "mass": 0.5, "friction": 0.1}, "wall": walls,
+        "launch": {"velocity": [1.0, 0.3], "spin": 30.0, "position": [-0.5, 0.0]},
+        "force": {"constant": [5.0, 0.0]}, "run": {"time": 5.0},
+    })  # fmt: skip
+    assert [(event.what, event.which) for event in run.events[:2]] == [("leans", 0), ("leans", 1)]
+    assert [event.what for event in run.events[2:]] == ["rests"] and run.end == "at rest"
+    assert run.last["x"] == pytest.approx(1.0 - 0.02 / math.sin(half), rel=1e-12)
+    assert run.error_estimate <= 1e-8
+
+
+@pytest.mark.parametrize("tol", [1e-3, 1e-5, 1e-7, 1e-9])
+def test_what_a_turning_floor_loses_before_it_meets_a_wall(tol: float) -> None:
+    slope, downhill, turning, centre = 0.2731, 2.957796, 1.8737, np.array([-0.777424, 0.116109])
+    run = simulate_scene({
+        "puck": {"radius": 0.062, "friction": 0.5}, "run": {"time": 2.4, "tol": tol},
+        "floor": {
+            "slope": slope, "downhill": downhill, "turning": turning,
+            "centre": centre.tolist(),
+        },
+        "launch": {"velocity": [2.285891, -0.27714], "spin": 72.837},
+        "wall": [
+            {"point": [-0.509504, 2.343981], "normal": [-0.8626, -0.505887], "restitution": 0.9},
+            {"point": [-0.509504, 2.343981], "normal": [0.994768, -0.102156], "restitution": 0.5},
+        ],
+    })  # fmt: skip
+    rests = next(event for event in run.events if event.what == "rests")
+    slips = next(event for event in run.events if event.what == "slips")
+    arm = complex(*(np.array([rests.x, rests.y]) - centre))
+    times = rests.time + np.linspace(0.0, 1.0, 1_000_001)
+    down = G * math.sin(slope) * np.exp(1j * downhill)
+    demand = np.abs(down + turning**2 * arm * np.exp(1j * turning * (times - rests.time)))
+    lost = times[np.argmax(demand > 0.5 * G * math.cos(slope))]
+    assert slips.time == pytest.approx(lost, abs=max(1e-5, 10.0 * tol))

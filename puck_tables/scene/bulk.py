@@ -8,7 +8,8 @@ import numpy.typing as npt
 from puck_tables.kernels.compile import allocating
 from puck_tables.scene.boundaries import BOUNCES, Boundaries
 from puck_tables.scene.ingredients import Model, Regions
-from puck_tables.scene.loop import EVENT_COLUMNS, FRAME_COLUMNS, Ask, desk_for, follow
+from puck_tables.scene.loop import Ask, desk_for, follow
+from puck_tables.scene.records import EVENT_COLUMNS, FRAME_COLUMNS
 
 FloatArray = npt.NDArray[np.float64]
 

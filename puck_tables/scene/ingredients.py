@@ -64,6 +64,12 @@ class Dry(NamedTuple):
     by_speed: BySpeed
 
 
+@inlined
+def dry_in(regions: Regions, region: int) -> Dry:
+    """The friction of one of the regions."""
+    return Dry(regions.load[region], regions.delta[region], regions.cuts[region], regions.by_speed)
+
+
 class Surface(NamedTuple):
     """A floor that moves like a rigid body: velocity at a centre, m/s, and spin, rad/s."""
 

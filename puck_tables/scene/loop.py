@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.kernels.compile import allocating, inlined, kernel
+from puck_tables.kernels.compile import allocating, kernel
 from puck_tables.scene.boundaries import (
     BORDER,
     BOUNCES,
@@ -29,7 +29,6 @@ from puck_tables.scene.cushions import NX, NY
 from puck_tables.scene.equations import (
     FIRST,
     ROW,
-    SECOND,
     SIZE,
     acting_force,
     kinetic_energy,
@@ -44,12 +43,13 @@ from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.scene.ingredients import (
     CARRIED,
     FREE,
+    NO_WAY,
     SLIDES,
     STOPS,
-    Dry,
     Model,
     Regions,
     Stretch,
+    dry_in,
     floor_velocity,
 )
 from puck_tables.scene.leaning import GRIP, RIM
@@ -59,11 +59,10 @@ from puck_tables.scene.moments import (
     goes_straight,
     lost,
     rests_on,
-    settle_way,
     watched,
     zero,
 )
-from puck_tables.scene.rest import SLACK, excess_at_rest
+from puck_tables.scene.records import framed, noted
 from puck_tables.scene.settle import (
     Contacts,
     bounced,
@@ -76,6 +75,7 @@ from puck_tables.scene.settle import (
     settled,
     touching,
 )
+from puck_tables.scene.standstill import from_standstill
 from puck_tables.scene.steps import STAGES, WIDE, step
 
 FloatArray = npt.NDArray[np.float64]
@@ -85,18 +85,12 @@ AT_REST, CARRIED_AWAY, TIME_UP, OVER_EDGE, STEP_LIMIT, EVENT_LIMIT, NOT_FINITE =
 # what happens on the way
 RESTS, SLIPS, LEANS = 0, 1, 3  # and those of boundaries
 
-FRAME_COLUMNS = ROW + 3  # time, state, λ, carried, heat of impacts
-EVENT_COLUMNS = 3 + SIZE  # time, what, which, state
-
-_FIRST = 1e-16  # of it: what a slip begins with, for its direction
-_QUICK = 0.01  # of friction: a slip that grows faster has its direction from the first
 _LAST = 30.0  # times the local error: from there a stop goes straight
 _NEAR = 0.5  # of the time in which the slip would end, at most, is a step
 _STIFF, _MILD = 0.8, 0.3  # of the time in which a slip settles: longer steps are implicit,
 _SLOWLY = 0.1  # if the slip changes by less than this of itself meanwhile
 _NEWTON, _FINEST_NEWTON = 1e-3, 1e-15  # of the local error: how well implicit steps are solved
 _SWING = 0.05  # rad that a carried puck turns, at most, in a step
-_NO_WAY = (0.0, 0.0, 0.0, 0.0)
 _NOTHING = -2  # is watched
 
 
@@ -143,33 +137,6 @@ def desk_for(bounds: Boundaries) -> Desk:
     )  # fmt: skip
 
 
-@inlined
-def _noted(row: FloatArray, model: Model, t: float, what: int, which: int, y: FloatArray) -> None:
-    row[0], row[1], row[2] = t, what, which
-    for i in range(SIZE):
-        row[3 + i] = y[i]
-    to_laboratory(model, row[3:], 1.0)
-
-
-@inlined
-def _framed(
-    row: FloatArray, stretch: Stretch, t: float, y: FloatArray, heat: float, work: FloatArray
-) -> None:
-    rates(stretch, t, y, work, SECOND)
-    row[0] = t
-    for i in range(SIZE):
-        row[1 + i] = y[i]
-    to_laboratory(stretch.model, row[1:], 1.0)
-    row[1 + SIZE], row[2 + SIZE] = work[SECOND, SIZE], work[SECOND, SIZE + 1]
-    row[1 + ROW] = 1.0 if stretch.mode == CARRIED else 0.0
-    row[2 + ROW] = heat
-
-
-@inlined
-def _dry(regions: Regions, region: int) -> Dry:
-    return Dry(regions.load[region], regions.delta[region], regions.cuts[region], regions.by_speed)
-
-
 @kernel
 def follow(
     model: Model,
@@ -204,10 +171,10 @@ def follow(
     unbounded = len(bounds.walls) + len(bounds.edges) + len(bounds.borders) == 0
     look_at_walls(bounds, contacts, body, y, ask.speed)
     leaning = contacts.rows[: touching(bounds, contacts)]
-    dry = _dry(regions, region)
+    dry = dry_in(regions, region)
     room, leans = contacts.room, contacts.leans
     to_laboratory(model, y, -1.0)
-    t, heat, mode, piece, way, stiff = 0.0, 0.0, SLIDES, 0, _NO_WAY, False
+    t, heat, mode, piece, way, stiff = 0.0, 0.0, SLIDES, 0, NO_WAY, False
     resting, calm = False, 0.0  # whether its rest is noted; when rebounds have died out
     count, steps, frame, wrong = 0, 0, 0, 0.0
     # by so much longer than the centre a spin takes to brake
@@ -247,35 +214,14 @@ def follow(
                 to_laboratory(model, y, -1.0)
                 y[VX] = y[VY] = y[SPIN] = 0.0
                 leaning = contacts.rows[: touching(bounds, contacts)]
-            excess, nx, ny, nw = excess_at_rest(
-                Stretch(model, dry, leaning, piece, CARRIED, _NO_WAY, 0.0), t, y
-            )
-            if excess == math.inf and held_there:  # it is led where the floor does not go
-                mode, stiff = SLIDES, False
-            elif excess == math.inf:  # the floor goes into a wall, and under the puck
-                mode, stiff = SLIDES, True
-                sx, sy, _ = floor_velocity(surface, y[X], y[Y])
-                off, q = -(nx * sx + ny * sy), 2.0 * REST * ask.speed
-                if abs(off) > q:
-                    y[VX], y[VY], q = off * nx, off * ny, abs(off)
-                else:
-                    y[VX], y[VY] = q * nx, q * ny
-                    stretch = Stretch(model, dry, leaning, piece, SLIDES, _NO_WAY, 0.0)
-                    settle_way(stretch, t, q, y, work)
-            elif excess > SLACK * dry.load:
-                mode, stiff = SLIDES, True
-                quick = leaning.shape[0] > 0 or excess > _QUICK * dry.load
-                q = 2.0 * REST * ask.speed if quick else _FIRST * ask.speed
-                y[VX], y[VY], y[SPIN] = q * nx, q * ny, q * nw
-                if quick:
-                    stretch = Stretch(model, dry, leaning, piece, SLIDES, _NO_WAY, 0.0)
-                    settle_way(stretch, t, q, y, work)
+            at_rest = Stretch(model, dry, leaning, piece, CARRIED, NO_WAY, 0.0)
+            mode, stiff, q = from_standstill(at_rest, ask.speed, t, y, work)
             if (mode == CARRIED) != resting and (t >= calm or mode != CARRIED):
                 if count == len(events):
                     how = EVENT_LIMIT
                     break
                 resting = mode == CARRIED
-                _noted(events[count], model, t, RESTS if resting else SLIPS, region, y)
+                noted(events[count], model, t, RESTS if resting else SLIPS, region, y)
                 count += 1
             if mode == CARRIED and t >= calm:
                 alone = piece == len(drive) and unbounded and not ask.to_the_end
@@ -301,7 +247,7 @@ def follow(
             pull = slip_rate(radius, work)
             near = reach * max(q, REST * ask.speed)
             h = near / pull if h * pull > near else h
-            way = _NO_WAY
+            way = NO_WAY
             if 0.0 < q <= straight:
                 way = goes_straight(stretch, ask.speed, t, q, pull, slow, y, work)
             if way[3] < 0.0:
@@ -351,12 +297,11 @@ def follow(
             happens, which, moment = first_crossing(
                 bounds, room, region, leans, stretch, t, length, y, scale, work, new, gaps, trial
             )
-        if mode == CARRIED and happens < 0 and t >= calm:
-            for i in range(WIDE):
-                trial[i] = new[i]
-            moment = lost(stretch, t, length, y, scale, work, trial)
-            if moment < math.inf:
-                happens, which = SLIPS, region
+        if mode == CARRIED and t >= calm:  # also before what it is carried to
+            step(stretch, t, min(moment, length), y, scale, work, trial)
+            slips = lost(stretch, t, min(moment, length), y, scale, work, trial)
+            if slips < math.inf:
+                happens, which, moment = SLIPS, region, slips
         if happens >= 0:
             landed, stuck, cut, length = False, -1, True, moment
         halved = ask.twin > 0.0 and cut and not halved
@@ -371,7 +316,7 @@ def follow(
         end = target if landed else t + length
         while frame < len(frames) and frames[frame] <= end:
             step(stretch, t, frames[frame] - t, y, scale, work, trial)
-            _framed(rows[frame], stretch, frames[frame], trial, heat, work)
+            framed(rows[frame], stretch, frames[frame], trial, heat, work)
             frame += 1
         t = end
         for i in range(SIZE):
@@ -410,7 +355,7 @@ def follow(
         settle = True
         if happens == BORDER:
             region = which
-            dry = _dry(regions, region)
+            dry = dry_in(regions, region)
             damps, turns = settling_rates(model, dry.load)
             mode = CARRIED if mode == CARRIED and dry.load > 0.0 else SLIDES
             contacts.chain[0] = -1
@@ -435,7 +380,7 @@ def follow(
             break
         if happens == SLIPS:
             continue  # noted when it is known how
-        _noted(events[count], model, t, happens, which, y)
+        noted(events[count], model, t, happens, which, y)
         count += 1
         if happens == EDGE:
             how = OVER_EDGE
@@ -444,9 +389,9 @@ def follow(
     if how == TIME_UP and mode == CARRIED and moves:
         how = CARRIED_AWAY
     while how == AT_REST and frame < len(frames):  # for ever
-        _framed(rows[frame], stretch, frames[frame], y, heat, work)
+        framed(rows[frame], stretch, frames[frame], y, heat, work)
         frame += 1
-    _framed(rows[frame], stretch, t, y, heat, work)
+    framed(rows[frame], stretch, t, y, heat, work)
     finite = True
     for i in range(SIZE):
         finite = finite and math.isfinite(y[i])

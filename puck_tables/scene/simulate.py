@@ -13,9 +13,7 @@ from puck_tables.errors import AccuracyError, InputError, PuckError
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
 from puck_tables.scene.library import files_of
 from puck_tables.scene.loop import (
-    EVENT_COLUMNS,
     EVENT_LIMIT,
-    FRAME_COLUMNS,
     NOT_FINITE,
     STEP_LIMIT,
     TIME_UP,
@@ -24,6 +22,7 @@ from puck_tables.scene.outcome import ENDS, EVENTS, LEDGER, Event, SceneRun, led
 from puck_tables.scene.plain import run_plain
 from puck_tables.scene.plan import Plan, ingredients, out_of_reach, plan_for
 from puck_tables.scene.prepare import MAX_EVENTS, Prepared, Twin, prepare
+from puck_tables.scene.records import EVENT_COLUMNS, FRAME_COLUMNS
 from puck_tables.scene.regions import friction_error, law_name, speed_law
 from puck_tables.scene.scene import Scene
 

@@ -1,0 +1,57 @@
+"""What a puck does whose slip has ended: the floor carries it, or it begins to slip."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables.kernels.compile import kernel
+from puck_tables.scene.friction import SPIN, VX, VY, X, Y
+from puck_tables.scene.ingredients import (
+    CARRIED,
+    FREE,
+    NO_WAY,
+    SLIDES,
+    Stretch,
+    floor_velocity,
+)
+from puck_tables.scene.moments import REST, settle_way
+from puck_tables.scene.rest import SLACK, excess_at_rest
+
+FloatArray = npt.NDArray[np.float64]
+
+_FIRST = 1e-16  # of the scale of speeds: what a slip begins with, for its direction
+_QUICK = 0.01  # of friction: a slip that grows faster has its direction from the first
+
+
+@kernel
+def from_standstill(
+    stretch: Stretch, speed: float, t: float, y: FloatArray, work: FloatArray
+) -> tuple[int, bool, float]:
+    """Its mode from now on, whether the slip that begins settles fast, and its size in ``y``.
+
+    ``stretch``: as it would be carried; ``speed``: the scale of speeds; ``work``: to work in.
+    """
+    model, load = stretch.model, stretch.dry.load
+    excess, nx, ny, nw = excess_at_rest(stretch, t, y)
+    if excess <= SLACK * load:
+        return CARRIED, False, 0.0
+    q = 2.0 * REST * speed
+    if excess == math.inf and model.hold.kind != FREE:  # it is led where the floor does not go
+        return SLIDES, False, 0.0
+    if excess == math.inf:  # the floor goes into a wall, and under the puck
+        sx, sy, _ = floor_velocity(model.surface, y[X], y[Y])
+        off = -(nx * sx + ny * sy)
+        if abs(off) > q:
+            y[VX], y[VY] = off * nx, off * ny
+            return SLIDES, True, abs(off)
+    elif stretch.leaning.shape[0] == 0 and excess <= _QUICK * load:
+        q = _FIRST * speed
+        y[VX], y[VY], y[SPIN] = q * nx, q * ny, q * nw
+        return SLIDES, True, q
+    y[VX], y[VY], y[SPIN] = q * nx, q * ny, q * nw
+    slips = Stretch(model, stretch.dry, stretch.leaning, stretch.piece, SLIDES, NO_WAY, 0.0)
+    settle_way(slips, t, q, y, work)
+    return SLIDES, True, q
