@@ -17,6 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.scene.forces import damping, drag_force, given_force
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y, dry_friction, size
 from puck_tables.scene.ingredients import (
     CARRIED,
@@ -25,9 +26,7 @@ from puck_tables.scene.ingredients import (
     Model,
     Stretch,
     carried_along,
-    drag_force,
     floor_velocity,
-    given_force,
     held,
 )
 from puck_tables.scene.leaning import wall_reaction
@@ -65,10 +64,10 @@ def slip_rate(radius: float, work: FloatArray) -> float:
 @inlined
 def settling_rates(model: Model, load: float) -> tuple[float, float]:
     """How fast, at most, what is damped settles, 1/s, and times the slip its direction, m/s²."""
-    body, drag = model.body, model.drag
+    body = model.body
     lever = body.mass * body.radius * body.radius / body.inertia
     return (
-        drag.sliding / body.mass + drag.spinning / body.inertia,
+        damping(model.forces, body.mass, body.inertia),
         load / body.mass * max(1.0, 0.5 * lever),
     )
 
@@ -86,9 +85,9 @@ def stopping(radius: float, y: FloatArray, work: FloatArray) -> tuple[float, flo
 def acting_force(stretch: Stretch, t: float, y: FloatArray) -> tuple[float, float]:
     """All force on the puck but that of walls and constraints."""
     model = stretch.model
-    gx, gy, _ = given_force(model, stretch.piece, t)
+    gx, gy, _ = given_force(model.forces, stretch.piece, t)
     hx, hy, _, _ = dry_friction(stretch.dry, model.body.radius, y[VX], y[VY], y[SPIN])
-    dx, dy, _, _ = drag_force(model.drag, y[VX], y[VY], y[SPIN])
+    dx, dy, _, _ = drag_force(model.forces, y[VX], y[VY], y[SPIN])
     return gx + hx + dx, gy + hy + dy
 
 
@@ -104,7 +103,7 @@ def rates(stretch: Stretch, t: float, y: FloatArray, out: FloatArray, row: int) 
     sx, sy, turning = floor_velocity(model.surface, y[X], y[Y])
     vx, vy, spin = y[VX] + sx, y[VY] + sy, y[SPIN] + turning
     cx, cy = carried_along(model.surface, vx, vy)
-    gx, gy, gm = given_force(model, stretch.piece, t)
+    gx, gy, gm = given_force(model.forces, stretch.piece, t)
     out[row, X], out[row, Y], out[row, THETA] = vx, vy, spin
     out[row, GIVEN] = gx * vx + gy * vy + gm * spin
     if stretch.mode != SLIDES:
@@ -123,7 +122,7 @@ def rates(stretch: Stretch, t: float, y: FloatArray, out: FloatArray, row: int) 
         out[row, LAMBDA], out[row, LAMBDA + 1] = 0.0, 0.0
         return
     hx, hy, hm, heat = dry_friction(stretch.dry, body.radius, y[VX], y[VY], y[SPIN])
-    dx, dy, dm, warmth = drag_force(model.drag, y[VX], y[VY], y[SPIN])
+    dx, dy, dm, warmth = drag_force(model.forces, y[VX], y[VY], y[SPIN])
     fx, fy, fm = gx + hx + dx, gy + hy + dy, gm + hm + dm
     if stretch.leaning.shape[0] > 0:
         rx, ry, rm = wall_reaction(body, stretch.leaning, 0.0, 0.0, fx, fy, fm)

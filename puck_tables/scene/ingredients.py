@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.kernels.compile import inlined
+from puck_tables.scene.forces import Forces
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -80,21 +81,6 @@ class Surface(NamedTuple):
     spin: float
 
 
-class Drag(NamedTuple):
-    """Viscous drag: force per relative speed, kg/s, and torque per relative spin, N m s."""
-
-    sliding: float
-    spinning: float
-
-
-class Pull(NamedTuple):
-    """A constant force, N, and torque, N m."""
-
-    x: float
-    y: float
-    torque: float
-
-
 class Hold(NamedTuple):
     """A linear constraint on the velocities.
 
@@ -114,17 +100,11 @@ class Hold(NamedTuple):
 
 
 class Model(NamedTuple):
-    """All of them but dry friction and walls.
-
-    ``drive``: rows (n, 4) of time, force and torque over time, straight between the rows and
-    nothing before and after.
-    """
+    """All of them but dry friction and walls."""
 
     body: Body
     surface: Surface
-    drag: Drag
-    pull: Pull
-    drive: FloatArray
+    forces: Forces
     hold: Hold
 
 
@@ -132,7 +112,7 @@ class Stretch(NamedTuple):
     """What acts between two events.
 
     ``leaning``: the walls that the puck leans on, rows (n, 5), see
-    :func:`puck_tables.scene.leaning.wall_reaction`; ``piece``: how many rows of ``model.drive``
+    :func:`puck_tables.scene.leaning.wall_reaction`; ``piece``: how many rows of ``forces.drive``
     have passed; ``mode`` SLIDES, CARRIED (at rest on the floor), STOPS: with the constant relative
     acceleration way[3] times the direction way[:3]; ``newton``: 0 for explicit steps; for implicit
     ones, where the slip settles much faster than it changes, how well to solve their equations, in
@@ -162,32 +142,6 @@ def floor_velocity(surface: Surface, x: float, y: float) -> tuple[float, float, 
 def carried_along(surface: Surface, vx: float, vy: float) -> tuple[float, float]:
     """How fast the velocity of the floor under a puck changes while the puck moves at (vx, vy)."""
     return -surface.spin * vy, surface.spin * vx
-
-
-@inlined
-def drag_force(drag: Drag, ux: float, uy: float, w: float) -> tuple[float, float, float, float]:
-    """Force, torque and the power they take (Chetaev's 2f₂) at velocities relative to the floor."""
-    return (
-        -drag.sliding * ux,
-        -drag.sliding * uy,
-        -drag.spinning * w,
-        drag.sliding * (ux * ux + uy * uy) + drag.spinning * w * w,
-    )
-
-
-@inlined
-def given_force(model: Model, piece: int, t: float) -> tuple[float, float, float]:
-    """Given force and torque at a time, on the piece of the drive that ``piece`` rows precede."""
-    pull, drive = model.pull, model.drive
-    if piece == 0 or piece == len(drive):
-        return pull.x, pull.y, pull.torque
-    i, j = piece - 1, piece
-    share = (t - drive[i, 0]) / (drive[j, 0] - drive[i, 0])
-    return (
-        pull.x + (drive[i, 1] + share * (drive[j, 1] - drive[i, 1])),
-        pull.y + (drive[i, 2] + share * (drive[j, 2] - drive[i, 2])),
-        pull.torque + (drive[i, 3] + share * (drive[j, 3] - drive[i, 3])),
-    )
 
 
 @inlined

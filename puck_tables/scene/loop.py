@@ -163,10 +163,10 @@ def follow(
     work, last, gaps, y, new, trial, contacts = desk
     for i in range(SIZE):
         y[i] = start[i]
-    body, scale, surface, drive = model.body, ask.scale, model.surface, model.drive
+    body, scale, surface, drive = model.body, ask.scale, model.surface, model.forces.drive
     radius, held_there = body.radius, model.hold.kind != FREE
     moves = surface.vx != 0.0 or surface.vy != 0.0 or surface.spin != 0.0
-    pull_there = model.pull.x != 0.0 or model.pull.y != 0.0 or len(drive) > 0
+    pull_there = model.forces.x != 0.0 or model.forces.y != 0.0 or len(drive) > 0
     swings = surface.spin != 0.0 and pull_there  # else what a turning floor asks is constant
     unbounded = len(bounds.walls) + len(bounds.edges) + len(bounds.borders) == 0
     look_at_walls(bounds, contacts, body, y, ask.speed)

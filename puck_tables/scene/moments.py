@@ -75,13 +75,13 @@ def rests_on(model: Model, dry: Dry, leaning: FloatArray, piece: int, y: FloatAr
     Between two rows a force lies between theirs; a curve that bulges inwards is given a margin.
     """
     flat = dry.delta == 0.0 and dry.by_speed.normal == 0.0
-    level, rows = (SLACK if flat else -_MARGIN) * dry.load, len(model.drive)
+    level, rows = (SLACK if flat else -_MARGIN) * dry.load, len(model.forces.drive)
     if piece == rows:
         return True
     for row in range(piece, rows + 1):  # at last what is left when the rows have ended
         at = row if row == rows else max(row, 1)
         stretch = Stretch(model, dry, leaning, at, CARRIED, NO_WAY, 0.0)
-        if excess_at_rest(stretch, model.drive[min(row, rows - 1), 0], y)[0] > level:
+        if excess_at_rest(stretch, model.forces.drive[min(row, rows - 1), 0], y)[0] > level:
             return False
     return True
 

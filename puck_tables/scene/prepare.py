@@ -4,19 +4,18 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.executor import in_slices
-from puck_tables._core.safe_read import read_rows
 from puck_tables.errors import InputError
 from puck_tables.scene.agreement import launch_velocity
 from puck_tables.scene.boundaries import Boundaries
 from puck_tables.scene.bulk import follow_many
 from puck_tables.scene.equations import SIZE
+from puck_tables.scene.forces import forces_of, impulse_over_time, strongest
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
 from puck_tables.scene.ingredients import (
     BLADE,
@@ -25,18 +24,15 @@ from puck_tables.scene.ingredients import (
     PIVOT,
     RAIL,
     Body,
-    Drag,
     Dry,
     Hold,
     Model,
-    Pull,
     Regions,
     Stretch,
     Surface,
 )
 from puck_tables.scene.leaning import LEAN_COLUMNS
 from puck_tables.scene.loop import Ask, desk_for, follow
-from puck_tables.scene.parts import Rows
 from puck_tables.scene.regions import friction_error, regions_of
 from puck_tables.scene.rest import excess_at_rest
 from puck_tables.scene.scene import Scene
@@ -48,7 +44,6 @@ FINEST_LOCAL = 3e-14  # rounding
 DEFAULT_TIME = 1000.0  # times what the least friction takes, where a scene does not say
 RELATIVE_REST = 1e-12  # of the speeds of puck and floor: their difference is rounding
 STEP_LIMIT = 1_000_000
-MAX_DRIVE = 1 << 26  # bytes of a file of forces
 MAX_EVENTS = 100_000
 
 
@@ -141,17 +136,11 @@ def prepare(scene: Scene, last_time: float | None = None) -> Prepared:
     puck, floor = scene.puck, scene.floor
     inertia = puck.mass * (puck.gyration * puck.radius) ** 2
     regions = regions_of(scene)
-    weight = puck.mass * puck.gravity
-    pull_x = scene.force.constant[0] + weight * math.sin(floor.slope) * math.cos(floor.downhill)
-    pull_y = scene.force.constant[1] + weight * math.sin(floor.slope) * math.sin(floor.downhill)
     moves = any(floor.velocity) or floor.turning != 0.0
-    drag = scene.drag
     model = Model(
         body=Body(puck.mass, inertia, puck.radius),
         surface=Surface(*floor.velocity, *floor.centre, floor.turning),
-        drag=Drag(drag.sliding, drag.spinning),
-        pull=Pull(pull_x, pull_y, scene.force.torque),
-        drive=drive_of(scene.force.over_time) if scene.force.over_time else np.empty((0, 4)),
+        forces=forces_of(scene),
         hold=_hold(scene),
     )
     state = np.zeros(SIZE)
@@ -257,7 +246,6 @@ def _scales(
     largest of friction, given forces and what a turning floor asks, over the mass.
     """
     puck, floor, hold = scene.puck, scene.floor, model.hold
-    pull, lever = model.pull, puck.mass * puck.radius
     arm = states[:, [X, Y]] - floor.centre
     sx = floor.velocity[0] - floor.turning * arm[:, 1]
     sy = floor.velocity[1] + floor.turning * arm[:, 0]
@@ -271,17 +259,9 @@ def _scales(
     speed = np.max(slips, axis=0)
     lab = np.maximum(ground, np.hypot(states[:, VX], states[:, VY]))
     speed[speed <= RELATIVE_REST * (lab + puck.radius * abs(floor.turning))] = 0.0
-    rate = np.full_like(speed, max(
-        float(regions.load.max()) / puck.mass,
-        math.hypot(pull.x, pull.y) / puck.mass,
-        abs(pull.torque) / lever,
-        float(np.hypot(model.drive[:, 1], model.drive[:, 2]).max(initial=0.0)) / puck.mass,
-        float(np.abs(model.drive[:, 3]).max(initial=0.0)) / lever,
-    ))  # fmt: skip
-    rate = np.max([
-        rate, abs(floor.turning) * ground, speed * model.drag.sliding / puck.mass,
-        speed * abs(floor.turning),
-    ], axis=0)  # fmt: skip
+    pull = np.maximum(regions.load.max(), strongest(model.forces, puck.radius, speed))
+    turning = abs(floor.turning)
+    rate = np.max([pull / puck.mass, turning * ground, speed * turning], axis=0)
     still = speed == 0.0
     speed[still] = np.where(rate[still] > 0.0, np.sqrt(rate[still] * puck.radius), 1.0)
     run = 1.0 if scene.run.time is None else scene.run.time
@@ -297,13 +277,9 @@ def _slowest(
     From all speed that the launch, the floor and forces over time can give, and from the least that
     any part of the floor leaves to brake it.
     """
-    puck, drive, floor = scene.puck, model.drive, scene.floor
-    fast = speed + math.hypot(*floor.velocity)
-    last = 0.0
-    if len(drive):
-        force = np.hypot(drive[:, 1], drive[:, 2]) + np.abs(drive[:, 3]) / puck.radius
-        fast = fast + float(np.trapezoid(force, drive[:, 0])) / puck.mass
-        last = max(float(drive[-1, 0]), 0.0)
+    puck, forces = scene.puck, model.forces
+    impulse, last = impulse_over_time(forces, puck.radius)
+    fast = speed + math.hypot(*scene.floor.velocity) + impulse / puck.mass
     brakes = []
     for number in range(len(regions.load)):
         load = float(regions.load[number])
@@ -317,31 +293,6 @@ def _slowest(
     slow = max(1.0, 2.0 * puck.gyration**2)
     brake = [b / puck.mass / slow for b in brakes if b > 1e-9 * regions.load.max()]
     time = fast / (min(brake) if brake else rate)
-    if model.drag.sliding > 0.0:
-        time = np.maximum(time, puck.mass / model.drag.sliding)
+    if forces.sliding > 0.0:
+        time = np.maximum(time, puck.mass / forces.sliding)
     return np.maximum(time, speed / rate) + last
-
-
-def drive_of(given: str | Rows) -> FloatArray:
-    """Rows (n, 4) of t, Fx, Fy and torque, given or from a CSV file; they may lack the torque.
-
-    Raises
-    ------
-    InputError
-        If it cannot be read, or is no such file.
-    """
-    try:
-        cells = read_rows(given, MAX_DRIVE) if isinstance(given, str) else given
-        rows = np.array([[float(cell) for cell in row] for row in cells])
-    except OSError as error:
-        raise InputError(f"cannot read {given}: {error.strerror or error}") from None
-    except ValueError:
-        rows = np.empty((0, 0))
-    good = rows.ndim == 2 and len(rows) >= 2 and rows.shape[1] in (3, 4)
-    if not (good and np.all(np.isfinite(rows)) and np.all(np.diff(rows[:, 0]) > 0.0)):
-        raise InputError(
-            f"{Path(given).name if isinstance(given, str) else 'force.over_time'}: forces are a "
-            "CSV file or rows of t, Fx, Fy and perhaps torque, in s, N and N m, two rows or more, "
-            "the times ascending"
-        )
-    return np.pad(rows, ((0, 0), (0, 4 - rows.shape[1])))

@@ -18,6 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.scene.forces import given_force
 from puck_tables.scene.friction import THETA, X, Y, at_slip_zero, dry_friction
 from puck_tables.scene.ingredients import (
     BLADE,
@@ -30,7 +31,6 @@ from puck_tables.scene.ingredients import (
     Stretch,
     carried_along,
     floor_velocity,
-    given_force,
 )
 from puck_tables.scene.leaning import (
     GRIP,
@@ -217,7 +217,7 @@ def excess_at_rest(stretch: Stretch, t: float, y: FloatArray) -> Yield:
     body = model.body
     sx, sy, turning = floor_velocity(model.surface, y[X], y[Y])
     ax, ay = carried_along(model.surface, sx, sy)
-    gx, gy, torque = given_force(model, stretch.piece, t)
+    gx, gy, torque = given_force(model.forces, stretch.piece, t)
     fx, fy = gx - body.mass * ax, gy - body.mass * ay
     dry = at_slip_zero(stretch.dry)
     guided = model.hold.kind != FREE

@@ -1,0 +1,146 @@
+"""Forces on a puck besides dry friction, walls and constraints: given ones and viscous drag.
+
+All of them in one record, zero where a scene lacks them.  A new force is its entries in
+:mod:`puck_tables.scene.parts`, and here its numbers, what it does, and how strong it is at most.
+"""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables._core.safe_read import read_rows
+from puck_tables.errors import InputError
+from puck_tables.kernels.compile import inlined
+from puck_tables.scene.parts import Rows
+
+if TYPE_CHECKING:
+    from puck_tables.scene.scene import Scene
+
+FloatArray = npt.NDArray[np.float64]
+
+MAX_DRIVE = 1 << 26  # bytes of a file of forces
+
+
+class Forces(NamedTuple):
+    """Numbers of the forces.
+
+    ``x``, ``y`` N, ``torque`` N m: constant, with gravity along the slope; ``drive``: rows (n, 4)
+    of time, force and torque over time, straight between the rows and nothing before and after;
+    ``sliding`` kg/s, ``spinning`` N m s: drag per relative speed and spin.
+    """
+
+    x: float
+    y: float
+    torque: float
+    drive: FloatArray
+    sliding: float
+    spinning: float
+
+
+def forces_of(scene: Scene) -> Forces:
+    """The forces of a scene.
+
+    Raises
+    ------
+    InputError
+        If the forces over time are none.
+
+    Examples
+    --------
+    >>> from puck_tables import Drag, Puck, Scene
+    >>> forces_of(Scene(Puck(1.0), drag=Drag(sliding=0.5))).sliding
+    0.5
+    """
+    puck, floor, force, drag = scene.puck, scene.floor, scene.force, scene.drag
+    pull = puck.mass * puck.gravity * math.sin(floor.slope)
+    return Forces(
+        x=force.constant[0] + pull * math.cos(floor.downhill),
+        y=force.constant[1] + pull * math.sin(floor.downhill),
+        torque=force.torque,
+        drive=drive_of(force.over_time) if force.over_time else np.empty((0, 4)),
+        sliding=drag.sliding,
+        spinning=drag.spinning,
+    )
+
+
+def strongest(forces: Forces, radius: float, speed: FloatArray) -> FloatArray:
+    """The largest force, or torque over the radius, at slips of these speeds, N (n,)."""
+    drive = forces.drive
+    given = max(
+        math.hypot(forces.x, forces.y),
+        abs(forces.torque) / radius,
+        float(np.hypot(drive[:, 1], drive[:, 2]).max(initial=0.0)),
+        float(np.abs(drive[:, 3]).max(initial=0.0)) / radius,
+    )
+    return np.maximum(given, speed * forces.sliding)
+
+
+def impulse_over_time(forces: Forces, radius: float) -> tuple[float, float]:
+    """What forces over time give in all, N s, and when they have ended, s."""
+    drive = forces.drive
+    if not len(drive):
+        return 0.0, 0.0
+    force = np.hypot(drive[:, 1], drive[:, 2]) + np.abs(drive[:, 3]) / radius
+    return float(np.trapezoid(force, drive[:, 0])), max(float(drive[-1, 0]), 0.0)
+
+
+def drive_of(given: str | Rows) -> FloatArray:
+    """Rows (n, 4) of t, Fx, Fy and torque, given or from a CSV file; they may lack the torque.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, or is no such file.
+    """
+    try:
+        cells = read_rows(given, MAX_DRIVE) if isinstance(given, str) else given
+        rows = np.array([[float(cell) for cell in row] for row in cells])
+    except OSError as error:
+        raise InputError(f"cannot read {given}: {error.strerror or error}") from None
+    except ValueError:
+        rows = np.empty((0, 0))
+    good = rows.ndim == 2 and len(rows) >= 2 and rows.shape[1] in (3, 4)
+    if not (good and np.all(np.isfinite(rows)) and np.all(np.diff(rows[:, 0]) > 0.0)):
+        raise InputError(
+            f"{Path(given).name if isinstance(given, str) else 'force.over_time'}: forces are a "
+            "CSV file or rows of t, Fx, Fy and perhaps torque, in s, N and N m, two rows or more, "
+            "the times ascending"
+        )
+    return np.pad(rows, ((0, 0), (0, 4 - rows.shape[1])))
+
+
+@inlined
+def damping(forces: Forces, mass: float, inertia: float) -> float:
+    """How fast, at most, drag settles a slip, 1/s."""
+    return forces.sliding / mass + forces.spinning / inertia
+
+
+@inlined
+def drag_force(forces: Forces, ux: float, uy: float, w: float) -> tuple[float, float, float, float]:
+    """Force, torque and the power they take (Chetaev's 2f₂) at velocities relative to the floor."""
+    return (
+        -forces.sliding * ux,
+        -forces.sliding * uy,
+        -forces.spinning * w,
+        forces.sliding * (ux * ux + uy * uy) + forces.spinning * w * w,
+    )
+
+
+@inlined
+def given_force(forces: Forces, piece: int, t: float) -> tuple[float, float, float]:
+    """Given force and torque at a time, on the piece of the drive that ``piece`` rows precede."""
+    drive = forces.drive
+    if piece == 0 or piece == len(drive):
+        return forces.x, forces.y, forces.torque
+    i, j = piece - 1, piece
+    share = (t - drive[i, 0]) / (drive[j, 0] - drive[i, 0])
+    return (
+        forces.x + (drive[i, 1] + share * (drive[j, 1] - drive[i, 1])),
+        forces.y + (drive[i, 2] + share * (drive[j, 2] - drive[i, 2])),
+        forces.torque + (drive[i, 3] + share * (drive[j, 3] - drive[i, 3])),
+    )
