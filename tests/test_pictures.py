@@ -71,7 +71,7 @@ def test_few_frames_do_not_cut_a_bouncing_path_off_its_walls(drawn: Any) -> None
     run = simulate_scene(tables)
     figure = drawn(run)
     line = curve(figure.axes[0])
-    bounces = [event for event in run.events if event.what == "bounces"]
+    bounces = [event for event in run.events if event.what == "impact"]
     assert len(bounces) > 3
     for event in bounces:
         assert np.hypot(line[:, 0] - event.x, line[:, 1] - event.y).min() < 1e-12

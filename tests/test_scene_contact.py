@@ -33,7 +33,7 @@ def test_a_wall_that_a_step_would_leap(tol: float, tmp_path: Path) -> None:
         "run": {"time": 1.9, "tol": tol},
     })  # fmt: skip
     roots = np.roots([slope / 6.0, -2.0, 1.0])
-    assert events(run, "bounces")[0] == pytest.approx(min(roots[roots > 0]), rel=1e-12)
+    assert events(run, "impact")[0] == pytest.approx(min(roots[roots > 0]), rel=1e-12)
 
 
 @pytest.mark.parametrize("restitution", [0.3, 0.9, 0.999, 1.0])
@@ -92,7 +92,7 @@ def test_oblique_rebounds_end_as_leaning_begins(restitution: float) -> None:
         "force": {"constant": [0.0, -push]}, "wall": [wall], "run": {"time": 60.0},
     })  # fmt: skip
     ends = 2.0 * restitution * vn * m / push / (1.0 - restitution)
-    assert events(run, "leans")[0] == pytest.approx(ends, rel=1e-5)  # where it is summed up
+    assert events(run, "contact")[0] == pytest.approx(ends, rel=1e-5)  # where it is summed up
     assert (run.last["vy"], run.last["y"]) == (0.0, pytest.approx(r, abs=1e-15))
     assert run.last["x"] == pytest.approx(42.0, rel=1e-12)
     assert run.energy_residual < 1e-12
@@ -148,6 +148,6 @@ def test_a_blade_grips_the_floor_it_stands_on() -> None:
         "launch": {"velocity": [0.0, 0.5], "spin": 1.0, "position": [0.5, 0.0]},
         "constraint": {"kind": "blade"}, "run": {"time": 1.0},
     })  # fmt: skip
-    assert run.events[0].what == "rests" and run.events[0].time == 0.0
+    assert run.events[0].what == "stick" and run.events[0].time == 0.0
     assert run.last["x"] == pytest.approx(0.5 * math.cos(1.0), rel=1e-11)
     assert run.last["orientation"] == pytest.approx(1.0, rel=1e-12)

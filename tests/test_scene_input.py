@@ -90,7 +90,8 @@ def test_a_file_of_forces_that_is_none(text: str, tmp_path: Path) -> None:
 
     path = tmp_path / "force.csv"
     path.write_text(text)
-    scene = {**GOOD, "force": {"over_time": str(path)}}
+    puck = {"radius": 0.04, "friction": 0.1}
+    scene = {**GOOD, "puck": puck, "force": {"over_time": str(path)}}
     with pytest.raises(InputError, match=r"force\.csv: forces are a CSV file or rows of t, Fx, Fy"):
         simulate_scene(scene)
     path.unlink()

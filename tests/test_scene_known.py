@@ -229,7 +229,7 @@ def test_a_triangle_of_force_moves_and_stops_it(tmp_path: Any) -> None:
     np.savetxt(path, [[0, 0, 0], [1, peak, 0], [2, 0, 0]], delimiter=",")
     run = simulate_scene(scene(launch={"velocity": [0.0, 0.0]}, force={"over_time": str(path)}))
     slips = hold / peak
-    assert event(run, "slips") == pytest.approx(slips, rel=1e-10)
+    assert event(run, "slip") == pytest.approx(slips, rel=1e-10)
     fast = 0.5 * peak * (1.0 - slips) ** 2  # the speed at t = 1
     way = peak * (1.0 - slips) ** 3 / 6.0
     # v = fast + (peak − hold) s − ½ peak s² for s = t − 1 in [0, 1], then − hold

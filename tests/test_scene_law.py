@@ -96,7 +96,7 @@ def test_slices_of_strips_are_brought_to_one_shape_and_stay_the_same_splines():
             assert across == pytest.approx(float(truth.perpendicular / truth.parallel), abs=2e-9)
             assert spin == pytest.approx(float(truth.spin / truth.parallel), abs=2e-9)
     run = simulate_scene({"puck": puck, "floor": {"strips": strips}, "launch": LAUNCH})
-    assert [event.what for event in run.events] == ["border", "border", "rests"]
+    assert [event.what for event in run.events] == ["border", "border", "stick"]
     assert run.energy_residual < 1e-8
 
 

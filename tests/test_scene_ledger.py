@@ -32,7 +32,7 @@ def test_the_ledger_closes(tmp_path: Path) -> None:
     seen = _closes(range(500), tmp_path)
     assert seen >= {
         "at rest", "time is up", "over the edge",
-        "rests", "slips", "bounces", "leans", "border", "edge",
+        "stick", "slip", "impact", "contact", "border", "edge",
     }  # fmt: skip
 
 

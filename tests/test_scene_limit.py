@@ -91,7 +91,7 @@ def test_rest_as_the_force_reaches_what_friction_holds(tmp_path: Path) -> None:
         "force": {"over_time": str(path)}, "run": {"time": 3.0},
     })  # fmt: skip
     slips = (0.1 * G + 3.0) / 1.71864406779661
-    assert [event.what for event in run.events][-2:] == ["rests", "slips"]
+    assert [event.what for event in run.events][-2:] == ["stick", "slip"]
     assert run.events[-1].time == pytest.approx(slips, rel=1e-11)
 
 
@@ -223,7 +223,7 @@ def test_a_force_that_sets_in_beyond_what_friction_holds(share: float, tmp_path:
         "launch": {"velocity": [0.1, 0.02], "spin": 2.0}, "force": {"over_time": str(force)},
         "run": {"time": 1.5},
     })  # fmt: skip
-    assert [event.what for event in run.events][:2] == ["rests", "slips"]
+    assert [event.what for event in run.events][:2] == ["stick", "slip"]
     assert run.events[1].time == pytest.approx(0.3, rel=1e-12)
     assert run.error_estimate <= 1e-8 and run.energy_residual < 1e-8
 

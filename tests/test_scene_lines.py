@@ -17,7 +17,7 @@ WALL = {"point": [2.0, 0.0], "normal": [-1.0, 0.0]}
 def test_a_smooth_hard_wall_is_a_mirror() -> None:
     launch = {"velocity": [4.0, 1.0], "spin": 3.0}
     run = simulate_scene(scene(wall=[WALL], launch=launch, puck={"height": 2.0}))
-    hit = event(run, "bounces")
+    hit = event(run, "impact")
     times = np.array([0.05, 0.6, 0.9]) * run.end_time
     late = times > hit
     assert late.any() and not late.all()
@@ -46,7 +46,7 @@ def test_impulses_of_a_rough_wall(friction: float) -> None:
             launch={"velocity": [1.0, 2.0], "spin": 4.0},
         )
     )  # fmt: skip
-    assert event(run, "bounces") == pytest.approx(0.35, rel=1e-12)
+    assert event(run, "impact") == pytest.approx(0.35, rel=1e-12)
     # the wall is above; its rim point is at (0, r): slides along it with v_x − r ω
     slide = 1.0 - 0.3 * 4.0
     inertia = 0.5 * 2.0 * 0.09
@@ -84,7 +84,7 @@ def test_bounces_without_number_end_leaning(restitution: float) -> None:
     lost = 4.0 * math.sqrt(1e-15 / pull) / (1.0 - share)
     assert run.end_time == pytest.approx(total, abs=lost if restitution else 1e-10)
     assert run.last["x"] == pytest.approx(1.0, abs=1e-12)
-    assert [e[1] for e in run.events][-2:] == ["leans", "rests"]
+    assert [e[1] for e in run.events][-2:] == ["contact", "stick"]
 
 
 def test_strips_by_pieces() -> None:

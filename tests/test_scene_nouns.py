@@ -106,7 +106,7 @@ def test_many_launches_beside_a_range_are_its_product_also_where_each_is_checked
     assert stops.x.shape == (2, 2) and list(stops.axes) == ["launch", "floor.slope"]
     run = pt.Scene(PUCK, pt.Floor(slope=0.05), pt.Launch((0.4, 0.0), 1.0), walls=[wall]).simulate()
     assert stops.x[0, 1] == pytest.approx(run.last["x"], abs=1e-9)
-    assert stops.bounces[0, 1] == len([e for e in run.events if e.what == "bounces"])
+    assert stops.impacts[0, 1] == len([e for e in run.events if e.what == "impact"])
 
 
 def test_launches_of_different_number_are_refused() -> None:

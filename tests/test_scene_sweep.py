@@ -61,7 +61,7 @@ def test_same_bits_as_single_runs(whole: SceneMap, index: tuple[int, ...]) -> No
         if name != "time":
             assert whole.columns[name][index] == value, name
     assert whole.columns["end_time"][index] == run.end_time
-    assert whole.columns["bounces"][index] == sum(e[1] == "bounces" for e in run.events)
+    assert whole.columns["impacts"][index] == sum(e[1] == "impact" for e in run.events)
 
 
 def test_look_up_agrees_with_single_runs() -> None:

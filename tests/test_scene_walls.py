@@ -93,7 +93,7 @@ def test_a_turning_floor_carries_no_puck_into_a_wall(rim: dict[str, float], tol:
     }, np.linspace(0.0, 3.0, 301))  # fmt: skip
     assert run.columns["y"].min() >= 0.1 - 1e-13
     assert run.end == "time is up"  # it leans, and the floor slips under it
-    assert len([event for event in run.events if event.what == "leans"]) == 1
+    assert len([event for event in run.events if event.what == "contact"]) == 1
     assert run.energy_residual < max(1e-8, 0.1 * tol)
 
 
@@ -175,7 +175,7 @@ def test_a_puck_that_leaves_a_wall_keeps_its_distance_to_it() -> None:
         ],
     })  # fmt: skip
     for event in run.events:
-        if event.what in ("bounces", "leans"):
+        if event.what in ("impact", "contact"):
             gap = event.y - 0.1 if event.which == 0 else 0.9 - event.y
             assert abs(gap) <= 1e-14
     assert run.last["y"] == pytest.approx(0.9, abs=1e-14)
@@ -196,8 +196,11 @@ def test_walls_without_restitution_catch_a_puck_at_once(half: float, rim: dict[s
         "launch": {"velocity": [1.0, 0.3], "spin": 30.0, "position": [-0.5, 0.0]},
         "force": {"constant": [5.0, 0.0]}, "run": {"time": 5.0},
     })  # fmt: skip
-    assert [(event.what, event.which) for event in run.events[:2]] == [("leans", 0), ("leans", 1)]
-    assert [event.what for event in run.events[2:]] == ["rests"] and run.end == "at rest"
+    assert [(event.what, event.which) for event in run.events[:2]] == [
+        ("contact", 0),
+        ("contact", 1),
+    ]
+    assert [event.what for event in run.events[2:]] == ["stick"] and run.end == "at rest"
     assert run.last["x"] == pytest.approx(1.0 - 0.02 / math.sin(half), rel=1e-12)
     assert run.error_estimate <= 1e-8
 
@@ -217,8 +220,8 @@ def test_what_a_turning_floor_loses_before_it_meets_a_wall(tol: float) -> None:
             {"point": [-0.509504, 2.343981], "normal": [0.994768, -0.102156], "restitution": 0.5},
         ],
     })  # fmt: skip
-    rests = next(event for event in run.events if event.what == "rests")
-    slips = next(event for event in run.events if event.what == "slips")
+    rests = next(event for event in run.events if event.what == "stick")
+    slips = next(event for event in run.events if event.what == "slip")
     arm = complex(*(np.array([rests.x, rests.y]) - centre))
     times = rests.time + np.linspace(0.0, 1.0, 1_000_001)
     down = G * math.sin(slope) * np.exp(1j * downhill)

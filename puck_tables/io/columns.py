@@ -66,7 +66,7 @@ COLUMNS = {
     "carried": Column("1", "carried", "1: at rest on the floor, which then shares the reaction"),
     "heat_impact": Column("J", "energy lost in impacts", "energy lost in impacts"),
     "kinetic_energy": Column("J", "kinetic energy", "of the centre and of the spin"),
-    "bounces": Column("1", "bounces", "rebounds from walls"),
+    "impacts": Column("1", "impacts", "impacts on walls"),
     "energy_residual": Column(
         "1", "energy residual", "what the energy ledger misses, of its largest entry"
     ),
@@ -74,7 +74,7 @@ COLUMNS = {
     "end": Column("1", "end", "how it ends"),
     "event": Column("1", "event", "number of the event"),
     "event_time": Column("s", "event time", "when it happens"),
-    "event_what": Column("", "event", "rests, slips, bounces, leans, border or edge"),
+    "event_what": Column("", "event", "stick, slip, impact, contact, border or edge"),
     "event_which": Column("1", "which", "number of the wall, the edge or the region"),
     # a point on a wavy support
     "held_speed": Column("m/s", "speed V", "speed held along the support"),

@@ -50,7 +50,7 @@ def draw_plane(axes: Axes, run: SceneRun, columns: dict[str, FloatArray]) -> Non
     _draw_pucks(axes, scene, columns)
     _draw_lines(axes, scene.walls, box, "wall", color="black", linewidth=2.5)
     _draw_lines(axes, scene.edges, box, "edge", color=RED, linestyle="--")
-    turns = [event for event in run.events if event.what in ("bounces", "leans")][:_MARKED]
+    turns = [event for event in run.events if event.what in ("impact", "contact")][:_MARKED]
     if turns:
         axes.plot(
             [e.x for e in turns], [e.y for e in turns], ".", markersize=6, color=RED, zorder=4,

@@ -25,7 +25,7 @@ ENDS = (
     "not finite", "no end found", "refused",
 )  # fmt: skip
 NO_END, REFUSED = len(ENDS) - 2, len(ENDS) - 1  # of a run in a sweep, which goes on
-EVENTS = ("rests", "slips", "bounces", "leans", "border", "edge")
+EVENTS = ("stick", "slip", "impact", "contact", "border", "edge")
 
 # rows of the compiled loop, and what follows from them
 LEDGER = (
@@ -51,8 +51,9 @@ class SceneRun(Result):
     """What happened.
 
     ``end``: 'at rest', 'carried by the floor' (at rest on a moving one), 'time is up' or 'over the
-    edge'; ``end_time`` s; ``events``: what happened, one of rests, slips, bounces, leans (stays at
-    the wall), border, edge.
+    edge'; ``end_time`` s; ``events``: what happened, one of stick (it comes to
+    rest on the floor), slip (it leaves that rest), impact, contact (it stays at a wall), border,
+    edge.
     ``plan``: the model that was taken, and why.  ``energy_residual``: what the ledger misses, as a
     share of its largest entry.  ``error_estimate``: of the end time in
     units of Q/J and of places in Q²/J, with ``speed_scale`` = Q in m/s and ``rate_scale`` = J in

@@ -75,7 +75,7 @@ def run_plain(scene: Scene, needed: Scene, plan: Plan, times: FloatArray | None)
         plan=plan,
         end="time is up" if not stops else ("carried by the floor" if moves else "at rest"),
         end_time=float(end_time),
-        events=[Event(length, "rests", 0, *stop_place)] if stops else [],
+        events=[Event(length, "stick", 0, *stop_place)] if stops else [],
         energy_residual=max(run.energy_residual, ledger_residual(whole, energy)),
         error_estimate=run.error_estimate,
         speed_scale=math.hypot(*velocity, scene.puck.radius * spin),

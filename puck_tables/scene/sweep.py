@@ -46,7 +46,7 @@ FloatArray = npt.NDArray[np.float64]
 CHUNK = 256
 BYTES = 8 * 4 * ENDS_COLUMNS
 STATE = (VX, VY, SPIN, X, Y, THETA)  # where the numbers of LAUNCH stand in a state
-RESULTS = (*LEDGER[1:], "bounces", "energy_residual", "end_time")
+RESULTS = (*LEDGER[1:], "impacts", "energy_residual", "end_time")
 
 
 @dataclass(frozen=True, eq=False, repr=False)

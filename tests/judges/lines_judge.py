@@ -14,7 +14,7 @@ import numpy as np
 from cubic_paths import BORDER, BOUNCES, EDGE, MANY, SETTLES, follow
 from report import arguments, engine, lines, table
 
-WORDS = {"bounces": BOUNCES, "leans": BOUNCES, "border": BORDER, "edge": EDGE}
+WORDS = {"impact": BOUNCES, "contact": BOUNCES, "border": BORDER, "edge": EDGE}
 TOLS = [10.0**-k for k in range(3, 11)]
 
 

@@ -48,7 +48,7 @@ from scene_motion import (
 )
 from scene_steps import ALL, advance, dense, prepare_dense, stage
 
-EVENTS = ("bounces", "border", "edge", "leans", "rests", "slips", "leaves")
+EVENTS = ("impact", "border", "edge", "contact", "stick", "slip", "leaves")
 DONE, GONE, STEPS, MANY, CORNER = range(5)
 ENDS = ("done", "over the edge", "too many steps", "too many events", "a rough corner")
 

@@ -103,7 +103,7 @@ def judged(
     )
     why = f"error {share * allowed:.2g}, allowed {allowed:.2g}"
     rests = best["events"][best["events"][:, 1] == REST]
-    found = [event.time for event in run.events if event.what == "rests"]
+    found = [event.time for event in run.events if event.what == "stick"]
     if run.end == "at rest" and len(rests) and found:
         late = abs(found[-1] - rests[-1, 0]) / best["unit"] / (2.0 * allowed)
         if late > share:
