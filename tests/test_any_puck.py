@@ -289,7 +289,8 @@ def test_a_section_of_the_plain_puck_is_the_plain_puck():
 def test_refusals():
     for options, words in (
         ({"delta": 4.0}, "tips"), ({"delta": 3.97}, "more than one solution"),
-        ({"pressure": "hertz", "delta": 0.81}, "full contact"), ({"gyration": math.nan}, "gyration = nan: must be a number"),
+        ({"pressure": "hertz", "delta": 0.81}, "full contact"),
+        ({"gyration": math.nan}, "gyration = nan: must be a number"),
         ({"gyration": 20.0}, ">= 0.1 and <= 10"), ({"pressure": 3}, "pressure = 3: must be"),
         ({"pressure": "ring", "exact": True}, "leave out"),
     ):  # fmt: skip

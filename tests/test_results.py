@@ -173,3 +173,21 @@ def test_a_puck_is_a_value():
 def test_no_puck_is_made_that_cannot_be(given: dict, error: type[Exception], words: str):
     with pytest.raises(error, match=words):
         Puck(**{"radius": 0.5, "height": 0.0, "friction": 0.9, **given})
+
+
+def test_a_column_that_follows_from_others_stands_in_every_result_that_has_those(tmp_path: Path):
+    puck = Puck.similar()
+    stops = puck.sweep(spin=[0.0, 5.0], velocity=(1.0, 1.0))
+    alone = puck.stop((1.0, 1.0), [0.0, 5.0])
+    for result in (stops, alone):
+        data = result.to_xarray()
+        assert np.array_equal(data.stop_distance.values, np.hypot(stops.stop_x, stops.stop_y))
+        assert result.stop_bearing[0] == pytest.approx(0.25 * math.pi, abs=1e-15)
+        assert data.stop_bearing.units == "rad"
+        with pytest.raises(AttributeError, match="no stop_colour"):
+            _ = result.stop_colour
+    stops.save(tmp_path / "stops.csv")
+    assert "stop_distance[m]" in (tmp_path / "stops.csv").read_text().splitlines()[0]
+    run = simulate_scene({"puck": {"radius": 0.1, "friction": 0.1}, "launch": {"velocity": [3, 4]}})
+    heading = run.to_xarray().heading.values[0]
+    assert run.speed[0] == 5.0 and heading == pytest.approx(math.atan2(4.0, 3.0), abs=1e-15)

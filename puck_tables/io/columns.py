@@ -1,20 +1,29 @@
 """Every quantity of a result by name: its unit, how a picture labels it, and what it is.
 
-One name means one thing in all results, files, pictures and messages.  A new column of a result is
-a line here and the value in the result's ``dataset``.
+One name means one thing in all results, files, pictures and messages.  A column that follows from
+others is a line here, and stands in every result that has those; any other is a line here and its
+value in the result's ``dataset``.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
 
 
 class Column(NamedTuple):
-    """Unit ('1': a pure number, '': a text), short label, and what it is."""
+    """Unit ('1': a pure number, '': a text), short label, and what it is.
+
+    ``of``: the columns that it follows from; ``by``: how.
+    """
 
     unit: str
     label: str
     long_name: str
+    of: tuple[str, ...] = ()
+    by: Callable[..., Any] | None = None
 
     @property
     def axis(self) -> str:
@@ -29,8 +38,14 @@ COLUMNS = {
     "y": Column("m", "y", "place of the centre along y, of a free puck from its launch"),
     "vx": Column("m/s", "velocity x", "velocity of the centre along x"),
     "vy": Column("m/s", "velocity y", "velocity of the centre along y"),
-    "speed": Column("m/s", "speed v", "speed of the centre, v"),
-    "heading": Column("rad", "heading", "direction of the velocity from x, counter-clockwise"),
+    "speed": Column("m/s", "speed v", "speed of the centre, v", ("vx", "vy"), np.hypot),
+    "heading": Column(
+        "rad",
+        "heading",
+        "direction of the velocity from x, counter-clockwise",
+        ("vx", "vy"),
+        lambda vx, vy: np.arctan2(vy + 0.0, vx + 0.0),
+    ),
     "orientation": Column("rad", "orientation", "angle of the body, counter-clockwise"),
     "spin": Column("rad/s", "spin ω", "angular velocity omega, counter-clockwise"),
     "slip_speed": Column("m/s", "Q", "Q = hypot(v, r omega)"),
@@ -47,6 +62,16 @@ COLUMNS = {
     "stop_time": Column("s", "stop time", "time from launch to stop"),
     "stop_x": Column("m", "stop x", "displacement along x at the stop"),
     "stop_y": Column("m", "stop y", "displacement along y at the stop"),
+    "stop_distance": Column(
+        "m", "stop distance", "distance from launch to stop", ("stop_x", "stop_y"), np.hypot
+    ),
+    "stop_bearing": Column(
+        "rad",
+        "bearing of the stop",
+        "direction from launch to stop, from x",
+        ("stop_x", "stop_y"),
+        lambda x, y: np.arctan2(y + 0.0, x + 0.0),
+    ),
     "path_length": Column("m", "path length", "length of the path"),
     "turn_angle": Column(
         "rad", "turn of heading", "turn of the heading until Q has fallen to 1/1000"
@@ -108,3 +133,32 @@ COLUMNS = {
     "stop_ns": Column("ns", "cost of a stop", "cost of one stop by look-up, in chunks"),
     "peak_bytes": Column("1", "peak memory", "peak memory"),
 }
+
+
+def derived(columns: Mapping[str, Any]) -> dict[str, Any]:
+    """Columns that follow from those given and are not among them.
+
+    Examples
+    --------
+    >>> {name: float(value) for name, value in derived({"vx": 3.0, "vy": 4.0}).items()}["speed"]
+    5.0
+    """
+    return {
+        name: column.by(*(columns[one] for one in column.of))
+        for name, column in COLUMNS.items()
+        if column.by is not None and name not in columns and set(column.of) <= set(columns)
+    }
+
+
+def following(result: Any, name: str) -> Any:
+    """A column as an attribute of a result that has those from which it follows.
+
+    Raises
+    ------
+    AttributeError
+        If it follows from none.
+    """
+    column = COLUMNS.get(name)
+    if column is None or column.by is None:
+        raise AttributeError(f"{type(result).__name__} has no {name}")
+    return column.by(*(getattr(result, one) for one in column.of))

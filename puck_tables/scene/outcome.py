@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.errors import InputError
-from puck_tables.io.columns import COLUMNS
+from puck_tables.io.columns import COLUMNS, derived, following
 from puck_tables.io.dataset import Dataset, variable
 from puck_tables.result import Result
 from puck_tables.scene.entries import as_toml, tables_of, units_of
@@ -32,7 +32,7 @@ LEDGER = (
     "time", "x", "y", "orientation", "vx", "vy", "spin", "work_given", "heat_dry", "heat_viscous",
     "work_support", "lambda_1", "lambda_2", "carried", "heat_impact", "kinetic_energy",
 )  # fmt: skip
-DERIVED = ("speed", "heading", "slip_speed", "slip_angle")
+SLIPS = ("slip_speed", "slip_angle")  # in the laboratory
 EVENT_UNITS = {"time": "s", "what": "1", "which": "1", "x": "m", "y": "m"}
 
 
@@ -105,19 +105,14 @@ class SceneRun(Result):
 
     def __getattr__(self, name: str) -> FloatArray:
         """A column by its name."""
-        if name in DERIVED:
+        if name in SLIPS:
             return self._derived()[name]
         return column_of(self, name)
 
     def _derived(self) -> dict[str, FloatArray]:
-        of, rim = self.columns, self.scene.puck.radius * self.columns["spin"]
-        speed = np.hypot(of["vx"], of["vy"])
-        return {
-            "speed": speed,
-            "heading": np.arctan2(of["vy"] + 0.0, of["vx"] + 0.0),
-            "slip_speed": np.hypot(speed, rim),
-            "slip_angle": np.arctan2(rim, speed),
-        }
+        found, rim = derived(self.columns), self.scene.puck.radius * self.columns["spin"]
+        slips = np.hypot(found["speed"], rim), np.arctan2(rim, found["speed"])
+        return {**found, **dict(zip(SLIPS, slips, strict=True))}
 
     def explain(self) -> str:
         """The model that was taken, and why."""
@@ -183,9 +178,8 @@ def column_of(result: Any, name: str) -> FloatArray:
     AttributeError
     """
     columns: Mapping[str, FloatArray] = result.__dict__.get("columns", {})
-    if name not in columns:
-        raise AttributeError(f"{type(result).__name__} has no {name}")
-    return columns[name]
+    column: FloatArray = columns[name] if name in columns else following(result, name)
+    return column
 
 
 def plain_name(path: str) -> str:

@@ -16,6 +16,7 @@ from puck_tables._core.checkpoint import Checkpoint, files_named, work_digest
 from puck_tables._core.executor import Progress, run_chunks
 from puck_tables.contact.laws import Law
 from puck_tables.errors import InputError
+from puck_tables.io.columns import derived
 from puck_tables.io.dataset import Dataset, Variable, variable
 from puck_tables.result import Result
 from puck_tables.scene.agreement import launch_velocity
@@ -96,7 +97,8 @@ class SceneMap(Result):
             for path, values in zip(LAUNCH, self.scene.ranges[BATCH].T, strict=True):
                 if path not in self.axes:
                     columns[plain_name(path)] = self._along(path, values, BATCH)
-        columns |= {name: variable(name, values, dims) for name, values in self.columns.items()}
+        results = {**self.columns, **derived(self.columns)}
+        columns |= {name: variable(name, values, dims) for name, values in results.items()}
         columns["end"] = variable("end", self.end, dims, ENDS)
         attributes = {"title": self.scene.title or "Scene", "model": self.plan.model}
         return Dataset(axes, columns, attributes, scene_texts(self.scene, self.files))

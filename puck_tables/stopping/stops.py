@@ -10,6 +10,7 @@ import numpy.typing as npt
 from puck_tables._core.real import broadcast, finite_array, velocity_array
 from puck_tables.contact.laws import HOMOGENEOUS, Law
 from puck_tables.errors import InputError
+from puck_tables.io.columns import derived, following
 from puck_tables.io.dataset import Dataset, variable
 from puck_tables.result import Result
 from puck_tables.stopping.per_height import SolverPerHeight
@@ -67,6 +68,13 @@ class Stops(Result):
         row: FloatArray = values[index].reshape(self._shape)
         return row
 
+    def __getattr__(self, name: str) -> FloatArray:
+        """A column that follows from others, such as ``stop_distance`` (…) m."""
+        if name in ("stop_x", "stop_y"):
+            return self._row(OUTPUTS.index(name))
+        column: FloatArray = following(self, name)
+        return column
+
     @property
     def path_length(self) -> FloatArray:
         """Metres."""
@@ -92,6 +100,7 @@ class Stops(Result):
         shape = self._shape or (1,)
         launches = dict(zip(_LAUNCHES, self._launches, strict=False))
         columns = {**launches, **dict(zip(OUTPUTS, self._all, strict=True))}
+        columns |= derived(columns)
         variables = {n: variable(n, row.reshape(shape), dims) for n, row in columns.items()}
         status = self.status.reshape(shape)
         variables["status"] = variable("status", status, dims, STATUS_MEANINGS)

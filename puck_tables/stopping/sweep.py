@@ -18,7 +18,7 @@ from puck_tables._core.real import finite_array, one_velocity, positive
 from puck_tables.accuracy.front import Selection
 from puck_tables.contact.laws import Law
 from puck_tables.errors import InputError
-from puck_tables.io.columns import COLUMNS
+from puck_tables.io.columns import COLUMNS, derived, following
 from puck_tables.io.dataset import Dataset, variable
 from puck_tables.result import Result
 from puck_tables.stopping.per_height import HEIGHT_COST, SolverPerHeight
@@ -30,7 +30,7 @@ FloatArray = npt.NDArray[np.float64]
 Progress = Callable[[int, int], None]
 
 # Arrays, the encoded HDF5 file and working copies; as text (CSV) much more.
-BYTES_PER_LAUNCH, BYTES_PER_ROW = 130, 750
+BYTES_PER_LAUNCH, BYTES_PER_ROW = 160, 850
 
 _ARGUMENTS = {"delta": "delta", "launch_speed": "speed", "launch_spin": "spin"}
 DEFAULT_SPEED = np.linspace(0.0, 2.0, 41)
@@ -70,6 +70,11 @@ class StopMap(Result):
 
     picture: ClassVar[str] = "stop_map"
 
+    def __getattr__(self, name: str) -> FloatArray:
+        """A column that follows from others, such as ``stop_distance`` in m."""
+        column: FloatArray = following(self, name)
+        return column
+
     def __repr__(self) -> str:
         ranged = " x ".join(f"{name} ({values.size})" for name, values in self.axes.items())
         return f"StopMap({ranged or 'one launch'}, by {self.method})"
@@ -82,7 +87,9 @@ class StopMap(Result):
         """The stops over what was ranged; the rest as attributes."""
         dims = tuple(self.axes)
         axes = {name: variable(name, values, (name,)) for name, values in self.axes.items()}
-        columns = {name: variable(name, getattr(self, name), dims) for name in OUTPUTS}
+        values = {name: getattr(self, name) for name in OUTPUTS}
+        values |= derived(values)
+        columns = {name: variable(name, array, dims) for name, array in values.items()}
         columns["status"] = variable("status", self.status, dims, STATUS_MEANINGS)
         attributes = {
             "title": "Stops of sliding, spinning pucks", **self.fixed,
