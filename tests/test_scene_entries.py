@@ -55,6 +55,7 @@ CASES: dict[str, tuple[dict[str, Any], Any]] = {
     "launch.position": ({}, [1.0, 0.0]),
     "launch.orientation": ({}, 1.0),
     "drag.sliding": ({}, 0.1),
+    "drag.quadratic": ({}, 0.1),
     "drag.spinning": ({}, 1e-4),
     "force.constant": ({}, [0.1, 0.0]),
     "force.torque": ({}, 1e-3),

@@ -238,3 +238,24 @@ def test_a_triangle_of_force_moves_and_stops_it(tmp_path: Any) -> None:
     way += fast + 0.5 * (peak - hold) - peak / 6.0
     assert run.end_time == pytest.approx(2.0 + at_two / hold, rel=1e-9)
     assert run.last["x"] == pytest.approx(way + 0.5 * at_two**2 / hold, rel=1e-9)
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.1])
+def test_quadratic_drag(friction: float) -> None:
+    """m v′ = −c v² − f m g: v0/(1 + c v0 t/m), or atan(v0 k)/(k f g) with k² = c/(m f g)."""
+    drag, mass, v0 = 0.3, 0.2, 3.0
+    tables = scene(drag={"quadratic": drag}, run={"time": 2.0}, puck={"friction": friction})
+    tables["puck"]["mass"] = mass
+    run = simulate_scene(tables)
+    if friction == 0.0:
+        fall = 1.0 + drag * v0 * 2.0 / mass
+        assert run.last["vx"] == pytest.approx(v0 / fall, abs=1e-10)
+        assert run.last["x"] == pytest.approx(mass / drag * math.log(fall), abs=1e-10)
+    else:
+        k2 = drag / (mass * friction * G)
+        assert run.end_time == pytest.approx(math.atan(v0 * math.sqrt(k2)) / (
+            math.sqrt(k2) * friction * G), abs=1e-10)  # fmt: skip
+        far = mass / (2.0 * drag) * math.log(1.0 + k2 * v0 * v0)
+        assert run.last["x"] == pytest.approx(far, abs=1e-10)
+    assert run.energy_residual < 1e-10
+    assert run.last["heat_viscous"] > 0.0

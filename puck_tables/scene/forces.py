@@ -31,7 +31,8 @@ class Forces(NamedTuple):
 
     ``x``, ``y`` N, ``torque`` N m: constant, with gravity along the slope; ``drive``: rows (n, 4)
     of time, force and torque over time, straight between the rows and nothing before and after;
-    ``sliding`` kg/s, ``spinning`` N m s: drag per relative speed and spin.
+    ``sliding`` kg/s, ``spinning`` N m s: drag per relative speed and spin; ``quadratic`` kg/m: per
+    relative speed squared.
     """
 
     x: float
@@ -40,6 +41,7 @@ class Forces(NamedTuple):
     drive: FloatArray
     sliding: float
     spinning: float
+    quadratic: float
 
 
 def forces_of(scene: Scene) -> Forces:
@@ -65,6 +67,7 @@ def forces_of(scene: Scene) -> Forces:
         drive=drive_of(force.over_time) if force.over_time else np.empty((0, 4)),
         sliding=drag.sliding,
         spinning=drag.spinning,
+        quadratic=drag.quadratic,
     )
 
 
@@ -77,7 +80,7 @@ def strongest(forces: Forces, radius: float, speed: FloatArray) -> FloatArray:
         float(np.hypot(drive[:, 1], drive[:, 2]).max(initial=0.0)),
         float(np.abs(drive[:, 3]).max(initial=0.0)) / radius,
     )
-    return np.maximum(given, speed * forces.sliding)
+    return np.maximum(given, speed * (forces.sliding + forces.quadratic * speed))
 
 
 def impulse_over_time(forces: Forces, radius: float) -> tuple[float, float]:
@@ -123,11 +126,13 @@ def damping(forces: Forces, mass: float, inertia: float) -> float:
 @inlined
 def drag_force(forces: Forces, ux: float, uy: float, w: float) -> tuple[float, float, float, float]:
     """Force, torque and the power they take (Chetaev's 2f₂) at velocities relative to the floor."""
+    squared = ux * ux + uy * uy
+    sliding = forces.sliding + forces.quadratic * math.sqrt(squared)
     return (
-        -forces.sliding * ux,
-        -forces.sliding * uy,
+        -sliding * ux,
+        -sliding * uy,
         -forces.spinning * w,
-        forces.sliding * (ux * ux + uy * uy) + forces.spinning * w * w,
+        sliding * squared + forces.spinning * w * w,
     )
 
 

@@ -66,10 +66,13 @@ class Launch:
 
 @dataclass(frozen=True)
 class Drag:
-    """Viscous friction against the floor, as in an air cushion or a film."""
+    """Friction against the floor, linear as in a film or quadratic as in a wake."""
 
     sliding: float = of(
         "number", 0.0, "kg/s", low=0.0, doc="force over relative speed", acts="drag"
+    )
+    quadratic: float = of(
+        "number", 0.0, "kg/m", low=0.0, doc="force over relative speed squared", acts="drag"
     )
     spinning: float = of(
         "number", 0.0, "N m s", low=0.0, doc="torque over relative spin", acts="drag"
