@@ -82,7 +82,7 @@ COLUMNS = {
     # scenes
     "work_given": Column("J", "work of forces", "work of gravity and of given forces"),
     "heat_dry": Column("J", "heat of dry friction", "heat of dry friction"),
-    "heat_viscous": Column("J", "heat of viscous friction", "heat of viscous friction, 2 f2"),
+    "heat_viscous": Column("J", "heat of drag", "heat of drag, 2 f2"),
     "work_support": Column("J", "work of supports", "work of moving floor and constraints, -f1"),
     "lambda_1": Column(
         "N", "reaction 1", "reaction of the constraint: across rail or blade, along x for a pivot"

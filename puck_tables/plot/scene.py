@@ -30,7 +30,7 @@ FloatArray = npt.NDArray[np.float64]
 _ENERGIES = {
     "kinetic_energy": ("kinetic", BLUE),
     "heat_dry": ("dry friction", ORANGE),
-    "heat_viscous": ("viscous friction", GREEN),
+    "heat_viscous": ("drag", GREEN),
     "heat_impact": ("impacts", RED),
     "work_given": ("work of forces", "#8b2fa0"),
     "work_support": ("work of supports", GREY),
