@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from puck_tables._core.real import instance
 from puck_tables.io.dataset import Dataset
 from puck_tables.io.formats import save
 
@@ -64,6 +65,7 @@ class Result:
         ...     print(Path(folder, "run.csv").read_text()[:17])
         time[s],x[m],y[m]
         """
+        instance("path", path, str, Path)
         save(self.dataset(), path, overwrite)
 
     def plot(

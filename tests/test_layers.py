@@ -16,7 +16,7 @@ ROOMS = {
     "_core": "errors",
     "contact": "_core errors",
     "io": "_core _version errors",
-    "result": "io",
+    "result": "_core io",
     "accuracy": "errors",
     "chetaev": "_core contact errors io result",
     "kernels": "_core contact errors",

@@ -161,3 +161,51 @@ def test_a_puck_without_friction_is_for_scenes() -> None:
             ask((1.0, 0.0))
     run = pt.Scene(puck, launch=LAUNCH, run=pt.Run(time=2.0)).simulate()
     assert run.last["x"] == pytest.approx(1.6, rel=1e-12)
+
+
+def test_a_changed_copy_keeps_the_ranges_of_the_parts_that_it_keeps() -> None:
+    scene = pt.Scene(PUCK, pt.Floor(slope=[0.0, 0.05]), pt.Launch([[1, 0], [0, 1]]))  # type: ignore[arg-type]
+    assert list(replace(scene, title="a").ranges) == ["launch", "floor.slope"]
+    other = replace(scene, floor=pt.Floor(slope=[0.1, 0.2]))  # type: ignore[arg-type]
+    assert other.ranges["floor.slope"].tolist() == [0.1, 0.2]
+    assert list(replace(scene, floor=pt.Floor(slope=0.1)).ranges) == ["launch"]
+    assert list(replace(scene, launch=pt.Launch((1.0, 0.0))).ranges) == ["floor.slope"]
+    assert replace(scene, launch=pt.Launch([[3, 0], [4, 0]])).ranges["launch"][0, 0] == 3.0  # type: ignore[arg-type]
+    again = pickle.loads(pickle.dumps(scene))
+    assert again == scene and list(replace(again, title="b").ranges) == list(scene.ranges)
+
+
+@pytest.mark.parametrize(
+    ("parts", "words"),
+    [
+        ({"floor": pt.Floor(slope=[0.0, 0.1]), "ranges": {"floor.slope": [0.2]}}, "floor.slope: given"),
+        ({"launch": pt.Launch([[1, 0], [2, 0]], [1, 2]), "ranges": {"launch.spin": [3]}}, "spin: given"),
+        ({"launch": pt.Launch([[1, 0]]), "ranges": {"launch": np.ones((2, 6))}}, "launch: given"),
+        ({"constraint": pt.Constraint("rail", side_slip=1.0)}, "side_slip: a rail has none"),
+        ({"constraint": pt.Constraint("blade", reach=3.0)}, "reach: a blade has none"),
+        ({"launch": pt.Launch([[1, 0], [1]])}, r"launch.velocity = .* rows of two"),
+        ({"launch": pt.Launch(([1, 2, 3], [0, 1, 2]))}, r"launch.velocity = .* rows of two"),
+        ({"floor": pt.Floor(velocity=[[1, 0], [0, 1]])}, "not rows of them"),
+        ({"floor": pt.Floor(law=[[0.0, 0.1]])}, "floor.law: speeds and values"),
+        ({"force": pt.Force(over_time=[[1, 0, 0], [0, 0, 0]])}, "force.over_time: forces are"),
+        ({"ranges": {3: [1]}}, "ranges must be a mapping from paths"),
+        ({"walls": pt.Wall((1.0, 0.0), (1.0, 0.0))}, r"a list of tables, \[\[wall\]\], or of Wall"),
+        ({"floor": None}, "floor = None: must be a table or a Floor"),
+    ],
+)  # fmt: skip
+def test_what_contradicts_or_means_nothing_is_refused(parts: dict, words: str) -> None:
+    with pytest.raises(pt.InputError, match=words):
+        pt.Scene(PUCK, **parts)
+
+
+def test_many_launches_beside_a_range_stand_whole_in_a_table(tmp_path: Path) -> None:
+    launches = pt.Launch([[0.8, 0.5], [0.2, 0.9]], spin=[60.0, -20.0])  # type: ignore[arg-type]
+    stops = pt.Scene(PUCK, pt.Floor(slope=[0.0, 0.05, 0.1]), launches).sweep()  # type: ignore[arg-type]
+    table = stops.to_pandas()
+    assert len(table) == 6
+    assert table["launch_spin"].tolist() == [60.0] * 3 + [-20.0] * 3
+    assert table["floor_slope"].tolist() == [0.0, 0.05, 0.1] * 2
+    assert table["x"].tolist() == stops.x.ravel().tolist()
+    stops.save(tmp_path / "stops.csv")
+    assert len((tmp_path / "stops.csv").read_text().splitlines()) == 7
+    assert stops.to_pandas().columns.tolist()[:2] == ["launch", "floor_slope"]

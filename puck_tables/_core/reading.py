@@ -74,8 +74,7 @@ def read_part(kind: type[T], data: Any, path: str, reading: Reading) -> T | None
     if isinstance(data, kind):
         data = given_in(data, specs(kind))
     if not isinstance(data, Mapping):
-        wrong = f"a table or a {kind.__name__}" if dataclasses.is_dataclass(data) else "a table"
-        reading.fault(path or kind.__name__.lower(), data, wrong)
+        reading.fault(path or kind.__name__.lower(), data, f"a table or a {kind.__name__}")
         return None
     values = read_values(kind, data, path, reading)
     if values is None:
@@ -158,7 +157,7 @@ def _read(kind: Kind, value: Any, path: str, reading: Reading, default: Any) -> 
     items = _items(value)
     if kind.shape == "parts":
         if items is None:
-            reading.fault(path, value, f"a list of tables, [[{path}]]")
+            reading.fault(path, value, f"a list of tables, [[{path}]], or of {kind.part.__name__}")
             return ()
         return tuple(
             read_part(kind.part, item, f"{path}[{i}]", reading) for i, item in enumerate(items)
@@ -167,6 +166,13 @@ def _read(kind: Kind, value: Any, path: str, reading: Reading, default: Any) -> 
     if many is not None and np.isfinite(many).all():
         reading.batches[path] = many
         return (float(many[0, 0]), float(many[0, 1]))
+    both = (
+        kind.shape == "pair" and items is not None and all(_items(one) is not None for one in items)
+    )
+    if both and reading.ranges is not None:
+        what = "or rows of two" if kind.batch else "not rows of them"
+        reading.fault(path, value, f"{kind.allowed()}, {what} (a range is 'START:STOP:COUNT')")
+        return (0.0, 0.0)
     count = 2 if kind.shape == "pair" else None
     if items is None or (count is not None and len(items) != count):
         several = " (or many of them, one for each launch)" if kind.batch else ""

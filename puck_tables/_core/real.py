@@ -56,7 +56,11 @@ def real_array(name: str, values: npt.ArrayLike, unit: str) -> FloatArray:
             raise TypeError
         return array.astype(np.float64)
     except (TypeError, ValueError, OverflowError, UserWarning):  # the last: a masked one in a list
-        raise InputError(f"{name} must be real numbers in {unit}") from None
+        raise InputError(f"{name} must be real numbers{_in(unit)}") from None
+
+
+def _in(unit: str) -> str:
+    return "" if unit == "1" else f" in {unit}"
 
 
 def finite_array(name: str, values: npt.ArrayLike, unit: str) -> FloatArray:
@@ -74,7 +78,7 @@ def finite_array(name: str, values: npt.ArrayLike, unit: str) -> FloatArray:
     array = real_array(name, values, unit)
     if not np.isfinite(array).all():
         raise InputError(
-            f"{name} must be finite numbers in {unit}, got {array[~np.isfinite(array)].flat[0]}"
+            f"{name} must be finite numbers{_in(unit)}, got {array[~np.isfinite(array)].flat[0]}"
         )
     return array
 

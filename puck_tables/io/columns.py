@@ -159,6 +159,9 @@ def following(result: Any, name: str) -> Any:
         If it follows from none.
     """
     column = COLUMNS.get(name)
-    if column is None or column.by is None:
-        raise AttributeError(f"{type(result).__name__} has no {name}")
-    return column.by(*(getattr(result, one) for one in column.of))
+    try:
+        if column is None or column.by is None:
+            raise AttributeError
+        return column.by(*(getattr(result, one) for one in column.of))
+    except AttributeError:
+        raise AttributeError(f"{type(result).__name__} has no {name}") from None

@@ -52,8 +52,9 @@ def variable(
 class Dataset:
     """Axes, columns over them, scalars, and texts of any length; all by name.
 
-    The dimensions of the first column are those of the table that a text format writes; columns
-    with others (the events of a scene) are in HDF5 and xarray only.
+    The dimensions of the table that a text format writes are those of the first column that has
+    most; columns over some of them are repeated, columns with others (the events of a scene) are in
+    HDF5 and xarray only.
     """
 
     axes: Mapping[str, Variable]
@@ -71,18 +72,21 @@ class Dataset:
         >>> Dataset({"launch_spin": launches}, {"stop_time": times}).table()["stop_time"].values
         array([3., 4.])
         """
-        dims = next(iter(self.columns.values())).dims
+        main = max(self.columns.values(), key=lambda one: len(one.dims))
+        dims, shape = main.dims, np.shape(main.values)
         axes = [self.axes[name] for name in dims if name in self.axes]
         grids = np.meshgrid(*(axis.readable() for axis in axes), indexing="ij") if axes else []
         named = [name for name in dims if name in self.axes]
         whole = {
             name: (axis, grid.ravel()) for name, axis, grid in zip(named, axes, grids, strict=True)
         }
-        whole |= {
-            name: (column, np.ravel(column.readable()))
-            for name, column in self.columns.items()
-            if column.dims == dims
-        }
+        for name, column in self.columns.items():
+            if set(column.dims) <= set(dims):
+                sizes = [
+                    size if dim in column.dims else 1 for dim, size in zip(dims, shape, strict=True)
+                ]
+                values = column.readable().reshape(sizes)
+                whole[name] = (column, np.broadcast_to(values, shape).ravel())
         return {
             name: Variable(values, ("row",), one.unit, one.long_name)
             for name, (one, values) in whole.items()

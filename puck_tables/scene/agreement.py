@@ -5,13 +5,17 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from puck_tables.scene.parts import Constraint, Edge, Floor, Wall
+from puck_tables.contact.speed_law import SpeedLaw
+from puck_tables.errors import InputError
+from puck_tables.scene.forces import drive_of
+from puck_tables.scene.parts import Constraint, Edge, Floor, Rows, Wall
 
 if TYPE_CHECKING:
     from puck_tables.scene.scene import Scene
 
 MATCH = 1e-9  # how well a launch must fit its constraint, of its speed
 _SMALLEST, _LARGEST = 1e-100, 1e100
+_NOT_OF = {"rail": ("reach", "side_slip"), "pivot": ("side_slip",), "blade": ("reach", "velocity")}
 
 
 def disagreements(scene: Scene) -> list[str]:
@@ -36,6 +40,7 @@ def disagreements(scene: Scene) -> list[str]:
             )
         if any(b <= a for a, b in zip(strips.borders, strips.borders[1:], strict=False)):
             faults.append(f"floor.strips.borders = {list(strips.borders)}: must ascend")
+    faults += _bad_rows(scene)
     if not scene.run.frames.is_integer():
         faults.append(f"run.frames = {scene.run.frames:g}: must be a whole number")
     lines: list[tuple[str, Wall | Edge]] = [(f"wall[{i}]", w) for i, w in enumerate(scene.walls)]
@@ -57,9 +62,39 @@ def disagreements(scene: Scene) -> list[str]:
         return faults
     if scene.walls:
         faults.append("constraint and wall: a scene has one of them, not both")
+    for name in _NOT_OF[hold.kind]:
+        if getattr(hold, name) not in (0.0, (0.0, 0.0)):
+            faults.append(f"constraint.{name}: a {hold.kind} has none, leave it out")
     if hold.kind == "pivot" and not hold.reach > 0.0:
         faults.append(f"constraint.reach = {hold.reach:g}: a pivot needs a number > 0 m")
     return faults + _misfit(scene, hold)
+
+
+def _bad_rows(scene: Scene) -> list[str]:
+    """What is wrong with tables that stand in the scene; those in files are read when it runs."""
+    faults = []
+    law, force = scene.floor.law, scene.force.over_time
+    for name, rows, made in (("floor.law", law, law_of_rows), ("force.over_time", force, drive_of)):
+        if rows and not isinstance(rows, str):
+            try:
+                made(rows)
+            except InputError as error:
+                faults.append(str(error) if name in str(error) else f"{name}: {error}")
+    return faults
+
+
+def law_of_rows(rows: Rows) -> SpeedLaw:
+    """The friction law of rows of slip speed and coefficient.
+
+    Raises
+    ------
+    InputError
+        If they are none.
+    """
+    if any(len(row) != 2 for row in rows):
+        raise InputError("each row must be two numbers, slip speed in m/s and f")
+    speeds, values = zip(*rows, strict=True)
+    return SpeedLaw(speeds, values)
 
 
 def _misfit(scene: Scene, hold: Constraint) -> list[str]:

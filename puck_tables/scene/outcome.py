@@ -98,9 +98,10 @@ class SceneRun(Result):
 
     def __repr__(self) -> str:
         title = f"{self.scene.title}: " if self.scene.title else ""
+        count = len(self.events)
         return (
             f"SceneRun({title}{self.end} after {self.end_time:.6g} s at ({self.last['x']:.6g}, "
-            f"{self.last['y']:.6g}) m, {len(self.events)} events)"
+            f"{self.last['y']:.6g}) m, {count} event{'s' if count != 1 else ''})"
         )
 
     def __getattr__(self, name: str) -> FloatArray:
@@ -108,6 +109,11 @@ class SceneRun(Result):
         if name in SLIPS:
             return self._derived()[name]
         return column_of(self, name)
+
+    @property
+    def impacts(self) -> int:
+        """How many impacts on walls there were."""
+        return sum(event.what == "impact" for event in self.events)
 
     def _derived(self) -> dict[str, FloatArray]:
         found, rim = derived(self.columns), self.scene.puck.radius * self.columns["spin"]

@@ -15,7 +15,7 @@ from puck_tables.errors import AccuracyError, InputError
 from puck_tables.kernels.section_spline import HEADER, RATIOS
 from puck_tables.motion.body import body_of, is_plain
 from puck_tables.motion.friction import closed_form_friction, table_friction
-from puck_tables.scene.agreement import launch_velocity
+from puck_tables.scene.agreement import launch_velocity, law_of_rows
 from puck_tables.scene.ingredients import BySpeed, Regions
 from puck_tables.scene.scene import Scene
 from puck_tables.table.friction_section import FINEST_ACCURACY
@@ -103,10 +103,7 @@ def speed_law(scene: Scene) -> SpeedLaw:
     law = scene.floor.law
     if isinstance(law, str):
         return SpeedLaw.from_csv(law)
-    if any(len(row) != 2 for row in law):
-        raise InputError("floor.law: each row must be two numbers, slip speed in m/s and f")
-    speeds, values = zip(*law, strict=True)
-    return SpeedLaw(speeds, values)
+    return law_of_rows(law)
 
 
 def law_name(scene: Scene) -> str:

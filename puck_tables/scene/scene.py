@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from importlib import import_module
@@ -14,7 +15,7 @@ import numpy.typing as npt
 
 from puck_tables._core.executor import Progress
 from puck_tables._core.fields import of, specs
-from puck_tables._core.reading import Range, Reading, given_in, read_values
+from puck_tables._core.reading import MAX_COUNT, Range, Reading, given_in, read_values
 from puck_tables.errors import InputError
 from puck_tables.puck import Puck
 from puck_tables.scene.agreement import disagreements
@@ -42,7 +43,8 @@ class Scene:
     walls, edges : sequences of Wall, of Edge, optional
     constraint : Constraint, optional
     ranges : mapping, optional
-        Values of numbers that take several, by path, such as ``{"puck.height": [0.0, 0.01]}``.
+        Values of numbers that take several, by path, such as ``{"puck.height": [0.0, 0.01]}``.  A
+        changed copy (:func:`dataclasses.replace`) keeps those of the parts that it keeps.
 
     Parts may also be tables.  Numbers may be numpy scalars; where a number stands a list, an array
     or a text 'START:STOP:COUNT' is a range, a dimension of :meth:`sweep`.  Such a number stands at
@@ -78,10 +80,14 @@ class Scene:
     ranges: Mapping[str, FloatArray] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        tables = given_in(self, {})
-        if self.ranges:  # as if they stood where their numbers are
+        tables, ranges = given_in(self, {}), self.ranges
+        if isinstance(ranges, _Ranges):  # of the scene of which this one is a changed copy
+            ranges = ranges.of_the_same(self)
+        else:
+            _refuse_twice(type(self), tables, ranges)
+        if ranges:  # as if they stood where their numbers are
             tables = tables_of(self)
-            for path, values in self.ranges.items():
+            for path, values in ranges.items():
                 for entry, column in columns_of(path, values):
                     set_path(tables, entry, column)
         self._fill(tables, "scene")
@@ -263,6 +269,8 @@ class Scene:
         >>> Scene(Puck(0.04)).at({"launch.spin": 5.0}).launch.spin
         5.0
         """
+        if not isinstance(numbers, Mapping):
+            raise InputError("numbers must be a mapping from paths such as 'launch.spin'")
         tables = tables_of(self)
         for path, number in numbers.items():
             set_path(tables, path, number)
@@ -297,9 +305,54 @@ class Scene:
         axes = {path: one.numbers() for path, one in found.items()}
         if len(batch):
             axes = {BATCH: _launches(self.launch, batch), **axes}
-        object.__setattr__(self, "ranges", axes)
+        object.__setattr__(self, "ranges", _Ranges(axes, self))
         if not axes and (faults := disagreements(self)):  # else they are up to each run
             raise _refusal(faults, source)
+
+
+class _Ranges(dict[str, Any]):
+    """Ranges, and the parts of the scene that they are of."""
+
+    def __init__(self, axes: Mapping[str, FloatArray], scene: Scene) -> None:
+        super().__init__(axes)
+        known = specs(type(scene)).items()
+        self.parts = {table: getattr(scene, spec.name) for table, spec in known}
+
+    def __reduce__(self) -> Any:
+        return _Ranges.again, (dict(self), self.parts)
+
+    @staticmethod
+    def again(axes: dict[str, FloatArray], parts: dict[str, Any]) -> _Ranges:
+        """The same, from a pickle."""
+        ranges = _Ranges.__new__(_Ranges)
+        ranges.update(axes)
+        ranges.parts = parts
+        return ranges
+
+    def of_the_same(self, scene: Scene) -> dict[str, FloatArray]:
+        """Without those of parts that another scene has replaced."""
+        known = specs(type(scene)).items()
+        kept = [name for name, spec in known if getattr(scene, spec.name) is self.parts.get(name)]
+        return {path: one for path, one in self.items() if re.split(r"[.\[]", path)[0] in kept}
+
+
+def _refuse_twice(kind: type, tables: Mapping[str, Any], ranges: Any) -> None:
+    """Refuse ranges that are none, or of numbers that are lists already.
+
+    Raises
+    ------
+    InputError
+    """
+    if not isinstance(ranges, Mapping) or not all(isinstance(path, str) for path in ranges):
+        raise InputError("ranges must be a mapping from paths such as 'launch.spin' to values")
+    if ranges:
+        reading = Reading([], {})
+        read_values(kind, tables, "", reading)
+        listed = {*(reading.ranges or {}), *reading.batches}
+        many = BATCH in ranges and bool(reading.batches)
+        twice = [path for path in ranges if path in listed] + [BATCH] * many
+        if twice:
+            raise InputError(f"{', '.join(twice)}: given as a list and in ranges: give one of them")
 
 
 def _refusal(faults: list[str], source: str) -> InputError:
@@ -314,6 +367,8 @@ def _batch(
     if not pairs:
         return {}
     count = len(next(iter(pairs.values())))
+    if count > MAX_COUNT:
+        errors.append(f"{count} launches: at most {MAX_COUNT} in one scene")
     numbers: dict[str, FloatArray] = {
         path: ranges.pop(path).numbers()
         for path in ("launch.spin", "launch.orientation")

@@ -220,7 +220,7 @@ def truth(scene: dict[str, Any], second: bool = False) -> dict[str, Any]:
         n, gain = slider.steady(_pull(scene, 0.0), n)
         way = 0.5 * gain * span**2 * n
         return {
-            "rests": None, "slips": 0.0, "way": way * turn, "time": span,
+            "stick": None, "slip": 0.0, "way": way * turn, "time": span,
             "length": 0.5 * gain * span**2,
         }  # fmt: skip
     method = by_direction if second else cartesian
@@ -230,7 +230,7 @@ def truth(scene: dict[str, Any], second: bool = False) -> dict[str, Any]:
         size = float(np.linalg.norm(u))
         rests, way = method(scene, slider, 0.0, np.zeros(3), u, size, scene["run"]["time"])
         return {
-            "rests": rests, "slips": None, "way": way * turn, "time": rests,
+            "stick": rests, "slip": None, "way": way * turn, "time": rests,
             "length": size * rests,
         }  # fmt: skip
     if share <= 1.0002:
@@ -242,7 +242,7 @@ def truth(scene: dict[str, Any], second: bool = False) -> dict[str, Any]:
             top**3 / 6.0 + top * top * after / 2.0 + top * after**2 / 2.0 - after**3 / 6.0
         )
         return {
-            "rests": span / share + top + after, "slips": span / share, "way": way * n * turn,
+            "stick": span / share + top + after, "slip": span / share, "way": way * n * turn,
             "time": top + after, "length": way, "doubt": 3.0 * (share - 1.0),
         }  # fmt: skip
     # the slip begins along the one that keeps its direction, for its size is next to nothing
@@ -256,7 +256,7 @@ def truth(scene: dict[str, Any], second: bool = False) -> dict[str, Any]:
     u, z = speed * n, speed * wait / 3.0 * n
     lasts, way = method(scene, slider, wait, z, u, size, 2.0 * span)
     return {
-        "rests": span / share + lasts, "slips": span / share, "way": way * turn, "time": lasts,
+        "stick": span / share + lasts, "slip": span / share, "way": way * turn, "time": lasts,
         "length": size * lasts,
     }  # fmt: skip
 
@@ -276,7 +276,7 @@ def judged(
     shares = {
         "way": float(np.max(np.abs(found - true))) / max(grown * best["length"], 1e-14 * radius)
     }
-    for name in ("rests", "slips"):
+    for name in ("stick", "slip"):
         times = [event.time for event in run.events if event.what == name]
         if best[name] is not None and best[name] > 0.0:
             off = abs(times[-1] - best[name]) if times else math.inf
