@@ -12,6 +12,15 @@ def test_next_to_the_limit(index, tmp_path):
     assert steps <= 20_000
 
 
+@pytest.mark.parametrize("index", [105, 1203])
+def test_a_millionth_below_the_limit(index, tmp_path):
+    """Rounding of what friction leaves of the force, a millionth, shortens no step."""
+    scene = draw(1, index)
+    word, share, why, steps = judged(scene, truth(scene), 1e-9, tmp_path)
+    assert word == "right", (share, why)
+    assert steps <= 15_000
+
+
 @pytest.mark.nightly
 @pytest.mark.parametrize("index", range(200))
 def test_next_to_the_limit_in_many_ways(index, tmp_path):

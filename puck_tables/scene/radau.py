@@ -1,9 +1,10 @@
 """A step of Radau IIA, order 5, for slips whose direction settles much faster than they change.
 
 The three stages z_i = y(t + c_i h) − y solve z = h A f(y + z).  Only velocities and spin are stiff:
-Newton's iteration uses the Jacobian of their rates at the start of the step, by differences, and
-takes the rest along.  The error is that of Hairer and Wanner (Solving Ordinary Differential
-Equations II, IV.8), (μ/h − J)⁻¹ (f₀ + Σ e_i z_i/h).
+Newton's iteration uses the Jacobian of their rates at the start of the step, by differences, at
+each stage scaled by how much faster a smaller slip settles, and takes the rest along.  The error is
+that of Hairer and Wanner (Solving Ordinary Differential Equations II, IV.8), (μ/h − J)⁻¹ (f₀ +
+Σ e_i z_i/h).
 """
 
 from __future__ import annotations
@@ -14,7 +15,15 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.kernels.compile import allocating, inlined
-from puck_tables.scene.equations import FIRST, SECOND, SIZE, rates, slip_speed
+from puck_tables.scene.equations import (
+    FIRST,
+    SECOND,
+    SIZE,
+    rates,
+    settling_rates,
+    slip_speed,
+    stopping,
+)
 from puck_tables.scene.friction import SPIN, VX, X
 from puck_tables.scene.ingredients import Stretch
 
@@ -30,11 +39,13 @@ _C = _A.sum(axis=1)
 _ERROR = np.array([-13 - 7 * _ROOT, -13 + 7 * _ROOT, -1.0]) / 3.0
 _MU = 3.0 + 3.0 ** (2 / 3) - 3.0 ** (1 / 3)
 _STIFF = 3  # vx, vy, spin
+_LEAST = 0.1  # of the slip: that a step leaves, as Newton's iteration foresees it
 _NUDGE = 1e-7  # of the slip: of the differences
 _ITERATIONS = 12
 _RELATIVE = 1e-3  # of the slip: no step is worse
 _ROUNDING = 1e-12  # of the scales: what no iteration makes better, and
 _NOISE = 1e-14  # of what friction alone would do in the step
+_WAY = 1e-14  # of a step's way: what its places and energies are known to, however short it is
 _SURE = 1e-6  # of it: how well the stages are known
 
 
@@ -89,6 +100,17 @@ def _jacobian(
             out[i, j] = (rows[1, VX + i] - rows[0, VX + i]) / nudge
 
 
+@inlined
+def _stiffer(stretch: Stretch, h: float, y: FloatArray, work: FloatArray) -> float:
+    """By what the slip settles faster after h, when it has changed at its rate of now, work[0]."""
+    model, q = stretch.model, slip_speed(stretch.model.body.radius, y)
+    if not q > 0.0:
+        return 1.0
+    damps, turns = settling_rates(model, stretch.dry.load)
+    later = max(q + h * stopping(model.body.radius, y, work)[3], _LEAST * q)
+    return (damps + turns / later) / (damps + turns / q)
+
+
 @allocating
 def radau_step(
     stretch: Stretch, t: float, h: float, y: FloatArray, scale: FloatArray, work: FloatArray,
@@ -102,25 +124,30 @@ def radau_step(
     jacobian, step = np.empty((_STIFF, _STIFF)), np.empty(3 * _STIFF)
     matrix, order = np.empty((3 * _STIFF, 3 * _STIFF)), np.empty(3 * _STIFF, np.int64)
     _jacobian(stretch, t, y, at, rows, jacobian)
-    for i in range(3 * _STIFF):
-        for j in range(3 * _STIFF):
-            part = h * _A[i // _STIFF, j // _STIFF] * jacobian[i % _STIFF, j % _STIFF]
-            matrix[i, j] = (1.0 if i == j else 0.0) - part
+    for stage in range(3):
+        stiffer = h * _stiffer(stretch, _C[stage] * h, y, work)
+        for j in range(_STIFF):
+            column = _STIFF * stage + j
+            for i in range(3 * _STIFF):
+                part = stiffer * _A[i // _STIFF, stage] * jacobian[i % _STIFF, j]
+                matrix[i, column] = (1.0 if i == column else 0.0) - part
     if not _factored(matrix, order):
         return math.inf
     for stage in range(3):
         for i in range(SIZE):
-            z[stage, i] = h * _C[stage] * work[0, i]
+            settles = VX <= i < VX + _STIFF  # within the step, so its rate now says nothing of it
+            z[stage, i] = 0.0 if settles else h * _C[stage] * work[0, i]
     before, slip_scale = math.inf, scale[VX]
     dry, body = stretch.dry, stretch.model.body
-    rounding = _ROUNDING + _NOISE * abs(h) * dry.load / (body.mass * slip_scale)
+    brakes = abs(h) * dry.load / (body.mass * slip_scale)
+    rounding = _ROUNDING + _NOISE * brakes
     new[:] = math.nan
     for iteration in range(_ITERATIONS):
         for stage in range(3):
             for i in range(SIZE):
                 at[i] = y[i] + z[stage, i]
             rates(stretch, t + _C[stage] * h, at, rows, stage)
-        largest = 0.0
+        largest, carried = 0.0, 0.0
         for stage in range(3):
             for i in range(SIZE):
                 whole = 0.0
@@ -131,7 +158,7 @@ def radau_step(
                     step[_STIFF * stage + i - VX] = whole - z[stage, i]
                 else:
                     change = abs(whole - z[stage, i]) / scale[i]
-                    largest = max(largest, change)
+                    carried = max(carried, change)
                     z[stage, i] = whole
         _solve(matrix, order, step)
         moved = 0.0
@@ -144,7 +171,10 @@ def radau_step(
         for i in range(SIZE):
             at[i] = y[i] + z[2, i]
         sure = moved <= _SURE * max(slip_speed(body.radius, y), slip_speed(body.radius, at))
-        stalls = iteration > 1 and largest >= 0.3 * before and largest <= rounding
+        # the step carries what rounding leaves of velocities on to places and energies
+        noise = max(largest, carried / (1.0 + brakes))
+        largest = max(largest, carried)
+        stalls = iteration > 1 and largest >= 0.3 * before and noise <= rounding
         if sure and (largest <= stretch.newton or stalls):
             break
         if not largest < math.inf or (iteration > 2 and largest > 0.9 * before):
@@ -174,7 +204,8 @@ def _error(
             matrix[i, j] = (_MU / h if i == j else 0.0) - jacobian[i, j]
     if not _factored(matrix, order):
         return math.inf
-    largest = 0.0
+    largest, radius = 0.0, stretch.model.body.radius
+    left = max(slip_speed(radius, y), slip_speed(radius, new))
     for i in range(SIZE):
         defect = work[0, i]
         for j in range(3):
@@ -182,10 +213,9 @@ def _error(
         if VX <= i < VX + _STIFF:
             b[i - VX] = defect
         else:
-            largest = max(largest, abs(defect) * h / _MU / scale[i])
+            way = abs(work[0, i]) / scale[i] + left / scale[X]
+            largest = max(largest, h * (abs(defect) / _MU / scale[i] - _WAY * way))
     _solve(matrix, order, b)
-    radius = stretch.model.body.radius
-    left = max(slip_speed(radius, y), slip_speed(radius, new))
     for i in range(_STIFF):
         size = scale[VX + i]
         error = abs(b[i]) / size
