@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables._core.real import finite_array, instance, one_velocity, real
+from puck_tables._core.real import finite_array, one_velocity, real
 from puck_tables.accuracy.front import Selection
 from puck_tables.accuracy.methods import INTEGRATORS, method_named
 from puck_tables.errors import InputError
@@ -24,6 +24,7 @@ from puck_tables.motion.state import LENGTH, PSI, THETA, T, U, X, Y
 from puck_tables.puck import PUCK_UNITS, Puck
 from puck_tables.result import Result
 from puck_tables.table.resultant_table import ResultantTable
+from puck_tables.table.table import refuse_other_kind
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -185,7 +186,7 @@ def simulate(
     """The motion of a puck until it stops, as :meth:`puck_tables.Puck.simulate` has it."""
     launch, w = one_velocity(velocity), real("spin", spin, "rad/s")
     wanted = real("tol", tol, "dimensionless")
-    instance("table", table, ResultantTable, type(None))
+    refuse_other_kind(table, ResultantTable)
     if exact and table is not None:
         raise InputError("exact and table exclude each other: closed forms need no table")
     stepper = method_named(method, INTEGRATORS)

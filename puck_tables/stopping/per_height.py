@@ -17,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.executor import Progress, run_chunks
-from puck_tables._core.real import instance, real
+from puck_tables._core.real import real
 from puck_tables.accuracy.front import COARSEST, UNITS, Selection, select
 from puck_tables.accuracy.methods import INTEGRATED, LOOK_UP, Method, Scheme, Source, method_named
 from puck_tables.contact.laws import Law, law_of
@@ -39,6 +39,7 @@ from puck_tables.stopping.solvers import (
 from puck_tables.stopping.stop_section import FINEST_SECTION, stop_section_for
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.table.resultant_table import ResultantTable
+from puck_tables.table.table import refuse_other_kind
 
 FloatArray = npt.NDArray[np.float64]
 AnyTable = ResultantTable | StopTable | None
@@ -74,7 +75,7 @@ class SolverPerHeight:
         self, pressure: str | Law, gyration: float, tol: float, method: str | None, table: AnyTable
     ) -> None:
         self.tol = real("tol", tol, "dimensionless")
-        instance("table", table, ResultantTable, StopTable, type(None))
+        refuse_other_kind(table, ResultantTable, StopTable)
         self._wanted = method_named(method)
         self._pressure, self._gyration, self._table = pressure, gyration, table
         self._plain_up_to = plain_up_to(pressure, gyration)

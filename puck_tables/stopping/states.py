@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.executor import run_chunks
-from puck_tables._core.real import broadcast, finite_array, instance, velocity_array
+from puck_tables._core.real import broadcast, finite_array, velocity_array
 from puck_tables.contact.laws import HOMOGENEOUS, Law, law_of
 from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import InputError
@@ -35,6 +35,7 @@ from puck_tables.stopping.per_height import refuse_many
 from puck_tables.stopping.solvers import fits
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.stopping.stops import as_rows, positive_array
+from puck_tables.table.table import refuse_other_kind
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -162,7 +163,7 @@ def states(
     >>> found.x.round(6).tolist(), found.spin.round(6).tolist()
     ([1.590682, 0.0, 2.213952], [2.426862, 5.0, 0.0])
     """
-    instance("table", table, StopTable, type(None))
+    refuse_other_kind(table, StopTable)
     highest = plain_up_to(pressure, gyration)
     if table is not None:
         if not highest > 0.0:

@@ -329,6 +329,26 @@ class Table(ABC):
         """
 
 
+def refuse_other_kind(table: Table | None, *kinds: type[Table]) -> None:
+    """Refuse a table, if one is given, that is not of these kinds.
+
+    Raises
+    ------
+    InputError
+
+    Examples
+    --------
+    >>> refuse_other_kind(Table.shipped("stops"), kind_named("resultants"))
+    Traceback (most recent call last):
+    ...
+    puck_tables.errors.InputError: table must be a Table of resultants, got one of stops
+    """
+    if table is not None and not isinstance(table, kinds):
+        wanted = " or ".join(kind.kind for kind in kinds)
+        got = f"one of {table.kind}" if isinstance(table, Table) else f"a {type(table).__name__}"
+        raise InputError(f"table must be a Table of {wanted}, got {got}")
+
+
 def kind_named(name: str) -> type[Table]:
     """The class of a kind.
 
