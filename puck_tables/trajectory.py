@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import finite_array, one_velocity, real
 from puck_tables.accuracy.front import Selection
 from puck_tables.accuracy.methods import INTEGRATORS, method_named
@@ -25,8 +26,6 @@ from puck_tables.puck import PUCK_UNITS, Puck
 from puck_tables.result import Result
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.table.table import refuse_other_kind
-
-FloatArray = npt.NDArray[np.float64]
 
 STATES = (
     "x", "y", "vx", "vy", "heading", "orientation", "speed", "spin", "slip_speed", "slip_angle",

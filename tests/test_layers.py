@@ -27,9 +27,9 @@ ROOMS = {
     "stopping": "_core accuracy contact errors io kernels motion puck result table",
     "trajectory": "_core accuracy errors io motion puck result stopping table",
     "scene": "_core contact errors io kernels motion puck result stopping table",
-    "tradeoff": "_version accuracy contact io kernels motion result stopping table",
+    "tradeoff": "_core _version accuracy contact io kernels motion result stopping table",
     "plot": "_core accuracy chetaev errors io motion scene stopping tradeoff trajectory",
-    "paper": "contact motion plot puck trajectory",
+    "paper": "_core contact motion plot puck trajectory",
     "cli": "_core _version accuracy chetaev contact errors io kernels motion paper plot puck scene "
     "stopping table tradeoff",
     "__init__": "_core _version",

@@ -28,11 +28,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables._core.safe_read import read_whole
 from puck_tables._core.sources import source_digest
 from puck_tables.errors import InputError, OutputError
-
-FloatArray = npt.NDArray[np.float64]
 
 _PAGE, _MARK = 4096, 8
 _LARGEST_FILE = 1 << 26

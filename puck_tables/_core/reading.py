@@ -11,12 +11,11 @@ from numbers import Real
 from typing import Any, TypeVar
 
 import numpy as np
-import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables._core.fields import Kind, specs
 from puck_tables.errors import PuckError
 
-FloatArray = npt.NDArray[np.float64]
 T = TypeVar("T")
 
 RANGE = re.compile(r"([^:]+):([^:]+):([0-9]{1,9})")

@@ -7,9 +7,8 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
-
-FloatArray = npt.NDArray[np.float64]
 
 
 def refuse_mask(name: str, values: object) -> None:

@@ -24,10 +24,9 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import finite_array
 from puck_tables.errors import AccuracyError, InputError
-
-FloatArray = npt.NDArray[np.float64]
 
 _TOL = 1e-13
 _LARGEST_TURN = 0.25  # of θ in one step of sliding, so that no dip of λ is stepped over

@@ -30,14 +30,13 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import finite_array
 from puck_tables.chetaev.asperity import Arc, Asperity, landing
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import InputError
 from puck_tables.io.dataset import Dataset, variable
 from puck_tables.result import Result
-
-FloatArray = npt.NDArray[np.float64]
 
 CURVES = ("crude", "greatest", "undriven", "mean", "landing_phase", "flights_per_period")
 _FLIGHTS = 4000

@@ -13,10 +13,10 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import finite_array
 from puck_tables.chetaev.system import (
     ConstrainedSystem,
-    FloatArray,
     Instant,
     instant,
     rate,

@@ -23,8 +23,9 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import finite_array
-from puck_tables.chetaev.system import ConstrainedSystem, FloatArray
+from puck_tables.chetaev.system import ConstrainedSystem
 from puck_tables.errors import InputError
 
 MAX_RINGS = 256

@@ -24,10 +24,10 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import finite_array
 from puck_tables.errors import InputError
 
-FloatArray = npt.NDArray[np.float64]
 Constraints = Callable[[Any, Any], tuple[npt.ArrayLike, npt.ArrayLike]]
 OfState = Callable[[FloatArray, FloatArray, float], npt.ArrayLike]
 

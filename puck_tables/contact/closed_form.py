@@ -20,7 +20,8 @@ from collections.abc import Callable
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.contact.integrals import FloatArray, PatchIntegrals, slip_direction
+from puck_tables._core.arrays import FloatArray
+from puck_tables.contact.integrals import PatchIntegrals, slip_direction
 from puck_tables.contact.resultants import Resultants, moment_balance
 
 ShapeIntegrals = Callable[[FloatArray, FloatArray], tuple[FloatArray, FloatArray, FloatArray]]

@@ -17,10 +17,9 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import real_array
 from puck_tables.errors import InputError
-
-FloatArray = npt.NDArray[np.float64]
 
 
 class PatchIntegrals(NamedTuple):

@@ -20,10 +20,11 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import broadcast, instance, real_array
 from puck_tables._core.safe_read import read_rows
 from puck_tables.contact import closed_form, one_sided, quadrature
-from puck_tables.contact.integrals import FloatArray, PatchIntegrals, checked_phi, slip_direction
+from puck_tables.contact.integrals import PatchIntegrals, checked_phi, slip_direction
 from puck_tables.contact.pressure import GALIN, HERTZ
 from puck_tables.contact.resultants import Resultants, checked_delta, moment_balance
 from puck_tables.contact.superposition import (

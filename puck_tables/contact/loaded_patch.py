@@ -23,7 +23,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.contact.integrals import FloatArray
+from puck_tables._core.arrays import FloatArray
 
 BoolArray = npt.NDArray[np.bool_]
 

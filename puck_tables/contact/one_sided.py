@@ -22,10 +22,10 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import broadcast
 from puck_tables.contact import closed_form
 from puck_tables.contact.integrals import (
-    FloatArray,
     PatchIntegrals,
     SlipDirection,
     checked_phi,

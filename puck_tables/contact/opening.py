@@ -14,8 +14,9 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.closed_form import integrals
-from puck_tables.contact.integrals import FloatArray, slip_direction
+from puck_tables.contact.integrals import slip_direction
 
 
 def critical_delta(phi: npt.ArrayLike) -> FloatArray:

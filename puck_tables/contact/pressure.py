@@ -11,9 +11,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
-FloatArray = npt.NDArray[np.float64]
+from puck_tables._core.arrays import FloatArray
 
 # Half of the Gauss-Legendre rule for χ ∈ [-π/2, π/2]; the integrands are even in χ.
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(48)

@@ -17,7 +17,8 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.contact.integrals import FloatArray, PatchIntegrals, slip_direction
+from puck_tables._core.arrays import FloatArray
+from puck_tables.contact.integrals import PatchIntegrals, slip_direction
 from puck_tables.contact.pressure import UNIFORM, PressureLaw
 
 # Composite Gauss-Legendre rule on [0, π/2], panels halved towards π/2: near |φ| = π/4 the integrand

@@ -11,12 +11,11 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import finite_array, instance
 from puck_tables._core.safe_read import is_number, read_rows
 from puck_tables._core.safe_write import write_bytes
 from puck_tables.errors import InputError
-
-FloatArray = npt.NDArray[np.float64]
 
 KINDS = ("cubic", "linear")
 HEADER = ("speed[m/s]", "f[1]")

@@ -31,9 +31,9 @@ from collections.abc import Callable
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import broadcast, real_array
 from puck_tables.contact.integrals import (
-    FloatArray,
     PatchIntegrals,
     SlipDirection,
     checked_phi,

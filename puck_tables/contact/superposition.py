@@ -13,8 +13,9 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.closed_form import shape_integrals
-from puck_tables.contact.integrals import FloatArray, PatchIntegrals, slip_direction
+from puck_tables.contact.integrals import PatchIntegrals, slip_direction
 from puck_tables.contact.quadrature import FROM_END, WEIGHT
 
 # Between the radii of a profile: tanh-sinh on [0, 1], at home where the centre of rotation lies on

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import broadcast
 from puck_tables.contact import closed_form
 from puck_tables.contact.integrals import checked_phi
@@ -18,8 +19,6 @@ from puck_tables.contact.resultants import (
 )
 from puck_tables.errors import ContactError
 from puck_tables.kernels.compile import allocating, inlined
-
-FloatArray = npt.NDArray[np.float64]
 
 _BLOCK = 256
 _HALF_PI_REST = 6.123233995736766e-17  # of π/2 beyond its double

@@ -15,12 +15,10 @@ c₂; sides: rows of line, end and extent as in :mod:`puck_tables.table.slip_axi
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import allocating, inlined, kernel
 from puck_tables.kernels.spline import basis, cell_at, side_and_eta
-
-FloatArray = npt.NDArray[np.float64]
 
 TERMS = 5
 _BLOCK = 128

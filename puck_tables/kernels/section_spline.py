@@ -18,10 +18,9 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, kernel
 from puck_tables.kernels.spline import basis, cell_at
-
-FloatArray = npt.NDArray[np.float64]
 
 # Columns of the header: the singular line of a side (cos, sin, ln tan), where the side ends towards
 # larger φ (cos, sin), 1/extent, and the square of the gyration radius over r, the same in all rows.

@@ -13,9 +13,8 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import allocating, inlined, kernel
-
-FloatArray = npt.NDArray[np.float64]
 
 PARTS = 4  # p_a, p_b, p_d, p_e
 

@@ -25,10 +25,9 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, kernel, weighted_rows
 from puck_tables.kernels.spline import cell_at
-
-FloatArray = npt.NDArray[np.float64]
 
 DONE, TOO_FAST = 0, 1
 DEGREE = 5

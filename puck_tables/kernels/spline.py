@@ -14,11 +14,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @inlined

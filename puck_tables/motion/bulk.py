@@ -7,6 +7,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import allocating
 from puck_tables.kernels.quadratic import cut as cut_table
 from puck_tables.motion.equations import at_constant_angle
@@ -15,8 +16,6 @@ from puck_tables.motion.path import STOPPED, integrate
 from puck_tables.motion.rk4 import to_stop
 from puck_tables.motion.state import LENGTH, PSI, SIZE, THETA, T, U, X, Y
 from puck_tables.motion.steppers import Tableau
-
-FloatArray = npt.NDArray[np.float64]
 
 OVERFLOW = 2  # index of solvers.STATUS_MEANINGS
 

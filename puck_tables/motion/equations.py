@@ -37,16 +37,12 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-import numpy.typing as npt
-
+from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.closed_form import friction_ratios
 from puck_tables.kernels.compile import inlined, kernel
 from puck_tables.kernels.section_spline import INERTIA, LINE, section_ratios
 from puck_tables.kernels.spline import evaluate_cut
 from puck_tables.motion.state import LENGTH, PSI, THETA, WORK, T, U, X, Y
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @inlined

@@ -10,11 +10,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.motion.state import PSI, THETA, U, X, Y
-
-FloatArray = npt.NDArray[np.float64]
 
 
 class Frame(NamedTuple):

@@ -12,8 +12,8 @@ from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 
 import numpy as np
-import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import rounded_up
 from puck_tables.accuracy.front import COARSEST, UNITS, Selection, named, select
 from puck_tables.accuracy.methods import INTEGRATORS, Method, Scheme, Source, schemes_of
@@ -29,8 +29,6 @@ from puck_tables.motion.steppers import stepping_of
 from puck_tables.table.friction_section import FINEST_ACCURACY
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.table.slip_spline import SlipSpline
-
-FloatArray = npt.NDArray[np.float64]
 
 FINEST_TOL = 1e-11  # of a motion whose friction is a section
 TABLE_FACTOR = 5.0  # an error of the friction enters a stop at most so many times

@@ -7,6 +7,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import one_velocity, positive, real
 from puck_tables.contact.closed_form import integrals
 from puck_tables.contact.laws import HOMOGENEOUS, Law, law_of
@@ -15,8 +16,6 @@ from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import ContactError
 from puck_tables.kernels.closed_form import friction_ratios, resultants
 from puck_tables.kernels.compile import kernel
-
-FloatArray = npt.NDArray[np.float64]
 
 # A start this close to the limit ratio (in ln(rω/v)) is the limit motion itself.
 LIMIT_WIDTH = 1e-13

@@ -16,8 +16,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import allocating, inlined, kernel
 from puck_tables.motion.equations import (
     at_constant_angle,
@@ -30,8 +30,6 @@ from puck_tables.motion.equations import (
 )
 from puck_tables.motion.state import PSI, SIZE, WORK, T, U, X, Y
 from puck_tables.motion.steppers import ROWS, Tableau, step
-
-FloatArray = npt.NDArray[np.float64]
 
 TURN_SHARE = 1e-3
 TURN_Z = 1.0 - TURN_SHARE**0.25

@@ -8,15 +8,12 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-import numpy.typing as npt
-
+from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, kernel
 from puck_tables.motion.equations import at_constant_angle, crossed_line, ratios_at, slip_ratio
 from puck_tables.motion.path import TURN_Z, end_of_steps, q_of, step_length
 from puck_tables.motion.state import LENGTH, PSI, THETA, T, U, X, Y
 
-FloatArray = npt.NDArray[np.float64]
 State = tuple[float, float, float, float, float, float, float]  # u, ψ, t, x, y, θ, path length
 
 

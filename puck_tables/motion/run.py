@@ -13,8 +13,8 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
-import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.accuracy.front import Selection
 from puck_tables.accuracy.methods import Method
 from puck_tables.errors import PuckError
@@ -26,8 +26,6 @@ from puck_tables.motion.path import STOPPED, TURN_SHARE, integrate, states_at
 from puck_tables.motion.solve import FINEST_LOCAL, Estimate, Setting, close_enough, refined
 from puck_tables.motion.state import LENGTH, PSI, SIZE, THETA, WORK, T, U, X, Y
 from puck_tables.motion.steppers import DORMAND_PRINCE, Stepping, Tableau
-
-FloatArray = npt.NDArray[np.float64]
 
 GENERIC = ("B", "C")  # regimes that are integrated; the others are elementary
 

@@ -6,15 +6,13 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.accuracy.front import Selection
 from puck_tables.accuracy.methods import Method
 from puck_tables.kernels.compile import kernel
 from puck_tables.motion.equations import derivatives
 from puck_tables.motion.state import SIZE
-
-FloatArray = npt.NDArray[np.float64]
 
 
 class Tableau(NamedTuple):

@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import numpy.typing as npt
 
 from puck_tables.contact.closed_form import by_closed_form
 from puck_tables.contact.resultants import Resultants
@@ -25,8 +24,6 @@ from puck_tables.paper.runs import (
     time_left,
 )
 from puck_tables.trajectory import Trajectory
-
-FloatArray = npt.NDArray[np.float64]
 
 DELTAS = (0.0, 0.5, 1.0)
 BENDING = (0.25, 0.5, 1.0)

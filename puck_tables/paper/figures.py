@@ -12,8 +12,8 @@ import math
 from collections.abc import Callable
 
 import numpy as np
-import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.closed_form import by_closed_form, integrals
 from puck_tables.motion.limits import limit_angle
 from puck_tables.paper.friction import slip_angle_rate
@@ -22,8 +22,6 @@ from puck_tables.paper.runs import simulate
 from puck_tables.paper.shapes import SPIN, ends_against_spin
 from puck_tables.plot.panels import Curve, Panel, Picture
 from puck_tables.puck import Puck
-
-FloatArray = npt.NDArray[np.float64]
 
 FAMILY = (0.0, 0.25, 0.5, 0.75, 1.0)
 QUARTER_TICKS = {

@@ -8,6 +8,7 @@ from collections.abc import Callable
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.closed_form import by_closed_form
 from puck_tables.contact.resultants import Resultants
 from puck_tables.motion.limits import approach_exponent, curvature_slope, limit_angle
@@ -15,7 +16,6 @@ from puck_tables.paper.claim import Claim, at_least, equal, less, more
 from puck_tables.paper.patch import ANGLES, HEIGHTS, PHI
 from puck_tables.paper.root import root
 
-FloatArray = npt.NDArray[np.float64]
 Friction = Callable[[npt.ArrayLike, npt.ArrayLike], Resultants]
 
 _PI45 = 45.0 * math.pi

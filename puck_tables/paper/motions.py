@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.closed_form import by_closed_form
 from puck_tables.paper.claim import Claim, equal, farthest, less, more
 from puck_tables.paper.friction import decline, excess
@@ -20,8 +20,6 @@ from puck_tables.paper.runs import (
     velocity,
 )
 from puck_tables.trajectory import Trajectory
-
-FloatArray = npt.NDArray[np.float64]
 
 RATIOS = (-20.0, -2.0, -0.5, 0.05, 0.3, 1.0, 3.0, 8.0)
 DELTAS = (0.0, 0.5, 1.0)

@@ -8,6 +8,7 @@ from collections.abc import Callable
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.contact import closed_form, quadrature
 from puck_tables.contact.integrals import PatchIntegrals, slip_direction
 from puck_tables.contact.pressure import PressureLaw
@@ -15,7 +16,6 @@ from puck_tables.contact.resultants import moment_balance, pressure_tilt
 from puck_tables.paper.claim import Claim, at_least, equal, less, more
 from puck_tables.paper.root import root
 
-FloatArray = npt.NDArray[np.float64]
 Integrals = Callable[[npt.ArrayLike], PatchIntegrals]
 
 PHI = np.linspace(0.0, 0.5 * np.pi, 2001)

@@ -8,10 +8,9 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.puck import Puck
 from puck_tables.trajectory import Trajectory
-
-FloatArray = npt.NDArray[np.float64]
 
 ACCURACY = 1e-13
 

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.plot.style import BLUE, GREY, LAUNCH, ORANGE, RED, STOP
 from puck_tables.scene.outcome import SceneRun
 from puck_tables.scene.parts import Edge, Wall
@@ -18,7 +18,6 @@ from puck_tables.scene.scene import Scene
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-FloatArray = npt.NDArray[np.float64]
 
 _PUCKS_DRAWN = 12
 # ingredients that are seen in the plane; others are named above it

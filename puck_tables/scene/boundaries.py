@@ -14,14 +14,13 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import allocating, inlined
 from puck_tables.scene.cushions import NX, NY
 from puck_tables.scene.equations import SIZE
 from puck_tables.scene.friction import VX, VY, X, Y
 from puck_tables.scene.ingredients import Stretch, carried_along
 from puck_tables.scene.steps import STAGES, step
-
-FloatArray = npt.NDArray[np.float64]
 
 BOUNCES, BORDER, EDGE = 2, 4, 5  # among what happens on the way
 DEGREE = 5

@@ -5,13 +5,12 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import allocating
 from puck_tables.scene.boundaries import BOUNCES, Boundaries
 from puck_tables.scene.ingredients import Model, Regions
 from puck_tables.scene.loop import Ask, desk_for, follow
 from puck_tables.scene.records import EVENT_COLUMNS, FRAME_COLUMNS
-
-FloatArray = npt.NDArray[np.float64]
 
 ENDS_COLUMNS = FRAME_COLUMNS + 1  # the last row, and the number of bounces
 

@@ -20,14 +20,10 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-import numpy.typing as npt
-
+from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, kernel
 from puck_tables.scene.friction import SPIN, VX, VY
 from puck_tables.scene.ingredients import Body
-
-FloatArray = npt.NDArray[np.float64]
 
 # columns of a wall, its place moved in by the radius
 NX, NY, PLACE, RESTITUTION, TANGENTIAL, FRICTION = range(6)

@@ -9,8 +9,8 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables._core.fields import Kind, specs
 from puck_tables._core.real import finite_array
 from puck_tables.errors import InputError
@@ -18,7 +18,6 @@ from puck_tables.errors import InputError
 if TYPE_CHECKING:
     from puck_tables.scene.scene import Scene
 
-FloatArray = npt.NDArray[np.float64]
 
 BATCH = "launch"  # the axis of many launches
 # what a launch is, in the order of the columns of a batch

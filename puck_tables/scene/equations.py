@@ -14,8 +14,8 @@ from __future__ import annotations
 from typing import cast
 
 import numpy as np
-import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, kernel
 from puck_tables.scene.forces import damping, drag_force, given_force
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y, dry_friction, size
@@ -30,8 +30,6 @@ from puck_tables.scene.ingredients import (
     held,
 )
 from puck_tables.scene.leaning import wall_reaction
-
-FloatArray = npt.NDArray[np.float64]
 
 SIZE = 10
 GIVEN, DRY, VISCOUS, SUPPORT = range(6, SIZE)

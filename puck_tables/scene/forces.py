@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables._core.safe_read import read_rows
 from puck_tables.errors import InputError
 from puck_tables.kernels.compile import inlined
@@ -21,7 +21,6 @@ from puck_tables.scene.parts import Rows
 if TYPE_CHECKING:
     from puck_tables.scene.scene import Scene
 
-FloatArray = npt.NDArray[np.float64]
 
 MAX_DRIVE = 1 << 26  # bytes of a file of forces
 

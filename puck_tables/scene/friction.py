@@ -14,15 +14,10 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-import numpy.typing as npt
-
 from puck_tables.kernels.compile import inlined, kernel
 from puck_tables.kernels.speed_spline import speed_ratios
 from puck_tables.motion.equations import ratios_at
 from puck_tables.scene.ingredients import BySpeed, Dry
-
-FloatArray = npt.NDArray[np.float64]
 
 X, Y, THETA, VX, VY, SPIN = range(6)  # of a state; in the loop the last three over the floor
 

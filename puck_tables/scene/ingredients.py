@@ -9,13 +9,9 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-import numpy as np
-import numpy.typing as npt
-
+from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
 from puck_tables.scene.forces import Forces
-
-FloatArray = npt.NDArray[np.float64]
 
 FREE, RAIL, PIVOT, BLADE = range(4)
 SLIDES, CARRIED, STOPS = range(3)

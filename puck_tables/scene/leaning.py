@@ -14,15 +14,11 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-import numpy.typing as npt
-
+from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
 from puck_tables.scene.cushions import push_rim, rim_compliance, rim_slip
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y, size
 from puck_tables.scene.ingredients import Body
-
-FloatArray = npt.NDArray[np.float64]
 
 # columns of a wall that the puck leans on: its normal, where its centre then is, the friction
 # coefficient at the rim, and −1, 0, 1: the rim slides back, rolls, on

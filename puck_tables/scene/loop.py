@@ -14,8 +14,8 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import allocating, kernel
 from puck_tables.scene.boundaries import (
     BORDER,
@@ -77,8 +77,6 @@ from puck_tables.scene.settle import (
 )
 from puck_tables.scene.standstill import from_standstill
 from puck_tables.scene.steps import STAGES, WIDE, step
-
-FloatArray = npt.NDArray[np.float64]
 
 # how a run ends
 AT_REST, CARRIED_AWAY, TIME_UP, OVER_EDGE, STEP_LIMIT, EVENT_LIMIT, NOT_FINITE = range(7)

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-import numpy.typing as npt
-
+from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, kernel
 from puck_tables.scene.cushions import NX, NY, rim_slip
 from puck_tables.scene.equations import SECOND, rates, slip_side, stopping
@@ -22,8 +20,6 @@ from puck_tables.scene.ingredients import (
 from puck_tables.scene.leaning import GRIP, RIM
 from puck_tables.scene.rest import SLACK, excess_at_rest, held_by_floor
 from puck_tables.scene.steps import step
-
-FloatArray = npt.NDArray[np.float64]
 
 EQUAL = -1  # watched: equal speeds of centre and rim; else the rim on a wall that is leant on
 _TURNS, _SETTLED = 3000, 1e-12  # at most; of friction: a direction stays

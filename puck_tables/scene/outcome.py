@@ -9,6 +9,7 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
 from puck_tables.io.columns import COLUMNS, derived, following
 from puck_tables.io.dataset import Dataset, variable
@@ -17,8 +18,6 @@ from puck_tables.scene.entries import as_toml, tables_of, units_of
 from puck_tables.scene.library import files_of
 from puck_tables.scene.plan import Plan
 from puck_tables.scene.scene import Scene
-
-FloatArray = npt.NDArray[np.float64]
 
 ENDS = (
     "at rest", "carried by the floor", "time is up", "over the edge", "step limit", "event limit",

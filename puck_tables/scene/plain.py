@@ -5,15 +5,13 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
 from puck_tables.scene.agreement import launch_velocity
 from puck_tables.scene.outcome import LEDGER, Event, SceneRun, ledger_residual
 from puck_tables.scene.plan import Plan, free_velocity
 from puck_tables.scene.scene import Scene
-
-FloatArray = npt.NDArray[np.float64]
 
 
 def run_plain(scene: Scene, needed: Scene, plan: Plan, times: FloatArray | None) -> SceneRun:

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import in_slices
 from puck_tables.errors import InputError
 from puck_tables.scene.agreement import launch_velocity
@@ -36,8 +37,6 @@ from puck_tables.scene.loop import Ask, desk_for, follow
 from puck_tables.scene.regions import friction_error, regions_of
 from puck_tables.scene.rest import excess_at_rest
 from puck_tables.scene.scene import Scene
-
-FloatArray = npt.NDArray[np.float64]
 
 LOCAL_SHARE = 0.01  # of the error wanted, per step and in units of the scales
 FINEST_LOCAL = 3e-14  # rounding

@@ -14,6 +14,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import allocating, inlined
 from puck_tables.scene.equations import (
     FIRST,
@@ -26,8 +27,6 @@ from puck_tables.scene.equations import (
 )
 from puck_tables.scene.friction import SPIN, VX, X
 from puck_tables.scene.ingredients import Stretch
-
-FloatArray = npt.NDArray[np.float64]
 
 _ROOT = math.sqrt(6.0)
 _A = np.array([

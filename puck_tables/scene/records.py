@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-import numpy as np
-import numpy.typing as npt
-
+from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
 from puck_tables.scene.equations import ROW, SECOND, SIZE, rates, to_laboratory
 from puck_tables.scene.ingredients import CARRIED, Model, Stretch
-
-FloatArray = npt.NDArray[np.float64]
 
 FRAME_COLUMNS = ROW + 3  # time, state, λ, carried, heat of impacts
 EVENT_COLUMNS = 3 + SIZE  # time, what, which, state

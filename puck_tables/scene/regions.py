@@ -7,8 +7,8 @@ import threading
 from functools import lru_cache
 
 import numpy as np
-import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import rounded_up
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import AccuracyError, InputError
@@ -23,8 +23,6 @@ from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.table.speed_build import FINEST_ACCURACY as FINEST_LAW
 from puck_tables.table.speed_table import SpeedTable
 from puck_tables.table.store import table_for
-
-FloatArray = npt.NDArray[np.float64]
 
 EXACT_BELOW = 1e-9  # friction by closed forms where a table's error would show
 CLOSED_FORM_ERROR, TABLE_ERROR = 1e-14, 2e-11

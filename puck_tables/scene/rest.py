@@ -14,9 +14,7 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-import numpy.typing as npt
-
+from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, kernel
 from puck_tables.scene.forces import given_force
 from puck_tables.scene.friction import THETA, X, Y, at_slip_zero, dry_friction
@@ -41,8 +39,6 @@ from puck_tables.scene.leaning import (
     still_torques,
     wall_reaction,
 )
-
-FloatArray = npt.NDArray[np.float64]
 
 SLACK = 1e-12  # of f N: a demand this close to the limit is held
 

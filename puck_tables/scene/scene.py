@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import Progress
 from puck_tables._core.fields import of, specs
 from puck_tables._core.reading import MAX_COUNT, Range, Reading, given_in, read_values
@@ -26,7 +27,6 @@ if TYPE_CHECKING:
     from puck_tables.scene.outcome import SceneRun
     from puck_tables.scene.sweep import SceneMap
 
-FloatArray = npt.NDArray[np.float64]
 
 MAX_RUNS = 1_000_000_000  # of one sweep
 

@@ -16,6 +16,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import allocating, inlined
 from puck_tables.scene.boundaries import Boundaries, outward, room_to
 from puck_tables.scene.cushions import (
@@ -34,8 +35,6 @@ from puck_tables.scene.cushions import (
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y, size
 from puck_tables.scene.ingredients import Body
 from puck_tables.scene.leaning import GRIP, LEAN_COLUMNS, LOCKS, RIM, come_to_lean
-
-FloatArray = npt.NDArray[np.float64]
 
 _STILL = 1e-13  # of the scale of speeds: no speed
 _SLOWEST = 1e-12  # of it: rebounds next to what is rest on the floor

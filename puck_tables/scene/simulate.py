@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import finite_array
 from puck_tables.errors import AccuracyError, InputError, PuckError
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
@@ -25,8 +26,6 @@ from puck_tables.scene.prepare import MAX_EVENTS, Prepared, Twin, prepare
 from puck_tables.scene.records import EVENT_COLUMNS, FRAME_COLUMNS
 from puck_tables.scene.regions import friction_error, law_name, speed_law
 from puck_tables.scene.scene import Scene
-
-FloatArray = npt.NDArray[np.float64]
 
 
 def simulate(scene: Scene, times: npt.ArrayLike | None = None) -> SceneRun:

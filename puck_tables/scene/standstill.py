@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-import numpy.typing as npt
-
+from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import kernel
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.scene.ingredients import (
@@ -19,8 +17,6 @@ from puck_tables.scene.ingredients import (
 )
 from puck_tables.scene.moments import REST, settle_way
 from puck_tables.scene.rest import SLACK, excess_at_rest
-
-FloatArray = npt.NDArray[np.float64]
 
 _FIRST = 1e-16  # of the scale of speeds: what a slip begins with, for its direction
 _QUICK = 0.01  # of friction: a slip that grows faster has its direction from the first

@@ -7,9 +7,7 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-import numpy.typing as npt
-
+from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, kernel
 from puck_tables.motion.steppers import DORMAND_PRINCE
 from puck_tables.scene.equations import SIZE, rates, to_laboratory
@@ -30,8 +28,6 @@ from puck_tables.scene.ingredients import (
 )
 from puck_tables.scene.leaning import keep_on
 from puck_tables.scene.radau import radau_step
-
-FloatArray = npt.NDArray[np.float64]
 
 _A, _C, _E = DORMAND_PRINCE.a, DORMAND_PRINCE.c, DORMAND_PRINCE.e
 STAGES = len(_C)

@@ -12,6 +12,7 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables._core.checkpoint import Checkpoint, files_named, work_digest
 from puck_tables._core.executor import Progress, run_chunks
 from puck_tables.contact.laws import Law
@@ -41,8 +42,6 @@ from puck_tables.scene.prepare import Prepared, prepare
 from puck_tables.scene.scene import Scene
 from puck_tables.scene.simulate import FAILURES, is_endless
 from puck_tables.stopping.sweep import check_memory
-
-FloatArray = npt.NDArray[np.float64]
 
 CHUNK = 256
 BYTES = 8 * 4 * ENDS_COLUMNS

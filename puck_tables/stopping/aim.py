@@ -10,6 +10,7 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import finite_array, positive, real
 from puck_tables.errors import InputError
 from puck_tables.io.columns import COLUMNS as VARIABLES
@@ -28,8 +29,6 @@ from puck_tables.stopping.launch_curve import (
     sample,
 )
 from puck_tables.stopping.solvers import fits
-
-FloatArray = npt.NDArray[np.float64]
 
 COLUMNS = (
     "launch_spin", "launch_vx", "launch_vy", "launch_speed", "launch_heading", "launch_slip_angle",

@@ -19,12 +19,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from numpy.polynomial import chebyshev
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
-
-FloatArray = npt.NDArray[np.float64]
 
 HEIGHTS = 9
 CONSTANT_HEIGHTS = 14  # for what depends on δ alone; next to the limit its error is magnified

@@ -24,6 +24,7 @@ import numpy as np
 import numpy.typing as npt
 from numpy.polynomial import chebyshev
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import run_chunks
 from puck_tables.contact import quadrature
 from puck_tables.contact.integrals import slip_direction
@@ -51,8 +52,6 @@ from puck_tables.table.accuracy import Accuracy
 from puck_tables.table.build import Goal, built
 from puck_tables.table.check import Check, CheckReport, compared
 from puck_tables.table.table import Progress
-
-FloatArray = npt.NDArray[np.float64]
 
 _GOAL = Goal(1e-10, 1e-11, "in units of Q/J and Q^2/J", 0.62, 1 << 12)
 _CHUNK = 64

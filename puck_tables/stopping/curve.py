@@ -23,14 +23,12 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from numpy.polynomial import chebyshev
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.closed_form import shape_integrals
 from puck_tables.motion.limits import limit_log_ratio
 from puck_tables.stopping.axes import SlipAxis, ratio_at
-
-FloatArray = npt.NDArray[np.float64]
 
 _NEAR_LIMIT = 0.15  # half width in u of the neighbourhood of u₀ that is treated by polynomials
 _DEGREE = 23

@@ -24,14 +24,12 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import allocating, inlined
 from puck_tables.kernels.spline import basis, cell_at
 from puck_tables.motion.state import HEADING, ORIENTATION, PUCK_X, PUCK_Y, SPEED, SPIN
 from puck_tables.stopping.axes import HEIGHTS
 from puck_tables.stopping.lookup import CURVE_ROW, STOP_POWERS, slip_place
-
-FloatArray = npt.NDArray[np.float64]
-
 
 # order of the functions of the curve
 BODY_SUM, TURN_SUM, LENGTH_SUM, CURVE_SUM = range(4)

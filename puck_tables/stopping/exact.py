@@ -5,16 +5,14 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import run_chunks
 from puck_tables.kernels.compile import allocating
 from puck_tables.motion.equations import at_constant_angle
 from puck_tables.motion.path import STOPPED, integrate
 from puck_tables.motion.state import LENGTH, PSI, SIZE, THETA, T, U, X, Y
 from puck_tables.motion.steppers import DORMAND_PRINCE, Tableau
-
-FloatArray = npt.NDArray[np.float64]
 
 _LOCAL_TOLERANCE = 2e-14
 _STEP_LIMIT = 100_000

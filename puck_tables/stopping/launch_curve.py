@@ -22,12 +22,10 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 
 import numpy as np
-import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.motion.body import Body
 from puck_tables.stopping.exact import exact_stops, integrated_stops
-
-FloatArray = npt.NDArray[np.float64]
 
 SPEED, RIM, TIME = range(3)
 BEND = 3  # arg Z, no quantity to be met

@@ -20,12 +20,10 @@ from collections.abc import Callable
 from functools import cache
 
 import numpy as np
-import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import allocating, inlined, weighted_rows
 from puck_tables.kernels.spline import basis
-
-FloatArray = npt.NDArray[np.float64]
 
 STOP_POWERS = 8
 STOP_ROW = 3 * STOP_POWERS  # for states: three functions by eight powers, whole cache lines

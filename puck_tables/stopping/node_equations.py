@@ -17,15 +17,14 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.contact import closed_form
 from puck_tables.contact.integrals import PatchIntegrals, SlipDirection
 from puck_tables.contact.resultants import moment_balance
 from puck_tables.stopping.axes import SlipAxis, heights, ratio_at
 from puck_tables.stopping.curve import limits, rates, regular_slopes
 
-FloatArray = npt.NDArray[np.float64]
 Slopes = Callable[[FloatArray, float], tuple[float, FloatArray]]
 
 # measured: at most 67 and 1440 times cells⁻⁴ is missed by right values

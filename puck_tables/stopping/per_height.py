@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import Progress, run_chunks
 from puck_tables._core.real import real
 from puck_tables.accuracy.front import COARSEST, UNITS, Selection, select
@@ -41,7 +42,6 @@ from puck_tables.stopping.stop_table import StopTable
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.table.table import refuse_other_kind
 
-FloatArray = npt.NDArray[np.float64]
 AnyTable = ResultantTable | StopTable | None
 
 MANY = 300  # launches of one height from which on a stop section costs less than integrating them

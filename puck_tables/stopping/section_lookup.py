@@ -5,13 +5,11 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import allocating
 from puck_tables.kernels.section_spline import section_place
 from puck_tables.kernels.spline import basis
-
-FloatArray = npt.NDArray[np.float64]
 
 _FUNCTIONS = 6
 _LOWEST = 1e-290

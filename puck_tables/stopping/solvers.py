@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import in_slices
 from puck_tables.accuracy.methods import Method
 from puck_tables.motion.steppers import Stepping
@@ -19,7 +20,6 @@ from puck_tables.stopping.lookup import STOP_POWERS
 from puck_tables.stopping.stop_section import StopSection
 from puck_tables.stopping.stop_table import StopTable
 
-FloatArray = npt.NDArray[np.float64]
 Status = npt.NDArray[np.int8]
 
 OUTPUTS = ("stop_time", "stop_x", "stop_y", "path_length", "turn_angle", "body_angle")

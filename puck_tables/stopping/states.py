@@ -9,6 +9,7 @@ from typing import ClassVar
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import run_chunks
 from puck_tables._core.real import broadcast, finite_array, velocity_array
 from puck_tables.contact.laws import HOMOGENEOUS, Law, law_of
@@ -36,8 +37,6 @@ from puck_tables.stopping.solvers import fits
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.stopping.stops import as_rows, positive_array
 from puck_tables.table.table import refuse_other_kind
-
-FloatArray = npt.NDArray[np.float64]
 
 TOL = 1e-9
 _CHUNK = 1 << 15

@@ -18,6 +18,7 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import real
 from puck_tables.accuracy.front import COARSEST
 from puck_tables.contact.laws import Law
@@ -34,8 +35,6 @@ from puck_tables.table.slip_axis import GRADING_POWER, LawAxis, sides_of
 from puck_tables.table.slip_spline import slip_spline
 from puck_tables.table.store import kept_section
 from puck_tables.table.table import Progress
-
-FloatArray = npt.NDArray[np.float64]
 
 FINEST_SECTION = 1e-10  # as fine as stops are looked up; beyond, they are integrated
 DEFAULT_ACCURACY = 1e-8

@@ -11,6 +11,7 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import run_chunks
 from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import InputError
@@ -32,8 +33,6 @@ from puck_tables.stopping.lookup import (
 from puck_tables.table.check import CheckReport
 from puck_tables.table.fit import clamped_coefficients
 from puck_tables.table.table import Axis, Progress, Table
-
-FloatArray = npt.NDArray[np.float64]
 
 _CHUNK = 1 << 15
 

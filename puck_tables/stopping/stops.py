@@ -7,6 +7,7 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import broadcast, finite_array, velocity_array
 from puck_tables.contact.laws import HOMOGENEOUS, Law
 from puck_tables.errors import InputError
@@ -17,8 +18,6 @@ from puck_tables.stopping.per_height import SolverPerHeight
 from puck_tables.stopping.solvers import OUTPUTS, STATUS_MEANINGS
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.table.resultant_table import ResultantTable
-
-FloatArray = npt.NDArray[np.float64]
 
 DEFAULT_TOL = 1e-8
 _LAUNCHES = ("launch_vx", "launch_vy", "launch_spin", "delta")

@@ -12,6 +12,7 @@ from typing import ClassVar
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables._core.checkpoint import Checkpoint, work_digest
 from puck_tables._core.executor import run_chunks
 from puck_tables._core.real import finite_array, one_velocity, positive
@@ -26,7 +27,6 @@ from puck_tables.stopping.solvers import OUTPUTS, STATUS_MEANINGS
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.table.resultant_table import ResultantTable
 
-FloatArray = npt.NDArray[np.float64]
 Progress = Callable[[int, int], None]
 
 # Arrays, the encoded HDF5 file and working copies; as text (CSV) much more.

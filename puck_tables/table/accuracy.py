@@ -8,9 +8,8 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
-FloatArray = npt.NDArray[np.float64]
+from puck_tables._core.arrays import FloatArray
 
 
 @dataclass(frozen=True)

@@ -25,8 +25,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables._core.safe_read import read_whole
 from puck_tables._core.safe_write import write_bytes
 from puck_tables._version import __version__
@@ -37,7 +37,6 @@ from puck_tables.table.plain_hdf5 import PlainFile
 if TYPE_CHECKING:
     from puck_tables.table.table import Axis, Table
 
-FloatArray = npt.NDArray[np.float64]
 
 FORMAT, FORMAT_VERSION = "puck-tables", "3.0"
 MAX_FILE_BYTES = 1 << 31

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
-FloatArray = npt.NDArray[np.float64]
+from puck_tables._core.arrays import FloatArray
 
 
 def clamped_coefficients(values: FloatArray) -> FloatArray:

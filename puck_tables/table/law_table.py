@@ -11,13 +11,12 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.laws import Law, law_of, profile_law
 from puck_tables.errors import InputError
 from puck_tables.table.oddities import odd_nodes
 from puck_tables.table.slip_axis import LawAxis
 from puck_tables.table.table import Axis, Table
-
-FloatArray = npt.NDArray[np.float64]
 
 _PROBES = np.linspace(0.0, 0.5 * np.pi, 33)
 _RADIUS, _PRESSURE = "profile_radius", "profile_pressure"

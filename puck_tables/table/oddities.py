@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-FloatArray = npt.NDArray[np.float64]
+from puck_tables._core.arrays import FloatArray
 
 _ORDER, _APART = 4, 5  # of the differences; beyond so many nodes they do not share one
 _NOTHING = 1e-13

@@ -19,9 +19,9 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
-FloatArray = npt.NDArray[np.float64]
+from puck_tables._core.arrays import FloatArray
+
 Value = int | float | str
 
 _SIGNATURE = b"\x89HDF\r\n\x1a\n"

@@ -6,8 +6,8 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.contact import quadrature
 from puck_tables.contact.integrals import slip_direction
 from puck_tables.contact.laws import Law
@@ -19,7 +19,6 @@ from puck_tables.table.resultant_table import HEIGHTS, ResultantTable, full_cont
 from puck_tables.table.slip_axis import LawAxis
 from puck_tables.table.table import Progress
 
-FloatArray = npt.NDArray[np.float64]
 Tell = Callable[[int], None]
 
 # where truth is closed forms, and where it is quadrature

@@ -16,6 +16,7 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import broadcast
 from puck_tables.contact.integrals import checked_phi
 from puck_tables.contact.laws import Law, law_of
@@ -26,8 +27,6 @@ from puck_tables.table.fit import height_terms, sided_coefficients
 from puck_tables.table.law_table import LawTable
 from puck_tables.table.slip_axis import GRADING_POWER
 from puck_tables.table.table import KINDS, Axis, Progress
-
-FloatArray = npt.NDArray[np.float64]
 
 HEIGHTS = 4
 _UNIFORM = "uniform"

@@ -9,15 +9,13 @@ from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
-import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.table.check import Check, CheckReport, compared
 from puck_tables.table.law_table import LawTable
 from puck_tables.table.singular_lines import singular_lines
 from puck_tables.table.slip_spline import SlipSpline
 from puck_tables.table.table import Axis, Progress
-
-FloatArray = npt.NDArray[np.float64]
 
 _SAME = 1e-9  # of lines
 

@@ -20,9 +20,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
-
-FloatArray = npt.NDArray[np.float64]
 
 GRADING_POWER = 4
 MAX_CELLS = 1 << 16

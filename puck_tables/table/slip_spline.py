@@ -13,8 +13,8 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.integrals import slip_direction
 from puck_tables.errors import AccuracyError
 from puck_tables.kernels.section_spline import (
@@ -32,7 +32,6 @@ from puck_tables.table.accuracy import Accuracy
 from puck_tables.table.fit import sided_coefficients
 from puck_tables.table.slip_axis import Side, graded
 
-FloatArray = npt.NDArray[np.float64]
 Functions = Callable[[FloatArray], FloatArray]  # of φ (n,), as (n, functions)
 
 COARSEST_CELLS, FINEST_CELLS = 16, 2048

@@ -9,6 +9,7 @@ from collections.abc import Callable
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import keep_on, run_chunks
 from puck_tables._core.real import rounded_up
 from puck_tables.contact.speed_law import SpeedLaw
@@ -23,7 +24,6 @@ from puck_tables.table.speed_grid import COARSEST_CELLS, HALVINGS, Patch, breaks
 from puck_tables.table.speed_table import SpeedTable
 from puck_tables.table.table import Progress
 
-FloatArray = npt.NDArray[np.float64]
 Law = SpeedLaw | SpeedFunction
 
 DEFAULT_ACCURACY = 1e-6

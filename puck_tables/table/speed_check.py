@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.integrals import SlipDirection
 from puck_tables.contact.speed_quadrature import SpeedFunction, speed_integrals
 from puck_tables.errors import InputError
@@ -15,7 +16,6 @@ from puck_tables.table.speed_build import largest_f, truth_at
 from puck_tables.table.speed_table import SpeedTable
 from puck_tables.table.table import Progress
 
-FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 BoolArray = npt.NDArray[np.bool_]
 

@@ -6,11 +6,9 @@ from functools import lru_cache
 from math import comb
 
 import numpy as np
-import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.speed_spline import DEGREE
-
-FloatArray = npt.NDArray[np.float64]
 
 # the B-splines, times 120
 _AT_NODE = (1.0, 26.0, 66.0, 26.0, 1.0)

@@ -13,14 +13,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.integrals import SlipDirection
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import InputError
 from puck_tables.kernels.speed_spline import CORNER_POWER, EDGE_POWER
-
-FloatArray = npt.NDArray[np.float64]
 
 COARSEST_CELLS, HALVINGS = 10, 6  # cells of a patch along an axis, and how often they are halved
 MOST_CORNERS = 40  # patches grow with their square; weaker ones are left to the splines

@@ -11,6 +11,7 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import broadcast
 from puck_tables.contact.integrals import PatchIntegrals, checked_phi, slip_direction
 from puck_tables.contact.resultants import Resultants, moment_balance, pressure_tilt
@@ -28,7 +29,6 @@ from puck_tables.table.speed_fit import quintic_coefficients
 from puck_tables.table.speed_grid import COARSEST_CELLS, HALVINGS, Patch, patch_count, patches_of
 from puck_tables.table.table import Axis, Progress, Table
 
-FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
 MAX_POINTS = 2000  # of a law in a file: HDF5 keeps no longer attribute

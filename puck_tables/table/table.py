@@ -16,16 +16,13 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any, ClassVar, NamedTuple, Self, cast
 
-import numpy as np
-import numpy.typing as npt
-
+from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import instance
 from puck_tables.errors import InputError
 from puck_tables.table import file
 from puck_tables.table.accuracy import Accuracy
 from puck_tables.table.check import CheckReport
 
-FloatArray = npt.NDArray[np.float64]
 Progress = Callable[[int, int], None]
 
 # where every kind of table is at home

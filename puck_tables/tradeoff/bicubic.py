@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.closed_form import by_closed_form
 from puck_tables.kernels.compile import allocating, kernel
 from puck_tables.kernels.spline import basis, cell_at, row_sums, side_and_eta
 from puck_tables.table.fit import clamped_coefficients
 from puck_tables.table.resultant_table import ResultantTable
-
-FloatArray = npt.NDArray[np.float64]
 
 _BLOCK = 128
 

@@ -9,8 +9,8 @@ from dataclasses import dataclass, fields
 from typing import Any, ClassVar
 
 import numpy as np
-import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.accuracy.front import Measured
 from puck_tables.io.dataset import Dataset, variable
 from puck_tables.motion.limits import limit_ratio
@@ -24,7 +24,6 @@ from puck_tables.tradeoff.machine import Machine, measured_machine
 from puck_tables.tradeoff.models import PADE_MATCHED, fitted_pade, pade_limit_ratio
 from puck_tables.tradeoff.truth import Points, known_starts, random_points
 
-FloatArray = npt.NDArray[np.float64]
 Progress = Callable[[int, int], None]
 
 REPEATS, QUICK_REPEATS = 25, 5

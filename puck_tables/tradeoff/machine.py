@@ -10,12 +10,10 @@ from dataclasses import dataclass
 from importlib.metadata import version
 
 import numpy as np
-import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables._version import __version__
 from puck_tables.kernels.compile import kernel
-
-FloatArray = npt.NDArray[np.float64]
 
 _WORKING_SET = 1 << 14  # doubles: 128 kB, what tables and blocks of the look-ups are held in
 _ROUNDS = 400

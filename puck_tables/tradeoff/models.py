@@ -15,14 +15,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.laws import law_of
 from puck_tables.kernels.compile import kernel
 from puck_tables.table.resultant_table import HEIGHTS, ResultantTable
 from puck_tables.table.slip_axis import LawAxis
-
-FloatArray = npt.NDArray[np.float64]
 
 PADE_MATCHED = (1.0, 8.0 / 3.0)
 

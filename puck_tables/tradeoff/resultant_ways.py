@@ -8,8 +8,8 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.contact import closed_form, quadrature
 from puck_tables.contact.integrals import slip_direction
 from puck_tables.contact.laws import law_of
@@ -29,7 +29,6 @@ from puck_tables.tradeoff.machine import HARD
 from puck_tables.tradeoff.models import PADE_MATCHED, fill_limit_surface, fill_pade, fitted_pade
 from puck_tables.tradeoff.truth import Points
 
-FloatArray = npt.NDArray[np.float64]
 Fill = Callable[[FloatArray, FloatArray, FloatArray], object]  # phi, delta, out (3, n)
 
 QUESTION = "resultants"

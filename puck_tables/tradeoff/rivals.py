@@ -6,12 +6,10 @@ import math
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.closed_form import friction_ratios
 from puck_tables.kernels.compile import allocating
-
-FloatArray = npt.NDArray[np.float64]
 
 # tolerances that reach about 1e-4, 1e-6, 1e-8, 1e-11 for usual starts; the absolute one has to be
 # small, or the steps jump over the stop and the solver trembles there for ever

@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterator
 from functools import partial
 
 import numpy as np
-import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.accuracy.methods import LOOK_UP, Method, Scheme, Source
 from puck_tables.motion.limits import log_ratio
 from puck_tables.motion.path import integrate, states_at
@@ -18,7 +18,6 @@ from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.tradeoff.contender import Contender, Ready
 from puck_tables.tradeoff.rivals import rates
 
-FloatArray = npt.NDArray[np.float64]
 Run = Callable[[], FloatArray]  # x, y of every moment of every puck (pucks, moments, 2)
 
 QUESTION = "state"

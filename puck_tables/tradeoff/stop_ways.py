@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterator
 from functools import partial
 
 import numpy as np
-import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.accuracy.methods import INTEGRATED, LOOK_UP, Source
 from puck_tables.kernels.quadratic import cut as cut_table
 from puck_tables.motion.bulk import fill_stops
@@ -23,8 +23,6 @@ from puck_tables.tradeoff.machine import HARD
 from puck_tables.tradeoff.models import PADE_MATCHED, as_table, fitted_pade
 from puck_tables.tradeoff.rivals import PATCH_GRID, SCIPY_SETTINGS, patch_script, scipy_stop
 from puck_tables.tradeoff.truth import Points, Starts
-
-FloatArray = npt.NDArray[np.float64]
 
 QUESTION, TRAJECTORY = "stop", "trajectory"
 SCATTERED = 40_000

@@ -13,11 +13,10 @@ from importlib.resources import files
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.contact import quadrature
 from puck_tables.contact.integrals import slip_direction
 from puck_tables.contact.resultants import moment_balance
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
