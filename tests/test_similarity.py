@@ -111,12 +111,15 @@ def test_subnormal_and_oversized_launches():
 
 
 def test_a_table_of_the_wrong_kind_is_said():
-    for call in (
-        lambda: stop((1, 0), 1.0, table="coarse.h5"),
-        lambda: states((1, 0), 1.0, 1.0, table=Table.shipped()),
-        lambda: simulate((1, 0), 1.0, table=Table.shipped("stops")),
+    for call, words in (
+        (lambda: stop((1, 0), 1.0, table="coarse.h5"), "resultants or stops, got a str"),
+        (lambda: states((1, 0), 1.0, 1.0, table=Table.shipped()), "stops, got one of resultants"),
+        (
+            lambda: simulate((1, 0), 1.0, table=Table.shipped("stops")),
+            "resultants, got one of stops",
+        ),
     ):
-        with pytest.raises(InputError, match=r"table must be a .*, got a"):
+        with pytest.raises(InputError, match=f"table must be a Table of {words}"):
             call()
 
 
