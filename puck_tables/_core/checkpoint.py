@@ -19,7 +19,7 @@ import sys
 import tempfile
 import threading
 import zlib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from importlib.metadata import version
 from pathlib import Path
 from types import TracebackType
@@ -29,6 +29,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables._core.executor import Progress, run_chunks
 from puck_tables._core.safe_read import read_whole
 from puck_tables._core.sources import source_digest
 from puck_tables.errors import InputError, OutputError
@@ -229,3 +230,42 @@ def _locked(path: Path) -> io.FileIO:
 def _begins_with(file: io.FileIO, header: bytes) -> bool:
     file.seek(0)
     return file.read(_PAGE) == header.ljust(_PAGE, b"\0")
+
+
+def chunked(
+    piece: Callable[[int, int], tuple[FloatArray, npt.NDArray[np.int8]]],
+    rows: int, size: int, chunk: int, threads: int | None, progress: Progress | None,
+    path: str | Path | None, work: Mapping[str, Any],
+) -> tuple[FloatArray, npt.NDArray[np.int8]]:  # fmt: skip
+    """Results (rows, size) and status (size,) of chunked work, kept in a file if one is given.
+
+    ``piece``: what there is from one item to another; ``work``: what determines the bits, as
+    :func:`work_digest` takes it.
+
+    Raises
+    ------
+    InputError, OutputError
+        As :class:`Checkpoint`.
+
+    Examples
+    --------
+    >>> found = lambda start, stop: (np.ones((2, stop - start)), np.zeros(stop - start, np.int8))
+    >>> chunked(found, 2, 5, 2, 1, None, None, {})[0].sum()
+    np.float64(10.0)
+    """
+    if path is None:
+        out, status = np.empty((rows, size)), np.empty(size, np.int8)
+
+        def fill(start: int, stop: int) -> None:
+            out[:, start:stop], status[start:stop] = piece(start, stop)
+
+        run_chunks(fill, size, chunk, threads, progress)
+        return out, status
+    with Checkpoint(path, work_digest(**work), rows, size, chunk) as kept:
+
+        def go_on(start: int, stop: int) -> None:
+            if not kept.is_done(start):
+                kept.put(start, stop, *piece(start, stop))
+
+        run_chunks(go_on, size, chunk, threads, progress)
+        return kept.values, kept.status

@@ -13,8 +13,8 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.checkpoint import Checkpoint, files_named, work_digest
-from puck_tables._core.executor import Progress, run_chunks
+from puck_tables._core.checkpoint import chunked, files_named
+from puck_tables._core.executor import Progress
 from puck_tables.contact.laws import Law
 from puck_tables.errors import InputError
 from puck_tables.io.columns import derived
@@ -237,26 +237,13 @@ def sweep(
             )
         return found
 
-    if checkpoint is None:
-        out, status = np.empty((len(RESULTS), size)), np.empty(size, np.int8)
-
-        def work(start: int, stop: int) -> None:
-            out[:, start:stop], status[start:stop] = whole_ends(start, stop)
-
-        run_chunks(work, size, chunk, threads, progress)
-    else:
-        law = _told_apart(scene) if isinstance(scene.puck.pressure, Law) else None
-        puck = {**whole["puck"], "pressure": law or scene.puck.pressure}
-        ranges = list(scene.ranges.items())
-        digest = work_digest(scene={**whole, "puck": puck}, axes=ranges, files=read)
-        with Checkpoint(checkpoint, digest, len(RESULTS), size, chunk) as kept:
-
-            def work_on(start: int, stop: int) -> None:
-                if not kept.is_done(start):
-                    kept.put(start, stop, *whole_ends(start, stop))
-
-            run_chunks(work_on, size, chunk, threads, progress)
-            out, status = kept.values, kept.status
+    law = _told_apart(scene) if isinstance(scene.puck.pressure, Law) else None
+    puck = {**whole["puck"], "pressure": law or scene.puck.pressure}
+    ranges = list(scene.ranges.items())
+    work = {"scene": {**whole, "puck": puck}, "axes": ranges, "files": read}
+    out, status = chunked(
+        whole_ends, len(RESULTS), size, chunk, threads, progress, checkpoint, work
+    )
     refused, valid = np.flatnonzero(status == REFUSED), np.flatnonzero(status != REFUSED)
     refusal = refusal_of(int(refused[0])) if refused.size else ""
     if not valid.size:

@@ -13,8 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.checkpoint import Checkpoint, work_digest
-from puck_tables._core.executor import run_chunks
+from puck_tables._core.checkpoint import chunked
 from puck_tables._core.real import finite_array, one_velocity, positive
 from puck_tables.accuracy.front import Selection
 from puck_tables.contact.laws import Law
@@ -166,23 +165,8 @@ def sweep(
         ])  # fmt: skip
         return solver.all(launches)
 
-    if checkpoint is None:
-        out, status = np.empty((len(OUTPUTS), size)), np.empty(size, np.int8)
-
-        def work(start: int, stop: int) -> None:
-            out[:, start:stop], status[start:stop] = stops_of(start, stop)
-
-        run_chunks(work, size, chunk, threads, on_stops)
-    else:
-        what = work_digest(solver=solver.work, launches=values, numbers={**fixed, "tol": tol})
-        with Checkpoint(checkpoint, what, len(OUTPUTS), size, chunk) as kept:
-
-            def work_on(start: int, stop: int) -> None:
-                if not kept.is_done(start):
-                    kept.put(start, stop, *stops_of(start, stop))
-
-            run_chunks(work_on, size, chunk, threads, on_stops)
-            out, status = kept.values, kept.status
+    work = {"solver": solver.work, "launches": values, "numbers": {**fixed, "tol": tol}}
+    out, status = chunked(stops_of, len(OUTPUTS), size, chunk, threads, on_stops, checkpoint, work)
     results = {name: row.reshape(shape) for name, row in zip(OUTPUTS, out, strict=True)}
     return StopMap(
         axes=axes,
