@@ -27,6 +27,7 @@ ROOMS = {
     "stopping": "_core accuracy contact errors io kernels motion puck result table",
     "trajectory": "_core accuracy errors io motion puck result stopping table",
     "scene": "_core contact errors io kernels motion puck result stopping table",
+    "world": "_core contact errors io kernels motion puck result scene stopping table",
     "tradeoff": "_core _version accuracy contact io kernels motion result stopping table",
     "plot": "_core accuracy chetaev errors io motion scene stopping tradeoff trajectory",
     "paper": "_core contact motion plot puck trajectory",

@@ -1,0 +1,47 @@
+"""A path in pieces: polynomials of degree five through place, velocity and acceleration.
+
+What is integrated, or given by a film, is kept so: a piece is a row of start, duration, and at both
+ends x, y, angle with their first and second derivatives.  Its error falls with the sixth power of
+the duration.
+"""
+
+from __future__ import annotations
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.kernels.compile import inlined
+
+START, DURATION, FIRST = range(3)  # FIRST: nine numbers at its start, nine at its end
+PIECE_COLUMNS = FIRST + 18
+
+
+@inlined
+def piece_at(pieces: FloatArray, first: int, last: int, t: float) -> int:
+    """The row of the pieces first … last − 1, one after the other, in which t lies."""
+    low, high = first, last - 1
+    while low < high:
+        middle = (low + high + 1) // 2
+        if pieces[middle, START] <= t:
+            low = middle
+        else:
+            high = middle - 1
+    return low
+
+
+@inlined
+def on_piece(piece: FloatArray, t: float, out: FloatArray) -> None:
+    """X, y, angle, their rates, and the rates of these, at t, into ``out`` (9,)."""
+    h = piece[DURATION]
+    s = (t - piece[START]) / h
+    s = min(max(s, 0.0), 1.0)
+    for i in range(3):
+        x0, v0, a0 = piece[FIRST + i], h * piece[FIRST + 3 + i], h * h * piece[FIRST + 6 + i]
+        x1, v1 = piece[FIRST + 9 + i], h * piece[FIRST + 12 + i]
+        a1 = h * h * piece[FIRST + 15 + i]
+        # what is left of place, velocity and acceleration at the end of a parabola from the start
+        gap, rate, bend = x1 - x0 - v0 - 0.5 * a0, v1 - v0 - a0, a1 - a0
+        c3 = 10.0 * gap - 4.0 * rate + 0.5 * bend
+        c4 = -15.0 * gap + 7.0 * rate - bend
+        c5 = 6.0 * gap - 3.0 * rate + 0.5 * bend
+        out[i] = x0 + s * (v0 + s * (0.5 * a0 + s * (c3 + s * (c4 + s * c5))))
+        out[3 + i] = (v0 + s * (a0 + s * (3.0 * c3 + s * (4.0 * c4 + s * 5.0 * c5)))) / h
+        out[6 + i] = (a0 + s * (6.0 * c3 + s * (12.0 * c4 + s * 20.0 * c5))) / (h * h)
