@@ -217,65 +217,76 @@ def _heading(side: int, double_share: float, delta: float, turning: float, part:
     return turning / slow * log_plus + (turning - spin_turn) / fast * log_minus + delta * part
 
 
+@inlined
+def know_launch(
+    launch: FloatArray, stops: FloatArray, curve: FloatArray, turn_inverse: FloatArray,
+    constants: FloatArray, turn_share: float, sums: FloatArray, out: FloatArray,
+) -> None:  # fmt: skip
+    """All that is known of a launch (6,): vx, vy, ω, δ, J, r, into ``out`` (14,).
+
+    Stop time, x, y; path length, body angle, turn of the heading until Q has fallen to
+    ``turn_share`` (0: not asked); Q, T; ln|N|, its sign, the heading's regular part; v.
+    """
+    vx, vy, spin = launch[0], launch[1], launch[2]
+    delta, decel, radius = launch[3], launch[4], launch[5]
+    edge = radius * spin
+    speed, rim = math.hypot(vx, vy), abs(edge)
+    slip = math.hypot(speed, rim)
+    s = 2.0 * delta * delta - 1.0
+    side, xi = slip_place(speed, rim)
+    t, along, across = _stop_functions(stops, side, xi, s, sums)
+    _curve_sums(curve, side, xi, sums, 4)
+    body, length = _polynomial(sums, BODY_SUM, s), _polynomial(sums, LENGTH_SUM, s)
+    r, part = _polynomial(sums, CURVE_SUM, s), _polynomial(sums, TURN_SUM, s)
+    if rim == 0.0:
+        t, along, length = 1.0, 0.5, 0.5
+    elif speed == 0.0:
+        t, body = 0.75, 0.375
+    scale = slip / decel
+    out[TIME] = scale * t
+    across *= delta * edge / decel
+    along *= scale
+    out[STOP_X] = along * vx - across * vy
+    out[STOP_Y] = along * vy + across * vx
+    out[LENGTH] = scale * length * speed
+    out[BODY] = scale * body * spin
+    out[SLIP], out[T_LAUNCH], out[SPEED0] = slip, t, speed
+    out[TURN] = out[SIGN_N] = 0.0
+    if speed == 0.0 or rim == 0.0:
+        return
+    c0, kappa = _constant(constants, 0, s), _constant(constants, 1, s)
+    turning = delta * _constant(constants, 2, s)
+    quarter = _constant(constants, 3, s)
+    # max + min by parts: their sum may overflow
+    share = min(speed, rim) / max(speed, rim)
+    double_share = max(2.0 * share / (1.0 + share), _SMALLEST_SHARE)
+    sign = 1.0 if side == 1 and 1.0 - double_share > c0 else -1.0
+    log_n = _log_n(side, double_share, c0, kappa, delta, r, 0.0)
+    heading = _heading(side, double_share, delta, turning, part)
+    out[SIGN_N], out[HEADING0] = sign, heading
+    out[KAPPA], out[TURNING] = kappa, turning
+    out[LOG_N] = log_n + kappa * (math.log(t) - quarter)
+    if delta > 0.0 and turn_share > 0.0:
+        log_share = math.log(turn_share)
+        end, xi, y = _inverse_place(sign, log_n + kappa * log_share, kappa, delta)
+        share = min(y * _inverse_sum(turn_inverse, end, xi, s, sums), 1.0)
+        _curve_sums(curve, end, _place(share), sums, 2)
+        part = _polynomial(sums, TURN_SUM, s)
+        turn = turning * log_share + _heading(end, share, delta, turning, part) - heading
+        out[TURN] = turn if edge > 0.0 else -turn
+
+
 @allocating
 def fill_launches(
     launches: FloatArray, stops: FloatArray, curve: FloatArray, turn_inverse: FloatArray,
     constants: FloatArray, turn_share: float, out: FloatArray,
 ) -> None:  # fmt: skip
-    """All that is known of launches (6, n): vx, vy, ω, δ, J, r, into ``out`` (14, n).
-
-    Stop time, x, y; path length, body angle, turn of the heading until Q has fallen to
-    ``turn_share``; Q, T; ln|N|, its sign, the heading's regular part; v.
-    """
+    """What :func:`know_launch` knows of launches (6, n), into ``out`` (14, n)."""
     sums = np.empty(CURVE_ROW)
     for n in range(launches.shape[1]):
-        vx, vy, delta = launches[0, n], launches[1, n], launches[3, n]
-        decel, radius = launches[4, n], launches[5, n]
-        edge = radius * launches[2, n]
-        speed, rim = math.hypot(vx, vy), abs(edge)
-        slip = math.hypot(speed, rim)
-        s = 2.0 * delta * delta - 1.0
-        side, xi = slip_place(speed, rim)
-        t, along, across = _stop_functions(stops, side, xi, s, sums)
-        _curve_sums(curve, side, xi, sums, 4)
-        body, length = _polynomial(sums, BODY_SUM, s), _polynomial(sums, LENGTH_SUM, s)
-        r, part = _polynomial(sums, CURVE_SUM, s), _polynomial(sums, TURN_SUM, s)
-        if rim == 0.0:
-            t, along, length = 1.0, 0.5, 0.5
-        elif speed == 0.0:
-            t, body = 0.75, 0.375
-        scale = slip / decel
-        out[TIME, n] = scale * t
-        across *= delta * edge / decel
-        along *= scale
-        out[STOP_X, n] = along * vx - across * vy
-        out[STOP_Y, n] = along * vy + across * vx
-        out[LENGTH, n] = scale * length * speed
-        out[BODY, n] = scale * body * launches[2, n]
-        out[SLIP, n], out[T_LAUNCH, n], out[SPEED0, n] = slip, t, speed
-        out[TURN, n] = out[SIGN_N, n] = 0.0
-        if speed == 0.0 or rim == 0.0:
-            continue
-        c0, kappa = _constant(constants, 0, s), _constant(constants, 1, s)
-        turning = delta * _constant(constants, 2, s)
-        quarter = _constant(constants, 3, s)
-        # max + min by parts: their sum may overflow
-        share = min(speed, rim) / max(speed, rim)
-        double_share = max(2.0 * share / (1.0 + share), _SMALLEST_SHARE)
-        sign = 1.0 if side == 1 and 1.0 - double_share > c0 else -1.0
-        log_n = _log_n(side, double_share, c0, kappa, delta, r, 0.0)
-        heading = _heading(side, double_share, delta, turning, part)
-        out[SIGN_N, n], out[HEADING0, n] = sign, heading
-        out[KAPPA, n], out[TURNING, n] = kappa, turning
-        out[LOG_N, n] = log_n + kappa * (math.log(t) - quarter)
-        if delta > 0.0:
-            log_share = math.log(turn_share)
-            end, xi, y = _inverse_place(sign, log_n + kappa * log_share, kappa, delta)
-            share = min(y * _inverse_sum(turn_inverse, end, xi, s, sums), 1.0)
-            _curve_sums(curve, end, _place(share), sums, 2)
-            part = _polynomial(sums, TURN_SUM, s)
-            turn = turning * log_share + _heading(end, share, delta, turning, part) - heading
-            out[TURN, n] = turn if edge > 0.0 else -turn
+        know_launch(
+            launches[:, n], stops, curve, turn_inverse, constants, turn_share, sums, out[:, n]
+        )
 
 
 @inlined
@@ -320,6 +331,45 @@ def _fill_state(
     out[SPEED], out[SPIN] = speed, around * rim / radius
 
 
+@inlined
+def _place_in_time(puck: FloatArray, time: float) -> tuple[int, float, float, float, float]:
+    """Side (−1: no place on the curve), ξ and y, the share of time that is left and its log."""
+    known = puck[LAUNCH_COLUMNS:]
+    done = time / known[TIME]
+    if known[SIGN_N] == 0.0 or not 0.0 < done < 1.0:
+        return -1, 0.0, 0.0, 0.0, 0.0
+    log = math.log1p(-done)
+    log_n = known[LOG_N] + known[KAPPA] * log
+    side, xi, y = _inverse_place(known[SIGN_N], log_n, known[KAPPA], puck[3])
+    return side, xi, y, 1.0 - done, log
+
+
+@inlined
+def _functions_at(
+    stops: FloatArray, curve: FloatArray, side: int, double_share: float, s: float,
+    sums: FloatArray, found: FloatArray,
+) -> None:  # fmt: skip
+    """T, along, across, body angle, S/δ into ``found`` (5,)."""
+    xi = _place(double_share)
+    found[0], found[1], found[2] = _stop_functions(stops, side, xi, s, sums)
+    _curve_sums(curve, side, xi, sums, 2)
+    found[3], found[4] = _polynomial(sums, BODY_SUM, s), _polynomial(sums, TURN_SUM, s)
+
+
+@inlined
+def look_up_state(
+    puck: FloatArray, time: float, stops: FloatArray, curve: FloatArray, time_inverse: FloatArray,
+    sums: FloatArray, found: FloatArray, out: FloatArray,
+) -> None:  # fmt: skip
+    """One of :func:`fill_states`; ``sums`` (40,) and ``found`` (5,) are room to work."""
+    side, xi, y, left, log = _place_in_time(puck, time)
+    if side >= 0:
+        s = 2.0 * puck[3] * puck[3] - 1.0
+        y = min(y * _inverse_sum(time_inverse, side, xi, s, sums), 1.0)
+        _functions_at(stops, curve, side, y, s, sums, found)
+    _fill_state(puck, time, side, y, left, log, found, out)
+
+
 @allocating
 def fill_states(
     pucks: FloatArray, which: npt.NDArray[np.int64], times: FloatArray,
@@ -338,17 +388,8 @@ def fill_states(
     for start in range(0, times.size, _BLOCK):
         count = min(_BLOCK, times.size - start)
         for n in range(count):
-            launch = which[start + n]
-            share = times[start + n] / pucks[launch, LAUNCH_COLUMNS + TIME]
-            if pucks[launch, LAUNCH_COLUMNS + SIGN_N] == 0.0 or not 0.0 < share < 1.0:
-                sides[n] = -1
-                continue
-            kappa = pucks[launch, LAUNCH_COLUMNS + KAPPA]
-            logs[n] = math.log1p(-share)
-            shares[n] = 1.0 - share
-            log_n = pucks[launch, LAUNCH_COLUMNS + LOG_N] + kappa * logs[n]
-            sides[n], xis[n], ys[n] = _inverse_place(
-                pucks[launch, LAUNCH_COLUMNS + SIGN_N], log_n, kappa, pucks[launch, 3]
+            sides[n], xis[n], ys[n], shares[n], logs[n] = _place_in_time(
+                pucks[which[start + n]], times[start + n]
             )
         for n in range(count):
             if sides[n] >= 0:
@@ -359,12 +400,7 @@ def fill_states(
             if sides[n] >= 0:
                 delta = pucks[which[start + n], 3]
                 s = 2.0 * delta * delta - 1.0
-                xi = _place(ys[n])
-                t, along, across = _stop_functions(stops, sides[n], xi, s, sums)
-                _curve_sums(curve, sides[n], xi, sums, 2)
-                found[0, n], found[1, n], found[2, n] = t, along, across
-                found[3, n] = _polynomial(sums, BODY_SUM, s)
-                found[4, n] = _polynomial(sums, TURN_SUM, s)
+                _functions_at(stops, curve, sides[n], ys[n], s, sums, found[:, n])
         for n in range(count):
             launch = which[start + n]
             _fill_state(
