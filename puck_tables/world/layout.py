@@ -1,8 +1,8 @@
 """How the compiled engine of many pucks reads its arrays.
 
 A *disc* is a puck, or a body whose motion is given.  States are rows x, y, angle, vx, vy, spin of
-the laboratory (:mod:`puck_tables.scene.friction`).  Impacts and sustained contacts are between two
-discs, or between a disc and an obstacle that stands still; a partner is one number: a disc ``j ≥ 0``
+the laboratory (:mod:`puck_tables.scene.friction`).  Impacts and sustained contacts are between
+two discs, or a disc and an obstacle that stands still; a partner is one number: a disc ``j ≥ 0``
 by itself, an obstacle ``k`` as ``−1 − k``.
 """
 

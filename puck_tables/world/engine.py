@@ -1,0 +1,346 @@
+"""From event to event: what comes next, who is concerned, where they fly then."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.scene.friction import SPIN, VX, VY, X, Y
+from puck_tables.world.flight import (
+    FLIGHT_COLUMNS,
+    GONE,
+    start_flight,
+    state_at,
+)
+from puck_tables.world.game import (
+    APPROACH,
+    AT_X,
+    AT_Y,
+    IMPACT,
+    LAUNCH_SPIN,
+    LAUNCH_TIME,
+    LAUNCH_VX,
+    LAUNCH_VY,
+    LAUNCHED,
+    LOST,
+    N_EVENTS,
+    N_HISTORY,
+    N_IMPACTS,
+    N_LAUNCHES,
+    NORMAL_X,
+    NORMAL_Y,
+    NOTHING,
+    OVER_EDGE,
+    PARTNER,
+    POCKETED,
+    PUSH,
+    RUB,
+    SLIDE,
+    STRUCK,
+    TIME,
+    WHAT,
+    WHO,
+    Game,
+    Whole,
+)
+from puck_tables.world.impact import (
+    FIRST_N,
+    FIRST_T,
+    LOSS,
+    NX,
+    NY,
+    SUM_N,
+    SUM_T,
+    collide,
+    prepare_contact,
+)
+from puck_tables.world.layout import EDGE, KIND, POCKET, RADIUS
+from puck_tables.world.meeting import next_crossing, next_meeting, normal_to
+
+REACHED, FULL, CROWDED, TANGLED = range(4)  # how a call ends
+
+TOUCH = 1e-12  # of the radius: a gap as small is none
+MOST_AT_ONCE = 10_000  # events at one moment
+
+
+class Room(NamedTuple):
+    """Where the engine works: rows for every disc, contacts, and a few numbers."""
+
+    states: FloatArray
+    before: FloatArray
+    marks: Whole
+    shares: Whole
+    contacts: Whole
+    rows: FloatArray
+    work: FloatArray
+    one: FloatArray
+    two: FloatArray
+
+
+@inlined
+def _locate(game: Game, i: int, t: float, room: Room) -> None:
+    """The state of a disc now."""
+    state_at(
+        game.kinds[i], game.flights[i], game.discs[i], game.curves, game.pieces, t, room.work,
+        room.states[i],
+    )  # fmt: skip
+
+
+@inlined
+def _earlier(game: Game, i: int, time: float, partner: int) -> None:
+    if time < game.next_time[i]:
+        game.next_time[i], game.next_partner[i] = time, partner
+
+
+@kernel
+def look_ahead(game: Game, i: int, t: float, room: Room) -> None:
+    """What comes next for a disc, and whether that is the next for others too."""
+    game.next_time[i], game.next_partner[i] = math.inf, NOTHING
+    for k in range(game.obstacles.shape[0]):
+        found = next_crossing(game, i, k, t, game.next_time[i], room.work, room.one)
+        _earlier(game, i, found, -1 - k)
+    for j in range(game.discs.shape[0]):
+        if j != i:
+            found = next_meeting(game, i, j, t, game.next_time[i], room.work, room.one, room.two)
+            _earlier(game, i, found, j)
+            _earlier(game, j, found, i)
+
+
+@inlined
+def keep_flight(game: Game, i: int) -> None:
+    """Write down the flight that a disc begins."""
+    row = game.history[game.counts[N_HISTORY]]
+    row[0], row[1] = i, game.kinds[i]
+    for column in range(FLIGHT_COLUMNS):
+        row[2 + column] = game.flights[i, column]
+    game.counts[N_HISTORY] += 1
+
+
+@inlined
+def _take_off(game: Game, i: int, t: float, room: Room) -> None:
+    """A new flight of a disc alone, from its state; what it was is kept."""
+    game.kinds[i] = start_flight(
+        room.states[i], game.discs[i], game.curves, t, room.work, game.flights[i]
+    )
+    game.group[i] = 0
+    keep_flight(game, i)
+
+
+@inlined
+def note(game: Game, t: float, what: int, who: int, partner: int, x: float, y: float) -> None:
+    """Write down an event."""
+    event = game.events[game.counts[N_EVENTS]]
+    event[:] = 0.0
+    event[TIME], event[WHAT], event[WHO], event[PARTNER] = t, what, who, partner
+    event[AT_X], event[AT_Y] = x, y
+    game.counts[N_EVENTS] += 1
+
+
+@inlined
+def _contact_of(room: Room, count: int, i: int, j: int) -> bool:
+    """Whether a contact is among those found."""
+    for n in range(count):
+        a, b = room.contacts[n, 0], room.contacts[n, 1]
+        if (a == i and b == j) or (a == j and b == i):
+            return True
+    return False
+
+
+@kernel
+def _touching(game: Game, t: float, room: Room) -> int:
+    """All contacts of those marked, of those that they touch, and so on; how many."""
+    count, discs = 0, game.discs
+    grown = True
+    while grown:
+        grown = False
+        for i in range(discs.shape[0]):
+            if room.marks[i] != 1:
+                continue
+            room.marks[i] = 2  # its contacts are known
+            near = TOUCH * discs[i, RADIUS]
+            for k in range(game.obstacles.shape[0]):
+                shape = int(game.obstacles[k, KIND])
+                gap, _, _, there = normal_to(
+                    game.obstacles[k], discs[i, RADIUS], room.states[i, X], room.states[i, Y]
+                )
+                if gap <= near and there and shape not in (POCKET, EDGE):
+                    if count == room.contacts.shape[0]:
+                        return -1
+                    room.contacts[count, 0], room.contacts[count, 1] = i, -1 - k
+                    count += 1
+            for j in range(discs.shape[0]):
+                if j == i or game.kinds[j] == GONE:
+                    continue
+                if room.marks[j] == 0:
+                    _locate(game, j, t, room)
+                reach = discs[i, RADIUS] + discs[j, RADIUS]
+                dx = room.states[j, X] - room.states[i, X]
+                dy = room.states[j, Y] - room.states[i, Y]
+                if abs(dx) > 1.01 * reach or math.hypot(dx, dy) - reach > near:
+                    continue
+                if not _contact_of(room, count, i, j):
+                    if count == room.contacts.shape[0]:
+                        return -1
+                    room.contacts[count, 0], room.contacts[count, 1] = min(i, j), max(i, j)
+                    count += 1
+                if room.marks[j] == 0:
+                    room.marks[j], grown = 1, True
+    for n in range(count):
+        prepare_contact(game, room.contacts[n, 0], room.contacts[n, 1], room.states, room.rows[n])
+    return count
+
+
+@inlined
+def _note_impacts(game: Game, t: float, count: int, room: Room) -> None:
+    for n in range(count):
+        row, i = room.rows[n], room.contacts[n, 0]
+        if row[SUM_N] > 0.0:
+            radius = game.discs[i, RADIUS]
+            note(
+                game, t, IMPACT, i, room.contacts[n, 1],
+                room.states[i, X] + radius * row[NX], room.states[i, Y] + radius * row[NY],
+            )  # fmt: skip
+            event = game.events[game.counts[N_EVENTS] - 1]
+            event[NORMAL_X], event[NORMAL_Y] = row[NX], row[NY]
+            event[APPROACH], event[SLIDE] = row[FIRST_N], row[FIRST_T]
+            event[PUSH], event[RUB], event[LOST] = row[SUM_N], row[SUM_T], row[LOSS]
+            game.counts[N_IMPACTS] += 1
+
+
+@inlined
+def _leave(game: Game, i: int, t: float, what: int, k: int, room: Room) -> None:
+    """A disc falls into a pocket or over an edge."""
+    note(game, t, what, i, -1 - k, room.states[i, X], room.states[i, Y])
+    room.states[i, VX] = room.states[i, VY] = room.states[i, SPIN] = 0.0
+    start_flight(room.states[i], game.discs[i], game.curves, t, room.work, game.flights[i])
+    game.kinds[i] = GONE
+    game.group[i] = 0
+    keep_flight(game, i)
+
+
+@kernel
+def _happen(game: Game, i: int, partner: int, t: float, room: Room) -> int:
+    """What comes next for a disc happens; those concerned are marked."""
+    discs = game.discs
+    for j in range(discs.shape[0]):
+        room.marks[j] = 0
+    _locate(game, i, t, room)
+    room.marks[i] = 1
+    if partner < 0:
+        k = -1 - partner
+        shape = int(game.obstacles[k, KIND])
+        if shape in (POCKET, EDGE):
+            _leave(game, i, t, POCKETED if shape == POCKET else OVER_EDGE, k, room)
+            room.marks[i] = 2
+            return REACHED
+    elif partner < NOTHING:
+        _locate(game, partner, t, room)
+        room.marks[partner] = 1
+    count = _touching(game, t, room)
+    if count < 0:
+        return FULL
+    if collide(game, room.contacts, count, room.rows, room.before, room.states, room.shares) < 0:
+        return TANGLED
+    _note_impacts(game, t, count, room)
+    # those that no impulse reached fly on
+    for j in range(discs.shape[0]):
+        room.marks[j] = 0
+    room.marks[i] = 1
+    for n in range(count):
+        if room.rows[n, SUM_N] > 0.0:
+            room.marks[room.contacts[n, 0]] = 1
+            if room.contacts[n, 1] >= 0:
+                room.marks[room.contacts[n, 1]] = 1
+    for j in range(discs.shape[0]):
+        if room.marks[j] > 0:
+            _take_off(game, j, t, room)
+    return REACHED
+
+
+@kernel
+def _launch(game: Game, t: float, room: Room) -> int:
+    """The launch that is due: like an impact from outside."""
+    row = game.launches[game.counts[N_LAUNCHES]]
+    i = int(row[LAUNCHED])
+    for j in range(game.discs.shape[0]):
+        room.marks[j] = 0
+    if game.kinds[i] != GONE:
+        _locate(game, i, t, room)
+        room.states[i, VX], room.states[i, VY] = row[LAUNCH_VX], row[LAUNCH_VY]
+        room.states[i, SPIN] = row[LAUNCH_SPIN]
+        note(game, t, STRUCK, i, i, room.states[i, X], room.states[i, Y])
+        _take_off(game, i, t, room)
+        room.marks[i] = 1
+    game.counts[N_LAUNCHES] += 1
+    return REACHED
+
+
+@kernel
+def advance(game: Game, until: float, room: Room) -> int:
+    """All that happens up to a time; how it ended.  After FULL the caller gives more rows."""
+    count = game.discs.shape[0]
+    at_once, last = 0, -math.inf
+    while True:
+        first, t = 0, math.inf
+        for i in range(count):
+            if game.next_time[i] < t:
+                first, t = i, game.next_time[i]
+        done, launch = game.counts[N_LAUNCHES], math.inf
+        if done < game.launches.shape[0]:
+            launch = game.launches[done, LAUNCH_TIME]
+        if min(t, launch) > until:
+            game.clock[0] = max(until, game.clock[0])
+            return REACHED
+        if (
+            game.counts[N_EVENTS] + room.contacts.shape[0] + 2 > game.events.shape[0]
+            or game.counts[N_HISTORY] + count + 1 > game.history.shape[0]
+        ):
+            return FULL
+        at_once = at_once + 1 if t == last else 0
+        last = t
+        if at_once > MOST_AT_ONCE:
+            return CROWDED
+        if launch <= t:
+            t = launch
+            status = _launch(game, t, room)
+        else:
+            status = _happen(game, first, game.next_partner[first], t, room)
+        if status != REACHED:
+            return status
+        game.clock[0] = t
+        # whoever was to meet one that flies elsewhere now looks again, too
+        for i in range(count):
+            partner = game.next_partner[i]
+            if room.marks[i] == 0 and 0 <= partner < NOTHING and room.marks[partner] > 0:
+                room.marks[i] = 1
+        for i in range(count):
+            if room.marks[i] > 0:
+                game.next_time[i], game.next_partner[i] = math.inf, NOTHING
+        for i in range(count):
+            if room.marks[i] > 0:
+                look_ahead(game, i, t, room)
+
+
+@kernel
+def look_around(game: Game, room: Room) -> None:
+    """What comes next for all."""
+    for i in range(game.discs.shape[0]):
+        game.next_time[i], game.next_partner[i] = math.inf, NOTHING
+    for i in range(game.discs.shape[0]):
+        look_ahead(game, i, game.clock[0], room)
+
+
+def room_for(discs: int, contacts: int) -> Room:
+    """Room to work for so many discs and contacts at once."""
+    from puck_tables.world.flight import ROOM
+    from puck_tables.world.impact import CONTACT_COLUMNS
+
+    return Room(
+        np.zeros((discs, 6)), np.zeros((discs, 6)), np.zeros(discs, np.int64),
+        np.zeros(discs, np.int64), np.zeros((contacts, 2), np.int64),
+        np.zeros((contacts, CONTACT_COLUMNS)), np.zeros(ROOM), np.zeros(6), np.zeros(6),
+    )  # fmt: skip

@@ -1,0 +1,176 @@
+"""Where a disc is between two events: its flight, known as a whole from its start.
+
+A flight is a row: what :mod:`puck_tables.stopping.curve_lookup` knows of a launch, when and where
+it starts, until when it holds, and two bounds, of its speed and of its acceleration.  Of its kinds
+
+- STILL is at rest, GONE has left play;
+- LOOKED_UP is the motion of a plain puck, looked up;
+- DAMPED has drag alone, v′ = −γ v − w |v| v and ω′ = −γ_s ω, so that with E = (1 − e^{−γs})/γ
+
+      v = v₀ e^{−γs}/(1 + w v₀ E),   path = ln(1 + w v₀ E)/w,   angle = ω₀ (1 − e^{−γ_s s})/γ_s;
+
+- PATH is a path in pieces (:mod:`puck_tables.world.paths`): integrated, or given.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.motion.state import HEADING, ORIENTATION, PUCK_X, PUCK_Y, SPEED
+from puck_tables.motion.state import SPIN as PUCK_SPIN
+from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
+from puck_tables.stopping.curve_lookup import (
+    LAUNCH_COLUMNS,
+    LAUNCH_ROWS,
+    LENGTH,
+    STOP_X,
+    STOP_Y,
+    TIME,
+    know_launch,
+    look_up_state,
+)
+from puck_tables.stopping.lookup import CURVE_ROW
+from puck_tables.world.layout import DAMPING, DECEL, DELTA, RADIUS, SPIN_DAMPING, WAKE
+from puck_tables.world.paths import on_piece, piece_at
+
+STILL, LOOKED_UP, DAMPED, PATH, GONE = range(5)
+
+KNOWN = LAUNCH_COLUMNS  # before it the launch: vx, vy, ω, δ, J, r
+START = LAUNCH_COLUMNS + LAUNCH_ROWS
+PLACE_X, PLACE_Y, ANGLE, UNTIL, FASTEST, STRONGEST = range(START + 1, START + 7)
+FIRST_PIECE, LAST_PIECE = START + 7, START + 8
+FLIGHT_COLUMNS = START + 9
+
+ROOM = CURVE_ROW + 5 + 9  # numbers to work in
+NO_TURN = 0.0
+
+Kinds = npt.NDArray[np.int64]
+
+
+class Curves(NamedTuple):
+    """The tables of stops of plain pucks, as the kernels read them."""
+
+    stops: FloatArray
+    curve: FloatArray
+    time_inverse: FloatArray
+    turn_inverse: FloatArray
+    constants: FloatArray
+
+
+@inlined
+def _grown(rate: float, time: float) -> float:
+    """(1 − e^{−rate·time})/rate."""
+    return -math.expm1(-rate * time) / rate if rate > 0.0 else time
+
+
+@inlined
+def _damped_state(flight: FloatArray, disc: FloatArray, time: float, out: FloatArray) -> None:
+    vx, vy, spin = flight[0], flight[1], flight[2]
+    damping, wake = disc[DAMPING], disc[WAKE]
+    speed = math.hypot(vx, vy)
+    grown = _grown(damping, time)
+    slowed = 1.0 + wake * speed * grown
+    way = math.log(slowed) / (wake * speed) if wake * speed * grown > 1e-12 else grown
+    left = math.exp(-damping * time) / slowed
+    out[X], out[Y] = flight[PLACE_X] + vx * way, flight[PLACE_Y] + vy * way
+    out[THETA] = flight[ANGLE] + spin * _grown(disc[SPIN_DAMPING], time)
+    out[VX], out[VY] = vx * left, vy * left
+    out[SPIN] = spin * math.exp(-disc[SPIN_DAMPING] * time)
+
+
+@kernel
+def state_at(
+    kind: int, flight: FloatArray, disc: FloatArray, curves: Curves, pieces: FloatArray, t: float,
+    room: FloatArray, out: FloatArray,
+) -> None:  # fmt: skip
+    """X, y, angle, vx, vy, spin at the time t into ``out`` (6,)."""
+    if kind == LOOKED_UP:
+        found = room[CURVE_ROW + 5 :]
+        look_up_state(
+            flight, t - flight[START], curves.stops, curves.curve, curves.time_inverse,
+            room, room[CURVE_ROW:], found,
+        )  # fmt: skip
+        out[X] = flight[PLACE_X] + found[PUCK_X]
+        out[Y] = flight[PLACE_Y] + found[PUCK_Y]
+        out[THETA] = flight[ANGLE] + found[ORIENTATION]
+        speed = found[SPEED]
+        out[VX], out[VY], out[SPIN] = 0.0, 0.0, found[PUCK_SPIN]
+        if speed > 0.0:
+            start = math.hypot(flight[0], flight[1])
+            cosine, sine = math.cos(found[HEADING]), math.sin(found[HEADING])
+            east, north = flight[0] / start, flight[1] / start
+            out[VX] = speed * (cosine * east - sine * north)
+            out[VY] = speed * (sine * east + cosine * north)
+    elif kind == DAMPED:
+        _damped_state(flight, disc, t - flight[START], out)
+    elif kind == PATH:
+        piece = piece_at(pieces, int(flight[FIRST_PIECE]), int(flight[LAST_PIECE]), t)
+        on_piece(pieces[piece], t, room)
+        for i in range(6):
+            out[i] = room[i]
+    else:
+        out[X], out[Y], out[THETA] = flight[PLACE_X], flight[PLACE_Y], flight[ANGLE]
+        out[VX], out[VY], out[SPIN] = 0.0, 0.0, 0.0
+
+
+@kernel
+def start_flight(
+    state: FloatArray, disc: FloatArray, curves: Curves, t: float, room: FloatArray,
+    flight: FloatArray,
+) -> int:  # fmt: skip
+    """The flight of a disc alone, from its state at t; its kind.  Of pieces it knows nothing."""
+    vx, vy, spin = state[VX], state[VY], state[SPIN]
+    speed = math.hypot(vx, vy)
+    flight[0], flight[1], flight[2] = vx, vy, spin
+    flight[3], flight[4], flight[5] = disc[DELTA], disc[DECEL], disc[RADIUS]
+    flight[START], flight[PLACE_X], flight[PLACE_Y] = t, state[X], state[Y]
+    flight[ANGLE], flight[UNTIL] = state[THETA], math.inf
+    flight[FASTEST], flight[STRONGEST] = 0.0, 0.0
+    flight[FIRST_PIECE], flight[LAST_PIECE] = 0.0, 0.0
+    if speed == 0.0 and spin == 0.0:
+        return STILL
+    flight[FASTEST] = speed
+    if disc[DECEL] > 0.0:
+        know_launch(
+            flight, curves.stops, curves.curve, curves.turn_inverse, curves.constants, NO_TURN,
+            room, flight[KNOWN:],
+        )  # fmt: skip
+        flight[UNTIL] = t + flight[KNOWN + TIME]
+        flight[STRONGEST] = disc[DECEL]
+        return LOOKED_UP
+    flight[STRONGEST] = speed * (disc[DAMPING] + disc[WAKE] * speed)
+    return DAMPED
+
+
+@inlined
+def corridor(
+    kind: int, flight: FloatArray, disc: FloatArray, state: FloatArray, horizon: float, now: float
+) -> tuple[float, float, float, float, float]:
+    """Where the centre will be at most, from now until the horizon: a chord, and a margin about it.
+
+    A path of the length L over a chord of the length C lies in the ellipse about its ends, at most
+    (L − C)/2 beyond them and ½√(L² − C²) beside.
+    """
+    x, y = state[X], state[Y]
+    if kind == LOOKED_UP:
+        x, y = flight[PLACE_X], flight[PLACE_Y]
+        across, up = flight[KNOWN + STOP_X], flight[KNOWN + STOP_Y]
+        length, over = flight[KNOWN + LENGTH], math.hypot(across, up)
+        slack = max(length - over, 0.0) + 1e-9 * length  # what the table may be wrong by
+        return x, y, x + across, y + up, 0.5 * slack + 0.5 * math.sqrt(slack * (length + over))
+    if kind == DAMPED:
+        way = horizon - now
+        if disc[DAMPING] > 0.0:
+            way = min(way, 1.0 / disc[DAMPING])
+        if way == math.inf:
+            return x, y, x, y, math.inf
+        return x, y, x + way * state[VX], y + way * state[VY], 0.0
+    if kind == PATH:
+        return x, y, x, y, flight[FASTEST] * (min(horizon, flight[UNTIL]) - now)
+    return x, y, x, y, 0.0

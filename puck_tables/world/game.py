@@ -1,0 +1,64 @@
+"""All that the compiled engine of many pucks knows: discs, flights, what comes next, what was."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.scene.ingredients import Regions
+from puck_tables.world.flight import FLIGHT_COLUMNS, Curves
+
+Whole = npt.NDArray[np.int64]
+
+# what comes next for a disc, beside a partner (a disc ≥ 0, an obstacle −1 − k)
+NOTHING, PATH_ENDS = 1 << 40, (1 << 40) + 1
+
+# events
+IMPACT, CONTACT, PART, POCKETED, OVER_EDGE, REST, STRUCK = range(7)
+EVENTS = ("impact", "contact", "part", "pocket", "edge", "rest", "launch")
+# columns of an event: what, disc, partner, place of the contact, normal from the disc to its
+# partner, approach and slip before, normal and tangential impulse, energy lost, all in SI units
+(
+    TIME, WHAT, WHO, PARTNER, AT_X, AT_Y, NORMAL_X, NORMAL_Y, APPROACH, SLIDE, PUSH, RUB, LOST,
+) = range(13)  # fmt: skip
+EVENT_COLUMNS = 13
+
+LAUNCH_TIME, LAUNCHED, LAUNCH_VX, LAUNCH_VY, LAUNCH_SPIN = range(5)
+LAUNCH_COLUMNS = 5
+
+HISTORY_COLUMNS = 2 + FLIGHT_COLUMNS  # disc, kind, flight
+
+# counts
+N_EVENTS, N_HISTORY, N_PIECES, N_HELD, N_LAUNCHES, N_IMPACTS, N_GROUPS, N_LOOKS = range(8)
+COUNTS = 8
+
+
+class Game(NamedTuple):
+    """Everything, as arrays: a copy of them is a copy of the world.
+
+    ``regions``: the dry friction of every disc, under its number.  ``clock`` (1,): now.  ``group``
+    (n,): discs of one number push each other, 0: none; ``held``
+    (…, 2): their contacts.  ``next_time``, ``next_partner`` (n,).  ``launches`` (…, 5), ascending
+    in time.  ``counts``: how many rows of events, history, pieces and held contacts are used, how
+    many launches are done, and what was done.
+    """
+
+    discs: FloatArray
+    regions: Regions
+    obstacles: FloatArray
+    curves: Curves
+    clock: FloatArray
+    kinds: Whole
+    flights: FloatArray
+    group: Whole
+    held: Whole
+    next_time: FloatArray
+    next_partner: Whole
+    launches: FloatArray
+    pieces: FloatArray
+    events: FloatArray
+    history: FloatArray
+    counts: Whole

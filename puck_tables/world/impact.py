@@ -1,0 +1,284 @@
+"""Impacts: of two discs, of a disc and an obstacle, and of as many at once as touch.
+
+With n from the disc i to its partner j, t = n turned by +90°, e, β and μ of the pair,
+
+    u_n = (v_i − v_j)·n,   u_t = (v_i − v_j)·t + R_i ω_i + R_j ω_j,
+    1/m_n = 1/m_i + 1/m_j,   1/m_t = 1/m_n + R_i²/I_i + R_j²/I_j,
+    P_n = (1 + e) m_n u_n,   P_t = (1 + β) m_t u_t, at most μ P_n in size,
+    v_i −= (P_n n + P_t t)/m_i,   v_j += …/m_j,   ω_i −= R_i P_t/I_i,   ω_j −= R_j P_t/I_j:
+
+restitution e and tangential restitution β (−1: smooth, 0: the rims stop on each other, 1: their
+slip reverses) after Walton 1993, with Coulomb's friction μ.  An obstacle has no 1/m and no 1/I.
+The energy lost is ½ m_n (1 − e²) u_n² with ½ m_t (1 − β²) u_t², or where the rims
+slide μ P_n |u_t| − P_t²/2m_t; never less than nothing.
+
+Of discs that touch, those contacts that approach are resolved, then those that approach then, and
+so on: a row of pucks passes an impact on, as if there were gaps between them.  Contacts of one
+round that share a disc are resolved together: the impulses for e = β = 0 (P_n ≥ 0) are found by an
+iteration that treats all alike, then enlarged by 1 + e and 1 + β, as Poisson has it, and lessened
+together should energy grow.  So no numbering matters, and what is symmetric stays so.
+
+Rebounds of discs that press on each other die out.  Where those left are lower than 1e-13 of the
+radius, e = 0: they stay in contact.
+"""
+
+from __future__ import annotations
+
+import math
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.scene.friction import SPIN, VX, VY, X, Y, dry_friction
+from puck_tables.scene.ingredients import dry_in
+from puck_tables.world.game import Game, Whole
+from puck_tables.world.layout import (
+    DAMPING,
+    LIGHTNESS,
+    RADIUS,
+    TURNABILITY,
+    WAKE,
+    law_of_pair,
+)
+from puck_tables.world.meeting import normal_to
+
+# columns of a contact in work: normal, slownesses 1/m_n and 1/m_t, law, whether it acts in this
+# round, impulses of the round and of all, approach and slip at the first, energy lost
+NX, NY, SOFT, SLICK, E, BETA, MU, ACTS, PN, PT, SUM_N, SUM_T, FIRST_N, FIRST_T, LOSS = range(15)
+CONTACT_COLUMNS = 15
+
+NEGLIGIBLE = 1e-13  # of the fastest: an approach as slow is none
+FLAT = 1e-13  # of the radius: rebounds as low have died out
+MOST_ROUNDS = 20_000
+_MOST_ITERATIONS = 20_000
+_SOLVED = 1e-15
+
+
+@inlined
+def approach(
+    game: Game, i: int, j: int, nx: float, ny: float, states: FloatArray
+) -> tuple[float, float]:
+    """u_n and u_t."""
+    vx, vy = states[i, VX], states[i, VY]
+    rim = game.discs[i, RADIUS] * states[i, SPIN]
+    if j >= 0:
+        vx -= states[j, VX]
+        vy -= states[j, VY]
+        rim += game.discs[j, RADIUS] * states[j, SPIN]
+    return vx * nx + vy * ny, vy * nx - vx * ny + rim
+
+
+@inlined
+def _push(game: Game, i: int, j: int, row: FloatArray, states: FloatArray) -> None:
+    """What impulses along n and t do to the velocities."""
+    pn, pt = row[PN], row[PT]
+    px, py = pn * row[NX] - pt * row[NY], pn * row[NY] + pt * row[NX]
+    discs = game.discs
+    states[i, VX] -= discs[i, LIGHTNESS] * px
+    states[i, VY] -= discs[i, LIGHTNESS] * py
+    states[i, SPIN] -= discs[i, RADIUS] * discs[i, TURNABILITY] * pt
+    if j >= 0:
+        states[j, VX] += discs[j, LIGHTNESS] * px
+        states[j, VY] += discs[j, LIGHTNESS] * py
+        states[j, SPIN] -= discs[j, RADIUS] * discs[j, TURNABILITY] * pt
+
+
+@inlined
+def prepare_contact(game: Game, i: int, j: int, states: FloatArray, row: FloatArray) -> None:
+    """Normal, slownesses and law of a contact that has had no impulse yet."""
+    discs = game.discs
+    light, turn = discs[i, LIGHTNESS], discs[i, TURNABILITY] * discs[i, RADIUS] ** 2
+    if j >= 0:
+        dx, dy = states[j, X] - states[i, X], states[j, Y] - states[i, Y]
+        size = math.hypot(dx, dy)
+        row[NX], row[NY] = dx / size, dy / size
+        light += discs[j, LIGHTNESS]
+        turn += discs[j, TURNABILITY] * discs[j, RADIUS] ** 2
+    else:
+        _, row[NX], row[NY], _ = normal_to(
+            game.obstacles[-1 - j], discs[i, RADIUS], states[i, X], states[i, Y]
+        )
+    row[SOFT], row[SLICK] = light, light + turn
+    row[E], row[BETA], row[MU] = law_of_pair(discs, game.obstacles, i, j)
+    row[ACTS] = row[PN] = row[PT] = row[SUM_N] = row[SUM_T] = 0.0
+    row[FIRST_N] = row[FIRST_T] = row[LOSS] = 0.0
+
+
+@inlined
+def _pull_along(game: Game, i: int, nx: float, ny: float, states: FloatArray) -> float:
+    """The acceleration along n of a disc alone."""
+    vx, vy, spin = states[i, VX], states[i, VY], states[i, SPIN]
+    disc = game.discs[i]
+    fx, fy, _, _ = dry_friction(dry_in(game.regions, i), disc[RADIUS], vx, vy, spin)
+    drag = disc[DAMPING] + disc[WAKE] * math.hypot(vx, vy)
+    return disc[LIGHTNESS] * (fx * nx + fy * ny) - drag * (vx * nx + vy * ny)
+
+
+@inlined
+def _dies_out(game: Game, i: int, j: int, row: FloatArray, states: FloatArray) -> bool:
+    """Whether both press on each other so that this rebound and those after it are too low."""
+    if row[E] >= 1.0:
+        return False
+    un, _ = approach(game, i, j, row[NX], row[NY], states)
+    closing = _pull_along(game, i, row[NX], row[NY], states)
+    if j >= 0:
+        closing -= _pull_along(game, j, row[NX], row[NY], states)
+    height = FLAT * game.discs[i, RADIUS] * (1.0 - row[E] ** 2)
+    return closing > 0.0 and un <= 0.0 and un * un <= 2.0 * closing * height
+
+
+@inlined
+def _recall(
+    game: Game, contacts: Whole, count: int, rows: FloatArray, before: FloatArray,
+    states: FloatArray,
+) -> None:  # fmt: skip
+    """The velocities before this round."""
+    for n in range(count):
+        if rows[n, ACTS] > 0.0:
+            for m in range(2):
+                disc = contacts[n, m]
+                if disc >= 0:
+                    for column in range(VX, SPIN + 1):
+                        states[disc, column] = before[disc, column]
+
+
+@inlined
+def _push_all(
+    game: Game, contacts: Whole, count: int, rows: FloatArray, before: FloatArray,
+    states: FloatArray,
+) -> None:  # fmt: skip
+    """The velocities after the impulses of this round."""
+    _recall(game, contacts, count, rows, before, states)
+    for n in range(count):
+        if rows[n, ACTS] > 0.0:
+            _push(game, contacts[n, 0], contacts[n, 1], rows[n], states)
+
+
+@inlined
+def _alone(game: Game, i: int, j: int, row: FloatArray, states: FloatArray, e: float) -> None:
+    """The law for one contact."""
+    un, ut = approach(game, i, j, row[NX], row[NY], states)
+    row[PN] = (1.0 + e) * un / row[SOFT]
+    row[PT] = (1.0 + row[BETA]) * ut / row[SLICK]
+    if abs(row[PT]) > row[MU] * row[PN]:
+        row[PT] = math.copysign(row[MU] * row[PN], ut)
+    _push(game, i, j, row, states)
+
+
+@kernel
+def _together(
+    game: Game, contacts: Whole, count: int, rows: FloatArray, before: FloatArray,
+    states: FloatArray, weight: float,
+) -> None:  # fmt: skip
+    """The law for contacts that share discs, at most 1/weight each."""
+    for n in range(count):
+        rows[n, PN] = rows[n, PT] = 0.0
+    for _ in range(_MOST_ITERATIONS):
+        change, largest = 0.0, 0.0
+        for n in range(count):
+            row = rows[n]
+            if row[ACTS] == 0.0:
+                continue
+            un, ut = approach(game, contacts[n, 0], contacts[n, 1], row[NX], row[NY], states)
+            old_n, old_t = row[PN], row[PT]
+            row[PN] = max(old_n + weight * un / row[SOFT], 0.0)
+            if row[BETA] > -1.0:
+                most = row[MU] * row[PN] * (1.0 + row[E]) / (1.0 + row[BETA])
+                row[PT] = min(max(old_t + weight * ut / row[SLICK], -most), most)
+            change = max(change, abs(row[PN] - old_n), abs(row[PT] - old_t))
+            largest = max(largest, row[PN], abs(row[PT]))
+        _push_all(game, contacts, count, rows, before, states)
+        if change <= _SOLVED * largest:
+            break
+    gain, cost = 0.0, 0.0
+    for n in range(count):
+        rows[n, PN] *= 1.0 + rows[n, E]
+        rows[n, PT] *= 1.0 + rows[n, BETA]
+    _push_all(game, contacts, count, rows, before, states)
+    for n in range(count):
+        row = rows[n]
+        if row[ACTS] > 0.0:
+            i, j = contacts[n, 0], contacts[n, 1]
+            un, ut = approach(game, i, j, row[NX], row[NY], before)
+            vn, vt = approach(game, i, j, row[NX], row[NY], states)
+            gain += row[PN] * un + row[PT] * ut
+            cost += 0.5 * (row[PN] * (un - vn) + row[PT] * (ut - vt))
+    if cost > gain:  # impulses of this share of them keep the energy
+        for n in range(count):
+            rows[n, PN] *= gain / cost
+            rows[n, PT] *= gain / cost
+        _push_all(game, contacts, count, rows, before, states)
+
+
+@inlined
+def _most_shared(contacts: Whole, count: int, rows: FloatArray, shares: Whole) -> int:
+    """How many acting contacts a disc has at most."""
+    most = 0
+    for n in range(count):
+        for m in range(2):
+            if contacts[n, m] >= 0:
+                shares[contacts[n, m]] = 0
+    for n in range(count):
+        if rows[n, ACTS] > 0.0:
+            for m in range(2):
+                if contacts[n, m] >= 0:
+                    shares[contacts[n, m]] += 1
+                    most = max(most, shares[contacts[n, m]])
+    return most
+
+
+@kernel
+def collide(
+    game: Game, contacts: Whole, count: int, rows: FloatArray, before: FloatArray,
+    states: FloatArray, shares: Whole,
+) -> int:  # fmt: skip
+    """All impacts of discs that touch, at one instant; how many rounds there were, or −1.
+
+    ``contacts`` (count, 2): discs and their partners, prepared in ``rows``; ``states`` (n, 6) get
+    the velocities after them; ``before`` (n, 6) and ``shares`` (n,) are room to work.
+    """
+    fastest = 0.0
+    for n in range(count):
+        un, ut = approach(game, contacts[n, 0], contacts[n, 1], rows[n, NX], rows[n, NY], states)
+        fastest = max(fastest, abs(un), abs(ut))
+    for turn in range(MOST_ROUNDS):
+        acting = 0
+        for n in range(count):
+            row, i, j = rows[n], contacts[n, 0], contacts[n, 1]
+            un, ut = approach(game, i, j, row[NX], row[NY], states)
+            row[ACTS] = 1.0 if un > NEGLIGIBLE * fastest else 0.0
+            if row[ACTS] > 0.0:
+                acting += 1
+                if row[SUM_N] == 0.0:
+                    row[FIRST_N], row[FIRST_T] = un, ut
+                for column in range(VX, SPIN + 1):
+                    before[i, column] = states[i, column]
+                    if j >= 0:
+                        before[j, column] = states[j, column]
+        if acting == 0:
+            return turn
+        most = _most_shared(contacts, count, rows, shares)
+        again = True
+        while again:
+            if most == 1:
+                for n in range(count):
+                    if rows[n, ACTS] > 0.0:
+                        _alone(game, contacts[n, 0], contacts[n, 1], rows[n], states, rows[n, E])
+            else:
+                _together(game, contacts, count, rows, before, states, 1.0 / most)
+            again = False
+            for n in range(count):
+                row = rows[n]
+                i, j = contacts[n, 0], contacts[n, 1]
+                if row[ACTS] * row[E] > 0.0 and _dies_out(game, i, j, row, states):
+                    row[E], again = 0.0, True
+            if again:
+                _recall(game, contacts, count, rows, before, states)
+        for n in range(count):
+            row, i, j = rows[n], contacts[n, 0], contacts[n, 1]
+            if row[ACTS] > 0.0:
+                un, ut = approach(game, i, j, row[NX], row[NY], before)
+                vn, vt = approach(game, i, j, row[NX], row[NY], states)
+                row[SUM_N] += row[PN]
+                row[SUM_T] += row[PT]
+                row[LOSS] += 0.5 * (row[PN] * (un + vn) + row[PT] * (ut + vt))
+    return -1

@@ -1,0 +1,275 @@
+"""When two discs, or a disc and an obstacle, meet next.
+
+The gap between two discs is g = |d| − R with the distance d of their centres, and
+
+    g″ = w_⊥²/|d| + n·a ≥ −A,    A the sum of the largest accelerations of both
+
+(of dry friction J = f g, whatever the spin).  So it cannot close before
+
+    s = 2g/(√(g′² + 2 A g) − g′),
+
+and steps by s reach the contact from before, with quadratic convergence: Newton's method that
+cannot pass a root.  A straight wall is the same without w_⊥; inside an arc |d| is bounded along the
+tangent instead.  Pairs whose corridors do not touch need no look.
+"""
+
+from __future__ import annotations
+
+import math
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.scene.friction import VX, VY, X, Y
+from puck_tables.world.flight import (
+    DAMPED,
+    FASTEST,
+    GONE,
+    LOOKED_UP,
+    PATH,
+    STILL,
+    STRONGEST,
+    UNTIL,
+    corridor,
+    state_at,
+)
+from puck_tables.world.game import N_HELD, N_LOOKS, Game
+from puck_tables.world.layout import (
+    ARC,
+    EDGE,
+    FROM,
+    KIND,
+    POCKET,
+    RADIUS,
+    SPAN,
+    WALL,
+    A,
+    B,
+    C,
+)
+
+ROUNDED = 1e-15  # of the places: a gap as small is none
+QUIET = 1e-12  # of the speeds: an approach as slow is none
+_MOST_LOOKS = 100_000
+
+
+@inlined
+def safe_step(gap: float, rate: float, bend: float) -> float:
+    """How long a gap cannot close whose second derivative is −bend at least."""
+    root = math.sqrt(rate * rate + 2.0 * bend * gap)
+    if rate < 0.0:
+        return 2.0 * gap / (root - rate)
+    return (rate + root) / bend if bend > 0.0 else math.inf
+
+
+@inlined
+def in_span(angle: float, start: float, span: float) -> bool:
+    """Whether an angle lies in [start, start + span]."""
+    turns = (angle - start) / (2.0 * math.pi)
+    return 2.0 * math.pi * (turns - math.floor(turns)) <= span
+
+
+@inlined
+def normal_to(
+    obstacle: FloatArray, radius: float, x: float, y: float
+) -> tuple[float, float, float, bool]:
+    """The gap of a disc to an obstacle, the unit normal towards it, and whether it is there."""
+    kind = int(obstacle[KIND])
+    if kind in (WALL, EDGE):
+        margin = radius if kind == WALL else 0.0
+        gap = obstacle[A] * x + obstacle[B] * y - obstacle[C] - margin
+        return gap, -obstacle[A], -obstacle[B], True
+    dx, dy = obstacle[A] - x, obstacle[B] - y
+    size = math.hypot(dx, dy)
+    nx, ny = (dx / size, dy / size) if size > 0.0 else (1.0, 0.0)
+    if kind == ARC:
+        there = in_span(math.atan2(-ny, -nx), obstacle[FROM], obstacle[SPAN])
+        return obstacle[C] - radius - size, -nx, -ny, there
+    return size - obstacle[C] - (0.0 if kind == POCKET else radius), nx, ny, True
+
+
+@inlined
+def _arc_step(gap: float, dx: float, dy: float, vx: float, vy: float, bend: float) -> float:
+    """How long a centre inside an arc cannot meet it, (dx, dy) from its middle, gap to go."""
+    size, speed2 = math.hypot(dx, dy), vx * vx + vy * vy
+    reach = size + gap
+    along = dx * vx + dy * vy
+    if speed2 > 0.0:
+        root = math.sqrt(along * along + speed2 * (reach * reach - size * size))
+        out = (reach * reach - size * size) / (along + root)  # a straight path meets it then
+        nearer = reach - 0.5 * bend * out * out
+        if nearer > size:
+            rest = nearer * nearer - size * size
+            return rest / (along + math.sqrt(along * along + speed2 * rest))
+    speed = math.sqrt(speed2)
+    root = math.sqrt(speed2 + 2.0 * bend * gap)
+    return 2.0 * gap / (speed + root) if speed + root > 0.0 else math.inf
+
+
+@inlined
+def _distance2(ax: float, ay: float, bx: float, by: float, px: float, py: float) -> float:
+    """The square of the distance of a point from the segment a–b."""
+    ex, ey = bx - ax, by - ay
+    size2 = ex * ex + ey * ey
+    share = ((px - ax) * ex + (py - ay) * ey) / size2 if size2 > 0.0 else 0.0
+    share = min(max(share, 0.0), 1.0)
+    dx, dy = px - ax - share * ex, py - ay - share * ey
+    return dx * dx + dy * dy
+
+
+@inlined
+def _apart(
+    one: tuple[float, float, float, float, float], two: tuple[float, float, float, float, float],
+    reach: float,
+) -> bool:  # fmt: skip
+    """Whether two corridors stay farther than this from each other."""
+    ax, ay, bx, by, margin = one
+    cx, cy, dx, dy, other = two
+    reach += margin + other
+    if reach == math.inf:
+        return False
+    # segments that cross are not apart
+    first = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
+    second = (bx - ax) * (dy - ay) - (by - ay) * (dx - ax)
+    third = (dx - cx) * (ay - cy) - (dy - cy) * (ax - cx)
+    fourth = (dx - cx) * (by - cy) - (dy - cy) * (bx - cx)
+    if first * second < 0.0 and third * fourth < 0.0:
+        return False
+    nearest = min(
+        min(_distance2(ax, ay, bx, by, cx, cy), _distance2(ax, ay, bx, by, dx, dy)),
+        min(_distance2(cx, cy, dx, dy, ax, ay), _distance2(cx, cy, dx, dy, bx, by)),
+    )
+    return nearest > reach * reach * (1.0 + 1e-9)
+
+
+@inlined
+def are_held(game: Game, i: int, j: int) -> bool:
+    """Whether the contact of disc i with partner j is one of a group that pushes."""
+    if game.group[i] == 0 or (j >= 0 and game.group[j] != game.group[i]):
+        return False
+    for n in range(game.counts[N_HELD]):
+        a, b = game.held[n, 0], game.held[n, 1]
+        if (a == i and b == j) or (a == j and b == i):
+            return True
+    return False
+
+
+@inlined
+def _moves_until(kind: int, flight: FloatArray) -> float:
+    """When a disc comes to rest, or what is known of it ends."""
+    if kind in (LOOKED_UP, PATH):
+        return flight[UNTIL]
+    return math.inf if kind == DAMPED else -math.inf
+
+
+@kernel
+def next_meeting(
+    game: Game, i: int, j: int, now: float, horizon: float, room: FloatArray, one: FloatArray,
+    two: FloatArray,
+) -> float:  # fmt: skip
+    """When two discs touch next, up to the horizon; else inf.  States at the end in one and two."""
+    kind, other = game.kinds[i], game.kinds[j]
+    if kind == GONE or other == GONE or (kind == STILL and other == STILL):
+        return math.inf
+    flight, second = game.flights[i], game.flights[j]
+    last = min(horizon, max(_moves_until(kind, flight), _moves_until(other, second)))
+    if kind == PATH:
+        last = min(last, flight[UNTIL])
+    if other == PATH:
+        last = min(last, second[UNTIL])
+    if not last > now or are_held(game, i, j):
+        return math.inf
+    discs, curves, pieces = game.discs, game.curves, game.pieces
+    reach = discs[i, RADIUS] + discs[j, RADIUS]
+    state_at(kind, flight, discs[i], curves, pieces, now, room, one)
+    state_at(other, second, discs[j], curves, pieces, now, room, two)
+    if _apart(
+        corridor(kind, flight, discs[i], one, last, now),
+        corridor(other, second, discs[j], two, last, now),
+        reach,
+    ):
+        return math.inf
+    bend, fastest = flight[STRONGEST] + second[STRONGEST], flight[FASTEST] + second[FASTEST]
+    t = now
+    for _ in range(_MOST_LOOKS):
+        game.counts[N_LOOKS] += 1
+        dx, dy = two[X] - one[X], two[Y] - one[Y]
+        size = math.hypot(dx, dy)
+        gap = size - reach
+        rate = (dx * (two[VX] - one[VX]) + dy * (two[VY] - one[VY])) / size
+        rounded = ROUNDED * (abs(one[X]) + abs(one[Y]) + reach)
+        step = safe_step(max(gap, 0.0), rate, bend)
+        if gap <= rounded:
+            if rate < -QUIET * fastest:
+                return t
+            if bend > 0.0:
+                step = max(step, math.sqrt(2.0 * rounded / bend))
+        if t + step > last:
+            return math.inf
+        if t + step == t:
+            return t if rate < 0.0 else math.inf
+        t += step
+        state_at(kind, flight, discs[i], curves, pieces, t, room, one)
+        state_at(other, second, discs[j], curves, pieces, t, room, two)
+    return t
+
+
+@kernel
+def next_crossing(
+    game: Game, i: int, k: int, now: float, horizon: float, room: FloatArray, one: FloatArray
+) -> float:
+    """When a disc meets obstacle k next, or its centre passes it, up to the horizon; else inf."""
+    kind, flight = game.kinds[i], game.flights[i]
+    last = min(horizon, _moves_until(kind, flight))
+    if kind == GONE or not last > now or are_held(game, i, -1 - k):
+        return math.inf
+    disc, obstacle = game.discs[i], game.obstacles[k]
+    radius, shape = disc[RADIUS], int(obstacle[KIND])
+    state_at(kind, flight, disc, game.curves, game.pieces, now, room, one)
+    ax, ay, bx, by, margin = corridor(kind, flight, disc, one, last, now)
+    if shape in (WALL, EDGE):
+        nearest = min(
+            normal_to(obstacle, radius, ax, ay)[0], normal_to(obstacle, radius, bx, by)[0]
+        )
+        if nearest > margin * (1.0 + 1e-9):
+            return math.inf
+    elif shape == ARC:
+        farthest = max(
+            math.hypot(ax - obstacle[A], ay - obstacle[B]),
+            math.hypot(bx - obstacle[A], by - obstacle[B]),
+        )
+        if farthest + margin < (obstacle[C] - radius) * (1.0 - 1e-9):
+            return math.inf
+    else:
+        reach = obstacle[C] + (0.0 if shape == POCKET else radius) + margin
+        near = _distance2(ax, ay, bx, by, obstacle[A], obstacle[B])
+        if near > reach * reach * (1.0 + 1e-9):
+            return math.inf
+    t = now
+    for _ in range(_MOST_LOOKS):
+        game.counts[N_LOOKS] += 1
+        gap, nx, ny, there = normal_to(obstacle, radius, one[X], one[Y])
+        rate = -(nx * one[VX] + ny * one[VY])
+        bend = flight[STRONGEST]
+        rounded = ROUNDED * (abs(one[X]) + abs(one[Y]) + radius + obstacle[C] * (shape == ARC))
+        if shape == ARC and gap >= 0.0:
+            step = _arc_step(
+                gap, one[X] - obstacle[A], one[Y] - obstacle[B], one[VX], one[VY], bend
+            )
+        elif shape == ARC:
+            step = safe_step(-gap, -rate, bend)  # outside it: until it comes back
+        else:
+            step = safe_step(max(gap, 0.0), rate, bend)
+        if abs(gap) <= rounded or (gap < 0.0 and shape != ARC):
+            if rate < -QUIET * flight[FASTEST] and there:
+                return t
+            if bend > 0.0:
+                step = max(step, math.sqrt(2.0 * rounded / bend))
+            if not there and rate != 0.0:
+                step = max(step, 4.0 * rounded / abs(rate))
+        if t + step > last:
+            return math.inf
+        if t + step == t:
+            return t if rate < 0.0 else math.inf
+        t += step
+        state_at(kind, flight, disc, game.curves, game.pieces, t, room, one)
+    return t
