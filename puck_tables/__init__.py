@@ -46,6 +46,7 @@ if TYPE_CHECKING:
         Strips,
         Wall,
     )
+    from puck_tables.scene.pieces import Arc, Piece, Pocket, Post
     from puck_tables.scene.scene import Scene
     from puck_tables.scene.sweep import SceneMap
     from puck_tables.stopping.aim import Aim
@@ -56,10 +57,12 @@ if TYPE_CHECKING:
     from puck_tables.table.store import table_for
     from puck_tables.table.table import Table
     from puck_tables.trajectory import Trajectory
+    from puck_tables.world.world import World
 
 _HOMES = {
     "AccuracyError": "errors",
     "Aim": "stopping.aim",
+    "Arc": "scene.pieces",
     "CheckReport": "table.check",
     "Constraint": "scene.parts",
     "ContactError": "errors",
@@ -72,6 +75,9 @@ _HOMES = {
     "Law": "contact.laws",
     "MissingExtraError": "errors",
     "OutputError": "errors",
+    "Piece": "scene.pieces",
+    "Pocket": "scene.pieces",
+    "Post": "scene.pieces",
     "Puck": "puck",
     "PuckError": "errors",
     "Result": "result",
@@ -88,6 +94,7 @@ _HOMES = {
     "TableError": "errors",
     "Trajectory": "trajectory",
     "Wall": "scene.parts",
+    "World": "world.world",
     "chetaev": "",
     "contact": "",
     "law_of": "contact.laws",
@@ -102,6 +109,7 @@ _HOMES = {
 __all__ = [
     "AccuracyError",
     "Aim",
+    "Arc",
     "CheckReport",
     "Constraint",
     "ContactError",
@@ -114,6 +122,9 @@ __all__ = [
     "Law",
     "MissingExtraError",
     "OutputError",
+    "Piece",
+    "Pocket",
+    "Post",
     "Puck",
     "PuckError",
     "Result",
@@ -130,6 +141,7 @@ __all__ = [
     "TableError",
     "Trajectory",
     "Wall",
+    "World",
     "__version__",
     "chetaev",
     "contact",

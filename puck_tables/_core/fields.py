@@ -101,6 +101,20 @@ def of(
     )
 
 
+LISTED = "[]"  # at the end of a name in tables: of a list, beside a single part of that name
+
+
+def in_tables(name: str) -> str:
+    """A name of :func:`specs` as it stands in tables.
+
+    Examples
+    --------
+    >>> in_tables("puck[]"), in_tables("floor")
+    ('puck', 'floor')
+    """
+    return name.removesuffix(LISTED)
+
+
 def specs(kind: Any) -> dict[str, dataclasses.Field[Any]]:
     """The fields of a dataclass that can be read, by their names in tables."""
     return _specs(kind)
@@ -126,7 +140,7 @@ def described(kind: type, prefix: str = "") -> list[tuple[str, str, str]]:
     rows = []
     for name, spec in specs(kind).items():
         what: Kind = spec.metadata["kind"]
-        path = prefix + name
+        path = prefix + in_tables(name)
         if what.shape in ("part", "parts"):
             rows += described(what.part, f"{path}[0]." if what.shape == "parts" else f"{path}.")
             continue

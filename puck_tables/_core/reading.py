@@ -13,7 +13,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.fields import Kind, specs
+from puck_tables._core.fields import LISTED, Kind, in_tables, specs
 from puck_tables.errors import PuckError
 
 T = TypeVar("T")
@@ -122,21 +122,33 @@ def read_values(
     prefix = f"{path}." if path else ""
     before = len(reading.errors)
     for name in data:
-        if name not in known:
-            near = ", ".join(known)
+        if name not in known and name + LISTED not in known:
+            near = ", ".join(dict.fromkeys(map(in_tables, known)))
             shown = name if isinstance(name, str) and name.isprintable() else _shown(name)
             reading.errors.append(f"{prefix}{shown[:_SHOWN]}: no such entry (there are: {near})")
     values: dict[str, Any] = {}
     for name, spec in known.items():
-        if name in data and not (data[name] is None and spec.default is None):
+        given = _given(data, name, known)
+        if given is not MISSING and not (given is None and spec.default is None):
             values[spec.name] = _read(
-                spec.metadata["kind"], data[name], prefix + name, reading, spec.default
+                spec.metadata["kind"], given, prefix + in_tables(name), reading, spec.default
             )
         elif spec.default is MISSING and spec.default_factory is MISSING:
             what: Kind = spec.metadata["kind"]
             needed = "a table" if what.shape == "part" else what.allowed()
             reading.errors.append(f"{prefix}{name} is missing: it must be {needed}")
     return values if len(reading.errors) == before else None
+
+
+def _given(data: Mapping[str, Any], name: str, known: Mapping[str, Any]) -> Any:
+    """What stands under a name; a list where both a part and a list of parts have that name."""
+    plain = in_tables(name)
+    if name != plain and name not in data:
+        given = data.get(plain, MISSING)
+        return given if _items(given) is not None else MISSING
+    if name + LISTED in known and _items(data.get(name)) is not None:
+        return MISSING
+    return data.get(name, MISSING)
 
 
 def _read(kind: Kind, value: Any, path: str, reading: Reading, default: Any) -> Any:

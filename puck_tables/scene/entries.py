@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.fields import Kind, specs
+from puck_tables._core.fields import Kind, in_tables, specs
 from puck_tables._core.real import finite_array
 from puck_tables.errors import InputError
 
@@ -49,7 +49,7 @@ def entries(part: Any, prefix: str = "") -> Iterator[Entry]:
     """
     for name, spec in specs(type(part)).items():
         kind: Kind = spec.metadata["kind"]
-        value, path = getattr(part, spec.name), prefix + name
+        value, path = getattr(part, spec.name), prefix + in_tables(name)
         if kind.shape == "part" and value is not None:
             yield from entries(value, f"{path}.")
         elif kind.shape == "parts":
@@ -105,7 +105,7 @@ def tables_of(part: Any) -> dict[str, Any]:
     for name, spec in specs(type(part)).items():
         value = _plain(getattr(part, spec.name))
         if value is not None and value != [] and not (isinstance(value, float) and value == np.inf):
-            tables[name] = value
+            tables[in_tables(name)] = value
     return tables
 
 

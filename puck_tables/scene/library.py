@@ -9,17 +9,18 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from puck_tables._core.fields import specs
+from puck_tables._core.fields import in_tables, specs
 from puck_tables._core.safe_read import read_whole
 from puck_tables.errors import InputError
+from puck_tables.scene.entries import entries
 from puck_tables.scene.scene import Scene
 
 MAX_FILE = 1 << 20
 MAX_NAMED = 1 << 26  # bytes of a file that a scene names
 FILES = tuple(
-    (part, name, spec.metadata["kind"])
+    (in_tables(part), name, spec.metadata["kind"])
     for part, whole in specs(Scene).items()
-    if whole.metadata["kind"].shape == "part"
+    if whole.metadata["kind"].part is not None
     for name, spec in specs(whole.metadata["kind"].part).items()
     if spec.metadata["kind"].file is not None
 )
@@ -129,9 +130,11 @@ def read_scene(path: str | Path) -> dict[str, Any]:
             f"{path}: a number in it has thousands of digits, or its lists are nested too deeply"
         ) from None
     for part, name, kind in FILES:  # beside the scene that names them
-        value = tables.get(part, {}).get(name) if isinstance(tables.get(part), dict) else None
-        if isinstance(value, str) and kind.names_file(value):
-            tables[part][name] = str(Path(path).parent / value)
+        given = tables.get(part)
+        for table in given if isinstance(given, list) else [given]:
+            value = table.get(name) if isinstance(table, dict) else None
+            if isinstance(value, str) and kind.names_file(value):
+                table[name] = str(Path(path).parent / value)
     return tables
 
 
@@ -150,12 +153,11 @@ def files_of(scene: Scene) -> dict[str, str]:
     {}
     """
     texts = {}
-    for part, name, kind in FILES:
-        file = getattr(getattr(scene, part), name)
-        if kind.names_file(file):
+    for path, file, kind, *_ in entries(scene):
+        if kind.file is not None and kind.names_file(file):
             try:
                 text = read_whole(file, MAX_NAMED).decode("utf-8-sig", "replace")
             except OSError as error:
                 raise InputError(f"cannot read {file}: {error.strerror or error}") from None
-            texts[f"{part}.{name}"] = text.replace("\0", "\ufffd")
+            texts[path] = text.replace("\0", "\ufffd")
     return texts

@@ -62,6 +62,7 @@ class Launch:
     spin: float = of("number", 0.0, "rad/s")
     position: tuple[float, float] = of("pair", (0.0, 0.0), "m", doc="of the centre", batch=True)
     orientation: float = of("number", 0.0, "rad", doc="of the body")
+    time: float = of("number", 0.0, "s", low=0.0, doc="when; with several pucks only")
 
 
 @dataclass(frozen=True)

@@ -34,8 +34,9 @@ class Plan:
     why: str
 
 
-# what the motion of a free puck on a level floor takes into account
-FREE = ("title", "puck", "launch", "run")
+# what the motion of a free puck on a level floor takes into account, and what makes a scene one of
+# many pucks, which :mod:`puck_tables.world` runs
+FREE = ("title", "puck", "launch", "run", "puck[]", "post", "arc", "pocket")
 
 
 def ingredients(scene: Scene) -> list[str]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from importlib import import_module
 from pathlib import Path
@@ -22,10 +22,12 @@ from puck_tables.puck import Puck
 from puck_tables.scene.agreement import disagreements
 from puck_tables.scene.entries import BATCH, LAUNCH, columns_of, entry_at, set_path, tables_of
 from puck_tables.scene.parts import Constraint, Drag, Edge, Floor, Force, Launch, Run, Wall
+from puck_tables.scene.pieces import Arc, Piece, Pocket, Post
 
 if TYPE_CHECKING:
     from puck_tables.scene.outcome import SceneRun
     from puck_tables.scene.sweep import SceneMap
+    from puck_tables.world.world import World
 
 
 MAX_RUNS = 1_000_000_000  # of one sweep
@@ -67,12 +69,16 @@ class Scene:
     [0.0, 5.0]
     """
 
-    puck: Puck = of("part", part=Puck)
+    puck: Puck = of("part", None, part=Puck)
     floor: Floor = of("part", Floor(), part=Floor)
     launch: Launch = of("part", Launch(), part=Launch)
     drag: Drag = of("part", Drag(), part=Drag)
     force: Force = of("part", Force(), part=Force)
+    pucks: tuple[Piece, ...] = of("parts", (), part=Piece, table="puck[]")
     walls: tuple[Wall, ...] = of("parts", (), part=Wall, table="wall")
+    posts: tuple[Post, ...] = of("parts", (), part=Post, table="post")
+    arcs: tuple[Arc, ...] = of("parts", (), part=Arc, table="arc")
+    pockets: tuple[Pocket, ...] = of("parts", (), part=Pocket, table="pocket")
     edges: tuple[Edge, ...] = of("parts", (), part=Edge, table="edge")
     constraint: Constraint | None = of("part", None, part=Constraint)
     run: Run = of("part", Run(), part=Run)
@@ -205,6 +211,23 @@ class Scene:
         )
         return stops
 
+    def world(self) -> World:
+        """The same board to play on: advance it, strike pucks, look ahead.
+
+        Raises
+        ------
+        InputError
+            If a number of it is a range.
+
+        Examples
+        --------
+        >>> from puck_tables import Piece
+        >>> Scene(pucks=[Piece(0.03, friction=0.1)]).world()
+        World(1 pucks, 0 moving, at 0 s)
+        """
+        world: World = import_module("puck_tables.world.world").World(self)
+        return world
+
     def __eq__(self, other: object) -> bool:
         """Whether both say the same, ranges included."""
         if type(other) is not type(self):
@@ -286,6 +309,24 @@ class Scene:
         """
         return "" if path == BATCH else entry_at(self, path).kind.unit
 
+    @property
+    def is_board(self) -> bool:
+        """Whether it is for the engine of many pucks: several, or posts, arcs or pockets.
+
+        Examples
+        --------
+        >>> Scene(Puck(0.04)).is_board
+        False
+        """
+        return bool(self.pucks or self.posts or self.arcs or self.pockets)
+
+    def _disagreements(self) -> list[str]:
+        """What is wrong between its parts."""
+        if self.is_board:
+            faults: list[str] = import_module("puck_tables.world.agreement").disagreements(self)
+            return faults
+        return disagreements(self)
+
     def _fill(self, tables: Mapping[str, Any], source: str) -> None:
         """Check all that is given, and take it."""
         found: dict[str, Range] = {}
@@ -298,6 +339,7 @@ class Scene:
                 f"{len(found)} ranges ({', '.join(list(found)[:3])} ...) make more than "
                 f"{MAX_RUNS:g} runs: give fewer or shorter ones"
             )
+        reading.errors.extend(_puck_or_pucks(values, reading.batches))
         if values is None or reading.errors:
             raise _refusal(reading.errors, source)
         for spec in specs(type(self)).values():
@@ -306,7 +348,7 @@ class Scene:
         if len(batch):
             axes = {BATCH: _launches(self.launch, batch), **axes}
         object.__setattr__(self, "ranges", _Ranges(axes, self))
-        if not axes and (faults := disagreements(self)):  # else they are up to each run
+        if not axes and (faults := self._disagreements()):  # else they are up to each run
             raise _refusal(faults, source)
 
 
@@ -334,6 +376,21 @@ class _Ranges(dict[str, Any]):
         known = specs(type(scene)).items()
         kept = [name for name, spec in known if getattr(scene, spec.name) is self.parts.get(name)]
         return {path: one for path, one in self.items() if re.split(r"[.\[]", path)[0] in kept}
+
+
+def _puck_or_pucks(
+    values: Mapping[str, Any] | None, batches: Mapping[str, FloatArray]
+) -> Iterator[str]:
+    """What is wrong with one puck, or several."""
+    if values is None:
+        return
+    if not values.get("puck") and not values.get("pucks"):
+        yield "puck is missing: it must be a table, or a list of tables [[puck]]"
+    if values.get("puck") and values.get("pucks"):
+        yield "puck and pucks: give one puck with its launch, or a list of pucks"
+    for path in batches:
+        if path.startswith("puck["):
+            yield f"{path}: many launches at once are of one puck alone: let numbers of it range"
 
 
 def _refuse_twice(kind: type, tables: Mapping[str, Any], ranges: Any) -> None:

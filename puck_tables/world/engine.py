@@ -11,8 +11,16 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, kernel
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.world.flight import (
+    FASTEST,
+    FIRST_PIECE,
     FLIGHT_COLUMNS,
     GONE,
+    LAST_PIECE,
+    PATH,
+    ROOM,
+    STILL,
+    STRONGEST,
+    UNTIL,
     start_flight,
     state_at,
 )
@@ -36,6 +44,7 @@ from puck_tables.world.game import (
     NOTHING,
     OVER_EDGE,
     PARTNER,
+    PATH_ENDS,
     POCKETED,
     PUSH,
     RUB,
@@ -48,6 +57,7 @@ from puck_tables.world.game import (
     Whole,
 )
 from puck_tables.world.impact import (
+    CONTACT_COLUMNS,
     FIRST_N,
     FIRST_T,
     LOSS,
@@ -60,6 +70,8 @@ from puck_tables.world.impact import (
 )
 from puck_tables.world.layout import EDGE, KIND, POCKET, RADIUS
 from puck_tables.world.meeting import next_crossing, next_meeting, normal_to
+from puck_tables.world.paths import DURATION, FIRST
+from puck_tables.world.paths import START as BEGINS
 
 REACHED, FULL, CROWDED, TANGLED = range(4)  # how a call ends
 
@@ -100,6 +112,8 @@ def _earlier(game: Game, i: int, time: float, partner: int) -> None:
 def look_ahead(game: Game, i: int, t: float, room: Room) -> None:
     """What comes next for a disc, and whether that is the next for others too."""
     game.next_time[i], game.next_partner[i] = math.inf, NOTHING
+    if game.kinds[i] == PATH:
+        _earlier(game, i, game.flights[i, UNTIL], PATH_ENDS)
     for k in range(game.obstacles.shape[0]):
         found = next_crossing(game, i, k, t, game.next_time[i], room.work, room.one)
         _earlier(game, i, found, -1 - k)
@@ -127,6 +141,25 @@ def _take_off(game: Game, i: int, t: float, room: Room) -> None:
         room.states[i], game.discs[i], game.curves, t, room.work, game.flights[i]
     )
     game.group[i] = 0
+    keep_flight(game, i)
+
+
+@kernel
+def drive_on(game: Game, i: int, t: float, room: Room) -> None:
+    """The next straight piece of the way along which a disc is driven; at its end it stays."""
+    piece, last = int(game.flights[i, FIRST_PIECE]), game.drives[i, 1]
+    if game.kinds[i] == PATH:
+        piece += 1
+    start_flight(room.states[i], game.discs[i], game.curves, t, room.work, game.flights[i])
+    if piece < last:
+        row = game.pieces[piece]
+        game.kinds[i] = PATH
+        game.flights[i, FIRST_PIECE], game.flights[i, LAST_PIECE] = piece, piece + 1
+        game.flights[i, UNTIL] = row[BEGINS] + row[DURATION]
+        game.flights[i, FASTEST] = math.hypot(row[FIRST + VX], row[FIRST + VY])
+        game.flights[i, STRONGEST] = 0.0
+    else:
+        game.kinds[i] = STILL
     keep_flight(game, i)
 
 
@@ -230,6 +263,9 @@ def _happen(game: Game, i: int, partner: int, t: float, room: Room) -> int:
         room.marks[j] = 0
     _locate(game, i, t, room)
     room.marks[i] = 1
+    if partner == PATH_ENDS:
+        drive_on(game, i, t, room)
+        return REACHED
     if partner < 0:
         k = -1 - partner
         shape = int(game.obstacles[k, KIND])
@@ -256,26 +292,57 @@ def _happen(game: Game, i: int, partner: int, t: float, room: Room) -> int:
             if room.contacts[n, 1] >= 0:
                 room.marks[room.contacts[n, 1]] = 1
     for j in range(discs.shape[0]):
-        if room.marks[j] > 0:
+        if room.marks[j] > 0 and game.drives[j, 0] == game.drives[j, 1]:
             _take_off(game, j, t, room)
     return REACHED
 
 
-@kernel
-def _launch(game: Game, t: float, room: Room) -> int:
-    """The launch that is due: like an impact from outside."""
-    row = game.launches[game.counts[N_LAUNCHES]]
-    i = int(row[LAUNCHED])
+@inlined
+def _send(game: Game, i: int, t: float, vx: float, vy: float, spin: float, room: Room) -> None:
+    """Give a disc in play another velocity and spin: like an impact from outside."""
     for j in range(game.discs.shape[0]):
         room.marks[j] = 0
-    if game.kinds[i] != GONE:
-        _locate(game, i, t, room)
-        room.states[i, VX], room.states[i, VY] = row[LAUNCH_VX], row[LAUNCH_VY]
-        room.states[i, SPIN] = row[LAUNCH_SPIN]
-        note(game, t, STRUCK, i, i, room.states[i, X], room.states[i, Y])
-        _take_off(game, i, t, room)
-        room.marks[i] = 1
-    game.counts[N_LAUNCHES] += 1
+    if game.kinds[i] == GONE:
+        return
+    _locate(game, i, t, room)
+    room.states[i, VX], room.states[i, VY], room.states[i, SPIN] = vx, vy, spin
+    note(game, t, STRUCK, i, i, room.states[i, X], room.states[i, Y])
+    _take_off(game, i, t, room)
+    room.marks[i] = 1
+
+
+@inlined
+def _look_again(game: Game, t: float, room: Room) -> None:
+    """What comes next for those marked, and for whoever was to meet one of them."""
+    count = game.discs.shape[0]
+    for i in range(count):
+        partner = game.next_partner[i]
+        if room.marks[i] == 0 and 0 <= partner < NOTHING and room.marks[partner] > 0:
+            room.marks[i] = 3
+    for i in range(count):
+        if room.marks[i] > 0:
+            game.next_time[i], game.next_partner[i] = math.inf, NOTHING
+    for i in range(count):
+        if room.marks[i] > 0:
+            look_ahead(game, i, t, room)
+
+
+@inlined
+def _lacks_rows(game: Game, room: Room) -> bool:
+    """Whether one event more may not find room."""
+    return (
+        game.counts[N_EVENTS] + room.contacts.shape[0] + 2 > game.events.shape[0]
+        or game.counts[N_HISTORY] + game.discs.shape[0] + 1 > game.history.shape[0]
+    )
+
+
+@kernel
+def strike(game: Game, i: int, state: FloatArray, room: Room) -> int:
+    """Give a disc the velocity and spin of a state, now; FULL: give more rows before."""
+    if _lacks_rows(game, room):
+        return FULL
+    _send(game, i, game.clock[0], state[VX], state[VY], state[SPIN], room)
+    _look_again(game, game.clock[0], room)
     return REACHED
 
 
@@ -292,37 +359,28 @@ def advance(game: Game, until: float, room: Room) -> int:
         done, launch = game.counts[N_LAUNCHES], math.inf
         if done < game.launches.shape[0]:
             launch = game.launches[done, LAUNCH_TIME]
-        if min(t, launch) > until:
-            game.clock[0] = max(until, game.clock[0])
+        if min(t, launch) > until or min(t, launch) == math.inf:
+            if until < math.inf:
+                game.clock[0] = max(until, game.clock[0])
             return REACHED
-        if (
-            game.counts[N_EVENTS] + room.contacts.shape[0] + 2 > game.events.shape[0]
-            or game.counts[N_HISTORY] + count + 1 > game.history.shape[0]
-        ):
+        if _lacks_rows(game, room):
             return FULL
         at_once = at_once + 1 if t == last else 0
         last = t
         if at_once > MOST_AT_ONCE:
             return CROWDED
         if launch <= t:
-            t = launch
-            status = _launch(game, t, room)
+            t, status, row = launch, REACHED, game.launches[done]
+            _send(
+                game, int(row[LAUNCHED]), t, row[LAUNCH_VX], row[LAUNCH_VY], row[LAUNCH_SPIN], room
+            )
+            game.counts[N_LAUNCHES] += 1
         else:
             status = _happen(game, first, game.next_partner[first], t, room)
         if status != REACHED:
             return status
         game.clock[0] = t
-        # whoever was to meet one that flies elsewhere now looks again, too
-        for i in range(count):
-            partner = game.next_partner[i]
-            if room.marks[i] == 0 and 0 <= partner < NOTHING and room.marks[partner] > 0:
-                room.marks[i] = 1
-        for i in range(count):
-            if room.marks[i] > 0:
-                game.next_time[i], game.next_partner[i] = math.inf, NOTHING
-        for i in range(count):
-            if room.marks[i] > 0:
-                look_ahead(game, i, t, room)
+        _look_again(game, t, room)
 
 
 @kernel
@@ -334,11 +392,9 @@ def look_around(game: Game, room: Room) -> None:
         look_ahead(game, i, game.clock[0], room)
 
 
-def room_for(discs: int, contacts: int) -> Room:
-    """Room to work for so many discs and contacts at once."""
-    from puck_tables.world.flight import ROOM
-    from puck_tables.world.impact import CONTACT_COLUMNS
-
+def room_for(discs: int) -> Room:
+    """Room to work for so many discs: a disc touches six others at most of its size."""
+    contacts = 6 * discs + 16
     return Room(
         np.zeros((discs, 6)), np.zeros((discs, 6)), np.zeros(discs, np.int64),
         np.zeros(discs, np.int64), np.zeros((contacts, 2), np.int64),

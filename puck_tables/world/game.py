@@ -40,10 +40,10 @@ class Game(NamedTuple):
     """Everything, as arrays: a copy of them is a copy of the world.
 
     ``regions``: the dry friction of every disc, under its number.  ``clock`` (1,): now.  ``group``
-    (n,): discs of one number push each other, 0: none; ``held``
-    (…, 2): their contacts.  ``next_time``, ``next_partner`` (n,).  ``launches`` (…, 5), ascending
-    in time.  ``counts``: how many rows of events, history, pieces and held contacts are used, how
-    many launches are done, and what was done.
+    (n,): discs of one number push each other, 0: none; ``held`` (…, 2): their contacts.
+    ``next_time``, ``next_partner`` (n,).  ``launches`` (…, 5), ascending in time.  ``drives``
+    (n, 2): the rows of ``pieces`` along which a disc is driven.  ``counts``: how many rows of
+    events, history, pieces and held contacts are used, how many launches and what else was done.
     """
 
     discs: FloatArray
@@ -59,6 +59,7 @@ class Game(NamedTuple):
     next_partner: Whole
     launches: FloatArray
     pieces: FloatArray
+    drives: Whole
     events: FloatArray
     history: FloatArray
     counts: Whole

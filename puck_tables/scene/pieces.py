@@ -1,0 +1,89 @@
+"""What stands on a board besides straight cushions: several pucks, posts, arcs and pockets.
+
+Plain records, checked when a :class:`puck_tables.scene.scene.Scene` is made of them.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from puck_tables._core.fields import of
+from puck_tables.puck import Puck
+from puck_tables.scene.parts import Launch, Rows
+
+
+@dataclass(frozen=True)
+class Piece(Puck):
+    """One of several pucks: a puck with a name, a place or a launch, and a rim that others meet.
+
+    Parameters
+    ----------
+    radius, height, friction, mass, gravity, pressure, gyration
+        As :class:`puck_tables.Puck`.
+    name, colour : in reports and pictures
+    launch : Launch
+        Its place, and how it is sent; left out it lies at rest until it is hit.  Before
+        ``launch.time`` it lies at its place.
+    restitution, tangential, rim : impacts with other pucks
+        e, 0 to 1; tangential restitution, −1 smooth, 0 the rims stop on each other, 1 their slip
+        reverses; Coulomb's coefficient of the rims, which limits the tangential impulse.  Where two
+        pucks meet the smaller of each counts; cushions have their own.
+    path : rows or CSV of t, x, y and perhaps the angle
+        A body that is driven there, straight between the rows, such as a mallet: pucks bounce off
+        it, and nothing stops it.
+
+    Examples
+    --------
+    >>> striker = Piece(0.0206, friction=0.1, name="striker", launch=Launch((3.0, 0.0)))
+    >>> striker.name, striker.rim
+    ('striker', inf)
+    """
+
+    name: str = of("text", "")
+    colour: str = of("text", "", doc="in pictures, as matplotlib names it")
+    launch: Launch = of("part", Launch(), part=Launch)
+    restitution: float = of("number", 1.0, low=0.0, high=1.0, doc="of its rim")
+    tangential: float = of(
+        "number", -1.0, low=-1.0, high=1.0,
+        doc="-1: smooth, 0: the rims stop on each other, 1: their slip reverses",
+    )  # fmt: skip
+    rim: float = of("number", math.inf, low=0.0, doc="friction of its rim")
+    path: str | Rows = of(
+        "rows", "", file="", doc="CSV or rows of t, x, y and perhaps angle: it is driven there"
+    )
+
+
+@dataclass(frozen=True)
+class Post:
+    """A round peg that the rims of pucks bounce off."""
+
+    point: tuple[float, float] = of("pair", unit="m", doc="its centre")
+    radius: float = of("number", unit="m", low=0.0, above=True)
+    restitution: float = of("number", 1.0, low=0.0, high=1.0)
+    tangential: float = of("number", -1.0, low=-1.0, high=1.0, doc="as of a wall")
+    friction: float = of("number", math.inf, low=0.0, doc="limits the tangential impulse")
+
+
+@dataclass(frozen=True)
+class Arc:
+    """A round cushion that pucks bounce off from inside: a whole circle, or a part of one."""
+
+    point: tuple[float, float] = of("pair", unit="m", doc="its centre")
+    radius: float = of("number", unit="m", low=0.0, above=True)
+    start: float = of("number", 0.0, "rad", doc="where it begins, seen from the centre, from x")
+    span: float = of(
+        "number", 2.0 * math.pi, "rad", low=0.0, high=2.0 * math.pi, above=True,
+        doc="how far it goes, counter-clockwise",
+    )  # fmt: skip
+    restitution: float = of("number", 1.0, low=0.0, high=1.0)
+    tangential: float = of("number", -1.0, low=-1.0, high=1.0, doc="as of a wall")
+    friction: float = of("number", math.inf, low=0.0, doc="limits the tangential impulse")
+
+
+@dataclass(frozen=True)
+class Pocket:
+    """A hole: a puck whose centre passes its rim leaves play."""
+
+    point: tuple[float, float] = of("pair", unit="m", doc="its centre")
+    radius: float = of("number", unit="m", low=0.0, above=True)

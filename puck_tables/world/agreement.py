@@ -1,0 +1,171 @@
+"""What is wrong between the parts of a scene of several pucks."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from puck_tables.errors import InputError
+from puck_tables.motion.body import is_plain
+from puck_tables.scene.agreement import distance
+from puck_tables.scene.entries import entries
+from puck_tables.scene.parts import Drag, Floor, Force, Launch
+from puck_tables.scene.pieces import Piece
+from puck_tables.scene.scene import Scene
+from puck_tables.world.drive import rows_of
+
+TOUCH = 1e-12  # of the radius: pucks that overlap less touch
+_SMALLEST, _LARGEST = 1e-100, 1e100
+
+
+def pieces_of(scene: Scene) -> tuple[Piece, ...]:
+    """The pucks of a scene; a single one with its launch.
+
+    Examples
+    --------
+    >>> from puck_tables import Pocket, Puck
+    >>> pieces_of(Scene(Puck(0.04), pockets=[Pocket((1.0, 0.0), 0.1)]))[0].radius
+    0.04
+    """
+    if scene.pucks:
+        return scene.pucks
+    puck = scene.puck
+    return (
+        Piece(
+            puck.radius, puck.height, puck.friction, puck.mass, puck.gravity, puck.pressure,
+            puck.gyration, launch=scene.launch,
+        ),
+    )  # fmt: skip
+
+
+def called(piece: Piece, number: int) -> str:
+    """A puck in a message, a table and a legend.
+
+    Examples
+    --------
+    >>> called(Piece(0.1, name="striker"), 3), called(Piece(0.1), 3)
+    ('striker', 'puck 3')
+    """
+    return piece.name or f"puck {number}"
+
+
+def disagreements(scene: Scene) -> list[str]:
+    """What is wrong between fields that are each in range."""
+    pieces = pieces_of(scene)
+    faults = [*_not_here(scene)]
+    names = [piece.name for piece in pieces if piece.name]
+    for name in sorted({name for name in names if names.count(name) > 1}):
+        faults.append(f"puck.name = {name!r}: {names.count(name)} pucks have it, it must be of one")
+    for number, piece in enumerate(pieces):
+        faults += _of_one(scene, piece, f"puck[{number}]" if scene.pucks else "puck")
+    for kind, lines in (("wall", scene.walls), ("edge", scene.edges)):
+        for number, line in enumerate(lines):
+            if not _SMALLEST < math.hypot(*line.normal) < _LARGEST:
+                faults.append(
+                    f"{kind}[{number}].normal = {list(line.normal)}: must have a direction"
+                )
+    if not scene.run.frames.is_integer():
+        faults.append(f"run.frames = {scene.run.frames:g}: must be a whole number")
+    if faults:
+        return faults
+    return [*_overlaps(pieces), *_out_of_bounds(scene, pieces), *_wide_pockets(scene)]
+
+
+def _not_here(scene: Scene) -> Iterator[str]:
+    """What a scene of several pucks does not take."""
+    for name, part, default in (("floor", scene.floor, Floor()), ("force", scene.force, Force())):
+        if part != default:
+            known = {one.path: one.value for one in entries(default, f"{name}.")}
+            changed = (one for one in entries(part, f"{name}.") if known.get(one.path) != one.value)
+            path = next(one.path for one in changed)
+            yield f"{path}: several pucks, posts, arcs and pockets are on a level floor at rest"
+    if scene.constraint is not None:
+        yield "constraint: is of one puck alone, without posts, arcs and pockets"
+    if scene.pucks and scene.launch != Launch():
+        yield "launch: each of several pucks has its own, puck[0].launch"
+
+
+def _of_one(scene: Scene, piece: Piece, path: str) -> Iterator[str]:
+    """What is wrong with one of them."""
+    for name, value in (("radius", piece.radius), ("mass", piece.mass)):
+        if not _SMALLEST <= value <= _LARGEST:
+            yield (
+                f"{path}.{name} = {value:g}: must be from {_SMALLEST:g} to {_LARGEST:g} in a "
+                "scene, use other units"
+            )
+    if piece.path:
+        if piece.launch != Launch(position=piece.launch.position):
+            yield f"{path}.launch: what is driven along a path has no launch, leave it out"
+        try:
+            rows_of(piece.path)
+        except InputError as error:
+            yield f"{path}.path: {error}"
+        return
+    drags = scene.drag != Drag()
+    if piece.friction > 0.0 and drags:
+        yield f"{path}.friction: with several pucks there is dry friction or drag, not both"
+    if piece.friction > 0.0 and not is_plain(piece.pressure, piece.gyration, piece.delta):
+        yield (
+            f"{path}: several pucks are homogeneous, under uniform pressure and with delta = 2 f h "
+            f"/ r <= 1 (here {piece.delta:.4g})"
+        )
+    if piece.friction == 0.0 and scene.run.time is None:
+        yield f"{path}.friction = 0: nothing brings it to rest; give run.time, or friction"
+
+
+def _overlaps(pieces: tuple[Piece, ...]) -> Iterator[str]:
+    """Pucks that overlap at the start."""
+    places = np.array([start_of(piece) for piece in pieces])
+    radii = np.array([piece.radius for piece in pieces])
+    for number in range(len(pieces)):
+        gaps = np.hypot(*(places[:number] - places[number]).T) - radii[:number] - radii[number]
+        for other in np.flatnonzero(gaps < -TOUCH * radii[number]):
+            yield (
+                f"{called(pieces[other], int(other))} and {called(pieces[number], number)} overlap "
+                f"by {-gaps[other]:.3g} m at the start: move one of them"
+            )
+
+
+def start_of(piece: Piece) -> tuple[float, float]:
+    """Where a puck is at first."""
+    if piece.path:
+        rows = rows_of(piece.path)
+        return float(rows[0, 1]), float(rows[0, 2])
+    return piece.launch.position
+
+
+def _out_of_bounds(scene: Scene, pieces: tuple[Piece, ...]) -> Iterator[str]:
+    """Pucks that start in a cushion or a hole."""
+    for number, piece in enumerate(pieces):
+        place, radius, name = start_of(piece), piece.radius, called(piece, number)
+        gaps = {f"wall[{k}]": distance(one, place) - radius for k, one in enumerate(scene.walls)}
+        for k, post in enumerate(scene.posts):
+            gaps[f"post[{k}]"] = math.dist(place, post.point) - radius - post.radius
+        for k, arc in enumerate(scene.arcs):
+            if arc.span >= 2.0 * math.pi:
+                gaps[f"arc[{k}]"] = arc.radius - radius - math.dist(place, arc.point)
+        if not piece.path:
+            for k, pocket in enumerate(scene.pockets):
+                gaps[f"pocket[{k}]"] = math.dist(place, pocket.point) - pocket.radius
+            gaps |= {f"edge[{k}]": distance(one, place) for k, one in enumerate(scene.edges)}
+        for path, gap in gaps.items():
+            if gap < -TOUCH * radius:
+                what = "lies in it" if path.startswith(("pocket", "edge")) else "reaches through it"
+                yield f"{path}: {name} at {list(place)} {what} by {-gap:.3g} m: move one of them"
+
+
+def _wide_pockets(scene: Scene) -> Iterator[str]:
+    """Pockets wider than the board between two facing walls."""
+    for k, pocket in enumerate(scene.pockets):
+        for number, wall in enumerate(scene.walls):
+            for other, facing in enumerate(scene.walls[:number]):
+                sizes = math.hypot(*wall.normal) * math.hypot(*facing.normal)
+                along = wall.normal[0] * facing.normal[0] + wall.normal[1] * facing.normal[1]
+                width = distance(wall, facing.point)
+                if along < -0.999 * sizes and 2.0 * pocket.radius >= width:
+                    yield (
+                        f"pocket[{k}].radius = {pocket.radius:g}: wider than the board, {width:g} "
+                        f"m between wall[{other}] and wall[{number}]"
+                    )

@@ -1,0 +1,298 @@
+"""A scene of several pucks that is played on: for a game, a robot, a look ahead."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables._core.real import finite_array, real
+from puck_tables.errors import InputError, PuckError
+from puck_tables.scene.friction import SPIN, VX, VY
+from puck_tables.scene.scene import Scene
+from puck_tables.world import game as g
+from puck_tables.world.agreement import called, pieces_of
+from puck_tables.world.engine import CROWDED, FULL, REACHED, TANGLED, advance, strike
+from puck_tables.world.flight import DAMPED, GONE, LOOKED_UP, PATH, UNTIL
+from puck_tables.world.layout import LIGHTNESS, RADIUS, TURNABILITY
+from puck_tables.world.prepare import game_of, obstacle_names, order_of
+from puck_tables.world.record import states_at
+
+_FAILURES = {
+    CROWDED: "10000 events at {time:.6g} s: they crowd together without end; change the "
+    "restitution of what meets there",
+    TANGLED: "the impacts of pucks that touch do not come to an end at {time:.6g} s: change their "
+    "restitution",
+}
+
+
+class Meeting(NamedTuple):
+    """What happened: when (s), what (impact, pocket, edge or launch), to which puck, with whom.
+
+    ``x``, ``y`` m: where; ``approach``, ``slip`` m/s: how fast the rims came together and slid on
+    each other before the first impact of this moment; ``impulse``, ``rub`` N s: along the line from
+    the puck to its partner and 90° to the left of it; ``lost`` J: kinetic energy lost.
+    """
+
+    time: float
+    what: str
+    puck: str
+    partner: str
+    x: float
+    y: float
+    approach: float
+    slip: float
+    impulse: float
+    rub: float
+    lost: float
+
+
+class World:
+    """Pucks on a board, from now on.
+
+    Parameters
+    ----------
+    scene : Scene
+        Without ranges.
+
+    It is made by :meth:`puck_tables.Scene.world`.  Nothing is stepped: between two events every
+    puck is on a curve that is known as a whole, so a call costs what happens in it.  The same calls
+    give the same bits, also of copies and of what was saved.
+
+    Raises
+    ------
+    InputError
+        If a number of the scene is a range.
+
+    Examples
+    --------
+    >>> from puck_tables import Launch, Piece, Scene
+    >>> one = Piece(0.03, friction=0.1, launch=Launch((1.0, 0.0)))
+    >>> two = Piece(0.03, friction=0.1, launch=Launch(position=(0.2, 0.0)))
+    >>> world = Scene(pucks=[one, two]).world()
+    >>> [event.what for event in world.advance(0.2)]
+    ['impact']
+    >>> world.state()[:, 3].round(6).tolist()
+    [0.0, 0.803867]
+    """
+
+    def __init__(self, scene: Scene) -> None:
+        self.scene = scene.single()
+        self._order = order_of(self.scene)
+        self._game, self._room = game_of(self.scene, self._order)
+        self._named()
+
+    def _named(self) -> None:
+        """Who is where in the engine's order, and what they are called."""
+        self._place = np.argsort(self._order)
+        pieces = pieces_of(self.scene)
+        self.names = tuple(called(piece, number) for number, piece in enumerate(pieces))
+        self._obstacles = obstacle_names(self.scene)
+
+    def __repr__(self) -> str:
+        title = f"{self.scene.title}, " if self.scene.title else ""
+        moving = int(self.moving.sum())
+        return f"World({title}{len(self.names)} pucks, {moving} moving, at {self.time:.6g} s)"
+
+    @property
+    def time(self) -> float:
+        """Now, s."""
+        return float(self._game.clock[0])
+
+    @property
+    def in_play(self) -> npt.NDArray[np.bool_]:
+        """Which pucks are in no pocket and over no edge, array (pucks,)."""
+        return self._game.kinds[self._place] != GONE
+
+    @property
+    def moving(self) -> npt.NDArray[np.bool_]:
+        """Which pucks move, array (pucks,)."""
+        kinds, until = self._game.kinds, self._game.flights[:, UNTIL]
+        known = ((kinds == LOOKED_UP) | (kinds == PATH)) & (until > self.time)
+        return (known | (kinds == DAMPED))[self._place]
+
+    @property
+    def rest_time(self) -> float:
+        """When all will be at rest if nothing happens before, s; now, if they are."""
+        kinds, until = self._game.kinds, self._game.flights[:, UNTIL]
+        if (kinds == DAMPED).any():
+            return math.inf
+        known = (kinds == LOOKED_UP) | (kinds == PATH)
+        return float(max(self.time, until[known].max(initial=0.0)))
+
+    def state(self) -> FloatArray:
+        """X, y (m), angle (rad), vx, vy (m/s), spin (rad/s) of every puck now, array (pucks, 6)."""
+        return self._states(np.array([self.time]))[0]
+
+    def at(self, time: float) -> FloatArray:
+        """The same at any time: as it was, or as it will be if nobody interferes.
+
+        Raises
+        ------
+        InputError
+            If the time is no number ≥ 0.
+        """
+        moment = real("time", time, "s")
+        if not moment >= 0.0:
+            raise InputError(f"time must not be negative, got {moment:g} s")
+        world = self
+        if moment > self.time:
+            world = self.copy()
+            world.advance(moment - self.time)
+        return world._states(np.array([moment]))[0]
+
+    def over(self, times: npt.ArrayLike) -> FloatArray:
+        """The same at times of the past, ascending, array (times, pucks, 6)."""
+        moments = np.atleast_1d(finite_array("times", times, "s"))
+        if moments.ndim != 1 or (np.diff(moments) < 0.0).any() or (moments < 0.0).any():
+            raise InputError("times must be a list of ascending numbers >= 0 s")
+        if moments.size and moments[-1] > self.time:
+            raise InputError(
+                f"times must not lie after now, {self.time:g} s: advance before, or use at"
+            )
+        return self._states(moments)
+
+    def _states(self, times: FloatArray) -> FloatArray:
+        states: FloatArray = states_at(self._game, times)[:, self._place]
+        return states
+
+    def advance(self, duration: float) -> list[Meeting]:
+        """Let time pass; what happened in it.
+
+        Parameters
+        ----------
+        duration : s, ≥ 0; inf: until nothing more can happen
+
+        Raises
+        ------
+        InputError
+            If it is no such number, or inf where pucks never come to rest.
+        PuckError
+            If events crowd together without end.
+        """
+        span = math.inf if duration == math.inf else real("duration", duration, "s")
+        if not span >= 0.0:
+            raise InputError(f"duration must not be negative, got {span:g} s")
+        if span == math.inf and (self._game.kinds == DAMPED).any():
+            raise InputError("pucks without dry friction never come to rest: give a duration")
+        before = int(self._game.counts[g.N_EVENTS])
+        until = self.time + span
+        while (how := advance(self._game, until, self._room)) != REACHED:
+            if how != FULL:
+                raise PuckError(_FAILURES[how].format(time=self.time))
+            self._grow()
+        if until == math.inf:
+            self._game.clock[0] = self.rest_time
+        return self._events(before)
+
+    def events_since(self, time: float) -> list[Meeting]:
+        """What happened from a time on."""
+        moment = real("time", time, "s")
+        times = self._game.events[: self._game.counts[g.N_EVENTS], g.TIME]
+        return self._events(int(np.searchsorted(times, moment)))
+
+    def strike(
+        self, puck: int | str, velocity: npt.ArrayLike | None = None, spin: float | None = None,
+        *, impulse: npt.ArrayLike | None = None, point: npt.ArrayLike | None = None,
+    ) -> None:  # fmt: skip
+        """Send a puck off, now: with a velocity and spin, or by an impulse at a point.
+
+        Parameters
+        ----------
+        puck : its number, or its name
+        velocity : (2,) m/s, spin : rad/s, optional
+            Left out: as they are.
+        impulse : (2,) N s, optional
+            Beside them, at ``point`` (2,) m, of the laboratory; left out at its centre.
+
+        Raises
+        ------
+        InputError
+            If there is no such puck, it is not in play or driven, or a number is not finite.
+        """
+        i = int(self._place[self._number(puck)])
+        if self._game.kinds[i] == GONE:
+            raise InputError(f"{self.names[self._order[i]]} is no longer in play")
+        if self._game.discs[i, LIGHTNESS] == 0.0:
+            raise InputError(f"{self.names[self._order[i]]} is driven along its path")
+        state = states_at(self._game, np.array([self.time]))[0, i]
+        if velocity is not None:
+            state[VX : VY + 1] = _pair("velocity", velocity, "m/s")
+        if spin is not None:
+            state[SPIN] = real("spin", spin, "rad/s")
+        if impulse is not None:
+            push, disc = _pair("impulse", impulse, "N s"), self._game.discs[i]
+            arm = np.zeros(2) if point is None else _pair("point", point, "m") - state[:2]
+            if math.hypot(*arm) > disc[RADIUS] * (1.0 + 1e-9):
+                raise InputError(f"point must lie on the puck, at most {disc[RADIUS]:g} m from its "
+                                 "centre")  # fmt: skip
+            state[VX : VY + 1] += disc[LIGHTNESS] * push
+            state[SPIN] += disc[TURNABILITY] * (arm[0] * push[1] - arm[1] * push[0])
+        elif point is not None:
+            raise InputError("point is where an impulse acts: give the impulse, too")
+        while strike(self._game, i, state, self._room) == FULL:
+            self._grow()
+
+    def _number(self, puck: int | str) -> int:
+        if isinstance(puck, str) and puck in self.names:
+            return self.names.index(puck)
+        if not isinstance(puck, str | bool) and 0 <= int(puck) < len(self.names):
+            return int(puck)
+        shown = ", ".join(self.names[:8]) + (", ..." if len(self.names) > 8 else "")
+        raise InputError(f"no puck {puck!r}: there are {len(self.names)}, {shown}")
+
+    def copy(self) -> World:
+        """A world of its own that goes on from here, to look ahead."""
+        twin = object.__new__(World)
+        twin.scene, twin._order = self.scene, self._order
+        # tables, friction and obstacles never change
+        kept = ("discs", "regions", "obstacles", "curves", "launches", "drives")
+        twin._game = g.Game(**{
+            name: part if name in kept else part.copy()
+            for name, part in zip(g.Game._fields, self._game, strict=True)
+        })  # fmt: skip
+        twin._room = self._room._replace(
+            **{name: part.copy() for name, part in self._room._asdict().items()}
+        )
+        twin._named()
+        return twin
+
+    def _grow(self) -> None:
+        """Twice the rows for events and flights."""
+        more = {
+            name: np.vstack([part, np.zeros_like(part)])
+            for name, part in (("events", self._game.events), ("history", self._game.history))
+        }
+        self._game = self._game._replace(**more)
+
+    def _events(self, first: int) -> list[Meeting]:
+        rows = self._game.events[first : self._game.counts[g.N_EVENTS]]
+        return [
+            Meeting(
+                float(row[g.TIME]), g.EVENTS[int(row[g.WHAT])], self._name(row[g.WHO]),
+                self._name(row[g.PARTNER]), *row[[g.AT_X, g.AT_Y]].tolist(),
+                *row[[g.APPROACH, g.SLIDE, g.PUSH, g.RUB, g.LOST]].tolist(),
+            )
+            for row in rows
+        ]  # fmt: skip
+
+    def _name(self, partner: float) -> str:
+        """A disc or an obstacle of the engine in words."""
+        number = int(partner)
+        return self._obstacles[-1 - number] if number < 0 else self.names[self._order[number]]
+
+
+def _pair(name: str, values: npt.ArrayLike, unit: str) -> FloatArray:
+    pair = finite_array(name, values, unit)
+    if pair.shape != (2,):
+        raise InputError(f"{name} must be two numbers in {unit}, got the shape {pair.shape}")
+    return pair
+
+
+def load_world(path: str | Path) -> World:
+    """Not yet."""
+    raise NotImplementedError
