@@ -99,8 +99,23 @@ COLUMNS = {
     "end": Column("1", "end", "how it ends"),
     "event": Column("1", "event", "number of the event"),
     "event_time": Column("s", "event time", "when it happens"),
-    "event_what": Column("", "event", "stick, slip, impact, contact, border or edge"),
+    "event_what": Column(
+        "", "event", "stick, slip, impact, contact, border, edge, pocket or launch"
+    ),
     "event_which": Column("1", "which", "number of the wall, the edge or the region"),
+    # several pucks
+    "puck": Column("1", "puck", "number of the puck"),
+    "name": Column("", "puck", "name of the puck"),
+    "in_play": Column("1", "in play", "1 until it falls into a pocket or over an edge"),
+    "event_puck": Column("", "puck", "the puck to which it happens"),
+    "event_partner": Column("", "partner", "puck, wall, post, arc, pocket or edge that it meets"),
+    "event_x": Column("m", "x", "where it happens, along x"),
+    "event_y": Column("m", "y", "where it happens, along y"),
+    "event_approach": Column("m/s", "approach", "speed at which the rims come together"),
+    "event_slip": Column("m/s", "slip", "speed at which the rims slide on each other"),
+    "event_impulse": Column("N s", "impulse", "normal impulse, from the puck to its partner"),
+    "event_rub": Column("N s", "rub", "tangential impulse, 90 degrees to the left of the normal"),
+    "event_lost": Column("J", "energy lost", "kinetic energy lost in an impact"),
     # a point on a wavy support
     "held_speed": Column("m/s", "speed V", "speed held along the support"),
     "crude": Column("N", "Coulomb's force", "Coulomb's force, load times a/b"),

@@ -169,7 +169,8 @@ class Scene:
         >>> run.end, round(run.end_time, 6)
         ('at rest', 2.253703)
         """
-        run: SceneRun = import_module("puck_tables.scene.simulate").simulate(self, times)
+        room = "world" if self.is_board else "scene"
+        run: SceneRun = import_module(f"puck_tables.{room}.simulate").simulate(self, times)
         return run
 
     def sweep(

@@ -111,8 +111,6 @@ def _of_one(scene: Scene, piece: Piece, path: str) -> Iterator[str]:
             f"{path}: several pucks are homogeneous, under uniform pressure and with delta = 2 f h "
             f"/ r <= 1 (here {piece.delta:.4g})"
         )
-    if piece.friction == 0.0 and scene.run.time is None:
-        yield f"{path}.friction = 0: nothing brings it to rest; give run.time, or friction"
 
 
 def _overlaps(pieces: tuple[Piece, ...]) -> Iterator[str]:

@@ -37,3 +37,30 @@ def _fill(
                 int(flight[1]), flight[2:], game.discs[i], game.curves, game.pieces, times[n],
                 work, out[n, i],
             )  # fmt: skip
+
+
+def flights_of(game: Game) -> tuple[Whole, FloatArray]:
+    """The disc of every flight, and its states at the start and the end, array (flights, 2, 6)."""
+    history = game.history[: game.counts[N_HISTORY]]
+    discs = history[:, 0].astype(np.int64)
+    order = np.lexsort((np.arange(len(discs)), discs))
+    start = history[:, 2 + START]
+    end = np.full(len(discs), game.clock[0])
+    same = discs[order[1:]] == discs[order[:-1]]
+    end[order[:-1][same]] = start[order[1:][same]]
+    out = np.empty((len(discs), 2, 6))
+    _fill_ends(game, discs, np.stack([start, end], axis=1), np.empty(ROOM), out)
+    return discs, out
+
+
+@kernel
+def _fill_ends(
+    game: Game, discs: Whole, times: FloatArray, work: FloatArray, out: FloatArray
+) -> None:
+    for row in range(discs.size):
+        flight = game.history[row]
+        for n in range(2):
+            state_at(
+                int(flight[1]), flight[2:], game.discs[discs[row]], game.curves, game.pieces,
+                times[row, n], work, out[row, n],
+            )  # fmt: skip

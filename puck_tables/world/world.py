@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -17,7 +16,7 @@ from puck_tables.scene.scene import Scene
 from puck_tables.world import game as g
 from puck_tables.world.agreement import called, pieces_of
 from puck_tables.world.engine import CROWDED, FULL, REACHED, TANGLED, advance, strike
-from puck_tables.world.flight import DAMPED, GONE, LOOKED_UP, PATH, UNTIL
+from puck_tables.world.flight import DAMPED, GONE, LOOKED_UP, PATH, START, UNTIL
 from puck_tables.world.layout import LIGHTNESS, RADIUS, TURNABILITY
 from puck_tables.world.prepare import game_of, obstacle_names, order_of
 from puck_tables.world.record import states_at
@@ -116,13 +115,13 @@ class World:
         return (known | (kinds == DAMPED))[self._place]
 
     @property
-    def rest_time(self) -> float:
-        """When all will be at rest if nothing happens before, s; now, if they are."""
-        kinds, until = self._game.kinds, self._game.flights[:, UNTIL]
+    def last_motion(self) -> float:
+        """When the last puck came or will come to rest if nothing happens before, s."""
+        kinds, flights = self._game.kinds, self._game.flights
         if (kinds == DAMPED).any():
             return math.inf
         known = (kinds == LOOKED_UP) | (kinds == PATH)
-        return float(max(self.time, until[known].max(initial=0.0)))
+        return float(np.where(known, flights[:, UNTIL], flights[:, START]).max())
 
     def state(self) -> FloatArray:
         """X, y (m), angle (rad), vx, vy (m/s), spin (rad/s) of every puck now, array (pucks, 6)."""
@@ -186,7 +185,7 @@ class World:
                 raise PuckError(_FAILURES[how].format(time=self.time))
             self._grow()
         if until == math.inf:
-            self._game.clock[0] = self.rest_time
+            self._game.clock[0] = max(self.time, self.last_motion)
         return self._events(before)
 
     def events_since(self, time: float) -> list[Meeting]:
@@ -236,6 +235,22 @@ class World:
             raise InputError("point is where an impulse acts: give the impulse, too")
         while strike(self._game, i, state, self._room) == FULL:
             self._grow()
+
+    def perturb(self, scale: float, turn: float) -> None:
+        """Change the launches: their velocities and spins by a factor, their headings by an angle.
+
+        To see how much an end depends on them.
+        """
+        cosine, sine = scale * math.cos(turn), scale * math.sin(turn)
+        turned = np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, scale]])
+        later = self._game.launches.copy()
+        later[:, g.LAUNCH_VX :] = later[:, g.LAUNCH_VX :] @ turned.T
+        self._game = self._game._replace(launches=later)
+        for number, state in enumerate(self.state()):
+            i = self._place[number]
+            if self._game.discs[i, LIGHTNESS] > 0.0 and state[VX:].any():
+                velocity = turned @ state[VX:]
+                self.strike(number, velocity[:2], float(velocity[2]))
 
     def _number(self, puck: int | str) -> int:
         if isinstance(puck, str) and puck in self.names:
@@ -291,8 +306,3 @@ def _pair(name: str, values: npt.ArrayLike, unit: str) -> FloatArray:
     if pair.shape != (2,):
         raise InputError(f"{name} must be two numbers in {unit}, got the shape {pair.shape}")
     return pair
-
-
-def load_world(path: str | Path) -> World:
-    """Not yet."""
-    raise NotImplementedError

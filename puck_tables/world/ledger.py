@@ -1,0 +1,92 @@
+"""Where the energy of several pucks went: floor, impacts, what is driven."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.scene.friction import SPIN, VX, VY
+from puck_tables.world import game as g
+from puck_tables.world.flight import START
+from puck_tables.world.layout import LIGHTNESS, RADIUS, TURNABILITY
+from puck_tables.world.record import flights_of, states_at
+
+if TYPE_CHECKING:
+    from puck_tables.world.world import World
+
+
+def ledger(world: World) -> dict[str, float]:
+    """Kinetic energy given by launches, heat of floor and impacts, work of driven bodies, J.
+
+    The heat of the floor is what the flights lose on the way; that of impacts comes from their
+    impulses.  ``energy_residual``: what is missing, as a share of the largest entry.
+    """
+    game = world._game
+    free = game.discs[:, LIGHTNESS] > 0.0
+    discs, flights = flights_of(game)
+    energies = _kinetic(game, discs[:, None], flights)
+    moves = free[discs]
+    floor = float((energies[moves, 0] - energies[moves, 1]).sum())
+    events = game.events[: game.counts[g.N_EVENTS]]
+    impacts = float(events[:, g.LOST].sum())
+    count = len(game.discs)
+    given = float(energies[:count][free[discs[:count]], 0].sum())
+    given += sum(
+        _given(game, row, discs, energies) for row in events[events[:, g.WHAT] == g.STRUCK]
+    )
+    driven = sum(_driven(game, row) for row in events[events[:, g.WHAT] == g.IMPACT])
+    gone = sum(
+        energies[_before(game, row, discs), 1]
+        for row in events if row[g.WHAT] in (g.POCKETED, g.OVER_EDGE)
+    )  # fmt: skip
+    everyone = np.arange(count)
+    now = states_at(game, game.clock)[0]
+    left = float(_kinetic(game, everyone, now)[free].sum()) + gone
+    entries = [given, floor, impacts, driven, left]
+    largest = max(map(abs, entries))
+    missing = abs(given + driven - floor - impacts - left)
+    return {
+        "kinetic_energy": given, "heat_floor": floor, "heat_impact": impacts,
+        "work_driven": float(driven), "energy_residual": missing / largest if largest else 0.0,
+    }  # fmt: skip
+
+
+def _kinetic(game: g.Game, discs: g.Whole, states: FloatArray) -> FloatArray:
+    """½ m v² + ½ I ω²; nothing of what is driven."""
+    light, turn = game.discs[discs, LIGHTNESS], game.discs[discs, TURNABILITY]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        energy = 0.5 * (states[..., VX] ** 2 + states[..., VY] ** 2) / light
+        energy = energy + 0.5 * states[..., SPIN] ** 2 / turn
+    return np.where(light > 0.0, energy, 0.0)
+
+
+def _before(game: g.Game, row: FloatArray, discs: g.Whole) -> int:
+    """The flight that an event ends."""
+    flights = game.history[: len(discs)]
+    start = flights[:, 2 + START]
+    mine = np.flatnonzero((discs == row[g.WHO]) & (start <= row[g.TIME]))
+    after = mine[start[mine] == row[g.TIME]]
+    return int(mine[mine < after[0]][-1]) if after.size and after[0] > mine[0] else int(mine[0])
+
+
+def _given(game: g.Game, row: FloatArray, discs: g.Whole, energies: FloatArray) -> float:
+    """The energy that a launch gave."""
+    before = _before(game, row, discs)
+    mine = np.flatnonzero(discs == row[g.WHO])
+    after = mine[mine > before][0]
+    return float(energies[after, 0] - energies[before, 1])
+
+
+def _driven(game: g.Game, row: FloatArray) -> float:
+    """The work of driven bodies in an impact: the impulse times the speed of their rim."""
+    nx, ny = row[g.NORMAL_X], row[g.NORMAL_Y]
+    along = row[g.PUSH] * np.array([nx, ny]) + row[g.RUB] * np.array([-ny, nx])
+    work = 0.0
+    for disc, sign in ((int(row[g.WHO]), 1.0), (int(row[g.PARTNER]), -1.0)):
+        if disc >= 0 and game.discs[disc, LIGHTNESS] == 0.0:
+            state = states_at(game, row[g.TIME : g.TIME + 1])[0, disc]
+            rim = sign * state[SPIN] * game.discs[disc, RADIUS]
+            work += sign * float(along @ (state[VX : VY + 1] + rim * np.array([-ny, nx])))
+    return work

@@ -1,0 +1,179 @@
+"""What a run of a scene of several pucks gives: states, events, and where the energy went."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, ClassVar
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.errors import InputError
+from puck_tables.io.columns import COLUMNS, derived
+from puck_tables.io.dataset import Dataset, Variable, variable
+from puck_tables.result import Result
+from puck_tables.scene.entries import tables_of, units_of
+from puck_tables.scene.library import files_of
+from puck_tables.scene.outcome import column_of, scene_texts
+from puck_tables.scene.scene import Scene
+from puck_tables.world.world import Meeting
+
+STATE = ("x", "y", "orientation", "vx", "vy", "spin")
+MEETING = (
+    "time",
+    "what",
+    "puck",
+    "partner",
+    "x",
+    "y",
+    "approach",
+    "slip",
+    "impulse",
+    "rub",
+    "lost",
+)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class WorldRun(Result):
+    """What happened to several pucks.
+
+    ``end``: 'at rest' or 'time is up'; ``end_time`` s; ``names``: of the pucks, in their order;
+    ``events``: see :class:`puck_tables.world.world.Meeting`; ``time`` (n,) s; ``columns``: arrays
+    (n, pucks) by name, each also an attribute (``run.x``), a puck's by its name or number
+    (``run["striker"]``); ``last``: the columns at the end, (pucks,).  One that has left play stays
+    where it left, its ``in_play`` is 0.
+
+    ``kinetic_energy`` J at the start, ``heat_floor``, ``heat_impact``: what friction of the floor
+    or drag and what impacts took, J; ``work_driven``: what driven bodies gave; ``energy_residual``:
+    what this ledger misses, as a share of its largest entry.  ``sensitivity``: how many metres the
+    places at the end change for each metre or, in units of Q²/J, each digit by which the launches
+    are off; ``error_estimate`` m: what the tables may be wrong by, times this.
+    """
+
+    scene: Scene
+    end: str
+    end_time: float
+    names: tuple[str, ...]
+    events: list[Meeting]
+    time: FloatArray
+    columns: Mapping[str, FloatArray] = field(repr=False)
+    last: Mapping[str, FloatArray] = field(repr=False)
+    kinetic_energy: float
+    heat_floor: float
+    heat_impact: float
+    work_driven: float
+    energy_residual: float
+    error_estimate: float
+    files: Mapping[str, str] = field(default_factory=dict, repr=False)
+
+    picture: ClassVar[str] = "pucks"
+
+    def __call__(self, times: npt.ArrayLike) -> WorldRun:
+        """The same run with its states at other times, s, ascending.
+
+        Raises
+        ------
+        InputError
+            If they are no such times, or a file that the scene names has changed since the run.
+        """
+        if files_of(self.scene) != self.files:
+            raise InputError("a file that the scene names has changed since the run: run it again")
+        run: WorldRun = self.scene.simulate(times)
+        return run
+
+    def __repr__(self) -> str:
+        title = f"{self.scene.title}: " if self.scene.title else ""
+        count = len(self.events)
+        return (
+            f"WorldRun({title}{len(self.names)} pucks, {self.end} after {self.end_time:.6g} s, "
+            f"{count} event{'s' if count != 1 else ''})"
+        )
+
+    def __getattr__(self, name: str) -> FloatArray:
+        """A column by its name."""
+        return column_of(self, name)
+
+    def __getitem__(self, puck: int | str) -> dict[str, FloatArray]:
+        """The columns of one puck, by its name or number, arrays (n,).
+
+        Raises
+        ------
+        InputError
+            If there is no such puck.
+        """
+        if isinstance(puck, str) and puck in self.names:
+            puck = self.names.index(puck)
+        if isinstance(puck, str) or not 0 <= puck < len(self.names):
+            raise InputError(f"no puck {puck!r}: there are {', '.join(self.names)}")
+        whole = {**self.columns, **derived(self.columns)}
+        return {"time": self.time, **{name: row[:, puck] for name, row in whole.items()}}
+
+    @property
+    def impacts(self) -> int:
+        """How many impacts there were."""
+        return sum(event.what == "impact" for event in self.events)
+
+    def explain(self) -> str:
+        """How every puck was moved."""
+        driven = sum(bool(piece.path) for piece in self.scene.pucks)
+        damped = sum(piece.friction == 0.0 and not piece.path for piece in self.scene.pucks)
+        ways = {
+            "looked up from impact to impact": len(self.names) - driven - damped,
+            "in closed form, without dry friction": damped,
+            "driven along their paths": driven,
+        }
+        return "\n".join(f"{count} pucks {way}" for way, count in ways.items() if count)
+
+    def summary(self) -> dict[str, Any]:
+        """The scalars with what went in, and the units of all, ready for JSON."""
+        scalars = (
+            "end", "end_time", "kinetic_energy", "heat_floor", "heat_impact", "work_driven",
+            "energy_residual", "error_estimate",
+        )  # fmt: skip
+        pucks = [
+            {"name": name, **{key: _plain(row[i]) for key, row in self.last.items()}}
+            for i, name in enumerate(self.names)
+        ]
+        units = {name: COLUMNS[name].unit for name in self.last}
+        return {
+            "title": self.scene.title,
+            **{name: getattr(self, name) for name in scalars},
+            "pucks": pucks,
+            "events": [event._asdict() for event in self.events],
+            "scene": tables_of(self.scene),
+            "units": {
+                **{name: COLUMNS[name].unit for name in scalars if name != "end"},
+                **{f"pucks.{name}": unit for name, unit in units.items()},
+                **{f"events.{name}": COLUMNS[f"event_{name}"].unit for name in MEETING},
+                **{f"scene.{path}": unit for path, unit in units_of(self.scene).items()},
+            },
+        }
+
+    def dataset(self) -> Dataset:
+        """States over time and pucks, and events; scalars as attributes; the scene as a text."""
+        dims = ("time", "puck")
+        columns: dict[str, Variable] = {"name": variable("name", list(self.names), ("puck",))}
+        for name, row in {**self.columns, **derived(self.columns)}.items():
+            columns[name] = variable(name, row, dims)
+        axes = {
+            "time": variable("time", self.time, ("time",)),
+            "puck": variable("puck", np.arange(len(self.names)), ("puck",)),
+        }
+        if self.events:
+            axes["event"] = variable("event", np.arange(len(self.events)), ("event",))
+            for name in MEETING:
+                values: Any = [getattr(event, name) for event in self.events]
+                words = name in ("what", "puck", "partner")
+                values = values if words else np.array(values)
+                columns[f"event_{name}"] = variable(f"event_{name}", values, ("event",))
+        left_out = ("pucks", "events", "scene", "units", "title")
+        scalars = {n: v for n, v in self.summary().items() if n not in left_out}
+        attributes = {"title": self.scene.title or "Scene", **scalars}
+        return Dataset(axes, columns, attributes, scene_texts(self.scene, self.files))
+
+
+def _plain(value: Any) -> float:
+    return float(value)
