@@ -99,11 +99,12 @@ COLUMNS = {
     "end": Column("1", "end", "how it ends"),
     "event": Column("1", "event", "number of the event"),
     "event_time": Column("s", "event time", "when it happens"),
-    "event_what": Column(
-        "", "event", "stick, slip, impact, contact, border, edge, pocket or launch"
-    ),
+    "event_what": Column("", "event", "what happens: an impact, an edge, a pocket, ..."),
     "event_which": Column("1", "which", "number of the wall, the edge or the region"),
     # several pucks
+    "heat_floor": Column("J", "heat of the floor", "heat of friction on the floor, and of drag"),
+    "work_driven": Column("J", "work of driven bodies", "work of bodies driven along paths"),
+    "end_error": Column("m", "error of the end", "what places at the end may be wrong by"),
     "puck": Column("1", "puck", "number of the puck"),
     "name": Column("", "puck", "name of the puck"),
     "in_play": Column("1", "in play", "1 until it falls into a pocket or over an edge"),

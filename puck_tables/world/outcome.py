@@ -21,19 +21,7 @@ from puck_tables.scene.scene import Scene
 from puck_tables.world.world import Meeting
 
 STATE = ("x", "y", "orientation", "vx", "vy", "spin")
-MEETING = (
-    "time",
-    "what",
-    "puck",
-    "partner",
-    "x",
-    "y",
-    "approach",
-    "slip",
-    "impulse",
-    "rub",
-    "lost",
-)
+MEETING = Meeting._fields
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -48,9 +36,10 @@ class WorldRun(Result):
 
     ``kinetic_energy`` J at the start, ``heat_floor``, ``heat_impact``: what friction of the floor
     or drag and what impacts took, J; ``work_driven``: what driven bodies gave; ``energy_residual``:
-    what this ledger misses, as a share of its largest entry.  ``sensitivity``: how many metres the
-    places at the end change for each metre or, in units of Q²/J, each digit by which the launches
-    are off; ``error_estimate`` m: what the tables may be wrong by, times this.
+    what this ledger misses, as a share of its largest entry.  ``end_error`` m: how far twins end
+    whose launches are off by 1e-9, as much as the tables may be wrong by.  Each impact of round
+    pucks multiplies errors: after many of them it may be as large as the board, and nobody can know
+    the end, for the launch decides it by digits that it does not have.
     """
 
     scene: Scene
@@ -66,7 +55,7 @@ class WorldRun(Result):
     heat_impact: float
     work_driven: float
     energy_residual: float
-    error_estimate: float
+    end_error: float
     files: Mapping[str, str] = field(default_factory=dict, repr=False)
 
     picture: ClassVar[str] = "pucks"
@@ -131,7 +120,7 @@ class WorldRun(Result):
         """The scalars with what went in, and the units of all, ready for JSON."""
         scalars = (
             "end", "end_time", "kinetic_energy", "heat_floor", "heat_impact", "work_driven",
-            "energy_residual", "error_estimate",
+            "energy_residual", "end_error",
         )  # fmt: skip
         pucks = [
             {"name": name, **{key: _plain(row[i]) for key, row in self.last.items()}}

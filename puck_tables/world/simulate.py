@@ -55,7 +55,7 @@ def simulate(scene: Scene, times: npt.ArrayLike | None = None) -> WorldRun:
         columns=columns,
         last={**_columns(last), "in_play": world.in_play.astype(np.float64)},
         **ledger(world),
-        error_estimate=_error(scene, world, last),
+        end_error=_error(scene, world, last),
         files=files,
     )
 
