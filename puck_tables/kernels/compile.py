@@ -51,21 +51,31 @@ def inlined(function: Function) -> Function:
     return _compile(function, forceinline=True, counts=False)
 
 
+def inner(function: Function) -> Function:
+    """Compile a kernel that only kernels call: without a door to Python, as :func:`inlined`.
+
+    A door unpacks every array of every record that is handed in, which takes longer to compile
+    than many a function; for what is too long to be pasted into each caller.
+    """
+    return _compile(function, forceinline=False, counts=False, door=False)
+
+
 def allocating(function: Function) -> Function:
     """Compile a function that makes arrays; it calls kernels that return numbers only."""
     return _compile(function, forceinline=False, counts=True)
 
 
-def _compile(function: Function, forceinline: bool, counts: bool) -> Function:
+def _compile(function: Function, forceinline: bool, counts: bool, door: bool = True) -> Function:
+    door = door and not forceinline
     options: dict[str, Any] = {
         "forceinline": forceinline, "_nrt": counts,
-        "no_cpython_wrapper": forceinline, "no_cfunc_wrapper": forceinline,
+        "no_cpython_wrapper": not door, "no_cfunc_wrapper": not door,
     }  # fmt: skip
     compiled: Any = numba.njit(
         nogil=True, fastmath={"contract"}, error_model="numpy", **options
     )(function)  # fmt: skip
     if hasattr(compiled, "enable_caching"):  # not where compiling is off
-        if forceinline:
+        if not door:
             compiled._insert = _not_entered
             compiled._compile_for_args = lambda *_, **__: function
         else:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.kernels.compile import inlined, inner, kernel
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.world.flight import (
     FASTEST,
@@ -75,6 +75,8 @@ from puck_tables.world.paths import START as BEGINS
 
 REACHED, FULL, CROWDED, TANGLED = range(4)  # how a call ends
 
+NOBODY, EVERYBODY = -1, -2
+
 TOUCH = 1e-12  # of the radius: a gap as small is none
 MOST_AT_ONCE = 10_000  # events at one moment
 
@@ -108,7 +110,7 @@ def _earlier(game: Game, i: int, time: float, partner: int) -> None:
         game.next_time[i], game.next_partner[i] = time, partner
 
 
-@kernel
+@inner
 def look_ahead(game: Game, i: int, t: float, room: Room) -> None:
     """What comes next for a disc, and whether that is the next for others too."""
     game.next_time[i], game.next_partner[i] = math.inf, NOTHING
@@ -144,7 +146,7 @@ def _take_off(game: Game, i: int, t: float, room: Room) -> None:
     keep_flight(game, i)
 
 
-@kernel
+@inner
 def drive_on(game: Game, i: int, t: float, room: Room) -> None:
     """The next straight piece of the way along which a disc is driven; at its end it stays."""
     piece, last = int(game.flights[i, FIRST_PIECE]), game.drives[i, 1]
@@ -183,7 +185,7 @@ def _contact_of(room: Room, count: int, i: int, j: int) -> bool:
     return False
 
 
-@kernel
+@inner
 def _touching(game: Game, t: float, room: Room) -> int:
     """All contacts of those marked, of those that they touch, and so on; how many."""
     count, discs = 0, game.discs
@@ -255,7 +257,7 @@ def _leave(game: Game, i: int, t: float, what: int, k: int, room: Room) -> None:
     keep_flight(game, i)
 
 
-@kernel
+@inner
 def _happen(game: Game, i: int, partner: int, t: float, room: Room) -> int:
     """What comes next for a disc happens; those concerned are marked."""
     discs = game.discs
@@ -297,7 +299,7 @@ def _happen(game: Game, i: int, partner: int, t: float, room: Room) -> int:
     return REACHED
 
 
-@inlined
+@inner
 def _send(game: Game, i: int, t: float, vx: float, vy: float, spin: float, room: Room) -> None:
     """Give a disc in play another velocity and spin: like an impact from outside."""
     for j in range(game.discs.shape[0]):
@@ -311,7 +313,7 @@ def _send(game: Game, i: int, t: float, vx: float, vy: float, spin: float, room:
     room.marks[i] = 1
 
 
-@inlined
+@inner
 def _look_again(game: Game, t: float, room: Room) -> None:
     """What comes next for those marked, and for whoever was to meet one of them."""
     count = game.discs.shape[0]
@@ -328,7 +330,7 @@ def _look_again(game: Game, t: float, room: Room) -> None:
 
 
 @inlined
-def _lacks_rows(game: Game, room: Room) -> bool:
+def lacks_rows(game: Game, room: Room) -> bool:
     """Whether one event more may not find room."""
     return (
         game.counts[N_EVENTS] + room.contacts.shape[0] + 2 > game.events.shape[0]
@@ -337,22 +339,22 @@ def _lacks_rows(game: Game, room: Room) -> bool:
 
 
 @kernel
-def strike(game: Game, i: int, state: FloatArray, room: Room) -> int:
-    """Give a disc the velocity and spin of a state, now; FULL: give more rows before."""
-    if _lacks_rows(game, room):
-        return FULL
-    _send(game, i, game.clock[0], state[VX], state[VY], state[SPIN], room)
-    _look_again(game, game.clock[0], room)
-    return REACHED
+def advance(game: Game, until: float, struck: int, state: FloatArray, room: Room) -> int:
+    """All that happens up to a time; how it ended.  After FULL the caller gives more rows.
 
-
-@kernel
-def advance(game: Game, until: float, room: Room) -> int:
-    """All that happens up to a time; how it ended.  After FULL the caller gives more rows."""
+    ``struck``: the disc that gets the velocity and spin of ``state`` before; NOBODY; or, at the
+    start, EVERYBODY looks ahead.
+    """
     count = game.discs.shape[0]
     at_once, last = 0, -math.inf
+    if struck != NOBODY:
+        for i in range(count):
+            room.marks[i] = 1
+        if struck >= 0:
+            _send(game, struck, game.clock[0], state[VX], state[VY], state[SPIN], room)
+        _look_again(game, game.clock[0], room)
     while True:
-        first, t = 0, math.inf
+        first, t = count - 1, math.inf
         for i in range(count):
             if game.next_time[i] < t:
                 first, t = i, game.next_time[i]
@@ -363,7 +365,7 @@ def advance(game: Game, until: float, room: Room) -> int:
             if until < math.inf:
                 game.clock[0] = max(until, game.clock[0])
             return REACHED
-        if _lacks_rows(game, room):
+        if lacks_rows(game, room):
             return FULL
         at_once = at_once + 1 if t == last else 0
         last = t
@@ -381,15 +383,6 @@ def advance(game: Game, until: float, room: Room) -> int:
             return status
         game.clock[0] = t
         _look_again(game, t, room)
-
-
-@kernel
-def look_around(game: Game, room: Room) -> None:
-    """What comes next for all."""
-    for i in range(game.discs.shape[0]):
-        game.next_time[i], game.next_partner[i] = math.inf, NOTHING
-    for i in range(game.discs.shape[0]):
-        look_ahead(game, i, game.clock[0], room)
 
 
 def room_for(discs: int) -> Room:

@@ -27,7 +27,7 @@ from __future__ import annotations
 import math
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y, dry_friction
 from puck_tables.scene.ingredients import dry_in
 from puck_tables.world.game import Game, Whole
@@ -164,7 +164,7 @@ def _alone(game: Game, i: int, j: int, row: FloatArray, states: FloatArray, e: f
     _push(game, i, j, row, states)
 
 
-@kernel
+@inner
 def _together(
     game: Game, contacts: Whole, count: int, rows: FloatArray, before: FloatArray,
     states: FloatArray, weight: float,
@@ -226,7 +226,7 @@ def _most_shared(contacts: Whole, count: int, rows: FloatArray, shares: Whole) -
     return most
 
 
-@kernel
+@inner
 def collide(
     game: Game, contacts: Whole, count: int, rows: FloatArray, before: FloatArray,
     states: FloatArray, shares: Whole,

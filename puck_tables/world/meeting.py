@@ -18,7 +18,7 @@ from __future__ import annotations
 import math
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.friction import VX, VY, X, Y
 from puck_tables.world.flight import (
     DAMPED,
@@ -161,7 +161,7 @@ def _moves_until(kind: int, flight: FloatArray) -> float:
     return math.inf if kind == DAMPED else -math.inf
 
 
-@kernel
+@inner
 def next_meeting(
     game: Game, i: int, j: int, now: float, horizon: float, room: FloatArray, one: FloatArray,
     two: FloatArray,
@@ -213,7 +213,7 @@ def next_meeting(
     return t
 
 
-@kernel
+@inner
 def next_crossing(
     game: Game, i: int, k: int, now: float, horizon: float, room: FloatArray, one: FloatArray
 ) -> float:

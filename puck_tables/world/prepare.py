@@ -14,7 +14,7 @@ from puck_tables.stopping.stop_table import StopTable
 from puck_tables.world import layout
 from puck_tables.world.agreement import pieces_of, start_of
 from puck_tables.world.drive import pieces_along, rows_of
-from puck_tables.world.engine import Room, drive_on, keep_flight, look_around, room_for
+from puck_tables.world.engine import EVERYBODY, Room, advance, drive_on, keep_flight, room_for
 from puck_tables.world.flight import FLIGHT_COLUMNS, Curves, start_flight
 from puck_tables.world.game import (
     COUNTS,
@@ -106,7 +106,7 @@ def game_of(scene: Scene, order: Whole) -> tuple[Game, Room]:
             drive_on(game, i, 0.0, room)
         else:
             keep_flight(game, i)
-    look_around(game, room)
+    advance(game, 0.0, EVERYBODY, room.one, room)
     return game, room
 
 

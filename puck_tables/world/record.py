@@ -11,56 +11,48 @@ from puck_tables.world.game import N_HISTORY, Game, Whole
 
 
 def states_at(game: Game, times: FloatArray) -> FloatArray:
-    """States of all discs, array (times, discs, 6), at times up to now, ascending, s.
+    """States of all discs, array (times, discs, 6), at times up to now, s.
 
     One that has left play stays where it left.
     """
-    history = game.history[: game.counts[N_HISTORY]]
-    order = np.argsort(history[:, 0], kind="stable")
-    first = np.searchsorted(history[order, 0], np.arange(len(game.discs) + 1))
-    out = np.empty((len(times), len(game.discs), 6))
-    _fill(game, order, first, np.ascontiguousarray(times, np.float64), np.empty(ROOM), out)
-    return out
-
-
-@kernel
-def _fill(
-    game: Game, order: Whole, first: Whole, times: FloatArray, work: FloatArray, out: FloatArray
-) -> None:
-    for i in range(first.size - 1):
-        row, last = first[i], first[i + 1] - 1
-        for n in range(times.size):
-            while row < last and game.history[order[row + 1], 2 + START] <= times[n]:
-                row += 1
-            flight = game.history[order[row]]
-            state_at(
-                int(flight[1]), flight[2:], game.discs[i], game.curves, game.pieces, times[n],
-                work, out[n, i],
-            )  # fmt: skip
+    discs, starts = _flights(game)
+    rows = np.empty((len(times), len(game.discs)), np.int64)
+    for i in range(len(game.discs)):
+        mine = np.flatnonzero(discs == i)
+        rows[:, i] = mine[np.searchsorted(starts[mine[1:]], times, side="right")]
+    moments = np.repeat(np.asarray(times, np.float64), len(game.discs))
+    return _states(game, rows.ravel(), moments).reshape(len(times), len(game.discs), 6)
 
 
 def flights_of(game: Game) -> tuple[Whole, FloatArray]:
     """The disc of every flight, and its states at the start and the end, array (flights, 2, 6)."""
+    discs, starts = _flights(game)
+    ends = np.full(len(discs), game.clock[0])
+    for i in range(len(game.discs)):
+        mine = np.flatnonzero(discs == i)
+        ends[mine[:-1]] = starts[mine[1:]]
+    rows = np.repeat(np.arange(len(discs)), 2)
+    return discs, _states(game, rows, np.stack([starts, ends], 1).ravel()).reshape(-1, 2, 6)
+
+
+def _flights(game: Game) -> tuple[Whole, FloatArray]:
+    """The disc and the start of every flight, in the order in which they began."""
     history = game.history[: game.counts[N_HISTORY]]
-    discs = history[:, 0].astype(np.int64)
-    order = np.lexsort((np.arange(len(discs)), discs))
-    start = history[:, 2 + START]
-    end = np.full(len(discs), game.clock[0])
-    same = discs[order[1:]] == discs[order[:-1]]
-    end[order[:-1][same]] = start[order[1:][same]]
-    out = np.empty((len(discs), 2, 6))
-    _fill_ends(game, discs, np.stack([start, end], axis=1), np.empty(ROOM), out)
-    return discs, out
+    return history[:, 0].astype(np.int64), history[:, 2 + START].copy()
+
+
+def _states(game: Game, rows: Whole, times: FloatArray) -> FloatArray:
+    """States (n, 6) on the flights in these rows at these times."""
+    out = np.empty((len(rows), 6))
+    _fill(game, rows, times, np.empty(ROOM), out)
+    return out
 
 
 @kernel
-def _fill_ends(
-    game: Game, discs: Whole, times: FloatArray, work: FloatArray, out: FloatArray
-) -> None:
-    for row in range(discs.size):
-        flight = game.history[row]
-        for n in range(2):
-            state_at(
-                int(flight[1]), flight[2:], game.discs[discs[row]], game.curves, game.pieces,
-                times[row, n], work, out[row, n],
-            )  # fmt: skip
+def _fill(game: Game, rows: Whole, times: FloatArray, work: FloatArray, out: FloatArray) -> None:
+    for n in range(rows.size):
+        flight = game.history[rows[n]]
+        state_at(
+            int(flight[1]), flight[2:], game.discs[int(flight[0])], game.curves, game.pieces,
+            times[n], work, out[n],
+        )  # fmt: skip

@@ -15,7 +15,15 @@ from puck_tables.scene.friction import SPIN, VX, VY
 from puck_tables.scene.scene import Scene
 from puck_tables.world import game as g
 from puck_tables.world.agreement import called, pieces_of
-from puck_tables.world.engine import CROWDED, FULL, REACHED, TANGLED, advance, strike
+from puck_tables.world.engine import (
+    CROWDED,
+    FULL,
+    NOBODY,
+    REACHED,
+    TANGLED,
+    advance,
+    lacks_rows,
+)
 from puck_tables.world.flight import DAMPED, GONE, LOOKED_UP, PATH, START, UNTIL
 from puck_tables.world.layout import LIGHTNESS, RADIUS, TURNABILITY
 from puck_tables.world.prepare import game_of, obstacle_names, order_of
@@ -180,10 +188,7 @@ class World:
             raise InputError("pucks without dry friction never come to rest: give a duration")
         before = int(self._game.counts[g.N_EVENTS])
         until = self.time + span
-        while (how := advance(self._game, until, self._room)) != REACHED:
-            if how != FULL:
-                raise PuckError(_FAILURES[how].format(time=self.time))
-            self._grow()
+        self._advance(until, NOBODY, self._room.one)
         if until == math.inf:
             self._game.clock[0] = max(self.time, self.last_motion)
         return self._events(before)
@@ -233,7 +238,16 @@ class World:
             state[SPIN] += disc[TURNABILITY] * (arm[0] * push[1] - arm[1] * push[0])
         elif point is not None:
             raise InputError("point is where an impulse acts: give the impulse, too")
-        while strike(self._game, i, state, self._room) == FULL:
+        self._advance(self.time, i, state)
+
+    def _advance(self, until: float, struck: int, state: FloatArray) -> None:
+        """Let time pass, after a disc was given the velocity of a state."""
+        if lacks_rows(self._game, self._room):
+            self._grow()
+        while (how := advance(self._game, until, struck, state, self._room)) != REACHED:
+            if how != FULL:
+                raise PuckError(_FAILURES[how].format(time=self.time))
+            struck = NOBODY
             self._grow()
 
     def perturb(self, scale: float, turn: float) -> None:
