@@ -207,7 +207,8 @@ class Scene:
         >>> Scene(puck, launch=Launch(velocities, spin=[0.0, 9.0])).sweep().y.round(6).tolist()
         [0.0, 2.056068]
         """
-        stops: SceneMap = import_module("puck_tables.scene.sweep").sweep(
+        room = "world" if self.is_board else "scene"
+        stops: SceneMap = import_module(f"puck_tables.{room}.sweep").sweep(
             self, threads=threads, chunk=chunk, progress=progress, checkpoint=checkpoint
         )
         return stops

@@ -1,0 +1,119 @@
+"""Many runs of one board that differ in nothing but launches, compiled, without events kept."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables._core.executor import in_slices
+from puck_tables.kernels.compile import kernel
+from puck_tables.scene.friction import VX
+from puck_tables.world.engine import EVERYBODY, FULL, Room, advance, keep_flight, room_for
+from puck_tables.world.flight import DAMPED, GONE, START, STILL, UNTIL, start_flight, state_at
+from puck_tables.world.game import COUNTS, N_IMPACTS, N_PIECES, Game, Whole
+
+END_COLUMNS = 6  # of a puck: its state at the end
+
+
+class Ends(NamedTuple):
+    """States (runs, pucks, 6) and whether in play (runs, pucks) at the end; end time, impacts, how.
+
+    ``how`` (runs,): as :func:`puck_tables.world.engine.advance` says.
+    """
+
+    states: FloatArray
+    in_play: FloatArray
+    time: FloatArray
+    impacts: FloatArray
+    how: Whole
+
+
+@kernel
+def _follow_all(
+    game: Game, kinds: Whole, flights: FloatArray, first: FloatArray, discs: Whole,
+    launches: FloatArray, until: float, room: Room, ends: Ends,
+) -> None:  # fmt: skip
+    """Runs from the states ``first`` (n, 6), with launches (runs, m, 3) of the ``discs`` (m,)."""
+    count = first.shape[0]
+    for run in range(launches.shape[0]):
+        game.clock[0] = 0.0
+        for column in range(COUNTS):
+            if column != N_PIECES:
+                game.counts[column] = 0
+        for i in range(count):
+            game.kinds[i], game.group[i] = kinds[i], 0
+            for column in range(flights.shape[1]):
+                game.flights[i, column] = flights[i, column]
+        for m in range(discs.size):
+            i = discs[m]
+            for column in range(6):
+                room.states[i, column] = first[i, column]
+            for column in range(3):
+                room.states[i, VX + column] = launches[run, m, column]
+            game.kinds[i] = start_flight(
+                room.states[i], game.discs[i], game.curves, 0.0, room.work, game.flights[i]
+            )
+        for i in range(count):
+            keep_flight(game, i)
+        ends.how[run] = advance(game, until, EVERYBODY, room.one, room)
+        last = 0.0
+        for i in range(count):
+            kind, flight = game.kinds[i], game.flights[i]
+            if kind == DAMPED:
+                last = max(last, until)
+            elif kind in (STILL, GONE):
+                last = max(last, flight[START])
+            else:
+                last = max(last, flight[UNTIL])
+        ends.time[run], ends.impacts[run] = min(last, until), game.counts[N_IMPACTS]
+        for i in range(count):
+            state_at(
+                game.kinds[i], game.flights[i], game.discs[i], game.curves, game.pieces,
+                min(last, until), room.work, ends.states[run, i],
+            )  # fmt: skip
+            ends.in_play[run, i] = 0.0 if game.kinds[i] == GONE else 1.0
+
+
+def follow_all(
+    game: Game, first: FloatArray, discs: Whole, launches: FloatArray, until: float
+) -> Ends:
+    """The ends of runs of a board at its start, with launches (runs, m, 3) of some discs.
+
+    A board where more happens than rows are there for gets more rows, and is run again.
+    """
+    runs, count = len(launches), len(game.discs)
+    ends = Ends(
+        np.empty((runs, count, END_COLUMNS)), np.empty((runs, count)), np.empty(runs),
+        np.empty(runs), np.empty(runs, np.int64),
+    )  # fmt: skip
+    room, rows = room_for(count), 256 + 16 * count
+    mine = _own(game, rows)
+
+    def work(start: int, stop: int) -> None:
+        part = Ends(*(array[start:stop] for array in ends))
+        _follow_all(
+            mine, game.kinds, game.flights, first, discs, launches[start:stop], until, room, part
+        )
+
+    in_slices(work, runs)
+    full = np.flatnonzero(ends.how == FULL)
+    while full.size:
+        rows *= 4
+        mine = _own(game, rows)
+        for run in full:
+            work(int(run), int(run) + 1)
+        full = full[ends.how[full] == FULL]
+    return ends
+
+
+def _own(game: Game, rows: int) -> Game:
+    """A copy to run on, with so many rows for events and flights."""
+    return game._replace(
+        clock=np.zeros(1), kinds=game.kinds.copy(), flights=game.flights.copy(),
+        group=game.group.copy(), held=game.held.copy(), next_time=game.next_time.copy(),
+        next_partner=game.next_partner.copy(), pieces=game.pieces.copy(),
+        events=np.zeros((rows, game.events.shape[1])),
+        history=np.zeros((rows, game.history.shape[1])), counts=game.counts.copy(),
+    )  # fmt: skip

@@ -1,0 +1,232 @@
+"""Maps over a board: where all pucks end, for all combinations of the numbers that range."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import lru_cache
+from pathlib import Path
+from typing import ClassVar
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables._core.checkpoint import chunked, files_named
+from puck_tables._core.executor import Progress
+from puck_tables.errors import InputError
+from puck_tables.io.columns import derived
+from puck_tables.io.dataset import Dataset, Variable, variable
+from puck_tables.result import Result
+from puck_tables.scene.entries import entry_at, tables_of
+from puck_tables.scene.library import files_of
+from puck_tables.scene.outcome import column_of, plain_name, scene_texts
+from puck_tables.scene.pieces import Piece
+from puck_tables.scene.scene import Scene
+from puck_tables.stopping.sweep import check_memory
+from puck_tables.world.agreement import called, pieces_of
+from puck_tables.world.bulk import follow_all
+from puck_tables.world.outcome import STATE
+from puck_tables.world.prepare import game_of, order_of
+
+CHUNK = 2048
+ENDS = ("at rest", "time is up", "events crowd together", "impacts without end", "refused")
+TIME_UP, REFUSED = 1, 4
+_LAUNCH = re.compile(r"(?:puck\[(\d+)\]\.)?launch\.(velocity\[[01]\]|spin)")
+_PARTS = ("velocity[0]", "velocity[1]", "spin")
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class WorldMap(Result):
+    """Ends of a board over its ranges.
+
+    ``scene``: with its ranges; ``axes``: their values by path; ``names``: of the pucks;
+    ``columns``: x, y, vx, vy (m, m/s), orientation, spin (rad, rad/s) and ``in_play`` of every puck
+    at the end, arrays (axes…, pucks); ``end_time`` s and ``impacts`` (axes…), NaN without an end;
+    ``end`` (axes…): index of :data:`ENDS`; ``refusal``: what is wrong with the first run that is
+    refused.
+    """
+
+    scene: Scene
+    names: tuple[str, ...]
+    columns: Mapping[str, FloatArray] = field(repr=False)
+    end: npt.NDArray[np.int8] = field(repr=False)
+    refusal: str = field(default="", repr=False)
+    files: Mapping[str, str] = field(default_factory=dict, repr=False)
+
+    picture: ClassVar[str] = "board_map"
+
+    @property
+    def axes(self) -> dict[str, FloatArray]:
+        """What ranges, by path."""
+        return dict(self.scene.ranges)
+
+    def __repr__(self) -> str:
+        ranged = " x ".join(f"{path} ({values.size})" for path, values in self.axes.items())
+        return f"WorldMap({self.scene.title or 'scene'}, {len(self.names)} pucks, over {ranged})"
+
+    def __getattr__(self, name: str) -> FloatArray:
+        """A column by its name."""
+        return column_of(self, name)
+
+    def __getitem__(self, puck: int | str) -> dict[str, FloatArray]:
+        """The columns of one puck, by its name or number, arrays (axes…).
+
+        Raises
+        ------
+        InputError
+            If there is no such puck.
+        """
+        if isinstance(puck, str) and puck in self.names:
+            puck = self.names.index(puck)
+        if isinstance(puck, str) or not 0 <= puck < len(self.names):
+            raise InputError(f"no puck {puck!r}: there are {', '.join(self.names)}")
+        return {
+            name: values[..., puck] if values.ndim > self.end.ndim else values
+            for name, values in self.columns.items()
+        }
+
+    def explain(self) -> str:
+        """How it was got."""
+        return f"{self.end.size} runs of {len(self.names)} pucks from impact to impact, by look-up"
+
+    def dataset(self) -> Dataset:
+        """The results over what ranges and the pucks; the scene and its files as texts."""
+        dims = tuple(plain_name(path) for path in self.axes)
+        axes = {}
+        for path, values in self.axes.items():
+            doc = entry_at(self.scene, path).doc
+            text = f"{path} of the scene" + (f", {doc}" if doc else "")
+            unit = self.scene.unit_of(path) or "1"
+            axes[plain_name(path)] = Variable(values, (plain_name(path),), unit, text)
+        axes["puck"] = variable("puck", np.arange(len(self.names)), ("puck",))
+        columns = {"name": variable("name", list(self.names), ("puck",))}
+        for name, values in {**self.columns, **derived(self.columns)}.items():
+            over = (*dims, "puck") if values.ndim > self.end.ndim else dims
+            columns[name] = variable(name, values, over)
+        columns["end"] = variable("end", self.end, dims, ENDS)
+        attributes = {"title": self.scene.title or "Scene"}
+        return Dataset(axes, columns, attributes, scene_texts(self.scene, self.files))
+
+    def without_end(self) -> list[str]:
+        """A line for each way in which runs have no end: how many, the first, and what to do."""
+        lines = []
+        for code in range(TIME_UP + 1, len(ENDS)):
+            found = np.argwhere(self.end == code)
+            if found.size:
+                at = zip(self.axes.items(), found[0], strict=True)
+                run = ", ".join(f"{path} = {values[i]:.10g}" for (path, values), i in at)
+                advice = self.refusal if code == REFUSED else "change the restitution of its pucks"
+                lines.append(
+                    f"{len(found)} of {self.end.size} runs: {ENDS[code]}; the first at {run}: "
+                    + advice
+                )
+        return lines
+
+
+def sweep(
+    scene: Scene, *, threads: int | None = None, chunk: int = CHUNK,
+    progress: Progress | None = None, checkpoint: str | Path | None = None,
+) -> WorldMap:  # fmt: skip
+    """The map over a board, as :meth:`puck_tables.Scene.sweep` has it."""
+    axes = dict(scene.ranges)
+    if not axes:
+        raise InputError(
+            "no number of the scene is a range: write one as 'START:STOP:COUNT' or as a list (such "
+            "as puck[0].launch.spin = '0:10:101')"
+        )
+    shape, pieces = tuple(values.size for values in axes.values()), pieces_of(scene)
+    count, size = len(pieces), math.prod(shape)
+    rows = count * (len(STATE) + 1) + 2
+    check_memory(shape, 8 * 3 * rows)
+    inner = {path: match for path in axes if (match := _LAUNCH.fullmatch(path)) is not None}
+    inner = {path: one for path, one in inner.items() if _at_start(pieces, one)}
+    outer = [path for path in axes if path not in inner]
+
+    @lru_cache(maxsize=8)
+    def case(numbers: tuple[float, ...]) -> _Case | InputError:
+        try:
+            first = {path: float(axes[path][0]) for path in inner}
+            return _Case(scene.at({**first, **dict(zip(outer, numbers, strict=True))}))
+        except InputError as error:
+            return error
+
+    def split(start: int, stop: int) -> tuple[list[tuple[float, ...]], dict[str, FloatArray]]:
+        places = np.unravel_index(np.arange(start, stop), shape)
+        values = {path: axes[path][place] for path, place in zip(axes, places, strict=True)}
+        numbers = list(zip(*(values[path].tolist() for path in outer), strict=True))
+        return numbers or [()] * (stop - start), {path: values[path] for path in inner}
+
+    def ends_of(start: int, stop: int) -> tuple[FloatArray, npt.NDArray[np.int8]]:
+        numbers, launches = split(start, stop)
+        out = np.full((rows, stop - start), np.nan)
+        status = np.full(stop - start, REFUSED, np.int8)
+        begin = 0
+        while begin < stop - start:  # runs that differ in nothing but launches, together
+            end = begin + 1
+            while end < stop - start and numbers[end] == numbers[begin]:
+                end += 1
+            one = case(numbers[begin])
+            if isinstance(one, _Case):
+                part = {path: values[begin:end] for path, values in launches.items()}
+                out[:, begin:end], status[begin:end] = one.ends(part, inner, end - begin)
+            begin = end
+        return out, status
+
+    whole = tables_of(scene)
+    work = {"scene": whole, "axes": list(scene.ranges.items()), "files": files_named(whole)}
+    files = files_of(scene)
+    out, status = chunked(ends_of, rows, size, chunk, threads, progress, checkpoint, work)
+    refused = np.flatnonzero(status == REFUSED)
+    refusal = str(case(split(int(refused[0]), int(refused[0]) + 1)[0][0])) if refused.size else ""
+    if refused.size == size:
+        raise InputError(f"every run of this sweep is refused, the first: {refusal}")
+    states = out[:-2].reshape(count, -1, *shape)
+    columns = {name: np.moveaxis(states[:, n], 0, -1) for n, name in enumerate((*STATE, "in_play"))}
+    columns |= {"end_time": out[-2].reshape(shape), "impacts": out[-1].reshape(shape)}
+    names = tuple(called(piece, number) for number, piece in enumerate(pieces))
+    return WorldMap(scene, names, columns, status.reshape(shape), refusal, files)
+
+
+def _at_start(pieces: tuple[Piece, ...], path: re.Match[str]) -> bool:
+    """Whether a launch is at the start: of others more depends on it than a velocity."""
+    piece = pieces[int(path[1] or 0)]
+    return piece.launch.time == 0.0 and not piece.path
+
+
+class _Case:
+    """A board of which only launches still vary."""
+
+    def __init__(self, scene: Scene) -> None:
+        self.scene, self.pieces = scene, pieces_of(scene)
+        endless = any(piece.friction == 0.0 and not piece.path for piece in self.pieces)
+        if endless and scene.run.time is None:
+            raise InputError("nothing brings a puck without friction to rest: give run.time")
+        self.until = math.inf if scene.run.time is None else scene.run.time
+        order = order_of(scene)
+        self.game, room = game_of(scene, order)
+        self.first, self.place = room.states.copy(), np.argsort(order)
+
+    def ends(
+        self, launches: Mapping[str, FloatArray], paths: Mapping[str, re.Match[str]], count: int
+    ) -> tuple[FloatArray, npt.NDArray[np.int8]]:
+        """Results (rows, count) and how each run ended."""
+        numbers = sorted({int(one[1] or 0) for one in paths.values()})
+        starts = np.empty((count, len(numbers), 3))
+        for m, number in enumerate(numbers):
+            launch = self.pieces[number].launch
+            starts[:, m] = *(launch.velocity or (0.0, 0.0)), launch.spin
+        for path, values in launches.items():
+            one = paths[path]
+            starts[:, numbers.index(int(one[1] or 0)), _PARTS.index(one[2])] = values
+        discs = self.place[numbers]
+        ends = follow_all(self.game, self.first, discs, starts, self.until)
+        states = np.concatenate([ends.states, ends.in_play[:, :, None]], axis=2)[:, self.place]
+        out = np.vstack([states.reshape(count, -1).T, ends.time, ends.impacts])
+        status = np.where(ends.how > 1, ends.how, 0).astype(np.int8)
+        moving = (states[:, :, 3:6] != 0.0).any(axis=(1, 2))
+        status[(status == 0) & moving] = TIME_UP
+        out[:, status > TIME_UP] = np.nan
+        return out, status

@@ -1,0 +1,73 @@
+"""Boards for the tests of several pucks: random ones, racks, and their judges."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from judges.pucks_judge import Disc, Line
+
+import puck_tables as pt
+
+
+def piece(x: float, y: float, velocity: Any = None, spin: float = 0.0, **how: Any) -> pt.Piece:
+    """A puck of 3 cm, 0.1 kg, f = 0.2."""
+    kept = {"radius": 0.03, "mass": 0.1, "friction": 0.2, "height": 0.01, **how}
+    return pt.Piece(launch=pt.Launch(velocity, spin, (x, y)), **kept)
+
+
+def draw(
+    seed: int, count: int, *, side: float = 0.4, speed: float = 1.5, walls: bool = True
+) -> pt.Scene:
+    """Random pucks in a square: different sizes, masses, rims, some at rest."""
+    rng = np.random.default_rng(seed)
+    pieces: list[pt.Piece] = []
+    while len(pieces) < count:
+        radius = rng.uniform(0.015, 0.04)
+        place = rng.uniform(-side + radius, side - radius, 2)
+        clear = (math.dist(place, p.launch.position) - p.radius - radius for p in pieces)
+        if min(clear, default=1.0) <= 1e-3:
+            continue
+        moves = rng.random() < 0.6 or not pieces
+        pieces.append(piece(
+            *place.tolist(),
+            (speed * rng.normal(size=2)).tolist() if moves else None,
+            float(rng.normal() * speed / radius) if moves else 0.0,
+            radius=radius, mass=float(rng.uniform(0.02, 0.3)),
+            friction=float(rng.uniform(0.05, 0.4)), height=float(rng.uniform(0.0, 0.4) * radius),
+            restitution=float(rng.uniform(0.3, 1.0)),
+            tangential=float(rng.choice([-1.0, 0.0, rng.uniform(-1.0, 0.8)])),
+            rim=float(rng.choice([math.inf, rng.uniform(0.0, 0.5)])),
+        ))  # fmt: skip
+    cushions = [
+        pt.Wall((-side * nx, -side * ny), (nx, ny), restitution=float(rng.uniform(0.3, 1.0)),
+                tangential=float(rng.uniform(-1.0, 0.8)), friction=float(rng.uniform(0.0, 0.5)))
+        for nx, ny in ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0))
+    ]  # fmt: skip
+    return pt.Scene(pucks=pieces, walls=cushions if walls else [])
+
+
+def judged(scene: pt.Scene) -> tuple[list[Disc], list[Line]]:
+    """The same for the judge."""
+    discs = [
+        Disc(p.radius, p.mass, p.friction, p.height, p.restitution, p.tangential, p.rim,
+             np.array([*p.launch.position, p.launch.orientation, *(p.launch.velocity or (0.0, 0.0)),
+                       p.launch.spin]))
+        for p in scene.pucks
+    ]  # fmt: skip
+    lines = [
+        Line(w.normal, float(np.dot(w.normal, w.point)), w.restitution, w.tangential, w.friction)
+        for w in scene.walls
+    ]
+    return discs, lines
+
+
+def hexagon(rings: int, pitch: float) -> list[tuple[float, float]]:
+    """Places of a hexagonal rack, its centre first."""
+    rows = [
+        (pitch * (a + 0.5 * b), pitch * math.sqrt(0.75) * b)
+        for a in range(-rings, rings + 1) for b in range(-rings, rings + 1)
+        if abs(a + b) <= rings
+    ]  # fmt: skip
+    return sorted(rows, key=lambda place: math.hypot(*place))
