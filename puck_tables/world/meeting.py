@@ -47,6 +47,7 @@ from puck_tables.world.layout import (
     C,
 )
 
+OUTSIDE = 1e-9  # of the radius
 ROUNDED = 1e-15  # of the places: a gap as small is none
 QUIET = 1e-12  # of the speeds: an approach as slow is none
 _MOST_LOOKS = 100_000
@@ -259,7 +260,8 @@ def next_crossing(
             step = safe_step(-gap, -rate, bend)  # outside it: until it comes back
         else:
             step = safe_step(max(gap, 0.0), rate, bend)
-        if abs(gap) <= rounded or (gap < 0.0 and shape != ARC):
+        # farther outside an arc it has passed where the arc is not
+        if gap <= rounded and (shape != ARC or gap > -OUTSIDE * radius):
             if rate < -QUIET * flight[FASTEST] and there:
                 return t
             if bend > 0.0:
