@@ -10,7 +10,16 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import in_slices
 from puck_tables.kernels.compile import kernel
 from puck_tables.scene.friction import VX
-from puck_tables.world.engine import EVERYBODY, FULL, Room, advance, keep_flight, room_for
+from puck_tables.world.engine import (
+    EVERYBODY,
+    FULL,
+    NOBODY,
+    PAUSED,
+    Room,
+    advance,
+    keep_flight,
+    room_for,
+)
 from puck_tables.world.flight import DAMPED, GONE, START, STILL, UNTIL, start_flight, state_at
 from puck_tables.world.game import COUNTS, N_IMPACTS, N_PIECES, Game, Whole
 
@@ -57,7 +66,10 @@ def _follow_all(
             )
         for i in range(count):
             keep_flight(game, i)
-        ends.how[run] = advance(game, until, EVERYBODY, room.one, room)
+        how = advance(game, until, EVERYBODY, room.one, room)
+        while how == PAUSED:
+            how = advance(game, until, NOBODY, room.one, room)
+        ends.how[run] = how
         last = 0.0
         for i in range(count):
             kind, flight = game.kinds[i], game.flights[i]

@@ -73,12 +73,13 @@ from puck_tables.world.meeting import next_crossing, next_meeting, normal_to
 from puck_tables.world.paths import DURATION, FIRST
 from puck_tables.world.paths import START as BEGINS
 
-REACHED, FULL, CROWDED, TANGLED = range(4)  # how a call ends
+REACHED, FULL, CROWDED, TANGLED, PAUSED = range(5)  # how a call ends
 
 NOBODY, EVERYBODY = -1, -2
 
 TOUCH = 1e-12  # of the radius: a gap as small is none
 MOST_AT_ONCE = 10_000  # events at one moment
+MOST_IN_A_CALL = 2_000  # then the caller may hear Ctrl-C
 
 
 class Room(NamedTuple):
@@ -340,13 +341,15 @@ def lacks_rows(game: Game, room: Room) -> bool:
 
 @kernel
 def advance(game: Game, until: float, struck: int, state: FloatArray, room: Room) -> int:
-    """All that happens up to a time; how it ended.  After FULL the caller gives more rows.
+    """All that happens up to a time; how it ended.
+
+    After FULL the caller gives more rows and calls again, after PAUSED it just calls again.
 
     ``struck``: the disc that gets the velocity and spin of ``state`` before; NOBODY; or, at the
     start, EVERYBODY looks ahead.
     """
     count = game.discs.shape[0]
-    at_once, last = 0, -math.inf
+    at_once, last, events = 0, -math.inf, 0
     if struck != NOBODY:
         for i in range(count):
             room.marks[i] = 1
@@ -367,6 +370,9 @@ def advance(game: Game, until: float, struck: int, state: FloatArray, room: Room
             return REACHED
         if lacks_rows(game, room):
             return FULL
+        if events == MOST_IN_A_CALL:
+            return PAUSED
+        events += 1
         at_once = at_once + 1 if t == last else 0
         last = t
         if at_once > MOST_AT_ONCE:

@@ -19,6 +19,7 @@ from puck_tables.world.engine import (
     CROWDED,
     FULL,
     NOBODY,
+    PAUSED,
     REACHED,
     TANGLED,
     advance,
@@ -245,10 +246,11 @@ class World:
         if lacks_rows(self._game, self._room):
             self._grow()
         while (how := advance(self._game, until, struck, state, self._room)) != REACHED:
-            if how != FULL:
+            if how not in (FULL, PAUSED):
                 raise PuckError(_FAILURES[how].format(time=self.time))
             struck = NOBODY
-            self._grow()
+            if how == FULL:
+                self._grow()
 
     def perturb(self, scale: float, turn: float) -> None:
         """Change the launches: their velocities and spins by a factor, their headings by an angle.
