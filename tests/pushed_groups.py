@@ -21,7 +21,6 @@ from puck_tables.world.pressing import press
 from puck_tables.world.pushing import follow
 
 
-
 def disc(radius=0.05, mass=0.2, decel=1.0, delta=0.0, grip=0.0, gyration=0.5**0.5, damping=0.0,
          spin_damping=0.0, wake=0.0, tangential=0.0):  # fmt: skip
     """A row of discs; no mass: driven."""
@@ -90,6 +89,7 @@ class Ride:
             assert status == 0
             kept = modes != APART
             self.pushes_then.append(desk.pushes[: len(contacts)].copy())
+            self.desk = desk
             contacts, modes = contacts[kept], modes[kept]
             self.modes_then.append(modes.copy())
             self.doings_then.append(doings.copy())

@@ -33,7 +33,7 @@ from puck_tables.world.multipliers import (
     right_hand_side,
 )
 
-_GUESSES, _TRIES = 25, 8
+_GUESSES, _TRIES = 25, 5
 _STEPS = 400  # of forces, before modes are guessed from them; four times as many each time
 _LEFT_OVER = 1e-9  # of what is given: the equations have no solution
 
@@ -96,9 +96,7 @@ def find_modes(desk: Desk, modes: IntArray, members: int, scales: Scales) -> boo
 
 
 @inlined
-def _by_small_steps(
-    desk: Desk, modes: IntArray, members: int, scales: Scales, steps: int
-) -> None:
+def _by_small_steps(desk: Desk, modes: IntArray, members: int, scales: Scales, steps: int) -> None:
     """Modes from forces that go, all at once, by small steps to where they should be."""
     for c in range(modes.shape[0]):
         modes[c] = STICKS

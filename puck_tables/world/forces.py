@@ -67,7 +67,8 @@ def act(
         power[i] = 0.0
     for place in range(members.shape[0]):
         number = members[place]
-        disc, own, inverse, doing = group.discs[number], desk.own[place], desk.inverse[place], doings[place]
+        disc, own, inverse = group.discs[number], desk.own[place], desk.inverse[place]
+        doing, radius = doings[place], disc[RADIUS]
         inverse[0] = inverse[1] = 0.0
         if doing == DRIVEN:
             continue
@@ -79,10 +80,10 @@ def act(
         dry = dry_in(group.regions, number)
         if doing == YIELDS:
             way = desk.ways[place]
-            fx, fy, torque, _ = dry_friction(at_slip_zero(dry), disc[RADIUS], way[0], way[1], way[2])
-            heat = 0.0
+            fx, fy, torque, _ = dry_friction(at_slip_zero(dry), radius, way[0], way[1], way[2])
+            heat = -(fx * vx + fy * vy + torque * spin)
         else:
-            fx, fy, torque, heat = dry_friction(dry, disc[RADIUS], vx, vy, spin)
+            fx, fy, torque, heat = dry_friction(dry, radius, vx, vy, spin)
         square = vx * vx + vy * vy
         drag, turn_drag = disc[DAMPING] + disc[WAKE] * math.sqrt(square), disc[SPIN_DAMPING]
         own[0] = group.gx + fx * inverse[0] - drag * vx
@@ -94,9 +95,7 @@ def act(
 
 
 @inlined
-def force_of_contacts(
-    desk: Desk, count: int, place: int
-) -> tuple[float, float, float]:
+def force_of_contacts(desk: Desk, count: int, place: int) -> tuple[float, float, float]:
     """Force and torque of all contacts on a member."""
     fx, fy, torque = 0.0, 0.0, 0.0
     for c in range(count):
@@ -139,8 +138,13 @@ def excess_on(
 
 
 @inlined
+def gain_of(group: Group, number: int, place: int, desk: Desk) -> float:
+    """How fast a disc that yields gains speed along its way."""
+    way, rate, radius = desk.ways[place], desk.rates[place], group.discs[number, RADIUS]
+    return way[0] * rate[0] + way[1] * rate[1] + radius * radius * way[2] * rate[2]
+
+
+@inlined
 def can_rest(group: Group, number: int) -> bool:
     """Whether the floor can hold a disc."""
     return group.regions.load[number] > 0.0
-
-

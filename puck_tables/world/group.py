@@ -7,6 +7,7 @@ its rims slip: −1 or 1 (they slide, the slip has that sign), STICKS, or APART.
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -22,12 +23,13 @@ IntArray = npt.NDArray[np.int64]
 # of a contact, besides −1 and 1
 STICKS, APART = 0, 2
 
-# of a member.  YIELDS: at rest, and its friction with the floor at its limit; it may be jammed
+# of a member.  HELD: at rest.  YIELDS: its slip over the floor has just begun, or would begin if
+# nothing stood in its way; friction is against the direction in which it is driven
 HELD, YIELDS, MOVES, DRIVEN = range(4)
 
 # how a stretch ends
-TIME_UP, PARTS, RIM_STOPS, RIM_GIVES, RUNS_OFF, RESTS, SETS_OFF, FULL, UNSOLVED, NOT_FINITE = (
-    range(10)
+TIME_UP, PARTS, RIM_STOPS, RIM_GIVES, RUNS_OFF, RESTS, SETS_OFF, FULL, UNSOLVED, NOT_FINITE = range(
+    10
 )
 
 # of a ledger, J: heat of dry friction, of rims, of drag; work of the pull and of driven discs
@@ -45,6 +47,7 @@ WATCHES = 4  # of a contact: what becomes negative at PARTS, RIM_STOPS, RIM_GIVE
 STILL = 1e-12  # of the scale of speeds: as good as at rest
 SMOOTH_SLIP = 1e-13  # of the scale of speeds: a rim that slips no more
 LEVEL = 1e-12  # of the scale of accelerations: none
+GAINS = 1e-10  # of the scale of accelerations: what gains less stays at rest
 
 
 class Group(NamedTuple):
@@ -79,10 +82,11 @@ class Desk(NamedTuple):
     at a trial (3, m, 6); ``stages`` (8, m, 6) and ``powers`` (9, 5): rates of states and ledger;
     ``own``, ``rates`` (m, 3): accelerations without and with contacts; ``inverse`` (m, 2): 1/m, 1/I
     of those that can move; ``sights`` (c, 11); ``watched`` (2, c, 4): see
-    :func:`puck_tables.world.moments.watch`; ``pushes`` (c, 2): λ, τ; ``ways`` (m, 3): where what
-    yields slips to; ``rows``, ``columns`` (2c, 6), ``owners`` (2c, 2), ``order`` (2c,): the
-    constraints, and the members concerned; ``matrix``, ``factors`` (2c, 2c), ``vectors`` (4, 2c);
-    ``modes`` (2, c), ``doings`` (m,): trials; ``film`` (9,).
+    :func:`puck_tables.world.moments.watch`; ``pushes`` (c, 2): λ, τ; ``ways`` (m, 3), ``paces``
+    (m, 2): where what yields slips to, and how fast that turns; ``rows``, ``columns`` (2c, 6),
+    ``owners`` (2c, 2), ``order`` (2c,): the constraints, and the members concerned; ``matrix``,
+    ``factors`` (2c, 2c), ``vectors`` (4, 2c); ``modes`` (2, c), ``doings`` (m,): trials; ``film``
+    (9,).
     """
 
     pairs: IntArray
@@ -96,6 +100,7 @@ class Desk(NamedTuple):
     watched: FloatArray
     pushes: FloatArray
     ways: FloatArray
+    paces: FloatArray
     rows: FloatArray
     columns: FloatArray
     owners: IntArray
@@ -123,12 +128,19 @@ def desk_for(members: int, contacts: int) -> Desk:
         stages=np.zeros((stages + 1, m, 6)), powers=np.zeros((stages + 2, LEDGER)),
         own=np.zeros((m, 3)), rates=np.zeros((m, 3)), inverse=np.zeros((m, 2)),
         sights=np.zeros((c, SIGHT)),
-        watched=np.zeros((2, c, WATCHES)), pushes=np.zeros((c, 2)), ways=np.zeros((m, 3)),
+        watched=np.zeros((2, c, WATCHES)), pushes=np.zeros((c, 2)),
+        ways=np.zeros((m, 3)), paces=np.zeros((m, 2)),
         rows=np.zeros((k, 6)), columns=np.zeros((k, 6)), owners=np.zeros((k, 2), np.int64),
         order=np.zeros(k, np.int64), matrix=np.zeros((k, k)), factors=np.zeros((k, k)),
         vectors=np.zeros((4, k)), modes=np.zeros((2, c), np.int64),
         doings=np.zeros(m, np.int64), film=np.zeros(9),
     )  # fmt: skip
+
+
+@inlined
+def small_slip(scales: Scales) -> float:
+    """A slip, m/s, in which an error of its direction of its own size over Q is below ``tol``."""
+    return math.sqrt(scales.tol) * scales.speed
 
 
 @inlined

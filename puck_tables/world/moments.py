@@ -10,9 +10,10 @@ import math
 
 from puck_tables.kernels.compile import inlined, kernel
 from puck_tables.world.complementarity import most
-from puck_tables.world.forces import excess_on
+from puck_tables.world.forces import gain_of
 from puck_tables.world.group import (
     APART,
+    GAINS,
     GRIP,
     HELD,
     LEVEL,
@@ -25,14 +26,14 @@ from puck_tables.world.group import (
     STICKS,
     TO_END,
     WATCHES,
+    YIELDS,
     Desk,
     Group,
     IntArray,
     Scales,
 )
 from puck_tables.world.multipliers import leads
-from puck_tables.world.pressing import settle
-from puck_tables.scene.rest import SLACK
+from puck_tables.world.yielding import overborne, settle
 
 
 @kernel
@@ -78,16 +79,18 @@ def sets_off(
     From the pushes of the state at the end of a step, which is that of ``desk.states[1]``; only
     where a disc alone could not bear them all is it looked at who moves.
     """
-    tried = False
-    for place in range(members.shape[0]):
-        if doings[place] == HELD and not tried:
-            tried = excess_on(group, members[place], place, modes.shape[0], desk)[0] > SLACK
-    if not tried:
+    contacts = modes.shape[0]
+    if not overborne(group, members, doings, contacts, scales, False, desk):
         return 0
-    trial, does = desk.modes[0, : modes.shape[0]], desk.doings[: members.shape[0]]
-    for c in range(modes.shape[0]):
+    trial, does = desk.modes[0, :contacts], desk.doings[: members.shape[0]]
+    for c in range(contacts):
         trial[c] = modes[c]
     for place in range(members.shape[0]):
         does[place] = doings[place]
-    solved, goes = settle(group, members, trial, does, desk.states[1], scales, desk)
-    return (1 if goes else 0) if solved else -1
+    if not settle(group, members, trial, does, desk.states[1], scales, desk):
+        return -1
+    for place in range(members.shape[0]):
+        begins = doings[place] == HELD and does[place] == YIELDS
+        if begins and gain_of(group, members[place], place, desk) > GAINS * scales.rate:
+            return 1
+    return 0

@@ -2,9 +2,9 @@
 
 The modes of the contacts (which press, which rims stick) and who is at rest are known, see
 :func:`puck_tables.world.pressing.press`; while they hold the motion is smooth, and integrated by
-Dormand–Prince 5(4) in time.  Where a slip ends or begins, the direction of friction turns within
-Q/|Q′|: a step is at most half of that, down to 1e-12 of the scale of speeds.  Whatever changes is
-found on real steps.
+Dormand–Prince 5(4) in time.  Where a slip ends, the direction of friction turns within Q/|Q′|: a
+step is at most half of that, down to 1e-12 of the scale of speeds.  Whatever changes is found on
+real steps.
 """
 
 from __future__ import annotations
@@ -26,11 +26,13 @@ from puck_tables.world.group import (
     STILL,
     TIME_UP,
     UNSOLVED,
+    YIELDS,
     Desk,
     Group,
     IntArray,
     Scales,
     find_places,
+    small_slip,
 )
 from puck_tables.world.moments import first_negative, sets_off, watch
 from puck_tables.world.paths import DURATION, START, piece_at
@@ -153,7 +155,7 @@ def follow(
         for i in range(6):
             y[place, i] = states[members[place], i]
     unit = scales.speed / scales.rate
-    rates_at(group, members, modes, doings, t, y, 0, desk)
+    rates_at(group, members, modes, doings, t, y, 0, scales, desk)
     watch(desk, modes, scales, 0)
     still_there = False  # anybody at rest whom somebody touches
     for place in range(size):
@@ -185,9 +187,7 @@ def follow(
             if c < 0:
                 break
             how, which, landed = PARTS + kind, c, False
-            length = _moment(
-                group, members, modes, doings, t, length, c, kind, scales, desk
-            )
+            length = _moment(group, members, modes, doings, t, length, c, kind, scales, desk)
             if first_negative(desk, 1, contacts.shape[0]) == (c, kind):
                 break
         if still_there:
@@ -197,18 +197,19 @@ def follow(
                 break
             if goes > 0:
                 how, which, landed = SETS_OFF, -1, False
-                length = _moment_of_yield(
-                    group, members, modes, doings, t, length, scales, desk
-                )
+                length = _moment_of_yield(group, members, modes, doings, t, length, scales, desk)
         add_work(length, ledger, desk)
+        begun = False  # whether anybody's slip is so large that it has a direction of its own
         for place in range(size):
             write_piece(pieces[place, count], start + passed, length, place, desk)
             before, after = y[place], new[place]
             number = members[place]
-            if how == TIME_UP and doings[place] == MOVES and can_rest(group, number):
-                q = slip_of(group, number, after)
-                if q <= STILL * scales.speed and q < slip_of(group, number, before):
-                    how, which = RESTS, place
+            q, earlier = slip_of(group, number, after), slip_of(group, number, before)
+            if doings[place] == YIELDS and (q > small_slip(scales) or q < earlier):
+                doings[place], begun = MOVES, True
+            elif how == TIME_UP and doings[place] == MOVES and can_rest(group, number):
+                how = RESTS if q <= STILL * scales.speed and q < earlier else how
+                which = place if how == RESTS else which
         count += 1
         passed += length
         t = target if landed else start + passed
@@ -218,6 +219,8 @@ def follow(
                 desk.stages[0, place, i] = desk.stages[END, place, i]
         for i in range(ledger.shape[0]):
             desk.powers[0, i] = desk.powers[END, i]
+        if begun:
+            rates_at(group, members, modes, doings, t, y, 0, scales, desk)
         for c in range(contacts.shape[0]):
             for i in range(desk.watched.shape[2]):
                 desk.watched[0, c, i] = desk.watched[1, c, i]

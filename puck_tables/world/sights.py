@@ -57,7 +57,9 @@ def _to_end(obstacle: FloatArray, ex: float, ey: float) -> float:
 
 
 @inlined
-def _obstacle_sight(obstacle: FloatArray, radius: float, x: float, y: float, out: FloatArray) -> None:
+def _obstacle_sight(
+    obstacle: FloatArray, radius: float, x: float, y: float, out: FloatArray
+) -> None:
     """Normal, bend, gap and end of an arc where a disc is at an obstacle."""
     out[TO_END] = math.inf
     if obstacle[KIND] == WALL:

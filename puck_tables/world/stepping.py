@@ -9,12 +9,23 @@ from puck_tables.kernels.compile import inlined, kernel
 from puck_tables.motion.steppers import DORMAND_PRINCE
 from puck_tables.scene.friction import size
 from puck_tables.world.forces import act, can_rest, place_driven, power_of_contacts, slip_of
-from puck_tables.world.group import LEDGER, MOVES, Desk, Group, IntArray, Scales
+from puck_tables.world.group import (
+    DRIVEN,
+    HELD,
+    LEDGER,
+    MOVES,
+    YIELDS,
+    Desk,
+    Group,
+    IntArray,
+    Scales,
+)
 from puck_tables.world.layout import RADIUS
 from puck_tables.world.multipliers import push_and_move
 from puck_tables.world.paths import DURATION, FIRST, START
 from puck_tables.world.putting_right import close_gaps, stop_slips
 from puck_tables.world.sights import look
+from puck_tables.world.yielding import turn_ways
 
 _A, _C, _E = DORMAND_PRINCE.a, DORMAND_PRINCE.c, DORMAND_PRINCE.e
 STAGES = len(_C)
@@ -25,7 +36,7 @@ _NEAR = 0.5  # of the time in which a slip would end, at most, is a step
 @kernel
 def rates_at(
     group: Group, members: IntArray, modes: IntArray, doings: IntArray, t: float, y: FloatArray,
-    stage: int, desk: Desk,
+    stage: int, scales: Scales, desk: Desk,
 ) -> None:  # fmt: skip
     """Rates of states y (m, 6) and of the ledger into a stage; the driven are put into place."""
     contacts, power = modes.shape[0], desk.powers[stage]
@@ -33,6 +44,10 @@ def rates_at(
     act(group, members, doings, y, power, desk)
     look(group, members, desk.pairs[:contacts], y, desk.sights)
     push_and_move(desk, modes, members.shape[0])
+    for place in range(members.shape[0]):
+        if doings[place] == YIELDS:
+            turn_ways(group, members, modes, doings, y, scales, False, power, desk)
+            break
     power_of_contacts(doings, contacts, y, power, desk)
     for place in range(members.shape[0]):
         for i in range(3):
@@ -57,10 +72,10 @@ def step(
                 for j in range(stage):
                     total += _A[stage, j] * stages[j, place, i]
                 new[place, i] = y[place, i] + h * total
-        rates_at(group, members, modes, doings, t + _C[stage] * h, new, stage, desk)
+        rates_at(group, members, modes, doings, t + _C[stage] * h, new, stage, scales, desk)
     largest = 0.0
     for place in range(members.shape[0]):
-        if doings[place] != MOVES:
+        if doings[place] == HELD or doings[place] == DRIVEN:
             continue
         for i in range(6):
             error = 0.0
@@ -82,7 +97,7 @@ def step(
         close_gaps(desk, modes, new)
         look(group, members, desk.pairs[: modes.shape[0]], new, desk.sights)
         stop_slips(desk, modes, new)
-        rates_at(group, members, modes, doings, t + h, new, END, desk)
+        rates_at(group, members, modes, doings, t + h, new, END, scales, desk)
     return largest
 
 

@@ -66,7 +66,11 @@ class Judge:
             if isinstance(other, tuple) and other[0] == "wall":
                 n = -np.array(other[1:3])
             else:
-                centre = np.array(other[1:3]) if isinstance(other, tuple) else q[3 * other : 3 * other + 2]
+                centre = (
+                    np.array(other[1:3])
+                    if isinstance(other, tuple)
+                    else q[3 * other : 3 * other + 2]
+                )
                 d = centre - p
                 n = d / np.sqrt(d[0] * d[0] + d[1] * d[1])
                 if isinstance(other, tuple) and other[0] == "arc":
