@@ -29,7 +29,7 @@ from puck_tables.world.group import (
     IntArray,
     Scales,
 )
-from puck_tables.world.layout import LIGHTNESS, RADIUS
+from puck_tables.world.layout import LIGHTNESS, RADIUS, TURNABILITY
 from puck_tables.world.multipliers import leads, push_and_move
 
 _TURNS, _PACE = 400, 0.3  # at most; in the time that friction needs to turn a slip, at first
@@ -49,9 +49,11 @@ def _turn(group: Group, number: int, place: int, radius: float, desk: Desk) -> t
     ow = radius * (desk.rates[place, 2] - gain * way[2])
     off = size(ox, oy, ow)
     if off > 0.97 * pace[1]:
-        pace[0] *= 0.5 if off > 1.001 * pace[1] else 1.3
+        pace[0] = max(_PACE, 0.5 * pace[0]) if off > 1.001 * pace[1] else 1.3 * pace[0]
     pace[1] = off
-    share = pace[0] / (group.regions.load[number] * group.discs[number, LIGHTNESS])
+    disc = group.discs[number]
+    turns = max(disc[LIGHTNESS], 0.5 * radius * radius * disc[TURNABILITY])
+    share = pace[0] / (group.regions.load[number] * turns)
     if share * size(off, gain, 0.0) > 1.0:
         share = 1.0 / size(off, gain, 0.0)
     wx, wy, ww = way[0] + share * ox, way[1] + share * oy, radius * way[2] + share * ow
