@@ -20,7 +20,7 @@ from puck_tables.world.group import (
     IntArray,
     Scales,
 )
-from puck_tables.world.layout import RADIUS
+from puck_tables.world.layout import LIGHTNESS, RADIUS, TURNABILITY
 from puck_tables.world.multipliers import push_and_move
 from puck_tables.world.paths import DURATION, FIRST, START
 from puck_tables.world.putting_right import close_gaps, stop_slips
@@ -30,7 +30,8 @@ from puck_tables.world.yielding import turn_ways
 _A, _C, _E = DORMAND_PRINCE.a, DORMAND_PRINCE.c, DORMAND_PRINCE.e
 STAGES = len(_C)
 END = STAGES  # where the rates at the end of a step stand
-_NEAR = 0.5  # of the time in which a slip would end, at most, is a step
+_NEAR = 0.5  # of the time in which a slip would end, at most, is a step,
+_TURN = 1.5  # and of that in which friction turns it; three times as long steps turn it to and fro
 
 
 @kernel
@@ -111,8 +112,11 @@ def longest_step(group: Group, members: IntArray, doings: IntArray, desk: Desk) 
             radius, rate = group.discs[number, RADIUS], desk.stages[0, place]
             pull = size(rate[3], rate[4], radius * rate[5])
             q = slip_of(group, number, desk.states[0, place])
-            if longest * pull > _NEAR * q:
-                longest = _NEAR * q / pull
+            disc = group.discs[number]
+            turns = max(disc[LIGHTNESS], 0.5 * radius * radius * disc[TURNABILITY])
+            pull = max(pull / _NEAR, group.regions.load[number] * turns / _TURN)
+            if longest * pull > q:
+                longest = q / pull
     return longest
 
 
