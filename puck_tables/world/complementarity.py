@@ -42,7 +42,7 @@ _LEFT_OVER = 1e-9  # of what is given: the equations have no solution
 def rim_mode(sight: FloatArray, speed: float) -> int:
     """How the rims slip, as seen; rims without friction slide."""
     slip = sight[SLIP]
-    if sight[GRIP] == math.inf or (abs(slip) <= 2.0 * SMOOTH_SLIP * speed and sight[GRIP] > 0.0):
+    if abs(slip) <= 2.0 * SMOOTH_SLIP * speed and sight[GRIP] > 0.0:
         return STICKS
     return 1 if slip >= 0.0 else -1
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, kernel
 from puck_tables.scene.friction import SPIN, VX
@@ -12,10 +14,10 @@ from puck_tables.world.group import (
     DRIVE_WORK,
     DRIVEN,
     GAINS,
+    GRIP,
     HELD,
     MOVES,
     RIM_HEAT,
-    SLIP,
     STICKS,
     STILL,
     TIME_UP,
@@ -28,10 +30,12 @@ from puck_tables.world.group import (
     find_places,
     small_slip,
 )
-from puck_tables.world.layout import LIGHTNESS, TURNABILITY
+from puck_tables.world.layout import LIGHTNESS, RADIUS, TURNABILITY
 from puck_tables.world.putting_right import stop_slips
 from puck_tables.world.sights import look
 from puck_tables.world.yielding import settle
+
+_SAME = 0.9  # the cosine between directions that are the same
 
 
 @inlined
@@ -44,6 +48,16 @@ def _energy(group: Group, members: IntArray, y: FloatArray) -> float:
             square = y[place, VX] ** 2 + y[place, VX + 1] ** 2
             total += 0.5 * (square / disc[LIGHTNESS] + y[place, SPIN] ** 2 / disc[TURNABILITY])
     return total
+
+
+@inlined
+def _goes_on(group: Group, number: int, place: int, scales: Scales, desk: Desk) -> bool:
+    """Whether a small slip, if there is one, grows in the direction that it has."""
+    y, way, radius = desk.states[0, place], desk.ways[place], group.discs[number, RADIUS]
+    slip = slip_of(group, number, y)
+    along = way[0] * y[VX] + way[1] * y[VX + 1] + radius * radius * way[2] * y[SPIN]
+    gains = gain_of(group, number, place, desk) > GAINS * scales.rate
+    return slip == 0.0 or (gains and along > _SAME * slip)
 
 
 @kernel
@@ -59,7 +73,8 @@ def press(
         Contacts touch, and approach no more than by rounding.
     states : (n, 6) of all discs at t in the laboratory, m, rad, m/s, rad/s
         Changed by rounding: who is as good as at rest is put to rest, who presses approaches no
-        more.  Rims with friction without bound are stopped at once.
+        more.  Rims that press and have friction without bound are stopped at once: then contacts
+        that are APART may approach.
     modes : (c,) and doings : (m,), the answer, see :mod:`puck_tables.world.group`
     ledger : (5,) J, to which the heat of what is stopped is added
 
@@ -87,32 +102,31 @@ def press(
                 for i in range(3):
                     desk.ways[place, i] = y[place, 3 + i] / q
     place_driven(group, members, doings, t, y, desk)
-    gripped, again = False, True
+    stopped, again = desk.modes[1, : contacts.shape[0]], True
     while again:
         look(group, members, pairs, y, desk.sights)
         for c in range(contacts.shape[0]):
             modes[c] = rim_mode(desk.sights[c], scales.speed)
+            stopped[c] = STICKS
+            if modes[c] != STICKS and desk.sights[c, GRIP] == math.inf:
+                desk.sights[c, GRIP], stopped[c] = 0.0, APART  # first it is seen whether it presses
         if not settle(group, members, modes, doings, y, scales, desk):
             return UNSOLVED
         again = False
         for place in range(count):
-            slips = doings[place] == YIELDS and slip_of(group, members[place], y[place]) > 0.0
-            if slips and gain_of(group, members[place], place, desk) <= 0.0:  # it comes to rest
+            if doings[place] == YIELDS and not _goes_on(group, members[place], place, scales, desk):
                 doings[place], again = MOVES, True
         if again:
             continue
-        grips, stopped = False, desk.modes[1, : contacts.shape[0]]
         for c in range(contacts.shape[0]):
-            grips = grips or (
-                modes[c] == STICKS and abs(desk.sights[c, SLIP]) > STILL * scales.speed
-            )
-            begins = modes[c] != APART and rim_mode(desk.sights[c], scales.speed) == STICKS
-            stopped[c] = STICKS if begins else modes[c]
+            if stopped[c] == APART and modes[c] != APART:
+                desk.sights[c, GRIP], stopped[c], again = math.inf, STICKS, True
+            elif modes[c] == APART or rim_mode(desk.sights[c], scales.speed) != STICKS:
+                stopped[c] = modes[c]
         before = _energy(group, members, y)
         heat = stop_slips(desk, stopped, y)
         ledger[RIM_HEAT] += heat
         ledger[DRIVE_WORK] += heat + _energy(group, members, y) - before
-        again, gripped = grips and not gripped, True
     goes = False
     for place in range(count):
         if doings[place] == YIELDS:
