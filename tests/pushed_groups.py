@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
-from puck_tables.contact.laws import law_of
 from puck_tables.scene.ingredients import Regions
 from puck_tables.scene.regions import NO_LAW
 from puck_tables.world.group import (
-    LEDGER,
     APART,
     HELD,
+    LEDGER,
     Group,
     Scales,
     desk_for,
 )
-from puck_tables.world.layout import DISC_COLUMNS, OBSTACLE_COLUMNS, POST, WALL, ARC
+from puck_tables.world.layout import ARC, DISC_COLUMNS, OBSTACLE_COLUMNS, POST, WALL
 from puck_tables.world.paths import PIECE_COLUMNS
 from puck_tables.world.pressing import press
 from puck_tables.world.pushing import follow
@@ -74,6 +75,7 @@ class Ride:
                 self.states[:, 3] ** 2 + self.states[:, 4] ** 2 + (r * self.states[:, 5]) ** 2
             ).max()
             rate = max(group.discs[:, 3].max(), np.hypot(group.gx, group.gy))
+            rate = rate if rate > 0.0 else speed**2 / r.min()
             scales = Scales(speed if speed > 0.0 else np.sqrt(rate * r.max()), rate, tol)
         desk = desk_for(len(self.members), len(contacts))
         self.ledger, self.t = np.zeros(LEDGER), 0.0
@@ -122,3 +124,63 @@ class Ride:
             self.energy(self.starts[0]) + pull + drive - floor - rim - drag
             - self.energy(self.states)
         )  # fmt: skip
+
+
+def film_of(path, times):
+    """A film of a motion t → (q, q′, q″)."""
+    rows = []
+    for a, b in pairwise(times):
+        first, last = path(a), path(b)
+        rows.append(np.concatenate([[a, b - a], *first, *last]))
+    return np.array(rows)
+
+
+def judged_discs(group):
+    """Discs as the judge reads them."""
+    rows = []
+    for d in group.discs:
+        mass, inertia = (1.0 / d[1], 1.0 / d[2]) if d[1] > 0.0 else (1.0, 1.0)
+        rows.append([d[0], mass, inertia, d[3], d[5], d[6], d[7]])
+    return rows
+
+
+def cluster(rng, count):
+    """Radii, places and contacts of discs of which each touches others, the first a wall y = 0."""
+    radii = rng.uniform(0.03, 0.06, count) if rng.random() < 0.5 else np.full(count, 0.05)
+    places, contacts = [np.array([0.0, radii[0]])], [(0, -1)]
+    while len(places) < count:
+        k, a, b = len(places), int(rng.integers(len(places))), int(rng.integers(len(places)))
+        angle = rng.uniform(0.0, 2.0 * np.pi)
+        trials = [places[a] + (radii[a] + radii[k]) * np.array([np.cos(angle), np.sin(angle)])]
+        d = places[b] - places[a]
+        size, one, two = np.hypot(*d), radii[a] + radii[k], radii[b] + radii[k]
+        if 0.0 < size < one + two and rng.random() < 0.6:  # between two
+            along = (one * one - two * two + size * size) / (2.0 * size)
+            if abs(along) < one:
+                side = np.array([-d[1], d[0]]) / size * np.sqrt(one * one - along * along)
+                trials.insert(0, places[a] + d / size * along + side)
+        for p in trials:
+            gaps = [np.hypot(*(p - q)) - r - radii[k] for q, r in zip(places, radii, strict=False)]
+            if min(gaps) > -1e-13 and p[1] > radii[k]:
+                contacts += [(i, k) for i, gap in enumerate(gaps) if gap < 1e-12]
+                places.append(p)
+                break
+    return radii, np.array(places), contacts
+
+
+def without_approach(group, states, contacts):
+    """The same states with the least change of velocities that takes what approaches away."""
+    states, rows = np.array(states, float), []
+    weights = np.column_stack([group.discs[:, 1], group.discs[:, 1], group.discs[:, 2]]).ravel()
+    for i, j in contacts:
+        row = np.zeros((len(states), 3))
+        n = -group.obstacles[-1 - j, 1:3] if j < 0 else states[j, :2] - states[i, :2]
+        n = n / np.hypot(*n)
+        row[i, :2] = n
+        if j >= 0:
+            row[j, :2] = -n
+        rows.append(row.ravel())
+    rows, v = np.array(rows), states[:, 3:].ravel()
+    forces = np.linalg.lstsq((rows * weights) @ rows.T, rows @ v, rcond=1e-12)[0]
+    states[:, 3:] = (v - weights * (rows.T @ forces)).reshape(-1, 3)
+    return states

@@ -68,7 +68,10 @@ class Group(NamedTuple):
 
 
 class Scales(NamedTuple):
-    """Speed Q, m/s, and acceleration J, m/s², and the error of a step in units of Q and Q²/J."""
+    """Speed Q, m/s, and acceleration J, m/s², and the error of a step in units of Q and Q²/J.
+
+    Both are positive; where nothing accelerates, J is Q² over a radius.
+    """
 
     speed: float
     rate: float

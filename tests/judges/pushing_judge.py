@@ -1,4 +1,4 @@
-"""Discs in sustained contact by other means: DOP853, closed friction by scipy, multipliers by numpy.
+"""Discs in sustained contact by other means: DOP853, friction by scipy, multipliers by numpy.
 
 Flat discs (δ = 0) under uniform pressure on a level or tilted floor.  A constraint is a row of a
 Jacobian J(q), its rate of change is taken by a complex step; accelerations and multipliers come
@@ -97,14 +97,13 @@ class Judge:
         return out
 
     def solved(self, t, q, v):
-        """Accelerations, (λ, τ) of the contacts, slips of their rims; τ against the slip: positive."""
+        """Accelerations, (λ, τ) of the contacts, slips of their rims."""
         size = len(q)
         step = 1e-30
         rows, moved = self.rows(q), self.rows(q + 1j * step * v)
         mass = np.ones(size)
         for i in self.free:
             mass[3 * i : 3 * i + 3] = self.discs[i, [1, 1, 2]]
-        equations, right = [], []
         constraints, columns = [], []
         for c, (_, _, grip, rim) in enumerate(self.contacts):
             across, along = rows[c]
