@@ -57,7 +57,8 @@ def group_of(discs, obstacles=(), pull=(0.0, 0.0), films=None, cuts=None):
         cuts = np.zeros((len(discs), 0))
     return Group(
         discs, np.array(obstacles, float).reshape(-1, OBSTACLE_COLUMNS),
-        Regions(mass * discs[:, 3], discs[:, 4].copy(), cuts, NO_LAW), np.vstack(rows), reels, float(pull[0]), float(pull[1]),
+        Regions(mass * discs[:, 3], discs[:, 4].copy(), cuts, NO_LAW), np.vstack(rows), reels,
+        float(pull[0]), float(pull[1]),
     )  # fmt: skip
 
 

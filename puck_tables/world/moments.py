@@ -37,10 +37,10 @@ from puck_tables.world.yielding import overborne, settle
 
 
 @kernel
-def watch(desk: Desk, modes: IntArray, scales: Scales, end: int) -> None:
-    """What is watched into ``desk.watched[end]``, from sights and pushes."""
+def watch(desk: Desk, modes: IntArray, scales: Scales, end: bool) -> None:
+    """What is watched at the start or end of a step, from sights and pushes."""
     for c in range(modes.shape[0]):
-        seen, sight = desk.watched[end, c], desk.sights[c]
+        seen, sight = desk.watched[1 if end else 0, c], desk.sights[c]
         for i in range(WATCHES):
             seen[i] = math.inf
         if modes[c] == APART:

@@ -37,6 +37,7 @@ from puck_tables.world.group import (
 from puck_tables.world.moments import first_negative, sets_off, watch
 from puck_tables.world.paths import DURATION, START, piece_at
 from puck_tables.world.stepping import (
+    BEGIN,
     END,
     add_work,
     longest_step,
@@ -73,7 +74,7 @@ def _advance(
 ) -> float:  # fmt: skip
     """A step, and what is watched at its end; the error."""
     error = step(group, members, modes, doings, t, h, scales, desk)
-    watch(desk, modes, scales, 1)
+    watch(desk, modes, scales, True)
     return error
 
 
@@ -84,40 +85,27 @@ def _moment(
 ) -> float:  # fmt: skip
     """Until when within a step what is watched is positive; the step ends just after.
 
-    By false position, with the weight of an end that stays halved (Illinois).
+    By false position, with the weight of an end that stays halved (Illinois).  ``c`` −1: until
+    when nobody at rest is set off, by halves.
     """
-    low, high = 0.0, h
-    first, last = desk.watched[0, c, kind], desk.watched[1, c, kind]
+    low, high, first, last = 0.0, h, 1.0, -1.0
+    if c >= 0:
+        first, last = desk.watched[0, c, kind], desk.watched[1, c, kind]
     for _ in range(80):
         middle = (low * last - high * first) / (last - first)
-        if not low < middle < high:
+        if c < 0 or not low < middle < high:
             middle = 0.5 * (low + high)
         if high - low <= _CLOSE * h or not low < middle < high:
             break
         _advance(group, members, modes, doings, t, middle, scales, desk)
-        value = desk.watched[1, c, kind]
+        if c >= 0:
+            value = desk.watched[1, c, kind]
+        else:
+            value = -1.0 if sets_off(group, members, modes, doings, scales, desk) != 0 else 1.0
         if value < 0.0:
             high, last, first = middle, value, 0.5 * first
         else:
             low, first, last = middle, value, 0.5 * last
-    _advance(group, members, modes, doings, t, high, scales, desk)
-    return high
-
-
-@kernel
-def _moment_of_yield(
-    group: Group, members: IntArray, modes: IntArray, doings: IntArray, t: float, h: float,
-    scales: Scales, desk: Desk,
-) -> float:  # fmt: skip
-    """Until when within a step nobody at rest is set off; the step ends just after."""
-    low, high = 0.0, h
-    while high - low > _CLOSE * h:
-        middle = 0.5 * (low + high)
-        _advance(group, members, modes, doings, t, middle, scales, desk)
-        if sets_off(group, members, modes, doings, scales, desk) == 0:
-            low = middle
-        else:
-            high = middle
     _advance(group, members, modes, doings, t, high, scales, desk)
     return high
 
@@ -155,8 +143,8 @@ def follow(
         for i in range(6):
             y[place, i] = states[members[place], i]
     unit = scales.speed / scales.rate
-    rates_at(group, members, modes, doings, t, y, 0, scales, desk)
-    watch(desk, modes, scales, 0)
+    rates_at(group, members, modes, doings, t, y, BEGIN, scales, desk)
+    watch(desk, modes, scales, False)
     still_there = False  # anybody at rest whom somebody touches
     for place in range(size):
         still_there = still_there or (doings[place] == HELD and contacts.shape[0] > 0)
@@ -197,7 +185,7 @@ def follow(
                 break
             if goes > 0:
                 how, which, landed = SETS_OFF, -1, False
-                length = _moment_of_yield(group, members, modes, doings, t, length, scales, desk)
+                length = _moment(group, members, modes, doings, t, length, -1, 0, scales, desk)
         add_work(length, ledger, desk)
         begun = False  # whether anybody's slip is so large that it has a direction of its own
         for place in range(size):
@@ -220,7 +208,7 @@ def follow(
         for i in range(ledger.shape[0]):
             desk.powers[0, i] = desk.powers[END, i]
         if begun:
-            rates_at(group, members, modes, doings, t, y, 0, scales, desk)
+            rates_at(group, members, modes, doings, t, y, BEGIN, scales, desk)
         for c in range(contacts.shape[0]):
             for i in range(desk.watched.shape[2]):
                 desk.watched[0, c, i] = desk.watched[1, c, i]

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import math
+from typing import cast
+
+import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, kernel
@@ -29,7 +32,8 @@ from puck_tables.world.yielding import turn_ways
 
 _A, _C, _E = DORMAND_PRINCE.a, DORMAND_PRINCE.c, DORMAND_PRINCE.e
 STAGES = len(_C)
-END = STAGES  # where the rates at the end of a step stand
+# where the rates at both ends of a step stand; plain numbers would compile ``rates_at`` for each
+BEGIN, END = cast(int, np.int64(0)), cast(int, np.int64(STAGES))
 _NEAR = 0.5  # of the time in which a slip would end, at most, is a step,
 _TURN = 1.5  # and of that in which friction turns it; three times as long steps turn it to and fro
 
