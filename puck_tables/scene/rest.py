@@ -60,9 +60,7 @@ def _pivot_yield(
 
 
 @kernel
-def free_yield(
-    dry: Dry, radius: float, fx: float, fy: float, torque: float, guided: bool
-) -> Yield:
+def free_yield(dry: Dry, radius: float, fx: float, fy: float, torque: float, guided: bool) -> Yield:
     """The same where the puck may slip and turn; ``guided``: along the force only."""
     force = math.hypot(fx, fy)
     east, north = (fx / force, fy / force) if force > 0.0 else (1.0, 0.0)

@@ -10,6 +10,9 @@ real steps.
 from __future__ import annotations
 
 import math
+from typing import cast
+
+import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, kernel
@@ -49,6 +52,7 @@ from puck_tables.world.stepping import (
 _FIRST = 1e-3  # of Q/J: the first step
 _SHORTEST = 1e-16  # of Q/J: shorter steps lead nowhere
 _CLOSE = 1e-14  # of a step: how close a moment is found
+_NOBODY = cast(int, np.int64(-1))
 
 
 @inlined
@@ -185,7 +189,9 @@ def follow(
                 break
             if goes > 0:
                 how, which, landed = SETS_OFF, -1, False
-                length = _moment(group, members, modes, doings, t, length, -1, 0, scales, desk)
+                length = _moment(
+                    group, members, modes, doings, t, length, _NOBODY, BEGIN, scales, desk
+                )
         add_work(length, ledger, desk)
         begun = False  # whether anybody's slip is so large that it has a direction of its own
         for place in range(size):
