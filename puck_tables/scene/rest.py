@@ -60,9 +60,7 @@ def _pivot_yield(
 
 
 @kernel
-def _free_yield(
-    dry: Dry, radius: float, fx: float, fy: float, torque: float, guided: bool
-) -> Yield:
+def free_yield(dry: Dry, radius: float, fx: float, fy: float, torque: float, guided: bool) -> Yield:
     """The same where the puck may slip and turn; ``guided``: along the force only."""
     force = math.hypot(fx, fy)
     east, north = (fx / force, fy / force) if force > 0.0 else (1.0, 0.0)
@@ -110,7 +108,7 @@ def _constrained_yield(
         return math.inf, 0.0, 0.0, 0.0
     ex, ey = (-hold.ay, hold.ax) if hold.kind == RAIL else (cosine, sine)
     along = fx * ex + fy * ey
-    return _free_yield(dry, body.radius, along * ex, along * ey, torque, guided)
+    return free_yield(dry, body.radius, along * ex, along * ey, torque, guided)
 
 
 @inlined
@@ -127,11 +125,11 @@ def _rim_yield(
     low, high = -most, most
     for _ in range(80):
         left, right = low + (high - low) / 3.0, high - (high - low) / 3.0
-        one = _free_yield(
+        one = free_yield(
             dry, body.radius, -ny * (along + left), nx * (along + left),
             torque - body.radius * left, guided,
         )[0]  # fmt: skip
-        two = _free_yield(
+        two = free_yield(
             dry, body.radius, -ny * (along + right), nx * (along + right),
             torque - body.radius * right, guided,
         )[0]  # fmt: skip
@@ -140,7 +138,7 @@ def _rim_yield(
         else:
             low = left
     rim = 0.5 * (low + high)
-    return _free_yield(
+    return free_yield(
         dry, body.radius, -ny * (along + rim), nx * (along + rim), torque - body.radius * rim,
         guided,
     )  # fmt: skip
@@ -159,7 +157,7 @@ def _wall_yield(
             most = lean[GRIP] * push
             return _rim_yield(dry, body, lean[NX], lean[NY], most, fx, fy, torque, True)
     rx, ry, rm = wall_reaction(body, leaning, ax, ay, fx, fy, torque)
-    return _free_yield(dry, body.radius, fx + rx, fy + ry, torque + rm, True)
+    return free_yield(dry, body.radius, fx + rx, fy + ry, torque + rm, True)
 
 
 @kernel
@@ -200,7 +198,7 @@ def _corner_yield(
     if best[0] < math.inf:
         return best
     rx, ry, rm = wall_reaction(body, leaning, ax, ay, fx, fy, torque)
-    return _free_yield(dry, radius, fx + rx, fy + ry, torque + rm, True)
+    return free_yield(dry, radius, fx + rx, fy + ry, torque + rm, True)
 
 
 @kernel
@@ -231,7 +229,7 @@ def excess_at_rest(stretch: Stretch, t: float, y: FloatArray) -> Yield:
         return _corner_yield(dry, body, leaning, ax, ay, fx, fy, torque)
     if pushes == 1:
         return _wall_yield(dry, body, leaning, ax, ay, fx, fy, torque)
-    return _free_yield(dry, body.radius, fx, fy, torque, False)
+    return free_yield(dry, body.radius, fx, fy, torque, False)
 
 
 @inlined

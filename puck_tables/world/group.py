@@ -1,0 +1,158 @@
+"""A group of discs of which some press on each other or on obstacles, and the arrays to work in.
+
+Everything is in the order of the group's *members*; a contact is a pair of places in that order,
+or of one and an obstacle.  What a member does is one of HELD … MOVES, what a contact does is how
+its rims slip: −1 or 1 (they slide, the slip has that sign), STICKS, or APART.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.kernels.compile import inlined
+from puck_tables.motion.steppers import DORMAND_PRINCE
+from puck_tables.scene.ingredients import Regions
+
+IntArray = npt.NDArray[np.int64]
+
+# of a contact, besides −1 and 1
+STICKS, APART = 0, 2
+
+# of a member.  HELD: at rest.  YIELDS: its slip over the floor has just begun, or would begin if
+# nothing stood in its way; friction is against the direction in which it is driven
+HELD, YIELDS, MOVES, DRIVEN = range(4)
+
+# how a stretch ends
+TIME_UP, PARTS, RIM_STOPS, RIM_GIVES, RUNS_OFF, RESTS, SETS_OFF, FULL, UNSOLVED, NOT_FINITE = range(
+    10
+)
+
+# of a ledger, J: heat of dry friction, of rims, of drag; work of the pull and of driven discs
+FLOOR_HEAT, RIM_HEAT, DRAG_HEAT, PULL_WORK, DRIVE_WORK = range(5)
+LEDGER = 5
+
+# columns of what is seen of a contact: the normal from the first to the second; how much a slip of
+# the centres opens it, 1/m; that slip, the approach, the slip of the rims, the gap; the radii of
+# the rims (0: an obstacle), their friction, and how far the end of an arc is, rad
+NX, NY, BEND, ALONG, APPROACH, SLIP, GAP, ARM, FAR_ARM, GRIP, TO_END = range(11)
+SIGHT = 11
+
+WATCHES = 4  # of a contact: what becomes negative at PARTS, RIM_STOPS, RIM_GIVES, RUNS_OFF
+
+STILL = 1e-12  # of the scale of speeds: as good as at rest
+SMOOTH_SLIP = 1e-13  # of the scale of speeds: a rim that slips no more
+LEVEL = 1e-12  # of the scale of accelerations: none
+GAINS = 1e-10  # of the scale of accelerations: what gains less stays at rest
+
+
+class Group(NamedTuple):
+    """What all groups share.
+
+    ``discs`` (n, 11), ``obstacles`` (k, 9): :mod:`puck_tables.world.layout`; ``regions``: the dry
+    friction of disc i as region i; ``films`` (f, 20) and ``reels`` (n, 2): rows of the motions that
+    are given, and of each disc the first and last + 1; (gx, gy): acceleration by the pull, m/s².
+    """
+
+    discs: FloatArray
+    obstacles: FloatArray
+    regions: Regions
+    films: FloatArray
+    reels: IntArray
+    gx: float
+    gy: float
+
+
+class Scales(NamedTuple):
+    """Speed Q, m/s, and acceleration J, m/s², and the error of a step in units of Q and Q²/J.
+
+    Both are positive; where nothing accelerates, J is Q² over a radius.
+    """
+
+    speed: float
+    rate: float
+    tol: float
+
+
+class Desk(NamedTuple):
+    """Arrays to work in for m members and c contacts.
+
+    ``pairs``: the contacts by places of members; ``states``: at the start and the end of a step and
+    at a trial (3, m, 6); ``stages`` (8, m, 6) and ``powers`` (9, 5): rates of states and ledger;
+    ``own``, ``rates`` (m, 3): accelerations without and with contacts; ``inverse`` (m, 2): 1/m, 1/I
+    of those that can move; ``sights`` (c, 11); ``watched`` (2, c, 4): see
+    :func:`puck_tables.world.moments.watch`; ``pushes`` (c, 2): λ, τ; ``ways`` (m, 3), ``paces``
+    (m, 2): where what yields slips to, and how fast that turns; ``rows``, ``columns`` (2c, 6),
+    ``owners`` (2c, 2), ``order`` (2c,): the constraints, and the members concerned; ``matrix``,
+    ``factors`` (2c, 2c), ``vectors`` (4, 2c); ``modes`` (2, c), ``doings`` (m,): trials; ``film``
+    (9,).
+    """
+
+    pairs: IntArray
+    states: FloatArray
+    stages: FloatArray
+    powers: FloatArray
+    own: FloatArray
+    rates: FloatArray
+    inverse: FloatArray
+    sights: FloatArray
+    watched: FloatArray
+    pushes: FloatArray
+    ways: FloatArray
+    paces: FloatArray
+    rows: FloatArray
+    columns: FloatArray
+    owners: IntArray
+    order: IntArray
+    matrix: FloatArray
+    factors: FloatArray
+    vectors: FloatArray
+    modes: IntArray
+    doings: IntArray
+    film: FloatArray
+
+
+def desk_for(members: int, contacts: int) -> Desk:
+    """A desk for groups of up to so many members and contacts.
+
+    Examples
+    --------
+    >>> desk_for(3, 2).matrix.shape
+    (4, 4)
+    """
+    m, c, k = max(members, 1), max(contacts, 1), max(2 * contacts, 1)
+    stages = len(DORMAND_PRINCE.c)
+    return Desk(
+        pairs=np.zeros((c, 2), np.int64), states=np.zeros((3, m, 6)),
+        stages=np.zeros((stages + 1, m, 6)), powers=np.zeros((stages + 2, LEDGER)),
+        own=np.zeros((m, 3)), rates=np.zeros((m, 3)), inverse=np.zeros((m, 2)),
+        sights=np.zeros((c, SIGHT)),
+        watched=np.zeros((2, c, WATCHES)), pushes=np.zeros((c, 2)),
+        ways=np.zeros((m, 3)), paces=np.zeros((m, 2)),
+        rows=np.zeros((k, 6)), columns=np.zeros((k, 6)), owners=np.zeros((k, 2), np.int64),
+        order=np.zeros(k, np.int64), matrix=np.zeros((k, k)), factors=np.zeros((k, k)),
+        vectors=np.zeros((4, k)), modes=np.zeros((2, c), np.int64),
+        doings=np.zeros(m, np.int64), film=np.zeros(9),
+    )  # fmt: skip
+
+
+@inlined
+def small_slip(scales: Scales) -> float:
+    """A slip, m/s, in which an error of its direction of its own size over Q is below ``tol``."""
+    return math.sqrt(scales.tol) * scales.speed
+
+
+@inlined
+def find_places(members: IntArray, contacts: IntArray, desk: Desk) -> None:
+    """The contacts, given by numbers of discs, by places of members."""
+    for c in range(contacts.shape[0]):
+        for side in range(2):
+            number = contacts[c, side]
+            desk.pairs[c, side] = number
+            for place in range(members.shape[0]):
+                if members[place] == number:
+                    desk.pairs[c, side] = place

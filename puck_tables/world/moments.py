@@ -1,0 +1,96 @@
+"""What is watched on a step of a group, so that it ends where something changes.
+
+Of every contact four numbers, which are positive while its mode holds: the push, the slip of rims
+that slide, what is left of the friction of rims that stick, the way to the end of an arc.
+"""
+
+from __future__ import annotations
+
+import math
+
+from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.world.complementarity import most
+from puck_tables.world.forces import gain_of
+from puck_tables.world.group import (
+    APART,
+    GAINS,
+    GRIP,
+    HELD,
+    LEVEL,
+    PARTS,
+    RIM_GIVES,
+    RIM_STOPS,
+    RUNS_OFF,
+    SLIP,
+    SMOOTH_SLIP,
+    STICKS,
+    TO_END,
+    WATCHES,
+    YIELDS,
+    Desk,
+    Group,
+    IntArray,
+    Scales,
+)
+from puck_tables.world.multipliers import leads
+from puck_tables.world.yielding import overborne, settle
+
+
+@kernel
+def watch(desk: Desk, modes: IntArray, scales: Scales, end: bool) -> None:
+    """What is watched at the start or end of a step, from sights and pushes."""
+    for c in range(modes.shape[0]):
+        seen, sight = desk.watched[1 if end else 0, c], desk.sights[c]
+        for i in range(WATCHES):
+            seen[i] = math.inf
+        if modes[c] == APART:
+            continue
+        seen[RUNS_OFF - PARTS] = sight[TO_END]
+        _, _, soft, rolls = leads(desk, c)
+        if soft == 0.0:
+            continue
+        push, rim = desk.pushes[c, 0], desk.pushes[c, 1]
+        seen[0] = push * soft + LEVEL * scales.rate
+        if sight[GRIP] == 0.0 or sight[GRIP] == math.inf:
+            continue
+        if modes[c] == STICKS:
+            left = (most(sight, push) - abs(rim)) * rolls
+            seen[RIM_GIVES - PARTS] = left + LEVEL * scales.rate
+        else:
+            seen[RIM_STOPS - PARTS] = modes[c] * sight[SLIP] + SMOOTH_SLIP * scales.speed
+
+
+@inlined
+def first_negative(desk: Desk, end: int, count: int) -> tuple[int, int]:
+    """A contact and what of it is negative at the start or end of a step; −1: nothing."""
+    for c in range(count):
+        for i in range(WATCHES):
+            if desk.watched[end, c, i] < 0.0:
+                return c, i
+    return -1, 0
+
+
+@kernel
+def sets_off(
+    group: Group, members: IntArray, modes: IntArray, doings: IntArray, scales: Scales, desk: Desk
+) -> int:
+    """Whether what presses on the discs at rest moves one: 1, or 0; −1: not solved.
+
+    From the pushes of the state at the end of a step, which is that of ``desk.states[1]``; only
+    where a disc alone could not bear them all is it looked at who moves.
+    """
+    contacts = modes.shape[0]
+    if not overborne(group, members, doings, contacts, scales, False, desk):
+        return 0
+    trial, does = desk.modes[0, :contacts], desk.doings[: members.shape[0]]
+    for c in range(contacts):
+        trial[c] = modes[c]
+    for place in range(members.shape[0]):
+        does[place] = doings[place]
+    if not settle(group, members, trial, does, desk.states[1], scales, desk):
+        return -1
+    for place in range(members.shape[0]):
+        begins = doings[place] == HELD and does[place] == YIELDS
+        if begins and gain_of(group, members[place], place, desk) > GAINS * scales.rate:
+            return 1
+    return 0

@@ -1,0 +1,261 @@
+"""The forces of contacts whose modes are known: as many linear equations as there are forces.
+
+A contact that presses has gap″ = 0, a rim that sticks u′ = 0; on a rim that slides τ = ±μλ follows
+λ.  So a row of the constraints and a column of the forces differ where rims slide.  In a rack there
+are more contacts than directions to move: then many forces do the same, the matrix is singular, and
+of all solutions the smallest is taken, that of equally stiff contacts.  For this the diagonal is
+raised by a little, and what this leaves is solved for again until nothing is left.
+"""
+
+from __future__ import annotations
+
+import math
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.world.group import (
+    ALONG,
+    APART,
+    APPROACH,
+    ARM,
+    BEND,
+    FAR_ARM,
+    GRIP,
+    NX,
+    NY,
+    STICKS,
+    Desk,
+    IntArray,
+)
+
+_RAISED = 1e-9  # of the diagonal
+_ROUNDS = 4
+RIGHT, SOLUTION, LEFT, STEP = range(4)  # vectors of the desk
+
+
+@inlined
+def _row_of(row: FloatArray, sight: FloatArray, along: bool) -> None:
+    """What a unit force along the normal, or along the rims, is on both discs."""
+    ex, ey = (-sight[NY], sight[NX]) if along else (sight[NX], sight[NY])
+    row[0], row[1], row[3], row[4] = ex, ey, -ex, -ey
+    row[2], row[5] = (sight[ARM], sight[FAR_ARM]) if along else (0.0, 0.0)
+
+
+@inlined
+def times_row(desk: Desk, number: int, rates: FloatArray, first: int) -> float:
+    """A row of the constraints times velocities or accelerations (m, …), from a column on."""
+    total, row = 0.0, desk.rows[number]
+    for side in range(2):
+        place = desk.owners[number, side]
+        if place >= 0:
+            for i in range(3):
+                total += row[3 * side + i] * rates[place, first + i]
+    return total
+
+
+@inlined
+def constrain(desk: Desk, modes: IntArray, sticks: bool, slides: bool) -> int:
+    """Rows and columns of what contacts in these modes forbid; their number.
+
+    ``sticks``: also that rims that stick slip; ``slides``: with the forces of rims that slide.
+    """
+    count = 0
+    for c in range(modes.shape[0]):
+        if modes[c] == APART:
+            continue
+        sight = desk.sights[c]
+        for along in range(2):
+            if along == 1 and not (sticks and modes[c] == STICKS and sight[GRIP] > 0.0):
+                continue
+            for side in range(2):
+                desk.owners[count, side] = desk.pairs[c, side]
+            _row_of(desk.rows[count], sight, along == 1)
+            _row_of(desk.columns[count], sight, along == 1)
+            if slides and along == 0 and modes[c] != STICKS and sight[GRIP] > 0.0:
+                rim = modes[c] * sight[GRIP]
+                column = desk.columns[count]
+                column[0] -= rim * sight[NY]
+                column[1] += rim * sight[NX]
+                column[3] += rim * sight[NY]
+                column[4] -= rim * sight[NX]
+                column[2], column[5] = rim * sight[ARM], rim * sight[FAR_ARM]
+            count += 1
+    return count
+
+
+@inlined
+def fill_matrix(desk: Desk, count: int) -> None:
+    """The matrix: how much a unit of one force changes what another one forbids."""
+    for r in range(count):
+        for c in range(count):
+            total = 0.0
+            for side in range(2):
+                place = desk.owners[r, side]
+                if place < 0:
+                    continue
+                light, turns = desk.inverse[place, 0], desk.inverse[place, 1]
+                for other in range(2):
+                    if desk.owners[c, other] == place:
+                        i, j = 3 * side, 3 * other
+                        total += light * (
+                            desk.rows[r, i] * desk.columns[c, j]
+                            + desk.rows[r, i + 1] * desk.columns[c, j + 1]
+                        ) + turns * (desk.rows[r, i + 2] * desk.columns[c, j + 2])
+            desk.matrix[r, c] = total
+
+
+@inlined
+def _factor(desk: Desk, count: int) -> None:
+    """LU with row exchanges, of the matrix with its diagonal raised."""
+    lu, order = desk.factors, desk.order
+    for r in range(count):
+        order[r] = r
+        for c in range(count):
+            lu[r, c] = desk.matrix[r, c]
+        lu[r, r] += _RAISED * abs(lu[r, r])
+        if lu[r, r] == 0.0:
+            lu[r, r] = 1.0  # between two that cannot move: no force
+    for k in range(count):
+        best = k
+        for r in range(k + 1, count):
+            if abs(lu[r, k]) > abs(lu[best, k]) * (1.0 + 1e-9):
+                best = r
+        if best != k:
+            order[k], order[best] = order[best], order[k]
+            for c in range(count):
+                lu[k, c], lu[best, c] = lu[best, c], lu[k, c]
+        for r in range(k + 1, count):
+            share = lu[r, k] / lu[k, k]
+            lu[r, k] = share
+            if share != 0.0:
+                for c in range(k + 1, count):
+                    lu[r, c] -= share * lu[k, c]
+
+
+@kernel
+def solve(desk: Desk, count: int) -> float:
+    """Solve for the forces to ``vectors[RIGHT]``; what is left, over what was given."""
+    fill_matrix(desk, count)
+    _factor(desk, count)
+    lu, v = desk.factors, desk.vectors
+    given, left = 0.0, 0.0
+    for r in range(count):
+        v[SOLUTION, r], v[LEFT, r] = 0.0, v[RIGHT, r]
+        if desk.matrix[r, r] == 0.0:
+            v[LEFT, r] = 0.0
+        given = max(given, abs(v[LEFT, r]))
+    for _ in range(_ROUNDS):
+        for r in range(count):
+            total = v[LEFT, desk.order[r]]
+            for c in range(r):
+                total -= lu[r, c] * v[STEP, c]
+            v[STEP, r] = total
+        for back in range(count):
+            r = count - 1 - back
+            total = v[STEP, r]
+            for c in range(r + 1, count):
+                total -= lu[r, c] * v[STEP, c]
+            v[STEP, r] = total / lu[r, r]
+        left = 0.0
+        for r in range(count):
+            v[SOLUTION, r] += v[STEP, r]
+        for r in range(count):
+            total = v[RIGHT, r]
+            for c in range(count):
+                total -= desk.matrix[r, c] * v[SOLUTION, c]
+            if desk.matrix[r, r] == 0.0:
+                total = 0.0
+            v[LEFT, r] = total
+            left = max(left, abs(total))
+        if left <= 1e-16 * given:
+            break
+    return left / given if given > 0.0 else 0.0
+
+
+@inlined
+def add_forces(desk: Desk, count: int, target: FloatArray, first: int) -> None:
+    """Change velocities, accelerations or places (m, …), from a column on, by the solution."""
+    for r in range(count):
+        force = desk.vectors[SOLUTION, r]
+        for side in range(2):
+            place = desk.owners[r, side]
+            if place >= 0:
+                column = desk.columns[r]
+                target[place, first] -= force * desk.inverse[place, 0] * column[3 * side]
+                target[place, first + 1] -= force * desk.inverse[place, 0] * column[3 * side + 1]
+                target[place, first + 2] -= force * desk.inverse[place, 1] * column[3 * side + 2]
+
+
+@inlined
+def right_hand_side(desk: Desk, modes: IntArray) -> None:
+    """What the forces have to bring to nothing: gap″ and u′ without them."""
+    number = 0
+    for c in range(modes.shape[0]):
+        if modes[c] == APART:
+            continue
+        sight = desk.sights[c]
+        bend = sight[BEND] * sight[ALONG]
+        desk.vectors[RIGHT, number] = times_row(desk, number, desk.own, 0) - bend * sight[ALONG]
+        number += 1
+        if modes[c] == STICKS and sight[GRIP] > 0.0:
+            desk.vectors[RIGHT, number] = (
+                times_row(desk, number, desk.own, 0) + bend * sight[APPROACH]
+            )
+            number += 1
+
+
+@kernel
+def push_and_move(desk: Desk, modes: IntArray, members: int) -> float:
+    """Forces of the contacts in ``pushes``, accelerations in ``rates``; what was left over."""
+    count, left = constrain(desk, modes, True, True), 0.0
+    if count > 0:
+        right_hand_side(desk, modes)
+        left = solve(desk, count)
+    number = 0
+    for c in range(modes.shape[0]):
+        desk.pushes[c, 0] = desk.pushes[c, 1] = 0.0
+        if modes[c] == APART:
+            continue
+        desk.pushes[c, 0] = desk.vectors[SOLUTION, number]
+        number += 1
+        if desk.sights[c, GRIP] == 0.0:
+            continue
+        if modes[c] == STICKS:
+            desk.pushes[c, 1] = desk.vectors[SOLUTION, number]
+            number += 1
+        else:
+            desk.pushes[c, 1] = modes[c] * desk.sights[c, GRIP] * desk.pushes[c, 0]
+    for place in range(members):
+        for i in range(3):
+            desk.rates[place, i] = desk.own[place, i]
+    add_forces(desk, count, desk.rates, 0)
+    return left
+
+
+@inlined
+def leads(desk: Desk, c: int) -> tuple[float, float, float, float]:
+    """Of a contact: gap″, u′, and how much a unit of λ and of τ changes them."""
+    sight = desk.sights[c]
+    across, along, soft, rolls = 0.0, 0.0, 0.0, 0.0
+    for side in range(2):
+        place = desk.pairs[c, side]
+        if place < 0:
+            continue
+        sign, arm = 1.0 - 2.0 * side, sight[ARM + side]
+        ax, ay, aw = desk.rates[place, 0], desk.rates[place, 1], desk.rates[place, 2]
+        across += sign * (ax * sight[NX] + ay * sight[NY])
+        along += sign * (ay * sight[NX] - ax * sight[NY]) + arm * aw
+        soft += desk.inverse[place, 0]
+        rolls += desk.inverse[place, 0] + arm * arm * desk.inverse[place, 1]
+    bend = sight[BEND] * sight[ALONG]
+    return bend * sight[ALONG] - across, along + bend * sight[APPROACH], soft, rolls
+
+
+@inlined
+def finite(desk: Desk, members: int) -> bool:
+    """Whether all accelerations are numbers."""
+    total = 0.0
+    for place in range(members):
+        for i in range(3):
+            total += abs(desk.rates[place, i])
+    return math.isfinite(total)

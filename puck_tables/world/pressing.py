@@ -1,0 +1,141 @@
+"""What holds at an instant: which contacts press, which rims stick, which discs stay at rest."""
+
+from __future__ import annotations
+
+import math
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.scene.friction import SPIN, VX
+from puck_tables.world.complementarity import rim_mode
+from puck_tables.world.forces import can_rest, gain_of, place_driven, slip_of
+from puck_tables.world.group import (
+    APART,
+    DRIVE_WORK,
+    DRIVEN,
+    GAINS,
+    GRIP,
+    HELD,
+    MOVES,
+    RIM_HEAT,
+    STICKS,
+    STILL,
+    TIME_UP,
+    UNSOLVED,
+    YIELDS,
+    Desk,
+    Group,
+    IntArray,
+    Scales,
+    find_places,
+    small_slip,
+)
+from puck_tables.world.layout import LIGHTNESS, RADIUS, TURNABILITY
+from puck_tables.world.putting_right import stop_slips
+from puck_tables.world.sights import look
+from puck_tables.world.yielding import settle
+
+_SAME = 0.9  # the cosine between directions that are the same
+
+
+@inlined
+def _energy(group: Group, members: IntArray, y: FloatArray) -> float:
+    """Kinetic energy of those that can move."""
+    total = 0.0
+    for place in range(members.shape[0]):
+        disc = group.discs[members[place]]
+        if disc[LIGHTNESS] > 0.0:
+            square = y[place, VX] ** 2 + y[place, VX + 1] ** 2
+            total += 0.5 * (square / disc[LIGHTNESS] + y[place, SPIN] ** 2 / disc[TURNABILITY])
+    return total
+
+
+@inlined
+def _goes_on(group: Group, number: int, place: int, scales: Scales, desk: Desk) -> bool:
+    """Whether a small slip, if there is one, grows in the direction that it has."""
+    y, way, radius = desk.states[0, place], desk.ways[place], group.discs[number, RADIUS]
+    slip = slip_of(group, number, y)
+    along = way[0] * y[VX] + way[1] * y[VX + 1] + radius * radius * way[2] * y[SPIN]
+    gains = gain_of(group, number, place, desk) > GAINS * scales.rate
+    return slip == 0.0 or (gains and along > _SAME * slip)
+
+
+@kernel
+def press(
+    group: Group, members: IntArray, contacts: IntArray, states: FloatArray, t: float,
+    scales: Scales, modes: IntArray, doings: IntArray, ledger: FloatArray, desk: Desk,
+) -> int:  # fmt: skip
+    """See which of the contacts press, which rims stick and which members are at rest.
+
+    Parameters
+    ----------
+    members : (m,) numbers of discs; contacts : (c, 2) see :mod:`puck_tables.world.layout`
+        Contacts touch, and approach no more than by rounding.
+    states : (n, 6) of all discs at t in the laboratory, m, rad, m/s, rad/s
+        Changed by rounding: who is as good as at rest is put to rest, who presses approaches no
+        more.  Rims that press and have friction without bound are stopped at once: then contacts
+        that are APART may approach.
+    modes : (c,) and doings : (m,), the answer, see :mod:`puck_tables.world.group`
+    ledger : (5,) J, to which the heat of what is stopped is added
+
+    Returns
+    -------
+    TIME_UP, or UNSOLVED where no forces satisfy all conditions
+    """
+    count = members.shape[0]
+    find_places(members, contacts, desk)
+    pairs, y = desk.pairs[: contacts.shape[0]], desk.states[0]
+    for place in range(count):
+        number = members[place]
+        for i in range(6):
+            y[place, i] = states[number, i]
+        doings[place] = MOVES
+        if group.discs[number, LIGHTNESS] == 0.0:
+            doings[place] = DRIVEN
+        elif can_rest(group, number):
+            q = slip_of(group, number, y[place])
+            if q <= STILL * scales.speed:
+                doings[place] = HELD
+                y[place, 3] = y[place, 4] = y[place, 5] = 0.0
+            elif q <= small_slip(scales):
+                doings[place] = YIELDS
+                for i in range(3):
+                    desk.ways[place, i] = y[place, 3 + i] / q
+    place_driven(group, members, doings, t, y, desk)
+    stopped, again = desk.modes[1, : contacts.shape[0]], True
+    while again:
+        look(group, members, pairs, y, desk.sights)
+        for c in range(contacts.shape[0]):
+            modes[c] = rim_mode(desk.sights[c], scales.speed)
+            stopped[c] = STICKS
+            if modes[c] != STICKS and desk.sights[c, GRIP] == math.inf:
+                desk.sights[c, GRIP], stopped[c] = 0.0, APART  # first it is seen whether it presses
+        if not settle(group, members, modes, doings, y, scales, desk):
+            return UNSOLVED
+        again = False
+        for place in range(count):
+            if doings[place] == YIELDS and not _goes_on(group, members[place], place, scales, desk):
+                doings[place], again = MOVES, True
+        if again:
+            continue
+        for c in range(contacts.shape[0]):
+            if stopped[c] == APART and modes[c] != APART:
+                desk.sights[c, GRIP], stopped[c], again = math.inf, STICKS, True
+            elif modes[c] == APART or rim_mode(desk.sights[c], scales.speed) != STICKS:
+                stopped[c] = modes[c]
+        before = _energy(group, members, y)
+        heat = stop_slips(desk, stopped, y)
+        ledger[RIM_HEAT] += heat
+        ledger[DRIVE_WORK] += heat + _energy(group, members, y) - before
+    goes = False
+    for place in range(count):
+        if doings[place] == YIELDS:
+            goes = goes or gain_of(group, members[place], place, desk) > GAINS * scales.rate
+    for place in range(count):
+        number = members[place]
+        if doings[place] == YIELDS and slip_of(group, number, y[place]) == 0.0:
+            gains = gain_of(group, number, place, desk) > 0.01 * GAINS * scales.rate
+            doings[place] = YIELDS if goes and gains else HELD  # with one go all that it pushes
+        for i in range(6):
+            states[number, i] = y[place, i]
+    return TIME_UP

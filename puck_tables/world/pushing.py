@@ -1,0 +1,226 @@
+"""A group of discs in sustained contact, followed in time until something changes.
+
+The modes of the contacts (which press, which rims stick) and who is at rest are known, see
+:func:`puck_tables.world.pressing.press`; while they hold the motion is smooth, and integrated by
+Dormand–Prince 5(4) in time.  Where a slip ends, the direction of friction turns within Q/|Q′|: a
+step is at most half of that, down to 1e-12 of the scale of speeds.  Whatever changes is found on
+real steps.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import cast
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.world.forces import can_rest, slip_of
+from puck_tables.world.group import (
+    DRIVEN,
+    FULL,
+    HELD,
+    MOVES,
+    NOT_FINITE,
+    PARTS,
+    RESTS,
+    SETS_OFF,
+    STILL,
+    TIME_UP,
+    UNSOLVED,
+    YIELDS,
+    Desk,
+    Group,
+    IntArray,
+    Scales,
+    find_places,
+    small_slip,
+)
+from puck_tables.world.moments import first_negative, sets_off, watch
+from puck_tables.world.paths import DURATION, START, piece_at
+from puck_tables.world.stepping import (
+    BEGIN,
+    END,
+    add_work,
+    longest_step,
+    rates_at,
+    step,
+    write_piece,
+)
+
+_FIRST = 1e-3  # of Q/J: the first step
+_SHORTEST = 1e-16  # of Q/J: shorter steps lead nowhere
+_CLOSE = 1e-14  # of a step: how close a moment is found
+_NOBODY = cast(int, np.int64(-1))
+
+
+@inlined
+def _end_of_film(
+    group: Group, members: IntArray, doings: IntArray, t: float, t_end: float
+) -> float:
+    """The next moment, at most ``t_end``, at which a film turns to its next row."""
+    end = t_end
+    for place in range(members.shape[0]):
+        if doings[place] == DRIVEN:
+            first, last = group.reels[members[place], 0], group.reels[members[place], 1]
+            row = group.films[piece_at(group.films, first, last, t)]
+            turns = row[START] + row[DURATION]
+            if t < turns < end:
+                end = turns
+    return end
+
+
+@kernel
+def _advance(
+    group: Group, members: IntArray, modes: IntArray, doings: IntArray, t: float, h: float,
+    scales: Scales, desk: Desk,
+) -> float:  # fmt: skip
+    """A step, and what is watched at its end; the error."""
+    error = step(group, members, modes, doings, t, h, scales, desk)
+    watch(desk, modes, scales, True)
+    return error
+
+
+@kernel
+def _moment(
+    group: Group, members: IntArray, modes: IntArray, doings: IntArray, t: float, h: float,
+    c: int, kind: int, scales: Scales, desk: Desk,
+) -> float:  # fmt: skip
+    """Until when within a step what is watched is positive; the step ends just after.
+
+    By false position, with the weight of an end that stays halved (Illinois).  ``c`` −1: until
+    when nobody at rest is set off, by halves.
+    """
+    low, high, first, last = 0.0, h, 1.0, -1.0
+    if c >= 0:
+        first, last = desk.watched[0, c, kind], desk.watched[1, c, kind]
+    for _ in range(80):
+        middle = (low * last - high * first) / (last - first)
+        if c < 0 or not low < middle < high:
+            middle = 0.5 * (low + high)
+        if high - low <= _CLOSE * h or not low < middle < high:
+            break
+        _advance(group, members, modes, doings, t, middle, scales, desk)
+        if c >= 0:
+            value = desk.watched[1, c, kind]
+        else:
+            value = -1.0 if sets_off(group, members, modes, doings, scales, desk) != 0 else 1.0
+        if value < 0.0:
+            high, last, first = middle, value, 0.5 * first
+        else:
+            low, first, last = middle, value, 0.5 * last
+    _advance(group, members, modes, doings, t, high, scales, desk)
+    return high
+
+
+@kernel
+def follow(
+    group: Group, members: IntArray, contacts: IntArray, states: FloatArray, t: float,
+    t_end: float, scales: Scales, modes: IntArray, doings: IntArray, pieces: FloatArray,
+    ledger: FloatArray, desk: Desk,
+) -> tuple[int, int, float, int]:  # fmt: skip
+    """Follow a group from t until something changes, at most until ``t_end``.
+
+    Parameters
+    ----------
+    members : (m,) numbers of discs
+    contacts : (c, 2) pairs of a disc and its partner, see :mod:`puck_tables.world.layout`
+    states : (n, 6) of all discs at t in the laboratory; those of members are moved on
+    scales : what errors refer to
+    modes, doings : (c,) and (m,), as :func:`puck_tables.world.pressing.press` leaves them
+        Contacts that are APART are not looked at.
+    pieces : (≥ m, rows, 20), the ways, see :mod:`puck_tables.world.paths`
+        ``pieces[a, :count]`` are those of member a, one row for each step.
+    ledger : (5,) J, to which heat and work are added
+    desk : to work on
+
+    Returns
+    -------
+    how it ended (TIME_UP … NOT_FINITE), which contact or member is concerned, when, and the number
+    of rows for each member
+    """
+    size = members.shape[0]
+    find_places(members, contacts, desk)
+    y, new = desk.states[0], desk.states[1]
+    for place in range(size):
+        for i in range(6):
+            y[place, i] = states[members[place], i]
+    unit = scales.speed / scales.rate
+    rates_at(group, members, modes, doings, t, y, BEGIN, scales, desk)
+    watch(desk, modes, scales, False)
+    still_there = False  # anybody at rest whom somebody touches
+    for place in range(size):
+        still_there = still_there or (doings[place] == HELD and contacts.shape[0] > 0)
+    h, start, passed, count = _FIRST * unit, t, 0.0, 0
+    how, which = TIME_UP, -1
+    c, kind = first_negative(desk, 0, contacts.shape[0])
+    if c >= 0:
+        return PARTS + kind, c, t, 0
+    while t < t_end:
+        if count == pieces.shape[1]:
+            how = FULL
+            break
+        target = _end_of_film(group, members, doings, t, t_end)
+        h = min(h, longest_step(group, members, doings, desk))
+        landed = 1.1 * h >= target - t
+        length = target - t if landed else h
+        error = _advance(group, members, modes, doings, t, length, scales, desk)
+        if not error <= scales.tol:
+            shrink = max(0.1, 0.9 * (scales.tol / error) ** 0.2) if error < math.inf else 0.1
+            h = length * shrink
+            if h < _SHORTEST * unit:
+                how = NOT_FINITE
+                break
+            continue
+        h = length * min(5.0, 5.0 if error == 0.0 else 0.9 * (scales.tol / error) ** 0.2)
+        while True:
+            c, kind = first_negative(desk, 1, contacts.shape[0])
+            if c < 0:
+                break
+            how, which, landed = PARTS + kind, c, False
+            length = _moment(group, members, modes, doings, t, length, c, kind, scales, desk)
+            if first_negative(desk, 1, contacts.shape[0]) == (c, kind):
+                break
+        if still_there:
+            goes = sets_off(group, members, modes, doings, scales, desk)
+            if goes < 0:
+                how = UNSOLVED
+                break
+            if goes > 0:
+                how, which, landed = SETS_OFF, -1, False
+                length = _moment(
+                    group, members, modes, doings, t, length, _NOBODY, BEGIN, scales, desk
+                )
+        add_work(length, ledger, desk)
+        begun = False  # whether anybody's slip is so large that it has a direction of its own
+        for place in range(size):
+            write_piece(pieces[place, count], start + passed, length, place, desk)
+            before, after = y[place], new[place]
+            number = members[place]
+            q, earlier = slip_of(group, number, after), slip_of(group, number, before)
+            if doings[place] == YIELDS and (q > small_slip(scales) or q < earlier):
+                doings[place], begun = MOVES, True
+            elif how == TIME_UP and doings[place] == MOVES and can_rest(group, number):
+                how = RESTS if q <= STILL * scales.speed and q < earlier else how
+                which = place if how == RESTS else which
+        count += 1
+        passed += length
+        t = target if landed else start + passed
+        for place in range(size):
+            for i in range(6):
+                y[place, i] = new[place, i]
+                desk.stages[0, place, i] = desk.stages[END, place, i]
+        for i in range(ledger.shape[0]):
+            desk.powers[0, i] = desk.powers[END, i]
+        if begun:
+            rates_at(group, members, modes, doings, t, y, BEGIN, scales, desk)
+        for c in range(contacts.shape[0]):
+            for i in range(desk.watched.shape[2]):
+                desk.watched[0, c, i] = desk.watched[1, c, i]
+        if how != TIME_UP:
+            break
+    for place in range(size):
+        for i in range(6):
+            states[members[place], i] = y[place, i]
+    return how, which, t, count

@@ -1,0 +1,56 @@
+"""Take out of places and velocities what errors of steps have left: gaps, approaches, slips.
+
+By the least change in the measure of the masses.  So energy does not grow, no order has a say, and
+a change as small as the error of a step spoils no order of a method.
+"""
+
+from __future__ import annotations
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.kernels.compile import kernel
+from puck_tables.world.group import APART, GAP, GRIP, STICKS, Desk, IntArray
+from puck_tables.world.multipliers import (
+    RIGHT,
+    SOLUTION,
+    add_forces,
+    constrain,
+    solve,
+    times_row,
+)
+
+
+@kernel
+def close_gaps(desk: Desk, modes: IntArray, y: FloatArray) -> None:
+    """Places where all that presses touches; the sights are of y (m, 6)."""
+    count = constrain(desk, modes, False, False)
+    number = 0
+    for c in range(modes.shape[0]):
+        if modes[c] != APART:
+            desk.vectors[RIGHT, number] = -desk.sights[c, GAP]
+            number += 1
+    solve(desk, count)
+    add_forces(desk, count, y, 0)
+
+
+@kernel
+def stop_slips(desk: Desk, modes: IntArray, y: FloatArray) -> float:
+    """Velocities with which nothing that presses approaches, and no rim slips that sticks.
+
+    The heat of it: a force that stops a slip works at half of it.
+    """
+    count = constrain(desk, modes, True, False)
+    number = 0
+    for c in range(modes.shape[0]):
+        if modes[c] == APART:
+            continue
+        desk.vectors[RIGHT, number] = times_row(desk, number, y, 3)
+        number += 1
+        if modes[c] == STICKS and desk.sights[c, GRIP] > 0.0:
+            desk.vectors[RIGHT, number] = times_row(desk, number, y, 3)
+            number += 1
+    solve(desk, count)
+    add_forces(desk, count, y, 3)
+    heat = 0.0
+    for r in range(count):
+        heat += 0.5 * desk.vectors[RIGHT, r] * desk.vectors[SOLUTION, r]
+    return heat

@@ -1,0 +1,107 @@
+"""Where two rims touch: the normal, the gap, and how fast the rims approach and slip.
+
+With n from the first to the second, t = n turned by +90°, Δ = first − second, R the radii and ω the
+spins, the rims slip by u = Δv·t + R₁ω₁ + R₂ω₂, and
+
+    gap′ = −Δv·n,   gap″ = −Δa·n + κ (Δv·t)²,   u′ = Δa·t + R₁α₁ + R₂α₂ + κ (Δv·t)(Δv·n),
+
+κ being one over the distance of the centres: from a post as from a disc; 0 at a wall; and minus one
+over the distance from its centre within an arc.
+"""
+
+from __future__ import annotations
+
+import math
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.scene.friction import SPIN, VX, VY, X, Y
+from puck_tables.world.group import (
+    ALONG,
+    APPROACH,
+    ARM,
+    BEND,
+    FAR_ARM,
+    GAP,
+    GRIP,
+    NX,
+    NY,
+    SLIP,
+    TO_END,
+    Group,
+    IntArray,
+)
+from puck_tables.world.layout import (
+    ARC,
+    FROM,
+    KIND,
+    RADIUS,
+    SPAN,
+    WALL,
+    A,
+    B,
+    C,
+    law_of_pair,
+)
+
+
+@inlined
+def _to_end(obstacle: FloatArray, ex: float, ey: float) -> float:
+    """How far a direction from the centre of an arc is within the arc, rad; outside negative."""
+    if obstacle[KIND] != ARC or obstacle[SPAN] >= 2.0 * math.pi:
+        return math.inf
+    half = 0.5 * obstacle[SPAN]
+    off = math.atan2(ey, ex) - obstacle[FROM] - half
+    off -= 2.0 * math.pi * round(off / (2.0 * math.pi))
+    return half - abs(off)
+
+
+@inlined
+def _obstacle_sight(
+    obstacle: FloatArray, radius: float, x: float, y: float, out: FloatArray
+) -> None:
+    """Normal, bend, gap and end of an arc where a disc is at an obstacle."""
+    out[TO_END] = math.inf
+    if obstacle[KIND] == WALL:
+        out[NX], out[NY], out[BEND] = -obstacle[A], -obstacle[B], 0.0
+        out[GAP] = obstacle[A] * x + obstacle[B] * y - obstacle[C] - radius
+        return
+    dx, dy = x - obstacle[A], y - obstacle[B]
+    distance = math.hypot(dx, dy)
+    ex, ey = dx / distance, dy / distance
+    out[TO_END] = _to_end(obstacle, ex, ey)
+    if obstacle[KIND] == ARC and distance < obstacle[C]:
+        out[NX], out[NY], out[BEND] = ex, ey, -1.0 / distance
+        out[GAP] = obstacle[C] - distance - radius
+        return
+    out[NX], out[NY], out[BEND] = -ex, -ey, 1.0 / distance
+    out[GAP] = distance - obstacle[C] - radius
+
+
+@kernel
+def look(group: Group, members: IntArray, pairs: IntArray, y: FloatArray, out: FloatArray) -> None:
+    """What is seen of contacts ``pairs`` (c, 2) at the states y (m, 6), into ``out`` (≥ c, 11)."""
+    for c in range(pairs.shape[0]):
+        one, other, sight = pairs[c, 0], pairs[c, 1], out[c]
+        i = members[one]
+        radius = group.discs[i, RADIUS]
+        if other >= 0:
+            j = members[other]
+            far = group.discs[j, RADIUS]
+            dx, dy = y[other, X] - y[one, X], y[other, Y] - y[one, Y]
+            distance = math.hypot(dx, dy)
+            sight[NX], sight[NY], sight[BEND] = dx / distance, dy / distance, 1.0 / distance
+            sight[GAP], sight[FAR_ARM], sight[TO_END] = distance - radius - far, far, math.inf
+            vx, vy = y[one, VX] - y[other, VX], y[one, VY] - y[other, VY]
+            turning = radius * y[one, SPIN] + far * y[other, SPIN]
+        else:
+            j = other
+            _obstacle_sight(group.obstacles[-1 - other], radius, y[one, X], y[one, Y], sight)
+            sight[FAR_ARM] = 0.0
+            vx, vy, turning = y[one, VX], y[one, VY], radius * y[one, SPIN]
+        sight[ARM] = radius
+        sight[APPROACH] = vx * sight[NX] + vy * sight[NY]
+        sight[ALONG] = vy * sight[NX] - vx * sight[NY]
+        sight[SLIP] = sight[ALONG] + turning
+        _, tangential, friction = law_of_pair(group.discs, group.obstacles, i, j)
+        sight[GRIP] = friction if tangential > -1.0 else 0.0  # −1: smooth
