@@ -313,7 +313,7 @@ def bounced(
                 off = wall[NX] * y[X] + wall[NY] * y[Y] - wall[PLACE]  # rounding of the rebounds
                 y[X] -= off * wall[NX]
                 y[Y] -= off * wall[NY]
-                contacts.rim[i] = _rim_of(body, bounds.walls[i], y, speed)
+    look_at_rims(bounds, contacts, body, y, speed)  # an impact elsewhere turns a rim's slip, too
     return rest_time
 
 
