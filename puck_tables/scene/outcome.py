@@ -21,7 +21,7 @@ from puck_tables.scene.scene import Scene
 
 ENDS = (
     "at rest", "carried by the floor", "time is up", "over the edge", "step limit", "event limit",
-    "not finite", "no end found", "refused",
+    "not finite", "undecided", "no end found", "refused",
 )  # fmt: skip
 NO_END, REFUSED = len(ENDS) - 2, len(ENDS) - 1  # of a run in a sweep, which goes on
 EVENTS = ("stick", "slip", "impact", "contact", "border", "edge")
