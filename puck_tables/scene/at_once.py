@@ -51,6 +51,22 @@ def _order_matters(
 
 
 @inlined
+def _nears(bounds: Boundaries, i: int, y: FloatArray) -> float:
+    """How fast a puck nears a line, counted walls and then edges."""
+    walls = len(bounds.walls)
+    return -(outward(bounds.walls, i, y) if i < walls else outward(bounds.edges, i - walls, y))
+
+
+@inlined
+def _since(
+    bounds: Boundaries, contacts: Contacts, i: int, t: float, y: FloatArray, length: float
+) -> float:
+    """For how long errors have grown in when a line is met: since it was, or for all the way."""
+    way = length / max(_nears(bounds, i, y), 0.0)
+    return min(way, t - contacts.hit[i]) if i < len(bounds.walls) else way
+
+
+@inlined
 def met_at_once(
     bounds: Boundaries, contacts: Contacts, happens: int, which: int, order: int, body: Body,
     t: float, y: FloatArray, speed: float, time: float, tolerance: float, one: FloatArray,
@@ -63,22 +79,20 @@ def met_at_once(
     ``one``, ``two``: to work in.
     """
     walls, edges = len(bounds.walls), len(bounds.edges)
-    still, reach = max(tolerance, _STILL) * speed, GROWN * tolerance * speed * time
+    still = max(tolerance, _STILL) * speed
     number = which if happens == BOUNCES else walls + which
     pick, unsure = number, -1
-    came = -outward(bounds.walls if happens == BOUNCES else bounds.edges, which, y)
+    length = speed * time
+    doubt = GROWN * tolerance * _since(bounds, contacts, number, t, y, length)
     for i in range(walls + edges):
         if i == number or (i >= walls and happens == EDGE):  # over one edge or over another
             continue
-        if i < walls:
-            if contacts.leans[i]:
-                continue
-            room, nears = contacts.room[i], -outward(bounds.walls, i, y)
-            known = (t - contacts.hit[i]) / time  # counted from the last impact there
-        else:
-            room, nears = room_to(bounds.edges, i - walls, y), -outward(bounds.edges, i - walls, y)
-            known = 1.0
-        if nears <= still or room > reach * (min(known, 1.0) + min(nears / came, 1.0)):
+        if i < walls and contacts.leans[i]:
+            continue
+        nears = _nears(bounds, i, y)
+        room = contacts.room[i] if i < walls else room_to(bounds.edges, i - walls, y)
+        after = doubt + GROWN * tolerance * _since(bounds, contacts, i, t, y, length)
+        if nears <= still or room > nears * after:
             continue
         if number < walls and i < walls:
             wall, other = bounds.walls[number], bounds.walls[i]

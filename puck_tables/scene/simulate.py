@@ -188,16 +188,16 @@ def _estimated(
     if times is None:
         times = np.linspace(0.0, first.end_time, int(prepared.scene.run.frames))
     probes = first.end_time * np.arange(1, PROBES + 1) / (PROBES + 1)
-    hits = _hits(events, first)
+    hits, unit = _hits(events, first), prepared.speed / prepared.rate
+    near = prepared.scene.run.tol * unit
     trials = [(twin, AS_IT_COMES) for twin in TWINS]
     if first.at_once[0] > 0.0:
         trials += [(None, FIRST_BY_NUMBER), (None, LAST_BY_NUMBER)]
     others = []
     for trial in trials:
         other = _followed(prepared, probes, events, *trial)
-        others.append((other, _late(_hits(events, other), hits)))
+        others.append((other, _late(_hits(events, other), hits, near)))
     whole = np.concatenate([probes, times])
-    unit = prepared.speed / prepared.rate
     place = np.argsort(whole, kind="stable")
     run = _followed(prepared, whole[place], events)
     probed = place[: len(run.states)] < PROBES
@@ -221,11 +221,16 @@ def _hits(events: FloatArray, run: _Followed) -> list[tuple[int, FloatArray]]:
     ]
 
 
-def _late(one: list[tuple[int, FloatArray]], other: list[tuple[int, FloatArray]]) -> float:
-    """By how much, s, impacts differ; of those at one wall runs may take different numbers."""
+def _late(
+    one: list[tuple[int, FloatArray]], other: list[tuple[int, FloatArray]], near: float
+) -> float:
+    """By how much, s, rebounds at one wall differ of runs that come there within ``near`` s.
+
+    The velocity between them is as good.  How many they take one by one may differ.
+    """
     late = 0.0
     for (wall, times), (facing, moments) in zip(one, other, strict=False):
-        if wall != facing:
+        if wall != facing or abs(times[0] - moments[0]) > near:
             break
         seen = min(times.size, moments.size)
         late = max(late, float(np.abs(times[:seen] - moments[:seen]).max()))
