@@ -29,6 +29,7 @@ _LOST = 1e-10  # of the scale of speeds: rounding of places turns the slip
 _FAR = 10.0  # times the slip: a rim that slides so fast does not stop before
 REST = 1e-13  # of the scale of speeds: as good as at rest
 _MARGIN = 0.2  # of friction
+_CLOSE = 1e-12  # of a step: how well a moment in it is known
 
 
 @kernel
@@ -102,16 +103,17 @@ def zero(
 
     By the method of false position, with the weight of an end that stays halved (Illinois).
     """
-    low, high = 0.0, h
+    low, high, close = 0.0, h, 0.5 * _CLOSE * h
     first, last = watched(stretch, what, y), watched(stretch, what, new)
     sign = 1.0 if last > 0.0 else -1.0
     for _ in range(60):
-        middle = (low * last - high * first) / (last - first)
-        if not low < middle < high or high - low <= 1e-12 * h:
+        if high - low <= _CLOSE * h or last == 0.0:
             break
+        middle = (low * last - high * first) / (last - first)
+        middle = min(max(middle, low + close), high - close)  # past it, where it is an end
         step(stretch, t, middle, y, scale, work, new)
         value = watched(stretch, what, new)
-        if sign * value > 0.0:
+        if sign * value >= 0.0:
             high, last, first = middle, value, 0.5 * first
         else:
             low, first, last = middle, value, 0.5 * last

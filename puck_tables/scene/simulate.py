@@ -17,6 +17,7 @@ from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
 from puck_tables.scene.library import files_of
 from puck_tables.scene.loop import (
     EVENT_LIMIT,
+    LEANS,
     NOT_FINITE,
     STEP_LIMIT,
     TIME_UP,
@@ -209,16 +210,12 @@ def _estimated(
 
 
 def _hits(events: FloatArray, run: _Followed) -> list[tuple[int, FloatArray]]:
-    """Which walls a run hits, one after the other, and when it does so until it hits the next."""
+    """The walls that a run hits, one after the other, and when it does until it stays or leaves."""
     rows = events[: run.events]
-    rows = rows[rows[:, 1] == BOUNCES]
-    walls, times = rows[:, 2], rows[:, 0]
-    cuts = np.flatnonzero(np.diff(walls)) + 1
-    return [
-        (int(wall[0]), time)
-        for wall, time in zip(np.split(walls, cuts), np.split(times, cuts), strict=True)
-        if wall.size
-    ]
+    rows = rows[np.isin(rows[:, 1], (BOUNCES, LEANS))]
+    ends = (np.diff(rows[:, 2]) != 0.0) | (rows[:-1, 1] == LEANS)
+    series = np.split(rows, np.flatnonzero(ends) + 1)
+    return [(int(row[0, 2]), row[:, 0]) for row in series if len(row)]
 
 
 def _late(
