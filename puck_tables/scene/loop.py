@@ -204,7 +204,9 @@ def follow(
             h = near / pull if h * pull > near else h
             way = NO_WAY
             if 0.0 < q <= straight:
-                way = goes_straight(stretch, ask.speed, t, q, pull, slow, y, work)
+                way = goes_straight(
+                    stretch, ask.speed, ask.tolerance, t, q, pull, slow, y, work
+                )  # fmt: skip
             if way[3] < 0.0:
                 mode, known = STOPS, False
                 continue
