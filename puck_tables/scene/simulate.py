@@ -191,7 +191,7 @@ def _estimated(
     probes = first.end_time * np.arange(1, PROBES + 1) / (PROBES + 1)
     hits, unit = _hits(events, first), prepared.speed / prepared.rate
     near = prepared.scene.run.tol * unit
-    trials = [(twin, AS_IT_COMES) for twin in TWINS]
+    trials: list[tuple[Twin | None, int]] = [(twin, AS_IT_COMES) for twin in TWINS]
     if first.at_once[0] > 0.0:
         trials += [(None, FIRST_BY_NUMBER), (None, LAST_BY_NUMBER)]
     others = []
