@@ -209,17 +209,21 @@ def _estimated(
     return run._replace(states=run.states[~probed]), error, doubt
 
 
-def _hits(events: FloatArray, run: _Followed) -> list[tuple[int, FloatArray]]:
+def _hits(events: FloatArray, run: _Followed) -> list[tuple[float, list[float]]]:
     """The walls that a run hits, one after the other, and when it does until it stays or leaves."""
-    rows = events[: run.events]
-    rows = rows[np.isin(rows[:, 1], (BOUNCES, LEANS))]
-    ends = (np.diff(rows[:, 2]) != 0.0) | (rows[:-1, 1] == LEANS)
-    series = np.split(rows, np.flatnonzero(ends) + 1)
-    return [(int(row[0, 2]), row[:, 0]) for row in series if len(row)]
+    series: list[tuple[float, list[float]]] = []
+    stays = True
+    for time, what, wall in events[: run.events, :3].tolist():
+        if what in (BOUNCES, LEANS):
+            if stays or series[-1][0] != wall:
+                series.append((wall, []))
+            series[-1][1].append(time)
+            stays = what == LEANS
+    return series
 
 
 def _late(
-    one: list[tuple[int, FloatArray]], other: list[tuple[int, FloatArray]], near: float
+    one: list[tuple[float, list[float]]], other: list[tuple[float, list[float]]], near: float
 ) -> float:
     """By how much, s, rebounds at one wall differ of runs that come there within ``near`` s.
 
@@ -229,8 +233,7 @@ def _late(
     for (wall, times), (facing, moments) in zip(one, other, strict=False):
         if wall != facing or abs(times[0] - moments[0]) > near:
             break
-        seen = min(times.size, moments.size)
-        late = max(late, float(np.abs(times[:seen] - moments[:seen]).max()))
+        late = max(late, *(abs(t - s) for t, s in zip(times, moments, strict=False)))
     return late
 
 
