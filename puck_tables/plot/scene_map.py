@@ -34,7 +34,7 @@ _MAPS = {
 }
 _LOOKS = (
     (BLUE, "o"), (GREEN, "^"), (ORANGE, "D"), (RED, "v"), ("#555555", "x"), ("#8b2fa0", "x"),
-    ("black", "x"), ("#c8a415", "x"), ("#b8b8b8", "x"),
+    ("black", "x"), ("#17becf", "x"), ("#c8a415", "x"), ("#b8b8b8", "x"),
 )  # fmt: skip
 _HATCH = "///"
 _LEGEND_ROW = 5  # entries

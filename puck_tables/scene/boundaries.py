@@ -251,12 +251,12 @@ def _line(rows: FloatArray, i: int, sign: float, y: FloatArray) -> Line:
 
 
 @inlined
-def room_to(bounds: Boundaries, i: int, y: FloatArray) -> float:
-    """How far the puck is from a wall."""
-    return _line(bounds.walls, i, 1.0, y).gap
+def room_to(rows: FloatArray, i: int, y: FloatArray) -> float:
+    """How far the puck is from a wall, or its centre from an edge."""
+    return _line(rows, i, 1.0, y).gap
 
 
 @inlined
-def outward(bounds: Boundaries, i: int, y: FloatArray) -> float:
-    """How fast a state in the laboratory goes away from a wall."""
-    return bounds.walls[i, NX] * y[VX] + bounds.walls[i, NY] * y[VY]
+def outward(rows: FloatArray, i: int, y: FloatArray) -> float:
+    """How fast a state in the laboratory goes away from a wall or an edge."""
+    return rows[i, NX] * y[VX] + rows[i, NY] * y[VY]

@@ -177,6 +177,7 @@ def keep_on(
     ``first``, ``last``: accelerations ax, ay, α at both ends of the step; below ``level`` they are
     none, and the wall pushes, or the rim rolls.  ``dx``: where in ``y`` the way of the step stands.
     """
+    held, corner, still = -1, False, False
     for i in range(leaning.shape[0]):
         nx, ny = leaning[i, NX], leaning[i, NY]
         lifts = max(nx * first[0] + ny * first[1], nx * last[0] + ny * last[1])
@@ -186,6 +187,8 @@ def keep_on(
             y[VY] -= speed * ny
         if lifts > level:
             continue
+        crosses = held >= 0 and abs(nx * leaning[held, NY] - ny * leaning[held, NX]) > _CLOSE
+        held, corner = i, corner or crosses
         off = nx * y[X] + ny * y[Y] - leaning[i, PLACE]
         if abs(off) > 4e-16 * (abs(nx * y[X]) + abs(ny * y[Y]) + abs(leaning[i, PLACE])):
             y[X] -= off * nx
@@ -196,6 +199,10 @@ def keep_on(
             start = abs(rim_slip(body, nx, ny, first[0], first[1], first[2]))
             if max(start, abs(rim_slip(body, nx, ny, last[0], last[1], last[2]))) <= level:
                 push_rim(body, nx, ny, -rim_slip(body, nx, ny, y[VX], y[VY], y[SPIN]), y)
+                still = True
+    if corner:  # there is nowhere to go, and a rim that rolls stands still
+        y[VX] = y[VY] = 0.0
+        y[SPIN] = 0.0 if still else y[SPIN]
 
 
 @inlined

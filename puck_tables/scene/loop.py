@@ -11,21 +11,19 @@ one (see :mod:`puck_tables.scene.settle`).
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
-
-import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import allocating, kernel
+from puck_tables.kernels.compile import kernel
+from puck_tables.scene.at_once import met_at_once
 from puck_tables.scene.boundaries import (
     BORDER,
     BOUNCES,
-    DEGREE,
     EDGE,
     Boundaries,
     first_crossing,
 )
 from puck_tables.scene.cushions import NX, NY
+from puck_tables.scene.desk import Ask, Desk
 from puck_tables.scene.equations import (
     FIRST,
     ROW,
@@ -64,9 +62,7 @@ from puck_tables.scene.moments import (
 )
 from puck_tables.scene.records import framed, noted
 from puck_tables.scene.settle import (
-    Contacts,
     bounced,
-    contacts_for,
     departed,
     gripped,
     look_at_rims,
@@ -76,10 +72,11 @@ from puck_tables.scene.settle import (
     touching,
 )
 from puck_tables.scene.standstill import from_standstill
-from puck_tables.scene.steps import STAGES, WIDE, step
+from puck_tables.scene.steps import STAGES, step
 
 # how a run ends
 AT_REST, CARRIED_AWAY, TIME_UP, OVER_EDGE, STEP_LIMIT, EVENT_LIMIT, NOT_FINITE = range(7)
+UNDECIDED = NOT_FINITE + 1  # by more than one run
 # what happens on the way
 RESTS, SLIPS, LEANS = 0, 1, 3  # and those of boundaries
 
@@ -90,49 +87,6 @@ _SLOWLY = 0.1  # if the slip changes by less than this of itself meanwhile
 _NEWTON, _FINEST_NEWTON = 1e-3, 1e-15  # of the local error: how well implicit steps are solved
 _SWING = 0.05  # rad that a carried puck turns, at most, in a step
 _NOTHING = -2  # is watched
-
-
-class Ask(NamedTuple):
-    """What is asked of a run.
-
-    ``until``: s; ``to_the_end``: go on to it also when carried; ``tolerance``: local error per step
-    in units of ``scale`` (10,); ``speed``: the scale of speeds, m/s; ``step_limit``; ``twin``:
-    0, or the share of the first step, and of those that end at an event, after which it is cut in
-    two, so that no step is that of the run without, also where no error limits it.
-    """
-
-    until: float
-    to_the_end: bool
-    tolerance: float
-    scale: FloatArray
-    speed: float
-    step_limit: int
-    twin: float
-
-
-class Desk(NamedTuple):
-    """Arrays to work in.
-
-    Rates of the stages of a step (7, 12) and at its end (12,), a gap polynomial (6,), the state at
-    the start and the end of a step and at a trial (12,), what is known of the walls.
-    """
-
-    work: FloatArray
-    last: FloatArray
-    gaps: FloatArray
-    y: FloatArray
-    new: FloatArray
-    trial: FloatArray
-    contacts: Contacts
-
-
-@allocating
-def desk_for(bounds: Boundaries) -> Desk:
-    """A desk for a scene with these boundaries."""
-    return Desk(
-        np.empty((STAGES, ROW)), np.empty(ROW), np.empty(DEGREE + 1), np.empty(WIDE),
-        np.empty(WIDE), np.empty(WIDE), contacts_for(len(bounds.walls)),
-    )  # fmt: skip
 
 
 @kernel
@@ -151,14 +105,16 @@ def follow(
     """Run a scene from the state ``start`` (10,) in the laboratory.
 
     ``frames`` (n,): ascending times for ``rows`` (n + 1, 15), the last of them the end; ``events``
-    (m, 13); ``desk``: to work on, see :func:`desk_for`.
+    (m, 13); ``desk``: to work on, see
+    :func:`puck_tables.scene.desk.desk_for`.
 
     Returns
     -------
     how it ended, when, number of events, of steps and of frames reached, sum of the errors of steps
     in units of ``ask.scale``
     """
-    work, last, gaps, y, new, trial, contacts = desk
+    work, last, gaps, y, new, trial, contacts, at_once = desk
+    at_once[0] = 0.0
     for i in range(SIZE):
         y[i] = start[i]
     body, scale, surface, drive = model.body, ask.scale, model.surface, model.forces.drive
@@ -167,6 +123,7 @@ def follow(
     pull_there = model.forces.x != 0.0 or model.forces.y != 0.0 or len(drive) > 0
     swings = surface.spin != 0.0 and pull_there  # else what a turning floor asks is constant
     unbounded = len(bounds.walls) + len(bounds.edges) + len(bounds.borders) == 0
+    several = len(bounds.walls) + len(bounds.edges) > 1
     look_at_walls(bounds, contacts, body, y, ask.speed)
     leaning = contacts.rows[: touching(bounds, contacts)]
     dry = dry_in(regions, region)
@@ -247,7 +204,9 @@ def follow(
             h = near / pull if h * pull > near else h
             way = NO_WAY
             if 0.0 < q <= straight:
-                way = goes_straight(stretch, ask.speed, t, q, pull, slow, y, work)
+                way = goes_straight(
+                    stretch, ask.speed, ask.tolerance, t, q, pull, slow, y, work
+                )  # fmt: skip
             if way[3] < 0.0:
                 mode, known = STOPS, False
                 continue
@@ -351,6 +310,19 @@ def follow(
         if happens < 0:
             continue
         settle = True
+        if several and happens in (BOUNCES, EDGE):
+            for i in range(SIZE):
+                last[i] = y[i]
+            to_laboratory(model, last, 1.0)
+            happens, which, other = met_at_once(
+                bounds, contacts, happens, which, ask.order, body, t, last, ask.speed,
+                scale[0] / ask.speed, ask.tolerance, new, trial,
+            )  # fmt: skip
+            if other >= 0:
+                at_once[0] += 1.0
+                if at_once[0] == 1.0:
+                    first = which if happens == BOUNCES else len(bounds.walls) + which
+                    at_once[1], at_once[2], at_once[3] = t, first, other
         if happens == BORDER:
             region = which
             dry = dry_in(regions, region)

@@ -29,6 +29,9 @@ _LOST = 1e-10  # of the scale of speeds: rounding of places turns the slip
 _FAR = 10.0  # times the slip: a rim that slides so fast does not stop before
 REST = 1e-13  # of the scale of speeds: as good as at rest
 _MARGIN = 0.2  # of friction
+_BLURRED = 10.0  # times the local error: a slip that steps blur,
+_BRAKED = 0.3  # and that loses at least this share of what changes it
+_CLOSE = 1e-12  # of a step: how well a moment in it is known
 
 
 @kernel
@@ -102,16 +105,17 @@ def zero(
 
     By the method of false position, with the weight of an end that stays halved (Illinois).
     """
-    low, high = 0.0, h
+    low, high, close = 0.0, h, 0.5 * _CLOSE * h
     first, last = watched(stretch, what, y), watched(stretch, what, new)
     sign = 1.0 if last > 0.0 else -1.0
     for _ in range(60):
-        middle = (low * last - high * first) / (last - first)
-        if not low < middle < high or high - low <= 1e-12 * h:
+        if high - low <= _CLOSE * h or last == 0.0:
             break
+        middle = (low * last - high * first) / (last - first)
+        middle = min(max(middle, low + close), high - close)  # past it, where it is an end
         step(stretch, t, middle, y, scale, work, new)
         value = watched(stretch, what, new)
-        if sign * value > 0.0:
+        if sign * value >= 0.0:
             high, last, first = middle, value, 0.5 * first
         else:
             low, first, last = middle, value, 0.5 * last
@@ -146,12 +150,14 @@ def settle_way(stretch: Stretch, t: float, q: float, y: FloatArray, work: FloatA
 
 @inlined
 def goes_straight(
-    stretch: Stretch, speed: float, t: float, q: float, pull: float, slow: float, y: FloatArray,
-    work: FloatArray,
+    stretch: Stretch, speed: float, tolerance: float, t: float, q: float, pull: float, slow: float,
+    y: FloatArray, work: FloatArray,
 ) -> tuple[float, float, float, float]:  # fmt: skip
     """The way of a slip that is about to stop: its direction and rate; no rate: not yet.
 
     What brakes slowly takes so long that its direction must have settled, and all else be small.
+    Of a slip that is not more than the local errors that steps make, ``tolerance``, of ``speed``,
+    nobody knows which way a rim on a cushion turns it.
     """
     way = stopping(stretch.model.body.radius, y, work)
     leaning, still = stretch.leaning.shape[0] > 0, q <= 2.0 * REST * speed
@@ -163,6 +169,8 @@ def goes_straight(
         quick = False
     elif excess > SLACK * stretch.dry.load:
         return NO_WAY
+    if leaning and q <= _BLURRED * tolerance * speed and way[3] <= -_BRAKED * pull:
+        return way
     if not (quick and across <= -way[3]) and not still:
         return NO_WAY
     for i in range(stretch.leaning.shape[0]):  # the rim may stick before

@@ -21,7 +21,7 @@ from puck_tables.scene.scene import Scene
 
 ENDS = (
     "at rest", "carried by the floor", "time is up", "over the edge", "step limit", "event limit",
-    "not finite", "no end found", "refused",
+    "not finite", "undecided", "no end found", "refused",
 )  # fmt: skip
 NO_END, REFUSED = len(ENDS) - 2, len(ENDS) - 1  # of a run in a sweep, which goes on
 EVENTS = ("stick", "slip", "impact", "contact", "border", "edge")
@@ -57,8 +57,8 @@ class SceneRun(Result):
     share of its largest entry.  ``error_estimate``: of the end time in
     units of Q/J and of places in Q²/J, with ``speed_scale`` = Q in m/s and ``rate_scale`` = J in
     m/s² (the slip at the launch, and the largest of friction, forces and what a turning floor asks
-    over the mass; without slip Q² = J r).  It is above ``run.tol`` where the motion amplifies
-    errors so much that tol cannot be kept.
+    over the mass; without slip Q² = J r), and of the times of rebounds from one wall.  It is above
+    ``run.tol`` where the motion amplifies errors so much that tol cannot be kept.
     ``columns``: arrays (n,) over time by name, each also an attribute (``run.x``); ``heading``,
     ``slip_speed`` and ``slip_angle`` are of the motion in the laboratory, 0 at rest there.
     ``last``: the columns at the end, numbers.  ``files``: what stood in the files that the scene

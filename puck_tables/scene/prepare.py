@@ -13,8 +13,10 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import in_slices
 from puck_tables.errors import InputError
 from puck_tables.scene.agreement import launch_velocity
+from puck_tables.scene.at_once import AS_IT_COMES
 from puck_tables.scene.boundaries import Boundaries
 from puck_tables.scene.bulk import follow_many
+from puck_tables.scene.desk import Ask, desk_for
 from puck_tables.scene.equations import SIZE
 from puck_tables.scene.forces import forces_of, impulse_over_time, strongest
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
@@ -33,7 +35,7 @@ from puck_tables.scene.ingredients import (
     Surface,
 )
 from puck_tables.scene.leaning import LEAN_COLUMNS
-from puck_tables.scene.loop import Ask, desk_for, follow
+from puck_tables.scene.loop import follow
 from puck_tables.scene.regions import friction_error, regions_of
 from puck_tables.scene.rest import excess_at_rest
 from puck_tables.scene.scene import Scene
@@ -73,15 +75,16 @@ class Prepared:
     rate: float
 
     def follow(
-        self, frames: FloatArray, rows: FloatArray, events: FloatArray, twin: Twin | None = None
-    ) -> tuple[int, float, int, int, int, float]:
-        """Run it, see :func:`puck_tables.scene.loop.follow`.
+        self, frames: FloatArray, rows: FloatArray, events: FloatArray, twin: Twin | None = None,
+        order: int = AS_IT_COMES,
+    ) -> tuple[tuple[int, float, int, int, int, float], FloatArray]:  # fmt: skip
+        """Run it, see :func:`puck_tables.scene.loop.follow`; and what was met at once (4,).
 
         ``twin``: otherwise, to see what errors grow to; also with friction wrong by what its ratios
-        may be.
+        may be.  ``order``: of what is met at once, see :mod:`puck_tables.scene.at_once`.
         """
         region = int(self.starts(self.state[None, :])[0])
-        ask, off = self.ask, 1.0
+        ask, off = self.ask._replace(order=order), 1.0
         if twin is not None:
             ask = ask._replace(tolerance=twin.coarser * ask.tolerance, twin=twin.share)
             off = 1.0 + friction_error(self.scene)
@@ -89,10 +92,11 @@ class Prepared:
             load=off * self.regions.load,
             by_speed=self.regions.by_speed._replace(normal=off * self.regions.by_speed.normal),
         )
-        return follow(
-            self.model, regions, self.bounds, ask, self.state, region, frames, rows, events,
-            desk_for(self.bounds),
-        )  # fmt: skip
+        desk = desk_for(self.bounds)
+        found = follow(
+            self.model, regions, self.bounds, ask, self.state, region, frames, rows, events, desk
+        )
+        return found, desk.at_once
 
     def follow_all(self, states: FloatArray, out: FloatArray, status: npt.NDArray[np.int8]) -> None:
         """Run it from other launches (n, 10), see :func:`puck_tables.scene.bulk.follow_many`."""
@@ -151,7 +155,7 @@ def prepare(scene: Scene, last_time: float | None = None) -> Prepared:
         to_the_end = moves and bool(last_time)
         until = last_time if to_the_end and last_time else float(asks[0])
     tolerance = max(LOCAL_SHARE * scene.run.tol, FINEST_LOCAL)
-    ask = Ask(until, to_the_end, tolerance, asks[2:], float(asks[1]), STEP_LIMIT, 0.0)
+    ask = Ask(until, to_the_end, tolerance, asks[2:], float(asks[1]), STEP_LIMIT, 0.0, AS_IT_COMES)
     speed, rate, _ = _scales(scene, model, regions, state[None, :])
     bounds = _bounds(scene)
     return Prepared(model, regions, bounds, scene, state, ask, float(speed[0]), float(rate[0]))

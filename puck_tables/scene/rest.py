@@ -225,7 +225,7 @@ def excess_at_rest(stretch: Stretch, t: float, y: FloatArray) -> Yield:
         if body.mass * (nx * ax + ny * ay) < -slack:  # the floor goes into the wall
             return math.inf, nx, ny, 0.0
         pushes += 1 if push_of(leaning[i], body.mass, ax, ay, fx, fy) > 0.0 else 0
-    if pushes > 1:
+    if pushes > 0 and leaning.shape[0] > 1:  # what slips along one wall may go into another
         return _corner_yield(dry, body, leaning, ax, ay, fx, fy, torque)
     if pushes == 1:
         return _wall_yield(dry, body, leaning, ax, ay, fx, fy, torque)

@@ -11,6 +11,7 @@ at one place, the puck comes to lie in their corner.
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -95,11 +96,12 @@ def look_at_walls(
     for i in range(contacts.leans.size):
         wall = bounds.walls[i]
         contacts.leans[i], contacts.rim[i], contacts.dying[i] = False, 0.0, False
-        contacts.room[i] = room_to(bounds, i, y)
+        contacts.hit[i] = -math.inf
+        contacts.room[i] = room_to(bounds.walls, i, y)
         rounding = 4e-16 * (abs(wall[NX] * y[X]) + abs(wall[NY] * y[Y]) + abs(wall[PLACE]))
         if abs(contacts.room[i]) <= rounding:
             contacts.room[i] = 0.0
-            if abs(outward(bounds, i, y)) <= _STILL * speed:
+            if abs(outward(bounds.walls, i, y)) <= _STILL * speed:
                 contacts.leans[i] = True
                 contacts.rim[i] = _rim_of(body, wall, y, speed)
 
@@ -150,7 +152,7 @@ def departed(bounds: Boundaries, contacts: Contacts, y: FloatArray, speed: float
     """Whether the puck, in the laboratory, has left a wall that it leant on."""
     left = False
     for i in range(contacts.leans.size):
-        if contacts.leans[i] and outward(bounds, i, y) > _LEFT * speed:
+        if contacts.leans[i] and outward(bounds.walls, i, y) > _LEFT * speed:
             contacts.leans[i] = contacts.dying[i] = False
             left = True
     return left
@@ -202,7 +204,7 @@ def _dead_ahead(
     for i in range(contacts.leans.size):
         touches = i == which or contacts.leans[i] or contacts.room[i] <= here
         dead = bounds.walls[i, RESTITUTION] == 0.0
-        if touches and dead and outward(bounds, i, y) < -_STILL * speed:
+        if touches and dead and outward(bounds.walls, i, y) < -_STILL * speed:
             return i
     return -1
 
@@ -252,14 +254,14 @@ def bounced(
     here = 4e-16 * (abs(y[X]) + abs(y[Y]))  # rounding: no room left between two walls
     jams = before >= 0 and before != which and contacts.room[before] <= here
     contacts.chain[1] = contacts.chain[1] + 1 if jams else 0
-    wall, came = bounds.walls[which], -outward(bounds, which, y)
+    wall, came = bounds.walls[which], -outward(bounds.walls, which, y)
     slips = rim_slip(body, wall[NX], wall[NY], y[VX], y[VY], y[SPIN])
     hits, again = which, 0
     while hits >= 0 and again < _AT_ONCE:
         rebound(body, bounds.walls[hits], y)
         hits = _dead_ahead(bounds, contacts, which, y, here, speed)
         again += 1
-    goes = outward(bounds, which, y)
+    goes = outward(bounds.walls, which, y)
     slides = rim_slip(body, wall[NX], wall[NY], y[VX], y[VY], y[SPIN])
     rest_time = -1.0
     corner = _corner_near(bounds, contacts, which, max(tolerance, _STILL) * speed * time)
@@ -301,7 +303,7 @@ def bounced(
             contacts.leans[i]
             and i != which
             and i != corner
-            and abs(outward(bounds, i, y)) > _STILL * speed
+            and abs(outward(bounds.walls, i, y)) > _STILL * speed
         ):
             contacts.leans[i] = contacts.dying[i] = False
             contacts.room[i] = 0.0
@@ -313,7 +315,7 @@ def bounced(
                 off = wall[NX] * y[X] + wall[NY] * y[Y] - wall[PLACE]  # rounding of the rebounds
                 y[X] -= off * wall[NX]
                 y[Y] -= off * wall[NY]
-                contacts.rim[i] = _rim_of(body, bounds.walls[i], y, speed)
+    look_at_rims(bounds, contacts, body, y, speed)  # an impact elsewhere turns a rim's slip, too
     return rest_time
 
 

@@ -11,13 +11,17 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import finite_array
 from puck_tables.errors import AccuracyError, InputError, PuckError
+from puck_tables.scene.at_once import AS_IT_COMES, FIRST_BY_NUMBER, LAST_BY_NUMBER
+from puck_tables.scene.boundaries import BOUNCES
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
 from puck_tables.scene.library import files_of
 from puck_tables.scene.loop import (
     EVENT_LIMIT,
+    LEANS,
     NOT_FINITE,
     STEP_LIMIT,
     TIME_UP,
+    UNDECIDED,
 )
 from puck_tables.scene.outcome import ENDS, EVENTS, LEDGER, Event, SceneRun, ledger_residual
 from puck_tables.scene.plain import run_plain
@@ -44,8 +48,9 @@ def simulate(scene: Scene, times: npt.ArrayLike | None = None) -> SceneRun:
 
 # two, for one may err as the run does by chance
 TWINS = (Twin(30.0, 0.5), Twin(8.0, 0.3))
-FINER = (1.0, 1 / 30, 1 / 900, 1 / 27000)  # of the tolerance asked: tried one after the other
+FINER = 1 / 30  # of the tolerance before: tried one after the other
 FINEST = 1e-12
+TRIALS = 4  # at most, but where two lines are met at once
 STEP_SHARE = 0.1  # of the sum of the errors of steps, which are those of order 4
 PROBES = 7  # states on the way that are compared too
 MOST_IN_VAIN = 2  # finer tolerances in a row that do not halve the estimate
@@ -55,6 +60,8 @@ FAILURES = {
     EVENT_LIMIT: "100000 events by {time:.6g} s: they crowd together without end (rebounds, or a "
     "border); move the launch, or end the run before with run.time",
     NOT_FINITE: "the motion leaves floating point at {time:.6g} s: use other units",
+    UNDECIDED: "it meets two lines at the same moment, and what follows depends on which is first: "
+    "move the launch, or a wall",
 }
 
 
@@ -78,16 +85,19 @@ class _Followed(NamedTuple):
     events: int
     steps: int
     wrong: float
+    at_once: FloatArray
     states: FloatArray
     last: FloatArray
 
 
 def _followed(
-    prepared: Prepared, times: FloatArray, events: FloatArray, twin: Twin | None = None
-) -> _Followed:
+    prepared: Prepared, times: FloatArray, events: FloatArray, twin: Twin | None = None,
+    order: int = AS_IT_COMES,
+) -> _Followed:  # fmt: skip
     rows = np.empty((len(times) + 1, FRAME_COLUMNS))
-    how, end_time, count, steps, reached, wrong = prepared.follow(times, rows, events, twin)
-    return _Followed(how, end_time, count, steps, wrong, rows[:reached], rows[reached])
+    found, at_once = prepared.follow(times, rows, events, twin, order)
+    how, end_time, count, steps, reached, wrong = found
+    return _Followed(how, end_time, count, steps, wrong, at_once, rows[:reached], rows[reached])
 
 
 def _integrated(scene: Scene, plan: Plan, times: FloatArray | None) -> SceneRun:
@@ -128,46 +138,103 @@ def _close_enough(
     asked = scene.run.tol
     last = None if times is None or not times.size else float(times[-1])
     room = np.empty((MAX_EVENTS, EVENT_COLUMNS))
-    best, in_vain = None, 0
-    for finer in FINER:
-        tol = max(asked * finer, min(asked, FINEST))
+    found: list[tuple[Prepared, _Followed, float, FloatArray]] = []
+    in_vain, trials, tol, doubt = 0, 0, asked, 0.0
+    while True:
         try:
             prepared = prepare(replace(scene, run=replace(scene.run, tol=tol)), last)
         except AccuracyError:  # a friction law is known no better
-            if best is None:
+            if not found:
                 raise
             break
-        run, estimate = _estimated(prepared, times, room)
-        if best is None or estimate <= 0.5 * best[2]:
-            best, in_vain = (prepared, run, estimate, room[: run.events].copy()), 0
-        else:
-            in_vain += 1
-        if estimate <= asked or tol <= FINEST or in_vain == MOST_IN_VAIN:
+        run, estimate, doubt = _estimated(prepared, times, room)
+        trials, in_vain = trials + 1, in_vain + 1
+        if not found or estimate <= 0.5 * found[-1][2]:
+            found.append((prepared, run, estimate, room[: run.events].copy()))
+            in_vain = 0
+        if estimate <= asked or tol <= FINEST:
             break
-    assert best is not None  # of the first tolerance
-    return best
+        if doubt <= asked and (trials == TRIALS or in_vain == MOST_IN_VAIN):
+            break
+        tol = max(FINER * tol, FINEST)
+    if doubt > asked:
+        raise InputError(_met_at_once(scene, run.at_once))
+    return found[-1]
+
+
+def _met_at_once(scene: Scene, at_once: FloatArray) -> str:
+    """Why a run has no end: it is not known which of two lines is first."""
+    _, when, *numbers = at_once.tolist()
+    walls = len(scene.walls)
+    one, other = (
+        f"wall[{int(n)}]" if n < walls else f"edge[{int(n) - walls}]" for n in sorted(numbers)
+    )
+    return (
+        f"the puck meets {one} and {other} at the same moment, {when:.10g} s, and what follows "
+        "depends on which of them is first: move the launch, or one of them, or end the run before "
+        "with run.time"
+    )
 
 
 def _estimated(
     prepared: Prepared, times: FloatArray | None, events: FloatArray
-) -> tuple[_Followed, float]:
+) -> tuple[_Followed, float, float]:
     """A run, and how far coarser twins are from it, in units of Q/J and Q²/J, on the way and last.
 
-    Errors grow alike in both, and its own are much larger.
+    Errors grow alike in both, and its own are much larger.  Also how far off it is if, of two lines
+    that it meets at once, the other one is first.
     """
     first = _followed(prepared, np.empty(0), events)
     _refuse_failed(prepared.scene, first.how, first.end_time, prepared.ask.to_the_end)
     if times is None:
         times = np.linspace(0.0, first.end_time, int(prepared.scene.run.frames))
     probes = first.end_time * np.arange(1, PROBES + 1) / (PROBES + 1)
-    twins = [_followed(prepared, probes, events, twin) for twin in TWINS]
-    both = np.concatenate([probes, times])
-    order = np.argsort(both, kind="stable")
-    run = _followed(prepared, both[order], events)
-    probed = order[: len(run.states)] < PROBES
-    gap = max(_gap(prepared, twin, run._replace(states=run.states[probed])) for twin in twins)
-    error = gap + STEP_SHARE * run.wrong + friction_error(prepared.scene)
-    return run._replace(states=run.states[~probed]), error
+    hits, unit = _hits(events, first), prepared.speed / prepared.rate
+    near = prepared.scene.run.tol * unit
+    trials: list[tuple[Twin | None, int]] = [(twin, AS_IT_COMES) for twin in TWINS]
+    if first.at_once[0] > 0.0:
+        trials += [(None, FIRST_BY_NUMBER), (None, LAST_BY_NUMBER)]
+    others = []
+    for trial in trials:
+        other = _followed(prepared, probes, events, *trial)
+        others.append((other, _late(_hits(events, other), hits, near)))
+    whole = np.concatenate([probes, times])
+    place = np.argsort(whole, kind="stable")
+    run = _followed(prepared, whole[place], events)
+    probed = place[: len(run.states)] < PROBES
+    seen = run._replace(states=run.states[probed])
+    gaps = [max(_gap(prepared, other, seen), late / unit) for other, late in others]
+    gap, doubt = max(gaps[: len(TWINS)]), max([0.0, *gaps[len(TWINS) :]])
+    error = max(gap, doubt) + STEP_SHARE * run.wrong + friction_error(prepared.scene)
+    return run._replace(states=run.states[~probed]), error, doubt
+
+
+def _hits(events: FloatArray, run: _Followed) -> list[tuple[float, list[float]]]:
+    """The walls that a run hits, one after the other, and when it does until it stays or leaves."""
+    series: list[tuple[float, list[float]]] = []
+    stays = True
+    for time, what, wall in events[: run.events, :3].tolist():
+        if what in (BOUNCES, LEANS):
+            if stays or series[-1][0] != wall:
+                series.append((wall, []))
+            series[-1][1].append(time)
+            stays = what == LEANS
+    return series
+
+
+def _late(
+    one: list[tuple[float, list[float]]], other: list[tuple[float, list[float]]], near: float
+) -> float:
+    """By how much, s, rebounds at one wall differ of runs that come there within ``near`` s.
+
+    The velocity between them is as good.  How many they take one by one may differ.
+    """
+    late = 0.0
+    for (wall, times), (facing, moments) in zip(one, other, strict=False):
+        if wall != facing or abs(times[0] - moments[0]) > near:
+            break
+        late = max(late, *(abs(t - s) for t, s in zip(times, moments, strict=False)))
+    return late
 
 
 def _gap(prepared: Prepared, twin: _Followed, run: _Followed) -> float:

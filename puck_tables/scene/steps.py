@@ -104,7 +104,7 @@ def step(
 
     On entry work[0] is dy/dt at t; on return work[STAGES − 1] is that at the end.
     """
-    if stretch.newton > 0.0:
+    if stretch.newton > 0.0 and h > 0.0:  # not where something happens at once
         error = radau_step(stretch, t, h, y, scale, work, new)
         rates(stretch, t + h, new, work, STAGES - 1)
     else:
