@@ -128,4 +128,5 @@ def _own(game: Game, rows: int) -> Game:
         next_partner=game.next_partner.copy(), pieces=game.pieces.copy(),
         events=np.zeros((rows, game.events.shape[1])),
         history=np.zeros((rows, game.history.shape[1])), counts=game.counts.copy(),
+        pace=game.pace.copy(),
     )  # fmt: skip

@@ -35,6 +35,7 @@ from puck_tables.world.game import (
     LAUNCH_VY,
     LAUNCHED,
     LOST,
+    N_CONTACTS,
     N_EVENTS,
     N_HISTORY,
     N_IMPACTS,
@@ -57,6 +58,7 @@ from puck_tables.world.game import (
     Whole,
 )
 from puck_tables.world.impact import (
+    ACTS,
     CONTACT_COLUMNS,
     FIRST_N,
     FIRST_T,
@@ -65,7 +67,9 @@ from puck_tables.world.impact import (
     NY,
     SUM_N,
     SUM_T,
+    approach,
     collide,
+    opening,
     prepare_contact,
 )
 from puck_tables.world.layout import EDGE, KIND, POCKET, RADIUS
@@ -73,11 +77,15 @@ from puck_tables.world.meeting import next_crossing, next_meeting, normal_to
 from puck_tables.world.paths import DURATION, FIRST
 from puck_tables.world.paths import START as BEGINS
 
-REACHED, FULL, CROWDED, TANGLED, PAUSED = range(5)  # how a call ends
+REACHED, FULL, CROWDED, TANGLED, PAUSED, PUSHING = range(6)  # how a call ends
 
-NOBODY, EVERYBODY = -1, -2
+NOBODY, EVERYBODY, THOSE_LEFT = -1, -2, -3
+# of a disc while an event is worked on: not concerned, concerned, its contacts are known, was to
+# meet one that is concerned, flies on in a group that pushes
+NOT_CONCERNED, CONCERNED, LOOKED_AT, DISAPPOINTED, PUSHED = range(5)
 
 TOUCH = 1e-12  # of the radius: a gap as small is none
+HARDLY = 1e-11  # of the scales of speeds and accelerations: none
 MOST_AT_ONCE = 10_000  # events at one moment
 MOST_IN_A_CALL = 2_000  # then the caller may hear Ctrl-C
 
@@ -248,6 +256,22 @@ def _note_impacts(game: Game, t: float, count: int, room: Room) -> None:
 
 
 @inlined
+def _press_somewhere(game: Game, count: int, room: Room) -> bool:
+    """Whether contacts that do not approach would, if all flew on alone; they are marked.
+
+    If none would, no force acts in any: that is a solution, and accelerations have but one.
+    """
+    found = False
+    for n in range(count):
+        i, j, row = room.contacts[n, 0], room.contacts[n, 1], room.rows[n]
+        un, _ = approach(game, i, j, row[NX], row[NY], room.states)
+        row[ACTS] = 1.0 if abs(un) <= HARDLY * game.pace[0] else 0.0
+        if row[ACTS] > 0.0 and opening(game, i, j, row, room.states) < -HARDLY * game.pace[1]:
+            found = True
+    return found
+
+
+@inlined
 def _leave(game: Game, i: int, t: float, what: int, k: int, room: Room) -> None:
     """A disc falls into a pocket or over an edge."""
     note(game, t, what, i, -1 - k, room.states[i, X], room.states[i, Y])
@@ -266,9 +290,15 @@ def _happen(game: Game, i: int, partner: int, t: float, room: Room) -> int:
         room.marks[j] = 0
     _locate(game, i, t, room)
     room.marks[i] = 1
-    if partner == PATH_ENDS:
+    if partner == PATH_ENDS and game.drives[i, 0] < game.drives[i, 1]:
         drive_on(game, i, t, room)
         return REACHED
+    for j in range(discs.shape[0]):
+        with_i = game.group[j] > 0 and game.group[j] == game.group[i]
+        with_partner = 0 <= partner < NOTHING and game.group[j] == game.group[partner] > 0
+        if (with_i or with_partner) and room.marks[j] == 0:
+            _locate(game, j, t, room)
+            room.marks[j] = 1
     if partner < 0:
         k = -1 - partner
         shape = int(game.obstacles[k, KIND])
@@ -287,17 +317,26 @@ def _happen(game: Game, i: int, partner: int, t: float, room: Room) -> int:
     _note_impacts(game, t, count, room)
     # those that no impulse reached fly on
     for j in range(discs.shape[0]):
-        room.marks[j] = 0
+        room.marks[j] = 1 if game.group[j] > 0 and room.marks[j] > 0 else 0
     room.marks[i] = 1
     for n in range(count):
         if room.rows[n, SUM_N] > 0.0:
             room.marks[room.contacts[n, 0]] = 1
             if room.contacts[n, 1] >= 0:
                 room.marks[room.contacts[n, 1]] = 1
-    for j in range(discs.shape[0]):
-        if room.marks[j] > 0 and game.drives[j, 0] == game.drives[j, 1]:
-            _take_off(game, j, t, room)
+    game.counts[N_CONTACTS] = count
+    if _press_somewhere(game, count, room):
+        return PUSHING
+    _take_off_all(game, t, room)
     return REACHED
+
+
+@inlined
+def _take_off_all(game: Game, t: float, room: Room) -> None:
+    """New flights of all that are concerned, but for those that are driven."""
+    for j in range(game.discs.shape[0]):
+        if room.marks[j] == CONCERNED and game.drives[j, 0] == game.drives[j, 1]:
+            _take_off(game, j, t, room)
 
 
 @inner
@@ -345,14 +384,17 @@ def advance(game: Game, until: float, struck: int, state: FloatArray, room: Room
 
     After FULL the caller gives more rows and calls again, after PAUSED it just calls again.
 
-    ``struck``: the disc that gets the velocity and spin of ``state`` before; NOBODY; or, at the
-    start, EVERYBODY looks ahead.
+    ``struck``: the disc that gets the velocity and spin of ``state`` before; NOBODY; at the start,
+    EVERYBODY looks ahead; after PUSHING, when the groups that push are on their way, THOSE_LEFT.
     """
     count = game.discs.shape[0]
     at_once, last, events = 0, -math.inf, 0
     if struck != NOBODY:
-        for i in range(count):
-            room.marks[i] = 1
+        if struck != THOSE_LEFT:
+            for i in range(count):
+                room.marks[i] = CONCERNED
+        if struck == THOSE_LEFT:
+            _take_off_all(game, game.clock[0], room)
         if struck >= 0:
             _send(game, struck, game.clock[0], state[VX], state[VY], state[SPIN], room)
         _look_again(game, game.clock[0], room)
@@ -385,9 +427,9 @@ def advance(game: Game, until: float, struck: int, state: FloatArray, room: Room
             game.counts[N_LAUNCHES] += 1
         else:
             status = _happen(game, first, game.next_partner[first], t, room)
+        game.clock[0] = t
         if status != REACHED:
             return status
-        game.clock[0] = t
         _look_again(game, t, room)
 
 

@@ -32,8 +32,10 @@ LAUNCH_COLUMNS = 5
 HISTORY_COLUMNS = 2 + FLIGHT_COLUMNS  # disc, kind, flight
 
 # counts
-N_EVENTS, N_HISTORY, N_PIECES, N_HELD, N_LAUNCHES, N_IMPACTS, N_GROUPS, N_LOOKS = range(8)
-COUNTS = 8
+(
+    N_EVENTS, N_HISTORY, N_PIECES, N_HELD, N_LAUNCHES, N_IMPACTS, N_GROUPS, N_LOOKS, N_CONTACTS,
+) = range(9)  # fmt: skip
+COUNTS = 9
 
 
 class Game(NamedTuple):
@@ -43,7 +45,9 @@ class Game(NamedTuple):
     (n,): discs of one number push each other, 0: none; ``held`` (…, 2): their contacts.
     ``next_time``, ``next_partner`` (n,).  ``launches`` (…, 5), ascending in time.  ``drives``
     (n, 2): the rows of ``pieces`` along which a disc is driven.  ``counts``: how many rows of
-    events, history, pieces and held contacts are used, how many launches and what else was done.
+    events, history, pieces and held contacts are used, how many launches and what else was done,
+    and the contacts of the event at work.  ``pace`` (2,): the scales of speed, m/s, and
+    acceleration, m/s².
     """
 
     discs: FloatArray
@@ -63,3 +67,4 @@ class Game(NamedTuple):
     events: FloatArray
     history: FloatArray
     counts: Whole
+    pace: FloatArray

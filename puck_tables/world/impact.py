@@ -19,7 +19,7 @@ iteration that treats all alike, then enlarged by 1 + e and 1 + β, as Poisson h
 together should energy grow.  So no numbering matters, and what is symmetric stays so.
 
 Rebounds of discs that press on each other die out.  Where those left are lower than 1e-13 of the
-radius, e = 0: they stay in contact.
+radius, or than what is known of places (1e-10 of Q²/J), e = 0: they stay in contact.
 """
 
 from __future__ import annotations
@@ -32,11 +32,15 @@ from puck_tables.scene.friction import SPIN, VX, VY, X, Y, dry_friction
 from puck_tables.scene.ingredients import dry_in
 from puck_tables.world.game import Game, Whole
 from puck_tables.world.layout import (
+    ARC,
     DAMPING,
+    KIND,
     LIGHTNESS,
     RADIUS,
     TURNABILITY,
     WAKE,
+    WALL,
+    C,
     law_of_pair,
 )
 from puck_tables.world.meeting import normal_to
@@ -46,8 +50,9 @@ from puck_tables.world.meeting import normal_to
 NX, NY, SOFT, SLICK, E, BETA, MU, ACTS, PN, PT, SUM_N, SUM_T, FIRST_N, FIRST_T, LOSS = range(15)
 CONTACT_COLUMNS = 15
 
-NEGLIGIBLE = 1e-13  # of the fastest: an approach as slow is none
+NEGLIGIBLE = 1e-13  # of the scale of speeds: an approach as slow is none
 FLAT = 1e-13  # of the radius: rebounds as low have died out
+BLURRED = 1e-10  # of Q²/J: as low, they are lost in the errors of places that are looked up
 MOST_ROUNDS = 20_000
 _MOST_ITERATIONS = 20_000
 _SOLVED = 1e-15
@@ -114,16 +119,46 @@ def _pull_along(game: Game, i: int, nx: float, ny: float, states: FloatArray) ->
 
 
 @inlined
+def opening(game: Game, i: int, j: int, row: FloatArray, states: FloatArray) -> float:
+    """The second derivative of the gap of a contact if its discs flew on alone."""
+    nx, ny = row[NX], row[NY]
+    wx, wy = states[i, VX], states[i, VY]
+    size = game.discs[i, RADIUS]
+    pull = _pull_along(game, i, nx, ny, states)
+    if j >= 0:
+        wx -= states[j, VX]
+        wy -= states[j, VY]
+        size += game.discs[j, RADIUS]
+        pull -= _pull_along(game, j, nx, ny, states)
+    else:
+        obstacle = game.obstacles[-1 - j]
+        size = math.inf if obstacle[KIND] == WALL else size + obstacle[C]
+        if obstacle[KIND] == ARC:
+            size = game.discs[i, RADIUS] - obstacle[C]  # it bends the other way
+    across = wy * nx - wx * ny
+    return across * across / size - pull
+
+
+@inlined
 def _dies_out(game: Game, i: int, j: int, row: FloatArray, states: FloatArray) -> bool:
     """Whether both press on each other so that this rebound and those after it are too low."""
     if row[E] >= 1.0:
         return False
     un, _ = approach(game, i, j, row[NX], row[NY], states)
-    closing = _pull_along(game, i, row[NX], row[NY], states)
+    closing = -opening(game, i, j, row, states)
+    way = _slip2(game, i, states)
     if j >= 0:
-        closing -= _pull_along(game, j, row[NX], row[NY], states)
-    height = FLAT * game.discs[i, RADIUS] * (1.0 - row[E] ** 2)
+        way = max(way, _slip2(game, j, states))
+    height = max(FLAT * game.discs[i, RADIUS], BLURRED * way / game.pace[1])
+    height *= 1.0 - row[E] ** 2
     return closing > 0.0 and un <= 0.0 and un * un <= 2.0 * closing * height
+
+
+@inlined
+def _slip2(game: Game, i: int, states: FloatArray) -> float:
+    """Q² of a disc."""
+    rim = game.discs[i, RADIUS] * states[i, SPIN]
+    return states[i, VX] ** 2 + states[i, VY] ** 2 + rim * rim
 
 
 @inlined
@@ -236,16 +271,12 @@ def collide(
     ``contacts`` (count, 2): discs and their partners, prepared in ``rows``; ``states`` (n, 6) get
     the velocities after them; ``before`` (n, 6) and ``shares`` (n,) are room to work.
     """
-    fastest = 0.0
-    for n in range(count):
-        un, ut = approach(game, contacts[n, 0], contacts[n, 1], rows[n, NX], rows[n, NY], states)
-        fastest = max(fastest, abs(un), abs(ut))
     for turn in range(MOST_ROUNDS):
         acting = 0
         for n in range(count):
             row, i, j = rows[n], contacts[n, 0], contacts[n, 1]
             un, ut = approach(game, i, j, row[NX], row[NY], states)
-            row[ACTS] = 1.0 if un > NEGLIGIBLE * fastest else 0.0
+            row[ACTS] = 1.0 if un > NEGLIGIBLE * game.pace[0] else 0.0
             if row[ACTS] > 0.0:
                 acting += 1
                 if row[SUM_N] == 0.0:

@@ -22,7 +22,6 @@ from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.friction import VX, VY, X, Y
 from puck_tables.world.flight import (
     DAMPED,
-    FASTEST,
     GONE,
     LOOKED_UP,
     PATH,
@@ -49,7 +48,7 @@ from puck_tables.world.layout import (
 
 OUTSIDE = 1e-9  # of the radius
 ROUNDED = 1e-15  # of the places: a gap as small is none
-QUIET = 1e-12  # of the speeds: an approach as slow is none
+QUIET = 1e-12  # of the scale of speeds: an approach as slow is none
 _MOST_LOOKS = 100_000
 
 
@@ -189,7 +188,7 @@ def next_meeting(
         reach,
     ):
         return math.inf
-    bend, fastest = flight[STRONGEST] + second[STRONGEST], flight[FASTEST] + second[FASTEST]
+    bend = flight[STRONGEST] + second[STRONGEST]
     t = now
     for _ in range(_MOST_LOOKS):
         game.counts[N_LOOKS] += 1
@@ -200,14 +199,14 @@ def next_meeting(
         rounded = ROUNDED * (abs(one[X]) + abs(one[Y]) + reach)
         step = safe_step(max(gap, 0.0), rate, bend)
         if gap <= rounded:
-            if rate < -QUIET * fastest:
+            if rate < -QUIET * game.pace[0]:
                 return t
             if bend > 0.0:
                 step = max(step, math.sqrt(2.0 * rounded / bend))
         if t + step > last:
             return math.inf
         if t + step == t:
-            return t if rate < 0.0 else math.inf
+            return t if rate < -QUIET * game.pace[0] else math.inf
         t += step
         state_at(kind, flight, discs[i], curves, pieces, t, room, one)
         state_at(other, second, discs[j], curves, pieces, t, room, two)
@@ -262,7 +261,7 @@ def next_crossing(
             step = safe_step(max(gap, 0.0), rate, bend)
         # farther outside an arc it has passed where the arc is not
         if gap <= rounded and (shape != ARC or gap > -OUTSIDE * radius):
-            if rate < -QUIET * flight[FASTEST] and there:
+            if rate < -QUIET * game.pace[0] and there:
                 return t
             if bend > 0.0:
                 step = max(step, math.sqrt(2.0 * rounded / bend))
@@ -271,7 +270,7 @@ def next_crossing(
         if t + step > last:
             return math.inf
         if t + step == t:
-            return t if rate < 0.0 else math.inf
+            return t if rate < -QUIET * game.pace[0] else math.inf
         t += step
         state_at(kind, flight, disc, game.curves, game.pieces, t, room, one)
     return t

@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables.scene.friction import SPIN, VX, VY
 from puck_tables.scene.ingredients import Regions
 from puck_tables.scene.regions import NO_LAW
 from puck_tables.scene.scene import Scene
@@ -26,6 +27,7 @@ from puck_tables.world.game import (
     Game,
     Whole,
 )
+from puck_tables.world.paths import FIRST
 
 ROWS = 256  # of events and flights at first
 
@@ -95,7 +97,9 @@ def game_of(scene: Scene, order: Whole) -> tuple[Game, Room]:
         events=np.zeros((ROWS + 8 * count, EVENT_COLUMNS)),
         history=np.zeros((ROWS + 4 * count, HISTORY_COLUMNS)),
         counts=np.zeros(COUNTS, np.int64),
+        pace=np.zeros(2),
     )
+    set_pace(game, states)
     game.counts[N_PIECES] = len(game.pieces)
     room = room_for(count)
     room.states[:] = states
@@ -108,6 +112,20 @@ def game_of(scene: Scene, order: Whole) -> tuple[Game, Room]:
             keep_flight(game, i)
     advance(game, 0.0, EVERYBODY, room.one, room)
     return game, room
+
+
+def set_pace(game: Game, states: FloatArray) -> None:
+    """Scales of speed and acceleration that hold for these states, and for those before."""
+    rims = game.discs[:, layout.RADIUS] * np.abs(states[:, SPIN])
+    driven = game.pieces[:, FIRST + VX : FIRST + VY + 1]
+    launched = np.hypot(game.launches[:, 2], game.launches[:, 3])
+    game.pace[0] = max(
+        game.pace[0], float(np.hypot(np.hypot(states[:, VX], states[:, VY]), rims).max()),
+        float(np.hypot(*driven.T).max(initial=0.0)), float(launched.max(initial=0.0)),
+    )  # fmt: skip
+    fastest, smallest = game.pace[0], float(game.discs[:, layout.RADIUS].min())
+    steady = float(game.discs[:, layout.DECEL].max())
+    game.pace[1] = max(game.pace[1], steady if steady > 0.0 else fastest**2 / smallest)
 
 
 def _obstacles(scene: Scene) -> FloatArray:

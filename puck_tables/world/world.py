@@ -20,14 +20,16 @@ from puck_tables.world.engine import (
     FULL,
     NOBODY,
     PAUSED,
+    PUSHING,
     REACHED,
     TANGLED,
+    THOSE_LEFT,
     advance,
     lacks_rows,
 )
 from puck_tables.world.flight import DAMPED, GONE, LOOKED_UP, PATH, START, UNTIL
 from puck_tables.world.layout import LIGHTNESS, RADIUS, TURNABILITY
-from puck_tables.world.prepare import game_of, obstacle_names, order_of
+from puck_tables.world.prepare import game_of, obstacle_names, order_of, set_pace
 from puck_tables.world.record import states_at
 
 _FAILURES = {
@@ -245,12 +247,18 @@ class World:
         """Let time pass, after a disc was given the velocity of a state."""
         if lacks_rows(self._game, self._room):
             self._grow()
+        if struck >= 0:
+            set_pace(self._game, state[None] * np.ones((len(self._game.discs), 1)))
         while (how := advance(self._game, until, struck, state, self._room)) != REACHED:
-            if how not in (FULL, PAUSED):
-                raise PuckError(_FAILURES[how].format(time=self.time))
             struck = NOBODY
             if how == FULL:
                 self._grow()
+            elif how == PUSHING:
+                from puck_tables.world.groups import push_on  # compiled where it is needed
+
+                self._game, struck = push_on(self._game, self._room), THOSE_LEFT
+            elif how != PAUSED:
+                raise PuckError(_FAILURES[how].format(time=self.time))
 
     def perturb(self, scale: float, turn: float) -> None:
         """Change the launches: their velocities and spins by a factor, their headings by an angle.
