@@ -28,7 +28,7 @@ def disc(radius=0.05, mass=0.2, decel=1.0, delta=0.0, grip=0.0, gyration=0.5**0.
     light = 1.0 / mass if mass else 0.0
     return [
         radius, light, light / (gyration * radius) ** 2, decel, delta, damping, spin_damping, wake,
-        0.0, tangential, grip,
+        0.0, tangential, grip, 0.0,
     ]  # fmt: skip
 
 

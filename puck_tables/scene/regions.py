@@ -77,7 +77,7 @@ def regions_of(scene: Scene) -> Regions:
             f"tol = {scene.run.tol:g} is out of reach under the pressure law {puck.pressure}: give "
             f"run.tol (or --tol) of {rounded_up(error.reachable / SLICE_SHARE):g} or more"
         ) from None
-    return Regions(load, np.array(heights), _of_one_shape(slices), NO_LAW)
+    return Regions(load, np.array(heights), of_one_shape(slices), NO_LAW)
 
 
 def friction_error(scene: Scene) -> float:
@@ -163,7 +163,7 @@ def _plain_cut(tol: float, delta: float) -> FloatArray:
     return table_friction(delta, ResultantTable.shipped()).cut
 
 
-def _of_one_shape(slices: list[FloatArray]) -> FloatArray:
+def of_one_shape(slices: list[FloatArray]) -> FloatArray:
     """Slices (sides, columns) in one array: cells halved, last sides repeated; the same splines."""
     columns = max(part.shape[1] for part in slices)
     sides = max(part.shape[0] for part in slices)

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
 from puck_tables.errors import InputError
-from puck_tables.motion.body import is_plain
 from puck_tables.scene.agreement import distance
 from puck_tables.scene.entries import entries
-from puck_tables.scene.parts import Drag, Floor, Force, Launch
+from puck_tables.scene.parts import Floor, Force, Launch
 from puck_tables.scene.pieces import Piece
 from puck_tables.scene.scene import Scene
 from puck_tables.world.drive import rows_of
@@ -75,12 +75,16 @@ def disagreements(scene: Scene) -> list[str]:
 
 def _not_here(scene: Scene) -> Iterator[str]:
     """What a scene of several pucks does not take."""
-    for name, part, default in (("floor", scene.floor, Floor()), ("force", scene.force, Force())):
+    flat = replace(scene.floor, slope=0.0, downhill=0.0)
+    for name, part, default in (("floor", flat, Floor()), ("force", scene.force, Force())):
         if part != default:
             known = {one.path: one.value for one in entries(default, f"{name}.")}
             changed = (one for one in entries(part, f"{name}.") if known.get(one.path) != one.value)
             path = next(one.path for one in changed)
-            yield f"{path}: several pucks, posts, arcs and pockets are on a level floor at rest"
+            yield (
+                f"{path}: several pucks, posts, arcs and pockets are on a floor at rest of one "
+                "kind, level or sloping, without other forces"
+            )
     if scene.constraint is not None:
         yield "constraint: is of one puck alone, without posts, arcs and pockets"
     if scene.pucks and scene.launch != Launch():
@@ -103,14 +107,8 @@ def _of_one(scene: Scene, piece: Piece, path: str) -> Iterator[str]:
         except InputError as error:
             yield f"{path}.path: {error}"
         return
-    drags = scene.drag != Drag()
-    if piece.friction > 0.0 and drags:
-        yield f"{path}.friction: with several pucks there is dry friction or drag, not both"
-    if piece.friction > 0.0 and not is_plain(piece.pressure, piece.gyration, piece.delta):
-        yield (
-            f"{path}: several pucks are homogeneous, under uniform pressure and with delta = 2 f h "
-            f"/ r <= 1 (here {piece.delta:.4g})"
-        )
+    if scene.floor.slope > 0.0 and piece.gravity != pieces_of(scene)[0].gravity:
+        yield f"{path}.gravity = {piece.gravity:g}: on a slope all pucks have the same"
 
 
 def _overlaps(pieces: tuple[Piece, ...]) -> Iterator[str]:

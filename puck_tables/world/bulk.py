@@ -17,10 +17,9 @@ from puck_tables.world.engine import (
     PAUSED,
     Room,
     advance,
-    keep_flight,
     room_for,
 )
-from puck_tables.world.flight import DAMPED, GONE, START, STILL, UNTIL, start_flight, state_at
+from puck_tables.world.flight import DAMPED, GONE, START, STILL, UNTIL, state_at
 from puck_tables.world.game import COUNTS, N_IMPACTS, N_PIECES, Game, Whole
 
 END_COLUMNS = 6  # of a puck: its state at the end
@@ -55,17 +54,12 @@ def _follow_all(
             game.kinds[i], game.group[i] = kinds[i], 0
             for column in range(flights.shape[1]):
                 game.flights[i, column] = flights[i, column]
-        for m in range(discs.size):
-            i = discs[m]
+        for i in range(count):
             for column in range(6):
                 room.states[i, column] = first[i, column]
+        for m in range(discs.size):
             for column in range(3):
-                room.states[i, VX + column] = launches[run, m, column]
-            game.kinds[i] = start_flight(
-                room.states[i], game.discs[i], game.curves, 0.0, room.work, game.flights[i]
-            )
-        for i in range(count):
-            keep_flight(game, i)
+                room.states[discs[m], VX + column] = launches[run, m, column]
         how = advance(game, until, EVERYBODY, room.one, room)
         while how == PAUSED:
             how = advance(game, until, NOBODY, room.one, room)

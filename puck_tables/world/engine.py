@@ -72,7 +72,7 @@ from puck_tables.world.impact import (
     opening,
     prepare_contact,
 )
-from puck_tables.world.layout import EDGE, KIND, POCKET, RADIUS
+from puck_tables.world.layout import DECEL, EDGE, INTEGRATED, KIND, POCKET, RADIUS
 from puck_tables.world.meeting import next_crossing, next_meeting, normal_to
 from puck_tables.world.paths import DURATION, FIRST
 from puck_tables.world.paths import START as BEGINS
@@ -155,6 +155,16 @@ def _take_off(game: Game, i: int, t: float, room: Room) -> None:
     keep_flight(game, i)
 
 
+@inlined
+def stay(game: Game, i: int, t: float, room: Room) -> None:
+    """A disc at rest, that others or a cushion may hold there."""
+    room.states[i, VX] = room.states[i, VY] = room.states[i, SPIN] = 0.0
+    game.kinds[i] = start_flight(
+        room.states[i], game.discs[i], game.curves, t, room.work, game.flights[i]
+    )
+    keep_flight(game, i)
+
+
 @inner
 def drive_on(game: Game, i: int, t: float, room: Room) -> None:
     """The next straight piece of the way along which a disc is driven; at its end it stays."""
@@ -202,9 +212,9 @@ def _touching(game: Game, t: float, room: Room) -> int:
     while grown:
         grown = False
         for i in range(discs.shape[0]):
-            if room.marks[i] != 1:
+            if room.marks[i] != CONCERNED:
                 continue
-            room.marks[i] = 2  # its contacts are known
+            room.marks[i] = LOOKED_AT
             near = TOUCH * discs[i, RADIUS]
             for k in range(game.obstacles.shape[0]):
                 shape = int(game.obstacles[k, KIND])
@@ -219,7 +229,7 @@ def _touching(game: Game, t: float, room: Room) -> int:
             for j in range(discs.shape[0]):
                 if j == i or game.kinds[j] == GONE:
                     continue
-                if room.marks[j] == 0:
+                if room.marks[j] == NOT_CONCERNED:
                     _locate(game, j, t, room)
                 reach = discs[i, RADIUS] + discs[j, RADIUS]
                 dx = room.states[j, X] - room.states[i, X]
@@ -231,8 +241,8 @@ def _touching(game: Game, t: float, room: Room) -> int:
                         return -1
                     room.contacts[count, 0], room.contacts[count, 1] = min(i, j), max(i, j)
                     count += 1
-                if room.marks[j] == 0:
-                    room.marks[j], grown = 1, True
+                if room.marks[j] == NOT_CONCERNED:
+                    room.marks[j], grown = CONCERNED, True
     for n in range(count):
         prepare_contact(game, room.contacts[n, 0], room.contacts[n, 1], room.states, room.rows[n])
     return count
@@ -287,28 +297,23 @@ def _happen(game: Game, i: int, partner: int, t: float, room: Room) -> int:
     """What comes next for a disc happens; those concerned are marked."""
     discs = game.discs
     for j in range(discs.shape[0]):
-        room.marks[j] = 0
+        room.marks[j] = NOT_CONCERNED
     _locate(game, i, t, room)
-    room.marks[i] = 1
+    room.marks[i] = CONCERNED
     if partner == PATH_ENDS and game.drives[i, 0] < game.drives[i, 1]:
         drive_on(game, i, t, room)
         return REACHED
     for j in range(discs.shape[0]):
         with_i = game.group[j] > 0 and game.group[j] == game.group[i]
         with_partner = 0 <= partner < NOTHING and game.group[j] == game.group[partner] > 0
-        if (with_i or with_partner) and room.marks[j] == 0:
+        if (with_i or with_partner or j == partner) and room.marks[j] == NOT_CONCERNED:
             _locate(game, j, t, room)
-            room.marks[j] = 1
+            room.marks[j] = CONCERNED
     if partner < 0:
-        k = -1 - partner
-        shape = int(game.obstacles[k, KIND])
+        shape = int(game.obstacles[-1 - partner, KIND])
         if shape in (POCKET, EDGE):
-            _leave(game, i, t, POCKETED if shape == POCKET else OVER_EDGE, k, room)
-            room.marks[i] = 2
-            return REACHED
-    elif partner < NOTHING:
-        _locate(game, partner, t, room)
-        room.marks[partner] = 1
+            _leave(game, i, t, POCKETED if shape == POCKET else OVER_EDGE, -1 - partner, room)
+            room.marks[i] = LOOKED_AT
     count = _touching(game, t, room)
     if count < 0:
         return FULL
@@ -317,40 +322,69 @@ def _happen(game: Game, i: int, partner: int, t: float, room: Room) -> int:
     _note_impacts(game, t, count, room)
     # those that no impulse reached fly on
     for j in range(discs.shape[0]):
-        room.marks[j] = 1 if game.group[j] > 0 and room.marks[j] > 0 else 0
-    room.marks[i] = 1
+        with_them = game.group[j] > 0 and room.marks[j] > 0
+        room.marks[j] = CONCERNED if with_them else NOT_CONCERNED
+    room.marks[i] = CONCERNED
     for n in range(count):
         if room.rows[n, SUM_N] > 0.0:
-            room.marks[room.contacts[n, 0]] = 1
+            room.marks[room.contacts[n, 0]] = CONCERNED
             if room.contacts[n, 1] >= 0:
-                room.marks[room.contacts[n, 1]] = 1
+                room.marks[room.contacts[n, 1]] = CONCERNED
+    return _go_on(game, t, count, room)
+
+
+@inlined
+def _go_on(game: Game, t: float, count: int, room: Room) -> int:
+    """New flights of all that are concerned; PUSHING where some have to be integrated before."""
     game.counts[N_CONTACTS] = count
-    if _press_somewhere(game, count, room):
+    pushes = _press_somewhere(game, count, room)
+    for j in range(game.discs.shape[0]):
+        pushes = pushes or (room.marks[j] == CONCERNED and is_integrated(game, j, room.states[j]))
+    if pushes:
         return PUSHING
     _take_off_all(game, t, room)
     return REACHED
 
 
 @inlined
+def is_integrated(game: Game, i: int, state: FloatArray) -> bool:
+    """Whether the motion of a disc from here, alone, is to be integrated."""
+    disc = game.discs[i]
+    if disc[INTEGRATED] == 0.0 or game.kinds[i] == GONE:
+        return False
+    moves = state[VX] != 0.0 or state[VY] != 0.0 or state[SPIN] != 0.0
+    return moves or math.hypot(game.pull[0], game.pull[1]) > disc[DECEL]
+
+
+@inlined
 def _take_off_all(game: Game, t: float, room: Room) -> None:
     """New flights of all that are concerned, but for those that are driven."""
     for j in range(game.discs.shape[0]):
-        if room.marks[j] == CONCERNED and game.drives[j, 0] == game.drives[j, 1]:
+        driven = game.drives[j, 0] < game.drives[j, 1]
+        if room.marks[j] == CONCERNED and game.kinds[j] != GONE and not driven:
             _take_off(game, j, t, room)
 
 
 @inner
-def _send(game: Game, i: int, t: float, vx: float, vy: float, spin: float, room: Room) -> None:
+def _send(game: Game, i: int, t: float, vx: float, vy: float, spin: float, room: Room) -> int:
     """Give a disc in play another velocity and spin: like an impact from outside."""
     for j in range(game.discs.shape[0]):
-        room.marks[j] = 0
+        room.marks[j] = NOT_CONCERNED
     if game.kinds[i] == GONE:
-        return
-    _locate(game, i, t, room)
+        return REACHED
+    for j in range(game.discs.shape[0]):  # and whoever pushes it, or is pushed by it
+        if j == i or (game.group[i] > 0 and game.group[j] == game.group[i]):
+            _locate(game, j, t, room)
+            room.marks[j] = CONCERNED
     room.states[i, VX], room.states[i, VY], room.states[i, SPIN] = vx, vy, spin
     note(game, t, STRUCK, i, i, room.states[i, X], room.states[i, Y])
-    _take_off(game, i, t, room)
-    room.marks[i] = 1
+    count = _touching(game, t, room)
+    if count < 0:
+        return FULL
+    for j in range(game.discs.shape[0]):
+        with_i = game.group[i] > 0 and game.group[j] == game.group[i]
+        room.marks[j] = CONCERNED if j == i or with_i else NOT_CONCERNED
+    return _go_on(game, t, count, room)
 
 
 @inner
@@ -359,8 +393,9 @@ def _look_again(game: Game, t: float, room: Room) -> None:
     count = game.discs.shape[0]
     for i in range(count):
         partner = game.next_partner[i]
-        if room.marks[i] == 0 and 0 <= partner < NOTHING and room.marks[partner] > 0:
-            room.marks[i] = 3
+        alone = room.marks[i] == NOT_CONCERNED and 0 <= partner < NOTHING
+        if alone and room.marks[partner] > 0:
+            room.marks[i] = DISAPPOINTED
     for i in range(count):
         if room.marks[i] > 0:
             game.next_time[i], game.next_partner[i] = math.inf, NOTHING
@@ -390,13 +425,23 @@ def advance(game: Game, until: float, struck: int, state: FloatArray, room: Room
     count = game.discs.shape[0]
     at_once, last, events = 0, -math.inf, 0
     if struck != NOBODY:
-        if struck != THOSE_LEFT:
-            for i in range(count):
-                room.marks[i] = CONCERNED
+        status = REACHED
         if struck == THOSE_LEFT:
             _take_off_all(game, game.clock[0], room)
-        if struck >= 0:
-            _send(game, struck, game.clock[0], state[VX], state[VY], state[SPIN], room)
+        elif struck == EVERYBODY:
+            for i in range(count):
+                room.marks[i] = CONCERNED
+            contacts = _touching(game, game.clock[0], room)
+            if contacts < 0:
+                return FULL
+            for i in range(count):
+                room.marks[i] = CONCERNED
+            status = _go_on(game, game.clock[0], contacts, room)
+        else:
+            vx, vy, spin = state[VX], state[VY], state[SPIN]
+            status = _send(game, struck, game.clock[0], vx, vy, spin, room)
+        if status != REACHED:
+            return status
         _look_again(game, game.clock[0], room)
     while True:
         first, t = count - 1, math.inf
@@ -420,8 +465,8 @@ def advance(game: Game, until: float, struck: int, state: FloatArray, room: Room
         if at_once > MOST_AT_ONCE:
             return CROWDED
         if launch <= t:
-            t, status, row = launch, REACHED, game.launches[done]
-            _send(
+            t, row = launch, game.launches[done]
+            status = _send(
                 game, int(row[LAUNCHED]), t, row[LAUNCH_VX], row[LAUNCH_VY], row[LAUNCH_SPIN], room
             )
             game.counts[N_LAUNCHES] += 1

@@ -47,7 +47,7 @@ class Game(NamedTuple):
     (n, 2): the rows of ``pieces`` along which a disc is driven.  ``counts``: how many rows of
     events, history, pieces and held contacts are used, how many launches and what else was done,
     and the contacts of the event at work.  ``pace`` (2,): the scales of speed, m/s, and
-    acceleration, m/s².
+    acceleration, m/s².  ``pull`` (2,): acceleration down a slope, m/s².
     """
 
     discs: FloatArray
@@ -68,3 +68,4 @@ class Game(NamedTuple):
     history: FloatArray
     counts: Whole
     pace: FloatArray
+    pull: FloatArray

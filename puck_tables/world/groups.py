@@ -13,7 +13,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import PuckError
 from puck_tables.scene.friction import VX, VY
-from puck_tables.world.engine import CONCERNED, PUSHED, Room, keep_flight
+from puck_tables.world.engine import CONCERNED, PUSHED, Room, is_integrated, keep_flight, stay
 from puck_tables.world.flight import (
     ANGLE,
     FASTEST,
@@ -31,7 +31,6 @@ from puck_tables.world.group import (
     APART,
     HELD,
     LEDGER,
-    NOT_FINITE,
     PARTS,
     RUNS_OFF,
     UNSOLVED,
@@ -59,9 +58,11 @@ def push_on(game: Game, room: Room) -> Game:
     held = game.held[: game.counts[N_HELD]]
     held = held[game.group[held[:, 0]] > 0]
     t, scales = float(game.clock[0]), Scales(float(game.pace[0]), float(game.pace[1]), STEP_TOL)
-    shared = Group(game.discs, game.obstacles, game.regions, game.pieces, game.drives, 0.0, 0.0)
+    gx, gy = game.pull.tolist()
+    shared = Group(game.discs, game.obstacles, game.regions, game.pieces, game.drives, gx, gy)
     for part in _components(contacts, len(game.discs)):
-        members, kept, t_end, ways = _follow(shared, part, room.states, t, scales)
+        members = np.unique(part[part >= 0])
+        kept, t_end, ways = _follow(shared, members, part, room.states, t, scales)
         if not len(kept):
             continue
         game.counts[N_GROUPS] += 1
@@ -70,9 +71,17 @@ def push_on(game: Game, room: Room) -> Game:
             game.group[i] = game.counts[N_GROUPS]
             if game.drives[i, 0] < game.drives[i, 1]:
                 continue  # it stays on its own way
-            game = _with_pieces(game, ways[place])
-            _set_out(game, int(i), t, t_end, ways[place])
             room.marks[i] = PUSHED
+            if t_end == math.inf:
+                stay(game, int(i), t, room)
+            else:
+                game = _set_out(game, int(i), t, t_end, ways[place])
+    for i in np.flatnonzero(room.marks == CONCERNED):
+        if is_integrated(game, i, room.states[i]):
+            _, t_end, ways = _follow(shared, np.array([i]), contacts[:0], room.states, t, scales)
+            if t < t_end < math.inf:
+                game = _set_out(game, int(i), t, t_end, ways[0])
+                room.marks[i] = PUSHED
     game.held[: len(held)], game.counts[N_HELD] = held, len(held)
     return game
 
@@ -95,36 +104,39 @@ def _components(contacts: Whole, discs: int) -> list[Whole]:
 
 
 def _follow(
-    shared: Group, contacts: Whole, states: FloatArray, t: float, scales: Scales
-) -> tuple[Whole, Whole, float, FloatArray]:
-    """Members of a group, its contacts that press, until when, and pieces (m, rows, 20).
+    shared: Group, members: Whole, contacts: Whole, states: FloatArray, t: float, scales: Scales
+) -> tuple[Whole, float, FloatArray]:
+    """The contacts of a group that press, until when it is known, and pieces (m, rows, 20).
 
-    No contacts, where none presses.
+    No contacts where none presses; where all rest until they are hit, for ever and no pieces.
     """
+    # down a slope a puck may go on for ever, and gets faster than bounds should be
+    steep = shared.gx != 0.0 or shared.gy != 0.0
+    horizon = t + 2.0 * scales.speed / scales.rate if steep else math.inf
+    alone, nothing = not len(contacts), np.zeros((len(members), 0, PIECE_COLUMNS))
     for _ in range(_TRIES):
-        members = np.unique(contacts[contacts >= 0])
         desk, ledger = desk_for(len(members), len(contacts)), np.zeros(LEDGER)
         modes, doings = np.zeros(len(contacts), np.int64), np.zeros(len(members), np.int64)
         how = press(shared, members, contacts, states, t, scales, modes, doings, ledger, desk)
         if how == UNSOLVED:
             break
         contacts, modes = contacts[modes != APART], modes[modes != APART]
-        if not len(contacts) or (doings == HELD).all():
-            return members, contacts[:0], t, np.zeros((0, 0, PIECE_COLUMNS))
+        if not (alone or len(contacts)):
+            return contacts, t, nothing
+        if (doings == HELD).all():
+            return contacts, math.inf, nothing
         pieces = np.zeros((len(members), ROWS, PIECE_COLUMNS))
-        after = states.copy()
         how, which, t_end, count = follow(
-            shared, members, contacts, after, t, math.inf, scales, modes, doings, pieces, ledger,
-            desk,
+            shared, members, contacts, states.copy(), t, horizon, scales, modes, doings, pieces,
+            ledger, desk,
         )  # fmt: skip
-        if how in (UNSOLVED, NOT_FINITE) and count == 0:
-            break
         if t_end > t and count > 0:
-            return members, contacts, t_end, pieces[:, :count]
-        if how in (PARTS, RUNS_OFF):
-            contacts = np.delete(contacts, which, axis=0)
-            if not len(contacts):
-                return members, contacts, t, pieces[:, :0]
+            return contacts, t_end, pieces[:, :count]
+        if how not in (PARTS, RUNS_OFF):
+            break
+        contacts = np.delete(contacts, which, axis=0)
+        if not len(contacts):
+            return contacts, t, nothing
     raise PuckError(
         f"at {t:.6g} s {len(members)} pucks press on each other so that no forces satisfy all laws "
         "of their rims: give their rims a finite friction (rim), or move one of them"
@@ -142,8 +154,9 @@ def _with_pieces(game: Game, rows: FloatArray) -> Game:
     return game
 
 
-def _set_out(game: Game, i: int, t: float, t_end: float, rows: FloatArray) -> None:
-    """The flight of a disc along the rows that were written last."""
+def _set_out(game: Game, i: int, t: float, t_end: float, rows: FloatArray) -> Game:
+    """The flight of a disc along rows of a way, which are kept."""
+    game = _with_pieces(game, rows)
     last, flight = int(game.counts[N_PIECES]), game.flights[i]
     speeds = np.hypot(rows[:, [FIRST + VX, FIRST + 9 + VX]], rows[:, [FIRST + VY, FIRST + 9 + VY]])
     bends = np.hypot(rows[:, [FIRST + 6, FIRST + 15]], rows[:, [FIRST + 7, FIRST + 16]])
@@ -154,3 +167,4 @@ def _set_out(game: Game, i: int, t: float, t_end: float, rows: FloatArray) -> No
     flight[FIRST_PIECE], flight[LAST_PIECE] = last - len(rows), last
     game.kinds[i] = PATH
     keep_flight(game, i)
+    return game

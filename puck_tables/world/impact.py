@@ -34,6 +34,7 @@ from puck_tables.world.game import Game, Whole
 from puck_tables.world.layout import (
     ARC,
     DAMPING,
+    DECEL,
     KIND,
     LIGHTNESS,
     RADIUS,
@@ -113,9 +114,20 @@ def _pull_along(game: Game, i: int, nx: float, ny: float, states: FloatArray) ->
     """The acceleration along n of a disc alone."""
     vx, vy, spin = states[i, VX], states[i, VY], states[i, SPIN]
     disc = game.discs[i]
+    if disc[LIGHTNESS] == 0.0:
+        return 0.0  # straight on
+    gx, gy = game.pull[0], game.pull[1]
+    if vx == 0.0 and vy == 0.0 and spin == 0.0:
+        size = math.hypot(gx, gy)
+        left = 1.0 - disc[DECEL] / size if size > disc[DECEL] else 0.0
+        return left * (gx * nx + gy * ny)
     fx, fy, _, _ = dry_friction(dry_in(game.regions, i), disc[RADIUS], vx, vy, spin)
     drag = disc[DAMPING] + disc[WAKE] * math.hypot(vx, vy)
-    return disc[LIGHTNESS] * (fx * nx + fy * ny) - drag * (vx * nx + vy * ny)
+    return (
+        (disc[LIGHTNESS] * fx + gx) * nx
+        + (disc[LIGHTNESS] * fy + gy) * ny
+        - drag * (vx * nx + vy * ny)
+    )
 
 
 @inlined

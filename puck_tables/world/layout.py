@@ -15,7 +15,8 @@ from puck_tables.kernels.compile import inlined
 RADIUS, LIGHTNESS, TURNABILITY, DECEL, DELTA = range(5)  # r, 1/m, 1/I, J = f g, 2 f h/r
 DAMPING, SPIN_DAMPING, WAKE = 5, 6, 7  # drag over mass, over inertia, 1/s; quadratic, 1/m
 RESTITUTION, TANGENTIAL, FRICTION = 8, 9, 10  # of its rim
-DISC_COLUMNS = 11
+INTEGRATED = 11  # 1: also alone; what is known of its motion is an integral, no table
+DISC_COLUMNS = 12
 
 # columns of an obstacle: for a wall (A, B) is its unit normal into the field and C its place along
 # it; for the others (A, B) is the centre, C the radius and [FROM, FROM + SPAN] the angles of an arc

@@ -7,16 +7,27 @@ import math
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables.motion.body import is_plain
 from puck_tables.scene.friction import SPIN, VX, VY
 from puck_tables.scene.ingredients import Regions
-from puck_tables.scene.regions import NO_LAW
+from puck_tables.scene.parts import Drag
+from puck_tables.scene.pieces import Piece
+from puck_tables.scene.regions import NO_LAW, SLICE_SHARE, of_one_shape
 from puck_tables.scene.scene import Scene
 from puck_tables.stopping.stop_table import StopTable
+from puck_tables.table.friction_section import FINEST_ACCURACY
 from puck_tables.world import layout
 from puck_tables.world.agreement import pieces_of, start_of
 from puck_tables.world.drive import pieces_along, rows_of
-from puck_tables.world.engine import EVERYBODY, Room, advance, drive_on, keep_flight, room_for
-from puck_tables.world.flight import FLIGHT_COLUMNS, Curves, start_flight
+from puck_tables.world.engine import Room, drive_on, room_for
+from puck_tables.world.flight import (
+    ANGLE,
+    FIRST_PIECE,
+    FLIGHT_COLUMNS,
+    PLACE_X,
+    PLACE_Y,
+    Curves,
+)
 from puck_tables.world.game import (
     COUNTS,
     EVENT_COLUMNS,
@@ -42,7 +53,10 @@ def order_of(scene: Scene) -> Whole:
 
 
 def game_of(scene: Scene, order: Whole) -> tuple[Game, Room]:
-    """The engine's arrays at the start of a scene, and room for it to work in."""
+    """The engine's arrays at the start of a scene, and room to work in with the states then.
+
+    Nothing has taken off yet: EVERYBODY is to look ahead.
+    """
     pieces = [pieces_of(scene)[number] for number in order]
     count, table = len(pieces), StopTable.shipped()
     curves = Curves(
@@ -57,7 +71,10 @@ def game_of(scene: Scene, order: Whole) -> tuple[Game, Room]:
         inertia = piece.mass * (piece.gyration * piece.radius) ** 2
         if not driven:
             discs[i, layout.LIGHTNESS], discs[i, layout.TURNABILITY] = 1.0 / piece.mass, 1 / inertia
-            discs[i, layout.DECEL], discs[i, layout.DELTA] = piece.decel, piece.delta
+            discs[i, layout.DECEL] = piece.decel * math.cos(scene.floor.slope)
+            discs[i, layout.DELTA] = piece.delta
+            rough = piece.friction > 0.0 and (scene.drag != Drag() or not _is_plain(piece))
+            discs[i, layout.INTEGRATED] = float(rough or scene.floor.slope > 0.0)
             discs[i, layout.DAMPING] = scene.drag.sliding / piece.mass
             discs[i, layout.WAKE] = scene.drag.quadratic / piece.mass
             discs[i, layout.SPIN_DAMPING] = scene.drag.spinning / inertia
@@ -77,11 +94,9 @@ def game_of(scene: Scene, order: Whole) -> tuple[Game, Room]:
             launches.append([launch.time, i, *velocity, launch.spin])
         else:
             states[i, 3:5], states[i, 5] = velocity, launch.spin
-    load = np.divide(discs[:, layout.DECEL], discs[:, layout.LIGHTNESS],
-                     out=np.zeros(count), where=discs[:, layout.LIGHTNESS] > 0.0)  # fmt: skip
     game = Game(
         discs=discs,
-        regions=Regions(load, discs[:, layout.DELTA].copy(), np.empty((count, 0)), NO_LAW),
+        regions=_regions(scene, pieces, discs),
         obstacles=_obstacles(scene),
         curves=curves,
         clock=np.zeros(1),
@@ -98,26 +113,26 @@ def game_of(scene: Scene, order: Whole) -> tuple[Game, Room]:
         history=np.zeros((ROWS + 4 * count, HISTORY_COLUMNS)),
         counts=np.zeros(COUNTS, np.int64),
         pace=np.zeros(2),
+        pull=np.array(_pull(scene, pieces)),
     )
-    set_pace(game, states)
     game.counts[N_PIECES] = len(game.pieces)
     room = room_for(count)
-    room.states[:] = states
     for i in range(count):
-        game.kinds[i] = start_flight(states[i], discs[i], curves, 0.0, room.work, game.flights[i])
+        game.flights[i, [PLACE_X, PLACE_Y, ANGLE]] = states[i, :3]
         if drives[i, 0] < drives[i, 1]:
-            game.flights[i, -2] = drives[i, 0]
+            states[i, VX:] = game.pieces[drives[i, 0], FIRST + VX : FIRST + SPIN + 1]
+            game.flights[i, FIRST_PIECE] = drives[i, 0]
+            room.states[i] = states[i]
             drive_on(game, i, 0.0, room)
-        else:
-            keep_flight(game, i)
-    advance(game, 0.0, EVERYBODY, room.one, room)
+    room.states[:] = states
+    set_pace(game, states)
     return game, room
 
 
 def set_pace(game: Game, states: FloatArray) -> None:
     """Scales of speed and acceleration that hold for these states, and for those before."""
     rims = game.discs[:, layout.RADIUS] * np.abs(states[:, SPIN])
-    driven = game.pieces[:, FIRST + VX : FIRST + VY + 1]
+    driven = game.pieces[: game.drives.max(), FIRST + VX : FIRST + VY + 1]
     launched = np.hypot(game.launches[:, 2], game.launches[:, 3])
     game.pace[0] = max(
         game.pace[0], float(np.hypot(np.hypot(states[:, VX], states[:, VY]), rims).max()),
@@ -126,6 +141,37 @@ def set_pace(game: Game, states: FloatArray) -> None:
     fastest, smallest = game.pace[0], float(game.discs[:, layout.RADIUS].min())
     steady = float(game.discs[:, layout.DECEL].max())
     game.pace[1] = max(game.pace[1], steady if steady > 0.0 else fastest**2 / smallest)
+
+
+def _regions(scene: Scene, pieces: list[Piece], discs: FloatArray) -> Regions:
+    """The dry friction of every disc: closed forms, or sections where one is no plain puck.
+
+    Raises
+    ------
+    AccuracyError
+        If the friction of one cannot be tabulated as fine as the scene asks.
+    """
+    load, delta = np.zeros(len(discs)), discs[:, layout.DELTA].copy()
+    free = discs[:, layout.LIGHTNESS] > 0.0
+    load[free] = discs[free, layout.DECEL] / discs[free, layout.LIGHTNESS]
+    if all(_is_plain(piece) for piece in pieces):
+        return Regions(load, delta, np.empty((len(discs), 0)), NO_LAW)
+    accuracy = max(SLICE_SHARE * scene.run.tol, FINEST_ACCURACY)
+    return Regions(
+        load, delta, of_one_shape([p.body.friction(accuracy).cut for p in pieces]), NO_LAW
+    )
+
+
+def _is_plain(piece: Piece) -> bool:
+    """Whether closed forms hold for a puck, or it has no friction."""
+    return piece.friction == 0.0 or is_plain(piece.pressure, piece.gyration, piece.delta)
+
+
+def _pull(scene: Scene, pieces: list[Piece]) -> tuple[float, float]:
+    """The acceleration down the slope, m/s²."""
+    floor = scene.floor
+    pull = pieces[0].gravity * math.sin(floor.slope)
+    return pull * math.cos(floor.downhill), pull * math.sin(floor.downhill)
 
 
 def _obstacles(scene: Scene) -> FloatArray:

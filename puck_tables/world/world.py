@@ -17,6 +17,7 @@ from puck_tables.world import game as g
 from puck_tables.world.agreement import called, pieces_of
 from puck_tables.world.engine import (
     CROWDED,
+    EVERYBODY,
     FULL,
     NOBODY,
     PAUSED,
@@ -32,8 +33,9 @@ from puck_tables.world.layout import LIGHTNESS, RADIUS, TURNABILITY
 from puck_tables.world.prepare import game_of, obstacle_names, order_of, set_pace
 from puck_tables.world.record import states_at
 
+MOST_EVENTS = 1_000_000
 _FAILURES = {
-    CROWDED: "10000 events at {time:.6g} s: they crowd together without end; change the "
+    CROWDED: "too many events by {time:.6g} s: they crowd together without end; change the "
     "restitution of what meets there",
     TANGLED: "the impacts of pucks that touch do not come to an end at {time:.6g} s: change their "
     "restitution",
@@ -95,6 +97,7 @@ class World:
         self._order = order_of(self.scene)
         self._game, self._room = game_of(self.scene, self._order)
         self._named()
+        self._advance(0.0, EVERYBODY, self._room.one)
 
     def _named(self) -> None:
         """Who is where in the engine's order, and what they are called."""
@@ -302,6 +305,8 @@ class World:
 
     def _grow(self) -> None:
         """Twice the rows for events and flights."""
+        if len(self._game.events) > MOST_EVENTS:
+            raise PuckError(_FAILURES[CROWDED].format(time=self.time))
         more = {
             name: np.vstack([part, np.zeros_like(part)])
             for name, part in (("events", self._game.events), ("history", self._game.history))
