@@ -13,7 +13,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
 from puck_tables.io.columns import COLUMNS, derived
 from puck_tables.io.dataset import Dataset, Variable, variable
-from puck_tables.result import Result
+from puck_tables.result import TimedResult
 from puck_tables.scene.entries import tables_of, units_of
 from puck_tables.scene.library import files_of
 from puck_tables.scene.outcome import column_of, scene_texts
@@ -25,7 +25,7 @@ MEETING = Meeting._fields
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class WorldRun(Result):
+class WorldRun(TimedResult):
     """What happened to several pucks.
 
     ``end``: 'at rest' or 'time is up'; ``end_time`` s; ``names``: of the pucks, in their order;

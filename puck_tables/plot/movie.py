@@ -1,0 +1,200 @@
+"""Movies of a motion: HTML, one file that any browser plays, or GIF and MP4 through matplotlib."""
+
+from __future__ import annotations
+
+import json
+import math
+import tempfile
+from importlib.resources import files
+from pathlib import Path
+from subprocess import CalledProcessError
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from puck_tables._core.safe_write import check_target, write_bytes
+from puck_tables.errors import MissingExtraError, OutputError
+from puck_tables.io.formats import ending_of
+from puck_tables.plot.film import Body, Film, between, film_of
+from puck_tables.plot.style import require_matplotlib
+from puck_tables.result import TimedResult
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+MOVIE_KINDS = (".html", ".gif", ".mp4")
+DIGITS = 8  # of the numbers in HTML
+_PICTURES = 25  # a second
+_SHORTEST, _LONGEST = (
+    3.0,
+    12.0,
+)  # s, of a GIF or MP4: shorter or longer motions are shown slower, faster
+_HELD = 12  # pictures of the end
+_DOTS = 100  # an inch
+_FLASH = 0.2  # s for which an impact is seen
+
+
+def checked_movie(path: str | Path) -> str:
+    """The ending of a movie's name; refuse before any work is done if it cannot be made.
+
+    Raises
+    ------
+    InputError
+        If movies have no such ending.
+    MissingExtraError
+        If matplotlib or ffmpeg is needed and not installed.
+
+    Examples
+    --------
+    >>> checked_movie("run.html")
+    '.html'
+    """
+    kind = ending_of(path, MOVIE_KINDS)
+    if kind != ".html":
+        require_matplotlib()
+    if kind == ".mp4":
+        from matplotlib.animation import FFMpegWriter
+
+        if not FFMpegWriter.isAvailable():
+            raise MissingExtraError(
+                "MP4 movies need the program ffmpeg, which is not found: install it, or name the "
+                "movie .html or .gif"
+            )
+    return kind
+
+
+def save_movie(result: TimedResult, path: str | Path, overwrite: bool = False) -> None:
+    """Write a movie whole or not at all, as :meth:`puck_tables.result.TimedResult.movie` has it.
+
+    Raises
+    ------
+    InputError
+        If movies have no such ending.
+    MissingExtraError
+        If matplotlib or ffmpeg is needed and not installed.
+    OutputError
+        If the file exists (without ``overwrite``) or cannot be written.
+    """
+    kind = checked_movie(path)
+    check_target(path, overwrite)
+    film = film_of(result)
+    content = page(film).encode() if kind == ".html" else _filmed(film, kind)
+    write_bytes(path, content, overwrite)
+
+
+def page(film: Film) -> str:
+    """One HTML page with the film in it: it loads nothing and needs no server.
+
+    Examples
+    --------
+    >>> from puck_tables import Puck
+    >>> "requestAnimationFrame" in page(film_of(Puck.similar().simulate((1.0, 0.0))))
+    True
+    """
+    template = (files("puck_tables.plot") / "movie.html").read_text(encoding="utf-8")
+    shown = {
+        "title": _title(film),
+        "end_time": film.end_time,
+        "box": film.box,
+        "bodies": [_body(body) for body in film.bodies],
+        "lines": [line._asdict() for line in film.lines],
+        "rounds": [one._asdict() for one in film.rounds],
+        "happenings": [one._asdict() for one in film.happenings],
+    }
+    text = json.dumps(shown, allow_nan=False, separators=(",", ":"))
+    # what a name or a title says never ends the script
+    text = text.replace("<", "\\u003c").replace(">", "\\u003e")
+    return template.replace("/*film*/null", text)
+
+
+def _title(film: Film) -> str:
+    return f"{film.title or 'Scene'}: {film.end} after {film.end_time:.4g} s"
+
+
+def _body(body: Body) -> dict[str, Any]:
+    return {
+        **body._asdict(),
+        "gone": body.gone if math.isfinite(body.gone) else None,
+        "mark": body.mark,
+        "knots": [[float(f"{x:.{DIGITS}g}") for x in row] for row in body.knots.tolist()],
+    }
+
+
+def _filmed(film: Film, kind: str) -> bytes:
+    """The bytes of a GIF or an MP4."""
+    from matplotlib.animation import FFMpegWriter, PillowWriter
+
+    shown = min(max(film.end_time, _SHORTEST), _LONGEST) if film.end_time > 0.0 else 0.0
+    times = np.linspace(0.0, film.end_time, round(shown * _PICTURES) + 1)
+    slowed = shown / film.end_time if film.end_time > 0.0 else 1.0
+    stage = _Stage(film, slowed)
+    writer = (PillowWriter if kind == ".gif" else FFMpegWriter)(fps=_PICTURES)
+    try:
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / f"movie{kind}"
+            with writer.saving(stage.figure, str(path), _DOTS):
+                for time in [*times.tolist(), *[film.end_time] * _HELD]:
+                    stage.show(time)
+                    writer.grab_frame()
+            return path.read_bytes()
+    except (OSError, CalledProcessError) as error:  # no room for it, or ffmpeg fails
+        raise OutputError(f"the movie could not be made: {error}") from None
+
+
+class _Stage:
+    """A figure of a film at any time: what moves is moved, the rest is drawn once."""
+
+    def __init__(self, film: Film, slowed: float) -> None:
+        from puck_tables.plot import board
+        from puck_tables.plot.style import RED, canvas, titled
+
+        self.film, self.slowed = film, slowed
+        wide, high = board.size_of(film.box)
+        share = min(1.0, 6.0 / max(wide, high))
+        self.figure: Figure = canvas(*(_even(x) for x in (share * wide + 0.9, share * high + 1.0)))
+        axes = self.figure.add_subplot()
+        board.draw_board(axes, film)
+        board.show(axes, film.box)
+        self.discs, self.marks, self.trails = [], [], []
+        for body in film.bodies:
+            looks: dict[str, Any] = {"facecolor": body.colour, "edgecolor": "black"}
+            if body.driven:
+                looks = {"facecolor": "white", "edgecolor": body.colour}
+            self.discs.append(
+                axes.add_patch(board.disc(body, 0.0, 0.0, linewidth=0.7, zorder=4, **looks))
+            )
+            self.marks += axes.plot([], [], color=body.mark, linewidth=1.0, zorder=5)
+            self.trails += axes.plot([], [], color=body.colour, linewidth=0.8, zorder=2, alpha=0.7)
+        self.flashes = axes.plot(
+            [], [], linestyle="", marker="o", markersize=9, fillstyle="none", color=RED, zorder=6
+        )[0]
+        titled(self.figure, _title(film))
+        self.clock = axes.set_title(" ", fontsize=9, loc="left")
+        self.figure.draw_without_rendering()
+        self.figure.set_layout_engine("none")  # found once
+
+    def show(self, time: float) -> None:
+        """Put everything where it is at a time."""
+        past = np.linspace(0.0, time, 2 + math.ceil(400 * time / max(self.film.end_time, 1e-300)))
+        parts = zip(self.film.bodies, self.discs, self.marks, self.trails, strict=True)
+        for body, disc, mark, trail in parts:
+            seen = between(body.knots, np.minimum(past, body.gone))
+            x, y, angle = seen[-1]
+            trail.set_data(seen[:, 0], seen[:, 1])
+            disc.set_center((x, y))
+            rim = x + body.radius * math.cos(angle), y + body.radius * math.sin(angle)
+            mark.set_data([x, rim[0]], [y, rim[1]])
+            for part in (disc, mark):
+                part.set_alpha(0.25 if time >= body.gone else 1.0)
+        recent = [
+            one for one in self.film.happenings
+            if 0.0 <= time - one.time <= _FLASH / self.slowed
+        ]  # fmt: skip
+        self.flashes.set_data([one.x for one in recent], [one.y for one in recent])
+        words = f"{time:.3f} s" if self.slowed == 1.0 else f"{time:.3f} s, {1.0 / self.slowed:.3g}x"
+        self.clock.set_text(words)
+
+
+def _even(inches: float) -> float:
+    """A size that is an even number of dots: video formats need it."""
+    return 2.0 * round(0.5 * inches * _DOTS) / _DOTS
