@@ -33,7 +33,7 @@ ROOMS = {
     "world",
     "paper": "_core contact motion plot puck trajectory",
     "cli": "_core _version accuracy chetaev contact errors io kernels motion paper plot puck scene "
-    "stopping table tradeoff",
+    "stopping table tradeoff world",
     "__init__": "_core _version",
 }
 DOORS = {

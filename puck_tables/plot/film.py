@@ -7,10 +7,12 @@ one just before and one just after.
 
 from __future__ import annotations
 
+import itertools
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.colours import brightness
@@ -228,7 +230,9 @@ def path_of(body: Body, until: float = math.inf) -> FloatArray:
 
 def _knots(states: FloatArray, radius: float, unseen: float) -> FloatArray:
     """As few of the states as tell the others to what is not seen, on a rim the angle included."""
-    chosen, waiting = {0, len(states) - 1}, [(0, len(states) - 1)]
+    sudden = np.flatnonzero(_leaps(states))  # the states just before
+    chosen = {0, len(states) - 1, *sudden.tolist(), *(sudden + 1).tolist()}
+    waiting = list(itertools.pairwise(sorted(chosen)))
     while waiting:
         first, last = waiting.pop()
         if last - first < 2:
@@ -241,6 +245,14 @@ def _knots(states: FloatArray, radius: float, unseen: float) -> FloatArray:
             chosen.add(worst)
             waiting += [(first, worst), (worst, last)]
     return states[sorted(chosen)]
+
+
+def _leaps(states: FloatArray) -> npt.NDArray[np.bool_]:
+    """Where rates change from one moment to the very next one, as in an impact, array (n - 1,)."""
+    at_once = states[1:, 0] <= np.nextafter(states[:-1, 0], np.inf)
+    rates = states[:, 4:]
+    scale = np.abs(rates).max(axis=0) + 1e-300
+    return np.asarray(at_once & (np.abs(np.diff(rates, axis=0)) > 1e-9 * scale).any(axis=1))
 
 
 def _rounds(scene: Scene) -> list[Round]:
@@ -296,7 +308,7 @@ def _with_corners(box: Box, planes: list[FloatArray]) -> Box:
 def _lines(planes: list[tuple[str, FloatArray]], box: Box) -> list[Line]:
     """The parts of walls and edges that are in sight and border the field."""
     left, right, low, high = box
-    sides = [(1.0, 0.0, left), (-1.0, 0.0, -right), (0.0, 1.0, low), (0.0, -1.0, -high)]
+    sides: list[Any] = [(1.0, 0.0, left), (-1.0, 0.0, -right), (0.0, 1.0, low), (0.0, -1.0, -high)]
     found = []
     for kind, plane in planes:
         nx, ny, at = plane

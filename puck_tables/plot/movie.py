@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import math
 import tempfile
@@ -15,12 +16,14 @@ import numpy as np
 from puck_tables._core.safe_write import check_target, write_bytes
 from puck_tables.errors import MissingExtraError, OutputError
 from puck_tables.io.formats import ending_of
+from puck_tables.plot import board
 from puck_tables.plot.film import Body, Film, between, film_of
-from puck_tables.plot.style import require_matplotlib
+from puck_tables.plot.style import RED, canvas, require_matplotlib, titled
 from puck_tables.result import TimedResult
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Circle
 
 MOVIE_KINDS = (".html", ".gif", ".mp4")
 DIGITS = 8  # of the numbers in HTML
@@ -128,13 +131,15 @@ def _filmed(film: Film, kind: str) -> bytes:
     times = np.linspace(0.0, film.end_time, round(shown * _PICTURES) + 1)
     slowed = shown / film.end_time if film.end_time > 0.0 else 1.0
     stage = _Stage(film, slowed)
+    screen = canvas(*stage.size)
+    image = screen.figimage(stage.seen_at(0.0))
     writer = (PillowWriter if kind == ".gif" else FFMpegWriter)(fps=_PICTURES)
     try:
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / f"movie{kind}"
-            with writer.saving(stage.figure, str(path), _DOTS):
+            with writer.saving(screen, str(path), _DOTS):
                 for time in [*times.tolist(), *[film.end_time] * _HELD]:
-                    stage.show(time)
+                    image.set_data(stage.seen_at(time))
                     writer.grab_frame()
             return path.read_bytes()
     except (OSError, CalledProcessError) as error:  # no room for it, or ffmpeg fails
@@ -142,57 +147,67 @@ def _filmed(film: Film, kind: str) -> bytes:
 
 
 class _Stage:
-    """A figure of a film at any time: what moves is moved, the rest is drawn once."""
+    """A picture of a film at any time: the board is drawn once, and what moves on it anew."""
 
     def __init__(self, film: Film, slowed: float) -> None:
-        from puck_tables.plot import board
-        from puck_tables.plot.style import RED, canvas, titled
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
 
         self.film, self.slowed = film, slowed
         wide, high = board.size_of(film.box)
         share = min(1.0, 6.0 / max(wide, high))
-        self.figure: Figure = canvas(*(_even(x) for x in (share * wide + 0.9, share * high + 1.0)))
-        axes = self.figure.add_subplot()
+        self.size = _even(share * wide + 0.9), _even(share * high + 1.0)
+        figure = canvas(*self.size)
+        figure.set_dpi(_DOTS)
+        axes = figure.add_subplot()
         board.draw_board(axes, film)
         board.show(axes, film.box)
-        self.discs, self.marks, self.trails = [], [], []
+        titled(figure, _title(film))
+        self._clock = axes.set_title(" ", fontsize=9, loc="left")
+        self._agg: Any = FigureCanvasAgg(figure)
+        self._agg.draw()
+        self._board = self._agg.copy_from_bbox(figure.bbox)
+        self._discs: list[Circle] = []
+        self._trails: list[Line2D] = []
+        self._marks: list[Line2D] = []
         for body in film.bodies:
             looks: dict[str, Any] = {"facecolor": body.colour, "edgecolor": "black"}
             if body.driven:
                 looks = {"facecolor": "white", "edgecolor": body.colour}
-            self.discs.append(
-                axes.add_patch(board.disc(body, 0.0, 0.0, linewidth=0.7, zorder=4, **looks))
-            )
-            self.marks += axes.plot([], [], color=body.mark, linewidth=1.0, zorder=5)
-            self.trails += axes.plot([], [], color=body.colour, linewidth=0.8, zorder=2, alpha=0.7)
-        self.flashes = axes.plot(
-            [], [], linestyle="", marker="o", markersize=9, fillstyle="none", color=RED, zorder=6
+            self._discs.append(board.disc(body, 0.0, 0.0, linewidth=0.7, **looks))
+            axes.add_patch(self._discs[-1])
+            self._trails += axes.plot([], [], color=body.colour, linewidth=0.8, alpha=0.7)
+            self._marks += axes.plot([], [], color=body.mark, linewidth=1.0)
+        self._flashes = axes.plot(
+            [], [], linestyle="", marker="o", markersize=9, fillstyle="none", color=RED
         )[0]
-        titled(self.figure, _title(film))
-        self.clock = axes.set_title(" ", fontsize=9, loc="left")
-        self.figure.draw_without_rendering()
-        self.figure.set_layout_engine("none")  # found once
 
-    def show(self, time: float) -> None:
-        """Put everything where it is at a time."""
-        past = np.linspace(0.0, time, 2 + math.ceil(400 * time / max(self.film.end_time, 1e-300)))
-        parts = zip(self.film.bodies, self.discs, self.marks, self.trails, strict=True)
-        for body, disc, mark, trail in parts:
+    def seen_at(self, time: float) -> Any:
+        """The picture at a time, array (high, wide, 4) of bytes."""
+        count = 2 + math.ceil(400.0 * time / self.film.end_time) if time > 0.0 else 2
+        past = np.linspace(0.0, time, count)
+        parts = zip(self.film.bodies, self._discs, self._trails, self._marks, strict=True)
+        for body, disc, trail, mark in parts:
             seen = between(body.knots, np.minimum(past, body.gone))
             x, y, angle = seen[-1]
             trail.set_data(seen[:, 0], seen[:, 1])
             disc.set_center((x, y))
             rim = x + body.radius * math.cos(angle), y + body.radius * math.sin(angle)
             mark.set_data([x, rim[0]], [y, rim[1]])
-            for part in (disc, mark):
-                part.set_alpha(0.25 if time >= body.gone else 1.0)
+            alpha = 0.25 if time >= body.gone else 1.0
+            disc.set_alpha(alpha)
+            mark.set_alpha(alpha)
         recent = [
             one for one in self.film.happenings
             if 0.0 <= time - one.time <= _FLASH / self.slowed
         ]  # fmt: skip
-        self.flashes.set_data([one.x for one in recent], [one.y for one in recent])
+        self._flashes.set_data([one.x for one in recent], [one.y for one in recent])
         words = f"{time:.3f} s" if self.slowed == 1.0 else f"{time:.3f} s, {1.0 / self.slowed:.3g}x"
-        self.clock.set_text(words)
+        self._clock.set_text(words)
+        self._agg.restore_region(self._board)
+        discs = itertools.chain(*zip(self._discs, self._marks, strict=True))
+        for artist in [*self._trails, *discs, self._flashes, self._clock]:
+            artist.draw(self._agg.get_renderer())
+        return np.array(self._agg.buffer_rgba())
 
 
 def _even(inches: float) -> float:

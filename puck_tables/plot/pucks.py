@@ -120,7 +120,7 @@ def _explain_looks(axes: Axes, film: Film) -> None:
     """What outlines, fillings and hatches mean, as far as they are in the picture."""
     from matplotlib.patches import Circle
 
-    looks = [("start", {"fill": False, "edgecolor": GREY})]
+    looks: list[tuple[str, dict[str, Any]]] = [("start", {"fill": False, "edgecolor": GREY})]
     if any(body.gone == math.inf and not body.driven for body in film.bodies):
         looks.append(("end", {"facecolor": GREY, "edgecolor": "black"}))
     if any(body.gone < math.inf for body in film.bodies):
