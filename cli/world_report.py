@@ -12,6 +12,7 @@ if TYPE_CHECKING:
 
 MOST_PUCKS, MOST_IMPACTS, MOST_NAMES = 40, 6, 6  # of a report
 _WIDEST = 24  # signs of a name in the table
+_ROUNDING = 1e-14  # of energies
 
 
 def report(run: WorldRun) -> str:
@@ -19,8 +20,7 @@ def report(run: WorldRun) -> str:
     lines = {
         "scene": _scene(run),
         "energy": _energy(run),
-        "heat": f"{run.heat_floor:.6g} J floor, {run.heat_impact:.6g} J impacts; ledger misses "
-        f"{run.energy_residual:.1e} of it",
+        "heat": _heat(run),
         "error": _error(run),
         "model": run.explain().replace("\n", ", "),
     }
@@ -139,6 +139,17 @@ def _energy(run: WorldRun) -> str:
     if abs(left) > 1e-9 * abs(given):
         words += f"; {left:.6g} J left, or gone with who left play"
     return words
+
+
+def _heat(run: WorldRun) -> str:
+    """What floor and impacts took; what is no more than rounding is told as 0."""
+    unseen = _ROUNDING * (run.kinetic_energy + abs(run.work_driven))
+    floor, impacts = (
+        heat if abs(heat) > unseen else 0.0 for heat in (run.heat_floor, run.heat_impact)
+    )
+    rounding = run.energy_residual < _ROUNDING
+    missed = f"under {_ROUNDING:g}" if rounding else f"{run.energy_residual:.1e}"
+    return f"{floor:.6g} J floor, {impacts:.6g} J impacts; ledger misses {missed} of it"
 
 
 def _error(run: WorldRun) -> str:

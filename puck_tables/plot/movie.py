@@ -9,7 +9,7 @@ import tempfile
 from importlib.resources import files
 from pathlib import Path
 from subprocess import CalledProcessError
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from puck_tables._core.safe_write import check_target, write_bytes
 from puck_tables.errors import MissingExtraError, OutputError
 from puck_tables.io.formats import ending_of
 from puck_tables.plot import board
-from puck_tables.plot.film import Body, Film, between, film_of
+from puck_tables.plot.film import Body, Film, between, film_of, path_of
 from puck_tables.plot.style import RED, canvas, require_matplotlib, titled
 from puck_tables.result import TimedResult
 
@@ -163,7 +163,7 @@ class _Stage:
         board.show(axes, film.box)
         titled(figure, _title(film))
         self._clock = axes.set_title(" ", fontsize=9, loc="left")
-        self._agg: Any = FigureCanvasAgg(figure)
+        self._agg = cast("Any", FigureCanvasAgg(figure))
         self._agg.draw()
         self._board = self._agg.copy_from_bbox(figure.bbox)
         self._discs: list[Circle] = []
@@ -183,13 +183,11 @@ class _Stage:
 
     def seen_at(self, time: float) -> Any:
         """The picture at a time, array (high, wide, 4) of bytes."""
-        count = 2 + math.ceil(400.0 * time / self.film.end_time) if time > 0.0 else 2
-        past = np.linspace(0.0, time, count)
         parts = zip(self.film.bodies, self._discs, self._trails, self._marks, strict=True)
         for body, disc, trail, mark in parts:
-            seen = between(body.knots, np.minimum(past, body.gone))
-            x, y, angle = seen[-1]
-            trail.set_data(seen[:, 0], seen[:, 1])
+            seen = min(time, body.gone)
+            x, y, angle = between(body.knots, np.array([seen]))[0].tolist()
+            trail.set_data(*np.vstack([path_of(body, seen), (x, y)]).T)
             disc.set_center((x, y))
             rim = x + body.radius * math.cos(angle), y + body.radius * math.sin(angle)
             mark.set_data([x, rim[0]], [y, rim[1]])
