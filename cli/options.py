@@ -18,7 +18,7 @@ from puck_tables.errors import InputError
 
 if TYPE_CHECKING:
     from puck_tables.puck import Puck
-    from puck_tables.result import Result
+    from puck_tables.result import Result, TimedResult
     from puck_tables.table.resultant_table import ResultantTable
     from puck_tables.table.table import Table
 
@@ -237,15 +237,15 @@ def _only(**values: Any) -> dict[str, Any]:
 
 
 def prepare_outputs(
-    *outputs: Path | None, plot: Path | None = None, others: Iterable[Path | None] = (),
-    overwrite: bool, inputs: Iterable[Path | str | None] = (),
+    *outputs: Path | None, plot: Path | None = None, movie: Path | None = None,
+    others: Iterable[Path | None] = (), overwrite: bool, inputs: Iterable[Path | str | None] = (),
 ) -> None:  # fmt: skip
     """Refuse, before any work, what could not be written, or would replace what is read.
 
     Parameters
     ----------
     outputs : files of results, in the format that the ending says
-    plot : a picture
+    plot, movie : a picture, a movie
     others : further files that are written
     overwrite : whether existing files may be replaced
     inputs : the files that the command reads; names that are no files are left out
@@ -254,7 +254,7 @@ def prepare_outputs(
     from puck_tables.io.formats import encoder_for
 
     chosen: list[Path] = []
-    for path in (*outputs, plot, *others):
+    for path in (*outputs, plot, movie, *others):
         if path is None:
             continue
         target = check_target(path, overwrite)
@@ -273,6 +273,10 @@ def prepare_outputs(
 
         checked_kind(plot)
         require_matplotlib()
+    if movie is not None:
+        from puck_tables.plot.movie import checked_movie
+
+        checked_movie(movie)
 
 
 def deliver(result: Result, output: Path | None, plot: Path | None, overwrite: bool) -> None:
@@ -283,6 +287,13 @@ def deliver(result: Result, output: Path | None, plot: Path | None, overwrite: b
     if plot is not None:
         result.plot(plot, overwrite=overwrite)
         told(plot)
+
+
+def filmed(run: TimedResult, movie: Path | None, overwrite: bool) -> None:
+    """Make a movie of a motion, and say so on stderr."""
+    if movie is not None:
+        run.movie(movie, overwrite)
+        told(movie)
 
 
 def _same(one: Path, other: Path) -> bool:

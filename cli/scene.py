@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import click
 from puck_tables.cli.options import printable
+
+if TYPE_CHECKING:
+    from puck_tables.scene.scene import Scene
 
 
 @click.group()
 def scene() -> None:
     """Scene files: list, show and check them, and what may stand in them.
 
-    A scene is a puck, a floor, a launch and what acts on it, in SI units; 'puck simulate --scene'
-    and 'puck sweep --scene' run it.
+    A scene is one puck or several, a floor, launches and what acts on them, in SI units; 'puck
+    simulate --scene' and 'puck sweep --scene' run it.
     """
 
 
@@ -21,7 +26,7 @@ def list_scenes() -> None:
     from puck_tables.scene.library import shipped_scenes
 
     for name, title in shipped_scenes().items():
-        click.echo(f"{name:<20} {title}")
+        click.echo(f"{name:<24} {title}")
 
 
 @scene.command()
@@ -51,18 +56,26 @@ def fields() -> None:
 @click.argument("name", metavar="FILE|NAME")
 def check(name: str) -> None:
     """Check a scene: every error at once, or what it holds and how it would be run."""
+    from puck_tables.scene.scene import Scene
+    from puck_tables.scene.sweep import axes_of
+    from puck_tables.world.outcome import ways_of
+
+    whole = Scene.load(name)
+    plan = ways_of(whole) if whole.is_board else _plan(whole)
+    click.echo(printable(f"{name}: a scene" + (f", {whole.title}" if whole.title else "")))
+    for path, values in axes_of(whole).items():
+        click.echo(f"ranges        {path} from {values[0]:g} to {values[-1]:g}, {values.size}")
+    click.echo(printable(plan))
+
+
+def _plan(whole: Scene) -> str:
+    """How a scene of one puck would be run, and why."""
     from puck_tables.scene.plan import out_of_reach, plan_for
     from puck_tables.scene.prepare import prepare
     from puck_tables.scene.regions import speed_law
-    from puck_tables.scene.scene import Scene
-    from puck_tables.scene.sweep import axes_of
 
-    whole = Scene.load(name)
     if whole.floor.law:  # its table takes a while
         speed_law(whole)
     else:
         prepare(whole)  # files and heights
-    click.echo(printable(f"{name}: a scene" + (f", {whole.title}" if whole.title else "")))
-    for path, values in axes_of(whole).items():
-        click.echo(f"ranges        {path} from {values[0]:g} to {values[-1]:g}, {values.size}")
-    click.echo(printable(plan_for(out_of_reach(whole)).why))
+    return plan_for(out_of_reach(whole)).why

@@ -10,7 +10,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
-from puck_tables.cli.options import DEFAULT_DECEL, DEFAULT_DELTA, deliver, explained, printable
+from puck_tables.cli.options import (
+    DEFAULT_DECEL,
+    DEFAULT_DELTA,
+    deliver,
+    explained,
+    filmed,
+    printable,
+)
+from puck_tables.cli.world_report import report as report_of_several
 
 from puck_tables.errors import InputError
 
@@ -27,7 +35,7 @@ PATHS = {
     "friction": "puck.friction", "gravity": "puck.gravity", "frames": "run.frames",
     "tol": "run.tol",
 }  # fmt: skip
-KEPT = ("times", "explain", "as_json", "output", "plot", "overwrite", "threads", "resume")
+KEPT = ("times", "explain", "as_json", "output", "plot", "movie", "overwrite", "threads", "resume")
 SCALED = ("delta", "decel")
 MOST_PARTS = 16  # of a scene in a report
 
@@ -37,8 +45,8 @@ def scene_options(command: Command) -> Command:
     for option in (
         click.option(
             "--set", "changes", multiple=True, metavar="PATH=VALUE",
-            help="A number of the scene, like floor.slope=0.1 or wall[0].restitution=0.8; as often "
-            "as needed.",
+            help="A number of the scene, like floor.slope=0.1, wall[0].restitution=0.8 or "
+            "puck[0].launch.velocity=[1,0]; as often as needed.",
         ),
         click.option(
             "--scene", metavar="FILE|NAME",
@@ -143,20 +151,22 @@ def _value(text: str) -> Any:
 def run_scene(
     tables: dict[str, Any], source: str, times: tuple[float, ...] | None, explain: bool,
     as_json: bool,
-    output: Path | None, plot: Path | None, overwrite: bool,
+    output: Path | None, plot: Path | None, movie: Path | None, overwrite: bool,
 ) -> None:  # fmt: skip
     """One run of a scene, to the end of its command."""
     from puck_tables.scene.scene import Scene
 
     wanted = (0.0,) if output is None and plot is None and times is None else times
-    run = Scene.from_tables(tables, source).simulate(wanted)
+    scene = Scene.from_tables(tables, source)
+    run: Any = scene.simulate(wanted)  # a report needs no states
     deliver(run, output, plot, overwrite)
+    filmed(run, movie, overwrite)
     if explain:
         explained(run)
     if as_json:
         click.echo(json.dumps(run.summary(), allow_nan=False))
     else:
-        click.echo(printable(report(run)))
+        click.echo(printable((report_of_several if scene.is_board else report)(run)))
 
 
 def report(run: SceneRun) -> str:

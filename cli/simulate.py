@@ -17,6 +17,7 @@ from puck_tables.cli.options import (
     deliver,
     explain_option,
     explained,
+    filmed,
     open_table,
     output_options,
     prepare_outputs,
@@ -66,6 +67,12 @@ if TYPE_CHECKING:
     metavar="FILE",
     help="Save: .h5, .csv, .jsonl or .parquet.",
 )
+@click.option(
+    "--movie",
+    type=FILE,
+    metavar="FILE",
+    help="Show the motion: .html (one file for any browser, with a time slider), .gif or .mp4.",
+)
 @output_options
 @scene_options
 @click.pass_context
@@ -76,29 +83,34 @@ def simulate(
     delta: float | None, pressure: str, gyration: float | None, frames: int | None,
     times: tuple[float, ...] | None, tol: float,
     method: str | None, explain: bool, exact: bool, table_path: Path | None, as_json: bool,
-    output: Path | None, plot: Path | None, overwrite: bool, scene: str | None,
+    output: Path | None, movie: Path | None, plot: Path | None, overwrite: bool, scene: str | None,
     changes: tuple[str, ...],
 ) -> None:  # fmt: skip
-    """Slide one puck until it stops, or run a scene.
+    """Slide one puck until it stops, or run a scene of one or of several.
 
     \b
     puck simulate --v0 1,0 --w0 5
     puck simulate --v0 2,0 --w0 30 --radius 0.0381 --height 0.0254 --friction 0.1
     puck simulate --v0 1,0 --w0 5 --frames 200 -o run.csv --plot run.png
     puck simulate --scene air-hockey --set launch.spin=100 --plot air-hockey.png
+    puck simulate --scene carrom-break --movie carrom.html
     puck simulate --v0 1,0 --w0 5 --delta 2
     puck simulate --v0 1,0 --w0 5 --pressure annulus:0.8 --gyration 0.9
     """  # noqa: D301 - click reads the backspace
     if scene is not None or changes:
         tables = scene_tables(ctx, scene, changes)
-        prepare_outputs(output, plot=plot, overwrite=overwrite, inputs=files_read(scene, tables))
-        run_scene(tables, scene or "scene", times, explain, as_json, output, plot, overwrite)
+        prepare_outputs(
+            output, plot=plot, movie=movie, overwrite=overwrite, inputs=files_read(scene, tables)
+        )
+        run_scene(tables, scene or "scene", times, explain, as_json, output, plot, movie, overwrite)
         return
     if v0 is None:
         raise click.MissingParameter(param_hint="'--v0'", param_type="option")
     if exact and table_path is not None:
         raise InputError("--exact and --table clash: closed forms need no table")
-    prepare_outputs(output, plot=plot, overwrite=overwrite, inputs=(table_path, pressure))
+    prepare_outputs(
+        output, plot=plot, movie=movie, overwrite=overwrite, inputs=(table_path, pressure)
+    )
     puck = puck_given(radius, height, friction, gravity, delta, decel, pressure, gyration, mass)
     if output is None and plot is None and times is None and frames is None:
         frames = 1  # a report needs no states
@@ -107,6 +119,7 @@ def simulate(
         table=None if table_path is None else open_table(table_path),
     )  # fmt: skip
     deliver(run, output, plot, overwrite)
+    filmed(run, movie, overwrite)
     if explain:
         explained(run)
     if as_json:

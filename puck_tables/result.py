@@ -164,6 +164,42 @@ class Result:
         )
 
 
+class TimedResult(Result):
+    """A result that is a motion over time: it can be a movie, too."""
+
+    def movie(self, path: str | Path, overwrite: bool = False) -> None:
+        """Show the motion, with impacts and spins.
+
+        Parameters
+        ----------
+        path : .html, .gif or .mp4
+            HTML is one file for any browser, with a time slider; it needs nothing else.  GIF needs
+            matplotlib, MP4 the program ffmpeg besides.
+        overwrite : whether an existing file may be replaced
+
+        Raises
+        ------
+        InputError
+            If the ending is not known.
+        MissingExtraError
+            If matplotlib or ffmpeg is needed and not installed.
+        OutputError
+            If the file exists or cannot be written.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> from puck_tables import Puck
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     Puck.similar().simulate((1.0, 0.0), 5.0).movie(folder + "/run.html")
+        ...     print(Path(folder, "run.html").read_text()[:15])
+        <!DOCTYPE html>
+        """
+        instance("path", path, str, Path)
+        module: Any = import_module("puck_tables.plot.movie")  # movies stand above results
+        module.save_movie(self, path, overwrite)
+
+
 def _equal(one: Any, two: Any) -> bool:
     a, b = np.asarray(one), np.asarray(two)
     numbers = a.dtype.kind == "f" and b.dtype.kind == "f"

@@ -23,7 +23,7 @@ from puck_tables.motion.limits import regime_of
 from puck_tables.motion.run import GENERIC, Run, solve
 from puck_tables.motion.state import LENGTH, PSI, THETA, T, U, X, Y
 from puck_tables.puck import PUCK_UNITS, Puck
-from puck_tables.result import Result
+from puck_tables.result import TimedResult
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.table.table import refuse_other_kind
 
@@ -45,7 +45,7 @@ LOOK_UP_FRAMES = 10_000  # from here on states are looked up: 0.2 µs each inste
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Trajectory(Result):
+class Trajectory(TimedResult):
     """A motion from launch to stop.
 
     ``puck``, ``launch_velocity`` (2,) m/s, ``launch_spin`` rad/s: what went in.  Scalars (SI):

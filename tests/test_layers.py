@@ -29,10 +29,11 @@ ROOMS = {
     "scene": "_core contact errors io kernels motion puck result stopping table",
     "world": "_core contact errors io kernels motion puck result scene stopping table",
     "tradeoff": "_core _version accuracy contact io kernels motion result stopping table",
-    "plot": "_core accuracy chetaev errors io motion scene stopping tradeoff trajectory",
+    "plot": "_core accuracy chetaev errors io motion result scene stopping tradeoff trajectory "
+    "world",
     "paper": "_core contact motion plot puck trajectory",
     "cli": "_core _version accuracy chetaev contact errors io kernels motion paper plot puck scene "
-    "stopping table tradeoff",
+    "stopping table tradeoff world",
     "__init__": "_core _version",
 }
 DOORS = {

@@ -33,6 +33,13 @@ SCENE = {
     "wall": [{"point": [0.3, 0.0], "normal": [-1.0, 0.0], "restitution": 0.5}],
 }  # fmt: skip
 RANGED = {**SCENE, "launch": {"velocity": ["0.5:1:3", 0.0], "spin": "0:20:4"}}
+BOARD = {
+    "puck": [
+        {"radius": 0.04, "friction": 0.1, "launch": {"velocity": [1.0, 0.0], "spin": 20.0}},
+        {"radius": 0.03, "friction": 0.2, "launch": {"position": [0.2, 0.01]}, "name": "other"},
+    ],
+    "wall": SCENE["wall"],
+}
 COUNTS = np.array([1, 2])
 RESULTS: dict[str, Callable[[], Result]] = {
     "trajectory": lambda: PUCK.simulate((1.0, 0.2), 3.0),
@@ -42,6 +49,7 @@ RESULTS: dict[str, Callable[[], Result]] = {
     "curve": lambda: PUCK.sweep(np.linspace(0.0, 4.0, 9), 1.0),
     "aim": lambda: PUCK.aim((2.0, 0.1)),
     "scene": lambda: simulate_scene(SCENE),
+    "board": lambda: simulate_scene(BOARD),
     "scene map": lambda: sweep_scene(RANGED),
     "asperity": lambda: asperity_curve(Asperity(1.0, 4.0, 1.0, 1.0), np.linspace(0.0, 9.0, 30)),
     "trade-off": lambda: TradeOff(

@@ -12,7 +12,10 @@ from scenes import simulate_scene
 
 from puck_tables.scene.library import find_scene, shipped_scenes
 
-ENDS = {"air-hockey": "time is up", "turntable": "time is up", "washer-on-conveyor": "carried"}
+ENDS = {
+    **dict.fromkeys(("air-hockey", "air-hockey-mallet", "air-table", "turntable"), "time is up"),
+    "washer-on-conveyor": "carried",
+}
 
 
 def puck(*arguments):

@@ -16,7 +16,10 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Kind:
-    """What a field takes: ``shape`` number, pair, numbers, rows, text, choice, part, parts."""
+    """What a field takes.
+
+    ``shape``: number, pair, numbers, rows, text, choice, colour, part or parts.
+    """
 
     shape: str
     unit: str = ""
@@ -42,6 +45,8 @@ class Kind:
             return "the name of a CSV file, or a list of rows of numbers"
         if self.shape == "text":
             return "a text without " + ("control characters" if self.file is None else "NUL")
+        if self.shape == "colour":
+            return "a colour, '#rrggbb' or a name of CSS such as 'steelblue'"
         if self.shape == "choice":
             return "one of " + ", ".join(self.choices)
         words = {"number": "a number", "pair": "two numbers [x, y]", "numbers": "a list of numbers"}

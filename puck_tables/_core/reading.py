@@ -13,6 +13,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables._core.colours import is_colour, meant
 from puck_tables._core.fields import LISTED, Kind, in_tables, specs
 from puck_tables.errors import PuckError
 
@@ -160,6 +161,11 @@ def _read(kind: Kind, value: Any, path: str, reading: Reading, default: Any) -> 
         good = isinstance(value, str) and kind.takes(value)
         if not good or (kind.choices and value not in kind.choices):
             reading.fault(path, value, kind.allowed())
+        return value
+    if kind.shape == "colour":
+        if not isinstance(value, str) or (value and not is_colour(value)):
+            hint = meant(value) if isinstance(value, str) else ""
+            reading.fault(path, value, kind.allowed() + hint)
         return value
     if kind.shape == "rows":
         return _rows(kind, value, path, reading)

@@ -207,7 +207,7 @@ def set_path(tables: dict[str, Any], path: str, value: Any) -> None:
         except (IndexError, TypeError, KeyError):
             raise InputError(
                 f"{path}: the scene has no such entry to set; 'puck scene fields' lists what may "
-                "be, walls and edges are written in a file"
+                "be; of a list each part has its number (puck[0], wall[1]), and stands in a file"
             ) from None
 
 

@@ -13,7 +13,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
 from puck_tables.io.columns import COLUMNS, derived, following
 from puck_tables.io.dataset import Dataset, variable
-from puck_tables.result import Result
+from puck_tables.result import TimedResult
 from puck_tables.scene.entries import as_toml, tables_of, units_of
 from puck_tables.scene.library import files_of
 from puck_tables.scene.plan import Plan
@@ -46,7 +46,7 @@ class Event(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class SceneRun(Result):
+class SceneRun(TimedResult):
     """What happened.
 
     ``end``: 'at rest', 'carried by the floor' (at rest on a moving one), 'time is up' or 'over the

@@ -22,6 +22,7 @@ class Piece(Puck):
     radius, height, friction, mass, gravity, pressure, gyration
         As :class:`puck_tables.Puck`.
     name, colour : in reports and pictures
+        A colour is '#rrggbb' or a name of CSS, such as 'steelblue'.
     launch : Launch
         Its place, and how it is sent; left out it lies at rest until it is hit.  Before
         ``launch.time`` it lies at its place.
@@ -41,7 +42,7 @@ class Piece(Puck):
     """
 
     name: str = of("text", "")
-    colour: str = of("text", "", doc="in pictures, as matplotlib names it")
+    colour: str = of("colour", "", doc="in pictures and movies")
     launch: Launch = of("part", Launch(), part=Launch)
     restitution: float = of("number", 1.0, low=0.0, high=1.0, doc="of its rim")
     tangential: float = of(

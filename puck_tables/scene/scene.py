@@ -275,9 +275,9 @@ class Scene:
         InputError
         """
         if self.ranges:
+            sweep = "" if self.is_board else ", or run a sweep"
             raise InputError(
-                f"{', '.join(self.ranges)}: a range makes many runs; give one number, or run a "
-                "sweep"
+                f"{', '.join(self.ranges)}: a range makes many runs; give one number{sweep}"
             )
         return self
 

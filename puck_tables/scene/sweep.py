@@ -155,6 +155,11 @@ def sweep(
     progress: Progress | None = None, checkpoint: str | Path | None = None,
 ) -> SceneMap:  # fmt: skip
     """The map over a scene, as :meth:`puck_tables.Scene.sweep` has it."""
+    if scene.is_board:
+        raise InputError(
+            "a sweep is of one puck without posts, arcs and pockets: simulate a scene of several "
+            "once for each number"
+        )
     axes = axes_of(scene)
     if not axes:
         raise InputError(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, ClassVar
@@ -13,11 +14,12 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
 from puck_tables.io.columns import COLUMNS, derived
 from puck_tables.io.dataset import Dataset, Variable, variable
-from puck_tables.result import Result
+from puck_tables.result import TimedResult
 from puck_tables.scene.entries import tables_of, units_of
 from puck_tables.scene.library import files_of
 from puck_tables.scene.outcome import column_of, scene_texts
 from puck_tables.scene.scene import Scene
+from puck_tables.world.agreement import pieces_of
 from puck_tables.world.world import Meeting
 
 STATE = ("x", "y", "orientation", "vx", "vy", "spin")
@@ -25,14 +27,15 @@ MEETING = Meeting._fields
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class WorldRun(Result):
+class WorldRun(TimedResult):
     """What happened to several pucks.
 
     ``end``: 'at rest' or 'time is up'; ``end_time`` s; ``names``: of the pucks, in their order;
     ``events``: see :class:`puck_tables.world.world.Meeting`; ``time`` (n,) s; ``columns``: arrays
     (n, pucks) by name, each also an attribute (``run.x``), a puck's by its name or number
     (``run["striker"]``); ``last``: the columns at the end, (pucks,).  One that has left play stays
-    where it left, its ``in_play`` is 0.
+    where it left, its ``in_play`` is 0.  ``stop_times`` (pucks,) s: when each came to rest or left
+    play; later than ``end_time`` or inf where it still moves at the end.
 
     ``kinetic_energy`` J at the start, ``heat_floor``, ``heat_impact``: what friction of the floor
     or drag and what impacts took, J; ``work_driven``: what driven bodies gave; ``energy_residual``:
@@ -50,6 +53,7 @@ class WorldRun(Result):
     time: FloatArray
     columns: Mapping[str, FloatArray] = field(repr=False)
     last: Mapping[str, FloatArray] = field(repr=False)
+    stop_times: FloatArray = field(repr=False)
     kinetic_energy: float
     heat_floor: float
     heat_impact: float
@@ -107,14 +111,7 @@ class WorldRun(Result):
 
     def explain(self) -> str:
         """How every puck was moved."""
-        driven = sum(bool(piece.path) for piece in self.scene.pucks)
-        damped = sum(piece.friction == 0.0 and not piece.path for piece in self.scene.pucks)
-        ways = {
-            "looked up from impact to impact": len(self.names) - driven - damped,
-            "in closed form, without dry friction": damped,
-            "driven along their paths": driven,
-        }
-        return "\n".join(f"{count} pucks {way}" for way, count in ways.items() if count)
+        return ways_of(self.scene)
 
     def summary(self) -> dict[str, Any]:
         """The scalars with what went in, and the units of all, ready for JSON."""
@@ -123,10 +120,14 @@ class WorldRun(Result):
             "energy_residual", "end_error",
         )  # fmt: skip
         pucks = [
-            {"name": name, **{key: _plain(row[i]) for key, row in self.last.items()}}
-            for i, name in enumerate(self.names)
+            {
+                "name": name,
+                **{key: float(row[i]) for key, row in self.last.items()},
+                "stop_time": stop if math.isfinite(stop) else None,
+            }
+            for i, (name, stop) in enumerate(zip(self.names, self.stop_times.tolist(), strict=True))
         ]
-        units = {name: COLUMNS[name].unit for name in self.last}
+        units = {name: COLUMNS[name].unit for name in (*self.last, "stop_time")}
         return {
             "title": self.scene.title,
             **{name: getattr(self, name) for name in scalars},
@@ -147,6 +148,7 @@ class WorldRun(Result):
         columns: dict[str, Variable] = {"name": variable("name", list(self.names), ("puck",))}
         for name, row in {**self.columns, **derived(self.columns)}.items():
             columns[name] = variable(name, row, dims)
+        columns["stop_time"] = variable("stop_time", self.stop_times, ("puck",))
         axes = {
             "time": variable("time", self.time, ("time",)),
             "puck": variable("puck", np.arange(len(self.names)), ("puck",)),
@@ -164,5 +166,23 @@ class WorldRun(Result):
         return Dataset(axes, columns, attributes, scene_texts(self.scene, self.files))
 
 
-def _plain(value: Any) -> float:
-    return float(value)
+def ways_of(scene: Scene) -> str:
+    """How many pucks of a scene are moved how, a line each.
+
+    Examples
+    --------
+    >>> from puck_tables import Piece
+    >>> ways_of(Scene(pucks=[Piece(0.1, friction=0.1)]))
+    '1 puck looked up from impact to impact'
+    """
+    pieces = pieces_of(scene)
+    driven = sum(bool(piece.path) for piece in pieces)
+    damped = sum(piece.friction == 0.0 and not piece.path for piece in pieces)
+    ways = {
+        "looked up from impact to impact": len(pieces) - driven - damped,
+        "in closed form, without dry friction": damped,
+        "driven along a path": driven,
+    }
+    return "\n".join(
+        f"{count} puck{'s' if count != 1 else ''} {way}" for way, count in ways.items() if count
+    )

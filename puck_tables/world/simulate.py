@@ -54,6 +54,7 @@ def simulate(scene: Scene, times: npt.ArrayLike | None = None) -> WorldRun:
         time=moments,
         columns=columns,
         last={**_columns(last), "in_play": world.in_play.astype(np.float64)},
+        stop_times=world.stop_times,
         **ledger(world),
         end_error=_error(scene, world, last),
         files=files,

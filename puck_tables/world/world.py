@@ -129,13 +129,20 @@ class World:
         return (known | (kinds == DAMPED))[self._place]
 
     @property
+    def stop_times(self) -> FloatArray:
+        """When each puck came or will come to rest if nothing happens before, array (pucks,), s.
+
+        Of one that has left play: when it left; inf: never.
+        """
+        kinds, flights = self._game.kinds, self._game.flights
+        known = (kinds == LOOKED_UP) | (kinds == PATH)
+        times: FloatArray = np.where(known, flights[:, UNTIL], flights[:, START])
+        return np.where(kinds == DAMPED, math.inf, times)[self._place]
+
+    @property
     def last_motion(self) -> float:
         """When the last puck came or will come to rest if nothing happens before, s."""
-        kinds, flights = self._game.kinds, self._game.flights
-        if (kinds == DAMPED).any():
-            return math.inf
-        known = (kinds == LOOKED_UP) | (kinds == PATH)
-        return float(np.where(known, flights[:, UNTIL], flights[:, START]).max())
+        return float(self.stop_times.max())
 
     def state(self) -> FloatArray:
         """X, y (m), angle (rad), vx, vy (m/s), spin (rad/s) of every puck now, array (pucks, 6)."""

@@ -1,0 +1,164 @@
+"""What ``puck simulate`` says of a run of several pucks."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from puck_tables.world.outcome import WorldRun
+
+MOST_PUCKS, MOST_IMPACTS, MOST_NAMES = 40, 6, 6  # of a report
+_WIDEST = 24  # signs of a name in the table
+_ROUNDING = 1e-14  # of energies
+
+
+def report(run: WorldRun) -> str:
+    """What happened in two sentences; a table of pucks; impacts, energies, and how sure it is."""
+    lines = {
+        "scene": _scene(run),
+        "energy": _energy(run),
+        "heat": _heat(run),
+        "error": _error(run),
+        "model": run.explain().replace("\n", ", "),
+    }
+    parts = [
+        plainly(run),
+        "\n".join(_pucks(run)),
+        *(["\n".join(_impacts(run))] if run.impacts else []),
+        "\n".join(f"{name:<8} {text}" for name, text in lines.items()),
+    ]
+    return "\n\n".join(parts)
+
+
+def plainly(run: WorldRun) -> str:
+    """How it ends and who leaves the board."""
+    from puck_tables.world.agreement import pieces_of
+
+    count, impacts = len(run.names), _counted(run.impacts, "impact")
+    if not run.events and run.end_time == 0.0:
+        return (
+            f"{_counted(count, 'puck')}: nothing moves.\n"
+            "Send one off: --set puck[0].launch.velocity=[1,0]"
+        )
+    if run.end == "at rest":
+        first = f"{_counted(count, 'puck')} come to rest after {run.end_time:.4g} s and {impacts}."
+        if count == 1:
+            first = first.replace("come", "comes", 1)
+    else:
+        free = [not piece.path for piece in pieces_of(run.scene)]
+        moving = int((run.stop_times > run.end_time)[free].sum())
+        verb = "moves" if moving == 1 else "move"
+        first = (
+            f"Time is up after {run.end_time:.4g} s and {impacts}: {moving} of "
+            f"{_counted(count, 'puck')} still {verb}."
+        )
+    fates = []
+    for what, one, several in (
+        ("pocket", "falls into a pocket", "fall into pockets"),
+        ("edge", "goes over an edge", "go over an edge"),
+    ):
+        names = [event.puck for event in run.events if event.what == what]
+        if names:
+            shown = ", ".join(names[:MOST_NAMES])
+            more = f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else ""
+            fates.append(f"{len(names)} {one if len(names) == 1 else several} ({shown}{more})")
+    return f"{first}\n{'; '.join(fates)}." if fates else f"{first}\nNone leaves play."
+
+
+def _counted(count: int, noun: str) -> str:
+    return f"{count or 'no'} {noun}{'' if count == 1 else 's'}"
+
+
+def _pucks(run: WorldRun) -> list[str]:
+    """A line for each puck: where it ends, how far from its start, and when."""
+    from puck_tables.world.agreement import pieces_of, start_of
+
+    pieces = pieces_of(run.scene)
+    wide = min(_WIDEST, max(len("puck"), *(len(name) for name in run.names)))
+    rows = [f"{'puck':<{wide}} {'end x m':>12} {'end y m':>12} {'moved m':>10}  how it ends"]
+    for number, (name, piece) in enumerate(zip(run.names, pieces, strict=True)):
+        if number == MOST_PUCKS:
+            rows.append(f"and {len(run.names) - MOST_PUCKS} more (-o FILE saves all)")
+            break
+        end = float(run.last["x"][number]), float(run.last["y"][number])
+        unseen = 1e-9 * piece.radius  # what rounding leaves
+        x, y, moved = (
+            0.0 if abs(way) < unseen else way for way in (*end, math.dist(end, start_of(piece)))
+        )
+        shown = name if len(name) <= wide else name[: wide - 3] + "..."
+        rows.append(f"{shown:<{wide}} {x:>12.6g} {y:>12.6g} {moved:>10.4g}  {_fate(run, number)}")
+    return rows
+
+
+def _fate(run: WorldRun, number: int) -> str:
+    """What became of a puck."""
+    name, stop = run.names[number], float(run.stop_times[number])
+    for event in run.events:
+        if event.puck == name and event.what in ("pocket", "edge"):
+            where = "in" if event.what == "pocket" else "over"
+            return f"{where} {event.partner} at {event.time:.6g} s"
+    if run.scene.pucks and run.scene.pucks[number].path:
+        return "driven"
+    if stop > run.end_time:
+        speed = float(np.hypot(run.last["vx"][number], run.last["vy"][number]))
+        return f"moves, {speed:.4g} m/s"
+    return f"stops at {stop:.6g} s" if stop > 0.0 else "never moved"
+
+
+def _impacts(run: WorldRun) -> list[str]:
+    """The first impacts, a line each."""
+    impacts = [event for event in run.events if event.what == "impact"]
+    rows = [
+        f"impact at {event.time:.6g} s: {event.puck} and {event.partner}, {event.approach:.4g} m/s"
+        for event in impacts[:MOST_IMPACTS]
+    ]
+    more = len(impacts) - MOST_IMPACTS
+    return rows + ([f"and {_counted(more, 'impact')} more"] if more > 0 else [])
+
+
+def _scene(run: WorldRun) -> str:
+    scene = run.scene
+    parts = {
+        "puck": len(run.names), "wall": len(scene.walls), "post": len(scene.posts),
+        "arc": len(scene.arcs), "pocket": len(scene.pockets), "edge": len(scene.edges),
+    }  # fmt: skip
+    counted = ", ".join(_counted(count, noun) for noun, count in parts.items() if count)
+    return f"{scene.title or 'without a title'}: {counted}"
+
+
+def _energy(run: WorldRun) -> str:
+    """What was given, and what the pucks still have or took along when they left play."""
+    given = run.kinetic_energy + run.work_driven
+    words = f"{run.kinetic_energy:.6g} J given by launches"
+    if run.work_driven != 0.0:
+        words += f", {run.work_driven:.6g} J by driven bodies"
+    left = given - run.heat_floor - run.heat_impact
+    if abs(left) > 1e-9 * abs(given):
+        words += f"; {left:.6g} J left, or gone with who left play"
+    return words
+
+
+def _heat(run: WorldRun) -> str:
+    """What floor and impacts took; what is no more than rounding is told as 0."""
+    unseen = _ROUNDING * (run.kinetic_energy + abs(run.work_driven))
+    floor, impacts = (
+        heat if abs(heat) > unseen else 0.0 for heat in (run.heat_floor, run.heat_impact)
+    )
+    rounding = run.energy_residual < _ROUNDING
+    missed = f"under {_ROUNDING:g}" if rounding else f"{run.energy_residual:.1e}"
+    return f"{floor:.6g} J floor, {impacts:.6g} J impacts; ledger misses {missed} of it"
+
+
+def _error(run: WorldRun) -> str:
+    """What the end may be wrong by, and where nobody can know it."""
+    from puck_tables.world.agreement import pieces_of
+
+    if run.end_error > min(piece.radius for piece in pieces_of(run.scene)):
+        return (
+            "nobody can know the end: launches that differ by 1e-9 end up to "
+            f"{run.end_error:.2g} m apart, for every impact multiplies what is not known"
+        )
+    return f"about {run.end_error:.1e} m at the end"

@@ -1,0 +1,213 @@
+"""Movies of a motion: HTML, one file that any browser plays, or GIF and MP4 through matplotlib."""
+
+from __future__ import annotations
+
+import itertools
+import json
+import math
+import tempfile
+from importlib.resources import files
+from pathlib import Path
+from subprocess import CalledProcessError
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+
+from puck_tables._core.safe_write import check_target, write_bytes
+from puck_tables.errors import MissingExtraError, OutputError
+from puck_tables.io.formats import ending_of
+from puck_tables.plot import board
+from puck_tables.plot.film import Body, Film, between, film_of, path_of
+from puck_tables.plot.style import RED, canvas, require_matplotlib, titled
+from puck_tables.result import TimedResult
+
+if TYPE_CHECKING:
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Circle
+
+MOVIE_KINDS = (".html", ".gif", ".mp4")
+DIGITS = 8  # of the numbers in HTML
+_PICTURES = 25  # a second
+_SHORTEST, _LONGEST = (
+    3.0,
+    12.0,
+)  # s, of a GIF or MP4: shorter or longer motions are shown slower, faster
+_HELD = 12  # pictures of the end
+_DOTS = 100  # an inch
+_FLASH = 0.2  # s for which an impact is seen
+
+
+def checked_movie(path: str | Path) -> str:
+    """The ending of a movie's name; refuse before any work is done if it cannot be made.
+
+    Raises
+    ------
+    InputError
+        If movies have no such ending.
+    MissingExtraError
+        If matplotlib or ffmpeg is needed and not installed.
+
+    Examples
+    --------
+    >>> checked_movie("run.html")
+    '.html'
+    """
+    kind = ending_of(path, MOVIE_KINDS)
+    if kind != ".html":
+        require_matplotlib()
+    if kind == ".mp4":
+        from matplotlib.animation import FFMpegWriter
+
+        if not FFMpegWriter.isAvailable():
+            raise MissingExtraError(
+                "MP4 movies need the program ffmpeg, which is not found: install it, or name the "
+                "movie .html or .gif"
+            )
+    return kind
+
+
+def save_movie(result: TimedResult, path: str | Path, overwrite: bool = False) -> None:
+    """Write a movie whole or not at all, as :meth:`puck_tables.result.TimedResult.movie` has it.
+
+    Raises
+    ------
+    InputError
+        If movies have no such ending.
+    MissingExtraError
+        If matplotlib or ffmpeg is needed and not installed.
+    OutputError
+        If the file exists (without ``overwrite``) or cannot be written.
+    """
+    kind = checked_movie(path)
+    check_target(path, overwrite)
+    film = film_of(result)
+    content = page(film).encode() if kind == ".html" else _filmed(film, kind)
+    write_bytes(path, content, overwrite)
+
+
+def page(film: Film) -> str:
+    """One HTML page with the film in it: it loads nothing and needs no server.
+
+    Examples
+    --------
+    >>> from puck_tables import Puck
+    >>> "requestAnimationFrame" in page(film_of(Puck.similar().simulate((1.0, 0.0))))
+    True
+    """
+    template = (files("puck_tables.plot") / "movie.html").read_text(encoding="utf-8")
+    shown = {
+        "title": _title(film),
+        "end_time": film.end_time,
+        "box": film.box,
+        "bodies": [_body(body) for body in film.bodies],
+        "lines": [line._asdict() for line in film.lines],
+        "rounds": [one._asdict() for one in film.rounds],
+        "happenings": [one._asdict() for one in film.happenings],
+    }
+    text = json.dumps(shown, allow_nan=False, separators=(",", ":"))
+    # what a name or a title says never ends the script
+    text = text.replace("<", "\\u003c").replace(">", "\\u003e")
+    return template.replace("/*film*/null", text)
+
+
+def _title(film: Film) -> str:
+    return f"{film.title or 'Scene'}: {film.end} after {film.end_time:.4g} s"
+
+
+def _body(body: Body) -> dict[str, Any]:
+    return {
+        **body._asdict(),
+        "gone": body.gone if math.isfinite(body.gone) else None,
+        "mark": body.mark,
+        "knots": [[float(f"{x:.{DIGITS}g}") for x in row] for row in body.knots.tolist()],
+    }
+
+
+def _filmed(film: Film, kind: str) -> bytes:
+    """The bytes of a GIF or an MP4."""
+    from matplotlib.animation import FFMpegWriter, PillowWriter
+
+    shown = min(max(film.end_time, _SHORTEST), _LONGEST) if film.end_time > 0.0 else 0.0
+    times = np.linspace(0.0, film.end_time, round(shown * _PICTURES) + 1)
+    slowed = shown / film.end_time if film.end_time > 0.0 else 1.0
+    stage = _Stage(film, slowed)
+    screen = canvas(*stage.size)
+    image = screen.figimage(stage.seen_at(0.0))
+    writer = (PillowWriter if kind == ".gif" else FFMpegWriter)(fps=_PICTURES)
+    try:
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / f"movie{kind}"
+            with writer.saving(screen, str(path), _DOTS):
+                for time in [*times.tolist(), *[film.end_time] * _HELD]:
+                    image.set_data(stage.seen_at(time))
+                    writer.grab_frame()
+            return path.read_bytes()
+    except (OSError, CalledProcessError) as error:  # no room for it, or ffmpeg fails
+        raise OutputError(f"the movie could not be made: {error}") from None
+
+
+class _Stage:
+    """A picture of a film at any time: the board is drawn once, and what moves on it anew."""
+
+    def __init__(self, film: Film, slowed: float) -> None:
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+        self.film, self.slowed = film, slowed
+        wide, high = board.size_of(film.box)
+        share = min(1.0, 6.0 / max(wide, high))
+        self.size = _even(share * wide + 0.9), _even(share * high + 1.0)
+        figure = canvas(*self.size)
+        figure.set_dpi(_DOTS)
+        axes = figure.add_subplot()
+        board.draw_board(axes, film)
+        board.show(axes, film.box)
+        titled(figure, _title(film))
+        self._clock = axes.set_title(" ", fontsize=9, loc="left")
+        self._agg = cast("Any", FigureCanvasAgg(figure))
+        self._agg.draw()
+        self._board = self._agg.copy_from_bbox(figure.bbox)
+        self._discs: list[Circle] = []
+        self._trails: list[Line2D] = []
+        self._marks: list[Line2D] = []
+        for body in film.bodies:
+            looks: dict[str, Any] = {"facecolor": body.colour, "edgecolor": "black"}
+            if body.driven:
+                looks = {"facecolor": "white", "edgecolor": body.colour}
+            self._discs.append(board.disc(body, 0.0, 0.0, linewidth=0.7, **looks))
+            axes.add_patch(self._discs[-1])
+            self._trails += axes.plot([], [], color=body.colour, linewidth=0.8, alpha=0.7)
+            self._marks += axes.plot([], [], color=body.mark, linewidth=1.0)
+        self._flashes = axes.plot(
+            [], [], linestyle="", marker="o", markersize=9, fillstyle="none", color=RED
+        )[0]
+
+    def seen_at(self, time: float) -> Any:
+        """The picture at a time, array (high, wide, 4) of bytes."""
+        parts = zip(self.film.bodies, self._discs, self._trails, self._marks, strict=True)
+        for body, disc, trail, mark in parts:
+            seen = min(time, body.gone)
+            x, y, angle = between(body.knots, np.array([seen]))[0].tolist()
+            trail.set_data(*np.vstack([path_of(body, seen), (x, y)]).T)
+            disc.set_center((x, y))
+            rim = x + body.radius * math.cos(angle), y + body.radius * math.sin(angle)
+            mark.set_data([x, rim[0]], [y, rim[1]])
+            alpha = 0.25 if time >= body.gone else 1.0
+            disc.set_alpha(alpha)
+            mark.set_alpha(alpha)
+        recent = [
+            one for one in self.film.happenings
+            if 0.0 <= time - one.time <= _FLASH / self.slowed
+        ]  # fmt: skip
+        self._flashes.set_data([one.x for one in recent], [one.y for one in recent])
+        words = f"{time:.3f} s" if self.slowed == 1.0 else f"{time:.3f} s, {1.0 / self.slowed:.3g}x"
+        self._clock.set_text(words)
+        self._agg.restore_region(self._board)
+        discs = itertools.chain(*zip(self._discs, self._marks, strict=True))
+        for artist in [*self._trails, *discs, self._flashes, self._clock]:
+            artist.draw(self._agg.get_renderer())
+        return np.array(self._agg.buffer_rgba())
+
+
+def _even(inches: float) -> float:
+    """A size that is an even number of dots: video formats need it."""
+    return 2.0 * round(0.5 * inches * _DOTS) / _DOTS

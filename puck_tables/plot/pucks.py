@@ -1,0 +1,153 @@
+"""Picture of a run of several pucks: their ways, where they start and end, and where they meet."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from puck_tables.plot.board import disc, draw_board, show, size_of
+from puck_tables.plot.film import Body, Box, Film, between, film_of, path_of
+from puck_tables.plot.style import GREY, RED, canvas, titled
+from puck_tables.world.outcome import WorldRun
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+    from matplotlib.legend import Legend
+
+_NAMED = 8  # pucks: more are told apart by colour alone
+_SMALL = 0.012  # of the panel's width: smaller pucks are shown in a close-up as well
+_LEGEND_ROW, _LEGEND_HEIGHT = 6, 0.2  # entries, in
+_BESIDE, _UNDER, _TITLE = 0.85, 0.6, 0.35  # in, for the labels of axes and for the title
+_NARROW = 6.5  # in, at least: for the legend
+_MARKED = 2000  # impacts: more would be one blot
+
+
+def draw(run: WorldRun) -> Figure:
+    """The board with all ways on it, and a close-up of the impacts where pucks are small.
+
+    The whole motion is drawn, whatever states the run has: it is run again.
+    """
+    film = film_of(run)
+    boxes = [film.box, *_close_up(film)]
+    sizes = [size_of(box) for box in boxes]
+    figure = canvas(_NARROW, _NARROW)
+    panels = figure.subplots(len(boxes), 1, squeeze=False, height_ratios=[h for _, h in sizes])
+    for axes, box in zip(panels[:, 0], boxes, strict=True):
+        _draw_film(axes, film, box)
+    if len(boxes) > 1:
+        panels[1, 0].set_title("close-up", fontsize=10)
+    handles, labels = panels[0, 0].get_legend_handles_labels()
+    rows = math.ceil(len(labels) / _LEGEND_ROW)
+    figure.set_size_inches(
+        max(*(wide + _BESIDE for wide, _ in sizes), _NARROW),
+        sum(high + _UNDER for _, high in sizes) + _LEGEND_HEIGHT * rows + _TITLE,
+    )
+    legend = figure.legend(
+        handles, labels, loc="outside lower center", ncols=_LEGEND_ROW, frameon=False, fontsize=9
+    )
+    _as_they_stand(legend)
+    title = film.title or "Scene"
+    titled(figure, f"{title}: {film.end} after {film.end_time:.4g} s")
+    return figure
+
+
+def draw_on(axes: Axes, run: WorldRun) -> None:
+    """The board alone."""
+    film = film_of(run)
+    _draw_film(axes, film, film.box)
+    legend = axes.legend(
+        loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=_LEGEND_ROW // 2, frameon=False,
+        fontsize=9,
+    )  # fmt: skip
+    _as_they_stand(legend)
+
+
+def _as_they_stand(legend: Legend) -> None:
+    """What users write is no mathematics."""
+    for text in legend.get_texts():
+        text.set_parse_math(False)
+
+
+def _draw_film(axes: Axes, film: Film, box: Box) -> None:
+    draw_board(axes, film)
+    few = _named(film) > 0
+    for body in film.bodies:
+        _draw_body(axes, body, body.name if few else "")
+    impacts = [one for one in film.happenings if one.what == "impact"][:_MARKED]
+    if impacts:
+        axes.plot(
+            [one.x for one in impacts], [one.y for one in impacts], linestyle="", marker="o",
+            markersize=3.6, color=RED, markeredgecolor="white", markeredgewidth=0.5, zorder=6,
+            label="impact",
+        )  # fmt: skip
+    _explain_looks(axes, film)
+    show(axes, box)
+
+
+def _draw_body(axes: Axes, body: Body, label: str) -> None:
+    """Its way, its outline at the start, and itself at the end, with a mark that turns with it."""
+    path = path_of(body, body.gone)
+    hidden = " " if label.startswith("_") else ""  # such labels stand in no legend
+    words: dict[str, Any] = {"label": hidden + label} if label else {}
+    moves = float(np.abs(path - path[0]).max()) > 1e-9 * body.radius
+    axes.plot(
+        path[:, 0], path[:, 1], color=body.colour, linewidth=1.1, zorder=3,
+        linestyle=(0, (5, 2)) if body.driven else "-", **words,
+    )  # fmt: skip
+    if moves:
+        axes.add_patch(
+            disc(body, *path[0], fill=False, edgecolor=body.colour, linewidth=0.9, zorder=2)
+        )
+    left = body.gone < math.inf
+    x, y, angle = between(body.knots, body.knots[-1:, 0])[0]
+    looks: dict[str, Any] = {"facecolor": body.colour, "edgecolor": "black", "linewidth": 0.7}
+    if left:
+        looks = {"facecolor": "none", "edgecolor": body.colour, "linewidth": 1.2, "linestyle": ":"}
+    elif body.driven:
+        looks |= {"facecolor": "white", "edgecolor": body.colour, "linewidth": 1.2}
+    axes.add_patch(disc(body, x, y, zorder=4, **looks))
+    if not left and not body.driven:
+        axes.plot(
+            [x, x + body.radius * math.cos(angle)], [y, y + body.radius * math.sin(angle)],
+            color=body.mark, linewidth=0.8, zorder=5,
+        )  # fmt: skip
+
+
+def _explain_looks(axes: Axes, film: Film) -> None:
+    """What outlines, fillings and hatches mean, as far as they are in the picture."""
+    from matplotlib.patches import Circle
+
+    looks: list[tuple[str, dict[str, Any]]] = [("start", {"fill": False, "edgecolor": GREY})]
+    if any(body.gone == math.inf and not body.driven for body in film.bodies):
+        looks.append(("end", {"facecolor": GREY, "edgecolor": "black"}))
+    if any(body.gone < math.inf for body in film.bodies):
+        looks.append(("left play", {"fill": False, "edgecolor": GREY, "linestyle": ":"}))
+    if any(body.driven for body in film.bodies):
+        looks.append(("driven", {"facecolor": "white", "edgecolor": GREY, "hatch": "////"}))
+    for words, look in looks:
+        axes.add_patch(Circle((math.nan, math.nan), label=words, **look))
+
+
+def _named(film: Film) -> int:
+    """How many pucks are named in the legend."""
+    return len(film.bodies) if len(film.bodies) <= _NAMED else 0
+
+
+def _close_up(film: Film) -> list[Box]:
+    """Around impacts and ends, where pucks are too small to be seen; of the shape of the whole."""
+    wide = film.box[1] - film.box[0]
+    radius = max(body.radius for body in film.bodies)
+    places = [(one.x, one.y) for one in film.happenings]
+    if radius > _SMALL * wide or not places:
+        return []
+    places += [tuple(body.knots[-1, 1:3].tolist()) for body in film.bodies]
+    x, y = np.array(places).T
+    half = max(0.5 * float(np.ptp(x)) + 2.0 * radius, 1.2 * (0.5 * float(np.ptp(y)) + 2.0 * radius))
+    if 2.0 * half > 0.6 * wide:
+        return []
+    middle = 0.5 * float(x.min() + x.max()), 0.5 * float(y.min() + y.max())
+    high = 0.5 * float(np.ptp(y)) + 2.0 * radius
+    return [(middle[0] - half, middle[0] + half, middle[1] - high, middle[1] + high)]

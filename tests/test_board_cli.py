@@ -1,0 +1,146 @@
+"""Scenes of several pucks from the command line: reports, files, changes, refusals."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+import xarray
+from click.testing import CliRunner
+from puck_tables.cli.main import main
+
+from puck_tables import Scene
+
+
+def puck(*arguments: str) -> Any:
+    return CliRunner().invoke(main, list(arguments))
+
+
+def test_a_report_says_first_what_happened() -> None:
+    said = puck("simulate", "--scene", "carrom-break").stdout
+    run = Scene.load("carrom-break").simulate()
+    first, second = said.splitlines()[:2]
+    assert first == f"20 pucks come to rest after {run.end_time:.4g} s and {run.impacts} impacts."
+    assert second == "2 fall into pockets (white 1, black 2)."
+    rows = {line[:9].strip(): line for line in said.splitlines()}
+    assert f"in pocket 1 at {run.stop_times[0]:.6g} s" in rows["white 1"]
+    striker = run.names.index("striker")
+    assert f"{run.last['x'][striker]:.6g}" in rows["striker"]
+    assert f"stops at {run.stop_times[striker]:.6g} s" in rows["striker"]
+    assert f"{run.heat_impact:.6g} J impacts; ledger misses under 1e-14 of it" in said
+
+
+def test_what_still_moves_and_what_is_driven_is_told() -> None:
+    said = puck("simulate", "--scene", "air-hockey-mallet").stdout
+    assert said.startswith("Time is up after 3 s and 12 impacts: 1 of 2 pucks still moves.")
+    assert "None leaves play." in said and "  driven\n" in said and " m/s\n" in said
+
+
+def test_what_nobody_can_know_is_said(tmp_path: Path) -> None:
+    rows = ["[run]\ntime = 60.0\n[drag]\nsliding = 1e-6\n"]
+    for n in range(6):
+        rows.append(f'[[puck]]\nradius = 0.05\nname = "{n}"\n[puck.launch]\n'
+                    f"position = [{0.2 * n + 0.1}, {0.3 + 0.07 * n}]\n"
+                    f"velocity = [{1.0 - 0.3 * n}, {0.5 + 0.1 * n}]\n")  # fmt: skip
+    for point, normal in (("[0,0]", "[1,0]"), ("[1.2,1]", "[-1,0]"), ("[0,0]", "[0,1]"),
+                          ("[0,1]", "[0,-1]")):  # fmt: skip
+        rows.append(f"[[wall]]\npoint = {point}\nnormal = {normal}\n")
+    (tmp_path / "gas.toml").write_text("\n".join(rows))
+    said = puck("simulate", "--scene", str(tmp_path / "gas.toml"))
+    assert said.exit_code == 0, said.stderr
+    assert "nobody can know the end: launches that differ by 1e-9 end up to" in said.stdout
+
+
+def test_nothing_moves() -> None:
+    still = ("--set", "puck[0].launch.velocity=[0,0]")
+    said = puck("simulate", "--scene", "newtons-row", *still).stdout
+    assert said.splitlines()[:2] == [
+        "6 pucks: nothing moves.", "Send one off: --set puck[0].launch.velocity=[1,0]"
+    ]  # fmt: skip
+
+
+def test_numbers_of_a_puck_are_set_by_its_number() -> None:
+    changed = puck("simulate", "--scene", "newtons-row", "--set", "puck[0].launch.velocity=[2,0]",
+                   "--json")  # fmt: skip
+    told = json.loads(changed.stdout)
+    run = Scene.load("newtons-row").at({"puck[0].launch.velocity": [2.0, 0.0]}).simulate()
+    assert told["end_time"] == run.end_time
+    assert [one["x"] for one in told["pucks"]] == run.last["x"].tolist()
+    assert [one["stop_time"] for one in told["pucks"]] == run.stop_times.tolist()
+    moving = json.loads(puck("simulate", "--scene", "air-table", "--json").stdout)
+    assert [one["stop_time"] for one in moving["pucks"]] == [None, None]
+
+
+@pytest.mark.parametrize("ending", ["h5", "csv", "jsonl", "parquet"])
+def test_states_go_into_files(tmp_path: Path, ending: str) -> None:
+    file = tmp_path / f"run.{ending}"
+    ended = puck("simulate", "--scene", "air-table", "--times", "0:2:5", "-o", str(file))
+    assert ended.exit_code == 0, ended.stderr
+    run = Scene.load("air-table").simulate([0.0, 0.5, 1.0, 1.5, 2.0])
+    if ending == "h5":
+        with xarray.open_dataset(file, engine="h5netcdf") as found:
+            assert found.x.dims == ("time", "puck") and (found.x == run.x).all()
+    elif ending == "parquet":
+        import pandas
+
+        assert len(pandas.read_parquet(file)) == 10
+    else:
+        assert len(file.read_text().splitlines()) == 10 + (ending == "csv")
+
+
+def test_pictures_and_movies_are_written_and_told(tmp_path: Path) -> None:
+    picture, movie = tmp_path / "run.png", tmp_path / "run.html"
+    arguments = ("simulate", "--scene", "shuffleboard-two-stones", "--plot", str(picture),
+                 "--movie", str(movie), "--explain")  # fmt: skip
+    ended = puck(*arguments)
+    assert ended.exit_code == 0 and f"wrote {movie}" in ended.stderr
+    assert "2 pucks looked up from impact to impact" in ended.stderr
+    assert picture.stat().st_size > 10_000 and movie.stat().st_size < 1_000_000
+    again = puck(*arguments)
+    assert again.exit_code == 1 and "exists already" in again.stderr
+    one = puck("simulate", "--v0", "1,0", "--w0", "5", "--movie", str(tmp_path / "one.html"))
+    assert one.exit_code == 0 and (tmp_path / "one.html").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("--radius", "0.1"), "puck[0]"),
+        (("--v0", "1,0"), "puck[0].launch"),
+        (("--delta", "1"), "--delta has no place in a scene"),
+        (("--set", "puck[9].mass=1"), "no such entry to set"),
+        (("--set", "puck[0].launch.speed=1"), "there are: velocity, spin"),
+        (("--set", "puck[0].colour=blau"), "did you mean 'blue'?"),
+        (("--set", "puck[1].launch.position=[0.03,0]"), "overlap by 0.03 m"),
+        (("--set", "puck[0].mass=1:2:3"), "a range makes many runs; give one number"),
+        (("--movie", "run.avi"), "one of .html, .gif, .mp4"),
+        (("--movie", "/nowhere/run.html"), "the folder /nowhere does not exist"),
+        (("--plot", "a.png", "--movie", "a.png"), "two outputs"),
+    ],
+)
+def test_refusals_are_one_sentence_and_leave_nothing(
+    arguments: tuple[str, ...], words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    ended = puck("simulate", "--scene", "newtons-row", *arguments)
+    assert ended.exit_code in (1, 2) and words in ended.stderr
+    assert "Traceback" not in ended.stderr and ended.stdout == ""
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_sweep_of_several_pucks_is_refused() -> None:
+    ended = puck("sweep", "--scene", "newtons-row", "--set", "puck[0].mass=0.1:0.2:3")
+    assert ended.exit_code == 2
+    assert "a sweep is of one puck" in ended.stderr and len(ended.stderr.splitlines()) == 1
+
+
+def test_check_says_how_pucks_would_be_moved() -> None:
+    assert "20 pucks looked up" in puck("scene", "check", "carrom-break").stdout
+    checked = puck("scene", "check", "air-hockey-mallet").stdout
+    assert "1 puck driven along a path" in checked and "1 puck in closed form" in checked
+    assert "Carrom: the break" in puck("scene", "list").stdout
+    assert "[[puck]]" in puck("scene", "show", "crokinole").stdout
+    fields = puck("scene", "fields").stdout
+    assert "puck[0].launch.velocity" in fields and "a colour, '#rrggbb'" in fields
