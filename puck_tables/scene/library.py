@@ -132,9 +132,8 @@ def read_scene(path: str | Path) -> dict[str, Any]:
     for part, name, kind in FILES:  # beside the scene that names them
         given = tables.get(part)
         for table in given if isinstance(given, list) else [given]:
-            value = table.get(name) if isinstance(table, dict) else None
-            if isinstance(value, str) and kind.names_file(value):
-                table[name] = str(Path(path).parent / value)
+            if isinstance(table, dict) and kind.names_file(table.get(name)):
+                table[name] = str(Path(path).parent / table[name])
     return tables
 
 

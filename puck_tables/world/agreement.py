@@ -11,7 +11,7 @@ import numpy as np
 from puck_tables.errors import InputError
 from puck_tables.scene.agreement import distance
 from puck_tables.scene.entries import entries
-from puck_tables.scene.parts import Floor, Force, Launch
+from puck_tables.scene.parts import Edge, Floor, Force, Launch, Wall
 from puck_tables.scene.pieces import Piece
 from puck_tables.scene.scene import Scene
 from puck_tables.world.drive import rows_of
@@ -60,12 +60,11 @@ def disagreements(scene: Scene) -> list[str]:
         faults.append(f"puck.name = {name!r}: {names.count(name)} pucks have it, it must be of one")
     for number, piece in enumerate(pieces):
         faults += _of_one(scene, piece, f"puck[{number}]" if scene.pucks else "puck")
-    for kind, lines in (("wall", scene.walls), ("edge", scene.edges)):
-        for number, line in enumerate(lines):
-            if not _SMALLEST < math.hypot(*line.normal) < _LARGEST:
-                faults.append(
-                    f"{kind}[{number}].normal = {list(line.normal)}: must have a direction"
-                )
+    lines: list[tuple[str, Wall | Edge]] = [(f"wall[{k}]", w) for k, w in enumerate(scene.walls)]
+    lines += [(f"edge[{k}]", edge) for k, edge in enumerate(scene.edges)]
+    for path, line in lines:
+        if not _SMALLEST < math.hypot(*line.normal) < _LARGEST:
+            faults.append(f"{path}.normal = {list(line.normal)}: must have a direction")
     if not scene.run.frames.is_integer():
         faults.append(f"run.frames = {scene.run.frames:g}: must be a whole number")
     if faults:

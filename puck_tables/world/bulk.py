@@ -21,6 +21,8 @@ from puck_tables.world.engine import (
 )
 from puck_tables.world.flight import DAMPED, GONE, START, STILL, UNTIL, state_at
 from puck_tables.world.game import COUNTS, N_IMPACTS, N_PIECES, Game, Whole
+from puck_tables.world.layout import DECEL, RADIUS
+from puck_tables.world.prepare import set_pace
 
 END_COLUMNS = 6  # of a puck: its state at the end
 
@@ -41,12 +43,16 @@ class Ends(NamedTuple):
 @kernel
 def _follow_all(
     game: Game, kinds: Whole, flights: FloatArray, first: FloatArray, discs: Whole,
-    launches: FloatArray, until: float, room: Room, ends: Ends,
+    launches: FloatArray, paces: FloatArray, until: float, room: Room, ends: Ends,
 ) -> None:  # fmt: skip
-    """Runs from the states ``first`` (n, 6), with launches (runs, m, 3) of the ``discs`` (m,)."""
+    """Runs from the states ``first`` (n, 6), with launches (runs, m, 3) of the ``discs`` (m,).
+
+    ``paces`` (runs, 2): the scales of each, so that none depends on others.
+    """
     count = first.shape[0]
     for run in range(launches.shape[0]):
         game.clock[0] = 0.0
+        game.pace[0], game.pace[1] = paces[run, 0], paces[run, 1]
         for column in range(COUNTS):
             if column != N_PIECES:
                 game.counts[column] = 0
@@ -94,14 +100,19 @@ def follow_all(
         np.empty((runs, count, END_COLUMNS)), np.empty((runs, count)), np.empty(runs),
         np.empty(runs), np.empty(runs, np.int64),
     )  # fmt: skip
+    paces = _paces(game, first, discs, launches)
     room, rows = room_for(count), 256 + 16 * count
     mine = _own(game, rows)
 
     def work(start: int, stop: int) -> None:
-        part = Ends(*(array[start:stop] for array in ends))
+        part = Ends(
+            ends.states[start:stop], ends.in_play[start:stop], ends.time[start:stop],
+            ends.impacts[start:stop], ends.how[start:stop],
+        )  # fmt: skip
         _follow_all(
-            mine, game.kinds, game.flights, first, discs, launches[start:stop], until, room, part
-        )
+            mine, game.kinds, game.flights, first, discs, launches[start:stop],
+            paces[start:stop], until, room, part,
+        )  # fmt: skip
 
     in_slices(work, runs)
     full = np.flatnonzero(ends.how == FULL)
@@ -112,6 +123,22 @@ def follow_all(
             work(int(run), int(run) + 1)
         full = full[ends.how[full] == FULL]
     return ends
+
+
+def _paces(game: Game, first: FloatArray, discs: Whole, launches: FloatArray) -> FloatArray:
+    """The scales of every run, (runs, 2), see :func:`puck_tables.world.prepare.set_pace`."""
+    others = first.copy()
+    others[discs, VX:] = 0.0
+    base = game._replace(pace=np.zeros(2))
+    set_pace(base, others)
+    radii = game.discs[:, RADIUS]
+    slips = np.hypot(
+        np.hypot(launches[:, :, 0], launches[:, :, 1]), radii[discs] * launches[:, :, 2]
+    )
+    speeds = np.maximum(base.pace[0], slips.max(axis=1))
+    steady = game.discs[:, DECEL].max()
+    rates = np.full(len(speeds), steady) if steady > 0.0 else speeds**2 / radii.min()
+    return np.stack([speeds, rates], axis=1)
 
 
 def _own(game: Game, rows: int) -> Game:

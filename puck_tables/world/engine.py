@@ -34,6 +34,7 @@ from puck_tables.world.game import (
     LAUNCH_VX,
     LAUNCH_VY,
     LAUNCHED,
+    LOOK_AGAIN,
     LOST,
     N_CONTACTS,
     N_EVENTS,
@@ -127,12 +128,12 @@ def look_ahead(game: Game, i: int, t: float, room: Room) -> None:
         _earlier(game, i, game.flights[i, UNTIL], PATH_ENDS)
     for k in range(game.obstacles.shape[0]):
         found = next_crossing(game, i, k, t, game.next_time[i], room.work, room.one)
-        _earlier(game, i, found, -1 - k)
+        _earlier(game, i, abs(found), -1 - k if found > 0.0 else LOOK_AGAIN)
     for j in range(game.discs.shape[0]):
         if j != i:
             found = next_meeting(game, i, j, t, game.next_time[i], room.work, room.one, room.two)
-            _earlier(game, i, found, j)
-            _earlier(game, j, found, i)
+            _earlier(game, i, abs(found), j if found > 0.0 else LOOK_AGAIN)
+            _earlier(game, j, abs(found), i if found > 0.0 else LOOK_AGAIN)
 
 
 @inlined
@@ -266,6 +267,11 @@ def _note_impacts(game: Game, t: float, count: int, room: Room) -> None:
 
 
 @inlined
+def _moves(state: FloatArray) -> bool:
+    return state[VX] != 0.0 or state[VY] != 0.0 or state[SPIN] != 0.0
+
+
+@inlined
 def _press_somewhere(game: Game, count: int, room: Room) -> bool:
     """Whether contacts that do not approach would, if all flew on alone; they are marked.
 
@@ -276,7 +282,10 @@ def _press_somewhere(game: Game, count: int, room: Room) -> bool:
         i, j, row = room.contacts[n, 0], room.contacts[n, 1], room.rows[n]
         un, _ = approach(game, i, j, row[NX], row[NY], room.states)
         row[ACTS] = 1.0 if abs(un) <= HARDLY * game.pace[0] else 0.0
-        if row[ACTS] > 0.0 and opening(game, i, j, row, room.states) < -HARDLY * game.pace[1]:
+        # what neither presses nor parts is a group, too: alone, both would look for each other
+        moves = _moves(room.states[i]) or (j >= 0 and _moves(room.states[j]))
+        least = HARDLY * game.pace[1] if moves else -HARDLY * game.pace[1]
+        if row[ACTS] > 0.0 and opening(game, i, j, row, room.states) < least:
             found = True
     return found
 
@@ -300,9 +309,11 @@ def _happen(game: Game, i: int, partner: int, t: float, room: Room) -> int:
         room.marks[j] = NOT_CONCERNED
     _locate(game, i, t, room)
     room.marks[i] = CONCERNED
+    if partner == LOOK_AGAIN:
+        return REACHED
     if partner == PATH_ENDS and game.drives[i, 0] < game.drives[i, 1]:
         drive_on(game, i, t, room)
-        return REACHED
+        _locate(game, i, t, room)
     for j in range(discs.shape[0]):
         with_i = game.group[j] > 0 and game.group[j] == game.group[i]
         with_partner = 0 <= partner < NOTHING and game.group[j] == game.group[partner] > 0
@@ -352,8 +363,7 @@ def is_integrated(game: Game, i: int, state: FloatArray) -> bool:
     disc = game.discs[i]
     if disc[INTEGRATED] == 0.0 or game.kinds[i] == GONE:
         return False
-    moves = state[VX] != 0.0 or state[VY] != 0.0 or state[SPIN] != 0.0
-    return moves or math.hypot(game.pull[0], game.pull[1]) > disc[DECEL]
+    return _moves(state) or math.hypot(game.pull[0], game.pull[1]) > disc[DECEL]
 
 
 @inlined
@@ -408,7 +418,7 @@ def _look_again(game: Game, t: float, room: Room) -> None:
 def lacks_rows(game: Game, room: Room) -> bool:
     """Whether one event more may not find room."""
     return (
-        game.counts[N_EVENTS] + room.contacts.shape[0] + 2 > game.events.shape[0]
+        game.counts[N_EVENTS] + 2 * room.contacts.shape[0] + 2 > game.events.shape[0]
         or game.counts[N_HISTORY] + game.discs.shape[0] + 1 > game.history.shape[0]
     )
 

@@ -45,10 +45,12 @@ KNOWN = LAUNCH_COLUMNS  # before it the launch: vx, vy, ω, δ, J, r
 START = LAUNCH_COLUMNS + LAUNCH_ROWS
 PLACE_X, PLACE_Y, ANGLE, UNTIL, FASTEST, STRONGEST = range(START + 1, START + 7)
 FIRST_PIECE, LAST_PIECE = START + 7, START + 8
-FLIGHT_COLUMNS = START + 9
+OFF_X, OFF_Y, OFF_ANGLE = range(START + 9, START + 12)  # what the look-up says just after the start
+FLIGHT_COLUMNS = START + 12
 
 ROOM = CURVE_ROW + 5 + 9  # numbers to work in
 NO_TURN = 0.0
+_SOON = 1e-16  # of the time until rest
 
 Kinds = npt.NDArray[np.int64]
 
@@ -96,9 +98,10 @@ def state_at(
             flight, t - flight[START], curves.stops, curves.curve, curves.time_inverse,
             room, room[CURVE_ROW:], found,
         )  # fmt: skip
-        out[X] = flight[PLACE_X] + found[PUCK_X]
-        out[Y] = flight[PLACE_Y] + found[PUCK_Y]
-        out[THETA] = flight[ANGLE] + found[ORIENTATION]
+        later = 1.0 if t > flight[START] else 0.0
+        out[X] = flight[PLACE_X] + (found[PUCK_X] - later * flight[OFF_X])
+        out[Y] = flight[PLACE_Y] + (found[PUCK_Y] - later * flight[OFF_Y])
+        out[THETA] = flight[ANGLE] + (found[ORIENTATION] - later * flight[OFF_ANGLE])
         speed = found[SPEED]
         out[VX], out[VY], out[SPIN] = 0.0, 0.0, found[PUCK_SPIN]
         if speed > 0.0:
@@ -133,6 +136,7 @@ def start_flight(
     flight[ANGLE], flight[UNTIL] = state[THETA], math.inf
     flight[FASTEST], flight[STRONGEST] = 0.0, 0.0
     flight[FIRST_PIECE], flight[LAST_PIECE] = 0.0, 0.0
+    flight[OFF_X], flight[OFF_Y], flight[OFF_ANGLE] = 0.0, 0.0, 0.0
     if speed == 0.0 and spin == 0.0:
         return STILL
     flight[FASTEST] = speed
@@ -142,6 +146,14 @@ def start_flight(
             room, flight[KNOWN:],
         )  # fmt: skip
         flight[UNTIL] = t + flight[KNOWN + TIME]
+        # places that are looked up are off by some 1e-12 of Q²/J: discs that touch must not jump
+        found = room[CURVE_ROW + 5 :]
+        look_up_state(
+            flight, _SOON * flight[KNOWN + TIME], curves.stops, curves.curve, curves.time_inverse,
+            room, room[CURVE_ROW:], found,
+        )  # fmt: skip
+        flight[OFF_X], flight[OFF_Y] = found[PUCK_X], found[PUCK_Y]
+        flight[OFF_ANGLE] = found[ORIENTATION]
         flight[STRONGEST] = disc[DECEL]
         return LOOKED_UP
     flight[STRONGEST] = speed * (disc[DAMPING] + disc[WAKE] * speed)

@@ -14,7 +14,7 @@ from puck_tables.world.flight import FLIGHT_COLUMNS, Curves
 Whole = npt.NDArray[np.int64]
 
 # what comes next for a disc, beside a partner (a disc ≥ 0, an obstacle −1 − k)
-NOTHING, PATH_ENDS = 1 << 40, (1 << 40) + 1
+NOTHING, PATH_ENDS, LOOK_AGAIN = 1 << 40, (1 << 40) + 1, (1 << 40) + 2
 
 # events
 IMPACT, CONTACT, PART, POCKETED, OVER_EDGE, REST, STRUCK = range(7)

@@ -9,11 +9,12 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import PuckError
-from puck_tables.scene.friction import VX, VY
-from puck_tables.world.engine import CONCERNED, PUSHED, Room, is_integrated, keep_flight, stay
+from puck_tables.scene.friction import SPIN, VX, VY, X, Y
+from puck_tables.world.engine import CONCERNED, PUSHED, Room, is_integrated, keep_flight, note, stay
 from puck_tables.world.flight import (
     ANGLE,
     FASTEST,
@@ -26,7 +27,17 @@ from puck_tables.world.flight import (
     STRONGEST,
     UNTIL,
 )
-from puck_tables.world.game import N_CONTACTS, N_GROUPS, N_HELD, N_PIECES, Game, Whole
+from puck_tables.world.game import (
+    CONTACT,
+    LOST,
+    N_CONTACTS,
+    N_EVENTS,
+    N_GROUPS,
+    N_HELD,
+    N_PIECES,
+    Game,
+    Whole,
+)
 from puck_tables.world.group import (
     APART,
     HELD,
@@ -39,6 +50,7 @@ from puck_tables.world.group import (
     desk_for,
 )
 from puck_tables.world.impact import ACTS
+from puck_tables.world.layout import LIGHTNESS, TURNABILITY
 from puck_tables.world.paths import DURATION, FIRST, PIECE_COLUMNS
 from puck_tables.world.pressing import press
 from puck_tables.world.pushing import follow
@@ -47,6 +59,7 @@ STEP_TOL = 1e-11  # of a step, in units of Q and Q²/J
 ROWS = 400  # steps of a group before its flights end for a new look
 _GRACE = 1.5  # times accelerations at the ends of steps, between them
 _TRIES = 100
+LOST_SHARE = 1e-15
 
 
 def push_on(game: Game, room: Room) -> Game:
@@ -56,13 +69,16 @@ def push_on(game: Game, room: Room) -> Game:
     for i in np.flatnonzero(room.marks == CONCERNED):
         game.group[i] = 0
     held = game.held[: game.counts[N_HELD]]
+    held_before = {frozenset(pair) for pair in held.tolist()}
     held = held[game.group[held[:, 0]] > 0]
     t, scales = float(game.clock[0]), Scales(float(game.pace[0]), float(game.pace[1]), STEP_TOL)
     gx, gy = game.pull.tolist()
     shared = Group(game.discs, game.obstacles, game.regions, game.pieces, game.drives, gx, gy)
     for part in _components(contacts, len(game.discs)):
         members = np.unique(part[part >= 0])
+        before = room.states.copy()
         kept, t_end, ways = _follow(shared, members, part, room.states, t, scales)
+        _note_contacts(game, t, part, kept, held_before, before, room)
         if not len(kept):
             continue
         game.counts[N_GROUPS] += 1
@@ -77,13 +93,41 @@ def push_on(game: Game, room: Room) -> Game:
             else:
                 game = _set_out(game, int(i), t, t_end, ways[place])
     for i in np.flatnonzero(room.marks == CONCERNED):
-        if is_integrated(game, i, room.states[i]):
+        if is_integrated(game, int(i), room.states[i]):
             _, t_end, ways = _follow(shared, np.array([i]), contacts[:0], room.states, t, scales)
             if t < t_end < math.inf:
                 game = _set_out(game, int(i), t, t_end, ways[0])
                 room.marks[i] = PUSHED
     game.held[: len(held)], game.counts[N_HELD] = held, len(held)
     return game
+
+
+def _note_contacts(
+    game: Game, t: float, part: Whole, kept: Whole, held_before: set[frozenset[int]],
+    before: FloatArray, room: Room,
+) -> None:  # fmt: skip
+    """Write down the contacts that are new, and what was lost where rims gripped at once."""
+    free = game.discs[:, LIGHTNESS] > 0.0
+    changes = _energies(game, before[free], free) - _energies(game, room.states[free], free)
+    lost = float(changes.sum())
+    fresh = [pair for pair in kept.tolist() if frozenset(pair) not in held_before]
+    if not fresh and abs(lost) > LOST_SHARE * float(_energies(game, before[free], free).sum()):
+        fresh = part[:1].tolist()
+    for i, j in fresh:
+        x, y = room.states[i, X : Y + 1]
+        note(game, t, CONTACT, i, j, float(x), float(y))
+        game.events[game.counts[N_EVENTS] - 1, LOST] = lost
+        lost = 0.0
+
+
+def _energies(game: Game, states: FloatArray, free: npt.NDArray[np.bool_]) -> FloatArray:
+    """Kinetic energies of discs that can move, J."""
+    squares = states[:, VX] ** 2 + states[:, VY] ** 2
+    discs = game.discs[free]
+    energies: FloatArray = 0.5 * (
+        squares / discs[:, LIGHTNESS] + states[:, SPIN] ** 2 / discs[:, TURNABILITY]
+    )
+    return energies
 
 
 def _components(contacts: Whole, discs: int) -> list[Whole]:

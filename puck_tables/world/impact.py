@@ -13,7 +13,8 @@ The energy lost is ½ m_n (1 − e²) u_n² with ½ m_t (1 − β²) u_t², or w
 slide μ P_n |u_t| − P_t²/2m_t; never less than nothing.
 
 Of discs that touch, those contacts that approach are resolved, then those that approach then, and
-so on: a row of pucks passes an impact on, as if there were gaps between them.  Contacts of one
+so on: a row of pucks passes an impact on, as if there were gaps between them (after 200 rounds
+those that take turns are resolved together with e = 0).  Contacts of one
 round that share a disc are resolved together: the impulses for e = β = 0 (P_n ≥ 0) are found by an
 iteration that treats all alike, then enlarged by 1 + e and 1 + β, as Poisson has it, and lessened
 together should energy grow.  So no numbering matters, and what is symmetric stays so.
@@ -54,8 +55,9 @@ CONTACT_COLUMNS = 15
 NEGLIGIBLE = 1e-13  # of the scale of speeds: an approach as slow is none
 FLAT = 1e-13  # of the radius: rebounds as low have died out
 BLURRED = 1e-10  # of Q²/J: as low, they are lost in the errors of places that are looked up
-MOST_ROUNDS = 20_000
-_MOST_ITERATIONS = 20_000
+MOST_ROUNDS = 2_000
+TURNS = 200  # rounds after which contacts that take turns are resolved together, with e = 0
+_MOST_ITERATIONS = 50_000
 _SOLVED = 1e-15
 
 
@@ -299,6 +301,15 @@ def collide(
                         before[j, column] = states[j, column]
         if acting == 0:
             return turn
+        if turn >= TURNS:  # such as of a light disc between a heavy one and a wall
+            for n in range(count):
+                row, i, j = rows[n], contacts[n, 0], contacts[n, 1]
+                if row[SUM_N] > 0.0:
+                    row[ACTS], row[E] = 1.0, 0.0
+                    for column in range(VX, SPIN + 1):
+                        before[i, column] = states[i, column]
+                        if j >= 0:
+                            before[j, column] = states[j, column]
         most = _most_shared(contacts, count, rows, shares)
         again = True
         while again:

@@ -49,7 +49,7 @@ from puck_tables.world.layout import (
 OUTSIDE = 1e-9  # of the radius
 ROUNDED = 1e-15  # of the places: a gap as small is none
 QUIET = 1e-12  # of the scale of speeds: an approach as slow is none
-_MOST_LOOKS = 100_000
+_MOST_LOOKS = 20_000
 
 
 @inlined
@@ -166,7 +166,10 @@ def next_meeting(
     game: Game, i: int, j: int, now: float, horizon: float, room: FloatArray, one: FloatArray,
     two: FloatArray,
 ) -> float:  # fmt: skip
-    """When two discs touch next, up to the horizon; else inf.  States at the end in one and two."""
+    """When two discs touch next, up to the horizon; else inf; −t: look again then.
+
+    States at the end in one and two.
+    """
     kind, other = game.kinds[i], game.kinds[j]
     if kind == GONE or other == GONE or (kind == STILL and other == STILL):
         return math.inf
@@ -210,14 +213,14 @@ def next_meeting(
         t += step
         state_at(kind, flight, discs[i], curves, pieces, t, room, one)
         state_at(other, second, discs[j], curves, pieces, t, room, two)
-    return t
+    return -t
 
 
 @inner
 def next_crossing(
     game: Game, i: int, k: int, now: float, horizon: float, room: FloatArray, one: FloatArray
 ) -> float:
-    """When a disc meets obstacle k next, or its centre passes it, up to the horizon; else inf."""
+    """The same of a disc and the obstacle k, or where its centre passes it."""
     kind, flight = game.kinds[i], game.flights[i]
     last = min(horizon, _moves_until(kind, flight))
     if kind == GONE or not last > now or are_held(game, i, -1 - k):
@@ -273,4 +276,4 @@ def next_crossing(
             return t if rate < -QUIET * game.pace[0] else math.inf
         t += step
         state_at(kind, flight, disc, game.curves, game.pieces, t, room, one)
-    return t
+    return -t

@@ -74,7 +74,7 @@ class WorldRun(TimedResult):
         """
         if files_of(self.scene) != self.files:
             raise InputError("a file that the scene names has changed since the run: run it again")
-        run: WorldRun = self.scene.simulate(times)
+        run: Any = self.scene.simulate(times)
         return run
 
     def __repr__(self) -> str:

@@ -16,7 +16,7 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.checkpoint import chunked, files_named
 from puck_tables._core.executor import Progress
-from puck_tables.errors import InputError
+from puck_tables.errors import InputError, PuckError
 from puck_tables.io.columns import derived
 from puck_tables.io.dataset import Dataset, Variable, variable
 from puck_tables.result import Result
@@ -27,13 +27,22 @@ from puck_tables.scene.pieces import Piece
 from puck_tables.scene.scene import Scene
 from puck_tables.stopping.sweep import check_memory
 from puck_tables.world.agreement import called, pieces_of
-from puck_tables.world.bulk import follow_all
+from puck_tables.world.bulk import Ends, follow_all
+from puck_tables.world.engine import PUSHING, REACHED
 from puck_tables.world.outcome import STATE
 from puck_tables.world.prepare import game_of, order_of
+from puck_tables.world.world import World
 
 CHUNK = 2048
-ENDS = ("at rest", "time is up", "events crowd together", "impacts without end", "refused")
-TIME_UP, REFUSED = 1, 4
+ENDS = (
+    "at rest",
+    "time is up",
+    "events crowd together",
+    "impacts without end",
+    "refused",
+    "unsolved",
+)
+TIME_UP, REFUSED, UNSOLVED = 1, 4, 5
 _LAUNCH = re.compile(r"(?:puck\[(\d+)\]\.)?launch\.(velocity\[[01]\]|spin)")
 _PARTS = ("velocity[0]", "velocity[1]", "spin")
 
@@ -118,7 +127,7 @@ class WorldMap(Result):
             if found.size:
                 at = zip(self.axes.items(), found[0], strict=True)
                 run = ", ".join(f"{path} = {values[i]:.10g}" for (path, values), i in at)
-                advice = self.refusal if code == REFUSED else "change the restitution of its pucks"
+                advice = self.refusal if code == REFUSED else "run it alone, which says what to do"
                 lines.append(
                     f"{len(found)} of {self.end.size} runs: {ENDS[code]}; the first at {run}: "
                     + advice
@@ -223,6 +232,10 @@ class _Case:
             starts[:, numbers.index(int(one[1] or 0)), _PARTS.index(one[2])] = values
         discs = self.place[numbers]
         ends = follow_all(self.game, self.first, discs, starts, self.until)
+        for run in np.flatnonzero(ends.how == PUSHING):  # groups are sent off one by one
+            self._run(
+                {path: float(values[run]) for path, values in launches.items()}, int(run), ends
+            )
         states = np.concatenate([ends.states, ends.in_play[:, :, None]], axis=2)[:, self.place]
         out = np.vstack([states.reshape(count, -1).T, ends.time, ends.impacts])
         status = np.where(ends.how > 1, ends.how, 0).astype(np.int8)
@@ -230,3 +243,17 @@ class _Case:
         status[(status == 0) & moving] = TIME_UP
         out[:, status > TIME_UP] = np.nan
         return out, status
+
+    def _run(self, numbers: Mapping[str, float], run: int, ends: Ends) -> None:
+        """A run in which pucks push each other, or are integrated."""
+        world = World(self.scene.at(numbers))
+        try:
+            world.advance(self.until)
+        except PuckError:
+            ends.how[run] = UNSOLVED
+            return
+        order = np.argsort(self.place)
+        ends.states[run], ends.in_play[run] = world.state()[order], world.in_play[order]
+        ends.time[run] = min(world.last_motion, self.until)
+        ends.impacts[run] = sum(event.what == "impact" for event in world.events_since(0.0))
+        ends.how[run] = REACHED

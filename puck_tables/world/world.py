@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -34,6 +34,7 @@ from puck_tables.world.prepare import game_of, obstacle_names, order_of, set_pac
 from puck_tables.world.record import states_at
 
 MOST_EVENTS = 1_000_000
+CROWD = 1e-7  # of Q/J: 2000 events in less are a crowd
 _FAILURES = {
     CROWDED: "too many events by {time:.6g} s: they crowd together without end; change the "
     "restitution of what meets there",
@@ -43,11 +44,14 @@ _FAILURES = {
 
 
 class Meeting(NamedTuple):
-    """What happened: when (s), what (impact, pocket, edge or launch), to which puck, with whom.
+    """What happened: when (s), what, to which puck, with whom.
+
+    An impact; a contact, which lasts; pocket or edge, where it leaves play; a launch.
 
     ``x``, ``y`` m: where; ``approach``, ``slip`` m/s: how fast the rims came together and slid on
     each other before the first impact of this moment; ``impulse``, ``rub`` N s: along the line from
-    the puck to its partner and 90° to the left of it; ``lost`` J: kinetic energy lost.
+    the puck to its partner and 90° to the left of it; ``lost`` J: kinetic energy lost, of several
+    impacts at one moment right in sum only.
     """
 
     time: float
@@ -259,6 +263,7 @@ class World:
             self._grow()
         if struck >= 0:
             set_pace(self._game, state[None] * np.ones((len(self._game.discs), 1)))
+        mark = -math.inf
         while (how := advance(self._game, until, struck, state, self._room)) != REACHED:
             struck = NOBODY
             if how == FULL:
@@ -267,8 +272,12 @@ class World:
                 from puck_tables.world.groups import push_on  # compiled where it is needed
 
                 self._game, struck = push_on(self._game, self._room), THOSE_LEFT
-            elif how != PAUSED:
-                raise PuckError(_FAILURES[how].format(time=self.time))
+            elif (
+                how == PAUSED and self.time - mark > CROWD * self._game.pace[0] / self._game.pace[1]
+            ):
+                mark = self.time
+            else:
+                raise PuckError(self._failure(CROWDED if how == PAUSED else how))
 
     def perturb(self, scale: float, turn: float) -> None:
         """Change the launches: their velocities and spins by a factor, their headings by an angle.
@@ -300,21 +309,35 @@ class World:
         twin.scene, twin._order = self.scene, self._order
         # tables, friction and obstacles never change
         kept = ("discs", "regions", "obstacles", "curves", "launches", "drives")
-        twin._game = g.Game(**{
-            name: part if name in kept else part.copy()
-            for name, part in zip(g.Game._fields, self._game, strict=True)
-        })  # fmt: skip
+        parts: dict[str, Any] = self._game._asdict()
+        twin._game = g.Game(**{n: one if n in kept else one.copy() for n, one in parts.items()})
         twin._room = self._room._replace(
             **{name: part.copy() for name, part in self._room._asdict().items()}
         )
         twin._named()
         return twin
 
+    def _failure(self, how: int) -> str:
+        """Why it does not go on, in words."""
+        events = self._events(max(int(self._game.counts[g.N_EVENTS]) - 1, 0))
+        names = {events[-1].puck, events[-1].partner} if events else set()
+        driven = [name for name, piece in zip(self.names, pieces_of(self.scene), strict=True)
+                  if piece.path and math.dist(self.state()[self.names.index(name), :2],
+                                              (events[-1].x, events[-1].y)) < 3.0 * piece.radius
+                  ] if events else []  # fmt: skip
+        if driven:
+            others = ", ".join(sorted(names - set(driven))) or "a puck"
+            return (
+                f"{driven[0]}, which is driven, squeezes {others} at {self.time:.6g} s against what "
+                "does not give way: let its path end before, or leave more room"
+            )
+        return _FAILURES[how].format(time=self.time)
+
     def _grow(self) -> None:
         """Twice the rows for events and flights."""
         if len(self._game.events) > MOST_EVENTS:
-            raise PuckError(_FAILURES[CROWDED].format(time=self.time))
-        more = {
+            raise PuckError(self._failure(CROWDED))
+        more: dict[str, Any] = {
             name: np.vstack([part, np.zeros_like(part)])
             for name, part in (("events", self._game.events), ("history", self._game.history))
         }
