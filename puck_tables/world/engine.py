@@ -456,7 +456,9 @@ def advance(game: Game, until: float, struck: int, state: FloatArray, room: Room
     while True:
         first, t = count - 1, math.inf
         for i in range(count):
-            if game.next_time[i] < t:
+            # a driven disc turns before those that it pushes are asked where they go
+            turns = game.next_partner[i] == PATH_ENDS and game.drives[i, 0] < game.drives[i, 1]
+            if game.next_time[i] < t or (turns and game.next_time[i] == t):
                 first, t = i, game.next_time[i]
         done, launch = game.counts[N_LAUNCHES], math.inf
         if done < game.launches.shape[0]:

@@ -259,11 +259,11 @@ class World:
 
     def _advance(self, until: float, struck: int, state: FloatArray) -> None:
         """Let time pass, after a disc was given the velocity of a state."""
+        mark, crowd = -math.inf, CROWD * float(self._game.pace[0] / max(self._game.pace[1], 1e-300))
         if lacks_rows(self._game, self._room):
             self._grow()
         if struck >= 0:
             set_pace(self._game, state[None] * np.ones((len(self._game.discs), 1)))
-        mark = -math.inf
         while (how := advance(self._game, until, struck, state, self._room)) != REACHED:
             struck = NOBODY
             if how == FULL:
@@ -272,9 +272,7 @@ class World:
                 from puck_tables.world.groups import push_on  # compiled where it is needed
 
                 self._game, struck = push_on(self._game, self._room), THOSE_LEFT
-            elif (
-                how == PAUSED and self.time - mark > CROWD * self._game.pace[0] / self._game.pace[1]
-            ):
+            elif how == PAUSED and self.time - mark > crowd:
                 mark = self.time
             else:
                 raise PuckError(self._failure(CROWDED if how == PAUSED else how))
@@ -328,8 +326,8 @@ class World:
         if driven:
             others = ", ".join(sorted(names - set(driven))) or "a puck"
             return (
-                f"{driven[0]}, which is driven, squeezes {others} at {self.time:.6g} s against what "
-                "does not give way: let its path end before, or leave more room"
+                f"{driven[0]}, which is driven, squeezes {others} at {self.time:.6g} s "
+                "against what does not give way: let its path end before, or leave more room"
             )
         return _FAILURES[how].format(time=self.time)
 
