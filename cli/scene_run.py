@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from puck_tables.scene.outcome import SceneRun
     from puck_tables.scene.scene import Scene
     from puck_tables.scene.sweep import SceneMap
+    from puck_tables.world.sweep import WorldMap
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
@@ -250,15 +251,13 @@ def _events(run: SceneRun) -> str:
     return ", ".join(told_of) + (f" and {more} more" if more > 0 else "")
 
 
-def summary_of_map(stops: SceneMap) -> str:
+def summary_of_map(stops: SceneMap | WorldMap) -> str:
     """A map over a scene in one line, and one for each way in which runs have no end."""
-    from puck_tables.scene.outcome import ENDS
-
     ranged = " x ".join(f"{name} ({values.size})" for name, values in stops.axes.items())
     counts = ", ".join(
         f"{int((stops.end == code).sum())} {end}"
-        for code, end in enumerate(ENDS)
+        for code, end in enumerate(stops.meanings)
         if (stops.end == code).any()
     )
-    head = f"{stops.scene.title or 'scene'} over {ranged}: {counts}; {stops.plan.model}"
+    head = f"{stops.scene.title or 'scene'} over {ranged}: {counts}; {stops.model}"
     return "\n".join([head, *stops.without_end()])

@@ -68,6 +68,7 @@ class SceneMap(Result):
     files: Mapping[str, str] = field(default_factory=dict, repr=False)
 
     picture: ClassVar[str] = "scene_map"
+    meanings: ClassVar[tuple[str, ...]] = ENDS
 
     @property
     def axes(self) -> dict[str, FloatArray]:
@@ -81,6 +82,11 @@ class SceneMap(Result):
     def __getattr__(self, name: str) -> FloatArray:
         """A column by its name."""
         return column_of(self, name)
+
+    @property
+    def model(self) -> str:
+        """The model that was taken."""
+        return self.plan.model
 
     def explain(self) -> str:
         """The model that was taken, and why."""
@@ -155,11 +161,6 @@ def sweep(
     progress: Progress | None = None, checkpoint: str | Path | None = None,
 ) -> SceneMap:  # fmt: skip
     """The map over a scene, as :meth:`puck_tables.Scene.sweep` has it."""
-    if scene.is_board:
-        raise InputError(
-            "a sweep is of one puck without posts, arcs and pockets: simulate a scene of several "
-            "once for each number"
-        )
     axes = axes_of(scene)
     if not axes:
         raise InputError(

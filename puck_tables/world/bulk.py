@@ -135,7 +135,7 @@ def _paces(game: Game, first: FloatArray, discs: Whole, launches: FloatArray) ->
     slips = np.hypot(
         np.hypot(launches[:, :, 0], launches[:, :, 1]), radii[discs] * launches[:, :, 2]
     )
-    speeds = np.maximum(base.pace[0], slips.max(axis=1))
+    speeds = np.maximum(base.pace[0], slips.max(axis=1, initial=0.0))
     steady = game.discs[:, DECEL].max()
     rates = np.full(len(speeds), steady) if steady > 0.0 else speeds**2 / radii.min()
     return np.stack([speeds, rates], axis=1)

@@ -52,6 +52,7 @@ from puck_tables.world.group import (
 from puck_tables.world.impact import ACTS
 from puck_tables.world.layout import LIGHTNESS, TURNABILITY
 from puck_tables.world.paths import DURATION, FIRST, PIECE_COLUMNS
+from puck_tables.world.paths import START as BEGINS
 from puck_tables.world.pressing import press
 from puck_tables.world.pushing import follow
 
@@ -60,6 +61,7 @@ ROWS = 400  # steps of a group before its flights end for a new look
 _GRACE = 1.5  # times accelerations at the ends of steps, between them
 _TRIES = 100
 LOST_SHARE = 1e-15
+FOR_EVER = 1e9  # s
 
 
 def push_on(game: Game, room: Room) -> Game:
@@ -73,7 +75,8 @@ def push_on(game: Game, room: Room) -> Game:
     held = held[game.group[held[:, 0]] > 0]
     t, scales = float(game.clock[0]), Scales(float(game.pace[0]), float(game.pace[1]), STEP_TOL)
     gx, gy = game.pull.tolist()
-    shared = Group(game.discs, game.obstacles, game.regions, game.pieces, game.drives, gx, gy)
+    films, reels = _driven_now(game, t)
+    shared = Group(game.discs, game.obstacles, game.regions, films, reels, gx, gy)
     for part in _components(contacts, len(game.discs)):
         members = np.unique(part[part >= 0])
         before = room.states.copy()
@@ -100,6 +103,22 @@ def push_on(game: Game, room: Room) -> Game:
                 room.marks[i] = PUSHED
     game.held[: len(held)], game.counts[N_HELD] = held, len(held)
     return game
+
+
+def _driven_now(game: Game, t: float) -> tuple[FloatArray, Whole]:
+    """The piece on which each driven disc is now, or at whose end it stays; their rows."""
+    films, reels = np.zeros((0, PIECE_COLUMNS)), np.zeros_like(game.drives)
+    for i in np.flatnonzero(game.drives[:, 0] < game.drives[:, 1]):
+        if game.kinds[i] == PATH:
+            row = game.pieces[int(game.flights[i, FIRST_PIECE])]
+        else:
+            row = np.zeros(PIECE_COLUMNS)
+            row[BEGINS], row[DURATION] = t, FOR_EVER
+            row[FIRST : FIRST + 3] = game.flights[i, [PLACE_X, PLACE_Y, ANGLE]]
+            row[FIRST + 9 : FIRST + 12] = row[FIRST : FIRST + 3]
+        reels[i] = len(films), len(films) + 1
+        films = np.vstack([films, row])
+    return films, reels
 
 
 def _note_contacts(
@@ -157,6 +176,9 @@ def _follow(
     # down a slope a puck may go on for ever, and gets faster than bounds should be
     steep = shared.gx != 0.0 or shared.gy != 0.0
     horizon = t + 2.0 * scales.speed / scales.rate if steep else math.inf
+    for first, last in shared.reels[members]:
+        if first < last:  # what drives may turn where its piece ends
+            horizon = min(horizon, float(shared.films[first, [BEGINS, DURATION]].sum()))
     alone, nothing = not len(contacts), np.zeros((len(members), 0, PIECE_COLUMNS))
     for _ in range(_TRIES):
         desk, ledger = desk_for(len(members), len(contacts)), np.zeros(LEDGER)

@@ -34,12 +34,14 @@ from puck_tables.world.flight import (
 from puck_tables.world.game import N_HELD, N_LOOKS, Game
 from puck_tables.world.layout import (
     ARC,
+    DAMPING,
     EDGE,
     FROM,
     KIND,
     POCKET,
     RADIUS,
     SPAN,
+    WAKE,
     WALL,
     A,
     B,
@@ -161,6 +163,28 @@ def _moves_until(kind: int, flight: FloatArray) -> float:
     return math.inf if kind == DAMPED else -math.inf
 
 
+@inlined
+def _bend(kind: int, flight: FloatArray, disc: FloatArray, state: FloatArray) -> float:
+    """The largest acceleration from now on; of drag alone it falls with the speed."""
+    if kind == DAMPED:
+        speed = math.hypot(state[VX], state[VY])
+        return speed * (disc[DAMPING] + disc[WAKE] * speed)
+    return flight[STRONGEST]
+
+
+@inlined
+def _way_left(
+    kind: int, flight: FloatArray, disc: FloatArray, state: FloatArray, t: float
+) -> float:
+    """How far a disc goes at most."""
+    speed = math.hypot(state[VX], state[VY])
+    if kind == DAMPED:
+        return speed / disc[DAMPING] if disc[DAMPING] > 0.0 else math.inf
+    if kind == LOOKED_UP:
+        return speed * max(flight[UNTIL] - t, 0.0)
+    return math.inf if kind == PATH else 0.0
+
+
 @inner
 def next_meeting(
     game: Game, i: int, j: int, now: float, horizon: float, room: FloatArray, one: FloatArray,
@@ -191,7 +215,6 @@ def next_meeting(
         reach,
     ):
         return math.inf
-    bend = flight[STRONGEST] + second[STRONGEST]
     t = now
     for _ in range(_MOST_LOOKS):
         game.counts[N_LOOKS] += 1
@@ -200,7 +223,11 @@ def next_meeting(
         gap = size - reach
         rate = (dx * (two[VX] - one[VX]) + dy * (two[VY] - one[VY])) / size
         rounded = ROUNDED * (abs(one[X]) + abs(one[Y]) + reach)
+        bend = _bend(kind, flight, discs[i], one) + _bend(other, second, discs[j], two)
         step = safe_step(max(gap, 0.0), rate, bend)
+        left = _way_left(kind, flight, discs[i], one, t)
+        if gap > (left + _way_left(other, second, discs[j], two, t)) * (1.0 + 1e-9):
+            return math.inf
         if gap <= rounded:
             if rate < -QUIET * game.pace[0]:
                 return t
@@ -252,7 +279,9 @@ def next_crossing(
         game.counts[N_LOOKS] += 1
         gap, nx, ny, there = normal_to(obstacle, radius, one[X], one[Y])
         rate = -(nx * one[VX] + ny * one[VY])
-        bend = flight[STRONGEST]
+        bend = _bend(kind, flight, disc, one)
+        if gap > _way_left(kind, flight, disc, one, t) * (1.0 + 1e-9):
+            return math.inf
         rounded = ROUNDED * (abs(one[X]) + abs(one[Y]) + radius + obstacle[C] * (shape == ARC))
         if shape == ARC and gap >= 0.0:
             step = _arc_step(

@@ -12,6 +12,7 @@ from puck_tables.kernels.compile import inlined
 
 START, DURATION, FIRST = range(3)  # FIRST: nine numbers at its start, nine at its end
 PIECE_COLUMNS = FIRST + 18
+_ROUNDED = 1e-15  # of a place
 
 
 @inlined
@@ -39,6 +40,10 @@ def on_piece(piece: FloatArray, t: float, out: FloatArray) -> None:
         a1 = h * h * piece[FIRST + 15 + i]
         # what is left of place, velocity and acceleration at the end of a parabola from the start
         gap, rate, bend = x1 - x0 - v0 - 0.5 * a0, v1 - v0 - a0, a1 - a0
+        # over a piece that is short the velocities know better than the places, which are rounded
+        better = 0.5 * rate - bend / 12.0
+        if abs(gap - better) <= _ROUNDED * (abs(x0) + abs(x1)):
+            gap = better
         c3 = 10.0 * gap - 4.0 * rate + 0.5 * bend
         c4 = -15.0 * gap + 7.0 * rate - bend
         c5 = 6.0 * gap - 3.0 * rate + 0.5 * bend

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -29,7 +29,7 @@ from puck_tables.stopping.sweep import check_memory
 from puck_tables.world.agreement import called, pieces_of
 from puck_tables.world.bulk import Ends, follow_all
 from puck_tables.world.engine import PUSHING, REACHED
-from puck_tables.world.outcome import STATE
+from puck_tables.world.outcome import STATE, WorldRun
 from puck_tables.world.prepare import game_of, order_of
 from puck_tables.world.world import World
 
@@ -66,6 +66,7 @@ class WorldMap(Result):
     files: Mapping[str, str] = field(default_factory=dict, repr=False)
 
     picture: ClassVar[str] = "board_map"
+    meanings: ClassVar[tuple[str, ...]] = ENDS
 
     @property
     def axes(self) -> dict[str, FloatArray]:
@@ -96,6 +97,18 @@ class WorldMap(Result):
             name: values[..., puck] if values.ndim > self.end.ndim else values
             for name, values in self.columns.items()
         }
+
+    @property
+    def model(self) -> str:
+        """What was done."""
+        return f"{len(self.names)} pucks from impact to impact"
+
+    def an_example(self) -> WorldRun:
+        """The first run that has an end."""
+        first = np.argwhere(self.end <= TIME_UP)[0]
+        values = zip(self.axes.items(), first, strict=True)
+        run: Any = self.scene.at({path: float(axis[i]) for (path, axis), i in values}).simulate()
+        return run
 
     def explain(self) -> str:
         """How it was got."""
