@@ -72,7 +72,7 @@ def test_every_error_at_once() -> None:
         ),
         ({"launch": {"spin": "0:1:1"}}, "launch.spin = '0:1:1': must be a range of 2 to 1000000"),
         ({"launch": {"spin": "0:1"}}, "or a range 'START:STOP:COUNT' of them"),
-        ({"puck": []}, "puck = []: must be a table"),
+        ({"puck": []}, "puck is missing: it must be a table, or a list"),
         ({"wall": {"point": [9, 0]}}, "must be a list of tables, [[wall]]"),
     ],
 )

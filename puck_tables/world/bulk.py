@@ -83,7 +83,7 @@ def _follow_all(
         for i in range(count):
             state_at(
                 game.kinds[i], game.flights[i], game.discs[i], game.curves, game.pieces,
-                min(last, until), room.work, ends.states[run, i],
+                until, room.work, ends.states[run, i],
             )  # fmt: skip
             ends.in_play[run, i] = 0.0 if game.kinds[i] == GONE else 1.0
 

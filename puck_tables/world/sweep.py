@@ -265,8 +265,9 @@ class _Case:
         except PuckError:
             ends.how[run] = UNSOLVED
             return
-        order = np.argsort(self.place)
-        ends.states[run], ends.in_play[run] = world.state()[order], world.in_play[order]
+        order, last = np.argsort(self.place), world.state()
+        last[~world.moving, 3:] = 0.0
+        ends.states[run], ends.in_play[run] = last[order], world.in_play[order]
         ends.time[run] = min(world.last_motion, self.until)
         ends.impacts[run] = sum(event.what == "impact" for event in world.events_since(0.0))
         ends.how[run] = REACHED
