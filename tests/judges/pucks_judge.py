@@ -105,6 +105,7 @@ def play(discs: list[Disc], lines: list[Line], until: float, most: int = 10**6) 
         events, kinds = [], []
         for i, j in meetings:
             if i in going or j in going:
+
                 def meets(_: float, flat: np.ndarray, i=i, j=j, whole=whole) -> float:
                     return gap(i, j, whole(flat))
 
@@ -112,6 +113,7 @@ def play(discs: list[Disc], lines: list[Line], until: float, most: int = 10**6) 
                 events.append(meets)
                 kinds.append((i, j))
         for n, i in enumerate(going):
+
             def slow(_: float, flat: np.ndarray, n=n, i=i) -> float:
                 row = flat[6 * n : 6 * n + 6]
                 return math.hypot(row[3], row[4], discs[i].radius * row[5]) - _STOP
