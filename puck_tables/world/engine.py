@@ -36,6 +36,7 @@ from puck_tables.world.game import (
     LAUNCHED,
     LOOK_AGAIN,
     LOST,
+    N_AT_ONCE,
     N_CONTACTS,
     N_EVENTS,
     N_HISTORY,
@@ -86,8 +87,9 @@ NOBODY, EVERYBODY, THOSE_LEFT = -1, -2, -3
 NOT_CONCERNED, CONCERNED, LOOKED_AT, DISAPPOINTED, PUSHED = range(5)
 
 TOUCH = 1e-12  # of the radius: a gap as small is none
+BLUR = 1e-15  # of the time since the start, at full speed: another
 HARDLY = 1e-11  # of the scales of speeds and accelerations: none
-MOST_AT_ONCE = 10_000  # events at one moment
+MOST_AT_ONCE = 1_000  # events at one moment
 MOST_IN_A_CALL = 2_000  # then the caller may hear Ctrl-C
 
 
@@ -216,7 +218,8 @@ def _touching(game: Game, t: float, room: Room) -> int:
             if room.marks[i] != CONCERNED:
                 continue
             room.marks[i] = LOOKED_AT
-            near = TOUCH * discs[i, RADIUS]
+            # moments are rounded, and so are the gaps at them
+            near = TOUCH * discs[i, RADIUS] + BLUR * t * game.pace[0]
             for k in range(game.obstacles.shape[0]):
                 shape = int(game.obstacles[k, KIND])
                 gap, _, _, there = normal_to(
@@ -327,7 +330,7 @@ def _happen(game: Game, i: int, partner: int, t: float, room: Room) -> int:
             room.marks[i] = LOOKED_AT
     count = _touching(game, t, room)
     if count < 0:
-        return FULL
+        return CROWDED
     if collide(game, room.contacts, count, room.rows, room.before, room.states, room.shares) < 0:
         return TANGLED
     _note_impacts(game, t, count, room)
@@ -390,7 +393,7 @@ def _send(game: Game, i: int, t: float, vx: float, vy: float, spin: float, room:
     note(game, t, STRUCK, i, i, room.states[i, X], room.states[i, Y])
     count = _touching(game, t, room)
     if count < 0:
-        return FULL
+        return CROWDED
     for j in range(game.discs.shape[0]):
         with_i = game.group[i] > 0 and game.group[j] == game.group[i]
         room.marks[j] = CONCERNED if j == i or with_i else NOT_CONCERNED
@@ -433,7 +436,7 @@ def advance(game: Game, until: float, struck: int, state: FloatArray, room: Room
     EVERYBODY looks ahead; after PUSHING, when the groups that push are on their way, THOSE_LEFT.
     """
     count = game.discs.shape[0]
-    at_once, last, events = 0, -math.inf, 0
+    events = 0
     if struck != NOBODY:
         status = REACHED
         if struck == THOSE_LEFT:
@@ -443,7 +446,7 @@ def advance(game: Game, until: float, struck: int, state: FloatArray, room: Room
                 room.marks[i] = CONCERNED
             contacts = _touching(game, game.clock[0], room)
             if contacts < 0:
-                return FULL
+                return CROWDED
             for i in range(count):
                 room.marks[i] = CONCERNED
             status = _go_on(game, game.clock[0], contacts, room)
@@ -472,9 +475,9 @@ def advance(game: Game, until: float, struck: int, state: FloatArray, room: Room
         if events == MOST_IN_A_CALL:
             return PAUSED
         events += 1
-        at_once = at_once + 1 if t == last else 0
-        last = t
-        if at_once > MOST_AT_ONCE:
+        due = min(t, launch)
+        game.counts[N_AT_ONCE] = game.counts[N_AT_ONCE] + 1 if due == game.clock[0] else 0
+        if game.counts[N_AT_ONCE] > MOST_AT_ONCE + 8 * count:
             return CROWDED
         if launch <= t:
             t, row = launch, game.launches[done]

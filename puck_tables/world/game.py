@@ -34,8 +34,9 @@ HISTORY_COLUMNS = 2 + FLIGHT_COLUMNS  # disc, kind, flight
 # counts
 (
     N_EVENTS, N_HISTORY, N_PIECES, N_HELD, N_LAUNCHES, N_IMPACTS, N_GROUPS, N_LOOKS, N_CONTACTS,
-) = range(9)  # fmt: skip
-COUNTS = 9
+    N_AT_ONCE,
+) = range(10)  # fmt: skip
+COUNTS = 10
 
 
 class Game(NamedTuple):
