@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 if TYPE_CHECKING:
     from puck_tables.world.outcome import WorldRun
 
@@ -103,7 +101,7 @@ def _fate(run: WorldRun, number: int) -> str:
     if run.scene.pucks and run.scene.pucks[number].path:
         return "driven"
     if stop > run.end_time:
-        speed = float(np.hypot(run.last["vx"][number], run.last["vy"][number]))
+        speed = math.hypot(run.last["vx"][number], run.last["vy"][number])
         return f"moves, {speed:.4g} m/s"
     return f"stops at {stop:.6g} s" if stop > 0.0 else "never moved"
 

@@ -21,8 +21,8 @@ from puck_tables.world.engine import (
 )
 from puck_tables.world.flight import DAMPED, GONE, START, STILL, UNTIL, state_at
 from puck_tables.world.game import COUNTS, N_IMPACTS, N_PIECES, Game, Whole
-from puck_tables.world.layout import DECEL, RADIUS
-from puck_tables.world.prepare import set_pace
+from puck_tables.world.layout import RADIUS
+from puck_tables.world.prepare import fastest, scales_of
 
 END_COLUMNS = 6  # of a puck: its state at the end
 
@@ -126,19 +126,15 @@ def follow_all(
 
 
 def _paces(game: Game, first: FloatArray, discs: Whole, launches: FloatArray) -> FloatArray:
-    """The scales of every run, (runs, 2), see :func:`puck_tables.world.prepare.set_pace`."""
+    """The scales of every run, (runs, 2), see :func:`puck_tables.world.prepare.scales_of`."""
     others = first.copy()
     others[discs, VX:] = 0.0
-    base = game._replace(pace=np.zeros(2))
-    set_pace(base, others)
-    radii = game.discs[:, RADIUS]
     slips = np.hypot(
-        np.hypot(launches[:, :, 0], launches[:, :, 1]), radii[discs] * launches[:, :, 2]
+        np.hypot(launches[:, :, 0], launches[:, :, 1]),
+        game.discs[discs, RADIUS] * launches[:, :, 2],
     )
-    speeds = np.maximum(base.pace[0], slips.max(axis=1, initial=0.0))
-    steady = game.discs[:, DECEL].max()
-    rates = np.full(len(speeds), steady) if steady > 0.0 else speeds**2 / radii.min()
-    return np.stack([speeds, rates], axis=1)
+    slowest = fastest(game, others)
+    return scales_of(game, np.maximum(slowest, slips.max(axis=1, initial=0.0)))
 
 
 def _own(game: Game, rows: int) -> Game:

@@ -118,6 +118,9 @@ def _locate(game: Game, i: int, t: float, room: Room) -> None:
 
 @inlined
 def _earlier(game: Game, i: int, time: float, partner: int) -> None:
+    """Note a meeting, or a moment to look again, if nothing comes before."""
+    if time < 0.0:
+        time, partner = -1.0 - time, LOOK_AGAIN
     if time < game.next_time[i]:
         game.next_time[i], game.next_partner[i] = time, partner
 
@@ -130,12 +133,12 @@ def look_ahead(game: Game, i: int, t: float, room: Room) -> None:
         _earlier(game, i, game.flights[i, UNTIL], PATH_ENDS)
     for k in range(game.obstacles.shape[0]):
         found = next_crossing(game, i, k, t, game.next_time[i], room.work, room.one)
-        _earlier(game, i, abs(found), -1 - k if found > 0.0 else LOOK_AGAIN)
+        _earlier(game, i, found, -1 - k)
     for j in range(game.discs.shape[0]):
         if j != i:
             found = next_meeting(game, i, j, t, game.next_time[i], room.work, room.one, room.two)
-            _earlier(game, i, abs(found), j if found > 0.0 else LOOK_AGAIN)
-            _earlier(game, j, abs(found), i if found > 0.0 else LOOK_AGAIN)
+            _earlier(game, i, found, j)
+            _earlier(game, j, found, i)
 
 
 @inlined

@@ -14,7 +14,16 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import PuckError
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
-from puck_tables.world.engine import CONCERNED, PUSHED, Room, is_integrated, keep_flight, note, stay
+from puck_tables.world.engine import (
+    CONCERNED,
+    NOT_CONCERNED,
+    PUSHED,
+    Room,
+    is_integrated,
+    keep_flight,
+    note,
+    stay,
+)
 from puck_tables.world.flight import (
     ANGLE,
     FASTEST,
@@ -82,6 +91,9 @@ def push_on(game: Game, room: Room) -> Game:
         before = room.states.copy()
         kept, t_end, ways = _follow(shared, members, part, room.states, t, scales)
         _note_contacts(game, t, part, kept, held_before, before, room)
+        for i in members:  # a rim that gripped at once has changed what touches it, too
+            if room.marks[i] == NOT_CONCERNED and (room.states[i] != before[i]).any():
+                room.marks[i] = CONCERNED
         if not len(kept):
             continue
         game.counts[N_GROUPS] += 1

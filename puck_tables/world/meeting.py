@@ -190,7 +190,7 @@ def next_meeting(
     game: Game, i: int, j: int, now: float, horizon: float, room: FloatArray, one: FloatArray,
     two: FloatArray,
 ) -> float:  # fmt: skip
-    """When two discs touch next, up to the horizon; else inf; −t: look again then.
+    """When two discs touch next, up to the horizon; else inf; −1 − t: look again at t.
 
     States at the end in one and two.
     """
@@ -240,7 +240,7 @@ def next_meeting(
         t += step
         state_at(kind, flight, discs[i], curves, pieces, t, room, one)
         state_at(other, second, discs[j], curves, pieces, t, room, two)
-    return -t
+    return -1.0 - t
 
 
 @inner
@@ -305,4 +305,4 @@ def next_crossing(
             return t if rate < -QUIET * game.pace[0] else math.inf
         t += step
         state_at(kind, flight, disc, game.curves, game.pieces, t, room, one)
-    return -t
+    return -1.0 - t

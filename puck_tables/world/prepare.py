@@ -131,16 +131,30 @@ def game_of(scene: Scene, order: Whole) -> tuple[Game, Room]:
 
 def set_pace(game: Game, states: FloatArray) -> None:
     """Scales of speed and acceleration that hold for these states, and for those before."""
+    speed, rate = scales_of(game, np.array([fastest(game, states)]))[0]
+    game.pace[:] = max(game.pace[0], speed), max(game.pace[1], rate)
+
+
+def fastest(game: Game, states: FloatArray) -> float:
+    """The largest slip of these states, of launches to come and of what is driven, m/s."""
     rims = game.discs[:, layout.RADIUS] * np.abs(states[:, SPIN])
     driven = game.pieces[: game.drives.max(), FIRST + VX : FIRST + VY + 1]
     launched = np.hypot(game.launches[:, 2], game.launches[:, 3])
-    game.pace[0] = max(
-        game.pace[0], float(np.hypot(np.hypot(states[:, VX], states[:, VY]), rims).max()),
+    return max(
+        float(np.hypot(np.hypot(states[:, VX], states[:, VY]), rims).max()),
         float(np.hypot(*driven.T).max(initial=0.0)), float(launched.max(initial=0.0)),
     )  # fmt: skip
-    fastest, smallest = game.pace[0], float(game.discs[:, layout.RADIUS].min())
-    steady = float(game.discs[:, layout.DECEL].max())
-    game.pace[1] = max(game.pace[1], steady if steady > 0.0 else fastest**2 / smallest)
+
+
+def scales_of(game: Game, speeds: FloatArray) -> FloatArray:
+    """Scales of speed and acceleration (n, 2) where the largest slips are ``speeds`` (n,).
+
+    What is at rest on a steep slope has the speed that it gets within a radius.
+    """
+    radius = float(game.discs[:, layout.RADIUS].min())
+    steady = max(float(game.discs[:, layout.DECEL].max()), float(np.hypot(*game.pull)))
+    speeds = np.where(speeds > 0.0, speeds, np.sqrt(steady * radius))
+    return np.stack([speeds, np.where(steady > 0.0, steady, speeds**2 / radius)], axis=1)
 
 
 def _regions(scene: Scene, pieces: list[Piece], discs: FloatArray) -> Regions:

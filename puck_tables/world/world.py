@@ -317,18 +317,19 @@ class World:
 
     def _failure(self, how: int) -> str:
         """Why it does not go on, in words."""
-        events = self._events(max(int(self._game.counts[g.N_EVENTS]) - 1, 0))
-        names = {events[-1].puck, events[-1].partner} if events else set()
-        driven = [name for name, piece in zip(self.names, pieces_of(self.scene), strict=True)
-                  if piece.path and math.dist(self.state()[self.names.index(name), :2],
-                                              (events[-1].x, events[-1].y)) < 3.0 * piece.radius
-                  ] if events else []  # fmt: skip
-        if driven:
-            others = ", ".join(sorted(names - set(driven))) or "a puck"
-            return (
-                f"{driven[0]}, which is driven, squeezes {others} at {self.time:.6g} s "
-                "against what does not give way: let its path end before, or leave more room"
-            )
+        radii = np.array([piece.radius for piece in pieces_of(self.scene)])
+        places = self.state()[:, :2]
+        for number, piece in enumerate(pieces_of(self.scene)):
+            if piece.path:
+                gaps = np.hypot(*(places - places[number]).T) - radii - radii[number]
+                near = np.flatnonzero(np.abs(gaps) < 1e-6 * radii[number])
+                if near.size:
+                    others = ", ".join(self.names[one] for one in near)
+                    return (
+                        f"{self.names[number]}, which is driven, squeezes {others} at "
+                        f"{self.time:.6g} s against what does not give way: let its path end "
+                        "before, or leave more room"
+                    )
         return _FAILURES[how].format(time=self.time)
 
     def _grow(self) -> None:
