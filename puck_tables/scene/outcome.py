@@ -91,8 +91,7 @@ class SceneRun(TimedResult):
         InputError
             If they are no such times, or a file that the scene names has changed since the run.
         """
-        if files_of(self.scene) != self.files:
-            raise InputError("a file that the scene names has changed since the run: run it again")
+        refuse_changed(self.scene, self.files)
         return self.scene.simulate(times)
 
     def __repr__(self) -> str:
@@ -173,6 +172,17 @@ class SceneRun(TimedResult):
         scalars = {n: v for n, v in self.summary().items() if n not in left_out}
         attributes = {"title": self.scene.title or "Scene", **scalars}
         return Dataset(axes, over_time, attributes, scene_texts(self.scene, self.files))
+
+
+def refuse_changed(scene: Scene, files: Mapping[str, str]) -> None:
+    """Refuse to go on with a run of a scene whose files are no longer what they were.
+
+    Raises
+    ------
+    InputError
+    """
+    if files_of(scene) != files:
+        raise InputError("a file that the scene names has changed since the run: run it again")
 
 
 def column_of(result: Any, name: str) -> FloatArray:

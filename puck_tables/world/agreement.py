@@ -9,9 +9,10 @@ from dataclasses import replace
 import numpy as np
 
 from puck_tables.errors import InputError
+from puck_tables.motion.body import is_plain
 from puck_tables.scene.agreement import distance
 from puck_tables.scene.entries import entries
-from puck_tables.scene.parts import Edge, Floor, Force, Launch, Wall
+from puck_tables.scene.parts import Drag, Edge, Floor, Force, Launch, Wall
 from puck_tables.scene.pieces import Piece
 from puck_tables.scene.scene import Scene
 from puck_tables.world.drive import rows_of
@@ -49,6 +50,60 @@ def called(piece: Piece, number: int) -> str:
     ('striker', 'puck 3')
     """
     return piece.name or f"puck {number}"
+
+
+def number_of(puck: int | str, names: tuple[str, ...]) -> int:
+    """The number of a puck, from its name or number.
+
+    Raises
+    ------
+    InputError
+        If there is no such puck.
+
+    Examples
+    --------
+    >>> number_of("man", ("striker", "man")), number_of(0, ("striker", "man"))
+    (1, 0)
+    """
+    if isinstance(puck, str) and puck in names:
+        return names.index(puck)
+    if not isinstance(puck, str | bool) and 0 <= int(puck) < len(names):
+        return int(puck)
+    shown = ", ".join(names[:8]) + (", ..." if len(names) > 8 else "")
+    raise InputError(f"no puck {puck!r}: there are {len(names)}, {shown}")
+
+
+def refuse_endless(scene: Scene) -> None:
+    """Refuse a run that has no end of its own and is given none.
+
+    Raises
+    ------
+    InputError
+    """
+    for number, piece in enumerate(pieces_of(scene)):
+        if piece.friction == 0.0 and not piece.path and scene.run.time is None:
+            raise InputError(
+                f"nothing brings {called(piece, number)} to rest (its friction is 0): give "
+                "run.time, or friction"
+            )
+
+
+def has_closed_forms(piece: Piece) -> bool:
+    """Whether closed forms hold for the friction of a puck, or it has none."""
+    return piece.friction == 0.0 or is_plain(piece.pressure, piece.gyration, piece.delta)
+
+
+def is_integrated(scene: Scene, piece: Piece) -> bool:
+    """Whether the motion of a puck is integrated also while nothing touches it.
+
+    Examples
+    --------
+    >>> from puck_tables import Floor
+    >>> is_integrated(Scene(pucks=[Piece(0.1)], floor=Floor(slope=0.1)), Piece(0.1))
+    True
+    """
+    rough = piece.friction > 0.0 and (scene.drag != Drag() or not has_closed_forms(piece))
+    return not piece.path and (rough or scene.floor.slope > 0.0)
 
 
 def disagreements(scene: Scene) -> list[str]:

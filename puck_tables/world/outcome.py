@@ -11,15 +11,13 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.errors import InputError
 from puck_tables.io.columns import COLUMNS, derived
 from puck_tables.io.dataset import Dataset, Variable, variable
 from puck_tables.result import TimedResult
 from puck_tables.scene.entries import tables_of, units_of
-from puck_tables.scene.library import files_of
-from puck_tables.scene.outcome import column_of, scene_texts
+from puck_tables.scene.outcome import column_of, refuse_changed, scene_texts
 from puck_tables.scene.scene import Scene
-from puck_tables.world.agreement import pieces_of
+from puck_tables.world.agreement import is_integrated, number_of, pieces_of
 from puck_tables.world.world import Meeting
 
 STATE = ("x", "y", "orientation", "vx", "vy", "spin")
@@ -72,8 +70,7 @@ class WorldRun(TimedResult):
         InputError
             If they are no such times, or a file that the scene names has changed since the run.
         """
-        if files_of(self.scene) != self.files:
-            raise InputError("a file that the scene names has changed since the run: run it again")
+        refuse_changed(self.scene, self.files)
         run: Any = self.scene.simulate(times)
         return run
 
@@ -97,12 +94,9 @@ class WorldRun(TimedResult):
         InputError
             If there is no such puck.
         """
-        if isinstance(puck, str) and puck in self.names:
-            puck = self.names.index(puck)
-        if isinstance(puck, str) or not 0 <= puck < len(self.names):
-            raise InputError(f"no puck {puck!r}: there are {', '.join(self.names)}")
+        number = number_of(puck, self.names)
         whole = {**self.columns, **derived(self.columns)}
-        return {"time": self.time, **{name: row[:, puck] for name, row in whole.items()}}
+        return {"time": self.time, **{name: row[:, number] for name, row in whole.items()}}
 
     @property
     def impacts(self) -> int:
@@ -177,9 +171,14 @@ def ways_of(scene: Scene) -> str:
     """
     pieces = pieces_of(scene)
     driven = sum(bool(piece.path) for piece in pieces)
-    damped = sum(piece.friction == 0.0 and not piece.path for piece in pieces)
+    integrated = sum(is_integrated(scene, piece) for piece in pieces)
+    damped = sum(
+        piece.friction == 0.0 and not piece.path and not is_integrated(scene, piece)
+        for piece in pieces
+    )
     ways = {
-        "looked up from impact to impact": len(pieces) - driven - damped,
+        "looked up from impact to impact": len(pieces) - driven - integrated - damped,
+        "integrated from impact to impact": integrated,
         "in closed form, without dry friction": damped,
         "driven along a path": driven,
     }

@@ -7,17 +7,15 @@ import math
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.motion.body import is_plain
 from puck_tables.scene.friction import SPIN, VX, VY
 from puck_tables.scene.ingredients import Regions
-from puck_tables.scene.parts import Drag
 from puck_tables.scene.pieces import Piece
 from puck_tables.scene.regions import NO_LAW, SLICE_SHARE, of_one_shape
 from puck_tables.scene.scene import Scene
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.table.friction_section import FINEST_ACCURACY
 from puck_tables.world import layout
-from puck_tables.world.agreement import pieces_of, start_of
+from puck_tables.world.agreement import has_closed_forms, is_integrated, pieces_of, start_of
 from puck_tables.world.drive import pieces_along, rows_of
 from puck_tables.world.engine import Room, drive_on, room_for
 from puck_tables.world.flight import (
@@ -73,8 +71,7 @@ def game_of(scene: Scene, order: Whole) -> tuple[Game, Room]:
             discs[i, layout.LIGHTNESS], discs[i, layout.TURNABILITY] = 1.0 / piece.mass, 1 / inertia
             discs[i, layout.DECEL] = piece.decel * math.cos(scene.floor.slope)
             discs[i, layout.DELTA] = piece.delta
-            rough = piece.friction > 0.0 and (scene.drag != Drag() or not _is_plain(piece))
-            discs[i, layout.INTEGRATED] = float(rough or scene.floor.slope > 0.0)
+            discs[i, layout.INTEGRATED] = float(is_integrated(scene, piece))
             discs[i, layout.DAMPING] = scene.drag.sliding / piece.mass
             discs[i, layout.WAKE] = scene.drag.quadratic / piece.mass
             discs[i, layout.SPIN_DAMPING] = scene.drag.spinning / inertia
@@ -168,17 +165,12 @@ def _regions(scene: Scene, pieces: list[Piece], discs: FloatArray) -> Regions:
     load, delta = np.zeros(len(discs)), discs[:, layout.DELTA].copy()
     free = discs[:, layout.LIGHTNESS] > 0.0
     load[free] = discs[free, layout.DECEL] / discs[free, layout.LIGHTNESS]
-    if all(_is_plain(piece) for piece in pieces):
+    if all(has_closed_forms(piece) for piece in pieces):
         return Regions(load, delta, np.empty((len(discs), 0)), NO_LAW)
     accuracy = max(SLICE_SHARE * scene.run.tol, FINEST_ACCURACY)
     return Regions(
         load, delta, of_one_shape([p.body.friction(accuracy).cut for p in pieces]), NO_LAW
     )
-
-
-def _is_plain(piece: Piece) -> bool:
-    """Whether closed forms hold for a puck, or it has no friction."""
-    return piece.friction == 0.0 or is_plain(piece.pressure, piece.gyration, piece.delta)
 
 
 def _pull(scene: Scene, pieces: list[Piece]) -> tuple[float, float]:

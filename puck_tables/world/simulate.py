@@ -12,7 +12,7 @@ from puck_tables._core.real import finite_array
 from puck_tables.errors import InputError, PuckError
 from puck_tables.scene.library import files_of
 from puck_tables.scene.scene import Scene
-from puck_tables.world.agreement import called, pieces_of
+from puck_tables.world.agreement import refuse_endless
 from puck_tables.world.ledger import ledger
 from puck_tables.world.outcome import STATE, WorldRun
 from puck_tables.world.world import World
@@ -23,13 +23,7 @@ TABLE_ERROR = 1e-9  # of places in Q²/J, of velocities in Q
 def simulate(scene: Scene, times: npt.ArrayLike | None = None) -> WorldRun:
     """A run of a scene, as :meth:`puck_tables.Scene.simulate` has it."""
     world = World(scene)
-    pieces = pieces_of(world.scene)
-    for number, piece in enumerate(pieces):
-        if piece.friction == 0.0 and not piece.path and scene.run.time is None:
-            raise InputError(
-                f"nothing brings {called(piece, number)} to rest (its friction is 0): give "
-                "run.time, or friction"
-            )
+    refuse_endless(world.scene)
     files = files_of(scene)
     world.advance(math.inf if scene.run.time is None else scene.run.time)
     moving = bool(world.moving.any())

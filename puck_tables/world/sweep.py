@@ -26,10 +26,10 @@ from puck_tables.scene.outcome import column_of, plain_name, scene_texts
 from puck_tables.scene.pieces import Piece
 from puck_tables.scene.scene import Scene
 from puck_tables.stopping.sweep import check_memory
-from puck_tables.world.agreement import called, pieces_of
+from puck_tables.world.agreement import called, number_of, pieces_of, refuse_endless
 from puck_tables.world.bulk import Ends, follow_all
 from puck_tables.world.engine import PUSHING, REACHED
-from puck_tables.world.outcome import STATE, WorldRun
+from puck_tables.world.outcome import STATE, WorldRun, ways_of
 from puck_tables.world.prepare import game_of, order_of
 from puck_tables.world.world import World
 
@@ -89,12 +89,9 @@ class WorldMap(Result):
         InputError
             If there is no such puck.
         """
-        if isinstance(puck, str) and puck in self.names:
-            puck = self.names.index(puck)
-        if isinstance(puck, str) or not 0 <= puck < len(self.names):
-            raise InputError(f"no puck {puck!r}: there are {', '.join(self.names)}")
+        number = number_of(puck, self.names)
         return {
-            name: values[..., puck] if values.ndim > self.end.ndim else values
+            name: values[..., number] if values.ndim > self.end.ndim else values
             for name, values in self.columns.items()
         }
 
@@ -112,7 +109,7 @@ class WorldMap(Result):
 
     def explain(self) -> str:
         """How it was got."""
-        return f"{self.end.size} runs of {len(self.names)} pucks from impact to impact, by look-up"
+        return f"{self.end.size} runs\n{ways_of(self.scene)}"
 
     def dataset(self) -> Dataset:
         """The results over what ranges and the pucks; the scene and its files as texts."""
@@ -223,9 +220,7 @@ class _Case:
 
     def __init__(self, scene: Scene) -> None:
         self.scene, self.pieces = scene, pieces_of(scene)
-        endless = any(piece.friction == 0.0 and not piece.path for piece in self.pieces)
-        if endless and scene.run.time is None:
-            raise InputError("nothing brings a puck without friction to rest: give run.time")
+        refuse_endless(scene)
         self.until = math.inf if scene.run.time is None else scene.run.time
         order = order_of(scene)
         self.game, room = game_of(scene, order)

@@ -14,7 +14,7 @@ from puck_tables.errors import InputError, PuckError
 from puck_tables.scene.friction import SPIN, VX, VY
 from puck_tables.scene.scene import Scene
 from puck_tables.world import game as g
-from puck_tables.world.agreement import called, pieces_of
+from puck_tables.world.agreement import called, number_of, pieces_of
 from puck_tables.world.engine import (
     CROWDED,
     EVERYBODY,
@@ -235,7 +235,7 @@ class World:
         InputError
             If there is no such puck, it is not in play or driven, or a number is not finite.
         """
-        i = int(self._place[self._number(puck)])
+        i = int(self._place[number_of(puck, self.names)])
         if self._game.kinds[i] == GONE:
             raise InputError(f"{self.names[self._order[i]]} is no longer in play")
         if self._game.discs[i, LIGHTNESS] == 0.0:
@@ -292,14 +292,6 @@ class World:
             if self._game.discs[i, LIGHTNESS] > 0.0 and state[VX:].any():
                 velocity = turned @ state[VX:]
                 self.strike(number, velocity[:2], float(velocity[2]))
-
-    def _number(self, puck: int | str) -> int:
-        if isinstance(puck, str) and puck in self.names:
-            return self.names.index(puck)
-        if not isinstance(puck, str | bool) and 0 <= int(puck) < len(self.names):
-            return int(puck)
-        shown = ", ".join(self.names[:8]) + (", ..." if len(self.names) > 8 else "")
-        raise InputError(f"no puck {puck!r}: there are {len(self.names)}, {shown}")
 
     def copy(self) -> World:
         """A world of its own that goes on from here, to look ahead."""
