@@ -6,7 +6,13 @@ import csv
 import errno
 import os
 import stat
+from collections.abc import Sequence
 from pathlib import Path
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.errors import InputError
 
 
 def read_whole(path: str | Path, largest: int) -> bytes:
@@ -40,6 +46,28 @@ def read_whole(path: str | Path, largest: int) -> bytes:
         if found.st_size > largest:
             raise OSError(errno.EFBIG, f"it is too large, {largest} bytes are the most", str(path))
         return file.read(found.st_size)  # not more: what is asked for is allocated before
+
+
+def read_numbers(given: str | Sequence[Sequence[float]], most: int) -> FloatArray:
+    """Rows of numbers, given or from a CSV file; an array of no rows where some are none.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read.
+
+    Examples
+    --------
+    >>> read_numbers(((0.0, 1.0), (2.0, 3.0)), 100).shape
+    (2, 2)
+    """
+    try:
+        cells = read_rows(given, most) if isinstance(given, str) else given
+        return np.array([[float(cell) for cell in row] for row in cells])
+    except OSError as error:
+        raise InputError(f"cannot read {given}: {error.strerror or error}") from None
+    except ValueError:
+        return np.empty((0, 0))
 
 
 def read_rows(path: str | Path, largest: int) -> list[list[str]]:

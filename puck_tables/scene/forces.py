@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.safe_read import read_rows
+from puck_tables._core.safe_read import read_numbers
 from puck_tables.errors import InputError
 from puck_tables.kernels.compile import inlined
 from puck_tables.scene.parts import Rows
@@ -99,13 +99,7 @@ def drive_of(given: str | Rows) -> FloatArray:
     InputError
         If it cannot be read, or is no such file.
     """
-    try:
-        cells = read_rows(given, MAX_DRIVE) if isinstance(given, str) else given
-        rows = np.array([[float(cell) for cell in row] for row in cells])
-    except OSError as error:
-        raise InputError(f"cannot read {given}: {error.strerror or error}") from None
-    except ValueError:
-        rows = np.empty((0, 0))
+    rows = read_numbers(given, MAX_DRIVE)
     good = rows.ndim == 2 and len(rows) >= 2 and rows.shape[1] in (3, 4)
     if not (good and np.all(np.isfinite(rows)) and np.all(np.diff(rows[:, 0]) > 0.0)):
         raise InputError(

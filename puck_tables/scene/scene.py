@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from importlib import import_module
@@ -16,13 +15,14 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import Progress
 from puck_tables._core.fields import of, specs
-from puck_tables._core.reading import MAX_COUNT, Range, Reading, given_in, read_values
+from puck_tables._core.reading import Range, Reading, given_in, read_values
 from puck_tables.errors import InputError
 from puck_tables.puck import Puck
 from puck_tables.scene.agreement import disagreements
-from puck_tables.scene.entries import BATCH, LAUNCH, columns_of, entry_at, set_path, tables_of
+from puck_tables.scene.entries import BATCH, columns_of, entry_at, set_path, tables_of
 from puck_tables.scene.parts import Constraint, Drag, Edge, Floor, Force, Launch, Run, Wall
 from puck_tables.scene.pieces import Arc, Piece, Pocket, Post
+from puck_tables.scene.ranges import Ranges, batch_of, launch_rows, refuse_twice
 
 if TYPE_CHECKING:
     from puck_tables.scene.outcome import SceneRun
@@ -87,10 +87,10 @@ class Scene:
 
     def __post_init__(self) -> None:
         tables, ranges = given_in(self, {}), self.ranges
-        if isinstance(ranges, _Ranges):  # of the scene of which this one is a changed copy
+        if isinstance(ranges, Ranges):  # of the scene of which this one is a changed copy
             ranges = ranges.of_the_same(self)
         else:
-            _refuse_twice(type(self), tables, ranges)
+            refuse_twice(type(self), tables, ranges)
         if ranges:  # as if they stood where their numbers are
             tables = tables_of(self)
             for path, values in ranges.items():
@@ -334,7 +334,7 @@ class Scene:
         found: dict[str, Range] = {}
         reading = Reading([], found)
         values = read_values(type(self), tables, "", reading)
-        batch = _batch(reading.batches, found, reading.errors)
+        batch = batch_of(reading.batches, found, reading.errors)
         runs = math.prod([one.count for one in found.values()], start=max(len(batch), 1))
         if runs > MAX_RUNS:  # before their numbers are made
             reading.errors.append(
@@ -348,36 +348,15 @@ class Scene:
             object.__setattr__(self, spec.name, values.get(spec.name, spec.default))
         axes = {path: one.numbers() for path, one in found.items()}
         if len(batch):
-            axes = {BATCH: _launches(self.launch, batch), **axes}
-        object.__setattr__(self, "ranges", _Ranges(axes, self))
+            axes = {BATCH: launch_rows(self.launch, batch), **axes}
+        object.__setattr__(self, "ranges", Ranges(axes, self))
         if not axes and (faults := self._disagreements()):  # else they are up to each run
             raise _refusal(faults, source)
 
 
-class _Ranges(dict[str, Any]):
-    """Ranges, and the parts of the scene that they are of."""
-
-    def __init__(self, axes: Mapping[str, FloatArray], scene: Scene) -> None:
-        super().__init__(axes)
-        known = specs(type(scene)).items()
-        self.parts = {table: getattr(scene, spec.name) for table, spec in known}
-
-    def __reduce__(self) -> Any:
-        return _Ranges.again, (dict(self), self.parts)
-
-    @staticmethod
-    def again(axes: dict[str, FloatArray], parts: dict[str, Any]) -> _Ranges:
-        """The same, from a pickle."""
-        ranges = _Ranges.__new__(_Ranges)
-        ranges.update(axes)
-        ranges.parts = parts
-        return ranges
-
-    def of_the_same(self, scene: Scene) -> dict[str, FloatArray]:
-        """Without those of parts that another scene has replaced."""
-        known = specs(type(scene)).items()
-        kept = [name for name, spec in known if getattr(scene, spec.name) is self.parts.get(name)]
-        return {path: one for path, one in self.items() if re.split(r"[.\[]", path)[0] in kept}
+def _refusal(faults: list[str], source: str) -> InputError:
+    head = f"{source}: {len(faults)} error{'s' if len(faults) != 1 else ''}"
+    return InputError("\n  ".join([head, *faults]))
 
 
 def _puck_or_pucks(
@@ -393,61 +372,3 @@ def _puck_or_pucks(
     for path in batches:
         if path.startswith("puck["):
             yield f"{path}: many launches at once are of one puck alone: let numbers of it range"
-
-
-def _refuse_twice(kind: type, tables: Mapping[str, Any], ranges: Any) -> None:
-    """Refuse ranges that are none, or of numbers that are lists already.
-
-    Raises
-    ------
-    InputError
-    """
-    if not isinstance(ranges, Mapping) or not all(isinstance(path, str) for path in ranges):
-        raise InputError("ranges must be a mapping from paths such as 'launch.spin' to values")
-    if ranges:
-        reading = Reading([], {})
-        read_values(kind, tables, "", reading)
-        listed = {*(reading.ranges or {}), *reading.batches}
-        many = BATCH in ranges and bool(reading.batches)
-        twice = [path for path in ranges if path in listed] + [BATCH] * many
-        if twice:
-            raise InputError(f"{', '.join(twice)}: given as a list and in ranges: give one of them")
-
-
-def _refusal(faults: list[str], source: str) -> InputError:
-    head = f"{source}: {len(faults)} error{'s' if len(faults) != 1 else ''}"
-    return InputError("\n  ".join([head, *faults]))
-
-
-def _batch(
-    pairs: Mapping[str, FloatArray], ranges: dict[str, Range], errors: list[str]
-) -> dict[str, FloatArray]:
-    """What belongs to many launches, by path; it is no range of its own then."""
-    if not pairs:
-        return {}
-    count = len(next(iter(pairs.values())))
-    if count > MAX_COUNT:
-        errors.append(f"{count} launches: at most {MAX_COUNT} in one scene")
-    numbers: dict[str, FloatArray] = {
-        path: ranges.pop(path).numbers()
-        for path in ("launch.spin", "launch.orientation")
-        if path in ranges and ranges[path].listed
-    }
-    batch: dict[str, FloatArray] = {**pairs, **numbers}
-    for path, values in batch.items():
-        if len(values) != count:
-            errors.append(
-                f"{path}: {len(values)} values for {count} launches: give one for each, or a range "
-                "'START:STOP:COUNT' for all of them"
-            )
-    return batch
-
-
-def _launches(launch: Launch, batch: Mapping[str, FloatArray]) -> FloatArray:
-    """Rows of vx, vy, spin, x, y, orientation, array (n, 6)."""
-    rows = np.empty((len(next(iter(batch.values()))), len(LAUNCH)))
-    rows[:, 0:2] = batch.get("launch.velocity", launch.velocity or (0.0, 0.0))
-    rows[:, 2] = batch.get("launch.spin", launch.spin)
-    rows[:, 3:5] = batch.get("launch.position", launch.position)
-    rows[:, 5] = batch.get("launch.orientation", launch.orientation)
-    return rows

@@ -10,15 +10,8 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import in_slices
 from puck_tables.kernels.compile import kernel
 from puck_tables.scene.friction import VX
-from puck_tables.world.engine import (
-    EVERYBODY,
-    FULL,
-    NOBODY,
-    PAUSED,
-    Room,
-    advance,
-    room_for,
-)
+from puck_tables.world.departures import Room, room_for
+from puck_tables.world.engine import EVERYBODY, FULL, NOBODY, PAUSED, advance
 from puck_tables.world.flight import DAMPED, GONE, START, STILL, UNTIL, state_at
 from puck_tables.world.game import COUNTS, N_IMPACTS, N_PIECES, Game, Whole
 from puck_tables.world.layout import RADIUS

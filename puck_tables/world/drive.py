@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.safe_read import read_rows
+from puck_tables._core.safe_read import read_numbers
 from puck_tables.errors import InputError
 from puck_tables.scene.parts import Rows
 from puck_tables.world.paths import DURATION, FIRST, PIECE_COLUMNS, START
@@ -26,13 +26,7 @@ def rows_of(given: str | Rows) -> FloatArray:
     >>> rows_of(((0.0, 1.0, 2.0), (0.5, 1.0, 3.0)))[1].tolist()
     [0.5, 1.0, 3.0, 0.0]
     """
-    try:
-        cells = read_rows(given, MAX_BYTES) if isinstance(given, str) else given
-        rows = np.array([[float(cell) for cell in row] for row in cells])
-    except OSError as error:
-        raise InputError(f"cannot read {given}: {error.strerror or error}") from None
-    except ValueError:
-        rows = np.empty((0, 0))
+    rows = read_numbers(given, MAX_BYTES)
     good = rows.ndim == 2 and len(rows) >= 2 and rows.shape[1] in (3, 4)
     if not (good and np.isfinite(rows).all() and (np.diff(rows[:, 0]) > 0.0).all()):
         raise InputError("must be two or more rows of t, x, y and perhaps angle, t ascending")

@@ -14,12 +14,11 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import PuckError
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
-from puck_tables.world.engine import (
+from puck_tables.world.departures import (
     CONCERNED,
     NOT_CONCERNED,
     PUSHED,
     Room,
-    is_integrated,
     keep_flight,
     note,
     stay,
@@ -64,6 +63,7 @@ from puck_tables.world.paths import DURATION, FIRST, PIECE_COLUMNS
 from puck_tables.world.paths import START as BEGINS
 from puck_tables.world.pressing import press
 from puck_tables.world.pushing import follow
+from puck_tables.world.touching import is_integrated
 
 STEP_TOL = 1e-11  # of a step, in units of Q and Q²/J
 ROWS = 400  # steps of a group before its flights end for a new look

@@ -16,8 +16,8 @@ from puck_tables.stopping.stop_table import StopTable
 from puck_tables.table.friction_section import FINEST_ACCURACY
 from puck_tables.world import layout
 from puck_tables.world.agreement import has_closed_forms, is_integrated, pieces_of, start_of
+from puck_tables.world.departures import Room, drive_on, room_for
 from puck_tables.world.drive import pieces_along, rows_of
-from puck_tables.world.engine import Room, drive_on, room_for
 from puck_tables.world.flight import (
     ANGLE,
     FIRST_PIECE,

@@ -1,0 +1,98 @@
+"""Ranges of a scene: what they are of, and batches of launches among them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables._core.fields import specs
+from puck_tables._core.reading import MAX_COUNT, Range, Reading, read_values
+from puck_tables.errors import InputError
+from puck_tables.scene.entries import BATCH, LAUNCH
+from puck_tables.scene.parts import Launch
+
+if TYPE_CHECKING:
+    from puck_tables.scene.scene import Scene
+
+
+class Ranges(dict[str, Any]):
+    """Ranges, and the parts of the scene that they are of."""
+
+    def __init__(self, axes: Mapping[str, FloatArray], scene: Scene) -> None:
+        super().__init__(axes)
+        known = specs(type(scene)).items()
+        self.parts = {table: getattr(scene, spec.name) for table, spec in known}
+
+    def __reduce__(self) -> Any:
+        return Ranges.again, (dict(self), self.parts)
+
+    @staticmethod
+    def again(axes: dict[str, FloatArray], parts: dict[str, Any]) -> Ranges:
+        """The same, from a pickle."""
+        ranges = Ranges.__new__(Ranges)
+        ranges.update(axes)
+        ranges.parts = parts
+        return ranges
+
+    def of_the_same(self, scene: Scene) -> dict[str, FloatArray]:
+        """Without those of parts that another scene has replaced."""
+        known = specs(type(scene)).items()
+        kept = [name for name, spec in known if getattr(scene, spec.name) is self.parts.get(name)]
+        return {path: one for path, one in self.items() if re.split(r"[.\[]", path)[0] in kept}
+
+
+def refuse_twice(kind: type, tables: Mapping[str, Any], ranges: Any) -> None:
+    """Refuse ranges that are none, or of numbers that are lists already.
+
+    Raises
+    ------
+    InputError
+    """
+    if not isinstance(ranges, Mapping) or not all(isinstance(path, str) for path in ranges):
+        raise InputError("ranges must be a mapping from paths such as 'launch.spin' to values")
+    if ranges:
+        reading = Reading([], {})
+        read_values(kind, tables, "", reading)
+        listed = {*(reading.ranges or {}), *reading.batches}
+        many = BATCH in ranges and bool(reading.batches)
+        twice = [path for path in ranges if path in listed] + [BATCH] * many
+        if twice:
+            raise InputError(f"{', '.join(twice)}: given as a list and in ranges: give one of them")
+
+
+def batch_of(
+    pairs: Mapping[str, FloatArray], ranges: dict[str, Range], errors: list[str]
+) -> dict[str, FloatArray]:
+    """What belongs to many launches, by path; it is no range of its own then."""
+    if not pairs:
+        return {}
+    count = len(next(iter(pairs.values())))
+    if count > MAX_COUNT:
+        errors.append(f"{count} launches: at most {MAX_COUNT} in one scene")
+    numbers: dict[str, FloatArray] = {
+        path: ranges.pop(path).numbers()
+        for path in ("launch.spin", "launch.orientation")
+        if path in ranges and ranges[path].listed
+    }
+    batch: dict[str, FloatArray] = {**pairs, **numbers}
+    for path, values in batch.items():
+        if len(values) != count:
+            errors.append(
+                f"{path}: {len(values)} values for {count} launches: give one for each, or a range "
+                "'START:STOP:COUNT' for all of them"
+            )
+    return batch
+
+
+def launch_rows(launch: Launch, batch: Mapping[str, FloatArray]) -> FloatArray:
+    """Rows of vx, vy, spin, x, y, orientation, array (n, 6)."""
+    rows = np.empty((len(next(iter(batch.values()))), len(LAUNCH)))
+    rows[:, 0:2] = batch.get("launch.velocity", launch.velocity or (0.0, 0.0))
+    rows[:, 2] = batch.get("launch.spin", launch.spin)
+    rows[:, 3:5] = batch.get("launch.position", launch.position)
+    rows[:, 5] = batch.get("launch.orientation", launch.orientation)
+    return rows

@@ -1,0 +1,185 @@
+"""What the engine works with, how flights begin, and what is written down."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.kernels.compile import inlined, inner
+from puck_tables.scene.friction import SPIN, VX, VY, X, Y
+from puck_tables.world.flight import (
+    FASTEST,
+    FIRST_PIECE,
+    FLIGHT_COLUMNS,
+    GONE,
+    LAST_PIECE,
+    PATH,
+    ROOM,
+    STILL,
+    STRONGEST,
+    UNTIL,
+    start_flight,
+    state_at,
+)
+from puck_tables.world.game import (
+    APPROACH,
+    AT_X,
+    AT_Y,
+    IMPACT,
+    LOST,
+    N_EVENTS,
+    N_HISTORY,
+    N_IMPACTS,
+    NORMAL_X,
+    NORMAL_Y,
+    PARTNER,
+    PUSH,
+    RUB,
+    SLIDE,
+    TIME,
+    WHAT,
+    WHO,
+    Game,
+    Whole,
+)
+from puck_tables.world.impact import (
+    CONTACT_COLUMNS,
+    FIRST_N,
+    FIRST_T,
+    LOSS,
+    NX,
+    NY,
+    SUM_N,
+    SUM_T,
+)
+from puck_tables.world.layout import RADIUS
+from puck_tables.world.paths import DURATION, FIRST
+from puck_tables.world.paths import START as BEGINS
+
+# of a disc while an event is worked on: not concerned, concerned, its contacts are known, was to
+# meet one that is concerned, flies on in a group that pushes
+NOT_CONCERNED, CONCERNED, LOOKED_AT, DISAPPOINTED, PUSHED = range(5)
+
+
+class Room(NamedTuple):
+    """Where the engine works: rows for every disc, contacts, and a few numbers."""
+
+    states: FloatArray
+    before: FloatArray
+    marks: Whole
+    shares: Whole
+    contacts: Whole
+    rows: FloatArray
+    work: FloatArray
+    one: FloatArray
+    two: FloatArray
+
+
+def room_for(discs: int) -> Room:
+    """Room to work for so many discs: a disc touches six others at most of its size."""
+    contacts = 6 * discs + 16
+    return Room(
+        np.zeros((discs, 6)), np.zeros((discs, 6)), np.zeros(discs, np.int64),
+        np.zeros(discs, np.int64), np.zeros((contacts, 2), np.int64),
+        np.zeros((contacts, CONTACT_COLUMNS)), np.zeros(ROOM), np.zeros(6), np.zeros(6),
+    )  # fmt: skip
+
+
+@inlined
+def locate(game: Game, i: int, t: float, room: Room) -> None:
+    """The state of a disc now."""
+    state_at(
+        game.kinds[i], game.flights[i], game.discs[i], game.curves, game.pieces, t, room.work,
+        room.states[i],
+    )  # fmt: skip
+
+
+@inlined
+def keep_flight(game: Game, i: int) -> None:
+    """Write down the flight that a disc begins."""
+    row = game.history[game.counts[N_HISTORY]]
+    row[0], row[1] = i, game.kinds[i]
+    for column in range(FLIGHT_COLUMNS):
+        row[2 + column] = game.flights[i, column]
+    game.counts[N_HISTORY] += 1
+
+
+@inlined
+def take_off(game: Game, i: int, t: float, room: Room) -> None:
+    """A new flight of a disc alone, from its state; what it was is kept."""
+    game.kinds[i] = start_flight(
+        room.states[i], game.discs[i], game.curves, t, room.work, game.flights[i]
+    )
+    game.group[i] = 0
+    keep_flight(game, i)
+
+
+@inlined
+def stay(game: Game, i: int, t: float, room: Room) -> None:
+    """A disc at rest, that others or a cushion may hold there."""
+    room.states[i, VX] = room.states[i, VY] = room.states[i, SPIN] = 0.0
+    game.kinds[i] = start_flight(
+        room.states[i], game.discs[i], game.curves, t, room.work, game.flights[i]
+    )
+    keep_flight(game, i)
+
+
+@inner
+def drive_on(game: Game, i: int, t: float, room: Room) -> None:
+    """The next straight piece of the way along which a disc is driven; at its end it stays."""
+    piece, last = int(game.flights[i, FIRST_PIECE]), game.drives[i, 1]
+    if game.kinds[i] == PATH:
+        piece += 1
+    start_flight(room.states[i], game.discs[i], game.curves, t, room.work, game.flights[i])
+    if piece < last:
+        row = game.pieces[piece]
+        game.kinds[i] = PATH
+        game.flights[i, FIRST_PIECE], game.flights[i, LAST_PIECE] = piece, piece + 1
+        game.flights[i, UNTIL] = row[BEGINS] + row[DURATION]
+        game.flights[i, FASTEST] = math.hypot(row[FIRST + VX], row[FIRST + VY])
+        game.flights[i, STRONGEST] = 0.0
+    else:
+        game.kinds[i] = STILL
+    keep_flight(game, i)
+
+
+@inlined
+def note(game: Game, t: float, what: int, who: int, partner: int, x: float, y: float) -> None:
+    """Write down an event."""
+    event = game.events[game.counts[N_EVENTS]]
+    event[:] = 0.0
+    event[TIME], event[WHAT], event[WHO], event[PARTNER] = t, what, who, partner
+    event[AT_X], event[AT_Y] = x, y
+    game.counts[N_EVENTS] += 1
+
+
+@inlined
+def note_impacts(game: Game, t: float, count: int, room: Room) -> None:
+    """Write down the impacts of contacts that had an impulse."""
+    for n in range(count):
+        row, i = room.rows[n], room.contacts[n, 0]
+        if row[SUM_N] > 0.0:
+            radius = game.discs[i, RADIUS]
+            note(
+                game, t, IMPACT, i, room.contacts[n, 1],
+                room.states[i, X] + radius * row[NX], room.states[i, Y] + radius * row[NY],
+            )  # fmt: skip
+            event = game.events[game.counts[N_EVENTS] - 1]
+            event[NORMAL_X], event[NORMAL_Y] = row[NX], row[NY]
+            event[APPROACH], event[SLIDE] = row[FIRST_N], row[FIRST_T]
+            event[PUSH], event[RUB], event[LOST] = row[SUM_N], row[SUM_T], row[LOSS]
+            game.counts[N_IMPACTS] += 1
+
+
+@inlined
+def leave(game: Game, i: int, t: float, what: int, k: int, room: Room) -> None:
+    """A disc falls into a pocket or over an edge."""
+    note(game, t, what, i, -1 - k, room.states[i, X], room.states[i, Y])
+    room.states[i, VX] = room.states[i, VY] = room.states[i, SPIN] = 0.0
+    start_flight(room.states[i], game.discs[i], game.curves, t, room.work, game.flights[i])
+    game.kinds[i] = GONE
+    game.group[i] = 0
+    keep_flight(game, i)

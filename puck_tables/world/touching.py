@@ -1,0 +1,118 @@
+"""Who touches whom at an instant, and where that presses."""
+
+from __future__ import annotations
+
+import math
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.kernels.compile import inlined, inner
+from puck_tables.scene.friction import SPIN, VX, VY, X, Y
+from puck_tables.world.departures import CONCERNED, LOOKED_AT, NOT_CONCERNED, Room, locate
+from puck_tables.world.flight import (
+    GONE,
+)
+from puck_tables.world.game import (
+    Game,
+)
+from puck_tables.world.impact import (
+    ACTS,
+    NX,
+    NY,
+    approach,
+    opening,
+    prepare_contact,
+)
+from puck_tables.world.layout import DECEL, EDGE, INTEGRATED, KIND, POCKET, RADIUS
+from puck_tables.world.meeting import normal_to
+
+TOUCH = 1e-12  # of the radius: a gap as small is none
+BLUR = 1e-15  # of the time since the start, at full speed: another
+HARDLY = 1e-11  # of the scales of speeds and accelerations: none
+
+
+@inlined
+def _contact_of(room: Room, count: int, i: int, j: int) -> bool:
+    """Whether a contact is among those found."""
+    for n in range(count):
+        a, b = room.contacts[n, 0], room.contacts[n, 1]
+        if (a == i and b == j) or (a == j and b == i):
+            return True
+    return False
+
+
+@inner
+def find_touching(game: Game, t: float, room: Room) -> int:
+    """All contacts of those marked, of those that they touch, and so on; how many."""
+    count, discs = 0, game.discs
+    grown = True
+    while grown:
+        grown = False
+        for i in range(discs.shape[0]):
+            if room.marks[i] != CONCERNED:
+                continue
+            room.marks[i] = LOOKED_AT
+            # moments are rounded, and so are the gaps at them
+            near = TOUCH * discs[i, RADIUS] + BLUR * t * game.pace[0]
+            for k in range(game.obstacles.shape[0]):
+                shape = int(game.obstacles[k, KIND])
+                gap, _, _, there = normal_to(
+                    game.obstacles[k], discs[i, RADIUS], room.states[i, X], room.states[i, Y]
+                )
+                if gap <= near and there and shape not in (POCKET, EDGE):
+                    if count == room.contacts.shape[0]:
+                        return -1
+                    room.contacts[count, 0], room.contacts[count, 1] = i, -1 - k
+                    count += 1
+            for j in range(discs.shape[0]):
+                if j == i or game.kinds[j] == GONE:
+                    continue
+                if room.marks[j] == NOT_CONCERNED:
+                    locate(game, j, t, room)
+                reach = discs[i, RADIUS] + discs[j, RADIUS]
+                dx = room.states[j, X] - room.states[i, X]
+                dy = room.states[j, Y] - room.states[i, Y]
+                if abs(dx) > 1.01 * reach or math.hypot(dx, dy) - reach > near:
+                    continue
+                if not _contact_of(room, count, i, j):
+                    if count == room.contacts.shape[0]:
+                        return -1
+                    room.contacts[count, 0], room.contacts[count, 1] = min(i, j), max(i, j)
+                    count += 1
+                if room.marks[j] == NOT_CONCERNED:
+                    room.marks[j], grown = CONCERNED, True
+    for n in range(count):
+        prepare_contact(game, room.contacts[n, 0], room.contacts[n, 1], room.states, room.rows[n])
+    return count
+
+
+@inlined
+def _moves(state: FloatArray) -> bool:
+    return state[VX] != 0.0 or state[VY] != 0.0 or state[SPIN] != 0.0
+
+
+@inlined
+def press_somewhere(game: Game, count: int, room: Room) -> bool:
+    """Whether contacts that do not approach would, if all flew on alone; they are marked.
+
+    If none would, no force acts in any: that is a solution, and accelerations have but one.
+    """
+    found = False
+    for n in range(count):
+        i, j, row = room.contacts[n, 0], room.contacts[n, 1], room.rows[n]
+        un, _ = approach(game, i, j, row[NX], row[NY], room.states)
+        row[ACTS] = 1.0 if abs(un) <= HARDLY * game.pace[0] else 0.0
+        # what neither presses nor parts is a group, too: alone, both would look for each other
+        moves = _moves(room.states[i]) or (j >= 0 and _moves(room.states[j]))
+        least = HARDLY * game.pace[1] if moves else -HARDLY * game.pace[1]
+        if row[ACTS] > 0.0 and opening(game, i, j, row, room.states) < least:
+            found = True
+    return found
+
+
+@inlined
+def is_integrated(game: Game, i: int, state: FloatArray) -> bool:
+    """Whether the motion of a disc from here, alone, is to be integrated."""
+    disc = game.discs[i]
+    if disc[INTEGRATED] == 0.0 or game.kinds[i] == GONE:
+        return False
+    return _moves(state) or math.hypot(game.pull[0], game.pull[1]) > disc[DECEL]
