@@ -26,14 +26,16 @@ ROOMS = {
     "puck": "_core contact errors motion verbs",
     "stopping": "_core accuracy contact errors io kernels motion puck result table",
     "trajectory": "_core accuracy errors io motion puck result stopping table",
+    "film": "_core errors io",
+    "fit": "_core accuracy contact errors film io kernels motion puck result stopping table",
     "scene": "_core contact errors io kernels motion puck result stopping table",
     "world": "_core contact errors io kernels motion puck result scene stopping table",
     "tradeoff": "_core _version accuracy contact io kernels motion result stopping table",
-    "plot": "_core accuracy chetaev errors io motion result scene stopping tradeoff trajectory "
-    "world",
+    "plot": "_core accuracy chetaev errors film fit io motion result scene stopping tradeoff "
+    "trajectory world",
     "paper": "_core contact motion plot puck trajectory",
-    "cli": "_core _version accuracy chetaev contact errors io kernels motion paper plot puck scene "
-    "stopping table tradeoff world",
+    "cli": "_core _version accuracy chetaev contact errors film fit io kernels motion paper plot "
+    "puck scene stopping table tradeoff world",
     "__init__": "_core _version",
 }
 DOORS = {
