@@ -20,7 +20,7 @@ from puck_tables.stopping.exact import integrated_stops
 from puck_tables.stopping.per_height import MANY
 from puck_tables.stopping.stop_section import stop_section_for
 
-QUICK = [PUCKS[2], PUCKS[5], PUCKS[6], PUCKS[7]]
+QUICK = [PUCKS[2], PUCKS[6]]
 
 
 def stops_of(puck: tuple[str, float, float], u: np.ndarray, **options: object) -> np.ndarray:

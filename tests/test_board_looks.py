@@ -150,7 +150,8 @@ def test_what_lies_still_has_a_movie_too(tmp_path: Path) -> None:
     assert told_in(tmp_path / "still.html")["end_time"] == 0.0
 
 
-def test_a_gif_moves(tmp_path: Path) -> None:
+def test_a_gif_moves(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("puck_tables.plot.movie._SHORTEST", 1.0)
     puck = Piece(0.1, friction=0.5, launch=Launch((1.0, 0.0)))
     Scene(pucks=[puck]).simulate().movie(tmp_path / "run.gif")
     with Image.open(tmp_path / "run.gif") as movie:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from rarely import few
 from scipy.integrate import solve_ivp
 from scipy.interpolate import make_interp_spline
 
@@ -331,7 +332,7 @@ def test_patches_that_only_slide_can_be_displaced_sideways():
 
 @pytest.mark.parametrize(
     ("velocity", "spin", "delta"),
-    [((1, 0), 0.2, 0.0), ((1, 0), 1.0, 0.0), ((1, 0), 1.0, 0.8), ((0.6, -0.8), -5, 0.8)],
+    few(2, [((1, 0), 1.0, 0.0), ((0.6, -0.8), -5, 0.8), ((1, 0), 0.2, 0.0), ((1, 0), 1.0, 0.8)]),
 )  # fmt: skip
 def test_patches_converge_to_the_puck_with_order_one_in_their_number(velocity, spin, delta):
     exact = stop(velocity, spin, delta=delta, tol=1e-10)

@@ -12,6 +12,7 @@ from matplotlib.collections import QuadMesh
 from matplotlib.figure import Figure
 from matplotlib.ticker import ScalarFormatter
 from pucks import simulate, sweep
+from rarely import few
 from scenes import simulate_scene, sweep_scene
 
 from puck_tables.chetaev.asperity import Asperity
@@ -107,7 +108,7 @@ WORDS = {
 }
 
 
-@pytest.mark.parametrize("name", WORDS)
+@pytest.mark.parametrize("name", few(4, WORDS))
 def test_all_that_is_in_the_plane_is_labelled_and_no_legend_lies_on_a_panel(
     drawn: Any, name: str
 ) -> None:

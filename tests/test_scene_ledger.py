@@ -29,7 +29,7 @@ def _closes(seeds: range, folder: Path) -> set[str]:
 
 
 def test_the_ledger_closes(tmp_path: Path) -> None:
-    seen = _closes(range(500), tmp_path)
+    seen = _closes(range(200), tmp_path)
     assert seen >= {
         "at rest", "time is up", "over the edge",
         "stick", "slip", "impact", "contact", "border", "edge",
@@ -38,4 +38,4 @@ def test_the_ledger_closes(tmp_path: Path) -> None:
 
 @pytest.mark.nightly
 def test_the_ledger_closes_for_many(tmp_path: Path) -> None:
-    _closes(range(500, 3000), tmp_path)
+    _closes(range(200, 3000), tmp_path)

@@ -279,6 +279,10 @@ def test_validation_passes_and_can_fail(rough: StopTable):
     report = replace(rough, values=bent).validate()
     failed = {(check.name, check.function) for check in report.checks if not check.passed}
     assert {("integrator", "time"), ("equation", "time")} <= failed
+
+
+@pytest.mark.nightly
+def test_validation_of_a_bent_curve_fails_there_alone(rough: StopTable):
     bent = rough.values.copy()
     bent[40, 4, 5] += 1e-3
     report = replace(rough, values=bent).validate()

@@ -48,6 +48,13 @@ COMMANDS: dict[str, tuple[list[str], str]] = {
     "paper": (["paper", "--out", "{}"], "{}/figure_02.png"),
 }  # fmt: skip
 
+_built = StopTable.built
+
+
+@cache
+def built_once(of: str, cells: int) -> StopTable:
+    return _built(of, cells=cells)
+
 
 @pytest.fixture(autouse=True)
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
@@ -64,9 +71,8 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setattr(engine, "measure", lambda quick, show: measured)
     monkeypatch.setattr("puck_tables.paper.claims.all_claims", lambda show: {})
     monkeypatch.setattr(figures, "FIGURES", {2: figures.limit_angles})
-    true = cache(StopTable.built)
     monkeypatch.setattr(
-        StopTable, "built", lambda of, accuracy, cells, progress: true(of, cells=cells)
+        StopTable, "built", lambda of, accuracy, cells, progress: built_once(of, cells)
     )
     monkeypatch.chdir(tmp_path)
     return tmp_path
