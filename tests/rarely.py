@@ -9,10 +9,11 @@ import pytest
 
 
 def few(count: int, cases: Iterable[Any]) -> list[Any]:
-    """The first ``count`` cases as they are, the others for the nightly run."""
-    found = list(cases)
-    late = [
-        pytest.param(*(case if isinstance(case, tuple) else (case,)), marks=pytest.mark.nightly)
-        for case in found[count:]
+    """The first ``count`` cases for every run, the others for the nightly; tuples are spread."""
+    return [
+        pytest.param(
+            *(case if isinstance(case, tuple) else (case,)),
+            marks=[pytest.mark.nightly] if n >= count else [],
+        )
+        for n, case in enumerate(cases)
     ]
-    return found[:count] + late

@@ -29,7 +29,9 @@ def scanned(delta: float, gyration: float) -> np.ndarray:
     return np.stack([speed, speed + U, log_q + np.log(found.stop_time)])
 
 
-@pytest.mark.parametrize("puck", few(2, [(3.9, HOMOGENEOUS), (0.5, 5.0), (3.6, 10.0), (2.0, 0.3)]))
+@pytest.mark.parametrize(
+    "puck", few(2, [((3.9, HOMOGENEOUS),), ((0.5, 5.0),), ((3.6, 10.0),), ((2.0, 0.3),)])
+)
 def test_all_wishes_against_a_scan(puck: tuple[float, float]):
     delta, gyration = puck
     curve = scanned(delta, gyration)
