@@ -2,8 +2,8 @@
 
     python tests/extremes.py
 
-prints the table of the README.  The judges are mpmath, or closed forms written out here; those of
-stops are the script of tests/golden, those of one-sided contact tests/strips.py.
+prints the table of docs/accuracy.md.  The judges are mpmath, or closed forms written out here;
+those of stops are the script of tests/golden, those of one-sided contact tests/strips.py.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Every example of the README runs and prints what it says."""
+"""Every example of the README and of the pages in docs runs and prints what it says."""
 
 from __future__ import annotations
 
@@ -13,24 +13,25 @@ from conftest import ROOT
 from puck_tables.cli.main import main
 
 NUMBER = re.compile(r"-?\d+\.?\d*(?:e[-+]?\d+)?")
-TEXT = (ROOT / "README.md").read_text(encoding="utf-8")
+PAGES = {path.name: path for path in [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]}
+TEXTS = {name: path.read_text(encoding="utf-8") for name, path in PAGES.items()}
+every_page = pytest.mark.parametrize("page", PAGES)
 
 
-def console_examples() -> list[tuple[str, str]]:
+def console_examples(text: str) -> list[tuple[str, str]]:
     examples = []
-    for block in re.findall(r"```console\n(.*?)```", TEXT, re.DOTALL):
+    for block in re.findall(r"```console\n(.*?)```", text, re.DOTALL):
         for part in block.split("$ ")[1:]:
             command, _, output = part.partition("\n")
             examples.append((command, output.strip()))
     return examples
 
 
-def test_console_examples(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+@every_page
+def test_console_examples(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     """In order, in one folder: numbers to seven digits, those of rounding size to a factor 10."""
     monkeypatch.chdir(tmp_path)
-    examples = console_examples()
-    assert len(examples) >= 10
-    for command, output in examples:
+    for command, output in console_examples(TEXTS[page]):
         program, *arguments = shlex.split(command)
         assert program == "puck"
         if arguments[0] == "paper":  # test_paper_command.py runs it
@@ -50,12 +51,30 @@ def test_console_examples(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
                 assert mine == pytest.approx(theirs, rel=1e-7)
 
 
-def test_library_examples():
-    found = doctest.testfile(str(ROOT / "README.md"), module_relative=False, encoding="utf-8")
-    assert found.attempted >= 12
+@every_page
+def test_library_examples(page: str):
+    found = doctest.testfile(str(PAGES[page]), module_relative=False, encoding="utf-8")
+    assert found.attempted == TEXTS[page].count("\n>>> ")
     assert found.failed == 0
 
 
-def test_pictures_of_the_readme_exist():
-    for name in re.findall(r"!\[.*?\]\((.*?)\)", TEXT):
-        assert (ROOT / name).stat().st_size > 10_000
+def test_there_are_examples():
+    assert {"README.md", "command-line.md", "scenes.md"} <= {
+        page for page in PAGES if console_examples(TEXTS[page])
+    }
+    assert {"README.md", "library.md", "scenes.md"} <= {
+        page for page in PAGES if ">>> " in TEXTS[page]
+    }
+
+
+def test_the_readme_is_short_and_names_every_page():
+    assert len(TEXTS["README.md"].splitlines()) <= 150
+    for page in PAGES.keys() - {"README.md"}:
+        assert f"(docs/{page})" in TEXTS["README.md"], page
+
+
+@every_page
+def test_links_lead_somewhere(page: str):
+    for picture, name in re.findall(r"(!?)\[[^\]]*\]\(([^)#:]+)\)", TEXTS[page]):
+        size = (PAGES[page].parent / name).stat().st_size
+        assert size > (10_000 if picture else 500), name
