@@ -257,14 +257,13 @@ def read_columns(
             file.readline(_LINE)
             line += 1
         for block in _blocks(path, file):
-            found = _fast(block, look, numbers) if not texts else None
-            if found is None:
-                found, cells = _slow(path, block, look, numbers, texts, line)
-                for column in texts:
-                    known = words[column]
-                    codes[column].append(
-                        np.array([known.setdefault(one, len(known)) for one in cells[column]], int)
-                    )
+            fast = _fast(block, look, numbers, texts)
+            found, cells = fast or _slow(path, block, look, numbers, texts, line)
+            for column in texts:
+                known = words[column]
+                codes[column].append(
+                    np.array([known.setdefault(one, len(known)) for one in cells[column]], int)
+                )
             parts.append(found)
             line += block.count("\n")
     whole = np.concatenate(parts) if parts else np.empty((0, len(numbers)))
@@ -288,9 +287,13 @@ def _blocks(path: str | Path, file: IO[str]) -> Iterator[str]:
         yield block
 
 
-def _fast(block: str, look: Look, numbers: Sequence[int]) -> FloatArray | None:
-    """Rows of a block that holds nothing but numbers; None for any other."""
+def _fast(
+    block: str, look: Look, numbers: Sequence[int], texts: Sequence[int]
+) -> tuple[FloatArray, dict[int, list[str]]] | None:
+    """Rows of a block whose columns of numbers hold nothing else; None for any other."""
     separator = look.separator
+    if texts and separator is None:
+        return None
     count = block.count("\n") + (not block.endswith("\n"))
     if '"' in block or any(sign in block for sign in _COMMENTS):
         return None
@@ -309,13 +312,21 @@ def _fast(block: str, look: Look, numbers: Sequence[int]) -> FloatArray | None:
                 io.StringIO(text), delimiter=separator, comments=None, ndmin=2,
                 usecols=None if separator is None else numbers,
             )  # fmt: skip
+            cells = {
+                column: np.loadtxt(
+                    io.StringIO(block), str, delimiter=separator, comments=None, ndmin=1,
+                    usecols=column,
+                ) for column in texts
+            }  # fmt: skip
     except ValueError:
         return None
     if found.shape[0] != count or (look.comma and "." in block):
         return None
-    if separator is not None:
-        return found
-    return found[:, list(numbers)] if found.shape[1] == look.width else None
+    if any(one.size != count for one in cells.values()):
+        return None
+    if separator is None:
+        return (found[:, list(numbers)], {}) if found.shape[1] == look.width else None
+    return found, {column: [text.strip() for text in one.tolist()] for column, one in cells.items()}
 
 
 def block_width(look: Look) -> int:
