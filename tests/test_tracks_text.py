@@ -44,6 +44,8 @@ ONE = {
     "old Mac lines": ("t,x,y\r0,1,2\r0.1,1.5,2.5\r", {"unit": "cm"}),
     "pixels": ("t,x_px,y_px\n0,20,-40\n.1,30,-50\n", {"scale": "0.5mm"}),
     "pixels, y up": ("t,x,y\n0,20,40\n.1,30,50\n", {"scale": 5e-4, "y_down": False}),
+    "a name over all": ("Puck,,\nt,x,y\n0,1,2\n0.1,1.5,2.5\n", {"unit": "cm"}),
+    "quoted decimal commas": ('"t","x","y"\n"0","1","2"\n"0,1","1,5","2,5"\n', {"unit": "cm"}),
     "names": ("Time (s),Ball position x (cm),Ball position y (cm)\n0,1,2\n.1,1.5,2.5\n", {}),
 }
 
@@ -133,6 +135,26 @@ def test_marks_on_a_puck_give_its_centre_and_angle(tmp_path: Path):
         read(tmp_path, text, unit="m", centre="c")
 
 
+TRACKMATE = """LABEL,ID,TRACK_ID,QUALITY,POSITION_X,POSITION_Y,POSITION_T,FRAME,RADIUS
+Label,Spot ID,Track ID,Quality,X,Y,T,Frame,Radius
+Label,Spot ID,Track ID,Quality,X,Y,T,Frame,R
+,,,(quality),(pixel),(pixel),(sec),,(pixel)
+ID3,3,0,1.5,10,20,0.0,0,5
+ID4,4,1,1.5,11,21,0.0,0,5
+ID5,5,0,1.5,12,22,0.5,1,5
+ID6,6,1,1.5,13,23,0.5,1,5
+"""
+
+
+def test_a_number_of_the_row_is_no_puck(tmp_path: Path):
+    one, two = read(tmp_path, TRACKMATE, scale=1.0)  # exported by TrackMate: four rows of names
+    assert (one.name, two.name) == ("film.csv: 0", "film.csv: 1")
+    assert_allclose(one.place, [[10, -20], [12, -22]])
+    assert_allclose(two.time, [0.0, 0.5])
+    (track,) = read(tmp_path, "id,t,x,y\n1,0,\N{MINUS SIGN}1,2\n2,1,3,4\n", unit="m")
+    assert_allclose(track.place, [[-1, 2], [3, 4]])
+
+
 def test_times_with_jitter_are_kept(tmp_path: Path):
     times = np.cumsum(0.01 + 0.002 * np.random.default_rng(4).uniform(-1, 1, 50)).tolist()
     (track,) = read(tmp_path, "t,x,y\n" + "".join(f"{t!r},1,2\n" for t in times), unit="m")
@@ -170,7 +192,8 @@ BAD = {
     "t,x,y\n0,1,2\n,2,3\n": "has no time",
     "t,x,y\n0,1,2\n8.3,2,3\n16.7,3,3\n": "unit of its times",
     "t,x\n0,1\n.1,2\n": "x without its y",
-    "a,b,c\n0,1,3\n.1,2,4\n": "no columns x and y",
+    "a,b,c\n0,1,3\n.1,2,4\n": "no columns x and y .*they are a, b, c",
+    "x,y,t\n1,0,1,2\n2,.1,1,2\n": "3 names for 4 columns",
     "0,1,3\n.1,2,4\n": "has no header.*columns='t,x,y'",
     "x,y\n0,1\n1,2\n": "fps.*each row is then a frame",
     "frame,x,y\n0,1,2\n1,2,3\n": "frame numbers and no times.*fps",
@@ -204,7 +227,9 @@ def test_what_is_wrong_is_said_in_a_sentence(tmp_path: Path, text: str):
         ({"unit": "m", "columns": "t,x"}, "has 3 columns, and columns names 2"),
         ({"unit": "m", "pucks": "red"}, "no puck 'red'"),
         ({"unit": "m", "likelihood": 0.5}, "no likelihoods"), ({"likelihood": 2}, "0 to 1"),
-        ({"unit": "m", "toward": "a"}, "needs centre"),
+        ({"unit": "m", "toward": "a"}, "needs centre"), ({"unit": "m", "pucks": ""}, "with commas"),
+        ({"unit": "m", "pucks": 5}, "pucks must be"), ({"y_down": "no"}, "y_down must be"),
+        ({"columns": 3}, "columns must be"), ({"angle_unit": "m"}, "angle_unit = 'm'"),
     ],
 )  # fmt: skip
 def test_what_is_asked_wrongly_is_said(tmp_path: Path, how: dict, words: str):

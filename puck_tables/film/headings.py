@@ -101,13 +101,12 @@ Heading(role='', puck='', unit=''))
 
 def _parted(text: str) -> tuple[str, str]:
     """A name and what stands as its unit, in brackets or after a stroke."""
-    for form in (
-        r"(.+?)\s*[\[(<]\s*([^\[\]()<>]*?)\s*[\])>]",
-        r"(.+?)\s*/\s*([^\s/]+)",
-        r"(.+?)\s+in\s+(\S+)",
-    ):
+    found = re.fullmatch(r"(.+?)\s*[\[(<]\s*([^\[\]()<>]*?)\s*[\])>]", text)
+    if found is not None:
+        return found[1], found[2]
+    for form in (r"(.+?)\s*/\s*([^\s/]+)", r"(.+?)\s+in\s+(\S+)"):
         found = re.fullmatch(form, text)
-        if found is not None:
+        if found is not None and is_unit(found[2]):
             return found[1], found[2]
     return text, ""
 

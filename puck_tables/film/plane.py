@@ -46,6 +46,11 @@ class Plane:
     residual: float
     count: int
 
+    @property
+    def mirrored(self) -> bool:
+        """Whether y lies to the right of x in the picture, whose v points down."""
+        return bool(np.linalg.det(self.matrix) > 0.0)
+
     def place(self, pixels: FloatArray) -> FloatArray:
         """Places (n, 2) in m of points (n, 2) in pixels.
 

@@ -99,6 +99,9 @@ def read_tracks(
     ([0.0, 0.01], [[0.005, 0.01], [0.007, 0.01]])
     """
     instance("path", path, str, Path)
+    instance("columns", columns, str, type(None))
+    if "\0" in str(path):
+        raise InputError("path must be the name of a file, it holds a NUL")
     how = How(fps, unit, scale, angle_unit, y_down, marks, centre, toward, likelihood, pucks)
     try:
         film = film_of(path, columns)

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import positive, real
+from puck_tables._core.real import instance, positive, real
 from puck_tables.errors import InputError
 from puck_tables.film.angles import direction
 from puck_tables.film.film import Body, Film
@@ -67,10 +67,16 @@ class How:
                     "leave y_down out"
                 )
             put("plane", plane_from(self.marks))
+        instance("y_down", self.y_down, bool, type(None))
+        instance("toward", self.toward, str, type(None))
         for name in ("centre", "pucks"):
             given = getattr(self, name)
             names = given.split(",") if isinstance(given, str) else given
-            put(name, None if names is None else [str(one).strip() for one in names])
+            if names is not None:
+                instance(name, names, list, tuple)
+                put(name, [str(one).strip() for one in names])
+                if not names or not all(getattr(self, name)):
+                    raise InputError(f"{name} must be names with commas, got {given!r:.40}")
         if self.toward is not None and self.centre is None:
             raise InputError(
                 f"toward = '{self.toward}' needs centre, too: the mark, or the marks, in whose "
@@ -176,6 +182,8 @@ class _Scale:
                 f"places in pixels, carried to the floor by {self.plane.count} marks"
                 + (f", which they fit to {self.plane.residual * 1e3:.3g} mm"
                    if self.plane.residual else "")
+                + ("; y lies to the right of x in the picture: all is seen as in a mirror"
+                   if self.plane.mirrored else "")
             )  # fmt: skip
         if self.down:
             notes.append("y grows downwards in the file: y, and angles, are turned over")

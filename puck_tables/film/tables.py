@@ -60,6 +60,12 @@ def film_of_table(path: str | Path, head: bytes, columns: str | None) -> Film:
         if not one.role and cells & _HIDDEN and cells <= _SHOWN | _HIDDEN:
             layout.columns[n] = (body, Heading("seen"))  # whatever it is called
     wanted = [n for n, (_, one) in enumerate(layout.columns) if one.role]
+    if not {one.role for _, one in layout.columns} & {"x", "y"}:
+        names = ", ".join(_name(look, n) for n in range(min(look.width, 8)))
+        raise InputError(
+            f"{path} has no columns x and y that are known by their names (they are {names:.90}): "
+            f"say what they are, such as columns='{_example(look.width)}' (--columns)"
+        )
     texts = [n for n in wanted if _holds_text(look, n, layout.columns[n][1])]
     values, words = read_columns(path, look, [n for n in wanted if n not in texts], texts)
     film = Film(layout.kind, [], jointed=layout.jointed, likely=layout.likely)
@@ -101,13 +107,18 @@ def _layout(path: str | Path, look: Look, columns: str | None) -> _Layout:
         )
     if header[0][0].lower() == "scorer":
         return _deeplabcut(path, header)
-    if len(header) > 1 and all(is_unit(cell) or cell in ("", "-") for cell in header[-1]):
+    if len(header) > 1 and _are_units(header[-1]):
         units = header.pop()
         header[-1] = [
-            f"{name} [{unit.strip('[]() ')}]" if unit not in ("", "-") else name
+            f"{name} [{unit.strip('[]() ')}]" if is_unit(unit) else name
             for name, unit in zip(header[-1], units, strict=True)
         ]
     names = header[-1]
+    if look.header and len(look.header[-1]) < look.width:
+        raise InputError(
+            f"{path} has {len(look.header[-1])} names for {look.width} columns, so none can be told"
+            " from another: name all with columns (--columns), - for those to leave out"
+        )
     layout = _named(names, _owners(header)) if len(header) > 1 else _named(names)
     found = {name.lower() for name in names}
     if found >= _TRACKPY:
@@ -115,6 +126,13 @@ def _layout(path: str | Path, look: Look, columns: str | None) -> _Layout:
     if "frame_idx" in found and {"track", "instance.score"} & found:
         layout.kind, layout.pixels, layout.jointed, layout.likely = "SLEAP table", True, True, None
     return layout
+
+
+def _are_units(row: Sequence[str]) -> bool:
+    """Whether a row holds units: some that are known, and others in brackets."""
+    return any(map(is_unit, row)) and all(
+        is_unit(cell) or cell in ("", "-") or re.fullmatch(r"[\[(].*[\])]", cell) for cell in row
+    )
 
 
 def _owners(header: list[list[str]]) -> list[str]:
@@ -239,16 +257,17 @@ def _rows(
 
     Rows of a puck are put in the order of their frames or times: a long table has none.
     """
-    whose = next((n for n, (_, one) in enumerate(layout.columns) if one.role == "id"), None)
-    if whose is None:
-        return {"": slice(None)}
-    if whose in words:
-        codes, names = words[whose]
-    else:
-        numbers, codes = np.unique(values[whose], return_inverse=True, equal_nan=True)
-        names = [f"{one:.15g}" for one in numbers]
-    size = codes.size
-    if len(names) == size > 1:  # a number of the row
+    codes, names = None, []
+    for whose in (n for n, (_, one) in enumerate(layout.columns) if one.role == "id"):
+        if whose in words:
+            codes, names = words[whose]
+        else:
+            numbers, codes = np.unique(values[whose], return_inverse=True, equal_nan=True)
+            names = [f"{one:.15g}" for one in numbers]
+        if not len(names) == codes.size > 1:  # else it numbers the rows
+            break
+        codes = None
+    if codes is None:
         return {"": slice(None)}
     if len(names) > MOST_PUCKS:
         raise InputError(
@@ -298,11 +317,6 @@ def _body(
                 f"{'y' if role == 'x' else 'x'}: name its columns with columns (--columns)"
             )
         marks[mark] = np.column_stack([found["x", mark], found["y", mark]])
-    if not marks:
-        raise InputError(
-            f"{path} has no columns x and y that are known by their names: say what its columns "
-            "are, such as columns='t,x,y,-' (--columns)"
-        )
     body = Body(name, marks, seen=seen)
     clocks = {}
     for (role, _), value in found.items():

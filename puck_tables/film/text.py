@@ -26,6 +26,7 @@ _COMMENTS = ("#", "%", "//")
 _MISSING = {"", "nan", "na", "n/a", "none", "null", "-", "--", "nil", "?", "<na>"}
 _POINT = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
 _COMMA = re.compile(r"[-+]?(?:[0-9]+,[0-9]*|,[0-9]+)(?:[eE][-+]?[0-9]+)?")
+_MINUS = "\N{MINUS SIGN}"  # of typesetters
 _SEPARATORS = ("\t", ";", ",", "|", None)  # the last: blanks
 
 
@@ -56,7 +57,7 @@ def look_at(path: str | Path, head: bytes) -> Look:
         If it is no text, or no table of numbers.
     """
     encoding = encoding_of(path, head)
-    text = head.decode(encoding, errors="ignore").replace("\0", "")
+    text = head.decode(encoding, errors="ignore").replace("\0", "").replace(_MINUS, "-")
     lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
     if len(head) >= _HEAD:
         lines = lines[:-1]  # cut
@@ -77,8 +78,10 @@ def look_at(path: str | Path, head: bytes) -> Look:
         raise InputError(f"{path} holds no rows of numbers: give a table of numbers")
     sample = [line for _, line in numbered]
     chosen = separator or _separator(path, sample)
-    rows = [_whole_names(split(line, chosen)) for line in sample]
-    comma = chosen != "," and any(_COMMA.fullmatch(cell) for row in rows for cell in row)
+    rows = [split(line, chosen) for line in sample]
+    if chosen is None:
+        rows = [_whole_names(row) for row in rows]
+    comma = any(_COMMA.fullmatch(cell) for row in rows for cell in row)
     names = [n for n, row in enumerate(rows[:_HEADER_ROWS]) if _is_names(row)]
     start = names[-1] + 1 if names else 0
     first = next((n for n in range(start, len(rows)) if _is_data(rows[n])), None)
@@ -206,8 +209,7 @@ def _separator(path: str | Path, lines: Sequence[str]) -> str | None:
         cells = [cell for row in rows for cell in row]
         alike = sizes.count(max(set(sizes), key=sizes.count)) / len(sizes)
         good = sum(
-            number(cell, False) is not None or (separator != "," and bool(_COMMA.fullmatch(cell)))
-            for cell in cells
+            number(cell, False) is not None or bool(_COMMA.fullmatch(cell)) for cell in cells
         ) / len(cells)  # fmt: skip
         flags = sum(cell.isalpha() for cell in cells) / len(cells)
         score = round(alike * (good + 0.5 * flags), 6)
@@ -284,7 +286,7 @@ def _blocks(path: str | Path, file: IO[str]) -> Iterator[str]:
             if len(rest) >= _LINE:
                 raise InputError(f"{path} has a line of more than {_LINE} characters: no table")
             block += rest
-        yield block
+        yield block.replace(_MINUS, "-")
 
 
 def _fast(
