@@ -216,10 +216,10 @@ def _order(tracks: Any) -> list[str] | None:
 def _names(file: Any, key: str, count: int, what: str) -> list[str]:
     """The names of tracks or nodes, or numbers where there are none."""
     found = [
-        one.decode(errors="replace") if isinstance(one, bytes) else str(one)
+        " ".join((one.decode(errors="replace") if isinstance(one, bytes) else str(one)).split())
         for one in (np.asarray(file[key]).ravel().tolist() if key in file else ())
     ]
-    return found if len(found) == count else [f"{what} {n}" for n in range(count)]
+    return found if len(found) == count and all(found) else [f"{what} {n}" for n in range(count)]
 
 
 def _scores(file: Any, shape: tuple[int, ...]) -> FloatArray | None:

@@ -220,6 +220,9 @@ class _Scale:
 def _times(path: str | Path, film: Film, body: Body, how: How) -> tuple[FloatArray, list[str]]:
     """Times in s, and what they are from."""
     size = len(next(iter(body.marks.values())))
+    for clock in (body.frame, body.time):
+        if clock is not None and np.isinf(clock).any():
+            raise InputError(f"{path} has times or frame numbers that are no numbers")
     if how.fps is not None:
         if body.frame is not None:
             unused = "; its own times are not used" if body.time is not None else ""

@@ -83,7 +83,9 @@ def film_of_table(path: str | Path, head: bytes, columns: str | None) -> Film:
                 n: one for n, (whose, one) in enumerate(layout.columns)
                 if one.role and whose in ("", body)
             }  # fmt: skip
-            film.bodies.append(_body(path, body, mine, values, words, chosen))
+            found = _body(path, body, mine, values, words, chosen)
+            if found.marks:
+                film.bodies.append(found)
     return film
 
 

@@ -18,8 +18,10 @@ followed.
 
 from __future__ import annotations
 
+import lzma
 import math
 import zipfile
+import zlib
 from collections.abc import Iterator
 from pathlib import Path, PurePosixPath
 from xml.etree import ElementTree
@@ -34,7 +36,7 @@ from puck_tables.film.film import Body, Film
 from puck_tables.film.text import encoding_of
 from puck_tables.film.units import known
 
-_LARGEST = 1 << 26  # bytes of a .trk
+_LARGEST = 1 << 26  # bytes of a .trk, or of all in an archive
 _LARGEST_ARCHIVE = 1 << 32
 _MOST_MEMBERS = 10_000
 _MOST_FRAMES = 10_000_000
@@ -66,7 +68,11 @@ def film_of_zip(path: str | Path) -> Film:
     """
     if Path(path).stat().st_size > _LARGEST_ARCHIVE:
         raise InputError(f"{path} is too large: unpack it, and read its .trk file")
-    films = {}
+    films, left = {}, _LARGEST
+    damage = (
+        zipfile.BadZipFile, zlib.error, lzma.LZMAError, NotImplementedError, RuntimeError, EOFError,
+        ValueError, OSError,
+    )  # fmt: skip
     try:
         with zipfile.ZipFile(path) as archive:
             members = archive.infolist()
@@ -81,11 +87,12 @@ def film_of_zip(path: str | Path) -> Film:
                 if name.suffix.lower() != ".trk" or name.parts[0] == "__MACOSX":
                     continue
                 with archive.open(member) as file:  # what a member says of its size may be wrong
-                    content = file.read(_LARGEST + 1)
-                if len(content) > _LARGEST:
+                    content = file.read(left + 1)
+                if len(content) > left:
                     raise InputError(f"{path}: {name} is too large to be a file of Tracker")
+                left -= len(content)
                 films[name.stem] = _film(f"{path}: {name}", content)
-    except (zipfile.BadZipFile, NotImplementedError, RuntimeError, EOFError, ValueError) as error:
+    except damage as error:
         if isinstance(error, InputError):
             raise
         raise InputError(f"{path} is a damaged archive: {error}") from None
