@@ -103,6 +103,7 @@ def test_two_pucks_side_by_side_or_row_by_row(tmp_path: Path, case: str):
     [
         ("visible", "1 0 1"), ("seen", "true false true"), ("hidden", "0 1 0"),
         ("occluded", "no yes no"), ("state", "visible hidden visible"), ("hidden", " yes "),
+        ("hidden", " 1 "),
         ("likelihood", "0.9 0.1 0.6"), ("confidence", "1 0 1"),
     ],
 )  # fmt: skip
@@ -204,6 +205,7 @@ BAD = {
     "t,x,y\n0,1e400,2\n.1,2,3\n": "must be numbers",
     "t,x,y,visible\n0,1,2,1\n.1,2,3,7\n": "must be 0 or 1",
     "t,x,y,visible\n0,1,2,yes\n.1,2,3,perhaps\n": "'perhaps' does not say",
+    "t,x,y,confidence\n0,1,2,95\n.1,2,3,90\n": "likelihoods of up to 95",
     "t,x1,y1,x2,y2,angle_deg\n0,1,2,3,4,5\n.1,1,2,3,4,5\n": "whose they are",
 }  # fmt: skip
 

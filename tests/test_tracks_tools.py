@@ -193,6 +193,8 @@ def test_poses_of_deeplabcut(tmp_path: Path, kind: str):
     assert any("1 frames less likely" in note for note in track.notes)
     (all_seen,) = read_tracks(file, **PIXELS, centre="hub", likelihood=0.2)
     assert all_seen.seen.all()
+    with pytest.raises(InputError, match="marks hub, rim"):
+        read_tracks(file, **PIXELS, pucks="mouse")
     two = read_tracks(file, **PIXELS, pucks="hub,rim")
     assert [one.name for one in two] == [f"pose.{kind}: hub", f"pose.{kind}: rim"]
 
@@ -207,6 +209,8 @@ def test_several_individuals_of_deeplabcut(tmp_path: Path, kind: str):
         deeplabcut(file, labels, POSES)
     a, b = read_tracks(file, **PIXELS)
     assert (a.name, b.name) == (f"pose.{kind}: a", f"pose.{kind}: b")
+    (chosen,) = read_tracks(file, **PIXELS, pucks="b")
+    assert chosen.name == b.name
     assert_allclose(b.place, [[0.011, -0.02], [0.011, -0.02], [0.01, -0.022]])
     assert a.seen.tolist() == [True, False, True]
 

@@ -36,6 +36,15 @@ def film_of_hdf5(path: str | Path) -> Film:
     ------
     InputError
         If it is none of DeepLabCut or SLEAP, damaged, or too large.
+
+    Examples
+    --------
+    >>> import h5py, tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     with h5py.File(folder + "/a.h5", "w") as file:
+    ...         file["tracks"], file["node_names"] = np.ones((1, 2, 1, 9)), [b"hub"]
+    ...     film_of_hdf5(folder + "/a.h5").bodies[0].marks["hub"].shape
+    (9, 2)
     """
     import h5py
 

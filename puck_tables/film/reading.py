@@ -119,6 +119,15 @@ def film_of(path: str | Path, columns: str | None = None) -> Film:
         If it is none that is known, or damaged.
     OSError
         If it cannot be read.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = Path(folder, "a.csv")
+    ...     _ = file.write_text("frame,x_px,y_px" + chr(10) + "0,3,1")
+    ...     film_of(file).unit
+    'px'
     """
     with opened(path, LARGEST) as file:
         head = file.read(_HEAD)

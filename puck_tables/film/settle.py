@@ -19,6 +19,7 @@ from puck_tables.film.plane import Marks, Plane
 from puck_tables.film.track import Track
 from puck_tables.film.units import PIXEL, factor, pixel_size, unit_given
 
+_SURE = 1.5  # likelihoods above are no shares of 1, whatever rounding or scoring did
 _SLOW = 1.0  # s between frames: more, and times are hardly in seconds
 
 
@@ -91,6 +92,13 @@ def settled(path: str | Path, film: Film, how: How) -> tuple[Track, ...]:
     ------
     InputError
         If something is left open, contradicts, or is no track.
+
+    Examples
+    --------
+    >>> marks = {"": np.array([[0.0, 1.0], [2.0, 1.0]])}
+    >>> film = Film("table", [Body("", marks, frame=np.array([0.0, 1.0]))], unit="cm")
+    >>> settled("a.csv", film, How(fps=50.0))[0].place.tolist()
+    [[0.0, 0.01], [0.02, 0.01]]
     """
     notes = [film.kind, *film.notes]
     scale = _Scale(path, film, how, notes)
@@ -260,7 +268,8 @@ def _pucks(
                     f"{path} has no mark '{name}'{hint} Its marks: {', '.join(names[:8])}"
                 )
         return {"": how.centre}
-    if len(names) > 1 and film.jointed and how.pucks is None:
+    named = {*names, *(f"{body.name} {mark}" for mark in names)} & {*(how.pucks or ())}
+    if len(names) > 1 and film.jointed and not named:
         raise InputError(
             f"{path} has the marks {', '.join(names[:8])}: if they are on one puck, say which is "
             f"its centre, or which are around it, and where its angle points, with centre and "
@@ -288,6 +297,12 @@ def _seen(
     if how.likelihood is not None and not likely:
         raise InputError(f"{path} has no likelihoods: leave likelihood (--likelihood) out")
     if bound is not None and likely:
+        highest = max(float(one[np.isfinite(one)].max(initial=0.0)) for one in likely)
+        if highest > _SURE:
+            raise InputError(
+                f"{path} has likelihoods of up to {highest:.6g}: they must be 0 to 1; leave their "
+                "column out with - in columns (--columns)"
+            )
         faint = shown & ~np.all([one >= bound for one in likely], axis=0)
         shown &= ~faint
         notes.append(f"{np.count_nonzero(faint)} frames less likely than {bound:g} left out")

@@ -40,7 +40,7 @@ class _Layout:
 
 
 def film_of_table(path: str | Path, head: bytes, columns: str | None) -> Film:
-    """The film in a text file.
+    r"""The film in a text file.
 
     Parameters
     ----------
@@ -52,6 +52,16 @@ def film_of_table(path: str | Path, head: bytes, columns: str | None) -> Film:
     ------
     InputError
         If it is no table, has no header where none is given, or columns that do not fit.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file, content = Path(folder, "a.csv"), b"t,red_x [cm],red_y [cm]\n0,3,1\n1,4,1\n"
+    ...     _ = file.write_bytes(content)
+    ...     film = film_of_table(file, content, None)
+    >>> film.unit, film.bodies[0].marks["red"].tolist()
+    ('cm', [[3.0, 1.0], [4.0, 1.0]])
     """
     look = look_at(path, head)
     layout = _layout(path, look, columns)
@@ -71,6 +81,8 @@ def film_of_table(path: str | Path, head: bytes, columns: str | None) -> Film:
     film = Film(layout.kind, [], jointed=layout.jointed, likely=layout.likely)
     if unused := [n for n in range(look.width) if n not in wanted and layout.kind == "table"]:
         film.notes.append(f"column {', '.join(_name(look, n) for n in unused[:8])} left out")
+    if any(one.role == "step" for _, one in layout.columns):
+        film.notes.append("times summed from steps, each since the row before")
     film.unit, film.angle_unit, film.timed = _units(path, layout)
     if layout.pixels:
         film.unit = film.unit or "px"
@@ -366,5 +378,5 @@ def _flags(
             f"{path}, column {column + 1}: flags of what is seen must be 0 or 1; leave the column "
             "out with - in columns (--columns)"
         )
-    result: Flags = flags == (1.0 if role == "seen" else 0.0)
+    result: Flags = flags == 1.0 if role == "seen" else flags != 1.0
     return result

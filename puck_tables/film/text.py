@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import codecs
+import contextlib
 import csv
 import io
 import re
@@ -49,12 +51,18 @@ class Look:
 
 
 def look_at(path: str | Path, head: bytes) -> Look:
-    """How the table in a text file is written, from how it begins.
+    r"""How the table in a text file is written, from how it begins.
 
     Raises
     ------
     InputError
         If it is no text, or no table of numbers.
+
+    Examples
+    --------
+    >>> look = look_at("a.csv", b"t;x;y\n0;0,5;1\n0,1;0,6;1\n")
+    >>> look.separator, look.comma, look.header, look.width
+    (';', True, [['t', 'x', 'y']], 3)
     """
     encoding = encoding_of(path, head)
     text = head.decode(encoding, errors="ignore").replace("\0", "").replace(_MINUS, "-")
@@ -125,10 +133,9 @@ def encoding_of(path: str | Path, head: bytes) -> str:
     if odd > 0.01 * len(head):
         raise InputError(f"{path} is no text but a binary file: save the table as CSV")
     try:
-        head[: max(len(head) - 3, 1) if len(head) >= _HEAD else len(head)].decode("utf-8")
-    except UnicodeDecodeError as error:
-        if error.start < len(head) - 4 or len(head) < _HEAD:
-            return "cp1252"  # of Windows; it holds latin-1's letters
+        codecs.getincrementaldecoder("utf-8")().decode(head, final=len(head) < _HEAD)
+    except UnicodeDecodeError:
+        return "cp1252"  # of Windows; it holds latin-1's letters
     return "utf-8"
 
 
@@ -143,8 +150,9 @@ def split(line: str, separator: str | None) -> list[str]:
     if separator is None:
         return line.split()
     if '"' in line:
-        found = next(csv.reader([line], delimiter=separator, skipinitialspace=True), [])
-        return [cell.strip() for cell in found]
+        with contextlib.suppress(csv.Error):  # of cells without end
+            found = next(csv.reader([line], delimiter=separator, skipinitialspace=True), [])
+            return [cell.strip() for cell in found]
     return [cell.strip() for cell in line.split(separator)]
 
 
@@ -232,7 +240,7 @@ def _separator(path: str | Path, lines: Sequence[str]) -> str | None:
 def read_columns(
     path: str | Path, look: Look, numbers: Sequence[int], texts: Sequence[int]
 ) -> tuple[dict[int, FloatArray], dict[int, tuple[Any, list[str]]]]:
-    """Columns of a table, without its header, comments and empty lines.
+    r"""Columns of a table, without its header, comments and empty lines.
 
     Parameters
     ----------
@@ -249,6 +257,15 @@ def read_columns(
     ------
     InputError
         If a cell of a column of numbers is a text, or a row has too few cells or too many.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file, content = Path(folder, "a.csv"), b"t,x\n0,3\n1,\n"
+    ...     _ = file.write_bytes(content)
+    ...     read_columns(file, look_at(file, content), [1], [])[0][1].tolist()
+    [3.0, nan]
     """
     parts: list[FloatArray] = []
     codes: dict[int, list[Any]] = {column: [] for column in texts}
@@ -299,7 +316,7 @@ def _fast(
     count = block.count("\n") + (not block.endswith("\n"))
     if '"' in block or any(sign in block for sign in _COMMENTS):
         return None
-    if separator is not None and block.count(separator) != count * (block_width(look) - 1):
+    if separator is not None and block.count(separator) != count * (_written(look) - 1):
         return None
     text = block.replace(",", ".") if look.comma else block
     if separator is not None:  # nothing between two separators
@@ -331,7 +348,7 @@ def _fast(
     return found, {column: [text.strip() for text in one.tolist()] for column, one in cells.items()}
 
 
-def block_width(look: Look) -> int:
+def _written(look: Look) -> int:
     """Cells in a line as it is written, with those behind a last separator."""
     return max(len(row) for row in look.rows)
 

@@ -52,6 +52,18 @@ def film_of_xml(path: str | Path) -> Film:
         If it is another kind of XML, damaged, or holds no point mass.
     OSError
         If it cannot be read.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = Path(folder, "a.trk")
+    ...     _ = file.write_text('<object class="org.opensourcephysics.cabrillo.tracker.TFrame"/>')
+    ...     try:
+    ...         film_of_xml(file)
+    ...     except InputError as error:
+    ...         print(str(error).partition("a.trk ")[2])
+    holds a TFrame of Tracker, not a tab with tracks: read the .trk files of its tabs
     """
     return _film(str(path), read_whole(path, _LARGEST))
 
