@@ -156,6 +156,22 @@ def test_a_number_of_the_row_is_no_puck(tmp_path: Path):
     assert_allclose(track.place, [[-1, 2], [3, 4]])
 
 
+@pytest.mark.parametrize(
+    "times",
+    [
+        ["2025-12-11T23:59:59.950", "2025-12-12T00:00:00.050", "2025-12-12T00:00:00.150000"],
+        ["2025-12-11 23:59:59,95+01:00", "2025-12-11 23:00:00,05Z", "2025-12-11 23:00:00,15Z"],
+        ["10:59:59.95", "11:00:00.05", "11:00:00.15"], ["59:59.95", "60:00.05", "60:00.15"],
+    ],
+)  # fmt: skip
+def test_dates_and_clocks_are_times(tmp_path: Path, times: list[str]):
+    rows = [f"{time};{n};2;5" for n, time in enumerate(times)]
+    (track,) = read(tmp_path, "\n".join(["timestamp;x [m];y [m];marker_id", *rows]))
+    assert_allclose(track.time, [0.0, 0.1, 0.2], rtol=1e-12)
+    with pytest.raises(InputError, match="column 1: 'lunch' is no time"):
+        read(tmp_path, "\n".join(["timestamp;x [m];y [m];marker_id", *rows, "lunch;1;2;5"]))
+
+
 def test_times_with_jitter_are_kept(tmp_path: Path):
     times = np.cumsum(0.01 + 0.002 * np.random.default_rng(4).uniform(-1, 1, 50)).tolist()
     (track,) = read(tmp_path, "t,x,y\n" + "".join(f"{t!r},1,2\n" for t in times), unit="m")
@@ -206,6 +222,7 @@ BAD = {
     "t,x,y,visible\n0,1,2,1\n.1,2,3,7\n": "must be 0 or 1",
     "t,x,y,visible\n0,1,2,yes\n.1,2,3,perhaps\n": "'perhaps' does not say",
     "t,x,y,confidence\n0,1,2,95\n.1,2,3,90\n": "likelihoods of up to 95",
+    "t,x,y,raw_angle,wrapped_angle_rad,whole_angle_rad\n0,1,2,3,4,5\n.1,2,3,4,5,6\n": "several columns",
     "t,x1,y1,x2,y2,angle_deg\n0,1,2,3,4,5\n.1,1,2,3,4,5\n": "whose they are",
 }  # fmt: skip
 

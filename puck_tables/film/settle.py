@@ -330,7 +330,12 @@ def _angle_column(path: str | Path, body: Body, centre: Sequence[str]) -> FloatA
         if mark in body.angles:
             return body.angles[mark]
     if len(body.marks) == 1 or len(centre) == len(body.marks):
-        return next(iter(body.angles.values()))
+        if len(body.angles) > 1 and "" not in body.angles:
+            raise InputError(
+                f"{path} has several columns of angles of one puck ({', '.join(body.angles)}): "
+                "leave all but one out with - in columns (--columns)"
+            )
+        return body.angles.get("", next(iter(body.angles.values())))
     if "" in body.angles:
         raise InputError(
             f"{path} has angles and several pucks: say whose they are, with columns (--columns) "

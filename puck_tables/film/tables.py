@@ -12,6 +12,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
+from puck_tables.film.clock import is_clock, seconds
 from puck_tables.film.film import Body, Film, Flags
 from puck_tables.film.headings import Heading, heading, headings, is_unit
 from puck_tables.film.text import Look, look_at, number, read_columns, split
@@ -78,6 +79,12 @@ def film_of_table(path: str | Path, head: bytes, columns: str | None) -> Film:
         )
     texts = [n for n in wanted if _holds_text(look, n, layout.columns[n][1])]
     values, words = read_columns(path, look, [n for n in wanted if n not in texts], texts)
+    for n in texts:
+        body, one = layout.columns[n]
+        if one.role == "time":
+            codes, named = words.pop(n)
+            values[n] = seconds(f"{path}, column {n + 1}", named)[codes]
+            layout.columns[n] = (body, one._replace(unit="s"))
     film = Film(layout.kind, [], jointed=layout.jointed, likely=layout.likely)
     if unused := [n for n in range(look.width) if n not in wanted and layout.kind == "table"]:
         film.notes.append(f"column {', '.join(_name(look, n) for n in unused[:8])} left out")
@@ -240,10 +247,12 @@ def _shown(row: Sequence[str]) -> str:
 
 
 def _holds_text(look: Look, column: int, what: Heading) -> bool:
-    """Whether a column of ids or flags holds texts."""
+    """Whether a column of ids or flags holds texts, or one of times those of a clock."""
+    cells = [row[column] for row in look.rows if column < len(row)]
+    if what.role == "time":
+        return any(map(is_clock, cells))
     if what.role not in ("id", "seen", "hidden"):
         return False
-    cells = [row[column] for row in look.rows if column < len(row)]
     return any(number(cell, look.comma) is None for cell in cells) or not any(cells)
 
 
