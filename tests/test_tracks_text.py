@@ -222,7 +222,7 @@ BAD = {
     "t,x,y,visible\n0,1,2,1\n.1,2,3,7\n": "must be 0 or 1",
     "t,x,y,visible\n0,1,2,yes\n.1,2,3,perhaps\n": "'perhaps' does not say",
     "t,x,y,confidence\n0,1,2,95\n.1,2,3,90\n": "likelihoods of up to 95",
-    "t,x,y,raw_angle,wrapped_angle_rad,whole_angle_rad\n0,1,2,3,4,5\n.1,2,3,4,5,6\n": "several columns",
+    "t,x,y,own_angle_rad,whole_angle_rad\n0,1,2,4,5\n.1,2,3,5,6\n": "several columns",
     "t,x1,y1,x2,y2,angle_deg\n0,1,2,3,4,5\n.1,1,2,3,4,5\n": "whose they are",
 }  # fmt: skip
 
