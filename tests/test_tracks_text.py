@@ -33,6 +33,7 @@ ONE = {
     "comments": ("% made by hand\nt,x,y\n0,1,2\n# lunch\n\n0.1,1.5,2.5\n", {"unit": "cm"}),
     "without a header": ("0,1,2\n0.1,1.5,2.5\n", {"unit": "cm", "columns": "t,x,y"}),
     "a column left out": ("0,9,1,2\n0.1,9,1.5,2.5\n", {"unit": "cm", "columns": "t,-,x,y"}),
+    "another time": ("t,x,y,stop_time\n0,1,2,9\n0.1,1.5,2.5,9\n", {"unit": "cm"}),
     "other columns": ("t,note,x,y,v_x,vy\n0,a,1,2,9,9\n.1,b,1.5,2.5,9,9\n", {"unit": "cm"}),
     "a wrong header": ("x,t,y\n0,1,2\n.1,1.5,2.5\n", {"columns": "t [s],x [cm],y [cm]"}),
     "last separators": ("t,x,y,\n0,1,2,\n0.1,1.5,2.5,\n", {"unit": "cm"}),
@@ -80,6 +81,8 @@ TWO = {
     "the same names": "t,x,y,x,y\n0,1,2,5,6\n.1,1,3,5,7\n.2,1,4,nan,nan\n",
     "names over them": "\t1\t\t2\t\nt\tx\ty\tx\ty\n0\t1\t2\t5\t6\n.1\t1\t3\t5\t7\n.2\t1\t4\t\t\n",
     "a row each": "id,t,x,y\n1,0,1,2\n2,0,5,6\n1,.1,1,3\n2,.1,5,7\n1,.2,1,4\n2,.2,,\n",
+    "numbers and names": "puck,id,t,x,y\n7,1,0,1,2\n7,2,0,5,6\n7,1,.1,1,3\n7,2,.1,5,7\n"
+    "7,1,.2,1,4\n7,2,.2,,\n",
     "one after the other": "x,y,t,puck\n1,4,.2,1\n1,2,0,1\n1,3,.1,1\n5,6,0,2\n5,7,.1,2\n,,.2,2\n",
     "own times": "t,x,y,t,x,y\n0,1,2,0,5,6\n.1,1,3,.1,5,7\n.2,1,4,.2,,\n",
 }
@@ -223,6 +226,7 @@ BAD = {
     "t,x,y,visible\n0,1,2,yes\n.1,2,3,perhaps\n": "'perhaps' does not say",
     "t,x,y,confidence\n0,1,2,95\n.1,2,3,90\n": "likelihoods of up to 95",
     "t,x,y,own_angle_rad,whole_angle_rad\n0,1,2,4,5\n.1,2,3,5,6\n": "several columns",
+    "t_shutter,t_stored,x,y\n0,1,2,4\n.1,2,3,5\n": "two columns of time",
     "t,x1,y1,x2,y2,angle_deg\n0,1,2,3,4,5\n.1,1,2,3,4,5\n": "whose they are",
 }  # fmt: skip
 

@@ -180,7 +180,24 @@ def _named(names: Sequence[str], owners: Sequence[str] = ()) -> _Layout:
         ]  # fmt: skip
     if any(name.lower() == "instance.score" for name in names):
         read = [Heading("") if one.puck == "instance" else one for one in read]
+    read = _own_times(read)
     return _Layout(list(zip(_blocks(read), read, strict=True)))
+
+
+def _own_times(read: Sequence[Heading]) -> list[Heading]:
+    """The headings without times of something else, such as a stop, where the pucks have theirs.
+
+    Examples
+    --------
+    >>> [one.role for one in _own_times(headings(["t", "stop_time", "x", "y"]))]
+    ['time', '', 'x', 'y']
+    """
+    pucks = {one.puck for one in read if one.role == "x"} | {""}
+    clocks = ("time", "frame", "step")
+    known = {one.role for one in read if one.role in clocks and one.puck in pucks}
+    return [
+        Heading("") if one.role in known and one.puck not in pucks else one for one in read
+    ]  # fmt: skip
 
 
 def _blocks(read: Sequence[Heading]) -> list[str]:
@@ -197,12 +214,15 @@ def _blocks(read: Sequence[Heading]) -> list[str]:
     first = next((n for n, one in enumerate(read) if one.role in ("x", "y")), 0)
     count = [sum(t <= n if times[0] <= first else t < n for t in times) for n in range(len(read))]
     block = [n if times[0] <= first else n + 1 for n in count]
+    owners = {n: {one.puck for at, one in zip(block, read, strict=True)
+                  if at == n and one.role == "x"} for n in block}  # fmt: skip
+    if not all(owners.get(n + 1) for n in range(len(times))):
+        return [""] * len(read)  # two kinds of times of the same pucks
     names = {
-        n: {one.puck for at, one in zip(block, read, strict=True) if at == n and one.role == "x"}
-        for n in block
+        n: next(iter(named)) if len(named) == 1 and named != {""} else str(n)
+        for n, named in owners.items()
     }
-    return [names[n].copy().pop() if len(names[n]) == 1 and names[n] != {""} else str(n)
-            for n in block]  # fmt: skip
+    return [names[n] for n in block]
 
 
 def _deeplabcut(path: str | Path, header: list[list[str]]) -> _Layout:
@@ -280,7 +300,7 @@ def _rows(
 
     Rows of a puck are put in the order of their frames or times: a long table has none.
     """
-    codes, names = None, []
+    told = []
     for whose in (n for n, (_, one) in enumerate(layout.columns) if one.role == "id"):
         if whose in words:
             codes, names = words[whose]
@@ -288,10 +308,10 @@ def _rows(
             numbers, codes = np.unique(values[whose], return_inverse=True, equal_nan=True)
             names = [f"{one:.15g}" for one in numbers]
         if not len(names) == codes.size > 1:  # else it numbers the rows
-            break
-        codes = None
-    if codes is None:
+            told.append((len(names), whose in words, codes, names))
+    if not told:
         return {"": slice(None)}
+    *_, codes, names = max(told, key=lambda one: one[:2])  # who tells most apart, best by name
     if len(names) > MOST_PUCKS:
         raise InputError(
             f"{path} has {len(names)} pucks, at most {MOST_PUCKS} are read: leave out what is none"
