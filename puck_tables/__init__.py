@@ -31,6 +31,8 @@ if TYPE_CHECKING:
         PuckError,
         TableError,
     )
+    from puck_tables.film.reading import read_tracks
+    from puck_tables.film.track import Track
     from puck_tables.kernels.closed_form import resultants
     from puck_tables.puck import Puck
     from puck_tables.result import Result
@@ -92,6 +94,7 @@ _HOMES = {
     "Strips": "scene.parts",
     "Table": "table.table",
     "TableError": "errors",
+    "Track": "film.track",
     "Trajectory": "trajectory",
     "Wall": "scene.parts",
     "World": "world.world",
@@ -100,6 +103,7 @@ _HOMES = {
     "law_of": "contact.laws",
     "motion": "",
     "profile_law": "contact.laws",
+    "read_tracks": "film.reading",
     "resultants": "kernels.closed_form",
     "states": "stopping.states",
     "stop": "stopping.stops",
@@ -139,6 +143,7 @@ __all__ = [
     "Strips",
     "Table",
     "TableError",
+    "Track",
     "Trajectory",
     "Wall",
     "World",
@@ -148,6 +153,7 @@ __all__ = [
     "law_of",
     "motion",
     "profile_law",
+    "read_tracks",
     "resultants",
     "states",
     "stop",

@@ -1,0 +1,214 @@
+"""Which columns of a table are what, whose, and of what kind of file: from its header."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from puck_tables.errors import InputError
+from puck_tables.film.headings import Heading, heading, headings, is_unit
+from puck_tables.film.text import Look, split
+
+_TRACKPY = {"frame", "particle", "x", "y"}
+_LIKELY = 0.6  # what DeepLabCut takes for a mark that is there ('pcutoff')
+
+
+@dataclass
+class Layout:
+    """What the columns of a table are.
+
+    ``columns``: each with the body that it is of ('' for all), ``kind``: of file, for messages,
+    ``jointed``: whether marks are parts of a body, ``pixels``: whether such files are in pixels,
+    ``likely``: the likelihood below which a place is none.
+    """
+
+    columns: list[tuple[str, Heading]]
+    kind: str = "table"
+    jointed: bool = False
+    pixels: bool = False
+    likely: float | None = _LIKELY
+
+
+def layout_of(path: str | Path, look: Look, columns: str | None) -> Layout:
+    """What the columns of a table are, by its header or by headings given in its place.
+
+    Raises
+    ------
+    InputError
+        If there are none, or not as many as columns.
+
+    Examples
+    --------
+    >>> look = Look("utf-8", ",", False, [["t", "x1", "y1"]], [], [["0", "1", "2"]], 1, 3)
+    >>> [one.role for _, one in layout_of("a.csv", look, None).columns]
+    ['time', 'x', 'y']
+    """
+    header = [row[: look.width] + [""] * (look.width - len(row)) for row in look.header]
+    if columns is not None:
+        names = [name.strip() for name in columns.split(",")]
+        if len(names) != look.width:
+            raise InputError(
+                f"{path} has {look.width} columns, and columns names {len(names)}: name each, "
+                f"with - for those to leave out (its first row is {_shown(look.rows[0])})"
+            )
+        return _named(["" if name == "-" else name for name in names])
+    if not header and (said := _commented(look)):
+        header = [said]
+    if not header:
+        raise InputError(
+            f"{path} has no header: say what its {look.width} columns are, such as "
+            f"columns='{example(look.width)}' (--columns); its first row is {_shown(look.rows[0])}"
+        )
+    if header[0][0].lower() == "scorer":
+        return _deeplabcut(path, header)
+    if len(header) > 1 and _are_units(header[-1]):
+        units = header.pop()
+        header[-1] = [
+            f"{name} [{unit.strip('[]() ')}]" if is_unit(unit) else name
+            for name, unit in zip(header[-1], units, strict=True)
+        ]
+    names = header[-1]
+    if look.header and len(look.header[-1]) < look.width:
+        raise InputError(
+            f"{path} has {len(look.header[-1])} names for {look.width} columns, so none can be told"
+            " from another: name all with columns (--columns), - for those to leave out"
+        )
+    layout = _named(names, _owners(header)) if len(header) > 1 else _named(names)
+    found = {name.lower() for name in names}
+    if found >= _TRACKPY:
+        layout.kind, layout.pixels = "trackpy table", True
+    if "frame_idx" in found and {"track", "instance.score"} & found:
+        layout.kind, layout.pixels, layout.jointed, layout.likely = "SLEAP table", True, True, None
+    return layout
+
+
+def _are_units(row: Sequence[str]) -> bool:
+    """Whether a row holds units: some that are known, and others in brackets."""
+    return any(map(is_unit, row)) and all(
+        is_unit(cell) or cell in ("", "-") or re.fullmatch(r"[\[(].*[\])]", cell) for cell in row
+    )
+
+
+def _owners(header: list[list[str]]) -> list[str]:
+    """The names of pucks over those of columns, each over its first; none if they fit none."""
+    over = header[-2]
+    owners = [next((cell for cell in over[n::-1] if cell), "") for n in range(len(over))]
+    if sum(map(bool, over)) == 1 and over[0]:  # Tracker's export of one track: its name, alone
+        owners = [over[0]] * len(over)
+    whose = {"x": set[str](), "y": set[str]()}
+    for owner, one in zip(owners, map(heading, header[-1]), strict=True):
+        if one.role in whose:
+            whose[one.role].add(owner)
+    return owners if whose["x"] == whose["y"] else []
+
+
+def _named(names: Sequence[str], owners: Sequence[str] = ()) -> Layout:
+    """The columns of a table with one row of names; ``owners`` are names of pucks over them."""
+    read = headings(names) if not any(owners) else [heading(name) for name in names]
+    if any(owners):
+        read = [
+            one._replace(puck=" ".join(filter(None, (owner, one.puck))))
+            if one.role in ("x", "y", "angle", "seen", "hidden", "likelihood") else one
+            for one, owner in zip(read, owners, strict=True)
+        ]  # fmt: skip
+    if any(name.lower() == "instance.score" for name in names):
+        read = [Heading("") if one.puck == "instance" else one for one in read]
+    read = _own_times(read)
+    return Layout(list(zip(_blocks(read), read, strict=True)))
+
+
+def _own_times(read: Sequence[Heading]) -> list[Heading]:
+    """The headings without times of something else, such as a stop, where the pucks have theirs.
+
+    Examples
+    --------
+    >>> [one.role for one in _own_times(headings(["t", "stop_time", "x", "y"]))]
+    ['time', '', 'x', 'y']
+    """
+    pucks = {one.puck for one in read if one.role == "x"} | {""}
+    clocks = ("time", "frame", "step")
+    known = {one.role for one in read if one.role in clocks and one.puck in pucks}
+    return [
+        Heading("") if one.role in known and one.puck not in pucks else one for one in read
+    ]  # fmt: skip
+
+
+def _blocks(read: Sequence[Heading]) -> list[str]:
+    """Bodies of columns where each puck has times of its own: blocks that begin, or end, with one.
+
+    Examples
+    --------
+    >>> _blocks(headings(["t", "x", "y", "t", "x", "y"]))
+    ['1', '1', '1', '2', '2', '2']
+    """
+    times = [n for n, one in enumerate(read) if one.role == "time"]
+    if len(times) < 2:
+        return [""] * len(read)
+    first = next((n for n, one in enumerate(read) if one.role in ("x", "y")), 0)
+    count = [sum(t <= n if times[0] <= first else t < n for t in times) for n in range(len(read))]
+    block = [n if times[0] <= first else n + 1 for n in count]
+    owners = {n: {one.puck for at, one in zip(block, read, strict=True)
+                  if at == n and one.role == "x"} for n in block}  # fmt: skip
+    if not all(owners.get(n + 1) for n in range(len(times))):
+        return [""] * len(read)  # two kinds of times of the same pucks
+    names = {
+        n: next(iter(named)) if len(named) == 1 and named != {""} else str(n)
+        for n, named in owners.items()
+    }
+    return [names[n] for n in block]
+
+
+def _deeplabcut(path: str | Path, header: list[list[str]]) -> Layout:
+    """The columns of DeepLabCut's tables: rows scorer, (individuals,) bodyparts, coords."""
+    rows = {row[0].lower(): row for row in header}
+    if not {"bodyparts", "coords"} <= set(rows):
+        raise InputError(
+            f"{path} begins as DeepLabCut's tables do but has no rows 'bodyparts' and 'coords': "
+            "another version, which this program does not know"
+        )
+    owners = rows.get("individuals", [""] * len(header[0]))
+    columns = [("", Heading("frame"))]
+    for n in range(1, len(header[0])):
+        role = rows["coords"][n].lower()
+        known = role if role in ("x", "y", "likelihood") else ""
+        columns.append((owners[n], Heading(known, rows["bodyparts"][n], "")))
+    return Layout(columns, "DeepLabCut table", jointed=True, pixels=True)
+
+
+def _commented(look: Look) -> list[str]:
+    """The header in the last comment over the numbers, if there is one."""
+    for line in reversed(look.said):
+        cells = split(re.sub(r"^[#%/\s]+", "", line), look.separator)
+        if len(cells) == look.width and {"x", "y"} <= {one.role for one in map(heading, cells)}:
+            return cells
+    return []
+
+
+def name_of(look: Look, column: int) -> str:
+    """A column in words: its name in the last row of them, or its number from 1.
+
+    Examples
+    --------
+    >>> name_of(Look("utf-8", ",", False, [["t", ""]], []), 1)
+    '2'
+    """
+    names = look.header[-1] if look.header else []
+    return names[column] if column < len(names) and names[column] else str(column + 1)
+
+
+def example(width: int) -> str:
+    """Headings as somebody may give them for a number of columns.
+
+    Examples
+    --------
+    >>> example(5)
+    't,x,y,angle,-'
+    """
+    names = ["t", "x", "y", "angle"][:width]
+    return ",".join(names + ["-"] * (width - len(names)))
+
+
+def _shown(row: Sequence[str]) -> str:
+    return ", ".join(cell or "''" for cell in row[:8])[:80]
