@@ -233,7 +233,7 @@ def truth(scene: dict[str, Any], second: bool = False) -> dict[str, Any]:
             "stick": rests, "slip": None, "way": way * turn, "time": rests,
             "length": size * rests,
         }  # fmt: skip
-    if share <= 1.0002:
+    if share <= 1.00002:
         # the growth of the slip is straight over time, up and down, but for a share of share − 1
         top = _top(scene)
         n, gain = slider.steady(_pull(scene, top), n)
