@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from puck_tables.kernels.closed_form import resultants
     from puck_tables.puck import Puck
     from puck_tables.result import Result
+    from puck_tables.scene.driven import path_along
     from puck_tables.scene.outcome import SceneRun
     from puck_tables.scene.parts import (
         Constraint,
@@ -57,12 +58,14 @@ if TYPE_CHECKING:
     from puck_tables.table.store import table_for
     from puck_tables.table.table import Table
     from puck_tables.trajectory import Trajectory
+    from puck_tables.world.aimed import BoardAim
     from puck_tables.world.world import World
 
 _HOMES = {
     "AccuracyError": "errors",
     "Aim": "stopping.aim",
     "Arc": "scene.pieces",
+    "BoardAim": "world.aimed",
     "CheckReport": "table.check",
     "Constraint": "scene.parts",
     "ContactError": "errors",
@@ -99,6 +102,7 @@ _HOMES = {
     "contact": "",
     "law_of": "contact.laws",
     "motion": "",
+    "path_along": "scene.driven",
     "profile_law": "contact.laws",
     "resultants": "kernels.closed_form",
     "states": "stopping.states",
@@ -110,6 +114,7 @@ __all__ = [
     "AccuracyError",
     "Aim",
     "Arc",
+    "BoardAim",
     "CheckReport",
     "Constraint",
     "ContactError",
@@ -147,6 +152,7 @@ __all__ = [
     "contact",
     "law_of",
     "motion",
+    "path_along",
     "profile_law",
     "resultants",
     "states",

@@ -202,8 +202,8 @@ def _asked_again(seed: int) -> tuple[int, bool]:
 
 
 def test_ends_of_launches_lead_back_to_them() -> None:
-    answers = [_asked_again(seed) for seed in range(1, 9)]
-    assert sum(asked for asked, _ in answers) >= 5
+    answers = [_asked_again(seed) for seed in range(1, 5)]
+    assert sum(asked for asked, _ in answers) >= 3
     assert all(found for asked, found in answers if asked)
 
 
