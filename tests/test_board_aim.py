@@ -122,6 +122,9 @@ def test_that_none_was_found_is_said_as_such() -> None:
     assert two().aim((0.4, 0.0), striker="cue").answer == (
         "red lies there: any launch that leaves it alone will do"
     )
+    never = two().aim((0.7, 0.0), striker="cue", max_speed=1.1)
+    needed = 0.75 * J * 0.1 * (0.4 - 2.0 * R + 0.3)
+    assert "exists" in never.answer and f"{needed:.4g} J" in never.answer
     with pytest.raises(InputError, match="no launch 0: no launch up to"):
         behind.board(0)
 

@@ -44,9 +44,11 @@ def test_json_carries_units_and_the_scene() -> None:
 
 def test_none_found_is_an_answer_without_a_picture(tmp_path: Path) -> None:
     picture = tmp_path / "none.png"
-    told = aim(*CURLING, "--max-speed", "1.5", "--plot", str(picture))
-    assert told.exit_code == 0 and "no launch up to 1.5 m/s" in told.stdout
+    told = aim(*CURLING, "--max-speed", "2.4", "--plot", str(picture))
+    assert told.exit_code == 0 and "no launch up to 2.4 m/s" in told.stdout
     assert "not proved" in told.stdout and not picture.exists()
+    told = aim(*CURLING, "--max-speed", "1.5")
+    assert told.exit_code == 0 and "no launch up to 1.5 m/s exists: friction takes" in told.stdout
 
 
 @pytest.mark.parametrize(

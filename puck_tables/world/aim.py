@@ -19,7 +19,7 @@ from puck_tables.world.launches import effort_for, good, headings_for, take_samp
 from puck_tables.world.pocketing import Pocketing
 from puck_tables.world.shots import Shots
 from puck_tables.world.solving import stops_at
-from puck_tables.world.targets import Target, lying_there, target_of, without_pocket
+from puck_tables.world.targets import Target, lying_there, out_of_reach, target_of, without_pocket
 
 MOST_COUNT, MOST_IMPACTS, MOST_SPINS = 1000, 20, 1000
 PLENTY = 3.0  # the greatest speed over that which slides the whole way
@@ -97,6 +97,11 @@ def aim(
             return aimed(
                 scene, wanted, "{puck} lies there: any launch that leaves it alone will do"
             )
+    fastest = max(abs(one.speed or one.high) for one in searches)
+    widest = max(abs(one.high if one.spin is None else one.spin) for one in searches)
+    never = out_of_reach(scene, wanted, fastest, widest)
+    if never:
+        return aimed(scene, wanted, f"no launch {searches[-1].limit} {never}")
     spare = without_pocket(scene, wanted)
     runs = left_out = 0
     found: list[Found] = []

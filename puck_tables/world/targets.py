@@ -16,6 +16,7 @@ from puck_tables.world.agreement import (
     TOUCH,
     called,
     disagreements,
+    has_closed_forms,
     in_the_way,
     number_of,
     pieces_of,
@@ -23,6 +24,8 @@ from puck_tables.world.agreement import (
     start_of,
 )
 from puck_tables.world.prepare import obstacle_names
+
+_LEAST_SHARE = 0.75  # of f m g, over the way of a puck with δ ≤ 1: what friction takes at least
 
 
 class Target(NamedTuple):
@@ -176,3 +179,41 @@ def without_pocket(scene: Scene, target: Target) -> Scene | None:
         return None
     left = scene.pockets[: target.pocket] + scene.pockets[target.pocket + 1 :]
     return replace(scene, pockets=left)
+
+
+def out_of_reach(scene: Scene, target: Target, speed: float, spin: float) -> str:
+    """Why no launch up to a speed and spin can exist, in words; '' where that is not known.
+
+    Friction takes at least f m g times the way that the mean slip of the base goes, and that is no
+    shorter than (1 − δ²/4) of the way of the centre: 3/4 of it for a plain puck with δ ≤ 1.  No
+    impact gives energy.
+    """
+    pieces = pieces_of(scene)
+    striker, puck = pieces[target.striker], pieces[target.puck]
+    others = [piece for number, piece in enumerate(pieces) if number != target.striker]
+    at_rest = not any(
+        one.path or one.launch.velocity not in (None, (0.0, 0.0)) or one.launch.spin
+        for one in others
+    )
+    plain = all(has_closed_forms(one) and one.delta <= 1.0 for one in (striker, puck))
+    if not (at_rest and plain and scene.floor.slope == 0.0):
+        return ""
+    way = math.dist(start_of(puck), target.place)
+    if target.pocket >= 0:
+        way = max(way - scene.pockets[target.pocket].radius, 0.0)
+    ways = [(puck, way)]
+    if target.puck != target.striker:
+        gaps = (
+            math.dist(start_of(striker), start_of(one)) - striker.radius - one.radius
+            for one in others
+        )
+        ways.append((striker, max(min(gaps), 0.0)))
+    needed = sum(_LEAST_SHARE * one.decel * one.mass * length for one, length in ways)
+    rim = striker.gyration * striker.radius * spin
+    given = 0.5 * striker.mass * (speed * speed + rim * rim)
+    if given >= needed:
+        return ""
+    return (
+        f"exists: friction takes at least {needed:.4g} J until {puck.name or 'the puck'} is there, "
+        f"and such a launch has at most {given:.4g} J"
+    )
