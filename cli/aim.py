@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
+from puck_tables.cli.board_aim import aim_on_board, number_or_name
 from puck_tables.cli.options import (
     FILE,
     NUMBER,
@@ -19,6 +20,7 @@ from puck_tables.cli.options import (
     puck_given,
     puck_options,
 )
+from puck_tables.cli.scene_run import files_read, scene_options, scene_tables
 
 from puck_tables.errors import InputError
 
@@ -29,10 +31,16 @@ if TYPE_CHECKING:
 @click.command()
 @click.option(
     "--target",
+    "targets",
     type=Vector(),
-    required=True,
-    help="Where to stop, in m from the launch, like 2,0.1.",
+    multiple=True,
+    help="Where to stop, in m from the launch, like 2,0.1; in a scene, on the board.",
 )
+@click.option("--pocket", "pockets", multiple=True, metavar="NUMBER", help="In a scene: which.")
+@click.option("--puck", "puck_name", metavar="NAME", help="In a scene: which is to end there.")
+@click.option("--striker", metavar="NAME", help="In a scene: which is sent off.")
+@click.option("--hits", metavar="NAME", help="In a scene: a puck to be hit on the way.")
+@click.option("--max-impacts", type=int, help="In a scene: at most so many.  [default: 3]")
 @click.option("--w0", type=NUMBER, help="The launch with this spin, in rad/s, with its sign.")
 @click.option("--speed", type=NUMBER, help="The launches with this speed, in m/s.")
 @click.option(
@@ -43,9 +51,8 @@ if TYPE_CHECKING:
 @click.option(
     "--count",
     type=int,
-    default=8,
-    show_default=True,
-    help="Slip angles of a sample, for each sense of spin.",
+    help="Slip angles of a sample, for each sense of spin [default: 8]; in a scene launches "
+    "that are given [default: 16].",
 )
 @puck_options(mass=False)
 @click.option("--delta", type=NUMBER, help="delta = 2 f h / r instead.  [default: 0.5]")
@@ -53,12 +60,17 @@ if TYPE_CHECKING:
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 @click.option("-o", "--output", type=FILE, metavar="FILE", help="Save the launches: .csv.")
 @output_options
+@scene_options
+@click.pass_context
 def aim(
-    target: tuple[float, float], w0: float | None, speed: float | None, stop_time: float | None,
-    max_speed: float | None, max_spin: float | None, count: int, radius: float | None,
+    ctx: click.Context, targets: tuple[tuple[float, float], ...], pockets: tuple[str, ...],
+    puck_name: str | None, striker: str | None, hits: str | None, max_impacts: int | None,
+    w0: float | None, speed: float | None, stop_time: float | None,
+    max_speed: float | None, max_spin: float | None, count: int | None, radius: float | None,
     height: float | None, friction: float | None, gravity: float | None, decel: float | None,
     delta: float | None, pressure: str, gyration: float | None, as_json: bool,
-    output: Path | None, plot: Path | None, overwrite: bool,
+    output: Path | None, plot: Path | None, overwrite: bool, scene: str | None,
+    changes: tuple[str, ...],
 ) -> None:  # fmt: skip
     """Find launches after which a puck comes to rest at a target.
 
@@ -70,17 +82,49 @@ def aim(
     puck aim --target 2,0.1 --w0 5
     puck aim --target 2,0.1 --time 3
     puck aim --target 2,0.1 --max-speed 1.5 --max-spin 10 --plot aim.png
+
+    With --scene others lie on the board: launches of the striker after which a puck, or it itself,
+    ends at a target or in a pocket, also off cushions and other pucks.  Each is run on the whole
+    board; those whose end changes least with heading and speed come first.
+
+    \b
+    puck aim --scene curling-take-out --puck yellow --target 0.5,-0.5
+    puck aim --scene crokinole --puck shot --pocket 0 --plot shot.png
     """  # noqa: D301 - click reads the backspace
     picked = [
         n for n, v in (("--w0", w0), ("--speed", speed), ("--time", stop_time)) if v is not None
     ]
     if len(picked) > 1:
         raise InputError(f"{picked[0]} and {picked[1]} clash: each picks a launch")
+    for name, given in (("--target", targets), ("--pocket", pockets)):
+        if len(given) > 1:
+            raise InputError(f"{name} is given {len(given)} times: one place at a time")
+    if scene is not None or changes:
+        own = (
+            "targets", "pockets", "puck_name", "striker", "hits", "w0", "speed", "max_speed",
+            "max_spin", "max_impacts", "count",
+        )  # fmt: skip
+        if stop_time is not None:
+            raise InputError("--time has no place in a scene: leave it out")
+        tables = scene_tables(ctx, scene, changes, own)
+        prepare_outputs(output, plot=plot, overwrite=overwrite, inputs=files_read(scene, tables))
+        wishes = {
+            "target": targets[0] if targets else None, "pocket": pockets[0] if pockets else None,
+            "puck": number_or_name(puck_name), "striker": number_or_name(striker),
+            "hits": number_or_name(hits), "spin": w0, "speed": speed, "max_speed": max_speed,
+            "max_spin": max_spin, "max_impacts": max_impacts, "count": count,
+        }  # fmt: skip
+        given_wishes = {name: wish for name, wish in wishes.items() if wish is not None}
+        aim_on_board(tables, scene or "scene", given_wishes, as_json, output, plot, overwrite)
+        return
+    _refuse_of_scenes(pockets, puck_name, striker, hits, max_impacts)
+    if not targets:
+        raise click.MissingParameter(param_hint="'--target'", param_type="option")
     prepare_outputs(output, plot=plot, overwrite=overwrite, inputs=(pressure,))
     puck = puck_given(radius, height, friction, gravity, delta, decel, pressure, gyration)
     found = puck.aim(
-        target, spin=w0, speed=speed, stop_time=stop_time, max_speed=max_speed, max_spin=max_spin,
-        count=count,
+        targets[0], spin=w0, speed=speed, stop_time=stop_time, max_speed=max_speed,
+        max_spin=max_spin, count=8 if count is None else count,
     )  # fmt: skip
     something = found.launch_spin.size > 0
     deliver(found, output, plot if something else None, overwrite)
@@ -91,6 +135,19 @@ def aim(
     else:
         given = any(x is not None for x in (radius, height, friction, delta, decel))
         click.echo(_report(found, "" if given else "   (defaults: see --help for a real puck)"))
+
+
+def _refuse_of_scenes(
+    pockets: tuple[str, ...], puck: str | None, striker: str | None, hits: str | None,
+    max_impacts: int | None,
+) -> None:  # fmt: skip
+    """Refuse what needs other pucks."""
+    for name, given in (
+        ("--pocket", pockets), ("--puck", puck), ("--striker", striker), ("--hits", hits),
+        ("--max-impacts", max_impacts),
+    ):  # fmt: skip
+        if given not in (None, ()):
+            raise InputError(f"{name} is for a board: give --scene FILE|NAME, too")
 
 
 def _report(found: Aim, note: str) -> str:

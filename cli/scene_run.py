@@ -59,8 +59,12 @@ def scene_options(command: Command) -> Command:
     return command
 
 
-def scene_tables(ctx: click.Context, scene: str | None, changes: tuple[str, ...]) -> dict[str, Any]:
+def scene_tables(
+    ctx: click.Context, scene: str | None, changes: tuple[str, ...], own: tuple[str, ...] = ()
+) -> dict[str, Any]:
     """The scene that options describe: a file or defaults, then options, then --set.
+
+    ``own``: parameters of the command that are no numbers of the scene.
 
     Raises
     ------
@@ -74,7 +78,8 @@ def scene_tables(ctx: click.Context, scene: str | None, changes: tuple[str, ...]
     given = {
         name: value
         for name, value in ctx.params.items()
-        if ctx.get_parameter_source(name) is not source and name not in ("scene", "changes", *KEPT)
+        if ctx.get_parameter_source(name) is not source
+        and name not in ("scene", "changes", *KEPT, *own)
     }
     tables = {} if scene is None else find_scene(scene)
     if scene is None:

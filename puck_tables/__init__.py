@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from puck_tables.kernels.closed_form import resultants
     from puck_tables.puck import Puck
     from puck_tables.result import Result
+    from puck_tables.scene.driven import path_along
     from puck_tables.scene.outcome import SceneRun
     from puck_tables.scene.parts import (
         Constraint,
@@ -59,12 +60,14 @@ if TYPE_CHECKING:
     from puck_tables.table.store import table_for
     from puck_tables.table.table import Table
     from puck_tables.trajectory import Trajectory
+    from puck_tables.world.aimed import BoardAim
     from puck_tables.world.world import World
 
 _HOMES = {
     "AccuracyError": "errors",
     "Aim": "stopping.aim",
     "Arc": "scene.pieces",
+    "BoardAim": "world.aimed",
     "CheckReport": "table.check",
     "Constraint": "scene.parts",
     "ContactError": "errors",
@@ -102,6 +105,7 @@ _HOMES = {
     "contact": "",
     "law_of": "contact.laws",
     "motion": "",
+    "path_along": "scene.driven",
     "profile_law": "contact.laws",
     "read_tracks": "film.reading",
     "resultants": "kernels.closed_form",
@@ -114,6 +118,7 @@ __all__ = [
     "AccuracyError",
     "Aim",
     "Arc",
+    "BoardAim",
     "CheckReport",
     "Constraint",
     "ContactError",
@@ -152,6 +157,7 @@ __all__ = [
     "contact",
     "law_of",
     "motion",
+    "path_along",
     "profile_law",
     "read_tracks",
     "resultants",

@@ -19,7 +19,7 @@ STORIES: dict[str, tuple[int, set[str]]] = {
     "air-table": (4, set()),
     "bowling-row": (15, {"ball", "pin 1", "pin 5", "pin 7"}),
     "carrom-break": (40, {"white 1", "black 2"}),
-    "crokinole": (3, {"shot"}),
+    "crokinole": (2, {"shot"}),
     "curling-take-out": (2, {"yellow", "yellow 2"}),
     "newtons-row": (5, set()),
     "shuffleboard-two-stones": (1, {"blue"}),

@@ -6,42 +6,39 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from puck_tables.plot.board import draw_board, show, size_of
-from puck_tables.plot.film import Box, film_of
-from puck_tables.plot.style import canvas, titled
+from puck_tables.plot.board import draw_board, show
+from puck_tables.plot.board_panels import close_up, legend_under, panels_for
+from puck_tables.plot.film import Box, Film, film_of
+from puck_tables.plot.style import titled
 from puck_tables.world.sweep import WorldMap
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_NAMED, _MOST, _LEGEND_ROW = 8, 20_000, 4
-_MARGINS, _NARROW = (0.85, 1.3), 6.5  # in
+_NAMED, _MOST = 8, 20_000
+_MOST_ENDS = (0.02, 0.98)  # of the ends stand in a close-up
 
 
 def draw(ends: WorldMap) -> Figure:
     """The ends of all runs as points in the colours of the pucks."""
-    wide, high = size_of(_box(ends))
-    figure = canvas(max(wide + _MARGINS[0], _NARROW), high + _MARGINS[1])
-    axes = figure.subplots()
-    _draw(axes, ends)
-    handles, labels = axes.get_legend_handles_labels()
-    legend = figure.legend(
-        handles, labels, loc="outside lower center", ncols=_LEGEND_ROW, frameon=False, fontsize=9
-    )
-    for text in legend.get_texts():  # what users write is no mathematics
-        text.set_parse_math(False)
+    film = film_of(ends.an_example())
+    boxes = [_box(ends, film), *_close_up(ends, film)]
+    figure, panels = panels_for(boxes)
+    for axes, box in zip(panels, boxes, strict=True):
+        _draw(axes, ends, film, box)
+    legend_under(figure, panels[0], boxes)
     titled(figure, f"{ends.scene.title or 'Scene'}: ends of {ends.end.size} runs")
     return figure
 
 
 def draw_on(axes: Axes, ends: WorldMap) -> None:
     """The board alone."""
-    _draw(axes, ends)
-
-
-def _draw(axes: Axes, ends: WorldMap) -> None:
     film = film_of(ends.an_example())
+    _draw(axes, ends, film, _box(ends, film))
+
+
+def _draw(axes: Axes, ends: WorldMap, film: Film, box: Box) -> None:
     draw_board(axes, film)
     step = max(1, ends.end.size // _MOST)
     for number, (name, body) in enumerate(zip(ends.names, film.bodies, strict=True)):
@@ -52,12 +49,23 @@ def _draw(axes: Axes, ends: WorldMap) -> None:
             x, y, linestyle="", marker=".", markersize=2.5, alpha=0.6, color=body.colour,
             label=label, zorder=3,
         )  # fmt: skip
-    show(axes, _box(ends))
+    show(axes, box)
 
 
-def _box(ends: WorldMap) -> Box:
+def _close_up(ends: WorldMap, film: Film) -> list[Box]:
+    """Around most of the ends, where pucks are too small to be seen."""
+    there = ends.columns["in_play"] > 0.0  # NaN: no end
+    if not there.any():
+        return []
+    x, y = (ends.columns[name][there] for name in ("x", "y"))
+    middle = [np.quantile(row, _MOST_ENDS) for row in (x, y)]
+    radius = max(body.radius for body in film.bodies)
+    return close_up(film.box, np.stack(middle, axis=1), radius)
+
+
+def _box(ends: WorldMap, film: Film) -> Box:
     """What shows the board and all ends."""
-    left, right, low, top = film_of(ends.an_example()).box
+    left, right, low, top = film.box
     x, y = ends.columns["x"], ends.columns["y"]
     radius = max(piece.radius for piece in ends.scene.pucks) if ends.scene.pucks else 0.0
     return (

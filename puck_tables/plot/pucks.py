@@ -7,21 +7,23 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from puck_tables.plot.board import disc, draw_board, show, size_of
+from puck_tables.plot.board import disc, draw_board, show
+from puck_tables.plot.board_panels import (
+    LEGEND_ROW,
+    as_they_stand,
+    close_up,
+    legend_under,
+    panels_for,
+)
 from puck_tables.plot.film import Body, Box, Film, between, film_of, path_of
-from puck_tables.plot.style import GREY, RED, canvas, titled
+from puck_tables.plot.style import GREY, RED, titled
 from puck_tables.world.outcome import WorldRun
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-    from matplotlib.legend import Legend
 
 _NAMED = 8  # pucks: more are told apart by colour alone
-_SMALL = 0.012  # of the panel's width: smaller pucks are shown in a close-up as well
-_LEGEND_ROW, _LEGEND_HEIGHT = 6, 0.2  # entries, in
-_BESIDE, _UNDER, _TITLE = 0.85, 0.6, 0.35  # in, for the labels of axes and for the title
-_NARROW = 6.5  # in, at least: for the legend
 _MARKED = 2000  # impacts: more would be one blot
 
 
@@ -32,23 +34,10 @@ def draw(run: WorldRun) -> Figure:
     """
     film = film_of(run)
     boxes = [film.box, *_close_up(film)]
-    sizes = [size_of(box) for box in boxes]
-    figure = canvas(_NARROW, _NARROW)
-    panels = figure.subplots(len(boxes), 1, squeeze=False, height_ratios=[h for _, h in sizes])
-    for axes, box in zip(panels[:, 0], boxes, strict=True):
+    figure, panels = panels_for(boxes)
+    for axes, box in zip(panels, boxes, strict=True):
         _draw_film(axes, film, box)
-    if len(boxes) > 1:
-        panels[1, 0].set_title("close-up", fontsize=10)
-    handles, labels = panels[0, 0].get_legend_handles_labels()
-    rows = math.ceil(len(labels) / _LEGEND_ROW)
-    figure.set_size_inches(
-        max(*(wide + _BESIDE for wide, _ in sizes), _NARROW),
-        sum(high + _UNDER for _, high in sizes) + _LEGEND_HEIGHT * rows + _TITLE,
-    )
-    legend = figure.legend(
-        handles, labels, loc="outside lower center", ncols=_LEGEND_ROW, frameon=False, fontsize=9
-    )
-    _as_they_stand(legend)
+    legend_under(figure, panels[0], boxes)
     title = film.title or "Scene"
     titled(figure, f"{title}: {film.end} after {film.end_time:.4g} s")
     return figure
@@ -59,16 +48,10 @@ def draw_on(axes: Axes, run: WorldRun) -> None:
     film = film_of(run)
     _draw_film(axes, film, film.box)
     legend = axes.legend(
-        loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=_LEGEND_ROW // 2, frameon=False,
+        loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=LEGEND_ROW // 2, frameon=False,
         fontsize=9,
     )  # fmt: skip
-    _as_they_stand(legend)
-
-
-def _as_they_stand(legend: Legend) -> None:
-    """What users write is no mathematics."""
-    for text in legend.get_texts():
-        text.set_parse_math(False)
+    as_they_stand(legend)
 
 
 def _draw_film(axes: Axes, film: Film, box: Box) -> None:
@@ -137,17 +120,9 @@ def _named(film: Film) -> int:
 
 
 def _close_up(film: Film) -> list[Box]:
-    """Around impacts and ends, where pucks are too small to be seen; of the shape of the whole."""
-    wide = film.box[1] - film.box[0]
-    radius = max(body.radius for body in film.bodies)
+    """Around impacts and ends, where pucks are too small to be seen."""
     places = [(one.x, one.y) for one in film.happenings]
-    if radius > _SMALL * wide or not places:
-        return []
-    places += [tuple(body.knots[-1, 1:3].tolist()) for body in film.bodies]
-    x, y = np.array(places).T
-    half = max(0.5 * float(np.ptp(x)) + 2.0 * radius, 1.2 * (0.5 * float(np.ptp(y)) + 2.0 * radius))
-    if 2.0 * half > 0.6 * wide:
-        return []
-    middle = 0.5 * float(x.min() + x.max()), 0.5 * float(y.min() + y.max())
-    high = 0.5 * float(np.ptp(y)) + 2.0 * radius
-    return [(middle[0] - half, middle[0] + half, middle[1] - high, middle[1] + high)]
+    if places:
+        places += [tuple(body.knots[-1, 1:3].tolist()) for body in film.bodies]
+    radius = max(body.radius for body in film.bodies)
+    return close_up(film.box, np.array(places).reshape(-1, 2), radius)

@@ -32,7 +32,7 @@ class Piece(Puck):
         pucks meet the smaller of each counts; cushions have their own.
     path : rows or CSV of t, x, y and perhaps the angle
         A body that is driven there, straight between the rows, such as a mallet: pucks bounce off
-        it, and nothing stops it.
+        it, and nothing stops it.  :func:`puck_tables.path_along` makes rows of a function.
 
     Examples
     --------
@@ -84,7 +84,13 @@ class Arc:
 
 @dataclass(frozen=True)
 class Pocket:
-    """A hole: a puck whose centre passes its rim leaves play."""
+    """A hole: a puck whose centre passes its rim leaves play.
+
+    That is right for a puck much smaller than its hole.  One of radius r at a round hole of radius
+    a rests on the chord between the points where the two rims cross, and tips when its centre
+    passes that chord: at √(a² − r²) from the middle of the hole, which is then the radius to give.
+    One as large as the hole does not fall.
+    """
 
     point: tuple[float, float] = of("pair", unit="m", doc="its centre")
     radius: float = of("number", unit="m", low=0.0, above=True)

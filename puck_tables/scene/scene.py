@@ -7,13 +7,11 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.executor import Progress
 from puck_tables._core.fields import of, specs
 from puck_tables._core.reading import Range, Reading, given_in, read_values
 from puck_tables.errors import InputError
@@ -23,18 +21,13 @@ from puck_tables.scene.entries import BATCH, columns_of, entry_at, set_path, tab
 from puck_tables.scene.parts import Constraint, Drag, Edge, Floor, Force, Launch, Run, Wall
 from puck_tables.scene.pieces import Arc, Piece, Pocket, Post
 from puck_tables.scene.ranges import Ranges, batch_of, launch_rows, refuse_twice
-
-if TYPE_CHECKING:
-    from puck_tables.scene.outcome import SceneRun
-    from puck_tables.scene.sweep import SceneMap
-    from puck_tables.world.world import World
-
+from puck_tables.scene.verbs import SceneVerbs
 
 MAX_RUNS = 1_000_000_000  # of one sweep
 
 
 @dataclass(frozen=True, eq=False)
-class Scene:
+class Scene(SceneVerbs):
     """A puck on a floor, its launch, and whatever acts on it: checked when it is made.
 
     Parameters
@@ -136,99 +129,6 @@ class Scene:
         """
         find: Any = import_module("puck_tables.scene.library").find_scene
         return cls.from_tables(find(str(name)), str(name))
-
-    def simulate(self, times: npt.ArrayLike | None = None) -> SceneRun:
-        """Run it, from the launch to the end.
-
-        Parameters
-        ----------
-        times : array_like, s, ≥ 0, ascending, optional
-            When to save states; else ``run.frames`` of them from the launch to the end.
-
-        Returns
-        -------
-        SceneRun
-            States beyond the end of the run are left out, except at rest.
-
-        Raises
-        ------
-        InputError
-            If a number of it is a range, or it has not ended after a thousand times its time scale
-            and gives no ``run.time``.
-        PuckError
-            If the motion leaves floating point, or too many events crowd together.
-
-        Notes
-        -----
-        Dry friction by the resultants of Salnikova, Treschev, Gallyamov 2012 at velocities relative
-        to the floor; constraints and energies after Chetaev 1960, eq. 2.3, 2.4 and 4.1.
-
-        Examples
-        --------
-        >>> run = Scene.load("incline").simulate()
-        >>> run.end, round(run.end_time, 6)
-        ('at rest', 2.253703)
-        """
-        room = "world" if self.is_board else "scene"
-        run: SceneRun = import_module(f"puck_tables.{room}.simulate").simulate(self, times)
-        return run
-
-    def sweep(
-        self,
-        *,
-        threads: int | None = None,
-        chunk: int = 256,
-        progress: Progress | None = None,
-        checkpoint: str | Path | None = None,
-    ) -> SceneMap:
-        """Run it for all combinations of the numbers in it that are ranges.
-
-        Parameters
-        ----------
-        threads, chunk : int
-            How the work is cut; the numbers do not depend on it, to the last bit.
-        progress : callable (done, total), optional
-        checkpoint : path, optional
-            A file that keeps what is done: called again with the same scene, the work goes on.
-
-        Returns
-        -------
-        SceneMap
-            A run that has no end, or that is refused, is named in :meth:`SceneMap.without_end`.
-
-        Raises
-        ------
-        InputError
-            If no run of it has an end, nothing ranges, or the map would not fit in memory.
-
-        Examples
-        --------
-        >>> puck, velocities = Puck(0.04, friction=0.1), [[1.0, 0.0], [0.0, 2.0]]
-        >>> Scene(puck, launch=Launch(velocities, spin=[0.0, 9.0])).sweep().y.round(6).tolist()
-        [0.0, 2.056068]
-        """
-        room = "world" if self.is_board else "scene"
-        stops: SceneMap = import_module(f"puck_tables.{room}.sweep").sweep(
-            self, threads=threads, chunk=chunk, progress=progress, checkpoint=checkpoint
-        )
-        return stops
-
-    def world(self) -> World:
-        """The same board to play on: advance it, strike pucks, look ahead.
-
-        Raises
-        ------
-        InputError
-            If a number of it is a range.
-
-        Examples
-        --------
-        >>> from puck_tables import Piece
-        >>> Scene(pucks=[Piece(0.03, friction=0.1)]).world()
-        World(1 pucks, 0 moving, at 0 s)
-        """
-        world: World = import_module("puck_tables.world.world").World(self)
-        return world
 
     def __eq__(self, other: object) -> bool:
         """Whether both say the same, ranges included."""

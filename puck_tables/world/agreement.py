@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import replace
+from difflib import get_close_matches
 
 import numpy as np
 
@@ -67,10 +68,12 @@ def number_of(puck: int | str, names: tuple[str, ...]) -> int:
     """
     if isinstance(puck, str) and puck in names:
         return names.index(puck)
-    if not isinstance(puck, str | bool) and 0 <= int(puck) < len(names):
+    if isinstance(puck, int | np.integer) and 0 <= puck < len(names) and puck is not True:
         return int(puck)
     shown = ", ".join(names[:8]) + (", ..." if len(names) > 8 else "")
-    raise InputError(f"no puck {puck!r}: there are {len(names)}, {shown}")
+    near = get_close_matches(str(puck), names, 1, 0.6)
+    meant = f" (did you mean {near[0]!r}?)" if near else ""
+    raise InputError(f"no puck {puck!r}{meant}: there are {len(names)}, {shown}")
 
 
 def refuse_endless(scene: Scene) -> None:
@@ -189,21 +192,39 @@ def start_of(piece: Piece) -> tuple[float, float]:
 def _out_of_bounds(scene: Scene, pieces: tuple[Piece, ...]) -> Iterator[str]:
     """Pucks that start in a cushion or a hole."""
     for number, piece in enumerate(pieces):
-        place, radius, name = start_of(piece), piece.radius, called(piece, number)
-        gaps = {f"wall[{k}]": distance(one, place) - radius for k, one in enumerate(scene.walls)}
-        for k, post in enumerate(scene.posts):
-            gaps[f"post[{k}]"] = math.dist(place, post.point) - radius - post.radius
-        for k, arc in enumerate(scene.arcs):
-            if arc.span >= 2.0 * math.pi:
-                gaps[f"arc[{k}]"] = arc.radius - radius - math.dist(place, arc.point)
-        if not piece.path:
-            for k, pocket in enumerate(scene.pockets):
-                gaps[f"pocket[{k}]"] = math.dist(place, pocket.point) - pocket.radius
-            gaps |= {f"edge[{k}]": distance(one, place) for k, one in enumerate(scene.edges)}
-        for path, gap in gaps.items():
-            if gap < -TOUCH * radius:
-                what = "lies in it" if path.startswith(("pocket", "edge")) else "reaches through it"
-                yield f"{path}: {name} at {list(place)} {what} by {-gap:.3g} m: move one of them"
+        place, name = start_of(piece), called(piece, number)
+        for path, what, depth in in_the_way(scene, place, piece.radius, holes=not piece.path):
+            yield f"{path}: {name} at {list(place)} {what} by {depth:.3g} m: move one of them"
+
+
+def in_the_way(
+    scene: Scene, place: tuple[float, float], radius: float, holes: bool
+) -> Iterator[tuple[str, str, float]]:
+    """What keeps a puck from lying at a place: its path, how, and by how much, m.
+
+    ``holes``: whether pockets and edges do.
+
+    Examples
+    --------
+    >>> from puck_tables import Wall
+    >>> board = Scene(pucks=[Piece(0.1)], walls=[Wall((0.0, 0.5), (0.0, -1.0))])
+    >>> list(in_the_way(board, (0.0, 0.45), 0.1, holes=True))[0][:2]
+    ('wall[0]', 'reaches through it')
+    """
+    gaps = {f"wall[{k}]": distance(one, place) - radius for k, one in enumerate(scene.walls)}
+    for k, post in enumerate(scene.posts):
+        gaps[f"post[{k}]"] = math.dist(place, post.point) - radius - post.radius
+    for k, arc in enumerate(scene.arcs):
+        if arc.span >= 2.0 * math.pi:
+            gaps[f"arc[{k}]"] = arc.radius - radius - math.dist(place, arc.point)
+    if holes:
+        for k, pocket in enumerate(scene.pockets):
+            gaps[f"pocket[{k}]"] = math.dist(place, pocket.point) - pocket.radius
+        gaps |= {f"edge[{k}]": distance(one, place) for k, one in enumerate(scene.edges)}
+    for path, gap in gaps.items():
+        if gap < -TOUCH * radius:
+            what = "lies in it" if path.startswith(("pocket", "edge")) else "reaches through it"
+            yield path, what, -gap
 
 
 def _wide_pockets(scene: Scene) -> Iterator[str]:

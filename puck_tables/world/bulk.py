@@ -10,20 +10,23 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import in_slices
 from puck_tables.kernels.compile import kernel
 from puck_tables.scene.friction import VX
+from puck_tables.world.course import COURSE_COLUMNS, LENGTH, trace
 from puck_tables.world.departures import Room, room_for
-from puck_tables.world.engine import EVERYBODY, FULL, NOBODY, PAUSED, advance
+from puck_tables.world.engine import EVERYBODY, FULL, NOBODY, PAUSED, REACHED, advance
 from puck_tables.world.flight import DAMPED, GONE, START, STILL, UNTIL, state_at
 from puck_tables.world.game import COUNTS, N_IMPACTS, N_PIECES, Game, Whole
 from puck_tables.world.layout import RADIUS
 from puck_tables.world.prepare import fastest, scales_of
 
+_LOOKS = 6  # at a course before its end: at Q/2J, Q/4J, ...
 END_COLUMNS = 6  # of a puck: its state at the end
 
 
 class Ends(NamedTuple):
     """States (runs, pucks, 6) and whether in play (runs, pucks) at the end; end time, impacts, how.
 
-    ``how`` (runs,): as :func:`puck_tables.world.engine.advance` says.
+    ``how`` (runs,): as :func:`puck_tables.world.engine.advance` says.  ``courses`` (runs, 4): of
+    the disc that is watched, see :func:`puck_tables.world.course.trace`.
     """
 
     states: FloatArray
@@ -31,16 +34,19 @@ class Ends(NamedTuple):
     time: FloatArray
     impacts: FloatArray
     how: Whole
+    courses: Whole
 
 
 @kernel
 def _follow_all(
     game: Game, kinds: Whole, flights: FloatArray, first: FloatArray, discs: Whole,
-    launches: FloatArray, paces: FloatArray, until: float, room: Room, ends: Ends,
+    launches: FloatArray, paces: FloatArray, until: float, watch: Whole, room: Room, ends: Ends,
 ) -> None:  # fmt: skip
     """Runs from the states ``first`` (n, 6), with launches (runs, m, 3) of the ``discs`` (m,).
 
-    ``paces`` (runs, 2): the scales of each, so that none depends on others.
+    ``paces`` (runs, 2): the scales of each, so that none depends on others.  ``watch`` (3,): the
+    disc whose courses are wanted, −1: none; the one that they are to pass; and how many impacts
+    they may have: a run is given up when there are more.
     """
     count = first.shape[0]
     for run in range(launches.shape[0]):
@@ -59,9 +65,20 @@ def _follow_all(
         for m in range(discs.size):
             for column in range(3):
                 room.states[discs[m], VX + column] = launches[run, m, column]
-        how = advance(game, until, EVERYBODY, room.one, room)
-        while how == PAUSED:
-            how = advance(game, until, NOBODY, room.one, room)
+        looks = _LOOKS if watch[0] >= 0 else 0
+        struck = EVERYBODY
+        for look in range(looks, -1, -1):
+            part = game.pace[0] / game.pace[1] * 0.5**look if look > 0 else until
+            how = advance(game, min(part, until), struck, room.one, room)
+            struck = NOBODY
+            while how == PAUSED:
+                how = advance(game, min(part, until), NOBODY, room.one, room)
+            if watch[0] >= 0:
+                trace(game, watch[0], watch[1], room.shares, room.marks, ends.courses[run])
+                if ends.courses[run, LENGTH] > watch[2]:
+                    break
+            if how != REACHED:
+                break
         ends.how[run] = how
         last = 0.0
         for i in range(count):
@@ -82,16 +99,19 @@ def _follow_all(
 
 
 def follow_all(
-    game: Game, first: FloatArray, discs: Whole, launches: FloatArray, until: float
-) -> Ends:
+    game: Game, first: FloatArray, discs: Whole, launches: FloatArray, until: float,
+    watch: tuple[int, int, int] = (-1, -1, 0),
+) -> Ends:  # fmt: skip
     """The ends of runs of a board at its start, with launches (runs, m, 3) of some discs.
 
-    A board where more happens than rows are there for gets more rows, and is run again.
+    ``watch``: the disc whose courses are wanted, one that they are to pass (−1: none), and how many
+    impacts they may have: runs with more are given up where they are.  A board where more happens
+    than rows are there for gets more rows, and is run again.
     """
     runs, count = len(launches), len(game.discs)
     ends = Ends(
         np.empty((runs, count, END_COLUMNS)), np.empty((runs, count)), np.empty(runs),
-        np.empty(runs), np.empty(runs, np.int64),
+        np.empty(runs), np.empty(runs, np.int64), np.zeros((runs, COURSE_COLUMNS), np.int64),
     )  # fmt: skip
     paces = _paces(game, first, discs, launches)
     room, rows = room_for(count), 256 + 16 * count
@@ -100,11 +120,11 @@ def follow_all(
     def work(start: int, stop: int) -> None:
         part = Ends(
             ends.states[start:stop], ends.in_play[start:stop], ends.time[start:stop],
-            ends.impacts[start:stop], ends.how[start:stop],
+            ends.impacts[start:stop], ends.how[start:stop], ends.courses[start:stop],
         )  # fmt: skip
         _follow_all(
             mine, game.kinds, game.flights, first, discs, launches[start:stop],
-            paces[start:stop], until, room, part,
+            paces[start:stop], until, np.array(watch), room, part,
         )  # fmt: skip
 
     in_slices(work, runs)

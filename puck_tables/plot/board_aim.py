@@ -1,0 +1,69 @@
+"""Picture of an aim on a board: the run of one launch, the target, and where the others lead."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from puck_tables.errors import InputError
+from puck_tables.plot import pucks
+from puck_tables.plot.style import GREY, titled
+from puck_tables.world.aimed import BoardAim
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_MOST = 8  # other launches whose headings are shown
+_ARROW = 4.0  # radii of the striker
+
+
+def draw(found: BoardAim) -> Figure:
+    """The board with the ways of the first launch on it, and close-ups as of any run.
+
+    Raises
+    ------
+    InputError
+        If there is no launch to draw.
+    """
+    figure = pucks.draw(_first(found))
+    for panel in figure.axes:
+        _mark(panel, found)
+    speed, heading = float(found.launch_speed[0]), math.degrees(found.launch_heading[0])
+    titled(
+        figure,
+        f"{found.scene.title or 'Board'}: {found.puck} {found.where}\n"
+        f"{found.striker} sent off at {speed:.4g} m/s, {heading:.2f}°, "
+        f"{found.launch_spin[0]:.4g} rad/s" + ("; grey: other launches" if len(found) > 1 else ""),
+    )
+    return figure
+
+
+def draw_on(axes: Axes, found: BoardAim) -> None:
+    """The board alone."""
+    pucks.draw_on(axes, _first(found))
+    _mark(axes, found)
+
+
+def _first(found: BoardAim) -> Any:
+    if not len(found):
+        raise InputError(f"there is nothing to draw: {found.answer}")
+    return found.run(0)
+
+
+def _mark(axes: Axes, found: BoardAim) -> None:
+    """The target, and the headings of the other launches."""
+    axes.plot(
+        *found.target, "x", color="black", markersize=9, markeredgewidth=1.8, zorder=8,
+    )  # fmt: skip
+    others = slice(1, _MOST + 1)
+    x, y, radius = found.start
+    for heading in np.asarray(found.launch_heading)[others].tolist():
+        far = _ARROW * radius
+        axes.annotate(
+            "", (x + far * math.cos(heading), y + far * math.sin(heading)), (x, y), zorder=2,
+            arrowprops={"arrowstyle": "->", "color": GREY, "linewidth": 0.8},
+            annotation_clip=True,
+        )  # fmt: skip

@@ -1,0 +1,202 @@
+"""Aiming on a board: launches of one puck after which another, or it itself, ends at a place."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables._core.executor import Progress
+from puck_tables._core.real import finite_array, positive, real
+from puck_tables.errors import InputError
+from puck_tables.scene.scene import Scene
+from puck_tables.world.agreement import pieces_of, start_of
+from puck_tables.world.aimed import BoardAim, aimed
+from puck_tables.world.launches import effort_for, good, headings_for, take_sample
+from puck_tables.world.pocketing import Pocketing
+from puck_tables.world.shots import Shots
+from puck_tables.world.solving import stops_at
+from puck_tables.world.targets import Target, lying_there, out_of_reach, target_of, without_pocket
+
+MOST_COUNT, MOST_IMPACTS, MOST_SPINS = 1000, 20, 1000
+PLENTY = 3.0  # the greatest speed over that which slides the whole way
+PLENTY_SPIN = 2.0  # the greatest rim speed over the speed
+_LEAST = 1e-6  # of the greatest speed
+
+
+class Search(NamedTuple):
+    """Headings by speeds at a ``spin``, or by spins at a ``speed``, from ``low`` to ``high``."""
+
+    spin: float | None
+    speed: float | None
+    low: float
+    high: float
+
+    def velocities(self, launches: FloatArray) -> FloatArray:
+        """From headings and speeds (or spins) (n, 2) to vx, vy, spin (n, 3)."""
+        heading, second = launches.T
+        speed = second if self.speed is None else np.full(len(launches), self.speed)
+        spin = second if self.spin is None else np.full(len(launches), self.spin)
+        return np.stack([speed * np.cos(heading), speed * np.sin(heading), spin], axis=1)
+
+    @property
+    def limit(self) -> str:
+        """In words."""
+        if self.speed is None:
+            return f"up to {self.high:.6g} m/s"
+        return f"at {self.speed:.6g} m/s and up to {self.high:.6g} rad/s either way"
+
+    def run(self, shots: Shots, wanted: Target, most: int, spare: Shots | None) -> Found:
+        """What it finds; ``spare``: shots on the board without the pocket."""
+        aimed_at = spare or shots
+        effort = effort_for(shots)
+        seconds = self.low + (self.high - self.low) * (np.arange(effort.rows) + 1.0) / effort.rows
+        headings = headings_for(shots.scene, wanted.striker, effort.headings)
+        asked, itself = wanted.through >= 0, wanted.puck == wanted.striker
+        sample = take_sample(aimed_at, headings, seconds, most, effort)
+        fine = good(sample.landings, most, asked) & (sample.landings.fates == 0)
+        fine &= itself | (sample.landings.lengths > 0)
+        close = shots.close_to(seconds.max())
+        roots = stops_at(aimed_at, sample, fine, wanted.place, close, self.low, self.high)
+        if spare is None:
+            starts = self.velocities(roots.launches)
+            return Found(starts, shots.sensitivities(starts))
+        falling = Pocketing(
+            shots, wanted.obstacle(shots.scene), most, asked, self.low, self.high
+        )  # fmt: skip
+        sample = take_sample(shots, headings, seconds, most, effort)
+        some = sample.launches[falling.falls(sample.landings)]
+        regions = falling.regions(np.vstack([roots.launches, some]))
+        return Found(self.velocities(regions.launches), regions.widths)
+
+
+class Found(NamedTuple):
+    """Launches vx, vy, spin (n, 3); (n, 2) how their ends change, or widths of their intervals."""
+
+    starts: FloatArray
+    margins: FloatArray
+
+
+def aim(
+    scene: Scene, target: npt.ArrayLike | None, *, puck: int | str | None,
+    striker: int | str | None, pocket: int | str | None, hits: int | str | None,
+    spin: npt.ArrayLike | None, speed: float | None, max_speed: float | None,
+    max_spin: float | None, max_impacts: int, count: int, progress: Progress | None,
+) -> BoardAim:  # fmt: skip
+    """Launches on a board, as :meth:`puck_tables.Scene.aim` has them."""
+    _whole("max_impacts", max_impacts, 0, MOST_IMPACTS)
+    _whole("count", count, 1, MOST_COUNT)
+    wanted = target_of(scene, target, pocket, puck, striker, hits)
+    searches = _searches(scene, wanted, spin, speed, max_speed, max_spin)
+    if wanted.pocket < 0 and wanted.puck != wanted.striker:
+        piece = pieces_of(scene)[wanted.puck]
+        if math.dist(start_of(piece), wanted.place) == 0.0 and piece.launch.velocity is None:
+            return aimed(
+                scene, wanted, "{puck} lies there: any launch that leaves it alone will do"
+            )
+    fastest = max(abs(one.speed or one.high) for one in searches)
+    widest = max(abs(one.high if one.spin is None else one.spin) for one in searches)
+    never = out_of_reach(scene, wanted, fastest, widest)
+    if never:
+        return aimed(scene, wanted, f"no launch {searches[-1].limit} {never}")
+    spare = without_pocket(scene, wanted)
+    runs = left_out = 0
+    found: list[Found] = []
+    for patient in (False, True):
+        for n, search in enumerate(searches):
+            both = [
+                Shots(board, *wanted[:3], max_impacts, search.velocities, patient)
+                for board in (scene, spare) if board is not None
+            ]  # fmt: skip
+            found.append(search.run(both[0], wanted, max_impacts, both[1] if spare else None))
+            runs += sum(shots.runs for shots in both)
+            left_out += sum(shots.left_out for shots in both)
+            if progress is not None:
+                progress(n + 1, len(searches))
+        if any(len(one.starts) for one in found) or not left_out:
+            break
+        left_out = 0
+    starts = np.vstack([one.starts for one in found])
+    margins = np.vstack([one.margins for one in found])
+    limit = searches[-1].limit
+    return aimed(
+        scene, wanted, _answer(scene, wanted, limit, max_impacts, runs, left_out), starts, margins,
+        of_spin=searches[0].speed is not None, count=count, limit=limit,
+    )  # fmt: skip
+
+
+def _answer(scene: Scene, wanted: Target, limit: str, most: int, runs: int, left_out: int) -> str:
+    """What is said where nothing was found: that it is a search, no proof."""
+    words = (
+        f"no launch {limit} with at most {most} impact{'' if most == 1 else 's'} found among "
+        f"{runs} tried; that there is none is not proved"
+    )
+    there = lying_there(scene, wanted)
+    if there:
+        words += f"; {there} lies there and would have to move away"
+    if left_out:
+        words += f"; {left_out} in which pucks push each other could not be followed"
+    return words
+
+
+def _searches(
+    scene: Scene, wanted: Target, spin: npt.ArrayLike | None, speed: float | None,
+    max_speed: float | None, max_spin: float | None,
+) -> list[Search]:  # fmt: skip
+    """One for each spin, or one over spins."""
+    piece = pieces_of(scene)[wanted.striker]
+    if spin is not None and speed is not None:
+        raise InputError(
+            "spin and speed are both given: a heading alone reaches no place; give one of them"
+        )
+    fastest = None if max_speed is None else positive("max_speed", max_speed, "m/s")
+    widest = None if max_spin is None else positive("max_spin", max_spin, "rad/s")
+    if speed is not None:
+        given = positive("speed", speed, "m/s")
+        if fastest is not None and given > fastest:
+            raise InputError(f"speed = {given:g} m/s is above max_speed = {fastest:g} m/s")
+        widest = PLENTY_SPIN * given / piece.radius if widest is None else widest
+        return [Search(None, given, -widest, widest)]
+    spins = np.atleast_1d(
+        finite_array("spin", piece.launch.spin if spin is None else spin, "rad/s")
+    )
+    if spins.ndim != 1 or not 1 <= spins.size <= MOST_SPINS:
+        raise InputError(f"spin must be a number or a list of at most {MOST_SPINS}")
+    if widest is not None and np.abs(spins).max() > widest:
+        raise InputError(
+            f"spin = {spins[np.argmax(np.abs(spins))]:g} rad/s is above max_spin = {widest:g} rad/s"
+        )
+    if fastest is None:
+        fastest = _plenty(scene, wanted)
+    return [Search(real("spin", one, "rad/s"), None, _LEAST * fastest, fastest) for one in spins]
+
+
+def _plenty(scene: Scene, wanted: Target) -> float:
+    """A speed that is surely enough: three times that which slides the whole way.
+
+    Raises
+    ------
+    InputError
+        If nothing brakes the striker.
+    """
+    pieces = pieces_of(scene)
+    striker, puck = pieces[wanted.striker], pieces[wanted.puck]
+    start = start_of(striker)
+    way = math.dist(start, wanted.place)
+    if wanted.puck != wanted.striker:
+        way = math.dist(start, start_of(puck)) + math.dist(start_of(puck), wanted.place)
+    if wanted.through >= 0:
+        way += 2.0 * math.dist(start, start_of(pieces[wanted.through]))
+    share = min(1.0, 2.0 * striker.mass / (striker.mass + puck.mass))
+    decel = max(striker.decel, puck.decel)
+    if striker.friction == 0.0:
+        raise InputError("nothing brakes the striker (its friction is 0): give max_speed")
+    return PLENTY * math.sqrt(2.0 * decel * max(way, striker.radius)) / share
+
+
+def _whole(name: str, value: int, low: int, high: int) -> None:
+    if not isinstance(value, int) or isinstance(value, bool) or not low <= value <= high:
+        raise InputError(f"{name} must be a whole number from {low} to {high}, got {value!r}")

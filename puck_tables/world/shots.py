@@ -1,0 +1,164 @@
+"""Shots of one puck on a board: where another, or it itself, ends, for many launches at once."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables._core.executor import keep_on
+from puck_tables.errors import PuckError
+from puck_tables.scene.scene import Scene
+from puck_tables.world.agreement import is_integrated, pieces_of
+from puck_tables.world.bulk import follow_all
+from puck_tables.world.course import FATE, LENGTH, PASSES, PRINT, trace
+from puck_tables.world.engine import PUSHING, REACHED
+from puck_tables.world.game import Whole
+from puck_tables.world.prepare import game_of, order_of
+from puck_tables.world.world import World
+
+_SHARES = (0.02, 0.1, 0.5)  # of the time that the striker may slide: then courses are looked at
+_STEP = 1e-7  # of a difference: rad, or of the speed
+NO_COURSE = -1  # the print of a run without an end
+
+
+class Landings(NamedTuple):
+    """Where runs end: x, y (n,) m, and by which course, see :mod:`puck_tables.world.course`."""
+
+    x: FloatArray
+    y: FloatArray
+    prints: Whole
+    lengths: Whole
+    fates: Whole
+    passes: Whole
+
+    def at(self, which: npt.NDArray[np.int64] | npt.NDArray[np.bool_]) -> Landings:
+        """Some of them."""
+        return Landings(
+            self.x[which], self.y[which], self.prints[which], self.lengths[which],
+            self.fates[which], self.passes[which],
+        )  # fmt: skip
+
+    def before(self, more: Landings) -> Landings:
+        """These, then others."""
+        columns: Any = [np.concatenate(pair) for pair in zip(self, more, strict=True)]
+        return Landings(*columns)
+
+
+class Shots:
+    """A board of which the launch of one puck, the striker, is open.
+
+    Parameters
+    ----------
+    scene : Scene
+        Without ranges.
+    striker, puck : numbers of the puck that is sent, and of the one whose end is looked for
+    through : number of a puck that is to be hit on the way, or −1
+    most : impacts that may lead the puck to its end
+    velocities : from launches (n, 2) to vx, vy, spin (n, 3)
+    patient : whether runs in which pucks push each other are followed
+        One by one, which takes a thousand times as long.  Where pucks are integrated it is done.
+
+    ``runs``, ``left_out``: how many were asked for, and how many of them were not followed.
+    """
+
+    def __init__(
+        self, scene: Scene, striker: int, puck: int, through: int, most: int,
+        velocities: Callable[[FloatArray], FloatArray], patient: bool = False,
+    ) -> None:  # fmt: skip
+        self.scene, self.striker, self.velocities = scene, striker, velocities
+        self._path = f"puck[{striker}].launch" if scene.pucks else "launch"
+        self.until = math.inf if scene.run.time is None else scene.run.time
+        order = order_of(scene)
+        self._game, room = game_of(scene, order)
+        self._first, place = room.states.copy(), np.argsort(order)
+        self._disc = int(place[striker])
+        self._watch = int(place[puck]), int(place[through]) if through >= 0 else -1, most
+        pieces = pieces_of(scene)
+        self.patient = patient or any(is_integrated(scene, piece) for piece in pieces)
+        self.runs = self.left_out = 0
+
+    def land(self, launches: FloatArray) -> Landings:
+        """Where the puck ends after launches (n, 2)."""
+        return self.follow(self.velocities(launches))
+
+    def follow(self, starts: FloatArray) -> Landings:
+        """Where it ends after launches vx, vy, spin (n, 3)."""
+        self.runs += len(starts)
+        ends = follow_all(
+            self._game, self._first, np.array([self._disc]), starts[:, None], self.until,
+            self._watch,
+        )  # fmt: skip
+        x, y = ends.states[:, self._watch[0], 0], ends.states[:, self._watch[0], 1]
+        few = ends.courses[:, LENGTH] <= self._watch[2]
+        pushing = np.flatnonzero((ends.how == PUSHING) & few)
+        self.left_out += 0 if self.patient else len(pushing)
+        for run in pushing if self.patient else ():
+            keep_on()
+            self._alone(starts[run], ends.courses[run], ends.states[run], ends.how, int(run))
+        moving = (ends.states[:, self._watch[0], 3:6] != 0.0).any(axis=1)
+        courses = ends.courses
+        courses[(ends.how != REACHED) | (moving & (courses[:, FATE] == 0)), PRINT] = NO_COURSE
+        return Landings(
+            x, y, *(courses[:, column] for column in (PRINT, LENGTH, FATE, PASSES))
+        )  # fmt: skip
+
+    def board(self, start: FloatArray) -> Scene:
+        """The board with a launch vx, vy, spin (3,)."""
+        vx, vy, spin = start.tolist()
+        return self.scene.at({f"{self._path}.velocity": [vx, vy], f"{self._path}.spin": spin})
+
+    def _alone(
+        self, start: FloatArray, course: Whole, states: FloatArray, how: Whole, run: int
+    ) -> None:
+        """A run in which pucks push each other, or are integrated."""
+        prints, marks = np.zeros(len(states), np.int64), np.zeros(len(states), np.int64)
+        try:
+            world = World(self.board(start))
+            for share in (*_SHARES, math.inf):
+                world.advance(min(self.until, share * self._span(start)) - world.time)
+                trace(world._game, *self._watch[:2], prints, marks, course)
+                if course[LENGTH] > self._watch[2]:
+                    break
+        except PuckError:
+            return
+        order = order_of(self.scene)
+        states[:] = world.state()[order]
+        states[~world.moving[order], 3:] = 0.0
+        how[run] = REACHED
+
+    def _span(self, start: FloatArray) -> float:
+        """How long the striker may slide, s."""
+        decel = pieces_of(self.scene)[self.striker].decel
+        return math.hypot(start[0], start[1]) / decel if decel > 0.0 else math.inf
+
+    def close_to(self, speed: float) -> float:
+        """How near to a target is on it, m: the tolerance of the scene at a speed, m/s."""
+        piece = pieces_of(self.scene)[self.striker]
+        reach = speed * speed / piece.decel if piece.decel > 0.0 else piece.radius
+        return self.scene.run.tol * max(reach, piece.radius)
+
+    def sensitivities(self, starts: FloatArray) -> FloatArray:
+        """How far the end moves per degree of heading and per cent of speed, (n, 2) m.
+
+        inf where the course is another on both sides.
+        """
+        here = self.follow(starts)
+        out = np.full((len(starts), 2), np.inf)
+        for column, unit in enumerate((math.radians(1.0), 0.01)):
+            for step in (-_STEP, _STEP):
+                turned = starts.copy()
+                if column == 0:
+                    cosine, sine = math.cos(step), math.sin(step)
+                    turned[:, :2] = starts[:, :2] @ np.array([[cosine, sine], [-sine, cosine]])
+                else:
+                    turned[:, :2] *= 1.0 + step
+                there = self.follow(turned)
+                moved = np.hypot(there.x - here.x, there.y - here.y) * unit / abs(step)
+                same = there.prints == here.prints
+                out[same, column] = moved[same]
+        return out

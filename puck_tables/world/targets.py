@@ -1,0 +1,219 @@
+"""What an aim on a board is at: which puck is sent off, and which is to end where."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy.typing as npt
+
+from puck_tables._core.real import finite_array
+from puck_tables.errors import InputError
+from puck_tables.scene.pieces import Piece
+from puck_tables.scene.scene import Scene
+from puck_tables.world.agreement import (
+    TOUCH,
+    called,
+    disagreements,
+    has_closed_forms,
+    in_the_way,
+    number_of,
+    pieces_of,
+    refuse_endless,
+    start_of,
+)
+from puck_tables.world.prepare import obstacle_names
+
+_LEAST_SHARE = 0.75  # of f m g, over the way of a puck with δ ≤ 1: what friction takes at least
+
+
+class Target(NamedTuple):
+    """The numbers of the striker, the puck, and of one to be hit (−1: any); where it is to end.
+
+    ``place`` m: the centre of the pocket if ``pocket`` ≥ 0.
+    """
+
+    striker: int
+    puck: int
+    through: int
+    place: tuple[float, float]
+    pocket: int
+
+    def obstacle(self, scene: Scene) -> int:
+        """The pocket as the engine calls it."""
+        return -1 - obstacle_names(scene).index(f"pocket {self.pocket}")
+
+
+def target_of(
+    scene: Scene, target: npt.ArrayLike | None, pocket: int | str | None, puck: int | str | None,
+    striker: int | str | None, hits: int | str | None,
+) -> Target:  # fmt: skip
+    """The numbers of what a caller names.
+
+    Raises
+    ------
+    InputError
+        If there is no such thing, it is not clear which is meant, or nothing can lie there.
+    """
+    faults = disagreements(scene.single())
+    if faults:
+        raise InputError("\n  ".join(["aim on a board:", *faults]))
+    refuse_endless(scene)
+    pieces = pieces_of(scene)
+    names = tuple(called(piece, number) for number, piece in enumerate(pieces))
+    sent = _striker(pieces, names, striker)
+    aimed = _puck(pieces, names, puck, sent)
+    through = -1
+    if hits is not None:
+        through = number_of(hits, names)
+        if through == aimed and aimed == sent:
+            raise InputError(f"hits = {names[through]}: this is the striker itself, name another")
+    if (target is None) == (pocket is None):
+        given = "both are given" if target is not None else "neither is given"
+        raise InputError(f"target or pocket says where {names[aimed]} is to end: {given}, give one")
+    if pocket is not None:
+        number = _pocket(scene, pocket)
+        return Target(sent, aimed, through, scene.pockets[number].point, number)
+    place = finite_array("target", target if target is not None else (), "m")
+    if place.shape != (2,):
+        raise InputError(f"target must be one place (x, y) in m, got shape {place.shape}")
+    x, y = place.tolist()
+    _refuse_where_nothing_lies(scene, (x, y), pieces[aimed].radius, names[aimed])
+    return Target(sent, aimed, through, (x, y), -1)
+
+
+def _striker(pieces: tuple[Piece, ...], names: tuple[str, ...], given: int | str | None) -> int:
+    """The puck that is named, or the one that the scene sends off."""
+    if given is None:
+        moving = [
+            number for number, piece in enumerate(pieces)
+            if piece.launch.velocity not in (None, (0.0, 0.0)) or piece.launch.spin != 0.0
+        ]  # fmt: skip
+        if len(pieces) == 1:
+            moving = [0]
+        if len(moving) != 1:
+            which = "none" if not moving else ", ".join(names[number] for number in moving)
+            raise InputError(
+                f"striker: which puck is to be sent off? The scene sends off {which}: name one"
+            )
+        number = moving[0]
+    else:
+        number = number_of(given, names)
+    _refuse_driven(pieces, names, number, "be sent off")
+    if pieces[number].launch.time > 0.0:
+        raise InputError(
+            f"striker {names[number]} is sent off at {pieces[number].launch.time:g} s: aim is for "
+            "launches at the start, set its launch.time to 0"
+        )
+    return number
+
+
+def _puck(
+    pieces: tuple[Piece, ...], names: tuple[str, ...], given: int | str | None, striker: int
+) -> int:
+    """The puck that is named, or the only one that can be meant."""
+    others = [n for n, piece in enumerate(pieces) if n != striker and not piece.path]
+    if given is None:
+        if len(others) > 1:
+            raise InputError(
+                f"puck: which is to end there? Name one of the {len(pieces)}, such as "
+                f"{names[others[0]]}, or {names[striker]} itself"
+            )
+        return others[0] if others else striker
+    number = number_of(given, names)
+    _refuse_driven(pieces, names, number, "be aimed")
+    return number
+
+
+def _refuse_driven(
+    pieces: tuple[Piece, ...], names: tuple[str, ...], number: int, what: str
+) -> None:
+    if pieces[number].path:
+        raise InputError(
+            f"{names[number]} is driven along its path and cannot {what}: name another"
+        )
+
+
+def _pocket(scene: Scene, given: int | str) -> int:
+    """The number of a pocket, from itself or from 'pocket 2'."""
+    count = len(scene.pockets)
+    if not count:
+        raise InputError("pocket: the board has none; give a target (x, y), or add [[pocket]]")
+    text = str(given).removeprefix("pocket ").strip()
+    if isinstance(given, bool) or not text.isascii() or not text.isdecimal() or int(text) >= count:
+        raise InputError(f"no pocket {given!r}: the board has {count}, from 0 to {count - 1}")
+    return int(text)
+
+
+def _refuse_where_nothing_lies(
+    scene: Scene, place: tuple[float, float], radius: float, name: str
+) -> None:
+    """Refuse a place in a cushion, a post, a pocket or over an edge."""
+    for path, what, depth in in_the_way(scene, place, radius, holes=True):
+        hint = f", or ask for pocket {path[7:-1]}" if path.startswith("pocket") else ""
+        raise InputError(
+            f"target {list(place)}: {name} cannot rest there, with {path} in the way it {what} by "
+            f"{depth:.3g} m: choose another place{hint}"
+        )
+
+
+def lying_there(scene: Scene, target: Target) -> str:
+    """Who lies so close to the target that it would have to be moved away; '' if nobody does."""
+    pieces = pieces_of(scene)
+    radius = pieces[target.puck].radius
+    for number, piece in enumerate(pieces):
+        if number in (target.puck, target.striker) or target.pocket >= 0 or piece.path:
+            continue
+        if math.dist(start_of(piece), target.place) < (radius + piece.radius) * (1.0 - TOUCH):
+            return called(piece, number)
+    return ""
+
+
+def without_pocket(scene: Scene, target: Target) -> Scene | None:
+    """The board without the pocket aimed at, None if none is.
+
+    Launches that stop where its middle was fall in, also where few do.
+    """
+    if target.pocket < 0:
+        return None
+    left = scene.pockets[: target.pocket] + scene.pockets[target.pocket + 1 :]
+    return replace(scene, pockets=left)
+
+
+def out_of_reach(scene: Scene, target: Target, speed: float, spin: float) -> str:
+    """Why no launch up to a speed and spin can exist, in words; '' where that is not known.
+
+    Friction takes at least f m g times the way that the mean slip of the base goes, and that is no
+    shorter than (1 − δ²/4) of the way of the centre: 3/4 of it for a plain puck with δ ≤ 1.  No
+    impact gives energy.
+    """
+    pieces = pieces_of(scene)
+    striker, puck = pieces[target.striker], pieces[target.puck]
+    others = [piece for number, piece in enumerate(pieces) if number != target.striker]
+    at_rest = not any(
+        one.path or one.launch.velocity not in (None, (0.0, 0.0)) or one.launch.spin
+        for one in others
+    )
+    plain = all(has_closed_forms(one) and one.delta <= 1.0 for one in (striker, puck))
+    if not (at_rest and plain and scene.floor.slope == 0.0):
+        return ""
+    way = math.dist(start_of(puck), target.place)
+    if target.pocket >= 0:
+        way = max(way - scene.pockets[target.pocket].radius, 0.0)
+    ways = [(puck, way)]
+    if target.puck != target.striker:
+        gaps = (
+            math.dist(start_of(striker), start_of(one)) - striker.radius - one.radius
+            for one in others
+        )
+        ways.append((striker, max(min(gaps), 0.0)))
+    needed = sum(_LEAST_SHARE * one.decel * one.mass * length for one, length in ways)
+    rim = striker.gyration * striker.radius * spin
+    given = 0.5 * striker.mass * (speed * speed + rim * rim)
+    if given >= needed:
+        return ""
+    return (
+        f"exists: friction takes at least {needed:.4g} J until {puck.name or 'the puck'} is there, "
+        f"and such a launch has at most {given:.4g} J"
+    )

@@ -1,0 +1,74 @@
+"""``puck aim --scene``: reports, files, pictures, and what is refused."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+from puck_tables.cli.main import main
+
+from puck_tables import Scene
+
+CURLING = ("--scene", "curling-take-out", "--puck", "yellow", "--target", "0.5,-0.5")
+
+
+def aim(*arguments: str) -> Result:
+    return CliRunner().invoke(main, ["aim", *arguments])
+
+
+def test_a_take_out_is_reported_saved_and_drawn(tmp_path: Path) -> None:
+    table, picture = tmp_path / "aim.csv", tmp_path / "aim.png"
+    shown = aim(*CURLING, "-o", str(table), "--plot", str(picture))
+    assert shown.exit_code == 0, shown.stderr
+    assert "wanted   yellow at (0.5, -0.5) m, red sent off up to" in shown.stdout
+    assert "1 launch up to" in shown.stdout and shown.stdout.rstrip().endswith("red - yellow")
+    assert picture.read_bytes().startswith(b"\x89PNG")
+    (row,) = csv.DictReader(table.read_text().splitlines())
+    assert row["course"] == "red - yellow" and float(row["miss[m]"]) < 1e-8
+    launch = [float(row["launch_vx[m/s]"]), float(row["launch_vy[m/s]"])]
+    run = Scene.load("curling-take-out").at({"puck[0].launch.velocity": launch}).simulate()
+    ended = run["yellow"]["x"][-1], run["yellow"]["y"][-1]
+    assert math.dist(ended, (0.5, -0.5)) < 1e-7
+
+
+def test_json_carries_units_and_the_scene() -> None:
+    told = json.loads(aim(*CURLING, "--json", "--count", "1").stdout)
+    assert told["target"] == [0.5, -0.5] and told["puck"] == "yellow"
+    assert told["units"]["per_degree"] == "m" and told["courses"] == ["red - yellow"]
+    assert told["scene"]["puck"][0]["name"] == "red"
+
+
+def test_none_found_is_an_answer_without_a_picture(tmp_path: Path) -> None:
+    picture = tmp_path / "none.png"
+    told = aim(*CURLING, "--max-speed", "2.4", "--plot", str(picture))
+    assert told.exit_code == 0 and "no launch up to 2.4 m/s" in told.stdout
+    assert "not proved" in told.stdout and not picture.exists()
+    told = aim(*CURLING, "--max-speed", "1.5")
+    assert told.exit_code == 0 and "no launch up to 1.5 m/s exists: friction takes" in told.stdout
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ((*CURLING, "--target", "1,0"), "--target is given 2 times"),
+        ((*CURLING, "--pocket", "0"), "both are given"),
+        (("--scene", "curling-take-out", "--pocket", "0"), "puck: which is to end there?"),
+        (("--scene", "curling-take-out", "--puck", "yellow", "--pocket", "0"), "has none"),
+        ((*CURLING[:2], "--puck", "yelow", "--target", "1,0"), "did you mean 'yellow'"),
+        ((*CURLING, "--time", "3"), "--time has no place in a scene"),
+        ((*CURLING, "--delta", "1"), "--delta has no place in a scene"),
+        ((*CURLING, "-o", "aim.txt"), ".csv"),
+        (("--scene", "curling-take-ou", "--target", "1,0"), "curling-take-out"),
+        (("--target", "2,0.1", "--puck", "red"), "--puck is for a board"),
+        (("--target", "2,0.1", "--target", "2,0.2"), "--target is given 2 times"),
+        ((), "Missing option '--target'"),
+    ],
+)
+def test_refusals_are_one_sentence(arguments: tuple[str, ...], words: str) -> None:
+    ended = aim(*arguments)
+    assert ended.exit_code == 2 and words in ended.stderr
+    assert "Traceback" not in ended.stderr and ended.stdout == ""
