@@ -72,7 +72,7 @@ def _follow_all(
             how = advance(game, min(part, until), struck, room.one, room)
             struck = NOBODY
             while how == PAUSED:
-                how = advance(game, min(part, until), NOBODY, room.one, room)
+                how = advance(game, min(part, until), struck, room.one, room)
             if watch[0] >= 0:
                 trace(game, watch[0], watch[1], room.shares, room.marks, ends.courses[run])
                 if ends.courses[run, LENGTH] > watch[2]:
