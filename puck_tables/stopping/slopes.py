@@ -27,11 +27,11 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.closed_form import shape_integrals
 from puck_tables.stopping.axes import HEIGHTS, SlipAxis, height_polynomials, heights, ratio_at
 from puck_tables.stopping.curve import limits, regular_slopes
-from puck_tables.stopping.lookup import STOP_POWERS
 from puck_tables.table.fit import clamped_coefficients
 
 STOP_FUNCTIONS = 5  # T, along, across, body, length; then the slopes of each
 STOP_WIDTH = 12  # both, padded to whole registers
+STOP_POWERS = 7  # of 2δ² − 1, enough for derivatives to 1e-9
 CURVE_FUNCTIONS = 5  # κR, S/δ; then (κR)_u, S_u/δ, H
 CURVE_WIDTH = 8
 _TIME, _ALONG, _ACROSS, _BODY, _LENGTH = range(STOP_FUNCTIONS)
@@ -45,7 +45,7 @@ _DIFFERENCE = np.array([1.0 / 280.0, -4.0 / 105.0, 0.2, -0.8, 0.0, 0.8, -0.2, 4.
 class Slopes(NamedTuple):
     """Spline coefficients, powers of 2δ² − 1 ascending, functions within a power side by side.
 
-    ``stops`` (2, cells + 3, 8 · 12): T, along, across, body, length, and D of each; ``curve`` (2,
+    ``stops`` (2, cells + 3, 7 · 12): T, along, across, body, length, and D of each; ``curve`` (2,
     cells + 3, 9 · 8): κR, S/δ, their derivatives by u, and H = h/(δ sin φ).  Rows are padded with
     zeros.
     """
@@ -67,7 +67,7 @@ def slopes_of(axis: SlipAxis, values: FloatArray) -> Slopes:
     >>> from puck_tables import Table
     >>> table = Table.shipped("stops")
     >>> [one.shape for one in slopes_of(table.axis, table.values)]
-    [(2, 285, 96), (2, 285, 72)]
+    [(2, 285, 84), (2, 285, 72)]
     """
     n = axis.cells
     sides = np.stack([values[: n + 1], values[: n - 1 : -1]])  # both from k = 0 to k = 1

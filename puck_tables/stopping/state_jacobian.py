@@ -178,7 +178,7 @@ def _know_slopes(
     _flow_at(curve_slopes, cells, side, xi, share, delta, fixed, out[_PLACE:])
     out[_SIDE], out[_XI], out[_SHARE] = side, xi, share
     stop_found(stop_slopes, cells, side, xi, delta, found)
-    stop_by_speeds(out[0], out[2], 1.0, delta, found, own)
+    stop_by_speeds(out[0], out[2], 1.0, out[0], out[2], delta, found, own)
     for row in range(STOP_ROWS):
         for column in range(4):
             out[_STOP + 4 * row + column] = own[row, column]
@@ -236,7 +236,7 @@ def _state_slopes(
     norm = 1.0 / math.sqrt(small * small + large * large)
     cosine, sine = (norm * small, norm * large) if side == 1 else (norm * large, norm * small)
     speed, rim = slip * cosine, slip * sine
-    stop_by_speeds(speed, rim, slip, delta, found, own)
+    stop_by_speeds(speed, rim, slip, cosine, sine, delta, found, own)
     t_slope = sine * cosine * cosine * found[D + T]
     t_tilt = found[BY_HEIGHT + T]
     rate = flow[_RATE]

@@ -20,8 +20,8 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import allocating, inlined, spline_polynomials
 from puck_tables.kernels.spline import basis, cell_at
-from puck_tables.stopping.lookup import STOP_POWERS, slip_place
-from puck_tables.stopping.slopes import STOP_FUNCTIONS, STOP_WIDTH
+from puck_tables.stopping.lookup import LARGEST, SMALLEST, quick_place, slip_place
+from puck_tables.stopping.slopes import STOP_FUNCTIONS, STOP_POWERS, STOP_WIDTH
 
 # what is differentiated, and by what; rows of arrays
 TIME, STOP_X, STOP_Y, LENGTH, BODY = range(5)
@@ -35,7 +35,7 @@ D, BY_HEIGHT = STOP_FUNCTIONS, STOP_WIDTH
 STOP_FOUND = 2 * STOP_WIDTH
 # of a stop in the frame of its launch: value, by v, by a, by δ; J = 1
 BY_SPEED, BY_RIM, BY_TILT = 1, 2, 3
-_BLOCK = 64
+_BLOCK, _ROW = 64, STOP_POWERS * STOP_WIDTH
 
 
 @inlined
@@ -45,24 +45,31 @@ def stop_found(
     """The functions of the stop at a place of the curve, into ``found`` (24,); ``slopes`` flat."""
     p = xi * cells
     i = cell_at(p, cells)
-    first = (side * (cells + 3) + i) * (STOP_POWERS * STOP_WIDTH)
+    _functions_in(slopes, (side * (cells + 3) + i) * _ROW, p - i, delta, found)
+
+
+@inlined
+def _functions_in(
+    slopes: FloatArray, first: int, inside: float, delta: float, found: FloatArray
+) -> None:
     s = 2.0 * delta * delta - 1.0
-    values = spline_polynomials(slopes, first, basis(p - i), s, STOP_WIDTH, STOP_POWERS)
+    values = spline_polynomials(slopes, first, basis(inside), s, STOP_WIDTH, STOP_POWERS)
     for f in range(STOP_WIDTH):
         found[f] = values[f]
+    for f in range(STOP_FUNCTIONS):
         found[BY_HEIGHT + f] = 4.0 * delta * values[STOP_WIDTH + f]
 
 
 @inlined
 def stop_by_speeds(
-    speed: float, rim: float, slip: float, delta: float, found: FloatArray, out: FloatArray
-) -> None:
+    speed: float, rim: float, slip: float, c: float, s: float, delta: float, found: FloatArray,
+    out: FloatArray,
+) -> None:  # fmt: skip
     """Time, z/v, way and body angle and their derivatives by v, a ≥ 0 and δ, into ``out`` (5, 4).
 
     Rows: time, along, to the left, path, body angle; J = r = 1.  Along and left: of z, but the
     first column holds z/v.
     """
-    c, s = speed / slip, rim / slip
     c2, sc2 = c * c, s * c * c
     t, dt = found[T], found[D + T]
     out[TIME, 0] = slip * t
@@ -91,17 +98,17 @@ def stop_by_speeds(
 
 
 @inlined
-def place_stop(launch: FloatArray, own: FloatArray, out: FloatArray) -> None:
+def _place_stop(
+    launch: FloatArray, speed: float, own: FloatArray, out: FloatArray
+) -> None:
     """From the frame of the launch (6,), ``own`` (5, 4), to ``out`` (5, 6)."""
-    vx, vy, spin = launch[0], launch[1], launch[2]
-    decel, radius = launch[4], launch[5]
-    speed = math.hypot(vx, vy)
+    vx, vy, spin, radius = launch[0], launch[1], launch[2], launch[5]
+    unit, bend = 1.0 / launch[4], 1.0 / radius
     east, north = (vx / speed, vy / speed) if speed > 0.0 else (1.0, 0.0)
     around = 1.0 if spin >= 0.0 else -1.0
-    unit = 1.0 / decel
     for row in range(STOP_ROWS):
         turn = row == BODY
-        scale = unit / radius if turn else unit
+        scale = unit * bend if turn else unit
         mirrored = around * scale if turn else scale
         by_rim = scale if turn else around * scale
         if row != STOP_X and row != STOP_Y:
@@ -112,7 +119,7 @@ def place_stop(launch: FloatArray, own: FloatArray, out: FloatArray) -> None:
             out[row, BY_SPIN] = radius * rim
             out[row, BY_DELTA] = mirrored * own[row, BY_TILT]
             out[row, BY_DECEL] = -value * unit
-            out[row, BY_RADIUS] = spin * rim - (value / radius if turn else 0.0)
+            out[row, BY_RADIUS] = spin * rim - (value * bend if turn else 0.0)
     # z: along + i left in the frame, times e
     ahead, aside = unit * own[STOP_X, 0], around * unit * own[STOP_Y, 0]  # z/v
     along, left = unit * own[STOP_X, BY_SPEED], around * unit * own[STOP_Y, BY_SPEED]
@@ -142,13 +149,39 @@ def fill_stop_jacobians(launches: FloatArray, slopes: FloatArray, out: FloatArra
     cells = slopes.shape[1] - 3
     flat = slopes.reshape(-1)
     found, own = np.empty(STOP_FOUND), np.empty((STOP_ROWS, 4))
-    for n in range(launches.shape[1]):
-        speed = math.hypot(launches[0, n], launches[1, n])
-        rim = abs(launches[5, n] * launches[2, n])
-        slip = math.hypot(speed, rim)
-        side, xi = slip_place(speed, rim)
-        stop_found(flat, cells, side, xi, launches[3, n], found)
-        stop_by_speeds(speed, rim, slip, launches[3, n], found, own)
-        place_stop(launches[:, n], own, out[n])
-        if speed == 0.0:
-            out[n, LENGTH, BY_VX] = out[n, LENGTH, BY_VY] = math.nan
+    first = np.empty(_BLOCK, np.int64)
+    inside, speeds = np.empty(_BLOCK), np.empty(_BLOCK)
+    rims, slips = np.empty(_BLOCK), np.empty(_BLOCK)
+    for start in range(0, launches.shape[1], _BLOCK):
+        block = launches[:, start : start + _BLOCK]
+        unsafe = 0
+        for n in range(block.shape[1]):
+            vx, vy, rim = block[0, n], block[1, n], abs(block[5, n] * block[2, n])
+            speed2 = vx * vx + vy * vy
+            slip2 = speed2 + rim * rim
+            speed, slip = math.sqrt(speed2), math.sqrt(slip2)
+            unsafe += 0 if (speed2 > SMALLEST) & (slip2 < LARGEST) else 1
+            cell, inside[n] = quick_place(speed, rim, float(cells))
+            first[n] = _ROW * (int(cell) + (cells + 3 if rim > speed else 0))
+            speeds[n], rims[n], slips[n] = speed, rim, slip
+        if unsafe > 0:  # anew, with care for rest along the way, and for the largest and smallest
+            for n in range(block.shape[1]):
+                vx, vy, rim = block[0, n], block[1, n], rims[n]
+                speed2 = vx * vx + vy * vy
+                if (speed2 > SMALLEST) & (speed2 + rim * rim < LARGEST):
+                    continue  # the same bits whatever else is in the block
+                speed = math.hypot(vx, vy)
+                slip = math.hypot(speed, rim)
+                side, xi = slip_place(speed, rim)
+                i = cell_at(xi * cells, cells)
+                inside[n], first[n] = xi * cells - i, _ROW * (i + side * (cells + 3))
+                speeds[n], slips[n] = speed, slip
+        for n in range(block.shape[1]):
+            delta = block[3, n]
+            _functions_in(flat, first[n], inside[n], delta, found)
+            speed, rim, slip = speeds[n], rims[n], slips[n]
+            stop_by_speeds(speed, rim, slip, speed / slip, rim / slip, delta, found, own)
+            here = out[start + n]
+            _place_stop(block[:, n], speed, own, here)
+            if speed == 0.0:
+                here[LENGTH, BY_VX] = here[LENGTH, BY_VY] = math.nan

@@ -15,7 +15,7 @@ from scipy.integrate._ivp import dop853_coefficients as dop
 
 STEP = 1e-40
 LAST = 40.0  # −ln of the share of Q that is left where a stop ends
-STEPS = 80
+STEPS = 40
 U, PSI, LOG, TIME, X, Y, BODY, LENGTH = range(8)
 
 
@@ -103,17 +103,20 @@ def moved(launches: np.ndarray, share: np.ndarray | None, steps: int = STEPS) ->
     y = np.zeros((8, v.size), complex)
     y[U], y[LOG] = np.log(a / v), 0.0
     last = np.full(v.size, LAST) if share is None else -np.log(share)
-    slow = np.flatnonzero(y[U].real < 0.0)
-    longest = max(1.0, float(np.abs(y[U, slow].real).max(initial=0.0)))  # it grows as e^(4u)
-    crossed = marched(y[:, slow], delta[slow], 0.0, True, 1, 4, math.ceil(0.5 * steps * longest))
-    over = -crossed[LOG].real < last[slow]
-    y[:, slow[over]] = crossed[:, over]
-    y[U, slow[over]] = 0.0
-    # those that get over it go on from there; a start at +0 counts as beyond
-    y[U, slow[over]] += 1e-300
-    early = slow[~over]
-    rest = np.setdiff1d(np.arange(v.size), early)
-    y[:, early] = marched(y[:, early], delta[early], last[early], False, 1, 4, steps)
+    over = y[U].real >= 0.0
+    for near in (True, False):  # next to pure sliding what counts grows as e^(4u): finer steps
+        slow = np.flatnonzero((y[U].real < 0.0) & ((y[U].real > -4.0) == near) & ~over)
+        if not slow.size:
+            continue
+        longest = float(np.abs(y[U, slow].real).max())
+        count = math.ceil(steps * max(1.0, 0.2 * longest**2))
+        crossed = marched(y[:, slow], delta[slow], 0.0, True, 1, 4, count)
+        past = -crossed[LOG].real < last[slow]
+        y[:, slow[past]] = crossed[:, past]
+        y[U, slow[past]] = 1e-300  # beyond
+        over[slow[past]] = True
+    early, rest = np.flatnonzero(~over), np.flatnonzero(over)
+    y[:, early] = marched(y[:, early], delta[early], last[early], False, 1, 4, 4 * steps)
     y[:, rest] = marched(y[:, rest], delta[rest], last[rest], False, 4, 1, 3 * steps)
     slope = by_log(y, delta)
     if share is None:
