@@ -28,6 +28,7 @@ ROOMS = {
     "trajectory": "_core accuracy errors io motion puck result stopping table",
     "film": "_core errors io",
     "fit": "_core accuracy contact errors film io kernels motion puck result stopping table",
+    "autodiff": "errors stopping",
     "scene": "_core contact errors io kernels motion puck result stopping table",
     "world": "_core contact errors io kernels motion puck result scene stopping table",
     "tradeoff": "_core _version accuracy contact io kernels motion result stopping table",
@@ -48,6 +49,8 @@ DOORS = {
     "matplotlib": {"plot"},
     "scipy": {"chetaev", "stopping", "table.speed_fit", "tradeoff"},
     "click": {"cli"},
+    "jax": {"autodiff.jax"},
+    "torch": {"autodiff.torch"},
 }
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import ClassVar
 
 import numpy as np
@@ -12,6 +13,7 @@ from puck_tables._core.executor import run_chunks
 from puck_tables.contact.laws import Law
 from puck_tables.errors import InputError
 from puck_tables.motion.body import plain_up_to
+from puck_tables.stopping.spread import Spread, spread_of
 from puck_tables.stopping.stop_table import StopTable
 
 LAUNCH_NAMES = ("vx", "vy", "spin", "delta", "decel", "radius")
@@ -31,6 +33,8 @@ class Differentiated:
     JACOBIAN_ROWS: ClassVar[tuple[str, ...]]
     JACOBIAN_COLUMNS: ClassVar[tuple[str, ...]]
     _jacobian: FloatArray | None = None
+    _arguments: FloatArray
+    _table: StopTable | None = None
 
     @property
     def jacobian(self) -> FloatArray:
@@ -74,6 +78,58 @@ class Differentiated:
             places.append(names.index(name))
         entry: FloatArray = self.jacobian[..., places[0], places[1]]
         return entry
+
+    def spread(
+        self,
+        covariance: npt.ArrayLike,
+        of: Sequence[str] = ("vx", "vy", "spin"),
+        *,
+        samples: int = 0,
+        seed: int = 0,
+    ) -> Spread:
+        """How the results scatter when the launches do: covariance in, covariance out.
+
+        Parameters
+        ----------
+        covariance : array_like (k, k) or (…, k, k), SI units, symmetric, no negative variances
+            Of the arguments named in ``of``, for all launches or for each.
+        of : k names of ``JACOBIAN_COLUMNS``
+        samples : int
+            How many launches to draw of each, normally distributed, and to look up, beside the
+            linear answer: 0, or from 2 on.
+        seed : int
+            The same seed draws the same samples.
+
+        Returns
+        -------
+        Spread
+            ``covariance`` A C Aᵀ with the Jacobian A, and ``deviation``; with samples also theirs,
+            their ``ratio``, and ``is_linear``: whether the linear one is to be trusted.
+
+        Raises
+        ------
+        InputError
+            If derivatives were not asked for, the covariance is none, or a sample lies outside the
+            range of its argument.
+
+        Examples
+        --------
+        >>> from puck_tables import Puck
+        >>> found = Puck.similar().stop((1.0, 0.0), 5.0, jacobian=True)
+        >>> out = found.spread([[1e-4, 0.0, 0.0], [0.0, 1e-4, 0.0], [0.0, 0.0, 1e-2]], samples=5000)
+        >>> out.deviation.round(4).tolist()  # s, m, m, m, rad
+        [0.0716, 0.0481, 0.0224, 0.0483, 0.3751]
+        >>> bool(out.is_linear)
+        True
+        """
+        return spread_of(
+            self.JACOBIAN_ROWS, self.JACOBIAN_COLUMNS, self.jacobian, self._arguments, self._again,
+            covariance, of, samples, seed,
+        )  # fmt: skip
+
+    def _again(self, arguments: FloatArray) -> FloatArray:
+        """The rows of the Jacobian's results (rows, m) of arguments (columns, m)."""
+        raise NotImplementedError
 
 
 def refuse_others(pressure: str | Law, gyration: float, delta: FloatArray) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import ClassVar
 
 import numpy as np
@@ -33,6 +33,7 @@ from puck_tables.motion.state import (
 )
 from puck_tables.result import Result
 from puck_tables.stopping.jacobian import (
+    LAUNCH_NAMES,
     MOMENT_NAMES,
     STATE_NAMES,
     Differentiated,
@@ -71,6 +72,8 @@ class States(Differentiated, Result):
     radius: FloatArray
     explanation: str = ""
     _jacobian: FloatArray | None = None
+    _arguments: FloatArray = field(default_factory=lambda: np.empty((7, 0)))
+    _table: StopTable | None = None
 
     picture: ClassVar[str] = "places"
     JACOBIAN_ROWS: ClassVar[tuple[str, ...]] = STATE_NAMES
@@ -98,6 +101,18 @@ class States(Differentiated, Result):
     def slip_angle(self) -> FloatArray:
         """Φ = atan2(rω, v), rad; 0 at rest."""
         return np.arctan2(self.radius * self.spin, self.speed)
+
+    def _again(self, arguments: FloatArray) -> FloatArray:
+        table, launches = self._table or StopTable.shipped(), arguments[: len(LAUNCH_NAMES)]
+        pucks = np.concatenate([launches, table.known(launches)]).T.copy()
+        which = np.arange(arguments.shape[1])
+        rows = _looked_up(table, pucks, which, np.ascontiguousarray(arguments[len(LAUNCH_NAMES)]))
+        turned = rows[HEADING] + np.arctan2(launches[1], launches[0])
+        speed = rows[SPEED]
+        return np.stack([
+            rows[PUCK_X], rows[PUCK_Y], rows[ORIENTATION], speed * np.cos(turned),
+            speed * np.sin(turned), rows[SPIN],
+        ])  # fmt: skip
 
     def explain(self) -> str:
         """How they were got."""
@@ -240,11 +255,14 @@ def states(
     words = [f"{count} pucks {how}" for count, how in
              ((plain.sum(), "looked up"), ((~plain).sum(), "integrated")) if count]  # fmt: skip
     explanation = " and ".join(words) + ", to 1e-9 of Q, Q^2/J and Q^2/(J r)"
-    slopes = None
-    if jacobian:
-        slopes = state_jacobians(chosen, pucks, flat_which, flat_moments)
-        slopes = slopes.reshape(*shape, *slopes.shape[1:])
-    return _states(found, moments, launches, flat_which, shape, explanation, slopes)
+    result = _states(found, moments, launches, flat_which, shape, explanation)
+    if not jacobian:
+        return result
+    slopes = state_jacobians(chosen, pucks, flat_which, flat_moments)
+    return replace(
+        result, _jacobian=slopes.reshape(*shape, *slopes.shape[1:]), _table=table,
+        _arguments=np.concatenate([launches[:, flat_which], flat_moments[None]]),
+    )  # fmt: skip
 
 
 def _bodies(pressure: str | Law, gyration: float, delta: FloatArray) -> dict[float, Body]:
@@ -329,7 +347,7 @@ def states_of(body: Body, launch: FloatArray, times: FloatArray) -> FloatArray:
 
 def _states(
     out: FloatArray, moments: FloatArray, launches: FloatArray, which: npt.NDArray[np.int64],
-    shape: tuple[int, ...], explanation: str, jacobian: FloatArray | None,
+    shape: tuple[int, ...], explanation: str,
 ) -> States:  # fmt: skip
     """Rows of states, headings from those of the launches, in their shape."""
     rows = [one.reshape(shape) for one in out]
@@ -346,5 +364,4 @@ def _states(
         spin=rows[SPIN],
         radius=launches[5][which].reshape(shape),
         explanation=explanation,
-        _jacobian=jacobian,
     )

@@ -98,9 +98,7 @@ def stop_by_speeds(
 
 
 @inlined
-def _place_stop(
-    launch: FloatArray, speed: float, own: FloatArray, out: FloatArray
-) -> None:
+def _place_stop(launch: FloatArray, speed: float, own: FloatArray, out: FloatArray) -> None:
     """From the frame of the launch (6,), ``own`` (5, 4), to ``out`` (5, 6)."""
     vx, vy, spin, radius = launch[0], launch[1], launch[2], launch[5]
     unit, bend = 1.0 / launch[4], 1.0 / radius

@@ -49,7 +49,7 @@ class Stops(Differentiated, Result):
 
     def __init__(
         self, solver: SolverPerHeight, launches: FloatArray, shape: tuple[int, ...],
-        jacobian: FloatArray | None,
+        jacobian: FloatArray | None, table: StopTable | None,
     ) -> None:  # fmt: skip
         self._values, status = solver.first(launches)
         self._solver: SolverPerHeight | None = solver
@@ -62,6 +62,7 @@ class Stops(Differentiated, Result):
         if jacobian is not None:
             jacobian[status != 0] = np.nan
             self._jacobian = jacobian.reshape(*shape, *jacobian.shape[1:])
+            self._arguments, self._table = launches, table
 
     def __repr__(self) -> str:
         return f"Stops({self.status.size} launches of shape {self._shape}, by {self.method})"
@@ -102,6 +103,10 @@ class Stops(Differentiated, Result):
     def body_angle(self) -> FloatArray:
         """Radians."""
         return self._row(5)
+
+    def _again(self, arguments: FloatArray) -> FloatArray:
+        known = (self._table or StopTable.shipped()).known(arguments)
+        return known[: len(STOP_NAMES)]
 
     def explain(self) -> str:
         """Which method was taken, and why."""
@@ -213,7 +218,7 @@ def stop(
     if jacobian:
         by = table if isinstance(table, StopTable) else StopTable.shipped()
         slopes = stop_jacobians(by, launches)
-    return Stops(solver, launches, shape, slopes)
+    return Stops(solver, launches, shape, slopes, table if isinstance(table, StopTable) else None)
 
 
 def as_rows(columns: list[FloatArray]) -> FloatArray:
