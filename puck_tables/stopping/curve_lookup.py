@@ -290,7 +290,7 @@ def fill_launches(
 
 
 @inlined
-def _fill_state(
+def fill_state(
     launch: FloatArray, time: float, side: int, double_share: float,
     left: float, log_left: float, found: FloatArray, out: FloatArray,
 ) -> None:  # fmt: skip
@@ -345,7 +345,7 @@ def place_in_time(puck: FloatArray, time: float) -> tuple[int, float, float, flo
 
 
 @inlined
-def _functions_at(
+def functions_at(
     stops: FloatArray, curve: FloatArray, side: int, double_share: float, s: float,
     sums: FloatArray, found: FloatArray,
 ) -> None:  # fmt: skip
@@ -366,8 +366,8 @@ def look_up_state(
     if side >= 0:
         s = 2.0 * puck[3] * puck[3] - 1.0
         y = min(y * inverse_sum(time_inverse, side, xi, s, sums), 1.0)
-        _functions_at(stops, curve, side, y, s, sums, found)
-    _fill_state(puck, time, side, y, left, log, found, out)
+        functions_at(stops, curve, side, y, s, sums, found)
+    fill_state(puck, time, side, y, left, log, found, out)
 
 
 @allocating
@@ -400,10 +400,10 @@ def fill_states(
             if sides[n] >= 0:
                 delta = pucks[which[start + n], 3]
                 s = 2.0 * delta * delta - 1.0
-                _functions_at(stops, curve, sides[n], ys[n], s, sums, found[:, n])
+                functions_at(stops, curve, sides[n], ys[n], s, sums, found[:, n])
         for n in range(count):
             launch = which[start + n]
-            _fill_state(
+            fill_state(
                 pucks[launch], times[start + n], sides[n], ys[n],
                 shares[n], logs[n], found[:, n], out[:, start + n],
             )  # fmt: skip

@@ -181,23 +181,27 @@ def stop_jacobians(table: StopTable, launches: FloatArray) -> FloatArray:
 
 def state_jacobians(
     table: StopTable, pucks: FloatArray, which: npt.NDArray[np.int64], moments: FloatArray
-) -> FloatArray:
-    """Derivatives (n, 6, 7) of states of plain ``pucks`` (m, 20), ``which`` (n,) at ``moments``."""
+) -> tuple[FloatArray, FloatArray]:
+    """States (6, n) of plain ``pucks`` (m, 20), and derivatives (n, 6, 7); ``which`` (n,) when."""
     from puck_tables.stopping.state_jacobian import fill_state_jacobians
 
     slopes = table.slopes
+    values = np.empty((len(STATE_NAMES), which.size))
     out = np.empty((which.size, len(STATE_NAMES), len(MOMENT_NAMES)))
 
     def work(start: int, stop: int) -> None:
+        part = np.empty((len(STATE_NAMES), stop - start))
         fill_state_jacobians(
             pucks, which[start:stop], moments[start:stop], table.stop_coefficients,
             table.curve_coefficients, table.time_inverse, table.constants, slopes.stops,
-            slopes.curve, out[start:stop],
+            slopes.curve, part, out[start:stop],
         )  # fmt: skip
+        values[:, start:stop] = part
 
     if (which[:-1] > which[1:]).any():  # what is known of a puck serves all its states
         order = np.argsort(which, kind="stable")
-        out[order] = state_jacobians(table, pucks, which[order], moments[order])
-        return out
+        found = state_jacobians(table, pucks, which[order], moments[order])
+        values[:, order], out[order] = found
+        return values, out
     run_chunks(work, which.size, _CHUNK)
-    return out
+    return values, out

@@ -150,7 +150,7 @@ def spread_of(
     shift, sampled = np.empty((count, len(names))), np.empty((count, len(names), len(names)))
     drawn = np.random.default_rng(seed)
     for n in range(count):
-        total, squares, done = 0.0, 0.0, 0
+        total, squares, done = np.zeros(len(names)), np.zeros((len(names), len(names))), 0
         middle = again(arguments[:, n : n + 1])
         while done < samples:
             part = min(_AT_ONCE, samples - done)

@@ -37,6 +37,8 @@ from puck_tables.stopping.curve_lookup import (
     TIME,
     end_logs,
     end_rates,
+    fill_state,
+    functions_at,
     inverse_sum,
     know_launch,
     place_in_time,
@@ -191,16 +193,16 @@ def _rotated(one: float, other: float, cosine: float, sine: float) -> tuple[floa
 
 @inlined
 def _state_slopes(
-    facts: FloatArray, time: float, time_inverse: FloatArray, stop_slopes: FloatArray,
-    curve_slopes: FloatArray, cells: int, sums: FloatArray, found: FloatArray, own: FloatArray,
-    flow: FloatArray, out: FloatArray,
+    facts: FloatArray, side: int, share: float, left: float, stop_slopes: FloatArray,
+    curve_slopes: FloatArray, cells: int, found: FloatArray, own: FloatArray, flow: FloatArray,
+    out: FloatArray,
 ) -> None:  # fmt: skip
     """A state and its derivatives in natural units, into ``out`` (6, 6).
 
-    Rows: x, y, body angle, vx, vy, rω, y to the left of the launch.  Columns: itself; by v, v
-    across, rω, δ, time.
+    At the place (side, 2w) on the curve, where the share ``left`` of time is left; side −1: the
+    launch itself, and without time left at rest.  Rows: x, y, body angle, vx, vy, rω, y to the left
+    of the launch.  Columns: itself; by v, v across, rω, δ, time.
     """
-    done = time / facts[LAUNCH_COLUMNS + TIME]
     stop = _STOP
     for row in range(6):
         for column in range(6):
@@ -215,17 +217,14 @@ def _state_slopes(
     over_x, over_y = out[STATE_X, 0], out[STATE_Y, 0]  # z/v
     out[STATE_X, 0], out[STATE_Y, 0] = speed0 * over_x, speed0 * over_y
     out[STATE_X, 2], out[STATE_Y, 2] = -over_y, over_x
-    if not done < 1.0:
+    if left == 0.0:
         return
     delta = facts[3]
-    s = 2.0 * delta * delta - 1.0
     known = facts[LAUNCH_COLUMNS:_PUCK]
-    side, xi, y, left, _ = place_in_time(facts[:_PUCK], time)
     if side >= 0:
-        share = min(y * inverse_sum(time_inverse, side, xi, s, sums), 1.0)
         xi = place_of_share(share)
-    else:  # the launch itself
-        side, xi, share, left = int(facts[_SIDE]), facts[_XI], facts[_SHARE], 1.0
+    else:
+        side, xi, share = int(facts[_SIDE]), facts[_XI], facts[_SHARE]
     fixed = facts[_FIXED:_STOP]
     stop_found(stop_slopes, cells, side, xi, delta, found)
     _flow_at(curve_slopes, cells, side, xi, share, delta, fixed, flow)
@@ -353,17 +352,29 @@ def _place_state(puck: FloatArray, time: float, own: FloatArray, out: FloatArray
         out[row, BY_DECEL] = time / decel * out[row, BY_TIME] - gone
 
 
+@inlined
+def _share_at(
+    puck: FloatArray, time: float, time_inverse: FloatArray, s: float, sums: FloatArray
+) -> tuple[int, float, float, float]:
+    """Side (−1: no place on the curve) and 2w, share of time that is left and its log."""
+    side, xi, y, left, log = place_in_time(puck, time)
+    if side >= 0:
+        y = min(y * inverse_sum(time_inverse, side, xi, s, sums), 1.0)
+    return side, y, left, log
+
+
 @allocating
 def fill_state_jacobians(
     pucks: FloatArray, which: npt.NDArray[np.int64], times: FloatArray, stops: FloatArray,
     curve: FloatArray, time_inverse: FloatArray, constants: FloatArray, stop_slopes: FloatArray,
-    curve_slopes: FloatArray, out: FloatArray,
+    curve_slopes: FloatArray, values: FloatArray, out: FloatArray,
 ) -> None:  # fmt: skip
-    """∂(x, y, body angle, vx, vy, ω)/∂(vx, vy, ω, δ, J, r, time) into ``out`` (n, 6, 7).
+    """States into ``values`` (6, n), and their derivatives into ``out`` (n, 6, 7).
 
-    Of the states of pucks ``which`` (n,) at ``times`` (n,) ≥ 0.  ``pucks`` (m, 6 + 14), ``stops``,
-    ``curve`` and ``time_inverse`` as in :func:`puck_tables.stopping.curve_lookup.fill_states`.
-    From the stop on the derivatives are those of the stop.
+    Of pucks ``which`` (n,) at ``times`` (n,) ≥ 0.  ``pucks`` (m, 6 + 14), ``stops``, ``curve``,
+    ``time_inverse`` and the states as in :func:`puck_tables.stopping.curve_lookup.fill_states`.
+    Derivatives of x, y, body angle, vx, vy, ω by vx, vy, ω, δ, J, r, time; from the stop on those
+    of the stop.
     """
     cells = stop_slopes.shape[1] - 3
     flat_stops, flat_curve = stop_slopes.reshape(-1), curve_slopes.reshape(-1)
@@ -372,21 +383,34 @@ def fill_state_jacobians(
     facts = np.empty(FACTS)
     last = -1
     for n in range(times.size):
-        puck = pucks[which[n]]
-        if which[n] != last:  # states of a puck mostly come together
-            last = which[n]
-            _know_slopes(
-                puck, stops, curve, curve, constants, flat_stops, flat_curve, cells, sums, found,
-                own, facts,
-            )  # fmt: skip
+        puck, time = pucks[which[n]], times[n]
+        s = 2.0 * puck[3] * puck[3] - 1.0
+        side, share, left, log = _share_at(puck, time, time_inverse, s, sums)
+        if side >= 0:
+            functions_at(stops, curve, side, share, s, sums, found)
+        fill_state(puck, time, side, share, left, log, found, values[:, n])
         slip = math.hypot(math.hypot(puck[0], puck[1]), puck[5] * puck[2])
         if slip == 0.0:
             for row in range(6):
                 for column in range(7):
                     out[n, row, column] = 0.0
             continue
+        if which[n] != last:  # states of a puck come together
+            last = which[n]
+            _know_slopes(
+                puck, stops, curve, curve, constants, flat_stops, flat_curve, cells, sums, found,
+                own, facts,
+            )  # fmt: skip
+        stop_time = puck[LAUNCH_COLUMNS + TIME]
+        if side < 0 and time < stop_time:
+            if time > 0.0:  # pure sliding or pure spin: as its neighbour
+                natural = time / slip * puck[4]
+                side, share, left, _ = _share_at(facts[:_PUCK], natural, time_inverse, s, sums)
+            else:
+                left = 1.0
+        elif side < 0:
+            left = 0.0
         _state_slopes(
-            facts, times[n] / slip * puck[4], time_inverse, flat_stops, flat_curve, cells, sums,
-            found, own, flow, state,
-        )  # fmt: skip
-        _place_state(puck, times[n], state, out[n])
+            facts, side, share, left, flat_stops, flat_curve, cells, found, own, flow, state
+        )
+        _place_state(puck, time, state, out[n])

@@ -242,7 +242,10 @@ def states(
     flat_moments = np.ascontiguousarray(moments).reshape(-1)
     known = np.concatenate([launches[:, plain], chosen.known(launches[:, plain])])
     pucks = known.T.copy()
-    if not bodies:
+    slopes = None
+    if jacobian:
+        found, slopes = state_jacobians(chosen, pucks, flat_which, flat_moments)
+    elif not bodies:
         found = _looked_up(chosen, pucks, flat_which, flat_moments)
     else:
         found = np.empty((STATE_ROWS, flat_which.size))
@@ -256,9 +259,8 @@ def states(
              ((plain.sum(), "looked up"), ((~plain).sum(), "integrated")) if count]  # fmt: skip
     explanation = " and ".join(words) + ", to 1e-9 of Q, Q^2/J and Q^2/(J r)"
     result = _states(found, moments, launches, flat_which, shape, explanation)
-    if not jacobian:
+    if slopes is None:
         return result
-    slopes = state_jacobians(chosen, pucks, flat_which, flat_moments)
     return replace(
         result, _jacobian=slopes.reshape(*shape, *slopes.shape[1:]), _table=table,
         _arguments=np.concatenate([launches[:, flat_which], flat_moments[None]]),
