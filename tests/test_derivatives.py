@@ -125,6 +125,38 @@ def test_pure_motions_have_the_limit_of_their_neighbours(launch: tuple[float, fl
         assert one == pytest.approx(two, abs=1e-7)
 
 
+@pytest.mark.parametrize("scale", [1e-300, 1e-160, 1e150])
+def test_largest_and_smallest_speeds(scale: float):
+    """With v, rω and J scaled alike times stay, and places scale."""
+    one, other = (
+        stop((0.6 * q, 0.3 * q), 0.7 * q, delta=0.4, decel=q, jacobian=True).jacobian
+        * np.array([q, q, q, 1.0, q, 1.0]) / np.array([1.0, q, q, q, q])[:, None]
+        for q in (1.0, scale)
+    )  # fmt: skip
+    assert one == pytest.approx(other, abs=1e-14)
+    one, other = (
+        states((0.6 * q, 0.3 * q), 0.7 * q, 0.3, delta=0.4, decel=q, jacobian=True).jacobian
+        * np.array([q, q, q, 1.0, q, 1.0, 1.0]) / q
+        for q in (1.0, scale)
+    )  # fmt: skip
+    assert one == pytest.approx(other, abs=1e-14)
+
+
+@pytest.mark.parametrize("tiny", [1e-20, 1e-40, 1e-200, 1e-300])
+def test_slip_ratios_as_small_as_numbers_get(tiny: float):
+    """The first derivatives are those of the pure motion."""
+    times = [0.0, 1e-300, 0.2, 0.7]
+    for pure, near in (
+        (((1.0, 0.0), 0.0), ((1.0, 0.0), tiny)),
+        (((0.0, 0.0), 1.0), ((tiny, 0.0), 1.0)),
+    ):
+        for delta in (0.0, 1.0):
+            one, two = (
+                states(*each, times, delta=delta, jacobian=True).jacobian for each in (pure, near)
+            )
+            assert one == pytest.approx(two, abs=1e-9)
+
+
 def test_pure_spin_in_elementary_functions():
     """Next to it rω falls linearly, and the velocity like its power (ρ_∥ + iρ_⊥)/(4/3)."""
     delta, spin, time = 0.7, 3.0, 1.1

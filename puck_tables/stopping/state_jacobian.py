@@ -401,15 +401,13 @@ def fill_state_jacobians(
                 puck, stops, curve, curve, constants, flat_stops, flat_curve, cells, sums, found,
                 own, facts,
             )  # fmt: skip
-        stop_time = puck[LAUNCH_COLUMNS + TIME]
-        if side < 0 and time < stop_time:
-            if time > 0.0:  # pure sliding or pure spin: as its neighbour
-                natural = time / slip * puck[4]
-                side, share, left, _ = _share_at(facts[:_PUCK], natural, time_inverse, s, sums)
-            else:
-                left = 1.0
-        elif side < 0:
-            left = 0.0
+        if not time < puck[LAUNCH_COLUMNS + TIME]:
+            side, left = -1, 0.0
+        elif facts[0] == _TINY or facts[2] == _TINY:  # as the neighbour that its facts are of
+            natural = time / slip * puck[4]
+            side, share, left, _ = _share_at(facts[:_PUCK], natural, time_inverse, s, sums)
+        if side < 0 and time < puck[LAUNCH_COLUMNS + TIME]:
+            left = 1.0
         _state_slopes(
             facts, side, share, left, flat_stops, flat_curve, cells, found, own, flow, state
         )

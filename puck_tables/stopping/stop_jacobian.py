@@ -98,39 +98,41 @@ def stop_by_speeds(
 
 
 @inlined
-def _place_stop(launch: FloatArray, speed: float, own: FloatArray, out: FloatArray) -> None:
-    """From the frame of the launch (6,), ``own`` (5, 4), to ``out`` (5, 6)."""
+def _place_stop(
+    launch: FloatArray, speed: float, slip: float, own: FloatArray, out: FloatArray
+) -> None:
+    """From the frame of the launch and Q = J = r = 1, ``own`` (5, 4), to ``out`` (5, 6)."""
     vx, vy, spin, radius = launch[0], launch[1], launch[2], launch[5]
     unit, bend = 1.0 / launch[4], 1.0 / radius
+    duration = slip * unit
+    place = slip * duration
     east, north = (vx / speed, vy / speed) if speed > 0.0 else (1.0, 0.0)
     around = 1.0 if spin >= 0.0 else -1.0
-    for row in range(STOP_ROWS):
-        turn = row == BODY
-        scale = unit * bend if turn else unit
-        mirrored = around * scale if turn else scale
-        by_rim = scale if turn else around * scale
-        if row != STOP_X and row != STOP_Y:
-            value = mirrored * own[row, 0]
-            by_speed = mirrored * own[row, BY_SPEED]
-            out[row, BY_VX], out[row, BY_VY] = east * by_speed, north * by_speed
-            rim = by_rim * own[row, BY_RIM]
-            out[row, BY_SPIN] = radius * rim
-            out[row, BY_DELTA] = mirrored * own[row, BY_TILT]
-            out[row, BY_DECEL] = -value * unit
-            out[row, BY_RADIUS] = spin * rim - (value * bend if turn else 0.0)
-    # z: along + i left in the frame, times e
-    ahead, aside = unit * own[STOP_X, 0], around * unit * own[STOP_Y, 0]  # z/v
-    along, left = unit * own[STOP_X, BY_SPEED], around * unit * own[STOP_Y, BY_SPEED]
+    for row in (TIME, LENGTH, BODY):
+        whole = duration if row == TIME else place
+        part = unit if row == TIME else duration
+        by_rim = around * part
+        if row == BODY:  # changes its sign with the spin
+            whole, part, by_rim = around * bend * whole, around * bend * part, bend * part
+        value, by_speed = whole * own[row, 0], part * own[row, BY_SPEED]
+        by_rim *= own[row, BY_RIM]
+        out[row, BY_VX], out[row, BY_VY] = east * by_speed, north * by_speed
+        out[row, BY_SPIN] = radius * by_rim
+        out[row, BY_DELTA] = whole * own[row, BY_TILT]
+        out[row, BY_DECEL] = -value * unit
+        out[row, BY_RADIUS] = spin * by_rim - (value * bend if row == BODY else 0.0)
     # z = e (ahead + i aside) v: the derivatives along the velocity and across it
+    ahead, aside = duration * own[STOP_X, 0], around * duration * own[STOP_Y, 0]  # z/v
+    along, left = duration * own[STOP_X, BY_SPEED], around * duration * own[STOP_Y, BY_SPEED]
     xe, ye = east * along - north * left, east * left + north * along
     xn, yn = -east * aside - north * ahead, east * ahead - north * aside
     out[STOP_X, BY_VX], out[STOP_Y, BY_VX] = east * xe - north * xn, east * ye - north * yn
     out[STOP_X, BY_VY], out[STOP_Y, BY_VY] = north * xe + east * xn, north * ye + east * yn
-    along, left = around * unit * own[STOP_X, BY_RIM], unit * own[STOP_Y, BY_RIM]
+    along, left = around * duration * own[STOP_X, BY_RIM], duration * own[STOP_Y, BY_RIM]
     x, y = east * along - north * left, east * left + north * along
     out[STOP_X, BY_SPIN], out[STOP_Y, BY_SPIN] = radius * x, radius * y
     out[STOP_X, BY_RADIUS], out[STOP_Y, BY_RADIUS] = spin * x, spin * y
-    along, left = unit * own[STOP_X, BY_TILT], around * unit * own[STOP_Y, BY_TILT]
+    along, left = place * own[STOP_X, BY_TILT], around * place * own[STOP_Y, BY_TILT]
     out[STOP_X, BY_DELTA] = east * along - north * left
     out[STOP_Y, BY_DELTA] = east * left + north * along
     out[STOP_X, BY_DECEL] = -unit * (ahead * vx - aside * vy)
@@ -178,8 +180,9 @@ def fill_stop_jacobians(launches: FloatArray, slopes: FloatArray, out: FloatArra
             delta = block[3, n]
             _functions_in(flat, first[n], inside[n], delta, found)
             speed, rim, slip = speeds[n], rims[n], slips[n]
-            stop_by_speeds(speed, rim, slip, speed / slip, rim / slip, delta, found, own)
+            cosine, sine = speed / slip, rim / slip
+            stop_by_speeds(cosine, sine, 1.0, cosine, sine, delta, found, own)
             here = out[start + n]
-            _place_stop(block[:, n], speed, own, here)
+            _place_stop(block[:, n], speed, slip, own, here)
             if speed == 0.0:
                 here[LENGTH, BY_VX] = here[LENGTH, BY_VY] = math.nan
