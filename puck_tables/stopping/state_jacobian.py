@@ -44,21 +44,24 @@ from puck_tables.stopping.curve_lookup import (
     place_in_time,
     place_of_share,
 )
+from puck_tables.stopping.launch_frame import (
+    STATE_SPIN,
+    STATE_TURNED,
+    STATE_VX,
+    STATE_VY,
+    STATE_X,
+    STATE_Y,
+    place_state,
+    rotated,
+)
 from puck_tables.stopping.lookup import CURVE_ROW, slip_place
 from puck_tables.stopping.slopes import CURVE_WIDTH
 from puck_tables.stopping.stop_jacobian import (
     BODY,
-    BY_DECEL,
-    BY_DELTA,
     BY_HEIGHT,
-    BY_RADIUS,
     BY_RIM,
     BY_SPEED,
-    BY_SPIN,
     BY_TILT,
-    BY_TIME,
-    BY_VX,
-    BY_VY,
     STOP_FOUND,
     STOP_ROWS,
     STOP_X,
@@ -69,8 +72,6 @@ from puck_tables.stopping.stop_jacobian import (
     stop_found,
 )
 
-# what is differentiated, and by what
-STATE_X, STATE_Y, STATE_TURNED, STATE_VX, STATE_VY, STATE_SPIN = range(6)
 _TINY = 1e-25
 _NEAR_LIMIT = 0.05  # of c − c₀
 
@@ -187,11 +188,6 @@ def _know_slopes(
 
 
 @inlined
-def _rotated(one: float, other: float, cosine: float, sine: float) -> tuple[float, float]:
-    return one * cosine - other * sine, one * sine + other * cosine
-
-
-@inlined
 def _state_slopes(
     facts: FloatArray, side: int, share: float, left: float, stop_slopes: FloatArray,
     curve_slopes: FloatArray, cells: int, found: FloatArray, own: FloatArray, flow: FloatArray,
@@ -254,7 +250,7 @@ def _state_slopes(
     zx, zy = speed * own[STOP_X, 0], speed * own[STOP_Y, 0]  # what is left of the way
     wx, wy = speed * cos_turn, speed * sin_turn
     out[STATE_VX, 0], out[STATE_VY, 0], out[STATE_SPIN, 0] = wx, wy, rim
-    left_x, left_y = _rotated(zx, zy, cos_turn, sin_turn)
+    left_x, left_y = rotated(zx, zy, cos_turn, sin_turn)
     out[STATE_X, 0] -= left_x
     out[STATE_Y, 0] -= left_y
     out[STATE_TURNED, 0] -= own[BODY, 0]
@@ -284,7 +280,7 @@ def _state_slopes(
             turn += (fixed[_H0_TILT] * log + flow[_TURN_TILT] - here[_TURN_TILT]) * tilt
         v = speed * (log_q - sine * sine * u)
         a = rim * (log_q + cosine * cosine * u)
-        vx, vy = _rotated(v, speed * turn, cos_turn, sin_turn)
+        vx, vy = rotated(v, speed * turn, cos_turn, sin_turn)
         out[STATE_VX, column], out[STATE_VY, column], out[STATE_SPIN, column] = vx, vy, a
         if column == 5:
             out[STATE_X, 5], out[STATE_Y, 5], out[STATE_TURNED, 5] = wx, wy, rim
@@ -293,63 +289,11 @@ def _state_slopes(
             aside = own[STOP_Y, BY_SPEED] * v + own[STOP_Y, BY_RIM] * a + zx * turn
             ahead += own[STOP_X, BY_TILT] * tilt
             aside += own[STOP_Y, BY_TILT] * tilt
-            ahead, aside = _rotated(ahead, aside, cos_turn, sin_turn)
+            ahead, aside = rotated(ahead, aside, cos_turn, sin_turn)
             out[STATE_X, column] -= ahead
             out[STATE_Y, column] -= aside
             body = own[BODY, BY_SPEED] * v + own[BODY, BY_RIM] * a + own[BODY, BY_TILT] * tilt
             out[STATE_TURNED, column] -= body
-
-
-@inlined
-def _place_state(puck: FloatArray, time: float, own: FloatArray, out: FloatArray) -> None:
-    """From natural units in the frame of the launch, ``own`` (6, 6), to ``out`` (6, 7)."""
-    vx, vy, spin = puck[0], puck[1], puck[2]
-    decel, radius = puck[4], puck[5]
-    speed = math.hypot(vx, vy)
-    slip = math.hypot(speed, radius * spin)
-    east, north = (vx / speed, vy / speed) if speed > 0.0 else (1.0, 0.0)
-    around = 1.0 if spin >= 0.0 else -1.0
-    duration = slip / decel
-    for row in (STATE_X, STATE_VX):  # pairs: along and to the left of the launch
-        place = row == STATE_X
-        unit = slip * duration if place else slip
-        unit_by_speed = duration if place else 1.0
-        unit_by_time = slip if place else decel
-        ahead, aside = own[row, 1], around * own[row + 1, 1]
-        one_x, one_y = _rotated(ahead, aside, east, north)
-        two_x, two_y = _rotated(around * own[row, 2], own[row + 1, 2], east, north)
-        out[row, BY_VX] = unit_by_speed * (east * one_x - north * two_x)
-        out[row + 1, BY_VX] = unit_by_speed * (east * one_y - north * two_y)
-        out[row, BY_VY] = unit_by_speed * (north * one_x + east * two_x)
-        out[row + 1, BY_VY] = unit_by_speed * (north * one_y + east * two_y)
-        rim_x, rim_y = _rotated(around * own[row, 3], own[row + 1, 3], east, north)
-        out[row, BY_SPIN] = radius * unit_by_speed * rim_x
-        out[row + 1, BY_SPIN] = radius * unit_by_speed * rim_y
-        out[row, BY_RADIUS] = spin * unit_by_speed * rim_x
-        out[row + 1, BY_RADIUS] = spin * unit_by_speed * rim_y
-        tilt_x, tilt_y = _rotated(own[row, 4], around * own[row + 1, 4], east, north)
-        out[row, BY_DELTA], out[row + 1, BY_DELTA] = unit * tilt_x, unit * tilt_y
-        rate_x, rate_y = _rotated(own[row, 5], around * own[row + 1, 5], east, north)
-        out[row, BY_TIME], out[row + 1, BY_TIME] = unit_by_time * rate_x, unit_by_time * rate_y
-        here_x, here_y = _rotated(own[row, 0], around * own[row + 1, 0], east, north)
-        own_unit = unit if place else 0.0
-        elapsed = time / decel
-        out[row, BY_DECEL] = elapsed * out[row, BY_TIME] - own_unit / decel * here_x
-        out[row + 1, BY_DECEL] = elapsed * out[row + 1, BY_TIME] - own_unit / decel * here_y
-    for row in (STATE_TURNED, STATE_SPIN):
-        angle = row == STATE_TURNED
-        unit = slip * duration / radius if angle else slip / radius
-        unit_by_speed = duration / radius if angle else 1.0 / radius
-        unit_by_time = slip / radius if angle else decel / radius
-        value = around * unit * own[row, 0]
-        by_speed, by_rim = around * unit_by_speed * own[row, 1], unit_by_speed * own[row, 3]
-        out[row, BY_VX], out[row, BY_VY] = east * by_speed, north * by_speed
-        out[row, BY_SPIN] = radius * by_rim
-        out[row, BY_RADIUS] = spin * by_rim - value / radius
-        out[row, BY_DELTA] = around * unit * own[row, 4]
-        out[row, BY_TIME] = around * unit_by_time * own[row, 5]
-        gone = value / decel if angle else 0.0
-        out[row, BY_DECEL] = time / decel * out[row, BY_TIME] - gone
 
 
 @inlined
@@ -411,4 +355,4 @@ def fill_state_jacobians(
         _state_slopes(
             facts, side, share, left, flat_stops, flat_curve, cells, found, own, flow, state
         )
-        _place_state(puck, time, state, out[n])
+        place_state(puck, time, state, out[n])
