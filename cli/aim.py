@@ -133,8 +133,8 @@ def aim(
     if as_json:
         click.echo(json.dumps(found.summary()))
     else:
-        given = any(x is not None for x in (radius, height, friction, delta, decel))
-        click.echo(_report(found, "" if given else "   (defaults: see --help for a real puck)"))
+        told = any(x is not None for x in (radius, height, friction, delta, decel))
+        click.echo(_report(found, "" if told else "   (defaults: see --help for a real puck)"))
 
 
 def _refuse_of_scenes(

@@ -124,6 +124,7 @@ class Verbs:
         tol: float = 1e-8,
         method: str | None = None,
         table: Table | None = None,
+        jacobian: bool = False,
     ) -> Stops:
         """Where and when launches of this puck stop; velocity and spin broadcast.
 
@@ -131,7 +132,7 @@ class Verbs:
         ----------
         velocity : array_like (…, 2), m/s
         spin : array_like (…), rad/s, counter-clockwise positive
-        tol, method, table
+        tol, method, table, jacobian
             As for :func:`puck_tables.stop`.
 
         Returns
@@ -145,7 +146,7 @@ class Verbs:
         [1.395088, 4.000189]
         """
         stops: Stops = _verb("stopping.stops", "stop")(
-            velocity, spin, **_kind(self), tol=tol, method=method, table=table
+            velocity, spin, **_kind(self), tol=tol, method=method, table=table, jacobian=jacobian
         )
         return stops
 
@@ -156,6 +157,7 @@ class Verbs:
         time: npt.ArrayLike,
         *,
         table: Table | None = None,
+        jacobian: bool = False,
     ) -> States:
         """States of this puck at any times after launches, by look-up; all broadcasts.
 
@@ -165,6 +167,7 @@ class Verbs:
         spin : array_like (…), rad/s
         time : array_like (…), s, ≥ 0
         table : Table of stops, optional
+        jacobian : whether derivatives are wanted, as for :func:`puck_tables.states`
 
         Returns
         -------
@@ -177,7 +180,7 @@ class Verbs:
         [1.590682, 0.0]
         """
         found: States = _verb("stopping.states", "states")(
-            velocity, spin, time, **_kind(self), table=table
+            velocity, spin, time, **_kind(self), table=table, jacobian=jacobian
         )
         return found
 

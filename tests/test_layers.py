@@ -29,6 +29,7 @@ ROOMS = {
     "trajectory": "_core accuracy errors io motion puck result stopping table",
     "film": "_core errors io",
     "fit": "_core accuracy contact errors film io kernels motion puck result stopping table",
+    "autodiff": "errors stopping",
     "scene": "_core contact errors io kernels motion puck result stopping table",
     "world": "_core contact errors io kernels motion puck result scene stopping table",
     "tradeoff": "_core _version accuracy contact io kernels motion result stopping table",
@@ -49,6 +50,8 @@ DOORS = {
     "matplotlib": {"plot"},
     "scipy": {"chetaev", "stopping", "table.speed_fit", "tradeoff"},
     "click": {"cli"},
+    "jax": {"autodiff.jax"},
+    "torch": {"autodiff.torch"},
 }
 
 

@@ -69,7 +69,10 @@ class Track:
                 raise InputError(f"angle must be ({time.size},) as time is, got {angle.shape}")
         if np.isinf(place).any() or (angle is not None and np.isinf(angle).any()):
             raise InputError("places and angles must be numbers, or NaN where none was seen")
-        for field, value in (("time", time), ("place", place), ("angle", angle)):
+        fields: tuple[tuple[str, FloatArray | None], ...] = (
+            ("time", time), ("place", place), ("angle", angle),
+        )  # fmt: skip
+        for field, value in fields:
             object.__setattr__(self, field, value)
         object.__setattr__(self, "notes", tuple(self.notes))
         if (seen := int(np.count_nonzero(self.seen))) < 2:

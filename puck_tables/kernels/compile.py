@@ -128,3 +128,69 @@ def _weighted_rows(typing: Any, c: Any, k: Any, weights: Any, width: Any) -> Any
 
 
 weighted_rows: Any = intrinsic(prefer_literal=True)(_weighted_rows)
+
+
+_LANES = 4  # functions side by side in one register
+
+
+def _spline_polynomials(
+    typing: Any, c: Any, k: Any, weights: Any, s: Any, width: Any, powers: Any
+) -> Any:
+    """Compiled (c, k, (a, b, …), s, width, powers) → polynomials in s and their derivatives.
+
+    Rows of a flat array, one after the other and as many as weights, each of ``powers`` times
+    ``width`` numbers (constants; width a multiple of four): coefficients of as many functions, side
+    by side, powers of s ascending.  The rows are weighted and added, and the sums evaluated by
+    Horner's rule, functions in the lanes of registers from end to end; a tuple of the values, then
+    of the derivatives by s.
+    """
+    count, top = width.literal_value, powers.literal_value
+    lanes = ir.VectorType(ir.DoubleType(), _LANES)
+    nothing, spread = ir.Constant(lanes, ir.Undefined), [0] * _LANES
+    first = ir.Constant(ir.IntType(32), 0)
+
+    def build(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        data = context.make_array(signature.args[0])(context, builder, args[0]).data
+
+        def everywhere(number: Any) -> Any:
+            number = builder.insert_element(nothing, number, first)
+            return builder.shuffle_vector(
+                number, nothing, ir.Constant(ir.VectorType(ir.IntType(32), _LANES), spread)
+            )
+
+        def times_plus(one: Any, other: Any, more: Any) -> Any:
+            product = builder.fmul(one, other, flags=("contract",))
+            return builder.fadd(product, more, flags=("contract",))
+
+        rows = len(signature.args[2])
+        weight = [everywhere(builder.extract_value(args[2], row)) for row in range(rows)]
+        variable = everywhere(args[3])
+        values, slopes = [], []
+        for part in range(0, count, _LANES):
+            value = slope = ir.Constant(lanes, [0.0] * _LANES)
+            for power in range(top - 1, -1, -1):
+                total = None
+                for row in range(rows):
+                    at = ir.Constant(args[1].type, (row * top + power) * count + part)
+                    pointer = builder.gep(data, [builder.add(args[1], at)])
+                    found = builder.load(builder.bitcast(pointer, lanes.as_pointer()), align=8)
+                    if total is None:
+                        total = builder.fmul(found, weight[row], flags=("contract",))
+                    else:
+                        total = times_plus(found, weight[row], total)
+                if power == top - 1:
+                    value = total
+                else:
+                    slope = value if power == top - 2 else times_plus(slope, variable, value)
+                    value = times_plus(value, variable, total)
+            for lane in range(_LANES):
+                at = ir.Constant(ir.IntType(32), lane)
+                values.append(builder.extract_element(value, at))
+                slopes.append(builder.extract_element(slope, at))
+        return context.make_tuple(builder, signature.return_type, [*values, *slopes])
+
+    found: Any = types.UniTuple(types.float64, 2 * count)  # type: ignore[no-untyped-call]
+    return found(c, k, weights, s, width, powers), build
+
+
+spline_polynomials: Any = intrinsic(prefer_literal=True)(_spline_polynomials)

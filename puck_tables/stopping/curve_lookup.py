@@ -53,7 +53,7 @@ def _cell(xi: float, cells: int) -> tuple[int, float, float, float, float]:
 
 
 @inlined
-def _place(double_share: float) -> float:
+def place_of_share(double_share: float) -> float:
     """ξ from 2w."""
     q = math.sqrt(math.sqrt(double_share))
     return 1.0 - math.sqrt((1.0 - double_share) / ((1.0 + q) * (1.0 + q * q)))
@@ -103,14 +103,14 @@ def _curve_sums(c: FloatArray, side: int, xi: float, sums: FloatArray, functions
 
 
 @inlined
-def _end_rates(delta: float) -> tuple[float, float, float]:
+def end_rates(delta: float) -> tuple[float, float, float]:
     """A, B and h₁, in elementary form."""
     d2 = delta * delta
     return 0.5 + 0.125 * d2, (9.0 + 4.0 * d2) / (36.0 + 4.0 * d2), 9.0 * delta / (36.0 + 4.0 * d2)
 
 
 @inlined
-def _logs(side: int, double_share: float) -> tuple[float, float]:
+def end_logs(side: int, double_share: float) -> tuple[float, float]:
     """ln(1 + c) and ln(1 − c) from 2w."""
     small, large = math.log(double_share), math.log1p(1.0 - double_share)
     return (large, small) if side == 1 else (small, large)
@@ -120,8 +120,8 @@ def _logs(side: int, double_share: float) -> tuple[float, float]:
 def _log_n(side: int, double_share: float, c0: float, kappa: float, delta: float,
            curve: float, log_time: float) -> float:  # fmt: skip
     """ln|N|, or with log_time = 0 the same of Q alone."""
-    slow, fast, _ = _end_rates(delta)
-    log_plus, log_minus = _logs(side, double_share)
+    slow, fast, _ = end_rates(delta)
+    log_plus, log_minus = end_logs(side, double_share)
     c = 1.0 - double_share if side == 1 else double_share - 1.0
     return (
         math.log(abs((c - c0) / c0))
@@ -133,7 +133,7 @@ def _log_n(side: int, double_share: float, c0: float, kappa: float, delta: float
 @inlined
 def _log_y(side: int, sign: float, log_n: float, kappa: float, delta: float) -> float:
     """Ln y of a number N = sign·exp(log_n) that lies on this side."""
-    slow, fast, _ = _end_rates(delta)
+    slow, fast, _ = end_rates(delta)
     if side == 0:
         return -(slow / kappa) * log_n
     if sign > 0.0 and log_n > 1.0:
@@ -159,7 +159,7 @@ def _inverse_place(
 
 
 @inlined
-def _inverse_sum(c: FloatArray, side: int, xi: float, s: float, sums: FloatArray) -> float:
+def inverse_sum(c: FloatArray, side: int, xi: float, s: float, sums: FloatArray) -> float:
     """2w/y."""
     _curve_sums(c, side, xi, sums, 1)
     return _polynomial(sums, 0, s)
@@ -212,8 +212,8 @@ def fill_inverse(
 @inlined
 def _heading(side: int, double_share: float, delta: float, turning: float, part: float) -> float:
     """The heading without its part h₀ ln Q."""
-    slow, fast, spin_turn = _end_rates(delta)
-    log_plus, log_minus = _logs(side, double_share)
+    slow, fast, spin_turn = end_rates(delta)
+    log_plus, log_minus = end_logs(side, double_share)
     return turning / slow * log_plus + (turning - spin_turn) / fast * log_minus + delta * part
 
 
@@ -269,8 +269,8 @@ def know_launch(
     if delta > 0.0 and turn_share > 0.0:
         log_share = math.log(turn_share)
         end, xi, y = _inverse_place(sign, log_n + kappa * log_share, kappa, delta)
-        share = min(y * _inverse_sum(turn_inverse, end, xi, s, sums), 1.0)
-        _curve_sums(curve, end, _place(share), sums, 2)
+        share = min(y * inverse_sum(turn_inverse, end, xi, s, sums), 1.0)
+        _curve_sums(curve, end, place_of_share(share), sums, 2)
         part = _polynomial(sums, TURN_SUM, s)
         turn = turning * log_share + _heading(end, share, delta, turning, part) - heading
         out[TURN] = turn if edge > 0.0 else -turn
@@ -290,7 +290,7 @@ def fill_launches(
 
 
 @inlined
-def _fill_state(
+def fill_state(
     launch: FloatArray, time: float, side: int, double_share: float,
     left: float, log_left: float, found: FloatArray, out: FloatArray,
 ) -> None:  # fmt: skip
@@ -332,7 +332,7 @@ def _fill_state(
 
 
 @inlined
-def _place_in_time(puck: FloatArray, time: float) -> tuple[int, float, float, float, float]:
+def place_in_time(puck: FloatArray, time: float) -> tuple[int, float, float, float, float]:
     """Side (−1: no place on the curve), ξ and y, the share of time that is left and its log."""
     known = puck[LAUNCH_COLUMNS:]
     done = time / known[TIME]
@@ -345,12 +345,12 @@ def _place_in_time(puck: FloatArray, time: float) -> tuple[int, float, float, fl
 
 
 @inlined
-def _functions_at(
+def functions_at(
     stops: FloatArray, curve: FloatArray, side: int, double_share: float, s: float,
     sums: FloatArray, found: FloatArray,
 ) -> None:  # fmt: skip
     """T, along, across, body angle, S/δ into ``found`` (5,)."""
-    xi = _place(double_share)
+    xi = place_of_share(double_share)
     found[0], found[1], found[2] = _stop_functions(stops, side, xi, s, sums)
     _curve_sums(curve, side, xi, sums, 2)
     found[3], found[4] = _polynomial(sums, BODY_SUM, s), _polynomial(sums, TURN_SUM, s)
@@ -362,12 +362,12 @@ def look_up_state(
     sums: FloatArray, found: FloatArray, out: FloatArray,
 ) -> None:  # fmt: skip
     """One of :func:`fill_states`; ``sums`` (40,) and ``found`` (5,) are room to work."""
-    side, xi, y, left, log = _place_in_time(puck, time)
+    side, xi, y, left, log = place_in_time(puck, time)
     if side >= 0:
         s = 2.0 * puck[3] * puck[3] - 1.0
-        y = min(y * _inverse_sum(time_inverse, side, xi, s, sums), 1.0)
-        _functions_at(stops, curve, side, y, s, sums, found)
-    _fill_state(puck, time, side, y, left, log, found, out)
+        y = min(y * inverse_sum(time_inverse, side, xi, s, sums), 1.0)
+        functions_at(stops, curve, side, y, s, sums, found)
+    fill_state(puck, time, side, y, left, log, found, out)
 
 
 @allocating
@@ -388,22 +388,22 @@ def fill_states(
     for start in range(0, times.size, _BLOCK):
         count = min(_BLOCK, times.size - start)
         for n in range(count):
-            sides[n], xis[n], ys[n], shares[n], logs[n] = _place_in_time(
+            sides[n], xis[n], ys[n], shares[n], logs[n] = place_in_time(
                 pucks[which[start + n]], times[start + n]
             )
         for n in range(count):
             if sides[n] >= 0:
                 delta = pucks[which[start + n], 3]
                 s = 2.0 * delta * delta - 1.0
-                ys[n] = min(ys[n] * _inverse_sum(time_inverse, sides[n], xis[n], s, sums), 1.0)
+                ys[n] = min(ys[n] * inverse_sum(time_inverse, sides[n], xis[n], s, sums), 1.0)
         for n in range(count):
             if sides[n] >= 0:
                 delta = pucks[which[start + n], 3]
                 s = 2.0 * delta * delta - 1.0
-                _functions_at(stops, curve, sides[n], ys[n], s, sums, found[:, n])
+                functions_at(stops, curve, sides[n], ys[n], s, sums, found[:, n])
         for n in range(count):
             launch = which[start + n]
-            _fill_state(
+            fill_state(
                 pucks[launch], times[start + n], sides[n], ys[n],
                 shares[n], logs[n], found[:, n], out[:, start + n],
             )  # fmt: skip

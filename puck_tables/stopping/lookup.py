@@ -30,7 +30,7 @@ STOP_ROW = 3 * STOP_POWERS  # for states: three functions by eight powers, whole
 CURVE_ROW = 40  # four functions by nine powers, padded to whole cache lines
 _BLOCK = 128
 _NOTHING = 1e-300  # where nothing moves, 0/0 is 0
-_SMALLEST, _LARGEST = 1e-250, 1e250  # between them squares of speeds lose nothing that counts
+SMALLEST, LARGEST = 1e-250, 1e250  # between them squares of speeds lose nothing that counts
 
 
 @inlined
@@ -49,7 +49,7 @@ def slip_place(speed: float, rim: float) -> tuple[int, float]:
 
 
 @inlined
-def _place(speed: float, rim: float, cells: float) -> tuple[float, float]:
+def quick_place(speed: float, rim: float, cells: float) -> tuple[float, float]:
     """Cell and place in it; 1 − q may lose digits next to φ = π/4, where slopes in ξ vanish."""
     q = math.sqrt(math.sqrt(2.0 * min(speed, rim) / (speed + rim + _NOTHING)))
     p = (1.0 - math.sqrt(max(1.0 - q, 0.0))) * cells
@@ -110,13 +110,13 @@ def stops_kernel(powers: int) -> Callable[[FloatArray, FloatArray, FloatArray], 
                 slip2 = speed2 + rim * rim
                 edge[n] = rim
                 slip[n] = math.sqrt(slip2)
-                unsafe += 0 if (slip2 > _SMALLEST) & (slip2 < _LARGEST) else 1
-                cell, inside[n] = _place(math.sqrt(speed2), abs(rim), cells)
+                unsafe += 0 if (slip2 > SMALLEST) & (slip2 < LARGEST) else 1
+                cell, inside[n] = quick_place(math.sqrt(speed2), abs(rim), cells)
                 first[n] = int(width * cell + (side_stride if rim * rim > speed2 else 0.0))
             if unsafe > 0:  # anew, with care for the largest and smallest numbers
                 for n in range(vx.size):
                     slip2 = vx[n] * vx[n] + vy[n] * vy[n] + edge[n] * edge[n]
-                    if (slip2 > _SMALLEST) & (slip2 < _LARGEST):
+                    if (slip2 > SMALLEST) & (slip2 < LARGEST):
                         continue  # the same bits whatever else is in the block
                     speed = math.hypot(vx[n], vy[n])
                     slip[n] = math.hypot(speed, edge[n])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import ClassVar
 
 import numpy as np
@@ -32,6 +32,14 @@ from puck_tables.motion.state import (
     T,
 )
 from puck_tables.result import Result
+from puck_tables.stopping.jacobian import (
+    LAUNCH_NAMES,
+    MOMENT_NAMES,
+    STATE_NAMES,
+    Differentiated,
+    refuse_others,
+    state_jacobians,
+)
 from puck_tables.stopping.per_height import refuse_many
 from puck_tables.stopping.solvers import fits
 from puck_tables.stopping.stop_table import StopTable
@@ -43,13 +51,15 @@ _CHUNK = 1 << 15
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class States(Result):
+class States(Differentiated, Result):
     """States of pucks at the times asked for, arrays of one shape.
 
     ``time`` s; ``x``, ``y`` m from the launch; ``heading`` rad, of the velocity (at rest that of
     the moment when Q had fallen to 1/1000); ``orientation`` rad, how far the body has turned;
     ``speed`` v m/s; ``spin`` ω rad/s.  ``vx``, ``vy`` m/s, ``slip_speed`` Q = hypot(v, rω) m/s and
-    ``slip_angle`` φ rad follow, 0 at rest.
+    ``slip_angle`` φ rad follow, 0 at rest.  With ``jacobian=True``: ``jacobian`` (…, 6, 7), the
+    derivatives of x, y, orientation, vx, vy and spin by vx, vy, spin, delta, decel and radius of
+    the launch, and by time.
     """
 
     time: FloatArray
@@ -61,8 +71,13 @@ class States(Result):
     spin: FloatArray
     radius: FloatArray
     explanation: str = ""
+    _jacobian: FloatArray | None = None
+    _arguments: FloatArray = field(default_factory=lambda: np.empty((7, 0)))
+    _table: StopTable | None = None
 
     picture: ClassVar[str] = "places"
+    JACOBIAN_ROWS: ClassVar[tuple[str, ...]] = STATE_NAMES
+    JACOBIAN_COLUMNS: ClassVar[tuple[str, ...]] = MOMENT_NAMES
 
     def __repr__(self) -> str:
         return f"States({self.x.size} states of shape {self.x.shape})"
@@ -86,6 +101,18 @@ class States(Result):
     def slip_angle(self) -> FloatArray:
         """Φ = atan2(rω, v), rad; 0 at rest."""
         return np.arctan2(self.radius * self.spin, self.speed)
+
+    def _again(self, arguments: FloatArray) -> FloatArray:
+        table, launches = self._table or StopTable.shipped(), arguments[: len(LAUNCH_NAMES)]
+        pucks = np.concatenate([launches, table.known(launches)]).T.copy()
+        which = np.arange(arguments.shape[1])
+        rows = _looked_up(table, pucks, which, np.ascontiguousarray(arguments[len(LAUNCH_NAMES)]))
+        turned = rows[HEADING] + np.arctan2(launches[1], launches[0])
+        speed = rows[SPEED]
+        return np.stack([
+            rows[PUCK_X], rows[PUCK_Y], rows[ORIENTATION], speed * np.cos(turned),
+            speed * np.sin(turned), rows[SPIN],
+        ])  # fmt: skip
 
     def explain(self) -> str:
         """How they were got."""
@@ -114,6 +141,7 @@ def states(
     table: StopTable | None = None,
     pressure: str | Law = "uniform",
     gyration: float = HOMOGENEOUS,
+    jacobian: bool = False,
 ) -> States:
     """States of pucks at times after their launches, in any order, also after the stop.
 
@@ -132,6 +160,10 @@ def states(
     pressure, gyration
         As :class:`puck_tables.Puck`.  For δ > 1 or another kind of puck each puck is integrated,
         which takes some milliseconds, and a second for each different height.
+    jacobian : bool
+        Whether derivatives are wanted too: of x, y, orientation, vx, vy and spin by vx, vy, spin,
+        delta, decel and radius of the launch, and by time (velocity and acceleration), in this
+        order.  Of plain pucks: uniform pressure, homogeneous, δ ≤ 1.
 
     Returns
     -------
@@ -139,18 +171,26 @@ def states(
         Of the shape to which the pucks and ``time`` broadcast: for every time of every puck give
         the pucks one axis more, ``states(velocity[:, None, :], spin[:, None], time)``.  With the
         default table, and of every other puck, errors stay below 1e-9 of Q, Q²/J (places) and
-        Q²/(J r) (body angle); of the heading, times v/Q.
+        Q²/(J r) (body angle); of the heading, times v/Q.  With ``jacobian``, ``jacobian`` (…, 6,
+        7); see the notes for its error.
 
     Raises
     ------
     InputError
-        If an argument is not finite, has the wrong shape or lies outside its range, or a motion is
-        too large for floating point.
+        If an argument is not finite, has the wrong shape or lies outside its range, a motion is too
+        large for floating point, or derivatives of other than plain pucks are asked for.
 
     Notes
     -----
     All motions of a puck of height δ are one curve, up to rotation, reflection and scale; the time
     that is left says where on it a state stands (:mod:`puck_tables.stopping.curve_lookup`).
+
+    Derivatives follow from that curve by the chain rule, nothing is differenced
+    (:mod:`puck_tables.stopping.state_jacobian`).  In units of Q, J, r of the launch they err by at
+    most 1e-7 until Q has fallen to 1/1000, for launches of any slip angle.  Towards the stop the
+    direction turns without end, and the velocity is that of a moment as far off as the stop time
+    may be, 1e-10 Q/J.  At the stop and after it they are those of the stop, and of velocities 0.
+    In exact pure sliding and pure spin they are the limits from launches beside.
 
     References
     ----------
@@ -161,6 +201,9 @@ def states(
     >>> found = states((1.0, 0.0), 5.0, [2.0, 0.0, 99.0])
     >>> found.x.round(6).tolist(), found.spin.round(6).tolist()
     ([1.590682, 0.0, 2.213952], [2.426862, 5.0, 0.0])
+    >>> found = states((1.0, 0.0), 5.0, 2.0, jacobian=True)
+    >>> float(found.derivative("x", "delta").round(6))
+    0.029301
     """
     refuse_other_kind(table, StopTable)
     highest = plain_up_to(pressure, gyration)
@@ -183,6 +226,8 @@ def states(
         raise InputError(f"time must not be negative, got {times.min():g} s")
     launches = as_rows(columns)
     plain = launches[3] <= highest
+    if jacobian:
+        refuse_others(pressure, gyration, launches[3])
     bodies = _bodies(pressure, gyration, launches[3, ~plain])
     longest = max((body.longest for body in bodies.values()), default=2.0)
     if not fits(launches, longest).all():
@@ -195,20 +240,31 @@ def states(
     shape = which.shape
     flat_which = np.ascontiguousarray(which, np.int64).reshape(-1)
     flat_moments = np.ascontiguousarray(moments).reshape(-1)
-    if not bodies:
-        found = _looked_up(chosen, launches, flat_which, flat_moments)
+    known = np.concatenate([launches[:, plain], chosen.known(launches[:, plain])])
+    pucks = known.T.copy()
+    slopes = None
+    if jacobian:
+        found, slopes = state_jacobians(chosen, pucks, flat_which, flat_moments)
+    elif not bodies:
+        found = _looked_up(chosen, pucks, flat_which, flat_moments)
     else:
         found = np.empty((STATE_ROWS, flat_which.size))
         looked = plain[flat_which]
         number = np.cumsum(plain) - 1  # of a plain puck among such
         found[:, looked] = _looked_up(
-            chosen, launches[:, plain], number[flat_which[looked]], flat_moments[looked]
+            chosen, pucks, number[flat_which[looked]], flat_moments[looked]
         )
         _integrate(bodies, launches, np.flatnonzero(~plain), flat_which, flat_moments, found)
     words = [f"{count} pucks {how}" for count, how in
              ((plain.sum(), "looked up"), ((~plain).sum(), "integrated")) if count]  # fmt: skip
     explanation = " and ".join(words) + ", to 1e-9 of Q, Q^2/J and Q^2/(J r)"
-    return _states(found, moments, launches, flat_which, shape, explanation)
+    result = _states(found, moments, launches, flat_which, shape, explanation)
+    if slopes is None:
+        return result
+    return replace(
+        result, _jacobian=slopes.reshape(*shape, *slopes.shape[1:]), _table=table,
+        _arguments=np.concatenate([launches[:, flat_which], flat_moments[None]]),
+    )  # fmt: skip
 
 
 def _bodies(pressure: str | Law, gyration: float, delta: FloatArray) -> dict[float, Body]:
@@ -222,12 +278,11 @@ def _bodies(pressure: str | Law, gyration: float, delta: FloatArray) -> dict[flo
 
 
 def _looked_up(
-    table: StopTable, launches: FloatArray, which: npt.NDArray[np.int64], moments: FloatArray
+    table: StopTable, pucks: FloatArray, which: npt.NDArray[np.int64], moments: FloatArray
 ) -> FloatArray:
-    """States (6, n) of plain pucks ``which`` (n,) at ``moments`` (n,)."""
+    """States (6, n) of plain ``pucks`` (m, 20), ``which`` (n,) at ``moments`` (n,)."""
     from puck_tables.stopping.curve_lookup import fill_states
 
-    pucks = np.concatenate([launches, table.known(launches)]).T.copy()
     out = np.empty((STATE_ROWS, which.size))
 
     def work(start: int, stop: int) -> None:
@@ -297,7 +352,7 @@ def _states(
     shape: tuple[int, ...], explanation: str,
 ) -> States:  # fmt: skip
     """Rows of states, headings from those of the launches, in their shape."""
-    rows = [row.reshape(shape) for row in out]
+    rows = [one.reshape(shape) for one in out]
     direction = np.where(
         (launches[0] == 0.0) & (launches[1] == 0.0), 0.0, np.arctan2(launches[1], launches[0])
     )

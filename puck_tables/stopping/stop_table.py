@@ -30,6 +30,7 @@ from puck_tables.stopping.lookup import (
     row_width,
     stops_kernel,
 )
+from puck_tables.stopping.slopes import Slopes, slopes_of
 from puck_tables.table.check import CheckReport
 from puck_tables.table.fit import clamped_coefficients
 from puck_tables.table.table import Axis, Progress, Table
@@ -138,6 +139,11 @@ class StopTable(Table):
     def turn_inverse(self) -> FloatArray:
         """From Q to the slip ratio."""
         return self._inverse(with_time=False)
+
+    @cached_property
+    def slopes(self) -> Slopes:
+        """What derivatives of stops and states need."""
+        return slopes_of(self.axis, self.values)
 
     def _inverse(self, with_time: bool) -> FloatArray:
         from puck_tables.stopping.curve_lookup import fill_inverse

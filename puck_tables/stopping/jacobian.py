@@ -1,0 +1,207 @@
+"""Results that carry derivatives, and what computes those of plain pucks."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import ClassVar
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables._core.executor import run_chunks
+from puck_tables.contact.laws import Law
+from puck_tables.errors import InputError
+from puck_tables.motion.body import plain_up_to
+from puck_tables.stopping.spread import Spread, spread_of
+from puck_tables.stopping.stop_table import StopTable
+
+LAUNCH_NAMES = ("vx", "vy", "spin", "delta", "decel", "radius")
+STOP_NAMES = ("stop_time", "stop_x", "stop_y", "path_length", "body_angle")
+STATE_NAMES = ("x", "y", "orientation", "vx", "vy", "spin")
+MOMENT_NAMES = (*LAUNCH_NAMES, "time")
+_CHUNK = 1 << 13
+
+
+class Differentiated:
+    """A result with derivatives, where they were asked for.
+
+    ``jacobian`` (…, rows, columns): derivatives of :attr:`JACOBIAN_ROWS` by
+    :attr:`JACOBIAN_COLUMNS`, in these orders and SI units.
+    """
+
+    JACOBIAN_ROWS: ClassVar[tuple[str, ...]]
+    JACOBIAN_COLUMNS: ClassVar[tuple[str, ...]]
+    _jacobian: FloatArray | None = None
+    _arguments: FloatArray
+    _table: StopTable | None = None
+
+    @property
+    def jacobian(self) -> FloatArray:
+        """Derivatives (…, rows, columns).
+
+        Raises
+        ------
+        InputError
+            If they were not asked for.
+        """
+        if self._jacobian is None:
+            raise InputError("derivatives were not asked for: call with jacobian=True")
+        return self._jacobian
+
+    def derivative(self, of: str, by: str) -> FloatArray:
+        """One entry of the Jacobian by names, of the shape of the launches.
+
+        Parameters
+        ----------
+        of : one of ``JACOBIAN_ROWS``
+        by : one of ``JACOBIAN_COLUMNS``
+
+        Raises
+        ------
+        InputError
+            If a name is not known, or derivatives were not asked for.
+
+        Examples
+        --------
+        >>> from puck_tables import Puck
+        >>> found = Puck.similar().stop((1.0, 0.0), 5.0, jacobian=True)
+        >>> float(found.derivative("stop_x", "spin").round(6))
+        0.420792
+        """
+        places = []
+        for word, name, names in (
+            ("of", of, self.JACOBIAN_ROWS), ("by", by, self.JACOBIAN_COLUMNS),
+        ):  # fmt: skip
+            if name not in names:
+                raise InputError(f"{word} must be one of {', '.join(names)}, got {name!r:.40}")
+            places.append(names.index(name))
+        entry: FloatArray = self.jacobian[..., places[0], places[1]]
+        return entry
+
+    def spread(
+        self,
+        covariance: npt.ArrayLike,
+        of: Sequence[str] = ("vx", "vy", "spin"),
+        *,
+        samples: int = 0,
+        seed: int = 0,
+    ) -> Spread:
+        """How the results scatter when the launches do: covariance in, covariance out.
+
+        Parameters
+        ----------
+        covariance : array_like (k, k) or (…, k, k), SI units, symmetric, no negative variances
+            Of the arguments named in ``of``, for all launches or for each.
+        of : k names of ``JACOBIAN_COLUMNS``
+        samples : int
+            How many launches to draw of each, normally distributed, and to look up, beside the
+            linear answer: 0, or from 2 on.
+        seed : int
+            The same seed draws the same samples.
+
+        Returns
+        -------
+        Spread
+            ``covariance`` A C Aᵀ with the Jacobian A, and ``deviation``; with samples also theirs,
+            their ``ratio``, and ``is_linear``: whether the linear one is to be trusted.
+
+        Raises
+        ------
+        InputError
+            If derivatives were not asked for, the covariance is none, or a sample lies outside the
+            range of its argument.
+
+        Examples
+        --------
+        >>> from puck_tables import Puck
+        >>> found = Puck.similar().stop((1.0, 0.0), 5.0, jacobian=True)
+        >>> out = found.spread([[1e-4, 0.0, 0.0], [0.0, 1e-4, 0.0], [0.0, 0.0, 1e-2]], samples=5000)
+        >>> out.deviation.round(4).tolist()  # s, m, m, m, rad
+        [0.0716, 0.0481, 0.0224, 0.0483, 0.3751]
+        >>> bool(out.is_linear)
+        True
+        """
+        return spread_of(
+            self.JACOBIAN_ROWS, self.JACOBIAN_COLUMNS, self.jacobian, self._arguments, self._again,
+            covariance, of, samples, seed,
+        )  # fmt: skip
+
+    def _again(self, arguments: FloatArray) -> FloatArray:
+        """The rows of the Jacobian's results (rows, m) of arguments (columns, m)."""
+        raise NotImplementedError
+
+
+def refuse_others(pressure: str | Law, gyration: float, delta: FloatArray) -> None:
+    """Refuse heights (n,) that are not those of plain pucks.
+
+    Raises
+    ------
+    InputError
+    """
+    highest = plain_up_to(pressure, gyration)
+    if not highest > 0.0 or (delta > highest).any():
+        raise InputError(
+            "derivatives are known of a homogeneous puck under uniform pressure, delta <= 1: leave "
+            "out jacobian, or take differences"
+        )
+
+
+def refuse_rest(launches: FloatArray, shape: tuple[int, ...]) -> None:
+    """Refuse launches (6, n) at rest: next to them the stop time is a cone.
+
+    Raises
+    ------
+    InputError
+    """
+    still = (launches[:2] == 0.0).all(axis=0) & (launches[2] == 0.0)
+    if still.any():
+        where = np.unravel_index(int(still.argmax()), shape) if shape else ()
+        which = "launch " + str(list(map(int, where))) if shape else "the launch"
+        raise InputError(
+            f"{which} is at rest, where the stop time has no derivative: leave it out, or leave "
+            "out jacobian=True"
+        )
+
+
+def stop_jacobians(table: StopTable, launches: FloatArray) -> FloatArray:
+    """Derivatives (n, 5, 6) of the stops of plain launches (6, n)."""
+    from puck_tables.stopping.stop_jacobian import fill_stop_jacobians
+
+    slopes = table.slopes.stops
+    out = np.empty((launches.shape[1], len(STOP_NAMES), len(LAUNCH_NAMES)))
+
+    def work(start: int, stop: int) -> None:
+        some = np.ascontiguousarray(launches[:, start:stop])
+        fill_stop_jacobians(some, slopes, out[start:stop])
+
+    run_chunks(work, launches.shape[1], _CHUNK)
+    return out
+
+
+def state_jacobians(
+    table: StopTable, pucks: FloatArray, which: npt.NDArray[np.int64], moments: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """States (6, n) of plain ``pucks`` (m, 20), and derivatives (n, 6, 7); ``which`` (n,) when."""
+    from puck_tables.stopping.state_jacobian import fill_state_jacobians
+
+    slopes = table.slopes
+    values = np.empty((len(STATE_NAMES), which.size))
+    out = np.empty((which.size, len(STATE_NAMES), len(MOMENT_NAMES)))
+
+    def work(start: int, stop: int) -> None:
+        part = np.empty((len(STATE_NAMES), stop - start))
+        fill_state_jacobians(
+            pucks, which[start:stop], moments[start:stop], table.stop_coefficients,
+            table.curve_coefficients, table.time_inverse, table.constants, slopes.stops,
+            slopes.curve, part, out[start:stop],
+        )  # fmt: skip
+        values[:, start:stop] = part
+
+    if (which[:-1] > which[1:]).any():  # what is known of a puck serves all its states
+        order = np.argsort(which, kind="stable")
+        found = state_jacobians(table, pucks, which[order], moments[order])
+        values[:, order], out[order] = found
+        return values, out
+    run_chunks(work, which.size, _CHUNK)
+    return values, out
