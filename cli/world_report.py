@@ -15,12 +15,14 @@ _ROUNDING = 1e-14  # of energies
 
 def report(run: WorldRun) -> str:
     """What happened in two sentences; a table of pucks; impacts, energies, and how sure it is."""
+    from puck_tables.world.outcome import ways_of
+
     lines = {
         "scene": _scene(run),
         "energy": _energy(run),
         "heat": _heat(run),
         "error": _error(run),
-        "model": run.explain().replace("\n", ", "),
+        "model": ways_of(run.scene).replace("\n", ", "),
     }
     parts = [
         plainly(run),

@@ -46,7 +46,8 @@ if TYPE_CHECKING:
         Strips,
         Wall,
     )
-    from puck_tables.scene.pieces import Arc, Piece, Pocket, Post
+    from puck_tables.scene.pieces import Arc, Piece, Pocket, Post, Rim
+    from puck_tables.scene.restitution import Plastic, RestitutionTable, Viscoelastic
     from puck_tables.scene.scene import Scene
     from puck_tables.scene.sweep import SceneMap
     from puck_tables.stopping.aim import Aim
@@ -76,11 +77,14 @@ _HOMES = {
     "MissingExtraError": "errors",
     "OutputError": "errors",
     "Piece": "scene.pieces",
+    "Plastic": "scene.restitution",
     "Pocket": "scene.pieces",
     "Post": "scene.pieces",
     "Puck": "puck",
     "PuckError": "errors",
+    "RestitutionTable": "scene.restitution",
     "Result": "result",
+    "Rim": "scene.pieces",
     "Run": "scene.parts",
     "Scene": "scene.scene",
     "SceneMap": "scene.sweep",
@@ -93,6 +97,7 @@ _HOMES = {
     "Table": "table.table",
     "TableError": "errors",
     "Trajectory": "trajectory",
+    "Viscoelastic": "scene.restitution",
     "Wall": "scene.parts",
     "World": "world.world",
     "chetaev": "",
@@ -123,11 +128,14 @@ __all__ = [
     "MissingExtraError",
     "OutputError",
     "Piece",
+    "Plastic",
     "Pocket",
     "Post",
     "Puck",
     "PuckError",
+    "RestitutionTable",
     "Result",
+    "Rim",
     "Run",
     "Scene",
     "SceneMap",
@@ -140,6 +148,7 @@ __all__ = [
     "Table",
     "TableError",
     "Trajectory",
+    "Viscoelastic",
     "Wall",
     "World",
     "__version__",

@@ -22,8 +22,11 @@ from puck_tables.world.departures import (
 )
 from puck_tables.world.flight import (
     GONE,
+    LOOKED_UP,
     PATH,
+    STILL,
     UNTIL,
+    corridor,
 )
 from puck_tables.world.game import (
     LAUNCH_SPIN,
@@ -46,13 +49,15 @@ from puck_tables.world.game import (
 )
 from puck_tables.world.impact import (
     SUM_N,
+    TOO_FAST,
     collide,
 )
-from puck_tables.world.layout import EDGE, KIND, POCKET
-from puck_tables.world.meeting import next_crossing, next_meeting
+from puck_tables.world.layout import EDGE, KIND, POCKET, RADIUS
+from puck_tables.world.meeting import are_apart, next_crossing, next_meeting
+from puck_tables.world.quiet import quieten
 from puck_tables.world.touching import find_touching, is_integrated, press_somewhere
 
-REACHED, FULL, CROWDED, TANGLED, PAUSED, PUSHING = range(6)  # how a call ends
+REACHED, FULL, CROWDED, TANGLED, PAUSED, PUSHING, OFF_TABLE = range(7)  # how a call ends
 
 NOBODY, EVERYBODY, THOSE_LEFT = -1, -2, -3
 MOST_AT_ONCE = 1_000  # events at one moment
@@ -77,7 +82,18 @@ def look_ahead(game: Game, i: int, t: float, room: Room) -> None:
     for k in range(game.obstacles.shape[0]):
         found = next_crossing(game, i, k, t, game.next_time[i], room.work, room.one)
         _earlier(game, i, found, -1 - k)
+    kind = game.kinds[i]
+    known = kind in (STILL, LOOKED_UP)
+    mine = corridor(kind, game.flights[i], game.discs[i], room.one, math.inf, t)
     for j in range(game.discs.shape[0]):
+        other = game.kinds[j]
+        if known and other in (STILL, LOOKED_UP):  # most lie far from where this one goes
+            if kind == STILL and other == STILL:
+                continue
+            reach = game.discs[i, RADIUS] + game.discs[j, RADIUS]
+            far = corridor(other, game.flights[j], game.discs[j], room.one, math.inf, t)
+            if are_apart(mine, far, reach):
+                continue
         if j != i:
             found = next_meeting(game, i, j, t, game.next_time[i], room.work, room.one, room.two)
             _earlier(game, i, found, j)
@@ -111,8 +127,10 @@ def _happen(game: Game, i: int, partner: int, t: float, room: Room) -> int:
     count = find_touching(game, t, room)
     if count < 0:
         return CROWDED
-    if collide(game, room.contacts, count, room.rows, room.before, room.states, room.shares) < 0:
-        return TANGLED
+    rounds = collide(game, room.contacts, count, room.rows, room.before, room.states, room.shares)
+    if rounds < 0:
+        game.counts[N_CONTACTS] = count
+        return OFF_TABLE if rounds == TOO_FAST else TANGLED
     note_impacts(game, t, count, room)
     # those that no impulse reached fly on
     for j in range(discs.shape[0]):
@@ -131,6 +149,8 @@ def _happen(game: Game, i: int, partner: int, t: float, room: Room) -> int:
 def _go_on(game: Game, t: float, count: int, room: Room) -> int:
     """New flights of all that are concerned; PUSHING where some have to be integrated before."""
     game.counts[N_CONTACTS] = count
+    if quieten(game, count, room):
+        _whole_groups(game, count, room)
     pushes = press_somewhere(game, count, room)
     for j in range(game.discs.shape[0]):
         pushes = pushes or (room.marks[j] == CONCERNED and is_integrated(game, j, room.states[j]))
@@ -138,6 +158,21 @@ def _go_on(game: Game, t: float, count: int, room: Room) -> int:
         return PUSHING
     _take_off_all(game, t, room)
     return REACHED
+
+
+@inlined
+def _whole_groups(game: Game, count: int, room: Room) -> None:
+    """Mark the groups of those concerned."""
+    grown = True
+    while grown:
+        grown = False
+        for n in range(count):
+            i, j = room.contacts[n, 0], room.contacts[n, 1]
+            if j < 0 or game.group[i] == 0 or game.group[i] != game.group[j]:
+                continue
+            if (room.marks[i] == CONCERNED) != (room.marks[j] == CONCERNED):
+                room.marks[i] = room.marks[j] = CONCERNED
+                grown = True
 
 
 @inlined

@@ -10,6 +10,7 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables.scene.ingredients import Regions
 from puck_tables.world.flight import FLIGHT_COLUMNS, Curves
+from puck_tables.world.rims import Rims
 
 Whole = npt.NDArray[np.int64]
 
@@ -53,6 +54,7 @@ class Game(NamedTuple):
 
     discs: FloatArray
     regions: Regions
+    rims: Rims
     obstacles: FloatArray
     curves: Curves
     clock: FloatArray

@@ -17,6 +17,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
 from puck_tables.motion.steppers import DORMAND_PRINCE
 from puck_tables.scene.ingredients import Regions
+from puck_tables.world.rims import Rims
 
 IntArray = npt.NDArray[np.int64]
 
@@ -53,14 +54,16 @@ GAINS = 1e-10  # of the scale of accelerations: what gains less stays at rest
 class Group(NamedTuple):
     """What all groups share.
 
-    ``discs`` (n, 11), ``obstacles`` (k, 9): :mod:`puck_tables.world.layout`; ``regions``: the dry
-    friction of disc i as region i; ``films`` (f, 20) and ``reels`` (n, 2): rows of the motions that
-    are given, and of each disc the first and last + 1; (gx, gy): acceleration by the pull, m/s².
+    ``discs`` (n, 13), ``obstacles`` (k, 10): :mod:`puck_tables.world.layout`; ``regions``: the dry
+    friction of disc i as region i; ``rims``: their laws; ``films`` (f, 20) and ``reels`` (n, 2):
+    rows of the motions that are given, and of each disc the first and last + 1; (gx, gy):
+    acceleration by the pull, m/s².
     """
 
     discs: FloatArray
     obstacles: FloatArray
     regions: Regions
+    rims: Rims
     films: FloatArray
     reels: IntArray
     gx: float

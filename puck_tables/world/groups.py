@@ -85,7 +85,7 @@ def push_on(game: Game, room: Room) -> Game:
     t, scales = float(game.clock[0]), Scales(float(game.pace[0]), float(game.pace[1]), STEP_TOL)
     gx, gy = game.pull.tolist()
     films, reels = _driven_now(game, t)
-    shared = Group(game.discs, game.obstacles, game.regions, films, reels, gx, gy)
+    shared = Group(game.discs, game.obstacles, game.regions, game.rims, films, reels, gx, gy)
     for part in _components(contacts, len(game.discs)):
         members = np.unique(part[part >= 0])
         before = room.states.copy()

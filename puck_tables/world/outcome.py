@@ -18,6 +18,7 @@ from puck_tables.scene.entries import tables_of, units_of
 from puck_tables.scene.outcome import column_of, refuse_changed, scene_texts
 from puck_tables.scene.scene import Scene
 from puck_tables.world.agreement import is_integrated, number_of, pieces_of
+from puck_tables.world.rim_laws import rule_of
 from puck_tables.world.world import Meeting
 
 STATE = ("x", "y", "orientation", "vx", "vy", "spin")
@@ -104,8 +105,8 @@ class WorldRun(TimedResult):
         return sum(event.what == "impact" for event in self.events)
 
     def explain(self) -> str:
-        """How every puck was moved."""
-        return ways_of(self.scene)
+        """How every puck was moved, and by which laws they meet."""
+        return f"{ways_of(self.scene)}\n{rule_of(self.scene)}"
 
     def summary(self) -> dict[str, Any]:
         """The scalars with what went in, and the units of all, ready for JSON."""
