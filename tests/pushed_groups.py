@@ -11,7 +11,6 @@ from puck_tables.scene.regions import NO_LAW
 from puck_tables.world.group import (
     APART,
     HELD,
-    LEDGER,
     Group,
     Scales,
     desk_for,
@@ -21,6 +20,7 @@ from puck_tables.world.paths import PIECE_COLUMNS
 from puck_tables.world.pressing import press
 from puck_tables.world.pushing import follow
 from puck_tables.world.rims import PLAIN_RIMS
+from puck_tables.world.works import DONE, LEDGER, WORK_COLUMNS
 
 
 def disc(radius=0.05, mass=0.2, decel=1.0, delta=0.0, grip=0.0, gyration=0.5**0.5, damping=0.0,
@@ -101,10 +101,12 @@ class Ride:
             if (doings == HELD).all():
                 break
             pieces = np.zeros((len(self.members), rooms, PIECE_COLUMNS))
+            works = np.zeros((rooms, WORK_COLUMNS))
             how, which, self.t, count = follow(
                 group, self.members, contacts, self.states, self.t, t_end, scales, modes, doings,
-                pieces, self.ledger, desk,
+                pieces, works, desk,
             )  # fmt: skip
+            self.ledger += works[:count, DONE : DONE + LEDGER].sum(axis=0)
             self.hows.append((how, which))
             self.times.append(self.t)
             self.rows.append(pieces[:, :count].copy())

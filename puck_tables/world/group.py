@@ -18,6 +18,7 @@ from puck_tables.kernels.compile import inlined
 from puck_tables.motion.steppers import DORMAND_PRINCE
 from puck_tables.scene.ingredients import Regions
 from puck_tables.world.rims import Rims
+from puck_tables.world.works import LEDGER
 
 IntArray = npt.NDArray[np.int64]
 
@@ -32,10 +33,6 @@ HELD, YIELDS, MOVES, DRIVEN = range(4)
 TIME_UP, PARTS, RIM_STOPS, RIM_GIVES, RUNS_OFF, RESTS, SETS_OFF, FULL, UNSOLVED, NOT_FINITE = range(
     10
 )
-
-# of a ledger, J: heat of dry friction, of rims, of drag; work of the pull and of driven discs
-FLOOR_HEAT, RIM_HEAT, DRAG_HEAT, PULL_WORK, DRIVE_WORK = range(5)
-LEDGER = 5
 
 # columns of what is seen of a contact: the normal from the first to the second; how much a slip of
 # the centres opens it, 1/m; that slip, the approach, the slip of the rims, the gap; the radii of

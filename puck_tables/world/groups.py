@@ -43,13 +43,13 @@ from puck_tables.world.game import (
     N_GROUPS,
     N_HELD,
     N_PIECES,
+    N_WORKS,
     Game,
     Whole,
 )
 from puck_tables.world.group import (
     APART,
     HELD,
-    LEDGER,
     PARTS,
     RUNS_OFF,
     UNSOLVED,
@@ -64,6 +64,8 @@ from puck_tables.world.paths import START as BEGINS
 from puck_tables.world.pressing import press
 from puck_tables.world.pushing import follow
 from puck_tables.world.touching import is_integrated
+from puck_tables.world.works import DONE, LEDGER, MEMBER, RIM_HEAT, STINT, WORK_COLUMNS
+from puck_tables.world.works import START as WORK_START
 
 STEP_TOL = 1e-11  # of a step, in units of Q and Q²/J
 ROWS = 400  # steps of a group before its flights end for a new look
@@ -89,8 +91,10 @@ def push_on(game: Game, room: Room) -> Game:
     for part in _components(contacts, len(game.discs)):
         members = np.unique(part[part >= 0])
         before = room.states.copy()
-        kept, t_end, ways = _follow(shared, members, part, room.states, t, scales)
-        _note_contacts(game, t, part, kept, held_before, before, room)
+        kept, t_end, ways, jump, works = _follow(shared, members, part, room.states, t, scales)
+        _note_contacts(game, t, part, kept, held_before, float(jump[RIM_HEAT]), before, room)
+        jump[RIM_HEAT] = 0.0  # the event has it
+        game = _with_works(game, _a_free_one(game, members), t, jump, works)
         for i in members:  # a rim that gripped at once has changed what touches it, too
             if room.marks[i] == NOT_CONCERNED and (room.states[i] != before[i]).any():
                 room.marks[i] = CONCERNED
@@ -109,8 +113,11 @@ def push_on(game: Game, room: Room) -> Game:
                 game = _set_out(game, int(i), t, t_end, ways[place])
     for i in np.flatnonzero(room.marks == CONCERNED):
         if is_integrated(game, int(i), room.states[i]):
-            _, t_end, ways = _follow(shared, np.array([i]), contacts[:0], room.states, t, scales)
+            _, t_end, ways, jump, works = _follow(
+                shared, np.array([i]), contacts[:0], room.states, t, scales
+            )
             if t < t_end < math.inf:
+                game = _with_works(game, int(i), t, jump, works)
                 game = _set_out(game, int(i), t, t_end, ways[0])
                 room.marks[i] = PUSHED
     game.held[: len(held)], game.counts[N_HELD] = held, len(held)
@@ -135,12 +142,10 @@ def _driven_now(game: Game, t: float) -> tuple[FloatArray, Whole]:
 
 def _note_contacts(
     game: Game, t: float, part: Whole, kept: Whole, held_before: set[frozenset[int]],
-    before: FloatArray, room: Room,
+    lost: float, before: FloatArray, room: Room,
 ) -> None:  # fmt: skip
     """Write down the contacts that are new, and what was lost where rims gripped at once."""
     free = game.discs[:, LIGHTNESS] > 0.0
-    changes = _energies(game, before[free], free) - _energies(game, room.states[free], free)
-    lost = float(changes.sum())
     fresh = [pair for pair in kept.tolist() if frozenset(pair) not in held_before]
     if not fresh and abs(lost) > LOST_SHARE * float(_energies(game, before[free], free).sum()):
         fresh = part[:1].tolist()
@@ -180,8 +185,10 @@ def _components(contacts: Whole, discs: int) -> list[Whole]:
 
 def _follow(
     shared: Group, members: Whole, contacts: Whole, states: FloatArray, t: float, scales: Scales
-) -> tuple[Whole, float, FloatArray]:
-    """The contacts of a group that press, until when it is known, and pieces (m, rows, 20).
+) -> tuple[Whole, float, FloatArray, FloatArray, FloatArray]:
+    """The contacts of a group that press, until when it is known, and pieces (m, rows, 21).
+
+    And the ledger (5,) of what jumped at once, and the works (rows, 19) of the way.
 
     No contacts where none presses; where all rest until they are hit, for ever and no pieces.
     """
@@ -192,29 +199,31 @@ def _follow(
         if first < last:  # what drives may turn where its piece ends
             horizon = min(horizon, float(shared.films[first, [BEGINS, DURATION]].sum()))
     alone, nothing = not len(contacts), np.zeros((len(members), 0, PIECE_COLUMNS))
+    jump, idle = np.zeros(LEDGER), np.zeros((0, WORK_COLUMNS))
     for _ in range(_TRIES):
-        desk, ledger = desk_for(len(members), len(contacts)), np.zeros(LEDGER)
+        desk = desk_for(len(members), len(contacts))
         modes, doings = np.zeros(len(contacts), np.int64), np.zeros(len(members), np.int64)
-        how = press(shared, members, contacts, states, t, scales, modes, doings, ledger, desk)
+        how = press(shared, members, contacts, states, t, scales, modes, doings, jump, desk)
         if how == UNSOLVED:
             break
         contacts, modes = contacts[modes != APART], modes[modes != APART]
         if not (alone or len(contacts)):
-            return contacts, t, nothing
+            return contacts, t, nothing, jump, idle
         if (doings == HELD).all():
-            return contacts, math.inf, nothing
+            return contacts, math.inf, nothing, jump, idle
         pieces = np.zeros((len(members), ROWS, PIECE_COLUMNS))
+        works = np.zeros((ROWS, WORK_COLUMNS))
         how, which, t_end, count = follow(
             shared, members, contacts, states.copy(), t, horizon, scales, modes, doings, pieces,
-            ledger, desk,
+            works, desk,
         )  # fmt: skip
         if t_end > t and count > 0:
-            return contacts, t_end, pieces[:, :count]
+            return contacts, t_end, pieces[:, :count], jump, works[:count]
         if how not in (PARTS, RUNS_OFF):
             break
         contacts = np.delete(contacts, which, axis=0)
         if not len(contacts):
-            return contacts, t, nothing
+            return contacts, t, nothing, jump, idle
     raise PuckError(
         f"at {t:.6g} s {len(members)} pucks press on each other so that no forces satisfy all laws "
         "of their rims: give their rims a finite friction (rim), or move one of them"
@@ -229,6 +238,27 @@ def _with_pieces(game: Game, rows: FloatArray) -> Game:
         game = game._replace(pieces=np.vstack([game.pieces[:first], more]))
     game.pieces[first : first + len(rows)] = rows
     game.counts[N_PIECES] = first + len(rows)
+    return game
+
+
+def _a_free_one(game: Game, members: Whole) -> int:
+    """A member that is not driven: its flight lasts as long as that of the group."""
+    return int(members[game.discs[members, LIGHTNESS] > 0.0][0])
+
+
+def _with_works(game: Game, member: int, t: float, jump: FloatArray, works: FloatArray) -> Game:
+    """With what was booked on a stint from t on, and at its start."""
+    if jump.any():
+        row = np.zeros((1, WORK_COLUMNS))
+        row[0, WORK_START], row[0, DONE : DONE + LEDGER] = t, jump
+        works = np.vstack([row, works])
+    works[:, MEMBER], works[:, STINT] = member, t
+    first = int(game.counts[N_WORKS])
+    if first + len(works) > len(game.works):
+        more = np.zeros((first + 2 * len(works), WORK_COLUMNS))
+        game = game._replace(works=np.vstack([game.works[:first], more]))
+    game.works[first : first + len(works)] = works
+    game.counts[N_WORKS] = first + len(works)
     return game
 
 

@@ -39,6 +39,7 @@ from puck_tables.world.game import (
 )
 from puck_tables.world.paths import FIRST
 from puck_tables.world.rim_laws import number_for, numbers_of, rims_of
+from puck_tables.world.works import WORK_COLUMNS
 
 ROWS = 256  # of events and flights at first
 
@@ -109,6 +110,7 @@ def game_of(scene: Scene, order: Whole) -> tuple[Game, Room]:
         launches=np.array(sorted(launches)).reshape(-1, LAUNCH_COLUMNS),
         pieces=np.vstack(ways),
         drives=drives,
+        works=np.zeros((0, WORK_COLUMNS)),
         events=np.zeros((ROWS + 8 * count, EVENT_COLUMNS)),
         history=np.zeros((ROWS + 4 * count, HISTORY_COLUMNS)),
         counts=np.zeros(COUNTS, np.int64),

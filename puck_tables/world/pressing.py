@@ -12,13 +12,11 @@ from puck_tables.world.forces import can_rest, gain_of, place_driven, slip_of
 from puck_tables.world.group import (
     APART,
     APPROACH,
-    DRIVE_WORK,
     DRIVEN,
     GAINS,
     GRIP,
     HELD,
     MOVES,
-    RIM_HEAT,
     STICKS,
     STILL,
     TIME_UP,
@@ -35,6 +33,7 @@ from puck_tables.world.layout import LIGHTNESS, RADIUS, TURNABILITY
 from puck_tables.world.meeting import HARDLY
 from puck_tables.world.putting_right import stop_slips
 from puck_tables.world.sights import look
+from puck_tables.world.works import DRIVE_WORK, RIM_HEAT
 from puck_tables.world.yielding import settle
 
 _CREEPS = 8  # rounds

@@ -48,6 +48,7 @@ from puck_tables.world.stepping import (
     step,
     write_piece,
 )
+from puck_tables.world.works import LEDGER
 
 _FIRST = 1e-3  # of Q/J: the first step
 _SHORTEST = 1e-16  # of Q/J: shorter steps lead nowhere
@@ -118,7 +119,7 @@ def _moment(
 def follow(
     group: Group, members: IntArray, contacts: IntArray, states: FloatArray, t: float,
     t_end: float, scales: Scales, modes: IntArray, doings: IntArray, pieces: FloatArray,
-    ledger: FloatArray, desk: Desk,
+    works: FloatArray, desk: Desk,
 ) -> tuple[int, int, float, int]:  # fmt: skip
     """Follow a group from t until something changes, at most until ``t_end``.
 
@@ -132,7 +133,8 @@ def follow(
         Contacts that are APART are not looked at.
     pieces : (≥ m, rows, 20), the ways, see :mod:`puck_tables.world.paths`
         ``pieces[a, :count]`` are those of member a, one row for each step.
-    ledger : (5,) J, to which heat and work are added
+    works : (rows, 19), where the energy went, see :mod:`puck_tables.world.works`
+        ``works[:count]``, one row for each step, but for its first two columns.
     desk : to work on
 
     Returns
@@ -192,7 +194,7 @@ def follow(
                 length = _moment(
                     group, members, modes, doings, t, length, _NOBODY, BEGIN, scales, desk
                 )
-        add_work(length, ledger, desk)
+        add_work(length, start + passed, works[count], desk)
         begun = False  # whether anybody's slip is so large that it has a direction of its own
         for place in range(size):
             write_piece(pieces[place, count], start + passed, length, place, desk)
@@ -211,7 +213,7 @@ def follow(
             for i in range(6):
                 y[place, i] = new[place, i]
                 desk.stages[0, place, i] = desk.stages[END, place, i]
-        for i in range(ledger.shape[0]):
+        for i in range(LEDGER):
             desk.powers[0, i] = desk.powers[END, i]
         if begun:
             rates_at(group, members, modes, doings, t, y, BEGIN, scales, desk)
