@@ -29,6 +29,7 @@ from puck_tables.world.flight import (
     corridor,
 )
 from puck_tables.world.game import (
+    IMPACT,
     LAUNCH_SPIN,
     LAUNCH_TIME,
     LAUNCH_VX,
@@ -42,14 +43,22 @@ from puck_tables.world.game import (
     N_LAUNCHES,
     NOTHING,
     OVER_EDGE,
+    PARTNER,
     PATH_ENDS,
     POCKETED,
     STRUCK,
+    TIME,
+    WHAT,
+    WHO,
     Game,
 )
 from puck_tables.world.impact import (
+    FLAT,
+    NX,
+    NY,
     SUM_N,
     TOO_FAST,
+    approach,
     collide,
 )
 from puck_tables.world.layout import EDGE, KIND, POCKET, RADIUS
@@ -60,6 +69,8 @@ from puck_tables.world.touching import find_touching, is_integrated, press_somew
 REACHED, FULL, CROWDED, TANGLED, PAUSED, PUSHING, OFF_TABLE = range(7)  # how a call ends
 
 NOBODY, EVERYBODY, THOSE_LEFT = -1, -2, -3
+SLOW = 1e-6  # of the scale of speeds: an impact that only what pushes brings about
+MOST_BACK = 64  # events
 MOST_AT_ONCE = 1_000  # events at one moment
 MOST_IN_A_CALL = 2_000  # then the caller may hear Ctrl-C
 
@@ -100,6 +111,31 @@ def look_ahead(game: Game, i: int, t: float, room: Room) -> None:
             _earlier(game, j, found, i)
 
 
+@inlined
+def _is_squeezed(game: Game, t: float, count: int, room: Room) -> bool:
+    """Whether slow impacts follow so soon on the last of the same two that these never parted.
+
+    So go on those that are squeezed by what pushes and rubs them, such as a disc between another
+    one and a cushion: no single rebound of them dies out, and they would never end.
+    """
+    found, slow = False, SLOW * game.pace[0]
+    for n in range(count):
+        i, j, row = room.contacts[n, 0], room.contacts[n, 1], room.rows[n]
+        un, _ = approach(game, i, j, row[NX], row[NY], room.states)
+        if un > slow:
+            return False
+        if un <= 0.0 or found:
+            continue
+        since = t - FLAT * game.discs[i, RADIUS] / un
+        for back in range(1, min(game.counts[N_EVENTS], MOST_BACK) + 1):
+            event = game.events[game.counts[N_EVENTS] - back]
+            if event[TIME] < since:
+                break
+            if event[WHAT] == IMPACT and event[WHO] == i and event[PARTNER] == j:
+                found = True
+    return found
+
+
 @inner
 def _happen(game: Game, i: int, partner: int, t: float, room: Room) -> int:
     """What comes next for a disc happens; those concerned are marked."""
@@ -127,7 +163,10 @@ def _happen(game: Game, i: int, partner: int, t: float, room: Room) -> int:
     count = find_touching(game, t, room)
     if count < 0:
         return CROWDED
-    rounds = collide(game, room.contacts, count, room.rows, room.before, room.states, room.shares)
+    squeezed = _is_squeezed(game, t, count, room)
+    rounds = collide(
+        game, room.contacts, count, room.rows, room.before, room.states, room.shares, squeezed
+    )
     if rounds < 0:
         game.counts[N_CONTACTS] = count
         return OFF_TABLE if rounds == TOO_FAST else TANGLED

@@ -84,12 +84,12 @@ class Desk(NamedTuple):
     ``pairs``: the contacts by places of members; ``states``: at the start and the end of a step and
     at a trial (3, m, 6); ``stages`` (8, m, 6) and ``powers`` (9, 5): rates of states and ledger;
     ``own``, ``rates`` (m, 3): accelerations without and with contacts; ``inverse`` (m, 2): 1/m, 1/I
-    of those that can move; ``sights`` (c, 11); ``watched`` (2, c, 4): see
-    :func:`puck_tables.world.moments.watch`; ``pushes`` (c, 2): λ, τ; ``ways`` (m, 3), ``paces``
-    (m, 2): where what yields slips to, and how fast that turns; ``rows``, ``columns`` (2c, 6),
-    ``owners`` (2c, 2), ``order`` (2c,): the constraints, and the members concerned; ``matrix``,
-    ``factors`` (2c, 2c), ``vectors`` (4, 2c); ``modes`` (2, c), ``doings`` (m,): trials; ``film``
-    (9,).
+    of those that can move; ``sights``, ``midway`` (c, 11): at the end and in the middle of a step;
+    ``watched`` (2, c, 4): see :func:`puck_tables.world.moments.watch`; ``pushes`` (c, 2): λ, τ;
+    ``ways`` (m, 3), ``paces`` (m, 2): where what yields slips to, and how fast that turns;
+    ``rows``, ``columns`` (2c, 6), ``owners`` (2c, 2), ``order`` (2c,): the constraints, and the
+    members concerned; ``matrix``, ``factors`` (2c, 2c), ``vectors`` (4, 2c); ``modes`` (2, c),
+    ``doings`` (m,): trials; ``film`` (9,).
     """
 
     pairs: IntArray
@@ -100,6 +100,7 @@ class Desk(NamedTuple):
     rates: FloatArray
     inverse: FloatArray
     sights: FloatArray
+    midway: FloatArray
     watched: FloatArray
     pushes: FloatArray
     ways: FloatArray
@@ -130,7 +131,7 @@ def desk_for(members: int, contacts: int) -> Desk:
         pairs=np.zeros((c, 2), np.int64), states=np.zeros((3, m, 6)),
         stages=np.zeros((stages + 1, m, 6)), powers=np.zeros((stages + 2, LEDGER)),
         own=np.zeros((m, 3)), rates=np.zeros((m, 3)), inverse=np.zeros((m, 2)),
-        sights=np.zeros((c, SIGHT)),
+        sights=np.zeros((c, SIGHT)), midway=np.zeros((c, SIGHT)),
         watched=np.zeros((2, c, WATCHES)), pushes=np.zeros((c, 2)),
         ways=np.zeros((m, 3)), paces=np.zeros((m, 2)),
         rows=np.zeros((k, 6)), columns=np.zeros((k, 6)), owners=np.zeros((k, 2), np.int64),

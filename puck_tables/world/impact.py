@@ -15,10 +15,11 @@ slide μ P_n |u_t| − P_t²/2m_t; never less than nothing.  Where e falls with 
 
 Of discs that touch, those contacts that approach are resolved, then those that approach then, and
 so on: a row of pucks passes an impact on, as if there were gaps between them (after 200 rounds
-those that take turns are resolved together with e = 0).  Contacts of one
-round that share a disc are resolved together: the impulses for e = β = 0 (P_n ≥ 0) are found by an
-iteration that treats all alike, then enlarged by 1 + e and 1 + β, as Poisson has it, and lessened
-together should energy grow.  So no numbering matters, and what is symmetric stays so.
+those that take turns are resolved together with e = 0; those that are squeezed at once, also with
+β = 0).  Contacts of one round that share a disc are resolved together: the impulses for e = β = 0
+(P_n ≥ 0) are found by an iteration that treats all alike, then enlarged by 1 + e and 1 + β, as
+Poisson has it, and lessened together should energy grow.  So no numbering matters, and what is
+symmetric stays so.
 
 Rebounds of discs that press on each other die out.  Where those left are lower than 1e-13 of the
 radius, or than what is known of places (1e-10 of Q²/J), e = 0: they stay in contact.
@@ -45,7 +46,7 @@ from puck_tables.world.layout import (
     WALL,
     C,
 )
-from puck_tables.world.meeting import normal_to
+from puck_tables.world.meeting import HARDLY, normal_to
 from puck_tables.world.rims import along_of_pair, restitutions_of_pair, smaller_at
 
 # columns of a contact in work: normal, slownesses 1/m_n and 1/m_t, law, whether it acts in this
@@ -285,7 +286,7 @@ def _most_shared(contacts: Whole, count: int, rows: FloatArray, shares: Whole) -
 @inner
 def collide(
     game: Game, contacts: Whole, count: int, rows: FloatArray, before: FloatArray,
-    states: FloatArray, shares: Whole,
+    states: FloatArray, shares: Whole, squeezed: bool,
 ) -> int:  # fmt: skip
     """All impacts of discs that touch, at one instant; how many rounds there were.
 
@@ -293,6 +294,7 @@ def collide(
 
     ``contacts`` (count, 2): discs and their partners, prepared in ``rows``; ``states`` (n, 6) get
     the velocities after them; ``before`` (n, 6) and ``shares`` (n,) are room to work.
+    ``squeezed``: all that do not part are resolved together, with e = 0.
     """
     for turn in range(MOST_ROUNDS):
         acting = 0
@@ -315,11 +317,14 @@ def collide(
                         before[j, column] = states[j, column]
         if acting == 0:
             return turn
-        if turn >= TURNS:  # such as of a light disc between a heavy one and a wall
+        if turn >= TURNS or squeezed:  # such as of a light disc between a heavy one and a wall
             for n in range(count):
                 row, i, j = rows[n], contacts[n, 0], contacts[n, 1]
-                if row[SUM_N] > 0.0:
+                un, _ = approach(game, i, j, row[NX], row[NY], states)
+                if row[SUM_N] > 0.0 or (squeezed and un >= -HARDLY * game.pace[0]):
                     row[ACTS], row[E], row[ONE], row[OTHER] = 1.0, 0.0, 0.0, 0.0
+                    if squeezed and row[BETA] > -1.0:
+                        row[BETA] = 0.0  # rims that are pressed, as in a contact that lasts
                     for column in range(VX, SPIN + 1):
                         before[i, column] = states[i, column]
                         if j >= 0:

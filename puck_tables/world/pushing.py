@@ -20,6 +20,7 @@ from puck_tables.world.forces import can_rest, slip_of
 from puck_tables.world.group import (
     DRIVEN,
     FULL,
+    GAP,
     HELD,
     MOVES,
     NOT_FINITE,
@@ -37,8 +38,10 @@ from puck_tables.world.group import (
     find_places,
     small_slip,
 )
+from puck_tables.world.layout import RADIUS
 from puck_tables.world.moments import first_negative, sets_off, watch
-from puck_tables.world.paths import DURATION, START, piece_at
+from puck_tables.world.paths import DURATION, START, on_piece, piece_at
+from puck_tables.world.sights import look
 from puck_tables.world.stepping import (
     BEGIN,
     END,
@@ -50,7 +53,9 @@ from puck_tables.world.stepping import (
 )
 from puck_tables.world.works import LEDGER
 
+_CLOSED = 5e-13  # of a radius: how far apart, at most, are discs in touch between two steps
 _FIRST = 1e-3  # of Q/J: the first step
+_BRIEF = 1e-6  # of Q/J: on as short a step gaps are rounding
 _SHORTEST = 1e-16  # of Q/J: shorter steps lead nowhere
 _CLOSE = 1e-14  # of a step: how close a moment is found
 _NOBODY = cast(int, np.int64(-1))
@@ -115,6 +120,33 @@ def _moment(
     return high
 
 
+@inlined
+def _opens_midway(
+    group: Group, members: IntArray, contacts: int, pieces: FloatArray, count: int, start: float,
+    h: float, desk: Desk,
+) -> float:  # fmt: skip
+    """How far apart, or into each other, discs in touch are midway on their ways, over _CLOSED.
+
+    There the polynomials between the ends of a step are off by most.
+    """
+    if contacts == 0:
+        return 0.0
+    trial, largest = desk.states[2], 0.0
+    for place in range(members.shape[0]):
+        piece = pieces[place, count]
+        write_piece(piece, start, h, place, desk)
+        on_piece(piece, start + 0.5 * h, desk.film)
+        for i in range(6):
+            trial[place, i] = desk.film[i]
+    look(group, members, desk.pairs[:contacts], trial, desk.midway)
+    for c in range(contacts):
+        radius = group.discs[members[desk.pairs[c, 0]], RADIUS]
+        if desk.pairs[c, 1] >= 0:
+            radius = min(radius, group.discs[members[desk.pairs[c, 1]], RADIUS])
+        largest = max(largest, abs(desk.midway[c, GAP]) / (_CLOSED * radius))
+    return largest
+
+
 @kernel
 def follow(
     group: Group, members: IntArray, contacts: IntArray, states: FloatArray, t: float,
@@ -175,7 +207,14 @@ def follow(
                 how = NOT_FINITE
                 break
             continue
-        h = length * min(5.0, 5.0 if error == 0.0 else 0.9 * (scales.tol / error) ** 0.2)
+        opens = _opens_midway(
+            group, members, contacts.shape[0], pieces, count, start + passed, length, desk
+        )
+        shorter = 5.0 if opens <= 1e-6 else 0.9 * opens ** (-1.0 / 6.0)
+        if opens > 1.0 and length * shorter > _BRIEF * unit:
+            h = length * shorter
+            continue
+        h = length * min(shorter, 5.0 if error == 0.0 else 0.9 * (scales.tol / error) ** 0.2)
         while True:
             c, kind = first_negative(desk, 1, contacts.shape[0])
             if c < 0:
