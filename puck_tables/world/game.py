@@ -10,7 +10,6 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables.scene.ingredients import Regions
 from puck_tables.world.flight import FLIGHT_COLUMNS, Curves
-from puck_tables.world.rims import Rims
 
 Whole = npt.NDArray[np.int64]
 
@@ -35,19 +34,19 @@ HISTORY_COLUMNS = 2 + FLIGHT_COLUMNS  # disc, kind, flight
 # counts
 (
     N_EVENTS, N_HISTORY, N_PIECES, N_HELD, N_LAUNCHES, N_IMPACTS, N_GROUPS, N_LOOKS, N_CONTACTS,
-    N_AT_ONCE, N_WORKS,
-) = range(11)  # fmt: skip
-COUNTS = 11
+    N_AT_ONCE,
+) = range(10)  # fmt: skip
+COUNTS = 10
 
 
 class Game(NamedTuple):
     """Everything, as arrays: a copy of them is a copy of the world.
 
-    ``regions``: the dry friction of every disc, under its number.  ``clock`` (1,): now.  ``group``
+    ``regions``: the dry friction of every disc, under its number; ``rims``: the laws
+    by which they meet (:mod:`puck_tables.world.rims`).  ``clock`` (1,): now.  ``group``
     (n,): discs of one number push each other, 0: none; ``held`` (…, 2): their contacts.
     ``next_time``, ``next_partner`` (n,).  ``launches`` (…, 5), ascending in time.  ``drives``
-    (n, 2): the rows of ``pieces`` along which a disc is driven.  ``works``: see
-    :mod:`puck_tables.world.works`.  ``counts``: how many rows of
+    (n, 2): the rows of ``pieces`` along which a disc is driven. ``counts``: how many rows of
     events, history, pieces and held contacts are used, how many launches and what else was done,
     and the contacts of the event at work.  ``pace`` (2,): the scales of speed, m/s, and
     acceleration, m/s².  ``pull`` (2,): acceleration down a slope, m/s².
@@ -55,7 +54,7 @@ class Game(NamedTuple):
 
     discs: FloatArray
     regions: Regions
-    rims: Rims
+    rims: FloatArray
     obstacles: FloatArray
     curves: Curves
     clock: FloatArray
@@ -68,7 +67,6 @@ class Game(NamedTuple):
     launches: FloatArray
     pieces: FloatArray
     drives: Whole
-    works: FloatArray
     events: FloatArray
     history: FloatArray
     counts: Whole

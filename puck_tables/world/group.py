@@ -17,7 +17,6 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
 from puck_tables.motion.steppers import DORMAND_PRINCE
 from puck_tables.scene.ingredients import Regions
-from puck_tables.world.rims import Rims
 from puck_tables.world.works import LEDGER
 
 IntArray = npt.NDArray[np.int64]
@@ -60,7 +59,7 @@ class Group(NamedTuple):
     discs: FloatArray
     obstacles: FloatArray
     regions: Regions
-    rims: Rims
+    rims: FloatArray
     films: FloatArray
     reels: IntArray
     gx: float

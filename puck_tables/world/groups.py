@@ -43,7 +43,6 @@ from puck_tables.world.game import (
     N_GROUPS,
     N_HELD,
     N_PIECES,
-    N_WORKS,
     Game,
     Whole,
 )
@@ -75,8 +74,11 @@ LOST_SHARE = 1e-15
 FOR_EVER = 1e9  # s
 
 
-def push_on(game: Game, room: Room) -> Game:
-    """Send the groups that push now on their way; marks say who is left to fly alone."""
+def push_on(game: Game, room: Room, books: list[FloatArray]) -> Game:
+    """Send the groups that push now on their way; marks say who is left to fly alone.
+
+    What that works is added to the books, see :mod:`puck_tables.world.works`.
+    """
     contacts = room.contacts[: game.counts[N_CONTACTS]]
     contacts = contacts[room.rows[: len(contacts), ACTS] > 0.0]
     for i in np.flatnonzero(room.marks == CONCERNED):
@@ -94,7 +96,7 @@ def push_on(game: Game, room: Room) -> Game:
         kept, t_end, ways, jump, works = _follow(shared, members, part, room.states, t, scales)
         _note_contacts(game, t, part, kept, held_before, float(jump[RIM_HEAT]), before, room)
         jump[RIM_HEAT] = 0.0  # the event has it
-        game = _with_works(game, _a_free_one(game, members), t, jump, works)
+        _book(books, _a_free_one(game, members), t, jump, works)
         for i in members:  # a rim that gripped at once has changed what touches it, too
             if room.marks[i] == NOT_CONCERNED and (room.states[i] != before[i]).any():
                 room.marks[i] = CONCERNED
@@ -117,7 +119,7 @@ def push_on(game: Game, room: Room) -> Game:
                 shared, np.array([i]), contacts[:0], room.states, t, scales
             )
             if t < t_end < math.inf:
-                game = _with_works(game, int(i), t, jump, works)
+                _book(books, int(i), t, jump, works)
                 game = _set_out(game, int(i), t, t_end, ways[0])
                 room.marks[i] = PUSHED
     game.held[: len(held)], game.counts[N_HELD] = held, len(held)
@@ -246,20 +248,16 @@ def _a_free_one(game: Game, members: Whole) -> int:
     return int(members[game.discs[members, LIGHTNESS] > 0.0][0])
 
 
-def _with_works(game: Game, member: int, t: float, jump: FloatArray, works: FloatArray) -> Game:
-    """With what was booked on a stint from t on, and at its start."""
+def _book(
+    books: list[FloatArray], member: int, t: float, jump: FloatArray, works: FloatArray
+) -> None:
+    """Keep what was booked on a stint from t on, and at its start."""
     if jump.any():
         row = np.zeros((1, WORK_COLUMNS))
         row[0, WORK_START], row[0, DONE : DONE + LEDGER] = t, jump
         works = np.vstack([row, works])
     works[:, MEMBER], works[:, STINT] = member, t
-    first = int(game.counts[N_WORKS])
-    if first + len(works) > len(game.works):
-        more = np.zeros((first + 2 * len(works), WORK_COLUMNS))
-        game = game._replace(works=np.vstack([game.works[:first], more]))
-    game.works[first : first + len(works)] = works
-    game.counts[N_WORKS] = first + len(works)
-    return game
+    books.append(works.copy())  # not all the rows that there was room for
 
 
 def _set_out(game: Game, i: int, t: float, t_end: float, rows: FloatArray) -> Game:

@@ -20,6 +20,7 @@ from puck_tables.world.works import (
     PULL_WORK,
     RIM_HEAT,
     STINT,
+    WORK_COLUMNS,
     worked,
 )
 
@@ -39,7 +40,7 @@ def ledger(world: World) -> dict[str, float]:
     discs, flights = flights_of(game)
     energies = _kinetic(game, discs[:, None], flights)
     known = free[discs] & (game.history[: len(discs), 1] != PATH)
-    booked = _booked(game)
+    booked = _booked(game, world._books)
     floor = float((energies[known, 0] - energies[known, 1]).sum())
     floor += booked[FLOOR_HEAT] + booked[DRAG_HEAT]
     events = game.events[: game.counts[g.N_EVENTS]]
@@ -69,9 +70,9 @@ def ledger(world: World) -> dict[str, float]:
     }  # fmt: skip
 
 
-def _booked(game: g.Game) -> list[float]:
+def _booked(game: g.Game, books: list[FloatArray]) -> list[float]:
     """What was booked of all that were integrated, up to where their flights ended."""
-    rows = game.works[: game.counts[g.N_WORKS]]
+    rows = np.vstack([np.zeros((0, WORK_COLUMNS)), *books])
     history = game.history[: game.counts[g.N_HISTORY]]
     ends = np.full(len(rows), float(game.clock[0]))
     for disc in np.unique(rows[:, MEMBER]):

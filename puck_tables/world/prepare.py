@@ -38,8 +38,7 @@ from puck_tables.world.game import (
     Whole,
 )
 from puck_tables.world.paths import FIRST
-from puck_tables.world.rim_laws import number_for, numbers_of, rims_of
-from puck_tables.world.works import WORK_COLUMNS
+from puck_tables.world.rim_laws import number_for, rims_of
 
 ROWS = 256  # of events and flights at first
 
@@ -67,8 +66,7 @@ def game_of(scene: Scene, order: Whole) -> tuple[Game, Room]:
     discs, states = np.zeros((count, layout.DISC_COLUMNS)), np.zeros((count, 6))
     drives, ways = np.zeros((count, 2), np.int64), [np.zeros((0, 20))]
     launches = []
-    laws, called = numbers_of(scene)
-    rims, discs[:, layout.MAKE], makes = rims_of(scene, pieces, laws, called)
+    rims, discs[:, layout.MAKE], makes, called = rims_of(scene, pieces)
     for i, piece in enumerate(pieces):
         driven = bool(piece.path)
         inertia = piece.mass * (piece.gyration * piece.radius) ** 2
@@ -110,7 +108,6 @@ def game_of(scene: Scene, order: Whole) -> tuple[Game, Room]:
         launches=np.array(sorted(launches)).reshape(-1, LAUNCH_COLUMNS),
         pieces=np.vstack(ways),
         drives=drives,
-        works=np.zeros((0, WORK_COLUMNS)),
         events=np.zeros((ROWS + 8 * count, EVENT_COLUMNS)),
         history=np.zeros((ROWS + 4 * count, HISTORY_COLUMNS)),
         counts=np.zeros(COUNTS, np.int64),

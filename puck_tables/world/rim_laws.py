@@ -13,19 +13,18 @@ from puck_tables.scene.pieces import Piece
 from puck_tables.scene.restitution import Restitution, restitution_law
 from puck_tables.scene.scene import Scene
 from puck_tables.world.agreement import CUSHIONS, pieces_of
-from puck_tables.world.rims import PLAIN_RIMS, Rims
 
 
-def numbers_of(scene: Scene) -> tuple[FloatArray, dict[object, float]]:
-    """The numbers of all laws of restitution of a scene, and by what number each is called."""
-    laws: list[FloatArray] = []
+def _laws_of(scene: Scene, first: int) -> tuple[FloatArray, dict[object, float]]:
+    """The numbers of all laws of restitution, from a place on, and what number calls each."""
+    laws: list[FloatArray] = [np.zeros(0)]
     called: dict[object, float] = {}
     for given in _restitutions(scene):
         key = given.numbers.tobytes() if isinstance(given, Restitution) else given
         if not isinstance(given, float | int) and key not in called:
-            called[key] = -1.0 - sum(map(len, laws))
+            called[key] = -1.0 - first - sum(map(len, laws))
             laws.append(restitution_law(given).numbers)
-    return np.concatenate([np.zeros(0), *laws]), called
+    return np.concatenate(laws), called
 
 
 def number_for(given: float | str | Restitution | None, called: dict[object, float]) -> float:
@@ -48,34 +47,39 @@ def _restitutions(scene: Scene) -> Iterator[float | str | Restitution]:
 
 
 def rims_of(
-    scene: Scene, pieces: list[Piece], laws: FloatArray, called: dict[object, float]
-) -> tuple[Rims, FloatArray, FloatArray]:
-    """Laws of pairs, and which kind of rim discs (n,) and obstacles (k,) have.
+    scene: Scene, pieces: list[Piece]
+) -> tuple[FloatArray, FloatArray, FloatArray, dict[object, float]]:
+    """The array of :mod:`puck_tables.world.rims`; which kinds of rims discs and obstacles have.
 
-    Those that the same rims of the scene name have one kind.
+    Those that the same rims of the scene name have one kind.  And by what numbers laws are called.
     """
     cushions = zip(CUSHIONS, (scene.walls, scene.posts, scene.arcs), strict=True)
     names = [(kind, f"{kind} {k}") for kind, ones in cushions for k in range(len(ones))]
     names += [("", "")] * (len(scene.pockets) + len(scene.edges))
     if not scene.rims:
-        return PLAIN_RIMS._replace(laws=laws), np.zeros(len(pieces)), np.zeros(len(names))
+        laws, called = _laws_of(scene, 1)
+        rims = np.concatenate([[0.0], laws])
+        return rims, np.zeros(len(pieces)), np.zeros(len(names)), called
     sides = [side for rim in scene.rims for side in (rim.puck, rim.partner)]
     named = {piece.name for piece in pieces if piece.name}
     signs = [tuple(_is(piece, side, named) for side in sides) for piece in pieces]
     signs += [tuple(side in name and bool(side) for side in sides) for name in names]
     kinds = {sign: number for number, sign in enumerate(dict.fromkeys(signs))}
-    meets = np.full((len(kinds), len(kinds)), -1)
+    first = 1 + len(kinds) ** 2
+    meets = np.full((len(kinds), len(kinds)), -1.0)
     for row in range(len(scene.rims)):  # of several the last counts
         for sign, one in kinds.items():
             for other, two in kinds.items():
                 if (sign[2 * row] and other[2 * row + 1]) or (sign[2 * row + 1] and other[2 * row]):
-                    meets[one, two] = row
-    pairs = np.array([
+                    meets[one, two] = first + 3 * row
+    laws, called = _laws_of(scene, first + 3 * len(scene.rims))
+    pairs = [
         [number_for(rim.restitution, called), *(math.nan if one is None else one
          for one in (rim.tangential, rim.friction))] for rim in scene.rims
-    ])  # fmt: skip
+    ]  # fmt: skip
     makes = np.array([kinds[sign] for sign in signs], np.float64)
-    return Rims(laws, pairs, meets), makes[: len(pieces)], makes[len(pieces) :]
+    rims = np.concatenate([[len(kinds)], meets.ravel(), np.ravel(pairs), laws])
+    return rims, makes[: len(pieces)], makes[len(pieces) :], called
 
 
 def _is(piece: Piece, side: str, named: set[str]) -> bool:

@@ -103,6 +103,7 @@ class World:
         self._order = order_of(self.scene)
         self._game, self._room = game_of(self.scene, self._order)
         self._named()
+        self._books: list[FloatArray] = []  # rows of :mod:`puck_tables.world.works`
         self._advance(0.0, EVERYBODY, self._room.one)
 
     def _named(self) -> None:
@@ -273,7 +274,7 @@ class World:
             elif how == PUSHING:
                 from puck_tables.world.groups import push_on  # compiled where it is needed
 
-                self._game, struck = push_on(self._game, self._room), THOSE_LEFT
+                self._game, struck = push_on(self._game, self._room, self._books), THOSE_LEFT
             elif how == PAUSED and self.time - mark > crowd:
                 mark = self.time
             else:
@@ -306,6 +307,7 @@ class World:
         twin._room = self._room._replace(
             **{name: part.copy() for name, part in self._room._asdict().items()}
         )
+        twin._books = list(self._books)
         twin._named()
         return twin
 
