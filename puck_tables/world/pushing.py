@@ -53,7 +53,7 @@ from puck_tables.world.stepping import (
 )
 from puck_tables.world.works import LEDGER
 
-_CLOSED = 5e-13  # of a radius: how far apart, at most, are discs in touch between two steps
+_CLOSED = 0.05  # of a radius times the error of a step: how far apart, at most, are discs in touch between two steps
 _FIRST = 1e-3  # of Q/J: the first step
 _BRIEF = 1e-6  # of Q/J: on as short a step gaps are rounding
 _SHORTEST = 1e-16  # of Q/J: shorter steps lead nowhere
@@ -123,9 +123,9 @@ def _moment(
 @inlined
 def _opens_midway(
     group: Group, members: IntArray, contacts: int, pieces: FloatArray, count: int, start: float,
-    h: float, desk: Desk,
+    h: float, tol: float, desk: Desk,
 ) -> float:  # fmt: skip
-    """How far apart, or into each other, discs in touch are midway on their ways, over _CLOSED.
+    """How far apart, or into each other, discs in touch are midway, over what they may be.
 
     There the polynomials between the ends of a step are off by most.
     """
@@ -143,7 +143,7 @@ def _opens_midway(
         radius = group.discs[members[desk.pairs[c, 0]], RADIUS]
         if desk.pairs[c, 1] >= 0:
             radius = min(radius, group.discs[members[desk.pairs[c, 1]], RADIUS])
-        largest = max(largest, abs(desk.midway[c, GAP]) / (_CLOSED * radius))
+        largest = max(largest, abs(desk.midway[c, GAP]) / (_CLOSED * tol * radius))
     return largest
 
 
@@ -208,7 +208,15 @@ def follow(
                 break
             continue
         opens = _opens_midway(
-            group, members, contacts.shape[0], pieces, count, start + passed, length, desk
+            group,
+            members,
+            contacts.shape[0],
+            pieces,
+            count,
+            start + passed,
+            length,
+            scales.tol,
+            desk,
         )
         shorter = 5.0 if opens <= 1e-6 else 0.9 * opens ** (-1.0 / 6.0)
         if opens > 1.0 and length * shorter > _BRIEF * unit:
