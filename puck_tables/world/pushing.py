@@ -53,7 +53,7 @@ from puck_tables.world.stepping import (
 )
 from puck_tables.world.works import LEDGER
 
-_CLOSED = 0.05  # of a radius times the error of a step: how far apart, at most, are discs in touch between two steps
+_CLOSED = 0.05  # of a radius times the error of a step: the gap of discs in touch between steps
 _FIRST = 1e-3  # of Q/J: the first step
 _BRIEF = 1e-6  # of Q/J: on as short a step gaps are rounding
 _SHORTEST = 1e-16  # of Q/J: shorter steps lead nowhere
