@@ -15,12 +15,14 @@ _ROUNDING = 1e-14  # of energies
 
 def report(run: WorldRun) -> str:
     """What happened in two sentences; a table of pucks; impacts, energies, and how sure it is."""
+    from puck_tables.world.outcome import ways_of
+
     lines = {
         "scene": _scene(run),
         "energy": _energy(run),
         "heat": _heat(run),
         "error": _error(run),
-        "model": run.explain().replace("\n", ", "),
+        "model": ways_of(run.scene).replace("\n", ", "),
     }
     parts = [
         plainly(run),
@@ -129,25 +131,29 @@ def _scene(run: WorldRun) -> str:
 
 def _energy(run: WorldRun) -> str:
     """What was given, and what the pucks still have or took along when they left play."""
-    given = run.kinetic_energy + run.work_driven
+    given = run.kinetic_energy + run.work_driven + run.work_slope
     words = f"{run.kinetic_energy:.6g} J given by launches"
     if run.work_driven != 0.0:
         words += f", {run.work_driven:.6g} J by driven bodies"
-    left = given - run.heat_floor - run.heat_impact
+    if run.work_slope != 0.0:
+        words += f", {run.work_slope:.6g} J by the slope"
+    left = given - run.heat_floor - run.heat_rims - run.heat_impact
     if abs(left) > 1e-9 * abs(given):
         words += f"; {left:.6g} J left, or gone with who left play"
     return words
 
 
 def _heat(run: WorldRun) -> str:
-    """What floor and impacts took; what is no more than rounding is told as 0."""
-    unseen = _ROUNDING * (run.kinetic_energy + abs(run.work_driven))
-    floor, impacts = (
-        heat if abs(heat) > unseen else 0.0 for heat in (run.heat_floor, run.heat_impact)
+    """What floor, rims and impacts took; what is no more than rounding is told as 0."""
+    unseen = _ROUNDING * (run.kinetic_energy + abs(run.work_driven) + abs(run.work_slope))
+    floor, rims, impacts = (
+        heat if abs(heat) > unseen else 0.0
+        for heat in (run.heat_floor, run.heat_rims, run.heat_impact)
     )
+    pushing = f"{rims:.6g} J rims, " if rims else ""
     rounding = run.energy_residual < _ROUNDING
     missed = f"under {_ROUNDING:g}" if rounding else f"{run.energy_residual:.1e}"
-    return f"{floor:.6g} J floor, {impacts:.6g} J impacts; ledger misses {missed} of it"
+    return f"{floor:.6g} J floor, {pushing}{impacts:.6g} J impacts; ledger misses {missed} of it"
 
 
 def _error(run: WorldRun) -> str:

@@ -49,7 +49,8 @@ if TYPE_CHECKING:
         Strips,
         Wall,
     )
-    from puck_tables.scene.pieces import Arc, Piece, Pocket, Post
+    from puck_tables.scene.pieces import Arc, Piece, Pocket, Post, Rim
+    from puck_tables.scene.restitution import Plastic, RestitutionTable, Viscoelastic
     from puck_tables.scene.scene import Scene
     from puck_tables.scene.sweep import SceneMap
     from puck_tables.stopping.aim import Aim
@@ -81,11 +82,14 @@ _HOMES = {
     "MissingExtraError": "errors",
     "OutputError": "errors",
     "Piece": "scene.pieces",
+    "Plastic": "scene.restitution",
     "Pocket": "scene.pieces",
     "Post": "scene.pieces",
     "Puck": "puck",
     "PuckError": "errors",
+    "RestitutionTable": "scene.restitution",
     "Result": "result",
+    "Rim": "scene.pieces",
     "Run": "scene.parts",
     "Scene": "scene.scene",
     "SceneMap": "scene.sweep",
@@ -99,6 +103,7 @@ _HOMES = {
     "TableError": "errors",
     "Track": "film.track",
     "Trajectory": "trajectory",
+    "Viscoelastic": "scene.restitution",
     "Wall": "scene.parts",
     "World": "world.world",
     "chetaev": "",
@@ -132,11 +137,14 @@ __all__ = [
     "MissingExtraError",
     "OutputError",
     "Piece",
+    "Plastic",
     "Pocket",
     "Post",
     "Puck",
     "PuckError",
+    "RestitutionTable",
     "Result",
+    "Rim",
     "Run",
     "Scene",
     "SceneMap",
@@ -150,6 +158,7 @@ __all__ = [
     "TableError",
     "Track",
     "Trajectory",
+    "Viscoelastic",
     "Wall",
     "World",
     "__version__",

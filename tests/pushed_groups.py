@@ -11,7 +11,6 @@ from puck_tables.scene.regions import NO_LAW
 from puck_tables.world.group import (
     APART,
     HELD,
-    LEDGER,
     Group,
     Scales,
     desk_for,
@@ -20,6 +19,8 @@ from puck_tables.world.layout import ARC, DISC_COLUMNS, OBSTACLE_COLUMNS, POST, 
 from puck_tables.world.paths import PIECE_COLUMNS
 from puck_tables.world.pressing import press
 from puck_tables.world.pushing import follow
+from puck_tables.world.rims import PLAIN_RIMS
+from puck_tables.world.works import DONE, LEDGER, WORK_COLUMNS
 
 
 def disc(radius=0.05, mass=0.2, decel=1.0, delta=0.0, grip=0.0, gyration=0.5**0.5, damping=0.0,
@@ -28,20 +29,20 @@ def disc(radius=0.05, mass=0.2, decel=1.0, delta=0.0, grip=0.0, gyration=0.5**0.
     light = 1.0 / mass if mass else 0.0
     return [
         radius, light, light / (gyration * radius) ** 2, decel, delta, damping, spin_damping, wake,
-        0.0, tangential, grip, 0.0,
+        0.0, tangential, grip, 0.0, 0.0,
     ]  # fmt: skip
 
 
 def wall(nx, ny, place, grip=0.0):
-    return [WALL, nx, ny, place, 0.0, 0.0, grip, 0.0, 0.0]
+    return [WALL, nx, ny, place, 0.0, 0.0, grip, 0.0, 0.0, 0.0]
 
 
 def post(x, y, radius, grip=0.0):
-    return [POST, x, y, radius, 0.0, 0.0, grip, 0.0, 0.0]
+    return [POST, x, y, radius, 0.0, 0.0, grip, 0.0, 0.0, 0.0]
 
 
 def arc(x, y, radius, first, span, grip=0.0):
-    return [ARC, x, y, radius, 0.0, 0.0, grip, first, span]
+    return [ARC, x, y, radius, 0.0, 0.0, grip, first, span, 0.0]
 
 
 def group_of(discs, obstacles=(), pull=(0.0, 0.0), films=None, cuts=None):
@@ -57,7 +58,8 @@ def group_of(discs, obstacles=(), pull=(0.0, 0.0), films=None, cuts=None):
         cuts = np.zeros((len(discs), 0))
     return Group(
         discs, np.array(obstacles, float).reshape(-1, OBSTACLE_COLUMNS),
-        Regions(mass * discs[:, 3], discs[:, 4].copy(), cuts, NO_LAW), np.vstack(rows), reels,
+        Regions(mass * discs[:, 3], discs[:, 4].copy(), cuts, NO_LAW), PLAIN_RIMS, np.vstack(rows),
+        reels,
         float(pull[0]), float(pull[1]),
     )  # fmt: skip
 
@@ -99,10 +101,12 @@ class Ride:
             if (doings == HELD).all():
                 break
             pieces = np.zeros((len(self.members), rooms, PIECE_COLUMNS))
+            works = np.zeros((rooms, WORK_COLUMNS))
             how, which, self.t, count = follow(
                 group, self.members, contacts, self.states, self.t, t_end, scales, modes, doings,
-                pieces, self.ledger, desk,
+                pieces, works, desk,
             )  # fmt: skip
+            self.ledger += works[:count, DONE : DONE + LEDGER].sum(axis=0)
             self.hows.append((how, which))
             self.times.append(self.t)
             self.rows.append(pieces[:, :count].copy())

@@ -138,7 +138,8 @@ def energy_is_kept(seed: int) -> None:
     assert energy[0] == pytest.approx(run.kinetic_energy, rel=1e-12)
     assert energy[-1] <= 1e-20 * energy[0]
     assert run.heat_impact == pytest.approx(sum(event.lost for event in run.events), rel=1e-12)
-    assert run.heat_floor + run.heat_impact == pytest.approx(energy[0], rel=1e-9)
+    heat = run.heat_floor + run.heat_rims + run.heat_impact
+    assert heat == pytest.approx(energy[0], rel=1e-9)
 
 
 @pytest.mark.parametrize("seed", range(1000, 1020))

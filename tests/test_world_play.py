@@ -172,8 +172,9 @@ def test_a_sweep_is_what_single_runs_are():
 def test_the_plan_says_how_each_puck_is_moved():
     ring = pt.Piece(0.1, friction=0.1, pressure="ring", launch=pt.Launch(position=(0.5, 0.0)))
     scene = pt.Scene(pucks=[piece(0, 0), ring])
-    assert scene.simulate().explain() == (
-        "1 puck looked up from impact to impact\n1 puck integrated from impact to impact"
-    )
+    assert scene.simulate().explain().splitlines()[:2] == [
+        "1 puck looked up from impact to impact",
+        "1 puck integrated from impact to impact",
+    ]
     slope = pt.Scene(pucks=[piece(0, 0, friction=0.0)], floor=pt.Floor(0.1), run=pt.Run(0.1))
-    assert slope.simulate().explain() == "1 puck integrated from impact to impact"
+    assert slope.simulate().explain().startswith("1 puck integrated from impact to impact\n")

@@ -32,6 +32,8 @@ class Kind:
     file: str | None = None  # a text that names a file where it ends so
     objects: tuple[type, ...] = ()  # taken as they are, in place of a text
     batch: bool = False  # a pair of which there may be many, one for each launch
+    law: Any = None  # judges a text in place of a number; ``laws``: such texts, in words
+    laws: str = ""
 
     def allowed(self) -> str:
         """What is allowed, in words.
@@ -50,6 +52,9 @@ class Kind:
         if self.shape == "choice":
             return "one of " + ", ".join(self.choices)
         words = {"number": "a number", "pair": "two numbers [x, y]", "numbers": "a list of numbers"}
+        if self.law is not None:
+            plain = dataclasses.replace(self, law=None)
+            return f"{plain.allowed()}, or {self.laws}"
         unit = f" {self.unit}" if self.unit else ""
         low = f"{'>' if self.above else '>='} {self.low:g}"
         high = f"{'<' if self.below else '<='} {self.high:g}"

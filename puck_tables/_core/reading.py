@@ -235,6 +235,12 @@ def _number(kind: Kind, value: Any, path: str, reading: Reading, default: Any) -
         value = value[()]
     if reading.ranges is not None and (items := _items(value)) is not None:
         return _listed(kind, items, path, reading)
+    if isinstance(value, str) and kind.law is not None and not RANGE.fullmatch(value.strip()):
+        try:
+            kind.law(value)
+        except PuckError as error:
+            reading.errors.append(f"{path}: {error}")
+        return value  # type: ignore[return-value]  # a law in place of a number
     if isinstance(value, str) and kind.unit == "rad" and DEGREES.fullmatch(value.strip()):
         value = _angle(value.strip(), kind)
     if isinstance(value, str) and reading.ranges is not None:
@@ -271,7 +277,7 @@ def _number(kind: Kind, value: Any, path: str, reading: Reading, default: Any) -
 
 def _listed(kind: Kind, items: list[Any], path: str, reading: Reading) -> float:
     """A range as a list; the first of its numbers."""
-    alone = Reading(reading.errors, None)
+    alone, kind = Reading(reading.errors, None), dataclasses.replace(kind, law=None, objects=())
     if not 1 <= len(items) <= MAX_COUNT:
         reading.fault(path, items, f"{_one(kind)}, or a list of 1 to {MAX_COUNT} of them")
         return math.nan

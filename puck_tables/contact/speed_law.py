@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables._core.monotone import monotone_cubic
 from puck_tables._core.real import finite_array, instance
 from puck_tables._core.safe_read import is_number, read_rows
 from puck_tables._core.safe_write import write_bytes
@@ -20,7 +21,6 @@ from puck_tables.errors import InputError
 KINDS = ("cubic", "linear")
 HEADER = ("speed[m/s]", "f[1]")
 _LARGEST = 1 << 24  # bytes of a file
-_STEEPEST = 3.0  # times the difference, at an end
 
 
 @dataclass(frozen=True)
@@ -44,9 +44,7 @@ class SpeedLaw:
 
     Notes
     -----
-    The slopes of the cubic are the weighted harmonic means of the neighbouring differences, 0 where
-    these change sign (Fritsch, Butland 1984); at the ends the three-point formula, limited so that
-    no extremum appears (Fritsch, Carlson 1980).
+    The cubic is that of :func:`puck_tables._core.monotone.monotone_cubic`.
 
     Examples
     --------
@@ -89,16 +87,10 @@ class SpeedLaw:
     def coefficients(self) -> FloatArray:
         """Powers 0 to 3 of (speed − left end) in each interval, array (k − 1, 4)."""
         x, y = np.asarray(self.speeds), np.asarray(self.values)
-        width = np.diff(x)
-        rise = np.diff(y) / width
         if self.kind == "linear":
+            rise = np.diff(y) / np.diff(x)
             return np.stack([y[:-1], rise, 0.0 * rise, 0.0 * rise], axis=-1)
-        slope = _slopes(width, rise)
-        left, right = slope[:-1], slope[1:]
-        return np.stack([
-            y[:-1], left, (3.0 * rise - 2.0 * left - right) / width,
-            (left + right - 2.0 * rise) / width**2,
-        ], axis=-1)  # fmt: skip
+        return monotone_cubic(x, y)
 
     def __call__(self, speed: npt.ArrayLike) -> FloatArray:
         """The friction coefficient at slip speeds.
@@ -193,27 +185,3 @@ or directory
         rows = zip(np.asarray(self.speeds).tolist(), np.asarray(self.values).tolist(), strict=True)
         writer.writerows(rows)
         write_bytes(path, text.getvalue().encode(), overwrite)
-
-
-def _slopes(width: FloatArray, rise: FloatArray) -> FloatArray:
-    """Slopes at the points that keep every interval monotone."""
-    if rise.size == 1:
-        return np.repeat(rise, 2)
-    slope = np.zeros(rise.size + 1)
-    same = rise[1:] * rise[:-1] > 0.0
-    first, second = 2.0 * width[1:] + width[:-1], width[1:] + 2.0 * width[:-1]
-    safe = np.where(same, rise[:-1], 1.0), np.where(same, rise[1:], 1.0)
-    mean = (first + second) / (first / safe[0] + second / safe[1])
-    slope[1:-1] = np.where(same, mean, 0.0)
-    slope[0] = _end_slope(width[0], width[1], rise[0], rise[1])
-    slope[-1] = _end_slope(width[-1], width[-2], rise[-1], rise[-2])
-    return slope
-
-
-def _end_slope(near: float, far: float, first: float, second: float) -> float:
-    slope = ((2.0 * near + far) * first - near * second) / (near + far)
-    if slope * first <= 0.0:
-        return 0.0
-    if first * second <= 0.0 and abs(slope) > _STEEPEST * abs(first):
-        return _STEEPEST * first
-    return slope

@@ -10,6 +10,7 @@ import math
 from dataclasses import dataclass
 
 from puck_tables._core.fields import of
+from puck_tables.scene.restitution import Restitution, restitution_of
 
 Rows = tuple[tuple[float, ...], ...]
 
@@ -101,7 +102,7 @@ class Wall:
 
     point: tuple[float, float] = of("pair", unit="m", doc="any point of it", acts="walls")
     normal: tuple[float, float] = of("pair", doc="into the field, any length", acts="")
-    restitution: float = of("number", 1.0, low=0.0, high=1.0, acts="")
+    restitution: float | str | Restitution = restitution_of(1.0, acts="")
     tangential: float = of(
         "number",
         -1.0,

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from puck_tables._core.fields import of
 from puck_tables.puck import Puck
 from puck_tables.scene.parts import Launch, Rows
+from puck_tables.scene.restitution import Restitution, restitution_of
 
 
 @dataclass(frozen=True)
@@ -27,9 +28,11 @@ class Piece(Puck):
         Its place, and how it is sent; left out it lies at rest until it is hit.  Before
         ``launch.time`` it lies at its place.
     restitution, tangential, rim : impacts with other pucks
-        e, 0 to 1; tangential restitution, −1 smooth, 0 the rims stop on each other, 1 their slip
-        reverses; Coulomb's coefficient of the rims, which limits the tangential impulse.  Where two
-        pucks meet the smaller of each counts; cushions have their own.
+        e, 0 to 1, or a law by which it falls with the speed of approach, see
+        :mod:`puck_tables.scene.restitution`; tangential restitution, −1 smooth, 0 the rims stop on
+        each other, 1 their slip reverses; Coulomb's coefficient of the rims, which limits the
+        tangential impulse.  Where two pucks meet the smaller of each counts, of restitutions at
+        that speed; cushions have their own; a :class:`Rim` of a pair comes before both.
     path : rows or CSV of t, x, y and perhaps the angle
         A body that is driven there, straight between the rows, such as a mallet: pucks bounce off
         it, and nothing stops it.  :func:`puck_tables.path_along` makes rows of a function.
@@ -44,7 +47,7 @@ class Piece(Puck):
     name: str = of("text", "")
     colour: str = of("colour", "", doc="in pictures and movies")
     launch: Launch = of("part", Launch(), part=Launch)
-    restitution: float = of("number", 1.0, low=0.0, high=1.0, doc="of its rim")
+    restitution: float | str | Restitution = restitution_of(1.0, doc="of its rim")
     tangential: float = of(
         "number", -1.0, low=-1.0, high=1.0,
         doc="-1: smooth, 0: the rims stop on each other, 1: their slip reverses",
@@ -61,7 +64,7 @@ class Post:
 
     point: tuple[float, float] = of("pair", unit="m", doc="its centre")
     radius: float = of("number", unit="m", low=0.0, above=True)
-    restitution: float = of("number", 1.0, low=0.0, high=1.0)
+    restitution: float | str | Restitution = restitution_of(1.0)
     tangential: float = of("number", -1.0, low=-1.0, high=1.0, doc="as of a wall")
     friction: float = of("number", math.inf, low=0.0, doc="limits the tangential impulse")
 
@@ -77,7 +80,7 @@ class Arc:
         "number", 2.0 * math.pi, "rad", low=0.0, high=2.0 * math.pi, above=True,
         doc="how far it goes, counter-clockwise",
     )  # fmt: skip
-    restitution: float = of("number", 1.0, low=0.0, high=1.0)
+    restitution: float | str | Restitution = restitution_of(1.0)
     tangential: float = of("number", -1.0, low=-1.0, high=1.0, doc="as of a wall")
     friction: float = of("number", math.inf, low=0.0, doc="limits the tangential impulse")
 
@@ -94,3 +97,29 @@ class Pocket:
 
     point: tuple[float, float] = of("pair", unit="m", doc="its centre")
     radius: float = of("number", unit="m", low=0.0, above=True)
+
+
+@dataclass(frozen=True)
+class Rim:
+    """How two meet, in place of what each of them says.
+
+    Parameters
+    ----------
+    puck : name of a puck, or colour of several
+    partner : the same, or a cushion: 'wall 0', 'post 1', 'arc 0', or 'wall', 'post', 'arc' for all
+    restitution, tangential, friction : optional
+        As of a puck (whose ``rim`` is called friction here); what is left out is as without it.
+
+    Where several fit a pair the last of the list counts.
+
+    Examples
+    --------
+    >>> Rim("striker", "black", restitution=0.6).friction is None
+    True
+    """
+
+    puck: str = of("text", doc="name of a puck, or colour of several")
+    partner: str = of("text", doc="the same, or 'wall 0', 'post 1', 'arc 0', or 'wall' for all")
+    restitution: float | str | Restitution | None = restitution_of(None)
+    tangential: float | None = of("number", None, low=-1.0, high=1.0, doc="as of a puck")
+    friction: float | None = of("number", None, low=0.0, doc="limits the tangential impulse")

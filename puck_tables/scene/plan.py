@@ -36,7 +36,7 @@ class Plan:
 
 # what the motion of a free puck on a level floor takes into account, and what makes a scene one of
 # many pucks, which :mod:`puck_tables.world` runs
-FREE = ("title", "puck", "launch", "run", "puck[]", "post", "arc", "pocket")
+FREE = ("title", "puck", "launch", "run", "puck[]", "post", "arc", "pocket", "rim")
 
 
 def ingredients(scene: Scene) -> list[str]:

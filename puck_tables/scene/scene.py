@@ -19,8 +19,9 @@ from puck_tables.puck import Puck
 from puck_tables.scene.agreement import disagreements
 from puck_tables.scene.entries import BATCH, columns_of, entry_at, set_path, tables_of
 from puck_tables.scene.parts import Constraint, Drag, Edge, Floor, Force, Launch, Run, Wall
-from puck_tables.scene.pieces import Arc, Piece, Pocket, Post
+from puck_tables.scene.pieces import Arc, Piece, Pocket, Post, Rim
 from puck_tables.scene.ranges import Ranges, batch_of, launch_rows, refuse_twice
+from puck_tables.scene.restitution import Restitution
 from puck_tables.scene.verbs import SceneVerbs
 
 MAX_RUNS = 1_000_000_000  # of one sweep
@@ -36,6 +37,8 @@ class Scene(SceneVerbs):
     floor, launch, drag, force, run, title : optional
         As :mod:`puck_tables.scene.parts` has them.
     walls, edges : sequences of Wall, of Edge, optional
+    pucks, posts, arcs, pockets, rims : sequences, optional
+        As :mod:`puck_tables.scene.pieces` has them.
     constraint : Constraint, optional
     ranges : mapping, optional
         Values of numbers that take several, by path, such as ``{"puck.height": [0.0, 0.01]}``.  A
@@ -73,6 +76,7 @@ class Scene(SceneVerbs):
     arcs: tuple[Arc, ...] = of("parts", (), part=Arc, table="arc")
     pockets: tuple[Pocket, ...] = of("parts", (), part=Pocket, table="pocket")
     edges: tuple[Edge, ...] = of("parts", (), part=Edge, table="edge")
+    rims: tuple[Rim, ...] = of("parts", (), part=Rim, table="rim")
     constraint: Constraint | None = of("part", None, part=Constraint)
     run: Run = of("part", Run(), part=Run)
     title: str = of("text", "")
@@ -213,14 +217,16 @@ class Scene(SceneVerbs):
 
     @property
     def is_board(self) -> bool:
-        """Whether it is for the engine of many pucks: several, or posts, arcs or pockets.
+        """Whether it is for the engine of many pucks: several, posts, arcs, pockets, laws of rims.
 
         Examples
         --------
         >>> Scene(Puck(0.04)).is_board
         False
         """
-        return bool(self.pucks or self.posts or self.arcs or self.pockets)
+        more = self.pucks or self.posts or self.arcs or self.pockets or self.rims
+        by_speed = any(isinstance(wall.restitution, str | Restitution) for wall in self.walls)
+        return bool(more) or by_speed
 
     def _disagreements(self) -> list[str]:
         """What is wrong between its parts."""

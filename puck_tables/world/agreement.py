@@ -19,6 +19,7 @@ from puck_tables.scene.scene import Scene
 from puck_tables.world.drive import rows_of
 
 TOUCH = 1e-12  # of the radius: pucks that overlap less touch
+CUSHIONS = ("wall", "post", "arc")  # what rims may meet besides pucks
 _SMALLEST, _LARGEST = 1e-100, 1e100
 
 
@@ -123,6 +124,7 @@ def disagreements(scene: Scene) -> list[str]:
     for path, line in lines:
         if not _SMALLEST < math.hypot(*line.normal) < _LARGEST:
             faults.append(f"{path}.normal = {list(line.normal)}: must have a direction")
+    faults += _strange_rims(scene)
     if not scene.run.frames.is_integer():
         faults.append(f"run.frames = {scene.run.frames:g}: must be a whole number")
     if faults:
@@ -139,11 +141,11 @@ def _not_here(scene: Scene) -> Iterator[str]:
             changed = (one for one in entries(part, f"{name}.") if known.get(one.path) != one.value)
             path = next(one.path for one in changed)
             yield (
-                f"{path}: several pucks, posts, arcs and pockets are on a floor at rest of one "
-                "kind, level or sloping, without other forces"
+                f"{path}: several pucks, posts, arcs, pockets and rims of their own law are on a "
+                "floor at rest of one kind, level or sloping, without other forces"
             )
     if scene.constraint is not None:
-        yield "constraint: is of one puck alone, without posts, arcs and pockets"
+        yield "constraint: is of one puck alone, without posts, arcs, pockets and laws of rims"
     if scene.pucks and scene.launch != Launch():
         yield "launch: each of several pucks has its own, puck[0].launch"
 
@@ -166,6 +168,26 @@ def _of_one(scene: Scene, piece: Piece, path: str) -> Iterator[str]:
         return
     if scene.floor.slope > 0.0 and piece.gravity != pieces_of(scene)[0].gravity:
         yield f"{path}.gravity = {piece.gravity:g}: on a slope all pucks have the same"
+
+
+def _strange_rims(scene: Scene) -> Iterator[str]:
+    """What is wrong with the rims of pairs."""
+    pieces = pieces_of(scene)
+    known = {piece.name for piece in pieces} | {piece.colour for piece in pieces}
+    for kind, ones in zip(CUSHIONS, (scene.walls, scene.posts, scene.arcs), strict=True):
+        known |= {kind, *(f"{kind} {k}" for k in range(len(ones)))} if ones else set()
+    pucks = {name for one in pieces for name in (one.name, one.colour)} - {""}
+    for number, rim in enumerate(scene.rims):
+        for side in ("puck", "partner"):
+            given, may = getattr(rim, side), (pucks if side == "puck" else known - {""})
+            if given not in may:
+                near = get_close_matches(given, sorted(may), 1, 0.6)
+                meant = f" (did you mean {near[0]!r}?)" if near else ""
+                more = "" if side == "puck" else ", or a cushion, 'wall 0' or all, 'wall'"
+                yield (
+                    f"rim[{number}].{side} = {given!r}: must be the name of a puck or the colour "
+                    f"of pucks{more}{meant}"
+                )
 
 
 def _overlaps(pieces: tuple[Piece, ...]) -> Iterator[str]:

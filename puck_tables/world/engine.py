@@ -22,10 +22,14 @@ from puck_tables.world.departures import (
 )
 from puck_tables.world.flight import (
     GONE,
+    LOOKED_UP,
     PATH,
+    STILL,
     UNTIL,
+    corridor,
 )
 from puck_tables.world.game import (
+    IMPACT,
     LAUNCH_SPIN,
     LAUNCH_TIME,
     LAUNCH_VX,
@@ -39,22 +43,34 @@ from puck_tables.world.game import (
     N_LAUNCHES,
     NOTHING,
     OVER_EDGE,
+    PARTNER,
     PATH_ENDS,
     POCKETED,
     STRUCK,
+    TIME,
+    WHAT,
+    WHO,
     Game,
 )
 from puck_tables.world.impact import (
+    FLAT,
+    NX,
+    NY,
     SUM_N,
+    TOO_FAST,
+    approach,
     collide,
 )
-from puck_tables.world.layout import EDGE, KIND, POCKET
-from puck_tables.world.meeting import next_crossing, next_meeting
+from puck_tables.world.layout import EDGE, KIND, POCKET, RADIUS
+from puck_tables.world.meeting import are_apart, next_crossing, next_meeting
+from puck_tables.world.quiet import quieten
 from puck_tables.world.touching import find_touching, is_integrated, press_somewhere
 
-REACHED, FULL, CROWDED, TANGLED, PAUSED, PUSHING = range(6)  # how a call ends
+REACHED, FULL, CROWDED, TANGLED, PAUSED, PUSHING, OFF_TABLE = range(7)  # how a call ends
 
 NOBODY, EVERYBODY, THOSE_LEFT = -1, -2, -3
+SLOW = 1e-6  # of the scale of speeds: an impact that only what pushes brings about
+MOST_BACK = 64  # events
 MOST_AT_ONCE = 1_000  # events at one moment
 MOST_IN_A_CALL = 2_000  # then the caller may hear Ctrl-C
 
@@ -77,11 +93,47 @@ def look_ahead(game: Game, i: int, t: float, room: Room) -> None:
     for k in range(game.obstacles.shape[0]):
         found = next_crossing(game, i, k, t, game.next_time[i], room.work, room.one)
         _earlier(game, i, found, -1 - k)
+    kind = game.kinds[i]
+    known = kind in (STILL, LOOKED_UP)
+    mine = corridor(kind, game.flights[i], game.discs[i], room.one, math.inf, t)
     for j in range(game.discs.shape[0]):
+        other = game.kinds[j]
+        if known and other in (STILL, LOOKED_UP):  # most lie far from where this one goes
+            if kind == STILL and other == STILL:
+                continue
+            reach = game.discs[i, RADIUS] + game.discs[j, RADIUS]
+            far = corridor(other, game.flights[j], game.discs[j], room.one, math.inf, t)
+            if are_apart(mine, far, reach):
+                continue
         if j != i:
             found = next_meeting(game, i, j, t, game.next_time[i], room.work, room.one, room.two)
             _earlier(game, i, found, j)
             _earlier(game, j, found, i)
+
+
+@inlined
+def _is_squeezed(game: Game, t: float, count: int, room: Room) -> bool:
+    """Whether slow impacts follow so soon on the last of the same two that these never parted.
+
+    So go on those that are squeezed by what pushes and rubs them, such as a disc between another
+    one and a cushion: no single rebound of them dies out, and they would never end.
+    """
+    found, slow = False, SLOW * game.pace[0]
+    for n in range(count):
+        i, j, row = room.contacts[n, 0], room.contacts[n, 1], room.rows[n]
+        un, _ = approach(game, i, j, row[NX], row[NY], room.states)
+        if un > slow:
+            return False
+        if un <= 0.0 or found:
+            continue
+        since = t - FLAT * game.discs[i, RADIUS] / un
+        for back in range(1, min(game.counts[N_EVENTS], MOST_BACK) + 1):
+            event = game.events[game.counts[N_EVENTS] - back]
+            if event[TIME] < since:
+                break
+            if event[WHAT] == IMPACT and event[WHO] == i and event[PARTNER] == j:
+                found = True
+    return found
 
 
 @inner
@@ -111,8 +163,13 @@ def _happen(game: Game, i: int, partner: int, t: float, room: Room) -> int:
     count = find_touching(game, t, room)
     if count < 0:
         return CROWDED
-    if collide(game, room.contacts, count, room.rows, room.before, room.states, room.shares) < 0:
-        return TANGLED
+    squeezed = _is_squeezed(game, t, count, room)
+    rounds = collide(
+        game, room.contacts, count, room.rows, room.before, room.states, room.shares, squeezed
+    )
+    if rounds < 0:
+        game.counts[N_CONTACTS] = count
+        return OFF_TABLE if rounds == TOO_FAST else TANGLED
     note_impacts(game, t, count, room)
     # those that no impulse reached fly on
     for j in range(discs.shape[0]):
@@ -131,6 +188,8 @@ def _happen(game: Game, i: int, partner: int, t: float, room: Room) -> int:
 def _go_on(game: Game, t: float, count: int, room: Room) -> int:
     """New flights of all that are concerned; PUSHING where some have to be integrated before."""
     game.counts[N_CONTACTS] = count
+    if quieten(game, count, room):
+        _whole_groups(game, count, room)
     pushes = press_somewhere(game, count, room)
     for j in range(game.discs.shape[0]):
         pushes = pushes or (room.marks[j] == CONCERNED and is_integrated(game, j, room.states[j]))
@@ -138,6 +197,21 @@ def _go_on(game: Game, t: float, count: int, room: Room) -> int:
         return PUSHING
     _take_off_all(game, t, room)
     return REACHED
+
+
+@inlined
+def _whole_groups(game: Game, count: int, room: Room) -> None:
+    """Mark the groups of those concerned."""
+    grown = True
+    while grown:
+        grown = False
+        for n in range(count):
+            i, j = room.contacts[n, 0], room.contacts[n, 1]
+            if j < 0 or game.group[i] == 0 or game.group[i] != game.group[j]:
+                continue
+            if (room.marks[i] == CONCERNED) != (room.marks[j] == CONCERNED):
+                room.marks[i] = room.marks[j] = CONCERNED
+                grown = True
 
 
 @inlined

@@ -167,15 +167,17 @@ def corridor(
     """Where the centre will be at most, from now until the horizon: a chord, and a margin about it.
 
     A path of the length L over a chord of the length C lies in the ellipse about its ends, at most
-    (L − C)/2 beyond them and ½√(L² − C²) beside.
+    (L − C)/2 beyond them and ½√(L² − C²) beside.  Of a motion that is looked up, and of a disc at
+    rest, the state is not asked.
     """
-    x, y = state[X], state[Y]
+    x, y = flight[PLACE_X], flight[PLACE_Y]
     if kind == LOOKED_UP:
-        x, y = flight[PLACE_X], flight[PLACE_Y]
         across, up = flight[KNOWN + STOP_X], flight[KNOWN + STOP_Y]
         length, over = flight[KNOWN + LENGTH], math.hypot(across, up)
         slack = max(length - over, 0.0) + 1e-9 * length  # what the table may be wrong by
         return x, y, x + across, y + up, 0.5 * slack + 0.5 * math.sqrt(slack * (length + over))
+    if kind in (DAMPED, PATH):
+        x, y = state[X], state[Y]
     if kind == DAMPED:
         way = horizon - now
         if disc[DAMPING] > 0.0:

@@ -11,15 +11,10 @@ from puck_tables.scene.ingredients import dry_in
 from puck_tables.scene.rest import free_yield
 from puck_tables.world.group import (
     ARM,
-    DRAG_HEAT,
-    DRIVE_WORK,
     DRIVEN,
-    FLOOR_HEAT,
     HELD,
     NX,
     NY,
-    PULL_WORK,
-    RIM_HEAT,
     SLIP,
     YIELDS,
     Desk,
@@ -35,6 +30,7 @@ from puck_tables.world.layout import (
     WAKE,
 )
 from puck_tables.world.paths import on_piece, piece_at
+from puck_tables.world.works import DRAG_HEAT, DRIVE_WORK, FLOOR_HEAT, PULL_WORK, RIM_HEAT
 
 
 @inlined

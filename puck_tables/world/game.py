@@ -42,10 +42,11 @@ COUNTS = 10
 class Game(NamedTuple):
     """Everything, as arrays: a copy of them is a copy of the world.
 
-    ``regions``: the dry friction of every disc, under its number.  ``clock`` (1,): now.  ``group``
+    ``regions``: the dry friction of every disc, under its number; ``rims``: the laws
+    by which they meet (:mod:`puck_tables.world.rims`).  ``clock`` (1,): now.  ``group``
     (n,): discs of one number push each other, 0: none; ``held`` (…, 2): their contacts.
     ``next_time``, ``next_partner`` (n,).  ``launches`` (…, 5), ascending in time.  ``drives``
-    (n, 2): the rows of ``pieces`` along which a disc is driven.  ``counts``: how many rows of
+    (n, 2): the rows of ``pieces`` along which a disc is driven. ``counts``: how many rows of
     events, history, pieces and held contacts are used, how many launches and what else was done,
     and the contacts of the event at work.  ``pace`` (2,): the scales of speed, m/s, and
     acceleration, m/s².  ``pull`` (2,): acceleration down a slope, m/s².
@@ -53,6 +54,7 @@ class Game(NamedTuple):
 
     discs: FloatArray
     regions: Regions
+    rims: FloatArray
     obstacles: FloatArray
     curves: Curves
     clock: FloatArray

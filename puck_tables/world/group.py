@@ -17,6 +17,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
 from puck_tables.motion.steppers import DORMAND_PRINCE
 from puck_tables.scene.ingredients import Regions
+from puck_tables.world.works import LEDGER
 
 IntArray = npt.NDArray[np.int64]
 
@@ -31,10 +32,6 @@ HELD, YIELDS, MOVES, DRIVEN = range(4)
 TIME_UP, PARTS, RIM_STOPS, RIM_GIVES, RUNS_OFF, RESTS, SETS_OFF, FULL, UNSOLVED, NOT_FINITE = range(
     10
 )
-
-# of a ledger, J: heat of dry friction, of rims, of drag; work of the pull and of driven discs
-FLOOR_HEAT, RIM_HEAT, DRAG_HEAT, PULL_WORK, DRIVE_WORK = range(5)
-LEDGER = 5
 
 # columns of what is seen of a contact: the normal from the first to the second; how much a slip of
 # the centres opens it, 1/m; that slip, the approach, the slip of the rims, the gap; the radii of
@@ -53,14 +50,16 @@ GAINS = 1e-10  # of the scale of accelerations: what gains less stays at rest
 class Group(NamedTuple):
     """What all groups share.
 
-    ``discs`` (n, 11), ``obstacles`` (k, 9): :mod:`puck_tables.world.layout`; ``regions``: the dry
-    friction of disc i as region i; ``films`` (f, 20) and ``reels`` (n, 2): rows of the motions that
-    are given, and of each disc the first and last + 1; (gx, gy): acceleration by the pull, m/s².
+    ``discs`` (n, 13), ``obstacles`` (k, 10): :mod:`puck_tables.world.layout`; ``regions``: the dry
+    friction of disc i as region i; ``rims``: their laws; ``films`` (f, 20) and ``reels`` (n, 2):
+    rows of the motions that are given, and of each disc the first and last + 1; (gx, gy):
+    acceleration by the pull, m/s².
     """
 
     discs: FloatArray
     obstacles: FloatArray
     regions: Regions
+    rims: FloatArray
     films: FloatArray
     reels: IntArray
     gx: float
@@ -84,12 +83,12 @@ class Desk(NamedTuple):
     ``pairs``: the contacts by places of members; ``states``: at the start and the end of a step and
     at a trial (3, m, 6); ``stages`` (8, m, 6) and ``powers`` (9, 5): rates of states and ledger;
     ``own``, ``rates`` (m, 3): accelerations without and with contacts; ``inverse`` (m, 2): 1/m, 1/I
-    of those that can move; ``sights`` (c, 11); ``watched`` (2, c, 4): see
-    :func:`puck_tables.world.moments.watch`; ``pushes`` (c, 2): λ, τ; ``ways`` (m, 3), ``paces``
-    (m, 2): where what yields slips to, and how fast that turns; ``rows``, ``columns`` (2c, 6),
-    ``owners`` (2c, 2), ``order`` (2c,): the constraints, and the members concerned; ``matrix``,
-    ``factors`` (2c, 2c), ``vectors`` (4, 2c); ``modes`` (2, c), ``doings`` (m,): trials; ``film``
-    (9,).
+    of those that can move; ``sights``, ``midway`` (c, 11): at the end and in the middle of a step;
+    ``watched`` (2, c, 4): see :func:`puck_tables.world.moments.watch`; ``pushes`` (c, 2): λ, τ;
+    ``ways`` (m, 3), ``paces`` (m, 2): where what yields slips to, and how fast that turns;
+    ``rows``, ``columns`` (2c, 6), ``owners`` (2c, 2), ``order`` (2c,): the constraints, and the
+    members concerned; ``matrix``, ``factors`` (2c, 2c), ``vectors`` (4, 2c); ``modes`` (2, c),
+    ``doings`` (m,): trials; ``film`` (9,).
     """
 
     pairs: IntArray
@@ -100,6 +99,7 @@ class Desk(NamedTuple):
     rates: FloatArray
     inverse: FloatArray
     sights: FloatArray
+    midway: FloatArray
     watched: FloatArray
     pushes: FloatArray
     ways: FloatArray
@@ -130,7 +130,7 @@ def desk_for(members: int, contacts: int) -> Desk:
         pairs=np.zeros((c, 2), np.int64), states=np.zeros((3, m, 6)),
         stages=np.zeros((stages + 1, m, 6)), powers=np.zeros((stages + 2, LEDGER)),
         own=np.zeros((m, 3)), rates=np.zeros((m, 3)), inverse=np.zeros((m, 2)),
-        sights=np.zeros((c, SIGHT)),
+        sights=np.zeros((c, SIGHT)), midway=np.zeros((c, SIGHT)),
         watched=np.zeros((2, c, WATCHES)), pushes=np.zeros((c, 2)),
         ways=np.zeros((m, 3)), paces=np.zeros((m, 2)),
         rows=np.zeros((k, 6)), columns=np.zeros((k, 6)), owners=np.zeros((k, 2), np.int64),

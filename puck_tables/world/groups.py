@@ -49,7 +49,6 @@ from puck_tables.world.game import (
 from puck_tables.world.group import (
     APART,
     HELD,
-    LEDGER,
     PARTS,
     RUNS_OFF,
     UNSOLVED,
@@ -64,6 +63,8 @@ from puck_tables.world.paths import START as BEGINS
 from puck_tables.world.pressing import press
 from puck_tables.world.pushing import follow
 from puck_tables.world.touching import is_integrated
+from puck_tables.world.works import DONE, LEDGER, MEMBER, RIM_HEAT, STINT, WORK_COLUMNS
+from puck_tables.world.works import START as WORK_START
 
 STEP_TOL = 1e-11  # of a step, in units of Q and Q²/J
 ROWS = 400  # steps of a group before its flights end for a new look
@@ -73,8 +74,11 @@ LOST_SHARE = 1e-15
 FOR_EVER = 1e9  # s
 
 
-def push_on(game: Game, room: Room) -> Game:
-    """Send the groups that push now on their way; marks say who is left to fly alone."""
+def push_on(game: Game, room: Room, books: list[FloatArray]) -> Game:
+    """Send the groups that push now on their way; marks say who is left to fly alone.
+
+    What that works is added to the books, see :mod:`puck_tables.world.works`.
+    """
     contacts = room.contacts[: game.counts[N_CONTACTS]]
     contacts = contacts[room.rows[: len(contacts), ACTS] > 0.0]
     for i in np.flatnonzero(room.marks == CONCERNED):
@@ -85,12 +89,14 @@ def push_on(game: Game, room: Room) -> Game:
     t, scales = float(game.clock[0]), Scales(float(game.pace[0]), float(game.pace[1]), STEP_TOL)
     gx, gy = game.pull.tolist()
     films, reels = _driven_now(game, t)
-    shared = Group(game.discs, game.obstacles, game.regions, films, reels, gx, gy)
+    shared = Group(game.discs, game.obstacles, game.regions, game.rims, films, reels, gx, gy)
     for part in _components(contacts, len(game.discs)):
         members = np.unique(part[part >= 0])
         before = room.states.copy()
-        kept, t_end, ways = _follow(shared, members, part, room.states, t, scales)
-        _note_contacts(game, t, part, kept, held_before, before, room)
+        kept, t_end, ways, jump, works = _follow(shared, members, part, room.states, t, scales)
+        _note_contacts(game, t, part, kept, held_before, float(jump[RIM_HEAT]), before, room)
+        jump[RIM_HEAT] = 0.0  # the event has it
+        _book(books, _a_free_one(game, members), t, jump, works)
         for i in members:  # a rim that gripped at once has changed what touches it, too
             if room.marks[i] == NOT_CONCERNED and (room.states[i] != before[i]).any():
                 room.marks[i] = CONCERNED
@@ -109,8 +115,11 @@ def push_on(game: Game, room: Room) -> Game:
                 game = _set_out(game, int(i), t, t_end, ways[place])
     for i in np.flatnonzero(room.marks == CONCERNED):
         if is_integrated(game, int(i), room.states[i]):
-            _, t_end, ways = _follow(shared, np.array([i]), contacts[:0], room.states, t, scales)
+            _, t_end, ways, jump, works = _follow(
+                shared, np.array([i]), contacts[:0], room.states, t, scales
+            )
             if t < t_end < math.inf:
+                _book(books, int(i), t, jump, works)
                 game = _set_out(game, int(i), t, t_end, ways[0])
                 room.marks[i] = PUSHED
     game.held[: len(held)], game.counts[N_HELD] = held, len(held)
@@ -135,12 +144,10 @@ def _driven_now(game: Game, t: float) -> tuple[FloatArray, Whole]:
 
 def _note_contacts(
     game: Game, t: float, part: Whole, kept: Whole, held_before: set[frozenset[int]],
-    before: FloatArray, room: Room,
+    lost: float, before: FloatArray, room: Room,
 ) -> None:  # fmt: skip
     """Write down the contacts that are new, and what was lost where rims gripped at once."""
     free = game.discs[:, LIGHTNESS] > 0.0
-    changes = _energies(game, before[free], free) - _energies(game, room.states[free], free)
-    lost = float(changes.sum())
     fresh = [pair for pair in kept.tolist() if frozenset(pair) not in held_before]
     if not fresh and abs(lost) > LOST_SHARE * float(_energies(game, before[free], free).sum()):
         fresh = part[:1].tolist()
@@ -180,8 +187,10 @@ def _components(contacts: Whole, discs: int) -> list[Whole]:
 
 def _follow(
     shared: Group, members: Whole, contacts: Whole, states: FloatArray, t: float, scales: Scales
-) -> tuple[Whole, float, FloatArray]:
-    """The contacts of a group that press, until when it is known, and pieces (m, rows, 20).
+) -> tuple[Whole, float, FloatArray, FloatArray, FloatArray]:
+    """The contacts of a group that press, until when it is known, and pieces (m, rows, 21).
+
+    And the ledger (5,) of what jumped at once, and the works (rows, 19) of the way.
 
     No contacts where none presses; where all rest until they are hit, for ever and no pieces.
     """
@@ -192,29 +201,31 @@ def _follow(
         if first < last:  # what drives may turn where its piece ends
             horizon = min(horizon, float(shared.films[first, [BEGINS, DURATION]].sum()))
     alone, nothing = not len(contacts), np.zeros((len(members), 0, PIECE_COLUMNS))
+    jump, idle = np.zeros(LEDGER), np.zeros((0, WORK_COLUMNS))
     for _ in range(_TRIES):
-        desk, ledger = desk_for(len(members), len(contacts)), np.zeros(LEDGER)
+        desk = desk_for(len(members), len(contacts))
         modes, doings = np.zeros(len(contacts), np.int64), np.zeros(len(members), np.int64)
-        how = press(shared, members, contacts, states, t, scales, modes, doings, ledger, desk)
+        how = press(shared, members, contacts, states, t, scales, modes, doings, jump, desk)
         if how == UNSOLVED:
             break
         contacts, modes = contacts[modes != APART], modes[modes != APART]
         if not (alone or len(contacts)):
-            return contacts, t, nothing
+            return contacts, t, nothing, jump, idle
         if (doings == HELD).all():
-            return contacts, math.inf, nothing
+            return contacts, math.inf, nothing, jump, idle
         pieces = np.zeros((len(members), ROWS, PIECE_COLUMNS))
+        works = np.zeros((ROWS, WORK_COLUMNS))
         how, which, t_end, count = follow(
             shared, members, contacts, states.copy(), t, horizon, scales, modes, doings, pieces,
-            ledger, desk,
+            works, desk,
         )  # fmt: skip
         if t_end > t and count > 0:
-            return contacts, t_end, pieces[:, :count]
+            return contacts, t_end, pieces[:, :count], jump, works[:count]
         if how not in (PARTS, RUNS_OFF):
             break
         contacts = np.delete(contacts, which, axis=0)
         if not len(contacts):
-            return contacts, t, nothing
+            return contacts, t, nothing, jump, idle
     raise PuckError(
         f"at {t:.6g} s {len(members)} pucks press on each other so that no forces satisfy all laws "
         "of their rims: give their rims a finite friction (rim), or move one of them"
@@ -230,6 +241,23 @@ def _with_pieces(game: Game, rows: FloatArray) -> Game:
     game.pieces[first : first + len(rows)] = rows
     game.counts[N_PIECES] = first + len(rows)
     return game
+
+
+def _a_free_one(game: Game, members: Whole) -> int:
+    """A member that is not driven: its flight lasts as long as that of the group."""
+    return int(members[game.discs[members, LIGHTNESS] > 0.0][0])
+
+
+def _book(
+    books: list[FloatArray], member: int, t: float, jump: FloatArray, works: FloatArray
+) -> None:
+    """Keep what was booked on a stint from t on, and at its start."""
+    if jump.any():
+        row = np.zeros((1, WORK_COLUMNS))
+        row[0, WORK_START], row[0, DONE : DONE + LEDGER] = t, jump
+        works = np.vstack([row, works])
+    works[:, MEMBER], works[:, STINT] = member, t
+    books.append(works.copy())  # not all the rows that there was room for
 
 
 def _set_out(game: Game, i: int, t: float, t_end: float, rows: FloatArray) -> Game:

@@ -10,14 +10,16 @@ With n from the disc i to its partner j, t = n turned by +90°, e, β and μ of 
 restitution e and tangential restitution β (−1: smooth, 0: the rims stop on each other, 1: their
 slip reverses) after Walton 1993, with Coulomb's friction μ.  An obstacle has no 1/m and no 1/I.
 The energy lost is ½ m_n (1 − e²) u_n² with ½ m_t (1 − β²) u_t², or where the rims
-slide μ P_n |u_t| − P_t²/2m_t; never less than nothing.
+slide μ P_n |u_t| − P_t²/2m_t; never less than nothing.  Where e falls with speed it is that at u_n
+(:mod:`puck_tables.world.rims`), in every round anew.
 
 Of discs that touch, those contacts that approach are resolved, then those that approach then, and
 so on: a row of pucks passes an impact on, as if there were gaps between them (after 200 rounds
-those that take turns are resolved together with e = 0).  Contacts of one
-round that share a disc are resolved together: the impulses for e = β = 0 (P_n ≥ 0) are found by an
-iteration that treats all alike, then enlarged by 1 + e and 1 + β, as Poisson has it, and lessened
-together should energy grow.  So no numbering matters, and what is symmetric stays so.
+those that take turns are resolved together with e = 0; those that are squeezed at once, also with
+β = 0).  Contacts of one round that share a disc are resolved together: the impulses for e = β = 0
+(P_n ≥ 0) are found by an iteration that treats all alike, then enlarged by 1 + e and 1 + β, as
+Poisson has it, and lessened together should energy grow.  So no numbering matters, and what is
+symmetric stays so.
 
 Rebounds of discs that press on each other die out.  Where those left are lower than 1e-13 of the
 radius, or than what is known of places (1e-10 of Q²/J), e = 0: they stay in contact.
@@ -43,14 +45,18 @@ from puck_tables.world.layout import (
     WAKE,
     WALL,
     C,
-    law_of_pair,
 )
-from puck_tables.world.meeting import normal_to
+from puck_tables.world.meeting import HARDLY, normal_to
+from puck_tables.world.rims import along_of_pair, restitutions_of_pair, smaller_at
 
 # columns of a contact in work: normal, slownesses 1/m_n and 1/m_t, law, whether it acts in this
-# round, impulses of the round and of all, approach and slip at the first, energy lost
+# round, impulses of the round and of all, approach and slip at the first, energy lost, and the two
+# restitutions, numbers or laws, of which E is the smaller
 NX, NY, SOFT, SLICK, E, BETA, MU, ACTS, PN, PT, SUM_N, SUM_T, FIRST_N, FIRST_T, LOSS = range(15)
-CONTACT_COLUMNS = 15
+ONE, OTHER = 15, 16
+CONTACT_COLUMNS = 17
+
+NO_END, TOO_FAST = -1, -2  # how impacts fail: rounds without end; faster than a table goes
 
 NEGLIGIBLE = 1e-13  # of the scale of speeds: an approach as slow is none
 FLAT = 1e-13  # of the radius: rebounds as low have died out
@@ -106,7 +112,9 @@ def prepare_contact(game: Game, i: int, j: int, states: FloatArray, row: FloatAr
             game.obstacles[-1 - j], discs[i, RADIUS], states[i, X], states[i, Y]
         )
     row[SOFT], row[SLICK] = light, light + turn
-    row[E], row[BETA], row[MU] = law_of_pair(discs, game.obstacles, i, j)
+    row[BETA], row[MU] = along_of_pair(game.rims, discs, game.obstacles, i, j)
+    row[ONE], row[OTHER] = restitutions_of_pair(game.rims, discs, game.obstacles, i, j)
+    row[E] = min(row[ONE], row[OTHER])
     row[ACTS] = row[PN] = row[PT] = row[SUM_N] = row[SUM_T] = 0.0
     row[FIRST_N] = row[FIRST_T] = row[LOSS] = 0.0
 
@@ -278,12 +286,15 @@ def _most_shared(contacts: Whole, count: int, rows: FloatArray, shares: Whole) -
 @inner
 def collide(
     game: Game, contacts: Whole, count: int, rows: FloatArray, before: FloatArray,
-    states: FloatArray, shares: Whole,
+    states: FloatArray, shares: Whole, squeezed: bool,
 ) -> int:  # fmt: skip
-    """All impacts of discs that touch, at one instant; how many rounds there were, or −1.
+    """All impacts of discs that touch, at one instant; how many rounds there were.
+
+    Or NO_END, or TOO_FAST, where the approach that no table knows is FIRST_N of a row with E < 0.
 
     ``contacts`` (count, 2): discs and their partners, prepared in ``rows``; ``states`` (n, 6) get
     the velocities after them; ``before`` (n, 6) and ``shares`` (n,) are room to work.
+    ``squeezed``: all that do not part are resolved together, with e = 0.
     """
     for turn in range(MOST_ROUNDS):
         acting = 0
@@ -293,6 +304,11 @@ def collide(
             row[ACTS] = 1.0 if un > NEGLIGIBLE * game.pace[0] else 0.0
             if row[ACTS] > 0.0:
                 acting += 1
+                if row[ONE] < 0.0 or row[OTHER] < 0.0:
+                    row[E] = smaller_at(game.rims, row[ONE], row[OTHER], un)
+                    if row[E] < 0.0:
+                        row[FIRST_N] = un
+                        return TOO_FAST
                 if row[SUM_N] == 0.0:
                     row[FIRST_N], row[FIRST_T] = un, ut
                 for column in range(VX, SPIN + 1):
@@ -301,11 +317,14 @@ def collide(
                         before[j, column] = states[j, column]
         if acting == 0:
             return turn
-        if turn >= TURNS:  # such as of a light disc between a heavy one and a wall
+        if turn >= TURNS or squeezed:  # such as of a light disc between a heavy one and a wall
             for n in range(count):
                 row, i, j = rows[n], contacts[n, 0], contacts[n, 1]
-                if row[SUM_N] > 0.0:
-                    row[ACTS], row[E] = 1.0, 0.0
+                un, _ = approach(game, i, j, row[NX], row[NY], states)
+                if row[SUM_N] > 0.0 or (squeezed and un >= -HARDLY * game.pace[0]):
+                    row[ACTS], row[E], row[ONE], row[OTHER] = 1.0, 0.0, 0.0, 0.0
+                    if squeezed and row[BETA] > -1.0:
+                        row[BETA] = 0.0  # rims that are pressed, as in a contact that lasts
                     for column in range(VX, SPIN + 1):
                         before[i, column] = states[i, column]
                         if j >= 0:
@@ -324,7 +343,8 @@ def collide(
                 row = rows[n]
                 i, j = contacts[n, 0], contacts[n, 1]
                 if row[ACTS] * row[E] > 0.0 and _dies_out(game, i, j, row, states):
-                    row[E], again = 0.0, True
+                    row[E] = row[ONE] = row[OTHER] = 0.0
+                    again = True
             if again:
                 _recall(game, contacts, count, rows, before, states)
         for n in range(count):
@@ -335,4 +355,4 @@ def collide(
                 row[SUM_N] += row[PN]
                 row[SUM_T] += row[PT]
                 row[LOSS] += 0.5 * (row[PN] * (un + vn) + row[PT] * (ut + vt))
-    return -1
+    return NO_END

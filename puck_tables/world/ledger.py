@@ -1,4 +1,4 @@
-"""Where the energy of several pucks went: floor, impacts, what is driven."""
+"""Where the energy of several pucks went: floor, rims, impacts; what is driven, the slope."""
 
 from __future__ import annotations
 
@@ -9,26 +9,40 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.scene.friction import SPIN, VX, VY
 from puck_tables.world import game as g
-from puck_tables.world.flight import START
+from puck_tables.world.flight import PATH, START
 from puck_tables.world.layout import LIGHTNESS, RADIUS, TURNABILITY
 from puck_tables.world.record import flights_of, states_at
+from puck_tables.world.works import (
+    DRAG_HEAT,
+    DRIVE_WORK,
+    FLOOR_HEAT,
+    MEMBER,
+    PULL_WORK,
+    RIM_HEAT,
+    STINT,
+    WORK_COLUMNS,
+    worked,
+)
 
 if TYPE_CHECKING:
     from puck_tables.world.world import World
 
 
 def ledger(world: World) -> dict[str, float]:
-    """Kinetic energy given by launches, heat of floor and impacts, work of driven bodies, J.
+    """Kinetic energy given by launches, heats, and works of driven bodies and of the slope, J.
 
-    The heat of the floor is what the flights lose on the way; that of impacts comes from their
-    impulses.  ``energy_residual``: what is missing, as a share of the largest entry.
+    Of motions that are looked up the heat of the floor is what the flights lose; of those that are
+    integrated heats and works are integrated with them; that of impacts comes from their impulses.
+    ``energy_residual``: what is missing, as a share of the largest entry.
     """
     game = world._game
     free = game.discs[:, LIGHTNESS] > 0.0
     discs, flights = flights_of(game)
     energies = _kinetic(game, discs[:, None], flights)
-    moves = free[discs]
-    floor = float((energies[moves, 0] - energies[moves, 1]).sum())
+    known = free[discs] & (game.history[: len(discs), 1] != PATH)
+    booked = _booked(game, world._books)
+    floor = float((energies[known, 0] - energies[known, 1]).sum())
+    floor += booked[FLOOR_HEAT] + booked[DRAG_HEAT]
     events = game.events[: game.counts[g.N_EVENTS]]
     impacts = float(events[:, g.LOST].sum())
     count = len(game.discs)
@@ -37,6 +51,8 @@ def ledger(world: World) -> dict[str, float]:
         _given(game, row, discs, energies) for row in events[events[:, g.WHAT] == g.STRUCK]
     )
     driven = sum(_driven(game, row) for row in events[events[:, g.WHAT] == g.IMPACT])
+    driven = float(driven + booked[DRIVE_WORK])
+    slope, rims = booked[PULL_WORK], booked[RIM_HEAT]
     gone = sum(
         energies[_before(game, row, discs), 1]
         for row in events if row[g.WHAT] in (g.POCKETED, g.OVER_EDGE)
@@ -44,13 +60,29 @@ def ledger(world: World) -> dict[str, float]:
     everyone = np.arange(count)
     now = states_at(game, game.clock)[0]
     left = float(_kinetic(game, everyone, now)[free].sum()) + gone
-    entries = [given, floor, impacts, driven, left]
+    entries = [given, floor, rims, impacts, driven, slope, left]
     largest = max(map(abs, entries))
-    missing = abs(given + driven - floor - impacts - left)
+    missing = abs(given + driven + slope - floor - rims - impacts - left)
     return {
-        "kinetic_energy": given, "heat_floor": floor, "heat_impact": impacts,
-        "work_driven": float(driven), "energy_residual": missing / largest if largest else 0.0,
+        "kinetic_energy": given, "heat_floor": floor, "heat_rims": rims, "heat_impact": impacts,
+        "work_driven": driven, "work_slope": slope,
+        "energy_residual": missing / largest if largest else 0.0,
     }  # fmt: skip
+
+
+def _booked(game: g.Game, books: list[FloatArray]) -> list[float]:
+    """What was booked of all that were integrated, up to where their flights ended."""
+    rows = np.vstack([np.zeros((0, WORK_COLUMNS)), *books])
+    history = game.history[: game.counts[g.N_HISTORY]]
+    ends = np.full(len(rows), float(game.clock[0]))
+    for disc in np.unique(rows[:, MEMBER]):
+        starts = history[history[:, 0] == disc, 2 + START]
+        mine = np.flatnonzero(rows[:, MEMBER] == disc)
+        after = np.searchsorted(starts, rows[mine, STINT], side="right")
+        later = after < len(starts)
+        ends[mine[later]] = starts[after[later]]
+    booked: list[float] = worked(rows, ends).tolist()
+    return booked
 
 
 def _kinetic(game: g.Game, discs: g.Whole, states: FloatArray) -> FloatArray:

@@ -10,7 +10,8 @@ The gap between two discs is g = |d| − R with the distance d of their centres,
 
 and steps by s reach the contact from before, with quadratic convergence: Newton's method that
 cannot pass a root.  A straight wall is the same without w_⊥; inside an arc |d| is bounded along the
-tangent instead.  Pairs whose corridors do not touch need no look.
+tangent instead.  Those that go beside each other for long are bounded closer
+(:mod:`puck_tables.world.beside`).  Pairs whose corridors do not touch need no look.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ import math
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.friction import VX, VY, X, Y
+from puck_tables.world.beside import stays_apart
 from puck_tables.world.flight import (
     DAMPED,
     GONE,
@@ -51,7 +53,9 @@ from puck_tables.world.layout import (
 OUTSIDE = 1e-9  # of the radius
 ROUNDED = 1e-15  # of the places: a gap as small is none
 QUIET = 1e-12  # of the scale of speeds: an approach as slow is none
+HARDLY = 1e-11  # of the scales of speeds and accelerations: as good as none, of what touches
 _MOST_LOOKS = 20_000
+_PATIENCE = 8  # looks, before those who go beside each other are bounded closer
 
 
 @inlined
@@ -119,7 +123,7 @@ def _distance2(ax: float, ay: float, bx: float, by: float, px: float, py: float)
 
 
 @inlined
-def _apart(
+def are_apart(
     one: tuple[float, float, float, float, float], two: tuple[float, float, float, float, float],
     reach: float,
 ) -> bool:  # fmt: skip
@@ -129,6 +133,11 @@ def _apart(
     reach += margin + other
     if reach == math.inf:
         return False
+    over = reach * (1.0 + 1e-9)
+    if min(ax, bx) > max(cx, dx) + over or min(cx, dx) > max(ax, bx) + over:
+        return True
+    if min(ay, by) > max(cy, dy) + over or min(cy, dy) > max(ay, by) + over:
+        return True
     # segments that cross are not apart
     first = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
     second = (bx - ax) * (dy - ay) - (by - ay) * (dx - ax)
@@ -207,16 +216,22 @@ def next_meeting(
         return math.inf
     discs, curves, pieces = game.discs, game.curves, game.pieces
     reach = discs[i, RADIUS] + discs[j, RADIUS]
-    state_at(kind, flight, discs[i], curves, pieces, now, room, one)
-    state_at(other, second, discs[j], curves, pieces, now, room, two)
-    if _apart(
+    if kind in (DAMPED, PATH):
+        state_at(kind, flight, discs[i], curves, pieces, now, room, one)
+    if other in (DAMPED, PATH):
+        state_at(other, second, discs[j], curves, pieces, now, room, two)
+    if are_apart(
         corridor(kind, flight, discs[i], one, last, now),
         corridor(other, second, discs[j], two, last, now),
         reach,
     ):
         return math.inf
+    if kind not in (DAMPED, PATH):
+        state_at(kind, flight, discs[i], curves, pieces, now, room, one)
+    if other not in (DAMPED, PATH):
+        state_at(other, second, discs[j], curves, pieces, now, room, two)
     t = now
-    for _ in range(_MOST_LOOKS):
+    for look in range(_MOST_LOOKS):
         game.counts[N_LOOKS] += 1
         dx, dy = two[X] - one[X], two[Y] - one[Y]
         size = math.hypot(dx, dy)
@@ -233,6 +248,10 @@ def next_meeting(
                 return t
             if bend > 0.0:
                 step = max(step, math.sqrt(2.0 * rounded / bend))
+        if look >= _PATIENCE:
+            nx, ny, more = dx / size, dy / size, max(gap, rounded)
+            longer = stays_apart(game, i, j, t, more, nx, ny, 0.0, False, room, one, two)
+            step = max(step, longer)
         if t + step > last:
             return math.inf
         if t + step == t:
@@ -275,7 +294,7 @@ def next_crossing(
         if near > reach * reach * (1.0 + 1e-9):
             return math.inf
     t = now
-    for _ in range(_MOST_LOOKS):
+    for look in range(_MOST_LOOKS):
         game.counts[N_LOOKS] += 1
         gap, nx, ny, there = normal_to(obstacle, radius, one[X], one[Y])
         rate = -(nx * one[VX] + ny * one[VY])
@@ -299,6 +318,11 @@ def next_crossing(
                 step = max(step, math.sqrt(2.0 * rounded / bend))
             if not there and rate != 0.0:
                 step = max(step, 4.0 * rounded / abs(rate))
+        if look >= _PATIENCE and (shape != ARC or gap >= 0.0):
+            far = math.hypot(one[X] - obstacle[A], one[Y] - obstacle[B])
+            step = max(step, stays_apart(
+                game, i, -1 - k, t, max(gap, rounded), nx, ny, far, shape == ARC, room, one, one,
+            ))  # fmt: skip
         if t + step > last:
             return math.inf
         if t + step == t:

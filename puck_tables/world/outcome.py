@@ -18,6 +18,7 @@ from puck_tables.scene.entries import tables_of, units_of
 from puck_tables.scene.outcome import column_of, refuse_changed, scene_texts
 from puck_tables.scene.scene import Scene
 from puck_tables.world.agreement import is_integrated, number_of, pieces_of
+from puck_tables.world.rim_laws import rule_of
 from puck_tables.world.world import Meeting
 
 STATE = ("x", "y", "orientation", "vx", "vy", "spin")
@@ -35,9 +36,10 @@ class WorldRun(TimedResult):
     where it left, its ``in_play`` is 0.  ``stop_times`` (pucks,) s: when each came to rest or left
     play; later than ``end_time`` or inf where it still moves at the end.
 
-    ``kinetic_energy`` J at the start, ``heat_floor``, ``heat_impact``: what friction of the floor
-    or drag and what impacts took, J; ``work_driven``: what driven bodies gave; ``energy_residual``:
-    what this ledger misses, as a share of its largest entry.  ``end_error`` m: how far twins end
+    ``kinetic_energy`` J given by launches, ``heat_floor``, ``heat_rims``, ``heat_impact``: what
+    friction of the floor or drag, rims that push each other, and impacts took, J; ``work_driven``,
+    ``work_slope``: what driven bodies and a slope gave; ``energy_residual``: what this ledger
+    misses, as a share of its largest entry.  ``end_error`` m: how far twins end
     whose launches are off by 1e-9, as much as the tables may be wrong by.  Each impact of round
     pucks multiplies errors: after many of them it may be as large as the board, and nobody can know
     the end, for the launch decides it by digits that it does not have.
@@ -54,8 +56,10 @@ class WorldRun(TimedResult):
     stop_times: FloatArray = field(repr=False)
     kinetic_energy: float
     heat_floor: float
+    heat_rims: float
     heat_impact: float
     work_driven: float
+    work_slope: float
     energy_residual: float
     end_error: float
     files: Mapping[str, str] = field(default_factory=dict, repr=False)
@@ -104,14 +108,14 @@ class WorldRun(TimedResult):
         return sum(event.what == "impact" for event in self.events)
 
     def explain(self) -> str:
-        """How every puck was moved."""
-        return ways_of(self.scene)
+        """How every puck was moved, and by which laws they meet."""
+        return f"{ways_of(self.scene)}\n{rule_of(self.scene)}"
 
     def summary(self) -> dict[str, Any]:
         """The scalars with what went in, and the units of all, ready for JSON."""
         scalars = (
-            "end", "end_time", "kinetic_energy", "heat_floor", "heat_impact", "work_driven",
-            "energy_residual", "end_error",
+            "end", "end_time", "kinetic_energy", "heat_floor", "heat_rims", "heat_impact",
+            "work_driven", "work_slope", "energy_residual", "end_error",
         )  # fmt: skip
         pucks = [
             {

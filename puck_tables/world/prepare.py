@@ -9,7 +9,8 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.scene.friction import SPIN, VX, VY
 from puck_tables.scene.ingredients import Regions
-from puck_tables.scene.pieces import Piece
+from puck_tables.scene.parts import Wall
+from puck_tables.scene.pieces import Arc, Piece, Post
 from puck_tables.scene.regions import NO_LAW, SLICE_SHARE, of_one_shape
 from puck_tables.scene.scene import Scene
 from puck_tables.stopping.stop_table import StopTable
@@ -37,6 +38,7 @@ from puck_tables.world.game import (
     Whole,
 )
 from puck_tables.world.paths import FIRST
+from puck_tables.world.rim_laws import number_for, rims_of
 
 ROWS = 256  # of events and flights at first
 
@@ -64,6 +66,7 @@ def game_of(scene: Scene, order: Whole) -> tuple[Game, Room]:
     discs, states = np.zeros((count, layout.DISC_COLUMNS)), np.zeros((count, 6))
     drives, ways = np.zeros((count, 2), np.int64), [np.zeros((0, 20))]
     launches = []
+    rims, discs[:, layout.MAKE], makes, called = rims_of(scene, pieces)
     for i, piece in enumerate(pieces):
         driven = bool(piece.path)
         inertia = piece.mass * (piece.gyration * piece.radius) ** 2
@@ -76,10 +79,8 @@ def game_of(scene: Scene, order: Whole) -> tuple[Game, Room]:
             discs[i, layout.WAKE] = scene.drag.quadratic / piece.mass
             discs[i, layout.SPIN_DAMPING] = scene.drag.spinning / inertia
         discs[i, layout.RADIUS] = piece.radius
-        discs[i, layout.RESTITUTION], discs[i, layout.TANGENTIAL] = (
-            piece.restitution, piece.tangential,
-        )  # fmt: skip
-        discs[i, layout.FRICTION] = piece.rim
+        discs[i, layout.RESTITUTION] = number_for(piece.restitution, called)
+        discs[i, layout.TANGENTIAL], discs[i, layout.FRICTION] = piece.tangential, piece.rim
         launch = piece.launch
         velocity = launch.velocity or (0.0, 0.0)
         states[i, :2], states[i, 2] = start_of(piece), launch.orientation
@@ -94,7 +95,8 @@ def game_of(scene: Scene, order: Whole) -> tuple[Game, Room]:
     game = Game(
         discs=discs,
         regions=_regions(scene, pieces, discs),
-        obstacles=_obstacles(scene),
+        rims=rims,
+        obstacles=_obstacles(scene, called, makes),
         curves=curves,
         clock=np.zeros(1),
         kinds=np.zeros(count, np.int64),
@@ -180,23 +182,25 @@ def _pull(scene: Scene, pieces: list[Piece]) -> tuple[float, float]:
     return pull * math.cos(floor.downhill), pull * math.sin(floor.downhill)
 
 
-def _obstacles(scene: Scene) -> FloatArray:
+def _obstacles(scene: Scene, called: dict[object, float], makes: FloatArray) -> FloatArray:
     """Rows of :mod:`puck_tables.world.layout`: walls, posts, arcs, pockets, edges."""
-    rows = []
+
+    def rim(cushion: Wall | Post | Arc) -> list[float]:
+        return [number_for(cushion.restitution, called), cushion.tangential, cushion.friction]
+
+    rows: list[list[float]] = []
     for wall in scene.walls:
-        rows.append([layout.WALL, *_line(wall.point, wall.normal), wall.restitution,
-                     wall.tangential, wall.friction, 0.0, 0.0])  # fmt: skip
+        rows.append([layout.WALL, *_line(wall.point, wall.normal), *rim(wall), 0.0, 0.0])
     for post in scene.posts:
-        rows.append([layout.POST, *post.point, post.radius, post.restitution, post.tangential,
-                     post.friction, 0.0, 0.0])  # fmt: skip
+        rows.append([layout.POST, *post.point, post.radius, *rim(post), 0.0, 0.0])
     for arc in scene.arcs:
-        rows.append([layout.ARC, *arc.point, arc.radius, arc.restitution, arc.tangential,
-                     arc.friction, arc.start, arc.span])  # fmt: skip
+        rows.append([layout.ARC, *arc.point, arc.radius, *rim(arc), arc.start, arc.span])
     for pocket in scene.pockets:
         rows.append([layout.POCKET, *pocket.point, pocket.radius, *[0.0] * 5])
     for edge in scene.edges:
         rows.append([layout.EDGE, *_line(edge.point, edge.normal), *[0.0] * 5])
-    return np.array(rows, np.float64).reshape(-1, layout.OBSTACLE_COLUMNS)
+    found = np.array(rows, np.float64).reshape(-1, layout.OBSTACLE_MAKE)
+    return np.column_stack([found, makes])
 
 
 def obstacle_names(scene: Scene) -> list[str]:

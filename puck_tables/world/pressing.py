@@ -11,13 +11,12 @@ from puck_tables.world.complementarity import rim_mode
 from puck_tables.world.forces import can_rest, gain_of, place_driven, slip_of
 from puck_tables.world.group import (
     APART,
-    DRIVE_WORK,
+    APPROACH,
     DRIVEN,
     GAINS,
     GRIP,
     HELD,
     MOVES,
-    RIM_HEAT,
     STICKS,
     STILL,
     TIME_UP,
@@ -31,10 +30,13 @@ from puck_tables.world.group import (
     small_slip,
 )
 from puck_tables.world.layout import LIGHTNESS, RADIUS, TURNABILITY
+from puck_tables.world.meeting import HARDLY
 from puck_tables.world.putting_right import stop_slips
 from puck_tables.world.sights import look
+from puck_tables.world.works import DRIVE_WORK, RIM_HEAT
 from puck_tables.world.yielding import settle
 
+_CREEPS = 8  # rounds
 _SAME = 0.9  # the cosine between directions that are the same
 
 
@@ -58,6 +60,29 @@ def _goes_on(group: Group, number: int, place: int, scales: Scales, desk: Desk) 
     along = way[0] * y[VX] + way[1] * y[VX + 1] + radius * radius * way[2] * y[SPIN]
     gains = gain_of(group, number, place, desk) > GAINS * scales.rate
     return slip == 0.0 or (gains and along > _SAME * slip)
+
+
+@inlined
+def _stop_creeping(
+    group: Group, members: IntArray, contacts: int, modes: IntArray, y: FloatArray,
+    scales: Scales, desk: Desk,
+) -> float:  # fmt: skip
+    """Take out approaches of what touches without pressing that are mere rounding; the heat.
+
+    What has just been put to rest leaves such to its neighbours, which would creep into it.
+    """
+    stopped, heat = desk.modes[1, :contacts], 0.0
+    for _ in range(_CREEPS):
+        look(group, members, desk.pairs[:contacts], y, desk.sights)
+        again = False
+        for c in range(contacts):
+            comes = desk.sights[c, APPROACH]
+            if modes[c] == APART and stopped[c] == APART and 0.0 < comes <= HARDLY * scales.speed:
+                stopped[c], again = 1, True
+        if not again:
+            break
+        heat += stop_slips(desk, stopped, y)
+    return heat
 
 
 @kernel
@@ -127,6 +152,7 @@ def press(
         heat = stop_slips(desk, stopped, y)
         ledger[RIM_HEAT] += heat
         ledger[DRIVE_WORK] += heat + _energy(group, members, y) - before
+    ledger[RIM_HEAT] += _stop_creeping(group, members, contacts.shape[0], modes, y, scales, desk)
     goes = False
     for place in range(count):
         if doings[place] == YIELDS:

@@ -20,6 +20,7 @@ from puck_tables.world.forces import can_rest, slip_of
 from puck_tables.world.group import (
     DRIVEN,
     FULL,
+    GAP,
     HELD,
     MOVES,
     NOT_FINITE,
@@ -37,8 +38,10 @@ from puck_tables.world.group import (
     find_places,
     small_slip,
 )
+from puck_tables.world.layout import RADIUS
 from puck_tables.world.moments import first_negative, sets_off, watch
-from puck_tables.world.paths import DURATION, START, piece_at
+from puck_tables.world.paths import DURATION, START, on_piece, piece_at
+from puck_tables.world.sights import look
 from puck_tables.world.stepping import (
     BEGIN,
     END,
@@ -48,8 +51,11 @@ from puck_tables.world.stepping import (
     step,
     write_piece,
 )
+from puck_tables.world.works import LEDGER
 
+_CLOSED = 0.05  # of a radius times the error of a step: the gap of discs in touch between steps
 _FIRST = 1e-3  # of Q/J: the first step
+_BRIEF = 1e-6  # of Q/J: on as short a step gaps are rounding
 _SHORTEST = 1e-16  # of Q/J: shorter steps lead nowhere
 _CLOSE = 1e-14  # of a step: how close a moment is found
 _NOBODY = cast(int, np.int64(-1))
@@ -114,11 +120,38 @@ def _moment(
     return high
 
 
+@inlined
+def _opens_midway(
+    group: Group, members: IntArray, contacts: int, pieces: FloatArray, count: int, start: float,
+    h: float, tol: float, desk: Desk,
+) -> float:  # fmt: skip
+    """How far apart, or into each other, discs in touch are midway, over what they may be.
+
+    There the polynomials between the ends of a step are off by most.
+    """
+    if contacts == 0:
+        return 0.0
+    trial, largest = desk.states[2], 0.0
+    for place in range(members.shape[0]):
+        piece = pieces[place, count]
+        write_piece(piece, start, h, place, desk)
+        on_piece(piece, start + 0.5 * h, desk.film)
+        for i in range(6):
+            trial[place, i] = desk.film[i]
+    look(group, members, desk.pairs[:contacts], trial, desk.midway)
+    for c in range(contacts):
+        radius = group.discs[members[desk.pairs[c, 0]], RADIUS]
+        if desk.pairs[c, 1] >= 0:
+            radius = min(radius, group.discs[members[desk.pairs[c, 1]], RADIUS])
+        largest = max(largest, abs(desk.midway[c, GAP]) / (_CLOSED * tol * radius))
+    return largest
+
+
 @kernel
 def follow(
     group: Group, members: IntArray, contacts: IntArray, states: FloatArray, t: float,
     t_end: float, scales: Scales, modes: IntArray, doings: IntArray, pieces: FloatArray,
-    ledger: FloatArray, desk: Desk,
+    works: FloatArray, desk: Desk,
 ) -> tuple[int, int, float, int]:  # fmt: skip
     """Follow a group from t until something changes, at most until ``t_end``.
 
@@ -132,7 +165,8 @@ def follow(
         Contacts that are APART are not looked at.
     pieces : (≥ m, rows, 20), the ways, see :mod:`puck_tables.world.paths`
         ``pieces[a, :count]`` are those of member a, one row for each step.
-    ledger : (5,) J, to which heat and work are added
+    works : (rows, 19), where the energy went, see :mod:`puck_tables.world.works`
+        ``works[:count]``, one row for each step, but for its first two columns.
     desk : to work on
 
     Returns
@@ -173,7 +207,22 @@ def follow(
                 how = NOT_FINITE
                 break
             continue
-        h = length * min(5.0, 5.0 if error == 0.0 else 0.9 * (scales.tol / error) ** 0.2)
+        opens = _opens_midway(
+            group,
+            members,
+            contacts.shape[0],
+            pieces,
+            count,
+            start + passed,
+            length,
+            scales.tol,
+            desk,
+        )
+        shorter = 5.0 if opens <= 1e-6 else 0.9 * opens ** (-1.0 / 6.0)
+        if opens > 1.0 and length * shorter > _BRIEF * unit:
+            h = length * shorter
+            continue
+        h = length * min(shorter, 5.0 if error == 0.0 else 0.9 * (scales.tol / error) ** 0.2)
         while True:
             c, kind = first_negative(desk, 1, contacts.shape[0])
             if c < 0:
@@ -192,7 +241,7 @@ def follow(
                 length = _moment(
                     group, members, modes, doings, t, length, _NOBODY, BEGIN, scales, desk
                 )
-        add_work(length, ledger, desk)
+        add_work(length, start + passed, works[count], desk)
         begun = False  # whether anybody's slip is so large that it has a direction of its own
         for place in range(size):
             write_piece(pieces[place, count], start + passed, length, place, desk)
@@ -211,7 +260,7 @@ def follow(
             for i in range(6):
                 y[place, i] = new[place, i]
                 desk.stages[0, place, i] = desk.stages[END, place, i]
-        for i in range(ledger.shape[0]):
+        for i in range(LEDGER):
             desk.powers[0, i] = desk.powers[END, i]
         if begun:
             rates_at(group, members, modes, doings, t, y, BEGIN, scales, desk)

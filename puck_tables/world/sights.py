@@ -41,8 +41,8 @@ from puck_tables.world.layout import (
     A,
     B,
     C,
-    law_of_pair,
 )
+from puck_tables.world.rims import along_of_pair
 
 
 @inlined
@@ -103,5 +103,5 @@ def look(group: Group, members: IntArray, pairs: IntArray, y: FloatArray, out: F
         sight[APPROACH] = vx * sight[NX] + vy * sight[NY]
         sight[ALONG] = vy * sight[NX] - vx * sight[NY]
         sight[SLIP] = sight[ALONG] + turning
-        _, tangential, friction = law_of_pair(group.discs, group.obstacles, i, j)
+        tangential, friction = along_of_pair(group.rims, group.discs, group.obstacles, i, j)
         sight[GRIP] = friction if tangential > -1.0 else 0.0  # −1: smooth

@@ -15,7 +15,6 @@ from puck_tables.world.forces import act, can_rest, place_driven, power_of_conta
 from puck_tables.world.group import (
     DRIVEN,
     HELD,
-    LEDGER,
     MOVES,
     YIELDS,
     Desk,
@@ -28,6 +27,7 @@ from puck_tables.world.multipliers import push_and_move
 from puck_tables.world.paths import DURATION, FIRST, START
 from puck_tables.world.putting_right import close_gaps, stop_slips
 from puck_tables.world.sights import look
+from puck_tables.world.works import LEDGER, write_work
 from puck_tables.world.yielding import turn_ways
 
 _A, _C, _E = DORMAND_PRINCE.a, DORMAND_PRINCE.c, DORMAND_PRINCE.e
@@ -125,13 +125,15 @@ def longest_step(group: Group, members: IntArray, doings: IntArray, desk: Desk) 
 
 
 @inlined
-def add_work(h: float, ledger: FloatArray, desk: Desk) -> None:
-    """What a step adds to the ledger."""
+def add_work(h: float, start: float, row: FloatArray, desk: Desk) -> None:
+    """Write down what a step adds to the ledger."""
+    done = desk.powers[END + 1]
     for i in range(LEDGER):
         total = 0.0
         for j in range(STAGES - 1):
             total += _A[STAGES - 1, j] * desk.powers[j, i]
-        ledger[i] += h * total
+        done[i] = h * total
+    write_work(row, start, h, desk.powers[0], done, desk.powers[END])
 
 
 @inlined

@@ -31,6 +31,7 @@ from puck_tables.world.bulk import Ends, follow_all
 from puck_tables.world.engine import PUSHING, REACHED
 from puck_tables.world.outcome import STATE, WorldRun, ways_of
 from puck_tables.world.prepare import game_of, order_of
+from puck_tables.world.rim_laws import rule_of
 from puck_tables.world.world import World
 
 CHUNK = 2048
@@ -41,6 +42,7 @@ ENDS = (
     "impacts without end",
     "refused",
     "unsolved",
+    "faster than a table of restitution goes",
 )
 TIME_UP, REFUSED, UNSOLVED = 1, 4, 5
 _LAUNCH = re.compile(r"(?:puck\[(\d+)\]\.)?launch\.(velocity\[[01]\]|spin)")
@@ -109,7 +111,7 @@ class WorldMap(Result):
 
     def explain(self) -> str:
         """How it was got."""
-        return f"{self.end.size} runs\n{ways_of(self.scene)}"
+        return f"{self.end.size} runs\n{ways_of(self.scene)}\n{rule_of(self.scene)}"
 
     def dataset(self) -> Dataset:
         """The results over what ranges and the pucks; the scene and its files as texts."""

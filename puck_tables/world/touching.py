@@ -8,9 +8,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.world.departures import CONCERNED, LOOKED_AT, NOT_CONCERNED, Room, locate
-from puck_tables.world.flight import (
-    GONE,
-)
+from puck_tables.world.flight import GONE, PLACE_X, PLACE_Y, STILL
 from puck_tables.world.game import (
     Game,
 )
@@ -23,11 +21,10 @@ from puck_tables.world.impact import (
     prepare_contact,
 )
 from puck_tables.world.layout import DECEL, EDGE, INTEGRATED, KIND, POCKET, RADIUS
-from puck_tables.world.meeting import normal_to
+from puck_tables.world.meeting import HARDLY, normal_to
 
 TOUCH = 1e-12  # of the radius: a gap as small is none
 BLUR = 1e-15  # of the time since the start, at full speed: another
-HARDLY = 1e-11  # of the scales of speeds and accelerations: none
 
 
 @inlined
@@ -66,9 +63,17 @@ def find_touching(game: Game, t: float, room: Room) -> int:
             for j in range(discs.shape[0]):
                 if j == i or game.kinds[j] == GONE:
                     continue
+                reach = discs[i, RADIUS] + discs[j, RADIUS]
+                if game.kinds[j] == STILL:
+                    flight = game.flights[j]
+                    dx, dy = (
+                        flight[PLACE_X] - room.states[i, X],
+                        flight[PLACE_Y] - room.states[i, Y],
+                    )
+                    if abs(dx) > 1.01 * reach or abs(dy) > 1.01 * reach:
+                        continue
                 if room.marks[j] == NOT_CONCERNED:
                     locate(game, j, t, room)
-                reach = discs[i, RADIUS] + discs[j, RADIUS]
                 dx = room.states[j, X] - room.states[i, X]
                 dy = room.states[j, Y] - room.states[i, Y]
                 if abs(dx) > 1.01 * reach or math.hypot(dx, dy) - reach > near:

@@ -20,6 +20,7 @@ from puck_tables.world.engine import (
     EVERYBODY,
     FULL,
     NOBODY,
+    OFF_TABLE,
     PAUSED,
     PUSHING,
     REACHED,
@@ -29,6 +30,7 @@ from puck_tables.world.engine import (
     lacks_rows,
 )
 from puck_tables.world.flight import DAMPED, GONE, LOOKED_UP, PATH, START, UNTIL
+from puck_tables.world.impact import FIRST_N, E
 from puck_tables.world.layout import LIGHTNESS, RADIUS, TURNABILITY
 from puck_tables.world.prepare import game_of, obstacle_names, order_of, set_pace
 from puck_tables.world.record import states_at
@@ -101,6 +103,7 @@ class World:
         self._order = order_of(self.scene)
         self._game, self._room = game_of(self.scene, self._order)
         self._named()
+        self._books: list[FloatArray] = []  # rows of :mod:`puck_tables.world.works`
         self._advance(0.0, EVERYBODY, self._room.one)
 
     def _named(self) -> None:
@@ -271,7 +274,7 @@ class World:
             elif how == PUSHING:
                 from puck_tables.world.groups import push_on  # compiled where it is needed
 
-                self._game, struck = push_on(self._game, self._room), THOSE_LEFT
+                self._game, struck = push_on(self._game, self._room, self._books), THOSE_LEFT
             elif how == PAUSED and self.time - mark > crowd:
                 mark = self.time
             else:
@@ -298,12 +301,13 @@ class World:
         twin = object.__new__(World)
         twin.scene, twin._order = self.scene, self._order
         # tables, friction and obstacles never change
-        kept = ("discs", "regions", "obstacles", "curves", "launches", "drives")
+        kept = ("discs", "regions", "rims", "obstacles", "curves", "launches", "drives")
         parts: dict[str, Any] = self._game._asdict()
         twin._game = g.Game(**{n: one if n in kept else one.copy() for n, one in parts.items()})
         twin._room = self._room._replace(
             **{name: part.copy() for name, part in self._room._asdict().items()}
         )
+        twin._books = list(self._books)
         twin._named()
         return twin
 
@@ -322,7 +326,19 @@ class World:
                         f"{self.time:.6g} s against what does not give way: let its path end "
                         "before, or leave more room"
                     )
+        if how == OFF_TABLE:
+            return self._off_table()
         return _FAILURES[how].format(time=self.time)
+
+    def _off_table(self) -> str:
+        """Which impact is faster than its table of restitution goes."""
+        count = self._game.counts[g.N_CONTACTS]
+        n = int(np.flatnonzero(self._room.rows[:count, E] < 0.0)[0])
+        one, other = (self._name(number) for number in self._room.contacts[n])
+        return (
+            f"{one} and {other} meet at {self._room.rows[n, FIRST_N]:.6g} m/s, faster than their "
+            "table of restitution goes: add a row to it for such a speed"
+        )
 
     def _grow(self) -> None:
         """Twice the rows for events and flights."""

@@ -1,0 +1,279 @@
+"""Restitution: how fast two rims part, over how fast they met.
+
+A law is a small class.  What the engine needs of it is a row of numbers, the first of which says
+whose formula holds (:mod:`puck_tables.scene.restitution_at`).  A plain number is the law of Newton,
+restitution that does not depend on speed.  Whatever the law, what happens along the rims is
+Walton's (tangential restitution and Coulomb's friction, see :mod:`puck_tables.world.impact`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Any, ClassVar
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables._core.fields import of
+from puck_tables._core.monotone import monotone_cubic
+from puck_tables._core.real import finite_array, real
+from puck_tables._core.safe_read import is_number, read_numbers
+from puck_tables.errors import InputError
+
+VISCOELASTIC, PLASTIC, TABLE = range(3)
+MAX_BYTES = 1 << 24
+
+
+@dataclass(frozen=True)
+class Restitution:
+    """A restitution that depends on the speed of approach."""
+
+    source: ClassVar[str] = ""
+
+    @property
+    def name(self) -> str:
+        """As it stands in a scene file."""
+        raise NotImplementedError
+
+    @property
+    def numbers(self) -> FloatArray:
+        """What the engine needs."""
+        raise NotImplementedError
+
+    def __call__(self, speed: npt.ArrayLike) -> FloatArray:
+        """The restitution at speeds of approach, m/s; NaN beyond the end of a table.
+
+        Raises
+        ------
+        InputError
+            If a speed is no number >= 0.
+
+        Examples
+        --------
+        >>> Plastic(0.1)([0.05, 0.2]).round(6).tolist()
+        [1.0, 0.930626]
+        """
+        from puck_tables.scene.restitution_at import restitution_at  # compiled
+
+        speeds = finite_array("speed", speed, "m/s")
+        if (speeds < 0.0).any():
+            raise InputError(f"speed = {speeds.min():g} m/s must not be negative")
+        numbers = self.numbers
+        found = np.array([restitution_at(numbers, 0, one) for one in speeds.ravel().tolist()])
+        return np.where(found < 0.0, np.nan, found).reshape(speeds.shape)
+
+
+@dataclass(frozen=True)
+class Viscoelastic(Restitution):
+    """Viscoelastic spheres, or rims that touch in one point: e = 1 − C v^(1/5) + (3/5) C² v^(2/5)…
+
+    With s = √(C v^(1/5)/1.15345),
+
+        e = (1 + c s)/(1 + c s + 1.15345 s² + 0.577977 s³ + 0.532178 s⁴),   c = 0.501086,
+
+    the Padé approximant of the whole series, within 0.009 of the equation of motion at all speeds.
+
+    Parameters
+    ----------
+    loss : C, (s/m)^(1/5), > 0
+
+    Examples
+    --------
+    >>> law = Viscoelastic(0.2)
+    >>> law.name, law(1.0).round(6).item()
+    ('viscoelastic:0.2', 0.824241)
+    """
+
+    loss: float
+    source: ClassVar[str] = (
+        "Ramirez, Poeschel, Brilliantov, Schwager 1999; Mueller, Poeschel 2011, Physical Review E"
+    )
+
+    def __post_init__(self) -> None:
+        _positive(self, "loss", "(s/m)^(1/5)")
+
+    @property
+    def name(self) -> str:
+        """As it stands in a scene file."""
+        return f"viscoelastic:{self.loss!r}"
+
+    @property
+    def numbers(self) -> FloatArray:
+        """What the engine needs."""
+        return np.array([VISCOELASTIC, self.loss])
+
+
+@dataclass(frozen=True)
+class Plastic(Restitution):
+    """Spheres, or rims that touch in one point, that yield: 1 up to the yield speed V, above it
+
+        e = (6√3/5)^½ (1 − q²/6)^½ (q/(q + 2 √(6/5 − q²/5)))^¼,   q = V/v,
+
+    which falls like 1.185 (V/v)^¼.
+
+    Parameters
+    ----------
+    yield_speed : V, m/s, > 0
+
+    Examples
+    --------
+    >>> law = Plastic(0.05)
+    >>> law.name, law(1.0).round(6).item()
+    ('plastic:0.05', 0.557109)
+    """
+
+    yield_speed: float
+    source: ClassVar[str] = "Thornton 1997, Journal of Applied Mechanics 64"
+
+    def __post_init__(self) -> None:
+        _positive(self, "yield_speed", "m/s")
+
+    @property
+    def name(self) -> str:
+        """As it stands in a scene file."""
+        return f"plastic:{self.yield_speed!r}"
+
+    @property
+    def numbers(self) -> FloatArray:
+        """What the engine needs."""
+        return np.array([PLASTIC, self.yield_speed])
+
+
+@dataclass(frozen=True, eq=False)
+class RestitutionTable(Restitution):
+    """Restitution against the speed of approach, through points that were measured.
+
+    Between the points a cubic that rises and falls only where they do.  Nothing is known beyond the
+    last: a run in which rims meet faster is refused.
+
+    Parameters
+    ----------
+    speeds : array_like (k,), m/s, ascending from 0, at least two
+    values : array_like (k,), from 0 to 1
+    name : the file it comes from
+
+    Raises
+    ------
+    InputError
+        If the points are not like that.
+
+    Examples
+    --------
+    >>> law = RestitutionTable([0.0, 1.0, 3.0], [0.9, 0.8, 0.7])
+    >>> law([0.0, 0.5, 3.0]).round(6).tolist()
+    [0.9, 0.844071, 0.7]
+    """
+
+    speeds: npt.ArrayLike
+    values: npt.ArrayLike
+    file: str = "table"
+    source: ClassVar[str] = "measured"
+
+    def __post_init__(self) -> None:
+        speeds = finite_array("speeds", self.speeds, "m/s").copy()
+        values = finite_array("values", self.values, "units of 1").copy()
+        if speeds.ndim != 1 or speeds.shape != values.shape or speeds.size < 2:
+            raise InputError(
+                "a table of restitution must be two or more rows of the speed of approach, m/s, "
+                "and the restitution"
+            )
+        if speeds[0] != 0.0 or not (np.diff(speeds) > 0.0).all():
+            raise InputError("the speeds of a table of restitution must ascend from 0 m/s")
+        if values.min() < 0.0 or values.max() > 1.0:
+            wrong = values[(values < 0.0) | (values > 1.0)][0]
+            raise InputError(f"a restitution must be from 0 to 1, got {wrong:g}")
+        object.__setattr__(self, "speeds", speeds)
+        object.__setattr__(self, "values", values)
+
+    def __eq__(self, other: object) -> bool:
+        """Whether the points are the same."""
+        if not isinstance(other, RestitutionTable):
+            return NotImplemented
+        return np.array_equal(self.numbers, other.numbers)
+
+    __hash__ = None  # type: ignore[assignment]  # arrays
+
+    @property
+    def name(self) -> str:
+        """As it stands in a scene file."""
+        return self.file
+
+    @property
+    def numbers(self) -> FloatArray:
+        """What the engine needs: how many points, their speeds, the cubics."""
+        x, y = np.asarray(self.speeds), np.asarray(self.values)
+        return np.concatenate([[TABLE, x.size], x, monotone_cubic(x, y).ravel()])
+
+
+NAMED = {"viscoelastic": Viscoelastic, "plastic": Plastic}
+LISTED = "'viscoelastic:C', 'plastic:V', or the name of a CSV file of speed in m/s and restitution"
+
+
+def restitution_law(given: str | Restitution) -> Restitution:
+    """A law from its name, as ``"viscoelastic:0.2"``, or from a CSV file.
+
+    Raises
+    ------
+    InputError
+        If there is no such law or file, or a number of it is wrong.
+
+    Examples
+    --------
+    >>> restitution_law("plastic:0.05").yield_speed
+    0.05
+    >>> restitution_law("viscoelastik:0.1")
+    Traceback (most recent call last):
+    ...
+    puck_tables.errors.InputError: there is no law of restitution 'viscoelastik:0.1' (did you mean \
+viscoelastic?): give a number from 0 to 1, 'viscoelastic:C', 'plastic:V', or the name of a CSV \
+file of speed in m/s and restitution
+    """
+    if isinstance(given, Restitution):
+        return given
+    if given.lower().endswith(".csv"):
+        rows = read_numbers(given, MAX_BYTES)
+        if rows.ndim != 2 or rows.shape[1] != 2:
+            raise InputError(
+                f"{Path(given).name}: must be rows of the speed of approach in m/s and the "
+                "restitution, like 0.5,0.8"
+            )
+        try:
+            return RestitutionTable(rows[:, 0], rows[:, 1], given)
+        except InputError as error:
+            raise InputError(f"{Path(given).name}: {error}") from None
+    name, _, number = given.partition(":")
+    if name not in NAMED:
+        near = get_close_matches(name.lower(), NAMED, 1, 0.6)
+        meant = f" (did you mean {near[0]}?)" if near else ""
+        raise InputError(
+            f"there is no law of restitution {given[:60]!r}{meant}: give a number from 0 to 1, "
+            + LISTED
+        )
+    if not is_number(number):
+        raise InputError(f"{given[:60]!r}: the law needs a number, such as '{name}:0.1'")
+    return NAMED[name](float(number))
+
+
+def restitution_of(default: float | None, **how: Any) -> Any:
+    """A field of a dataclass that takes a restitution, a number or a law.
+
+    Examples
+    --------
+    >>> restitution_of(1.0).default
+    1.0
+    """
+    return of(
+        "number", default, low=0.0, high=1.0, objects=(Restitution,), file=".csv",
+        law=restitution_law, laws=LISTED, **how,
+    )  # fmt: skip
+
+
+def _positive(law: Restitution, field: str, unit: str) -> None:
+    """Check the number of a law."""
+    value = real(field, getattr(law, field), unit)
+    if not value > 0.0:
+        raise InputError(f"{field} must be greater than 0 {unit}, got {value:g}")
+    object.__setattr__(law, field, value)

@@ -1,0 +1,121 @@
+"""The laws of rims of a scene as the engine reads them, and in words."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.scene.pieces import Piece
+from puck_tables.scene.restitution import Restitution, restitution_law
+from puck_tables.scene.scene import Scene
+from puck_tables.world.agreement import CUSHIONS, pieces_of
+
+
+def _laws_of(scene: Scene, first: int) -> tuple[FloatArray, dict[object, float]]:
+    """The numbers of all laws of restitution, from a place on, and what number calls each."""
+    laws: list[FloatArray] = [np.zeros(0)]
+    called: dict[object, float] = {}
+    for given in _restitutions(scene):
+        key = given.numbers.tobytes() if isinstance(given, Restitution) else given
+        if not isinstance(given, float | int) and key not in called:
+            called[key] = -1.0 - first - sum(map(len, laws))
+            laws.append(restitution_law(given).numbers)
+    return np.concatenate(laws), called
+
+
+def number_for(given: float | str | Restitution | None, called: dict[object, float]) -> float:
+    """A restitution as one number: itself, or the place of its law; NaN where it is left out."""
+    if given is None:
+        return math.nan
+    if isinstance(given, float | int):
+        return float(given)
+    return called[given.numbers.tobytes() if isinstance(given, Restitution) else given]
+
+
+def _restitutions(scene: Scene) -> Iterator[float | str | Restitution]:
+    """All restitutions of a scene."""
+    parts: tuple[Any, ...] = (
+        *pieces_of(scene), *scene.walls, *scene.posts, *scene.arcs, *scene.rims
+    )  # fmt: skip
+    for part in parts:
+        if part.restitution is not None:
+            yield part.restitution
+
+
+def rims_of(
+    scene: Scene, pieces: list[Piece]
+) -> tuple[FloatArray, FloatArray, FloatArray, dict[object, float]]:
+    """The array of :mod:`puck_tables.world.rims`; which kinds of rims discs and obstacles have.
+
+    Those that the same rims of the scene name have one kind.  And by what numbers laws are called.
+    """
+    cushions = zip(CUSHIONS, (scene.walls, scene.posts, scene.arcs), strict=True)
+    names = [(kind, f"{kind} {k}") for kind, ones in cushions for k in range(len(ones))]
+    names += [("", "")] * (len(scene.pockets) + len(scene.edges))
+    if not scene.rims:
+        laws, called = _laws_of(scene, 1)
+        rims = np.concatenate([[0.0], laws])
+        return rims, np.zeros(len(pieces)), np.zeros(len(names)), called
+    sides = [side for rim in scene.rims for side in (rim.puck, rim.partner)]
+    named = {piece.name for piece in pieces if piece.name}
+    signs = [tuple(_is(piece, side, named) for side in sides) for piece in pieces]
+    signs += [tuple(side in name and bool(side) for side in sides) for name in names]
+    kinds = {sign: number for number, sign in enumerate(dict.fromkeys(signs))}
+    first = 1 + len(kinds) ** 2
+    meets = np.full((len(kinds), len(kinds)), -1.0)
+    for row in range(len(scene.rims)):  # of several the last counts
+        for sign, one in kinds.items():
+            for other, two in kinds.items():
+                if (sign[2 * row] and other[2 * row + 1]) or (sign[2 * row + 1] and other[2 * row]):
+                    meets[one, two] = first + 3 * row
+    laws, called = _laws_of(scene, first + 3 * len(scene.rims))
+    pairs = [
+        [number_for(rim.restitution, called), *(math.nan if one is None else one
+         for one in (rim.tangential, rim.friction))] for rim in scene.rims
+    ]  # fmt: skip
+    makes = np.array([kinds[sign] for sign in signs], np.float64)
+    rims = np.concatenate([[len(kinds)], meets.ravel(), np.ravel(pairs), laws])
+    return rims, makes[: len(pieces)], makes[len(pieces) :], called
+
+
+def _is(piece: Piece, side: str, named: set[str]) -> bool:
+    """Whether a side of a rim means a puck: its name, or else its colour."""
+    return piece.name == side if side in named else bool(side) and piece.colour == side
+
+
+def rule_of(scene: Scene) -> str:
+    """By which law pucks meet, in words.
+
+    Examples
+    --------
+    >>> print(rule_of(Scene(pucks=[Piece(0.1, restitution="plastic:0.1")])))
+    impacts by Walton's law: of two pucks the smaller of each number counts, a cushion has its own
+    restitution plastic:0.1 at the speed of approach: Thornton 1997, Journal of Applied Mechanics 64
+    """
+    lines = [
+        "impacts by Walton's law: of two pucks the smaller of each number counts, a cushion has "
+        "its own"
+    ]
+    for number, rim in enumerate(scene.rims):
+        own = ("restitution", "tangential", "friction")
+        given = ", ".join(
+            f"{name} {_shown(getattr(rim, name))}" for name in own if getattr(rim, name) is not None
+        )
+        lines.append(f"rim[{number}]: {rim.puck} and {rim.partner} meet by {given or 'the same'}")
+    laws = {
+        law.name: law for law in map(restitution_law, (
+            one for one in _restitutions(scene) if not isinstance(one, float | int)
+        ))
+    }  # fmt: skip
+    lines += [
+        f"restitution {name} at the speed of approach: {law.source}" for name, law in laws.items()
+    ]
+    return "\n".join(lines)
+
+
+def _shown(value: object) -> str:
+    return f"{value:g}" if isinstance(value, float | int) else getattr(value, "name", str(value))

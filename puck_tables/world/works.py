@@ -1,0 +1,53 @@
+"""Where the energy of those went who were integrated, step by step.
+
+A *stint* is what a group of discs, or one alone, was sent on at once; all its discs go on from the
+same event, so the flight of any of them tells when it ended.  A row is a step of it: powers at both
+ends and the work between, of which a part is that of a cubic.  A row without duration is a jump, at
+the start.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.kernels.compile import inlined
+
+# of a ledger, J: heat of dry friction, of rims, of drag; work of the pull and of driven discs
+FLOOR_HEAT, RIM_HEAT, DRAG_HEAT, PULL_WORK, DRIVE_WORK = range(5)
+LEDGER = 5
+
+# columns: a disc of the stint, when that began; start and duration of the step; at its start and
+# end the powers, W, and the works in between, J
+MEMBER, STINT, START, DURATION, FIRST = range(5)
+WORK_COLUMNS = FIRST + 3 * LEDGER
+BEGUN, DONE, ENDED = FIRST, FIRST + LEDGER, FIRST + 2 * LEDGER
+
+
+@inlined
+def write_work(
+    row: FloatArray, start: float, h: float, begin: FloatArray, done: FloatArray, end: FloatArray
+) -> None:
+    """A step: the powers at its start, the works, the powers at its end."""
+    row[START], row[DURATION] = start, h
+    for i in range(LEDGER):
+        row[BEGUN + i], row[DONE + i], row[ENDED + i] = begin[i], done[i], end[i]
+
+
+def worked(rows: FloatArray, ends: FloatArray) -> FloatArray:
+    """The ledger (5,) of rows of works, each of whose stints ended at ``ends`` (rows,), J.
+
+    Examples
+    --------
+    >>> row = np.zeros((1, WORK_COLUMNS))
+    >>> row[0, DURATION], row[0, DONE], row[0, BEGUN], row[0, ENDED] = 2.0, 4.0, 1.0, 3.0
+    >>> worked(row, np.array([1.0]))[0].item(), worked(row, np.array([9.0]))[0].item()
+    (1.5, 4.0)
+    """
+    h = rows[:, DURATION]
+    share = np.where(h > 0.0, (ends - rows[:, START]) / np.where(h > 0.0, h, 1.0), 1.0)
+    s, h = np.clip(share, 0.0, 1.0)[:, None], h[:, None]
+    begun, done, ended = (rows[:, first : first + LEDGER] for first in (BEGUN, DONE, ENDED))
+    part = done * s * s * (3.0 - 2.0 * s) + h * s * (1.0 - s) * (begun * (1.0 - s) - ended * s)
+    whole: FloatArray = np.where(s < 1.0, part, done).sum(axis=0)
+    return whole

@@ -1,0 +1,149 @@
+"""Where the energy of pucks that push each other goes, judged by hand and by another integrator."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from boards import draw, piece
+from pushing_judge import Judge
+
+import puck_tables as pt
+from puck_tables.world.ledger import ledger
+
+G = 9.80665
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(16)
+
+
+def test_a_mallet_that_pushes_works_against_the_floor():
+    """It comes at v, e = 0, and goes on for s at v: m v² in the impact, f m g s after it."""
+    mallet = pt.Piece(0.05, path=[[0.0, -0.2, 0.0], [1.0, 0.3, 0.0], [3.0, 0.3, 0.0]])
+    puck = piece(0.0, 0.0, restitution=0.0)
+    run = pt.Scene(pucks=[mallet, puck]).simulate()
+    m, v, pushed = 0.1, 0.5, 0.2 * 0.1 * G * 0.5 * (1.0 - 0.24)
+    assert run.work_driven == pytest.approx(m * v * v + pushed, rel=1e-9)
+    assert run.heat_floor == pytest.approx(pushed + 0.5 * m * v * v, rel=1e-9)
+    assert run.heat_impact == pytest.approx(0.5 * m * v * v, rel=1e-9)
+    assert run.heat_rims == 0.0
+    assert run.energy_residual < 1e-10
+
+
+def judged(world: pt.World, judge: Judge, until: float) -> dict[str, float]:
+    """Heats and works from now on, by Gauss quadrature over runs of the judge."""
+    start, t0 = world.state(), world.time
+    totals = {"heat_floor": 0.0, "heat_rims": 0.0, "work_driven": 0.0}
+    for node, weight in zip(NODES, WEIGHTS, strict=True):
+        t = t0 + 0.5 * (until - t0) * (1.0 + node)
+        states, _, _ = judge.run(start, t0, t)
+        q, v = states[:, :3].ravel(), states[:, 3:].ravel()
+        accelerations, pushes, slips = judge.solved(t, q, v)
+        share = 0.5 * weight * (until - t0)
+        totals["heat_floor"] -= share * float(judge.forces(v) @ v)
+        totals["heat_rims"] += share * float(
+            sum(push[1] * slip for push, slip in zip(pushes, slips, strict=True))
+        )
+        # what a driven body gives is what contacts do to the others, with the heat of the rims
+        masses = judge.discs[:, [1, 1, 2]].ravel()
+        free = [3 * i + k for i in judge.free for k in range(3)]
+        given = (masses * accelerations - judge.forces(v))[free] @ v[free]
+        totals["work_driven"] += share * float(given)
+    totals["work_driven"] += totals["heat_rims"]
+    return totals
+
+
+def booked(world: pt.World, until: float) -> dict[str, float]:
+    """The same from the ledger of the world."""
+    before = ledger(world)
+    world.advance(until - world.time)
+    after = ledger(world)
+    assert after["energy_residual"] < 1e-9
+    return {name: after[name] - before[name] for name in before}
+
+
+def rim_of(judge: Judge, world: pt.World) -> int:
+    """How the rims slip now: −1, 0 or 1."""
+    state = world.state()
+    slip = judge.solved(world.time, state[:, :3].ravel(), state[:, 3:].ravel())[2][0]
+    return 0 if abs(slip) < 1e-9 else int(math.copysign(1.0, slip))
+
+
+@pytest.mark.parametrize(("friction", "span"), [(0.1, 0.05), (0.4, 0.1), (math.inf, 0.1)])
+@pytest.mark.parametrize("turning", [0.0, 3.0])
+def test_an_oblique_push_is_booked_as_another_integrator_has_it(
+    friction: float, span: float, turning: float
+):
+    way = [[0.0, -0.12, 0.0, 0.0], [2.0, 0.88, 0.0, 2.0 * turning]]
+    how = {"restitution": 0.0, "tangential": 0.0, "rim": friction}
+    puck = piece(0.0, 0.02, (0.0, 0.0), -4.0, height=0.0, **how)
+    mallet = pt.Piece(0.05, path=way, restitution=0.0, tangential=0.0, rim=friction)
+    world = pt.Scene(pucks=[mallet, puck]).world()
+    first = next(e for e in world.copy().advance(1.0) if e.what == "contact")
+    world.advance(first.time)
+    v = (0.5, 0.0, turning)
+
+    def path(t: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        return np.array([-0.12 + 0.5 * t, 0.0, turning * t]), np.array(v), np.zeros(3)
+
+    discs = [[0.05, 1.0, 1.0, 0.0, 0, 0, 0], [0.03, 0.1, 0.5 * 0.1 * 0.03**2, 0.2 * G, 0, 0, 0]]
+    judge = Judge(discs, [(0, 1, friction, 0)], given={0: path})
+    rim = rim_of(judge, world)
+    judge = Judge(discs, [(0, 1, friction, rim)], given={0: path})
+    truth = judged(world, judge, world.time + span)
+    found = booked(world, world.time + span)
+    scale = max(map(abs, truth.values()))
+    assert truth["work_driven"] > 0.0
+    for name, value in truth.items():
+        assert abs(found[name] - value) < 1e-8 * scale, (name, rim)
+
+
+def test_rims_of_a_group_are_booked_as_another_integrator_has_them():
+    how = {"radius": 0.05, "restitution": 0.0, "tangential": 0.0, "rim": 0.3, "height": 0.0}
+    one = piece(0.0, 0.0, (1.0, 0.0), 30.0, mass=0.4, friction=0.5 / G, **how)
+    two = piece(0.1, 0.0, (1.0, 0.0), mass=0.1, friction=2.0 / G, **how)
+    world = pt.Scene(pucks=[one, two]).world()
+    discs = [[0.05, m, 0.5 * m * 0.05**2, decel, 0, 0, 0] for m, decel in ((0.4, 0.5), (0.1, 2.0))]
+    truth = judged(world, Judge(discs, [(0, 1, 0.3, 1)]), 0.1)
+    found = booked(world, 0.1)
+    assert truth["heat_rims"] > 1e-3 * truth["heat_floor"]
+    for name in ("heat_floor", "heat_rims"):
+        assert found[name] == pytest.approx(truth[name], rel=1e-8)
+    assert found["work_driven"] == 0.0
+
+
+def test_a_slope_works_and_the_floor_heats():
+    """F m g cos α s is heat; straight down, from rest to rest at a wall, e = 0."""
+    slope, puck = 0.3, piece(0.0, 0.0, (0.0, -0.1), restitution=0.0)
+    wall = pt.Wall((0.0, -0.2), (0.0, 1.0), restitution=0.0)
+    floor = pt.Floor(slope=slope, downhill=-0.5 * math.pi)
+    run = pt.Scene(pucks=[puck], walls=[wall], floor=floor, posts=[pt.Post((9, 9), 1)]).simulate()
+    assert run.heat_floor == pytest.approx(0.2 * 0.1 * G * math.cos(slope) * 0.17, rel=1e-9)
+    assert run.work_slope == pytest.approx(0.1 * G * math.sin(slope) * 0.17, rel=1e-9)
+    assert run.energy_residual < 1e-9
+
+
+@pytest.mark.parametrize("seed", [1, 4])
+def test_a_board_on_a_slope_keeps_its_books(seed: int):
+    plain = draw(seed, 5)
+    floor = pt.Floor(slope=0.1, downhill=1.0)
+    scene = pt.Scene(pucks=plain.pucks, walls=plain.walls, floor=floor, run=pt.Run(time=0.6))
+    run = scene.simulate()
+    start = np.array([p.launch.position for p in scene.pucks])
+    moved = np.stack([run.last["x"], run.last["y"]], axis=1) - start
+    down = G * math.sin(0.1) * np.array([math.cos(1.0), math.sin(1.0)])
+    masses = np.array([p.mass for p in scene.pucks])
+    assert run.work_slope == pytest.approx(float(masses @ (moved @ down)), rel=1e-8)
+    assert run.energy_residual < 1e-9
+    assert min(run.heat_floor, run.heat_rims, run.heat_impact) > -1e-15  # J, rounding
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_mallet_in_a_crowd_keeps_its_books(seed: int):
+    crowd = draw(seed, 6, walls=False, speed=0.2)
+    aim = crowd.pucks[0].launch.position[1]
+    way = [[0.0, -0.9, aim - 0.01], [2.4, 0.5, aim], [2.7, 0.5, aim]]
+    mallet = pt.Piece(0.06, path=way, restitution=0.2, tangential=0.0, rim=0.3)
+    run = pt.Scene(pucks=[*crowd.pucks, mallet]).simulate()
+    assert run.energy_residual < 1e-9
+    assert run.work_driven > 0.0
+    assert min(run.heat_floor, run.heat_rims, run.heat_impact) > -1e-15  # J, rounding
