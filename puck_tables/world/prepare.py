@@ -52,17 +52,22 @@ def order_of(scene: Scene) -> Whole:
     return np.lexsort((places[:, 1], places[:, 0]))
 
 
+def shipped_curves() -> Curves:
+    """The table of stops that comes along, as the engine reads it."""
+    table = StopTable.shipped()
+    return Curves(
+        table.stop_coefficients, table.curve_coefficients, table.time_inverse, table.turn_inverse,
+        table.constants,
+    )  # fmt: skip
+
+
 def game_of(scene: Scene, order: Whole) -> tuple[Game, Room]:
     """The engine's arrays at the start of a scene, and room to work in with the states then.
 
     Nothing has taken off yet: EVERYBODY is to look ahead.
     """
     pieces = [pieces_of(scene)[number] for number in order]
-    count, table = len(pieces), StopTable.shipped()
-    curves = Curves(
-        table.stop_coefficients, table.curve_coefficients, table.time_inverse, table.turn_inverse,
-        table.constants,
-    )  # fmt: skip
+    count = len(pieces)
     discs, states = np.zeros((count, layout.DISC_COLUMNS)), np.zeros((count, 6))
     drives, ways = np.zeros((count, 2), np.int64), [np.zeros((0, 20))]
     launches = []
@@ -97,7 +102,7 @@ def game_of(scene: Scene, order: Whole) -> tuple[Game, Room]:
         regions=_regions(scene, pieces, discs),
         rims=rims,
         obstacles=_obstacles(scene, called, makes),
-        curves=curves,
+        curves=shipped_curves(),
         clock=np.zeros(1),
         kinds=np.zeros(count, np.int64),
         flights=np.zeros((count, FLIGHT_COLUMNS)),

@@ -32,7 +32,7 @@ from puck_tables.world.engine import (
 from puck_tables.world.flight import DAMPED, GONE, LOOKED_UP, PATH, START, UNTIL
 from puck_tables.world.impact import FIRST_N, E
 from puck_tables.world.layout import LIGHTNESS, RADIUS, TURNABILITY
-from puck_tables.world.prepare import game_of, obstacle_names, order_of, set_pace
+from puck_tables.world.prepare import game_of, obstacle_names, order_of, set_pace, shipped_curves
 from puck_tables.world.record import states_at
 
 MOST_EVENTS = 1_000_000
@@ -310,6 +310,16 @@ class World:
         twin._books = list(self._books)
         twin._named()
         return twin
+
+    def __getstate__(self) -> dict[str, Any]:
+        """All but the table that comes along: read back, it would be of another type to numba."""
+        parts: Any = self._game
+        return {**self.__dict__, "_game": parts._replace(curves=None)}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        """As it was, with the table that comes along."""
+        self.__dict__.update(state)
+        self._game = self._game._replace(curves=shipped_curves())
 
     def _failure(self, how: int) -> str:
         """Why it does not go on, in words."""
