@@ -31,6 +31,9 @@ if TYPE_CHECKING:
         PuckError,
         TableError,
     )
+    from puck_tables.film.track import Track
+    from puck_tables.fitting.fit import fit
+    from puck_tables.fitting.outcome import Fit
     from puck_tables.kernels.closed_form import resultants
     from puck_tables.puck import Puck
     from puck_tables.result import Result
@@ -68,6 +71,7 @@ _HOMES = {
     "ContactError": "errors",
     "Drag": "scene.parts",
     "Edge": "scene.parts",
+    "Fit": "fitting.outcome",
     "Floor": "scene.parts",
     "Force": "scene.parts",
     "InputError": "errors",
@@ -92,11 +96,13 @@ _HOMES = {
     "Strips": "scene.parts",
     "Table": "table.table",
     "TableError": "errors",
+    "Track": "film.track",
     "Trajectory": "trajectory",
     "Wall": "scene.parts",
     "World": "world.world",
     "chetaev": "",
     "contact": "",
+    "fit": "fitting.fit",
     "law_of": "contact.laws",
     "motion": "",
     "profile_law": "contact.laws",
@@ -115,6 +121,7 @@ __all__ = [
     "ContactError",
     "Drag",
     "Edge",
+    "Fit",
     "Floor",
     "Force",
     "InputError",
@@ -139,12 +146,14 @@ __all__ = [
     "Strips",
     "Table",
     "TableError",
+    "Track",
     "Trajectory",
     "Wall",
     "World",
     "__version__",
     "chetaev",
     "contact",
+    "fit",
     "law_of",
     "motion",
     "profile_law",

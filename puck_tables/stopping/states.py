@@ -196,12 +196,12 @@ def states(
     flat_which = np.ascontiguousarray(which, np.int64).reshape(-1)
     flat_moments = np.ascontiguousarray(moments).reshape(-1)
     if not bodies:
-        found = _looked_up(chosen, launches, flat_which, flat_moments)
+        found = looked_up(chosen, launches, flat_which, flat_moments)
     else:
         found = np.empty((STATE_ROWS, flat_which.size))
         looked = plain[flat_which]
         number = np.cumsum(plain) - 1  # of a plain puck among such
-        found[:, looked] = _looked_up(
+        found[:, looked] = looked_up(
             chosen, launches[:, plain], number[flat_which[looked]], flat_moments[looked]
         )
         _integrate(bodies, launches, np.flatnonzero(~plain), flat_which, flat_moments, found)
@@ -221,7 +221,7 @@ def _bodies(pressure: str | Law, gyration: float, delta: FloatArray) -> dict[flo
     return {height: body_of(law, height, gyration) for height in heights.tolist()}
 
 
-def _looked_up(
+def looked_up(
     table: StopTable, launches: FloatArray, which: npt.NDArray[np.int64], moments: FloatArray
 ) -> FloatArray:
     """States (6, n) of plain pucks ``which`` (n,) at ``moments`` (n,)."""
