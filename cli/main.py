@@ -26,6 +26,7 @@ from puck_tables.cli.simulate import simulate
 from puck_tables.cli.start import INTERRUPTED, end_at_once, last_words
 from puck_tables.cli.sweep import sweep
 from puck_tables.cli.tables import tables
+from puck_tables.cli.track import track
 from puck_tables.cli.tradeoff import tradeoff
 from puck_tables.cli.validate import validate
 
@@ -139,7 +140,8 @@ def main() -> None:
 
 
 _ALL = (
-    simulate, sweep, aim, scene, build_tables, validate, info, tables, paper, tradeoff, asperity,
+    simulate, sweep, aim, scene, track, build_tables, validate, info, tables, paper, tradeoff,
+    asperity,
 )  # fmt: skip
 for _command in _ALL:
     main.add_command(_command)

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
         PuckError,
         TableError,
     )
+    from puck_tables.film.reading import read_tracks
     from puck_tables.film.track import Track
     from puck_tables.fitting.fit import fit
     from puck_tables.fitting.outcome import Fit
@@ -106,6 +107,7 @@ _HOMES = {
     "law_of": "contact.laws",
     "motion": "",
     "profile_law": "contact.laws",
+    "read_tracks": "film.reading",
     "resultants": "kernels.closed_form",
     "states": "stopping.states",
     "stop": "stopping.stops",
@@ -157,6 +159,7 @@ __all__ = [
     "law_of",
     "motion",
     "profile_law",
+    "read_tracks",
     "resultants",
     "states",
     "stop",

@@ -41,7 +41,7 @@ ROOMS = {
 DOORS = {
     "numba": {"kernels.compile", "kernels.kept_code"},
     "llvmlite": {"kernels.compile"},
-    "h5py": {"io.hdf5", "table.file"},
+    "h5py": {"film.poses", "io.hdf5", "table.file"},
     "xarray": {"io.frames"},
     "pandas": {"io.frames"},
     "pyarrow": {"io.parquet"},

@@ -8,6 +8,7 @@ import os
 import stat
 from collections.abc import Sequence
 from pathlib import Path
+from typing import BinaryIO
 
 import numpy as np
 
@@ -35,17 +36,45 @@ def read_whole(path: str | Path, largest: int) -> bytes:
     ...
     OSError: [Errno 22] it is not a regular file: '/dev/zero'
     """
+    with opened(path, largest) as file:
+        return file.read(os.fstat(file.fileno()).st_size)  # not more: it is allocated before
+
+
+def opened(path: str | Path, largest: int) -> BinaryIO:
+    """A regular file, open for reading.
+
+    Parameters
+    ----------
+    path : path of a regular file
+    largest : how many bytes it may have
+
+    Raises
+    ------
+    OSError
+        As :func:`read_whole`.
+
+    Examples
+    --------
+    >>> opened("/dev/zero", 100)
+    Traceback (most recent call last):
+    ...
+    OSError: [Errno 22] it is not a regular file: '/dev/zero'
+    """
     # not blocking: to open a pipe would wait for who writes to it
     flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
     if Path(path).exists() and not Path(path).is_file():
         raise OSError(errno.EINVAL, "it is not a regular file", str(path))
-    with open(os.open(path, flags), "rb") as file:
+    file = open(os.open(path, flags), "rb")  # noqa: SIM115 - for the caller to close
+    try:
         found = os.fstat(file.fileno())
         if not stat.S_ISREG(found.st_mode):
             raise OSError(errno.EINVAL, "it is not a regular file", str(path))
         if found.st_size > largest:
             raise OSError(errno.EFBIG, f"it is too large, {largest} bytes are the most", str(path))
-        return file.read(found.st_size)  # not more: what is asked for is allocated before
+    except OSError:
+        file.close()
+        raise
+    return file
 
 
 def read_numbers(given: str | Sequence[Sequence[float]], most: int) -> FloatArray:

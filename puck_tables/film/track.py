@@ -25,11 +25,14 @@ class Track:
         Of the body, counter-clockwise, up to whole turns; NaN where it was not seen.
     name : str
         For reports: the file and the puck in it.
+    notes : sequence of str
+        How it was read, in sentences: what the file said, and what was done to it.
 
     Raises
     ------
     InputError
-        If shapes differ, times do not increase or are not finite, or nothing was seen.
+        If shapes differ, times do not increase or are not finite, places or angles are infinite,
+        or the puck was seen in fewer than two frames.
 
     Examples
     --------
@@ -41,6 +44,7 @@ class Track:
     place: FloatArray
     angle: FloatArray | None = None
     name: str = "track"
+    notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         time = real_array("time", self.time, "s")
@@ -55,21 +59,26 @@ class Track:
         if back.size:
             n = int(back[0]) + 1
             raise InputError(
-                f"time must increase, but frame {n + 1} stands at {time[n]:g} s after "
-                f"{time[n - 1]:g} s: sort the frames, or leave out the one that is twice"
+                f"time must increase, but frame {n + 1} stands at {time[n]:.9g} s after "
+                f"{time[n - 1]:.9g} s: sort the frames, or leave out the one that is twice"
             )
         angle: npt.NDArray[np.float64] | None = None
         if self.angle is not None:
             angle = real_array("angle", self.angle, "rad")
             if angle.shape != time.shape:
                 raise InputError(f"angle must be ({time.size},) as time is, got {angle.shape}")
+        if np.isinf(place).any() or (angle is not None and np.isinf(angle).any()):
+            raise InputError("places and angles must be numbers, or NaN where none was seen")
         for field, value in (("time", time), ("place", place), ("angle", angle)):
             object.__setattr__(self, field, value)
-        if not self.seen.any():
-            raise InputError("a track needs frames where the puck is seen: every place is NaN")
+        object.__setattr__(self, "notes", tuple(self.notes))
+        if (seen := int(np.count_nonzero(self.seen))) < 2:
+            raise InputError(
+                f"a track needs two frames or more where the puck is seen, here are {seen}"
+            )
 
     @property
     def seen(self) -> npt.NDArray[np.bool_]:
         """Frames (n,) where the place is known."""
-        known: npt.NDArray[np.bool_] = np.isfinite(self.place).all(axis=1)
+        known: npt.NDArray[np.bool_] = np.isfinite(self.place[:, 0] + self.place[:, 1])
         return known

@@ -1,0 +1,160 @@
+"""What the heading of a column says: a time, a place, an angle, whose, and in which unit."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
+
+from puck_tables.film.units import known, unit_given
+
+_WORDS = {
+    "time": "t time times zeit temps tiempo tempo tijd tid czas время 时间 時間 timestamp "
+    "timestamps seconds secs elapsed",
+    "frame": "frame frames framenumber frameno frameindex frameidx bild bildnummer image img slice",
+    "step": "dt deltat dtime Δt δt",
+    "x": "x cx xc xpos posx xcoord coordx xcenter centerx xcentre centrex",
+    "y": "y cy yc ypos posy ycoord coordy ycenter centery ycentre centrey",
+    "angle": "angle theta θ phi φ orientation rotation winkel yaw ang rot",
+    "seen": "visible seen detected found valid sichtbar",
+    "hidden": "hidden occluded occlusion lost missing verdeckt",
+    "likelihood": "likelihood confidence probability prob conf score",
+}  # fmt: skip
+_ROLE = {word: role for role, words in _WORDS.items() for word in words.split()}
+_FIRST = ("x", "y", "angle", "likelihood", "seen", "hidden", "step", "time", "frame")
+_ID = {"id", "track", "particle", "puck", "object", "obj", "marker", "tag", "individual", "name",
+       "body", "identity"}  # fmt: skip
+_FILLING = {"pos", "position", "coord", "coordinate", "coords", "value", "number", "nr", "no",
+            "num", "index", "idx", "stamp", "elapsed", "ort", "koordinate", "in"}  # fmt: skip
+# of other quantities than places, times and angles
+_OTHER = {"v", "vel", "velocity", "speed", "acc", "acceleration", "err", "error", "std", "sigma",
+          "var", "cov", "width", "height", "size", "mass", "area", "min", "max", "bbox", "momentum",
+          "omega", "force", "mean", "raw"}  # fmt: skip
+_KIND = {"x": "length", "y": "length", "time": "time", "step": "time", "angle": "angle"}
+_TOKEN = re.compile(r"[^\W\d_]+|\d+|°")
+_CAMEL = re.compile(r"(?<=[a-zà-ÿ])(?=[A-Z])")
+
+
+class Heading(NamedTuple):
+    """What a column holds.
+
+    ``role``: time, frame, step (time since the row before), x, y, angle, seen, hidden, likelihood,
+    id (of the puck), or '' for anything else; ``puck``: whose, as it is written, '' if it says
+    none; ``unit``: '' if it says none.
+    """
+
+    role: str
+    puck: str = ""
+    unit: str = ""
+
+
+def heading(text: str) -> Heading:
+    """Read the heading of a column.
+
+    Raises
+    ------
+    InputError
+        If it has a unit in square brackets that is none.
+
+    Examples
+    --------
+    >>> heading("t [ms]"), heading("red_X_px"), heading("v_x")
+    (Heading(role='time', puck='', unit='ms'), Heading(role='x', puck='red', unit='px'), \
+Heading(role='', puck='', unit=''))
+    """
+    name, unit_text = _parted(text.strip().strip("\"'").strip())
+    if "{" in name:  # v_{x}, θ_{r}: Tracker's names of what it derives from places
+        return Heading("")
+    tokens = _CAMEL.sub(" ", name)
+    found = [(m.group(), m.start(), m.end()) for m in _TOKEN.finditer(tokens)]
+    lowered = [word.lower() for word, _, _ in found]
+    roles = [_ROLE.get(word, "") for word in lowered]
+    if lowered and all(word in _ID or word in _FILLING for word in lowered) and (
+        set(lowered) & _ID
+    ):  # fmt: skip
+        return Heading("id")
+    role = next((one for one in _FIRST if one in roles), "")
+    if not role:
+        return Heading("")
+    at = roles.index(role)
+    kept = [
+        n for n, one in enumerate(lowered) if one not in _FILLING and roles[n] != role
+    ]  # fmt: skip
+    unit = known(unit_text, _KIND[role]) if role in _KIND else ""
+    if unit_text and not unit and role in _KIND:
+        if text.rstrip().endswith("]"):
+            unit_given(f"the unit of the column '{text.strip():.40}'", unit_text, _KIND[role])
+        return heading(f"{name} {unit_text}")  # 'x (red)'
+    if role == "time" and lowered[at] in ("seconds", "secs"):
+        unit = unit or "s"
+    if not unit and role in _KIND:
+        for n in kept:
+            last = n == len(found) - 1
+            if (found_unit := known(lowered[n], _KIND[role])) and (last or found_unit == "px"):
+                unit = found_unit
+                kept.remove(n)
+                break
+    if any(lowered[n] in _OTHER for n in kept):
+        return Heading("")
+    return Heading(role, _joined(tokens, [found[n] for n in kept]), unit)
+
+
+def _parted(text: str) -> tuple[str, str]:
+    """A name and what stands as its unit, in brackets or after a stroke."""
+    for form in (
+        r"(.+?)\s*[\[(<]\s*([^\[\]()<>]*?)\s*[\])>]",
+        r"(.+?)\s*/\s*([^\s/]+)",
+        r"(.+?)\s+in\s+(\S+)",
+    ):
+        found = re.fullmatch(form, text)
+        if found is not None:
+            return found[1], found[2]
+    return text, ""
+
+
+def _joined(text: str, words: Sequence[tuple[str, int, int]]) -> str:
+    """Words as they stood, with what was between neighbours."""
+    joined, end = "", 0
+    for word, start, stop in words:
+        between = text[end:start] if joined else ""
+        joined += (between if not _TOKEN.search(between) else "_") + word
+        end = stop
+    return joined
+
+
+def headings(names: Iterable[str]) -> list[Heading]:
+    """The headings of a table; equal ones side by side are numbered, one puck each.
+
+    Examples
+    --------
+    >>> [one.puck for one in headings(["t", "x", "y", "x", "y"])]
+    ['', '1', '1', '2', '2']
+    """
+    read = [heading(name) for name in names]
+    if any(re.match(r"v[_ ]?[xy]\b", name.strip().lower()) for name in names):
+        read = [Heading("") if one.puck.lower() == "a" else one for one in read]  # a_x goes with it
+    places = [one for one in read if one.role in ("x", "y")]
+    if len({(one.role, one.puck) for one in places}) == len(places):
+        return read
+    counted: dict[tuple[str, str], int] = {}
+    numbered = []
+    for one in read:
+        if one.role in ("", "time", "frame", "step", "id"):
+            numbered.append(one)
+            continue
+        key = (one.role, one.puck)
+        counted[key] = counted.get(key, 0) + 1
+        numbered.append(one._replace(puck=f"{one.puck} {counted[key]}".strip()))
+    return numbered
+
+
+def is_unit(text: str) -> bool:
+    """Whether a cell is a unit, in brackets or not: of a row of units under the names.
+
+    Examples
+    --------
+    >>> is_unit("(cm)"), is_unit("x")
+    (True, False)
+    """
+    bare = text.strip().strip("[]()<>").strip()
+    return any(known(bare, kind) for kind in ("length", "time", "angle"))

@@ -1,0 +1,229 @@
+"""Films in HDF5: tables that DeepLabCut wrote with pandas, and SLEAP's analysis files.
+
+pandas keeps the names of columns as pickles.  They are never run: the few signs of which a list of
+names consists are read one by one (:mod:`pickletools` only takes a pickle apart), and all others
+are refused.
+
+References
+----------
+DeepLabCut, "Output files": rows frames, columns (scorer, (individual,) bodypart, x|y|likelihood),
+group ``df_with_missing``.  SLEAP, "Analysis HDF5": ``tracks`` (tracks, 2, nodes, frames) with
+``track_names`` and ``node_names``; newer ones name other orders in the attribute ``dims``.
+"""
+
+from __future__ import annotations
+
+import json
+import pickletools
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.errors import InputError
+from puck_tables.film.film import Body, Film
+
+_LARGEST = 1 << 27  # numbers in a file, a gigabyte
+_LIKELY = 0.6
+_DIMS = ("track", "xy", "node", "frame")
+
+
+def film_of_hdf5(path: str | Path) -> Film:
+    """The film in an HDF5 file.
+
+    Raises
+    ------
+    InputError
+        If it is none of DeepLabCut or SLEAP, damaged, or too large.
+    """
+    import h5py
+
+    try:
+        with h5py.File(path, "r") as file:
+            if isinstance(file.get("tracks"), h5py.Dataset):
+                return _sleap(path, file)
+            for group in file.values():
+                if isinstance(group, h5py.Group) and isinstance(group.get("table"), h5py.Dataset):
+                    return _deeplabcut(path, group["table"])
+            if "metadata" in file and "points" in file:
+                raise InputError(
+                    f"{path} is a project of SLEAP: export it as Analysis HDF5, or CSV"
+                )
+    except (OSError, RuntimeError, KeyError, ValueError, TypeError, AttributeError) as error:
+        if isinstance(error, InputError):
+            raise
+        raise InputError(f"{path} is damaged or no film: {error}") from None
+    raise InputError(
+        f"{path} is HDF5, but none of DeepLabCut (a pandas table) or SLEAP (Analysis HDF5): save "
+        "the table as CSV"
+    )
+
+
+def _deeplabcut(path: str | Path, table: Any) -> Film:
+    """The film in a table of pandas."""
+    if table.size * sum(_width(table, name) for name in table.dtype.names) > _LARGEST:
+        raise InputError(f"{path} holds more than {_LARGEST} numbers: cut it into shorter films")
+    columns: dict[tuple[str, ...], FloatArray] = {}
+    for name in table.dtype.names:
+        kind = table.attrs.get(f"{name}_kind")
+        if name == "index" or kind is None:
+            continue
+        values = np.asarray(table[name], dtype=np.float64).reshape(table.size, -1)
+        labels = names_in(path, bytes(kind))
+        if len(labels) != values.shape[1] or not all(isinstance(one, tuple) for one in labels):
+            raise InputError(f"{path} is a table of pandas, but none of DeepLabCut: save it as CSV")
+        columns |= {tuple(label): values[:, n] for n, label in enumerate(labels)}
+    if not columns or not all(len(label) in (3, 4) for label in columns):
+        raise InputError(f"{path} is a table of pandas, but none of DeepLabCut: save it as CSV")
+    if not np.issubdtype(table.dtype["index"], np.integer):
+        raise InputError(
+            f"{path} names its frames instead of numbering them: it holds labels for training, "
+            "not a film"
+        )
+    frames = np.asarray(table["index"], dtype=np.float64)
+    film = Film("DeepLabCut table", [], "px", y_down=True, jointed=True, likely=_LIKELY)
+    for owner in dict.fromkeys(label[1] if len(label) == 4 else "" for label in columns):
+        mine = {
+            (label[-2], label[-1]): values for label, values in columns.items()
+            if len(label) == 3 or label[1] == owner
+        }  # fmt: skip
+        marks = {
+            mark: np.column_stack([values, mine[mark, "y"]])
+            for (mark, role), values in mine.items() if role == "x"
+        }  # fmt: skip
+        body = Body(owner, marks, frame=frames)
+        body.likelihoods = {mark: v for (mark, role), v in mine.items() if role == "likelihood"}
+        film.bodies.append(body)
+    return film
+
+
+def _width(table: Any, name: str) -> int:
+    return int(np.prod(table.dtype[name].shape, dtype=np.int64))
+
+
+def names_in(path: str | Path, pickled: bytes) -> list[Any]:
+    """The list of texts, and of tuples of texts, in a pickle that holds nothing else.
+
+    Raises
+    ------
+    InputError
+        If it holds anything else.
+
+    Examples
+    --------
+    >>> import pickle
+    >>> names_in("a.h5", pickle.dumps([("DLC", "hub", "x"), ("DLC", "hub", "y")], protocol=0))
+    [('DLC', 'hub', 'x'), ('DLC', 'hub', 'y')]
+    """
+    stack: list[Any] = []
+    memo: dict[int, Any] = {}
+    mark = object()
+
+    def since() -> list[Any]:
+        at = len(stack) - 1 - stack[::-1].index(mark)
+        items = stack[at + 1 :]
+        del stack[at:]
+        return items
+
+    try:
+        for sign, value, _ in pickletools.genops(pickled):
+            match sign.name:
+                case "MARK":
+                    stack.append(mark)
+                case "UNICODE" | "BINUNICODE" | "SHORT_BINUNICODE" | "STRING":
+                    stack.append(value)
+                case "LIST" | "TUPLE":
+                    items = since()
+                    stack.append(items if sign.name == "LIST" else tuple(items))
+                case "EMPTY_LIST":
+                    stack.append([])
+                case "TUPLE1" | "TUPLE2" | "TUPLE3":
+                    count = int(sign.name[-1])
+                    items = [stack.pop() for _ in range(count)][::-1]
+                    stack.append(tuple(items))
+                case "APPEND":
+                    item = stack.pop()
+                    stack[-1].append(item)
+                case "APPENDS":
+                    items = since()
+                    stack[-1].extend(items)
+                case "PUT" | "BINPUT" | "LONG_BINPUT":
+                    memo[value] = stack[-1]  # type: ignore[index]
+                case "MEMOIZE":
+                    memo[len(memo)] = stack[-1]
+                case "GET" | "BINGET" | "LONG_BINGET":
+                    stack.append(memo[value])  # type: ignore[index]
+                case "PROTO" | "FRAME" | "STOP":
+                    pass
+                case _:
+                    raise InputError(
+                        f"{path} names its columns by more than texts, which is not read: save "
+                        "the table as CSV"
+                    )
+        (names,) = stack
+        if not isinstance(names, list):
+            raise ValueError
+    except (ValueError, IndexError, KeyError, AttributeError) as error:
+        if isinstance(error, InputError):
+            raise
+        raise InputError(f"{path} is damaged: its names of columns cannot be read") from None
+    return names
+
+
+def _sleap(path: str | Path, file: Any) -> Film:
+    """The film in an analysis file of SLEAP."""
+    tracks = file["tracks"]
+    if tracks.ndim != 4 or tracks.size > _LARGEST:
+        raise InputError(
+            f"{path}: 'tracks' must be tracks x 2 x nodes x frames, at most {_LARGEST} numbers, "
+            f"got {tracks.shape}"
+        )
+    order = _order(tracks)
+    if order is None or tracks.shape[order.index("xy")] != 2:
+        raise InputError(
+            f"{path} is of a version of SLEAP that is not known: its 'tracks' are {tracks.shape}; "
+            "export it as CSV"
+        )
+    values = np.asarray(tracks, dtype=np.float64).transpose([order.index(one) for one in _DIMS])
+    nodes = _names(file, "node_names", values.shape[2], "node")
+    names = _names(file, "track_names", values.shape[0], "track")
+    if len(names) == 1:
+        names = [""]
+    film = Film("SLEAP analysis file", [], "px", y_down=True, jointed=True)
+    frames = np.arange(values.shape[3], dtype=np.float64)
+    scores = _scores(file, values.shape)
+    for n, name in enumerate(names):
+        marks = {node: values[n, :, k, :].T.copy() for k, node in enumerate(nodes)}
+        body = Body(name, marks, frame=frames)
+        if scores is not None:
+            body.likelihoods = {node: scores[n, k] for k, node in enumerate(nodes)}
+        film.bodies.append(body)
+    return film
+
+
+def _order(tracks: Any) -> list[str] | None:
+    """What the axes of the tracks are: as written, or as SLEAP always had them."""
+    said = tracks.attrs.get("dims")
+    if said is None:
+        return list(_DIMS)
+    listed = json.loads(said) if isinstance(said, str | bytes) else list(said)
+    words = [str(one.decode() if isinstance(one, bytes) else one).lower() for one in listed]
+    order = [next((dim for dim in _DIMS if dim in word), "") for word in words]
+    return order if sorted(order) == sorted(_DIMS) else None
+
+
+def _names(file: Any, key: str, count: int, what: str) -> list[str]:
+    """The names of tracks or nodes, or numbers where there are none."""
+    found = [
+        one.decode(errors="replace") if isinstance(one, bytes) else str(one)
+        for one in (np.asarray(file[key]).ravel().tolist() if key in file else ())
+    ]
+    return found if len(found) == count else [f"{what} {n}" for n in range(count)]
+
+
+def _scores(file: Any, shape: tuple[int, ...]) -> FloatArray | None:
+    """The scores of points, (tracks, nodes, frames), where they are in the usual order."""
+    if "point_scores" not in file or file["point_scores"].shape != (shape[0], shape[2], shape[3]):
+        return None
+    return np.asarray(file["point_scores"], dtype=np.float64)

@@ -1,0 +1,131 @@
+"""What was read of a track, in sentences, and tracks as a table in SI."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.film.track import Track
+from puck_tables.io.dataset import Dataset, variable
+
+_GAP = 1.5  # of the usual time from frame to frame
+_JITTER = 0.01
+_LEAP = 6.0  # of what it moves in frames near by
+_NEAR = 7  # frames
+
+
+def described(track: Track) -> list[str]:
+    """What a track holds, and what in it looks odd.
+
+    Examples
+    --------
+    >>> track = Track([0.0, 0.1, 0.2], [[0.0, 0.0], [0.2, 0.1], [0.4, 0.1]], name="a.csv")
+    >>> print(*described(track), sep=chr(10))
+    a.csv
+      frames  3 from 0 s to 0.2 s, 10 a second; the puck is seen in all
+      place   x from 0 m to 0.4 m, y from 0 m to 0.1 m
+      angle   none
+    """
+    lines = [track.name, f"  frames  {_frames(track)}"]
+    known = track.place[track.seen]
+    (x0, y0), (x1, y1) = known.min(axis=0), known.max(axis=0)
+    lines.append(f"  place   x from {x0:.6g} m to {x1:.6g} m, y from {y0:.6g} m to {y1:.6g} m")
+    if track.angle is None or not np.isfinite(track.angle).any():
+        lines.append("  angle   none")
+    else:
+        seen = int(np.isfinite(track.angle).sum())
+        lines.append(f"  angle   seen in {seen} frames")
+    lines += [f"  hidden  {words}" for words in _hidden(track)]
+    lines += [f"  odd     {words}" for words in [*_steps(track), *_leaps(track)]]
+    if track.notes:
+        lines.append(f"  read    {'; '.join(track.notes)}")
+    return lines
+
+
+def _frames(track: Track) -> str:
+    size, seen = track.time.size, int(track.seen.sum())
+    rate = 1.0 / float(np.median(np.diff(track.time)))
+    share = "all" if seen == size else f"{seen} ({100.0 * seen / size:.4g} %)"
+    return (
+        f"{size} from {track.time[0]:.6g} s to {track.time[-1]:.6g} s, {rate:.6g} a second; the "
+        f"puck is seen in {share}"
+    )
+
+
+def _hidden(track: Track) -> list[str]:
+    """The longest time in which the puck is not seen."""
+    lost = np.flatnonzero(~track.seen)
+    if not lost.size:
+        return []
+    runs = np.split(lost, np.flatnonzero(np.diff(lost) > 1) + 1)
+    longest = max(runs, key=len)
+    return [
+        f"{lost.size} frames in {len(runs)} stretches, the longest from "
+        f"{track.time[longest[0]]:.6g} s to {track.time[longest[-1]]:.6g} s"
+    ]
+
+
+def _steps(track: Track) -> list[str]:
+    """Times that are missing, or not evenly apart."""
+    steps = np.diff(track.time)
+    usual = float(np.median(steps))
+    wide = np.flatnonzero(steps > _GAP * usual)
+    found = []
+    if wide.size:
+        at = wide[np.argmax(steps[wide])]
+        found.append(
+            f"{wide.size} gaps in its times, the longest of {steps[at]:.4g} s after "
+            f"{track.time[at]:.6g} s"
+        )
+    even = steps[steps <= _GAP * usual]
+    jitter = float(np.sqrt(np.mean((even / usual - 1.0) ** 2)))
+    if jitter > _JITTER:
+        found.append(f"times from frame to frame vary by {100.0 * jitter:.3g} % (rms), kept so")
+    return found
+
+
+def _leaps(track: Track) -> list[str]:
+    """Frames to which it moves much farther than to those near by: it was taken for another."""
+    place, time = track.place[track.seen], track.time[track.seen]
+    if len(place) < _NEAR:
+        return []
+    speed = np.hypot(*np.diff(place, axis=0).T) / np.diff(time)
+    padded = np.pad(speed, _NEAR // 2, mode="edge")
+    windows = np.lib.stride_tricks.sliding_window_view(padded, _NEAR)
+    near: FloatArray = np.median(windows, axis=1)
+    floor = float(np.median(speed))  # at rest every step is a leap
+    leaps = np.flatnonzero(speed > _LEAP * np.maximum(near, floor))
+    if not leaps.size:
+        return []
+    at = leaps[np.argmax(speed[leaps])]
+    apart = float(np.hypot(*(place[at + 1] - place[at])))
+    return [
+        f"{leaps.size} leaps, the farthest of {apart:.4g} m before {time[at + 1]:.6g} s: was "
+        "something else taken for the puck?"
+    ]
+
+
+def dataset(tracks: Sequence[Track]) -> Dataset:
+    """Tracks as one table, a row a frame: name (of several), time, x, y and orientation in SI.
+
+    Examples
+    --------
+    >>> track = Track([0.0, 0.1], [[0.0, 0.0], [0.2, 0.1]])
+    >>> list(dataset([track]).columns)
+    ['time', 'x', 'y']
+    """
+    place = np.concatenate([track.place for track in tracks])
+    columns = {"time": np.concatenate([track.time for track in tracks])}
+    columns |= {"x": place[:, 0], "y": place[:, 1]}
+    if any(track.angle is not None for track in tracks):
+        columns["orientation"] = np.concatenate([
+            np.full(track.time.size, np.nan) if track.angle is None else track.angle
+            for track in tracks
+        ])  # fmt: skip
+    named = {name: variable(name, values, ("row",)) for name, values in columns.items()}
+    if len(tracks) > 1:
+        names = [track.name for track in tracks for _ in range(track.time.size)]
+        named = {"name": variable("name", names, ("row",)), **named}
+    return Dataset({}, named, {"title": "tracks of pucks"})

@@ -1,0 +1,138 @@
+"""Units that people write: of lengths, times and angles, and the size of a pixel."""
+
+from __future__ import annotations
+
+import math
+import re
+from difflib import get_close_matches
+
+from puck_tables.errors import InputError
+
+PIXEL = "px"
+
+_LENGTHS = {
+    "m": "m meter meters metre metres", "dm": "dm", "cm": "cm centimeter centimeters centimetre "
+    "centimetres", "mm": "mm millimeter millimeters millimetre millimetres",
+    "um": "um µm μm micron microns micrometer micrometre", "km": "km", "in": "in inch inches zoll",
+    "ft": "ft foot feet", "yd": "yd yard yards", PIXEL: "px pixel pixels pix",
+}  # fmt: skip
+_METRES = {"m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 1e-3, "um": 1e-6, "km": 1e3, "in": 0.0254,
+           "ft": 0.3048, "yd": 0.9144}  # fmt: skip
+_TIMES = {
+    "s": "s sec secs second seconds sek sekunde sekunden", "ms": "ms msec millisecond milliseconds "
+    "millis", "us": "us µs μs usec microsecond microseconds", "ns": "ns nanosecond nanoseconds",
+    "min": "min minute minutes",
+}  # fmt: skip
+_SECONDS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0}
+_ANGLES = {
+    "rad": "rad radian radians", "deg": "deg degree degrees ° grad_deg", "turn": "turn turns rev "
+    "revs revolution revolutions",
+}  # fmt: skip
+_RADIANS = {"rad": 1.0, "deg": math.pi / 180.0, "turn": 2.0 * math.pi}
+_KINDS = {"length": (_LENGTHS, {**_METRES, PIXEL: math.nan}), "time": (_TIMES, _SECONDS),
+          "angle": (_ANGLES, _RADIANS)}  # fmt: skip
+_NUMBER = r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?"
+
+
+def known(text: str, kind: str) -> str:
+    """The usual name of a unit, '' if there is none.
+
+    Parameters
+    ----------
+    text : as somebody wrote it
+    kind : length, time or angle
+
+    Examples
+    --------
+    >>> known("Seconds", "time"), known("pixels", "length"), known("m", "time")
+    ('s', 'px', '')
+    """
+    wanted = text.strip().lower()
+    return next((unit for unit, names in _KINDS[kind][0].items() if wanted in names.split()), "")
+
+
+def factor(unit: str, kind: str) -> float:
+    """A unit in SI: metres, seconds or radians; a pixel has no size.
+
+    Examples
+    --------
+    >>> factor("cm", "length"), factor("ms", "time")
+    (0.01, 0.001)
+    """
+    return _KINDS[kind][1][unit]
+
+
+def unit_given(name: str, text: str, kind: str) -> str:
+    """The usual name of a unit that is asked for.
+
+    Raises
+    ------
+    InputError
+        If it is none, with the nearest that is.
+
+    Examples
+    --------
+    >>> unit_given("unit", "cms", "length")
+    Traceback (most recent call last):
+    ...
+    puck_tables.errors.InputError: unit = 'cms' is not known, did you mean 'cm'? Known: m, dm, cm, \
+mm, um, km, in, ft, yd, px
+    """
+    found = known(text, kind) if isinstance(text, str) else ""
+    if not found:
+        names = [one for line in _KINDS[kind][0].values() for one in line.split()]
+        near = get_close_matches(str(text).lower(), names, 1, 0.7)
+        hint = f", did you mean '{near[0]}'?" if near else "."
+        raise InputError(
+            f"{name} = {text!r:.40} is not known{hint} Known: {', '.join(_KINDS[kind][0])}"
+        )
+    return found
+
+
+def pixel_size(scale: str | float) -> float:
+    """The size of a pixel in metres.
+
+    Parameters
+    ----------
+    scale : str or float
+        Like '0.5mm' or '0.5 mm/px'; a number is in metres.
+
+    Raises
+    ------
+    InputError
+        If it is no such text, or not greater than 0.
+
+    Examples
+    --------
+    >>> pixel_size("0.5 mm/px"), pixel_size(0.002)
+    (0.0005, 0.002)
+    """
+    what = "scale must be the size of a pixel, a number and a unit such as 0.5mm"
+    if isinstance(scale, str):
+        found = re.fullmatch(rf"\s*({_NUMBER})\s*([^\s/0-9]*)\s*(?:/\s*(?:px|pixel)\s*)?", scale)
+        if found is None or not found[2]:
+            raise InputError(f"{what}, got '{scale:.40}'")
+        unit = unit_given("the unit of scale", found[2], "length")
+        if unit == PIXEL:
+            raise InputError(f"{what}, got '{scale:.40}': a length, not pixels")
+        size = float(found[1]) * _METRES[unit]
+    else:
+        try:
+            size = float(scale)
+        except (TypeError, ValueError, OverflowError):
+            raise InputError(f"{what}, or metres as a number, got {scale!r:.40}") from None
+    if not (math.isfinite(size) and size > 0.0):
+        raise InputError(f"{what}, greater than 0, got {scale!r:.40}")
+    return size
+
+
+def unit_in(heading: str) -> str:
+    """The unit of length that a heading names at its end, '' if none.
+
+    Examples
+    --------
+    >>> unit_in("x [cm]"), unit_in("X_mm"), unit_in("x")
+    ('cm', 'mm', '')
+    """
+    words = re.findall(r"[^\W_]+|°", heading)
+    return known(words[-1], "length") if len(words) > 1 else ""

@@ -1,0 +1,234 @@
+"""Tables of tracks in text files: any header, separator, encoding, unit; and what is refused."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from puck_tables import InputError, read_tracks
+
+NAN = math.nan
+# two frames of one puck, at (1, 2) and (1.5, 2.5) in the unit of the file, 0.1 s apart
+ONE = {
+    "units in brackets": ("t [s],x [cm],y [cm]\n0,1,2\n0.1,1.5,2.5\n", {}),
+    "units behind": ("time_s,X_cm,Y_cm\n0,1,2\n0.1,1.5,2.5\n", {}),
+    "other order": ("y (cm),t (s),x (cm)\n2,0,1\n2.5,0.1,1.5\n", {}),
+    "unit given": ("t,x,y\n0,1,2\n0.1,1.5,2.5\n", {"unit": "cm"}),
+    "capital unit": ("t,x,y\n0,1,2\n0.1,1.5,2.5\n", {"unit": "CM"}),
+    "German": ("Zeit (ms);x in cm;y in cm\n0;1;2\n100;1,5;2,5\n", {}),
+    "tabs, decimal comma": ("t\tx\ty\n0\t1\t2\n0,1\t1,5\t2,5\n", {"unit": "cm"}),
+    "blanks": ("  t [s]   x [cm]  y [cm]\n  0  1   2\n 0.1  1.5 2.5\n", {}),
+    "blanks, decimal comma": ("0,0 1,0 2,0\n0,1 1,5 2,5\n", {"columns": "t,x [cm],y [cm]"}),
+    "strokes": ("t|x|y\n0|1|2\n.1|1.5|2.5\n", {"unit": "cm"}),
+    "commas and blanks": ("t, x, y\n0, 1, 2\n0.1, 1.5, 2.5\n", {"unit": "cm"}),
+    "quotes": ('"t";"x";"y"\n"0";"1";"2"\n"0,1";"1,5";"2,5"\n', {"unit": "cm"}),
+    "Excel's first line": ("sep=;\nt;x;y\n0;1;2\n0,1;1,5;2,5\n", {"unit": "cm"}),
+    "a row of units": ("t,x,y\ns,cm,cm\n0,1,2\n0.1,1.5,2.5\n", {}),
+    "lines before": ("Lab 3,,\nt,x,y\n0,1,2\n0.1,1.5,2.5\n", {"unit": "cm"}),
+    "NumPy's comment": ("# t x y\n0 1 2\n0.1 1.5 2.5\n", {"unit": "cm"}),
+    "comments": ("% made by hand\nt,x,y\n0,1,2\n# lunch\n\n0.1,1.5,2.5\n", {"unit": "cm"}),
+    "without a header": ("0,1,2\n0.1,1.5,2.5\n", {"unit": "cm", "columns": "t,x,y"}),
+    "a column left out": ("0,9,1,2\n0.1,9,1.5,2.5\n", {"unit": "cm", "columns": "t,-,x,y"}),
+    "other columns": ("t,note,x,y,v_x,vy\n0,a,1,2,9,9\n.1,b,1.5,2.5,9,9\n", {"unit": "cm"}),
+    "a wrong header": ("x,t,y\n0,1,2\n.1,1.5,2.5\n", {"columns": "t [s],x [cm],y [cm]"}),
+    "last separators": ("t,x,y,\n0,1,2,\n0.1,1.5,2.5,\n", {"unit": "cm"}),
+    "exponents": ("t,x,y\n0e0,1.0E0,2\n1e-1,15E-1,+2.5\n", {"unit": "cm"}),
+    "frames": ("frame,x,y\n7,1,2\n8,1.5,2.5\n", {"unit": "cm", "fps": 10.0}),
+    "frames beside times": ("frame,t,x,y\n0,9,1,2\n1,9,1.5,2.5\n", {"unit": "cm", "fps": 10.0}),
+    "steps": ("x,y,dt [ms]\n1,2,0\n1.5,2.5,100\n", {"unit": "cm"}),
+    "rows are frames": ("x,y\n1,2\n1.5,2.5\n", {"unit": "cm", "fps": 10}),
+    "old Mac lines": ("t,x,y\r0,1,2\r0.1,1.5,2.5\r", {"unit": "cm"}),
+    "pixels": ("t,x_px,y_px\n0,20,-40\n.1,30,-50\n", {"scale": "0.5mm"}),
+    "pixels, y up": ("t,x,y\n0,20,40\n.1,30,50\n", {"scale": 5e-4, "y_down": False}),
+    "names": ("Time (s),Ball position x (cm),Ball position y (cm)\n0,1,2\n.1,1.5,2.5\n", {}),
+}
+
+
+def read(folder: Path, text: str | bytes, **how):
+    file = folder / "film.csv"
+    file.write_bytes(text if isinstance(text, bytes) else text.encode())
+    return read_tracks(file, **how)
+
+
+@pytest.mark.parametrize("case", ONE)
+def test_one_puck_however_it_is_written(tmp_path: Path, case: str):
+    text, how = ONE[case]
+    (track,) = read(tmp_path, text, **how)
+    assert_allclose(track.time - track.time[0], [0.0, 0.1], rtol=1e-12)
+    assert_allclose(track.place, [[0.01, 0.02], [0.015, 0.025]], rtol=1e-12)
+    assert track.angle is None
+
+
+@pytest.mark.parametrize(
+    "encoding", ["utf-8", "utf-8-sig", "latin-1", "utf-16", "utf-16-le", "utf-16-be", "utf-32"]
+)
+def test_every_encoding_is_told(tmp_path: Path, encoding: str):
+    text = "Zeit [s]\tx [µm]\ty [µm]\r\n0\t1\t2\r\n0,1\t1,5\t2,5\r\n"
+    (track,) = read(tmp_path, text.encode(encoding))
+    assert_allclose(track.place, [[1e-6, 2e-6], [1.5e-6, 2.5e-6]], rtol=1e-12)
+
+
+TWO = {
+    "numbers behind": "t,x1,y1,x2,y2\n0,1,2,5,6\n.1,1,3,5,7\n.2,1,4,,\n",
+    "names before": "t,1_x,1_y,2_x,2_y\n0,1,2,5,6\n.1,1,3,5,7\n.2,1,4,,\n",
+    "the same names": "t,x,y,x,y\n0,1,2,5,6\n.1,1,3,5,7\n.2,1,4,nan,nan\n",
+    "names over them": "\t1\t\t2\t\nt\tx\ty\tx\ty\n0\t1\t2\t5\t6\n.1\t1\t3\t5\t7\n.2\t1\t4\t\t\n",
+    "a row each": "id,t,x,y\n1,0,1,2\n2,0,5,6\n1,.1,1,3\n2,.1,5,7\n1,.2,1,4\n2,.2,,\n",
+    "one after the other": "x,y,t,puck\n1,4,.2,1\n1,2,0,1\n1,3,.1,1\n5,6,0,2\n5,7,.1,2\n,,.2,2\n",
+    "own times": "t,x,y,t,x,y\n0,1,2,0,5,6\n.1,1,3,.1,5,7\n.2,1,4,.2,,\n",
+}
+
+
+@pytest.mark.parametrize("case", TWO)
+def test_two_pucks_side_by_side_or_row_by_row(tmp_path: Path, case: str):
+    one, two = read(tmp_path, TWO[case], unit="m")
+    assert [one.name, two.name] == ["film.csv: 1", "film.csv: 2"]
+    for track, place in (
+        (one, [[1, 2], [1, 3], [1, 4]]), (two, [[5, 6], [5, 7], [NAN, NAN]]),
+    ):  # fmt: skip
+        assert_allclose(track.time, [0.0, 0.1, 0.2])
+        assert_allclose(track.place, place)
+    (chosen,) = read(tmp_path, TWO[case], unit="m", pucks="2")
+    assert chosen.name == two.name
+
+
+@pytest.mark.parametrize(
+    ("heading", "cells"),
+    [
+        ("visible", "1 0 1"), ("seen", "true false true"), ("hidden", "0 1 0"),
+        ("occluded", "no yes no"), ("state", "visible hidden visible"), ("hidden", " yes "),
+        ("likelihood", "0.9 0.1 0.6"), ("confidence", "1 0 1"),
+    ],
+)  # fmt: skip
+def test_flags_hide_frames(tmp_path: Path, heading: str, cells: str):
+    rows = [f"0.{n},{n},{n},{cell}" for n, cell in enumerate(cells.split(" "))]
+    (track,) = read(tmp_path, "\n".join([f"t,x,y,{heading}", *rows]), unit="m")
+    assert track.seen.tolist() == [True, False, True]
+
+
+def test_angles_have_a_unit_and_turn_with_y(tmp_path: Path):
+    text = "t,x,y,{}\n0,1,2,90\n0.1,1.5,2.5,450\n"
+    (up,) = read(tmp_path, text.format("theta [deg]"), unit="m")
+    assert_allclose(up.angle, [0.5 * np.pi, 2.5 * np.pi])
+    (down,) = read(tmp_path, text.format("angle"), scale=0.01, angle_unit="°")
+    assert_allclose(down.angle, [-0.5 * np.pi, -2.5 * np.pi])
+    assert any("downwards" in note for note in down.notes)
+    with pytest.raises(InputError, match="angle_unit"):
+        read(tmp_path, text.format("angle"), unit="m")
+
+
+def test_marks_on_a_puck_give_its_centre_and_angle(tmp_path: Path):
+    text = "t,a_x,a_y,b_x,b_y\n0,0,0,2,0\n0.1,1,1,1,3\n0.2,1,1,,\n"
+    (middle,) = read(tmp_path, text, unit="m", centre="a,b", toward="b")
+    assert_allclose(middle.place, [[1, 0], [1, 2], [NAN, NAN]])
+    assert_allclose(middle.angle, [0.0, 0.5 * np.pi, NAN])
+    (hub,) = read(tmp_path, text, unit="m", centre=["a"], toward="b")
+    assert_allclose(hub.place, [[0, 0], [1, 1], [1, 1]])
+    assert_allclose(hub.angle, [0.0, 0.5 * np.pi, NAN])
+    with pytest.raises(InputError, match="no mark 'c'"):
+        read(tmp_path, text, unit="m", centre="c")
+
+
+def test_times_with_jitter_are_kept(tmp_path: Path):
+    times = np.cumsum(0.01 + 0.002 * np.random.default_rng(4).uniform(-1, 1, 50)).tolist()
+    (track,) = read(tmp_path, "t,x,y\n" + "".join(f"{t!r},1,2\n" for t in times), unit="m")
+    assert track.time.tolist() == times
+
+
+def test_many_rows_are_read_block_by_block_as_few_are(tmp_path: Path):
+    rng = np.random.default_rng(5)
+    data = np.column_stack([np.arange(250_000) / 1000.0, rng.normal(size=(250_000, 2))])
+    rows = [f"{t!r};{x!r};{y!r}".replace(".", ",") for t, x, y in data.tolist()]
+    rows[200_000] = rows[200_000].split(";")[0] + ";;"  # one gap, in a block of its own
+    rows[240_000] += "  "
+    (track,) = read(tmp_path, "\n".join(["t;x [m];y [m]", *rows]))
+    lost = np.flatnonzero(~track.seen).tolist()
+    assert lost == [200_000]
+    keep = np.arange(250_000) != 200_000
+    assert np.array_equal(track.time, data[:, 0])
+    assert np.array_equal(track.place[keep], data[keep, 1:])
+
+
+BAD = {
+    "": "is empty",
+    "\n\n": "no rows of numbers",
+    "hello\nworld\n": "no table of numbers",
+    "hello,world\na,b\n": "no (table|rows) of numbers",
+    "t,x,y\n0,1,2\n.2,3,4\n.1,1,2\n": "time must increase, but frame 3",
+    "t,x,y\n0,1,2\n.2,3,4\n.2,1,2\n": "time must increase, but frame 3",
+    "t,x,y\n0,1,2\n": "two frames",
+    "t,x,y\n0,,\n1,,\n": "two frames.*here are 0",
+    "t,x,y\n0,a,2\n1,b,3\n": "line 2, column 2: 'a' is no number",
+    "t,x,y\n0,1,2\n1,2\n1.1,3,4\n": "line 3: 2 cells where other rows have 3",
+    "t,x,y\n0,1,2\n1,2,3,4\n1.1,2,3\n": "line 3: 4 cells where other rows have 3",
+    "t,x,y\n0,1,0,2,0,3\n0,2,1,2,2,3\n": "commas separate and are decimal marks",
+    "t;x;y\n0,1;1.234,5;2\n0,2;2;3\n": "'1.234,5' is no number",
+    "t,x,y\n0,1,2\n,2,3\n": "has no time",
+    "t,x,y\n0,1,2\n8.3,2,3\n16.7,3,3\n": "unit of its times",
+    "t,x\n0,1\n.1,2\n": "x without its y",
+    "a,b,c\n0,1,3\n.1,2,4\n": "no columns x and y",
+    "0,1,3\n.1,2,4\n": "has no header.*columns='t,x,y'",
+    "x,y\n0,1\n1,2\n": "fps.*each row is then a frame",
+    "frame,x,y\n0,1,2\n1,2,3\n": "frame numbers and no times.*fps",
+    "t,x [cm],y [cm]\n0,1,2\n.1,1,2\n": "leave unit = 'm' out",
+    "t,x [cm],y [mm]\n0,1,2\n.1,1,2\n": "not all in one unit",
+    "t,x [furlong],y [furlong]\n0,1,2\n.1,1,2\n": "'furlong' is not known",
+    "t,x_px,y_px\n0,1,2\n.1,2,3\n": "in pixels: give (the size|scale)",
+    "t,x,y\n0,1e400,2\n.1,2,3\n": "must be numbers",
+    "t,x,y,visible\n0,1,2,1\n.1,2,3,7\n": "must be 0 or 1",
+    "t,x,y,visible\n0,1,2,yes\n.1,2,3,perhaps\n": "'perhaps' does not say",
+    "t,x1,y1,x2,y2,angle_deg\n0,1,2,3,4,5\n.1,1,2,3,4,5\n": "whose they are",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("text", BAD)
+def test_what_is_wrong_is_said_in_a_sentence(tmp_path: Path, text: str):
+    with pytest.raises(InputError, match=BAD[text]) as refused:
+        read(tmp_path, text, unit="m")
+    assert "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("how", "words"),
+    [
+        ({}, "does not say the unit of x and y"), ({"unit": "px"}, "size of a pixel"),
+        ({"unit": "cms"}, "did you mean 'cm'"), ({"unit": 3}, "unit = 3"),
+        ({"scale": 0}, "greater than 0"), ({"scale": "-1mm"}, "greater than 0"),
+        ({"scale": "0.5"}, "a number and a unit"), ({"scale": "2px"}, "a length, not pixels"),
+        ({"scale": "1mm", "unit": "cm"}, "leave unit = 'cm' out"), ({"fps": 0}, "fps"),
+        ({"fps": math.nan}, "fps"), ({"fps": 10, "unit": "m"}, "leave fps"),
+        ({"unit": "m", "columns": "t,x"}, "has 3 columns, and columns names 2"),
+        ({"unit": "m", "pucks": "red"}, "no puck 'red'"),
+        ({"unit": "m", "likelihood": 0.5}, "no likelihoods"), ({"likelihood": 2}, "0 to 1"),
+        ({"unit": "m", "toward": "a"}, "needs centre"),
+    ],
+)  # fmt: skip
+def test_what_is_asked_wrongly_is_said(tmp_path: Path, how: dict, words: str):
+    with pytest.raises(InputError, match=words):
+        read(tmp_path, "t,x,y\n0,1,2\n0.1,2,3\n", **how)
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        (b"\x80\x04\x95abc", "a pickle"), (bytes(range(256)) * 20, "binary"),
+        (b"\x00" * 100, "binary"), (b"\x1f\x8b\x08junk", "unpack"), (b"PAR1....", "Parquet"),
+        (b'{"x": 1}', "JSON"), (b"\x89PNG\r\n", "a picture"), (b"\0\0\0\x18ftypmp42", "a film"),
+        (b"x" * 300_000, "no table"),
+    ],
+)  # fmt: skip
+def test_files_that_are_no_tables_are_named(tmp_path: Path, content: bytes, words: str):
+    with pytest.raises(InputError, match=words):
+        read(tmp_path, content)
+
+
+def test_what_cannot_be_opened_is_said(tmp_path: Path):
+    for path, words in ((tmp_path, "regular file"), (tmp_path / "no.csv", "No such file")):
+        with pytest.raises(InputError, match=words):
+            read_tracks(path)
+    with pytest.raises(InputError, match="path must be"):
+        read_tracks(3)  # type: ignore[arg-type]
