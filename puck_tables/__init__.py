@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from puck_tables.film.reading import read_tracks
     from puck_tables.film.track import Track
     from puck_tables.fitting.fit import fit
+    from puck_tables.fitting.forecast import Camera, Forecast, fisher
     from puck_tables.fitting.outcome import Fit
     from puck_tables.kernels.closed_form import resultants
     from puck_tables.puck import Puck
@@ -67,6 +68,7 @@ _HOMES = {
     "AccuracyError": "errors",
     "Aim": "stopping.aim",
     "Arc": "scene.pieces",
+    "Camera": "fitting.forecast",
     "CheckReport": "table.check",
     "Constraint": "scene.parts",
     "ContactError": "errors",
@@ -75,6 +77,7 @@ _HOMES = {
     "Fit": "fitting.outcome",
     "Floor": "scene.parts",
     "Force": "scene.parts",
+    "Forecast": "fitting.forecast",
     "InputError": "errors",
     "Launch": "scene.parts",
     "Law": "contact.laws",
@@ -103,6 +106,7 @@ _HOMES = {
     "World": "world.world",
     "chetaev": "",
     "contact": "",
+    "fisher": "fitting.forecast",
     "fit": "fitting.fit",
     "law_of": "contact.laws",
     "motion": "",
@@ -118,6 +122,7 @@ __all__ = [
     "AccuracyError",
     "Aim",
     "Arc",
+    "Camera",
     "CheckReport",
     "Constraint",
     "ContactError",
@@ -126,6 +131,7 @@ __all__ = [
     "Fit",
     "Floor",
     "Force",
+    "Forecast",
     "InputError",
     "Launch",
     "Law",
@@ -155,6 +161,7 @@ __all__ = [
     "__version__",
     "chetaev",
     "contact",
+    "fisher",
     "fit",
     "law_of",
     "motion",

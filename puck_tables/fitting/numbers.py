@@ -112,7 +112,7 @@ def numbers_of(
         if any(slope[k] and not puck[one].determined for k, one in enumerate(asked.free)
                if not certainty.undetermined[k]):  # fmt: skip
             error = math.inf
-        ends = _quadratic(value, error)
+        ends = _follows(problem, x, name, slope, puck) or _quadratic(value, error)
         if PUCK[name].low == 0.0:
             ends = Interval(max(ends.low, 0.0), ends.high, False)
         puck[name] = Number(value, error, ends.low, ends.high, PUCK[name].unit, FOLLOWS)
@@ -137,6 +137,23 @@ def numbers_of(
 
 def _quadratic(value: float, error: float) -> Interval:
     return Interval(value - Z95 * error, value + Z95 * error, False)
+
+
+def _follows(
+    problem: Problem, x: FloatArray, name: str, slope: FloatArray, puck: Mapping[str, Number]
+) -> Interval | None:
+    """The interval of what follows from one number alone: from the ends of that one's."""
+    asked, values = problem.asked, problem.found(x)
+    of = np.flatnonzero(slope)
+    if of.size != 1 or not math.isfinite(puck[asked.free[of[0]]].high):
+        return None
+    one, ends = asked.free[of[0]], []
+    for end in (puck[one].low, puck[one].high):
+        moved = {**values, one: end}
+        everything = {**asked.known(), **moved}
+        everything.update(_derived(asked.scales(moved), everything))
+        ends.append(everything[name])
+    return Interval(min(ends), max(ends), False)
 
 
 def _derived(scales: tuple[float, float, float], numbers: Mapping[str, float]) -> dict[str, float]:
