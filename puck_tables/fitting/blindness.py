@@ -31,13 +31,16 @@ def blind_spots(found: Estimate, certainty: Certainty, lost: tuple[str, ...]) ->
     ``lost``: numbers of the puck that are not determined, by whatever.
     """
     sentences = []
+    seen: set[frozenset[int]] = set()
     covered = {found.problem.names[k][1] for k in np.flatnonzero(certainty.undetermined)}
     for name in lost:
         if name not in covered:
             remedy = _remedy(found, [name], [(-1, name)])
             sentences.append(f"{name} is not determined: {_ALIKE}. {remedy}")
     for direction in certainty.blind:
-        members = [k for k in np.argsort(-np.abs(direction)) if abs(direction[k]) > _MEMBER]
+        members = [int(k) for k in np.argsort(-np.abs(direction)) if abs(direction[k]) > _MEMBER]
+        if frozenset(members) in seen:
+            continue
         names = [_name(found.problem, k) for k in members]
         shared = [found.problem.names[k][1] for k in members if found.problem.names[k][0] < 0]
         if len(names) == 1:
@@ -47,6 +50,7 @@ def blind_spots(found: Estimate, certainty: Certainty, lost: tuple[str, ...]) ->
                 f"when {_together(found.problem, certainty, members)}"  # fmt: skip
         remedy = _remedy(found, shared, [found.problem.names[k] for k in members])
         sentences.append(f"{told}. {remedy}")
+        seen.add(frozenset(members))
     return tuple(sentences)
 
 

@@ -21,7 +21,9 @@ Z95 = 1.959963984540054
 BLIND = 2.0  # plausible ranges per standard deviation
 _MEMBER = 0.2  # component of a direction that counts
 _PARABOLIC = 0.04  # of the drop of the likelihood
-_SEARCHES = 8
+_SEARCHES = 14
+_OUTWARDS = 3.0
+_HARDLY = 0.05
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,31 +123,32 @@ def interval_of(found: Estimate, certainty: Certainty, k: int) -> Interval:
 def _end(
     found: Estimate, certainty: Certainty, k: int, side: float, guess: float, limit: float
 ) -> tuple[float, bool]:
-    """One end, and whether it is not the guess."""
-    best, x0 = found.chi2, float(found.x[k])
+    """One end, and whether it is not the guess.
+
+    The root of the rise of χ² is followed outwards, by way of the limit where there is one: a
+    likelihood may level off below what bounds anything.
+    """
+    x0, start = float(found.x[k]), found.x
     near, near_root = x0, 0.0
     far: tuple[float, float] | None = None
-    at, start = side * min(side * guess, side * limit), found.x
+    at = side * min(side * guess, side * limit)
     for n in range(_SEARCHES):
-        cost, start = profile_point(found, certainty, k, at, start)
-        root = math.sqrt(max(cost - best, 0.0))
-        if n == 0 and at == guess and abs(root / Z95 - 1.0) < 0.5 * _PARABOLIC:
+        cost, moved = profile_point(found, certainty, k, at, start)
+        root = math.sqrt(max(cost - found.chi2, 0.0))
+        exact = abs(root / Z95 - 1.0)
+        if n == 0 and at == guess and exact < 0.5 * _PARABOLIC:
             return guess, False
-        if abs(root / Z95 - 1.0) < 0.25 * _PARABOLIC:
+        if exact < 0.25 * _PARABOLIC or (root < Z95 and at == limit):
             return at, True
         if root < Z95:
-            if at == limit:
-                return limit, True
-            near, near_root = at, root
+            near, near_root, start = at, root, moved
         else:
             far = at, root
-        if far is None:  # farther out, by what the slope says but not too far at once
-            reach = min(Z95 / max(root, 0.3), 3.0)
-            at = x0 + (at - x0) * max(reach, 1.3)
+        if far is None:
+            at = limit if math.isfinite(limit) else x0 + _OUTWARDS * (at - x0)
         else:
             share = (Z95 - near_root) / (far[1] - near_root)
-            at = near + min(max(share, 0.05), 0.95) * (far[0] - near)
-        at = side * min(side * at, side * limit)
+            at = near + min(max(share, 0.1), 0.9) * (far[0] - near)
     return at, True
 
 
@@ -158,5 +161,12 @@ def profile_point(
     if variance > 0.0:
         moved += certainty.covariance[:, k] / variance * (at - start[k])
     moved[k] = at
-    x, cost = minimise(found.problem, moved, SQUARES, found.kept, held=k)
-    return 2.0 * cost, x
+    best = minimise(found.problem, moved, SQUARES, found.kept, held=k)
+    if any(film.angle is None for film in found.problem.films):
+        # without angles a motion with hardly any spin may be another minimum
+        spins = [n for n, (_, name) in enumerate(found.problem.names) if name == "launch_spin"]
+        slow = moved.copy()
+        slow[spins] *= _HARDLY
+        other = minimise(found.problem, slow, SQUARES, found.kept, held=k)
+        best = min(best, other, key=lambda one: one[1])
+    return 2.0 * best[1], best[0]

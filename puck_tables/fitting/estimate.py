@@ -20,6 +20,9 @@ from puck_tables.fitting.problem import ANGLE, PLACE, Problem
 FARTHEST = 4.0  # standard deviations of a frame that counts
 FARTHEST_PLACE = -2.0 * math.log(math.erfc(FARTHEST / math.sqrt(2.0)))  # of two of them, squared
 _MEDIAN = 0.6744897501960817
+_MEDIAN_PLACE = 2.0 * math.log(2.0)  # of the square of two normal deviates
+_WIDE = 1.4
+_FEW = 2.5  # residuals for each unknown
 _ROUNDS = 6
 _SETTLED = 1e-3  # of a standard deviation of the noise
 _AWAY = 1.5  # times the noise: a start so far off is fitted robustly first
@@ -89,19 +92,25 @@ def estimate(problem: Problem, start: FloatArray, noise_known: tuple[bool, bool]
 
 def _kept(problem: Problem, rows: FloatArray) -> npt.NDArray[np.bool_]:
     """Residuals of frames that are no outliers; a place counts as a whole."""
-    size = np.abs(rows)
-    # where most are far off no frame is an outlier, but the noise is larger or the model wrong
-    wide = [
-        max(1.0, float(np.median(size[problem.kinds == kind])) / _MEDIAN / 1.2)
-        if (problem.kinds == kind).any() else 1.0
-        for kind in (PLACE, ANGLE)
-    ]  # fmt: skip
     kept = np.ones(rows.size, bool)
-    for x, y, turn in problem.each():
-        near = rows[x] ** 2 + rows[y] ** 2 <= FARTHEST_PLACE * wide[PLACE] ** 2
-        kept[x] = kept[y] = near
-        kept[turn] = size[turn] <= FARTHEST * wide[ANGLE]
+    if rows.size < _FEW * len(problem.names):  # too few to tell what is one
+        return kept
+    each = problem.each()
+    places = [rows[x] ** 2 + rows[y] ** 2 for x, y, _ in each]
+    turns = [rows[turn] ** 2 for _, _, turn in each]
+    # where most are far off no frame is an outlier, but the noise is larger or the model wrong
+    wide_place = _wide(places, _MEDIAN_PLACE)
+    wide_turn = _wide(turns, _MEDIAN**2)
+    for (x, y, turn), place, angle in zip(each, places, turns, strict=True):
+        kept[x] = kept[y] = place <= FARTHEST_PLACE * wide_place
+        kept[turn] = angle <= FARTHEST**2 * wide_turn
     return kept
+
+
+def _wide(squares: list[FloatArray], usual: float) -> float:
+    """How much larger than the noise most squares are, 1 at least."""
+    every = np.concatenate(squares)
+    return max(1.0, float(np.median(every)) / usual / _WIDE) if every.size else 1.0
 
 
 def _noise(

@@ -25,12 +25,14 @@ from puck_tables.fitting.outcome import Fit
 from puck_tables.fitting.parameters import Asked
 from puck_tables.fitting.problem import Problem
 from puck_tables.fitting.residual_tests import drift, runs
-from puck_tables.fitting.seen import Seen, noise_of, seen_in
+from puck_tables.fitting.seen import Seen, noise_of, rests_from, seen_in, turning_of
 from puck_tables.fitting.starts import start_of
 from puck_tables.puck import Puck
 
 Progress = Callable[[int, int], None]
 _LIFTS = 0.995  # δ from which on a uniform puck is fitted with part of its base lifted
+_STILL, _LEAST_TURN = 3.0, 1e-9  # times the noise; rad
+_JUDGED = 10  # degrees of freedom that tell the noise
 _GUESS = 1e-3  # of the track: noise to begin with where differences tell none
 
 
@@ -157,11 +159,20 @@ def fit(
         outliers=found.outliers,
         runs=runs(found),
         drift=drift(found),
+        left_out=_left_out(films, found.problem.films),
         blind=blind_spots(found, certainty, lost),
         laws=scores,
         held_out=held,
         estimate=found,
         certainty=certainty,
+    )
+
+
+def _left_out(before: tuple[Seen, ...], after: tuple[Seen, ...]) -> tuple[tuple[int, int], ...]:
+    """How many frames at the start and the end of each track are no free motion."""
+    return tuple(
+        (int((one.frame < left.frame[0]).sum()), int((one.frame > left.frame[-1]).sum()))
+        for one, left in zip(before, after, strict=True)
     )
 
 
@@ -174,19 +185,27 @@ def fitted(problem: Problem, known: tuple[bool, bool], refit: bool) -> Estimate:
     known : whether the noise of places and of angles is
     refit : whether frames at the ends that are no free motion are left out
     """
-    if _observations(problem) <= len(problem.names) - len(problem.priors):
+    left = _observations(problem) - len(problem.names) + len(problem.priors)
+    if left <= 0:
         raise InputError(
             f"{_observations(problem)} observations cannot tell {len(problem.names)} unknowns: "
             "give more frames, or fix something"
         )
+    angled = any(film.angle is not None for film in problem.films)
+    if left < _JUDGED and not (known[0] and (known[1] or not angled)):
+        raise InputError(
+            f"{_observations(problem)} observations of {len(problem.names)} unknowns are too few "
+            "to judge their noise by: give the noise, or more frames"
+        )
     parts = [replace(problem, films=(film,)) for film in problem.films]
     starts = [start_of(part) for part in parts]
     found = estimate(problem, _joint_start(problem, parts, starts, known), known)
+    found = _lifted(found, known)
     if refit:
         films = trimmed(found)
         if films != problem.films:
             return fitted(replace(problem, films=films), known, refit=False)
-    return _lifted(found, known)
+    return found
 
 
 def _lifted(found: Estimate, known: tuple[bool, bool]) -> Estimate:
@@ -257,7 +276,27 @@ def _films(tracks: Any, since: float, until: float) -> tuple[Seen, ...]:
         if names.count(track.name) > 1:
             film = replace(film, name=f"{track.name} {n + 1}")
         films.append(film)
+        _refuse_still(film)
     return tuple(films)
+
+
+def _refuse_still(film: Seen) -> None:
+    """Refuse a track of a puck that lies still.
+
+    Raises
+    ------
+    InputError
+    """
+    place, angle = noise_of([film])
+    spread = place if math.isfinite(place) else 0.0
+    turning = turning_of(film)
+    turns = turning is not None and float(np.nanstd(turning.angle)) > _STILL * max(
+        angle if math.isfinite(angle) else 0.0, _LEAST_TURN
+    )
+    if rests_from(film, spread) == 0 and not turns:
+        raise InputError(
+            f"the puck of {film.name} lies still: a fit needs a track of a slide or a spin"
+        )
 
 
 def _noise(

@@ -1,4 +1,4 @@
-"""What a film would tell, before it is made: the Cramér–Rao bounds of a puck, a launch, a camera."""
+"""What a film would tell, before it is made: Cramér–Rao bounds of a puck, a launch, a camera."""
 
 from __future__ import annotations
 
@@ -94,9 +94,9 @@ class Camera:
 class Forecast(Result):
     """What a film would tell.
 
-    ``names``, ``values``, ``errors``: of what would be found, the puck's numbers first, then those of
-    the launch; an error is infinite where the film does not determine the number.  ``frames``: how
-    many it has.
+    ``names``, ``values``, ``errors``: of what would be found, the puck's numbers first, then those
+    of the launch; an error is infinite where the film does not determine the number.  ``frames``:
+    how many it has.
     """
 
     puck: Puck
@@ -125,8 +125,8 @@ class Forecast(Result):
     def explain(self) -> str:
         """How it was got."""
         return (
-            f"Cramér–Rao bounds: the inverse of the Fisher matrix of {len(self.names)} unknowns and "
-            f"{self.frames} frames, in the derivatives of the motion."
+            f"Cramér–Rao bounds: the inverse of the Fisher matrix of {len(self.names)} unknowns "
+            f"and {self.frames} frames, in the derivatives of the motion."
         )
 
     def over(self, speeds: FloatArray, spins: FloatArray, name: str) -> FloatArray:
@@ -177,8 +177,8 @@ def fisher(
     Returns
     -------
     Forecast
-        ``forecast["friction"]`` is the standard error of the best possible estimate, with the launch
-        unknown.  Its picture shows it over speed and spin.
+        ``forecast["friction"]`` is the standard error of the best possible estimate, with the
+        launch unknown.  Its picture shows it over speed and spin.
 
     Raises
     ------

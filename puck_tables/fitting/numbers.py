@@ -15,6 +15,8 @@ from puck_tables.fitting.parameters import ALL, LAUNCH, PUCK
 from puck_tables.fitting.problem import Problem
 
 _STEP = 1e-6
+# Scales are plausible within their own size, but not less than this
+_LEAST = {"friction": 1e-3, "decel": 1e-2, "gravity": 1e-2, "height": 1e-4, "radius": 1e-4}
 _ALL = 0.8  # of the range in which a number is looked for: an interval so wide tells nothing
 FREE, FOLLOWS, KNOWN = "found", "follows", "known"
 
@@ -65,8 +67,10 @@ def plausible_for(problem: Problem, x: FloatArray) -> FloatArray:
     sizes = []
     for track, name in problem.names:
         if track < 0:
-            relative = name in ("friction", "decel", "gravity", "height", "radius")
-            sizes.append(abs(found[name]) if relative else problem.asked.plausible(name))
+            least = _LEAST.get(name)
+            sizes.append(
+                problem.asked.plausible(name) if least is None else max(abs(found[name]), least)
+            )
             continue
         launch, film = launches[track], problem.films[track]
         slip = math.hypot(launch[2], launch[3], radius * launch[4]) or 1.0

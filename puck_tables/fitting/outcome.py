@@ -40,6 +40,7 @@ class Fit(Result):
     found, or known; ``launches``: one for each track.  ``chi2`` over ``degrees`` of freedom;
     ``noise`` (m, rad), that of the residuals unless ``noise_known``, and ``smooth_noise``, judged
     without any model of the puck; ``outliers``: share of the observations that are left out;
+    ``left_out``: frames at the start and at the end of each track that are no free motion;
     ``runs``, ``drift``: probabilities of residuals so patterned by chance; ``blind``: a sentence
     for each thing that the tracks do not tell; ``laws``: :class:`LawScore` of those compared, best
     first; ``held_out``: how well frames that were held out are predicted.
@@ -56,6 +57,7 @@ class Fit(Result):
     outliers: float
     runs: float
     drift: float
+    left_out: tuple[tuple[int, int], ...]
     blind: tuple[str, ...]
     laws: tuple[LawScore, ...]
     held_out: HeldOut | None
@@ -191,7 +193,8 @@ class Fit(Result):
             ],
             "correlation": self.correlation(), "chi2": self.chi2, "degrees": self.degrees,
             "noise": list(self.noise), "noise_given": list(self.noise_known),
-            "outliers": self.outliers, "runs": self.runs, "drift": self.drift,
+            "outliers": self.outliers, "left_out": [list(one) for one in self.left_out],
+            "runs": self.runs, "drift": self.drift,
             "not_determined": list(self.blind), "complaints": list(self.complaints),
             "laws": [one._asdict() for one in self.laws],
             "held_out": None,

@@ -19,20 +19,34 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.least_squares import LOOSE, minimise
+from puck_tables.fitting.natural import Curve
 from puck_tables.fitting.parameters import Asked
 from puck_tables.fitting.problem import Found, Problem
 from puck_tables.fitting.seen import Seen, Turning, rests_from, turning_of
 
 _SHARE, _FEW = 0.25, 6  # of the moving frames, and at least: the parabola
 _MOST_TURNS = 3
-_HEIGHTS = (0.1, 0.5, 0.9)
-_RATIOS = (0.0, 0.2, 0.5, 1.0, 1.7, 3.0, 6.0, 12.0)  # rω/v tried where no angle is seen
+_HEIGHTS = (0.05, 0.2, 0.5, 0.9)
+_RATIOS = (
+    0.0,
+    0.15,
+    0.3,
+    0.5,
+    0.75,
+    1.1,
+    1.6,
+    2.3,
+    3.5,
+    6.0,
+    12.0,
+)  # rω/v tried where no angle is seen
 _DECELS = 2.0 ** np.arange(-3.0, 3.1, 0.5)  # times the one that fits the loss of speed
 _FRAMES = 24  # laid beside each other
 _FITTED = 60  # frames to which the guesses are fitted
 _AT_HOME = 1.1  # a median residual, in units of the noise, that only the true motion has
-_KEPT = 9
-_PLACE_SHARE, _RATE_SHARE = 0.02, 0.05
+_KEPT = 15
+_NEARER = 2.0 ** np.arange(-0.4, 0.41, 0.05)
+_PLACE_SHARE, _FINER_SHARE, _RATE_SHARE = 0.02, 0.005, 0.05
 _LEAST_SPEED = 1e-6
 
 
@@ -123,28 +137,38 @@ def _guesses(
     for spin, turns in _spins(asked, turning, speed, radius, rests):
         slip = math.hypot(speed, radius * spin) or 1.0
         phi = math.atan2(radius * spin, speed)
-        rates = None
-        if turning is not None:
-            rates = turning.with_more(turns, film.time)[0]
+        rates = None if turning is None else turning.with_more(turns, film.time)[0]
+        moments = time if turning is None else np.concatenate([time, turning.time])
         for delta, decels in _scales(asked, slowing / max(math.cos(phi), 0.1)):
-            moments = time if turning is None else np.concatenate([time, turning.time])
-            tau = np.outer(decels / slip, moments)
             curve = problem.moving(_found(asked, decels[0], delta)).curve
             height = min(delta, curve.highest)
-            states = curve.states(np.array([phi]), np.array([height]), tau.reshape(1, -1))
-            states = states[:, 0].reshape(6, decels.size, -1)
-            length = (slip * slip / decels)[:, None]
-            off = np.hypot(
-                length * states[0, :, : time.size] - places[:, 0],
-                length * states[1, :, : time.size] - places[:, 1],
-            ) / (_PLACE_SHARE * size)  # fmt: skip
-            score = np.log1p(off * off).mean(axis=1)
-            if rates is not None:
-                spins = states[5, :, time.size :] * (slip / radius)
-                scale = _RATE_SHARE * abs(spin) + 0.01 / film.usual_step
-                score += np.log1p(((spins - rates) / scale) ** 2).mean(axis=1)
-            n = int(score.argmin())
-            found.append(_Guess(float(decels[n]), height, spin, turns, float(score[n])))
+
+            def scores(
+                decels: FloatArray, share: float, phi: float = phi, height: float = height,
+                slip: float = slip, rates: FloatArray | None = rates, curve: Curve = curve,
+                moments: FloatArray = moments,
+            ) -> FloatArray:  # fmt: skip
+                tau = np.outer(decels / slip, moments).reshape(1, -1)
+                states = curve.states(np.array([phi]), np.array([height]), tau)[:, 0]
+                states = states.reshape(6, decels.size, -1)
+                length = (slip * slip / decels)[:, None]
+                off = np.hypot(
+                    length * states[0, :, : time.size] - places[:, 0],
+                    length * states[1, :, : time.size] - places[:, 1],
+                ) / (share * size)  # fmt: skip
+                score: FloatArray = np.log1p(off * off).mean(axis=1)
+                if rates is not None:
+                    spins = states[5, :, time.size :] * (slip / radius)
+                    scale = _RATE_SHARE * abs(rates[0]) + 0.01 / film.usual_step
+                    score += np.log1p(((spins - rates) / scale) ** 2).mean(axis=1)
+                return score
+
+            decel = float(decels[scores(decels, _PLACE_SHARE).argmin()])
+            if decels.size > 1:
+                decels = decel * _NEARER
+            finer = scores(decels, _FINER_SHARE)
+            n = int(finer.argmin())
+            found.append(_Guess(float(decels[n]), height, spin, turns, float(finer[n])))
     found.sort(key=lambda guess: guess.score)
     return found[:_KEPT]
 
