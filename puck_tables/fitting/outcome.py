@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 
 KIND = "puck-tables fit 1"
 _NO_PATTERN = 1e-3  # probability of residuals so patterned by chance
+_COMPUTED = 1e-7  # of the path: residuals of tracks that were computed, not seen
 _NOISY = 1.5  # times the noise of a smooth motion
 
 
@@ -137,11 +138,14 @@ class Fit(Result):
     def complaints(self) -> tuple[str, ...]:
         """Signs that the tracks are not those of such a puck."""
         found = []
+        size = max(float(np.ptp(film.place, axis=0).max()) for film in self.estimate.problem.films)
+        # smaller residuals are the errors of what is computed
+        seen = self.noise[0] > _COMPUTED * size
         excess = [
             own / smooth for own, smooth in zip(self.noise, self.smooth_noise, strict=True)
             if math.isfinite(smooth) and smooth > 0.0
         ]  # fmt: skip
-        if not any(self.noise_known) and max(excess, default=0.0) > _NOISY:
+        if seen and not any(self.noise_known) and max(excess, default=0.0) > _NOISY:
             found.append(
                 f"The residuals are {max(excess):.3g} times what smooth tracks would leave"
             )
@@ -149,7 +153,7 @@ class Fit(Result):
         expected = 1.0 + 5.0 * math.sqrt(2.0 / max(self.degrees, 1))
         if any(self.noise_known) and per_degree > expected:
             found.append(f"The residuals are {math.sqrt(per_degree):.3g} times the noise given")
-        if min(self.runs, self.drift) < _NO_PATTERN:
+        if seen and min(self.runs, self.drift) < _NO_PATTERN:
             found.append(
                 "The residuals are no noise, they have a pattern (probability by chance "
                 f"{min(self.runs, self.drift):.1g})"
