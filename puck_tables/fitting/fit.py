@@ -31,6 +31,7 @@ from puck_tables.puck import Puck
 
 Progress = Callable[[int, int], None]
 _LIFTS = 0.995  # δ from which on a uniform puck is fitted with part of its base lifted
+MOST_FRAMES = 100_000
 _STILL, _LEAST_TURN = 3.0, 1e-9  # times the noise; rad
 _JUDGED = 10  # degrees of freedom that tell the noise
 _GUESS = 1e-3  # of the track: noise to begin with where differences tell none
@@ -199,7 +200,7 @@ def fitted(problem: Problem, known: tuple[bool, bool], refit: bool) -> Estimate:
         )
     parts = [replace(problem, films=(film,)) for film in problem.films]
     starts = [start_of(part) for part in parts]
-    found = estimate(problem, _joint_start(problem, parts, starts, known), known)
+    found = estimate(problem, _joint_start(problem, parts, starts), known)
     found = _lifted(found, known)
     if refit:
         films = trimmed(found)
@@ -222,22 +223,21 @@ def _lifted(found: Estimate, known: tuple[bool, bool]) -> Estimate:
 
 
 def _joint_start(
-    problem: Problem, parts: list[Problem], starts: list[tuple[dict[str, float], FloatArray]],
-    known: tuple[bool, bool],
-) -> FloatArray:  # fmt: skip
+    problem: Problem, parts: list[Problem], starts: list[tuple[dict[str, float], FloatArray]]
+) -> FloatArray:
     """The unknowns of all tracks from those of each: what is shared is their weighted mean."""
     if len(parts) == 1:
         return problem.unknowns(starts[0][0], starts[0][1][None])
     shared = len(problem.asked.free)
     weights, sums, launches = np.zeros((shared, shared)), np.zeros(shared), []
     for part, (values, launch) in zip(parts, starts, strict=True):
-        one = estimate(part, part.unknowns(values, launch[None]), known)
-        spread = certainty_of(one.jacobian[one.kept], plausible_for(part, one.x)).covariance
+        x = part.unknowns(values, launch[None])
+        spread = certainty_of(part.jacobian(x), plausible_for(part, x)).covariance
         if shared:
             weight = np.linalg.pinv(spread[:shared, :shared])
             weights += weight
-            sums += weight @ one.x[:shared]
-        launches.append(part.launches(one.x)[0])
+            sums += weight @ x[:shared]
+        launches.append(launch)
     mean = np.linalg.solve(weights, sums) if shared else sums
     return problem.unknowns(
         dict(zip(problem.asked.free, mean.tolist(), strict=True)), np.array(launches)
@@ -277,6 +277,12 @@ def _films(tracks: Any, since: float, until: float) -> tuple[Seen, ...]:
             film = replace(film, name=f"{track.name} {n + 1}")
         films.append(film)
         _refuse_still(film)
+    count = sum(film.time.size for film in films)
+    if count > MOST_FRAMES:
+        raise InputError(
+            f"{count} frames are too many for one fit, {MOST_FRAMES} are enough: give every tenth, "
+            "or a part (since, until)"
+        )
     return tuple(films)
 
 

@@ -27,24 +27,14 @@ from puck_tables.fitting.seen import Seen, Turning, rests_from, turning_of
 _SHARE, _FEW = 0.25, 6  # of the moving frames, and at least: the parabola
 _MOST_TURNS = 3
 _HEIGHTS = (0.05, 0.2, 0.5, 0.9)
-_RATIOS = (
-    0.0,
-    0.15,
-    0.3,
-    0.5,
-    0.75,
-    1.1,
-    1.6,
-    2.3,
-    3.5,
-    6.0,
-    12.0,
-)  # rω/v tried where no angle is seen
+# rω/v tried where no angle is seen
+_RATIOS = (0.0, 0.15, 0.3, 0.5, 0.75, 1.1, 1.6, 2.3, 3.5, 6.0, 12.0)
 _DECELS = 2.0 ** np.arange(-3.0, 3.1, 0.5)  # times the one that fits the loss of speed
 _FRAMES = 24  # laid beside each other
 _FITTED = 60  # frames to which the guesses are fitted
 _AT_HOME = 1.1  # a median residual, in units of the noise, that only the true motion has
-_KEPT = 15
+_KEPT, _KEPT_BLIND = 9, 22  # guesses that are fitted; of tracks without angles
+_RIVALS, _RIVAL, _APART = 4, 15.0, 1e-3  # minima compared on all frames: by cost, and how far apart
 _NEARER = 2.0 ** np.arange(-0.4, 0.41, 0.05)
 _PLACE_SHARE, _FINER_SHARE, _RATE_SHARE = 0.02, 0.005, 0.05
 _LEAST_SPEED = 1e-6
@@ -71,7 +61,7 @@ def start_of(problem: Problem) -> tuple[Found, FloatArray]:
     few = np.zeros(film.time.size, bool)
     few[np.linspace(0, film.time.size - 1, _FITTED).astype(int)] = True
     part = film.part(few)
-    best: tuple[float, Found, FloatArray] | None = None
+    minima: list[tuple[float, FloatArray]] = []
     for guess in guesses:
         found = _found(asked, guess.decel, guess.delta)
         launch = np.array([*place, *velocity, guess.spin, 0.0])
@@ -82,12 +72,26 @@ def start_of(problem: Problem) -> tuple[Found, FloatArray]:
             whole = whole[few]
         pieces = replace(problem, films=(part,), whole=(whole,))
         x, cost = minimise(pieces, pieces.unknowns(found, launch[None]), LOOSE)
-        if best is None or cost < best[0]:
-            best = cost, pieces.found(x), pieces.launches(x)[0]
-        if float(np.median(np.abs(pieces.residuals(x)))) < _AT_HOME:
+        minima.append((cost, x))
+        # without angles there are near minima, and all have to be seen
+        if whole is not None and float(np.median(np.abs(pieces.residuals(x)))) < _AT_HOME:
             break
-    assert best is not None
-    return best[1], best[2]
+    x = _deepest(problem, minima)
+    return problem.found(x), problem.launches(x)[0]
+
+
+def _deepest(problem: Problem, minima: list[tuple[float, FloatArray]]) -> FloatArray:
+    """Of minima for some of the frames the one that is deepest for all."""
+    minima.sort(key=lambda one: one[0])
+    least, x = minima[0]
+    rivals = [x]
+    for cost, other in minima[1:]:
+        new = all(np.abs(other - one).max() > _APART * np.abs(one).max() for one in rivals)
+        if new and cost < least + _RIVAL and len(rivals) < _RIVALS:
+            rivals.append(other)
+    if len(rivals) == 1:
+        return x
+    return min((minimise(problem, one, LOOSE) for one in rivals), key=lambda one: one[1])[0]
 
 
 def _moving_frames(film: Seen, spread: float) -> int:
@@ -170,7 +174,13 @@ def _guesses(
             n = int(finer.argmin())
             found.append(_Guess(float(decels[n]), height, spin, turns, float(finer[n])))
     found.sort(key=lambda guess: guess.score)
-    return found[:_KEPT]
+    if turning is not None:
+        return found[:_KEPT]
+    # without angles every spin is a chance, with the height that suits it
+    nearest: dict[float, _Guess] = {}
+    for guess in found:
+        nearest.setdefault(guess.spin, guess)
+    return list(nearest.values())[:_KEPT_BLIND]
 
 
 def _spins(
