@@ -62,6 +62,12 @@ if TYPE_CHECKING:
 @click.option("--since", type=NUMBER, help="Start of the free motion, in s of the track.")
 @click.option("--until", type=NUMBER, help="End of the free motion, in s of the track.")
 @click.option(
+    "--impacts",
+    is_flag=True,
+    help="The tracks may hold impacts with walls: cut them there, and tell restitution and "
+    "friction of the rim.",
+)
+@click.option(
     "--laws",
     metavar="LAW,...",
     help="Compare pressure laws; with +drag also a coefficient that changes with the slip speed: "
@@ -88,8 +94,8 @@ def fit(
     friction: float | None, mass: float | None, gravity: float | None, pressure: str,
     gyration: float | None, free: str | None, fix: tuple[str, ...], prior: tuple[str, ...],
     bound: tuple[str, ...], start: tuple[str, ...], noise: str | None, since: float | None,
-    until: float | None, laws: str | None, hold_out: str | None, explain: bool, as_json: bool,
-    output: Path | None, plot: Path | None, overwrite: bool,
+    until: float | None, impacts: bool, laws: str | None, hold_out: str | None, explain: bool,
+    as_json: bool, output: Path | None, plot: Path | None, overwrite: bool,
 ) -> None:  # fmt: skip
     """Find friction, tilt and launches of a sliding puck from tracks of it.
 
@@ -140,6 +146,7 @@ def fit(
             start={n: _number(v, "--start", n) for n, v in _named(start, "--start").items()},
             noise=_noise(noise), since=-math.inf if since is None else since,
             until=math.inf if until is None else until,
+            impacts=impacts,
             laws=() if laws is None else [name.strip() for name in laws.split(",")],
             hold_out=_held(hold_out), progress=show,
         )  # fmt: skip
@@ -179,6 +186,14 @@ def report(found: Fit) -> str:
             f"{'  velocity':<15} ({launch.velocity[0]:.6g}, {launch.velocity[1]:.6g}) m/s "
             f"+- {v['launch_vx'].error:.2g}, {v['launch_vy'].error:.2g}",
             f"{'  spin':<15} {_shown(w)}",
+        ]
+    for one in found.impacts:
+        degrees = math.degrees(one.wall) % 360.0
+        lines += [
+            f"\nimpact of {one.track} at {one.time:.6g} s, ({one.place[0]:.5g}, "
+            f"{one.place[1]:.5g}) m, on a wall at {degrees:.4g} degrees from x",
+            f"{'  restitution':<15} {_shown(one.restitution)}",
+            f"{'  rim':<15} {_shown(one.rim)} (tangential over normal impulse)",
         ]
     angled = any(film.angle is not None for film in found.estimate.problem.films)
     how = ["given" if known else "from the residuals" for known in found.noise_known]

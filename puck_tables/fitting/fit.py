@@ -19,6 +19,7 @@ from puck_tables.fitting.certainty import certainty_of
 from puck_tables.fitting.estimate import Estimate, estimate
 from puck_tables.fitting.free_motion import trimmed
 from puck_tables.fitting.held_out import HeldOut, predicted, split
+from puck_tables.fitting.impacts import cut, impacts_of
 from puck_tables.fitting.laws import LawScore, compare
 from puck_tables.fitting.numbers import numbers_of, plausible_for
 from puck_tables.fitting.outcome import Fit
@@ -49,6 +50,7 @@ def fit(
     noise: tuple[float | None, float | None] | None = None,
     since: float = -math.inf,
     until: float = math.inf,
+    impacts: bool = False,
     laws: Sequence[str] = (),
     hold_out: float | Sequence[str] | None = None,
     progress: Progress | None = None,
@@ -74,6 +76,8 @@ def fit(
     noise : (m, rad), standard deviations of places and angles
         None for either: that of the residuals.
     since, until : s, of the free motion, as the tracks count time
+    impacts : whether tracks may hold impacts with walls
+        They are cut there, and restitution and friction of the rim follow from both sides.
     laws : names of pressure laws to compare, as :class:`Puck` takes them; with '+drag' of those
         with drag
     hold_out : share of the moving frames at the end of each track, or names of tracks
@@ -121,6 +125,8 @@ def fit(
         value if value is not None else _positive(one, films)
         for value, one in zip(given, judged, strict=True)
     )
+    if impacts:
+        films = cut(films, begin[0])
     steps = 1 + len(laws) + (hold_out is not None)
     say = progress or (lambda done, total: None)
     problem = Problem(asked, films, (begin[0], begin[1]))
@@ -164,6 +170,7 @@ def fit(
         blind=blind_spots(found, certainty, lost),
         laws=scores,
         held_out=held,
+        impacts=impacts_of(found, certainty) if impacts else (),
         estimate=found,
         certainty=certainty,
     )

@@ -18,6 +18,7 @@ from puck_tables.errors import InputError
 from puck_tables.fitting.certainty import Certainty, profile_point
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.held_out import HeldOut
+from puck_tables.fitting.impacts import Impact
 from puck_tables.fitting.laws import LawScore
 from puck_tables.fitting.numbers import FoundLaunch, Number
 from puck_tables.io.dataset import Dataset, Variable, variable
@@ -44,7 +45,8 @@ class Fit(Result):
     ``left_out``: frames at the start and at the end of each track that are no free motion;
     ``runs``, ``drift``: probabilities of residuals so patterned by chance; ``blind``: a sentence
     for each thing that the tracks do not tell; ``laws``: :class:`LawScore` of those compared, best
-    first; ``held_out``: how well frames that were held out are predicted.
+    first; ``held_out``: how well frames that were held out are predicted;
+    ``impacts``: :class:`Impact` of those looked for.
     """
 
     given: Puck
@@ -62,6 +64,7 @@ class Fit(Result):
     blind: tuple[str, ...]
     laws: tuple[LawScore, ...]
     held_out: HeldOut | None
+    impacts: tuple[Impact, ...]
     estimate: Estimate = field(repr=False)
     certainty: Certainty = field(repr=False)
 
@@ -202,6 +205,13 @@ class Fit(Result):
             "not_determined": list(self.blind), "complaints": list(self.complaints),
             "laws": [one._asdict() for one in self.laws],
             "held_out": None,
+            "impacts": [
+                {
+                    **one._asdict(), "place": list(one.place),
+                    "restitution": _told(one.restitution), "rim": _told(one.rim),
+                }
+                for one in self.impacts
+            ],
         }  # fmt: skip
         if self.held_out is not None:
             summary["held_out"] = {
