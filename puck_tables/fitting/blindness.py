@@ -12,7 +12,7 @@ from puck_tables.fitting.certainty import Certainty, certainty_of
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.numbers import plausible_for
 from puck_tables.fitting.parameters import ALL
-from puck_tables.fitting.problem import PRIOR, Problem
+from puck_tables.fitting.problem import PRIOR, Found, Problem
 from puck_tables.fitting.seen import Seen
 
 _MEMBER = 0.2
@@ -25,16 +25,25 @@ _ALIKE = "the tracks look alike whatever it is"
 _SCALES = {"friction", "gravity", "height", "radius", "decel"}
 
 
-def blind_spots(found: Estimate, certainty: Certainty, lost: tuple[str, ...]) -> tuple[str, ...]:
+def blind_spots(
+    found: Estimate, certainty: Certainty, lost: tuple[str, ...], rivals: tuple[Found, ...] = ()
+) -> tuple[str, ...]:
     """A sentence for each direction that the tracks do not see.
 
-    ``lost``: numbers of the puck that are not determined, by whatever.
+    ``lost``: numbers of the puck that are not determined, by whatever; ``rivals``: its numbers in
+    other motions that fit as well.
     """
     sentences = []
+    for rival in rivals:
+        words = ", ".join(f"{name} {value:.4g}" for name, value in rival.items())
+        sentences.append(
+            f"Another motion, of another spin, fits as well: {words}. What would tell: angle marks "
+            "on the puck, or its launch spin, if it is known (launch_spin)."
+        )
     seen: set[frozenset[int]] = set()
     covered = {found.problem.names[k][1] for k in np.flatnonzero(certainty.undetermined)}
     for name in lost:
-        if name not in covered:
+        if name not in covered and not (rivals and name != "delta"):
             remedy = _remedy(found, [name], [(-1, name)])
             sentences.append(f"{name} is not determined: {_ALIKE}. {remedy}")
     for direction in certainty.blind:

@@ -26,6 +26,7 @@ from puck_tables.fitting.outcome import Fit
 from puck_tables.fitting.parameters import Asked
 from puck_tables.fitting.problem import Problem
 from puck_tables.fitting.residual_tests import drift, runs
+from puck_tables.fitting.rivals import rivals_of
 from puck_tables.fitting.seen import Seen, noise_of, rests_from, seen_in, turning_of
 from puck_tables.fitting.starts import start_of
 from puck_tables.puck import Puck
@@ -133,19 +134,17 @@ def fit(
     found = fitted(problem, known, refit=True)
     say(1, steps)
     certainty = certainty_of(found.jacobian[found.kept], plausible_for(found.problem, found.x))
-    numbers, launches = numbers_of(found, certainty)
+    rivals = rivals_of(found, certainty)
+    numbers, launches = numbers_of(found, certainty, rivals)
     lost = tuple(n for n in asked.free if not numbers[n].determined)
     scores: tuple[LawScore, ...] = ()
     if laws:
-        at_start = found.problem.films
 
         def of_law(
             one: Asked, noise: tuple[float, float], fixed_noise: tuple[bool, bool]
         ) -> Estimate:
-            problem = Problem(one, at_start, noise)
-            begin = {**dict.fromkeys(one.free, 0.0), **one.known(), **found.problem.found(found.x)}
-            x = problem.unknowns(begin, found.problem.launches(found.x))
-            return _lifted(estimate(problem, x, fixed_noise), fixed_noise)
+            # frames that another law leaves out at the ends may be those that tell
+            return fitted(Problem(one, films, noise), fixed_noise, refit=False)
 
         if isinstance(laws, str):
             raise InputError(f"laws must be a list of names, got the text '{laws}'")
@@ -167,7 +166,7 @@ def fit(
         runs=runs(found),
         drift=drift(found),
         left_out=_left_out(films, found.problem.films),
-        blind=blind_spots(found, certainty, lost),
+        blind=blind_spots(found, certainty, lost, rivals),
         laws=scores,
         held_out=held,
         impacts=impacts_of(found, certainty) if impacts else (),

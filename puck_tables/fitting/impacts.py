@@ -1,6 +1,7 @@
 """Tracks that hold impacts with walls: cut where they bend, and what the bends say of the walls.
 
-A track is cut between two frames where its velocity jumps by far more than it changes nearby.  The pieces are fitted together, as slides of one puck with launches of their own.  From the
+A track is cut between two frames where its velocity jumps by far more than it changes nearby.  The
+pieces are fitted together, as slides of one puck with launches of their own.  From the
 state before an impact and the one after follow, per unit of mass,
 
     P_t = −(k²/R) Δω ,   P_n = √(|Δv|² − P_t²) ,   e = P_n/u_n − 1 ,
@@ -24,9 +25,11 @@ from puck_tables.fitting.launched import path_of
 from puck_tables.fitting.numbers import FOLLOWS, Number
 from puck_tables.fitting.problem import Problem
 from puck_tables.fitting.seen import FEWEST, Seen
+from puck_tables.fitting.starts import robust_parabola
 
-_WINDOW = 5  # frames to either side
-_USUAL, _NOISY, _LEAST = 6.0, 8.0, 0.15  # times the usual jump, the noise of one, the speed
+_WINDOW, _WIDER = 5, 15  # frames to either side
+_USUAL, _NOISY, _LEAST = 6.0, 6.0, 0.15  # times the usual jump, the noise of one, the speed
+_TOP = 0.95  # of the largest jump around: in the middle of these is the kink
 _STEP = 1e-5
 _INSTANT = 1e-4  # s, over which velocities are differences
 
@@ -51,11 +54,11 @@ def kinks(film: Seen, noise: float) -> list[int]:
 
     Examples
     --------
-    >>> t = np.arange(40.0) / 100.0
-    >>> x = np.where(t < 0.2, t, 0.4 - t)
+    >>> t = np.arange(80.0) / 100.0
+    >>> x = np.where(t < 0.395, t, 0.79 - t)
     >>> place = np.stack([x, 0.0 * x], axis=1)
-    >>> kinks(Seen("a", 0.0, t, place, None, np.arange(40)), 1e-5)
-    [19]
+    >>> kinks(Seen("a", 0.0, t, place, None, np.arange(80)), 1e-5)
+    [39]
     """
     count = film.time.size
     places = range(_WINDOW - 1, count - _WINDOW)
@@ -70,9 +73,29 @@ def kinks(film: Seen, noise: float) -> list[int]:
     found = []
     for n, size in enumerate(jump.tolist()):
         near = jump[max(0, n - _WINDOW) : n + _WINDOW + 1]
-        if size > max(high, _LEAST * float(speed[n])) and size == near.max():
+        top = max(0, n - _WINDOW) + np.flatnonzero(near > _TOP * near.max())
+        highest = n == int(top[top.size // 2])
+        if highest and size > max(high, _LEAST * float(speed[n])):
             found.append(n + _WINDOW - 1)
-    return found
+    ends = [-1, *found, count - 1]
+    return [
+        ends[k] for k in range(1, len(ends) - 1)
+        if _jumps(film, noise, ends[k - 1] + 1, ends[k] + 1, ends[k + 1] + 1)
+    ]  # fmt: skip
+
+
+def _jumps(film: Seen, noise: float, start: int, middle: int, stop: int) -> bool:
+    """Whether robust parabolas over more frames tell a jump, too: several outliers are none."""
+    start, stop = max(start, middle - _WIDER), min(stop, middle + _WIDER)
+    if min(middle - start, stop - middle) < FEWEST:
+        return True
+    before = robust_parabola(film.time, film.place, start, middle)
+    after = robust_parabola(film.time, film.place, middle, stop)
+    at = 0.5 * (film.time[middle - 1] + film.time[middle])
+    jump = math.hypot(*(after[1] - before[1] + 2.0 * at * (after[2] - before[2])))
+    span = min(middle - start, stop - middle)
+    error = noise * math.sqrt(2.0 * 192.0 / span**3) / film.usual_step
+    return jump > max(_NOISY * error, _LEAST * math.hypot(*(before[1] + 2.0 * at * before[2])))
 
 
 def _around(change: FloatArray) -> FloatArray:
@@ -89,9 +112,12 @@ def _around(change: FloatArray) -> FloatArray:
 
 
 def _velocity(film: Seen, start: int, stop: int) -> FloatArray:
+    """The median of the slopes between any two frames, which one outlier in five does not move."""
     time, place = film.time[start:stop], film.place[start:stop]
-    off = time - time.mean()
-    velocity: FloatArray = off @ place / (off @ off)
+    one, two = np.triu_indices(time.size, 1)
+    velocity: FloatArray = np.median(
+        (place[two] - place[one]) / (time[two] - time[one])[:, None], axis=0
+    )
     return velocity
 
 

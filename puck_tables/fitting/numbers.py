@@ -12,7 +12,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.certainty import Z95, Certainty, Interval, interval_of
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.parameters import ALL, LAUNCH, PUCK
-from puck_tables.fitting.problem import Problem
+from puck_tables.fitting.problem import Found, Problem
 
 _STEP = 1e-6
 # Scales are plausible within their own size, but not less than this
@@ -84,9 +84,13 @@ def plausible_for(problem: Problem, x: FloatArray) -> FloatArray:
 
 
 def numbers_of(
-    found: Estimate, certainty: Certainty
+    found: Estimate, certainty: Certainty, rivals: tuple[Found, ...] = ()
 ) -> tuple[dict[str, Number], tuple[FoundLaunch, ...]]:
-    """All numbers of the puck, and of each launch."""
+    """All numbers of the puck, and of each launch.
+
+    ``rivals``: the puck's numbers at other summits of the likelihood; what they differ in is not
+    determined.
+    """
     problem, x = found.problem, found.x
     asked, errors = problem.asked, certainty.errors
     values = problem.found(x)
@@ -96,11 +100,17 @@ def numbers_of(
         width = interval.high - interval.low
         if interval.profiled:  # the likelihood is no parabola: half of its width
             error = max(error, width / (2.0 * Z95))
+        low, high = interval.low, interval.high
+        others = [values[name], *(rival[name] for rival in rivals)]
+        if min(others) < low or max(others) > high:  # another summit lies outside
+            half = 0.5 * width
+            low, high = min(low, min(others) - half), max(high, max(others) + half)
+            error = math.inf
         least, largest = (float(limit[k]) for limit in problem.limits)
         if width >= _ALL * (largest - least):
             error = math.inf
         puck[name] = Number(
-            values[name], error, interval.low, interval.high, PUCK[name].unit, FREE,
+            values[name], error, low, high, PUCK[name].unit, FREE,
             interval.profiled,
         )  # fmt: skip
     everything = {**asked.known(), **values}

@@ -53,6 +53,12 @@ class _Guess:
 
 def start_of(problem: Problem) -> tuple[Found, FloatArray]:
     """The numbers of the puck and the launch (6,) of the one track of a problem."""
+    x = minima_of(problem)[0]
+    return problem.found(x), problem.launches(x)[0]
+
+
+def minima_of(problem: Problem) -> list[FloatArray]:
+    """The unknowns at the deepest minima of a problem of one track, the deepest first."""
     film, asked = problem.films[0], problem.asked
     moving = _moving_frames(film, problem.noise[0])
     place, velocity, slowing = _first_parabola(film, moving)
@@ -76,12 +82,11 @@ def start_of(problem: Problem) -> tuple[Found, FloatArray]:
         # without angles there are near minima, and all have to be seen
         if whole is not None and float(np.median(np.abs(pieces.residuals(x)))) < _AT_HOME:
             break
-    x = _deepest(problem, minima)
-    return problem.found(x), problem.launches(x)[0]
+    return _deepest(problem, minima)
 
 
-def _deepest(problem: Problem, minima: list[tuple[float, FloatArray]]) -> FloatArray:
-    """Of minima for some of the frames the one that is deepest for all."""
+def _deepest(problem: Problem, minima: list[tuple[float, FloatArray]]) -> list[FloatArray]:
+    """Of minima for some of the frames those that are deepest for all, in order."""
     minima.sort(key=lambda one: one[0])
     least, x = minima[0]
     rivals = [x]
@@ -90,8 +95,9 @@ def _deepest(problem: Problem, minima: list[tuple[float, FloatArray]]) -> FloatA
         if new and cost < least + _RIVAL and len(rivals) < _RIVALS:
             rivals.append(other)
     if len(rivals) == 1:
-        return x
-    return min((minimise(problem, one, LOOSE) for one in rivals), key=lambda one: one[1])[0]
+        return rivals
+    polished = [minimise(problem, one, LOOSE) for one in rivals]
+    return [one for one, _ in sorted(polished, key=lambda one: one[1])]
 
 
 def _moving_frames(film: Seen, spread: float) -> int:
@@ -101,8 +107,8 @@ def _moving_frames(film: Seen, spread: float) -> int:
 
 def _first_parabola(film: Seen, moving: int) -> tuple[FloatArray, FloatArray, float]:
     """Place and velocity at the start, and the deceleration along it over the whole run, m/s²."""
-    first = _parabola(film.time, film.place, 0, min(max(_FEW, int(_SHARE * moving)), moving))
-    last = _parabola(film.time, film.place, max(0, moving - max(_FEW, moving // 4)), moving)
+    first = robust_parabola(film.time, film.place, 0, min(max(_FEW, int(_SHARE * moving)), moving))
+    last = robust_parabola(film.time, film.place, max(0, moving - max(_FEW, moving // 4)), moving)
     span = float(film.time[moving - 1])
     end = last[1] + 2.0 * last[2] * span
     speed = math.hypot(*first[1])
@@ -110,7 +116,7 @@ def _first_parabola(film: Seen, moving: int) -> tuple[FloatArray, FloatArray, fl
     return first[0], first[1], max(slowing, 0.02 * speed / max(span, 1e-300), 1e-9)
 
 
-def _parabola(time: FloatArray, place: FloatArray, start: int, stop: int) -> FloatArray:
+def robust_parabola(time: FloatArray, place: FloatArray, start: int, stop: int) -> FloatArray:
     """Coefficients (3, 2) of a parabola through frames, outliers weighing little."""
     t, p = time[start:stop], place[start:stop]
     powers = np.stack([np.ones(t.size), t, t * t], axis=1)[:, : min(3, max(1, t.size - 1))]
