@@ -73,7 +73,7 @@ def kinks(film: Seen, noise: float) -> list[int]:
     found = []
     for n, size in enumerate(jump.tolist()):
         near = jump[max(0, n - _WINDOW) : n + _WINDOW + 1]
-        top = max(0, n - _WINDOW) + np.flatnonzero(near > _TOP * near.max())
+        top = max(0, n - _WINDOW) + np.flatnonzero(near >= _TOP * near.max())
         highest = n == int(top[top.size // 2])
         if highest and size > max(high, _LEAST * float(speed[n])):
             found.append(n + _WINDOW - 1)

@@ -126,7 +126,7 @@ def robust_parabola(time: FloatArray, place: FloatArray, start: int, stop: int) 
         root = np.sqrt(weights)[:, None]
         coefficients = np.linalg.lstsq(powers * root, p * root, rcond=None)[0]
         off = np.hypot(*(p - powers @ coefficients).T)
-        spread = np.median(off) + 1e-300
+        spread = max(float(np.median(off)), 1e-9 * float(np.abs(p).max()), 1e-150)
         weights = 1.0 / (1.0 + (off / (2.0 * spread)) ** 2) ** 2
     found[: len(coefficients)] = coefficients
     return found
