@@ -18,6 +18,7 @@ import click
 from puck_tables.cli.aim import aim
 from puck_tables.cli.asperity import asperity
 from puck_tables.cli.build_tables import build_tables
+from puck_tables.cli.fit import fit
 from puck_tables.cli.info import info
 from puck_tables.cli.options import printable, said_first
 from puck_tables.cli.paper import paper
@@ -140,7 +141,7 @@ def main() -> None:
 
 
 _ALL = (
-    simulate, sweep, aim, scene, track, build_tables, validate, info, tables, paper, tradeoff,
+    simulate, sweep, aim, scene, track, fit, build_tables, validate, info, tables, paper, tradeoff,
     asperity,
 )  # fmt: skip
 for _command in _ALL:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
+from click.core import ParameterSource
 from puck_tables.cli.options import (
     FILE,
     NUMBER,
@@ -32,10 +33,24 @@ from puck_tables.accuracy.methods import INTEGRATORS
 from puck_tables.errors import InputError
 
 if TYPE_CHECKING:
+    from puck_tables.puck import Puck
     from puck_tables.trajectory import Trajectory
+
+_LAUNCHED = (
+    "v0", "w0", "radius", "height", "friction", "gravity", "mass", "decel", "delta", "pressure",
+    "gyration",
+)  # fmt: skip
 
 
 @click.command()
+@click.option(
+    "--fit",
+    "fit_path",
+    type=FILE,
+    metavar="FILE",
+    help="The puck and the launch that 'puck fit -o FILE.json' found.",
+)
+@click.option("--track", help="Which track of --fit, by its name or number from 1.")
 @click.option("--v0", type=Vector(), help="Launch velocity in m/s, like 1,0.")
 @click.option("--w0", type=NUMBER, default=0.0, show_default=True, help="Launch spin in rad/s.")
 @puck_options(mass=True)
@@ -77,8 +92,8 @@ if TYPE_CHECKING:
 @scene_options
 @click.pass_context
 def simulate(
-    ctx: click.Context, v0: tuple[float, float] | None, w0: float, radius: float | None,
-    height: float | None,
+    ctx: click.Context, fit_path: Path | None, track: str | None,
+    v0: tuple[float, float] | None, w0: float, radius: float | None, height: float | None,
     friction: float | None, gravity: float | None, mass: float | None, decel: float | None,
     delta: float | None, pressure: str, gyration: float | None, frames: int | None,
     times: tuple[float, ...] | None, tol: float,
@@ -96,6 +111,7 @@ def simulate(
     puck simulate --scene carrom-break --movie carrom.html
     puck simulate --v0 1,0 --w0 5 --delta 2
     puck simulate --v0 1,0 --w0 5 --pressure annulus:0.8 --gyration 0.9
+    puck simulate --fit fit.json --track 1
     """  # noqa: D301 - click reads the backspace
     if scene is not None or changes:
         tables = scene_tables(ctx, scene, changes)
@@ -104,18 +120,25 @@ def simulate(
         )
         run_scene(tables, scene or "scene", times, explain, as_json, output, plot, movie, overwrite)
         return
-    if v0 is None:
-        raise click.MissingParameter(param_hint="'--v0'", param_type="option")
+    if track is not None and fit_path is None:
+        raise InputError("--track chooses a track of --fit: give that, too")
     if exact and table_path is not None:
         raise InputError("--exact and --table clash: closed forms need no table")
     prepare_outputs(
-        output, plot=plot, movie=movie, overwrite=overwrite, inputs=(table_path, pressure)
-    )
-    puck = puck_given(radius, height, friction, gravity, delta, decel, pressure, gyration, mass)
+        output, plot=plot, movie=movie, overwrite=overwrite,
+        inputs=(table_path, pressure, fit_path),
+    )  # fmt: skip
+    if fit_path is not None:
+        puck, velocity, w0 = _fitted(ctx, fit_path, track)
+    elif v0 is not None:
+        puck = puck_given(radius, height, friction, gravity, delta, decel, pressure, gyration, mass)
+        velocity = v0
+    else:
+        raise click.MissingParameter(param_hint="'--v0'", param_type="option")
     if output is None and plot is None and times is None and frames is None:
         frames = 1  # a report needs no states
     run = puck.simulate(
-        v0, w0, frames=frames, times=times, tol=tol, method=method, exact=exact,
+        velocity, w0, frames=frames, times=times, tol=tol, method=method, exact=exact,
         table=None if table_path is None else open_table(table_path),
     )  # fmt: skip
     deliver(run, output, plot, overwrite)
@@ -125,9 +148,30 @@ def simulate(
     if as_json:
         click.echo(json.dumps(run.summary(), allow_nan=False))
     else:
-        given = any(x is not None for x in (radius, height, friction, delta, decel, gyration))
+        given = fit_path is not None or any(
+            x is not None for x in (radius, height, friction, delta, decel, gyration)
+        )
         note = "" if given else "   (defaults: see --help for a real puck)"
         click.echo(printable(report(run, note)))
+
+
+def _fitted(
+    ctx: click.Context, path: Path, track: str | None
+) -> tuple[Puck, tuple[float, float], float]:
+    """The puck and the launch of a fit, which no option contradicts.
+
+    Raises
+    ------
+    InputError
+    """
+    for name in _LAUNCHED:
+        if ctx.get_parameter_source(name) is ParameterSource.COMMANDLINE:
+            raise InputError(
+                f"--fit and --{name} clash: the file of the fit has the puck and its launch"
+            )
+    from puck_tables.fitting.saved import puck_and_launch
+
+    return puck_and_launch(path, track)
 
 
 def report(run: Trajectory, note: str) -> str:

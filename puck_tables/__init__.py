@@ -33,6 +33,9 @@ if TYPE_CHECKING:
     )
     from puck_tables.film.reading import read_tracks
     from puck_tables.film.track import Track
+    from puck_tables.fitting.fit import fit
+    from puck_tables.fitting.forecast import Camera, Forecast, fisher
+    from puck_tables.fitting.outcome import Fit
     from puck_tables.kernels.closed_form import resultants
     from puck_tables.puck import Puck
     from puck_tables.result import Result
@@ -69,13 +72,16 @@ _HOMES = {
     "Aim": "stopping.aim",
     "Arc": "scene.pieces",
     "BoardAim": "world.aimed",
+    "Camera": "fitting.forecast",
     "CheckReport": "table.check",
     "Constraint": "scene.parts",
     "ContactError": "errors",
     "Drag": "scene.parts",
     "Edge": "scene.parts",
+    "Fit": "fitting.outcome",
     "Floor": "scene.parts",
     "Force": "scene.parts",
+    "Forecast": "fitting.forecast",
     "InputError": "errors",
     "Launch": "scene.parts",
     "Law": "contact.laws",
@@ -108,6 +114,8 @@ _HOMES = {
     "World": "world.world",
     "chetaev": "",
     "contact": "",
+    "fisher": "fitting.forecast",
+    "fit": "fitting.fit",
     "law_of": "contact.laws",
     "motion": "",
     "path_along": "scene.driven",
@@ -124,13 +132,16 @@ __all__ = [
     "Aim",
     "Arc",
     "BoardAim",
+    "Camera",
     "CheckReport",
     "Constraint",
     "ContactError",
     "Drag",
     "Edge",
+    "Fit",
     "Floor",
     "Force",
+    "Forecast",
     "InputError",
     "Launch",
     "Law",
@@ -164,6 +175,8 @@ __all__ = [
     "__version__",
     "chetaev",
     "contact",
+    "fisher",
+    "fit",
     "law_of",
     "motion",
     "path_along",

@@ -28,16 +28,17 @@ ROOMS = {
     "stopping": "_core accuracy contact errors io kernels motion puck result table",
     "trajectory": "_core accuracy errors io motion puck result stopping table",
     "film": "_core errors io",
-    "fit": "_core accuracy contact errors film io kernels motion puck result stopping table",
+    "fitting": "_core _version accuracy contact errors film io kernels motion puck result "
+    "stopping table",
     "autodiff": "errors stopping",
     "scene": "_core contact errors io kernels motion puck result stopping table",
     "world": "_core contact errors io kernels motion puck result scene stopping table",
     "tradeoff": "_core _version accuracy contact io kernels motion result stopping table",
-    "plot": "_core accuracy chetaev errors film fit io motion result scene stopping tradeoff "
+    "plot": "_core accuracy chetaev errors film fitting io motion result scene stopping tradeoff "
     "trajectory world",
     "paper": "_core contact motion plot puck trajectory",
-    "cli": "_core _version accuracy chetaev contact errors film fit io kernels motion paper plot "
-    "puck scene stopping table tradeoff world",
+    "cli": "_core _version accuracy chetaev contact errors film fitting io kernels motion paper "
+    "plot puck scene stopping table tradeoff world",
     "__init__": "_core _version",
 }
 DOORS = {
@@ -48,7 +49,7 @@ DOORS = {
     "pandas": {"io.frames"},
     "pyarrow": {"io.parquet"},
     "matplotlib": {"plot"},
-    "scipy": {"chetaev", "stopping", "table.speed_fit", "tradeoff"},
+    "scipy": {"chetaev", "fitting", "stopping", "table.speed_fit", "tradeoff"},
     "click": {"cli"},
     "jax": {"autodiff.jax"},
     "torch": {"autodiff.torch"},

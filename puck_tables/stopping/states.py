@@ -104,9 +104,9 @@ class States(Differentiated, Result):
 
     def _again(self, arguments: FloatArray) -> FloatArray:
         table, launches = self._table or StopTable.shipped(), arguments[: len(LAUNCH_NAMES)]
-        pucks = np.concatenate([launches, table.known(launches)]).T.copy()
+        pucks = known_pucks(table, launches)
         which = np.arange(arguments.shape[1])
-        rows = _looked_up(table, pucks, which, np.ascontiguousarray(arguments[len(LAUNCH_NAMES)]))
+        rows = looked_up(table, pucks, which, np.ascontiguousarray(arguments[len(LAUNCH_NAMES)]))
         turned = rows[HEADING] + np.arctan2(launches[1], launches[0])
         speed = rows[SPEED]
         return np.stack([
@@ -240,18 +240,17 @@ def states(
     shape = which.shape
     flat_which = np.ascontiguousarray(which, np.int64).reshape(-1)
     flat_moments = np.ascontiguousarray(moments).reshape(-1)
-    known = np.concatenate([launches[:, plain], chosen.known(launches[:, plain])])
-    pucks = known.T.copy()
+    pucks = known_pucks(chosen, launches[:, plain])
     slopes = None
     if jacobian:
         found, slopes = state_jacobians(chosen, pucks, flat_which, flat_moments)
     elif not bodies:
-        found = _looked_up(chosen, pucks, flat_which, flat_moments)
+        found = looked_up(chosen, pucks, flat_which, flat_moments)
     else:
         found = np.empty((STATE_ROWS, flat_which.size))
         looked = plain[flat_which]
         number = np.cumsum(plain) - 1  # of a plain puck among such
-        found[:, looked] = _looked_up(
+        found[:, looked] = looked_up(
             chosen, pucks, number[flat_which[looked]], flat_moments[looked]
         )
         _integrate(bodies, launches, np.flatnonzero(~plain), flat_which, flat_moments, found)
@@ -277,7 +276,12 @@ def _bodies(pressure: str | Law, gyration: float, delta: FloatArray) -> dict[flo
     return {height: body_of(law, height, gyration) for height in heights.tolist()}
 
 
-def _looked_up(
+def known_pucks(table: StopTable, launches: FloatArray) -> FloatArray:
+    """Launches (6, m) of plain pucks beside what the table knows of them, (m, 20)."""
+    return np.concatenate([launches, table.known(launches)]).T.copy()
+
+
+def looked_up(
     table: StopTable, pucks: FloatArray, which: npt.NDArray[np.int64], moments: FloatArray
 ) -> FloatArray:
     """States (6, n) of plain ``pucks`` (m, 20), ``which`` (n,) at ``moments`` (n,)."""

@@ -1,0 +1,357 @@
+"""``puck fit``: friction and tilt of a puck from tracks of it."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+from puck_tables.cli.options import (
+    FILE,
+    NUMBER,
+    body_options,
+    deliver,
+    explain_option,
+    explained,
+    output_options,
+    prepare_outputs,
+    printable,
+    progress,
+    told,
+)
+from puck_tables.cli.track_options import read_all, track_options
+
+from puck_tables.errors import InputError
+
+if TYPE_CHECKING:
+    from puck_tables.fitting.numbers import Number
+    from puck_tables.fitting.outcome import Fit
+
+
+@click.command()
+@click.argument("files", type=FILE, nargs=-1, required=True, metavar="TRACK...")
+@track_options
+@click.option("--radius", type=NUMBER, required=True, help="Radius r of the puck in m.")
+@click.option(
+    "--height", type=NUMBER, help="Height h in m, if known: the tilt then follows from f."
+)
+@click.option("--friction", type=NUMBER, help="Coulomb coefficient f, if known.")
+@click.option("--mass", type=NUMBER, help="Mass in kg (for energies of what is simulated later).")
+@click.option("--gravity", type=NUMBER, help="Gravity in m/s^2.  [default: 9.80665]")
+@body_options
+@click.option(
+    "--free",
+    metavar="NAMES",
+    help="What is found, with commas: friction, delta, height, decel, gyration, inner (of an "
+    "annulus), drag, radius, gravity.  [default: friction and delta, friction alone if --height is "
+    "given]",
+)
+@click.option("--fix", multiple=True, metavar="NAME=VALUE", help="Hold a number, also launch_spin.")
+@click.option(
+    "--prior", multiple=True, metavar="NAME=VALUE:SIGMA", help="What is known of a number besides."
+)
+@click.option("--bound", multiple=True, metavar="NAME=LOW:HIGH", help="Look for a number within.")
+@click.option("--start", multiple=True, metavar="NAME=VALUE", help="Begin there, too.")
+@click.option(
+    "--noise",
+    metavar="PLACE[,ANGLE]",
+    help="Standard deviation of places in m and angles in rad.  [default: that of the residuals]",
+)
+@click.option("--since", type=NUMBER, help="Start of the free motion, in s of the track.")
+@click.option("--until", type=NUMBER, help="End of the free motion, in s of the track.")
+@click.option(
+    "--impacts",
+    is_flag=True,
+    help="The tracks may hold impacts with walls: cut them there, and tell restitution and "
+    "friction of the rim.",
+)
+@click.option(
+    "--laws",
+    metavar="LAW,...",
+    help="Compare pressure laws; with +drag also a coefficient that changes with the slip speed: "
+    "uniform,hertz,annulus:0.8,uniform+drag.",
+)
+@click.option(
+    "--hold-out",
+    metavar="SHARE|NAMES",
+    help="Predict this last share of each track, or the later half of the tracks named, from the "
+    "rest.",
+)
+@explain_option
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
+@click.option(
+    "-o",
+    "--output",
+    type=FILE,
+    metavar="FILE",
+    help="Save: .json (for simulate --fit), .h5, .csv, .jsonl or .parquet (frames and residuals).",
+)
+@output_options
+def fit(
+    files: tuple[Path, ...], how: dict[str, Any], radius: float, height: float | None,
+    friction: float | None, mass: float | None, gravity: float | None, pressure: str,
+    gyration: float | None, free: str | None, fix: tuple[str, ...], prior: tuple[str, ...],
+    bound: tuple[str, ...], start: tuple[str, ...], noise: str | None, since: float | None,
+    until: float | None, impacts: bool, laws: str | None, hold_out: str | None, explain: bool,
+    as_json: bool, output: Path | None, plot: Path | None, overwrite: bool,
+) -> None:  # fmt: skip
+    """Find friction, tilt and launches of a sliding puck from tracks of it.
+
+    A track is what a film tells of one puck: times, places and, better, angles of a mark on it.
+    What the tracks cannot tell is said, with what would tell it.
+
+    \b
+    puck fit run.csv --radius 0.0381
+    puck fit run.csv --fps 120 --unit px --scale 0.5mm --radius 0.0381 --height 0.0254
+    puck fit one.csv two.csv --radius 0.0381 --laws uniform,hertz,ring --plot fit.png
+    puck fit run.csv --radius 0.0381 --prior friction=0.2:0.05 --hold-out 0.3 -o fit.json
+    puck simulate --fit fit.json
+    """  # noqa: D301 - click reads the backspace
+    is_json = output is not None and output.suffix.lower() == ".json"
+    prepare_outputs(
+        *(() if is_json else (output,)), others=(output,) if is_json else (), plot=plot,
+        overwrite=overwrite, inputs=[*files, how["marks"], pressure],
+    )  # fmt: skip
+    from puck_tables.fitting.fit import fit as find
+    from puck_tables.puck import Puck
+
+    given = {
+        "height": height, "friction": friction, "gravity": gravity, "gyration": gyration,
+        "mass": mass,
+    }  # fmt: skip
+    puck = Puck(
+        radius=radius, pressure=pressure, **{n: v for n, v in given.items() if v is not None}
+    )
+    fixed = {n: _number(v, "--fix", n) for n, v in _named(fix, "--fix").items()}
+    wanted = None if free is None else [name.strip() for name in free.split(",")]
+    for name, value in (("friction", friction), ("height", height)):
+        if value is not None:
+            if wanted is not None and name in wanted:
+                raise InputError(
+                    f"--{name} {value:g} says that {name} is known, --free {name} that it is not: "
+                    f"leave out one; --start {name}={value:g} begins there"
+                )
+            if name in fixed:
+                raise InputError(f"--{name} and --fix {name} say the same: leave out one of them")
+            if not (name == "height" and wanted is not None and "delta" in wanted):
+                fixed[name] = value
+    tracks = read_all(files, how)
+    with progress("fitting") as show:
+        found = find(
+            tracks, puck, free=wanted, fixed=fixed,
+            prior=_pairs(prior, "--prior", "VALUE:SIGMA"),
+            bounds=_pairs(bound, "--bound", "LOW:HIGH"),
+            start={n: _number(v, "--start", n) for n, v in _named(start, "--start").items()},
+            noise=_noise(noise), since=-math.inf if since is None else since,
+            until=math.inf if until is None else until,
+            impacts=impacts,
+            laws=() if laws is None else [name.strip() for name in laws.split(",")],
+            hold_out=_held(hold_out), progress=show,
+        )  # fmt: skip
+    if is_json and output is not None:
+        found.save(output, overwrite)
+        told(output)
+    deliver(found, None if is_json else output, plot, overwrite)
+    if explain:
+        explained(found)
+    if as_json:
+        click.echo(json.dumps(found.summary(), allow_nan=False))
+    else:
+        click.echo(printable(report(found)))
+
+
+def report(found: Fit) -> str:
+    """What was found, plainly first, then the numbers."""
+    lines = [_plainly(found), ""]
+    for name, number in found.numbers.items():
+        if number.how != "known":
+            lines.append(f"{name:<15} {_shown(number)}")
+    known = [
+        f"{name} {number.value:g}{_unit(number)}" for name, number in found.numbers.items()
+        if number.how == "known"
+    ]  # fmt: skip
+    lines += [
+        f"{'taken as known':<15} {', '.join(known)}",
+        f"{'pressure':<15} {found.puck.body.law.name}",
+    ]
+    lines += [f"{'correlation':<15} {text}" for text in _correlations(found)]
+    for launch in found.launches:
+        v, w = launch.numbers, launch.numbers["launch_spin"]
+        lines += [
+            f"\nlaunch of {launch.name}, at {launch.time:g} s",
+            f"{'  place':<15} ({launch.place[0]:.6g}, {launch.place[1]:.6g}) m "
+            f"+- {v['launch_x'].error:.2g}, {v['launch_y'].error:.2g}",
+            f"{'  velocity':<15} ({launch.velocity[0]:.6g}, {launch.velocity[1]:.6g}) m/s "
+            f"+- {v['launch_vx'].error:.2g}, {v['launch_vy'].error:.2g}",
+            f"{'  spin':<15} {_shown(w)}",
+        ]
+    for one in found.impacts:
+        degrees = math.degrees(one.wall) % 360.0
+        lines += [
+            f"\nimpact of {one.track} at {one.time:.6g} s, ({one.place[0]:.5g}, "
+            f"{one.place[1]:.5g}) m, on a wall at {degrees:.4g} degrees from x",
+            f"{'  restitution':<15} {_shown(one.restitution)}",
+            f"{'  rim':<15} {_shown(one.rim)} (tangential over normal impulse)",
+        ]
+    angled = any(film.angle is not None for film in found.estimate.problem.films)
+    how = ["given" if known else "from the residuals" for known in found.noise_known]
+    noise = f"places {1e3 * found.noise[0]:.3g} mm ({how[0]})"
+    if angled:
+        noise += f", angles {1e3 * found.noise[1]:.3g} mrad ({how[1]})"
+    lines += [
+        "",
+        f"{'noise':<15} {noise}",
+        f"{'chi^2':<15} {found.chi2:.5g} for {found.degrees} degrees of freedom",
+        f"{'left out':<15} {100.0 * found.outliers:.3g} % of the observations, as outliers",
+        f"{'residuals':<15} probability of such a pattern by chance: runs {found.runs:.2g}, "
+        f"drift {found.drift:.2g}",
+    ]
+    if found.laws:
+        lines += ["", *_laws(found)]
+    if found.held_out is not None:
+        held = found.held_out
+        lines += [
+            "",
+            f"{'held out':<15} {held.z_place.size + held.z_angle.size} observations of "
+            f"{', '.join(held.tracks)}: {100.0 * held.inside:.3g} % within 95 % of their "
+            f"prediction, z rms {held.rms:.3g} (1 if all is right)",
+        ]
+    return "\n".join(lines)
+
+
+def _plainly(found: Fit) -> str:
+    """What was found and what was not, in sentences."""
+    sentences = []
+    friction, tilt = found.numbers["friction"], found.numbers["delta"]
+    if friction.determined:
+        sentences.append(
+            f"The friction coefficient is {_rounded(friction)}: sliding without spin the puck "
+            f"would lose {found['decel'].value:.4g} m/s each second."
+        )
+    elif found["decel"].determined:
+        sentences.append(f"The puck would slide to rest at {_rounded(found['decel'])} m/s^2.")
+    if tilt.determined and tilt.how != "known":
+        sentences.append(
+            f"Its dimensionless height is {_rounded(tilt)}: so much friction tips its load forward."
+        )
+    sentences += list(found.blind)
+    if found.complaints:
+        sentences += [f"{text}." for text in found.complaints]
+        sentences.append(
+            "So this may be no freely sliding puck, or not all of its motion: look at --plot, and "
+            "give --since and --until if a hand or a wall touches it."
+        )
+    return "\n".join(sentences)
+
+
+def _rounded(number: Number) -> str:
+    """Value ± error, to two digits of the error."""
+    if not (number.error > 0.0 and math.isfinite(number.error)):
+        return f"{number.value:.6g}"
+    digits = max(0, 1 - math.floor(math.log10(number.error)))
+    return f"{number.value:.{digits}f} +- {number.error:.{digits}f}"
+
+
+def _unit(number: Number) -> str:
+    return "" if number.unit == "1" else f" {number.unit}"
+
+
+def _shown(number: Number) -> str:
+    """A number with its error and interval."""
+    if number.how == "known":
+        return f"{number.value:g}{_unit(number)} (known)"
+    if not number.determined:
+        return "not determined by these tracks"
+    how = ", by profile likelihood" if number.profiled else ""
+    follows = ", follows" if number.how == "follows" else ""
+    low, high = f"{number.low:.6g}", f"{number.high:.6g}"
+    return f"{_rounded(number)}{_unit(number)}   95 %: {low} to {high}{how}{follows}"
+
+
+def _correlations(found: Fit) -> list[str]:
+    """Of each two numbers that were found."""
+    table = found.correlation()
+    names = list(table)
+    return [
+        f"{one} and {other}: {table[one][other]:.3f}"
+        for n, one in enumerate(names) for other in names[n + 1 :]
+        if math.isfinite(table[one][other])
+    ]  # fmt: skip
+
+
+def _laws(found: Fit) -> list[str]:
+    """The laws compared, line by line."""
+    best = found.laws[0]
+    lines = [f"{'law':<18} {'chi^2':>10} {'more':>9} {'unknowns':>9} {'weight':>8}  found"]
+    for law in found.laws:
+        numbers = ", ".join(f"{name} {value:.4g}" for name, value in law.numbers.items())
+        lines.append(
+            f"{law.name:<18} {law.chi2:>10.5g} {law.chi2 - best.chi2:>9.4g} {law.unknowns:>9} "
+            f"{law.weight:>8.2g}  {numbers}"
+        )
+    return lines
+
+
+def _named(given: tuple[str, ...], option: str) -> dict[str, str]:
+    """NAME=VALUE, several times.
+
+    Raises
+    ------
+    InputError
+    """
+    found: dict[str, str] = {}
+    for text in given:
+        name, equals, value = text.partition("=")
+        if not equals or not name.strip() or not value.strip():
+            raise InputError(f"{option} '{text}' must be NAME=VALUE, like friction=0.2")
+        if name.strip() in found:
+            raise InputError(f"{option} names {name.strip()} twice: give it once")
+        found[name.strip()] = value.strip()
+    return found
+
+
+def _number(text: str, option: str, name: str) -> float:
+    try:
+        number = float(text)
+    except ValueError:
+        number = math.nan
+    if not math.isfinite(number):
+        raise InputError(f"{option} {name}={text}: '{text}' is not a finite number")
+    return number
+
+
+def _pairs(given: tuple[str, ...], option: str, form: str) -> dict[str, tuple[float, float]]:
+    """NAME=NUMBER:NUMBER, several times.
+
+    Raises
+    ------
+    InputError
+    """
+    found = {}
+    for name, text in _named(given, option).items():
+        parts = text.split(":")
+        if len(parts) != 2:
+            raise InputError(f"{option} {name}={text} must be {name}={form}, like {name}=0.2:0.05")
+        found[name] = _number(parts[0], option, name), _number(parts[1], option, name)
+    return found
+
+
+def _noise(text: str | None) -> tuple[float, float | None] | None:
+    if text is None:
+        return None
+    parts = text.split(",")
+    if len(parts) > 2:
+        raise InputError(f"--noise {text} must be PLACE or PLACE,ANGLE, like 0.0003,0.005")
+    numbers = [_number(part, "--noise", "sigma") for part in parts]
+    return numbers[0], numbers[1] if len(numbers) == 2 else None
+
+
+def _held(text: str | None) -> float | tuple[str, ...] | None:
+    if text is None:
+        return None
+    try:
+        return float(text)
+    except ValueError:
+        return tuple(name.strip() for name in text.split(","))

@@ -1,0 +1,161 @@
+"""What tracks cannot tell, in words, and what would tell it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.fitting.certainty import Certainty, certainty_of
+from puck_tables.fitting.estimate import Estimate
+from puck_tables.fitting.numbers import plausible_for
+from puck_tables.fitting.parameters import ALL
+from puck_tables.fitting.problem import PRIOR, Found, Problem
+from puck_tables.fitting.seen import Seen
+
+_MEMBER = 0.2
+_TOLD = 0.1  # of what is plausible: an error that says something
+_BETTER = 0.2  # times the error of the film that there is
+_SPINNING = 1.0  # rω/v of a launch with more spin
+_LONGER = 2.5  # times as many frames: surely to rest
+_MARKS = 10.0  # mrad, of angle marks that are not there yet
+_ALIKE = "the tracks look alike whatever it is"
+_SCALES = {"friction", "gravity", "height", "radius", "decel"}
+
+
+def blind_spots(
+    found: Estimate, certainty: Certainty, lost: tuple[str, ...], rivals: tuple[Found, ...] = ()
+) -> tuple[str, ...]:
+    """A sentence for each direction that the tracks do not see.
+
+    ``lost``: numbers of the puck that are not determined, by whatever; ``rivals``: its numbers in
+    other motions that fit as well.
+    """
+    sentences = []
+    for rival in rivals:
+        words = ", ".join(f"{name} {value:.4g}" for name, value in rival.items())
+        sentences.append(
+            f"Another motion, of another spin, fits as well: {words}. What would tell: angle marks "
+            "on the puck, or its launch spin, if it is known (launch_spin)."
+        )
+    seen: set[frozenset[int]] = set()
+    covered = {found.problem.names[k][1] for k in np.flatnonzero(certainty.undetermined)}
+    for name in lost:
+        if name not in covered and not (rivals and name != "delta"):
+            remedy = _remedy(found, [name], [(-1, name)])
+            sentences.append(f"{name} is not determined: {_ALIKE}. {remedy}")
+    for direction in certainty.blind:
+        members = [int(k) for k in np.argsort(-np.abs(direction)) if abs(direction[k]) > _MEMBER]
+        if frozenset(members) in seen:
+            continue
+        names = [_name(found.problem, k) for k in members]
+        shared = [found.problem.names[k][1] for k in members if found.problem.names[k][0] < 0]
+        if len(names) == 1:
+            told = f"{names[0]} is not determined: {_ALIKE}"
+        else:
+            told = f"{' and '.join(names)} are not determined one by one: the tracks look alike " \
+                f"when {_together(found.problem, certainty, members)}"  # fmt: skip
+        remedy = _remedy(found, shared, [found.problem.names[k] for k in members])
+        sentences.append(f"{told}. {remedy}")
+        seen.add(frozenset(members))
+    return tuple(sentences)
+
+
+def _name(problem: Problem, k: int) -> str:
+    track, name = problem.names[k]
+    if track < 0:
+        return name
+    return f"{ALL[name].words} of {problem.films[track].name}"
+
+
+def _together(problem: Problem, certainty: Certainty, members: list[int]) -> str:
+    """How members of a direction change together."""
+    first, *others = members
+    direction = certainty.blind[
+        int(np.argmax(np.abs(certainty.blind[:, first]) + np.abs(certainty.blind[:, others[0]])))
+    ]
+    words = [f"{_name(problem, first)} rises"]
+    for k in others:
+        same = direction[k] * direction[first] > 0.0
+        words.append(f"{_name(problem, k)} {'rises' if same else 'falls'}")
+    return " and ".join(words) + " with it"
+
+
+def _remedy(found: Estimate, shared: list[str], members: list[tuple[int, str]]) -> str:
+    """What would tell, tried out on the film that it would give."""
+    if len(shared) > 1 and set(shared) <= _SCALES:
+        return f"Measure one of them otherwise and fix it or give a prior: {' or '.join(shared)}."
+    now = _errors(found.problem, found.x, members)
+    told: list[str] = []
+    for words, problem, x in _other_films(found):
+        others = _errors(problem, x, members)
+        enough = (others < _TOLD) & (others < _BETTER * now)
+        if enough.all() and not any(one in words for one in told):
+            told.append(words)
+    if told:
+        return f"What would tell: {', or '.join(told)}."
+    return "Fix it, or give it a prior."
+
+
+def _other_films(found: Estimate) -> list[tuple[str, Problem, FloatArray]]:
+    """Films that could have been made instead, each with its unknowns."""
+    problem, x = found.problem, found.x
+    values, launches = problem.found(x), problem.launches(x)
+    radius = problem.asked.scales(values)[2]
+    films = []
+    marked = problem
+    if any(film.angle is None for film in problem.films):
+        marked = replace(
+            problem, films=tuple(_marked(film) for film in problem.films),
+            noise=(problem.noise[0], min(problem.noise[1], 1e-3 * _MARKS)),
+        )  # fmt: skip
+        films.append(("angle marks on the puck", marked, marked.unknowns(values, launches)))
+    faster = launches.copy()
+    speed = np.hypot(faster[:, 2], faster[:, 3])
+    spin = np.maximum(np.abs(faster[:, 4]), _SPINNING * speed / radius)
+    faster[:, 4] = np.copysign(spin, faster[:, 4])
+    if not np.allclose(faster, launches) and "launch_spin" not in problem.asked.fixed:
+        moderate = _with_heights_inside(values)
+        least = float(spin.max())
+        films.append(
+            (f"more spin (some {least:.2g} rad/s)", problem, problem.unknowns(moderate, faster))
+        )
+        if marked is not problem:
+            films.append((
+                f"more spin (some {least:.2g} rad/s) and angle marks", marked,
+                marked.unknowns(moderate, faster),
+            ))  # fmt: skip
+    longer = replace(problem, films=tuple(_longer(film) for film in problem.films))
+    films.append(("a longer run, to the stop", longer, x))
+    return films
+
+
+def _with_heights_inside(values: dict[str, float]) -> dict[str, float]:
+    """δ at a bound says nothing of what could be seen."""
+    if "delta" in values:
+        return {**values, "delta": min(max(values["delta"], 0.05), 0.9)}
+    return values
+
+
+def _errors(problem: Problem, x: FloatArray, members: list[tuple[int, str]]) -> FloatArray:
+    """The errors of members, those of the puck if there are, in units of what is plausible."""
+    slopes, plausible = problem.jacobian(x), plausible_for(problem, x)
+    known = certainty_of(slopes[problem.kinds != PRIOR], plausible)
+    wanted = [key for key in members if key[0] < 0] or members
+    places = [problem.names.index(key) for key in wanted]
+    errors: FloatArray = (known.errors / plausible)[places]
+    return errors
+
+
+def _marked(film: Seen) -> Seen:
+    return replace(film, angle=np.zeros(film.time.size))
+
+
+def _longer(film: Seen) -> Seen:
+    count = math.ceil(_LONGER * film.time.size)
+    return Seen(
+        film.name, film.start, film.usual_step * np.arange(float(count)), np.zeros((count, 2)),
+        None if film.angle is None else np.zeros(count), np.arange(count),
+    )  # fmt: skip

@@ -1,0 +1,229 @@
+"""What a film would tell, before it is made: Cramér–Rao bounds of a puck, a launch, a camera."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import Any, ClassVar, Protocol
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables._core.real import instance, one_velocity, positive, real
+from puck_tables.errors import InputError
+from puck_tables.fitting.certainty import certainty_of
+from puck_tables.fitting.numbers import plausible_for
+from puck_tables.fitting.parameters import Asked
+from puck_tables.fitting.problem import Problem
+from puck_tables.fitting.seen import FEWEST, Seen
+from puck_tables.io.dataset import Dataset, variable
+from puck_tables.puck import Puck
+from puck_tables.result import Result
+
+MOST_FRAMES = 1_000_000
+
+
+class Launched(Protocol):
+    """A velocity (vx, vy) m/s and a spin rad/s, as :class:`puck_tables.Launch` has them."""
+
+    @property
+    def velocity(self) -> Any:
+        """(vx, vy), m/s."""
+
+    @property
+    def spin(self) -> Any:
+        """Rad/s."""
+
+
+@dataclass(frozen=True)
+class Camera:
+    """A film: frames a second, noise, and how long it lasts.
+
+    Parameters
+    ----------
+    fps : 1/s, > 0
+    place_noise : m, > 0, of each of x and y in a frame
+    angle_noise : rad, > 0, of the body in a frame; None without marks
+    duration : s, > 0, from the launch; None: to the stop
+
+    Raises
+    ------
+    InputError
+
+    Examples
+    --------
+    >>> Camera(120.0, 0.3e-3, 5e-3).duration is None
+    True
+    """
+
+    fps: float
+    place_noise: float
+    angle_noise: float | None = None
+    duration: float | None = None
+
+    def __post_init__(self) -> None:
+        for name, unit in (("fps", "1/s"), ("place_noise", "m"), ("angle_noise", "rad"),
+                           ("duration", "s")):  # fmt: skip
+            value = getattr(self, name)
+            if value is not None or name in ("fps", "place_noise"):
+                object.__setattr__(self, name, positive(name, value, unit))
+
+    def film(self, stop_time: float) -> Seen:
+        """Its frames of a motion that stops at a time.
+
+        Raises
+        ------
+        InputError
+            If they are too few or too many.
+        """
+        duration = stop_time if self.duration is None else self.duration
+        count = math.floor(duration * self.fps * (1.0 + 1e-12)) + 1
+        if not FEWEST <= count <= MOST_FRAMES:
+            raise InputError(
+                f"{duration:.4g} s at {self.fps:g} frames a second are {count} frames: a forecast "
+                f"takes {FEWEST} to {MOST_FRAMES}"
+            )
+        angle = None if self.angle_noise is None else np.zeros(count)
+        return Seen(
+            "film", 0.0, np.arange(count) / self.fps, np.zeros((count, 2)), angle, np.arange(count)
+        )
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Forecast(Result):
+    """What a film would tell.
+
+    ``names``, ``values``, ``errors``: of what would be found, the puck's numbers first, then those
+    of the launch; an error is infinite where the film does not determine the number.  ``frames``:
+    how many it has.
+    """
+
+    puck: Puck
+    velocity: tuple[float, float]
+    spin: float
+    camera: Camera
+    free: tuple[str, ...]
+    names: tuple[str, ...]
+    values: FloatArray
+    errors: FloatArray
+    frames: int
+    correlation: FloatArray = field(repr=False)
+
+    picture: ClassVar[str] = "forecast"
+
+    def __repr__(self) -> str:
+        told = ", ".join(f"{name} +- {self[name]:.2g}" for name in self.free)
+        return f"Forecast({told}; {self.frames} frames)"
+
+    def __getitem__(self, name: str) -> float:
+        """The standard error of a number by its name."""
+        if name not in self.names:
+            raise InputError(f"there is no '{name}': this forecast has {', '.join(self.names)}")
+        return float(self.errors[self.names.index(name)])
+
+    def explain(self) -> str:
+        """How it was got."""
+        return (
+            f"Cramér–Rao bounds: the inverse of the Fisher matrix of {len(self.names)} unknowns "
+            f"and {self.frames} frames, in the derivatives of the motion."
+        )
+
+    def over(self, speeds: FloatArray, spins: FloatArray, name: str) -> FloatArray:
+        """The error of a number for launches of other speeds (m,) and spins (n,), (m, n)."""
+        found = np.empty((speeds.size, spins.size))
+        for i, speed in enumerate(speeds.tolist()):
+            for k, spin in enumerate(spins.tolist()):
+                other = _Launch((speed, 0.0), spin)
+                try:
+                    found[i, k] = fisher(self.puck, other, self.camera, free=self.free)[name]
+                except InputError:  # a film of too few frames
+                    found[i, k] = np.inf
+        return found
+
+    def dataset(self) -> Dataset:
+        """One row a number."""
+        columns = {
+            "number_name": variable("number_name", list(self.names), ("number",)),
+            "number_value": variable("number_value", self.values, ("number",)),
+            "number_error": variable("number_error", self.errors, ("number",)),
+        }
+        attributes = {
+            "title": "What a film of a puck would tell", "frames": self.frames,
+            "fps": self.camera.fps, "launch_velocity": list(self.velocity),
+            "launch_spin": self.spin, **self.puck.described(),
+        }  # fmt: skip
+        return Dataset({}, columns, attributes)
+
+
+@dataclass(frozen=True)
+class _Launch:
+    velocity: tuple[float, float]
+    spin: float
+
+
+def fisher(
+    puck: Puck, launch: Launched, camera: Camera, *, free: Iterable[str] = ("friction", "delta")
+) -> Forecast:
+    """What a film of a launch would tell of a puck, before the experiment.
+
+    Parameters
+    ----------
+    puck : Puck
+    launch : :class:`puck_tables.Launch`, or anything with ``velocity`` (m/s) and ``spin`` (rad/s)
+    camera : Camera
+    free : names of what would be found of the puck, as :func:`fit` takes them
+
+    Returns
+    -------
+    Forecast
+        ``forecast["friction"]`` is the standard error of the best possible estimate, with the
+        launch unknown.  Its picture shows it over speed and spin.
+
+    Raises
+    ------
+    InputError
+
+    Notes
+    -----
+    Σ = (Jᵀ J)⁻¹ with J the derivatives of places and angles in all frames over their noise; for
+    Gaussian noise no unbiased estimate has a smaller covariance.
+
+    References
+    ----------
+    C. R. Rao 1945; H. Cramér 1946.
+
+    Examples
+    --------
+    >>> from puck_tables import Launch
+    >>> puck = Puck(radius=0.0381, height=0.0254, friction=0.15)
+    >>> film = fisher(puck, Launch((2.0, 0.0), spin=60.0), Camera(120.0, 0.3e-3, 5e-3))
+    >>> round(film["friction"] / puck.friction, 6), round(film["delta"], 4)
+    (6.9e-05, 0.0006)
+    """
+    instance("puck", puck, Puck)
+    instance("camera", camera, Camera)
+    velocity = one_velocity(getattr(launch, "velocity", None))  # type: ignore[arg-type]
+    spin = real("spin", getattr(launch, "spin", None), "rad/s")  # type: ignore[arg-type]
+    asked = Asked.of(puck, free, {}, {}, {}, {})
+    stop = puck.stop(velocity, spin)
+    film = camera.film(float(stop.stop_time))
+    noise = camera.place_noise, camera.angle_noise or 1.0
+    problem = Problem(asked, (film,), noise, tall=puck.delta > 1.0)
+    numbers = {**asked.known(), "decel": puck.decel, "delta": puck.delta}
+    found = {name: numbers[name] for name in asked.free}
+    x = problem.unknowns(found, np.array([[0.0, 0.0, *velocity, spin, 0.0]]))
+    slopes = problem.jacobian(x)
+    known = certainty_of(slopes, plausible_for(problem, x))
+    return Forecast(
+        puck=puck,
+        velocity=velocity,
+        spin=spin,
+        camera=camera,
+        free=asked.free,
+        names=tuple(name for _, name in problem.names),
+        values=x,
+        errors=known.errors,
+        frames=film.time.size,
+        correlation=known.correlation,
+    )

@@ -1,0 +1,105 @@
+"""Frames that were not fitted, predicted: what says most about a model."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.errors import InputError
+from puck_tables.fitting.certainty import Z95, Certainty
+from puck_tables.fitting.estimate import Estimate
+from puck_tables.fitting.problem import ANGLE, PLACE
+from puck_tables.fitting.seen import FEWEST, Seen, rests_from
+
+LEAST_SHARE, LARGEST_SHARE = 0.05, 0.9
+
+
+@dataclass(frozen=True, eq=False)
+class HeldOut:
+    """Predictions of frames that the fit did not see.
+
+    ``tracks``: whose later part it is; ``z_place`` (n,), ``z_angle`` (m,): what was seen less what
+    was predicted, over the standard deviation of noise and prediction together.
+    """
+
+    tracks: tuple[str, ...]
+    z_place: FloatArray
+    z_angle: FloatArray
+
+    @property
+    def inside(self) -> float:
+        """The share of observations within 95 % of their prediction."""
+        every = np.abs(np.concatenate([self.z_place, self.z_angle]))
+        return float(np.mean(every < Z95))
+
+    @property
+    def rms(self) -> float:
+        """The root mean square of z; 1 where the model and its errors are right.
+
+        An outlier counts as four.
+        """
+        every = np.clip(np.concatenate([self.z_place, self.z_angle]), -4.0, 4.0)
+        return float(np.sqrt(np.mean(every**2)))
+
+
+def split(
+    films: tuple[Seen, ...], hold_out: float | tuple[str, ...], spread: float
+) -> tuple[tuple[Seen, ...], tuple[npt.NDArray[np.bool_], ...]]:
+    """The tracks with what is fitted of them alone, and which frames of each are predicted.
+
+    Parameters
+    ----------
+    films : the tracks
+    hold_out : the last share of the moving frames of each, or names of tracks of which the later
+        half is
+    spread : noise of places, m
+
+    Raises
+    ------
+    InputError
+    """
+    if isinstance(hold_out, float):
+        if not LEAST_SHARE <= hold_out <= LARGEST_SHARE:
+            raise InputError(
+                f"hold_out must be a share of the frames from {LEAST_SHARE:g} to {LARGEST_SHARE:g},"
+                f" or names of tracks, got {hold_out:g}"
+            )
+        shares = [hold_out] * len(films)
+    else:
+        known = [film.name for film in films]
+        for name in hold_out:
+            if name not in known:
+                raise InputError(f"hold_out names '{name}': the tracks are {', '.join(known)}")
+        shares = [0.5 if film.name in hold_out else 0.0 for film in films]
+    kept, later = [], []
+    for film, share in zip(films, shares, strict=True):
+        moving = rests_from(film, spread)
+        count = film.time.size if share == 0.0 else round((1.0 - share) * moving)
+        if count < FEWEST + 2 and share > 0.0:
+            raise InputError(
+                f"{film.name} would keep {count} frames: hold out a smaller share, or other tracks"
+            )
+        after = np.arange(film.time.size) >= count
+        kept.append(film.part(~after))
+        later.append(after)
+    return tuple(kept), tuple(later)
+
+
+def predicted(
+    part: Estimate, certainty: Certainty, films: tuple[Seen, ...],
+    later: tuple[npt.NDArray[np.bool_], ...],
+) -> HeldOut:  # fmt: skip
+    """How far the frames held out are from their predictions."""
+    whole = replace(part.problem, films=films, whole=())
+    rows, slopes = whole.residuals(part.x), whole.jacobian(part.x)
+    spread = np.sqrt(1.0 + np.einsum("ik,kl,il->i", slopes, certainty.covariance, slopes))
+    z, chosen = -rows / spread, np.zeros(rows.size, bool)
+    for film, (x, y, turn), after in zip(films, whole.each(), later, strict=True):
+        chosen[x] = chosen[y] = after
+        if film.angle is not None:
+            chosen[turn] = after[np.isfinite(film.angle)]
+    names = tuple(film.name for film, after in zip(films, later, strict=True) if after.any())
+    return HeldOut(names, z[chosen & (whole.kinds == PLACE)], z[chosen & (whole.kinds == ANGLE)])

@@ -1,0 +1,135 @@
+"""Where a launched puck is at the moments of a film, and how that depends on what is to be found.
+
+With Q = hypot(v, rω), φ = atan2(rω, v) and the natural motion (X, Y, Θ)(t J/Q; φ, δ),
+
+    place = (Q²/J) Rot(ψ)(X, Y),   turn = Q²/(J r) Θ .
+
+So only the derivatives to φ and δ are differences of motions; those to Q, J, ψ and r follow from
+the similarity and from the velocity, which a look-up gives besides.
+
+Drag c, in 1/s, that brakes speed and spin alike, v′ = … − c v, ω′ = … − c ω, needs no motion of its
+own: v = e^(−ct) V(s), ω = e^(−ct) W(s) with s = (e^(ct) − 1)/c, where V and W are those without
+drag, since dry friction depends on their direction only.  So place = ∫ V ds/(1 + cs)², by parts
+
+    place = X(s)/(1 + cs)² + 2c ∫ X ds/(1 + cs)³ ,
+
+and so for every derivative of it.  For a homogeneous flat puck under uniform pressure this is the
+law f(u) = f + (c/g) u of a coefficient that rises (c > 0) or falls (c < 0) with the slip speed u.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.fitting.natural import Curve
+
+_ANGLE_STEP, _HEIGHT_STEP = 1e-5, 1e-3
+_SLOWEST = 1e-9  # of Q: a launch that only spins is taken to go that fast along its velocity
+_POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(4)
+
+# what places and turns are differentiated to
+VX, VY, SPIN, DECEL, DELTA, RADIUS = range(6)
+
+
+class Moving(NamedTuple):
+    """What moves a puck: the scale J m/s², δ, r m, drag c 1/s, and its curve."""
+
+    decel: float
+    delta: float
+    radius: float
+    drag: float
+    curve: Curve
+
+
+def path_of(moving: Moving, velocity: FloatArray, spin: float, times: FloatArray) -> FloatArray:
+    """Displacement x, y (m) and turn of the body (rad) at times (n,) s after a launch, (3, n).
+
+    Examples
+    --------
+    >>> from puck_tables.fitting.natural import curve_of
+    >>> plain = Moving(1.0, 0.5, 1.0, 0.0, curve_of("uniform", 0.5**0.5))
+    >>> path_of(plain, np.array([1.0, 0.0]), 5.0, np.array([2.0]))[0].round(6).tolist()
+    [1.590682]
+    """
+    return _path(moving, velocity, spin, times, False)[0]
+
+
+def path_with_slopes(
+    moving: Moving, velocity: FloatArray, spin: float, times: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """The same (3, n), and its derivatives (6, 3, n) to vx, vy, ω, J, δ and r."""
+    return _path(moving, velocity, spin, times, True)
+
+
+def _path(
+    moving: Moving, velocity: FloatArray, spin: float, times: FloatArray, slopes: bool
+) -> tuple[FloatArray, FloatArray]:
+    c = moving.drag
+    if c == 0.0:
+        return _dry(moving, velocity, spin, times, slopes)
+    s = np.expm1(c * times) / c
+    ends = np.concatenate([[0.0], s])
+    half, middle = 0.5 * np.diff(ends), 0.5 * (ends[1:] + ends[:-1])
+    inner = middle[:, None] + half[:, None] * _POINTS
+    path, slope = _dry(moving, velocity, spin, np.concatenate([s, inner.ravel()]), slopes)
+    weights = half[:, None] * _WEIGHTS / (1.0 + c * inner) ** 3
+
+    def dragged(rows: FloatArray) -> FloatArray:
+        at = rows[..., : s.size]
+        within = rows[..., s.size :].reshape(*rows.shape[:-1], s.size, _POINTS.size)
+        integral = np.cumsum((within * weights).sum(axis=-1), axis=-1)
+        found: FloatArray = at / (1.0 + c * s) ** 2 + 2.0 * c * integral
+        return found
+
+    return dragged(path), dragged(slope)
+
+
+def _dry(
+    moving: Moving, velocity: FloatArray, spin: float, times: FloatArray, slopes: bool
+) -> tuple[FloatArray, FloatArray]:
+    vx, vy = velocity.tolist()
+    rim, speed = moving.radius * spin, math.hypot(vx, vy)
+    slip = math.hypot(speed, rim)
+    if slip == 0.0:
+        return np.zeros((3, times.size)), np.zeros((6, 3, times.size))
+    phi = math.atan2(rim, speed)
+    cosine, sine = (vx / speed, vy / speed) if speed > 0.0 else (1.0, 0.0)
+    turn = np.array([[cosine, -sine], [sine, cosine]])
+    length = slip * slip / moving.decel
+    tau = times * (moving.decel / slip)
+    phis, deltas = _asked(phi, moving, slopes)
+    states = moving.curve.states(phis, deltas, np.broadcast_to(tau, (phis.size, tau.size)))
+    x, y, heading, body, ahead, around = states
+    place = length * np.einsum("ab,bmn->amn", turn, np.stack([x, y]))
+    paths = np.concatenate([place, (length / moving.radius) * body[None]])
+    path = paths[:, 0]
+    if not slopes:
+        return path, np.empty((0, 3, times.size))
+    motion = slip * np.stack([ahead[0] * np.cos(heading[0]), ahead[0] * np.sin(heading[0])])
+    rate = np.concatenate([turn @ motion, (slip / moving.radius) * around[:1]])
+    to_phi = (paths[:, 1] - paths[:, 2]) / (phis[1] - phis[2])
+    to_delta = (paths[:, 4] - paths[:, 3]) / (deltas[4] - deltas[3])
+    to_log_slip = 2.0 * path - times * rate
+    across = np.stack([-path[1], path[0], np.zeros(times.size)]) / max(speed, _SLOWEST * slip)
+    to_speed = math.cos(phi) / slip * to_log_slip - math.sin(phi) / slip * to_phi
+    to_rim = math.sin(phi) / slip * to_log_slip + math.cos(phi) / slip * to_phi
+    to_radius = spin * to_rim
+    to_radius[2] -= path[2] / moving.radius
+    return path, np.stack([
+        cosine * to_speed - sine * across, sine * to_speed + cosine * across,
+        moving.radius * to_rim, (times * rate - path) / moving.decel, to_delta, to_radius,
+    ])  # fmt: skip
+
+
+def _asked(phi: float, moving: Moving, slopes: bool) -> tuple[FloatArray, FloatArray]:
+    """The motion itself, two neighbours in φ, and two in δ; these lie within its range."""
+    if not slopes:
+        return np.array([phi]), np.array([moving.delta])
+    h, delta = _HEIGHT_STEP, moving.delta
+    centre = min(max(delta, h), moving.curve.highest - h)
+    angles = [phi, phi + _ANGLE_STEP, phi - _ANGLE_STEP, phi, phi]
+    return np.array(angles), np.array([delta] * 3 + [centre - h, centre + h])

@@ -1,0 +1,101 @@
+"""Pressure laws and friction laws beside each other, by their likelihood.
+
+Every law is fitted with the same unknowns to the same frames.  The noise is that of the law that
+leaves least (or the one given), and a residual beyond four standard deviations counts as four, so
+that no law gains by calling frames outliers.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from puck_tables.contact.laws import law_of
+from puck_tables.errors import InputError
+from puck_tables.fitting.estimate import FARTHEST, FARTHEST_PLACE, Estimate
+from puck_tables.fitting.parameters import Asked
+from puck_tables.fitting.problem import PRIOR
+
+DRAG = "+drag"
+_CONTENDS = 60.0  # of χ²: laws worse than the best by more are not fitted again
+
+Fitted = Callable[[Asked, tuple[float, float], tuple[bool, bool]], Estimate]
+
+
+class LawScore(NamedTuple):
+    """One law.
+
+    ``chi2``: squares of residuals under the common noise; ``unknowns``: how many were found;
+    ``weight``: its share of the Akaike weights exp(−½(χ² + 2 unknowns)); ``numbers``: what was
+    found of the puck.
+    """
+
+    name: str
+    chi2: float
+    unknowns: int
+    weight: float
+    numbers: dict[str, float]
+
+
+def compare(
+    asked: Asked, names: Sequence[str], noise: tuple[float, float], known: tuple[bool, bool],
+    fitted: Fitted,
+) -> tuple[LawScore, ...]:  # fmt: skip
+    """The laws named, best first; ``fitted`` fits what is asked with a noise, known or not.
+
+    Raises
+    ------
+    InputError
+        If a law is not known, or named twice.
+    """
+    if len(set(names)) < len(names):
+        raise InputError(f"laws {', '.join(names)}: name each law once")
+    variants = [_variant(asked, name) for name in names]
+    first = [fitted(one, noise, known) for one in variants]
+    common = [
+        noise[kind] if known[kind] else min(one.problem.noise[kind] for one in first)
+        for kind in range(2)
+    ]
+    unknowns = np.array([one.x.size for one in first])
+    chi2 = np.array([_capped(one, (common[0], common[1])) for one in first])
+    score = chi2 + 2.0 * unknowns
+    again = list(first)
+    for k in np.flatnonzero(score < score.min() + _CONTENDS):
+        if not all(known):
+            again[k] = fitted(variants[k], (common[0], common[1]), (True, True))
+            chi2[k] = _capped(again[k], (common[0], common[1]))
+    score = chi2 + 2.0 * unknowns
+    weight = np.exp(-0.5 * (score - score.min()))
+    weight /= weight.sum()
+    found = [
+        LawScore(name, float(c), int(m), float(w), one.problem.found(one.x))
+        for name, c, m, w, one in zip(names, chi2, unknowns, weight, again, strict=True)
+    ]
+    order = np.argsort(score, kind="stable")
+    return tuple(found[k] for k in order)
+
+
+def _variant(asked: Asked, name: str) -> Asked:
+    """The same question of another law."""
+    drags = name.endswith(DRAG)
+    law = law_of(name.removesuffix(DRAG))
+    free = tuple(n for n in asked.free if n != "inner" and (n != "drag" or drags))
+    if drags and "drag" not in free:
+        free = (*free, "drag")
+    fixed = {n: v for n, v in asked.fixed.items() if n != "inner"}
+    return replace(asked, puck=replace(asked.puck, pressure=law), free=free, fixed=fixed)
+
+
+def _capped(found: Estimate, noise: tuple[float, float]) -> float:
+    """χ² under a noise, of all frames, with no residual beyond the farthest."""
+    rows = found.problem.with_noise(noise).residuals(found.x)
+    total = float(np.sum(rows[found.problem.kinds == PRIOR] ** 2))
+    for x, y, turn in found.problem.each():
+        place = rows[x] ** 2 + rows[y] ** 2
+        total += float(np.minimum(place, FARTHEST_PLACE).sum())
+        total += float(np.minimum(rows[turn] ** 2, FARTHEST**2).sum())
+    return total if math.isfinite(total) else math.inf

@@ -1,0 +1,80 @@
+"""The door to scipy's least squares: bounds, a robust loss, and what that costs.
+
+The optimiser is scipy's trust region reflective method: it takes bounds (δ ≥ 0), knows robust
+losses, and stands still where the Jacobian has no full rank, which is not rare here.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.fitting.problem import Problem
+
+
+class How(NamedTuple):
+    """``loss`` of scipy, the residual where it begins to count less, and the most evaluations."""
+
+    loss: str
+    scale: float
+    evaluations: int
+    tolerance: float
+
+
+LOOSE = How("cauchy", 3.0, 40, 1e-4)
+ROBUST = How("cauchy", 3.0, 30, 1e-4)
+SQUARES = How("linear", 1.0, 60, 1e-9)
+
+
+def minimise(
+    problem: Problem, x: FloatArray, how: How, kept: npt.NDArray[np.bool_] | None = None,
+    held: int | None = None,
+) -> tuple[FloatArray, float]:  # fmt: skip
+    """The unknowns at the minimum from a start, and the cost ½ Σ loss there.
+
+    ``kept``: residuals that count, all where it is left out; ``held``: an unknown that stays.
+    """
+    from scipy.optimize import least_squares
+
+    moved = np.array([k for k in range(x.size) if k != held], np.int64)
+    whole = x.copy()
+    low, high = (ends[moved] for ends in problem.limits)
+    inside = _inside(x[moved], low, high)
+    weight = None if kept is None else kept.astype(np.float64)
+
+    def residuals(values: FloatArray) -> FloatArray:
+        whole[moved] = values
+        rows = problem.residuals(whole)
+        return rows if weight is None else rows * weight
+
+    def jacobian(values: FloatArray) -> FloatArray:
+        whole[moved] = values
+        rows = problem.jacobian(whole)[:, moved]
+        return rows if weight is None else rows * weight[:, None]
+
+    scale = how.scale
+    if how.loss != "linear":  # far from the minimum all residuals are large, none an outlier
+        scale = max(scale, 2.0 * float(np.median(np.abs(residuals(inside)))))
+    while True:
+        found: Any = least_squares(
+            residuals, inside, jacobian, bounds=(low, high), x_scale="jac", loss=how.loss,
+            f_scale=scale, max_nfev=how.evaluations, ftol=how.tolerance, xtol=how.tolerance,
+            gtol=1e-12,
+        )  # fmt: skip
+        if scale <= how.scale:
+            whole[moved] = found.x
+            return whole, float(found.cost)
+        inside = _inside(found.x, low, high)
+        rows = np.abs(found.fun)
+        scale = max(how.scale, min(0.25 * scale, 2.0 * float(np.median(rows))))
+
+
+def _inside(x: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:
+    """Strictly within bounds, as the method wants its start."""
+    width = np.where(np.isfinite(high - low), high - low, np.maximum(1.0, np.abs(x)))
+    room = 1e-9 * width
+    inside: FloatArray = np.minimum(np.maximum(x, low + room), high - room)
+    return inside

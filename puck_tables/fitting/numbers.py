@@ -1,0 +1,198 @@
+"""The numbers of a puck and of its launches that a fit found, with what is known of each."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.fitting.certainty import Z95, Certainty, Interval, interval_of
+from puck_tables.fitting.estimate import Estimate
+from puck_tables.fitting.parameters import ALL, LAUNCH, PUCK
+from puck_tables.fitting.problem import Found, Problem
+
+_STEP = 1e-6
+# Scales are plausible within their own size, but not less than this
+_LEAST = {"friction": 1e-3, "decel": 1e-2, "gravity": 1e-2, "height": 1e-4, "radius": 1e-4}
+_ALL = 0.8  # of the range in which a number is looked for: an interval so wide tells nothing
+FREE, FOLLOWS, KNOWN = "found", "follows", "known"
+
+
+class Number(NamedTuple):
+    """One number.
+
+    ``error``: its standard error, infinite where the tracks do not determine it, 0 where it was
+    known; ``low``, ``high``: its 95 % interval; ``how``: found, follows (from what is found) or
+    known; ``profiled``: whether the interval is that of the profile likelihood.
+    """
+
+    value: float
+    error: float
+    low: float
+    high: float
+    unit: str
+    how: str
+    profiled: bool = False
+
+    @property
+    def determined(self) -> bool:
+        """Whether the tracks tell it."""
+        return math.isfinite(self.error)
+
+
+class FoundLaunch(NamedTuple):
+    """How a track begins.
+
+    ``name``: of the track; ``time`` s: of its first frame; then what was found there: ``place``
+    (x, y) m, ``velocity`` (vx, vy) m/s, ``spin`` rad/s, ``angle`` rad; ``numbers``: the same by
+    name, with errors.
+    """
+
+    name: str
+    time: float
+    place: tuple[float, float]
+    velocity: tuple[float, float]
+    spin: float
+    angle: float
+    numbers: Mapping[str, Number]
+
+
+def plausible_for(problem: Problem, x: FloatArray) -> FloatArray:
+    """What is plausible for every unknown (m,): of scales their own size."""
+    found, launches = problem.found(x), problem.launches(x)
+    radius = problem.asked.scales(found)[2]
+    sizes = []
+    for track, name in problem.names:
+        if track < 0:
+            least = _LEAST.get(name)
+            sizes.append(
+                problem.asked.plausible(name) if least is None else max(abs(found[name]), least)
+            )
+            continue
+        launch, film = launches[track], problem.films[track]
+        slip = math.hypot(launch[2], launch[3], radius * launch[4]) or 1.0
+        size = float(np.ptp(film.place, axis=0).max()) or radius
+        sizes.append({
+            "launch_x": size, "launch_y": size, "launch_vx": slip, "launch_vy": slip,
+            "launch_spin": slip / radius, "launch_angle": 1.0,
+        }[name])  # fmt: skip
+    plausible: FloatArray = np.maximum(np.array(sizes), 1e-12)
+    return plausible
+
+
+def numbers_of(
+    found: Estimate, certainty: Certainty, rivals: tuple[Found, ...] = ()
+) -> tuple[dict[str, Number], tuple[FoundLaunch, ...]]:
+    """All numbers of the puck, and of each launch.
+
+    ``rivals``: the puck's numbers at other summits of the likelihood; what they differ in is not
+    determined.
+    """
+    problem, x = found.problem, found.x
+    asked, errors = problem.asked, certainty.errors
+    values = problem.found(x)
+    puck: dict[str, Number] = {}
+    for k, name in enumerate(asked.free):
+        interval, error = interval_of(found, certainty, k), float(errors[k])
+        width = interval.high - interval.low
+        if interval.profiled:  # the likelihood is no parabola: half of its width
+            error = max(error, width / (2.0 * Z95))
+        low, high = interval.low, interval.high
+        others = [values[name], *(rival[name] for rival in rivals)]
+        if min(others) < low or max(others) > high:  # another summit lies outside
+            half = 0.5 * width
+            low, high = min(low, min(others) - half), max(high, max(others) + half)
+            error = math.inf
+        least, largest = (float(limit[k]) for limit in problem.limits)
+        if width >= _ALL * (largest - least):
+            error = math.inf
+        puck[name] = Number(
+            values[name], error, low, high, PUCK[name].unit, FREE,
+            interval.profiled,
+        )  # fmt: skip
+    everything = {**asked.known(), **values}
+    everything.update(_derived(asked.scales(values), everything))
+    for name, value in everything.items():
+        if name in puck or (name == "drag" and value == 0.0):
+            continue
+        slope = _slope(problem, x, name)
+        if not slope.any():
+            puck[name] = Number(value, 0.0, value, value, PUCK[name].unit, KNOWN)
+            continue
+        error = certainty.error_of(slope, max(abs(value), 1e-12))
+        if any(slope[k] and not puck[one].determined for k, one in enumerate(asked.free)
+               if not certainty.undetermined[k]):  # fmt: skip
+            error = math.inf
+        ends = _follows(problem, x, name, slope, puck) or _quadratic(value, error)
+        if PUCK[name].low == 0.0:
+            ends = Interval(max(ends.low, 0.0), ends.high, False)
+        puck[name] = Number(value, error, ends.low, ends.high, PUCK[name].unit, FOLLOWS)
+    puck = {name: puck[name] for name in PUCK if name in puck}
+    launches = []
+    for n, (film, row) in enumerate(zip(problem.films, problem.launches(x), strict=True)):
+        numbers = {}
+        for name, value in zip(LAUNCH, row.tolist(), strict=True):
+            if (n, name) in problem.names:
+                error = float(errors[problem.names.index((n, name))])
+                ends = _quadratic(value, error)
+                how = FREE
+            else:
+                error, ends, how = 0.0, Interval(value, value, False), KNOWN
+            numbers[name] = Number(value, error, ends.low, ends.high, ALL[name].unit, how)
+        px, py, vx, vy, spin, angle = row.tolist()
+        launches.append(
+            FoundLaunch(film.name, film.start, (px, py), (vx, vy), spin, angle, numbers)
+        )
+    return puck, tuple(launches)
+
+
+def _quadratic(value: float, error: float) -> Interval:
+    return Interval(value - Z95 * error, value + Z95 * error, False)
+
+
+def _follows(
+    problem: Problem, x: FloatArray, name: str, slope: FloatArray, puck: Mapping[str, Number]
+) -> Interval | None:
+    """The interval of what follows from one number alone: from the ends of that one's."""
+    asked, values = problem.asked, problem.found(x)
+    of = np.flatnonzero(slope)
+    if of.size != 1 or not math.isfinite(puck[asked.free[of[0]]].high):
+        return None
+    one, ends = asked.free[of[0]], []
+    for end in (puck[one].low, puck[one].high):
+        moved = {**values, one: end}
+        everything = {**asked.known(), **moved}
+        everything.update(_derived(asked.scales(moved), everything))
+        ends.append(everything[name])
+    return Interval(min(ends), max(ends), False)
+
+
+def _derived(scales: tuple[float, float, float], numbers: Mapping[str, float]) -> dict[str, float]:
+    """J, δ, f and h from the scales."""
+    decel, delta, radius = scales
+    friction = decel / numbers["gravity"]
+    return {
+        "decel": decel, "delta": delta, "friction": friction,
+        "height": 0.5 * delta * radius / friction if friction > 0.0 else 0.0,
+    }  # fmt: skip
+
+
+def _slope(problem: Problem, x: FloatArray, name: str) -> FloatArray:
+    """How a number changes with the unknowns (m,)."""
+    asked, values = problem.asked, problem.found(x)
+    slope = np.zeros(x.size)
+    for k, free in enumerate(asked.free):
+        ends = []
+        step = _STEP * (abs(values[free]) or 1.0)
+        for side in (-1.0, 1.0):
+            moved = {**values, free: values[free] + side * step}
+            everything = {**asked.known(), **moved}
+            everything.update(_derived(asked.scales(moved), everything))
+            ends.append(everything[name])
+        slope[k] = (ends[1] - ends[0]) / (2.0 * step)
+        if abs(slope[k]) * step < 1e-13 * abs(ends[1]):  # rounding
+            slope[k] = 0.0
+    return slope

@@ -1,0 +1,335 @@
+"""What a fit found, as a result."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables._core.real import instance
+from puck_tables._core.safe_write import write_bytes
+from puck_tables._version import __version__
+from puck_tables.errors import InputError
+from puck_tables.fitting.certainty import Certainty, profile_point
+from puck_tables.fitting.estimate import Estimate
+from puck_tables.fitting.held_out import HeldOut
+from puck_tables.fitting.impacts import Impact
+from puck_tables.fitting.laws import LawScore
+from puck_tables.fitting.numbers import FoundLaunch, Number
+from puck_tables.io.dataset import Dataset, Variable, variable
+from puck_tables.puck import Puck
+from puck_tables.result import Result
+
+if TYPE_CHECKING:
+    from puck_tables.trajectory import Trajectory
+
+KIND = "puck-tables fit 1"
+_NO_PATTERN = 1e-3  # probability of residuals so patterned by chance
+_COMPUTED = 1e-7  # of the path: residuals of tracks that were computed, not seen
+_NOISY = 1.5  # times the noise of a smooth motion
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Fit(Result):
+    """A puck and its launches, found from tracks.
+
+    ``numbers``: :class:`Number` by name (``fit["friction"]``): found, following from what was
+    found, or known; ``launches``: one for each track.  ``chi2`` over ``degrees`` of freedom;
+    ``noise`` (m, rad), that of the residuals unless ``noise_known``, and ``smooth_noise``, judged
+    without any model of the puck; ``outliers``: share of the observations that are left out;
+    ``left_out``: frames at the start and at the end of each track that are no free motion;
+    ``runs``, ``drift``: probabilities of residuals so patterned by chance; ``blind``: a sentence
+    for each thing that the tracks do not tell; ``laws``: :class:`LawScore` of those compared, best
+    first; ``held_out``: how well frames that were held out are predicted;
+    ``impacts``: :class:`Impact` of those looked for.
+    """
+
+    given: Puck
+    numbers: dict[str, Number]
+    launches: tuple[FoundLaunch, ...]
+    chi2: float
+    degrees: int
+    noise: tuple[float, float]
+    noise_known: tuple[bool, bool]
+    smooth_noise: tuple[float, float]
+    outliers: float
+    runs: float
+    drift: float
+    left_out: tuple[tuple[int, int], ...]
+    blind: tuple[str, ...]
+    laws: tuple[LawScore, ...]
+    held_out: HeldOut | None
+    impacts: tuple[Impact, ...]
+    estimate: Estimate = field(repr=False)
+    certainty: Certainty = field(repr=False)
+
+    picture: ClassVar[str] = "fit"
+
+    def __repr__(self) -> str:
+        words = ", ".join(
+            f"{name} {number.value:.6g} +- {number.error:.2g}" if number.determined
+            else f"{name} not determined"
+            for name, number in self.numbers.items() if number.how == "found"
+        )  # fmt: skip
+        return f"Fit({words or 'launches alone'}; {len(self.launches)} tracks)"
+
+    def __getitem__(self, name: str) -> Number:
+        """A number of the puck by its name."""
+        if name not in self.numbers:
+            raise InputError(f"there is no '{name}': this fit has {', '.join(self.numbers)}")
+        return self.numbers[name]
+
+    @property
+    def puck(self) -> Puck:
+        """The puck that was found; of what is not determined, the value that fits best."""
+        values = {name: number.value for name, number in self.numbers.items()}
+        pressure: Any = self.given.body.law
+        if self.numbers.get("inner") and self.numbers["inner"].how == "found":
+            pressure = f"annulus:{values['inner']!r}"
+        return Puck(
+            radius=values["radius"], height=values["height"], friction=values["friction"],
+            gravity=values["gravity"], gyration=values["gyration"], mass=self.given.mass,
+            pressure=pressure,
+        )  # fmt: skip
+
+    @property
+    def drag(self) -> float:
+        """Drag of speed and spin besides dry friction, 1/s."""
+        return self.numbers["drag"].value if "drag" in self.numbers else 0.0
+
+    def launch(self, track: int | str = 0) -> FoundLaunch:
+        """The launch of a track, by its number from 0 or its name.
+
+        Raises
+        ------
+        InputError
+        """
+        names = [launch.name for launch in self.launches]
+        if isinstance(track, str):
+            if track not in names:
+                raise InputError(f"there is no track '{track}': there are {', '.join(names)}")
+            return self.launches[names.index(track)]
+        instance("track", track, int, np.integer)
+        if not -len(names) <= track < len(names):
+            raise InputError(f"track must be from 0 to {len(names) - 1}, got {track}")
+        return self.launches[track]
+
+    def simulate(self, track: int | str = 0, **how: Any) -> Trajectory:
+        """The motion of a track as it was found, until the puck stops.
+
+        ``how``: as :meth:`Puck.simulate` takes it.
+
+        Raises
+        ------
+        InputError
+            If there is no such track, or the puck was found with drag: then only a scene has it.
+        """
+        launch = self.launch(track)
+        if self.drag != 0.0:
+            raise InputError(
+                f"the puck was found with drag of {self.drag:.3g}/s, which a free puck has not: "
+                "put it into a Scene with Drag"
+            )
+        return self.puck.simulate(launch.velocity, launch.spin, **how)
+
+    @property
+    def complaints(self) -> tuple[str, ...]:
+        """Signs that the tracks are not those of such a puck."""
+        found = []
+        size = max(float(np.ptp(film.place, axis=0).max()) for film in self.estimate.problem.films)
+        # smaller residuals are the errors of what is computed
+        seen = self.noise[0] > _COMPUTED * size
+        excess = [
+            own / smooth for own, smooth in zip(self.noise, self.smooth_noise, strict=True)
+            if math.isfinite(smooth) and smooth > 0.0
+        ]  # fmt: skip
+        if seen and not any(self.noise_known) and max(excess, default=0.0) > _NOISY:
+            found.append(
+                f"The residuals are {max(excess):.3g} times what smooth tracks would leave"
+            )
+        per_degree = self.chi2 / max(self.degrees, 1)
+        expected = 1.0 + 5.0 * math.sqrt(2.0 / max(self.degrees, 1))
+        if any(self.noise_known) and per_degree > expected:
+            found.append(f"The residuals are {math.sqrt(per_degree):.3g} times the noise given")
+        if seen and min(self.runs, self.drift) < _NO_PATTERN:
+            found.append(
+                "The residuals are no noise, they have a pattern (probability by chance "
+                f"{min(self.runs, self.drift):.1g})"
+            )
+        if self.outliers > 0.2:
+            found.append(f"{100.0 * self.outliers:.3g} % of the observations had to be left out")
+        return tuple(found)
+
+    def explain(self) -> str:
+        """How it was found."""
+        place, angle = ("given" if known else "that of the residuals" for known in self.noise_known)
+        angled = any(film.angle is not None for film in self.estimate.problem.films)
+        lines = [
+            f"Least squares by scipy's trust region reflective method: {self.estimate.x.size} "
+            f"unknowns from {self.estimate.residuals.size} residuals.",
+            f"Noise of places {self.noise[0]:.3g} m, {place}.",
+            *([f"Noise of angles {self.noise[1]:.3g} rad, {angle}."] if angled else []),
+            f"{100.0 * self.outliers:.3g} % of the observations, beyond 4 standard deviations, are "
+            "left out.",
+        ]
+        profiled = [name for name, number in self.numbers.items() if number.profiled]
+        if profiled:
+            lines.append(f"Intervals by profile likelihood: {', '.join(profiled)}.")
+        if self.estimate.problem.tall:
+            lines.append("Part of the base may lift (delta > 1).")
+        return "\n".join(lines)
+
+    def summary(self) -> dict[str, Any]:
+        """Everything but the frames, ready for JSON; None for what is not determined."""
+        puck = self.puck.described()
+        summary: dict[str, Any] = {
+            "kind": KIND, "source": f"puck-tables {__version__}", "puck": puck, "drag": self.drag,
+            "numbers": {name: _told(number) for name, number in self.numbers.items()},
+            "launches": [
+                {
+                    "track": one.name, "time": one.time, "place": list(one.place),
+                    "velocity": list(one.velocity), "spin": one.spin, "angle": one.angle,
+                    "numbers": {name: _told(number) for name, number in one.numbers.items()},
+                }
+                for one in self.launches
+            ],
+            "correlation": self.correlation(), "chi2": self.chi2, "degrees": self.degrees,
+            "noise": list(self.noise), "noise_given": list(self.noise_known),
+            "outliers": self.outliers, "left_out": [list(one) for one in self.left_out],
+            "runs": self.runs, "drift": self.drift,
+            "not_determined": list(self.blind), "complaints": list(self.complaints),
+            "laws": [one._asdict() for one in self.laws],
+            "held_out": None,
+            "impacts": [
+                {
+                    **one._asdict(), "place": list(one.place),
+                    "restitution": _told(one.restitution), "rim": _told(one.rim),
+                }
+                for one in self.impacts
+            ],
+        }  # fmt: skip
+        if self.held_out is not None:
+            summary["held_out"] = {
+                "tracks": list(self.held_out.tracks), "rms": self.held_out.rms,
+                "inside": self.held_out.inside,
+            }  # fmt: skip
+        cleaned: dict[str, Any] = _without_nan(summary)
+        return cleaned
+
+    def correlation(self) -> dict[str, dict[str, float]]:
+        """Correlations of the numbers of the puck that were found."""
+        names, matrix = self.estimate.problem.asked.free, self.certainty.correlation
+        return {
+            one: {other: float(matrix[i, k]) for k, other in enumerate(names)}
+            for i, one in enumerate(names)
+        }
+
+    def profile(
+        self, name: str, points: int = 9, reach: float = 3.0
+    ) -> tuple[FloatArray, FloatArray]:
+        """By how much χ² rises when one number of the puck is held at other values.
+
+        Parameters
+        ----------
+        name : of a number that was found
+        points : how many values
+        reach : how far they go to either side, in standard errors, within the range of the number
+
+        Returns
+        -------
+        values (n,), rises (n,)
+
+        Raises
+        ------
+        InputError
+        """
+        free = self.estimate.problem.asked.free
+        if name not in free:
+            raise InputError(f"'{name}' was not found: there are {', '.join(free) or 'none'}")
+        k, number = free.index(name), self.numbers[name]
+        low, high = (float(ends[k]) for ends in self.estimate.problem.limits)
+        error = number.error if number.determined else high - low
+        if not math.isfinite(error):
+            error = abs(number.value)
+        ends = max(low, number.value - reach * error), min(high, number.value + reach * error)
+        values = np.linspace(*ends, points)
+        rises = [
+            profile_point(self.estimate, self.certainty, k, value, self.estimate.x)[0]
+            for value in values.tolist()
+        ]
+        return values, np.maximum(np.array(rises) - self.estimate.chi2, 0.0)
+
+    def dataset(self) -> Dataset:
+        """Frames with what was seen, the model and the residuals; the rest as attributes."""
+        problem, kept = self.estimate.problem, self.estimate.kept
+        rows: dict[str, list[Any]] = {name: [] for name in (
+            "track", "frame", "time", "seen_x", "seen_y", "seen_angle", "fit_x", "fit_y",
+            "fit_angle", "counts_place", "counts_angle",
+        )}  # fmt: skip
+        parts = zip(problem.films, problem.paths(self.estimate.x), problem.each(), strict=True)
+        for n, (film, path, (x, _, turn)) in enumerate(parts):
+            angle = np.full(film.time.size, np.nan) if film.angle is None else film.angle
+            counts = np.zeros(film.time.size, np.int8)
+            counts[np.isfinite(angle)] = kept[turn]
+            values = (
+                np.full(film.time.size, n), film.frame, film.start + film.time,
+                film.place[:, 0], film.place[:, 1], angle, path[0], path[1], path[2],
+                kept[x].astype(np.int8), counts,
+            )  # fmt: skip
+            for name, value in zip(rows, values, strict=True):
+                rows[name].append(value)
+        columns: dict[str, Variable] = {
+            name: variable(name, np.concatenate(values), ("observation",))
+            for name, values in rows.items()
+        }
+        told = {
+            name: number for name, number in self.numbers.items() if math.isfinite(number.value)
+        }
+        columns["number_name"] = variable("number_name", list(told), ("number",))
+        for what in ("value", "error", "low", "high"):
+            of_all = np.array([getattr(number, what) for number in told.values()])
+            columns[f"number_{what}"] = variable(f"number_{what}", of_all, ("number",))
+        attributes = {
+            "title": "A puck found from tracks", "chi2": self.chi2, "degrees": self.degrees,
+            "noise": list(self.noise), "outliers": self.outliers, "runs": self.runs,
+            "drift": self.drift, **self.puck.described(),
+        }  # fmt: skip
+        texts = {"summary": (json.dumps(self.summary()), "all that was found, as JSON")}
+        return Dataset({}, columns, attributes, texts)
+
+    def save(self, path: str | Path, overwrite: bool = False) -> None:
+        """Write .json (for ``puck simulate --fit``), or .h5, .csv, .jsonl, .parquet (the frames).
+
+        Raises
+        ------
+        InputError, MissingExtraError, OutputError
+            As of every result.
+        """
+        instance("path", path, str, Path)
+        if Path(path).suffix.lower() == ".json":
+            text = json.dumps(self.summary(), indent=1, allow_nan=False) + "\n"
+            write_bytes(path, text.encode(), overwrite)
+            return
+        super().save(path, overwrite)
+
+
+def _told(number: Number) -> dict[str, Any]:
+    return {**number._asdict(), "determined": number.determined}
+
+
+def _without_nan(value: Any) -> Any:
+    """The same with None for what is no number: JSON has none."""
+    if isinstance(value, dict):
+        return {name: _without_nan(one) for name, one in value.items()}
+    if isinstance(value, list | tuple):
+        return [_without_nan(one) for one in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    if isinstance(value, np.bool_):
+        return bool(value)
+    return value

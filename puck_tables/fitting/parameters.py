@@ -1,0 +1,299 @@
+"""What a fit may find of a puck, what it takes as known, and what of that moves the puck.
+
+Tracks tell J = f g and δ = 2 f h/r.  Friction, gravity and height stand in these two only, so one
+of the three has to be known; any of them may be free, with a prior, or fixed, and what the tracks
+cannot tell then is said (:mod:`puck_tables.fitting.certainty`).
+"""
+
+from __future__ import annotations
+
+import difflib
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+from puck_tables._core.real import instance, real
+from puck_tables.contact.laws import law_of
+from puck_tables.errors import InputError
+from puck_tables.fitting.launched import Moving
+from puck_tables.fitting.natural import curve_of
+from puck_tables.motion.body import LARGEST_GYRATION, SMALLEST_GYRATION
+from puck_tables.puck import Puck
+
+
+class Parameter(NamedTuple):
+    """Unit, the allowed range, what values are plausible within, and what it is."""
+
+    unit: str
+    low: float
+    high: float
+    plausible: float
+    words: str
+
+
+PUCK = {
+    "friction": Parameter("1", 0.0, math.inf, 1.0, "Coulomb's coefficient f"),
+    "decel": Parameter("m/s^2", 0.0, math.inf, 10.0, "deceleration of a slide, J = f g"),
+    "delta": Parameter("1", 0.0, 4.0, 1.0, "dimensionless height 2 f h / r"),
+    "height": Parameter("m", 0.0, math.inf, 0.0, "height of the puck"),
+    "radius": Parameter("m", 0.0, math.inf, 0.0, "radius of the base"),
+    "gravity": Parameter("m/s^2", 0.0, math.inf, 10.0, "gravity"),
+    "gyration": Parameter(
+        "1", SMALLEST_GYRATION, LARGEST_GYRATION, 0.5, "radius of gyration over r"
+    ),
+    "inner": Parameter("1", 0.0, 1.0, 0.5, "inner radius of an annulus over r"),
+    "drag": Parameter("1/s", -math.inf, math.inf, 1.0, "linear drag, of speed and of spin"),
+}
+LAUNCH = {
+    "launch_x": Parameter("m", -math.inf, math.inf, 0.0, "place at the launch along x"),
+    "launch_y": Parameter("m", -math.inf, math.inf, 0.0, "place at the launch along y"),
+    "launch_vx": Parameter("m/s", -math.inf, math.inf, 0.0, "launch velocity along x"),
+    "launch_vy": Parameter("m/s", -math.inf, math.inf, 0.0, "launch velocity along y"),
+    "launch_spin": Parameter("rad/s", -math.inf, math.inf, 0.0, "launch spin"),
+    "launch_angle": Parameter("rad", -math.inf, math.inf, 1.0, "angle of the body at the launch"),
+}
+ALL = {**PUCK, **LAUNCH}
+_KIND = ("gyration", "inner", "drag")  # change the curve itself
+_CLASHES = (("friction", "decel"), ("delta", "height"))
+_TINY = 1e-30
+_POSITIVE, _LEAST = ("radius", "gravity", "friction", "decel"), 1e-9
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What is to be found and what is known.
+
+    Parameters
+    ----------
+    puck : Puck
+        Its numbers count where nothing else is said of them.
+    free : names to be found, of :data:`PUCK`
+    fixed : values by name, of :data:`PUCK` or :data:`LAUNCH`
+    priors : (value, standard deviation) by name
+    bounds : (low, high) by name
+    start : values to begin with, besides those that the tracks suggest
+
+    Raises
+    ------
+    InputError
+        If a name is not known (the nearest is told), or named in two ways that clash, or a number
+        is out of range.
+
+    Examples
+    --------
+    >>> asked = Asked.of(Puck(radius=0.0381), None, {}, {}, {}, {})
+    >>> asked.free
+    ('friction', 'delta')
+    >>> asked.scales({"friction": 0.2, "delta": 0.5})[0]
+    1.96133
+    """
+
+    puck: Puck
+    free: tuple[str, ...]
+    fixed: Mapping[str, float]
+    priors: Mapping[str, tuple[float, float]]
+    bounds: Mapping[str, tuple[float, float]]
+    start: Mapping[str, float]
+
+    @classmethod
+    def of(
+        cls, puck: Puck, free: Iterable[str] | None, fixed: Mapping[str, Any],
+        priors: Mapping[str, Any], bounds: Mapping[str, Any], start: Mapping[str, Any],
+    ) -> Asked:  # fmt: skip
+        """Checked, with what is free where nothing is said: f, and δ of a puck without height."""
+        instance("puck", puck, Puck)
+        known = {name: _in_range(name, value) for name, value in fixed.items()}
+        if free is None:
+            scale = () if {"friction", "decel"} & {*known} else ("friction",)
+            if "decel" in priors or "decel" in bounds:
+                scale = ("decel",)
+            tilt = () if {"delta", "height"} & {*known} or puck.height else ("delta",)
+            wanted = (*scale, *tilt)
+            wanted += tuple(n for n in (*priors, *bounds) if n in PUCK and n not in wanted)
+        else:
+            wanted = tuple([free] if isinstance(free, str) else free)
+        for name in wanted:
+            _named(name, PUCK, "free")
+        if len(set(wanted)) < len(wanted):
+            raise InputError(f"free names {', '.join(wanted)}: name each parameter once")
+        for name in wanted:
+            if name in known:
+                raise InputError(
+                    f"{name} is both free and fixed at {known[name]:g}: leave out one of the two"
+                )
+        for given, what in ((priors, "prior"), (bounds, "bounds"), (start, "start")):
+            for name in given:
+                _named(name, ALL, what)
+                if name in known:
+                    raise InputError(f"{name} is fixed at {known[name]:g}: leave out its {what}")
+                if name in PUCK and name not in wanted:
+                    raise InputError(f"{name} is not free: name it in free to give it a {what}")
+        for one, other in _CLASHES:
+            both = [name for name in (*wanted, *known) if name in (one, other)]
+            if len(both) > 1 and not {"friction", "decel"} == set(both):
+                raise InputError(f"{one} and {other} say the same: leave out one of them")
+            if len(both) > 1:
+                raise InputError("friction and decel say the same, J = f g: leave out one of them")
+        if "inner" in (*wanted, *known) and not _is_annulus(puck):
+            raise InputError(
+                "inner is the inner radius of an annulus: give the puck the pressure 'annulus:0.8'"
+            )
+        return cls(
+            puck, wanted, known, {n: _prior(n, v) for n, v in priors.items()},
+            {n: _bounds(n, v) for n, v in bounds.items()},
+            {n: _in_range(n, v) for n, v in start.items()},
+        )  # fmt: skip
+
+    def __post_init__(self) -> None:
+        scale = {"friction", "decel"} & {*self.free, *self.fixed}
+        if not scale and self.puck.friction == 0.0:
+            raise InputError(
+                "the friction is neither free nor known: name friction in free, or give the puck "
+                "its friction"
+            )
+
+    @property
+    def uses_decel(self) -> bool:
+        """Whether J is given itself, not by friction."""
+        return "decel" in self.free or "decel" in self.fixed
+
+    @property
+    def uses_delta(self) -> bool:
+        """Whether δ is given itself, not by height."""
+        return "delta" in self.free or "delta" in self.fixed
+
+    def known(self) -> dict[str, float]:
+        """All numbers of the puck that are not found."""
+        puck = self.puck
+        numbers = {name: float(getattr(puck, name)) for name in
+                   ("radius", "height", "friction", "gravity", "gyration")}  # fmt: skip
+        numbers["drag"] = 0.0
+        if _is_annulus(puck):
+            numbers["inner"] = float(puck.body.law.name.partition(":")[2])
+        return {**numbers, **{n: v for n, v in self.fixed.items() if n in PUCK}}
+
+    def scales(self, found: Mapping[str, Any]) -> tuple[Any, Any, Any]:
+        """J, δ and r of what is found; of complex numbers, too."""
+        all_of = {**self.known(), **found}
+        decel = all_of["decel"] if self.uses_decel else all_of["friction"] * all_of["gravity"]
+        if self.uses_delta:
+            return decel, all_of["delta"], all_of["radius"]
+        friction = decel / all_of["gravity"]
+        return decel, 2.0 * friction * all_of["height"] / all_of["radius"], all_of["radius"]
+
+    def slopes(self, found: Mapping[str, float], name: str) -> tuple[float, float, float]:
+        """The derivatives of J, δ and r to one that is found, by the complex step."""
+        complex_values = {**found, name: found[name] + 1j * _TINY}
+        return tuple(  # type: ignore[return-value]
+            float((value + 0j).imag) / _TINY for value in self.scales(complex_values)
+        )
+
+    def changes_curve(self, name: str) -> bool:
+        """Whether a parameter is none of the scales."""
+        return name in _KIND
+
+    def moving(self, found: Mapping[str, float], tall: bool) -> Moving:
+        """What moves the puck."""
+        decel, delta, radius = self.scales(found)
+        numbers = {**self.known(), **found}
+        pressure: Any = self.puck.body.law
+        if "inner" in found or "inner" in self.fixed:
+            pressure = f"annulus:{numbers['inner']!r}"
+        curve = curve_of(pressure, numbers["gyration"], tall)
+        # while a minimum is sought J, r and h may lead beyond; where it lies is judged in the end
+        return Moving(decel, min(delta, curve.highest), radius, numbers["drag"], curve)
+
+    def highest(self, tall: bool) -> float:
+        """The largest δ of which motions are known, of an annulus that is free as of the puck's."""
+        pressure = self.puck.body.law
+        if "inner" in self.fixed:
+            pressure = law_of(f"annulus:{self.fixed['inner']!r}")
+        return curve_of(pressure, self.known()["gyration"], tall).highest
+
+    def limits(self, name: str) -> tuple[float, float]:
+        """The range in which a parameter is looked for."""
+        low, high = ALL[name].low, ALL[name].high
+        if name == "inner":
+            low, high = 1e-3, 0.999
+        elif name in _POSITIVE:
+            low = _LEAST
+        wanted = self.bounds.get(name, (low, high))
+        return max(low, wanted[0]), min(high, wanted[1])
+
+    def plausible(self, name: str) -> float:
+        """Within about how much one would think the value to lie without the tracks."""
+        if name in ("height", "radius"):
+            return self.puck.radius
+        return PUCK[name].plausible
+
+
+def _is_annulus(puck: Puck) -> bool:
+    return puck.body.law.name.startswith("annulus:")
+
+
+def _named(name: str, known: Mapping[str, Parameter], what: str) -> None:
+    """Refuse a name that is no parameter, with the nearest that is.
+
+    Raises
+    ------
+    InputError
+    """
+    if name not in known:
+        near = difflib.get_close_matches(str(name), known, 1, 0.3)
+        meant = f": did you mean {near[0]}?" if near else ""
+        raise InputError(f"{what} names '{name}', which is none of {', '.join(known)}{meant}")
+
+
+def _in_range(name: str, value: Any) -> float:
+    """A value of a parameter.
+
+    Raises
+    ------
+    InputError
+    """
+    _named(name, ALL, "the fit")
+    number, kind = real(name, value, ALL[name].unit), ALL[name]
+    positive = name in _POSITIVE
+    if not kind.low <= number <= kind.high or (positive and number == 0.0):
+        least = f"greater than {kind.low:g}" if positive else f"from {kind.low:g} to {kind.high:g}"
+        raise InputError(f"{name} must be {least} ({kind.unit}), got {number:g}")
+    return number
+
+
+def _prior(name: str, given: Any) -> tuple[float, float]:
+    """A value and its standard deviation.
+
+    Raises
+    ------
+    InputError
+    """
+    value, spread = _pair(name, given, "prior", "value and a standard deviation")
+    if not spread > 0.0:
+        raise InputError(
+            f"the prior of {name} needs a standard deviation > 0, got {spread:g}: to hold {name} "
+            "at a value, fix it"
+        )
+    return _in_range(name, value), spread
+
+
+def _bounds(name: str, given: Any) -> tuple[float, float]:
+    """The least and the largest value.
+
+    Raises
+    ------
+    InputError
+    """
+    low, high = _pair(name, given, "bounds", "least and a largest value")
+    if not low < high:
+        raise InputError(f"the bounds of {name} must ascend, got {low:g} and {high:g}")
+    return low, high
+
+
+def _pair(name: str, given: Any, what: str, words: str) -> tuple[float, float]:
+    try:
+        first, second = given
+    except (TypeError, ValueError):
+        raise InputError(f"the {what} of {name} must be a {words}, got {given!r:.40}") from None
+    unit = ALL[name].unit
+    return real(f"the {what} of {name}", first, unit), real(f"the {what} of {name}", second, unit)

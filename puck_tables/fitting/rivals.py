@@ -1,0 +1,36 @@
+"""Other motions that fit a track as well: its likelihood may have more than one summit.
+
+Without angles a puck that slides straight without spin looks as one that spins at the ratio which
+every motion tends to: both lose speed at a constant rate, but not the same share of J.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from puck_tables.fitting.certainty import Z95, Certainty
+from puck_tables.fitting.estimate import Estimate
+from puck_tables.fitting.least_squares import SQUARES, minimise
+from puck_tables.fitting.problem import Found
+from puck_tables.fitting.starts import minima_of
+
+_APART = 4.0  # standard errors: another summit
+
+
+def rivals_of(found: Estimate, certainty: Certainty) -> tuple[Found, ...]:
+    """The numbers of the puck at other summits within the 95 % limit.
+
+    Of one track without angles; several tracks, or angles, have not been seen to have any.
+    """
+    problem = found.problem
+    if len(problem.films) > 1 or problem.films[0].angle is not None:
+        return ()
+    seen = np.array([not lost for lost in certainty.undetermined[: len(problem.asked.free)]], bool)
+    apart = _APART * np.sqrt(np.diag(certainty.covariance))[: seen.size]
+    summits = [found.x]
+    for start in minima_of(problem):
+        x, cost = minimise(problem, start, SQUARES, found.kept)
+        off = [np.abs(x - one)[: seen.size] > apart for one in summits]
+        if 2.0 * cost < found.chi2 + Z95**2 and all(one[seen].any() for one in off):
+            summits.append(x)
+    return tuple(problem.found(x) for x in summits[1:])

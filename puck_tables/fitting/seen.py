@@ -1,0 +1,193 @@
+"""The frames of a track that are fitted, and how noisy they are without asking any model."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.errors import InputError
+from puck_tables.film.track import Track
+
+FEWEST = 4  # frames of a track
+_ALIKE = 0.1  # of the usual time between frames
+_MEDIAN = 0.6744897501960817  # of |a normal deviate|
+_THIRD = math.sqrt(20.0)  # the spread of a third difference of deviates
+_LAST = 5
+
+
+@dataclass(frozen=True, eq=False)
+class Seen:
+    """Frames of one track where its puck is seen.
+
+    ``time`` (n,) s from ``start``; ``place`` (n, 2) m; ``angle`` (n,) rad, NaN where there is none,
+    or None where there never is; ``frame`` (n,): numbers in the track.
+    """
+
+    name: str
+    start: float
+    time: FloatArray
+    place: FloatArray
+    angle: FloatArray | None
+    frame: npt.NDArray[np.int64]
+
+    def part(self, chosen: npt.NDArray[np.bool_]) -> Seen:
+        """Some of the frames; the first of them is the new start."""
+        first = float(self.time[chosen][0])
+        return replace(
+            self, start=self.start + first, time=self.time[chosen] - first,
+            place=self.place[chosen], frame=self.frame[chosen],
+            angle=None if self.angle is None else self.angle[chosen],
+        )  # fmt: skip
+
+    @property
+    def usual_step(self) -> float:
+        """The usual time between two frames, s."""
+        return float(np.median(np.diff(self.time)))
+
+
+def seen_in(track: Track, since: float = -math.inf, until: float = math.inf) -> Seen:
+    """The frames of a track, those of free motion if its start and end are told.
+
+    Raises
+    ------
+    InputError
+        If they are too few.
+
+    Examples
+    --------
+    >>> track = Track(0.1 * np.arange(9), np.zeros((9, 2)), name="a")
+    >>> seen_in(track, since=0.25).time.size
+    6
+    """
+    chosen = track.seen & (track.time >= since) & (track.time <= until)
+    count = int(chosen.sum())
+    if count < FEWEST:
+        within = "" if since == -math.inf and until == math.inf else " in the time asked for"
+        raise InputError(
+            f"{track.name} shows the puck in {count} frame{'' if count == 1 else 's'}{within}: a "
+            f"fit needs {FEWEST} or more"
+        )
+    angle = None if track.angle is None else track.angle[chosen]
+    if angle is not None and not np.isfinite(angle).any():
+        angle = None
+    time = track.time[chosen]
+    return Seen(
+        track.name, float(time[0]), time - time[0], track.place[chosen], angle,
+        np.flatnonzero(chosen),
+    )  # fmt: skip
+
+
+def noise_of(films: list[Seen]) -> tuple[float, float]:
+    """The spread of places (m) and angles (rad) about smooth motions, by their third differences.
+
+    No model of the puck is in it, so it can judge one.  NaN where too few frames follow each other.
+
+    Examples
+    --------
+    >>> noise = np.random.default_rng(1).normal(0.0, 1e-3, (900, 2))
+    >>> track = Track(0.01 * np.arange(900), noise + np.arange(900)[:, None])
+    >>> round(noise_of([seen_in(track)])[0], 4)
+    0.001
+    """
+    places, angles = [], []
+    for film in films:
+        step = np.diff(film.time)
+        even = np.abs(step / np.median(step) - 1.0) < _ALIKE
+        runs = even[2:] & even[1:-1] & even[:-2]
+        places.append(np.diff(film.place, 3, axis=0)[runs].ravel())
+        if film.angle is not None:
+            third = np.diff(film.angle, 3)[runs]
+            angles.append(wrapped(third[np.isfinite(third)]))
+    return _spread(places), _spread(angles)
+
+
+def _spread(thirds: list[FloatArray]) -> float:
+    values = np.concatenate(thirds) if thirds else np.empty(0)
+    if values.size < 2 * FEWEST:
+        return math.nan
+    return float(np.median(np.abs(values))) / (_MEDIAN * _THIRD)
+
+
+def wrapped(angle: FloatArray) -> FloatArray:
+    """Angles to within half a turn of 0.
+
+    Examples
+    --------
+    >>> wrapped(np.array([7.0])).round(3).tolist()
+    [0.717]
+    """
+    found: FloatArray = angle - 2.0 * math.pi * np.round(angle / (2.0 * math.pi))
+    return found
+
+
+def rests_from(film: Seen, spread: float) -> int:
+    """The first frame from which on the puck does not move any more; n where it does to the end.
+
+    Examples
+    --------
+    >>> x = np.minimum(np.arange(20.0), 9.0)
+    >>> rests_from(seen_in(Track(np.arange(20.0), np.stack([x, 0 * x], axis=1))), 1e-3)
+    9
+    """
+    end = np.median(film.place[-_LAST:], axis=0)
+    away = np.hypot(*(film.place - end).T) > 5.0 * spread
+    # an outlier is no motion: two frames in a row are
+    moved = away[1:] & away[:-1]
+    last = int(np.flatnonzero(moved)[-1]) + 2 if moved.any() else 0
+    return last if film.time.size - last >= _LAST else film.time.size
+
+
+@dataclass(frozen=True, eq=False)
+class Turning:
+    """How fast a body turns, up to whole turns from frame to frame.
+
+    ``step`` s: the usual time between frames; ``time`` (w,) s, ``rate`` (w,) rad/s of windows of
+    frames; ``angle`` (n,) rad of the frames in one piece, NaN where it is not known.
+    """
+
+    step: float
+    time: FloatArray
+    rate: FloatArray
+    angle: FloatArray
+
+    def with_more(self, turns: int, time: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Rates (w,) and angles (n,) if the body makes so many more turns from frame to frame."""
+        more = 2.0 * math.pi * turns
+        return self.rate + more / self.step, self.angle + more * np.round(time / self.step)
+
+
+def turning_of(film: Seen) -> Turning | None:
+    """How fast the body of a track turns; None where no angles follow each other.
+
+    Means over windows are taken on the circle, so that outliers hardly count.
+
+    Examples
+    --------
+    >>> t = 0.01 * np.arange(50)
+    >>> film = seen_in(Track(t, np.zeros((50, 2)), (30.0 * t) % 6.28318530718))
+    >>> turning = turning_of(film)
+    >>> turning.rate.round(6).tolist()[:2], turning.angle[-1].round(6).item()
+    ([30.0, 30.0], 14.7)
+    """
+    if film.angle is None:
+        return None
+    step = film.usual_step
+    known = np.isfinite(film.angle[1:]) & np.isfinite(film.angle[:-1])
+    follow = np.flatnonzero(known & (np.abs(np.diff(film.time) / step - 1.0) < _ALIKE))
+    if follow.size < FEWEST - 1:
+        return None
+    width = max(1, min(7, follow.size // 3))
+    windows = np.array_split(follow, follow.size // width)
+    forward = np.exp(1j * (film.angle[follow + 1] - film.angle[follow]))
+    mean = np.array([part.mean() for part in np.array_split(forward, len(windows))])
+    time = np.array([film.time[w].mean() + 0.5 * step for w in windows])
+    rate = np.unwrap(np.angle(mean)) / step
+    speed = np.interp(film.time, time, rate)
+    turned = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(film.time))])
+    off = film.angle - turned
+    middle = float(np.angle(np.nanmean(np.exp(1j * off))))
+    return Turning(step, time, rate, turned + middle + wrapped(off - middle))

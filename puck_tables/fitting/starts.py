@@ -1,0 +1,265 @@
+"""Values to begin with, from the track itself.
+
+A fit of nonlinear motions finds the nearest minimum, so it is begun near the deepest:
+
+1. a robust parabola through the first frames gives the launch place and velocity;
+2. angles from frame to frame give the spin, up to whole turns from frame to frame; a puck that
+   comes to rest says how many, others are tried; without angles a range of spins is;
+3. for each spin and a few δ, motions with a range of J are laid beside places and rates of turning;
+4. the best few are fitted to places and to the angles in one piece, and the best of these is taken.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from itertools import product
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.fitting.least_squares import LOOSE, minimise
+from puck_tables.fitting.natural import Curve
+from puck_tables.fitting.parameters import Asked
+from puck_tables.fitting.problem import Found, Problem
+from puck_tables.fitting.seen import Seen, Turning, rests_from, turning_of
+
+_SHARE, _FEW = 0.25, 6  # of the moving frames, and at least: the parabola
+_MOST_TURNS = 3
+_HEIGHTS = (0.05, 0.2, 0.5, 0.9)
+# rω/v tried where no angle is seen
+_RATIOS = (0.0, 0.15, 0.3, 0.5, 0.75, 1.1, 1.6, 2.3, 3.5, 6.0, 12.0)
+_DECELS = 2.0 ** np.arange(-3.0, 3.1, 0.5)  # times the one that fits the loss of speed
+_FRAMES = 24  # laid beside each other
+_FITTED = 60  # frames to which the guesses are fitted
+_AT_HOME = 1.1  # a median residual, in units of the noise, that only the true motion has
+_KEPT, _KEPT_BLIND = 9, 22  # guesses that are fitted; of tracks without angles
+_RIVALS, _RIVAL, _APART = 4, 15.0, 1e-3  # minima compared on all frames: by cost, and how far apart
+_NEARER = 2.0 ** np.arange(-0.4, 0.41, 0.05)
+_PLACE_SHARE, _FINER_SHARE, _RATE_SHARE = 0.02, 0.005, 0.05
+_LEAST_SPEED = 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class _Guess:
+    """A start: what moves the puck, its spin, and the angles in one piece."""
+
+    decel: float
+    delta: float
+    spin: float
+    turns: int
+    score: float
+
+
+def start_of(problem: Problem) -> tuple[Found, FloatArray]:
+    """The numbers of the puck and the launch (6,) of the one track of a problem."""
+    x = minima_of(problem)[0]
+    return problem.found(x), problem.launches(x)[0]
+
+
+def minima_of(problem: Problem) -> list[FloatArray]:
+    """The unknowns at the deepest minima of a problem of one track, the deepest first."""
+    film, asked = problem.films[0], problem.asked
+    moving = _moving_frames(film, problem.noise[0])
+    place, velocity, slowing = _first_parabola(film, moving)
+    turning = turning_of(film)
+    guesses = _guesses(problem, velocity, slowing, turning, rests=moving < film.time.size)
+    few = np.zeros(film.time.size, bool)
+    few[np.linspace(0, film.time.size - 1, _FITTED).astype(int)] = True
+    part = film.part(few)
+    minima: list[tuple[float, FloatArray]] = []
+    for guess in guesses:
+        found = _found(asked, guess.decel, guess.delta)
+        launch = np.array([*place, *velocity, guess.spin, 0.0])
+        whole = None
+        if turning is not None:
+            whole = turning.with_more(guess.turns, film.time)[1]
+            launch[5] = whole[np.isfinite(whole)][0]
+            whole = whole[few]
+        pieces = replace(problem, films=(part,), whole=(whole,))
+        x, cost = minimise(pieces, pieces.unknowns(found, launch[None]), LOOSE)
+        minima.append((cost, x))
+        # without angles there are near minima, and all have to be seen
+        if whole is not None and float(np.median(np.abs(pieces.residuals(x)))) < _AT_HOME:
+            break
+    return _deepest(problem, minima)
+
+
+def _deepest(problem: Problem, minima: list[tuple[float, FloatArray]]) -> list[FloatArray]:
+    """Of minima for some of the frames those that are deepest for all, in order."""
+    minima.sort(key=lambda one: one[0])
+    least, x = minima[0]
+    rivals = [x]
+    for cost, other in minima[1:]:
+        new = all(np.abs(other - one).max() > _APART * np.abs(one).max() for one in rivals)
+        if new and cost < least + _RIVAL and len(rivals) < _RIVALS:
+            rivals.append(other)
+    if len(rivals) == 1:
+        return rivals
+    polished = [minimise(problem, one, LOOSE) for one in rivals]
+    return [one for one, _ in sorted(polished, key=lambda one: one[1])]
+
+
+def _moving_frames(film: Seen, spread: float) -> int:
+    """How many frames it moves for, at least so many as a parabola needs."""
+    return max(rests_from(film, spread), min(_FEW, film.time.size))
+
+
+def _first_parabola(film: Seen, moving: int) -> tuple[FloatArray, FloatArray, float]:
+    """Place and velocity at the start, and the deceleration along it over the whole run, m/s²."""
+    first = robust_parabola(film.time, film.place, 0, min(max(_FEW, int(_SHARE * moving)), moving))
+    last = robust_parabola(film.time, film.place, max(0, moving - max(_FEW, moving // 4)), moving)
+    span = float(film.time[moving - 1])
+    end = last[1] + 2.0 * last[2] * span
+    speed = math.hypot(*first[1])
+    slowing = (speed - math.hypot(*end)) / span if span > 0.0 else 0.0
+    return first[0], first[1], max(slowing, 0.02 * speed / max(span, 1e-300), 1e-9)
+
+
+def robust_parabola(time: FloatArray, place: FloatArray, start: int, stop: int) -> FloatArray:
+    """Coefficients (3, 2) of a parabola through frames, outliers weighing little."""
+    t, p = time[start:stop], place[start:stop]
+    powers = np.stack([np.ones(t.size), t, t * t], axis=1)[:, : min(3, max(1, t.size - 1))]
+    weights = np.ones(t.size)
+    found = np.zeros((3, 2))
+    for _ in range(6):
+        root = np.sqrt(weights)[:, None]
+        coefficients = np.linalg.lstsq(powers * root, p * root, rcond=None)[0]
+        off = np.hypot(*(p - powers @ coefficients).T)
+        spread = max(float(np.median(off)), 1e-9 * float(np.abs(p).max()), 1e-150)
+        weights = 1.0 / (1.0 + (off / (2.0 * spread)) ** 2) ** 2
+    found[: len(coefficients)] = coefficients
+    return found
+
+
+def _guesses(
+    problem: Problem, velocity: FloatArray, slowing: float, turning: Turning | None, rests: bool
+) -> list[_Guess]:
+    """The motions that lie nearest to the track, of different spins or heights."""
+    asked, film = problem.asked, problem.films[0]
+    speed, radius = math.hypot(*velocity), asked.scales(_any(asked))[2]
+    chosen = np.unique(np.linspace(0, film.time.size - 1, _FRAMES).astype(int))
+    time = film.time[chosen]
+    ahead = np.array([velocity, [-velocity[1], velocity[0]]]) / max(speed, _LEAST_SPEED)
+    places = (film.place[chosen] - film.place[0]) @ ahead.T
+    size = float(np.abs(places).max()) + problem.noise[0]
+    found = []
+    for spin, turns in _spins(asked, turning, speed, radius, rests):
+        slip = math.hypot(speed, radius * spin) or 1.0
+        phi = math.atan2(radius * spin, speed)
+        rates = None if turning is None else turning.with_more(turns, film.time)[0]
+        moments = time if turning is None else np.concatenate([time, turning.time])
+        for delta, decels in _scales(asked, slowing / max(math.cos(phi), 0.1)):
+            curve = problem.moving(_found(asked, decels[0], delta)).curve
+            height = min(delta, curve.highest)
+
+            def scores(
+                decels: FloatArray, share: float, phi: float = phi, height: float = height,
+                slip: float = slip, rates: FloatArray | None = rates, curve: Curve = curve,
+                moments: FloatArray = moments,
+            ) -> FloatArray:  # fmt: skip
+                tau = np.outer(decels / slip, moments).reshape(1, -1)
+                states = curve.states(np.array([phi]), np.array([height]), tau)[:, 0]
+                states = states.reshape(6, decels.size, -1)
+                length = (slip * slip / decels)[:, None]
+                off = np.hypot(
+                    length * states[0, :, : time.size] - places[:, 0],
+                    length * states[1, :, : time.size] - places[:, 1],
+                ) / (share * size)  # fmt: skip
+                score: FloatArray = np.log1p(off * off).mean(axis=1)
+                if rates is not None:
+                    spins = states[5, :, time.size :] * (slip / radius)
+                    scale = _RATE_SHARE * abs(rates[0]) + 0.01 / film.usual_step
+                    score += np.log1p(((spins - rates) / scale) ** 2).mean(axis=1)
+                return score
+
+            decel = float(decels[scores(decels, _PLACE_SHARE).argmin()])
+            if decels.size > 1:
+                decels = decel * _NEARER
+            finer = scores(decels, _FINER_SHARE)
+            n = int(finer.argmin())
+            found.append(_Guess(float(decels[n]), height, spin, turns, float(finer[n])))
+    found.sort(key=lambda guess: guess.score)
+    if turning is not None:
+        return found[:_KEPT]
+    # without angles every spin is a chance, with the height that suits it
+    nearest: dict[float, _Guess] = {}
+    for guess in found:
+        nearest.setdefault(guess.spin, guess)
+    return list(nearest.values())[:_KEPT_BLIND]
+
+
+def _spins(
+    asked: Asked, turning: Turning | None, speed: float, radius: float, rests: bool
+) -> list[tuple[float, int]]:
+    """Spins to try, with how many more turns from frame to frame each means."""
+    if "launch_spin" in asked.fixed:
+        spin = asked.fixed["launch_spin"]
+        if turning is None:
+            return [(spin, 0)]
+        first = float(turning.rate[0])
+        return [(spin, round((spin - first) * turning.step / (2.0 * math.pi)))]
+    more = [(asked.start["launch_spin"], 0)] if "launch_spin" in asked.start else []
+    if turning is None:
+        scale = max(speed, _LEAST_SPEED) / radius
+        spins = sorted({sign * ratio * scale for ratio, sign in product(_RATIOS, (1.0, -1.0))})
+        return [(spin, 0) for spin in spins] + more
+    slope = (turning.rate[1] - turning.rate[0]) / (turning.time[1] - turning.time[0]) \
+        if turning.rate.size > 1 else 0.0  # fmt: skip
+    first = float(turning.rate[0] - slope * turning.time[0])
+    whole = 2.0 * math.pi / turning.step
+    if rests:
+        at_rest = -round(float(turning.rate[-1]) / whole)
+        return [(first + at_rest * whole, at_rest)]
+    return [(first + k * whole, k) for k in range(-_MOST_TURNS, _MOST_TURNS + 1)]
+
+
+def _any(asked: Asked) -> Found:
+    """Any numbers for what is free."""
+    known = asked.known()
+    middle = {"friction": 0.2, "decel": 2.0, "delta": 0.3, "height": 0.3 * asked.puck.radius}
+    values = {}
+    for name in asked.free:
+        value = asked.start.get(name, asked.priors.get(name, (known.get(name) or 0.0,))[0])
+        low, high = asked.limits(name)
+        values[name] = min(max(value or middle.get(name, value), low), high)
+    return values
+
+
+def _scales(asked: Asked, slowing: float) -> list[tuple[float, FloatArray]]:
+    """Heights δ to try, each with a range of J."""
+    found = _any(asked)
+    decel, delta, _ = asked.scales(found)
+    decel_free = {"friction", "decel", "gravity"} & {*asked.free}
+    decels = np.append(slowing * _DECELS, decel) if decel_free else np.array([decel])
+    if {"delta", "height"} & {*asked.free}:
+        low, high = asked.limits("delta") if "delta" in asked.free else (0.0, 4.0)
+        heights = {min(max(height, low), high) for height in (*_HEIGHTS, delta)}
+        if "delta" not in asked.start and "height" not in asked.start:
+            heights.discard(delta)
+        return [(height, decels) for height in sorted(heights)] or [(delta, decels)]
+    if asked.uses_delta:
+        return [(delta, decels)]
+    # δ = 2 f h / r goes with J
+    return [(delta * one / decel, np.array([one])) for one in decels.tolist()]
+
+
+def _found(asked: Asked, decel: float, delta: float) -> Found:
+    """The free numbers that mean these J and δ."""
+    found = _any(asked)
+    gravity = {**asked.known(), **found}["gravity"]
+    if "friction" in found:
+        found["friction"] = decel / gravity
+    elif "decel" in found:
+        found["decel"] = decel
+    elif "gravity" in found:
+        found["gravity"] = decel / asked.known()["friction"]
+    if "delta" in found:
+        found["delta"] = delta
+    elif "height" in found:
+        radius, gravity = asked.scales(found)[2], {**asked.known(), **found}["gravity"]
+        found["height"] = 0.5 * delta * radius * gravity / decel
+    for name in found:
+        low, high = asked.limits(name)
+        found[name] = min(max(found[name], low), high)
+    return found

@@ -1,0 +1,120 @@
+"""Picture of a fit: the tracks and the motion found, what is left, and how sure the numbers are."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from puck_tables.fitting.launched import path_of
+from puck_tables.fitting.outcome import Fit
+from puck_tables.plot.style import BLUE, COLORS, GREY, LAUNCH, ORANGE, RED, canvas, titled
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_POINTS = 9  # of a profile curve
+_REACH = 3.0  # standard errors to either side of it
+_FINE = 400
+
+
+def draw(found: Fit) -> Figure:
+    """Paths, residuals over time, pulls, and profile curves of the puck's numbers."""
+    names = [n for n in found.estimate.problem.asked.free if found.numbers[n].determined]
+    figure = canvas(11.0, 7.0)
+    grid = figure.add_gridspec(2, 6)
+    draw_on(figure.add_subplot(grid[0, :3]), found)
+    _draw_residuals(figure.add_subplot(grid[0, 3:]), found)
+    _draw_pulls(figure.add_subplot(grid[1, :2]), found)
+    if names:
+        inner = grid[1, 2:].subgridspec(1, min(len(names), 3))
+        for n, name in enumerate(names[:3]):
+            _draw_profile(figure.add_subplot(inner[0, n]), found, name)
+    told = [
+        f"{name} = {_told(found.numbers[name].value, found.numbers[name].error)}" for name in names
+    ]
+    titled(figure, "; ".join([*told, f"chi² per degree {found.chi2 / max(found.degrees, 1):.3g}"]))
+    return figure
+
+
+def draw_on(paths: Axes, found: Fit) -> None:
+    """The paths alone."""
+    problem, x = found.estimate.problem, found.estimate.x
+    moving = problem.moving(problem.found(x))
+    for n, (film, launch) in enumerate(zip(problem.films, problem.launches(x), strict=True)):
+        counts = found.estimate.kept[problem.each()[n][0]]
+        colour = COLORS[n % len(COLORS)]
+        paths.plot(*film.place[counts].T, ".", color=colour, markersize=3, alpha=0.6)
+        if not counts.all():
+            paths.plot(
+                *film.place[~counts].T, "x", color=RED, markersize=5,
+                label="left out" if n == 0 else None,
+            )  # fmt: skip
+        fine = np.linspace(0.0, float(film.time[-1]), _FINE)
+        way = path_of(moving, launch[2:4], float(launch[4]), fine)[:2] + launch[:2, None]
+        paths.plot(*way, color=colour, linewidth=1.1)
+        paths.plot(*launch[:2], **LAUNCH)
+    paths.set(xlabel="x / m", ylabel="y / m", title="seen (dots) and found (lines)")
+    paths.set_aspect("equal", adjustable="datalim")
+    if paths.get_legend_handles_labels()[1]:
+        paths.legend(frameon=False, fontsize=9)
+
+
+def _draw_residuals(panel: Axes, found: Fit) -> None:
+    """What was seen less the model, over the time since the launch."""
+    estimate = found.estimate
+    shown = np.clip(-estimate.residuals, -6.0, 6.0)
+    for film, parts in zip(estimate.problem.films, estimate.problem.each(), strict=True):
+        times = [film.time, film.time]
+        if film.angle is not None:
+            times.append(film.time[np.isfinite(film.angle)])
+        labels = ("x", "y", "angle")
+        for time, part, colour, label in zip(times, parts, COLORS, labels, strict=False):
+            first = film is estimate.problem.films[0]
+            panel.plot(
+                time, shown[part], ".", color=colour, markersize=3, alpha=0.6,
+                label=label if first else None,
+            )  # fmt: skip
+    panel.axhline(0.0, color=GREY, linewidth=0.8)
+    panel.set(
+        xlabel="time since the launch / s",
+        ylabel="residual / noise (6 at most)",
+        ylim=(-6.5, 6.5),
+        title=f"runs p = {found.runs:.2g}, drift p = {found.drift:.2g}",
+    )
+    panel.legend(frameon=False, fontsize=9, ncols=3, loc="upper right")
+
+
+def _draw_pulls(panel: Axes, found: Fit) -> None:
+    """How often residuals have each size, beside the normal distribution."""
+    seen = found.estimate.problem.kinds < 2
+    pulls = np.clip(-found.estimate.residuals[seen], -6.0, 6.0)
+    edges = np.linspace(-6.0, 6.0, 37)
+    panel.hist(pulls, edges.tolist(), density=True, color=BLUE, alpha=0.6)
+    z = np.linspace(-6.0, 6.0, 200)
+    panel.plot(z, np.exp(-0.5 * z * z) / math.sqrt(2.0 * math.pi), color=ORANGE)
+    panel.set(xlabel="residual / noise", ylabel="density", title=f"{pulls.size} residuals")
+
+
+def _draw_profile(panel: Axes, found: Fit, name: str) -> None:
+    """By how much χ² rises when one number is held elsewhere."""
+    k = found.estimate.problem.asked.free.index(name)
+    values, rises = found.profile(name, _POINTS, _REACH)
+    number = found.numbers[name]
+    panel.plot(values, rises, "o-", color=BLUE, markersize=3)
+    error = float(found.certainty.errors[k])
+    fine = np.linspace(values[0], values[-1], 100)
+    if math.isfinite(error):
+        panel.plot(fine, ((fine - number.value) / error) ** 2, ":", color=GREY)
+    panel.axhline(3.841, color=ORANGE, linewidth=0.8)
+    for end in (number.low, number.high):
+        panel.axvline(end, color=ORANGE, linewidth=0.8)
+    unit = "" if number.unit == "1" else f" / {number.unit}"
+    panel.set(xlabel=f"{name}{unit}", title="rise of chi²")
+    panel.tick_params(axis="x", labelrotation=30)
+
+
+def _told(value: float, error: float) -> str:
+    return f"{value:.6g} ± {error:.2g}"

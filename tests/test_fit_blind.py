@@ -1,0 +1,101 @@
+"""What tracks cannot tell is named, with what would tell it, and never gets a small error."""
+
+from __future__ import annotations
+
+import film_judge
+import numpy as np
+import pytest
+from test_fit import DECEL, DELTA, KNOWN, NOISE, RADIUS, TIMES, VELOCITY, film
+
+import puck_tables as pt
+
+
+@pytest.fixture(scope="module")
+def straight() -> np.ndarray:
+    """A slide without spin."""
+    return film_judge.path(VELOCITY, 0.0, DECEL, DELTA, RADIUS, TIMES)
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_no_spin_tells_no_tilt(straight, seed):
+    found = pt.fit(film(straight, seed), KNOWN)
+    assert not found["delta"].determined and not found["height"].determined
+    assert found["decel"].determined
+    assert found["decel"].value == pytest.approx(DECEL, abs=5.0 * found["decel"].error)
+    (sentence,) = [text for text in found.blind if text.startswith("delta is not determined")]
+    assert "more spin" in sentence
+    summary = found.summary()["numbers"]["delta"]
+    assert summary["error"] is None and summary["determined"] is False
+
+
+@pytest.mark.parametrize("seed", [1, 2, 4])
+def test_a_straight_path_without_angles_does_not_even_tell_friction(straight, seed):
+    # a flat puck that spins at the limit ratio loses speed at a constant rate, too
+    found = pt.fit(film(straight, seed, angles=False), KNOWN)
+    assert not found["delta"].determined and not found["friction"].determined
+    assert found["friction"].low < 0.15 < found["friction"].high
+    rival = [text for text in found.blind if "Another motion" in text]
+    assert len(rival) == 1 and "angle marks" in rival[0]
+    known = pt.fit(film(straight, seed, angles=False), KNOWN, fixed={"launch_spin": 0.0})
+    assert known["friction"].value == pytest.approx(0.15, abs=5.0 * known["friction"].error)
+    assert known["friction"].error < 1e-3 and not known["delta"].determined
+
+
+def test_friction_and_height_need_gravity(straight):
+    spun = film_judge.path(VELOCITY, 60.0, DECEL, DELTA, RADIUS, TIMES)
+    found = pt.fit(film(spun, 1), KNOWN, free=["friction", "height", "gravity"])
+    for name in ("friction", "height", "gravity"):
+        assert not found[name].determined
+    assert found["decel"].value == pytest.approx(DECEL, rel=1e-3)
+    assert found["delta"].error < 1e-3
+    assert "friction" in found.blind[0] and "Measure one of them" in found.blind[0]
+    held = pt.fit(
+        film(spun, 1), KNOWN, free=["friction", "height", "gravity"],
+        prior={"gravity": (9.81, 0.01)},
+    )  # fmt: skip
+    assert held["friction"].determined
+    assert held["friction"].error == pytest.approx(0.15 * 0.01 / 9.81, rel=0.05)
+
+
+def test_a_prior_determines_what_the_track_does_not(straight):
+    found = pt.fit(film(straight, 4), KNOWN, prior={"delta": (0.2, 0.05)})
+    assert found["delta"].value == pytest.approx(0.2, abs=0.01)
+    assert found["delta"].error == pytest.approx(0.05, rel=0.02)
+
+
+def test_a_forecast_is_the_bound():
+    # hockey puck and rubber puck, films 1.1 times as long as the run
+    rows = [
+        (0.15, 0.2, 2.0, 60.0, 120.0, 0.3e-3, 5e-3), (0.15, 0.2, 2.0, 10.0, 120.0, 0.3e-3, 5e-3),
+        (0.6, 0.79, 1.5, 60.0, 240.0, 0.2e-3, 3e-3), (0.15, 0.2, 2.0, 60.0, 60.0, 1e-3, 20e-3),
+    ]  # fmt: skip
+    frames, relative = [], []
+    for friction, delta, speed, spin, fps, place, angle in rows:
+        puck = pt.Puck(radius=RADIUS, height=delta * RADIUS / (2.0 * friction), friction=friction)
+        launch = pt.Launch((speed, 0.0), spin=spin)
+        stop = float(puck.stop((speed, 0.0), spin).stop_time)
+        told = pt.fisher(puck, launch, pt.Camera(fps, place, angle, 1.1 * stop))
+        times = np.arange(told.frames) / fps
+        decel = friction * film_judge.G
+        bound = film_judge.bound((speed, 0.0), spin, decel, delta, RADIUS, times, (place, angle))
+        assert told["friction"] * film_judge.G == pytest.approx(bound[0], rel=2e-3)
+        assert told["delta"] == pytest.approx(bound[1], rel=2e-3)
+        frames.append(told.frames)
+        relative.append(round(told["friction"] / friction, 6))
+    assert frames == [254, 185, 112, 127]
+    assert relative == pytest.approx([6.0e-5, 1.8e-4, 3.2e-4, 3.1e-4], rel=0.02)
+
+
+def test_a_forecast_says_what_a_film_cannot_tell(tmp_path):
+    puck = pt.Puck(radius=RADIUS, height=0.0254, friction=0.15)
+    told = pt.fisher(puck, pt.Launch((2.0, 0.0)), pt.Camera(120.0, *NOISE))
+    assert np.isinf(told["delta"]) and np.isfinite(told["friction"])
+    blind = pt.fisher(puck, pt.Launch((2.0, 0.0), spin=60.0), pt.Camera(120.0, NOISE[0]))
+    assert blind["friction"] > 5.0 * pt.fisher(
+        puck, pt.Launch((2.0, 0.0), spin=60.0), pt.Camera(120.0, *NOISE)
+    )["friction"]  # fmt: skip
+    assert len(told.plot(tmp_path / "forecast.png").axes) >= 2
+    with pytest.raises(pt.InputError, match="frames"):
+        pt.fisher(puck, pt.Launch((2.0, 0.0)), pt.Camera(1.0, 1e-3))
+    with pytest.raises(pt.InputError, match="fps"):
+        pt.Camera(0.0, 1e-3)

@@ -1,0 +1,101 @@
+"""``puck fit`` and ``puck simulate --fit`` from the command line."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+from click.testing import CliRunner, Result
+from puck_tables.cli.main import main
+
+import puck_tables as pt
+
+TIMES = np.arange(100) / 60.0
+
+
+def run(*arguments: object) -> Result:
+    return CliRunner().invoke(main, [str(one) for one in arguments])
+
+
+@pytest.fixture(scope="module")
+def film(tmp_path_factory):
+    puck = pt.Puck(radius=0.0381, height=0.0254, friction=0.15)
+    path = puck.states((1.5, 0.4), 40.0, TIMES)
+    rng = np.random.default_rng(2)
+    columns = [TIMES, path.x + 3e-4 * rng.normal(size=100), path.y + 3e-4 * rng.normal(size=100),
+               np.angle(np.exp(1j * (path.orientation + 5e-3 * rng.normal(size=100))))]  # fmt: skip
+    file = tmp_path_factory.mktemp("films") / "film.csv"
+    rows = [",".join(f"{value:.9f}" for value in row) for row in zip(*columns, strict=True)]
+    file.write_text("t [s],x [m],y [m],angle [rad]\n" + "\n".join(rows) + "\n")
+    return file
+
+
+def test_a_film_becomes_numbers_a_file_a_picture_and_a_run(film, tmp_path):
+    out, picture = tmp_path / "fit.json", tmp_path / "fit.png"
+    done = run("fit", film, "--radius", 0.0381, "-o", out, "--plot", picture, "--hold-out", 0.3)
+    assert done.exit_code == 0, done.output
+    assert "The friction coefficient is 0.1" in done.stdout
+    assert "held out" in done.stdout and "95 %" in done.stdout
+    assert picture.read_bytes()[1:4] == b"PNG"
+    saved = json.loads(out.read_text())
+    assert saved["numbers"]["friction"]["value"] == pytest.approx(0.15, rel=1e-3)
+    again = run("simulate", "--fit", out, "--json")
+    assert again.exit_code == 0, again.output
+    told = json.loads(again.stdout)
+    assert told["launch_velocity"] == pytest.approx([1.5, 0.4], abs=5e-3)
+    assert told["friction"] == saved["numbers"]["friction"]["value"]
+
+
+def test_json_and_known_numbers(film):
+    done = run("fit", film, "--radius", 0.0381, "--height", 0.0254, "--json")
+    told = json.loads(done.stdout)
+    assert told["numbers"]["friction"]["how"] == "found"
+    assert told["numbers"]["height"]["how"] == "known"
+    assert told["numbers"]["delta"]["how"] == "follows"
+    held = run("fit", film, "--radius", 0.0381, "--fix", "delta=0.2", "--prior", "friction=0.2:0.5",
+               "--start", "friction=0.3", "--bound", "friction=0.01:1", "--noise", "0.0003,0.005",
+               "--json")  # fmt: skip
+    assert held.exit_code == 0, held.output
+    assert json.loads(held.stdout)["noise"] == [0.0003, 0.005]
+
+
+def test_what_is_not_determined_is_said(film):
+    done = run("fit", film, "--radius", 0.0381, "--free", "friction,gravity,height")
+    assert done.exit_code == 0
+    assert "not determined" in done.stdout and "Measure one of them" in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ((), "--radius"),
+        (("--radius", 0.0381, "--free", "frictoin"), "did you mean friction"),
+        (("--radius", 0.0381, "--height", 0.02, "--free", "height"), "leave out one"),
+        (("--radius", 0.0381, "--friction", 0.2, "--fix", "friction=0.2"), "say the same"),
+        (("--radius", 0.0381, "--prior", "friction=0.2"), "VALUE:SIGMA"),
+        (("--radius", 0.0381, "--prior", "friction=0.2:0"), "standard deviation"),
+        (("--radius", 0.0381, "--fix", "delta"), "NAME=VALUE"),
+        (("--radius", 0.0381, "--fix", "delta=x"), "not a finite number"),
+        (("--radius", 0.0381, "--noise", "1,2,3"), "PLACE"),
+        (("--radius", -1), "radius"),
+        (("--radius", 0.0381, "-o", "fit.txt"), ".h5"),
+    ],
+)
+def test_a_refusal_is_a_sentence(film, arguments, words):
+    done = run("fit", film, *arguments)
+    assert done.exit_code == 2
+    assert words in done.stderr and "Traceback" not in done.stderr
+
+
+def test_files_are_kept_and_others_refused(film, tmp_path):
+    out = tmp_path / "fit.json"
+    out.write_text("mine")
+    done = run("fit", film, "--radius", 0.0381, "-o", out)
+    assert done.exit_code == 1 and out.read_text() == "mine"
+    for text in ("mine", "[]", '{"kind": "puck-tables fit 1"}', "[" * 10**5):
+        out.write_text(text)
+        done = run("simulate", "--fit", out)
+        assert done.exit_code == 2 and "no file of puck fit" in done.stderr, text
+    assert run("simulate", "--fit", out, "--v0", "1,0").exit_code == 2
+    assert run("simulate", "--track", "1", "--v0", "1,0").exit_code == 2

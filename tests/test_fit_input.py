@@ -1,0 +1,100 @@
+"""What a fit refuses, it refuses in a sentence that says what to do."""
+
+from __future__ import annotations
+
+import math
+import re
+
+import numpy as np
+import pytest
+
+import puck_tables as pt
+
+TIMES = np.arange(60) / 60.0
+PATH = pt.Puck(radius=0.04, height=0.02, friction=0.2).states((1.0, 0.2), 30.0, TIMES)
+NOISE = 3e-4 * np.random.default_rng(0).normal(size=(60, 2))
+PLACE = np.stack([PATH.x, PATH.y], axis=1) + NOISE
+TRACK = pt.Track(TIMES, PLACE, PATH.orientation + 3.0 * NOISE[:, 0], "film")
+PUCK = pt.Puck(radius=0.04)
+
+
+@pytest.mark.parametrize(
+    ("how", "words"),
+    [
+        ({"free": ["frictoin"]}, "did you mean friction"),
+        ({"free": ["friction", "friction"]}, "once"),
+        ({"free": ["friction", "decel"]}, "say the same"),
+        ({"free": ["delta", "height", "friction"]}, "say the same"),
+        ({"free": ["delta"], "fixed": {"decel": 2.0, "friction": 0.2}}, "say the same"),
+        ({"free": ["delta"]}, "neither free nor known"),
+        ({"free": ["friction", "inner"]}, "annulus"),
+        ({"free": ["friction"], "fixed": {"friction": 0.2}}, "both free and fixed"),
+        ({"fixed": {"friction": 0.0}}, "greater than 0"),
+        ({"fixed": {"friction": math.nan}}, "finite"),
+        ({"fixed": {"launch_spni": 0.0}}, "launch_spin"),
+        ({"fixed": {"delta": 0.1}, "prior": {"delta": (0.1, 0.1)}}, "fixed"),
+        ({"prior": {"friction": (0.2, 0.0)}}, "standard deviation"),
+        ({"prior": {"friction": 0.2}}, "standard deviation"),
+        ({"bounds": {"friction": (0.3, 0.2)}}, "ascend"),
+        ({"start": {"gyration": 0.7}}, "not free"),
+        ({"noise": 3e-4}, "metres, radians"),
+        ({"noise": (0.0, 1e-3)}, "greater than 0"),
+        ({"since": 5.0}, "0 frames in the time asked for"),
+        ({"hold_out": 0.99}, "share"),
+        ({"hold_out": "other"}, "the tracks are film"),
+        ({"laws": ["unifrom"]}, "unifrom"),
+        ({"laws": "uniform"}, "list"),
+        ({"laws": ["ring", "ring"]}, "once"),
+    ],
+)
+def test_questions_are_refused(how, words):
+    with pytest.raises(pt.InputError, match=re.escape(words)):
+        pt.fit(TRACK, PUCK, **how)
+
+
+@pytest.mark.parametrize(
+    ("tracks", "words"),
+    [
+        ([], "no track"),
+        (TIMES, "tracks must be"),
+        (
+            pt.Track([0.0, 1.0], [[0.0, 0.0], [1.0, 0.0]], name="two"),
+            "two shows the puck in 2 frames:",
+        ),
+        (pt.Track(TIMES[:5], PLACE[:5], name="few"), "too few to judge their noise"),
+        (pt.Track(TIMES, NOISE, 0.0 * TIMES, "flat"), "flat lies still"),
+    ],
+)
+def test_tracks_are_refused(tracks, words):
+    with pytest.raises(pt.InputError, match=re.escape(words)):
+        pt.fit(tracks, PUCK)
+
+
+def test_names_of_a_result_are_checked():
+    found = pt.fit(TRACK, PUCK)
+    for ask in (lambda: found["mu"], lambda: found.launch(1), lambda: found.launch("other"),
+                lambda: found.profile("gravity")):  # fmt: skip
+        with pytest.raises(pt.InputError):
+            ask()
+    with pytest.raises(pt.InputError, match="Puck"):
+        pt.fit(TRACK, "puck")
+
+
+def test_a_few_frames_of_known_noise_are_fitted():
+    found = pt.fit(pt.Track(TIMES[:6], PLACE[:6], name="few"), PUCK, noise=(3e-4, None),
+                   fixed={"delta": 0.2, "launch_spin": 30.0})  # fmt: skip
+    assert found["friction"].value == pytest.approx(0.2, abs=5.0 * found["friction"].error)
+
+
+def test_two_tracks_of_one_name_are_told_apart():
+    found = pt.fit([TRACK, TRACK], PUCK)
+    assert [launch.name for launch in found.launches] == ["film 1", "film 2"]
+
+
+def test_frames_without_place_or_angle_are_left_alone():
+    place, angle = PLACE.copy(), np.array(TRACK.angle)
+    place[10:20] = np.nan
+    angle[30:35] = np.nan
+    found = pt.fit(pt.Track(TIMES, place, angle), PUCK)
+    assert found.estimate.residuals.size == 2 * 50 + 45
+    assert found["friction"].value == pytest.approx(0.2, abs=5.0 * found["friction"].error)
