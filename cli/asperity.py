@@ -21,7 +21,7 @@ from puck_tables.cli.options import (
 from puck_tables.errors import InputError
 
 if TYPE_CHECKING:
-    from puck_tables.chetaev.asperity_curve import AsperityCurve
+    from puck_tables.chetaev.asperity_forces import AsperityCurve
 
 DEFAULT_COUNT, DEFAULT_TOP = 501, 2.5
 MAX_SPEEDS = 1_000_000
@@ -69,7 +69,7 @@ def asperity(
     if plot is not None and isinstance(speeds, float):
         raise InputError("--plot needs a range: give --speeds START:STOP:COUNT")
     from puck_tables.chetaev.asperity import Asperity
-    from puck_tables.chetaev.asperity_curve import asperity_curve
+    from puck_tables.chetaev.asperity_forces import asperity_curve
     from puck_tables.io.csv import encode
     from puck_tables.motion.body import STANDARD_GRAVITY
 

@@ -205,6 +205,7 @@ def report(found: Fit) -> str:
         f"{'noise':<15} {noise}",
         f"{'chi^2':<15} {found.chi2:.5g} for {found.degrees} degrees of freedom",
         f"{'left out':<15} {100.0 * found.outliers:.3g} % of the observations, as outliers",
+        *_cut_off(found),
         f"{'residuals':<15} probability of such a pattern by chance: runs {found.runs:.2g}, "
         f"drift {found.drift:.2g}",
     ]
@@ -219,6 +220,16 @@ def report(found: Fit) -> str:
             f"prediction, z rms {held.rms:.3g} (1 if all is right)",
         ]
     return "\n".join(lines)
+
+
+def _cut_off(found: Fit) -> list[str]:
+    """Frames at either end that are no free motion."""
+    return [
+        f"{'cut off':<15} the first {first} and the last {last} frames of {launch.name}: no free "
+        "motion"
+        for launch, (first, last) in zip(found.launches, found.left_out, strict=True)
+        if first or last
+    ]
 
 
 def _plainly(found: Fit) -> str:

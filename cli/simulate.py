@@ -171,7 +171,10 @@ def _fitted(
             )
     from puck_tables.fitting.saved import puck_and_launch
 
-    return puck_and_launch(path, track)
+    puck, velocity, spin, unknown = puck_and_launch(path, track)
+    for sentence in unknown:
+        click.echo(printable(f"{path}: {sentence}"), err=True)
+    return puck, velocity, spin
 
 
 def report(run: Trajectory, note: str) -> str:

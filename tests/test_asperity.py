@@ -14,7 +14,7 @@ from scipy.optimize import brentq
 
 from puck_tables import SpeedLaw
 from puck_tables.chetaev import Asperity, asperity_curve, asperity_motion
-from puck_tables.chetaev.asperity_curve import greatest_force, held_round
+from puck_tables.chetaev.asperity_forces import greatest_force, held_round
 from puck_tables.errors import InputError, OutputError
 
 UNIT = Asperity(amplitude=1.0, length=1.0, load=1.0, mass=1.0)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import importlib
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
@@ -116,3 +117,11 @@ def test_a_library_has_its_doors(library: str):
 def test_few_modules_lie_flat():
     flat = {path.stem for path in (ROOT / "puck_tables").glob("*.py")} - {"__init__"}
     assert len(flat) <= 8, flat
+
+
+@pytest.mark.parametrize("package", ["", "chetaev", "contact", "motion"])
+def test_no_public_name_is_a_module_s_too(package: str):
+    """Whoever imports that module puts it in the place of the name."""
+    home = importlib.import_module(f"puck_tables.{package}".rstrip("."))
+    lies_there = {name.removeprefix(f"{package}.") for name in modules()}
+    assert {name for name in home.__all__ if name in lies_there} == set()

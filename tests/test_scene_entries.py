@@ -81,11 +81,11 @@ FILES = {
 # a board on which every entry matters, and another value for each
 ON_BOARD: dict[str, Any] = {
     "puck": [
-        {"radius": 0.03, "friction": 0.2, "mass": 0.1, "height": 0.01, "tangential": 0.0,
-         "rim": 0.3, "launch": {"velocity": [1.5, 0.02], "spin": 20.0}},
-        {"radius": 0.03, "friction": 0.2, "mass": 0.1, "tangential": 0.0,
+        {"name": "a", "radius": 0.03, "friction": 0.2, "mass": 0.1, "height": 0.01,
+         "tangential": 0.0, "rim": 0.3, "launch": {"velocity": [1.5, 0.02], "spin": 20.0}},
+        {"name": "b", "radius": 0.03, "friction": 0.2, "mass": 0.1, "tangential": 0.0,
          "launch": {"position": [0.1, 0.01]}},
-        {"radius": 0.03, "friction": 0.2,
+        {"name": "c", "radius": 0.03, "friction": 0.2,
          "launch": {"position": [0.0, 0.3], "velocity": [2.0, 0.0]}},
         {"radius": 0.03, "friction": 0.2,
          "launch": {"position": [0.0, -0.3], "velocity": [2.0, 0.0]}},
@@ -97,6 +97,7 @@ ON_BOARD: dict[str, Any] = {
     "arc": [{"point": [1.0, 0.0], "radius": 0.3, "start": -2.0, "span": 4.0, "tangential": 0.0,
              "friction": 0.2}],
 }  # fmt: skip
+RIM = {"puck": "a", "partner": "b", "restitution": 0.9, "tangential": 0.1, "friction": 0.25}
 BOARD: dict[str, Any] = {
     "launch.time": None, "puck[0].name": None, "puck[0].colour": None,
     "puck[0].radius": 0.025, "puck[0].height": 0.0, "puck[0].friction": 0.3, "puck[0].mass": 0.2,
@@ -110,6 +111,8 @@ BOARD: dict[str, Any] = {
     "pocket[0].point": [0.35, -0.3], "pocket[0].radius": 0.04,
     "arc[0].point": [1.05, 0.0], "arc[0].radius": 0.35, "arc[0].start": 1.0, "arc[0].span": 1.0,
     "arc[0].restitution": 0.5, "arc[0].tangential": 0.5, "arc[0].friction": 0.01,
+    "rim[0].puck": "c", "rim[0].partner": "c", "rim[0].restitution": 0.5,
+    "rim[0].tangential": -0.5, "rim[0].friction": 0.01,
 }  # fmt: skip
 NO_PHYSICS = {"title", "run.frames", "run.tol"}
 
@@ -133,11 +136,12 @@ def test_the_cases_below_are_all_entries() -> None:
 
 @pytest.mark.parametrize("path", [path for path, value in BOARD.items() if value is not None])
 def test_every_entry_of_a_board_changes_the_motion(path: str) -> None:
-    changed = copy.deepcopy(ON_BOARD)
+    board = {**ON_BOARD, "rim": [RIM]} if path.startswith("rim") else ON_BOARD
+    changed = copy.deepcopy(board)
     set_path(changed, path, BOARD[path])
     if path == "puck[3].path":
         del changed["puck"][3]["launch"]
-    ends = [Scene.from_tables(one).simulate([0.0]) for one in (ON_BOARD, changed)]
+    ends = [Scene.from_tables(one).simulate([0.0]) for one in (board, changed)]
     before, after = ({**one.last, "end_time": one.end_time} for one in ends)
     assert any(not np.array_equal(before[name], after[name]) for name in before), path
 

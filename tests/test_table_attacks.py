@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import resource
 import shutil
 import subprocess
@@ -109,8 +110,8 @@ def test_no_pickle_is_reachable():
     sources = [*(ROOT / "puck_tables").rglob("*.py"), *(ROOT / "cli").rglob("*.py")]
     for path in sources:
         text = path.read_text(encoding="utf-8")
-        for word in ("import pickle", "allow_pickle=True", "eval(", "exec(", "import marshal"):
-            assert word not in text, (path, word)
+        for word in (r"^ *import (pickle|marshal)\b", "allow_pickle=True", r"eval\(", r"exec\("):
+            assert not re.search(word, text, re.MULTILINE), (path, word)
 
 
 ABSURD: dict[str, list[dict[str, object]]] = {

@@ -6,7 +6,7 @@ from puck_tables._core.lazy import lazily
 
 if TYPE_CHECKING:
     from puck_tables.chetaev.asperity import Asperity, AsperityMotion, asperity_motion
-    from puck_tables.chetaev.asperity_curve import AsperityCurve, asperity_curve
+    from puck_tables.chetaev.asperity_forces import AsperityCurve, asperity_curve
     from puck_tables.chetaev.motion import ConstrainedMotion, constrained_motion
     from puck_tables.chetaev.patch_puck import patch_stop, patch_system
     from puck_tables.chetaev.system import ConstrainedSystem
@@ -17,7 +17,7 @@ _HOMES = {
     "AsperityMotion": "asperity",
     "ConstrainedMotion": "motion",
     "ConstrainedSystem": "system",
-    "asperity_curve": "asperity_curve",
+    "asperity_curve": "asperity_forces",
     "asperity_motion": "asperity",
     "constrained_motion": "motion",
     "patch_stop": "patch_puck",

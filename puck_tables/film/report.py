@@ -46,7 +46,9 @@ def described(track: Track) -> list[str]:
 
 def _frames(track: Track) -> str:
     size, seen = track.time.size, int(track.seen.sum())
-    rate = 1.0 / float(np.median(np.diff(track.time)))
+    steps = np.diff(track.time)
+    usual = steps[np.abs(steps - np.median(steps)) < 0.1 * np.median(steps)]
+    rate = 1.0 / float(usual.mean())  # the mean of those without a gap: times may be rounded
     share = "all" if seen == size else f"{seen} ({100.0 * seen / size:.4g} %)"
     return (
         f"{size} from {track.time[0]:.6g} s to {track.time[-1]:.6g} s, {rate:.6g} a second; the "

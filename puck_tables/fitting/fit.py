@@ -153,6 +153,7 @@ def fit(
     held = None
     if hold_out is not None:
         held = _held_out(found, hold_out, known)
+        say(steps, steps)
     return Fit(
         given=puck,
         numbers=numbers,

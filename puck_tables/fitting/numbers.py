@@ -18,6 +18,7 @@ _STEP = 1e-6
 # Scales are plausible within their own size, but not less than this
 _LEAST = {"friction": 1e-3, "decel": 1e-2, "gravity": 1e-2, "height": 1e-4, "radius": 1e-4}
 _ALL = 0.8  # of the range in which a number is looked for: an interval so wide tells nothing
+_MUCH = {"friction": 1.0, "decel": 10.0}  # an error that says nothing
 FREE, FOLLOWS, KNOWN = "found", "follows", "known"
 
 
@@ -107,7 +108,7 @@ def numbers_of(
             low, high = min(low, min(others) - half), max(high, max(others) + half)
             error = math.inf
         least, largest = (float(limit[k]) for limit in problem.limits)
-        if width >= _ALL * (largest - least):
+        if width >= _ALL * (largest - least) or error > _MUCH.get(name, math.inf):
             error = math.inf
         puck[name] = Number(
             values[name], error, low, high, PUCK[name].unit, FREE,
@@ -137,6 +138,8 @@ def numbers_of(
         for name, value in zip(LAUNCH, row.tolist(), strict=True):
             if (n, name) in problem.names:
                 error = float(errors[problem.names.index((n, name))])
+                if rivals and name == "launch_spin":  # the motions differ in it
+                    error = math.inf
                 ends = _quadratic(value, error)
                 how = FREE
             else:

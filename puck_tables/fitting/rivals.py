@@ -20,10 +20,11 @@ _APART = 4.0  # standard errors: another summit
 def rivals_of(found: Estimate, certainty: Certainty) -> tuple[Found, ...]:
     """The numbers of the puck at other summits within the 95 % limit.
 
-    Of one track without angles; several tracks, or angles, have not been seen to have any.
+    Of one track; several have not been seen to have any.  With angles they are motions of whole
+    turns more from frame to frame, where frames are few or noisy.
     """
     problem = found.problem
-    if len(problem.films) > 1 or problem.films[0].angle is not None:
+    if len(problem.films) > 1:
         return ()
     seen = np.array([not lost for lost in certainty.undetermined[: len(problem.asked.free)]], bool)
     apart = _APART * np.sqrt(np.diag(certainty.covariance))[: seen.size]

@@ -18,8 +18,10 @@ _PUCK = ("radius", "height", "friction", "mass", "gravity", "pressure", "gyratio
 
 def puck_and_launch(
     path: str | Path, track: str | None = None
-) -> tuple[Puck, tuple[float, float], float]:
+) -> tuple[Puck, tuple[float, float], float, tuple[str, ...]]:
     """The puck, velocity (m/s) and spin (rad/s) of a track in a file of ``puck fit -o fit.json``.
+
+    And sentences on what its tracks did not determine.
 
     Parameters
     ----------
@@ -45,6 +47,7 @@ def puck_and_launch(
         chosen = launches[_chosen(list(launches), track, path)]
         velocity = one_velocity(chosen["velocity"])
         spin = real("spin", chosen["spin"], "rad/s")
+        unknown = tuple(str(sentence) for sentence in data["not_determined"])
     except (KeyError, TypeError, AttributeError):
         raise InputError(told) from None
     if drag != 0.0:
@@ -52,7 +55,7 @@ def puck_and_launch(
             f"{path}: this puck was found with drag of {drag:.3g}/s, which a free puck has not: "
             "make a scene of it, with drag"
         )
-    return puck, velocity, spin
+    return puck, velocity, spin, unknown
 
 
 def _chosen(names: list[str], track: str | None, path: str | Path) -> str:

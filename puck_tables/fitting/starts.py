@@ -68,7 +68,10 @@ def minima_of(problem: Problem) -> list[FloatArray]:
     few[np.linspace(0, film.time.size - 1, _FITTED).astype(int)] = True
     part = film.part(few)
     minima: list[tuple[float, FloatArray]] = []
+    at_home: set[int] = set()
     for guess in guesses:
+        if guess.turns in at_home:
+            continue
         found = _found(asked, guess.decel, guess.delta)
         launch = np.array([*place, *velocity, guess.spin, 0.0])
         whole = None
@@ -79,9 +82,10 @@ def minima_of(problem: Problem) -> list[FloatArray]:
         pieces = replace(problem, films=(part,), whole=(whole,))
         x, cost = minimise(pieces, pieces.unknowns(found, launch[None]), LOOSE)
         minima.append((cost, x))
-        # without angles there are near minima, and all have to be seen
+        # without angles there are near minima, and all have to be seen; with them few or noisy
+        # frames may look at home with whole turns too many, so each number of them is
         if whole is not None and float(np.median(np.abs(pieces.residuals(x)))) < _AT_HOME:
-            break
+            at_home.add(guess.turns)
     return _deepest(problem, minima)
 
 
@@ -181,7 +185,9 @@ def _guesses(
             found.append(_Guess(float(decels[n]), height, spin, turns, float(finer[n])))
     found.sort(key=lambda guess: guess.score)
     if turning is not None:
-        return found[:_KEPT]
+        best = {guess.turns: guess for guess in reversed(found)}
+        kept = found[:_KEPT]
+        return kept + [guess for guess in best.values() if guess not in kept]
     # without angles every spin is a chance, with the height that suits it
     nearest: dict[float, _Guess] = {}
     for guess in found:
@@ -211,7 +217,9 @@ def _spins(
     if rests:
         at_rest = -round(float(turning.rate[-1]) / whole)
         return [(first + at_rest * whole, at_rest)]
-    return [(first + k * whole, k) for k in range(-_MOST_TURNS, _MOST_TURNS + 1)]
+    turns = {round((spin - first) / whole) for spin, _ in more}
+    turns.update(range(-_MOST_TURNS, _MOST_TURNS + 1))
+    return [(first + k * whole, k) for k in sorted(turns)]
 
 
 def _any(asked: Asked) -> Found:

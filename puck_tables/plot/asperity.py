@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.chetaev.asperity_curve import LEAP, AsperityCurve
+from puck_tables.chetaev.asperity_forces import LEAP, AsperityCurve
 from puck_tables.plot.panels import Curve, Panel, Picture, draw_panel
 from puck_tables.plot.panels import draw as panels_drawn
 

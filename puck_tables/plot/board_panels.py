@@ -29,8 +29,9 @@ def close_up(box: Box, places: FloatArray, radius: float) -> list[Box]:
 
     Examples
     --------
-    >>> close_up((0.0, 40.0, -2.0, 2.0), np.array([[30.0, 0.0], [32.0, 1.0]]), 0.15)
-    [(29.7, 32.3, -0.3, 1.3)]
+    >>> (box,) = close_up((0.0, 40.0, -2.0, 2.0), np.array([[30.0, 0.0], [32.0, 1.0]]), 0.15)
+    >>> [round(side, 9) for side in box]
+    [29.7, 32.3, -0.3, 1.3]
     >>> close_up((0.0, 4.0, -2.0, 2.0), np.array([[3.0, 0.0], [3.2, 0.1]]), 0.15)
     []
     """
