@@ -178,3 +178,16 @@ def test_the_plan_says_how_each_puck_is_moved():
     ]
     slope = pt.Scene(pucks=[piece(0, 0, friction=0.0)], floor=pt.Floor(0.1), run=pt.Run(0.1))
     assert slope.simulate().explain().startswith("1 puck integrated from impact to impact\n")
+
+
+@pytest.mark.parametrize("speed, friction", [(1.0, 1e-14), (1e8, 0.1), (1e160, 0.1)])
+def test_pucks_that_would_slide_beyond_all_digits_are_refused(speed: float, friction: float):
+    """Places are good to a share of Q²/J: looked up they passed through each other unseen."""
+    one = pt.Piece(0.03, friction=friction, launch=pt.Launch((speed, 0.0)))
+    two = pt.Piece(0.03, friction=friction, launch=pt.Launch(position=(0.2, 0.001)))
+    with pytest.raises(pt.InputError, match="use speeds up to"):
+        pt.Scene(pucks=[one, two]).simulate()
+    world = pt.Scene(pucks=[pt.Piece(0.03, friction=friction), two]).world()
+    with pytest.raises(pt.InputError, match="use speeds up to"):
+        world.strike(0, velocity=(speed, 0.0))
+    assert not world.moving.any()

@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables.errors import InputError
 from puck_tables.scene.friction import SPIN, VX, VY
 from puck_tables.scene.ingredients import Regions
 from puck_tables.scene.parts import Wall
@@ -40,6 +41,7 @@ from puck_tables.world.game import (
 from puck_tables.world.paths import FIRST
 from puck_tables.world.rim_laws import number_for, rims_of
 
+FAR = 1e7  # radii that a puck may slide: 1e-10 of it is a thousandth of a radius
 ROWS = 256  # of events and flights at first
 
 
@@ -154,11 +156,30 @@ def scales_of(game: Game, speeds: FloatArray) -> FloatArray:
     """Scales of speed and acceleration (n, 2) where the largest slips are ``speeds`` (n,).
 
     What is at rest on a steep slope has the speed that it gets within a radius.
+
+    Raises
+    ------
+    InputError
+        If a puck would slide so far that its places, good to a share of that, mean nothing here.
     """
     radius = float(game.discs[:, layout.RADIUS].min())
+    _refuse_far(game, float(speeds.max(initial=0.0)), radius)
     steady = max(float(game.discs[:, layout.DECEL].max()), float(np.hypot(*game.pull)))
     speeds = np.where(speeds > 0.0, speeds, np.sqrt(steady * radius))
     return np.stack([speeds, np.where(steady > 0.0, steady, speeds**2 / radius)], axis=1)
+
+
+def _refuse_far(game: Game, speed: float, radius: float) -> None:
+    """Refuse looked-up pucks whose slide, at the largest slip, is beyond what digits can tell."""
+    looked = (game.discs[:, layout.LIGHTNESS] > 0.0) & (game.discs[:, layout.INTEGRATED] == 0.0)
+    decels = game.discs[looked & (game.discs[:, layout.DECEL] > 0.0), layout.DECEL]
+    least = float(decels.min(initial=math.inf))
+    if not math.isfinite(speed) or (speed > 0.0 and speed / least > FAR * radius / speed):
+        raise InputError(
+            f"at a slip of {speed:.3g} m/s and the least friction, {least:.3g} m/s^2, a puck would "
+            f"slide some {speed / least * speed:.3g} m, and places are good to 1e-10 of that: use "
+            f"speeds up to {math.sqrt(FAR * radius * least):.3g} m/s, more friction, or none at all"
+        )
 
 
 def _regions(scene: Scene, pieces: list[Piece], discs: FloatArray) -> Regions:

@@ -70,8 +70,11 @@ def _in_play(world: World, times: FloatArray) -> FloatArray:
 
 
 def _error(scene: Scene, world: World, last: FloatArray) -> float:
-    """How far twins end whose launches are off by what the tables may be wrong by, m."""
-    gaps = []
+    """How far twins end whose launches are off by what the tables may be wrong by, m.
+
+    With what the look-up adds for pucks that could slide far: a share of that.
+    """
+    gaps, own = [], world.place_error
     for scale, turn in ((1.0 + TABLE_ERROR, TABLE_ERROR), (1.0 - TABLE_ERROR, -TABLE_ERROR)):
         twin = World(scene)
         try:
@@ -81,4 +84,4 @@ def _error(scene: Scene, world: World, last: FloatArray) -> float:
             gaps.append(float(np.hypot(*np.ptp(last[:, :2], axis=0))))
             continue
         gaps.append(float(np.hypot(*(twin.state() - last)[:, :2].T).max()))
-    return max(gaps)
+    return max(gaps) + own

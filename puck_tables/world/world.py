@@ -296,6 +296,12 @@ class World:
                 velocity = turned @ state[VX:]
                 self.strike(number, velocity[:2], float(velocity[2]))
 
+    @property
+    def place_error(self) -> float:
+        """What looked-up places may be wrong by, m: 1e-10 of Q²/J of the largest slip."""
+        speed, rate = self._game.pace.tolist()
+        return 1e-10 * speed / rate * speed
+
     def copy(self) -> World:
         """A world of its own that goes on from here, to look ahead."""
         twin = object.__new__(World)
