@@ -231,7 +231,7 @@ def test_a_fit_is_a_result(true, tmp_path):
 
 @pytest.mark.parametrize("seed", [6, 7, 8])
 def test_few_noisy_angles_do_not_hide_whole_turns(seed):
-    """60 frames of 1 mm at next to no friction: a spin of three turns a frame more looked at home."""
+    """60 frames of 1 mm at hardly any friction: three turns more a frame looked at home."""
     t, noise = np.arange(60) / 60.0, np.random.default_rng(seed).normal(size=(60, 3))
     path = pt.Puck(radius=RADIUS, height=0.003, friction=0.002).states((1.0, 0.2), 20.0, t)
     place = np.stack([path.x, path.y], axis=1) + 1e-3 * noise[:, :2]
