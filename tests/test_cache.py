@@ -83,6 +83,8 @@ def test_every_compiled_function_is_kept_in_that_folder():
     folder = Path(cache_folder() or "")
     kept = set()
     for name in modules():
+        if name.startswith("puck_tables.autodiff"):  # doors to what may not be installed
+            continue
         for value in vars(importlib.import_module(name)).values():
             if isinstance(value, numba.core.dispatcher.Dispatcher) and value._cache.cache_path:
                 assert folder == Path(value._cache.cache_path), (name, value)

@@ -147,3 +147,31 @@ def test_a_mallet_in_a_crowd_keeps_its_books(seed: int):
     assert run.energy_residual < 1e-9
     assert run.work_driven > 0.0
     assert min(run.heat_floor, run.heat_rims, run.heat_impact) > -1e-15  # J, rounding
+
+
+def test_rims_that_grip_at_the_start():
+    """Nothing presses them together, but a rim without a bound on its friction grips at once."""
+    one = pt.Piece(0.03, friction=0.1, tangential=0.0, launch=pt.Launch(spin=20.0))
+    two = pt.Piece(0.03, friction=0.1, tangential=0.0, launch=pt.Launch(position=(0.06, 0.0)))
+    run = pt.Scene(pucks=[one, two]).simulate()
+    assert run.kinetic_energy == pytest.approx(0.25 * 0.03**2 * 20.0**2, rel=1e-14)
+    assert run.energy_residual < 1e-9
+
+
+def test_a_stint_that_is_over_at_once_has_no_heat():
+    """A row in touch and one in its nook; the striker is there at the same moment."""
+    high = 0.03 * math.sqrt(3.0)
+
+    def piece(x: float, y: float, velocity: tuple[float, float] = (0.0, 0.0), spin: float = 0.0):
+        launch = pt.Launch(velocity, spin, (x, y))
+        return pt.Piece(0.03, friction=0.1, tangential=0.0, rim=0.3, launch=launch)
+
+    pucks = [
+        piece(-0.06, 0, (1.0, 0.0)),
+        piece(0, 0),
+        piece(0.06, 0),
+        piece(0.03, high, spin=-20.0),
+    ]
+    run = pt.Scene(pucks=pucks).simulate()
+    assert run.kinetic_energy == pytest.approx(0.5 + 0.09, rel=1e-14)
+    assert run.energy_residual < 1e-9

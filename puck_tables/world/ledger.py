@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import math
+from collections import Counter
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.scene.friction import SPIN, VX, VY
+from puck_tables.scene.pieces import Piece
 from puck_tables.world import game as g
+from puck_tables.world.agreement import pieces_of
 from puck_tables.world.flight import PATH, START
 from puck_tables.world.layout import LIGHTNESS, RADIUS, TURNABILITY
 from puck_tables.world.record import flights_of, states_at
@@ -46,7 +50,7 @@ def ledger(world: World) -> dict[str, float]:
     events = game.events[: game.counts[g.N_EVENTS]]
     impacts = float(events[:, g.LOST].sum())
     count = len(game.discs)
-    given = float(energies[:count][free[discs[:count]], 0].sum())
+    given = sum(_launched(piece) for piece in pieces_of(world.scene))  # rims may grip at once
     given += sum(
         _given(game, row, discs, energies) for row in events[events[:, g.WHAT] == g.STRUCK]
     )
@@ -72,17 +76,31 @@ def ledger(world: World) -> dict[str, float]:
 
 def _booked(game: g.Game, books: list[FloatArray]) -> list[float]:
     """What was booked of all that were integrated, up to where their flights ended."""
-    rows = np.vstack([np.zeros((0, WORK_COLUMNS)), *books])
     history = game.history[: game.counts[g.N_HISTORY]]
-    ends = np.full(len(rows), float(game.clock[0]))
-    for disc in np.unique(rows[:, MEMBER]):
-        starts = history[history[:, 0] == disc, 2 + START]
-        mine = np.flatnonzero(rows[:, MEMBER] == disc)
-        after = np.searchsorted(starts, rows[mine, STINT], side="right")
-        later = after < len(starts)
-        ends[mine[later]] = starts[after[later]]
-    booked: list[float] = worked(rows, ends).tolist()
+    before: Counter[tuple[float, float]] = Counter()
+    ends = [np.zeros(0)]
+    for rows in books:
+        disc, start = key = tuple(rows[0, [MEMBER, STINT]].tolist()) if len(rows) else (-1.0, 0.0)
+        flights = history[history[:, 0] == disc]
+        starts = flights[:, 2 + START]
+        # of several that began at one moment all but the last were over at once
+        own = np.flatnonzero((starts == start) & (flights[:, 1] == PATH))[before[key] :]
+        after = int(own[0]) + 1 if own.size else int(np.searchsorted(starts, start, "right"))
+        before[key] += 1
+        end = starts[after] if after < len(starts) else float(game.clock[0])
+        ends.append(np.full(len(rows), end))
+    rows = np.vstack([np.zeros((0, WORK_COLUMNS)), *books])
+    booked: list[float] = worked(rows, np.concatenate(ends)).tolist()
     return booked
+
+
+def _launched(piece: Piece) -> float:
+    """The kinetic energy with which a puck is launched at the start, J."""
+    launch = piece.launch
+    if piece.path or launch.time > 0.0:  # driven, or struck later
+        return 0.0
+    rim = piece.gyration * piece.radius * launch.spin
+    return 0.5 * piece.mass * (math.hypot(*(launch.velocity or (0.0, 0.0))) ** 2 + rim * rim)
 
 
 def _kinetic(game: g.Game, discs: g.Whole, states: FloatArray) -> FloatArray:

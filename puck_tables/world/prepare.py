@@ -41,7 +41,7 @@ from puck_tables.world.game import (
 from puck_tables.world.paths import FIRST
 from puck_tables.world.rim_laws import number_for, rims_of
 
-FAR = 1e7  # radii that a puck may slide: 1e-10 of it is a thousandth of a radius
+FAR = 1e12  # radii that a puck may slide: its rounding is a thousandth of a radius
 ROWS = 256  # of events and flights at first
 
 
@@ -177,7 +177,7 @@ def _refuse_far(game: Game, speed: float, radius: float) -> None:
     if not math.isfinite(speed) or (speed > 0.0 and speed / least > FAR * radius / speed):
         raise InputError(
             f"at a slip of {speed:.3g} m/s and the least friction, {least:.3g} m/s^2, a puck would "
-            f"slide some {speed / least * speed:.3g} m, and places are good to 1e-10 of that: use "
+            f"slide some {speed / least * speed:.3g} m, and places are good to 1e-15 of that: use "
             f"speeds up to {math.sqrt(FAR * radius * least):.3g} m/s, more friction, or none at all"
         )
 

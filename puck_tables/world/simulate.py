@@ -72,7 +72,7 @@ def _in_play(world: World, times: FloatArray) -> FloatArray:
 def _error(scene: Scene, world: World, last: FloatArray) -> float:
     """How far twins end whose launches are off by what the tables may be wrong by, m.
 
-    With what the look-up adds for pucks that could slide far: a share of that.
+    With the rounding of the look-up, for pucks that could slide far.
     """
     gaps, own = [], world.place_error
     for scale, turn in ((1.0 + TABLE_ERROR, TABLE_ERROR), (1.0 - TABLE_ERROR, -TABLE_ERROR)):

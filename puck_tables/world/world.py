@@ -298,9 +298,9 @@ class World:
 
     @property
     def place_error(self) -> float:
-        """What looked-up places may be wrong by, m: 1e-10 of Q²/J of the largest slip."""
+        """The rounding of looked-up places, m: 1e-15 of Q²/J of the largest slip."""
         speed, rate = self._game.pace.tolist()
-        return 1e-10 * speed / rate * speed
+        return 1e-15 * speed / rate * speed
 
     def copy(self) -> World:
         """A world of its own that goes on from here, to look ahead."""
