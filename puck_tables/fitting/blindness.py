@@ -34,11 +34,13 @@ def blind_spots(
     other motions that fit as well.
     """
     sentences = []
+    marked = any(film.angle is not None for film in found.problem.films)
+    more = "more frames a second" if marked else "angle marks on the puck"
     for rival in rivals:
         words = ", ".join(f"{name} {value:.4g}" for name, value in rival.items())
         sentences.append(
-            f"Another motion, of another spin, fits as well: {words}. What would tell: angle marks "
-            "on the puck, or its launch spin, if it is known (launch_spin)."
+            f"Another motion, of another spin, fits as well: {words}. What would tell: {more}, or "
+            "its launch spin, if it is known (launch_spin)."
         )
     seen: set[frozenset[int]] = set()
     covered = {found.problem.names[k][1] for k in np.flatnonzero(certainty.undetermined)}
