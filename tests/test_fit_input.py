@@ -98,3 +98,9 @@ def test_frames_without_place_or_angle_are_left_alone():
     found = pt.fit(pt.Track(TIMES, place, angle), PUCK)
     assert found.estimate.residuals.size == 2 * 50 + 45
     assert found["friction"].value == pytest.approx(0.2, abs=5.0 * found["friction"].error)
+
+
+@pytest.mark.parametrize("tracks", [None, 3.0])
+def test_what_is_no_track_is_refused(tracks):
+    with pytest.raises(pt.InputError, match="tracks must be a Track or several"):
+        pt.fit(tracks, pt.Puck(radius=0.04))

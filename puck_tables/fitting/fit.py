@@ -271,6 +271,8 @@ def _films(tracks: Any, since: float, until: float) -> tuple[Seen, ...]:
     ------
     InputError
     """
+    if not isinstance(tracks, Track | Iterable):
+        raise InputError(f"tracks must be a Track or several, got {tracks!r}")
     listed = [tracks] if isinstance(tracks, Track) else list(tracks)
     if not listed:
         raise InputError("there is no track to fit: give one or more")
