@@ -117,7 +117,7 @@ def puck_options(mass: bool) -> Callable[[Command], Command]:
     """The puck and the floor: by δ and J, or by dimensions and friction."""
     options = [
         click.option("--radius", type=NUMBER, help="Radius r in m.  [default: 1]"),
-        click.option("--height", type=NUMBER, help="Height h in m; with --friction."),
+        click.option("--height", type=NUMBER, help="Height h of the puck in m, twice that of its centre of mass; with --friction."),
         click.option("--friction", type=NUMBER, help="Coulomb coefficient f; with --height."),
         click.option("--gravity", type=NUMBER, help="Gravity in m/s^2.  [default: 9.80665]"),
         click.option("--decel", type=NUMBER, help="J = f g in m/s^2 instead.  [default: 1]"),

@@ -120,6 +120,12 @@ def test_few_modules_lie_flat():
 
 
 @pytest.mark.parametrize("package", ["", "chetaev", "contact", "motion"])
+def test_every_public_name_is_there(package: str):
+    home = importlib.import_module(f"puck_tables.{package}".rstrip("."))
+    assert [name for name in home.__all__ if not hasattr(home, name)] == []
+
+
+@pytest.mark.parametrize("package", ["", "chetaev", "contact", "motion"])
 def test_no_public_name_is_a_module_s_too(package: str):
     """Whoever imports that module puts it in the place of the name."""
     home = importlib.import_module(f"puck_tables.{package}".rstrip("."))

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 _HOMES = {
     "Asperity": "asperity",
-    "AsperityCurve": "asperity_curve",
+    "AsperityCurve": "asperity_forces",
     "AsperityMotion": "asperity",
     "ConstrainedMotion": "motion",
     "ConstrainedSystem": "system",

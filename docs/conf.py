@@ -1,0 +1,93 @@
+"""The site: ``sphinx-build -W --keep-going docs docs/_build``, offline, the gallery executed."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+from sphinx.application import Sphinx
+
+import puck_tables
+
+HERE = Path(__file__).parent
+
+project = "puck-tables"
+author = "the authors of puck-tables"
+release = version = puck_tables.__version__
+extensions = [
+    "sphinx.ext.autodoc",
+    "sphinx.ext.autosummary",
+    "sphinx.ext.viewcode",
+    "numpydoc",
+    "myst_parser",
+    "sphinx_click",
+    "sphinx_gallery.gen_gallery",
+]
+exclude_patterns = ["_build", "gallery/**", "_templates"]
+templates_path = ["_templates"]
+nitpicky = False
+
+myst_enable_extensions = ["dollarmath", "deflist"]
+myst_heading_anchors = 3
+suppress_warnings = ["config.cache"]
+
+autosummary_generate = True
+autodoc_typehints = "none"  # numpydoc's sections give types in words and units
+numpydoc_show_class_members = False
+numpydoc_validation_checks: set[str] = set()
+
+sphinx_gallery_conf = {
+    "examples_dirs": ["gallery"],
+    "gallery_dirs": ["examples"],
+    "filename_pattern": r"\.py",
+    "remove_config_comments": True,
+    "show_memory": False,
+    "abort_on_example_error": True,
+    "image_scrapers": ("matplotlib",),
+    "min_reported_time": 1000,
+    "within_subsection_order": "FileNameSortKey",
+    "subsection_order": [
+        "gallery/shots", "gallery/explained", "gallery/scenes", "gallery/boards",
+        "gallery/films", "gallery/many",
+    ],
+}  # fmt: skip
+
+html_theme = "pydata_sphinx_theme"
+html_title = "puck-tables"
+html_theme_options = {
+    "navigation_with_keys": False,
+    "show_nav_level": 2,
+    "header_links_before_dropdown": 6,
+    "show_toc_level": 2,
+}
+html_static_path: list[str] = []
+html_show_sourcelink = False
+
+
+def said_by_the_program(app: Sphinx) -> None:
+    """What the program itself can say is not written twice: the fields of scenes."""
+    told = subprocess.run(
+        [sys.executable, "-m", "puck_tables.cli.start", "scene", "fields"],
+        check=True, capture_output=True, text=True,
+    ).stdout  # fmt: skip
+    page = "# Fields of scenes\n\nWhat `puck scene fields` prints.\n\n```text\n" + told + "```\n"
+    path = HERE / "reference" / "scene-fields.md"
+    path.parent.mkdir(exist_ok=True)
+    if not path.exists() or path.read_text(encoding="utf-8") != page:
+        path.write_text(page, encoding="utf-8")
+
+
+def bars_are_bars(app: Sphinx, what: str, name: str, thing: object, options: object, lines: list[str]) -> None:
+    """|φ| in a docstring is an absolute value, not a substitution of reStructuredText."""
+    lines[:] = [
+        line if "``" in line or line.lstrip().startswith((">>>", "...")) else re.sub(r"\|(?=\S)", r"\|", line)
+        for line in lines
+    ]
+
+
+def setup(app: Sphinx) -> None:
+    """Called by Sphinx."""
+    app.connect("builder-inited", said_by_the_program)
+    app.connect("autodoc-process-docstring", bars_are_bars, priority=900)
