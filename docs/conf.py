@@ -6,8 +6,10 @@ import re
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 from sphinx.application import Sphinx
+from sphinx_gallery.scrapers import figure_rst
 
 import puck_tables
 
@@ -38,6 +40,18 @@ autodoc_typehints = "none"  # numpydoc's sections give types in words and units
 numpydoc_show_class_members = False
 numpydoc_validation_checks: set[str] = set()
 
+
+def figure_of(block: tuple[str, str, int], names: dict[str, Any], conf: dict[str, Any]) -> str:
+    """The picture of an example: what it calls ``figure``, whether pyplot knows of it or not."""
+    figure = names["example_globals"].get("figure")
+    if figure is None or getattr(figure, "is_shown", False):
+        return ""
+    figure.is_shown = True
+    path = next(names["image_path_iterator"])
+    figure.savefig(path, dpi=110)
+    return figure_rst([path], conf["src_dir"])
+
+
 sphinx_gallery_conf = {
     "examples_dirs": ["gallery"],
     "gallery_dirs": ["examples"],
@@ -45,7 +59,7 @@ sphinx_gallery_conf = {
     "remove_config_comments": True,
     "show_memory": False,
     "abort_on_example_error": True,
-    "image_scrapers": ("matplotlib",),
+    "image_scrapers": (figure_of,),
     "min_reported_time": 1000,
     "within_subsection_order": "FileNameSortKey",
     "subsection_order": [
@@ -59,9 +73,10 @@ html_title = "puck-tables"
 html_theme_options = {
     "navigation_with_keys": False,
     "show_nav_level": 2,
-    "header_links_before_dropdown": 6,
+    "header_links_before_dropdown": 4,
     "show_toc_level": 2,
 }
+html_context = {"default_mode": "auto"}
 html_static_path: list[str] = []
 html_show_sourcelink = False
 
@@ -79,12 +94,12 @@ def said_by_the_program(app: Sphinx) -> None:
         path.write_text(page, encoding="utf-8")
 
 
-def bars_are_bars(app: Sphinx, what: str, name: str, thing: object, options: object, lines: list[str]) -> None:
+def bars_are_bars(*given: Any) -> None:
     """|φ| in a docstring is an absolute value, not a substitution of reStructuredText."""
-    lines[:] = [
-        line if "``" in line or line.lstrip().startswith((">>>", "...")) else re.sub(r"\|(?=\S)", r"\|", line)
-        for line in lines
-    ]
+    lines: list[str] = given[-1]
+    for n, line in enumerate(lines):
+        if "``" not in line and not line.lstrip().startswith((">>>", "...")):
+            lines[n] = re.sub(r"\|(?=\S)", r"\|", line)
 
 
 def setup(app: Sphinx) -> None:

@@ -15,6 +15,7 @@ from puck_tables.cli.main import main
 NUMBER = re.compile(r"-?\d+\.?\d*(?:e[-+]?\d+)?")
 PAGES = {path.name: path for path in [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]}
 TEXTS = {name: path.read_text(encoding="utf-8") for name, path in PAGES.items()}
+EXAMPLES = sorted((ROOT / "docs" / "gallery").rglob("*.py"))
 every_page = pytest.mark.parametrize("page", PAGES)
 
 
@@ -67,10 +68,19 @@ def test_there_are_examples():
     }
 
 
-def test_the_readme_is_short_and_names_every_page():
+def test_the_readme_is_short_and_every_page_is_named():
     assert len(TEXTS["README.md"].splitlines()) <= 150
-    for page in PAGES.keys() - {"README.md"}:
-        assert f"(docs/{page})" in TEXTS["README.md"], page
+    shelves = TEXTS["index.md"].replace("\n", " ")
+    for page in PAGES.keys() - {"README.md", "index.md"}:
+        assert f" {page.removesuffix('.md')} " in shelves, page
+
+
+@pytest.mark.parametrize("script", EXAMPLES, ids=lambda path: path.stem)
+def test_an_example_is_short_and_compiles(script: Path):
+    """The site runs them; here only what a change of the library could not break."""
+    text = script.read_text(encoding="utf-8")
+    assert len(text.splitlines()) <= 30
+    compile(text, script.name, "exec")
 
 
 @every_page

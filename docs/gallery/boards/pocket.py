@@ -2,7 +2,8 @@
 Into the hole of crokinole
 ==========================
 
-All launches of the shot that end in the hole, also off posts and other discs; the one that forgives most is drawn.
+All launches of the shot that end in the hole, also off posts and other discs; the one that
+forgives most is drawn.
 """
 
 import puck_tables as pt

@@ -2,9 +2,10 @@
 The slip under a puck
 =====================
 
-Each point of the base slips about the instantaneous centre of rotation, v/ω to the left of the motion for ω > 0. Friction
-acts against the slip, wherever it points, with the same size. That couples the two motions: where the spin turns the slip
-sideways, less of the friction is left to brake the slide.
+Each point of the base slips about the instantaneous centre of rotation, v/ω to the left of the
+motion for ω > 0. Friction acts against the slip, wherever it points, with the same size. That
+couples the two motions: where the spin turns the slip sideways, less of the friction is left to
+brake the slide.
 """
 
 import matplotlib.pyplot as plt

@@ -2,8 +2,9 @@
 Why the last centimetre never looks like 0.653
 ==============================================
 
-The papers' ratio ε = v/(rω) tends to 0.653 for a flat uniform puck, whatever the launch. But slowly: where a camera or an engine
-stops to look, at a hundredth of the launch's slip speed, it is still off. At a threshold of finite speed 0.67 is no error.
+The papers' ratio ε = v/(rω) tends to 0.653 for a flat uniform puck, whatever the launch. But
+slowly: where a camera or an engine stops to look, at a hundredth of the launch's slip speed, it
+is still off. At a threshold of finite speed 0.67 is no error.
 """
 
 import matplotlib.pyplot as plt

@@ -2,8 +2,9 @@
 Three numbers are the friction
 ==============================
 
-Summed over the base, friction along the motion, across it and about the axis are three functions of the slip angle
-φ = atan2(rω, v) and of the height δ = 2fh/r. At φ = π/4 the centre of rotation crosses the rim.
+Summed over the base, friction along the motion, across it and about the axis are three functions
+of the slip angle φ = atan2(rω, v) and of the height δ = 2fh/r. At φ = π/4 the centre of rotation
+crosses the rim.
 """
 
 import matplotlib.pyplot as plt

@@ -2,8 +2,9 @@
 One curve for all motions
 =========================
 
-The equations keep their form when speeds and times are scaled and the plane is turned or mirrored. So stop time and place of a
-puck are three functions of φ, in units of Q/J and Q²/J: these are looked up, and nothing is integrated.
+The equations keep their form when speeds and times are scaled and the plane is turned or
+mirrored. So stop time and place of a puck are three functions of φ, in units of Q/J and Q²/J:
+these are looked up, and nothing is integrated.
 """
 
 import matplotlib.pyplot as plt
@@ -15,8 +16,9 @@ phi = np.linspace(0.0, np.pi / 2, 301)
 figure, axes = plt.subplots(layout="constrained")
 for delta, style in ((0.0, "-"), (1.0, "--")):
     stops = pt.stop(np.stack([np.cos(phi), 0 * phi], axis=1), np.sin(phi), delta=delta)
-    axes.plot(np.degrees(phi), stops.stop_time, "tab:blue", linestyle=style, label=f"time T, δ = {delta:g}")
-    axes.plot(np.degrees(phi), stops.stop_position[:, 0], "tab:orange", linestyle=style, label="ahead X")
-    axes.plot(np.degrees(phi), stops.stop_position[:, 1], "tab:green", linestyle=style, label="aside Y")
+    degrees, place = np.degrees(phi), stops.stop_position
+    axes.plot(degrees, stops.stop_time, f"C0{style}", label=f"time T, δ = {delta:g}")
+    axes.plot(degrees, place[:, 0], f"C1{style}", label="ahead X")
+    axes.plot(degrees, place[:, 1], f"C2{style}", label="aside Y")
 axes.set(xlabel="φ of the launch / °", title="Stops of Q = 1, J = 1", xticks=[0, 45, 90])
 axes.legend()

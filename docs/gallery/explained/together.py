@@ -2,8 +2,8 @@
 Sliding and spinning stop together
 ==================================
 
-Whatever the launch, v and ω vanish at the same moment. A puck that slides more than it spins loses its slide faster, and the
-other way round, until the two are in balance.
+Whatever the launch, v and ω vanish at the same moment. A puck that slides more than it spins
+loses its slide faster, and the other way round, until the two are in balance.
 """
 
 import matplotlib.pyplot as plt

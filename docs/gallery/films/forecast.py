@@ -2,7 +2,8 @@
 What a film would tell
 ======================
 
-Before the camera is bought: the errors of friction and of the tilt that a film could give at best, over speed and spin.
+Before the camera is bought: the errors of friction and of the tilt that a film could give at
+best, over speed and spin.
 """
 
 import puck_tables as pt

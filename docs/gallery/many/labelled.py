@@ -2,7 +2,8 @@
 A map as labelled arrays
 ========================
 
-Every result turns into an xarray Dataset, with units; from there on it is one line to what you ask.
+Every result turns into an xarray Dataset, with units; from there on it is one line to what you
+ask.
 """
 
 import numpy as np
@@ -15,4 +16,4 @@ stops = pt.Puck.similar().sweep(
 data = stops.to_xarray()
 aside = data.stop_y.sel(launch_speed=1.0, method="nearest")
 print(data.stop_y.attrs)
-lines = aside.plot.line(x="launch_spin")
+figure = aside.plot.line(x="launch_spin")[0].figure

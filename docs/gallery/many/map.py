@@ -2,7 +2,8 @@
 A map of stops
 ==============
 
-Where and when pucks stop, over speed and spin: 8181 launches, looked up in a fraction of a millisecond.
+Where and when pucks stop, over speed and spin: 8181 launches, looked up in a fraction of a
+millisecond.
 """
 
 import numpy as np

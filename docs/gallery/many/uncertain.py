@@ -2,8 +2,8 @@
 Errors of a launch, at its stop
 ===============================
 
-A launch is never known exactly. Its covariance goes through the exact derivatives of the stop; a thousand samples beside it
-tell whether the linear answer may be trusted.
+A launch is never known exactly. Its covariance goes through the exact derivatives of the stop; a
+thousand samples beside it tell whether the linear answer may be trusted.
 """
 
 import matplotlib.pyplot as plt
@@ -20,7 +20,8 @@ rows = [linear.derivative(f"stop_{c}", n) for c in "xy" for n in ("vx", "vy", "s
 slope = np.array(rows).reshape(2, 3)
 value, vectors = np.linalg.eigh(slope @ errors @ slope.T)
 turn = np.linspace(0, 2 * np.pi, 100)
-ring = linear.stop_position[:, None] + 2 * vectors @ (np.sqrt(value)[:, None] * [np.cos(turn), np.sin(turn)])
+circle = np.sqrt(value)[:, None] * [np.cos(turn), np.sin(turn)]
+ring = linear.stop_position[:, None] + 2 * vectors @ circle
 figure, axes = plt.subplots(layout="constrained")
 axes.plot(*ends.T, ".", markersize=3)
 axes.plot(*ring, "k", label="two standard deviations, by derivatives")

@@ -2,7 +2,8 @@
 A washer on a conveyor
 ======================
 
-Dropped spinning on a belt, a washer is taken along. Friction follows its slip over the belt, not its speed in the room.
+Dropped spinning on a belt, a washer is taken along. Friction follows its slip over the belt, not
+its speed in the room.
 """
 
 import puck_tables as pt

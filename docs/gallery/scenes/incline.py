@@ -2,8 +2,8 @@
 A slope that holds until it spins
 =================================
 
-A slope of a tenth holds this puck (f = 0.15) at rest. A spin takes friction from the slide, so a spinning puck glides down
-until its spin is gone, and then stays.
+A slope of a tenth holds this puck (f = 0.15) at rest. A spin takes friction from the slide, so a
+spinning puck glides down until its spin is gone, and then stays.
 """
 
 import numpy as np

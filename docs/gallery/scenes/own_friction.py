@@ -2,8 +2,8 @@
 Friction that you measured
 ==========================
 
-A coefficient that falls with the slip speed, from a few measured points: the table of its resultants is built once, in
-seconds, and kept.
+A coefficient that falls with the slip speed, from a few measured points: the table of its
+resultants is built once, in seconds, and kept.
 """
 
 import matplotlib.pyplot as plt

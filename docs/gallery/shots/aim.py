@@ -2,7 +2,8 @@
 Every launch to a target
 ========================
 
-Which launches of at most 1.9 m/s and 6 rad/s come to rest at (2, 0.1) m? A whole curve of them for each sense of spin.
+Which launches of at most 1.9 m/s and 6 rad/s come to rest at (2, 0.1) m? A whole curve of them
+for each sense of spin.
 """
 
 import puck_tables as pt

@@ -2,7 +2,8 @@
 An ice-hockey puck
 ==================
 
-Two metres a second and some five turns a second: it bends to the right, and sliding and spinning end at the same moment.
+Two metres a second and some five turns a second: it bends to the right, and sliding and spinning
+end at the same moment.
 """
 
 import puck_tables as pt

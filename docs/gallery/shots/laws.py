@@ -2,8 +2,8 @@
 How the load is spread
 ======================
 
-A ring, a washer, a uniform base and a rounded one (Hertz) under the same launch: the farther out the load, the more the spin
-matters, and the farther the puck goes.
+A ring, a washer, a uniform base and a rounded one (Hertz) under the same launch: the farther out
+the load, the more the spin matters, and the farther the puck goes.
 """
 
 import matplotlib.pyplot as plt

@@ -2,8 +2,8 @@
 Spin carries
 ============
 
-The same speed with more and more spin: a spinning puck feels less friction along its way, so it goes farther. The stops lie
-almost on a straight line.
+The same speed with more and more spin: a spinning puck feels less friction along its way, so it
+goes farther. The stops lie almost on a straight line.
 """
 
 import matplotlib.pyplot as plt
