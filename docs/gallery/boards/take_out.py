@@ -16,7 +16,7 @@ ends = []
 scene = pt.Scene.load("curling-take-out")
 for vx, vy in velocities:
     world = scene.world()
-    world.strike("red", velocity=(vx - 3.1, vy - 0.012))
+    world.strike("red", velocity=(vx, vy), spin=-1.6)
     ends.append(world.at(60.0)[:2, :2])
 ends = np.array(ends)
 figure, axes = plt.subplots(layout="constrained")

@@ -12,8 +12,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 v, spin, r = 1.0, 2.0, 1.0
-radii, angles = np.meshgrid(np.linspace(0.15, 0.95, 6), np.linspace(0, 2 * np.pi, 25)[:-1])
-x, y = radii * np.cos(angles), radii * np.sin(angles)
+x, y = np.meshgrid(np.arange(-0.9, 1.0, 0.18), np.arange(-0.9, 1.0, 0.18))
+x, y = x[np.hypot(x, y) < r], y[np.hypot(x, y) < r]
 vx, vy = v - spin * y, spin * x
 size = np.hypot(vx, vy)
 figure, axes = plt.subplots(layout="constrained")
@@ -23,4 +23,4 @@ axes.quiver(0, 0, v, 0, color="tab:blue", scale=4, width=0.012, label="velocity 
 axes.plot(0, v / spin, "ko", label="centre of rotation, v/ω away")
 axes.set(aspect="equal", xlim=(-1.5, 1.5), ylim=(-1.2, 1.2), xlabel="x / r", ylabel="y / r",
          title=f"φ = atan2(rω, v) = {np.degrees(np.arctan2(r * spin, v)):.0f}°")  # fmt: skip
-axes.legend(loc="lower left")
+figure.legend(loc="outside lower center", ncols=3)

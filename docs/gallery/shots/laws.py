@@ -2,8 +2,8 @@
 How the load is spread
 ======================
 
-A ring, a washer, a uniform base and a rounded one (Hertz) under the same launch: the farther out
-the load, the more the spin matters, and the farther the puck goes.
+A ring, a washer, a uniform base and a rounded one (Hertz) under the same launch: the nearer to the
+centre the load lies, the less it brakes the spin. The puck turns longer and bends more.
 """
 
 import matplotlib.pyplot as plt
