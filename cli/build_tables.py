@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import click
+from puck_tables.cli.completion import laws
 from puck_tables.cli.info import describe
 from puck_tables.cli.options import FILE, NUMBER, prepare_outputs, printable, progress, told
 
@@ -23,6 +24,7 @@ from puck_tables.errors import InputError
 @click.option(
     "--pressure",
     metavar="LAW",
+    shell_complete=laws,
     help="Resultants under uniform, galin, hertz, ring, annulus:INNER or a profile FILE.csv "
     "(columns rho in units of r, and W).  [default: uniform]",
 )

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
+from puck_tables.cli.completion import laws
 
 from puck_tables.errors import InputError
 
@@ -117,7 +118,11 @@ def puck_options(mass: bool) -> Callable[[Command], Command]:
     """The puck and the floor: by δ and J, or by dimensions and friction."""
     options = [
         click.option("--radius", type=NUMBER, help="Radius r in m.  [default: 1]"),
-        click.option("--height", type=NUMBER, help="Height h of the puck in m, twice that of its centre of mass; with --friction."),
+        click.option(
+            "--height",
+            type=NUMBER,
+            help="Height h of the puck in m, twice that of its centre of mass; with --friction.",
+        ),
         click.option("--friction", type=NUMBER, help="Coulomb coefficient f; with --height."),
         click.option("--gravity", type=NUMBER, help="Gravity in m/s^2.  [default: 9.80665]"),
         click.option("--decel", type=NUMBER, help="J = f g in m/s^2 instead.  [default: 1]"),
@@ -145,6 +150,7 @@ def body_options(command: Command) -> Command:
         click.option(
             "--pressure",
             metavar="LAW",
+            shell_complete=laws,
             default="uniform",
             show_default=True,
             help="Contact pressure: uniform, galin, hertz, ring, annulus:INNER, or a CSV file of "

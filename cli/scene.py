@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import click
+from puck_tables.cli.completion import scenes
 from puck_tables.cli.options import printable
 
 if TYPE_CHECKING:
@@ -30,7 +31,7 @@ def list_scenes() -> None:
 
 
 @scene.command()
-@click.argument("name")
+@click.argument("name", shell_complete=scenes)
 def show(name: str) -> None:
     """Print a scene that comes along, to start one of your own from.
 
@@ -53,7 +54,7 @@ def fields() -> None:
 
 
 @scene.command()
-@click.argument("name", metavar="FILE|NAME")
+@click.argument("name", metavar="FILE|NAME", shell_complete=scenes)
 def check(name: str) -> None:
     """Check a scene: every error at once, or what it holds and how it would be run."""
     from puck_tables.scene.scene import Scene

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
+from puck_tables.cli.completion import scenes
 from puck_tables.cli.options import (
     DEFAULT_DECEL,
     DEFAULT_DELTA,
@@ -50,7 +51,7 @@ def scene_options(command: Command) -> Command:
             "puck[0].launch.velocity=[1,0]; as often as needed.",
         ),
         click.option(
-            "--scene", metavar="FILE|NAME",
+            "--scene", metavar="FILE|NAME", shell_complete=scenes,
             help="A scene file, or one that comes along (see 'puck scene list'); other options "
             "change its numbers.",
         ),

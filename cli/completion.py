@@ -1,0 +1,23 @@
+"""What a shell offers at the Tab key where click alone cannot know it: scenes and pressure laws."""
+
+from __future__ import annotations
+
+import click
+from click.shell_completion import CompletionItem
+
+_LAWS = ("uniform", "galin", "hertz", "ring", "annulus:")
+
+
+def scenes(context: click.Context, param: click.Parameter, begun: str) -> list[CompletionItem]:
+    """Names of the scenes that come along, with their titles; and files, where those go."""
+    from puck_tables.scene.library import shipped_scenes
+
+    named = shipped_scenes().items()
+    found = [CompletionItem(name, help=title) for name, title in named if name.startswith(begun)]
+    return found if param.metavar is None else [*found, CompletionItem(begun, type="file")]
+
+
+def laws(context: click.Context, param: click.Parameter, begun: str) -> list[CompletionItem]:
+    """Names of pressure laws, and files."""
+    found = [CompletionItem(name) for name in _LAWS if name.startswith(begun)]
+    return [*found, CompletionItem(begun, type="file")]
