@@ -12,6 +12,7 @@ from sphinx.application import Sphinx
 from sphinx_gallery.scrapers import figure_rst
 
 import puck_tables
+from puck_tables.explore.page import explorer_page
 
 HERE = Path(__file__).parent
 
@@ -27,7 +28,7 @@ extensions = [
     "sphinx_click",
     "sphinx_gallery.gen_gallery",
 ]
-exclude_patterns = ["_build", "gallery/**", "_templates"]
+exclude_patterns = ["_build", "gallery/**", "_templates", "_extra"]
 templates_path = ["_templates"]
 nitpicky = False
 
@@ -78,15 +79,19 @@ html_theme_options = {
 }
 html_context = {"default_mode": "auto"}
 html_static_path: list[str] = []
+html_extra_path = ["_extra"]
 html_show_sourcelink = False
 
 
 def said_by_the_program(app: Sphinx) -> None:
-    """What the program itself can say is not written twice: the fields of scenes."""
+    """What the program itself can say is not written twice: fields of scenes, the explorer."""
     told = subprocess.run(
         [sys.executable, "-m", "puck_tables.cli.start", "scene", "fields"],
         check=True, capture_output=True, text=True,
     ).stdout  # fmt: skip
+    explorer = HERE / "_extra" / "explorer.html"
+    explorer.parent.mkdir(exist_ok=True)
+    explorer.write_text(explorer_page(), encoding="utf-8")
     page = "# Fields of scenes\n\nWhat `puck scene fields` prints.\n\n```text\n" + told + "```\n"
     path = HERE / "reference" / "scene-fields.md"
     path.parent.mkdir(exist_ok=True)

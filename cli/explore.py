@@ -1,0 +1,52 @@
+"""``puck explore``: the explorer, in a browser."""
+
+from __future__ import annotations
+
+import webbrowser
+from pathlib import Path
+
+import click
+from puck_tables.cli.options import FILE, prepare_outputs, told
+
+from puck_tables.errors import InputError, OutputError
+
+
+@click.command()
+@click.option("-o", "--output", type=FILE, metavar="FILE.html", help="Only write the page there.")
+@click.option("--overwrite", is_flag=True, help="Replace an output file that exists.")
+def explore(output: Path | None, overwrite: bool) -> None:
+    """Open a page in which a launch is dragged, and its motion seen at once.
+
+    One file, without a server or a network: path, stop, speeds and their ratio over time, pressure
+    under the base, stop times around; click where the puck shall stop.  Of homogeneous pucks under
+    uniform pressure, 0 <= delta <= 1; its numbers are within 1e-6 of Q/J and Q^2/J.
+
+    \b
+    puck explore
+    puck explore -o explorer.html
+    """  # noqa: D301 - click reads the backspace
+    from puck_tables._core.own_folder import make_private, user_cache
+    from puck_tables._core.safe_write import write_bytes
+    from puck_tables.explore.page import explorer_page
+
+    if output is not None:
+        if output.suffix.lower() not in (".html", ".htm"):
+            raise InputError(f"{output}: the explorer is a page: call it FILE.html")
+        prepare_outputs(others=(output,), overwrite=overwrite)
+        write_bytes(output, explorer_page().encode(), overwrite)
+        told(output)
+        return
+    folder = user_cache()
+    if folder is None:
+        raise InputError(
+            "there is no cache folder to put the page in: say where, with -o FILE.html"
+        )
+    try:
+        make_private(folder)
+    except OSError as error:
+        raise OutputError(f"{folder}: {error.strerror or error}: give -o FILE.html") from None
+    page = folder / "explorer.html"
+    write_bytes(page, explorer_page().encode(), overwrite=True)
+    told(page)
+    if not webbrowser.open(page.as_uri()):
+        click.echo("No browser could be opened: open that file in one.", err=True)

@@ -1,0 +1,1 @@
+"""The explorer: a page for any browser, in which a launch is dragged and its motion is seen."""

@@ -1,0 +1,100 @@
+"use strict";
+// What is shown: one puck and one launch, and all that follows from them, by the exported look-ups.
+const GRAVITY = 9.80665;
+const STATES = 200, MAP = 60;
+const FIELDS = {  // label, unit, least, largest, digits of a step
+  speed: ["speed", "m/s", 0, 5, 3],
+  heading: ["heading", "°", -180, 180, 1],
+  spin: ["spin", "rad/s", -150, 150, 2],
+  radius: ["radius", "mm", 5, 200, 1],
+  height: ["height", "mm", 0, 200, 1],
+  friction: ["friction", "", 0.01, 1, 3],
+  moment: ["moment", "%", 0, 100, 0],
+};
+const now = { speed: 2, heading: 10, spin: 60, radius: 38.1, height: 25.4, friction: 0.1, moment: 0, target: null };
+const five = new Float64Array(5), six = new Float64Array(6), three = new Float64Array(3);
+
+const scale = () => {
+  const radius = now.radius / 1000;
+  return { radius, decel: now.friction * GRAVITY, delta: 2 * now.friction * now.height / now.radius };
+};
+
+// Where the puck stops that has this speed (m/s) along x and this spin: time s, x, y m, path m, turn rad.
+function stopOf(speed, spin) {
+  const { radius, decel, delta } = scale();
+  puckTables.stop(speed, 0, spin, delta, decel, radius, five);
+  return five;
+}
+
+// The run: states over time, the stop, and what the base carries at the moment that is looked at.
+function run() {
+  const { radius, decel, delta } = scale();
+  const a = now.heading * Math.PI / 180, vx = now.speed * Math.cos(a), vy = now.speed * Math.sin(a);
+  const code = puckTables.stop(vx, vy, now.spin, delta, decel, radius, five);
+  if (code !== 0) return { code };
+  const [time, x, y, path, turn] = five;
+  const states = [];
+  for (let n = 0; n <= STATES; n++) {
+    const left = 1 - n / STATES, t = time * (1 - left * left);  // closer towards the stop
+    states.push([t, ...stateAt(vx, vy, t)]);
+  }
+  const t = time * now.moment / 100, moment = stateAt(vx, vy, t).slice();
+  return { code, time, x, y, path, turn, states, moment, t, tilt: tiltOf(moment) };
+}
+
+function stateAt(vx, vy, t) {
+  const { radius, decel, delta } = scale();
+  puckTables.state(vx, vy, now.spin, delta, decel, radius, t, six);
+  return six;
+}
+
+// How far friction tips the load: slopes of the pressure over its mean, along x and y, per radius.
+function tiltOf([, , , vx, vy, spin]) {
+  const { radius, delta } = scale();
+  const v = Math.hypot(vx, vy), phi = Math.atan2(radius * spin, v);
+  if (v === 0) return [0, 0];
+  puckTables.resultants(phi, delta, three);
+  const along = delta * Math.cos(phi) * three[0], left = delta * Math.sin(phi) * Math.cos(phi) * three[1];
+  return [(along * vx - left * vy) / v, (along * vy + left * vx) / v];
+}
+
+// Speed and heading that stop at a place with the spin that is set: the distance of a stop grows with
+// the speed, and turning the launch turns all of its motion.
+function aimAt(x, y) {
+  const far = Math.hypot(x, y), [, , low, high] = FIELDS.speed;
+  let less = 0, more = high;
+  if (Math.hypot(...stopOf(high, now.spin).slice(1, 3)) < far) return false;
+  for (let n = 0; n < 60; n++) {
+    const middle = 0.5 * (less + more), end = stopOf(middle, now.spin);
+    if (Math.hypot(end[1], end[2]) < far) less = middle; else more = middle;
+  }
+  const end = stopOf(more, now.spin);
+  now.speed = more;
+  now.heading = turned((Math.atan2(y, x) - Math.atan2(end[2], end[1])) * 180 / Math.PI);
+  return true;
+}
+
+const turned = (degrees) => degrees - 360 * Math.round(degrees / 360);
+
+// Stop times over speed and spin, MAP x MAP, up to the most that the page shows.
+function stopTimes(fastest, most) {
+  const { radius, decel, delta } = scale(), times = new Float64Array(MAP * MAP);
+  for (let row = 0; row < MAP; row++) {
+    const spin = most * (1 - 2 * row / (MAP - 1));
+    for (let column = 0; column < MAP; column++) {
+      puckTables.stop(fastest * column / (MAP - 1), 0, spin, delta, decel, radius, five);
+      times[row * MAP + column] = five[0];
+    }
+  }
+  return times;
+}
+
+// Only as tall as the base stays loaded in every motion: delta = 2 f h / r up to 1.
+const tallest = () => now.radius / (2 * now.friction);
+
+function set(name, value) {
+  const [, , low, high] = FIELDS[name];
+  if (!Number.isFinite(value)) return;
+  now[name] = Math.min(high, Math.max(low, name === "heading" ? turned(value) : value));
+  now.height = Math.min(now.height, tallest());
+}

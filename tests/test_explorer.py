@@ -1,0 +1,199 @@
+"""The explorer, in a real browser without a network: its numbers, drags, keys, a narrow window."""
+
+from __future__ import annotations
+
+import math
+import os
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import puck_tables as pt
+import pytest
+from click.testing import CliRunner
+from puck_tables.cli.main import main
+from puck_tables.explore.page import TOL
+
+sync_api = pytest.importorskip("playwright.sync_api")
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
+pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="no Chromium here")
+DEGREE = math.pi / 180.0
+
+
+@pytest.fixture(scope="module")
+def address(tmp_path_factory: pytest.TempPathFactory) -> str:
+    path = tmp_path_factory.mktemp("explorer") / "page.html"
+    made = CliRunner().invoke(main, ["explore", "-o", str(path)])
+    assert made.exit_code == 0, made.output
+    assert path.stat().st_size < 1_000_000
+    return path.as_uri()
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    sandbox = [] if os.getuid() else ["--no-sandbox"]
+    with sync_api.sync_playwright() as play:
+        chromium = play.chromium.launch(executable_path=CHROMIUM, args=sandbox)
+        yield chromium
+        chromium.close()
+
+
+@pytest.fixture
+def page(browser: Any, address: str) -> Iterator[Any]:
+    said: list[str] = []
+    page = browser.new_page(viewport={"width": 1280, "height": 900})
+    page.context.set_offline(True)
+    page.on("console", lambda message: said.append(message.text))
+    page.on("pageerror", lambda error: said.append(str(error)))
+    page.on("request", lambda request: request.url == address or said.append(request.url))
+    page.goto(address)
+    yield page
+    assert said == []
+    page.close()
+
+
+def shown(page: Any) -> tuple[dict[str, float], dict[str, Any]]:
+    return page.evaluate("explorer.now"), page.evaluate("explorer.run()")
+
+
+def launched(now: dict[str, float]) -> tuple[pt.Puck, tuple[float, float], float]:
+    puck = pt.Puck(radius=now["radius"] / 1e3, height=now["height"] / 1e3, friction=now["friction"])
+    along = (math.cos(now["heading"] * DEGREE), math.sin(now["heading"] * DEGREE))
+    return puck, (now["speed"] * along[0], now["speed"] * along[1]), now["spin"]
+
+
+def test_numbers_are_the_library_s(page: Any):
+    rng = np.random.default_rng(5)
+    for _ in range(40):
+        low = {
+            "speed": 0,
+            "heading": -180,
+            "spin": -150,
+            "radius": 5,
+            "height": 0,
+            "friction": 0.01,
+        }
+        high = {
+            "speed": 5,
+            "heading": 180,
+            "spin": 150,
+            "radius": 200,
+            "height": 200,
+            "friction": 1,
+        }
+        for name in low:
+            page.evaluate(f"explorer.set('{name}', {rng.uniform(low[name], high[name])})")
+        now, run = shown(page)
+        puck, velocity, spin = launched(now)
+        stop = puck.stop(velocity, spin)
+        slip = math.hypot(now["speed"], puck.radius * spin)
+        time, size = slip / puck.decel, slip**2 / puck.decel
+        assert puck.delta <= 1.0 + 1e-12
+        assert abs(run["time"] - stop.stop_time) < 1.01 * TOL * time
+        assert abs(run["x"] - stop.stop_position[0]) < 1.01 * TOL * size
+        assert abs(run["y"] - stop.stop_position[1]) < 1.01 * TOL * size
+        states = np.array(run["states"])[::20]
+        truth = puck.states(velocity, spin, states[:, 0])
+        assert np.abs(states[:, 1] - truth.x).max() < 2.0 * TOL * size
+        assert np.abs(states[:, 4] - truth.vx).max() < 2.0 * TOL * slip
+
+
+def test_the_pressure_under_the_base_balances_its_friction(page: Any):
+    """Friction acts h/2 below the centre; the load, r/4 of its slope off, makes up for it."""
+    page.evaluate("explorer.set('height', 100)")
+    page.evaluate("explorer.set('friction', 0.15)")
+    now, run = shown(page)
+    puck, velocity, spin = launched(now)
+    path = puck.states(velocity, spin, [0.0, 1e-6])
+    pull = np.array([path.vx[1] - path.vx[0], path.vy[1] - path.vy[0]]) / 1e-6 / puck.gravity
+    assert run["tilt"] == pytest.approx(
+        (-pull * 2.0 * puck.height / puck.radius).tolist(), rel=1e-4
+    )
+
+
+def drag(page: Any, handle: str, by: tuple[float, float]) -> None:
+    box = page.locator("#plane").bounding_box()
+    x, y = page.evaluate(f"explorer.{handle}()")
+    page.mouse.move(box["x"] + x, box["y"] + y)
+    page.mouse.down()
+    page.mouse.move(box["x"] + x + by[0], box["y"] + y + by[1], steps=5)
+    page.mouse.up()
+
+
+def test_the_arrow_is_dragged(page: Any):
+    before = page.evaluate("({...explorer.now})")
+    drag(page, "tipOfArrow", (0.0, -60.0))
+    now, _ = shown(page)
+    assert now["heading"] > before["heading"] + 15.0
+    assert now["spin"] == before["spin"]
+
+
+def test_the_ring_is_dragged_also_through_zero(page: Any):
+    page.evaluate("explorer.set('spin', 5); explorer.refresh(true)")
+    drag(page, "knobOfRing", (80.0, -80.0))
+    now, _ = shown(page)
+    assert now["spin"] < 0.0
+
+
+def test_a_click_is_a_target_that_is_hit(page: Any):
+    box = page.locator("#plane").bounding_box()
+    page.mouse.click(box["x"] + 320, box["y"] + 90)
+    now, run = shown(page)
+    assert (run["x"], run["y"]) == pytest.approx(now["target"], abs=1e-9)
+    puck, velocity, spin = launched(now)
+    assert puck.stop(velocity, spin).stop_position == pytest.approx(now["target"], abs=1e-4)
+
+
+def test_keys_and_sliders(page: Any):
+    before = page.evaluate("({...explorer.now})")
+    page.locator("#plane").focus()
+    for key in ("ArrowUp", "ArrowUp", "ArrowLeft", "+", "+", "+"):
+        page.keyboard.press(key)
+    now, _ = shown(page)
+    assert now["speed"] == pytest.approx(before["speed"] + 0.1)
+    assert now["heading"] == pytest.approx(before["heading"] + 2.0)
+    assert now["spin"] == pytest.approx(before["spin"] + 6.0)
+    page.locator("[name=friction-range]").focus()
+    page.keyboard.press("ArrowRight")
+    assert page.evaluate("explorer.now.friction") == pytest.approx(before["friction"] + 1e-3)
+    page.locator("[name=radius-number]").fill("50")
+    assert page.evaluate("explorer.now.radius") == 50
+
+
+def test_the_address_keeps_it_and_commands_say_it(page: Any, address: str):
+    page.evaluate("explorer.set('spin', 33); explorer.set('heading', 0); explorer.refresh(true)")
+    page.wait_for_timeout(600)
+    assert "spin=33" in page.url
+    page.locator("#python").click()
+    room: dict[str, Any] = {}
+    exec(page.locator("#copied").text_content(), room)
+    assert room["run"].spin[0] == 33.0
+    page.locator("#command").click()
+    command = page.locator("#copied").text_content().split()
+    assert CliRunner().invoke(main, command[1:]).exit_code == 0
+    page.goto(address + "#spin=-12&speed=1&no=3")
+    assert page.evaluate("explorer.now.spin") == -12
+
+
+def test_a_narrow_window_hides_nothing(page: Any):
+    page.set_viewport_size({"width": 390, "height": 800})
+    page.wait_for_timeout(200)
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    for name in ("plane", "speeds", "ratio", "base", "map"):
+        assert page.locator(f"#{name}").bounding_box()["width"] > 150
+
+
+def test_axe_finds_nothing(page: Any):
+    axe = pytest.importorskip("axe_playwright_python.sync_playwright")
+    assert axe.Axe().run(page).response["violations"] == []
+
+
+@pytest.mark.parametrize(("name", "why"), [("explorer.txt", "FILE.html"), ("there.html", "exists")])
+def test_refusals(name: str, why: str, tmp_path: Path):
+    (tmp_path / "there.html").write_text("mine")
+    said = CliRunner().invoke(main, ["explore", "-o", str(tmp_path / name)])
+    assert said.exit_code != 0
+    assert why in said.output
+    assert (tmp_path / "there.html").read_text() == "mine"
