@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 )  # fmt: skip
 @output_options
 def tradeoff(quick: bool, outputs: tuple[Path, ...], plot: Path | None, overwrite: bool) -> None:
-    """Measure accuracy against speed of every way to answer.
+    """Measure accuracy against speed of every method to answer.
 
     Resultants, stops, trajectories and states: by closed forms, tables, integrators, look-up, and
     by what others do; worst and median error, cost on one thread, memory.  Some minutes.
@@ -47,19 +47,19 @@ def report(measured: TradeOff) -> str:
     from puck_tables.accuracy.front import pareto
 
     lines = []
-    for question in dict.fromkeys(way.question for way in measured.ways):
-        ways = [way for way in measured.ways if way.question == question]
-        own = [way for way in ways if not way.outsider]
+    for question in dict.fromkeys(method.question for method in measured.methods):
+        methods = [method for method in measured.methods if method.question == question]
+        own = [method for method in methods if not method.outsider]
         front = pareto(own)
         lines.append(
-            f"{question + ': the front of ' + str(len(own)) + ' ways':<58}"
+            f"{question + ': the front of ' + str(len(own)) + ' methods':<58}"
             f"{'worst':>8}{'median':>9}{'cost':>9} {'+-':>3}{'x limit':>9}{'bytes':>9}"
         )
-        lines += [_line(way) for way in front]
-        outsiders = [way for way in ways if way.outsider]
+        lines += [_line(method) for method in front]
+        outsiders = [method for method in methods if method.outsider]
         if outsiders:
             lines.append("  outsiders")
-            lines += [_line(way) for way in outsiders]
+            lines += [_line(method) for method in outsiders]
         lines.append("")
     lines.append(
         "limit ratio of a flat puck: "
@@ -82,12 +82,12 @@ def report(measured: TradeOff) -> str:
     return "\n".join(lines)
 
 
-def _line(way: Measured) -> str:
-    spread = f"{min(999.0, 100.0 * way.ns_spread / way.ns):.0f}%"
-    limit = f"{way.ns / way.limit_ns:.1f}" if way.limit_ns else "-"
+def _line(method: Measured) -> str:
+    spread = f"{min(999.0, 100.0 * method.ns_spread / method.ns):.0f}%"
+    limit = f"{method.ns / method.limit_ns:.1f}" if method.limit_ns else "-"
     return (
-        f"  {way.name:<56}{way.error:>8.1e}{way.median_error:>9.1e}{_duration(way.ns):>9}"
-        f"{spread:>5}{limit:>8}{way.bytes or '-':>9}"
+        f"  {method.name:<56}{method.error:>8.1e}{method.median_error:>9.1e}"
+        f"{_duration(method.ns):>9}{spread:>5}{limit:>8}{method.bytes or '-':>9}"
     )
 
 

@@ -30,8 +30,8 @@ class Puck(Verbs):
     ----------
     radius : m, > 0, of the base
     height : m, ≥ 0
-        Of the puck, whose centre of mass lies half as high; of a body that is not homogeneous, twice
-        the height of its centre of mass.
+        Of the puck, whose centre of mass lies half as high; of a body that is not homogeneous,
+        twice the height of its centre of mass.
     friction : Coulomb coefficient f, ≥ 0
         0, where it is left out: a puck that never stops by itself, for scenes alone.
     mass : kg, > 0; of a free puck only energies depend on it

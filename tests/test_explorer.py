@@ -10,10 +10,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import puck_tables as pt
 import pytest
 from click.testing import CliRunner
 from puck_tables.cli.main import main
+
+import puck_tables as pt
 from puck_tables.explore.page import TOL
 
 sync_api = pytest.importorskip("playwright.sync_api")

@@ -20,7 +20,7 @@ from puck_tables.motion.bulk import fill_stops
 from puck_tables.motion.steppers import DORMAND_PRINCE, RK4
 from puck_tables.stopping.exact import exact_stops
 from puck_tables.stopping.stop_table import StopTable
-from puck_tables.tradeoff import engine, resultant_ways, stop_ways
+from puck_tables.tradeoff import engine, resultant_methods, stop_methods
 from puck_tables.tradeoff.bicubic import fill_graded, graded_coefficients
 from puck_tables.tradeoff.machine import measured_machine
 from puck_tables.tradeoff.models import PADE_MATCHED, as_table, pade_limit_ratio
@@ -29,7 +29,7 @@ from puck_tables.tradeoff.truth import Points, known_starts, random_points
 
 @pytest.fixture(scope="module")
 def measured() -> engine.TradeOff:
-    """A result as the engine gives it, with the ways that ship."""
+    """A result as the engine gives it, with the methods that ship."""
     machine = replace(measured_machine(), description={"processor": "any", "cores": "1"})
     sizes = np.array([1e3, 1e4])
     return engine.TradeOff(
@@ -41,18 +41,18 @@ def measured() -> engine.TradeOff:
 def test_errors_are_properties_of_the_ways_and_ship_as_measured():
     """Every look-up and every fifth contender measured again: the same to the digits shipped."""
     points = random_points(40)
-    task = stop_ways.Task(known_starts(), points, Table.shipped(), Table.shipped("stops"))
-    known = {(way.question, way.name): way for way in shipped_front()}
+    task = stop_methods.Task(known_starts(), points, Table.shipped(), Table.shipped("stops"))
+    known = {(method.question, method.name): method for method in shipped_front()}
     count = 0
-    for number, contender in enumerate(stop_ways.contenders(task)):
+    for number, contender in enumerate(stop_methods.contenders(task)):
         if contender.outsider or (contender.method != "look-up" and number % 5):
             continue
         if contender.question != "stop" or "float32" in contender.method:
             continue
         ready = contender.ready(contender.build())
         worst = max(ready.time_error.max(), ready.place_error.max())
-        way = known["stop", f"{contender.method} ({contender.setting})"]
-        assert worst == pytest.approx(way.error, rel=0.02, abs=2e-14), way.name
+        method = known["stop", f"{contender.method} ({contender.setting})"]
+        assert worst == pytest.approx(method.error, rel=0.02, abs=2e-14), method.name
         count += 1
     assert count >= 7 + 4
 
@@ -61,9 +61,9 @@ def test_errors_of_resultants_ship_as_measured():
     points = random_points(4000)
     flat = points.delta == 0.0
     flat_points = Points(points.phi[flat], points.delta[flat], points.resultants[:, flat])
-    task = resultant_ways.Task(points, flat_points)
-    known = {way.name: way for way in shipped_front() if way.question == "resultants"}
-    for contender in resultant_ways.contenders(task):
+    task = resultant_methods.Task(points, flat_points)
+    known = {method.name: method for method in shipped_front() if method.question == "resultants"}
+    for contender in resultant_methods.contenders(task):
         if contender.method in ("quadratic in delta", "bicubic, graded", "limit surface"):
             error = contender.ready(contender.build()).place_error.max()
             name = contender.method + (f" ({contender.setting})" if contender.setting else "")
@@ -72,13 +72,13 @@ def test_errors_of_resultants_ship_as_measured():
 
 def test_the_figures_asked_for_are_on_the_front():
     """Errors and sizes; times are for the benchmarks."""
-    ways = {way.name: way for way in shipped_front() if way.question == "resultants"}
-    table = ways["quadratic in delta (nodes=513)"]
+    methods = {method.name: method for method in shipped_front() if method.question == "resultants"}
+    table = methods["quadratic in delta (nodes=513)"]
     assert table.error <= 3e-9
     assert table.bytes <= 1 << 20
-    assert ways["closed forms"].error <= 1e-14
-    stops = [way for way in shipped_front() if way.question == "stop"]
-    assert any(way.method == "look-up" and way.error <= 3e-9 for way in stops)
+    assert methods["closed forms"].error <= 1e-14
+    stops = [method for method in shipped_front() if method.question == "stop"]
+    assert any(method.method == "look-up" and method.error <= 3e-9 for method in stops)
 
 
 def test_quadratic_and_bicubic_are_the_same_table():
@@ -166,15 +166,15 @@ def test_models_of_the_literature():
 def test_files(measured: engine.TradeOff, tmp_path: Path):
     measured.save(tmp_path / "t.h5")
     with xarray.open_dataset(tmp_path / "t.h5", engine="h5netcdf") as data:
-        assert data["error"].dims == ("way",)
+        assert data["error"].dims == ("contender",)
         assert data["stop_ns"].dims == ("stops",)
         assert data["ns"].attrs["units"] == "ns"
-        chosen = data["error"].sel(way="resultants: closed forms")
+        chosen = data["error"].sel(contender="resultants: closed forms")
         assert 1e-16 < float(chosen) <= 1e-14
         assert data.attrs["machine_processor"] == "any"
     measured.save(tmp_path / "t.csv")
     rows = pandas.read_csv(tmp_path / "t.csv")
-    assert len(rows) == len(measured.ways)
+    assert len(rows) == len(measured.methods)
     assert set(rows.question) == {"resultants", "stop", "trajectory", "state"}
     with pytest.raises(OutputError, match="exists already"):
         measured.save(tmp_path / "t.csv")
@@ -211,23 +211,23 @@ def test_refusals_come_before_the_work(tmp_path: Path, monkeypatch: pytest.Monke
 
 
 def test_every_round_runs_every_way(monkeypatch: pytest.MonkeyPatch):
-    """The engine itself, on two ways and small sizes."""
+    """The engine itself, on two methods and small sizes."""
 
-    def few(task: resultant_ways.Task):
-        for contender in resultant_ways_contenders(task):
+    def few(task: resultant_methods.Task):
+        for contender in all_contenders(task):
             if contender.method in ("closed forms", "limit surface"):
                 yield contender
 
-    resultant_ways_contenders = resultant_ways.contenders
-    monkeypatch.setattr(engine.resultant_ways, "contenders", few)
-    monkeypatch.setattr(engine.stop_ways, "contenders", lambda task: iter(()))
-    monkeypatch.setattr(engine.state_ways, "contenders", lambda task: iter(()))
+    all_contenders = resultant_methods.contenders
+    monkeypatch.setattr(engine.resultant_methods, "contenders", few)
+    monkeypatch.setattr(engine.stop_methods, "contenders", lambda task: iter(()))
+    monkeypatch.setattr(engine.state_methods, "contenders", lambda task: iter(()))
     monkeypatch.setattr(engine, "_QUICK_SWEEP", 4)
     seen: list[tuple[int, int]] = []
     result = engine.measure(quick=True, progress=lambda done, total: seen.append((done, total)))
-    assert [way.method for way in result.ways] == ["closed forms", "limit surface"]
+    assert [method.method for method in result.methods] == ["closed forms", "limit surface"]
     assert seen[-1][0] == seen[-1][1]
-    assert result.ways[0].error <= 1e-14 < result.ways[1].error
-    assert all(way.ns > 0.0 for way in result.ways)
-    assert result.ways[0].limit in ("arithmetic", "memory")
+    assert result.methods[0].error <= 1e-14 < result.methods[1].error
+    assert all(method.ns > 0.0 for method in result.methods)
+    assert result.methods[0].limit in ("arithmetic", "memory")
     assert result.peak_bytes[-1] <= 2**21

@@ -154,7 +154,7 @@ COLUMNS = {
     ),
     "flights_per_period": Column("1", "flights", "flights in a wavelength"),
     # the measured trade-off
-    "way": Column("", "way", "question: method (setting)"),
+    "contender": Column("", "contender", "question: method (setting)"),
     "question": Column("", "question", "what was asked"),
     "method": Column("", "method", "how it was answered"),
     "setting": Column("", "setting", "with which setting"),

@@ -26,7 +26,7 @@ _MORE_COLORS = (*COLORS, "#7a5c00", "#00838a", "#a0527a", "#4f4f9a", "#6a8f00")
 
 
 def draw(measured: TradeOff) -> Figure:
-    """Error against cost for every way: one panel a question, one line a method.
+    """Error against cost for every method: one panel a question, one line a kind of method.
 
     Every point bears its setting, every method its name; the thick grey line is the front, hollow
     points are outsiders.
@@ -45,34 +45,34 @@ def draw(measured: TradeOff) -> Figure:
 
 def draw_on(axes: Axes, measured: TradeOff, question: str = "stop") -> None:
     """One question alone."""
-    ways = [way for way in measured.ways if way.question == question]
-    _draw(axes, _TITLES[question], ways)
+    group = [one for one in measured.methods if one.question == question]
+    _draw(axes, _TITLES[question], group)
 
 
-def _draw(axes: Axes, title: str, ways: list[Measured]) -> None:
-    front = pareto(way for way in ways if not way.outsider)
+def _draw(axes: Axes, title: str, group: list[Measured]) -> None:
+    front = pareto(one for one in group if not one.outsider)
     axes.plot(
-        [_error(way) for way in front], [way.ns for way in front],
+        [_error(one) for one in front], [one.ns for one in front],
         color="#d5d5d5", linewidth=9.0, solid_capstyle="round", zorder=1, label="the front",
     )  # fmt: skip
     axes.set_xscale("log")
     axes.set_yscale("log")
-    axes.set_xlim(300.0 * max(map(_error, ways)), 0.01 * min(map(_error, ways)))
-    axes.set_ylim(0.3 * min(way.ns for way in ways), 6.0 * max(way.ns for way in ways))
-    methods = list(dict.fromkeys(way.method for way in ways))
+    axes.set_xlim(300.0 * max(map(_error, group)), 0.01 * min(map(_error, group)))
+    axes.set_ylim(0.3 * min(one.ns for one in group), 6.0 * max(one.ns for one in group))
+    methods = list(dict.fromkeys(one.method for one in group))
     taken: list[tuple[float, float, float, float]] = []
     for number, method in enumerate(methods):
-        own = [way for way in ways if way.method == method]
+        own = [one for one in group if one.method == method]
         color = GREY if own[0].outsider else _MORE_COLORS[number % len(_MORE_COLORS)]
-        error, cost = [_error(way) for way in own], [way.ns for way in own]
+        error, cost = [_error(one) for one in own], [one.ns for one in own]
         axes.plot(
             error, cost, color=color, linewidth=1.0, marker="o", markersize=4.5, zorder=3,
             markerfacecolor="white" if own[0].outsider else color,
             linestyle="--" if own[0].outsider else "-",
         )  # fmt: skip
-        for way in own:
+        for one in own:
             axes.annotate(
-                _short(way.setting), (_error(way), way.ns), xytext=(0, -9 if number % 2 else 4),
+                _short(one.setting), (_error(one), one.ns), xytext=(0, -9 if number % 2 else 4),
                 fontsize=5.5, textcoords="offset points", ha="center", color=color, zorder=4,
             )  # fmt: skip
         _name(axes, method, own, color, taken)
@@ -92,13 +92,13 @@ def _name(
     ends = sorted(own, key=_error)
     beside = [(ends[-1], -width - 8.0, -3.0), (ends[0], 8.0, -3.0)]
     spots = beside + [
-        (way, dx, dy)
+        (one, dx, dy)
         for dy in (7.0, 19.0, -24.0, 31.0, -36.0, 43.0)
-        for way in (ends[-1], ends[0], ends[len(ends) // 2])
+        for one in (ends[-1], ends[0], ends[len(ends) // 2])
         for dx in (0.0, -width)
     ]
-    for way, dx, dy in spots:
-        x, y = axes.transData.transform((_error(way), way.ns))
+    for one, dx, dy in spots:
+        x, y = axes.transData.transform((_error(one), one.ns))
         box = (
             x + _PIXELS * dx,
             y + _PIXELS * dy,
@@ -115,7 +115,7 @@ def _name(
     options: dict[str, Any] = {"fontsize": 8, "color": color, "zorder": 2, "weight": "bold"}
     axes.annotate(
         method,
-        (_error(way), way.ns),
+        (_error(one), one.ns),
         xytext=(dx, dy),
         textcoords="offset points",
         bbox=_PAPER,
@@ -123,8 +123,8 @@ def _name(
     )
 
 
-def _error(way: Measured) -> float:
-    return max(way.error, _LOWEST) if np.isfinite(way.error) else 1.0
+def _error(one: Measured) -> float:
+    return max(one.error, _LOWEST) if np.isfinite(one.error) else 1.0
 
 
 def _short(setting: str) -> str:

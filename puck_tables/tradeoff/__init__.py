@@ -1,1 +1,1 @@
-"""Accuracy against speed, measured: every way of answering, its rivals, the front."""
+"""Accuracy against speed, measured: every method of answering, its rivals, the front."""

@@ -1,4 +1,4 @@
-"""What is measured: a way of answering, made ready, with its errors and its work."""
+"""What is measured: a method of answering, made ready, with its errors and its work."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from puck_tables._core.arrays import FloatArray
 
 @dataclass(frozen=True)
 class Ready:
-    """A way made ready: ``run`` answers ``items`` questions on one thread.
+    """A method made ready: ``run`` answers ``items`` questions on one thread.
 
     ``time_error`` and ``place_error`` (n,): at every start of the truth; for resultants the first
     is zero and the second the largest error of the three.  ``bytes`` it keeps; ``work`` (adds and
@@ -29,7 +29,7 @@ class Ready:
 
 @dataclass(frozen=True)
 class Contender:
-    """A way before it is measured; ``build`` makes what it needs, ``ready`` then all else."""
+    """A method before it is measured; ``build`` makes what it needs, ``ready`` then all else."""
 
     question: str
     method: str

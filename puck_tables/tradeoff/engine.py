@@ -1,4 +1,4 @@
-"""All ways measured on this machine: errors once, costs in rounds that share the noise."""
+"""All methods measured on this machine: errors once, costs in rounds that share the noise."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from puck_tables.result import Result
 from puck_tables.stopping.lookup import stops_kernel
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.table.resultant_table import ResultantTable
-from puck_tables.tradeoff import resultant_ways, state_ways, stop_ways
+from puck_tables.tradeoff import resultant_methods, state_methods, stop_methods
 from puck_tables.tradeoff.contender import Contender, Ready
 from puck_tables.tradeoff.machine import Machine, measured_machine
 from puck_tables.tradeoff.models import PADE_MATCHED, fitted_pade, pade_limit_ratio
@@ -38,12 +38,12 @@ _SHORTEST = 1e-3  # s; below it a round repeats the run
 class TradeOff(Result):
     """What was measured.
 
-    ``ways``; growth of a sweep by look-up in chunks: ``stops`` (n,), ``stop_ns`` (n,) for each,
+    ``methods``; growth of a sweep by look-up in chunks: ``stops`` (n,), ``stop_ns`` (n,) for each,
     ``peak_bytes`` (n,) of memory; ``limit_ratios``: rω/v at the stop of a flat puck by name; the
     ``machine``; ``repeats``; ``seconds`` it all took.
     """
 
-    ways: tuple[Measured, ...]
+    methods: tuple[Measured, ...]
     stops: FloatArray
     stop_ns: FloatArray
     peak_bytes: FloatArray
@@ -55,27 +55,29 @@ class TradeOff(Result):
     picture: ClassVar[str] = "tradeoff"
 
     def __repr__(self) -> str:
-        return f"TradeOff({len(self.ways)} ways, {self.repeats} rounds)"
+        return f"TradeOff({len(self.methods)} methods, {self.repeats} rounds)"
 
     def explain(self) -> str:
         """How it was got."""
         return f"medians of {self.repeats} rounds on one thread of this machine"
 
     def dataset(self) -> Dataset:
-        """Every way with its errors and costs; the growth of a sweep; the machine as attributes."""
+        """Methods with their errors and costs; the growth of a sweep; the machine as attributes."""
         names = [field.name for field in fields(Measured)]
-        columns = {name: variable(name, _values(self.ways, name), ("way",)) for name in names}
+        columns = {
+            name: variable(name, _values(self.methods, name), ("contender",)) for name in names
+        }
         growth = {
             name: variable(name, getattr(self, name), ("stops",))
             for name in ("stop_ns", "peak_bytes")
         }
-        told = [f"{way.question}: {way.name}" for way in self.ways]
+        told = [f"{method.question}: {method.name}" for method in self.methods]
         axes = {
-            "way": variable("way", told, ("way",)),
+            "contender": variable("contender", told, ("contender",)),
             "stops": variable("stops", self.stops, ("stops",)),
         }
         return Dataset(axes, columns | growth, {
-            "title": "Accuracy against cost of ways to friction resultants, stops and states",
+            "title": "Accuracy against cost of methods to friction resultants, stops and states",
             "repeats": self.repeats, "seconds": self.seconds,
             "peak_flops": self.machine.flops, "peak_bandwidth": self.machine.bandwidth,
             **{f"machine_{k}": v for k, v in self.machine.description.items()},
@@ -83,13 +85,13 @@ class TradeOff(Result):
         })  # fmt: skip
 
 
-def _values(ways: tuple[Measured, ...], name: str) -> Any:
-    values = [getattr(way, name) for way in ways]
+def _values(methods: tuple[Measured, ...], name: str) -> Any:
+    values = [getattr(method, name) for method in methods]
     return values if isinstance(values[0], str) else np.asarray(values)
 
 
 def measure(quick: bool = False, progress: Progress | None = None) -> TradeOff:
-    """Measure accuracy against cost of every way of answering, on one thread of this machine.
+    """Measure accuracy against cost of every method of answering, on one thread of this machine.
 
     Parameters
     ----------
@@ -103,9 +105,9 @@ def measure(quick: bool = False, progress: Progress | None = None) -> TradeOff:
 
     Notes
     -----
-    Errors: against :mod:`puck_tables.tradeoff.truth`.  Costs: every round runs every way once (or
-    for a millisecond, if that is longer), in turn; the median over the rounds is reported, with the
-    distance between the quartiles.
+    Errors: against :mod:`puck_tables.tradeoff.truth`.  Costs: every round runs every method once
+    (or for a millisecond, if that is longer), in turn; the median over the rounds is reported, with
+    the distance between the quartiles.
     """
     begin = time.perf_counter()
     machine = measured_machine()
@@ -115,9 +117,9 @@ def measure(quick: bool = False, progress: Progress | None = None) -> TradeOff:
     flat = Points(points.phi[chosen], points.delta[chosen], points.resultants[:, chosen])
     table, stop_table = ResultantTable.shipped(), StopTable.shipped()
     contenders: list[Contender] = [
-        *resultant_ways.contenders(resultant_ways.Task(points, flat)),
-        *stop_ways.contenders(stop_ways.Task(known_starts(), flat, table, stop_table)),
-        *state_ways.contenders(state_ways.Task(table, stop_table)),
+        *resultant_methods.contenders(resultant_methods.Task(points, flat)),
+        *stop_methods.contenders(stop_methods.Task(known_starts(), flat, table, stop_table)),
+        *state_methods.contenders(state_methods.Task(table, stop_table)),
     ]
     total, done = 2 * len(contenders) + repeats, 0
 
@@ -144,7 +146,7 @@ def measure(quick: bool = False, progress: Progress | None = None) -> TradeOff:
     a, b = fitted_pade(flat.phi, flat.resultants)
     return TradeOff(
         tuple(
-            _way(contender, ready, seconds, cost, machine)
+            _measured(contender, ready, seconds, cost, machine)
             for contender, ready, seconds, cost in zip(
                 contenders, readies, build_seconds, costs, strict=True
             )
@@ -173,7 +175,7 @@ def _seconds(ready: Ready, count: int) -> float:
     return time.perf_counter() - start
 
 
-def _way(
+def _measured(
     contender: Contender, ready: Ready, build: float, costs: FloatArray, machine: Machine
 ) -> Measured:
     error = np.maximum(ready.time_error, ready.place_error)

@@ -1,4 +1,4 @@
-"""Ways to the state of a puck at a moment between launch and stop."""
+"""Methods for the state of a puck at a moment between launch and stop."""
 
 from __future__ import annotations
 
@@ -103,9 +103,9 @@ class Task:
 
 
 def contenders(task: Task) -> Iterator[Contender]:
-    """All ways to a state."""
+    """All methods to a state."""
 
-    def way(
+    def contender(
         method: str, setting: str, make: Callable[[], Run], size: int, outsider: bool = False
     ) -> Contender:
         def ready(_: object) -> Ready:
@@ -119,17 +119,17 @@ def contenders(task: Task) -> Iterator[Contender]:
 
     stops = task.stops
     tables = (stops.stop_coefficients, stops.curve_coefficients, stops.time_inverse)
-    yield way(LOOK_UP.name, "", task.looked_up, sum(table.nbytes for table in tables))
+    yield contender(LOOK_UP.name, "", task.looked_up, sum(table.nbytes for table in tables))
     for source in (Source.TABLE, Source.CLOSED_FORMS):
         method, exact = Scheme(Method.ADAPTIVE, source).name, source is Source.CLOSED_FORMS
         for local in _LOCAL:
             size = 0 if exact else task.table.columns.nbytes
-            yield way(
+            yield contender(
                 method, f"local={local:g}",
                 partial(task.integrated, local, exact), size,
             )  # fmt: skip
     for rtol, atol in ((1e-4, 1e-7), (1e-8, 1e-10), (1e-11, 1e-13)):
-        yield way(
+        yield contender(
             "scipy DOP853, closed forms", f"rtol={rtol:g} atol={atol:g}",
             partial(task.by_scipy, rtol, atol), 0, outsider=True,
         )  # fmt: skip

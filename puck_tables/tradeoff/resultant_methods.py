@@ -1,4 +1,4 @@
-"""Ways to the three resultants at scattered points."""
+"""Methods for the three resultants at scattered points."""
 
 from __future__ import annotations
 
@@ -106,9 +106,9 @@ def _quadrature(phi: FloatArray, delta: FloatArray, out: FloatArray) -> None:
 
 
 def contenders(task: Task) -> Iterator[Contender]:
-    """All ways to the resultants."""
+    """All methods to the resultants."""
 
-    def way(
+    def contender(
         method: str, setting: str, build: Callable[[], Any], ready: Callable[[Any], Ready],
         outsider: bool = False,
     ) -> Contender:  # fmt: skip
@@ -117,24 +117,26 @@ def contenders(task: Task) -> Iterator[Contender]:
     def nothing() -> None:
         return None
 
-    yield way("direct quadrature", "", nothing, lambda _: task.judge())
-    yield way("closed forms", "", nothing, lambda _: task.ready(
+    yield contender("direct quadrature", "", nothing, lambda _: task.judge())
+    yield contender("closed forms", "", nothing, lambda _: task.ready(
         fill_closed_form, work=60.0 + 6.0 * HARD + 5.0 * _AGM_WORK, traffic=0.0))  # fmt: skip
-    yield way("closed forms, plain NumPy", "", nothing, lambda _: task.ready(_plain_closed_form))
+    yield contender(
+        "closed forms, plain NumPy", "", nothing, lambda _: task.ready(_plain_closed_form)
+    )
     for size in _NODES:
-        yield way(
+        yield contender(
             QUADRATIC, f"nodes={size}", partial(_quadratic_columns, size, np.float64),
             lambda c: task.ready(partial(_quadratic, c), c.nbytes,
                                  work=_PLACE_WORK + 50.0, traffic=160.0),
         )  # fmt: skip
     for size in (257, 991):
-        yield way(
+        yield contender(
             QUADRATIC + ", float32", f"nodes={size}", partial(_quadratic_columns, size, np.float32),
             lambda c: task.ready(partial(_quadratic, c), c.nbytes,
                                  work=_PLACE_WORK + 50.0, traffic=80.0),
         )  # fmt: skip
     for size in (33, 129, 513, 991):
-        yield way(
+        yield contender(
             BICUBIC, f"nodes={size}x4", partial(_bicubic_coefficients, size),
             lambda c: task.ready(
                 partial(_bicubic, c),
@@ -142,18 +144,18 @@ def contenders(task: Task) -> Iterator[Contender]:
             ),
         )  # fmt: skip
     for size in (65, 257, 1025, 4097):
-        yield way(
+        yield contender(
             UNIFORM, f"nodes={size}x4", partial(uniform_coefficients, size),
             lambda c: task.ready(
                 partial(_uniform, c), c.nbytes
             ),
         )  # fmt: skip
-    yield from _outsiders(task, way)
+    yield from _outsiders(task, contender)
 
 
-def _outsiders(task: Task, way: Callable[..., Contender]) -> Iterator[Contender]:
+def _outsiders(task: Task, contender: Callable[..., Contender]) -> Iterator[Contender]:
     for size in ((100, 9), (400, 17), (1600, 17)):
-        yield way(
+        yield contender(
             "scipy NdBSpline", f"nodes={size[0]}x{size[1]}", partial(_scipy_spline, *size),
             lambda spline: task.ready(partial(_by_spline, spline), spline.c.nbytes, items=10_000),
             outsider=True,
@@ -162,12 +164,12 @@ def _outsiders(task: Task, way: Callable[..., Contender]) -> Iterator[Contender]
     def pade(ab: tuple[float, float]) -> Ready:
         return task.ready(lambda phi, delta, out: fill_pade(phi, *ab, out), flat=True)
 
-    yield way("Pade, slopes matched", "", lambda: PADE_MATCHED, pade, outsider=True)
+    yield contender("Pade, slopes matched", "", lambda: PADE_MATCHED, pade, outsider=True)
     flat = task.flat_truth
-    yield way(
+    yield contender(
         "Pade, fitted", "", lambda: fitted_pade(flat.phi, flat.resultants), pade, outsider=True
     )
-    yield way(
+    yield contender(
         "limit surface", "", lambda: None,
         lambda _: task.ready(lambda phi, delta, out: fill_limit_surface(phi, out), flat=True),
         outsider=True,

@@ -1,4 +1,4 @@
-"""Ways to the stop of a launch: looked up, integrated, and what others do."""
+"""Methods for the stop of a launch: looked up, integrated, and what others do."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ class Task:
 
 
 def contenders(task: Task) -> Iterator[Contender]:
-    """All ways to a stop, and to a trajectory with its steps recorded."""
+    """All methods to a stop, and to a trajectory with its steps recorded."""
     for powers, thinning in _CUTS:
         yield Contender(
             QUESTION, LOOK_UP.name, f"powers={powers} thinning={thinning}",
@@ -159,7 +159,7 @@ def _integrations(
 
 
 def _outsiders(task: Task) -> Iterator[Contender]:
-    def way(method: str, setting: str, stop_of: Callable[..., FloatArray]) -> Contender:
+    def rival(method: str, setting: str, stop_of: Callable[..., FloatArray]) -> Contender:
         def ready(_: object) -> Ready:
             easy = task.easy.launches()
             stops = np.stack([stop_of(*launch[:4]) for launch in easy.T], axis=-1)
@@ -169,11 +169,11 @@ def _outsiders(task: Task) -> Iterator[Contender]:
         return Contender(QUESTION, method, setting, lambda: None, ready, outsider=True)
 
     for method, rtol, atol in SCIPY_SETTINGS:
-        yield way(
+        yield rival(
             f"scipy {method}, closed forms", f"rtol={rtol:g} atol={atol:g}",
             partial(scipy_stop, method, rtol, atol),
         )  # fmt: skip
-    yield way("patches and scipy RK45", f"patches={PATCH_GRID[0]}x{PATCH_GRID[1]}", patch_script)
+    yield rival("patches and scipy RK45", f"patches={PATCH_GRID[0]}x{PATCH_GRID[1]}", patch_script)
 
     def modelled(method: str, build: Callable[[], ResultantTable]) -> Contender:
         def ready(table: object) -> Ready:
