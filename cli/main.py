@@ -18,6 +18,8 @@ import click
 from puck_tables.cli.aim import aim
 from puck_tables.cli.asperity import asperity
 from puck_tables.cli.build_tables import build_tables
+from puck_tables.cli.explore import explore
+from puck_tables.cli.export import export
 from puck_tables.cli.fit import fit
 from puck_tables.cli.info import info
 from puck_tables.cli.options import printable, said_first
@@ -142,7 +144,7 @@ def main() -> None:
 
 _ALL = (
     simulate, sweep, aim, scene, track, fit, build_tables, validate, info, tables, paper, tradeoff,
-    asperity,
+    asperity, export, explore,
 )  # fmt: skip
 for _command in _ALL:
     main.add_command(_command)

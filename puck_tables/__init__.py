@@ -31,6 +31,7 @@ if TYPE_CHECKING:
         PuckError,
         TableError,
     )
+    from puck_tables.export.source import Source, export_source
     from puck_tables.film.reading import read_tracks
     from puck_tables.film.track import Track
     from puck_tables.fitting.fit import fit
@@ -100,6 +101,7 @@ _HOMES = {
     "Scene": "scene.scene",
     "SceneMap": "scene.sweep",
     "SceneRun": "scene.outcome",
+    "Source": "export.source",
     "SpeedLaw": "contact.speed_law",
     "States": "stopping.states",
     "StopMap": "stopping.sweep",
@@ -114,6 +116,7 @@ _HOMES = {
     "World": "world.world",
     "chetaev": "",
     "contact": "",
+    "export_source": "export.source",
     "fisher": "fitting.forecast",
     "fit": "fitting.fit",
     "law_of": "contact.laws",
@@ -160,6 +163,7 @@ __all__ = [
     "Scene",
     "SceneMap",
     "SceneRun",
+    "Source",
     "SpeedLaw",
     "States",
     "StopMap",
@@ -175,6 +179,7 @@ __all__ = [
     "__version__",
     "chetaev",
     "contact",
+    "export_source",
     "fisher",
     "fit",
     "law_of",

@@ -32,14 +32,17 @@ ROOMS = {
     "fitting": "_core _version accuracy contact errors film io kernels motion puck result "
     "stopping table",
     "autodiff": "errors stopping",
+    "export": "_core _version contact errors puck stopping",
+    "explore": "export",
     "scene": "_core contact errors io kernels motion puck result stopping table",
     "world": "_core contact errors io kernels motion puck result scene stopping table",
     "tradeoff": "_core _version accuracy contact io kernels motion result stopping table",
     "plot": "_core accuracy chetaev errors film fitting io motion result scene stopping tradeoff "
     "trajectory world",
     "paper": "_core contact motion plot puck trajectory",
-    "cli": "_core _version accuracy chetaev contact errors film fitting io kernels motion paper "
-    "plot puck scene stopping table tradeoff world",
+    "cli": "_core _version accuracy chetaev contact errors explore export film fitting io kernels "
+    "motion "
+    "paper plot puck scene stopping table tradeoff world",
     "__init__": "_core _version",
 }
 DOORS = {

@@ -1,0 +1,48 @@
+"""``puck export``: the look-ups as a source file of another language."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+from puck_tables.cli.options import FILE, NUMBER, prepare_outputs, told
+
+
+@click.command()
+@click.option("--language", required=True, metavar="NAME", help="c, js or python.")
+@click.option(
+    "--what",
+    default="stop,state,resultants",
+    show_default=True,
+    metavar="PARTS",
+    help="Where and when launches stop, states at any time, friction resultants.",
+)
+@click.option(
+    "--tol",
+    type=NUMBER,
+    default=1e-6,
+    show_default=True,
+    help="Largest error, in units of Q/J, Q^2/J, Q: 1e-9 to 0.01.",
+)
+@click.option("-o", "--output", type=FILE, required=True, metavar="FILE", help="The file.")
+@click.option("--overwrite", is_flag=True, help="Replace an output file that exists.")
+def export(language: str, what: str, tol: float, output: Path, overwrite: bool) -> None:
+    """Write one self-contained source file that computes motions without this program.
+
+    The tables are in it, as small as the error allows, the licence, and self_test, which returns
+    how many numbers of the test vectors in the file are missed: 0.  Of homogeneous pucks under
+    uniform pressure, 0 <= delta <= 1.
+
+    \b
+    puck export --language c -o puck.c
+    puck export --language js --what stop,state --tol 1e-4 -o puck.js
+    """  # noqa: D301 - click reads the backspace
+    from puck_tables.export.source import checked_ending, checked_request, export_source
+
+    parts = checked_request(language, what, tol)
+    checked_ending(output, language)
+    prepare_outputs(others=(output,), overwrite=overwrite)
+    source = export_source(language, parts, tol)
+    source.save(output, overwrite)
+    click.echo(repr(source), err=True)
+    told(output)

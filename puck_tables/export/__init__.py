@@ -1,0 +1,1 @@
+"""The look-ups as source code of other languages."""

@@ -1,0 +1,48 @@
+"""Python without any package."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Sequence
+
+from puck_tables.export.language import Language, rows_of
+
+
+class Python(Language):
+    """The programs as they are."""
+
+    key, title, endings = "python", "Python 3.8", (".py",)
+
+    def comment(self, lines: Sequence[str]) -> str:
+        """A docstring."""
+        return '"""' + "\n".join(lines) + '\n"""'
+
+    def head(self, public: Sequence[str]) -> str:
+        """Imports, and the words of the programs."""
+        return (
+            "from __future__ import annotations\n\n"
+            "from collections.abc import MutableSequence, Sequence\n"
+            "from math import cos, exp, expm1, log, log1p, nan, pi, sin, sqrt\n\n"
+            f"__all__ = {list(public)}\n\n"
+            "Numbers = Sequence\nOut = MutableSequence\n\n\n"
+            "def room(size):\n    return [0.0] * size\n\n"
+        )
+
+    def constant(self, name: str, value: float | int) -> str:
+        """A constant."""
+        return f"{name} = {value!r}"
+
+    def table(self, name: str, numbers: Sequence[float]) -> str:
+        """A tuple."""
+        return f"{name} = (\n{rows_of(numbers)},\n)" if numbers else f"{name} = ()"
+
+    def function(self, node: ast.FunctionDef) -> str:
+        """As it is."""
+        return "\n" + ast.unparse(node) + "\n"
+
+    def foot(self, public: Sequence[str]) -> str:
+        """Nothing."""
+        return ""
+
+
+LANGUAGE = Python()

@@ -1,0 +1,47 @@
+"""What the programs find beside them: tables, and the words that every language has its own for.
+
+The numbers of a table are whole; times its quantum they are the coefficients of uniform B-splines
+in ξ (:mod:`puck_tables.export.fit`), a row a node: the powers of 2δ² − 1, ascending, and within a
+power the functions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import MutableSequence, Sequence
+
+Numbers = Sequence[float]
+Out = MutableSequence[float]
+Room = list[float]
+
+# tables of one error: cells, degree, powers, quantum and numbers
+STOP: Numbers = ()
+STOP_CELLS, STOP_DEGREE, STOP_POWERS = 1, 1, 1
+STOP_QUANTUM = 1.0
+CURVE: Numbers = ()
+CURVE_CELLS, CURVE_DEGREE, CURVE_POWERS = 1, 1, 1
+CURVE_QUANTUM = 1.0
+INVERSE: Numbers = ()
+INVERSE_CELLS, INVERSE_DEGREE, INVERSE_POWERS = 1, 1, 1
+INVERSE_QUANTUM = 1.0
+CONSTANTS: Numbers = ()
+CONSTANTS_POWERS = 1
+CONSTANTS_QUANTUM = 1.0
+
+# what the test of a file compares with
+TOLERANCE = 1.0
+STOP_CASES: Numbers = ()
+STATE_CASES: Numbers = ()
+TURN_CASES: Numbers = ()
+RESULTANT_CASES: Numbers = ()
+STOP_COUNT = STATE_COUNT = TURN_COUNT = RESULTANT_COUNT = 0
+
+
+def room(size: int) -> Room:
+    """An array to work in.
+
+    Examples
+    --------
+    >>> room(2)
+    [0.0, 0.0]
+    """
+    return [0.0] * size

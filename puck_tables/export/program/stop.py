@@ -1,0 +1,78 @@
+"""Where and when a launch stops."""
+
+from __future__ import annotations
+
+from puck_tables.export.program.given import (
+    STOP,
+    STOP_CELLS,
+    STOP_DEGREE,
+    STOP_POWERS,
+    STOP_QUANTUM,
+    Out,
+    room,
+)
+from puck_tables.export.program.places import (
+    AROUND,
+    EAST,
+    MEASURED,
+    NORTH,
+    RIM,
+    SHARE,
+    SIDE,
+    SLIP,
+    SPEED,
+    look_up,
+    measured,
+    place_of,
+    refused,
+)
+
+# of the functions of a stop
+TIME, ALONG, ACROSS, LENGTH, BODY = 0, 1, 2, 3, 4
+STOP_FUNCTIONS = 5
+
+
+def stop_functions(side: int, share: float, delta: float, f: Out) -> None:
+    """T, along, across, path length and body angle; side 1 where r|w| > v."""
+    look_up(
+        STOP, STOP_CELLS, STOP_DEGREE, STOP_POWERS, STOP_FUNCTIONS, STOP_QUANTUM, side,
+        place_of(share), 2.0 * delta * delta - 1.0, f,
+    )  # fmt: skip
+    if share == 0.0 and side == 0:
+        f[TIME] = 1.0
+        f[ALONG] = 0.5
+        f[LENGTH] = 0.5
+    elif share == 0.0:
+        f[TIME] = 0.75
+        f[BODY] = 0.375
+
+
+def stop(
+    vx: float, vy: float, spin: float, delta: float, decel: float, radius: float, out: Out
+) -> int:
+    """Stop time s, place x m, y m, path length m and body angle rad of a launch, into out[5].
+
+    vx, vy m/s; spin rad/s, counter-clockwise positive; delta = 2 f h / r from 0 to 1; decel = f g
+    m/s^2; radius m.  Errors: the tolerance times Q/J, Q^2/J, Q^2/J and Q^2/(J r), where
+    Q = hypot(v, r w) and J is decel.  Returns 0; 1 where a number is not finite or out of range, 2
+    where the motion is too large for floating point: nothing but NaN is in out then.
+    """
+    m = room(MEASURED)
+    f = room(5)
+    code: int = measured(vx, vy, spin, delta, decel, radius, m)
+    if code != 0:
+        return refused(out, 5, code)
+    if m[SLIP] == 0.0:
+        for n in range(5):
+            out[n] = 0.0
+        return 0
+    stop_functions(int(m[SIDE]), m[SHARE], delta, f)
+    duration: float = m[SLIP] / decel
+    size: float = duration * m[SLIP]
+    across: float = delta * m[AROUND] * m[RIM] * f[ACROSS]
+    out[0] = duration * f[TIME]
+    out[1] = size * (f[ALONG] * m[EAST] - across * m[NORTH])
+    out[2] = size * (f[ALONG] * m[NORTH] + across * m[EAST])
+    out[3] = size * m[SPEED] * f[LENGTH]
+    out[4] = size / radius * m[AROUND] * m[RIM] * f[BODY]
+    return 0

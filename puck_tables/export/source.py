@@ -1,0 +1,286 @@
+"""One self-contained source file: tables, programs, licence, and vectors that test them."""
+
+from __future__ import annotations
+
+import ast
+import inspect
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from math import factorial
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from puck_tables._core.real import instance, real
+from puck_tables._core.safe_write import write_bytes
+from puck_tables._version import __version__
+from puck_tables.errors import AccuracyError, InputError
+from puck_tables.export.cases import cases_of
+from puck_tables.export.fit import (
+    CONSTANT_SHARE,
+    CURVE_SHARE,
+    STOP_SHARE,
+    Fitted,
+    fitted,
+    fitted_constants,
+    functions_of,
+)
+from puck_tables.export.languages import LANGUAGES
+from puck_tables.export.licence import LICENCE
+from puck_tables.export.program import check, given, places, resultants, state, stop
+from puck_tables.stopping.stop_table import StopTable
+
+FINEST, COARSEST = 1e-9, 1e-2
+# What can be asked for: the modules of it, and the functions that its user calls.
+PARTS: dict[str, tuple[tuple[ModuleType, ...], tuple[str, ...]]] = {
+    "stop": ((places, stop), ("stop",)),
+    "state": ((places, stop, state), ("stop", "state", "turn")),
+    "resultants": ((places, resultants), ("resultants",)),
+}
+_MISSES = {
+    "stop": "stop_misses", "state": "state_misses", "turn": "turn_misses",
+    "resultants": "resultant_misses",
+}  # fmt: skip
+_CASES = {
+    "stop": "STOP", "state": "STATE", "turn": "TURN", "resultants": "RESULTANT",
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Source:
+    """A source file.
+
+    Parameters
+    ----------
+    text : its content
+    language : one of :func:`languages`
+    what : what it computes
+    tol : the largest error of it, in units of Q/J (times), Q²/J (places), Q (speeds), rad
+    """
+
+    text: str
+    language: str
+    what: tuple[str, ...]
+    tol: float
+
+    def __repr__(self) -> str:
+        size = len(self.text.encode())
+        return f"Source({self.language}, {', '.join(self.what)} to {self.tol:g}, {size} bytes)"
+
+    def save(self, path: str | Path, overwrite: bool = False) -> None:
+        """Write the file.
+
+        Parameters
+        ----------
+        path : ending as the language has it
+        overwrite : whether an existing file may be replaced
+
+        Raises
+        ------
+        InputError
+            If the ending is another language's.
+        OutputError
+            If the file exists or cannot be written.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     export_source("c", "resultants").save(folder + "/puck.c")
+        ...     Path(folder, "puck.c").read_text()[:14]
+        '/* puck-tables'
+        """
+        instance("path", path, str, Path)
+        checked_ending(path, self.language)
+        write_bytes(path, self.text.encode(), overwrite)
+
+
+def export_source(
+    language: str, what: str | Iterable[str] = ("stop", "state", "resultants"), tol: float = 1e-6
+) -> Source:
+    """A source file that computes stops, states or resultants without this package.
+
+    Parameters
+    ----------
+    language : 'c', 'js' or 'python'
+    what : 'stop' (where and when a launch stops), 'state' (states at any time, the turn of the
+        heading, and stop), 'resultants' (of friction), or some of them
+    tol : float
+        Largest error, in units of Q/J (times), Q²/J (places), Q²/(J r) (body angle), Q (velocity),
+        Q/r (spin) and 1 (turn of the heading), Q = hypot(v, rω) of the launch; 1e-9 to 0.01.
+        Resultants are in closed form, 1e-14.
+
+    Returns
+    -------
+    Source
+        Of plain pucks: uniform pressure, homogeneous, 0 ≤ δ ≤ 1.
+
+    Raises
+    ------
+    InputError
+        If a language or a part is not known.
+    AccuracyError
+        If the tolerance is out of reach.
+
+    Notes
+    -----
+    A function fills an array and returns a code: 0, or 1 where an argument is not finite or out of
+    range, or 2 where the motion is too large for floating point; the array holds nothing but NaN
+    then.  ``self_test`` returns how many numbers of the vectors in the file are missed: 0.
+
+    References
+    ----------
+    Salnikova, Treschev, Gallyamov 2012, section 2 (symmetry) and eq. 6.2–6.7.
+
+    Examples
+    --------
+    >>> source = export_source("python", "stop", 1e-4)
+    >>> room = {}
+    >>> exec(source.text, room)
+    >>> out = [0.0] * 5
+    >>> room["stop"](1.0, 0.0, 5.0, 1.0, 1.0, 1.0, out), round(out[0], 2), room["self_test"]()
+    (0, 4.0, 0)
+    """
+    parts = checked_request(language, what, tol)
+    return Source(_text(language, parts, float(tol)), language, parts, float(tol))
+
+
+def checked_request(language: str, what: str | Iterable[str], tol: float) -> tuple[str, ...]:
+    """What is asked for, in the order of :data:`PARTS`.
+
+    Raises
+    ------
+    InputError, AccuracyError
+
+    Examples
+    --------
+    >>> checked_request("c", "state,stop", 1e-6)
+    ('stop', 'state')
+    """
+    instance("language", language, str)
+    if language not in LANGUAGES:
+        raise InputError(f"no language is called {language!r}: choose {', '.join(LANGUAGES)}")
+    error = real("tol", tol, "units of Q/J, Q^2/J")
+    if not FINEST <= error <= COARSEST:
+        raise AccuracyError(
+            f"tol must be from {FINEST:g} to {COARSEST:g} for exported files, got {error:g}: give "
+            "a tol in that range"
+        )
+    instance("what", what, str, Iterable)
+    asked = what.split(",") if isinstance(what, str) else list(what)
+    names = [one.strip() if isinstance(one, str) else one for one in asked]
+    for name in names:
+        if name not in PARTS:
+            raise InputError(f"nothing to export is called {name!r}: choose {', '.join(PARTS)}")
+    if not names:
+        raise InputError(f"there is nothing to export: choose {', '.join(PARTS)}")
+    return tuple(part for part in PARTS if part in names)
+
+
+def checked_ending(path: str | Path, language: str) -> None:
+    """Refuse a file name whose ending is not that of the language.
+
+    Raises
+    ------
+    InputError
+
+    Examples
+    --------
+    >>> checked_ending("puck.js", "c")
+    Traceback (most recent call last):
+    ...
+    puck_tables.errors.InputError: puck.js: a file of C99 ends in .c or .h
+    """
+    of = LANGUAGES[language]
+    if Path(path).suffix.lower() not in of.endings:
+        raise InputError(f"{path}: a file of {of.title} ends in {' or '.join(of.endings)}")
+
+
+def _text(key: str, parts: tuple[str, ...], tol: float) -> str:
+    """The whole file."""
+    language = LANGUAGES[key]
+    modules = [one for one in (places, stop, state, resultants) if one in _modules(parts)]
+    public = [name for part in parts for name in PARTS[part][1]]
+    public = list(dict.fromkeys(public))
+    cases = cases_of(public, tol)
+    functions = [node for module in modules for node in _functions(module)]
+    misses = [_MISSES[name] for name in public]
+    if modules == [places, resultants]:  # of places it needs but the refusal
+        functions = [f for f in functions if f.name == "refused" or f.name not in vars(places)]
+    tests = {"misses", "slip_of", *misses} if public != ["resultants"] else {"misses", *misses}
+    functions += [node for node in _functions(check) if node.name in tests]
+    functions.append(_self_test(misses))
+    numbers: dict[str, Any] = {"TOLERANCE": tol}
+    tables: dict[str, Sequence[float]] = {}
+    for name in public:
+        width, values = cases[name]
+        tables[f"{_CASES[name]}_CASES"] = values
+        numbers[f"{_CASES[name]}_COUNT"] = len(values) // width
+    if stop in modules:
+        for name, table in _tables(tol).items():
+            tables[name] = table.numbers.ravel().tolist()
+            numbers |= {
+                f"{name}_CELLS": table.cells, f"{name}_DEGREE": table.degree,
+                f"{name}_POWERS": table.powers,
+                f"{name}_QUANTUM": float(f"{table.quantum / factorial(table.degree):.15g}"),
+            }  # fmt: skip
+    for module in modules:
+        numbers |= {n: v for n, v in vars(module).items() if n.isupper() and n not in vars(given)}
+    used = {
+        one.id for node in functions for one in ast.walk(node) if isinstance(one, ast.Name)
+    }  # fmt: skip
+    pieces = [
+        language.comment([*_title(language.title, parts, tol, public), "", *LICENCE.splitlines()]),
+        language.head([*public, "self_test"]),
+        *(language.constant(n, v) for n, v in numbers.items() if n in used),
+        *(language.table(n, v) for n, v in tables.items() if n in used and v),
+        *(language.function(node) for node in functions),
+        language.foot([*public, "self_test"]),
+    ]
+    return "\n".join(piece for piece in pieces if piece) + "\n"
+
+
+def _modules(parts: tuple[str, ...]) -> set[ModuleType]:
+    return {module for part in parts for module in PARTS[part][0]}
+
+
+def _title(language: str, parts: tuple[str, ...], tol: float, public: Sequence[str]) -> list[str]:
+    return [
+        f"puck-tables {__version__}: {', '.join(parts)} of flat pucks that slide and spin under "
+        "dry friction.",
+        f"{language}; error {tol:g} (see each function); uniform pressure, homogeneous, "
+        "0 <= delta <= 1.",
+        f"Functions: {', '.join(public)}; self_test returns how many numbers of its vectors are",
+        "missed: 0.  Needs IEEE arithmetic (no -ffast-math).  Made by a program: do not edit.",
+    ]
+
+
+@lru_cache(maxsize=8)
+def _tables(tol: float) -> dict[str, Fitted]:
+    """The tables of an error."""
+    table = StopTable.shipped()
+    stops, curve, inverse = functions_of(table)
+    return {
+        "STOP": fitted(stops, STOP_SHARE * tol, haste=2),
+        "CURVE": fitted(curve, CURVE_SHARE * tol),
+        "INVERSE": fitted(inverse, CURVE_SHARE * tol),
+        "CONSTANTS": fitted_constants(table.constants, CONSTANT_SHARE * tol),
+    }
+
+
+def _functions(module: ModuleType) -> list[ast.FunctionDef]:
+    """The functions of a program, as they are written."""
+    tree = ast.parse(inspect.getsource(module))
+    return [node for node in tree.body if isinstance(node, ast.FunctionDef)]
+
+
+def _self_test(misses: Sequence[str]) -> ast.FunctionDef:
+    """The test of the whole file."""
+    total = " + ".join(f"{name}()" for name in misses)
+    (function,) = ast.parse(
+        "def self_test() -> int:\n"
+        f'    """How many numbers of the test vectors are missed: 0."""\n    return {total}'
+    ).body
+    assert isinstance(function, ast.FunctionDef)
+    return function

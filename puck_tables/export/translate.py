@@ -1,0 +1,189 @@
+"""From the few words of Python in which the programs are written to languages with braces.
+
+A statement is a declaration (``x: float = …``, ``w = room(3)``), an assignment, a sum (``+=``), an
+``if``, a ``while``, a ``for`` over a ``range`` or a ``return``; an expression is arithmetic over
+numbers, elements of arrays, calls of functions, comparisons, and one of two.  A language says how
+it declares (:class:`Braces`); one without braces has a class of its own beside its file.
+"""
+
+from __future__ import annotations
+
+import ast
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from typing import NoReturn
+
+_OPERATORS: Mapping[type[ast.AST], tuple[str, int]] = {
+    ast.Or: ("||", 1), ast.And: ("&&", 2), ast.Eq: ("==", 4), ast.NotEq: ("!=", 4),
+    ast.Lt: ("<", 5), ast.LtE: ("<=", 5), ast.Gt: (">", 5), ast.GtE: (">=", 5), ast.Add: ("+", 6),
+    ast.Sub: ("-", 6), ast.Mult: ("*", 7), ast.Div: ("/", 7),
+}  # fmt: skip
+_UNARY, _ATOM = 8, 9
+_LINE = 96
+
+
+class Braces(ABC):
+    """A language whose statements and operators look like those of C."""
+
+    functions: Mapping[str, str]  # its names of mathematical functions
+    names: Mapping[str, str] = {"nan": "NAN", "True": "true", "False": "false"}
+
+    def comment(self, lines: Sequence[str]) -> str:
+        """In the style of C."""
+        return "/* " + "\n".join(lines) + " */"
+
+    @abstractmethod
+    def signature(self, function: ast.FunctionDef) -> str:
+        """The head of a function, up to its brace."""
+
+    @abstractmethod
+    def declaration(self, name: str, kind: str, value: str) -> str:
+        """The beginning of a variable; ``kind``: float, int, bool, Numbers or counter."""
+
+    @abstractmethod
+    def array(self, function: str, name: str, size: str) -> tuple[str, str]:
+        """An array to work in: lines before the function, and the declaration inside."""
+
+    @abstractmethod
+    def whole(self, value: str) -> str:
+        """The whole part of a number that is not negative."""
+
+    def name(self, name: str) -> str:
+        """How a function or a table is called there."""
+        return name
+
+    # functions
+
+    def function(self, node: ast.FunctionDef) -> str:
+        """One function, its docstring as a comment before it.
+
+        Examples
+        --------
+        >>> from puck_tables.export.languages import LANGUAGES
+        >>> tree = ast.parse("def f(x: float) -> float: return -x if x < 0.0 else x")
+        >>> print(LANGUAGES["js"].function(tree.body[0]))
+        function f(x) {
+          return x < 0.0 ? -x : x;
+        }
+        """
+        text = ast.get_docstring(node)
+        self._before: list[str] = []
+        self._here = node.name
+        body = node.body[1:] if text is not None else node.body
+        lines = [self.signature(node) + " {", *self._block(body, 1), "}"]
+        told = [] if text is None else [self.comment(text.splitlines())]
+        return "\n".join([*told, *self._before, *lines])
+
+    def _block(self, statements: list[ast.stmt], depth: int) -> list[str]:
+        return [line for one in statements for line in self._statement(one, depth)]
+
+    def _statement(self, node: ast.stmt, depth: int) -> list[str]:
+        pad = "  " * depth
+        match node:
+            case ast.AnnAssign(target=ast.Name(id=name), annotation=kind, value=value) if value:
+                return _folded(pad, self.declaration(name, ast.unparse(kind), self.of(value)))
+            case ast.Assign(
+                targets=[ast.Name(id=name)], value=ast.Call(func=ast.Name(id="room"), args=[size])
+            ):
+                before, inside = self.array(self._here, name, self.of(size))
+                self._before += [before] if before else []
+                return [pad + inside] if inside else []
+            case ast.Assign(targets=[target], value=value):
+                return _folded(pad, f"{self.of(target)} = {self.of(value)};")
+            case ast.AugAssign(target=target, op=operator, value=value):
+                sign = _OPERATORS[type(operator)][0]
+                return _folded(pad, f"{self.of(target)} {sign}= {self.of(value)};")
+            case ast.Return(value=value):
+                return _folded(pad, f"return {self.of(value)};" if value else "return;")
+            case ast.Expr(value=value):
+                return _folded(pad, f"{self.of(value)};")
+            case ast.While(test=test, body=body):
+                head = f"{pad}while ({self.of(test)}) {{"
+                return [head, *self._block(body, depth + 1), pad + "}"]
+            case ast.For(
+                target=ast.Name(id=name), iter=ast.Call(func=ast.Name(id="range"), args=args),
+                body=body,
+            ):  # fmt: skip
+                return [pad + self._range(name, args), *self._block(body, depth + 1), pad + "}"]
+            case ast.If(test=test, body=body, orelse=other):
+                lines = [f"{pad}if ({self.of(test)}) {{", *self._block(body, depth + 1)]
+                if len(other) == 1 and isinstance(other[0], ast.If):
+                    nested = self._statement(other[0], depth)
+                    return [*lines, f"{pad}}} else {nested[0].strip()}", *nested[1:]]
+                if not other and len(lines) == 2 and len(lines[0]) + len(lines[1].lstrip()) < _LINE:
+                    return [f"{lines[0][:-1]}{lines[1].lstrip()}"]
+                if other:
+                    lines += [pad + "} else {", *self._block(other, depth + 1)]
+                return [*lines, pad + "}"]
+        _refuse(node)
+
+    def _range(self, name: str, args: list[ast.expr]) -> str:
+        counted = "unused" if name == "_" else name
+        start, stop, step = "0", "", "1"
+        if len(args) == 1:
+            stop = self.of(args[0])
+        else:
+            start, stop = self.of(args[0]), self.of(args[1])
+            step = self.of(args[2]) if len(args) == 3 else "1"
+        first = self.declaration(counted, "counter", start)
+        if step == "-1":
+            return f"for ({first} {counted} > {stop}; {counted}--) {{"
+        return f"for ({first} {counted} < {stop}; {counted}++) {{"
+
+    # expressions
+
+    def of(self, node: ast.expr) -> str:
+        """An expression."""
+        return self._bound(node)[0]
+
+    def _bound(self, node: ast.expr) -> tuple[str, int]:
+        """An expression, and how firmly its parts hold together."""
+        match node:
+            case ast.Constant(value=bool(value)):
+                return self.names[str(value)], _ATOM
+            case ast.Constant(value=value):
+                return repr(value), _ATOM
+            case ast.Name(id=name):
+                return self.names.get(name, self.name(name)), _ATOM
+            case ast.Subscript(value=array, slice=place):
+                return f"{self.of(array)}[{self.of(place)}]", _ATOM
+            case ast.UnaryOp(op=ast.USub(), operand=inner):
+                return "-" + self._inside(inner, _UNARY), _UNARY
+            case ast.UnaryOp(op=ast.Not(), operand=inner):
+                return "!" + self._inside(inner, _UNARY), _UNARY
+            case ast.BinOp(left=left, op=operator, right=right):
+                sign, firm = _OPERATORS[type(operator)]
+                return f"{self._inside(left, firm)} {sign} {self._inside(right, firm + 1)}", firm
+            case ast.Compare(left=left, ops=[operator], comparators=[right]):
+                sign, firm = _OPERATORS[type(operator)]
+                return f"{self._inside(left, 6)} {sign} {self._inside(right, 6)}", firm
+            case ast.BoolOp(op=operator, values=values):
+                sign, firm = _OPERATORS[type(operator)]
+                return f" {sign} ".join(self._inside(one, 4) for one in values), firm
+            case ast.IfExp(test=test, body=body, orelse=other):
+                return f"{self._inside(test, 1)} ? {self._inside(body, 1)} : {self.of(other)}", 0
+            case ast.Call(func=ast.Name(id="int"), args=[inner]):
+                return self.whole(self.of(inner)), _ATOM
+            case ast.Call(func=ast.Name(id=name), args=args):
+                called = self.functions.get(name, self.name(name))
+                return f"{called}({', '.join(map(self.of, args))})", _ATOM
+        _refuse(node)
+
+    def _inside(self, node: ast.expr, least: int) -> str:
+        text, firm = self._bound(node)
+        return text if firm >= least else f"({text})"
+
+
+def _refuse(node: ast.AST) -> NoReturn:
+    raise NotImplementedError(f"programs have no such words: {ast.unparse(node)}")
+
+
+def _folded(pad: str, line: str) -> list[str]:
+    """A statement over as many lines as it needs."""
+    lines: list[str] = []
+    indent = pad
+    while len(indent) + len(line) > _LINE and " " in line[: _LINE - len(indent)]:
+        cut = line.rindex(" ", 0, _LINE - len(indent))
+        lines.append(indent + line[:cut])
+        line, indent = line[cut + 1 :], pad + "    "
+    return [*lines, indent + line]

@@ -1,0 +1,159 @@
+"""Exported files answer as the library does, within the error that they state, at every launch."""
+
+from __future__ import annotations
+
+import itertools
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+from exported import RUNNERS, WIDTHS, launches, runner, text_of, units
+
+import puck_tables as pt
+from puck_tables.export.languages import LANGUAGES
+
+POINTS = {"c": 100_000, "js": 100_000, "python": 1_000}
+TOLS = [1e-4, 1e-6, 1e-9]
+every_language = pytest.mark.parametrize("language", RUNNERS)
+
+
+@cache
+def by_library(count: int) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    """Arguments and answers of the library, by function."""
+    rows, rng = launches(count, 16), np.random.default_rng(61)
+    kind = {"delta": rows[:, 3], "decel": rows[:, 4], "radius": rows[:, 5]}
+    stops = pt.stop(rows[:, :2], rows[:, 2], tol=1e-10, **kind)
+    share = np.where(
+        rng.random(count) < 0.3, 1.0 - 10.0 ** -rng.uniform(0.0, 8.0, count),
+        rng.uniform(0.0, 1.02, count),
+    )  # fmt: skip
+    share[::50] = 0.0
+    times = share * stops.stop_time
+    there = pt.states(rows[:, :2], rows[:, 2], times, **kind)
+    phi = rng.uniform(-0.5 * np.pi, 0.5 * np.pi, count)
+    phi[::5] = 0.25 * np.pi * (1.0 + 1e-7 * rng.normal(0.0, 1.0, phi[::5].size))
+    phi[:4] = 0.0, 0.5 * np.pi, -0.5 * np.pi, 0.25 * np.pi
+    rho = pt.resultants(phi, rows[:, 3])
+    return {
+        "stop": (rows, np.column_stack([
+            stops.stop_time, stops.stop_position, stops.path_length, stops.body_angle,
+        ])),
+        "turn": (rows, stops.turn_angle[:, None]),
+        "state": (np.column_stack([rows, times]), np.column_stack([
+            there.x, there.y, there.orientation, there.vx, there.vy, there.spin,
+        ])),
+        "resultants": (np.column_stack([phi, rows[:, 3]]), np.column_stack(list(rho))),
+    }  # fmt: skip
+
+
+@every_language
+@pytest.mark.parametrize("tol", TOLS)
+def test_equal_to_the_library(language: str, tol: float, tmp_path: Path):
+    run = runner(language, tol, tmp_path)
+    for name, (rows, wanted) in by_library(POINTS[language]).items():
+        found, codes = run(name, np.ascontiguousarray(rows))
+        assert not codes.any(), name
+        if name == "resultants":
+            assert np.abs(found - wanted).max() <= 2e-14
+        else:
+            assert (np.abs(found - wanted) / units(rows, name)).max() <= tol, name
+
+
+BAD = [np.nan, np.inf, -np.inf]
+WRONG = [
+    *((n, bad) for n in range(6) for bad in BAD),
+    (3, -1e-12), (3, 1.0 + 1e-9), (4, 0.0), (4, -1.0), (5, 0.0), (5, -1.0), (6, -1e-9), (6, np.nan),
+    (6, np.inf),
+]  # fmt: skip
+
+
+@every_language
+def test_what_is_out_of_range_is_refused(language: str, tmp_path: Path):
+    run = runner(language, 1e-4, tmp_path)
+    for name in ("stop", "turn", "state"):
+        wide = WIDTHS[name][0]
+        rows = [[1.0, 0.0, 5.0, 0.5, 1.0, 1.0, 1.0][:wide] for _ in WRONG]
+        for row, (n, value) in zip(rows, WRONG, strict=True):
+            if n < wide:
+                row[n] = value
+        wrong = np.array([n < wide for n, _ in WRONG])
+        found, codes = run(name, np.array(rows))
+        np.testing.assert_array_equal(codes, wrong)
+        np.testing.assert_array_equal(np.isnan(found).all(axis=1), wrong)
+    angles = np.array([[1.6, 0.5], [-1.6, 0.5], [np.nan, 0.5], [0.1, 1.1], [0.1, -0.1]])
+    found, codes = run("resultants", angles)
+    assert np.isnan(found).all() and codes.tolist() == [1] * 5
+
+
+@every_language
+def test_the_largest_and_the_smallest_numbers(language: str, tmp_path: Path):
+    """Either finite, and the library's, or refused as too large where the library refuses it."""
+    run = runner(language, 1e-4, tmp_path)
+    sizes = [0.0, 5e-324, 1e-310, 1e-200, -1e-60, 1.0, 1e90, 1e150, 1.7e308]
+    rows = np.array([
+        [vx, vy, spin, delta, decel, radius]
+        for vx, vy, spin in itertools.product(sizes, [0.0, 1e-160, 2e150], sizes)
+        for delta, decel, radius in ((0.0, 1.0, 1.0), (1.0, 1e-300, 1e-5), (0.5, 1e308, 1e20))
+    ])  # fmt: skip
+    found, codes = run("stop", rows)
+    with np.errstate(over="ignore", invalid="ignore"):
+        rim = rows[:, 5] * rows[:, 2]
+        wanted = pt.stop(
+            rows[:, :2], rows[:, 2], delta=rows[:, 3], decel=rows[:, 4], radius=rows[:, 5]
+        )
+        too_large = ~np.isfinite(rim) | (wanted.status != 0)
+    assert set(codes.tolist()) == {0, 2}
+    assert np.isnan(found[codes == 2]).all() and np.isfinite(found[codes == 0]).all()
+    clear = too_large == (codes == 2)  # at the very edge of floating point either may be right
+    assert clear.mean() > 0.99
+    fine = ~too_large & (codes == 0)
+    stops = np.column_stack([wanted.stop_time, wanted.stop_position])[fine]
+    off = np.abs(found[fine, :3] - stops) / units(rows[fine], "stop")[:, :3]
+    assert off.max() <= 1e-4
+    for share in (0.3, 2.0):
+        times = share * np.where(fine, wanted.stop_time, 1.0)
+        states, state_codes = run("state", np.column_stack([rows, times]))
+        np.testing.assert_array_equal(state_codes, codes)
+        assert np.isfinite(states[codes == 0]).all()
+    turns, turn_codes = run("turn", rows)
+    np.testing.assert_array_equal(turn_codes, codes)
+    assert np.isfinite(turns[codes == 0]).all()
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_size_of_a_file(language: str):
+    sizes = [len(text_of(language, "stop,state,resultants", tol).encode()) for tol in TOLS]
+    assert sizes[0] <= 30_000
+    assert sizes == sorted(sizes)
+
+
+@every_language
+@pytest.mark.parametrize("what", ["stop", "resultants"])
+def test_a_part_stands_alone(language: str, what: str, tmp_path: Path):
+    run = runner(language, 1e-4, tmp_path, what)
+    rows, wanted = by_library(POINTS["python"])[what]
+    found, _ = run(what, np.ascontiguousarray(rows))
+    scale = units(rows, "stop") if what == "stop" else 1.0
+    assert (np.abs(found - wanted) / scale).max() <= 1e-4
+    others = {"stop": "KAPPA", "resultants": "CELLS"}  # words of what was not asked for
+    assert others[what] not in text_of(language, what, 1e-4)
+
+
+def test_a_file_notices_a_wrong_digit(tmp_path: Path):
+    """The vectors in it are no ornament."""
+    text = text_of("python", "stop", 1e-6)
+    start = text.index("STOP = (") + 9
+    end = text.index("\n)", start)
+    numbers = text[start:end].replace("\n", "").rstrip(",").split(",")
+    wrong = [str(int(float(one)) + 3_000_000) if n % 20 < 5 else one
+             for n, one in enumerate(numbers)]  # fmt: skip
+    names: dict[str, object] = {}
+    exec(text[:start] + ",".join(wrong) + "," + text[end:], names)
+    assert names["self_test"]() > 0  # type: ignore[operator]
+
+
+def test_the_licence_is_the_package_s():
+    licence = (Path(__file__).parent.parent / "LICENSE").read_text()
+    for language in LANGUAGES:
+        assert licence.strip() in text_of(language, "stop,state,resultants", 1e-4)

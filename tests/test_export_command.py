@@ -1,0 +1,75 @@
+"""``puck export`` and ``export_source``: what they write, and what they refuse."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+from puck_tables.cli.main import main
+
+import puck_tables as pt
+
+
+@pytest.mark.parametrize(
+    ("language", "name"), [("c", "puck.c"), ("c", "puck.h"), ("js", "puck.mjs"), ("python", "p.py")]
+)
+def test_a_file_is_written_whole(tmp_path: Path, language: str, name: str):
+    path = tmp_path / name
+    options = ["export", "--language", language, "--what", "resultants", "-o", str(path)]
+    done = CliRunner().invoke(main, options)
+    assert done.exit_code == 0 and f"wrote {path}" in done.stderr and not done.stdout
+    assert path.read_text() == pt.export_source(language, "resultants").text
+    again = CliRunner().invoke(main, options)
+    assert again.exit_code == 1 and "exists already" in again.stderr
+    assert CliRunner().invoke(main, [*options, "--overwrite"]).exit_code == 0
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["--language", "fortran", "-o", "a.f90"], ["'fortran'", "c, js, python"]),
+        (["--language", "c", "-o", "a.js"], ["a.js", ".c or .h"]),
+        (["--language", "c", "-o", "a"], ["ends in .c"]),
+        (["--language", "c", "--tol", "1e-10", "-o", "a.c"], ["from 1e-09 to 0.01", "1e-10"]),
+        (["--language", "c", "--tol", "0.1", "-o", "a.c"], ["tol must be from"]),
+        (["--language", "c", "--tol", "nan", "-o", "a.c"], ["finite"]),
+        (["--language", "c", "--what", "path", "-o", "a.c"], ["'path'", "stop, state"]),
+        (["--language", "c", "--what", "", "-o", "a.c"], ["choose stop, state"]),
+        (["--language", "c", "-o", "nowhere/a.c"], ["nowhere does not exist"]),
+        (["--language", "c"], ["--output"]),
+        (["-o", "a.c"], ["--language"]),
+    ],
+)
+def test_bad_input_is_one_sentence(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, options: list[str], words: list[str]
+):
+    monkeypatch.chdir(tmp_path)
+    done = CliRunner().invoke(main, ["export", *options])
+    assert done.exit_code in (1, 2)
+    assert "Traceback" not in done.stderr and done.stderr.count("Error: ") == 1
+    assert all(word in done.stderr for word in words), done.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ((3,), "language must be"),
+        (("c", 3), "what must be"),
+        (("c", [3]), "called 3"),
+        (("c", []), "nothing to export"),
+        (("c", "stop", "fine"), "tol must be"),
+        (("c", "stop", True), "tol"),
+        (("c", "stop", float("inf")), "tol"),
+    ],
+)
+def test_the_library_refuses_the_same(arguments: tuple[object, ...], words: str):
+    with pytest.raises(pt.InputError, match=words):
+        pt.export_source(*arguments)  # type: ignore[arg-type]
+
+
+def test_any_error_between_is_made():
+    source = pt.export_source("c", ["resultants", "stop", "stop"], 3e-3)
+    assert source.what == ("stop", "resultants") and "0.003" in source.text
+    assert repr(source).startswith("Source(c, stop, resultants to 0.003, ")
