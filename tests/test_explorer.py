@@ -103,15 +103,13 @@ def test_numbers_are_the_library_s(page: Any):
 
 def test_the_pressure_under_the_base_balances_its_friction(page: Any):
     """Friction acts h/2 below the centre; the load, r/4 of its slope off, makes up for it."""
-    page.evaluate("explorer.set('height', 100)")
-    page.evaluate("explorer.set('friction', 0.15)")
+    for name, value in (("height", 100), ("friction", 0.15), ("moment", 50)):
+        page.evaluate(f"explorer.set('{name}', {value})")
     now, run = shown(page)
     puck, velocity, spin = launched(now)
-    path = puck.states(velocity, spin, [0.0, 1e-6])
-    pull = np.array([path.vx[1] - path.vx[0], path.vy[1] - path.vy[0]]) / 1e-6 / puck.gravity
-    assert run["tilt"] == pytest.approx(
-        (-pull * 2.0 * puck.height / puck.radius).tolist(), rel=1e-4
-    )
+    path = puck.states(velocity, spin, [run["t"] - 1e-3, run["t"] + 1e-3])
+    pull = np.array([np.diff(path.vx), np.diff(path.vy)]).ravel() / 2e-3 / puck.gravity
+    assert run["tilt"] == pytest.approx((-2.0 * pull * puck.height / puck.radius), rel=1e-4)
 
 
 def drag(page: Any, handle: str, by: tuple[float, float]) -> None:
@@ -132,10 +130,19 @@ def test_the_arrow_is_dragged(page: Any):
 
 
 def test_the_ring_is_dragged_also_through_zero(page: Any):
-    page.evaluate("explorer.set('spin', 5); explorer.refresh(true)")
-    drag(page, "knobOfRing", (80.0, -80.0))
+    """It is turned clockwise once; the knob stands 0.65 of a turn from no spin."""
+    page.evaluate("explorer.set('spin', 50); explorer.refresh(true)")
+    box = page.locator("#plane").bounding_box()
+    centre, knob = page.evaluate("[explorer.seen(0, 0), explorer.knobOfRing()]")
+    x, y = knob[0] - centre[0], knob[1] - centre[1]
+    page.mouse.move(box["x"] + knob[0], box["y"] + knob[1])
+    page.mouse.down()
+    for turn in np.linspace(0.0, 2.0 * math.pi, 13)[1:]:
+        c, s = math.cos(turn), math.sin(turn)
+        page.mouse.move(box["x"] + centre[0] + c * x - s * y, box["y"] + centre[1] + s * x + c * y)
+    page.mouse.up()
     now, _ = shown(page)
-    assert now["spin"] < 0.0
+    assert now["spin"] == pytest.approx(50.0 * (0.65 - 1.0) / 0.65, rel=1e-3)
 
 
 def test_a_click_is_a_target_that_is_hit(page: Any):

@@ -41,8 +41,7 @@ ROOMS = {
     "trajectory world",
     "paper": "_core contact motion plot puck trajectory",
     "cli": "_core _version accuracy chetaev contact errors explore export film fitting io kernels "
-    "motion "
-    "paper plot puck scene stopping table tradeoff world",
+    "motion paper plot puck scene stopping table tradeoff world",
     "__init__": "_core _version",
 }
 DOORS = {
