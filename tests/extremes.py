@@ -303,13 +303,14 @@ def launches_on_the_edges_of_cells() -> Iterator[float]:
 
 @row("Runge–Kutta 4 with 1e6 steps", "Q/J, Q²/J", 1e-11)
 def a_million_steps() -> Iterator[float]:
+    from puck_tables.kernels.section_spline import NO_SECTION
     from puck_tables.motion.path import STOPPED, integrate
     from puck_tables.motion.state import SIZE
     from puck_tables.motion.steppers import RK4
 
     result, none = np.empty(SIZE + 1), np.empty(0)
     status, steps = integrate(
-        0.7, RK4, 1e6, 1.0, 1.0, none, HEIGHT, 3_000_000, none, np.empty((0, SIZE)), result
+        0.7, RK4, 1e6, 1.0, 1.0, NO_SECTION, HEIGHT, 3_000_000, none, np.empty((0, SIZE)), result
     )
     if status != STOPPED or steps < 900_000:
         yield math.nan

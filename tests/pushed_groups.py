@@ -6,6 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from puck_tables.kernels.section_spline import NO_SECTION
 from puck_tables.scene.ingredients import Regions
 from puck_tables.scene.regions import NO_LAW
 from puck_tables.world.group import (
@@ -55,7 +56,7 @@ def group_of(discs, obstacles=(), pull=(0.0, 0.0), films=None, cuts=None):
         rows.append(np.asarray(film))
         reels[number] = first, first + len(film)
     if cuts is None:
-        cuts = np.zeros((len(discs), 0))
+        cuts = np.zeros((len(discs), *NO_SECTION.shape))
     return Group(
         discs, np.array(obstacles, float).reshape(-1, OBSTACLE_COLUMNS),
         Regions(mass * discs[:, 3], discs[:, 4].copy(), cuts, NO_LAW), PLAIN_RIMS, np.vstack(rows),

@@ -12,7 +12,7 @@ import pytest
 from puck_tables import SpeedLaw, Table
 from puck_tables.contact.laws import law_of
 from puck_tables.kernels.compile import kernel
-from puck_tables.kernels.quadratic import cut, fill_resultants
+from puck_tables.kernels.quadratic import cut, fill_resultants, room_for_cut
 from puck_tables.kernels.section_spline import fill_section
 from puck_tables.kernels.speed_spline import fill_speed
 from puck_tables.kernels.spline import cell_at
@@ -60,7 +60,7 @@ def look_up_everything() -> None:
         for c in (columns, np.random.default_rng(1).choice(WILD, columns.shape)):
             fill_resultants(c, sides, first, second, out)
             for height in WILD:
-                cut(c, height, np.empty(3 * c[..., 0].size))
+                cut(c, height, room_for_cut(c))
     wild = np.random.default_rng(1).choice(WILD, (2, 11, 19, 3))
     for c in (graded_coefficients(table), wild):
         fill_graded(c, 1.0, first, second, out)

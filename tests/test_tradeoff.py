@@ -16,6 +16,7 @@ from puck_tables.cli.tradeoff import report
 from puck_tables import Table, resultants
 from puck_tables.accuracy.front import shipped_front
 from puck_tables.errors import OutputError
+from puck_tables.kernels.section_spline import NO_SECTION
 from puck_tables.motion.bulk import fill_stops
 from puck_tables.motion.steppers import DORMAND_PRINCE, RK4
 from puck_tables.stopping.exact import exact_stops
@@ -143,12 +144,12 @@ def test_unrolled_and_general_runge_kutta_take_the_same_steps():
     from puck_tables.motion.rk4 import to_stop
     from puck_tables.motion.state import SIZE, T, Y
 
-    nothing, none = np.empty(0), np.empty((0, SIZE))
+    none, nothing = NO_SECTION, np.empty((0, SIZE))
     for u in (-20.0, -2.0, -1e-6, 0.3, 5.0):
         for delta in (0.0, 0.4, 1.0):
             state, fast, slow = np.zeros(SIZE), np.zeros(SIZE + 1), np.zeros(SIZE + 1)
-            to_stop(u, 40.0, nothing, delta, state, fast)
-            integrate(u, RK4, 40.0, 1.0, 1.0, nothing, delta, 10**5, nothing, none, slow)
+            to_stop(u, 40.0, none, delta, state, fast)
+            integrate(u, RK4, 40.0, 1.0, 1.0, none, delta, 10**5, np.empty(0), nothing, slow)
             np.testing.assert_allclose(fast[:7], slow[:7], rtol=0, atol=2e-14)
             exact = exact_stops(np.array([u]), np.array([delta]))[0, :3]
             assert np.abs(fast[T : Y + 1] - exact).max() <= 2e-7
@@ -159,7 +160,7 @@ def test_models_of_the_literature():
     table = as_table("limit surface")
     launch = np.array([[1.0], [0.0], [0.0], [0.0], [1.0], [1.0]])
     out, status = np.empty((6, 1)), np.empty(1, np.int8)
-    fill_stops(launch, DORMAND_PRINCE, 64.0, 1.0, table.columns, out, status)
+    fill_stops(launch, DORMAND_PRINCE, 64.0, 1.0, table.columns, NO_SECTION, out, status)
     assert out[:2, 0] == pytest.approx([1.0, 0.5], abs=1e-9)  # pure sliding is right in any model
 
 

@@ -14,15 +14,31 @@ c₂; sides: rows of line, end and extent as in :mod:`puck_tables.table.slip_axi
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import allocating, inlined, kernel
+from puck_tables.kernels.section_spline import (
+    HEADER,
+    INERTIA,
+    INVERSE_EXTENT,
+    LINE_COS,
+    LINE_SIN,
+    PLAIN,
+    RATIOS,
+    UPPER_COS,
+    UPPER_SIN,
+)
 from puck_tables.kernels.spline import basis, cell_at, side_and_eta
 
 TERMS = 5
+NO_COLUMNS = np.empty((2, 0, TERMS))  # closed forms; read-only like those of a table
+NO_COLUMNS.flags.writeable = False
 _BLOCK = 128
 _QUARTER = 0.25 * np.pi
+_HALF_ROOT = math.sqrt(0.5)
 
 
 @inlined
@@ -98,12 +114,25 @@ def fill_resultants(
 
 @kernel
 def cut(coefficients: FloatArray, delta: float, out: FloatArray) -> None:
-    """The section at one height, for a run: ``out`` is flat, sides·(η cells + 3)·3."""
-    k = 0
+    """The section of plain pucks at one height into ``out``, of :func:`room_for_cut`."""
     for side in range(coefficients.shape[0]):
+        k = HEADER
         for i in range(coefficients.shape[1]):
             row = coefficients[side, i]
-            out[k] = row[0] + delta * delta * row[1]
-            out[k + 1] = delta * row[2]
-            out[k + 2] = row[3] + delta * delta * row[4]
+            out[side, k] = row[0] + delta * delta * row[1]
+            out[side, k + 1] = delta * row[2]
+            out[side, k + 2] = row[3] + delta * delta * row[4]
             k += 3
+
+
+@allocating
+def room_for_cut(coefficients: FloatArray) -> FloatArray:
+    """A section with the header of plain pucks; no rows where there are no coefficients."""
+    sides, nodes = coefficients.shape[0], coefficients.shape[1]
+    out = np.zeros((sides if nodes > 0 else 0, HEADER + RATIOS * nodes))
+    for side in range(out.shape[0]):
+        out[side, LINE_COS], out[side, LINE_SIN] = _HALF_ROOT, _HALF_ROOT  # φ = π/4, LINE = 0
+        out[side, UPPER_COS] = _HALF_ROOT if side == 0 else 0.0
+        out[side, UPPER_SIN] = _HALF_ROOT if side == 0 else 1.0
+        out[side, INVERSE_EXTENT], out[side, INERTIA], out[side, PLAIN] = 1.0, 0.5, 1.0
+    return out

@@ -57,14 +57,3 @@ def row_sums(
         w0 * c[k + 1] + w1 * c[k + 4] + w2 * c[k + 7] + w3 * c[k + 10],
         w0 * c[k + 2] + w1 * c[k + 5] + w2 * c[k + 8] + w3 * c[k + 11],
     )
-
-
-@inlined
-def evaluate_cut(cut_: FloatArray, side: int, eta: float) -> tuple[float, float, float]:
-    """The three friction ratios at (side, η) from :func:`puck_tables.kernels.quadratic.cut`."""
-    row = cut_.size // 2
-    n_eta = row // 3 - 3
-    p = eta * n_eta
-    i = cell_at(p, n_eta)
-    w0, w1, w2, w3 = basis(p - i)
-    return row_sums(cut_, np.uint64(side * row + 3 * i), w0, w1, w2, w3)

@@ -10,6 +10,7 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import allocating
 from puck_tables.kernels.quadratic import cut as cut_table
+from puck_tables.kernels.quadratic import room_for_cut
 from puck_tables.motion.equations import at_constant_angle
 from puck_tables.motion.limits import log_ratio
 from puck_tables.motion.path import STOPPED, integrate
@@ -28,23 +29,20 @@ def fill_stops(
     tableau: Tableau,
     steps: float,
     tolerance: float,
-    coefficients: FloatArray,
+    columns: FloatArray,
+    section: FloatArray,
     out: FloatArray,
     status: npt.NDArray[np.int8],
 ) -> None:
     """Stops of launches (6, n): vx, vy, ω, δ, J, r, into ``out`` (6, n), see solvers.OUTPUTS.
 
     By ``tableau`` with about ``steps`` steps, or, if that is 0, with the local error ``tolerance``.
-    ``coefficients``: those of a table of resultants, empty for closed forms; a matrix is the
-    section of one kind of puck, which all launches are of.
+    ``columns``: of a table of resultants; ``section``: of the one kind of puck that all launches
+    are of; both are empty for closed forms.
     One launch never influences another, so any cutting into chunks gives the same bits.
     """
-    if coefficients.ndim == 2:
-        at_ends, cut = coefficients, coefficients
-    else:
-        at_ends = np.empty(0)  # closed forms
-        by_table = coefficients.size > 0
-        cut = np.empty(2 * 3 * coefficients.shape[1]) if by_table else at_ends
+    by_table = columns.size > 0
+    cut = room_for_cut(columns) if by_table else section
     cut_delta = -1.0
     no_z, no_y = np.empty(0), np.empty((0, SIZE))
     start = np.empty(SIZE)
@@ -64,15 +62,14 @@ def fill_stops(
             for i in range(6):
                 out[i, n] = math.nan
             continue
-        if coefficients.ndim == 3:  # noqa: SIM102 - pruned when compiled
-            if by_table and delta != cut_delta:
-                cut_table(coefficients, delta, cut)
-                cut_delta = delta
+        if by_table and delta != cut_delta:
+            cut_table(columns, delta, cut)
+            cut_delta = delta
         if speed == 0.0 or rim == 0.0:
             for i in range(SIZE):
                 start[i] = 0.0
             start[U] = math.inf if speed == 0.0 else -math.inf
-            at_constant_angle(1.0, start, 0.0, at_ends, delta, result)
+            at_constant_angle(1.0, start, 0.0, section, delta, result)  # plain: closed forms
         elif steps > 0.0 and tableau.unrolled:
             to_stop(log_ratio(speed, rim), steps, cut, delta, start, result)
         else:

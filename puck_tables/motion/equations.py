@@ -26,9 +26,8 @@ That is a homogeneous puck.  With radius of gyration k about the vertical axis o
 spin differs, r ω' = −(r²/2k²) J sin φ ρ_ω: then (r²/2k²) ρ_ω stands for ρ_ω, and in the work and
 the kinetic energy k²/r² for ½.
 
-Friction comes as a ``cut``, and its type says which: a flat array, empty for closed forms or a
-table cut at δ; or a matrix, the section of any other puck
-(:mod:`puck_tables.kernels.section_spline`), which carries its singular lines and its inertia.
+Friction comes as a ``cut``: the section of a table (:mod:`puck_tables.kernels.section_spline`) at δ,
+which carries its singular lines and its inertia; or, without rows, closed forms.
 
 State vector: u, ψ, t, x, y, θ, l, W (:mod:`puck_tables.motion.state`).
 """
@@ -41,7 +40,6 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.closed_form import friction_ratios
 from puck_tables.kernels.compile import inlined, kernel
 from puck_tables.kernels.section_spline import INERTIA, LINE, section_ratios
-from puck_tables.kernels.spline import evaluate_cut
 from puck_tables.motion.state import LENGTH, PSI, THETA, WORK, T, U, X, Y
 
 
@@ -57,22 +55,17 @@ def slip_ratio(u: float) -> tuple[float, bool, float, float]:
 
 @inlined
 def ratios_at(k: float, fast: bool, cut: FloatArray, delta: float) -> tuple[float, float, float]:
-    """The friction ratios at a slip ratio: from a cut or a section, or exact if it is empty."""
-    if cut.ndim == 2:
-        return section_ratios(k, fast, cut)
-    if cut.size == 0:
+    """The friction ratios at a slip ratio: from a section, or exact if it is empty."""
+    if cut.shape[0] == 0:
         return friction_ratios(k, 1.0 if fast else 0.0, delta)
-    eta = math.sqrt(math.sqrt((1.0 - k) / (1.0 + k)))
-    inverse, across, spin = evaluate_cut(cut, 1 if fast else 0, eta)
+    inverse, across, spin = section_ratios(k, fast, cut)
     return inverse, (across if delta > 0.0 else 0.0), spin  # a flat puck goes exactly straight
 
 
 @inlined
 def inertia(cut: FloatArray) -> float:
     """The square of the radius of gyration over r."""
-    if cut.ndim == 2:
-        return cut[0, INERTIA]
-    return 0.5
+    return cut[0, INERTIA] if cut.shape[0] > 0 else 0.5
 
 
 @inlined
@@ -84,26 +77,26 @@ def slowest_stop(cut: FloatArray) -> float:
 @inlined
 def crossed_line(u: float, new: float, cut: FloatArray) -> tuple[bool, float]:
     """Whether a singular line lies strictly between u and ``new``, and the u of the first."""
-    if cut.ndim == 2:
-        crossed, first = False, 0.0
-        for row in range(0, cut.shape[0], 2):
-            line = cut[row, LINE]
-            between = (u - line) * (new - line) < 0.0
-            if between and (not crossed or abs(line - u) < abs(first - u)):
-                crossed, first = True, line
-        return crossed, first
-    return u * new < 0.0, 0.0
+    if cut.shape[0] == 0:
+        return u * new < 0.0, 0.0
+    crossed, first = False, 0.0
+    for row in range(0, cut.shape[0], 2):
+        line = cut[row, LINE]
+        between = (u - line) * (new - line) < 0.0
+        if between and (not crossed or abs(line - u) < abs(first - u)):
+            crossed, first = True, line
+    return crossed, first
 
 
 @inlined
 def distance_to_line(u: float, cut: FloatArray) -> float:
     """How far in u the nearest singular line is."""
-    if cut.ndim == 2:
-        nearest = math.inf
-        for row in range(0, cut.shape[0], 2):
-            nearest = min(nearest, abs(u - cut[row, LINE]))
-        return nearest
-    return abs(u)
+    if cut.shape[0] == 0:
+        return abs(u)
+    nearest = math.inf
+    for row in range(0, cut.shape[0], 2):
+        nearest = min(nearest, abs(u - cut[row, LINE]))
+    return nearest
 
 
 @kernel

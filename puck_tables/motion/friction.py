@@ -22,6 +22,7 @@ from puck_tables.contact.integrals import SlipDirection
 from puck_tables.contact.resultants import CONTACT_SLACK, pressure_tilt
 from puck_tables.errors import AccuracyError, InputError
 from puck_tables.kernels.closed_form import outside_full_contact
+from puck_tables.kernels.section_spline import NO_SECTION
 from puck_tables.motion.body import Body
 from puck_tables.motion.limits import LIMIT_WIDTH, limit_log_ratio
 from puck_tables.motion.solve import Estimate, Setting
@@ -58,7 +59,7 @@ def closed_form_friction(delta: float) -> Friction:
     >>> closed_form_friction(0.5).error
     0.0
     """
-    return Friction(Source.CLOSED_FORMS, delta, np.empty(0), 0.0)
+    return Friction(Source.CLOSED_FORMS, delta, NO_SECTION, 0.0)
 
 
 def table_friction(delta: float, table: ResultantTable) -> Friction:

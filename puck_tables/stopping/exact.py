@@ -9,6 +9,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import run_chunks
 from puck_tables.kernels.compile import allocating
+from puck_tables.kernels.section_spline import NO_SECTION
 from puck_tables.motion.equations import at_constant_angle
 from puck_tables.motion.path import STOPPED, integrate
 from puck_tables.motion.state import LENGTH, PSI, SIZE, THETA, T, U, X, Y
@@ -66,7 +67,7 @@ def integrated_stops(
 
     Examples
     --------
-    >>> integrated_stops(np.array([0.0]), np.array([1.0]), np.empty(0), 1e-9)[0, :3].round(8)
+    >>> integrated_stops(np.array([0.0]), np.array([1.0]), NO_SECTION, 1e-9)[0, :3].round(8)
     array([ 0.98647594,  0.32409373, -0.04297451])
     """
     out = np.empty((u.size, 6))
@@ -100,7 +101,7 @@ def exact_stops(u: FloatArray, delta: FloatArray) -> FloatArray:
     >>> exact_stops(np.array([0.0]), np.array([1.0])).round(11).tolist()[0][:3]
     [0.98647593897, 0.32409372866, -0.04297450852]
     """
-    return integrated_stops(u, delta, np.empty(0), _LOCAL_TOLERANCE)[:, :5]
+    return integrated_stops(u, delta, NO_SECTION, _LOCAL_TOLERANCE)[:, :5]
 
 
 def end_values(delta: FloatArray) -> tuple[FloatArray, FloatArray]:

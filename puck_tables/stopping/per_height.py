@@ -10,6 +10,7 @@ cut.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -24,6 +25,8 @@ from puck_tables.accuracy.methods import INTEGRATED, LOOK_UP, Method, Scheme, So
 from puck_tables.contact.laws import Law, law_of
 from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import AccuracyError, InputError
+from puck_tables.kernels.quadratic import NO_COLUMNS
+from puck_tables.kernels.section_spline import NO_SECTION
 from puck_tables.motion.body import Body, body_of, plain_up_to
 from puck_tables.motion.friction import Sections, integration_selected
 from puck_tables.motion.run import unseen_tail
@@ -179,13 +182,13 @@ class SolverPerHeight:
             self._plain = LookUp(shipped, powers, thinning, selection.error)
             self._plain_source = shipped.source
             return
-        coefficients = np.empty((2, 0, 5))
+        columns = NO_COLUMNS
         self._plain_source = Source.CLOSED_FORMS
         if table is not None or selection.scheme.source is Source.TABLE:
             resultants = table or ResultantTable.shipped()
-            coefficients, self._plain_source = resultants.columns, resultants.source
+            columns, self._plain_source = resultants.columns, resultants.source
         stepping = stepping_of(selection)
-        self._plain = Integration(coefficients, stepping, selection.method, selection.error)
+        self._plain = Integration(columns, NO_SECTION, stepping, selection.method, selection.error)
 
     def _made(self, body: Body, launches: int) -> StopSolver:
         """A solver for the launches of one height that is not plain."""
@@ -328,7 +331,7 @@ def integration_of(body: Body, tol: float, method: Method | None = None) -> Inte
         cut, coarse = source.friction(setting.accuracy).cut, source.coarser(setting.accuracy).cut
         finer = stepping.finer(2.0, 0.01, FINEST_LOCAL)
         found, by_finer, by_coarse = (
-            Integration(*how, selection.method, longest=body.longest)
+            Integration(NO_COLUMNS, *how, selection.method, longest=body.longest)
             for how in ((cut, stepping), (cut, finer), (coarse, stepping))
         )
         answer = found.all(probes)[0][:3]
@@ -340,7 +343,7 @@ def integration_of(body: Body, tol: float, method: Method | None = None) -> Inte
 
     finer = partial(refined, tol=tol, friction=source.next_accuracy)
     found, error, _ = close_enough(source.first(selection), attempt, finer, tol, "these pucks")
-    return Integration(found.coefficients, found.stepping, found.method, error.total, body.longest)
+    return replace(found, error=error.total)
 
 
 def _probes(body: Body) -> FloatArray:

@@ -115,11 +115,12 @@ class SectionLookUp(StopSolver):
 class Integration(StopSolver):
     """Stops by an integrator.
 
-    ``coefficients``: of a table of resultants, empty for closed forms, or the matrix of a section,
-    whose height all launches must have.  ``longest``: how many Q/J a motion may last.
+    ``columns``: of a table of resultants; ``section``: of one puck, whose height all launches must
+    have; both empty: closed forms.  ``longest``: how many Q/J a motion may last.
     """
 
-    coefficients: FloatArray = field(repr=False)
+    columns: FloatArray = field(repr=False)
+    section: FloatArray = field(repr=False)
     stepping: Stepping
     method: Method
     error: float = 0.0
@@ -129,8 +130,8 @@ class Integration(StopSolver):
     def work(self) -> dict[str, Any]:
         """The friction, and the setting of the integrator."""
         return {
-            "by": self.method, "values": self.coefficients, "steps": self.stepping.steps,
-            "tolerance": self.stepping.local,
+            "by": self.method, "values": self.columns if self.columns.size > 0 else self.section,
+            "steps": self.stepping.steps, "tolerance": self.stepping.local,
         }  # fmt: skip
 
     def all(self, launches: FloatArray) -> tuple[FloatArray, Status]:
@@ -142,7 +143,7 @@ class Integration(StopSolver):
 
         def work(start: int, stop: int) -> None:
             some, part = np.ascontiguousarray(launches[:, start:stop]), out[:, start:stop].copy()
-            fill_stops(some, *self.stepping, self.coefficients, part, status[start:stop])
+            fill_stops(some, *self.stepping, self.columns, self.section, part, status[start:stop])
             out[:, start:stop] = part
 
         in_slices(work, launches.shape[1])

@@ -104,17 +104,17 @@ class ResultantTable(LawTable):
         return fitted
 
     def section(self, delta: float) -> FloatArray:
-        """The friction ratios at one height, as :func:`puck_tables.kernels.spline.ratios` reads.
+        """The friction ratios at one height, as :mod:`puck_tables.kernels.section_spline` reads.
 
         Raises
         ------
         InputError
             If δ is outside the range of the table, or it is not of uniform pressure.
         """
-        from puck_tables.kernels.quadratic import cut
+        from puck_tables.kernels.quadratic import cut, room_for_cut
 
         height = float(self.checked_range(delta))
-        out = np.empty(3 * self.columns[..., 0].size)
+        out = room_for_cut(self.columns)
         cut(self.columns, height, out)
         return out
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.accuracy.methods import LOOK_UP, Method, Scheme, Source
+from puck_tables.kernels.section_spline import NO_SECTION
 from puck_tables.motion.limits import log_ratio
 from puck_tables.motion.path import integrate, states_at
 from puck_tables.motion.state import SIZE, STATE_ROWS
@@ -48,7 +49,7 @@ class Task:
 
     def integrated(self, local: float, exact: bool) -> Run:
         """Step ends of every puck, and from them every moment."""
-        cut = np.empty(0) if exact else self.table.section(DELTA)
+        cut = NO_SECTION if exact else self.table.section(DELTA)
         z, y, result = np.empty(20_000), np.empty((20_000, SIZE)), np.empty(SIZE + 1)
 
         def run() -> FloatArray:

@@ -9,7 +9,9 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.accuracy.methods import INTEGRATED, LOOK_UP, Source
+from puck_tables.kernels.quadratic import NO_COLUMNS, room_for_cut
 from puck_tables.kernels.quadratic import cut as cut_table
+from puck_tables.kernels.section_spline import NO_SECTION
 from puck_tables.motion.bulk import fill_stops
 from puck_tables.motion.limits import log_ratio
 from puck_tables.motion.path import integrate
@@ -111,7 +113,7 @@ def _integrations(
     task: Task, method: str, setting: str, stepping: Stepping, exact: bool
 ) -> Iterator[Contender]:
     def coefficients() -> FloatArray:
-        return np.empty((2, 0, 5)) if exact else task.table.columns
+        return NO_COLUMNS if exact else task.table.columns
 
     def items_for(expensive: float) -> int:
         return int(np.clip(2000.0 / expensive, 8.0, 1000.0))
@@ -126,7 +128,7 @@ def _integrations(
         def run(which: FloatArray) -> FloatArray:
             out = np.empty((6, which.shape[1]))
             status = np.empty(which.shape[1], np.int8)
-            fill_stops(which, tableau, steps, local, built, out, status)
+            fill_stops(which, tableau, steps, local, built, NO_SECTION, out, status)
             return out
 
         errors = task.truth.errors(run(task.judged)[:3])
@@ -135,7 +137,7 @@ def _integrations(
     def trajectory(built: object) -> Ready:
         assert isinstance(built, np.ndarray)
         z, y, result = np.empty(20_000), np.empty((20_000, SIZE)), np.empty(SIZE + 1)
-        height, cut = -1.0, np.empty(0 if exact else 6 * built.shape[1])
+        height, cut = -1.0, room_for_cut(built)
 
         def run(which: FloatArray) -> FloatArray:
             nonlocal height
@@ -182,7 +184,7 @@ def _outsiders(task: Task) -> Iterator[Contender]:
 
             def run(which: FloatArray) -> FloatArray:
                 out, status = np.empty((6, which.shape[1])), np.empty(which.shape[1], np.int8)
-                fill_stops(which, RK4, 64.0, 1.0, table.columns, out, status)
+                fill_stops(which, RK4, 64.0, 1.0, table.columns, NO_SECTION, out, status)
                 return out[:3]
 
             errors = task.flat_starts.errors(run(task.flat_starts.launches()))

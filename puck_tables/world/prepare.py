@@ -8,6 +8,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
+from puck_tables.kernels.section_spline import NO_SECTION
 from puck_tables.scene.friction import SPIN, VX, VY
 from puck_tables.scene.ingredients import Regions
 from puck_tables.scene.parts import Wall
@@ -194,7 +195,7 @@ def _regions(scene: Scene, pieces: list[Piece], discs: FloatArray) -> Regions:
     free = discs[:, layout.LIGHTNESS] > 0.0
     load[free] = discs[free, layout.DECEL] / discs[free, layout.LIGHTNESS]
     if all(has_closed_forms(piece) for piece in pieces):
-        return Regions(load, delta, np.empty((len(discs), 0)), NO_LAW)
+        return Regions(load, delta, np.empty((len(discs), *NO_SECTION.shape)), NO_LAW)
     accuracy = max(SLICE_SHARE * scene.run.tol, FINEST_ACCURACY)
     return Regions(
         load, delta, of_one_shape([p.body.friction(accuracy).cut for p in pieces]), NO_LAW

@@ -29,6 +29,7 @@ import puck_tables
 from puck_tables.accuracy.methods import Method
 from puck_tables.contact.laws import HOMOGENEOUS
 from puck_tables.kernels.closed_form import friction_ratios
+from puck_tables.kernels.section_spline import NO_SECTION
 from puck_tables.motion.friction import integration_selected
 from puck_tables.motion.limits import log_ratio
 from puck_tables.motion.path import integrate
@@ -48,7 +49,6 @@ START = pytest.mark.benchmark(group="first and later start")
 DELTA = 0.5  # with J = r = 1 everywhere
 LAUNCH = (1.0, 0.0, 5.0)  # vx, vy, ω of the single launch
 LAUNCHES = 1000
-NOTHING = np.empty(0)
 
 
 # --- errors -----------------------------------------------------------------------------------
@@ -286,7 +286,7 @@ TIGHT_TOL = 2e-10  # with a table of one's own its error counts five times
 @TIGHT
 @pytest.mark.parametrize("source", ["table", "closed forms"])
 def test_tight_integrator(measure: Any, table: ResultantTable, source: str) -> None:
-    cut = NOTHING
+    cut = NO_SECTION
     if source == "table":
         cut = table.section(DELTA)
     s, y, result = np.empty(20_000), np.empty((20_000, SIZE)), np.empty(SIZE + 1)
