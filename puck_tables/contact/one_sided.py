@@ -202,6 +202,64 @@ def balance(phi: FloatArray, delta: FloatArray) -> tuple[Resultants, Chord]:
     return Resultants(*values), Chord(*chords)
 
 
+def height_slopes(phi: FloatArray, delta: FloatArray) -> tuple[Resultants, Resultants]:
+    """The resultants of one-sided contact, and how they change with the height, ∂ρ/∂δ.
+
+    Parameters
+    ----------
+    phi : array (n,), radians, in [0, π/2)
+    delta : array (n,), above ``critical_delta(phi)``
+
+    Returns
+    -------
+    Resultants, Resultants
+        Themselves and their derivatives at the same φ, arrays (n,).
+
+    Raises
+    ------
+    ContactError, AccuracyError
+        As :func:`balance`.
+
+    Notes
+    -----
+    The chord (d, γ) moves so that the balance stays solved; with ⟨f⟩ = ∫ξ f/∫ξ, ∂ξ/∂d = −1 and
+    ∂ξ/∂γ the position along the chord, where ξ = 0 nothing enters or leaves.
+
+    Examples
+    --------
+    >>> _, slopes = height_slopes(np.array([0.5]), np.array([2.0]))
+    >>> [round(float(slope[0]), 6) for slope in slopes]
+    [-0.02685, 0.331562, -0.211668]
+    """
+    values, chord = balance(phi, delta)
+    out = np.empty((3, len(phi)))
+    for start in range(0, len(phi), _CHUNK):
+        part = slice(start, start + _CHUNK)
+        direction = slip_direction(phi[part])
+        own = Chord(chord.offset[part], chord.bearing[part])
+        out[:, part] = _height_slopes(direction, delta[part], own)
+    return values, Resultants(*out)
+
+
+def _height_slopes(direction: SlipDirection, delta: FloatArray, chord: Chord) -> FloatArray:
+    ratio, fast = direction.ratio, direction.fast_spin
+    _, by_offset, by_bearing = _residual(ratio, fast, delta, *chord)
+    loaded = segment(chord.offset)
+    normal = np.stack([np.cos(chord.bearing), np.sin(chord.bearing)])
+    by_height = -loaded.lever * normal / delta  # the balance is solved: (δ/4)⟨u/|u|⟩ = m n
+    determinant = by_offset[0] * by_bearing[1] - by_offset[1] * by_bearing[0]
+    shift = (by_bearing[0] * by_height[1] - by_bearing[1] * by_height[0]) / determinant
+    turn = (by_offset[1] * by_height[0] - by_offset[0] * by_height[1]) / determinant
+    rule = patch_rule(ratio, fast, *chord)
+    sideways = rule.y * normal[0, :, None] - rule.x * normal[1, :, None]
+    change = turn[:, None] * sideways - shift[:, None]
+    change = change + (shift * loaded.area / loaded.load)[:, None] * rule.depth
+    pressure = rule.weight * rule.depth / loaded.load[:, None]
+    moved = rule.weight * change / loaded.load[:, None]
+    before, after = ((one * rule.foot).sum(axis=-1) for one in (pressure, moved))
+    return _summed(rule, direction, moved, 0.25 * (before + delta * after))
+
+
 def _guess(direction: SlipDirection, delta: FloatArray) -> Chord:
     """The tilt of the linear law, as far as the load can move: |⟨(x, y)⟩| = m(d) ≤ δ/4."""
     a, b, d = closed_form.shape_integrals(direction.ratio, direction.fast_spin.astype(np.float64))
@@ -286,16 +344,25 @@ def _residual(
 
 def _resultants(direction: SlipDirection, delta: FloatArray, chord: Chord) -> FloatArray:
     """ρ_∥, ρ_⊥, ρ_ω of a solved balance, (3, n), without cancellation for φ → 0."""
-    ratio, fast = direction.ratio, direction.fast_spin
-    rule = patch_rule(ratio, fast, *chord)
+    rule = patch_rule(direction.ratio, direction.fast_spin, *chord)
     pressure = rule.weight * rule.depth / segment(chord.offset).load[:, None]
+    return _summed(rule, direction, pressure, 0.25 * delta * (pressure * rule.foot).sum(axis=-1))
+
+
+def _summed(
+    rule: PatchRule, direction: SlipDirection, pressure: FloatArray, sideways: FloatArray
+) -> FloatArray:
+    """The resultants of a pressure, or their derivatives from those of it, (3, n).
+
+    ``sideways``: what the balance says Σ σ y tan φ is.
+    """
+    fast = direction.fast_spin
     across = (pressure * rule.foot).sum(axis=-1)  # F_⊥ s: foot = s sin a
     sine, cosine = np.sqrt(direction.sin_squared), np.sqrt(direction.cos_squared)
     # The torque is Σ σ (x sin a − y cos a).  For a centre outside, Σ σ y is taken from the balance,
     # and with sin a = foot/s all of it is divided by tan φ before it is summed.
     about_centre = (pressure * rule.along).sum(axis=-1)
-    curving = _curving(rule, ratio)
-    outside = (pressure * curving).sum(axis=-1) - 0.25 * delta * across
+    outside = (pressure * _curving(rule, direction.ratio)).sum(axis=-1) - sideways
     spin = np.where(fast, about_centre / np.where(fast, sine, 1.0), outside / cosine)
     return np.stack([
         (pressure * rule.cos_a).sum(axis=-1) / cosine, across / cosine**2, 2.0 * spin,

@@ -29,6 +29,8 @@ from puck_tables.kernels.spline import basis, cell_at, row_sums
 LINE_COS, LINE_SIN, LINE, UPPER_COS, UPPER_SIN, INVERSE_EXTENT, INERTIA, PLAIN = range(8)
 HEADER = 8
 RATIOS = 3
+FLOWS = 6  # functions of a section that also holds the derivatives of the ratios by the height
+_LEAST = 0.5  # cells from a line: nearer the quotient of slopes is 0/0
 
 NO_SECTION = np.empty((0, HEADER))  # closed forms
 
@@ -59,6 +61,42 @@ def section_ratios(k: float, fast: bool, cut: FloatArray) -> tuple[float, float,
     side, i, place = section_place(k, fast, cut, RATIOS)
     w0, w1, w2, w3 = basis(place)
     return row_sums(cut[side], np.uint64(i), w0, w1, w2, w3)
+
+
+@inlined
+def section_flows(
+    k: float, fast: bool, cut: FloatArray
+) -> tuple[float, float, float, float, float, float, float, float, float]:
+    """The friction ratios at a slip ratio, their derivatives by u = ln tan φ and by the height.
+
+    Those by u are of the spline itself.  Within a cell of a line they are wrong by its own size:
+    steps there must be short.
+    """
+    side, i, place = section_place(k, fast, cut, FLOWS)
+    row = cut[side]
+    cells = (cut.shape[1] - HEADER) // FLOWS - 3
+    eta = max((i - HEADER) // FLOWS + place, _LEAST) / cells
+    c, s = (k, 1.0) if fast else (1.0, k)
+    across = s * row[LINE_COS] - c * row[LINE_SIN]
+    eta3, extent = eta * eta * eta, 1.0 / row[INVERSE_EXTENT]
+    stretch = 4.0 * extent * eta3 / (1.0 + extent * extent * eta3 * eta3 * eta * eta)  # dφ/dη
+    by_u = 3.0 * cells * c * s / ((c * c + s * s) * stretch)  # three: of the weights below
+    by_u = by_u if across > 0.0 or (across == 0.0 and 2 * (side // 2) != side) else -by_u
+    w0, w1, w2, w3 = basis(place)
+    t, r = place, 1.0 - place
+    d0, d1 = -r * r, t * (3.0 * t - 4.0)
+    d2, d3 = -r * (3.0 * r - 4.0), t * t
+    return (
+        w0 * row[i] + w1 * row[i + 6] + w2 * row[i + 12] + w3 * row[i + 18],
+        w0 * row[i + 1] + w1 * row[i + 7] + w2 * row[i + 13] + w3 * row[i + 19],
+        w0 * row[i + 2] + w1 * row[i + 8] + w2 * row[i + 14] + w3 * row[i + 20],
+        by_u * (d0 * row[i] + d1 * row[i + 6] + d2 * row[i + 12] + d3 * row[i + 18]),
+        by_u * (d0 * row[i + 1] + d1 * row[i + 7] + d2 * row[i + 13] + d3 * row[i + 19]),
+        by_u * (d0 * row[i + 2] + d1 * row[i + 8] + d2 * row[i + 14] + d3 * row[i + 20]),
+        w0 * row[i + 3] + w1 * row[i + 9] + w2 * row[i + 15] + w3 * row[i + 21],
+        w0 * row[i + 4] + w1 * row[i + 10] + w2 * row[i + 16] + w3 * row[i + 22],
+        w0 * row[i + 5] + w1 * row[i + 11] + w2 * row[i + 17] + w3 * row[i + 23],
+    )
 
 
 @kernel

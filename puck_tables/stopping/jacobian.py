@@ -1,4 +1,4 @@
-"""Results that carry derivatives, and what computes those of plain pucks."""
+"""Results that carry derivatives, and what computes them: plain pucks by the stop table."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import run_chunks
 from puck_tables.contact.laws import Law
 from puck_tables.errors import InputError
-from puck_tables.motion.body import plain_up_to
+from puck_tables.motion.body import Body
 from puck_tables.stopping.spread import Spread, spread_of
 from puck_tables.stopping.stop_table import StopTable
 
@@ -21,6 +21,8 @@ STOP_NAMES = ("stop_time", "stop_x", "stop_y", "path_length", "body_angle")
 STATE_NAMES = ("x", "y", "orientation", "vx", "vy", "spin")
 MOMENT_NAMES = (*LAUNCH_NAMES, "time")
 _CHUNK = 1 << 13
+
+Bodies = dict[float, Body]  # by height
 
 
 class Differentiated:
@@ -132,21 +134,6 @@ class Differentiated:
         raise NotImplementedError
 
 
-def refuse_others(pressure: str | Law, gyration: float, delta: FloatArray) -> None:
-    """Refuse heights (n,) that are not those of plain pucks.
-
-    Raises
-    ------
-    InputError
-    """
-    highest = plain_up_to(pressure, gyration)
-    if not highest > 0.0 or (delta > highest).any():
-        raise InputError(
-            "derivatives are known of a homogeneous puck under uniform pressure, delta <= 1: leave "
-            "out jacobian, or take differences"
-        )
-
-
 def refuse_rest(launches: FloatArray, shape: tuple[int, ...]) -> None:
     """Refuse launches (6, n) at rest: next to them the stop time is a cone.
 
@@ -164,8 +151,30 @@ def refuse_rest(launches: FloatArray, shape: tuple[int, ...]) -> None:
         )
 
 
-def stop_jacobians(table: StopTable, launches: FloatArray) -> FloatArray:
-    """Derivatives (n, 5, 6) of the stops of plain launches (6, n)."""
+def stop_jacobians(
+    launches: FloatArray, plain: npt.NDArray[np.bool_], bodies: Bodies, table: StopTable
+) -> FloatArray:
+    """Derivatives (n, 5, 6) of the stops of launches (6, n): of ``plain`` ones by the stop table.
+
+    Raises
+    ------
+    AccuracyError
+        If the derivatives of other pucks are out of reach.
+    """
+    if plain.all():
+        return _of_plain(table, launches)
+    from puck_tables.stopping.slope_section import stop_slopes_of
+
+    out = np.empty((launches.shape[1], len(STOP_NAMES), len(LAUNCH_NAMES)))
+    if plain.any():
+        out[plain] = _of_plain(table, np.ascontiguousarray(launches[:, plain]))
+    for height, body in bodies.items():
+        mine = ~plain & (launches[3] == height)
+        out[mine] = stop_slopes_of(body, np.ascontiguousarray(launches[:, mine]))
+    return out
+
+
+def _of_plain(table: StopTable, launches: FloatArray) -> FloatArray:
     from puck_tables.stopping.stop_jacobian import fill_stop_jacobians
 
     slopes = table.slopes.stops
@@ -205,3 +214,37 @@ def state_jacobians(
         return values, out
     run_chunks(work, which.size, _CHUNK)
     return values, out
+
+
+def integrated_jacobians(
+    bodies: Bodies, launches: FloatArray, pucks: npt.NDArray[np.int64],
+    which: npt.NDArray[np.int64], moments: FloatArray, out: FloatArray,
+) -> None:  # fmt: skip
+    """Derivatives of states of other ``pucks`` into their places in ``out`` (n, 6, 7).
+
+    ``which`` (n,): of ``launches`` (6, m), at ``moments`` (n,).
+    """
+    from puck_tables.stopping.launch_frame import fill_placed_states
+    from puck_tables.stopping.varied import natural_states, varied_of
+
+    frictions = {height: varied_of(body) for height, body in bodies.items()}
+    order = np.argsort(which, kind="stable")
+    first = np.searchsorted(which[order], pucks)
+    last = np.searchsorted(which[order], pucks, side="right")
+
+    def work(start: int, stop: int) -> None:
+        for n in range(start, stop):
+            mine, launch = order[first[n] : last[n]], launches[:, pucks[n]]
+            speed, rim = np.hypot(launch[0], launch[1]), abs(launch[5] * launch[2])
+            slip = float(np.hypot(speed, rim))
+            part = np.zeros((mine.size, len(STATE_NAMES), len(MOMENT_NAMES)))
+            if slip > 0.0 and mine.size:
+                times = moments[mine]
+                own = natural_states(
+                    frictions[float(launch[3])], speed / slip, rim / slip,
+                    times / slip * launch[4],
+                )[0]  # fmt: skip
+                fill_placed_states(launch, times, own, part)
+            out[mine] = part
+
+    run_chunks(work, pucks.size, 1)

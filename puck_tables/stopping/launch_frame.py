@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import inlined
+from puck_tables.kernels.compile import inlined, kernel
 from puck_tables.stopping.stop_jacobian import (
     BY_DECEL,
     BY_DELTA,
@@ -76,3 +76,12 @@ def place_state(puck: FloatArray, time: float, own: FloatArray, out: FloatArray)
         out[row, BY_TIME] = around * unit_by_time * own[row, 5]
         gone = value / decel if angle else 0.0
         out[row, BY_DECEL] = time / decel * out[row, BY_TIME] - gone
+
+
+@kernel
+def fill_placed_states(
+    puck: FloatArray, times: FloatArray, own: FloatArray, out: FloatArray
+) -> None:
+    """Derivatives of states (n, 6, 7) of a puck from natural ones ``own`` (n, 6, 6)."""
+    for n in range(times.size):
+        place_state(puck, times[n], own[n], out[n])

@@ -148,6 +148,11 @@ class SolverPerHeight:
 
         run_chunks(work, heights.size, 1, threads, progress)
 
+    def kinds(self, delta: FloatArray) -> tuple[npt.NDArray[np.bool_], dict[float, Body]]:
+        """Which of the heights ``delta`` (n,) are plain, and the pucks of the others."""
+        plain = delta <= self._plain_up_to
+        return plain, {height: self._body(height) for height in np.unique(delta[~plain]).tolist()}
+
     def heights_to_prepare(self, delta: FloatArray) -> int:
         """How many different heights need preparation."""
         return int(np.unique(delta[delta > self._plain_up_to]).size)

@@ -5,13 +5,16 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import allocating
-from puck_tables.kernels.section_spline import section_place
+from puck_tables.kernels.section_spline import HEADER, section_place
 from puck_tables.kernels.spline import basis
+from puck_tables.stopping.stop_jacobian import BY_VX, BY_VY, LENGTH, STOP_ROWS, place_stop
 
 _FUNCTIONS = 6
+_SLOPES = 4 * STOP_ROWS
 _LOWEST = 1e-290
 
 
@@ -51,3 +54,38 @@ def fill_section_stops(launches: FloatArray, cut: FloatArray, out: FloatArray) -
         out[3, n] = scale * speed * length
         out[4, n] = rim / slip * turn if slip > 0.0 and speed > 0.0 else 0.0
         out[5, n] = scale * (rim / radius) * body
+
+
+@allocating
+def fill_section_jacobians(
+    launches: FloatArray, cut: FloatArray, good: npt.NDArray[np.bool_], out: FloatArray,
+    left: npt.NDArray[np.bool_],
+) -> None:  # fmt: skip
+    """Derivatives (n, 5, 6) of the stops of launches (6, n), none at rest, by splines.
+
+    ``cut`` holds the functions of :mod:`puck_tables.stopping.slope_section`, ``good`` says in which
+    cells they are good; ``left`` (n,): which launches are in others, and left out.
+    """
+    own = np.empty((STOP_ROWS, 4))
+    flat = own.reshape(-1)
+    for n in range(launches.shape[1]):
+        launch = launches[:, n]
+        speed, rim = math.hypot(launch[0], launch[1]), abs(launch[5] * launch[2])
+        slip, larger = math.hypot(speed, rim), max(speed, rim)
+        raised = 2.0**200 if larger < _LOWEST else 1.0
+        ratio = (raised * min(speed, rim)) / (raised * larger)
+        side, i, place = section_place(ratio, rim > speed, cut, _SLOPES)
+        w0, w1, w2, w3 = basis(place)
+        # a node is good whatever lies between
+        left[n] = place > 0.0 and not good[side, (i - HEADER) // _SLOPES]
+        if left[n]:
+            continue
+        row = cut[side, i : i + 4 * _SLOPES]
+        for f in range(_SLOPES):
+            flat[f] = (
+                w0 * row[f] + w1 * row[f + _SLOPES] + w2 * row[f + 2 * _SLOPES]
+                + w3 * row[f + 3 * _SLOPES]
+            )  # fmt: skip
+        place_stop(launch, speed, slip, own, out[n])
+        if speed == 0.0:
+            out[n, LENGTH, BY_VX] = out[n, LENGTH, BY_VY] = math.nan

@@ -37,7 +37,7 @@ from puck_tables.stopping.jacobian import (
     MOMENT_NAMES,
     STATE_NAMES,
     Differentiated,
-    refuse_others,
+    integrated_jacobians,
     state_jacobians,
 )
 from puck_tables.stopping.per_height import refuse_many
@@ -163,7 +163,7 @@ def states(
     jacobian : bool
         Whether derivatives are wanted too: of x, y, orientation, vx, vy and spin by vx, vy, spin,
         delta, decel and radius of the launch, and by time (velocity and acceleration), in this
-        order.  Of plain pucks: uniform pressure, homogeneous, δ ≤ 1.
+        order.
 
     Returns
     -------
@@ -178,15 +178,18 @@ def states(
     ------
     InputError
         If an argument is not finite, has the wrong shape or lies outside its range, a motion is too
-        large for floating point, or derivatives of other than plain pucks are asked for.
+        large for floating point.
+    AccuracyError
+        If derivatives are asked for, and an error of 1e-7 is out of reach for such a puck.
 
     Notes
     -----
     All motions of a puck of height δ are one curve, up to rotation, reflection and scale; the time
     that is left says where on it a state stands (:mod:`puck_tables.stopping.curve_lookup`).
 
-    Derivatives follow from that curve by the chain rule, nothing is differenced
-    (:mod:`puck_tables.stopping.state_jacobian`).  In units of Q, J, r of the launch they err by at
+    Derivatives follow from that curve by the chain rule, of other than plain pucks from variational
+    equations; nothing is differenced (:mod:`puck_tables.stopping.state_jacobian`,
+    :mod:`puck_tables.stopping.varied`).  In units of Q, J, r of the launch they err by at
     most 1e-7 until Q has fallen to 1/1000, for launches of any slip angle.  Towards the stop the
     direction turns without end, and the velocity is that of a moment as far off as the stop time
     may be, 1e-10 Q/J.  At the stop and after it they are those of the stop, and of velocities 0.
@@ -226,8 +229,6 @@ def states(
         raise InputError(f"time must not be negative, got {times.min():g} s")
     launches = as_rows(columns)
     plain = launches[3] <= highest
-    if jacobian:
-        refuse_others(pressure, gyration, launches[3])
     bodies = _bodies(pressure, gyration, launches[3, ~plain])
     longest = max((body.longest for body in bodies.values()), default=2.0)
     if not fits(launches, longest).all():
@@ -242,18 +243,22 @@ def states(
     flat_moments = np.ascontiguousarray(moments).reshape(-1)
     pucks = known_pucks(chosen, launches[:, plain])
     slopes = None
-    if jacobian:
+    if jacobian and not bodies:
         found, slopes = state_jacobians(chosen, pucks, flat_which, flat_moments)
     elif not bodies:
         found = looked_up(chosen, pucks, flat_which, flat_moments)
     else:
         found = np.empty((STATE_ROWS, flat_which.size))
-        looked = plain[flat_which]
+        looked, others = plain[flat_which], np.flatnonzero(~plain)
         number = np.cumsum(plain) - 1  # of a plain puck among such
-        found[:, looked] = looked_up(
-            chosen, pucks, number[flat_which[looked]], flat_moments[looked]
-        )
-        _integrate(bodies, launches, np.flatnonzero(~plain), flat_which, flat_moments, found)
+        some = number[flat_which[looked]], flat_moments[looked]
+        if jacobian:
+            slopes = np.empty((flat_which.size, len(STATE_NAMES), len(MOMENT_NAMES)))
+            found[:, looked], slopes[looked] = state_jacobians(chosen, pucks, *some)
+            integrated_jacobians(bodies, launches, others, flat_which, flat_moments, slopes)
+        else:
+            found[:, looked] = looked_up(chosen, pucks, *some)
+        _integrate(bodies, launches, others, flat_which, flat_moments, found)
     words = [f"{count} pucks {how}" for count, how in
              ((plain.sum(), "looked up"), ((~plain).sum(), "integrated")) if count]  # fmt: skip
     explanation = " and ".join(words) + ", to 1e-9 of Q, Q^2/J and Q^2/(J r)"

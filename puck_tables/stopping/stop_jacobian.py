@@ -98,7 +98,7 @@ def stop_by_speeds(
 
 
 @inlined
-def _place_stop(
+def place_stop(
     launch: FloatArray, speed: float, slip: float, own: FloatArray, out: FloatArray
 ) -> None:
     """From the frame of the launch and Q = J = r = 1, ``own`` (5, 4), to ``out`` (5, 6)."""
@@ -183,6 +183,18 @@ def fill_stop_jacobians(launches: FloatArray, slopes: FloatArray, out: FloatArra
             cosine, sine = speed / slip, rim / slip
             stop_by_speeds(cosine, sine, 1.0, cosine, sine, delta, found, own)
             here = out[start + n]
-            _place_stop(block[:, n], speed, slip, own, here)
+            place_stop(block[:, n], speed, slip, own, here)
             if speed == 0.0:
                 here[LENGTH, BY_VX] = here[LENGTH, BY_VY] = math.nan
+
+
+@allocating
+def fill_placed_stops(launches: FloatArray, own: FloatArray, out: FloatArray) -> None:
+    """Derivatives of stops (n, 5, 6) from natural ones ``own`` (n, 5, 4) of launches (6, n)."""
+    for n in range(launches.shape[1]):
+        launch = launches[:, n]
+        speed = math.hypot(launch[0], launch[1])
+        slip = math.hypot(speed, launch[5] * launch[2])
+        place_stop(launch, speed, slip, own[n], out[n])
+        if speed == 0.0:
+            out[n, LENGTH, BY_VX] = out[n, LENGTH, BY_VY] = math.nan

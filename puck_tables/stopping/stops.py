@@ -18,7 +18,6 @@ from puck_tables.stopping.jacobian import (
     LAUNCH_NAMES,
     STOP_NAMES,
     Differentiated,
-    refuse_others,
     refuse_rest,
     stop_jacobians,
 )
@@ -163,8 +162,7 @@ def stop(
         As :class:`puck_tables.Puck`.
     jacobian : bool
         Whether derivatives are wanted too: of stop_time, stop_x, stop_y, path_length and body_angle
-        by vx, vy, spin, delta, decel and radius, in this order.  Of plain pucks: uniform pressure,
-        homogeneous, δ ≤ 1.
+        by vx, vy, spin, delta, decel and radius, in this order.
 
     Returns
     -------
@@ -175,14 +173,15 @@ def stop(
     ------
     InputError
         If an argument is not finite, has the wrong shape or lies outside its range, or derivatives
-        of a launch at rest, or of other than plain pucks, are asked for.
+        of a launch at rest are asked for.
     AccuracyError
-        If the tolerance is out of reach.
+        If the tolerance, or an error of 1e-7 of the derivatives, is out of reach.
 
     Notes
     -----
-    Derivatives come from splines of their own (:mod:`puck_tables.stopping.slopes`), whatever the
-    method of the stop: in units of Q, J, r of the launch they are wrong by at most 1e-7 at any slip
+    Derivatives come from splines of their own (:mod:`puck_tables.stopping.slopes`), or of other than
+    plain pucks from variational equations (:mod:`puck_tables.stopping.varied`; splines through
+    them where launches of one height are many), whatever the method of the stop: in units of Q, J, r of the launch they are wrong by at most 1e-7 at any slip
     angle.  On φ = 0 and π/2, where stops carry broken powers of |φ|, they are the derivatives from
     both sides; only the path of exact pure spin grows like |v| and has none by vx and vy: NaN.
 
@@ -212,12 +211,11 @@ def stop(
     launches = as_rows(columns)
     if jacobian:
         refuse_rest(launches, shape)
-        refuse_others(pressure, gyration, launches[3])
     solver.prepare(launches[3])
     slopes = None
     if jacobian:
         by = table if isinstance(table, StopTable) else StopTable.shipped()
-        slopes = stop_jacobians(by, launches)
+        slopes = stop_jacobians(launches, *solver.kinds(launches[3]), by)
     return Stops(solver, launches, shape, slopes, table if isinstance(table, StopTable) else None)
 
 

@@ -34,7 +34,7 @@ DEFAULT_ACCURACY, FINEST_ACCURACY = 1e-9, 5e-13  # truth itself is good to 1e-13
 _LARGEST, _ROUNDING = 1e3, 1e-12  # of a ratio
 _NODES, _NODE_ERROR = 6, 1e-10  # how many are compared as a file is read, and how well known
 _CONSTANT = 1e-3  # no section is better than so many times cells⁻⁴
-_AT_THE_LIMIT = 1e-6
+AT_THE_LIMIT = 1e-6
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -108,7 +108,7 @@ class FrictionSection(SectionTable):
         square = 0.5 if gyration == HOMOGENEOUS else gyration * gyration
         cut = spline.with_inertia(square, np.array([1.0, 1.0, 0.5 / square]))
         # a line that is the limit of the motion is never crossed: rounding would, again and again
-        limit = np.abs(self.spline.values[:, 0, 2] * (0.5 / square) - 1.0) < _AT_THE_LIMIT
+        limit = np.abs(self.spline.values[:, 0, 2] * (0.5 / square) - 1.0) < AT_THE_LIMIT
         cut[limit, LINE] = math.inf
         return cut
 

@@ -1,0 +1,216 @@
+"""How one motion changes with its launch, its height and its spread of mass: variational equations.
+
+Along a motion dy/dz = F(u, ψ; δ, k) (:mod:`puck_tables.motion.equations`) a small change of a
+parameter p changes the state at the same z by y_p,
+
+    dy_p/dz = (∂F/∂y) y_p + ∂F/∂p,
+
+which is integrated beside the motion itself.  For p = u₀, the slip at the launch, it begins with
+u_p = 1; for δ and the radius of gyration k with 0.  Nothing is differenced: ∂F needs the
+derivatives of the friction ratios by u and δ (:mod:`puck_tables.table.flow_section`), k only stands
+in r ω' = −(r²/2k²) J sin φ ρ_ω.
+
+All is linear in y_p, so what is small next to pure sliding and pure spin keeps its digits.  Next to
+a line of the friction, where the derivative by u is known badly, steps are as short as the distance
+to it.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.kernels.compile import allocating, inlined, kernel
+from puck_tables.kernels.section_spline import INERTIA, LINE, section_flows
+from puck_tables.motion.path import STOPPED, integrate
+from puck_tables.motion.state import LENGTH, PSI, SIZE, THETA, T, U, X, Y
+from puck_tables.motion.steppers import Tableau
+
+KEPT = 7  # of the state: all but the work of friction
+BY_U, BY_HEIGHT, BY_GYRATION = 1, 2, 3  # blocks; the first is the motion itself
+BLOCKS = 4
+VARIED = BLOCKS * KEPT
+_STAGES = 6  # Dormand and Prince's seventh only tells the error
+_STEP_LIMIT = 20_000
+_SHARE, _NEAREST = 0.5, 1e-8  # of the distance to a line; how near to it a step may be as long
+
+
+@inlined
+def _off_lines(u: float, cut: FloatArray) -> float:
+    """How far in u the nearest line is."""
+    nearest = math.inf
+    for row in range(0, cut.shape[0], 2):
+        nearest = min(nearest, abs(u - cut[row, LINE]))
+    return nearest
+
+
+@kernel
+def varied(z: float, y: FloatArray, cut: FloatArray, out: FloatArray) -> None:
+    """d/dz of a state and its three variations (28,), into ``out``; ``cut``: all six functions."""
+    u, turned = y[U], y[PSI]
+    k = math.exp(-abs(u))
+    large = 1.0 / math.sqrt(1.0 + k * k)
+    fast = u > 0.0
+    c, s = (k * large, large) if fast else (large, k * large)
+    inverse, across, spin, inverse_u, across_u, spin_u, inverse_h, across_h, spin_h = (
+        section_flows(k, fast, cut)
+    )
+    c2, s2 = c * c, s * s
+    left = 1.0 - z
+    q = left * left * left * left
+    brake = 1.0 / (c2 + s2 * spin)
+    norm = 4.0 / left * brake
+    cosine, sine = math.cos(turned), math.sin(turned)
+    rate = q * q * inverse * norm
+    out[U] = (1.0 - spin) * norm
+    out[PSI] = -s * across * norm
+    out[T] = q * inverse * norm
+    out[X], out[Y] = rate * c * cosine, rate * c * sine
+    out[THETA], out[LENGTH] = rate * s, rate * c
+    by_gyration = -2.0 * spin / math.sqrt(cut[0, INERTIA])
+    for block in range(1, BLOCKS):
+        at = block * KEPT
+        du, dturn = y[at + U], y[at + PSI]
+        d_inverse, d_across, d_spin = inverse_u * du, across_u * du, spin_u * du
+        if block == BY_HEIGHT:
+            d_inverse, d_across, d_spin = (
+                d_inverse + inverse_h, d_across + across_h, d_spin + spin_h
+            )
+        elif block == BY_GYRATION:
+            d_spin += by_gyration
+        lost = -brake * (2.0 * s2 * c2 * (spin - 1.0) * du + s2 * d_spin)  # d ln N
+        share = d_inverse + inverse * lost
+        dc, ds = -c * s2 * du, s * c2 * du
+        unit = q * q * norm
+        out[at + U] = norm * ((1.0 - spin) * lost - d_spin)
+        out[at + PSI] = -norm * (s * (d_across + across * lost) + ds * across)
+        out[at + T] = q * norm * share
+        ahead = unit * (c * share + dc * inverse)
+        swing = rate * c * dturn
+        out[at + X] = ahead * cosine - swing * sine
+        out[at + Y] = ahead * sine + swing * cosine
+        out[at + THETA] = unit * (s * share + ds * inverse)
+        out[at + LENGTH] = ahead
+
+
+@kernel
+def advance(
+    z: float, end: float, y: FloatArray, tableau: Tableau, cut: FloatArray, work: FloatArray
+) -> None:
+    """A varied state (28,) from z to ``end``, in place; ``work`` (8, 28)."""
+    state = work[_STAGES]
+    while z < end:
+        varied(z, y, cut, work[0])
+        h = end - z
+        rate = abs(work[0, U])
+        longest = _SHARE * _off_lines(y[U], cut) + _NEAREST
+        if rate * h > longest:
+            h = longest / rate
+        for stage in range(1, _STAGES):
+            for i in range(VARIED):
+                total = 0.0
+                for j in range(stage):
+                    total += tableau.a[stage, j] * work[j, i]
+                state[i] = y[i] + h * total
+            varied(z + tableau.c[stage] * h, state, cut, work[stage])
+        for i in range(VARIED):
+            total = 0.0
+            for j in range(_STAGES):
+                total += tableau.b[j] * work[j, i]
+            y[i] += h * total
+        z = end if h == end - z else z + h
+
+
+@inlined
+def _to_the_stop(z: float, y: FloatArray, cut: FloatArray, rates: FloatArray) -> None:
+    """The last of the time, at constant angle; of all else too little is left to tell."""
+    varied(z, y, cut, rates)
+    # t goes on like q, so that dt/dz (1 − z)/4 is left
+    share = 0.25 * (1.0 - z)
+    for block in range(BLOCKS):
+        y[block * KEPT + T] += share * rates[block * KEPT + T]
+
+
+@kernel
+def vary(
+    z_path: FloatArray, u: float, tableau: Tableau, cut: FloatArray, path: FloatArray,
+    stop: FloatArray, work: FloatArray,
+) -> None:  # fmt: skip
+    """A motion from u₀ and its variations: at its step ends into ``path`` (n, 28), at the stop.
+
+    Parameters
+    ----------
+    z_path : array (n,), where the steps of the motion end
+    u : ln(rω/v) at the launch
+    cut : six functions, see :meth:`puck_tables.table.flow_section.FlowSection.for_slopes`
+    path : array (n, 28), or empty where nobody wants it
+    stop : array (28,)
+    work : room (8, 28)
+    """
+    for i in range(VARIED):
+        stop[i] = 0.0
+    stop[U], stop[BY_U * KEPT + U] = u, 1.0
+    for n in range(z_path.size):
+        if n > 0:
+            advance(z_path[n - 1], z_path[n], stop, tableau, cut, work)
+        if path.size > 0:
+            for i in range(VARIED):
+                path[n, i] = stop[i]
+    _to_the_stop(z_path[-1], stop, cut, work[0])
+
+
+@allocating
+def fill_varied_stops(
+    u: FloatArray, place_unit: FloatArray, delta: float, tableau: Tableau, tolerance: float,
+    ratios: FloatArray, cut: FloatArray, out: FloatArray,
+) -> None:  # fmt: skip
+    """Stops of launches at u (n,) and their variations into ``out`` (n, 28); NaN: no stop.
+
+    ``ratios``, ``cut``: friction for motions and for slopes, of one puck.  ``place_unit`` (n,) as
+    :func:`puck_tables.motion.path.integrate` has it.
+    """
+    z, y = np.empty(_STEP_LIMIT), np.empty((_STEP_LIMIT, SIZE))
+    result, work = np.empty(SIZE + 1), np.empty((8, VARIED))
+    nobody = np.empty((0, VARIED))
+    for n in range(u.size):
+        status, count = integrate(
+            u[n], tableau, 0.0, tolerance, place_unit[n], ratios, delta, _STEP_LIMIT, z, y, result
+        )
+        if status == STOPPED:
+            vary(z[:count], u[n], tableau, cut, nobody, out[n], work)
+        else:
+            for i in range(VARIED):
+                out[n, i] = math.nan
+
+
+@allocating
+def fill_varied_states(
+    z: FloatArray, which: npt.NDArray[np.int64], z_path: FloatArray, path: FloatArray,
+    stop: FloatArray, tableau: Tableau, cut: FloatArray, out: FloatArray, rates: FloatArray,
+) -> None:  # fmt: skip
+    """Varied states at z (n,) of one motion into ``out`` (n, 28), and their d/dz into ``rates``.
+
+    ``which`` (n,): the last step end before; ``path``, ``stop`` of :func:`vary`.
+    """
+    work = np.empty((8, VARIED))
+    last = z_path.size - 1
+    for n in range(z.size):
+        i = which[n]
+        y = out[n]
+        for j in range(VARIED):
+            y[j] = path[i, j]
+        if i < last:
+            advance(z_path[i], z[n], y, tableau, cut, work)
+            varied(z[n], y, cut, rates[n])
+            continue
+        # at constant angle: the time that is left is like q
+        varied(z[n], y, cut, rates[n])
+        share = 0.25 * (1.0 - z[n])
+        for block in range(BLOCKS):
+            at = block * KEPT
+            for j in range(T, KEPT):
+                y[at + j] = stop[at + j]
+            y[at + T] -= share * rates[n, at + T]

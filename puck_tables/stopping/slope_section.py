@@ -1,0 +1,127 @@
+"""Derivatives of stops of one kind of puck: splines over the slip angle, or each launch by itself.
+
+What is splined are the derivatives in natural units (:func:`puck_tables.stopping.varied
+.natural_stops`): a launch costs a look-up and the way back to SI units, once a second or two were
+spent on the splines.  They carry broken powers of φ at both ends, by one smaller than those of the
+stop, and may be too steep there, or next to a line of the friction, for any spline: launches in
+such cells, few as these are, are integrated.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables._core.executor import run_chunks
+from puck_tables.motion.body import Body
+from puck_tables.stopping.varied import natural_stops, varied_of
+from puck_tables.table.singular_lines import lines_of
+from puck_tables.table.slip_axis import graded, sides_of
+from puck_tables.table.slip_spline import SlipSpline
+
+MANY = 3000  # launches of one height from which on splines cost less than integrating each
+SPLINE_ERROR = 3e-8
+_COARSEST_CELLS, _FINEST_CELLS = 32, 512
+_NEAR = 0.25  # of a side in ξ, 1/256 of it in φ: what may be too steep
+_CHUNK = 1 << 13
+
+
+class SlopeSection(NamedTuple):
+    """Twenty functions of φ, and in which cells (sides, cells) they are good.
+
+    Time, along, to the left, path, body angle, by four columns of
+    :func:`puck_tables.stopping.varied.natural_stops` each.
+    """
+
+    cut: FloatArray
+    good: npt.NDArray[np.bool_]
+
+
+@lru_cache(maxsize=16)
+def slope_section(body: Body) -> SlopeSection:
+    """Tabulate the derivatives of the stops of one kind of puck.
+
+    Raises
+    ------
+    AccuracyError
+        If they are out of reach.
+
+    Notes
+    -----
+    The error is measured in the middles of all cells, as in
+    :func:`puck_tables.table.slip_spline.slip_spline`.
+
+    Examples
+    --------
+    >>> from puck_tables.motion.body import body_of
+    >>> section = slope_section(body_of("hertz", 0.5, 0.6))
+    >>> section.good.shape, bool(section.good[:, -1].all())
+    ((4, 128), True)
+    """
+    friction = varied_of(body)
+    sides = sides_of(lines_of(body.law, body.delta)[::-1], ends_too=True)
+
+    def at(xi: FloatArray) -> FloatArray:
+        phi = graded(sides, xi).ravel()
+        cosine = np.where(phi >= 0.5 * np.pi, 0.0, np.cos(phi))
+        return natural_stops(friction, cosine, np.sin(phi))[:, :, :4].reshape(
+            len(sides), xi.size, -1
+        )
+
+    cells = _COARSEST_CELLS
+    values = at(np.arange(cells + 1) / cells)
+    while True:
+        spline = SlipSpline(sides, values, False)
+        xi = (np.arange(cells) + 0.5) / cells
+        between = at(xi)
+        guess = spline.at(graded(sides, xi).ravel()).reshape(between.shape)
+        good = np.abs(guess - between).max(axis=2) <= SPLINE_ERROR
+        if good[:, xi > _NEAR].all() or 2 * cells > _FINEST_CELLS:
+            return SlopeSection(spline.cut, good)
+        finer = np.empty((len(sides), 2 * cells + 1, values.shape[2]))
+        finer[:, ::2], finer[:, 1::2] = values, between
+        values, cells = finer, 2 * cells
+
+
+def stop_slopes_of(body: Body, launches: FloatArray) -> FloatArray:
+    """Derivatives (n, 5, 6) of the stops of launches (6, n) of one kind of puck, none at rest.
+
+    Raises
+    ------
+    AccuracyError
+        If they are out of reach.
+
+    Examples
+    --------
+    >>> from puck_tables.motion.body import body_of
+    >>> launches = np.array([[1.0], [0.0], [0.0], [2.0], [1.0], [1.0]])
+    >>> found = stop_slopes_of(body_of("uniform", 2.0, 0.5**0.5), launches)
+    >>> found[0, 1].round(6).tolist()  # x of a slide: v²/2J
+    [1.0, 0.0, 0.0, 0.0, -0.5, 0.0]
+    """
+    from puck_tables.stopping.section_lookup import fill_section_jacobians
+    from puck_tables.stopping.stop_jacobian import fill_placed_stops
+
+    count = launches.shape[1]
+    out, left = np.empty((count, 5, 6)), np.ones(count, np.bool_)
+    if count >= MANY:
+        section = slope_section(body)
+
+        def work(start: int, stop: int) -> None:
+            some = np.ascontiguousarray(launches[:, start:stop])
+            fill_section_jacobians(some, *section, out[start:stop], left[start:stop])
+
+        run_chunks(work, count, _CHUNK)
+    if left.any():
+        some = np.ascontiguousarray(launches[:, left])
+        speed, rim = np.hypot(some[0], some[1]), np.abs(some[5] * some[2])
+        slip = np.hypot(speed, rim)
+        own = natural_stops(varied_of(body), speed / slip, rim / slip)
+        part = np.empty((some.shape[1], 5, 6))
+        fill_placed_stops(some, np.ascontiguousarray(own[:, :, :4]), part)
+        out[left] = part
+    return out
