@@ -5,6 +5,7 @@ What answers stands above the puck, and is loaded when it is asked.
 
 from __future__ import annotations
 
+from functools import cache
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -315,6 +316,7 @@ class Verbs:
         return found
 
 
+@cache
 def _verb(module: str, name: str) -> Any:
     """What answers a question about a puck stands above it, and is loaded when it is asked."""
     return getattr(import_module(f"puck_tables.{module}"), name)

@@ -37,7 +37,9 @@ def answers(table: Table) -> np.ndarray:
     if table.kind == "stops":
         rim, one = np.tan(phi), np.ones(phi.size)
         launches = np.stack([np.cos(phi), 0.0 * one, np.sin(phi), share, one, one])
-        return np.concatenate([table.stops(launches)[0], table.known(launches)[3:6] + 0.0 * rim])
+        time, place, _, _ = table.stops(launches_in(launches))
+        known = table.known(launches)[3:6] + 0.0 * rim
+        return np.concatenate([time[None], place.T, known])
     if table.kind == "stop section":
         c, s = np.cos(phi), np.sin(phi)
         return table.spline.at(phi).T * np.stack([np.ones_like(c), c, s * c, c, s, s])

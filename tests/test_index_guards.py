@@ -18,6 +18,7 @@ from puck_tables.kernels.speed_spline import fill_speed
 from puck_tables.kernels.spline import cell_at
 from puck_tables.motion.body import body_of
 from puck_tables.stopping.curve_lookup import LAUNCH_COLUMNS, LAUNCH_ROWS, fill_states
+from puck_tables.stopping.launches import launches_in
 from puck_tables.stopping.lookup import stops_kernel
 from puck_tables.stopping.section_lookup import fill_section_stops
 from puck_tables.table.friction_section import friction_section
@@ -85,9 +86,10 @@ def look_up_everything() -> None:
         np.stack([one, one, one, 0.5 * one, first, second]),
     ):  # fmt: skip
         for powers in (4, 8):
-            stops_kernel(powers)(launches, stops.cut(powers, 1), out)
+            given = launches_in(launches).part(0, n)
+            stops_kernel(powers)(*given, stops.cut(powers, 1), *out, 1)
         stops.known(launches)
-        fill_section_stops(launches, body_stops(), out6)
+        fill_section_stops(launches, body_stops(), 2.0, out6)
         pucks = np.ones((n, LAUNCH_COLUMNS + LAUNCH_ROWS))
         pucks[:, LAUNCH_COLUMNS:] = np.random.default_rng(4).choice(WILD, (n, LAUNCH_ROWS))
         fill_states(

@@ -107,25 +107,26 @@ def test_closed_forms_beside_the_singular_angle_do_not_depend_on_the_block():
 def test_vectors_of_the_look_up_are_the_plain_sums():
     """Hand-made vector code against NumPy, double and single, at every number of powers."""
     table = StopTable(Table.shipped("stops").values[::6])
-    from puck_tables.stopping.lookup import row_width, slip_place, stops_kernel
+    from puck_tables.stopping.launches import launches_of
+    from puck_tables.stopping.lookup import WIDTH, slip_place, stops_kernel
 
-    launch = np.array([[0.6], [0.1], [0.9], [0.7], [1.0], [1.0]])
+    launch = launches_of((0.6, 0.1), 0.9, 0.7, 1.0, 1.0).part(0, 1)
     for powers in range(2, 8):
         c = table.cut(powers)
         out = np.empty((3, 1))
-        stops_kernel(powers)(launch, c, out)
+        stops_kernel(powers)(*launch, c, *out, 1)
         side, xi = slip_place.py_func(np.hypot(0.6, 0.1), 0.9)
         cell, t = divmod(xi * 47, 1.0)
         weights = [(1 - t) ** 3, 4 - 6 * t**2 + 3 * t**3, 1 + 3 * t + 3 * t**2 - 3 * t**3, t**3]
         row = weights @ c[side, int(cell) : int(cell) + 4]
         s = 2 * 0.7**2 - 1
-        time = sum(row[3 * m] * s**m for m in range(powers))
+        time = sum(row[WIDTH * m] * s**m for m in range(powers))
         q = np.sqrt(0.6**2 + 0.1**2 + 0.9**2)
-        assert row.size == row_width(powers)
+        assert row.size == WIDTH * powers
         assert out[0, 0] == pytest.approx(q * time, rel=1e-13)
         if powers in (2, 7):
             single = np.empty((3, 1))
-            stops_kernel(powers)(launch, c.astype(np.float32), single)
+            stops_kernel(powers)(*launch, c.astype(np.float32), *single, 1)
             np.testing.assert_allclose(single, out, rtol=1e-6)
             assert not np.array_equal(single, out)
 

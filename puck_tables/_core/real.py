@@ -58,6 +58,22 @@ def real_array(name: str, values: npt.ArrayLike, unit: str) -> FloatArray:
         raise InputError(f"{name} must be real numbers{_in(unit)}") from None
 
 
+def real_view(name: str, values: npt.ArrayLike, unit: str) -> FloatArray:
+    """As :func:`real_array`, but an array of float64 is given back as it is, not copied.
+
+    Examples
+    --------
+    >>> given = np.ones(3)
+    >>> real_view("w0", given, "rad/s") is given
+    True
+    """
+    if type(values) is np.ndarray and values.dtype == np.float64:
+        return values
+    if type(values) is float:
+        return np.array(values)
+    return real_array(name, values, unit)
+
+
 def _in(unit: str) -> str:
     return "" if unit == "1" else f" in {unit}"
 
@@ -210,3 +226,19 @@ def one_velocity(velocity: npt.ArrayLike) -> tuple[float, float]:
         raise InputError(f"velocity must be one (vx, vy) in m/s, got an array of {array.shape}")
     vx, vy = array.tolist()
     return vx, vy
+
+
+def checked_threads(threads: int | None) -> None:
+    """Refuse a number of threads that is none.
+
+    Raises
+    ------
+    InputError
+
+    Examples
+    --------
+    >>> checked_threads(None), checked_threads(2)
+    (None, None)
+    """
+    if threads is not None and (not isinstance(threads, int) or threads < 1):
+        raise InputError(f"threads must be a whole number from 1 on, got {threads!r}")

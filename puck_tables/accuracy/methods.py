@@ -89,9 +89,9 @@ def method_named(name: str | None, among: Iterable[Method] = METHODS) -> Method 
     >>> method_named("rk4")
     <Method.RK4: 'rk4'>
     """
-    known = {method.value: method for method in among}
     if name is None:
         return None
+    known = {method.value: method for method in among}
     if not isinstance(name, str) or name not in known:
         raise InputError(f"method must be one of {', '.join(known)}, got {name!r}")
     return known[name]

@@ -194,3 +194,89 @@ def _spline_polynomials(
 
 
 spline_polynomials: Any = intrinsic(prefer_literal=True)(_spline_polynomials)
+
+
+def _spline_values(
+    typing: Any, c: Any, k: Any, weights: Any, s: Any, width: Any, powers: Any
+) -> Any:
+    """Compiled (c, k, (a, b, …), s, width, powers) → polynomials in s, splined, as a tuple.
+
+    Rows of a flat array of double or single precision, one after the other and as many as weights,
+    each of ``powers`` times ``width`` numbers (constants; width a multiple of four): coefficients
+    of as many functions, side by side, powers of s ascending.  Each row is evaluated by Horner's
+    rule and the rows are weighted and added, functions in the lanes of registers from end to end:
+    a table whose polynomials were evaluated before, with one power, gives the same bits.  LLVM does
+    not see by itself that it may (the sums could overwrite the table).
+    """
+    count, top = width.literal_value, powers.literal_value
+    lanes = ir.VectorType(ir.DoubleType(), _LANES)
+    nothing = ir.Constant(lanes, ir.Undefined)
+    spread = ir.Constant(ir.VectorType(ir.IntType(32), _LANES), [0] * _LANES)
+    first = ir.Constant(ir.IntType(32), 0)
+
+    def build(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        single = signature.args[0].dtype == types.float32
+        stored = ir.VectorType(ir.FloatType(), _LANES) if single else lanes
+        data = context.make_array(signature.args[0])(context, builder, args[0]).data
+
+        def everywhere(number: Any) -> Any:
+            number = builder.insert_element(nothing, number, first)
+            return builder.shuffle_vector(number, nothing, spread)
+
+        def times_plus(one: Any, other: Any, more: Any) -> Any:
+            product = builder.fmul(one, other, flags=("contract",))
+            return builder.fadd(product, more, flags=("contract",))
+
+        def coefficients(place: int) -> Any:
+            at = builder.add(args[1], ir.Constant(args[1].type, place))
+            pointer = builder.bitcast(builder.gep(data, [at]), stored.as_pointer())
+            values = builder.load(pointer, align=4 if single else 8)
+            return builder.fpext(values, lanes) if single else values
+
+        rows = len(signature.args[2])
+        weight = [everywhere(builder.extract_value(args[2], row)) for row in range(rows)]
+        variable = everywhere(args[3])
+        values = []
+        for part in range(0, count, _LANES):
+            total = None
+            for row in range(rows):
+                value = coefficients((row * top + top - 1) * count + part)
+                for power in range(top - 2, -1, -1):
+                    more = coefficients((row * top + power) * count + part)
+                    value = times_plus(value, variable, more)
+                if total is None:
+                    total = builder.fmul(value, weight[row], flags=("contract",))
+                else:
+                    total = times_plus(value, weight[row], total)
+            for lane in range(_LANES):
+                at = ir.Constant(ir.IntType(32), lane)
+                values.append(builder.extract_element(total, at))
+        return context.make_tuple(builder, signature.return_type, values)
+
+    found: Any = types.UniTuple(types.float64, count)  # type: ignore[no-untyped-call]
+    return found(c, k, weights, s, width, powers), build
+
+
+spline_values: Any = intrinsic(prefer_literal=True)(_spline_values)
+
+
+def _bits_of(typing: Any, number: Any) -> Any:
+    """Compiled float → the integer of the same bits."""
+
+    def build(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        return builder.bitcast(args[0], ir.IntType(64))
+
+    return types.int64(types.float64), build
+
+
+def _number_of(typing: Any, bits: Any) -> Any:
+    """Compiled integer → the float of the same bits."""
+
+    def build(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        return builder.bitcast(args[0], ir.DoubleType())
+
+    return types.float64(types.int64), build
+
+
+bits_of: Any = intrinsic(_bits_of)
+number_of: Any = intrinsic(_number_of)

@@ -46,6 +46,7 @@ from puck_tables.stopping.curve_lookup import (
 )
 from puck_tables.stopping.exact import end_values, exact_stops
 from puck_tables.stopping.lookup import CURVE_ROW
+from puck_tables.stopping.launches import launches_in
 from puck_tables.stopping.node_equations import all_slopes, missed_by_curve, missed_by_stops
 from puck_tables.stopping.stop_table import STOPS, StopTable
 from puck_tables.table.accuracy import Accuracy
@@ -123,9 +124,9 @@ def looked_up(table: StopTable, u: FloatArray, delta: FloatArray) -> FloatArray:
     [0.98647594, 0.32409373, -0.04297451]
     """
     launches = launches_at(u, delta)
-    stops, _ = table.stops(launches)
+    time, place, _, _ = table.stops(launches_in(launches))
     known = table.known(launches)
-    return np.concatenate([stops, known[LENGTH : BODY + 1]]).T
+    return np.concatenate([time[None], place.T, known[LENGTH : BODY + 1]]).T
 
 
 def tabulated(

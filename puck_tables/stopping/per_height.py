@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from functools import partial
+from functools import lru_cache, partial
 from typing import Any
 
 import numpy as np
@@ -32,8 +32,10 @@ from puck_tables.motion.friction import Sections, integration_selected
 from puck_tables.motion.run import unseen_tail
 from puck_tables.motion.solve import FINEST_LOCAL, Estimate, Setting, close_enough, refined
 from puck_tables.motion.steppers import stepping_of
+from puck_tables.stopping.launches import Launches
 from puck_tables.stopping.solvers import (
     OUTPUTS,
+    First,
     Integration,
     LookUp,
     SectionLookUp,
@@ -41,7 +43,7 @@ from puck_tables.stopping.solvers import (
     StopSolver,
 )
 from puck_tables.stopping.stop_section import FINEST_SECTION, stop_section_for
-from puck_tables.stopping.stop_table import StopTable
+from puck_tables.stopping.stop_table import UPPER_DELTA, StopTable
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.table.table import refuse_other_kind
 
@@ -85,7 +87,7 @@ class SolverPerHeight:
         self._law_table: ResultantTable | None = None
         if table is not None and self._plain_up_to > 0.0:
             self._plain_up_to = math.inf  # it refuses itself what it does not hold
-        elif isinstance(table, StopTable):
+        elif table is not None and isinstance(table, StopTable):
             raise InputError(
                 "tables of stops are of a homogeneous puck under uniform pressure: leave out "
                 "table, or pressure and gyration"
@@ -162,7 +164,7 @@ class SolverPerHeight:
 
     def _prepare_plain(self) -> None:
         table, wanted = self._table, self._wanted
-        if isinstance(table, StopTable):
+        if table is not None and isinstance(table, StopTable):
             if wanted not in (None, Method.LOOK_UP):
                 raise InputError(f"method {wanted} needs a table of resultants, not of stops")
             if not table.tolerance <= self.tol <= COARSEST:
@@ -182,10 +184,7 @@ class SolverPerHeight:
             selection = integration_selected("stop", self.tol, wanted, table)
         self._plain_selection = selection
         if selection.method is Method.LOOK_UP:
-            shipped = StopTable.shipped()
-            powers, thinning = int(selection.number("powers")), int(selection.number("thinning"))
-            self._plain = LookUp(shipped, powers, thinning, selection.error)
-            self._plain_source = shipped.source
+            self._plain, self._plain_source = _shipped_look_up(selection)
             return
         columns = NO_COLUMNS
         self._plain_source = Source.CLOSED_FORMS
@@ -207,25 +206,66 @@ class SolverPerHeight:
                     raise
         return integration_of(body, self.tol, self._wanted)
 
-    def first(self, launches: FloatArray) -> tuple[FloatArray, Status]:
-        """Stop time, x, y (3, n), or all of the outputs if they cost no more; status (n,)."""
-        if not self._sections and self._plain is not None:
-            return self._plain.first(launches)
-        return self.all(launches)
+    def prepare_for(self, launches: Launches, threads: int | None) -> None:
+        """Make what launches need, whose heights are refused where the friction is not known.
 
-    def all(self, launches: FloatArray) -> tuple[FloatArray, Status]:
+        Raises
+        ------
+        InputError, ContactError, AccuracyError
+        """
+        delta = launches.delta
+        highest = float(delta.max()) if delta.size > 1 else sum(delta.tolist())
+        bound = -math.inf
+        if self._table is None:
+            bound = self._plain_up_to
+        elif isinstance(self._table, StopTable):
+            bound = UPPER_DELTA
+        if highest <= bound:
+            self._launches = launches.size, 0
+            self._prepare_plain()
+            return
+        launches.refuse_bad()
+        self.checked_range(delta)
+        self.prepare(delta, launches.size // max(delta.size, 1), threads)
+
+    def first(self, launches: Launches, threads: int | None) -> First:
+        """Stop times, places, status and mark of launches, and the rest if it costs no more.
+
+        Raises
+        ------
+        InputError
+            If one of them is no launch.
+        """
+        if not self._sections and type(self._plain) is LookUp:
+            return self._plain.first(launches, threads)
+        launches.refuse_bad()
+        values, status = self.all(launches.matrix, threads)
+        return First(values[0], values[1:3].T.copy(), status, 0, values[3:])
+
+    def rest(self, launches: Launches, threads: int | None) -> FloatArray:
+        """The rest of the outputs (3, n) of launches whose first did not come with it."""
+        assert isinstance(self._plain, LookUp)
+        return self._plain.rest(launches, threads)
+
+    def all(self, launches: FloatArray, threads: int | None = 1) -> tuple[FloatArray, Status]:
         """All of the outputs of a stop (6, n) and status (n,) of launches (6, n)."""
         if not self._sections and self._plain is not None:
-            return self._plain.all(launches)
+            return self._plain.all(launches, threads)
+        plain = launches[3] <= self._plain_up_to
+        if len(self._sections) == 1 and not plain.any():
+            return next(iter(self._sections.values())).all(launches, threads)
         out = np.empty((len(OUTPUTS), launches.shape[1]))
         status = np.empty(launches.shape[1], np.int8)
-        plain = launches[3] <= self._plain_up_to
-        parts: list[tuple[StopSolver | None, npt.NDArray[np.bool_]]] = [(self._plain, plain)]
-        heights = np.unique(launches[3, ~plain]).tolist()
-        parts += [(self._sections[height], launches[3] == height) for height in heights]
-        for solver, mine in parts:
-            if solver is not None and mine.any():
-                out[:, mine], status[mine] = solver.all(launches[:, mine])
+        order = np.argsort(np.where(plain, -1.0, launches[3]), kind="stable")
+        heights = launches[3, order]
+        ends = [int(plain.sum())]
+        for height in sorted(self._sections):
+            ends.append(ends[-1] + int(np.searchsorted(heights[ends[-1] :], height, side="right")))
+        solvers = [self._plain, *(self._sections[height] for height in sorted(self._sections))]
+        for solver, start, stop in zip(solvers, [0, *ends], ends, strict=False):
+            mine = order[start:stop]
+            if solver is not None and mine.size:
+                out[:, mine], status[mine] = solver.all(launches[:, mine], threads)
         return out, status
 
     @property
@@ -299,6 +339,14 @@ class SolverPerHeight:
             f"{others} of {plain + others} launches, of heights above:",
         ]
         return "\n".join([words[0], texts[0], words[1], *texts[1:]])
+
+
+@lru_cache(maxsize=64)
+def _shipped_look_up(selection: Selection) -> tuple[LookUp, str]:
+    """As fine as was selected, from the stop table that comes along; and its name."""
+    shipped = StopTable.shipped()
+    powers, thinning = int(selection.number("powers")), int(selection.number("thinning"))
+    return LookUp(shipped, powers, thinning, selection.error), shipped.source
 
 
 def refuse_many(heights: FloatArray) -> None:

@@ -8,9 +8,10 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import allocating
+from puck_tables.kernels.compile import allocating, weighted_rows
 from puck_tables.kernels.section_spline import HEADER, section_place
 from puck_tables.kernels.spline import basis
+from puck_tables.stopping.lookup import LARGEST, SMALLEST
 from puck_tables.stopping.stop_jacobian import BY_VX, BY_VY, LENGTH, STOP_ROWS, place_stop
 
 _FUNCTIONS = 6
@@ -19,33 +20,34 @@ _LOWEST = 1e-290
 
 
 @allocating
-def fill_section_stops(launches: FloatArray, cut: FloatArray, out: FloatArray) -> None:
+def fill_section_stops(
+    launches: FloatArray, cut: FloatArray, longest: float, out: FloatArray
+) -> int:
     """Stops of launches (6, n): vx, vy, ω, δ, J, r, into ``out`` (6, n), see solvers.OUTPUTS.
 
     ``cut`` holds the functions of :mod:`puck_tables.stopping.stop_section`; all launches are of its
-    puck.  No direction is computed and nothing divided by zero.
+    puck.  No direction is computed and nothing divided by zero.  Returns of how many ``longest``
+    times Q²/J or Q²/(J r) is too large.
     """
-    values = np.empty(_FUNCTIONS)
+    flat, too_large = cut.reshape(-1), 0
     for n in range(launches.shape[1]):
         vx, vy = launches[0, n], launches[1, n]
         decel, radius = launches[4, n], launches[5, n]
         rim = radius * launches[2, n]
-        speed, edge = math.hypot(vx, vy), abs(rim)
-        slip = math.hypot(speed, edge)
-        if not slip < math.inf:
-            for f in range(_FUNCTIONS):
-                out[f, n] = math.nan
-            continue
+        speed2, edge = vx * vx + vy * vy, abs(rim)
+        slip2 = speed2 + rim * rim
+        if (speed2 > SMALLEST) & (slip2 < LARGEST):
+            speed, slip = math.sqrt(speed2), math.sqrt(slip2)
+        else:
+            speed = math.hypot(vx, vy)
+            slip = math.hypot(speed, edge)
         larger = max(speed, edge)
         raised = 2.0**200 if larger < _LOWEST else 1.0
         ratio = (raised * min(speed, edge)) / (raised * larger) if larger > 0.0 else 0.0
         side, i, place = section_place(ratio, edge > speed, cut, _FUNCTIONS)
-        for f in range(_FUNCTIONS):
-            values[f] = 0.0
-        for m, w in enumerate(basis(place)):
-            for f in range(_FUNCTIONS):
-                values[f] += w * cut[side, i + _FUNCTIONS * m + f]
-        time, along, across, length, body, turn = values
+        time, along, across, length, body, turn = weighted_rows(
+            flat, side * cut.shape[1] + i, basis(place), _FUNCTIONS
+        )
         scale = slip / decel
         straight, left = scale * along, (rim / decel) * across
         out[0, n] = scale * time
@@ -54,6 +56,9 @@ def fill_section_stops(launches: FloatArray, cut: FloatArray, out: FloatArray) -
         out[3, n] = scale * speed * length
         out[4, n] = rim / slip * turn if slip > 0.0 and speed > 0.0 else 0.0
         out[5, n] = scale * (rim / radius) * body
+        size = longest * scale * slip
+        too_large += 0 if abs(size / radius + size) < math.inf else 1
+    return too_large
 
 
 @allocating

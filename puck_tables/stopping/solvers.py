@@ -7,15 +7,16 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.executor import in_slices
+from puck_tables._core.executor import in_slices, run_chunks
 from puck_tables.accuracy.methods import Method
 from puck_tables.motion.steppers import Stepping
+from puck_tables.stopping.launches import CHUNK, Launches, launches_in
 from puck_tables.stopping.lookup import STOP_POWERS
 from puck_tables.stopping.stop_section import StopSection
 from puck_tables.stopping.stop_table import StopTable
@@ -24,7 +25,18 @@ Status = npt.NDArray[np.int8]
 
 OUTPUTS = ("stop_time", "stop_x", "stop_y", "path_length", "turn_angle", "body_angle")
 STATUS_MEANINGS = ("stopped", "step_limit", "overflow")
+_INTEGRATED_CHUNK = 64
 _OVERFLOW = STATUS_MEANINGS.index("overflow")
+
+
+class First(NamedTuple):
+    """Stop times (n,), places (n, 2), status (n,), the mark of their launches, and the rest."""
+
+    time: FloatArray
+    place: FloatArray
+    status: Status
+    mark: int
+    rest: FloatArray | None = None
 
 
 class StopSolver(ABC):
@@ -42,12 +54,11 @@ class StopSolver(ABC):
         """What determines the bits besides the launches."""
 
     @abstractmethod
-    def all(self, launches: FloatArray) -> tuple[FloatArray, Status]:
-        """All of :data:`OUTPUTS` (6, n) and status (n,) of checked launches (6, n)."""
+    def all(self, launches: FloatArray, threads: int | None = 1) -> tuple[FloatArray, Status]:
+        """All of :data:`OUTPUTS` (6, n) and status (n,) of checked launches (6, n).
 
-    def first(self, launches: FloatArray) -> tuple[FloatArray, Status]:
-        """Stop time, x, y (3, n), or all of the outputs if they cost no more; status (n,)."""
-        return self.all(launches)
+        ``threads``: 1 where others cut the work.
+        """
 
 
 @dataclass(frozen=True)
@@ -68,23 +79,37 @@ class LookUp(StopSolver):
             "thinning": self.thinning,
         }  # fmt: skip
 
-    def first(self, launches: FloatArray) -> tuple[FloatArray, Status]:
-        """Stop time, x, y (3, n) and status (n,)."""
-        out, overflows = self.table.stops(launches, self.powers, self.thinning)
-        status = np.zeros(out.shape[1], np.int8)
-        if overflows:
-            mark_too_large(out, status, launches, 2.0)
-        return out, status
+    def first(self, launches: Launches, threads: int | None) -> First:
+        """Stop times (n,), places (n, 2), status (n,) and the mark of launches.
 
-    def all(self, launches: FloatArray) -> tuple[FloatArray, Status]:
+        Raises
+        ------
+        InputError
+            If one of them is no launch.
+        """
+        time, place, doubtful, mark = self.table.stops(
+            launches, self.powers, self.thinning, threads
+        )
+        status = np.zeros(time.size, np.int8)
+        if doubtful:
+            status[~fits(launches.matrix)] = _OVERFLOW
+            time[status != 0], place[status != 0] = np.nan, np.nan
+        return First(time, place, status, mark)
+
+    def all(self, launches: FloatArray, threads: int | None = 1) -> tuple[FloatArray, Status]:
         """All of the outputs (6, n) and status (n,)."""
+        given = launches_in(launches)
+        first = self.first(given, threads)
+        out = np.empty((len(OUTPUTS), launches.shape[1]))
+        out[0], out[1:3], out[3:] = first.time, first.place.T, self.rest(given, threads)
+        out[:, first.status != 0] = np.nan
+        return out, first.status
+
+    def rest(self, launches: Launches, threads: int | None) -> FloatArray:
+        """Path length, turn of heading and of the body (3, n)."""
         from puck_tables.stopping.curve_lookup import BODY, LENGTH, TURN
 
-        known = self.table.known(launches)
-        first, status = self.first(launches)
-        out = np.concatenate([first, known[[LENGTH, TURN, BODY]]])
-        out[:, status != 0] = np.nan
-        return out, status
+        return self.table.known(launches.matrix)[[LENGTH, TURN, BODY]]
 
 
 @dataclass(frozen=True)
@@ -100,14 +125,20 @@ class SectionLookUp(StopSolver):
         """The section."""
         return {"by": self.method, "section": self.section.cut}
 
-    def all(self, launches: FloatArray) -> tuple[FloatArray, Status]:
+    def all(self, launches: FloatArray, threads: int | None = 1) -> tuple[FloatArray, Status]:
         """All of the outputs (6, n) and status (n,)."""
         from puck_tables.stopping.section_lookup import fill_section_stops
 
         out = np.empty((len(OUTPUTS), launches.shape[1]))
         status = np.zeros(launches.shape[1], np.int8)
-        fill_section_stops(launches, self.section.cut, out)
-        mark_too_large(out, status, launches, self.section.body.longest)
+        longest = self.section.body.longest
+
+        def work(start: int, stop: int) -> None:
+            some, part = launches[:, start:stop], out[:, start:stop]
+            if fill_section_stops(some, self.section.cut, longest, part):
+                mark_too_large(part, status[start:stop], some, longest)
+
+        run_chunks(work, launches.shape[1], CHUNK, threads)
         return out, status
 
 
@@ -134,7 +165,7 @@ class Integration(StopSolver):
             "steps": self.stepping.steps, "tolerance": self.stepping.local,
         }  # fmt: skip
 
-    def all(self, launches: FloatArray) -> tuple[FloatArray, Status]:
+    def all(self, launches: FloatArray, threads: int | None = 1) -> tuple[FloatArray, Status]:
         """All of the outputs (6, n) and status (n,)."""
         from puck_tables.motion.bulk import fill_stops
 
@@ -146,7 +177,10 @@ class Integration(StopSolver):
             fill_stops(some, *self.stepping, self.columns, self.section, part, status[start:stop])
             out[:, start:stop] = part
 
-        in_slices(work, launches.shape[1])
+        if threads == 1:
+            in_slices(work, launches.shape[1])
+        else:
+            run_chunks(work, launches.shape[1], _INTEGRATED_CHUNK, threads)
         if self.longest > 2.0:
             mark_too_large(out, status, launches, self.longest)
         return out, status

@@ -43,7 +43,7 @@ from puck_tables.stopping.jacobian import (
 from puck_tables.stopping.per_height import refuse_many
 from puck_tables.stopping.solvers import fits
 from puck_tables.stopping.stop_table import StopTable
-from puck_tables.stopping.stops import as_rows, positive_array
+from puck_tables.stopping.launches import positive_array
 from puck_tables.table.table import refuse_other_kind
 
 TOL = 1e-9
@@ -227,7 +227,7 @@ def states(
     times = finite_array("time", time, "s")
     if not np.all(times >= 0.0):
         raise InputError(f"time must not be negative, got {times.min():g} s")
-    launches = as_rows(columns)
+    launches = np.stack(columns).reshape(len(columns), -1)
     plain = launches[3] <= highest
     bodies = _bodies(pressure, gyration, launches[3, ~plain])
     longest = max((body.longest for body in bodies.values()), default=2.0)

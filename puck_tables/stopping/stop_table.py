@@ -23,19 +23,18 @@ from puck_tables.stopping.axes import (
     heights,
 )
 from puck_tables.stopping.curve import limits
+from puck_tables.stopping.launches import CHUNK, Launches, in_chunks, joined_mark
 from puck_tables.stopping.lookup import (
     CURVE_ROW,
     STOP_POWERS,
     STOP_ROW,
-    row_width,
+    WIDTH,
     stops_kernel,
 )
 from puck_tables.stopping.slopes import Slopes, slopes_of
 from puck_tables.table.check import CheckReport
 from puck_tables.table.fit import clamped_coefficients
 from puck_tables.table.table import Axis, Progress, Table
-
-_CHUNK = 1 << 15
 
 UPPER_DELTA = 1.0
 STOPS = 5  # of the functions are of stops; the others of the curve of all motions
@@ -187,7 +186,7 @@ class StopTable(Table):
 
         Returns
         -------
-        array (2, cells/thinning + 3, row_width(powers)), read-only
+        array (2, cells/thinning + 3, powers × WIDTH)
         """
         if (powers, thinning) in self._cuts:
             return self._cuts[powers, thinning]
@@ -195,34 +194,62 @@ class StopTable(Table):
         values = self.values[::thinning, :, :3]
         sides = np.stack([values[: n + 1], values[: n - 1 : -1]])
         splines = np.moveaxis(clamped_coefficients(np.moveaxis(sides, 1, 0)) / 6.0, 2, 0)
-        by_power = np.zeros((powers, *splines.shape[1:]))  # power, node, side, function
-        by_power[..., 0] = height_polynomials(splines[..., 0], powers)
-        by_power[:-1, ..., 1:] = height_polynomials(splines[..., 1:], powers - 1)
-        rows = by_power.transpose(2, 1, 0, 3).reshape(2, n + 3, -1)[:, :, : row_width(powers)]
-        kept = np.ascontiguousarray(rows)
+        by_power = np.zeros((2, n + 3, powers, WIDTH))
+        times = height_polynomials(splines[..., 0], powers)  # power, node, side
+        places = height_polynomials(splines[..., 1:], powers - 1)
+        by_power[..., 0] = times.transpose(2, 1, 0)
+        by_power[:, :, :-1, 1:3] = places.transpose(2, 1, 0, 3)
+        kept = by_power.reshape(2, n + 3, powers * WIDTH)
         kept.flags.writeable = False
         self._cuts[powers, thinning] = kept
         return kept
 
     def stops(
-        self, launches: FloatArray, powers: int = STOP_POWERS, thinning: int = 1
-    ) -> tuple[FloatArray, int]:
-        """Stop time, x, y (3, n) of checked launches (6, n); how many were too large.
+        self, launches: Launches, powers: int = STOP_POWERS, thinning: int = 1,
+        threads: int | None = 1,
+    ) -> tuple[FloatArray, FloatArray, int, int]:  # fmt: skip
+        """Stop time (n,), place (n, 2), how many may be too large, and the mark of launches.
 
         Parameters
         ----------
-        launches : array (6, n): vx, vy, ω, δ, J, r
+        launches : Launches
         powers, thinning : see :meth:`cut`
+        threads : as for :func:`puck_tables.stop`
+
+        Raises
+        ------
+        InputError
+            If one of them is no launch.
 
         Examples
         --------
         >>> from puck_tables import Table
-        >>> launch = np.array([[1.0], [0.0], [5.0], [1.0], [1.0], [1.0]])
-        >>> Table.shipped("stops").stops(launch)[0].round(6).ravel().tolist()
-        [4.000189, 2.257241, -0.308477]
+        >>> from puck_tables.stopping.launches import launches_of
+        >>> launch = launches_of((1.0, 0.0), 5.0, 1.0, 1.0, 1.0)
+        >>> time, place, _, _ = Table.shipped("stops").stops(launch)
+        >>> time.round(6).tolist(), place.round(6).tolist()
+        ([4.000189], [[2.257241, -0.308477]])
         """
-        out = np.empty((3, launches.shape[1]))
-        return out, stops_kernel(powers)(launches, self.cut(powers, thinning), out)
+        size = launches.size
+        time, place = np.empty(size), np.empty((size, 2))
+        fill, cut, both = stops_kernel(powers), self.cut(powers, thinning), place.reshape(-1)
+        if size <= CHUNK:
+            doubtful, bad, mark = fill(*launches.part(0, size), cut, time, both, both[1:], 2)
+            mark %= 1 << 64
+        else:
+            found = []
+
+            def work(start: int, stop: int) -> None:
+                x, y = both[2 * start : 2 * stop], both[2 * start + 1 : 2 * stop]
+                part = launches.part(start, stop)
+                found.append((start, *fill(*part, cut, time[start:stop], x, y, 2)))
+
+            in_chunks(work, size, threads)
+            _, doubtful, bad, _ = map(sum, zip(*found, strict=True))
+            mark = joined_mark((at, mark) for at, _, _, mark in found)
+        if bad:
+            launches.refuse_bad()
+        return time, place, doubtful, mark
 
     def known(self, launches: FloatArray) -> FloatArray:
         """What the table knows of checked launches (6, n), see :func:`fill_launches`; (14, n)."""
@@ -239,7 +266,7 @@ class StopTable(Table):
             fill_launches(np.ascontiguousarray(launches[:, start:stop]), *tables, TURN_SHARE, part)
             out[:, start:stop] = part
 
-        run_chunks(work, launches.shape[1], _CHUNK)
+        run_chunks(work, launches.shape[1], CHUNK)
         return out
 
     def checked_range(self, delta: npt.ArrayLike) -> FloatArray:

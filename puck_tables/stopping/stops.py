@@ -8,9 +8,9 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import broadcast, finite_array, velocity_array
+from puck_tables._core.real import checked_threads
+from puck_tables.accuracy.front import Selection
 from puck_tables.contact.laws import HOMOGENEOUS, Law
-from puck_tables.errors import InputError
 from puck_tables.io.columns import derived, following
 from puck_tables.io.dataset import Dataset, variable
 from puck_tables.result import Result
@@ -21,6 +21,7 @@ from puck_tables.stopping.jacobian import (
     refuse_rest,
     stop_jacobians,
 )
+from puck_tables.stopping.launches import Launches, launches_in, launches_of
 from puck_tables.stopping.per_height import SolverPerHeight
 from puck_tables.stopping.solvers import OUTPUTS, STATUS_MEANINGS
 from puck_tables.stopping.stop_table import StopTable
@@ -39,7 +40,8 @@ class Stops(Differentiated, Result):
     with a stop table of one's own).
     Computed when first asked for: ``path_length`` (…) m, ``body_angle`` (…) rad, ``turn_angle``
     (…) rad: how far the heading has turned when Q has fallen to 1/1000 (for δ > 0 it turns on
-    without end).
+    without end).  For that more than 16384 launches are held as they were given, not copied: where
+    their arrays have been changed in the meantime it is refused.
     """
 
     picture: ClassVar[str] = "places"
@@ -47,61 +49,81 @@ class Stops(Differentiated, Result):
     JACOBIAN_COLUMNS: ClassVar[tuple[str, ...]] = LAUNCH_NAMES
 
     def __init__(
-        self, solver: SolverPerHeight, launches: FloatArray, shape: tuple[int, ...],
+        self, solver: SolverPerHeight, launches: Launches, threads: int | None,
         jacobian: FloatArray | None, table: StopTable | None,
     ) -> None:  # fmt: skip
-        self._values, status = solver.first(launches)
+        time, place, status, self._mark, self._rest = solver.first(launches, threads)
         self._solver: SolverPerHeight | None = solver
-        self._launches, self._shape = launches, shape
-        self.method, self.selections = solver.method, solver.selections
-        self._explanation = solver.explanation
-        self.stop_time: FloatArray = self._values[0].reshape(shape)
-        self.stop_position: FloatArray = np.stack([self._row(1), self._row(2)], axis=-1)
-        self.status: npt.NDArray[np.int8] = status.reshape(shape)
+        self._launches, self._threads = launches, threads
+        self.stop_time: FloatArray = time.reshape(launches.shape)
+        self.stop_position: FloatArray = place.reshape(*launches.shape, 2)
+        self.status: npt.NDArray[np.int8] = status.reshape(launches.shape)
         if jacobian is not None:
             jacobian[status != 0] = np.nan
-            self._jacobian = jacobian.reshape(*shape, *jacobian.shape[1:])
-            self._arguments, self._table = launches, table
+            self._jacobian = jacobian.reshape(*launches.shape, *jacobian.shape[1:])
+            self._arguments, self._table = launches.matrix, table
 
     def __repr__(self) -> str:
         return f"Stops({self.status.size} launches of shape {self._shape}, by {self.method})"
 
     def __getstate__(self) -> dict[str, Any]:
         """The results alone: tables stay where they are."""
-        return {**self.__dict__, "_values": self._all, "_solver": None}
+        told = {"method": self.method, "selections": self.selections, "explanation": self.explain()}
+        kept = {"_rest": self._others, "_launches": self._own_launches}
+        return {**self.__dict__, **kept, "_solver": None, "_told": told}
 
     @property
-    def _all(self) -> FloatArray:
-        if len(self._values) == 3 and self._solver is not None:
-            self._values = self._solver.all(self._launches)[0]
-        return self._values
+    def method(self) -> str:
+        """'look-up', 'integrated', or both where heights differ."""
+        return self._told["method"] if self._solver is None else self._solver.method
+
+    @property
+    def selections(self) -> tuple[Selection, ...]:
+        """What was selected for the tolerance; empty with a stop table of one's own."""
+        return self._told["selections"] if self._solver is None else self._solver.selections
+
+    @property
+    def _own_launches(self) -> Launches:
+        """The launches, copied; refused where their arrays have been changed."""
+        self._launches.refuse_changed(self._mark)
+        return launches_in(self._launches.matrix, self._launches.shape)
+
+    @property
+    def _others(self) -> FloatArray:
+        """Path length, turn of heading and of the body (3, n)."""
+        if self._rest is None:
+            assert self._solver is not None
+            self._launches.refuse_changed(self._mark)
+            self._rest = self._solver.rest(self._launches, self._threads)
+            if self.status.any():
+                self._rest[:, self.status.ravel() != 0] = np.nan
+        return self._rest
 
     def _row(self, index: int) -> FloatArray:
-        values = self._values if index < 3 else self._all
-        row: FloatArray = values[index].reshape(self._shape)
+        row: FloatArray = self._others[index].reshape(self.status.shape)
         return row
 
     def __getattr__(self, name: str) -> FloatArray:
         """A column that follows from others, such as ``stop_distance`` (…) m."""
         if name in ("stop_x", "stop_y"):
-            return self._row(OUTPUTS.index(name))
+            return self.stop_position[..., ("stop_x", "stop_y").index(name)]
         column: FloatArray = following(self, name)
         return column
 
     @property
     def path_length(self) -> FloatArray:
         """Metres."""
-        return self._row(3)
+        return self._row(0)
 
     @property
     def turn_angle(self) -> FloatArray:
         """Radians; integrated, good to a hundred times the tolerance only."""
-        return self._row(4)
+        return self._row(1)
 
     @property
     def body_angle(self) -> FloatArray:
         """Radians."""
-        return self._row(5)
+        return self._row(2)
 
     def _again(self, arguments: FloatArray) -> FloatArray:
         known = (self._table or StopTable.shipped()).known(arguments)
@@ -109,14 +131,16 @@ class Stops(Differentiated, Result):
 
     def explain(self) -> str:
         """Which method was taken, and why."""
-        return self._explanation
+        return str(self._told["explanation"]) if self._solver is None else self._solver.explanation
 
     def dataset(self) -> Dataset:
         """Launches and their stops, over as many axes as the launches have."""
-        dims = tuple(f"axis_{n}" for n in range(len(self._shape))) or ("launch",)
-        shape = self._shape or (1,)
-        launches = dict(zip(_LAUNCHES, self._launches, strict=False))
-        columns = {**launches, **dict(zip(OUTPUTS, self._all, strict=True))}
+        shape = self.status.shape
+        dims = tuple(f"axis_{n}" for n in range(len(shape))) or ("launch",)
+        shape = shape or (1,)
+        launches = dict(zip(_LAUNCHES, self._own_launches.matrix, strict=False))
+        stops = (self.stop_time, self.stop_x, self.stop_y, *self._others)
+        columns = {**launches, **dict(zip(OUTPUTS, stops, strict=True))}
         columns |= derived(columns)
         variables = {n: variable(n, row.reshape(shape), dims) for n, row in columns.items()}
         status = self.status.reshape(shape)
@@ -137,6 +161,7 @@ def stop(
     pressure: str | Law = "uniform",
     gyration: float = HOMOGENEOUS,
     jacobian: bool = False,
+    threads: int | None = None,
 ) -> Stops:
     """Where and when pucks stop; everything broadcasts.
 
@@ -163,6 +188,9 @@ def stop(
     jacobian : bool
         Whether derivatives are wanted too: of stop_time, stop_x, stop_y, path_length and body_angle
         by vx, vy, spin, delta, decel and radius, in this order.
+    threads : int, optional
+        How many share the work: as many as the process may use cores, if left out.  The numbers do
+        not depend on it, to the last bit.
 
     Returns
     -------
@@ -197,53 +225,16 @@ def stop(
     >>> float(stop((1.0, 0.0), 5.0, jacobian=True).derivative("stop_y", "delta").round(6))
     -0.310273
     """
+    checked_threads(threads)
     solver = SolverPerHeight(pressure, gyration, tol, method, table)
-    velocities = velocity_array(velocity)
-    columns = broadcast(
-        vx=velocities[..., 0],
-        vy=velocities[..., 1],
-        spin=finite_array("spin", spin, "rad/s"),
-        delta=solver.checked_range(delta),
-        decel=positive_array("decel", decel, "m/s^2"),
-        radius=positive_array("radius", radius, "m"),
-    )
-    shape = columns[0].shape
-    launches = as_rows(columns)
+    launches = launches_of(velocity, spin, delta, decel, radius)
     if jacobian:
-        refuse_rest(launches, shape)
-    solver.prepare(launches[3])
-    slopes = None
-    if jacobian:
-        by = table if isinstance(table, StopTable) else StopTable.shipped()
-        slopes = stop_jacobians(launches, *solver.kinds(launches[3]), by)
-    return Stops(solver, launches, shape, slopes, table if isinstance(table, StopTable) else None)
-
-
-def as_rows(columns: list[FloatArray]) -> FloatArray:
-    """Arrays of one shape as the rows of a matrix.
-
-    Examples
-    --------
-    >>> as_rows([np.array([[1.0, 2.0]]), np.array([[3.0, 4.0]])]).tolist()
-    [[1.0, 2.0], [3.0, 4.0]]
-    """
-    rows = np.empty((len(columns), *columns[0].shape))
-    for n, column in enumerate(columns):
-        rows[n] = column
-    return rows.reshape(len(columns), -1)
-
-
-def positive_array(name: str, values: npt.ArrayLike, unit: str) -> FloatArray:
-    """An array of finite numbers greater than zero.
-
-    Examples
-    --------
-    >>> positive_array("radius", 0.5, "m")
-    array(0.5)
-    """
-    array = finite_array(name, values, unit)
-    if not np.all(array > 0.0):
-        raise InputError(
-            f"{name} must be greater than 0 {unit}, got {array[array <= 0.0].flat[0]:g}"
-        )
-    return array
+        launches.refuse_bad()
+        refuse_rest(launches.matrix, launches.shape)
+    solver.prepare_for(launches, threads)
+    if not jacobian:
+        return Stops(solver, launches, threads, None, None)
+    own = table if isinstance(table, StopTable) else None
+    by = own or StopTable.shipped()
+    slopes = stop_jacobians(launches.matrix, *solver.kinds(launches.matrix[3]), by)
+    return Stops(solver, launches, threads, slopes, own)

@@ -15,6 +15,7 @@ from puck_tables.accuracy.front import Measured
 from puck_tables.io.dataset import Dataset, variable
 from puck_tables.motion.limits import limit_ratio
 from puck_tables.result import Result
+from puck_tables.stopping.launches import launches_in
 from puck_tables.stopping.lookup import stops_kernel
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.table.resultant_table import ResultantTable
@@ -195,7 +196,7 @@ def _growth(largest: int) -> tuple[FloatArray, FloatArray, FloatArray]:
     counts = np.array([10.0**power for power in range(3, largest + 1)])
     nanoseconds, peaks = np.empty(counts.size), np.empty(counts.size)
     fill, coefficients = stops_kernel(_POWERS), StopTable.shipped().cut(_POWERS, _THINNING)
-    fill(np.ones((6, 1)), coefficients, np.empty((3, 1)))  # compiled before the clock starts
+    _fill(fill, np.ones((6, 1)), coefficients, np.empty((3, 1)))  # compiled before the clock starts
     for n, count in enumerate(counts):
         tracemalloc.start()
         rounds = [_sweep(fill, coefficients, int(count)) for _ in range(_growth_rounds(count))]
@@ -209,8 +210,15 @@ def _growth_rounds(count: float) -> int:
     return int(np.clip(1e7 / count, 1, 50))
 
 
+def _fill(
+    fill: Callable[..., object], launches: FloatArray, coefficients: FloatArray, out: FloatArray
+) -> None:
+    """Stops of launches (6, n) into ``out`` (3, n)."""
+    fill(*launches_in(launches).part(0, launches.shape[1]), coefficients, *out, 1)
+
+
 def _sweep(
-    fill: Callable[[FloatArray, FloatArray, FloatArray], int], coefficients: FloatArray, count: int
+    fill: Callable[..., object], coefficients: FloatArray, count: int
 ) -> float:
     """Seconds for so many stops, a chunk at a time, of which only the longest is kept."""
     start = time.perf_counter()
@@ -219,6 +227,6 @@ def _sweep(
     launches[2], longest = np.linspace(0.0, 4.0, size), 0.0
     for first in range(0, count, size):
         launches[3] = first / count
-        fill(launches, coefficients, out)
+        _fill(fill, launches, coefficients, out)
         longest = max(longest, float(out[0].max()))
     return time.perf_counter() - start

@@ -44,7 +44,7 @@ class Task:
             np.full(_PUCKS, DELTA), np.ones(_PUCKS), np.ones(_PUCKS),
         ])  # fmt: skip
         self.shares = np.sort(rng.random((_PUCKS, _MOMENTS)), axis=1)
-        self.times = stops.stops(self.launches)[0][0][:, None] * self.shares
+        self.times = stops.known(self.launches)[0][:, None] * self.shares
         self.truth = self.integrated(_FINEST, exact=True)()
 
     def integrated(self, local: float, exact: bool) -> Run:

@@ -17,7 +17,8 @@ from puck_tables.motion.limits import log_ratio
 from puck_tables.motion.path import integrate
 from puck_tables.motion.state import SIZE
 from puck_tables.motion.steppers import RK4, TABLEAUS, Stepping
-from puck_tables.stopping.lookup import row_width, stops_kernel
+from puck_tables.stopping.launches import launches_in
+from puck_tables.stopping.lookup import WIDTH, stops_kernel
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.tradeoff.contender import Contender, Ready
@@ -98,12 +99,16 @@ def _fresh_cut(stops: StopTable, powers: int, thinning: int, dtype: type) -> Flo
 def _looked_up(task: Task, powers: int, coefficients: object) -> Ready:
     assert isinstance(coefficients, np.ndarray)
     fill = stops_kernel(powers)
+
+    def run(launches: FloatArray, out: FloatArray) -> None:
+        fill(*launches_in(launches).part(0, launches.shape[1]), coefficients, *out, 1)
+
     judged = np.empty((3, task.judged.shape[1]))
-    fill(task.judged, coefficients, judged)
+    run(task.judged, judged)
     out = np.empty((3, SCATTERED))
-    columns = row_width(powers)
+    columns = WIDTH * powers
     return Ready(
-        lambda: fill(task.scattered, coefficients, out), SCATTERED, *task.truth.errors(judged),
+        lambda: run(task.scattered, out), SCATTERED, *task.truth.errors(judged),
         bytes=coefficients.nbytes, work=_LAUNCH_WORK + 8.0 * columns + 2.0 * columns,
         traffic=_LAUNCH_TRAFFIC + 4.0 * columns * coefficients.itemsize,
     )  # fmt: skip

@@ -11,6 +11,7 @@ import pytest
 from puck_tables import Table
 from puck_tables.accuracy.front import shipped_front
 from puck_tables.stopping.exact import exact_stops
+from puck_tables.stopping.launches import launches_in
 from puck_tables.stopping.lookup import stops_kernel
 
 FloatArray = npt.NDArray[np.float64]
@@ -36,13 +37,14 @@ def launches(count: int, rng: np.random.Generator) -> FloatArray:
 def test_look_up(measure: Any, rng: np.random.Generator, powers: int, thinning: int) -> None:
     columns, out = launches(LAUNCHES, rng), np.empty((3, LAUNCHES))
     fill, coefficients = stops_kernel(powers), Table.shipped("stops").cut(powers, thinning)
-    fill(columns, coefficients, out)
+    given = launches_in(columns).part(0, LAUNCHES)
+    fill(*given, coefficients, *out, 1)
     some = columns[:, :500]
     speed = np.hypot(some[0], some[1])
     truth = exact_stops(np.log(np.abs(some[2]) / speed), some[3])
     error = np.abs(out[0, :500] / np.hypot(speed, some[2]) - truth[:, 0]).max()
     measure(
-        f"{powers} powers, every {thinning}. node", lambda: fill(columns, coefficients, out),
+        f"{powers} powers, every {thinning}. node", lambda: fill(*given, coefficients, *out, 1),
         items=LAUNCHES, unit="point", error=float(error),
     )  # fmt: skip
 
@@ -54,8 +56,10 @@ def test_growth(measure: Any, rng: np.random.Generator, count: int) -> None:
     columns, out = launches(chunk, rng), np.empty((3, chunk))
     fill, coefficients = stops_kernel(6), Table.shipped("stops").cut(6, 2)
 
+    given = launches_in(columns).part(0, chunk)
+
     def sweep() -> None:
         for _ in range(count // chunk):
-            fill(columns, coefficients, out)
+            fill(*given, coefficients, *out, 1)
 
     measure(f"{count:.0e} stops", sweep, items=count, unit="point")

@@ -15,6 +15,7 @@ from puck_tables import Table
 from puck_tables.contact.laws import HOMOGENEOUS
 from puck_tables.motion.state import STATE_ROWS
 from puck_tables.stopping.curve_lookup import fill_states
+from puck_tables.stopping.launches import launches_in
 from puck_tables.stopping.lookup import STOP_POWERS, stops_kernel
 from puck_tables.stopping.per_height import SolverPerHeight
 from puck_tables.stopping.solvers import LookUp
@@ -62,10 +63,11 @@ def largest_error(stops: FloatArray, launches: FloatArray, truth: FloatArray) ->
 def test_look_up(measure: Any, launches: FloatArray, truth: FloatArray) -> None:
     table, fill = Table.shipped("stops").cut(), stops_kernel(STOP_POWERS)
     out = np.empty((3, MANY))
-    fill(launches, table, out)
+    given = launches_in(launches).part(0, MANY)
+    fill(*given, table, *out, 1)
     measure(
         "look-up, kernel: time, x, y",
-        lambda: fill(launches, table, out),
+        lambda: fill(*given, table, *out, 1),
         items=MANY,
         unit="point",
         error=largest_error(out, launches, truth),
@@ -75,12 +77,12 @@ def test_look_up(measure: Any, launches: FloatArray, truth: FloatArray) -> None:
 @STOPS
 def test_look_up_two_threads(measure: Any, launches: FloatArray, truth: FloatArray) -> None:
     table, fill = Table.shipped("stops").cut(), stops_kernel(STOP_POWERS)
-    halves = [np.ascontiguousarray(part) for part in np.split(launches, 2, axis=1)]
+    halves = [launches_in(part).part(0, MANY // 2) for part in np.split(launches, 2, axis=1)]
     outs = [np.empty((3, MANY // 2)) for _ in halves]
     with ThreadPoolExecutor(2) as pool:
 
         def both() -> None:
-            list(pool.map(lambda half, out: fill(half, table, out), halves, outs))
+            list(pool.map(lambda half, out: fill(*half, table, *out, 1), halves, outs))
 
         both()
         error = largest_error(outs[0], launches, truth)

@@ -193,11 +193,11 @@ def test_stop_kernel(measure: Any, launches: FloatArray, way: str) -> None:
     solver = SolverPerHeight("uniform", HOMOGENEOUS, ACCURACY, way, None)
     columns = np.ascontiguousarray(launches.T)
     solver.prepare(columns[3])
-    out, status = solver.first(columns)
+    out, status = solver.all(columns)
     assert not status.any()
     measure(
         f"{solver.selections[0].scheme.name}, 1000 launches",
-        lambda: solver.first(columns),
+        lambda: solver.all(columns),
         items=LAUNCHES,
         unit="trajectory",
         error=largest_error(out[:3].T, launches),
@@ -246,10 +246,10 @@ def test_stop_closed_forms(measure: Any, launches: FloatArray) -> None:
     columns = np.ascontiguousarray(launches.T)
     measure(
         "closed forms in the same loop, 1000 launches",
-        lambda: exact.first(columns),
+        lambda: exact.all(columns),
         items=LAUNCHES,
         unit="trajectory",
-        error=largest_error(exact.first(columns)[0][:3].T, launches),
+        error=largest_error(exact.all(columns)[0][:3].T, launches),
     )
 
 

@@ -1,0 +1,87 @@
+"""Logarithm, exponential, sine and cosine that loops can do for several numbers at once.
+
+Those of the machine's library are called for one number at a time, which costs more than all the
+rest of a look-up.  These are sums and products alone, with errors of some 1e-16 of the value (of 1
+for sine and cosine); what they take is said with each.
+"""
+
+from __future__ import annotations
+
+
+from puck_tables.kernels.compile import bits_of, inlined, number_of
+
+_SHIFT = 6755399441055744.0  # 1.5 × 2⁵²: a number added to it is rounded to an integer
+_SHIFT_BITS = 0x4338000000000000
+_HALF_ROOT = 0x3FE6A09E667F3BCD  # bits of √½
+_ONE = 0x3FF0000000000000
+_LN2_HIGH, _LN2_LOW = 6.93147180369123816490e-01, 1.90821492927058770002e-10
+_LEAST = -708.0
+
+
+@inlined
+def log_of(x: float) -> float:
+    """Ln of a normal number, x ≥ 2.3e-308."""
+    bits = bits_of(x)
+    power = (bits - _HALF_ROOT) >> 52
+    m = number_of(bits - (power << 52)) - 1.0  # √½ − 1 … √2 − 1
+    e = number_of(power + _SHIFT_BITS) - _SHIFT
+    s = m / (2.0 + m)
+    z = s * s
+    w = z * z
+    odd = w * (0.3999999999940941908 + w * (0.2222219843214978396 + w * 0.1531383769920937332))
+    even = 0.6666666666666735130 + w * (
+        0.2857142874366239149 + w * (0.1818357216161805012 + w * 0.1479819860511658591)
+    )
+    half = 0.5 * m * m
+    return e * _LN2_HIGH - ((half - (s * (half + odd + z * even) + e * _LN2_LOW)) - m)
+
+
+@inlined
+def exp_of(x: float) -> float:
+    """Exp of x ≤ 709; below −708 that of −708."""
+    y = x if x > _LEAST else _LEAST
+    shifted = y * 1.4426950408889634074 + _SHIFT
+    k = shifted - _SHIFT
+    r = (y - k * _LN2_HIGH) - k * _LN2_LOW
+    p = 1.0 / 6227020800.0
+    p = p * r + 1.0 / 479001600.0
+    p = p * r + 1.0 / 39916800.0
+    p = p * r + 1.0 / 3628800.0
+    p = p * r + 1.0 / 362880.0
+    p = p * r + 1.0 / 40320.0
+    p = p * r + 1.0 / 5040.0
+    p = p * r + 1.0 / 720.0
+    p = p * r + 1.0 / 120.0
+    p = p * r + 1.0 / 24.0
+    p = p * r + 1.0 / 6.0
+    p = p * r + 0.5
+    p = (p * r * r + r) + 1.0
+    return p * number_of(((bits_of(shifted) - _SHIFT_BITS) << 52) + _ONE)
+
+
+@inlined
+def cosine_sine_of(x: float) -> tuple[float, float]:
+    """Cos and sin of |x| ≤ 1e5."""
+    shifted = x * 0.63661977236758134308 + _SHIFT
+    k = shifted - _SHIFT
+    r = ((x - k * 1.57079632673412561417) - k * 6.07710050630396597660e-11) - k * (
+        2.02226624879595063154e-21
+    )
+    z = r * r
+    s = 1.58969099521155010221e-10
+    s = s * z - 2.50507602534068634195e-08
+    s = s * z + 2.75573137070700676789e-06
+    s = s * z - 1.98412698298579493134e-04
+    s = s * z + 8.33333333332248946124e-03
+    s = s * z - 1.66666666666666324348e-01
+    sine = r + r * z * s
+    c = -1.13596475577881948265e-11
+    c = c * z + 2.08757232129817482790e-09
+    c = c * z - 2.75573143513906633035e-07
+    c = c * z + 2.48015872894767294178e-05
+    c = c * z - 1.38888888888741095749e-03
+    c = c * z + 4.16666666666666019037e-02
+    cosine = 1.0 - (0.5 * z - z * z * c)
+    quarter = bits_of(shifted) & 3
+    one, other = (sine, cosine) if quarter & 1 else (cosine, sine)
+    return (-one if (quarter + 1) & 2 else one), (-other if quarter & 2 else other)

@@ -1,0 +1,312 @@
+"""Launches as a caller gave them: looked at, not copied, and read block by block."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable
+from contextlib import suppress
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables._core.executor import run_chunks, usable_cores
+from puck_tables._core.real import broadcast, finite_array, real_view, velocity_array
+from puck_tables.contact.resultants import checked_delta
+from puck_tables.errors import InputError
+from puck_tables.kernels.compile import allocating, inlined
+
+COLUMNS = 6  # vx, vy, ω, δ, J, r
+BLOCK = 128  # launches that compiled code takes at a time
+CHUNK = 1 << 15  # launches that a thread takes at a time
+COPIED = 1 << 14  # launches up to which a copy costs nothing that counts
+_UNITS = {"spin": "rad/s", "delta": "units of 2 f h / r", "decel": "m/s^2", "radius": "m"}
+
+Columns = tuple[FloatArray, FloatArray, int, FloatArray, FloatArray, FloatArray, FloatArray]
+
+
+@dataclass(eq=False)
+class Launches:
+    """Launches of one shape.
+
+    Parameters
+    ----------
+    shape : that of all of them
+    vx, vy : flat arrays, of which every ``step``-th number is a component, m/s; ``step`` 0: the
+        first, for all launches
+    spin, delta, decel, radius : arrays (n,), or (1,): the same for all launches
+    is_held : whether some of them is an array of the caller, who may change it
+    """
+
+    shape: tuple[int, ...]
+    vx: FloatArray
+    vy: FloatArray
+    step: int
+    spin: FloatArray
+    delta: FloatArray
+    decel: FloatArray
+    radius: FloatArray
+    is_held: bool = False
+
+    @property
+    def size(self) -> int:
+        """How many."""
+        return math.prod(self.shape)
+
+    def part(self, start: int, stop: int) -> Columns:
+        """Some of them, as compiled code takes them."""
+        vx, vy, step = self.vx, self.vy, self.step
+        if start == 0 and stop == self.size:
+            return vx, vy, step, self.spin, self.delta, self.decel, self.radius
+        if step:
+            vx, vy = vx[step * start : step * stop], vy[step * start : step * stop]
+        spin, delta, decel, radius = (
+            one if one.size == 1 else one[start:stop]
+            for one in (self.spin, self.delta, self.decel, self.radius)
+        )
+        return vx, vy, step, spin, delta, decel, radius
+
+    @cached_property
+    def matrix(self) -> FloatArray:
+        """A copy, (6, n): vx, vy, ω, δ, J, r."""
+        n = self.size
+        rows = np.empty((6, n))
+        step = self.step or n + 1
+        rows[0], rows[1] = self.vx[::step][:n], self.vy[::step][:n]
+        rows[2], rows[3], rows[4], rows[5] = self.spin, self.delta, self.decel, self.radius
+        return rows
+
+    def mark(self) -> int:
+        """A number that changes with their bits."""
+        parts = range(0, self.size, CHUNK)
+        ends = [(start, min(start + CHUNK, self.size)) for start in parts]
+        return joined_mark((a, mark_of(*self.part(a, b), b - a)) for a, b in ends)
+
+    def refuse_changed(self, mark: int) -> None:
+        """Refuse launches that are no longer those of a mark: their arrays are the caller's.
+
+        Raises
+        ------
+        InputError
+        """
+        if self.is_held and self.mark() != mark:
+            raise InputError(
+                "the arrays of launches have been changed since their stops were looked up: call "
+                "stop again, or give it copies of them"
+            )
+
+    def refuse_bad(self) -> None:
+        """Refuse numbers that are not finite, heights below 0, J and r that are not above.
+
+        Raises
+        ------
+        InputError
+        """
+        step = self.step or 1
+        finite_array("velocity", self.vx[::step], "m/s")
+        finite_array("velocity", self.vy[::step], "m/s")
+        finite_array("spin", self.spin, "rad/s")
+        checked_delta(self.delta)
+        for name, values in (("decel", self.decel), ("radius", self.radius)):
+            positive_array(name, values, _UNITS[name])
+
+
+def launches_of(
+    velocity: npt.ArrayLike, spin: npt.ArrayLike, delta: npt.ArrayLike, decel: npt.ArrayLike,
+    radius: npt.ArrayLike,
+) -> Launches:  # fmt: skip
+    """Launches from what a caller passes, broadcast; whether the numbers are good is not asked.
+
+    Raises
+    ------
+    InputError
+        If they are not real numbers, or their shapes do not fit.
+
+    Examples
+    --------
+    >>> launches_of([[1.0, 0.0], [2.0, 0.0]], 5.0, 0.5, 1.0, 1.0).matrix[:3].tolist()
+    [[1.0, 2.0], [0.0, 0.0], [5.0, 5.0]]
+    """
+    given = (spin, delta, decel, radius)
+    if type(velocity) in (tuple, list) and len(velocity) == 2:
+        numbers = (*velocity, *given)
+        if all(type(one) in (float, int) for one in numbers):  # one launch, as cheap as can be
+            with suppress(OverflowError):
+                row = np.array(numbers, np.float64).reshape(COLUMNS, 1)
+                return Launches((), row[0], row[1], 0, row[2], row[3], row[4], row[5])
+    pairs = real_view("velocity", velocity, "m/s")
+    if pairs.ndim == 0 or pairs.shape[-1] != 2:
+        velocity_array(velocity)
+    arrays = [
+        real_view(name, values, unit)
+        for (name, unit), values in zip(_UNITS.items(), given, strict=True)
+    ]
+    try:
+        shape = np.broadcast(pairs[..., 0], *arrays).shape
+    except ValueError:
+        broadcast(velocity=pairs[..., 0], **dict(zip(_UNITS, arrays, strict=True)))
+        raise
+    vx, vy, step, is_held = _components(pairs, shape, pairs is not velocity)
+    columns = []
+    for array, values in zip(arrays, given, strict=True):
+        column, held = flat_column(array, shape, array is not values)
+        columns.append(column)
+        is_held |= held
+    return Launches(shape, vx, vy, step, *columns, is_held=is_held)
+
+
+def launches_in(rows: FloatArray, shape: tuple[int, ...] | None = None) -> Launches:
+    """Checked launches (6, n): vx, vy, ω, δ, J, r, of another shape if it is given.
+
+    Examples
+    --------
+    >>> launches_in(np.ones((6, 3))).shape
+    (3,)
+    """
+    vx, vy, *columns = (np.ascontiguousarray(row) for row in rows)
+    return Launches((vx.size,) if shape is None else shape, vx, vy, 1, *columns)
+
+
+def flat_column(
+    array: FloatArray, shape: tuple[int, ...], is_own: bool
+) -> tuple[FloatArray, bool]:
+    """An array that broadcasts to a shape as (n,) or (1,), and whether it is the caller's.
+
+    Read-only ones are copied: compiled code would be compiled once more for them.
+
+    Examples
+    --------
+    >>> flat_column(np.array(2.0), (3,), True)
+    (array([2.]), False)
+    """
+    if array.size != 1 and array.shape != shape:
+        return np.broadcast_to(array, shape).reshape(-1), False
+    if is_own or not array.flags.c_contiguous:
+        return array.reshape(-1), False
+    if array.size <= COPIED or not array.flags.writeable:
+        return array.reshape(-1).copy(), False
+    return array.reshape(-1), True
+
+
+def _components(
+    pairs: FloatArray, shape: tuple[int, ...], is_own: bool
+) -> tuple[FloatArray, FloatArray, int, bool]:
+    """Flat vx, vy, the step between their numbers, and whether they are the caller's."""
+    if pairs.size == 2:
+        both = pairs.reshape(2).copy()
+        return both[:1], both[1:], 0, False
+    if pairs.shape[:-1] != shape:
+        pairs, is_own = np.broadcast_to(pairs, (*shape, 2)).copy(), True
+    held = not is_own and pairs.size > 2 * COPIED and pairs.flags.writeable
+    vx, vy = pairs[..., 0], pairs[..., 1]
+    if held and vx.flags.c_contiguous and vy.flags.c_contiguous:  # components apart
+        return vx.reshape(-1), vy.reshape(-1), 1, True
+    if not pairs.flags.c_contiguous or not (is_own or held):
+        pairs, held = pairs.copy("C"), False
+    both = pairs.reshape(-1)
+    return both, both[1:], 2, held
+
+
+def in_chunks(work: Callable[[int, int], None], size: int, threads: int | None) -> None:
+    """Call ``work(start, stop)`` for chunks of launches; on this thread where one does it all."""
+    if (usable_cores() if threads is None else threads) > 1 or size <= CHUNK:
+        run_chunks(work, size, CHUNK, threads)
+        return
+    for start in range(0, size, CHUNK):
+        work(start, min(start + CHUNK, size))
+
+
+def joined_mark(parts: Iterable[tuple[int, int]]) -> int:
+    """One mark from the starts of chunks and theirs.
+
+    Examples
+    --------
+    >>> joined_mark([(0, 5), (CHUNK, 7)])
+    26
+    """
+    return sum(mark * (2 * (start // CHUNK) + 1) for start, mark in parts) % (1 << 64)
+
+
+@inlined
+def _bits_of(values: FloatArray) -> int:
+    """A sum that changes with the bits of numbers, or with their order."""
+    bits, mark = values.view(np.int64), 0
+    for n in range(bits.size):
+        mark += bits[n] * (2 * n + 1)
+    return mark
+
+
+@inlined
+def _fetch(column: FloatArray, start: int, count: int, block: FloatArray) -> int:
+    """A block of a column (n,); of (1,) nothing: :func:`fill_constants` was there before."""
+    if column.size == 1:
+        return 0
+    values = column[start : start + count]
+    for n in range(count):
+        block[n] = values[n]
+    return _bits_of(values)
+
+
+@inlined
+def fill_constants(
+    vx: FloatArray, vy: FloatArray, spin: FloatArray, delta: FloatArray, decel: FloatArray,
+    radius: FloatArray, room: FloatArray,
+) -> None:  # fmt: skip
+    """The first numbers of all columns into all places of ``room`` (6, BLOCK)."""
+    if delta.size > 0 and spin.size > 0 and vx.size > 0 and decel.size > 0 and radius.size > 0:
+        for n in range(BLOCK):
+            room[0, n], room[1, n], room[2, n] = vx[0], vy[0], spin[0]
+            room[3, n], room[4, n], room[5, n] = delta[0], decel[0], radius[0]
+
+
+@inlined
+def fetch_block(
+    vx: FloatArray, vy: FloatArray, step: int, spin: FloatArray, delta: FloatArray,
+    decel: FloatArray, radius: FloatArray, start: int, count: int, room: FloatArray,
+) -> int:  # fmt: skip
+    """Launches from ``start`` on into ``room`` (6, BLOCK): vx, vy, ω, δ, J, r.
+
+    Returns a number that changes with the bits of the launches, or with their order.
+    """
+    mark = 0
+    if step == 2:
+        pairs, east, north = vx[2 * start : 2 * (start + count)], room[0], room[1]
+        for n in range(count):
+            east[n], north[n] = pairs[2 * n], pairs[2 * n + 1]
+        mark += _bits_of(pairs)
+    elif step == 1:
+        mark += _fetch(vx, start, count, room[0]) + 3 * _fetch(vy, start, count, room[1])
+    mark += 5 * _fetch(spin, start, count, room[2]) + 7 * _fetch(delta, start, count, room[3])
+    mark += 11 * _fetch(decel, start, count, room[4]) + 13 * _fetch(radius, start, count, room[5])
+    return mark * (2 * start + 1)
+
+
+@allocating
+def mark_of(
+    vx: FloatArray, vy: FloatArray, step: int, spin: FloatArray, delta: FloatArray,
+    decel: FloatArray, radius: FloatArray, size: int,
+) -> int:  # fmt: skip
+    """The sum of the marks of all blocks of ``size`` launches."""
+    room, mark = np.empty((COLUMNS, BLOCK)), 0
+    for start in range(0, size, BLOCK):
+        count = min(BLOCK, size - start)
+        mark += fetch_block(vx, vy, step, spin, delta, decel, radius, start, count, room)
+    return mark
+
+
+def positive_array(name: str, values: npt.ArrayLike, unit: str) -> FloatArray:
+    """An array of finite numbers greater than zero.
+
+    Examples
+    --------
+    >>> positive_array("radius", 0.5, "m")
+    array(0.5)
+    """
+    array = finite_array(name, values, unit)
+    if not np.all(array > 0.0):
+        raise InputError(
+            f"{name} must be greater than 0 {unit}, got {array[array <= 0.0].flat[0]:g}"
+        )
+    return array
