@@ -26,6 +26,8 @@ from puck_tables.world.departures import (
 )
 from puck_tables.world.flight import (
     ANGLE,
+    DRIFT_X,
+    DRIFT_Y,
     FASTEST,
     FIRST_PIECE,
     LAST_PIECE,
@@ -289,6 +291,7 @@ def _set_out(game: Game, i: int, t: float, t_end: float, rows: FloatArray) -> Ga
     speeds = np.hypot(rows[:, [FIRST + VX, FIRST + 9 + VX]], rows[:, [FIRST + VY, FIRST + 9 + VY]])
     bends = np.hypot(rows[:, [FIRST + 6, FIRST + 15]], rows[:, [FIRST + 7, FIRST + 16]])
     flight[START], flight[UNTIL] = t, t_end
+    flight[DRIFT_X] = flight[DRIFT_Y] = 0.0
     flight[PLACE_X], flight[PLACE_Y], flight[ANGLE] = rows[0, FIRST : FIRST + 3]
     flight[STRONGEST] = _GRACE * bends.max()
     flight[FASTEST] = float((speeds.max(axis=1) + flight[STRONGEST] * rows[:, DURATION]).max())
