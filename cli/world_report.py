@@ -131,12 +131,14 @@ def _scene(run: WorldRun) -> str:
 
 def _energy(run: WorldRun) -> str:
     """What was given, and what the pucks still have or took along when they left play."""
-    given = run.kinetic_energy + run.work_driven + run.work_slope
+    given = run.kinetic_energy + run.work_driven + run.work_given + run.work_support
     words = f"{run.kinetic_energy:.6g} J given by launches"
     if run.work_driven != 0.0:
         words += f", {run.work_driven:.6g} J by driven bodies"
-    if run.work_slope != 0.0:
-        words += f", {run.work_slope:.6g} J by the slope"
+    if run.work_given != 0.0:
+        words += f", {run.work_given:.6g} J by slope and forces"
+    if run.work_support != 0.0:
+        words += f", {run.work_support:.6g} J by what moves under or leads the pucks"
     left = given - run.heat_floor - run.heat_rims - run.heat_impact
     if abs(left) > 1e-9 * abs(given):
         words += f"; {left:.6g} J left, or gone with who left play"
@@ -145,7 +147,8 @@ def _energy(run: WorldRun) -> str:
 
 def _heat(run: WorldRun) -> str:
     """What floor, rims and impacts took; what is no more than rounding is told as 0."""
-    unseen = _ROUNDING * (run.kinetic_energy + abs(run.work_driven) + abs(run.work_slope))
+    works = abs(run.work_driven) + abs(run.work_given) + abs(run.work_support)
+    unseen = _ROUNDING * (run.kinetic_energy + works)
     floor, rims, impacts = (
         heat if abs(heat) > unseen else 0.0
         for heat in (run.heat_floor, run.heat_rims, run.heat_impact)

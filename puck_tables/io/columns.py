@@ -105,7 +105,6 @@ COLUMNS = {
     "heat_floor": Column("J", "heat of the floor", "heat of friction on the floor, and of drag"),
     "heat_rims": Column("J", "heat of the rims", "heat of rims that push each other"),
     "work_driven": Column("J", "work of driven bodies", "work of bodies driven along paths"),
-    "work_slope": Column("J", "work of the slope", "work of gravity down the slope"),
     "end_error": Column("m", "error of the end", "what places at the end may be wrong by"),
     "per_degree": Column("m", "end per degree", "how far the end moves per degree of heading"),
     "per_percent": Column("m", "end per %", "how far the end moves per cent of launch speed"),

@@ -8,14 +8,13 @@ from typing import TYPE_CHECKING
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import InputError
 from puck_tables.scene.forces import drive_of
-from puck_tables.scene.parts import Constraint, Edge, Floor, Rows, Wall
+from puck_tables.scene.holds import allowed_velocity, misfits
+from puck_tables.scene.parts import Edge, Floor, Rows, Wall
 
 if TYPE_CHECKING:
     from puck_tables.scene.scene import Scene
 
-MATCH = 1e-9  # how well a launch must fit its constraint, of its speed
 _SMALLEST, _LARGEST = 1e-100, 1e100
-_NOT_OF = {"rail": ("reach", "side_slip"), "pivot": ("side_slip",), "blade": ("reach", "velocity")}
 
 
 def disagreements(scene: Scene) -> list[str]:
@@ -32,14 +31,7 @@ def disagreements(scene: Scene) -> list[str]:
         faults.append("floor.law and floor.strips: each takes the place of puck.friction, give one")
     if scene.floor.law and (scene.puck.pressure != "uniform"):
         faults.append("floor.law: known under uniform pressure only, not with puck.pressure")
-    if strips is not None:
-        if len(strips.friction) != len(strips.borders) + 1 or not strips.borders:
-            faults.append(
-                f"floor.strips.friction = {list(strips.friction)}: must be one number more than "
-                f"floor.strips.borders ({len(strips.borders)})"
-            )
-        if any(b <= a for a, b in zip(strips.borders, strips.borders[1:], strict=False)):
-            faults.append(f"floor.strips.borders = {list(strips.borders)}: must ascend")
+    faults += bad_strips(scene.floor)
     faults += _bad_rows(scene)
     if not scene.run.frames.is_integer():
         faults.append(f"run.frames = {scene.run.frames:g}: must be a whole number")
@@ -62,12 +54,28 @@ def disagreements(scene: Scene) -> list[str]:
         return faults
     if scene.walls:
         faults.append("constraint and wall: a scene has one of them, not both")
-    for name in _NOT_OF[hold.kind]:
-        if getattr(hold, name) not in (0.0, (0.0, 0.0)):
-            faults.append(f"constraint.{name}: a {hold.kind} has none, leave it out")
-    if hold.kind == "pivot" and not hold.reach > 0.0:
-        faults.append(f"constraint.reach = {hold.reach:g}: a pivot needs a number > 0 m")
-    return faults + _misfit(scene, hold)
+    return faults + misfits(scene.launch, hold, scene.floor, "")
+
+
+def bad_strips(floor: Floor) -> list[str]:
+    """What is wrong with the strips of a floor.
+
+    Examples
+    --------
+    >>> bad_strips(Floor())
+    []
+    """
+    strips, faults = floor.strips, []
+    if strips is None:
+        return faults
+    if len(strips.friction) != len(strips.borders) + 1 or not strips.borders:
+        faults.append(
+            f"floor.strips.friction = {list(strips.friction)}: must be one number more than "
+            f"floor.strips.borders ({len(strips.borders)})"
+        )
+    if any(b <= a for a, b in zip(strips.borders, strips.borders[1:], strict=False)):
+        faults.append(f"floor.strips.borders = {list(strips.borders)}: must ascend")
+    return faults
 
 
 def _bad_rows(scene: Scene) -> list[str]:
@@ -97,55 +105,9 @@ def law_of_rows(rows: Rows) -> SpeedLaw:
     return SpeedLaw(speeds, values)
 
 
-def _misfit(scene: Scene, hold: Constraint) -> list[str]:
-    """A launch that its constraint does not allow."""
-    wanted = launch_velocity(scene)
-    given = scene.launch.velocity
-    if given is None:
-        return []
-    scale = max(math.hypot(*given), math.hypot(*wanted), math.hypot(*hold.velocity))
-    if math.dist(given, wanted) <= MATCH * max(scale, abs(hold.side_slip)):
-        return []
-    return [
-        f"launch.velocity = {list(given)}: the {hold.kind} allows [{wanted[0]:.12g}, "
-        f"{wanted[1]:.12g}] at this spin (leave it out where it follows from the spin)"
-    ]
-
-
 def launch_velocity(scene: Scene) -> tuple[float, float]:
     """The velocity of the centre at the launch, as the constraint allows it."""
-    vx, vy = scene.launch.velocity or (0.0, 0.0)
-    hold = scene.constraint
-    if hold is None:
-        return vx, vy
-    if hold.kind == "pivot":
-        bearing = scene.launch.orientation + hold.angle
-        rim = scene.launch.spin * hold.reach
-        return (
-            hold.velocity[0] + rim * math.sin(bearing),
-            hold.velocity[1] - rim * math.cos(bearing),
-        )
-    direction, side_slip, support = hold.angle, hold.side_slip, hold.velocity
-    if hold.kind == "blade":  # it grips the floor
-        direction += scene.launch.orientation
-        support = floor_at(scene.floor, scene.launch.position)
-    nx, ny = -math.sin(direction), math.cos(direction)
-    off = nx * (vx - support[0]) + ny * (vy - support[1]) - side_slip
-    return vx - off * nx, vy - off * ny
-
-
-def floor_at(floor: Floor, place: tuple[float, float]) -> tuple[float, float]:
-    """Velocity of the floor at a place, m/s.
-
-    Examples
-    --------
-    >>> floor_at(Floor(velocity=(1.0, 0.0), turning=2.0), (0.0, 0.5))
-    (0.0, 0.0)
-    """
-    return (
-        floor.velocity[0] - floor.turning * (place[1] - floor.centre[1]),
-        floor.velocity[1] + floor.turning * (place[0] - floor.centre[0]),
-    )
+    return allowed_velocity(scene.launch, scene.constraint, scene.floor)
 
 
 def distance(line: Wall | Edge, place: tuple[float, float]) -> float:

@@ -132,13 +132,19 @@ def drag_force(forces: Forces, ux: float, uy: float, w: float) -> tuple[float, f
 @inlined
 def given_force(forces: Forces, piece: int, t: float) -> tuple[float, float, float]:
     """Given force and torque at a time, on the piece of the drive that ``piece`` rows precede."""
-    drive = forces.drive
+    fx, fy, torque = given_by(forces.drive, piece, t)
+    return forces.x + fx, forces.y + fy, forces.torque + torque
+
+
+@inlined
+def given_by(drive: FloatArray, piece: int, t: float) -> tuple[float, float, float]:
+    """Force and torque of rows over time alone, of which so many have passed."""
     if piece == 0 or piece == len(drive):
-        return forces.x, forces.y, forces.torque
+        return 0.0, 0.0, 0.0
     i, j = piece - 1, piece
     share = (t - drive[i, 0]) / (drive[j, 0] - drive[i, 0])
     return (
-        forces.x + (drive[i, 1] + share * (drive[j, 1] - drive[i, 1])),
-        forces.y + (drive[i, 2] + share * (drive[j, 2] - drive[i, 2])),
-        forces.torque + (drive[i, 3] + share * (drive[j, 3] - drive[i, 3])),
+        drive[i, 1] + share * (drive[j, 1] - drive[i, 1]),
+        drive[i, 2] + share * (drive[j, 2] - drive[i, 2]),
+        drive[i, 3] + share * (drive[j, 3] - drive[i, 3]),
     )

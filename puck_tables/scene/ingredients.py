@@ -7,11 +7,14 @@ the friction law they cost nothing that can be measured.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
 from puck_tables.scene.forces import Forces
+
+if TYPE_CHECKING:
+    from puck_tables.scene.parts import Constraint, Launch
 
 FREE, RAIL, PIVOT, BLADE = range(4)
 SLIDES, CARRIED, STOPS = range(3)
@@ -122,6 +125,30 @@ class Stretch(NamedTuple):
     mode: int
     way: tuple[float, float, float, float]
     newton: float
+
+
+def hold_of(hold: Constraint | None, launch: Launch) -> Hold:
+    """The constraint, fixed to where the puck is launched.
+
+    Examples
+    --------
+    >>> from puck_tables import Constraint, Launch
+    >>> hold_of(Constraint("pivot", reach=0.5), Launch()).ax
+    0.5
+    """
+    if hold is None:
+        return Hold(FREE, *[0.0] * 6)
+    if hold.kind == "rail":
+        nx, ny = -math.sin(hold.angle), math.cos(hold.angle)
+        return Hold(RAIL, nx, ny, 0.0, 0.0, *hold.velocity)
+    if hold.kind == "blade":
+        return Hold(BLADE, 0.0, 0.0, 0.0, hold.angle, hold.side_slip, 0.0)
+    bearing = launch.orientation + hold.angle
+    ex, ey = math.cos(bearing), math.sin(bearing)
+    x, y = launch.position
+    return Hold(
+        PIVOT, x + hold.reach * ex, y + hold.reach * ey, hold.reach, hold.angle, *hold.velocity
+    )
 
 
 @inlined

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 from puck_tables._core.fields import of
 from puck_tables.puck import Puck
-from puck_tables.scene.parts import Launch, Rows
+from puck_tables.scene.parts import Constraint, Force, Launch, Rows
 from puck_tables.scene.restitution import Restitution, restitution_of
 
 
@@ -36,6 +36,8 @@ class Piece(Puck):
     path : rows or CSV of t, x, y and perhaps the angle
         A body that is driven there, straight between the rows, such as a mallet: pucks bounce off
         it, and nothing stops it.  :func:`puck_tables.path_along` makes rows of a function.
+    force, constraint : Force and Constraint, optional
+        What acts on this puck alone, and what leads it.
 
     Examples
     --------
@@ -56,6 +58,8 @@ class Piece(Puck):
     path: str | Rows = of(
         "rows", "", file="", doc="CSV or rows of t, x, y and perhaps angle: it is driven there"
     )
+    force: Force = of("part", Force(), part=Force)
+    constraint: Constraint | None = of("part", None, part=Constraint)
 
 
 @dataclass(frozen=True)

@@ -21,18 +21,16 @@ from puck_tables.scene.equations import SIZE
 from puck_tables.scene.forces import forces_of, impulse_over_time, strongest
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
 from puck_tables.scene.ingredients import (
-    BLADE,
     CARRIED,
-    FREE,
     PIVOT,
     RAIL,
     Body,
     Dry,
-    Hold,
     Model,
     Regions,
     Stretch,
     Surface,
+    hold_of,
 )
 from puck_tables.scene.leaning import LEAN_COLUMNS
 from puck_tables.scene.loop import follow
@@ -144,7 +142,7 @@ def prepare(scene: Scene, last_time: float | None = None) -> Prepared:
         body=Body(puck.mass, inertia, puck.radius),
         surface=Surface(*floor.velocity, *floor.centre, floor.turning),
         forces=forces_of(scene),
-        hold=_hold(scene),
+        hold=hold_of(scene.constraint, scene.launch),
     )
     state = np.zeros(SIZE)
     state[[X, Y]], state[THETA] = scene.launch.position, scene.launch.orientation
@@ -159,23 +157,6 @@ def prepare(scene: Scene, last_time: float | None = None) -> Prepared:
     speed, rate, _ = _scales(scene, model, regions, state[None, :])
     bounds = _bounds(scene)
     return Prepared(model, regions, bounds, scene, state, ask, float(speed[0]), float(rate[0]))
-
-
-def _hold(scene: Scene) -> Hold:
-    """The constraint, fixed to where the puck is launched."""
-    hold = scene.constraint
-    if hold is None:
-        return Hold(FREE, *[0.0] * 6)
-    if hold.kind == "rail":
-        nx, ny = -math.sin(hold.angle), math.cos(hold.angle)
-        return Hold(RAIL, nx, ny, 0.0, 0.0, *hold.velocity)
-    if hold.kind == "blade":
-        return Hold(BLADE, 0.0, 0.0, 0.0, hold.angle, hold.side_slip, 0.0)
-    ex, ey = _direction(scene.launch.orientation + hold.angle)
-    x, y = scene.launch.position
-    return Hold(
-        PIVOT, x + hold.reach * ex, y + hold.reach * ey, hold.reach, hold.angle, *hold.velocity
-    )
 
 
 def _bounds(scene: Scene) -> Boundaries:

@@ -92,7 +92,7 @@ def free_yield(dry: Dry, radius: float, fx: float, fy: float, torque: float, gui
 
 
 @inlined
-def _constrained_yield(
+def constrained_yield(
     dry: Dry, hold: Hold, body: Body, theta: float, ax: float, ay: float, turning: float,
     fx: float, fy: float, torque: float, guided: bool,
 ) -> Yield:  # fmt: skip
@@ -216,7 +216,7 @@ def excess_at_rest(stretch: Stretch, t: float, y: FloatArray) -> Yield:
     dry = at_slip_zero(stretch.dry)
     guided = model.hold.kind != FREE
     if guided:
-        return _constrained_yield(
+        return constrained_yield(
             dry, model.hold, body, y[THETA], ax, ay, turning, fx, fy, torque, guided
         )
     leaning, pushes, slack = stretch.leaning, 0, SLACK * dry.load

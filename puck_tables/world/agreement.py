@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import replace
 from difflib import get_close_matches
 
 import numpy as np
 
 from puck_tables.errors import InputError
 from puck_tables.motion.body import is_plain
-from puck_tables.scene.agreement import distance
-from puck_tables.scene.entries import entries
-from puck_tables.scene.parts import Drag, Edge, Floor, Force, Launch, Wall
+from puck_tables.scene.agreement import bad_strips, distance
+from puck_tables.scene.forces import drive_of
+from puck_tables.scene.holds import misfits
+from puck_tables.scene.parts import Drag, Edge, Force, Launch, Wall
 from puck_tables.scene.pieces import Piece
 from puck_tables.scene.scene import Scene
 from puck_tables.world.drive import rows_of
@@ -38,7 +38,7 @@ def pieces_of(scene: Scene) -> tuple[Piece, ...]:
     return (
         Piece(
             puck.radius, puck.height, puck.friction, puck.mass, puck.gravity, puck.pressure,
-            puck.gyration, launch=scene.launch,
+            puck.gyration, launch=scene.launch, force=scene.force, constraint=scene.constraint,
         ),
     )  # fmt: skip
 
@@ -84,36 +84,63 @@ def refuse_endless(scene: Scene) -> None:
     ------
     InputError
     """
+    if scene.run.time is not None:
+        return
+    floor = scene.floor
+    if any(floor.velocity) or floor.turning != 0.0:
+        raise InputError("on a floor that moves nothing comes to rest: give run.time")
     for number, piece in enumerate(pieces_of(scene)):
-        if piece.friction == 0.0 and not piece.path and scene.run.time is None:
+        if 0.0 in frictions_under(scene, piece) and not piece.path:
             raise InputError(
                 f"nothing brings {called(piece, number)} to rest (its friction is 0): give "
                 "run.time, or friction"
             )
+        hold = piece.constraint
+        if hold is not None and (any(hold.velocity) or hold.side_slip != 0.0):
+            raise InputError(
+                f"the {hold.kind} of {called(piece, number)} moves, so it never comes to rest: "
+                "give run.time"
+            )
 
 
-def has_closed_forms(piece: Piece) -> bool:
-    """Whether closed forms hold for the friction of a puck, or it has none."""
-    return piece.friction == 0.0 or is_plain(piece.pressure, piece.gyration, piece.delta)
+def frictions_under(scene: Scene, piece: Piece) -> tuple[float, ...]:
+    """Coulomb's coefficient under a puck on each strip of the floor.
+
+    Examples
+    --------
+    >>> frictions_under(Scene(pucks=[Piece(0.1, friction=0.2)]), Piece(0.1, friction=0.2))
+    (0.2,)
+    """
+    strips = scene.floor.strips
+    return (piece.friction,) if strips is None else strips.friction
 
 
-def is_integrated(scene: Scene, piece: Piece) -> bool:
-    """Whether the motion of a puck is integrated also while nothing touches it.
+def has_closed_forms(piece: Piece, friction: float) -> bool:
+    """Whether closed forms hold for a friction of a puck, or it is 0."""
+    delta = 2.0 * friction * piece.height / piece.radius
+    return friction == 0.0 or is_plain(piece.pressure, piece.gyration, delta)
+
+
+def is_integrated(scene: Scene, piece: Piece, friction: float) -> bool:
+    """Whether the motion of a puck is integrated, on this friction, also while nothing touches it.
 
     Examples
     --------
     >>> from puck_tables import Floor
-    >>> is_integrated(Scene(pucks=[Piece(0.1)], floor=Floor(slope=0.1)), Piece(0.1))
+    >>> is_integrated(Scene(pucks=[Piece(0.1)], floor=Floor(slope=0.1)), Piece(0.1), 0.1)
     True
     """
-    rough = piece.friction > 0.0 and (scene.drag != Drag() or not has_closed_forms(piece))
-    return not piece.path and (rough or scene.floor.slope > 0.0)
+    drags, floor = scene.drag != Drag(), scene.floor
+    rough = friction > 0.0 and (drags or not has_closed_forms(piece, friction))
+    turns = floor.turning != 0.0 and (friction > 0.0 or drags)
+    more = floor.slope > 0.0 or piece.force != Force() or piece.constraint is not None
+    return not piece.path and (rough or turns or more)
 
 
 def disagreements(scene: Scene) -> list[str]:
     """What is wrong between fields that are each in range."""
     pieces = pieces_of(scene)
-    faults = [*_not_here(scene)]
+    faults = [*_not_here(scene), *bad_strips(scene.floor)]
     names = [piece.name for piece in pieces if piece.name]
     for name in sorted({name for name in names if names.count(name) > 1}):
         faults.append(f"puck.name = {name!r}: {names.count(name)} pucks have it, it must be of one")
@@ -134,20 +161,19 @@ def disagreements(scene: Scene) -> list[str]:
 
 def _not_here(scene: Scene) -> Iterator[str]:
     """What a scene of several pucks does not take."""
-    flat = replace(scene.floor, slope=0.0, downhill=0.0)
-    for name, part, default in (("floor", flat, Floor()), ("force", scene.force, Force())):
+    if scene.floor.law:
+        yield (
+            "floor.law: is of one puck alone, without posts, arcs, pockets and laws of rims; give "
+            "each of several pucks its friction, or the floor strips"
+        )
+    if not scene.pucks:
+        return
+    for name, part, default in (
+        ("launch", scene.launch, Launch()), ("force", scene.force, Force()),
+        ("constraint", scene.constraint, None),
+    ):  # fmt: skip
         if part != default:
-            known = {one.path: one.value for one in entries(default, f"{name}.")}
-            changed = (one for one in entries(part, f"{name}.") if known.get(one.path) != one.value)
-            path = next(one.path for one in changed)
-            yield (
-                f"{path}: several pucks, posts, arcs, pockets and rims of their own law are on a "
-                "floor at rest of one kind, level or sloping, without other forces"
-            )
-    if scene.constraint is not None:
-        yield "constraint: is of one puck alone, without posts, arcs, pockets and laws of rims"
-    if scene.pucks and scene.launch != Launch():
-        yield "launch: each of several pucks has its own, puck[0].launch"
+            yield f"{name}: each of several pucks has its own, puck[0].{name}"
 
 
 def _of_one(scene: Scene, piece: Piece, path: str) -> Iterator[str]:
@@ -159,15 +185,32 @@ def _of_one(scene: Scene, piece: Piece, path: str) -> Iterator[str]:
                 "scene, use other units"
             )
     if piece.path:
-        if piece.launch != Launch(position=piece.launch.position):
-            yield f"{path}.launch: what is driven along a path has no launch, leave it out"
+        for name, part, default in (
+            ("launch", piece.launch, Launch(position=piece.launch.position)),
+            ("force", piece.force, Force()), ("constraint", piece.constraint, None),
+        ):  # fmt: skip
+            if part != default:
+                yield f"{path}.{name}: what is driven along a path has none, leave it out"
         try:
             rows_of(piece.path)
         except InputError as error:
             yield f"{path}.path: {error}"
         return
-    if scene.floor.slope > 0.0 and piece.gravity != pieces_of(scene)[0].gravity:
-        yield f"{path}.gravity = {piece.gravity:g}: on a slope all pucks have the same"
+    rows = piece.force.over_time
+    if rows and not isinstance(rows, str):
+        try:
+            drive_of(rows)
+        except InputError as error:
+            yield f"{path}.{error}"
+    hold, alone = piece.constraint, f"{path}." if scene.pucks else ""
+    yield from misfits(piece.launch, hold, scene.floor, alone)
+    if hold is not None and scene.floor.turning != 0.0:
+        yield f"{alone}constraint: among several pucks, posts or arcs not on a floor that turns"
+    if hold is not None and any(hold.velocity) and piece.launch.time > 0.0:
+        yield (
+            f"{path}.launch.time = {piece.launch.time:g}: a {hold.kind} that moves leads it "
+            "at once, leave it out"
+        )
 
 
 def _strange_rims(scene: Scene) -> Iterator[str]:

@@ -18,9 +18,19 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.friction import SPIN, VX, VY, dry_friction, size
 from puck_tables.scene.ingredients import dry_in
-from puck_tables.world.flight import DAMPED, FIRST_PIECE, LAST_PIECE, LOOKED_UP, PATH, UNTIL
+from puck_tables.world.flight import (
+    CARRIED,
+    DAMPED,
+    DRIFT_X,
+    DRIFT_Y,
+    FIRST_PIECE,
+    LAST_PIECE,
+    LOOKED_UP,
+    PATH,
+    UNTIL,
+)
 from puck_tables.world.game import Game
-from puck_tables.world.layout import DAMPING, DECEL, LIGHTNESS, RADIUS, WAKE
+from puck_tables.world.layout import DAMPING, DECEL, LIGHTNESS, RADIUS, REGION, WAKE
 from puck_tables.world.paths import DURATION, START, jerk_on, on_piece, piece_at
 
 _JERK = 2.4  # J² v/Q² while Q is more than half of what it was: 4 times 0.5, and some more
@@ -35,7 +45,11 @@ def _knows(
 ) -> tuple[float, float, float, float]:
     """Acceleration of a disc now, the most by which it changes per second, and for how long."""
     kind, flight, disc = game.kinds[i], game.flights[i], game.discs[i]
-    vx, vy = state[VX], state[VY]
+    vx, vy = state[VX] - flight[DRIFT_X], state[VY] - flight[DRIFT_Y]
+    if kind == CARRIED:
+        turning = flight[2]
+        speed = turning * math.hypot(vx, vy)
+        return -turning * vy, turning * vx, abs(turning * speed), math.inf
     if kind == PATH:
         row = game.pieces[
             piece_at(game.pieces, int(flight[FIRST_PIECE]), int(flight[LAST_PIECE]), t)
@@ -50,7 +64,8 @@ def _knows(
     slip = size(vx, vy, disc[RADIUS] * state[SPIN])
     if kind != LOOKED_UP or slip == 0.0 or not t < flight[UNTIL]:
         return 0.0, 0.0, 0.0, math.inf
-    fx, fy, _, _ = dry_friction(dry_in(game.regions, i), disc[RADIUS], vx, vy, state[SPIN])
+    dry = dry_in(game.regions, int(disc[REGION]))
+    fx, fy, _, _ = dry_friction(dry, disc[RADIUS], vx, vy, state[SPIN])
     decel, light = disc[DECEL], disc[LIGHTNESS]
     jerk = _JERK * decel * decel * math.hypot(vx, vy) / slip / slip
     return light * fx, light * fy, jerk, _HALF * slip / decel

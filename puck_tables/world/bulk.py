@@ -13,7 +13,7 @@ from puck_tables.scene.friction import VX
 from puck_tables.world.course import COURSE_COLUMNS, LENGTH, trace
 from puck_tables.world.departures import Room, room_for
 from puck_tables.world.engine import EVERYBODY, FULL, NOBODY, PAUSED, REACHED, advance
-from puck_tables.world.flight import DAMPED, GONE, START, STILL, UNTIL, state_at
+from puck_tables.world.flight import GONE, START, moves_until, state_at
 from puck_tables.world.game import COUNTS, N_IMPACTS, N_PIECES, Game, Whole
 from puck_tables.world.layout import RADIUS
 from puck_tables.world.prepare import fastest, scales_of
@@ -39,8 +39,9 @@ class Ends(NamedTuple):
 
 @kernel
 def _follow_all(
-    game: Game, kinds: Whole, flights: FloatArray, first: FloatArray, discs: Whole,
-    launches: FloatArray, paces: FloatArray, until: float, watch: Whole, room: Room, ends: Ends,
+    game: Game, fresh: FloatArray, kinds: Whole, flights: FloatArray, first: FloatArray,
+    discs: Whole, launches: FloatArray, paces: FloatArray, until: float, watch: Whole, room: Room,
+    ends: Ends,
 ) -> None:  # fmt: skip
     """Runs from the states ``first`` (n, 6), with launches (runs, m, 3) of the ``discs`` (m,).
 
@@ -57,6 +58,8 @@ def _follow_all(
                 game.counts[column] = 0
         for i in range(count):
             game.kinds[i], game.group[i] = kinds[i], 0
+            for column in range(fresh.shape[1]):
+                game.discs[i, column] = fresh[i, column]
             for column in range(flights.shape[1]):
                 game.flights[i, column] = flights[i, column]
         for i in range(count):
@@ -83,12 +86,7 @@ def _follow_all(
         last = 0.0
         for i in range(count):
             kind, flight = game.kinds[i], game.flights[i]
-            if kind == DAMPED:
-                last = max(last, until)
-            elif kind in (STILL, GONE):
-                last = max(last, flight[START])
-            else:
-                last = max(last, flight[UNTIL])
+            last = max(last, flight[START], moves_until(kind, flight))
         ends.time[run], ends.impacts[run] = min(last, until), game.counts[N_IMPACTS]
         for i in range(count):
             state_at(
@@ -123,7 +121,7 @@ def follow_all(
             ends.impacts[start:stop], ends.how[start:stop], ends.courses[start:stop],
         )  # fmt: skip
         _follow_all(
-            mine, game.kinds, game.flights, first, discs, launches[start:stop],
+            mine, game.discs, game.kinds, game.flights, first, discs, launches[start:stop],
             paces[start:stop], until, np.array(watch), room, part,
         )  # fmt: skip
 
@@ -153,8 +151,8 @@ def _paces(game: Game, first: FloatArray, discs: Whole, launches: FloatArray) ->
 def _own(game: Game, rows: int) -> Game:
     """A copy to run on, with so many rows for events and flights."""
     return game._replace(
-        clock=np.zeros(1), kinds=game.kinds.copy(), flights=game.flights.copy(),
-        group=game.group.copy(), held=game.held.copy(), next_time=game.next_time.copy(),
+        discs=game.discs.copy(), clock=np.zeros(1), kinds=game.kinds.copy(),
+        flights=game.flights.copy(), group=game.group.copy(), held=game.held.copy(), next_time=game.next_time.copy(),
         next_partner=game.next_partner.copy(), pieces=game.pieces.copy(),
         events=np.zeros((rows, game.events.shape[1])),
         history=np.zeros((rows, game.history.shape[1])), counts=game.counts.copy(),

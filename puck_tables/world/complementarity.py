@@ -57,10 +57,10 @@ def most(sight: FloatArray, push: float) -> float:
 def better_mode(desk: Desk, c: int, mode: int, scales: Scales) -> int:
     """The mode that forces and accelerations ask for, when it was supposed to be ``mode``."""
     gap, slip, soft, rolls = leads(desk, c)
-    if soft == 0.0:  # between two that cannot move nothing is known
-        return mode
-    sight, push, rim = desk.sights[c], desk.pushes[c, 0], desk.pushes[c, 1]
     slack = 0.5 * LEVEL * scales.rate
+    if soft == 0.0:  # between two that cannot move nothing is known, if they do not part
+        return APART if gap > slack else mode
+    sight, push, rim = desk.sights[c], desk.pushes[c, 0], desk.pushes[c, 1]
     if mode == APART:
         return rim_mode(sight, scales.speed) if gap < -slack else APART
     if push * soft < -slack:
@@ -126,6 +126,8 @@ def _by_small_steps(desk: Desk, modes: IntArray, members: int, scales: Scales, s
                     rim = slides * bound
                 v[SOLUTION, number] = min(max(rim, -bound), bound)
                 number += 1
+        for tie in range(number, count):
+            v[SOLUTION, tie] += v[LEFT, tie]
     number = 0
     for c in range(modes.shape[0]):
         sight = desk.sights[c]

@@ -10,7 +10,10 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
+from puck_tables.scene.ingredients import floor_velocity
 from puck_tables.world.flight import (
+    DRIFT_X,
+    DRIFT_Y,
     FASTEST,
     FIRST_PIECE,
     FLIGHT_COLUMNS,
@@ -24,10 +27,12 @@ from puck_tables.world.flight import (
     start_flight,
     state_at,
 )
+from puck_tables.world.footing import step_onto, strip_under
 from puck_tables.world.game import (
     APPROACH,
     AT_X,
     AT_Y,
+    CROSSED,
     IMPACT,
     LOST,
     N_EVENTS,
@@ -55,7 +60,7 @@ from puck_tables.world.impact import (
     SUM_N,
     SUM_T,
 )
-from puck_tables.world.layout import RADIUS
+from puck_tables.world.layout import FROM, RADIUS
 from puck_tables.world.paths import DURATION, FIRST
 from puck_tables.world.paths import START as BEGINS
 
@@ -111,7 +116,7 @@ def keep_flight(game: Game, i: int) -> None:
 def take_off(game: Game, i: int, t: float, room: Room) -> None:
     """A new flight of a disc alone, from its state; what it was is kept."""
     game.kinds[i] = start_flight(
-        room.states[i], game.discs[i], game.curves, t, room.work, game.flights[i]
+        room.states[i], game.discs[i], game.surface, game.curves, t, room.work, game.flights[i]
     )
     game.group[i] = 0
     keep_flight(game, i)
@@ -119,10 +124,11 @@ def take_off(game: Game, i: int, t: float, room: Room) -> None:
 
 @inlined
 def stay(game: Game, i: int, t: float, room: Room) -> None:
-    """A disc at rest, that others or a cushion may hold there."""
-    room.states[i, VX] = room.states[i, VY] = room.states[i, SPIN] = 0.0
+    """A disc at rest on its floor, that others or a cushion may hold there."""
+    state = room.states[i]
+    state[VX], state[VY], state[SPIN] = floor_velocity(game.surface, state[X], state[Y])
     game.kinds[i] = start_flight(
-        room.states[i], game.discs[i], game.curves, t, room.work, game.flights[i]
+        state, game.discs[i], game.surface, game.curves, t, room.work, game.flights[i]
     )
     keep_flight(game, i)
 
@@ -133,7 +139,9 @@ def drive_on(game: Game, i: int, t: float, room: Room) -> None:
     piece, last = int(game.flights[i, FIRST_PIECE]), game.drives[i, 1]
     if game.kinds[i] == PATH:
         piece += 1
-    start_flight(room.states[i], game.discs[i], game.curves, t, room.work, game.flights[i])
+    start_flight(
+        room.states[i], game.discs[i], game.surface, game.curves, t, room.work, game.flights[i]
+    )
     if piece < last:
         row = game.pieces[piece]
         game.kinds[i] = PATH
@@ -175,11 +183,22 @@ def note_impacts(game: Game, t: float, count: int, room: Room) -> None:
 
 
 @inlined
+def cross(game: Game, i: int, t: float, k: int, room: Room) -> None:
+    """The centre of a disc passes the border between two strips of the floor."""
+    note(game, t, CROSSED, i, -1 - k, room.states[i, X], room.states[i, Y])
+    after = int(game.obstacles[k, FROM])
+    step_onto(game, i, after - 1 if strip_under(game, i) == after else after)
+
+
+@inlined
 def leave(game: Game, i: int, t: float, what: int, k: int, room: Room) -> None:
     """A disc falls into a pocket or over an edge."""
     note(game, t, what, i, -1 - k, room.states[i, X], room.states[i, Y])
     room.states[i, VX] = room.states[i, VY] = room.states[i, SPIN] = 0.0
-    start_flight(room.states[i], game.discs[i], game.curves, t, room.work, game.flights[i])
+    start_flight(
+        room.states[i], game.discs[i], game.surface, game.curves, t, room.work, game.flights[i]
+    )
+    game.flights[i, DRIFT_X] = game.flights[i, DRIFT_Y] = 0.0
     game.kinds[i] = GONE
     game.group[i] = 0
     keep_flight(game, i)

@@ -13,6 +13,7 @@ from puck_tables.world.departures import (
     LOOKED_AT,
     NOT_CONCERNED,
     Room,
+    cross,
     drive_on,
     leave,
     locate,
@@ -61,8 +62,8 @@ from puck_tables.world.impact import (
     approach,
     collide,
 )
-from puck_tables.world.layout import EDGE, KIND, POCKET, RADIUS
-from puck_tables.world.meeting import are_apart, next_crossing, next_meeting
+from puck_tables.world.layout import BORDER, EDGE, KIND, POCKET, RADIUS
+from puck_tables.world.meeting import are_apart, next_crossing, next_meeting, rest_together
 from puck_tables.world.quiet import quieten
 from puck_tables.world.touching import find_touching, is_integrated, press_somewhere
 
@@ -99,7 +100,7 @@ def look_ahead(game: Game, i: int, t: float, room: Room) -> None:
     for j in range(game.discs.shape[0]):
         other = game.kinds[j]
         if known and other in (STILL, LOOKED_UP):  # most lie far from where this one goes
-            if kind == STILL and other == STILL:
+            if rest_together(kind, game.flights[i], other, game.flights[j]):
                 continue
             reach = game.discs[i, RADIUS] + game.discs[j, RADIUS]
             far = corridor(other, game.flights[j], game.discs[j], room.one, math.inf, t)
@@ -157,6 +158,8 @@ def _happen(game: Game, i: int, partner: int, t: float, room: Room) -> int:
             room.marks[j] = CONCERNED
     if partner < 0:
         shape = int(game.obstacles[-1 - partner, KIND])
+        if shape == BORDER:
+            cross(game, i, t, -1 - partner, room)
         if shape in (POCKET, EDGE):
             leave(game, i, t, POCKETED if shape == POCKET else OVER_EDGE, -1 - partner, room)
             room.marks[i] = LOOKED_AT
@@ -165,7 +168,7 @@ def _happen(game: Game, i: int, partner: int, t: float, room: Room) -> int:
         return CROWDED
     squeezed = _is_squeezed(game, t, count, room)
     rounds = collide(
-        game, room.contacts, count, room.rows, room.before, room.states, room.shares, squeezed
+        game, t, room.contacts, count, room.rows, room.before, room.states, room.shares, squeezed
     )
     if rounds < 0:
         game.counts[N_CONTACTS] = count
@@ -190,7 +193,7 @@ def _go_on(game: Game, t: float, count: int, room: Room) -> int:
     game.counts[N_CONTACTS] = count
     if quieten(game, count, room):
         _whole_groups(game, count, room)
-    pushes = press_somewhere(game, count, room)
+    pushes = press_somewhere(game, count, t, room)
     for j in range(game.discs.shape[0]):
         pushes = pushes or (room.marks[j] == CONCERNED and is_integrated(game, j, room.states[j]))
     if pushes:

@@ -9,7 +9,10 @@ it starts, until when it holds, and two bounds, of its speed and of its accelera
 
       v = v₀ e^{−γs}/(1 + w v₀ E),   path = ln(1 + w v₀ E)/w,   angle = ω₀ (1 − e^{−γ_s s})/γ_s;
 
-- PATH is a path in pieces (:mod:`puck_tables.world.paths`): integrated, or given.
+- PATH is a path in pieces (:mod:`puck_tables.world.paths`): integrated, or given;
+- CARRIED rests on a turntable, and goes round with it.
+
+On a belt the first three are motions over the belt, and drift with it.
 """
 
 from __future__ import annotations
@@ -25,6 +28,7 @@ from puck_tables.kernels.compile import inlined, kernel
 from puck_tables.motion.state import HEADING, ORIENTATION, PUCK_X, PUCK_Y, SPEED
 from puck_tables.motion.state import SPIN as PUCK_SPIN
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
+from puck_tables.scene.ingredients import Surface, floor_velocity
 from puck_tables.stopping.curve_lookup import (
     LAUNCH_COLUMNS,
     LAUNCH_ROWS,
@@ -36,17 +40,26 @@ from puck_tables.stopping.curve_lookup import (
     look_up_state,
 )
 from puck_tables.stopping.lookup import CURVE_ROW
-from puck_tables.world.layout import DAMPING, DECEL, DELTA, RADIUS, SPIN_DAMPING, WAKE
+from puck_tables.world.layout import (
+    DAMPING,
+    DECEL,
+    DELTA,
+    RADIUS,
+    SPIN_DAMPING,
+    WAKE,
+    feels_floor,
+)
 from puck_tables.world.paths import on_piece, piece_at
 
-STILL, LOOKED_UP, DAMPED, PATH, GONE = range(5)
+STILL, LOOKED_UP, DAMPED, PATH, GONE, CARRIED = range(6)
 
 KNOWN = LAUNCH_COLUMNS  # before it the launch: vx, vy, ω, δ, J, r
 START = LAUNCH_COLUMNS + LAUNCH_ROWS
 PLACE_X, PLACE_Y, ANGLE, UNTIL, FASTEST, STRONGEST = range(START + 1, START + 7)
 FIRST_PIECE, LAST_PIECE = START + 7, START + 8
 OFF_X, OFF_Y, OFF_ANGLE = range(START + 9, START + 12)  # what the look-up says just after the start
-FLIGHT_COLUMNS = START + 12
+DRIFT_X, DRIFT_Y = START + 12, START + 13  # velocity of the belt on which it moves or rests
+FLIGHT_COLUMNS = START + 14
 
 ROOM = CURVE_ROW + 5 + 9  # numbers to work in
 NO_TURN = 0.0
@@ -86,6 +99,22 @@ def _damped_state(flight: FloatArray, disc: FloatArray, time: float, out: FloatA
     out[SPIN] = spin * math.exp(-disc[SPIN_DAMPING] * time)
 
 
+@inlined
+def drifts(flight: FloatArray) -> bool:
+    """Whether a disc is on a belt."""
+    return flight[DRIFT_X] != 0.0 or flight[DRIFT_Y] != 0.0
+
+
+@inlined
+def moves_until(kind: int, flight: FloatArray) -> float:
+    """When a disc comes to rest, or what is known of it ends."""
+    if drifts(flight):
+        return math.inf
+    if kind in (LOOKED_UP, PATH):
+        return flight[UNTIL]
+    return math.inf if kind in (DAMPED, CARRIED) else -math.inf
+
+
 @kernel
 def state_at(
     kind: int, flight: FloatArray, disc: FloatArray, curves: Curves, pieces: FloatArray, t: float,
@@ -117,18 +146,37 @@ def state_at(
         on_piece(pieces[piece], t, room)
         for i in range(6):
             out[i] = room[i]
+    elif kind == CARRIED:
+        turning = flight[2]
+        angle = turning * (t - flight[START])
+        cosine, sine = math.cos(angle), math.sin(angle)
+        dx, dy = flight[PLACE_X] - flight[0], flight[PLACE_Y] - flight[1]
+        arm_x, arm_y = cosine * dx - sine * dy, sine * dx + cosine * dy
+        out[X], out[Y], out[THETA] = flight[0] + arm_x, flight[1] + arm_y, flight[ANGLE] + angle
+        out[VX], out[VY], out[SPIN] = -turning * arm_y, turning * arm_x, turning
     else:
         out[X], out[Y], out[THETA] = flight[PLACE_X], flight[PLACE_Y], flight[ANGLE]
         out[VX], out[VY], out[SPIN] = 0.0, 0.0, 0.0
+    if drifts(flight):
+        out[X] += flight[DRIFT_X] * (t - flight[START])
+        out[Y] += flight[DRIFT_Y] * (t - flight[START])
+        out[VX] += flight[DRIFT_X]
+        out[VY] += flight[DRIFT_Y]
 
 
 @kernel
 def start_flight(
-    state: FloatArray, disc: FloatArray, curves: Curves, t: float, room: FloatArray,
-    flight: FloatArray,
+    state: FloatArray, disc: FloatArray, surface: Surface, curves: Curves, t: float,
+    room: FloatArray, flight: FloatArray,
 ) -> int:  # fmt: skip
-    """The flight of a disc alone, from its state at t; its kind.  Of pieces it knows nothing."""
-    vx, vy, spin = state[VX], state[VY], state[SPIN]
+    """The flight of a disc alone, from its state at t; its kind.  Of pieces it knows nothing.
+
+    On a turntable it rests there, or has neither friction nor drag.
+    """
+    sx, sy, turning = 0.0, 0.0, 0.0
+    if feels_floor(disc):
+        sx, sy, turning = floor_velocity(surface, state[X], state[Y])
+    vx, vy, spin = state[VX] - sx, state[VY] - sy, state[SPIN] - turning
     speed = math.hypot(vx, vy)
     flight[0], flight[1], flight[2] = vx, vy, spin
     flight[3], flight[4], flight[5] = disc[DELTA], disc[DECEL], disc[RADIUS]
@@ -137,9 +185,16 @@ def start_flight(
     flight[FASTEST], flight[STRONGEST] = 0.0, 0.0
     flight[FIRST_PIECE], flight[LAST_PIECE] = 0.0, 0.0
     flight[OFF_X], flight[OFF_Y], flight[OFF_ANGLE] = 0.0, 0.0, 0.0
+    flight[DRIFT_X], flight[DRIFT_Y] = 0.0, 0.0
+    if turning != 0.0:
+        flight[0], flight[1], flight[2] = state[X] - sy / turning, state[Y] + sx / turning, turning
+        flight[FASTEST] = math.hypot(sx, sy)
+        flight[STRONGEST] = abs(turning) * flight[FASTEST]
+        return CARRIED
+    flight[DRIFT_X], flight[DRIFT_Y] = sx, sy
+    flight[FASTEST] = speed + math.hypot(sx, sy)
     if speed == 0.0 and spin == 0.0:
         return STILL
-    flight[FASTEST] = speed
     if disc[DECEL] > 0.0:
         know_launch(
             flight, curves.stops, curves.curve, curves.turn_inverse, curves.constants, NO_TURN,
@@ -171,6 +226,10 @@ def corridor(
     rest, the state is not asked.
     """
     x, y = flight[PLACE_X], flight[PLACE_Y]
+    if drifts(flight):
+        return x, y, x, y, flight[FASTEST] * (horizon - flight[START])
+    if kind == CARRIED:
+        return flight[0], flight[1], flight[0], flight[1], flight[FASTEST] / abs(flight[2])
     if kind == LOOKED_UP:
         across, up = flight[KNOWN + STOP_X], flight[KNOWN + STOP_Y]
         length, over = flight[KNOWN + LENGTH], math.hypot(across, up)

@@ -1,4 +1,4 @@
-"""What acts on the discs of a group besides their contacts: dry friction, drag, a pull, a film."""
+"""What acts on the discs of a group besides their contacts: friction, drag, forces, a film."""
 
 from __future__ import annotations
 
@@ -6,9 +6,28 @@ import math
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, kernel
-from puck_tables.scene.friction import SPIN, VX, VY, at_slip_zero, dry_friction, size
-from puck_tables.scene.ingredients import dry_in
-from puck_tables.scene.rest import free_yield
+from puck_tables.scene.friction import (
+    SPIN,
+    THETA,
+    VX,
+    VY,
+    X,
+    Y,
+    at_slip_zero,
+    dry_friction,
+    size,
+)
+from puck_tables.scene.ingredients import (
+    FREE,
+    Body,
+    Hold,
+    carried_along,
+    dry_in,
+    floor_velocity,
+)
+from puck_tables.scene.rest import constrained_yield, free_yield
+from puck_tables.world.alone import pull_on, rows_passed
+from puck_tables.world.footing import over_floor
 from puck_tables.world.group import (
     ARM,
     DRIVEN,
@@ -23,20 +42,57 @@ from puck_tables.world.group import (
 )
 from puck_tables.world.layout import (
     DAMPING,
+    HOLD,
+    HOLD_ANGLE,
+    HOLD_REACH,
+    HOLD_VX,
+    HOLD_VY,
+    HOLD_X,
+    HOLD_Y,
     LIGHTNESS,
     RADIUS,
+    REGION,
     SPIN_DAMPING,
     TURNABILITY,
     WAKE,
 )
 from puck_tables.world.paths import on_piece, piece_at
-from puck_tables.world.works import DRAG_HEAT, DRIVE_WORK, FLOOR_HEAT, PULL_WORK, RIM_HEAT
+from puck_tables.world.works import (
+    DRAG_HEAT,
+    DRIVE_WORK,
+    FLOOR_HEAT,
+    PULL_WORK,
+    RIM_HEAT,
+    SUPPORT_WORK,
+)
 
 
 @inlined
 def slip_of(group: Group, number: int, y: FloatArray) -> float:
-    """Q of a disc in the state y (6,)."""
-    return size(y[VX], y[VY], group.discs[number, RADIUS] * y[SPIN])
+    """Q of a disc in the state y (6,) over the floor."""
+    vx, vy, spin = over_floor(group.surface, y)
+    return size(vx, vy, group.discs[number, RADIUS] * spin)
+
+
+@inlined
+def load_on(group: Group, number: int) -> float:
+    """F N of the floor on which a disc is."""
+    return group.regions.load[int(group.discs[number, REGION])]
+
+
+@inlined
+def rest_on_floor(group: Group, y: FloatArray) -> None:
+    """Give a state (6,) the velocity of the floor under it."""
+    y[VX], y[VY], y[SPIN] = floor_velocity(group.surface, y[X], y[Y])
+
+
+@inlined
+def count_rows(group: Group, members: IntArray, t: float, desk: Desk) -> None:
+    """How many rows of the forces over time on the members have passed."""
+    for place in range(members.shape[0]):
+        number = members[place]
+        first, last = group.spans[number, 0], group.spans[number, 1]
+        desk.passed[place] = rows_passed(group.tides, first, last, t)
 
 
 @inlined
@@ -44,6 +100,7 @@ def place_driven(
     group: Group, members: IntArray, doings: IntArray, t: float, y: FloatArray, desk: Desk
 ) -> None:
     """Put the driven members where their films have them at t, and their accelerations."""
+    desk.clock[0] = t
     for place in range(members.shape[0]):
         if doings[place] == DRIVEN:
             first, last = group.reels[members[place], 0], group.reels[members[place], 1]
@@ -54,11 +111,22 @@ def place_driven(
                 desk.own[place, i] = desk.film[6 + i]
 
 
+@inlined
+def _pull_on(group: Group, members: IntArray, place: int, desk: Desk) -> tuple[float, float, float]:
+    """Accelerations of a member by slope and given forces, now."""
+    return pull_on(
+        group.discs, group.tides, group.spans, members[place], desk.passed[place], desk.clock[0]
+    )
+
+
 @kernel
 def act(
     group: Group, members: IntArray, doings: IntArray, y: FloatArray, power: FloatArray, desk: Desk
 ) -> None:
-    """Accelerations of the members as if there were no contacts, and the power of what acts."""
+    """Accelerations of the members as if there were no contacts, and the power of what acts.
+
+    Those of who rests are the floor's.
+    """
     for i in range(power.shape[0]):
         power[i] = 0.0
     for place in range(members.shape[0]):
@@ -66,28 +134,35 @@ def act(
         disc, own, inverse = group.discs[number], desk.own[place], desk.inverse[place]
         doing, radius = doings[place], disc[RADIUS]
         inverse[0] = inverse[1] = 0.0
+        vx, vy, spin = y[place, VX], y[place, VY], y[place, SPIN]
+        cx, cy = carried_along(group.surface, vx, vy)
+        desk.carried[place, 0], desk.carried[place, 1] = cx, cy
         if doing == DRIVEN:
             continue
+        px, py, pull = _pull_on(group, members, place, desk)
+        light, turns = disc[LIGHTNESS], disc[TURNABILITY]
+        power[PULL_WORK] += (px * vx + py * vy) / light + pull * spin / turns
         if doing == HELD:
-            own[0] = own[1] = own[2] = 0.0
+            own[0], own[1], own[2] = cx, cy, 0.0
             continue
-        inverse[0], inverse[1] = disc[LIGHTNESS], disc[TURNABILITY]
-        vx, vy, spin = y[place, VX], y[place, VY], y[place, SPIN]
-        dry = dry_in(group.regions, number)
+        inverse[0], inverse[1] = light, turns
+        sx, sy, turning = floor_velocity(group.surface, y[place, X], y[place, Y])
+        ux, uy, w = vx - sx, vy - sy, spin - turning
+        dry = dry_in(group.regions, int(disc[REGION]))
         if doing == YIELDS:
             way = desk.ways[place]
             fx, fy, torque, _ = dry_friction(at_slip_zero(dry), radius, way[0], way[1], way[2])
-            heat = -(fx * vx + fy * vy + torque * spin)
+            heat = -(fx * ux + fy * uy + torque * w)
         else:
-            fx, fy, torque, heat = dry_friction(dry, radius, vx, vy, spin)
-        square = vx * vx + vy * vy
+            fx, fy, torque, heat = dry_friction(dry, radius, ux, uy, w)
+        square = ux * ux + uy * uy
         drag, turn_drag = disc[DAMPING] + disc[WAKE] * math.sqrt(square), disc[SPIN_DAMPING]
-        own[0] = group.gx + fx * inverse[0] - drag * vx
-        own[1] = group.gy + fy * inverse[0] - drag * vy
-        own[2] = torque * inverse[1] - turn_drag * spin
+        ax, ay, turn = fx * light - drag * ux, fy * light - drag * uy, torque * turns
+        turn -= turn_drag * w
+        own[0], own[1], own[2] = px + ax, py + ay, pull + turn
         power[FLOOR_HEAT] += heat
-        power[DRAG_HEAT] += drag * square / inverse[0] + turn_drag * spin * spin / inverse[1]
-        power[PULL_WORK] += (group.gx * vx + group.gy * vy) / inverse[0]
+        power[DRAG_HEAT] += drag * square / light + turn_drag * w * w / turns
+        power[SUPPORT_WORK] += (ax * sx + ay * sy) / light + turn * turning / turns
 
 
 @inlined
@@ -108,27 +183,59 @@ def force_of_contacts(desk: Desk, count: int, place: int) -> tuple[float, float,
 
 @inlined
 def power_of_contacts(
-    doings: IntArray, count: int, y: FloatArray, power: FloatArray, desk: Desk
-) -> None:
-    """Heat of the rims, and work of what drives, into ``power``."""
+    group: Group, members: IntArray, doings: IntArray, count: int, y: FloatArray,
+    power: FloatArray, desk: Desk,
+) -> None:  # fmt: skip
+    """Heat of the rims, and work of what drives, leads and carries, into ``power``."""
     for c in range(count):
         power[RIM_HEAT] += desk.pushes[c, 1] * desk.sights[c, SLIP]
     for place in range(doings.shape[0]):
+        vx, vy, spin = y[place, VX], y[place, VY], y[place, SPIN]
         if doings[place] == DRIVEN:
             fx, fy, torque = force_of_contacts(desk, count, place)
-            power[DRIVE_WORK] -= fx * y[place, VX] + fy * y[place, VY] + torque * y[place, SPIN]
+            power[DRIVE_WORK] -= fx * vx + fy * vy + torque * spin
+        elif doings[place] == HELD and size(vx, vy, spin) > 0.0:
+            fx, fy, torque = _asked_of_floor(group, members, place, count, desk)
+            power[SUPPORT_WORK] -= fx * vx + fy * vy + torque * spin
+    for tie in range(desk.number[0]):
+        place, row = desk.tied[tie], desk.ties[tie]
+        if doings[place] != HELD:
+            way = row[0] * y[place, VX] + row[1] * y[place, VY] + row[2] * y[place, SPIN]
+            power[SUPPORT_WORK] -= desk.tautness[tie] * way
+
+
+@inlined
+def _asked_of_floor(
+    group: Group, members: IntArray, place: int, count: int, desk: Desk
+) -> tuple[float, float, float]:
+    """Force and torque that a member at rest exerts on the floor."""
+    disc = group.discs[members[place]]
+    fx, fy, torque = force_of_contacts(desk, count, place)
+    px, py, pull = _pull_on(group, members, place, desk)
+    light, turns = disc[LIGHTNESS], disc[TURNABILITY]
+    ax, ay = desk.carried[place, 0], desk.carried[place, 1]
+    return fx + (px - ax) / light, fy + (py - ay) / light, torque + pull / turns
 
 
 @inlined
 def excess_on(
-    group: Group, number: int, place: int, count: int, desk: Desk
+    group: Group, members: IntArray, place: int, count: int, y: FloatArray, desk: Desk
 ) -> tuple[float, float, float, float]:
     """By how much what acts on a disc at rest exceeds its friction, over f N, and the slip then."""
-    dry = at_slip_zero(dry_in(group.regions, number))
-    fx, fy, torque = force_of_contacts(desk, count, place)
-    mass = 1.0 / group.discs[number, LIGHTNESS]
-    excess, ux, uy, w = free_yield(
-        dry, group.discs[number, RADIUS], fx + mass * group.gx, fy + mass * group.gy, torque, False
+    disc = group.discs[members[place]]
+    dry = at_slip_zero(dry_in(group.regions, int(disc[REGION])))
+    fx, fy, torque = _asked_of_floor(group, members, place, count, desk)
+    kind = int(disc[HOLD])
+    if kind == FREE:
+        excess, ux, uy, w = free_yield(dry, disc[RADIUS], fx, fy, torque, False)
+        return excess / dry.load, ux, uy, w
+    hold = Hold(
+        kind, disc[HOLD_X], disc[HOLD_Y], disc[HOLD_REACH], disc[HOLD_ANGLE], disc[HOLD_VX],
+        disc[HOLD_VY],
+    )  # fmt: skip
+    body = Body(1.0 / disc[LIGHTNESS], 1.0 / disc[TURNABILITY], disc[RADIUS])
+    excess, ux, uy, w = constrained_yield(
+        dry, hold, body, y[place, THETA], 0.0, 0.0, 0.0, fx, fy, torque, True
     )
     return excess / dry.load, ux, uy, w
 
@@ -137,10 +244,11 @@ def excess_on(
 def gain_of(group: Group, number: int, place: int, desk: Desk) -> float:
     """How fast a disc that yields gains speed along its way."""
     way, rate, radius = desk.ways[place], desk.rates[place], group.discs[number, RADIUS]
-    return way[0] * rate[0] + way[1] * rate[1] + radius * radius * way[2] * rate[2]
+    ax, ay = rate[0] - desk.carried[place, 0], rate[1] - desk.carried[place, 1]
+    return way[0] * ax + way[1] * ay + radius * radius * way[2] * rate[2]
 
 
 @inlined
 def can_rest(group: Group, number: int) -> bool:
     """Whether the floor can hold a disc."""
-    return group.regions.load[number] > 0.0
+    return load_on(group, number) > 0.0

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.scene.ingredients import Regions
+from puck_tables.scene.ingredients import Regions, Surface
 from puck_tables.world.flight import FLIGHT_COLUMNS, Curves
 
 Whole = npt.NDArray[np.int64]
@@ -17,8 +17,8 @@ Whole = npt.NDArray[np.int64]
 NOTHING, PATH_ENDS, LOOK_AGAIN = 1 << 40, (1 << 40) + 1, (1 << 40) + 2
 
 # events
-IMPACT, CONTACT, PART, POCKETED, OVER_EDGE, REST, STRUCK = range(7)
-EVENTS = ("impact", "contact", "part", "pocket", "edge", "rest", "launch")
+IMPACT, CONTACT, PART, POCKETED, OVER_EDGE, REST, STRUCK, CROSSED = range(8)
+EVENTS = ("impact", "contact", "part", "pocket", "edge", "rest", "launch", "border")
 # columns of an event: what, disc, partner, place of the contact, normal from the disc to its
 # partner, approach and slip before, normal and tangential impulse, energy lost, all in SI units
 (
@@ -42,18 +42,25 @@ COUNTS = 10
 class Game(NamedTuple):
     """Everything, as arrays: a copy of them is a copy of the world.
 
-    ``regions``: the dry friction of every disc, under its number; ``rims``: the laws
+    ``regions``: the dry friction of every disc on every strip of the floor, ``floors`` what of it
+    stands in its row there (strips · n, 3): deceleration, δ, and whether it is integrated, which a
+    disc takes over when it comes there; ``surface``: how the floor moves; ``tides``,
+    ``spans``: see :class:`puck_tables.world.group.Group`; ``rims``: the laws
     by which they meet (:mod:`puck_tables.world.rims`).  ``clock`` (1,): now.  ``group``
     (n,): discs of one number push each other, 0: none; ``held`` (…, 2): their contacts.
     ``next_time``, ``next_partner`` (n,).  ``launches`` (…, 5), ascending in time.  ``drives``
     (n, 2): the rows of ``pieces`` along which a disc is driven. ``counts``: how many rows of
     events, history, pieces and held contacts are used, how many launches and what else was done,
     and the contacts of the event at work.  ``pace`` (2,): the scales of speed, m/s, and
-    acceleration, m/s².  ``pull`` (2,): acceleration down a slope, m/s².
+    acceleration, m/s².
     """
 
     discs: FloatArray
     regions: Regions
+    floors: FloatArray
+    surface: Surface
+    tides: FloatArray
+    spans: Whole
     rims: FloatArray
     obstacles: FloatArray
     curves: Curves
@@ -71,4 +78,3 @@ class Game(NamedTuple):
     history: FloatArray
     counts: Whole
     pace: FloatArray
-    pull: FloatArray

@@ -16,7 +16,7 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
 from puck_tables.motion.steppers import DORMAND_PRINCE
-from puck_tables.scene.ingredients import Regions
+from puck_tables.scene.ingredients import Regions, Surface
 from puck_tables.world.works import LEDGER
 
 IntArray = npt.NDArray[np.int64]
@@ -50,20 +50,22 @@ GAINS = 1e-10  # of the scale of accelerations: what gains less stays at rest
 class Group(NamedTuple):
     """What all groups share.
 
-    ``discs`` (n, 13), ``obstacles`` (k, 10): :mod:`puck_tables.world.layout`; ``regions``: the dry
-    friction of disc i as region i; ``rims``: their laws; ``films`` (f, 20) and ``reels`` (n, 2):
-    rows of the motions that are given, and of each disc the first and last + 1; (gx, gy):
-    acceleration by the pull, m/s².
+    ``discs`` (n, 25), ``obstacles`` (k, 10): :mod:`puck_tables.world.layout`; ``regions``: the dry
+    friction of every disc under its REGION; ``surface``: how the floor moves; ``rims``: their laws;
+    ``films`` (f, 20) and ``reels`` (n, 2): rows of the motions that are given, and of each disc the
+    first and last + 1; ``tides`` (g, 4) and ``spans`` (n, 2): rows t, Fx, Fy, torque of forces over
+    time (s, N, N m), and the same.
     """
 
     discs: FloatArray
     obstacles: FloatArray
     regions: Regions
+    surface: Surface
     rims: FloatArray
     films: FloatArray
     reels: IntArray
-    gx: float
-    gy: float
+    tides: FloatArray
+    spans: IntArray
 
 
 class Scales(NamedTuple):
@@ -78,7 +80,7 @@ class Scales(NamedTuple):
 
 
 class Desk(NamedTuple):
-    """Arrays to work in for m members and c contacts.
+    """Arrays to work in for m members and c contacts, of which h members are led.
 
     ``pairs``: the contacts by places of members; ``states``: at the start and the end of a step and
     at a trial (3, m, 6); ``stages`` (8, m, 6) and ``powers`` (9, 5): rates of states and ledger;
@@ -86,9 +88,12 @@ class Desk(NamedTuple):
     of those that can move; ``sights``, ``midway`` (c, 11): at the end and in the middle of a step;
     ``watched`` (2, c, 4): see :func:`puck_tables.world.moments.watch`; ``pushes`` (c, 2): λ, τ;
     ``ways`` (m, 3), ``paces`` (m, 2): where what yields slips to, and how fast that turns;
-    ``rows``, ``columns`` (2c, 6), ``owners`` (2c, 2), ``order`` (2c,): the constraints, and the
-    members concerned; ``matrix``, ``factors`` (2c, 2c), ``vectors`` (4, 2c); ``modes`` (2, c),
-    ``doings`` (m,): trials; ``film`` (9,).
+    ``ties`` (2h, 3), ``tied``, ``tautness`` (2h,): what leads members, whom, and how it pulls,
+    ``strays`` (2h, 3): see :func:`puck_tables.world.holds.forbid`, ``number`` (1,): how many there
+    are; ``rows``, ``columns`` (k, 6), ``owners`` (k, 2), ``order`` (k,), k = 2c + 2h: the
+    constraints, and the members concerned; ``matrix``, ``factors`` (k, k), ``vectors`` (4, k);
+    ``modes`` (2, c), ``doings`` (m,): trials; ``film`` (9,); ``carried`` (m, 2): what the floor
+    asks of each acceleration; ``passed`` (m,): rows of forces over time; ``clock`` (1,): now.
     """
 
     pairs: IntArray
@@ -104,6 +109,11 @@ class Desk(NamedTuple):
     pushes: FloatArray
     ways: FloatArray
     paces: FloatArray
+    ties: FloatArray
+    tied: IntArray
+    tautness: FloatArray
+    strays: FloatArray
+    number: IntArray
     rows: FloatArray
     columns: FloatArray
     owners: IntArray
@@ -114,17 +124,20 @@ class Desk(NamedTuple):
     modes: IntArray
     doings: IntArray
     film: FloatArray
+    carried: FloatArray
+    passed: IntArray
+    clock: FloatArray
 
 
-def desk_for(members: int, contacts: int) -> Desk:
-    """A desk for groups of up to so many members and contacts.
+def desk_for(members: int, contacts: int, led: int = 0) -> Desk:
+    """A desk for groups of up to so many members and contacts, of whom so many are led.
 
     Examples
     --------
-    >>> desk_for(3, 2).matrix.shape
-    (4, 4)
+    >>> desk_for(3, 2).matrix.shape, desk_for(3, 2, 1).matrix.shape
+    ((4, 4), (6, 6))
     """
-    m, c, k = max(members, 1), max(contacts, 1), max(2 * contacts, 1)
+    m, c, h, k = max(members, 1), max(contacts, 1), max(2 * led, 1), max(2 * (contacts + led), 1)
     stages = len(DORMAND_PRINCE.c)
     return Desk(
         pairs=np.zeros((c, 2), np.int64), states=np.zeros((3, m, 6)),
@@ -132,11 +145,14 @@ def desk_for(members: int, contacts: int) -> Desk:
         own=np.zeros((m, 3)), rates=np.zeros((m, 3)), inverse=np.zeros((m, 2)),
         sights=np.zeros((c, SIGHT)), midway=np.zeros((c, SIGHT)),
         watched=np.zeros((2, c, WATCHES)), pushes=np.zeros((c, 2)),
-        ways=np.zeros((m, 3)), paces=np.zeros((m, 2)),
+        ways=np.zeros((m, 3)), paces=np.zeros((m, 2)), ties=np.zeros((h, 3)),
+        tied=np.zeros(h, np.int64), tautness=np.zeros(h), strays=np.zeros((h, 3)),
+        number=np.zeros(1, np.int64),
         rows=np.zeros((k, 6)), columns=np.zeros((k, 6)), owners=np.zeros((k, 2), np.int64),
         order=np.zeros(k, np.int64), matrix=np.zeros((k, k)), factors=np.zeros((k, k)),
         vectors=np.zeros((4, k)), modes=np.zeros((2, c), np.int64),
-        doings=np.zeros(m, np.int64), film=np.zeros(9),
+        doings=np.zeros(m, np.int64), film=np.zeros(9), carried=np.zeros((m, 2)),
+        passed=np.zeros(m, np.int64), clock=np.zeros(1),
     )  # fmt: skip
 
 

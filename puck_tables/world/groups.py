@@ -14,6 +14,7 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import PuckError
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
+from puck_tables.scene.ingredients import FREE
 from puck_tables.world.departures import (
     CONCERNED,
     NOT_CONCERNED,
@@ -25,6 +26,8 @@ from puck_tables.world.departures import (
 )
 from puck_tables.world.flight import (
     ANGLE,
+    DRIFT_X,
+    DRIFT_Y,
     FASTEST,
     FIRST_PIECE,
     LAST_PIECE,
@@ -57,7 +60,16 @@ from puck_tables.world.group import (
     desk_for,
 )
 from puck_tables.world.impact import ACTS
-from puck_tables.world.layout import LIGHTNESS, TURNABILITY
+from puck_tables.world.layout import (
+    HOLD,
+    HOLD_VX,
+    HOLD_VY,
+    LIGHTNESS,
+    PULL_X,
+    PULL_Y,
+    TURNABILITY,
+    TWIST,
+)
 from puck_tables.world.paths import DURATION, FIRST, PIECE_COLUMNS
 from puck_tables.world.paths import START as BEGINS
 from puck_tables.world.pressing import press
@@ -87,9 +99,11 @@ def push_on(game: Game, room: Room, books: list[FloatArray]) -> Game:
     held_before = {frozenset(pair) for pair in held.tolist()}
     held = held[game.group[held[:, 0]] > 0]
     t, scales = float(game.clock[0]), Scales(float(game.pace[0]), float(game.pace[1]), STEP_TOL)
-    gx, gy = game.pull.tolist()
     films, reels = _driven_now(game, t)
-    shared = Group(game.discs, game.obstacles, game.regions, game.rims, films, reels, gx, gy)
+    shared = Group(
+        game.discs, game.obstacles, game.regions, game.surface, game.rims, films, reels,
+        game.tides, game.spans,
+    )  # fmt: skip
     for part in _components(contacts, len(game.discs)):
         members = np.unique(part[part >= 0])
         before = room.states.copy()
@@ -118,10 +132,13 @@ def push_on(game: Game, room: Room, books: list[FloatArray]) -> Game:
             _, t_end, ways, jump, works = _follow(
                 shared, np.array([i]), contacts[:0], room.states, t, scales
             )
-            if t < t_end < math.inf:
+            room.marks[i] = PUSHED
+            if t_end == math.inf:
+                stay(game, int(i), t, room)
+                game.group[i] = 0
+            else:
                 _book(books, int(i), t, jump, works)
                 game = _set_out(game, int(i), t, t_end, ways[0])
-                room.marks[i] = PUSHED
     game.held[: len(held)], game.counts[N_HELD] = held, len(held)
     return game
 
@@ -190,20 +207,27 @@ def _follow(
 ) -> tuple[Whole, float, FloatArray, FloatArray, FloatArray]:
     """The contacts of a group that press, until when it is known, and pieces (m, rows, 21).
 
-    And the ledger (5,) of what jumped at once, and the works (rows, 19) of the way.
+    And the ledger (6,) of what jumped at once, and the works (rows, 19) of the way.
 
     No contacts where none presses; where all rest until they are hit, for ever and no pieces.
     """
-    # down a slope a puck may go on for ever, and gets faster than bounds should be
-    steep = shared.gx != 0.0 or shared.gy != 0.0
-    horizon = t + 2.0 * scales.speed / scales.rate if steep else math.inf
+    discs, surface = shared.discs[members], shared.surface
+    pulled = discs[:, [PULL_X, PULL_Y, TWIST]].any(axis=1)
+    spans = [span for span in shared.spans[members] if span[0] < span[1]]
+    jumps = [row for span in spans for row in shared.tides[[span[0], span[1] - 1], 0] if row > t]
+    # what is pulled or carried may go on for ever, and gets faster than bounds should be
+    driven = pulled.any() or any(surface[:2]) or surface.spin != 0.0
+    driven = driven or bool(jumps) or discs[:, [HOLD_VX, HOLD_VY]].any()
+    horizon = t + 2.0 * scales.speed / scales.rate if driven else math.inf
+    horizon = min([horizon, *jumps])
+    swings = surface.spin != 0.0 and (pulled.any() or bool(jumps))
     for first, last in shared.reels[members]:
         if first < last:  # what drives may turn where its piece ends
             horizon = min(horizon, float(shared.films[first, [BEGINS, DURATION]].sum()))
     alone, nothing = not len(contacts), np.zeros((len(members), 0, PIECE_COLUMNS))
     jump, idle = np.zeros(LEDGER), np.zeros((0, WORK_COLUMNS))
     for _ in range(_TRIES):
-        desk = desk_for(len(members), len(contacts))
+        desk = desk_for(len(members), len(contacts), int((discs[:, HOLD] != FREE).sum()))
         modes, doings = np.zeros(len(contacts), np.int64), np.zeros(len(members), np.int64)
         how = press(shared, members, contacts, states, t, scales, modes, doings, jump, desk)
         if how == UNSOLVED:
@@ -211,7 +235,7 @@ def _follow(
         contacts, modes = contacts[modes != APART], modes[modes != APART]
         if not (alone or len(contacts)):
             return contacts, t, nothing, jump, idle
-        if (doings == HELD).all():
+        if (doings == HELD).all() and not (jumps or swings):
             return contacts, math.inf, nothing, jump, idle
         pieces = np.zeros((len(members), ROWS, PIECE_COLUMNS))
         works = np.zeros((ROWS, WORK_COLUMNS))
@@ -267,6 +291,7 @@ def _set_out(game: Game, i: int, t: float, t_end: float, rows: FloatArray) -> Ga
     speeds = np.hypot(rows[:, [FIRST + VX, FIRST + 9 + VX]], rows[:, [FIRST + VY, FIRST + 9 + VY]])
     bends = np.hypot(rows[:, [FIRST + 6, FIRST + 15]], rows[:, [FIRST + 7, FIRST + 16]])
     flight[START], flight[UNTIL] = t, t_end
+    flight[DRIFT_X] = flight[DRIFT_Y] = 0.0
     flight[PLACE_X], flight[PLACE_Y], flight[ANGLE] = rows[0, FIRST : FIRST + 3]
     flight[STRONGEST] = _GRACE * bends.max()
     flight[FASTEST] = float((speeds.max(axis=1) + flight[STRONGEST] * rows[:, DURATION]).max())

@@ -31,18 +31,18 @@ import math
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
-from puck_tables.scene.friction import SPIN, VX, VY, X, Y, dry_friction
-from puck_tables.scene.ingredients import dry_in
+from puck_tables.scene.friction import SPIN, VX, VY, X, Y
+from puck_tables.world.alone import acceleration
+from puck_tables.world.footing import over_floor
 from puck_tables.world.game import Game, Whole
+from puck_tables.world.holds import response
 from puck_tables.world.layout import (
     ARC,
-    DAMPING,
-    DECEL,
+    HOLD,
     KIND,
     LIGHTNESS,
     RADIUS,
     TURNABILITY,
-    WAKE,
     WALL,
     C,
 )
@@ -54,7 +54,8 @@ from puck_tables.world.rims import along_of_pair, restitutions_of_pair, smaller_
 # restitutions, numbers or laws, of which E is the smaller
 NX, NY, SOFT, SLICK, E, BETA, MU, ACTS, PN, PT, SUM_N, SUM_T, FIRST_N, FIRST_T, LOSS = range(15)
 ONE, OTHER = 15, 16
-CONTACT_COLUMNS = 17
+CROSS = 17  # how much a unit of one impulse changes what the other one is against: of what is led
+CONTACT_COLUMNS = 18
 
 NO_END, TOO_FAST = -1, -2  # how impacts fail: rounds without end; faster than a table goes
 
@@ -87,31 +88,48 @@ def _push(game: Game, i: int, j: int, row: FloatArray, states: FloatArray) -> No
     pn, pt = row[PN], row[PT]
     px, py = pn * row[NX] - pt * row[NY], pn * row[NY] + pt * row[NX]
     discs = game.discs
-    states[i, VX] -= discs[i, LIGHTNESS] * px
-    states[i, VY] -= discs[i, LIGHTNESS] * py
-    states[i, SPIN] -= discs[i, RADIUS] * discs[i, TURNABILITY] * pt
+    dx, dy, turn = response(discs[i], states[i], px, py, discs[i, RADIUS] * pt)
+    states[i, VX] -= dx
+    states[i, VY] -= dy
+    states[i, SPIN] -= turn
     if j >= 0:
-        states[j, VX] += discs[j, LIGHTNESS] * px
-        states[j, VY] += discs[j, LIGHTNESS] * py
-        states[j, SPIN] -= discs[j, RADIUS] * discs[j, TURNABILITY] * pt
+        dx, dy, turn = response(discs[j], states[j], -px, -py, discs[j, RADIUS] * pt)
+        states[j, VX] -= dx
+        states[j, VY] -= dy
+        states[j, SPIN] -= turn
+
+
+@inlined
+def _slownesses(
+    disc: FloatArray, state: FloatArray, nx: float, ny: float
+) -> tuple[float, float, float]:
+    """How much a unit impulse changes approach and slip: 1/m_n, 1/m_t, and one the other."""
+    light, radius = disc[LIGHTNESS], disc[RADIUS]
+    if disc[HOLD] == 0.0:
+        return light, light + disc[TURNABILITY] * radius * radius, 0.0
+    dx, dy, turn = response(disc, state, nx, ny, 0.0)
+    cross = dy * nx - dx * ny + radius * turn
+    ex, ey, spin = response(disc, state, -ny, nx, radius)
+    return dx * nx + dy * ny, ey * nx - ex * ny + radius * spin, cross
 
 
 @inlined
 def prepare_contact(game: Game, i: int, j: int, states: FloatArray, row: FloatArray) -> None:
     """Normal, slownesses and law of a contact that has had no impulse yet."""
     discs = game.discs
-    light, turn = discs[i, LIGHTNESS], discs[i, TURNABILITY] * discs[i, RADIUS] ** 2
     if j >= 0:
         dx, dy = states[j, X] - states[i, X], states[j, Y] - states[i, Y]
         size = math.hypot(dx, dy)
         row[NX], row[NY] = dx / size, dy / size
-        light += discs[j, LIGHTNESS]
-        turn += discs[j, TURNABILITY] * discs[j, RADIUS] ** 2
     else:
         _, row[NX], row[NY], _ = normal_to(
             game.obstacles[-1 - j], discs[i, RADIUS], states[i, X], states[i, Y]
         )
-    row[SOFT], row[SLICK] = light, light + turn
+    soft, slick, cross = _slownesses(discs[i], states[i], row[NX], row[NY])
+    if j >= 0:
+        more, slicker, twist = _slownesses(discs[j], states[j], -row[NX], -row[NY])
+        soft, slick, cross = soft + more, slick + slicker, cross + twist
+    row[SOFT], row[SLICK], row[CROSS] = soft, slick, cross
     row[BETA], row[MU] = along_of_pair(game.rims, discs, game.obstacles, i, j)
     row[ONE], row[OTHER] = restitutions_of_pair(game.rims, discs, game.obstacles, i, j)
     row[E] = min(row[ONE], row[OTHER])
@@ -120,38 +138,19 @@ def prepare_contact(game: Game, i: int, j: int, states: FloatArray, row: FloatAr
 
 
 @inlined
-def _pull_along(game: Game, i: int, nx: float, ny: float, states: FloatArray) -> float:
-    """The acceleration along n of a disc alone."""
-    vx, vy, spin = states[i, VX], states[i, VY], states[i, SPIN]
-    disc = game.discs[i]
-    if disc[LIGHTNESS] == 0.0:
-        return 0.0  # straight on
-    gx, gy = game.pull[0], game.pull[1]
-    if vx == 0.0 and vy == 0.0 and spin == 0.0:
-        size = math.hypot(gx, gy)
-        left = 1.0 - disc[DECEL] / size if size > disc[DECEL] else 0.0
-        return left * (gx * nx + gy * ny)
-    fx, fy, _, _ = dry_friction(dry_in(game.regions, i), disc[RADIUS], vx, vy, spin)
-    drag = disc[DAMPING] + disc[WAKE] * math.hypot(vx, vy)
-    return (
-        (disc[LIGHTNESS] * fx + gx) * nx
-        + (disc[LIGHTNESS] * fy + gy) * ny
-        - drag * (vx * nx + vy * ny)
-    )
-
-
-@inlined
-def opening(game: Game, i: int, j: int, row: FloatArray, states: FloatArray) -> float:
+def opening(game: Game, i: int, j: int, t: float, row: FloatArray, states: FloatArray) -> float:
     """The second derivative of the gap of a contact if its discs flew on alone."""
     nx, ny = row[NX], row[NY]
     wx, wy = states[i, VX], states[i, VY]
     size = game.discs[i, RADIUS]
-    pull = _pull_along(game, i, nx, ny, states)
+    ax, ay = acceleration(game, i, t, states[i])
+    pull = ax * nx + ay * ny
     if j >= 0:
         wx -= states[j, VX]
         wy -= states[j, VY]
         size += game.discs[j, RADIUS]
-        pull -= _pull_along(game, j, nx, ny, states)
+        ax, ay = acceleration(game, j, t, states[j])
+        pull -= ax * nx + ay * ny
     else:
         obstacle = game.obstacles[-1 - j]
         size = math.inf if obstacle[KIND] == WALL else size + obstacle[C]
@@ -162,12 +161,12 @@ def opening(game: Game, i: int, j: int, row: FloatArray, states: FloatArray) -> 
 
 
 @inlined
-def _dies_out(game: Game, i: int, j: int, row: FloatArray, states: FloatArray) -> bool:
+def _dies_out(game: Game, i: int, j: int, t: float, row: FloatArray, states: FloatArray) -> bool:
     """Whether both press on each other so that this rebound and those after it are too low."""
     if row[E] >= 1.0:
         return False
     un, _ = approach(game, i, j, row[NX], row[NY], states)
-    closing = -opening(game, i, j, row, states)
+    closing = -opening(game, i, j, t, row, states)
     way = _slip2(game, i, states)
     if j >= 0:
         way = max(way, _slip2(game, j, states))
@@ -178,9 +177,10 @@ def _dies_out(game: Game, i: int, j: int, row: FloatArray, states: FloatArray) -
 
 @inlined
 def _slip2(game: Game, i: int, states: FloatArray) -> float:
-    """Q² of a disc."""
-    rim = game.discs[i, RADIUS] * states[i, SPIN]
-    return states[i, VX] ** 2 + states[i, VY] ** 2 + rim * rim
+    """Q² of a disc over the floor."""
+    vx, vy, spin = over_floor(game.surface, states[i])
+    rim = game.discs[i, RADIUS] * spin
+    return vx**2 + vy**2 + rim * rim
 
 
 @inlined
@@ -226,7 +226,7 @@ def _together(
     game: Game, contacts: Whole, count: int, rows: FloatArray, before: FloatArray,
     states: FloatArray, weight: float,
 ) -> None:  # fmt: skip
-    """The law for contacts that share discs, at most 1/weight each."""
+    """The law for contacts that share discs, at most 1/weight each, or bear on what is led."""
     for n in range(count):
         rows[n, PN] = rows[n, PT] = 0.0
     for _ in range(_MOST_ITERATIONS):
@@ -285,7 +285,7 @@ def _most_shared(contacts: Whole, count: int, rows: FloatArray, shares: Whole) -
 
 @inner
 def collide(
-    game: Game, contacts: Whole, count: int, rows: FloatArray, before: FloatArray,
+    game: Game, t: float, contacts: Whole, count: int, rows: FloatArray, before: FloatArray,
     states: FloatArray, shares: Whole, squeezed: bool,
 ) -> int:  # fmt: skip
     """All impacts of discs that touch, at one instant; how many rounds there were.
@@ -330,6 +330,10 @@ def collide(
                         if j >= 0:
                             before[j, column] = states[j, column]
         most = _most_shared(contacts, count, rows, shares)
+        for n in range(count):
+            if rows[n, ACTS] * rows[n, CROSS] != 0.0:  # approach and slip bear on each other
+                most = 2 * most
+                break
         again = True
         while again:
             if most == 1:
@@ -342,7 +346,7 @@ def collide(
             for n in range(count):
                 row = rows[n]
                 i, j = contacts[n, 0], contacts[n, 1]
-                if row[ACTS] * row[E] > 0.0 and _dies_out(game, i, j, row, states):
+                if row[ACTS] * row[E] > 0.0 and _dies_out(game, i, j, t, row, states):
                     row[E] = row[ONE] = row[OTHER] = 0.0
                     again = True
             if again:

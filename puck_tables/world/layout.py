@@ -9,20 +9,35 @@ law as ``−1`` less its place, see :mod:`puck_tables.world.rims`.
 
 from __future__ import annotations
 
+from puck_tables._core.arrays import FloatArray
+from puck_tables.kernels.compile import inlined
+
 # columns of a disc; one whose motion is given has the inverses 0
 RADIUS, LIGHTNESS, TURNABILITY, DECEL, DELTA = range(5)  # r, 1/m, 1/I, J = f g, 2 f h/r
 DAMPING, SPIN_DAMPING, WAKE = 5, 6, 7  # drag over mass, over inertia, 1/s; quadratic, 1/m
 RESTITUTION, TANGENTIAL, FRICTION = 8, 9, 10  # of its rim
 INTEGRATED = 11  # 1: also alone; what is known of its motion is an integral, no table
 MAKE = 12  # which kind of rim it has, where pairs of kinds have a law of their own
-DISC_COLUMNS = 13
+PULL_X, PULL_Y, TWIST = 13, 14, 15  # accelerations of slope and given forces, m/s², rad/s²
+# a constraint, see :class:`puck_tables.scene.ingredients.Hold`, fixed in place at t = 0
+HOLD, HOLD_X, HOLD_Y, HOLD_REACH, HOLD_ANGLE, HOLD_VX, HOLD_VY, HOLD_PLACE = range(16, 24)
+REGION = 24  # of the dry friction under it: the strip on which it is, times discs, and its number
+DISC_COLUMNS = 25
 
-# columns of an obstacle: for a wall (A, B) is its unit normal into the field and C its place along
-# it; for the others (A, B) is the centre, C the radius and [FROM, FROM + SPAN] the angles of an arc
+# columns of an obstacle: for a wall, edge or border (A, B) is its unit normal, into the field, and
+# C its place along it; for the others (A, B) is the centre, C the radius; [FROM, FROM + SPAN] are
+# the angles of an arc, and FROM the strip that begins at a border
 KIND, A, B, C = range(4)
 WALL_RESTITUTION, WALL_TANGENTIAL, WALL_FRICTION = 4, 5, 6
 FROM, SPAN = 7, 8
 OBSTACLE_MAKE = 9
 OBSTACLE_COLUMNS = 10
 
-WALL, POST, ARC, POCKET, EDGE = range(5)  # of the last two only the centre counts: no impact
+WALL, POST, ARC, POCKET, EDGE, BORDER = range(6)  # of the last three only the centre counts
+NO_CUSHION = POCKET  # from there on: no impact
+
+
+@inlined
+def feels_floor(disc: FloatArray) -> bool:
+    """Whether dry friction or drag acts on a disc."""
+    return disc[DECEL] + disc[DAMPING] + disc[WAKE] + disc[SPIN_DAMPING] > 0.0

@@ -1,4 +1,4 @@
-"""Where the energy of several pucks went: floor, rims, impacts; what is driven, the slope."""
+"""Where the energy of several pucks went: floor, rims, impacts; what drives, pulls and carries."""
 
 from __future__ import annotations
 
@@ -10,11 +10,22 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.scene.friction import SPIN, VX, VY
+from puck_tables.scene.holds import allowed_velocity
+from puck_tables.scene.ingredients import BLADE, FREE, floor_velocity
+from puck_tables.scene.parts import Floor
 from puck_tables.scene.pieces import Piece
 from puck_tables.world import game as g
 from puck_tables.world.agreement import pieces_of
-from puck_tables.world.flight import PATH, START
-from puck_tables.world.layout import LIGHTNESS, RADIUS, TURNABILITY
+from puck_tables.world.flight import DRIFT_X, DRIFT_Y, PATH, START
+from puck_tables.world.holds import edge_of
+from puck_tables.world.layout import (
+    HOLD,
+    HOLD_VX,
+    HOLD_VY,
+    LIGHTNESS,
+    RADIUS,
+    TURNABILITY,
+)
 from puck_tables.world.record import flights_of, states_at
 from puck_tables.world.works import (
     DRAG_HEAT,
@@ -24,6 +35,7 @@ from puck_tables.world.works import (
     PULL_WORK,
     RIM_HEAT,
     STINT,
+    SUPPORT_WORK,
     WORK_COLUMNS,
     worked,
 )
@@ -33,7 +45,7 @@ if TYPE_CHECKING:
 
 
 def ledger(world: World) -> dict[str, float]:
-    """Kinetic energy given by launches, heats, and works of driven bodies and of the slope, J.
+    """Kinetic energy given by launches, heats, and works of driven bodies, forces and supports, J.
 
     Of motions that are looked up the heat of the floor is what the flights lose; of those that are
     integrated heats and works are integrated with them; that of impacts comes from their impulses.
@@ -45,18 +57,24 @@ def ledger(world: World) -> dict[str, float]:
     energies = _kinetic(game, discs[:, None], flights)
     known = free[discs] & (game.history[: len(discs), 1] != PATH)
     booked = _booked(game, world._books)
-    floor = float((energies[known, 0] - energies[known, 1]).sum())
+    over = flights - _drift(game, len(discs))
+    slips = _kinetic(game, discs[:, None], over)
+    lost = float((energies[known, 0] - energies[known, 1]).sum())
+    floor = float((slips[known, 0] - slips[known, 1]).sum())
+    support = floor - lost + booked[SUPPORT_WORK]  # of a belt, on what is looked up
     floor += booked[FLOOR_HEAT] + booked[DRAG_HEAT]
     events = game.events[: game.counts[g.N_EVENTS]]
     impacts = float(events[:, g.LOST].sum())
     count = len(game.discs)
-    given = sum(_launched(piece) for piece in pieces_of(world.scene))  # rims may grip at once
+    floor_of = world.scene.floor
+    given = sum(_launched(piece, floor_of) for piece in pieces_of(world.scene))  # rims may grip
     given += sum(
         _given(game, row, discs, energies) for row in events[events[:, g.WHAT] == g.STRUCK]
     )
     driven = sum(_driven(game, row) for row in events[events[:, g.WHAT] == g.IMPACT])
     driven = float(driven + booked[DRIVE_WORK])
-    slope, rims = booked[PULL_WORK], booked[RIM_HEAT]
+    support += _led(game, events, discs, flights)
+    forces, rims = booked[PULL_WORK], booked[RIM_HEAT]
     gone = sum(
         energies[_before(game, row, discs), 1]
         for row in events if row[g.WHAT] in (g.POCKETED, g.OVER_EDGE)
@@ -64,12 +82,12 @@ def ledger(world: World) -> dict[str, float]:
     everyone = np.arange(count)
     now = states_at(game, game.clock)[0]
     left = float(_kinetic(game, everyone, now)[free].sum()) + gone
-    entries = [given, floor, rims, impacts, driven, slope, left]
+    entries = [given, floor, rims, impacts, driven, forces, support, left]
     largest = max(map(abs, entries))
-    missing = abs(given + driven + slope - floor - rims - impacts - left)
+    missing = abs(given + driven + forces + support - floor - rims - impacts - left)
     return {
         "kinetic_energy": given, "heat_floor": floor, "heat_rims": rims, "heat_impact": impacts,
-        "work_driven": driven, "work_slope": slope,
+        "work_driven": driven, "work_given": forces, "work_support": support,
         "energy_residual": missing / largest if largest else 0.0,
     }  # fmt: skip
 
@@ -94,13 +112,14 @@ def _booked(game: g.Game, books: list[FloatArray]) -> list[float]:
     return booked
 
 
-def _launched(piece: Piece) -> float:
+def _launched(piece: Piece, floor: Floor) -> float:
     """The kinetic energy with which a puck is launched at the start, J."""
     launch = piece.launch
     if piece.path or launch.time > 0.0:  # driven, or struck later
         return 0.0
     rim = piece.gyration * piece.radius * launch.spin
-    return 0.5 * piece.mass * (math.hypot(*(launch.velocity or (0.0, 0.0))) ** 2 + rim * rim)
+    velocity = allowed_velocity(launch, piece.constraint, floor)
+    return 0.5 * piece.mass * (math.hypot(*velocity) ** 2 + rim * rim)
 
 
 def _kinetic(game: g.Game, discs: g.Whole, states: FloatArray) -> FloatArray:
@@ -110,6 +129,46 @@ def _kinetic(game: g.Game, discs: g.Whole, states: FloatArray) -> FloatArray:
         energy = 0.5 * (states[..., VX] ** 2 + states[..., VY] ** 2) / light
         energy = energy + 0.5 * states[..., SPIN] ** 2 / turn
     return np.where(light > 0.0, energy, 0.0)
+
+
+def _drift(game: g.Game, flights: int) -> FloatArray:
+    """The velocities of belts under flights that drift, as states (flights, 1, 6)."""
+    drift = np.zeros((flights, 1, 6))
+    drift[:, 0, VX : VY + 1] = game.history[:flights, 2 + DRIFT_X : 2 + DRIFT_Y + 1]
+    return drift
+
+
+def _led(game: g.Game, events: FloatArray, discs: g.Whole, flights: FloatArray) -> float:
+    """The work of constraints that move, or that grip a floor that moves, in impacts.
+
+    What a disc gets beside the impulses of its contacts is the constraint's; A V is as before.
+    """
+    work = 0.0
+    hits = events[events[:, g.WHAT] == g.IMPACT]
+    for disc in np.flatnonzero(game.discs[:, HOLD] != FREE):
+        mass = 1.0 / game.discs[disc, LIGHTNESS]
+        mine = hits[(hits[:, g.WHO] == disc) | (hits[:, g.PARTNER] == disc)]
+        for time in np.unique(mine[:, g.TIME]):
+            rows = mine[mine[:, g.TIME] == time]
+            of = np.flatnonzero(discs == disc)
+            start = game.history[of, 2 + START]
+            first = int(np.searchsorted(start, time, "left"))
+            last = int(np.searchsorted(start, time, "right"))
+            before, after = flights[of[max(first - 1, 0)], 1], flights[of[last - 1], 0]
+            sign = np.where(rows[:, g.WHO] == disc, 1.0, -1.0)
+            nx, ny = sign * rows[:, g.NORMAL_X], sign * rows[:, g.NORMAL_Y]
+            rub = rows[:, g.RUB]
+            got = mass * (after - before)[VX : VY + 1]
+            push = rows[:, g.PUSH]
+            got = got + np.array([(push * nx - rub * ny).sum(), (push * ny + rub * nx).sum()])
+            kind = int(game.discs[disc, HOLD])
+            along = game.discs[disc, [HOLD_VX, HOLD_VY]]
+            if kind == BLADE:  # what it grips, and its own side slip across it
+                across = np.array([-1.0, 1.0]) * edge_of(game.discs[disc], before)[::-1]
+                floor = floor_velocity(game.surface, *before[:2].tolist())[:2]
+                along = floor + game.discs[disc, HOLD_VX] * across
+            work += float(got @ along)
+    return work
 
 
 def _before(game: g.Game, row: FloatArray, discs: g.Whole) -> int:

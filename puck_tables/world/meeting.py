@@ -23,7 +23,10 @@ from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.friction import VX, VY, X, Y
 from puck_tables.world.beside import stays_apart
 from puck_tables.world.flight import (
+    CARRIED,
     DAMPED,
+    DRIFT_X,
+    DRIFT_Y,
     GONE,
     LOOKED_UP,
     PATH,
@@ -31,15 +34,20 @@ from puck_tables.world.flight import (
     STRONGEST,
     UNTIL,
     corridor,
+    drifts,
+    moves_until,
     state_at,
 )
+from puck_tables.world.footing import strip_under
 from puck_tables.world.game import N_HELD, N_LOOKS, Game
 from puck_tables.world.layout import (
     ARC,
+    BORDER,
     DAMPING,
     EDGE,
     FROM,
     KIND,
+    LIGHTNESS,
     POCKET,
     RADIUS,
     SPAN,
@@ -80,7 +88,7 @@ def normal_to(
 ) -> tuple[float, float, float, bool]:
     """The gap of a disc to an obstacle, the unit normal towards it, and whether it is there."""
     kind = int(obstacle[KIND])
-    if kind in (WALL, EDGE):
+    if kind in (WALL, EDGE, BORDER):
         margin = radius if kind == WALL else 0.0
         gap = obstacle[A] * x + obstacle[B] * y - obstacle[C] - margin
         return gap, -obstacle[A], -obstacle[B], True
@@ -165,20 +173,27 @@ def are_held(game: Game, i: int, j: int) -> bool:
 
 
 @inlined
-def _moves_until(kind: int, flight: FloatArray) -> float:
-    """When a disc comes to rest, or what is known of it ends."""
-    if kind in (LOOKED_UP, PATH):
-        return flight[UNTIL]
-    return math.inf if kind == DAMPED else -math.inf
+def rest_together(kind: int, flight: FloatArray, other: int, second: FloatArray) -> bool:
+    """Whether two discs rest on the same floor, or one has left play."""
+    if kind == GONE or other == GONE or (kind == CARRIED and other == CARRIED):
+        return True
+    same = flight[DRIFT_X] == second[DRIFT_X] and flight[DRIFT_Y] == second[DRIFT_Y]
+    return kind == STILL and other == STILL and same
 
 
 @inlined
-def _bend(kind: int, flight: FloatArray, disc: FloatArray, state: FloatArray) -> float:
+def _bend(kind: int, flight: FloatArray, disc: FloatArray, state: FloatArray, t: float) -> float:
     """The largest acceleration from now on; of drag alone it falls with the speed."""
     if kind == DAMPED:
-        speed = math.hypot(state[VX], state[VY])
+        speed = math.hypot(state[VX] - flight[DRIFT_X], state[VY] - flight[DRIFT_Y])
         return speed * (disc[DAMPING] + disc[WAKE] * speed)
-    return flight[STRONGEST]
+    return flight[STRONGEST] if kind != LOOKED_UP or t < flight[UNTIL] else 0.0
+
+
+@inlined
+def _once_round(kind: int, flight: FloatArray, now: float) -> float:
+    """When a disc on a turntable is back where it is now."""
+    return now + 2.0 * math.pi / abs(flight[2]) if kind == CARRIED else math.inf
 
 
 @inlined
@@ -187,11 +202,11 @@ def _way_left(
 ) -> float:
     """How far a disc goes at most."""
     speed = math.hypot(state[VX], state[VY])
+    if drifts(flight) or kind in (PATH, CARRIED):
+        return math.inf
     if kind == DAMPED:
         return speed / disc[DAMPING] if disc[DAMPING] > 0.0 else math.inf
-    if kind == LOOKED_UP:
-        return speed * max(flight[UNTIL] - t, 0.0)
-    return math.inf if kind == PATH else 0.0
+    return speed * max(flight[UNTIL] - t, 0.0) if kind == LOOKED_UP else 0.0
 
 
 @inner
@@ -204,10 +219,14 @@ def next_meeting(
     States at the end in one and two.
     """
     kind, other = game.kinds[i], game.kinds[j]
-    if kind == GONE or other == GONE or (kind == STILL and other == STILL):
-        return math.inf
     flight, second = game.flights[i], game.flights[j]
-    last = min(horizon, max(_moves_until(kind, flight), _moves_until(other, second)))
+    if rest_together(kind, flight, other, second):
+        return math.inf
+    last = min(horizon, max(moves_until(kind, flight), moves_until(other, second)))
+    if other == STILL and not drifts(second):
+        last = min(last, _once_round(kind, flight, now))
+    if kind == STILL and not drifts(flight):
+        last = min(last, _once_round(other, second, now))
     if kind == PATH:
         last = min(last, flight[UNTIL])
     if other == PATH:
@@ -238,7 +257,7 @@ def next_meeting(
         gap = size - reach
         rate = (dx * (two[VX] - one[VX]) + dy * (two[VY] - one[VY])) / size
         rounded = ROUNDED * (abs(one[X]) + abs(one[Y]) + reach)
-        bend = _bend(kind, flight, discs[i], one) + _bend(other, second, discs[j], two)
+        bend = _bend(kind, flight, discs[i], one, t) + _bend(other, second, discs[j], two, t)
         step = safe_step(max(gap, 0.0), rate, bend)
         left = _way_left(kind, flight, discs[i], one, t)
         if gap > (left + _way_left(other, second, discs[j], two, t)) * (1.0 + 1e-9):
@@ -268,16 +287,23 @@ def next_crossing(
 ) -> float:
     """The same of a disc and the obstacle k, or where its centre passes it."""
     kind, flight = game.kinds[i], game.flights[i]
-    last = min(horizon, _moves_until(kind, flight))
+    last = min(horizon, moves_until(kind, flight), _once_round(kind, flight, now))
     if kind == GONE or not last > now or are_held(game, i, -1 - k):
         return math.inf
     disc, obstacle = game.discs[i], game.obstacles[k]
     radius, shape = disc[RADIUS], int(obstacle[KIND])
+    side = 1.0
+    if shape == BORDER:
+        strip = strip_under(game, i)
+        if strip not in (int(obstacle[FROM]), int(obstacle[FROM]) - 1) or disc[LIGHTNESS] == 0.0:
+            return math.inf
+        side = 1.0 if strip == int(obstacle[FROM]) else -1.0
     state_at(kind, flight, disc, game.curves, game.pieces, now, room, one)
     ax, ay, bx, by, margin = corridor(kind, flight, disc, one, last, now)
-    if shape in (WALL, EDGE):
+    if shape in (WALL, EDGE, BORDER):
         nearest = min(
-            normal_to(obstacle, radius, ax, ay)[0], normal_to(obstacle, radius, bx, by)[0]
+            side * normal_to(obstacle, radius, ax, ay)[0],
+            side * normal_to(obstacle, radius, bx, by)[0],
         )
         if nearest > margin * (1.0 + 1e-9):
             return math.inf
@@ -297,8 +323,9 @@ def next_crossing(
     for look in range(_MOST_LOOKS):
         game.counts[N_LOOKS] += 1
         gap, nx, ny, there = normal_to(obstacle, radius, one[X], one[Y])
+        gap, nx, ny = side * gap, side * nx, side * ny
         rate = -(nx * one[VX] + ny * one[VY])
-        bend = _bend(kind, flight, disc, one)
+        bend = _bend(kind, flight, disc, one, t)
         if gap > _way_left(kind, flight, disc, one, t) * (1.0 + 1e-9):
             return math.inf
         rounded = ROUNDED * (abs(one[X]) + abs(one[Y]) + radius + obstacle[C] * (shape == ARC))

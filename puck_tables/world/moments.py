@@ -80,14 +80,15 @@ def sets_off(
     where a disc alone could not bear them all is it looked at who moves.
     """
     contacts = modes.shape[0]
-    if not overborne(group, members, doings, contacts, scales, False, desk):
+    y = desk.states[1]
+    if not overborne(group, members, doings, contacts, y, scales, False, desk):
         return 0
     trial, does = desk.modes[0, :contacts], desk.doings[: members.shape[0]]
     for c in range(contacts):
         trial[c] = modes[c]
     for place in range(members.shape[0]):
         does[place] = doings[place]
-    if not settle(group, members, trial, does, desk.states[1], scales, desk):
+    if not settle(group, members, trial, does, y, scales, desk):
         return -1
     for place in range(members.shape[0]):
         begins = doings[place] == HELD and does[place] == YIELDS

@@ -55,7 +55,7 @@ def times_row(desk: Desk, number: int, rates: FloatArray, first: int) -> float:
 
 @inlined
 def constrain(desk: Desk, modes: IntArray, sticks: bool, slides: bool) -> int:
-    """Rows and columns of what contacts in these modes forbid; their number.
+    """Rows and columns of what contacts in these modes forbid, and then ties; their number.
 
     ``sticks``: also that rims that stick slip; ``slides``: with the forces of rims that slide.
     """
@@ -80,7 +80,20 @@ def constrain(desk: Desk, modes: IntArray, sticks: bool, slides: bool) -> int:
                 column[4] -= rim * sight[NX]
                 column[2], column[5] = rim * sight[ARM], rim * sight[FAR_ARM]
             count += 1
+    for tie in range(desk.number[0]):
+        desk.owners[count, 0], desk.owners[count, 1] = desk.tied[tie], -1
+        for i in range(3):
+            desk.rows[count, i] = desk.columns[count, i] = desk.ties[tie, i]
+            desk.rows[count, 3 + i] = desk.columns[count, 3 + i] = 0.0
+        count += 1
     return count
+
+
+@inlined
+def stray(desk: Desk, first: int, what: int) -> None:
+    """By how much places (0) or velocities (1) of what is led are off, as what forces take out."""
+    for tie in range(desk.number[0]):
+        desk.vectors[RIGHT, first + tie] = desk.strays[tie, what]
 
 
 @inlined
@@ -202,6 +215,10 @@ def right_hand_side(desk: Desk, modes: IntArray) -> None:
                 times_row(desk, number, desk.own, 0) + bend * sight[APPROACH]
             )
             number += 1
+    for tie in range(desk.number[0]):
+        right = times_row(desk, number, desk.own, 0) - desk.strays[tie, 2]
+        desk.vectors[RIGHT, number] = right
+        number += 1
 
 
 @kernel
@@ -225,6 +242,8 @@ def push_and_move(desk: Desk, modes: IntArray, members: int) -> float:
             number += 1
         else:
             desk.pushes[c, 1] = modes[c] * desk.sights[c, GRIP] * desk.pushes[c, 0]
+    for tie in range(desk.number[0]):
+        desk.tautness[tie] = desk.vectors[SOLUTION, number + tie]
     for place in range(members):
         for i in range(3):
             desk.rates[place, i] = desk.own[place, i]

@@ -16,13 +16,23 @@ from puck_tables.io.dataset import Dataset, Variable, variable
 from puck_tables.result import TimedResult
 from puck_tables.scene.entries import tables_of, units_of
 from puck_tables.scene.outcome import column_of, refuse_changed, scene_texts
+from puck_tables.scene.parts import Drag, Force
+from puck_tables.scene.pieces import Piece
 from puck_tables.scene.scene import Scene
-from puck_tables.world.agreement import is_integrated, number_of, pieces_of
+from puck_tables.world.agreement import (
+    called,
+    frictions_under,
+    has_closed_forms,
+    is_integrated,
+    number_of,
+    pieces_of,
+)
 from puck_tables.world.rim_laws import rule_of
 from puck_tables.world.world import Meeting
 
 STATE = ("x", "y", "orientation", "vx", "vy", "spin")
 MEETING = Meeting._fields
+_NAMED = 6  # pucks of one way
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -38,8 +48,9 @@ class WorldRun(TimedResult):
 
     ``kinetic_energy`` J given by launches, ``heat_floor``, ``heat_rims``, ``heat_impact``: what
     friction of the floor or drag, rims that push each other, and impacts took, J; ``work_driven``,
-    ``work_slope``: what driven bodies and a slope gave; ``energy_residual``: what this ledger
-    misses, as a share of its largest entry.  ``end_error`` m: how far twins end
+    ``work_given``, ``work_support``: what driven bodies, slope and forces, and floors and
+    constraints that move gave; ``energy_residual``: what this ledger misses, as a share of its
+    largest entry.  ``end_error`` m: how far twins end
     whose launches are off by 1e-9, as much as the tables may be wrong by.  Each impact of round
     pucks multiplies errors: after many of them it may be as large as the board, and nobody can know
     the end, for the launch decides it by digits that it does not have.
@@ -59,7 +70,8 @@ class WorldRun(TimedResult):
     heat_rims: float
     heat_impact: float
     work_driven: float
-    work_slope: float
+    work_given: float
+    work_support: float
     energy_residual: float
     end_error: float
     files: Mapping[str, str] = field(default_factory=dict, repr=False)
@@ -115,7 +127,7 @@ class WorldRun(TimedResult):
         """The scalars with what went in, and the units of all, ready for JSON."""
         scalars = (
             "end", "end_time", "kinetic_energy", "heat_floor", "heat_rims", "heat_impact",
-            "work_driven", "work_slope", "energy_residual", "end_error",
+            "work_driven", "work_given", "work_support", "energy_residual", "end_error",
         )  # fmt: skip
         pucks = [
             {
@@ -165,7 +177,7 @@ class WorldRun(TimedResult):
 
 
 def ways_of(scene: Scene) -> str:
-    """How many pucks of a scene are moved how, a line each.
+    """How the pucks of a scene are moved, a line for each way, and which they are.
 
     Examples
     --------
@@ -174,18 +186,40 @@ def ways_of(scene: Scene) -> str:
     '1 puck looked up from impact to impact'
     """
     pieces = pieces_of(scene)
-    driven = sum(bool(piece.path) for piece in pieces)
-    integrated = sum(is_integrated(scene, piece) for piece in pieces)
-    damped = sum(
-        piece.friction == 0.0 and not piece.path and not is_integrated(scene, piece)
-        for piece in pieces
-    )
-    ways = {
-        "looked up from impact to impact": len(pieces) - driven - integrated - damped,
-        "integrated from impact to impact": integrated,
-        "in closed form, without dry friction": damped,
-        "driven along a path": driven,
-    }
-    return "\n".join(
-        f"{count} puck{'s' if count != 1 else ''} {way}" for way, count in ways.items() if count
-    )
+    ways: dict[str, list[str]] = {}
+    for number, piece in enumerate(pieces):
+        ways.setdefault(_way_of(scene, piece), []).append(called(piece, number))
+    lines = []
+    for way, names in ways.items():
+        shown = ""
+        if len(ways) > 1:
+            more = f" and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
+            shown = f" ({', '.join(names[:_NAMED])}{more})"
+        lines.append(f"{len(names)} puck{'s' if len(names) != 1 else ''} {way}{shown}")
+    return "\n".join(lines)
+
+
+def _way_of(scene: Scene, piece: Piece) -> str:
+    """How a puck is moved, and why it is not looked up."""
+    if piece.path:
+        return "driven along a path"
+    floor, frictions = scene.floor, frictions_under(scene, piece)
+    integrated = [is_integrated(scene, piece, friction) for friction in frictions]
+    if any(integrated):
+        acts = {
+            piece.constraint.kind if piece.constraint else "": piece.constraint is not None,
+            "slope": floor.slope > 0.0,
+            "turntable": floor.turning != 0.0,
+            "force": piece.force != Force(),
+            "drag": scene.drag != Drag(),
+            "no closed forms": not all(has_closed_forms(piece, one) for one in frictions),
+        }
+        what = ", ".join(name for name, there in acts.items() if there)
+        where = "" if all(integrated) else " on some strips"
+        return f"integrated from impact to impact{where}: {what}"
+    if not any(frictions):
+        return "in closed form, without dry friction"
+    way = "looked up from impact to impact"
+    if floor.strips is not None:
+        way = "looked up from impact or border to the next"
+    return f"{way}, over the belt" if any(floor.velocity) else way

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
 from puck_tables.kernels.section_spline import NO_SECTION
+from puck_tables.scene.forces import drive_of
 from puck_tables.scene.friction import SPIN, VX, VY
-from puck_tables.scene.ingredients import Regions
+from puck_tables.scene.holds import allowed_velocity
+from puck_tables.scene.ingredients import RAIL, Regions, Surface, floor_velocity, hold_of
 from puck_tables.scene.parts import Wall
 from puck_tables.scene.pieces import Arc, Piece, Post
 from puck_tables.scene.regions import NO_LAW, SLICE_SHARE, of_one_shape
@@ -18,7 +21,13 @@ from puck_tables.scene.scene import Scene
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.table.friction_section import FINEST_ACCURACY
 from puck_tables.world import layout
-from puck_tables.world.agreement import has_closed_forms, is_integrated, pieces_of, start_of
+from puck_tables.world.agreement import (
+    frictions_under,
+    has_closed_forms,
+    is_integrated,
+    pieces_of,
+    start_of,
+)
 from puck_tables.world.departures import Room, drive_on, room_for
 from puck_tables.world.drive import pieces_along, rows_of
 from puck_tables.world.flight import (
@@ -29,6 +38,7 @@ from puck_tables.world.flight import (
     PLACE_Y,
     Curves,
 )
+from puck_tables.world.footing import step_onto
 from puck_tables.world.game import (
     COUNTS,
     EVENT_COLUMNS,
@@ -72,6 +82,8 @@ def game_of(scene: Scene, order: Whole) -> tuple[Game, Room]:
     pieces = [pieces_of(scene)[number] for number in order]
     count = len(pieces)
     discs, states = np.zeros((count, layout.DISC_COLUMNS)), np.zeros((count, 6))
+    surface = Surface(*scene.floor.velocity, *scene.floor.centre, scene.floor.turning)
+    spans, tides = np.zeros((count, 2), np.int64), [np.zeros((0, 4))]
     drives, ways = np.zeros((count, 2), np.int64), [np.zeros((0, 20))]
     launches = []
     rims, discs[:, layout.MAKE], makes, called = rims_of(scene, pieces)
@@ -80,9 +92,12 @@ def game_of(scene: Scene, order: Whole) -> tuple[Game, Room]:
         inertia = piece.mass * (piece.gyration * piece.radius) ** 2
         if not driven:
             discs[i, layout.LIGHTNESS], discs[i, layout.TURNABILITY] = 1.0 / piece.mass, 1 / inertia
-            discs[i, layout.DECEL] = piece.decel * math.cos(scene.floor.slope)
-            discs[i, layout.DELTA] = piece.delta
-            discs[i, layout.INTEGRATED] = float(is_integrated(scene, piece))
+            discs[i, layout.PULL_X : layout.TWIST + 1] = _pull_on(scene, piece, inertia)
+            discs[i, layout.HOLD : layout.HOLD_PLACE + 1] = _hold_on(piece)
+            if piece.force.over_time:
+                first = sum(map(len, tides))
+                tides.append(drive_of(piece.force.over_time))
+                spans[i] = first, first + len(tides[-1])
             discs[i, layout.DAMPING] = scene.drag.sliding / piece.mass
             discs[i, layout.WAKE] = scene.drag.quadratic / piece.mass
             discs[i, layout.SPIN_DAMPING] = scene.drag.spinning / inertia
@@ -90,7 +105,7 @@ def game_of(scene: Scene, order: Whole) -> tuple[Game, Room]:
         discs[i, layout.RESTITUTION] = number_for(piece.restitution, called)
         discs[i, layout.TANGENTIAL], discs[i, layout.FRICTION] = piece.tangential, piece.rim
         launch = piece.launch
-        velocity = launch.velocity or (0.0, 0.0)
+        velocity = allowed_velocity(launch, piece.constraint, scene.floor)
         states[i, :2], states[i, 2] = start_of(piece), launch.orientation
         if driven:
             first = sum(map(len, ways))
@@ -100,9 +115,14 @@ def game_of(scene: Scene, order: Whole) -> tuple[Game, Room]:
             launches.append([launch.time, i, *velocity, launch.spin])
         else:
             states[i, 3:5], states[i, 5] = velocity, launch.spin
+    floors = _floors(scene, pieces)
     game = Game(
         discs=discs,
-        regions=_regions(scene, pieces, discs),
+        regions=_regions(scene, pieces, discs, floors),
+        floors=floors,
+        surface=surface,
+        tides=np.vstack(tides),
+        spans=spans,
         rims=rims,
         obstacles=_obstacles(scene, called, makes),
         curves=shipped_curves(),
@@ -120,8 +140,9 @@ def game_of(scene: Scene, order: Whole) -> tuple[Game, Room]:
         history=np.zeros((ROWS + 4 * count, HISTORY_COLUMNS)),
         counts=np.zeros(COUNTS, np.int64),
         pace=np.zeros(2),
-        pull=np.array(_pull(scene, pieces)),
     )
+    for i, strip in enumerate(_strips(scene, states)):
+        step_onto(game, i, strip)
     game.counts[N_PIECES] = len(game.pieces)
     room = room_for(count)
     for i in range(count):
@@ -147,10 +168,13 @@ def fastest(game: Game, states: FloatArray) -> float:
     rims = game.discs[:, layout.RADIUS] * np.abs(states[:, SPIN])
     driven = game.pieces[: game.drives.max(), FIRST + VX : FIRST + VY + 1]
     launched = np.hypot(game.launches[:, 2], game.launches[:, 3])
+    led = np.hypot(*game.discs[:, [layout.HOLD_VX, layout.HOLD_VY]].T)
+    floor = np.array([floor_velocity(game.surface, *place) for place in states[:, :2].tolist()])
     return max(
         float(np.hypot(np.hypot(states[:, VX], states[:, VY]), rims).max()),
         float(np.hypot(*driven.T).max(initial=0.0)), float(launched.max(initial=0.0)),
-    )  # fmt: skip
+        float(led.max(initial=0.0)),
+    ) + float(np.hypot(*floor[:, :2].T).max(initial=0.0))  # fmt: skip
 
 
 def scales_of(game: Game, speeds: FloatArray) -> FloatArray:
@@ -165,15 +189,16 @@ def scales_of(game: Game, speeds: FloatArray) -> FloatArray:
     """
     radius = float(game.discs[:, layout.RADIUS].min())
     _refuse_far(game, float(speeds.max(initial=0.0)), radius)
-    steady = max(float(game.discs[:, layout.DECEL].max()), float(np.hypot(*game.pull)))
+    steady = max(float(game.floors[:, 0].max()), _strongest(game))
+    turning = abs(game.surface.spin)
+    steady = max(steady, turning * float(speeds.max(initial=0.0)))
     speeds = np.where(speeds > 0.0, speeds, np.sqrt(steady * radius))
     return np.stack([speeds, np.where(steady > 0.0, steady, speeds**2 / radius)], axis=1)
 
 
 def _refuse_far(game: Game, speed: float, radius: float) -> None:
     """Refuse looked-up pucks whose slide, at the largest slip, is beyond what digits can tell."""
-    looked = (game.discs[:, layout.LIGHTNESS] > 0.0) & (game.discs[:, layout.INTEGRATED] == 0.0)
-    decels = game.discs[looked & (game.discs[:, layout.DECEL] > 0.0), layout.DECEL]
+    decels = game.floors[(game.floors[:, 2] == 0.0) & (game.floors[:, 0] > 0.0), 0]
     least = float(decels.min(initial=math.inf))
     if not math.isfinite(speed) or (speed > 0.0 and speed / least > FAR * radius / speed):
         raise InputError(
@@ -183,34 +208,83 @@ def _refuse_far(game: Game, speed: float, radius: float) -> None:
         )
 
 
-def _regions(scene: Scene, pieces: list[Piece], discs: FloatArray) -> Regions:
-    """The dry friction of every disc: closed forms, or sections where one is no plain puck.
+def _strongest(game: Game) -> float:
+    """The largest acceleration by slope and given forces, m/s²."""
+    discs, most = game.discs, 0.0
+    for i, (first, last) in enumerate(game.spans):
+        rows = np.vstack([np.zeros(4), game.tides[first:last]])
+        light, turns = discs[i, layout.LIGHTNESS], discs[i, layout.TURNABILITY]
+        ax = discs[i, layout.PULL_X] + light * rows[:, 1]
+        ay = discs[i, layout.PULL_Y] + light * rows[:, 2]
+        rim = discs[i, layout.RADIUS] * (discs[i, layout.TWIST] + turns * rows[:, 3])
+        most = max(most, float(np.hypot(ax, ay).max()), float(np.abs(rim).max()))
+    return most
+
+
+def _pull_on(scene: Scene, piece: Piece, inertia: float) -> tuple[float, float, float]:
+    """Accelerations by the slope and the constant forces, m/s², rad/s²."""
+    floor, (fx, fy) = scene.floor, piece.force.constant
+    pull = piece.gravity * math.sin(floor.slope)
+    return (
+        pull * math.cos(floor.downhill) + fx / piece.mass,
+        pull * math.sin(floor.downhill) + fy / piece.mass,
+        piece.force.torque / inertia,
+    )
+
+
+def _hold_on(piece: Piece) -> tuple[float, ...]:
+    """The constraint of a puck, with the place of a rail along its normal."""
+    hold, (x, y) = hold_of(piece.constraint, piece.launch), piece.launch.position
+    place = hold.ax * x + hold.ay * y if hold.kind == RAIL else 0.0
+    return (*hold, place)
+
+
+def _floors(scene: Scene, pieces: list[Piece]) -> FloatArray:
+    """Deceleration, δ, and whether it is integrated, of every disc on every strip; see ``Game``."""
+    rows = []
+    for strip in range(len(scene.frictions) if scene.floor.strips else 1):
+        for piece in pieces:
+            friction = frictions_under(scene, piece)[strip]
+            decel = friction * piece.gravity * math.cos(scene.floor.slope)
+            delta = 2.0 * friction * piece.height / piece.radius
+            integrated = float(is_integrated(scene, piece, friction))
+            rows.append([0.0] * 3 if piece.path else [decel, delta, integrated])
+    return np.array(rows)
+
+
+def _strips(scene: Scene, states: FloatArray) -> list[int]:
+    """The strip of the floor on which each disc starts."""
+    strips = scene.floor.strips
+    if strips is None:
+        return [0] * len(states)
+    across = np.array([math.cos(strips.direction), math.sin(strips.direction)])
+    found: list[int] = np.searchsorted(strips.borders, states[:, :2] @ across, "right").tolist()
+    return found
+
+
+def _regions(scene: Scene, pieces: list[Piece], discs: FloatArray, floors: FloatArray) -> Regions:
+    """The dry friction of every disc on every strip: closed forms, or sections if one needs them.
 
     Raises
     ------
     AccuracyError
         If the friction of one cannot be tabulated as fine as the scene asks.
     """
-    load, delta = np.zeros(len(discs)), discs[:, layout.DELTA].copy()
-    free = discs[:, layout.LIGHTNESS] > 0.0
-    load[free] = discs[free, layout.DECEL] / discs[free, layout.LIGHTNESS]
-    if all(has_closed_forms(piece) for piece in pieces):
-        return Regions(load, delta, np.empty((len(discs), *NO_SECTION.shape)), NO_LAW)
+    strips = len(floors) // len(discs)
+    light = np.tile(discs[:, layout.LIGHTNESS], strips)
+    load = np.where(light > 0.0, floors[:, 0] / np.where(light > 0.0, light, 1.0), 0.0)
+    delta = floors[:, 1].copy()
+    there = [(p, f[n]) for n in range(strips) for p in pieces for f in [frictions_under(scene, p)]]
+    if all(has_closed_forms(*one) for one in there):
+        return Regions(load, delta, np.empty((len(floors), *NO_SECTION.shape)), NO_LAW)
     accuracy = max(SLICE_SHARE * scene.run.tol, FINEST_ACCURACY)
-    return Regions(
-        load, delta, of_one_shape([p.body.friction(accuracy).cut for p in pieces]), NO_LAW
-    )
-
-
-def _pull(scene: Scene, pieces: list[Piece]) -> tuple[float, float]:
-    """The acceleration down the slope, m/s²."""
-    floor = scene.floor
-    pull = pieces[0].gravity * math.sin(floor.slope)
-    return pull * math.cos(floor.downhill), pull * math.sin(floor.downhill)
+    bodies = [replace(piece, friction=friction).body for piece, friction in there]
+    cuts = of_one_shape([body.friction(accuracy).cut for body in bodies])
+    return Regions(load, delta, cuts, NO_LAW)
 
 
 def _obstacles(scene: Scene, called: dict[object, float], makes: FloatArray) -> FloatArray:
-    """Rows of :mod:`puck_tables.world.layout`: walls, posts, arcs, pockets, edges."""
+    """Rows of :mod:`puck_tables.world.layout`: walls, posts, arcs, pockets, edges, borders."""
 
     def rim(cushion: Wall | Post | Arc) -> list[float]:
         return [number_for(cushion.restitution, called), cushion.tangential, cushion.friction]
@@ -226,6 +300,11 @@ def _obstacles(scene: Scene, called: dict[object, float], makes: FloatArray) -> 
         rows.append([layout.POCKET, *pocket.point, pocket.radius, *[0.0] * 5])
     for edge in scene.edges:
         rows.append([layout.EDGE, *_line(edge.point, edge.normal), *[0.0] * 5])
+    if scene.floor.strips is not None:
+        way = scene.floor.strips.direction
+        across = math.cos(way), math.sin(way)
+        for number, place in enumerate(scene.floor.strips.borders):
+            rows.append([layout.BORDER, *across, place, 0.0, 0.0, 0.0, number + 1.0, 0.0])
     found = np.array(rows, np.float64).reshape(-1, layout.OBSTACLE_MAKE)
     return np.column_stack([found, makes])
 
@@ -233,7 +312,8 @@ def _obstacles(scene: Scene, called: dict[object, float], makes: FloatArray) -> 
 def obstacle_names(scene: Scene) -> list[str]:
     """What the rows of the obstacles are called, in their order."""
     lists = {"wall": scene.walls, "post": scene.posts, "arc": scene.arcs,
-             "pocket": scene.pockets, "edge": scene.edges}  # fmt: skip
+             "pocket": scene.pockets, "edge": scene.edges,
+             "border": scene.floor.strips.borders if scene.floor.strips else ()}  # fmt: skip
     return [f"{name} {number}" for name, ones in lists.items() for number in range(len(ones))]
 
 

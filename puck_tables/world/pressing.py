@@ -8,7 +8,15 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, kernel
 from puck_tables.scene.friction import SPIN, VX
 from puck_tables.world.complementarity import rim_mode
-from puck_tables.world.forces import can_rest, gain_of, place_driven, slip_of
+from puck_tables.world.footing import over_floor
+from puck_tables.world.forces import (
+    can_rest,
+    count_rows,
+    gain_of,
+    place_driven,
+    rest_on_floor,
+    slip_of,
+)
 from puck_tables.world.group import (
     APART,
     APPROACH,
@@ -32,7 +40,7 @@ from puck_tables.world.group import (
 from puck_tables.world.layout import LIGHTNESS, RADIUS, TURNABILITY
 from puck_tables.world.meeting import HARDLY
 from puck_tables.world.putting_right import stop_slips
-from puck_tables.world.sights import look
+from puck_tables.world.sights import look, look_at_ties
 from puck_tables.world.works import DRIVE_WORK, RIM_HEAT
 from puck_tables.world.yielding import settle
 
@@ -57,7 +65,8 @@ def _goes_on(group: Group, number: int, place: int, scales: Scales, desk: Desk) 
     """Whether a small slip, if there is one, grows in the direction that it has."""
     y, way, radius = desk.states[0, place], desk.ways[place], group.discs[number, RADIUS]
     slip = slip_of(group, number, y)
-    along = way[0] * y[VX] + way[1] * y[VX + 1] + radius * radius * way[2] * y[SPIN]
+    vx, vy, spin = over_floor(group.surface, y)
+    along = way[0] * vx + way[1] * vy + radius * radius * way[2] * spin
     gains = gain_of(group, number, place, desk) > GAINS * scales.rate
     return slip == 0.0 or (gains and along > _SAME * slip)
 
@@ -101,7 +110,7 @@ def press(
         more.  Rims that press and have friction without bound are stopped at once: then contacts
         that are APART may approach.
     modes : (c,) and doings : (m,), the answer, see :mod:`puck_tables.world.group`
-    ledger : (5,) J, to which the heat of what is stopped is added
+    ledger : (6,) J, to which the heat of what is stopped is added
 
     Returns
     -------
@@ -121,15 +130,18 @@ def press(
             q = slip_of(group, number, y[place])
             if q <= STILL * scales.speed:
                 doings[place] = HELD
-                y[place, 3] = y[place, 4] = y[place, 5] = 0.0
+                rest_on_floor(group, y[place])
             elif q <= small_slip(scales):
                 doings[place] = YIELDS
-                for i in range(3):
-                    desk.ways[place, i] = y[place, 3 + i] / q
+                vx, vy, spin = over_floor(group.surface, y[place])
+                way = desk.ways[place]
+                way[0], way[1], way[2] = vx / q, vy / q, spin / q
+    count_rows(group, members, t, desk)
     place_driven(group, members, doings, t, y, desk)
     stopped, again = desk.modes[1, : contacts.shape[0]], True
     while again:
         look(group, members, pairs, y, desk.sights)
+        look_at_ties(group, members, t, y, desk)
         for c in range(contacts.shape[0]):
             modes[c] = rim_mode(desk.sights[c], scales.speed)
             stopped[c] = STICKS

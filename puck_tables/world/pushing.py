@@ -16,7 +16,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, kernel
-from puck_tables.world.forces import can_rest, slip_of
+from puck_tables.world.forces import can_rest, count_rows, slip_of
 from puck_tables.world.group import (
     DRIVEN,
     FULL,
@@ -62,12 +62,15 @@ _NOBODY = cast(int, np.int64(-1))
 
 
 @inlined
-def _end_of_film(
-    group: Group, members: IntArray, doings: IntArray, t: float, t_end: float
+def _next_row(
+    group: Group, members: IntArray, doings: IntArray, t: float, t_end: float, desk: Desk
 ) -> float:
-    """The next moment, at most ``t_end``, at which a film turns to its next row."""
+    """The next moment, at most ``t_end``, at which a film or a force turns to its next row."""
     end = t_end
     for place in range(members.shape[0]):
+        row = group.spans[members[place], 0] + desk.passed[place]
+        if row < group.spans[members[place], 1]:
+            end = min(end, group.tides[row, 0])
         if doings[place] == DRIVEN:
             first, last = group.reels[members[place], 0], group.reels[members[place], 1]
             row = group.films[piece_at(group.films, first, last, t)]
@@ -181,11 +184,14 @@ def follow(
         for i in range(6):
             y[place, i] = states[members[place], i]
     unit = scales.speed / scales.rate
+    count_rows(group, members, t, desk)
     rates_at(group, members, modes, doings, t, y, BEGIN, scales, desk)
     watch(desk, modes, scales, False)
     still_there = False  # anybody at rest whom somebody touches
     for place in range(size):
-        still_there = still_there or (doings[place] == HELD and contacts.shape[0] > 0)
+        forced = group.spans[members[place], 0] < group.spans[members[place], 1]
+        changes = contacts.shape[0] > 0 or forced or group.surface.spin != 0.0
+        still_there = still_there or (doings[place] == HELD and changes)
     h, start, passed, count = _FIRST * unit, t, 0.0, 0
     how, which = TIME_UP, -1
     c, kind = first_negative(desk, 0, contacts.shape[0])
@@ -195,7 +201,8 @@ def follow(
         if count == pieces.shape[1]:
             how = FULL
             break
-        target = _end_of_film(group, members, doings, t, t_end)
+        count_rows(group, members, t, desk)
+        target = _next_row(group, members, doings, t, t_end, desk)
         h = min(h, longest_step(group, members, doings, desk))
         landed = 1.1 * h >= target - t
         length = target - t if landed else h

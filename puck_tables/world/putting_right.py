@@ -15,19 +15,21 @@ from puck_tables.world.multipliers import (
     add_forces,
     constrain,
     solve,
+    stray,
     times_row,
 )
 
 
 @kernel
 def close_gaps(desk: Desk, modes: IntArray, y: FloatArray) -> None:
-    """Places where all that presses touches; the sights are of y (m, 6)."""
+    """Places where all that presses touches and all that is led is; the sights are of y (m, 6)."""
     count = constrain(desk, modes, False, False)
     number = 0
     for c in range(modes.shape[0]):
         if modes[c] != APART:
             desk.vectors[RIGHT, number] = -desk.sights[c, GAP]
             number += 1
+    stray(desk, number, 0)
     solve(desk, count)
     add_forces(desk, count, y, 0)
 
@@ -48,6 +50,7 @@ def stop_slips(desk: Desk, modes: IntArray, y: FloatArray) -> float:
         if modes[c] == STICKS and desk.sights[c, GRIP] > 0.0:
             desk.vectors[RIGHT, number] = times_row(desk, number, y, 3)
             number += 1
+    stray(desk, number, 1)
     solve(desk, count)
     add_forces(desk, count, y, 3)
     heat = 0.0

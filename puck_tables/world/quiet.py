@@ -9,11 +9,12 @@ from __future__ import annotations
 import math
 
 from puck_tables.kernels.compile import inlined, inner
-from puck_tables.scene.friction import SPIN, VX, VY
+from puck_tables.scene.friction import VX, VY
 from puck_tables.world.departures import CONCERNED, Room
+from puck_tables.world.footing import slips
 from puck_tables.world.game import Game
 from puck_tables.world.impact import ACTS, NX, NY, PN, approach
-from puck_tables.world.layout import DECEL, LIGHTNESS
+from puck_tables.world.layout import DECEL, LIGHTNESS, PULL_X, PULL_Y
 from puck_tables.world.meeting import QUIET
 
 _ROUNDED = 4e-16  # of the speeds of both: less cannot be taken out
@@ -25,9 +26,9 @@ def _moved_by(game: Game, room: Room, i: int) -> float:
     """1/m; 0 of what the floor holds at rest, and of no disc."""
     if i < 0:
         return 0.0
-    vx, vy, spin = room.states[i, VX], room.states[i, VY], room.states[i, SPIN]
-    decel = game.discs[i, DECEL]
-    if vx == 0.0 and vy == 0.0 and spin == 0.0 and decel > math.hypot(game.pull[0], game.pull[1]):
+    disc = game.discs[i]
+    steep = disc[DECEL] <= math.hypot(disc[PULL_X], disc[PULL_Y])
+    if not (steep or slips(game.surface, room.states[i])):
         return 0.0
     return game.discs[i, LIGHTNESS]
 

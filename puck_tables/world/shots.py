@@ -13,7 +13,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import keep_on
 from puck_tables.errors import PuckError
 from puck_tables.scene.scene import Scene
-from puck_tables.world.agreement import is_integrated, pieces_of
+from puck_tables.world.agreement import frictions_under, is_integrated, pieces_of
 from puck_tables.world.bulk import follow_all
 from puck_tables.world.course import FATE, LENGTH, PASSES, PRINT, trace
 from puck_tables.world.engine import PUSHING, REACHED
@@ -79,7 +79,11 @@ class Shots:
         self._disc = int(place[striker])
         self._watch = int(place[puck]), int(place[through]) if through >= 0 else -1, most
         pieces = pieces_of(scene)
-        self.patient = patient or any(is_integrated(scene, piece) for piece in pieces)
+        self.patient = patient or any(
+            is_integrated(scene, piece, friction)
+            for piece in pieces
+            for friction in frictions_under(scene, piece)
+        )
         self.runs = self.left_out = 0
 
     def land(self, launches: FloatArray) -> Landings:

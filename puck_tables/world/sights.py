@@ -16,6 +16,7 @@ import math
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, kernel
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
+from puck_tables.scene.ingredients import FREE
 from puck_tables.world.group import (
     ALONG,
     APPROACH,
@@ -28,12 +29,15 @@ from puck_tables.world.group import (
     NY,
     SLIP,
     TO_END,
+    Desk,
     Group,
     IntArray,
 )
+from puck_tables.world.holds import forbid
 from puck_tables.world.layout import (
     ARC,
     FROM,
+    HOLD,
     KIND,
     RADIUS,
     SPAN,
@@ -76,6 +80,20 @@ def _obstacle_sight(
         return
     out[NX], out[NY], out[BEND] = -ex, -ey, 1.0 / distance
     out[GAP] = distance - obstacle[C] - radius
+
+
+@inlined
+def look_at_ties(group: Group, members: IntArray, t: float, y: FloatArray, desk: Desk) -> None:
+    """What rails, pivots and blades forbid the members at the states y (m, 6)."""
+    count = 0
+    for place in range(members.shape[0]):
+        disc = group.discs[members[place]]
+        if disc[HOLD] != FREE:
+            more = forbid(disc, group.surface, t, y[place], desk.ties[count:], desk.strays[count:])
+            for _ in range(more):
+                desk.tied[count] = place
+                count += 1
+    desk.number[0] = count
 
 
 @kernel

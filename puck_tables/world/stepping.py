@@ -11,7 +11,16 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, kernel
 from puck_tables.motion.steppers import DORMAND_PRINCE
 from puck_tables.scene.friction import size
-from puck_tables.world.forces import act, can_rest, place_driven, power_of_contacts, slip_of
+from puck_tables.scene.ingredients import carried_along
+from puck_tables.world.forces import (
+    act,
+    can_rest,
+    load_on,
+    place_driven,
+    power_of_contacts,
+    rest_on_floor,
+    slip_of,
+)
 from puck_tables.world.group import (
     DRIVEN,
     HELD,
@@ -26,7 +35,7 @@ from puck_tables.world.layout import LIGHTNESS, RADIUS, TURNABILITY
 from puck_tables.world.multipliers import push_and_move
 from puck_tables.world.paths import DURATION, FIRST, START
 from puck_tables.world.putting_right import close_gaps, stop_slips
-from puck_tables.world.sights import look
+from puck_tables.world.sights import look, look_at_ties
 from puck_tables.world.works import LEDGER, write_work
 from puck_tables.world.yielding import turn_ways
 
@@ -48,12 +57,13 @@ def rates_at(
     place_driven(group, members, doings, t, y, desk)
     act(group, members, doings, y, power, desk)
     look(group, members, desk.pairs[:contacts], y, desk.sights)
+    look_at_ties(group, members, t, y, desk)
     push_and_move(desk, modes, members.shape[0])
     for place in range(members.shape[0]):
         if doings[place] == YIELDS:
             turn_ways(group, members, modes, doings, y, scales, False, power, desk)
             break
-    power_of_contacts(doings, contacts, y, power, desk)
+    power_of_contacts(group, members, doings, contacts, y, power, desk)
     for place in range(members.shape[0]):
         for i in range(3):
             desk.stages[stage, place, i] = y[place, 3 + i]
@@ -78,9 +88,11 @@ def step(
                     total += _A[stage, j] * stages[j, place, i]
                 new[place, i] = y[place, i] + h * total
         rates_at(group, members, modes, doings, t + _C[stage] * h, new, stage, scales, desk)
-    largest = 0.0
+    largest, turning = 0.0, group.surface.spin != 0.0
     for place in range(members.shape[0]):
-        if doings[place] == HELD or doings[place] == DRIVEN:
+        if doings[place] == HELD:
+            rest_on_floor(group, new[place])
+        if doings[place] == DRIVEN or (doings[place] == HELD and not turning):
             continue
         for i in range(6):
             error = 0.0
@@ -92,7 +104,7 @@ def step(
             share = abs(h * error) / scale
             if not share <= largest:
                 largest = share
-    if modes.shape[0] == 0:
+    if modes.shape[0] + desk.number[0] == 0 and not turning:
         for place in range(members.shape[0]):
             for i in range(6):
                 stages[END, place, i] = stages[STAGES - 1, place, i]
@@ -101,6 +113,7 @@ def step(
     elif largest < math.inf:
         close_gaps(desk, modes, new)
         look(group, members, desk.pairs[: modes.shape[0]], new, desk.sights)
+        look_at_ties(group, members, t + h, new, desk)
         stop_slips(desk, modes, new)
         rates_at(group, members, modes, doings, t + h, new, END, scales, desk)
     return largest
@@ -114,11 +127,12 @@ def longest_step(group: Group, members: IntArray, doings: IntArray, desk: Desk) 
         number = members[place]
         if doings[place] == MOVES and can_rest(group, number):
             radius, rate = group.discs[number, RADIUS], desk.stages[0, place]
-            pull = size(rate[3], rate[4], radius * rate[5])
+            cx, cy = carried_along(group.surface, rate[0], rate[1])
+            pull = size(rate[3] - cx, rate[4] - cy, radius * rate[5])
             q = slip_of(group, number, desk.states[0, place])
             disc = group.discs[number]
             turns = max(disc[LIGHTNESS], 0.5 * radius * radius * disc[TURNABILITY])
-            pull = max(pull / _NEAR, group.regions.load[number] * turns / _TURN)
+            pull = max(pull / _NEAR, load_on(group, number) * turns / _TURN)
             if longest * pull > q:
                 longest = q / pull
     return longest

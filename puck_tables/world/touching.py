@@ -6,9 +6,10 @@ import math
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
-from puck_tables.scene.friction import SPIN, VX, VY, X, Y
+from puck_tables.scene.friction import X, Y
 from puck_tables.world.departures import CONCERNED, LOOKED_AT, NOT_CONCERNED, Room, locate
-from puck_tables.world.flight import GONE, PLACE_X, PLACE_Y, STILL
+from puck_tables.world.flight import GONE, PLACE_X, PLACE_Y, STILL, drifts
+from puck_tables.world.footing import slips
 from puck_tables.world.game import (
     Game,
 )
@@ -20,7 +21,16 @@ from puck_tables.world.impact import (
     opening,
     prepare_contact,
 )
-from puck_tables.world.layout import DECEL, EDGE, INTEGRATED, KIND, POCKET, RADIUS
+from puck_tables.world.layout import (
+    DECEL,
+    INTEGRATED,
+    KIND,
+    NO_CUSHION,
+    PULL_X,
+    PULL_Y,
+    RADIUS,
+    TWIST,
+)
 from puck_tables.world.meeting import HARDLY, normal_to
 
 TOUCH = 1e-12  # of the radius: a gap as small is none
@@ -55,7 +65,7 @@ def find_touching(game: Game, t: float, room: Room) -> int:
                 gap, _, _, there = normal_to(
                     game.obstacles[k], discs[i, RADIUS], room.states[i, X], room.states[i, Y]
                 )
-                if gap <= near and there and shape not in (POCKET, EDGE):
+                if gap <= near and there and shape < NO_CUSHION:
                     if count == room.contacts.shape[0]:
                         return -1
                     room.contacts[count, 0], room.contacts[count, 1] = i, -1 - k
@@ -64,7 +74,7 @@ def find_touching(game: Game, t: float, room: Room) -> int:
                 if j == i or game.kinds[j] == GONE:
                     continue
                 reach = discs[i, RADIUS] + discs[j, RADIUS]
-                if game.kinds[j] == STILL:
+                if game.kinds[j] == STILL and not drifts(game.flights[j]):
                     flight = game.flights[j]
                     dx, dy = (
                         flight[PLACE_X] - room.states[i, X],
@@ -91,12 +101,7 @@ def find_touching(game: Game, t: float, room: Room) -> int:
 
 
 @inlined
-def _moves(state: FloatArray) -> bool:
-    return state[VX] != 0.0 or state[VY] != 0.0 or state[SPIN] != 0.0
-
-
-@inlined
-def press_somewhere(game: Game, count: int, room: Room) -> bool:
+def press_somewhere(game: Game, count: int, t: float, room: Room) -> bool:
     """Whether contacts that do not approach would, if all flew on alone; they are marked.
 
     If none would, no force acts in any: that is a solution, and accelerations have but one.
@@ -107,17 +112,21 @@ def press_somewhere(game: Game, count: int, room: Room) -> bool:
         un, _ = approach(game, i, j, row[NX], row[NY], room.states)
         row[ACTS] = 1.0 if abs(un) <= HARDLY * game.pace[0] else 0.0
         # what neither presses nor parts is a group, too: alone, both would look for each other
-        moves = _moves(room.states[i]) or (j >= 0 and _moves(room.states[j]))
+        moves = slips(game.surface, room.states[i])
+        moves = moves or (j >= 0 and slips(game.surface, room.states[j]))
         least = HARDLY * game.pace[1] if moves else -HARDLY * game.pace[1]
-        if row[ACTS] > 0.0 and opening(game, i, j, row, room.states) < least:
+        if row[ACTS] > 0.0 and opening(game, i, j, t, row, room.states) < least:
             found = True
     return found
 
 
 @inlined
 def is_integrated(game: Game, i: int, state: FloatArray) -> bool:
-    """Whether the motion of a disc from here, alone, is to be integrated."""
+    """Whether the motion of a disc from here, alone, is to be integrated, or may be."""
     disc = game.discs[i]
     if disc[INTEGRATED] == 0.0 or game.kinds[i] == GONE:
         return False
-    return _moves(state) or math.hypot(game.pull[0], game.pull[1]) > disc[DECEL]
+    if slips(game.surface, state) or game.surface.spin != 0.0 or disc[TWIST] != 0.0:
+        return True
+    forced = game.spans[i, 0] < game.spans[i, 1]
+    return forced or math.hypot(disc[PULL_X], disc[PULL_Y]) > disc[DECEL]

@@ -13,9 +13,10 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
 
-# of a ledger, J: heat of dry friction, of rims, of drag; work of the pull and of driven discs
-FLOOR_HEAT, RIM_HEAT, DRAG_HEAT, PULL_WORK, DRIVE_WORK = range(5)
-LEDGER = 5
+# of a ledger, J: heat of dry friction, of rims, of drag; work of slope and given forces, of driven
+# discs, and of what moves under or leads the discs
+FLOOR_HEAT, RIM_HEAT, DRAG_HEAT, PULL_WORK, DRIVE_WORK, SUPPORT_WORK = range(6)
+LEDGER = 6
 
 # columns: a disc of the stint, when that began; start and duration of the step; at its start and
 # end the powers, W, and the works in between, J
@@ -35,7 +36,7 @@ def write_work(
 
 
 def worked(rows: FloatArray, ends: FloatArray) -> FloatArray:
-    """The ledger (5,) of rows of works, each of whose stints ended at ``ends`` (rows,), J.
+    """The ledger (6,) of rows of works, each of whose stints ended at ``ends`` (rows,), J.
 
     Examples
     --------

@@ -12,6 +12,9 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import finite_array, real
 from puck_tables.errors import InputError, PuckError
 from puck_tables.scene.friction import SPIN, VX, VY
+from puck_tables.scene.holds import misfits
+from puck_tables.scene.ingredients import FREE, floor_velocity
+from puck_tables.scene.parts import Launch
 from puck_tables.scene.scene import Scene
 from puck_tables.world import game as g
 from puck_tables.world.agreement import called, number_of, pieces_of
@@ -29,9 +32,11 @@ from puck_tables.world.engine import (
     advance,
     lacks_rows,
 )
-from puck_tables.world.flight import DAMPED, GONE, LOOKED_UP, PATH, START, UNTIL
+from puck_tables.world.flight import DAMPED, GONE, START, moves_until
+from puck_tables.world.footing import moves_along
+from puck_tables.world.holds import response
 from puck_tables.world.impact import FIRST_N, E
-from puck_tables.world.layout import LIGHTNESS, RADIUS, TURNABILITY
+from puck_tables.world.layout import HOLD, LIGHTNESS, RADIUS
 from puck_tables.world.prepare import game_of, obstacle_names, order_of, set_pace, shipped_curves
 from puck_tables.world.record import states_at
 
@@ -130,10 +135,14 @@ class World:
 
     @property
     def moving(self) -> npt.NDArray[np.bool_]:
-        """Which pucks move, array (pucks,)."""
-        kinds, until = self._game.kinds, self._game.flights[:, UNTIL]
-        known = ((kinds == LOOKED_UP) | (kinds == PATH)) & (until > self.time)
-        return (known | (kinds == DAMPED))[self._place]
+        """Which pucks move, if only with the floor, array (pucks,)."""
+        return (self._rests > self.time)[self._place]
+
+    @property
+    def _rests(self) -> FloatArray:
+        """When each disc comes to rest if nothing happens before; −inf: it lies, inf: never."""
+        flights = zip(self._game.kinds.tolist(), self._game.flights, strict=True)
+        return np.array([moves_until(kind, flight) for kind, flight in flights])
 
     @property
     def stop_times(self) -> FloatArray:
@@ -141,10 +150,8 @@ class World:
 
         Of one that has left play: when it left; inf: never.
         """
-        kinds, flights = self._game.kinds, self._game.flights
-        known = (kinds == LOOKED_UP) | (kinds == PATH)
-        times: FloatArray = np.where(known, flights[:, UNTIL], flights[:, START])
-        return np.where(kinds == DAMPED, math.inf, times)[self._place]
+        rests: FloatArray = np.maximum(self._rests, self._game.flights[:, START])
+        return rests[self._place]
 
     @property
     def last_motion(self) -> float:
@@ -204,14 +211,21 @@ class World:
         span = math.inf if duration == math.inf else real("duration", duration, "s")
         if not span >= 0.0:
             raise InputError(f"duration must not be negative, got {span:g} s")
-        if span == math.inf and (self._game.kinds == DAMPED).any():
-            raise InputError("pucks without dry friction never come to rest: give a duration")
+        if span == math.inf:
+            self._refuse_endless()
         before = int(self._game.counts[g.N_EVENTS])
         until = self.time + span
         self._advance(until, NOBODY, self._room.one)
         if until == math.inf:
             self._game.clock[0] = max(self.time, self.last_motion)
         return self._events(before)
+
+    def _refuse_endless(self) -> None:
+        """Refuse to wait for the end of what has none."""
+        if moves_along(self._game.surface):
+            raise InputError("on a floor that moves nothing comes to rest: give a duration")
+        if (self._game.kinds == DAMPED).any():
+            raise InputError("pucks without dry friction never come to rest: give a duration")
 
     def events_since(self, time: float) -> list[Meeting]:
         """What happened from a time on."""
@@ -254,11 +268,20 @@ class World:
             if math.hypot(*arm) > disc[RADIUS] * (1.0 + 1e-9):
                 raise InputError(f"point must lie on the puck, at most {disc[RADIUS]:g} m from its "
                                  "centre")  # fmt: skip
-            state[VX : VY + 1] += disc[LIGHTNESS] * push
-            state[SPIN] += disc[TURNABILITY] * (arm[0] * push[1] - arm[1] * push[0])
+            moment = float(arm[0] * push[1] - arm[1] * push[0])
+            state[VX:] += response(disc, state, *push.tolist(), moment)
         elif point is not None:
             raise InputError("point is where an impulse acts: give the impulse, too")
+        self._refuse_misfit(int(self._order[i]), state)
         self._advance(self.time, i, state)
+
+    def _refuse_misfit(self, number: int, state: FloatArray) -> None:
+        """Refuse a velocity that the constraint of a puck does not allow."""
+        x, y, angle, vx, vy, spin = state.tolist()
+        launch = Launch((vx, vy), spin, (x, y), angle)
+        hold = pieces_of(self.scene)[number].constraint
+        for fault in misfits(launch, hold, self.scene.floor, ""):
+            raise InputError(f"{self.names[number]}: {fault}".replace("launch.", ""))
 
     def _advance(self, until: float, struck: int, state: FloatArray) -> None:
         """Let time pass, after a disc was given the velocity of a state."""
@@ -292,8 +315,11 @@ class World:
         self._game = self._game._replace(launches=later)
         for number, state in enumerate(self.state()):
             i = self._place[number]
-            if self._game.discs[i, LIGHTNESS] > 0.0 and state[VX:].any():
-                velocity = turned @ state[VX:]
+            disc = self._game.discs[i]
+            floor = np.array(floor_velocity(self._game.surface, *state[:2].tolist()))
+            slip = state[VX:] - floor
+            if disc[LIGHTNESS] > 0.0 and slip.any() and disc[HOLD] == FREE:
+                velocity = floor + turned @ slip
                 self.strike(number, velocity[:2], float(velocity[2]))
 
     @property
@@ -306,8 +332,11 @@ class World:
         """A world of its own that goes on from here, to look ahead."""
         twin = object.__new__(World)
         twin.scene, twin._order = self.scene, self._order
-        # tables, friction and obstacles never change
-        kept = ("discs", "regions", "rims", "obstacles", "curves", "launches", "drives")
+        # tables, floors and obstacles never change
+        kept = (
+            "regions", "floors", "surface", "tides", "spans", "rims", "obstacles", "curves",
+            "launches", "drives",
+        )  # fmt: skip
         parts: dict[str, Any] = self._game._asdict()
         twin._game = g.Game(**{n: one if n in kept else one.copy() for n, one in parts.items()})
         twin._room = self._room._replace(

@@ -16,7 +16,7 @@ from puck_tables.kernels.compile import inlined, kernel
 from puck_tables.scene.friction import size
 from puck_tables.scene.rest import SLACK
 from puck_tables.world.complementarity import find_modes
-from puck_tables.world.forces import act, excess_on, gain_of
+from puck_tables.world.forces import act, excess_on, gain_of, load_on
 from puck_tables.world.group import (
     DRIVEN,
     HELD,
@@ -44,8 +44,8 @@ def _turn(group: Group, number: int, place: int, radius: float, desk: Desk) -> t
     """
     way, pace = desk.ways[place], desk.paces[place]
     gain = gain_of(group, number, place, desk)
-    ox = desk.rates[place, 0] - gain * way[0]
-    oy = desk.rates[place, 1] - gain * way[1]
+    ox = desk.rates[place, 0] - desk.carried[place, 0] - gain * way[0]
+    oy = desk.rates[place, 1] - desk.carried[place, 1] - gain * way[1]
     ow = radius * (desk.rates[place, 2] - gain * way[2])
     off = size(ox, oy, ow)
     if off > 0.97 * pace[1]:
@@ -53,7 +53,7 @@ def _turn(group: Group, number: int, place: int, radius: float, desk: Desk) -> t
     pace[1] = off
     disc = group.discs[number]
     turns = max(disc[LIGHTNESS], 0.5 * radius * radius * disc[TURNABILITY])
-    share = pace[0] / (group.regions.load[number] * turns)
+    share = pace[0] / (load_on(group, number) * turns)
     if share * size(off, gain, 0.0) > 1.0:
         share = 1.0 / size(off, gain, 0.0)
     wx, wy, ww = way[0] + share * ox, way[1] + share * oy, radius * way[2] + share * ow
@@ -94,8 +94,10 @@ def turn_ways(
 def _driven_into(desk: Desk, doings: IntArray, c: int, scales: Scales) -> int:
     """Which side of a contact, at rest, something driven moves into; −1: none."""
     one, other = desk.pairs[c, 0], desk.pairs[c, 1]
-    if other < 0 or leads(desk, c)[0] > -LEVEL * scales.rate:
+    if leads(desk, c)[0] > -LEVEL * scales.rate:
         return -1
+    if other < 0:  # it is carried into what stands
+        return 0 if doings[one] == HELD else -1
     if doings[one] == DRIVEN and doings[other] == HELD:
         return 1
     return 0 if doings[one] == HELD and doings[other] == DRIVEN else -1
@@ -103,8 +105,8 @@ def _driven_into(desk: Desk, doings: IntArray, c: int, scales: Scales) -> int:
 
 @inlined
 def overborne(
-    group: Group, members: IntArray, doings: IntArray, contacts: int, scales: Scales, mark: bool,
-    desk: Desk,
+    group: Group, members: IntArray, doings: IntArray, contacts: int, y: FloatArray,
+    scales: Scales, mark: bool, desk: Desk,
 ) -> bool:  # fmt: skip
     """Whether there are any at rest that cannot stay for themselves; ``mark``: they yield."""
     more = False
@@ -119,7 +121,7 @@ def overborne(
                 way[2] = 0.0
     for place in range(members.shape[0]):
         if doings[place] == HELD and (mark or not more):
-            excess, ux, uy, w = excess_on(group, members[place], place, contacts, desk)
+            excess, ux, uy, w = excess_on(group, members, place, contacts, y, desk)
             if excess > SLACK:
                 more = True
                 if mark:
@@ -144,5 +146,5 @@ def settle(
         solved = find_modes(desk, modes, members.shape[0], scales)
         if solved:
             turn_ways(group, members, modes, doings, y, scales, True, power, desk)
-        if not overborne(group, members, doings, modes.shape[0], scales, True, desk):
+        if not overborne(group, members, doings, modes.shape[0], y, scales, True, desk):
             return solved

@@ -1,0 +1,80 @@
+"""What a disc would do if nothing touched it."""
+
+from __future__ import annotations
+
+import math
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.kernels.compile import inlined
+from puck_tables.scene.forces import given_by
+from puck_tables.scene.friction import VX, VY, dry_friction, size
+from puck_tables.scene.ingredients import carried_along, dry_in
+from puck_tables.world.footing import over_floor
+from puck_tables.world.game import Game, Whole
+from puck_tables.world.holds import led
+from puck_tables.world.layout import (
+    DAMPING,
+    DECEL,
+    LIGHTNESS,
+    PULL_X,
+    PULL_Y,
+    RADIUS,
+    REGION,
+    SPIN_DAMPING,
+    TURNABILITY,
+    TWIST,
+    WAKE,
+)
+
+
+@inlined
+def rows_passed(tides: FloatArray, first: int, last: int, t: float) -> int:
+    """How many of the rows first … last − 1 of forces over time have passed."""
+    low, high = first, last
+    while low < high:
+        middle = (low + high) // 2
+        if tides[middle, 0] <= t:
+            low = middle + 1
+        else:
+            high = middle
+    return low - first
+
+
+@inlined
+def pull_on(
+    discs: FloatArray, tides: FloatArray, spans: Whole, i: int, passed: int, t: float
+) -> tuple[float, float, float]:
+    """The accelerations by a slope and given forces, of whose rows so many have passed."""
+    ax, ay, turn = discs[i, PULL_X], discs[i, PULL_Y], discs[i, TWIST]
+    first, last = spans[i, 0], spans[i, 1]
+    if first < last:
+        fx, fy, torque = given_by(tides[first:last], passed, t)
+        ax += discs[i, LIGHTNESS] * fx
+        ay += discs[i, LIGHTNESS] * fy
+        turn += discs[i, TURNABILITY] * torque
+    return ax, ay, turn
+
+
+@inlined
+def acceleration(game: Game, i: int, t: float, state: FloatArray) -> tuple[float, float]:
+    """The acceleration of the centre."""
+    disc = game.discs[i]
+    if disc[LIGHTNESS] == 0.0:
+        return 0.0, 0.0  # straight on
+    passed = rows_passed(game.tides, game.spans[i, 0], game.spans[i, 1], t)
+    ax, ay, turn = pull_on(game.discs, game.tides, game.spans, i, passed, t)
+    ux, uy, w = over_floor(game.surface, state)
+    if size(ux, uy, w) == 0.0:
+        cx, cy = carried_along(game.surface, state[VX], state[VY])
+        push = math.hypot(ax - cx, ay - cy)
+        left = 1.0 - disc[DECEL] / push if push > disc[DECEL] else 0.0
+        ax, ay = cx + left * (ax - cx), cy + left * (ay - cy)
+    else:
+        dry = dry_in(game.regions, int(disc[REGION]))
+        fx, fy, torque, _ = dry_friction(dry, disc[RADIUS], ux, uy, w)
+        drag = disc[DAMPING] + disc[WAKE] * math.hypot(ux, uy)
+        ax += disc[LIGHTNESS] * fx - drag * ux
+        ay += disc[LIGHTNESS] * fy - drag * uy
+        turn += disc[TURNABILITY] * torque - disc[SPIN_DAMPING] * w
+    ax, ay, _ = led(disc, game.surface, state, ax, ay, turn)
+    return ax, ay
