@@ -87,7 +87,7 @@ def test_a_few_frames_of_known_noise_are_fitted():
 
 
 def test_two_tracks_of_one_name_are_told_apart():
-    found = pt.fit([TRACK, TRACK], PUCK)
+    found = pt.fit([TRACK, pt.Track(TIMES, PLACE - 2.0 * NOISE, TRACK.angle, "film")], PUCK)
     assert [launch.name for launch in found.launches] == ["film 1", "film 2"]
 
 
@@ -98,6 +98,13 @@ def test_frames_without_place_or_angle_are_left_alone():
     found = pt.fit(pt.Track(TIMES, place, angle), PUCK)
     assert found.estimate.residuals.size == 2 * 50 + 45
     assert found["friction"].value == pytest.approx(0.2, abs=5.0 * found["friction"].error)
+
+
+@pytest.mark.parametrize("again", [TRACK, pt.Track(TIMES[20:], PLACE[20:], name="part"),
+                                   pt.Track(TIMES + 9.0, PLACE, name="later")])  # fmt: skip
+def test_the_same_film_twice_is_refused(again):
+    with pytest.raises(pt.InputError, match="show the same frames"):
+        pt.fit([TRACK, again], PUCK)
 
 
 @pytest.mark.parametrize("tracks", [None, 3.0])
