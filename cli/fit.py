@@ -48,12 +48,24 @@ if TYPE_CHECKING:
     "annulus), drag, radius, gravity; of impacts tangential, mass_ratio.  [default: friction and "
     "delta, friction alone if --height is given]",
 )
-@click.option("--fix", multiple=True, metavar="NAME=VALUE", help="Hold a number, also launch_spin.")
+@click.option(
+    "--fix",
+    multiple=True,
+    metavar="NAME=VALUE",
+    help="Hold a number; also launch_spin and the like.",
+)
 @click.option(
     "--prior", multiple=True, metavar="NAME=VALUE:SIGMA", help="What is known of a number besides."
 )
-@click.option("--bound", multiple=True, metavar="NAME=LOW:HIGH", help="Look for a number within.")
-@click.option("--start", multiple=True, metavar="NAME=VALUE", help="Begin there, too.")
+@click.option(
+    "--bound",
+    multiple=True,
+    metavar="NAME=LOW:HIGH",
+    help="Look for a number within; also for launch_x, _y, _vx, _vy, _spin, _angle.",
+)
+@click.option(
+    "--start", multiple=True, metavar="NAME=VALUE", help="Begin there, too; also with launch_spin."
+)
 @click.option(
     "--noise",
     metavar="PLACE[,ANGLE]",
@@ -127,7 +139,9 @@ def fit(
     puck fit run.csv --radius 0.0381 --prior friction=0.2:0.05 --hold-out 0.3 -o fit.json
     puck simulate --fit fit.json
     """  # noqa: D301 - click reads the backspace
-    is_json = output is not None and output.suffix.lower() == ".json"
+    from puck_tables.io.formats import FORMATS, ending_of
+
+    is_json = output is not None and ending_of(output, (".json", *FORMATS)) == ".json"
     prepare_outputs(
         *(() if is_json else (output,)), others=(output,) if is_json else (), plot=plot,
         overwrite=overwrite, inputs=[*files, how["marks"], pressure],
@@ -271,7 +285,7 @@ def _plainly(found: Fit) -> str:
         sentences.append(
             f"Its dimensionless height is {_rounded(tilt)}: so much friction tips its load forward."
         )
-    sentences += list(found.blind)
+    sentences += [*found.blind, *found.remarks]
     if found.complaints:
         sentences += [f"{text}." for text in found.complaints]
         sentences.append(

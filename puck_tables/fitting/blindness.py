@@ -35,13 +35,7 @@ def blind_spots(
     """
     sentences = []
     marked = any(film.angle is not None for film in found.problem.films)
-    more = "more frames a second" if marked else "angle marks on the puck"
-    for rival in rivals:
-        words = ", ".join(f"{name} {value:.4g}" for name, value in rival.items())
-        sentences.append(
-            f"Another motion, of another spin, fits as well: {words}. What would tell: {more}, or "
-            "its launch spin, if it is known (launch_spin)."
-        )
+    sentences += [rival_sentence(rival, marked) for rival in rivals]
     seen: set[frozenset[int]] = set()
     covered = {found.problem.names[k][1] for k in np.flatnonzero(certainty.undetermined)}
     for name in lost:
@@ -63,6 +57,16 @@ def blind_spots(
         sentences.append(f"{told}. {remedy}")
         seen.add(frozenset(members))
     return tuple(sentences)
+
+
+def rival_sentence(rival: Found, marked: bool) -> str:
+    """Another motion that fits as well; ``marked``: whether angles are seen."""
+    more = "more frames a second" if marked else "angle marks on the puck"
+    words = ", ".join(f"{name} {value:.4g}" for name, value in rival.items())
+    return (
+        f"Another motion, of another spin, fits as well: {words}. What would tell: {more}, or its "
+        "launch spin, if it is known (launch_spin)."
+    )
 
 
 def _name(problem: Problem, k: int) -> str:

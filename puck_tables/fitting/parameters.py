@@ -92,6 +92,7 @@ class Asked:
     priors : (value, standard deviation) by name
     bounds : (low, high) by name
     start : values to begin with, besides those that the tracks suggest
+    freed : names that are found since they have a prior or bounds
     met : what is taken of the impacts that there are, by name, where nothing else is said
 
     Raises
@@ -115,6 +116,7 @@ class Asked:
     priors: Mapping[str, tuple[float, float]]
     bounds: Mapping[str, tuple[float, float]]
     start: Mapping[str, float]
+    freed: tuple[str, ...] = ()
     met: Mapping[str, float] = field(default_factory=dict)
 
     @classmethod
@@ -126,13 +128,16 @@ class Asked:
         """Checked, with what is free where nothing is said: f, and δ of a puck without height."""
         instance("puck", puck, Puck)
         known = {name: _in_range(name, value) for name, value in fixed.items()}
+        freed: tuple[str, ...] = ()
         if free is None:
             scale = () if {"friction", "decel"} & {*known} else ("friction",)
             if "decel" in priors or "decel" in bounds:
                 scale = ("decel",)
             tilt = () if {"delta", "height"} & {*known} or puck.height else ("delta",)
             wanted = (*scale, *tilt)
-            wanted += tuple(n for n in (*priors, *bounds) if n in PUCK and n not in wanted)
+            named = dict.fromkeys((*priors, *bounds))
+            freed = tuple(name for name in named if name in PUCK and name not in wanted)
+            wanted += freed
         else:
             wanted = tuple([free] if isinstance(free, str) else free)
         if rows and "readout" not in (*wanted, *known):
@@ -177,7 +182,7 @@ class Asked:
         return cls(
             puck, wanted, known, {n: _prior(n, v) for n, v in priors.items()},
             {n: _bounds(n, v) for n, v in bounds.items()},
-            {n: _in_range(n, v) for n, v in start.items()},
+            {n: _in_range(n, v) for n, v in start.items()}, freed,
         )  # fmt: skip
 
     def __post_init__(self) -> None:
