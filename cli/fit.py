@@ -45,15 +45,27 @@ if TYPE_CHECKING:
     "--free",
     metavar="NAMES",
     help="What is found, with commas: friction, delta, height, decel, gyration, inner (of an "
-    "annulus), drag, radius, gravity.  [default: friction and delta, friction alone if --height is "
-    "given]",
+    "annulus), drag, radius, gravity; of impacts tangential, mass_ratio.  [default: friction and "
+    "delta, friction alone if --height is given]",
 )
-@click.option("--fix", multiple=True, metavar="NAME=VALUE", help="Hold a number, also launch_spin.")
+@click.option(
+    "--fix",
+    multiple=True,
+    metavar="NAME=VALUE",
+    help="Hold a number; also launch_spin and the like.",
+)
 @click.option(
     "--prior", multiple=True, metavar="NAME=VALUE:SIGMA", help="What is known of a number besides."
 )
-@click.option("--bound", multiple=True, metavar="NAME=LOW:HIGH", help="Look for a number within.")
-@click.option("--start", multiple=True, metavar="NAME=VALUE", help="Begin there, too.")
+@click.option(
+    "--bound",
+    multiple=True,
+    metavar="NAME=LOW:HIGH",
+    help="Look for a number within; also for launch_x, _y, _vx, _vy, _spin, _angle.",
+)
+@click.option(
+    "--start", multiple=True, metavar="NAME=VALUE", help="Begin there, too; also with launch_spin."
+)
 @click.option(
     "--noise",
     metavar="PLACE[,ANGLE]",
@@ -64,8 +76,25 @@ if TYPE_CHECKING:
 @click.option(
     "--impacts",
     is_flag=True,
-    help="The tracks may hold impacts with walls: cut them there, and tell restitution and "
-    "friction of the rim.",
+    help="The tracks may hold impacts, with walls or of two pucks: find restitution and friction "
+    "of the rims, which join the slides.",
+)
+@click.option(
+    "--wall",
+    multiple=True,
+    metavar="X,Y:X,Y",
+    help="A straight wall, by two points on it in m (with impacts); others are found.",
+)
+@click.option(
+    "--jitter",
+    metavar="SECONDS|find",
+    help="Standard deviation of the time stamps of frames, or find it.",
+)
+@click.option(
+    "--rows",
+    metavar="FIRST,LAST",
+    help="Of a rolling shutter: y in m of the first and the last line of the picture. Its readout "
+    "time is found.",
 )
 @click.option(
     "--laws",
@@ -94,7 +123,8 @@ def fit(
     friction: float | None, mass: float | None, gravity: float | None, pressure: str,
     gyration: float | None, free: str | None, fix: tuple[str, ...], prior: tuple[str, ...],
     bound: tuple[str, ...], start: tuple[str, ...], noise: str | None, since: float | None,
-    until: float | None, impacts: bool, laws: str | None, hold_out: str | None, explain: bool,
+    until: float | None, impacts: bool, wall: tuple[str, ...], jitter: str | None,
+    rows: str | None, laws: str | None, hold_out: str | None, explain: bool,
     as_json: bool, output: Path | None, plot: Path | None, overwrite: bool,
 ) -> None:  # fmt: skip
     """Find friction, tilt and launches of a sliding puck from tracks of it.
@@ -109,7 +139,9 @@ def fit(
     puck fit run.csv --radius 0.0381 --prior friction=0.2:0.05 --hold-out 0.3 -o fit.json
     puck simulate --fit fit.json
     """  # noqa: D301 - click reads the backspace
-    is_json = output is not None and output.suffix.lower() == ".json"
+    from puck_tables.io.formats import FORMATS, ending_of
+
+    is_json = output is not None and ending_of(output, (".json", *FORMATS)) == ".json"
     prepare_outputs(
         *(() if is_json else (output,)), others=(output,) if is_json else (), plot=plot,
         overwrite=overwrite, inputs=[*files, how["marks"], pressure],
@@ -146,7 +178,8 @@ def fit(
             start={n: _number(v, "--start", n) for n, v in _named(start, "--start").items()},
             noise=_noise(noise), since=-math.inf if since is None else since,
             until=math.inf if until is None else until,
-            impacts=impacts,
+            jitter=_jitter(jitter), rows=None if rows is None else _point(rows, "--rows"),
+            impacts=impacts, walls=[_wall(one) for one in wall],
             laws=() if laws is None else [name.strip() for name in laws.split(",")],
             hold_out=_held(hold_out), progress=show,
         )  # fmt: skip
@@ -189,17 +222,23 @@ def report(found: Fit) -> str:
         ]
     for one in found.impacts:
         degrees = math.degrees(one.wall) % 360.0
+        what = f"{one.partner}" if one.partner else "a wall"
         lines += [
             f"\nimpact of {one.track} at {one.time:.6g} s, ({one.place[0]:.5g}, "
-            f"{one.place[1]:.5g}) m, on a wall at {degrees:.4g} degrees from x",
+            f"{one.place[1]:.5g}) m, on {what} at {degrees:.4g} degrees from x",
             f"{'  restitution':<15} {_shown(one.restitution)}",
             f"{'  rim':<15} {_shown(one.rim)} (tangential over normal impulse)",
         ]
+        if one.mass_ratio is not None and one.mass_ratio.how != "known":
+            lines.append(f"{'  mass ratio':<15} {_shown(one.mass_ratio)}")
     angled = any(film.angle is not None for film in found.estimate.problem.films)
-    how = ["given" if known else "from the residuals" for known in found.noise_known]
+    how = ["given" if known else "from the residuals" for known in found.noise_known[:2]]
     noise = f"places {1e3 * found.noise[0]:.3g} mm ({how[0]})"
     if angled:
         noise += f", angles {1e3 * found.noise[1]:.3g} mrad ({how[1]})"
+    if found.jitter:
+        how_stamps = "given" if found.noise_known.jitter else "from the residuals"
+        noise += f", time stamps {1e3 * found.jitter:.3g} ms ({how_stamps})"
     lines += [
         "",
         f"{'noise':<15} {noise}",
@@ -225,9 +264,8 @@ def report(found: Fit) -> str:
 def _cut_off(found: Fit) -> list[str]:
     """Frames at either end that are no free motion."""
     return [
-        f"{'cut off':<15} the first {first} and the last {last} frames of {launch.name}: no free "
-        "motion"
-        for launch, (first, last) in zip(found.launches, found.left_out, strict=True)
+        f"{'cut off':<15} the first {first} and the last {last} frames of {name}: no free motion"
+        for name, first, last in found.left_out
         if first or last
     ]
 
@@ -247,7 +285,7 @@ def _plainly(found: Fit) -> str:
         sentences.append(
             f"Its dimensionless height is {_rounded(tilt)}: so much friction tips its load forward."
         )
-    sentences += list(found.blind)
+    sentences += [*found.blind, *found.remarks]
     if found.complaints:
         sentences += [f"{text}." for text in found.complaints]
         sentences.append(
@@ -357,6 +395,39 @@ def _noise(text: str | None) -> tuple[float, float | None] | None:
         raise InputError(f"--noise {text} must be PLACE or PLACE,ANGLE, like 0.0003,0.005")
     numbers = [_number(part, "--noise", "sigma") for part in parts]
     return numbers[0], numbers[1] if len(numbers) == 2 else None
+
+
+def _jitter(text: str | None) -> float | str | None:
+    try:
+        return text if text is None else float(text)
+    except ValueError:
+        return text
+
+
+def _point(text: str, option: str) -> tuple[float, float]:
+    """Two numbers.
+
+    Raises
+    ------
+    InputError
+    """
+    parts = text.split(",")
+    if len(parts) != 2:
+        raise InputError(f"{option}: '{text}' must be two numbers in m with a comma, like 0.1,0.5")
+    return _number(parts[0], option, "m"), _number(parts[1], option, "m")
+
+
+def _wall(text: str) -> tuple[tuple[float, float], tuple[float, float]]:
+    """A line by two points.
+
+    Raises
+    ------
+    InputError
+    """
+    ends = text.split(":")
+    if len(ends) != 2:
+        raise InputError(f"--wall '{text}' must be two points on it in m, like 1.5,0:1.5,2")
+    return _point(ends[0], "--wall"), _point(ends[1], "--wall")
 
 
 def _held(text: str | None) -> float | tuple[str, ...] | None:

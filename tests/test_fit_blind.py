@@ -90,6 +90,9 @@ def test_a_forecast_says_what_a_film_cannot_tell(tmp_path):
     puck = pt.Puck(radius=RADIUS, height=0.0254, friction=0.15)
     told = pt.fisher(puck, pt.Launch((2.0, 0.0)), pt.Camera(120.0, *NOISE))
     assert np.isinf(told["delta"]) and np.isfinite(told["friction"])
+    straight = pt.fisher(puck, pt.Launch((2.0, 0.0)), pt.Camera(120.0, NOISE[0]))
+    assert np.isinf(straight["friction"]) and "Another motion" in straight.rivals[0]
+    assert "friction 0.24" in straight.explain()
     blind = pt.fisher(puck, pt.Launch((2.0, 0.0), spin=60.0), pt.Camera(120.0, NOISE[0]))
     assert blind["friction"] > 5.0 * pt.fisher(
         puck, pt.Launch((2.0, 0.0), spin=60.0), pt.Camera(120.0, *NOISE)

@@ -79,7 +79,13 @@ def test_what_is_not_determined_is_said(film):
         (("--radius", 0.0381, "--fix", "delta=x"), "not a finite number"),
         (("--radius", 0.0381, "--noise", "1,2,3"), "PLACE"),
         (("--radius", -1), "radius"),
-        (("--radius", 0.0381, "-o", "fit.txt"), ".h5"),
+        (("--radius", 0.0381, "-o", "fit.txt"), ".json, .h5"),
+        (("--radius", 0.0381, "--wall", "1,2"), "two points"),
+        (("--radius", 0.0381, "--wall", "1,2:3"), "two numbers"),
+        (("--radius", 0.0381, "--rows", "1"), "two numbers"),
+        (("--radius", 0.0381, "--jitter", "x"), "find"),
+        (("--radius", 0.0381, "--hold-out", "1"), "share"),
+        (("--radius", 0.0381, "--laws", "foo"), "foo"),
     ],
 )
 def test_a_refusal_is_a_sentence(film, arguments, words):

@@ -45,9 +45,20 @@ PUCK = pt.Puck(radius=0.04)
         ({"laws": ["unifrom"]}, "unifrom"),
         ({"laws": "uniform"}, "list"),
         ({"laws": ["ring", "ring"]}, "once"),
+        ({"jitter": 0.0}, "jitter must be greater than 0"),
+        ({"jitter": "guess"}, "'find'"),
+        ({"rows": (0.1, 0.1)}, "different places"),
+        ({"rows": 0.5}, "first and of the last line"),
+        ({"fixed": {"readout": 0.01}}, "rows="),
+        ({"free": ["friction", "restitution"]}, "impacts=True"),
+        ({"fixed": {"mass_ratio": 2.0}}, "impacts=True"),
+        ({"walls": [(0.0, 1.0)]}, "two points"),
+        ({"walls": [((0.0, 1.0), (0.0, 1.0))]}, "different points"),
+        ({"walls": "left"}, "list"),
     ],
 )
-def test_questions_are_refused(how, words):
+def test_questions_are_refused_before_anything_is_fitted(how, words, monkeypatch):
+    monkeypatch.setattr("puck_tables.fitting.fit.fitted", None)
     with pytest.raises(pt.InputError, match=re.escape(words)):
         pt.fit(TRACK, PUCK, **how)
 
@@ -70,6 +81,31 @@ def test_tracks_are_refused(tracks, words):
         pt.fit(tracks, PUCK)
 
 
+def test_heights_that_tip_are_refused_before_anything_is_fitted(monkeypatch):
+    monkeypatch.setattr("puck_tables.fitting.fit.fitted", None)
+    with pytest.raises(pt.InputError, match="tip over"):
+        pt.fit(TRACK, pt.Puck(radius=0.04, height=1e9))
+
+
+def test_a_number_that_a_prior_frees_is_named():
+    found = pt.fit(TRACK, PUCK, prior={"radius": (0.04, 1e-4)})
+    assert "radius is found, too" in found.remarks[0]
+    assert pt.fit(TRACK, PUCK, prior={"friction": (0.2, 0.1)}).remarks == ()
+
+
+def test_a_number_on_its_bound_is_named():
+    found = pt.fit(TRACK, PUCK, bounds={"friction": (0.3, 0.5)})
+    assert any("friction lies on the end of its range, 0.3" in text for text in found.remarks)
+
+
+def test_intervals_of_few_frames_are_those_of_student():
+    few = pt.fit(pt.Track(TIMES[:12], PLACE[:12], TRACK.angle[:12]), PUCK, fixed={"delta": 0.2})
+    number = few["friction"]
+    half = (number.high - number.low) / (2.0 * number.error)
+    assert few.degrees == 29 and half == pytest.approx(2.045, rel=0.03)
+    assert "Student" in few.explain()
+
+
 def test_names_of_a_result_are_checked():
     found = pt.fit(TRACK, PUCK)
     for ask in (lambda: found["mu"], lambda: found.launch(1), lambda: found.launch("other"),
@@ -87,7 +123,7 @@ def test_a_few_frames_of_known_noise_are_fitted():
 
 
 def test_two_tracks_of_one_name_are_told_apart():
-    found = pt.fit([TRACK, TRACK], PUCK)
+    found = pt.fit([TRACK, pt.Track(TIMES, PLACE - 2.0 * NOISE, TRACK.angle, "film")], PUCK)
     assert [launch.name for launch in found.launches] == ["film 1", "film 2"]
 
 
@@ -98,6 +134,13 @@ def test_frames_without_place_or_angle_are_left_alone():
     found = pt.fit(pt.Track(TIMES, place, angle), PUCK)
     assert found.estimate.residuals.size == 2 * 50 + 45
     assert found["friction"].value == pytest.approx(0.2, abs=5.0 * found["friction"].error)
+
+
+@pytest.mark.parametrize("again", [TRACK, pt.Track(TIMES[20:], PLACE[20:], name="part"),
+                                   pt.Track(TIMES + 9.0, PLACE, name="later")])  # fmt: skip
+def test_the_same_film_twice_is_refused(again):
+    with pytest.raises(pt.InputError, match="show the same frames"):
+        pt.fit([TRACK, again], PUCK)
 
 
 @pytest.mark.parametrize("tracks", [None, 3.0])

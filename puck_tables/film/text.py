@@ -28,6 +28,11 @@ _COMMENTS = ("#", "%", "//")
 _MISSING = {"", "nan", "na", "n/a", "none", "null", "-", "--", "nil", "?", "<na>"}
 _POINT = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
 _COMMA = re.compile(r"[-+]?(?:[0-9]+,[0-9]*|,[0-9]+)(?:[eE][-+]?[0-9]+)?")
+# thousands in groups: with a decimal mark, in two groups or more, or by what is no decimal mark
+_GROUPED = re.compile(
+    r"[-+]?[0-9]{1,3}(?:(?:,[0-9]{3})+\.[0-9]*|(?:\.[0-9]{3})+,[0-9]*|(?:,[0-9]{3}){2,}"
+    r"|(?:\.[0-9]{3}){2,}|(?:['\u2019 \u00a0\u2009\u202f][0-9]{3})+(?:[.,][0-9]*)?)"
+)
 _MINUS = "\N{MINUS SIGN}"  # of typesetters
 _SEPARATORS = ("\t", ";", ",", "|", None)  # the last: blanks
 
@@ -89,6 +94,7 @@ def look_at(path: str | Path, head: bytes) -> Look:
     rows = [split(line, chosen) for line in sample]
     if chosen is None:
         rows = [_whole_names(row) for row in rows]
+    _refuse_groups(path, rows)
     comma = any(_COMMA.fullmatch(cell) for row in rows for cell in row)
     names = [n for n, row in enumerate(rows[:_HEADER_ROWS]) if _is_names(row)]
     start = names[-1] + 1 if names else 0
@@ -205,6 +211,20 @@ def _is_names(row: Sequence[str]) -> bool:
     )  # fmt: skip
 
 
+def _refuse_groups(path: str | Path, rows: Sequence[Sequence[str]]) -> None:
+    """Refuse a table whose numbers have thousands separators.
+
+    Raises
+    ------
+    InputError
+    """
+    grouped = next((cell for row in rows for cell in row if _GROUPED.fullmatch(cell)), None)
+    if grouped is not None:
+        raise InputError(
+            f"{path}: {grouped!r} has a thousands separator: save the table without them"
+        )
+
+
 def _separator(path: str | Path, lines: Sequence[str]) -> str | None:
     """What stands between the cells: with it most are numbers, and lines have equally many."""
     best: tuple[float, int, str | None] = (0.0, 0, None)
@@ -217,7 +237,9 @@ def _separator(path: str | Path, lines: Sequence[str]) -> str | None:
         cells = [cell for row in rows for cell in row]
         alike = sizes.count(max(set(sizes), key=sizes.count)) / len(sizes)
         good = sum(
-            number(cell, False) is not None or bool(_COMMA.fullmatch(cell)) for cell in cells
+            number(cell, False) is not None
+            or bool(_COMMA.fullmatch(cell) or _GROUPED.fullmatch(cell))
+            for cell in cells
         ) / len(cells)  # fmt: skip
         flags = sum(cell.isalpha() for cell in cells) / len(cells)
         score = round(alike * (good + 0.5 * flags), 6)
@@ -374,6 +396,13 @@ def _slow(
         values = [number(row[column], look.comma) for column in numbers]
         if None in values:
             column = numbers[values.index(None)]
+            _refuse_groups(f"{path}, line {n}, column {column + 1}", [[row[column]]])
+            if look.comma and _POINT.fullmatch(row[column]):
+                raise InputError(
+                    f"{path}, line {n}, column {column + 1}: '{row[column]:.30}' has a point, "
+                    "other numbers a comma: save the table with one decimal mark and no thousands "
+                    "separators"
+                )
             raise InputError(
                 f"{path}, line {n}, column {column + 1}: '{row[column]:.30}' is no number"
                 + (f" with {'a comma' if look.comma else 'a point'} as its decimal mark"

@@ -11,7 +11,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.certainty import Certainty, certainty_of
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.numbers import plausible_for
-from puck_tables.fitting.parameters import ALL
+from puck_tables.fitting.parameters import ALL, OF_IMPACTS, WALL
 from puck_tables.fitting.problem import PRIOR, Found, Problem
 from puck_tables.fitting.seen import Seen
 
@@ -35,13 +35,7 @@ def blind_spots(
     """
     sentences = []
     marked = any(film.angle is not None for film in found.problem.films)
-    more = "more frames a second" if marked else "angle marks on the puck"
-    for rival in rivals:
-        words = ", ".join(f"{name} {value:.4g}" for name, value in rival.items())
-        sentences.append(
-            f"Another motion, of another spin, fits as well: {words}. What would tell: {more}, or "
-            "its launch spin, if it is known (launch_spin)."
-        )
+    sentences += [rival_sentence(rival, marked) for rival in rivals]
     seen: set[frozenset[int]] = set()
     covered = {found.problem.names[k][1] for k in np.flatnonzero(certainty.undetermined)}
     for name in lost:
@@ -53,7 +47,7 @@ def blind_spots(
         if frozenset(members) in seen:
             continue
         names = [_name(found.problem, k) for k in members]
-        shared = [found.problem.names[k][1] for k in members if found.problem.names[k][0] < 0]
+        shared = [found.problem.names[k][1] for k in members if found.problem.names[k][0] == -1]
         if len(names) == 1:
             told = f"{names[0]} is not determined: {_ALIKE}"
         else:
@@ -65,10 +59,22 @@ def blind_spots(
     return tuple(sentences)
 
 
+def rival_sentence(rival: Found, marked: bool) -> str:
+    """Another motion that fits as well; ``marked``: whether angles are seen."""
+    more = "more frames a second" if marked else "angle marks on the puck"
+    words = ", ".join(f"{name} {value:.4g}" for name, value in rival.items())
+    return (
+        f"Another motion, of another spin, fits as well: {words}. What would tell: {more}, or its "
+        "launch spin, if it is known (launch_spin)."
+    )
+
+
 def _name(problem: Problem, k: int) -> str:
     track, name = problem.names[k]
-    if track < 0:
+    if track == -1:
         return name
+    if track < -1:
+        return f"{WALL[name].words} {-1 - track}"
     return f"{ALL[name].words} of {problem.films[track].name}"
 
 
@@ -89,6 +95,8 @@ def _remedy(found: Estimate, shared: list[str], members: list[tuple[int, str]]) 
     """What would tell, tried out on the film that it would give."""
     if len(shared) > 1 and set(shared) <= _SCALES:
         return f"Measure one of them otherwise and fix it or give a prior: {' or '.join(shared)}."
+    if any(key[0] < -1 or key[1] in OF_IMPACTS for key in members):
+        return "Fix it, or give it a prior."
     now = _errors(found.problem, found.x, members)
     told: list[str] = []
     for words, problem, x in _other_films(found):
@@ -103,8 +111,12 @@ def _remedy(found: Estimate, shared: list[str], members: list[tuple[int, str]]) 
 
 def _other_films(found: Estimate) -> list[tuple[str, Problem, FloatArray]]:
     """Films that could have been made instead, each with its unknowns."""
-    problem, x = found.problem, found.x
-    values, launches = problem.found(x), problem.launches(x)
+    values, launches = found.problem.found(found.x), found.problem.launches(found.x)
+    problem = replace(
+        found.problem, asked=found.problem.asked.alone(), weights=(), meetings=(), walls=(),
+        rests=(),
+    )  # fmt: skip
+    x = problem.unknowns(values, launches)
     radius = problem.asked.scales(values)[2]
     films = []
     marked = problem
@@ -145,7 +157,7 @@ def _errors(problem: Problem, x: FloatArray, members: list[tuple[int, str]]) -> 
     """The errors of members, those of the puck if there are, in units of what is plausible."""
     slopes, plausible = problem.jacobian(x), plausible_for(problem, x)
     known = certainty_of(slopes[problem.kinds != PRIOR], plausible)
-    wanted = [key for key in members if key[0] < 0] or members
+    wanted = [key for key in members if key[0] == -1] or members
     places = [problem.names.index(key) for key in wanted]
     errors: FloatArray = (known.errors / plausible)[places]
     return errors
@@ -160,4 +172,5 @@ def _longer(film: Seen) -> Seen:
     return Seen(
         film.name, film.start, film.usual_step * np.arange(float(count)), np.zeros((count, 2)),
         None if film.angle is None else np.zeros(count), np.arange(count),
+        None if film.row is None else np.resize(film.row, count),
     )  # fmt: skip

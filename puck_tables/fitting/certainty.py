@@ -32,13 +32,15 @@ class Certainty:
 
     ``covariance`` (m, m); ``blind``: directions that are not seen, each a component for every
     unknown in units of its plausible range; ``undetermined`` (m,): unknowns that one of them moves;
-    ``plausible`` (m,).
+    ``plausible`` (m,); ``quantile``: half a 95 % interval in standard errors, that of Student's t
+    where the noise is that of the residuals.
     """
 
     covariance: FloatArray
     blind: FloatArray
     undetermined: tuple[bool, ...]
     plausible: FloatArray
+    quantile: float = Z95
 
     def error_of(self, slope: FloatArray, plausible: float) -> float:
         """The standard error of what changes with the unknowns by ``slope`` (m,).
@@ -66,7 +68,20 @@ class Certainty:
         return found
 
 
-def certainty_of(jacobian: FloatArray, plausible: FloatArray) -> Certainty:
+def quantile_of(degrees: int) -> float:
+    """Half a 95 % interval in standard errors that so many degrees of freedom told.
+
+    Examples
+    --------
+    >>> round(quantile_of(10), 3), round(quantile_of(10**6), 3)
+    (2.228, 1.96)
+    """
+    from scipy.special import stdtrit
+
+    return float(stdtrit(max(degrees, 1), 0.975))
+
+
+def certainty_of(jacobian: FloatArray, plausible: FloatArray, quantile: float = Z95) -> Certainty:
     """How well unknowns are known, from a Jacobian (n, m) in units of the noise.
 
     Examples
@@ -86,8 +101,9 @@ def certainty_of(jacobian: FloatArray, plausible: FloatArray) -> Certainty:
     scaled = (rows.T * spread**2) @ rows
     lost = np.abs(blind).max(axis=0, initial=0.0) > _MEMBER
     return Certainty(
-        scaled * np.outer(plausible, plausible), blind, tuple(lost.tolist()), plausible
-    )
+        scaled * np.outer(plausible, plausible), blind, tuple(lost.tolist()), plausible,
+        quantile,
+    )  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -114,7 +130,9 @@ def interval_of(found: Estimate, certainty: Certainty, k: int) -> Interval:
         return Interval(low, high, False)
     ends, profiled = [], False
     for side, limit in ((-1.0, low), (1.0, high)):
-        end, searched = _end(found, certainty, k, side, x + side * Z95 * error, limit)
+        end, searched = _end(
+            found, certainty, k, side, x + side * certainty.quantile * error, limit
+        )
         ends.append(end)
         profiled |= searched
     return Interval(ends[0], ends[1], profiled)
@@ -135,19 +153,19 @@ def _end(
     for n in range(_SEARCHES):
         cost, moved = profile_point(found, certainty, k, at, start)
         root = math.sqrt(max(cost - found.chi2, 0.0))
-        exact = abs(root / Z95 - 1.0)
+        exact = abs(root / certainty.quantile - 1.0)
         if n == 0 and at == guess and exact < 0.5 * _PARABOLIC:
             return guess, False
-        if exact < 0.25 * _PARABOLIC or (root < Z95 and at == limit):
+        if exact < 0.25 * _PARABOLIC or (root < certainty.quantile and at == limit):
             return at, True
-        if root < Z95:
+        if root < certainty.quantile:
             near, near_root, start = at, root, moved
         else:
             far = at, root
         if far is None:
             at = limit if math.isfinite(limit) else x0 + _OUTWARDS * (at - x0)
         else:
-            share = (Z95 - near_root) / (far[1] - near_root)
+            share = (certainty.quantile - near_root) / (far[1] - near_root)
             at = near + min(max(share, 0.1), 0.9) * (far[0] - near)
     return at, True
 

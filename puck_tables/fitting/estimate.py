@@ -16,6 +16,7 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.least_squares import ROBUST, SQUARES, minimise
 from puck_tables.fitting.problem import ANGLE, PLACE, Problem
+from puck_tables.fitting.timing import Known, likeliest
 
 FARTHEST = 4.0  # standard deviations of a frame that counts
 FARTHEST_PLACE = -2.0 * math.log(math.erfc(FARTHEST / math.sqrt(2.0)))  # of two of them, squared
@@ -59,16 +60,17 @@ class Estimate:
         return float(1.0 - self.kept[seen].mean())
 
 
-def estimate(problem: Problem, start: FloatArray, noise_known: tuple[bool, bool]) -> Estimate:
+def estimate(problem: Problem, start: FloatArray, noise_known: Known) -> Estimate:
     """Fit, sort out, and fit again until the same frames are left out.
 
     Parameters
     ----------
     problem, start : what is asked, and unknowns to begin with
-    noise_known : whether the noise of places and of angles was given; else it is that of the
-        residuals in the end
+    noise_known : whether the noise of places, angles and time stamps was given; else it is that of
+        the residuals in the end
     """
     x = start
+    problem = problem.with_noise(problem.noise, x)
     rows = problem.residuals(x)
     if np.median(np.abs(rows)) > _AWAY * _MEDIAN:
         x, _ = minimise(problem, x, ROBUST)
@@ -78,10 +80,11 @@ def estimate(problem: Problem, start: FloatArray, noise_known: tuple[bool, bool]
         x, _ = minimise(problem, x, SQUARES, kept)
         slopes = problem.jacobian(x)
         rows = problem.residuals(x)
-        noise = _noise(problem, rows, slopes, kept, noise_known)
+        noise, jitter = _noise(problem, x, rows, slopes, kept, noise_known)
         change = max(abs(math.log(new / old)) for new, old in
                      zip(noise, problem.noise, strict=True))  # fmt: skip
-        problem = problem.with_noise(noise)
+        change = max(change, abs(jitter - problem.jitter) / (jitter or 1.0))
+        problem = problem.with_noise(noise, x, kept, jitter)
         rows = problem.residuals(x)
         again = _kept(problem, rows)
         if change < _SETTLED and np.array_equal(again, kept):
@@ -114,12 +117,14 @@ def _wide(squares: list[FloatArray], usual: float) -> float:
 
 
 def _noise(
-    problem: Problem, rows: FloatArray, slopes: FloatArray, kept: npt.NDArray[np.bool_],
-    known: tuple[bool, bool],
-) -> tuple[float, float]:  # fmt: skip
-    """The noise that the residuals show, each kind less what the unknowns take from it."""
+    problem: Problem, x: FloatArray, rows: FloatArray, slopes: FloatArray,
+    kept: npt.NDArray[np.bool_], known: Known,
+) -> tuple[tuple[float, float], float]:  # fmt: skip
+    """The noise that the residuals show, each kind less what the unknowns take, and the jitter."""
     if all(known):
-        return problem.noise
+        return problem.noise, problem.jitter
+    if problem.jitter > 0.0 or not known.jitter:
+        return _jittery(problem, x, kept, known)
     q, _ = np.linalg.qr(slopes[kept])
     taken = np.sum(q * q, axis=1)
     found = list(problem.noise)
@@ -129,4 +134,22 @@ def _noise(
         if not known[kind] and free > 1.0:
             square = float(np.sum(rows[kept][mine] ** 2)) / free
             found[kind] *= max(math.sqrt(square), 1e-9)
-    return found[0], found[1]
+    return (found[0], found[1]), problem.jitter
+
+
+def _jittery(
+    problem: Problem, x: FloatArray, kept: npt.NDArray[np.bool_], known: Known
+) -> tuple[tuple[float, float], float]:
+    """The likeliest noise where time stamps jitter."""
+    count = []
+    for film, (place, _, turn) in zip(problem.films, problem.each(), strict=True):
+        angled = np.zeros(film.time.size, bool)
+        if film.angle is not None:
+            angled[np.isfinite(film.angle)] = kept[turn]
+        count.append(np.stack([kept[place], angled]))
+    seen = int((kept & (problem.kinds <= ANGLE)).sum())
+    return likeliest(
+        problem.noise, problem.jitter, known, np.concatenate(problem.off(x), axis=1),
+        np.concatenate(problem.rates(x), axis=1), np.concatenate(count, axis=1),
+        max(1.0 - x.size / seen, 0.1),
+    )  # fmt: skip

@@ -8,35 +8,39 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
-from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import instance, real
-from puck_tables.errors import InputError
+from puck_tables._core.real import real
 from puck_tables.film.track import Track
 from puck_tables.fitting.blindness import blind_spots
-from puck_tables.fitting.certainty import certainty_of
+from puck_tables.fitting.certainty import Z95, Certainty, certainty_of, quantile_of
 from puck_tables.fitting.estimate import Estimate, estimate
-from puck_tables.fitting.free_motion import trimmed
+from puck_tables.fitting.fitted import fitted
+from puck_tables.fitting.given import (
+    begin_noise,
+    films_of,
+    jitter_given,
+    noise_given,
+    refuse_tipping,
+    rows_given,
+    walls_given,
+)
 from puck_tables.fitting.held_out import HeldOut, predicted, split
-from puck_tables.fitting.impacts import cut, impacts_of
-from puck_tables.fitting.laws import LawScore, compare
+from puck_tables.fitting.impacts import cut
+from puck_tables.fitting.joining import Line
+from puck_tables.fitting.laws import LawScore, compare, variants_of
 from puck_tables.fitting.numbers import numbers_of, plausible_for
 from puck_tables.fitting.outcome import Fit
 from puck_tables.fitting.parameters import Asked
 from puck_tables.fitting.problem import Problem
 from puck_tables.fitting.residual_tests import drift, runs
 from puck_tables.fitting.rivals import rivals_of
-from puck_tables.fitting.seen import Seen, noise_of, rests_from, seen_in, turning_of
-from puck_tables.fitting.starts import start_of
+from puck_tables.fitting.seen import Seen, noise_of
+from puck_tables.fitting.tied import Impact, impacts_apart, impacts_joined, tie
+from puck_tables.fitting.timing import Known
 from puck_tables.puck import Puck
 
 Progress = Callable[[int, int], None]
-_LIFTS = 0.995  # δ from which on a uniform puck is fitted with part of its base lifted
-MOST_FRAMES = 100_000
-_STILL, _LEAST_TURN = 3.0, 1e-9  # times the noise; rad
-_JUDGED = 10  # degrees of freedom that tell the noise
-_GUESS = 1e-3  # of the track: noise to begin with where differences tell none
+_JITTER = 0.3  # times the noise of a place over the speed: to begin with
 
 
 def fit(
@@ -51,7 +55,10 @@ def fit(
     noise: tuple[float | None, float | None] | None = None,
     since: float = -math.inf,
     until: float = math.inf,
+    jitter: float | str | None = None,
+    rows: tuple[float, float] | None = None,
     impacts: bool = False,
+    walls: Sequence[Line] = (),
     laws: Sequence[str] = (),
     hold_out: float | Sequence[str] | None = None,
     progress: Progress | None = None,
@@ -77,8 +84,16 @@ def fit(
     noise : (m, rad), standard deviations of places and angles
         None for either: that of the residuals.
     since, until : s, of the free motion, as the tracks count time
-    impacts : whether tracks may hold impacts with walls
-        They are cut there, and restitution and friction of the rim follow from both sides.
+    jitter : s, standard deviation of time stamps; 'find': that of the residuals along the motion
+    rows : y in m of the first and of the last line of the picture, of a rolling shutter
+        Frames are then later by ``readout`` (s, a number that is found) times how far down they
+        show the puck.
+    impacts : whether tracks may hold impacts, with walls or of two pucks
+        They are found, and join the slides: restitution and rim_friction of walls are found too,
+        pair_restitution and pair_friction of two pucks (and mass_ratio, if it is named in free).
+        Where rims stop on what they meet, tangential restitution takes the place of friction.
+    walls : lines ((x, y), (x, y)) in m, two points of each, where walls are known
+        Others are found.
     laws : names of pressure laws to compare, as :class:`Puck` takes them; with '+drag' of those
         with drag
     hold_out : share of the moving frames at the end of each track, or names of tracks
@@ -118,42 +133,62 @@ def fit(
     >>> round(found["friction"].value, 3), round(found["height"].value, 3)
     (0.15, 0.025)
     """
-    films = _films(tracks, since, until)
-    asked = Asked.of(puck, free, fixed or {}, prior or {}, bounds or {}, start or {})
-    given, known = _noise(noise)
+    films = films_of(tracks, since, until, rows_given(rows))
+    lines = walls_given(walls)
+    impacts = impacts or bool(lines)
+    asked = Asked.of(
+        puck, free, fixed or {}, prior or {}, bounds or {}, start or {}, impacts, rows is not None
+    )
+    given, known_noise = noise_given(noise)
+    stamps = jitter_given(jitter)
+    known = Known(*known_noise, stamps is not None)
     judged = noise_of(list(films))
     begin = tuple(
-        value if value is not None else _positive(one, films)
+        value if value is not None else begin_noise(one, films)
         for value, one in zip(given, judged, strict=True)
     )
+    refuse_tipping(asked, films, begin[0])
+    questions = variants_of(asked.alone(), laws)
+    uncut, pieces, rests = films, (), ()
     if impacts:
-        films = cut(films, begin[0])
+        films, pieces, rests = cut(films, begin[0])
+    problem = Problem(asked.alone(), films, (begin[0], begin[1]), rests=rests)
+    problem = replace(problem, jitter=_begin_jitter(problem, begin[0], stamps))
+    held = None if hold_out is None else _held(hold_out)
+    if held is not None:
+        split(films, held, begin[0])
     steps = 1 + len(laws) + (hold_out is not None)
     say = progress or (lambda done, total: None)
-    problem = Problem(asked, films, (begin[0], begin[1]))
-    found = fitted(problem, known, refit=True)
+    found = slides = fitted(problem, known, refit=True)
+    untied = ""
+    if impacts:
+        tied, untied = tie(slides, pieces, uncut, asked, lines, known)
+        found = found if tied is None else tied
     say(1, steps)
-    certainty = certainty_of(found.jacobian[found.kept], plausible_for(found.problem, found.x))
+    certainty = _certainty(found, known)
     rivals = rivals_of(found, certainty)
     numbers, launches = numbers_of(found, certainty, rivals)
-    lost = tuple(n for n in asked.free if not numbers[n].determined)
+    lost = tuple(n for n in found.problem.asked.free if not numbers[n].determined)
     scores: tuple[LawScore, ...] = ()
     if laws:
 
-        def of_law(
-            one: Asked, noise: tuple[float, float], fixed_noise: tuple[bool, bool]
-        ) -> Estimate:
+        def of_law(one: Asked, noise: tuple[float, float], fixed_noise: Known) -> Estimate:
             # frames that another law leaves out at the ends may be those that tell
-            return fitted(Problem(one, films, noise), fixed_noise, refit=False)
+            same = replace(problem, asked=one, noise=noise, jitter=slides.problem.jitter)
+            return fitted(same, fixed_noise._replace(jitter=True), refit=False)
 
-        if isinstance(laws, str):
-            raise InputError(f"laws must be a list of names, got the text '{laws}'")
-        scores = compare(asked, tuple(laws), (begin[0], begin[1]), known, of_law)
+        scores = compare(questions, (begin[0], begin[1]), known, of_law)
         say(1 + len(laws), steps)
-    held = None
-    if hold_out is not None:
-        held = _held_out(found, hold_out, known)
+    predictions = None
+    if held is not None:
+        predictions = _held_out(found, held, known)
         say(steps, steps)
+    hits: tuple[Impact, ...] = ()
+    if found.problem.meetings:
+        hits = impacts_joined(found, certainty, numbers)
+    elif impacts:
+        names = [film.name for film in uncut]
+        hits = impacts_apart(found, pieces, certainty, names)
     return Fit(
         given=puck,
         numbers=numbers,
@@ -161,195 +196,68 @@ def fit(
         chi2=found.chi2,
         degrees=found.degrees,
         noise=found.problem.noise,
+        jitter=found.problem.jitter,
         noise_known=known,
         smooth_noise=judged,
         outliers=found.outliers,
         runs=runs(found),
         drift=drift(found),
-        left_out=_left_out(films, found.problem.films),
+        left_out=_left_out((*films, *uncut), found.problem.films),
         blind=blind_spots(found, certainty, lost, rivals),
         laws=scores,
-        held_out=held,
-        impacts=impacts_of(found, certainty) if impacts else (),
+        held_out=predictions,
+        impacts=hits,
+        untied=untied,
         estimate=found,
         certainty=certainty,
     )
 
 
-def _left_out(before: tuple[Seen, ...], after: tuple[Seen, ...]) -> tuple[tuple[int, int], ...]:
+def _begin_jitter(problem: Problem, noise: float, stamps: float | None) -> float:
+    """The jitter as given, or a value to begin with, s."""
+    if stamps is not None:
+        return stamps
+    lengths = [np.hypot(*np.diff(film.place, axis=0).T).sum() for film in problem.films]
+    speed = sum(lengths) / sum(float(film.time[-1]) for film in problem.films)
+    return _JITTER * noise / max(speed, 1e-9)
+
+
+def _certainty(found: Estimate, known: Known) -> Certainty:
+    """How well the unknowns of an estimate are known."""
+    angled = any(film.angle is not None for film in found.problem.films)
+    given = known.place and (known.angle or not angled)
+    quantile = Z95 if given else quantile_of(found.degrees)
+    plausible = plausible_for(found.problem, found.x)
+    return certainty_of(found.jacobian[found.kept], plausible, quantile)
+
+
+def _left_out(
+    before: tuple[Seen, ...], after: tuple[Seen, ...]
+) -> tuple[tuple[str, int, int], ...]:
     """How many frames at the start and the end of each track are no free motion."""
+    named = {film.name: film for film in reversed(before)}
     return tuple(
-        (int((one.frame < left.frame[0]).sum()), int((one.frame > left.frame[-1]).sum()))
-        for one, left in zip(before, after, strict=True)
-    )
-
-
-def fitted(problem: Problem, known: tuple[bool, bool], refit: bool) -> Estimate:
-    """The estimate of a problem, from starts of its own.
-
-    Parameters
-    ----------
-    problem : Problem
-    known : whether the noise of places and of angles is
-    refit : whether frames at the ends that are no free motion are left out
-    """
-    left = _observations(problem) - len(problem.names) + len(problem.priors)
-    if left <= 0:
-        raise InputError(
-            f"{_observations(problem)} observations cannot tell {len(problem.names)} unknowns: "
-            "give more frames, or fix something"
+        (
+            left.name, int((named[left.name].frame < left.frame[0]).sum()),
+            int((named[left.name].frame > left.frame[-1]).sum()),
         )
-    angled = any(film.angle is not None for film in problem.films)
-    if left < _JUDGED and not (known[0] and (known[1] or not angled)):
-        raise InputError(
-            f"{_observations(problem)} observations of {len(problem.names)} unknowns are too few "
-            "to judge their noise by: give the noise, or more frames"
-        )
-    parts = [replace(problem, films=(film,)) for film in problem.films]
-    starts = [start_of(part) for part in parts]
-    found = estimate(problem, _joint_start(problem, parts, starts), known)
-    found = _lifted(found, known)
-    if refit:
-        films = trimmed(found)
-        if films != problem.films:
-            return fitted(replace(problem, films=films), known, refit=False)
-    return found
+        for left in after
+    )  # fmt: skip
 
 
-def _lifted(found: Estimate, known: tuple[bool, bool]) -> Estimate:
-    """The same with part of the base lifted, where δ seems to be above that of full contact."""
-    problem = found.problem
-    law = problem.asked.puck.body.law
-    delta = problem.asked.scales(problem.found(found.x))[1]
-    if problem.tall or not law.can_lift or delta < _LIFTS:
-        return found
-    certainty = certainty_of(found.jacobian[found.kept], plausible_for(problem, found.x))
-    if certainty.undetermined[: len(problem.asked.free)].count(True):
-        return found
-    return estimate(replace(problem, tall=True), found.x, known)
+def _held(hold_out: Any) -> float | tuple[str, ...]:
+    """A share of the frames, or names of tracks."""
+    names: Any = (hold_out,) if isinstance(hold_out, str) else hold_out
+    return tuple(names) if isinstance(names, list | tuple) else real("hold_out", names, "1")
 
 
-def _joint_start(
-    problem: Problem, parts: list[Problem], starts: list[tuple[dict[str, float], FloatArray]]
-) -> FloatArray:
-    """The unknowns of all tracks from those of each: what is shared is their weighted mean."""
-    if len(parts) == 1:
-        return problem.unknowns(starts[0][0], starts[0][1][None])
-    shared = len(problem.asked.free)
-    weights, sums, launches = np.zeros((shared, shared)), np.zeros(shared), []
-    for part, (values, launch) in zip(parts, starts, strict=True):
-        x = part.unknowns(values, launch[None])
-        spread = certainty_of(part.jacobian(x), plausible_for(part, x)).covariance
-        if shared:
-            weight = np.linalg.pinv(spread[:shared, :shared])
-            weights += weight
-            sums += weight @ x[:shared]
-        launches.append(launch)
-    mean = np.linalg.solve(weights, sums) if shared else sums
-    return problem.unknowns(
-        dict(zip(problem.asked.free, mean.tolist(), strict=True)), np.array(launches)
-    )
-
-
-def _held_out(
-    found: Estimate, hold_out: float | Sequence[str], known: tuple[bool, bool]
-) -> HeldOut:
+def _held_out(found: Estimate, wanted: float | tuple[str, ...], known: Known) -> HeldOut:
     """The later part of tracks, predicted from the rest."""
     problem = found.problem
-    names: Any = (hold_out,) if isinstance(hold_out, str) else hold_out
-    wanted = tuple(names) if isinstance(names, list | tuple) else real("hold_out", names, "1")
     films, later = split(problem.films, wanted, problem.noise[0])
-    part = fitted(replace(problem, films=films), known, refit=False)
-    certainty = certainty_of(part.jacobian[part.kept], plausible_for(part.problem, part.x))
-    return predicted(part, certainty, problem.films, later)
-
-
-def _films(tracks: Any, since: float, until: float) -> tuple[Seen, ...]:
-    """The tracks, checked, with different names.
-
-    Raises
-    ------
-    InputError
-    """
-    if not isinstance(tracks, Track | Iterable):
-        raise InputError(f"tracks must be a Track or several, got {tracks!r}")
-    listed = [tracks] if isinstance(tracks, Track) else list(tracks)
-    if not listed:
-        raise InputError("there is no track to fit: give one or more")
-    for track in listed:
-        instance("tracks", track, Track)
-    names = [track.name for track in listed]
-    films = []
-    for n, track in enumerate(listed):
-        film = seen_in(track, since, until)
-        if names.count(track.name) > 1:
-            film = replace(film, name=f"{track.name} {n + 1}")
-        films.append(film)
-        _refuse_still(film)
-    count = sum(film.time.size for film in films)
-    if count > MOST_FRAMES:
-        raise InputError(
-            f"{count} frames are too many for one fit, {MOST_FRAMES} are enough: give every tenth, "
-            "or a part (since, until)"
-        )
-    return tuple(films)
-
-
-def _refuse_still(film: Seen) -> None:
-    """Refuse a track of a puck that lies still.
-
-    Raises
-    ------
-    InputError
-    """
-    place, angle = noise_of([film])
-    spread = place if math.isfinite(place) else 0.0
-    turning = turning_of(film)
-    turns = turning is not None and float(np.nanstd(turning.angle)) > _STILL * max(
-        angle if math.isfinite(angle) else 0.0, _LEAST_TURN
-    )
-    if rests_from(film, spread) == 0 and not turns:
-        raise InputError(
-            f"the puck of {film.name} lies still: a fit needs a track of a slide or a spin"
-        )
-
-
-def _noise(
-    given: Any,
-) -> tuple[tuple[float | None, float | None], tuple[bool, bool]]:
-    """The noise as given, and which of it was.
-
-    Raises
-    ------
-    InputError
-    """
-    if given is None:
-        return (None, None), (False, False)
-    try:
-        place, angle = given
-    except (TypeError, ValueError):
-        raise InputError(
-            f"noise must be (metres, radians), None for what is to be estimated, got {given!r:.40}"
-        ) from None
-    checked: list[float | None] = []
-    for value, what, unit in ((place, "places", "m"), (angle, "angles", "rad")):
-        if value is None:
-            checked.append(None)
-            continue
-        number = real(f"the noise of {what}", value, unit)
-        if not number > 0.0:
-            raise InputError(f"the noise of {what} must be greater than 0 ({unit}), got {number:g}")
-        checked.append(number)
-    return (checked[0], checked[1]), (checked[0] is not None, checked[1] is not None)
-
-
-def _positive(judged: float, films: tuple[Seen, ...]) -> float:
-    """Noise to begin with."""
-    size = max(float(np.ptp(film.place, axis=0).max()) for film in films)
-    least = 1e-9 * (size or 1.0)
-    return max(judged, least) if math.isfinite(judged) else max(_GUESS * size, least)
-
-
-def _observations(problem: Problem) -> int:
-    places: npt.NDArray[np.int64] = problem.kinds
-    return int(places.size) - len(problem.priors)
+    fewer = problem.with_films(films)
+    if problem.meetings:
+        part = estimate(fewer, found.x, known)
+    else:
+        part = fitted(fewer, known, refit=False)
+    return predicted(part, _certainty(part, known), problem.films, later)

@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass, field
-from typing import Any, ClassVar, Protocol
+from dataclasses import dataclass, field, replace
+from typing import Any, ClassVar, NamedTuple, Protocol
 
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import instance, one_velocity, positive, real
 from puck_tables.errors import InputError
-from puck_tables.fitting.certainty import certainty_of
+from puck_tables.fitting.blindness import rival_sentence
+from puck_tables.fitting.certainty import Certainty, certainty_of
+from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.numbers import plausible_for
 from puck_tables.fitting.parameters import Asked
-from puck_tables.fitting.problem import Problem
+from puck_tables.fitting.problem import Found, Problem
+from puck_tables.fitting.rivals import rivals_of
 from puck_tables.fitting.seen import FEWEST, Seen
 from puck_tables.io.dataset import Dataset, variable
 from puck_tables.puck import Puck
@@ -96,7 +99,8 @@ class Forecast(Result):
 
     ``names``, ``values``, ``errors``: of what would be found, the puck's numbers first, then those
     of the launch; an error is infinite where the film does not determine the number.  ``frames``:
-    how many it has.
+    how many it has; ``rivals``: a sentence for each other motion that the film would look like,
+    whose numbers it therefore does not determine.
     """
 
     puck: Puck
@@ -108,6 +112,7 @@ class Forecast(Result):
     values: FloatArray
     errors: FloatArray
     frames: int
+    rivals: tuple[str, ...]
     correlation: FloatArray = field(repr=False)
 
     picture: ClassVar[str] = "forecast"
@@ -124,19 +129,24 @@ class Forecast(Result):
 
     def explain(self) -> str:
         """How it was got."""
-        return (
+        bounds = (
             f"Cramér–Rao bounds: the inverse of the Fisher matrix of {len(self.names)} unknowns "
             f"and {self.frames} frames, in the derivatives of the motion."
         )
+        return "\n".join([bounds, *self.rivals])
 
     def over(self, speeds: FloatArray, spins: FloatArray, name: str) -> FloatArray:
-        """The error of a number for launches of other speeds (m,) and spins (n,), (m, n)."""
+        """The error of a number for launches of other speeds (m,) and spins (n,), (m, n).
+
+        That of the motion itself: other motions which look alike are not searched for.
+        """
         found = np.empty((speeds.size, spins.size))
         for i, speed in enumerate(speeds.tolist()):
             for k, spin in enumerate(spins.tolist()):
                 other = _Launch((speed, 0.0), spin)
                 try:
-                    found[i, k] = fisher(self.puck, other, self.camera, free=self.free)[name]
+                    one = _bounds(self.puck, other, self.camera, self.free)
+                    found[i, k] = one.certainty.errors[self.names.index(name)]
                 except InputError:  # a film of too few frames
                     found[i, k] = np.inf
         return found
@@ -205,25 +215,54 @@ def fisher(
     instance("camera", camera, Camera)
     velocity = one_velocity(getattr(launch, "velocity", None))  # type: ignore[arg-type]
     spin = real("spin", getattr(launch, "spin", None), "rad/s")  # type: ignore[arg-type]
-    asked = Asked.of(puck, free, {}, {}, {}, {})
-    stop = puck.stop(velocity, spin)
-    film = camera.film(float(stop.stop_time))
-    noise = camera.place_noise, camera.angle_noise or 1.0
-    problem = Problem(asked, (film,), noise, tall=puck.delta > 1.0)
-    numbers = {**asked.known(), "decel": puck.decel, "delta": puck.delta}
-    found = {name: numbers[name] for name in asked.free}
-    x = problem.unknowns(found, np.array([[0.0, 0.0, *velocity, spin, 0.0]]))
-    slopes = problem.jacobian(x)
-    known = certainty_of(slopes, plausible_for(problem, x))
+    told = _bounds(puck, _Launch(velocity, spin), camera, free)
+    problem, known = told.problem, told.certainty
+    errors = known.errors
+    rivals = () if camera.angle_noise is not None else _rivals(told)
+    names = tuple(name for _, name in problem.names)
+    for rival in rivals:
+        others = [*rival, "launch_spin"]
+        errors[[k for k, name in enumerate(names) if name in others]] = np.inf
     return Forecast(
         puck=puck,
         velocity=velocity,
         spin=spin,
         camera=camera,
-        free=asked.free,
-        names=tuple(name for _, name in problem.names),
-        values=x,
-        errors=known.errors,
-        frames=film.time.size,
+        free=problem.asked.free,
+        names=names,
+        values=told.x,
+        errors=errors,
+        frames=problem.films[0].time.size,
+        rivals=tuple(rival_sentence(rival, False) for rival in rivals),
         correlation=known.correlation,
     )
+
+
+class _Bounds(NamedTuple):
+    problem: Problem
+    x: FloatArray
+    certainty: Certainty
+
+
+def _bounds(puck: Puck, launch: _Launch, camera: Camera, free: Iterable[str]) -> _Bounds:
+    """How well a film tells the unknowns of a launch."""
+    asked = Asked.of(puck, free, {}, {}, {}, {})
+    stop = puck.stop(launch.velocity, launch.spin)
+    film = camera.film(float(stop.stop_time))
+    noise = camera.place_noise, camera.angle_noise or 1.0
+    problem = Problem(asked, (film,), noise, tall=puck.delta > 1.0)
+    numbers = {**asked.known(), "decel": puck.decel, "delta": puck.delta}
+    found = {name: numbers[name] for name in asked.free}
+    x = problem.unknowns(found, np.array([[0.0, 0.0, *launch.velocity, launch.spin, 0.0]]))
+    return _Bounds(problem, x, certainty_of(problem.jacobian(x), plausible_for(problem, x)))
+
+
+def _rivals(told: _Bounds) -> tuple[Found, ...]:
+    """Other motions that the film would show as well, by the film itself without its noise."""
+    places = told.problem.paths(told.x)[0][:2].T
+    film = replace(told.problem.films[0], place=places)
+    problem = told.problem.with_films((film,))
+    kept = np.ones(problem.kinds.size, bool)
+    rows = problem.residuals(told.x)
+    seen = Estimate(problem, told.x, kept, rows, problem.jacobian(told.x))
+    return rivals_of(seen, told.certainty)

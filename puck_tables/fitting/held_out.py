@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
@@ -93,7 +93,7 @@ def predicted(
     later: tuple[npt.NDArray[np.bool_], ...],
 ) -> HeldOut:  # fmt: skip
     """How far the frames held out are from their predictions."""
-    whole = replace(part.problem, films=films, whole=())
+    whole = part.problem.with_films(films).with_noise(part.problem.noise, part.x)
     rows, slopes = whole.residuals(part.x), whole.jacobian(part.x)
     spread = np.sqrt(1.0 + np.einsum("ik,kl,il->i", slopes, certainty.covariance, slopes))
     z, chosen = -rows / spread, np.zeros(rows.size, bool)

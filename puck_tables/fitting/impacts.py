@@ -1,52 +1,34 @@
-"""Tracks that hold impacts with walls: cut where they bend, and what the bends say of the walls.
+"""Tracks that hold impacts: where they bend, and the slides between.
 
 A track is cut between two frames where its velocity jumps by far more than it changes nearby.  The
-pieces are fitted together, as slides of one puck with launches of their own.  From the
-state before an impact and the one after follow, per unit of mass,
-
-    P_t = −(k²/R) Δω ,   P_n = √(|Δv|² − P_t²) ,   e = P_n/u_n − 1 ,
-
-with n the direction to the wall, so that −Δv = P_n n + P_t t, and u_n the speed of approach: the
-restitution e, and P_t/P_n, which is the friction coefficient of the rim where it slid all the time.
+pieces are fitted together, as slides of one puck with launches of their own; then the law of impact
+joins them (:mod:`puck_tables.fitting.joining`).
 """
 
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.fitting.certainty import Z95, Certainty
-from puck_tables.fitting.estimate import Estimate
-from puck_tables.fitting.launched import path_of
-from puck_tables.fitting.numbers import FOLLOWS, Number
-from puck_tables.fitting.problem import Problem
-from puck_tables.fitting.seen import FEWEST, Seen
+from puck_tables.fitting.seen import FEWEST, Seen, noise_of, rests_from, turning_of
 from puck_tables.fitting.starts import robust_parabola
 
 _WINDOW, _WIDER = 5, 15  # frames to either side
 _USUAL, _NOISY, _LEAST = 6.0, 6.0, 0.15  # times the usual jump, the noise of one, the speed
+_STILL, _LEAST_TURN = 3.0, 1e-9  # times the noise; rad
 _TOP = 0.95  # of the largest jump around: in the middle of these is the kink
-_STEP = 1e-5
-_INSTANT = 1e-4  # s, over which velocities are differences
 
 
-class Impact(NamedTuple):
-    """An impact with a wall.
+class Piece(NamedTuple):
+    """Which slide of which track a piece is, both counted from 0."""
 
-    ``track``: its name; ``time`` s; ``place`` (x, y) m of the centre; ``wall`` rad: the direction
-    from the centre to the wall; ``restitution`` e, ``rim`` P_t/P_n.
-    """
-
-    track: str
-    time: float
-    place: tuple[float, float]
-    wall: float
-    restitution: Number
-    rim: Number
+    track: int
+    slide: int
 
 
 def kinks(film: Seen, noise: float) -> list[int]:
@@ -121,94 +103,45 @@ def _velocity(film: Seen, start: int, stop: int) -> FloatArray:
     return velocity
 
 
-def cut(films: tuple[Seen, ...], noise: float) -> tuple[Seen, ...]:
-    """The tracks cut at their kinks; a piece too short to be fitted is left out."""
-    pieces = []
-    for film in films:
-        ends = [0, *(n + 1 for n in kinks(film, noise)), film.time.size]
+def cut(
+    films: tuple[Seen, ...], noise: float
+) -> tuple[tuple[Seen, ...], tuple[Piece, ...], tuple[bool, ...]]:
+    """The tracks cut at their kinks, which pieces they are, and whether the puck rests in each.
+
+    A piece too short to be fitted is left out.
+    """
+    pieces, numbers, rests = [], [], []
+    for n, film in enumerate(films):
+        ends = [0, *(k + 1 for k in kinks(film, noise)), film.time.size]
         number = np.arange(film.time.size)
         for k, (start, stop) in enumerate(pairwise(ends)):
             if stop - start < FEWEST + 2:
                 continue
             piece = film.part((number >= start) & (number < stop))
-            name = film.name if len(ends) == 2 else f"{film.name}, slide {k + 1}"
-            pieces.append(Seen(
-                name, piece.start, piece.time, piece.place, piece.angle, piece.frame
-            ))  # fmt: skip
-    return tuple(pieces)
+            name = film.name if len(ends) == 2 else slide_name(film.name, k)
+            pieces.append(replace(piece, name=name))
+            numbers.append(Piece(n, k))
+            rests.append(len(ends) > 2 and rests_from(piece, noise) == 0 and not turns(piece))
+    return tuple(pieces), tuple(numbers), tuple(rests)
 
 
-def impacts_of(found: Estimate, certainty: Certainty) -> tuple[Impact, ...]:
-    """The impacts between pieces of one track that follow each other."""
-    problem, x = found.problem, found.x
-    impacts = []
-    for n in range(len(problem.films) - 1):
-        one, two = problem.films[n], problem.films[n + 1]
-        if one.name.rpartition(", slide ")[0] != two.name.rpartition(", slide ")[0] or (
-            ", slide " not in one.name
-        ):
-            continue
-        values = _impact(problem, x, n)
-        if values is None:
-            continue
-        slopes = np.zeros((2, x.size))
-        for k in range(x.size):
-            step = _STEP * certainty.plausible[k]
-            ends = []
-            for side in (1.0, -1.0):
-                moved = x.copy()
-                moved[k] += side * step
-                ends.append(_impact(problem, moved, n))
-            if ends[0] is not None and ends[1] is not None:
-                slopes[:, k] = (ends[0][:2] - ends[1][:2]) / (2.0 * step)
-        numbers = []
-        for value, slope in zip(values[:2].tolist(), slopes, strict=True):
-            error = certainty.error_of(slope, 1.0)
-            numbers.append(
-                Number(value, error, value - Z95 * error, value + Z95 * error, "1", FOLLOWS)
-            )
-        _, _, time, px, py, wall = values.tolist()
-        name = one.name.rpartition(", slide ")[0]
-        impacts.append(Impact(name, time, (px, py), wall, numbers[0], numbers[1]))
-    return tuple(impacts)
+def slide_name(track: str, k: int) -> str:
+    """The name of a slide between impacts, counted from 0."""
+    return f"{track}, slide {k + 1}"
 
 
-def _impact(problem: Problem, x: FloatArray, n: int) -> FloatArray | None:
-    """e, P_t/P_n, time, x, y and wall of the impact after piece ``n``; None if there is none."""
-    before, after = problem.films[n], problem.films[n + 1]
-    one, two = problem.launches(x)[n : n + 2]
-    gap = after.start - before.start
-    earlier = gap - before.time[-1]
-    # straight lines through both ends of the gap meet nearest where the impact was
-    end = _state(problem, x, one, gap - earlier)
-    start = _state(problem, x, two, 0.0)
-    slow = _state(problem, x, two, 10.0 * _INSTANT)[3:6]
-    change = (slow - start[3:6]) / (10.0 * _INSTANT)
-    apart = start[:2] - start[3:5] * earlier - end[:2]
-    closing = end[3:5] - start[3:5]
-    since = float(apart @ closing) / float(closing @ closing)
-    since = min(max(since, -earlier), 2.0 * earlier)
-    incoming = _state(problem, x, one, gap - earlier + since)
-    outgoing = start[3:6] - change * (earlier - since)
-    kick = incoming[3:5] - outgoing[:2]
-    found, moving = problem.found(x), problem.moving(problem.found(x))
-    gyration = {**problem.asked.known(), **found}["gyration"] * moving.radius
-    rub = (incoming[5] - outgoing[2]) * gyration**2 / moving.radius
-    push = math.sqrt(max(float(kick @ kick) - rub * rub, 0.0))
-    wall = math.atan2(kick[1], kick[0]) - math.atan2(rub, push)
-    approach = float(incoming[3:5] @ [math.cos(wall), math.sin(wall)])
-    if not (approach > 0.0 and push > 0.0):
-        return None
-    time = before.start + gap - earlier + since
-    return np.array([push / approach - 1.0, rub / push, time, *incoming[:2], wall])
+def turns(film: Seen) -> bool:
+    """Whether the body of a track turns.
 
-
-def _state(problem: Problem, x: FloatArray, launch: FloatArray, time: float) -> FloatArray:
-    """Place, angle, velocity and spin at a time after a launch."""
-    moving = problem.moving(problem.found(x))
-    times = np.array([max(time - _INSTANT, 0.0), time, time + _INSTANT])
-    path = path_of(moving, launch[2:4], float(launch[4]), times) + launch[[0, 1, 5], None]
-    if time <= 0.0:
-        return np.concatenate([path[:, 1], launch[2:5]])
-    rate = (path[:, 2] - path[:, 0]) / (times[2] - times[0])
-    return np.concatenate([path[:, 1], rate])
+    Examples
+    --------
+    >>> t = 0.01 * np.arange(50)
+    >>> turns(Seen("a", 0.0, t, np.zeros((50, 2)), 3.0 * t, np.arange(50)))
+    True
+    """
+    turning = turning_of(film)
+    _, angle = noise_of([film])
+    noise = angle if math.isfinite(angle) else 0.0
+    return turning is not None and float(np.nanstd(turning.angle)) > _STILL * max(
+        noise, _LEAST_TURN
+    )

@@ -32,7 +32,7 @@ _SLOWEST = 1e-9  # of Q: a launch that only spins is taken to go that fast along
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 
 # what places and turns are differentiated to
-VX, VY, SPIN, DECEL, DELTA, RADIUS = range(6)
+VX, VY, SPIN, DECEL, DELTA, RADIUS, TIME = range(7)
 
 
 class Moving(NamedTuple):
@@ -61,8 +61,29 @@ def path_of(moving: Moving, velocity: FloatArray, spin: float, times: FloatArray
 def path_with_slopes(
     moving: Moving, velocity: FloatArray, spin: float, times: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """The same (3, n), and its derivatives (6, 3, n) to vx, vy, ω, J, δ and r."""
+    """The same (3, n), and its derivatives (7, 3, n) to vx, vy, ω, J, δ, r and time."""
     return _path(moving, velocity, spin, times, True)
+
+
+def path_and_rate(
+    moving: Moving, velocity: FloatArray, spin: float, times: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """The same (3, n), with velocity (m/s) and spin (rad/s) at these times, (3, n).
+
+    Examples
+    --------
+    >>> from puck_tables.fitting.natural import curve_of
+    >>> plain = Moving(1.0, 0.5, 1.0, 0.0, curve_of("uniform", 0.5**0.5))
+    >>> path_and_rate(plain, np.array([1.0, 0.0]), 0.0, np.array([0.25]))[1].ravel().tolist()
+    [0.75, 0.0, 0.0]
+    """
+    path, slopes = _path(moving, velocity, spin, times, False)
+    return path, slopes[-1]
+
+
+def rates_of(moving: Moving, velocity: FloatArray, spin: float, times: FloatArray) -> FloatArray:
+    """Velocity (m/s) and spin (rad/s) at times (n,) s after a launch, (3, n)."""
+    return path_and_rate(moving, velocity, spin, times)[1]
 
 
 def _path(
@@ -85,7 +106,9 @@ def _path(
         found: FloatArray = at / (1.0 + c * s) ** 2 + 2.0 * c * integral
         return found
 
-    return dragged(path), dragged(slope)
+    found = dragged(slope)
+    found[-1] = slope[-1, :, : s.size] * np.exp(-c * times)
+    return dragged(path), found
 
 
 def _dry(
@@ -95,7 +118,7 @@ def _dry(
     rim, speed = moving.radius * spin, math.hypot(vx, vy)
     slip = math.hypot(speed, rim)
     if slip == 0.0:
-        return np.zeros((3, times.size)), np.zeros((6, 3, times.size))
+        return np.zeros((3, times.size)), np.zeros((7, 3, times.size))
     phi = math.atan2(rim, speed)
     cosine, sine = (vx / speed, vy / speed) if speed > 0.0 else (1.0, 0.0)
     turn = np.array([[cosine, -sine], [sine, cosine]])
@@ -107,10 +130,10 @@ def _dry(
     place = length * np.einsum("ab,bmn->amn", turn, np.stack([x, y]))
     paths = np.concatenate([place, (length / moving.radius) * body[None]])
     path = paths[:, 0]
-    if not slopes:
-        return path, np.empty((0, 3, times.size))
     motion = slip * np.stack([ahead[0] * np.cos(heading[0]), ahead[0] * np.sin(heading[0])])
     rate = np.concatenate([turn @ motion, (slip / moving.radius) * around[:1]])
+    if not slopes:
+        return path, rate[None]
     to_phi = (paths[:, 1] - paths[:, 2]) / (phis[1] - phis[2])
     to_delta = (paths[:, 4] - paths[:, 3]) / (deltas[4] - deltas[3])
     to_log_slip = 2.0 * path - times * rate
@@ -121,7 +144,7 @@ def _dry(
     to_radius[2] -= path[2] / moving.radius
     return path, np.stack([
         cosine * to_speed - sine * across, sine * to_speed + cosine * across,
-        moving.radius * to_rim, (times * rate - path) / moving.decel, to_delta, to_radius,
+        moving.radius * to_rim, (times * rate - path) / moving.decel, to_delta, to_radius, rate,
     ])  # fmt: skip
 
 

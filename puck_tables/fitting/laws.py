@@ -8,9 +8,9 @@ that no law gains by calling frames outliers.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -19,11 +19,12 @@ from puck_tables.errors import InputError
 from puck_tables.fitting.estimate import FARTHEST, FARTHEST_PLACE, Estimate
 from puck_tables.fitting.parameters import Asked
 from puck_tables.fitting.problem import PRIOR
+from puck_tables.fitting.timing import Known
 
 DRAG = "+drag"
 _CONTENDS = 60.0  # of χ²: laws worse than the best by more are not fitted again
 
-Fitted = Callable[[Asked, tuple[float, float], tuple[bool, bool]], Estimate]
+Fitted = Callable[[Asked, tuple[float, float], Known], Estimate]
 
 
 class LawScore(NamedTuple):
@@ -42,20 +43,11 @@ class LawScore(NamedTuple):
 
 
 def compare(
-    asked: Asked, names: Sequence[str], noise: tuple[float, float], known: tuple[bool, bool],
-    fitted: Fitted,
-) -> tuple[LawScore, ...]:  # fmt: skip
-    """The laws named, best first; ``fitted`` fits what is asked with a noise, known or not.
-
-    Raises
-    ------
-    InputError
-        If a law is not known, or named twice.
-    """
-    if len(set(names)) < len(names):
-        raise InputError(f"laws {', '.join(names)}: name each law once")
-    variants = [_variant(asked, name) for name in names]
-    first = [fitted(one, noise, known) for one in variants]
+    variants: Mapping[str, Asked], noise: tuple[float, float], known: Known, fitted: Fitted
+) -> tuple[LawScore, ...]:
+    """The laws named, best first; ``fitted`` fits what is asked with a noise, known or not."""
+    names, questions = list(variants), list(variants.values())
+    first = [fitted(one, noise, known) for one in questions]
     common = [
         noise[kind] if known[kind] else min(one.problem.noise[kind] for one in first)
         for kind in range(2)
@@ -65,8 +57,8 @@ def compare(
     score = chi2 + 2.0 * unknowns
     again = list(first)
     for k in np.flatnonzero(score < score.min() + _CONTENDS):
-        if not all(known):
-            again[k] = fitted(variants[k], (common[0], common[1]), (True, True))
+        if not (known.place and known.angle):
+            again[k] = fitted(questions[k], (common[0], common[1]), Known(True, True, True))
             chi2[k] = _capped(again[k], (common[0], common[1]))
     score = chi2 + 2.0 * unknowns
     weight = np.exp(-0.5 * (score - score.min()))
@@ -77,6 +69,21 @@ def compare(
     ]
     order = np.argsort(score, kind="stable")
     return tuple(found[k] for k in order)
+
+
+def variants_of(asked: Asked, names: Any) -> dict[str, Asked]:
+    """What is asked of each law by its name.
+
+    Raises
+    ------
+    InputError
+        If they are no list, a law is not known, or named twice.
+    """
+    if isinstance(names, str):
+        raise InputError(f"laws must be a list of names, got the text '{names}'")
+    if len(set(names)) < len(names):
+        raise InputError(f"laws {', '.join(names)}: name each law once")
+    return {name: _variant(asked, name) for name in names}
 
 
 def _variant(asked: Asked, name: str) -> Asked:
@@ -92,7 +99,7 @@ def _variant(asked: Asked, name: str) -> Asked:
 
 def _capped(found: Estimate, noise: tuple[float, float]) -> float:
     """χ² under a noise, of all frames, with no residual beyond the farthest."""
-    rows = found.problem.with_noise(noise).residuals(found.x)
+    rows = found.problem.with_noise(noise, found.x, found.kept).residuals(found.x)
     total = float(np.sum(rows[found.problem.kinds == PRIOR] ** 2))
     for x, y, turn in found.problem.each():
         place = rows[x] ** 2 + rows[y] ** 2

@@ -9,8 +9,10 @@ from typing import NamedTuple
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.fitting.certainty import Z95, Certainty, Interval, interval_of
+from puck_tables.fitting.certainty import Certainty, Interval, interval_of
+from puck_tables.fitting.chain import slopes_of_slides
 from puck_tables.fitting.estimate import Estimate
+from puck_tables.fitting.impacts import slide_name
 from puck_tables.fitting.parameters import ALL, LAUNCH, PUCK
 from puck_tables.fitting.problem import Found, Problem
 
@@ -67,11 +69,16 @@ def plausible_for(problem: Problem, x: FloatArray) -> FloatArray:
     radius = problem.asked.scales(found)[2]
     sizes = []
     for track, name in problem.names:
-        if track < 0:
+        if track == -1:
             least = _LEAST.get(name)
             sizes.append(
                 problem.asked.plausible(name) if least is None else max(abs(found[name]), least)
             )
+            continue
+        if track < -1:
+            of_walls = [film.place for film in problem.films]
+            size = float(np.ptp(np.concatenate(of_walls), axis=0).max()) or radius
+            sizes.append({"wall_angle": 1.0, "wall_distance": size}[name])
             continue
         launch, film = launches[track], problem.films[track]
         slip = math.hypot(launch[2], launch[3], radius * launch[4]) or 1.0
@@ -100,7 +107,7 @@ def numbers_of(
         interval, error = interval_of(found, certainty, k), float(errors[k])
         width = interval.high - interval.low
         if interval.profiled:  # the likelihood is no parabola: half of its width
-            error = max(error, width / (2.0 * Z95))
+            error = max(error, width / (2.0 * certainty.quantile))
         low, high = interval.low, interval.high
         others = [values[name], *(rival[name] for rival in rivals)]
         if min(others) < low or max(others) > high:  # another summit lies outside
@@ -127,33 +134,46 @@ def numbers_of(
         if any(slope[k] and not puck[one].determined for k, one in enumerate(asked.free)
                if not certainty.undetermined[k]):  # fmt: skip
             error = math.inf
-        ends = _follows(problem, x, name, slope, puck) or _quadratic(value, error)
-        if PUCK[name].low == 0.0:
-            ends = Interval(max(ends.low, 0.0), ends.high, False)
-        puck[name] = Number(value, error, ends.low, ends.high, PUCK[name].unit, FOLLOWS)
+        number = quadratic(value, error, PUCK[name].unit, FOLLOWS, certainty.quantile)
+        ends = _follows(problem, x, name, slope, puck)
+        if ends is not None:
+            number = number._replace(low=ends.low, high=ends.high)
+        puck[name] = number._replace(low=max(number.low, PUCK[name].low))
     puck = {name: puck[name] for name in PUCK if name in puck}
+    return puck, _launches(found, certainty, bool(rivals))
+
+
+def _launches(found: Estimate, certainty: Certainty, rivals: bool) -> tuple[FoundLaunch, ...]:
+    """The launches of all slides; those after an impact follow from the first."""
+    problem, errors = found.problem, certainty.errors
+    plausible = dict(zip(problem.names, certainty.plausible.tolist(), strict=True))
+    slides, slopes = problem.slides(found.x)[0], slopes_of_slides(problem, found.x)
     launches = []
-    for n, (film, row) in enumerate(zip(problem.films, problem.launches(x), strict=True)):
-        numbers = {}
-        for name, value in zip(LAUNCH, row.tolist(), strict=True):
-            if (n, name) in problem.names:
-                error = float(errors[problem.names.index((n, name))])
-                if rivals and name == "launch_spin":  # the motions differ in it
-                    error = math.inf
-                ends = _quadratic(value, error)
-                how = FREE
-            else:
-                error, ends, how = 0.0, Interval(value, value, False), KNOWN
-            numbers[name] = Number(value, error, ends.low, ends.high, ALL[name].unit, how)
-        px, py, vx, vy, spin, angle = row.tolist()
-        launches.append(
-            FoundLaunch(film.name, film.start, (px, py), (vx, vy), spin, angle, numbers)
-        )
-    return puck, tuple(launches)
+    for n, film in enumerate(problem.films):
+        for m, slide in enumerate(slides[n]):
+            numbers = {}
+            row = slide.launch.tolist()
+            for k, (name, value) in enumerate(zip(LAUNCH, row, strict=True)):
+                error, how = 0.0, KNOWN
+                if m > 0:
+                    how = FOLLOWS
+                    size = plausible.get((n, name), 1.0)
+                    error = certainty.error_of(slopes[n][m][k + 1], size)
+                elif (n, name) in problem.names:
+                    error, how = float(errors[problem.names.index((n, name))]), FREE
+                    if rivals and name == "launch_spin":  # the motions differ in it
+                        error = math.inf
+                numbers[name] = quadratic(value, error, ALL[name].unit, how, certainty.quantile)
+            name = film.name if len(slides[n]) == 1 else slide_name(film.name, m)
+            since = film.start + slide.since - slides[n][0].since
+            px, py, vx, vy, spin, angle = row
+            launches.append(FoundLaunch(name, since, (px, py), (vx, vy), spin, angle, numbers))
+    return tuple(launches)
 
 
-def _quadratic(value: float, error: float) -> Interval:
-    return Interval(value - Z95 * error, value + Z95 * error, False)
+def quadratic(value: float, error: float, unit: str, how: str, quantile: float) -> Number:
+    """A number with the interval that its standard error says, ``quantile`` of them wide."""
+    return Number(value, error, value - quantile * error, value + quantile * error, unit, how)
 
 
 def _follows(

@@ -15,13 +15,16 @@ from puck_tables._core.real import instance
 from puck_tables._core.safe_write import write_bytes
 from puck_tables._version import __version__
 from puck_tables.errors import InputError
-from puck_tables.fitting.certainty import Certainty, profile_point
+from puck_tables.fitting.certainty import Z95, Certainty, profile_point
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.held_out import HeldOut
-from puck_tables.fitting.impacts import Impact
 from puck_tables.fitting.laws import LawScore
 from puck_tables.fitting.numbers import FoundLaunch, Number
+from puck_tables.fitting.residual_tests import lengthways
+from puck_tables.fitting.tied import Impact
+from puck_tables.fitting.timing import Known
 from puck_tables.io.dataset import Dataset, Variable, variable
+from puck_tables.io.formats import FORMATS, ending_of
 from puck_tables.puck import Puck
 from puck_tables.result import Result
 
@@ -32,6 +35,8 @@ KIND = "puck-tables fit 1"
 _NO_PATTERN = 1e-3  # probability of residuals so patterned by chance
 _COMPUTED = 1e-7  # of the path: residuals of tracks that were computed, not seen
 _NOISY = 1.5  # times the noise of a smooth motion
+_ON_BOUND = 1e-4  # of a bound, or of an error: a number lies on it
+_LENGTHWAYS = 1.3
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -39,14 +44,16 @@ class Fit(Result):
     """A puck and its launches, found from tracks.
 
     ``numbers``: :class:`Number` by name (``fit["friction"]``): found, following from what was
-    found, or known; ``launches``: one for each track.  ``chi2`` over ``degrees`` of freedom;
-    ``noise`` (m, rad), that of the residuals unless ``noise_known``, and ``smooth_noise``, judged
-    without any model of the puck; ``outliers``: share of the observations that are left out;
-    ``left_out``: frames at the start and at the end of each track that are no free motion;
-    ``runs``, ``drift``: probabilities of residuals so patterned by chance; ``blind``: a sentence
-    for each thing that the tracks do not tell; ``laws``: :class:`LawScore` of those compared, best
+    found, or known; ``launches``: one for each slide.  ``chi2`` over ``degrees`` of freedom;
+    ``noise`` (m, rad) and ``jitter`` (s, of time stamps), those of the residuals unless
+    ``noise_known``, and ``smooth_noise``, judged without any model of the puck; ``outliers``: share
+    of the observations that are left out; ``left_out``: (track, frames at its start, at its end)
+    that are no free motion; ``runs``, ``drift``: probabilities of residuals so patterned by chance;
+    ``blind``: a sentence for each thing that the tracks do not tell; ``laws``: :class:`LawScore` of
+    those compared, best
     first; ``held_out``: how well frames that were held out are predicted;
-    ``impacts``: :class:`Impact` of those looked for.
+    ``impacts``: :class:`Impact` of those looked for; ``untied``: why they do not join the slides,
+    empty where they do.
     """
 
     given: Puck
@@ -55,16 +62,18 @@ class Fit(Result):
     chi2: float
     degrees: int
     noise: tuple[float, float]
-    noise_known: tuple[bool, bool]
+    jitter: float
+    noise_known: Known
     smooth_noise: tuple[float, float]
     outliers: float
     runs: float
     drift: float
-    left_out: tuple[tuple[int, int], ...]
+    left_out: tuple[tuple[str, int, int], ...]
     blind: tuple[str, ...]
     laws: tuple[LawScore, ...]
     held_out: HeldOut | None
     impacts: tuple[Impact, ...]
+    untied: str
     estimate: Estimate = field(repr=False)
     certainty: Certainty = field(repr=False)
 
@@ -148,26 +157,63 @@ class Fit(Result):
             own / smooth for own, smooth in zip(self.noise, self.smooth_noise, strict=True)
             if math.isfinite(smooth) and smooth > 0.0
         ]  # fmt: skip
-        if seen and not any(self.noise_known) and max(excess, default=0.0) > _NOISY:
+        if seen and not any(self.noise_known[:2]) and max(excess, default=0.0) > _NOISY:
             found.append(
                 f"The residuals are {max(excess):.3g} times what smooth tracks would leave"
             )
         per_degree = self.chi2 / max(self.degrees, 1)
         expected = 1.0 + 5.0 * math.sqrt(2.0 / max(self.degrees, 1))
-        if any(self.noise_known) and per_degree > expected:
+        if any(self.noise_known[:2]) and per_degree > expected:
             found.append(f"The residuals are {math.sqrt(per_degree):.3g} times the noise given")
         if seen and min(self.runs, self.drift) < _NO_PATTERN:
             found.append(
                 "The residuals are no noise, they have a pattern (probability by chance "
                 f"{min(self.runs, self.drift):.1g})"
             )
+        if found:
+            found.append(
+                "Standard errors and intervals are those of a model that fits: here they are too "
+                "small"
+            )
+        if self.untied:
+            found.append(self.untied)
         if self.outliers > 0.2:
             found.append(f"{100.0 * self.outliers:.3g} % of the observations had to be left out")
         return tuple(found)
 
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What to know of the numbers before they are used."""
+        problem, x = self.estimate.problem, self.estimate.x
+        said = [
+            f"{name} is found, too, since it has a prior or bounds: without them it is known, "
+            f"{float(getattr(self.given, name)):g}"
+            for name in problem.asked.freed if hasattr(self.given, name)
+        ]  # fmt: skip
+        low, high = problem.limits
+        for k, (_, name) in enumerate(problem.names):
+            error = self.certainty.errors[k]
+            for end, way in ((low[k], "below"), (high[k], "above")):
+                near = max(_ON_BOUND * abs(end), _ON_BOUND * (error if error < math.inf else 0.0))
+                if math.isfinite(end) and abs(float(x[k]) - end) <= max(near, _ON_BOUND):
+                    said.append(
+                        f"{name} lies on the end of its range, {end:.6g}: what fits best may be "
+                        f"{way}, and its error and interval, and those of the rest, may mislead"
+                    )
+        if self.jitter == 0.0 and self.noise[0] > 0.0:
+            ratio = lengthways(self.estimate)
+            if ratio > _LENGTHWAYS:
+                said.append(
+                    f"Residuals along the motion are {ratio:.3g} times those across it: the time "
+                    "stamps may jitter (--jitter find)"
+                )
+        return tuple(f"{text}." for text in said)
+
     def explain(self) -> str:
         """How it was found."""
-        place, angle = ("given" if known else "that of the residuals" for known in self.noise_known)
+        place, angle = (
+            "given" if known else "that of the residuals" for known in self.noise_known[:2]
+        )
         angled = any(film.angle is not None for film in self.estimate.problem.films)
         lines = [
             f"Least squares by scipy's trust region reflective method: {self.estimate.x.size} "
@@ -177,6 +223,11 @@ class Fit(Result):
             f"{100.0 * self.outliers:.3g} % of the observations, beyond 4 standard deviations, are "
             "left out.",
         ]
+        if self.certainty.quantile != Z95:
+            lines.append(
+                f"Intervals are {self.certainty.quantile:.3g} standard errors to either side: "
+                f"Student's t of {self.degrees} degrees of freedom, which told the noise."
+            )
         profiled = [name for name, number in self.numbers.items() if number.profiled]
         if profiled:
             lines.append(f"Intervals by profile likelihood: {', '.join(profiled)}.")
@@ -199,16 +250,19 @@ class Fit(Result):
                 for one in self.launches
             ],
             "correlation": self.correlation(), "chi2": self.chi2, "degrees": self.degrees,
-            "noise": list(self.noise), "noise_given": list(self.noise_known),
+            "noise": list(self.noise), "noise_given": list(self.noise_known[:2]),
+            "jitter": self.jitter, "jitter_given": self.noise_known.jitter,
             "outliers": self.outliers, "left_out": [list(one) for one in self.left_out],
             "runs": self.runs, "drift": self.drift,
-            "not_determined": list(self.blind), "complaints": list(self.complaints),
+            "not_determined": list(self.blind), "remarks": list(self.remarks),
+            "complaints": list(self.complaints),
             "laws": [one._asdict() for one in self.laws],
             "held_out": None,
-            "impacts": [
+            "untied": self.untied, "impacts": [
                 {
                     **one._asdict(), "place": list(one.place),
                     "restitution": _told(one.restitution), "rim": _told(one.rim),
+                    "mass_ratio": None if one.mass_ratio is None else _told(one.mass_ratio),
                 }
                 for one in self.impacts
             ],
@@ -315,6 +369,7 @@ class Fit(Result):
             text = json.dumps(self.summary(), indent=1, allow_nan=False) + "\n"
             write_bytes(path, text.encode(), overwrite)
             return
+        ending_of(path, (".json", *FORMATS))
         super().save(path, overwrite)
 
 

@@ -9,13 +9,14 @@ from __future__ import annotations
 
 import difflib
 import math
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 from puck_tables._core.real import instance, real
 from puck_tables.contact.laws import law_of
 from puck_tables.errors import InputError
+from puck_tables.fitting.joined import Rims
 from puck_tables.fitting.launched import Moving
 from puck_tables.fitting.natural import curve_of
 from puck_tables.motion.body import LARGEST_GYRATION, SMALLEST_GYRATION
@@ -44,6 +45,14 @@ PUCK = {
     ),
     "inner": Parameter("1", 0.0, 1.0, 0.5, "inner radius of an annulus over r"),
     "drag": Parameter("1/s", -math.inf, math.inf, 1.0, "linear drag, of speed and of spin"),
+    "readout": Parameter("s", -1.0, 1.0, 0.02, "time in which the lines of a picture are read"),
+    "restitution": Parameter("1", 0.0, 1.0, 1.0, "restitution e of a wall"),
+    "rim_friction": Parameter("1", 0.0, math.inf, 1.0, "friction of the rim on a wall"),
+    "tangential": Parameter("1", -1.0, 1.0, 1.0, "tangential restitution of a wall"),
+    "pair_restitution": Parameter("1", 0.0, 1.0, 1.0, "restitution e of two pucks"),
+    "pair_friction": Parameter("1", 0.0, math.inf, 1.0, "friction of the rims of two pucks"),
+    "pair_tangential": Parameter("1", -1.0, 1.0, 1.0, "tangential restitution of two pucks"),
+    "mass_ratio": Parameter("1", 0.0, math.inf, 1.0, "mass of the second puck over the first's"),
 }
 LAUNCH = {
     "launch_x": Parameter("m", -math.inf, math.inf, 0.0, "place at the launch along x"),
@@ -53,11 +62,21 @@ LAUNCH = {
     "launch_spin": Parameter("rad/s", -math.inf, math.inf, 0.0, "launch spin"),
     "launch_angle": Parameter("rad", -math.inf, math.inf, 1.0, "angle of the body at the launch"),
 }
+WALL = {
+    "wall_angle": Parameter("rad", -math.inf, math.inf, 1.0, "direction to the wall"),
+    "wall_distance": Parameter("m", -math.inf, math.inf, 0.0, "distance of the wall from (0, 0)"),
+}
 ALL = {**PUCK, **LAUNCH}
+# what impacts have besides: unknown values of it mean these
+OF_WALLS = {"restitution": 1.0, "rim_friction": math.inf, "tangential": 0.0}
+OF_PAIRS = {
+    "pair_restitution": 1.0, "pair_friction": math.inf, "pair_tangential": 0.0, "mass_ratio": 1.0,
+}  # fmt: skip
+OF_IMPACTS = {**OF_WALLS, **OF_PAIRS}
 _KIND = ("gyration", "inner", "drag")  # change the curve itself
 _CLASHES = (("friction", "decel"), ("delta", "height"))
 _TINY = 1e-30
-_POSITIVE, _LEAST = ("radius", "gravity", "friction", "decel"), 1e-9
+_POSITIVE, _LEAST = ("radius", "gravity", "friction", "decel", "mass_ratio"), 1e-9
 
 
 @dataclass(frozen=True)
@@ -73,6 +92,8 @@ class Asked:
     priors : (value, standard deviation) by name
     bounds : (low, high) by name
     start : values to begin with, besides those that the tracks suggest
+    freed : names that are found since they have a prior or bounds
+    met : what is taken of the impacts that there are, by name, where nothing else is said
 
     Raises
     ------
@@ -95,28 +116,47 @@ class Asked:
     priors: Mapping[str, tuple[float, float]]
     bounds: Mapping[str, tuple[float, float]]
     start: Mapping[str, float]
+    freed: tuple[str, ...] = ()
+    met: Mapping[str, float] = field(default_factory=dict)
 
     @classmethod
     def of(
         cls, puck: Puck, free: Iterable[str] | None, fixed: Mapping[str, Any],
         priors: Mapping[str, Any], bounds: Mapping[str, Any], start: Mapping[str, Any],
+        impacts: bool = False, rows: bool = False,
     ) -> Asked:  # fmt: skip
         """Checked, with what is free where nothing is said: f, and δ of a puck without height."""
         instance("puck", puck, Puck)
         known = {name: _in_range(name, value) for name, value in fixed.items()}
+        freed: tuple[str, ...] = ()
         if free is None:
             scale = () if {"friction", "decel"} & {*known} else ("friction",)
             if "decel" in priors or "decel" in bounds:
                 scale = ("decel",)
             tilt = () if {"delta", "height"} & {*known} or puck.height else ("delta",)
             wanted = (*scale, *tilt)
-            wanted += tuple(n for n in (*priors, *bounds) if n in PUCK and n not in wanted)
+            named = dict.fromkeys((*priors, *bounds))
+            freed = tuple(name for name in named if name in PUCK and name not in wanted)
+            wanted += freed
         else:
             wanted = tuple([free] if isinstance(free, str) else free)
+        if rows and "readout" not in (*wanted, *known):
+            wanted += ("readout",)
         for name in wanted:
             _named(name, PUCK, "free")
         if len(set(wanted)) < len(wanted):
             raise InputError(f"free names {', '.join(wanted)}: name each parameter once")
+        for name in (*wanted, *known):
+            if name == "readout" and not rows:
+                raise InputError(
+                    "readout is of a rolling shutter: say which y (m) the first and the last line "
+                    "of the picture show (--rows, rows=)"
+                )
+            if name in OF_IMPACTS and not impacts:
+                raise InputError(
+                    f"{name} is a number of impacts, which are not looked for: ask for them "
+                    "(--impacts, impacts=True)"
+                )
         for name in wanted:
             if name in known:
                 raise InputError(
@@ -127,7 +167,7 @@ class Asked:
                 _named(name, ALL, what)
                 if name in known:
                     raise InputError(f"{name} is fixed at {known[name]:g}: leave out its {what}")
-                if name in PUCK and name not in wanted:
+                if name in PUCK and name not in wanted and not (impacts and name in OF_IMPACTS):
                     raise InputError(f"{name} is not free: name it in free to give it a {what}")
         for one, other in _CLASHES:
             both = [name for name in (*wanted, *known) if name in (one, other)]
@@ -142,7 +182,7 @@ class Asked:
         return cls(
             puck, wanted, known, {n: _prior(n, v) for n, v in priors.items()},
             {n: _bounds(n, v) for n, v in bounds.items()},
-            {n: _in_range(n, v) for n, v in start.items()},
+            {n: _in_range(n, v) for n, v in start.items()}, freed,
         )  # fmt: skip
 
     def __post_init__(self) -> None:
@@ -171,7 +211,7 @@ class Asked:
         numbers["drag"] = 0.0
         if _is_annulus(puck):
             numbers["inner"] = float(puck.body.law.name.partition(":")[2])
-        return {**numbers, **{n: v for n, v in self.fixed.items() if n in PUCK}}
+        return {**numbers, **self.met, **{n: v for n, v in self.fixed.items() if n in PUCK}}
 
     def scales(self, found: Mapping[str, Any]) -> tuple[Any, Any, Any]:
         """J, δ and r of what is found; of complex numbers, too."""
@@ -188,6 +228,49 @@ class Asked:
         return tuple(  # type: ignore[return-value]
             float((value + 0j).imag) / _TINY for value in self.scales(complex_values)
         )
+
+    def alone(self) -> Asked:
+        """The same without the numbers of impacts: of slides that nothing joins."""
+        own = tuple(name for name in self.free if name not in OF_IMPACTS)
+        priors = {name: one for name, one in self.priors.items() if name not in OF_IMPACTS}
+        return replace(self, free=own, priors=priors, met={})
+
+    def joined(self, sizes: Collection[int], grips: bool) -> Asked:
+        """The same with the numbers of the impacts that there are.
+
+        ``sizes``: how many pucks meet, 1 those with walls; ``grips``: whether rims stop on what
+        they meet in all of them, so that nothing tells their friction.
+
+        Raises
+        ------
+        InputError
+            If a number of impacts is named that are not there.
+        """
+        free, met = list(self.alone().free), {}
+        named = [name for name in self.free if name in OF_IMPACTS]
+        for size, numbers, what in ((1, OF_WALLS, "a wall"), (2, OF_PAIRS, "two pucks")):
+            if size not in sizes:
+                for name in (*named, *self.fixed, *self.priors, *self.bounds, *self.start):
+                    if name in numbers:
+                        raise InputError(f"there is no impact of {what} that {name} could be of")
+                continue
+            restitution, friction, tangential, *_ = numbers
+            rub = tangential if grips and friction not in named else friction
+            mine = [name for name in numbers if name in (restitution, rub, *named)]
+            free += [name for name in mine if name not in self.fixed]
+            met.update({n: v for n, v in numbers.items() if n not in mine and math.isfinite(v)})
+        return replace(self, free=tuple(free), met=met)
+
+    def rims(self, found: Mapping[str, float], pair: bool) -> Rims:
+        """How rims meet, of two pucks or of one and a wall."""
+        defaults = OF_PAIRS if pair else OF_WALLS
+        numbers = {**defaults, **self.fixed, **found}
+        values = [numbers[name] for name in defaults]
+        return Rims(*values) if pair else Rims(*values, math.inf)
+
+    def readout(self, found: Mapping[str, float]) -> float:
+        """The time in which a picture is read, s."""
+        return {**self.fixed, **found}.get("readout", 0.0)
 
     def changes_curve(self, name: str) -> bool:
         """Whether a parameter is none of the scales."""
@@ -213,7 +296,7 @@ class Asked:
 
     def limits(self, name: str) -> tuple[float, float]:
         """The range in which a parameter is looked for."""
-        low, high = ALL[name].low, ALL[name].high
+        low, high = (ALL.get(name) or WALL[name])[1:3]
         if name == "inner":
             low, high = 1e-3, 0.999
         elif name in _POSITIVE:

@@ -10,6 +10,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.estimate import Estimate
 
 _PARTS = 8
+_MOVING, _ENOUGH = 0.1, 20  # of the greatest speed; frames
 
 
 def chi_square_tail(value: float, degrees: int) -> float:
@@ -55,6 +56,26 @@ def drift(found: Estimate) -> float:
             degrees += 1
     scale = max(found.chi2 / max(found.degrees, 1), 1e-300)
     return chi_square_tail(total / scale, max(degrees - found.x.size, 1)) if degrees else 1.0
+
+
+def lengthways(found: Estimate) -> float:
+    """The spread of residuals along the motion over that across it, less what chance may do.
+
+    Of frames that move, by three standard errors of such a ratio; 1 of too few.
+    """
+    along, across = [], []
+    off, rates = found.problem.off(found.x), found.problem.rates(found.x)
+    for (x, _, _), one, rate in zip(found.problem.each(), off, rates, strict=True):
+        speed = np.hypot(rate[0], rate[1])
+        moving = found.kept[x] & (speed > _MOVING * speed.max(initial=0.0))
+        ahead = rate[:2, moving] / speed[moving]
+        along.append((one[:2, moving] * ahead).sum(axis=0))
+        across.append(one[0, moving] * ahead[1] - one[1, moving] * ahead[0])
+    one, two = np.concatenate(along), np.concatenate(across)
+    if one.size < _ENOUGH or not two.any():
+        return 1.0
+    ratio = math.sqrt(float(np.mean(one**2) / np.mean(two**2)))
+    return ratio * (1.0 - 3.0 / math.sqrt(one.size))
 
 
 def _series(found: Estimate) -> list[FloatArray]:

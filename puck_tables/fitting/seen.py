@@ -24,7 +24,8 @@ class Seen:
     """Frames of one track where its puck is seen.
 
     ``time`` (n,) s from ``start``; ``place`` (n, 2) m; ``angle`` (n,) rad, NaN where there is none,
-    or None where there never is; ``frame`` (n,): numbers in the track.
+    or None where there never is; ``frame`` (n,): numbers in the track; ``row`` (n,): how far down
+    the picture, 0 at its first line and 1 at its last, or None.
     """
 
     name: str
@@ -33,6 +34,7 @@ class Seen:
     place: FloatArray
     angle: FloatArray | None
     frame: npt.NDArray[np.int64]
+    row: FloatArray | None = None
 
     def part(self, chosen: npt.NDArray[np.bool_]) -> Seen:
         """Some of the frames; the first of them is the new start."""
@@ -41,6 +43,7 @@ class Seen:
             self, start=self.start + first, time=self.time[chosen] - first,
             place=self.place[chosen], frame=self.frame[chosen],
             angle=None if self.angle is None else self.angle[chosen],
+            row=None if self.row is None else self.row[chosen],
         )  # fmt: skip
 
     @property

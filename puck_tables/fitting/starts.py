@@ -59,7 +59,10 @@ def start_of(problem: Problem) -> tuple[Found, FloatArray]:
 
 def minima_of(problem: Problem) -> list[FloatArray]:
     """The unknowns at the deepest minima of a problem of one track, the deepest first."""
+    problem = replace(problem, weights=())
     film, asked = problem.films[0], problem.asked
+    if problem.rests and problem.rests[0]:
+        return [_at_rest(problem)]
     moving = _moving_frames(film, problem.noise[0])
     place, velocity, slowing = _first_parabola(film, moving)
     turning = turning_of(film)
@@ -89,6 +92,16 @@ def minima_of(problem: Problem) -> list[FloatArray]:
     return _deepest(problem, minima)
 
 
+def _at_rest(problem: Problem) -> FloatArray:
+    """The unknowns of a puck that lies still."""
+    film = problem.films[0]
+    launch = np.zeros(6)
+    launch[:2] = np.median(film.place, axis=0)
+    if film.angle is not None:
+        launch[5] = np.angle(np.nanmean(np.exp(1j * film.angle)))
+    return problem.unknowns(_any(problem.asked), launch[None])
+
+
 def _deepest(problem: Problem, minima: list[tuple[float, FloatArray]]) -> list[FloatArray]:
     """Of minima for some of the frames those that are deepest for all, in order."""
     minima.sort(key=lambda one: one[0])
@@ -102,6 +115,19 @@ def _deepest(problem: Problem, minima: list[tuple[float, FloatArray]]) -> list[F
         return rivals
     polished = [minimise(problem, one, LOOSE) for one in rivals]
     return [one for one, _ in sorted(polished, key=lambda one: one[1])]
+
+
+def slowing_of(film: Seen, spread: float) -> float:
+    """About how fast a puck slows down while it moves, m/s²; ``spread`` m: of its places.
+
+    Examples
+    --------
+    >>> t = np.arange(40.0) / 100.0
+    >>> place = np.stack([t - 0.5 * t * t, 0.0 * t], axis=1)
+    >>> round(slowing_of(Seen("a", 0.0, t, place, None, np.arange(40)), 1e-6), 6)
+    1.0
+    """
+    return _first_parabola(film, _moving_frames(film, spread))[2]
 
 
 def _moving_frames(film: Seen, spread: float) -> int:

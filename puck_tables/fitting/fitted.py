@@ -1,0 +1,97 @@
+"""The estimate of tracks, from starts that the tracks themselves suggest."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.errors import InputError
+from puck_tables.fitting.certainty import certainty_of
+from puck_tables.fitting.estimate import Estimate, estimate
+from puck_tables.fitting.free_motion import trimmed
+from puck_tables.fitting.numbers import plausible_for
+from puck_tables.fitting.problem import Problem
+from puck_tables.fitting.starts import start_of
+from puck_tables.fitting.timing import Known
+
+_LIFTS = 0.995  # δ from which on a uniform puck is fitted with part of its base lifted
+_JUDGED = 10  # degrees of freedom that tell the noise
+
+
+def fitted(problem: Problem, known: Known, refit: bool) -> Estimate:
+    """The estimate of a problem, from starts of its own.
+
+    Parameters
+    ----------
+    problem : Problem
+    known : whether the noise of places, of angles and of time stamps is
+    refit : whether frames at the ends that are no free motion are left out
+    """
+    left = _observations(problem) - len(problem.names) + len(problem.priors)
+    if left <= 0:
+        raise InputError(
+            f"{_observations(problem)} observations cannot tell {len(problem.names)} unknowns: "
+            "give more frames, or fix something"
+        )
+    angled = any(film.angle is not None for film in problem.films)
+    if left < _JUDGED and not (known.place and (known.angle or not angled)):
+        raise InputError(
+            f"{_observations(problem)} observations of {len(problem.names)} unknowns are too few "
+            "to judge their noise by: give the noise, or more frames"
+        )
+    rests = problem.rests or (False,) * len(problem.films)
+    parts = [
+        replace(problem, films=(film,), rests=(rest,), jitter=0.0)
+        for film, rest in zip(problem.films, rests, strict=True)
+    ]
+    starts = [start_of(part) for part in parts]
+    found = estimate(problem, _joint_start(problem, parts, starts), known)
+    found = _lifted(found, known)
+    if refit:
+        films = trimmed(found)
+        if films != problem.films:
+            return fitted(problem.with_films(films), known, refit=False)
+    return found
+
+
+def _lifted(found: Estimate, known: Known) -> Estimate:
+    """The same with part of the base lifted, where δ seems to be above that of full contact."""
+    problem = found.problem
+    law = problem.asked.puck.body.law
+    delta = problem.asked.scales(problem.found(found.x))[1]
+    if problem.tall or not law.can_lift or delta < _LIFTS:
+        return found
+    certainty = certainty_of(found.jacobian[found.kept], plausible_for(problem, found.x))
+    if certainty.undetermined[: len(problem.asked.free)].count(True):
+        return found
+    return estimate(replace(problem, tall=True), found.x, known)
+
+
+def _joint_start(
+    problem: Problem, parts: list[Problem], starts: list[tuple[dict[str, float], FloatArray]]
+) -> FloatArray:
+    """The unknowns of all tracks from those of each: what is shared is their weighted mean."""
+    if len(parts) == 1:
+        return problem.unknowns(starts[0][0], starts[0][1][None])
+    shared = len(problem.asked.free)
+    weights, sums, launches = np.zeros((shared, shared)), np.zeros(shared), []
+    for part, (values, launch) in zip(parts, starts, strict=True):
+        launches.append(launch)
+        if part.rests[0]:  # it tells nothing of what moves
+            continue
+        x = part.unknowns(values, launch[None])
+        spread = certainty_of(part.jacobian(x), plausible_for(part, x)).covariance
+        if shared:
+            weight = np.linalg.pinv(spread[:shared, :shared])
+            weights += weight
+            sums += weight @ x[:shared]
+    mean = np.linalg.solve(weights, sums) if shared else sums
+    return problem.unknowns(
+        dict(zip(problem.asked.free, mean.tolist(), strict=True)), np.array(launches)
+    )
+
+
+def _observations(problem: Problem) -> int:
+    return int(problem.kinds.size) - len(problem.priors)

@@ -1,0 +1,222 @@
+"""What a fit is given, checked before anything is fitted."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from itertools import combinations
+from typing import Any
+
+import numpy as np
+
+from puck_tables._core.real import instance, positive, real
+from puck_tables.errors import InputError
+from puck_tables.film.track import Track
+from puck_tables.fitting.impacts import turns
+from puck_tables.fitting.joining import Line
+from puck_tables.fitting.parameters import Asked
+from puck_tables.fitting.seen import Seen, noise_of, rests_from, seen_in
+from puck_tables.fitting.starts import slowing_of
+
+MOST_FRAMES = 100_000
+FIND = "find"
+_GUESS = 1e-3  # of the track: noise to begin with where differences tell none
+_TWICE = 0.5  # of the frames: the same film again
+_SLOWER = 0.3  # times the deceleration seen: friction is no less
+_TIPS = 4.0  # δ
+
+
+def films_of(
+    tracks: Any, since: float, until: float, rows: tuple[float, float] | None
+) -> tuple[Seen, ...]:
+    """The tracks, checked, with different names.
+
+    ``rows``: y in m of the first and the last line of the picture.
+
+    Raises
+    ------
+    InputError
+    """
+    if not isinstance(tracks, Track | Iterable):
+        raise InputError(f"tracks must be a Track or several, got {tracks!r}")
+    listed = [tracks] if isinstance(tracks, Track) else list(tracks)
+    if not listed:
+        raise InputError("there is no track to fit: give one or more")
+    for track in listed:
+        instance("tracks", track, Track)
+    names = [track.name for track in listed]
+    films = []
+    for n, track in enumerate(listed):
+        film = seen_in(track, since, until)
+        if names.count(track.name) > 1:
+            film = replace(film, name=f"{track.name} {n + 1}")
+        if rows is not None:
+            film = replace(film, row=(rows[0] - film.place[:, 1]) / (rows[0] - rows[1]))
+        films.append(film)
+        _refuse_still(film)
+    for one, other in combinations(films, 2):
+        _refuse_twice(one, other)
+    count = sum(film.time.size for film in films)
+    if count > MOST_FRAMES:
+        raise InputError(
+            f"{count} frames are too many for one fit, {MOST_FRAMES} are enough: give every tenth, "
+            "or a part (since, until)"
+        )
+    return tuple(films)
+
+
+def _refuse_still(film: Seen) -> None:
+    """Refuse a track of a puck that lies still.
+
+    Raises
+    ------
+    InputError
+    """
+    place, _ = noise_of([film])
+    spread = place if math.isfinite(place) else 0.0
+    if rests_from(film, spread) == 0 and not turns(film):
+        raise InputError(
+            f"the puck of {film.name} lies still: a fit needs a track of a slide or a spin"
+        )
+
+
+def _refuse_twice(one: Seen, other: Seen) -> None:
+    """Refuse a film that is given twice: it would count for two.
+
+    Raises
+    ------
+    InputError
+    """
+    count = min(one.time.size, other.time.size)
+    aligned = (one.place[:count] == other.place[:count]).all(axis=1).sum()
+    frames = [
+        set(zip((film.start + film.time).tolist(), *film.place.T.tolist(), strict=True))
+        for film in (one, other)
+    ]  # fmt: skip
+    if max(int(aligned), len(frames[0] & frames[1])) > _TWICE * count:
+        raise InputError(
+            f"{one.name} and {other.name} show the same frames, which would count twice: give each "
+            "film once"
+        )
+
+
+def refuse_tipping(asked: Asked, films: tuple[Seen, ...], noise: float) -> None:
+    """Refuse a height at which a puck that slows down as these would tip over.
+
+    Raises
+    ------
+    InputError
+    """
+    known = asked.known()
+    if asked.uses_delta or "height" in asked.free or known["height"] == 0.0:
+        return
+    decel = known["decel"] if "decel" in asked.fixed else known["friction"] * known["gravity"]
+    if {"decel", "friction", "gravity"} & {*asked.free}:
+        decel = _SLOWER * min(slowing_of(film, noise) for film in films)
+    tilt = 2.0 * decel * known["height"] / (known["gravity"] * known["radius"])
+    if tilt > _TIPS:
+        raise InputError(
+            f"a puck of height {known['height']:g} m and radius {known['radius']:g} m that slows "
+            f"down by {decel:.3g} m/s^2 or more would tip over (delta = 2 f h/r > {_TIPS:g}): give "
+            "its height and radius in m"
+        )
+
+
+def jitter_given(given: Any) -> float | None:
+    """The standard deviation of time stamps, s; None if it is to be found, 0 if there is none.
+
+    Raises
+    ------
+    InputError
+    """
+    if given is None:
+        return 0.0
+    if isinstance(given, str):
+        if given != FIND:
+            raise InputError(f"jitter must be a time in s, or '{FIND}', got '{given}'")
+        return None
+    return positive("jitter", given, "s")
+
+
+def rows_given(given: Any) -> tuple[float, float] | None:
+    """Y of the first and the last line of a picture, m.
+
+    Raises
+    ------
+    InputError
+    """
+    if given is None:
+        return None
+    try:
+        first, last = given
+    except (TypeError, ValueError):
+        raise InputError(
+            "rows must be y in m of the first and of the last line of the picture, got "
+            f"{given!r:.40}"
+        ) from None
+    first, last = real("the first of rows", first, "m"), real("the last of rows", last, "m")
+    if first == last:
+        raise InputError(f"rows must be two different places y (m), got {first:g} twice")
+    return first, last
+
+
+def walls_given(given: Any) -> tuple[Line, ...]:
+    """Walls, each by two points (x, y) m on it.
+
+    Raises
+    ------
+    InputError
+    """
+    if isinstance(given, str) or not isinstance(given, Sequence):
+        raise InputError("walls must be a list, each wall two points ((x, y), (x, y)) on it in m")
+    lines = []
+    for wall in given:
+        try:
+            (ax, ay), (bx, by) = wall
+        except (TypeError, ValueError):
+            raise InputError(
+                f"a wall must be two points ((x, y), (x, y)) on it in m, got {wall!r:.60}"
+            ) from None
+        values = [real("a point of a wall", value, "m") for value in (ax, ay, bx, by)]
+        one, two = (values[0], values[1]), (values[2], values[3])
+        if one == two:
+            raise InputError(
+                f"a wall must be given by two different points, got ({ax:g}, {ay:g}) twice"
+            )
+        lines.append((one, two))
+    return tuple(lines)
+
+
+def noise_given(given: Any) -> tuple[tuple[float | None, float | None], tuple[bool, bool]]:
+    """The noise as given, and which of it was.
+
+    Raises
+    ------
+    InputError
+    """
+    if given is None:
+        return (None, None), (False, False)
+    try:
+        place, angle = given
+    except (TypeError, ValueError):
+        raise InputError(
+            f"noise must be (metres, radians), None for what is to be estimated, got {given!r:.40}"
+        ) from None
+    checked: list[float | None] = []
+    for value, what, unit in ((place, "places", "m"), (angle, "angles", "rad")):
+        if value is None:
+            checked.append(None)
+            continue
+        number = real(f"the noise of {what}", value, unit)
+        if not number > 0.0:
+            raise InputError(f"the noise of {what} must be greater than 0 ({unit}), got {number:g}")
+        checked.append(number)
+    return (checked[0], checked[1]), (checked[0] is not None, checked[1] is not None)
+
+
+def begin_noise(judged: float, films: tuple[Seen, ...]) -> float:
+    """Noise to begin with."""
+    size = max(float(np.ptp(film.place, axis=0).max()) for film in films)
+    least = 1e-9 * (size or 1.0)
+    return max(judged, least) if math.isfinite(judged) else max(_GUESS * size, least)
