@@ -18,6 +18,7 @@ from puck_tables.stopping.jacobian import (
     LAUNCH_NAMES,
     STOP_NAMES,
     Differentiated,
+    Kind,
     refuse_rest,
     stop_jacobians,
 )
@@ -48,7 +49,7 @@ class Stops(Differentiated, Result):
 
     def __init__(
         self, solver: SolverPerHeight, launches: FloatArray, shape: tuple[int, ...],
-        jacobian: FloatArray | None, table: StopTable | None,
+        jacobian: FloatArray | None, table: StopTable | None, kind: Kind | None,
     ) -> None:  # fmt: skip
         self._values, status = solver.first(launches)
         self._solver: SolverPerHeight | None = solver
@@ -61,7 +62,7 @@ class Stops(Differentiated, Result):
         if jacobian is not None:
             jacobian[status != 0] = np.nan
             self._jacobian = jacobian.reshape(*shape, *jacobian.shape[1:])
-            self._arguments, self._table = launches, table
+            self._arguments, self._table, self._kind = launches, table, kind
 
     def __repr__(self) -> str:
         return f"Stops({self.status.size} launches of shape {self._shape}, by {self.method})"
@@ -104,6 +105,11 @@ class Stops(Differentiated, Result):
         return self._row(5)
 
     def _again(self, arguments: FloatArray) -> FloatArray:
+        if self._kind is not None:
+            solver = SolverPerHeight(*self._kind)
+            solver.prepare(arguments[3])
+            found: FloatArray = solver.all(arguments)[0][[0, 1, 2, 3, 5]]
+            return found
         known = (self._table or StopTable.shipped()).known(arguments)
         return known[: len(STOP_NAMES)]
 
@@ -212,11 +218,14 @@ def stop(
     if jacobian:
         refuse_rest(launches, shape)
     solver.prepare(launches[3])
-    slopes = None
+    slopes = kind = None
     if jacobian:
         by = table if isinstance(table, StopTable) else StopTable.shipped()
-        slopes = stop_jacobians(launches, *solver.kinds(launches[3]), by)
-    return Stops(solver, launches, shape, slopes, table if isinstance(table, StopTable) else None)
+        plain, bodies = solver.kinds(launches[3])
+        slopes = stop_jacobians(launches, plain, bodies, by)
+        kind = Kind(pressure, gyration, tol, method, table) if bodies else None
+    own = table if isinstance(table, StopTable) else None
+    return Stops(solver, launches, shape, slopes, own, kind)
 
 
 def as_rows(columns: list[FloatArray]) -> FloatArray:
