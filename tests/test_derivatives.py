@@ -232,10 +232,6 @@ def test_a_table_of_ones_own_has_derivatives():
 
 
 def test_refusals():
-    with pytest.raises(InputError, match="homogeneous puck under uniform pressure, delta <= 1"):
-        stop((1.0, 0.0), 1.0, delta=[0.5, 1.5], jacobian=True)
-    with pytest.raises(InputError, match="homogeneous puck under uniform pressure, delta <= 1"):
-        states((1.0, 0.0), 1.0, 1.0, pressure="ring", jacobian=True)
     with pytest.raises(InputError, match=r"launch \[1, 0\] is at rest"):
         stop(np.array([[(1.0, 0.0)], [(0.0, 0.0)]]), 0.0, jacobian=True)
     with pytest.raises(InputError, match="call with jacobian=True"):

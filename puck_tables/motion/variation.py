@@ -36,6 +36,9 @@ VARIED = BLOCKS * KEPT
 _STAGES = 6  # Dormand and Prince's seventh only tells the error
 _STEP_LIMIT = 20_000
 _SHARE, _NEAREST = 0.5, 1e-8  # of the distance to a line; how near to it a step may be as long
+_LONGEST = 0.25  # in u: next to pure motions what counts grows like its exponential
+# a launch of nearly pure motion still turns where little is left of Q, and its time tells so
+_LAST, _TAIL_STEP = 1e-4, 0.25
 
 
 @inlined
@@ -55,8 +58,8 @@ def varied(z: float, y: FloatArray, cut: FloatArray, out: FloatArray) -> None:
     large = 1.0 / math.sqrt(1.0 + k * k)
     fast = u > 0.0
     c, s = (k * large, large) if fast else (large, k * large)
-    inverse, across, spin, inverse_u, across_u, spin_u, inverse_h, across_h, spin_h = (
-        section_flows(k, fast, cut)
+    inverse, across, spin, inverse_u, across_u, spin_u, inverse_h, across_h, spin_h = section_flows(
+        k, fast, cut
     )
     c2, s2 = c * c, s * s
     left = 1.0 - z
@@ -77,7 +80,9 @@ def varied(z: float, y: FloatArray, cut: FloatArray, out: FloatArray) -> None:
         d_inverse, d_across, d_spin = inverse_u * du, across_u * du, spin_u * du
         if block == BY_HEIGHT:
             d_inverse, d_across, d_spin = (
-                d_inverse + inverse_h, d_across + across_h, d_spin + spin_h
+                d_inverse + inverse_h,
+                d_across + across_h,
+                d_spin + spin_h,
             )
         elif block == BY_GYRATION:
             d_spin += by_gyration
@@ -106,7 +111,7 @@ def advance(
         varied(z, y, cut, work[0])
         h = end - z
         rate = abs(work[0, U])
-        longest = _SHARE * _off_lines(y[U], cut) + _NEAREST
+        longest = min(_SHARE * _off_lines(y[U], cut) + _NEAREST, _LONGEST)
         if rate * h > longest:
             h = longest / rate
         for stage in range(1, _STAGES):
@@ -159,7 +164,12 @@ def vary(
         if path.size > 0:
             for i in range(VARIED):
                 path[n, i] = stop[i]
-    _to_the_stop(z_path[-1], stop, cut, work[0])
+    z = z_path[-1]
+    while 1.0 - z > _LAST:
+        new = z + _TAIL_STEP * (1.0 - z)
+        advance(z, new, stop, tableau, cut, work)
+        z = new
+    _to_the_stop(z, stop, cut, work[0])
 
 
 @allocating

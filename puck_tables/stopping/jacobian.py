@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-from typing import ClassVar
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -15,6 +16,7 @@ from puck_tables.errors import InputError
 from puck_tables.motion.body import Body
 from puck_tables.stopping.spread import Spread, spread_of
 from puck_tables.stopping.stop_table import StopTable
+from puck_tables.table.resultant_table import ResultantTable
 
 LAUNCH_NAMES = ("vx", "vy", "spin", "delta", "decel", "radius")
 STOP_NAMES = ("stop_time", "stop_x", "stop_y", "path_length", "body_angle")
@@ -23,6 +25,16 @@ MOMENT_NAMES = (*LAUNCH_NAMES, "time")
 _CHUNK = 1 << 13
 
 Bodies = dict[float, Body]  # by height
+
+
+class Kind(NamedTuple):
+    """Pressure law and radius of gyration of pucks, and how their stops were asked for."""
+
+    pressure: str | Law
+    gyration: float
+    tol: float = 1e-8
+    method: str | None = None
+    table: ResultantTable | StopTable | None = None
 
 
 class Differentiated:
@@ -37,6 +49,7 @@ class Differentiated:
     _jacobian: FloatArray | None = None
     _arguments: FloatArray
     _table: StopTable | None = None
+    _kind: Kind | None = None  # where not all are plain
 
     @property
     def jacobian(self) -> FloatArray:
@@ -126,7 +139,7 @@ class Differentiated:
         """
         return spread_of(
             self.JACOBIAN_ROWS, self.JACOBIAN_COLUMNS, self.jacobian, self._arguments, self._again,
-            covariance, of, samples, seed,
+            covariance, of, samples, seed, 1.0 if self._kind is None else math.inf,
         )  # fmt: skip
 
     def _again(self, arguments: FloatArray) -> FloatArray:

@@ -108,6 +108,7 @@ class Spread:
 def spread_of(
     names: tuple[str, ...], columns: tuple[str, ...], jacobian: FloatArray, arguments: FloatArray,
     again: Again, covariance: npt.ArrayLike, of: Sequence[str], samples: int, seed: int,
+    highest: float,
 ) -> Spread:  # fmt: skip
     """The spread of results.
 
@@ -119,6 +120,7 @@ def spread_of(
     again : results (rows, m) of arguments (columns, m)
     covariance, of, samples, seed
         As :meth:`puck_tables.Stops.spread`.
+    highest : the largest δ of a sample that ``again`` takes; it may refuse others itself
 
     Raises
     ------
@@ -156,7 +158,7 @@ def spread_of(
             part = min(_AT_ONCE, samples - done)
             tried = np.repeat(arguments[:, n : n + 1], part, axis=1)
             tried[which] += roots[n] @ drawn.standard_normal((len(which), part))
-            _refuse_outside(tried, columns)
+            _refuse_outside(tried, columns, highest)
             off = again(tried) - middle
             total, squares, done = total + off.sum(axis=1), squares + off @ off.T, done + part
         shift[n] = total / samples
@@ -198,12 +200,12 @@ def _root(covariance: npt.ArrayLike, count: int, shape: tuple[int, ...]) -> Floa
     return root
 
 
-def _refuse_outside(tried: FloatArray, columns: tuple[str, ...]) -> None:
+def _refuse_outside(tried: FloatArray, columns: tuple[str, ...], highest: float) -> None:
     for name, row in zip(columns, tried, strict=True):
         low = row.min()
         if (name in ("decel", "radius") and low <= 0.0) or low < _LOWEST.get(name, -np.inf):
             outside = low
-        elif name == "delta" and row.max() > 1.0:
+        elif name == "delta" and row.max() > highest:
             outside = row.max()
         else:
             continue

@@ -37,6 +37,7 @@ from puck_tables.stopping.jacobian import (
     MOMENT_NAMES,
     STATE_NAMES,
     Differentiated,
+    Kind,
     integrated_jacobians,
     state_jacobians,
 )
@@ -74,6 +75,7 @@ class States(Differentiated, Result):
     _jacobian: FloatArray | None = None
     _arguments: FloatArray = field(default_factory=lambda: np.empty((7, 0)))
     _table: StopTable | None = None
+    _kind: Kind | None = None
 
     picture: ClassVar[str] = "places"
     JACOBIAN_ROWS: ClassVar[tuple[str, ...]] = STATE_NAMES
@@ -103,6 +105,13 @@ class States(Differentiated, Result):
         return np.arctan2(self.radius * self.spin, self.speed)
 
     def _again(self, arguments: FloatArray) -> FloatArray:
+        if self._kind is not None:
+            found = states(
+                arguments[:2].T, arguments[2], arguments[6], delta=arguments[3],
+                decel=arguments[4], radius=arguments[5], pressure=self._kind.pressure,
+                gyration=self._kind.gyration,
+            )  # fmt: skip
+            return np.stack([getattr(found, name) for name in STATE_NAMES])
         table, launches = self._table or StopTable.shipped(), arguments[: len(LAUNCH_NAMES)]
         pucks = known_pucks(table, launches)
         which = np.arange(arguments.shape[1])
@@ -267,6 +276,7 @@ def states(
         return result
     return replace(
         result, _jacobian=slopes.reshape(*shape, *slopes.shape[1:]), _table=table,
+        _kind=Kind(pressure, gyration) if bodies else None,
         _arguments=np.concatenate([launches[:, flat_which], flat_moments[None]]),
     )  # fmt: skip
 

@@ -18,6 +18,7 @@ from puck_tables.stopping.jacobian import (
     LAUNCH_NAMES,
     STOP_NAMES,
     Differentiated,
+    Kind,
     refuse_rest,
     stop_jacobians,
 )
@@ -50,7 +51,7 @@ class Stops(Differentiated, Result):
 
     def __init__(
         self, solver: SolverPerHeight, launches: Launches, threads: int | None,
-        jacobian: FloatArray | None, table: StopTable | None,
+        jacobian: FloatArray | None, table: StopTable | None, kind: Kind | None,
     ) -> None:  # fmt: skip
         time, place, status, self._mark, self._rest = solver.first(launches, threads)
         self._solver: SolverPerHeight | None = solver
@@ -61,7 +62,7 @@ class Stops(Differentiated, Result):
         if jacobian is not None:
             jacobian[status != 0] = np.nan
             self._jacobian = jacobian.reshape(*launches.shape, *jacobian.shape[1:])
-            self._arguments, self._table = launches.matrix, table
+            self._arguments, self._table, self._kind = launches.matrix, table, kind
 
     def __repr__(self) -> str:
         return f"Stops({self.status.size} launches of shape {self._shape}, by {self.method})"
@@ -126,6 +127,11 @@ class Stops(Differentiated, Result):
         return self._row(2)
 
     def _again(self, arguments: FloatArray) -> FloatArray:
+        if self._kind is not None:
+            solver = SolverPerHeight(*self._kind)
+            solver.prepare(arguments[3])
+            found: FloatArray = solver.all(arguments)[0][[0, 1, 2, 3, 5]]
+            return found
         known = (self._table or StopTable.shipped()).known(arguments)
         return known[: len(STOP_NAMES)]
 
@@ -232,9 +238,10 @@ def stop(
         launches.refuse_bad()
         refuse_rest(launches.matrix, launches.shape)
     solver.prepare_for(launches, threads)
-    if not jacobian:
-        return Stops(solver, launches, threads, None, None)
     own = table if isinstance(table, StopTable) else None
-    by = own or StopTable.shipped()
-    slopes = stop_jacobians(launches.matrix, *solver.kinds(launches.matrix[3]), by)
-    return Stops(solver, launches, threads, slopes, own)
+    slopes = kind = None
+    if jacobian:
+        plain, bodies = solver.kinds(launches.matrix[3])
+        slopes = stop_jacobians(launches.matrix, plain, bodies, own or StopTable.shipped())
+        kind = Kind(pressure, gyration, tol, method, table) if bodies else None
+    return Stops(solver, launches, threads, slopes, own, kind)

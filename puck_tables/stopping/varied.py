@@ -178,9 +178,7 @@ def natural_states(
         ], axis=-1)  # fmt: skip
         by_time = by_z / onward[:, T, None]
         slopes = slopes - by_time[:, None, :] * blocks[:, 1:, T, None]  # at the same time
-        out[moving], by_gyration[moving] = _by_launch(
-            values, slopes, by_time, times[moving], c, s
-        )
+        out[moving], by_gyration[moving] = _by_launch(values, slopes, by_time, times[moving], c, s)
     return out, by_gyration
 
 
@@ -198,9 +196,7 @@ def _moments(
     rest = np.zeros(SIZE + 1)
     rest[:7] = stop[:7]
     q, y = np.empty(times.size), np.empty((times.size, SIZE))
-    states_at(
-        times, ends, states, rest, DORMAND_PRINCE, friction.ratios, friction.delta, q, y
-    )
+    states_at(times, ends, states, rest, DORMAND_PRINCE, friction.ratios, friction.delta, q, y)
     return which, 1.0 - np.maximum(q, LEAST_SHARE) ** 0.25
 
 
@@ -213,10 +209,15 @@ def _physical(blocks: FloatArray, q: FloatArray) -> tuple[FloatArray, FloatArray
         q * cosine * np.sin(heading), q * sine,
     ], axis=-1)  # fmt: skip
     slopes = [
-        np.stack([
-            blocks[:, p, X], blocks[:, p, Y], blocks[:, p, THETA],
-            *_velocity_slopes(own, blocks[:, p, U], blocks[:, p, PSI], q, 0.0),
-        ], axis=-1)  # fmt: skip
+        np.stack(
+            [
+                blocks[:, p, X],
+                blocks[:, p, Y],
+                blocks[:, p, THETA],
+                *_velocity_slopes(own, blocks[:, p, U], blocks[:, p, PSI], q, 0.0),
+            ],
+            axis=-1,
+        )  # fmt: skip
         for p in (1, 2, 3)
     ]
     return value, np.stack(slopes, axis=1)
