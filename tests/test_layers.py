@@ -43,8 +43,8 @@ ROOMS = {
     "__init__": "_core _version",
 }
 DOORS = {
-    "numba": {"kernels.compile", "kernels.kept_code"},
-    "llvmlite": {"kernels.compile"},
+    "numba": {"kernels.compile", "kernels.kept_code", "kernels.linking"},
+    "llvmlite": {"kernels.compile", "kernels.linking"},
     "h5py": {"film.poses", "io.hdf5", "table.file"},
     "xarray": {"io.frames"},
     "pandas": {"io.frames"},

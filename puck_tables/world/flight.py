@@ -21,7 +21,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.kernels.compile import inlined, inner
 from puck_tables.motion.state import HEADING, ORIENTATION, PUCK_X, PUCK_Y, SPEED
 from puck_tables.motion.state import SPIN as PUCK_SPIN
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
@@ -86,7 +86,7 @@ def _damped_state(flight: FloatArray, disc: FloatArray, time: float, out: FloatA
     out[SPIN] = spin * math.exp(-disc[SPIN_DAMPING] * time)
 
 
-@kernel
+@inner
 def state_at(
     kind: int, flight: FloatArray, disc: FloatArray, curves: Curves, pieces: FloatArray, t: float,
     room: FloatArray, out: FloatArray,
@@ -122,7 +122,7 @@ def state_at(
         out[VX], out[VY], out[SPIN] = 0.0, 0.0, 0.0
 
 
-@kernel
+@inner
 def start_flight(
     state: FloatArray, disc: FloatArray, curves: Curves, t: float, room: FloatArray,
     flight: FloatArray,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.friction import SPIN, VX, VY, at_slip_zero, dry_friction, size
 from puck_tables.scene.ingredients import dry_in
 from puck_tables.scene.rest import free_yield
@@ -54,7 +54,7 @@ def place_driven(
                 desk.own[place, i] = desk.film[6 + i]
 
 
-@kernel
+@inner
 def act(
     group: Group, members: IntArray, doings: IntArray, y: FloatArray, power: FloatArray, desk: Desk
 ) -> None:
