@@ -62,7 +62,7 @@ class Behind(Library):  # type: ignore[misc]
     def finalize(self) -> None:
         """Optimise all of it together."""
         found: dict[Any, None] = {}
-        waiting = list(self._linking_libraries)
+        waiting: list[Any] = list(self._linking_libraries)  # type: ignore[has-type]
         while waiting:
             library = waiting.pop(0)
             if library not in found:
