@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any, TypeVar
 
 import numba
@@ -13,6 +14,7 @@ from numba.extending import intrinsic
 
 from puck_tables.kernels.cache import compiling
 from puck_tables.kernels.kept_code import KeptCode
+from puck_tables.kernels.linking import LinkedAtDoors
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -72,15 +74,23 @@ def _compile(function: Function, forceinline: bool, counts: bool, door: bool = T
         "no_cpython_wrapper": not door, "no_cfunc_wrapper": not door,
     }  # fmt: skip
     compiled: Any = numba.njit(
-        nogil=True, fastmath={"contract"}, error_model="numpy", **options
+        nogil=True, fastmath={"contract"}, error_model="numpy", pipeline_class=LinkedAtDoors,
+        **options,
     )(function)  # fmt: skip
     if hasattr(compiled, "enable_caching"):  # not where compiling is off
+        compiled.get_call_template = partial(_whatever_its_value, compiled.get_call_template)
         if not door:
             compiled._insert = _not_entered
             compiled._compile_for_args = lambda *_, **__: function
         else:
             compiled._cache = KeptCode(function)
     return compiled
+
+
+def _whatever_its_value(template_for: Callable[..., Any], args: Any, named: Any) -> Any:
+    """Compile for any number where a constant is handed in, not for each constant anew."""
+    of_any = tuple(types.unliteral(kind) for kind in args)  # type: ignore[no-untyped-call]
+    return template_for(of_any, named)
 
 
 def _not_entered(*_: Any, **__: Any) -> None:

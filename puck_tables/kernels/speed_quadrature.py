@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import allocating, inlined, kernel
+from puck_tables.kernels.compile import allocating, inlined, inner
 
 PARTS = 4  # p_a, p_b, p_d, p_e
 
@@ -89,7 +89,7 @@ def _sorted_edges(edges: FloatArray, count: int, last: float, branch: float) -> 
     return count
 
 
-@kernel
+@inner
 def integrals_at(
     breaks: FloatArray, pieces: FloatArray, ratio: float, fast: bool, speed: float,
     edges: FloatArray, out: FloatArray,

@@ -26,8 +26,8 @@ That is a homogeneous puck.  With radius of gyration k about the vertical axis o
 spin differs, r ω' = −(r²/2k²) J sin φ ρ_ω: then (r²/2k²) ρ_ω stands for ρ_ω, and in the work and
 the kinetic energy k²/r² for ½.
 
-Friction comes as a ``cut``: the section of a table (:mod:`puck_tables.kernels.section_spline`) at δ,
-which carries its singular lines and its inertia; or, without rows, closed forms.
+Friction comes as a ``cut``: the section of a table at one height, which carries its singular lines
+and its inertia (:mod:`puck_tables.kernels.section_spline`); or, without rows, closed forms.
 
 State vector: u, ψ, t, x, y, θ, l, W (:mod:`puck_tables.motion.state`).
 """

@@ -18,7 +18,7 @@ import math
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import allocating, inlined, kernel
+from puck_tables.kernels.compile import allocating, inlined, inner
 from puck_tables.motion.equations import (
     at_constant_angle,
     crossed_line,
@@ -171,7 +171,7 @@ def integrate(
     return STOPPED, count
 
 
-@kernel
+@inner
 def _place_error(tableau: Tableau, h: float, work: FloatArray) -> float:
     """The local error estimate of the place in a step just done."""
     along, left = 0.0, 0.0
@@ -188,7 +188,7 @@ def _record(n: int, z: float, y: FloatArray, z_path: FloatArray, y_path: FloatAr
         y_path[n, i] = y[i]
 
 
-@kernel
+@inner
 def _land_on_line(
     tableau: Tableau,
     line: float,

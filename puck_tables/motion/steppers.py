@@ -10,7 +10,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.accuracy.front import Selection
 from puck_tables.accuracy.methods import Method
-from puck_tables.kernels.compile import kernel
+from puck_tables.kernels.compile import inner
 from puck_tables.motion.equations import derivatives
 from puck_tables.motion.state import SIZE
 
@@ -106,7 +106,7 @@ def stepping_of(selection: Selection, loosest: float = 1.0) -> Stepping:
 ROWS = 8  # of the work space: at most seven stages, and a state
 
 
-@kernel
+@inner
 def step(
     tableau: Tableau,
     z: float,

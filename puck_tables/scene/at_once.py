@@ -13,7 +13,7 @@ edge of the field.
 from __future__ import annotations
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.boundaries import BOUNCES, EDGE, Boundaries, outward, room_to
 from puck_tables.scene.cushions import NX, NY, rebound
 from puck_tables.scene.friction import SPIN, VX, VY, size
@@ -26,7 +26,7 @@ _STILL = 1e-13  # of the scale of speeds: no speed
 _REBOUNDS = 200  # at one place; by then the slowest are over, or the same
 
 
-@kernel
+@inner
 def _rebounds(body: Body, wall: FloatArray, other: FloatArray, y: FloatArray) -> None:
     """A state in the laboratory after a wall and another one at the same place, and so on."""
     for i in range(_REBOUNDS):

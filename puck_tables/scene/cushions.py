@@ -21,7 +21,7 @@ from __future__ import annotations
 import math
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.friction import SPIN, VX, VY
 from puck_tables.scene.ingredients import Body
 
@@ -66,7 +66,7 @@ def push_rim(body: Body, nx: float, ny: float, change: float, y: FloatArray) -> 
     y[SPIN] -= body.radius * along / body.inertia
 
 
-@kernel
+@inner
 def rest_of_rim(
     slip: float, rate: float, hop: float, ratio: float, most: float, tangential: float
 ) -> tuple[float, float, bool]:

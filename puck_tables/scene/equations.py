@@ -16,7 +16,7 @@ from typing import cast
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.forces import damping, drag_force, given_force
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y, dry_friction, size
 from puck_tables.scene.ingredients import (
@@ -89,7 +89,7 @@ def acting_force(stretch: Stretch, t: float, y: FloatArray) -> tuple[float, floa
     return gx + hx + dx, gy + hy + dy
 
 
-@kernel
+@inner
 def rates(stretch: Stretch, t: float, y: FloatArray, out: FloatArray, row: int) -> None:
     """d/dt of the state and λ into out[row] (12,); λ is not determined at rest.
 

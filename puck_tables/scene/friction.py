@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import math
 
-from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.kernels.compile import inlined, inner
 from puck_tables.kernels.speed_spline import speed_ratios
 from puck_tables.motion.equations import ratios_at
 from puck_tables.scene.ingredients import BySpeed, Dry
@@ -28,7 +28,7 @@ def size(a: float, b: float, c: float) -> float:
     return math.sqrt(a * a + b * b + c * c)
 
 
-@kernel
+@inner
 def dry_friction(
     dry: Dry, radius: float, ux: float, uy: float, w: float
 ) -> tuple[float, float, float, float]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.cushions import NX, NY, rim_slip
 from puck_tables.scene.equations import SECOND, rates, slip_side, stopping
 from puck_tables.scene.friction import SPIN, VX, VY, size
@@ -34,7 +34,7 @@ _BRAKED = 0.3  # and that loses at least this share of what changes it
 _CLOSE = 1e-12  # of a step: how well a moment in it is known
 
 
-@kernel
+@inner
 def lost(
     stretch: Stretch, t: float, h: float, y: FloatArray, scale: FloatArray, work: FloatArray,
     new: FloatArray,
@@ -96,7 +96,7 @@ def watched(stretch: Stretch, what: int, y: FloatArray) -> float:
     return rim_slip(model.body, lean[NX], lean[NY], y[VX] + sx, y[VY] + sy, y[SPIN] + turning)
 
 
-@kernel
+@inner
 def zero(
     stretch: Stretch, what: int, t: float, h: float, y: FloatArray, scale: FloatArray,
     work: FloatArray, new: FloatArray,
@@ -123,7 +123,7 @@ def zero(
     return high
 
 
-@kernel
+@inner
 def settle_way(stretch: Stretch, t: float, q: float, y: FloatArray, work: FloatArray) -> None:
     """Turn a slip of size q that begins into the direction that it keeps.
 

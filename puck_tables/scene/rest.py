@@ -15,7 +15,7 @@ from __future__ import annotations
 import math
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.kernels.compile import inlined, inner, kernel
 from puck_tables.scene.forces import given_force
 from puck_tables.scene.friction import THETA, X, Y, at_slip_zero, dry_friction
 from puck_tables.scene.ingredients import (
@@ -59,7 +59,7 @@ def _pivot_yield(
     return abs(demand) / length - heat, way * reach * sine, -way * reach * cosine, way
 
 
-@kernel
+@inner
 def free_yield(dry: Dry, radius: float, fx: float, fy: float, torque: float, guided: bool) -> Yield:
     """The same where the puck may slip and turn; ``guided``: along the force only."""
     force = math.hypot(fx, fy)
@@ -160,7 +160,7 @@ def _wall_yield(
     return free_yield(dry, body.radius, fx + rx, fy + ry, torque + rm, True)
 
 
-@kernel
+@inner
 def _corner_yield(
     dry: Dry, body: Body, leaning: FloatArray, ax: float, ay: float, fx: float, fy: float,
     torque: float,

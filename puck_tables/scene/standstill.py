@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import kernel
+from puck_tables.kernels.compile import inner
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.scene.ingredients import (
     CARRIED,
@@ -22,7 +22,7 @@ _FIRST = 1e-16  # of the scale of speeds: what a slip begins with, for its direc
 _QUICK = 0.01  # of friction: a slip that grows faster has its direction from the first
 
 
-@kernel
+@inner
 def from_standstill(
     stretch: Stretch, speed: float, t: float, y: FloatArray, work: FloatArray
 ) -> tuple[int, bool, float]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.kernels.compile import inlined, inner
 from puck_tables.motion.steppers import DORMAND_PRINCE
 from puck_tables.scene.equations import SIZE, rates, to_laboratory
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
@@ -95,7 +95,7 @@ def _explicit_step(
     return largest
 
 
-@kernel
+@inner
 def step(
     stretch: Stretch, t: float, h: float, y: FloatArray, scale: FloatArray, work: FloatArray,
     new: FloatArray,

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.kernels.compile import inlined, inner
 from puck_tables.world.group import (
     APART,
     GRIP,
@@ -75,7 +75,7 @@ def better_mode(desk: Desk, c: int, mode: int, scales: Scales) -> int:
     return STICKS if begins and slip * mode < -slack else mode
 
 
-@kernel
+@inner
 def find_modes(desk: Desk, modes: IntArray, members: int, scales: Scales) -> bool:
     """Modes that contradict nothing, from those given; pushes and accelerations.  Whether found."""
     count = modes.shape[0]

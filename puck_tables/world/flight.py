@@ -24,7 +24,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.kernels.compile import inlined, inner
 from puck_tables.motion.state import HEADING, ORIENTATION, PUCK_X, PUCK_Y, SPEED
 from puck_tables.motion.state import SPIN as PUCK_SPIN
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
@@ -115,7 +115,7 @@ def moves_until(kind: int, flight: FloatArray) -> float:
     return math.inf if kind in (DAMPED, CARRIED) else -math.inf
 
 
-@kernel
+@inner
 def state_at(
     kind: int, flight: FloatArray, disc: FloatArray, curves: Curves, pieces: FloatArray, t: float,
     room: FloatArray, out: FloatArray,
@@ -164,7 +164,7 @@ def state_at(
         out[VY] += flight[DRIFT_Y]
 
 
-@kernel
+@inner
 def start_flight(
     state: FloatArray, disc: FloatArray, surface: Surface, curves: Curves, t: float,
     room: FloatArray, flight: FloatArray,

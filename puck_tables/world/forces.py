@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.friction import (
     SPIN,
     THETA,
@@ -119,7 +119,7 @@ def _pull_on(group: Group, members: IntArray, place: int, desk: Desk) -> tuple[f
     )
 
 
-@kernel
+@inner
 def act(
     group: Group, members: IntArray, doings: IntArray, y: FloatArray, power: FloatArray, desk: Desk
 ) -> None:

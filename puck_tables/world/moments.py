@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.kernels.compile import inlined, inner
 from puck_tables.world.complementarity import most
 from puck_tables.world.forces import gain_of
 from puck_tables.world.group import (
@@ -36,7 +36,7 @@ from puck_tables.world.multipliers import leads
 from puck_tables.world.yielding import overborne, settle
 
 
-@kernel
+@inner
 def watch(desk: Desk, modes: IntArray, scales: Scales, end: bool) -> None:
     """What is watched at the start or end of a step, from sights and pushes."""
     for c in range(modes.shape[0]):
@@ -70,7 +70,7 @@ def first_negative(desk: Desk, end: int, count: int) -> tuple[int, int]:
     return -1, 0
 
 
-@kernel
+@inner
 def sets_off(
     group: Group, members: IntArray, modes: IntArray, doings: IntArray, scales: Scales, desk: Desk
 ) -> int:

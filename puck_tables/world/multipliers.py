@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.kernels.compile import inlined, inner
 from puck_tables.world.group import (
     ALONG,
     APART,
@@ -145,7 +145,7 @@ def _factor(desk: Desk, count: int) -> None:
                     lu[r, c] -= share * lu[k, c]
 
 
-@kernel
+@inner
 def solve(desk: Desk, count: int) -> float:
     """Solve for the forces to ``vectors[RIGHT]``; what is left, over what was given."""
     fill_matrix(desk, count)
@@ -221,7 +221,7 @@ def right_hand_side(desk: Desk, modes: IntArray) -> None:
         number += 1
 
 
-@kernel
+@inner
 def push_and_move(desk: Desk, modes: IntArray, members: int) -> float:
     """Forces of the contacts in ``pushes``, accelerations in ``rates``; what was left over."""
     count, left = constrain(desk, modes, True, True), 0.0

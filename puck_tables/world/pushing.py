@@ -15,7 +15,7 @@ from typing import cast
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.kernels.compile import inlined, inner, kernel
 from puck_tables.world.forces import can_rest, count_rows, slip_of
 from puck_tables.world.group import (
     DRIVEN,
@@ -80,7 +80,7 @@ def _next_row(
     return end
 
 
-@kernel
+@inner
 def _advance(
     group: Group, members: IntArray, modes: IntArray, doings: IntArray, t: float, h: float,
     scales: Scales, desk: Desk,
@@ -91,7 +91,7 @@ def _advance(
     return error
 
 
-@kernel
+@inner
 def _moment(
     group: Group, members: IntArray, modes: IntArray, doings: IntArray, t: float, h: float,
     c: int, kind: int, scales: Scales, desk: Desk,

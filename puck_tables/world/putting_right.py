@@ -7,7 +7,7 @@ a change as small as the error of a step spoils no order of a method.
 from __future__ import annotations
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import kernel
+from puck_tables.kernels.compile import inner
 from puck_tables.world.group import APART, GAP, GRIP, STICKS, Desk, IntArray
 from puck_tables.world.multipliers import (
     RIGHT,
@@ -20,7 +20,7 @@ from puck_tables.world.multipliers import (
 )
 
 
-@kernel
+@inner
 def close_gaps(desk: Desk, modes: IntArray, y: FloatArray) -> None:
     """Places where all that presses touches and all that is led is; the sights are of y (m, 6)."""
     count = constrain(desk, modes, False, False)
@@ -34,7 +34,7 @@ def close_gaps(desk: Desk, modes: IntArray, y: FloatArray) -> None:
     add_forces(desk, count, y, 0)
 
 
-@kernel
+@inner
 def stop_slips(desk: Desk, modes: IntArray, y: FloatArray) -> float:
     """Velocities with which nothing that presses approaches, and no rim slips that sticks.
 

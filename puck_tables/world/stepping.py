@@ -8,7 +8,7 @@ from typing import cast
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.kernels.compile import inlined, inner
 from puck_tables.motion.steppers import DORMAND_PRINCE
 from puck_tables.scene.friction import size
 from puck_tables.scene.ingredients import carried_along
@@ -47,7 +47,7 @@ _NEAR = 0.5  # of the time in which a slip would end, at most, is a step,
 _TURN = 1.5  # and of that in which friction turns it; three times as long steps turn it to and fro
 
 
-@kernel
+@inner
 def rates_at(
     group: Group, members: IntArray, modes: IntArray, doings: IntArray, t: float, y: FloatArray,
     stage: int, scales: Scales, desk: Desk,
@@ -70,7 +70,7 @@ def rates_at(
             desk.stages[stage, place, 3 + i] = desk.rates[place, i]
 
 
-@kernel
+@inner
 def step(
     group: Group, members: IntArray, modes: IntArray, doings: IntArray, t: float, h: float,
     scales: Scales, desk: Desk,

@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.friction import size
 from puck_tables.scene.rest import SLACK
 from puck_tables.world.complementarity import find_modes
@@ -62,7 +62,7 @@ def _turn(group: Group, number: int, place: int, radius: float, desk: Desk) -> t
     return off, gain
 
 
-@kernel
+@inner
 def turn_ways(
     group: Group, members: IntArray, modes: IntArray, doings: IntArray, y: FloatArray,
     scales: Scales, find: bool, power: FloatArray, desk: Desk,
@@ -130,7 +130,7 @@ def overborne(
     return more
 
 
-@kernel
+@inner
 def settle(
     group: Group, members: IntArray, modes: IntArray, doings: IntArray, y: FloatArray,
     scales: Scales, desk: Desk,

@@ -1,0 +1,84 @@
+"""How functions that call each other are compiled: together, once, at a door.
+
+numba optimises every function as soon as it is compiled, together with all that it calls, and makes
+machine code of that, also of what only other functions call: what lies ten calls deep is worked on
+ten times.  Here a function without a door to Python stays as it was written down, and is optimised
+with each door behind which it is called.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from llvmlite import binding
+from numba.core.codegen import JITCodeLibrary
+from numba.core.compiler import Compiler
+
+Library: Any = JITCodeLibrary
+AnyCompiler: Any = Compiler
+
+
+class _NoAddress:
+    """The code generator for a function that has no address, and so no environment at one."""
+
+    def __init__(self, codegen: Any) -> None:
+        self._codegen = codegen
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._codegen, name)
+
+    def set_env(self, *_: Any) -> None:
+        """Nothing to do: it belongs to Python objects, and there are none."""
+
+
+class Pasted(Library):  # type: ignore[misc]
+    """The code of a function that only compiled functions call."""
+
+    @property
+    def codegen(self) -> Any:
+        """The code generator."""
+        return _NoAddress(self._codegen)
+
+    def finalize(self) -> None:
+        """Nothing is optimised; whoever links it may have it from another library too."""
+        for function in self._final_module.functions:
+            if not function.is_declaration and function.linkage == binding.Linkage.external:
+                function.linkage = "linkonce_odr"
+        self._finalized = True
+
+    def get_pointer_to_function(self, name: str) -> int:
+        """None: it has no address."""
+        self._ensure_finalized()
+        return 0
+
+    def _get_module_for_linking(self) -> Any:
+        self._ensure_finalized()
+        return self._final_module
+
+
+class Behind(Library):  # type: ignore[misc]
+    """The code of a function with a door, and of all behind it."""
+
+    def finalize(self) -> None:
+        """Optimise all of it together."""
+        found: dict[Any, None] = {}
+        waiting: list[Any] = list(self._linking_libraries)  # type: ignore[has-type]
+        while waiting:
+            library = waiting.pop(0)
+            if library not in found:
+                found[library] = None
+                waiting += library._linking_libraries if isinstance(library, Pasted) else []
+        self._linking_libraries = list(found)
+        super().finalize()
+
+
+class LinkedAtDoors(AnyCompiler):  # type: ignore[misc]
+    """numba's compiler, with these libraries."""
+
+    def compile_extra(self, function: Any) -> Any:
+        """Compile a function for one signature."""
+        kind = Pasted if self.state.flags.no_cpython_wrapper else Behind
+        codegen = self.state.targetctx.codegen()
+        self.state.library = kind(codegen, function.__qualname__)
+        self.state.library.enable_object_caching()
+        return super().compile_extra(function)
