@@ -319,18 +319,17 @@ def _all_looked_up(
         return found
     from puck_tables.stopping.orbit_lookup import PUCK_ROWS, fill_orbit_states
 
-    out, orbit, bad = np.empty((STATE_ROWS, moments.size)), table.orbit_coefficients, 0
+    out, orbit, bad = np.empty((STATE_ROWS, moments.size)), table.orbit_coefficients, [0]
 
     def work(start: int, stop: int) -> None:  # what is known of the launches stays in the cache
-        nonlocal bad
         for first in range(start, stop, _AT_ONCE):
             last = min(first + _AT_ONCE, stop)
             pucks = table.fill_pucks(PUCK_ROWS, launches, first, last)
-            bad += fill_orbit_states(pucks, which, moments, first, last, orbit, out)
+            bad.append(fill_orbit_states(pucks, which, moments, first, last, orbit, out))
             out[HEADING, first:last] += _directions(pucks[0], pucks[1])
 
     in_chunks(work, moments.size, threads)
-    if bad:
+    if any(bad):
         refuse_times(moments)
     return out
 
@@ -357,17 +356,16 @@ def looked_up(
     """States (6, n) of plain ``pucks`` (20, m), ``which`` (n,) or (1,) at ``moments`` (n,)."""
     from puck_tables.stopping.orbit_lookup import fill_orbit_states
 
-    out, orbit, bad = np.empty((STATE_ROWS, moments.size)), table.orbit_coefficients, 0
+    out, orbit, bad = np.empty((STATE_ROWS, moments.size)), table.orbit_coefficients, [0]
     if moments.size <= CHUNK:
-        bad = fill_orbit_states(pucks, which, moments, 0, moments.size, orbit, out)
+        bad.append(fill_orbit_states(pucks, which, moments, 0, moments.size, orbit, out))
     else:
 
         def work(start: int, stop: int) -> None:
-            nonlocal bad
-            bad += fill_orbit_states(pucks, which, moments, start, stop, orbit, out)
+            bad.append(fill_orbit_states(pucks, which, moments, start, stop, orbit, out))
 
         in_chunks(work, moments.size, threads)
-    if bad:
+    if any(bad):
         refuse_times(moments)
     return out
 
