@@ -126,6 +126,7 @@ class Verbs:
         method: str | None = None,
         table: Table | None = None,
         jacobian: bool = False,
+        threads: int | None = None,
     ) -> Stops:
         """Where and when launches of this puck stop; velocity and spin broadcast.
 
@@ -133,7 +134,7 @@ class Verbs:
         ----------
         velocity : array_like (…, 2), m/s
         spin : array_like (…), rad/s, counter-clockwise positive
-        tol, method, table, jacobian
+        tol, method, table, jacobian, threads
             As for :func:`puck_tables.stop`.
 
         Returns
@@ -147,8 +148,9 @@ class Verbs:
         [1.395088, 4.000189]
         """
         stops: Stops = _verb("stopping.stops", "stop")(
-            velocity, spin, **_kind(self), tol=tol, method=method, table=table, jacobian=jacobian
-        )
+            velocity, spin, **_kind(self), tol=tol, method=method, table=table,
+            jacobian=jacobian, threads=threads,
+        )  # fmt: skip
         return stops
 
     def states(
@@ -159,6 +161,7 @@ class Verbs:
         *,
         table: Table | None = None,
         jacobian: bool = False,
+        threads: int | None = None,
     ) -> States:
         """States of this puck at any times after launches, by look-up; all broadcasts.
 
@@ -169,6 +172,7 @@ class Verbs:
         time : array_like (…), s, ≥ 0
         table : Table of stops, optional
         jacobian : whether derivatives are wanted, as for :func:`puck_tables.states`
+        threads : how many share the work, as for :func:`puck_tables.states`
 
         Returns
         -------
@@ -181,7 +185,7 @@ class Verbs:
         [1.590682, 0.0]
         """
         found: States = _verb("stopping.states", "states")(
-            velocity, spin, time, **_kind(self), table=table, jacobian=jacobian
+            velocity, spin, time, **_kind(self), table=table, jacobian=jacobian, threads=threads
         )
         return found
 

@@ -17,9 +17,10 @@ from puck_tables.kernels.section_spline import fill_section
 from puck_tables.kernels.speed_spline import fill_speed
 from puck_tables.kernels.spline import cell_at
 from puck_tables.motion.body import body_of
-from puck_tables.stopping.curve_lookup import LAUNCH_COLUMNS, LAUNCH_ROWS, fill_states
+from puck_tables.stopping.curve_lookup import LAUNCH_COLUMNS, LAUNCH_ROWS
 from puck_tables.stopping.launches import launches_in
 from puck_tables.stopping.lookup import stops_kernel
+from puck_tables.stopping.orbit_lookup import PUCK_ROWS, fill_orbit_states
 from puck_tables.stopping.section_lookup import fill_section_stops
 from puck_tables.table.friction_section import friction_section
 from puck_tables.table.resultant_check import tabulate
@@ -90,12 +91,9 @@ def look_up_everything() -> None:
             stops_kernel(powers)(*given, stops.cut(powers, 1), *out, 1)
         stops.known(launches)
         fill_section_stops(launches, body_stops(), 2.0, out6)
-        pucks = np.ones((n, LAUNCH_COLUMNS + LAUNCH_ROWS))
-        pucks[:, LAUNCH_COLUMNS:] = np.random.default_rng(4).choice(WILD, (n, LAUNCH_ROWS))
-        fill_states(
-            pucks, np.arange(n), np.abs(first), stops.stop_coefficients, stops.curve_coefficients,
-            stops.time_inverse, out6,
-        )  # fmt: skip
+        pucks = np.ones((PUCK_ROWS, n))
+        pucks[LAUNCH_COLUMNS:] = np.random.default_rng(4).choice(WILD, (LAUNCH_ROWS, n))
+        fill_orbit_states(pucks, np.arange(n), np.abs(first), 0, n, stops.orbit_coefficients, out6)
 
 
 def body_stops() -> np.ndarray:

@@ -290,3 +290,39 @@ def _number_of(typing: Any, bits: Any) -> Any:
 
 bits_of: Any = intrinsic(_bits_of)
 number_of: Any = intrinsic(_number_of)
+
+BLOCK = 128  # numbers in a row of a block
+
+
+def _row_of(typing: Any, block: Any, row: Any, n: Any) -> Any:
+    """Compiled (block, row, n) → number n of a row (a constant) of a flat array of such rows.
+
+    Of rows of one array at known distances LLVM sees that they do not overlap, so that a loop over
+    them is done for several numbers at once; arrays of their own it would have to compare, and
+    gives up where they are many.
+    """
+    first = row.literal_value * BLOCK
+
+    def build(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        data = context.make_array(signature.args[0])(context, builder, args[0]).data
+        at = builder.add(args[2], ir.Constant(args[2].type, first), flags=("nsw",))
+        return builder.load(builder.gep(data, [at], inbounds=True))
+
+    return types.float64(block, row, n), build
+
+
+def _into_row(typing: Any, block: Any, row: Any, n: Any, value: Any) -> Any:
+    """Compiled (block, row, n, value): number n of a row is the value, see :func:`row_of`."""
+    first = row.literal_value * BLOCK
+
+    def build(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        data = context.make_array(signature.args[0])(context, builder, args[0]).data
+        at = builder.add(args[2], ir.Constant(args[2].type, first), flags=("nsw",))
+        builder.store(args[3], builder.gep(data, [at], inbounds=True))
+        return context.get_dummy_value()
+
+    return types.void(block, row, n, types.float64), build
+
+
+row_of: Any = intrinsic(prefer_literal=True)(_row_of)
+into_row: Any = intrinsic(prefer_literal=True)(_into_row)

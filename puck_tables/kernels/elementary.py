@@ -7,7 +7,6 @@ for sine and cosine); what they take is said with each.
 
 from __future__ import annotations
 
-
 from puck_tables.kernels.compile import bits_of, inlined, number_of
 
 _SHIFT = 6755399441055744.0  # 1.5 × 2⁵²: a number added to it is rounded to an integer

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import Any, ClassVar
 
@@ -26,9 +26,10 @@ from puck_tables.stopping.launch_curve import (
     LaunchCurve,
     cosine_of,
     launch_curve,
+    looked_up_root,
     sample,
 )
-from puck_tables.stopping.solvers import fits
+from puck_tables.stopping.launches import fits
 
 COLUMNS = (
     "launch_spin", "launch_vx", "launch_vy", "launch_speed", "launch_heading", "launch_slip_angle",
@@ -38,6 +39,7 @@ MAX_COUNT = 10_000
 _SLACK = 1e-12
 _LEAST_LOG, _LARGEST_LOG = -708.0, 709.0
 _CHECK_LOCAL = 1e-11
+_SMALL_STEP = 1e-6  # of u, after which what a step leaves is less than rounding
 _TOO_LARGE = (
     "target, decel and radius ask for launches out of the range of floating point: use larger units"
 )
@@ -125,6 +127,7 @@ class _Family:
     distance: float
     decel: float
     curve: LaunchCurve
+    found: dict[float, tuple[float, ...]] = field(default_factory=dict)  # what stands at a u
 
     @property
     def scales(self) -> FloatArray:
@@ -134,23 +137,43 @@ class _Family:
 
     def at(self, u: float) -> tuple[float, float, float, float]:
         """Speed, rim speed, stop time, and arg(X + iY) for ω > 0."""
-        speed, rim, time, bend = (self.curve.rows(np.array([u]))[0] + self.scales).tolist()
+        if u not in self.found:
+            self.found[u] = tuple((self.curve.rows(np.array([u]))[0] + self.scales).tolist())
+        speed, rim, time, bend = self.found[u]
         return speed, rim, time, bend
 
     def all_where(self, quantity: int, value: float) -> list[float]:
         """All u where a quantity of the curve has a value; −∞ is a slide without spin."""
-        from scipy.optimize import brentq
-
         wanted = value - float(self.scales[quantity])
+        roots = []
+        for low, high in self.curve.brackets(quantity, wanted):
+            u = low if low == high else self._looked_up(quantity, wanted, low, high)
+            roots.append(self._searched(quantity, wanted, low, high) if u is None else u)
+        return sorted(set(roots))
+
+    def _looked_up(self, quantity: int, wanted: float, low: float, high: float) -> float | None:
+        """A root from the stop table, put right by one integration; None where that is no way."""
+        near = looked_up_root(self.curve.body, quantity, wanted, low, high)
+        if near is None:
+            return None
+        u, slopes = near
+        row = self.curve.rows(np.array([u]))[0]
+        step = (wanted - row[quantity]) / slopes[quantity]
+        if not abs(step) < _SMALL_STEP:
+            return None
+        row += slopes * step
+        row[quantity] = wanted
+        self.found[u + step] = tuple((row + self.scales).tolist())
+        return float(u + step)
+
+    def _searched(self, quantity: int, wanted: float, low: float, high: float) -> float:
+        """A root by integrations alone."""
+        from scipy.optimize import brentq
 
         def off(u: float) -> float:
             return float(self.curve.rows(np.array([u]))[0, quantity]) - wanted
 
-        roots = [
-            low if low == high else float(brentq(off, low, high, xtol=1e-14, rtol=1e-15))
-            for low, high in self.curve.brackets(quantity, wanted)
-        ]
-        return sorted(set(roots))
+        return float(brentq(off, low, high, xtol=1e-14, rtol=1e-15))
 
     def extreme(self, quantity: int) -> tuple[float, float]:
         """The greatest speed or the least time of all, and the rim speed there."""

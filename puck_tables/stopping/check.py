@@ -45,8 +45,8 @@ from puck_tables.stopping.curve_lookup import (
     TURNING,
 )
 from puck_tables.stopping.exact import end_values, exact_stops
-from puck_tables.stopping.lookup import CURVE_ROW
 from puck_tables.stopping.launches import launches_in
+from puck_tables.stopping.lookup import CURVE_ROW
 from puck_tables.stopping.node_equations import all_slopes, missed_by_curve, missed_by_stops
 from puck_tables.stopping.stop_table import STOPS, StopTable
 from puck_tables.table.accuracy import Accuracy

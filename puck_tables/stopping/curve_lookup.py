@@ -22,7 +22,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import allocating, inlined
@@ -276,19 +275,6 @@ def know_launch(
         out[TURN] = turn if edge > 0.0 else -turn
 
 
-@allocating
-def fill_launches(
-    launches: FloatArray, stops: FloatArray, curve: FloatArray, turn_inverse: FloatArray,
-    constants: FloatArray, turn_share: float, out: FloatArray,
-) -> None:  # fmt: skip
-    """What :func:`know_launch` knows of launches (6, n), into ``out`` (14, n)."""
-    sums = np.empty(CURVE_ROW)
-    for n in range(launches.shape[1]):
-        know_launch(
-            launches[:, n], stops, curve, turn_inverse, constants, turn_share, sums, out[:, n]
-        )
-
-
 @inlined
 def fill_state(
     launch: FloatArray, time: float, side: int, double_share: float,
@@ -368,42 +354,3 @@ def look_up_state(
         y = min(y * inverse_sum(time_inverse, side, xi, s, sums), 1.0)
         functions_at(stops, curve, side, y, s, sums, found)
     fill_state(puck, time, side, y, left, log, found, out)
-
-
-@allocating
-def fill_states(
-    pucks: FloatArray, which: npt.NDArray[np.int64], times: FloatArray,
-    stops: FloatArray, curve: FloatArray, time_inverse: FloatArray, out: FloatArray,
-) -> None:  # fmt: skip
-    """States of pucks ``which`` (n,) at ``times`` (n,) ≥ 0 into ``out`` (6, n).
-
-    x, y, heading from that at the launch, body angle, v, ω.  ``pucks`` (m, 6 + 14) holds launches
-    and what :func:`fill_launches` knows of them, a puck in a row: scattered pucks cost two cache
-    lines each.  At rest the angles are those of the stop.
-    """
-    sums = np.empty(CURVE_ROW)
-    sides = np.empty(_BLOCK, np.int64)
-    xis, ys, shares, logs = np.empty(_BLOCK), np.empty(_BLOCK), np.empty(_BLOCK), np.empty(_BLOCK)
-    found = np.empty((5, _BLOCK))
-    for start in range(0, times.size, _BLOCK):
-        count = min(_BLOCK, times.size - start)
-        for n in range(count):
-            sides[n], xis[n], ys[n], shares[n], logs[n] = place_in_time(
-                pucks[which[start + n]], times[start + n]
-            )
-        for n in range(count):
-            if sides[n] >= 0:
-                delta = pucks[which[start + n], 3]
-                s = 2.0 * delta * delta - 1.0
-                ys[n] = min(ys[n] * inverse_sum(time_inverse, sides[n], xis[n], s, sums), 1.0)
-        for n in range(count):
-            if sides[n] >= 0:
-                delta = pucks[which[start + n], 3]
-                s = 2.0 * delta * delta - 1.0
-                functions_at(stops, curve, sides[n], ys[n], s, sums, found[:, n])
-        for n in range(count):
-            launch = which[start + n]
-            fill_state(
-                pucks[launch], times[start + n], sides[n], ys[n],
-                shares[n], logs[n], found[:, n], out[:, start + n],
-            )  # fmt: skip

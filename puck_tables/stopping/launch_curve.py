@@ -25,19 +25,23 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.motion.body import Body
-from puck_tables.stopping.exact import exact_stops, integrated_stops
+from puck_tables.stopping.exact import integrated_stops
+from puck_tables.stopping.launches import launches_of
+from puck_tables.stopping.stop_table import StopTable
 
 SPEED, RIM, TIME = range(3)
 BEND = 3  # arg Z, no quantity to be met
 LARGEST_U = 600.0  # beyond, ratios of spin to speed leave floating point
 SECTION_ACCURACY = 5e-10
 _LOCAL = 1e-12
+_PLAIN_LOCAL = 2e-13
 _SAMPLED_U = math.log(math.tan(math.radians(80.0)))  # as far as is sampled without a bound
 _SCANNED, _SPACING = 36.0, 0.25
 _RESOLVED = 1e-8
 _NARROWEST = 1e-7
 _NEAR_LIMIT = 1e-3  # of |ρ_∥ − σ|: the derivatives are 0/0 at the limit of the motion
 SLIDE = 0.5 * math.log(2.0)  # ln v = ln t₀ of the slide without spin
+_SECTIONS, _NARROW = 200, 1e-4  # of a bracket of u, and how narrow it gets
 _SLACK = 1e-12
 _ROUNDED = 1e-9  # values closer than this to the slide's are rounding
 
@@ -165,6 +169,47 @@ def sample(ranges: list[tuple[float, float]], count: int) -> list[float]:
     return us
 
 
+def looked_up_root(
+    body: Body, quantity: int, wanted: float, low: float, high: float
+) -> tuple[float, FloatArray] | None:
+    """Where a quantity has a value between two u, by look-up, and the slopes (4,) of all there.
+
+    None of other than plain pucks, and where the values of the table do not tell, such as next to
+    the slide without spin, of which all speeds are nearly those.
+
+    Examples
+    --------
+    >>> from puck_tables.motion.body import body_of
+    >>> u, _ = looked_up_root(body_of("uniform", 0.5, 0.5**0.5), RIM, 1.0, -600.0, 600.0)
+    >>> rows = launch_curve(body_of("uniform", 0.5, 0.5**0.5)).rows(np.array([u]))
+    >>> bool(abs(rows[0, RIM] - 1.0) < 1e-9)
+    True
+    """
+    if not body.is_plain:
+        return None
+    while True:
+        u = np.linspace(low, high, _SECTIONS)
+        rows = _looked_up(body.delta, u)
+        above = rows[:, quantity] >= wanted
+        changed = np.flatnonzero(above[:-1] != above[1:])
+        if changed.size != 1:
+            return None
+        n = int(changed[0])
+        low, high = float(u[n]), float(u[n + 1])
+        if high - low < _NARROW:
+            break
+    slopes = (rows[n + 1] - rows[n]) / (high - low)
+    return low + float((wanted - rows[n, quantity]) / slopes[quantity]), slopes
+
+
+def _looked_up(delta: float, u: FloatArray) -> FloatArray:
+    """Ln v, ln r|ω|, ln t₀ and arg Z, (n, 4), from the stop table."""
+    cosine, sine = cosine_of(u), cosine_of(-u)
+    launches = launches_of(np.column_stack([cosine, 0.0 * u]), sine, delta, 1.0, 1.0)
+    time, place, _, _ = StopTable.shipped().stops(launches)
+    return np.column_stack(_logs(u, np.column_stack([time, place])))
+
+
 def _first_nodes(body: Body) -> FloatArray:
     """Everywhere, and next to the lines of the friction on both sides; none next to the limit."""
     lines = np.log(np.tan(np.array(body.friction(SECTION_ACCURACY).lines)))
@@ -199,7 +244,7 @@ def _stops(body: Body, u: FloatArray) -> FloatArray:
     """T, X, Y at u (n,), (n, 3)."""
     heights = np.full(u.size, body.delta)
     if body.is_plain:
-        return exact_stops(u, heights)[:, :3]
+        return integrated_stops(u, heights, np.empty(0), _PLAIN_LOCAL, cosine_of(u))[:, :3]
     cut = body.friction(SECTION_ACCURACY).for_motion(body.gyration)
     return integrated_stops(u, heights, cut, _LOCAL, cosine_of(u))[:, :3]
 

@@ -16,10 +16,10 @@ from puck_tables._core.executor import run_chunks, usable_cores
 from puck_tables._core.real import broadcast, finite_array, real_view, velocity_array
 from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import InputError
-from puck_tables.kernels.compile import allocating, inlined
+from puck_tables.kernels.compile import BLOCK, allocating, inlined, into_row
 
-COLUMNS = 6  # vx, vy, ω, δ, J, r
-BLOCK = 128  # launches that compiled code takes at a time
+COLUMNS = 6
+VX, VY, SPIN, DELTA, DECEL, RADIUS = range(COLUMNS)  # rows of a block of launches
 CHUNK = 1 << 15  # launches that a thread takes at a time
 COPIED = 1 << 14  # launches up to which a copy costs nothing that counts
 _UNITS = {"spin": "rad/s", "delta": "units of 2 f h / r", "decel": "m/s^2", "radius": "m"}
@@ -54,6 +54,13 @@ class Launches:
     def size(self) -> int:
         """How many."""
         return math.prod(self.shape)
+
+    @property
+    def tallest(self) -> float:
+        """The largest δ; NaN where one is none, 0 of no launches."""
+        if self.delta.size == 1:
+            return self.delta.item()
+        return float(self.delta.max()) if self.delta.size else 0.0
 
     def part(self, start: int, stop: int) -> Columns:
         """Some of them, as compiled code takes them."""
@@ -169,9 +176,7 @@ def launches_in(rows: FloatArray, shape: tuple[int, ...] | None = None) -> Launc
     return Launches((vx.size,) if shape is None else shape, vx, vy, 1, *columns)
 
 
-def flat_column(
-    array: FloatArray, shape: tuple[int, ...], is_own: bool
-) -> tuple[FloatArray, bool]:
+def flat_column(array: FloatArray, shape: tuple[int, ...], is_own: bool) -> tuple[FloatArray, bool]:
     """An array that broadcasts to a shape as (n,) or (1,), and whether it is the caller's.
 
     Read-only ones are copied: compiled code would be compiled once more for them.
@@ -239,11 +244,11 @@ def _bits_of(values: FloatArray) -> int:
 
 
 @inlined
-def _fetch(column: FloatArray, start: int, count: int, block: FloatArray) -> int:
-    """A block of a column (n,); of (1,) nothing: :func:`fill_constants` was there before."""
+def _fetch(column: FloatArray, start: int, count: int, row: int, room: FloatArray) -> int:
+    """A block of a column (n,) into a row; of (1,) nothing: it was filled before."""
     if column.size == 1:
         return 0
-    values = column[start : start + count]
+    values, block = column[start : start + count], room[row * BLOCK : (row + 1) * BLOCK]
     for n in range(count):
         block[n] = values[n]
     return _bits_of(values)
@@ -254,11 +259,15 @@ def fill_constants(
     vx: FloatArray, vy: FloatArray, spin: FloatArray, delta: FloatArray, decel: FloatArray,
     radius: FloatArray, room: FloatArray,
 ) -> None:  # fmt: skip
-    """The first numbers of all columns into all places of ``room`` (6, BLOCK)."""
+    """The first numbers of all columns into all places of the first six rows of ``room``."""
     if delta.size > 0 and spin.size > 0 and vx.size > 0 and decel.size > 0 and radius.size > 0:
         for n in range(BLOCK):
-            room[0, n], room[1, n], room[2, n] = vx[0], vy[0], spin[0]
-            room[3, n], room[4, n], room[5, n] = delta[0], decel[0], radius[0]
+            into_row(room, VX, n, vx[0])
+            into_row(room, VY, n, vy[0])
+            into_row(room, SPIN, n, spin[0])
+            into_row(room, DELTA, n, delta[0])
+            into_row(room, DECEL, n, decel[0])
+            into_row(room, RADIUS, n, radius[0])
 
 
 @inlined
@@ -266,20 +275,23 @@ def fetch_block(
     vx: FloatArray, vy: FloatArray, step: int, spin: FloatArray, delta: FloatArray,
     decel: FloatArray, radius: FloatArray, start: int, count: int, room: FloatArray,
 ) -> int:  # fmt: skip
-    """Launches from ``start`` on into ``room`` (6, BLOCK): vx, vy, ω, δ, J, r.
+    """Launches from ``start`` on into the first six rows of ``room``.
 
     Returns a number that changes with the bits of the launches, or with their order.
     """
     mark = 0
     if step == 2:
-        pairs, east, north = vx[2 * start : 2 * (start + count)], room[0], room[1]
+        pairs = vx[2 * start : 2 * (start + count)]
         for n in range(count):
-            east[n], north[n] = pairs[2 * n], pairs[2 * n + 1]
+            into_row(room, VX, n, pairs[2 * n])
+            into_row(room, VY, n, pairs[2 * n + 1])
         mark += _bits_of(pairs)
     elif step == 1:
-        mark += _fetch(vx, start, count, room[0]) + 3 * _fetch(vy, start, count, room[1])
-    mark += 5 * _fetch(spin, start, count, room[2]) + 7 * _fetch(delta, start, count, room[3])
-    mark += 11 * _fetch(decel, start, count, room[4]) + 13 * _fetch(radius, start, count, room[5])
+        mark += _fetch(vx, start, count, VX, room) + 3 * _fetch(vy, start, count, VY, room)
+    mark += 5 * _fetch(spin, start, count, SPIN, room)
+    mark += 7 * _fetch(delta, start, count, DELTA, room)
+    mark += 11 * _fetch(decel, start, count, DECEL, room)
+    mark += 13 * _fetch(radius, start, count, RADIUS, room)
     return mark * (2 * start + 1)
 
 
@@ -289,7 +301,7 @@ def mark_of(
     decel: FloatArray, radius: FloatArray, size: int,
 ) -> int:  # fmt: skip
     """The sum of the marks of all blocks of ``size`` launches."""
-    room, mark = np.empty((COLUMNS, BLOCK)), 0
+    room, mark = np.empty(COLUMNS * BLOCK), 0
     for start in range(0, size, BLOCK):
         count = min(BLOCK, size - start)
         mark += fetch_block(vx, vy, step, spin, delta, decel, radius, start, count, room)
@@ -310,3 +322,21 @@ def positive_array(name: str, values: npt.ArrayLike, unit: str) -> FloatArray:
             f"{name} must be greater than 0 {unit}, got {array[array <= 0.0].flat[0]:g}"
         )
     return array
+
+
+def fits(launches: FloatArray, longest: float = 2.0) -> npt.NDArray[np.bool_]:
+    """Whether Q/J, Q²/J and Q²/(J r) of launches (6, n) are within floating point, (n,).
+
+    ``longest``: how many times as large times, places and angles may get.
+
+    Examples
+    --------
+    >>> fits(np.array([[1.0, 1e200], [0, 0], [0, 0], [0, 0], [1, 1], [1, 1]])).tolist()
+    [True, False]
+    """
+    vx, vy, spin, _, decel, radius = launches
+    with np.errstate(over="ignore", invalid="ignore"):
+        slip = np.hypot(np.hypot(vx, vy), radius * spin)
+        size = longest * slip / decel * slip
+        inside: npt.NDArray[np.bool_] = np.isfinite(size / radius + size)
+    return inside

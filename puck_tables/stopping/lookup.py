@@ -20,13 +20,33 @@ from collections.abc import Callable
 from functools import cache
 
 import numpy as np
-import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import allocating, inlined, spline_values
+from puck_tables.kernels.compile import (
+    BLOCK,
+    allocating,
+    inlined,
+    into_row,
+    row_of,
+    spline_values,
+)
 from puck_tables.kernels.spline import basis
-from puck_tables.stopping.launches import BLOCK, COLUMNS, fetch_block, fill_constants
+from puck_tables.stopping.launches import (
+    COLUMNS,
+    DECEL,
+    DELTA,
+    RADIUS,
+    SPIN,
+    VX,
+    VY,
+    fetch_block,
+    fill_constants,
+)
 
+# rows of a block behind those of the launches
+FIRST, INSIDE, SLIP, EDGE, SPEED = range(COLUMNS, COLUMNS + 5)
+PLACED = COLUMNS + 5
+_TIME, _X, _Y, _ROWS = range(PLACED, PLACED + 4)
 STOP_POWERS = 8
 STOP_ROW = 3 * STOP_POWERS  # for states: three functions by eight powers, whole cache lines
 CURVE_ROW = 40  # four functions by nine powers, padded to whole cache lines
@@ -69,50 +89,65 @@ def _cell(place: float, cells: float) -> float:
 
 
 @inlined
-def place_block(
-    room: FloatArray, count: int, coefficients: FloatArray, row: int, first: npt.NDArray[np.int64],
-    inside: FloatArray, slip: FloatArray, edge: FloatArray,
-) -> int:  # fmt: skip
-    """Where in a table the launches of a block ``room`` (6, BLOCK) stand; Q and rω beside.
+def place_block(room: FloatArray, count: int, coefficients: FloatArray, row: int) -> int:
+    """Where in a table the launches of a block stand, and Q, rω and v, into rows of ``room``.
 
-    Into ``first`` the place of the first of four rows of ``row`` numbers, into ``inside`` that in
-    the cell.  Returns of how many launches the numbers are none, or δ < 0, or J or r are not above
-    0.
+    FIRST: the place of the first of four rows of ``row`` numbers; INSIDE: that in the cell.
+    Returns how many are no launches: numbers that are none, δ < 0, J or r not above 0.
     """
     cells = float(coefficients.shape[1] - 3)
     side_stride = float(coefficients.shape[1] * row)
-    vx, vy, spin = room[0], room[1], room[2]
-    delta, decel, radius = room[3], room[4], room[5]
     unsafe = 0
     for n in range(count):
-        rim = radius[n] * spin[n]
-        speed2 = vx[n] * vx[n] + vy[n] * vy[n]
+        vx, vy, delta = row_of(room, VX, n), row_of(room, VY, n), row_of(room, DELTA, n)
+        decel, radius = row_of(room, DECEL, n), row_of(room, RADIUS, n)
+        rim = radius * row_of(room, SPIN, n)
+        speed2 = vx * vx + vy * vy
         slip2 = speed2 + rim * rim
-        edge[n] = rim
-        slip[n] = math.sqrt(slip2)
-        usual = (slip2 > SMALLEST) & (slip2 < LARGEST) & (delta[n] >= 0.0) & (decel[n] > 0.0)
-        unsafe += 0 if usual & (decel[n] < math.inf) & (radius[n] > 0.0) else 1
-        cell, inside[n] = quick_place(math.sqrt(speed2), abs(rim), cells)
-        first[n] = int(row * cell + (side_stride if rim * rim > speed2 else 0.0))
-    if unsafe == 0:
-        return 0
+        usual = (slip2 > SMALLEST) & (slip2 < LARGEST) & (delta >= 0.0) & (decel > 0.0)
+        usual &= (delta < math.inf) & (decel < math.inf) & (radius > 0.0) & (radius < math.inf)
+        unsafe += 0 if usual & ((speed2 > SMALLEST) | ((vx == 0.0) & (vy == 0.0))) else 1
+        speed = math.sqrt(speed2)
+        cell, inside = quick_place(speed, abs(rim), cells)
+        into_row(room, EDGE, n, rim)
+        into_row(room, SPEED, n, speed)
+        into_row(room, SLIP, n, math.sqrt(slip2))
+        into_row(room, INSIDE, n, inside)
+        into_row(room, FIRST, n, row * cell + (side_stride if rim * rim > speed2 else 0.0))
+    return _place_with_care(room, count, cells, float(row), side_stride) if unsafe > 0 else 0
+
+
+@inlined
+def _place_with_care(
+    room: FloatArray, count: int, cells: float, row: float, side_stride: float
+) -> int:
+    """The same anew for the largest and smallest numbers, and how many are no launches."""
     bad = 0
-    for n in range(count):  # anew, with care for the largest and smallest numbers
-        slip2 = vx[n] * vx[n] + vy[n] * vy[n] + edge[n] * edge[n]
-        good = (delta[n] >= 0.0) & (delta[n] < math.inf)
-        for m in range(4, 6):
-            good &= (room[m, n] > 0.0) & (room[m, n] < math.inf)
-        for m in range(3):
-            good &= abs(room[m, n]) < math.inf
+    for n in range(count):
+        vx, vy, edge = row_of(room, VX, n), row_of(room, VY, n), row_of(room, EDGE, n)
+        delta, decel, radius = (
+            row_of(room, DELTA, n),
+            row_of(room, DECEL, n),
+            row_of(room, RADIUS, n),
+        )
+        good = (delta >= 0.0) & (delta < math.inf) & (decel > 0.0) & (decel < math.inf)
+        good &= (radius > 0.0) & (radius < math.inf)
+        good &= (
+            (abs(vx) < math.inf) & (abs(vy) < math.inf) & (abs(row_of(room, SPIN, n)) < math.inf)
+        )
         bad += 0 if good else 1
+        speed = math.hypot(vx, vy)
+        if speed < 1e-120:
+            into_row(room, SPEED, n, speed)
+        slip2 = vx * vx + vy * vy + edge * edge
         if (slip2 > SMALLEST) & (slip2 < LARGEST):
             continue  # the same bits whatever else is in the block
-        speed = math.hypot(vx[n], vy[n])
-        slip[n] = math.hypot(speed, edge[n])
-        side, xi = slip_place(speed, abs(edge[n]))
+        into_row(room, SPEED, n, speed)
+        into_row(room, SLIP, n, math.hypot(speed, edge))
+        side, xi = slip_place(speed, abs(edge))
         cell = _cell(xi * cells, cells)
-        inside[n] = xi * cells - cell
-        first[n] = int(row * cell + side * side_stride)
+        into_row(room, INSIDE, n, xi * cells - cell)
+        into_row(room, FIRST, n, row * cell + side * side_stride)
     return bad
 
 
@@ -138,43 +173,54 @@ def stops_kernel(powers: int) -> Callable[..., tuple[int, int, int]]:
         decel: FloatArray, radius: FloatArray, coefficients: FloatArray, time: FloatArray,
         x: FloatArray, y: FloatArray, apart: int,
     ) -> tuple[int, int, int]:  # fmt: skip
-        c = coefficients.reshape(-1)
-        room, first = np.empty((COLUMNS, BLOCK)), np.empty(BLOCK, np.int64)
-        inside, slip, edge = np.empty(BLOCK), np.empty(BLOCK), np.empty(BLOCK)
+        c, room = coefficients.reshape(-1), np.empty(_ROWS * BLOCK)
         fill_constants(vx, vy, spin, delta, decel, radius, room)
-        found = np.empty((3, BLOCK))
         doubtful, bad, mark = 0, 0, 0
         for start in range(0, time.size, BLOCK):
             count = min(BLOCK, time.size - start)
             mark += fetch_block(vx, vy, step, spin, delta, decel, radius, start, count, room)
-            bad += place_block(room, count, coefficients, row, first, inside, slip, edge)
-            east, north, tilt = room[0], room[1], room[3]
-            weight, size_of = room[4], room[5]
-            f, g, h = found[0], found[1], found[2]
+            bad += place_block(room, count, coefficients, row)
             for n in range(count):
-                s = 2.0 * tilt[n] * tilt[n] - 1.0
-                values = spline_values(c, first[n], basis(inside[n]), s, WIDTH, powers)
-                f[n], g[n], h[n] = values[0], values[1], values[2]
-            here = time[start : start + count]
+                tilt = row_of(room, DELTA, n)
+                s, at = 2.0 * tilt * tilt - 1.0, int(row_of(room, FIRST, n))
+                weights = basis(row_of(room, INSIDE, n))
+                values = spline_values(c, at, weights, s, WIDTH, powers)
+                into_row(room, _TIME, n, values[0])
+                into_row(room, _X, n, values[1])
+                into_row(room, _Y, n, values[2])
+            doubtful += _place_stops(room, count)
+            times = time[start : start + count]
             for n in range(count):
-                rim, along, left = edge[n], east[n], north[n]
-                inverse = 1.0 / weight[n]
-                scale = slip[n] * inverse
-                straight = scale * (0.5 if rim == 0.0 else g[n])
-                across = tilt[n] * (rim * inverse) * h[n]
-                still = (along == 0.0) & (left == 0.0)
-                here[n] = scale * (1.0 if rim == 0.0 else (0.75 if still else f[n]))
-                g[n] = straight * along - across * left
-                h[n] = straight * left + across * along
-                size = scale * slip[n]
-                usual = (size < LARGEST) & (size < LARGEST * size_of[n]) & (inverse < math.inf)
-                doubtful += 0 if usual else 1
+                times[n] = row_of(room, _TIME, n)
+            x_here, y_here = x[apart * start :], y[apart * start :]
             if apart == 2:
-                x_here, y_here = x[2 * start :], y[2 * start :]
                 for n in range(count):
-                    x_here[2 * n], y_here[2 * n] = g[n], h[n]
+                    x_here[2 * n], y_here[2 * n] = row_of(room, _X, n), row_of(room, _Y, n)
             else:
-                x[start : start + count], y[start : start + count] = g[:count], h[:count]
+                for n in range(count):
+                    x_here[n], y_here[n] = row_of(room, _X, n), row_of(room, _Y, n)
         return doubtful, bad, mark
 
     return fill
+
+
+@inlined
+def _place_stops(room: FloatArray, count: int) -> int:
+    """From functions to stops; how many may be too large for floating point."""
+    doubtful = 0
+    for n in range(count):
+        rim, slip, tilt = row_of(room, EDGE, n), row_of(room, SLIP, n), row_of(room, DELTA, n)
+        along, left = row_of(room, VX, n), row_of(room, VY, n)
+        inverse = 1.0 / row_of(room, DECEL, n)
+        scale = slip * inverse
+        straight = scale * (0.5 if rim == 0.0 else row_of(room, _X, n))
+        across = tilt * (rim * inverse) * row_of(room, _Y, n)
+        still = (along == 0.0) & (left == 0.0)
+        time = 1.0 if rim == 0.0 else (0.75 if still else row_of(room, _TIME, n))
+        into_row(room, _TIME, n, scale * time)
+        into_row(room, _X, n, straight * along - across * left)
+        into_row(room, _Y, n, straight * left + across * along)
+        size, radius = scale * slip, row_of(room, RADIUS, n)
+        usual = (size < LARGEST) & (size < LARGEST * radius) & (inverse < math.inf)
+        doubtful += 0 if usual else 1
+    return doubtful

@@ -214,13 +214,12 @@ class SolverPerHeight:
         InputError, ContactError, AccuracyError
         """
         delta = launches.delta
-        highest = float(delta.max()) if delta.size > 1 else sum(delta.tolist())
         bound = -math.inf
         if self._table is None:
             bound = self._plain_up_to
         elif isinstance(self._table, StopTable):
             bound = UPPER_DELTA
-        if highest <= bound:
+        if launches.tallest <= bound:
             self._launches = launches.size, 0
             self._prepare_plain()
             return

@@ -16,14 +16,14 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import in_slices, run_chunks
 from puck_tables.accuracy.methods import Method
 from puck_tables.motion.steppers import Stepping
-from puck_tables.stopping.launches import CHUNK, Launches, launches_in
+from puck_tables.stopping.launches import CHUNK, Launches, fits, launches_in
 from puck_tables.stopping.lookup import STOP_POWERS
 from puck_tables.stopping.stop_section import StopSection
-from puck_tables.stopping.stop_table import StopTable
+from puck_tables.stopping.stop_table import OTHERS, StopTable
 
 Status = npt.NDArray[np.int8]
 
-OUTPUTS = ("stop_time", "stop_x", "stop_y", "path_length", "turn_angle", "body_angle")
+OUTPUTS = ("stop_time", "stop_x", "stop_y", *OTHERS)
 STATUS_MEANINGS = ("stopped", "step_limit", "overflow")
 _INTEGRATED_CHUNK = 64
 _OVERFLOW = STATUS_MEANINGS.index("overflow")
@@ -107,9 +107,7 @@ class LookUp(StopSolver):
 
     def rest(self, launches: Launches, threads: int | None) -> FloatArray:
         """Path length, turn of heading and of the body (3, n)."""
-        from puck_tables.stopping.curve_lookup import BODY, LENGTH, TURN
-
-        return self.table.known(launches.matrix)[[LENGTH, TURN, BODY]]
+        return self.table.rest(launches, threads)
 
 
 @dataclass(frozen=True)
@@ -190,21 +188,3 @@ def mark_too_large(out: FloatArray, status: Status, launches: FloatArray, longes
     """Status 2 and NaN where a motion is too large for floating point."""
     status[~fits(launches, longest)] = _OVERFLOW
     out[:, status != 0] = np.nan
-
-
-def fits(launches: FloatArray, longest: float = 2.0) -> npt.NDArray[np.bool_]:
-    """Whether Q/J, Q²/J and Q²/(J r) of launches (6, n) are within floating point, (n,).
-
-    ``longest``: how many times as large times, places and angles may get.
-
-    Examples
-    --------
-    >>> fits(np.array([[1.0, 1e200], [0, 0], [0, 0], [0, 0], [1, 1], [1, 1]])).tolist()
-    [True, False]
-    """
-    vx, vy, spin, _, decel, radius = launches
-    with np.errstate(over="ignore", invalid="ignore"):
-        slip = np.hypot(np.hypot(vx, vy), radius * spin)
-        size = longest * slip / decel * slip
-        inside: npt.NDArray[np.bool_] = np.isfinite(size / radius + size)
-    return inside

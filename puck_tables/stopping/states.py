@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, field, replace
 from typing import ClassVar
 
@@ -11,9 +10,8 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import run_chunks
-from puck_tables._core.real import broadcast, finite_array, velocity_array
+from puck_tables._core.real import broadcast, checked_threads, finite_array, real_view
 from puck_tables.contact.laws import HOMOGENEOUS, Law, law_of
-from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import InputError
 from puck_tables.io.dataset import Dataset, variable
 from puck_tables.motion.body import Body, body_of, plain_up_to
@@ -41,14 +39,16 @@ from puck_tables.stopping.jacobian import (
     integrated_jacobians,
     state_jacobians,
 )
+from puck_tables.stopping.launches import CHUNK, Launches, fits, in_chunks, launches_in, launches_of
 from puck_tables.stopping.per_height import refuse_many
-from puck_tables.stopping.solvers import fits
-from puck_tables.stopping.stop_table import StopTable
-from puck_tables.stopping.launches import positive_array
+from puck_tables.stopping.stop_table import UPPER_DELTA, StopTable
 from puck_tables.table.table import refuse_other_kind
 
 TOL = 1e-9
-_CHUNK = 1 << 15
+_AT_ONCE = 1 << 11
+_TOO_LARGE = (
+    "velocity, spin, radius and decel give a motion too large for floating point: use larger units"
+)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -115,7 +115,7 @@ class States(Differentiated, Result):
         table, launches = self._table or StopTable.shipped(), arguments[: len(LAUNCH_NAMES)]
         pucks = known_pucks(table, launches)
         which = np.arange(arguments.shape[1])
-        rows = looked_up(table, pucks, which, np.ascontiguousarray(arguments[len(LAUNCH_NAMES)]))
+        rows = looked_up(table, pucks, which, arguments[len(LAUNCH_NAMES)].copy())
         turned = rows[HEADING] + np.arctan2(launches[1], launches[0])
         speed = rows[SPEED]
         return np.stack([
@@ -151,6 +151,7 @@ def states(
     pressure: str | Law = "uniform",
     gyration: float = HOMOGENEOUS,
     jacobian: bool = False,
+    threads: int | None = None,
 ) -> States:
     """States of pucks at times after their launches, in any order, also after the stop.
 
@@ -173,6 +174,9 @@ def states(
         Whether derivatives are wanted too: of x, y, orientation, vx, vy and spin by vx, vy, spin,
         delta, decel and radius of the launch, and by time (velocity and acceleration), in this
         order.
+    threads : int, optional
+        How many share the work: as many as the process may use cores, if left out.  The numbers do
+        not depend on it, to the last bit.
 
     Returns
     -------
@@ -217,68 +221,130 @@ def states(
     >>> float(found.derivative("x", "delta").round(6))
     0.029301
     """
+    checked_threads(threads)
     refuse_other_kind(table, StopTable)
     highest = plain_up_to(pressure, gyration)
     if table is not None:
         if not highest > 0.0:
             raise InputError("stop tables are of a homogeneous puck under uniform pressure")
-        highest = math.inf  # it refuses itself what it does not hold
+        highest = UPPER_DELTA
     chosen = StopTable.shipped() if table is None else table
-    velocities = velocity_array(velocity)
-    columns = broadcast(
-        vx=velocities[..., 0],
-        vy=velocities[..., 1],
-        spin=finite_array("spin", spin, "rad/s"),
-        delta=checked_delta(delta) if table is None else table.checked_range(delta),
-        decel=positive_array("decel", decel, "m/s^2"),
-        radius=positive_array("radius", radius, "m"),
-    )
-    times = finite_array("time", time, "s")
-    if not np.all(times >= 0.0):
-        raise InputError(f"time must not be negative, got {times.min():g} s")
-    launches = np.stack(columns).reshape(len(columns), -1)
-    plain = launches[3] <= highest
-    bodies = _bodies(pressure, gyration, launches[3, ~plain])
+    launches = launches_of(velocity, spin, delta, decel, radius)
+    times = real_view("time", time, "s")
+    all_plain = launches.tallest <= highest
+    if not all_plain:
+        launches.refuse_bad()
+        if table is not None:
+            table.checked_range(launches.delta)
+    if jacobian:
+        launches.refuse_bad()
+    which, moments, shape = _moments_of(launches, times)
+    if all_plain and not jacobian:
+        found = _all_looked_up(chosen, launches, which, moments, threads)
+        return _states(found, moments, launches, which, shape, _told(launches.size, 0))
+    refuse_times(moments)
+    rows = launches.matrix
+    plain = rows[3] <= highest
+    bodies = _bodies(pressure, gyration, rows[3, ~plain])
     longest = max((body.longest for body in bodies.values()), default=2.0)
-    if not fits(launches, longest).all():
-        raise InputError(
-            "velocity, spin, radius and decel give a motion too large for floating point: "
-            "use larger units"
-        )
-    numbers = np.arange(launches.shape[1]).reshape(columns[0].shape)
-    which, moments = broadcast(velocity=numbers.astype(np.float64), time=times)
-    shape = which.shape
-    flat_which = np.ascontiguousarray(which, np.int64).reshape(-1)
-    flat_moments = np.ascontiguousarray(moments).reshape(-1)
-    pucks = known_pucks(chosen, launches[:, plain])
+    if not fits(rows, longest).all():
+        raise InputError(_TOO_LARGE)
+    each = np.arange(moments.size) if not which.size else np.broadcast_to(which, moments.shape)
+    pucks = known_pucks(chosen, rows[:, plain], threads)
     slopes = None
-    if jacobian and not bodies:
-        found, slopes = state_jacobians(chosen, pucks, flat_which, flat_moments)
-    elif not bodies:
-        found = looked_up(chosen, pucks, flat_which, flat_moments)
-    else:
-        found = np.empty((STATE_ROWS, flat_which.size))
-        looked, others = plain[flat_which], np.flatnonzero(~plain)
-        number = np.cumsum(plain) - 1  # of a plain puck among such
-        some = number[flat_which[looked]], flat_moments[looked]
-        if jacobian:
-            slopes = np.empty((flat_which.size, len(STATE_NAMES), len(MOMENT_NAMES)))
-            found[:, looked], slopes[looked] = state_jacobians(chosen, pucks, *some)
-            integrated_jacobians(bodies, launches, others, flat_which, flat_moments, slopes)
-        else:
-            found[:, looked] = looked_up(chosen, pucks, *some)
-        _integrate(bodies, launches, others, flat_which, flat_moments, found)
-    words = [f"{count} pucks {how}" for count, how in
-             ((plain.sum(), "looked up"), ((~plain).sum(), "integrated")) if count]  # fmt: skip
-    explanation = " and ".join(words) + ", to 1e-9 of Q, Q^2/J and Q^2/(J r)"
-    result = _states(found, moments, launches, flat_which, shape, explanation)
+    found = np.empty((STATE_ROWS, moments.size))
+    looked, others = plain[each], np.flatnonzero(~plain)
+    number = np.cumsum(plain) - 1  # of a plain puck among such
+    some = number[each[looked]], moments[looked]
+    found[:, looked] = looked_up(chosen, pucks, *some, threads)
+    if jacobian:
+        slopes = np.empty((moments.size, len(STATE_NAMES), len(MOMENT_NAMES)))
+        slopes[looked] = state_jacobians(chosen, pucks.T.copy(), *some)[1]
+        integrated_jacobians(bodies, rows, others, each, moments, slopes)
+    _integrate(bodies, rows, others, each, moments, found, threads)
+    told = _told(int(plain.sum()), int((~plain).sum()))
+    found[HEADING] += _directions(rows[0], rows[1])[each]
+    result = _states(found, moments, launches, which, shape, told)
     if slopes is None:
         return result
     return replace(
         result, _jacobian=slopes.reshape(*shape, *slopes.shape[1:]), _table=table,
         _kind=Kind(pressure, gyration) if bodies else None,
-        _arguments=np.concatenate([launches[:, flat_which], flat_moments[None]]),
+        _arguments=np.concatenate([rows[:, each], moments[None]]),
     )  # fmt: skip
+
+
+def _told(looked: int, integrated: int) -> str:
+    if not integrated:
+        return f"{looked} pucks looked up, to 1e-9 of Q, Q^2/J and Q^2/(J r)"
+    words = [f"{count} pucks {how}" for count, how in
+             ((looked, "looked up"), (integrated, "integrated")) if count]  # fmt: skip
+    return " and ".join(words) + ", to 1e-9 of Q, Q^2/J and Q^2/(J r)"
+
+
+def _moments_of(
+    launches: Launches, times: FloatArray
+) -> tuple[npt.NDArray[np.int64], FloatArray, tuple[int, ...]]:
+    """Which launch each moment is of, as compiled code reads it, the moments, and their shape."""
+    if launches.shape == () or launches.shape == times.shape:
+        which = np.zeros(0 if launches.shape else 1, np.int64)
+        flat = times.reshape(-1)
+        return which, flat if flat.flags.writeable else flat.copy(), times.shape
+    numbers = np.arange(launches.size).reshape(launches.shape)
+    one, other = broadcast(velocity=numbers.astype(np.float64), time=times)
+    moments = np.ascontiguousarray(other).reshape(-1)
+    moments = moments if moments.flags.writeable else moments.copy()
+    if one.shape == launches.shape:
+        return np.zeros(0, np.int64), moments, one.shape
+    return one.reshape(-1).astype(np.int64), moments, one.shape
+
+
+def refuse_times(moments: FloatArray) -> None:
+    """Refuse times that are no numbers, or negative.
+
+    Raises
+    ------
+    InputError
+    """
+    times = finite_array("time", moments, "s")
+    if not np.all(times >= 0.0):
+        raise InputError(f"time must not be negative, got {times.min():g} s")
+
+
+def _directions(vx: FloatArray, vy: FloatArray) -> FloatArray:
+    """Of launches, 0 for those without speed."""
+    directions: FloatArray = np.arctan2(vy, vx)
+    if not vx.all():  # only then may both be zero, or minus zero
+        directions[(vx == 0.0) & (vy == 0.0)] = 0.0
+    return directions
+
+
+def _all_looked_up(
+    table: StopTable, launches: Launches, which: npt.NDArray[np.int64], moments: FloatArray,
+    threads: int | None,
+) -> FloatArray:  # fmt: skip
+    """States (6, n) of plain launches, with headings from x."""
+    if which.size:
+        pucks = table.pucks(launches, threads)
+        found = looked_up(table, pucks, which, moments, threads)
+        directions = _directions(pucks[0], pucks[1])
+        found[HEADING] += directions[which] if which.size > 1 else directions
+        return found
+    from puck_tables.stopping.orbit_lookup import PUCK_ROWS, fill_orbit_states
+
+    out, orbit, bad = np.empty((STATE_ROWS, moments.size)), table.orbit_coefficients, [0]
+
+    def work(start: int, stop: int) -> None:  # what is known of the launches stays in the cache
+        for first in range(start, stop, _AT_ONCE):
+            last = min(first + _AT_ONCE, stop)
+            pucks = table.fill_pucks(PUCK_ROWS, launches, first, last)
+            bad.append(fill_orbit_states(pucks, which, moments, first, last, orbit, out))
+            out[HEADING, first:last] += _directions(pucks[0], pucks[1])
+
+    in_chunks(work, moments.size, threads)
+    if any(bad):
+        refuse_times(moments)
+    return out
 
 
 def _bodies(pressure: str | Law, gyration: float, delta: FloatArray) -> dict[float, Body]:
@@ -291,34 +357,35 @@ def _bodies(pressure: str | Law, gyration: float, delta: FloatArray) -> dict[flo
     return {height: body_of(law, height, gyration) for height in heights.tolist()}
 
 
-def known_pucks(table: StopTable, launches: FloatArray) -> FloatArray:
-    """Launches (6, m) of plain pucks beside what the table knows of them, (m, 20)."""
-    return np.concatenate([launches, table.known(launches)]).T.copy()
+def known_pucks(table: StopTable, launches: FloatArray, threads: int | None = None) -> FloatArray:
+    """Launches (6, m) of plain pucks beside what the table knows of them, (20, m)."""
+    return table.pucks(launches_in(launches), threads)
 
 
 def looked_up(
-    table: StopTable, pucks: FloatArray, which: npt.NDArray[np.int64], moments: FloatArray
-) -> FloatArray:
-    """States (6, n) of plain ``pucks`` (m, 20), ``which`` (n,) at ``moments`` (n,)."""
-    from puck_tables.stopping.curve_lookup import fill_states
+    table: StopTable, pucks: FloatArray, which: npt.NDArray[np.int64], moments: FloatArray,
+    threads: int | None = None,
+) -> FloatArray:  # fmt: skip
+    """States (6, n) of plain ``pucks`` (20, m), ``which`` (n,) or (1,) at ``moments`` (n,)."""
+    from puck_tables.stopping.orbit_lookup import fill_orbit_states
 
-    out = np.empty((STATE_ROWS, which.size))
+    out, orbit, bad = np.empty((STATE_ROWS, moments.size)), table.orbit_coefficients, [0]
+    if moments.size <= CHUNK:
+        bad.append(fill_orbit_states(pucks, which, moments, 0, moments.size, orbit, out))
+    else:
 
-    def work(start: int, stop: int) -> None:
-        part = np.empty((STATE_ROWS, stop - start))
-        fill_states(
-            pucks, which[start:stop], moments[start:stop], table.stop_coefficients,
-            table.curve_coefficients, table.time_inverse, part,
-        )  # fmt: skip
-        out[:, start:stop] = part
+        def work(start: int, stop: int) -> None:
+            bad.append(fill_orbit_states(pucks, which, moments, start, stop, orbit, out))
 
-    run_chunks(work, which.size, _CHUNK)
+        in_chunks(work, moments.size, threads)
+    if any(bad):
+        refuse_times(moments)
     return out
 
 
 def _integrate(
     bodies: dict[float, Body], launches: FloatArray, pucks: npt.NDArray[np.int64],
-    which: npt.NDArray[np.int64], moments: FloatArray, out: FloatArray,
+    which: npt.NDArray[np.int64], moments: FloatArray, out: FloatArray, threads: int | None,
 ) -> None:  # fmt: skip
     """States of other ``pucks``, each integrated, into their places in ``out`` (6, n)."""
     order = np.argsort(which, kind="stable")
@@ -331,7 +398,7 @@ def _integrate(
             if mine.size:
                 out[:, mine] = states_of(bodies[float(launch[3])], launch, moments[mine])
 
-    run_chunks(work, pucks.size, 1)
+    run_chunks(work, pucks.size, 1, threads)
 
 
 def states_of(body: Body, launch: FloatArray, times: FloatArray) -> FloatArray:
@@ -367,22 +434,19 @@ def states_of(body: Body, launch: FloatArray, times: FloatArray) -> FloatArray:
 
 
 def _states(
-    out: FloatArray, moments: FloatArray, launches: FloatArray, which: npt.NDArray[np.int64],
+    out: FloatArray, moments: FloatArray, launches: Launches, which: npt.NDArray[np.int64],
     shape: tuple[int, ...], explanation: str,
 ) -> States:  # fmt: skip
-    """Rows of states, headings from those of the launches, in their shape."""
+    """Rows of states in their shape."""
     rows = [one.reshape(shape) for one in out]
-    direction = np.where(
-        (launches[0] == 0.0) & (launches[1] == 0.0), 0.0, np.arctan2(launches[1], launches[0])
+    radius = launches.radius
+    if radius.size > 1:
+        radius = radius[which] if which.size else radius.copy()
+    radius = (
+        radius.reshape(shape) if radius.size == moments.size else np.broadcast_to(radius, shape)
     )
     return States(
-        time=np.array(moments).reshape(shape),
-        x=rows[PUCK_X],
-        y=rows[PUCK_Y],
-        heading=rows[HEADING] + direction[which].reshape(shape),
-        orientation=rows[ORIENTATION],
-        speed=rows[SPEED],
-        spin=rows[SPIN],
-        radius=launches[5][which].reshape(shape),
-        explanation=explanation,
-    )
+        time=moments.reshape(shape).copy(), x=rows[PUCK_X], y=rows[PUCK_Y],
+        heading=rows[HEADING], orientation=rows[ORIENTATION], speed=rows[SPEED], spin=rows[SPIN],
+        radius=radius, explanation=explanation,
+    )  # fmt: skip

@@ -12,7 +12,6 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.executor import run_chunks
 from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import InputError
 from puck_tables.stopping.axes import (
@@ -23,7 +22,15 @@ from puck_tables.stopping.axes import (
     heights,
 )
 from puck_tables.stopping.curve import limits
-from puck_tables.stopping.launches import CHUNK, Launches, in_chunks, joined_mark
+from puck_tables.stopping.curve_lookup import LAUNCH_COLUMNS
+from puck_tables.stopping.launches import (
+    CHUNK,
+    Launches,
+    fits,
+    in_chunks,
+    joined_mark,
+    launches_in,
+)
 from puck_tables.stopping.lookup import (
     CURVE_ROW,
     STOP_POWERS,
@@ -31,12 +38,15 @@ from puck_tables.stopping.lookup import (
     WIDTH,
     stops_kernel,
 )
+from puck_tables.stopping.orbit import ORBIT_WIDTH, REGULAR
+from puck_tables.stopping.orbit_lookup import PUCK_ROWS
 from puck_tables.stopping.slopes import Slopes, slopes_of
 from puck_tables.table.check import CheckReport
 from puck_tables.table.fit import clamped_coefficients
 from puck_tables.table.table import Axis, Progress, Table
 
 UPPER_DELTA = 1.0
+OTHERS = ("path_length", "turn_angle", "body_angle")
 STOPS = 5  # of the functions are of stops; the others of the curve of all motions
 _LARGEST, _NODE_ERROR = 10.0, 1e-12  # of a value, and how well some are known
 _INTERPRETATION = (
@@ -53,6 +63,14 @@ _INTERPRETATION = (
     "kappa = d ln|c - c0|/d ln Q and h0 = d heading/d ln Q at c0. "
     "Salnikova, Treschev, Gallyamov 2012, eq. 6.2-6.7 and section 7."
 )
+
+
+def _side_by_side(by_power: FloatArray) -> FloatArray:
+    """Coefficients (power, node, side, function) as (2 sides, nodes, powers × functions)."""
+    ordered = by_power.transpose(2, 1, 0, 3)
+    kept = np.ascontiguousarray(ordered).reshape(*ordered.shape[:2], -1)
+    kept.flags.writeable = False
+    return kept
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -144,7 +162,45 @@ class StopTable(Table):
         """What derivatives of stops and states need."""
         return slopes_of(self.axis, self.values)
 
-    def _inverse(self, with_time: bool) -> FloatArray:
+    @cached_property
+    def launch_coefficients(self) -> FloatArray:
+        """Body angle, S/δ, κR, path length: as :mod:`known` reads them."""
+        n = self.axis.cells
+        values = self.values[:, :, [4, 6, 5, 3]]
+        sides = np.stack([values[: n + 1], values[: n - 1 : -1]])  # both from k = 0 to k = 1
+        splines = clamped_coefficients(np.moveaxis(sides, 1, 0)) / 6.0  # node, side, height, f
+        return _side_by_side(height_polynomials(np.moveaxis(splines, 2, 0)))
+
+    @cached_property
+    def orbit_coefficients(self) -> FloatArray:
+        """What :mod:`puck_tables.stopping.orbit_lookup` reads."""
+        values = self._orbit(with_time=True)
+        by_power = np.zeros((*values.shape[:3], ORBIT_WIDTH))
+        by_power[..., : values.shape[3]] = values
+        return _side_by_side(by_power)
+
+    @cached_property
+    def turn_coefficients(self) -> FloatArray:
+        """The heading's regular part over the place by Q, (2, cells + 3, 9)."""
+        return _side_by_side(self._orbit(with_time=False)[..., REGULAR:])
+
+    def _orbit(self, with_time: bool) -> FloatArray:
+        """Spline coefficients over the place by time or Q: power, node, side, function."""
+        from puck_tables.stopping.orbit import fill_orbit
+
+        ratios = self._ratios(with_time)
+        values = np.empty((*ratios.shape, REGULAR + 1))
+        delta = heights()
+        turning = np.array([limits(one).turn for one in delta.tolist()])
+        fill_orbit(
+            self.stop_coefficients, self.curve_coefficients, ratios, turning, delta, with_time,
+            values,
+        )  # fmt: skip
+        splines = clamped_coefficients(np.moveaxis(values, 1, 0)) / 6.0
+        return height_polynomials(np.moveaxis(splines, 2, 0))
+
+    def _ratios(self, with_time: bool) -> FloatArray:
+        """2w/y at the nodes (2, cells + 1, heights)."""
         from puck_tables.stopping.curve_lookup import fill_inverse
 
         values = np.empty((2, self.axis.cells + 1, HEIGHTS))
@@ -152,6 +208,10 @@ class StopTable(Table):
             self.stop_coefficients, self.curve_coefficients, self.constants, with_time,
             heights(), values,
         )  # fmt: skip
+        return values
+
+    def _inverse(self, with_time: bool) -> FloatArray:
+        values = self._ratios(with_time)
         splines = clamped_coefficients(np.moveaxis(values, 1, 0)) / 6.0  # node, side, height
         by_power = height_polynomials(np.moveaxis(splines, 2, 0))
         return np.ascontiguousarray(by_power.transpose(2, 1, 0))
@@ -252,21 +312,57 @@ class StopTable(Table):
         return time, place, doubtful, mark
 
     def known(self, launches: FloatArray) -> FloatArray:
-        """What the table knows of checked launches (6, n), see :func:`fill_launches`; (14, n)."""
-        from puck_tables.motion.path import TURN_SHARE
-        from puck_tables.stopping.curve_lookup import LAUNCH_ROWS, fill_launches
+        """What the table knows of checked launches (6, n), see :func:`know_launch`; (14, n)."""
+        return self.pucks(launches_in(launches))[LAUNCH_COLUMNS:]
 
-        out = np.empty((LAUNCH_ROWS, launches.shape[1]))
-        tables = (
-            self.stop_coefficients, self.curve_coefficients, self.turn_inverse, self.constants,
-        )  # fmt: skip
+    def pucks(self, launches: Launches, threads: int | None = None) -> FloatArray:
+        """Launches, and what the table knows of them, (6 + 14, n).
+
+        Raises
+        ------
+        InputError
+            If one of them is no launch, or too large for floating point.
+        """
+        return self._filled(PUCK_ROWS, launches, threads)
+
+    def rest(self, launches: Launches, threads: int | None) -> FloatArray:
+        """Path length, turn of heading and of the body (3, n) of checked launches."""
+        return self._filled(len(OTHERS), launches, threads)
+
+    def _filled(self, rows: int, launches: Launches, threads: int | None) -> FloatArray:
+        if launches.size <= CHUNK:
+            return self.fill_pucks(rows, launches, 0, launches.size)
+        out = np.empty((rows, launches.size))
 
         def work(start: int, stop: int) -> None:
-            part = np.empty((LAUNCH_ROWS, stop - start))
-            fill_launches(np.ascontiguousarray(launches[:, start:stop]), *tables, TURN_SHARE, part)
-            out[:, start:stop] = part
+            out[:, start:stop] = self.fill_pucks(rows, launches, start, stop)
 
-        run_chunks(work, launches.shape[1], CHUNK)
+        in_chunks(work, launches.size, threads)
+        return out
+
+    def fill_pucks(self, rows: int, launches: Launches, start: int, stop: int) -> FloatArray:
+        """Of some launches all that is known (20, n), or :data:`OTHERS` (3, n).
+
+        Raises
+        ------
+        InputError
+            If one of them is no launch, or, where all is asked, too large for floating point.
+        """
+        from puck_tables.motion.path import TURN_SHARE
+        from puck_tables.stopping.known import fill_known
+
+        out = np.empty((rows, stop - start))
+        doubtful, bad = fill_known(
+            *launches.part(start, stop), self.cut(), self.launch_coefficients,
+            self.turn_coefficients, self.constants, TURN_SHARE, out,
+        )  # fmt: skip
+        if bad:
+            launches.refuse_bad()
+        if doubtful and rows == PUCK_ROWS and not fits(out[:LAUNCH_COLUMNS]).all():
+            raise InputError(
+                "velocity, spin, radius and decel give a motion too large for floating point: "
+                "use larger units"
+            )
         return out
 
     def checked_range(self, delta: npt.ArrayLike) -> FloatArray:

@@ -217,9 +217,7 @@ def _fill(
     fill(*launches_in(launches).part(0, launches.shape[1]), coefficients, *out, 1)
 
 
-def _sweep(
-    fill: Callable[..., object], coefficients: FloatArray, count: int
-) -> float:
+def _sweep(fill: Callable[..., object], coefficients: FloatArray, count: int) -> float:
     """Seconds for so many stops, a chunk at a time, of which only the longest is kept."""
     start = time.perf_counter()
     size = min(_CHUNK, count)

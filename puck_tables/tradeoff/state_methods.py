@@ -14,6 +14,7 @@ from puck_tables.motion.limits import log_ratio
 from puck_tables.motion.path import integrate, states_at
 from puck_tables.motion.state import SIZE, STATE_ROWS
 from puck_tables.motion.steppers import DORMAND_PRINCE
+from puck_tables.stopping.launches import launches_in
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.tradeoff.contender import Contender, Ready
@@ -71,17 +72,15 @@ class Task:
 
     def looked_up(self) -> Run:
         """Every moment from the stop table."""
-        from puck_tables.stopping.curve_lookup import fill_states
+        from puck_tables.stopping.orbit_lookup import fill_orbit_states
 
         which = np.repeat(np.arange(_PUCKS), _MOMENTS)
         moments, out = self.times.ravel(), np.empty((STATE_ROWS, _PUCKS * _MOMENTS))
+        launches, orbit = launches_in(self.launches), self.stops.orbit_coefficients
 
         def run() -> FloatArray:
-            pucks = np.concatenate([self.launches, self.stops.known(self.launches)]).T.copy()
-            fill_states(
-                pucks, which, moments, self.stops.stop_coefficients,
-                self.stops.curve_coefficients, self.stops.time_inverse, out,
-            )  # fmt: skip
+            pucks = self.stops.pucks(launches, threads=1)
+            fill_orbit_states(pucks, which, moments, 0, moments.size, orbit, out)
             return np.moveaxis(out[:2].reshape(2, _PUCKS, _MOMENTS), 0, -1)
 
         return run
@@ -119,7 +118,7 @@ def contenders(task: Task) -> Iterator[Contender]:
         return Contender(QUESTION, method, setting, lambda: None, ready, outsider)
 
     stops = task.stops
-    tables = (stops.stop_coefficients, stops.curve_coefficients, stops.time_inverse)
+    tables = (stops.launch_coefficients, stops.orbit_coefficients, stops.turn_coefficients)
     yield contender(LOOK_UP.name, "", task.looked_up, sum(table.nbytes for table in tables))
     for source in (Source.TABLE, Source.CLOSED_FORMS):
         method, exact = Scheme(Method.ADAPTIVE, source).name, source is Source.CLOSED_FORMS

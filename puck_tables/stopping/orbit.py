@@ -1,0 +1,97 @@
+"""Places on the curve of all motions for many numbers at once, and what stands there.
+
+What :mod:`puck_tables.stopping.curve_lookup` finds in two steps, the ratio of speed and spin from
+the time that is left and then the functions at that ratio, is tabulated here over the first place
+itself: 2w/y, T, along, across, body angle, and the heading's regular part
+
+    δ G = regular − a ln y [− h₀ ln T],    a = h₀/A for v > r|ω|, (h₀ − h₁)/B above,
+
+in which ln 2w = ln y + ln(2w/y) leaves nothing singular.  So a state takes one look-up, and its
+logarithms and exponentials are done for several states at once.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.kernels.compile import allocating, inlined
+from puck_tables.kernels.elementary import exp_of, log_of
+from puck_tables.stopping.curve_lookup import (
+    end_logs,
+    end_rates,
+    functions_at,
+)
+from puck_tables.stopping.lookup import CURVE_ROW
+
+ORBIT_WIDTH = 8  # 2w/y, T, along, across; body angle, G and nothing
+SHARE, TIME_FACTOR, ALONG, ACROSS, BODY_FACTOR, REGULAR = range(6)
+TINY = 1e-300
+
+
+@inlined
+def log_place(
+    sign: float, log_n: float, kappa: float, slow: float, fast: float
+) -> tuple[bool, float]:
+    """Whether r|ω| > v, and ln y of the number sign·exp(log_n), by arithmetic alone."""
+    is_slow = (sign < 0.0) & (log_n >= 0.0)
+    is_large = (sign > 0.0) & (log_n > 1.0)
+    moderate = log_n if log_n < 1.0 else 1.0
+    power = exp_of(-log_n if is_large else moderate)
+    log = log_of(1.0 + 2.0 * power if is_large else 2.0 + sign * power)
+    log_fast = -(fast / kappa) * (log + (log_n if is_large else 0.0))
+    return not is_slow, (-(slow / kappa) * log_n if is_slow else log_fast)
+
+
+@inlined
+def place_of_log(log_y: float) -> tuple[float, float]:
+    """Y and ξ from ln y ≤ 0."""
+    y = exp_of(log_y if log_y < 0.0 else 0.0)
+    q = math.sqrt(math.sqrt(y))
+    return y, 1.0 - math.sqrt((1.0 - y) / ((1.0 + q) * (1.0 + q * q)))
+
+
+@inlined
+def cell_of(xi: float, is_fast: bool, cells: float, row: int) -> tuple[float, float]:
+    """The place of the first row of a cell in a flat table, and that in the cell."""
+    p = xi * cells
+    inside = p if p > 0.0 else 0.0
+    last = cells - 1.0
+    cell = np.floor(inside if inside < last else last)
+    return row * (cell + (cells + 3.0 if is_fast else 0.0)), p - cell
+
+
+@allocating
+def fill_orbit(
+    stops: FloatArray, curve: FloatArray, ratios: FloatArray, turning: FloatArray,
+    deltas: FloatArray, with_time: bool, out: FloatArray,
+) -> None:  # fmt: skip
+    """The functions at the nodes of ξ (both sides) and δ into ``out`` (2, cells + 1, heights, 6).
+
+    ``ratios`` (2, cells + 1, heights): 2w/y there; ``turning`` (heights,): h₀.
+    """
+    cells = ratios.shape[1] - 1
+    sums, found = np.empty(CURVE_ROW), np.empty(5)
+    for side in range(2):
+        for i in range(cells + 1):
+            xi = i / cells
+            q = xi * (2.0 - xi)
+            for j in range(deltas.size):
+                delta, ratio = deltas[j], ratios[side, i, j]
+                share = min(q * q * q * q * ratio, 1.0)
+                functions_at(stops, curve, side, share, 2.0 * delta * delta - 1.0, sums, found)
+                slow, fast, spin_turn = end_rates(delta)
+                by_slow, by_fast = turning[j] / slow, (turning[j] - spin_turn) / fast
+                plus, minus = end_logs(side, max(share, TINY))
+                if side == 0:
+                    regular = by_slow * math.log(ratio) + by_fast * minus
+                else:
+                    regular = by_slow * plus + by_fast * math.log(ratio)
+                if with_time:
+                    regular -= turning[j] * math.log(found[0])
+                out[side, i, j, SHARE] = ratio
+                for f in range(4):
+                    out[side, i, j, TIME_FACTOR + f] = found[f]
+                out[side, i, j, REGULAR] = regular / delta + found[4]
