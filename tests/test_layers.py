@@ -31,7 +31,7 @@ ROOMS = {
     "film": "_core errors io",
     "fitting": "_core _version accuracy contact errors film io kernels motion puck result "
     "stopping table",
-    "autodiff": "errors stopping",
+    "autodiff": "contact errors stopping",
     "scene": "_core contact errors io kernels motion puck result stopping table",
     "world": "_core contact errors io kernels motion puck result scene stopping table",
     "tradeoff": "_core _version accuracy contact io kernels motion result stopping table",
