@@ -44,6 +44,22 @@ def test_states_pass_check_grads():
     check_grads(f, arguments, order=1, atol=1e-5, rtol=1e-5, eps=1e-4)
 
 
+def test_other_pucks_pass_check_grads():
+    """A tall one by all its numbers, one under another law by a launch."""
+
+    def tall(velocity, spin, delta, decel, radius):
+        return stop(velocity, spin, delta=delta, decel=decel, radius=radius)
+
+    arguments = tuple(map(jnp.asarray, ([1.0, 0.3], 2.0, 2.1, 1.3, 0.8)))
+    check_grads(tall, arguments, order=1, atol=1e-5, rtol=1e-5, eps=1e-4)
+
+    def other(velocity, spin, time):
+        return states(velocity, spin, time, pressure="hertz", gyration=0.6)
+
+    arguments = tuple(map(jnp.asarray, ([1.0, 0.3], 2.0, 0.4)))
+    check_grads(jax.jit(other), arguments, order=1, atol=1e-5, rtol=1e-5, eps=1e-4)
+
+
 def test_values_and_jacobians_are_those_of_the_library():
     velocity, spin = np.random.default_rng(1).normal(size=(7, 2)), np.linspace(-3.0, 3.0, 7)
     found = plain_stop(velocity, spin, tol=2e-10, jacobian=True)

@@ -36,6 +36,22 @@ def test_states_pass_gradcheck():
     assert torch.autograd.gradcheck(f, arguments, eps=1e-4, atol=1e-5, check_forward_ad=True)
 
 
+def test_other_pucks_pass_gradcheck():
+    """A tall one by all its numbers, one under another law by a launch."""
+
+    def tall(velocity, spin, delta, decel, radius):
+        return stop(velocity, spin, delta=delta, decel=decel, radius=radius)
+
+    arguments = tuple(map(leaf, ([1.0, 0.3], 2.0, 2.1, 1.3, 0.8)))
+    assert torch.autograd.gradcheck(tall, arguments, eps=1e-4, atol=1e-5, check_forward_ad=True)
+
+    def other(velocity, spin, time):
+        return states(velocity, spin, time, pressure="hertz", gyration=0.6)
+
+    arguments = tuple(map(leaf, ([1.0, 0.3], 2.0, 0.4)))
+    assert torch.autograd.gradcheck(other, arguments, eps=1e-4, atol=1e-5, check_forward_ad=True)
+
+
 def test_values_are_those_of_the_library():
     velocity, spin = np.random.default_rng(1).normal(size=(7, 2)), np.linspace(-3.0, 3.0, 7)
     found = plain_stop(velocity, spin, tol=2e-10)

@@ -136,5 +136,11 @@ def test_what_has_no_derivative_is_refused():
     with pytest.raises(InputError, match="the launch is at rest"):
         stop((0.0, 0.0), 0.0, delta=2.0, jacobian=True)
     assert not states((0.0, 0.0), 0.0, [0.0, 1.0], delta=2.0, jacobian=True).jacobian.any()
+    law = {"pressure": "ring", "gyration": 1.0}
+    with pytest.raises(InputError, match="r w/v = 1, the limit of this puck"):
+        stop((0.6, 0.8), -1.0, **law, jacobian=True)
+    with pytest.raises(InputError, match="r w/v = 1, the limit of this puck"):
+        states((0.6, 0.8), 1.0, 0.3, **law, jacobian=True)
+    assert np.isfinite(stop((0.6, 0.8), 1.0001, **law, jacobian=True).jacobian).all()
     with pytest.raises(InputError, match="by must be one of vx, vy, spin"):
         stop((1.0, 0.0), 1.0, delta=2.0, jacobian=True).derivative("stop_x", "height")

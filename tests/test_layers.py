@@ -31,7 +31,7 @@ ROOMS = {
     "film": "_core errors io",
     "fitting": "_core _version accuracy contact errors film io kernels motion puck result "
     "stopping table",
-    "autodiff": "errors stopping",
+    "autodiff": "contact errors stopping",
     "export": "_core _version contact errors puck stopping",
     "explore": "export",
     "scene": "_core contact errors io kernels motion puck result stopping table",

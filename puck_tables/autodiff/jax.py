@@ -6,11 +6,13 @@ derivatives are not known.  In double precision only: ``jax.config.update("jax_e
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from puck_tables.autodiff import host
+from puck_tables.contact.laws import HOMOGENEOUS, Law
 from puck_tables.errors import InputError, MissingExtraError
 
 try:
@@ -22,20 +24,24 @@ except ImportError:
     ) from None
 
 
-@jax.custom_jvp
-def _found(arguments: Any) -> Any:
+@partial(jax.custom_jvp, nondiff_argnums=(1,))
+def _found(arguments: Any, kind: host.Kind) -> Any:
     rows = host.ROWS[arguments.shape[-1]]
     shape = jax.ShapeDtypeStruct((*arguments.shape[:-1], rows), np.float64)
-    return jax.pure_callback(host.values, shape, arguments, vmap_method="broadcast_all")
+    return jax.pure_callback(
+        partial(host.values, kind=kind), shape, arguments, vmap_method="broadcast_all"
+    )
 
 
 @_found.defjvp
-def _found_jvp(primals: Any, tangents: Any) -> Any:
+def _found_jvp(kind: host.Kind, primals: Any, tangents: Any) -> Any:
     (arguments,), (moved,) = primals, tangents
     rows, columns = host.ROWS[arguments.shape[-1]], arguments.shape[-1]
     shape = jax.ShapeDtypeStruct((*arguments.shape[:-1], rows, columns), np.float64)
-    jacobian = jax.pure_callback(host.slopes, shape, arguments, vmap_method="broadcast_all")
-    return _found(arguments), jnp.einsum("...rc,...c->...r", jacobian, moved)
+    jacobian = jax.pure_callback(
+        partial(host.slopes, kind=kind), shape, arguments, vmap_method="broadcast_all"
+    )
+    return _found(arguments, kind), jnp.einsum("...rc,...c->...r", jacobian, moved)
 
 
 def _joined(velocity: Any, *others: Any) -> Any:
@@ -53,14 +59,16 @@ def _joined(velocity: Any, *others: Any) -> Any:
 
 
 def stop(
-    velocity: Any, spin: Any = 0.0, *, delta: Any = 0.5, decel: Any = 1.0, radius: Any = 1.0
-) -> Any:
-    """Stops of plain pucks, as :func:`puck_tables.stop`.
+    velocity: Any, spin: Any = 0.0, *, delta: Any = 0.5, decel: Any = 1.0, radius: Any = 1.0,
+    pressure: str | Law = "uniform", gyration: float = HOMOGENEOUS,
+) -> Any:  # fmt: skip
+    """Stops of pucks, as :func:`puck_tables.stop`.
 
     Parameters
     ----------
     velocity : (…, 2), m/s
     spin, delta, decel, radius : (…), rad/s, 1, m/s², m
+    pressure, gyration : as :class:`puck_tables.Puck`; not differentiated
 
     Returns
     -------
@@ -79,18 +87,20 @@ def stop(
     ...     float(jax.grad(lambda w: stop((1.0, 0.0), w)[1])(5.0).round(6))
     0.420792
     """
-    return _found(_joined(velocity, spin, delta, decel, radius))
+    return _found(_joined(velocity, spin, delta, decel, radius), host.Kind(pressure, gyration))
 
 
 def states(
-    velocity: Any, spin: Any, time: Any, *, delta: Any = 0.5, decel: Any = 1.0, radius: Any = 1.0
-) -> Any:
-    """States of plain pucks, as :func:`puck_tables.states`.
+    velocity: Any, spin: Any, time: Any, *, delta: Any = 0.5, decel: Any = 1.0, radius: Any = 1.0,
+    pressure: str | Law = "uniform", gyration: float = HOMOGENEOUS,
+) -> Any:  # fmt: skip
+    """States of pucks, as :func:`puck_tables.states`.
 
     Parameters
     ----------
     velocity : (…, 2), m/s
     spin, time, delta, decel, radius : (…), rad/s, s, 1, m/s², m
+    pressure, gyration : as :class:`puck_tables.Puck`; not differentiated
 
     Returns
     -------
@@ -109,4 +119,5 @@ def states(
     >>> x.round(6).tolist()
     [1.590682, 2.213952]
     """
-    return _found(_joined(velocity, spin, delta, decel, radius, time))
+    joined = _joined(velocity, spin, delta, decel, radius, time)
+    return _found(joined, host.Kind(pressure, gyration))

@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import Any
 
 from puck_tables.autodiff import host
+from puck_tables.contact.laws import HOMOGENEOUS, Law
 from puck_tables.errors import InputError, MissingExtraError
 
 try:
@@ -21,26 +22,31 @@ except ImportError:
 
 class _Found(torch.autograd.Function):
     @staticmethod
-    def forward(arguments: Any) -> Any:
-        return torch.from_numpy(host.values(arguments.numpy(force=True))).to(arguments.device)
+    def forward(arguments: Any, kind: host.Kind) -> Any:
+        found = host.values(arguments.numpy(force=True), kind)
+        return torch.from_numpy(found).to(arguments.device)
 
     @staticmethod
     def setup_context(ctx: Any, inputs: Any, output: Any) -> None:
-        ctx.save_for_backward(*inputs)
-        ctx.save_for_forward(*inputs)
+        ctx.save_for_backward(inputs[0])
+        ctx.save_for_forward(inputs[0])
+        ctx.kind = inputs[1]
 
     @staticmethod
     @once_differentiable
     def backward(ctx: Any, given: Any) -> Any:
-        return torch.einsum("...rc,...r->...c", _slopes(*ctx.saved_tensors), given)
+        slopes = _slopes(*ctx.saved_tensors, ctx.kind)
+        return torch.einsum("...rc,...r->...c", slopes, given), None
 
     @staticmethod
-    def jvp(ctx: Any, moved: Any) -> Any:
-        return torch.einsum("...rc,...c->...r", _slopes(*ctx.saved_tensors), moved)
+    def jvp(ctx: Any, moved: Any, _: Any) -> Any:
+        slopes = _slopes(*ctx.saved_tensors, ctx.kind)
+        return torch.einsum("...rc,...c->...r", slopes, moved)
 
 
-def _slopes(arguments: Any) -> Any:
-    return torch.from_numpy(host.slopes(arguments.numpy(force=True))).to(arguments.device)
+def _slopes(arguments: Any, kind: host.Kind) -> Any:
+    found = host.slopes(arguments.numpy(force=True), kind)
+    return torch.from_numpy(found).to(arguments.device)
 
 
 def _joined(velocity: Any, *others: Any) -> Any:
@@ -57,14 +63,16 @@ def _joined(velocity: Any, *others: Any) -> Any:
 
 
 def stop(
-    velocity: Any, spin: Any = 0.0, *, delta: Any = 0.5, decel: Any = 1.0, radius: Any = 1.0
-) -> Any:
-    """Stops of plain pucks, as :func:`puck_tables.stop`.
+    velocity: Any, spin: Any = 0.0, *, delta: Any = 0.5, decel: Any = 1.0, radius: Any = 1.0,
+    pressure: str | Law = "uniform", gyration: float = HOMOGENEOUS,
+) -> Any:  # fmt: skip
+    """Stops of pucks, as :func:`puck_tables.stop`.
 
     Parameters
     ----------
     velocity : (…, 2), m/s
     spin, delta, decel, radius : (…), rad/s, 1, m/s², m
+    pressure, gyration : as :class:`puck_tables.Puck`; not differentiated
 
     Returns
     -------
@@ -83,18 +91,21 @@ def stop(
     >>> round(spin.grad.item(), 6)
     0.420792
     """
-    return _Found.apply(_joined(velocity, spin, delta, decel, radius))
+    kind = host.Kind(pressure, gyration)
+    return _Found.apply(_joined(velocity, spin, delta, decel, radius), kind)
 
 
 def states(
-    velocity: Any, spin: Any, time: Any, *, delta: Any = 0.5, decel: Any = 1.0, radius: Any = 1.0
-) -> Any:
-    """States of plain pucks, as :func:`puck_tables.states`.
+    velocity: Any, spin: Any, time: Any, *, delta: Any = 0.5, decel: Any = 1.0, radius: Any = 1.0,
+    pressure: str | Law = "uniform", gyration: float = HOMOGENEOUS,
+) -> Any:  # fmt: skip
+    """States of pucks, as :func:`puck_tables.states`.
 
     Parameters
     ----------
     velocity : (…, 2), m/s
     spin, time, delta, decel, radius : (…), rad/s, s, 1, m/s², m
+    pressure, gyration : as :class:`puck_tables.Puck`; not differentiated
 
     Returns
     -------
@@ -111,4 +122,5 @@ def states(
     >>> round(states((1.0, 0.0), 5.0, 2.0)[0].item(), 6)
     1.590682
     """
-    return _Found.apply(_joined(velocity, spin, delta, decel, radius, time))
+    joined = _joined(velocity, spin, delta, decel, radius, time)
+    return _Found.apply(joined, host.Kind(pressure, gyration))

@@ -4,8 +4,8 @@ With Q = hypot(v, rω), φ = atan2(rω, v) and the natural motion (X, Y, Θ)(t J
 
     place = (Q²/J) Rot(ψ)(X, Y),   turn = Q²/(J r) Θ .
 
-So only the derivatives to φ and δ are differences of motions; those to Q, J, ψ and r follow from
-the similarity and from the velocity, which a look-up gives besides.
+So only the derivatives to φ and δ are those of a motion (:meth:`Curve.with_slopes`); those to Q, J,
+ψ and r follow from the similarity and from the velocity.
 
 Drag c, in 1/s, that brakes speed and spin alike, v′ = … − c v, ω′ = … − c ω, needs no motion of its
 own: v = e^(−ct) V(s), ω = e^(−ct) W(s) with s = (e^(ct) − 1)/c, where V and W are those without
@@ -25,9 +25,9 @@ from typing import NamedTuple
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.fitting.natural import Curve
+from puck_tables.fitting.natural import BY_DELTA, BY_PHI, PATH, RATE, Curve
+from puck_tables.motion.state import HEADING, ORIENTATION, PUCK_X, PUCK_Y, SPEED, SPIN
 
-_ANGLE_STEP, _HEIGHT_STEP = 1e-5, 1e-3
 _SLOWEST = 1e-9  # of Q: a launch that only spins is taken to go that fast along its velocity
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 
@@ -124,18 +124,19 @@ def _dry(
     turn = np.array([[cosine, -sine], [sine, cosine]])
     length = slip * slip / moving.decel
     tau = times * (moving.decel / slip)
-    phis, deltas = _asked(phi, moving, slopes)
-    states = moving.curve.states(phis, deltas, np.broadcast_to(tau, (phis.size, tau.size)))
-    x, y, heading, body, ahead, around = states
-    place = length * np.einsum("ab,bmn->amn", turn, np.stack([x, y]))
-    paths = np.concatenate([place, (length / moving.radius) * body[None]])
-    path = paths[:, 0]
-    motion = slip * np.stack([ahead[0] * np.cos(heading[0]), ahead[0] * np.sin(heading[0])])
-    rate = np.concatenate([turn @ motion, (slip / moving.radius) * around[:1]])
+    curve, height = moving.curve, moving.delta
     if not slopes:
-        return path, rate[None]
-    to_phi = (paths[:, 1] - paths[:, 2]) / (phis[1] - phis[2])
-    to_delta = (paths[:, 4] - paths[:, 3]) / (deltas[4] - deltas[3])
+        states = curve.states(np.array([phi]), np.array([height]), tau[None])[:, 0]
+        heading, ahead = states[HEADING], states[SPEED]
+        motion = np.stack([ahead * np.cos(heading), ahead * np.sin(heading), states[SPIN]])
+        natural = states[[PUCK_X, PUCK_Y, ORIENTATION]]
+        path = _turned(turn, length, moving.radius, natural)
+        return path, _turned(turn, slip, moving.radius, motion)[None]
+    natural = curve.with_slopes(phi, height, tau)
+    path, to_phi, to_delta = (
+        _turned(turn, length, moving.radius, natural[n]) for n in (PATH, BY_PHI, BY_DELTA)
+    )
+    rate = _turned(turn, slip, moving.radius, natural[RATE])
     to_log_slip = 2.0 * path - times * rate
     across = np.stack([-path[1], path[0], np.zeros(times.size)]) / max(speed, _SLOWEST * slip)
     to_speed = math.cos(phi) / slip * to_log_slip - math.sin(phi) / slip * to_phi
@@ -148,11 +149,6 @@ def _dry(
     ])  # fmt: skip
 
 
-def _asked(phi: float, moving: Moving, slopes: bool) -> tuple[FloatArray, FloatArray]:
-    """The motion itself, two neighbours in φ, and two in δ; these lie within its range."""
-    if not slopes:
-        return np.array([phi]), np.array([moving.delta])
-    h, delta = _HEIGHT_STEP, moving.delta
-    centre = min(max(delta, h), moving.curve.highest - h)
-    angles = [phi, phi + _ANGLE_STEP, phi - _ANGLE_STEP, phi, phi]
-    return np.array(angles), np.array([delta] * 3 + [centre - h, centre + h])
+def _turned(turn: FloatArray, unit: float, radius: float, natural: FloatArray) -> FloatArray:
+    """x, y and body angle (3, n) from natural ones, in a unit of length."""
+    return unit * np.concatenate([turn @ natural[:2], natural[2:] / radius])

@@ -29,8 +29,11 @@ from puck_tables.motion.limits import log_ratio
 from puck_tables.motion.run import Run, at_constant_slip, integrated
 from puck_tables.motion.state import HEADING, ORIENTATION, PUCK_X, PUCK_Y, SPIN, STATE_ROWS, T
 from puck_tables.motion.steppers import DORMAND_PRINCE, Stepping
+from puck_tables.stopping.jacobian import state_jacobians
 from puck_tables.stopping.states import known_pucks, looked_up
 from puck_tables.stopping.stop_table import StopTable
+from puck_tables.stopping.varied import Varied, natural_states, varied_by
+from puck_tables.table.flow_section import flow_at_one_height, flow_of_table
 from puck_tables.table.friction_section import section_of_table
 from puck_tables.table.resultant_table import ResultantTable, full_contact
 
@@ -39,6 +42,7 @@ HIGHEST = 3.9
 _ACCURACY = 1e-7  # of friction ratios; a film knows places to 1e-4 of the path
 _STEPPING = Stepping(DORMAND_PRINCE, 0.0, 1e-9)
 _KEPT = 8
+PATH, RATE, BY_PHI, BY_DELTA = range(4)
 _ODD = [PUCK_Y, HEADING, ORIENTATION, SPIN]  # change sign with the spin
 
 
@@ -54,13 +58,16 @@ class Curve(ABC):
     def first_quadrant(self, phi: FloatArray, delta: FloatArray, tau: FloatArray) -> FloatArray:
         """States for 0 ≤ φ ≤ π/2, as :meth:`states`."""
 
+    @abstractmethod
+    def varied(self, phi: float, delta: float, tau: FloatArray) -> FloatArray:
+        """Paths and their derivatives for 0 ≤ φ ≤ π/2, as :meth:`with_slopes`."""
+
     def states(self, phi: FloatArray, delta: FloatArray, tau: FloatArray) -> FloatArray:
         """States at natural times.
 
         Parameters
         ----------
-        phi : array (m,), slip angle of the launch, atan2(rω, v)
-            Negative for clockwise spin; a little beyond ±π/2 the launch goes along −x.
+        phi : array (m,), slip angle of the launch, atan2(rω, v), negative for clockwise spin
         delta : array (m,), δ of each
         tau : array (m, n), t J/Q of each, ≥ 0
 
@@ -69,17 +76,31 @@ class Curve(ABC):
         array (6, m, n)
             x, y, heading from that of the launch, body angle, v, ω.
         """
-        size = np.abs(phi)
-        back = size > 0.5 * math.pi
-        out = self.first_quadrant(np.where(back, math.pi - size, size), delta, tau)
+        out = self.first_quadrant(np.abs(phi), delta, tau)
         clockwise = phi < 0.0
         if clockwise.any():
             for row in _ODD:
                 out[row, clockwise] *= -1.0
-        if back.any():
-            out[PUCK_X, back] *= -1.0
-            out[PUCK_Y, back] *= -1.0
-            out[HEADING, back] += math.pi
+        return out
+
+    def with_slopes(self, phi: float, delta: float, tau: FloatArray) -> FloatArray:
+        """One path and its derivatives.
+
+        Parameters
+        ----------
+        phi : slip angle of the launch, negative for clockwise spin
+        delta : δ
+        tau : array (n,), t J/Q, ≥ 0
+
+        Returns
+        -------
+        array (4, 3, n)
+            Of x, y and body angle: themselves, their rates, by φ, by δ.
+        """
+        out = self.varied(abs(phi), delta, tau)
+        if phi < 0.0:
+            out[:, 1:] *= -1.0  # y and the body angle are odd
+            out[BY_PHI] *= -1.0
         return out
 
 
@@ -106,13 +127,33 @@ class PlainCurve(Curve):
         found = looked_up(table, known_pucks(table, launches), which, tau.ravel())
         return found.reshape(STATE_ROWS, count, frames)
 
+    def varied(self, phi: float, delta: float, tau: FloatArray) -> FloatArray:
+        """By the slopes of the stop table."""
+        launch = np.array([[math.cos(phi), 0.0, math.sin(phi), delta, 1.0, 1.0]]).T
+        table = StopTable.shipped()
+        pucks, one = known_pucks(table, launch), np.zeros(tau.size, np.int64)
+        _, slopes = state_jacobians(table, pucks, one, tau)
+        values = looked_up(table, pucks, one, tau)
+        path = values[[PUCK_X, PUCK_Y, ORIENTATION]]
+        wanted = slopes[:, :3][..., [0, 2, 3, 6]]
+        by_speed, by_rim, by_delta, rate = np.moveaxis(wanted, (2, 1), (0, 1))
+        return np.stack([path, rate, math.cos(phi) * by_rim - math.sin(phi) * by_speed, by_delta])
+
 
 class IntegratedCurve(Curve):
     """Pucks whose friction is a section."""
 
+    @abstractmethod
     def friction(self, delta: float) -> Friction:
         """Their friction at one height."""
-        raise NotImplementedError
+
+    @abstractmethod
+    def flow(self, delta: float) -> Varied:
+        """The same with its derivatives."""
+
+    def varied(self, phi: float, delta: float, tau: FloatArray) -> FloatArray:
+        """By variational equations."""
+        return _varied(phi, self.flow(delta), tau)
 
     def first_quadrant(self, phi: FloatArray, delta: FloatArray, tau: FloatArray) -> FloatArray:
         """Each integrated."""
@@ -153,6 +194,10 @@ class LawCurve(IntegratedCurve):
             self._kept[delta] = Friction(Source.TABLE, delta, cut, section.tolerance)
         return self._kept[delta]
 
+    def flow(self, delta: float) -> Varied:
+        """From the table of the law."""
+        return varied_by(flow_of_table(self._table, delta), self._gyration)
+
 
 class TallCurve(IntegratedCurve):
     """Uniform pucks of any height: motions interpolated between those of a few heights.
@@ -175,21 +220,50 @@ class TallCurve(IntegratedCurve):
         """A section of its own."""
         return section_friction(body_of("uniform", delta, self._gyration), _ACCURACY)
 
+    def flow(self, delta: float) -> Varied:
+        """The same: how motions change with δ, their cubic tells."""
+        return _tall_flow(delta, self._gyration)
+
     def motion(self, phi: float, delta: float, tau: FloatArray) -> FloatArray:
         """Cubic in δ through the motions of four heights; looked up up to δ = 1."""
         if self._is_plain and delta <= self._plain.highest:
             one = np.array([phi]), np.array([delta]), tau[None, :]
             return self._plain.first_quadrant(*one)[:, 0]
-        last = round(HIGHEST / HEIGHT_STEP)
-        first = min(max(int(delta / HEIGHT_STEP) - 1, 0), last - 3)
-        place, out = delta / HEIGHT_STEP - first, np.zeros((STATE_ROWS, tau.size))
-        for k in range(4):
-            others = [m for m in range(4) if m != k]
-            weight = math.prod((place - m) / (k - m) for m in others)
+        out = np.zeros((STATE_ROWS, tau.size))
+        for height, weight, _ in _heights(delta):
             if weight != 0.0:
-                height = round((first + k) * HEIGHT_STEP, 9)
                 out += weight * _integrated(phi, self.friction(height), tau)
         return out
+
+    def varied(self, phi: float, delta: float, tau: FloatArray) -> FloatArray:
+        """Of the same cubic, by δ exactly."""
+        if self._is_plain and delta <= self._plain.highest:
+            return self._plain.varied(phi, delta, tau)
+        out = np.zeros((4, 3, tau.size))
+        for height, weight, slope in _heights(delta):
+            found = _varied(phi, self.flow(height), tau)
+            out[:BY_DELTA] += weight * found[:BY_DELTA]
+            out[BY_DELTA] += slope * found[PATH]
+        return out
+
+
+def _heights(delta: float) -> list[tuple[float, float, float]]:
+    """Four heights around δ, their weights in the cubic through them, and these by δ."""
+    first = min(max(int(delta / HEIGHT_STEP) - 1, 0), round(HIGHEST / HEIGHT_STEP) - 3)
+    place, found = delta / HEIGHT_STEP - first, []
+    for k in range(4):
+        others = [m for m in range(4) if m != k]
+        below = math.prod(k - m for m in others)
+        weight = math.prod(place - m for m in others) / below
+        slope = sum(math.prod(place - m for m in others if m != n) for n in others) / below
+        found.append((round((first + k) * HEIGHT_STEP, 9), weight, slope / HEIGHT_STEP))
+    return found
+
+
+@lru_cache(maxsize=64)
+def _tall_flow(delta: float, gyration: float) -> Varied:
+    section = body_of("uniform", delta, gyration).friction(_ACCURACY)
+    return varied_by(flow_at_one_height(section), gyration)
 
 
 @lru_cache(maxsize=32)
@@ -227,6 +301,13 @@ def _integrated(phi: float, friction: Friction, tau: FloatArray) -> FloatArray:
     frame = frame_of((speed, 0.0), rim, 1.0, 1.0)
     moments = np.where(tau < float(run.stop[T]), tau, np.inf)
     return np.stack(frame.states(*run.states(moments)))
+
+
+def _varied(phi: float, friction: Varied, tau: FloatArray) -> FloatArray:
+    """A path and its derivatives, as :meth:`Curve.with_slopes`."""
+    cosine, sine = math.cos(phi), math.sin(phi)
+    own = natural_states(friction, cosine, sine, tau, _STEPPING.local)[0][:, :3].T
+    return np.stack([own[0], own[5], cosine * own[3] - sine * own[1], own[4]])
 
 
 def _run(speed: float, rim: float, friction: Friction) -> Run:

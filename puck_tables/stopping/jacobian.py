@@ -252,6 +252,7 @@ def integrated_jacobians(
             slip = float(np.hypot(speed, rim))
             part = np.zeros((mine.size, len(STATE_NAMES), len(MOMENT_NAMES)))
             if slip > 0.0 and mine.size:
+                frictions[float(launch[3])].refuse_limit(speed, rim)
                 times = moments[mine]
                 own = natural_states(
                     frictions[float(launch[3])], speed / slip, rim / slip,

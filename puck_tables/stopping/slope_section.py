@@ -94,6 +94,8 @@ def stop_slopes_of(body: Body, launches: FloatArray) -> FloatArray:
     ------
     AccuracyError
         If they are out of reach.
+    InputError
+        If a launch is at a limit where the friction has no derivative.
 
     Examples
     --------
@@ -106,9 +108,11 @@ def stop_slopes_of(body: Body, launches: FloatArray) -> FloatArray:
     from puck_tables.stopping.section_lookup import fill_section_jacobians
     from puck_tables.stopping.stop_jacobian import fill_placed_stops
 
-    count = launches.shape[1]
+    count, friction = launches.shape[1], varied_of(body)
     out, left = np.empty((count, 5, 6)), np.ones(count, np.bool_)
-    if count >= MANY:
+    speed, rim = np.hypot(launches[0], launches[1]), np.abs(launches[5] * launches[2])
+    friction.refuse_limit(speed, rim)
+    if count >= MANY and not friction.limits:
         section = slope_section(body)
 
         def work(start: int, stop: int) -> None:
@@ -118,9 +122,8 @@ def stop_slopes_of(body: Body, launches: FloatArray) -> FloatArray:
         run_chunks(work, count, _CHUNK)
     if left.any():
         some = np.ascontiguousarray(launches[:, left])
-        speed, rim = np.hypot(some[0], some[1]), np.abs(some[5] * some[2])
-        slip = np.hypot(speed, rim)
-        own = natural_stops(varied_of(body), speed / slip, rim / slip)
+        slip = np.hypot(speed, rim)[left]
+        own = natural_stops(friction, speed[left] / slip, rim[left] / slip)
         part = np.empty((some.shape[1], 5, 6))
         fill_placed_stops(some, np.ascontiguousarray(own[:, :, :4]), part)
         out[left] = part

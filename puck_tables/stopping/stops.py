@@ -213,11 +213,12 @@ def stop(
 
     Notes
     -----
-    Derivatives come from splines of their own (:mod:`puck_tables.stopping.slopes`), or of other than
-    plain pucks from variational equations (:mod:`puck_tables.stopping.varied`; splines through
-    them where launches of one height are many), whatever the method of the stop: in units of Q, J, r of the launch they are wrong by at most 1e-7 at any slip
-    angle.  On φ = 0 and π/2, where stops carry broken powers of |φ|, they are the derivatives from
-    both sides; only the path of exact pure spin grows like |v| and has none by vx and vy: NaN.
+    Derivatives come from splines of their own (:mod:`puck_tables.stopping.slopes`), those of other
+    than plain pucks from variational equations (:mod:`puck_tables.stopping.varied`) or, where
+    launches of one height are many, splines through these, whatever the method of the stop: in
+    units of Q, J, r of the launch they are wrong by at most 1e-7 at any slip angle.  On φ = 0 and
+    π/2, where stops carry broken powers of |φ|, they are the derivatives from both sides; only the
+    path of exact pure spin grows like |v| and has none by vx and vy: NaN.
 
     References
     ----------

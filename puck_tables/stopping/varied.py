@@ -20,7 +20,8 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import run_chunks
-from puck_tables.errors import AccuracyError
+from puck_tables.errors import AccuracyError, InputError
+from puck_tables.kernels.section_spline import LINE
 from puck_tables.motion.body import Body
 from puck_tables.motion.path import STOPPED, integrate
 from puck_tables.motion.state import LENGTH, PSI, SIZE, THETA, T, U, X, Y
@@ -31,17 +32,38 @@ LOCAL = 1e-10
 _TINY = 1e-25
 _STEP_LIMIT = 20_000
 _CHUNK = 16
+_AT_LINE = 3e-6  # nearer to a line that is the limit the derivative is not known to 1e-7
 _POWERS = np.array([1.0, 2.0, 2.0, 2.0, 2.0])  # of Q
 _STOP = [T, X, Y, LENGTH, THETA]
-LEAST_SHARE = 1e-30  # of Q
+_LEAST_SHARE = 1e-30  # of Q
 
 
 class Varied(NamedTuple):
-    """Friction of one kind of puck as motions and their variations read it."""
+    """Friction of one kind of puck as motions and their variations read it.
+
+    ``limits``: ln(rω/v) of lines of the friction that are the limit of its motions, as of a ring
+    with k = r: next to them it has no derivative.
+    """
 
     delta: float
     ratios: FloatArray
     flows: FloatArray
+    limits: tuple[float, ...]
+
+    def refuse_limit(self, speed: FloatArray, rim: FloatArray) -> None:
+        """Refuse launches of these v and r|ω|, arrays, at a line that is the limit.
+
+        Raises
+        ------
+        InputError
+        """
+        for line in self.limits:
+            if (np.abs(rim - np.exp(line) * speed) < _AT_LINE * np.hypot(speed, rim)).any():
+                raise InputError(
+                    f"a launch at r w/v = {np.exp(line):.6g}, the limit of this puck, where its "
+                    "friction has no derivative, is not differentiated: move it by 1e-5, or leave "
+                    "out jacobian=True"
+                )
 
 
 @lru_cache(maxsize=64)
@@ -73,7 +95,9 @@ def varied_of(body: Body) -> Varied:
 
 def varied_by(flow: FlowSection, gyration: float) -> Varied:
     """The same from a section."""
-    return Varied(flow.delta, flow.for_motion(gyration), flow.for_slopes(gyration))
+    ratios, flows = flow.for_motion(gyration), flow.for_slopes(gyration)
+    limits = np.unique(flows[np.isinf(ratios[:, LINE]), LINE])
+    return Varied(flow.delta, ratios, flows, tuple(limits.tolist()))
 
 
 def natural_stops(friction: Varied, cosine: FloatArray, sine: FloatArray) -> FloatArray:
@@ -123,7 +147,7 @@ def natural_stops(friction: Varied, cosine: FloatArray, sine: FloatArray) -> Flo
 
 
 def natural_states(
-    friction: Varied, cosine: float, sine: float, times: FloatArray
+    friction: Varied, cosine: float, sine: float, times: FloatArray, local: float = LOCAL
 ) -> tuple[FloatArray, FloatArray]:
     """States of one launch with Q = J = r = 1 at times, and their derivatives.
 
@@ -132,6 +156,7 @@ def natural_states(
     friction : Varied
     cosine, sine : of the slip angle of the launch, ≥ 0
     times : array (n,), ≥ 0
+    local : the error of a step
 
     Returns
     -------
@@ -150,7 +175,7 @@ def natural_states(
     z, y = np.empty(_STEP_LIMIT), np.empty((_STEP_LIMIT, SIZE))
     result, work, stop = np.empty(SIZE + 1), np.empty((8, VARIED)), np.empty(VARIED)
     status, count = integrate(
-        u, DORMAND_PRINCE, 0.0, LOCAL, c, friction.ratios, friction.delta, _STEP_LIMIT, z, y,
+        u, DORMAND_PRINCE, 0.0, local, c, friction.ratios, friction.delta, _STEP_LIMIT, z, y,
         result,
     )  # fmt: skip
     if status != STOPPED:
@@ -172,10 +197,9 @@ def natural_states(
         blocks = rows.reshape(-1, BLOCKS, KEPT)
         values, slopes = _physical(blocks, q)
         onward = rates[:, :KEPT]
-        by_z = np.stack([
-            onward[:, X], onward[:, Y], onward[:, THETA],
-            *_velocity_slopes(blocks[:, 0], onward[:, U], onward[:, PSI], q, -4.0 / (1.0 - moments)),
-        ], axis=-1)  # fmt: skip
+        log_q = -4.0 / (1.0 - moments)
+        motion = _velocity_slopes(blocks[:, 0], onward[:, U], onward[:, PSI], q, log_q)
+        by_z = np.stack([onward[:, X], onward[:, Y], onward[:, THETA], *motion], axis=-1)
         by_time = by_z / onward[:, T, None]
         slopes = slopes - by_time[:, None, :] * blocks[:, 1:, T, None]  # at the same time
         out[moving], by_gyration[moving] = _by_launch(values, slopes, by_time, times[moving], c, s)
@@ -197,7 +221,7 @@ def _moments(
     rest[:7] = stop[:7]
     q, y = np.empty(times.size), np.empty((times.size, SIZE))
     states_at(times, ends, states, rest, DORMAND_PRINCE, friction.ratios, friction.delta, q, y)
-    return which, 1.0 - np.maximum(q, LEAST_SHARE) ** 0.25
+    return which, 1.0 - np.maximum(q, _LEAST_SHARE) ** 0.25
 
 
 def _physical(blocks: FloatArray, q: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -208,18 +232,11 @@ def _physical(blocks: FloatArray, q: FloatArray) -> tuple[FloatArray, FloatArray
         own[:, X], own[:, Y], own[:, THETA], q * cosine * np.cos(heading),
         q * cosine * np.sin(heading), q * sine,
     ], axis=-1)  # fmt: skip
-    slopes = [
-        np.stack(
-            [
-                blocks[:, p, X],
-                blocks[:, p, Y],
-                blocks[:, p, THETA],
-                *_velocity_slopes(own, blocks[:, p, U], blocks[:, p, PSI], q, 0.0),
-            ],
-            axis=-1,
-        )  # fmt: skip
-        for p in (1, 2, 3)
-    ]
+    slopes = []
+    for p in range(1, blocks.shape[1]):
+        motion = _velocity_slopes(own, blocks[:, p, U], blocks[:, p, PSI], q, 0.0)
+        places = blocks[:, p, X], blocks[:, p, Y], blocks[:, p, THETA]
+        slopes.append(np.stack([*places, *motion], axis=-1))
     return value, np.stack(slopes, axis=1)
 
 

@@ -18,7 +18,7 @@ from puck_tables.contact.laws import HOMOGENEOUS, Law
 from puck_tables.contact.opening import critical_delta
 from puck_tables.kernels.section_spline import FLOWS, LINE, RATIOS
 from puck_tables.table.fit import height_terms
-from puck_tables.table.friction_section import AT_THE_LIMIT
+from puck_tables.table.friction_section import AT_THE_LIMIT, FrictionSection
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.table.singular_lines import lines_of
 from puck_tables.table.slip_axis import sides_of
@@ -106,6 +106,21 @@ def flow_of_table(table: ResultantTable, delta: float) -> FlowSection:
     error = table.tolerance * float(values[:, 0].max() * (1.0 + values[:, :RATIOS].max()))
     sides, by_side = table.axis.sides, table.axis.by_side(values)
     return FlowSection(SlipSpline(sides, by_side, True), delta, error)
+
+
+def flow_at_one_height(section: FrictionSection) -> FlowSection:
+    """The same from a friction section, for who asks nothing about other heights: slopes by δ 0.
+
+    Examples
+    --------
+    >>> from puck_tables.contact.laws import law_of
+    >>> from puck_tables.table.friction_section import friction_section
+    >>> flow_at_one_height(friction_section(law_of("ring"), 1.0, 1e-6)).spline.values.shape[2]
+    6
+    """
+    spline = section.spline
+    values = np.concatenate([spline.values, np.zeros_like(spline.values)], axis=2)
+    return FlowSection(SlipSpline(spline.sides, values, True), section.delta, section.error)
 
 
 def _with_slopes(terms: FloatArray, delta: float) -> FloatArray:

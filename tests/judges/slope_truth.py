@@ -68,10 +68,10 @@ def moved(law: str, delta: float, square: complex, v, w, moments) -> np.ndarray:
 
 
 def slopes(law: str, delta: float, gyration: float, phi: np.ndarray, moments, near: bool) -> tuple:
-    """Values (8, m, n), derivatives by v, rω, k/r, δ at the same τ (4, 8, m, n), rates (8, m, n).
+    """Values (8, m, n), derivatives by v, rω, k/r, δ at equal τ (4, 8, m, n), rates (8, m, n).
 
-    ``near``: what is next to a line, by the speeds in complex steps; else also these by differences,
-    which a rough derivative of the series does not hurt.
+    ``near``: what is next to a line, by the speeds in complex steps; else by differences, too, which
+    a rough derivative of the series does not hurt.
     """
     v, w = np.cos(phi) + 0j, np.sin(phi) + 0j
     values, rates = moved(law, delta, gyration**2, v, w, moments).real
@@ -108,7 +108,7 @@ def state_slopes(
     moments: np.ndarray,
     near: bool = False,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Times (m, n); x, y, body angle, vx, vy, rω there (6, m, n); by v, rω, k/r, δ, t (5, 6, m, n)."""
+    """Times (m, n), x, y, body angle, vx, vy, rω (6, m, n), by v, rω, k/r, δ, t (5, 6, m, n)."""
     values, by, rates = slopes(law, delta, gyration, phi, moments, near)
     rows = [X, Y, BODY, VX, VY, RIM]
     by_time = rates[rows] / rates[TIME]
