@@ -21,6 +21,7 @@ from puck_tables.cli.build_tables import build_tables
 from puck_tables.cli.export import export
 from puck_tables.cli.fit import fit
 from puck_tables.cli.info import info
+from puck_tables.cli.limit_surface import limit_surface
 from puck_tables.cli.options import printable, said_first
 from puck_tables.cli.paper import paper
 from puck_tables.cli.scene import scene
@@ -143,7 +144,7 @@ def main() -> None:
 
 _ALL = (
     simulate, sweep, aim, scene, track, fit, build_tables, validate, info, tables, paper, tradeoff,
-    asperity, export,
+    asperity, export, limit_surface,
 )  # fmt: skip
 for _command in _ALL:
     main.add_command(_command)
