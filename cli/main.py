@@ -22,6 +22,7 @@ from puck_tables.cli.explore import explore
 from puck_tables.cli.export import export
 from puck_tables.cli.fit import fit
 from puck_tables.cli.info import info
+from puck_tables.cli.limit_surface import limit_surface
 from puck_tables.cli.options import printable, said_first
 from puck_tables.cli.paper import paper
 from puck_tables.cli.scene import scene
@@ -144,7 +145,7 @@ def main() -> None:
 
 _ALL = (
     simulate, sweep, aim, scene, track, fit, build_tables, validate, info, tables, paper, tradeoff,
-    asperity, export, explore,
+    asperity, limit_surface, export, explore,
 )  # fmt: skip
 for _command in _ALL:
     main.add_command(_command)

@@ -67,6 +67,8 @@ if TYPE_CHECKING:
     from puck_tables.trajectory import Trajectory
     from puck_tables.world.aimed import BoardAim
     from puck_tables.world.world import World
+    from puck_tables.wrench.holds import Hold
+    from puck_tables.wrench.surface import LimitSurface
 
 _HOMES = {
     "AccuracyError": "errors",
@@ -83,9 +85,11 @@ _HOMES = {
     "Floor": "scene.parts",
     "Force": "scene.parts",
     "Forecast": "fitting.forecast",
+    "Hold": "wrench.holds",
     "InputError": "errors",
     "Launch": "scene.parts",
     "Law": "contact.laws",
+    "LimitSurface": "wrench.surface",
     "MissingExtraError": "errors",
     "OutputError": "errors",
     "Piece": "scene.pieces",
@@ -145,9 +149,11 @@ __all__ = [
     "Floor",
     "Force",
     "Forecast",
+    "Hold",
     "InputError",
     "Launch",
     "Law",
+    "LimitSurface",
     "MissingExtraError",
     "OutputError",
     "Piece",

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from puck_tables.stopping.sweep import StopMap
     from puck_tables.table.table import Table
     from puck_tables.trajectory import Trajectory
+    from puck_tables.wrench.holds import Hold
+    from puck_tables.wrench.surface import LimitSurface
 
 
 class Verbs:
@@ -317,6 +319,71 @@ class Verbs:
             self, target, spin=spin, speed=speed, stop_time=stop_time, max_speed=max_speed,
             max_spin=max_spin, count=count,
         )  # fmt: skip
+        return found
+
+    def limit_surface(self, n: int = 181) -> LimitSurface:
+        """What force and torque friction takes up, over the direction of slip.
+
+        Parameters
+        ----------
+        n : how many slip angles, equally spaced from −π/2 to π/2; 5 to 1e6 and one
+
+        Returns
+        -------
+        LimitSurface
+            With the ellipsoid and the convex polynomial of order 4 that fit it best.
+
+        Raises
+        ------
+        InputError
+            If ``n`` is not such a number, or the puck has no friction.
+
+        References
+        ----------
+        S. Goyal, A. Ruina, J. Papadopoulos, Planar sliding with dry friction, Wear 143, 1991.
+
+        Examples
+        --------
+        >>> from puck_tables import Puck
+        >>> surface = Puck.similar(delta=0.0).limit_surface(91)
+        >>> float(surface.torque[-1].round(6)), round(surface.ellipsoid.error, 3)
+        (0.666667, 0.04)
+        """
+        found: LimitSurface = _verb("wrench.surface", "limit_surface")(self, n)
+        return found
+
+    def holds(self, force: npt.ArrayLike, torque: npt.ArrayLike = 0.0) -> Hold:
+        """Whether friction holds this puck at rest under a force and a torque; both broadcast.
+
+        Parameters
+        ----------
+        force : array_like (…, 2), N
+        torque : array_like (…), N m, counter-clockwise positive
+
+        Returns
+        -------
+        Hold
+            ``held`` and ``margin``, by what they could be multiplied until it slips; true where a
+            single puck is held.
+
+        Raises
+        ------
+        InputError
+            If an argument is not finite or has the wrong shape, or the puck has no friction.
+
+        Notes
+        -----
+        Held are the force and torque that are not larger than those of their kind on the limit
+        surface; margins err by 1e-9.  Scenes decide by the same.
+
+        Examples
+        --------
+        >>> from puck_tables import Puck
+        >>> puck = Puck.similar(delta=0.0)  # f m g = 1 N, r = 1 m
+        >>> bool(puck.holds((0.9, 0.0))), float(puck.holds((0.0, 0.0), 0.5).margin.round(6))
+        (True, 1.333333)
+        """
+        found: Hold = _verb("wrench.holds", "holds")(self, force, torque)
         return found
 
 

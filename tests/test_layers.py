@@ -35,10 +35,11 @@ ROOMS = {
     "export": "_core _version contact errors puck stopping",
     "explore": "export",
     "scene": "_core contact errors io kernels motion puck result stopping table",
+    "wrench": "_core contact errors io kernels puck result scene",
     "world": "_core contact errors io kernels motion puck result scene stopping table",
     "tradeoff": "_core _version accuracy contact io kernels motion result stopping table",
     "plot": "_core accuracy chetaev errors film fitting io motion result scene stopping tradeoff "
-    "trajectory world",
+    "trajectory world wrench",
     "paper": "_core contact motion plot puck trajectory",
     "cli": "_core _version accuracy chetaev contact errors explore export film fitting io kernels "
     "motion paper plot puck scene stopping table tradeoff world",
@@ -52,7 +53,7 @@ DOORS = {
     "pandas": {"io.frames"},
     "pyarrow": {"io.parquet"},
     "matplotlib": {"plot"},
-    "scipy": {"chetaev", "fitting", "stopping", "table.speed_fit", "tradeoff"},
+    "scipy": {"chetaev", "fitting", "stopping", "table.speed_fit", "tradeoff", "wrench.models"},
     "click": {"cli"},
     "jax": {"autodiff.jax"},
     "torch": {"autodiff.torch"},

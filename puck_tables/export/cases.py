@@ -78,7 +78,7 @@ def _stops() -> Cases:
 
 @lru_cache(maxsize=1)
 def _turns() -> Cases:
-    launches = np.array([one for one in _LAUNCHES if one[2] != 0.0 and one[:2] != (0.0, 0.0)])
+    launches = np.array([one for one in _LAUNCHES if one[2] != 0.0 and one[:2] != (0.0, 0.0)][:7])
     found = stop(
         launches[:, :2], launches[:, 2], delta=launches[:, 3], decel=launches[:, 4],
         radius=launches[:, 5], tol=1e-12, method="adaptive",
@@ -103,7 +103,7 @@ def _states() -> Cases:
 def _moments() -> list[tuple[tuple[float, ...], float]]:
     """Every launch at one of the shares of its time, one at all of them, and after its stop."""
     picked = [(one, _SHARES[n % len(_SHARES)]) for n, one in enumerate(_LAUNCHES)]
-    return [*picked, *((_LAUNCHES[1], share) for share in (*_SHARES[2:], 1.5))]
+    return [*picked, *((_LAUNCHES[1], share) for share in (*_SHARES[3:], 1.5))]
 
 
 @lru_cache(maxsize=1)

@@ -23,8 +23,8 @@ DEGREES = range(3, 8)
 CELLS = (4, 5, 6, 7, 8, 9, 10, 11, 12, 14, 16, 18, 20, 22, 24, 27, 30, 33, 36, 40, 45, 50, 56, 64)
 # Of the error asked for: of the functions of a stop, and of the curve and its inverse, so that what
 # is made of all of them keeps it (measured, tests/test_export_error.py).
-STOP_SHARE, CURVE_SHARE, CONSTANT_SHARE = 0.6, 0.3, 0.02
-_ROUNDING, _POWERS = 0.1, 0.55  # of a share: what whole quanta, and dropped powers, may take
+STOP_SHARE, CURVE_SHARE, CONSTANT_SHARE = 0.5, 0.3, 0.02
+_ROUNDING, _POWERS = 0.1, 0.65  # of a share: what whole quanta, and dropped powers, may take
 # in the order of the programs
 STOP_COLUMNS = [0, 1, 2, 3, 4]  # time, along, across, length, body
 CURVE_COLUMNS = [5, 6]  # κR and S/δ

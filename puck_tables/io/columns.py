@@ -140,6 +140,13 @@ COLUMNS = {
     "number_error": Column("1", "standard error", "its standard error, inf: not determined"),
     "number_low": Column("1", "low", "lower end of its 95 % interval"),
     "number_high": Column("1", "high", "upper end of its 95 % interval"),
+    # a limit surface
+    "force_x": Column("N", "force along the slip", "force that friction takes up, along the slip"),
+    "force_y": Column("N", "force across", "the same to the left of the slip"),
+    "torque": Column("N m", "torque", "torque that friction takes up, counter-clockwise"),
+    "force": Column("N", "force", "size of the force", ("force_x", "force_y"), np.hypot),
+    "normal_force": Column("1", "normal, force", "outward normal in (F, M/r), part along F"),
+    "normal_torque": Column("1", "normal, torque", "outward normal in (F, M/r), part along M/r"),
     # a point on a wavy support
     "held_speed": Column("m/s", "speed V", "speed held along the support"),
     "crude": Column("N", "Coulomb's force", "Coulomb's force, load times a/b"),

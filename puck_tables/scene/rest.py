@@ -59,9 +59,14 @@ def _pivot_yield(
     return abs(demand) / length - heat, way * reach * sine, -way * reach * cosine, way
 
 
-@inner
-def free_yield(dry: Dry, radius: float, fx: float, fy: float, torque: float, guided: bool) -> Yield:
-    """The same where the puck may slip and turn; ``guided``: along the force only."""
+@kernel
+def demand(
+    dry: Dry, radius: float, fx: float, fy: float, torque: float, guided: bool
+) -> tuple[float, float, float, float, float]:
+    """A force and a torque as a share of what friction takes up of their kind; W and the slip.
+
+    ``guided``: the slip is along the force only.
+    """
     force = math.hypot(fx, fy)
     east, north = (fx / force, fy / force) if force > 0.0 else (1.0, 0.0)
     way = 1.0 if torque >= 0.0 else -1.0
@@ -84,11 +89,19 @@ def free_yield(dry: Dry, radius: float, fx: float, fy: float, torque: float, gui
     # friction is against the force: the slip is turned from it by as much as friction from the slip
     ex, ey = (-along / resist, across / resist) if resist > 0.0 else (1.0, 0.0)
     return (
-        (share - 1.0) * heat,
+        share,
+        heat,
         cosine * (ex * east - ey * north),
         cosine * (ex * north + ey * east),
         sine,
     )
+
+
+@inner
+def free_yield(dry: Dry, radius: float, fx: float, fy: float, torque: float, guided: bool) -> Yield:
+    """The same where the puck may slip and turn; ``guided``: along the force only."""
+    share, heat, ux, uy, w = demand(dry, radius, fx, fy, torque, guided)
+    return (share - 1.0) * heat, ux, uy, w
 
 
 @inlined

@@ -1,0 +1,1 @@
+"""Forces and torques that friction takes up: the limit surface, and what holds a puck at rest."""

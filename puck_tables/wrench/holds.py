@@ -1,0 +1,77 @@
+"""Whether friction holds a puck at rest under a force and a torque.
+
+The answer is that of scenes (:mod:`puck_tables.scene.rest`): the wrench is held if it is not larger
+than the one of its kind, F : T, on the curve of what friction has in some slip.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables._core.real import broadcast, finite_array, velocity_array
+from puck_tables.errors import InputError
+from puck_tables.kernels.compile import allocating
+from puck_tables.scene.ingredients import Dry
+from puck_tables.scene.regions import regions_of
+from puck_tables.scene.rest import SLACK, demand
+from puck_tables.scene.scene import Scene
+
+if TYPE_CHECKING:
+    from puck_tables.puck import Puck
+
+
+@dataclass(frozen=True, eq=False)
+class Hold:
+    """What friction does with a force and a torque on a puck at rest; arrays of one shape.
+
+    ``held``: whether it takes them up; ``margin``: by what they could be multiplied until it slips,
+    inf where nothing acts.
+    """
+
+    held: npt.NDArray[np.bool_]
+    margin: FloatArray
+
+    def __bool__(self) -> bool:
+        return bool(self.held)
+
+
+def holds(puck: Puck, force: npt.ArrayLike, torque: npt.ArrayLike) -> Hold:
+    """Whether friction holds a puck, as :meth:`puck_tables.Puck.holds` has it."""
+    if puck.friction == 0.0:
+        raise InputError("a puck with friction = 0 holds nothing: give friction > 0")
+    forces = _forces(force)
+    turning = finite_array("torque", torque, "N m")
+    fx, fy, moment = broadcast(force_x=forces[..., 0], force_y=forces[..., 1], torque=turning)
+    rows = np.stack([one.ravel() for one in (fx, fy, moment)])
+    regions = regions_of(Scene(puck))
+    dry = Dry(float(regions.load[0]), float(regions.delta[0]), regions.cuts[0], regions.by_speed)
+    # wrenches over their largest part: no square leaves floating point
+    scale = np.maximum(np.abs(rows[:2]).max(axis=0), np.abs(rows[2]) / puck.radius)
+    unit = np.where(scale > 0.0, scale, 1.0)
+    share, heat = np.empty(unit.size), np.empty(unit.size)
+    _fill(dry, puck.radius, dry.load * rows / unit, share, heat)
+    share = np.where(scale > 0.0, share, 0.0)
+    with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
+        margin = np.where(share > 0.0, dry.load / unit / share, np.inf)
+        held = (1.0 / margin - 1.0) * heat <= SLACK * dry.load
+    return Hold(held.reshape(fx.shape), margin.reshape(fx.shape))
+
+
+def _forces(force: npt.ArrayLike) -> FloatArray:
+    try:
+        return velocity_array(force)
+    except InputError as error:
+        text = str(error).replace("velocity", "force").replace("m/s", "N")
+        raise InputError(text.replace("(vx, vy)", "(fx, fy)")) from None
+
+
+@allocating
+def _fill(dry: Dry, radius: float, rows: FloatArray, share: FloatArray, heat: FloatArray) -> None:
+    """The shares of wrenches (3, n), and the power of friction in their slip."""
+    for n in range(rows.shape[1]):
+        share[n], heat[n], _, _, _ = demand(dry, radius, rows[0, n], rows[1, n], rows[2, n], False)

@@ -1,0 +1,185 @@
+"""The limit surface: what force and torque friction takes up, over the direction of slip.
+
+With the twist (v, ω) = Q (cos φ, sin φ/r), v along x, a pusher that keeps the slip going gives
+
+    F_x = f N cos φ ρ_∥,   F_y = f N sin φ cos φ ρ_⊥,   M = ½ f N r sin φ ρ_ω.
+
+Turned about the axis of the torque this curve is the surface.  For δ = 0 it is convex, F_y = 0, and
+the twist is its outward normal: of all wrenches inside, the one on it takes the most power
+(Goyal, Ruina, Papadopoulos 1991).  For δ > 0 friction tilts the load, and neither holds exactly.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables._core.real import real
+from puck_tables.contact.laws import Law
+from puck_tables.errors import InputError
+from puck_tables.io.columns import following
+from puck_tables.io.dataset import Dataset, variable
+from puck_tables.result import Result
+from puck_tables.wrench.models import Model, ellipsoid, quartic
+
+if TYPE_CHECKING:
+    from puck_tables.puck import Puck
+
+LEAST, MOST = 5, 1_000_001
+_FINE = 1441  # angles for what does not depend on how many were asked for
+_STEP = 1e-5  # rad, of differences for the normals
+_COLUMNS = ("force_x", "force_y", "torque", "normal_force", "normal_torque")
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class LimitSurface(Result):
+    """Force and torque that friction takes up, over the direction of slip.
+
+    Attributes
+    ----------
+    puck : Puck
+    slip_angle : array (n,), rad
+        φ = atan2(rω, v), from −π/2 to π/2, for a velocity along x.
+    force_x, force_y, torque : arrays (n,), N, N, N m
+        What a pusher gives that keeps this slip going; friction on the puck is against it.  With
+        the mass of the puck, 1 kg where none was given; over ``unit_force`` f m g pure numbers.
+    normal_force, normal_torque : arrays (n,)
+        Outward unit normal of the surface in (|F|, M/r), good to 1e-6 but on singular lines of the
+        pressure law.  For δ = 0 it is the twist, (cos φ, sin φ).
+    ellipsoid, quartic : Model
+        What planar pushing takes for the surface, fitted to it, with their errors.
+    """
+
+    puck: Puck
+    slip_angle: FloatArray
+    force_x: FloatArray
+    force_y: FloatArray
+    torque: FloatArray
+    normal_force: FloatArray = field(repr=False)
+    normal_torque: FloatArray = field(repr=False)
+
+    picture: ClassVar[str] = "limit_surface"
+
+    def __repr__(self) -> str:
+        return (
+            f"LimitSurface({self.slip_angle.size} twists, delta = {self.puck.delta:.6g}, up to "
+            f"{float(np.max(self.force)):.6g} N and {float(np.max(self.torque)):.6g} N m)"
+        )
+
+    def __getattr__(self, name: str) -> FloatArray:
+        """A column that follows from others: ``force`` (n,) N."""
+        column: FloatArray = following(self, name)
+        return column
+
+    @property
+    def unit_force(self) -> float:
+        """F m g, N: what slides without spin."""
+        return self.puck.mass * self.puck.decel
+
+    @cached_property
+    def _curve(self) -> FloatArray:
+        """|F|, M/r over f m g and the normals at many angles, (4, n): the models are its own."""
+        phi = np.linspace(-0.5 * np.pi, 0.5 * np.pi, _FINE)
+        law, delta = self.puck.body.law, self.puck.delta
+        along, across, turning = wrenches(law, delta, phi)
+        return np.stack([np.hypot(along, across), turning, *_normals(law, delta, phi)])
+
+    @cached_property
+    def ellipsoid(self) -> Model:
+        """The best ellipsoid (F/a)² + (M/b)² = 1."""
+        return ellipsoid(self._curve, self.unit_force, self.puck.radius)
+
+    @cached_property
+    def quartic(self) -> Model:
+        """The best convex polynomial of order 4, A F⁴ + B F² M² + C M⁴ = 1."""
+        return quartic(self._curve, self.unit_force, self.puck.radius)
+
+    @property
+    def is_convex(self) -> bool:
+        """Whether the surface is convex: its tangent turns one way, but for rounding.
+
+        Examples
+        --------
+        >>> from puck_tables import Puck
+        >>> Puck.similar(delta=0.0).limit_surface().is_convex
+        True
+        """
+        f, m = np.diff(self._curve[:2])
+        return bool(np.all(f[:-1] * m[1:] - f[1:] * m[:-1] >= -1e-15))
+
+    def explain(self) -> str:
+        """How it was got, and how well the models fit."""
+        one, two = self.ellipsoid, self.quartic
+        return (
+            f"friction of the law {self.puck.body.law.name}, delta = {self.puck.delta:.6g}; "
+            f"{'convex' if self.is_convex else 'not convex'}\n"
+            f"ellipsoid {one.formula}: off by at most {100.0 * one.error:.2g} % of the wrench, "
+            f"normals by {math.degrees(one.normal_error):.2g} deg\n"
+            f"quartic {two.formula}: off by at most {100.0 * two.error:.2g} %, normals by "
+            f"{math.degrees(two.normal_error):.2g} deg"
+        )
+
+    def dataset(self) -> Dataset:
+        """Forces, torques and normals over the slip angle."""
+        dims = ("slip_angle",)
+        columns = {name: variable(name, getattr(self, name), dims) for name in _COLUMNS}
+        axes = {"slip_angle": variable("slip_angle", self.slip_angle, dims)}
+        return Dataset(axes, columns, {
+            "title": "Limit surface of a puck", **self.puck.described(),
+            "unit_force": self.unit_force,
+            "ellipsoid": list(self.ellipsoid.coefficients),
+            "ellipsoid_error": self.ellipsoid.error,
+            "quartic": list(self.quartic.coefficients), "quartic_error": self.quartic.error,
+        })  # fmt: skip
+
+
+def limit_surface(puck: Puck, count: int) -> LimitSurface:
+    """The limit surface of a puck, as :meth:`puck_tables.Puck.limit_surface` has it."""
+    number = real("n", count, "points")
+    if not (number == int(number) and LEAST <= number <= MOST):
+        raise InputError(f"n must be a whole number from {LEAST} to {MOST}, got {count}")
+    if puck.friction == 0.0:
+        raise InputError("a puck with friction = 0 has no limit surface: give friction > 0")
+    phi = np.linspace(-0.5 * np.pi, 0.5 * np.pi, int(number))
+    law, delta, unit = puck.body.law, puck.delta, puck.mass * puck.decel
+    along, across, turning = wrenches(law, delta, phi)
+    normal = _normals(law, delta, phi)
+    return LimitSurface(
+        puck, phi, unit * along, unit * across, unit * puck.radius * turning, normal[0], normal[1]
+    )
+
+
+def wrenches(law: Law, delta: float, phi: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """F_x, F_y and M/r over f N, each of the shape of ``phi``.
+
+    Examples
+    --------
+    >>> from puck_tables.contact.laws import law_of
+    >>> [float(x.round(12)) for x in wrenches(law_of("uniform"), 0.0, np.array(np.pi / 2))]
+    [0.0, 0.0, 0.666666666667]
+    """
+    rho = law.friction(phi, delta)
+    cosine = np.where(np.abs(phi) == 0.5 * np.pi, 0.0, np.cos(phi))
+    sine = np.sin(phi)
+    return cosine * rho.parallel, sine * cosine * rho.perpendicular, 0.5 * sine * rho.spin
+
+
+def _normals(law: Law, delta: float, phi: FloatArray) -> FloatArray:
+    """Outward unit normals of the curve (|F|, M/r), array (2, n)."""
+    end = 0.5 * np.pi
+    inside = np.clip(phi, -end + _STEP, end - _STEP)
+
+    def curve(angle: FloatArray) -> FloatArray:
+        along, across, turning = wrenches(law, delta, np.clip(angle, -end, end))
+        return np.stack([np.hypot(along, across), turning])
+
+    tangent = curve(inside + _STEP) - curve(inside - _STEP)
+    normal: FloatArray = np.stack([tangent[1], -tangent[0]]) / np.hypot(*tangent)
+    normal[:, np.abs(phi) == end] = 0.0  # there F vanishes like cos φ, and M is level
+    normal[1] = np.where(np.abs(phi) == end, np.sign(phi), normal[1])
+    return normal

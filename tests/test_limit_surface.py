@@ -1,0 +1,180 @@
+"""The limit surface against a sum over patches and the theory of flat sliders; what it holds."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from puck_tables.cli.main import main
+from scenes import simulate_scene
+
+import puck_tables as pt
+
+LAWS = ["uniform", "hertz", "galin", "ring", "annulus:0.5"]
+G = 9.80665
+every_law = pytest.mark.parametrize("law", LAWS)
+
+
+def pressed(law: str, rho: np.ndarray) -> np.ndarray:
+    """Pressure over that of a uniform load, at radii of the unit disc."""
+    if law == "hertz":
+        return 1.5 * np.sqrt(1.0 - rho**2)
+    if law == "annulus:0.5":
+        return np.where(rho > 0.5, 1.0 / 0.75, 0.0)
+    return np.ones_like(rho)
+
+
+@pytest.mark.parametrize("law", ["uniform", "hertz", "annulus:0.5"])
+def test_equal_to_a_sum_over_patches(law: str):
+    surface = pt.Puck.similar(delta=0.0, pressure=law).limit_surface(7)
+    rho = (np.arange(600) + 0.5) / 600.0
+    theta = 2.0 * np.pi * (np.arange(720) + 0.5) / 720.0
+    x, y = rho[:, None] * np.cos(theta), rho[:, None] * np.sin(theta)
+    load = (pressed(law, rho) * rho)[:, None] / (600.0 * 720.0) * 2.0
+    for n, phi in enumerate(surface.slip_angle):
+        u = math.cos(phi) - math.sin(phi) * y
+        v = math.sin(phi) * x
+        size = np.hypot(u, v)
+        sums = [np.sum(load * one / size) for one in (u, v, x * v - y * u)]
+        mine = surface.force_x[n], surface.force_y[n], surface.torque[n]
+        np.testing.assert_allclose(mine, sums, atol=2e-4)
+
+
+@every_law
+def test_a_flat_slider_has_a_convex_surface_and_its_twist_for_normal(law: str):
+    """No other wrench takes more power from a twist than its own: convex, and normal to it."""
+    surface = pt.Puck.similar(delta=0.0, pressure=law).limit_surface(202)
+    cosine, sine = np.cos(surface.slip_angle), np.sin(surface.slip_angle)
+    assert surface.is_convex and not np.any(surface.force_y)
+    np.testing.assert_allclose(surface.normal_force, cosine, atol=1e-6)
+    np.testing.assert_allclose(surface.normal_torque, sine, atol=1e-6)
+    power = np.outer(cosine, surface.force_x) + np.outer(sine, surface.torque)
+    assert np.all(power <= np.diag(power)[:, None] + 1e-12)
+    assert np.all(np.diag(power) > 0.0)
+
+
+def test_known_points_of_a_tilted_load():
+    """Elementary resultants at φ = 0, π/4, π/2 (Salnikova et al. 2012, table 6.1), δ = 1."""
+    surface = pt.Puck(0.5, 0.5, 0.5, mass=2.0).limit_surface(5)
+    assert surface.puck.delta == 1.0
+    unit, q = 2.0 * 0.5 * G, (45.0 * math.pi) ** 2 + 16.0**2
+    half = math.sqrt(0.5)
+    along = [1.0, half * 5400.0 * math.sqrt(2.0) * math.pi / q, 0.0]
+    across = [0.0, 0.5 * 7680.0 / q, 0.0]
+    spin = 16.0 * math.sqrt(2.0) / (9.0 * math.pi) * ((45.0 * math.pi) ** 2 - 2.0 * 32.0**2) / q
+    turning = [0.0, 0.5 * half * spin, 2.0 / 3.0]
+    np.testing.assert_allclose(surface.force_x[2:], unit * np.array(along), atol=1e-13)
+    np.testing.assert_allclose(surface.force_y[2:], unit * np.array(across), atol=1e-13)
+    np.testing.assert_allclose(surface.torque[2:], 0.5 * unit * np.array(turning), atol=1e-13)
+    np.testing.assert_allclose(surface.torque, -surface.torque[::-1], atol=1e-13)
+    assert surface.unit_force == pytest.approx(unit)
+
+
+@pytest.mark.parametrize("delta", [0.0, 0.8, 3.5])
+def test_models_are_convex_and_as_far_off_as_they_say(delta: float):
+    surface = pt.Puck.similar(delta=delta, radius=0.1, decel=3.0).limit_surface(720)
+    rng = np.random.default_rng(3)
+    one, two = rng.normal(0.0, 1.0, (2, 3, 20_000))
+    for model in (surface.ellipsoid, surface.quartic):
+        found = np.abs(1.0 / model.gauge(surface.force, surface.torque) - 1.0).max()
+        assert found == pytest.approx(model.error, rel=1e-3)
+        sizes = [
+            model.gauge(np.hypot(w[0], w[1]), 0.1 * w[2]) for w in (one, two, 0.5 * (one + two))
+        ]
+        assert np.all(sizes[2] <= 0.5 * (sizes[0] + sizes[1]) * (1.0 + 1e-12))
+        v, w = model.twist(surface.force, surface.torque)
+        normal = np.arctan2(surface.normal_torque, surface.normal_force)
+        turned = np.exp(1j * (np.arctan2(0.1 * w, v) - normal))  # in (v, rω)
+        assert np.abs(np.angle(turned)).max() == pytest.approx(model.normal_error, rel=1e-2)
+    assert surface.quartic.error < surface.ellipsoid.error
+    assert 0.0 <= surface.quartic.cross <= 6.0
+
+
+def test_an_ellipsoid_is_the_best_of_its_kind():
+    surface = pt.Puck.similar(delta=0.0).limit_surface(2001)
+    angle = np.arctan2(surface.torque / surface.torque.max(), surface.force)
+    weight = np.gradient(angle)
+
+    def off(a: float, b: float) -> float:
+        size = np.sqrt((surface.force / a) ** 2 + (surface.torque / b) ** 2)
+        return float(np.sum(weight * (1.0 / size - 1.0) ** 2))
+
+    best = surface.ellipsoid
+    for da, db in ((1.002, 1.0), (0.998, 1.0), (1.0, 1.002), (1.0, 0.998)):
+        assert off(best.a, best.b) < off(da * best.a, db * best.b)
+
+
+@pytest.mark.parametrize("height", [0.0, 2.5])
+@pytest.mark.parametrize("ratio", [0.0, 0.4, -3.0])
+def test_scenes_hold_what_holds(height: float, ratio: float):
+    """The puck of a scene stays just below the margin and slips just above."""
+    puck = pt.Puck(1.0, height, 0.2, mass=1.0 / (0.2 * G))
+    margin = float(puck.holds((0.8, 0.6), ratio).margin)
+    for share, end in ((1.0 - 1e-8, "at rest"), (1.0 + 1e-8, "time is up")):
+        size = share * margin
+        run = simulate_scene({
+            "puck": {"radius": 1.0, "height": height, "friction": 0.2, "mass": puck.mass},
+            "force": {"constant": [0.8 * size, 0.6 * size], "torque": ratio * size},
+            "run": {"time": 1e-3},
+        })  # fmt: skip
+        assert run.end == end
+
+
+@pytest.mark.parametrize("law", ["uniform", "ring"])
+def test_the_surface_is_what_is_just_held(law: str):
+    puck = pt.Puck(0.3, 0.2, 0.4, mass=3.0, pressure=law)
+    surface = puck.limit_surface(41)
+    forces = np.stack([surface.force_x, surface.force_y], axis=-1)
+    margin = puck.holds(forces, surface.torque).margin
+    np.testing.assert_allclose(margin, 1.0, atol=1e-8)
+    turned = puck.holds(-forces[:, ::-1], surface.torque).margin
+    np.testing.assert_allclose(turned, 1.0, atol=1e-8)
+    assert puck.holds(0.999 * forces, 0.999 * surface.torque).held.all()
+    assert not puck.holds(1.001 * forces, 1.001 * surface.torque).held.any()
+
+
+def test_wrenches_of_any_size():
+    puck = pt.Puck.similar(delta=0.5)
+    sizes = 10.0 ** np.array([-300.0, -160.0, 0.0, 160.0, 300.0])
+    found = puck.holds(sizes[:, None] * [0.3, -0.4], 0.2 * sizes)
+    np.testing.assert_allclose(found.margin * sizes, found.margin[2], rtol=1e-12)
+    assert found.held.tolist() == [True, True, True, False, False]
+    nothing = puck.holds((0.0, 0.0))
+    assert bool(nothing) and nothing.margin == math.inf
+
+
+@pytest.mark.parametrize(
+    ("ask", "words"),
+    [
+        (lambda p: p.limit_surface(4), "from 5"),
+        (lambda p: p.limit_surface(7.5), "whole number"),
+        (lambda p: p.limit_surface(math.nan), "n must be"),
+        (lambda p: p.holds((1.0, math.inf)), "force"),
+        (lambda p: p.holds(1.0), r"force must have two components \(fx, fy\) in N"),
+        (lambda p: p.holds((1.0, 0.0), "strong"), "torque"),
+        (lambda p: p.holds(np.zeros((3, 2)), np.zeros(2)), "torque"),
+        (lambda p: pt.Puck(1.0).limit_surface(), "friction = 0"),
+        (lambda p: pt.Puck(1.0).holds((1.0, 0.0)), "friction = 0"),
+    ],
+)
+def test_bad_input_is_one_sentence(ask, words: str):
+    with pytest.raises(pt.InputError, match=words):
+        ask(pt.Puck.similar())
+
+
+def test_the_command(tmp_path: Path):
+    out, picture = tmp_path / "surface.csv", tmp_path / "surface.png"
+    command = ["limit-surface", "--delta", "0", "--points", "9", "-o", str(out)]
+    done = CliRunner().invoke(main, [*command, "--plot", str(picture)])
+    assert done.exit_code == 0, done.stderr
+    assert "ellipsoid" in done.stderr and picture.stat().st_size > 10_000
+    rows = out.read_text().splitlines()
+    assert rows[0].startswith("slip_angle[rad],force_x[N],force_y[N],torque[N m]")
+    assert len(rows) == 10
+    printed = CliRunner().invoke(main, command[:-2])
+    assert printed.stdout.splitlines() == rows
+    few = CliRunner().invoke(main, ["limit-surface", "--points", "2"])
+    assert few.exit_code == 2 and "from 5" in few.stderr
