@@ -291,11 +291,9 @@ def _driven_through(scene: Scene, pieces: tuple[Piece, ...]) -> Iterator[str]:
         starts_in = [one for one, *_ in in_the_way(scene, start_of(piece), piece.radius, False)]
         for path, gap in gaps.items():
             deep = np.flatnonzero(gap - piece.radius < -TOUCH * piece.radius)
-            if deep.size and not any(
-                path == other
-                for other, *_ in in_the_way(scene, start_of(piece), piece.radius, False)
-            ):
+            if deep.size and path not in starts_in:
                 row = int(deep[0])
+                start, end = rows[row : row + 2, 0]
                 yield (
                     f"{path}: {called(piece, number)} is driven through it between {start:g} s and "
                     f"{end:g} s, {piece.radius - gap[row]:.3g} m deep: lead its path around it"
