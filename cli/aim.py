@@ -58,7 +58,13 @@ if TYPE_CHECKING:
 @click.option("--delta", type=NUMBER, help="delta = 2 f h / r instead.  [default: 0.5]")
 @body_options
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
-@click.option("-o", "--output", type=FILE, metavar="FILE", help="Save the launches: .csv.")
+@click.option(
+    "-o",
+    "--output",
+    type=FILE,
+    metavar="FILE",
+    help="Save the launches: .csv, .h5, .jsonl or .parquet.",
+)
 @output_options
 @scene_options
 @click.pass_context

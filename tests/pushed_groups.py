@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 
 from puck_tables.kernels.section_spline import NO_SECTION
-from puck_tables.scene.ingredients import Regions
+from puck_tables.scene.ingredients import Regions, Surface
 from puck_tables.scene.regions import NO_LAW
 from puck_tables.world.group import (
     APART,
@@ -16,7 +16,16 @@ from puck_tables.world.group import (
     Scales,
     desk_for,
 )
-from puck_tables.world.layout import ARC, DISC_COLUMNS, OBSTACLE_COLUMNS, POST, WALL
+from puck_tables.world.layout import (
+    ARC,
+    DISC_COLUMNS,
+    OBSTACLE_COLUMNS,
+    POST,
+    PULL_X,
+    PULL_Y,
+    REGION,
+    WALL,
+)
 from puck_tables.world.paths import PIECE_COLUMNS
 from puck_tables.world.pressing import press
 from puck_tables.world.pushing import follow
@@ -30,7 +39,7 @@ def disc(radius=0.05, mass=0.2, decel=1.0, delta=0.0, grip=0.0, gyration=0.5**0.
     light = 1.0 / mass if mass else 0.0
     return [
         radius, light, light / (gyration * radius) ** 2, decel, delta, damping, spin_damping, wake,
-        0.0, tangential, grip, 0.0, 0.0,
+        0.0, tangential, grip, *[0.0] * (DISC_COLUMNS - 11),
     ]  # fmt: skip
 
 
@@ -49,6 +58,8 @@ def arc(x, y, radius, first, span, grip=0.0):
 def group_of(discs, obstacles=(), pull=(0.0, 0.0), films=None, cuts=None):
     """``films``: of discs that are driven, number: rows (k, 21)."""
     discs = np.array(discs).reshape(-1, DISC_COLUMNS)
+    discs[:, [PULL_X, PULL_Y]] = np.where(discs[:, 1:2] > 0.0, pull, 0.0)
+    discs[:, REGION] = np.arange(len(discs))
     mass = np.where(discs[:, 1] > 0.0, 1.0 / np.where(discs[:, 1] > 0.0, discs[:, 1], 1.0), 0.0)
     rows, reels = [np.zeros((0, PIECE_COLUMNS))], np.zeros((len(discs), 2), np.int64)
     for number, film in (films or {}).items():
@@ -59,10 +70,15 @@ def group_of(discs, obstacles=(), pull=(0.0, 0.0), films=None, cuts=None):
         cuts = np.zeros((len(discs), *NO_SECTION.shape))
     return Group(
         discs, np.array(obstacles, float).reshape(-1, OBSTACLE_COLUMNS),
-        Regions(mass * discs[:, 3], discs[:, 4].copy(), cuts, NO_LAW), PLAIN_RIMS, np.vstack(rows),
-        reels,
-        float(pull[0]), float(pull[1]),
+        Regions(mass * discs[:, 3], discs[:, 4].copy(), cuts, NO_LAW),
+        Surface(*[0.0] * 5), PLAIN_RIMS, np.vstack(rows), reels,
+        np.zeros((0, 4)), np.zeros((len(discs), 2), np.int64),
     )  # fmt: skip
+
+
+def pull_of(group):
+    """The acceleration down the slope, of all that can move."""
+    return group.discs[group.discs[:, 1] > 0.0][0, [PULL_X, PULL_Y]]
 
 
 class Ride:
@@ -78,7 +94,8 @@ class Ride:
             speed = np.sqrt(
                 self.states[:, 3] ** 2 + self.states[:, 4] ** 2 + (r * self.states[:, 5]) ** 2
             ).max()
-            rate = max(group.discs[:, 3].max(), np.hypot(group.gx, group.gy))
+            pulls = np.hypot(group.discs[:, PULL_X], group.discs[:, PULL_Y])
+            rate = max(group.discs[:, 3].max(), pulls.max())
             rate = rate if rate > 0.0 else speed**2 / r.min()
             scales = Scales(speed if speed > 0.0 else np.sqrt(rate * r.max()), rate, tol)
         desk = desk_for(len(self.members), len(contacts))
@@ -125,9 +142,9 @@ class Ride:
 
     def residual(self):
         """What the ledger misses."""
-        floor, rim, drag, pull, drive = self.ledger
+        floor, rim, drag, pull, drive, support = self.ledger
         return (
-            self.energy(self.starts[0]) + pull + drive - floor - rim - drag
+            self.energy(self.starts[0]) + pull + drive + support - floor - rim - drag
             - self.energy(self.states)
         )  # fmt: skip
 

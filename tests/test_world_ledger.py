@@ -118,7 +118,7 @@ def test_a_slope_works_and_the_floor_heats():
     floor = pt.Floor(slope=slope, downhill=-0.5 * math.pi)
     run = pt.Scene(pucks=[puck], walls=[wall], floor=floor, posts=[pt.Post((9, 9), 1)]).simulate()
     assert run.heat_floor == pytest.approx(0.2 * 0.1 * G * math.cos(slope) * 0.17, rel=1e-9)
-    assert run.work_slope == pytest.approx(0.1 * G * math.sin(slope) * 0.17, rel=1e-9)
+    assert run.work_given == pytest.approx(0.1 * G * math.sin(slope) * 0.17, rel=1e-9)
     assert run.energy_residual < 1e-9
 
 
@@ -132,7 +132,7 @@ def test_a_board_on_a_slope_keeps_its_books(seed: int):
     moved = np.stack([run.last["x"], run.last["y"]], axis=1) - start
     down = G * math.sin(0.1) * np.array([math.cos(1.0), math.sin(1.0)])
     masses = np.array([p.mass for p in scene.pucks])
-    assert run.work_slope == pytest.approx(float(masses @ (moved @ down)), rel=1e-8)
+    assert run.work_given == pytest.approx(float(masses @ (moved @ down)), rel=1e-8)
     assert run.energy_residual < 1e-9
     assert min(run.heat_floor, run.heat_rims, run.heat_impact) > -1e-15  # J, rounding
 

@@ -15,6 +15,7 @@ from pushed_groups import (
     group_of,
     judged_discs,
     post,
+    pull_of,
     wall,
     without_approach,
 )
@@ -87,7 +88,7 @@ def test_as_another_integrator(name: str):
     group, states, contacts, judged, until = SMOOTH[name]
     ride = Ride(group, states, contacts, until)
     assert ride.hows == [(TIME_UP, -1)]
-    judge = Judge(judged_discs(group), judged, (group.gx, group.gy))
+    judge = Judge(judged_discs(group), judged, pull_of(group))
     truth, _, _ = judge.run(states, 0.0, until)
     assert np.abs(truth - ride.states).max() < 1e-10 * np.abs(truth).max()
     assert abs(ride.residual()) < 1e-12 * ride.energy(ride.starts[0])
@@ -236,12 +237,7 @@ def test_neither_members_nor_contacts_have_an_order(seed: int):
         for i, j in contacts
     ]
     again = Ride(
-        group._replace(
-            discs=group.discs[order],
-            regions=group.regions._replace(
-                load=group.regions.load[order], delta=group.regions.delta[order]
-            ),
-        ),
+        group._replace(discs=group.discs[order]),  # which know the regions of their friction
         states[order], [swapped[i] for i in rng.permutation(len(swapped))], 0.2,
         members=rng.permutation(len(states)),
     )  # fmt: skip
@@ -366,7 +362,7 @@ def judge_first_stretch(seed: int) -> bool:
         judged.append(
             (int(i), int(j) if j >= 0 else ("wall", 0, 1, 0), grip, int(mode) if grip else None)
         )
-    judge = Judge(judged_discs(group), judged, (group.gx, group.gy))
+    judge = Judge(judged_discs(group), judged, pull_of(group))
     truth, _, _ = judge.run(ride.starts[0], 0.0, ride.t)
     assert np.abs(truth - ride.states).max() < 1e-9 * np.abs(truth).max(), seed
     start = ride.starts[0]

@@ -27,6 +27,28 @@ LAUNCH = (
 )  # fmt: skip
 
 
+def is_batch(path: str) -> bool:
+    """Whether an axis is one of many launches, of the puck or of one of several.
+
+    Examples
+    --------
+    >>> is_batch("launch"), is_batch("puck[2].launch"), is_batch("launch.spin")
+    (True, True, False)
+    """
+    return path == BATCH or path.endswith(f"].{BATCH}")
+
+
+def launch_paths(batch: str) -> tuple[str, ...]:
+    """What a launch of such an axis is, in the order of its columns.
+
+    Examples
+    --------
+    >>> launch_paths("puck[0].launch")[2]
+    'puck[0].launch.spin'
+    """
+    return tuple(batch.removesuffix(BATCH) + path for path in LAUNCH)
+
+
 class Entry(NamedTuple):
     """One entry: path, value (None: left out), what it allows, what it is, default, what acts."""
 
@@ -134,7 +156,7 @@ def as_toml(scene: Scene) -> str:
     tables = tables_of(scene)
     for path, values in scene.ranges.items():
         for entry, column in columns_of(path, values):
-            set_path(tables, entry, column.tolist() if path == BATCH else _range(column))
+            set_path(tables, entry, column.tolist() if is_batch(path) else _range(column))
     return "\n".join(_lines(tables, "")).lstrip("\n") + "\n"
 
 
@@ -159,17 +181,17 @@ def columns_of(path: str, values: Any) -> list[tuple[str, Any]]:
     >>> [path for path, _ in columns_of("launch", np.zeros((2, 6)))][:2]
     ['launch.velocity', 'launch.spin']
     """
-    if path != BATCH:
+    if not is_batch(path):
         return [(path, values)]
-    rows = finite_array("ranges['launch']", values, "m/s, rad/s, m and rad")
+    rows = finite_array(f"ranges[{path!r}]", values, "m/s, rad/s, m and rad")
     if rows.ndim != 2 or rows.shape[1] != len(LAUNCH):
         raise InputError(
-            f"ranges['launch'] has the shape {rows.shape}: must be rows of vx, vy, spin, x, y and "
+            f"ranges[{path!r}] has the shape {rows.shape}: must be rows of vx, vy, spin, x, y and "
             "orientation"
         )
     return [
-        ("launch.velocity", rows[:, 0:2]), ("launch.spin", rows[:, 2]),
-        ("launch.position", rows[:, 3:5]), ("launch.orientation", rows[:, 5]),
+        (f"{path}.velocity", rows[:, 0:2]), (f"{path}.spin", rows[:, 2]),
+        (f"{path}.position", rows[:, 3:5]), (f"{path}.orientation", rows[:, 5]),
     ]  # fmt: skip
 
 

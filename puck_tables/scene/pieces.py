@@ -7,6 +7,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
 
 from puck_tables._core.fields import of
 from puck_tables.puck import Puck
@@ -26,7 +29,8 @@ class Piece(Puck):
         A colour is '#rrggbb' or a name of CSS, such as 'steelblue'.
     launch : Launch
         Its place, and how it is sent; left out it lies at rest until it is hit.  Before
-        ``launch.time`` it lies at its place.
+        ``launch.time`` it lies at its place.  Velocities (n, 2) are many launches, of one puck of
+        a scene: an axis of its sweep.
     restitution, tangential, rim : impacts with other pucks
         e, 0 to 1, or a law by which it falls with the speed of approach, see
         :mod:`puck_tables.scene.restitution`; tangential restitution, −1 smooth, 0 the rims stop on
@@ -60,6 +64,26 @@ class Piece(Puck):
     )
     force: Force = of("part", Force(), part=Force)
     constraint: Constraint | None = of("part", None, part=Constraint)
+
+    def __post_init__(self) -> None:
+        launch = self.launch
+        if not _is_many(launch):
+            super().__post_init__()
+            return
+        # many launches are read, and checked, by the scene whose axis they are
+        object.__setattr__(self, "launch", Launch())
+        super().__post_init__()
+        object.__setattr__(self, "launch", launch)
+        object.__delattr__(self, "_checked")
+
+
+def _is_many(launch: Any) -> bool:
+    """Whether a launch has rows of velocities, or of places."""
+    pairs = (getattr(launch, name, None) for name in ("velocity", "position"))
+    return any(
+        isinstance(pair, list | tuple | np.ndarray) and len(pair) > 0 and np.ndim(pair[0]) == 1
+        for pair in pairs
+    )
 
 
 @dataclass(frozen=True)

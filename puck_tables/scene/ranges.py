@@ -12,7 +12,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.fields import specs
 from puck_tables._core.reading import MAX_COUNT, Range, Reading, read_values
 from puck_tables.errors import InputError
-from puck_tables.scene.entries import BATCH, LAUNCH
+from puck_tables.scene.entries import LAUNCH, is_batch
 from puck_tables.scene.parts import Launch
 
 if TYPE_CHECKING:
@@ -58,8 +58,8 @@ def refuse_twice(kind: type, tables: Mapping[str, Any], ranges: Any) -> None:
         reading = Reading([], {})
         read_values(kind, tables, "", reading)
         listed = {*(reading.ranges or {}), *reading.batches}
-        many = BATCH in ranges and bool(reading.batches)
-        twice = [path for path in ranges if path in listed] + [BATCH] * many
+        many = [path for path in ranges if is_batch(path) and reading.batches]
+        twice = [path for path in ranges if path in listed] + many
         if twice:
             raise InputError(f"{', '.join(twice)}: given as a list and in ranges: give one of them")
 
@@ -70,12 +70,18 @@ def batch_of(
     """What belongs to many launches, by path; it is no range of its own then."""
     if not pairs:
         return {}
+    owners = sorted({owner_of(path) for path in pairs})
+    if len(owners) > 1:
+        errors.append(
+            f"{', '.join(pairs)}: many launches at once are of one puck, the others have one each"
+        )
+        return {}
     count = len(next(iter(pairs.values())))
     if count > MAX_COUNT:
         errors.append(f"{count} launches: at most {MAX_COUNT} in one scene")
     numbers: dict[str, FloatArray] = {
         path: ranges.pop(path).numbers()
-        for path in ("launch.spin", "launch.orientation")
+        for path in (f"{owners[0]}.spin", f"{owners[0]}.orientation")
         if path in ranges and ranges[path].listed
     }
     batch: dict[str, FloatArray] = {**pairs, **numbers}
@@ -88,11 +94,22 @@ def batch_of(
     return batch
 
 
-def launch_rows(launch: Launch, batch: Mapping[str, FloatArray]) -> FloatArray:
-    """Rows of vx, vy, spin, x, y, orientation, array (n, 6)."""
+def owner_of(path: str) -> str:
+    """The axis of many launches that an entry of a launch belongs to.
+
+    Examples
+    --------
+    >>> owner_of("puck[1].launch.velocity")
+    'puck[1].launch'
+    """
+    return path.rpartition(".")[0]
+
+
+def launch_rows(launch: Launch, batch: Mapping[str, FloatArray], owner: str) -> FloatArray:
+    """Rows of vx, vy, spin, x, y, orientation, array (n, 6), of the axis ``owner``."""
     rows = np.empty((len(next(iter(batch.values()))), len(LAUNCH)))
-    rows[:, 0:2] = batch.get("launch.velocity", launch.velocity or (0.0, 0.0))
-    rows[:, 2] = batch.get("launch.spin", launch.spin)
-    rows[:, 3:5] = batch.get("launch.position", launch.position)
-    rows[:, 5] = batch.get("launch.orientation", launch.orientation)
+    rows[:, 0:2] = batch.get(f"{owner}.velocity", launch.velocity or (0.0, 0.0))
+    rows[:, 2] = batch.get(f"{owner}.spin", launch.spin)
+    rows[:, 3:5] = batch.get(f"{owner}.position", launch.position)
+    rows[:, 5] = batch.get(f"{owner}.orientation", launch.orientation)
     return rows

@@ -8,6 +8,7 @@ Walton's (tangential restitution and Coulomb's friction, see :mod:`puck_tables.w
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from difflib import get_close_matches
 from pathlib import Path
@@ -153,7 +154,7 @@ class RestitutionTable(Restitution):
     ----------
     speeds : array_like (k,), m/s, ascending from 0, at least two
     values : array_like (k,), from 0 to 1
-    name : the file it comes from
+    file : the file it comes from; left out, its points are its name
 
     Raises
     ------
@@ -169,7 +170,7 @@ class RestitutionTable(Restitution):
 
     speeds: npt.ArrayLike
     values: npt.ArrayLike
-    file: str = "table"
+    file: str = ""
     source: ClassVar[str] = "measured"
 
     def __post_init__(self) -> None:
@@ -199,13 +200,29 @@ class RestitutionTable(Restitution):
     @property
     def name(self) -> str:
         """As it stands in a scene file."""
-        return self.file
+        points = zip(np.asarray(self.speeds), np.asarray(self.values), strict=True)
+        return self.file or "table:" + ",".join(f"{v!r}={e!r}" for v, e in _floats(points))
 
     @property
     def numbers(self) -> FloatArray:
         """What the engine needs: how many points, their speeds, the cubics."""
         x, y = np.asarray(self.speeds), np.asarray(self.values)
         return np.concatenate([[TABLE, x.size], x, monotone_cubic(x, y).ravel()])
+
+
+def _floats(points: Iterable[tuple[float, float]]) -> Iterator[tuple[float, float]]:
+    return ((float(speed), float(value)) for speed, value in points)
+
+
+def _table_of(text: str) -> RestitutionTable:
+    """The law of points 'V=E,V=E,...'."""
+    pairs = [point.partition("=") for point in text.split(",")]
+    if not all(is_number(speed) and is_number(value) for speed, _, value in pairs):
+        raise InputError(
+            f"'table:{text[:60]}': must be speeds, m/s, and restitutions, such as "
+            "'table:0=0.9,2=0.7'"
+        )
+    return RestitutionTable([float(one) for one, *_ in pairs], [float(one) for *_, one in pairs])
 
 
 NAMED = {"viscoelastic": Viscoelastic, "plastic": Plastic}
@@ -245,6 +262,8 @@ file of speed in m/s and restitution
         except InputError as error:
             raise InputError(f"{Path(given).name}: {error}") from None
     name, _, number = given.partition(":")
+    if name == "table":
+        return _table_of(number)
     if name not in NAMED:
         near = get_close_matches(name.lower(), NAMED, 1, 0.6)
         meant = f" (did you mean {near[0]}?)" if near else ""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from importlib import import_module
@@ -17,10 +18,10 @@ from puck_tables._core.reading import Range, Reading, given_in, read_values
 from puck_tables.errors import InputError
 from puck_tables.puck import Puck
 from puck_tables.scene.agreement import disagreements
-from puck_tables.scene.entries import BATCH, columns_of, entry_at, set_path, tables_of
+from puck_tables.scene.entries import columns_of, entry_at, is_batch, set_path, tables_of
 from puck_tables.scene.parts import Constraint, Drag, Edge, Floor, Force, Launch, Run, Wall
 from puck_tables.scene.pieces import Arc, Piece, Pocket, Post, Rim
-from puck_tables.scene.ranges import Ranges, batch_of, launch_rows, refuse_twice
+from puck_tables.scene.ranges import Ranges, batch_of, launch_rows, owner_of, refuse_twice
 from puck_tables.scene.restitution import Restitution
 from puck_tables.scene.verbs import SceneVerbs
 
@@ -213,7 +214,7 @@ class Scene(SceneVerbs):
         >>> Scene(Puck(0.04)).unit_of("launch.position[1]")
         'm'
         """
-        return "" if path == BATCH else entry_at(self, path).kind.unit
+        return "" if is_batch(path) else entry_at(self, path).kind.unit
 
     @property
     def is_board(self) -> bool:
@@ -247,14 +248,17 @@ class Scene(SceneVerbs):
                 f"{len(found)} ranges ({', '.join(list(found)[:3])} ...) make more than "
                 f"{MAX_RUNS:g} runs: give fewer or shorter ones"
             )
-        reading.errors.extend(_puck_or_pucks(values, reading.batches))
+        reading.errors.extend(_puck_or_pucks(values))
         if values is None or reading.errors:
             raise _refusal(reading.errors, source)
         for spec in specs(type(self)).values():
             object.__setattr__(self, spec.name, values.get(spec.name, spec.default))
         axes = {path: one.numbers() for path, one in found.items()}
         if len(batch):
-            axes = {BATCH: launch_rows(self.launch, batch), **axes}
+            owner = owner_of(next(iter(batch)))
+            number = re.match(r"puck\[(\d+)\]", owner)
+            launch = self.pucks[int(number[1])].launch if number else self.launch
+            axes = {owner: launch_rows(launch, batch, owner), **axes}
         object.__setattr__(self, "ranges", Ranges(axes, self))
         if not axes and (faults := self._disagreements()):  # else they are up to each run
             raise _refusal(faults, source)
@@ -265,9 +269,7 @@ def _refusal(faults: list[str], source: str) -> InputError:
     return InputError("\n  ".join([head, *faults]))
 
 
-def _puck_or_pucks(
-    values: Mapping[str, Any] | None, batches: Mapping[str, FloatArray]
-) -> Iterator[str]:
+def _puck_or_pucks(values: Mapping[str, Any] | None) -> Iterator[str]:
     """What is wrong with one puck, or several."""
     if values is None:
         return
@@ -275,6 +277,3 @@ def _puck_or_pucks(
         yield "puck is missing: it must be a table, or a list of tables [[puck]]"
     if values.get("puck") and values.get("pucks"):
         yield "puck and pucks: give one puck with its launch, or a list of pucks"
-    for path in batches:
-        if path.startswith("puck["):
-            yield f"{path}: many launches at once are of one puck alone: let numbers of it range"

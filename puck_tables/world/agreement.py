@@ -156,7 +156,10 @@ def disagreements(scene: Scene) -> list[str]:
         faults.append(f"run.frames = {scene.run.frames:g}: must be a whole number")
     if faults:
         return faults
-    return [*_overlaps(pieces), *_out_of_bounds(scene, pieces), *_wide_pockets(scene)]
+    return [
+        *_overlaps(pieces), *_out_of_bounds(scene, pieces), *_driven_through(scene, pieces),
+        *_wide_pockets(scene),
+    ]  # fmt: skip
 
 
 def _not_here(scene: Scene) -> Iterator[str]:
@@ -221,6 +224,11 @@ def _strange_rims(scene: Scene) -> Iterator[str]:
         known |= {kind, *(f"{kind} {k}" for k in range(len(ones)))} if ones else set()
     pucks = {name for one in pieces for name in (one.name, one.colour)} - {""}
     for number, rim in enumerate(scene.rims):
+        if rim.restitution is None and rim.tangential is None and rim.friction is None:
+            yield (
+                f"rim[{number}]: says nothing: give restitution, tangential or friction, or leave "
+                "it out"
+            )
         for side in ("puck", "partner"):
             given, may = getattr(rim, side), (pucks if side == "puck" else known - {""})
             if given not in may:
@@ -260,6 +268,36 @@ def _out_of_bounds(scene: Scene, pieces: tuple[Piece, ...]) -> Iterator[str]:
         place, name = start_of(piece), called(piece, number)
         for path, what, depth in in_the_way(scene, place, piece.radius, holes=not piece.path):
             yield f"{path}: {name} at {list(place)} {what} by {depth:.3g} m: move one of them"
+
+
+def _driven_through(scene: Scene, pieces: tuple[Piece, ...]) -> Iterator[str]:
+    """Paths of driven bodies that lead through what stands, at rest at their start or later."""
+    for number, piece in enumerate(pieces):
+        if not piece.path:
+            continue
+        rows = rows_of(piece.path)
+        before, after = rows[:-1, 1:3], rows[1:, 1:3]
+        gaps = {}
+        for k, wall in enumerate(scene.walls):
+            gaps[f"wall[{k}]"] = np.array([distance(wall, tuple(place)) for place in after])
+        for k, post in enumerate(scene.posts):
+            way, off = after - before, np.array(post.point) - before
+            square = np.maximum((way * way).sum(axis=1), 1e-300)
+            share = np.clip((way * off).sum(axis=1) / square, 0.0, 1.0)
+            gaps[f"post[{k}]"] = np.hypot(*(off - share[:, None] * way).T) - post.radius
+        for k, arc in enumerate(scene.arcs):
+            if arc.span >= 2.0 * math.pi:
+                gaps[f"arc[{k}]"] = arc.radius - np.hypot(*(after - arc.point).T)
+        starts_in = [one for one, *_ in in_the_way(scene, start_of(piece), piece.radius, False)]
+        for path, gap in gaps.items():
+            deep = np.flatnonzero(gap - piece.radius < -TOUCH * piece.radius)
+            if deep.size and path not in starts_in:
+                row = int(deep[0])
+                start, end = rows[row : row + 2, 0]
+                yield (
+                    f"{path}: {called(piece, number)} is driven through it between {start:g} s and "
+                    f"{end:g} s, {piece.radius - gap[row]:.3g} m deep: lead its path around it"
+                )
 
 
 def in_the_way(

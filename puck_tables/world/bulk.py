@@ -152,8 +152,9 @@ def _own(game: Game, rows: int) -> Game:
     """A copy to run on, with so many rows for events and flights."""
     return game._replace(
         discs=game.discs.copy(), clock=np.zeros(1), kinds=game.kinds.copy(),
-        flights=game.flights.copy(), group=game.group.copy(), held=game.held.copy(), next_time=game.next_time.copy(),
-        next_partner=game.next_partner.copy(), pieces=game.pieces.copy(),
+        flights=game.flights.copy(), group=game.group.copy(), held=game.held.copy(),
+        next_time=game.next_time.copy(), next_partner=game.next_partner.copy(),
+        pieces=game.pieces.copy(),
         events=np.zeros((rows, game.events.shape[1])),
         history=np.zeros((rows, game.history.shape[1])), counts=game.counts.copy(),
         pace=game.pace.copy(),

@@ -20,7 +20,7 @@ from puck_tables.errors import InputError, PuckError
 from puck_tables.io.columns import derived
 from puck_tables.io.dataset import Dataset, Variable, variable
 from puck_tables.result import Result
-from puck_tables.scene.entries import entry_at, tables_of
+from puck_tables.scene.entries import entry_at, is_batch, launch_paths, tables_of
 from puck_tables.scene.library import files_of
 from puck_tables.scene.outcome import column_of, plain_name, scene_texts
 from puck_tables.scene.pieces import Piece
@@ -72,8 +72,8 @@ class WorldMap(Result):
 
     @property
     def axes(self) -> dict[str, FloatArray]:
-        """What ranges, by path."""
-        return dict(self.scene.ranges)
+        """What ranges, by path; many launches by their number."""
+        return axes_of(self.scene)
 
     def __repr__(self) -> str:
         ranged = " x ".join(f"{path} ({values.size})" for path, values in self.axes.items())
@@ -105,8 +105,9 @@ class WorldMap(Result):
     def an_example(self) -> WorldRun:
         """The first run that has an end."""
         first = np.argwhere(self.end <= TIME_UP)[0]
-        values = zip(self.axes.items(), first, strict=True)
-        run: Any = self.scene.at({path: float(axis[i]) for (path, axis), i in values}).simulate()
+        places = zip(self.axes, first.tolist(), strict=True)
+        changed = [one for path, place in places for one in _numbers(self.scene, path, place)]
+        run: Any = self.scene.at(dict(changed)).simulate()
         return run
 
     def explain(self) -> str:
@@ -117,13 +118,21 @@ class WorldMap(Result):
         """The results over what ranges and the pucks; the scene and its files as texts."""
         dims = tuple(plain_name(path) for path in self.axes)
         axes = {}
+        columns = {"name": variable("name", list(self.names), ("puck",))}
         for path, values in self.axes.items():
+            if is_batch(path):
+                text = "number of the launch"
+                axes[plain_name(path)] = Variable(values, (plain_name(path),), "1", text)
+                for one, row in zip(launch_paths(path), self.scene.ranges[path].T, strict=True):
+                    unit = self.scene.unit_of(one) or "1"
+                    text = f"{one} of the scene"
+                    columns[plain_name(one)] = Variable(row, (plain_name(path),), unit, text)
+                continue
             doc = entry_at(self.scene, path).doc
             text = f"{path} of the scene" + (f", {doc}" if doc else "")
             unit = self.scene.unit_of(path) or "1"
             axes[plain_name(path)] = Variable(values, (plain_name(path),), unit, text)
         axes["puck"] = variable("puck", np.arange(len(self.names)), ("puck",))
-        columns = {"name": variable("name", list(self.names), ("puck",))}
         for name, values in {**self.columns, **derived(self.columns)}.items():
             over = (*dims, "puck") if values.ndim > self.end.ndim else dims
             columns[name] = variable(name, values, over)
@@ -152,7 +161,7 @@ def sweep(
     progress: Progress | None = None, checkpoint: str | Path | None = None,
 ) -> WorldMap:  # fmt: skip
     """The map over a board, as :meth:`puck_tables.Scene.sweep` has it."""
-    axes = dict(scene.ranges)
+    axes = axes_of(scene)
     if not axes:
         raise InputError(
             "no number of the scene is a range: write one as 'START:STOP:COUNT' or as a list (such "
@@ -162,23 +171,30 @@ def sweep(
     count, size = len(pieces), math.prod(shape)
     rows = count * (len(STATE) + 1) + 2
     check_memory(shape, 8 * 3 * rows)
-    inner = {path: match for path in axes if (match := _LAUNCH.fullmatch(path)) is not None}
-    inner = {path: one for path, one in inner.items() if _at_start(pieces, one)}
-    outer = [path for path in axes if path not in inner]
+    inner = {path: one for path in axes for path, one in _launches(scene, path, pieces)}
+    outer = [path for path in axes if not _launches(scene, path, pieces)]
 
     @lru_cache(maxsize=8)
-    def case(numbers: tuple[float, ...]) -> _Case | InputError:
+    def case(numbers: tuple[int, ...]) -> _Case | InputError:
         try:
-            first = {path: float(axes[path][0]) for path in inner}
-            return _Case(scene.at({**first, **dict(zip(outer, numbers, strict=True))}))
+            first = [one for path in axes for one in _numbers(scene, path, 0)]
+            changed = [
+                one for path, place in zip(outer, numbers, strict=True)
+                for one in _numbers(scene, path, place)
+            ]  # fmt: skip
+            return _Case(scene.at(dict([*first, *changed])))
         except InputError as error:
             return error
 
-    def split(start: int, stop: int) -> tuple[list[tuple[float, ...]], dict[str, FloatArray]]:
-        places = np.unravel_index(np.arange(start, stop), shape)
-        values = {path: axes[path][place] for path, place in zip(axes, places, strict=True)}
-        numbers = list(zip(*(values[path].tolist() for path in outer), strict=True))
-        return numbers or [()] * (stop - start), {path: values[path] for path in inner}
+    def split(start: int, stop: int) -> tuple[list[tuple[int, ...]], dict[str, FloatArray]]:
+        places = dict(zip(axes, np.unravel_index(np.arange(start, stop), shape), strict=True))
+        numbers = list(zip(*(places[path].tolist() for path in outer), strict=True))
+        launches = {}
+        for path in axes:
+            for one, _ in _launches(scene, path, pieces):
+                column = launch_paths(path).index(one) if is_batch(path) else ...
+                launches[one] = scene.ranges[path][..., column][places[path]]
+        return numbers or [()] * (stop - start), launches
 
     def ends_of(start: int, stop: int) -> tuple[FloatArray, npt.NDArray[np.int8]]:
         numbers, launches = split(start, stop)
@@ -211,10 +227,40 @@ def sweep(
     return WorldMap(scene, names, columns, status.reshape(shape), refusal, files)
 
 
-def _at_start(pieces: tuple[Piece, ...], path: re.Match[str]) -> bool:
-    """Whether a launch is at the start: of others more depends on it than a velocity."""
-    piece = pieces[int(path[1] or 0)]
-    return piece.launch.time == 0.0 and not piece.path
+def axes_of(scene: Scene) -> dict[str, FloatArray]:
+    """What ranges, by path; many launches by their number."""
+    return {
+        path: np.arange(float(len(values))) if is_batch(path) else values
+        for path, values in scene.ranges.items()
+    }
+
+
+def _numbers(scene: Scene, path: str, place: int) -> list[tuple[str, float]]:
+    """The numbers of the scene at a place along an axis, by path."""
+    values = scene.ranges[path][place]
+    if not is_batch(path):
+        return [(path, float(values))]
+    return list(zip(launch_paths(path), values.tolist(), strict=True))
+
+
+def _launches(
+    scene: Scene, path: str, pieces: tuple[Piece, ...]
+) -> list[tuple[str, re.Match[str]]]:
+    """The velocities and spins that an axis changes, if it changes nothing else.
+
+    At the start: of later launches more depends on it than a velocity.
+    """
+    paths, values = (path,), scene.ranges[path]
+    if is_batch(path):
+        if (values[:, 3:] != values[0, 3:]).any():
+            return []
+        paths = launch_paths(path)[:3]
+    found = [(one, match) for one in paths if (match := _LAUNCH.fullmatch(one)) is not None]
+    for _, match in found:
+        piece = pieces[int(match[1] or 0)]
+        if piece.launch.time > 0.0 or piece.path or piece.constraint is not None:
+            return []
+    return found
 
 
 class _Case:

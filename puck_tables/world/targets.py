@@ -67,8 +67,9 @@ def target_of(
     through = -1
     if hits is not None:
         through = number_of(hits, names)
-        if through == aimed and aimed == sent:
-            raise InputError(f"hits = {names[through]}: this is the striker itself, name another")
+        if through in (aimed, sent):
+            itself = "the striker" if through == sent else "the puck that is to end there"
+            raise InputError(f"hits = {names[through]}: this is {itself} itself, name another")
     if (target is None) == (pocket is None):
         given = "both are given" if target is not None else "neither is given"
         raise InputError(f"target or pocket says where {names[aimed]} is to end: {given}, give one")

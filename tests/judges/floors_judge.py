@@ -1,0 +1,275 @@
+"""Pucks on floors that move or change, pulled and led, by scipy, without code of the package.
+
+All that moves is integrated together in time (DOP853), friction by the elliptic integrals of
+``reference.py`` at velocities over the floor.  A constraint is a function g(t, q, V) = 0, linear in
+V; accelerations and multipliers come from one linear system, its rates of change from a complex
+step.  Impacts are one linear system, too.  Heat of the floor and work of the supports are
+integrated beside the states.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+from reference import friction
+from scipy.integrate import solve_ivp
+
+G = 9.80665
+_STOP = 3e-8  # m/s: slower, a puck rests on its floor
+
+
+@dataclass
+class Floor:
+    """A belt or turntable, strips (direction, borders, frictions), a pull per mass (ax, ay)."""
+
+    vx: float = 0.0
+    vy: float = 0.0
+    turning: float = 0.0
+    centre: tuple[float, float] = (0.0, 0.0)
+    strips: tuple[float, list[float], list[float]] | None = None
+    pull: tuple[float, float] = (0.0, 0.0)
+
+    def velocity(self, q: np.ndarray) -> np.ndarray:
+        dx, dy = q[0] - self.centre[0], q[1] - self.centre[1]
+        return np.array([self.vx - self.turning * dy, self.vy + self.turning * dx, self.turning])
+
+    def along(self, q: np.ndarray) -> float:
+        return math.cos(self.strips[0]) * q[0] + math.sin(self.strips[0]) * q[1]
+
+
+Led = Callable[[float, np.ndarray, np.ndarray], np.ndarray]
+
+
+def rail(angle: float, vx: float = 0.0, vy: float = 0.0) -> Led:
+    n = np.array([-math.sin(angle), math.cos(angle)])
+    return lambda t, q, v: np.array([n @ (v[:2] - np.array([vx, vy]))])
+
+
+def pivot(angle: float, reach: float, vx: float = 0.0, vy: float = 0.0) -> Led:
+    def led(t: float, q: np.ndarray, v: np.ndarray) -> np.ndarray:
+        c, s = np.cos(q[2] + angle), np.sin(q[2] + angle)
+        return np.array([v[0] - reach * s * v[2] - vx, v[1] + reach * c * v[2] - vy])
+
+    return led
+
+
+def blade(floor: Floor, angle: float, side: float = 0.0) -> Led:
+    def led(t: float, q: np.ndarray, v: np.ndarray) -> np.ndarray:
+        c, s = np.cos(q[2] + angle), np.sin(q[2] + angle)
+        u = v - floor.velocity(q)
+        return np.array([c * u[1] - s * u[0] - side])
+
+    return led
+
+
+@dataclass
+class Disc:
+    """A puck: SI units; e, beta, mu of its rim; force: t → Fx, Fy, torque."""
+
+    radius: float
+    mass: float
+    f: float
+    height: float
+    state: np.ndarray
+    e: float = 1.0
+    beta: float = -1.0
+    mu: float = math.inf
+    force: Callable[[float], np.ndarray] | None = None
+    led: Led | None = None
+    strip: int = 0
+
+    @property
+    def masses(self) -> np.ndarray:
+        return self.mass * np.array([1.0, 1.0, 0.5 * self.radius**2])
+
+
+@dataclass
+class Line:
+    normal: tuple[float, float]
+    place: float
+    e: float = 1.0
+    beta: float = -1.0
+    mu: float = math.inf
+
+
+@dataclass
+class Told:
+    impacts: list[tuple[float, int, int]] = field(default_factory=list)
+    states: np.ndarray | None = None
+    heat: float = 0.0
+    support: float = 0.0
+
+
+def jacobian(led: Led, t: float, q: np.ndarray, v: np.ndarray) -> np.ndarray:
+    zero = led(t, q, np.zeros(3))
+    return np.stack([led(t, q, one) - zero for one in np.eye(3)], axis=1)
+
+
+def rates(floor: Floor, d: Disc, t: float, s: np.ndarray) -> tuple[np.ndarray, float, float]:
+    """Accelerations, power of the floor's heat, and of supports."""
+    q, v = s[:3], s[3:]
+    ground = floor.velocity(q)
+    u = v - ground
+    f = d.f if floor.strips is None else floor.strips[2][d.strip]
+    load, rub = f * d.mass * G, np.zeros(3)
+    slip = math.hypot(u[0], u[1], d.radius * u[2])
+    if slip > 0.01 * _STOP and f > 0.0:
+        speed, rim = math.hypot(u[0], u[1]), d.radius * u[2]
+        if abs(rim) <= 1e-13 * speed:
+            rub[:2] = -u[:2] / speed
+        elif speed <= 1e-13 * abs(rim):
+            rub[2] = -4.0 / 3.0 * math.copysign(1.0, rim)
+        else:
+            rub[:] = friction(u[0], u[1], rim, 2.0 * f * d.height / d.radius)
+        rub *= load * np.array([1.0, 1.0, 0.5 * d.radius])
+    given = np.array([d.mass * floor.pull[0], d.mass * floor.pull[1], 0.0])
+    if d.force is not None:
+        given = given + d.force(t)
+    total, support = rub + given, float(rub @ ground)
+    if d.led is None:
+        return total / d.masses, -float(rub @ u), support
+    a = jacobian(d.led, t, q, v)
+    h = 1e-30
+    drift = d.led(t, q + 1j * h * v, v.astype(complex)).imag / h
+    k = len(a)
+    matrix = np.block([[np.diag(d.masses), -a.T], [a, np.zeros((k, k))]])
+    found = np.linalg.solve(matrix, np.concatenate([total, -drift]))
+    return found[:3], -float(rub @ u), support + float(found[3:] @ (a @ v))
+
+
+def play(floor: Floor, discs: list[Disc], lines: list[Line], until: float) -> Told:
+    told, t = Told(), 0.0
+    y = np.array([d.state for d in discs], float)
+    count = len(discs)
+    meetings = [(i, j) for i in range(count) for j in range(i + 1, count)]
+    meetings += [(i, -1 - k) for i in range(count) for k in range(len(lines))]
+    rests = [False] * count
+
+    def gap(i: int, j: int, z: np.ndarray) -> float:
+        if j >= 0:
+            return math.dist(z[i, :2], z[j, :2]) - discs[i].radius - discs[j].radius
+        line = lines[-1 - j]
+        return float(np.dot(line.normal, z[i, :2])) - line.place - discs[i].radius
+
+    if floor.strips is not None:
+        for d, row in zip(discs, y, strict=True):
+            d.strip = int(np.searchsorted(floor.strips[1], floor.along(row), "right"))
+    while t < until:
+
+        def whole(time: float, flat: np.ndarray) -> np.ndarray:
+            out = np.zeros_like(flat)
+            for i, d in enumerate(discs):
+                row = flat[6 * i : 6 * i + 6]
+                out[6 * i : 6 * i + 3] = row[3:]
+                if rests[i]:
+                    ground = floor.velocity(row)
+                    out[6 * i + 3 : 6 * i + 5] = floor.turning * np.array([-ground[1], ground[0]])
+                    continue
+                a, heat, support = rates(floor, d, time, row)
+                out[6 * i + 3 : 6 * i + 6] = a
+                out[-2] += heat
+                out[-1] += support
+            return out
+
+        events, kinds = [], []
+
+        def watch(kind: tuple, value: Callable, direction: float = -1.0) -> None:
+            def event(_: float, flat: np.ndarray) -> float:
+                return value(flat[:-2].reshape(-1, 6))
+
+            event.terminal, event.direction = True, direction  # type: ignore[attr-defined]
+            events.append(event)  # noqa: B023
+            kinds.append(kind)  # noqa: B023
+
+        for i, j in meetings:
+            watch(("hit", i, j), lambda z, i=i, j=j: gap(i, j, z))
+        for i, d in enumerate(discs):
+            if not rests[i]:
+
+                def slip(z: np.ndarray, i: int = i, r: float = d.radius) -> float:
+                    u = z[i, 3:] - floor.velocity(z[i])
+                    return math.hypot(u[0], u[1], r * u[2]) - _STOP
+
+                watch(("rest", i), slip)
+            if floor.strips is not None:
+                for k, border in enumerate(floor.strips[1]):
+                    if k in (d.strip - 1, d.strip):
+                        side = 1.0 if k == d.strip - 1 else -1.0
+                        watch(
+                            ("cross", i, k + 1 if side < 0 else k),
+                            lambda z, i=i, b=border, s=side: s * (floor.along(z[i]) - b),
+                        )
+        start = np.concatenate([y.ravel(), [told.heat, told.support]])
+        found = solve_ivp(
+            whole, (t, until), start, "DOP853", rtol=3e-13, atol=1e-15, max_step=0.02,
+            events=events,
+        )  # fmt: skip
+        assert found.success
+        t, told.heat, told.support = float(found.t[-1]), *found.y[-2:, -1].tolist()
+        y = found.y[:-2, -1].reshape(-1, 6).copy()
+        for kind, hits in zip(kinds, found.t_events, strict=True):
+            if not len(hits):
+                continue
+            if kind[0] == "rest":
+                rests[kind[1]] = True
+                y[kind[1], 3:] = floor.velocity(y[kind[1]])
+            elif kind[0] == "cross":
+                discs[kind[1]].strip = kind[2]
+                way = math.copysign(1e-13, np.dot(
+                    [math.cos(floor.strips[0]), math.sin(floor.strips[0])], y[kind[1], 3:5]
+                ))  # fmt: skip
+                y[kind[1], 0] += way * math.cos(floor.strips[0])
+                y[kind[1], 1] += way * math.sin(floor.strips[0])
+            else:
+                collide(discs, lines, t, *kind[1:], y)
+                told.impacts.append((t, *kind[1:]))
+                for disc in kind[1:]:
+                    if disc >= 0:
+                        rests[disc] = False
+    told.states = y
+    return told
+
+
+def collide(discs: list[Disc], lines: list[Line], t: float, i: int, j: int, y: np.ndarray) -> None:
+    """The impact of two: impulses and those of constraints in one linear system."""
+    who = [i, j] if j >= 0 else [i]
+    if j >= 0:
+        n = (y[j, :2] - y[i, :2]) / math.dist(y[i, :2], y[j, :2])
+        rims = discs[i], discs[j]
+    else:
+        n, rims = -np.array(lines[-1 - j].normal), (lines[-1 - j],)
+    e, beta, mu = (min(getattr(rim, name) for rim in rims) for name in ("e", "beta", "mu"))
+    s = np.array([-n[1], n[0]])
+    normal, along, blocks = [], [], []
+    for sign, k in zip((1.0, -1.0), who, strict=False):
+        normal += [*(sign * n), 0.0]
+        along += [*(sign * s), discs[k].radius]
+        led = discs[k].led
+        blocks.append(np.zeros((0, 3)) if led is None else jacobian(led, t, y[k, :3], y[k, 3:]))
+    rows = sum(map(len, blocks))
+    a = np.zeros((rows, 3 * len(who)))
+    first = 0
+    for number, block in enumerate(blocks):
+        a[first : first + len(block), 3 * number : 3 * number + 3] = block
+        first += len(block)
+    masses = np.concatenate([discs[k].masses for k in who])
+    v = np.concatenate([y[k, 3:] for k in who])
+    ut, size = float(np.dot(along, v)), len(v)
+    # after Poisson: the impulses that stop approach and slip, enlarged by 1 + e and 1 + beta
+    matrix = np.block([[np.diag(masses), -a.T], [a, np.zeros((rows, rows))]])
+    jets = np.zeros((size + rows, 2))
+    jets[:size, 0], jets[:size, 1] = normal, along
+    change = np.linalg.lstsq(matrix, jets, rcond=None)[0][:size]
+    w = np.array([normal, along]) @ change
+    stops = np.linalg.solve(w, np.array([normal, along]) @ v)
+    bound = mu * (1.0 + e) / (1.0 + beta) if beta > -1.0 else 0.0
+    if abs(stops[1]) > bound * stops[0]:
+        way = math.copysign(bound, ut)
+        push = float(np.dot(normal, v)) / (w[0, 0] + way * w[0, 1])
+        stops = np.array([push, way * push])
+    v = v - change @ (stops * np.array([1.0 + e, 1.0 + beta]))
+    for number, k in enumerate(who):
+        y[k, 3:] = v[3 * number : 3 * number + 3]
