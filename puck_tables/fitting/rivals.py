@@ -24,7 +24,7 @@ def rivals_of(found: Estimate, certainty: Certainty) -> tuple[Found, ...]:
     turns more from frame to frame, where frames are few or noisy.
     """
     problem = found.problem
-    if len(problem.films) > 1 or problem.meetings:
+    if len(problem.films) > 1 or problem.meetings or problem.asked.speeds:
         return ()
     seen = np.array([not lost for lost in certainty.undetermined[: len(problem.asked.free)]], bool)
     apart = _APART * np.sqrt(np.diag(certainty.covariance))[: seen.size]
