@@ -97,6 +97,19 @@ if TYPE_CHECKING:
     "time is found.",
 )
 @click.option(
+    "--slip-speeds",
+    metavar="U,...",
+    help="Find the friction coefficient at these slip speeds in m/s, from 0 to the fastest: two "
+    "for f0 + f1 u, up to 8.",
+)
+@click.option(
+    "--between",
+    type=click.Choice(["linear", "cubic"]),
+    default="linear",
+    show_default=True,
+    help="How friction goes between --slip-speeds.",
+)
+@click.option(
     "--laws",
     metavar="LAW,...",
     help="Compare pressure laws; with +drag also a coefficient that changes with the slip speed: "
@@ -124,8 +137,9 @@ def fit(
     gyration: float | None, free: str | None, fix: tuple[str, ...], prior: tuple[str, ...],
     bound: tuple[str, ...], start: tuple[str, ...], noise: str | None, since: float | None,
     until: float | None, impacts: bool, wall: tuple[str, ...], jitter: str | None,
-    rows: str | None, laws: str | None, hold_out: str | None, explain: bool,
-    as_json: bool, output: Path | None, plot: Path | None, overwrite: bool,
+    rows: str | None, slip_speeds: str | None, between: str, laws: str | None,
+    hold_out: str | None, explain: bool, as_json: bool,
+    output: Path | None, plot: Path | None, overwrite: bool,
 ) -> None:  # fmt: skip
     """Find friction, tilt and launches of a sliding puck from tracks of it.
 
@@ -180,6 +194,9 @@ def fit(
             until=math.inf if until is None else until,
             jitter=_jitter(jitter), rows=None if rows is None else _point(rows, "--rows"),
             impacts=impacts, walls=[_wall(one) for one in wall],
+            slip_speeds=None if slip_speeds is None
+            else [_number(one, "--slip-speeds", "u") for one in slip_speeds.split(",")],
+            between=between,
             laws=() if laws is None else [name.strip() for name in laws.split(",")],
             hold_out=_held(hold_out), progress=show,
         )  # fmt: skip
@@ -248,6 +265,13 @@ def report(found: Fit) -> str:
         f"{'residuals':<15} probability of such a pattern by chance: runs {found.runs:.2g}, "
         f"drift {found.drift:.2g}",
     ]
+    if speeds := found.estimate.problem.asked.speeds:
+        fewer = found.constant_chi2 - found.chi2
+        lines += [
+            "", f"{'slip speeds':<15} {', '.join(f'{u:g}' for u in speeds)} m/s, of friction_0 and "
+            f"so on; chi^2 is {fewer:.4g} less than with one friction for {len(speeds) - 1} more "
+            "numbers",
+        ]  # fmt: skip
     if found.laws:
         lines += ["", *_laws(found)]
     if found.held_out is not None:

@@ -20,17 +20,19 @@ from puck_tables.fitting.given import (
     films_of,
     jitter_given,
     noise_given,
+    refuse_faster,
     refuse_tipping,
     rows_given,
+    speeds_given,
     walls_given,
 )
 from puck_tables.fitting.held_out import HeldOut, predicted, split
-from puck_tables.fitting.impacts import cut
+from puck_tables.fitting.impacts import Piece, cut
 from puck_tables.fitting.joining import Line
-from puck_tables.fitting.laws import LawScore, compare, variants_of
+from puck_tables.fitting.laws import LawScore, chi2_under, compare, variants_of
 from puck_tables.fitting.numbers import numbers_of, plausible_for
 from puck_tables.fitting.outcome import Fit
-from puck_tables.fitting.parameters import Asked
+from puck_tables.fitting.parameters import NODES, Asked
 from puck_tables.fitting.problem import Problem
 from puck_tables.fitting.residual_tests import drift, runs
 from puck_tables.fitting.rivals import rivals_of
@@ -59,6 +61,8 @@ def fit(
     rows: tuple[float, float] | None = None,
     impacts: bool = False,
     walls: Sequence[Line] = (),
+    slip_speeds: Sequence[float] | None = None,
+    between: str = "linear",
     laws: Sequence[str] = (),
     hold_out: float | Sequence[str] | None = None,
     progress: Progress | None = None,
@@ -94,6 +98,10 @@ def fit(
         Where rims stop on what they meet, tangential restitution takes the place of friction.
     walls : lines ((x, y), (x, y)) in m, two points of each, where walls are known
         Others are found.
+    slip_speeds : m/s, from 0 to the fastest slip, 2 to 8 of them
+        The friction coefficient is found at each (friction_0, friction_1, …); of two it is f₀ + f₁u
+        with u the slip speed.  It is one number where they are left out.
+    between : linear or cubic, f between these speeds
     laws : names of pressure laws to compare, as :class:`Puck` takes them; with '+drag' of those
         with drag
     hold_out : share of the moving frames at the end of each track, or names of tracks
@@ -141,6 +149,9 @@ def fit(
     )
     given, known_noise = noise_given(noise)
     stamps = jitter_given(jitter)
+    speeds = speeds_given(slip_speeds, between)
+    if speeds:
+        asked.over(speeds, between)
     known = Known(*known_noise, stamps is not None)
     judged = noise_of(list(films))
     begin = tuple(
@@ -149,7 +160,9 @@ def fit(
     )
     refuse_tipping(asked, films, begin[0])
     questions = variants_of(asked.alone(), laws)
-    uncut, pieces, rests = films, (), ()
+    uncut = films
+    pieces: tuple[Piece, ...] = ()
+    rests: tuple[bool, ...] = ()
     if impacts:
         films, pieces, rests = cut(films, begin[0])
     problem = Problem(asked.alone(), films, (begin[0], begin[1]), rests=rests)
@@ -164,6 +177,10 @@ def fit(
     if impacts:
         tied, untied = tie(slides, pieces, uncut, asked, lines, known)
         found = found if tied is None else tied
+    constant = found
+    if speeds:
+        refuse_faster(speeds, found)
+        found = _over_speeds(found, speeds, between, known)
     say(1, steps)
     certainty = _certainty(found, known)
     rivals = rivals_of(found, certainty)
@@ -208,9 +225,24 @@ def fit(
         held_out=predictions,
         impacts=hits,
         untied=untied,
+        constant_chi2=chi2_under(constant, found.problem.noise) if speeds else math.nan,
         estimate=found,
         certainty=certainty,
     )
+
+
+def _over_speeds(
+    found: Estimate, speeds: tuple[float, ...], between: str, known: Known
+) -> Estimate:
+    """The estimate with a friction coefficient for each slip speed, from that of one for all."""
+    problem = found.problem
+    asked = problem.asked.over(speeds, between)
+    numbers = problem.found(found.x)
+    numbers.update({name: numbers["friction"] for name in asked.free if name in NODES})
+    moved = replace(problem, asked=asked, weights=())
+    walls = problem.found_walls(found.x)
+    start = moved.unknowns(numbers, problem.launches(found.x), walls)
+    return estimate(moved, start, known)
 
 
 def _begin_jitter(problem: Problem, noise: float, stamps: float | None) -> float:
@@ -218,7 +250,7 @@ def _begin_jitter(problem: Problem, noise: float, stamps: float | None) -> float
     if stamps is not None:
         return stamps
     lengths = [np.hypot(*np.diff(film.place, axis=0).T).sum() for film in problem.films]
-    speed = sum(lengths) / sum(float(film.time[-1]) for film in problem.films)
+    speed = float(sum(lengths)) / sum(float(film.time[-1]) for film in problem.films)
     return _JITTER * noise / max(speed, 1e-9)
 
 
@@ -256,7 +288,7 @@ def _held_out(found: Estimate, wanted: float | tuple[str, ...], known: Known) ->
     problem = found.problem
     films, later = split(problem.films, wanted, problem.noise[0])
     fewer = problem.with_films(films)
-    if problem.meetings:
+    if problem.meetings or problem.asked.speeds:
         part = estimate(fewer, found.x, known)
     else:
         part = fitted(fewer, known, refit=False)

@@ -11,11 +11,13 @@ from typing import Any
 import numpy as np
 
 from puck_tables._core.real import instance, positive, real
+from puck_tables.contact.speed_law import KINDS
 from puck_tables.errors import InputError
 from puck_tables.film.track import Track
+from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.impacts import turns
 from puck_tables.fitting.joining import Line
-from puck_tables.fitting.parameters import Asked
+from puck_tables.fitting.parameters import MOST_NODES, Asked
 from puck_tables.fitting.seen import Seen, noise_of, rests_from, seen_in
 from puck_tables.fitting.starts import slowing_of
 
@@ -159,6 +161,48 @@ def rows_given(given: Any) -> tuple[float, float] | None:
     if first == last:
         raise InputError(f"rows must be two different places y (m), got {first:g} twice")
     return first, last
+
+
+def speeds_given(given: Any, between: Any) -> tuple[float, ...]:
+    """Slip speeds at which friction is found, m/s, none where it does not depend on them.
+
+    Raises
+    ------
+    InputError
+    """
+    if between not in KINDS:
+        raise InputError(f"between must be {' or '.join(KINDS)}, got {between!r:.40}")
+    if given is None:
+        return ()
+    if isinstance(given, str) or not isinstance(given, Iterable):
+        raise InputError(f"slip_speeds must be a list of speeds in m/s, got {given!r:.40}")
+    speeds = tuple(real("a slip speed", value, "m/s") for value in given)
+    if not 2 <= len(speeds) <= MOST_NODES or speeds[0] != 0.0 or (np.diff(speeds) <= 0.0).any():
+        raise InputError(
+            f"slip_speeds must be 2 to {MOST_NODES} speeds in m/s that ascend from 0, got "
+            f"{', '.join(f'{speed:g}' for speed in speeds)}"
+        )
+    return speeds
+
+
+def refuse_faster(speeds: tuple[float, ...], found: Estimate) -> None:
+    """Refuse slip speeds that end below those of the tracks.
+
+    Raises
+    ------
+    InputError
+    """
+    problem = found.problem
+    radius = problem.asked.scales(problem.found(found.x))[2]
+    fastest = max(
+        math.hypot(vx, vy) + radius * abs(spin)
+        for _, _, vx, vy, spin, _ in problem.launches(found.x).tolist()
+    )
+    if fastest > speeds[-1]:
+        raise InputError(
+            f"the puck slips at up to {fastest:.4g} m/s, but the last of slip_speeds is "
+            f"{speeds[-1]:g} m/s: give speeds up to {math.ceil(10.0 * fastest) / 10.0:g}"
+        )
 
 
 def walls_given(given: Any) -> tuple[Line, ...]:

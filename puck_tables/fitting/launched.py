@@ -25,9 +25,13 @@ from typing import NamedTuple
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.fitting.natural import BY_DELTA, BY_PHI, PATH, RATE, Curve
-from puck_tables.motion.state import HEADING, ORIENTATION, PUCK_X, PUCK_Y, SPEED, SPIN
+from puck_tables.fitting.speed_motion import speed_path
+from puck_tables.motion.state import HEADING, ORIENTATION, PUCK_X, PUCK_Y, SPEED
+from puck_tables.motion.state import SPIN as TURNING
 
+_SPEED_STEP = 1e-6
 _SLOWEST = 1e-9  # of Q: a launch that only spins is taken to go that fast along its velocity
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 
@@ -35,14 +39,26 @@ _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 VX, VY, SPIN, DECEL, DELTA, RADIUS, TIME = range(7)
 
 
+class BySpeed(NamedTuple):
+    """A friction coefficient over slip speed, gravity m/s², and the radius of gyration over r."""
+
+    law: SpeedLaw
+    gravity: float
+    gyration: float
+
+
 class Moving(NamedTuple):
-    """What moves a puck: the scale J m/s², δ, r m, drag c 1/s, and its curve."""
+    """What moves a puck: the scale J m/s², δ, r m, drag c 1/s, and its curve.
+
+    ``by_speed``: f over slip speed in place of the curve; J and δ are then those at rest.
+    """
 
     decel: float
     delta: float
     radius: float
     drag: float
     curve: Curve
+    by_speed: BySpeed | None = None
 
 
 def path_of(moving: Moving, velocity: FloatArray, spin: float, times: FloatArray) -> FloatArray:
@@ -90,6 +106,8 @@ def _path(
     moving: Moving, velocity: FloatArray, spin: float, times: FloatArray, slopes: bool
 ) -> tuple[FloatArray, FloatArray]:
     c = moving.drag
+    if moving.by_speed is not None:
+        return _by_speed(moving, velocity, spin, times, slopes)
     if c == 0.0:
         return _dry(moving, velocity, spin, times, slopes)
     s = np.expm1(c * times) / c
@@ -111,6 +129,38 @@ def _path(
     return dragged(path), found
 
 
+def _by_speed(
+    moving: Moving, velocity: FloatArray, spin: float, times: FloatArray, slopes: bool
+) -> tuple[FloatArray, FloatArray]:
+    """The same where friction depends on the slip speed: no similarity, so all by differences.
+
+    J does nothing, its place is taken by the numbers of the law.
+    """
+    assert moving.by_speed is not None
+    law, gravity, gyration = moving.by_speed
+
+    def path(by: FloatArray) -> tuple[FloatArray, FloatArray]:
+        vx, vy, w, _, delta, radius = by.tolist()
+        friction = moving.decel / gravity
+        return speed_path(
+            law, gravity, delta / friction, gyration, radius, np.array([vx, vy]), w, times
+        )
+
+    at = np.array([*velocity, spin, moving.decel, moving.delta, moving.radius])
+    found, rate = path(at)
+    if not slopes:
+        return found, rate[None]
+    out = np.zeros((7, 3, times.size))
+    scale = max(abs(at[0]), abs(at[1]), moving.radius * abs(spin))
+    steps = {VX: scale, VY: scale, SPIN: scale / moving.radius, DELTA: 1.0, RADIUS: moving.radius}
+    for k, size in steps.items():
+        step = np.zeros(6)
+        step[k] = _SPEED_STEP * size
+        out[k] = (path(at + step)[0] - found) / step[k]
+    out[TIME] = rate
+    return found, out
+
+
 def _dry(
     moving: Moving, velocity: FloatArray, spin: float, times: FloatArray, slopes: bool
 ) -> tuple[FloatArray, FloatArray]:
@@ -128,7 +178,7 @@ def _dry(
     if not slopes:
         states = curve.states(np.array([phi]), np.array([height]), tau[None])[:, 0]
         heading, ahead = states[HEADING], states[SPEED]
-        motion = np.stack([ahead * np.cos(heading), ahead * np.sin(heading), states[SPIN]])
+        motion = np.stack([ahead * np.cos(heading), ahead * np.sin(heading), states[TURNING]])
         natural = states[[PUCK_X, PUCK_Y, ORIENTATION]]
         path = _turned(turn, length, moving.radius, natural)
         return path, _turned(turn, slip, moving.radius, motion)[None]

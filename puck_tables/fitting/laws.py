@@ -53,13 +53,13 @@ def compare(
         for kind in range(2)
     ]
     unknowns = np.array([one.x.size for one in first])
-    chi2 = np.array([_capped(one, (common[0], common[1])) for one in first])
+    chi2 = np.array([chi2_under(one, (common[0], common[1])) for one in first])
     score = chi2 + 2.0 * unknowns
     again = list(first)
     for k in np.flatnonzero(score < score.min() + _CONTENDS):
         if not (known.place and known.angle):
             again[k] = fitted(questions[k], (common[0], common[1]), Known(True, True, True))
-            chi2[k] = _capped(again[k], (common[0], common[1]))
+            chi2[k] = chi2_under(again[k], (common[0], common[1]))
     score = chi2 + 2.0 * unknowns
     weight = np.exp(-0.5 * (score - score.min()))
     weight /= weight.sum()
@@ -97,7 +97,7 @@ def _variant(asked: Asked, name: str) -> Asked:
     return replace(asked, puck=replace(asked.puck, pressure=law), free=free, fixed=fixed)
 
 
-def _capped(found: Estimate, noise: tuple[float, float]) -> float:
+def chi2_under(found: Estimate, noise: tuple[float, float]) -> float:
     """χ² under a noise, of all frames, with no residual beyond the farthest."""
     rows = found.problem.with_noise(noise, found.x, found.kept).residuals(found.x)
     total = float(np.sum(rows[found.problem.kinds == PRIOR] ** 2))

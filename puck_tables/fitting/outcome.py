@@ -53,7 +53,8 @@ class Fit(Result):
     those compared, best
     first; ``held_out``: how well frames that were held out are predicted;
     ``impacts``: :class:`Impact` of those looked for; ``untied``: why they do not join the slides,
-    empty where they do.
+    empty where they do.  ``constant_chi2``: χ² of one friction coefficient for all slip speeds,
+    where one over them was found.
     """
 
     given: Puck
@@ -74,6 +75,7 @@ class Fit(Result):
     held_out: HeldOut | None
     impacts: tuple[Impact, ...]
     untied: str
+    constant_chi2: float
     estimate: Estimate = field(repr=False)
     certainty: Certainty = field(repr=False)
 
@@ -139,6 +141,11 @@ class Fit(Result):
             If there is no such track, or the puck was found with drag: then only a scene has it.
         """
         launch = self.launch(track)
+        if self.estimate.problem.asked.speeds:
+            raise InputError(
+                "the puck was found with friction over slip speed, which a free puck has not: put "
+                "it into a Scene with the law that fit.friction_over() gives"
+            )
         if self.drag != 0.0:
             raise InputError(
                 f"the puck was found with drag of {self.drag:.3g}/s, which a free puck has not: "
@@ -258,7 +265,8 @@ class Fit(Result):
             "complaints": list(self.complaints),
             "laws": [one._asdict() for one in self.laws],
             "held_out": None,
-            "untied": self.untied, "impacts": [
+            "slip_speeds": list(self.estimate.problem.asked.speeds),
+            "constant_chi2": self.constant_chi2, "untied": self.untied, "impacts": [
                 {
                     **one._asdict(), "place": list(one.place),
                     "restitution": _told(one.restitution), "rim": _told(one.rim),
@@ -317,6 +325,41 @@ class Fit(Result):
             for value in values.tolist()
         ]
         return values, np.maximum(np.array(rises) - self.estimate.chi2, 0.0)
+
+    def friction_over(
+        self, speed: FloatArray | None = None
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """The friction coefficient over slip speed, with its standard error.
+
+        Parameters
+        ----------
+        speed : (n,), m/s; those at which it was found where they are left out
+
+        Returns
+        -------
+        speeds (n,) m/s, f (n,), standard errors (n,)
+
+        Raises
+        ------
+        InputError
+            If one friction for all slip speeds was found, or a speed is outside the law.
+        """
+        asked, x = self.estimate.problem.asked, self.estimate.x
+        if not asked.speeds:
+            raise InputError("one friction for all slip speeds was found: give slip_speeds to fit")
+        at = np.array(asked.speeds) if speed is None else np.asarray(speed, float)
+        numbers = self.estimate.problem.found(x)
+        value = asked.speed_law(numbers)(at)
+        count = len(asked.speeds)
+        slopes = np.zeros((at.size, count))
+        for k, name in enumerate(asked.free[:count]):
+            step = 1e-4 * numbers[name]
+            ends = [
+                asked.speed_law({**numbers, name: numbers[name] + by})(at) for by in (step, -step)
+            ]
+            slopes[:, k] = (ends[0] - ends[1]) / (2.0 * step)
+        spread = np.einsum("ni,ik,nk->n", slopes, self.certainty.covariance[:count, :count], slopes)
+        return at, value, np.sqrt(spread)
 
     def dataset(self) -> Dataset:
         """Frames with what was seen, the model and the residuals; the rest as attributes."""

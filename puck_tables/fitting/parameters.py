@@ -15,9 +15,10 @@ from typing import Any, NamedTuple
 
 from puck_tables._core.real import instance, real
 from puck_tables.contact.laws import law_of
+from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import InputError
 from puck_tables.fitting.joined import Rims
-from puck_tables.fitting.launched import Moving
+from puck_tables.fitting.launched import BySpeed, Moving
 from puck_tables.fitting.natural import curve_of
 from puck_tables.motion.body import LARGEST_GYRATION, SMALLEST_GYRATION
 from puck_tables.puck import Puck
@@ -54,6 +55,12 @@ PUCK = {
     "pair_tangential": Parameter("1", -1.0, 1.0, 1.0, "tangential restitution of two pucks"),
     "mass_ratio": Parameter("1", 0.0, math.inf, 1.0, "mass of the second puck over the first's"),
 }
+MOST_NODES = 8
+NODES = tuple(f"friction_{k}" for k in range(MOST_NODES))  # f at slip speeds that are given
+PUCK.update({
+    name: Parameter("1", 0.0, math.inf, 1.0, "friction coefficient at a slip speed")
+    for name in NODES
+})  # fmt: skip
 LAUNCH = {
     "launch_x": Parameter("m", -math.inf, math.inf, 0.0, "place at the launch along x"),
     "launch_y": Parameter("m", -math.inf, math.inf, 0.0, "place at the launch along y"),
@@ -95,6 +102,9 @@ class Asked:
     freed : names that are found since they have a prior or bounds
     met : what is taken of the impacts that there are, by name, where nothing else is said
 
+    speeds : slip speeds (m/s) at which friction coefficients are found, friction_0 and so on
+    between : linear or cubic, f between these speeds
+
     Raises
     ------
     InputError
@@ -118,6 +128,8 @@ class Asked:
     start: Mapping[str, float]
     freed: tuple[str, ...] = ()
     met: Mapping[str, float] = field(default_factory=dict)
+    speeds: tuple[float, ...] = ()
+    between: str = "linear"
 
     @classmethod
     def of(
@@ -147,6 +159,11 @@ class Asked:
         if len(set(wanted)) < len(wanted):
             raise InputError(f"free names {', '.join(wanted)}: name each parameter once")
         for name in (*wanted, *known):
+            if name in NODES:
+                raise InputError(
+                    f"{name} is found where slip speeds are given (--slip-speeds, slip_speeds=), "
+                    "and cannot be named"
+                )
             if name == "readout" and not rows:
                 raise InputError(
                     "readout is of a rolling shutter: say which y (m) the first and the last line "
@@ -187,7 +204,7 @@ class Asked:
 
     def __post_init__(self) -> None:
         scale = {"friction", "decel"} & {*self.free, *self.fixed}
-        if not scale and self.puck.friction == 0.0:
+        if not scale and not self.speeds and self.puck.friction == 0.0:
             raise InputError(
                 "the friction is neither free nor known: name friction in free, or give the puck "
                 "its friction"
@@ -216,6 +233,8 @@ class Asked:
     def scales(self, found: Mapping[str, Any]) -> tuple[Any, Any, Any]:
         """J, δ and r of what is found; of complex numbers, too."""
         all_of = {**self.known(), **found}
+        if self.speeds:  # that of a puck about to stop
+            all_of["friction"] = all_of[NODES[0]]
         decel = all_of["decel"] if self.uses_decel else all_of["friction"] * all_of["gravity"]
         if self.uses_delta:
             return decel, all_of["delta"], all_of["radius"]
@@ -266,7 +285,8 @@ class Asked:
         defaults = OF_PAIRS if pair else OF_WALLS
         numbers = {**defaults, **self.fixed, **found}
         values = [numbers[name] for name in defaults]
-        return Rims(*values) if pair else Rims(*values, math.inf)
+        mass = values[3] if pair else math.inf
+        return Rims(values[0], values[1], values[2], mass)
 
     def readout(self, found: Mapping[str, float]) -> float:
         """The time in which a picture is read, s."""
@@ -274,7 +294,7 @@ class Asked:
 
     def changes_curve(self, name: str) -> bool:
         """Whether a parameter is none of the scales."""
-        return name in _KIND
+        return name in _KIND or name in NODES
 
     def moving(self, found: Mapping[str, float], tall: bool) -> Moving:
         """What moves the puck."""
@@ -284,8 +304,47 @@ class Asked:
         if "inner" in found or "inner" in self.fixed:
             pressure = f"annulus:{numbers['inner']!r}"
         curve = curve_of(pressure, numbers["gyration"], tall)
+        by_speed = None
+        if self.speeds:
+            law = self.speed_law(numbers)
+            by_speed = BySpeed(law, numbers["gravity"], numbers["gyration"])
         # while a minimum is sought J, r and h may lead beyond; where it lies is judged in the end
-        return Moving(decel, min(delta, curve.highest), radius, numbers["drag"], curve)
+        return Moving(decel, min(delta, curve.highest), radius, numbers["drag"], curve, by_speed)
+
+    def speed_law(self, numbers: Mapping[str, float]) -> SpeedLaw:
+        """The friction coefficient over slip speed."""
+        values = [numbers[name] for name in NODES[: len(self.speeds)]]
+        return SpeedLaw(list(self.speeds), values, self.between)
+
+    def over(self, speeds: tuple[float, ...], between: str) -> Asked:
+        """The same with a friction coefficient for each of these slip speeds.
+
+        Raises
+        ------
+        InputError
+            If friction is not what is found, or something is found that such a puck has not.
+        """
+        for name in ("decel", "gravity", "drag", "inner"):
+            if name in self.free or name in self.fixed:
+                raise InputError(
+                    f"{name} cannot be found or fixed beside a friction over slip speed: leave it "
+                    "out"
+                )
+        if "friction" not in self.free:
+            raise InputError("a friction over slip speed is found: do not give the friction")
+        if self.puck.body.law.name != "uniform":
+            raise InputError(
+                "a friction over slip speed is found of uniform pressure alone, not of "
+                f"{self.puck.body.law.name}"
+            )
+        nodes = NODES[: len(speeds)]
+        free = (*nodes, *(name for name in self.free if name != "friction"))
+        limits = {name: self.bounds["friction"] for name in nodes if "friction" in self.bounds}
+        known = {name: self.priors["friction"] for name in nodes if "friction" in self.priors}
+        return replace(
+            self, free=free, bounds={**self.bounds, **limits}, priors={**self.priors, **known},
+            speeds=speeds, between=between,
+        )  # fmt: skip
 
     def highest(self, tall: bool) -> float:
         """The largest δ of which motions are known, of an annulus that is free as of the puck's."""
@@ -299,7 +358,7 @@ class Asked:
         low, high = (ALL.get(name) or WALL[name])[1:3]
         if name == "inner":
             low, high = 1e-3, 0.999
-        elif name in _POSITIVE:
+        elif name in _POSITIVE or name in NODES:
             low = _LEAST
         wanted = self.bounds.get(name, (low, high))
         return max(low, wanted[0]), min(high, wanted[1])

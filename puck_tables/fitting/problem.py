@@ -281,9 +281,10 @@ class Problem:
                 block = whole[:, frames]
                 for name in self.asked.free:
                     k = spots[-1, name]
-                    block[:, :, k] = np.einsum("k,kan->an", scales[name], slopes[3:TIME])
                     if self.asked.changes_curve(name):
-                        block[:, :, k] += self._by_difference(found, name, times, slide)
+                        block[:, :, k] = self._by_difference(found, name, times, slide)
+                    else:
+                        block[:, :, k] = np.einsum("k,kan->an", scales[name], slopes[3:TIME])
                     if name == "readout" and film.row is not None:
                         block[:, :, k] += slopes[TIME] * (film.row[frames] - film.row[0])
                 if m == 0:

@@ -27,7 +27,7 @@ def rivals_of(found: Estimate, certainty: Certainty) -> tuple[Found, ...]:
     turns more from frame to frame, where frames are few or noisy.
     """
     problem = found.problem
-    if len(problem.films) > 1 or problem.meetings:
+    if len(problem.films) > 1 or problem.meetings or problem.asked.speeds:
         return ()
     rivals: list[FloatArray] = []
     summits = [(found.x, *_known(found, certainty))]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -30,10 +31,15 @@ def draw(found: Fit) -> Figure:
     _draw_pulls(figure.add_subplot(grid[1, :2]), found)
     if names:
         inner = grid[1, 2:].subgridspec(1, min(len(names), 3))
-        for n, name in enumerate(names[:3]):
+        shown = names[:3]
+        if found.estimate.problem.asked.speeds:
+            shown = names[:2]
+            _draw_friction(figure.add_subplot(inner[0, 2 if len(names) > 2 else 1]), found)
+        for n, name in enumerate(shown if len(names) > 2 else shown[:1]):
             _draw_profile(figure.add_subplot(inner[0, n]), found, name)
     told = [
-        f"{name} = {_told(found.numbers[name].value, found.numbers[name].error)}" for name in names
+        f"{name} = {_told(found.numbers[name].value, found.numbers[name].error)}"
+        for name in names[:3]
     ]
     titled(figure, "; ".join([*told, f"chi² per degree {found.chi2 / max(found.degrees, 1):.3g}"]))
     return figure
@@ -42,8 +48,8 @@ def draw(found: Fit) -> Figure:
 def draw_on(paths: Axes, found: Fit) -> None:
     """The paths alone."""
     problem, x = found.estimate.problem, found.estimate.x
-    moving = problem.moving(problem.found(x))
-    for n, (film, launch) in enumerate(zip(problem.films, problem.launches(x), strict=True)):
+    moving, (slides, hits) = problem.moving(problem.found(x)), problem.slides(x)
+    for n, (film, track) in enumerate(zip(problem.films, slides, strict=True)):
         counts = found.estimate.kept[problem.each()[n][0]]
         colour = COLORS[n % len(COLORS)]
         paths.plot(*film.place[counts].T, ".", color=colour, markersize=3, alpha=0.6)
@@ -52,10 +58,14 @@ def draw_on(paths: Axes, found: Fit) -> None:
                 *film.place[~counts].T, "x", color=RED, markersize=5,
                 label="left out" if n == 0 else None,
             )  # fmt: skip
-        fine = np.linspace(0.0, float(film.time[-1]), _FINE)
-        way = path_of(moving, launch[2:4], float(launch[4]), fine)[:2] + launch[:2, None]
-        paths.plot(*way, color=colour, linewidth=1.1)
-        paths.plot(*launch[:2], **LAUNCH)
+        ends = [slide.since - track[0].since for slide in track] + [float(film.time[-1])]
+        for slide, (start, stop) in zip(track, pairwise(ends), strict=True):
+            fine = np.linspace(0.0, max(stop - start, 0.0), _FINE)
+            way = path_of(moving, slide.launch[2:4], float(slide.launch[4]), fine)[:2]
+            paths.plot(*(way + slide.launch[:2, None]), color=colour, linewidth=1.1)
+        paths.plot(*track[0].launch[:2], **LAUNCH)
+    for hit in hits:
+        paths.plot(*hit.place, "o", color=GREY, markersize=7, fillstyle="none")
     paths.set(xlabel="x / m", ylabel="y / m", title="seen (dots) and found (lines)")
     paths.set_aspect("equal", adjustable="datalim")
     if paths.get_legend_handles_labels()[1]:
@@ -70,7 +80,8 @@ def _draw_residuals(panel: Axes, found: Fit) -> None:
         times = [film.time, film.time]
         if film.angle is not None:
             times.append(film.time[np.isfinite(film.angle)])
-        labels = ("x", "y", "angle")
+        weighed = bool(estimate.problem.weights)
+        labels = ("along", "across", "angle") if weighed else ("x", "y", "angle")
         for time, part, colour, label in zip(times, parts, COLORS, labels, strict=False):
             first = film is estimate.problem.films[0]
             panel.plot(
@@ -98,6 +109,17 @@ def _draw_pulls(panel: Axes, found: Fit) -> None:
     panel.set(xlabel="residual / noise", ylabel="density", title=f"{pulls.size} residuals")
 
 
+def _draw_friction(panel: Axes, found: Fit) -> None:
+    """The friction coefficient over slip speed, with its 95 % band."""
+    nodes, values, errors = found.friction_over()
+    fine, value, error = found.friction_over(np.linspace(0.0, float(nodes[-1]), 200))
+    wide = found.certainty.quantile * error
+    panel.fill_between(fine, value - wide, value + wide, color=BLUE, alpha=0.25, linewidth=0.0)
+    panel.plot(fine, value, color=BLUE)
+    panel.errorbar(nodes, values, found.certainty.quantile * errors, fmt="o", color=BLUE)
+    panel.set(xlabel="slip speed / m/s", title="friction, 95 %")
+
+
 def _draw_profile(panel: Axes, found: Fit, name: str) -> None:
     """By how much χ² rises when one number is held elsewhere."""
     k = found.estimate.problem.asked.free.index(name)
@@ -108,7 +130,7 @@ def _draw_profile(panel: Axes, found: Fit, name: str) -> None:
     fine = np.linspace(values[0], values[-1], 100)
     if math.isfinite(error):
         panel.plot(fine, ((fine - number.value) / error) ** 2, ":", color=GREY)
-    panel.axhline(3.841, color=ORANGE, linewidth=0.8)
+    panel.axhline(found.certainty.quantile**2, color=ORANGE, linewidth=0.8)
     for end in (number.low, number.high):
         panel.axvline(end, color=ORANGE, linewidth=0.8)
     unit = "" if number.unit == "1" else f" / {number.unit}"
