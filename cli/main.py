@@ -18,10 +18,12 @@ import click
 from puck_tables.cli.aim import aim
 from puck_tables.cli.asperity import asperity
 from puck_tables.cli.build_tables import build_tables
+from puck_tables.cli.compare import compare
 from puck_tables.cli.fit import fit
 from puck_tables.cli.info import info
 from puck_tables.cli.options import printable, said_first
 from puck_tables.cli.paper import paper
+from puck_tables.cli.reference import reference
 from puck_tables.cli.scene import scene
 from puck_tables.cli.simulate import simulate
 from puck_tables.cli.start import INTERRUPTED, end_at_once, last_words
@@ -142,7 +144,7 @@ def main() -> None:
 
 _ALL = (
     simulate, sweep, aim, scene, track, fit, build_tables, validate, info, tables, paper, tradeoff,
-    asperity,
+    asperity, reference, compare,
 )  # fmt: skip
 for _command in _ALL:
     main.add_command(_command)

@@ -30,8 +30,8 @@ class Puck(Verbs):
     ----------
     radius : m, > 0, of the base
     height : m, ≥ 0
-        Of the puck, whose centre of mass lies half as high; of a body that is not homogeneous, twice
-        the height of its centre of mass.
+        Of the puck, whose centre of mass lies half as high; of a body that is not homogeneous,
+        twice the height of its centre of mass.
     friction : Coulomb coefficient f, ≥ 0
         0, where it is left out: a puck that never stops by itself, for scenes alone.
     mass : kg, > 0; of a free puck only energies depend on it
@@ -65,7 +65,9 @@ class Puck(Verbs):
     """
 
     radius: float = of("number", unit="m", low=0.0, above=True, doc="of the base")
-    height: float = of("number", 0.0, "m", low=0.0, doc="twice that of its centre of mass; 0: no tilt")
+    height: float = of(
+        "number", 0.0, "m", low=0.0, doc="twice that of its centre of mass; 0: no tilt"
+    )
     friction: float = of("number", 0.0, low=0.0, doc="Coulomb's coefficient f")
     mass: float = of("number", 1.0, "kg", low=0.0, above=True)
     gravity: float = of("number", STANDARD_GRAVITY, "m/s^2", low=0.0, above=True)
