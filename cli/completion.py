@@ -1,4 +1,4 @@
-"""What a shell offers at the Tab key where click alone cannot know it: scenes and pressure laws."""
+"""What a shell offers at the Tab key where click alone cannot know it: scenes, cases, laws."""
 
 from __future__ import annotations
 
@@ -15,6 +15,13 @@ def scenes(context: click.Context, param: click.Parameter, begun: str) -> list[C
     named = shipped_scenes().items()
     found = [CompletionItem(name, help=title) for name, title in named if name.startswith(begun)]
     return found if param.metavar is None else [*found, CompletionItem(begun, type="file")]
+
+
+def cases(context: click.Context, param: click.Parameter, begun: str) -> list[CompletionItem]:
+    """Names of benchmark cases, with their titles."""
+    from puck_tables.reference.cases import CASES
+
+    return [CompletionItem(c.name, help=c.title) for c in CASES if c.name.startswith(begun)]
 
 
 def laws(context: click.Context, param: click.Parameter, begun: str) -> list[CompletionItem]:

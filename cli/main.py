@@ -18,13 +18,18 @@ import click
 from puck_tables.cli.aim import aim
 from puck_tables.cli.asperity import asperity
 from puck_tables.cli.build_tables import build_tables
+<<<<<<< HEAD
 from puck_tables.cli.explore import explore
 from puck_tables.cli.export import export
+=======
+from puck_tables.cli.compare import compare
+>>>>>>> ref
 from puck_tables.cli.fit import fit
 from puck_tables.cli.info import info
 from puck_tables.cli.limit_surface import limit_surface
 from puck_tables.cli.options import printable, said_first
 from puck_tables.cli.paper import paper
+from puck_tables.cli.reference import reference
 from puck_tables.cli.scene import scene
 from puck_tables.cli.simulate import simulate
 from puck_tables.cli.start import INTERRUPTED, end_at_once, last_words
@@ -145,7 +150,11 @@ def main() -> None:
 
 _ALL = (
     simulate, sweep, aim, scene, track, fit, build_tables, validate, info, tables, paper, tradeoff,
+<<<<<<< HEAD
     asperity, limit_surface, export, explore,
+=======
+    asperity, reference, compare,
+>>>>>>> ref
 )  # fmt: skip
 for _command in _ALL:
     main.add_command(_command)

@@ -80,7 +80,7 @@ _LAUNCHED = (
     "--output",
     type=FILE,
     metavar="FILE",
-    help="Save: .h5, .csv, .jsonl or .parquet.",
+    help="Save: .h5, .csv, .json, .jsonl or .parquet.",
 )
 @click.option(
     "--movie",

@@ -69,7 +69,8 @@ RANGE = Range()
     "--output",
     type=FILE,
     metavar="FILE",
-    help="Save the map: .h5, .csv, .jsonl or .parquet.  Without -o and --plot, CSV goes to stdout.",
+    help="Save the map: .h5, .csv, .json, .jsonl or .parquet.  Without -o and --plot, CSV goes to "
+    "stdout.",
 )
 @click.option(
     "--resume",

@@ -40,11 +40,11 @@ class Result:
         raise NotImplementedError
 
     def save(self, path: str | Path, overwrite: bool = False) -> None:
-        """Write the result as HDF5, CSV, JSON lines or Parquet, by the ending of the name.
+        """Write the result as HDF5, CSV, JSON or Parquet, by the ending of the name.
 
         Parameters
         ----------
-        path : .h5 (everything, labelled), .csv, .jsonl or .parquet (one row a state or a launch)
+        path : .h5 or .json (everything, labelled), .csv, .jsonl or .parquet (one row a state)
         overwrite : whether an existing file may be replaced
 
         Raises

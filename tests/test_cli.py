@@ -218,7 +218,7 @@ V0 = ["simulate", "--v0", "1,0"]
         ([*V0, "--w0", "2", "--tol", "1e-14"], ["tol must be from 1e-13"]),
         ([*V0, "--method", "euler"], ["'euler'"]),
         ([*V0, "--exact", "--table", "x.h5"], ["--exact and --table clash"]),
-        ([*V0, "-o", "run.xlsx"], [".h5, .csv, .jsonl"]),
+        ([*V0, "-o", "run.xlsx"], [".h5, .csv, .json, .jsonl"]),
         ([*V0, "--plot", "run.bmp"], [".png"]),
         ([*V0, "-o", "a.csv", "--plot", "a.csv"], ["two outputs"]),
         (["sweep", "--w0", "5:1:10"], ["STOP must be greater than START"]),
@@ -277,7 +277,7 @@ def _seconds(argument: str) -> float:
 
 def test_odd_names_and_numbers(folder: Path):
     refused(puck(*V0, "-o", "x" * 300 + ".csv"), 1, "name too long")
-    refused(puck(*V0, "-o", "/dev/stdout", "--overwrite"), 2, ".h5, .csv, .jsonl")
+    refused(puck(*V0, "-o", "/dev/stdout", "--overwrite"), 2, ".h5, .csv, .json, .jsonl")
     Path("pipe.csv").unlink(missing_ok=True)
     os.mkfifo("pipe.csv")
     refused(puck(*V0, "-o", "pipe.csv", "--overwrite"), 1, "not a regular file")

@@ -62,7 +62,7 @@ def heading(text: str) -> Heading:
     (Heading(role='time', puck='', unit='ms'), Heading(role='x', puck='red', unit='px'), \
 Heading(role='', puck='', unit=''))
     """
-    name, unit_text = _parted(text.strip().strip("\"'").strip())
+    name, unit_text = parted(text.strip().strip("\"'").strip())
     if "{" in name:  # v_{x}, θ_{r}: Tracker's names of what it derives from places
         return Heading("")
     tokens = _CAMEL.sub(" ", name)
@@ -99,8 +99,14 @@ Heading(role='', puck='', unit=''))
     return Heading(role, _joined(tokens, [found[n] for n in kept]), unit)
 
 
-def _parted(text: str) -> tuple[str, str]:
-    """A name and what stands as its unit, in brackets or after a stroke."""
+def parted(text: str) -> tuple[str, str]:
+    """A name and what stands as its unit, in brackets or after a stroke.
+
+    Examples
+    --------
+    >>> parted("x [mm]"), parted("t / s"), parted("x")
+    (('x', 'mm'), ('t', 's'), ('x', ''))
+    """
     found = re.fullmatch(r"(.+?)\s*[\[(<]\s*([^\[\]()<>]*?)\s*[\])>]", text)
     if found is not None:
         return found[1], found[2]

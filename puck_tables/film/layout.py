@@ -12,6 +12,7 @@ from puck_tables.film.headings import Heading, heading, headings, is_unit
 from puck_tables.film.text import Look, split
 
 _TRACKPY = {"frame", "particle", "x", "y"}
+_SCORER = "scorer"  # begins DeepLabCut's tables
 _LIKELY = 0.6  # what DeepLabCut takes for a mark that is there ('pcutoff')
 
 
@@ -45,6 +46,41 @@ def layout_of(path: str | Path, look: Look, columns: str | None) -> Layout:
     >>> [one.role for _, one in layout_of("a.csv", look, None).columns]
     ['time', 'x', 'y']
     """
+    header = headed(path, look, columns)
+    if columns is not None:
+        return _named(header[0])
+    if header[0][0].lower() == _SCORER:
+        return _deeplabcut(path, header)
+    names = header[-1]
+    layout = _named(names, _owners(header)) if len(header) > 1 else _named(names)
+    found = {name.lower() for name in names}
+    if found >= _TRACKPY:
+        layout.kind, layout.pixels = "trackpy table", True
+    if "frame_idx" in found and {"track", "instance.score"} & found:
+        layout.kind, layout.pixels, layout.jointed, layout.likely = "SLEAP table", True, True, None
+    return layout
+
+
+def headed(path: str | Path, look: Look, columns: str | None) -> list[list[str]]:
+    """The rows of names over the columns of a table; the last has their units in brackets.
+
+    Parameters
+    ----------
+    path : the file, for messages
+    look : how it is written
+    columns : names with commas in place of those in the file; empty for '-'
+
+    Raises
+    ------
+    InputError
+        If there are none, or not as many as columns.
+
+    Examples
+    --------
+    >>> look = Look("utf-8", ",", False, [["t", "x"], ["s", "cm"]], [], [["0", "1"]], 2, 2)
+    >>> headed("a.csv", look, None)
+    [['t [s]', 'x [cm]']]
+    """
     header = [row[: look.width] + [""] * (look.width - len(row)) for row in look.header]
     if columns is not None:
         names = [name.strip() for name in columns.split(",")]
@@ -53,7 +89,7 @@ def layout_of(path: str | Path, look: Look, columns: str | None) -> Layout:
                 f"{path} has {look.width} columns, and columns names {len(names)}: name each, "
                 f"with - for those to leave out (its first row is {_shown(look.rows[0])})"
             )
-        return _named(["" if name == "-" else name for name in names])
+        return [["" if name == "-" else name for name in names]]
     if not header and (said := _commented(look)):
         header = [said]
     if not header:
@@ -61,27 +97,20 @@ def layout_of(path: str | Path, look: Look, columns: str | None) -> Layout:
             f"{path} has no header: say what its {look.width} columns are, such as "
             f"columns='{example(look.width)}' (--columns); its first row is {_shown(look.rows[0])}"
         )
-    if header[0][0].lower() == "scorer":
-        return _deeplabcut(path, header)
+    if header[0][0].lower() == _SCORER:
+        return header
     if len(header) > 1 and _are_units(header[-1]):
         units = header.pop()
         header[-1] = [
             f"{name} [{unit.strip('[]() ')}]" if is_unit(unit) else name
             for name, unit in zip(header[-1], units, strict=True)
         ]
-    names = header[-1]
     if look.header and len(look.header[-1]) < look.width:
         raise InputError(
             f"{path} has {len(look.header[-1])} names for {look.width} columns, so none can be told"
             " from another: name all with columns (--columns), - for those to leave out"
         )
-    layout = _named(names, _owners(header)) if len(header) > 1 else _named(names)
-    found = {name.lower() for name in names}
-    if found >= _TRACKPY:
-        layout.kind, layout.pixels = "trackpy table", True
-    if "frame_idx" in found and {"track", "instance.score"} & found:
-        layout.kind, layout.pixels, layout.jointed, layout.likely = "SLEAP table", True, True, None
-    return layout
+    return header
 
 
 def _are_units(row: Sequence[str]) -> bool:

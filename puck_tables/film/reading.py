@@ -129,6 +129,33 @@ def film_of(path: str | Path, columns: str | None = None) -> Film:
     ...     film_of(file).unit
     'px'
     """
+    head = beginning(path)
+    film = _own_format(path, head)
+    if film is None:
+        return film_of_table(path, head, columns)
+    if columns is not None:
+        raise InputError(f"{path} is a {film.kind}, not a table: leave columns (--columns) out")
+    return film
+
+
+def beginning(path: str | Path) -> bytes:
+    """How a file begins.
+
+    Raises
+    ------
+    InputError
+        If it is empty, or of a kind in which no track stands.
+    OSError
+        If it cannot be read.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     _ = Path(folder, "a.csv").write_text("t,x,y")
+    ...     beginning(Path(folder, "a.csv"))
+    b't,x,y'
+    """
     with opened(path, LARGEST) as file:
         head = file.read(_HEAD)
     if not head:
@@ -140,12 +167,31 @@ def film_of(path: str | Path, columns: str | None = None) -> Film:
         raise InputError(
             f"{path} is a film, not a track: first follow the puck in it, with Tracker for one"
         )
-    film = _own_format(path, head)
-    if film is None:
-        return film_of_table(path, head, columns)
-    if columns is not None:
-        raise InputError(f"{path} is a {film.kind}, not a table: leave columns (--columns) out")
-    return film
+    return head
+
+
+def refuse_no_text(path: str | Path, head: bytes) -> None:
+    """Refuse a file of tracks that is no table in a text file.
+
+    Raises
+    ------
+    InputError
+
+    Examples
+    --------
+    >>> refuse_no_text("a.json", b"{}")
+    Traceback (most recent call last):
+    ...
+    puck_tables.errors.InputError: a.json looks like JSON: save the table as CSV
+    """
+    for begin, what in ((_HDF5, "an HDF5 file"), (_ZIP, "a zip archive")):
+        if head.startswith(begin):
+            raise InputError(f"{path} is {what}: save the table as CSV")
+    text = head[:400].decode(encoding_of(path, head), errors="ignore").lstrip("\ufeff \t\r\n")
+    if text.startswith("<"):
+        raise InputError(f"{path} looks like XML: save the table as CSV")
+    if text.startswith(("{", "[")):
+        raise InputError(f"{path} looks like JSON: save the table as CSV")
 
 
 def _own_format(path: str | Path, head: bytes) -> Film | None:
@@ -166,6 +212,5 @@ def _own_format(path: str | Path, head: bytes) -> Film | None:
         from puck_tables.film.tracker import film_of_xml
 
         return film_of_xml(path)
-    if text.startswith(("{", "[")):
-        raise InputError(f"{path} looks like JSON: save the table as CSV")
+    refuse_no_text(path, head)
     return None

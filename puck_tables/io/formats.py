@@ -14,7 +14,7 @@ from puck_tables._core.safe_write import write_bytes
 from puck_tables.errors import InputError
 from puck_tables.io.dataset import Dataset
 
-FORMATS = {".h5": "hdf5", ".csv": "csv", ".jsonl": "jsonl", ".parquet": "parquet"}
+FORMATS = {".h5": "hdf5", ".csv": "csv", ".json": "json", ".jsonl": "jsonl", ".parquet": "parquet"}
 
 
 def ending_of(path: str | Path, allowed: Any) -> str:
@@ -76,6 +76,6 @@ def save(dataset: Dataset, path: str | Path, overwrite: bool = False) -> None:
     Traceback (most recent call last):
     ...
     puck_tables.errors.InputError: run.txt: the ending of an output file chooses its format: one \
-of .h5, .csv, .jsonl, .parquet
+of .h5, .csv, .json, .jsonl, .parquet
     """
     write_bytes(path, encoder_for(path)(dataset), overwrite)

@@ -1,0 +1,155 @@
+"""``puck reference``: benchmark cases with their exact answer, at the times of an engine."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+from puck_tables.cli.completion import cases
+from puck_tables.cli.options import (
+    FILE,
+    NUMBER,
+    Times,
+    deliver,
+    explain_option,
+    explained,
+    output_options,
+    prepare_outputs,
+    printable,
+)
+
+from puck_tables.errors import InputError
+
+if TYPE_CHECKING:
+    from puck_tables.reference.answer import Answer
+    from puck_tables.reference.friction import FloorFriction
+
+
+@click.command()
+@click.argument("case", required=False, shell_complete=cases)
+@click.option("--dt", type=NUMBER, help="Time between two frames, s.")
+@click.option("--fps", type=NUMBER, help="Frames a second.")
+@click.option(
+    "--times",
+    type=FILE,
+    metavar="FILE",
+    help="The times of the frames, s: one a line, or the column t of a table.",
+)
+@click.option(
+    "--epsilon",
+    type=Times(),
+    metavar="E1,E2,...|START:STOP:COUNT",
+    help="Force and torque on the floor at these v/(r w), in place of the motion.",
+)
+@click.option("--friction", is_flag=True, help="The same at 81 of them from 0.01 to 100.")
+@explain_option
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
+@click.option(
+    "-o",
+    "--output",
+    type=FILE,
+    metavar="FILE",
+    help="Save: .h5, .csv, .json, .jsonl or .parquet, each with bounds of the errors.",
+)
+@output_options
+def reference(
+    case: str | None, dt: float | None, fps: float | None, times: Path | None,
+    epsilon: tuple[float, ...] | None, friction: bool, explain: bool, as_json: bool,
+    output: Path | None, plot: Path | None, overwrite: bool,
+) -> None:  # fmt: skip
+    """Give the exact answer to a benchmark CASE; without one, list the cases.
+
+    The height of a puck is the full height of a homogeneous cylinder, its centre of mass lies half
+    as high.  Angles and spins are counter-clockwise positive.
+
+    \b
+    puck reference
+    puck reference coin
+    puck reference coin --dt 0.001 -o coin.csv --plot coin.png
+    puck reference slide-spin-5 --times mine.csv -o exact.h5
+    puck reference coin --friction -o friction.csv
+    """  # noqa: D301 - click reads the backspace
+    if case is None:
+        click.echo(_listed(as_json))
+        return
+    frames = {"dt": dt, "fps": fps, "times": times}
+    over = epsilon is not None or friction
+    if over and any(value is not None for value in frames.values()):
+        raise InputError(
+            "--epsilon and --friction are of no motion: leave --dt, --fps, --times out"
+        )
+    if epsilon is not None and friction:
+        raise InputError("--epsilon and --friction both choose the ratios: give one of them")
+    prepare_outputs(output, plot=plot, overwrite=overwrite, inputs=(times,))
+    found: Any
+    if over:
+        from puck_tables.reference.friction import floor_friction
+
+        found = floor_friction(case, epsilon)
+    else:
+        from puck_tables.reference.answer import reference_case
+
+        found = reference_case(case, **frames)
+    deliver(found, output, plot, overwrite)
+    if explain:
+        explained(found)
+    if as_json:
+        click.echo(json.dumps(found.summary(), allow_nan=False))
+    else:
+        click.echo(printable((_friction if over else report)(found)))
+
+
+def _listed(as_json: bool) -> str:
+    from puck_tables.reference.cases import CASES
+
+    if as_json:
+        fields = ("name", "version", "title", "tests")
+        return json.dumps([{name: getattr(case, name) for name in fields} for case in CASES])
+    width = max(len(case.name) for case in CASES)
+    return "\n".join(f"{case.name:<{width}}  {case.version}  {case.title}" for case in CASES)
+
+
+def report(answer: Answer) -> str:
+    """A case and its answer."""
+    case = answer.case
+    lines = {"case": f"{case.label}: {case.title}", "tests": case.tests}
+    for n, (piece, name) in enumerate(zip(answer.pieces, answer.names or ("puck",), strict=True)):
+        lines[name] = (
+            f"r = {piece.radius:g} m, height {piece.height:g} m (centre of mass at "
+            f"{0.5 * piece.height:g} m), f = {piece.friction:g}, g = {piece.gravity:g} m/s^2, "
+            f"m = {piece.mass:g} kg, delta = {piece.delta:.6g}"
+        )
+        (vx, vy), launch = piece.launch.velocity or (0.0, 0.0), piece.launch
+        lines["launch" if n == 0 else f"launch {n + 1}"] = (
+            f"v = ({vx:g}, {vy:g}) m/s, w = {launch.spin:g} rad/s at "
+            f"({launch.position[0]:g}, {launch.position[1]:g}) m"
+        )
+    lines["end"] = f"{answer.end} after {answer.end_time:.12g} s"
+    last = answer.last()
+    for n, name in enumerate(answer.names or ("place",)):
+        x, y = (last[axis][n] if answer.names else last[axis] for axis in ("x", "y"))
+        lines[f"stop {name}" if answer.names else name] = f"({x:.12g}, {y:.12g}) m"
+    if answer.limit_epsilon is not None:
+        limit = answer.limit_epsilon
+        inverse = f"{1.0 / limit:.9g}" if limit > 0.0 else "inf"
+        lines["limit"] = f"v/(r w) -> {limit:.9g} as papers write it, r w/v -> {inverse} as here"
+    lines["error"] = (
+        f"<= {answer.time_bound:.1e} s, {answer.place_bound:.1e} m, {answer.speed_bound:.1e} m/s; "
+        f"Q = {answer.speed_scale:.6g} m/s, J = {answer.rate_scale:.6g} m/s^2"
+    )
+    return "\n".join(f"{name:<12} {text}" for name, text in lines.items())
+
+
+def _friction(found: FloorFriction) -> str:
+    """A few rows of force and torque over ε."""
+    head = f"{'v/(r w)':>12} {'r w/v':>12} {'F along/fN':>14} {'F across/fN':>14} {'M/(fNr)':>14}"
+    step = max(1, found.epsilon.size // 20)
+    rows = [
+        f"{found.epsilon[n]:>12.6g} {found.slip_ratio[n]:>12.6g} {found.share_along[n]:>14.10f} "
+        f"{found.share_across[n]:>14.10f} {found.share_torque[n]:>14.10f}"
+        for n in range(0, found.epsilon.size, step)
+    ]
+    what = f"{found.case.label}: on the floor, fN = {found.load:.6g} N, r = {found.puck.radius:g} m"
+    return "\n".join([what, head, *rows])

@@ -1,0 +1,96 @@
+"""A comparison as one page for any browser: its words, its numbers and its picture, nothing else."""
+
+from __future__ import annotations
+
+import io
+import math
+from html import escape
+from pathlib import Path
+
+from puck_tables._core.safe_write import write_bytes
+from puck_tables._version import __version__
+from puck_tables.io.columns import COLUMNS
+from puck_tables.io.formats import ending_of
+from puck_tables.plot.comparison import draw
+from puck_tables.plot.style import require_matplotlib
+from puck_tables.reference.comparison import Comparison
+
+_STYLE = (
+    "body{font:16px/1.5 system-ui,sans-serif;max-width:62em;margin:2em auto;padding:0 1em}"
+    "table{border-collapse:collapse;font-size:14px}td,th{border:1px solid #ccc;padding:.2em .6em;"
+    "text-align:right}td:first-child,th:first-child{text-align:left}svg{max-width:100%;height:auto}"
+)
+
+
+def checked_page(path: Path) -> None:
+    """Refuse, before any work, a page that could not be made.
+
+    Raises
+    ------
+    InputError
+        If the name does not end in .html.
+    MissingExtraError
+        If matplotlib is not installed.
+    """
+    ending_of(path, (".html",))
+    require_matplotlib()
+
+
+def save_page(found: Comparison, path: Path, overwrite: bool = False) -> None:
+    """Write the page, whole or not at all.
+
+    Raises
+    ------
+    InputError, MissingExtraError
+        As :func:`checked_page`.
+    OutputError
+        If the file exists (without ``overwrite``) or cannot be written.
+    """
+    checked_page(path)
+    write_bytes(path, page(found).encode(), overwrite)
+
+
+def page(found: Comparison) -> str:
+    """The page as HTML."""
+    case, answer = found.answer.case, found.answer
+    picture = io.StringIO()
+    draw(found).savefig(picture, format="svg", metadata={"Date": None})
+    svg = picture.getvalue()
+    svg = svg[svg.index("<svg") :]
+    rows = found.rows()
+    names = list(rows[0])
+    head = "".join(f"<th>{escape(_titled(name))}</th>" for name in names)
+    body = "".join(
+        f"<tr><td>{escape(run.log.name)}</td>"
+        + "".join(f"<td>{_written(row[name])}</td>" for name in names) + "</tr>"
+        for run, row in zip(found.runs, rows, strict=True)
+    )  # fmt: skip
+    exact = f"It ends after {answer.end_time:.12g} s ({escape(answer.end)})"
+    if not answer.names:
+        last = answer.last()
+        exact += f" at ({last['x']:.12g}, {last['y']:.12g}) m"
+    exact += f", known to {answer.time_bound:.1e} s and {answer.place_bound:.1e} m."
+    fallen = "".join(
+        f"<li>{escape(words)}: {escape(what)}</li>" for words, what in found.convergence().items()
+    )
+    truths = "".join(f"<li>{escape(one)}</li>" for one in found.truths())
+    met = escape(", ".join(map(str, found.thresholds)))
+    return (
+        f"<!DOCTYPE html>\n<html lang='en'><head><meta charset='utf-8'>"
+        f"<title>{escape(case.label)}</title><style>{_STYLE}</style></head><body>"
+        f"<h1>{escape(case.title)}</h1><p>Case {escape(case.label)}: {escape(case.tests)}. {exact} "
+        f"Rest counts from {met} on.</p>"
+        f"<h2>Errors</h2><table><tr><th>file</th>{head}</tr>{body}</table>"
+        + (f"<h2>As the step falls</h2><ul>{fallen}</ul>" if fallen else "")
+        + (f"<h2>Truth and not error</h2><ul>{truths}</ul>" if truths else "")
+        + f"<h2>Picture</h2>{svg}<p>Made by puck-tables {__version__}.</p></body></html>\n"
+    )
+
+
+def _titled(name: str) -> str:
+    column = COLUMNS[name]
+    return column.long_name + (f" / {column.unit}" if column.unit not in ("", "1") else "")
+
+
+def _written(value: float) -> str:
+    return f"{value:.5g}" if math.isfinite(value) else "–"

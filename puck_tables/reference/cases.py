@@ -1,0 +1,178 @@
+"""The benchmark cases: each a scene with a name and a version.
+
+A new case is one entry in ``CASES``.  What a case says must never change under its version: whoever
+has published an error against it must be able to compute it again.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from copy import deepcopy
+from difflib import get_close_matches
+from typing import Any, NamedTuple
+
+from puck_tables.errors import InputError
+from puck_tables.scene.scene import Scene
+
+TOL = 1e-11  # of Q/J and Q²/J
+
+
+class Case(NamedTuple):
+    """A motion to be held against.
+
+    ``name``, ``version``; ``title``: a line; ``tests``: what an engine gets wrong in it, in a
+    sentence; ``tables``: the scene, as a scene file has it, in SI units.  Its ``height`` is the
+    full height of a homogeneous cylinder, whose centre of mass lies half as high.
+    """
+
+    name: str
+    version: int
+    title: str
+    tests: str
+    tables: Mapping[str, Any]
+
+    @property
+    def label(self) -> str:
+        """Name and version, as files carry them."""
+        return f"{self.name} (version {self.version})"
+
+    def scene(self) -> Scene:
+        """The case as a scene, computed to ``TOL``.
+
+        Examples
+        --------
+        >>> case_named("coin").scene().launch.spin
+        12.0
+        """
+        tables = deepcopy(dict(self.tables))
+        tables["title"] = self.title
+        tables["run"] = {**tables.get("run", {}), "tol": TOL}
+        return Scene.from_tables(tables, f"case {self.name}")
+
+
+_DISC = {"radius": 0.05, "height": 0.002, "friction": 0.2, "gravity": 9.81, "mass": 0.1}
+_TALL = {**_DISC, "friction": 0.5}
+_STONE = {**_DISC, "restitution": 0.9, "tangential": 0.0, "rim": 0.1}
+_DOWN = -0.5 * math.pi  # along −y
+
+
+def _thrown(ratio: float) -> Case:
+    """A flat disc at 0.5 m/s with a rim that is ``ratio`` times as fast."""
+    return Case(
+        f"slide-spin-{ratio:g}", 1, f"Flat disc, rim {ratio:g} times as fast as its centre",
+        "sliding and spinning brake each other: two separate frictions stop at two moments",
+        {"puck": _DISC, "launch": {"velocity": [0.5, 0.0], "spin": ratio * 0.5 / 0.05}},
+    )  # fmt: skip
+
+
+def _tall(delta: float, more: str) -> Case:
+    """A cylinder as high as δ = 2 f h/r says: with f = 0.5, h = δ r."""
+    return Case(
+        f"tall-{delta:g}", 1, f"Cylinder with delta = {delta:g}: it presses harder in front",
+        f"the pressure tilts and the path bends{more}",
+        {"puck": {**_TALL, "height": delta * 0.05},
+         "launch": {"velocity": [1.0, 0.0], "spin": 20.0}},
+    )  # fmt: skip
+
+
+def _incline(name: str, over: float, words: str, tests: str, time: float | None) -> Case:
+    """A spinning disc sent across and up a slope of ``over`` times its angle of friction."""
+    tables: dict[str, Any] = {
+        "puck": _DISC, "floor": {"slope": math.atan(over * 0.2), "downhill": _DOWN},
+        "launch": {"velocity": [0.5, 0.3], "spin": 20.0},
+    }  # fmt: skip
+    if time is not None:
+        tables["run"] = {"time": time}
+    return Case(f"incline-{name}", 1, f"Spinning disc on a slope {words}", tests, tables)
+
+
+CASES = (
+    Case(
+        "coin", 1, "Masterjohn's coin: a quarter dollar that slides and spins",
+        "the ratio v/(r w) at a finite spin is not yet that of the limit",
+        {
+            "puck": {"radius": 0.01213, "height": 0.00175, "friction": 0.2, "gravity": 9.81,
+                     "mass": 0.00567},
+            "launch": {"velocity": [0.2, 0.0], "spin": 12.0},
+        },
+    ),
+    Case(
+        "spin", 1, "Flat disc that only spins", "torque 2/3 f m g r, stop after 3/4 r w/(f g)",
+        {"puck": _DISC, "launch": {"velocity": [0.0, 0.0], "spin": 20.0}},
+    ),
+    Case(
+        "slide", 1, "Flat disc that only slides", "force f m g, stop after v/(f g)",
+        {"puck": _DISC, "launch": {"velocity": [1.0, 0.0]}},
+    ),
+    *map(_thrown, (0.2, 0.5, 1.0, 2.0, 5.0)),
+    _tall(0.5, ""),
+    _tall(1.0, "; in a pure slide the rear edge would just carry nothing"),
+    _tall(2.0, "; at first part of the base carries nothing"),
+    Case(
+        "annulus", 1, "Washer with a hole half as wide",
+        "friction and inertia of a ring: another limit of v/(r w)",
+        {
+            "puck": {**_DISC, "pressure": "annulus:0.5", "gyration": math.sqrt((1 + 0.25) / 2)},
+            "launch": {"velocity": [0.5, 0.0], "spin": 20.0},
+        },
+    ),
+    _incline("below", 0.5, "that holds it", "it stops, and stays where it stopped", None),
+    _incline("at", 1.0, "of just its friction",
+             "spin uses up friction; what is left at the end is a slide of constant speed", 1.5),
+    _incline("above", 1.5, "that does not hold it", "it slides off ever faster", 1.0),
+    Case(
+        "belt", 1, "Spinning disc set on a belt",
+        "friction against a moving floor: its slip starts along the belt",
+        {"puck": _DISC, "floor": {"velocity": [0.5, 0.0]},
+         "launch": {"velocity": [0.0, 0.2], "spin": 20.0}},
+    ),
+    Case(
+        "turntable", 1, "Disc set on a turntable that throws it off",
+        "a floor whose velocity differs from place to place, and turns",
+        {"puck": _DISC, "floor": {"turning": 4.0},
+         "launch": {"velocity": [0.0, 0.0], "position": [0.2, 0.0]}, "run": {"time": 1.0}},
+    ),
+    Case(
+        "rebound", 1, "Spinning disc off a cushion",
+        "restitution 0.8; the rim stops on the cushion or rubs with 0.2 of the impulse",
+        {
+            "puck": _DISC, "launch": {"velocity": [1.0, 0.5], "spin": 20.0},
+            "wall": [{"point": [0.2, 0.0], "normal": [-1.0, 0.0], "restitution": 0.8,
+                      "tangential": 0.0, "friction": 0.2}],
+        },
+    ),
+    Case(
+        "take-out", 1, "Spinning disc hits another that lies",
+        "restitution 0.9, rims with friction 0.1, then two motions to their stops",
+        {
+            "puck": [
+                {**_STONE, "name": "red", "colour": "firebrick",
+                 "launch": {"velocity": [1.0, 0.0], "spin": 10.0}},
+                {**_STONE, "name": "yellow", "colour": "gold",
+                 "launch": {"position": [0.25, 0.03]}},
+            ],
+        },
+    ),
+)  # fmt: skip
+
+
+def case_named(name: str) -> Case:
+    """The case of a name.
+
+    Raises
+    ------
+    InputError
+        If there is none, with the nearest and a list.
+
+    Examples
+    --------
+    >>> case_named("coin").label
+    'coin (version 1)'
+    """
+    named = {case.name: case for case in CASES}
+    if not isinstance(name, str) or name not in named:
+        near = get_close_matches(str(name).lower(), named, 1, 0.6)
+        hint = f", did you mean '{near[0]}'?" if near else "."
+        raise InputError(f"there is no case {name!r:.40}{hint} Cases: {', '.join(named)}")
+    return named[name]

@@ -1,0 +1,130 @@
+"""What a puck does to the floor: its slip over it, and the force and the torque that it passes on.
+
+    F_∥ = fN cos φ ρ_∥,   F_⊥ = fN sin φ cos φ ρ_⊥,   M = (fNr/2) sin φ ρ_ω
+
+along the slip, to its left, and about the vertical in the sense of the spin; φ = atan2(rω, v) of
+velocity and spin relative to the floor (Salnikova, Treschev, Gallyamov 2012, section 6).  A puck at
+rest on the floor passes on what the other forces ask.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.puck import Puck
+from puck_tables.scene.parts import Floor
+
+
+class Slip(NamedTuple):
+    """Velocity and spin relative to the floor, arrays: m/s, m/s, rad/s."""
+
+    vx: FloatArray
+    vy: FloatArray
+    spin: FloatArray
+
+    def sizes(self, radius: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Speed v, speed of the rim r|ω|, and Q = hypot(v, rω), m/s.
+
+        Examples
+        --------
+        >>> one = np.ones(1)
+        >>> [size.round(4).item() for size in Slip(3.0 * one, 0.0 * one, -2.0 * one).sizes(2.0)]
+        [3.0, 4.0, 5.0]
+        """
+        speed, rim = np.hypot(self.vx, self.vy), radius * np.abs(self.spin)
+        return speed, rim, np.hypot(speed, rim)
+
+
+def slip_over(floor: Floor, states: Mapping[str, FloatArray]) -> Slip:
+    """Of states ``x``, ``y``, ``vx``, ``vy``, ``spin`` over a floor that may move.
+
+    Examples
+    --------
+    >>> state = {name: np.ones(1) for name in ("x", "y", "vx", "vy", "spin")}
+    >>> slip_over(Floor(velocity=(1.0, 0.0), turning=2.0), state)
+    Slip(vx=array([2.]), vy=array([-1.]), spin=array([-1.]))
+    """
+    (bx, by), (cx, cy), turning = floor.velocity, floor.centre, floor.turning
+    return Slip(
+        states["vx"] - bx + turning * (states["y"] - cy),
+        states["vy"] - by - turning * (states["x"] - cx),
+        states["spin"] - turning,
+    )
+
+
+def ratios(slip: Slip, radius: float) -> tuple[FloatArray, FloatArray]:
+    """ε = v/(r|ω|) of the papers, and r|ω|/v; both NaN at rest, where there is no ratio.
+
+    Examples
+    --------
+    >>> one = np.ones(1)
+    >>> ratios(Slip(one, 0.0 * one, 2.0 * one), 1.0)
+    (array([0.5]), array([2.]))
+    """
+    speed, rim, _ = slip.sizes(radius)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return speed / rim, rim / speed
+
+
+def wrench(
+    puck: Puck, phi: FloatArray, slope: float = 0.0
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Force along the slip and to its left, N, and torque, N m, that a puck passes on.
+
+    Parameters
+    ----------
+    puck : Puck
+    phi : ndarray (n,), rad, in [−π/2, π/2]
+    slope : rad, of the floor
+
+    Examples
+    --------
+    >>> _, _, torque = wrench(Puck(0.05, friction=0.2, mass=0.1, gravity=9.81), np.array([np.pi/2]))
+    >>> (torque / (0.2 * 0.1 * 9.81 * 0.05)).round(12).tolist()          # 2/3 of f m g r
+    [0.666666666667]
+    """
+    rho = puck.body.law.friction(phi, puck.delta)
+    load = puck.friction * puck.mass * puck.gravity * math.cos(slope)
+    sine, cosine = np.sin(phi), np.cos(phi)
+    return (
+        load * cosine * rho.parallel,
+        load * sine * cosine * rho.perpendicular,
+        0.5 * load * puck.radius * sine * rho.spin,
+    )
+
+
+def on_the_floor(
+    puck: Puck, floor: Floor, states: Mapping[str, FloatArray]
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Force along x and y, N, and torque, N m, of a puck on the floor, state by state.
+
+    Examples
+    --------
+    >>> puck = Puck(0.05, friction=0.5, mass=0.1, gravity=10.0)
+    >>> moves = {name: np.zeros(2) for name in ("x", "y", "vx", "vy", "spin")}
+    >>> moves["vx"][0] = 1.0
+    >>> [part.round(12).tolist() for part in on_the_floor(puck, Floor(), moves)]
+    [[0.5, 0.0], [0.0, 0.0], [0.0, 0.0]]
+    """
+    slip = slip_over(floor, states)
+    speed, rim, q = slip.sizes(puck.radius)
+    slides = q > 0.0
+    (cx, cy), turning = floor.centre, floor.turning
+    down = puck.gravity * math.sin(floor.slope)
+    fx = puck.mass * (down * math.cos(floor.downhill) + turning**2 * (states["x"] - cx))
+    fy = puck.mass * (down * math.sin(floor.downhill) + turning**2 * (states["y"] - cy))
+    fx, fy = np.array(np.broadcast_to(fx, q.shape)), np.array(np.broadcast_to(fy, q.shape))
+    torque = np.zeros_like(q)
+    phi = np.arctan2(rim, speed)[slides] * np.where(slip.spin[slides] < 0.0, -1.0, 1.0)
+    along, across, turn = wrench(puck, phi, floor.slope)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ahead = np.where(speed > 0.0, np.stack([slip.vx, slip.vy]) / speed, 0.0)[:, slides]
+    fx[slides] = along * ahead[0] - across * ahead[1]
+    fy[slides] = along * ahead[1] + across * ahead[0]
+    torque[slides] = turn
+    return fx, fy, torque

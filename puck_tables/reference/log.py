@@ -1,0 +1,269 @@
+"""The log of an engine: one puck's motion from a table, in SI units and the axes of the cases."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables._core.real import instance, real
+from puck_tables._core.safe_read import read_rows
+from puck_tables.errors import InputError
+from puck_tables.film.layout import headed, name_of
+from puck_tables.film.reading import beginning, refuse_no_text
+from puck_tables.film.text import Look, look_at, read_columns
+from puck_tables.reference.attitude import turned
+from puck_tables.reference.headings import EXAMPLES, LogHeading, log_heading, unit_size
+
+_SLOW = 1.0  # s between rows: more, and times are hardly in seconds
+_MOST_TIMES = 1 << 26  # bytes of a file of times
+_QUATERNION = ("qw", "qx", "qy", "qz")
+UP = ("y", "z")
+
+
+@dataclass(frozen=True)
+class LogHow:
+    """What the user says of a log.
+
+    ``columns``: headings in place of those in the file; ``unit``, ``angle_unit``: of lengths and
+    angles (and of velocities and spins, a second) where it says none; ``up``: the axis that points
+    up, 'y' or 'z', where it has three; ``puck``: whose columns; ``launch_time`` s: when the launch
+    stands in it.
+    """
+
+    columns: str | None = None
+    unit: str | None = None
+    angle_unit: str | None = None
+    up: str | None = None
+    puck: str | None = None
+    launch_time: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name in ("columns", "unit", "angle_unit", "up", "puck"):
+            instance(name, getattr(self, name), str, type(None))
+        real("launch_time", self.launch_time, "s")
+        if self.up is not None and self.up not in UP:
+            raise InputError(f"up must be y or z, the axis that points up, got {self.up!r:.20}")
+        for name, kind in (("unit", "length"), ("angle_unit", "angle")):
+            given = getattr(self, name)
+            if given is not None and unit_size(given, kind) is None:
+                known = (
+                    "m, dm, cm, mm, um, km, in, ft, yd" if kind == "length" else "rad, deg, turn"
+                )
+                raise InputError(f"{name} = {given!r:.40} is not known: one of {known}")
+
+    def size(self, kind: str) -> float | None:
+        """The unit that it says for a kind, in SI units."""
+        whole = {"length": self.unit, "angle": self.angle_unit}
+        whole |= {"velocity": self.unit, "spin": self.angle_unit}
+        unit = whole.get(kind)
+        return (
+            None
+            if unit is None
+            else unit_size(unit, {"velocity": "length", "spin": "angle"}.get(kind, kind))
+        )
+
+
+@dataclass(frozen=True)
+class Log:
+    """One run: arrays (n,) in s, m, rad, m/s and rad/s, from the launch on; None where it has none.
+
+    ``step`` s: the median distance of its times; ``notes``: how it was read.
+    """
+
+    name: str
+    time: FloatArray
+    x: FloatArray
+    y: FloatArray
+    angle: FloatArray | None
+    vx: FloatArray | None
+    vy: FloatArray | None
+    spin: FloatArray | None
+    step: float
+    notes: tuple[str, ...]
+
+
+def read_log(path: str | Path, how: LogHow) -> Log:
+    r"""Read the log of one run.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, its columns, units or axes cannot be told, cells are empty,
+        times do not increase, or quaternions are not normalised.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = Path(folder, "a.csv")
+    ...     _ = file.write_text("t [ms],y [mm],x [mm]\n0,0,0\n10,1,2\n20,1,3\n")
+    ...     log = read_log(file, LogHow())
+    >>> log.time.tolist(), log.x.tolist(), log.spin is None
+    ([0.0, 0.01, 0.02], [0.0, 0.002, 0.003], True)
+    """
+    instance("path", path, str, Path)
+    look, columns = _columns(path, how)
+    said = {one.role: n for n, one in columns.items()}
+    floor = _floor_axes(path, look, said, how)
+    wanted = ["time", *floor.values()]
+    values = _numbers(path, look, columns, how, [said[role] for role in wanted if role in said])
+    time = values[said["time"]] - how.launch_time
+    notes = [f"up is {how.up}"] if how.up else []
+    if columns[said["time"]].unit is None:
+        if time.size > 1 and np.median(np.diff(time)) > _SLOW:
+            raise InputError(
+                f"{path} does not say the unit of its times, and rows would be "
+                f"{np.median(np.diff(time)):.4g} s apart: say it in the header, or with columns "
+                "(--columns)"
+            )
+        notes.append("times taken as seconds, of which the file says nothing")
+    back = np.flatnonzero(np.diff(time) <= 0.0)
+    if back.size:
+        raise InputError(
+            f"{path}: times must increase, but row {back[0] + 2} of its numbers stands at "
+            f"{time[back[0] + 1]:.9g} s after {time[back[0]]:.9g} s"
+        )
+    if time.size < 3:
+        raise InputError(f"{path} has {time.size} rows of numbers: at least three are compared")
+    signs = {"y": -1.0, "vy": -1.0} if how.up == "y" else {}
+    found = {
+        name: signs.get(name, 1.0) * values[said[role]]
+        for name, role in floor.items() if role in said
+    }  # fmt: skip
+    angle = found.get("angle")
+    if all(role in said for role in _QUATERNION):
+        four = np.column_stack([values[said[role]] for role in _QUATERNION])
+        angle = turned(str(path), four, 1 if how.up == "y" else 2)
+        notes.append("angles from quaternions")
+    return Log(
+        Path(path).name, time, found["x"], found["y"], angle, found.get("vx"), found.get("vy"),
+        found.get("spin"), float(np.median(np.diff(time))), tuple(notes),
+    )  # fmt: skip
+
+
+def times_in(path: str | Path) -> FloatArray:
+    r"""The times (n,) in s of a file: one a line, or the column of times of a table.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, or holds no such column.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     _ = Path(folder, "a.txt").write_text("0\n0.1\n")
+    ...     times_in(Path(folder, "a.txt")).tolist()
+    [0.0, 0.1]
+    """
+    try:
+        rows = read_rows(path, _MOST_TIMES)
+        if rows and all(len(row) == 1 for row in rows):
+            return np.array([float(row[0]) for row in rows])
+    except OSError as error:
+        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
+    except ValueError:
+        pass  # no list of numbers: perhaps a table
+    look, columns = _columns(path, LogHow())
+    clock = next((n for n, one in columns.items() if one.role == "time"), None)
+    if clock is None:
+        raise InputError(
+            f"{path} holds no times: give one time in s a line, or a table with a column t"
+        )
+    return _numbers(path, look, columns, LogHow(), [clock])[clock]
+
+
+def _columns(path: str | Path, how: LogHow) -> tuple[Look, dict[int, LogHeading]]:
+    """How a table is written, and what its columns are."""
+    if "\0" in str(path):
+        raise InputError("the name of a file holds a NUL")
+    try:
+        head = beginning(path)
+    except OSError as error:
+        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
+    refuse_no_text(path, head)
+    look = look_at(path, head)
+    names = headed(path, look, how.columns)[-1]
+    columns: dict[int, LogHeading] = {}
+    for n, name in enumerate(names):
+        one = log_heading(name, how.puck)
+        if not one.role:
+            continue
+        if any(other.role == one.role for other in columns.values()):
+            raise InputError(
+                f"{path} has two columns of {one.role}: name the one that is meant with columns "
+                "(--columns), - for the other" + ("" if how.puck else ", or the puck (--puck)")
+            )
+        columns[n] = one
+    return look, columns
+
+
+def _floor_axes(path: str | Path, look: Look, said: dict[str, int], how: LogHow) -> dict[str, str]:
+    """Which of its columns are x, y, angle, vx, vy and spin on the floor, seen from above."""
+    flat = {"x": "x", "y": "y", "angle": "angle", "vx": "vx", "vy": "vy", "spin": "spin"}
+    three = [role for role in ("z", "vz") if role in said]
+    if three and how.up is None:
+        raise InputError(
+            f"{path} has a column {three[0]}: say which axis points up, with up (--up z or --up y)"
+        )
+    if how.up == "y":
+        flat |= {"y": "z", "vy": "vz"}
+    around = f"w{how.up or 'z'}"
+    if around in said and "spin" not in said:
+        flat["spin"] = around
+    elif "spin" not in said and {"wx", "wy", "wz"} & said.keys():
+        raise InputError(
+            f"{path} has spins about other axes, and none about {around[1]}, which points up"
+        )
+    missing = [role for role in ("time", flat["x"], flat["y"]) if role not in said]
+    if missing:
+        names = ", ".join(name_of(look, n) for n in range(min(look.width, 12)))
+        raise InputError(
+            f"{path} has no column {' and '.join(missing)} that is known by its name (they are "
+            f"{names:.90}): say what they are, such as columns='t [s],x [m],y [m],angle [rad],"
+            "vx [m/s],vy [m/s],w [rad/s]' (--columns), - for those to leave out"
+        )
+    if (flat["vx"] in said) != (flat["vy"] in said):
+        raise InputError(f"{path} has one component of the velocity, not both: name both, or none")
+    quaternion = [role for role in _QUATERNION if role in said]
+    if quaternion and len(quaternion) < 4:
+        raise InputError(
+            f"{path} has {', '.join(quaternion)} of a quaternion: name all of qw, qx, qy, qz with "
+            "columns (--columns)"
+        )
+    return flat | {role: role for role in quaternion}
+
+
+def _numbers(
+    path: str | Path, look: Look, columns: dict[int, LogHeading], how: LogHow, wanted: list[int]
+) -> dict[int, FloatArray]:
+    """Columns in SI units, every cell a number."""
+    values, _ = read_columns(path, look, wanted, [])
+    found = {}
+    for n in wanted:
+        one = columns[n]
+        gaps = np.flatnonzero(~np.isfinite(values[n]))
+        if gaps.size:
+            raise InputError(
+                f"{path}: row {gaps[0] + 1} of its numbers has no {one.role}: leave out rows that "
+                "are not whole"
+            )
+        size = one.unit
+        if size is None and one.kind and one.kind != "time":
+            size = how.size(one.kind)
+            if size is None:
+                option = (
+                    "unit (--unit m)"
+                    if one.kind in ("length", "velocity")
+                    else "angle_unit (--angle-unit rad)"
+                )
+                raise InputError(
+                    f"{path} does not say the unit of its column {one.role}: write it in the "
+                    f"header, such as {one.role} [{EXAMPLES[one.kind]}], or give {option}"
+                )
+        found[n] = values[n] * (1.0 if size is None else size)
+    return found
