@@ -18,12 +18,9 @@ import click
 from puck_tables.cli.aim import aim
 from puck_tables.cli.asperity import asperity
 from puck_tables.cli.build_tables import build_tables
-<<<<<<< HEAD
+from puck_tables.cli.compare import compare
 from puck_tables.cli.explore import explore
 from puck_tables.cli.export import export
-=======
-from puck_tables.cli.compare import compare
->>>>>>> ref
 from puck_tables.cli.fit import fit
 from puck_tables.cli.info import info
 from puck_tables.cli.limit_surface import limit_surface
@@ -150,11 +147,7 @@ def main() -> None:
 
 _ALL = (
     simulate, sweep, aim, scene, track, fit, build_tables, validate, info, tables, paper, tradeoff,
-<<<<<<< HEAD
-    asperity, limit_surface, export, explore,
-=======
-    asperity, reference, compare,
->>>>>>> ref
+    asperity, limit_surface, reference, compare, export, explore,
 )  # fmt: skip
 for _command in _ALL:
     main.add_command(_command)

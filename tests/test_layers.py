@@ -39,19 +39,11 @@ ROOMS = {
     "world": "_core contact errors io kernels motion puck result scene stopping table",
     "reference": "_core contact errors film io puck result scene trajectory world",
     "tradeoff": "_core _version accuracy contact io kernels motion result stopping table",
-<<<<<<< HEAD
-    "plot": "_core accuracy chetaev errors film fitting io motion result scene stopping tradeoff "
-    "trajectory world wrench",
+    "plot": "_core _version accuracy chetaev errors film fitting io motion reference result scene "
+    "stopping tradeoff trajectory world wrench",
     "paper": "_core contact motion plot puck trajectory",
     "cli": "_core _version accuracy chetaev contact errors explore export film fitting io kernels "
-    "motion paper plot puck scene stopping table tradeoff world",
-=======
-    "plot": "_core _version accuracy chetaev errors film fitting io motion reference "
-    "result scene stopping tradeoff trajectory world",
-    "paper": "_core contact motion plot puck trajectory",
-    "cli": "_core _version accuracy chetaev contact errors film fitting io kernels motion paper "
-    "plot puck reference scene stopping table tradeoff world",
->>>>>>> ref
+    "motion paper plot puck reference scene stopping table tradeoff world",
     "__init__": "_core _version",
 }
 DOORS = {
