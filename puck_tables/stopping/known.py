@@ -154,10 +154,10 @@ def _find_stops(room: FloatArray, count: int) -> int:
         speed, slip = row_of(room, SPEED, n), row_of(room, SLIP, n)
         no_spin, still = rim == 0.0, speed == 0.0
         t = 1.0 if no_spin else (0.75 if still else row_of(room, _F_TIME, n))
-        inverse = 1.0 / row_of(room, DECEL, n)
-        scale = slip * inverse
+        decel = row_of(room, DECEL, n)
+        scale = slip / decel
         along = scale * (0.5 if no_spin else row_of(room, _F_ALONG, n))
-        across = row_of(room, _F_ACROSS, n) * (row_of(room, DELTA, n) * rim * inverse)
+        across = row_of(room, _F_ACROSS, n) * (row_of(room, DELTA, n) * rim / decel)
         length = 0.5 if no_spin else row_of(room, _F_LENGTH, n)
         body = 0.375 if still else row_of(room, _F_BODY, n)
         into_row(room, _TIME, n, scale * t)
@@ -169,7 +169,7 @@ def _find_stops(room: FloatArray, count: int) -> int:
         into_row(room, _V, n, speed)
         into_row(room, _T, n, t)
         size = scale * slip
-        usual = (size < LARGEST) & (size < LARGEST * row_of(room, RADIUS, n)) & (inverse < math.inf)
+        usual = (size < LARGEST) & (size < LARGEST * row_of(room, RADIUS, n))
         doubtful += 0 if usual else 1
     return doubtful
 

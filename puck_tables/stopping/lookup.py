@@ -211,16 +211,16 @@ def _place_stops(room: FloatArray, count: int) -> int:
     for n in range(count):
         rim, slip, tilt = row_of(room, EDGE, n), row_of(room, SLIP, n), row_of(room, DELTA, n)
         along, left = row_of(room, VX, n), row_of(room, VY, n)
-        inverse = 1.0 / row_of(room, DECEL, n)
-        scale = slip * inverse
+        decel = row_of(room, DECEL, n)
+        scale = slip / decel
         straight = scale * (0.5 if rim == 0.0 else row_of(room, _X, n))
-        across = tilt * (rim * inverse) * row_of(room, _Y, n)
+        across = tilt * (rim / decel) * row_of(room, _Y, n)
         still = (along == 0.0) & (left == 0.0)
         time = 1.0 if rim == 0.0 else (0.75 if still else row_of(room, _TIME, n))
         into_row(room, _TIME, n, scale * time)
         into_row(room, _X, n, straight * along - across * left)
         into_row(room, _Y, n, straight * left + across * along)
         size, radius = scale * slip, row_of(room, RADIUS, n)
-        usual = (size < LARGEST) & (size < LARGEST * radius) & (inverse < math.inf)
+        usual = (size < LARGEST) & (size < LARGEST * radius)
         doubtful += 0 if usual else 1
     return doubtful

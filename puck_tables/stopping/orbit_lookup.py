@@ -146,16 +146,17 @@ def _find_states(room: FloatArray, count: int) -> None:
         rim = norm * (large if is_fast else small)
         turn = around * (row_of(room, _SWUNG, n) + tilt * row_of(room, _F_TURN, n))
         cosine, sine = cosine_sine_of(turn)
-        inverse = 1.0 / row_of(room, _DECEL, n)
+        decel = row_of(room, _DECEL, n)
+        duration = slip / decel
         # the way that is left, along and across the new heading
-        along = row_of(room, _F_ALONG, n) * slip * inverse * speed
-        across = around * tilt * row_of(room, _F_ACROSS, n) * rim * inverse * speed
+        along = row_of(room, _F_ALONG, n) * duration * speed
+        across = around * tilt * row_of(room, _F_ACROSS, n) * (rim / decel) * speed
         one = 1.0 / (launched if launched > 0.0 else 1.0)
         east, north = row_of(room, _VX, n) * one, row_of(room, _VY, n) * one
         ahead, aside = along * cosine - across * sine, along * sine + across * cosine
         x, y, body = row_of(room, _X, n), row_of(room, _Y, n), row_of(room, _BODY, n)
-        to_rim = 1.0 / radius
-        turned = around * row_of(room, _F_BODY, n) * (slip * inverse) * (rim * to_rim)
+        turning = around * (rim / radius)
+        turned = row_of(room, _F_BODY, n) * duration * turning
         done = (1.0 - left) * (1.0 + left)
         on_curve = (row_of(room, _SIGN_N, n) != 0.0) & (left > 0.0) & (left < 1.0)
         at_rest = row_of(room, _TURN, n) if left == 0.0 else 0.0
@@ -164,4 +165,4 @@ def _find_states(room: FloatArray, count: int) -> None:
         into_row(room, _TO_HEADING, n, turn if on_curve else at_rest)
         into_row(room, _TO_ANGLE, n, body - turned if on_curve else body * done)
         into_row(room, _TO_SPEED, n, speed if on_curve else left * launched)
-        into_row(room, _TO_SPIN, n, around * rim * to_rim if on_curve else left * spin)
+        into_row(room, _TO_SPIN, n, turning if on_curve else left * spin)

@@ -65,7 +65,7 @@ class Stops(Differentiated, Result):
             self._arguments, self._table, self._kind = launches.matrix, table, kind
 
     def __repr__(self) -> str:
-        return f"Stops({self.status.size} launches of shape {self._shape}, by {self.method})"
+        return f"Stops({self.status.size} launches of shape {self.status.shape}, by {self.method})"
 
     def __getstate__(self) -> dict[str, Any]:
         """The results alone: tables stay where they are."""
