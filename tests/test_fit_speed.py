@@ -53,7 +53,7 @@ def test_friction_over_slip_speed_is_found(true, tmp_path):
     _, middle, band = found.friction_over(np.array([0.5]))
     assert middle[0] == pytest.approx(0.17, abs=4.0 * band[0])
     assert found.constant_chi2 > found.chi2 + 500.0
-    assert len(found.plot(tmp_path / "fit.png").axes) == 5
+    assert len(found.plot(tmp_path / "fit.png").axes) == 6
     for wrong in (lambda: found.simulate(), lambda: found.friction_over(np.array([5.0]))):
         with pytest.raises(pt.InputError):
             wrong()
