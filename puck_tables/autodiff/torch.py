@@ -35,12 +35,14 @@ class _Found(torch.autograd.Function):
     @staticmethod
     @once_differentiable
     def backward(ctx: Any, given: Any) -> Any:
-        slopes = _slopes(*ctx.saved_tensors, ctx.kind)
+        (arguments,) = ctx.saved_tensors
+        slopes = _slopes(arguments, ctx.kind)
         return torch.einsum("...rc,...r->...c", slopes, given), None
 
     @staticmethod
     def jvp(ctx: Any, moved: Any, _: Any) -> Any:
-        slopes = _slopes(*ctx.saved_tensors, ctx.kind)
+        (arguments,) = ctx.saved_tensors
+        slopes = _slopes(arguments, ctx.kind)
         return torch.einsum("...rc,...c->...r", slopes, moved)
 
 

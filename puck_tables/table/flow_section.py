@@ -140,8 +140,8 @@ def flows(law: Law, phi: FloatArray, delta: float) -> FloatArray:
         opened = critical_delta(phi) < delta
         if opened.any():
             some = phi[opened], np.full(int(opened.sum()), delta)
-            rho, by_height = one_sided.height_slopes(*some)
-            along, across, spin = rho
+            values, by_height = one_sided.height_slopes(*some)
+            along, across, spin = values
             by_along, by_across, by_spin = by_height
             inverse = 1.0 / along
             ratios = np.stack([inverse, across * inverse, spin * inverse], axis=-1)

@@ -70,8 +70,8 @@ def moved(law: str, delta: float, square: complex, v, w, moments) -> np.ndarray:
 def slopes(law: str, delta: float, gyration: float, phi: np.ndarray, moments, near: bool) -> tuple:
     """Values (8, m, n), derivatives by v, rω, k/r, δ at equal τ (4, 8, m, n), rates (8, m, n).
 
-    ``near``: what is next to a line, by the speeds in complex steps; else by differences, too,
-    which a rough derivative of the series does not hurt.
+    ``near``: what is next to a line, by the speeds in complex steps; else by differences, which
+    a rough derivative of the series does not hurt.
     """
     v, w = np.cos(phi) + 0j, np.sin(phi) + 0j
     values, rates = moved(law, delta, gyration**2, v, w, moments).real
