@@ -1,4 +1,4 @@
-"""A comparison as one page for any browser: its words, its numbers and its picture, nothing else."""
+"""A comparison as one page for any browser: its words, its numbers and its picture."""
 
 from __future__ import annotations
 
