@@ -124,8 +124,7 @@ def in_words(found: Comparison) -> str:
         f"case {answer.case.label}: {answer.case.title}",
         f"exact: {answer.end} after {answer.end_time:.9g} s, known to {answer.time_bound:.1e} s "
         f"and {answer.place_bound:.1e} m",
-        f"rest counts from {', '.join(map(str, found.thresholds))} on; errors are theirs less the "
-        "exact",
+        f"rest counts from {', '.join(map(str, found.thresholds))} on; errors: theirs less exact",
         "",
     ]
     width = max(4, *(len(run.log.name) for run in found.runs))

@@ -1,4 +1,4 @@
-"""The page of a comparison: one file with its pictures and tables inside, for a browser."""
+"""A comparison as one page for any browser: its words, its numbers and its picture."""
 
 from __future__ import annotations
 

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 FALLS = 0.25  # the order below which errors do not fall
+_EVEN = 1.0  # orders further apart are none
 
 
 def orders(steps: Sequence[float], errors: Sequence[float]) -> list[float]:
@@ -46,4 +47,7 @@ def verdict(steps: Sequence[float], errors: Sequence[float]) -> str:
             f"does not fall with the step (order {found[-1]:.2f}): it is of the model, not of the "
             "step"
         )
-    return f"order {', '.join(f'{one:.2f}' for one in found)}"
+    told = ", ".join(f"{one:.2f}" for one in found)
+    if max(found) - min(found) > _EVEN:
+        return f"falls unevenly (orders {told}): no order can be told"
+    return f"order {told}"

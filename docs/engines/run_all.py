@@ -1,0 +1,149 @@
+"""Every engine against every case, with one command: a table and a picture.
+
+    pip install 'puck-tables[plot]' && pip install -r docs/engines/requirements.txt
+    python docs/engines/run_all.py FOLDER
+
+Engines in an environment of their own: --python /path/to/its/python.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import subprocess
+import sys
+import time
+from collections import defaultdict
+from pathlib import Path
+from statistics import median
+from typing import Any
+
+import numpy as np
+
+import puck_tables as pt
+from puck_tables.errors import PuckError
+from puck_tables.plot.style import COLORS, canvas, save_figure
+from puck_tables.reference.cases import CASES
+
+HERE = Path(__file__).resolve().parent
+SHOWN = ("coin", "slide", "slide-spin-2", "tall-0.5")
+OURS = (1e-3, 1e-5, 1e-7, 1e-9, 1e-11)  # tol
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--python", default=sys.executable)
+    given = parser.parse_args()
+    given.folder.mkdir(parents=True, exist_ok=True)
+    folder = given.folder.resolve()
+    cases = {case.name: pt.reference_case(case.name, times=[0.0]).summary() for case in CASES}
+    (folder / "cases.json").write_text(json.dumps(cases))
+    subprocess.run([given.python, "-W", "ignore", "play.py", str(folder)], cwd=HERE, check=True)
+    rows = measured(folder, cases)
+    (folder / "measured.json").write_text(json.dumps(rows, indent=1))
+    (folder / "table.md").write_text(table(rows))
+    draw(rows, cases, folder / "engines.png")
+    print((folder / "table.md").read_text())
+
+
+def measured(folder: Path, cases: dict[str, Any]) -> list[dict[str, Any]]:
+    """A row for each engine, case and step: errors in shares of Q²/J and Q/J, and the cost."""
+    groups = defaultdict(list)
+    for run in json.loads((folder / "played.json").read_text()):
+        groups[run["engine"], run["case"]].append(run)
+    rows = []
+    for (engine, name), runs in groups.items():
+        q, j = cases[name]["speed_scale"], cases[name]["rate_scale"]
+        try:
+            found = pt.compare(
+                [folder / run["file"] for run in runs], name, steps=[run["step"] for run in runs],
+                up="z" if runs[0]["in_space"] else None, puck="red" if name == "take-out" else None,
+            )  # fmt: skip
+        except PuckError as error:
+            print(f"{engine}, {name}: {error}")
+            continue
+        cost = {run["step"]: run["seconds"] for run in runs}
+        for row in found.rows():
+            rows.append({
+                "engine": engine, "case": name, "step": row["step"],
+                "cost_ms": 1e3 * cost[row["step"]],
+                "place": row["place_error_max"] / (q * q / j),
+                "time": _number(row["rest_time_error"] / (q / j)),
+                "falls": found.convergence().get("place on the way", ""),
+            })  # fmt: skip
+    return rows
+
+
+def _number(value: float) -> float | None:
+    return value if math.isfinite(value) else None
+
+
+def table(rows: list[dict[str, Any]]) -> str:
+    """Error of place and of the stop time, in per cent, and cost, at the finest step."""
+    engines = list(dict.fromkeys(row["engine"] for row in rows))
+    cells: dict[str, dict[str, str]] = defaultdict(dict)
+    for row in rows:  # the last of a case has the smallest step
+        late = "–" if row["time"] is None else f"{100 * row['time']:+.2f}"
+        cells[row["case"]][row["engine"]] = (
+            f"{100 * row['place']:.3f} / {late} / {row['cost_ms']:.3g}"
+        )
+    head = "| case | " + " | ".join(engines) + " |\n" + "| --- " * (len(engines) + 1) + "|\n"
+    return head + "".join(
+        f"| {case} | " + " | ".join(by.get(engine, "–") for engine in engines) + " |\n"
+        for case, by in cells.items()
+    )
+
+
+def ours(case: dict[str, Any]) -> list[tuple[float, float]]:
+    """Cost in ms and error of place of this program: by look-up, then by tol."""
+    tables, launch = case["scene"]["puck"], case["scene"]["launch"]
+    puck = pt.Puck(**tables)
+    exact = np.array([case["stop"]["x"], case["stop"]["y"]])
+    length = case["speed_scale"] ** 2 / case["rate_scale"]
+    many = np.tile(launch["velocity"], (100_000, 1))
+    spins = np.full(100_000, launch["spin"])
+    puck.stop(many[:10], spins[:10])
+    begin = time.perf_counter()
+    found = puck.stop(many, spins)
+    cost = (time.perf_counter() - begin) * 1e3 / len(many)
+    points = [(cost, float(np.hypot(*(found.stop_position[0] - exact))) / length)]
+    for tol in OURS:
+        took = []
+        for _ in range(30):
+            begin = time.perf_counter()
+            run = puck.simulate(launch["velocity"], launch["spin"], frames=1, tol=tol)
+            took.append(time.perf_counter() - begin)
+        off = float(np.hypot(*(np.array(run.stop_position) - exact))) / length
+        points.append((1e3 * median(took), off))
+    return points
+
+
+def draw(rows: list[dict[str, Any]], cases: dict[str, Any], path: Path) -> None:
+    """Error over cost, a line an engine, a point a step."""
+    figure = canvas(11.0, 8.0)
+    engines = list(dict.fromkeys(row["engine"] for row in rows))
+    for panel, name in zip(figure.subplots(2, 2).ravel(), SHOWN, strict=True):
+        for n, engine in enumerate(engines):
+            mine = [row for row in rows if (row["engine"], row["case"]) == (engine, name)]
+            panel.loglog(
+                [row["cost_ms"] for row in mine], [max(row["place"], 1e-16) for row in mine], "o-",
+                markersize=4, label=engine, color=(*COLORS, "#555555", "#c9a400")[n],
+            )  # fmt: skip
+        points = ours(cases[name])
+        panel.loglog(
+            [cost for cost, _ in points], [max(off, 1e-16) for _, off in points], "ks-",
+            markersize=4, label="puck-tables (look-up, then tol 1e-3 to 1e-11)",
+        )  # fmt: skip
+        panel.set_title(name)
+        panel.set_xlabel("cost of the run / ms")
+        panel.set_ylabel("largest error of the place / (Q²/J)")
+        panel.grid(color="#e4e4e4", linewidth=0.6)
+    figure.legend(*panel.get_legend_handles_labels(), loc="outside lower center", ncols=4,
+                  frameon=False)  # fmt: skip
+    save_figure(figure, path, overwrite=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,271 @@
+"""The benchmark cases: their answers by integrators that share nothing with the package."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from pucks_judge import Disc, play
+from reference import states as flat_states
+from scipy.integrate import solve_ivp
+
+from puck_tables import InputError, floor_friction, reference_case
+from puck_tables.reference.cases import CASES, case_named
+
+FREE = ("coin", "slide-spin-0.2", "slide-spin-0.5", "slide-spin-1", "slide-spin-2", "slide-spin-5",
+        "tall-0.5", "tall-1")  # fmt: skip
+OTHERS = ("incline-below", "incline-at", "incline-above", "belt", "turntable")
+NOT_YET = 0.97  # of the way to the stop, where scipy still has its digits
+
+
+def puck_of(name: str) -> tuple[float, float, float]:
+    """r, J and δ from what the case says."""
+    puck = case_named(name).tables["puck"]
+    j = puck["friction"] * puck["gravity"]
+    return puck["radius"], j, 2.0 * puck["friction"] * puck["height"] / puck["radius"]
+
+
+def test_every_case_says_what_it_is():
+    names = [case.name for case in CASES]
+    assert len(set(names)) == len(names) >= 19
+    assert all(case.version >= 1 and case.title and case.tests for case in CASES)
+
+
+@pytest.mark.parametrize("name", FREE)
+def test_free_cases_by_an_independent_integrator(name: str):
+    """Within the bound, and that below 1e-10 of Q/J and Q²/J."""
+    r, j, delta = puck_of(name)
+    launch = case_named(name).tables["launch"]
+    v, rim = launch["velocity"][0], r * launch["spin"]
+    q = math.hypot(v, rim)
+    answer = reference_case(name)
+    assert answer.share_bound <= 1e-10
+    times = np.linspace(0.05, NOT_YET, 7) * answer.end_time
+    z = flat_states((v / q, 0.0), rim / q, delta, times * j / q)
+    ours = answer(times)
+    scale = 2e-10  # the judge's own error next to the bound
+    for mine, truth, unit in (
+        (ours.vx, z[0], q), (ours.vy, z[1], q), (r * ours.spin, z[2], q),
+        (ours.x, z[3], q * q / j), (ours.y, z[4], q * q / j),
+        (r * ours.orientation, z[5], q * q / j),
+    ):  # fmt: skip
+        assert np.abs(mine / unit - truth).max() < scale
+
+
+@pytest.mark.parametrize("name", ["coin", "slide-spin-2", "tall-1"])
+def test_stops_by_an_independent_integrator(name: str):
+    """In ln Q by the judge's friction: the stop itself, to the bound and rounding of the judge."""
+    from reference import friction
+
+    r, j, delta = puck_of(name)
+    launch = case_named(name).tables["launch"]
+    v, rim = launch["velocity"][0], r * launch["spin"]
+    q = math.hypot(v, rim)
+
+    def rates(_: float, z: np.ndarray) -> list[float]:  # dt = Q dτ
+        size = math.exp(z[0])
+        vx, vy, w = math.cos(z[1]) * math.cos(z[2]), math.cos(z[1]) * math.sin(z[2]), math.sin(z[1])
+        ax, ay, aw = friction(vx, vy, w, delta)
+        c, s = math.cos(z[2]), math.sin(z[2])
+        along, across = ax * c + ay * s, -ax * s + ay * c
+        fall = math.cos(z[1]) * along + w * aw
+        turn = math.cos(z[1]) * aw - w * along
+        return [fall, turn, across / math.cos(z[1]), size, size * size * vx, size * size * vy]
+
+    start = [0.0, math.atan2(rim, v), 0.0, 0.0, 0.0, 0.0]
+    found = solve_ivp(rates, (0.0, 36.0), start, "DOP853", rtol=3e-13, atol=1e-14)
+    time, x, y = found.y[3:, -1]
+    answer = reference_case(name)
+    last = answer.last()
+    assert abs(answer.end_time * j / q - time) < 1e-10
+    assert abs(last["x"] * j / q**2 - x) < 1e-10
+    assert abs(last["y"] * j / q**2 - y) < 1e-10
+
+
+def test_the_coin():
+    answer = reference_case("coin")
+    assert round(answer.end_time, 7) == 0.1238118
+    assert [round(1e3 * answer.last()[axis], 4) for axis in "xy"] == [11.6283, -0.0736]
+
+
+def test_elementary_cases_and_the_threshold_of_a_slope():
+    g, f, r = 9.81, 0.2, 0.05
+    spin, slide = reference_case("spin"), reference_case("slide")
+    assert spin.end_time == pytest.approx(0.75 * r * 20.0 / (f * g), rel=1e-12)
+    assert slide.end_time == pytest.approx(1.0 / (f * g), rel=1e-12)
+    assert slide.last()["x"] == pytest.approx(0.5 / (f * g), rel=1e-12)
+    steep = reference_case("incline-above")
+    assert steep.end == reference_case("incline-at").end == "time is up"
+    assert reference_case("incline-below").end == "at rest"
+
+
+@pytest.mark.parametrize("name", OTHERS)
+def test_slopes_and_moving_floors_by_an_independent_integrator(name: str):
+    """Newton's law at velocities relative to the floor, friction by the judge's elliptic integrals."""
+    from reference import friction
+
+    tables = case_named(name).tables
+    puck, floor, launch = tables["puck"], tables.get("floor", {}), tables["launch"]
+    r, m_g, f = puck["radius"], puck["gravity"], puck["friction"]
+    slope, down = floor.get("slope", 0.0), floor.get("downhill", 0.0)
+    delta = 2.0 * f * puck["height"] / r
+    belt, turning = np.array(floor.get("velocity", (0.0, 0.0))), floor.get("turning", 0.0)
+    pull = m_g * math.sin(slope) * np.array([math.cos(down), math.sin(down)])
+
+    def rates(_: float, y: np.ndarray) -> list[float]:
+        under = belt + turning * np.array([-y[1], y[0]])
+        ux, uy = y[3:5] - under
+        rim = r * (y[5] - turning)
+        a = friction(ux, uy, rim, delta) if rim else (-ux / math.hypot(ux, uy), -uy / math.hypot(ux, uy), 0.0)
+        j = f * m_g * math.cos(slope)
+        return [*y[3:], pull[0] + j * a[0], pull[1] + j * a[1], j * a[2] / r]
+
+    answer = reference_case(name)
+    share = 1.0 if answer.end == "time is up" else NOT_YET
+    times = np.linspace(0.1, share, 5) * answer.end_time
+    start = [*launch.get("position", (0.0, 0.0)), 0.0, *launch["velocity"], launch.get("spin", 0.0)]
+    truth = solve_ivp(
+        rates, (0.0, times[-1]), start, "DOP853", t_eval=times, rtol=1e-12, atol=1e-13
+    ).y
+    ours = answer(times)
+    q, j = answer.speed_scale, answer.rate_scale
+    for row, mine, unit in zip(
+        truth, (ours.x, ours.y, ours.orientation, ours.vx, ours.vy, ours.spin),
+        (q * q / j, q * q / j, q * q / j / r, q, q, q / r), strict=True,
+    ):  # fmt: skip
+        assert np.abs(row - mine).max() < 3e-9 * unit
+
+
+def test_the_take_out_by_an_independent_integrator():
+    """Within its own bound, up to the judge's threshold of rest."""
+    tables = case_named("take-out").tables["puck"]
+    discs = []
+    for one in tables:
+        (x, y), launch = one["launch"].get("position", (0.0, 0.0)), one["launch"]
+        vx, vy = launch.get("velocity", (0.0, 0.0))
+        state = np.array([x, y, 0.0, vx, vy, launch.get("spin", 0.0)])
+        # the judge has its own gravity
+        f = one["friction"] * one["gravity"] / 9.80665
+        height = one["height"] * one["friction"] / f
+        discs.append(Disc(one["radius"], one["mass"], f, height, one["restitution"],
+                          one["tangential"], one["rim"], state))  # fmt: skip
+    told = play(discs, [], 2.0)
+    answer = reference_case("take-out")
+    assert len(told.impacts) == 1
+    assert abs(told.impacts[0][0] - answer.run.events[0].time) < answer.time_bound
+    stops = np.column_stack([answer.last()["x"], answer.last()["y"]])
+    assert np.abs(stops - told.states[:, :2]).max() < answer.place_bound
+
+
+@pytest.mark.parametrize("name", ["coin", "tall-1", "turntable", "incline-above"])
+def test_forces_on_the_floor_are_what_the_puck_lacks(name: str):
+    """Newton's third law: from differences of its velocities, and what else acts."""
+    answer = reference_case(name)
+    step = 1e-5 * answer.end_time
+    middle = np.linspace(0.2, 0.8, 4) * answer.end_time
+    before, at, after = (answer(middle + n * step) for n in (-1.0, 0.0, 1.0))
+    puck, floor = answer.pieces[0], answer.floor
+    down = puck.gravity * math.sin(floor.slope)
+    rates = [(getattr(after, n) - getattr(before, n)) / (2.0 * step) for n in ("vx", "vy", "spin")]
+    fx = puck.mass * (down * math.cos(floor.downhill) - rates[0])
+    fy = puck.mass * (down * math.sin(floor.downhill) - rates[1])
+    torque = -0.5 * puck.mass * puck.radius**2 * rates[2]
+    load = puck.friction * puck.mass * puck.gravity
+    for mine, truth, unit in (
+        (at.floor_fx, fx, load), (at.floor_fy, fy, load), (at.floor_torque, torque, load * puck.radius),
+    ):  # fmt: skip
+        assert np.abs(mine - truth).max() < 1e-6 * unit
+
+
+@pytest.mark.parametrize("name", ["slide-spin-1", "annulus", "tall-1"])
+def test_friction_over_epsilon_by_a_grid(name: str):
+    """Shares of fN and fNr by summing over the base, the pressure tilted until moments balance."""
+    tables = case_named(name).tables["puck"]
+    delta = 2.0 * tables["friction"] * tables["height"] / tables["radius"]
+    inner = 0.5 if name == "annulus" else 0.0
+    nodes, weights = np.polynomial.legendre.leggauss(160)
+    rho = inner + 0.5 * (1.0 - inner) * (nodes + 1.0)
+    angle = 2.0 * np.pi * (np.arange(400) + 0.5) / 400
+    x, y = np.outer(rho, np.cos(angle)), np.outer(rho, np.sin(angle))
+    area = np.outer(0.5 * (1.0 - inner) * weights * rho, np.full(400, 2.0 * np.pi / 400))
+    area /= area.sum()
+    found = floor_friction(name, [0.3, 3.0])
+    for n, epsilon in enumerate((0.3, 3.0)):
+        ux, uy = epsilon - y, x
+        size = np.hypot(ux, uy)
+        ex, ey = ux / size, uy / size
+        second = (area * x * x).sum()
+        b = c = 0.0
+        for _ in range(100):  # ∫σx = (h/2) F
+            pressure = area * (1.0 + b * x + c * y)
+            fx, fy = (pressure * ex).sum(), (pressure * ey).sum()
+            b, c = 0.25 * delta * fx / second, 0.25 * delta * fy / second
+        torque = (pressure * (x * ey - y * ex)).sum()
+        mine = [found.share_along[n], found.share_across[n], found.share_torque[n]]
+        assert mine == pytest.approx([fx, fy, torque], abs=3e-5)
+
+
+def test_frames_of_an_engine():
+    coin = reference_case("coin", fps=240)
+    assert coin.time.tolist() == [n / 240 for n in range(31)]
+    assert coin.time[-2] < coin.end_time <= coin.time[-1]
+    assert coin.speed[-1] == coin.spin[-1] == coin.floor_torque[-1] == 0.0
+    shuffled = coin([0.1, 0.0, 0.05])
+    assert shuffled.x.tolist() == [coin([t]).x[0] for t in (0.1, 0.0, 0.05)]
+
+
+def test_frames_from_a_file(tmp_path: Path):
+    list_of, log = tmp_path / "times.txt", tmp_path / "log.csv"
+    list_of.write_text("0\n0.02\n0.04\n")
+    log.write_text("x [m],t [ms]\n9,0\n9,20\n9,40\n")
+    for path in (list_of, log):
+        assert reference_case("coin", times=path).time.round(12).tolist() == [0.0, 0.02, 0.04]
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"dt": 0.0}, "dt"), ({"dt": 1e-9}, "frames"), ({"dt": 0.1, "fps": 3}, "one of them"),
+        ({"times": [-1.0]}, ">= 0"), ({"times": "none.txt"}, "cannot read"),
+    ],
+)  # fmt: skip
+def test_frames_refused(given: dict, words: str):
+    with pytest.raises(InputError, match=words):
+        reference_case("coin", **given)
+
+
+def test_an_unknown_case_names_the_nearest():
+    with pytest.raises(InputError, match="did you mean 'turntable'.*Cases: coin, spin"):
+        reference_case("turn-table")
+    with pytest.raises(InputError, match="followed for 1.5 s"):
+        reference_case("incline-at", times=[2.0])
+
+
+@pytest.mark.parametrize("ending", ["csv", "json", "jsonl", "h5"])
+def test_every_file_has_its_bounds(ending: str, tmp_path: Path):
+    answer = reference_case("take-out", dt=0.2)
+    path = tmp_path / f"a.{ending}"
+    answer.save(path)
+    if ending == "csv":
+        lines = path.read_text().splitlines()
+        assert lines[0].endswith("time_bound[s],place_bound[m],speed_bound[m/s]")
+        assert len(lines) == 1 + 2 * answer.time.size
+    elif ending == "json":
+        whole = json.loads(path.read_text())
+        assert whole["columns"]["place_bound"] == {
+            "unit": "m", "long_name": "what places, and r times angles, may", "dims": [],
+            "values": answer.place_bound,
+        }  # fmt: skip
+        assert (whole["case"], whole["version"]) == ("take-out", 1)
+    elif ending == "jsonl":
+        first = json.loads(path.read_text().splitlines()[0])
+        assert first["time_bound"] == answer.time_bound
+    else:
+        import h5py
+
+        with h5py.File(path) as file:
+            assert file["place_bound"][()] == answer.place_bound
+            assert file["epsilon"].shape == (answer.time.size, 2)
