@@ -113,14 +113,14 @@ NUMBER = Number()
 FILE = click.Path(readable=False, path_type=Path)
 
 
-def puck_options(mass: bool) -> Callable[[Command], Command]:
-    """The puck and the floor: by δ and J, or by dimensions and friction."""
+def puck_options(mass: bool, kind: click.ParamType = NUMBER) -> Callable[[Command], Command]:
+    """The puck and the floor: by δ and J, or by dimensions and friction; numbers of one kind."""
     options = [
-        click.option("--radius", type=NUMBER, help="Radius r in m.  [default: 1]"),
-        click.option("--height", type=NUMBER, help="Height h in m; with --friction."),
-        click.option("--friction", type=NUMBER, help="Coulomb coefficient f; with --height."),
-        click.option("--gravity", type=NUMBER, help="Gravity in m/s^2.  [default: 9.80665]"),
-        click.option("--decel", type=NUMBER, help="J = f g in m/s^2 instead.  [default: 1]"),
+        click.option("--radius", type=kind, help="Radius r in m.  [default: 1]"),
+        click.option("--height", type=kind, help="Height h in m; with --friction."),
+        click.option("--friction", type=kind, help="Coulomb coefficient f; with --height."),
+        click.option("--gravity", type=kind, help="Gravity in m/s^2.  [default: 9.80665]"),
+        click.option("--decel", type=kind, help="J = f g in m/s^2 instead.  [default: 1]"),
     ]
     if mass:
         options.insert(4, click.option("--mass", type=NUMBER, help="Mass in kg (for the energy)."))
@@ -133,26 +133,39 @@ def puck_options(mass: bool) -> Callable[[Command], Command]:
     return decorate
 
 
-def body_options(command: Command) -> Command:
-    """The kind of puck: how it presses on the floor and how its mass is spread."""
-    for option in (
+def body_options(
+    kind: click.ParamType = NUMBER, many: bool = False
+) -> Callable[[Command], Command]:
+    """The kind of puck: how it presses on the floor and how its mass is spread.
+
+    ``kind``: of the radius of gyration; ``many``: whether several laws may be given.
+    """
+    laws = "Contact pressure: uniform, galin, hertz, ring, annulus:INNER, or a CSV file of rho, W."
+    if many:
+        laws += "  As often as wanted; annulus:START:STOP:COUNT is a range of them."
+    options = [
         click.option(
             "--gyration",
-            type=NUMBER,
+            type=kind,
             help="Radius of gyration about the vertical axis over r (a ratio, also with --radius), "
             "0.1 to 10.  [default: 0.7071, homogeneous]",
         ),
         click.option(
             "--pressure",
             metavar="LAW",
-            default="uniform",
+            default=("uniform",) if many else "uniform",
+            multiple=many,
             show_default=True,
-            help="Contact pressure: uniform, galin, hertz, ring, annulus:INNER, or a CSV file of "
-            "rho, W.",
+            help=laws,
         ),
-    ):
-        command = option(command)
-    return command
+    ]
+
+    def decorate(command: Command) -> Command:
+        for option in options:
+            command = option(command)
+        return command
+
+    return decorate
 
 
 def output_options(command: Command) -> Command:

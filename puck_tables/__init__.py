@@ -20,10 +20,12 @@ from puck_tables._version import __version__
 
 if TYPE_CHECKING:
     from puck_tables import chetaev, contact, motion
+    from puck_tables.bulk.spreads import Normal, Uniform
     from puck_tables.contact.laws import Law, law_of, profile_law
     from puck_tables.contact.speed_law import SpeedLaw
     from puck_tables.errors import (
         AccuracyError,
+        ClusterError,
         ContactError,
         InputError,
         MissingExtraError,
@@ -57,6 +59,7 @@ if TYPE_CHECKING:
     from puck_tables.scene.scene import Scene
     from puck_tables.scene.sweep import SceneMap
     from puck_tables.stopping.aim import Aim
+    from puck_tables.stopping.sample import StopSample
     from puck_tables.stopping.states import States, states
     from puck_tables.stopping.stops import Stops, stop
     from puck_tables.stopping.sweep import StopMap
@@ -74,6 +77,7 @@ _HOMES = {
     "BoardAim": "world.aimed",
     "Camera": "fitting.forecast",
     "CheckReport": "table.check",
+    "ClusterError": "errors",
     "Constraint": "scene.parts",
     "ContactError": "errors",
     "Drag": "scene.parts",
@@ -86,6 +90,7 @@ _HOMES = {
     "Launch": "scene.parts",
     "Law": "contact.laws",
     "MissingExtraError": "errors",
+    "Normal": "bulk.spreads",
     "OutputError": "errors",
     "Piece": "scene.pieces",
     "Plastic": "scene.restitution",
@@ -103,12 +108,14 @@ _HOMES = {
     "SpeedLaw": "contact.speed_law",
     "States": "stopping.states",
     "StopMap": "stopping.sweep",
+    "StopSample": "stopping.sample",
     "Stops": "stopping.stops",
     "Strips": "scene.parts",
     "Table": "table.table",
     "TableError": "errors",
     "Track": "film.track",
     "Trajectory": "trajectory",
+    "Uniform": "bulk.spreads",
     "Viscoelastic": "scene.restitution",
     "Wall": "scene.parts",
     "World": "world.world",
@@ -134,6 +141,7 @@ __all__ = [
     "BoardAim",
     "Camera",
     "CheckReport",
+    "ClusterError",
     "Constraint",
     "ContactError",
     "Drag",
@@ -146,6 +154,7 @@ __all__ = [
     "Launch",
     "Law",
     "MissingExtraError",
+    "Normal",
     "OutputError",
     "Piece",
     "Plastic",
@@ -163,12 +172,14 @@ __all__ = [
     "SpeedLaw",
     "States",
     "StopMap",
+    "StopSample",
     "Stops",
     "Strips",
     "Table",
     "TableError",
     "Track",
     "Trajectory",
+    "Uniform",
     "Viscoelastic",
     "Wall",
     "World",

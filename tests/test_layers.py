@@ -19,27 +19,30 @@ ROOMS = {
     "contact": "_core errors",
     "io": "_core _version errors",
     "result": "_core io",
+    "bulk": "_core _version errors io result",
     "accuracy": "errors",
     "chetaev": "_core contact errors io result",
     "kernels": "_core contact errors",
     "table": "_core _version contact errors kernels",
     "motion": "_core accuracy contact errors kernels table",
-    "verbs": "_core errors",
+    "verbs_of_many": "_core errors",
+    "verbs": "verbs_of_many",
     "puck": "_core contact errors motion verbs",
-    "stopping": "_core accuracy contact errors io kernels motion puck result table",
+    "stopping": "_core accuracy bulk contact errors io kernels motion puck result table "
+    "verbs_of_many",
     "trajectory": "_core accuracy errors io motion puck result stopping table",
     "film": "_core errors io",
     "fitting": "_core _version accuracy contact errors film io kernels motion puck result "
     "stopping table",
     "autodiff": "errors stopping",
-    "scene": "_core contact errors io kernels motion puck result stopping table",
-    "world": "_core contact errors io kernels motion puck result scene stopping table",
+    "scene": "_core bulk contact errors io kernels motion puck result stopping table",
+    "world": "_core bulk contact errors io kernels motion puck result scene stopping table",
     "tradeoff": "_core _version accuracy contact io kernels motion result stopping table",
     "plot": "_core accuracy chetaev errors film fitting io motion result scene stopping tradeoff "
     "trajectory world",
     "paper": "_core contact motion plot puck trajectory",
-    "cli": "_core _version accuracy chetaev contact errors film fitting io kernels motion paper "
-    "plot puck scene stopping table tradeoff world",
+    "cli": "_core _version accuracy bulk chetaev contact errors film fitting io kernels motion "
+    "paper plot puck scene stopping table tradeoff world",
     "__init__": "_core _version",
 }
 DOORS = {
@@ -50,7 +53,9 @@ DOORS = {
     "pandas": {"io.frames"},
     "pyarrow": {"io.parquet"},
     "matplotlib": {"plot"},
-    "scipy": {"chetaev", "fitting", "stopping", "table.speed_fit", "tradeoff"},
+    "zarr": {"bulk.store"},
+    "distributed": {"bulk.cluster"},
+    "scipy": {"bulk.spreads", "chetaev", "fitting", "stopping", "table.speed_fit", "tradeoff"},
     "click": {"cli"},
     "jax": {"autodiff.jax"},
     "torch": {"autodiff.torch"},

@@ -65,7 +65,9 @@ class SceneVerbs:
         threads: int | None = None,
         chunk: int = 256,
         progress: Progress | None = None,
-        checkpoint: str | Path | None = None,
+        store: str | Path | None = None,
+        cluster: str | None = None,
+        overwrite: bool = False,
     ) -> SceneMap:
         """Run it for all combinations of the numbers in it that are ranges.
 
@@ -74,8 +76,8 @@ class SceneVerbs:
         threads, chunk : int
             How the work is cut; the numbers do not depend on it, to the last bit.
         progress : callable (done, total), optional
-        checkpoint : path, optional
-            A file that keeps what is done: called again with the same scene, the work goes on.
+        store, cluster, overwrite
+            As for :meth:`puck_tables.Puck.sweep`: a Zarr store, and machines that write to it.
 
         Returns
         -------
@@ -95,8 +97,9 @@ class SceneVerbs:
         [0.0, 2.056068]
         """
         stops: SceneMap = _answers(self, "sweep").sweep(
-            self, threads=threads, chunk=chunk, progress=progress, checkpoint=checkpoint
-        )
+            self, threads=threads, chunk=chunk, progress=progress, store=store, cluster=cluster,
+            overwrite=overwrite,
+        )  # fmt: skip
         return stops
 
     def world(self) -> World:

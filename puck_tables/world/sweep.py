@@ -14,8 +14,11 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.checkpoint import chunked, files_named
+from puck_tables._core.digest import files_named
 from puck_tables._core.executor import Progress
+from puck_tables._core.memory import check_memory
+from puck_tables.bulk.finish import check_part, finish
+from puck_tables.bulk.work import Columns, Tally, Work
 from puck_tables.errors import InputError, PuckError
 from puck_tables.io.columns import derived
 from puck_tables.io.dataset import Dataset, Variable, variable
@@ -25,7 +28,6 @@ from puck_tables.scene.library import files_of
 from puck_tables.scene.outcome import column_of, plain_name, scene_texts
 from puck_tables.scene.pieces import Piece
 from puck_tables.scene.scene import Scene
-from puck_tables.stopping.sweep import check_memory
 from puck_tables.world.agreement import called, number_of, pieces_of, refuse_endless
 from puck_tables.world.bulk import Ends, follow_all
 from puck_tables.world.engine import PUSHING, REACHED
@@ -35,6 +37,7 @@ from puck_tables.world.rim_laws import rule_of
 from puck_tables.world.world import World
 
 CHUNK = 2048
+FEWEST, MOST = 1 << 6, 1 << 12  # runs kept together in a store
 ENDS = (
     "at rest",
     "time is up",
@@ -56,15 +59,14 @@ class WorldMap(Result):
     ``scene``: with its ranges; ``axes``: their values by path; ``names``: of the pucks;
     ``columns``: x, y, vx, vy (m, m/s), orientation, spin (rad, rad/s) and ``in_play`` of every puck
     at the end, arrays (axes…, pucks); ``end_time`` s and ``impacts`` (axes…), NaN without an end;
-    ``end`` (axes…): index of :data:`ENDS`; ``refusal``: what is wrong with the first run that is
-    refused.
+    ``end`` (axes…): index of :data:`ENDS`; ``told``: what :meth:`without_end` says.
     """
 
     scene: Scene
     names: tuple[str, ...]
     columns: Mapping[str, FloatArray] = field(repr=False)
     end: npt.NDArray[np.int8] = field(repr=False)
-    refusal: str = field(default="", repr=False)
+    told: tuple[str, ...] = field(default=(), repr=False)
     files: Mapping[str, str] = field(default_factory=dict, repr=False)
 
     picture: ClassVar[str] = "board_map"
@@ -115,100 +117,168 @@ class WorldMap(Result):
 
     def dataset(self) -> Dataset:
         """The results over what ranges and the pucks; the scene and its files as texts."""
-        dims = tuple(plain_name(path) for path in self.axes)
-        axes = {}
-        for path, values in self.axes.items():
-            doc = entry_at(self.scene, path).doc
-            text = f"{path} of the scene" + (f", {doc}" if doc else "")
-            unit = self.scene.unit_of(path) or "1"
-            axes[plain_name(path)] = Variable(values, (plain_name(path),), unit, text)
-        axes["puck"] = variable("puck", np.arange(len(self.names)), ("puck",))
-        columns = {"name": variable("name", list(self.names), ("puck",))}
-        for name, values in {**self.columns, **derived(self.columns)}.items():
-            over = (*dims, "puck") if values.ndim > self.end.ndim else dims
-            columns[name] = variable(name, values, over)
-        columns["end"] = variable("end", self.end, dims, ENDS)
-        attributes = {"title": self.scene.title or "Scene"}
-        return Dataset(axes, columns, attributes, scene_texts(self.scene, self.files))
+        columns = {**self.columns, **derived(self.columns)}
+        return labelled(self.scene, self.names, self.files, columns, self.end)
 
     def without_end(self) -> list[str]:
         """A line for each way in which runs have no end: how many, the first, and what to do."""
-        lines = []
-        for code in range(TIME_UP + 1, len(ENDS)):
-            found = np.argwhere(self.end == code)
-            if found.size:
-                at = zip(self.axes.items(), found[0], strict=True)
-                run = ", ".join(f"{path} = {values[i]:.10g}" for (path, values), i in at)
-                advice = self.refusal if code == REFUSED else "run it alone, which says what to do"
-                lines.append(
-                    f"{len(found)} of {self.end.size} runs: {ENDS[code]}; the first at {run}: "
-                    + advice
-                )
-        return lines
+        return list(self.told)
+
+
+def labelled(
+    scene: Scene, names: tuple[str, ...], files: Mapping[str, str], results: Columns,
+    end: npt.NDArray[np.int8],
+) -> Dataset:  # fmt: skip
+    """Columns of the ends of a board with axes, names and units."""
+    dims = tuple(plain_name(path) for path in scene.ranges)
+    axes = {}
+    for path, values in scene.ranges.items():
+        doc = entry_at(scene, path).doc
+        text = f"{path} of the scene" + (f", {doc}" if doc else "")
+        unit = scene.unit_of(path) or "1"
+        axes[plain_name(path)] = Variable(values, (plain_name(path),), unit, text)
+    axes["puck"] = variable("puck", np.arange(len(names)), ("puck",))
+    columns = {"name": variable("name", list(names), ("puck",))}
+    for name, values in results.items():
+        over = (*dims, "puck") if values.ndim > end.ndim else dims
+        columns[name] = variable(name, values, over)
+    columns["end"] = variable("end", end, dims, ENDS)
+    return Dataset(axes, columns, {"title": scene.title or "Scene"}, scene_texts(scene, files))
 
 
 def sweep(
     scene: Scene, *, threads: int | None = None, chunk: int = CHUNK,
-    progress: Progress | None = None, checkpoint: str | Path | None = None,
+    progress: Progress | None = None, store: str | Path | None = None, cluster: str | None = None,
+    overwrite: bool = False,
 ) -> WorldMap:  # fmt: skip
     """The map over a board, as :meth:`puck_tables.Scene.sweep` has it."""
-    axes = dict(scene.ranges)
-    if not axes:
-        raise InputError(
-            "no number of the scene is a range: write one as 'START:STOP:COUNT' or as a list (such "
-            "as puck[0].launch.spin = '0:10:101')"
-        )
-    shape, pieces = tuple(values.size for values in axes.values()), pieces_of(scene)
-    count, size = len(pieces), math.prod(shape)
-    rows = count * (len(STATE) + 1) + 2
-    check_memory(shape, 8 * 3 * rows)
-    inner = {path: match for path in axes if (match := _LAUNCH.fullmatch(path)) is not None}
-    inner = {path: one for path, one in inner.items() if _at_start(pieces, one)}
-    outer = [path for path in axes if path not in inner]
+    check_part(chunk)
+    work = WorldWork(scene, chunk)
+    if store is None:
+        check_memory(work.shape, 8 * 3 * (len(work.names) * (len(STATE) + 1) + 2))
+    found: WorldMap = finish(work, threads, progress, store, cluster, overwrite)
+    return found
 
-    @lru_cache(maxsize=8)
-    def case(numbers: tuple[float, ...]) -> _Case | InputError:
+
+class WorldWork(Work):
+    """The runs of a board over its ranges.
+
+    Raises
+    ------
+    InputError
+        If nothing ranges.
+    """
+
+    code = "end"
+    meanings = ENDS
+
+    def __init__(self, scene: Scene, part: int) -> None:
+        self.scene, self.part = scene, part
+        self.axes = dict(scene.ranges)
+        if not self.axes:
+            raise InputError(
+                "no number of the scene is a range: write one as 'START:STOP:COUNT' or as a list "
+                "(such as puck[0].launch.spin = '0:10:101')"
+            )
+        self.shape = tuple(values.size for values in self.axes.values())
+        self.block = min(MOST, max(FEWEST, self.size // 64))
+        pieces = pieces_of(scene)
+        self.names = tuple(called(piece, number) for number, piece in enumerate(pieces))
+        self.columns = dict.fromkeys((*STATE, "in_play"), (len(pieces),))
+        self.columns |= dict.fromkeys(("end_time", "impacts"), ())
+        inner = {p: match for p in self.axes if (match := _LAUNCH.fullmatch(p)) is not None}
+        self._inner = {path: one for path, one in inner.items() if _at_start(pieces, one)}
+        self._outer = [path for path in self.axes if path not in self._inner]
+        self._whole, self.files = tables_of(scene), files_of(scene)
+        self._read = files_named(self._whole)
+        self._case = lru_cache(maxsize=8)(self._made)
+
+    def __reduce__(self) -> Any:
+        return WorldWork, (self.scene, self.part)
+
+    @property
+    def identity(self) -> Mapping[str, Any]:
+        """The scene, its ranges, and what stands in the files that it names."""
+        ranges = list(self.scene.ranges.items())
+        return {"scene": self._whole, "axes": ranges, "files": self._read}
+
+    def _made(self, numbers: tuple[float, ...]) -> _Case | InputError:
         try:
-            first = {path: float(axes[path][0]) for path in inner}
-            return _Case(scene.at({**first, **dict(zip(outer, numbers, strict=True))}))
+            first = {path: float(self.axes[path][0]) for path in self._inner}
+            return _Case(self.scene.at({**first, **dict(zip(self._outer, numbers, strict=True))}))
         except InputError as error:
             return error
 
-    def split(start: int, stop: int) -> tuple[list[tuple[float, ...]], dict[str, FloatArray]]:
-        places = np.unravel_index(np.arange(start, stop), shape)
-        values = {path: axes[path][place] for path, place in zip(axes, places, strict=True)}
-        numbers = list(zip(*(values[path].tolist() for path in outer), strict=True))
-        return numbers or [()] * (stop - start), {path: values[path] for path in inner}
+    def _split(
+        self, start: int, stop: int
+    ) -> tuple[list[tuple[float, ...]], dict[str, FloatArray]]:
+        places = np.unravel_index(np.arange(start, stop), self.shape)
+        values = {
+            path: self.axes[path][place] for path, place in zip(self.axes, places, strict=True)
+        }
+        numbers = list(zip(*(values[path].tolist() for path in self._outer), strict=True))
+        return numbers or [()] * (stop - start), {path: values[path] for path in self._inner}
 
-    def ends_of(start: int, stop: int) -> tuple[FloatArray, npt.NDArray[np.int8]]:
-        numbers, launches = split(start, stop)
-        out = np.full((rows, stop - start), np.nan)
-        status = np.full(stop - start, REFUSED, np.int8)
+    def of(self, start: int, stop: int) -> Columns:
+        """The ends of some runs."""
+        numbers, launches = self._split(start, stop)
+        found = {name: np.full((stop - start, *one), np.nan) for name, one in self.columns.items()}
+        end = np.full(stop - start, REFUSED, np.int8)
         begin = 0
         while begin < stop - start:  # runs that differ in nothing but launches, together
-            end = begin + 1
-            while end < stop - start and numbers[end] == numbers[begin]:
-                end += 1
-            one = case(numbers[begin])
+            last = begin + 1
+            while last < stop - start and numbers[last] == numbers[begin]:
+                last += 1
+            one = self._case(numbers[begin])
             if isinstance(one, _Case):
-                part = {path: values[begin:end] for path, values in launches.items()}
-                out[:, begin:end], status[begin:end] = one.ends(part, inner, end - begin)
-            begin = end
-        return out, status
+                part = {path: values[begin:last] for path, values in launches.items()}
+                columns, end[begin:last] = one.ends(part, self._inner, last - begin)
+                for name, values in columns.items():
+                    found[name][begin:last] = values
+            begin = last
+        return found | {self.code: end}
 
-    whole = tables_of(scene)
-    work = {"scene": whole, "axes": list(scene.ranges.items()), "files": files_named(whole)}
-    files = files_of(scene)
-    out, status = chunked(ends_of, rows, size, chunk, threads, progress, checkpoint, work)
-    refused = np.flatnonzero(status == REFUSED)
-    refusal = str(case(split(int(refused[0]), int(refused[0]) + 1)[0][0])) if refused.size else ""
-    if refused.size == size:
-        raise InputError(f"every run of this sweep is refused, the first: {refusal}")
-    states = out[:-2].reshape(count, -1, *shape)
-    columns = {name: np.moveaxis(states[:, n], 0, -1) for n, name in enumerate((*STATE, "in_play"))}
-    columns |= {"end_time": out[-2].reshape(shape), "impacts": out[-1].reshape(shape)}
-    names = tuple(called(piece, number) for number, piece in enumerate(pieces))
-    return WorldMap(scene, names, columns, status.reshape(shape), refusal, files)
+    def checked(self, tally: Tally) -> None:
+        """Refuse a sweep every run of which is refused."""
+        if set(tally.counts) == {REFUSED}:
+            raise InputError(
+                f"every run of this sweep is refused, the first: {self._refusal(tally)}"
+            )
+
+    def _refusal(self, tally: Tally) -> str:
+        first = tally.first[REFUSED]
+        return str(self._case(self._split(first, first + 1)[0][0]))
+
+    def without_end(self, tally: Tally) -> list[str]:
+        """A line for each way in which runs have no end: how many, the first, and what to do."""
+        lines = []
+        for code, count in tally.counts.items():
+            if code > TIME_UP:
+                place = np.unravel_index(tally.first[code], self.shape)
+                at = zip(self.axes.items(), place, strict=True)
+                run = ", ".join(f"{path} = {values[i]:.10g}" for (path, values), i in at)
+                refused = code == REFUSED
+                advice = self._refusal(tally) if refused else "run it alone, which says what to do"
+                lines.append(
+                    f"{count} of {self.size} runs: {ENDS[code]}; the first at {run}: {advice}"
+                )
+        return lines
+
+    def explain(self, tally: Tally) -> str:
+        """How it is got."""
+        return f"{self.size} runs\n{ways_of(self.scene)}\n{rule_of(self.scene)}"
+
+    def labelled(self, columns: Columns) -> Dataset:
+        """The ends over what ranges; the scene and its files as texts."""
+        results = {name: columns[name] for name in self.columns}
+        return labelled(self.scene, self.names, self.files, results, columns[self.code])
+
+    def result(self, columns: Columns) -> WorldMap:
+        """The map."""
+        end = columns[self.code]
+        results = {name: columns[name] for name in self.columns}
+        lines = tuple(self.without_end(Tally.of(end)))
+        return WorldMap(self.scene, self.names, results, end, lines, self.files)
 
 
 def _at_start(pieces: tuple[Piece, ...], path: re.Match[str]) -> bool:
@@ -230,8 +300,8 @@ class _Case:
 
     def ends(
         self, launches: Mapping[str, FloatArray], paths: Mapping[str, re.Match[str]], count: int
-    ) -> tuple[FloatArray, npt.NDArray[np.int8]]:
-        """Results (rows, count) and how each run ended."""
+    ) -> tuple[Columns, npt.NDArray[np.int8]]:
+        """Results (count, …) and how each run ended."""
         numbers = sorted({int(one[1] or 0) for one in paths.values()})
         starts = np.empty((count, len(numbers), 3))
         for m, number in enumerate(numbers):
@@ -247,11 +317,13 @@ class _Case:
                 {path: float(values[run]) for path, values in launches.items()}, int(run), ends
             )
         states = np.concatenate([ends.states, ends.in_play[:, :, None]], axis=2)[:, self.place]
-        out = np.vstack([states.reshape(count, -1).T, ends.time, ends.impacts])
+        out: Columns = {name: states[:, :, n] for n, name in enumerate((*STATE, "in_play"))}
+        out |= {"end_time": ends.time, "impacts": ends.impacts.astype(np.float64)}
         status = np.where(ends.how > 1, ends.how, 0).astype(np.int8)
         moving = (states[:, :, 3:6] != 0.0).any(axis=(1, 2))
         status[(status == 0) & moving] = TIME_UP
-        out[:, status > TIME_UP] = np.nan
+        for values in out.values():
+            values[status > TIME_UP] = np.nan
         return out, status
 
     def _run(self, numbers: Mapping[str, float], run: int, ends: Ends) -> None:
