@@ -13,7 +13,6 @@ from puck_tables.cli.options import deliver, explained, prepare_outputs, printab
 from puck_tables.cli.start import last_words
 
 from puck_tables.errors import InputError, OutputError
-from puck_tables.io.formats import STORE
 
 if TYPE_CHECKING:
     from puck_tables.bulk.spreads import Spread
@@ -124,6 +123,8 @@ class Whole:
     @property
     def stored(self) -> bool:
         """Whether it goes to a Zarr store."""
+        from puck_tables.io.formats import STORE
+
         return self.output is not None and self.output.suffix.lower() == STORE
 
     @property

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -12,10 +13,11 @@ import pytest
 from pucks import sweep
 from scenes import sweep_scene
 
-from puck_tables import Table, profile_law
+from puck_tables import Scene, Table, profile_law
 from puck_tables._core import digest as kept_work
 from puck_tables._core.digest import work_digest
 from puck_tables.errors import InputError
+from puck_tables.scene.sweep import SceneWork
 
 pytest.importorskip("zarr")
 W0 = np.linspace(0.1, 5.0, 7)
@@ -157,7 +159,12 @@ def test_a_file_that_changes_while_it_is_swept_ends_the_sweep(tmp_path: Path):
         edited("force.csv", "t,Fx,Fy\n0,0.02,0\n9,0,0\n")(scene, tmp_path)
 
     with pytest.raises(InputError, match=r"was changed while it was swept .*force\.csv"):
-        sweep_scene(scene, chunk=1, threads=1, progress=changes, store=tmp_path / "a.zarr")
+        sweep_scene(scene, chunk=1, threads=1, progress=changes)
+    work = SceneWork(Scene.from_tables(scene_of(tmp_path)), 1)
+    sent = pickle.dumps(work)
+    edited("force.csv", "t,Fx,Fy\n0,0.03,0\n9,0,0\n")(scene, tmp_path)
+    with pytest.raises(InputError, match="was changed while it was swept"):  # nor on a worker
+        pickle.loads(sent).of(0, 1)
 
 
 def test_what_does_not_say_what_it_is_is_refused():

@@ -16,6 +16,7 @@ import numpy as np
 
 from puck_tables._core.safe_read import read_whole
 from puck_tables._core.sources import source_digest
+from puck_tables.errors import InputError
 
 _LARGEST_FILE = 1 << 26
 
@@ -82,3 +83,21 @@ def files_named(value: Any) -> dict[str, str]:
     except (OSError, ValueError):  # whoever needs it says why
         return {value: "cannot be read"}
     return {value: hashlib.sha256(content).hexdigest()}
+
+
+def refuse_changed(whole: Any, read: Mapping[str, str]) -> None:
+    """Refuse to go on when a file that a structure names is not what it was.
+
+    Raises
+    ------
+    InputError
+
+    Examples
+    --------
+    >>> refuse_changed({"launch": {"spin": 1.0}}, {})
+    """
+    if files_named(whole) != read:
+        raise InputError(
+            f"a file that this scene names was changed while it was swept ({', '.join(read)}), or "
+            "is another one on this machine: begin again"
+        )

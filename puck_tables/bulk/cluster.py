@@ -33,7 +33,7 @@ except ImportError:
     ) from None
 
 MOST_WORKERS = 1024
-_PATIENCE = 10.0  # s to reach a scheduler, or to find a worker
+_REACH, _PATIENCE = 5.0, 10.0  # s to reach a scheduler, to find a worker
 _AHEAD = 4  # blocks given to each thread of the workers
 _LOOK = 0.2  # s between two looks
 _ADDRESS = re.compile(r"(tcp|tls)://[^\s/:]+:[0-9]{1,5}|(tcp|tls)://\[[0-9a-fA-F:.]+\]:[0-9]{1,5}")
@@ -164,7 +164,7 @@ def client_of(given: str) -> Iterator[Any]:
             )  # fmt: skip
             address = stack.enter_context(cluster)
         try:
-            client = distributed.Client(address, timeout=_PATIENCE, set_as_default=False)
+            client = distributed.Client(address, timeout=_REACH, set_as_default=False)
         except (OSError, TimeoutError, ValueError) as error:
             raise ClusterError(
                 f"no scheduler answers at {where} ({type(error).__name__}): start one with 'dask "

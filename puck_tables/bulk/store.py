@@ -186,7 +186,7 @@ class Store:
         shape = tuple(one.stop - one.start for one in box)
         try:
             for name, array in self._arrays.items():  # the code is the last of them
-                array[(*box, ...)] = found[name].reshape(*shape, *found[name].shape[1:])
+                array[(*box, ...)] = found[name].reshape((*shape, *found[name].shape[1:]))
         except OSError as error:
             raise OutputError(f"cannot write {self.path}: {error.strerror or error}") from None
 
@@ -203,7 +203,9 @@ class Store:
         box = (*self.blocks.slices(block), ...)
         run = self.blocks.run(block)
         return {
-            name: np.asarray(array[box]).reshape(run[1] - run[0], *self.work.columns.get(name, ()))
+            name: np.asarray(array[box]).reshape(
+                (run[1] - run[0], *self.work.columns.get(name, ()))
+            )
             for name, array in self._arrays.items()
         }
 

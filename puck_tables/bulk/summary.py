@@ -93,9 +93,7 @@ class Summary:
         InputError
         """
         if isinstance(bins, bool) or not isinstance(bins, int) or not 1 <= bins <= _MOST_BINS:
-            raise InputError(
-                f"bins must be a whole number from 1 to {_MOST_BINS}, got {bins!r}"
-            )
+            raise InputError(f"bins must be a whole number from 1 to {_MOST_BINS}, got {bins!r}")
         x, y = self._rows(self.place)
         if extent is None:
             sides = [_sides(x), _sides(y)]

@@ -148,7 +148,7 @@ def in_memory(work: Work, threads: int | None, progress: Progress | None) -> Res
         lambda start, stop: work.filled(found, start, stop), work.size, work.part, threads, tell
     )
     work.checked(Tally.of(found[work.code]))
-    shaped = {name: one.reshape(*work.shape, *one.shape[1:]) for name, one in found.items()}
+    shaped = {name: one.reshape((*work.shape, *one.shape[1:])) for name, one in found.items()}
     return work.result(shaped)
 
 

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.digest import files_named
+from puck_tables._core.digest import files_named, refuse_changed
 from puck_tables._core.executor import Progress
 from puck_tables._core.memory import check_memory
 from puck_tables.bulk.finish import check_part, finish
@@ -166,7 +166,7 @@ class SceneWork(Work):
     code = "end"
     meanings = ENDS
 
-    def __init__(self, scene: Scene, part: int) -> None:
+    def __init__(self, scene: Scene, part: int, read: dict[str, str] | None = None) -> None:
         self.scene, self.part = scene, part
         self.axes = axes_of(scene)
         if not self.axes:
@@ -178,14 +178,15 @@ class SceneWork(Work):
         self.columns = dict.fromkeys(RESULTS, ())
         self.block = min(MOST, max(FEWEST, self.size // 64))
         self._whole = tables_of(scene)
-        self._read, self.files = files_named(self._whole), files_of(scene)
+        self.files = files_of(scene)
+        self._read = files_named(self._whole) if read is None else read
         self._inner = [path for path in self.axes if is_launch(path, scene)]
         self._outer = [path for path in self.axes if path not in self._inner]
         self._batch = scene.ranges.get(BATCH, np.empty((0, len(LAUNCH))))
         self._case = lru_cache(maxsize=8)(self._made)
 
     def __reduce__(self) -> Any:
-        return SceneWork, (self.scene, self.part)
+        return SceneWork, (self.scene, self.part, self._read)
 
     @property
     def identity(self) -> Mapping[str, Any]:
@@ -253,11 +254,7 @@ class SceneWork(Work):
             part = {path: values[begin:last] for path, values in launches.items()}
             out[:, begin:last], end[begin:last] = self._together(numbers[begin], part, last - begin)
             begin = last
-        if files_named(self._whole) != self._read:
-            raise InputError(
-                "a file that this scene names was changed while it was swept "
-                f"({', '.join(self._read)}): begin again"
-            )
+        refuse_changed(self._whole, self._read)
         return dict(zip(RESULTS, out, strict=True)) | {self.code: end}
 
     def _refusal(self, run: int) -> str:

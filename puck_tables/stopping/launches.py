@@ -78,7 +78,7 @@ class Launches:
             found[name] = array[tuple(index[dim] for dim in over)] if over else array[()]
         for name, spread in self.spreads.items():
             found[name] = spread.drawn(name, self.seed, start, stop)
-            refuse_outside(name, found[name], f"samples of {name} reach")
+            refuse_outside(name, found[name], f"samples of {name}")
         return found
 
     def of_pucks(self) -> Launches:
@@ -185,9 +185,7 @@ def drawn(given: Mapping[str, Any], laws: Any, count: int, seed: int) -> Launche
     values, over, found = _values(others, laws)
     for name, array in values.items():
         if array.ndim:
-            raise InputError(
-                f"{name} must be one number or a spread: samples have no ranges"
-            )
+            raise InputError(f"{name} must be one number or a spread: samples have no ranges")
         over[name] = ()
     refuse_clashes([*values, *spreads])
     return Launches((SAMPLE,), (count,), values, over, found, spreads, seed)
@@ -254,7 +252,7 @@ def _values(
         if isinstance(value, Spread):
             raise InputError(f"{name} is a spread: give it to sample, not to sweep")
         values[name] = finite_array(name, value, COLUMNS[COLUMN[name]].unit)
-        refuse_outside(name, values[name], f"{name} has")
+        refuse_outside(name, values[name], name)
     return values, {"pressure": ()}, found
 
 
@@ -283,16 +281,16 @@ def refuse_outside(name: str, values: FloatArray, words: str) -> None:
 
     Examples
     --------
-    >>> refuse_outside("speed", np.array([1.0]), "speed has")
+    >>> refuse_outside("speed", np.array([1.0]), "speed")
     """
     if not values.size:
         return
     low, unit = float(values.min()), COLUMNS[COLUMN[name]].unit
     unit = "" if unit == "1" else f" {unit}"
     if name in _ABOVE_ZERO and not low > 0.0:
-        raise InputError(f"{words} {low:g}{unit}: it must be greater than 0{unit}")
+        raise InputError(f"{words} must be greater than 0{unit}, got {low:g}")
     if name in _NOT_BELOW_ZERO and not low >= 0.0:
-        raise InputError(f"{words} {low:g}{unit}: it must not be negative")
+        raise InputError(f"{words} must not be negative, got {low:g}{unit}")
 
 
 def law_name(law: str | Law) -> str:

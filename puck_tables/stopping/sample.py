@@ -18,3 +18,13 @@ class StopSample(StopMap, Summary):
     picture: ClassVar[str] = "sample"
     summed = OUTPUTS
     place = ("stop_x", "stop_y")
+    shown = ("stop_time", "path_length")
+
+    @property
+    def drawn_words(self) -> str:
+        """What scatters, in words."""
+        found = self._own.attributes.items()
+        return ", ".join(
+            f"{name.removeprefix('drawn_')} {text}"
+            for name, text in found if name.startswith("drawn_")
+        )  # fmt: skip

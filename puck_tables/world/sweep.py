@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.digest import files_named
+from puck_tables._core.digest import files_named, refuse_changed
 from puck_tables._core.executor import Progress
 from puck_tables._core.memory import check_memory
 from puck_tables.bulk.finish import check_part, finish
@@ -172,7 +172,7 @@ class WorldWork(Work):
     code = "end"
     meanings = ENDS
 
-    def __init__(self, scene: Scene, part: int) -> None:
+    def __init__(self, scene: Scene, part: int, read: dict[str, str] | None = None) -> None:
         self.scene, self.part = scene, part
         self.axes = dict(scene.ranges)
         if not self.axes:
@@ -190,11 +190,11 @@ class WorldWork(Work):
         self._inner = {path: one for path, one in inner.items() if _at_start(pieces, one)}
         self._outer = [path for path in self.axes if path not in self._inner]
         self._whole, self.files = tables_of(scene), files_of(scene)
-        self._read = files_named(self._whole)
+        self._read = files_named(self._whole) if read is None else read
         self._case = lru_cache(maxsize=8)(self._made)
 
     def __reduce__(self) -> Any:
-        return WorldWork, (self.scene, self.part)
+        return WorldWork, (self.scene, self.part, self._read)
 
     @property
     def identity(self) -> Mapping[str, Any]:
@@ -220,7 +220,13 @@ class WorldWork(Work):
         return numbers or [()] * (stop - start), {path: values[path] for path in self._inner}
 
     def of(self, start: int, stop: int) -> Columns:
-        """The ends of some runs."""
+        """The ends of some runs.
+
+        Raises
+        ------
+        InputError
+            If a file that the scene names was changed meanwhile.
+        """
         numbers, launches = self._split(start, stop)
         found = {name: np.full((stop - start, *one), np.nan) for name, one in self.columns.items()}
         end = np.full(stop - start, REFUSED, np.int8)
@@ -236,6 +242,7 @@ class WorldWork(Work):
                 for name, values in columns.items():
                     found[name][begin:last] = values
             begin = last
+        refuse_changed(self._whole, self._read)
         return found | {self.code: end}
 
     def checked(self, tally: Tally) -> None:
