@@ -59,6 +59,7 @@ if TYPE_CHECKING:
     from puck_tables.scene.scene import Scene
     from puck_tables.scene.sweep import SceneMap
     from puck_tables.stopping.aim import Aim
+    from puck_tables.stopping.array_functions import state_arrays, stop_arrays
     from puck_tables.stopping.sample import StopSample
     from puck_tables.stopping.states import States, states
     from puck_tables.stopping.stops import Stops, stop
@@ -129,8 +130,10 @@ _HOMES = {
     "profile_law": "contact.laws",
     "read_tracks": "film.reading",
     "resultants": "kernels.closed_form",
+    "state_arrays": "stopping.array_functions",
     "states": "stopping.states",
     "stop": "stopping.stops",
+    "stop_arrays": "stopping.array_functions",
     "table_for": "table.store",
 }
 
@@ -194,8 +197,10 @@ __all__ = [
     "profile_law",
     "read_tracks",
     "resultants",
+    "state_arrays",
     "states",
     "stop",
+    "stop_arrays",
     "table_for",
 ]
 

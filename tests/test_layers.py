@@ -38,8 +38,8 @@ ROOMS = {
     "scene": "_core bulk contact errors io kernels motion puck result stopping table",
     "world": "_core bulk contact errors io kernels motion puck result scene stopping table",
     "tradeoff": "_core _version accuracy contact io kernels motion result stopping table",
-    "plot": "_core accuracy bulk chetaev errors film fitting io motion result scene stopping tradeoff "
-    "trajectory world",
+    "plot": "_core accuracy bulk chetaev errors film fitting io motion result scene stopping "
+    "tradeoff trajectory world",
     "paper": "_core contact motion plot puck trajectory",
     "cli": "_core _version accuracy bulk chetaev contact errors film fitting io kernels motion "
     "paper plot puck scene stopping table tradeoff world",

@@ -201,11 +201,10 @@ class Store:
         if block is None:
             return {name: np.asarray(array[...]) for name, array in self._arrays.items()}
         box = (*self.blocks.slices(block), ...)
-        run = self.blocks.run(block)
+        start, stop = self.blocks.run(block)
+        shapes = {name: (stop - start, *self.work.columns.get(name, ())) for name in self._arrays}
         return {
-            name: np.asarray(array[box]).reshape(
-                (run[1] - run[0], *self.work.columns.get(name, ()))
-            )
+            name: np.asarray(array[box]).reshape(shapes[name])
             for name, array in self._arrays.items()
         }
 
