@@ -161,7 +161,8 @@ def chance_of(hits: int, samples: int) -> Chance:
     scale = 1.0 / (1.0 + z * z / samples)
     middle = scale * (share + z * z / (2 * samples))
     half = scale * z * math.sqrt(share * (1.0 - share) / samples + (z / (2 * samples)) ** 2)
-    return Chance(share, max(0.0, middle - half), min(1.0, middle + half))
+    low = 0.0 if hits == 0 else max(0.0, middle - half)  # but for rounding
+    return Chance(share, low, 1.0 if hits == samples else min(1.0, middle + half))
 
 
 def inside_of(region: npt.ArrayLike, x: FloatArray, y: FloatArray) -> Bins:

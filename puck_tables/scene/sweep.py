@@ -166,15 +166,18 @@ class SceneWork(Work):
     code = "end"
     meanings = ENDS
 
-    def __init__(self, scene: Scene, part: int, read: dict[str, str] | None = None) -> None:
+    def __init__(
+        self, scene: Scene, part: int, read: dict[str, str] | None = None,
+        axes: Mapping[str, FloatArray] | None = None, shape: tuple[int, ...] | None = None,
+    ) -> None:  # fmt: skip
         self.scene, self.part = scene, part
-        self.axes = axes_of(scene)
+        self.axes = axes_of(scene) if axes is None else axes
         if not self.axes:
             raise InputError(
                 "no number of the scene is a range: write one as 'START:STOP:COUNT' or as a list "
                 "(such as launch.spin = '0:10:101')"
             )
-        self.shape = tuple(values.size for values in self.axes.values())
+        self.shape = tuple(values.size for values in self.axes.values()) if shape is None else shape
         self.columns = dict.fromkeys(RESULTS, ())
         self.block = min(MOST, max(FEWEST, self.size // 64))
         self._whole = tables_of(scene)
@@ -227,14 +230,19 @@ class SceneWork(Work):
     def _split(
         self, start: int, stop: int
     ) -> tuple[list[tuple[float, ...]], dict[str, FloatArray]]:
+        values = self._values(start, stop)
+        numbers = zip(*(values[path].tolist() for path in self._outer), strict=True)
+        launches = {path: values[path] for path in self._inner}
+        return list(numbers) or [()] * (stop - start), launches
+
+    def _values(self, start: int, stop: int) -> dict[str, FloatArray]:
+        """What ranges, of some runs."""
         runs = np.unravel_index(np.arange(start, stop), self.shape)
         place = dict(zip(self.axes, runs, strict=True))
         values = {path: self.axes[path][place[path]] for path in self.axes}
         if BATCH in self._inner:
             values[BATCH] = self._batch[place[BATCH]]
-        numbers = zip(*(values[path].tolist() for path in self._outer), strict=True)
-        launches = {path: values[path] for path in self._inner}
-        return list(numbers) or [()] * (stop - start), launches
+        return values
 
     def of(self, start: int, stop: int) -> Columns:
         """The ends of some runs.
@@ -280,8 +288,9 @@ class SceneWork(Work):
         for code, count in tally.counts.items():
             if code > OVER_EDGE:
                 first = tally.first[code]
-                at = zip(self.axes.items(), np.unravel_index(first, self.shape), strict=True)
-                run = ", ".join(f"{path} = {values[i]:.10g}" for (path, values), i in at)
+                at = self._values(first, first + 1)
+                at |= {path: self.axes[path][[first]] for path in at if path == BATCH}
+                run = ", ".join(f"{path} = {values[0]:.10g}" for path, values in at.items())
                 lines.append(
                     f"{count} of {self.size} runs: {ENDS[code]}; the first at {run}: "
                     + self._advice(code, first)

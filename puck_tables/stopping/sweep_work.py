@@ -130,13 +130,17 @@ class StopWork(Work):
         }
 
     def _refuse_many(self, found: Mapping[Kind, Mapping[float, int]]) -> None:
-        for one in found.values():
-            refuse_many(np.array(list(one)[: MOST_HEIGHTS + 1]))
-        if len(found) > MOST_HEIGHTS or sum(map(len, found.values())) > 2 * MOST_HEIGHTS:
+        """Refuse more pucks than can be prepared."""
+        wanted = 0
+        for kind, one in found.items():
+            heights = np.array(list(one))
+            others = heights[self._solver(kind).needs_preparation(heights)]
+            refuse_many(others)
+            wanted += others.size
+        if max(wanted, len(found)) > MOST_HEIGHTS:
             raise InputError(
-                f"{sum(map(len, found.values()))} different kinds of pucks and more (pressure, "
-                "gyration, delta) are too many, each takes about a second to prepare: give at "
-                f"most {MOST_HEIGHTS}"
+                f"{max(wanted, len(found))} different pucks or more (of pressure, gyration, delta) "
+                f"are too many, each takes about a second to prepare: give at most {MOST_HEIGHTS}"
             )
 
     def _kinds(self, numbers: FloatArray) -> list[tuple[Kind, Any]]:
