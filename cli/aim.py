@@ -56,7 +56,7 @@ if TYPE_CHECKING:
 )
 @puck_options(mass=False)
 @click.option("--delta", type=NUMBER, help="delta = 2 f h / r instead.  [default: 0.5]")
-@body_options
+@body_options()
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 @click.option(
     "-o",

@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 @click.option("--friction", type=NUMBER, help="Coulomb coefficient f, if known.")
 @click.option("--mass", type=NUMBER, help="Mass in kg (for energies of what is simulated later).")
 @click.option("--gravity", type=NUMBER, help="Gravity in m/s^2.  [default: 9.80665]")
-@body_options
+@body_options()
 @click.option(
     "--free",
     metavar="NAMES",

@@ -114,18 +114,18 @@ NUMBER = Number()
 FILE = click.Path(readable=False, path_type=Path)
 
 
-def puck_options(mass: bool) -> Callable[[Command], Command]:
-    """The puck and the floor: by δ and J, or by dimensions and friction."""
+def puck_options(mass: bool, kind: click.ParamType = NUMBER) -> Callable[[Command], Command]:
+    """The puck and the floor: by δ and J, or by dimensions and friction; numbers of one kind."""
     options = [
-        click.option("--radius", type=NUMBER, help="Radius r in m.  [default: 1]"),
+        click.option("--radius", type=kind, help="Radius r in m.  [default: 1]"),
         click.option(
             "--height",
-            type=NUMBER,
+            type=kind,
             help="Height h of the puck in m, twice that of its centre of mass; with --friction.",
         ),
-        click.option("--friction", type=NUMBER, help="Coulomb coefficient f; with --height."),
-        click.option("--gravity", type=NUMBER, help="Gravity in m/s^2.  [default: 9.80665]"),
-        click.option("--decel", type=NUMBER, help="J = f g in m/s^2 instead.  [default: 1]"),
+        click.option("--friction", type=kind, help="Coulomb coefficient f; with --height."),
+        click.option("--gravity", type=kind, help="Gravity in m/s^2.  [default: 9.80665]"),
+        click.option("--decel", type=kind, help="J = f g in m/s^2 instead.  [default: 1]"),
     ]
     if mass:
         options.insert(4, click.option("--mass", type=NUMBER, help="Mass in kg (for the energy)."))
@@ -138,12 +138,20 @@ def puck_options(mass: bool) -> Callable[[Command], Command]:
     return decorate
 
 
-def body_options(command: Command) -> Command:
-    """The kind of puck: how it presses on the floor and how its mass is spread."""
-    for option in (
+def body_options(
+    kind: click.ParamType = NUMBER, many: bool = False
+) -> Callable[[Command], Command]:
+    """The kind of puck: how it presses on the floor and how its mass is spread.
+
+    ``kind``: of the radius of gyration; ``many``: whether several laws may be given.
+    """
+    words = "Contact pressure: uniform, galin, hertz, ring, annulus:INNER, or a CSV file of rho, W."
+    if many:
+        words += "  As often as wanted; annulus:START:STOP:COUNT is a range of them."
+    options = [
         click.option(
             "--gyration",
-            type=NUMBER,
+            type=kind,
             help="Radius of gyration about the vertical axis over r (a ratio, also with --radius), "
             "0.1 to 10.  [default: 0.7071, homogeneous]",
         ),
@@ -151,14 +159,19 @@ def body_options(command: Command) -> Command:
             "--pressure",
             metavar="LAW",
             shell_complete=laws,
-            default="uniform",
+            default=("uniform",) if many else "uniform",
+            multiple=many,
             show_default=True,
-            help="Contact pressure: uniform, galin, hertz, ring, annulus:INNER, or a CSV file of "
-            "rho, W.",
+            help=words,
         ),
-    ):
-        command = option(command)
-    return command
+    ]
+
+    def decorate(command: Command) -> Command:
+        for option in options:
+            command = option(command)
+        return command
+
+    return decorate
 
 
 def output_options(command: Command) -> Command:

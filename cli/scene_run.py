@@ -24,6 +24,7 @@ from puck_tables.cli.world_report import report as report_of_several
 from puck_tables.errors import InputError
 
 if TYPE_CHECKING:
+    from puck_tables.bulk.finish import Stored
     from puck_tables.scene.outcome import SceneRun
     from puck_tables.scene.scene import Scene
     from puck_tables.scene.sweep import SceneMap
@@ -37,7 +38,10 @@ PATHS = {
     "friction": "puck.friction", "gravity": "puck.gravity", "frames": "run.frames",
     "tol": "run.tol",
 }  # fmt: skip
-KEPT = ("times", "explain", "as_json", "output", "plot", "movie", "overwrite", "threads", "resume")
+KEPT = (
+    "times", "explain", "as_json", "output", "plot", "movie", "overwrite", "threads", "cluster",
+    "random", "seed", "spreads", "regions",
+)  # fmt: skip
 SCALED = ("delta", "decel")
 MOST_PARTS = 16  # of a scene in a report
 
@@ -110,7 +114,7 @@ def scene_tables(
 
 def files_read(scene: str | None, tables: dict[str, Any]) -> list[str]:
     """The files that a run of a scene reads: its own, and those that it names."""
-    from puck_tables._core.checkpoint import files_named
+    from puck_tables._core.digest import files_named
 
     return [*([] if scene is None else [scene]), *files_named(tables)]
 
@@ -257,13 +261,15 @@ def _events(run: SceneRun) -> str:
     return ", ".join(told_of) + (f" and {more} more" if more > 0 else "")
 
 
-def summary_of_map(stops: SceneMap | WorldMap) -> str:
+def summary_of_map(stops: SceneMap | WorldMap | Stored) -> str:
     """A map over a scene in one line, and one for each way in which runs have no end."""
-    ranged = " x ".join(f"{name} ({values.size})" for name, values in stops.axes.items())
-    counts = ", ".join(
-        f"{int((stops.end == code).sum())} {end}"
-        for code, end in enumerate(stops.meanings)
-        if (stops.end == code).any()
-    )
-    head = f"{stops.scene.title or 'scene'} over {ranged}: {counts}; {stops.model}"
-    return "\n".join([head, *stops.without_end()])
+    from puck_tables.bulk.finish import Stored
+    from puck_tables.bulk.work import Tally
+
+    work: Any = stops.work if isinstance(stops, Stored) else stops
+    tally = stops.tally if isinstance(stops, Stored) else Tally.of(stops.end)
+    ranged = " x ".join(f"{name} ({values.size})" for name, values in work.axes.items())
+    counts = ", ".join(f"{count} {work.meanings[code]}" for code, count in tally.counts.items())
+    lines = work.without_end(tally) if isinstance(stops, Stored) else stops.without_end()
+    model = "" if isinstance(stops, Stored) else f"; {stops.model}"
+    return "\n".join([f"{work.scene.title or 'scene'} over {ranged}: {counts}{model}", *lines])

@@ -55,7 +55,7 @@ _LAUNCHED = (
 @click.option("--w0", type=NUMBER, default=0.0, show_default=True, help="Launch spin in rad/s.")
 @puck_options(mass=True)
 @click.option("--delta", type=NUMBER, help="delta = 2 f h / r instead.  [default: 0.5]")
-@body_options
+@body_options()
 @click.option("--frames", type=int, help="Number of states to save.  [default: 101]")
 @click.option("--times", type=Times(), help="Times of the states to save, in s.")
 @click.option(

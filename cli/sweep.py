@@ -1,4 +1,4 @@
-"""``puck sweep``: maps of stops."""
+"""``puck sweep``: maps of stops, and samples."""
 
 from __future__ import annotations
 
@@ -8,16 +8,13 @@ from typing import TYPE_CHECKING, Any
 import click
 from puck_tables.cli.options import (
     FILE,
+    MAX_COUNT,
     NUMBER,
     Range,
     Vector,
     body_options,
-    deliver,
     explain_option,
-    explained,
     output_options,
-    prepare_outputs,
-    printable,
     progress,
     puck_given,
     puck_options,
@@ -25,29 +22,47 @@ from puck_tables.cli.options import (
     tables_named,
 )
 from puck_tables.cli.scene_run import files_read, scene_options, scene_tables, summary_of_map
-from puck_tables.cli.start import last_words
+from puck_tables.cli.sweep_options import Whole, laws_given, samples_checked, spreads_given
 
 from puck_tables.accuracy.methods import METHODS
 from puck_tables.errors import InputError
 
 if TYPE_CHECKING:
-    import numpy as np
-    import numpy.typing as npt
-
+    from puck_tables.puck import Puck
     from puck_tables.stopping.stop_table import StopTable
-    from puck_tables.stopping.sweep import StopMap
     from puck_tables.table.resultant_table import ResultantTable
 
 RANGE = Range()
+ARGUMENTS = {  # of the library by the names of options
+    "w0": "spin", "speed": "speed", "heading": "heading", "vx": "vx", "vy": "vy",
+    "radius": "radius", "height": "height", "friction": "friction", "gravity": "gravity",
+    "delta": "delta", "decel": "decel", "gyration": "gyration",
+}  # fmt: skip
+REAL = ("height", "friction", "gravity")
 
 
 @click.command()
 @click.option("--w0", type=RANGE, help="Launch spin in rad/s.")
-@click.option("--speed", type=RANGE, help="Launch speed along x in m/s.")
+@click.option("--speed", type=RANGE, help="Launch speed in m/s, along x without --heading.")
+@click.option("--heading", type=RANGE, help="Direction of the launch from x, in rad.")
 @click.option("--v0", type=Vector(), help="One launch velocity in m/s instead of --speed.")
 @click.option("--delta", type=RANGE, help="delta = 2 f h / r.  [default: 0.5]")
-@puck_options(mass=False)
-@body_options
+@puck_options(mass=False, kind=RANGE)
+@body_options(kind=RANGE, many=True)
+@click.option(
+    "--random", type=click.IntRange(2, MAX_COUNT), metavar="COUNT",
+    help="Samples instead of ranges: so many launches whose numbers scatter.",
+)  # fmt: skip
+@click.option("--seed", type=click.IntRange(0, 2**64 - 1), help="Of the samples.  [default: 0]")
+@click.option(
+    "--spread", "spreads", multiple=True, metavar="NAME=SPREAD",
+    help="How a number scatters: w0=normal:5:0.2, speed=uniform:0.9:1.1; in scenes "
+    "launch.spin=...; as often as needed.",
+)  # fmt: skip
+@click.option(
+    "--inside", "regions", multiple=True, metavar="X,Y,R|X1,Y1,X2,Y2",
+    help="Say with which chance samples end inside a disc or a rectangle, in m.",
+)  # fmt: skip
 @click.option(
     "--tol",
     type=NUMBER,
@@ -63,32 +78,28 @@ RANGE = Range()
 )
 @explain_option
 @click.option("--threads", type=click.IntRange(1, 1024), help="[default: all cores]")
+@click.option(
+    "--cluster", metavar="local:N|tcp://HOST:PORT",
+    help="Let N processes, or a Dask cluster that runs, do it; with -o NAME.zarr.",
+)  # fmt: skip
 @table_option
 @click.option(
     "-o",
     "--output",
     type=FILE,
     metavar="FILE",
-    help="Save the map: .h5, .csv, .json, .jsonl or .parquet.  Without -o and --plot, CSV goes to "
-    "stdout.",
-)
-@click.option(
-    "--resume",
-    is_flag=True,
-    help="Keep what is done in FILE.progress; the same command goes on from there.",
+    help="Save the map: .h5, .csv, .json, .jsonl, .parquet; or .zarr, which may be larger than memory "
+    "and goes on after any end.  Without -o and --plot, CSV goes to stdout.",
 )
 @output_options
 @scene_options
 @click.pass_context
 def sweep(
-    ctx: click.Context, w0: float | tuple[float, float, int] | None,
-    speed: float | tuple[float, float, int] | None,
-    v0: tuple[float, float] | None, delta: float | tuple[float, float, int] | None,
-    radius: float | None, height: float | None, friction: float | None, gravity: float | None,
-    decel: float | None, pressure: str, gyration: float | None, tol: float,
-    method: str | None, explain: bool, threads: int | None,
-    table_path: Path | None, output: Path | None, resume: bool, plot: Path | None, overwrite: bool,
-    scene: str | None, changes: tuple[str, ...],
+    ctx: click.Context, v0: tuple[float, float] | None, pressure: tuple[str, ...],
+    random: int | None, seed: int | None, spreads: tuple[str, ...], regions: tuple[str, ...],
+    tol: float, method: str | None, explain: bool, threads: int | None, cluster: str | None,
+    table_path: Path | None, output: Path | None, plot: Path | None, overwrite: bool,
+    scene: str | None, changes: tuple[str, ...], **numbers: Any,
 ) -> None:  # fmt: skip
     """Map where and when pucks stop, or how a scene ends.
 
@@ -101,79 +112,93 @@ def sweep(
     puck sweep --plot map.png
     puck sweep --v0 1,0 --w0 0:10:101 -o stops.csv
     puck sweep --speed 0:2:201 --w0 -20:20:401 --delta 0:1:5 -o map.h5
-    puck sweep --v0 1,0 --w0 0:10:101 --delta 2 -o tall.csv
+    puck sweep --w0 0:10:101 --pressure uniform --pressure hertz --pressure annulus:0.1:0.9:5 -o laws.h5
+    puck sweep --speed 0:2:9000 --w0 -4:4:9000 -o map.zarr --cluster local:4
+    puck sweep --random 1000000 --spread w0=normal:5:0.2 --spread speed=uniform:0.9:1.1 --plot where.png
     puck sweep --scene incline --set launch.spin=0:80:81 --set floor.slope=0:0.14:71 --plot map.png
 
-    Each delta above 1, or with --pressure or --gyration, takes about a second to prepare.
-    """  # noqa: D301 - click reads the backspace
+    Each delta above 1, or with another --pressure or --gyration, takes about a second to prepare.
+    """  # noqa: D301, E501 - click reads the backspace
+    whole = Whole(threads, cluster, output, plot, overwrite, explain)
+    inside = samples_checked(random, seed, spreads, regions)
     if scene is not None or changes:
         tables = scene_tables(ctx, scene, changes)
-        prepare_outputs(output, plot=plot, overwrite=overwrite, inputs=files_read(scene, tables))
-        _sweep_scene(tables, explain, threads, output, resume, plot, overwrite)
+        whole.refuse_outputs(files_read(scene, tables))
+        from puck_tables.scene.scene import Scene
+
+        with progress("runs") as show:
+            one = Scene.from_tables(tables)
+            if random is None:
+                ends: Any = one.sweep(progress=show, **whole.how)
+            else:
+                drawn = spreads_given(spreads, None)
+                ends = one.sample(random, seed or 0, drawn, progress=show, **whole.how)
+        whole.deliver(ends, summary_of_map(ends), inside)
         return
-    if v0 is not None and speed is not None:
+    if v0 is not None and numbers["speed"] is not None:
         raise InputError("--v0 and --speed clash: both give the launch velocity")
-    prepare_outputs(output, plot=plot, overwrite=overwrite, inputs=(table_path, pressure))
-    from puck_tables.io.csv import encode
-    from puck_tables.stopping.sweep import BYTES_PER_LAUNCH, BYTES_PER_ROW, check_memory
-
-    lowest = delta[0] if isinstance(delta, tuple) else delta
-    puck = puck_given(radius, height, friction, gravity, lowest, decel, pressure, gyration)
-    given = any(x is not None for x in (w0, speed, v0))
-    if plot is not None and given and not any(isinstance(x, tuple) for x in (w0, speed, delta)):
-        raise InputError("--plot needs a range: give --w0, --speed or --delta START:STOP:COUNT")
-    as_text = plot is None if output is None else output.suffix.lower() != ".h5"
-    check_memory(
-        tuple(x[2] for x in (w0, speed, delta) if isinstance(x, tuple)),
-        BYTES_PER_ROW if as_text else BYTES_PER_LAUNCH,
-    )
+    drawn = spreads_given(spreads, ARGUMENTS)
+    for name, option in ARGUMENTS.items():
+        if option in drawn and numbers.get(name) is not None:
+            raise InputError(f"--{name} and --spread {name}=... clash: both give it")
+    whole.refuse_outputs((table_path, *pressure))
+    given = {ARGUMENTS[name]: value for name, value in numbers.items() if value is not None} | drawn
+    ranged = {name: value for name, value in given.items() if isinstance(value, tuple)}
+    laws = laws_given(pressure)
+    if random is not None and (ranged or len(laws) > 1):
+        first = next(iter(ranged), "pressure")
+        raise InputError(
+            f"--random draws samples: {first} cannot range, give one number or a --spread"
+        )
+    if (
+        plot is not None
+        and random is None
+        and given.keys() & {"spin", "speed"} | ({"spin"} if v0 is not None else set())
+        and not ranged
+        and len(laws) == 1
+    ):
+        raise InputError(
+            "--plot needs a range: give --w0, --speed, --delta or another number as "
+            "START:STOP:COUNT"
+        )
+    whole.refuse_memory([one[2] for one in ranged.values()] + [len(laws)], random)
+    puck = _puck(given, laws)
+    launch = {name: _values(value) for name, value in given.items() if name not in _OF_PUCK}
+    launch |= {name: _values(value) for name, value in given.items()
+               if name in _OF_PUCK and not isinstance(value, float)}  # fmt: skip
+    if "radius" in launch and not given.keys() & set(REAL):  # similar pucks stay similar
+        launch |= {name: launch.get(name, getattr(puck, name)) for name in ("delta", "decel")}
+    launch |= {} if v0 is None else {"velocity": v0}
+    launch |= {} if len(laws) == 1 else {"pressure": laws}
     table = None if table_path is None else _table_of_stops(table_path)
-    kept = _going_on(output) if resume else None
+    how: dict[str, Any] = {"tol": tol, "method": method, "table": table, **whole.how}
     with progress("stops") as show:
-        stops = puck.sweep(
-            None if w0 is None else _values(w0), None if speed is None else _values(speed),
-            velocity=v0, delta=_values(delta) if isinstance(delta, tuple) else None, tol=tol,
-            method=method, table=table, threads=threads, progress=show, checkpoint=kept,
-        )  # fmt: skip
-    if not (stops.status == 0).any():
-        raise InputError("all these launches are too large for floating point: use larger units")
-    deliver(stops, output, None, overwrite)
-    _done_with(kept, output)
-    deliver(stops, None, plot, overwrite)
-    if output is None and plot is None:
-        click.echo(encode(stops.dataset()).decode(), nl=False)
-    click.echo(printable(_summary(stops)), err=True)
-    if explain:
-        explained(stops)
+        if random is None:
+            stops: Any = puck.sweep(**launch, progress=show, **how)
+        else:
+            stops = puck.sample(random, seed or 0, **launch, progress=show, **how)
+    whole.deliver(stops, _summary(stops), inside)
 
 
-def _sweep_scene(
-    tables: dict[str, Any], explain: bool, threads: int | None, output: Path | None, resume: bool,
-    plot: Path | None, overwrite: bool,
-) -> None:  # fmt: skip
-    """A map over a scene, to the end of the command."""
-    from puck_tables.io.csv import encode
-    from puck_tables.scene.scene import Scene
-
-    kept = _going_on(output) if resume else None
-    with progress("runs") as show:
-        stops = Scene.from_tables(tables).sweep(threads=threads, progress=show, checkpoint=kept)
-    deliver(stops, output, None, overwrite)
-    _done_with(kept, output)
-    deliver(stops, None, plot, overwrite)
-    if output is None and plot is None:
-        click.echo(encode(stops.dataset()).decode(), nl=False)
-    click.echo(printable(summary_of_map(stops)), err=True)
-    if explain:
-        explained(stops)
+_OF_PUCK = ("radius", "height", "friction", "gravity", "delta", "decel", "gyration")
 
 
-def _done_with(kept: Path | None, output: Path | None) -> None:
-    """Remove what is kept of a sweep that is saved, or say that something is left."""
-    if kept is not None:
-        kept.unlink(missing_ok=True)
-    elif output is not None and _kept(output).exists():
-        click.echo(f"{_kept(output)} is left of an interrupted sweep: remove it", err=True)
+def _puck(given: dict[str, Any], laws: list[str]) -> Puck:
+    """The puck, with the lowest number of each range, and the middle of each spread."""
+    alone = {name: _first(given.get(name)) for name in _OF_PUCK}
+    numbers = [
+        alone[name] for name in ("radius", "height", "friction", "gravity", "delta", "decel")
+    ]
+    return puck_given(*numbers, laws[0], alone["gyration"])
+
+
+def _first(value: Any) -> float | None:
+    if isinstance(value, tuple):
+        return float(value[0])
+    if value is None or isinstance(value, float):
+        return value
+    middle: float = value.mean if hasattr(value, "mean") else 0.5 * (value.low + value.high)
+    return middle
 
 
 def _table_of_stops(path: Path) -> ResultantTable | StopTable:
@@ -187,35 +212,28 @@ def _table_of_stops(path: Path) -> ResultantTable | StopTable:
     return table
 
 
-def _kept(output: Path | None) -> Path:
-    """Where a sweep that may be interrupted keeps what is done."""
-    if output is None:
-        raise InputError("--resume needs -o FILE: what is done is kept beside it")
-    return output.with_name(output.name + ".progress")
-
-
-def _going_on(output: Path | None) -> Path:
-    """The same, and what is said of it after Ctrl-C."""
-    kept = _kept(output)
-    words = f"Interrupted: {kept} keeps what is done; the same command goes on."
-    last_words.append(lambda: words if kept.exists() else last_words[0]())
-    return kept
-
-
-def _values(given: float | tuple[float, float, int]) -> npt.NDArray[np.float64]:
+def _values(given: Any) -> Any:
     import numpy as np
 
-    return np.linspace(*given) if isinstance(given, tuple) else np.asarray(given)
+    return np.linspace(*given) if isinstance(given, tuple) else given
 
 
-def _summary(stops: StopMap) -> str:
+def _summary(stops: Any) -> str:
+    from puck_tables.bulk.finish import Stored
+    from puck_tables.bulk.work import Tally
     from puck_tables.stopping.solvers import STATUS_MEANINGS
 
-    ranged = " x ".join(f"{name} ({values.size})" for name, values in stops.axes.items())
-    fixed = ", ".join(f"{name} = {value:g}" for name, value in stops.fixed.items())
+    stored = isinstance(stops, Stored)
+    tally = stops.tally if stored else Tally.of(stops.status)
+    one = stops.work.launches if stored else stops
+    work = stops.work if stored else stops
+    shape = stops.work.shape if stored else stops.status.shape
+    ranged = " x ".join(f"{name} ({n})" for name, n in zip(one.dims, shape, strict=True))
+    fixed = ", ".join(f"{name} = {value:g}" for name, value in one.fixed.items())
     counts = ", ".join(
-        f"{int((stops.status == code).sum())} {meaning.replace('_', ' ')}"
+        f"{tally.counts.get(code, 0)} {meaning.replace('_', ' ')}"
         for code, meaning in enumerate(STATUS_MEANINGS)
-        if code == 0 or (stops.status == code).any()
+        if code == 0 or code in tally.counts
     )
-    return f"{ranged or 'one launch'} at {fixed}: {counts}; {stops.method}, {stops.table}"
+    source = work.source if stored else work.table
+    return f"{ranged or 'one launch'} at {fixed}: {counts}; {work.method}, {source}"

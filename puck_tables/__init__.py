@@ -20,10 +20,12 @@ from puck_tables._version import __version__
 
 if TYPE_CHECKING:
     from puck_tables import chetaev, contact, motion
+    from puck_tables.bulk.spreads import Normal, Uniform
     from puck_tables.contact.laws import Law, law_of, profile_law
     from puck_tables.contact.speed_law import SpeedLaw
     from puck_tables.errors import (
         AccuracyError,
+        ClusterError,
         ContactError,
         InputError,
         MissingExtraError,
@@ -61,6 +63,8 @@ if TYPE_CHECKING:
     from puck_tables.scene.scene import Scene
     from puck_tables.scene.sweep import SceneMap
     from puck_tables.stopping.aim import Aim
+    from puck_tables.stopping.array_functions import state_arrays, stop_arrays
+    from puck_tables.stopping.sample import StopSample
     from puck_tables.stopping.states import States, states
     from puck_tables.stopping.stops import Stops, stop
     from puck_tables.stopping.sweep import StopMap
@@ -81,6 +85,7 @@ _HOMES = {
     "BoardAim": "world.aimed",
     "Camera": "fitting.forecast",
     "CheckReport": "table.check",
+    "ClusterError": "errors",
     "Comparison": "reference.comparison",
     "Constraint": "scene.parts",
     "ContactError": "errors",
@@ -97,6 +102,7 @@ _HOMES = {
     "Law": "contact.laws",
     "LimitSurface": "wrench.surface",
     "MissingExtraError": "errors",
+    "Normal": "bulk.spreads",
     "OutputError": "errors",
     "Piece": "scene.pieces",
     "Plastic": "scene.restitution",
@@ -115,12 +121,14 @@ _HOMES = {
     "SpeedLaw": "contact.speed_law",
     "States": "stopping.states",
     "StopMap": "stopping.sweep",
+    "StopSample": "stopping.sample",
     "Stops": "stopping.stops",
     "Strips": "scene.parts",
     "Table": "table.table",
     "TableError": "errors",
     "Track": "film.track",
     "Trajectory": "trajectory",
+    "Uniform": "bulk.spreads",
     "Viscoelastic": "scene.restitution",
     "Wall": "scene.parts",
     "World": "world.world",
@@ -138,8 +146,10 @@ _HOMES = {
     "read_tracks": "film.reading",
     "reference_case": "reference.answer",
     "resultants": "kernels.closed_form",
+    "state_arrays": "stopping.array_functions",
     "states": "stopping.states",
     "stop": "stopping.stops",
+    "stop_arrays": "stopping.array_functions",
     "table_for": "table.store",
 }
 
@@ -151,6 +161,7 @@ __all__ = [
     "BoardAim",
     "Camera",
     "CheckReport",
+    "ClusterError",
     "Comparison",
     "Constraint",
     "ContactError",
@@ -167,6 +178,7 @@ __all__ = [
     "Law",
     "LimitSurface",
     "MissingExtraError",
+    "Normal",
     "OutputError",
     "Piece",
     "Plastic",
@@ -185,12 +197,14 @@ __all__ = [
     "SpeedLaw",
     "States",
     "StopMap",
+    "StopSample",
     "Stops",
     "Strips",
     "Table",
     "TableError",
     "Track",
     "Trajectory",
+    "Uniform",
     "Viscoelastic",
     "Wall",
     "World",
@@ -209,8 +223,10 @@ __all__ = [
     "read_tracks",
     "reference_case",
     "resultants",
+    "state_arrays",
     "states",
     "stop",
+    "stop_arrays",
     "table_for",
 ]
 

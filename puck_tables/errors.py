@@ -36,3 +36,7 @@ class OutputError(PuckError, OSError):
 
 class MissingExtraError(PuckError, ImportError):
     """An optional package is needed for this and is not installed."""
+
+
+class ClusterError(PuckError, ConnectionError):
+    """The machines that were to do the work cannot be reached; what they have done stays."""

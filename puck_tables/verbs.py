@@ -5,28 +5,23 @@ What answers stands above the puck, and is loaded when it is asked.
 
 from __future__ import annotations
 
-from functools import cache
-from importlib import import_module
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy.typing as npt
 
-from puck_tables._core.executor import Progress
-from puck_tables.errors import InputError
+from puck_tables.verbs_of_many import VerbsOfMany, refuse_frictionless, verb
 
 if TYPE_CHECKING:
     from puck_tables.stopping.aim import Aim
     from puck_tables.stopping.states import States
     from puck_tables.stopping.stops import Stops
-    from puck_tables.stopping.sweep import StopMap
     from puck_tables.table.table import Table
     from puck_tables.trajectory import Trajectory
     from puck_tables.wrench.holds import Hold
     from puck_tables.wrench.surface import LimitSurface
 
 
-class Verbs:
+class Verbs(VerbsOfMany):
     """Questions to a :class:`puck_tables.Puck`, which has these verbs."""
 
     def regime(self, velocity: npt.ArrayLike, spin: float = 0.0) -> str:
@@ -45,7 +40,7 @@ class Verbs:
         'B'
         """
         puck: Any = self
-        kind: str = _verb("motion.limits", "regime")(
+        kind: str = verb("motion.limits", "regime")(
             velocity, spin, puck.delta, puck.radius, puck.pressure, puck.gyration
         )
         return kind
@@ -113,7 +108,7 @@ class Verbs:
         ('B', 3.96299205, 2.21395163)
         """
         refuse_frictionless(self)
-        run: Trajectory = _verb("trajectory", "simulate")(
+        run: Trajectory = verb("trajectory", "simulate")(
             self, velocity, spin, frames=frames, times=times, tol=tol, method=method, exact=exact,
             table=table,
         )  # fmt: skip
@@ -149,7 +144,7 @@ class Verbs:
         >>> Puck.similar(delta=1.0).stop((1.0, 0.0), [1.0, 5.0]).stop_time.round(6).tolist()
         [1.395088, 4.000189]
         """
-        stops: Stops = _verb("stopping.stops", "stop")(
+        stops: Stops = verb("stopping.stops", "stop")(
             velocity, spin, **_kind(self), tol=tol, method=method, table=table,
             jacobian=jacobian, threads=threads,
         )  # fmt: skip
@@ -186,73 +181,10 @@ class Verbs:
         >>> Puck.similar().states((1.0, 0.0), 5.0, [2.0, 0.0]).x.round(6).tolist()
         [1.590682, 0.0]
         """
-        found: States = _verb("stopping.states", "states")(
+        found: States = verb("stopping.states", "states")(
             velocity, spin, time, **_kind(self), table=table, jacobian=jacobian, threads=threads
         )
         return found
-
-    def sweep(
-        self,
-        spin: npt.ArrayLike | None = None,
-        speed: npt.ArrayLike | None = None,
-        *,
-        velocity: npt.ArrayLike | None = None,
-        delta: npt.ArrayLike | None = None,
-        tol: float = 1e-8,
-        method: str | None = None,
-        table: Table | None = None,
-        threads: int | None = None,
-        chunk: int = 1024,
-        progress: Progress | None = None,
-        checkpoint: str | Path | None = None,
-    ) -> StopMap:
-        """Stops of all combinations of spins and speeds, and of heights.
-
-        Parameters
-        ----------
-        spin : number or array (n,), rad/s
-        speed : number or array (n,), m/s, ≥ 0, along x
-            Without ``spin``, ``speed`` and ``velocity``: a map of 41 speeds by 41 spins.
-        velocity : (vx, vy), m/s, instead of ``speed``
-        delta : number or array (n,), optional
-            Dimensionless heights instead of that of the puck.
-        tol : float
-            Largest error in units of Q/J (time) and Q²/J (place).
-        method, table : optional
-            As for :func:`puck_tables.stop`.
-        threads, chunk : int
-            How the work is cut; the numbers do not depend on it, to the last bit.
-        progress : callable (done, total), optional
-        checkpoint : path, optional
-            A file that keeps what is done: called again with the same arguments, the work goes on
-            from there.  It stays until you remove it.
-
-        Returns
-        -------
-        StopMap
-            One dimension for each argument that is an array.
-
-        Raises
-        ------
-        InputError
-            If an argument is not finite or outside its range, the map would not fit in memory, or
-            ``checkpoint`` belongs to other work.
-        AccuracyError
-            If the tolerance is out of reach.
-
-        Examples
-        --------
-        >>> from puck_tables import Puck
-        >>> stops = Puck.similar(delta=0.0).sweep([0.0, 1.0, 2.0], velocity=(1.0, 0.0))
-        >>> stops.stop_x.round(4).tolist()
-        [0.5, 0.6374, 0.9835]
-        """
-        stops: StopMap = _verb("stopping.sweep", "sweep")(
-            spin, speed, velocity=velocity, **{**_kind(self), **_given(delta=delta)}, tol=tol,
-            method=method, table=table, threads=threads, chunk=chunk, progress=progress,
-            checkpoint=checkpoint,
-        )  # fmt: skip
-        return stops
 
     def aim(
         self,
@@ -315,7 +247,7 @@ class Verbs:
         ([[0.899671, 0.109151]], [3.927704])
         """
         refuse_frictionless(self)
-        found: Aim = _verb("stopping.aim", "aim")(
+        found: Aim = verb("stopping.aim", "aim")(
             self, target, spin=spin, speed=speed, stop_time=stop_time, max_speed=max_speed,
             max_spin=max_spin, count=count,
         )  # fmt: skip
@@ -349,7 +281,7 @@ class Verbs:
         >>> float(surface.torque[-1].round(6)), round(surface.ellipsoid.error, 3)
         (0.666667, 0.04)
         """
-        found: LimitSurface = _verb("wrench.surface", "limit_surface")(self, n)
+        found: LimitSurface = verb("wrench.surface", "limit_surface")(self, n)
         return found
 
     def holds(self, force: npt.ArrayLike, torque: npt.ArrayLike = 0.0) -> Hold:
@@ -383,27 +315,8 @@ class Verbs:
         >>> bool(puck.holds((0.9, 0.0))), float(puck.holds((0.0, 0.0), 0.5).margin.round(6))
         (True, 1.333333)
         """
-        found: Hold = _verb("wrench.holds", "holds")(self, force, torque)
+        found: Hold = verb("wrench.holds", "holds")(self, force, torque)
         return found
-
-
-@cache
-def _verb(module: str, name: str) -> Any:
-    """What answers a question about a puck stands above it, and is loaded when it is asked."""
-    return getattr(import_module(f"puck_tables.{module}"), name)
-
-
-def refuse_frictionless(puck: Any) -> None:
-    """Refuse what asks for the stop of a puck that nothing brakes.
-
-    Raises
-    ------
-    InputError
-    """
-    if puck.friction == 0.0:
-        raise InputError(
-            "a puck with friction = 0 never stops: give friction > 0, or put it into a Scene"
-        )
 
 
 def _kind(puck: Any) -> dict[str, Any]:
@@ -413,7 +326,3 @@ def _kind(puck: Any) -> dict[str, Any]:
         "delta": puck.delta, "decel": puck.decel, "radius": puck.radius,
         "pressure": puck.pressure, "gyration": puck.gyration,
     }  # fmt: skip
-
-
-def _given(**values: Any) -> dict[str, Any]:
-    return {name: value for name, value in values.items() if value is not None}

@@ -149,9 +149,10 @@ def test_what_is_no_scene(shape: str, reader: list[str], folder: Path):
 
 
 @pytest.mark.parametrize("shape", [shape for shape in MADE if shape != "missing"])
-def test_what_is_no_progress_of_a_sweep(shape: str, folder: Path):
-    MADE[shape](Path("m.h5.progress"))
+def test_what_is_no_store_of_a_sweep(shape: str, folder: Path):
+    pytest.importorskip("zarr")
+    MADE[shape](Path("m.zarr"))
     before = sorted(folder.iterdir())
-    arguments = ["sweep", "--w0", "0:1:3", "-o", "m.h5", "--resume"]
-    assert "m.h5.progress" in refused(arguments, codes=(1, 2))
-    assert sorted(folder.iterdir()) == before
+    for more in ([], ["--overwrite"]):
+        assert "m.zarr" in refused(["sweep", "--w0", "0:1:3", "-o", "m.zarr", *more], codes=(1, 2))
+        assert sorted(folder.iterdir()) == before

@@ -1,4 +1,4 @@
-"""Ends at any moment, two at one file, progress of other work: nothing lost, nothing half taken."""
+"""Ends at any moment, two at one file: nothing lost, nothing half taken."""
 
 from __future__ import annotations
 
@@ -14,8 +14,6 @@ import pytest
 from pucks import sweep
 
 from puck_tables import Table
-from puck_tables._core.checkpoint import Checkpoint
-from puck_tables.errors import InputError, OutputError
 
 PUCK = [sys.executable, "-c", "from puck_tables.cli.main import main; main()"]
 # integrated, so that there is something to interrupt
@@ -35,11 +33,11 @@ def killed_after(seconds: float, command: list[str], folder: Path) -> int:
 
 
 def sweeps_killed(folder: Path, kills: int) -> int:
-    """Kill a resumable sweep at random moments until it is done; returns how many kills it took."""
+    """Kill a sweep into a store at random moments until it is done; how many kills it took."""
     load = "from puck_tables import Table; from test_faults import GRID, sweep; "
     work = (
-        "m = sweep(**GRID, table=Table.shipped(), tol=1e-9, threads=1, checkpoint='m.progress'); "
-        "m.save('m.h5', overwrite=True)"
+        "sweep(**GRID, table=Table.shipped(), tol=1e-9, threads=1, store='m.zarr').load()"
+        ".save('m.h5', overwrite=True)"
     )
     code = f"import sys; sys.path.insert(0, {str(Path(__file__).parent)!r}); " + load + work
     moments = random.Random(12)
@@ -51,9 +49,10 @@ def sweeps_killed(folder: Path, kills: int) -> int:
 
 
 def check_killed_sweeps(tmp_path: Path, kills: int) -> None:
+    pytest.importorskip("zarr")
     base = sweep(**GRID, table=Table.shipped(), tol=1e-9)
     assert sweeps_killed(tmp_path, kills) >= 1
-    resumed = sweep(**GRID, table=Table.shipped(), tol=1e-9, checkpoint=tmp_path / "m.progress")
+    resumed = sweep(**GRID, table=Table.shipped(), tol=1e-9, store=tmp_path / "m.zarr").load()
     for name in ("stop_time", "stop_x", "stop_y", "path_length", "turn_angle", "body_angle"):
         assert getattr(resumed, name).tobytes() == getattr(base, name).tobytes()
     import xarray
@@ -107,23 +106,21 @@ def test_two_builders_at_one_file(tmp_path: Path):
     assert [path.name for path in tmp_path.iterdir()] == ["one.h5"]
 
 
-def test_resume_on_the_command_line(tmp_path: Path):
+def test_a_store_on_the_command_line(tmp_path: Path):
+    pytest.importorskip("zarr")
     resultants = tmp_path / "rough.h5"
     subprocess.run([*PUCK, "build-tables", "--accuracy", "1e-6", "-o", resultants], check=True,
                    capture_output=True)  # fmt: skip
     command = [*PUCK, "sweep", "--speed", "0:2:250", "--w0", "0:5:250", "--table", "rough.h5",
-               "--tol", "1e-5", "-o", "m.h5", "--resume", "--threads", "1"]  # fmt: skip
-    process = subprocess.Popen(
-        command, cwd=tmp_path, stderr=subprocess.PIPE, text=True,
-    )  # fmt: skip
-    progress = tmp_path / "m.h5.progress"
-    while not progress.exists() and process.poll() is None:
+               "--tol", "1e-5", "-o", "m.zarr", "--threads", "1"]  # fmt: skip
+    process = subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True)
+    while not (tmp_path / "m.zarr").exists() and process.poll() is None:
         time.sleep(0.01)
     process.send_signal(signal.SIGINT)
     error = process.communicate(timeout=60)[1]
     assert process.returncode == 130, error
     assert error.splitlines()[-1] == (
-        "Interrupted: m.h5.progress keeps what is done; the same command goes on."
+        "Interrupted: m.zarr keeps what is done; the same command goes on."
     )
     other = subprocess.run(
         [*command, "--speed", "0:1:250"], cwd=tmp_path, capture_output=True, text=True
@@ -131,37 +128,4 @@ def test_resume_on_the_command_line(tmp_path: Path):
     assert (other.returncode, "begun with" in other.stderr) == (2, True)
     again = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
     assert again.returncode == 0, again.stderr
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["m.h5", "rough.h5"]
-    alone = subprocess.run([*PUCK, "sweep", "--resume"], capture_output=True, text=True)
-    assert (alone.returncode, "--resume needs -o" in alone.stderr) == (2, True)
-
-
-def test_a_damaged_chunk_is_done_again(tmp_path: Path):
-    path = tmp_path / "a.progress"
-    with Checkpoint(path, "work", 1, 10, 4) as kept:
-        for start in (0, 4, 8):
-            stop = min(start + 4, 10)
-            kept.put(start, stop, np.ones((1, stop - start)), np.zeros(stop - start, np.int8))
-    content = bytearray(path.read_bytes())
-    content[-10] ^= 1  # in the last number, before two states
-    path.write_bytes(content)
-    with Checkpoint(path, "work", 1, 10, 4) as kept:
-        assert [kept.is_done(start) for start in (0, 4, 8)] == [True, True, False]
-
-
-def test_progress_of_other_work_and_of_another_process(tmp_path: Path):
-    path = tmp_path / "a.progress"
-    with Checkpoint(path, "work", 1, 10, 4), pytest.raises(InputError, match="another process"):
-        Checkpoint(path, "work", 1, 10, 4)
-    before = path.read_bytes()
-    for digest, items in (("other", 10), ("work", 11)):
-        with pytest.raises(InputError, match="begun with, or remove it"):
-            Checkpoint(path, digest, 1, items, 4)
-    assert path.read_bytes() == before
-    with pytest.raises(OutputError, match="cannot keep"):
-        Checkpoint(tmp_path / "none" / "a.progress", "work", 1, 10, 4)
-    text = tmp_path / "text"
-    text.write_text("puck")
-    with pytest.raises(InputError, match="is not what is done"):
-        Checkpoint(text, "work", 1, 10, 4)
-    assert text.read_text() == "puck"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["m.zarr", "rough.h5"]

@@ -19,14 +19,17 @@ ROOMS = {
     "contact": "_core errors",
     "io": "_core _version errors",
     "result": "_core io",
+    "bulk": "_core _version errors io result",
     "accuracy": "errors",
     "chetaev": "_core contact errors io result",
     "kernels": "_core contact errors",
     "table": "_core _version contact errors kernels",
     "motion": "_core accuracy contact errors kernels table",
-    "verbs": "_core errors",
+    "verbs_of_many": "_core errors",
+    "verbs": "verbs_of_many",
     "puck": "_core contact errors motion verbs",
-    "stopping": "_core accuracy contact errors io kernels motion puck result table",
+    "stopping": "_core accuracy bulk contact errors io kernels motion puck result table "
+    "verbs_of_many",
     "trajectory": "_core accuracy errors io motion puck result stopping table",
     "film": "_core errors io",
     "fitting": "_core _version accuracy contact errors film io kernels motion puck result "
@@ -34,16 +37,16 @@ ROOMS = {
     "autodiff": "contact errors stopping",
     "export": "_core _version contact errors puck stopping",
     "explore": "export",
-    "scene": "_core contact errors io kernels motion puck result stopping table",
+    "scene": "_core bulk contact errors io kernels motion puck result stopping table",
     "wrench": "_core contact errors io kernels puck result scene",
-    "world": "_core contact errors io kernels motion puck result scene stopping table",
+    "world": "_core bulk contact errors io kernels motion puck result scene stopping table",
     "reference": "_core contact errors film io puck result scene trajectory world",
     "tradeoff": "_core _version accuracy contact io kernels motion result stopping table",
-    "plot": "_core _version accuracy chetaev errors film fitting io motion reference result scene "
-    "stopping tradeoff trajectory world wrench",
+    "plot": "_core _version accuracy bulk chetaev errors film fitting io motion reference result "
+    "scene stopping tradeoff trajectory world wrench",
     "paper": "_core contact motion plot puck trajectory",
-    "cli": "_core _version accuracy chetaev contact errors explore export film fitting io kernels "
-    "motion paper plot puck reference scene stopping table tradeoff world",
+    "cli": "_core _version accuracy bulk chetaev contact errors explore export film fitting io "
+    "kernels motion paper plot puck reference scene stopping table tradeoff world",
     "__init__": "_core _version",
 }
 DOORS = {
@@ -54,7 +57,17 @@ DOORS = {
     "pandas": {"io.frames"},
     "pyarrow": {"io.parquet"},
     "matplotlib": {"plot"},
-    "scipy": {"chetaev", "fitting", "stopping", "table.speed_fit", "tradeoff", "wrench.models"},
+    "zarr": {"bulk.store"},
+    "distributed": {"bulk.cluster"},
+    "scipy": {
+        "bulk.spreads",
+        "chetaev",
+        "fitting",
+        "stopping",
+        "table.speed_fit",
+        "tradeoff",
+        "wrench.models",
+    },
     "click": {"cli"},
     "jax": {"autodiff.jax"},
     "torch": {"autodiff.torch"},

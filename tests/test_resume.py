@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -12,11 +13,13 @@ import pytest
 from pucks import sweep
 from scenes import sweep_scene
 
-from puck_tables import Table, profile_law
-from puck_tables._core import checkpoint as kept_work
-from puck_tables._core.checkpoint import Checkpoint, work_digest
-from puck_tables.errors import InputError, OutputError
+from puck_tables import Scene, Table, profile_law
+from puck_tables._core import digest as kept_work
+from puck_tables._core.digest import work_digest
+from puck_tables.errors import InputError
+from puck_tables.scene.sweep import SceneWork
 
+pytest.importorskip("zarr")
 W0 = np.linspace(0.1, 5.0, 7)
 PLAIN: dict[str, Any] = {"spin": W0, "speed": [0.5, 1.0], "delta": 0.5, "tol": 1e-8}
 INTEGRATED: dict[str, Any] = {"spin": W0, "velocity": (1.0, 0.0), "tol": 1e-5, "method": "rk4"}
@@ -37,7 +40,6 @@ CHANGES: list[tuple[dict[str, Any], dict[str, Any]]] = [
     (PLAIN, {"decel": 2.0}), (PLAIN, {"tol": 1e-4}), (PLAIN, {"method": "adaptive"}),
     (PLAIN, {"method": "rk4"}), (PLAIN, {"table": changed_table}),
     (PLAIN, {"table": Table.shipped}), (PLAIN, {"gyration": 0.9}), (PLAIN, {"pressure": "ring"}),
-    (PLAIN, {"chunk": 5}),
     (INTEGRATED, {"method": "adaptive"}), (INTEGRATED, {"method": None}),
     (INTEGRATED, {"tol": 1e-6}), (INTEGRATED, {"velocity": (1.0, 1e-9)}),
     (INTEGRATED, {"velocity": (0.0, 1.0)}),
@@ -48,39 +50,43 @@ CHANGES: list[tuple[dict[str, Any], dict[str, Any]]] = [
 ]  # fmt: skip
 
 
+def content(store: Path) -> dict[str, bytes]:
+    return {str(path): path.read_bytes() for path in store.rglob("*") if path.is_file()}
+
+
 def made(arguments: dict[str, Any]) -> dict[str, Any]:
     return {name: value() if callable(value) else value for name, value in arguments.items()}
 
 
 @pytest.mark.parametrize(("base", "change"), CHANGES)
-def test_progress_is_refused_when_any_argument_changed(
+def test_a_store_is_refused_when_any_argument_changed(
     base: dict[str, Any], change: dict[str, Any], tmp_path: Path
 ):
-    path = tmp_path / "a.progress"
-    first = sweep(**base, checkpoint=path)
-    whole = path.read_bytes()
-    with pytest.raises(InputError, match="is not what is done of this work"):
-        sweep(**made({**base, **change}), checkpoint=path)
-    assert path.read_bytes() == whole
-    again = sweep(**base, checkpoint=path)
+    path = tmp_path / "a.zarr"
+    first = sweep(**base, store=path).load()
+    whole = content(path)
+    with pytest.raises(InputError, match="holds other work"):
+        sweep(**made({**base, **change}), store=path)
+    assert content(path) == whole
+    again = sweep(**base, store=path, chunk=3).load()
     np.testing.assert_array_equal(again.stop_time, first.stop_time)
 
 
-def test_progress_of_other_sources_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    sweep(**PLAIN, checkpoint=tmp_path / "a.progress")
-    monkeypatch.setattr(kept_work, "source_digest", lambda: "after an edit")
-    with pytest.raises(InputError, match="is not what is done"):
-        sweep(**PLAIN, checkpoint=tmp_path / "a.progress")
+def test_a_store_of_other_sources_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    sweep(**PLAIN, store=tmp_path / "a.zarr")
+    monkeypatch.setattr(kept_work, "program", lambda: ("after an edit",))
+    with pytest.raises(InputError, match="holds other work"):
+        sweep(**PLAIN, store=tmp_path / "a.zarr")
 
 
 def test_a_profile_changed_under_its_name_is_other_work(tmp_path: Path):
     file = tmp_path / "profile.csv"
     file.write_text("0,1\n1,0.5\n")
     given = {**OTHER, "pressure": str(file)}
-    sweep(**given, checkpoint=tmp_path / "a.progress")
+    sweep(**given, store=tmp_path / "a.zarr")
     file.write_text("0,1\n1,0.5000001\n")
-    with pytest.raises(InputError, match="is not what is done"):
-        sweep(**given, checkpoint=tmp_path / "a.progress")
+    with pytest.raises(InputError, match="holds other work"):
+        sweep(**given, store=tmp_path / "a.zarr")
 
 
 def scene_of(folder: Path) -> dict[str, Any]:
@@ -121,14 +127,14 @@ SCENE_CHANGES = {
 
 
 @pytest.mark.parametrize("name", SCENE_CHANGES)
-def test_progress_of_a_scene_is_refused_when_any_input_changed(name: str, tmp_path: Path):
-    path, scene = tmp_path / "a.progress", scene_of(tmp_path)
-    sweep_scene(scene, checkpoint=path)
-    whole = path.read_bytes()
+def test_a_store_of_a_scene_is_refused_when_any_input_changed(name: str, tmp_path: Path):
+    path, scene = tmp_path / "a.zarr", scene_of(tmp_path)
+    sweep_scene(scene, store=path)
+    whole = content(path)
     SCENE_CHANGES[name](scene, tmp_path)
-    with pytest.raises(InputError, match="is not what is done"):
-        sweep_scene(scene, checkpoint=path)
-    assert path.read_bytes() == whole
+    with pytest.raises(InputError, match="holds other work"):
+        sweep_scene(scene, store=path)
+    assert content(path) == whole
 
 
 def test_a_friction_law_that_changed_is_other_work():
@@ -153,57 +159,12 @@ def test_a_file_that_changes_while_it_is_swept_ends_the_sweep(tmp_path: Path):
         edited("force.csv", "t,Fx,Fy\n0,0.02,0\n9,0,0\n")(scene, tmp_path)
 
     with pytest.raises(InputError, match=r"was changed while it was swept .*force\.csv"):
-        sweep_scene(scene, chunk=1, threads=1, progress=changes, checkpoint=tmp_path / "a.progress")
-
-
-def test_a_progress_file_cut_in_use_costs_nothing(tmp_path: Path):
-    """Memory that maps a file dies with it (SIGBUS)."""
-    path = tmp_path / "a.progress"
-    rng = np.random.default_rng(1)
-    parts = rng.random((4, 2, 3))
-    with Checkpoint(path, "work", 2, 12, 3) as kept:
-        for i, part in enumerate(parts):
-            kept.put(3 * i, 3 * i + 3, part, np.full(3, i, np.int8))
-            with open(path, "r+b") as file:
-                file.truncate(100 if i == 1 else 4096)
-        np.testing.assert_array_equal(kept.values, np.concatenate(parts, axis=1))
-        assert kept.status.tolist() == [0, 0, 0, 1, 1, 1, 2, 2, 2, 3, 3, 3]
-        assert not kept.is_done(0)
-    with pytest.raises(InputError, match="is not what is done"):
-        Checkpoint(path, "work", 2, 12, 3)
-
-
-def test_what_is_kept_of_a_progress_file_with_holes(tmp_path: Path):
-    path = tmp_path / "a.progress"
-    parts = np.random.default_rng(2).random((4, 2, 3))
-    with Checkpoint(path, "work", 2, 11, 3) as kept:
-        for start in (0, 9):
-            stop = min(start + 3, 11)
-            kept.put(start, stop, parts[0][:, : stop - start], np.ones(stop - start, np.int8))
-    with Checkpoint(path, "work", 2, 11, 3) as kept:
-        assert [kept.is_done(start) for start in (0, 3, 6, 9)] == [True, False, False, True]
-        np.testing.assert_array_equal(kept.values[:, 9:], parts[0][:, :2])
-        assert kept.status[9:].tolist() == [1, 1]
-
-
-def test_a_full_disk_is_a_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    class Full:
-        """A file on a full disk."""
-
-        def __init__(self, file: Any) -> None:
-            self.file = file
-
-        def __getattr__(self, name: str) -> Any:
-            return getattr(self.file, name)
-
-        def write(self, content: bytes) -> int:
-            return int(self.file.write(content[:10]))
-
-    with Checkpoint(tmp_path / "a.progress", "work", 1, 4, 2) as kept:
-        kept._file = Full(kept._file)
-        with pytest.raises(OutputError, match="No space left"):
-            kept.put(0, 2, np.ones((1, 2)), np.zeros(2, np.int8))
-        assert not kept.is_done(0)
+        sweep_scene(scene, chunk=1, threads=1, progress=changes)
+    work = SceneWork(Scene.from_tables(scene_of(tmp_path)), 1)
+    sent = pickle.dumps(work)
+    edited("force.csv", "t,Fx,Fy\n0,0.03,0\n9,0,0\n")(scene, tmp_path)
+    with pytest.raises(InputError, match="was changed while it was swept"):  # nor on a worker
+        pickle.loads(sent).of(0, 1)
 
 
 def test_what_does_not_say_what_it_is_is_refused():

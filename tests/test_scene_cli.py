@@ -96,7 +96,7 @@ def test_above_the_friction_angle_the_run_ends_at_the_time_asked():
 def test_a_map_over_a_scene_opens_in_xarray_and_equals_single_runs(tmp_path):
     file = tmp_path / "map.h5"
     ranges = ("--set", "floor.slope=0:0.1:3", "--w0", "0:60:4")
-    result = puck("sweep", "--scene", "incline", *ranges, "-o", str(file), "--resume")
+    result = puck("sweep", "--scene", "incline", *ranges, "-o", str(file))
     assert result.exit_code == 0, result.stderr
     assert list(tmp_path.iterdir()) == [file]
     with xarray.open_dataset(file, engine="h5netcdf") as data:

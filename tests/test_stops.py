@@ -155,7 +155,7 @@ def test_bad_maps(options: dict, words: str):
 
 def test_a_map_too_large_says_how_large():
     with pytest.raises(InputError, match=r"1000000 x 1000000 launches would need .* GiB"):
-        check_memory((10**6, 10**6))
+        check_memory((10**6, 10**6), 160)
 
 
 def test_executor_raises_the_first_error_and_drops_the_rest():

@@ -6,7 +6,6 @@ import os
 import shutil
 import subprocess
 import sys
-import tempfile
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -37,7 +36,6 @@ COMMANDS: dict[str, tuple[list[str], str]] = {
     "sweep csv": (["sweep", "--w0", "0:1:9", "-o", "{}.csv"], "{}.csv"),
     "sweep h5": (["sweep", "--w0", "0:1:9", "-o", "{}.h5"], "{}.h5"),
     "sweep png": (["sweep", "--w0", "0:1:9", "--plot", "{}.png"], "{}.png"),
-    "sweep resumed": (["sweep", "--w0", "0:1:9", "-o", "{}.h5", "--resume"], "{}.h5"),
     "aim csv": (["aim", "--target", "2,0.1", "-o", "{}.csv"], "{}.csv"),
     "aim png": (["aim", "--target", "2,0.1", "--plot", "{}.png"], "{}.png"),
     "build resultants": (["build-tables", "--accuracy", "1e-5", "-o", "{}.h5"], "{}.h5"),
@@ -141,8 +139,7 @@ def no_room(descriptor: int) -> None:
 def test_a_full_disk(name: str, folder: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr("os.fsync", no_room)
     assert "No space left on device" in refused(name, "new")
-    left = [] if name != "sweep resumed" else ["new.h5.progress"]  # the work is done: kept
-    assert [path.name for path in folder.iterdir()] == left
+    assert list(folder.iterdir()) == []
     path = Path(COMMANDS[name][1].format("old"))
     path.parent.mkdir(exist_ok=True)
     path.write_text("mine")
@@ -158,19 +155,12 @@ def test_a_folder_that_vanishes_during_the_work(
     target = Path("gone", COMMANDS[name][1].format("new"))
     target.parent.mkdir(parents=True, exist_ok=name == "paper")
     true: Callable[..., object] = safe_write._part
-    kept: Callable[..., object] = tempfile.NamedTemporaryFile
 
     def gone(*given: object, **named: object) -> object:
         shutil.rmtree("gone", ignore_errors=True)
         return true(*given, **named)
 
-    def vanish(**named: object) -> object:
-        shutil.rmtree("gone", ignore_errors=True)
-        return kept(**named)
-
     monkeypatch.setattr(safe_write, "_part", gone)
-    if name == "sweep resumed":  # the progress file is met first
-        monkeypatch.setattr("puck_tables._core.checkpoint.tempfile.NamedTemporaryFile", vanish)
     assert "No such file or directory" in refused(name, "gone/new")
     assert not Path("gone").exists()
 

@@ -14,6 +14,7 @@ from puck_tables._core.safe_write import write_bytes
 from puck_tables.errors import InputError
 from puck_tables.io.dataset import Dataset
 
+STORE = ".zarr"  # written block by block, by sweeps alone: puck_tables.bulk.store
 FORMATS = {".h5": "hdf5", ".csv": "csv", ".json": "json", ".jsonl": "jsonl", ".parquet": "parquet"}
 
 

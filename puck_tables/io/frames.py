@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from importlib.util import find_spec
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -29,10 +31,7 @@ def to_xarray(dataset: Dataset) -> xarray.Dataset:
     >>> to_xarray(Dataset({"time": time}, {"x": x})).x.units
     'm'
     """
-    try:
-        import xarray
-    except ImportError:
-        raise MissingExtraError("to_xarray needs xarray: pip install xarray") from None
+    xarray = _xarray()
     attributes = {name: value for name, value in dataset.attributes.items() if value is not None}
     attributes |= {name: text for name, (text, _) in dataset.texts.items()}
     return xarray.Dataset(
@@ -40,6 +39,27 @@ def to_xarray(dataset: Dataset) -> xarray.Dataset:
         {name: _labelled(one) for name, one in dataset.axes.items()},
         attributes,
     )
+
+
+def open_store(path: str | Path) -> xarray.Dataset:
+    """A Zarr store as an xarray.Dataset that reads when it is asked; with dask in its chunks.
+
+    Raises
+    ------
+    MissingExtraError
+        If xarray is not installed.
+    """
+    chunks: Any = {} if find_spec("dask") is not None else None
+    found: xarray.Dataset = _xarray().open_zarr(path, chunks=chunks)
+    return found
+
+
+def _xarray() -> Any:
+    try:
+        import xarray
+    except ImportError:
+        raise MissingExtraError("to_xarray needs xarray: pip install xarray") from None
+    return xarray
 
 
 def _labelled(one: Variable) -> tuple[Any, ...]:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from puck_tables.errors import InputError
 from puck_tables.io.columns import COLUMNS
 from puck_tables.plot.style import FEW, canvas, draw_over, titled
@@ -18,14 +20,15 @@ if TYPE_CHECKING:
 def draw(stops: StopMap) -> Figure:
     """Maps when two quantities are ranged, curves when one is or one has few values.
 
-    With three ranged quantities the maps are drawn at the middle value of the first.
+    With more ranged quantities the maps are drawn at the middle values of the first ones.
     """
     axes, fixed, left_out, place = _sections(stops)
     figure = canvas(11.0, 6.8)
     panels = figure.subplots(2, 3, sharex=True)
-    labels = {name: COLUMNS[name].axis for name in axes}
+    labels = {name: _label(name) for name in axes}
     for panel, name in zip(panels.flat, OUTPUTS, strict=True):
         draw_over(figure, panel, axes, labels, getattr(stops, name)[place], COLUMNS[name].axis)
+        _name_laws(panel, stops)
     if any(panel.get_legend_handles_labels()[1] for panel in panels.flat):
         handles, words = panels.flat[0].get_legend_handles_labels()
         figure.legend(handles, words, loc="outside lower center", ncols=FEW, frameon=False)
@@ -38,8 +41,25 @@ def draw_on(panel: Axes, stops: StopMap) -> None:
     axes, _, _, place = _sections(stops)
     figure = panel.get_figure(root=True)
     assert figure is not None
-    labels = {name: COLUMNS[name].axis for name in axes}
+    labels = {name: _label(name) for name in axes}
     draw_over(figure, panel, axes, labels, stops.stop_time[place], COLUMNS["stop_time"].axis)
+    _name_laws(panel, stops)
+
+
+def _label(name: str) -> str:
+    return COLUMNS[name].axis if name in COLUMNS else name
+
+
+def _name_laws(panel: Axes, stops: StopMap) -> None:
+    """Pressure laws by their names, not by their numbers."""
+    what = COLUMNS["pressure"].axis
+    for line in panel.lines:
+        for number, law in enumerate(stops.laws):
+            if line.get_label() == f"{what}: {number}":
+                line.set_label(law)
+    for axis in (panel.xaxis, panel.yaxis):
+        if axis.get_label_text() == what:
+            axis.set_ticks(range(len(stops.laws)), labels=list(stops.laws))
 
 
 def _sections(
@@ -52,22 +72,32 @@ def _sections(
     InputError
         If nothing is ranged.
     """
-    axes, fixed = dict(stops.axes), dict(stops.fixed)
+    sizes = dict(zip(stops.dims, stops.status.shape, strict=True))
+    axes = {dim: stops.axes.get(dim, np.arange(float(n))) for dim, n in sizes.items()}
+    fixed = dict(stops.fixed)
     if not axes:
         raise InputError("there is nothing to draw: range at least one of spin, speed, delta")
-    if len(axes) < 3:
-        return axes, fixed, "", ()
-    name, nodes = next(iter(axes.items()))
-    middle = nodes.size // 2
-    fixed[name] = float(nodes[middle])
-    return axes, fixed, f" (one of {axes.pop(name).size} values of {name})", (middle,)
+    place, words = [], []
+    for name in list(axes)[:-2]:
+        middle = axes[name].size // 2
+        place.append(middle)
+        fixed[name] = float(axes[name][middle])
+        words.append(f"one of {axes[name].size} values of {name}")
+        if name == "pressure":
+            words[-1] += f", {stops.laws[middle]}"
+        del axes[name]
+    return axes, fixed, f" ({'; '.join(words)})" if words else "", tuple(place)
 
 
 def _fixed_title(fixed: dict[str, float]) -> str:
-    units = {"decel": ("J", " m/s²"), "radius": ("r", " m"), "delta": ("δ", ""),
-             "launch_speed": ("v₀", " m/s"), "launch_spin": ("ω₀", " rad/s")}  # fmt: skip
+    short = {"decel": "J", "radius": "r", "delta": "δ", "height": "h", "friction": "f",
+             "gravity": "g", "gyration": "k/r", "launch_speed": "v₀", "launch_spin": "ω₀",
+             "launch_heading": "heading"}  # fmt: skip
     parts = []
-    if "launch_vx" in fixed:
+    if "launch_vx" in fixed and "launch_vy" in fixed:
         parts.append(f"v₀ = ({fixed['launch_vx']:g}, {fixed['launch_vy']:g}) m/s")
-    parts += [f"{units[n][0]} = {v:.4g}{units[n][1]}" for n, v in fixed.items() if n in units]
+    for name, value in fixed.items():
+        if name in short:
+            unit = COLUMNS[name].unit.replace("^2", "²")
+            parts.append(f"{short[name]} = {value:.4g}" + ("" if unit == "1" else f" {unit}"))
     return "stops at " + ", ".join(parts)

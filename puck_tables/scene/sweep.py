@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, ClassVar
@@ -13,40 +12,36 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.checkpoint import chunked, files_named
+from puck_tables._core.digest import files_named, refuse_changed
 from puck_tables._core.executor import Progress
+from puck_tables._core.memory import check_memory
+from puck_tables.bulk.finish import check_part, finish
+from puck_tables.bulk.work import Columns, Tally, Work
 from puck_tables.contact.laws import Law
 from puck_tables.errors import InputError
 from puck_tables.io.columns import derived
 from puck_tables.io.dataset import Dataset, Variable, variable
 from puck_tables.result import Result
-from puck_tables.scene.agreement import launch_velocity
 from puck_tables.scene.bulk import ENDS_COLUMNS
+from puck_tables.scene.case import RESULTS, Case, is_launch, told_apart
 from puck_tables.scene.entries import BATCH, LAUNCH, entry_at, tables_of
-from puck_tables.scene.equations import SIZE
-from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
 from puck_tables.scene.library import files_of
-from puck_tables.scene.loop import AT_REST, CARRIED_AWAY, NOT_FINITE, OVER_EDGE, TIME_UP
+from puck_tables.scene.loop import NOT_FINITE, OVER_EDGE
 from puck_tables.scene.outcome import (
     ENDS,
-    LEDGER,
     NO_END,
     REFUSED,
     column_of,
-    ledger,
     plain_name,
     scene_texts,
 )
-from puck_tables.scene.plan import Plan, plan_for
-from puck_tables.scene.prepare import Prepared, prepare
+from puck_tables.scene.plan import Plan
 from puck_tables.scene.scene import Scene
-from puck_tables.scene.simulate import FAILURES, is_endless
-from puck_tables.stopping.sweep import check_memory
+from puck_tables.scene.simulate import FAILURES
 
 CHUNK = 256
+FEWEST, MOST = 1 << 6, 1 << 13  # runs kept together in a store
 BYTES = 8 * 4 * ENDS_COLUMNS
-STATE = (VX, VY, SPIN, X, Y, THETA)  # where the numbers of LAUNCH stand in a state
-RESULTS = (*LEDGER[1:], "impacts", "energy_residual", "end_time")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -56,15 +51,15 @@ class SceneMap(Result):
     ``scene``: the scene with its ranges; ``axes``: their values by path (of many launches their
     numbers from 0 on); ``columns``: arrays of the shape of the axes by name, units as everywhere,
     NaN for a run without an end; ``end``: index of :data:`puck_tables.scene.outcome.ENDS`;
-    ``plan``: the model of the last one that is valid; ``refusal``: what is wrong with the first run
-    that is not; ``files``: what stands in the files that the scene names, by path.
+    ``plan``: the model of the last one that is valid; ``told``: what :meth:`without_end` says;
+    ``files``: what stands in the files that the scene names, by path.
     """
 
     scene: Scene
     plan: Plan
     columns: Mapping[str, FloatArray] = field(repr=False)
     end: npt.NDArray[np.int8] = field(repr=False)
-    refusal: str = field(default="", repr=False)
+    told: tuple[str, ...] = field(default=(), repr=False)
     files: Mapping[str, str] = field(default_factory=dict, repr=False)
 
     picture: ClassVar[str] = "scene_map"
@@ -94,51 +89,13 @@ class SceneMap(Result):
 
     def dataset(self) -> Dataset:
         """The results over what ranges; the scene and its files as texts."""
-        dims = tuple(plain_name(path) for path in self.axes)
-        axes, columns = {}, {}
-        for path, values in self.axes.items():
-            axes[plain_name(path)] = self._along(path, values, plain_name(path))
-        if BATCH in self.axes:
-            for path, values in zip(LAUNCH, self.scene.ranges[BATCH].T, strict=True):
-                if path not in self.axes:
-                    columns[plain_name(path)] = self._along(path, values, BATCH)
-        results = {**self.columns, **derived(self.columns)}
-        columns |= {name: variable(name, values, dims) for name, values in results.items()}
-        columns["end"] = variable("end", self.end, dims, ENDS)
-        attributes = {"title": self.scene.title or "Scene", "model": self.plan.model}
-        return Dataset(axes, columns, attributes, scene_texts(self.scene, self.files))
-
-    def _along(self, path: str, values: FloatArray, axis: str) -> Variable:
-        """Numbers of the scene along an axis."""
-        if path == BATCH:
-            return Variable(values, (axis,), "1", "number of the launch")
-        doc = entry_at(self.scene, path).doc
-        text = f"{path} of the scene" + (f", {doc}" if doc else "")
-        return Variable(values, (axis,), self.scene.unit_of(path) or "1", text)
+        columns = {**self.columns, **derived(self.columns)}
+        found = labelled(self.scene, self.axes, self.files, columns, self.end)
+        return replace(found, attributes={**found.attributes, "model": self.plan.model})
 
     def without_end(self) -> list[str]:
         """A line for each way in which runs have no end: how many, the first, and what to do."""
-        lines = []
-        for code in range(OVER_EDGE + 1, len(ENDS)):
-            found = np.argwhere(self.end == code)
-            if found.size:
-                run = f"{len(found)} of {self.end.size} runs: {ENDS[code]}; the first at "
-                lines.append(run + self.run_at(found[0]) + ": " + self._advice(code))
-        return lines
-
-    def run_at(self, index: Iterable[int]) -> str:
-        """The numbers of one run in words."""
-        places = zip(self.axes.items(), index, strict=True)
-        return ", ".join(f"{path} = {values[i]:.10g}" for (path, values), i in places)
-
-    def _advice(self, code: int) -> str:
-        if code == REFUSED:
-            return self.refusal
-        if code == NO_END:
-            return "none by a thousand times its time scale, it may never stop; give run.time"
-        if code == NOT_FINITE and self.scene.floor.law:
-            return "its rim slips faster than the friction law goes; give the law more speeds"
-        return FAILURES[code].partition(": ")[2] or FAILURES[code]
+        return list(self.told)
 
 
 def axes_of(scene: Scene) -> dict[str, FloatArray]:
@@ -156,188 +113,217 @@ def axes_of(scene: Scene) -> dict[str, FloatArray]:
     }
 
 
+def labelled(
+    scene: Scene, axes: Mapping[str, FloatArray], files: Mapping[str, str], results: Columns,
+    end: npt.NDArray[np.int8],
+) -> Dataset:  # fmt: skip
+    """Columns of the ends of a scene with axes, names and units."""
+    dims = tuple(plain_name(path) for path in axes)
+    along, columns = {}, {}
+    for path, values in axes.items():
+        along[plain_name(path)] = _along(scene, path, values, plain_name(path))
+    if BATCH in axes:
+        for path, values in zip(LAUNCH, scene.ranges[BATCH].T, strict=True):
+            if path not in axes:
+                columns[plain_name(path)] = _along(scene, path, values, BATCH)
+    columns |= {name: variable(name, values, dims) for name, values in results.items()}
+    columns["end"] = variable("end", end, dims, ENDS)
+    return Dataset(along, columns, {"title": scene.title or "Scene"}, scene_texts(scene, files))
+
+
+def _along(scene: Scene, path: str, values: FloatArray, axis: str) -> Variable:
+    """Numbers of the scene along an axis."""
+    if path == BATCH:
+        return Variable(values, (axis,), "1", "number of the launch")
+    doc = entry_at(scene, path).doc
+    text = f"{path} of the scene" + (f", {doc}" if doc else "")
+    return Variable(values, (axis,), scene.unit_of(path) or "1", text)
+
+
 def sweep(
     scene: Scene, *, threads: int | None = None, chunk: int = CHUNK,
-    progress: Progress | None = None, checkpoint: str | Path | None = None,
+    progress: Progress | None = None, store: str | Path | None = None, cluster: str | None = None,
+    overwrite: bool = False,
 ) -> SceneMap:  # fmt: skip
     """The map over a scene, as :meth:`puck_tables.Scene.sweep` has it."""
-    axes = axes_of(scene)
-    if not axes:
-        raise InputError(
-            "no number of the scene is a range: write one as 'START:STOP:COUNT' or as a list (such "
-            "as launch.spin = '0:10:101')"
-        )
-    shape = tuple(values.size for values in axes.values())
-    check_memory(shape, BYTES)
-    size = math.prod(shape)
-    whole = tables_of(scene)
-    read, files = files_named(whole), files_of(scene)
-    inner = [path for path in axes if _is_launch(path, scene)]
-    outer = [path for path in axes if path not in inner]
-    batch = scene.ranges.get(BATCH, np.empty((0, len(LAUNCH))))
+    check_part(chunk)
+    work = SceneWork(scene, chunk)
+    if store is None:
+        check_memory(work.shape, BYTES)
+    found: SceneMap = finish(work, threads, progress, store, cluster, overwrite)
+    return found
 
-    @lru_cache(maxsize=8)
-    def case(numbers: tuple[float, ...]) -> _Case | InputError:
+
+class SceneWork(Work):
+    """The runs of a scene over its ranges.
+
+    Raises
+    ------
+    InputError
+        If nothing ranges.
+    """
+
+    code = "end"
+    meanings = ENDS
+
+    def __init__(
+        self, scene: Scene, part: int, read: dict[str, str] | None = None,
+        axes: Mapping[str, FloatArray] | None = None, shape: tuple[int, ...] | None = None,
+    ) -> None:  # fmt: skip
+        self.scene, self.part = scene, part
+        self.axes = axes_of(scene) if axes is None else axes
+        if not self.axes:
+            raise InputError(
+                "no number of the scene is a range: write one as 'START:STOP:COUNT' or as a list "
+                "(such as launch.spin = '0:10:101')"
+            )
+        self.shape = tuple(values.size for values in self.axes.values()) if shape is None else shape
+        self.columns = dict.fromkeys(RESULTS, ())
+        self.block = min(MOST, max(FEWEST, self.size // 64))
+        self._whole = tables_of(scene)
+        self.files = files_of(scene)
+        self._read = files_named(self._whole) if read is None else read
+        self._inner = [path for path in self.axes if is_launch(path, scene)]
+        self._outer = [path for path in self.axes if path not in self._inner]
+        self._batch = scene.ranges.get(BATCH, np.empty((0, len(LAUNCH))))
+        self._case = lru_cache(maxsize=8)(self._made)
+
+    def __reduce__(self) -> Any:
+        return SceneWork, (self.scene, self.part, self._read)
+
+    @property
+    def identity(self) -> Mapping[str, Any]:
+        """The scene, its ranges, and what stands in the files that it names."""
+        scene = self.scene
+        law = told_apart(scene) if isinstance(scene.puck.pressure, Law) else None
+        puck = {**self._whole["puck"], "pressure": law or scene.puck.pressure}
+        ranges = list(scene.ranges.items())
+        return {"scene": {**self._whole, "puck": puck}, "axes": ranges, "files": self._read}
+
+    def _made(self, numbers: tuple[float, ...]) -> Case | InputError:
         changed: dict[str, float] = {}
-        for path, number in zip(outer, numbers, strict=True):
+        for path, number in zip(self._outer, numbers, strict=True):
             if path == BATCH:
-                changed |= zip(LAUNCH, batch[int(number)].tolist(), strict=True)
+                changed |= zip(LAUNCH, self._batch[int(number)].tolist(), strict=True)
             else:
                 changed[path] = number
         try:
-            return _Case(scene.at(changed))
+            return Case(self.scene.at(changed))
         except InputError as error:
             return error
 
-    def together(
-        numbers: tuple[float, ...], part: Mapping[str, FloatArray], count: int
+    def _together(
+        self, numbers: tuple[float, ...], part: Mapping[str, FloatArray], count: int
     ) -> tuple[FloatArray, npt.NDArray[np.int8]]:
-        one = case(numbers)
+        one = self._case(numbers)
         try:
-            if isinstance(one, _Case):
+            if isinstance(one, Case):
                 return one.ends(part, count)
         except InputError:  # one of these launches
             if count > 1:
                 alone = [{path: values[i : i + 1] for path, values in part.items()}
                          for i in range(count)]  # fmt: skip
-                ends = [together(numbers, launch, 1) for launch in alone]
+                ends = [self._together(numbers, launch, 1) for launch in alone]
                 return np.hstack([e[0] for e in ends]), np.hstack([e[1] for e in ends])
         return np.full((len(RESULTS), count), np.nan), np.full(count, REFUSED, np.int8)
 
-    def split(start: int, stop: int) -> tuple[list[tuple[float, ...]], dict[str, FloatArray]]:
-        place = dict(zip(axes, np.unravel_index(np.arange(start, stop), shape), strict=True))
-        values = {path: axes[path][place[path]] for path in axes}
-        if BATCH in inner:
-            values[BATCH] = batch[place[BATCH]]
-        numbers = zip(*(values[path].tolist() for path in outer), strict=True)
-        launches = {path: values[path] for path in inner}
+    def _split(
+        self, start: int, stop: int
+    ) -> tuple[list[tuple[float, ...]], dict[str, FloatArray]]:
+        values = self._values(start, stop)
+        numbers = zip(*(values[path].tolist() for path in self._outer), strict=True)
+        launches = {path: values[path] for path in self._inner}
         return list(numbers) or [()] * (stop - start), launches
 
-    def ends_of(start: int, stop: int) -> tuple[FloatArray, npt.NDArray[np.int8]]:
-        numbers, launches = split(start, stop)
-        out, status = np.empty((len(RESULTS), stop - start)), np.empty(stop - start, np.int8)
+    def _values(self, start: int, stop: int) -> dict[str, FloatArray]:
+        """What ranges, of some runs."""
+        runs = np.unravel_index(np.arange(start, stop), self.shape)
+        place = dict(zip(self.axes, runs, strict=True))
+        values = {path: self.axes[path][place[path]] for path in self.axes}
+        if BATCH in self._inner:
+            values[BATCH] = self._batch[place[BATCH]]
+        return values
+
+    def of(self, start: int, stop: int) -> Columns:
+        """The ends of some runs.
+
+        Raises
+        ------
+        InputError
+            If a file that the scene names was changed meanwhile.
+        """
+        numbers, launches = self._split(start, stop)
+        out, end = np.empty((len(RESULTS), stop - start)), np.empty(stop - start, np.int8)
         begin = 0
         while begin < stop - start:  # launches that differ in nothing but the launch, together
-            end = begin + 1
-            while end < stop - start and numbers[end] == numbers[begin]:
-                end += 1
-            part = {path: values[begin:end] for path, values in launches.items()}
-            out[:, begin:end], status[begin:end] = together(numbers[begin], part, end - begin)
-            begin = end
-        return out, status
+            last = begin + 1
+            while last < stop - start and numbers[last] == numbers[begin]:
+                last += 1
+            part = {path: values[begin:last] for path, values in launches.items()}
+            out[:, begin:last], end[begin:last] = self._together(numbers[begin], part, last - begin)
+            begin = last
+        refuse_changed(self._whole, self._read)
+        return dict(zip(RESULTS, out, strict=True)) | {self.code: end}
 
-    def refusal_of(run: int) -> str:
-        numbers, launch = split(run, run + 1)
+    def _refusal(self, run: int) -> str:
+        numbers, launch = self._split(run, run + 1)
         try:
-            one = case(numbers[0])
+            one = self._case(numbers[0])
             return str(one) if isinstance(one, InputError) else str(one.ends(launch, 1))
         except InputError as error:
             return str(error)
 
-    def whole_ends(start: int, stop: int) -> tuple[FloatArray, npt.NDArray[np.int8]]:
-        found = ends_of(start, stop)
-        if files_named(whole) != read:
-            raise InputError(
-                f"a file that this scene names was changed while it was swept ({', '.join(read)}): "
-                "begin again"
-            )
-        return found
+    def checked(self, tally: Tally) -> None:
+        """Refuse a sweep no run of which has an end."""
+        if any(code <= OVER_EDGE for code in tally.counts):
+            return
+        if set(tally.counts) == {REFUSED}:
+            refusal = self._refusal(tally.first[REFUSED])
+            raise InputError(f"every run of this sweep is refused, the first: {refusal}")
+        raise InputError("\n  ".join(["no run of this sweep has an end", *self.without_end(tally)]))
 
-    law = _told_apart(scene) if isinstance(scene.puck.pressure, Law) else None
-    puck = {**whole["puck"], "pressure": law or scene.puck.pressure}
-    ranges = list(scene.ranges.items())
-    work = {"scene": {**whole, "puck": puck}, "axes": ranges, "files": read}
-    out, status = chunked(
-        whole_ends, len(RESULTS), size, chunk, threads, progress, checkpoint, work
-    )
-    refused, valid = np.flatnonzero(status == REFUSED), np.flatnonzero(status != REFUSED)
-    refusal = refusal_of(int(refused[0])) if refused.size else ""
-    if not valid.size:
-        raise InputError(f"every run of this sweep is refused, the first: {refusal}")
-    last = case(split(int(valid[-1]), int(valid[-1]) + 1)[0][0])
-    assert isinstance(last, _Case)
-    columns = {name: row.reshape(shape) for name, row in zip(RESULTS, out, strict=True)}
-    ends = SceneMap(scene, last.plan, columns, status.reshape(shape), refusal, files)
-    if (status > OVER_EDGE).all():
-        raise InputError("\n  ".join(["no run of this sweep has an end", *ends.without_end()]))
-    return ends
+    def without_end(self, tally: Tally) -> list[str]:
+        """A line for each way in which runs have no end: how many, the first, and what to do."""
+        lines = []
+        for code, count in tally.counts.items():
+            if code > OVER_EDGE:
+                first = tally.first[code]
+                at = self._values(first, first + 1)
+                at |= {path: self.axes[path][[first]] for path in at if path == BATCH}
+                run = ", ".join(f"{path} = {values[0]:.10g}" for path, values in at.items())
+                lines.append(
+                    f"{count} of {self.size} runs: {ENDS[code]}; the first at {run}: "
+                    + self._advice(code, first)
+                )
+        return lines
 
+    def _advice(self, code: int, run: int) -> str:
+        if code == REFUSED:
+            return self._refusal(run)
+        if code == NO_END:
+            return "none by a thousand times its time scale, it may never stop; give run.time"
+        if code == NOT_FINITE and self.scene.floor.law:
+            return "its rim slips faster than the friction law goes; give the law more speeds"
+        return FAILURES[code].partition(": ")[2] or FAILURES[code]
 
-class _Case:
-    """A scene of which only the launch still varies."""
+    def explain(self, tally: Tally) -> str:
+        """The model of the first run that is valid, and why."""
+        first = min(run for code, run in tally.first.items() if code != REFUSED)
+        one = self._case(self._split(first, first + 1)[0][0])
+        assert isinstance(one, Case)
+        return one.plan.why
 
-    def __init__(self, scene: Scene) -> None:
-        self.scene, self.plan = scene, plan_for(scene)
-        self.by_look_up = self.plan.plain and scene.run.time is None
-        if self.by_look_up:
-            self.plan = Plan("free pucks: stop look-up", True, self.plan.why)
-        self.endless = is_endless(scene)
-        self.prepared: Prepared | None = None if self.by_look_up else prepare(scene)
+    def labelled(self, columns: Columns) -> Dataset:
+        """The ends over what ranges; the scene and its files as texts."""
+        results = {name: columns[name] for name in RESULTS}
+        return labelled(self.scene, self.axes, self.files, results, columns[self.code])
 
-    def ends(
-        self, launches: Mapping[str, FloatArray], count: int
-    ) -> tuple[FloatArray, npt.NDArray[np.int8]]:
-        """Results (m, count) and how it ended."""
-        scene = self.scene
-        states = np.zeros((count, SIZE))
-        states[:, [X, Y]], states[:, THETA] = scene.launch.position, scene.launch.orientation
-        states[:, [VX, VY]], states[:, SPIN] = launch_velocity(scene), scene.launch.spin
-        for path, values in launches.items():
-            states[:, list(STATE) if path == BATCH else STATE[LAUNCH.index(path)]] = values
-        mass = scene.puck.mass
-        inertia = mass * (scene.puck.gyration * scene.puck.radius) ** 2
-        with np.errstate(over="ignore"):  # of launches that leave floating point
-            energy = 0.5 * mass * (states[:, VX] ** 2 + states[:, VY] ** 2)
-            energy += 0.5 * inertia * states[:, SPIN] ** 2
-        status = np.empty(count, np.int8)
-        rows = np.empty((ENDS_COLUMNS, count))
-        if self.endless:
-            status[:] = NO_END
-        elif self.prepared is None:
-            self._look_up(states, rows, status)
-        else:
-            self.prepared.follow_all(states, rows, status)
-            if scene.run.time is None:
-                status[status == TIME_UP] = NO_END
-        rows[:, status > OVER_EDGE] = np.nan  # how it failed stands in ``end``
-        last = dict(zip(LEDGER[:-1], rows[:-1], strict=True))
-        last["kinetic_energy"] = 0.5 * mass * (last["vx"] ** 2 + last["vy"] ** 2)
-        last["kinetic_energy"] += 0.5 * inertia * last["spin"] ** 2
-        if self.prepared is None:  # nothing is integrated: heat is what else is not there
-            last["heat_dry"][:] = energy + last["work_support"] - last["kinetic_energy"]
-        with np.errstate(all="ignore"):  # runs that failed are not a number
-            missing, largest = ledger(last, energy)
-            residual = missing / np.where(largest > 0.0, largest, 1.0)
-        results = [last[name] for name in LEDGER[1:]]
-        return np.stack([*results, rows[-1], residual, last["time"]]), status
-
-    def _look_up(self, states: FloatArray, rows: FloatArray, status: npt.NDArray[np.int8]) -> None:
-        belt = self.scene.floor.velocity
-        velocities, spins = states[:, [VX, VY]] - belt, states[:, SPIN]
-        stops = self.scene.puck.stop(velocities, spins, tol=self.scene.run.tol)
-        rows[...] = 0.0
-        last = dict(zip(LEDGER[:-1], rows[:-1], strict=True))
-        last["time"][:] = stops.stop_time
-        for i, name in enumerate(("x", "y")):
-            last[name][:] = states[:, i] + stops.stop_position[:, i] + belt[i] * stops.stop_time
-            last["v" + name][:] = belt[i]
-            last["work_support"][:] += (
-                self.scene.puck.mass * belt[i] * (belt[i] - states[:, VX + i])
-            )
-        last["orientation"][:] = states[:, THETA] + stops.body_angle
-        last["carried"][:] = 1.0
-        status[:] = np.where(stops.status == 0, CARRIED_AWAY if any(belt) else AT_REST, NOT_FINITE)
-
-
-def _is_launch(path: str, scene: Scene) -> bool:
-    """Whether a range only changes the launch, and nothing has to be checked or fixed to it."""
-    moves = path.startswith("launch.position") or path == BATCH
-    fixed = moves and bool(scene.walls or scene.edges)
-    return path in (*LAUNCH, BATCH) and scene.constraint is None and not fixed
-
-
-def _told_apart(scene: Scene) -> dict[str, Any]:
-    """What tells a pressure law that is given as an object from another."""
-    law = scene.puck.body.law
-    ratios = np.stack(law.friction(np.linspace(0.0, 0.5 * np.pi, 99), 0.0))
-    return {"name": law.name, "edges": law.edges, "profile": law.profile, "friction": ratios}
+    def result(self, columns: Columns) -> SceneMap:
+        """The map."""
+        end = columns[self.code]
+        valid = np.flatnonzero(end.ravel() != REFUSED)
+        last = self._case(self._split(int(valid[-1]), int(valid[-1]) + 1)[0][0])
+        assert isinstance(last, Case)
+        lines = tuple(self.without_end(Tally.of(end)))
+        results = {name: columns[name] for name in RESULTS}
+        return SceneMap(self.scene, last.plan, results, end, lines, self.files)

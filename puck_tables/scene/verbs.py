@@ -5,6 +5,7 @@ What answers stands above the scene, and is loaded when it is asked.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,9 +13,12 @@ from typing import TYPE_CHECKING, Any
 import numpy.typing as npt
 
 from puck_tables._core.executor import Progress
+from puck_tables.errors import InputError
 
 if TYPE_CHECKING:
+    from puck_tables.bulk.spreads import Spread
     from puck_tables.scene.outcome import SceneRun
+    from puck_tables.scene.sample import SceneSample
     from puck_tables.scene.sweep import SceneMap
     from puck_tables.world.aimed import BoardAim
     from puck_tables.world.world import World
@@ -65,7 +69,9 @@ class SceneVerbs:
         threads: int | None = None,
         chunk: int = 256,
         progress: Progress | None = None,
-        checkpoint: str | Path | None = None,
+        store: str | Path | None = None,
+        cluster: str | None = None,
+        overwrite: bool = False,
     ) -> SceneMap:
         """Run it for all combinations of the numbers in it that are ranges.
 
@@ -74,8 +80,8 @@ class SceneVerbs:
         threads, chunk : int
             How the work is cut; the numbers do not depend on it, to the last bit.
         progress : callable (done, total), optional
-        checkpoint : path, optional
-            A file that keeps what is done: called again with the same scene, the work goes on.
+        store, cluster, overwrite
+            As for :meth:`puck_tables.Puck.sweep`: a Zarr store, and machines that write to it.
 
         Returns
         -------
@@ -95,9 +101,60 @@ class SceneVerbs:
         [0.0, 2.056068]
         """
         stops: SceneMap = _answers(self, "sweep").sweep(
-            self, threads=threads, chunk=chunk, progress=progress, checkpoint=checkpoint
-        )
+            self, threads=threads, chunk=chunk, progress=progress, store=store, cluster=cluster,
+            overwrite=overwrite,
+        )  # fmt: skip
         return stops
+
+    def sample(
+        self,
+        count: int,
+        seed: int,
+        spreads: Mapping[str, Spread],
+        *,
+        threads: int | None = None,
+        chunk: int = 256,
+        progress: Progress | None = None,
+        store: str | Path | None = None,
+        cluster: str | None = None,
+        overwrite: bool = False,
+    ) -> SceneSample:
+        """Run it with numbers that scatter.
+
+        Parameters
+        ----------
+        count, seed : how many are drawn, 2 to 1e9, and from which seed
+        spreads : :class:`puck_tables.Normal` or ``Uniform`` by path, such as 'launch.spin'
+        threads, chunk, progress, store, cluster, overwrite
+            As for :meth:`sweep`.
+
+        Returns
+        -------
+        SceneSample
+            With the summaries of :meth:`puck_tables.Puck.sample`.
+
+        Raises
+        ------
+        InputError
+            If nothing scatters, what does is no number of the scene, or it is a board.
+
+        Examples
+        --------
+        >>> from puck_tables import Normal, Puck, Scene
+        >>> scene = Scene(Puck(0.04, friction=0.1))
+        >>> found = scene.sample(1000, 7, {"launch.velocity[0]": Normal(1.0, 0.01)})
+        >>> round(found.mean()["x"], 3)
+        0.51
+        """
+        if self.is_board:
+            raise InputError(
+                "samples of boards are not drawn: give lists or ranges of a board, and sweep it"
+            )
+        found: SceneSample = import_module("puck_tables.scene.sample").sample(
+            self, count, seed, spreads, threads=threads, chunk=chunk, progress=progress,
+            store=store, cluster=cluster, overwrite=overwrite,
+        )  # fmt: skip
+        return found
 
     def world(self) -> World:
         """The same board to play on: advance it, strike pucks, look ahead.

@@ -115,10 +115,10 @@ class SolverPerHeight:
         return height
 
     def prepare(
-        self, delta: FloatArray, each: int = 1, threads: int | None = None,
+        self, delta: FloatArray, each: npt.ArrayLike = 1, threads: int | None = None,
         progress: Progress | None = None,
     ) -> None:  # fmt: skip
-        """Make what launches of heights ``delta`` (n,) need, ``each`` times so many.
+        """Make what launches of heights ``delta`` (n,) need, of each of them so many.
 
         Raises
         ------
@@ -129,7 +129,9 @@ class SolverPerHeight:
         """
         all_plain = not delta.size or float(delta.max()) <= self._plain_up_to
         others = delta[:0] if all_plain else delta[delta > self._plain_up_to]
-        self._launches = each * (delta.size - others.size), each * others.size
+        launches = np.broadcast_to(np.asarray(each, np.int64), delta.shape)
+        many = launches[:0] if all_plain else launches[delta > self._plain_up_to]
+        self._launches = int(launches.sum()) - int(many.sum()), int(many.sum())
         if others.size < delta.size or not delta.size:
             self._prepare_plain()
         if not others.size:
@@ -139,14 +141,16 @@ class SolverPerHeight:
                 f"tol must be from {FINEST_SECTION:g} on for look-up of such pucks, got "
                 f"{self.tol:g}: give a tol in that range, or another method"
             )
-        heights, counts = np.unique(others, return_counts=True)
+        heights, which = np.unique(others, return_inverse=True)
+        counts = np.zeros(heights.size, np.int64)
+        np.add.at(counts, which, many)
         refuse_many(heights)
         law = self._pressure if isinstance(self._pressure, Law) else law_of(self._pressure)
 
         def work(start: int, stop: int) -> None:
             for height, count in zip(heights[start:stop], counts[start:stop], strict=True):
                 body = body_of(law, float(height), self._gyration, self._law_table)
-                self._sections[body.delta] = self._made(body, each * int(count))
+                self._sections[body.delta] = self._made(body, int(count))
 
         run_chunks(work, heights.size, 1, threads, progress)
 
@@ -155,9 +159,9 @@ class SolverPerHeight:
         plain = delta <= self._plain_up_to
         return plain, {height: self._body(height) for height in np.unique(delta[~plain]).tolist()}
 
-    def heights_to_prepare(self, delta: FloatArray) -> int:
-        """How many different heights need preparation."""
-        return int(np.unique(delta[delta > self._plain_up_to]).size)
+    def needs_preparation(self, delta: FloatArray) -> npt.NDArray[np.bool_]:
+        """Which heights are not plain, (n,)."""
+        return delta > self._plain_up_to
 
     def _body(self, delta: float) -> Body:
         return body_of(self._pressure, delta, self._gyration, self._law_table)

@@ -1,0 +1,200 @@
+"""Options of sweeps: spreads, lists of pressure laws, and where a sweep goes."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+from puck_tables.cli.options import deliver, explained, prepare_outputs, printable, told
+from puck_tables.cli.start import last_words
+
+from puck_tables.errors import InputError, OutputError
+
+if TYPE_CHECKING:
+    from puck_tables.bulk.spreads import Spread
+
+MOST_LAWS = 100
+_RINGS = re.compile(r"annulus:([^:]*):([^:]*):([0-9]{1,10})")
+
+
+def spreads_given(spreads: Iterable[str], names: Mapping[str, str] | None) -> dict[str, Spread]:
+    """Spreads by what scatters.
+
+    ``names``: the arguments by the names that are allowed; None: any, as they are.
+
+    Raises
+    ------
+    InputError
+    """
+    from puck_tables.bulk.spreads import spread_named
+
+    found: dict[str, Spread] = {}
+    for one in spreads:
+        name, equals, text = (part.strip() for part in one.partition("="))
+        if not equals or not text:
+            raise InputError(f"--spread {one}: write NAME=SPREAD, like w0=normal:5:0.2")
+        if names is not None and name not in names:
+            raise InputError(f"--spread {one}: {name} does not scatter: give {', '.join(names)}")
+        argument = name if names is None else names[name]
+        if argument in found:
+            raise InputError(f"--spread {name} is given twice")
+        found[argument] = spread_named(text)
+    return found
+
+
+def samples_checked(
+    random: int | None, seed: int | None, spreads: tuple[str, ...], regions: tuple[str, ...]
+) -> list[tuple[float, ...]]:
+    """The regions asked for; options of samples that stand alone are refused.
+
+    Raises
+    ------
+    InputError
+    """
+    from puck_tables.bulk.summary import checked_regions
+
+    alone = {"--seed": seed is not None, "--spread": spreads, "--inside": regions}
+    if random is None:
+        for name, is_given in alone.items():
+            if is_given:
+                raise InputError(f"{name} is for samples: give --random COUNT too")
+        return []
+    if not spreads:
+        raise InputError("--random needs a --spread: say what scatters, like w0=normal:5:0.2")
+    found = []
+    for region in regions:
+        try:
+            found.append(tuple(float(part) for part in region.split(",")))
+        except ValueError:
+            raise InputError(f"--inside {region}: write X,Y,R or X1,Y1,X2,Y2, in m") from None
+    checked_regions(found)
+    return found
+
+
+def laws_given(pressure: tuple[str, ...]) -> list[str]:
+    """Pressure laws, annulus:START:STOP:COUNT as so many of them.
+
+    Raises
+    ------
+    InputError
+        If they are too many.
+    """
+    import numpy as np
+
+    laws: list[str] = []
+    for one in pressure or ("uniform",):
+        rings = _RINGS.fullmatch(one)
+        count = 1 if rings is None else int(rings[3])
+        if len(laws) + count > MOST_LAWS:
+            raise InputError(
+                f"--pressure {one}: more than {MOST_LAWS} pressure laws, each is a kind of puck of "
+                "its own that takes about a second to prepare: give fewer"
+            )
+        if rings is None:
+            laws.append(one)
+            continue
+        try:
+            inner = np.linspace(float(rings[1]), float(rings[2]), count).tolist()
+        except ValueError:
+            raise InputError(
+                f"--pressure {one}: write annulus:INNER, or annulus:START:STOP:COUNT"
+            ) from None
+        laws += [f"annulus:{number!r}" for number in inner]
+    if len(set(laws)) < len(laws):
+        raise InputError("--pressure names the same law twice")
+    return laws
+
+
+@dataclass(frozen=True)
+class Whole:
+    """Where a sweep is done, and where it goes."""
+
+    threads: int | None
+    cluster: str | None
+    output: Path | None
+    plot: Path | None
+    overwrite: bool
+    explain: bool
+
+    @property
+    def stored(self) -> bool:
+        """Whether it goes to a Zarr store."""
+        from puck_tables.io.formats import STORE
+
+        return self.output is not None and self.output.suffix.lower() == STORE
+
+    @property
+    def how(self) -> dict[str, Any]:
+        """As the library takes it."""
+        return {
+            "threads": self.threads, "cluster": self.cluster, "overwrite": self.overwrite,
+            "store": self.output if self.stored else None,
+        }  # fmt: skip
+
+    def refuse_outputs(self, inputs: Iterable[Any]) -> None:
+        """Refuse, before any work, what could not be written.
+
+        Raises
+        ------
+        InputError, OutputError, MissingExtraError
+        """
+        file = None if self.stored else self.output
+        prepare_outputs(file, plot=self.plot, overwrite=self.overwrite, inputs=inputs)
+        if self.cluster is not None:
+            if not self.stored:
+                raise InputError("--cluster writes to a Zarr store: give -o NAME.zarr too")
+            from puck_tables.bulk.cluster import checked_address
+
+            checked_address(self.cluster)
+        if self.stored and self.output is not None:
+            import puck_tables.bulk.store  # noqa: F401 - says what is not installed
+
+            folder = self.output.absolute().parent
+            if not folder.is_dir():
+                raise OutputError(f"cannot write {self.output}: the folder {folder} does not exist")
+            words = f"Interrupted: {self.output} keeps what is done; the same command goes on."
+            kept = self.output
+            last_words.append(lambda: words if kept.exists() else last_words[0]())
+
+    def refuse_memory(self, sizes: list[int], samples: int | None) -> None:
+        """Refuse a map that would not fit in memory, as its format needs it.
+
+        Raises
+        ------
+        InputError
+        """
+        from puck_tables._core.memory import check_memory
+        from puck_tables.stopping.sweep import BYTES_PER_LAUNCH, BYTES_PER_ROW
+
+        if self.stored:
+            return
+        as_text = self.plot is None if self.output is None else self.output.suffix.lower() != ".h5"
+        shape = tuple(n for n in sizes if n > 1) if samples is None else (samples,)
+        check_memory(shape, BYTES_PER_ROW if as_text else BYTES_PER_LAUNCH)
+
+    def deliver(self, result: Any, summary: str, regions: list[tuple[float, ...]]) -> None:
+        """Save, draw and sum up."""
+        from puck_tables.bulk.finish import Stored
+        from puck_tables.bulk.summary import Summary
+
+        if self.stored and self.output is not None:
+            told(self.output)
+            last_words[:] = last_words[:1]
+        else:
+            deliver(result, self.output, None, self.overwrite)
+        wanted = isinstance(result, Stored) and (self.plot is not None or result.is_sample)
+        drawn = result.load() if wanted else result
+        deliver(drawn, None, self.plot, self.overwrite)
+        if self.output is None and self.plot is None and not isinstance(result, Summary):
+            from puck_tables.io.csv import encode
+
+            click.echo(encode(result.dataset()).decode(), nl=False)
+        click.echo(printable(summary), err=True)
+        if isinstance(drawn, Summary):
+            click.echo(drawn.summary(regions))
+        if self.explain:
+            explained(result)

@@ -1,0 +1,47 @@
+"""How much memory is free."""
+
+from __future__ import annotations
+
+import math
+import os
+
+from puck_tables.errors import InputError
+
+
+def check_memory(shape: tuple[int, ...], per_item: int) -> None:
+    """Refuse a map that would not fit in memory, before anything is allocated.
+
+    Parameters
+    ----------
+    shape : the sizes of the ranges
+    per_item : bytes needed for each launch
+
+    Raises
+    ------
+    InputError
+
+    Examples
+    --------
+    >>> check_memory((1000, 1000), 160)
+    """
+    needed = float(per_item) * math.prod(shape)
+    available = _memory()
+    if needed > available:
+        sizes = " x ".join(str(n) for n in shape)
+        raise InputError(
+            f"a map of {sizes} launches would need {needed / 2**30:.3g} GiB of memory, "
+            f"{available / 2**30:.3g} GiB are free: use smaller counts, or a Zarr store "
+            "(-o NAME.zarr, store=), which grows on disk"
+        )
+
+
+def _memory() -> float:
+    """Free memory in bytes where the system tells it, else 4 GiB."""
+    try:
+        with open("/proc/meminfo") as file:
+            for line in file:
+                if line.startswith("MemAvailable"):
+                    return 1024.0 * float(line.split()[1])
+        return float(os.sysconf("SC_PHYS_PAGES")) * os.sysconf("SC_PAGE_SIZE")
+    except (OSError, ValueError, AttributeError):
+        return 4.0 * 2**30

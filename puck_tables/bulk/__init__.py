@@ -1,0 +1,1 @@
+"""Long work: many independent items, in memory or in a store, by threads or by a cluster."""

@@ -1,0 +1,137 @@
+"""A work done: in memory, or into a store, by threads or by a cluster."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from puck_tables._core.executor import Progress
+from puck_tables._core.memory import check_memory
+from puck_tables._core.real import instance
+from puck_tables.bulk.work import Tally, Work, in_memory
+from puck_tables.errors import InputError
+from puck_tables.io.dataset import Dataset
+from puck_tables.io.formats import STORE
+from puck_tables.result import Result
+
+if TYPE_CHECKING:
+    import xarray
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_COPIES = 3  # of the columns: as read, in their shape, and what follows from them
+
+
+class Stored(Result):
+    """A result in a Zarr store, too large for memory perhaps.
+
+    ``path``; ``tally``: how many items have which code of :attr:`Work.code`, and the first of each.
+    """
+
+    def __init__(self, path: Path, work: Work, tally: Tally) -> None:
+        self.path, self.work, self.tally = path, work, tally
+
+    def __repr__(self) -> str:
+        return f"Stored({self.path.name}: {' x '.join(map(str, self.work.shape))} items)"
+
+    @property
+    def is_sample(self) -> bool:
+        """Whether it is of samples, which have a summary."""
+        return self.work.is_sample
+
+    def load(self) -> Result:
+        """The result in memory.
+
+        Raises
+        ------
+        InputError
+            If it does not fit.
+        """
+        from puck_tables.bulk.store import Store
+
+        each = 1 + 8 * sum(math.prod(one) for one in self.work.columns.values())
+        check_memory(self.work.shape, _COPIES * each)
+        return self.work.result(Store(self.path, self.work).read())
+
+    def dataset(self) -> Dataset:
+        """That of the result in memory."""
+        return self.load().dataset()
+
+    def explain(self) -> str:
+        """How it was got."""
+        return self.work.explain(self.tally)
+
+    def plot(
+        self, path: str | Path | None = None, ax: Axes | None = None, overwrite: bool = False
+    ) -> Figure:
+        """Draw the result in memory, as :meth:`Result.plot`."""
+        return self.load().plot(path, ax, overwrite)
+
+    def to_xarray(self) -> xarray.Dataset:
+        """The store as an xarray.Dataset, which reads what is asked of it, when it is asked."""
+        from puck_tables.io.frames import open_store
+
+        return open_store(self.path)
+
+
+def finish(
+    work: Work, threads: int | None, progress: Progress | None, store: str | Path | None,
+    cluster: str | None, overwrite: bool,
+) -> Any:  # fmt: skip
+    """The result of a work; with ``store`` a :class:`Stored` one.
+
+    Parameters
+    ----------
+    work : what is to be done
+    threads : of this process, where there is no cluster
+    progress : callable (done, total), optional
+    store : path of a Zarr store, made or gone on with, optional
+    cluster : 'local:N' or 'tcp://HOST:PORT', optional; needs a store
+    overwrite : whether a store of other work may be replaced
+
+    Raises
+    ------
+    InputError, OutputError, MissingExtraError, ClusterError
+    """
+    if store is None:
+        if cluster is not None:
+            raise InputError(
+                "a cluster writes to a Zarr store: give -o NAME.zarr (store='NAME.zarr') too"
+            )
+        return in_memory(work, threads, progress)
+    instance("store", store, str, Path)
+    if Path(store).suffix.lower() != STORE:
+        raise InputError(f"{store}: a store must have the ending {STORE}")
+    from puck_tables.bulk.store import Store, by_threads
+
+    if cluster is None:
+        tell = work.prepared(threads, progress)
+        kept = Store(store, work, overwrite)
+        tally = by_threads(kept, threads, tell)
+    else:
+        from puck_tables.bulk.cluster import by_cluster, client_of
+
+        with client_of(cluster) as client:
+            tell = work.prepared(threads, progress)
+            kept = Store(store, work, overwrite)
+            tally = by_cluster(client, kept, tell)
+    work.checked(tally)
+    return Stored(kept.path, work, tally)
+
+
+def check_part(part: object) -> None:
+    """Refuse a number of items at a time that is none.
+
+    Raises
+    ------
+    InputError
+
+    Examples
+    --------
+    >>> check_part(1024)
+    """
+    if isinstance(part, bool) or not isinstance(part, int | np.integer) or part < 1:
+        raise InputError(f"chunk must be a whole number from 1 on, got {part!r:.40}")

@@ -1,0 +1,220 @@
+"""What samples tell: mean, covariance, quantiles, where they end, and the chance of a region."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables._core.real import finite_array
+from puck_tables.errors import InputError
+
+_SIGMAS = 1.959963984540054  # of a 95 % interval
+_MOST_BINS = 4096
+Bins = npt.NDArray[np.bool_]
+
+
+class Chance(NamedTuple):
+    """A share of samples, and the 95 % interval of the chance that it estimates (Wilson's)."""
+
+    value: float
+    low: float
+    high: float
+
+
+class Summary:
+    """Summaries of a result over samples.
+
+    A kind of result gives ``summed``, the names of its columns over samples that have a mean, and
+    ``place``, those of the two that are where it ends.  Samples that have no end (NaN) do not
+    count; ``ended`` says how many do.
+    """
+
+    summed: tuple[str, ...]
+    place: tuple[str, str]
+
+    def _rows(self, names: Sequence[str] | None = None) -> FloatArray:
+        names = self.summed if names is None else names
+        for name in names:
+            if name not in self.summed:
+                raise InputError(f"{name} is no column of samples: there are {self.summed}")
+        rows = np.stack([np.asarray(getattr(self, name), np.float64).ravel() for name in names])
+        kept = rows[:, np.isfinite(rows).all(axis=0)]
+        if kept.shape[1] < 2:
+            raise InputError("fewer than two samples have an end: there is nothing to sum up")
+        return kept
+
+    @property
+    def ended(self) -> int:
+        """How many samples have an end."""
+        return int(self._rows(self.place).shape[1])
+
+    def mean(self) -> dict[str, float]:
+        """Means by column, SI units."""
+        return dict(zip(self.summed, self._rows().mean(axis=1).tolist(), strict=True))
+
+    def covariance(self, names: Sequence[str] | None = None) -> FloatArray:
+        """Covariance (n, n) of these columns, of all without ``names``; SI units."""
+        found: FloatArray = np.atleast_2d(np.cov(self._rows(names)))
+        return found
+
+    def quantiles(
+        self, shares: npt.ArrayLike = (0.025, 0.25, 0.5, 0.75, 0.975)
+    ) -> dict[str, FloatArray]:
+        """Values below which these shares of the samples lie, by column.
+
+        Raises
+        ------
+        InputError
+            If a share is not from 0 to 1.
+        """
+        wanted = finite_array("shares", shares, "1")
+        if not ((wanted >= 0.0) & (wanted <= 1.0)).all():
+            raise InputError("shares of quantiles must be from 0 to 1")
+        found = np.quantile(self._rows(), wanted, axis=1)
+        return {name: np.asarray(found[..., n]) for n, name in enumerate(self.summed)}
+
+    def density(
+        self, bins: int = 100, extent: npt.ArrayLike | None = None
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Where it ends: edges (bins + 1,) along x and y, and the density (bins, bins), 1/m².
+
+        Parameters
+        ----------
+        bins : along each side, 1 to 4096
+        extent : (x1, x2, y1, y2), m; without it, that of all samples
+
+        Raises
+        ------
+        InputError
+        """
+        if isinstance(bins, bool) or not isinstance(bins, int) or not 1 <= bins <= _MOST_BINS:
+            raise InputError(f"bins must be a whole number from 1 to {_MOST_BINS}, got {bins!r}")
+        x, y = self._rows(self.place)
+        if extent is None:
+            sides = [_sides(x), _sides(y)]
+        else:
+            x1, x2, y1, y2 = finite_array("extent", extent, "m").tolist()
+            sides = [(x1, x2), (y1, y2)]
+            if not (x2 > x1 and y2 > y1):
+                raise InputError("extent must be (x1, x2, y1, y2) with x1 < x2 and y1 < y2, in m")
+        counts, across, along = np.histogram2d(x, y, bins, sides)
+        area = (across[1] - across[0]) * (along[1] - along[0])
+        return across, along, counts / (x.size * area)
+
+    def chance(self, region: npt.ArrayLike) -> Chance:
+        """The chance to end inside a region.
+
+        Parameters
+        ----------
+        region : (x, y, r), a disc; (x1, y1, x2, y2), a rectangle; or corners (n, 2) of a polygon; m
+
+        Raises
+        ------
+        InputError
+            If the region is none of these, or empty.
+        """
+        inside = inside_of(region, *self._rows(self.place))
+        return chance_of(int(np.count_nonzero(inside)), inside.size)
+
+    def summary(self, regions: Sequence[npt.ArrayLike] = ()) -> str:
+        """Means, deviations and quantiles in a table, and the chances of regions; lines of text."""
+        mean, rows = self.mean(), self._rows()
+        shares = self.quantiles()
+        lines = [f"{'':<14}{'mean':>13}{'deviation':>13}{'2.5 %':>13}{'50 %':>13}{'97.5 %':>13}"]
+        for name, row in zip(self.summed, rows, strict=True):
+            low, _, middle, _, high = shares[name].tolist()
+            numbers = (mean[name], float(row.std(ddof=1)), low, middle, high)
+            lines.append(f"{name:<14}" + "".join(f"{number:>13.6g}" for number in numbers))
+        across, along = (self.summed.index(name) for name in self.place)
+        tied = np.corrcoef(rows[across], rows[along])[0, 1] if self._scatters else math.nan
+        if math.isfinite(tied):
+            lines.append(f"correlation of {self.place[0]} and {self.place[1]}: {tied:.4g}")
+        for region in regions:
+            one = self.chance(region)
+            words = ", ".join(f"{number:g}" for number in np.ravel(region))
+            lines.append(
+                f"ends inside ({words}) m with a chance of {one.value:.6g} "
+                f"(95 %: {one.low:.6g} to {one.high:.6g})"
+            )
+        return "\n".join(lines)
+
+    @property
+    def _scatters(self) -> bool:
+        x, y = self._rows(self.place)
+        return bool(x.std() > 0.0 and y.std() > 0.0)
+
+
+def chance_of(hits: int, samples: int) -> Chance:
+    """The chance that so many hits speak for.
+
+    Examples
+    --------
+    >>> [round(one, 4) for one in chance_of(50, 100)]
+    [0.5, 0.4038, 0.5962]
+    """
+    share, z = hits / samples, _SIGMAS
+    scale = 1.0 / (1.0 + z * z / samples)
+    middle = scale * (share + z * z / (2 * samples))
+    half = scale * z * math.sqrt(share * (1.0 - share) / samples + (z / (2 * samples)) ** 2)
+    low = 0.0 if hits == 0 else max(0.0, middle - half)  # but for rounding
+    return Chance(share, low, 1.0 if hits == samples else min(1.0, middle + half))
+
+
+def inside_of(region: npt.ArrayLike, x: FloatArray, y: FloatArray) -> Bins:
+    """Whether places (n,) lie inside a region, see :meth:`Summary.chance`.
+
+    Raises
+    ------
+    InputError
+
+    Examples
+    --------
+    >>> inside_of((0.0, 0.0, 1.0), np.array([0.5, 2.0]), np.zeros(2)).tolist()
+    [True, False]
+    """
+    form = finite_array("region", region, "m")
+    inside: Bins
+    if form.shape == (3,) and form[2] > 0.0:
+        inside = np.hypot(x - form[0], y - form[1]) <= form[2]
+    elif form.shape == (4,) and form[2] > form[0] and form[3] > form[1]:
+        inside = (x >= form[0]) & (x <= form[2]) & (y >= form[1]) & (y <= form[3])
+    elif form.ndim == 2 and form.shape[1] == 2 and len(form) >= 3:
+        inside = np.zeros(x.shape, np.bool_)
+        for (x1, y1), (x2, y2) in zip(form, np.roll(form, -1, axis=0), strict=True):
+            if y1 != y2:  # a ray along x: every edge that it crosses changes sides
+                crosses = (y1 > y) != (y2 > y)
+                inside ^= crosses & (x < x1 + (y - y1) * ((x2 - x1) / (y2 - y1)))
+    else:
+        raise InputError(
+            "a region must be (x, y, r) with r > 0, a rectangle (x1, y1, x2, y2) with x1 < x2 and "
+            "y1 < y2, or at least three corners (x, y) of a polygon, in m"
+        )
+    return inside
+
+
+def _sides(values: FloatArray) -> tuple[float, float]:
+    low, high = float(values.min()), float(values.max())
+    if high > low:
+        return low, high
+    room = max(1e-3 * abs(low), 1e-9)  # all in one place
+    return low - room, high + room
+
+
+def checked_regions(given: Any) -> None:
+    """Refuse regions that are none, before any work.
+
+    Raises
+    ------
+    InputError
+
+    Examples
+    --------
+    >>> checked_regions([(0.0, 0.0, 1.0)])
+    """
+    for region in given:
+        inside_of(region, np.zeros(1), np.zeros(1))

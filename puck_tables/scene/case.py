@@ -1,0 +1,105 @@
+"""A scene of which only the launch still varies: the ends of many launches."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.scene.agreement import launch_velocity
+from puck_tables.scene.bulk import ENDS_COLUMNS
+from puck_tables.scene.entries import BATCH, LAUNCH
+from puck_tables.scene.equations import SIZE
+from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
+from puck_tables.scene.loop import AT_REST, CARRIED_AWAY, NOT_FINITE, OVER_EDGE, TIME_UP
+from puck_tables.scene.outcome import LEDGER, NO_END, ledger
+from puck_tables.scene.plan import Plan, plan_for
+from puck_tables.scene.prepare import Prepared, prepare
+from puck_tables.scene.scene import Scene
+from puck_tables.scene.simulate import is_endless
+
+STATE = (VX, VY, SPIN, X, Y, THETA)  # where the numbers of LAUNCH stand in a state
+RESULTS = (*LEDGER[1:], "impacts", "energy_residual", "end_time")
+
+
+class Case:
+    """A scene of which only the launch still varies."""
+
+    def __init__(self, scene: Scene) -> None:
+        self.scene, self.plan = scene, plan_for(scene)
+        self.by_look_up = self.plan.plain and scene.run.time is None
+        if self.by_look_up:
+            self.plan = Plan("free pucks: stop look-up", True, self.plan.why)
+        self.endless = is_endless(scene)
+        self.prepared: Prepared | None = None if self.by_look_up else prepare(scene)
+
+    def ends(
+        self, launches: Mapping[str, FloatArray], count: int
+    ) -> tuple[FloatArray, npt.NDArray[np.int8]]:
+        """Results (m, count) and how it ended."""
+        scene = self.scene
+        states = np.zeros((count, SIZE))
+        states[:, [X, Y]], states[:, THETA] = scene.launch.position, scene.launch.orientation
+        states[:, [VX, VY]], states[:, SPIN] = launch_velocity(scene), scene.launch.spin
+        for path, values in launches.items():
+            states[:, list(STATE) if path == BATCH else STATE[LAUNCH.index(path)]] = values
+        mass = scene.puck.mass
+        inertia = mass * (scene.puck.gyration * scene.puck.radius) ** 2
+        with np.errstate(over="ignore"):  # of launches that leave floating point
+            energy = 0.5 * mass * (states[:, VX] ** 2 + states[:, VY] ** 2)
+            energy += 0.5 * inertia * states[:, SPIN] ** 2
+        status = np.empty(count, np.int8)
+        rows = np.empty((ENDS_COLUMNS, count))
+        if self.endless:
+            status[:] = NO_END
+        elif self.prepared is None:
+            self._look_up(states, rows, status)
+        else:
+            self.prepared.follow_all(states, rows, status)
+            if scene.run.time is None:
+                status[status == TIME_UP] = NO_END
+        rows[:, status > OVER_EDGE] = np.nan  # how it failed stands in ``end``
+        last = dict(zip(LEDGER[:-1], rows[:-1], strict=True))
+        last["kinetic_energy"] = 0.5 * mass * (last["vx"] ** 2 + last["vy"] ** 2)
+        last["kinetic_energy"] += 0.5 * inertia * last["spin"] ** 2
+        if self.prepared is None:  # nothing is integrated: heat is what else is not there
+            last["heat_dry"][:] = energy + last["work_support"] - last["kinetic_energy"]
+        with np.errstate(all="ignore"):  # runs that failed are not a number
+            missing, largest = ledger(last, energy)
+            residual = missing / np.where(largest > 0.0, largest, 1.0)
+        results = [last[name] for name in LEDGER[1:]]
+        return np.stack([*results, rows[-1], residual, last["time"]]), status
+
+    def _look_up(self, states: FloatArray, rows: FloatArray, status: npt.NDArray[np.int8]) -> None:
+        belt = self.scene.floor.velocity
+        velocities, spins = states[:, [VX, VY]] - belt, states[:, SPIN]
+        stops = self.scene.puck.stop(velocities, spins, tol=self.scene.run.tol)
+        rows[...] = 0.0
+        last = dict(zip(LEDGER[:-1], rows[:-1], strict=True))
+        last["time"][:] = stops.stop_time
+        for i, name in enumerate(("x", "y")):
+            last[name][:] = states[:, i] + stops.stop_position[:, i] + belt[i] * stops.stop_time
+            last["v" + name][:] = belt[i]
+            last["work_support"][:] += (
+                self.scene.puck.mass * belt[i] * (belt[i] - states[:, VX + i])
+            )
+        last["orientation"][:] = states[:, THETA] + stops.body_angle
+        last["carried"][:] = 1.0
+        status[:] = np.where(stops.status == 0, CARRIED_AWAY if any(belt) else AT_REST, NOT_FINITE)
+
+
+def is_launch(path: str, scene: Scene) -> bool:
+    """Whether a range only changes the launch, and nothing has to be checked or fixed to it."""
+    moves = path.startswith("launch.position") or path == BATCH
+    fixed = moves and bool(scene.walls or scene.edges)
+    return path in (*LAUNCH, BATCH) and scene.constraint is None and not fixed
+
+
+def told_apart(scene: Scene) -> dict[str, Any]:
+    """What tells a pressure law that is given as an object from another."""
+    law = scene.puck.body.law
+    ratios = np.stack(law.friction(np.linspace(0.0, 0.5 * np.pi, 99), 0.0))
+    return {"name": law.name, "edges": law.edges, "profile": law.profile, "friction": ratios}

@@ -1,0 +1,107 @@
+"""Stops and states as pure functions of arrays, for libraries that map functions over arrays.
+
+Arrays in, a tuple of arrays out, all of one shape; each element depends on its own launch alone, to
+the last bit, so that xarray and dask may cut the arrays as they like.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables._core.real import broadcast, finite_array
+from puck_tables.accuracy.methods import Method
+from puck_tables.contact.laws import HOMOGENEOUS, Law
+from puck_tables.stopping.per_height import SolverPerHeight
+from puck_tables.stopping.states import states
+from puck_tables.stopping.stop_section import FINEST_SECTION
+from puck_tables.stopping.stops import as_rows, positive_array
+
+StopArrays = tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]
+STATE_OUTPUTS = ("x", "y", "orientation", "vx", "vy", "spin")
+
+
+def stop_arrays(
+    vx: npt.ArrayLike, vy: npt.ArrayLike = 0.0, spin: npt.ArrayLike = 0.0,
+    delta: npt.ArrayLike = 0.5, decel: npt.ArrayLike = 1.0, radius: npt.ArrayLike = 1.0, *,
+    tol: float = 1e-8, pressure: str | Law = "uniform", gyration: float = HOMOGENEOUS,
+) -> StopArrays:  # fmt: skip
+    """Stops of launches; everything broadcasts.
+
+    Parameters
+    ----------
+    vx, vy, spin : array_like (…), m/s, rad/s
+    delta, decel, radius : array_like (…), 1, m/s², m
+    tol, pressure, gyration
+        As for :func:`puck_tables.stop`.  Pucks with δ > 1 or of another kind are looked up for any
+        number of launches, integrated where tol < 1e-10.
+
+    Returns
+    -------
+    tuple of six arrays (…)
+        ``stop_time`` s, ``stop_x``, ``stop_y``, ``path_length`` m, ``turn_angle``, ``body_angle``
+        rad; NaN where a motion is too large for floating point.
+
+    Raises
+    ------
+    InputError, AccuracyError
+        As :func:`puck_tables.stop`.
+
+    Examples
+    --------
+    >>> time, x, *_ = stop_arrays([1.0, 2.0], spin=5.0)
+    >>> time.round(6).tolist(), x.round(6).tolist()
+    ([3.962992, 4.22706], [2.213952, 4.668053])
+    """
+    method = Method.LOOK_UP if tol >= FINEST_SECTION else Method.ADAPTIVE
+    solver = SolverPerHeight(pressure, gyration, tol, method.value, None)
+    columns = broadcast(
+        vx=finite_array("vx", vx, "m/s"), vy=finite_array("vy", vy, "m/s"),
+        spin=finite_array("spin", spin, "rad/s"), delta=solver.checked_range(delta),
+        decel=positive_array("decel", decel, "m/s^2"),
+        radius=positive_array("radius", radius, "m"),
+    )  # fmt: skip
+    launches = as_rows(columns)
+    solver.prepare(launches[3])
+    time, x, y, length, turn, body = solver.all(launches)[0].reshape((6, *columns[0].shape))
+    return time, x, y, length, turn, body
+
+
+def state_arrays(
+    vx: npt.ArrayLike, vy: npt.ArrayLike, spin: npt.ArrayLike, time: npt.ArrayLike,
+    delta: npt.ArrayLike = 0.5, decel: npt.ArrayLike = 1.0, radius: npt.ArrayLike = 1.0, *,
+    pressure: str | Law = "uniform", gyration: float = HOMOGENEOUS,
+) -> StopArrays:  # fmt: skip
+    """States at times after launches; everything broadcasts.
+
+    Parameters
+    ----------
+    vx, vy, spin : array_like (…), m/s, rad/s, at the launch
+    time : array_like (…), s, ≥ 0
+    delta, decel, radius : array_like (…), 1, m/s², m
+    pressure, gyration
+        As for :func:`puck_tables.states`.
+
+    Returns
+    -------
+    tuple of six arrays (…)
+        ``x``, ``y`` m from the launch, ``orientation`` rad, ``vx``, ``vy`` m/s, ``spin`` rad/s.
+
+    Raises
+    ------
+    InputError
+        As :func:`puck_tables.states`.
+
+    Examples
+    --------
+    >>> x, y, *_ = state_arrays(1.0, 0.0, 5.0, [2.0, 0.0])
+    >>> x.round(6).tolist()
+    [1.590682, 0.0]
+    """
+    along, across = broadcast(vx=finite_array("vx", vx, "m/s"), vy=finite_array("vy", vy, "m/s"))
+    found = states(
+        np.stack([along, across], axis=-1), spin, time, delta=delta, decel=decel, radius=radius,
+        pressure=pressure, gyration=gyration,
+    )  # fmt: skip
+    return found.x, found.y, found.orientation, found.vx, found.vy, found.spin

@@ -1,0 +1,298 @@
+"""The numbers of many launches and their pucks: fixed, over ranges, given one by one, or drawn.
+
+A puck has a radius, a height, a friction and a gravity; δ = 2fh/r may stand in place of the height,
+J = fg in place of the gravity.  A velocity has a speed and a heading, or two components.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables._core.real import finite_array
+from puck_tables.bulk.spreads import Spread
+from puck_tables.contact.laws import Law
+from puck_tables.errors import InputError
+from puck_tables.io.columns import COLUMNS
+from puck_tables.io.dataset import Variable, variable
+
+COLUMN = {  # of the arguments, in the order of dimensions
+    "pressure": "pressure", "gyration": "gyration", "gravity": "gravity", "decel": "decel",
+    "friction": "friction", "height": "height", "radius": "radius", "delta": "delta",
+    "heading": "launch_heading", "vx": "launch_vx", "vy": "launch_vy", "speed": "launch_speed",
+    "spin": "launch_spin",
+}  # fmt: skip
+SAMPLE = "sample"
+CLASHES = (
+    ("delta", "height"), ("decel", "gravity"), ("vx", "speed"), ("vx", "heading"), ("vy", "speed"),
+    ("vy", "heading"),
+)  # fmt: skip
+OF_PUCK = ("pressure", "gyration", "gravity", "decel", "friction", "height", "radius", "delta")
+_ABOVE_ZERO = ("gyration", "gravity", "decel", "friction", "radius")
+_NOT_BELOW_ZERO = ("height", "delta", "speed")
+MOST_LAWS = 100
+
+
+@dataclass(frozen=True, eq=False)
+class Population:
+    """Numbers of launches by the names of arguments.
+
+    ``dims``, ``shape``: what they range over; ``values``: arrays, each over the dimensions that
+    ``over`` names; ``spreads``: what is drawn, with ``seed``, over the last dimension; ``laws``:
+    the pressure laws that ``values['pressure']`` counts.
+    """
+
+    dims: tuple[str, ...]
+    shape: tuple[int, ...]
+    values: Mapping[str, FloatArray] = field(repr=False)
+    over: Mapping[str, tuple[str, ...]]
+    laws: tuple[str | Law, ...]
+    spreads: Mapping[str, Spread] = field(default_factory=dict)
+    seed: int = 0
+
+    @property
+    def size(self) -> int:
+        """How many launches."""
+        return math.prod(self.shape)
+
+    def at(self, start: int, stop: int) -> dict[str, Any]:
+        """Numbers of some launches, arrays (stop − start,) or one number for all.
+
+        Raises
+        ------
+        InputError
+            If one that is drawn lies outside its range.
+        """
+        index: dict[str, Any] = {}
+        if self.dims:
+            places = np.unravel_index(np.arange(start, stop), self.shape)
+            index = dict(zip(self.dims, places, strict=True))
+        found: dict[str, Any] = {}
+        for name, array in self.values.items():
+            over = self.over[name]
+            found[name] = array[tuple(index[dim] for dim in over)] if over else array[()]
+        for name, spread in self.spreads.items():
+            found[name] = spread.drawn(name, self.seed, start, stop)
+            refuse_outside(name, found[name], f"samples of {name}")
+        return found
+
+    def of_pucks(self) -> Population:
+        """What of them determines the puck, over as few dimensions as it needs."""
+        drawn = {name: one for name, one in self.spreads.items() if name in OF_PUCK}
+        used = {dim for name in OF_PUCK for dim in self.over.get(name, ())}
+        if drawn:
+            used.add(SAMPLE)
+        dims = tuple(dim for dim in self.dims if dim in used)
+        shape = tuple(n for dim, n in zip(self.dims, self.shape, strict=True) if dim in used)
+        values = {name: array for name, array in self.values.items() if name in OF_PUCK}
+        return Population(dims, shape, values, self.over, self.laws, drawn, self.seed)
+
+    @property
+    def axes(self) -> dict[str, FloatArray]:
+        """The ranges, by the columns of results; of pressure laws their numbers from 0 on."""
+        return {
+            dim: self.values[name]
+            for dim in self.dims
+            for name in (_ARGUMENT.get(dim, ""),)
+            if self.over.get(name) == (dim,)
+        }
+
+    @property
+    def fixed(self) -> dict[str, float]:
+        """What is one number for all, by the columns of results."""
+        alone = ("pressure", "gyration")  # in words elsewhere
+        first = [name for name in ("decel", "radius") if name in self.values]
+        return {
+            COLUMN[name]: float(self.values[name])
+            for name in dict.fromkeys([*first, *COLUMN])
+            if name not in alone and name in self.values and not self.over[name]
+        }
+
+    def variables(self) -> tuple[dict[str, Variable], dict[str, Variable]]:
+        """The ranges, and what is given one by one, with their labels."""
+        axes, columns = {}, {}
+        for name, array in self.values.items():
+            over, column = self.over[name], COLUMN[name]
+            flags = tuple(map(law_name, self.laws)) if name == "pressure" else ()
+            one = variable(column, array.astype(np.int16) if flags else array, over, flags)
+            if over == (column,):
+                axes[column] = one
+            elif over:
+                columns[column] = one
+        return {dim: axes[dim] for dim in self.dims if dim in axes}, columns
+
+    @property
+    def identity(self) -> dict[str, Any]:
+        """What determines the numbers, but for the laws."""
+        return {
+            "shape": self.shape, "values": self.values, "over": self.over, "seed": self.seed,
+            "spreads": {name: str(one) for name, one in self.spreads.items()},
+        }  # fmt: skip
+
+
+_ARGUMENT = {column: name for name, column in COLUMN.items()}
+
+
+def ranged(given: Mapping[str, Any], laws: Any) -> Population:
+    """Launches for all combinations of numbers and lists of them.
+
+    Parameters
+    ----------
+    given : by the names of arguments: numbers, or lists (n,)
+    laws : a pressure law, or a list of them
+
+    Raises
+    ------
+    InputError
+
+    Examples
+    --------
+    >>> ranged({"spin": [0.0, 1.0], "speed": 1.0}, "uniform").axes
+    {'launch_spin': array([0., 1.])}
+    """
+    values, over, found = _values(given, laws)
+    for name, array in values.items():
+        if array.ndim > 1 or array.size == 0:
+            raise InputError(f"{name} must be a number or a list of numbers")
+    for name in COLUMN:
+        if name in values:
+            over[name] = (COLUMN[name],) if values[name].ndim else ()
+    dims = tuple(COLUMN[name] for name in COLUMN if over.get(name))
+    shape = tuple(values[_ARGUMENT[dim]].size for dim in dims)
+    return Population(dims, shape, values, over, found)
+
+
+def drawn(given: Mapping[str, Any], laws: Any, count: int, seed: int) -> Population:
+    """Launches of which some numbers are drawn.
+
+    Raises
+    ------
+    InputError
+        If none is.
+    """
+    spreads = {name: one for name, one in given.items() if isinstance(one, Spread)}
+    if not spreads:
+        raise InputError(
+            "samples need a spread: give one number or more as a spread, such as a spin of "
+            "normal:5:0.2"
+        )
+    others = {name: one for name, one in given.items() if name not in spreads}
+    values, over, found = _values(others, laws)
+    for name, array in values.items():
+        if array.ndim:
+            raise InputError(f"{name} must be one number or a spread: samples have no ranges")
+        over[name] = ()
+    refuse_clashes([*values, *spreads])
+    return Population((SAMPLE,), (count,), values, over, found, spreads, seed)
+
+
+def labelled(launches: Any, given: Mapping[str, Any], laws: Any) -> Population:
+    """Launches of an xarray.Dataset: its coordinates and variables, over its dimensions.
+
+    Parameters
+    ----------
+    launches : xarray.Dataset with variables named as in results: launch_speed, launch_spin, …
+    given : further numbers
+
+    Raises
+    ------
+    InputError
+        If it has a variable that is no number of a launch.
+    """
+    arrays = {str(name): one for name, one in launches.variables.items()}
+    sizes = {str(dim): int(n) for dim, n in launches.sizes.items()}
+    unknown = [name for name in arrays if name not in _ARGUMENT and name not in sizes]
+    unknown += [name for name in arrays if name == "pressure"]
+    if unknown:
+        known = ", ".join(column for column in _ARGUMENT if column != "pressure")
+        raise InputError(f"{unknown[0]} is no number of a launch: there are {known}")
+    numbers = {
+        _ARGUMENT[name]: np.asarray(one.values) for name, one in arrays.items() if name in _ARGUMENT
+    }
+    twice = [name for name in numbers if name in given]
+    if twice:
+        raise InputError(f"{twice[0]} stands in the dataset and is given, too: give one of them")
+    for name, one in arrays.items():
+        expected, unit = COLUMNS[name].unit if name in COLUMNS else "", one.attrs.get("units")
+        if name in _ARGUMENT and unit not in (None, expected):
+            raise InputError(f"{name} of the dataset is in {unit}: it must be in {expected}")
+    if 0 in sizes.values():
+        raise InputError("the dataset has no launches")
+    values, over, found = _values({**given, **numbers}, laws)
+    for name, array in values.items():
+        if name in numbers:
+            over[name] = tuple(map(str, arrays[COLUMN[name]].dims))
+        elif array.ndim:
+            raise InputError(f"{name} must be one number beside a dataset: put lists into it")
+        else:
+            over[name] = ()
+    return Population(tuple(sizes), tuple(sizes.values()), values, over, found)
+
+
+def _values(
+    given: Mapping[str, Any], laws: Any
+) -> tuple[dict[str, FloatArray], dict[str, tuple[str, ...]], tuple[str | Law, ...]]:
+    refuse_clashes(given)
+    values: dict[str, FloatArray] = {}
+    found: tuple[Any, ...] = (laws,)
+    if isinstance(laws, list | tuple | np.ndarray):
+        found = tuple(laws)
+        if not 1 <= len(found) <= MOST_LAWS:
+            raise InputError(
+                f"a list of {len(found)} pressure laws: give 1 to {MOST_LAWS}, each is a kind of "
+                "puck of its own that takes about a second to prepare"
+            )
+        values["pressure"] = np.arange(float(len(found)))
+    for name, value in given.items():
+        if isinstance(value, Spread):
+            raise InputError(f"{name} is a spread: give it to sample, not to sweep")
+        values[name] = finite_array(name, value, COLUMNS[COLUMN[name]].unit)
+        refuse_outside(name, values[name], name)
+    return values, {"pressure": ()}, found
+
+
+def refuse_clashes(names: Any) -> None:
+    """Refuse two numbers that give the same.
+
+    Raises
+    ------
+    InputError
+
+    Examples
+    --------
+    >>> refuse_clashes(["delta", "radius"])
+    """
+    for one, other in CLASHES:
+        if one in names and other in names:
+            raise InputError(f"{one} and {other} clash: give one of them")
+
+
+def refuse_outside(name: str, values: FloatArray, words: str) -> None:
+    """Refuse numbers outside their range.
+
+    Raises
+    ------
+    InputError
+
+    Examples
+    --------
+    >>> refuse_outside("speed", np.array([1.0]), "speed")
+    """
+    if not values.size:
+        return
+    low, unit = float(values.min()), COLUMNS[COLUMN[name]].unit
+    unit = "" if unit == "1" else f" {unit}"
+    if name in _ABOVE_ZERO and not low > 0.0:
+        raise InputError(f"{words} must be greater than 0{unit}, got {low:g}")
+    if name in _NOT_BELOW_ZERO and not low >= 0.0:
+        raise InputError(f"{words} must not be negative, got {low:g}{unit}")
+
+
+def law_name(law: str | Law) -> str:
+    """A pressure law in a word."""
+    return law.name if isinstance(law, Law) else law

@@ -1,0 +1,181 @@
+"""Sweeps on clusters: a real scheduler and real workers on the loopback address, and their ends."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from puck_tables import Normal, Puck, Table
+from puck_tables.errors import ClusterError, InputError
+
+pytest.importorskip("zarr")
+distributed = pytest.importorskip("distributed")
+pytestmark = [
+    pytest.mark.skipif(os.name == "nt", reason="signals of another kind"),
+    pytest.mark.filterwarnings("ignore"),  # of what the libraries of clusters use
+]
+
+PUCK = Puck.similar()
+QUICK: dict[str, Any] = {"spin": np.linspace(-3.0, 3.0, 301), "speed": np.linspace(0.0, 2.0, 200)}
+# integrated, so that there is something to end in the middle of
+SLOW: dict[str, Any] = {
+    "spin": np.linspace(-3.0, 3.0, 160), "speed": np.linspace(0.0, 2.0, 160), "tol": 1e-9,
+    "method": "adaptive",
+}  # fmt: skip
+DASK = [sys.executable, "-m", "distributed.cli.dask_scheduler"]
+WORKER = [sys.executable, "-m", "distributed.cli.dask_worker"]
+
+
+def content(store: Path) -> dict[str, bytes]:
+    return {
+        str(path.relative_to(store)): path.read_bytes()
+        for path in store.rglob("*") if path.is_file() and not path.name.endswith(".partial")
+    }  # fmt: skip
+
+
+def waited_for(found: Callable[[], Any], seconds: float = 90.0) -> Any:
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        if value := found():
+            return value
+        time.sleep(0.02)
+    raise TimeoutError
+
+
+@contextmanager
+def cluster(folder: Path, workers: int) -> Iterator[tuple[str, list[subprocess.Popen[bytes]]]]:
+    """The address of a scheduler of its own process, and the processes of its workers."""
+    file, quiet = folder / "scheduler.json", {"stderr": subprocess.DEVNULL}
+    common = ["--scheduler-file", str(file), "--no-dashboard"]
+    processes = [subprocess.Popen(
+        [*DASK, *common, "--host", "127.0.0.1", "--port", "0"], **quiet, cwd=folder)]  # fmt: skip
+    try:
+        waited_for(lambda: file.exists() and file.stat().st_size > 0)
+        for _ in range(workers):
+            alone = ["--no-nanny", "--nthreads", "1", "--host", "127.0.0.1"]
+            processes.append(subprocess.Popen([*WORKER, *common, *alone], **quiet, cwd=folder))
+        with distributed.Client(scheduler_file=str(file), set_as_default=False) as client:
+            address = client.scheduler.address
+            if workers:
+                client.wait_for_workers(workers, timeout=90)
+        yield address, processes[1:]
+    finally:
+        for process in processes:
+            process.kill()
+            process.wait()
+
+
+def blocks(store: Path) -> int:
+    return len(list((store / "status" / "c").rglob("*"))) if store.exists() else 0
+
+
+def test_two_workers_write_the_bytes_of_one_thread(tmp_path: Path):
+    samples = {"spin": Normal(5.0, 0.2), "speed": 1.0}
+    alone = PUCK.sweep(**QUICK, store=tmp_path / "alone.zarr", threads=1)
+    drawn = PUCK.sample(50_000, 7, **samples, store=tmp_path / "drawn.zarr", threads=1)
+    seen: list[int] = []
+    with cluster(tmp_path, 2) as (address, _):
+        both = PUCK.sweep(
+            **QUICK, store=tmp_path / "both.zarr", cluster=address,
+            progress=lambda done, total: seen.append(done),
+        )  # fmt: skip
+        again = PUCK.sample(50_000, 7, **samples, store=tmp_path / "d2.zarr", cluster=address)
+        with pytest.raises(InputError, match="holds other work"):
+            PUCK.sweep(spin=[1.0], speed=[2.0], store=tmp_path / "both.zarr", cluster=address)
+    assert content(both.path) == content(alone.path)
+    assert content(again.path) == content(drawn.path)
+    assert both.tally == alone.tally
+    assert seen == sorted(seen) and seen[-1] == 301 * 200
+
+
+@pytest.mark.nightly
+def test_a_worker_killed_in_the_middle_costs_nothing(tmp_path: Path):
+    work = {**SLOW, "table": Table.shipped()}
+    alone = PUCK.sweep(**work, store=tmp_path / "alone.zarr")
+    with cluster(tmp_path, 2) as (address, workers):
+        store = tmp_path / "both.zarr"
+
+        def kill(done: int, total: int) -> None:
+            if total // 8 < done and workers[0].poll() is None:
+                workers[0].kill()
+
+        both = PUCK.sweep(**work, store=store, cluster=address, progress=kill)
+        assert workers[0].poll() is not None
+    assert content(both.path) == content(alone.path)
+    assert both.tally == alone.tally
+
+
+@pytest.mark.nightly
+def test_a_client_killed_in_the_middle_goes_on(tmp_path: Path):
+    alone = PUCK.sweep(**SLOW, store=tmp_path / "alone.zarr")
+    with cluster(tmp_path, 2) as (address, _):
+        code = (
+            f"import sys; sys.path.insert(0, {str(Path(__file__).parent)!r}); "
+            "from test_cluster import PUCK, SLOW; "
+            f"PUCK.sweep(**SLOW, store='both.zarr', cluster={address!r})"
+        )
+        store = tmp_path / "both.zarr"
+        client = subprocess.Popen([sys.executable, "-c", code], cwd=tmp_path)
+        waited_for(lambda: blocks(store) > 10 or client.poll() is not None)
+        client.kill()
+        client.wait()
+        part = blocks(store)
+        PUCK.sweep(**SLOW, store=store, cluster=address)
+    assert part > 0
+    assert content(store) == content(alone.path)
+
+
+@pytest.mark.nightly
+def test_ctrl_c_leaves_a_cluster_of_its_own_within_a_second_and_goes_on(tmp_path: Path):
+    code = "from puck_tables.cli.start import main; main()"
+    words = ["sweep", "--w0", "0:5:2000", "--speed", "0:2:2000", "--method", "adaptive", "-o",
+             "m.zarr", "--cluster", "local:2"]  # fmt: skip
+    client = subprocess.Popen(
+        [sys.executable, "-c", "import signal; signal.signal(signal.SIGINT, "
+         f"signal.default_int_handler); {code}", *words],
+        cwd=tmp_path, stderr=subprocess.PIPE, text=True, start_new_session=True,
+    )  # fmt: skip
+    waited_for(lambda: blocks(tmp_path / "m.zarr") > 3)
+    begin = time.monotonic()
+    os.killpg(client.pid, signal.SIGINT)
+    error = client.communicate(timeout=60)[1]
+    took = time.monotonic() - begin
+    assert client.returncode == 130, error
+    words = "Interrupted: m.zarr keeps what is done; the same command goes on."
+    assert error.splitlines()[-1] == words
+    assert "Traceback" not in error
+    assert took < 10.0  # a second on a quiet machine; what hangs takes for ever
+    # no worker lives on
+    waited_for(lambda: subprocess.run(["pgrep", "-g", str(client.pid)]).returncode != 0, 20.0)
+
+
+def test_what_is_no_cluster_is_refused_and_nothing_is_begun(tmp_path: Path):
+    for where in ("local:0", "local:99999", "here", "tcp://nowhere", "http://127.0.0.1:9", 4):
+        with pytest.raises(InputError, match="must be local:N"):
+            PUCK.sweep([1.0], 1.0, store=tmp_path / "m.zarr", cluster=where)
+    with pytest.raises(ClusterError, match="no scheduler answers at"):
+        PUCK.sweep([1.0], 1.0, store=tmp_path / "m.zarr", cluster="tcp://127.0.0.1:9")
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.nightly
+def test_a_scheduler_without_workers_and_one_that_is_lost(tmp_path: Path):
+    with cluster(tmp_path, 0) as (address, _), pytest.raises(ClusterError, match="has no workers"):
+        PUCK.sweep([1.0], 1.0, store=tmp_path / "m.zarr", cluster=address)
+    with cluster(tmp_path, 1) as (address, workers):
+
+        def kill(done: int, total: int) -> None:
+            workers[0].kill()
+
+        with pytest.raises(ClusterError, match=r"no workers any more|was lost"):
+            PUCK.sweep(**SLOW, store=tmp_path / "n.zarr", cluster=address, progress=kill)
