@@ -57,7 +57,8 @@ def inner(function: Function) -> Function:
     """Compile a kernel that only kernels call: without a door to Python, as :func:`inlined`.
 
     A door unpacks every array of every record that is handed in, which takes longer to compile
-    than many a function; for what is too long to be pasted into each caller.
+    than many a function; for what is too long to be pasted into each caller.  A function without a
+    door is optimised with those behind which it lies (:mod:`puck_tables.kernels.linking`).
     """
     return _compile(function, forceinline=False, counts=False, door=False)
 

@@ -1,0 +1,69 @@
+"""What only kernels call is compiled once, without machine code of its own, behind every door."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from puck_tables.kernels.compile import inlined, inner, kernel
+from puck_tables.kernels.linking import Behind, Pasted
+
+
+@inlined
+def _twice(x: float) -> float:
+    return 2.0 * x
+
+
+@inner
+def _deep(x: float, times: int) -> float:
+    for _ in range(times):
+        x = _twice(x)
+    return x
+
+
+@inner
+def _deeper(x: float) -> float:
+    return _deep(x, 2) + _deep(x, 3)
+
+
+@kernel
+def _door(x: float) -> float:
+    return _deeper(x) + _deep(x, 1)
+
+
+@kernel
+def _other_door(values: np.ndarray) -> float:
+    total = 0.0
+    for x in values:
+        total += _door(x) + _deeper(x)
+    return total
+
+
+def libraries(function) -> list:
+    return [overload.library for overload in function.overloads.values()]
+
+
+def test_what_lies_deep_is_linked_into_every_door():
+    assert _door(1.0) == 4.0 + 8.0 + 2.0
+    assert _other_door(np.array([1.0, 0.5])) == 1.5 * (14.0 + 12.0)
+
+
+def test_it_is_compiled_once_whatever_the_constants_and_has_no_machine_code():
+    _door(1.0)
+    for function in (_twice, _deep, _deeper):
+        (library,) = libraries(function)
+        assert isinstance(library, Pasted)
+        assert library._compiled_object is None
+    assert all(isinstance(library, Behind) for library in libraries(_door))
+    assert _deep(3.0, 2) == 12.0  # from Python as it is written
+
+
+def test_a_door_that_was_kept_is_linked_into_others_too():
+    expected = _door(1.0)  # compiled, and kept on disk
+    kept = kernel(_door.py_func)
+
+    @kernel
+    def through(x: float) -> float:
+        return kept(x)
+
+    assert through(1.0) == expected
+    assert sum(kept._cache_hits.values()) == 1
