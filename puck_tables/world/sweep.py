@@ -250,7 +250,8 @@ def _launches(
 
     At the start: of later launches more depends on it than a velocity.
     """
-    paths, values = (path,), scene.ranges[path]
+    paths: tuple[str, ...] = (path,)
+    values = scene.ranges[path]
     if is_batch(path):
         if (values[:, 3:] != values[0, 3:]).any():
             return []
