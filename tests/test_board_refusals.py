@@ -59,3 +59,13 @@ def test_a_table_of_restitution_made_in_python_stands_in_a_file():
 def test_points_that_are_none_are_refused():
     with pytest.raises(pt.InputError, match="must be speeds, m/s, and restitutions"):
         pt.Scene(pucks=[PUCK, pt.Piece(0.03, restitution="table:0.9")])
+
+
+@pytest.mark.parametrize(("more", "words"), [
+    ({"floor": pt.Floor(turning=1.0), "run": pt.Run(time=1.0)}, "not for a moving floor"),
+    ({"pucks": [pt.Piece(0.03, friction=0.1, constraint=pt.Constraint("rail"), name="led",
+                         launch=pt.Launch((1.0, 0.0))), OTHER]}, "striker led is led by a rail"),
+])  # fmt: skip
+def test_aim_is_not_for_what_is_carried_or_led(more: dict, words: str):
+    with pytest.raises(pt.InputError, match=words):
+        pt.Scene(**{"pucks": [PUCK, OTHER], **more}).aim((0.5, 0.0), puck="other")

@@ -65,9 +65,10 @@ def bad_strips(floor: Floor) -> list[str]:
     >>> bad_strips(Floor())
     []
     """
-    strips, faults = floor.strips, []
+    strips = floor.strips
     if strips is None:
-        return faults
+        return []
+    faults = []
     if len(strips.friction) != len(strips.borders) + 1 or not strips.borders:
         faults.append(
             f"floor.strips.friction = {list(strips.friction)}: must be one number more than "

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from puck_tables._core.real import finite_array
 from puck_tables.errors import InputError
+from puck_tables.scene.parts import Floor, Force
 from puck_tables.scene.pieces import Piece
 from puck_tables.scene.scene import Scene
 from puck_tables.world.agreement import (
@@ -60,6 +61,8 @@ def target_of(
     if faults:
         raise InputError("\n  ".join(["aim on a board:", *faults]))
     refuse_endless(scene)
+    if any(scene.floor.velocity) or scene.floor.turning != 0.0:
+        raise InputError("aim is for boards on which pucks come to rest, not for a moving floor")
     pieces = pieces_of(scene)
     names = tuple(called(piece, number) for number, piece in enumerate(pieces))
     sent = _striker(pieces, names, striker)
@@ -102,6 +105,12 @@ def _striker(pieces: tuple[Piece, ...], names: tuple[str, ...], given: int | str
     else:
         number = number_of(given, names)
     _refuse_driven(pieces, names, number, "be sent off")
+    hold = pieces[number].constraint
+    if hold is not None:
+        raise InputError(
+            f"striker {names[number]} is led by a {hold.kind}: aim is for pucks that go where they "
+            "are sent"
+        )
     if pieces[number].launch.time > 0.0:
         raise InputError(
             f"striker {names[number]} is sent off at {pieces[number].launch.time:g} s: aim is for "
@@ -196,8 +205,9 @@ def out_of_reach(scene: Scene, target: Target, speed: float, spin: float) -> str
         one.path or one.launch.velocity not in (None, (0.0, 0.0)) or one.launch.spin
         for one in others
     )
-    plain = all(has_closed_forms(one) and one.delta <= 1.0 for one in (striker, puck))
-    if not (at_rest and plain and scene.floor.slope == 0.0):
+    plain = all(has_closed_forms(one, one.friction) and one.delta <= 1.0 for one in (striker, puck))
+    pushed = scene.floor != Floor() or any(one.force != Force() for one in pieces)
+    if not (at_rest and plain) or pushed:
         return ""
     way = math.dist(start_of(puck), target.place)
     if target.pocket >= 0:

@@ -269,7 +269,7 @@ class World:
                 raise InputError(f"point must lie on the puck, at most {disc[RADIUS]:g} m from its "
                                  "centre")  # fmt: skip
             moment = float(arm[0] * push[1] - arm[1] * push[0])
-            state[VX:] += response(disc, state, *push.tolist(), moment)
+            state[VX:] += response(disc, state, float(push[0]), float(push[1]), moment)
         elif point is not None:
             raise InputError("point is where an impulse acts: give the impulse, too")
         self._refuse_misfit(int(self._order[i]), state)
