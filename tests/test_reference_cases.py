@@ -18,6 +18,7 @@ from puck_tables.reference.cases import CASES, case_named
 FREE = ("coin", "slide-spin-0.2", "slide-spin-0.5", "slide-spin-1", "slide-spin-2", "slide-spin-5",
         "tall-0.5", "tall-1")  # fmt: skip
 OTHERS = ("incline-below", "incline-at", "incline-above", "belt", "turntable")
+BESIDE = 1.0 - 1e-15  # the judge has no number at v = rω itself
 NOT_YET = 0.97  # of the way to the stop, where scipy still has its digits
 
 
@@ -39,7 +40,7 @@ def test_free_cases_by_an_independent_integrator(name: str):
     """Within the bound, and that below 1e-10 of Q/J and Q²/J."""
     r, j, delta = puck_of(name)
     launch = case_named(name).tables["launch"]
-    v, rim = launch["velocity"][0], r * launch["spin"]
+    v, rim = launch["velocity"][0], r * launch["spin"] * BESIDE
     q = math.hypot(v, rim)
     answer = reference_case(name)
     assert answer.share_bound <= 1e-10
@@ -62,7 +63,7 @@ def test_stops_by_an_independent_integrator(name: str):
 
     r, j, delta = puck_of(name)
     launch = case_named(name).tables["launch"]
-    v, rim = launch["velocity"][0], r * launch["spin"]
+    v, rim = launch["velocity"][0], r * launch["spin"] * BESIDE
     q = math.hypot(v, rim)
 
     def rates(_: float, z: np.ndarray) -> list[float]:  # dt = Q dτ
@@ -76,7 +77,7 @@ def test_stops_by_an_independent_integrator(name: str):
         return [fall, turn, across / math.cos(z[1]), size, size * size * vx, size * size * vy]
 
     start = [0.0, math.atan2(rim, v), 0.0, 0.0, 0.0, 0.0]
-    found = solve_ivp(rates, (0.0, 36.0), start, "DOP853", rtol=3e-13, atol=1e-14)
+    found = solve_ivp(rates, (0.0, 36.0), start, "DOP853", rtol=1e-12, atol=1e-13)
     time, x, y = found.y[3:, -1]
     answer = reference_case(name)
     last = answer.last()
