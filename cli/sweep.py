@@ -88,8 +88,8 @@ REAL = ("height", "friction", "gravity")
     "--output",
     type=FILE,
     metavar="FILE",
-    help="Save the map: .h5, .csv, .json, .jsonl, .parquet; or .zarr, which may be larger than memory "
-    "and goes on after any end.  Without -o and --plot, CSV goes to stdout.",
+    help="Save the map: .h5, .csv, .json, .jsonl, .parquet; or .zarr, which may be larger than "
+    "memory and goes on after any end.  Without -o and --plot, CSV goes to stdout.",
 )
 @output_options
 @scene_options
