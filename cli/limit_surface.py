@@ -21,7 +21,7 @@ from puck_tables.cli.options import (
 @click.option("--points", type=int, default=181, show_default=True, help="How many slip angles.")
 @puck_options(mass=True)
 @click.option("--delta", type=NUMBER, help="delta = 2 f h / r instead.  [default: 0.5]")
-@body_options
+@body_options()
 @click.option(
     "-o",
     "--output",

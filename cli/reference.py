@@ -74,7 +74,7 @@ def reference(
     if case is None:
         click.echo(_listed(as_json))
         return
-    frames = {"dt": dt, "fps": fps, "times": times}
+    frames: dict[str, Any] = {"dt": dt, "fps": fps, "times": times}
     over = epsilon is not None or friction
     if over and any(value is not None for value in frames.values()):
         raise InputError(

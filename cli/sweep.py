@@ -95,7 +95,7 @@ REAL = ("height", "friction", "gravity")
 @scene_options
 @click.pass_context
 def sweep(
-    ctx: click.Context, v0: tuple[float, float] | None, pressure: tuple[str, ...],
+    ctx: click.Context, /, v0: tuple[float, float] | None, pressure: tuple[str, ...],
     random: int | None, seed: int | None, spreads: tuple[str, ...], regions: tuple[str, ...],
     tol: float, method: str | None, explain: bool, threads: int | None, cluster: str | None,
     table_path: Path | None, output: Path | None, plot: Path | None, overwrite: bool,
@@ -185,11 +185,8 @@ _OF_PUCK = ("radius", "height", "friction", "gravity", "delta", "decel", "gyrati
 
 def _puck(given: dict[str, Any], laws: list[str]) -> Puck:
     """The puck, with the lowest number of each range, and the middle of each spread."""
-    alone = {name: _first(given.get(name)) for name in _OF_PUCK}
-    numbers = [
-        alone[name] for name in ("radius", "height", "friction", "gravity", "delta", "decel")
-    ]
-    return puck_given(*numbers, laws[0], alone["gyration"])
+    alone: dict[str, Any] = {name: _first(given.get(name)) for name in _OF_PUCK}
+    return puck_given(**alone, pressure=laws[0])
 
 
 def _first(value: Any) -> float | None:

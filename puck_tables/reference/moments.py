@@ -52,6 +52,7 @@ def frame_times(
     if dt is not None:
         name, per_second = "dt", 1.0 / positive("dt", dt, "s")
     else:
+        assert fps is not None
         name, per_second = "fps", positive("fps", fps, "frames a second")
     count = end * per_second
     if not count < MAX_FRAMES - 1:
@@ -60,4 +61,4 @@ def frame_times(
             "give fewer"
         )
     frames = np.arange(math.ceil(count * (1.0 - 1e-12)) + 1)
-    return frames * dt if dt is not None else frames / per_second
+    return np.asarray(frames * dt if dt is not None else frames / per_second, np.float64)

@@ -103,6 +103,10 @@ def sample(
     store: str | Path | None = None, cluster: str | None = None, overwrite: bool = False,
 ) -> SceneSample:  # fmt: skip
     """Samples of a scene, as :meth:`puck_tables.Scene.sample` has it."""
+    if scene.is_board:
+        raise InputError(
+            "samples of boards are not drawn: give lists or ranges of a board, and sweep it"
+        )
     check_part(chunk)
     checked_samples(count, seed)
     work = SceneDraws(scene, chunk, None, count, seed, dict(spreads))

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any
 import numpy.typing as npt
 
 from puck_tables._core.executor import Progress
-from puck_tables.errors import InputError
 
 if TYPE_CHECKING:
     from puck_tables.bulk.spreads import Spread
@@ -146,10 +145,6 @@ class SceneVerbs:
         >>> round(found.mean()["x"], 3)
         0.51
         """
-        if self.is_board:
-            raise InputError(
-                "samples of boards are not drawn: give lists or ranges of a board, and sweep it"
-            )
         found: SceneSample = import_module("puck_tables.scene.sample").sample(
             self, count, seed, spreads, threads=threads, chunk=chunk, progress=progress,
             store=store, cluster=cluster, overwrite=overwrite,

@@ -13,10 +13,10 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import broadcast, finite_array
 from puck_tables.accuracy.methods import Method
 from puck_tables.contact.laws import HOMOGENEOUS, Law
+from puck_tables.stopping.launches import launches_of
 from puck_tables.stopping.per_height import SolverPerHeight
 from puck_tables.stopping.states import states
 from puck_tables.stopping.stop_section import FINEST_SECTION
-from puck_tables.stopping.stops import as_rows, positive_array
 
 StopArrays = tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]
 STATE_OUTPUTS = ("x", "y", "orientation", "vx", "vy", "spin")
@@ -56,15 +56,11 @@ def stop_arrays(
     """
     method = Method.LOOK_UP if tol >= FINEST_SECTION else Method.ADAPTIVE
     solver = SolverPerHeight(pressure, gyration, tol, method.value, None)
-    columns = broadcast(
-        vx=finite_array("vx", vx, "m/s"), vy=finite_array("vy", vy, "m/s"),
-        spin=finite_array("spin", spin, "rad/s"), delta=solver.checked_range(delta),
-        decel=positive_array("decel", decel, "m/s^2"),
-        radius=positive_array("radius", radius, "m"),
-    )  # fmt: skip
-    launches = as_rows(columns)
-    solver.prepare(launches[3])
-    time, x, y, length, turn, body = solver.all(launches)[0].reshape((6, *columns[0].shape))
+    launches = launches_of(_pairs(vx, vy), spin, delta, decel, radius)
+    launches.refuse_bad()
+    solver.prepare_for(launches, 1)
+    found = solver.all(launches.matrix)[0].reshape((6, *launches.shape))
+    time, x, y, length, turn, body = found
     return time, x, y, length, turn, body
 
 
@@ -99,9 +95,13 @@ def state_arrays(
     >>> x.round(6).tolist()
     [1.590682, 0.0]
     """
-    along, across = broadcast(vx=finite_array("vx", vx, "m/s"), vy=finite_array("vy", vy, "m/s"))
     found = states(
-        np.stack([along, across], axis=-1), spin, time, delta=delta, decel=decel, radius=radius,
+        _pairs(vx, vy), spin, time, delta=delta, decel=decel, radius=radius,
         pressure=pressure, gyration=gyration,
     )  # fmt: skip
     return found.x, found.y, found.orientation, found.vx, found.vy, found.spin
+
+
+def _pairs(vx: npt.ArrayLike, vy: npt.ArrayLike) -> FloatArray:
+    parts = broadcast(vx=finite_array("vx", vx, "m/s"), vy=finite_array("vy", vy, "m/s"))
+    return np.stack(parts, axis=-1)
