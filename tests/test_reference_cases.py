@@ -120,7 +120,11 @@ def test_slopes_and_moving_floors_by_an_independent_integrator(name: str):
         under = belt + turning * np.array([-y[1], y[0]])
         ux, uy = y[3:5] - under
         rim = r * (y[5] - turning)
-        a = friction(ux, uy, rim, delta) if rim else (-ux / math.hypot(ux, uy), -uy / math.hypot(ux, uy), 0.0)
+        a = (
+            friction(ux, uy, rim, delta)
+            if rim
+            else (-ux / math.hypot(ux, uy), -uy / math.hypot(ux, uy), 0.0)
+        )
         j = f * m_g * math.cos(slope)
         return [*y[3:], pull[0] + j * a[0], pull[1] + j * a[1], j * a[2] / r]
 

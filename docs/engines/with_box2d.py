@@ -28,11 +28,10 @@ def _world(scene: dict[str, Any]) -> tuple[Any, list[Any]]:
     ground, bodies = world.CreateStaticBody(), []
     for wall in scene.get("wall", []):
         (px, py), (nx, ny) = wall["point"], wall["normal"]
-        ends = [
-            (CENTI * (px + way * 10 * ny), CENTI * (py - way * 10 * nx)) for way in (-1.0, 1.0)
-        ]
+        ends = [(CENTI * (px + way * 10 * ny), CENTI * (py - way * 10 * nx)) for way in (-1.0, 1.0)]
         ground.CreateFixture(
-            shape=b2.b2EdgeShape(vertices=ends), restitution=wall["restitution"],
+            shape=b2.b2EdgeShape(vertices=ends),
+            restitution=wall["restitution"],
             friction=wall["friction"],
         )
     of_wall = scene.get("wall", [{}])[0]
@@ -43,16 +42,23 @@ def _world(scene: dict[str, Any]) -> tuple[Any, list[Any]]:
         x, y = launch.get("position", (0.0, 0.0))
         vx, vy = launch.get("velocity") or (0.0, 0.0)
         body = world.CreateDynamicBody(
-            position=(CENTI * x, CENTI * y), linearVelocity=(CENTI * vx, CENTI * vy),
-            angularVelocity=launch.get("spin", 0.0), bullet=True,
+            position=(CENTI * x, CENTI * y),
+            linearVelocity=(CENTI * vx, CENTI * vy),
+            angularVelocity=launch.get("spin", 0.0),
+            bullet=True,
         )
         body.CreateFixture(
-            shape=b2.b2CircleShape(radius=r), density=m / (math.pi * r * r),
+            shape=b2.b2CircleShape(radius=r),
+            density=m / (math.pi * r * r),
             restitution=puck.get("restitution", of_wall.get("restitution", 0.0)),
             friction=min(puck.get("rim", 1e6), of_wall.get("friction", 1e6)),
         )
         world.CreateFrictionJoint(
-            bodyA=ground, bodyB=body, anchor=body.position, collideConnected=True, maxForce=load,
+            bodyA=ground,
+            bodyB=body,
+            anchor=body.position,
+            collideConnected=True,
+            maxForce=load,
             maxTorque=2.0 / 3.0 * load * r,
         )
         bodies.append(body)
@@ -68,8 +74,13 @@ def run(scene: dict[str, Any], dt: float, until: float) -> Played:
             world.Step(dt, 8, 3)
         b = bodies[0]
         rows[n] = [
-            n * dt, b.position[0] / CENTI, b.position[1] / CENTI, b.angle,
-            b.linearVelocity[0] / CENTI, b.linearVelocity[1] / CENTI, b.angularVelocity,
+            n * dt,
+            b.position[0] / CENTI,
+            b.position[1] / CENTI,
+            b.angle,
+            b.linearVelocity[0] / CENTI,
+            b.linearVelocity[1] / CENTI,
+            b.angularVelocity,
         ]
     world, _ = _world(scene)
 

@@ -92,7 +92,13 @@ def run(scene: dict[str, Any], dt: float, until: float) -> Played:
         velocity = plant.EvalBodySpatialVelocityInWorld(context, disc)
         q = pose.rotation().ToQuaternion()
         rows[n] = [
-            n * dt, *pose.translation(), q.w(), q.x(), q.y(), q.z(), *velocity.translational(),
+            n * dt,
+            *pose.translation(),
+            q.w(),
+            q.x(),
+            q.y(),
+            q.z(),
+            *velocity.translational(),
             *velocity.rotational(),
         ]
     simulator, *_ = _launched(scene, dt)

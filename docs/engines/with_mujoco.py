@@ -20,12 +20,11 @@ can = is_one_disc_on_a_plane
 def _feet(radius: float, half: float, count: int) -> str:
     """Small spheres that share the base evenly, in place of a cylinder."""
     golden, small = math.pi * (3.0 - math.sqrt(5.0)), 0.02 * radius
-    places = (
-        (radius * math.sqrt((n + 0.5) / count), golden * n) for n in range(count)
-    )
+    places = ((radius * math.sqrt((n + 0.5) / count), golden * n) for n in range(count))
     return "".join(
         f'<geom type="sphere" size="{small}" pos="{rho * math.cos(a)} {rho * math.sin(a)} '
-        f'{small - half}"/>' for rho, a in places
+        f'{small - half}"/>'
+        for rho, a in places
     )
 
 

@@ -20,7 +20,10 @@ def _launched(scene: dict[str, Any], dt: float) -> int:
     p.resetSimulation()
     puck = only_puck(scene)
     p.setPhysicsEngineParameter(
-        fixedTimeStep=dt, numSubSteps=0, numSolverIterations=200, solverResidualThreshold=1e-12,
+        fixedTimeStep=dt,
+        numSubSteps=0,
+        numSolverIterations=200,
+        solverResidualThreshold=1e-12,
         enableConeFriction=1,
     )
     gx, gy, gz = gravity(scene)
@@ -31,8 +34,15 @@ def _launched(scene: dict[str, Any], dt: float) -> int:
     p.changeDynamics(plane, -1, lateralFriction=1.0, restitution=0.0)
     inertia = puck["mass"] * (puck["radius"] ** 2 / 4.0 + puck["height"] ** 2 / 12.0)
     p.changeDynamics(
-        disc, -1, lateralFriction=puck["friction"], spinningFriction=0.0, rollingFriction=0.0,
-        restitution=0.0, linearDamping=0.0, angularDamping=0.0, contactProcessingThreshold=1.0,
+        disc,
+        -1,
+        lateralFriction=puck["friction"],
+        spinningFriction=0.0,
+        rollingFriction=0.0,
+        restitution=0.0,
+        linearDamping=0.0,
+        angularDamping=0.0,
+        contactProcessingThreshold=1.0,
         localInertiaDiagonal=[inertia, inertia, 0.5 * puck["mass"] * puck["radius"] ** 2],
         activationState=p.ACTIVATION_STATE_DISABLE_SLEEPING,
     )

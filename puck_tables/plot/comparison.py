@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 _CURVE = 600
 _LABELLED = 8
-_EXACT = {"color": "black", "linewidth": 1.6}
+_EXACT: dict[str, Any] = {"color": "black", "linewidth": 1.6}
 
 
 def draw(found: Comparison) -> Figure:
