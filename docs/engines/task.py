@@ -13,14 +13,14 @@ import numpy as np
 SETTLE = 0.2  # s, for a disc to sink into a soft floor before it is launched
 FLAT = "t [s],x [m],y [m],angle [rad],vx [m/s],vy [m/s],w [rad/s]"
 SPACE = (
-    "t [s],x [m],y [m],z [m],qw,qx,qy,qz,vx [m/s],vy [m/s],vz [m/s],"
-    "wx [rad/s],wy [rad/s],wz [rad/s]"
+    "t [s],x [m],y [m],z [m],qw,qx,qy,qz,vx [m/s],vy [m/s],vz [m/s],wx [rad/s],wy [rad/s],"
+    "wz [rad/s]"
 )
 
 
 @dataclass
 class Played:
-    """The log of a run, a row a step from the launch on, its header, and seconds of stepping."""
+    """The log of a run, a row a step from the launch on, its header, seconds for the steps."""
 
     rows: np.ndarray
     header: str

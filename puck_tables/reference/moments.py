@@ -47,18 +47,17 @@ def frame_times(
         return checked_times(times_in(times))
     if times is not None:
         return checked_times(times)
-    if dt is None and fps is None:
-        return np.linspace(0.0, end, FRAMES)
     if dt is not None:
         name, per_second = "dt", 1.0 / positive("dt", dt, "s")
-    else:
-        assert fps is not None
+    elif fps is not None:
         name, per_second = "fps", positive("fps", fps, "frames a second")
+    else:
+        return np.linspace(0.0, end, FRAMES)
     count = end * per_second
     if not count < MAX_FRAMES - 1:
         raise InputError(
             f"{name} gives {count:.3g} frames to the end at {end:.6g} s, at most {MAX_FRAMES}: "
             "give fewer"
         )
-    frames = np.arange(math.ceil(count * (1.0 - 1e-12)) + 1)
-    return np.asarray(frames * dt if dt is not None else frames / per_second, np.float64)
+    frames: FloatArray = np.arange(math.ceil(count * (1.0 - 1e-12)) + 1, dtype=np.float64)
+    return frames * dt if dt is not None else frames / per_second
