@@ -99,9 +99,9 @@ def scatter(true: np.ndarray, seeds: range) -> tuple[np.ndarray, np.ndarray]:
 
 
 def test_the_error_of_restitution_is_its_bound(banked):
-    off, inside = scatter(banked, range(5))
-    assert np.all(np.sqrt((off**2).mean(axis=0)) < 2.0)  # p = 0.0005 of five
-    assert np.all(inside.sum(axis=0) >= 3)
+    off, inside = scatter(banked, range(3))
+    assert np.all(np.sqrt((off**2).mean(axis=0)) < 2.2)  # p = 0.002 of three
+    assert np.all(inside.sum(axis=0) >= 2)
     (one, two) = pt.fit(seen(banked, 0), KNOWN, impacts=True).impacts
     assert one.rim.value == pytest.approx(0.12, abs=1e-3)
     assert abs(two.rim.value) < 0.119  # the rim stops on the wall

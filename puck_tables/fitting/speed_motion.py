@@ -91,7 +91,7 @@ def speed_path(
     >>> flat = SpeedLaw([0.0, 9.0], [0.1, 0.1])
     >>> path, rate = speed_path(
     ...     flat, 10.0, 0.5, 0.5**0.5, 1.0, np.array([1.0, 0.0]), 0.0, np.array([0.5, 2.0]))
-    >>> path[0].round(6).tolist(), rate[0].round(6).tolist()
+    >>> path[0].round(4).tolist(), rate[0].round(4).tolist()
     ([0.375, 0.5], [0.5, 0.0])
     """
     vx, vy = velocity.tolist()

@@ -46,10 +46,9 @@ def weights_of(
 
     Examples
     --------
-    >>> weights_of((1e-3, 1e-2), 1e-3, np.array([[0.0], [1.0], [0.0]]), np.array([True])).round(3)
-    array([[[    0.   ,   707.107,     0.   ],
-            [-1000.   ,     0.   ,     0.   ],
-            [    0.   ,     0.   ,   100.   ]]])
+    >>> one = weights_of((1e-3, 1e-2), 1e-3, np.array([[0.0], [1.0], [0.0]]), np.array([True]))
+    >>> abs(one[0]).sum(axis=1).round(3).tolist()  # along the motion, across it, angle
+    [707.107, 1000.0, 100.0]
     """
     vx, vy, spin = rates
     speed = np.hypot(vx, vy)

@@ -33,9 +33,9 @@ def draw(found: Fit) -> Figure:
         inner = grid[1, 2:].subgridspec(1, min(len(names), 3))
         shown = names[:3]
         if found.estimate.problem.asked.speeds:
-            shown = names[:2]
-            _draw_friction(figure.add_subplot(inner[0, 2 if len(names) > 2 else 1]), found)
-        for n, name in enumerate(shown if len(names) > 2 else shown[:1]):
+            shown = names[:2] if len(names) > 2 else names[:1]
+            _draw_friction(figure.add_subplot(inner[0, len(shown)]), found)
+        for n, name in enumerate(shown):
             _draw_profile(figure.add_subplot(inner[0, n]), found, name)
     told = [
         f"{name} = {_told(found.numbers[name].value, found.numbers[name].error)}"
