@@ -70,8 +70,6 @@ def levels_holding(density: FloatArray, area: float) -> list[float]:
     held = np.cumsum(falling) * area
     last = falling.size - 1
     levels = [float(falling[min(int(np.searchsorted(held, one)), last)]) for one in _HELD]
-        float(falling[min(int(np.searchsorted(held, one)), falling.size - 1)]) for one in _HELD
-    ]
     return levels if 0.0 < levels[0] < levels[1] else []
 
 
