@@ -137,7 +137,7 @@ def launches_of(
     [[1.0, 2.0], [0.0, 0.0], [5.0, 5.0]]
     """
     given = (spin, delta, decel, radius)
-    if type(velocity) in (tuple, list) and len(velocity) == 2:
+    if isinstance(velocity, tuple | list) and len(velocity) == 2:
         numbers = (*velocity, *given)
         if all(type(one) in (float, int) for one in numbers):  # one launch, as cheap as can be
             with suppress(OverflowError):
@@ -161,7 +161,8 @@ def launches_of(
         column, held = flat_column(array, shape, array is not values)
         columns.append(column)
         is_held |= held
-    return Launches(shape, vx, vy, step, *columns, is_held=is_held)
+    one, two, three, four = columns
+    return Launches(shape, vx, vy, step, one, two, three, four, is_held)
 
 
 def launches_in(rows: FloatArray, shape: tuple[int, ...] | None = None) -> Launches:
@@ -172,8 +173,8 @@ def launches_in(rows: FloatArray, shape: tuple[int, ...] | None = None) -> Launc
     >>> launches_in(np.ones((6, 3))).shape
     (3,)
     """
-    vx, vy, *columns = (np.ascontiguousarray(row) for row in rows)
-    return Launches((vx.size,) if shape is None else shape, vx, vy, 1, *columns)
+    vx, vy, one, two, three, four = (np.ascontiguousarray(row) for row in rows)
+    return Launches((vx.size,) if shape is None else shape, vx, vy, 1, one, two, three, four)
 
 
 def flat_column(array: FloatArray, shape: tuple[int, ...], is_own: bool) -> tuple[FloatArray, bool]:

@@ -48,6 +48,7 @@ class Stops(Differentiated, Result):
     picture: ClassVar[str] = "places"
     JACOBIAN_ROWS: ClassVar[tuple[str, ...]] = STOP_NAMES
     JACOBIAN_COLUMNS: ClassVar[tuple[str, ...]] = LAUNCH_NAMES
+    _told: dict[str, Any]  # what an unpickled one knows of its solver
 
     def __init__(
         self, solver: SolverPerHeight, launches: Launches, threads: int | None,
