@@ -18,6 +18,7 @@ from puck_tables.kernels.speed_spline import fill_speed
 from puck_tables.kernels.spline import cell_at
 from puck_tables.motion.body import body_of
 from puck_tables.stopping.curve_lookup import LAUNCH_COLUMNS, LAUNCH_ROWS
+from puck_tables.stopping.known import fill_known
 from puck_tables.stopping.launches import launches_in
 from puck_tables.stopping.lookup import stops_kernel
 from puck_tables.stopping.orbit_lookup import PUCK_ROWS, fill_orbit_states
@@ -89,7 +90,11 @@ def look_up_everything() -> None:
         for powers in (4, 8):
             given = launches_in(launches).part(0, n)
             stops_kernel(powers)(*given, stops.cut(powers, 1), *out, 1)
-        stops.known(launches)
+        for rows in (PUCK_ROWS, 3):
+            fill_known(
+                *given, stops.cut(), stops.launch_coefficients, stops.turn_coefficients,
+                stops.constants, 1e-3, np.empty((rows, n)),
+            )  # fmt: skip
         fill_section_stops(launches, body_stops(), 2.0, out6)
         pucks = np.ones((PUCK_ROWS, n))
         pucks[LAUNCH_COLUMNS:] = np.random.default_rng(4).choice(WILD, (LAUNCH_ROWS, n))
