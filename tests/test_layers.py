@@ -55,6 +55,7 @@ DOORS = {
     "matplotlib": {"plot"},
     "zarr": {"bulk.store"},
     "distributed": {"bulk.cluster"},
+    "dask": {"bulk.cluster"},
     "scipy": {"bulk.spreads", "chetaev", "fitting", "stopping", "table.speed_fit", "tradeoff"},
     "click": {"cli"},
     "jax": {"autodiff.jax"},

@@ -31,14 +31,15 @@ def to_xarray(dataset: Dataset) -> xarray.Dataset:
     >>> to_xarray(Dataset({"time": time}, {"x": x})).x.units
     'm'
     """
-    xarray = _xarray()
+    dataset_of = _xarray().Dataset
     attributes = {name: value for name, value in dataset.attributes.items() if value is not None}
     attributes |= {name: text for name, (text, _) in dataset.texts.items()}
-    return xarray.Dataset(
+    found: xarray.Dataset = dataset_of(
         {name: _labelled(one) for name, one in dataset.columns.items()},
         {name: _labelled(one) for name, one in dataset.axes.items()},
         attributes,
     )
+    return found
 
 
 def open_store(path: str | Path) -> xarray.Dataset:

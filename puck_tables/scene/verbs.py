@@ -146,7 +146,8 @@ class SceneVerbs:
         >>> round(found.mean()["x"], 3)
         0.51
         """
-        if self.is_board:
+        scene: Any = self
+        if scene.is_board:
             raise InputError(
                 "samples of boards are not drawn: give lists or ranges of a board, and sweep it"
             )
