@@ -59,6 +59,7 @@ DOORS = {
     "matplotlib": {"plot"},
     "zarr": {"bulk.store"},
     "distributed": {"bulk.cluster"},
+    "dask": {"bulk.cluster"},
     "scipy": {
         "bulk.spreads",
         "chetaev",

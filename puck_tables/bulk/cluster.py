@@ -26,7 +26,9 @@ from puck_tables.bulk.work import Tally, Work, same_program
 from puck_tables.errors import ClusterError, InputError, MissingExtraError
 
 try:
+    import dask
     import distributed
+    from distributed.comm.core import CommClosedError
 except ImportError:
     raise MissingExtraError(
         "--cluster (cluster=) needs dask and distributed: pip install 'puck-tables[cluster]'"
@@ -36,6 +38,11 @@ MOST_WORKERS = 1024
 _REACH, _PATIENCE = 5.0, 10.0  # s to reach a scheduler, to find a worker
 _AHEAD = 4  # blocks given to each thread of the workers
 _LOOK = 0.2  # s between two looks
+# so much memory a worker keeps for the next block, which else it asks of the system anew
+_KEPT = {
+    "distributed.nanny.pre-spawn-environ.MALLOC_TRIM_THRESHOLD_": 1 << 27,
+    "distributed.nanny.pre-spawn-environ.MALLOC_MMAP_THRESHOLD_": 1 << 25,
+}
 _ADDRESS = re.compile(r"(tcp|tls)://[^\s/:]+:[0-9]{1,5}|(tcp|tls)://\[[0-9a-fA-F:.]+\]:[0-9]{1,5}")
 
 
@@ -82,7 +89,7 @@ def by_cluster(client: Any, store: Store, progress: Progress | None) -> Tally:
     try:
         with client.as_current():
             return _done(client, store, progress)
-    except (distributed.CancelledError, distributed.comm.CommClosedError):
+    except (distributed.CancelledError, CommClosedError):
         raise ClusterError("the scheduler was lost: the same command goes on") from None
     except distributed.KilledWorker:
         raise ClusterError(
@@ -129,7 +136,7 @@ def _done(client: Any, store: Store, progress: Progress | None) -> Tally:
 def _refuse_none(client: Any, since: float) -> float:
     """Give up when for some time there have been no workers; returns since when."""
     if client.status != "running":
-        raise distributed.comm.CommClosedError
+        raise CommClosedError
     if client.nthreads():
         return time.monotonic()
     if time.monotonic() - since > _PATIENCE:
@@ -158,6 +165,7 @@ def client_of(given: str) -> Iterator[Any]:
         warnings.simplefilter("ignore")
         address: Any = where
         if isinstance(where, int):
+            stack.enter_context(dask.config.set(_KEPT))
             cluster = distributed.LocalCluster(
                 n_workers=where, threads_per_worker=1, processes=True, host="127.0.0.1",
                 dashboard_address=None, silence_logs=logging.CRITICAL, memory_limit=0,

@@ -64,13 +64,14 @@ class Store:
 
     def _open(self) -> None:
         names = [*self.work.columns, self.work.code]
+        self._arrays: dict[str, Any] = {}
         try:
             self._arrays = {
                 name: zarr.open_array(self.path / name, mode="r+", config=_AT_ONCE)
                 for name in names
             }
         except _NO_STORE:
-            self._arrays = {}
+            self._arrays.clear()
         box = self.blocks.box
         if not self._arrays or any(
             array.shape[: len(box)] != self.work.shape or array.chunks[: len(box)] != box
@@ -175,7 +176,7 @@ class Store:
         return None
 
     def _file(self, name: str, block: int) -> Path:
-        trailing = np.ndim(self._arrays[name]) - len(self.work.shape)
+        trailing = self._arrays[name].ndim - len(self.work.shape)
         key = self._arrays[name].metadata.encode_chunk_key(
             (*self.blocks.place(block), *(0,) * trailing)
         )

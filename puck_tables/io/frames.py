@@ -31,10 +31,10 @@ def to_xarray(dataset: Dataset) -> xarray.Dataset:
     >>> to_xarray(Dataset({"time": time}, {"x": x})).x.units
     'm'
     """
-    module = _xarray()
+    dataset_of = _xarray().Dataset
     attributes = {name: value for name, value in dataset.attributes.items() if value is not None}
     attributes |= {name: text for name, (text, _) in dataset.texts.items()}
-    found: xarray.Dataset = module.Dataset(
+    found: xarray.Dataset = dataset_of(
         {name: _labelled(one) for name, one in dataset.columns.items()},
         {name: _labelled(one) for name, one in dataset.axes.items()},
         attributes,

@@ -68,8 +68,8 @@ def levels_holding(density: FloatArray, area: float) -> list[float]:
     """
     falling = np.sort(density.ravel())[::-1]
     held = np.cumsum(falling) * area
-    last = falling.size - 1
-    levels = [float(falling[min(int(np.searchsorted(held, one)), last)]) for one in _HELD]
+    places = np.minimum(np.searchsorted(held, _HELD), falling.size - 1)
+    levels: list[float] = falling[places].tolist()
     return levels if 0.0 < levels[0] < levels[1] else []
 
 

@@ -52,7 +52,7 @@ def stop_arrays(
     --------
     >>> time, x, *_ = stop_arrays([1.0, 2.0], spin=5.0)
     >>> time.round(6).tolist(), x.round(6).tolist()
-    ([3.962992, 4.22706], [2.213952, 4.668053])
+    ([3.962992, 4.472821], [2.213952, 4.736946])
     """
     method = Method.LOOK_UP if tol >= FINEST_SECTION else Method.ADAPTIVE
     solver = SolverPerHeight(pressure, gyration, tol, method.value, None)

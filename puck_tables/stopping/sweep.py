@@ -169,7 +169,6 @@ class How:
         work = StopWork(launches, puck.gyration, self.tol, self.method, self.table, self.chunk)
         if self.store is None:
             check_memory(launches.shape, BYTES_PER_LAUNCH)
-        found: Result = finish(
-            work, self.threads, self.progress, self.store, self.cluster, self.overwrite
-        )
+        where = self.store, self.cluster, self.overwrite
+        found: Result = finish(work, self.threads, self.progress, *where)
         return found
