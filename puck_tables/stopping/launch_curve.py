@@ -24,6 +24,7 @@ from functools import lru_cache
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables.kernels.section_spline import NO_SECTION
 from puck_tables.motion.body import Body
 from puck_tables.stopping.exact import integrated_stops
 from puck_tables.stopping.launches import launches_of
@@ -244,7 +245,7 @@ def _stops(body: Body, u: FloatArray) -> FloatArray:
     """T, X, Y at u (n,), (n, 3)."""
     heights = np.full(u.size, body.delta)
     if body.is_plain:
-        return integrated_stops(u, heights, np.empty(0), _PLAIN_LOCAL, cosine_of(u))[:, :3]
+        return integrated_stops(u, heights, NO_SECTION, _PLAIN_LOCAL, cosine_of(u))[:, :3]
     cut = body.friction(SECTION_ACCURACY).for_motion(body.gyration)
     return integrated_stops(u, heights, cut, _LOCAL, cosine_of(u))[:, :3]
 
