@@ -37,6 +37,7 @@ _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 
 # what places and turns are differentiated to
 VX, VY, SPIN, DECEL, DELTA, RADIUS, TIME = range(7)
+_PATH, _RATE, _SLOPES = range(3)  # what is wanted: places; rates, too; derivatives, too
 
 
 class BySpeed(NamedTuple):
@@ -71,14 +72,14 @@ def path_of(moving: Moving, velocity: FloatArray, spin: float, times: FloatArray
     >>> path_of(plain, np.array([1.0, 0.0]), 5.0, np.array([2.0]))[0].round(6).tolist()
     [1.590682]
     """
-    return _path(moving, velocity, spin, times, False)[0]
+    return _path(moving, velocity, spin, times, _PATH)[0]
 
 
 def path_with_slopes(
     moving: Moving, velocity: FloatArray, spin: float, times: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """The same (3, n), and its derivatives (7, 3, n) to vx, vy, ω, J, δ, r and time."""
-    return _path(moving, velocity, spin, times, True)
+    return _path(moving, velocity, spin, times, _SLOPES)
 
 
 def path_and_rate(
@@ -93,7 +94,7 @@ def path_and_rate(
     >>> path_and_rate(plain, np.array([1.0, 0.0]), 0.0, np.array([0.25]))[1].ravel().tolist()
     [0.75, 0.0, 0.0]
     """
-    path, slopes = _path(moving, velocity, spin, times, False)
+    path, slopes = _path(moving, velocity, spin, times, _RATE)
     return path, slopes[-1]
 
 
@@ -103,18 +104,18 @@ def rates_of(moving: Moving, velocity: FloatArray, spin: float, times: FloatArra
 
 
 def _path(
-    moving: Moving, velocity: FloatArray, spin: float, times: FloatArray, slopes: bool
+    moving: Moving, velocity: FloatArray, spin: float, times: FloatArray, want: int
 ) -> tuple[FloatArray, FloatArray]:
     c = moving.drag
     if moving.by_speed is not None:
-        return _by_speed(moving, velocity, spin, times, slopes)
+        return _by_speed(moving, velocity, spin, times, want)
     if c == 0.0:
-        return _dry(moving, velocity, spin, times, slopes)
+        return _dry(moving, velocity, spin, times, want)
     s = np.expm1(c * times) / c
     ends = np.concatenate([[0.0], s])
     half, middle = 0.5 * np.diff(ends), 0.5 * (ends[1:] + ends[:-1])
     inner = middle[:, None] + half[:, None] * _POINTS
-    path, slope = _dry(moving, velocity, spin, np.concatenate([s, inner.ravel()]), slopes)
+    path, slope = _dry(moving, velocity, spin, np.concatenate([s, inner.ravel()]), want)
     weights = half[:, None] * _WEIGHTS / (1.0 + c * inner) ** 3
 
     def dragged(rows: FloatArray) -> FloatArray:
@@ -124,13 +125,15 @@ def _path(
         found: FloatArray = at / (1.0 + c * s) ** 2 + 2.0 * c * integral
         return found
 
+    if want == _PATH:
+        return dragged(path), slope
     found = dragged(slope)
     found[-1] = slope[-1, :, : s.size] * np.exp(-c * times)
     return dragged(path), found
 
 
 def _by_speed(
-    moving: Moving, velocity: FloatArray, spin: float, times: FloatArray, slopes: bool
+    moving: Moving, velocity: FloatArray, spin: float, times: FloatArray, want: int
 ) -> tuple[FloatArray, FloatArray]:
     """The same where friction depends on the slip speed: no similarity, so all by differences.
 
@@ -148,7 +151,7 @@ def _by_speed(
 
     at = np.array([*velocity, spin, moving.decel, moving.delta, moving.radius])
     found, rate = path(at)
-    if not slopes:
+    if want != _SLOPES:
         return found, rate[None]
     out = np.zeros((7, 3, times.size))
     scale = max(abs(at[0]), abs(at[1]), moving.radius * abs(spin))
@@ -162,7 +165,7 @@ def _by_speed(
 
 
 def _dry(
-    moving: Moving, velocity: FloatArray, spin: float, times: FloatArray, slopes: bool
+    moving: Moving, velocity: FloatArray, spin: float, times: FloatArray, want: int
 ) -> tuple[FloatArray, FloatArray]:
     vx, vy = velocity.tolist()
     rim, speed = moving.radius * spin, math.hypot(vx, vy)
@@ -175,12 +178,13 @@ def _dry(
     length = slip * slip / moving.decel
     tau = times * (moving.decel / slip)
     curve, height = moving.curve, moving.delta
-    if not slopes:
+    if want != _SLOPES:
         states = curve.states(np.array([phi]), np.array([height]), tau[None])[:, 0]
+        path = _turned(turn, length, moving.radius, states[[PUCK_X, PUCK_Y, ORIENTATION]])
+        if want == _PATH:
+            return path, np.empty((0, 3, times.size))
         heading, ahead = states[HEADING], states[SPEED]
         motion = np.stack([ahead * np.cos(heading), ahead * np.sin(heading), states[TURNING]])
-        natural = states[[PUCK_X, PUCK_Y, ORIENTATION]]
-        path = _turned(turn, length, moving.radius, natural)
         return path, _turned(turn, slip, moving.radius, motion)[None]
     natural = curve.with_slopes(phi, height, tau)
     path, to_phi, to_delta = (
