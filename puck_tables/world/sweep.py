@@ -192,8 +192,10 @@ def sweep(
         launches = {}
         for path in axes:
             for one, _ in _launches(scene, path, pieces):
-                column = launch_paths(path).index(one) if is_batch(path) else ...
-                launches[one] = scene.ranges[path][..., column][places[path]]
+                values = scene.ranges[path]
+                if is_batch(path):
+                    values = values[:, launch_paths(path).index(one)]
+                launches[one] = values[places[path]]
         return numbers or [()] * (stop - start), launches
 
     def ends_of(start: int, stop: int) -> tuple[FloatArray, npt.NDArray[np.int8]]:
