@@ -226,8 +226,10 @@ class WorldWork(Work):
         outer = list(zip(*(places[path].tolist() for path in self._outer), strict=True))
         launches = {}
         for one, path in self._from.items():
-            column = launch_paths(path).index(one) if is_batch(path) else ...
-            launches[one] = self.scene.ranges[path][..., column][places[path]]
+            values = self.scene.ranges[path]
+            if is_batch(path):
+                values = values[:, launch_paths(path).index(one)]
+            launches[one] = values[places[path]]
         return outer or [()] * (stop - start), launches
 
     def of(self, start: int, stop: int) -> Columns:
