@@ -27,7 +27,7 @@ extensions = [
     "sphinx_click",
     "sphinx_gallery.gen_gallery",
 ]
-exclude_patterns = ["_build", "gallery/**", "_templates"]
+exclude_patterns = ["_build", "gallery/**", "engines/**", "_templates"]
 templates_path = ["_templates"]
 nitpicky = False
 

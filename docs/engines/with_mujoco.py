@@ -41,7 +41,9 @@ def _model(scene: dict[str, Any], dt: float, feet: int) -> Any:
 <mujoco>
   <option timestep="{dt}" gravity="{gx} {gy} {gz}" cone="elliptic" impratio="10" solver="Newton"
     iterations="100" tolerance="1e-12" integrator="implicitfast"/>
-  <default><geom friction="{f} 0 0" condim="3" solref="0.01 1" contype="1" conaffinity="2"/></default>
+  <default>
+    <geom friction="{f} 0 0" condim="3" solref="0.01 1" contype="1" conaffinity="2"/>
+  </default>
   <worldbody>
     <geom type="plane" size="10 10 1" contype="2" conaffinity="1"/>
     <body pos="0 0 {half}">
