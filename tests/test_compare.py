@@ -79,7 +79,7 @@ def test_units_by_option(tmp_path: Path):
     path = written(tmp_path / "a.csv", columns(), "t,x,y,angle,vx,vy,w")
     with pytest.raises(InputError, match="does not say the unit of its column x"):
         compare(path, "coin")
-    with pytest.raises(InputError, match="unit of its column angle.*--angle-unit"):
+    with pytest.raises(InputError, match=r"unit of its column angle.*--angle-unit"):
         compare(path, "coin", unit="m")
     assert compare(path, "coin", unit="m", angle_unit="rad").rows()[0]["place_error_max"] < 1e-14
 
@@ -172,8 +172,10 @@ def test_thresholds_refused(text: str, tmp_path: Path):
 def test_the_command(tmp_path: Path):
     path = written(tmp_path / "my <b>run.csv", columns(dt=2e-3))
     page, picture, table = tmp_path / "a.html", tmp_path / "a.png", tmp_path / "a.json"
-    arguments = ["compare", str(path), "--case", "coin", "--report", str(page), "--plot", str(picture),
-                 "-o", str(table)]  # fmt: skip
+    arguments = [
+        "compare", str(path), "--case", "coin", "--report", str(page), "--plot", str(picture),
+        "-o", str(table),
+    ]  # fmt: skip
     result = CliRunner().invoke(main, arguments)
     assert result.exit_code == 0, result.output
     assert "truth and not error" in result.stdout

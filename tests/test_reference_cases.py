@@ -105,7 +105,7 @@ def test_elementary_cases_and_the_threshold_of_a_slope():
 
 @pytest.mark.parametrize("name", OTHERS)
 def test_slopes_and_moving_floors_by_an_independent_integrator(name: str):
-    """Newton's law at velocities relative to the floor, friction by the judge's elliptic integrals."""
+    """Newton's law at velocities relative to the floor, friction by elliptic integrals of scipy."""
     from reference import friction
 
     tables = case_named(name).tables
@@ -180,7 +180,8 @@ def test_forces_on_the_floor_are_what_the_puck_lacks(name: str):
     torque = -0.5 * puck.mass * puck.radius**2 * rates[2]
     load = puck.friction * puck.mass * puck.gravity
     for mine, truth, unit in (
-        (at.floor_fx, fx, load), (at.floor_fy, fy, load), (at.floor_torque, torque, load * puck.radius),
+        (at.floor_fx, fx, load), (at.floor_fy, fy, load),
+        (at.floor_torque, torque, load * puck.radius),
     ):  # fmt: skip
         assert np.abs(mine - truth).max() < 1e-6 * unit
 
@@ -243,9 +244,9 @@ def test_frames_refused(given: dict, words: str):
 
 
 def test_an_unknown_case_names_the_nearest():
-    with pytest.raises(InputError, match="did you mean 'turntable'.*Cases: coin, spin"):
+    with pytest.raises(InputError, match=r"did you mean 'turntable'.*Cases: coin, spin"):
         reference_case("turn-table")
-    with pytest.raises(InputError, match="followed for 1.5 s"):
+    with pytest.raises(InputError, match=r"followed for 1\.5 s"):
         reference_case("incline-at", times=[2.0])
 
 
