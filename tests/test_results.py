@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import pickle
 from collections.abc import Callable
@@ -90,6 +91,13 @@ def test_files_of_every_format_hold_the_same_table(name: str, ending: str, tmp_p
             for column, one in result.dataset().columns.items():
                 np.testing.assert_array_equal(data[column].values, one.values)
                 assert data[column].attrs["units"] == (one.unit or "1")
+        return
+    if ending == ".json":
+        told = json.loads(path.read_text(encoding="utf-8"))["columns"]
+        for column, one in result.dataset().columns.items():
+            assert told[column]["unit"] == one.unit
+            values = np.array(told[column]["values"], one.readable().dtype)
+            np.testing.assert_array_equal(values, one.readable())
         return
     readers = {
         ".csv": partial(pandas.read_csv, keep_default_na=False, na_values=["nan"]),

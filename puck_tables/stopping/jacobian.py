@@ -204,17 +204,20 @@ def _of_plain(table: StopTable, launches: FloatArray) -> FloatArray:
 def state_jacobians(
     table: StopTable, pucks: FloatArray, which: npt.NDArray[np.int64], moments: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """States (6, n) of plain ``pucks`` (m, 20), and derivatives (n, 6, 7); ``which`` (n,) when."""
+    """States (6, n) of plain ``pucks`` (20, m), and derivatives (n, 6, 7); ``which`` (n,) when.
+
+    ``pucks``: as :func:`puck_tables.stopping.states.known_pucks` gives them.
+    """
     from puck_tables.stopping.state_jacobian import fill_state_jacobians
 
-    slopes = table.slopes
+    slopes, rows = table.slopes, np.ascontiguousarray(pucks.T)
     values = np.empty((len(STATE_NAMES), which.size))
     out = np.empty((which.size, len(STATE_NAMES), len(MOMENT_NAMES)))
 
     def work(start: int, stop: int) -> None:
         part = np.empty((len(STATE_NAMES), stop - start))
         fill_state_jacobians(
-            pucks, which[start:stop], moments[start:stop], table.stop_coefficients,
+            rows, which[start:stop], moments[start:stop], table.stop_coefficients,
             table.curve_coefficients, table.time_inverse, table.constants, slopes.stops,
             slopes.curve, part, out[start:stop],
         )  # fmt: skip

@@ -259,7 +259,7 @@ def states(
     found[:, looked] = looked_up(chosen, pucks, *some, threads)
     if jacobian:
         slopes = np.empty((moments.size, len(STATE_NAMES), len(MOMENT_NAMES)))
-        slopes[looked] = state_jacobians(chosen, pucks.T.copy(), *some)[1]
+        slopes[looked] = state_jacobians(chosen, pucks, *some)[1]
         integrated_jacobians(bodies, rows, others, each, moments, slopes)
     _integrate(bodies, rows, others, each, moments, found, threads)
     told = _told(int(plain.sum()), int((~plain).sum()))

@@ -79,7 +79,7 @@ def flow_section(law: Law, delta: float, accuracy: float = FLOW_ACCURACY) -> Flo
     --------
     >>> from puck_tables.contact.laws import law_of
     >>> found = flow_section(law_of("ring"), 1.0, 1e-6)
-    >>> found.spline.at(np.array([0.0]))[0].round(6).tolist()  # 1, δ/4, 1 − δ²/8 …
+    >>> (found.spline.at(np.array([0.0]))[0].round(6) + 0.0).tolist()  # 1, δ/4, 1 − δ²/8 …
     [1.0, 0.25, 0.875, 0.0, 0.25, -0.25]
     """
     sides = sides_of(lines_of(law, delta)[::-1])
@@ -98,7 +98,7 @@ def flow_of_table(table: ResultantTable, delta: float) -> FlowSection:
     Examples
     --------
     >>> found = flow_of_table(ResultantTable.build("ring", 1e-6), 1.0)
-    >>> found.spline.at(np.array([0.0]))[0].round(5).tolist()
+    >>> (found.spline.at(np.array([0.0]))[0].round(5) + 0.0).tolist()
     [1.0, 0.25, 0.875, 0.0, 0.25, -0.25]
     """
     table.checked_range(delta, table.law.name)
