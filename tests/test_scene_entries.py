@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import re
 import tomllib
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -113,7 +114,15 @@ BOARD: dict[str, Any] = {
     "arc[0].restitution": 0.5, "arc[0].tangential": 0.5, "arc[0].friction": 0.01,
     "rim[0].puck": "c", "rim[0].partner": "c", "rim[0].restitution": 0.5,
     "rim[0].tangential": -0.5, "rim[0].friction": 0.01,
+    "puck[0].force.constant": [0.05, 0.0], "puck[0].force.torque": 1e-3,
+    "puck[0].force.over_time": [[0.0, 0.05, 0.0], [1.0, 0.0, 0.0]],
+    "puck[2].constraint.kind": "pivot", "puck[2].constraint.angle": 0.5,
+    "puck[2].constraint.reach": 0.03, "puck[2].constraint.velocity": [0.0, 0.3],
+    "puck[2].constraint.side_slip": 0.1,
 }  # fmt: skip
+# how a puck of it is led, where that matters to an entry
+LED = {"kind": {"kind": "rail"}, "angle": {"kind": "rail"}, "velocity": {"kind": "rail"},
+       "reach": {"kind": "pivot", "reach": 0.02}, "side_slip": {"kind": "blade"}}  # fmt: skip
 NO_PHYSICS = {"title", "run.frames", "run.tol"}
 
 
@@ -130,13 +139,19 @@ def end_of(tables: dict[str, Any]) -> dict[str, float]:
 
 
 def test_the_cases_below_are_all_entries() -> None:
-    on_board = {path.replace("puck[3]", "puck[0]") for path in BOARD}
+    on_board = {re.sub(r"puck\[\d\]", "puck[0]", path) for path in BOARD}
     assert {path for path, _, _ in described(Scene)} == {*CASES, *FILES, *NO_PHYSICS, *on_board}
 
 
 @pytest.mark.parametrize("path", [path for path, value in BOARD.items() if value is not None])
 def test_every_entry_of_a_board_changes_the_motion(path: str) -> None:
     board = {**ON_BOARD, "rim": [RIM]} if path.startswith("rim") else ON_BOARD
+    if ".constraint." in path:
+        board = copy.deepcopy(board) | {"run": {"time": 0.3}}
+        board["puck"][2] |= {
+            "constraint": LED[path.rpartition(".")[2]], "force": {"constant": [40.0, 10.0]},
+            "launch": {"position": [0.0, 0.3]},
+        }  # fmt: skip
     changed = copy.deepcopy(board)
     set_path(changed, path, BOARD[path])
     if path == "puck[3].path":

@@ -93,7 +93,7 @@ def test_it_goes_on_after_an_interruption(whole: SceneMap, tmp_path: Path) -> No
 
     with pytest.raises(Cut):
         sweep_scene(tables(), threads=1, chunk=10, store=path, progress=stop)
-    assert path.exists() and len(calls) == 1
+    assert path.exists() and calls[-1] < whole.end.size
     assert same(whole, sweep_scene(tables(), threads=2, chunk=10, store=path).load())
     assert same(whole, sweep_scene(tables(), chunk=10, store=path).load())  # nothing left to do
 

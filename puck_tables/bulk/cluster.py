@@ -10,7 +10,6 @@ from __future__ import annotations
 import contextlib
 import logging
 import os
-import pickle
 import re
 import time
 import warnings
@@ -29,6 +28,7 @@ try:
     import dask
     import distributed
     from distributed.comm.core import CommClosedError
+    from distributed.protocol.pickle import dumps, loads
 except ImportError:
     raise MissingExtraError(
         "--cluster (cluster=) needs dask and distributed: pip install 'puck-tables[cluster]'"
@@ -99,7 +99,7 @@ def by_cluster(client: Any, store: Store, progress: Progress | None) -> Tally:
 
 
 def _done(client: Any, store: Store, progress: Progress | None) -> Tally:
-    sent = pickle.dumps((store.work, store.digest, program()))
+    sent = dumps((store.work, store.digest, program()))
     work = client.submit(_received, sent, key=f"puck-work-{store.digest}", pure=True)
     total, tally, next_block = store.work.size, Tally({}, {}), 0
     running: set[Any] = set()
@@ -193,7 +193,7 @@ def client_of(given: str) -> Iterator[Any]:
 
 def _received(sent: bytes) -> tuple[Work, str]:
     """The work, on a worker that runs the same program."""
-    work, digest, made_by = pickle.loads(sent)
+    work, digest, made_by = loads(sent)
     same_program(made_by, f"a worker ({os.uname().nodename}, process {os.getpid()})")
     return work, digest
 

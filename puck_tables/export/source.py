@@ -135,11 +135,12 @@ def export_source(
 
     Examples
     --------
-    >>> source = export_source("python", "stop", 1e-4)
-    >>> room = {}
-    >>> exec(source.text, room)
+    >>> import runpy, tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     export_source("python", "stop", 1e-4).save(folder + "/puck.py")
+    ...     puck = runpy.run_path(folder + "/puck.py")
     >>> out = [0.0] * 5
-    >>> room["stop"](1.0, 0.0, 5.0, 1.0, 1.0, 1.0, out), round(out[0], 2), room["self_test"]()
+    >>> puck["stop"](1.0, 0.0, 5.0, 1.0, 1.0, 1.0, out), round(out[0], 2), puck["self_test"]()
     (0, 4.0, 0)
     """
     parts = checked_request(language, what, tol)
