@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import pickle
 from collections.abc import Callable
@@ -16,7 +17,7 @@ import xarray
 from matplotlib.figure import Figure
 from scenes import simulate_scene, sweep_scene
 
-from puck_tables import Puck, states, stop
+from puck_tables import Puck, floor_friction, reference_case, states, stop
 from puck_tables.accuracy.front import shipped_front
 from puck_tables.chetaev import Asperity, asperity_curve
 from puck_tables.errors import ContactError, InputError, OutputError
@@ -51,6 +52,9 @@ RESULTS: dict[str, Callable[[], Result]] = {
     "scene": lambda: simulate_scene(SCENE),
     "board": lambda: simulate_scene(BOARD),
     "scene map": lambda: sweep_scene(RANGED),
+    "case": lambda: reference_case("coin"),
+    "case of two": lambda: reference_case("take-out"),
+    "friction over epsilon": lambda: floor_friction("coin"),
     "asperity": lambda: asperity_curve(Asperity(1.0, 4.0, 1.0, 1.0), np.linspace(0.0, 9.0, 30)),
     "trade-off": lambda: TradeOff(
         shipped_front(), COUNTS, COUNTS * 1.0, COUNTS * 1.0, {"truth": 1.5},
@@ -90,6 +94,16 @@ def test_files_of_every_format_hold_the_same_table(name: str, ending: str, tmp_p
             for column, one in result.dataset().columns.items():
                 np.testing.assert_array_equal(data[column].values, one.values)
                 assert data[column].attrs["units"] == (one.unit or "1")
+        return
+    if ending == ".json":
+        columns = json.loads(path.read_text())["columns"]
+        for column, one in result.dataset().columns.items():
+            mine = one.readable()
+            if mine.dtype.kind == "f":  # null: no number
+                mine = np.where(np.isfinite(mine), mine, np.nan)
+            told = np.asarray(columns[column]["values"], mine.dtype)
+            np.testing.assert_array_equal(told, mine)
+            assert columns[column]["unit"] == one.unit
         return
     readers = {
         ".csv": partial(pandas.read_csv, keep_default_na=False, na_values=["nan"]),
