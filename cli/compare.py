@@ -22,8 +22,6 @@ from puck_tables.cli.options import (
     told,
 )
 
-from puck_tables.io.columns import COLUMNS
-
 if TYPE_CHECKING:
     from puck_tables.reference.comparison import Comparison
 
@@ -119,6 +117,8 @@ def compare(
 
 def in_words(found: Comparison) -> str:
     """The numbers of every run in a table, and what they say."""
+    from puck_tables.io.columns import COLUMNS
+
     answer = found.answer
     lines = [
         f"case {answer.case.label}: {answer.case.title}",
