@@ -116,7 +116,7 @@ BOARD: dict[str, Any] = {
     "rim[0].tangential": -0.5, "rim[0].friction": 0.01,
     "puck[0].force.constant": [0.05, 0.0], "puck[0].force.torque": 1e-3,
     "puck[0].force.over_time": [[0.0, 0.05, 0.0], [1.0, 0.0, 0.0]],
-    "puck[2].constraint.kind": "pivot", "puck[2].constraint.angle": 0.5,
+    "puck[2].constraint.kind": "blade", "puck[2].constraint.angle": 0.5,
     "puck[2].constraint.reach": 0.03, "puck[2].constraint.velocity": [0.0, 0.3],
     "puck[2].constraint.side_slip": 0.1,
 }  # fmt: skip
@@ -150,7 +150,7 @@ def test_every_entry_of_a_board_changes_the_motion(path: str) -> None:
         board = copy.deepcopy(board) | {"run": {"time": 0.3}}
         board["puck"][2] |= {
             "constraint": LED[path.rpartition(".")[2]], "force": {"constant": [40.0, 10.0]},
-            "launch": {"position": [0.0, 0.3]},
+            "launch": {"position": [0.0, 0.3], "spin": 10.0},
         }  # fmt: skip
     changed = copy.deepcopy(board)
     set_path(changed, path, BOARD[path])
