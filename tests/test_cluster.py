@@ -56,6 +56,7 @@ def waited_for(found: Callable[[], Any], seconds: float = 90.0) -> Any:
 def cluster(folder: Path, workers: int) -> Iterator[tuple[str, list[subprocess.Popen[bytes]]]]:
     """The address of a scheduler of its own process, and the processes of its workers."""
     file, quiet = folder / "scheduler.json", {"stderr": subprocess.DEVNULL}
+    file.unlink(missing_ok=True)  # of one before
     common = ["--scheduler-file", str(file), "--no-dashboard"]
     processes = [subprocess.Popen(
         [*DASK, *common, "--host", "127.0.0.1", "--port", "0"], **quiet, cwd=folder)]  # fmt: skip

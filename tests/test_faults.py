@@ -111,7 +111,7 @@ def test_a_store_on_the_command_line(tmp_path: Path):
     resultants = tmp_path / "rough.h5"
     subprocess.run([*PUCK, "build-tables", "--accuracy", "1e-6", "-o", resultants], check=True,
                    capture_output=True)  # fmt: skip
-    command = [*PUCK, "sweep", "--speed", "0:2:250", "--w0", "0:5:250", "--table", "rough.h5",
+    command = [*PUCK, "sweep", "--speed", "0:2:600", "--w0", "0:5:600", "--table", "rough.h5",
                "--tol", "1e-5", "-o", "m.zarr", "--threads", "1"]  # fmt: skip
     process = subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True)
     while not (tmp_path / "m.zarr").exists() and process.poll() is None:
@@ -123,7 +123,7 @@ def test_a_store_on_the_command_line(tmp_path: Path):
         "Interrupted: m.zarr keeps what is done; the same command goes on."
     )
     other = subprocess.run(
-        [*command, "--speed", "0:1:250"], cwd=tmp_path, capture_output=True, text=True
+        [*command, "--speed", "0:1:600"], cwd=tmp_path, capture_output=True, text=True
     )
     assert (other.returncode, "begun with" in other.stderr) == (2, True)
     again = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)

@@ -1,178 +1,352 @@
-"""Sweeps into a Zarr store: whole blocks or none, checked, gone on with, and the same bytes."""
+"""Tables the program keeps for itself: built once, never trusted blindly, easily cleared away."""
 
 from __future__ import annotations
 
-import errno
-import itertools
+import json
 import os
+import re
+import subprocess
+import sys
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from click.testing import CliRunner, Result
 from puck_tables.cli.main import main
+from pucks import simulate
 
-from puck_tables import Puck, Scene
-from puck_tables.bulk.blocks import Blocks
-from puck_tables.errors import InputError, OutputError
-from puck_tables.scene.entries import set_path
-from puck_tables.scene.library import find_scene
+import puck_tables as pt
+from puck_tables.errors import AccuracyError, InputError
+from puck_tables.kernels.cache import cache_folder
+from puck_tables.stopping import stop_section
+from puck_tables.table import store
 
-zarr = pytest.importorskip("zarr")
-
-PUCK = Puck.similar()
-GRID: dict[str, Any] = {"spin": np.linspace(-3.0, 3.0, 301), "speed": np.linspace(0.0, 2.0, 200)}
-OUTPUTS = ("stop_time", "stop_x", "stop_y", "path_length", "turn_angle", "body_angle", "status")
+RADII = np.linspace(0.0, 1.0, 5)
 
 
-def content(store: Path) -> dict[str, bytes]:
-    return {
-        str(path.relative_to(store)): path.read_bytes()
-        for path in store.rglob("*") if path.is_file()
-    }  # fmt: skip
+@pytest.fixture(autouse=True)
+def kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The folder of kept tables: an own one for each test."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    monkeypatch.setattr("sys.platform", "linux")
+    store.say.cache_clear()
+    stop_section.stop_section_for.cache_clear()  # other tests have asked for the same
+    return tmp_path / "cache" / "puck-tables" / "tables"
 
 
-def test_a_store_holds_the_bits_of_the_map(tmp_path: Path):
-    path = tmp_path / "m.zarr"
-    whole, kept = PUCK.sweep(**GRID), PUCK.sweep(**GRID, store=path, threads=1)
-    assert kept.load() == whole
-    again = PUCK.sweep(**GRID, store=tmp_path / "n.zarr", threads=3, chunk=77)
-    assert content(again.path) == content(path)
-    xarray = pytest.importorskip("xarray")
-    with xarray.open_zarr(path) as data:
-        for name in OUTPUTS:
-            assert data[name].values.tobytes() == getattr(whole, name).tobytes()
-            assert data[name].dtype == getattr(whole, name).dtype
-        assert data.stop_time.units == "s"
-        assert data.launch_spin.values.tolist() == GRID["spin"].tolist()
-    assert kept.to_xarray().stop_x.dims == ("launch_speed", "launch_spin")
+@pytest.fixture
+def builds(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """The laws that were tabulated."""
+    names: list[str] = []
+    true = store.ResultantTable.built
+
+    def counted(of: pt.Law, *given: object, **named: object) -> pt.Table:
+        names.append(of.name)
+        return true(of, *given, **named)
+
+    monkeypatch.setattr(store.ResultantTable, "built", counted)
+    return names
 
 
-def test_what_is_damaged_or_missing_is_done_again_and_nothing_else(tmp_path: Path):
-    path = tmp_path / "m.zarr"
-    PUCK.sweep(**GRID, store=path)
-    before = content(path)
-    blocks = sorted((path / "stop_x" / "c").rglob("*/0"))
-    assert len(blocks) >= 4
-    flipped = bytearray(blocks[0].read_bytes())
-    flipped[100] ^= 1
-    blocks[0].write_bytes(flipped)
-    blocks[1].write_bytes(b"")
-    blocks[2].unlink()
-    blocks[3].write_bytes(bytes(len(flipped)))  # as a crash of the machine may leave it
-    kept = {file: file.stat().st_mtime_ns for file in (path / "stop_y" / "c").rglob("*/0")}
-    PUCK.sweep(**GRID, store=path)
-    assert content(path) == before
-    touched = {file for file, when in kept.items() if file.stat().st_mtime_ns != when}
-    assert len(touched) == 4
+def puck(*arguments: str) -> Result:
+    return CliRunner().invoke(main, arguments)
 
 
-def test_blocks_of_launches_too_large_are_results_too(tmp_path: Path):
-    grid = {"spin": [0.0, 1.0], "speed": np.linspace(1e160, 1e161, 9)}
-    with pytest.raises(InputError, match="too large for floating point"):
-        PUCK.sweep(**grid, store=tmp_path / "m.zarr")
-    some = PUCK.sweep(spin=[0.0], speed=[1.0, 1e160], store=tmp_path / "n.zarr")
-    assert some.tally.counts == {0: 1, 2: 1}
-    assert np.isnan(some.load().stop_x[1, 0])
+def test_built_once_then_read(kept: Path, builds: list[str], capsys: pytest.CaptureFixture[str]):
+    first = pt.table_for("annulus:0.8", accuracy=1e-5)
+    second = pt.table_for("annulus:0.8", accuracy=1e-5)
+    assert builds == ["annulus:0.8"]
+    np.testing.assert_array_equal(first.values, second.values)
+    assert (second.tolerance, second.accuracy) == (1e-5, first.accuracy)
+    (path,) = kept.iterdir()
+    assert re.fullmatch(r"annulus-0\.8-1e-05-[0-9a-f]{16}\.h5", path.name)
+    assert capsys.readouterr() == ("", "")
+    pt.table_for("annulus:0.8", accuracy=1e-4)
+    pt.table_for("ring", accuracy=1e-4)
+    assert builds == ["annulus:0.8", "annulus:0.8", "ring"]
 
 
-def test_other_stores_are_kept_and_replaced_on_demand(tmp_path: Path):
-    path = tmp_path / "m.zarr"
-    PUCK.sweep([1.0, 2.0], 1.0, store=path)
-    before = content(path)
-    for arguments in ({"speed": 2.0}, {"speed": 1.0, "radius": 2.0}, {"speed": 1.0, "tol": 1e-5}):
-        with pytest.raises(InputError, match="holds other work"):
-            PUCK.sweep([1.0, 2.0], store=path, **arguments)
-    assert content(path) == before
-    assert PUCK.sweep([1.0, 2.0], 2.0, store=path, overwrite=True).load().stop_time.shape == (2,)
-    zarr.create_group(tmp_path / "theirs.zarr", attributes={"mine": 1})
-    theirs = content(tmp_path / "theirs.zarr")
-    for overwrite in (False, True):
-        with pytest.raises(InputError, match="no Zarr store of this program"):
-            PUCK.sweep([1.0], 1.0, store=tmp_path / "theirs.zarr", overwrite=overwrite)
-    assert content(tmp_path / "theirs.zarr") == theirs
-    assert sorted(p.name for p in tmp_path.iterdir()) == ["m.zarr", "theirs.zarr"]
+def test_inner_radii_that_differ_late_are_two_laws(builds: list[str]):
+    a, b = (pt.table_for(f"annulus:0.812345{d}", accuracy=1e-4) for d in (6, 7))
+    assert len(builds) == 2
+    assert a.pressure_law != b.pressure_law
+    assert a.validate(points=200).passed
 
 
-def test_a_store_whose_arrays_are_not_its_own_is_damaged(tmp_path: Path):
-    path = tmp_path / "m.zarr"
-    PUCK.sweep([1.0, 2.0], 1.0, store=path)
-    (path / "stop_x" / "zarr.json").write_text("{}")
-    with pytest.raises(InputError, match="is damaged"):
-        PUCK.sweep([1.0, 2.0], 1.0, store=path)
-
-
-def test_a_full_disk_is_a_sentence_and_what_is_kept_stays(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-):
-    from zarr.storage import _local
-
-    true, calls = _local._put, itertools.count()
-
-    def put(path: Path, value: Any, exclusive: bool = False) -> int:
-        if "c" in path.parts and next(calls) > 9:
-            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-        return true(path, value, exclusive)
-
-    path = tmp_path / "m.zarr"
-    monkeypatch.setattr(_local, "_put", put)
-    with pytest.raises(OutputError, match="No space left"):
-        PUCK.sweep(**GRID, store=path, threads=1)
-    monkeypatch.undo()
-    assert PUCK.sweep(**GRID, store=path).load() == PUCK.sweep(**GRID)
-
-
-def test_places_where_no_store_can_be(tmp_path: Path):
-    for place in ("/proc/none.zarr", tmp_path / "none" / "m.zarr"):
-        with pytest.raises(OutputError, match="cannot write"):
-            PUCK.sweep([1.0], 1.0, store=place)
-    with pytest.raises(InputError, match=r"must have the ending \.zarr"):
-        PUCK.sweep([1.0], 1.0, store=tmp_path / "m.h5")
-    with pytest.raises(InputError, match="a cluster writes to a Zarr store"):
-        PUCK.sweep([1.0], 1.0, cluster="local:2")
-
-
-@pytest.mark.parametrize("scene", ["incline", "carrom-break"])
-def test_maps_of_scenes_and_boards_in_a_store(scene: str, tmp_path: Path):
-    ranges = {"incline": {"launch.spin": [0.0, 9.0, 20.0]}, "carrom-break": {
-        "puck[0].launch.velocity[0]": [0.5, 1.0]}}[scene]  # fmt: skip
-    given = find_scene(scene)
-    for path, values in ranges.items():
-        set_path(given, path, values)
-    ranged = Scene.from_tables(given)
-    whole, kept = ranged.sweep(), ranged.sweep(store=tmp_path / "m.zarr", threads=1)
-    assert kept.load() == whole
-    assert kept.explain()
-    xarray = pytest.importorskip("xarray")
-    with xarray.open_zarr(tmp_path / "m.zarr") as data:
-        assert data.x.values.tobytes() == whole.columns["x"].tobytes()
-        assert data.attrs["title"] == whole.scene.title
-
-
-def test_the_command_line_writes_a_store_and_draws_it(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+def test_a_profile_is_its_values_not_its_name(
+    builds: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):
     monkeypatch.chdir(tmp_path)
-    words = ["sweep", "--w0", "0:5:30", "--speed", "0:2:20", "-o", "m.zarr", "--plot", "m.png"]
+    Path("a.csv").write_text("rho,W\n0,2\n0.5,2\n1,1\n")
+    Path("b.csv").write_text("0,20\n0.5,20\n1,10\n")  # the same shape
+    tables = [pt.table_for(name, accuracy=1e-4) for name in ("a.csv", "b.csv")]
+    assert builds == ["profile"]
+    Path("a.csv").write_text("rho,W\n0,2\n0.5,2\n1,1.001\n")
+    other = pt.table_for("a.csv", accuracy=1e-4)
+    assert len(builds) == 2
+    assert other.resultants(0.5, 0.5).spin != tables[0].resultants(0.5, 0.5).spin
+    same = pt.table_for(pt.profile_law([0.0, 0.5, 1.0], [2.0, 2.0, 1.001]), accuracy=1e-4)
+    assert len(builds) == 2
+    assert same.validate(points=200).passed
+
+
+def test_a_table_of_other_sources_is_not_todays(builds: list[str], monkeypatch: pytest.MonkeyPatch):
+    pt.table_for("ring", accuracy=1e-4)
+    monkeypatch.setattr(store, "source_digest", lambda *folders: "another version")
+    pt.table_for("ring", accuracy=1e-4)
+    assert len(builds) == 2
+
+
+def test_the_digest_of_sources_sees_what_computes_a_table(tmp_path: Path):
+    from puck_tables._core.sources import source_digest
+
+    parts = ("contact", "kernels", "table")
+    seen = {source_digest(*parts), source_digest(), source_digest("motion")}
+    assert len(seen) == 3
+
+
+HARMS = (
+    "flip", "cut", "empty", "text", "folder", "full folder", "pipe", "link", "another",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("harm", HARMS)
+def test_a_damaged_one_is_said_and_built_again(
+    harm: str, kept: Path, builds: list[str], capsys: pytest.CaptureFixture[str]
+):
+    whole = pt.table_for("ring", accuracy=1e-4)
+    (path,) = kept.iterdir()
+    content = path.read_bytes()
+    if harm == "flip":
+        path.write_bytes(content[:5000] + bytes([content[5000] ^ 4]) + content[5001:])
+    elif "folder" in harm:
+        path.unlink()
+        path.mkdir()
+        if harm == "full folder":
+            (path / "mine").write_text("mine")
+    elif harm == "pipe":
+        path.unlink()
+        os.mkfifo(path)
+    elif harm == "link":
+        other = kept.parent / "mine.txt"
+        other.write_text("mine")
+        path.unlink()
+        path.symlink_to(other)
+    elif harm == "another":  # whole, but not what its name says
+        pt.table_for("ring", accuracy=1e-3)
+        (other,) = set(kept.iterdir()) - {path}
+        other.replace(path)
+        builds.pop()
+    else:
+        path.write_bytes({"cut": content[:-1], "empty": b"", "text": b"puck"}[harm])
+    capsys.readouterr()
+    again = pt.table_for("ring", accuracy=1e-4)
+    np.testing.assert_array_equal(again.values, whole.values)
+    assert builds == ["ring", "ring"]
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert f"{path} is " in said.err
+    assert "built again" in said.err
+    if harm == "link":
+        assert other.read_text() == "mine"
+    if harm == "full folder":
+        assert "not kept for the next time" in said.err
+        assert (path / "mine").read_text() == "mine"
+    else:
+        pt.table_for("ring", accuracy=1e-4)
+        assert len(builds) == 2
+
+
+def test_a_folder_that_cannot_be_written_is_said_once(
+    builds: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+):
+    monkeypatch.setenv("XDG_CACHE_HOME", "/proc/none")  # not even root can write there
     for _ in range(2):
-        result = CliRunner().invoke(main, [*words, "--overwrite"])
-        assert result.exit_code == 0, result.stderr
-        assert "600 stopped; look-up" in result.stderr
-        assert Path("m.png").stat().st_size > 10_000
-    result = CliRunner().invoke(main, ["sweep", "--w0", "0:5:31", "-o", "m.zarr"])
-    assert (result.exit_code, "holds other work" in result.stderr) == (2, True)
+        assert pt.table_for("ring", accuracy=1e-4).tolerance == 1e-4
+    assert len(builds) == 2
+    said = capsys.readouterr().err.splitlines()
+    assert len(said) == 1
+    assert said[0].startswith("the table is used but not kept for the next time: ")
 
 
-@pytest.mark.parametrize("shape", [(), (1,), (7,), (3, 10), (2, 3, 5), (4, 1, 6), (1, 1, 1)])
-@pytest.mark.parametrize("size", [1, 2, 5, 6, 14, 1000])
-def test_blocks_are_boxes_and_runs_that_cover_all_once(shape: tuple[int, ...], size: int):
-    blocks, numbers = Blocks(shape, size), np.arange(int(np.prod(shape))).reshape(shape)
-    seen: list[int] = []
-    for block in range(blocks.count):
-        start, stop = blocks.run(block)
-        inside = numbers[blocks.slices(block)].ravel()
-        assert inside.tolist() == list(range(start, stop))
-        assert 1 <= inside.size <= max(size, 1)
-        seen += inside.tolist()
-    assert seen == list(range(numbers.size))
+def test_a_full_disk_is_said_and_leaves_nothing(
+    kept: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+):
+    def full(descriptor: int) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("os.fsync", full)
+    assert pt.table_for("ring", accuracy=1e-4).tolerance == 1e-4
+    assert "No space left on device" in capsys.readouterr().err
+    assert list(kept.iterdir()) == []
+
+
+def test_no_home_at_all(monkeypatch: pytest.MonkeyPatch, tmp_path: Path):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("XDG_CACHE_HOME", "relative")  # void by the specification
+    monkeypatch.setattr("os.path.expanduser", lambda path: path)
+    assert store.tables_folder() is None
+    assert pt.table_for("ring", accuracy=1e-4).tolerance == 1e-4
+    assert store.kept_files() == []
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_where_each_system_keeps_them(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr("sys.platform", "darwin")
+    assert store.tables_folder() == Path.home() / "Library/Caches/puck-tables/tables"
+    monkeypatch.setattr("sys.platform", "win32")
+    monkeypatch.setenv("LOCALAPPDATA", "/app")
+    assert store.tables_folder() == Path("/app/puck-tables/tables")
+    monkeypatch.setattr("sys.platform", "linux")
+    monkeypatch.delenv("XDG_CACHE_HOME")
+    assert store.tables_folder() == Path.home() / ".cache/puck-tables/tables"
+
+
+def test_builders_at_once_leave_one_whole_table(kept: Path):
+    code = "import puck_tables as pt; print(pt.table_for('galin', 1e-6).resultants(0.3, 0.5).spin)"
+    compiled = str(Path(cache_folder() or "").parent)  # the tables are what is to be made anew
+    running = [
+        subprocess.Popen(
+            [sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+            env={**os.environ, "NUMBA_CACHE_DIR": compiled},
+        ) for _ in range(3)
+    ]  # fmt: skip
+    said = [process.communicate() for process in running]
+    assert [process.returncode for process in running] == [0] * 3
+    assert len({out for out, _ in said}) == 1
+    (path,) = kept.iterdir()
+    assert pt.Table.load(path).tolerance == 1e-6
+
+
+def test_bad_requests():
+    with pytest.raises(InputError, match="no pressure law is called"):
+        pt.table_for("square")
+    for accuracy in (1e-14, 1.0, float("nan")):
+        with pytest.raises(AccuracyError, match="from 1e-11"):
+            pt.table_for("ring", accuracy=accuracy)
+    with pytest.raises(InputError, match="accuracy"):
+        pt.table_for("ring", accuracy="fine")
+    with pytest.raises(InputError, match="cannot be told from another"):
+        pt.table_for(pt.law_of("ring"))
+
+
+def test_progress_is_told():
+    told: list[tuple[int, int]] = []
+    pt.table_for("ring", accuracy=1e-4, progress=lambda done, total: told.append((done, total)))
+    assert len(told) > 3
+    assert all(0 < done <= total for done, total in told)
+    assert told == sorted(told, key=lambda pair: pair[::-1])  # a finer grid begins anew
+
+
+def test_the_friction_of_a_tall_puck_is_kept(kept: Path, monkeypatch: pytest.MonkeyPatch):
+    built: list[float] = []
+    true = store.friction_section
+
+    def counted(law: pt.Law, delta: float, accuracy: float) -> pt.Table:
+        built.append(delta)
+        return true(law, delta, accuracy)
+
+    monkeypatch.setattr(store, "friction_section", counted)
+    store.friction_for.cache_clear()  # other tests have asked for the same
+    first = simulate((1.0, 0.0), 5.0, delta=1.5, tol=1e-5)
+    times = len(built)
+    assert times == len(list(kept.iterdir())) > 0
+    store.friction_for.cache_clear()  # as in another process
+    again = simulate((1.0, 0.0), 5.0, delta=1.5, tol=1e-5)
+    assert len(built) == times
+    assert again.stop_time == first.stop_time
+    other = simulate((1.0, 0.0), 5.0, delta=1.5000001, tol=1e-5)
+    assert len(built) > times
+    assert other.stop_time != first.stop_time
+    listed = puck("tables").stdout
+    assert listed.count("friction section") == len(list(kept.iterdir()))
+    monkeypatch.setattr(store, "MOST_SECTIONS", 3)
+    for delta in (1.1, 1.2, 1.3):
+        store.friction_for(pt.law_of("uniform"), delta, 1e-4)
+    assert sorted(path.name[:8] for path in kept.iterdir()) == ["tall-1.1", "tall-1.2", "tall-1.3"]
+    simulate((1.0, 0.0), 5.0, delta=0.5, pressure="ring", tol=1e-5)
+    assert "ring" not in puck("tables").stdout  # made in no time
+
+
+def test_stops_of_other_pucks_are_kept(kept: Path, monkeypatch: pytest.MonkeyPatch):
+    """The second sweep over a height, pressure or gyration prepares nothing anew."""
+    pucks = (
+        {"delta": 1.5}, {"pressure": "ring", "delta": 0.5}, {"delta": 0.5, "gyration": 0.9},
+        {"pressure": pt.profile_law([0.0, 1.0], [1.0, 0.5], name="stone.csv"), "delta": 0.4},
+    )  # fmt: skip
+    launches = (1.0, 0.0), np.linspace(0.0, 4.0, 301)
+    first = [pt.stop(*launches, tol=1e-5, **one) for one in pucks]
+    names = [path.name for path in kept.iterdir() if path.name.startswith("stops-")]
+    assert len(names) == len(pucks)
+    stop_section.stop_section_for.cache_clear()  # as in another process
+
+    def refused(*what: object) -> None:
+        raise AssertionError("it is tabulated again")
+
+    monkeypatch.setattr(stop_section, "stop_section", refused)
+    for one, before in zip(pucks, first, strict=True):
+        again = pt.stop(*launches, tol=1e-5, **one)
+        np.testing.assert_array_equal(again.stop_time, before.stop_time)
+        np.testing.assert_array_equal(again.turn_angle, before.turn_angle)
+        assert again.selections == before.selections
+    with pytest.raises(AssertionError, match="tabulated again"):
+        pt.stop(*launches, tol=1e-6, **pucks[0])
+    assert puck("tables").stdout.count("stop section") == len(pucks)
+    own = pt.Table.build("ring", 1e-8)
+    with pytest.raises(AssertionError, match="tabulated again"):  # of a table of one's own: not
+        pt.stop(*launches, tol=1e-5, table=own, **pucks[1])
+
+
+def test_a_law_that_borrows_a_name_is_not_taken_for_it(kept: Path):
+    """Its stops are neither read nor kept under that name."""
+    launches = (1.0, 0.0), np.linspace(0.0, 4.0, 301)
+    true = pt.stop(*launches, tol=1e-5, pressure="ring", delta=0.5)
+    false = replace(pt.law_of("galin"), name="ring")
+    stops = pt.stop(*launches, tol=1e-5, pressure=false, delta=0.5)
+    assert np.abs(stops.stop_time - true.stop_time).max() > 1e-3
+    galin = pt.stop(*launches, tol=1e-5, pressure="galin", delta=0.5)
+    np.testing.assert_array_equal(stops.stop_time, galin.stop_time)
+    assert len([path for path in kept.iterdir() if path.name.startswith("stops-")]) == 2
+
+
+def test_listed_removed_and_cleaned(kept: Path, tmp_path: Path):
+    for law in ("ring", "hertz"):
+        pt.table_for(law, accuracy=1e-4)
+    names = sorted(path.name for path in kept.iterdir())
+    (kept / names[0]).write_bytes(b"damaged")
+    mine = [kept / "mine.h5", kept / "notes.txt", kept / "link-0123456789abcdef.h5"]
+    mine[0].write_text("mine")
+    mine[1].write_text("mine")
+    mine[2].symlink_to(mine[1])
+    listed = json.loads(puck("tables", "--json").stdout)
+    found = {entry["name"]: entry for entry in listed}
+    assert set(found) == {"resultants.h5", "stops.h5", *names}
+    assert [found[name]["whole"] for name in names] == [False, True]
+    ring = found[names[1]]
+    assert (ring["pressure_law"], ring["accuracy"]) == ("ring", 1e-4)
+    assert (ring["bytes"], ring["place"]) == ((kept / names[1]).stat().st_size, str(kept))
+    shown = puck("tables")
+    assert shown.output.isascii()
+    assert [line.split()[0] for line in shown.stdout.splitlines()[3:5]] == names
+    assert "damaged" in shown.stdout
+    assert f"kept in {kept}" in shown.stdout
+
+    removed = puck("tables", "--remove", names[0])
+    assert (removed.exit_code, removed.stdout) == (0, f"removed {kept / names[0]}\n")
+    for name in (names[0], "resultants.h5", "mine.h5", "notes.txt", "../../x", mine[2].name):
+        refused = puck("tables", "--remove", name)
+        assert (refused.exit_code, refused.stdout) == (2, "")
+        assert f"no table {name} is kept" in refused.stderr
+    old, young = kept / ".puck-old.part", kept / ".puck-young.part"
+    for part in (old, young):
+        part.write_text("x")
+    os.utime(old, (0, 0))
+    cleaned = puck("tables", "--clean")
+    assert cleaned.stdout == f"removed {kept / names[1]}\nremoved {old}\n"
+    assert sorted(path.name for path in kept.iterdir()) == sorted(
+        [young.name, *(path.name for path in mine)]
+    )
+    assert mine[1].read_text() == "mine"
+    assert "nothing to remove" in puck("tables", "--clean").stdout
+    assert puck("tables", "--clean", "--json").exit_code == 2

@@ -10,6 +10,7 @@ from __future__ import annotations
 import contextlib
 import logging
 import os
+import platform
 import re
 import time
 import warnings
@@ -166,9 +167,11 @@ def client_of(given: str) -> Iterator[Any]:
         address: Any = where
         if isinstance(where, int):
             stack.enter_context(dask.config.set(_KEPT))
+            stack.enter_context(_quiet_children())
             cluster = distributed.LocalCluster(
                 n_workers=where, threads_per_worker=1, processes=True, host="127.0.0.1",
                 dashboard_address=None, silence_logs=logging.CRITICAL, memory_limit=0,
+                preload="puck_tables.bulk.deaf_worker",
             )  # fmt: skip
             address = stack.enter_context(cluster)
         try:
@@ -188,13 +191,27 @@ def client_of(given: str) -> Iterator[Any]:
         yield client
 
 
+@contextlib.contextmanager
+def _quiet_children() -> Iterator[None]:
+    """No warnings from the processes that are started meanwhile: after Ctrl-C they complain."""
+    before = os.environ.get("PYTHONWARNINGS")
+    os.environ["PYTHONWARNINGS"] = "ignore"
+    try:
+        yield
+    finally:
+        if before is None:
+            del os.environ["PYTHONWARNINGS"]
+        else:
+            os.environ["PYTHONWARNINGS"] = before
+
+
 # what runs on a worker
 
 
 def _received(sent: bytes) -> tuple[Work, str]:
     """The work, on a worker that runs the same program."""
     work, digest, made_by = loads(sent)
-    same_program(made_by, f"a worker ({os.uname().nodename}, process {os.getpid()})")
+    same_program(made_by, f"a worker ({platform.node()}, process {os.getpid()})")
     return work, digest
 
 
