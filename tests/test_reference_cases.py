@@ -8,7 +8,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from pucks_judge import Disc, play
+from any_puck import stops_by_truth
+from pucks_judge import Disc, Line, play
 from reference import states as flat_states
 from scipy.integrate import solve_ivp
 
@@ -163,6 +164,35 @@ def test_the_take_out_by_an_independent_integrator():
     assert abs(told.impacts[0][0] - answer.run.events[0].time) < answer.time_bound
     stops = np.column_stack([answer.last()["x"], answer.last()["y"]])
     assert np.abs(stops - told.states[:, :2]).max() < answer.place_bound
+
+
+def test_the_rebound_by_an_independent_integrator():
+    tables = case_named("rebound").tables
+    one, wall, launch = tables["puck"], tables["wall"][0], tables["launch"]
+    f = one["friction"] * one["gravity"] / 9.80665
+    state = np.array([0.0, 0.0, 0.0, *launch["velocity"], launch["spin"]])
+    height = one["height"] * one["friction"] / f
+    disc = Disc(one["radius"], one["mass"], f, height, 1.0, 0.0, math.inf, state)
+    line = Line((-1.0, 0.0), -wall["point"][0], wall["restitution"], wall["tangential"],
+                wall["friction"])  # fmt: skip
+    told, answer = play([disc], [line], 2.0), reference_case("rebound")
+    assert abs(told.impacts[0][0] - answer.run.events[0].time) < 1e-10
+    last = answer.last()
+    assert np.abs(told.states[0, :2] - [last["x"], last["y"]]).max() < 1e-9
+
+
+@pytest.mark.parametrize("name", ["annulus", "tall-2"])
+def test_other_pucks_by_another_integrator(name: str):
+    """On the friction of the law itself, which a grid judges: no table, none of the motion."""
+    tables, answer = case_named(name).tables, reference_case(name)
+    puck, launch = tables["puck"], tables["launch"]
+    ratio = puck["radius"] * launch["spin"] / launch["velocity"][0]
+    law, gyration = puck.get("pressure", "uniform"), puck.get("gyration", math.sqrt(0.5))
+    truth = stops_by_truth(law, answer.pieces[0].delta, gyration, np.array([math.log(ratio)]))
+    q, j = answer.speed_scale, answer.rate_scale
+    last = answer.last()
+    ours = [answer.end_time * j / q, last["x"] * j / q**2, last["y"] * j / q**2]
+    assert np.abs(np.array(ours) - truth[:3, 0]).max() < 1e-10
 
 
 @pytest.mark.parametrize("name", ["coin", "tall-1", "turntable", "incline-above"])
