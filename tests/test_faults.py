@@ -113,7 +113,10 @@ def test_a_store_on_the_command_line(tmp_path: Path):
                    capture_output=True)  # fmt: skip
     command = [*PUCK, "sweep", "--speed", "0:2:600", "--w0", "0:5:600", "--table", "rough.h5",
                "--tol", "1e-5", "-o", "m.zarr", "--threads", "1"]  # fmt: skip
-    process = subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True)
+    process = subprocess.Popen(
+        command, cwd=tmp_path, stderr=subprocess.PIPE, text=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # ignored in a background
+    )  # fmt: skip
     while not (tmp_path / "m.zarr").exists() and process.poll() is None:
         time.sleep(0.01)
     process.send_signal(signal.SIGINT)
