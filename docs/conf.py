@@ -80,6 +80,7 @@ html_theme_options = {
 html_context = {"default_mode": "auto"}
 html_static_path: list[str] = []
 html_extra_path = ["_extra"]
+(HERE / "_extra").mkdir(exist_ok=True)
 html_show_sourcelink = False
 
 
