@@ -17,7 +17,6 @@ from puck_tables.errors import InputError, OutputError
 if TYPE_CHECKING:
     from puck_tables.bulk.spreads import Spread
 
-MOST_LAWS = 100
 _RINGS = re.compile(r"annulus:([^:]*):([^:]*):([0-9]{1,10})")
 
 
@@ -84,6 +83,8 @@ def laws_given(pressure: tuple[str, ...]) -> list[str]:
         If they are too many.
     """
     import numpy as np
+
+    from puck_tables.stopping.population import MOST_LAWS
 
     laws: list[str] = []
     for one in pressure or ("uniform",):

@@ -1,0 +1,165 @@
+"""What ``puck fit`` prints: what was found, in words and numbers."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from puck_tables.fitting.numbers import Number
+    from puck_tables.fitting.outcome import Fit
+
+
+def report(found: Fit) -> str:
+    """What was found, plainly first, then the numbers."""
+    lines = [_plainly(found), ""]
+    for name, number in found.numbers.items():
+        if number.how != "known":
+            lines.append(f"{name:<15} {_shown(number)}")
+    known = [
+        f"{name} {number.value:g}{_unit(number)}" for name, number in found.numbers.items()
+        if number.how == "known"
+    ]  # fmt: skip
+    lines += [
+        f"{'taken as known':<15} {', '.join(known)}",
+        f"{'pressure':<15} {found.puck.body.law.name}",
+    ]
+    lines += [f"{'correlation':<15} {text}" for text in _correlations(found)]
+    for launch in found.launches:
+        v, w = launch.numbers, launch.numbers["launch_spin"]
+        lines += [
+            f"\nlaunch of {launch.name}, at {launch.time:g} s",
+            f"{'  place':<15} ({launch.place[0]:.6g}, {launch.place[1]:.6g}) m "
+            f"+- {v['launch_x'].error:.2g}, {v['launch_y'].error:.2g}",
+            f"{'  velocity':<15} ({launch.velocity[0]:.6g}, {launch.velocity[1]:.6g}) m/s "
+            f"+- {v['launch_vx'].error:.2g}, {v['launch_vy'].error:.2g}",
+            f"{'  spin':<15} {_shown(w)}",
+        ]
+    for one in found.impacts:
+        degrees = math.degrees(one.wall) % 360.0
+        what = f"{one.partner}" if one.partner else "a wall"
+        lines += [
+            f"\nimpact of {one.track} at {one.time:.6g} s, ({one.place[0]:.5g}, "
+            f"{one.place[1]:.5g}) m, on {what} at {degrees:.4g} degrees from x",
+            f"{'  restitution':<15} {_shown(one.restitution)}",
+            f"{'  rim':<15} {_shown(one.rim)} (tangential over normal impulse)",
+        ]
+        if one.mass_ratio is not None and one.mass_ratio.how != "known":
+            lines.append(f"{'  mass ratio':<15} {_shown(one.mass_ratio)}")
+    angled = any(film.angle is not None for film in found.estimate.problem.films)
+    how = ["given" if known else "from the residuals" for known in found.noise_known[:2]]
+    noise = f"places {1e3 * found.noise[0]:.3g} mm ({how[0]})"
+    if angled:
+        noise += f", angles {1e3 * found.noise[1]:.3g} mrad ({how[1]})"
+    if found.jitter:
+        how_stamps = "given" if found.noise_known.jitter else "from the residuals"
+        noise += f", time stamps {1e3 * found.jitter:.3g} ms ({how_stamps})"
+    lines += [
+        "",
+        f"{'noise':<15} {noise}",
+        f"{'chi^2':<15} {found.chi2:.5g} for {found.degrees} degrees of freedom",
+        f"{'left out':<15} {100.0 * found.outliers:.3g} % of the observations, as outliers",
+        *_cut_off(found),
+        f"{'residuals':<15} probability of such a pattern by chance: runs {found.runs:.2g}, "
+        f"drift {found.drift:.2g}",
+    ]
+    if speeds := found.estimate.problem.asked.speeds:
+        fewer = found.constant_chi2 - found.chi2
+        lines += [
+            "", f"{'slip speeds':<15} {', '.join(f'{u:g}' for u in speeds)} m/s, of friction_0 and "
+            f"so on; chi^2 is {fewer:.4g} less than with one friction for {len(speeds) - 1} more "
+            "numbers",
+        ]  # fmt: skip
+    if found.laws:
+        lines += ["", *_laws(found)]
+    if found.held_out is not None:
+        held = found.held_out
+        lines += [
+            "",
+            f"{'held out':<15} {held.z_place.size + held.z_angle.size} observations of "
+            f"{', '.join(held.tracks)}: {100.0 * held.inside:.3g} % within 95 % of their "
+            f"prediction, z rms {held.rms:.3g} (1 if all is right)",
+        ]
+    return "\n".join(lines)
+
+
+def _cut_off(found: Fit) -> list[str]:
+    """Frames at either end that are no free motion."""
+    return [
+        f"{'cut off':<15} the first {first} and the last {last} frames of {name}: no free motion"
+        for name, first, last in found.left_out
+        if first or last
+    ]
+
+
+def _plainly(found: Fit) -> str:
+    """What was found and what was not, in sentences."""
+    sentences = []
+    friction, tilt = found.numbers["friction"], found.numbers["delta"]
+    if friction.determined:
+        sentences.append(
+            f"The friction coefficient is {_rounded(friction)}: sliding without spin the puck "
+            f"would lose {found['decel'].value:.4g} m/s each second."
+        )
+    elif found["decel"].determined:
+        sentences.append(f"The puck would slide to rest at {_rounded(found['decel'])} m/s^2.")
+    if tilt.determined and tilt.how != "known":
+        sentences.append(
+            f"Its dimensionless height is {_rounded(tilt)}: so much friction tips its load forward."
+        )
+    sentences += [*found.blind, *found.remarks]
+    if found.complaints:
+        sentences += [f"{text}." for text in found.complaints]
+        sentences.append(
+            "So this may be no freely sliding puck, or not all of its motion: look at --plot, and "
+            "give --since and --until if a hand or a wall touches it."
+        )
+    return "\n".join(sentences)
+
+
+def _rounded(number: Number) -> str:
+    """Value ± error, to two digits of the error."""
+    if not (number.error > 0.0 and math.isfinite(number.error)):
+        return f"{number.value:.6g}"
+    digits = max(0, 1 - math.floor(math.log10(number.error)))
+    return f"{number.value:.{digits}f} +- {number.error:.{digits}f}"
+
+
+def _unit(number: Number) -> str:
+    return "" if number.unit == "1" else f" {number.unit}"
+
+
+def _shown(number: Number) -> str:
+    """A number with its error and interval."""
+    if number.how == "known":
+        return f"{number.value:g}{_unit(number)} (known)"
+    if not number.determined:
+        return "not determined by these tracks"
+    how = ", by profile likelihood" if number.profiled else ""
+    follows = ", follows" if number.how == "follows" else ""
+    low, high = f"{number.low:.6g}", f"{number.high:.6g}"
+    return f"{_rounded(number)}{_unit(number)}   95 %: {low} to {high}{how}{follows}"
+
+
+def _correlations(found: Fit) -> list[str]:
+    """Of each two numbers that were found."""
+    table = found.correlation()
+    names = list(table)
+    return [
+        f"{one} and {other}: {table[one][other]:.3f}"
+        for n, one in enumerate(names) for other in names[n + 1 :]
+        if math.isfinite(table[one][other])
+    ]  # fmt: skip
+
+
+def _laws(found: Fit) -> list[str]:
+    """The laws compared, line by line."""
+    best = found.laws[0]
+    lines = [f"{'law':<18} {'chi^2':>10} {'more':>9} {'unknowns':>9} {'weight':>8}  found"]
+    for law in found.laws:
+        numbers = ", ".join(f"{name} {value:.4g}" for name, value in law.numbers.items())
+        lines.append(
+            f"{law.name:<18} {law.chi2:>10.5g} {law.chi2 - best.chi2:>9.4g} {law.unknowns:>9} "
+            f"{law.weight:>8.2g}  {numbers}"
+        )
+    return lines
