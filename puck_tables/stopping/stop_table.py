@@ -41,8 +41,8 @@ from puck_tables.stopping.lookup import (
 from puck_tables.stopping.orbit import ORBIT_WIDTH, REGULAR
 from puck_tables.stopping.orbit_lookup import PUCK_ROWS
 from puck_tables.stopping.slopes import Slopes, slopes_of
+from puck_tables.stopping.stop_splines import by_power, inverse_splines, orbit_splines, side_by_side
 from puck_tables.table.check import CheckReport
-from puck_tables.table.fit import clamped_coefficients
 from puck_tables.table.table import Axis, Progress, Table
 
 UPPER_DELTA = 1.0
@@ -63,14 +63,6 @@ _INTERPRETATION = (
     "kappa = d ln|c - c0|/d ln Q and h0 = d heading/d ln Q at c0. "
     "Salnikova, Treschev, Gallyamov 2012, eq. 6.2-6.7 and section 7."
 )
-
-
-def _side_by_side(by_power: FloatArray) -> FloatArray:
-    """Coefficients (power, node, side, function) as (2 sides, nodes, powers × functions)."""
-    ordered = by_power.transpose(2, 1, 0, 3)
-    kept = np.ascontiguousarray(ordered).reshape(*ordered.shape[:2], -1)
-    kept.flags.writeable = False
-    return kept
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -127,12 +119,12 @@ class StopTable(Table):
     @cached_property
     def stop_coefficients(self) -> FloatArray:
         """T, along, across as the kernels of curve_lookup read them."""
-        return self._coefficients([0, 1, 2], STOP_POWERS, STOP_ROW, by_power=True)
+        return self._coefficients([0, 1, 2], STOP_POWERS, STOP_ROW, power_first=True)
 
     @cached_property
     def curve_coefficients(self) -> FloatArray:
         """Body angle, S/δ, path length, κR as the kernels of curve_lookup read them."""
-        return self._coefficients([4, 6, 3, 5], HEIGHTS, CURVE_ROW, by_power=False)
+        return self._coefficients([4, 6, 3, 5], HEIGHTS, CURVE_ROW, power_first=False)
 
     @cached_property
     def constants(self) -> FloatArray:
@@ -150,12 +142,12 @@ class StopTable(Table):
     @cached_property
     def time_inverse(self) -> FloatArray:
         """From the time that is left to the slip ratio."""
-        return self._inverse(with_time=True)
+        return inverse_splines(self, with_time=True)
 
     @cached_property
     def turn_inverse(self) -> FloatArray:
         """From Q to the slip ratio."""
-        return self._inverse(with_time=False)
+        return inverse_splines(self, with_time=False)
 
     @cached_property
     def slopes(self) -> Slopes:
@@ -165,69 +157,34 @@ class StopTable(Table):
     @cached_property
     def launch_coefficients(self) -> FloatArray:
         """Body angle, S/δ, κR, path length: as :mod:`known` reads them."""
-        n = self.axis.cells
-        values = self.values[:, :, [4, 6, 5, 3]]
-        sides = np.stack([values[: n + 1], values[: n - 1 : -1]])  # both from k = 0 to k = 1
-        splines = clamped_coefficients(np.moveaxis(sides, 1, 0)) / 6.0  # node, side, height, f
-        return _side_by_side(height_polynomials(np.moveaxis(splines, 2, 0)))
+        return side_by_side(by_power(self._sides([4, 6, 5, 3])))
 
     @cached_property
     def orbit_coefficients(self) -> FloatArray:
         """What :mod:`puck_tables.stopping.orbit_lookup` reads."""
-        values = self._orbit(with_time=True)
-        by_power = np.zeros((*values.shape[:3], ORBIT_WIDTH))
-        by_power[..., : values.shape[3]] = values
-        return _side_by_side(by_power)
+        values = orbit_splines(self, with_time=True)
+        padded = np.zeros((*values.shape[:3], ORBIT_WIDTH))
+        padded[..., : values.shape[3]] = values
+        return side_by_side(padded)
 
     @cached_property
     def turn_coefficients(self) -> FloatArray:
         """The heading's regular part over the place by Q, (2, cells + 3, 9)."""
-        return _side_by_side(self._orbit(with_time=False)[..., REGULAR:])
+        return side_by_side(orbit_splines(self, with_time=False)[..., REGULAR:])
 
-    def _orbit(self, with_time: bool) -> FloatArray:
-        """Spline coefficients over the place by time or Q: power, node, side, function."""
-        from puck_tables.stopping.orbit import fill_orbit
-
-        ratios = self._ratios(with_time)
-        values = np.empty((*ratios.shape, REGULAR + 1))
-        delta = heights()
-        turning = np.array([limits(one).turn for one in delta.tolist()])
-        fill_orbit(
-            self.stop_coefficients, self.curve_coefficients, ratios, turning, delta, with_time,
-            values,
-        )  # fmt: skip
-        splines = clamped_coefficients(np.moveaxis(values, 1, 0)) / 6.0
-        return height_polynomials(np.moveaxis(splines, 2, 0))
-
-    def _ratios(self, with_time: bool) -> FloatArray:
-        """2w/y at the nodes (2, cells + 1, heights)."""
-        from puck_tables.stopping.curve_lookup import fill_inverse
-
-        values = np.empty((2, self.axis.cells + 1, HEIGHTS))
-        fill_inverse(
-            self.stop_coefficients, self.curve_coefficients, self.constants, with_time,
-            heights(), values,
-        )  # fmt: skip
-        return values
-
-    def _inverse(self, with_time: bool) -> FloatArray:
-        values = self._ratios(with_time)
-        splines = clamped_coefficients(np.moveaxis(values, 1, 0)) / 6.0  # node, side, height
-        by_power = height_polynomials(np.moveaxis(splines, 2, 0))
-        return np.ascontiguousarray(by_power.transpose(2, 1, 0))
+    def _sides(self, functions: list[int], thinning: int = 1) -> FloatArray:
+        """Some functions at the nodes (2, cells + 1, heights, functions), from k = 0 to k = 1."""
+        n, values = self.axis.cells // thinning, self.values[::thinning, :, functions]
+        return np.stack([values[: n + 1], values[: n - 1 : -1]])
 
     def _coefficients(
-        self, functions: list[int], powers: int, row: int, by_power: bool
+        self, functions: list[int], powers: int, row: int, power_first: bool
     ) -> FloatArray:
-        n = self.axis.cells
-        values = self.values[:, :, functions]
-        sides = np.stack([values[: n + 1], values[: n - 1 : -1]])  # both from k = 0 to k = 1
-        splines = clamped_coefficients(np.moveaxis(sides, 1, 0)) / 6.0  # node, side, height, f
-        powers_first = height_polynomials(np.moveaxis(splines, 2, 0), powers)
         # power, node, side, function → side, node, then the faster index last
-        order = (2, 1, 0, 3) if by_power else (2, 1, 3, 0)
-        ordered = powers_first.transpose(order).reshape(2, n + 3, -1)
-        padded = np.zeros((2, n + 3, row))
+        order = (2, 1, 0, 3) if power_first else (2, 1, 3, 0)
+        found = by_power(self._sides(functions), powers).transpose(order)
+        ordered = found.reshape(*found.shape[:2], -1)
+        padded = np.zeros((*ordered.shape[:2], row))
         padded[:, :, : ordered.shape[2]] = ordered
         padded.flags.writeable = False
         return padded
@@ -250,16 +207,13 @@ class StopTable(Table):
         """
         if (powers, thinning) in self._cuts:
             return self._cuts[powers, thinning]
-        n = self.axis.cells // thinning
-        values = self.values[::thinning, :, :3]
-        sides = np.stack([values[: n + 1], values[: n - 1 : -1]])
-        splines = np.moveaxis(clamped_coefficients(np.moveaxis(sides, 1, 0)) / 6.0, 2, 0)
-        by_power = np.zeros((2, n + 3, powers, WIDTH))
-        times = height_polynomials(splines[..., 0], powers)  # power, node, side
-        places = height_polynomials(splines[..., 1:], powers - 1)
-        by_power[..., 0] = times.transpose(2, 1, 0)
-        by_power[:, :, :-1, 1:3] = places.transpose(2, 1, 0, 3)
-        kept = by_power.reshape(2, n + 3, powers * WIDTH)
+        sides = self._sides([0, 1, 2], thinning)
+        times = by_power(sides[..., 0], powers)  # power, node, side
+        places = by_power(sides[..., 1:], powers - 1)
+        found = np.zeros((2, times.shape[1], powers, WIDTH))
+        found[..., 0] = times.transpose(2, 1, 0)
+        found[:, :, :-1, 1:3] = places.transpose(2, 1, 0, 3)
+        kept = found.reshape(2, -1, powers * WIDTH)
         kept.flags.writeable = False
         self._cuts[powers, thinning] = kept
         return kept

@@ -1,0 +1,72 @@
+"""Spline coefficients of a stop table: over the place on the axis of slip, and over the height."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.stopping.axes import HEIGHTS, height_polynomials, heights
+from puck_tables.stopping.curve import limits
+from puck_tables.stopping.curve_lookup import fill_inverse
+from puck_tables.stopping.orbit import REGULAR, fill_orbit
+from puck_tables.table.fit import clamped_coefficients
+
+if TYPE_CHECKING:
+    from puck_tables.stopping.stop_table import StopTable
+
+
+def by_power(nodes: FloatArray, powers: int = HEIGHTS) -> FloatArray:
+    """Coefficients (powers, nodes + 2, 2, …) from values (2 sides, nodes, heights, …).
+
+    Powers of 2δ² − 1, ascending; a sixth of the B-splines' weights, from one end of a side to φ =
+    π/4.
+
+    Examples
+    --------
+    >>> by_power(np.ones((2, 4, HEIGHTS))).shape
+    (9, 6, 2)
+    """
+    splines = clamped_coefficients(np.moveaxis(nodes, 1, 0)) / 6.0  # node, side, height, …
+    return height_polynomials(np.moveaxis(splines, 2, 0), powers)
+
+
+def side_by_side(coefficients: FloatArray) -> FloatArray:
+    """Coefficients (power, node, side, function) as (2 sides, nodes, powers × functions).
+
+    Examples
+    --------
+    >>> side_by_side(np.zeros((9, 6, 2, 4))).shape
+    (2, 6, 36)
+    """
+    ordered = coefficients.transpose(2, 1, 0, 3)
+    kept = np.ascontiguousarray(ordered).reshape(*ordered.shape[:2], -1)
+    kept.flags.writeable = False
+    return kept
+
+
+def inverse_splines(table: StopTable, with_time: bool) -> FloatArray:
+    """From the time that is left, or from Q, to the slip ratio, (2, cells + 3, 9)."""
+    return np.ascontiguousarray(by_power(_ratios(table, with_time)).transpose(2, 1, 0))
+
+
+def orbit_splines(table: StopTable, with_time: bool) -> FloatArray:
+    """The functions of an orbit over the place by time or Q: (power, node, side, function)."""
+    ratios, delta = _ratios(table, with_time), heights()
+    values = np.empty((*ratios.shape, REGULAR + 1))
+    turning = np.array([limits(one).turn for one in delta.tolist()])
+    fill_orbit(
+        table.stop_coefficients, table.curve_coefficients, ratios, turning, delta, with_time, values
+    )
+    return by_power(values)
+
+
+def _ratios(table: StopTable, with_time: bool) -> FloatArray:
+    """2w/y at the nodes (2, cells + 1, heights)."""
+    values = np.empty((2, table.axis.cells + 1, HEIGHTS))
+    fill_inverse(
+        table.stop_coefficients, table.curve_coefficients, table.constants, with_time, heights(),
+        values,
+    )  # fmt: skip
+    return values
