@@ -15,6 +15,7 @@ from puck_tables.cli.options import (
     Vector,
     body_options,
     deliver,
+    json_option,
     output_options,
     prepare_outputs,
     puck_given,
@@ -57,7 +58,7 @@ if TYPE_CHECKING:
 @puck_options(mass=False)
 @click.option("--delta", type=NUMBER, help="delta = 2 f h / r instead.  [default: 0.5]")
 @body_options()
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
+@json_option
 @click.option(
     "-o",
     "--output",

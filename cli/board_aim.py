@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import json
 import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
-from puck_tables.cli.options import deliver, printable, progress
+from puck_tables.cli.options import deliver, progress, reported
 
 if TYPE_CHECKING:
     from puck_tables.world.aimed import BoardAim
@@ -29,10 +28,7 @@ def aim_on_board(
     deliver(found, output, plot if len(found) else None, overwrite)
     if plot is not None and not len(found):
         click.echo(f"no picture: there is nothing to draw in {plot}", err=True)
-    if as_json:
-        click.echo(json.dumps(found.summary(), allow_nan=False))
-    else:
-        click.echo(printable(_report(found)))
+    reported(found, False, as_json, _report)
 
 
 def number_or_name(given: str | None) -> int | str | None:

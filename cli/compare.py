@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -15,10 +14,10 @@ from puck_tables.cli.options import (
     Times,
     deliver,
     explain_option,
-    explained,
+    json_option,
     output_options,
     prepare_outputs,
-    printable,
+    reported,
     told,
 )
 
@@ -63,7 +62,7 @@ _SHORT = {
     help="When the launch is in the files, s.",
 )
 @explain_option
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
+@json_option
 @click.option(
     "-o",
     "--output",
@@ -107,12 +106,7 @@ def compare(
 
         save_page(found, report, overwrite)
         told(report)
-    if explain:
-        explained(found)
-    if as_json:
-        click.echo(json.dumps(found.summary(), allow_nan=False))
-    else:
-        click.echo(printable(in_words(found)))
+    reported(found, explain, as_json, in_words)
 
 
 def in_words(found: Comparison) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from pathlib import Path
 from typing import Any
@@ -15,11 +14,11 @@ from puck_tables.cli.options import (
     body_options,
     deliver,
     explain_option,
-    explained,
+    json_option,
     output_options,
     prepare_outputs,
-    printable,
     progress,
+    reported,
     told,
 )
 from puck_tables.cli.track_options import read_all, track_options
@@ -119,7 +118,7 @@ from puck_tables.errors import InputError
     "rest.",
 )
 @explain_option
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
+@json_option
 @click.option(
     "-o",
     "--output",
@@ -201,12 +200,7 @@ def fit(
         found.save(output, overwrite)
         told(output)
     deliver(found, None if is_json else output, plot, overwrite)
-    if explain:
-        explained(found)
-    if as_json:
-        click.echo(json.dumps(found.summary(), allow_nan=False))
-    else:
-        click.echo(printable(report(found)))
+    reported(found, explain, as_json, report)
 
 
 def _named(given: tuple[str, ...], option: str) -> dict[str, str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import os
 import re
@@ -192,6 +193,11 @@ def table_option(command: Command) -> Command:
     )(command)  # fmt: skip
 
 
+def json_option(command: Command) -> Command:
+    """A report as JSON."""
+    return click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")(command)
+
+
 def explain_option(command: Command) -> Command:
     """Whether to say what the tolerance led to."""
     return click.option(
@@ -202,6 +208,16 @@ def explain_option(command: Command) -> Command:
 def explained(result: Result) -> None:
     """Say on stderr how a result was got."""
     click.echo(printable(result.explain()), err=True)
+
+
+def reported(result: Any, explain: bool, as_json: bool, in_words: Callable[[Any], str]) -> None:
+    """A report on stdout, in words or as JSON; if asked for, on stderr how it was got."""
+    if explain:
+        explained(result)
+    if as_json:
+        click.echo(json.dumps(result.summary(), allow_nan=False))
+    else:
+        click.echo(printable(in_words(result)))
 
 
 def puck_given(

@@ -14,10 +14,10 @@ from puck_tables.cli.options import (
     Times,
     deliver,
     explain_option,
-    explained,
+    json_option,
     output_options,
     prepare_outputs,
-    printable,
+    reported,
 )
 
 from puck_tables.errors import InputError
@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 )
 @click.option("--friction", is_flag=True, help="The same at 81 of them from 0.01 to 100.")
 @explain_option
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
+@json_option
 @click.option(
     "-o",
     "--output",
@@ -93,12 +93,7 @@ def reference(
 
         found = reference_case(case, **frames)
     deliver(found, output, plot, overwrite)
-    if explain:
-        explained(found)
-    if as_json:
-        click.echo(json.dumps(found.summary(), allow_nan=False))
-    else:
-        click.echo(printable((_friction if over else report)(found)))
+    reported(found, explain, as_json, _friction if over else report)
 
 
 def _listed(as_json: bool) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 import tomllib
 from collections.abc import Callable
@@ -15,9 +14,8 @@ from puck_tables.cli.options import (
     DEFAULT_DECEL,
     DEFAULT_DELTA,
     deliver,
-    explained,
     filmed,
-    printable,
+    reported,
 )
 from puck_tables.cli.world_report import report as report_of_several
 
@@ -172,12 +170,7 @@ def run_scene(
     run: Any = scene.simulate(wanted)  # a report needs no states
     deliver(run, output, plot, overwrite)
     filmed(run, movie, overwrite)
-    if explain:
-        explained(run)
-    if as_json:
-        click.echo(json.dumps(run.summary(), allow_nan=False))
-    else:
-        click.echo(printable((report_of_several if scene.is_board else report)(run)))
+    reported(run, explain, as_json, report_of_several if scene.is_board else report)
 
 
 def report(run: SceneRun) -> str:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import json
 import math
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,14 +17,15 @@ from puck_tables.cli.options import (
     body_options,
     deliver,
     explain_option,
-    explained,
     filmed,
+    json_option,
     open_table,
     output_options,
     prepare_outputs,
     printable,
     puck_given,
     puck_options,
+    reported,
     table_option,
 )
 from puck_tables.cli.scene_run import files_read, run_scene, scene_options, scene_tables
@@ -74,7 +75,7 @@ _LAUNCHED = (
 @explain_option
 @click.option("--exact", is_flag=True, help="Closed forms instead of the table.")
 @table_option
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
+@json_option
 @click.option(
     "-o",
     "--output",
@@ -143,16 +144,11 @@ def simulate(
     )  # fmt: skip
     deliver(run, output, plot, overwrite)
     filmed(run, movie, overwrite)
-    if explain:
-        explained(run)
-    if as_json:
-        click.echo(json.dumps(run.summary(), allow_nan=False))
-    else:
-        given = fit_path is not None or any(
-            x is not None for x in (radius, height, friction, delta, decel, gyration)
-        )
-        note = "" if given else "   (defaults: see --help for a real puck)"
-        click.echo(printable(report(run, note)))
+    given = fit_path is not None or any(
+        x is not None for x in (radius, height, friction, delta, decel, gyration)
+    )
+    note = "" if given else "   (defaults: see --help for a real puck)"
+    reported(run, explain, as_json, partial(report, note=note))
 
 
 def _fitted(
