@@ -30,7 +30,7 @@ from puck_tables.motion.run import Run, at_constant_slip, integrated
 from puck_tables.motion.state import HEADING, ORIENTATION, PUCK_X, PUCK_Y, SPIN, STATE_ROWS, T
 from puck_tables.motion.steppers import DORMAND_PRINCE, Stepping
 from puck_tables.stopping.jacobian import state_jacobians
-from puck_tables.stopping.states import known_pucks, looked_up
+from puck_tables.stopping.state_values import known_pucks, looked_up
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.stopping.varied import Varied, natural_states, varied_by
 from puck_tables.table.flow_section import flow_at_one_height, flow_of_table

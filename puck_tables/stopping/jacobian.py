@@ -206,7 +206,7 @@ def state_jacobians(
 ) -> tuple[FloatArray, FloatArray]:
     """States (6, n) of plain ``pucks`` (20, m), and derivatives (n, 6, 7); ``which`` (n,) when.
 
-    ``pucks``: as :func:`puck_tables.stopping.states.known_pucks` gives them.
+    ``pucks``: as :func:`puck_tables.stopping.state_values.known_pucks` gives them.
     """
     from puck_tables.stopping.state_jacobian import fill_state_jacobians
 

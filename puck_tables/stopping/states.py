@@ -9,16 +9,11 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.executor import run_chunks
-from puck_tables._core.real import broadcast, checked_threads, finite_array, real_view
+from puck_tables._core.real import broadcast, checked_threads, real_view
 from puck_tables.contact.laws import HOMOGENEOUS, Law, law_of
 from puck_tables.errors import InputError
 from puck_tables.io.dataset import Dataset, variable
 from puck_tables.motion.body import Body, body_of, plain_up_to
-from puck_tables.motion.frame import frame_of
-from puck_tables.motion.friction import source_of
-from puck_tables.motion.limits import regime_of
-from puck_tables.motion.run import solve
 from puck_tables.motion.state import (
     HEADING,
     ORIENTATION,
@@ -27,7 +22,6 @@ from puck_tables.motion.state import (
     SPEED,
     SPIN,
     STATE_ROWS,
-    T,
 )
 from puck_tables.result import Result
 from puck_tables.stopping.jacobian import (
@@ -39,13 +33,19 @@ from puck_tables.stopping.jacobian import (
     integrated_jacobians,
     state_jacobians,
 )
-from puck_tables.stopping.launches import CHUNK, Launches, fits, in_chunks, launches_in, launches_of
+from puck_tables.stopping.launches import Launches, fits, launches_of
 from puck_tables.stopping.per_height import refuse_many
+from puck_tables.stopping.state_values import (
+    all_looked_up,
+    directions,
+    integrate,
+    known_pucks,
+    looked_up,
+    refuse_times,
+)
 from puck_tables.stopping.stop_table import UPPER_DELTA, StopTable
 from puck_tables.table.table import refuse_other_kind
 
-TOL = 1e-9
-_AT_ONCE = 1 << 11
 _TOO_LARGE = (
     "velocity, spin, radius and decel give a motion too large for floating point: use larger units"
 )
@@ -240,7 +240,7 @@ def states(
         launches.refuse_bad()
     which, moments, shape = _moments_of(launches, times)
     if all_plain and not jacobian:
-        found = _all_looked_up(chosen, launches, which, moments, threads)
+        found = all_looked_up(chosen, launches, which, moments, threads)
         return _states(found, moments, launches, which, shape, _told(launches.size, 0))
     refuse_times(moments)
     rows = launches.matrix
@@ -261,9 +261,9 @@ def states(
         slopes = np.empty((moments.size, len(STATE_NAMES), len(MOMENT_NAMES)))
         slopes[looked] = state_jacobians(chosen, pucks, *some)[1]
         integrated_jacobians(bodies, rows, others, each, moments, slopes)
-    _integrate(bodies, rows, others, each, moments, found, threads)
+    integrate(bodies, rows, others, each, moments, found, threads)
     told = _told(int(plain.sum()), int((~plain).sum()))
-    found[HEADING] += _directions(rows[0], rows[1])[each]
+    found[HEADING] += directions(rows[0], rows[1])[each]
     result = _states(found, moments, launches, which, shape, told)
     if slopes is None:
         return result
@@ -299,54 +299,6 @@ def _moments_of(
     return one.reshape(-1).astype(np.int64), moments, one.shape
 
 
-def refuse_times(moments: FloatArray) -> None:
-    """Refuse times that are no numbers, or negative.
-
-    Raises
-    ------
-    InputError
-    """
-    times = finite_array("time", moments, "s")
-    if not np.all(times >= 0.0):
-        raise InputError(f"time must not be negative, got {times.min():g} s")
-
-
-def _directions(vx: FloatArray, vy: FloatArray) -> FloatArray:
-    """Of launches, 0 for those without speed."""
-    directions: FloatArray = np.arctan2(vy, vx)
-    if not vx.all():  # only then may both be zero, or minus zero
-        directions[(vx == 0.0) & (vy == 0.0)] = 0.0
-    return directions
-
-
-def _all_looked_up(
-    table: StopTable, launches: Launches, which: npt.NDArray[np.int64], moments: FloatArray,
-    threads: int | None,
-) -> FloatArray:  # fmt: skip
-    """States (6, n) of plain launches, with headings from x."""
-    if which.size:
-        pucks = table.pucks(launches, threads)
-        found = looked_up(table, pucks, which, moments, threads)
-        directions = _directions(pucks[0], pucks[1])
-        found[HEADING] += directions[which] if which.size > 1 else directions
-        return found
-    from puck_tables.stopping.orbit_lookup import PUCK_ROWS, fill_orbit_states
-
-    out, orbit, bad = np.empty((STATE_ROWS, moments.size)), table.orbit_coefficients, [0]
-
-    def work(start: int, stop: int) -> None:  # what is known of the launches stays in the cache
-        for first in range(start, stop, _AT_ONCE):
-            last = min(first + _AT_ONCE, stop)
-            pucks = table.fill_pucks(PUCK_ROWS, launches, first, last)
-            bad.append(fill_orbit_states(pucks, which, moments, first, last, orbit, out))
-            out[HEADING, first:last] += _directions(pucks[0], pucks[1])
-
-    in_chunks(work, moments.size, threads)
-    if any(bad):
-        refuse_times(moments)
-    return out
-
-
 def _bodies(pressure: str | Law, gyration: float, delta: FloatArray) -> dict[float, Body]:
     """The pucks of these heights."""
     heights = np.unique(delta)
@@ -355,82 +307,6 @@ def _bodies(pressure: str | Law, gyration: float, delta: FloatArray) -> dict[flo
         return {}
     law = pressure if isinstance(pressure, Law) else law_of(pressure)
     return {height: body_of(law, height, gyration) for height in heights.tolist()}
-
-
-def known_pucks(table: StopTable, launches: FloatArray, threads: int | None = None) -> FloatArray:
-    """Launches (6, m) of plain pucks beside what the table knows of them, (20, m)."""
-    return table.pucks(launches_in(launches), threads)
-
-
-def looked_up(
-    table: StopTable, pucks: FloatArray, which: npt.NDArray[np.int64], moments: FloatArray,
-    threads: int | None = None,
-) -> FloatArray:  # fmt: skip
-    """States (6, n) of plain ``pucks`` (20, m), ``which`` (n,) or (1,) at ``moments`` (n,)."""
-    from puck_tables.stopping.orbit_lookup import fill_orbit_states
-
-    out, orbit, bad = np.empty((STATE_ROWS, moments.size)), table.orbit_coefficients, [0]
-    if moments.size <= CHUNK:
-        bad.append(fill_orbit_states(pucks, which, moments, 0, moments.size, orbit, out))
-    else:
-
-        def work(start: int, stop: int) -> None:
-            bad.append(fill_orbit_states(pucks, which, moments, start, stop, orbit, out))
-
-        in_chunks(work, moments.size, threads)
-    if any(bad):
-        refuse_times(moments)
-    return out
-
-
-def _integrate(
-    bodies: dict[float, Body], launches: FloatArray, pucks: npt.NDArray[np.int64],
-    which: npt.NDArray[np.int64], moments: FloatArray, out: FloatArray, threads: int | None,
-) -> None:  # fmt: skip
-    """States of other ``pucks``, each integrated, into their places in ``out`` (6, n)."""
-    order = np.argsort(which, kind="stable")
-    first = np.searchsorted(which[order], pucks)
-    last = np.searchsorted(which[order], pucks, side="right")
-
-    def work(start: int, stop: int) -> None:
-        for n in range(start, stop):
-            mine, launch = order[first[n] : last[n]], launches[:, pucks[n]]
-            if mine.size:
-                out[:, mine] = states_of(bodies[float(launch[3])], launch, moments[mine])
-
-    run_chunks(work, pucks.size, 1, threads)
-
-
-def states_of(body: Body, launch: FloatArray, times: FloatArray) -> FloatArray:
-    """States of one puck at times (n,) s, integrated.
-
-    Parameters
-    ----------
-    body : Body
-    launch : array (6,): vx, vy, ω, δ, J, r
-    times : array (n,), s, ≥ 0
-
-    Returns
-    -------
-    array (6, n)
-        x, y, heading from that at the launch, body angle, v, ω.
-
-    Examples
-    --------
-    >>> launch = np.array([1.0, 0.0, 0.0, 2.0, 1.0, 1.0])
-    >>> states = states_of(body_of("uniform", 2.0, 0.5**0.5), launch, np.array([0.5, 2.0]))
-    >>> states[0].round(12).tolist()
-    [0.375, 0.5]
-    """
-    vx, vy, spin, _, decel, radius = launch.tolist()
-    frame = frame_of((vx, vy), spin, decel, radius)
-    if frame.slip == 0.0:
-        return np.zeros((STATE_ROWS, times.size))
-    source = source_of(body)
-    regime = regime_of(frame.speed, frame.rim, source.limit, source.limit_width)
-    run, _ = solve(source, regime, frame.speed, frame.rim, TOL)
-    natural = run.states(frame.natural_times(times, float(run.stop[T]) * frame.time))
-    return np.stack(frame.states(*natural))
 
 
 def _states(
