@@ -18,7 +18,13 @@ from puck_tables.cli.options import (
 
 
 @click.command("limit-surface")
-@click.option("--points", type=int, default=181, show_default=True, help="How many slip angles.")
+@click.option(
+    "--points",
+    type=click.IntRange(5, 1_000_001),
+    default=181,
+    show_default=True,
+    help="How many slip angles.",
+)
 @puck_options(mass=True)
 @click.option("--delta", type=NUMBER, help="delta = 2 f h / r instead.  [default: 0.5]")
 @body_options()

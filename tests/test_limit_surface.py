@@ -177,4 +177,4 @@ def test_the_command(tmp_path: Path):
     printed = CliRunner().invoke(main, command[:-2])
     assert printed.stdout.splitlines() == rows
     few = CliRunner().invoke(main, ["limit-surface", "--points", "2"])
-    assert few.exit_code == 2 and "from 5" in few.stderr
+    assert few.exit_code == 2 and "'--points': 2 is not in the range 5<=x" in few.stderr

@@ -66,7 +66,7 @@ def draw_on(axes: Axes, surface: LimitSurface) -> None:
     axes.set_ylim(-reach, reach)
     axes.set_aspect(1.0 / radius, adjustable="box")
     axes.grid(color="#e4e4e4", linewidth=0.6)
-    axes.legend(frameon=False, fontsize=8, loc="center left")
+    axes.legend(frameon=False, fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=3)
 
 
 def _section(model: Model) -> tuple[FloatArray, FloatArray]:
