@@ -69,6 +69,7 @@ def test_friction_over_slip_speed_is_found(true, tmp_path):
         ({"slip_speeds": SPEEDS, "free": ["friction", "drag"]}, "drag"),
         ({"slip_speeds": SPEEDS, "fixed": {"friction": 0.2}}, "do not give the friction"),
         ({"slip_speeds": [0.0, 1.0]}, "give speeds up to 3.7"),
+        ({"slip_speeds": SPEEDS, "fixed": {"delta": 1.5}}, "delta = 2 f h/r is 1.5"),
         ({"free": ["friction_1"]}, "slip_speeds="),
     ],
 )

@@ -21,6 +21,7 @@ from puck_tables.fitting.given import (
     jitter_given,
     noise_given,
     refuse_faster,
+    refuse_opening,
     refuse_tipping,
     rows_given,
     speeds_given,
@@ -181,6 +182,7 @@ def fit(
     if speeds:
         refuse_faster(speeds, found)
         found = _over_speeds(found, speeds, between, known)
+        refuse_opening(found)
     say(1, steps)
     certainty = _certainty(found, known)
     rivals = rivals_of(found, certainty)

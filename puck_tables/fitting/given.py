@@ -175,11 +175,11 @@ def speeds_given(given: Any, between: Any) -> tuple[float, ...]:
     if given is None:
         return ()
     if isinstance(given, str) or not isinstance(given, Iterable):
-        raise InputError(f"slip_speeds must be a list of speeds in m/s, got {given!r:.40}")
+        raise InputError(f"the slip speeds must be a list of speeds in m/s, got {given!r:.40}")
     speeds = tuple(real("a slip speed", value, "m/s") for value in given)
     if not 2 <= len(speeds) <= MOST_NODES or speeds[0] != 0.0 or (np.diff(speeds) <= 0.0).any():
         raise InputError(
-            f"slip_speeds must be 2 to {MOST_NODES} speeds in m/s that ascend from 0, got "
+            f"the slip speeds must be 2 to {MOST_NODES} speeds in m/s that ascend from 0, got "
             f"{', '.join(f'{speed:g}' for speed in speeds)}"
         )
     return speeds
@@ -200,8 +200,28 @@ def refuse_faster(speeds: tuple[float, ...], found: Estimate) -> None:
     )
     if fastest > speeds[-1]:
         raise InputError(
-            f"the puck slips at up to {fastest:.4g} m/s, but the last of slip_speeds is "
+            f"the puck slips at up to {fastest:.4g} m/s, but the last of the slip speeds is "
             f"{speeds[-1]:g} m/s: give speeds up to {math.ceil(10.0 * fastest) / 10.0:g}"
+        )
+
+
+def refuse_opening(found: Estimate) -> None:
+    """Refuse a puck so tall, for the largest friction that was found, that its base opens.
+
+    Raises
+    ------
+    InputError
+    """
+    problem = found.problem
+    numbers = problem.found(found.x)
+    law = problem.asked.speed_law(numbers)
+    _, delta, _ = problem.asked.scales(numbers)
+    slips = np.linspace(0.0, law.top_speed, 1001)
+    largest = float(delta * law(slips).max() / law(0.0))
+    if largest > 1.0:
+        raise InputError(
+            f"where friction is largest delta = 2 f h/r is {largest:.4g}: a friction over slip "
+            "speed is found where it is at most 1, so fix a lower height"
         )
 
 
