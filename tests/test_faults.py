@@ -15,7 +15,10 @@ from pucks import sweep
 
 from puck_tables import Table
 
-PUCK = [sys.executable, "-c", "from puck_tables.cli.main import main; main()"]
+MAIN = "from puck_tables.cli.main import main; main()"
+PUCK = [sys.executable, "-c", MAIN]
+# a suite in the background ignores it
+HEARING = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler); "
 # integrated, so that there is something to interrupt
 GRID = {"spin": np.linspace(-3.0, 3.0, 150), "speed": np.linspace(0.0, 2.0, 150)}
 
@@ -114,8 +117,8 @@ def test_a_store_on_the_command_line(tmp_path: Path):
     command = [*PUCK, "sweep", "--speed", "0:2:600", "--w0", "0:5:600", "--table", "rough.h5",
                "--tol", "1e-5", "-o", "m.zarr", "--threads", "1"]  # fmt: skip
     process = subprocess.Popen(
-        command, cwd=tmp_path, stderr=subprocess.PIPE, text=True,
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # ignored in a background
+        [sys.executable, "-c", HEARING + MAIN, *command[len(PUCK) :]],
+        cwd=tmp_path, stderr=subprocess.PIPE, text=True,
     )  # fmt: skip
     while not (tmp_path / "m.zarr").exists() and process.poll() is None:
         time.sleep(0.01)
