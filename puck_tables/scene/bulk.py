@@ -78,7 +78,7 @@ def follow_many(
     no_frames = np.empty(0)
     row = np.empty((1, FRAME_COLUMNS))
     events = np.empty((event_limit, EVENT_COLUMNS))
-    desk = desk_for(bounds)
+    desk = desk_for(bounds, len(regions.parts.patches))
     for n in range(len(states)):
         ask = Ask(
             asks[n, 0], to_the_end, tolerance, asks[n, 2:], asks[n, 1], step_limit, 0.0, AS_IT_COMES

@@ -9,8 +9,12 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
+import numpy.typing as npt
+
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
+from puck_tables.scene.astride import Parts, Under
 from puck_tables.scene.forces import Forces
 
 if TYPE_CHECKING:
@@ -47,27 +51,42 @@ class Regions(NamedTuple):
 
     ``load``, ``delta``: arrays (regions,); ``cuts``: (regions, …), see
     :func:`puck_tables.motion.equations.ratios_at`; ``by_speed`` takes the place of all.
+    ``astride`` (regions,): where the base lies on several of the frictions of ``parts``; there load
+    and δ are the largest of them.
     """
 
     load: FloatArray
     delta: FloatArray
     cuts: FloatArray
     by_speed: BySpeed
+    astride: npt.NDArray[np.bool_]
+    parts: Parts
 
 
 class Dry(NamedTuple):
-    """Dry friction in one region; no load: none."""
+    """Dry friction in one region; no load: none.  ``under``: see :mod:`.astride`."""
 
     load: float
     delta: float
     cut: FloatArray
     by_speed: BySpeed
+    under: Under
 
 
 @inlined
 def dry_in(regions: Regions, region: int) -> Dry:
-    """The friction of one of the regions."""
-    return Dry(regions.load[region], regions.delta[region], regions.cuts[region], regions.by_speed)
+    """The friction of one of the regions; of one that is astride, with the base at (0, 0)."""
+    return Dry(
+        regions.load[region], regions.delta[region], regions.cuts[region], regions.by_speed,
+        Under(regions.astride[region], 0.0, 0.0, regions.parts),
+    )  # fmt: skip
+
+
+@inlined
+def dry_at(dry: Dry, x: float, y: float) -> Dry:
+    """The same with the base at a place, which matters where it is astride."""
+    under = Under(dry.under.astride, x, y, dry.under.parts)
+    return Dry(dry.load, dry.delta, dry.cut, dry.by_speed, under)
 
 
 class Surface(NamedTuple):

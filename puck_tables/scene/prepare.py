@@ -25,11 +25,11 @@ from puck_tables.scene.ingredients import (
     PIVOT,
     RAIL,
     Body,
-    Dry,
     Model,
     Regions,
     Stretch,
     Surface,
+    dry_in,
     hold_of,
 )
 from puck_tables.scene.leaning import LEAN_COLUMNS
@@ -37,6 +37,7 @@ from puck_tables.scene.loop import follow
 from puck_tables.scene.regions import friction_error, regions_of
 from puck_tables.scene.rest import excess_at_rest
 from puck_tables.scene.scene import Scene
+from puck_tables.scene.zones import zones_of
 
 LOCAL_SHARE = 0.01  # of the error wanted, per step and in units of the scales
 FINEST_LOCAL = 3e-14  # rounding
@@ -88,9 +89,10 @@ class Prepared:
             off = 1.0 + friction_error(self.scene)
         regions = self.regions._replace(
             load=off * self.regions.load,
+            parts=self.regions.parts._replace(share=off),
             by_speed=self.regions.by_speed._replace(normal=off * self.regions.by_speed.normal),
         )
-        desk = desk_for(self.bounds)
+        desk = desk_for(self.bounds, len(self.regions.parts.patches))
         found = follow(
             self.model, regions, self.bounds, ask, self.state, region, frames, rows, events, desk
         )
@@ -112,13 +114,10 @@ class Prepared:
         in_slices(work, len(states))
 
     def starts(self, states: FloatArray) -> npt.NDArray[np.int64]:
-        """Region of the floor in which launches (n, 10) start."""
-        strips = self.scene.floor.strips
-        if strips is None:
-            return np.zeros(len(states), np.int64)
-        across = _direction(strips.direction)
-        along = across[0] * states[:, X] + across[1] * states[:, Y]
-        return np.searchsorted(strips.borders, along, side="right").astype(np.int64)
+        """Zone of the floor in which launches (n, 10) start."""
+        parts = self.regions.parts
+        along = parts.across_x * states[:, X] + parts.across_y * states[:, Y]
+        return np.searchsorted(self.bounds.borders[:, 2], along, side="right").astype(np.int64)
 
     def asks(self, states: FloatArray) -> FloatArray:
         """Time limit, scale of speeds and scales of the state for launches (n, 10); (n, 12)."""
@@ -161,7 +160,7 @@ def prepare(scene: Scene, last_time: float | None = None) -> Prepared:
 
 def _bounds(scene: Scene) -> Boundaries:
     """Walls (moved in by the radius), edges and borders as lines n·x = c."""
-    walls, edges, borders = [], [], []
+    walls, edges = [], []
     for wall in scene.walls:
         nx, ny, c = _line(wall.point, wall.normal)
         walls.append([
@@ -170,12 +169,9 @@ def _bounds(scene: Scene) -> Boundaries:
         ])  # fmt: skip
     for edge in scene.edges:
         edges.append(_line(edge.point, edge.normal))
-    if scene.floor.strips is not None:
-        across = _direction(scene.floor.strips.direction)
-        borders = [(*across, place) for place in scene.floor.strips.borders]
     return Boundaries(
         np.array(walls).reshape(-1, 6), np.array(edges).reshape(-1, 3),
-        np.array(borders).reshape(-1, 3),
+        zones_of(scene).lines,
     )  # fmt: skip
 
 
@@ -183,10 +179,6 @@ def _line(point: tuple[float, float], normal: tuple[float, float]) -> tuple[floa
     size = math.hypot(*normal)
     nx, ny = normal[0] / size, normal[1] / size
     return nx, ny, nx * point[0] + ny * point[1]
-
-
-def _direction(angle: float) -> tuple[float, float]:
-    return math.cos(angle), math.sin(angle)
 
 
 def _asks(scene: Scene, model: Model, regions: Regions, states: FloatArray) -> FloatArray:
@@ -267,8 +259,8 @@ def _slowest(
     brakes = []
     for number in range(len(regions.load)):
         load = float(regions.load[number])
-        if load > 0.0:
-            dry = Dry(load, regions.delta[number], regions.cuts[number], regions.by_speed)
+        if load > 0.0 and not regions.astride[number]:
+            dry = dry_in(regions, number)
             at_rest = Stretch(
                 model, dry, np.empty((0, LEAN_COLUMNS)), 0, CARRIED, (0.0, 0.0, 0.0, 0.0), 0.0
             )
