@@ -34,20 +34,24 @@ from puck_tables.kernels.base_parts import (
 )
 from puck_tables.kernels.compile import inlined, inner
 
-# columns of a patch: its middle, the radius of a circle about it, the first of its corners, how
-# many (none: it is that circle), and f N there
+# A ground, all in one array, which is quick to hand on: where the centre of the base is, 1 or by how
+# much all friction is taken wrong, and what holds for all of it,
+PLACE_X, PLACE_Y, SHARE, LEVER, INNER, ACROSS_X, ACROSS_Y, BORDERS, PATCHES = range(9)
+_HEAD = 9
+# the places of its borders, f N between them, a row for each patch (its middle, the radius of a
+# circle about it, the first of its corners, how many (none: it is that circle), and f N there),
 MIDDLE_X, MIDDLE_Y, REACH, CORNER, CORNERS, LOAD = range(6)
 PATCH_COLUMNS = 6
+# and the corners of all patches.
 
 
-class Parts(NamedTuple):
+class Ground(NamedTuple):
     """All frictions of a floor, and the base that may lie on several of them.
 
     ``across_x``, ``across_y``: the direction across the borders of strips; ``borders`` (n,): their
     places along it, ascending, m; ``loads`` (n + 1,): f N between them; ``patches`` (k, 6), and
     ``corners`` (m, 2) of those that are polygons, counter-clockwise, m; ``lever``: κ, 1/N;
-    ``inner``: radius of the hole of the base over the outer; ``share``: 1, or by so much all
-    friction is taken wrong.
+    ``inner``: radius of the hole of the base over the outer.
     """
 
     across_x: float
@@ -58,22 +62,55 @@ class Parts(NamedTuple):
     corners: FloatArray
     lever: float
     inner: float
-    share: float
+
+    def packed(self) -> FloatArray:
+        """In one array."""
+        head = [0.0, 0.0, 1.0, self.lever, self.inner, self.across_x, self.across_y]
+        counts = [len(self.borders), len(self.patches)]
+        return np.concatenate([
+            head, counts, self.borders, self.loads, self.patches.ravel(), self.corners.ravel()
+        ]).astype(np.float64)  # fmt: skip
 
 
-NO_PARTS = Parts(
-    1.0, 0.0, np.empty(0), np.zeros(1), np.empty((0, PATCH_COLUMNS)), np.empty((0, 2)), 0.0, 0.0,
-    1.0,
-)  # fmt: skip
+NO_GROUND = np.empty(0)
 
 
-class Under(NamedTuple):
-    """Whether a base lies on several frictions, where its centre is, and what they are."""
+def own_ground(ground: FloatArray, share: float) -> FloatArray:
+    """The ground of a run, with all friction so many times as large."""
+    own = ground.copy()
+    own[SHARE : SHARE + 1] *= share
+    return own
 
-    astride: bool
-    x: float
-    y: float
-    parts: Parts
+
+@inlined
+def border_of(ground: FloatArray, number: int) -> float:
+    """The place of a border."""
+    return ground[_HEAD + number]
+
+
+@inlined
+def load_of(ground: FloatArray, strip: int) -> float:
+    """f N on a strip."""
+    return ground[_HEAD + int(ground[BORDERS]) + strip]
+
+
+@inlined
+def patch_of(ground: FloatArray, number: int, column: int) -> float:
+    """What is known of a patch."""
+    return ground[_HEAD + 2 * int(ground[BORDERS]) + 1 + PATCH_COLUMNS * number + column]
+
+
+@inlined
+def corner_of(ground: FloatArray, number: int) -> tuple[float, float]:
+    """A corner of a patch."""
+    first = _HEAD + 2 * int(ground[BORDERS]) + 1 + PATCH_COLUMNS * int(ground[PATCHES])
+    return ground[first + 2 * number], ground[first + 2 * number + 1]
+
+
+@inlined
+def patches_on(ground: FloatArray) -> int:
+    """How many patches there are."""
+    return int(ground[PATCHES]) if ground.size > 0 else 0
 
 
 class Slip(NamedTuple):
@@ -94,12 +131,13 @@ def slip_of(ux: float, uy: float, rim: float) -> Slip:
 
 
 @inlined
-def strip_at(parts: Parts, place: float) -> int:
-    """The number of the strip at a place across the borders; one on a border is beyond it."""
-    low, high = 0, parts.borders.shape[0]
+def strip_at(ground: FloatArray, x: float, y: float) -> int:
+    """The number of the strip at a place; one on a border is beyond it."""
+    place = ground[ACROSS_X] * x + ground[ACROSS_Y] * y
+    low, high = 0, int(ground[BORDERS])
     while low < high:
         middle = (low + high) // 2
-        if parts.borders[middle] <= place:
+        if border_of(ground, middle) <= place:
             low = middle + 1
         else:
             high = middle
@@ -108,46 +146,46 @@ def strip_at(parts: Parts, place: float) -> int:
 
 @inner
 def _weighted(
-    parts: Parts, x: float, y: float, radius: float, slip: Slip, mirrored: float, size: float
+    ground: FloatArray, radius: float, slip: Slip, mirrored: float, size: float
 ) -> Sums:
     """f N times the sums over a disc of radius ``size``; ``mirrored`` −1: of a clockwise spin.
 
     In axes along the slip and across it.  A clockwise spin is the mirror image of the other.
     """
     alpha, beta = slip.along, slip.turning
-    place = parts.across_x * x + parts.across_y * y
-    nx = parts.across_x * slip.cosine + parts.across_y * slip.sine
-    ny = mirrored * (parts.across_y * slip.cosine - parts.across_x * slip.sine)
-    strip = strip_at(parts, place)
-    sums = plus(NOTHING, parts.loads[strip], disc_sums(alpha, beta, size))
-    for i in range(strip, parts.borders.shape[0]):
-        away = (parts.borders[i] - place) / radius
+    x, y = ground[PLACE_X], ground[PLACE_Y]
+    east, north = ground[ACROSS_X], ground[ACROSS_Y]
+    place = east * x + north * y
+    nx = east * slip.cosine + north * slip.sine
+    ny = mirrored * (north * slip.cosine - east * slip.sine)
+    strip = strip_at(ground, x, y)
+    sums = plus(NOTHING, load_of(ground, strip), disc_sums(alpha, beta, size))
+    for i in range(strip, int(ground[BORDERS])):
+        away = (border_of(ground, i) - place) / radius
         if away >= size:
             break
-        more = parts.loads[i + 1] - parts.loads[i]
+        more = load_of(ground, i + 1) - load_of(ground, i)
         sums = plus(sums, more, beyond_sums(alpha, beta, size, nx, ny, away))
     for i in range(strip - 1, -1, -1):
-        away = (place - parts.borders[i]) / radius
+        away = (place - border_of(ground, i)) / radius
         if away >= size:
             break
-        more = parts.loads[i] - parts.loads[i + 1]
+        more = load_of(ground, i) - load_of(ground, i + 1)
         sums = plus(sums, more, beyond_sums(alpha, beta, size, -nx, -ny, away))
-    for k in range(parts.patches.shape[0]):
-        patch = parts.patches[k]
-        dx, dy = (patch[MIDDLE_X] - x) / radius, (patch[MIDDLE_Y] - y) / radius
-        reach = patch[REACH] / radius
+    for k in range(int(ground[PATCHES])):
+        mx, my = patch_of(ground, k, MIDDLE_X), patch_of(ground, k, MIDDLE_Y)
+        dx, dy, reach = (mx - x) / radius, (my - y) / radius, patch_of(ground, k, REACH) / radius
         if dx * dx + dy * dy >= (size + reach) * (size + reach):
             continue
-        there = parts.across_x * patch[MIDDLE_X] + parts.across_y * patch[MIDDLE_Y]
-        more = patch[LOAD] - parts.loads[strip_at(parts, there)]
-        first, count = int(patch[CORNER]), int(patch[CORNERS])
+        more = patch_of(ground, k, LOAD) - load_of(ground, strip_at(ground, mx, my))
+        first, count = int(patch_of(ground, k, CORNER)), int(patch_of(ground, k, CORNERS))
         if count == 0:
             px = dx * slip.cosine + dy * slip.sine
             py = mirrored * (dy * slip.cosine - dx * slip.sine)
             sums = plus(sums, more, common_sums(alpha, beta, size, px, py, reach))
         for n in range(count):
-            one = parts.corners[first + n]
-            two = parts.corners[first + (n + 1 if n + 1 < count else 0)]
+            one = corner_of(ground, first + n)
+            two = corner_of(ground, first + (n + 1 if n + 1 < count else 0))
             dx, dy = (one[0] - x) / radius, (one[1] - y) / radius
             px = dx * slip.cosine + dy * slip.sine
             py = mirrored * (dy * slip.cosine - dx * slip.sine)
@@ -161,18 +199,15 @@ def _weighted(
 
 
 @inner
-def sums_under(under: Under, radius: float, slip: Slip, mirrored: float) -> Sums:
+def sums_under(
+    ground: FloatArray, radius: float, slip: Slip, mirrored: float
+) -> Sums:
     """(1/A) ∫ f N over the base, of what :mod:`puck_tables.kernels.base_parts` sums."""
-    parts = under.parts
-    hole = parts.inner
-    weight = parts.share / (math.pi * (1.0 - hole * hole))
-    sums = plus(
-        NOTHING, weight, _weighted(parts, under.x, under.y, radius, slip, mirrored, 1.0)
-    )  # fmt: skip
+    hole = ground[INNER]
+    weight = ground[SHARE] / (math.pi * (1.0 - hole * hole))
+    sums = plus(NOTHING, weight, _weighted(ground, radius, slip, mirrored, 1.0))
     if hole > 0.0:
-        sums = plus(
-            sums, -weight, _weighted(parts, under.x, under.y, radius, slip, mirrored, hole)
-        )  # fmt: skip
+        sums = plus(sums, -weight, _weighted(ground, radius, slip, mirrored, hole))
     return sums
 
 
@@ -188,14 +223,15 @@ def tilted(sums: Sums, bx: float, by: float) -> tuple[float, float, float]:
 
 @inner
 def astride_friction(
-    under: Under, radius: float, ux: float, uy: float, w: float, slip: float
-) -> tuple[float, float, float, float]:
+    ground: FloatArray, radius: float, ux: float, uy: float, w: float,
+    slip: float,
+) -> tuple[float, float, float, float]:  # fmt: skip
     """Force, torque and the power they take, at velocities relative to the floor; Q = ``slip``."""
     to_unit = 1.0 / slip
     way = slip_of(to_unit * ux, to_unit * uy, to_unit * radius * w)
     mirrored = -1.0 if w < 0.0 else 1.0
-    sums = sums_under(under, radius, way, mirrored)
-    lever = under.parts.lever
+    sums = sums_under(ground, radius, way, mirrored)
+    lever = ground[LEVER]
     bx, by = 0.0, 0.0
     if lever > 0.0:
         xx, xy = 1.0 - lever * sums[2], -lever * sums[3]
@@ -215,12 +251,13 @@ def astride_friction(
 
 @inner
 def held_friction(
-    under: Under, radius: float, nx: float, ny: float, rim: float, bx: float, by: float
-) -> tuple[float, float, float]:
+    ground: FloatArray, radius: float, nx: float, ny: float, rim: float,
+    bx: float, by: float,
+) -> tuple[float, float, float]:  # fmt: skip
     """∫ f σ e dA and its moment over r at a slip of Q = 1, of a pressure with slopes (bx, by)."""
     way = slip_of(nx, ny, rim)
     mirrored = -1.0 if rim < 0.0 else 1.0
-    sums = sums_under(under, radius, way, mirrored)
+    sums = sums_under(ground, radius, way, mirrored)
     ahead = bx * way.cosine + by * way.sine
     aside = mirrored * (by * way.cosine - bx * way.sine)
     along, across, torque = tilted(sums, ahead, aside)

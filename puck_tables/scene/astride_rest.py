@@ -11,8 +11,9 @@ from __future__ import annotations
 
 import math
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inner
-from puck_tables.scene.astride import Under, held_friction
+from puck_tables.scene.astride import LEVER, held_friction
 
 Yield = tuple[float, float, float, float]
 
@@ -22,38 +23,38 @@ _WIDEST, _TRIALS = 60, 60  # at most: to bracket, and in the bracket
 
 @inner
 def _resists(
-    under: Under, radius: float, nx: float, ny: float, nw: float, bx: float, by: float
+    ground: FloatArray, radius: float, nx: float, ny: float, nw: float, bx: float, by: float
 ) -> tuple[float, float, float]:
     """The gradient of D at a slip of any size."""
     whole = math.sqrt(nx * nx + ny * ny + nw * nw)
-    return held_friction(under, radius, nx / whole, ny / whole, nw / whole, bx, by)
+    return held_friction(ground, radius, nx / whole, ny / whole, nw / whole, bx, by)
 
 
 @inner
 def _slope_along(
-    under: Under, radius: float, bx: float, by: float, n: tuple[float, float, float],
+    ground: FloatArray, radius: float, bx: float, by: float, n: tuple[float, float, float],
     way: tuple[float, float, float], a: float,
 ) -> float:  # fmt: skip
     gx, gy, gw = _resists(
-        under, radius, n[0] + a * way[0], n[1] + a * way[1], n[2] + a * way[2], bx, by
+        ground, radius, n[0] + a * way[0], n[1] + a * way[1], n[2] + a * way[2], bx, by
     )
     return gx * way[0] + gy * way[1] + gw * way[2]
 
 
 @inner
 def _least_along(
-    under: Under, radius: float, bx: float, by: float, n: tuple[float, float, float],
+    ground: FloatArray, radius: float, bx: float, by: float, n: tuple[float, float, float],
     way: tuple[float, float, float], size: float,
 ) -> float:  # fmt: skip
     """Where on the line n + a way D is least: its slope, which grows, by false position (Illinois)."""
-    first = _slope_along(under, radius, bx, by, n, way, 0.0)
+    first = _slope_along(ground, radius, bx, by, n, way, 0.0)
     if first == 0.0:
         return 0.0
     side = -1.0 if first > 0.0 else 1.0
     low, high, last, reach = 0.0, 0.0, first, 0.25 * size
     for _ in range(_WIDEST):
         high = side * reach
-        last = _slope_along(under, radius, bx, by, n, way, high)
+        last = _slope_along(ground, radius, bx, by, n, way, high)
         if last * first <= 0.0:
             break
         low, first = high, last
@@ -62,7 +63,7 @@ def _least_along(
         if abs(high - low) <= _NARROW * (size + abs(high)) or last == 0.0:
             break
         middle = (low * last - high * first) / (last - first)
-        value = _slope_along(under, radius, bx, by, n, way, middle)
+        value = _slope_along(ground, radius, bx, by, n, way, middle)
         low, first = (high, last) if value * last <= 0.0 else (low, 0.5 * first)
         high, last = middle, value
     return high
@@ -70,7 +71,7 @@ def _least_along(
 
 @inner
 def astride_yield(
-    under: Under, most: float, radius: float, fx: float, fy: float, torque: float, guided: bool
+    ground: FloatArray, most: float, radius: float, fx: float, fy: float, torque: float, guided: bool
 ) -> Yield:
     """By how much the power of the best slip at Q = 1 exceeds friction, and that slip.
 
@@ -80,9 +81,9 @@ def astride_yield(
     force = math.sqrt(fx * fx + fy * fy)
     size = math.sqrt(force * force + rim * rim)
     if size == 0.0:
-        gx, _, _ = held_friction(under, radius, 1.0, 0.0, 0.0, 0.0, 0.0)
+        gx, _, _ = held_friction(ground, radius, 1.0, 0.0, 0.0, 0.0, 0.0)
         return -gx, 1.0, 0.0, 0.0
-    lever = under.parts.lever
+    lever = ground[LEVER]
     bx, by = lever * fx, lever * fy
     if force > most:  # it slips: what tilts is friction
         bx, by = bx * most / force, by * most / force
@@ -90,44 +91,44 @@ def astride_yield(
     px, pw = force / size, rim / size
     n = (px * ex, px * ey, pw)
     level, turns = (-ey, ex, 0.0), (-pw * ex, -pw * ey, px)
-    a = _least_along(under, radius, bx, by, n, turns, 1.0)
+    a = _least_along(ground, radius, bx, by, n, turns, 1.0)
     m = (n[0] + a * turns[0], n[1] + a * turns[1], n[2] + a * turns[2])
     if not guided:
         # of the least along every parallel of ``turns``: its slope across them grows, too
-        m = _least_in_plane(under, radius, bx, by, n, level, turns)
+        m = _least_in_plane(ground, radius, bx, by, n, level, turns)
     whole = math.sqrt(m[0] * m[0] + m[1] * m[1] + m[2] * m[2])
     m = (m[0] / whole, m[1] / whole, m[2] / whole)
-    gx, gy, gw = held_friction(under, radius, m[0], m[1], m[2], bx, by)
+    gx, gy, gw = held_friction(ground, radius, m[0], m[1], m[2], bx, by)
     power = gx * m[0] + gy * m[1] + gw * m[2]
     return fx * m[0] + fy * m[1] + rim * m[2] - power, m[0], m[1], m[2] / radius
 
 
 @inner
 def _slope_across(
-    under: Under, radius: float, bx: float, by: float, n: tuple[float, float, float],
+    ground: FloatArray, radius: float, bx: float, by: float, n: tuple[float, float, float],
     level: tuple[float, float, float], turns: tuple[float, float, float], b: float,
 ) -> tuple[float, float]:  # fmt: skip
     """The slope of D along ``level`` where it is least along ``turns``, and how far that is."""
     p = (n[0] + b * level[0], n[1] + b * level[1], n[2] + b * level[2])
     size = math.sqrt(1.0 + b * b)
-    a = _least_along(under, radius, bx, by, p, turns, size)
+    a = _least_along(ground, radius, bx, by, p, turns, size)
     p = (p[0] + a * turns[0], p[1] + a * turns[1], p[2] + a * turns[2])
-    return _slope_along(under, radius, bx, by, p, level, 0.0), a
+    return _slope_along(ground, radius, bx, by, p, level, 0.0), a
 
 
 @inner
 def _least_in_plane(
-    under: Under, radius: float, bx: float, by: float, n: tuple[float, float, float],
+    ground: FloatArray, radius: float, bx: float, by: float, n: tuple[float, float, float],
     level: tuple[float, float, float], turns: tuple[float, float, float],
 ) -> tuple[float, float, float]:  # fmt: skip
     """Where on the plane n + b level + a turns D is least."""
-    first, a = _slope_across(under, radius, bx, by, n, level, turns, 0.0)
+    first, a = _slope_across(ground, radius, bx, by, n, level, turns, 0.0)
     low, high, last = 0.0, 0.0, first
     side, reach = (-1.0 if first > 0.0 else 1.0), 0.25
     if first != 0.0:
         for _ in range(_WIDEST):
             high = side * reach
-            last, a = _slope_across(under, radius, bx, by, n, level, turns, high)
+            last, a = _slope_across(ground, radius, bx, by, n, level, turns, high)
             if last * first <= 0.0:
                 break
             low, first = high, last
@@ -136,7 +137,7 @@ def _least_in_plane(
         if abs(high - low) <= _NARROW * (1.0 + abs(high)) or last == 0.0:
             break
         middle = (low * last - high * first) / (last - first)
-        value, a = _slope_across(under, radius, bx, by, n, level, turns, middle)
+        value, a = _slope_across(ground, radius, bx, by, n, level, turns, middle)
         low, first = (high, last) if value * last <= 0.0 else (low, 0.5 * first)
         high, last = middle, value
     return (

@@ -26,9 +26,9 @@ from puck_tables.scene.ingredients import (
     Model,
     Stretch,
     carried_along,
-    dry_at,
     floor_velocity,
     held,
+    put_at,
 )
 from puck_tables.scene.leaning import wall_reaction
 
@@ -85,8 +85,8 @@ def acting_force(stretch: Stretch, t: float, y: FloatArray) -> tuple[float, floa
     """All force on the puck but that of walls and constraints."""
     model = stretch.model
     gx, gy, _ = given_force(model.forces, stretch.piece, t)
-    dry = dry_at(stretch.dry, y[X], y[Y])
-    hx, hy, _, _ = dry_friction(dry, model.body.radius, y[VX], y[VY], y[SPIN])
+    put_at(stretch.dry, y[X], y[Y])
+    hx, hy, _, _ = dry_friction(stretch.dry, model.body.radius, y[VX], y[VY], y[SPIN])
     dx, dy, _, _ = drag_force(model.forces, y[VX], y[VY], y[SPIN])
     return gx + hx + dx, gy + hy + dy
 
@@ -121,8 +121,8 @@ def rates(stretch: Stretch, t: float, y: FloatArray, out: FloatArray, row: int) 
         out[row, SUPPORT] = fx * sx + fy * sy + fm * turning
         out[row, LAMBDA], out[row, LAMBDA + 1] = 0.0, 0.0
         return
-    dry = dry_at(stretch.dry, y[X], y[Y])
-    hx, hy, hm, heat = dry_friction(dry, body.radius, y[VX], y[VY], y[SPIN])
+    put_at(stretch.dry, y[X], y[Y])
+    hx, hy, hm, heat = dry_friction(stretch.dry, body.radius, y[VX], y[VY], y[SPIN])
     dx, dy, dm, warmth = drag_force(model.forces, y[VX], y[VY], y[SPIN])
     fx, fy, fm = gx + hx + dx, gy + hy + dy, gm + hm + dm
     if stretch.leaning.shape[0] > 0:

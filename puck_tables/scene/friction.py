@@ -18,7 +18,7 @@ from puck_tables.kernels.compile import inlined, inner
 from puck_tables.kernels.speed_spline import speed_ratios
 from puck_tables.motion.equations import ratios_at
 from puck_tables.scene.astride import astride_friction
-from puck_tables.scene.ingredients import BySpeed, Dry
+from puck_tables.scene.ingredients import BySpeed, Dry, is_astride
 
 X, Y, THETA, VX, VY, SPIN = range(6)  # of a state; in the loop the last three over the floor
 
@@ -38,8 +38,8 @@ def dry_friction(
     slip = size(ux, uy, rim)
     if load == 0.0 or slip == 0.0:
         return 0.0, 0.0, 0.0, 0.0
-    if dry.under.astride:
-        return astride_friction(dry.under, radius, ux, uy, w, slip)
+    if is_astride(dry):
+        return astride_friction(dry.by_speed.table, radius, ux, uy, w, slip)
     speed = size(ux, uy, 0.0)
     fast = rim > speed
     ratio = speed / rim if fast else rim / speed
@@ -69,4 +69,4 @@ def at_slip_zero(dry: Dry) -> Dry:
     """The friction that a puck at rest would start against, whatever its coefficient does later."""
     law = dry.by_speed
     still = BySpeed(law.table, law.height_ratio, law.normal, 0.0)
-    return Dry(dry.load, dry.delta, dry.cut, still, dry.under)
+    return Dry(dry.load, dry.delta, dry.cut, still)

@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
-from puck_tables.scene.astride import Parts, Under
+from puck_tables.scene.astride import PLACE_X, PLACE_Y
 from puck_tables.scene.forces import Forces
 
 if TYPE_CHECKING:
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 FREE, RAIL, PIVOT, BLADE = range(4)
 SLIDES, CARRIED, STOPS = range(3)
+ASTRIDE = -1.0
 NO_WAY = (0.0, 0.0, 0.0, 0.0)
 
 
@@ -51,8 +52,9 @@ class Regions(NamedTuple):
 
     ``load``, ``delta``: arrays (regions,); ``cuts``: (regions, …), see
     :func:`puck_tables.motion.equations.ratios_at`; ``by_speed`` takes the place of all.
-    ``astride`` (regions,): where the base lies on several of the frictions of ``parts``; there load
-    and δ are the largest of them.
+    ``astride`` (regions,): where the base lies on several frictions of the ``ground``, see
+    :mod:`puck_tables.scene.astride`; there load and δ are the largest of them.  A run has its own
+    ground, in which it says where the base is.
     """
 
     load: FloatArray
@@ -60,33 +62,42 @@ class Regions(NamedTuple):
     cuts: FloatArray
     by_speed: BySpeed
     astride: npt.NDArray[np.bool_]
-    parts: Parts
+    ground: FloatArray
 
 
 class Dry(NamedTuple):
-    """Dry friction in one region; no load: none.  ``under``: see :mod:`.astride`."""
+    """Dry friction in one region; no load: none.
+
+    Of a base astride several frictions ``by_speed.table`` is their ground and its ``normal`` is
+    ASTRIDE: a record of its own would be handed on with every call, which costs all scenes more.
+    """
 
     load: float
     delta: float
     cut: FloatArray
     by_speed: BySpeed
-    under: Under
 
 
 @inlined
 def dry_in(regions: Regions, region: int) -> Dry:
-    """The friction of one of the regions; of one that is astride, with the base at (0, 0)."""
-    return Dry(
-        regions.load[region], regions.delta[region], regions.cuts[region], regions.by_speed,
-        Under(regions.astride[region], 0.0, 0.0, regions.parts),
-    )  # fmt: skip
+    """The friction of one of the regions."""
+    law = regions.by_speed
+    if regions.astride[region]:
+        law = BySpeed(regions.ground, 0.0, ASTRIDE, 1.0)
+    return Dry(regions.load[region], regions.delta[region], regions.cuts[region], law)
 
 
 @inlined
-def dry_at(dry: Dry, x: float, y: float) -> Dry:
-    """The same with the base at a place, which matters where it is astride."""
-    under = Under(dry.under.astride, x, y, dry.under.parts)
-    return Dry(dry.load, dry.delta, dry.cut, dry.by_speed, under)
+def is_astride(dry: Dry) -> bool:
+    """Whether the base lies on several frictions."""
+    return dry.by_speed.normal < 0.0
+
+
+@inlined
+def put_at(dry: Dry, x: float, y: float) -> None:
+    """Put the centre of the base at a place, which matters where it is astride."""
+    if is_astride(dry):
+        dry.by_speed.table[PLACE_X], dry.by_speed.table[PLACE_Y] = x, y
 
 
 class Surface(NamedTuple):

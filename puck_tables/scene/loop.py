@@ -14,6 +14,7 @@ import math
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import kernel
+from puck_tables.scene.astride import BORDERS as GROUND_BORDERS
 from puck_tables.scene.at_once import met_at_once
 from puck_tables.scene.boundaries import (
     BORDER,
@@ -138,7 +139,7 @@ def follow(
     several = len(bounds.walls) + len(bounds.edges) > 1
     look_at_walls(bounds, contacts, body, y, ask.speed)
     leaning = contacts.rows[: touching(bounds, contacts)]
-    look_at_patches(regions.parts, lies, radius, y[X], y[Y])
+    look_at_patches(regions.ground, lies, radius, y[X], y[Y])
     dry = dry_under(regions, region, lies)
     room, leans = contacts.room, contacts.leans
     to_laboratory(model, y, -1.0)
@@ -189,7 +190,7 @@ def follow(
                     how = EVENT_LIMIT
                     break
                 resting = mode == CARRIED
-                where = region_at(regions.parts, y[X], y[Y])
+                where = region_at(regions.ground, y[X], y[Y])
                 noted(events[count], model, t, RESTS if resting else SLIPS, where, y)
                 count += 1
             if mode == CARRIED and t >= calm:
@@ -270,7 +271,7 @@ def follow(
             )
         if patched:
             patch, met = first_patch(
-                regions.parts, lies, stretch, t, length, y, scale, work, last, trial
+                regions.ground, lies, stretch, t, length, y, scale, work, last, trial
             )
             if met < moment:
                 happens, which, moment = _PATCH, patch, met
@@ -349,9 +350,9 @@ def follow(
                 back = line[BORDER_SIDE] * (which - region) > 0.0
                 region, which = which, int(line[BORDER_NUMBER])
             else:
-                lies[which] = after_patch(regions.parts, which, lies[which], y[X], y[Y])
+                lies[which] = after_patch(regions.ground, which, lies[which], y[X], y[Y])
                 back = lies[which] != ASTRIDE
-                which += len(regions.parts.borders)
+                which += int(regions.ground[GROUND_BORDERS])
             happens = LEAVES if back else COMES_OVER
             dry = dry_under(regions, region, lies)
             damps, turns = settling_rates(model, dry.load)

@@ -14,12 +14,15 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.astride import (
+    BORDERS,
     CORNER,
     CORNERS,
     MIDDLE_X,
     MIDDLE_Y,
     REACH,
-    Parts,
+    corner_of,
+    patch_of,
+    patches_on,
     strip_at,
 )
 from puck_tables.scene.friction import VX, VY, X, Y
@@ -38,17 +41,16 @@ _CLOSE = 1e-13  # of a step: how well a moment in it is known
 
 
 @inner
-def distance_to(parts: Parts, number: int, x: float, y: float) -> float:
+def distance_to(ground: FloatArray, number: int, x: float, y: float) -> float:
     """How far a point is from the border of a patch; inside it that is negative."""
-    patch = parts.patches[number]
-    dx, dy = x - patch[MIDDLE_X], y - patch[MIDDLE_Y]
-    count, first = int(patch[CORNERS]), int(patch[CORNER])
+    dx, dy = x - patch_of(ground, number, MIDDLE_X), y - patch_of(ground, number, MIDDLE_Y)
+    count, first = int(patch_of(ground, number, CORNERS)), int(patch_of(ground, number, CORNER))
     if count == 0:
-        return math.sqrt(dx * dx + dy * dy) - patch[REACH]
+        return math.sqrt(dx * dx + dy * dy) - patch_of(ground, number, REACH)
     nearest, within = math.inf, False
     for n in range(count):
-        one = parts.corners[first + n]
-        two = parts.corners[first + (n + 1 if n + 1 < count else 0)]
+        one = corner_of(ground, first + n)
+        two = corner_of(ground, first + (n + 1 if n + 1 < count else 0))
         ax, ay, bx, by = x - one[0], y - one[1], two[0] - one[0], two[1] - one[1]
         share = min(max((ax * bx + ay * by) / (bx * bx + by * by), 0.0), 1.0)
         ox, oy = ax - share * bx, ay - share * by
@@ -59,9 +61,9 @@ def distance_to(parts: Parts, number: int, x: float, y: float) -> float:
 
 
 @inlined
-def room_by(parts: Parts, number: int, how: int, radius: float, x: float, y: float) -> float:
+def room_by(ground: FloatArray, number: int, how: int, radius: float, x: float, y: float) -> float:
     """How far the rim is from coming over a patch, or from leaving it."""
-    away = distance_to(parts, number, x, y)
+    away = distance_to(ground, number, x, y)
     if how == OUTSIDE:
         return away - radius
     if how == INSIDE:
@@ -71,11 +73,11 @@ def room_by(parts: Parts, number: int, how: int, radius: float, x: float, y: flo
 
 @inlined
 def look_at_patches(
-    parts: Parts, lies: npt.NDArray[np.int64], radius: float, x: float, y: float
+    ground: FloatArray, lies: npt.NDArray[np.int64], radius: float, x: float, y: float
 ) -> None:
     """How a base lies to every patch."""
     for k in range(lies.size):
-        away = distance_to(parts, k, x, y)
+        away = distance_to(ground, k, x, y)
         lies[k] = ASTRIDE
         if abs(away) >= radius:
             lies[k] = OUTSIDE if away > 0.0 else INSIDE
@@ -96,25 +98,27 @@ def dry_under(regions: Regions, zone: int, lies: npt.NDArray[np.int64]) -> Dry:
 
 
 @inlined
-def region_at(parts: Parts, x: float, y: float) -> int:
+def region_at(ground: FloatArray, x: float, y: float) -> int:
     """The strip, or after all strips the patch, in which a point lies."""
-    for k in range(parts.patches.shape[0]):
-        if distance_to(parts, k, x, y) < 0.0:
-            return parts.loads.shape[0] + k
-    return strip_at(parts, parts.across_x * x + parts.across_y * y)
+    if ground.size == 0:
+        return 0
+    for k in range(patches_on(ground)):
+        if distance_to(ground, k, x, y) < 0.0:
+            return int(ground[BORDERS]) + 1 + k
+    return strip_at(ground, x, y)
 
 
 @inlined
-def after_patch(parts: Parts, number: int, how: int, x: float, y: float) -> int:
+def after_patch(ground: FloatArray, number: int, how: int, x: float, y: float) -> int:
     """How a base lies to a patch whose border its rim has just met or left."""
     if how != ASTRIDE:
         return ASTRIDE
-    return OUTSIDE if distance_to(parts, number, x, y) > 0.0 else INSIDE
+    return OUTSIDE if distance_to(ground, number, x, y) > 0.0 else INSIDE
 
 
 @inner
 def first_patch(
-    parts: Parts, lies: npt.NDArray[np.int64], stretch: Stretch, t: float, h: float, y: FloatArray,
+    ground: FloatArray, lies: npt.NDArray[np.int64], stretch: Stretch, t: float, h: float, y: FloatArray,
     scale: FloatArray, work: FloatArray, last: FloatArray, new: FloatArray,
 ) -> tuple[int, float]:  # fmt: skip
     """The first patch whose border the rim meets or leaves on a step, and when; −1: none.
@@ -130,7 +134,7 @@ def first_patch(
     cx, cy = carried_along(surface, last[X], last[Y])
     fastest = speed + h * max(bend, math.hypot(last[VX] + cx, last[VY] + cy))
     for k in range(lies.size):
-        room = room_by(parts, k, lies[k], radius, y[X], y[Y])
+        room = room_by(ground, k, lies[k], radius, y[X], y[Y])
         if room > fastest * h or fastest == 0.0:
             continue
         # on from place to place, none further than the room there, to where there is none
@@ -138,7 +142,7 @@ def first_patch(
         while high < h and high < moment:
             low, high = high, min(high + max(before / fastest, h / _LOOKS), h)
             step(stretch, t, high, y, scale, work, new)
-            room = room_by(parts, k, lies[k], radius, new[X], new[Y])
+            room = room_by(ground, k, lies[k], radius, new[X], new[Y])
             if room < 0.0:
                 break
             before = room
@@ -151,7 +155,7 @@ def first_patch(
             guess = (low * after - high * before) / (after - before)
             guess = min(max(guess, low + 0.5 * _CLOSE * h), high - 0.5 * _CLOSE * h)
             step(stretch, t, guess, y, scale, work, new)
-            value = room_by(parts, k, lies[k], radius, new[X], new[Y])
+            value = room_by(ground, k, lies[k], radius, new[X], new[Y])
             if value < 0.0:
                 high, after = guess, value
                 before *= 0.5

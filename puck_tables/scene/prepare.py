@@ -13,6 +13,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import in_slices
 from puck_tables.errors import InputError
 from puck_tables.scene.agreement import launch_velocity
+from puck_tables.scene.astride import own_ground, patches_on
 from puck_tables.scene.at_once import AS_IT_COMES
 from puck_tables.scene.boundaries import Boundaries
 from puck_tables.scene.bulk import follow_many
@@ -89,10 +90,10 @@ class Prepared:
             off = 1.0 + friction_error(self.scene)
         regions = self.regions._replace(
             load=off * self.regions.load,
-            parts=self.regions.parts._replace(share=off),
+            ground=own_ground(self.regions.ground, off),
             by_speed=self.regions.by_speed._replace(normal=off * self.regions.by_speed.normal),
         )
-        desk = desk_for(self.bounds, len(self.regions.parts.patches))
+        desk = desk_for(self.bounds, patches_on(self.regions.ground))
         found = follow(
             self.model, regions, self.bounds, ask, self.state, region, frames, rows, events, desk
         )
@@ -115,9 +116,11 @@ class Prepared:
 
     def starts(self, states: FloatArray) -> npt.NDArray[np.int64]:
         """Zone of the floor in which launches (n, 10) start."""
-        parts = self.regions.parts
-        along = parts.across_x * states[:, X] + parts.across_y * states[:, Y]
-        return np.searchsorted(self.bounds.borders[:, 2], along, side="right").astype(np.int64)
+        lines = self.bounds.borders
+        if not len(lines):
+            return np.zeros(len(states), np.int64)
+        along = states[:, [X, Y]] @ lines[0, :2]
+        return np.searchsorted(lines[:, 2], along, side="right").astype(np.int64)
 
     def asks(self, states: FloatArray) -> FloatArray:
         """Time limit, scale of speeds and scales of the state for launches (n, 10); (n, 12)."""

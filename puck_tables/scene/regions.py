@@ -16,10 +16,10 @@ from puck_tables.kernels.section_spline import HEADER, RATIOS
 from puck_tables.motion.body import body_of, is_plain
 from puck_tables.motion.friction import closed_form_friction, table_friction
 from puck_tables.scene.agreement import launch_velocity, law_of_rows
-from puck_tables.scene.astride import NO_PARTS
+from puck_tables.scene.astride import NO_GROUND
 from puck_tables.scene.ingredients import BySpeed, Regions
 from puck_tables.scene.scene import Scene
-from puck_tables.scene.zones import parts_of, zones_of
+from puck_tables.scene.zones import ground_of, zones_of
 from puck_tables.table.friction_section import FINEST_ACCURACY
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.table.speed_build import FINEST_ACCURACY as FINEST_LAW
@@ -84,7 +84,7 @@ def regions_of(scene: Scene) -> Regions:
 
 def alone(load: FloatArray, delta: FloatArray, cuts: FloatArray, by_speed: BySpeed) -> Regions:
     """Regions of which a base never lies on two at once."""
-    return Regions(load, delta, cuts, by_speed, np.zeros(len(load), np.bool_), NO_PARTS)
+    return Regions(load, delta, cuts, by_speed, np.zeros(len(load), np.bool_), NO_GROUND)
 
 
 def _under_zones(
@@ -104,7 +104,7 @@ def _under_zones(
         np.array([load[one : two + 1].max() for one, two in spans]),
         np.array([delta[one : two + 1].max() for one, two in spans]),
         cuts[[one for one, _ in spans]], NO_LAW,
-        np.array([one != two for one, two in spans]), parts_of(scene, normal),
+        np.array([one != two for one, two in spans]), ground_of(scene, normal),
     )  # fmt: skip
 
 

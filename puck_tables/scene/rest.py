@@ -29,8 +29,9 @@ from puck_tables.scene.ingredients import (
     Hold,
     Stretch,
     carried_along,
-    dry_at,
     floor_velocity,
+    is_astride,
+    put_at,
 )
 from puck_tables.scene.leaning import (
     GRIP,
@@ -103,8 +104,8 @@ def demand(
 @inner
 def free_yield(dry: Dry, radius: float, fx: float, fy: float, torque: float, guided: bool) -> Yield:
     """The same where the puck may slip and turn; ``guided``: along the force only."""
-    if dry.under.astride:
-        return astride_yield(dry.under, dry.load, radius, fx, fy, torque, guided)
+    if is_astride(dry):
+        return astride_yield(dry.by_speed.table, dry.load, radius, fx, fy, torque, guided)
     share, heat, ux, uy, w = demand(dry, radius, fx, fy, torque, guided)
     return (share - 1.0) * heat, ux, uy, w
 
@@ -126,7 +127,7 @@ def constrained_yield(
         return math.inf, 0.0, 0.0, 0.0
     ex, ey = (-hold.ay, hold.ax) if hold.kind == RAIL else (cosine, sine)
     along = fx * ex + fy * ey
-    if along == 0.0 and dry.under.astride:  # a turn leads along it, even so
+    if along == 0.0 and is_astride(dry):  # a turn leads along it, even so
         along = _HINT * torque / body.radius
     return free_yield(dry, body.radius, along * ex, along * ey, torque, guided)
 
@@ -233,7 +234,8 @@ def excess_at_rest(stretch: Stretch, t: float, y: FloatArray) -> Yield:
     ax, ay = carried_along(model.surface, sx, sy)
     gx, gy, torque = given_force(model.forces, stretch.piece, t)
     fx, fy = gx - body.mass * ax, gy - body.mass * ay
-    dry = dry_at(at_slip_zero(stretch.dry), y[X], y[Y])
+    dry = at_slip_zero(stretch.dry)
+    put_at(dry, y[X], y[Y])
     guided = model.hold.kind != FREE
     if guided:
         return constrained_yield(

@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.laws import Law
-from puck_tables.scene.astride import NO_PARTS, PATCH_COLUMNS, Parts
+from puck_tables.scene.astride import NO_GROUND, PATCH_COLUMNS, Ground
 from puck_tables.scene.floor_patches import corners_of
 from puck_tables.scene.scene import Scene
 
@@ -59,19 +59,19 @@ def zones_of(scene: Scene) -> Zones:
     return Zones(lines, first, last)
 
 
-def parts_of(scene: Scene, normal: float) -> Parts:
-    """All frictions of the floor of a scene, for its puck; ``normal``: N.
+def ground_of(scene: Scene, normal: float) -> FloatArray:
+    """All frictions of the floor of a scene, for its puck, packed; ``normal``: N.
 
     Examples
     --------
     >>> from puck_tables import Floor, Puck, Strips
     >>> floor = Floor(strips=Strips((0.1,), (0.3, 0.1)))
-    >>> parts_of(Scene(Puck(0.04), floor), 2.0).loads.tolist()
-    [0.6, 0.2]
+    >>> ground_of(Scene(Puck(0.04), floor), 2.0)[-3:].tolist()
+    [0.1, 0.6, 0.2]
     """
     floor, puck = scene.floor, scene.puck
     if floor.strips is None and not floor.patches:
-        return NO_PARTS
+        return NO_GROUND
     strips = floor.strips
     angle = 0.0 if strips is None else strips.direction
     rows, corners = [], [np.empty((0, 2))]
@@ -84,13 +84,13 @@ def parts_of(scene: Scene, normal: float) -> Parts:
             corners.append(places)
         rows.append([*middle, reach, begin, len(places), normal * patch.friction])
     inner = hole_of(puck.body.law)
-    return Parts(
+    return Ground(
         math.cos(angle), math.sin(angle),
         np.array(() if strips is None else strips.borders, np.float64),
         normal * np.array((puck.friction,) if strips is None else strips.friction),
         np.array(rows).reshape(-1, PATCH_COLUMNS), np.concatenate(corners),
-        puck.height / (2.0 * puck.radius * 0.25 * (1.0 + inner * inner) * normal), inner, 1.0,
-    )  # fmt: skip
+        puck.height / (2.0 * puck.radius * 0.25 * (1.0 + inner * inner) * normal), inner,
+    ).packed()  # fmt: skip
 
 
 def hole_of(law: Law) -> float:
