@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import InputError
+from puck_tables.scene.floor_patches import patch_faults
 from puck_tables.scene.forces import drive_of
 from puck_tables.scene.holds import allowed_velocity, misfits
 from puck_tables.scene.parts import Edge, Floor, Rows, Wall
@@ -26,12 +27,14 @@ def disagreements(scene: Scene) -> list[str]:
                 f"puck.{name} = {value:g}: must be from {_SMALLEST:g} to {_LARGEST:g} in a scene, "
                 "use other units"
             )
-    strips = scene.floor.strips
-    if scene.floor.law and strips is not None:
-        faults.append("floor.law and floor.strips: each takes the place of puck.friction, give one")
+    for name, there in (("strips", scene.floor.strips), ("patch", scene.floor.patches)):
+        if scene.floor.law and there:
+            faults.append(
+                f"floor.law and floor.{name}: each takes the place of puck.friction, give one"
+            )
     if scene.floor.law and (scene.puck.pressure != "uniform"):
         faults.append("floor.law: known under uniform pressure only, not with puck.pressure")
-    faults += bad_strips(scene.floor)
+    faults += bad_strips(scene.floor) or patch_faults(scene.floor) or _bad_astride(scene)
     faults += _bad_rows(scene)
     if not scene.run.frames.is_integer():
         faults.append(f"run.frames = {scene.run.frames:g}: must be a whole number")
@@ -55,6 +58,27 @@ def disagreements(scene: Scene) -> list[str]:
     if scene.walls:
         faults.append("constraint and wall: a scene has one of them, not both")
     return faults + misfits(scene.launch, hold, scene.floor, "")
+
+
+def _bad_astride(scene: Scene) -> list[str]:
+    """Why friction is not known where the base lies on several of the floor."""
+    floor, law = scene.floor, scene.puck.body.law
+    if floor.strips is None and not floor.patches:
+        return []
+    name = "floor.strips" if floor.strips is not None else "floor.patch"
+    if not law.can_lift and not law.name.startswith("annulus:"):
+        return [
+            f"{name}: friction under a base on two frictions is known for puck.pressure 'uniform' "
+            f"and 'annulus:INNER' only, not for {law.name!r}"
+        ]
+    highest = max(scene.heights)
+    if highest > law.delta_max * (1.0 + 1e-12):
+        return [
+            f"{name}: friction under a base on two frictions is known for one that is loaded "
+            f"everywhere, delta = 2 f h / r up to {law.delta_max:g}; its largest f makes {highest:g}"
+            ": give a lower puck.height or less friction"
+        ]
+    return []
 
 
 def bad_strips(floor: Floor) -> list[str]:

@@ -23,6 +23,7 @@ from puck_tables.scene.ingredients import Stretch, carried_along
 from puck_tables.scene.steps import STAGES, step
 
 BOUNCES, BORDER, EDGE = 2, 4, 5  # among what happens on the way
+BORDER_NUMBER, BORDER_SIDE = 3, 4  # columns of a border
 DEGREE = 5
 _SHORTEST = 1e-10  # of a step: turning points closer than this are one
 
@@ -31,8 +32,8 @@ class Boundaries(NamedTuple):
     """Straight lines that mean something, rows n_x, n_y, c of n·x = c.
 
     ``walls``: (n, 6) with restitution, tangential restitution and greatest friction coefficient, c
-    moved in by the radius; ``edges``: (n, 3), the run ends beyond; ``borders``: (n, 3), parallel,
-    ascending, between the regions of the floor.
+    moved in by the radius; ``edges``: (n, 3), the run ends beyond; ``borders``: (n, 5), parallel,
+    ascending, between the zones of a floor of strips, see :mod:`puck_tables.scene.zones`.
     """
 
     walls: FloatArray

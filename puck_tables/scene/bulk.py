@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import allocating
+from puck_tables.scene.astride import patches_on
 from puck_tables.scene.at_once import AS_IT_COMES, FIRST_BY_NUMBER, GROWN, LAST_BY_NUMBER
 from puck_tables.scene.boundaries import BOUNCES, Boundaries
 from puck_tables.scene.desk import Ask, Desk, desk_for
@@ -78,7 +79,11 @@ def follow_many(
     no_frames = np.empty(0)
     row = np.empty((1, FRAME_COLUMNS))
     events = np.empty((event_limit, EVENT_COLUMNS))
-    desk = desk_for(bounds)
+    desk = desk_for(bounds, patches_on(regions.ground))
+    regions = Regions(
+        regions.load, regions.delta, regions.cuts, regions.by_speed, regions.astride,
+        regions.ground.copy(),
+    )  # fmt: skip
     for n in range(len(states)):
         ask = Ask(
             asks[n, 0], to_the_end, tolerance, asks[n, 2:], asks[n, 1], step_limit, 0.0, AS_IT_COMES

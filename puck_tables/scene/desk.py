@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import allocating
@@ -39,7 +40,8 @@ class Desk(NamedTuple):
 
     Rates of the stages of a step (7, 12) and at its end (12,), a gap polynomial (6,), the state at
     the start and the end of a step and at a trial (12,), what is known of the walls, and of lines
-    that were met at once (4,): how often it matters which is first, when at first, and which two.
+    that were met at once (4,): how often it matters which is first, when at first, and which two;
+    how the base lies to every patch of the floor (k,).
     """
 
     work: FloatArray
@@ -50,12 +52,14 @@ class Desk(NamedTuple):
     trial: FloatArray
     contacts: Contacts
     at_once: FloatArray
+    lies: npt.NDArray[np.int64]
 
 
 @allocating
-def desk_for(bounds: Boundaries) -> Desk:
-    """A desk for a scene with these boundaries."""
+def desk_for(bounds: Boundaries, patches: int) -> Desk:
+    """A desk for a scene with these boundaries and so many patches on its floor."""
     return Desk(
         np.empty((STAGES, ROW)), np.empty(ROW), np.empty(DEGREE + 1), np.empty(WIDE),
         np.empty(WIDE), np.empty(WIDE), contacts_for(len(bounds.walls)), np.zeros(4),
+        np.zeros(patches, np.int64),
     )  # fmt: skip

@@ -28,6 +28,7 @@ from puck_tables.scene.ingredients import (
     carried_along,
     floor_velocity,
     held,
+    put_at,
 )
 from puck_tables.scene.leaning import wall_reaction
 
@@ -84,6 +85,7 @@ def acting_force(stretch: Stretch, t: float, y: FloatArray) -> tuple[float, floa
     """All force on the puck but that of walls and constraints."""
     model = stretch.model
     gx, gy, _ = given_force(model.forces, stretch.piece, t)
+    put_at(stretch.dry, y[X], y[Y])
     hx, hy, _, _ = dry_friction(stretch.dry, model.body.radius, y[VX], y[VY], y[SPIN])
     dx, dy, _, _ = drag_force(model.forces, y[VX], y[VY], y[SPIN])
     return gx + hx + dx, gy + hy + dy
@@ -119,6 +121,7 @@ def rates(stretch: Stretch, t: float, y: FloatArray, out: FloatArray, row: int) 
         out[row, SUPPORT] = fx * sx + fy * sy + fm * turning
         out[row, LAMBDA], out[row, LAMBDA + 1] = 0.0, 0.0
         return
+    put_at(stretch.dry, y[X], y[Y])
     hx, hy, hm, heat = dry_friction(stretch.dry, body.radius, y[VX], y[VY], y[SPIN])
     dx, dy, dm, warmth = drag_force(model.forces, y[VX], y[VY], y[SPIN])
     fx, fy, fm = gx + hx + dx, gy + hy + dy, gm + hm + dm

@@ -17,7 +17,8 @@ import math
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.kernels.speed_spline import speed_ratios
 from puck_tables.motion.equations import ratios_at
-from puck_tables.scene.ingredients import BySpeed, Dry
+from puck_tables.scene.astride import astride_friction
+from puck_tables.scene.ingredients import BySpeed, Dry, is_astride
 
 X, Y, THETA, VX, VY, SPIN = range(6)  # of a state; in the loop the last three over the floor
 
@@ -37,6 +38,8 @@ def dry_friction(
     slip = size(ux, uy, rim)
     if load == 0.0 or slip == 0.0:
         return 0.0, 0.0, 0.0, 0.0
+    if is_astride(dry):
+        return astride_friction(dry.by_speed.table, radius, ux, uy, w, slip)
     speed = size(ux, uy, 0.0)
     fast = rim > speed
     ratio = speed / rim if fast else rim / speed

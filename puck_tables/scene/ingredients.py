@@ -9,8 +9,12 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
+import numpy.typing as npt
+
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
+from puck_tables.scene.astride import PLACE_X, PLACE_Y
 from puck_tables.scene.forces import Forces
 
 if TYPE_CHECKING:
@@ -18,6 +22,7 @@ if TYPE_CHECKING:
 
 FREE, RAIL, PIVOT, BLADE = range(4)
 SLIDES, CARRIED, STOPS = range(3)
+ASTRIDE = -1.0
 NO_WAY = (0.0, 0.0, 0.0, 0.0)
 
 
@@ -47,16 +52,25 @@ class Regions(NamedTuple):
 
     ``load``, ``delta``: arrays (regions,); ``cuts``: (regions, …), see
     :func:`puck_tables.motion.equations.ratios_at`; ``by_speed`` takes the place of all.
+    ``astride`` (regions,): where the base lies on several frictions of the ``ground``, see
+    :mod:`puck_tables.scene.astride`; there load and δ are the largest of them.  A run has its own
+    ground, in which it says where the base is.
     """
 
     load: FloatArray
     delta: FloatArray
     cuts: FloatArray
     by_speed: BySpeed
+    astride: npt.NDArray[np.bool_]
+    ground: FloatArray
 
 
 class Dry(NamedTuple):
-    """Dry friction in one region; no load: none."""
+    """Dry friction in one region; no load: none.
+
+    Of a base astride several frictions ``by_speed.table`` is their ground and its ``normal`` is
+    ASTRIDE: a record of its own would be handed on with every call, which costs all scenes more.
+    """
 
     load: float
     delta: float
@@ -67,7 +81,23 @@ class Dry(NamedTuple):
 @inlined
 def dry_in(regions: Regions, region: int) -> Dry:
     """The friction of one of the regions."""
-    return Dry(regions.load[region], regions.delta[region], regions.cuts[region], regions.by_speed)
+    law = regions.by_speed
+    if regions.astride[region]:
+        law = BySpeed(regions.ground, 0.0, ASTRIDE, 1.0)
+    return Dry(regions.load[region], regions.delta[region], regions.cuts[region], law)
+
+
+@inlined
+def is_astride(dry: Dry) -> bool:
+    """Whether the base lies on several frictions."""
+    return dry.by_speed.normal < 0.0
+
+
+@inlined
+def put_at(dry: Dry, x: float, y: float) -> None:
+    """Put the centre of the base at a place, which matters where it is astride."""
+    if is_astride(dry):
+        dry.by_speed.table[PLACE_X], dry.by_speed.table[PLACE_Y] = x, y
 
 
 class Surface(NamedTuple):

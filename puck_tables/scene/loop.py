@@ -14,9 +14,12 @@ import math
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import kernel
+from puck_tables.scene.astride import BORDERS as GROUND_BORDERS
 from puck_tables.scene.at_once import met_at_once
 from puck_tables.scene.boundaries import (
     BORDER,
+    BORDER_NUMBER,
+    BORDER_SIDE,
     BOUNCES,
     EDGE,
     Boundaries,
@@ -47,7 +50,6 @@ from puck_tables.scene.ingredients import (
     Model,
     Regions,
     Stretch,
-    dry_in,
     floor_velocity,
 )
 from puck_tables.scene.leaning import GRIP, RIM
@@ -59,6 +61,14 @@ from puck_tables.scene.moments import (
     rests_on,
     watched,
     zero,
+)
+from puck_tables.scene.patches import (
+    ASTRIDE,
+    after_patch,
+    dry_under,
+    first_patch,
+    look_at_patches,
+    region_at,
 )
 from puck_tables.scene.records import framed, noted
 from puck_tables.scene.settle import (
@@ -79,6 +89,8 @@ AT_REST, CARRIED_AWAY, TIME_UP, OVER_EDGE, STEP_LIMIT, EVENT_LIMIT, NOT_FINITE =
 UNDECIDED = NOT_FINITE + 1  # by more than one run
 # what happens on the way
 RESTS, SLIPS, LEANS = 0, 1, 3  # and those of boundaries
+COMES_OVER, LEAVES = BORDER, 6  # the rim, a border
+_PATCH = 7  # a border of a patch, until it is known which of both
 
 _LAST = 30.0  # times the local error: from there a stop goes straight
 _NEAR = 0.5  # of the time in which the slip would end, at most, is a step
@@ -113,7 +125,7 @@ def follow(
     how it ended, when, number of events, of steps and of frames reached, sum of the errors of steps
     in units of ``ask.scale``
     """
-    work, last, gaps, y, new, trial, contacts, at_once = desk
+    work, last, gaps, y, new, trial, contacts, at_once, lies = desk
     at_once[0] = 0.0
     for i in range(SIZE):
         y[i] = start[i]
@@ -122,11 +134,13 @@ def follow(
     moves = surface.vx != 0.0 or surface.vy != 0.0 or surface.spin != 0.0
     pull_there = model.forces.x != 0.0 or model.forces.y != 0.0 or len(drive) > 0
     swings = surface.spin != 0.0 and pull_there  # else what a turning floor asks is constant
-    unbounded = len(bounds.walls) + len(bounds.edges) + len(bounds.borders) == 0
+    patched = len(lies) > 0
+    unbounded = len(bounds.walls) + len(bounds.edges) + len(bounds.borders) == 0 and not patched
     several = len(bounds.walls) + len(bounds.edges) > 1
     look_at_walls(bounds, contacts, body, y, ask.speed)
     leaning = contacts.rows[: touching(bounds, contacts)]
-    dry = dry_in(regions, region)
+    look_at_patches(regions.ground, lies, radius, y[X], y[Y])
+    dry = dry_under(regions, region, lies)
     room, leans = contacts.room, contacts.leans
     to_laboratory(model, y, -1.0)
     t, heat, mode, piece, way, stiff = 0.0, 0.0, SLIDES, 0, NO_WAY, False
@@ -176,7 +190,8 @@ def follow(
                     how = EVENT_LIMIT
                     break
                 resting = mode == CARRIED
-                noted(events[count], model, t, RESTS if resting else SLIPS, region, y)
+                where = region_at(regions.ground, y[X], y[Y])
+                noted(events[count], model, t, RESTS if resting else SLIPS, where, y)
                 count += 1
             if mode == CARRIED and t >= calm:
                 alone = piece == len(drive) and unbounded and not ask.to_the_end
@@ -254,6 +269,12 @@ def follow(
             happens, which, moment = first_crossing(
                 bounds, room, region, leans, stretch, t, length, y, scale, work, new, gaps, trial
             )
+        if patched:
+            patch, met = first_patch(
+                regions.ground, lies, stretch, t, length, y, scale, work, last, trial
+            )
+            if met < moment:
+                happens, which, moment = _PATCH, patch, met
         if mode == CARRIED and t >= calm:  # also before what it is carried to
             step(stretch, t, min(moment, length), y, scale, work, trial)
             slips = lost(stretch, t, min(moment, length), y, scale, work, trial)
@@ -323,9 +344,17 @@ def follow(
                 if at_once[0] == 1.0:
                     first = which if happens == BOUNCES else len(bounds.walls) + which
                     at_once[1], at_once[2], at_once[3] = t, first, other
-        if happens == BORDER:
-            region = which
-            dry = dry_in(regions, region)
+        if happens == BORDER or happens == _PATCH:
+            if happens == BORDER:
+                line = bounds.borders[min(region, which)]
+                back = line[BORDER_SIDE] * (which - region) > 0.0
+                region, which = which, int(line[BORDER_NUMBER])
+            else:
+                lies[which] = after_patch(regions.ground, which, lies[which], y[X], y[Y])
+                back = lies[which] != ASTRIDE
+                which += int(regions.ground[GROUND_BORDERS])
+            happens = LEAVES if back else COMES_OVER
+            dry = dry_under(regions, region, lies)
             damps, turns = settling_rates(model, dry.load)
             mode = CARRIED if mode == CARRIED and dry.load > 0.0 else SLIDES
             contacts.chain[0] = -1

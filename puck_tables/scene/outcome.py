@@ -24,7 +24,7 @@ ENDS = (
     "not finite", "undecided", "no end found", "refused",
 )  # fmt: skip
 NO_END, REFUSED = len(ENDS) - 2, len(ENDS) - 1  # of a run in a sweep, which goes on
-EVENTS = ("stick", "slip", "impact", "contact", "border", "edge")
+EVENTS = ("stick", "slip", "impact", "contact", "entry", "edge", "exit")
 
 # rows of the compiled loop, and what follows from them
 LEDGER = (

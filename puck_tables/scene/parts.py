@@ -17,13 +17,23 @@ Rows = tuple[tuple[float, ...], ...]
 
 @dataclass(frozen=True)
 class Strips:
-    """Regions of the floor between parallel borders, which the centre of the puck crosses."""
+    """Regions of the floor between parallel borders; a base on several feels each of them."""
 
     borders: tuple[float, ...] = of(
         "numbers", unit="m", doc="ascending places along 'direction'", acts="strips"
     )
     friction: tuple[float, ...] = of("numbers", low=0.0, doc="one more than borders", acts="")
     direction: float = of("number", 0.0, "rad", doc="across the borders, from x", acts="")
+
+
+@dataclass(frozen=True)
+class Patch:
+    """A spot of the floor with a friction of its own, round or a polygon; wet, or rough."""
+
+    friction: float = of("number", low=0.0, doc="in place of that around it", acts="patches")
+    centre: tuple[float, float] = of("pair", (0.0, 0.0), "m", doc="of a round one", acts="")
+    radius: float = of("number", 0.0, "m", low=0.0, doc="of a round one", acts="")
+    corners: Rows = of("rows", (), doc="rows of x and y in m, around a polygon", acts="")
 
 
 @dataclass(frozen=True)
@@ -42,6 +52,7 @@ class Floor:
     turning: float = of("number", 0.0, "rad/s", doc="spin of a turntable", acts="turntable")
     centre: tuple[float, float] = of("pair", (0.0, 0.0), "m", doc="of the turntable", acts="")
     strips: Strips | None = of("part", None, part=Strips)
+    patches: tuple[Patch, ...] = of("parts", (), part=Patch, table="patch")
     law: str | Rows = of(
         "rows",
         "",

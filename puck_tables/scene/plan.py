@@ -20,6 +20,7 @@ from puck_tables.motion.body import is_plain
 from puck_tables.motion.friction import FINEST_TOL
 from puck_tables.scene.agreement import distance, launch_velocity
 from puck_tables.scene.entries import entries
+from puck_tables.scene.floor_patches import distances
 from puck_tables.scene.scene import Scene
 
 _NAMES = {"A": "rest", "B0": "pure spin", "C0": "pure translation", "D": "the limit motion"}
@@ -58,7 +59,7 @@ def ingredients(scene: Scene) -> list[str]:
     plain = is_plain(puck.pressure, puck.gyration, puck.delta)
     if not plain and scene.run.tol < FINEST_TOL:
         there.append("a tolerance finer than for free pucks of this kind")
-    if scene.floor.strips is None and puck.friction == 0.0 and not scene.floor.law:
+    if scene.floor.strips is None and not any(scene.frictions) and not scene.floor.law:
         there.append("no dry friction")
     return there
 
@@ -121,21 +122,24 @@ def out_of_reach(scene: Scene) -> Scene:
     if strips is not None:
         across = (math.cos(strips.direction), math.sin(strips.direction))
         along = across[0] * place[0] + across[1] * place[1]
-        room += [abs(along - border) for border in strips.borders]
+        room += [abs(along - border) - radius for border in strips.borders]
+    room += [abs(away) - radius for away in distances(scene.floor, place)]
     return bare if way < min(room) else scene
 
 
 def _without_boundaries(scene: Scene) -> Scene:
     """The scene with the friction of the region in which the puck starts."""
-    strips = scene.floor.strips
-    if strips is None:
-        return replace(scene, walls=(), edges=())
-    across = (math.cos(strips.direction), math.sin(strips.direction))
-    along = across[0] * scene.launch.position[0] + across[1] * scene.launch.position[1]
-    friction = strips.friction[sum(along >= border for border in strips.borders)]
+    strips, friction = scene.floor.strips, scene.puck.friction
+    if strips is not None:
+        across = (math.cos(strips.direction), math.sin(strips.direction))
+        along = across[0] * scene.launch.position[0] + across[1] * scene.launch.position[1]
+        friction = strips.friction[sum(along >= border for border in strips.borders)]
+    away = distances(scene.floor, scene.launch.position)
+    for patch, gap in zip(scene.floor.patches, away, strict=True):
+        friction = patch.friction if gap < 0.0 else friction
     return replace(
         scene, walls=(), edges=(), puck=replace(scene.puck, friction=friction),
-        floor=replace(scene.floor, strips=None),
+        floor=replace(scene.floor, strips=None, patches=()),
     )  # fmt: skip
 
 

@@ -13,6 +13,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import in_slices
 from puck_tables.errors import InputError
 from puck_tables.scene.agreement import launch_velocity
+from puck_tables.scene.astride import own_ground, patches_on
 from puck_tables.scene.at_once import AS_IT_COMES
 from puck_tables.scene.boundaries import Boundaries
 from puck_tables.scene.bulk import follow_many
@@ -25,11 +26,11 @@ from puck_tables.scene.ingredients import (
     PIVOT,
     RAIL,
     Body,
-    Dry,
     Model,
     Regions,
     Stretch,
     Surface,
+    dry_in,
     hold_of,
 )
 from puck_tables.scene.leaning import LEAN_COLUMNS
@@ -37,6 +38,7 @@ from puck_tables.scene.loop import follow
 from puck_tables.scene.regions import friction_error, regions_of
 from puck_tables.scene.rest import excess_at_rest
 from puck_tables.scene.scene import Scene
+from puck_tables.scene.zones import zones_of
 
 LOCAL_SHARE = 0.01  # of the error wanted, per step and in units of the scales
 FINEST_LOCAL = 3e-14  # rounding
@@ -88,9 +90,10 @@ class Prepared:
             off = 1.0 + friction_error(self.scene)
         regions = self.regions._replace(
             load=off * self.regions.load,
+            ground=own_ground(self.regions.ground, off),
             by_speed=self.regions.by_speed._replace(normal=off * self.regions.by_speed.normal),
         )
-        desk = desk_for(self.bounds)
+        desk = desk_for(self.bounds, patches_on(self.regions.ground))
         found = follow(
             self.model, regions, self.bounds, ask, self.state, region, frames, rows, events, desk
         )
@@ -112,13 +115,12 @@ class Prepared:
         in_slices(work, len(states))
 
     def starts(self, states: FloatArray) -> npt.NDArray[np.int64]:
-        """Region of the floor in which launches (n, 10) start."""
-        strips = self.scene.floor.strips
-        if strips is None:
+        """Zone of the floor in which launches (n, 10) start."""
+        lines = self.bounds.borders
+        if not len(lines):
             return np.zeros(len(states), np.int64)
-        across = _direction(strips.direction)
-        along = across[0] * states[:, X] + across[1] * states[:, Y]
-        return np.searchsorted(strips.borders, along, side="right").astype(np.int64)
+        along = states[:, [X, Y]] @ lines[0, :2]
+        return np.searchsorted(lines[:, 2], along, side="right").astype(np.int64)
 
     def asks(self, states: FloatArray) -> FloatArray:
         """Time limit, scale of speeds and scales of the state for launches (n, 10); (n, 12)."""
@@ -161,7 +163,7 @@ def prepare(scene: Scene, last_time: float | None = None) -> Prepared:
 
 def _bounds(scene: Scene) -> Boundaries:
     """Walls (moved in by the radius), edges and borders as lines n·x = c."""
-    walls, edges, borders = [], [], []
+    walls, edges = [], []
     for wall in scene.walls:
         nx, ny, c = _line(wall.point, wall.normal)
         walls.append([
@@ -170,12 +172,9 @@ def _bounds(scene: Scene) -> Boundaries:
         ])  # fmt: skip
     for edge in scene.edges:
         edges.append(_line(edge.point, edge.normal))
-    if scene.floor.strips is not None:
-        across = _direction(scene.floor.strips.direction)
-        borders = [(*across, place) for place in scene.floor.strips.borders]
     return Boundaries(
         np.array(walls).reshape(-1, 6), np.array(edges).reshape(-1, 3),
-        np.array(borders).reshape(-1, 3),
+        zones_of(scene).lines,
     )  # fmt: skip
 
 
@@ -183,10 +182,6 @@ def _line(point: tuple[float, float], normal: tuple[float, float]) -> tuple[floa
     size = math.hypot(*normal)
     nx, ny = normal[0] / size, normal[1] / size
     return nx, ny, nx * point[0] + ny * point[1]
-
-
-def _direction(angle: float) -> tuple[float, float]:
-    return math.cos(angle), math.sin(angle)
 
 
 def _asks(scene: Scene, model: Model, regions: Regions, states: FloatArray) -> FloatArray:
@@ -267,8 +262,8 @@ def _slowest(
     brakes = []
     for number in range(len(regions.load)):
         load = float(regions.load[number])
-        if load > 0.0:
-            dry = Dry(load, regions.delta[number], regions.cuts[number], regions.by_speed)
+        if load > 0.0 and not regions.astride[number]:
+            dry = dry_in(regions, number)
             at_rest = Stretch(
                 model, dry, np.empty((0, LEAN_COLUMNS)), 0, CARRIED, (0.0, 0.0, 0.0, 0.0), 0.0
             )

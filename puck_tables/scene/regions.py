@@ -16,8 +16,10 @@ from puck_tables.kernels.section_spline import HEADER, RATIOS
 from puck_tables.motion.body import body_of, is_plain
 from puck_tables.motion.friction import closed_form_friction, table_friction
 from puck_tables.scene.agreement import launch_velocity, law_of_rows
+from puck_tables.scene.astride import NO_GROUND
 from puck_tables.scene.ingredients import BySpeed, Regions
 from puck_tables.scene.scene import Scene
+from puck_tables.scene.zones import ground_of, zones_of
 from puck_tables.table.friction_section import FINEST_ACCURACY
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.table.speed_build import FINEST_ACCURACY as FINEST_LAW
@@ -59,12 +61,12 @@ def regions_of(scene: Scene) -> Regions:
         table.refuse_height(height_ratio)
         by_speed = BySpeed(table.compiled, height_ratio, normal, 1.0)
         load = np.array([normal * table.largest_f])
-        return Regions(load, np.zeros(1), closed_form_friction(0.0).cut[None, :], by_speed)
+        return alone(load, np.zeros(1), closed_form_friction(0.0).cut[None, :], by_speed)
     heights = scene.heights
     load = normal * np.array(scene.frictions)
     if all(is_plain(puck.pressure, puck.gyration, delta) for delta in heights):
         cuts = np.stack([_plain_cut(scene.run.tol, delta) for delta in heights])
-        return Regions(load, np.array(heights), cuts, NO_LAW)
+        return _under_zones(scene, normal, load, np.array(heights), cuts)
     accuracy = friction_error(scene)
     # how the mass is spread stands in the equations of the scene, not in its friction
     bodies = [body_of(puck.pressure, delta, puck.gyration) for delta in heights]
@@ -77,7 +79,33 @@ def regions_of(scene: Scene) -> Regions:
             f"tol = {scene.run.tol:g} is out of reach under the pressure law {puck.pressure}: give "
             f"run.tol (or --tol) of {rounded_up(error.reachable / SLICE_SHARE):g} or more"
         ) from None
-    return Regions(load, np.array(heights), of_one_shape(slices), NO_LAW)
+    return _under_zones(scene, normal, load, np.array(heights), of_one_shape(slices))
+
+
+def alone(load: FloatArray, delta: FloatArray, cuts: FloatArray, by_speed: BySpeed) -> Regions:
+    """Regions of which a base never lies on two at once."""
+    return Regions(load, delta, cuts, by_speed, np.zeros(len(load), np.bool_), NO_GROUND)
+
+
+def _under_zones(
+    scene: Scene, normal: float, load: FloatArray, delta: FloatArray, cuts: FloatArray
+) -> Regions:
+    """Friction in every zone, on every patch, and astride a patch, of that on strips and patches.
+
+    Astride, load and δ are the largest that may be under the base.
+    """
+    zones, patches = zones_of(scene), len(scene.floor.patches)
+    strips = len(load) - patches
+    spans = [(one, two) for one, two in zip(zones.first, zones.last, strict=True)]
+    spans += [(strips + k, strips + k) for k in range(patches)]
+    if patches:
+        spans.append((0, strips + patches - 1))
+    return Regions(
+        np.array([load[one : two + 1].max() for one, two in spans]),
+        np.array([delta[one : two + 1].max() for one, two in spans]),
+        cuts[[one for one, _ in spans]], NO_LAW,
+        np.array([one != two for one, two in spans]), ground_of(scene, normal),
+    )  # fmt: skip
 
 
 def friction_error(scene: Scene) -> float:

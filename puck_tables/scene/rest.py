@@ -16,6 +16,7 @@ import math
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner, kernel
+from puck_tables.scene.astride_rest import astride_yield
 from puck_tables.scene.forces import given_force
 from puck_tables.scene.friction import THETA, X, Y, at_slip_zero, dry_friction
 from puck_tables.scene.ingredients import (
@@ -29,6 +30,8 @@ from puck_tables.scene.ingredients import (
     Stretch,
     carried_along,
     floor_velocity,
+    is_astride,
+    put_at,
 )
 from puck_tables.scene.leaning import (
     GRIP,
@@ -41,6 +44,7 @@ from puck_tables.scene.leaning import (
 )
 
 SLACK = 1e-12  # of f N: a demand this close to the limit is held
+_HINT = 1e-100  # of a torque: a force that only says which way the puck is led
 
 Yield = tuple[float, float, float, float]
 
@@ -54,8 +58,8 @@ def _pivot_yield(
     reach = hold.reach
     demand = torque - reach * (cosine * fy - sine * fx)
     length = math.hypot(reach, radius)
-    _, _, _, heat = dry_friction(dry, radius, reach / length, 0.0, 1.0 / length)
     way = (1.0 if demand >= 0.0 else -1.0) / length
+    _, _, _, heat = dry_friction(dry, radius, way * reach * sine, -way * reach * cosine, way)
     return abs(demand) / length - heat, way * reach * sine, -way * reach * cosine, way
 
 
@@ -100,6 +104,8 @@ def demand(
 @inner
 def free_yield(dry: Dry, radius: float, fx: float, fy: float, torque: float, guided: bool) -> Yield:
     """The same where the puck may slip and turn; ``guided``: along the force only."""
+    if is_astride(dry):
+        return astride_yield(dry.by_speed.table, dry.load, radius, fx, fy, torque, guided)
     share, heat, ux, uy, w = demand(dry, radius, fx, fy, torque, guided)
     return (share - 1.0) * heat, ux, uy, w
 
@@ -121,6 +127,8 @@ def constrained_yield(
         return math.inf, 0.0, 0.0, 0.0
     ex, ey = (-hold.ay, hold.ax) if hold.kind == RAIL else (cosine, sine)
     along = fx * ex + fy * ey
+    if along == 0.0 and is_astride(dry):  # a turn leads along it, even so
+        along = _HINT * torque / body.radius
     return free_yield(dry, body.radius, along * ex, along * ey, torque, guided)
 
 
@@ -227,6 +235,7 @@ def excess_at_rest(stretch: Stretch, t: float, y: FloatArray) -> Yield:
     gx, gy, torque = given_force(model.forces, stretch.piece, t)
     fx, fy = gx - body.mass * ax, gy - body.mass * ay
     dry = at_slip_zero(stretch.dry)
+    put_at(dry, y[X], y[Y])
     guided = model.hold.kind != FREE
     if guided:
         return constrained_yield(

@@ -150,7 +150,7 @@ class Scene(SceneVerbs):
 
     @property
     def frictions(self) -> tuple[float, ...]:
-        """Coulomb's coefficient in each region of the floor: of strips, else that of the puck.
+        """Coulomb's coefficients of the floor: of strips, else that of the puck; then of patches.
 
         Examples
         --------
@@ -158,11 +158,12 @@ class Scene(SceneVerbs):
         (0.1,)
         """
         strips = self.floor.strips
-        return (self.puck.friction,) if strips is None else strips.friction
+        base = (self.puck.friction,) if strips is None else strips.friction
+        return (*base, *(patch.friction for patch in self.floor.patches))
 
     @property
     def heights(self) -> list[float]:
-        """δ = 2fh/r in each region of the floor.
+        """δ = 2fh/r for each of them.
 
         Examples
         --------

@@ -16,7 +16,7 @@ from puck_tables.scene.holds import allowed_velocity
 from puck_tables.scene.ingredients import RAIL, Regions, Surface, floor_velocity, hold_of
 from puck_tables.scene.parts import Wall
 from puck_tables.scene.pieces import Arc, Piece, Post
-from puck_tables.scene.regions import NO_LAW, SLICE_SHARE, of_one_shape
+from puck_tables.scene.regions import NO_LAW, SLICE_SHARE, alone, of_one_shape
 from puck_tables.scene.scene import Scene
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.table.friction_section import FINEST_ACCURACY
@@ -276,11 +276,11 @@ def _regions(scene: Scene, pieces: list[Piece], discs: FloatArray, floors: Float
     delta = floors[:, 1].copy()
     there = [(p, f[n]) for n in range(strips) for p in pieces for f in [frictions_under(scene, p)]]
     if all(has_closed_forms(*one) for one in there):
-        return Regions(load, delta, np.empty((len(floors), *NO_SECTION.shape)), NO_LAW)
+        return alone(load, delta, np.empty((len(floors), *NO_SECTION.shape)), NO_LAW)
     accuracy = max(SLICE_SHARE * scene.run.tol, FINEST_ACCURACY)
     bodies = [replace(piece, friction=friction).body for piece, friction in there]
     cuts = of_one_shape([body.friction(accuracy).cut for body in bodies])
-    return Regions(load, delta, cuts, NO_LAW)
+    return alone(load, delta, cuts, NO_LAW)
 
 
 def _obstacles(scene: Scene, called: dict[object, float], makes: FloatArray) -> FloatArray:

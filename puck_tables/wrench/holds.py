@@ -16,7 +16,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import broadcast, finite_array, velocity_array
 from puck_tables.errors import InputError
 from puck_tables.kernels.compile import allocating
-from puck_tables.scene.ingredients import Dry
+from puck_tables.scene.ingredients import Dry, dry_in
 from puck_tables.scene.regions import regions_of
 from puck_tables.scene.rest import SLACK, demand
 from puck_tables.scene.scene import Scene
@@ -49,7 +49,7 @@ def holds(puck: Puck, force: npt.ArrayLike, torque: npt.ArrayLike) -> Hold:
     fx, fy, moment = broadcast(force_x=forces[..., 0], force_y=forces[..., 1], torque=turning)
     rows = np.stack([one.ravel() for one in (fx, fy, moment)])
     regions = regions_of(Scene(puck))
-    dry = Dry(float(regions.load[0]), float(regions.delta[0]), regions.cuts[0], regions.by_speed)
+    dry = dry_in(regions, 0)
     # wrenches over their largest part: no square leaves floating point
     scale = np.maximum(np.abs(rows[:2]).max(axis=0), np.abs(rows[2]) / puck.radius)
     unit = np.where(scale > 0.0, scale, 1.0)

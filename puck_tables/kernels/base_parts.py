@@ -1,0 +1,275 @@
+"""Sums of the slip direction over parts of a round base, by their boundaries.
+
+With the slip velocity u = (α − β y, β x) in units of Q, x along the slip of the centre and lengths
+in radii, w = |u| and e = u/w, it is β e = (−∂w/∂y, ∂w/∂x): every sum of e, x e, … over a part of
+the base is an integral along its boundary (Green).  With h = (w − α)/β, which has a limit where β
+vanishes, and the part's boundary counter-clockwise,
+
+    ∫ e dA = ∮ h (dx, dy),   ∫ h dA = ⅓ ∮ [h (x dy − y dx) + α k dx],   k = (h + y)/β,
+
+and so on for one power of x and y more, which a tilted pressure needs.  On a straight piece these
+are elementary.  On an arc h is smooth but next to the instantaneous centre of rotation, (0, α/β):
+Gauss's rule on panels that shrink towards it.
+
+A :data:`Sums` is ∫ of e_x, e_y, x e_x, y e_x, x e_y, y e_y, x (x e_y − y e_x), y (x e_y − y e_x).
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from puck_tables.contact import closed_form
+from puck_tables.kernels.compile import inlined, inner
+from puck_tables.kernels.elementary import cosine_sine_of
+
+Sums = tuple[float, float, float, float, float, float, float, float]
+NOTHING: Sums = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+_NODES = 16
+_NODE, _WEIGHT = (side[_NODES // 2 :] for side in np.polynomial.legendre.leggauss(_NODES))
+_FAR = 2.0  # radii from which on the centre of rotation is no trouble for Gauss's rule
+_PANEL = 2.4  # the length of a panel over its distance from the centre of rotation
+_LEAST_GAP = 1e-5  # closer than this the centre is on the arc: the square of it is lost
+
+_full_integrals = inlined(closed_form.shape_integrals)
+
+
+@inlined
+def plus(sums: Sums, weight: float, more: Sums) -> Sums:
+    """Sums and so many times others."""
+    return (
+        sums[0] + weight * more[0], sums[1] + weight * more[1], sums[2] + weight * more[2],
+        sums[3] + weight * more[3], sums[4] + weight * more[4], sums[5] + weight * more[5],
+        sums[6] + weight * more[6], sums[7] + weight * more[7],
+    )  # fmt: skip
+
+
+@inlined
+def _combined(
+    tx: float, ty: float, a: float, h: float, hx: float, hy: float, k: float, kx: float,
+    ky: float, q: float,
+) -> Sums:  # fmt: skip
+    """The integrands of a piece of boundary.
+
+    (tx, ty): its direction; a = x ty − y tx; h, hx, hy: h and its products with x and y; k, kx, ky:
+    the same of α k; q: what is left of α k, over β, where its divergence is taken.
+    """
+    mass = (a * h + tx * k) / 3.0  # of ∫ h
+    first = 0.25 * (a * hx + tx * kx)  # of ∫ x h
+    second = 0.25 * (a * hy + tx * ky) + (a * k + tx * q) / 12.0  # of ∫ y h
+    return (
+        tx * h, ty * h, tx * hx, tx * hy + mass, ty * hx - mass, ty * hy,
+        a * hx - 3.0 * first, a * hy - 3.0 * second,
+    )  # fmt: skip
+
+
+@inlined
+def _at(alpha: float, beta: float, x: float, y: float, tx: float, ty: float) -> Sums:
+    """The integrands at a point of the boundary, with its direction (tx, ty)."""
+    up = alpha - beta * y
+    w = math.sqrt(up * up + beta * beta * x * x)
+    if _FAR * beta > alpha:
+        c = alpha / beta
+        h = (w - alpha) / beta
+        k = c * (h + y)
+        q = c * k
+    else:
+        below = 1.0 / (w + alpha)
+        square = x * x + y * y
+        h = (beta * square - 2.0 * alpha * y) * below
+        k = alpha * (square + y * h) * below
+        q = alpha * (y * k - 0.5 * h * x * x) * below
+    return _combined(tx, ty, x * ty - y * tx, h, x * h, y * h, k, x * k, y * k, q)
+
+
+@inner
+def line_sums(alpha: float, beta: float, x: float, y: float, to_x: float, to_y: float) -> Sums:
+    """A straight piece of boundary from (x, y) to (to_x, to_y)."""
+    length = math.sqrt((to_x - x) * (to_x - x) + (to_y - y) * (to_y - y))
+    if length == 0.0:
+        return NOTHING
+    tx, ty = (to_x - x) / length, (to_y - y) / length
+    if not _FAR * beta > alpha:
+        sums, half = NOTHING, 0.5 * length
+        mx, my = 0.5 * (x + to_x), 0.5 * (y + to_y)
+        for i in range(_NODES // 2):
+            way = half * _NODE[i]
+            weight = half * _WEIGHT[i]
+            sums = plus(sums, weight, _at(alpha, beta, mx + way * tx, my + way * ty, tx, ty))
+            sums = plus(sums, weight, _at(alpha, beta, mx - way * tx, my - way * ty, tx, ty))
+        return sums
+    # s along it from the foot (x0, y0) of the disc's centre; w/β = hypot(s − place, off)
+    begin = x * tx + y * ty
+    end = begin + length
+    x0, y0 = x - begin * tx, y - begin * ty
+    c = alpha / beta
+    place, off = (c - y0) * ty - x0 * tx, (c - y0) * tx + x0 * ty
+    one, two = begin - place, end - place
+    far, near = math.sqrt(two * two + off * off), math.sqrt(one * one + off * off)
+    w0 = 0.5 * (two * far - one * near)
+    if off != 0.0:
+        size = abs(off)
+        w0 += 0.5 * off * off * (math.asinh(two / size) - math.asinh(one / size))
+    w1 = length * (one + two) * (far * far + far * near + near * near) / (3.0 * (far + near))
+    w1 += place * w0
+    l1 = 0.5 * length * (begin + end)
+    l2 = length * (begin * begin + begin * end + end * end) / 3.0
+    h0, h1 = w0 - c * length, w1 - c * l1
+    hx, hy = x0 * h0 + tx * h1, y0 * h0 + ty * h1
+    k = c * (h0 + y0 * length + ty * l1)
+    kx = c * (hx + x0 * y0 * length + (x0 * ty + y0 * tx) * l1 + tx * ty * l2)
+    ky = c * (hy + y0 * y0 * length + 2.0 * y0 * ty * l1 + ty * ty * l2)
+    return _combined(tx, ty, x0 * ty - y0 * tx, h0, hx, hy, k, kx, ky, c * k)
+
+
+@inlined
+def _panel(
+    alpha: float, beta: float, cx: float, cy: float, radius: float, middle: float, half: float
+) -> Sums:
+    cosine, sine = radius * math.cos(middle), radius * math.sin(middle)
+    sums = NOTHING
+    for i in range(_NODES // 2):
+        turn = half * _NODE[i]
+        weight = half * _WEIGHT[i]
+        c, s = cosine_sine_of(turn)
+        x, y = cosine * c - sine * s, sine * c + cosine * s
+        sums = plus(sums, weight, _at(alpha, beta, cx + x, cy + y, -y, x))
+        x, y = cosine * c + sine * s, sine * c - cosine * s
+        sums = plus(sums, weight, _at(alpha, beta, cx + x, cy + y, -y, x))
+    return sums
+
+
+@inner
+def arc_sums(
+    alpha: float, beta: float, cx: float, cy: float, radius: float, start: float, turn: float
+) -> Sums:
+    """An arc about (cx, cy) from the angle ``start`` over ``turn``, clockwise where that is < 0."""
+    if turn == 0.0:
+        return NOTHING
+    across, up = -beta * cx, alpha - beta * cy  # to the centre of rotation, times β
+    nearest = math.atan2(up, across)
+    reach = math.sqrt(across * across + up * up)
+    gap = 1e3  # of angles: as far as that the arc is from the singularity
+    if beta > 0.0:
+        gap = min(max(abs(math.log(max(reach, 1e-300) / (beta * radius))), _LEAST_GAP), gap)
+    whole = 2.0 * math.pi
+    low = (start if turn > 0.0 else start + turn) - nearest
+    low -= whole * math.floor(low / whole)
+    high, sums = low + abs(turn), NOTHING
+    # from half-turn to half-turn: in the even ones the arc leads away from the centre of rotation
+    number = math.floor(low / math.pi)
+    while low < high:
+        edge = min(math.pi * (number + 1.0), high)
+        leads_away = number % 2.0 == 0.0
+        base = math.pi * (number if leads_away else number + 1.0)
+        near, far = (low - base, edge - base) if leads_away else (base - edge, base - low)
+        while near < far:
+            length = _PANEL * math.sqrt(gap * gap + near * near)
+            if length >= 0.7 * (far - near):
+                length = far - near if length >= far - near else 0.5 * (far - near)
+            middle = near + 0.5 * length
+            angle = nearest + (base + middle if leads_away else base - middle)
+            sums = plus(sums, 1.0, _panel(alpha, beta, cx, cy, radius, angle, 0.5 * length))
+            near = near + length if length < far - near else far
+        low = edge
+        number += 1.0
+    return plus(NOTHING, 1.0 if turn > 0.0 else -1.0, sums)
+
+
+@inlined
+def disc_sums(alpha: float, beta: float, size: float) -> Sums:
+    """The whole disc of a radius about the centre of the base, by the closed forms."""
+    rim = beta * size
+    fast = rim > alpha
+    ratio = alpha / rim if fast else rim / alpha
+    a, b, d = _full_integrals(ratio, 1.0 if fast else 0.0)
+    length = math.sqrt(alpha * alpha + rim * rim)
+    area = math.pi * size * size
+    slides, turns = area * alpha / length, area * size * rim / length
+    return (
+        slides * a, 0.0, 0.0, turns * (b - d), turns * b, 0.0, 0.0,
+        slides * size * size * (d - 2.0 * b),
+    )  # fmt: skip
+
+
+@inner
+def beyond_sums(
+    alpha: float, beta: float, size: float, nx: float, ny: float, place: float
+) -> Sums:
+    """What of a disc lies beyond the line n·x = place ≥ 0."""
+    if place >= size:
+        return NOTHING
+    half = math.acos(place / size)
+    end = math.sqrt((size - place) * (size + place))
+    sums = arc_sums(alpha, beta, 0.0, 0.0, size, math.atan2(ny, nx) - half, 2.0 * half)
+    px, py = place * nx, place * ny
+    chord = line_sums(
+        alpha, beta, px - end * ny, py + end * nx, px + end * ny, py - end * nx
+    )  # fmt: skip
+    return plus(sums, 1.0, chord)
+
+
+@inner
+def common_sums(
+    alpha: float, beta: float, size: float, cx: float, cy: float, radius: float
+) -> Sums:
+    """What of a disc lies in a circle about (cx, cy)."""
+    apart = math.sqrt(cx * cx + cy * cy)
+    if apart >= size + radius:
+        return NOTHING
+    if apart + size <= radius:
+        return disc_sums(alpha, beta, size)
+    if apart + radius <= size:
+        return arc_sums(alpha, beta, cx, cy, radius, 0.0, 2.0 * math.pi)
+    # half angles under which the two circles cut each other, by the half tangent
+    short = (radius - apart + size) * (radius + apart - size)
+    long = (apart + size + radius) * (apart + size - radius)
+    own = 2.0 * math.atan2(math.sqrt(max(short, 0.0)), math.sqrt(max(long, 0.0)))
+    short = (size - apart + radius) * (size + apart - radius)
+    long = (apart + size + radius) * (apart - size + radius)
+    other = 2.0 * math.atan2(math.sqrt(max(short, 0.0)), math.sqrt(max(long, 0.0)))
+    way = math.atan2(cy, cx)
+    sums = arc_sums(alpha, beta, 0.0, 0.0, size, way - own, 2.0 * own)
+    back = arc_sums(alpha, beta, cx, cy, radius, way + math.pi - other, 2.0 * other)
+    return plus(sums, 1.0, back)
+
+
+@inlined
+def _along_rim(
+    alpha: float, beta: float, size: float, x: float, y: float, to_x: float, to_y: float
+) -> Sums:
+    """The rim as seen from the centre between two points outside, or on it."""
+    turn = math.atan2(x * to_y - y * to_x, x * to_x + y * to_y)
+    return arc_sums(alpha, beta, 0.0, 0.0, size, math.atan2(y, x), turn)
+
+
+@inner
+def edge_sums(
+    alpha: float, beta: float, size: float, x: float, y: float, to_x: float, to_y: float
+) -> Sums:
+    """What one edge of a polygon adds to the sums over what of a disc lies in the polygon.
+
+    The edge itself where it is in the disc, and else the rim under it, as seen from the centre.
+    """
+    dx, dy = to_x - x, to_y - y
+    square = dx * dx + dy * dy
+    if square == 0.0:
+        return NOTHING
+    along = -(x * dx + y * dy) / square
+    px, py = x + along * dx, y + along * dy
+    room = size * size - (px * px + py * py)
+    if room <= 0.0:
+        return _along_rim(alpha, beta, size, x, y, to_x, to_y)
+    half = math.sqrt(room / square)
+    low, high = max(along - half, 0.0), min(along + half, 1.0)
+    if low >= high:
+        return _along_rim(alpha, beta, size, x, y, to_x, to_y)
+    x1, y1, x2, y2 = x + low * dx, y + low * dy, x + high * dx, y + high * dy
+    sums = line_sums(alpha, beta, x1, y1, x2, y2)
+    if low > 0.0:
+        sums = plus(sums, 1.0, _along_rim(alpha, beta, size, x, y, x1, y1))
+    if high < 1.0:
+        sums = plus(sums, 1.0, _along_rim(alpha, beta, size, x2, y2, to_x, to_y))
+    return sums

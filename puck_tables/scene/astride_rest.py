@@ -1,0 +1,147 @@
+"""What a floor holds of a puck at rest astride several frictions.
+
+At rest the demand on the floor fixes the tilt of the pressure: b = κ F.  With the pressure known,
+friction holds a force and a torque if no slip gains energy: P·n ≤ D(n) = ∫ f σ |u| dA for all slips
+n = (u_x, u_y, r ω), P = (F_x, F_y, T/r).  D is convex and its gradient is the wrench of friction, so
+that the worst slip is the least of D on the plane P·n = 1.  Where the puck is held only just, this
+is the same as friction in that slip being P.
+"""
+
+from __future__ import annotations
+
+import math
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.kernels.compile import inner
+from puck_tables.scene.astride import LEVER, held_friction
+
+Yield = tuple[float, float, float, float]
+
+_NARROW = 1e-9  # of the slip: what is left of a bracket; the excess errs by the square
+_WIDEST, _TRIALS = 60, 60  # at most: to bracket, and in the bracket
+
+
+@inner
+def _resists(
+    ground: FloatArray, radius: float, nx: float, ny: float, nw: float, bx: float, by: float
+) -> tuple[float, float, float]:
+    """The gradient of D at a slip of any size."""
+    whole = math.sqrt(nx * nx + ny * ny + nw * nw)
+    return held_friction(ground, radius, nx / whole, ny / whole, nw / whole, bx, by)
+
+
+@inner
+def _slope_along(
+    ground: FloatArray, radius: float, bx: float, by: float, n: tuple[float, float, float],
+    way: tuple[float, float, float], a: float,
+) -> float:  # fmt: skip
+    gx, gy, gw = _resists(
+        ground, radius, n[0] + a * way[0], n[1] + a * way[1], n[2] + a * way[2], bx, by
+    )
+    return gx * way[0] + gy * way[1] + gw * way[2]
+
+
+@inner
+def _least_along(
+    ground: FloatArray, radius: float, bx: float, by: float, n: tuple[float, float, float],
+    way: tuple[float, float, float], size: float,
+) -> float:  # fmt: skip
+    """Where on the line n + a way D is least: its slope, which grows, by false position (Illinois)."""
+    first = _slope_along(ground, radius, bx, by, n, way, 0.0)
+    if first == 0.0:
+        return 0.0
+    side = -1.0 if first > 0.0 else 1.0
+    low, high, last, reach = 0.0, 0.0, first, 0.25 * size
+    for _ in range(_WIDEST):
+        high = side * reach
+        last = _slope_along(ground, radius, bx, by, n, way, high)
+        if last * first <= 0.0:
+            break
+        low, first = high, last
+        reach *= 4.0
+    for _ in range(_TRIALS):
+        if abs(high - low) <= _NARROW * (size + abs(high)) or last == 0.0:
+            break
+        middle = (low * last - high * first) / (last - first)
+        value = _slope_along(ground, radius, bx, by, n, way, middle)
+        low, first = (high, last) if value * last <= 0.0 else (low, 0.5 * first)
+        high, last = middle, value
+    return high
+
+
+@inner
+def astride_yield(
+    ground: FloatArray, most: float, radius: float, fx: float, fy: float, torque: float, guided: bool
+) -> Yield:
+    """By how much the power of the best slip at Q = 1 exceeds friction, and that slip.
+
+    ``most``: f N of the largest f; ``guided``: the puck can slip along the force only, and turn.
+    """
+    rim = torque / radius
+    force = math.sqrt(fx * fx + fy * fy)
+    size = math.sqrt(force * force + rim * rim)
+    if size == 0.0:
+        gx, _, _ = held_friction(ground, radius, 1.0, 0.0, 0.0, 0.0, 0.0)
+        return -gx, 1.0, 0.0, 0.0
+    lever = ground[LEVER]
+    bx, by = lever * fx, lever * fy
+    if force > most:  # it slips: what tilts is friction
+        bx, by = bx * most / force, by * most / force
+    ex, ey = (fx / force, fy / force) if force > 0.0 else (1.0, 0.0)
+    px, pw = force / size, rim / size
+    n = (px * ex, px * ey, pw)
+    level, turns = (-ey, ex, 0.0), (-pw * ex, -pw * ey, px)
+    a = _least_along(ground, radius, bx, by, n, turns, 1.0)
+    m = (n[0] + a * turns[0], n[1] + a * turns[1], n[2] + a * turns[2])
+    if not guided:
+        # of the least along every parallel of ``turns``: its slope across them grows, too
+        m = _least_in_plane(ground, radius, bx, by, n, level, turns)
+    whole = math.sqrt(m[0] * m[0] + m[1] * m[1] + m[2] * m[2])
+    m = (m[0] / whole, m[1] / whole, m[2] / whole)
+    gx, gy, gw = held_friction(ground, radius, m[0], m[1], m[2], bx, by)
+    power = gx * m[0] + gy * m[1] + gw * m[2]
+    return fx * m[0] + fy * m[1] + rim * m[2] - power, m[0], m[1], m[2] / radius
+
+
+@inner
+def _slope_across(
+    ground: FloatArray, radius: float, bx: float, by: float, n: tuple[float, float, float],
+    level: tuple[float, float, float], turns: tuple[float, float, float], b: float,
+) -> tuple[float, float]:  # fmt: skip
+    """The slope of D along ``level`` where it is least along ``turns``, and how far that is."""
+    p = (n[0] + b * level[0], n[1] + b * level[1], n[2] + b * level[2])
+    size = math.sqrt(1.0 + b * b)
+    a = _least_along(ground, radius, bx, by, p, turns, size)
+    p = (p[0] + a * turns[0], p[1] + a * turns[1], p[2] + a * turns[2])
+    return _slope_along(ground, radius, bx, by, p, level, 0.0), a
+
+
+@inner
+def _least_in_plane(
+    ground: FloatArray, radius: float, bx: float, by: float, n: tuple[float, float, float],
+    level: tuple[float, float, float], turns: tuple[float, float, float],
+) -> tuple[float, float, float]:  # fmt: skip
+    """Where on the plane n + b level + a turns D is least."""
+    first, a = _slope_across(ground, radius, bx, by, n, level, turns, 0.0)
+    low, high, last = 0.0, 0.0, first
+    side, reach = (-1.0 if first > 0.0 else 1.0), 0.25
+    if first != 0.0:
+        for _ in range(_WIDEST):
+            high = side * reach
+            last, a = _slope_across(ground, radius, bx, by, n, level, turns, high)
+            if last * first <= 0.0:
+                break
+            low, first = high, last
+            reach *= 4.0
+    for _ in range(_TRIALS):
+        if abs(high - low) <= _NARROW * (1.0 + abs(high)) or last == 0.0:
+            break
+        middle = (low * last - high * first) / (last - first)
+        value, a = _slope_across(ground, radius, bx, by, n, level, turns, middle)
+        low, first = (high, last) if value * last <= 0.0 else (low, 0.5 * first)
+        high, last = middle, value
+    return (
+        n[0] + high * level[0] + a * turns[0],
+        n[1] + high * level[1] + a * turns[1],
+        n[2] + high * level[2] + a * turns[2],
+    )

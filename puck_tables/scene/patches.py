@@ -1,0 +1,167 @@
+"""When the rim of a puck comes over a patch of the floor, and when it leaves it.
+
+Within a step the distance between the rim and a patch changes no faster than the puck moves, so
+that it is looked at often enough; where it changes its sign is found on real steps of the method.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.kernels.compile import inlined, inner
+from puck_tables.scene.astride import (
+    BORDERS,
+    CORNER,
+    CORNERS,
+    MIDDLE_X,
+    MIDDLE_Y,
+    REACH,
+    corner_of,
+    patch_of,
+    patches_on,
+    strip_at,
+)
+from puck_tables.scene.friction import VX, VY, X, Y
+from puck_tables.scene.ingredients import (
+    Dry,
+    Regions,
+    Stretch,
+    carried_along,
+    dry_in,
+)
+from puck_tables.scene.steps import step
+
+OUTSIDE, ASTRIDE, INSIDE = range(3)  # how a base lies to a patch
+_LOOKS = 256  # at a step, at most so many of one length; shorter grazes may pass unseen
+_CLOSE = 1e-13  # of a step: how well a moment in it is known
+
+
+@inner
+def distance_to(ground: FloatArray, number: int, x: float, y: float) -> float:
+    """How far a point is from the border of a patch; inside it that is negative."""
+    dx, dy = x - patch_of(ground, number, MIDDLE_X), y - patch_of(ground, number, MIDDLE_Y)
+    count, first = int(patch_of(ground, number, CORNERS)), int(patch_of(ground, number, CORNER))
+    if count == 0:
+        return math.sqrt(dx * dx + dy * dy) - patch_of(ground, number, REACH)
+    nearest, within = math.inf, False
+    for n in range(count):
+        one = corner_of(ground, first + n)
+        two = corner_of(ground, first + (n + 1 if n + 1 < count else 0))
+        ax, ay, bx, by = x - one[0], y - one[1], two[0] - one[0], two[1] - one[1]
+        share = min(max((ax * bx + ay * by) / (bx * bx + by * by), 0.0), 1.0)
+        ox, oy = ax - share * bx, ay - share * by
+        nearest = min(nearest, ox * ox + oy * oy)
+        if (one[1] > y) != (two[1] > y) and ax < ay / by * bx:
+            within = not within
+    return -math.sqrt(nearest) if within else math.sqrt(nearest)
+
+
+@inlined
+def room_by(ground: FloatArray, number: int, how: int, radius: float, x: float, y: float) -> float:
+    """How far the rim is from coming over a patch, or from leaving it."""
+    away = distance_to(ground, number, x, y)
+    if how == OUTSIDE:
+        return away - radius
+    if how == INSIDE:
+        return -away - radius
+    return radius - abs(away)
+
+
+@inlined
+def look_at_patches(
+    ground: FloatArray, lies: npt.NDArray[np.int64], radius: float, x: float, y: float
+) -> None:
+    """How a base lies to every patch."""
+    for k in range(lies.size):
+        away = distance_to(ground, k, x, y)
+        lies[k] = ASTRIDE
+        if abs(away) >= radius:
+            lies[k] = OUTSIDE if away > 0.0 else INSIDE
+
+
+@inlined
+def dry_under(regions: Regions, zone: int, lies: npt.NDArray[np.int64]) -> Dry:
+    """The friction under a base in a zone of the strips that lies so to the patches."""
+    zones, patches = len(regions.load) - len(lies) - 1, len(lies)
+    row = zone
+    for k in range(patches):
+        if lies[k] == INSIDE:
+            row = zones + k
+    for k in range(patches):
+        if lies[k] == ASTRIDE:
+            row = zones + patches
+    return dry_in(regions, row)
+
+
+@inlined
+def region_at(ground: FloatArray, x: float, y: float) -> int:
+    """The strip, or after all strips the patch, in which a point lies."""
+    if ground.size == 0:
+        return 0
+    for k in range(patches_on(ground)):
+        if distance_to(ground, k, x, y) < 0.0:
+            return int(ground[BORDERS]) + 1 + k
+    return strip_at(ground, x, y)
+
+
+@inlined
+def after_patch(ground: FloatArray, number: int, how: int, x: float, y: float) -> int:
+    """How a base lies to a patch whose border its rim has just met or left."""
+    if how != ASTRIDE:
+        return ASTRIDE
+    return OUTSIDE if distance_to(ground, number, x, y) > 0.0 else INSIDE
+
+
+@inner
+def first_patch(
+    ground: FloatArray, lies: npt.NDArray[np.int64], stretch: Stretch, t: float, h: float, y: FloatArray,
+    scale: FloatArray, work: FloatArray, last: FloatArray, new: FloatArray,
+) -> tuple[int, float]:  # fmt: skip
+    """The first patch whose border the rim meets or leaves on a step, and when; −1: none.
+
+    ``last``: dy/dt at the end of the step.
+    """
+    which, moment, radius = -1, math.inf, stretch.model.body.radius
+    surface = stretch.model.surface
+    speed = math.hypot(work[0, X], work[0, Y])
+    cx, cy = carried_along(surface, work[0, X], work[0, Y])
+    bend = math.hypot(work[0, VX] + cx, work[0, VY] + cy)
+    speed = max(speed, math.hypot(last[X], last[Y]))
+    cx, cy = carried_along(surface, last[X], last[Y])
+    fastest = speed + h * max(bend, math.hypot(last[VX] + cx, last[VY] + cy))
+    for k in range(lies.size):
+        room = room_by(ground, k, lies[k], radius, y[X], y[Y])
+        if room > fastest * h or fastest == 0.0:
+            continue
+        # on from place to place, none further than the room there, to where there is none
+        low, high, before = 0.0, 0.0, max(room, 0.0)
+        while high < h and high < moment:
+            low, high = high, min(high + max(before / fastest, h / _LOOKS), h)
+            step(stretch, t, high, y, scale, work, new)
+            room = room_by(ground, k, lies[k], radius, new[X], new[Y])
+            if room < 0.0:
+                break
+            before = room
+        if room >= 0.0 or low >= moment:
+            continue
+        after = room
+        for _ in range(60):
+            if high - low <= _CLOSE * h or after == 0.0 or before == 0.0:
+                break
+            guess = (low * after - high * before) / (after - before)
+            guess = min(max(guess, low + 0.5 * _CLOSE * h), high - 0.5 * _CLOSE * h)
+            step(stretch, t, guess, y, scale, work, new)
+            value = room_by(ground, k, lies[k], radius, new[X], new[Y])
+            if value < 0.0:
+                high, after = guess, value
+                before *= 0.5
+            else:
+                low, before = guess, value
+                after *= 0.5
+        if high < moment:
+            which, moment = k, high
+    return which, moment

@@ -1,0 +1,105 @@
+"""Which frictions a puck lies on: zones of its place across the borders of strips, and patches.
+
+The rim meets a border one radius before the centre does, and leaves it one radius behind.  These
+lines, two for each border, part the plane into zones: in every other the base lies on one strip.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.contact.laws import Law
+from puck_tables.scene.astride import NO_GROUND, PATCH_COLUMNS, Ground
+from puck_tables.scene.floor_patches import corners_of
+from puck_tables.scene.scene import Scene
+
+# columns of a line at which the rim comes over a border or leaves it: its normal, its place, the
+# number of the border, and −1 or 1: it is met on the way there or on the way on
+BORDER_COLUMNS = 5
+
+
+class Zones(NamedTuple):
+    """Zones between lines (m, 5), ascending: the first and the last strip under a base (m + 1,)."""
+
+    lines: FloatArray
+    first: npt.NDArray[np.int64]
+    last: npt.NDArray[np.int64]
+
+
+def zones_of(scene: Scene) -> Zones:
+    """The zones of the floor of a scene; one where it has no strips.
+
+    Examples
+    --------
+    >>> from puck_tables import Floor, Puck, Strips
+    >>> floor = Floor(strips=Strips((0.1, 0.15), (0.3, 0.1, 0.2)))
+    >>> zones = zones_of(Scene(Puck(0.04), floor))
+    >>> zones.lines[:, 2].round(2).tolist()
+    [0.06, 0.11, 0.14, 0.19]
+    >>> zones.first.tolist(), zones.last.tolist()
+    ([0, 0, 0, 1, 2], [0, 1, 2, 2, 2])
+    """
+    strips, radius = scene.floor.strips, scene.puck.radius
+    if strips is None:
+        none = np.zeros(1, np.int64)
+        return Zones(np.empty((0, BORDER_COLUMNS)), none, none)
+    across = (math.cos(strips.direction), math.sin(strips.direction))
+    lines = np.array([
+        [*across, place + side * radius, i, side]
+        for i, place in enumerate(strips.borders) for side in (-1.0, 1.0)
+    ])  # fmt: skip
+    lines = lines[np.argsort(lines[:, 2], kind="stable")]
+    last = np.concatenate([[0], np.cumsum(lines[:, 4] < 0.0)])
+    first = np.concatenate([[0], np.cumsum(lines[:, 4] > 0.0)])
+    return Zones(lines, first, last)
+
+
+def ground_of(scene: Scene, normal: float) -> FloatArray:
+    """All frictions of the floor of a scene, for its puck, packed; ``normal``: N.
+
+    Examples
+    --------
+    >>> from puck_tables import Floor, Puck, Strips
+    >>> floor = Floor(strips=Strips((0.1,), (0.3, 0.1)))
+    >>> ground_of(Scene(Puck(0.04), floor), 2.0)[-3:].tolist()
+    [0.1, 0.6, 0.2]
+    """
+    floor, puck = scene.floor, scene.puck
+    if floor.strips is None and not floor.patches:
+        return NO_GROUND
+    strips = floor.strips
+    angle = 0.0 if strips is None else strips.direction
+    rows, corners = [], [np.empty((0, 2))]
+    for patch in floor.patches:
+        begin, places = sum(map(len, corners)), corners_of(patch)
+        middle, reach = np.array(patch.centre), patch.radius
+        if len(places):
+            middle = 0.5 * (places.min(axis=0) + places.max(axis=0))
+            reach = float(np.hypot(*(places - middle).T).max())
+            corners.append(places)
+        rows.append([*middle, reach, begin, len(places), normal * patch.friction])
+    inner = hole_of(puck.body.law)
+    return Ground(
+        math.cos(angle), math.sin(angle),
+        np.array(() if strips is None else strips.borders, np.float64),
+        normal * np.array((puck.friction,) if strips is None else strips.friction),
+        np.array(rows).reshape(-1, PATCH_COLUMNS), np.concatenate(corners),
+        puck.height / (2.0 * puck.radius * 0.25 * (1.0 + inner * inner) * normal), inner,
+    ).packed()  # fmt: skip
+
+
+def hole_of(law: Law) -> float:
+    """The inner radius of the base over the outer: 0, or that of an annulus.
+
+    Examples
+    --------
+    >>> from puck_tables.contact.laws import law_of
+    >>> hole_of(law_of("uniform")), hole_of(law_of("annulus:0.8"))
+    (0.0, 0.8)
+    """
+    return law.edges[0] if law.name.startswith("annulus:") else 0.0
