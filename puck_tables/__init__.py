@@ -21,6 +21,7 @@ from puck_tables._version import __version__
 if TYPE_CHECKING:
     from puck_tables import chetaev, contact, motion
     from puck_tables.bulk.spreads import Normal, Uniform
+    from puck_tables.contact.friction_laws import CurlingLaw, PowerLaw, StribeckLaw
     from puck_tables.contact.laws import Law, law_of, profile_law
     from puck_tables.contact.speed_law import SpeedLaw
     from puck_tables.errors import (
@@ -89,6 +90,7 @@ _HOMES = {
     "Comparison": "reference.comparison",
     "Constraint": "scene.parts",
     "ContactError": "errors",
+    "CurlingLaw": "contact.friction_laws",
     "Drag": "scene.parts",
     "Edge": "scene.parts",
     "Fit": "fitting.outcome",
@@ -108,6 +110,7 @@ _HOMES = {
     "Plastic": "scene.restitution",
     "Pocket": "scene.pieces",
     "Post": "scene.pieces",
+    "PowerLaw": "contact.friction_laws",
     "Puck": "puck",
     "PuckError": "errors",
     "RestitutionTable": "scene.restitution",
@@ -123,6 +126,7 @@ _HOMES = {
     "StopMap": "stopping.sweep",
     "StopSample": "stopping.sample",
     "Stops": "stopping.stops",
+    "StribeckLaw": "contact.friction_laws",
     "Strips": "scene.parts",
     "Table": "table.table",
     "TableError": "errors",
@@ -165,6 +169,7 @@ __all__ = [
     "Comparison",
     "Constraint",
     "ContactError",
+    "CurlingLaw",
     "Drag",
     "Edge",
     "Fit",
@@ -184,6 +189,7 @@ __all__ = [
     "Plastic",
     "Pocket",
     "Post",
+    "PowerLaw",
     "Puck",
     "PuckError",
     "RestitutionTable",
@@ -199,6 +205,7 @@ __all__ = [
     "StopMap",
     "StopSample",
     "Stops",
+    "StribeckLaw",
     "Strips",
     "Table",
     "TableError",

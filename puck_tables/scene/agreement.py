@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from puck_tables.contact.friction_laws import FrictionLaw
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import InputError
 from puck_tables.scene.forces import drive_of
@@ -84,7 +85,9 @@ def _bad_rows(scene: Scene) -> list[str]:
     faults = []
     law, force = scene.floor.law, scene.force.over_time
     for name, rows, made in (("floor.law", law, law_of_rows), ("force.over_time", force, drive_of)):
-        if rows and not isinstance(rows, str):
+        if isinstance(rows, FrictionLaw):
+            faults += [f"{name}: {fault}" for fault in rows.faults()]
+        elif rows and not isinstance(rows, str):
             try:
                 made(rows)
             except InputError as error:

@@ -10,6 +10,7 @@ import math
 from dataclasses import dataclass
 
 from puck_tables._core.fields import of
+from puck_tables.contact.friction_laws import NAMED, FrictionLaw
 from puck_tables.scene.restitution import Restitution, restitution_of
 
 Rows = tuple[tuple[float, ...], ...]
@@ -42,11 +43,12 @@ class Floor:
     turning: float = of("number", 0.0, "rad/s", doc="spin of a turntable", acts="turntable")
     centre: tuple[float, float] = of("pair", (0.0, 0.0), "m", doc="of the turntable", acts="")
     strips: Strips | None = of("part", None, part=Strips)
-    law: str | Rows = of(
+    law: str | Rows | FrictionLaw = of(
         "rows",
         "",
         file="",
-        doc="CSV or rows of slip speed in m/s and f, in place of friction",
+        kinds=NAMED,
+        doc="CSV or rows of slip speed in m/s and f, or a law by name, in place of friction",
         acts="friction law",
     )
 

@@ -16,7 +16,8 @@ from puck_tables.scene.holds import allowed_velocity
 from puck_tables.scene.ingredients import RAIL, Regions, Surface, floor_velocity, hold_of
 from puck_tables.scene.parts import Wall
 from puck_tables.scene.pieces import Arc, Piece, Post
-from puck_tables.scene.regions import NO_LAW, SLICE_SHARE, of_one_shape
+from puck_tables.scene.by_speed import NO_LAW
+from puck_tables.scene.regions import SLICE_SHARE, of_one_shape
 from puck_tables.scene.scene import Scene
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.table.friction_section import FINEST_ACCURACY
