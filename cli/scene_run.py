@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from dataclasses import is_dataclass
 import tomllib
 from collections.abc import Callable
+from dataclasses import is_dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 

@@ -81,6 +81,30 @@ class Drag:
     spinning: float = of(
         "number", 0.0, "N m s", low=0.0, doc="torque over relative spin", acts="drag"
     )
+    spinning_quadratic: float = of(
+        "number", 0.0, "N m s^2", low=0.0, doc="torque over relative spin squared", acts="drag"
+    )
+
+
+@dataclass(frozen=True)
+class Lateral:
+    """An empirical force across the motion: strength (v in m/s)^b (|w| in rad/s)^c sign w.
+
+    It is to the left of the motion over the floor where the spin is counter-clockwise, and does no
+    work there.  Players of curling fit it to the curl of their stones; no dry friction over the
+    contact explains it.
+
+    Examples
+    --------
+    >>> stone = Lateral(0.163, speed_exponent=0.2)  # 20 kg, as the simulator FCV1 has it
+    """
+
+    strength: float = of(
+        "number", 0.0, "N", doc="at 1 m/s and 1 rad/s; below 0 to the right",
+        acts="lateral force (empirical)",
+    )  # fmt: skip
+    speed_exponent: float = of("number", 0.0, low=0.0, high=8.0, doc="b", acts="")
+    spin_exponent: float = of("number", 0.0, low=0.0, high=8.0, doc="c; 0: its sign only", acts="")
 
 
 @dataclass(frozen=True)

@@ -22,6 +22,10 @@ from puck_tables.scene.agreement import distance, launch_velocity
 from puck_tables.scene.entries import entries
 from puck_tables.scene.scene import Scene
 
+EMPIRICAL = (
+    "The lateral force is empirical, as somebody fitted it: no dry friction over the contact "
+    "explains it."
+)
 _NAMES = {"A": "rest", "B0": "pure spin", "C0": "pure translation", "D": "the limit motion"}
 
 
@@ -159,6 +163,8 @@ def plan_for(scene: Scene) -> Plan:
             f"Taken: {model}; what acts: {', '.join([*acts, *_moving(scene)])}.\n"
             "A look-up would be cheaper, but it is of free pucks on a level floor."
         )
+        if scene.lateral.strength != 0.0:
+            why += f"\n{EMPIRICAL}"
         return Plan(model, False, why)
     kind = scene.puck.regime(free_velocity(scene), scene.launch.spin)
     frame = "in the frame of the belt" if any(scene.floor.velocity) else "a free puck, level floor"

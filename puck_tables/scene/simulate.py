@@ -14,6 +14,7 @@ from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import AccuracyError, InputError, PuckError
 from puck_tables.scene.at_once import AS_IT_COMES, FIRST_BY_NUMBER, LAST_BY_NUMBER
 from puck_tables.scene.boundaries import BOUNCES
+from puck_tables.scene.by_speed import FARTHER, FARTHEST, law_name, speed_law
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
 from puck_tables.scene.library import files_of
 from puck_tables.scene.loop import (
@@ -29,7 +30,6 @@ from puck_tables.scene.plain import run_plain
 from puck_tables.scene.plan import Plan, ingredients, out_of_reach, plan_for
 from puck_tables.scene.prepare import MAX_EVENTS, Prepared, Twin, prepare
 from puck_tables.scene.records import EVENT_COLUMNS, FRAME_COLUMNS
-from puck_tables.scene.by_speed import FARTHER, FARTHEST, law_name, speed_law
 from puck_tables.scene.regions import friction_error
 from puck_tables.scene.scene import Scene
 

@@ -15,8 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.contact.integrals import SlipDirection
 from puck_tables.contact.friction_laws import FrictionLaw
+from puck_tables.contact.integrals import SlipDirection
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import InputError
 from puck_tables.kernels.speed_spline import CORNER_POWER, EDGE_POWER

@@ -13,9 +13,9 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import broadcast
+from puck_tables.contact.friction_laws import NAMED, FrictionLaw, law_of_numbers
 from puck_tables.contact.integrals import PatchIntegrals, checked_phi, slip_direction
 from puck_tables.contact.resultants import Resultants, moment_balance, pressure_tilt
-from puck_tables.contact.friction_laws import NAMED, FrictionLaw, law_of_numbers
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.contact.speed_quadrature import (
     checked_height_ratio,

@@ -134,6 +134,7 @@ def is_integrated(scene: Scene, piece: Piece, friction: float) -> bool:
     rough = friction > 0.0 and (drags or not has_closed_forms(piece, friction))
     turns = floor.turning != 0.0 and (friction > 0.0 or drags)
     more = floor.slope > 0.0 or piece.force != Force() or piece.constraint is not None
+    more = more or scene.lateral.strength != 0.0
     return not piece.path and (rough or turns or more)
 
 
