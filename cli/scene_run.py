@@ -230,6 +230,9 @@ def _friction(scene: Scene) -> str:
         from puck_tables.scene.by_speed import law_name
 
         return f"by slip speed, {law_name(scene)}"
+    if scene.floor.orthotropic is not None:
+        decels = ", ".join(f"{f * normal:.6g}" for f in scene.floor.orthotropic.friction)
+        return f"by direction, f N/m = {decels} m/s^2 along its axes"
     words = f"delta = {', '.join(f'{delta:.4g}' for delta in scene.heights)}, "
     words += f"f N/m = {', '.join(f'{f * normal:.6g}' for f in scene.frictions)} m/s^2"
     return words + ("; part of the base may lift" if max(scene.heights) > 1.0 else "")

@@ -10,6 +10,7 @@ from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import InputError
 from puck_tables.scene.forces import drive_of
 from puck_tables.scene.holds import allowed_velocity, misfits
+from puck_tables.scene.orthotropic import LEAST_RATIO
 from puck_tables.scene.parts import Edge, Floor, Rows, Wall
 
 if TYPE_CHECKING:
@@ -34,6 +35,7 @@ def disagreements(scene: Scene) -> list[str]:
         faults.append("floor.law: known under uniform pressure only, not with puck.pressure")
     faults += bad_strips(scene.floor)
     faults += _bad_rows(scene)
+    faults += _bad_axes(scene)
     if not scene.run.frames.is_integer():
         faults.append(f"run.frames = {scene.run.frames:g}: must be a whole number")
     lines: list[tuple[str, Wall | Edge]] = [(f"wall[{i}]", w) for i, w in enumerate(scene.walls)]
@@ -77,6 +79,32 @@ def bad_strips(floor: Floor) -> list[str]:
         )
     if any(b <= a for a, b in zip(strips.borders, strips.borders[1:], strict=False)):
         faults.append(f"floor.strips.borders = {list(strips.borders)}: must ascend")
+    return faults
+
+
+def _bad_axes(scene: Scene) -> list[str]:
+    """What is wrong with friction that depends on the direction."""
+    floor, puck, two = scene.floor, scene.puck, scene.floor.orthotropic
+    if two is None:
+        return []
+    name, faults = "floor.orthotropic", []
+    if floor.law or floor.strips is not None:
+        faults.append(f"{name}: with floor.law or floor.strips there is no such friction, give one")
+    if floor.turning != 0.0:
+        faults.append(f"{name}: not on a floor that turns, its axes stand still; leave one out")
+    if puck.pressure != "uniform":
+        faults.append(f"{name}: known under uniform pressure only, not with puck.pressure")
+    if min(two.friction) < LEAST_RATIO * max(two.friction):
+        faults.append(
+            f"{name}.friction = {list(two.friction)}: one must be at least {LEAST_RATIO:g} of the "
+            "other"
+        )
+    tall = 2.0 * max(two.friction) * puck.height / puck.radius
+    if tall > 1.0:
+        faults.append(
+            f"{name}: 2 f h/r = {tall:.4g} with the larger f must be at most 1, above part of the "
+            "base may lift, which is not known here; choose a lower puck or less friction"
+        )
     return faults
 
 

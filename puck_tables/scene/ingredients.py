@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
 from puck_tables.scene.forces import Forces
+from puck_tables.scene.orthotropic import NO_ELLIPSE, Elliptic
 
 if TYPE_CHECKING:
     from puck_tables.scene.parts import Constraint, Launch
@@ -46,13 +47,15 @@ class Regions(NamedTuple):
     """Dry friction in every region of the floor: f N, δ, and the friction ratios at that δ.
 
     ``load``, ``delta``: arrays (regions,); ``cuts``: (regions, …), see
-    :func:`puck_tables.motion.equations.ratios_at`; ``by_speed`` takes the place of all.
+    :func:`puck_tables.motion.equations.ratios_at`; ``by_speed`` or ``ellipse`` take the place of
+    all.
     """
 
     load: FloatArray
     delta: FloatArray
     cuts: FloatArray
     by_speed: BySpeed
+    ellipse: Elliptic = NO_ELLIPSE
 
 
 class Dry(NamedTuple):
@@ -62,12 +65,16 @@ class Dry(NamedTuple):
     delta: float
     cut: FloatArray
     by_speed: BySpeed
+    ellipse: Elliptic = NO_ELLIPSE
 
 
 @inlined
 def dry_in(regions: Regions, region: int) -> Dry:
     """The friction of one of the regions."""
-    return Dry(regions.load[region], regions.delta[region], regions.cuts[region], regions.by_speed)
+    return Dry(
+        regions.load[region], regions.delta[region], regions.cuts[region], regions.by_speed,
+        regions.ellipse,
+    )  # fmt: skip
 
 
 class Surface(NamedTuple):

@@ -74,7 +74,7 @@ def rests_on(model: Model, dry: Dry, leaning: FloatArray, piece: int, y: FloatAr
 
     Between two rows a force lies between theirs; a curve that bulges inwards is given a margin.
     """
-    flat = dry.delta == 0.0 and dry.by_speed.normal == 0.0
+    flat = dry.delta == 0.0 and dry.by_speed.normal == 0.0 and dry.ellipse.height_ratio == 0.0
     level, rows = (SLACK if flat else -_MARGIN) * dry.load, len(model.forces.drive)
     if piece == rows:
         return True

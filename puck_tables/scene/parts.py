@@ -28,6 +28,21 @@ class Strips:
 
 
 @dataclass(frozen=True)
+class Orthotropic:
+    """A floor that is rougher one way than the other, as brushed metal, felt and wood are.
+
+    An element that slips along e feels −(f_x² e_x, f_y² e_y)/√(f_x² e_x² + f_y² e_y²) of its load,
+    in the axes of the floor.
+    """
+
+    friction: tuple[float, float] = of(
+        "pair", low=0.0, above=True, doc="along 'direction' and across it",
+        acts="orthotropic friction",
+    )  # fmt: skip
+    direction: float = of("number", 0.0, "rad", doc="of the first of them, from x", acts="")
+
+
+@dataclass(frozen=True)
 class Floor:
     """The plane: level or sloping, at rest or moving, of one friction or of several.
 
@@ -43,6 +58,7 @@ class Floor:
     turning: float = of("number", 0.0, "rad/s", doc="spin of a turntable", acts="turntable")
     centre: tuple[float, float] = of("pair", (0.0, 0.0), "m", doc="of the turntable", acts="")
     strips: Strips | None = of("part", None, part=Strips)
+    orthotropic: Orthotropic | None = of("part", None, part=Orthotropic)
     law: str | Rows | FrictionLaw = of(
         "rows",
         "",

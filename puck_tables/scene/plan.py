@@ -62,7 +62,9 @@ def ingredients(scene: Scene) -> list[str]:
     plain = is_plain(puck.pressure, puck.gyration, puck.delta)
     if not plain and scene.run.tol < FINEST_TOL:
         there.append("a tolerance finer than for free pucks of this kind")
-    if scene.floor.strips is None and puck.friction == 0.0 and not scene.floor.law:
+    floor = scene.floor
+    own = floor.strips is not None or bool(floor.law) or floor.orthotropic is not None
+    if not own and puck.friction == 0.0:
         there.append("no dry friction")
     return there
 
@@ -157,6 +159,8 @@ def plan_for(scene: Scene) -> Plan:
         model = "friction at fixed delta, integrated"
         if "friction law" in acts:
             model = "friction by slip speed, integrated"
+        elif "orthotropic friction" in acts:
+            model = "friction by quadrature over the base, integrated"
         elif "no dry friction" in acts:
             model = "integrated"
         why = (

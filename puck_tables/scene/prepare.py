@@ -25,11 +25,11 @@ from puck_tables.scene.ingredients import (
     PIVOT,
     RAIL,
     Body,
-    Dry,
     Model,
     Regions,
     Stretch,
     Surface,
+    dry_in,
     hold_of,
 )
 from puck_tables.scene.leaning import LEAN_COLUMNS
@@ -270,7 +270,7 @@ def _slowest(
     for number in range(len(regions.load)):
         load = float(regions.load[number])
         if load > 0.0:
-            dry = Dry(load, regions.delta[number], regions.cuts[number], regions.by_speed)
+            dry = dry_in(regions, number)
             at_rest = Stretch(
                 model, dry, np.empty((0, LEAN_COLUMNS)), 0, CARRIED, (0.0, 0.0, 0.0, 0.0), 0.0
             )

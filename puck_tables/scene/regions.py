@@ -14,6 +14,7 @@ from puck_tables.motion.body import body_of, is_plain
 from puck_tables.motion.friction import closed_form_friction, table_friction
 from puck_tables.scene.by_speed import NO_LAW, friction_by_speed, law_error
 from puck_tables.scene.ingredients import Regions
+from puck_tables.scene.orthotropic import Elliptic
 from puck_tables.scene.scene import Scene
 from puck_tables.table.friction_section import FINEST_ACCURACY
 from puck_tables.table.resultant_table import ResultantTable
@@ -40,6 +41,16 @@ def regions_of(scene: Scene, reach: float = 1.0) -> Regions:
     if floor.law:
         by_speed, load = friction_by_speed(scene, normal, reach)
         return Regions(load, np.zeros(1), closed_form_friction(0.0).cut[None, :], by_speed)
+    if floor.orthotropic is not None:
+        along, across = floor.orthotropic.friction
+        turned = floor.orthotropic.direction
+        load = np.array([normal * max(along, across)])
+        ellipse = Elliptic(
+            along, across, math.cos(turned), math.sin(turned), 2.0 * puck.height / puck.radius,
+            normal,
+        )  # fmt: skip
+        cut = closed_form_friction(0.0).cut[None, :]
+        return Regions(load, np.zeros(1), cut, NO_LAW, ellipse)
     heights = scene.heights
     load = normal * np.array(scene.frictions)
     if all(is_plain(puck.pressure, puck.gyration, delta) for delta in heights):
@@ -65,6 +76,8 @@ def friction_error(scene: Scene) -> float:
     puck = scene.puck
     if scene.floor.law:
         return law_error(scene)
+    if scene.floor.orthotropic is not None:
+        return CLOSED_FORM_ERROR
     if all(is_plain(puck.pressure, puck.gyration, delta) for delta in scene.heights):
         return CLOSED_FORM_ERROR if scene.run.tol < EXACT_BELOW else TABLE_ERROR
     return max(SLICE_SHARE * scene.run.tol, FINEST_ACCURACY)

@@ -39,6 +39,7 @@ from puck_tables.scene.leaning import (
     still_torques,
     wall_reaction,
 )
+from puck_tables.scene.orthotropic import elliptic_demand
 
 SLACK = 1e-12  # of f N: a demand this close to the limit is held
 
@@ -54,8 +55,8 @@ def _pivot_yield(
     reach = hold.reach
     demand = torque - reach * (cosine * fy - sine * fx)
     length = math.hypot(reach, radius)
-    _, _, _, heat = dry_friction(dry, radius, reach / length, 0.0, 1.0 / length)
     way = (1.0 if demand >= 0.0 else -1.0) / length
+    _, _, _, heat = dry_friction(dry, radius, way * reach * sine, -way * reach * cosine, way)
     return abs(demand) / length - heat, way * reach * sine, -way * reach * cosine, way
 
 
@@ -67,6 +68,8 @@ def demand(
 
     ``guided``: the slip is along the force only.
     """
+    if dry.ellipse.normal > 0.0:
+        return elliptic_demand(dry.ellipse, radius, fx, fy, torque, guided)
     force = math.hypot(fx, fy)
     east, north = (fx / force, fy / force) if force > 0.0 else (1.0, 0.0)
     way = 1.0 if torque >= 0.0 else -1.0

@@ -170,6 +170,11 @@ def _not_here(scene: Scene) -> Iterator[str]:
             "floor.law: is of one puck alone, without posts, arcs, pockets and laws of rims; give "
             "each of several pucks its friction, or the floor strips"
         )
+    if scene.floor.orthotropic is not None:
+        yield (
+            "floor.orthotropic: is of one puck alone, without posts, arcs, pockets and laws of "
+            "rims; give each of several pucks its friction"
+        )
     if not scene.pucks:
         return
     for name, part, default in (
