@@ -71,9 +71,9 @@ def check(name: str) -> None:
 
 def _plan(whole: Scene) -> str:
     """How a scene of one puck would be run, and why."""
+    from puck_tables.scene.by_speed import speed_law
     from puck_tables.scene.plan import out_of_reach, plan_for
     from puck_tables.scene.prepare import prepare
-    from puck_tables.scene.regions import speed_law
 
     if whole.floor.law:  # its table takes a while
         speed_law(whole)

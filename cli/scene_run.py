@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import tomllib
 from collections.abc import Callable
+from dataclasses import is_dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -204,6 +205,8 @@ def _inputs(scene: Scene) -> dict[str, str]:
     parts: dict[str, list[str]] = {}
     for entry in entries(scene):
         part, dot, name = entry.path.partition(".")
+        if is_dataclass(entry.value):  # its entries follow
+            continue
         if dot and entry.value != entry.default and entry.value is not None:
             unit = f" {entry.kind.unit}" if entry.kind.unit else ""
             parts.setdefault(part, []).append(f"{name} {_written(entry.value)}{unit}")
@@ -224,9 +227,12 @@ def _friction(scene: Scene) -> str:
     """Heights and decelerations, one for each strip of floor."""
     normal = scene.puck.gravity * math.cos(scene.floor.slope)
     if scene.floor.law:
-        from puck_tables.scene.regions import law_name
+        from puck_tables.scene.by_speed import law_name
 
         return f"by slip speed, {law_name(scene)}"
+    if scene.floor.orthotropic is not None:
+        decels = ", ".join(f"{f * normal:.6g}" for f in scene.floor.orthotropic.friction)
+        return f"by direction, f N/m = {decels} m/s^2 along its axes"
     words = f"delta = {', '.join(f'{delta:.4g}' for delta in scene.heights)}, "
     words += f"f N/m = {', '.join(f'{f * normal:.6g}' for f in scene.frictions)} m/s^2"
     return words + ("; part of the base may lift" if max(scene.heights) > 1.0 else "")

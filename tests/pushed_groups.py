@@ -7,8 +7,8 @@ from itertools import pairwise
 import numpy as np
 
 from puck_tables.kernels.section_spline import NO_SECTION
+from puck_tables.scene.by_speed import NO_LAW
 from puck_tables.scene.ingredients import Regions, Surface
-from puck_tables.scene.regions import NO_LAW
 from puck_tables.world.group import (
     APART,
     HELD,

@@ -13,7 +13,8 @@ from scipy.integrate import solve_ivp
 import puck_tables as pt
 from puck_tables import Scene
 from puck_tables.motion.body import STANDARD_GRAVITY
-from puck_tables.scene.regions import _kept_table, regions_of
+from puck_tables.scene.by_speed import _kept_table
+from puck_tables.scene.regions import regions_of
 from puck_tables.table import speed_build
 
 PUCK = {"radius": 0.04, "height": 0.02, "mass": 0.2}

@@ -32,6 +32,7 @@ class Kind:
     file: str | None = None  # a text that names a file where it ends so
     objects: tuple[type, ...] = ()  # taken as they are, in place of a text
     batch: bool = False  # a pair of which there may be many, one for each launch
+    kinds: Any = None  # name -> dataclass: a table whose 'kind' says which, in place of rows
     law: Any = None  # judges a text in place of a number; ``laws``: such texts, in words
     laws: str = ""
 
@@ -44,7 +45,8 @@ class Kind:
         'a number > 0 m'
         """
         if self.shape == "rows":
-            return "the name of a CSV file, or a list of rows of numbers"
+            named = f", or a table whose kind is {', '.join(self.kinds)}" if self.kinds else ""
+            return f"the name of a CSV file, or a list of rows of numbers{named}"
         if self.shape == "text":
             return "a text without " + ("control characters" if self.file is None else "NUL")
         if self.shape == "colour":
@@ -163,4 +165,7 @@ def described(kind: type, prefix: str = "") -> list[tuple[str, str, str]]:
             shown = ", ".join(f"{n:g}" if isinstance(n, float) else str(n) for n in numbers)
             default = f"  [{shown}]"
         rows.append((path, what.allowed() + default, spec.metadata["doc"]))
+        for law, part in (what.kinds or {}).items():
+            inner = described(part, f"{path}.")
+            rows += [(entry, said, f"{law}: {doc}".rstrip(": ")) for entry, said, doc in inner]
     return rows

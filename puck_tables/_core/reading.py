@@ -7,6 +7,7 @@ import math
 import re
 from collections.abc import Mapping
 from dataclasses import MISSING, dataclass, field
+from difflib import get_close_matches
 from numbers import Real
 from typing import Any, TypeVar
 
@@ -167,6 +168,8 @@ def _read(kind: Kind, value: Any, path: str, reading: Reading, default: Any) -> 
             hint = meant(value) if isinstance(value, str) else ""
             reading.fault(path, value, kind.allowed() + hint)
         return value
+    if kind.kinds and isinstance(value, (Mapping, *kind.kinds.values())):
+        return _named(kind, value, path, reading)
     if kind.shape == "rows":
         return _rows(kind, value, path, reading)
     if kind.shape == "number":
@@ -196,6 +199,19 @@ def _read(kind: Kind, value: Any, path: str, reading: Reading, default: Any) -> 
         reading.fault(path, value, kind.allowed() + several)
         return (0.0, 0.0)
     return tuple(_number(kind, item, f"{path}[{i}]", reading, None) for i, item in enumerate(items))
+
+
+def _named(kind: Kind, value: Any, path: str, reading: Reading) -> Any:
+    """One of several dataclasses, itself or a table that says which by its ``kind``."""
+    if not isinstance(value, Mapping):
+        return read_part(type(value), value, path, reading)
+    name = value.get("kind")
+    if isinstance(name, str) and name in kind.kinds:
+        return read_part(kind.kinds[name], value, path, reading)
+    near = get_close_matches(str(name).lower(), kind.kinds, 1, 0.6)
+    hint = f" (did you mean {near[0]}?)" if near else ""
+    reading.fault(f"{path}.kind", name, f"one of {', '.join(kind.kinds)}{hint}")
+    return None
 
 
 def _rows(kind: Kind, value: Any, path: str, reading: Reading) -> tuple[tuple[float, ...], ...]:

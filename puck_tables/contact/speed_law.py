@@ -7,6 +7,7 @@ import io
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -126,6 +127,25 @@ class SpeedLaw:
         cell = np.clip(np.searchsorted(x, speed, side="right") - 1, 0, x.size - 2)
         c, t = self.coefficients[cell], speed - x[cell]
         return np.asarray(c[..., 0] + t * (c[..., 1] + t * (c[..., 2] + t * c[..., 3])))
+
+    grade: ClassVar[int] = 1  # nodes of a table need not crowd at slip zero
+
+    def largest(self, top: float) -> float:
+        """The largest f up to a speed: it does not overshoot its points."""
+        speeds = np.asarray(self.speeds)
+        return float(self.extended(np.append(speeds[speeds < top], top)).max())
+
+    def steepest(self, top: float) -> float:
+        """About the largest u f′ up to a speed."""
+        speeds, f = np.asarray(self.speeds), np.asarray(self.values)
+        return float(np.max(speeds[1:] * np.abs(np.diff(f) / np.diff(speeds))))
+
+    def pieces(self, top: float) -> tuple[FloatArray, FloatArray]:
+        """The law in pieces up to a speed, see :mod:`puck_tables.contact.law_pieces`."""
+        speeds = np.asarray(self.speeds)
+        count = int(np.count_nonzero(speeds[:-1] < top))  # a corner at the top is not yet passed
+        origins = np.stack([speeds[:count], np.ones(count)], axis=1)
+        return speeds[: count + 1], np.concatenate([origins, self.coefficients[:count]], axis=1)
 
     @classmethod
     def from_csv(cls, path: str | Path, kind: str = "cubic") -> SpeedLaw:

@@ -195,9 +195,7 @@ def disc_sums(alpha: float, beta: float, size: float) -> Sums:
 
 
 @inner
-def beyond_sums(
-    alpha: float, beta: float, size: float, nx: float, ny: float, place: float
-) -> Sums:
+def beyond_sums(alpha: float, beta: float, size: float, nx: float, ny: float, place: float) -> Sums:
     """What of a disc lies beyond the line n·x = place ≥ 0."""
     if place >= size:
         return NOTHING

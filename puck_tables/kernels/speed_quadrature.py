@@ -1,8 +1,8 @@
-"""The integrals of :mod:`puck_tables.contact.speed_quadrature`, compiled, for f in cubic pieces.
+"""The integrals of :mod:`puck_tables.contact.speed_quadrature`, compiled, for f in polynomials.
 
 With one integral left over the circles about the instantaneous centre of rotation, Gauss panels lie
-between the circles on which the slip speed is that of a corner of the law: inside each f is one
-cubic.  For s = cot φ → 1 a root has a branch point at the distance √|1 − s| of τ = 0; the panels
+between the circles on which the slip speed is that of an end of a piece of the law: inside each f
+is one polynomial.  For s = cot φ → 1 a root has a branch point at the distance √|1 − s| of τ = 0; the panels
 grow from there by threes.
 """
 
@@ -28,6 +28,9 @@ _GROWTH = 3.0
 _GRADED = 40  # edges at most: 3^-34 is below any difference from 1
 _FACTORIALS = np.array([(-1.0) ** k / math.factorial(2 * k + 3) for k in range(10)])
 _TINY = 1e-300
+ORIGIN, SCALE, FIRST_POWER = range(3)  # columns of a piece
+_FEW_POWERS = FIRST_POWER + 4  # up to cubics fewer nodes do
+_SAME_PIECE = 0.05  # of half a smooth piece: so far it may be taken beyond its ends
 
 
 @inlined
@@ -44,8 +47,17 @@ def _piece(breaks: FloatArray, u: float) -> int:
 
 
 @inlined
-def _cubic(pieces: FloatArray, k: int, t: float) -> float:
-    return pieces[k, 0] + t * (pieces[k, 1] + t * (pieces[k, 2] + t * pieces[k, 3]))
+def _value(pieces: FloatArray, k: int, u: float) -> float:
+    t, total = (u - pieces[k, ORIGIN]) * pieces[k, SCALE], 0.0
+    for power in range(pieces.shape[1] - 1, FIRST_POWER - 1, -1):
+        total = total * t + pieces[k, power]
+    return total
+
+
+@inlined
+def _is_smooth(pieces: FloatArray) -> bool:
+    """Whether pieces are of a high degree, of a law that bends nowhere."""
+    return pieces.shape[1] > _FEW_POWERS
 
 
 @inlined
@@ -60,10 +72,10 @@ def _short(x: float) -> float:
 
 
 @inlined
-def _rule(middle: float, half: float, branch: float) -> tuple[int, int]:
+def _rule(middle: float, half: float, branch: float, smooth: bool) -> tuple[int, int]:
     """First and last of the nodes to take in a panel."""
     away, square = middle * middle + branch * branch, half * half
-    if away > _FARTHER * _FARTHER * square:
+    if away > _FARTHER * _FARTHER * square and not smooth:
         return _SECOND, _THIRD
     if away > _FAR * _FAR * square:
         return _FIRST, _SECOND
@@ -96,7 +108,8 @@ def integrals_at(
 ) -> None:  # fmt: skip
     """p_a, p_b, p_d, p_e into ``out`` (4,).
 
-    ``breaks`` (k + 1,): speeds, m/s; ``pieces`` (k, 4): powers of the speed from the left end;
+    ``breaks`` (k + 1,): speeds, m/s; ``pieces`` (k, 2 + n): see
+    :mod:`puck_tables.contact.law_pieces`;
     ``ratio`` = min(v, r|ω|)/max(v, r|ω|), ``fast`` whether r|ω| > v, ``speed`` = hypot(v, rω);
     ``edges``: room for k + 45 numbers.
     """
@@ -113,6 +126,8 @@ def _centre_inside(
 ) -> None:  # fmt: skip
     """|φ| > π/4, s = cot φ < 1: whole circles R ≤ 1 − s, then arcs R = 1 − s cos τ."""
     corners, sine = len(breaks) - 2, 1.0 / math.sqrt(1.0 + s * s)
+    smooth = _is_smooth(pieces)
+    disc = (0, _FIRST) if smooth else (_SECOND, _THIRD)  # a polynomial
     rim = speed * sine
     whole, first = 0.0, 0.0
     for k in range(corners + 1):
@@ -121,9 +136,9 @@ def _centre_inside(
             last = breaks[k + 1] / rim
         half, middle = 0.5 * (last - first), 0.5 * (last + first)
         if half > 0.0:
-            for i in range(_SECOND, _THIRD):  # a polynomial
+            for i in range(disc[0], disc[1]):
                 R = middle + half * _GAUSS[i]
-                whole += half * _WEIGHTS[i] * _cubic(pieces, k, rim * R - breaks[k]) * R * R
+                whole += half * _WEIGHTS[i] * _value(pieces, k, rim * R) * R * R
         first = last
     count = 0
     if s > 0.0 and rim > 0.0:
@@ -143,13 +158,14 @@ def _centre_inside(
         if half <= 0.0:
             continue
         k = _piece(breaks, rim * ((1.0 - s) + 2.0 * s * math.sin(0.5 * middle) ** 2))
-        rule = _rule(middle, half, branch)
+        rule = _rule(middle, half, branch, smooth)
         for i in range(rule[0], rule[1]):
             tau = middle + half * _GAUSS[i]
             h, g = math.sin(0.5 * tau), math.cos(0.5 * tau)
             c, sin_tau = 1.0 - 2.0 * h * h, 2.0 * h * g
             R = (1.0 - s) + 2.0 * s * h * h
-            weight = half * _WEIGHTS[i] * _cubic(pieces, k, rim * R - breaks[k]) * sin_tau
+            k = _piece(breaks, rim * R) if smooth else k
+            weight = half * _WEIGHTS[i] * _value(pieces, k, rim * R) * sin_tau
             root = math.sqrt((R + 1.0 - s) * (R + 1.0 + s))
             if R < _TINY:
                 R = _TINY
@@ -172,17 +188,21 @@ def _centre_inside(
 
 
 @inlined
-def _slope(
-    pieces: FloatArray, breaks: FloatArray, far: int, near: int, centre: float, step: float
-) -> float:
-    """(f(centre + step) − f(centre − step))/(2 step)."""
-    if far == near:  # without subtracting
-        t = centre - breaks[far]
-        return (
-            pieces[far, 1] + 2.0 * t * pieces[far, 2] + (3.0 * t * t + step * step) * pieces[far, 3]
-        )
-    rise = _cubic(pieces, far, centre + step - breaks[far])
-    rise -= _cubic(pieces, near, centre - step - breaks[near])
+def _slope(pieces: FloatArray, far: int, near: int, centre: float, step: float) -> float:
+    """(f(centre + step) − f(centre − step))/(2 step).
+
+    In one piece without subtracting: by Horner's scheme for P(t ± h) = even ± h odd.
+    """
+    if far != near and _is_smooth(pieces) and step * pieces[near, SCALE] < _SAME_PIECE:
+        far = near
+    if far == near:
+        t, h = (centre - pieces[far, ORIGIN]) * pieces[far, SCALE], step * pieces[far, SCALE]
+        even, odd = 0.0, 0.0
+        for power in range(pieces.shape[1] - 1, FIRST_POWER - 1, -1):
+            even, odd = even * t + h * h * odd + pieces[far, power], odd * t + even
+        return odd * pieces[far, SCALE]
+    rise = _value(pieces, far, centre + step)
+    rise -= _value(pieces, near, max(centre - step, 0.0))
     return 0.5 * rise / step
 
 
@@ -192,7 +212,7 @@ def _centre_outside(
     out: FloatArray,
 ) -> None:  # fmt: skip
     """|φ| ≤ π/4, κ = tan φ = 1/s ≤ 1: the circles R = s ± cos τ together, as nothing cancels."""
-    cosine = 1.0 / math.sqrt(1.0 + kappa * kappa)
+    cosine, smooth = 1.0 / math.sqrt(1.0 + kappa * kappa), _is_smooth(pieces)
     centre = speed * cosine
     reach, count = centre * kappa, 0
     for k in range(1, len(breaks) - 1):
@@ -212,22 +232,24 @@ def _centre_outside(
             continue
         step = reach * math.cos(middle)
         far, near = _piece(breaks, centre + step), _piece(breaks, centre - step)
-        rule = _rule(middle, half, branch)
+        rule = _rule(middle, half, branch, smooth)
         for i in range(rule[0], rule[1]):
             tau = middle + half * _GAUSS[i]
             h = math.sin(0.5 * tau)
             sin_tau, c = math.sin(tau), math.cos(tau)
             weight = half * _WEIGHTS[i] * sin_tau
             step = reach * c
-            slope = centre * _slope(pieces, breaks, far, near, centre, step)
+            if smooth:  # next to slip zero rounding may put a node into the next piece
+                far, near = _piece(breaks, centre + step), _piece(breaks, centre - step)
+            slope = centre * _slope(pieces, far, near, centre, step)
             # T² = (2 ± κc)² − κ², by factors that do not cancel for κ, c → 1
             outer, inner = 2.0 + kappa * c, 2.0 * (1.0 - kappa) + 2.0 * kappa * h * h
             roots = (
                 math.sqrt((outer - kappa) * (outer + kappa)),
                 math.sqrt(inner * (2.0 - kappa * c + kappa)),
             )
-            f_far = _cubic(pieces, far, centre + step - breaks[far])
-            f_near = _cubic(pieces, near, centre - step - breaks[near])
+            f_far = _value(pieces, far, centre + step)
+            f_near = _value(pieces, near, max(centre - step, 0.0))
             total = roots[0] + roots[1]
             spin += weight * sin_tau * c * c * (4.0 * (f_far + f_near) / total + total * slope)
             for side in range(2):

@@ -6,7 +6,7 @@ touches the rim), and at W = 0 (the centre of rotation crosses it).  The lines c
 patches; on each lies a spline of degree 5 in coordinates ξ, ζ ∈ [0, 1] that clear the singular
 edges:
 
-    U ≤ b₁:               ξ = U/b₁ (a cubic in ξ), ζ = (W/U)^(1/4)
+    U ≤ b₁:               ξ = (U/b₁)^(1/g), ζ = (W/U)^(1/4)
     b_k ≤ U ≤ b_{k+1}:    U = b_k + (b_{k+1} − b_k) ξ^p  and for W
         0 … b₁/2:         W = ½ b₁ ζ⁴
         up to b_l ≤ b_k:  W = b_l − (b_l − left end)(1 − ζ)^p
@@ -14,7 +14,8 @@ edges:
                           about U = W
 
 for half powers of the distance from U = b_k and W = b_l, and W² ln W at 0; p = 2, but 3 where for
-r|ω| < v both meet one corner, l = k.  One set of patches for r|ω| <
+r|ω| < v both meet one corner, l = k.  g is 1, for f that is smooth at slip zero; larger where f
+leaves its value there with a power that is no whole number.  One set of patches for r|ω| <
 v, one for r|ω| > v.
 """
 
@@ -36,18 +37,20 @@ _ROUNDING = 1.0 + 1e-12
 
 
 def packed(
-    breaks: FloatArray, cells: npt.NDArray[np.int64], coefficients: list[FloatArray]
+    breaks: FloatArray, cells: npt.NDArray[np.int64], coefficients: list[FloatArray], grade: int
 ) -> FloatArray:
     """A table as one array: a loop that hands it on counts the references of one.
 
     The number of breaks, the breaks, for each patch where its coefficients begin and its cells
-    along ξ and ζ, and the coefficients.
+    along ξ and ζ, the coefficients, and g.
     """
     sizes = np.array([part.size for part in coefficients])
     header = 1 + len(breaks) + 3 * len(cells)
     begins = header + np.concatenate([[0], np.cumsum(sizes)[:-1]])
     layout = np.concatenate([begins[:, None], cells], axis=1).ravel()
-    return np.concatenate([[len(breaks)], breaks, layout, *[c.ravel() for c in coefficients]])
+    return np.concatenate(
+        [[len(breaks)], breaks, layout, *[c.ravel() for c in coefficients], [grade]]
+    )
 
 
 @inlined
@@ -120,7 +123,9 @@ def patch_and_place(
     k = _below(table, U, slabs - 1)
     first = _first_of(k) + (_first_of(slabs) if fast else 0)
     if k == 0:
-        return first, U / table[2], math.sqrt(math.sqrt((1.0 - ratio) / (1.0 + ratio)))
+        xi, grade = U / table[2], table[table.size - 1]
+        xi = xi if grade == 1.0 else xi ** (1.0 / grade)
+        return first, xi, math.sqrt(math.sqrt((1.0 - ratio) / (1.0 + ratio)))
     width = table[2 + k] - table[1 + k]
     if table[1 + k] <= W:
         return first + k + 1, (U - table[1 + k]) / width, (W - table[1 + k]) / width

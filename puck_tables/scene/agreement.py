@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from puck_tables.contact.friction_laws import FrictionLaw
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import InputError
 from puck_tables.scene.floor_patches import patch_faults
 from puck_tables.scene.forces import drive_of
 from puck_tables.scene.holds import allowed_velocity, misfits
+from puck_tables.scene.orthotropic import LEAST_RATIO
 from puck_tables.scene.parts import Edge, Floor, Rows, Wall
 
 if TYPE_CHECKING:
@@ -36,6 +38,7 @@ def disagreements(scene: Scene) -> list[str]:
         faults.append("floor.law: known under uniform pressure only, not with puck.pressure")
     faults += bad_strips(scene.floor) or patch_faults(scene.floor) or _bad_astride(scene)
     faults += _bad_rows(scene)
+    faults += _bad_axes(scene)
     if not scene.run.frames.is_integer():
         faults.append(f"run.frames = {scene.run.frames:g}: must be a whole number")
     lines: list[tuple[str, Wall | Edge]] = [(f"wall[{i}]", w) for i, w in enumerate(scene.walls)]
@@ -103,12 +106,40 @@ def bad_strips(floor: Floor) -> list[str]:
     return faults
 
 
+def _bad_axes(scene: Scene) -> list[str]:
+    """What is wrong with friction that depends on the direction."""
+    floor, puck, two = scene.floor, scene.puck, scene.floor.orthotropic
+    if two is None:
+        return []
+    name, faults = "floor.orthotropic", []
+    if floor.law or floor.strips is not None:
+        faults.append(f"{name}: with floor.law or floor.strips there is no such friction, give one")
+    if floor.turning != 0.0:
+        faults.append(f"{name}: not on a floor that turns, its axes stand still; leave one out")
+    if puck.pressure != "uniform":
+        faults.append(f"{name}: known under uniform pressure only, not with puck.pressure")
+    if min(two.friction) < LEAST_RATIO * max(two.friction):
+        faults.append(
+            f"{name}.friction = {list(two.friction)}: one must be at least {LEAST_RATIO:g} of the "
+            "other"
+        )
+    tall = 2.0 * max(two.friction) * puck.height / puck.radius
+    if tall > 1.0:
+        faults.append(
+            f"{name}: 2 f h/r = {tall:.4g} with the larger f must be at most 1, above part of the "
+            "base may lift, which is not known here; choose a lower puck or less friction"
+        )
+    return faults
+
+
 def _bad_rows(scene: Scene) -> list[str]:
     """What is wrong with tables that stand in the scene; those in files are read when it runs."""
     faults = []
     law, force = scene.floor.law, scene.force.over_time
     for name, rows, made in (("floor.law", law, law_of_rows), ("force.over_time", force, drive_of)):
-        if rows and not isinstance(rows, str):
+        if isinstance(rows, FrictionLaw):
+            faults += [f"{name}: {fault}" for fault in rows.faults()]
+        elif rows and not isinstance(rows, str):
             try:
                 made(rows)
             except InputError as error:

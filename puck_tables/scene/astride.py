@@ -145,9 +145,7 @@ def strip_at(ground: FloatArray, x: float, y: float) -> int:
 
 
 @inner
-def _weighted(
-    ground: FloatArray, radius: float, slip: Slip, mirrored: float, size: float
-) -> Sums:
+def _weighted(ground: FloatArray, radius: float, slip: Slip, mirrored: float, size: float) -> Sums:
     """f N times the sums over a disc of radius ``size``; ``mirrored`` −1: of a clockwise spin.
 
     In axes along the slip and across it.  A clockwise spin is the mirror image of the other.
@@ -199,9 +197,7 @@ def _weighted(
 
 
 @inner
-def sums_under(
-    ground: FloatArray, radius: float, slip: Slip, mirrored: float
-) -> Sums:
+def sums_under(ground: FloatArray, radius: float, slip: Slip, mirrored: float) -> Sums:
     """(1/A) ∫ f N over the base, of what :mod:`puck_tables.kernels.base_parts` sums."""
     hole = ground[INNER]
     weight = ground[SHARE] / (math.pi * (1.0 - hole * hole))

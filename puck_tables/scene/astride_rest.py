@@ -71,7 +71,13 @@ def _least_along(
 
 @inner
 def astride_yield(
-    ground: FloatArray, most: float, radius: float, fx: float, fy: float, torque: float, guided: bool
+    ground: FloatArray,
+    most: float,
+    radius: float,
+    fx: float,
+    fy: float,
+    torque: float,
+    guided: bool,
 ) -> Yield:
     """By how much the power of the best slip at Q = 1 exceeds friction, and that slip.
 

@@ -9,8 +9,10 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables.contact.friction_laws import FrictionLaw
 from puck_tables.scene.agreement import launch_velocity
 from puck_tables.scene.bulk import ENDS_COLUMNS
+from puck_tables.scene.by_speed import FARTHER, FARTHEST
 from puck_tables.scene.entries import BATCH, LAUNCH
 from puck_tables.scene.equations import SIZE
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
@@ -59,6 +61,7 @@ class Case:
             self._look_up(states, rows, status)
         else:
             self.prepared.follow_all(states, rows, status)
+            self._farther(states, rows, status)
             if scene.run.time is None:
                 status[status == TIME_UP] = NO_END
         rows[:, status > OVER_EDGE] = np.nan  # how it failed stands in ``end``
@@ -72,6 +75,18 @@ class Case:
             residual = missing / np.where(largest > 0.0, largest, 1.0)
         results = [last[name] for name in LEDGER[1:]]
         return np.stack([*results, rows[-1], residual, last["time"]]), status
+
+    def _farther(self, states: FloatArray, rows: FloatArray, status: npt.NDArray[np.int8]) -> None:
+        """Those that slip faster than the table of a friction law by name, by one that goes on."""
+        reach = 1.0
+        while isinstance(self.scene.floor.law, FrictionLaw) and reach < FARTHEST:
+            beyond = np.flatnonzero(status == NOT_FINITE)
+            if not beyond.size:
+                return
+            reach *= FARTHER
+            part, how = np.empty((len(rows), beyond.size)), np.empty(beyond.size, np.int8)
+            prepare(self.scene, reach=reach).follow_all(states[beyond], part, how)
+            rows[:, beyond], status[beyond] = part, how
 
     def _look_up(self, states: FloatArray, rows: FloatArray, status: npt.NDArray[np.int8]) -> None:
         belt = self.scene.floor.velocity

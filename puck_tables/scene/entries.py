@@ -80,6 +80,8 @@ def entries(part: Any, prefix: str = "") -> Iterator[Entry]:
         else:
             doc, acts = spec.metadata["doc"], spec.metadata["acts"]
             yield Entry(path, value, kind, doc, spec.default, acts)
+            if kind.kinds and isinstance(value, tuple(kind.kinds.values())):
+                yield from entries(value, f"{path}.")
 
 
 def units_of(scene: Scene) -> dict[str, str]:

@@ -1,4 +1,4 @@
-"""Forces on a puck besides dry friction, walls and constraints: given ones and viscous drag.
+"""Forces on a puck besides dry friction, walls and constraints: given, drag, lateral.
 
 All of them in one record, zero where a scene lacks them.  A new force is its entries in
 :mod:`puck_tables.scene.parts`, and here its numbers, what it does, and how strong it is at most.
@@ -30,8 +30,9 @@ class Forces(NamedTuple):
 
     ``x``, ``y`` N, ``torque`` N m: constant, with gravity along the slope; ``drive``: rows (n, 4)
     of time, force and torque over time, straight between the rows and nothing before and after;
-    ``sliding`` kg/s, ``spinning`` N m s: drag per relative speed and spin; ``quadratic`` kg/m: per
-    relative speed squared.
+    ``sliding`` kg/s, ``spinning`` N m s: drag per relative speed and spin; ``quadratic`` kg/m,
+    ``quadratic_spin`` N m s²: per their squares; ``across`` N, ``by_speed``, ``by_spin``: strength
+    and exponents of a lateral force.
     """
 
     x: float
@@ -41,6 +42,10 @@ class Forces(NamedTuple):
     sliding: float
     spinning: float
     quadratic: float
+    quadratic_spin: float
+    across: float
+    by_speed: float
+    by_spin: float
 
 
 def forces_of(scene: Scene) -> Forces:
@@ -67,6 +72,10 @@ def forces_of(scene: Scene) -> Forces:
         sliding=drag.sliding,
         spinning=drag.spinning,
         quadratic=drag.quadratic,
+        quadratic_spin=drag.spinning_quadratic,
+        across=scene.lateral.strength,
+        by_speed=scene.lateral.speed_exponent,
+        by_spin=scene.lateral.spin_exponent,
     )
 
 
@@ -79,7 +88,12 @@ def strongest(forces: Forces, radius: float, speed: FloatArray) -> FloatArray:
         float(np.hypot(drive[:, 1], drive[:, 2]).max(initial=0.0)),
         float(np.abs(drive[:, 3]).max(initial=0.0)) / radius,
     )
-    return np.maximum(given, speed * (forces.sliding + forces.quadratic * speed))
+    spin = speed / radius
+    with np.errstate(over="ignore"):
+        across = abs(forces.across) * speed**forces.by_speed * spin**forces.by_spin
+    turning = spin * (forces.spinning + forces.quadratic_spin * spin) / radius
+    drag = np.maximum(speed * (forces.sliding + forces.quadratic * speed), turning)
+    return np.asarray(np.maximum(np.maximum(given, drag), across))
 
 
 def impulse_over_time(forces: Forces, radius: float) -> tuple[float, float]:
@@ -118,15 +132,35 @@ def damping(forces: Forces, mass: float, inertia: float) -> float:
 
 @inlined
 def drag_force(forces: Forces, ux: float, uy: float, w: float) -> tuple[float, float, float, float]:
-    """Force, torque and the power they take (Chetaev's 2f₂) at velocities relative to the floor."""
+    """Force, torque and the power they take (Chetaev's 2f₂) at velocities relative to the floor.
+
+    Of drag, and of a lateral force, which takes none.
+    """
     squared = ux * ux + uy * uy
     sliding = forces.sliding + forces.quadratic * math.sqrt(squared)
+    spinning = forces.spinning + forces.quadratic_spin * abs(w)
+    side = sideways(forces.across, forces.by_speed, forces.by_spin, math.sqrt(squared), w)
     return (
-        -sliding * ux,
-        -sliding * uy,
-        -forces.spinning * w,
-        sliding * squared + forces.spinning * w * w,
+        -sliding * ux - side * uy,
+        -sliding * uy + side * ux,
+        -spinning * w,
+        sliding * squared + spinning * w * w,
     )
+
+
+@inlined
+def sideways(strength: float, by_speed: float, by_spin: float, speed: float, w: float) -> float:
+    """A lateral force over the speed, to the left; none of what does not move, or not spin."""
+    if strength == 0.0 or speed == 0.0 or w == 0.0:
+        return 0.0
+    side = math.copysign(1.0, w) * strength * speed**by_speed / speed
+    return side if by_spin == 0.0 else side * abs(w) ** by_spin
+
+
+@inlined
+def jumps(forces: Forces) -> bool:
+    """Whether a force jumps where the spin changes its sign."""
+    return forces.across != 0.0 and forces.by_spin < 1.0
 
 
 @inlined

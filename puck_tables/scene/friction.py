@@ -7,7 +7,8 @@ Treschev, Gallyamov 2012, sections 4–6, with relative velocities)
     ½ sin²φ ρ_ω),
 
 u^⊥ being u turned by +90°.  Where f depends on the slip speed, f ρ are integrals over the base that
-depend on Q too (:mod:`puck_tables.contact.speed_quadrature`).
+depend on Q too (:mod:`puck_tables.contact.speed_quadrature`).  Where it depends on the direction
+see :mod:`puck_tables.scene.orthotropic`.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ from puck_tables.kernels.speed_spline import speed_ratios
 from puck_tables.motion.equations import ratios_at
 from puck_tables.scene.astride import astride_friction
 from puck_tables.scene.ingredients import BySpeed, Dry, is_astride
+from puck_tables.scene.orthotropic import elliptic_friction
 
 X, Y, THETA, VX, VY, SPIN = range(6)  # of a state; in the loop the last three over the floor
 
@@ -40,6 +42,8 @@ def dry_friction(
         return 0.0, 0.0, 0.0, 0.0
     if is_astride(dry):
         return astride_friction(dry.by_speed.table, radius, ux, uy, w, slip)
+    if dry.ellipse.normal > 0.0:
+        return elliptic_friction(dry.ellipse, radius, ux, uy, w)
     speed = size(ux, uy, 0.0)
     fast = rim > speed
     ratio = speed / rim if fast else rim / speed
@@ -69,4 +73,4 @@ def at_slip_zero(dry: Dry) -> Dry:
     """The friction that a puck at rest would start against, whatever its coefficient does later."""
     law = dry.by_speed
     still = BySpeed(law.table, law.height_ratio, law.normal, 0.0)
-    return Dry(dry.load, dry.delta, dry.cut, still)
+    return Dry(dry.load, dry.delta, dry.cut, still, dry.ellipse)

@@ -16,6 +16,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
 from puck_tables.scene.astride import PLACE_X, PLACE_Y
 from puck_tables.scene.forces import Forces
+from puck_tables.scene.orthotropic import NO_ELLIPSE, Elliptic
 
 if TYPE_CHECKING:
     from puck_tables.scene.parts import Constraint, Launch
@@ -51,8 +52,8 @@ class Regions(NamedTuple):
     """Dry friction in every region of the floor: f N, δ, and the friction ratios at that δ.
 
     ``load``, ``delta``: arrays (regions,); ``cuts``: (regions, …), see
-    :func:`puck_tables.motion.equations.ratios_at`; ``by_speed`` takes the place of all.
-    ``astride`` (regions,): where the base lies on several frictions of the ``ground``, see
+    :func:`puck_tables.motion.equations.ratios_at`; ``by_speed`` or ``ellipse`` take the place of
+    all.  ``astride`` (regions,): where the base lies on several frictions of the ``ground``, see
     :mod:`puck_tables.scene.astride`; there load and δ are the largest of them.  A run has its own
     ground, in which it says where the base is.
     """
@@ -63,6 +64,7 @@ class Regions(NamedTuple):
     by_speed: BySpeed
     astride: npt.NDArray[np.bool_]
     ground: FloatArray
+    ellipse: Elliptic = NO_ELLIPSE
 
 
 class Dry(NamedTuple):
@@ -76,6 +78,7 @@ class Dry(NamedTuple):
     delta: float
     cut: FloatArray
     by_speed: BySpeed
+    ellipse: Elliptic = NO_ELLIPSE
 
 
 @inlined
@@ -84,7 +87,9 @@ def dry_in(regions: Regions, region: int) -> Dry:
     law = regions.by_speed
     if regions.astride[region]:
         law = BySpeed(regions.ground, 0.0, ASTRIDE, 1.0)
-    return Dry(regions.load[region], regions.delta[region], regions.cuts[region], law)
+    return Dry(
+        regions.load[region], regions.delta[region], regions.cuts[region], law, regions.ellipse
+    )
 
 
 @inlined

@@ -40,6 +40,7 @@ from puck_tables.scene.equations import (
     slip_speed,
     to_laboratory,
 )
+from puck_tables.scene.forces import jumps
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.scene.ingredients import (
     CARRIED,
@@ -56,6 +57,7 @@ from puck_tables.scene.leaning import GRIP, RIM
 from puck_tables.scene.moments import (
     EQUAL,
     REST,
+    SPINLESS,
     goes_straight,
     lost,
     rests_on,
@@ -251,10 +253,12 @@ def follow(
             continue
         h = length * min(5.0, 5.0 if error == 0.0 else 0.9 * (ask.tolerance / error) ** power)
         stuck, cut = -1, landed
-        for passed in range(1 + leaning.shape[0]):
+        for passed in range(2 + leaning.shape[0]):
             what = _NOTHING
             if passed == 0 and mode == SLIDES:
                 what = EQUAL if slip_side(radius, y) * slip_side(radius, new) < 0.0 else what
+            if passed == 1 and mode == SLIDES and y[SPIN] * new[SPIN] < 0.0 and jumps(model.forces):
+                what = SPINLESS
             for i in range(leaning.shape[0]):
                 passes = leaning[i, RIM] * watched(stretch, i, new) < 0.0
                 if what == _NOTHING and leaning[i, GRIP] > 0.0 and passes:

@@ -21,7 +21,8 @@ from puck_tables.scene.leaning import GRIP, RIM
 from puck_tables.scene.rest import SLACK, excess_at_rest, held_by_floor
 from puck_tables.scene.steps import step
 
-EQUAL = -1  # watched: equal speeds of centre and rim; else the rim on a wall that is leant on
+# watched: equal speeds of centre and rim; no spin; else the rim on a wall that is leant on
+EQUAL, SPINLESS = -1, -3
 _TURNS, _SETTLED = 3000, 1e-12  # at most; of friction: a direction stays
 _SLOW = 1e-3  # of friction: what brakes less comes closer to rest before it goes straight
 _STEADY = 1e-4  # of its rate: a slip whose direction does not change
@@ -73,7 +74,7 @@ def rests_on(model: Model, dry: Dry, leaning: FloatArray, piece: int, y: FloatAr
 
     Between two rows a force lies between theirs; a curve that bulges inwards is given a margin.
     """
-    flat = dry.delta == 0.0 and dry.by_speed.normal == 0.0
+    flat = dry.delta == 0.0 and dry.by_speed.normal == 0.0 and dry.ellipse.height_ratio == 0.0
     level, rows = (SLACK if flat else -_MARGIN) * dry.load, len(model.forces.drive)
     if piece == rows:
         return True
@@ -91,6 +92,8 @@ def watched(stretch: Stretch, what: int, y: FloatArray) -> float:
     model = stretch.model
     if what == EQUAL:
         return slip_side(model.body.radius, y)
+    if what == SPINLESS:
+        return float(y[SPIN])
     sx, sy, turning = floor_velocity(model.surface, y[0], y[1])
     lean = stretch.leaning[what]
     return rim_slip(model.body, lean[NX], lean[NY], y[VX] + sx, y[VY] + sy, y[SPIN] + turning)

@@ -10,6 +10,7 @@ import math
 from dataclasses import dataclass
 
 from puck_tables._core.fields import of
+from puck_tables.contact.friction_laws import NAMED, FrictionLaw
 from puck_tables.scene.restitution import Restitution, restitution_of
 
 Rows = tuple[tuple[float, ...], ...]
@@ -37,6 +38,21 @@ class Patch:
 
 
 @dataclass(frozen=True)
+class Orthotropic:
+    """A floor that is rougher one way than the other, as brushed metal, felt and wood are.
+
+    An element that slips along e feels −(f_x² e_x, f_y² e_y)/√(f_x² e_x² + f_y² e_y²) of its load,
+    in the axes of the floor.
+    """
+
+    friction: tuple[float, float] = of(
+        "pair", low=0.0, above=True, doc="along 'direction' and across it",
+        acts="orthotropic friction",
+    )  # fmt: skip
+    direction: float = of("number", 0.0, "rad", doc="of the first of them, from x", acts="")
+
+
+@dataclass(frozen=True)
 class Floor:
     """The plane: level or sloping, at rest or moving, of one friction or of several.
 
@@ -53,11 +69,13 @@ class Floor:
     centre: tuple[float, float] = of("pair", (0.0, 0.0), "m", doc="of the turntable", acts="")
     strips: Strips | None = of("part", None, part=Strips)
     patches: tuple[Patch, ...] = of("parts", (), part=Patch, table="patch")
-    law: str | Rows = of(
+    orthotropic: Orthotropic | None = of("part", None, part=Orthotropic)
+    law: str | Rows | FrictionLaw = of(
         "rows",
         "",
         file="",
-        doc="CSV or rows of slip speed in m/s and f, in place of friction",
+        kinds=NAMED,
+        doc="CSV or rows of slip speed in m/s and f, or a law by name, in place of friction",
         acts="friction law",
     )
 
@@ -90,6 +108,30 @@ class Drag:
     spinning: float = of(
         "number", 0.0, "N m s", low=0.0, doc="torque over relative spin", acts="drag"
     )
+    spinning_quadratic: float = of(
+        "number", 0.0, "N m s^2", low=0.0, doc="torque over relative spin squared", acts="drag"
+    )
+
+
+@dataclass(frozen=True)
+class Lateral:
+    """An empirical force across the motion: strength (v in m/s)^b (|w| in rad/s)^c sign w.
+
+    It is to the left of the motion over the floor where the spin is counter-clockwise, and does no
+    work there.  Players of curling fit it to the curl of their stones; no dry friction over the
+    contact explains it.
+
+    Examples
+    --------
+    >>> stone = Lateral(0.163, speed_exponent=0.2)  # 20 kg, as the simulator FCV1 has it
+    """
+
+    strength: float = of(
+        "number", 0.0, "N", doc="at 1 m/s and 1 rad/s; below 0 to the right",
+        acts="lateral force (empirical)",
+    )  # fmt: skip
+    speed_exponent: float = of("number", 0.0, low=0.0, high=8.0, doc="b", acts="")
+    spin_exponent: float = of("number", 0.0, low=0.0, high=8.0, doc="c; 0: its sign only", acts="")
 
 
 @dataclass(frozen=True)

@@ -23,6 +23,10 @@ from puck_tables.scene.entries import entries
 from puck_tables.scene.floor_patches import distances
 from puck_tables.scene.scene import Scene
 
+EMPIRICAL = (
+    "The lateral force is empirical, as somebody fitted it: no dry friction over the contact "
+    "explains it."
+)
 _NAMES = {"A": "rest", "B0": "pure spin", "C0": "pure translation", "D": "the limit motion"}
 
 
@@ -59,7 +63,9 @@ def ingredients(scene: Scene) -> list[str]:
     plain = is_plain(puck.pressure, puck.gyration, puck.delta)
     if not plain and scene.run.tol < FINEST_TOL:
         there.append("a tolerance finer than for free pucks of this kind")
-    if scene.floor.strips is None and not any(scene.frictions) and not scene.floor.law:
+    floor = scene.floor
+    own = floor.strips is not None or bool(floor.law) or floor.orthotropic is not None
+    if not own and not any(scene.frictions):
         there.append("no dry friction")
     return there
 
@@ -157,12 +163,16 @@ def plan_for(scene: Scene) -> Plan:
         model = "friction at fixed delta, integrated"
         if "friction law" in acts:
             model = "friction by slip speed, integrated"
+        elif "orthotropic friction" in acts:
+            model = "friction by quadrature over the base, integrated"
         elif "no dry friction" in acts:
             model = "integrated"
         why = (
             f"Taken: {model}; what acts: {', '.join([*acts, *_moving(scene)])}.\n"
             "A look-up would be cheaper, but it is of free pucks on a level floor."
         )
+        if scene.lateral.strength != 0.0:
+            why += f"\n{EMPIRICAL}"
         return Plan(model, False, why)
     kind = scene.puck.regime(free_velocity(scene), scene.launch.spin)
     frame = "in the frame of the belt" if any(scene.floor.velocity) else "a free puck, level floor"

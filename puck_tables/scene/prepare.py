@@ -127,8 +127,10 @@ class Prepared:
         return _asks(self.scene, self.model, self.regions, states)
 
 
-def prepare(scene: Scene, last_time: float | None = None) -> Prepared:
+def prepare(scene: Scene, last_time: float | None = None, reach: float = 1.0) -> Prepared:
     """The loop's arguments; on a moving floor a run goes on to ``last_time``.
+
+    ``reach``: of the table of a friction law, see :mod:`puck_tables.scene.by_speed`.
 
     Raises
     ------
@@ -138,7 +140,7 @@ def prepare(scene: Scene, last_time: float | None = None) -> Prepared:
     """
     puck, floor = scene.puck, scene.floor
     inertia = puck.mass * (puck.gyration * puck.radius) ** 2
-    regions = regions_of(scene)
+    regions = regions_of(scene, reach)
     moves = any(floor.velocity) or floor.turning != 0.0
     model = Model(
         body=Body(puck.mass, inertia, puck.radius),

@@ -3,41 +3,33 @@
 from __future__ import annotations
 
 import math
-import threading
-from functools import lru_cache
 
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import rounded_up
-from puck_tables.contact.speed_law import SpeedLaw
-from puck_tables.errors import AccuracyError, InputError
+from puck_tables.errors import AccuracyError
 from puck_tables.kernels.section_spline import HEADER, RATIOS
 from puck_tables.motion.body import body_of, is_plain
 from puck_tables.motion.friction import closed_form_friction, table_friction
-from puck_tables.scene.agreement import launch_velocity, law_of_rows
 from puck_tables.scene.astride import NO_GROUND
+from puck_tables.scene.by_speed import NO_LAW, friction_by_speed, law_error
 from puck_tables.scene.ingredients import BySpeed, Regions
+from puck_tables.scene.orthotropic import NO_ELLIPSE, Elliptic
 from puck_tables.scene.scene import Scene
 from puck_tables.scene.zones import ground_of, zones_of
 from puck_tables.table.friction_section import FINEST_ACCURACY
 from puck_tables.table.resultant_table import ResultantTable
-from puck_tables.table.speed_build import FINEST_ACCURACY as FINEST_LAW
-from puck_tables.table.speed_table import SpeedTable
-from puck_tables.table.store import table_for
 
 EXACT_BELOW = 1e-9  # friction by closed forms where a table's error would show
 CLOSED_FORM_ERROR, TABLE_ERROR = 1e-14, 2e-11
 SLICE_SHARE = 0.1  # of the error wanted
-LAW_SHARE = 0.1  # of it, too: the largest error of the friction at any slip, in units of f N
-
-NO_LAW = BySpeed(np.zeros(0), 0.0, 0.0, 1.0)
-
-_one_at_a_time = threading.Lock()  # the threads of a sweep need the same table
 
 
-def regions_of(scene: Scene) -> Regions:
+def regions_of(scene: Scene, reach: float = 1.0) -> Regions:
     """Friction ratios in every region at the height that it has, or by slip speed.
+
+    ``reach``: see :func:`puck_tables.scene.by_speed.friction_by_speed`.
 
     Raises
     ------
@@ -49,19 +41,18 @@ def regions_of(scene: Scene) -> Regions:
     puck, floor = scene.puck, scene.floor
     normal = puck.mass * puck.gravity * math.cos(floor.slope)
     if floor.law:
-        law = speed_law(scene)
-        fastest = math.hypot(*slip_at_launch(scene)[:2]) + abs(slip_at_launch(scene)[2])
-        if fastest > law.top_speed:
-            raise InputError(
-                f"the rim slips at {fastest:.6g} m/s at the launch, faster than the friction law "
-                f"{law_name(scene)} goes ({law.top_speed:g} m/s): nothing is known beyond; give it "
-                "more"
-            )
-        table, height_ratio = _law_table(law, scene), 2.0 * puck.height / puck.radius
-        table.refuse_height(height_ratio)
-        by_speed = BySpeed(table.compiled, height_ratio, normal, 1.0)
-        load = np.array([normal * table.largest_f])
+        by_speed, load = friction_by_speed(scene, normal, reach)
         return alone(load, np.zeros(1), closed_form_friction(0.0).cut[None, :], by_speed)
+    if floor.orthotropic is not None:
+        along, across = floor.orthotropic.friction
+        turned = floor.orthotropic.direction
+        load = np.array([normal * max(along, across)])
+        ellipse = Elliptic(
+            along, across, math.cos(turned), math.sin(turned), 2.0 * puck.height / puck.radius,
+            normal,
+        )  # fmt: skip
+        cut = closed_form_friction(0.0).cut[None, :]
+        return alone(load, np.zeros(1), cut, NO_LAW, ellipse)
     heights = scene.heights
     load = normal * np.array(scene.frictions)
     if all(is_plain(puck.pressure, puck.gyration, delta) for delta in heights):
@@ -82,9 +73,13 @@ def regions_of(scene: Scene) -> Regions:
     return _under_zones(scene, normal, load, np.array(heights), of_one_shape(slices))
 
 
-def alone(load: FloatArray, delta: FloatArray, cuts: FloatArray, by_speed: BySpeed) -> Regions:
+def alone(
+    load: FloatArray, delta: FloatArray, cuts: FloatArray, by_speed: BySpeed,
+    ellipse: Elliptic = NO_ELLIPSE,
+) -> Regions:  # fmt: skip
     """Regions of which a base never lies on two at once."""
-    return Regions(load, delta, cuts, by_speed, np.zeros(len(load), np.bool_), NO_GROUND)
+    nowhere = np.zeros(len(load), np.bool_)
+    return Regions(load, delta, cuts, by_speed, nowhere, NO_GROUND, ellipse)
 
 
 def _under_zones(
@@ -112,77 +107,12 @@ def friction_error(scene: Scene) -> float:
     """How wrong the friction ratios of :func:`regions_of` may be."""
     puck = scene.puck
     if scene.floor.law:
-        return max(LAW_SHARE * scene.run.tol, FINEST_LAW)
+        return law_error(scene)
+    if scene.floor.orthotropic is not None:
+        return CLOSED_FORM_ERROR
     if all(is_plain(puck.pressure, puck.gyration, delta) for delta in scene.heights):
         return CLOSED_FORM_ERROR if scene.run.tol < EXACT_BELOW else TABLE_ERROR
     return max(SLICE_SHARE * scene.run.tol, FINEST_ACCURACY)
-
-
-def speed_law(scene: Scene) -> SpeedLaw:
-    """The friction law of a scene that has one, from its file or its rows.
-
-    Raises
-    ------
-    InputError
-        If it is no such law.
-    """
-    law = scene.floor.law
-    if isinstance(law, str):
-        return SpeedLaw.from_csv(law)
-    return law_of_rows(law)
-
-
-def law_name(scene: Scene) -> str:
-    """The friction law of a scene in a message.
-
-    Examples
-    --------
-    >>> from puck_tables import Floor, Puck
-    >>> law_name(Scene(Puck(1.0), Floor(law=[[0.0, 0.1], [1.0, 0.2]])))
-    'floor.law'
-    """
-    return scene.floor.law if isinstance(scene.floor.law, str) else "floor.law"
-
-
-def _law_table(law: SpeedLaw, scene: Scene) -> SpeedTable:
-    """The table of a friction law that the scene's tolerance asks for.
-
-    Raises
-    ------
-    AccuracyError
-        If the law has too many corners for so fine a tolerance; it says which can be reached.
-    """
-    points = tuple(map(tuple, np.stack([law.speeds, law.values], axis=1).tolist()))
-    try:
-        with _one_at_a_time:
-            return _kept_table(points, friction_error(scene))
-    except AccuracyError as error:
-        if error.reachable is None:
-            raise
-        finest = rounded_up(error.reachable / LAW_SHARE)
-        raise AccuracyError(
-            f"tol = {scene.run.tol:g} is out of reach with the corners of the friction law "
-            f"{law_name(scene)}: give run.tol (or --tol) of {finest:g} or more, or a law with "
-            "fewer points"
-        ) from None
-
-
-@lru_cache(maxsize=8)
-def _kept_table(points: tuple[tuple[float, float], ...], accuracy: float) -> SpeedTable:
-    """Kept by the points of the law: a sweep asks for it again and again."""
-    speeds, values = zip(*points, strict=True)
-    return table_for(SpeedLaw(speeds, values), accuracy)
-
-
-def slip_at_launch(scene: Scene) -> tuple[float, float, float]:
-    """Velocity of the centre and rim speed relative to the floor at the launch, m/s."""
-    floor, (x, y) = scene.floor, scene.launch.position
-    vx, vy = launch_velocity(scene)
-    return (
-        vx - floor.velocity[0] + floor.turning * (y - floor.centre[1]),
-        vy - floor.velocity[1] - floor.turning * (x - floor.centre[0]),
-        scene.puck.radius * (scene.launch.spin - floor.turning),
-    )
 
 
 def _plain_cut(tol: float, delta: float) -> FloatArray:

@@ -19,7 +19,17 @@ from puck_tables.errors import InputError
 from puck_tables.puck import Puck
 from puck_tables.scene.agreement import disagreements
 from puck_tables.scene.entries import columns_of, entry_at, is_batch, set_path, tables_of
-from puck_tables.scene.parts import Constraint, Drag, Edge, Floor, Force, Launch, Run, Wall
+from puck_tables.scene.parts import (
+    Constraint,
+    Drag,
+    Edge,
+    Floor,
+    Force,
+    Lateral,
+    Launch,
+    Run,
+    Wall,
+)
 from puck_tables.scene.pieces import Arc, Piece, Pocket, Post, Rim
 from puck_tables.scene.ranges import Ranges, batch_of, launch_rows, owner_of, refuse_twice
 from puck_tables.scene.restitution import Restitution
@@ -35,7 +45,7 @@ class Scene(SceneVerbs):
     Parameters
     ----------
     puck : Puck
-    floor, launch, drag, force, run, title : optional
+    floor, launch, drag, lateral, force, run, title : optional
         As :mod:`puck_tables.scene.parts` has them.
     walls, edges : sequences of Wall, of Edge, optional
     pucks, posts, arcs, pockets, rims : sequences, optional
@@ -70,6 +80,7 @@ class Scene(SceneVerbs):
     floor: Floor = of("part", Floor(), part=Floor)
     launch: Launch = of("part", Launch(), part=Launch)
     drag: Drag = of("part", Drag(), part=Drag)
+    lateral: Lateral = of("part", Lateral(), part=Lateral)
     force: Force = of("part", Force(), part=Force)
     pucks: tuple[Piece, ...] = of("parts", (), part=Piece, table="puck[]")
     walls: tuple[Wall, ...] = of("parts", (), part=Wall, table="wall")

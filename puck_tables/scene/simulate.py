@@ -10,9 +10,11 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import finite_array
+from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import AccuracyError, InputError, PuckError
 from puck_tables.scene.at_once import AS_IT_COMES, FIRST_BY_NUMBER, LAST_BY_NUMBER
 from puck_tables.scene.boundaries import BOUNCES
+from puck_tables.scene.by_speed import FARTHER, FARTHEST, law_name, speed_law
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
 from puck_tables.scene.library import files_of
 from puck_tables.scene.loop import (
@@ -28,7 +30,7 @@ from puck_tables.scene.plain import run_plain
 from puck_tables.scene.plan import Plan, ingredients, out_of_reach, plan_for
 from puck_tables.scene.prepare import MAX_EVENTS, Prepared, Twin, prepare
 from puck_tables.scene.records import EVENT_COLUMNS, FRAME_COLUMNS
-from puck_tables.scene.regions import friction_error, law_name, speed_law
+from puck_tables.scene.regions import friction_error
 from puck_tables.scene.scene import Scene
 
 
@@ -142,12 +144,12 @@ def _close_enough(
     in_vain, trials, tol, doubt = 0, 0, asked, 0.0
     while True:
         try:
-            prepared = prepare(replace(scene, run=replace(scene.run, tol=tol)), last)
+            finer = replace(scene, run=replace(scene.run, tol=tol))
+            prepared, run, estimate, doubt = _within_law(finer, last, times, room)
         except AccuracyError:  # a friction law is known no better
             if not found:
                 raise
             break
-        run, estimate, doubt = _estimated(prepared, times, room)
         trials, in_vain = trials + 1, in_vain + 1
         if not found or estimate <= 0.5 * found[-1][2]:
             found.append((prepared, run, estimate, room[: run.events].copy()))
@@ -160,6 +162,25 @@ def _close_enough(
     if doubt > asked:
         raise InputError(_met_at_once(scene, run.at_once))
     return found[-1]
+
+
+class _BeyondLaw(InputError):
+    """The slip goes beyond what the table of a friction law holds."""
+
+
+def _within_law(
+    scene: Scene, last: float | None, times: FloatArray | None, room: FloatArray
+) -> tuple[Prepared, _Followed, float, float]:
+    """The scene, its run, estimate and doubt; the table of a law by name goes on as is needed."""
+    reach = 1.0
+    while True:
+        prepared = prepare(scene, last, reach)
+        try:
+            return prepared, *_estimated(prepared, times, room)
+        except _BeyondLaw:
+            if isinstance(speed_law(scene), SpeedLaw) or reach >= FARTHEST:
+                raise
+            reach *= FARTHER
 
 
 def _met_at_once(scene: Scene, at_once: FloatArray) -> str:
@@ -256,10 +277,15 @@ def _refuse_failed(scene: Scene, how: int, end_time: float, to_the_end: bool) ->
             f"the puck still moves after {end_time:.4g} s, {long}: it may never stop; give run.time"
         )
     if how == NOT_FINITE and scene.floor.law:  # a state beyond the law is never reached
-        top = speed_law(scene).top_speed
-        raise InputError(
-            f"at {end_time:.6g} s the rim slips faster than the friction law {law_name(scene)} "
-            f"goes ({top:g} m/s): nothing is known beyond; give it more speeds"
+        law = speed_law(scene)
+        if isinstance(law, SpeedLaw):
+            raise _BeyondLaw(
+                f"at {end_time:.6g} s the rim slips faster than the friction law {law_name(scene)} "
+                f"goes ({law.top_speed:g} m/s): nothing is known beyond; give it more speeds"
+            )
+        raise _BeyondLaw(
+            f"at {end_time:.6g} s the rim slips {FARTHEST:g} times faster than at the launch, "
+            "beyond the table of the friction law: give a shorter run.time, or more friction"
         )
     if how in FAILURES:
         raise PuckError(FAILURES[how].format(time=end_time))

@@ -12,6 +12,7 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import keep_on, run_chunks
 from puck_tables._core.real import rounded_up
+from puck_tables.contact.friction_laws import FrictionLaw
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.contact.speed_quadrature import SpeedFunction, speed_integrals
 from puck_tables.errors import AccuracyError
@@ -24,7 +25,7 @@ from puck_tables.table.speed_grid import COARSEST_CELLS, HALVINGS, Patch, breaks
 from puck_tables.table.speed_table import SpeedTable
 from puck_tables.table.table import Progress
 
-Law = SpeedLaw | SpeedFunction
+Law = SpeedLaw | FrictionLaw | SpeedFunction
 
 DEFAULT_ACCURACY = 1e-6
 FINEST_ACCURACY = 1e-13
@@ -173,10 +174,11 @@ def tabulated(
             f"the accuracy of a table of speeds must be from {FINEST_ACCURACY:g} to "
             f"{COARSEST:g} (of the largest f), got {accuracy:g}"
         )
+    law = law.checked() if isinstance(law, FrictionLaw) else law
     breaks = breaks_of(law, top_speed, scale)
     largest = largest_f(law, float(breaks[-1]))
     goal = accuracy / _SAFETY
-    patches = patches_of(breaks)
+    patches = patches_of(breaks, law.grade if isinstance(law, SpeedLaw | FrictionLaw) else 1)
     parts = [_Filled(patch, law, largest or 1.0, n) for n, patch in enumerate(patches)]
     share, told = 0.0, 0.0
 
@@ -205,11 +207,11 @@ def tabulated(
         _each(chosen, lambda part: part.refine(part.lacks(goal)), tell)
     if not all(part.good(goal) for part in parts):
         raise _out_of_reach(parts, accuracy)
-    points = law if isinstance(law, SpeedLaw) else None
+    kept = law if isinstance(law, SpeedLaw | FrictionLaw) else None
     cells = np.array([part.cells for part in parts], np.int64)
     values = np.concatenate([part.values.reshape(-1, 4) for part in parts])
     return SpeedTable(
-        values, breaks=breaks, cells=cells, largest_f=largest, law=points, tolerance=accuracy,
+        values, breaks=breaks, cells=cells, largest_f=largest, law=kept, tolerance=accuracy,
         accuracy=_measured(parts),
     )  # fmt: skip
 
@@ -241,9 +243,8 @@ def largest_f(law: Law, top: float) -> float:
     >>> largest_f(SpeedLaw([0.0, 1.0], [0.2, 0.3]), 0.5)
     0.25
     """
-    if isinstance(law, SpeedLaw):
-        speeds = np.asarray(law.speeds)
-        return float(law.extended(np.append(speeds[speeds < top], top)).max())
+    if isinstance(law, SpeedLaw | FrictionLaw):
+        return law.largest(top)
     speeds = top * np.linspace(0.0, 1.0, 1001) ** 3
     return float(np.abs(speed_integrals(0.0, speeds, law).a).max())
 
@@ -252,22 +253,18 @@ def truth_at(
     law: Law, top: float, ratio: FloatArray, fast: npt.ArrayLike, speed: FloatArray
 ) -> FloatArray:
     """p_a, p_b, p_d, p_e by quadrature, (…, 4); ``top``: what the slip goes up to, m/s."""
-    if not isinstance(law, SpeedLaw):
+    if not isinstance(law, SpeedLaw | FrictionLaw):
         p = speed_integrals(np.where(fast, np.arctan2(1.0, ratio), np.arctan(ratio)), speed, law)
         return np.stack([p.a, p.b, p.d, p.e], axis=-1)
-    speeds = np.asarray(law.speeds)
-    pieces = int(np.count_nonzero(speeds[:-1] < top))  # a corner at the top is not yet passed
+    ends, pieces = law.pieces(top)
     flat, Q = np.ravel(ratio).copy(), np.ravel(speed).copy()
     inside = np.array(np.broadcast_to(fast, flat.shape), bool)
     out = np.empty((flat.size, 4))
-    each = max(1, _AT_ONCE // max(1, pieces // 4))
+    each = max(1, _AT_ONCE // max(1, len(pieces) // 4))
     for start in range(0, flat.size, each):
         keep_on()
         part = slice(start, start + each)
-        fill_integrals(
-            speeds[: pieces + 1], law.coefficients[:pieces], flat[part], inside[part], Q[part],
-            out[part],
-        )  # fmt: skip
+        fill_integrals(ends, pieces, flat[part], inside[part], Q[part], out[part])
     return out.reshape(*np.shape(ratio), 4)
 
 

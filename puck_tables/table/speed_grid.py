@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables.contact.friction_laws import FrictionLaw
 from puck_tables.contact.integrals import SlipDirection
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import InputError
@@ -37,12 +38,14 @@ class Patch:
     slab : which interval of the breaks U = v + r|ω| lies in
     part : which part of the slips W = |v − r|ω||, 0 … slab + 1; the last up to W = U
     fast : whether r|ω| > v
+    grade : how strongly the nodes of the first slab crowd at slip zero
     """
 
     breaks: FloatArray
     slab: int
     part: int
     fast: bool
+    grade: int = 1
 
     @property
     def top(self) -> float:
@@ -58,7 +61,7 @@ class Patch:
         if k == 0:
             tau = zeta**4
             ratio = (1.0 - tau) / (1.0 + tau)
-            Q = b[1] * xi * np.sqrt(1.0 + ratio**2) / (1.0 + ratio)
+            Q = b[1] * xi**self.grade * np.sqrt(1.0 + ratio**2) / (1.0 + ratio)
         else:
             width = b[k + 1] - b[k]
             mirrored = self.part == k + 1
@@ -81,7 +84,7 @@ def edge_power(slab: int, part: int, fast: bool) -> int:
     return CORNER_POWER if part == slab and not fast else EDGE_POWER
 
 
-def patches_of(breaks: FloatArray) -> tuple[Patch, ...]:
+def patches_of(breaks: FloatArray, grade: int = 1) -> tuple[Patch, ...]:
     """The patches between breaks, in the order in which compiled code numbers them.
 
     Examples
@@ -90,7 +93,7 @@ def patches_of(breaks: FloatArray) -> tuple[Patch, ...]:
     8
     """
     return tuple(
-        Patch(breaks, slab, part, fast)
+        Patch(breaks, slab, part, fast, grade)
         for fast in (False, True)
         for slab in range(len(breaks) - 1)
         for part in range(slab + 2 if slab > 0 else 1)
@@ -116,7 +119,7 @@ def breaks_of(
 
     Parameters
     ----------
-    law : SpeedLaw, or callable
+    law : SpeedLaw, FrictionLaw or another callable
     top_speed : m/s; needed for a callable
     scale : the speed below which a callable is nearly cubic, m/s; default ``top_speed``
 
@@ -141,7 +144,7 @@ def breaks_of(
         if top_speed is None:
             raise InputError("a friction law given as a function needs top_speed= in m/s")
         top = float(top_speed)
-        corners = np.empty(0)
+        corners = np.array(sorted(law.scales) if isinstance(law, FrictionLaw) else [])
     if not 0.0 < top < np.inf:
         raise InputError(f"top_speed must be finite and greater than 0 m/s, got {top:g}")
     if scale is not None:

@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import broadcast
+from puck_tables.contact.friction_laws import NAMED, FrictionLaw, law_of_numbers
 from puck_tables.contact.integrals import PatchIntegrals, checked_phi, slip_direction
 from puck_tables.contact.resultants import Resultants, moment_balance, pressure_tilt
 from puck_tables.contact.speed_law import SpeedLaw
@@ -45,11 +46,12 @@ _INTERPRETATION = (
     "- y e_x), cos(phi) p_e = mean of f (x e_y - y e_x) y, p_c = p_b - p_d. With g = 2h/r, D = 1 - "
     "g^2 sin^2(phi) p_b p_c: force -N cos(phi) p_a/D along the velocity, -N sin(phi) cos(phi) g "
     "p_a p_b/D across it (to the left), torque -N r sin(phi) (p_d + g^2 cos^2(phi) p_a p_b p_e/D). "
-    "Even in phi. Salnikova, Treschev, Gallyamov 2012, section 5, with f inside the integrals."
+    "A law by name has its numbers in law_values. Even in phi. Salnikova, Treschev, Gallyamov 2012, section 5, with f inside the integrals."
 )
 _MAP = (
     "U = v + r|omega|, W = |v - r|omega||; patches between the breaks b_k of U and W, for r|omega| "
-    "< v and then for >, slab of U after slab. U <= b_1: U = b_1 xi, W = U zeta^4. b_k <= U <= "
+    "< v and then for >, slab of U after slab. U <= b_1: U = b_1 xi^g, W = U zeta^4, g = 6/exponent "
+    "rounded up for a Stribeck exponent that is no whole number, else 1. b_k <= U <= "
     "b_k+1: U = b_k + (b_k+1 - b_k) xi^p; W = b_1/2 zeta^4, then W = b_l - (b_l - left end)(1 - "
     "zeta)^p up to b_k, p = 2 (3 where r|omega| < v and l = k); last U, W = b_k + (b_k+1 - b_k)(xi,"
     " zeta). Nodes uniform in xi and zeta, zeta fastest; quintic not-a-knot splines in both. Cells "
@@ -71,7 +73,7 @@ class SpeedTable(Table):
         Cells along ξ and ζ of every patch, see :mod:`puck_tables.kernels.speed_spline`.
     largest_f : float
         Largest f of the law up to the top, the unit of the errors.
-    law : SpeedLaw, optional
+    law : SpeedLaw or FrictionLaw, optional
         The friction law; none if it was given as a function.
 
     Notes
@@ -83,7 +85,7 @@ class SpeedTable(Table):
     breaks: FloatArray
     cells: IntArray = field(repr=False)
     largest_f: float
-    law: SpeedLaw | None = None
+    law: SpeedLaw | FrictionLaw | None = None
 
     kind = "speed"
     algorithm = (
@@ -117,12 +119,18 @@ class SpeedTable(Table):
     @cached_property
     def patches(self) -> tuple[Patch, ...]:
         """Its patches, in the order of ``cells``."""
-        return patches_of(self.breaks)
+        return patches_of(self.breaks, self._grade)
+
+    @property
+    def _grade(self) -> int:
+        """See :class:`puck_tables.table.speed_grid.Patch`."""
+        return 1 if self.law is None else self.law.grade
 
     @cached_property
     def compiled(self) -> FloatArray:
         """As :func:`puck_tables.kernels.speed_spline.packed` has it."""
-        return packed(self.breaks, self.cells, [quintic_coefficients(v) for v in self.by_patch()])
+        splines = [quintic_coefficients(values) for values in self.by_patch()]
+        return packed(self.breaks, self.cells, splines, self._grade)
 
     def by_patch(self) -> list[FloatArray]:
         """Node values of every patch, (ξ nodes, ζ nodes, 4)."""
@@ -286,10 +294,12 @@ class SpeedTable(Table):
     def parameters(self) -> dict[str, int | float | str]:
         """The law and the grid."""
         assert self.law is not None
+        named = isinstance(self.law, FrictionLaw)
+        speeds = [0.0, self.top] if named else np.asarray(self.law.speeds).tolist()
+        values = self.law.numbers if named else np.asarray(self.law.values).tolist()
         return {
             "law_kind": self.law.kind,
-            "law_speeds": json.dumps(np.asarray(self.law.speeds).tolist()),
-            "law_values": json.dumps(np.asarray(self.law.values).tolist()),
+            "law_speeds": json.dumps(speeds), "law_values": json.dumps(values),
             "breaks": json.dumps(self.breaks.tolist()), "nodes": len(self.values),
             "patches": len(self.cells), "largest_f": self.largest_f,
         }  # fmt: skip
@@ -307,9 +317,7 @@ class SpeedTable(Table):
     def bounds(self) -> tuple[float, float, float]:
         """Of the values, each a mean of f, of u f', or of both; and of the accuracy."""
         assert self.law is not None
-        speeds, f = np.asarray(self.law.speeds), np.asarray(self.law.values)
-        steepest = float(np.max(speeds[1:] * np.abs(np.diff(f) / np.diff(speeds))))
-        largest = _LARGEST * (float(f.max()) + steepest)
+        largest = _LARGEST * (self.law.largest(self.top) + self.law.steepest(self.top))
         return -largest, largest, _FINEST
 
     @classmethod
@@ -332,12 +340,18 @@ class SpeedTable(Table):
             np.array(json.loads(attributes[name]), np.float64)
             for name in ("breaks", "law_speeds", "law_values")
         )
-        law = SpeedLaw(speeds, values, attributes["law_kind"])
+        kind = attributes["law_kind"]
+        law: SpeedLaw | FrictionLaw
+        if kind in NAMED:
+            law, top = law_of_numbers(kind, values.tolist()), float(speeds[-1])
+        else:
+            law = SpeedLaw(speeds, values, kind)
+            top = law.top_speed
         codes = np.clip(np.nan_to_num(arrays["halvings"]), 0.0, 255.0).astype(np.int64)
         cells = COARSEST_CELLS << np.minimum(np.stack([codes // 16, codes % 16], axis=-1), HALVINGS)
         if not (
             breaks.ndim == 1 and breaks.size > 1 and breaks[0] == 0.0
-            and np.all(np.diff(breaks) > 0.0) and breaks[-1] <= law.top_speed
+            and np.all(np.diff(breaks) > 0.0) and breaks[-1] <= top
             and attributes["patches"] == patch_count(breaks)
             and (cells + 1).prod(axis=1).sum() == attributes["nodes"]
         ):  # fmt: skip
@@ -353,7 +367,7 @@ class SpeedTable(Table):
                 "the friction law of this table is a function, which a file cannot hold: give the "
                 "law as a SpeedLaw of points"
             )
-        if np.size(self.law.speeds) > MAX_POINTS:
+        if isinstance(self.law, SpeedLaw) and np.size(self.law.speeds) > MAX_POINTS:
             return (
                 f"the friction law has {np.size(self.law.speeds)} points: a file holds "
                 f"{MAX_POINTS}; give it with fewer"

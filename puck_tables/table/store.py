@@ -27,6 +27,7 @@ from puck_tables._core.real import real_array
 from puck_tables._core.safe_write import PART_PATTERN
 from puck_tables._core.sources import source_digest
 from puck_tables._core.waiting import watched
+from puck_tables.contact.friction_laws import FrictionLaw
 from puck_tables.contact.laws import Law, law_of
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import InputError, OutputError, TableError
@@ -53,18 +54,20 @@ def table_for(
 
 @overload
 def table_for(
-    law: SpeedLaw, accuracy: float | None = None, progress: Progress | None = None
-) -> SpeedTable: ...
+    law: SpeedLaw | FrictionLaw, accuracy: float | None = None, progress: Progress | None = None,
+    top_speed: float | None = None,
+) -> SpeedTable: ...  # fmt: skip
 
 
 def table_for(
-    law: str | Law | SpeedLaw, accuracy: float | None = None, progress: Progress | None = None
-) -> ResultantTable | SpeedTable:
+    law: str | Law | SpeedLaw | FrictionLaw, accuracy: float | None = None,
+    progress: Progress | None = None, top_speed: float | None = None,
+) -> ResultantTable | SpeedTable:  # fmt: skip
     """The table of a law: read if it is kept, else built.
 
     Parameters
     ----------
-    law : str, Law or SpeedLaw
+    law : str, Law, SpeedLaw or FrictionLaw
         A pressure law as :func:`puck_tables.law_of` takes it, or one of
         :func:`puck_tables.profile_law`, which is known by its values, not by its name; or a
         friction law over the slip speed.
@@ -72,6 +75,8 @@ def table_for(
         Largest error, as :meth:`puck_tables.Table.build` takes it.
     progress : callable (done, all), optional
         Told while the table is built.
+    top_speed : float, optional
+        The fastest slip, m/s, of a friction law; a law by name needs it.
 
     Returns
     -------
@@ -103,10 +108,15 @@ def table_for(
     0.25
     """
     kind: type[ResultantTable] | type[SpeedTable]
-    if isinstance(law, SpeedLaw):
+    more: dict[str, Any] = {}
+    if isinstance(law, SpeedLaw | FrictionLaw):
         kind, stem, said = SpeedTable, "slip-speed", "a friction law over the slip speed"
-        points = [np.asarray(part).tolist() for part in (law.speeds, law.values)]
-        of: dict[str, Any] = {"kind": law.kind, "points": points}
+        more = {} if top_speed is None else {"top_speed": float(top_speed)}
+        if isinstance(law, SpeedLaw):
+            points = [np.asarray(part).tolist() for part in (law.speeds, law.values)]
+        else:
+            points, stem = law.numbers, f"slip-speed-{law.kind}"
+        of: dict[str, Any] = {"kind": law.kind, "points": points, **more}
     else:
         if isinstance(law, Law) and law.profile is None:
             raise InputError(
@@ -128,9 +138,9 @@ def table_for(
 
     def build() -> ResultantTable | SpeedTable:
         if progress is not None or kind is ResultantTable:
-            return kind.build(law, wanted, progress=progress)
+            return kind.build(law, wanted, progress=progress, **more)
         with watched("tabulating the friction law, once") as show:
-            return kind.build(law, wanted, progress=show)
+            return kind.build(law, wanted, progress=show, **more)
 
     return fetch(
         f"{stem}-{asked}-{digest}.h5", f"table_for({said}, {asked}), recipe {digest}", kind, build

@@ -105,8 +105,9 @@ class Table(ABC):
         of : what it is a table of
             A pressure law (:class:`puck_tables.Law`, or as :func:`puck_tables.law_of` takes it):
             the friction resultants in full contact.  ``"stops"``: stops and the way to them.  A
-            :class:`puck_tables.SpeedLaw`, or a function from speeds in m/s to f: friction with a
-            coefficient that depends on the slip speed.  A pair of a pressure law and a height δ:
+            :class:`puck_tables.SpeedLaw`, a law by name (:class:`puck_tables.StribeckLaw` and its
+            like), or a function from speeds in m/s to f: friction with a coefficient that depends
+            on the slip speed.  A pair of a pressure law and a height δ:
             the friction of one puck, under uniform pressure also where part of its base lifts;
             with a radius of gyration (in units of r) as a third, its stops.
         accuracy : float, optional
@@ -120,7 +121,7 @@ class Table(ABC):
             line, from 4 (stops: 8) on.
         top_speed, scale : float, optional
             Speed: the fastest slip v + r|ω|, m/s, and the speed below which a function is nearly a
-            cubic; a function needs the first.
+            cubic; a function, and a law by name, need the first.
         progress : callable (done, total), optional
 
         Returns

@@ -134,6 +134,7 @@ def is_integrated(scene: Scene, piece: Piece, friction: float) -> bool:
     rough = friction > 0.0 and (drags or not has_closed_forms(piece, friction))
     turns = floor.turning != 0.0 and (friction > 0.0 or drags)
     more = floor.slope > 0.0 or piece.force != Force() or piece.constraint is not None
+    more = more or scene.lateral.strength != 0.0
     return not piece.path and (rough or turns or more)
 
 
@@ -168,6 +169,11 @@ def _not_here(scene: Scene) -> Iterator[str]:
         yield (
             "floor.law: is of one puck alone, without posts, arcs, pockets and laws of rims; give "
             "each of several pucks its friction, or the floor strips"
+        )
+    if scene.floor.orthotropic is not None:
+        yield (
+            "floor.orthotropic: is of one puck alone, without posts, arcs, pockets and laws of "
+            "rims; give each of several pucks its friction"
         )
     if not scene.pucks:
         return

@@ -13,17 +13,15 @@ from puck_tables.world.footing import over_floor
 from puck_tables.world.game import Game, Whole
 from puck_tables.world.holds import led
 from puck_tables.world.layout import (
-    DAMPING,
     DECEL,
     LIGHTNESS,
     PULL_X,
     PULL_Y,
     RADIUS,
     REGION,
-    SPIN_DAMPING,
     TURNABILITY,
     TWIST,
-    WAKE,
+    dragged,
 )
 
 
@@ -72,9 +70,9 @@ def acceleration(game: Game, i: int, t: float, state: FloatArray) -> tuple[float
     else:
         dry = dry_in(game.regions, int(disc[REGION]))
         fx, fy, torque, _ = dry_friction(dry, disc[RADIUS], ux, uy, w)
-        drag = disc[DAMPING] + disc[WAKE] * math.hypot(ux, uy)
-        ax += disc[LIGHTNESS] * fx - drag * ux
-        ay += disc[LIGHTNESS] * fy - drag * uy
-        turn += disc[TURNABILITY] * torque - disc[SPIN_DAMPING] * w
+        dx, dy, slows, _, _ = dragged(disc, ux, uy, w)
+        ax += disc[LIGHTNESS] * fx + dx
+        ay += disc[LIGHTNESS] * fy + dy
+        turn += disc[TURNABILITY] * torque + slows
     ax, ay, _ = led(disc, game.surface, state, ax, ay, turn)
     return ax, ay

@@ -5,9 +5,9 @@ it starts, until when it holds, and two bounds, of its speed and of its accelera
 
 - STILL is at rest, GONE has left play;
 - LOOKED_UP is the motion of a plain puck, looked up;
-- DAMPED has drag alone, v′ = −γ v − w |v| v and ω′ = −γ_s ω, so that with E = (1 − e^{−γs})/γ
+- DAMPED has drag alone, v′ = −γ v − w |v| v and the spin alike, so that with E = (1 − e^{−γs})/γ
 
-      v = v₀ e^{−γs}/(1 + w v₀ E),   path = ln(1 + w v₀ E)/w,   angle = ω₀ (1 − e^{−γ_s s})/γ_s;
+      v = v₀ e^{−γs}/(1 + w v₀ E),   path = ln(1 + w v₀ E)/w;
 
 - PATH is a path in pieces (:mod:`puck_tables.world.paths`): integrated, or given;
 - CARRIED rests on a turntable, and goes round with it.
@@ -46,6 +46,7 @@ from puck_tables.world.layout import (
     DELTA,
     RADIUS,
     SPIN_DAMPING,
+    SPIN_WAKE,
     WAKE,
     feels_floor,
 )
@@ -85,18 +86,23 @@ def _grown(rate: float, time: float) -> float:
 
 
 @inlined
+def _damped(start: float, damping: float, wake: float, time: float) -> tuple[float, float]:
+    """What v′ = −γ v − w |v| v leaves of a speed, as a share, and its path over that speed."""
+    grown, start = _grown(damping, time), abs(start)
+    slowed = 1.0 + wake * start * grown
+    way = math.log(slowed) / (wake * start) if wake * start * grown > 1e-12 else grown
+    return math.exp(-damping * time) / slowed, way
+
+
+@inlined
 def _damped_state(flight: FloatArray, disc: FloatArray, time: float, out: FloatArray) -> None:
     vx, vy, spin = flight[0], flight[1], flight[2]
-    damping, wake = disc[DAMPING], disc[WAKE]
-    speed = math.hypot(vx, vy)
-    grown = _grown(damping, time)
-    slowed = 1.0 + wake * speed * grown
-    way = math.log(slowed) / (wake * speed) if wake * speed * grown > 1e-12 else grown
-    left = math.exp(-damping * time) / slowed
+    left, way = _damped(math.hypot(vx, vy), disc[DAMPING], disc[WAKE], time)
+    turns, angle = _damped(spin, disc[SPIN_DAMPING], disc[SPIN_WAKE], time)
     out[X], out[Y] = flight[PLACE_X] + vx * way, flight[PLACE_Y] + vy * way
-    out[THETA] = flight[ANGLE] + spin * _grown(disc[SPIN_DAMPING], time)
+    out[THETA] = flight[ANGLE] + spin * angle
     out[VX], out[VY] = vx * left, vy * left
-    out[SPIN] = spin * math.exp(-disc[SPIN_DAMPING] * time)
+    out[SPIN] = spin * turns
 
 
 @inlined

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
@@ -41,7 +40,6 @@ from puck_tables.world.group import (
     IntArray,
 )
 from puck_tables.world.layout import (
-    DAMPING,
     HOLD,
     HOLD_ANGLE,
     HOLD_REACH,
@@ -52,9 +50,8 @@ from puck_tables.world.layout import (
     LIGHTNESS,
     RADIUS,
     REGION,
-    SPIN_DAMPING,
     TURNABILITY,
-    WAKE,
+    dragged,
 )
 from puck_tables.world.paths import on_piece, piece_at
 from puck_tables.world.works import (
@@ -155,13 +152,11 @@ def act(
             heat = -(fx * ux + fy * uy + torque * w)
         else:
             fx, fy, torque, heat = dry_friction(dry, radius, ux, uy, w)
-        square = ux * ux + uy * uy
-        drag, turn_drag = disc[DAMPING] + disc[WAKE] * math.sqrt(square), disc[SPIN_DAMPING]
-        ax, ay, turn = fx * light - drag * ux, fy * light - drag * uy, torque * turns
-        turn -= turn_drag * w
+        ax, ay, turn, warmth, turning_warmth = dragged(disc, ux, uy, w)
+        ax, ay, turn = ax + fx * light, ay + fy * light, turn + torque * turns
         own[0], own[1], own[2] = px + ax, py + ay, pull + turn
         power[FLOOR_HEAT] += heat
-        power[DRAG_HEAT] += drag * square / light + turn_drag * w * w / turns
+        power[DRAG_HEAT] += warmth / light + turning_warmth / turns
         power[SUPPORT_WORK] += (ax * sx + ay * sy) / light + turn * turning / turns
 
 

@@ -9,8 +9,11 @@ law as ``−1`` less its place, see :mod:`puck_tables.world.rims`.
 
 from __future__ import annotations
 
+import math
+
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
+from puck_tables.scene.forces import sideways
 
 # columns of a disc; one whose motion is given has the inverses 0
 RADIUS, LIGHTNESS, TURNABILITY, DECEL, DELTA = range(5)  # r, 1/m, 1/I, J = f g, 2 f h/r
@@ -22,7 +25,9 @@ PULL_X, PULL_Y, TWIST = 13, 14, 15  # accelerations of slope and given forces, m
 # a constraint, see :class:`puck_tables.scene.ingredients.Hold`, fixed in place at t = 0
 HOLD, HOLD_X, HOLD_Y, HOLD_REACH, HOLD_ANGLE, HOLD_VX, HOLD_VY, HOLD_PLACE = range(16, 24)
 REGION = 24  # of the dry friction under it: the strip on which it is, times discs, and its number
-DISC_COLUMNS = 25
+SPIN_WAKE = 25  # quadratic drag of the spin, over inertia
+ACROSS, BY_SPEED, BY_SPIN = 26, 27, 28  # a lateral force: its acceleration and exponents
+DISC_COLUMNS = 29
 
 # columns of an obstacle: for a wall, edge or border (A, B) is its unit normal, into the field, and
 # C its place along it; for the others (A, B) is the centre, C the radius; [FROM, FROM + SPAN] are
@@ -40,4 +45,26 @@ NO_CUSHION = POCKET  # from there on: no impact
 @inlined
 def feels_floor(disc: FloatArray) -> bool:
     """Whether dry friction or drag acts on a disc."""
-    return disc[DECEL] + disc[DAMPING] + disc[WAKE] + disc[SPIN_DAMPING] > 0.0
+    drag = disc[DAMPING] + disc[WAKE] + disc[SPIN_DAMPING] + disc[SPIN_WAKE]
+    return disc[DECEL] + drag + abs(disc[ACROSS]) > 0.0
+
+
+@inlined
+def dragged(
+    disc: FloatArray, ux: float, uy: float, w: float
+) -> tuple[float, float, float, float, float]:
+    """Accelerations by drag and a lateral force over the floor, and the power drag takes over m, I.
+
+    The latter takes none.
+    """
+    speed = math.sqrt(ux * ux + uy * uy)
+    drag = disc[DAMPING] + disc[WAKE] * speed
+    turn_drag = disc[SPIN_DAMPING] + disc[SPIN_WAKE] * abs(w)
+    side = sideways(disc[ACROSS], disc[BY_SPEED], disc[BY_SPIN], speed, w)
+    return (
+        -drag * ux - side * uy,
+        -drag * uy + side * ux,
+        -turn_drag * w,
+        drag * speed * speed,
+        turn_drag * w * w,
+    )

@@ -18,6 +18,7 @@ from puck_tables.scene.entries import tables_of, units_of
 from puck_tables.scene.outcome import column_of, refuse_changed, scene_texts
 from puck_tables.scene.parts import Drag, Force
 from puck_tables.scene.pieces import Piece
+from puck_tables.scene.plan import EMPIRICAL
 from puck_tables.scene.scene import Scene
 from puck_tables.world.agreement import (
     called,
@@ -196,6 +197,8 @@ def ways_of(scene: Scene) -> str:
             more = f" and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
             shown = f" ({', '.join(names[:_NAMED])}{more})"
         lines.append(f"{len(names)} puck{'s' if len(names) != 1 else ''} {way}{shown}")
+    if scene.lateral.strength != 0.0:
+        lines.append(EMPIRICAL)
     return "\n".join(lines)
 
 
@@ -212,6 +215,7 @@ def _way_of(scene: Scene, piece: Piece) -> str:
             "turntable": floor.turning != 0.0,
             "force": piece.force != Force(),
             "drag": scene.drag != Drag(),
+            "lateral force (empirical)": scene.lateral.strength != 0.0,
             "no closed forms": not all(has_closed_forms(piece, one) for one in frictions),
         }
         what = ", ".join(name for name, there in acts.items() if there)

@@ -10,6 +10,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
 from puck_tables.kernels.section_spline import NO_SECTION
+from puck_tables.scene.by_speed import NO_LAW
 from puck_tables.scene.forces import drive_of
 from puck_tables.scene.friction import SPIN, VX, VY
 from puck_tables.scene.holds import allowed_velocity
@@ -101,6 +102,10 @@ def game_of(scene: Scene, order: Whole) -> tuple[Game, Room]:
             discs[i, layout.DAMPING] = scene.drag.sliding / piece.mass
             discs[i, layout.WAKE] = scene.drag.quadratic / piece.mass
             discs[i, layout.SPIN_DAMPING] = scene.drag.spinning / inertia
+            discs[i, layout.SPIN_WAKE] = scene.drag.spinning_quadratic / inertia
+            discs[i, layout.ACROSS] = scene.lateral.strength / piece.mass
+            discs[i, layout.BY_SPEED] = scene.lateral.speed_exponent
+            discs[i, layout.BY_SPIN] = scene.lateral.spin_exponent
         discs[i, layout.RADIUS] = piece.radius
         discs[i, layout.RESTITUTION] = number_for(piece.restitution, called)
         discs[i, layout.TANGENTIAL], discs[i, layout.FRICTION] = piece.tangential, piece.rim

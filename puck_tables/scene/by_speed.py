@@ -1,0 +1,152 @@
+"""Friction of a scene whose coefficient depends on the slip speed: its law, and the table of it."""
+
+from __future__ import annotations
+
+import math
+import threading
+from functools import lru_cache
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables._core.real import rounded_up
+from puck_tables.contact.friction_laws import FrictionLaw
+from puck_tables.contact.speed_law import SpeedLaw
+from puck_tables.errors import AccuracyError, InputError
+from puck_tables.scene.agreement import launch_velocity, law_of_rows
+from puck_tables.scene.ingredients import BySpeed
+from puck_tables.scene.scene import Scene
+from puck_tables.table.speed_build import FINEST_ACCURACY
+from puck_tables.table.speed_table import SpeedTable
+from puck_tables.table.store import table_for
+
+Points = tuple[tuple[float, float], ...]
+
+LAW_SHARE = 0.1  # of the error wanted: of the friction at any slip, in units of f N
+NO_LAW = BySpeed(np.zeros(0), 0.0, 0.0, 1.0)
+FARTHER, FARTHEST = 8.0, 8.0**4  # a law by name holds at all speeds: its table goes on as needed
+_ROOM = 2.0  # times the slip at the launch: the first table of a law by name
+_FLAT = 8.0  # times its own scale: the least
+
+_one_at_a_time = threading.Lock()  # the threads of a sweep need the same table
+
+
+def friction_by_speed(scene: Scene, normal: float, reach: float) -> tuple[BySpeed, FloatArray]:
+    """Friction as the loop reads it, and the largest of it, N (1,).
+
+    ``normal``: N; ``reach``: how many times farther than it seems to need the table of a law by
+    name goes.
+
+    Raises
+    ------
+    InputError, ContactError
+        If the law cannot be read, ends below the slip at the launch, or lifts the base.
+    AccuracyError
+        If it has too many corners for so fine a tolerance; it says which can be reached.
+    """
+    law, puck = speed_law(scene), scene.puck
+    fastest = math.hypot(*slip_at_launch(scene)[:2]) + abs(slip_at_launch(scene)[2])
+    top = _first_top(law, fastest)
+    if fastest > top:
+        raise InputError(
+            f"the rim slips at {fastest:.6g} m/s at the launch, faster than the friction law "
+            f"{law_name(scene)} goes ({top:g} m/s): nothing is known beyond; give it more"
+        )
+    largest = law.largest(top)
+    if isinstance(law, FrictionLaw):
+        top *= reach
+    share = largest / law.largest(top) if largest > 0.0 else 1.0  # the unit of errors of the table
+    table, height_ratio = _law_table(law, scene, top, share), 2.0 * puck.height / puck.radius
+    table.refuse_height(height_ratio)
+    return BySpeed(table.compiled, height_ratio, normal, 1.0), np.array([normal * largest])
+
+
+def _first_top(law: SpeedLaw | FrictionLaw, fastest: float) -> float:
+    """How far its table goes, m/s; by powers of two, so that launches that differ share one."""
+    if isinstance(law, SpeedLaw):
+        return law.top_speed
+    room = max(_ROOM * fastest, _FLAT * max(law.scales, default=0.0)) or 1.0
+    return float(2.0 ** math.ceil(math.log2(room)))
+
+
+def law_error(scene: Scene) -> float:
+    """How wrong friction by slip speed may be, in units of the largest."""
+    return max(LAW_SHARE * scene.run.tol, FINEST_ACCURACY)
+
+
+def speed_law(scene: Scene) -> SpeedLaw | FrictionLaw:
+    """The friction law of a scene that has one, by name, or from its file or rows.
+
+    Raises
+    ------
+    InputError
+        If it is no such law.
+    """
+    law = scene.floor.law
+    if isinstance(law, FrictionLaw):
+        return law
+    if isinstance(law, str):
+        return SpeedLaw.from_csv(law)
+    return law_of_rows(law)
+
+
+def law_name(scene: Scene) -> str:
+    """The friction law of a scene in a message.
+
+    Examples
+    --------
+    >>> from puck_tables import Floor, Puck
+    >>> law_name(Scene(Puck(1.0), Floor(law=[[0.0, 0.1], [1.0, 0.2]])))
+    'floor.law'
+    """
+    law = scene.floor.law
+    if isinstance(law, FrictionLaw):
+        return f"floor.law, {law.kind}"
+    return law if isinstance(law, str) else "floor.law"
+
+
+def _law_table(law: SpeedLaw | FrictionLaw, scene: Scene, top: float, share: float) -> SpeedTable:
+    """The table of a friction law that the scene's tolerance asks for.
+
+    Raises
+    ------
+    AccuracyError
+        If the law has too many corners for so fine a tolerance; it says which can be reached.
+    """
+    of: FrictionLaw | Points
+    if isinstance(law, FrictionLaw):
+        of = law
+    else:
+        of = tuple(map(tuple, np.stack([law.speeds, law.values], axis=1).tolist()))
+    try:
+        with _one_at_a_time:
+            return _kept_table(of, max(share * law_error(scene), FINEST_ACCURACY), top)
+    except AccuracyError as error:
+        if error.reachable is None:
+            raise
+        finest = rounded_up(error.reachable / LAW_SHARE)
+        raise AccuracyError(
+            f"tol = {scene.run.tol:g} is out of reach with the corners of the friction law "
+            f"{law_name(scene)}: give run.tol (or --tol) of {finest:g} or more, or a law with "
+            "fewer points"
+        ) from None
+
+
+@lru_cache(maxsize=8)
+def _kept_table(of: FrictionLaw | Points, accuracy: float, top: float) -> SpeedTable:
+    """Kept by the law or its points: a sweep asks for it again and again."""
+    if isinstance(of, FrictionLaw):
+        return table_for(of, accuracy, top_speed=top)
+    speeds, values = zip(*of, strict=True)
+    return table_for(SpeedLaw(speeds, values), accuracy)
+
+
+def slip_at_launch(scene: Scene) -> tuple[float, float, float]:
+    """Velocity of the centre and rim speed relative to the floor at the launch, m/s."""
+    floor, (x, y) = scene.floor, scene.launch.position
+    vx, vy = launch_velocity(scene)
+    return (
+        vx - floor.velocity[0] + floor.turning * (y - floor.centre[1]),
+        vy - floor.velocity[1] - floor.turning * (x - floor.centre[0]),
+        scene.puck.radius * (scene.launch.spin - floor.turning),
+    )

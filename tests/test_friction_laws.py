@@ -1,0 +1,154 @@
+"""Friction laws by name: their formulas, tables, scenes and sweeps, and what is refused."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import quad, solve_ivp
+
+import puck_tables as pt
+from puck_tables.contact.friction_laws import NAMED
+from puck_tables.motion.body import STANDARD_GRAVITY
+from puck_tables.table.speed_table import SpeedTable
+
+PUCK = {"radius": 0.04, "height": 0.02, "mass": 0.2}
+# of every law one or two, and the same law written down again
+STRIBECK = {"kind": "stribeck", "static": 0.3, "kinetic": 0.1, "speed": 0.2}
+LAWS = {
+    "gauss": (
+        {**STRIBECK, "exponent": 2.0, "viscous": 0.02},
+        lambda u: 0.1 + 0.2 * np.exp(-((u / 0.2) ** 2)) + 0.02 * u,
+    ),
+    "root": ({**STRIBECK, "exponent": 0.5}, lambda u: 0.1 + 0.2 * np.exp(-np.sqrt(u / 0.2))),
+    "curling": (
+        {"kind": "curling", "a": 0.002, "b": 0.064, "c": 0.0063},
+        lambda u: 0.002 / (u + 0.064) + 0.0063,
+    ),
+    "power": (
+        {"kind": "power", "a": 0.05, "exponent": -0.5, "b": 0.05},
+        lambda u: 0.05 / np.sqrt(u + 0.05),
+    ),
+}  # fmt: skip
+
+
+def scene(law, **more):
+    launch = {"velocity": [0.8, 0.1], "spin": 12.0}
+    return {"puck": PUCK, "floor": {"law": law}, "launch": launch, **more}
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_a_sliding_puck_takes_the_time_and_the_way_of_the_integral_over_the_speed(name):
+    law, f = LAWS[name]
+    tol = 1e-9 if name == "gauss" else 1e-7
+    tables = scene(law, launch={"velocity": [0.9, 0.0]}, run={"tol": tol})
+    run = pt.Scene.from_tables(tables).simulate()
+    bends = [0.001, 0.01, 0.1, 0.3]
+    brake = lambda v: STANDARD_GRAVITY * f(v)  # noqa: E731
+    time = quad(lambda v: 1.0 / brake(v), 0.0, 0.9, points=bends, epsabs=1e-13, limit=400)[0]
+    way = quad(lambda v: v / brake(v), 0.0, 0.9, points=bends, epsabs=1e-13, limit=400)[0]
+    assert run.end == "at rest"
+    unit = run.speed_scale / run.rate_scale
+    assert run.end_time == pytest.approx(time, abs=tol * unit)
+    assert run.last["x"] == pytest.approx(way, abs=tol * unit * run.speed_scale)
+    assert run.error_estimate <= tol
+    assert run.energy_residual < tol
+
+
+@pytest.mark.parametrize(("name", "tol"), [("gauss", 1e-9), ("root", 1e-6)])
+def test_sliding_and_spinning_by_a_law_is_the_motion_by_quadrature(name, tol):
+    law, f = LAWS[name]
+    radius, g, times = PUCK["radius"], STANDARD_GRAVITY, [0.1, 0.2, 0.3]
+
+    def rates(t, y):
+        vx, vy, w = y[3:]
+        v, rim = math.hypot(vx, vy), radius * abs(w)
+        Q = math.hypot(v, rim)
+        rho = pt.contact.speed_resultants(math.atan2(rim, v), Q, f, 2.0 * 0.02 / radius)
+        sine = math.copysign(rim / Q, w)
+        along, left = g * float(rho.parallel) / Q, g * sine * float(rho.perpendicular) / Q
+        turning = g / radius * sine * float(rho.spin)
+        return [vx, vy, w, -along * vx + left * vy, -along * vy - left * vx, -turning]
+
+    start = [0.0, 0.0, 0.0, 0.8, 0.1, 12.0]
+    truth = solve_ivp(
+        rates, (0.0, 0.3), start, "DOP853", times, rtol=1e-11, atol=1e-12, max_step=0.05
+    ).y
+    run = pt.Scene.from_tables(scene(law, run={"tol": tol})).simulate(times)
+    for column, row in zip(("x", "y", "orientation", "vx", "vy", "spin"), truth, strict=True):
+        unit = 0.94 if column in ("x", "y", "vx", "vy") else 0.94 / radius
+        assert run.columns[column] == pytest.approx(row, abs=tol * unit)
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_a_table_of_a_law_is_as_good_as_it_says_and_survives_a_file(name, tmp_path):
+    law, f = LAWS[name]
+    law = NAMED[law["kind"]](**law)
+    table = pt.Table.build(law, 1e-6, top_speed=2.0)
+    assert table.validate(points=60).passed
+    u = np.linspace(0.0, 2.0, 7)
+    assert law(u) == pytest.approx(f(u), rel=1e-14)
+    table.save(tmp_path / "law.h5")
+    again = SpeedTable.load(tmp_path / "law.h5")
+    assert again.law == law.checked()
+    phi, Q = np.array([0.0, 0.3, 1.0, 1.5]), np.array([1e-9, 0.01, 0.3, 1.3])
+    assert np.array_equal(again.integrals(phi, Q).d, table.integrals(phi, Q).d)
+
+
+def test_a_whole_power_without_an_offset_is_viscous():
+    tables = scene(pt.PowerLaw(0.5, 1.0), run={"time": 0.4}, puck={"radius": 0.04})
+    run = pt.Scene.from_tables(tables).simulate()
+    left = math.exp(-0.5 * STANDARD_GRAVITY * 0.4)
+    assert run.last["vx"] == pytest.approx(0.8 * left, rel=1e-9)
+    assert run.last["spin"] == pytest.approx(12.0 * left, rel=1e-9)
+
+
+def test_a_slip_that_grows_beyond_the_first_table_is_followed():
+    """Down a slope, f = a u: v′ = g sin β − a g cos β v, far above the launch."""
+    law, slope, a = pt.PowerLaw(0.001, 1.0), 0.5, 0.001
+    tables = scene(law, launch={"velocity": [0.01, 0.0]}, run={"time": 3.0, "tol": 1e-7})
+    tables["floor"]["slope"] = slope
+    rate = a * STANDARD_GRAVITY * math.cos(slope)
+    most = math.tan(slope) / a
+    speed = most + (0.01 - most) * math.exp(-rate * 3.0)
+    assert speed > 8.0
+    assert pt.Scene.from_tables(tables).simulate().last["vx"] == pytest.approx(speed, rel=1e-7)
+    tables["launch"]["spin"] = [0.0, 1.0]
+    swept = pt.Scene.from_tables(tables).sweep()
+    assert swept.vx[0] == pytest.approx(speed, rel=1e-6)
+
+
+def test_numbers_of_a_law_are_ranges():
+    tables = scene({**STRIBECK, "static": "0.2:0.3:2"}, run={"tol": 1e-5})
+    swept = pt.Scene.from_tables(tables).sweep()
+    assert list(swept.axes) == ["floor.law.static"]
+    for static, time in zip((0.2, 0.3), swept.end_time, strict=True):
+        one = pt.Scene.from_tables(scene({**STRIBECK, "static": static}, run={"tol": 1e-5}))
+        assert one.simulate().end_time == pytest.approx(time, abs=1e-4)
+    assert swept.to_xarray().floor_law_static.values.tolist() == [0.2, 0.3]
+
+
+@pytest.mark.parametrize(
+    ("law", "words"),
+    [
+        ({"kind": "stribek", "static": 0.1}, r"one of curling, power, stribeck \(did you mean str"),
+        ({"static": 0.1}, "floor.law.kind = None: must be one of"),
+        ({**STRIBECK, "statik": 0.1}, "floor.law.statik: no such entry"),
+        ({**STRIBECK, "static": -0.1}, "floor.law.static = -0.1: must be a number >= 0"),
+        ({**STRIBECK, "exponent": 0.1}, "floor.law.exponent = 0.1: must be"),
+        ({"kind": "curling", "a": 0.1, "b": 0.0}, "floor.law.b = 0.0: must be a number > 0 m/s"),
+        ({"kind": "power", "a": 0.1, "exponent": -0.5}, "f has no bound at slip zero; give b > 0"),
+        ({"kind": "power", "a": 0.1, "exponent": 0.5}, "f has a root at slip zero; give b > 0"),
+    ],
+)
+def test_laws_that_cannot_be_are_refused_by_name(law, words):
+    with pytest.raises(pt.InputError, match=words):
+        pt.Scene.from_tables(scene(law))
+
+
+def test_a_law_in_python_is_checked_where_it_is_used():
+    with pytest.raises(pt.InputError, match="friction law curling: b = -1"):
+        pt.CurlingLaw(0.1, -1.0)(0.5)
+    with pytest.raises(pt.InputError, match="friction law power: exponent = -0.5 with b = 0"):
+        pt.Table.build(pt.PowerLaw(0.1, -0.5), top_speed=1.0)
+    with pytest.raises(pt.InputError, match="needs top_speed"):
+        pt.Table.build(pt.CurlingLaw(0.1, 1.0))
