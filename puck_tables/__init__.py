@@ -63,6 +63,7 @@ if TYPE_CHECKING:
     from puck_tables.scene.scene import Scene
     from puck_tables.scene.sweep import SceneMap
     from puck_tables.stopping.aim import Aim
+    from puck_tables.stopping.aims import Aims
     from puck_tables.stopping.array_functions import state_arrays, stop_arrays
     from puck_tables.stopping.sample import StopSample
     from puck_tables.stopping.states import States, states
@@ -80,6 +81,7 @@ if TYPE_CHECKING:
 _HOMES = {
     "AccuracyError": "errors",
     "Aim": "stopping.aim",
+    "Aims": "stopping.aims",
     "Answer": "reference.answer",
     "Arc": "scene.pieces",
     "BoardAim": "world.aimed",
@@ -156,6 +158,7 @@ _HOMES = {
 __all__ = [
     "AccuracyError",
     "Aim",
+    "Aims",
     "Answer",
     "Arc",
     "BoardAim",
