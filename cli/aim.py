@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 from puck_tables.cli.board_aim import aim_on_board, number_or_name
@@ -26,7 +26,12 @@ from puck_tables.cli.scene_run import files_read, scene_options, scene_tables
 from puck_tables.errors import InputError
 
 if TYPE_CHECKING:
+    from puck_tables._core.arrays import FloatArray
+    from puck_tables.puck import Puck
     from puck_tables.stopping.aim import Aim
+    from puck_tables.stopping.aims import Aims
+
+_LARGEST_FILE = 1 << 30
 
 
 @click.command()
@@ -36,6 +41,13 @@ if TYPE_CHECKING:
     type=Vector(),
     multiple=True,
     help="Where to stop, in m from the launch, like 2,0.1; in a scene, on the board.",
+)
+@click.option(
+    "--targets",
+    "targets_file",
+    type=FILE,
+    metavar="FILE",
+    help="Many at once: a CSV file of x,y in m, one target a line.",
 )
 @click.option("--pocket", "pockets", multiple=True, metavar="NUMBER", help="In a scene: which.")
 @click.option("--puck", "puck_name", metavar="NAME", help="In a scene: which is to end there.")
@@ -70,7 +82,8 @@ if TYPE_CHECKING:
 @scene_options
 @click.pass_context
 def aim(
-    ctx: click.Context, targets: tuple[tuple[float, float], ...], pockets: tuple[str, ...],
+    ctx: click.Context, targets: tuple[tuple[float, float], ...], targets_file: Path | None,
+    pockets: tuple[str, ...],
     puck_name: str | None, striker: str | None, hits: str | None, max_impacts: int | None,
     w0: float | None, speed: float | None, stop_time: float | None,
     max_speed: float | None, max_spin: float | None, count: int | None, radius: float | None,
@@ -89,6 +102,7 @@ def aim(
     puck aim --target 2,0.1 --w0 5
     puck aim --target 2,0.1 --time 3
     puck aim --target 2,0.1 --max-speed 1.5 --max-spin 10 --plot aim.png
+    puck aim --targets holes.csv --time 3 -o shots.csv
 
     With --scene others lie on the board: launches of the striker after which a puck, or it itself,
     ends at a target or in a pocket, also off cushions and other pucks.  Each is run on the whole
@@ -106,7 +120,11 @@ def aim(
     for name, given in (("--target", targets), ("--pocket", pockets)):
         if len(given) > 1:
             raise InputError(f"{name} is given {len(given)} times: one place at a time")
+    if targets_file is not None and targets:
+        raise InputError("--target and --targets both say where: give one of them")
     if scene is not None or changes:
+        if targets_file is not None:
+            raise InputError("--targets has no place in a scene: give one --target")
         own = (
             "targets", "pockets", "puck_name", "striker", "hits", "w0", "speed", "max_speed",
             "max_spin", "max_impacts", "count",
@@ -125,13 +143,15 @@ def aim(
         aim_on_board(tables, scene or "scene", given_wishes, as_json, output, plot, overwrite)
         return
     _refuse_of_scenes(pockets, puck_name, striker, hits, max_impacts)
-    if not targets:
+    if not targets and targets_file is None:
         raise click.MissingParameter(param_hint="'--target'", param_type="option")
-    prepare_outputs(output, plot=plot, overwrite=overwrite, inputs=(pressure,))
+    read = (pressure, targets_file)
+    prepare_outputs(output, plot=plot, overwrite=overwrite, inputs=read)
     puck = puck_given(radius, height, friction, gravity, delta, decel, pressure, gyration)
-    found = puck.aim(
-        targets[0], spin=w0, speed=speed, stop_time=stop_time, max_speed=max_speed,
-        max_spin=max_spin, count=8 if count is None else count,
+    where = targets[0] if targets_file is None else _read_targets(targets_file)
+    found: Any = puck.aim(
+        where, spin=w0, speed=speed, stop_time=stop_time, max_speed=max_speed, max_spin=max_spin,
+        count=8 if count is None else count,
     )  # fmt: skip
     something = found.launch_spin.size > 0
     deliver(found, output, plot if something else None, overwrite)
@@ -141,7 +161,20 @@ def aim(
         click.echo(json.dumps(found.summary()))
     else:
         told = any(x is not None for x in (radius, height, friction, delta, decel))
-        click.echo(_report(found, "" if told else "   (defaults: see --help for a real puck)"))
+        note = "" if told else "   (defaults: see --help for a real puck)"
+        click.echo(_report(found, note) if targets_file is None else _in_short(found, note))
+
+
+def _read_targets(path: Path) -> FloatArray:
+    """Places (n, 2) from a file."""
+    from puck_tables._core.safe_read import read_numbers
+
+    rows = read_numbers(str(path), _LARGEST_FILE)
+    if rows.ndim != 2 or rows.shape[1] != 2 or not len(rows):
+        raise InputError(
+            f"{path} must hold two columns of numbers, x and y in m, one target a line"
+        )
+    return rows
 
 
 def _refuse_of_scenes(
@@ -157,14 +190,26 @@ def _refuse_of_scenes(
             raise InputError(f"{name} is for a board: give --scene FILE|NAME, too")
 
 
+def _puck_line(puck: Puck, note: str) -> str:
+    kind = f", {puck.body.kind}" if puck.body.kind else ""
+    return (
+        f"puck    r = {puck.radius:g} m, delta = {puck.delta:.6g}, "
+        f"J = {puck.decel:.6g} m/s^2{kind}{note}"
+    )
+
+
+def _in_short(found: Aims, note: str) -> str:
+    """How many launches there are, and how well they do."""
+    first, *others = found.explain().splitlines()
+    lines = [_puck_line(found.puck, note), f"answer  {first.rstrip('.')}", *others]
+    return "\n".join(lines)
+
+
 def _report(found: Aim, note: str) -> str:
     """The answer, and the launches line by line."""
     x, y = found.target
-    puck = found.puck
-    kind = f", {puck.body.kind}" if puck.body.kind else ""
     text = [
-        f"puck    r = {puck.radius:g} m, delta = {puck.delta:.6g}, "
-        f"J = {puck.decel:.6g} m/s^2{kind}{note}",
+        _puck_line(found.puck, note),
         f"target  ({x:g}, {y:g}) m",
         f"answer  {found.answer}",
     ]

@@ -67,6 +67,7 @@ if TYPE_CHECKING:
     from puck_tables.scene.scene import Scene
     from puck_tables.scene.sweep import SceneMap
     from puck_tables.stopping.aim import Aim
+    from puck_tables.stopping.aims import Aims
     from puck_tables.stopping.array_functions import state_arrays, stop_arrays
     from puck_tables.stopping.sample import StopSample
     from puck_tables.stopping.states import States, states
@@ -84,6 +85,7 @@ if TYPE_CHECKING:
 _HOMES = {
     "AccuracyError": "errors",
     "Aim": "stopping.aim",
+    "Aims": "stopping.aims",
     "Answer": "reference.answer",
     "Arc": "scene.pieces",
     "BoardAim": "world.aimed",
@@ -166,6 +168,7 @@ _HOMES = {
 __all__ = [
     "AccuracyError",
     "Aim",
+    "Aims",
     "Answer",
     "Arc",
     "BoardAim",

@@ -5,7 +5,7 @@ What answers stands above the puck, and is loaded when it is asked.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy.typing as npt
 
@@ -13,6 +13,7 @@ from puck_tables.verbs_of_many import VerbsOfMany, refuse_frictionless, verb
 
 if TYPE_CHECKING:
     from puck_tables.stopping.aim import Aim
+    from puck_tables.stopping.aims import Aims
     from puck_tables.stopping.states import States
     from puck_tables.stopping.stops import Stops
     from puck_tables.table.table import Table
@@ -186,40 +187,61 @@ class Verbs(VerbsOfMany):
         )
         return found
 
+    @overload
+    def aim(
+        self, target: tuple[float, float], *, spin: float | None = None,
+        speed: float | None = None, stop_time: float | None = None,
+        max_speed: float | None = None, max_spin: float | None = None, count: int = 8,
+        threads: int | None = None,
+    ) -> Aim: ...  # fmt: skip
+
+    @overload
+    def aim(
+        self, target: npt.ArrayLike, *, spin: npt.ArrayLike | None = None,
+        speed: npt.ArrayLike | None = None, stop_time: npt.ArrayLike | None = None,
+        max_speed: float | None = None, max_spin: float | None = None, count: int = 8,
+        threads: int | None = None,
+    ) -> Aim | Aims: ...  # fmt: skip
+
     def aim(
         self,
         target: npt.ArrayLike,
         *,
-        spin: float | None = None,
-        speed: float | None = None,
-        stop_time: float | None = None,
+        spin: npt.ArrayLike | None = None,
+        speed: npt.ArrayLike | None = None,
+        stop_time: npt.ArrayLike | None = None,
         max_speed: float | None = None,
         max_spin: float | None = None,
         count: int = 8,
-    ) -> Aim:
-        """Launches after which the puck comes to rest at a given displacement.
+        threads: int | None = None,
+    ) -> Aim | Aims:
+        """Launches after which the puck comes to rest at given displacements; all broadcasts.
 
-        They are a family: one for each slip angle and sense of spin.  A spin, a speed or a stop
-        time picks one or two of it; without any, a sample is given.
+        They are a family for each target: one for each slip angle and sense of spin.  A spin, a
+        speed or a stop time picks one or two of it; without any, a sample is given.
 
         Parameters
         ----------
-        target : (x, y), m from the launch
-        spin : wanted, rad/s, with its sign
-        speed : launch speed wanted, m/s
-        stop_time : duration wanted, s
+        target : (x, y) or array_like (…, 2), m from the launch
+        spin : array_like (…), wanted, rad/s, with its sign
+        speed : array_like (…), launch speed wanted, m/s
+        stop_time : array_like (…), duration wanted, s
         max_speed, max_spin : bounds on speed (m/s) and on |spin| (rad/s)
         count : how many slip angles a sample has, for each sense of spin
             Equally spaced from the least spin that ``max_speed`` allows (0 without it) to
             ``max_spin`` (without it: to φ = 80°).  Where the bounds allow several ranges of slip
             angles, each has its share, at least one.
+        threads : how many share the work, as for :func:`puck_tables.stop`
 
         Returns
         -------
         Aim
-            With no launch, and the reason in ``answer``, where there is none.  Errors of about
-            1e-12 of the distance, 1e-9 for δ > 1 or another kind of puck; every launch is
-            integrated and its ``miss`` reported.
+            Of one target.  With no launch, and the reason in ``answer``, where there is none.
+            Errors of about 1e-12 of the distance, 1e-9 for δ > 1 or another kind of puck; every
+            launch is integrated and its ``miss`` reported.
+        Aims
+            Of several, or of one with several wishes: all launches are looked up, some 1e-10 of the
+            distance off.
 
         Raises
         ------
@@ -245,11 +267,14 @@ class Verbs(VerbsOfMany):
         >>> found = Puck.similar().aim((2.0, 0.1), spin=5.0)
         >>> found.launch_velocity.round(6).tolist(), found.stop_time.round(6).tolist()
         ([[0.899671, 0.109151]], [3.927704])
+        >>> many = Puck.similar().aim([(2.0, 0.1), (1.0, -1.0)], speed=1.7)
+        >>> many.launches.tolist(), many.launch_spin.round(6).tolist()
+        ([2, 0], [-1.212301, 1.212301])
         """
         refuse_frictionless(self)
-        found: Aim = verb("stopping.aim", "aim")(
+        found: Aim | Aims = verb("stopping.aims", "aim")(
             self, target, spin=spin, speed=speed, stop_time=stop_time, max_speed=max_speed,
-            max_spin=max_spin, count=count,
+            max_spin=max_spin, count=count, threads=threads,
         )  # fmt: skip
         return found
 

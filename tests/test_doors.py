@@ -104,3 +104,15 @@ def test_functions_of_loops_are_those_of_numpy():
     np.testing.assert_allclose(out[0], np.log(x), rtol=3e-16, atol=1e-300)
     np.testing.assert_allclose(out[1], np.exp(-np.abs(angle)), rtol=5e-16)
     np.testing.assert_allclose(out[2:], [np.cos(angle), np.sin(angle)], rtol=0, atol=3e-16)
+
+
+@pytest.mark.parametrize("delta", [2.0, 0.5 + 1.5 * (np.arange(16385) % 2)], ids=["tall", "mixed"])
+def test_stops_of_tall_pucks_know_their_launches_too(delta):
+    """They were refused as changed, whatever had been done with them."""
+    rng = np.random.default_rng(16)
+    velocity, spin = rng.normal(size=(16385, 2)), rng.normal(size=16385)
+    found = stop(velocity, spin, delta=delta, tol=1e-5)
+    np.testing.assert_array_equal(found.dataset().columns["launch_spin"].values, spin)
+    spin[7] += 1.0
+    with pytest.raises(InputError, match="changed"):
+        found.dataset()

@@ -144,8 +144,7 @@ def test_quadrature_has_converged_and_does_so_exponentially(monkeypatch):
 
     def with_nodes(count: int, reach: float) -> np.ndarray:
         nodes, weights = loaded_patch._tanh_sinh(count, reach)
-        monkeypatch.setattr(loaded_patch, "_NODES", nodes)
-        monkeypatch.setattr(loaded_patch, "_WEIGHTS", weights)
+        monkeypatch.setattr(loaded_patch, "LINE_RULE", np.stack([nodes, weights]))
         return np.stack(balance(phi, delta)[0])
 
     truth = with_nodes(181, 3.6)

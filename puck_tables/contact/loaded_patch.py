@@ -27,7 +27,7 @@ from puck_tables._core.arrays import FloatArray
 
 BoolArray = npt.NDArray[np.bool_]
 
-_SEGMENT_NODES, _SEGMENT_WEIGHTS = np.polynomial.legendre.leggauss(20)
+SEGMENT_RULE = np.stack(np.polynomial.legendre.leggauss(20))  # nodes and weights on [−1, 1]
 _GAUSS_2 = 3.0**-0.5
 
 
@@ -39,7 +39,7 @@ def _tanh_sinh(nodes: int, reach: float) -> tuple[FloatArray, FloatArray]:
     return np.tanh(v), 2.0 * weight / weight.sum()
 
 
-_NODES, _WEIGHTS = _tanh_sinh(81, 3.2)  # 2e-13 in the resultants, see tests/test_partial.py
+LINE_RULE = np.stack(_tanh_sinh(81, 3.2))  # 2e-13 in the resultants, see tests/test_partial.py
 
 
 class Segment(NamedTuple):
@@ -70,9 +70,9 @@ def segment(offset: FloatArray) -> Segment:
     (0.666666666667, 0.589048622548)
     """
     arc = np.arccos(np.maximum(offset, -1.0))[:, None]
-    t = 0.5 * arc * (1.0 + _SEGMENT_NODES)
+    t = 0.5 * arc * (1.0 + SEGMENT_RULE[0])
     x = np.cos(t)
-    element = arc * _SEGMENT_WEIGHTS * np.sin(t) ** 2
+    element = arc * SEGMENT_RULE[1] * np.sin(t) ** 2
     # cos t − cos arc without cancellation, and what lies beyond the rim in full contact
     xi = 2.0 * np.sin(0.5 * (arc + t)) * np.sin(0.5 * (arc - t))
     xi += np.maximum(-1.0 - offset, 0.0)[:, None]
@@ -170,4 +170,4 @@ def _lines(
     half = 0.5 * np.diff(cuts)[..., None]
     middle = 0.5 * (cuts[:, 1:] + cuts[:, :-1])[..., None]
     size = len(ratio), -1
-    return (middle + half * _NODES).reshape(size), (half * _WEIGHTS).reshape(size)
+    return (middle + half * LINE_RULE[0]).reshape(size), (half * LINE_RULE[1]).reshape(size)

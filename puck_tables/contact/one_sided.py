@@ -260,8 +260,21 @@ def _height_slopes(direction: SlipDirection, delta: FloatArray, chord: Chord) ->
     return _summed(rule, direction, moved, 0.25 * (before + delta * after))
 
 
-def _guess(direction: SlipDirection, delta: FloatArray) -> Chord:
-    """The tilt of the linear law, as far as the load can move: |⟨(x, y)⟩| = m(d) ≤ δ/4."""
+def guessed_chord(ratio: FloatArray, fast: npt.NDArray[np.bool_], delta: FloatArray) -> Chord:
+    """The tilt of the linear law, as far as the load can move: |⟨(x, y)⟩| = m(d) ≤ δ/4.
+
+    Parameters
+    ----------
+    ratio, fast : arrays (n,), min(v, r|ω|)/max(v, r|ω|), and whether r|ω| > v
+    delta : array (n,), dimensionless height
+
+    Examples
+    --------
+    >>> one = np.ones(1)
+    >>> float(guessed_chord(0.5 * one, one < 0.0, 2.0 * one).offset[0].round(3))
+    -0.294
+    """
+    direction = SlipDirection(ratio, fast)
     a, b, d = closed_form.shape_integrals(direction.ratio, direction.fast_spin.astype(np.float64))
     p = PatchIntegrals(a, b, b - d, d, d - 2.0 * b)
     rho = moment_balance(p, direction, delta)
@@ -276,11 +289,11 @@ def _guess(direction: SlipDirection, delta: FloatArray) -> Chord:
 
 def _solved(direction: SlipDirection, delta: FloatArray) -> Chord:
     """The chord by Newton's method from a guess; where that fails, followed up from a lower δ."""
-    chord, unsolved = _newton(direction, delta, _guess(direction, delta))
+    chord, unsolved = _newton(direction, delta, guessed_chord(*direction, delta))
     if unsolved.any():
         part = SlipDirection(direction.ratio[unsolved], direction.fast_spin[unsolved])
         start = np.minimum(_EASY_DELTA, delta[unsolved])
-        followed = _guess(part, start)
+        followed = guessed_chord(*part, start)
         for share in np.linspace(0.0, 1.0, _FOLLOWED):
             height = start + share * (delta[unsolved] - start)
             followed, lost = _newton(part, height, followed)

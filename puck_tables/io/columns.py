@@ -85,6 +85,9 @@ COLUMNS = {
     ),
     "body_angle": Column("rad", "turn of body", "angle the body has turned"),
     "status": Column("1", "status", "what became of the launch"),
+    "target_index": Column("1", "target", "which target, counted from 0"),
+    "target_x": Column("m", "target x", "target, x from the launch"),
+    "target_y": Column("m", "target y", "target, y from the launch"),
     "miss": Column("m", "miss", "distance from the target at which an integration ends"),
     # scenes
     "work_given": Column("J", "work of forces", "work of gravity and of given forces"),

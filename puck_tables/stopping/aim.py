@@ -17,30 +17,25 @@ from puck_tables.io.columns import COLUMNS as VARIABLES
 from puck_tables.io.dataset import Dataset, variable
 from puck_tables.puck import PUCK_UNITS, Puck
 from puck_tables.result import Result
-from puck_tables.stopping.exact import integrated_stops
-from puck_tables.stopping.launch_curve import (
-    RIM,
-    SECTION_ACCURACY,
-    SPEED,
-    TIME,
-    LaunchCurve,
-    cosine_of,
-    launch_curve,
-    looked_up_root,
-    sample,
-)
+from puck_tables.stopping.aim_lookup import RIM, SPEED, TIME
+from puck_tables.stopping.launch_curve import LaunchCurve, launch_curve
+from puck_tables.stopping.launch_ranges import between, joined, sample
 from puck_tables.stopping.launches import fits
+from puck_tables.stopping.miss import misses
 
 COLUMNS = (
     "launch_spin", "launch_vx", "launch_vy", "launch_speed", "launch_heading", "launch_slip_angle",
     "stop_time", "miss",
 )  # fmt: skip
 MAX_COUNT = 10_000
-_SLACK = 1e-12
+SLACK = 1e-12
 _LEAST_LOG, _LARGEST_LOG = -708.0, 709.0
-_CHECK_LOCAL = 1e-11
 _SMALL_STEP = 1e-6  # of u, after which what a step leaves is less than rounding
-_TOO_LARGE = (
+BEYOND = (
+    "that takes a launch whose ratio of spin to speed is beyond 1e-260 to 1e260: "
+    "out of the range of floating point"
+)
+TOO_LARGE = (
     "target, decel and radius ask for launches out of the range of floating point: use larger units"
 )
 
@@ -145,15 +140,16 @@ class _Family:
     def all_where(self, quantity: int, value: float) -> list[float]:
         """All u where a quantity of the curve has a value; −∞ is a slide without spin."""
         wanted = value - float(self.scales[quantity])
+        _, *ends = self.curve.brackets(quantity, np.array([wanted]))
         roots = []
-        for low, high in self.curve.brackets(quantity, wanted):
+        for low, high in zip(*(one.tolist() for one in ends), strict=True):
             u = low if low == high else self._looked_up(quantity, wanted, low, high)
-            roots.append(self._searched(quantity, wanted, low, high) if u is None else u)
+            roots.append(self.curve.searched(quantity, wanted, low, high) if u is None else u)
         return sorted(set(roots))
 
     def _looked_up(self, quantity: int, wanted: float, low: float, high: float) -> float | None:
-        """A root from the stop table, put right by one integration; None where that is no way."""
-        near = looked_up_root(self.curve.body, quantity, wanted, low, high)
+        """A root looked up, put right by one integration; None where that is no way."""
+        near = self.curve.near(quantity, wanted, low, high)
         if near is None:
             return None
         u, slopes = near
@@ -166,15 +162,6 @@ class _Family:
         self.found[u + step] = tuple((row + self.scales).tolist())
         return float(u + step)
 
-    def _searched(self, quantity: int, wanted: float, low: float, high: float) -> float:
-        """A root by integrations alone."""
-        from scipy.optimize import brentq
-
-        def off(u: float) -> float:
-            return float(self.curve.rows(np.array([u]))[0, quantity]) - wanted
-
-        return float(brentq(off, low, high, xtol=1e-14, rtol=1e-15))
-
     def extreme(self, quantity: int) -> tuple[float, float]:
         """The greatest speed or the least time of all, and the rim speed there."""
         u, value = self.curve.extreme(quantity)
@@ -186,35 +173,23 @@ class _Family:
         for quantity, bound in ((SPEED, fastest), (RIM, widest)):
             if bound < math.inf:
                 ends.update(self.all_where(quantity, bound))
-        within: list[tuple[float, float]] = []
-        for low, high in pairwise(sorted(ends)):
-            between = 0.5 * (max(low, min(high, 0.0) - 2.0) + min(high, max(low, 0.0) + 2.0))
-            speed, rim, _, _ = self.at(between)
-            if speed > fastest or rim > widest:
-                continue
-            joined = within and within[-1][1] == low
-            within[-1:] = [(within[-1][0], high)] if joined else [*within[-1:], (low, high)]
-        return within
+        intervals = list(pairwise(sorted(ends)))
+        inside = []
+        for low, high in intervals:
+            speed, rim, _, _ = self.at(between(low, high))
+            inside.append(speed <= fastest and rim <= widest)
+        return joined(intervals, inside)
 
 
-def aim(
+def aim_at(
     puck: Puck, target: npt.ArrayLike, *, spin: float | None, speed: float | None,
     stop_time: float | None, max_speed: float | None, max_spin: float | None, count: int,
 ) -> Aim:  # fmt: skip
-    """Launches after which a puck comes to rest at a target: :meth:`puck_tables.Puck.aim`."""
-    place = finite_array("target", target, "m")
-    if place.shape != (2,):
-        raise InputError(f"target must be one place (x, y) in m, got shape {place.shape}")
-    x, y = place.tolist()
+    """Launches after which a puck comes to rest at one target: :meth:`puck_tables.Puck.aim`."""
+    x, y = finite_array("target", target, "m").tolist()
     r, J = puck.radius, puck.decel
-    wishes = {"spin": spin, "speed": speed, "stop_time": stop_time}
-    wished = [name for name, value in wishes.items() if value is not None]
-    if len(wished) > 1:
-        raise InputError(f"{wished[0]} and {wished[1]} both pick a launch: give one of them")
-    fastest = math.inf if max_speed is None else positive("max_speed", max_speed, "m/s")
-    widest = math.inf if max_spin is None else positive("max_spin", max_spin, "rad/s")
-    if not isinstance(count, int) or not 1 <= count <= MAX_COUNT:
-        raise InputError(f"count must be a whole number from 1 to {MAX_COUNT}, got {count!r}")
+    refuse_both(spin=spin, speed=speed, stop_time=stop_time)
+    fastest, widest = checked_bounds(max_speed, max_spin, count)
     none = np.empty(0)
     given = Aim(puck, (x, y), np.empty((0, 2)), none, none, none, "")
     distance = math.hypot(x, y)
@@ -254,13 +229,30 @@ def aim(
     return _found(given, launches, answer)
 
 
+def refuse_both(**wishes: object) -> str | None:
+    """The one wish that is there, if any; two are refused."""
+    wished = [name for name, value in wishes.items() if value is not None]
+    if len(wished) > 1:
+        raise InputError(f"{wished[0]} and {wished[1]} both pick a launch: give one of them")
+    return wished[0] if wished else None
+
+
+def checked_bounds(
+    max_speed: float | None, max_spin: float | None, count: int
+) -> tuple[float, float]:
+    """Bounds on speed and spin, infinite where there is none."""
+    if not isinstance(count, int) or not 1 <= count <= MAX_COUNT:
+        raise InputError(f"count must be a whole number from 1 to {MAX_COUNT}, got {count!r}")
+    return (
+        math.inf if max_speed is None else positive("max_speed", max_speed, "m/s"),
+        math.inf if max_spin is None else positive("max_spin", max_spin, "rad/s"),
+    )
+
+
 def _found_roots(us: list[float]) -> list[float]:
     """The same, refused where there is none though there must be one."""
     if not us:
-        raise InputError(
-            "that takes a launch whose ratio of spin to speed is beyond 1e-260 to 1e260: "
-            "out of the range of floating point"
-        )
+        raise InputError(BEYOND)
     return us
 
 
@@ -297,8 +289,9 @@ def _found(given: Aim, launches: list[tuple[float, float, float, float]], answer
     same = [np.full(len(rows), value) for value in (puck.delta, puck.decel, puck.radius)]
     launched = np.stack([*found.launch_velocity.T, found.launch_spin, *same])
     if not fits(launched, puck.body.longest).all():
-        raise InputError(_TOO_LARGE)
-    return replace(found, miss=_misses(found))
+        raise InputError(TOO_LARGE)
+    target = np.array(found.target)
+    return replace(found, miss=misses(puck, target, found.launch_velocity, found.launch_spin))
 
 
 def _on_the_spot(
@@ -329,12 +322,12 @@ def _moderate(number: float, cause: float) -> float:
 
 def _number(log: float) -> float:
     if not _LEAST_LOG < log < _LARGEST_LOG:
-        raise InputError(_TOO_LARGE if log > 0.0 else _TOO_LARGE.replace("larger", "smaller"))
+        raise InputError(TOO_LARGE if log > 0.0 else TOO_LARGE.replace("larger", "smaller"))
     return math.exp(log)
 
 
 def _within(family: _Family, u: float, bounds: tuple[float, float]) -> bool:
-    return all(value <= bound + _SLACK for value, bound in zip(family.at(u), bounds, strict=False))
+    return all(value <= bound + SLACK for value, bound in zip(family.at(u), bounds, strict=False))
 
 
 def _out_of_bounds(
@@ -355,29 +348,3 @@ def _out_of_bounds(
         f"{widest:g} rad/s: at {fastest:g} m/s it takes {_number(log_rim - math.log(radius)):.9g} "
         "rad/s"
     )
-
-
-def _misses(found: Aim) -> FloatArray:
-    """How far from the target the integrated motions end: from the launches as they are given.
-
-    Friction of a plain puck is that of the table, where the launches were found with closed forms.
-    """
-    from puck_tables.motion.friction import source_of
-
-    puck = found.puck
-    cut = source_of(puck.body).friction(SECTION_ACCURACY).cut
-    distance = math.hypot(*found.target)
-    if distance == 0.0:
-        return np.zeros(found.launch_spin.size)
-    with np.errstate(divide="ignore"):
-        speed = np.log(found.launch_speed)
-        rim = np.log(np.abs(found.launch_spin)) + math.log(puck.radius)
-    u = rim - speed
-    stops = integrated_stops(u, np.full(u.size, puck.delta), cut, _CHECK_LOCAL, cosine_of(u))
-    log_q = np.maximum(speed, rim) + 0.5 * np.log1p(np.exp(-2.0 * np.abs(u)))
-    way = stops[:, 1] + 1j * np.copysign(1.0, found.launch_spin) * stops[:, 2]
-    # logarithms: Q²/J may be far larger than the distance
-    scale = 2.0 * log_q - math.log(puck.decel) - math.log(distance)
-    way *= np.exp(scale + 1j * found.launch_heading)
-    miss: FloatArray = distance * np.abs(way - complex(*found.target) / distance)
-    return miss

@@ -46,7 +46,7 @@ def _fill_exact_stops(
 
 def integrated_stops(
     u: FloatArray, delta: FloatArray, cut: FloatArray, tolerance: float,
-    place_unit: float | FloatArray = 1.0,
+    place_unit: float | FloatArray = 1.0, threads: int | None = None,
 ) -> FloatArray:  # fmt: skip
     """Stops in natural units by the integrator.
 
@@ -58,6 +58,7 @@ def integrated_stops(
     tolerance : local error of a step
     place_unit : array (n,) or 1, what local errors of the place are measured in
         With cos φ places next to pure spin, all as small as that, keep their digits.
+    threads : how many share the work
 
     Returns
     -------
@@ -79,7 +80,7 @@ def integrated_stops(
             u[part], delta[part], unit[part], cut, DORMAND_PRINCE, tolerance, out[part]
         )
 
-    run_chunks(work, u.size, _CHUNK)
+    run_chunks(work, u.size, _CHUNK, threads)
     return out
 
 

@@ -78,11 +78,16 @@ class Launches:
     @cached_property
     def matrix(self) -> FloatArray:
         """A copy, (6, n): vx, vy, ω, δ, J, r."""
-        n = self.size
+        return self.rows(0, self.size)
+
+    def rows(self, start: int, stop: int) -> FloatArray:
+        """A copy of some of them, (6, n)."""
+        vx, vy, step, *others = self.part(start, stop)
+        n = stop - start
         rows = np.empty((6, n))
-        step = self.step or n + 1
-        rows[0], rows[1] = self.vx[::step][:n], self.vy[::step][:n]
-        rows[2], rows[3], rows[4], rows[5] = self.spin, self.delta, self.decel, self.radius
+        step = step or n + 1
+        rows[0], rows[1] = vx[::step][:n], vy[::step][:n]
+        rows[2], rows[3], rows[4], rows[5] = others
         return rows
 
     def mark(self) -> int:
@@ -112,9 +117,10 @@ class Launches:
         InputError
         """
         step = self.step or 1
-        finite_array("velocity", self.vx[::step], "m/s")
-        finite_array("velocity", self.vy[::step], "m/s")
-        finite_array("spin", self.spin, "rad/s")
+        speeds = (("velocity", self.vx[::step]), ("velocity", self.vy[::step]), ("spin", self.spin))
+        for name, values in speeds:
+            if not np.isfinite(values).all():
+                finite_array(name, values, "rad/s" if name == "spin" else "m/s")
         checked_delta(self.delta)
         for name, values in (("decel", self.decel), ("radius", self.radius)):
             positive_array(name, values, _UNITS[name])

@@ -241,9 +241,15 @@ class SolverPerHeight:
         """
         if not self._sections and type(self._plain) is LookUp:
             return self._plain.first(launches, threads)
-        launches.refuse_bad()
-        values, status = self.all(launches.matrix, threads)
-        return First(values[0], values[1:3].T.copy(), status, 0, values[3:])
+        if not self._sections:  # else it was looked at for them
+            launches.refuse_bad()
+        only = next(iter(self._sections.values())) if len(self._sections) == 1 else None
+        if self._plain is None and isinstance(only, SectionLookUp):
+            values, status = only.of(launches, threads)
+        else:
+            values, status = self.all(launches.matrix, threads)
+        mark = launches.mark() if launches.is_held else 0
+        return First(values[0], values[1:3].T.copy(), status, mark, values[3:])
 
     def rest(self, launches: Launches, threads: int | None) -> FloatArray:
         """The rest of the outputs (3, n) of launches whose first did not come with it."""

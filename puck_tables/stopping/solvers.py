@@ -6,6 +6,7 @@ A new one is a class here or beside, and its place in :mod:`puck_tables.stopping
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
@@ -16,7 +17,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import in_slices, run_chunks
 from puck_tables.accuracy.methods import Method
 from puck_tables.motion.steppers import Stepping
-from puck_tables.stopping.launches import CHUNK, Launches, fits, launches_in
+from puck_tables.stopping.launches import Launches, fits, in_chunks, launches_in
 from puck_tables.stopping.lookup import STOP_POWERS
 from puck_tables.stopping.stop_section import StopSection
 from puck_tables.stopping.stop_table import OTHERS, StopTable
@@ -125,18 +126,26 @@ class SectionLookUp(StopSolver):
 
     def all(self, launches: FloatArray, threads: int | None = 1) -> tuple[FloatArray, Status]:
         """All of the outputs (6, n) and status (n,)."""
+        return self._filled(launches.shape[1], lambda a, b: launches[:, a:b], threads)
+
+    def of(self, launches: Launches, threads: int | None) -> tuple[FloatArray, Status]:
+        """The same of checked launches, copied chunk by chunk."""
+        return self._filled(launches.size, launches.rows, threads)
+
+    def _filled(
+        self, size: int, rows: Callable[[int, int], FloatArray], threads: int | None
+    ) -> tuple[FloatArray, Status]:
         from puck_tables.stopping.section_lookup import fill_section_stops
 
-        out = np.empty((len(OUTPUTS), launches.shape[1]))
-        status = np.zeros(launches.shape[1], np.int8)
+        out, status = np.empty((len(OUTPUTS), size)), np.zeros(size, np.int8)
         longest = self.section.body.longest
 
         def work(start: int, stop: int) -> None:
-            some, part = launches[:, start:stop], out[:, start:stop]
+            some, part = rows(start, stop), out[:, start:stop]
             if fill_section_stops(some, self.section.cut, longest, part):
                 mark_too_large(part, status[start:stop], some, longest)
 
-        run_chunks(work, launches.shape[1], CHUNK, threads)
+        in_chunks(work, size, threads)
         return out, status
 
 

@@ -10,6 +10,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.stopping.axes import HEIGHTS, height_polynomials, heights
 from puck_tables.stopping.curve import limits
 from puck_tables.stopping.curve_lookup import fill_inverse
+from puck_tables.stopping.lookup import STOP_POWERS, WIDTH
 from puck_tables.stopping.orbit import REGULAR, fill_orbit
 from puck_tables.table.fit import clamped_coefficients
 
@@ -70,3 +71,20 @@ def _ratios(table: StopTable, with_time: bool) -> FloatArray:
         values,
     )  # fmt: skip
     return values
+
+
+def at_height(table: StopTable, delta: float) -> FloatArray:
+    """T, along and δ · across at one height, (2, (cells + 3) × WIDTH): of no power any more.
+
+    Examples
+    --------
+    >>> from puck_tables import Table
+    >>> at_height(Table.shipped("stops"), 0.5).shape[0]
+    2
+    """
+    cut = table.cut().reshape(2, -1, STOP_POWERS, WIDTH)
+    found = np.zeros_like(cut[:, :, 0])
+    for power in range(STOP_POWERS - 1, -1, -1):
+        found = found * (2.0 * delta**2 - 1.0) + cut[:, :, power]
+    found[..., 2] *= delta
+    return np.ascontiguousarray(found.reshape(2, -1))

@@ -16,7 +16,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.laws import HOMOGENEOUS, Law, law_of
-from puck_tables.contact.resultants import checked_delta
+from puck_tables.contact.resultants import Resultants, checked_delta
 from puck_tables.errors import AccuracyError, InputError
 from puck_tables.kernels.section_spline import LINE
 from puck_tables.table.accuracy import Accuracy
@@ -29,12 +29,14 @@ from puck_tables.table.singular_lines import lines_of, opening_angle
 from puck_tables.table.slip_axis import GRADING_POWER, LawAxis, sides_of
 from puck_tables.table.slip_spline import slip_spline
 from puck_tables.table.table import Progress
+from puck_tables.table.tall_friction import tall_resultants
 
 DEFAULT_ACCURACY, FINEST_ACCURACY = 1e-9, 5e-13  # truth itself is good to 1e-13
 _LARGEST, _ROUNDING = 1e3, 1e-12  # of a ratio
 _NODES, _NODE_ERROR = 6, 1e-10  # how many are compared as a file is read, and how well known
 _CONSTANT = 1e-3  # no section is better than so many times cells⁻⁴
 AT_THE_LIMIT = 1e-6
+_FULL_CONTACT = 1.0  # δ up to which the whole base is loaded in every motion
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -216,8 +218,17 @@ def section_of_table(table: ResultantTable, delta: float, accuracy: float) -> Fr
 
 
 def friction_ratios(law: Law, phi: FloatArray, delta: float) -> FloatArray:
-    """The friction ratios by the law, (n, 3)."""
-    rho = law.friction(phi, delta)
+    """The friction ratios by the law, (n, 3): for few angles, and to judge."""
+    return _ratios(law.friction(phi, delta))
+
+
+def many_ratios(law: Law, phi: FloatArray, delta: float) -> FloatArray:
+    """The same for many angles, by compiled truth where contact opens."""
+    tall = law.can_lift and delta > _FULL_CONTACT
+    return _ratios(tall_resultants(phi, delta)) if tall else friction_ratios(law, phi, delta)
+
+
+def _ratios(rho: Resultants) -> FloatArray:
     return np.stack([1.0 / rho.parallel, rho.perpendicular / rho.parallel,
                      rho.spin / rho.parallel], axis=-1)  # fmt: skip
 
@@ -260,7 +271,7 @@ def friction_section(law: Law, delta: float, accuracy: float = DEFAULT_ACCURACY)
     """
     cotangents = lines_of(law, delta)
     spline = slip_spline(
-        lambda phi: friction_ratios(law, phi, delta),
+        lambda phi: many_ratios(law, phi, delta),
         sides_of(cotangents[::-1]),
         accuracy,
         even=True,

@@ -17,6 +17,7 @@ from puck_tables.contact import one_sided
 from puck_tables.contact.laws import Law
 from puck_tables.contact.opening import critical_delta
 from puck_tables.errors import ContactError
+from puck_tables.table.tall_friction import tall_resultants
 
 _SAME_LINE = 1e-12  # radians
 _SHARP_DELTA = 3.6
@@ -122,7 +123,7 @@ def _sharpest_bend(delta: float) -> float:
     low, high = 0.25 * math.pi - 0.1, 0.25 * math.pi - 0.002
     while high - low > 1e-6:
         phi = np.linspace(low, high, 33)
-        rho = one_sided.resultants(phi, delta)
+        rho = tall_resultants(phi, delta)
         n = int(np.abs(np.diff(rho.perpendicular / rho.parallel, 2)).argmax())
         low, high = float(phi[max(n - 2, 0)]), float(phi[min(n + 3, 32)])
     return low

@@ -12,7 +12,7 @@ import re
 import stat
 import time
 from collections.abc import Callable
-from contextlib import nullcontext, suppress
+from contextlib import suppress
 from dataclasses import replace
 from datetime import UTC, datetime
 from functools import lru_cache
@@ -41,7 +41,6 @@ from puck_tables.table.table import Progress, Table
 
 AnyTable = TypeVar("AnyTable", bound=Table)
 
-SLOW_DELTA = 3.0  # from here on a section takes some seconds
 MOST_SECTIONS = 200  # of either kind are kept, some 100 kB each
 _NAME = re.compile(r"[\w.+-]+-[0-9a-f]{16}\.h5")
 
@@ -169,13 +168,10 @@ def friction_for(law: Law, delta: float, accuracy: float) -> FrictionSection:
         return friction_section(law, delta, accuracy)
     refuse_height(law, delta)
 
-    def build(law: Law) -> FrictionSection:
-        words = "working out the friction of so tall a puck, once"
-        with watched(words) if delta > SLOW_DELTA else nullcontext():
-            return friction_section(law, delta, accuracy)
-
-    recipe = {"delta": delta, "accuracy": accuracy}
-    return kept_section(FrictionSection, law, f"tall-{delta:g}-{accuracy:g}", recipe, build)
+    return kept_section(
+        FrictionSection, law, f"tall-{delta:g}-{accuracy:g}",
+        {"delta": delta, "accuracy": accuracy}, lambda law: friction_section(law, delta, accuracy),
+    )  # fmt: skip
 
 
 def kept_section(

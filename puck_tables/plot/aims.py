@@ -1,0 +1,53 @@
+"""Picture of aims: where the targets are, and the launches that lead to them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from puck_tables.errors import InputError
+from puck_tables.io.columns import COLUMNS
+from puck_tables.plot.style import GREY, LAUNCH, canvas, legend_below, titled
+from puck_tables.stopping.aims import Aims
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+
+def draw(found: Aims) -> Figure:
+    """The targets, and speeds of launches against their spins."""
+    figure = canvas(10.0, 4.6)
+    targets, launches = figure.subplots(1, 2, width_ratios=(1.5, 1.0))
+    draw_on(targets, found)
+    launches.scatter(found.launch_spin, found.launch_speed, c=found.stop_time, s=8)
+    launches.set(xlabel=COLUMNS["launch_spin"].axis, ylabel=COLUMNS["launch_speed"].axis)
+    launches.set_ylim(bottom=0.0)
+    puck = found.puck
+    titled(
+        figure,
+        f"{found.answer}: r = {puck.radius:g} m, δ = {puck.delta:.4g}, J = {puck.decel:.4g} m/s²",
+    )
+    return figure
+
+
+def draw_on(axes: Axes, found: Aims) -> None:
+    """The targets alone, coloured by the stop time of a launch to them.
+
+    Raises
+    ------
+    InputError
+        If there is no launch to draw.
+    """
+    if found.launch_spin.size == 0:
+        raise InputError(f"there is nothing to draw: {found.answer}")
+    missed = found.target[found.launches == 0]
+    if missed.size:
+        axes.plot(*missed.T, "x", color=GREY, markersize=4, label="no launch")
+    marks = axes.scatter(found.target_x, found.target_y, c=found.stop_time, s=12)
+    axes.plot(0.0, 0.0, **LAUNCH, label="launch")
+    figure = axes.get_figure()
+    assert figure is not None
+    figure.colorbar(marks, ax=axes, label=COLUMNS["stop_time"].axis)
+    axes.set(xlabel=COLUMNS["target_x"].axis, ylabel=COLUMNS["target_y"].axis)
+    axes.set_aspect("equal", adjustable="datalim")
+    legend_below(axes)
