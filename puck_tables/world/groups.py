@@ -45,6 +45,7 @@ from puck_tables.world.game import (
     N_EVENTS,
     N_GROUPS,
     N_HELD,
+    N_HISTORY,
     N_PIECES,
     Game,
     Whole,
@@ -75,7 +76,7 @@ from puck_tables.world.paths import START as BEGINS
 from puck_tables.world.pressing import press
 from puck_tables.world.pushing import follow
 from puck_tables.world.touching import is_integrated
-from puck_tables.world.works import DONE, LEDGER, MEMBER, RIM_HEAT, STINT, WORK_COLUMNS
+from puck_tables.world.works import DONE, FLIGHT, LEDGER, NO_FLIGHT, RIM_HEAT, WORK_COLUMNS
 from puck_tables.world.works import START as WORK_START
 
 STEP_TOL = 1e-11  # of a step, in units of Q and Q²/J
@@ -110,14 +111,15 @@ def push_on(game: Game, room: Room, books: list[FloatArray]) -> Game:
         kept, t_end, ways, jump, works = _follow(shared, members, part, room.states, t, scales)
         _note_contacts(game, t, part, kept, held_before, float(jump[RIM_HEAT]), before, room)
         jump[RIM_HEAT] = 0.0  # the event has it
-        _book(books, _a_free_one(game, members), t, jump, works)
         for i in members:  # a rim that gripped at once has changed what touches it, too
             if room.marks[i] == NOT_CONCERNED and (room.states[i] != before[i]).any():
                 room.marks[i] = CONCERNED
         if not len(kept):
+            _book(books, NO_FLIGHT, t, jump, works)
             continue
         game.counts[N_GROUPS] += 1
         held = np.vstack([held, kept])
+        flight = NO_FLIGHT
         for place, i in enumerate(members):
             game.group[i] = game.counts[N_GROUPS]
             if game.drives[i, 0] < game.drives[i, 1]:
@@ -127,6 +129,8 @@ def push_on(game: Game, room: Room, books: list[FloatArray]) -> Game:
                 stay(game, int(i), t, room)
             else:
                 game = _set_out(game, int(i), t, t_end, ways[place])
+            flight = int(game.counts[N_HISTORY]) - 1
+        _book(books, flight, t, jump, works)
     for i in np.flatnonzero(room.marks == CONCERNED):
         if is_integrated(game, int(i), room.states[i]):
             _, t_end, ways, jump, works = _follow(
@@ -137,8 +141,8 @@ def push_on(game: Game, room: Room, books: list[FloatArray]) -> Game:
                 stay(game, int(i), t, room)
                 game.group[i] = 0
             else:
-                _book(books, int(i), t, jump, works)
                 game = _set_out(game, int(i), t, t_end, ways[0])
+                _book(books, int(game.counts[N_HISTORY]) - 1, t, jump, works)
     game.held[: len(held)], game.counts[N_HELD] = held, len(held)
     return game
 
@@ -267,20 +271,15 @@ def _with_pieces(game: Game, rows: FloatArray) -> Game:
     return game
 
 
-def _a_free_one(game: Game, members: Whole) -> int:
-    """A member that is not driven: its flight lasts as long as that of the group."""
-    return int(members[game.discs[members, LIGHTNESS] > 0.0][0])
-
-
 def _book(
-    books: list[FloatArray], member: int, t: float, jump: FloatArray, works: FloatArray
+    books: list[FloatArray], flight: int, t: float, jump: FloatArray, works: FloatArray
 ) -> None:
-    """Keep what was booked on a stint from t on, and at its start."""
+    """Keep what was booked on a flight from t on, and at its start."""
     if jump.any():
         row = np.zeros((1, WORK_COLUMNS))
         row[0, WORK_START], row[0, DONE : DONE + LEDGER] = t, jump
         works = np.vstack([row, works])
-    works[:, MEMBER], works[:, STINT] = member, t
+    works[:, FLIGHT] = flight
     books.append(works.copy())  # not all the rows that there was room for
 
 

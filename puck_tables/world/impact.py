@@ -221,12 +221,12 @@ def _alone(game: Game, i: int, j: int, row: FloatArray, states: FloatArray, e: f
     _push(game, i, j, row, states)
 
 
-@inner
-def _together(
+@inlined
+def _shared_out(
     game: Game, contacts: Whole, count: int, rows: FloatArray, before: FloatArray,
     states: FloatArray, weight: float,
 ) -> None:  # fmt: skip
-    """The law for contacts that share discs, at most 1/weight each, or bear on what is led."""
+    """The impulses for e = β = 0 of contacts that share discs; rims without bound all stop."""
     for n in range(count):
         rows[n, PN] = rows[n, PT] = 0.0
     for _ in range(_MOST_ITERATIONS):
@@ -239,13 +239,41 @@ def _together(
             old_n, old_t = row[PN], row[PT]
             row[PN] = max(old_n + weight * un / row[SOFT], 0.0)
             if row[BETA] > -1.0:
-                most = row[MU] * row[PN] * (1.0 + row[E]) / (1.0 + row[BETA])
-                row[PT] = min(max(old_t + weight * ut / row[SLICK], -most), most)
+                row[PT] = old_t + weight * ut / row[SLICK]
+                if row[MU] < math.inf:
+                    most = row[MU] * row[PN] * (1.0 + row[E]) / (1.0 + row[BETA])
+                    row[PT] = min(max(row[PT], -most), most)
             change = max(change, abs(row[PN] - old_n), abs(row[PT] - old_t))
             largest = max(largest, row[PN], abs(row[PT]))
         _push_all(game, contacts, count, rows, before, states)
         if change <= _SOLVED * largest:
             break
+
+
+@inner
+def _together(
+    game: Game, contacts: Whole, count: int, rows: FloatArray, before: FloatArray,
+    states: FloatArray, weight: float,
+) -> None:  # fmt: skip
+    """The law for contacts that share discs, at most 1/weight each, or bear on what is led.
+
+    A rim without bound on its friction does not grip where nothing presses it in the end: such a
+    contact takes no part in this round.
+    """
+    again = True
+    while again:
+        _shared_out(game, contacts, count, rows, before, states, weight)
+        pressed, idle = 0, 0
+        for n in range(count):
+            if rows[n, ACTS] > 0.0:
+                pressed += rows[n, PN] > 0.0
+                idle += rows[n, PN] == 0.0 and rows[n, PT] != 0.0
+        again = pressed > 0 and idle > 0
+        if again:
+            _recall(game, contacts, count, rows, before, states)
+            for n in range(count):
+                if rows[n, ACTS] > 0.0 and rows[n, PN] == 0.0 and rows[n, PT] != 0.0:
+                    rows[n, ACTS] = rows[n, PT] = 0.0
     gain, cost = 0.0, 0.0
     for n in range(count):
         rows[n, PN] *= 1.0 + rows[n, E]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections import Counter
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -30,11 +29,10 @@ from puck_tables.world.record import flights_of, states_at
 from puck_tables.world.works import (
     DRAG_HEAT,
     DRIVE_WORK,
+    FLIGHT,
     FLOOR_HEAT,
-    MEMBER,
     PULL_WORK,
     RIM_HEAT,
-    STINT,
     SUPPORT_WORK,
     WORK_COLUMNS,
     worked,
@@ -95,20 +93,12 @@ def ledger(world: World) -> dict[str, float]:
 def _booked(game: g.Game, books: list[FloatArray]) -> list[float]:
     """What was booked of all that were integrated, up to where their flights ended."""
     history = game.history[: game.counts[g.N_HISTORY]]
-    before: Counter[tuple[float, float]] = Counter()
-    ends = [np.zeros(0)]
-    for rows in books:
-        disc, start = key = tuple(rows[0, [MEMBER, STINT]].tolist()) if len(rows) else (-1.0, 0.0)
-        flights = history[history[:, 0] == disc]
-        starts = flights[:, 2 + START]
-        # of several that began at one moment all but the last were over at once
-        own = np.flatnonzero((starts == start) & (flights[:, 1] == PATH))[before[key] :]
-        after = int(own[0]) + 1 if own.size else int(np.searchsorted(starts, start, "right"))
-        before[key] += 1
-        end = starts[after] if after < len(starts) else float(game.clock[0])
-        ends.append(np.full(len(rows), end))
+    ends = np.full(len(history) + 1, float(game.clock[0]))  # the last of what has NO_FLIGHT
+    for disc in range(len(game.discs)):
+        mine = np.flatnonzero(history[:, 0] == disc)
+        ends[mine[:-1]] = history[mine[1:], 2 + START]
     rows = np.vstack([np.zeros((0, WORK_COLUMNS)), *books])
-    booked: list[float] = worked(rows, np.concatenate(ends)).tolist()
+    booked: list[float] = worked(rows, ends[rows[:, FLIGHT].astype(np.int64)]).tolist()
     return booked
 
 

@@ -1,9 +1,8 @@
 """Where the energy of those went who were integrated, step by step.
 
-A *stint* is what a group of discs, or one alone, was sent on at once; all its discs go on from the
-same event, so the flight of any of them tells when it ended.  A row is a step of it: powers at both
-ends and the work between, of which a part is that of a cubic.  A row without duration is a jump, at
-the start.
+A group of discs, or one alone, is sent on at once; all go on from the same event, so the flight of
+any of them tells when that ended.  A row is a step of it: powers at both ends and the work between,
+of which a part is that of a cubic.  A row without duration is a jump, at the start.
 """
 
 from __future__ import annotations
@@ -18,9 +17,10 @@ from puck_tables.kernels.compile import inlined
 FLOOR_HEAT, RIM_HEAT, DRAG_HEAT, PULL_WORK, DRIVE_WORK, SUPPORT_WORK = range(6)
 LEDGER = 6
 
-# columns: a disc of the stint, when that began; start and duration of the step; at its start and
-# end the powers, W, and the works in between, J
-MEMBER, STINT, START, DURATION, FIRST = range(5)
+# columns: the flight of one of them, a row of the history, or NO_FLIGHT; start and duration of the
+# step; at its start and end the powers, W, and the works in between, J
+FLIGHT, START, DURATION, FIRST = range(4)
+NO_FLIGHT = -1
 WORK_COLUMNS = FIRST + 3 * LEDGER
 BEGUN, DONE, ENDED = FIRST, FIRST + LEDGER, FIRST + 2 * LEDGER
 
@@ -36,7 +36,7 @@ def write_work(
 
 
 def worked(rows: FloatArray, ends: FloatArray) -> FloatArray:
-    """The ledger (6,) of rows of works, each of whose stints ended at ``ends`` (rows,), J.
+    """The ledger (6,) of rows of works, each of whose flights ended at ``ends`` (rows,), J.
 
     Examples
     --------

@@ -25,8 +25,8 @@ INGREDIENTS = (
 )  # fmt: skip
 _HOLDS = {"rail", "pivot", "blade"}
 _CLASHES = [
-    {"blade", "belt"}, {"blade", "turntable"}, {"tall", "pressure"}, {"rail", "pivot"},
-    {"rail", "blade"}, {"pivot", "blade"}, {"smooth wall", "rough wall"},
+    {"tall", "pressure"}, {"rail", "pivot"}, {"rail", "blade"}, {"pivot", "blade"},
+    {"smooth wall", "rough wall"},
     *({hold, wall} for hold in _HOLDS for wall in ("smooth wall", "rough wall")),
 ]  # fmt: skip
 
@@ -133,7 +133,20 @@ def draw(seed: int, index: int) -> dict[str, Any]:
         hold: dict[str, Any] = {"kind": held[0], "angle": float(rng.uniform(-math.pi, math.pi))}
         angle = hold["angle"] + (launch["orientation"] if held[0] == "blade" else 0.0)
         along = np.array([math.cos(angle), math.sin(angle)])
-        launch["velocity"] = ((velocity @ along) * along).tolist()
+        across = np.array([-along[1], along[0]])
+        ground = np.zeros(2)  # a blade grips its floor, a rail and a pivot the laboratory
+        if held[0] == "blade" and floor:
+            arm = np.array(floor.get("centre", (0.0, 0.0)))
+            ground = np.array(floor.get("velocity", (0.0, 0.0)))
+            ground = ground + floor.get("turning", 0.0) * np.array([arm[1], -arm[0]])
+        going = 0.3 * speed * rng.normal() if rng.random() < 0.3 else 0.0
+        if going and held[0] == "blade":
+            hold["side_slip"] = float(going)
+        elif going:
+            hold["velocity"] = (going * across).tolist()
+        launch["velocity"] = (
+            (velocity @ along) * along + (ground @ across + going) * across
+        ).tolist()
         if held[0] == "pivot":
             hold["reach"] = float(radius * rng.uniform(0.2, 3.0))
             del launch["velocity"]

@@ -7,11 +7,14 @@ import math
 import numpy as np
 from numba import njit
 from scene_motion import (
+    BLADE,
     LAST,
     LEAN,
     MODE,
     OTHER,
     PIECE,
+    PIVOT,
+    RAIL,
     REGION,
     RESTS,
     RIM,
@@ -191,6 +194,25 @@ def still(world, base, y, which):
     off = wall[0] * (y[3] + sx) + wall[1] * (y[4] + sy)
     y[3] -= off * wall[0]
     y[4] -= off * wall[1]
+
+
+@njit(cache=True)
+def kept(world, base, y):
+    """The constraint, of which rounding would take a little at every step."""
+    hold, kind = world.hold, int(world.hold[0])
+    c, s = math.cos(y[2] + hold[4]), math.sin(y[2] + hold[4])
+    sx, sy = floor_at(world, base[0] + y[0], base[1] + y[1])
+    if kind == BLADE:
+        off = -s * y[3] + c * y[4] - hold[5]
+        y[3] += off * s
+        y[4] -= off * c
+    elif kind == RAIL:
+        off = hold[1] * (y[3] + sx - hold[5]) + hold[2] * (y[4] + sy - hold[6])
+        y[3] -= off * hold[1]
+        y[4] -= off * hold[2]
+    elif kind == PIVOT:
+        rim = hold[3] * (y[5] + world.floor[4])
+        y[3], y[4] = hold[5] + rim * s - sx, hold[6] - rim * c - sy
 
 
 @njit(cache=True)

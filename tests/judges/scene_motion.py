@@ -15,15 +15,16 @@ from contact_truth import tabled_friction
 from numba import njit
 
 FREE, RAIL, PIVOT, BLADE = range(4)
-REGION, PIECE, LEAN, OTHER, RIM, MODE, LAST = range(7)  # of the context, whole numbers
+REGION, PIECE, LEAN, OTHER, RIM, MODE, LAST, WORK = range(8)  # of the context, whole numbers
 SLIDES, RESTS = 0, 1
 STICKS, SMOOTH = 0, 2  # of RIM, beside ±1: the way it slips
+NONE = 1e-30  # the size of a slip that has a direction only: drag and spin do nothing on it
 
 
 class World(NamedTuple):
     """``body``: m, I, r; ``pull``: Fx, Fy, torque; ``floor``: vx, vy, cx, cy, Ω; ``drag``: two.
 
-    ``hold``: kind, and n_x, n_y (rail), or place, reach, angle (pivot), or angle (blade), and v.
+    ``hold``: kind, n_x, n_y of a rail, reach of a pivot, angle of both others, and v (side slip).
     """
 
     body: np.ndarray
@@ -64,6 +65,7 @@ def floor_at(world, x, y):
 @njit(cache=True)
 def rates(world, ctx, base, t, y, ux, uy, w, out, fr):
     """d/dt of the state y that slips at (ux, uy, w) into ``out``; reactions N, N', T of walls."""
+    ctx[WORK] += 1
     m, inertia, r = world.body
     turn = world.floor[4]
     sx, sy = floor_at(world, base[0] + y[0], base[1] + y[1])
@@ -111,8 +113,9 @@ def rates(world, ctx, base, t, y, ux, uy, w, out, fr):
         fx += back * hold[1]
         fy += back * hold[2]
     elif kind == BLADE:
+        # along the floor: d/dt of the side slip −s u_x + c u_y is 0
         c, s = math.cos(y[2] + hold[4]), math.sin(y[2] + hold[4])
-        back = m * spin * (c * vx + s * vy) - (-s * fx + c * fy)
+        back = m * (spin * (c * ux + s * uy) + turn * (c * vx + s * vy)) - (-s * fx + c * fy)
         fx -= back * s
         fy += back * c
     elif kind == PIVOT:
@@ -132,6 +135,33 @@ def rates(world, ctx, base, t, y, ux, uy, w, out, fr):
 
 
 @njit(cache=True)
+def allowed(world, y, n):
+    """Of the direction n (3,) of a slip only what the constraint lets be, of size 1 again."""
+    hold, kind = world.hold, int(world.hold[0])
+    if kind == FREE:
+        return
+    c, s = math.cos(y[2] + hold[4]), math.sin(y[2] + hold[4])
+    if kind == PIVOT:
+        reach, r = hold[3], world.body[2]
+        share = (reach * (s * n[0] - c * n[1]) + r * n[2]) / (reach * reach + r * r)
+        n[0], n[1], n[2] = share * reach * s, -share * reach * c, share * r
+    else:
+        if kind == RAIL:
+            c, s = hold[2], -hold[1]
+        along = c * n[0] + s * n[1]
+        n[0], n[1] = c * along, s * along
+    size = math.sqrt(n[0] ** 2 + n[1] ** 2 + n[2] ** 2)
+    if size == 0.0:  # straight against it
+        n[0], n[1], n[2] = 0.0, 0.0, 1.0
+        size = 1.0
+        if kind == PIVOT:
+            n[0], n[1], n[2] = hold[3] * s, -hold[3] * c, world.body[2]
+            size = math.sqrt(hold[3] ** 2 + world.body[2] ** 2)
+    for i in range(3):
+        n[i] /= size
+
+
+@njit(cache=True)
 def slow_way(world, ctx, base, t, y, guess, out, fr):
     """The direction (3,) that a slip of no size settles to, and the rate at which it grows.
 
@@ -144,12 +174,9 @@ def slow_way(world, ctx, base, t, y, guess, out, fr):
     gain, step, before, last = 0.0, 0.0, math.inf, -math.inf
     a, trial = np.empty(3), np.empty(3)
     for again in range(3000):
-        rates(world, ctx, base, t, y, n[0], n[1], n[2] / r, out, fr)
+        allowed(world, y, n)
+        rates(world, ctx, base, t, y, NONE * n[0], NONE * n[1], NONE * n[2] / r, out, fr)
         a[0], a[1], a[2] = out[3], out[4], r * out[5]
-        # drag and Coriolis terms of a slip of unit size do not belong here
-        a[0] += world.drag[0] * n[0] / world.body[0] - world.floor[4] * n[1]
-        a[1] += world.drag[0] * n[1] / world.body[0] + world.floor[4] * n[0]
-        a[2] += world.drag[1] * n[2] / world.body[1]
         gain = a[0] * n[0] + a[1] * n[1] + a[2] * n[2]
         off = 0.0
         for i in range(3):

@@ -21,6 +21,7 @@ from scene_events import (
     first_event,
     gap,
     impact,
+    kept,
     rebased,
     rim_state,
     still,
@@ -41,6 +42,7 @@ from scene_motion import (
     SLIDES,
     SMOOTH,
     STICKS,
+    WORK,
     World,
     best_way,
     floor_at,
@@ -50,6 +52,7 @@ from scene_steps import ALL, advance, dense, prepare_dense, stage
 
 EVENTS = ("impact", "border", "edge", "contact", "stick", "slip", "leaves")
 DONE, GONE, STEPS, MANY, CORNER = range(5)
+_WORK = 250  # evaluations of the forces per step of the limit: what finds no event within them hangs
 ENDS = ("done", "over the edge", "too many steps", "too many events", "a rough corner")
 
 
@@ -63,7 +66,7 @@ def follow(world, start, until, frames, states, events, tol, speed, length, limi
     k, f = np.empty((ALL, 6)), np.empty((7, 6))
     tmp, out, new, at, fr = np.empty(6), np.empty(6), np.empty(6), np.empty(6), np.empty(3)
     y, base = start.copy(), np.zeros(2)
-    ctx = np.zeros(7, np.int64)
+    ctx = np.zeros(8, np.int64)
     ctx[LEAN] = ctx[OTHER] = ctx[LAST] = -1
     ctx[RIM] = SMOOTH
     walls, edges, borders = len(world.walls), len(world.edges), len(world.borders)
@@ -81,7 +84,15 @@ def follow(world, start, until, frames, states, events, tol, speed, length, limi
     fastest, sharpest = 0.0, 0.0
     small = 1e-13 * speed
     look, over, how = True, False, DONE
+    turns = 0
     while t < until:
+        turns += 1
+        if turns > 2 * limit or ctx[WORK] > _WORK * limit:
+            how = STEPS
+            break
+        if count >= len(events) - 4:
+            how = MANY
+            break
         while ctx[PIECE] < len(drive) and drive[ctx[PIECE], 0] <= t:
             ctx[PIECE] += 1
             look = True
@@ -104,20 +115,11 @@ def follow(world, start, until, frames, states, events, tol, speed, length, limi
                     held = False
                     break
                 n = np.array([-0.48, 0.64, -0.6])
-            sx, sy = floor_at(world, base[0] + y[0], base[1] + y[1])
-            if int(world.hold[0]) != FREE:  # a floor that goes where the constraint does not
-                mode = ctx[MODE]
-                ctx[MODE] = SLIDES
-                held = held and q < small
-                ctx[MODE] = mode
             if held:
                 if ctx[MODE] == SLIDES:
                     ctx[MODE] = RESTS
                     if toward > 0.0:
                         t += q / toward
-                    if count == len(events):
-                        how = MANY
-                        break
                     events[count] = np.array([t, REST, ctx[REGION], base[0] + y[0], base[1] + y[1]])
                     count += 1
                     y[3], y[4], y[5] = 0.0, 0.0, 0.0
@@ -182,6 +184,7 @@ def follow(world, start, until, frames, states, events, tol, speed, length, limi
             frame += 1
         if which < 0:
             y[:] = new
+            kept(world, base, y)
             t = end
             grow = 5.0 if error == 0.0 else min(5.0, 0.9 * error ** (-0.125))
             h *= grow
@@ -201,9 +204,6 @@ def follow(world, start, until, frames, states, events, tol, speed, length, limi
             y[:] = new
         t += length_of_step
         look = True
-        if count >= len(events) - 4:
-            how = MANY
-            break
         px, py = base[0] + y[0], base[1] + y[1]
         if which < walls:
             rebased(base, y)
@@ -346,9 +346,9 @@ def world_of(scene: dict[str, Any]) -> tuple[World, np.ndarray]:
     if held:
         a, v = held.get("angle", 0.0), held.get("velocity", (0.0, 0.0))
         if held["kind"] == "rail":
-            hold[:3] = RAIL, -math.sin(a), math.cos(a)
+            hold[:] = RAIL, -math.sin(a), math.cos(a), 0.0, 0.0, *v
         elif held["kind"] == "blade":
-            hold[[0, 4]] = BLADE, a
+            hold[[0, 4, 5]] = BLADE, a, held.get("side_slip", 0.0)
         else:
             reach = held["reach"]
             hold[:] = PIVOT, 0.0, 0.0, reach, a, *v
