@@ -112,8 +112,11 @@ def _bad_axes(scene: Scene) -> list[str]:
     if two is None:
         return []
     name, faults = "floor.orthotropic", []
-    if floor.law or floor.strips is not None:
-        faults.append(f"{name}: with floor.law or floor.strips there is no such friction, give one")
+    if floor.law or floor.strips is not None or floor.patches:
+        faults.append(
+            f"{name}: with floor.law, floor.strips or floor.patch there is no such friction, give "
+            "one"
+        )
     if floor.turning != 0.0:
         faults.append(f"{name}: not on a floor that turns, its axes stand still; leave one out")
     if puck.pressure != "uniform":

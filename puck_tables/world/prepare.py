@@ -17,7 +17,7 @@ from puck_tables.scene.holds import allowed_velocity
 from puck_tables.scene.ingredients import RAIL, Regions, Surface, floor_velocity, hold_of
 from puck_tables.scene.parts import Wall
 from puck_tables.scene.pieces import Arc, Piece, Post
-from puck_tables.scene.regions import NO_LAW, SLICE_SHARE, alone, of_one_shape
+from puck_tables.scene.regions import SLICE_SHARE, alone, of_one_shape
 from puck_tables.scene.scene import Scene
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.table.friction_section import FINEST_ACCURACY
