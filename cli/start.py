@@ -64,4 +64,9 @@ def main() -> None:
         _watch()
     from puck_tables.cli.main import main as command
 
-    command()
+    try:
+        command()
+    except SystemExit as end:
+        if end.code == INTERRUPTED:  # all is said; libraries might tell what they left undone
+            os._exit(INTERRUPTED)
+        raise

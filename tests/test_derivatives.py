@@ -72,8 +72,8 @@ def test_stops_next_to_all_that_is_singular():
 
 
 def test_states_next_to_all_that_is_singular():
-    share = np.exp(-(np.random.default_rng(2).uniform(0.0, 1.0, 40) ** 2) * math.log(1e3))
-    assert state_errors(adversarial(3, 40), share).max() <= BOUND
+    share = np.exp(-(np.random.default_rng(2).uniform(0.0, 1.0, 20) ** 2) * math.log(1e3))
+    assert state_errors(adversarial(3, 20), share).max() <= BOUND
 
 
 @pytest.mark.nightly

@@ -5,6 +5,7 @@ from __future__ import annotations
 import film_judge
 import numpy as np
 import pytest
+from rarely import few
 from test_fit import DECEL, DELTA, KNOWN, NOISE, RADIUS, TIMES, VELOCITY, film
 
 import puck_tables as pt
@@ -28,7 +29,7 @@ def test_no_spin_tells_no_tilt(straight, seed):
     assert summary["error"] is None and summary["determined"] is False
 
 
-@pytest.mark.parametrize("seed", [1, 2, 4])
+@pytest.mark.parametrize("seed", few(1, [1, 2, 4]))
 def test_a_straight_path_without_angles_does_not_even_tell_friction(straight, seed):
     # a flat puck that spins at the limit ratio loses speed at a constant rate, too
     found = pt.fit(film(straight, seed, angles=False), KNOWN)

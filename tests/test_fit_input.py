@@ -94,7 +94,7 @@ def test_a_number_that_a_prior_frees_is_named():
 
 
 def test_a_number_on_its_bound_is_named():
-    found = pt.fit(TRACK, PUCK, bounds={"friction": (0.3, 0.5)})
+    found = pt.fit(TRACK, PUCK, fixed={"delta": 0.2}, bounds={"friction": (0.3, 0.5)})
     assert any("friction lies on the end of its range, 0.3" in text for text in found.remarks)
 
 

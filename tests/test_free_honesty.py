@@ -56,7 +56,7 @@ def test_next_to_pure_motions_of_much_and_little_inertia(
 
 @pytest.mark.parametrize(
     ("puck", "u"),
-    few(2, [
+    few(1, [
         (("annulus:0.7", 0.5, 0.4), 1.0), (("ring", 1.0, 4.0), -0.5), (("uniform", 0.5, 0.15), 0.3),
         (("ring", 1.0, 0.7), 1.0986), (("hertz", 0.3, 0.2), 0.8), (("uniform", 1.5, 0.3), 2.0),
     ]),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 from collections.abc import Callable
 from functools import partial
 from typing import Any, TypeVar
@@ -20,14 +21,23 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 class _Announcer(event.Listener):
-    """Hears of what is compiled anew; what is only pasted into others is soon done."""
+    """Hears of what is compiled anew; what is only pasted into others is soon done.
+
+    Compiling makes millions of small objects that live until it ends.  To look through them again
+    and again for garbage takes a sixth of the time, so that it is done less often meanwhile.
+    """
+
+    def __init__(self) -> None:
+        self._found: list[tuple[int, int, int]] = []
 
     def on_start(self, event: Any) -> None:
+        self._found.append(gc.get_threshold())
+        gc.set_threshold(100_000, *self._found[-1][1:])
         if type(event.data["dispatcher"]._cache).__name__ != "NullCache":
             compiling()
 
     def on_end(self, event: Any) -> None:
-        pass
+        gc.set_threshold(*self._found.pop())
 
 
 event.register("numba:compile", _Announcer())  # type: ignore[no-untyped-call]

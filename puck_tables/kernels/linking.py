@@ -12,10 +12,11 @@ from typing import Any
 
 from llvmlite import binding
 from numba.core.codegen import JITCodeLibrary
-from numba.core.compiler import Compiler
+from numba.core.compiler import Compiler, Flags
 
 Library: Any = JITCodeLibrary
 AnyCompiler: Any = Compiler
+Options: Any = Flags
 
 
 class _NoAddress:
@@ -72,11 +73,29 @@ class Behind(Library):  # type: ignore[misc]
         super().finalize()
 
 
+class QuickOptions(Options):  # type: ignore[misc]
+    """The options of a compilation; numba compares them at each operator that it looks up."""
+
+    __slots__ = ()
+
+    def __hash__(self) -> int:
+        return hash(QuickOptions)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, QuickOptions):
+            return NotImplemented
+        mine, theirs = self._values, other._values
+        return mine == theirs or all(
+            getattr(self, name) == getattr(other, name) for name in mine.keys() | theirs.keys()
+        )
+
+
 class LinkedAtDoors(AnyCompiler):  # type: ignore[misc]
     """numba's compiler, with these libraries."""
 
     def compile_extra(self, function: Any) -> Any:
         """Compile a function for one signature."""
+        self.state.flags = QuickOptions(self.state.flags)
         kind = Pasted if self.state.flags.no_cpython_wrapper else Behind
         codegen = self.state.targetctx.codegen()
         self.state.library = kind(codegen, function.__qualname__)
