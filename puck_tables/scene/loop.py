@@ -358,7 +358,7 @@ def follow(
                 if at_once[0] == 1.0:
                     first = which if happens == BOUNCES else len(bounds.walls) + which
                     at_once[1], at_once[2], at_once[3] = t, first, other
-        if happens == BORDER or happens == _PATCH:
+        if happens in (BORDER, _PATCH):
             if happens == BORDER:
                 line = bounds.borders[min(region, which)]
                 back = line[BORDER_SIDE] * (which - region) > 0.0

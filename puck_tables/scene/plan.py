@@ -163,6 +163,11 @@ def plan_for(scene: Scene) -> Plan:
             f"Taken: {model}; what acts: {', '.join([*acts, *_moving(scene)])}.\n"
             "A look-up would be cheaper, but it is of free pucks on a level floor."
         )
+        if scene.floor.strips is not None or scene.floor.patches:
+            why += (
+                "\nWhile the base is astride two frictions they are integrated over its parts, "
+                "about ten times the cost of a step elsewhere."
+            )
         return Plan(model, False, why)
     kind = scene.puck.regime(free_velocity(scene), scene.launch.spin)
     frame = "in the frame of the belt" if any(scene.floor.velocity) else "a free puck, level floor"
