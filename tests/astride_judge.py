@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -86,16 +87,17 @@ class Ground:
 
 def sums(ground: Ground, ux: float, uy: float, w: float, size: float = 1.0) -> np.ndarray:
     """∫ f e_j, ∫ f x_k e_j and ∫ f x_k (x e_y − y e_x) over a disc; e of the slip (ux, uy), w."""
-    centre = (-uy / w, ux / w) if w != 0.0 else (0.0, 0.0)
+    straight = abs(w) <= 1e-12 * math.hypot(ux, uy)  # else its centre is too far away to be told
+    centre = (0.0, 0.0) if straight else (-uy / w, ux / w)
     stops = {-size, size, *(s for s in [*ground.stops(size), centre[0]] if -size < s < size)}
     ordered = sorted(stops)
     total = np.zeros(8)
-    for low, high in zip(ordered, ordered[1:], strict=False):
+    for low, high in pairwise(ordered):
         step = (high - low) * _FROM_END
         p, weight = np.where(_T < 0.0, low + step, high - step), (high - low) * _RULE
         off = np.where(_T < 0.0, (low - centre[0]) + step, (high - centre[0]) - step)
         for f, begin, end in ground.spans(p, size):
-            if w == 0.0:
+            if straight:
                 one = _straight(p, begin, end, ux, uy)
             else:
                 one = math.copysign(1.0, w) * _lines(p, off, begin, end, centre[1])

@@ -28,6 +28,10 @@ FREE: dict[str, Any] = {
 }
 MOVING = {"floor": {"turning": 2.0, "centre": [0.1, 0.2]}, "run": {"time": 0.5}}
 STRIPS = {"floor": {"strips": {"borders": [0.03], "friction": [0.2, 0.1]}}}
+ROUND = {"floor": {"patch": [{"friction": 0.1, "centre": [0.15, 0.05], "radius": 0.05}]}}
+POLYGON = {"floor": {"patch": [
+    {"friction": 0.1, "corners": [[0.06, -0.1], [0.2, -0.1], [0.1, 0.2]]},
+]}}  # fmt: skip
 WALL = {"wall": [{"point": [0.1, 0.0], "normal": [-1.0, 0.1], "tangential": 0.2}]}
 EDGE = {"edge": [{"point": [0.05, 0.0], "normal": [-1.0, 0.0]}]}
 HELD = {"launch": {"velocity": None}, "run": {"time": 0.5}}
@@ -52,6 +56,10 @@ CASES: dict[str, tuple[dict[str, Any], Any]] = {
     "floor.strips.borders": (STRIPS, [0.06]),
     "floor.strips.friction": (STRIPS, [0.2, 0.3]),
     "floor.strips.direction": (STRIPS, 1.0),
+    "floor.patch[0].friction": (ROUND, 0.3),
+    "floor.patch[0].centre": (ROUND, [0.3, 0.05]),
+    "floor.patch[0].radius": (ROUND, 0.07),
+    "floor.patch[0].corners": (POLYGON, [[0.05, -0.1], [0.2, -0.1], [0.1, 0.2]]),
     "launch.velocity": ({}, [0.8, 0.4]),
     "launch.spin": ({}, 20.0),
     "launch.position": ({}, [1.0, 0.0]),

@@ -32,7 +32,7 @@ def test_the_ledger_closes(tmp_path: Path) -> None:
     seen = _closes([*range(200), 469], tmp_path)  # the last goes over an edge
     assert seen >= {
         "at rest", "time is up", "over the edge",
-        "stick", "slip", "impact", "contact", "border", "edge",
+        "stick", "slip", "impact", "contact", "entry", "exit", "edge",
     }  # fmt: skip
 
 

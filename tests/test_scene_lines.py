@@ -88,15 +88,17 @@ def test_bounces_without_number_end_leaning(restitution: float) -> None:
 
 
 def test_strips_by_pieces() -> None:
-    """v² = v₀² − 2 Σ f_i g l_i for pure translation."""
-    strips = {"borders": [1.0, 1.5], "friction": [0.1, 0.0, 0.3]}
-    run = simulate_scene(scene(floor={"strips": strips}))
-    v1 = math.sqrt(9.0 - 2.0 * 0.1 * G)
-    first = (3.0 - v1) / (0.1 * G)
-    assert event(run, "border", 0) == pytest.approx(first, rel=1e-10)
-    assert event(run, "border", 1) == pytest.approx(first + 0.5 / v1, rel=1e-10)
-    assert run.end_time == pytest.approx(first + 0.5 / v1 + v1 / (0.3 * G), rel=1e-10)
-    assert run.last["x"] == pytest.approx(1.5 + 0.5 * v1**2 / (0.3 * G), rel=1e-9)
+    """v² = v₀² − 2 Σ f_i g l_i for pure translation straight across, of all parts on the mean."""
+    strips = {"borders": [1.5, 4.0], "friction": [0.1, 0.0, 0.3]}
+    given = scene(floor={"strips": strips})
+    run, radius = simulate_scene(given), given["puck"]["radius"]
+    first = (3.0 - math.sqrt(9.0 - 2.0 * 0.1 * G * (1.5 - radius))) / (0.1 * G)
+    assert event(run, "entry", 0) == pytest.approx(first, rel=1e-10)
+    between = math.sqrt(9.0 - 2.0 * 0.1 * G * 1.5)  # the work is that of the centre's way
+    free = event(run, "entry", 1) - event(run, "exit", 0)
+    assert free == pytest.approx((2.5 - 2.0 * radius) / between, rel=1e-9)
+    assert [e[1] for e in run.events] == ["entry", "exit", "entry", "exit", "stick"]
+    assert run.last["x"] == pytest.approx(4.0 + 0.5 * between**2 / (0.3 * G), rel=1e-9)
 
 
 def test_an_edge_ends_it() -> None:

@@ -25,6 +25,7 @@ def tables() -> dict[str, Any]:
         },
         "launch": {"velocity": ["1:3:5", 0.4], "spin": "-5:5:4"},
         "wall": [{"point": [1.5, 0.0], "normal": [-1.0, 0.0], "restitution": "0.2:0.8:2"}],
+        "run": {"tol": 1e-6},
     }  # fmt: skip
 
 

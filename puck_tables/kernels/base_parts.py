@@ -17,6 +17,7 @@ A :data:`Sums` is ∫ of e_x, e_y, x e_x, y e_x, x e_y, y e_y, x (x e_y − y e_
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
@@ -33,7 +34,7 @@ _FAR = 2.0  # radii from which on the centre of rotation is no trouble for Gauss
 _PANEL = 2.4  # the length of a panel over its distance from the centre of rotation
 _LEAST_GAP = 1e-5  # closer than this the centre is on the arc: the square of it is lost
 
-_full_integrals = inlined(closed_form.shape_integrals)
+_full_integrals: Any = inlined(closed_form.shape_integrals)
 
 
 @inlined
@@ -159,7 +160,7 @@ def arc_sums(
     low -= whole * math.floor(low / whole)
     high, sums = low + abs(turn), NOTHING
     # from half-turn to half-turn: in the even ones the arc leads away from the centre of rotation
-    number = math.floor(low / math.pi)
+    number = float(math.floor(low / math.pi))
     while low < high:
         edge = min(math.pi * (number + 1.0), high)
         leads_away = number % 2.0 == 0.0

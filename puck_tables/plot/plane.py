@@ -21,7 +21,18 @@ if TYPE_CHECKING:
 
 _PUCKS_DRAWN = 12
 # ingredients that are seen in the plane; others are named above it
-_DRAWN = ("slope", "turntable", "strips", "force", "walls", "edges", "rail", "pivot", "blade")
+_DRAWN = (
+    "slope",
+    "turntable",
+    "strips",
+    "patches",
+    "force",
+    "walls",
+    "edges",
+    "rail",
+    "pivot",
+    "blade",
+)
 _SHAPE = 2.2  # width of the panel over its height
 _ARROWS = (9, 5)  # of a moving floor, across and up
 _PURPLE = "#8b2fa0"
@@ -44,6 +55,7 @@ def draw_plane(axes: Axes, run: SceneRun, columns: dict[str, FloatArray]) -> Non
     x, y = columns["x"], columns["y"]
     box = _box(x, y, 1.6 * radius)
     _draw_strips(axes, scene, box)
+    _draw_patches(axes, scene)
     _draw_floor(axes, scene, box)
     axes.plot(x, y, color=BLUE, linewidth=1.4, zorder=3)
     _draw_pucks(axes, scene, columns)
@@ -98,6 +110,22 @@ def _draw_pucks(axes: Axes, scene: Scene, columns: dict[str, FloatArray]) -> Non
             [x[n] - back * dx, x[n] + dx], [y[n] - back * dy, y[n] + dy], zorder=2,
             **{"linewidth": 0.8, **style}, **label,
         )  # fmt: skip
+
+
+def _draw_patches(axes: Axes, scene: Scene) -> None:
+    """Patches of the floor with their friction."""
+    from matplotlib.patches import Circle, Polygon
+
+    for patch in scene.floor.patches:
+        style: dict[str, Any] = {
+            "facecolor": "#9fc6e8", "edgecolor": GREY, "linewidth": 0.8, "alpha": 0.5, "zorder": 1,
+            "label": f"f = {patch.friction:g}",
+        }  # fmt: skip
+        axes.add_patch(
+            Polygon(patch.corners, **style)
+            if patch.corners
+            else Circle(patch.centre, patch.radius, **style)
+        )
 
 
 def _draw_strips(axes: Axes, scene: Scene, box: Box) -> None:

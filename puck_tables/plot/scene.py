@@ -90,6 +90,6 @@ def states_drawn(run: SceneRun) -> dict[str, FloatArray]:
 
 def _draw_events(axes: Axes, run: SceneRun) -> None:
     """Thin lines at what happens, as long as there are not too many."""
-    events = [e for e in run.events if e.what in ("impact", "contact", "border", "slip", "stick")]
+    events = [e for e in run.events if e.what != "edge"]
     for event in events if len(events) <= _EVENTS_DRAWN else ():
         axes.axvline(event.time, color=GREY, linewidth=0.5, linestyle=":")

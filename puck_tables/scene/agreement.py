@@ -78,8 +78,8 @@ def _bad_astride(scene: Scene) -> list[str]:
     if highest > law.delta_max * (1.0 + 1e-12):
         return [
             f"{name}: friction under a base on two frictions is known for one that is loaded "
-            f"everywhere, delta = 2 f h / r up to {law.delta_max:g}; its largest f makes {highest:g}"
-            ": give a lower puck.height or less friction"
+            f"everywhere, delta = 2 f h / r up to {law.delta_max:g}; its largest f makes "
+            f"{highest:g}: give a lower puck.height or less friction"
         ]
     return []
 

@@ -34,8 +34,8 @@ from puck_tables.kernels.base_parts import (
 )
 from puck_tables.kernels.compile import inlined, inner
 
-# A ground, all in one array, which is quick to hand on: where the centre of the base is, 1 or by how
-# much all friction is taken wrong, and what holds for all of it,
+# A ground, all in one array, which is quick to hand on: where the centre of the base is, 1 or by
+# how much all friction is taken wrong, and what holds for all of it,
 PLACE_X, PLACE_Y, SHARE, LEVER, INNER, ACROSS_X, ACROSS_Y, BORDERS, PATCHES = range(9)
 _HEAD = 9
 # the places of its borders, f N between them, a row for each patch (its middle, the radius of a
@@ -90,7 +90,7 @@ def border_of(ground: FloatArray, number: int) -> float:
 
 @inlined
 def load_of(ground: FloatArray, strip: int) -> float:
-    """f N on a strip."""
+    """F N on a strip."""
     return ground[_HEAD + int(ground[BORDERS]) + strip]
 
 
@@ -146,7 +146,7 @@ def strip_at(ground: FloatArray, x: float, y: float) -> int:
 
 @inner
 def _weighted(ground: FloatArray, radius: float, slip: Slip, mirrored: float, size: float) -> Sums:
-    """f N times the sums over a disc of radius ``size``; ``mirrored`` −1: of a clockwise spin.
+    """Sums over a disc of radius ``size`` times f N; ``mirrored`` −1: of a clockwise spin.
 
     In axes along the slip and across it.  A clockwise spin is the mirror image of the other.
     """

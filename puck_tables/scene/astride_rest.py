@@ -1,10 +1,10 @@
 """What a floor holds of a puck at rest astride several frictions.
 
 At rest the demand on the floor fixes the tilt of the pressure: b = κ F.  With the pressure known,
-friction holds a force and a torque if no slip gains energy: P·n ≤ D(n) = ∫ f σ |u| dA for all slips
-n = (u_x, u_y, r ω), P = (F_x, F_y, T/r).  D is convex and its gradient is the wrench of friction, so
-that the worst slip is the least of D on the plane P·n = 1.  Where the puck is held only just, this
-is the same as friction in that slip being P.
+friction holds a force and a torque if no slip gains energy: P·n ≤ D(n) = ∫ f σ |u| dA for all
+slips n = (u_x, u_y, r ω), P = (F_x, F_y, T/r).  D is convex and its gradient is the wrench of
+friction, so that the worst slip is the least of D on the plane P·n = 1.  Where the puck is held
+only just, this is the same as friction in that slip being P.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ def _least_along(
     ground: FloatArray, radius: float, bx: float, by: float, n: tuple[float, float, float],
     way: tuple[float, float, float], size: float,
 ) -> float:  # fmt: skip
-    """Where on the line n + a way D is least: its slope, which grows, by false position (Illinois)."""
+    """Where on the line n + a way D is least: its slope grows; false position (Illinois)."""
     first = _slope_along(ground, radius, bx, by, n, way, 0.0)
     if first == 0.0:
         return 0.0

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -175,7 +176,8 @@ def _overlap(one: Patch, ours: FloatArray, other: Patch, theirs: FloatArray) -> 
         one, ours, other, theirs = other, theirs, one, ours
     if not len(theirs):
         centre = np.array(other.centre)
-        near = min(point_to_edge(centre, a, b) for a, b in zip(ours, np.roll(ours, -1, axis=0)))
+        edges = zip(ours, np.roll(ours, -1, axis=0), strict=True)
+        near = min(point_to_edge(centre, a, b) for a, b in edges)
         return inside(ours, centre) or near < other.radius * (1.0 - 1e-12)
     size = max(float(np.ptp(ours, axis=0).max()), float(np.ptp(theirs, axis=0).max()))
     return _reaches_into(ours, theirs, size) or _reaches_into(theirs, ours, size)
@@ -183,19 +185,18 @@ def _overlap(one: Patch, ours: FloatArray, other: Patch, theirs: FloatArray) -> 
 
 def _reaches_into(ours: FloatArray, theirs: FloatArray, size: float) -> bool:
     """Whether a polygon has part of its border within another one."""
-    for a, b in zip(ours, np.roll(ours, -1, axis=0)):
+    ahead = np.roll(theirs, -1, axis=0)
+    for a, b in zip(ours, np.roll(ours, -1, axis=0), strict=True):
         cuts = {0.0, 1.0}
-        for c, d in zip(theirs, np.roll(theirs, -1, axis=0)):
+        for c, d in zip(theirs, ahead, strict=True):
             way, side = b - a, d - c
             cross = way[0] * side[1] - way[1] * side[0]
             if abs(cross) > 1e-14 * size * size:
                 cuts.add(min(max(((c - a)[0] * side[1] - (c - a)[1] * side[0]) / cross, 0.0), 1.0))
         places = sorted(cuts)
-        for low, high in zip(places, places[1:]):
+        for low, high in pairwise(places):
             middle = a + 0.5 * (low + high) * (b - a)
-            deep = min(
-                point_to_edge(middle, c, d) for c, d in zip(theirs, np.roll(theirs, -1, axis=0))
-            )
+            deep = min(point_to_edge(middle, c, d) for c, d in zip(theirs, ahead, strict=True))
             if deep > 1e-9 * size and inside(theirs, middle):
                 return True
     same = bool(len(ours) == len(theirs)) and inside(theirs, _within(ours))

@@ -13,7 +13,7 @@ from __future__ import annotations
 import math
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import kernel
+from puck_tables.kernels.compile import inlined, kernel
 from puck_tables.scene.astride import BORDERS as GROUND_BORDERS
 from puck_tables.scene.at_once import met_at_once
 from puck_tables.scene.boundaries import (
@@ -48,10 +48,12 @@ from puck_tables.scene.ingredients import (
     NO_WAY,
     SLIDES,
     STOPS,
+    Dry,
     Model,
     Regions,
     Stretch,
     floor_velocity,
+    is_astride,
 )
 from puck_tables.scene.leaning import GRIP, RIM
 from puck_tables.scene.moments import (
@@ -101,6 +103,17 @@ _SLOWLY = 0.1  # if the slip changes by less than this of itself meanwhile
 _NEWTON, _FINEST_NEWTON = 1e-3, 1e-15  # of the local error: how well implicit steps are solved
 _SWING = 0.05  # rad that a carried puck turns, at most, in a step
 _NOTHING = -2  # is watched
+_ABRUPT, _ROUNDING = 0.03, 3e-14  # of the local error, astride, and the least
+
+
+@inlined
+def _allowed(tolerance: float, dry: Dry) -> float:
+    """The error of a step.
+
+    Where the rim comes over a border friction grows like t^(3/2): there a step errs by what it is
+    estimated to, and not by much less as on a smooth motion.
+    """
+    return max(_ABRUPT * tolerance, min(tolerance, _ROUNDING)) if is_astride(dry) else tolerance
 
 
 @kernel
@@ -143,6 +156,7 @@ def follow(
     leaning = contacts.rows[: touching(bounds, contacts)]
     look_at_patches(regions.ground, lies, radius, y[X], y[Y])
     dry = dry_under(regions, region, lies)
+    allowed = _allowed(ask.tolerance, dry)
     room, leans = contacts.room, contacts.leans
     to_laboratory(model, y, -1.0)
     t, heat, mode, piece, way, stiff = 0.0, 0.0, SLIDES, 0, NO_WAY, False
@@ -239,19 +253,19 @@ def follow(
         lifts = 0.0  # off a wall that the puck leant on: from where it leaves, it may come back
         for i in range(leaning.shape[0]):
             lifts = max(lifts, leaning[i, NX] * new[SIZE] + leaning[i, NY] * new[SIZE + 1])
-        if lifts > ask.tolerance * scale[0] and error <= ask.tolerance:
+        if lifts > ask.tolerance * scale[0] and error <= allowed:
             h = 0.25 * length
             continue
-        if not error <= ask.tolerance:
+        if not error <= allowed:
             shrink = 0.25 if newton > 0.0 else 0.1
             if error < math.inf:
-                shrink = max(0.1, 0.9 * (ask.tolerance / error) ** power)
+                shrink = max(0.1, 0.9 * (allowed / error) ** power)
             h = length * shrink
             if (t + h == t and t > 0.0) or h < 1e-300:
                 how = NOT_FINITE
                 break
             continue
-        h = length * min(5.0, 5.0 if error == 0.0 else 0.9 * (ask.tolerance / error) ** power)
+        h = length * min(5.0, 5.0 if error == 0.0 else 0.9 * (allowed / error) ** power)
         stuck, cut = -1, landed
         for passed in range(2 + leaning.shape[0]):
             what = _NOTHING
@@ -348,7 +362,7 @@ def follow(
                 if at_once[0] == 1.0:
                     first = which if happens == BOUNCES else len(bounds.walls) + which
                     at_once[1], at_once[2], at_once[3] = t, first, other
-        if happens == BORDER or happens == _PATCH:
+        if happens in (BORDER, _PATCH):
             if happens == BORDER:
                 line = bounds.borders[min(region, which)]
                 back = line[BORDER_SIDE] * (which - region) > 0.0
@@ -359,6 +373,7 @@ def follow(
                 which += int(regions.ground[GROUND_BORDERS])
             happens = LEAVES if back else COMES_OVER
             dry = dry_under(regions, region, lies)
+            allowed = _allowed(ask.tolerance, dry)
             damps, turns = settling_rates(model, dry.load)
             mode = CARRIED if mode == CARRIED and dry.load > 0.0 else SLIDES
             contacts.chain[0] = -1

@@ -118,8 +118,8 @@ def after_patch(ground: FloatArray, number: int, how: int, x: float, y: float) -
 
 @inner
 def first_patch(
-    ground: FloatArray, lies: npt.NDArray[np.int64], stretch: Stretch, t: float, h: float, y: FloatArray,
-    scale: FloatArray, work: FloatArray, last: FloatArray, new: FloatArray,
+    ground: FloatArray, lies: npt.NDArray[np.int64], stretch: Stretch, t: float, h: float,
+    y: FloatArray, scale: FloatArray, work: FloatArray, last: FloatArray, new: FloatArray,
 ) -> tuple[int, float]:  # fmt: skip
     """The first patch whose border the rim meets or leaves on a step, and when; −1: none.
 

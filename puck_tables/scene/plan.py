@@ -173,6 +173,11 @@ def plan_for(scene: Scene) -> Plan:
         )
         if scene.lateral.strength != 0.0:
             why += f"\n{EMPIRICAL}"
+        if scene.floor.strips is not None or scene.floor.patches:
+            why += (
+                "\nWhile the base is astride two frictions they are integrated over its parts, "
+                "about ten times the cost of a step elsewhere."
+            )
         return Plan(model, False, why)
     kind = scene.puck.regime(free_velocity(scene), scene.launch.spin)
     frame = "in the frame of the belt" if any(scene.floor.velocity) else "a free puck, level floor"

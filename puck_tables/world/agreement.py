@@ -175,6 +175,8 @@ def _not_here(scene: Scene) -> Iterator[str]:
             "floor.orthotropic: is of one puck alone, without posts, arcs, pockets and laws of "
             "rims; give each of several pucks its friction"
         )
+    if scene.floor.patches:
+        yield "floor.patch: is of one puck alone, without posts, arcs, pockets and laws of rims"
     if not scene.pucks:
         return
     for name, part, default in (

@@ -14,7 +14,7 @@ import numpy as np
 from cubic_paths import BORDER, BOUNCES, EDGE, MANY, SETTLES, follow
 from report import arguments, engine, lines, table
 
-WORDS = {"impact": BOUNCES, "contact": BOUNCES, "border": BORDER, "edge": EDGE}
+WORDS = {"impact": BOUNCES, "contact": BOUNCES, "entry": BORDER, "exit": BORDER, "edge": EDGE}
 TOLS = [10.0**-k for k in range(3, 11)]
 
 
@@ -107,10 +107,10 @@ def free_state(scene: dict[str, Any], when: float) -> tuple[np.ndarray, np.ndarr
 def truth(scene: dict[str, Any], shift: float = 0.0, turn: float = 0.0) -> tuple:
     """How it ends, when, events (n, 5), size of path, fastest speed, last state; lines moved."""
     puck, launch = scene["puck"], scene["launch"]
-    walls, edges, borders = lines(scene)
+    walls, edges, _ = lines(scene)
     walls[:, 2] += shift
     edges[:, 2] += shift
-    borders[:, 2] += shift * (-1.0) ** np.arange(len(borders))
+    borders = rims(scene, shift)[0]
     force = scene.get("force", {})
     c, s = math.cos(turn), math.sin(turn)
     vx, vy = launch["velocity"]
@@ -126,6 +126,16 @@ def truth(scene: dict[str, Any], shift: float = 0.0, turn: float = 0.0) -> tuple
     return how, when, events[:count], extent, fastest, start
 
 
+def rims(scene: dict[str, Any], shift: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
+    """Lines (2n, 3) at which a centre is when the rim meets or leaves a border, and which (2n,)."""
+    borders, radius = lines(scene)[2], scene["puck"]["radius"]
+    borders[:, 2] += shift * (-1.0) ** np.arange(len(borders))
+    both = np.repeat(borders, 2, axis=0)
+    both[:, 2] += np.tile([-radius, radius], len(borders))
+    order = np.argsort(both[:, 2], kind="stable")
+    return both[order], np.repeat(np.arange(len(borders)), 2)[order]
+
+
 def prepared(seed: int, index: int) -> dict[str, Any]:
     """A scene that ends before its rebounds settle, and before 300 events."""
     scene = draw(seed, index)
@@ -134,6 +144,18 @@ def prepared(seed: int, index: int) -> dict[str, Any]:
         keep = events[min(len(events) - 1, 300), 0]
         scene["run"]["time"] = float(0.999 * keep)
     return scene
+
+
+def _borders(scene: dict[str, Any], events: np.ndarray) -> np.ndarray:
+    """Which wall, edge or border was met: of the zones that were entered, which border."""
+    ways, numbers = rims(scene)
+    x, y = scene["launch"].get("position", (0.0, 0.0))
+    zone = int(sum(nx * x + ny * y >= c for nx, ny, c in ways))
+    which = events[:, 2].copy()
+    for i, (_, what, entered, *_) in enumerate(events):
+        if what == BORDER:
+            which[i], zone = numbers[min(zone, int(entered))], int(entered)
+    return which
 
 
 def certain(scene: dict[str, Any], tol: float) -> tuple[np.ndarray, np.ndarray, int]:
@@ -157,6 +179,7 @@ def verdict(scene: dict[str, Any], tol: float, folder: Path) -> tuple[str, str, 
     if run is None:
         return "refused", words, sure
     found = [(e.time, WORDS[e.what], e.which) for e in run.events if e.what in WORDS]
+    events[:, 2] = _borders(scene, events)
     complete = sure == len(events)
     for i in range(sure):
         t, what, which = events[i, :3]

@@ -1,0 +1,120 @@
+"""Friction under a base on several frictions: against scans of the base, and closed answers."""
+
+from __future__ import annotations
+
+import math
+
+import astride_judge
+import numpy as np
+import pytest
+
+from puck_tables.kernels.compile import kernel
+from puck_tables.scene.astride import PLACE_X, PLACE_Y, Ground, astride_friction
+
+NO_PATCHES, NO_CORNERS = np.empty((0, 6)), np.empty((0, 2))
+
+
+@kernel
+def _friction(ground, ux, uy, w):
+    return astride_friction(ground, 1.0, ux, uy, w, math.sqrt(ux * ux + uy * uy + w * w))
+
+
+def friction(ground: Ground, slip: tuple[float, float, float], x: float = 0.0, y: float = 0.0):
+    """Of a base of radius 1 under a load of 1, against the puck: force and torque; and power."""
+    packed = ground.packed()
+    packed[PLACE_X], packed[PLACE_Y] = x, y
+    fx, fy, torque, power = _friction(packed, *slip)
+    return np.array([-fx, -fy, -torque]), power
+
+
+def strips(borders, loads, lever=0.0, inner=0.0) -> Ground:
+    return Ground(
+        1.0, 0.0, np.array(borders), np.array(loads), NO_PATCHES, NO_CORNERS, lever, inner
+    )
+
+
+SLIPS = {
+    "slides": (1.0, 0.4, 0.0), "turns little": (1.0, -0.3, 0.1),
+    "slides and turns": (0.4, 0.9, 0.6),
+    "centre of rotation on the rim": (0.6, 0.8, 1.0), "next to it": (0.6, 0.8, -1.0 + 1e-6),
+    "centre on a border": (0.1, -0.2, 1.0), "turns": (0.0, 0.0, -1.0),
+}  # fmt: skip
+FLOORS = {
+    "one": ([0.2], [0.3, 0.1]), "through the centre": ([0.0], [0.1, 0.5]),
+    "several": ([-0.7, -0.1, 0.2, 0.95], [0.3, 0.1, 0.0, 0.6, 0.2]),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("floor", FLOORS)
+@pytest.mark.parametrize(("lever", "inner"), [(0.0, 0.0), (0.5, 0.0), (0.4, 0.6)])
+def test_strips_against_scans(floor, lever, inner):
+    borders, loads = FLOORS[floor]
+    for name, slip in SLIPS.items():
+        found, power = friction(strips(borders, loads, lever, inner), slip)
+        truth = astride_judge.friction(
+            astride_judge.Ground(borders, loads), *slip, lever=lever, hole=inner
+        )
+        assert np.abs(found - truth).max() <= 3e-12, name
+        assert power == pytest.approx(found @ slip, rel=1e-12)
+
+
+CORNERS = np.array([[-0.5, -0.9], [1.4, -0.2], [0.1, 0.1], [0.3, 1.2]])
+
+
+@pytest.mark.parametrize("lever", [0.0, 0.5])
+@pytest.mark.parametrize(
+    ("x", "y", "size"), [(0.5, -0.4, 0.7), (0.1, 0.2, 0.3), (-0.6, 0.9, 1.5), (0.3, 0.0, 0.7)]
+)
+def test_round_patches_against_scans(x, y, size, lever):
+    ground = Ground(
+        1.0, 0.0, np.array([-0.95]), np.array([0.2, 0.3]),
+        np.array([[x, y, size, 0.0, 0.0, 0.05]]), NO_CORNERS, lever, 0.0,
+    )  # fmt: skip
+    judge = astride_judge.Ground([-0.95], [0.2, 0.3], [(x, y, size, 0.05)])
+    for name, slip in SLIPS.items():
+        truth = astride_judge.friction(judge, *slip, lever=lever)
+        assert np.abs(friction(ground, slip)[0] - truth).max() <= 3e-12, name
+
+
+@pytest.mark.parametrize(("x", "y"), [(0.0, 0.0), (0.4, -0.3), (-0.8, 0.5), (0.1, 0.1)])
+def test_polygons_against_scans(x, y):
+    middle = 0.5 * (CORNERS.min(axis=0) + CORNERS.max(axis=0))
+    reach = np.hypot(*(CORNERS - middle).T).max()
+    ground = Ground(
+        1.0, 0.0, np.empty(0), np.array([0.3]), np.array([[*middle, reach, 0.0, 4.0, 0.05]]),
+        CORNERS, 0.4, 0.0,
+    )  # fmt: skip
+    judge = astride_judge.Ground([], [0.3], polygons=[(CORNERS - (x, y), 0.05)])
+    for name, slip in SLIPS.items():
+        truth = astride_judge.friction(judge, *slip, lever=0.4)
+        assert np.abs(friction(ground, slip, x, y)[0] - truth).max() <= 3e-12, name
+
+
+def test_a_spin_over_a_border_is_pushed_along_it():
+    """The difference of the frictions over π; with f 0.78 and 0.67 and g 10: 0.3501 m/s²."""
+    found, _ = friction(strips([0.0], [0.78, 0.67]), (0.0, 0.0, 1.0))
+    assert 10.0 * np.abs(found[:2]) == pytest.approx([0.0, 0.11 * 10.0 / math.pi], abs=1e-14)
+    assert round(10.0 * abs(found[1]), 4) == 0.3501
+    assert found[2] == pytest.approx(2.0 / 3.0 * 0.725, rel=1e-14)
+
+
+@pytest.mark.parametrize("place", [-0.8, 0.0, 0.3])
+def test_a_slide_meets_every_part_and_is_turned_by_their_offset(place):
+    """F = Σ f_i A_i σ; T of a slide along the border from the first moment of a segment."""
+    beyond = (math.acos(place) - place * math.sqrt(1.0 - place * place)) / math.pi
+    moment = 2.0 / 3.0 * (1.0 - place * place) ** 1.5 / math.pi
+    for slip in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0)):
+        found, _ = friction(strips([place], [0.3, 0.1]), slip)
+        force = 0.3 * (1.0 - beyond) + 0.1 * beyond
+        assert found[:2] == pytest.approx(force * np.array(slip[:2]), abs=1e-14)
+        assert found[2] == pytest.approx(slip[1] * (0.1 - 0.3) * moment, abs=1e-14)
+
+
+def test_one_friction_is_that_of_the_closed_forms():
+    """Salnikova, Treschev, Gallyamov 2012, table 6.1 at φ = π/4, δ = 1."""
+    q = (45.0 * math.pi) ** 2 + 16.0**2
+    found, _ = friction(strips([0.1], [1.0, 1.0], lever=1.0), (1.0, 0.0, 1.0))
+    parallel, across = 5400.0 * math.sqrt(2.0) * math.pi / q, 7680.0 / q
+    spin = 16.0 * math.sqrt(2.0) / (9.0 * math.pi) * ((45.0 * math.pi) ** 2 - 2.0 * 32.0**2) / q
+    root = math.sqrt(0.5)
+    assert found == pytest.approx([root * parallel, 0.5 * across, 0.5 * root * spin], rel=1e-13)

@@ -1,0 +1,130 @@
+"""Pucks over borders of two frictions: events, motion against scipy, rest, and what is refused."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from astride_judge import Ground, Motion, sums
+
+import puck_tables as pt
+
+PUCK = pt.Puck(radius=0.04, height=0.03, friction=0.3, mass=0.2)
+LAUNCH = pt.Launch((1.5, 0.3), spin=-40.0)
+NARROW = pt.Strips((0.4, 0.43), (0.3, 0.06, 0.2), 0.4)
+ROUND = pt.Patch(0.05, (0.3, 0.05), 0.1)
+POLYGON = pt.Patch(0.05, corners=[[0.2, -0.1], [0.5, 0.02], [0.3, 0.3], [0.3, 0.1]])
+FLOORS = {
+    "two borders at once": (pt.Floor(strips=NARROW), ["entry", "entry", "exit", "exit"]),
+    "a round patch": (pt.Floor(patches=[ROUND]), ["entry", "exit", "entry", "exit"]),
+    "a polygon": (pt.Floor(patches=[POLYGON]), ["entry", "exit", "entry", "exit"]),
+    "on a belt": (pt.Floor(velocity=(0.3, 0.1), strips=NARROW), ["entry"] * 2 + ["exit"] * 2),
+}
+
+
+def apart(scene: pt.Scene, share: float = 0.97) -> float:
+    """How far a run is from scipy's, in units of Q²/J."""
+    run = scene.simulate()
+    times = np.linspace(0.0, share * run.end_time, 6)
+    states, truth = run(times), Motion(scene).states(scene, times)
+    gaps = states.x - truth[0], states.y - truth[1], 0.04 * (states.orientation - truth[2])
+    return float(np.abs(gaps).max() / (run.speed_scale**2 / run.rate_scale))
+
+
+@pytest.mark.parametrize("floor", FLOORS)
+def test_a_crossing_is_that_of_scipy(floor):
+    scene = pt.Scene(PUCK, FLOORS[floor][0], LAUNCH, run=pt.Run(time=0.6))
+    run = scene.simulate()
+    assert [event.what for event in run.events] == FLOORS[floor][1]
+    assert run.energy_residual <= 1e-10
+    assert apart(scene) <= 1e-9
+
+
+@pytest.mark.parametrize("launch", [
+    pt.Launch((0.3, 0.1), 30.0, (0.39, 0.0)), pt.Launch((0.0, 0.0), 60.0, (0.41, 0.0)),
+    pt.Launch((0.06, 0.5), 20.0, (0.33, 0.0)),
+], ids=["starts astride", "spins in place", "grazes"])  # fmt: skip
+def test_a_puck_that_starts_or_stays_astride(launch):
+    floor = pt.Floor(strips=replace(NARROW, borders=(0.4, 0.9), direction=0.0))
+    scene = pt.Scene(replace(PUCK, pressure="annulus:0.5"), floor, launch)
+    assert apart(scene, 0.9) <= 1e-9
+
+
+def test_the_rim_meets_a_border_a_radius_before_the_centre():
+    floor = pt.Floor(strips=pt.Strips((0.3,), (0.2, 0.1)))
+    entry, away, _ = pt.Scene(PUCK, floor, pt.Launch((1.5, 0.0))).simulate().events
+    assert (entry.what, away.what) == ("entry", "exit")
+    assert (entry.x, away.x) == pytest.approx((0.26, 0.34), abs=1e-12)
+
+
+def test_a_spin_walks_along_the_border():
+    floor = pt.Floor(strips=pt.Strips((0.0,), (0.78, 0.67)))
+    puck = pt.Puck(radius=1.0, gravity=10.0)
+    run = pt.Scene(puck, floor, pt.Launch(spin=20.0), run=pt.Run(time=1e-6)).simulate([1e-6])
+    assert abs(run.vy[0]) == pytest.approx(1e-6 * 0.3501408748, rel=1e-6)
+
+
+@pytest.mark.parametrize(("height", "at", "downhill"), [
+    (0.0, 0.5, 1.0), (0.5, 0.0, math.pi / 2), (0.5, 0.5, 1.0),
+])  # fmt: skip
+def test_what_holds_at_rest(height, at, downhill):
+    """Held while no slip gains energy; the pressure is tilted by the pull."""
+    floor, values = pt.Strips((at,), (0.2, 0.4)), [0.2, 0.4]
+    puck, ground = pt.Puck(radius=1.0, height=height, gravity=10.0), Ground([at], values)
+
+    def gain(slope: float) -> float:
+        pull = math.tan(slope) * np.array([math.cos(downhill), math.sin(downhill), 0.0])
+        tilt = 2.0 * height * pull[:2]
+
+        def over(a: float, b: float) -> float:
+            way = downhill + a
+            n = np.array([math.cos(b) * math.cos(way), math.cos(b) * math.sin(way), math.sin(b)])
+            m = sums(ground, *n) / math.pi
+            held = np.array([
+                m[0] + tilt @ m[2:4], m[1] + tilt @ m[4:6], m[4] - m[3] + tilt @ m[6:8]
+            ])  # fmt: skip
+            return float((pull - held) @ n)
+
+        best, centre, span = -1.0, (0.0, 0.1), 0.9
+        for _ in range(9):
+            ways = np.linspace(-span, span, 7)
+            trials = [(over(centre[0] + a, centre[1] + b + 1e-6), a, b) for a in ways for b in ways]
+            best, a, b = max(trials)
+            centre, span = (centre[0] + a, centre[1] + b), 0.4 * span
+        return best
+
+    low, high = 0.1, 0.4
+    for _ in range(8):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if gain(middle) < 0.0 else (low, middle)
+    for slope, holds in ((low - 1e-3, True), (high + 1e-3, False)):
+        scene = pt.Scene(puck, pt.Floor(slope, downhill, strips=floor), run=pt.Run(time=1e-3))
+        run = scene.simulate([0.0])
+        assert (run.end == "at rest") == holds, slope
+
+
+@pytest.mark.parametrize(("puck", "floor", "words"), [
+    ({"pressure": "hertz"}, {"strips": NARROW}, "'uniform' and 'annulus:INNER' only"),
+    ({"height": 0.2}, {"strips": NARROW}, "loaded everywhere, delta = 2 f h / r up to 1"),
+    ({}, {"patches": [ROUND, POLYGON]}, "overlap"),
+    ({}, {"patches": [ROUND], "strips": pt.Strips((0.3,), (0.1, 0.2))}, "lies over floor.strips"),
+    ({}, {"patches": [pt.Patch(0.1)]}, "give a radius > 0 m, or corners"),
+    ({}, {"patches": [replace(ROUND, corners=POLYGON.corners)]}, "not both"),
+    ({}, {"patches": [pt.Patch(0.1, corners=[[0, 0], [1, 1], [1, 0], [0, 1]])]}, "meet"),
+    ({}, {"patches": [pt.Patch(0.1, corners=[[0, 0], [1, 1], [2, 2]])]}, "on a line"),
+    ({}, {"patches": [ROUND], "law": [[0.0, 0.1], [9.0, 0.1]]}, "floor.law and floor.patch"),
+])  # fmt: skip
+def test_what_is_refused(puck, floor, words):
+    with pytest.raises(pt.InputError, match="error") as caught:
+        pt.Scene(replace(PUCK, **puck), pt.Floor(**floor), LAUNCH)
+    assert words in str(caught.value)
+
+
+def test_many_launches_are_the_runs_one_by_one():
+    floor = pt.Floor(patches=[ROUND])
+    scene = pt.Scene(PUCK, floor, pt.Launch((1.5, 0.3), [20.0, -40.0]), run=pt.Run(tol=1e-6))
+    ends = scene.sweep()
+    one = scene.at({"launch.spin": -40.0}).simulate()
+    assert ends.columns["x"][1] == one.last["x"]
