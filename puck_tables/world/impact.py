@@ -222,13 +222,26 @@ def _alone(game: Game, i: int, j: int, row: FloatArray, states: FloatArray, e: f
 
 
 @inlined
+def _speeds(game: Game, i: int, states: FloatArray) -> float:
+    """|v| + R |ω| of a disc; 0 of an obstacle."""
+    if i < 0:
+        return 0.0
+    rim = game.discs[i, RADIUS] * abs(states[i, SPIN])
+    return math.hypot(states[i, VX], states[i, VY]) + rim
+
+
+@inlined
 def _shared_out(
     game: Game, contacts: Whole, count: int, rows: FloatArray, before: FloatArray,
     states: FloatArray, weight: float,
 ) -> None:  # fmt: skip
     """The impulses for e = β = 0 of contacts that share discs; rims without bound all stop."""
+    rounding = 0.0  # of impulses: where discs that go fast touch slowly, more than a share of them
     for n in range(count):
         rows[n, PN] = rows[n, PT] = 0.0
+        if rows[n, ACTS] > 0.0:
+            fast = _speeds(game, contacts[n, 0], states) + _speeds(game, contacts[n, 1], states)
+            rounding = max(rounding, _SOLVED * fast / rows[n, SOFT])
     for _ in range(_MOST_ITERATIONS):
         change, largest = 0.0, 0.0
         for n in range(count):
@@ -246,7 +259,7 @@ def _shared_out(
             change = max(change, abs(row[PN] - old_n), abs(row[PT] - old_t))
             largest = max(largest, row[PN], abs(row[PT]))
         _push_all(game, contacts, count, rows, before, states)
-        if change <= _SOLVED * largest:
+        if change <= max(_SOLVED * largest, rounding):
             break
 
 

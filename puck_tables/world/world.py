@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import deque
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -42,6 +43,7 @@ from puck_tables.world.record import states_at
 
 MOST_EVENTS = 1_000_000
 CROWD = 1e-7  # of Q/J: 2000 events in less are a crowd
+CROWDED_PUSHES, PUSHED_IN = 3000, 1e-3  # and so many new groups that push, in that share of Q/J
 _FAILURES = {
     CROWDED: "too many events by {time:.6g} s: they crowd together without end; change the "
     "restitution of what meets there",
@@ -285,7 +287,8 @@ class World:
 
     def _advance(self, until: float, struck: int, state: FloatArray) -> None:
         """Let time pass, after a disc was given the velocity of a state."""
-        mark, crowd = -math.inf, CROWD * float(self._game.pace[0] / max(self._game.pace[1], 1e-300))
+        unit = float(self._game.pace[0] / max(self._game.pace[1], 1e-300))
+        mark, pushes = -math.inf, deque[float](maxlen=CROWDED_PUSHES)
         if lacks_rows(self._game, self._room):
             self._grow()
         if struck >= 0:
@@ -297,8 +300,12 @@ class World:
             elif how == PUSHING:
                 from puck_tables.world.groups import push_on  # compiled where it is needed
 
+                full = len(pushes) == CROWDED_PUSHES
+                if full and self.time - pushes[0] <= PUSHED_IN * unit:
+                    raise PuckError(self._failure(CROWDED))
+                pushes.append(self.time)
                 self._game, struck = push_on(self._game, self._room, self._books), THOSE_LEFT
-            elif how == PAUSED and self.time - mark > crowd:
+            elif how == PAUSED and self.time - mark > CROWD * unit:
                 mark = self.time
             else:
                 raise PuckError(self._failure(CROWDED if how == PAUSED else how))

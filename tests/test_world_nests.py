@@ -1,0 +1,99 @@
+"""Nests: equal pucks in touch, each with rims of its own, struck.  Where their energy goes."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import puck_tables as pt
+
+RADIUS = 0.03
+
+
+def law(rng: np.random.Generator) -> dict[str, float]:
+    return {
+        "restitution": float(rng.choice([0, 0.3, 0.5, 0.8, 1])),
+        "tangential": float(rng.choice([-1, 0, 0.5, 1])),
+        "rim": float(rng.choice([0, 0.1, 0.3, math.inf])),
+    }
+
+
+def nest(seed: int) -> pt.Scene:
+    """Three to twelve pucks, some of them spinning, and one that comes from outside."""
+    rng = np.random.default_rng([1, seed, 7])
+    count, places, tries = int(rng.integers(3, 13)), [(0.0, 0.0)], 0
+    while len(places) < count and tries < 2000:
+        tries += 1
+        x, y = places[rng.integers(len(places))]
+        way = rng.integers(6) * math.pi / 3 if rng.random() < 0.8 else rng.uniform(0, 2 * math.pi)
+        new = x + 2.0 * RADIUS * np.cos(way), y + 2.0 * RADIUS * np.sin(way)
+        if all(np.hypot(new[0] - x, new[1] - y) >= 2.0 * RADIUS * (1.0 - 1e-15) for x, y in places):
+            places.append(new)
+    same, common, pucks = rng.random() < 0.5, law(rng), []
+    for number, place in enumerate(places):
+        rim, launch = common if same else law(rng), {"position": place}
+        if rng.random() < 0.15:
+            launch["velocity"] = tuple(0.3 * rng.normal(size=2))
+        if rng.random() < 0.25:
+            launch["spin"] = float(rng.choice([20, -20, 5]))
+        height = float(rng.choice([0, 0, 0.01]))
+        pucks.append(pt.Piece(
+            RADIUS, friction=0.1, height=height, name=f"p{number}", launch=pt.Launch(**launch),
+            **rim,
+        ))  # fmt: skip
+    way = rng.uniform(0, 2 * math.pi)
+    ahead = np.array([math.cos(way), math.sin(way)])
+    far = max(np.dot(place, -ahead) for place in places) + 0.15
+    aside = rng.choice([0, 0.015, 0.03, rng.uniform(-0.06, 0.06)])
+    start = -far * ahead + aside * np.array([-ahead[1], ahead[0]])
+    launch = pt.Launch(
+        tuple(float(rng.choice([1, 2, 0.5])) * ahead), float(rng.choice([0, 30, -30])),
+        tuple(start),
+    )  # fmt: skip
+    rim = common if same else law(rng)
+    pucks.append(pt.Piece(RADIUS, friction=0.1, name="striker", launch=launch, **rim))
+    return pt.Scene(pucks=pucks)
+
+
+@pytest.mark.parametrize("seed", [36, 39, 48, 89])
+def test_nests_keep_their_books(seed: int):
+    """Among them such where two groups with a puck in common set out at one moment."""
+    assert nest(seed).simulate().energy_residual <= 1e-9
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("seed", range(120))
+def test_more_nests_keep_their_books_or_are_refused_by_name(seed: int):
+    try:
+        run = nest(seed).simulate()
+    except pt.PuckError as refusal:
+        assert "crowd together" in str(refusal) or "press on each other" in str(refusal)
+    else:
+        assert run.energy_residual <= 1e-9
+
+
+def test_a_rim_without_bound_grips_nothing_that_is_not_pressed():
+    """Four at once; two of them part without an impulse, and so one keeps all of its spin."""
+    high = RADIUS * math.sqrt(3.0)
+
+    def piece(x: float, y: float, e: float, rim: float, **launch: object) -> pt.Piece:
+        start = pt.Launch(position=(x, y), **launch)
+        return pt.Piece(
+            RADIUS, friction=0.1, restitution=e, tangential=0.0, rim=rim, launch=start
+        )  # fmt: skip
+
+    pucks = [
+        piece(-0.06, 0.0, 0.5, 0.0, velocity=(1.0, 0.0)), piece(0.0, 0.0, 0.5, 0.0),
+        piece(0.06, 0.0, 0.8, math.inf),
+        piece(0.03, high, 0.5, math.inf, velocity=(-0.1, -0.2), spin=20.0),
+    ]  # fmt: skip
+    scene = pt.Scene(pucks=pucks)
+    run = scene.simulate()
+    assert run.energy_residual <= 1e-9
+    hits = [(one.puck, one.partner) for one in run.events if one.time == 0.0]
+    assert ("puck 0", "puck 1") in hits
+    assert ("puck 2", "puck 3") not in hits
+    assert scene.world().state()[3, 5] == 20.0
+    assert scene.world().state()[2, 5] == 0.0
