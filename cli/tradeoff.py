@@ -73,6 +73,7 @@ def report(measured: TradeOff) -> str:
         "stops in chunks: "
         + "; ".join(f"{n:.0e}: {ns:.1f} ns, {peak / 2**20:.1f} MiB" for n, ns, peak in growth)
     )
+    lines += _doors(measured)
     machine = measured.machine
     lines.append(
         ", ".join(f"{name} {text}" for name, text in machine.description.items())
@@ -89,6 +90,22 @@ def _line(method: Measured) -> str:
         f"  {method.name:<56}{method.error:>8.1e}{method.median_error:>9.1e}"
         f"{_duration(method.ns):>9}{spread:>5}{limit:>8}{method.bytes or '-':>9}"
     )
+
+
+def _doors(measured: TradeOff) -> list[str]:
+    """Each door on a line: cost of one question by the size of the batch."""
+    batches = sorted({door.batch for door in measured.doors})
+    lines = ["", f"{'doors: each question of a batch of':<46}" + "".join(
+        f"{f'{batch:.0e}' if batch > 1 else '1':>9}" for batch in batches
+    )]  # fmt: skip
+    rows: dict[tuple[str, str, int], dict[int, float]] = {}
+    for door in measured.doors:
+        rows.setdefault((door.name, door.outputs, door.threads), {})[door.batch] = door.ns
+    for (name, outputs, threads), costs in rows.items():
+        what = f"  {name}: {outputs}, {threads} thread{'' if threads == 1 else 's'}"
+        cells = (_duration(costs[n]) if n in costs else "-" for n in batches)
+        lines.append(f"{what:<46}" + "".join(f"{cell:>9}" for cell in cells))
+    return [*lines, ""]
 
 
 def _duration(ns: float) -> str:

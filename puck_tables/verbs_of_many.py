@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Sequence
 from importlib import import_module
 from pathlib import Path
@@ -177,7 +178,8 @@ class VerbsOfMany:
 
 def verb(module: str, name: str) -> Any:
     """What answers a question about a puck stands above it, and is loaded when it is asked."""
-    return getattr(import_module(f"puck_tables.{module}"), name)
+    path = f"puck_tables.{module}"
+    return getattr(sys.modules.get(path) or import_module(path), name)
 
 
 def refuse_frictionless(puck: Any) -> None:

@@ -116,3 +116,28 @@ def test_stops_of_tall_pucks_know_their_launches_too(delta):
     spin[7] += 1.0
     with pytest.raises(InputError, match="changed"):
         found.dataset()
+
+
+@pytest.mark.parametrize("launch", [((1.0, -0.5), 4.0), ((0.0, 0.0), -2.0), ((-0.0, 1.0), 0.0)])
+def test_one_puck_at_few_times_as_among_others(launch):
+    """It takes a way of its own, to the same bits."""
+    (vx, vy), spin = launch
+    times = np.array([0.0, 0.3, 1.1, 50.0])
+    alone = states((vx, vy), spin, times)
+    single = [states((vx, vy), spin, float(time)) for time in times]
+    among = states(np.tile([vx, vy], (4, 1)), np.full(4, spin), times)
+    for name in ("x", "y", "heading", "orientation", "speed", "spin"):
+        np.testing.assert_array_equal(getattr(alone, name), getattr(among, name))
+        np.testing.assert_array_equal([getattr(one, name) for one in single], getattr(among, name))
+
+
+def test_one_puck_is_refused_as_others_are():
+    for time, spin, words in (
+        (-1.0, 1.0, "negative"),
+        (math.nan, 1.0, "finite"),
+        (1.0, math.inf, "spin"),
+    ):
+        with pytest.raises(InputError, match=words):
+            states((1.0, 0.0), spin, time)
+    with pytest.raises(InputError, match="too large for floating point"):
+        states((1e200, 0.0), 1.0, 1.0)

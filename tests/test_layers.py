@@ -41,7 +41,7 @@ ROOMS = {
     "wrench": "_core contact errors io kernels puck result scene",
     "world": "_core bulk contact errors io kernels motion puck result scene stopping table",
     "reference": "_core contact errors film io puck result scene trajectory world",
-    "tradeoff": "_core _version accuracy contact io kernels motion result stopping table",
+    "tradeoff": "_core _version accuracy contact io kernels motion puck result stopping table",
     "plot": "_core _version accuracy bulk chetaev errors film fitting io motion reference result "
     "scene stopping tradeoff trajectory world wrench",
     "paper": "_core contact motion plot puck trajectory",

@@ -23,9 +23,12 @@ from puck_tables.stopping.exact import exact_stops
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.tradeoff import engine, resultant_methods, stop_methods
 from puck_tables.tradeoff.bicubic import fill_graded, graded_coefficients
+from puck_tables.tradeoff.doors import Door, measured_doors
 from puck_tables.tradeoff.machine import measured_machine
 from puck_tables.tradeoff.models import PADE_MATCHED, as_table, pade_limit_ratio
 from puck_tables.tradeoff.truth import Points, known_starts, random_points
+
+DOORS = (Door("stop", "all six", 1, 1, 2e4), Door("stop", "all six", 1, 10**6, 75.0))
 
 
 @pytest.fixture(scope="module")
@@ -34,7 +37,7 @@ def measured() -> engine.TradeOff:
     machine = replace(measured_machine(), description={"processor": "any", "cores": "1"})
     sizes = np.array([1e3, 1e4])
     return engine.TradeOff(
-        shipped_front(), sizes, np.array([20.0, 15.0]), np.array([1e5, 1e6]),
+        shipped_front(), sizes, np.array([20.0, 15.0]), np.array([1e5, 1e6]), DOORS,
         {"truth": 1.531, "limit surface": np.inf}, machine, 25, 80.0,
     )  # fmt: skip
 
@@ -171,6 +174,7 @@ def test_files(measured: engine.TradeOff, tmp_path: Path):
         assert data["error"].dims == ("contender",)
         assert data["stop_ns"].dims == ("stops",)
         assert data["ns"].attrs["units"] == "ns"
+        assert data["door_ns"].sel(door="stop: all six").values.tolist() == [2e4, 75.0]
         chosen = data["error"].sel(contender="resultants: closed forms")
         assert 1e-16 < float(chosen) <= 1e-14
         assert data.attrs["machine_processor"] == "any"
@@ -193,6 +197,7 @@ def test_picture_and_report(measured: engine.TradeOff, tmp_path: Path):
         "closed forms",
         "limit surface none",
         "1e+03: 20.0 ns",
+        "  stop: all six, 1 thread                         20 us    75 ns\n",
     ):
         assert words in text
 
@@ -225,6 +230,7 @@ def test_every_round_runs_every_way(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(engine.stop_methods, "contenders", lambda task: iter(()))
     monkeypatch.setattr(engine.state_methods, "contenders", lambda task: iter(()))
     monkeypatch.setattr(engine, "_QUICK_SWEEP", 4)
+    monkeypatch.setattr(engine, "_QUICK_BATCH", 2)
     seen: list[tuple[int, int]] = []
     result = engine.measure(quick=True, progress=lambda done, total: seen.append((done, total)))
     assert [method.method for method in result.methods] == ["closed forms", "limit surface"]
@@ -233,3 +239,16 @@ def test_every_round_runs_every_way(monkeypatch: pytest.MonkeyPatch):
     assert all(method.ns > 0.0 for method in result.methods)
     assert result.methods[0].limit in ("arithmetic", "memory")
     assert result.peak_bytes[-1] <= 2**21
+    assert {door.batch for door in result.doors} == {1, 100}
+
+
+def test_every_door_is_asked_in_every_batch():
+    found = measured_doors(2)
+    asked = {(door.name, door.outputs, door.threads, door.batch) for door in found}
+    assert len(asked) == len(found) == 5 * 2 * len({door.threads for door in found})
+    assert {door.name for door in found} == {"stop", "states", "aim"}
+    one, many = (
+        {d.batch: d.ns for d in found if d.name == n and d.threads == 1} for n in ("stop", "aim")
+    )
+    assert one[100] < one[1]  # most of one call is the call
+    assert many[100] < many[1]

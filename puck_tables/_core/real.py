@@ -179,6 +179,8 @@ def real(name: str, value: float, unit: str) -> float:
     >>> real("spin", 5, "rad/s")
     5.0
     """
+    if type(value) is float and math.isfinite(value):
+        return value
     refuse_mask(name, value)
     try:
         number = float(value)

@@ -217,6 +217,10 @@ COLUMNS = {
     "stops": Column("1", "stops", "stops in one sweep"),
     "stop_ns": Column("ns", "cost of a stop", "cost of one stop by look-up, in chunks"),
     "peak_bytes": Column("1", "peak memory", "peak memory"),
+    "door": Column("", "door", "question: what is asked for"),
+    "door_batch": Column("1", "batch", "questions in one call"),
+    "door_threads": Column("1", "threads", "threads of one call"),
+    "door_ns": Column("ns", "cost of a question", "cost of one question, all overhead in"),
 }
 
 

@@ -22,6 +22,7 @@ from puck_tables.kernels.compile import (
 )
 from puck_tables.kernels.elementary import log_of
 from puck_tables.kernels.spline import basis
+from puck_tables.motion.path import TURN_SHARE
 from puck_tables.stopping.axes import CONSTANT_HEIGHTS, HEIGHTS
 from puck_tables.stopping.curve_lookup import LAUNCH_COLUMNS, LAUNCH_ROWS, end_rates
 from puck_tables.stopping.launches import (
@@ -47,6 +48,7 @@ from puck_tables.stopping.lookup import (
     place_block,
 )
 from puck_tables.stopping.orbit import TINY, cell_of, log_place, place_of_log
+from puck_tables.stopping.orbit_lookup import PUCK_ROWS, fill_orbit_states
 
 CURVE_WIDTH = 4  # body angle, S/δ, κR, path length
 _ROW, _CURVE_ROW = WIDTH * STOP_POWERS, CURVE_WIDTH * HEIGHTS
@@ -121,6 +123,28 @@ def fill_known(
             for n in range(count):
                 place[n] = values[n]
     return doubtful, bad
+
+
+@allocating
+def fill_states_of_one(
+    vx: FloatArray, vy: FloatArray, step: int, spin: FloatArray, delta: FloatArray,
+    decel: FloatArray, radius: FloatArray, stops: FloatArray, curve: FloatArray,
+    turns: FloatArray, constants: FloatArray, orbit: FloatArray, moments: FloatArray,
+    out: FloatArray,
+) -> int:  # fmt: skip
+    """States at ``moments`` (n,) of the one launch into ``out`` (6, n).
+
+    The other arguments and the rows are those of :func:`fill_known` and
+    :func:`puck_tables.stopping.orbit_lookup.fill_orbit_states`, the same to the last bit.  Returns
+    how much of it may have to be refused: 0 if it is good.
+    """
+    puck = np.empty((PUCK_ROWS, 1))
+    doubtful, bad = fill_known(
+        vx, vy, step, spin, delta, decel, radius, stops, curve, turns, constants, TURN_SHARE, puck
+    )
+    which = np.zeros(1, np.int64)
+    late = fill_orbit_states(puck, which, moments, 0, moments.size, orbit, out)
+    return doubtful + bad + late
 
 
 @inlined

@@ -24,6 +24,8 @@ CHUNK = 1 << 15  # launches that a thread takes at a time
 COPIED = 1 << 14  # launches up to which a copy costs nothing that counts
 _UNITS = {"spin": "rad/s", "delta": "units of 2 f h / r", "decel": "m/s^2", "radius": "m"}
 
+_NUMBERS = frozenset((float, int))
+
 Columns = tuple[FloatArray, FloatArray, int, FloatArray, FloatArray, FloatArray, FloatArray]
 
 
@@ -145,7 +147,7 @@ def launches_of(
     given = (spin, delta, decel, radius)
     if isinstance(velocity, tuple | list) and len(velocity) == 2:
         numbers = (*velocity, *given)
-        if all(type(one) in (float, int) for one in numbers):  # one launch, as cheap as can be
+        if _NUMBERS.issuperset(map(type, numbers)):  # one launch, as cheap as can be
             with suppress(OverflowError):
                 row = np.array(numbers, np.float64).reshape(COLUMNS, 1)
                 return Launches((), row[0], row[1], 0, row[2], row[3], row[4], row[5])

@@ -37,7 +37,8 @@ def refuse_times(moments: FloatArray) -> None:
 def directions(vx: FloatArray, vy: FloatArray) -> FloatArray:
     """Of launches, 0 for those without speed."""
     found: FloatArray = np.arctan2(vy, vx)
-    if not vx.all():  # only then may both be zero, or minus zero
+    # only where vx is zero may both be, or minus zero
+    if (vx.item() == 0.0) if vx.size == 1 else not vx.all():
         found[(vx == 0.0) & (vy == 0.0)] = 0.0
     return found
 
@@ -47,6 +48,11 @@ def all_looked_up(
     threads: int | None,
 ) -> FloatArray:  # fmt: skip
     """States (6, n) of plain launches, with headings from x."""
+    if which.size == launches.size == 1 and moments.size <= CHUNK:
+        found = table.states_of_one(launches, moments)
+        if found is not None:
+            found[HEADING] += directions(launches.vx, launches.vy)
+            return found
     if which.size:
         pucks = table.pucks(launches, threads)
         found = looked_up(table, pucks, which, moments, threads)

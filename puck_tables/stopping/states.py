@@ -64,12 +64,7 @@ class States(Differentiated, Result):
     """
 
     time: FloatArray
-    x: FloatArray
-    y: FloatArray
-    heading: FloatArray
-    orientation: FloatArray
-    speed: FloatArray
-    spin: FloatArray
+    rows: FloatArray = field(repr=False)
     radius: FloatArray
     explanation: str = ""
     _jacobian: FloatArray | None = None
@@ -82,7 +77,37 @@ class States(Differentiated, Result):
     JACOBIAN_COLUMNS: ClassVar[tuple[str, ...]] = MOMENT_NAMES
 
     def __repr__(self) -> str:
-        return f"States({self.x.size} states of shape {self.x.shape})"
+        return f"States({self.time.size} states of shape {self.time.shape})"
+
+    @property
+    def x(self) -> FloatArray:
+        """Place along x, m from the launch."""
+        return self.rows[PUCK_X, ...]
+
+    @property
+    def y(self) -> FloatArray:
+        """Place along y, m from the launch."""
+        return self.rows[PUCK_Y, ...]
+
+    @property
+    def heading(self) -> FloatArray:
+        """Direction of the velocity, rad."""
+        return self.rows[HEADING, ...]
+
+    @property
+    def orientation(self) -> FloatArray:
+        """How far the body has turned, rad."""
+        return self.rows[ORIENTATION, ...]
+
+    @property
+    def speed(self) -> FloatArray:
+        """V, m/s."""
+        return self.rows[SPEED, ...]
+
+    @property
+    def spin(self) -> FloatArray:
+        """Ω, rad/s."""
+        return self.rows[SPIN, ...]
 
     @property
     def vx(self) -> FloatArray:
@@ -314,15 +339,11 @@ def _states(
     shape: tuple[int, ...], explanation: str,
 ) -> States:  # fmt: skip
     """Rows of states in their shape."""
-    rows = [one.reshape(shape) for one in out]
     radius = launches.radius
     if radius.size > 1:
         radius = radius[which] if which.size else radius.copy()
     radius = (
         radius.reshape(shape) if radius.size == moments.size else np.broadcast_to(radius, shape)
     )
-    return States(
-        time=moments.reshape(shape).copy(), x=rows[PUCK_X], y=rows[PUCK_Y],
-        heading=rows[HEADING], orientation=rows[ORIENTATION], speed=rows[SPEED], spin=rows[SPIN],
-        radius=radius, explanation=explanation,
-    )  # fmt: skip
+    rows = out.reshape((STATE_ROWS, *shape))
+    return States(moments.reshape(shape).copy(), rows, radius, explanation)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar
@@ -14,6 +14,7 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import InputError
+from puck_tables.motion.state import STATE_ROWS
 from puck_tables.stopping.axes import (
     CONSTANT_HEIGHTS,
     HEIGHTS,
@@ -318,6 +319,24 @@ class StopTable(Table):
                 "use larger units"
             )
         return out
+
+    def states_of_one(self, launch: Launches, moments: FloatArray) -> FloatArray | None:
+        """States (6, n) of one launch at moments (n,), headings from its own; None: to be refused.
+
+        What is known of it and its states in one call, which costs most where moments are few.
+        """
+        fill, arrays = self._of_one
+        out = np.empty((STATE_ROWS, moments.size))
+        return None if fill(*launch.part(0, 1), *arrays, moments, out) else out
+
+    @cached_property
+    def _of_one(self) -> tuple[Callable[..., int], tuple[FloatArray, ...]]:
+        from puck_tables.stopping.known import fill_states_of_one
+
+        return fill_states_of_one, (
+            self.cut(), self.launch_coefficients, self.turn_coefficients, self.constants,
+            self.orbit_coefficients,
+        )  # fmt: skip
 
     def checked_range(self, delta: npt.ArrayLike) -> FloatArray:
         """``delta`` as an array, refused outside the range of the table.

@@ -21,6 +21,7 @@ from puck_tables.stopping.stop_table import StopTable
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.tradeoff import resultant_methods, state_methods, stop_methods
 from puck_tables.tradeoff.contender import Contender, Ready
+from puck_tables.tradeoff.doors import Door, measured_doors
 from puck_tables.tradeoff.machine import Machine, measured_machine
 from puck_tables.tradeoff.models import PADE_MATCHED, fitted_pade, pade_limit_ratio
 from puck_tables.tradeoff.truth import Points, known_starts, random_points
@@ -30,6 +31,7 @@ Progress = Callable[[int, int], None]
 REPEATS, QUICK_REPEATS = 25, 5
 _POINTS, _QUICK_POINTS = 4000, 1000
 _LARGEST_SWEEP, _QUICK_SWEEP = 8, 6  # powers of ten
+_LARGEST_BATCH, _QUICK_BATCH = 7, 6  # of a door
 _CHUNK = 10_000
 _POWERS, _THINNING = 6, 2  # the look-up that growth is measured with
 _SHORTEST = 1e-3  # s; below it a round repeats the run
@@ -40,14 +42,15 @@ class TradeOff(Result):
     """What was measured.
 
     ``methods``; growth of a sweep by look-up in chunks: ``stops`` (n,), ``stop_ns`` (n,) for each,
-    ``peak_bytes`` (n,) of memory; ``limit_ratios``: rω/v at the stop of a flat puck by name; the
-    ``machine``; ``repeats``; ``seconds`` it all took.
+    ``peak_bytes`` (n,) of memory; the ``doors`` against the size of the batch; ``limit_ratios``:
+    rω/v at the stop of a flat puck by name; the ``machine``; ``repeats``; ``seconds`` it all took.
     """
 
     methods: tuple[Measured, ...]
     stops: FloatArray
     stop_ns: FloatArray
     peak_bytes: FloatArray
+    doors: tuple[Door, ...]
     limit_ratios: dict[str, float]
     machine: Machine
     repeats: int
@@ -72,12 +75,18 @@ class TradeOff(Result):
             name: variable(name, getattr(self, name), ("stops",))
             for name in ("stop_ns", "peak_bytes")
         }
+        doors = {
+            f"door_{name}": variable(f"door_{name}", _values(self.doors, name), ("door",))
+            for name in ("batch", "threads", "ns")
+        }
+        doors_told = [f"{door.name}: {door.outputs}" for door in self.doors]
         told = [f"{method.question}: {method.name}" for method in self.methods]
         axes = {
             "contender": variable("contender", told, ("contender",)),
             "stops": variable("stops", self.stops, ("stops",)),
+            "door": variable("door", doors_told, ("door",)),
         }
-        return Dataset(axes, columns | growth, {
+        return Dataset(axes, columns | growth | doors, {
             "title": "Accuracy against cost of methods to friction resultants, stops and states",
             "repeats": self.repeats, "seconds": self.seconds,
             "peak_flops": self.machine.flops, "peak_bandwidth": self.machine.bandwidth,
@@ -86,8 +95,8 @@ class TradeOff(Result):
         })  # fmt: skip
 
 
-def _values(methods: tuple[Measured, ...], name: str) -> Any:
-    values = [getattr(method, name) for method in methods]
+def _values(rows: tuple[Measured, ...] | tuple[Door, ...], name: str) -> Any:
+    values = [getattr(row, name) for row in rows]
     return values if isinstance(values[0], str) else np.asarray(values)
 
 
@@ -152,7 +161,7 @@ def measure(quick: bool = False, progress: Progress | None = None) -> TradeOff:
                 contenders, readies, build_seconds, costs, strict=True
             )
         ),
-        stops, stop_ns, peak_bytes,
+        stops, stop_ns, peak_bytes, measured_doors(_QUICK_BATCH if quick else _LARGEST_BATCH),
         {
             "truth": float(limit_ratio(0.0)),
             "Pade, slopes matched": pade_limit_ratio(*PADE_MATCHED),
