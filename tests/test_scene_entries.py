@@ -27,6 +27,13 @@ FREE: dict[str, Any] = {
     "launch": {"velocity": [0.8, 0.3], "spin": 30.0},
 }
 MOVING = {"floor": {"turning": 2.0, "centre": [0.1, 0.2]}, "run": {"time": 0.5}}
+GRAINED = {"floor": {"orthotropic": {"friction": [0.2, 0.3]}}}
+STRIBECK = {"kind": "stribeck", "static": 0.3, "kinetic": 0.1, "speed": 0.2}
+BY_NAME = {"floor": {"law": STRIBECK}, "run": {"tol": 1e-5}}
+BY_CURLING = {"floor": {"law": {"kind": "curling", "a": 0.01, "b": 0.1}}, "run": {"tol": 1e-5}}
+BY_POWER = {
+    "floor": {"law": {"kind": "power", "a": 0.1, "exponent": 1.0, "b": 0.1}}, "run": {"tol": 1e-5},
+}  # fmt: skip
 STRIPS = {"floor": {"strips": {"borders": [0.03], "friction": [0.2, 0.1]}}}
 ROUND = {"floor": {"patch": [{"friction": 0.1, "centre": [0.15, 0.05], "radius": 0.05}]}}
 POLYGON = {"floor": {"patch": [
@@ -60,6 +67,16 @@ CASES: dict[str, tuple[dict[str, Any], Any]] = {
     "floor.patch[0].centre": (ROUND, [0.3, 0.05]),
     "floor.patch[0].radius": (ROUND, 0.07),
     "floor.patch[0].corners": (POLYGON, [[0.05, -0.1], [0.2, -0.1], [0.1, 0.2]]),
+    "floor.orthotropic.friction": (GRAINED, [0.2, 0.4]),
+    "floor.orthotropic.direction": (GRAINED, 1.0),
+    "floor.law.static": (BY_NAME, 0.4),
+    "floor.law.kinetic": (BY_NAME, 0.2),
+    "floor.law.speed": (BY_NAME, 0.4),
+    "floor.law.viscous": (BY_NAME, 0.1),
+    "floor.law.a": (BY_CURLING, 0.02),
+    "floor.law.b": (BY_CURLING, 0.2),
+    "floor.law.c": (BY_CURLING, 0.1),
+    "floor.law.exponent": (BY_POWER, 2.0),
     "launch.velocity": ({}, [0.8, 0.4]),
     "launch.spin": ({}, 20.0),
     "launch.position": ({}, [1.0, 0.0]),
@@ -135,7 +152,7 @@ BOARD: dict[str, Any] = {
 # how a puck of it is led, where that matters to an entry
 LED = {"kind": {"kind": "rail"}, "angle": {"kind": "rail"}, "velocity": {"kind": "rail"},
        "reach": {"kind": "pivot", "reach": 0.02}, "side_slip": {"kind": "blade"}}  # fmt: skip
-NO_PHYSICS = {"title", "run.frames", "run.tol"}
+NO_PHYSICS = {"title", "run.frames", "run.tol", "floor.law.kind"}
 
 
 def whole(more: dict[str, Any]) -> dict[str, Any]:

@@ -6,7 +6,6 @@ A law is one class here, with its formula, its numbers and what they may be; it 
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from dataclasses import dataclass
 from functools import lru_cache
@@ -276,7 +275,8 @@ def law_of_numbers(kind: str, numbers: list[float]) -> FrictionLaw:
     >>> law_of_numbers("power", [0.1, 1.0, 0.0])
     PowerLaw(a=0.1, exponent=1.0, b=0.0, kind='power')
     """
-    law = NAMED.get(kind)
-    if law is None or len(numbers) != len(dataclasses.fields(law)) - 1:
+    law: Any = NAMED.get(kind)
+    if law is None or len(numbers) != len(specs(law)) - 1:
         raise InputError(f"{kind!r} with {len(numbers)} numbers is no friction law")
-    return law(*numbers).checked()
+    found: FrictionLaw = law(*numbers)
+    return found.checked()

@@ -1,4 +1,4 @@
-"""A friction coefficient over the slip speed as compiled quadrature reads it: polynomials in pieces.
+"""A friction coefficient over the slip speed as compiled quadrature reads it: in polynomials.
 
 A row is the origin o and the scale s of a piece and then the powers of t = (u âˆ’ o) s.
 """
@@ -6,6 +6,7 @@ A row is the origin o and the scale s of a piece and then the powers of t = (u â
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import pairwise
 
 import numpy as np
 
@@ -38,7 +39,7 @@ def pieces_of_function(
     >>> float(np.polynomial.polynomial.polyval(t, pieces[0, 2:]) - np.exp(0.3)) < 1e-15
     True
     """
-    waiting = [(float(a), float(b)) for a, b in zip(speeds[:-1], speeds[1:], strict=True)][::-1]
+    waiting = [(float(a), float(b)) for a, b in pairwise(speeds)][::-1]
     largest = float(np.abs(law(np.concatenate([speeds, np.linspace(0.0, speeds[-1], 99)]))).max())
     ends, rows = [0.0], []
     while waiting:

@@ -2,8 +2,8 @@
 
 With one integral left over the circles about the instantaneous centre of rotation, Gauss panels lie
 between the circles on which the slip speed is that of an end of a piece of the law: inside each f
-is one polynomial.  For s = cot φ → 1 a root has a branch point at the distance √|1 − s| of τ = 0; the panels
-grow from there by threes.
+is one polynomial.  For s = cot φ → 1 a root has a branch point at the distance √|1 − s| of τ = 0;
+the panels grow from there by threes.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _GRADED = 40  # edges at most: 3^-34 is below any difference from 1
 _FACTORIALS = np.array([(-1.0) ** k / math.factorial(2 * k + 3) for k in range(10)])
 _TINY = 1e-300
 ORIGIN, SCALE, FIRST_POWER = range(3)  # columns of a piece
-_FEW_POWERS = FIRST_POWER + 4  # up to cubics fewer nodes do
+_FEW_POWERS = FIRST_POWER + 4  # up to cubics a law may have corners
 _SAME_PIECE = 0.05  # of half a smooth piece: so far it may be taken beyond its ends
 
 

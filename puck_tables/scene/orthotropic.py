@@ -68,7 +68,7 @@ def _end_of_panel(start: float, last: float, place: float, near: float) -> float
         return min(last, start + max(near, _GROWTH * away))
     if -away <= near:
         return min(last, place)
-    return min(last, max(place - near, start - _GROWTH / (1.0 + _GROWTH) * away))
+    return min(last, start - _GROWTH / (1.0 + _GROWTH) * away)
 
 
 @kernel
@@ -88,7 +88,8 @@ def mean_friction(
     ox, oy = (way * vy / speed, -way * vx / speed) if speed > 0.0 else (1.0, 0.0)
     inside = speed <= fast
     ratio = speed / fast if inside else fast / speed
-    branch = math.sqrt((1.0 - ratio) * (1.0 + ratio)) / max(ratio, 0.1)
+    gap = (1.0 - ratio) * (1.0 + ratio)
+    branch = math.sqrt(gap) / max(ratio, 0.1)
     # where the slip is along the axis of less friction, and how far the zero of the root lies
     least, most = min(law.along, law.across), max(law.along, law.across)
     sharp = math.atanh(least / most) if least < most else 10.0
@@ -118,13 +119,13 @@ def mean_friction(
             sin_q, cos_q = math.sin(q), math.cos(q)
             if inside:
                 sin_t, cos_t, off = sin_q, cos_q, ratio * sin_q
-                chord = math.sqrt((1.0 - off) * (1.0 + off))
+                chord = math.sqrt(gap + (ratio * cos_q) ** 2)
                 area = 2.0 * chord * ratio * cos_t
                 first = 2.0 / 3.0 * chord * chord * chord
                 second = first * ratio * cos_t
             else:
                 sin_t, off = ratio * sin_q, sin_q
-                cos_t = math.sqrt((1.0 - sin_t) * (1.0 + sin_t))
+                cos_t = math.sqrt(gap + (ratio * cos_q) ** 2)
                 area = 2.0 * cos_q * cos_q
                 second = area * cos_q * cos_q / 3.0
                 first = second * ratio / cos_t

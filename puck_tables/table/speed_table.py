@@ -46,12 +46,13 @@ _INTERPRETATION = (
     "- y e_x), cos(phi) p_e = mean of f (x e_y - y e_x) y, p_c = p_b - p_d. With g = 2h/r, D = 1 - "
     "g^2 sin^2(phi) p_b p_c: force -N cos(phi) p_a/D along the velocity, -N sin(phi) cos(phi) g "
     "p_a p_b/D across it (to the left), torque -N r sin(phi) (p_d + g^2 cos^2(phi) p_a p_b p_e/D). "
-    "A law by name has its numbers in law_values. Even in phi. Salnikova, Treschev, Gallyamov 2012, section 5, with f inside the integrals."
+    "A law by name has its numbers in law_values. Even in phi. Salnikova, Treschev, Gallyamov "
+    "2012, section 5, with f inside the integrals."
 )
 _MAP = (
     "U = v + r|omega|, W = |v - r|omega||; patches between the breaks b_k of U and W, for r|omega| "
-    "< v and then for >, slab of U after slab. U <= b_1: U = b_1 xi^g, W = U zeta^4, g = 6/exponent "
-    "rounded up for a Stribeck exponent that is no whole number, else 1. b_k <= U <= "
+    "< v and then for >, slab of U after slab. U <= b_1: U = b_1 xi^g, W = U zeta^4, g = 6/"
+    "exponent rounded up for a Stribeck exponent that is no whole number, else 1. b_k <= U <= "
     "b_k+1: U = b_k + (b_k+1 - b_k) xi^p; W = b_1/2 zeta^4, then W = b_l - (b_l - left end)(1 - "
     "zeta)^p up to b_k, p = 2 (3 where r|omega| < v and l = k); last U, W = b_k + (b_k+1 - b_k)(xi,"
     " zeta). Nodes uniform in xi and zeta, zeta fastest; quintic not-a-knot splines in both. Cells "
@@ -294,9 +295,11 @@ class SpeedTable(Table):
     def parameters(self) -> dict[str, int | float | str]:
         """The law and the grid."""
         assert self.law is not None
-        named = isinstance(self.law, FrictionLaw)
-        speeds = [0.0, self.top] if named else np.asarray(self.law.speeds).tolist()
-        values = self.law.numbers if named else np.asarray(self.law.values).tolist()
+        if isinstance(self.law, FrictionLaw):
+            speeds, values = [0.0, self.top], self.law.numbers
+        else:
+            speeds = np.asarray(self.law.speeds).tolist()
+            values = np.asarray(self.law.values).tolist()
         return {
             "law_kind": self.law.kind,
             "law_speeds": json.dumps(speeds), "law_values": json.dumps(values),

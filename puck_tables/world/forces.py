@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.friction import (
