@@ -19,7 +19,6 @@ MOST_CORNERS = 200
 _FLAT = 1e-12  # of the square of its size: the area of a polygon that has none
 
 
-@lru_cache(maxsize=256)
 def corners_of(patch: Patch) -> FloatArray:
     """The corners (n, 2) of a patch, counter-clockwise, m; none of a round one.
 
@@ -39,7 +38,13 @@ def corners_of(patch: Patch) -> FloatArray:
     good = not isinstance(patch.corners, str) and all(len(row) == 2 for row in patch.corners)
     if not (good and 3 <= len(patch.corners) <= MOST_CORNERS):
         raise InputError(f"corners must be rows of x and y in m, from 3 to {MOST_CORNERS}")
-    rows = np.array(patch.corners)
+    return _around(tuple(map(tuple, patch.corners)))
+
+
+@lru_cache(maxsize=256)
+def _around(corners: tuple[tuple[float, ...], ...]) -> FloatArray:
+    """Corners counter-clockwise; kept, for a sweep asks for them again and again."""
+    rows = np.array(corners)
     ahead = np.roll(rows, -1, axis=0)
     if crossing := _crossing(rows, ahead):
         raise InputError(
