@@ -52,7 +52,9 @@ from scene_steps import ALL, advance, dense, prepare_dense, stage
 
 EVENTS = ("impact", "border", "edge", "contact", "stick", "slip", "leaves")
 DONE, GONE, STEPS, MANY, CORNER = range(5)
-_WORK = 250  # evaluations of the forces per step of the limit: what finds no event within them hangs
+_WORK = (
+    250  # evaluations of the forces per step of the limit: what finds no event within them hangs
+)
 ENDS = ("done", "over the edge", "too many steps", "too many events", "a rough corner")
 
 
