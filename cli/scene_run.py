@@ -271,4 +271,7 @@ def summary_of_map(stops: SceneMap | WorldMap | Stored) -> str:
     counts = ", ".join(f"{count} {work.meanings[code]}" for code, count in tally.counts.items())
     lines = work.without_end(tally) if isinstance(stops, Stored) else stops.without_end()
     model = "" if isinstance(stops, Stored) else f"; {stops.model}"
+    estimate = getattr(stops, "error_estimate", None)  # of a map in memory over one puck
+    if estimate is not None:
+        model += f"; error <= {estimate:.1e} (Q/J, Q²/J) in the runs that were checked"
     return "\n".join([f"{work.scene.title or 'scene'} over {ranged}: {counts}{model}", *lines])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -24,6 +24,7 @@ from puck_tables.io.dataset import Dataset, Variable, variable
 from puck_tables.result import Result
 from puck_tables.scene.bulk import ENDS_COLUMNS
 from puck_tables.scene.case import RESULTS, Case, is_launch, told_apart
+from puck_tables.scene.checked import largest_error
 from puck_tables.scene.entries import BATCH, LAUNCH, entry_at, tables_of
 from puck_tables.scene.library import files_of
 from puck_tables.scene.loop import NOT_FINITE, OVER_EDGE
@@ -78,6 +79,19 @@ class SceneMap(Result):
         """A column by its name."""
         return column_of(self, name)
 
+    @cached_property
+    def error_estimate(self) -> float:
+        """The largest error of a few runs, each done again alone, with twins; in Q/J and Q²/J.
+
+        Raises
+        ------
+        InputError
+            If a file that the scene names has changed since the sweep.
+        """
+        if files_of(self.scene) != self.files:
+            raise InputError("a file that the scene names has changed since: sweep it again")
+        return largest_error(self.scene, self.axes, self.columns, self.end)
+
     @property
     def model(self) -> str:
         """The model that was taken."""
@@ -91,7 +105,8 @@ class SceneMap(Result):
         """The results over what ranges; the scene and its files as texts."""
         columns = {**self.columns, **derived(self.columns)}
         found = labelled(self.scene, self.axes, self.files, columns, self.end)
-        return replace(found, attributes={**found.attributes, "model": self.plan.model})
+        more = {"model": self.plan.model, "error_estimate": self.error_estimate}
+        return replace(found, attributes={**found.attributes, **more})
 
     def without_end(self) -> list[str]:
         """A line for each way in which runs have no end: how many, the first, and what to do."""

@@ -1,0 +1,46 @@
+"""The error estimate of a map over a scene, against the same map at a much finer tolerance."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import puck_tables as pt
+
+SPINS = list(np.linspace(-20.0, 20.0, 8))  # all of them are checked
+
+
+def scene(tol: float) -> pt.Scene:
+    return pt.Scene(
+        pt.Puck(0.04, friction=0.1), pt.Floor(slope=0.05), pt.Launch((1.0, 0.3), spin=SPINS),
+        walls=[pt.Wall((0.3, 0.0), (-1.0, 0.0), restitution=0.6)], run=pt.Run(tol=tol),
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("tol", [1e-4, 1e-7])
+def test_it_is_at_least_half_of_the_error_and_at_most_tol(tol: float) -> None:
+    rough, fine = scene(tol).sweep(), scene(1e-12).sweep()
+    alone = [scene(tol).at({"launch.spin": spin}).simulate([]) for spin in SPINS]
+    unit = np.array([run.speed_scale / run.rate_scale for run in alone])
+    speed = np.array([run.speed_scale for run in alone])
+    late = np.abs(rough.end_time - fine.end_time) / unit
+    far = np.hypot(rough.x - fine.x, rough.y - fine.y) / (speed * unit)
+    assert 0.5 * max(late.max(), far.max()) <= rough.error_estimate <= tol
+    assert rough.dataset().attributes["error_estimate"] == rough.error_estimate
+
+
+def test_a_map_that_is_wrong_somewhere_is_seen() -> None:
+    found = scene(1e-7).sweep()
+    x = found.columns["x"].copy()
+    x[3] += 1e-3
+    wrong = replace(found, columns={**found.columns, "x": x})
+    assert wrong.error_estimate > 1e-4
+
+
+def test_of_no_run_with_an_end_there_is_none() -> None:
+    found = scene(1e-7).sweep()
+    wrong = replace(found, end=np.full_like(found.end, 7))
+    assert math.isnan(wrong.error_estimate)
