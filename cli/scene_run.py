@@ -192,6 +192,8 @@ def report(run: SceneRun) -> str:
         "error": _error(run),
         "model": run.plan.model + (f", {run.steps} steps" if run.steps else ""),
     }
+    if run.scene.lateral.strength != 0.0:
+        lines["lateral"] += "; empirical: no dry friction over the contact explains it"
     if run.scene.constraint is not None:
         reaction = f"({last['lambda_1']:.6g}, {last['lambda_2']:.6g}) N at the end"
         lines["reaction"] = reaction + ("; at rest the floor shares it" if last["carried"] else "")

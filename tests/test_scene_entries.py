@@ -76,7 +76,7 @@ CASES: dict[str, tuple[dict[str, Any], Any]] = {
     "floor.law.a": (BY_CURLING, 0.02),
     "floor.law.b": (BY_CURLING, 0.2),
     "floor.law.c": (BY_CURLING, 0.1),
-    "floor.law.exponent": (BY_POWER, 2.0),
+    "floor.law.exponent": (BY_POWER, 0.5),
     "launch.velocity": ({}, [0.8, 0.4]),
     "launch.spin": ({}, 20.0),
     "launch.position": ({}, [1.0, 0.0]),

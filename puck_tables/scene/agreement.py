@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from puck_tables.contact.friction_laws import FrictionLaw
+from puck_tables.contact.friction_laws import NAMED, FrictionLaw
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import InputError
 from puck_tables.scene.floor_patches import patch_faults
@@ -142,6 +142,11 @@ def _bad_rows(scene: Scene) -> list[str]:
     for name, rows, made in (("floor.law", law, law_of_rows), ("force.over_time", force, drive_of)):
         if isinstance(rows, FrictionLaw):
             faults += [f"{name}: {fault}" for fault in rows.faults()]
+        elif name == "floor.law" and isinstance(rows, str) and rows in NAMED:
+            faults.append(
+                f"floor.law = {rows!r}: a law by name is a table, floor.law.kind = {rows!r} with "
+                "its numbers ('puck scene fields' lists them)"
+            )
         elif rows and not isinstance(rows, str):
             try:
                 made(rows)

@@ -24,9 +24,8 @@ Points = tuple[tuple[float, float], ...]
 
 LAW_SHARE = 0.1  # of the error wanted: of the friction at any slip, in units of f N
 NO_LAW = BySpeed(np.zeros(0), 0.0, 0.0, 1.0)
-FARTHER, FARTHEST = 8.0, 8.0**4  # a law by name holds at all speeds: its table goes on as needed
-_ROOM = 2.0  # times the slip at the launch: the first table of a law by name
-_FLAT = 8.0  # times its own scale: the least
+FARTHER, FARTHEST = 4.0, 4.0**6  # a law by name holds at all speeds: its table goes on as needed
+_FLAT = 8.0  # times its own scale goes the first table of a launch from rest
 
 _one_at_a_time = threading.Lock()  # the threads of a sweep need the same table
 
@@ -65,7 +64,7 @@ def _first_top(law: SpeedLaw | FrictionLaw, fastest: float) -> float:
     """How far its table goes, m/s; by powers of two, so that launches that differ share one."""
     if isinstance(law, SpeedLaw):
         return law.top_speed
-    room = max(_ROOM * fastest, _FLAT * max(law.scales, default=0.0)) or 1.0
+    room = fastest or _FLAT * max(law.scales, default=0.0) or 1.0
     return float(2.0 ** math.ceil(math.log2(room)))
 
 
