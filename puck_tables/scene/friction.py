@@ -20,7 +20,7 @@ from puck_tables.kernels.speed_spline import speed_ratios
 from puck_tables.motion.equations import ratios_at
 from puck_tables.scene.astride import astride_friction
 from puck_tables.scene.ingredients import BySpeed, Dry, is_astride
-from puck_tables.scene.orthotropic import elliptic_friction
+from puck_tables.scene.orthotropic import ellipse_in, elliptic_friction, is_elliptic
 
 X, Y, THETA, VX, VY, SPIN = range(6)  # of a state; in the loop the last three over the floor
 
@@ -42,13 +42,14 @@ def dry_friction(
         return 0.0, 0.0, 0.0, 0.0
     if is_astride(dry):
         return astride_friction(dry.by_speed.table, radius, ux, uy, w, slip)
-    if dry.ellipse.normal > 0.0:
-        return elliptic_friction(dry.ellipse, radius, ux, uy, w)
     speed = size(ux, uy, 0.0)
     fast = rim > speed
     ratio = speed / rim if fast else rim / speed
     if dry.by_speed.normal > 0.0:
         law = dry.by_speed
+        if is_elliptic(law.table):
+            axes = ellipse_in(law.table, law.height_ratio, law.normal)
+            return elliptic_friction(axes, radius, ux, uy, w)
         along, across, turning = speed_ratios(
             law.table, law.height_ratio, ratio, fast, law.moving * slip
         )
@@ -73,4 +74,4 @@ def at_slip_zero(dry: Dry) -> Dry:
     """The friction that a puck at rest would start against, whatever its coefficient does later."""
     law = dry.by_speed
     still = BySpeed(law.table, law.height_ratio, law.normal, 0.0)
-    return Dry(dry.load, dry.delta, dry.cut, still, dry.ellipse)
+    return Dry(dry.load, dry.delta, dry.cut, still)

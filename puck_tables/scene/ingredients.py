@@ -16,7 +16,6 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
 from puck_tables.scene.astride import PLACE_X, PLACE_Y
 from puck_tables.scene.forces import Forces
-from puck_tables.scene.orthotropic import NO_ELLIPSE, Elliptic
 
 if TYPE_CHECKING:
     from puck_tables.scene.parts import Constraint, Launch
@@ -36,9 +35,10 @@ class Body(NamedTuple):
 
 
 class BySpeed(NamedTuple):
-    """Friction with a coefficient that depends on the slip speed; no ``normal``: there is none.
+    """Friction that depends on the slip speed, or on its direction; no ``normal``: there is none.
 
-    ``table``: see :func:`puck_tables.kernels.speed_spline.packed`; ``height_ratio``: 2h/r;
+    ``table``: see :func:`puck_tables.kernels.speed_spline.packed`, or of the direction
+    :func:`puck_tables.scene.orthotropic.ellipse_in`; ``height_ratio``: 2h/r;
     ``normal``: N; ``moving``: 1, or 0 for the friction at slip zero.
     """
 
@@ -52,8 +52,8 @@ class Regions(NamedTuple):
     """Dry friction in every region of the floor: f N, δ, and the friction ratios at that δ.
 
     ``load``, ``delta``: arrays (regions,); ``cuts``: (regions, …), see
-    :func:`puck_tables.motion.equations.ratios_at`; ``by_speed`` or ``ellipse`` take the place of
-    all.  ``astride`` (regions,): where the base lies on several frictions of the ``ground``, see
+    :func:`puck_tables.motion.equations.ratios_at`; ``by_speed`` takes the place of all.
+    ``astride`` (regions,): where the base lies on several frictions of the ``ground``, see
     :mod:`puck_tables.scene.astride`; there load and δ are the largest of them.  A run has its own
     ground, in which it says where the base is.
     """
@@ -64,7 +64,6 @@ class Regions(NamedTuple):
     by_speed: BySpeed
     astride: npt.NDArray[np.bool_]
     ground: FloatArray
-    ellipse: Elliptic = NO_ELLIPSE
 
 
 class Dry(NamedTuple):
@@ -78,7 +77,6 @@ class Dry(NamedTuple):
     delta: float
     cut: FloatArray
     by_speed: BySpeed
-    ellipse: Elliptic = NO_ELLIPSE
 
 
 @inlined
@@ -87,9 +85,7 @@ def dry_in(regions: Regions, region: int) -> Dry:
     law = regions.by_speed
     if regions.astride[region]:
         law = BySpeed(regions.ground, 0.0, ASTRIDE, 1.0)
-    return Dry(
-        regions.load[region], regions.delta[region], regions.cuts[region], law, regions.ellipse
-    )
+    return Dry(regions.load[region], regions.delta[region], regions.cuts[region], law)
 
 
 @inlined

@@ -18,6 +18,7 @@ from puck_tables.scene.ingredients import (
     floor_velocity,
 )
 from puck_tables.scene.leaning import GRIP, RIM
+from puck_tables.scene.orthotropic import is_elliptic
 from puck_tables.scene.rest import SLACK, excess_at_rest, held_by_floor
 from puck_tables.scene.steps import step
 
@@ -74,7 +75,9 @@ def rests_on(model: Model, dry: Dry, leaning: FloatArray, piece: int, y: FloatAr
 
     Between two rows a force lies between theirs; a curve that bulges inwards is given a margin.
     """
-    flat = dry.delta == 0.0 and dry.by_speed.normal == 0.0 and dry.ellipse.height_ratio == 0.0
+    law = dry.by_speed
+    uniform = law.normal == 0.0 or (is_elliptic(law.table) and law.height_ratio == 0.0)
+    flat = dry.delta == 0.0 and uniform
     level, rows = (SLACK if flat else -_MARGIN) * dry.load, len(model.forces.drive)
     if piece == rows:
         return True

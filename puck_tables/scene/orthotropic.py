@@ -26,6 +26,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, kernel
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(14)
@@ -36,7 +37,7 @@ LEAST_RATIO = 1e-3  # of f in the two directions
 
 
 class Elliptic(NamedTuple):
-    """Friction by an ellipse; no ``normal``: there is none.
+    """Friction by an ellipse.
 
     ``along``, ``across``: f in the axes of the floor, the first of which is turned from x by the
     angle of ``cosine`` and ``sine``; ``height_ratio``: 2h/r; ``normal``: N.
@@ -50,7 +51,19 @@ class Elliptic(NamedTuple):
     normal: float
 
 
-NO_ELLIPSE = Elliptic(0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
+_NUMBERS = 4
+
+
+@inlined
+def is_elliptic(table: FloatArray) -> bool:
+    """Whether the table of a friction law has the axes of an ellipse; those by speed are longer."""
+    return len(table) == _NUMBERS
+
+
+@inlined
+def ellipse_in(table: FloatArray, height_ratio: float, normal: float) -> Elliptic:
+    """The ellipse of such a table: f along, f across, cosine and sine."""
+    return Elliptic(table[0], table[1], table[2], table[3], height_ratio, normal)
 
 
 @inlined

@@ -116,15 +116,17 @@ def free_velocity(scene: Scene) -> tuple[float, float]:
 
 def out_of_reach(scene: Scene) -> Scene:
     """The scene without the walls, edges and borders that its puck, then free, never meets."""
+    strips, patches = scene.floor.strips, scene.floor.patches
+    if not (scene.walls or scene.edges or strips or patches) or any(scene.floor.velocity):
+        return scene
     bare = _without_boundaries(scene)
-    if bare == scene or ingredients(bare) or any(scene.floor.velocity):
+    if ingredients(bare):
         return scene
     stopped = bare.puck.stop(free_velocity(bare), bare.launch.spin)
     way = float(stopped.path_length) * (1.0 + 1e-6)
     place, radius = scene.launch.position, scene.puck.radius
     room = [distance(wall, place) - radius for wall in scene.walls]
     room += [distance(edge, place) for edge in scene.edges]
-    strips = scene.floor.strips
     if strips is not None:
         across = (math.cos(strips.direction), math.sin(strips.direction))
         along = across[0] * place[0] + across[1] * place[1]
@@ -136,6 +138,8 @@ def out_of_reach(scene: Scene) -> Scene:
 def _without_boundaries(scene: Scene) -> Scene:
     """The scene with the friction of the region in which the puck starts."""
     strips, friction = scene.floor.strips, scene.puck.friction
+    if strips is None and not scene.floor.patches:
+        return replace(scene, walls=(), edges=())
     if strips is not None:
         across = (math.cos(strips.direction), math.sin(strips.direction))
         along = across[0] * scene.launch.position[0] + across[1] * scene.launch.position[1]

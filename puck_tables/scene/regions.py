@@ -15,7 +15,6 @@ from puck_tables.motion.friction import closed_form_friction, table_friction
 from puck_tables.scene.astride import NO_GROUND
 from puck_tables.scene.by_speed import NO_LAW, friction_by_speed, law_error
 from puck_tables.scene.ingredients import BySpeed, Regions
-from puck_tables.scene.orthotropic import NO_ELLIPSE, Elliptic
 from puck_tables.scene.scene import Scene
 from puck_tables.scene.zones import ground_of, zones_of
 from puck_tables.table.friction_section import FINEST_ACCURACY
@@ -47,12 +46,9 @@ def regions_of(scene: Scene, reach: float = 1.0) -> Regions:
         along, across = floor.orthotropic.friction
         turned = floor.orthotropic.direction
         load = np.array([normal * max(along, across)])
-        ellipse = Elliptic(
-            along, across, math.cos(turned), math.sin(turned), 2.0 * puck.height / puck.radius,
-            normal,
-        )  # fmt: skip
-        cut = closed_form_friction(0.0).cut[None, :]
-        return alone(load, np.zeros(1), cut, NO_LAW, ellipse)
+        axes = np.array([along, across, math.cos(turned), math.sin(turned)])
+        by_direction = BySpeed(axes, 2.0 * puck.height / puck.radius, normal, 1.0)
+        return alone(load, np.zeros(1), closed_form_friction(0.0).cut[None, :], by_direction)
     heights = scene.heights
     load = normal * np.array(scene.frictions)
     if all(is_plain(puck.pressure, puck.gyration, delta) for delta in heights):
@@ -73,13 +69,9 @@ def regions_of(scene: Scene, reach: float = 1.0) -> Regions:
     return _under_zones(scene, normal, load, np.array(heights), of_one_shape(slices))
 
 
-def alone(
-    load: FloatArray, delta: FloatArray, cuts: FloatArray, by_speed: BySpeed,
-    ellipse: Elliptic = NO_ELLIPSE,
-) -> Regions:  # fmt: skip
+def alone(load: FloatArray, delta: FloatArray, cuts: FloatArray, by_speed: BySpeed) -> Regions:
     """Regions of which a base never lies on two at once."""
-    nowhere = np.zeros(len(load), np.bool_)
-    return Regions(load, delta, cuts, by_speed, nowhere, NO_GROUND, ellipse)
+    return Regions(load, delta, cuts, by_speed, np.zeros(len(load), np.bool_), NO_GROUND)
 
 
 def _under_zones(

@@ -42,7 +42,7 @@ from puck_tables.scene.leaning import (
     still_torques,
     wall_reaction,
 )
-from puck_tables.scene.orthotropic import elliptic_demand
+from puck_tables.scene.orthotropic import ellipse_in, elliptic_demand, is_elliptic
 
 SLACK = 1e-12  # of f N: a demand this close to the limit is held
 _HINT = 1e-100  # of a torque: a force that only says which way the puck is led
@@ -72,8 +72,10 @@ def demand(
 
     ``guided``: the slip is along the force only.
     """
-    if dry.ellipse.normal > 0.0:
-        return elliptic_demand(dry.ellipse, radius, fx, fy, torque, guided)
+    law = dry.by_speed
+    if is_elliptic(law.table):
+        axes = ellipse_in(law.table, law.height_ratio, law.normal)
+        return elliptic_demand(axes, radius, fx, fy, torque, guided)
     force = math.hypot(fx, fy)
     east, north = (fx / force, fy / force) if force > 0.0 else (1.0, 0.0)
     way = 1.0 if torque >= 0.0 else -1.0
