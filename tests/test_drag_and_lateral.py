@@ -69,7 +69,7 @@ def test_several_pucks_feel_drag_and_lateral_force_as_one_does(friction):
         for name in ("x", "y", "orientation", "spin"):
             unit = 1.0 / RADIUS if name in ("orientation", "spin") else 1.0
             assert getattr(many, name)[:2, 0] == pytest.approx(one.columns[name], abs=1e-8 * unit)
-        assert many.energy_residual < 1e-7
+        assert many.energy_residual < 2e-8  # works of drag follow the steps of the motion
 
 
 def test_a_lateral_force_in_proportion_to_the_speed_is_a_circle_and_does_no_work():
