@@ -269,7 +269,7 @@ class Verbs(VerbsOfMany):
         ([[0.899671, 0.109151]], [3.927704])
         >>> many = Puck.similar().aim([(2.0, 0.1), (1.0, -1.0)], speed=1.7)
         >>> many.launches.tolist(), many.launch_spin.round(6).tolist()
-        ([2, 0], [-1.212301, 1.212301])
+        ([2, 0], [-1.981038, 1.981038])
         """
         refuse_frictionless(self)
         found: Aim | Aims = verb("stopping.aims", "aim")(

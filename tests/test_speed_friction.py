@@ -195,9 +195,7 @@ def test_the_compiled_integrals_are_those_of_numpy(law):
     Q = 3.0 * rng.random(phi.size) ** 2 / (np.cos(phi) + np.sin(phi))
     direction = slip_direction(phi)
     out = np.empty((phi.size, 4))
-    fill_integrals(
-        np.asarray(law.speeds), law.coefficients, direction.ratio, direction.fast_spin, Q, out
-    )
+    fill_integrals(*law.pieces(law.top_speed), direction.ratio, direction.fast_spin, Q, out)
     p, sine, cosine = speed_integrals(phi, Q, law), np.sin(phi), np.cos(phi)
     for found, truth, weight in zip(
         out.T, (p.a, p.b, p.d, p.e), (cosine, sine, sine, cosine), strict=True

@@ -195,7 +195,7 @@ class CurlingLaw(FrictionLaw):
     c: float = of("number", 0.0, low=0.0, doc="f at great speed", acts="")
     kind: str = _kind("curling")
 
-    source: ClassVar[str] = "Uehara, Ito 2021, IPSJ SIG Game Informatics 46(18): Digital Curling"
+    source: ClassVar[str] = "the simulator FCV1 of Digital Curling"
 
     def formula(self, u: FloatArray) -> FloatArray:
         """F at speeds in m/s."""

@@ -216,8 +216,7 @@ def refuse_opening(found: Estimate) -> None:
     numbers = problem.found(found.x)
     law = problem.asked.speed_law(numbers)
     _, delta, _ = problem.asked.scales(numbers)
-    slips = np.linspace(0.0, law.top_speed, 1001)
-    largest = float(delta * law(slips).max() / law(0.0))
+    largest = float(delta * law.largest(law.top_speed) / law(0.0))
     if largest > 1.0:
         raise InputError(
             f"where friction is largest delta = 2 f h/r is {largest:.4g}: a friction over slip "

@@ -100,10 +100,7 @@ def speed_path(
         return np.zeros((3, times.size)), np.zeros((3, times.size))
     states = np.zeros((_STEPS + 1, 7))
     states[0, :3] = speed, radius * spin, math.atan2(vy, vx) if speed > 0.0 else 0.0
-    count = _integrate(
-        np.asarray(law.speeds), law.coefficients, gravity, height, gyration**-2, radius,
-        states,
-    )  # fmt: skip
+    count = _integrate(*law.pieces(law.top_speed), gravity, height, gyration**-2, radius, states)
     v, rim, heading, x, y, turn, time = states[:count].T
     known = np.stack([x, y, turn])
     slopes = np.stack([v * np.cos(heading), v * np.sin(heading), rim / radius])
