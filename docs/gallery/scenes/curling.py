@@ -3,8 +3,8 @@ A curling stone, with its curl put in by hand
 =============================================
 
 Friction over the slip speed and a force across the motion with the numbers of a simulator of
-curling (FCV1 of Digital Curling). Friction alone, by whatever law over the slip speed, bends the path by far less:
-the lateral force is empirical, no dry friction over the contact explains it.
+curling (FCV1 of Digital Curling). Friction alone, by whatever law over the slip speed, bends the
+path by far less: the lateral force is empirical, no dry friction over the contact explains it.
 """
 
 import matplotlib.pyplot as plt
