@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 
 torch = pytest.importorskip("torch")
+
+from conftest import ROOT  # noqa: E402
 
 from puck_tables import states as plain_states  # noqa: E402
 from puck_tables import stop as plain_stop  # noqa: E402
@@ -80,3 +84,10 @@ def test_refusals():
         stop(1.0, 1.0)
     with pytest.raises(InputError, match="delta"):
         stop((1.0, 0.0), 1.0, delta=leaf(-1.0))
+
+
+def test_the_program_of_the_page_prints_what_it_says(capsys: pytest.CaptureFixture[str]):
+    text = (ROOT / "docs" / "derivatives.md").read_text(encoding="utf-8")
+    program = re.search(r"```python\n(import torch.*?)```", text, re.DOTALL)[1]
+    exec(program, {})
+    assert capsys.readouterr().out.strip() == program.rpartition("# ")[2].strip()

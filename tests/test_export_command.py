@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import re
+import shutil
+import subprocess
 from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
+from conftest import ROOT
 from puck_tables.cli.main import main
 
 import puck_tables as pt
@@ -73,3 +77,13 @@ def test_any_error_between_is_made():
     source = pt.export_source("c", ["resultants", "stop", "stop"], 3e-3)
     assert source.what == ("stop", "resultants") and "0.003" in source.text
     assert repr(source).startswith("Source(c, stop, resultants to 0.003, ")
+
+
+@pytest.mark.skipif(shutil.which("node") is None, reason="no Node here")
+def test_the_program_of_the_page_prints_what_it_says(tmp_path: Path):
+    text = (ROOT / "docs" / "export.md").read_text(encoding="utf-8")
+    program = re.search(r"```js\n(.*?)```", text, re.DOTALL)[1]
+    pt.export_source("js", "stop").save(tmp_path / "puck.js")
+    (tmp_path / "main.mjs").write_text(program)
+    said = subprocess.run(["node", "main.mjs"], cwd=tmp_path, capture_output=True, text=True)
+    assert said.stdout.strip() == program.rpartition("// ")[2].strip(), said.stderr
