@@ -133,14 +133,17 @@ def on_the_floor(
     down = puck.gravity * math.sin(floor.slope)
     fx = puck.mass * (down * math.cos(floor.downhill) + turning**2 * (states["x"] - cx))
     fy = puck.mass * (down * math.sin(floor.downhill) + turning**2 * (states["y"] - cy))
-    asked = (fx, fy, 0.0)
     if is_one_friction(floor):
         found = _by_ratios(puck, slip, floor.slope)
     else:
-        places = [states["x"], states["y"], np.zeros_like(states["x"])]
-        found = tuple(-friction_at(scene, np.stack([*places, *slip], axis=-1)).T)
-    fx, fy, torque = (np.where(slides, *both) for both in zip(found, asked, strict=True))
-    return fx, fy, torque
+        place = [states["x"], states["y"], np.zeros_like(states["x"])]
+        on_puck = friction_at(scene, np.stack([*place, *slip], axis=-1))
+        found = -on_puck[:, 0], -on_puck[:, 1], -on_puck[:, 2]
+    return (
+        np.where(slides, found[0], fx),
+        np.where(slides, found[1], fy),
+        np.where(slides, found[2], 0.0),
+    )
 
 
 def _by_ratios(puck: Puck, slip: Slip, slope: float) -> tuple[FloatArray, FloatArray, FloatArray]:
