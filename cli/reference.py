@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -70,6 +71,7 @@ def reference(
     puck reference coin --dt 0.001 -o coin.csv --plot coin.png
     puck reference slide-spin-5 --times mine.csv -o exact.h5
     puck reference coin --friction -o friction.csv
+    puck reference astride-spin --fps 1000 -o astride.csv
     """  # noqa: D301 - click reads the backspace
     if case is None:
         click.echo(_listed(as_json))
@@ -121,6 +123,10 @@ def report(answer: Answer) -> str:
             f"v = ({vx:g}, {vy:g}) m/s, w = {launch.spin:g} rad/s at "
             f"({launch.position[0]:g}, {launch.position[1]:g}) m"
         )
+    for what in ("floor", "wall"):
+        parts = case.tables.get(what, {})
+        for n, part in enumerate(parts if isinstance(parts, list) else [parts] if parts else []):
+            lines[what if n == 0 else f"{what} {n + 1}"] = ", ".join(_entries(part))
     lines["end"] = f"{answer.end} after {answer.end_time:.12g} s"
     last = answer.last()
     for n, name in enumerate(answer.names or ("place",)):
@@ -135,6 +141,17 @@ def report(answer: Answer) -> str:
         f"Q = {answer.speed_scale:.6g} m/s, J = {answer.rate_scale:.6g} m/s^2"
     )
     return "\n".join(f"{name:<12} {text}" for name, text in lines.items())
+
+
+def _entries(part: Mapping[str, Any], before: str = "") -> Iterator[str]:
+    """The entries of a table of a scene, as --set would take them, in SI units."""
+    for name, value in part.items():
+        if isinstance(value, dict):
+            yield from _entries(value, f"{before}{name}.")
+        else:
+            rows = isinstance(value, list)
+            told = f"[{', '.join(f'{one:g}' for one in value)}]" if rows else f"{value:g}"
+            yield f"{before}{name} = {told}"
 
 
 def _friction(found: FloorFriction) -> str:

@@ -51,9 +51,11 @@ def gravity(scene: dict[str, Any]) -> tuple[float, float, float]:
 
 
 def is_one_disc_on_a_plane(scene: dict[str, Any]) -> bool:
-    """Whether an adapter in space can run it: one whole disc, a floor at rest, no cushion."""
+    """Whether an adapter in space can run it: one whole disc, one floor at rest, no cushion."""
     if isinstance(scene["puck"], list) or scene.get("wall"):
         return False
     floor, puck = scene.get("floor", {}), scene["puck"]
+    if floor.get("strips"):
+        return False
     moves = any(floor.get("velocity", (0.0, 0.0))) or floor.get("turning", 0.0)
     return not moves and puck.get("pressure", "uniform") == "uniform"

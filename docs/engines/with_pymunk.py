@@ -17,11 +17,13 @@ STEPS = (4e-3, 2e-3, 1e-3, 5e-4)
 
 
 def can(scene: dict[str, Any]) -> bool:
-    """Two limits of force know nothing of rings; floors that move are left out."""
+    """Two limits of force know nothing of rings; floors that move, and borders, are left out."""
     floor = scene.get("floor", {})
     pucks = scene["puck"] if isinstance(scene["puck"], list) else [scene["puck"]]
     moves = any(floor.get("velocity", (0.0, 0.0))) or floor.get("turning", 0.0)
-    return not moves and all(p.get("pressure", "uniform") == "uniform" for p in pucks)
+    if moves or floor.get("strips"):
+        return False
+    return all(p.get("pressure", "uniform") == "uniform" for p in pucks)
 
 
 def pucks_of(scene: dict[str, Any]) -> list[dict[str, Any]]:

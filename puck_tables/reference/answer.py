@@ -14,6 +14,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
 from puck_tables.io.columns import derived, following
 from puck_tables.io.dataset import Dataset, Variable, variable
+from puck_tables.puck import Puck
 from puck_tables.reference.cases import TOL, Case, case_named
 from puck_tables.reference.floor import on_the_floor, ratios, slip_over
 from puck_tables.reference.moments import frame_times
@@ -22,6 +23,7 @@ from puck_tables.scene.entries import tables_of
 from puck_tables.scene.outcome import SceneRun
 from puck_tables.scene.parts import Floor
 from puck_tables.scene.pieces import Piece
+from puck_tables.scene.zones import zones_of
 from puck_tables.world.agreement import pieces_of
 from puck_tables.world.outcome import WorldRun
 
@@ -77,6 +79,10 @@ class Answer(Result):
         stays = self.run.end == "carried by the floor"
         run = self.run(np.minimum(ordered, self.end_time) if stays else ordered)
         found = {name: np.asarray(run.columns[name])[back] for name in STATE}
+        if self.run.end == "at rest" and not self.names:  # no rounding is left of the slip
+            last = self.run.last
+            rests = wanted >= self.end_time
+            found = {name: np.where(rests, last[name], row) for name, row in found.items()}
         if stays:  # at rest on a belt it goes on with it
             belt = self.run.scene.floor.velocity
             more = np.maximum(wanted - self.end_time, 0.0)
@@ -155,11 +161,31 @@ class Answer(Result):
     @property
     def limit_epsilon(self) -> float | None:
         """What v/(r|ω|) tends to at the stop; None where none or not friction alone decides."""
-        puck, floor = self.pieces[0], self.floor
+        floor = self.floor
         free = not (self.names or floor.slope or floor.turning or self.run.scene.walls)
         slips = self.speed_scale > 0.0 and self.run.scene.launch.spin != 0.0
         moves = np.hypot(*slip_over(floor, _launch(self.run.scene.launch))[:2]) > 0.0
-        return puck.limit_epsilon if free and slips and moves else None
+        puck = self.puck_at_end if free and slips and moves else None
+        return None if puck is None else puck.limit_epsilon
+
+    @property
+    def puck_at_end(self) -> Puck | None:
+        """The one puck with the friction that it stops on; None: its base lies on several.
+
+        None, too, where friction depends on the slip or several pucks are there.
+        """
+        floor = self.floor
+        if self.names or floor.patches or floor.law or floor.orthotropic:
+            return None
+        puck = self.run.scene.puck
+        if floor.strips is None:
+            return puck
+        zones, last = zones_of(self.run.scene), self.last()
+        place = zones.lines[0, :2] @ [last["x"], last["y"]]
+        zone = int(np.searchsorted(zones.lines[:, 2], place, "right"))
+        if zones.first[zone] != zones.last[zone]:
+            return None
+        return replace(puck, friction=floor.strips.friction[zones.first[zone]])
 
     def puck_number(self, name: str | None) -> int | None:
         """Which of several pucks a name means; None of a single one.
@@ -200,7 +226,7 @@ class Answer(Result):
             mine = {k: v if v.ndim == 1 else v[:, n] for k, v in self.columns.items()}
             slip = slip_over(self.floor, mine)
             epsilon, ratio = ratios(slip, piece.radius)
-            fx, fy, torque = on_the_floor(piece, self.floor, mine)
+            fx, fy, torque = on_the_floor(piece, self.run.scene, mine)
             q = slip.sizes(piece.radius)[2]
             rows.append((q, epsilon, ratio, fx, fy, torque))
         whole = (np.stack(one, axis=-1) for one in zip(*rows, strict=True))

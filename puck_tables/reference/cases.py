@@ -87,6 +87,18 @@ def _incline(name: str, over: float, words: str, tests: str, time: float | None)
     return Case(f"incline-{name}", 1, f"Spinning disc on a slope {words}", tests, tables)
 
 
+def _astride(
+    name: str, title: str, tests: str, puck: dict[str, Any], borders: list[float],
+    friction: list[float], direction: float, launch: dict[str, Any],
+) -> Case:  # fmt: skip
+    """A puck that lies on several strips at once, at least for a while."""
+    strips = {"borders": borders, "friction": friction, "direction": direction}
+    return Case(
+        f"astride-{name}", 1, title, tests,
+        {"puck": puck, "floor": {"strips": strips}, "launch": launch},
+    )  # fmt: skip
+
+
 CASES = (
     Case(
         "coin", 1, "Masterjohn's coin: a quarter dollar that slides and spins",
@@ -132,6 +144,24 @@ CASES = (
         "a floor whose velocity differs from place to place, and turns",
         {"puck": _DISC, "floor": {"turning": 4.0},
          "launch": {"velocity": [0.0, 0.0], "position": [0.2, 0.0]}, "run": {"time": 1.0}},
+    ),
+    _astride(
+        "spin", "Flat disc that spins on the border of two frictions",
+        "it is pushed along the border, at first by (f1 - f2) g/pi = 0.3501 m/s^2",
+        {**_DISC, "height": 0.0, "friction": 0.78, "gravity": 10.0}, [0.0], [0.78, 0.67], 0.0,
+        {"velocity": [0.0, 0.0], "spin": 20.0},
+    ),
+    _astride(
+        "crossing", "Cylinder slides and spins over a border aslant",
+        "each friction acts under its own part of the base, the pressure tilted by both",
+        {**_DISC, "height": 0.05}, [0.1], [0.2, 0.35], 0.4,
+        {"velocity": [1.0, 0.3], "spin": 20.0},
+    ),
+    _astride(
+        "stop", "Disc slides and spins onto a strip narrower than itself, and stops there",
+        "three frictions under one base for a while, two to the very stop",
+        _DISC, [0.1, 0.16], [0.15, 0.4, 0.1], 0.0,
+        {"velocity": [0.75, 0.1], "spin": -20.0},
     ),
     Case(
         "rebound", 1, "Spinning disc off a cushion",

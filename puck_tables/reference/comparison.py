@@ -121,10 +121,11 @@ class Comparison(Result):
                     f"would show v/(r w) = {read.epsilon:.6g} at the threshold: only what differs "
                     "from that is counted as error"
                 )
-        if answer.limit_epsilon is not None and answer.pieces[0].delta > 0.0:
+        puck = answer.puck_at_end
+        if answer.limit_epsilon is not None and puck is not None and puck.delta > 0.0:
             told.append(
                 f"the limit {answer.limit_epsilon:.6g} is that of this puck with delta = "
-                f"{answer.pieces[0].delta:.4g}; 0.653 is that of a flat homogeneous disc"
+                f"{puck.delta:.4g} where it stops; 0.653 is that of a flat homogeneous disc"
             )
         if answer.end == "time is up":
             told.append("the motion of this case does not stop while it is followed")

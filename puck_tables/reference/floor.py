@@ -3,8 +3,9 @@
     F_∥ = fN cos φ ρ_∥,   F_⊥ = fN sin φ cos φ ρ_⊥,   M = (fNr/2) sin φ ρ_ω
 
 along the slip, to its left, and about the vertical in the sense of the spin; φ = atan2(rω, v) of
-velocity and spin relative to the floor (Salnikova, Treschev, Gallyamov 2012, section 6).  A puck at
-rest on the floor passes on what the other forces ask.
+velocity and spin relative to the floor (Salnikova, Treschev, Gallyamov 2012, section 6).  Where
+friction differs from place to place, by direction or by speed no ratios say it, and it is that of
+the scene.  A puck at rest on the floor passes on what other forces ask.
 """
 
 from __future__ import annotations
@@ -17,7 +18,9 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.puck import Puck
+from puck_tables.scene.floor_forces import friction_at
 from puck_tables.scene.parts import Floor
+from puck_tables.scene.scene import Scene
 
 
 class Slip(NamedTuple):
@@ -98,33 +101,56 @@ def wrench(
     )
 
 
+def is_one_friction(floor: Floor) -> bool:
+    """Whether one coefficient holds everywhere, so that φ alone decides.
+
+    Examples
+    --------
+    >>> from puck_tables import Strips
+    >>> is_one_friction(Floor()), is_one_friction(Floor(strips=Strips((0.1,), (0.3, 0.1))))
+    (True, False)
+    """
+    return not (floor.strips or floor.patches or floor.law or floor.orthotropic)
+
+
 def on_the_floor(
-    puck: Puck, floor: Floor, states: Mapping[str, FloatArray]
+    puck: Puck, scene: Scene, states: Mapping[str, FloatArray]
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Force along x and y, N, and torque, N m, of a puck on the floor, state by state.
+    """Force along x and y, N, and torque, N m, of a puck of a scene on the floor, state by state.
 
     Examples
     --------
     >>> puck = Puck(0.05, friction=0.5, mass=0.1, gravity=10.0)
     >>> moves = {name: np.zeros(2) for name in ("x", "y", "vx", "vy", "spin")}
     >>> moves["vx"][0] = 1.0
-    >>> [part.round(12).tolist() for part in on_the_floor(puck, Floor(), moves)]
+    >>> [part.round(12).tolist() for part in on_the_floor(puck, Scene(puck), moves)]
     [[0.5, 0.0], [0.0, 0.0], [0.0, 0.0]]
     """
+    floor = scene.floor
     slip = slip_over(floor, states)
-    speed, rim, q = slip.sizes(puck.radius)
-    slides = q > 0.0
+    slides = slip.sizes(puck.radius)[2] > 0.0
     (cx, cy), turning = floor.centre, floor.turning
     down = puck.gravity * math.sin(floor.slope)
     fx = puck.mass * (down * math.cos(floor.downhill) + turning**2 * (states["x"] - cx))
     fy = puck.mass * (down * math.sin(floor.downhill) + turning**2 * (states["y"] - cy))
-    fx, fy = np.array(np.broadcast_to(fx, q.shape)), np.array(np.broadcast_to(fy, q.shape))
-    torque = np.zeros_like(q)
-    phi = np.arctan2(rim, speed)[slides] * np.where(slip.spin[slides] < 0.0, -1.0, 1.0)
-    along, across, turn = wrench(puck, phi, floor.slope)
+    if is_one_friction(floor):
+        found = _by_ratios(puck, slip, floor.slope)
+    else:
+        place = [states["x"], states["y"], np.zeros_like(states["x"])]
+        on_puck = friction_at(scene, np.stack([*place, *slip], axis=-1))
+        found = -on_puck[:, 0], -on_puck[:, 1], -on_puck[:, 2]
+    return (
+        np.where(slides, found[0], fx),
+        np.where(slides, found[1], fy),
+        np.where(slides, found[2], 0.0),
+    )
+
+
+def _by_ratios(puck: Puck, slip: Slip, slope: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Force along x and y and torque of a puck that slips on one friction."""
+    speed, rim, _ = slip.sizes(puck.radius)
+    phi = np.arctan2(rim, speed) * np.where(slip.spin < 0.0, -1.0, 1.0)
+    along, across, turn = wrench(puck, phi, slope)
     with np.errstate(divide="ignore", invalid="ignore"):
-        ahead = np.where(speed > 0.0, np.stack([slip.vx, slip.vy]) / speed, 0.0)[:, slides]
-    fx[slides] = along * ahead[0] - across * ahead[1]
-    fy[slides] = along * ahead[1] + across * ahead[0]
-    torque[slides] = turn
-    return fx, fy, torque
+        ahead = np.where(speed > 0.0, np.stack([slip.vx, slip.vy]) / speed, 0.0)
+    return along * ahead[0] - across * ahead[1], along * ahead[1] + across * ahead[0], turn

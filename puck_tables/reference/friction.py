@@ -15,7 +15,7 @@ from puck_tables.errors import InputError
 from puck_tables.io.dataset import Dataset, variable
 from puck_tables.puck import Puck
 from puck_tables.reference.cases import Case, case_named
-from puck_tables.reference.floor import wrench
+from puck_tables.reference.floor import is_one_friction, wrench
 from puck_tables.result import Result
 from puck_tables.world.agreement import pieces_of
 
@@ -112,7 +112,8 @@ def floor_friction(name: str, epsilon: npt.ArrayLike | None = None) -> FloorFric
     Raises
     ------
     InputError
-        If there is no such case, or a ratio is negative.
+        If there is no such case, friction differs in it from place to place, or a ratio is
+        negative.
 
     References
     ----------
@@ -131,6 +132,12 @@ def floor_friction(name: str, epsilon: npt.ArrayLike | None = None) -> FloorFric
     phi = 0.5 * math.pi - np.arctan(ratios)
     phi[np.isinf(ratios)] = 0.0
     scene = case.scene()
+    if not is_one_friction(scene.floor):
+        raise InputError(
+            f"in case {case.name} friction is not the same everywhere: force and torque follow "
+            "from place and direction too, not from v/(r w) alone; take them over time from its "
+            "states (floor_fx, floor_fy, floor_torque)"
+        )
     piece = pieces_of(scene)[0]
     with np.errstate(divide="ignore"):
         inverse = 1.0 / ratios

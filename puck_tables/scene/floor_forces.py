@@ -1,0 +1,59 @@
+"""Dry friction of any floor on a puck, state by state: what the loop integrates, to be read."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.kernels.compile import kernel
+from puck_tables.scene.friction import SPIN, VX, VY, X, Y, dry_friction
+from puck_tables.scene.ingredients import Regions, dry_in, put_at
+from puck_tables.scene.regions import regions_of
+from puck_tables.scene.scene import Scene
+
+
+@kernel
+def _forces(
+    regions: Regions, region: int, radius: float, states: FloatArray, out: FloatArray
+) -> None:
+    """Force and torque on the puck into out (n, 3) at states (n, 6) over the floor."""
+    dry = dry_in(regions, region)
+    for n in range(states.shape[0]):
+        y = states[n]
+        put_at(dry, y[X], y[Y])
+        fx, fy, torque, _ = dry_friction(dry, radius, y[VX], y[VY], y[SPIN])
+        out[n, 0], out[n, 1], out[n, 2] = fx, fy, torque
+
+
+def friction_at(scene: Scene, states: FloatArray) -> FloatArray:
+    """Force and torque of the floor on the one puck of a scene.
+
+    A base over several frictions feels each under its own part, wherever it lies.
+
+    Parameters
+    ----------
+    scene : of one puck
+    states : ndarray (n, 6): x, y m, angle rad; velocity m/s and spin rad/s over the floor
+
+    Returns
+    -------
+    ndarray (n, 3)
+        Force along x and y, N, and torque, N m; 0 without a slip.
+
+    Notes
+    -----
+    −∫ f σ e dA and its moment, e the direction of the slip.
+
+    Examples
+    --------
+    >>> from puck_tables import Floor, Puck, Strips
+    >>> halves = Floor(strips=Strips((0.0,), (0.78, 0.67)))
+    >>> spins = np.array([[0.0, 0.0, 0.0, 0.0, 0.0, 20.0]])
+    >>> force = friction_at(Scene(Puck(1.0, gravity=10.0), halves), spins)
+    >>> force.round(9).tolist()                              # (0.78 - 0.67) g/pi along the border
+    [[0.0, 0.350140875, -4.833333333]]
+    """
+    regions = regions_of(scene)
+    out = np.zeros((len(states), 3))
+    _forces(regions, int(np.argmax(regions.astride)), scene.puck.radius, states, out)
+    return out
