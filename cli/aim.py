@@ -170,6 +170,10 @@ def _read_targets(path: Path) -> FloatArray:
     from puck_tables._core.safe_read import read_numbers
 
     rows = read_numbers(str(path), _LARGEST_FILE)
+    with path.open(encoding="utf-8-sig", errors="replace") as file:
+        head = [name.strip(' "').lower()[:1] for name in file.readline().split(",")]
+    if head == ["y", "x"]:
+        raise InputError(f"the columns of {path} are y and x: put x first")
     if rows.ndim != 2 or rows.shape[1] != 2 or not len(rows):
         raise InputError(
             f"{path} must hold two columns of numbers, x and y in m, one target a line"

@@ -138,6 +138,7 @@ def test_a_file_of_targets(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
         ("x,y\n1,a\n", "two columns"),
         ("x,y\n", "two columns"),
         ("x,y\n1,nan\n", "finite"),
+        ("y [m],x [m]\n1,2\n", "put x first"),
     ):
         Path("bad.csv").write_text(text)
         refused = run("--targets", "bad.csv", "-o", "bad-out.csv")

@@ -114,6 +114,7 @@ def test_what_holds_at_rest(height, at, downhill):
     ({}, {"patches": [replace(ROUND, corners=POLYGON.corners)]}, "not both"),
     ({}, {"patches": [pt.Patch(0.1, corners=[[0, 0], [1, 1], [1, 0], [0, 1]])]}, "meet"),
     ({}, {"patches": [pt.Patch(0.1, corners=[[0, 0], [1, 1], [2, 2]])]}, "on a line"),
+    ({}, {"patches": [pt.Patch(0.1, corners=[[0, 0], [1, 0], [1, 0], [1, 1]])]}, "2 repeats"),
     ({}, {"patches": [ROUND], "law": [[0.0, 0.1], [9.0, 0.1]]}, "floor.law and floor.patch"),
 ])  # fmt: skip
 def test_what_is_refused(puck, floor, words):
@@ -128,3 +129,27 @@ def test_many_launches_are_the_runs_one_by_one():
     ends = scene.sweep()
     one = scene.at({"launch.spin": -40.0}).simulate()
     assert ends.columns["x"][1] == one.last["x"]
+
+
+@pytest.mark.parametrize("corners", [(), POLYGON.corners])
+def test_a_long_free_flight_steps_over_no_part_of_a_crossing(corners):
+    """Without friction before the patch: the same motion from near and from afar, only later."""
+    smooth = replace(PUCK, friction=0.0, height=0.0)
+    patch = pt.Patch(0.2, corners=corners) if corners else pt.Patch(0.2, (0.3, 0.0), 0.1)
+    ends = []
+    for start in (-3.0, 0.0, 0.1):
+        launch = pt.Launch((0.5, 0.0), 20.0, (start, 0.0))
+        run = pt.Scene(smooth, pt.Floor(patches=[patch]), launch, run=pt.Run(time=8.0)).simulate()
+        assert run.energy_residual < 1e-11
+        entry = run.events[0].time
+        ends.append([run.events[1].time - entry, run.events[1].x, run.events[1].y])
+    assert np.ptp(np.array(ends), axis=0).max() < 2e-9
+
+
+def test_a_polygon_may_close_itself():
+    closed = replace(POLYGON, corners=[*POLYGON.corners, POLYGON.corners[0]])
+    ends = [
+        pt.Scene(PUCK, pt.Floor(patches=[patch]), LAUNCH).simulate().end_time
+        for patch in (POLYGON, closed)
+    ]
+    assert ends[0] == ends[1]

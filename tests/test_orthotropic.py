@@ -216,7 +216,7 @@ def test_both_frictions_are_ranges():
     ("more", "words"),
     [
         ({"friction": (0.0, 0.3)}, r"floor.orthotropic.friction\[0\] = 0.0: must be a number > 0"),
-        ({"friction": (1e-4, 0.3)}, "one must be at least 0.001 of the other"),
+        ({"friction": (1e-4, 0.3)}, "one must be at least 0.03 of the other"),
         ({"height": 0.2}, "part of the base may lift"),
         ({"floor": {"turning": 1.0}}, "not on a floor that turns"),
         ({"floor": {"law": [[0.0, 0.1], [1.0, 0.1]]}}, "give one"),

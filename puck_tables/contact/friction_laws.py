@@ -21,7 +21,7 @@ from puck_tables._core.real import finite_array
 from puck_tables.contact.law_pieces import pieces_of_function
 from puck_tables.errors import InputError
 
-_LEAST_EXPONENT, _LARGEST_EXPONENT = 0.25, 8.0
+_LEAST_EXPONENT, _LARGEST_EXPONENT = 0.5, 8.0
 _SMOOTH = 6.0  # a table of degree 5 sees no singularity of this power and above
 _LOOKS = 513  # speeds at which the largest f is looked for
 
@@ -135,7 +135,7 @@ class StribeckLaw(FrictionLaw):
     ----------
     static, kinetic : f at slip zero, and far above ``speed``, both ≥ 0
     speed : m/s, > 0
-    exponent : 1 (Tustin) or 2 (Gauss), any from 0.25 to 8
+    exponent : 1 (Tustin) or 2 (Gauss), any from 0.5 to 8
     viscous : s/m, ≥ 0
 
     Examples

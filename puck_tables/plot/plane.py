@@ -113,14 +113,20 @@ def _draw_pucks(axes: Axes, scene: Scene, columns: dict[str, FloatArray]) -> Non
 
 
 def _draw_patches(axes: Axes, scene: Scene) -> None:
-    """Patches of the floor with their friction."""
+    """Patches of the floor, darker where friction is higher."""
     from matplotlib.patches import Circle, Polygon
 
+    highest = max(scene.frictions) or 1.0
+    told: set[float] = set()
     for patch in scene.floor.patches:
+        share = patch.friction / highest
         style: dict[str, Any] = {
-            "facecolor": "#9fc6e8", "edgecolor": GREY, "linewidth": 0.8, "alpha": 0.5, "zorder": 1,
-            "label": f"f = {patch.friction:g}",
+            "facecolor": (0.86 - 0.5 * share, 0.93 - 0.4 * share, 0.98 - 0.25 * share),
+            "edgecolor": GREY, "linewidth": 0.8, "alpha": 0.6, "zorder": 1,
         }  # fmt: skip
+        if patch.friction not in told:
+            style["label"] = f"f = {patch.friction:g}"
+        told.add(patch.friction)
         axes.add_patch(
             Polygon(patch.corners, **style)
             if patch.corners

@@ -38,7 +38,9 @@ def corners_of(patch: Patch) -> FloatArray:
     good = not isinstance(patch.corners, str) and all(len(row) == 2 for row in patch.corners)
     if not (good and 3 <= len(patch.corners) <= MOST_CORNERS):
         raise InputError(f"corners must be rows of x and y in m, from 3 to {MOST_CORNERS}")
-    return _around(tuple(map(tuple, patch.corners)))
+    corners = tuple(map(tuple, patch.corners))
+    closed = len(corners) > 3 and corners[0] == corners[-1]  # as maps have them
+    return _around(corners[:-1] if closed else corners)
 
 
 @lru_cache(maxsize=256)
@@ -46,6 +48,8 @@ def _around(corners: tuple[tuple[float, ...], ...]) -> FloatArray:
     """Corners counter-clockwise; kept, for a sweep asks for them again and again."""
     rows = np.array(corners)
     ahead = np.roll(rows, -1, axis=0)
+    for n in np.flatnonzero((rows == ahead).all(axis=1)).tolist():
+        raise InputError(f"corner {(n + 1) % len(rows)} repeats corner {n}: give each corner once")
     if crossing := _crossing(rows, ahead):
         raise InputError(
             f"the edges from corners {crossing[0]} and {crossing[1]} meet: give the corners one "

@@ -305,6 +305,10 @@ def follow(
             landed, stuck, happens, length = False, -1, -1, ask.twin * length
         if halved or happens >= 0:
             error = step(stretch, t, length, y, scale, work, new)
+            if not error <= allowed and is_astride(dry):  # the longer step may have leapt over all
+                h = length * max(0.1, 0.9 * (allowed / error) ** power if error < math.inf else 0.1)
+                halved = False
+                continue
             for i in range(ROW):
                 last[i] = work[STAGES - 1, i]
         wrong += error

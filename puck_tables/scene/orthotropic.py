@@ -33,7 +33,7 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(14)
 _GROWTH = 2.0  # of a panel, over its distance from what is nearly singular
 _CLOSEST = 1e-9  # nearer than this nothing is singular that could be seen
 _SETTLED = 4e-15  # rounding of a direction
-LEAST_RATIO = 1e-3  # of f in the two directions
+LEAST_RATIO = 0.03  # of f in the two directions; below, steps are many
 
 
 class Elliptic(NamedTuple):
