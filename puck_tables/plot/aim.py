@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from matplotlib.cm import ScalarMappable
     from matplotlib.figure import Figure
 
+    from puck_tables.puck import Puck
+
 
 def draw(found: Aim) -> Figure:
     """The paths of launches to their target, and their speeds against their spins."""
@@ -29,15 +31,17 @@ def draw(found: Aim) -> Figure:
     launches.scatter(
         found.launch_spin, found.launch_speed, c=colours.to_rgba(found.launch_spin), zorder=2
     )
+    x, y = found.target
+    told(figure, launches, found.puck, f"launches that stop at ({x:g}, {y:g}) m")
+    return figure
+
+
+def told(figure: Figure, launches: Axes, puck: Puck, answer: str) -> None:
+    """Label the panel of speeds against spins, and say above all what is drawn, of which puck."""
     launches.set(xlabel=COLUMNS["launch_spin"].axis, ylabel=COLUMNS["launch_speed"].axis)
     launches.set_ylim(bottom=0.0)
-    puck = found.puck
-    titled(
-        figure,
-        f"launches that stop at ({found.target[0]:g}, {found.target[1]:g}) m: "
-        f"r = {puck.radius:g} m, δ = {puck.delta:.4g}, J = {puck.decel:.4g} m/s²",
-    )
-    return figure
+    words = f"{answer}: r = {puck.radius:g} m, δ = {puck.delta:.4g}, J = {puck.decel:.4g} m/s²"
+    titled(figure, words)
 
 
 def draw_on(paths: Axes, found: Aim) -> ScalarMappable:

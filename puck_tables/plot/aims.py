@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 from puck_tables.errors import InputError
 from puck_tables.io.columns import COLUMNS
-from puck_tables.plot.style import GREY, LAUNCH, canvas, legend_below, titled
+from puck_tables.plot.aim import told
+from puck_tables.plot.style import GREY, LAUNCH, canvas, legend_below
 from puck_tables.stopping.aims import Aims
 
 if TYPE_CHECKING:
@@ -20,13 +21,7 @@ def draw(found: Aims) -> Figure:
     targets, launches = figure.subplots(1, 2, width_ratios=(1.5, 1.0))
     draw_on(targets, found)
     launches.scatter(found.launch_spin, found.launch_speed, c=found.stop_time, s=8)
-    launches.set(xlabel=COLUMNS["launch_spin"].axis, ylabel=COLUMNS["launch_speed"].axis)
-    launches.set_ylim(bottom=0.0)
-    puck = found.puck
-    titled(
-        figure,
-        f"{found.answer}: r = {puck.radius:g} m, δ = {puck.delta:.4g}, J = {puck.decel:.4g} m/s²",
-    )
+    told(figure, launches, found.puck, found.answer)
     return figure
 
 

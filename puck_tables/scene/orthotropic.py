@@ -187,6 +187,16 @@ def elliptic_friction(
     )
 
 
+@inlined
+def _narrowed(
+    low: float, high: float, first: float, last: float, side: int, at: float, off: float
+) -> tuple[float, float, float, float, int]:
+    """A bracket of a zero after another look at it, by the Illinois rule."""
+    if off < 0.0:
+        return at, high, off, (0.5 * last if side < 0 else last), -1
+    return low, at, (0.5 * first if side > 0 else first), off, 1
+
+
 @kernel
 def elliptic_demand(
     law: Elliptic, radius: float, fx: float, fy: float, torque: float, guided: bool
@@ -220,14 +230,7 @@ def elliptic_demand(
             off = (more - less) / (more + less)
             if abs(off) <= _SETTLED or high - low <= _SETTLED:
                 break
-            if off < 0.0:
-                low, first = phi, off
-                last *= 0.5 if side < 0 else 1.0
-                side = -1
-            else:
-                high, last = phi, off
-                first *= 0.5 if side > 0 else 1.0
-                side = 1
+            low, high, first, last, side = _narrowed(low, high, first, last, side, phi, off)
         if force == 0.0:
             cosine, sine = 0.0, way
     rx, ry, turning = mean_friction(law, cosine * bx, cosine * by, sine)
@@ -261,12 +264,5 @@ def _direction_against(
         off = (ey * rx - ex * ry) / math.hypot(rx, ry)
         if abs(off) <= _SETTLED or high - low <= _SETTLED:
             break
-        if off < 0.0:
-            low, first = turn, off
-            last *= 0.5 if side < 0 else 1.0
-            side = -1
-        else:
-            high, last = turn, off
-            first *= 0.5 if side > 0 else 1.0
-            side = 1
+        low, high, first, last, side = _narrowed(low, high, first, last, side, turn, off)
     return bx, by

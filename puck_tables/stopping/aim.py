@@ -16,8 +16,8 @@ from puck_tables.errors import InputError
 from puck_tables.io.columns import COLUMNS as VARIABLES
 from puck_tables.io.dataset import Dataset, variable
 from puck_tables.puck import PUCK_UNITS, Puck
-from puck_tables.result import Result
 from puck_tables.stopping.aim_lookup import RIM, SPEED, TIME
+from puck_tables.stopping.aimed import Aimed
 from puck_tables.stopping.launch_curve import LaunchCurve, launch_curve
 from puck_tables.stopping.launch_ranges import between, joined, sample
 from puck_tables.stopping.launches import fits
@@ -41,7 +41,7 @@ TOO_LARGE = (
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Aim(Result):
+class Aim(Aimed):
     """Launches of a ``puck`` that come to rest at ``target`` (2,) m from where they start.
 
     Arrays (n,), ordered by spin, the most clockwise first: ``launch_velocity`` (n, 2) m/s,
@@ -62,31 +62,6 @@ class Aim(Result):
 
     def __repr__(self) -> str:
         return f"Aim(at ({self.target[0]:g}, {self.target[1]:g}) m: {self.answer})"
-
-    @property
-    def launch_vx(self) -> FloatArray:
-        """Launch velocity along x, m/s."""
-        return self.launch_velocity[:, 0]
-
-    @property
-    def launch_vy(self) -> FloatArray:
-        """Launch velocity along y, m/s."""
-        return self.launch_velocity[:, 1]
-
-    @property
-    def launch_speed(self) -> FloatArray:
-        """Launch speed, m/s."""
-        return np.hypot(self.launch_vx, self.launch_vy)
-
-    @property
-    def launch_heading(self) -> FloatArray:
-        """Direction of the velocity at the launch, rad."""
-        return np.arctan2(self.launch_vy, self.launch_vx)
-
-    @property
-    def launch_slip_angle(self) -> FloatArray:
-        """Slip angle atan2(rω, v) at the launch, rad."""
-        return np.arctan2(self.puck.radius * self.launch_spin, self.launch_speed)
 
     def explain(self) -> str:
         """What was found, or why nothing can be."""

@@ -18,7 +18,6 @@ from puck_tables.errors import InputError
 from puck_tables.io.columns import COLUMNS as VARIABLES
 from puck_tables.io.dataset import Dataset, variable
 from puck_tables.puck import PUCK_UNITS, Puck
-from puck_tables.result import Result
 from puck_tables.stopping.aim import (
     BEYOND,
     COLUMNS,
@@ -30,6 +29,7 @@ from puck_tables.stopping.aim import (
     refuse_both,
 )
 from puck_tables.stopping.aim_lookup import BEND, RIM, SPEED, TIME
+from puck_tables.stopping.aimed import Aimed
 from puck_tables.stopping.launch_curve import LaunchCurve, launch_curve
 from puck_tables.stopping.launch_ranges import between, joined, sample
 from puck_tables.stopping.launches import fits, positive_array
@@ -46,7 +46,7 @@ _LAUNCH = 5
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Aims(Result):
+class Aims(Aimed):
     """Launches of a ``puck`` that come to rest at one of many targets from where they start.
 
     ``target`` (…, 2) m; ``launches`` (…): how many lead to each.  Arrays (n,) of all launches,
@@ -88,31 +88,6 @@ class Aims(Result):
         """How many launches lead to each target, of the shape of the targets."""
         shape = self.target.shape[:-1]
         return np.bincount(self.target_index, minlength=math.prod(shape)).reshape(shape)
-
-    @property
-    def launch_vx(self) -> FloatArray:
-        """Launch velocity along x, m/s."""
-        return self.launch_velocity[:, 0]
-
-    @property
-    def launch_vy(self) -> FloatArray:
-        """Launch velocity along y, m/s."""
-        return self.launch_velocity[:, 1]
-
-    @property
-    def launch_speed(self) -> FloatArray:
-        """Launch speed, m/s."""
-        return np.hypot(self.launch_vx, self.launch_vy)
-
-    @property
-    def launch_heading(self) -> FloatArray:
-        """Direction of the velocity at the launch, rad."""
-        return np.arctan2(self.launch_vy, self.launch_vx)
-
-    @property
-    def launch_slip_angle(self) -> FloatArray:
-        """Slip angle atan2(rω, v) at the launch, rad."""
-        return np.arctan2(self.puck.radius * self.launch_spin, self.launch_speed)
 
     @property
     def _places(self) -> FloatArray:

@@ -47,6 +47,39 @@ def side_by_side(coefficients: FloatArray) -> FloatArray:
     return kept
 
 
+def in_rows(coefficients: FloatArray, row: int, power_first: bool) -> FloatArray:
+    """Coefficients (power, node, side, function) as (2 sides, nodes, row), filled up by zeros.
+
+    ``power_first``: by power, and in each by function; else the other way round.
+
+    Examples
+    --------
+    >>> in_rows(np.ones((9, 6, 2, 3)), 32, power_first=True).sum(axis=2).tolist()[0]
+    [27.0, 27.0, 27.0, 27.0, 27.0, 27.0]
+    """
+    ordered = coefficients.transpose((2, 1, 0, 3) if power_first else (2, 1, 3, 0))
+    flat = ordered.reshape(*ordered.shape[:2], -1)
+    padded = np.zeros((*flat.shape[:2], row))
+    padded[:, :, : flat.shape[2]] = flat
+    padded.flags.writeable = False
+    return padded
+
+
+def cut_rows(sides: FloatArray, powers: int) -> FloatArray:
+    """Rows (2, nodes + 2, powers × WIDTH) of T, along, across (2 sides, nodes, heights, 3).
+
+    Along and across have one power fewer.
+    """
+    times = by_power(sides[..., 0], powers)  # power, node, side
+    places = by_power(sides[..., 1:], powers - 1)
+    found = np.zeros((2, times.shape[1], powers, WIDTH))
+    found[..., 0] = times.transpose(2, 1, 0)
+    found[:, :, :-1, 1:3] = places.transpose(2, 1, 0, 3)
+    kept = found.reshape(2, -1, powers * WIDTH)
+    kept.flags.writeable = False
+    return kept
+
+
 def inverse_splines(table: StopTable, with_time: bool) -> FloatArray:
     """From the time that is left, or from Q, to the slip ratio, (2, cells + 3, 9)."""
     return np.ascontiguousarray(by_power(_ratios(table, with_time)).transpose(2, 1, 0))

@@ -36,13 +36,19 @@ from puck_tables.stopping.lookup import (
     CURVE_ROW,
     STOP_POWERS,
     STOP_ROW,
-    WIDTH,
     stops_kernel,
 )
 from puck_tables.stopping.orbit import ORBIT_WIDTH, REGULAR
 from puck_tables.stopping.orbit_lookup import PUCK_ROWS
 from puck_tables.stopping.slopes import Slopes, slopes_of
-from puck_tables.stopping.stop_splines import by_power, inverse_splines, orbit_splines, side_by_side
+from puck_tables.stopping.stop_splines import (
+    by_power,
+    cut_rows,
+    in_rows,
+    inverse_splines,
+    orbit_splines,
+    side_by_side,
+)
 from puck_tables.table.check import CheckReport
 from puck_tables.table.table import Axis, Progress, Table
 
@@ -120,12 +126,13 @@ class StopTable(Table):
     @cached_property
     def stop_coefficients(self) -> FloatArray:
         """T, along, across as the kernels of curve_lookup read them."""
-        return self._coefficients([0, 1, 2], STOP_POWERS, STOP_ROW, power_first=True)
+        found = by_power(self._sides([0, 1, 2]), STOP_POWERS)
+        return in_rows(found, STOP_ROW, power_first=True)
 
     @cached_property
     def curve_coefficients(self) -> FloatArray:
         """Body angle, S/δ, path length, κR as the kernels of curve_lookup read them."""
-        return self._coefficients([4, 6, 3, 5], HEIGHTS, CURVE_ROW, power_first=False)
+        return in_rows(by_power(self._sides([4, 6, 3, 5])), CURVE_ROW, power_first=False)
 
     @cached_property
     def constants(self) -> FloatArray:
@@ -178,18 +185,6 @@ class StopTable(Table):
         n, values = self.axis.cells // thinning, self.values[::thinning, :, functions]
         return np.stack([values[: n + 1], values[: n - 1 : -1]])
 
-    def _coefficients(
-        self, functions: list[int], powers: int, row: int, power_first: bool
-    ) -> FloatArray:
-        # power, node, side, function → side, node, then the faster index last
-        order = (2, 1, 0, 3) if power_first else (2, 1, 3, 0)
-        found = by_power(self._sides(functions), powers).transpose(order)
-        ordered = found.reshape(*found.shape[:2], -1)
-        padded = np.zeros((*ordered.shape[:2], row))
-        padded[:, :, : ordered.shape[2]] = ordered
-        padded.flags.writeable = False
-        return padded
-
     @cached_property
     def _cuts(self) -> dict[tuple[int, int], FloatArray]:
         return {}
@@ -208,14 +203,7 @@ class StopTable(Table):
         """
         if (powers, thinning) in self._cuts:
             return self._cuts[powers, thinning]
-        sides = self._sides([0, 1, 2], thinning)
-        times = by_power(sides[..., 0], powers)  # power, node, side
-        places = by_power(sides[..., 1:], powers - 1)
-        found = np.zeros((2, times.shape[1], powers, WIDTH))
-        found[..., 0] = times.transpose(2, 1, 0)
-        found[:, :, :-1, 1:3] = places.transpose(2, 1, 0, 3)
-        kept = found.reshape(2, -1, powers * WIDTH)
-        kept.flags.writeable = False
+        kept = cut_rows(self._sides([0, 1, 2], thinning), powers)
         self._cuts[powers, thinning] = kept
         return kept
 
