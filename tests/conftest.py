@@ -15,6 +15,26 @@ QUARTER, HALF = 0.25 * math.pi, 0.5 * math.pi
 ROOT = Path(__file__).resolve().parent.parent
 
 
+COMPILES = "test_scene_entries.py"
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """One worker compiles scenes and boards first, while the others do what needs none of them.
+
+    Else each would compile the same for a minute.
+    """
+    ranks: dict[Path, int] = {}
+
+    def rank(item: pytest.Item) -> int:
+        path = item.path
+        if path not in ranks:
+            scenes = "scene" in path.read_text("utf-8").lower()
+            ranks[path] = 0 if path.name == COMPILES else 1 + scenes
+        return ranks[path]
+
+    items.sort(key=rank)
+
+
 @pytest.fixture(scope="session")
 def table() -> Table:
     """The default table."""

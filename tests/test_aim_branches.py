@@ -30,6 +30,7 @@ def scanned(delta: float, gyration: float) -> np.ndarray:
     return np.stack([speed, speed + U, log_q + np.log(found.stop_time)])
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     "puck", few(2, [((3.9, HOMOGENEOUS),), ((0.5, 5.0),), ((3.6, 10.0),), ((2.0, 0.3),)])
 )
@@ -53,6 +54,7 @@ def test_all_wishes_against_a_scan(puck: tuple[float, float]):
             assert found.miss.max(initial=0.0) <= 1e-9
 
 
+@pytest.mark.thorough
 def test_the_fastest_launch_of_a_tall_puck_spins():
     options = {"delta": 3.9, "gyration": 0.1}
     run = simulate((0.99736, 0.0), 0.072611, **options)
@@ -110,6 +112,7 @@ def test_quantities_of_a_plain_puck_never_turn(delta: float):
     assert np.all(np.diff(log_q + np.log(found.stop_time)) > 0.0)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("gyration", few(1, [10.0, 0.3, 3.0]))
 def test_fast_spins_hit_too(gyration: float):
     """Places next to pure spin are as small as cos φ and keep their digits."""

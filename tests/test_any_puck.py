@@ -50,6 +50,7 @@ def starts(law: str, delta: float, gyration: float, rng: np.random.Generator) ->
     return np.array([-12.0, 9.0, *near, *rng.uniform(-3.0, 3.0, 2)])
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("puck", [PUCKS[2], PUCKS[6]])
 def test_stops_by_truth_friction(puck: tuple[str, float, float]):
     judged(puck, (1e-5, 1e-9))

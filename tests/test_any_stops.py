@@ -37,6 +37,7 @@ def stops_of(puck: tuple[str, float, float], u: np.ndarray, **options: object) -
     ])  # fmt: skip
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("puck", QUICK)
 def test_tol_is_honoured_by_truth_friction(puck: tuple[str, float, float]):
     judged(puck, (1e-4, 1e-8))
@@ -153,6 +154,7 @@ def test_states_are_those_of_the_trajectory(puck: tuple[str, float, float]):
             assert np.abs(error).max() <= 1e-8, (n, name)
 
 
+@pytest.mark.thorough
 def test_aims_of_other_pucks_hit(tmp_path: Path):
     for options in (
         {"delta": 2.0}, {"pressure": "annulus:0.8", "gyration": 0.9}, {"gyration": 2.0, "delta": 0},

@@ -40,6 +40,7 @@ def test_states_pass_gradcheck():
     assert torch.autograd.gradcheck(f, arguments, eps=1e-4, atol=1e-5, check_forward_ad=True)
 
 
+@pytest.mark.thorough
 def test_other_pucks_pass_gradcheck():
     """A tall one by all its numbers, one under another law by a launch."""
 

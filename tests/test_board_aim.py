@@ -204,6 +204,7 @@ def _asked_again(seed: int) -> tuple[int, bool]:
     return 1, bool((gaps < 1e-5).any())
 
 
+@pytest.mark.thorough
 def test_ends_of_launches_lead_back_to_them() -> None:
     answers = [_asked_again(seed) for seed in range(1, 7)]
     assert sum(asked for asked, _ in answers) >= 3

@@ -143,6 +143,7 @@ def test_one_puck_has_a_movie_too(tmp_path: Path) -> None:
     assert knots[-1, 0] == pytest.approx(ride.end_time)
 
 
+@pytest.mark.thorough
 def test_what_lies_still_has_a_movie_too(tmp_path: Path) -> None:
     still = Scene(pucks=[Piece(0.1, friction=0.1)]).simulate()
     still.movie(tmp_path / "still.html")
@@ -151,6 +152,7 @@ def test_what_lies_still_has_a_movie_too(tmp_path: Path) -> None:
     assert told_in(tmp_path / "still.html")["end_time"] == 0.0
 
 
+@pytest.mark.thorough
 def test_a_gif_moves(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("puck_tables.plot.movie._SHORTEST", 1.0)
     puck = Piece(0.1, friction=0.5, launch=Launch((1.0, 0.0)))

@@ -33,6 +33,7 @@ def limit(package: Path, folder: Path) -> float:
     return round(float(ended.stdout), 12)
 
 
+@pytest.mark.thorough
 def test_an_edit_in_another_file_is_never_stale(tmp_path: Path):
     package, folder = tmp_path / "source", tmp_path / "cache"
     shutil.copytree(
@@ -92,6 +93,7 @@ def test_every_compiled_function_is_kept_in_that_folder():
     assert kept >= {"kernels", "motion", "stopping", "tradeoff"}
 
 
+@pytest.mark.thorough
 def test_four_processes_may_fill_the_cache_at_once(tmp_path: Path):
     command = [
         sys.executable,

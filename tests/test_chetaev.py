@@ -330,6 +330,7 @@ def test_patches_that_only_slide_can_be_displaced_sideways():
     assert run.position[-1].mean(axis=0) == pytest.approx([0.9 - 0.405, 0.0])
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("velocity", "spin", "delta"),
     few(2, [((1, 0), 1.0, 0.0), ((0.6, -0.8), -5, 0.8), ((1, 0), 0.2, 0.0), ((1, 0), 1.0, 0.8)]),

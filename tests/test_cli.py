@@ -115,6 +115,7 @@ def test_times_from_the_command_line():
     np.testing.assert_allclose(pandas.read_csv("b.csv")["time[s]"], [0.0, 0.5, 1.0])
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("start", [["--w0", "5"], ["--w0", "0"], ["--v0", "0,0", "--w0", "1"]])
 def test_pictures_are_drawn_for_every_regime(folder: Path, start: list[str]):
     assert puck("simulate", "--v0", "1,0", *start, "--plot", "run.png").exit_code == 0
@@ -298,6 +299,7 @@ def test_a_link_is_followed(folder: Path):
     assert Path("real.csv").read_text().startswith("time[s]")
 
 
+@pytest.mark.thorough
 def test_everything_printed_is_ascii():
     """Redirected output of consoles that know no Greek must not fail."""
     for arguments in (
@@ -317,6 +319,7 @@ def test_the_table_that_is_read_is_never_replaced():
     assert Table.load("t.h5").tolerance == 1e-6
 
 
+@pytest.mark.thorough
 def test_tables_of_every_kind(folder: Path):
     for arguments, name, words in (
         (["--pressure", "annulus:0.8", "--accuracy", "1e-5"], "stone.h5", "annulus:0.8 pressure"),
@@ -334,6 +337,7 @@ def test_tables_of_every_kind(folder: Path):
     )
 
 
+@pytest.mark.thorough
 def test_pucks_of_every_kind():
     v0 = ["--v0", "1,0", "--tol", "1e-6"]
     report = puck("simulate", *v0, "--w0", "5", "--delta", "2").stdout

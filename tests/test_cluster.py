@@ -80,6 +80,7 @@ def blocks(store: Path) -> int:
     return len(list((store / "status" / "c").rglob("*"))) if store.exists() else 0
 
 
+@pytest.mark.thorough
 def test_two_workers_write_the_bytes_of_one_thread(tmp_path: Path):
     samples = {"spin": Normal(5.0, 0.2), "speed": 1.0}
     alone = PUCK.sweep(**QUICK, store=tmp_path / "alone.zarr", threads=1)

@@ -169,6 +169,7 @@ def test_thresholds_refused(text: str, tmp_path: Path):
         compare(written(tmp_path / "a.csv", columns()), "coin", thresholds=[text])
 
 
+@pytest.mark.thorough
 def test_the_command(tmp_path: Path):
     path = written(tmp_path / "my <b>run.csv", columns(dt=2e-3))
     page, picture, table = tmp_path / "a.html", tmp_path / "a.png", tmp_path / "a.json"

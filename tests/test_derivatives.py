@@ -67,10 +67,12 @@ def state_errors(launches: np.ndarray, share: np.ndarray) -> np.ndarray:
     return np.abs(found.jacobian - truth.transpose(2, 0, 1)).max(axis=(1, 2))
 
 
+@pytest.mark.thorough
 def test_stops_next_to_all_that_is_singular():
     assert stop_errors(adversarial(1, 40)).max() <= BOUND
 
 
+@pytest.mark.thorough
 def test_states_next_to_all_that_is_singular():
     share = np.exp(-(np.random.default_rng(2).uniform(0.0, 1.0, 20) ** 2) * math.log(1e3))
     assert state_errors(adversarial(3, 20), share).max() <= BOUND
@@ -222,6 +224,7 @@ def test_shapes_and_names():
     assert np.array_equal(one, two.swapaxes(0, 1))
 
 
+@pytest.mark.thorough
 def test_a_table_of_ones_own_has_derivatives():
     rough = Table.build("stops", cells=64)
     exact, own = (

@@ -45,6 +45,7 @@ def state_errors(case: tuple[str, float, float], phi: np.ndarray, near: bool = F
     return np.abs(slopes - truth[[0, 1, 3, 4]]).max(axis=(1, 2, 3))
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("case", USUAL)
 def test_stops_and_states(case: tuple[str, float, float]):
     assert stop_errors(case, AWAY[::2], near=True).max() <= BOUND

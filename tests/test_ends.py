@@ -56,6 +56,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", LONG)
 def test_ctrl_c_ends_with_a_sentence_and_leaves_nothing(name: str, folder: Path):
     module, arguments = LONG[name]
@@ -97,6 +98,7 @@ NO_CLAIMS = (  # the work of 'puck paper' has tests of its own
 )
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("arguments", PRINTING, ids=" ".join)
 def test_a_reader_that_has_gone_is_no_trouble(arguments: list[str]):
     """As after '| true': silence, and the code that shells give to a broken pipe."""
@@ -119,6 +121,7 @@ def test_a_reader_that_has_gone_is_no_trouble(arguments: list[str]):
         )
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("unbuffered", ["", "1"])
 def test_the_first_lines_are_read(unbuffered: str):
     command = f'"{sys.executable}" -c "{MAIN}" sweep --w0 0:1:20000 | head -2'
@@ -131,6 +134,7 @@ def test_the_first_lines_are_read(unbuffered: str):
     assert ended.stderr.removeprefix(COMPILING) == ""
 
 
+@pytest.mark.thorough
 def test_closed_stderr_and_full_stdout():
     run = f'"{sys.executable}" -c "{MAIN}"'
     subprocess.run(f"{run} sweep --w0 0:1:3 -o a.csv 2>&-", shell=True, check=True)
@@ -160,6 +164,7 @@ def test_a_signal_from_a_shell_that_ends():
     assert not Path("m.h5").exists()
 
 
+@pytest.mark.thorough
 def test_a_file_that_takes_only_a_part_of_the_results():
     """Never code 0 for a map that is cut short, not even where Python does not buffer."""
     command = f'ulimit -f 64; "{sys.executable}" -c "{MAIN}" sweep --w0 0:1:20000 > map.csv'

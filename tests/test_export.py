@@ -48,7 +48,9 @@ def by_library(count: int) -> dict[str, tuple[np.ndarray, np.ndarray]]:
 
 
 @every_language
-@pytest.mark.parametrize("tol", TOLS)
+@pytest.mark.parametrize(
+    "tol", [1e-6, *(pytest.param(tol, marks=pytest.mark.thorough) for tol in (1e-4, 1e-9))]
+)
 def test_equal_to_the_library(language: str, tol: float, tmp_path: Path):
     run = runner(language, tol, tmp_path)
     for name, (rows, wanted) in by_library(POINTS[language]).items():

@@ -65,6 +65,7 @@ def check_killed_sweeps(tmp_path: Path, kills: int) -> None:
         assert data.stop_x.values.tobytes() == base.stop_x.tobytes()
 
 
+@pytest.mark.thorough
 def test_a_killed_sweep_goes_on(tmp_path: Path):
     check_killed_sweeps(tmp_path, kills=1)
 
@@ -88,6 +89,7 @@ def check_killed_builds(tmp_path: Path, kills: int) -> None:
     assert whole < kills  # some kills came in time
 
 
+@pytest.mark.thorough
 def test_a_killed_build_leaves_no_half(tmp_path: Path):
     check_killed_builds(tmp_path, kills=2)
 
@@ -97,6 +99,7 @@ def test_twenty_killed_builds_leave_no_half(tmp_path: Path):
     check_killed_builds(tmp_path, kills=20)
 
 
+@pytest.mark.thorough
 def test_two_builders_at_one_file(tmp_path: Path):
     command = [*PUCK, "build-tables", "--accuracy", "1e-5", "-o", "one.h5"]
     both = [
@@ -110,6 +113,7 @@ def test_two_builders_at_one_file(tmp_path: Path):
     assert [path.name for path in tmp_path.iterdir()] == ["one.h5"]
 
 
+@pytest.mark.thorough
 def test_a_store_on_the_command_line(tmp_path: Path):
     pytest.importorskip("zarr")
     resultants = tmp_path / "rough.h5"

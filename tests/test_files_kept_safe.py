@@ -154,6 +154,7 @@ def test_saving_in_a_deleted_folder_is_a_sentence(
     assert len(ended.stderr.splitlines()) == 1
 
 
+@pytest.mark.thorough
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no such device")
 @pytest.mark.parametrize("unbuffered", ["", "1"])
 @pytest.mark.parametrize("arguments", ["--help", "simulate --help", "--version", "scene fields"])

@@ -124,6 +124,7 @@ def test_drag_is_found_and_told_from_none():
         found.simulate()
 
 
+@pytest.mark.thorough
 def test_tracks_share_their_puck(true):
     launches = [((1.5, -0.4), -35.0), ((0.8, 0.9), 15.0)]
     others = [
@@ -140,6 +141,7 @@ def test_tracks_share_their_puck(true):
         assert launch.spin == pytest.approx(spin, abs=0.05)
 
 
+@pytest.mark.thorough
 def test_a_spin_of_several_turns_a_frame_apart_is_found(true):
     few = true[:, ::8]  # 15 frames a second, 0.64 turns a frame
     rng = np.random.default_rng(3)
@@ -150,6 +152,7 @@ def test_a_spin_of_several_turns_a_frame_apart_is_found(true):
     assert moving.launch().spin == pytest.approx(SPIN, abs=0.5)
 
 
+@pytest.mark.thorough
 def test_a_hand_before_and_a_wall_after_are_left_out(true):
     track = film(true, 7)
     slow = np.linspace(-0.3, 0.0, 36, endpoint=False)[:, None]
@@ -168,6 +171,7 @@ def test_a_hand_before_and_a_wall_after_are_left_out(true):
     assert 46 <= pt.fit(wall, KNOWN).left_out[0][2] <= 51
 
 
+@pytest.mark.thorough
 def test_frames_held_out_are_predicted_within_their_errors(true):
     found = pt.fit(film(true, 9), KNOWN, hold_out=0.4)
     assert found.held_out.inside > 0.9 and found.held_out.rms < 1.2
@@ -177,6 +181,7 @@ def test_frames_held_out_are_predicted_within_their_errors(true):
     assert pt.fit(two, KNOWN, hold_out=["two"]).held_out.tracks == ("two",)
 
 
+@pytest.mark.thorough
 def test_what_is_no_puck_is_noticed():
     t = np.arange(200) / 100.0
     rng = np.random.default_rng(1)

@@ -87,6 +87,7 @@ def test_a_forecast_is_the_bound():
     assert relative == pytest.approx([6.0e-5, 1.8e-4, 3.2e-4, 3.1e-4], rel=0.02)
 
 
+@pytest.mark.thorough
 def test_a_forecast_says_what_a_film_cannot_tell(tmp_path):
     puck = pt.Puck(radius=RADIUS, height=0.0254, friction=0.15)
     told = pt.fisher(puck, pt.Launch((2.0, 0.0)), pt.Camera(120.0, *NOISE))

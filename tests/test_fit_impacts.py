@@ -55,6 +55,7 @@ def test_an_impact_not_asked_for_is_noticed():
     assert whole.complaints or sum(whole.left_out[0][1:]) > 50
 
 
+@pytest.mark.thorough
 def test_outliers_are_no_impacts():
     true = film_judge.path((1.9, 0.6), 60.0, DECEL, DELTA, RADIUS, _LONG)
     for seed in range(3):
@@ -98,6 +99,7 @@ def scatter(true: np.ndarray, seeds: range) -> tuple[np.ndarray, np.ndarray, pt.
     return np.array(off), np.array(inside), found
 
 
+@pytest.mark.thorough
 def test_the_error_of_restitution_is_its_bound(banked):
     off, inside, last = scatter(banked, range(3))
     assert np.all(np.sqrt((off**2).mean(axis=0)) < 2.2)  # p = 0.002 of three
@@ -114,6 +116,7 @@ def test_the_error_of_restitution_is_its_bound_over_200_films(banked):
     assert np.all(np.abs(inside.mean(axis=0) - 0.95) < 0.045)
 
 
+@pytest.mark.thorough
 def test_a_wall_that_is_given_tells_more(banked):
     found = pt.fit(seen(banked, 1), KNOWN, walls=[GIVEN])
     alone = pt.fit(seen(banked, 1), KNOWN, impacts=True)
@@ -122,6 +125,7 @@ def test_a_wall_that_is_given_tells_more(banked):
     assert abs(found["restitution"].value - 0.8) < 4.0 * found["restitution"].error
 
 
+@pytest.mark.thorough
 def test_walls_of_different_restitution_are_not_made_one(banked):
     hard = impacts_judge.wall_film(MOTION, TRUTH[2:8], WALLS[:1], HITS[:1], (0.8, 0.12), TIMES)
     start = impacts_judge.state(MOTION, TRUTH[2:8], 0.0)
@@ -142,6 +146,7 @@ def pair(second: list[float], rims: tuple[float, float, float], about: float, se
     return [seen(true, seed + n, f"puck {n + 1}") for n, true in enumerate(films)]
 
 
+@pytest.mark.thorough
 def test_two_pucks_that_meet_tell_their_restitution_and_masses():
     tracks = pair([0.7, 0.02, -0.3, 0.05, -10.0, 1.0], (0.9, 0.1, 1.6), 0.3333, 1)
     free = ["friction", "delta", "mass_ratio"]
@@ -154,6 +159,7 @@ def test_two_pucks_that_meet_tell_their_restitution_and_masses():
     assert (impact.track, impact.partner) == ("puck 1", "puck 2") and found.complaints == ()
 
 
+@pytest.mark.thorough
 def test_a_puck_at_rest_may_be_hit():
     tracks = pair([0.5, 0.0, 0.0, 0.0, 0.0, 1.0], (0.9, 0.15, 1.0), 0.2333, 5)
     found = pt.fit(tracks, KNOWN, impacts=True)

@@ -47,6 +47,7 @@ def test_the_law_of_many_films_is_chosen(law):
     assert right >= 24.75
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("puck", "known", "free"),
     [

@@ -44,6 +44,7 @@ def film(true: np.ndarray, seed: int) -> pt.Track:
     return pt.Track(TIMES, *noisy(np.random.default_rng(seed), true, NOISE))
 
 
+@pytest.mark.thorough
 def test_friction_over_slip_speed_is_found(true, tmp_path):
     found = pt.fit(film(true, 1), FLAT, fixed={"delta": 0.0}, slip_speeds=SPEEDS)
     speeds, values, errors = found.friction_over()
@@ -59,6 +60,7 @@ def test_friction_over_slip_speed_is_found(true, tmp_path):
             wrong()
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("how", "words"),
     [

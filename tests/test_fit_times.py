@@ -51,6 +51,7 @@ def pulls(seeds: range) -> np.ndarray:
     return np.array(out) / bound()
 
 
+@pytest.mark.thorough
 def test_jitter_is_found_and_errors_are_the_bound():
     found = pt.fit(jittery(1), KNOWN, free=["decel", "delta"], jitter="find")
     assert found.jitter == pytest.approx(JITTER, rel=0.2)

@@ -47,6 +47,7 @@ def believed(folder: Path, tmp_path: Path, count: int, seed: int) -> dict[str, l
     return became
 
 
+@pytest.mark.thorough
 @pytest.mark.filterwarnings("ignore::RuntimeWarning")
 def test_no_forged_table_is_believed(folder: Path, tmp_path: Path):
     became = believed(folder, tmp_path, 3, seed=5)
@@ -67,6 +68,7 @@ def in_one_node(name: str, place: tuple[int, ...], change: float) -> Edit:
     return edit
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("kind", "name", "place", "change"),
     [
@@ -151,6 +153,7 @@ def test_a_profile_may_not_call_itself_by_the_name_of_a_law(folder: Path, tmp_pa
         Table.load(path)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_entry_that_is_missing_or_of_another_type_is_a_sentence(
     kind: str, folder: Path, tmp_path: Path

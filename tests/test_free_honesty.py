@@ -39,6 +39,7 @@ def judged(law: str, delta: float, gyration: float, u: float, tol: float) -> Non
     assert np.abs(off).max() <= tol + slack
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("puck", "phi", "tol"),
     few(2, [
@@ -54,6 +55,7 @@ def test_next_to_pure_motions_of_much_and_little_inertia(
     judged(*puck, math.log(math.tan(phi)), tol)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("puck", "u"),
     few(1, [

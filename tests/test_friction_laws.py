@@ -36,6 +36,7 @@ def scene(law, **more):
     return {"puck": PUCK, "floor": {"law": law}, "launch": launch, **more}
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", LAWS)
 def test_a_sliding_puck_takes_the_time_and_the_way_of_the_integral_over_the_speed(name):
     law, f = LAWS[name]
@@ -54,6 +55,7 @@ def test_a_sliding_puck_takes_the_time_and_the_way_of_the_integral_over_the_spee
     assert run.energy_residual < tol
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(("name", "tol"), [("gauss", 1e-9), ("root", 1e-6)])
 def test_sliding_and_spinning_by_a_law_is_the_motion_by_quadrature(name, tol):
     law, f = LAWS[name]
@@ -79,6 +81,7 @@ def test_sliding_and_spinning_by_a_law_is_the_motion_by_quadrature(name, tol):
         assert run.columns[column] == pytest.approx(row, abs=tol * unit)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", LAWS)
 def test_a_table_of_a_law_is_as_good_as_it_says_and_survives_a_file(name, tmp_path):
     law, f = LAWS[name]

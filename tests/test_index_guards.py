@@ -116,6 +116,7 @@ def look_up_in_a_process(**environment: str) -> None:
     assert ended.returncode == 0, ended.stderr[-2000:]
 
 
+@pytest.mark.thorough
 def test_no_look_up_leaves_its_table():
     look_up_in_a_process()
 

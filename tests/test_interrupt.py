@@ -50,6 +50,7 @@ def test_while_the_commands_are_imported(name):
     assert done.stdout == ""
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("then", [AT_ONCE, DEAF], ids=["listening", "deaf"])
 def test_while_a_command_runs(then):
     code = AT_IMPORT.format(name="puck_tables.trajectory", then=then)
@@ -58,6 +59,7 @@ def test_while_a_command_runs(then):
     assert done.stderr == "Interrupted: nothing more was written.\n"
 
 
+@pytest.mark.thorough
 def test_a_resumable_sweep_says_that_it_goes_on_even_when_it_is_deaf(tmp_path):
     code = AT_IMPORT.format(name="puck_tables.stopping.curve_lookup", then=DEAF)
     pytest.importorskip("zarr")

@@ -204,6 +204,7 @@ def test_a_stop_table_of_one_s_own_is_taken_whole():
         stop((1, 0), 5.0, table=own, tol=1e-8)
 
 
+@pytest.mark.thorough
 def test_the_starts_are_what_their_script_computes(starts: dict[str, np.ndarray]):
     """One height of each file again, at full precision."""
     spec = importlib.util.spec_from_file_location("make_starts", GOLDEN / "make_starts.py")
@@ -220,6 +221,7 @@ def test_the_starts_are_what_their_script_computes(starts: dict[str, np.ndarray]
     assert "puck_tables" not in source
 
 
+@pytest.mark.thorough
 def test_the_starts_agree_with_values_known_before():
     spec = importlib.util.spec_from_file_location("make_starts", GOLDEN / "make_starts.py")
     script = importlib.util.module_from_spec(spec)

@@ -56,6 +56,7 @@ def test_it_says_what_was_taken_for_how_many():
     assert "of heights" not in plain.explain()
 
 
+@pytest.mark.thorough
 def test_stops_of_a_mixed_range_by_truth():
     delta = np.array([0.6, 1.3, 0.9, 2.0])
     found = columns(stop((np.cos(0.7), 0.0), np.sin(0.7), delta=delta))

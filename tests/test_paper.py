@@ -28,6 +28,7 @@ def differing(claims: list[Claim]) -> set[str]:
     return {claim.where for claim in claims if claim.verdict == "DIFFERS"}
 
 
+@pytest.mark.thorough
 def test_every_claim_is_as_expected(claims: list[Claim]):
     assert differing(claims) == set()
     wrong = [claim.where for claim in claims if claim.verdict == "erratum"]
@@ -179,12 +180,14 @@ CHANGES: dict[str, tuple[Callable[..., Trajectory], set[str]]] = {
 }  # fmt: skip
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", few(4, CHANGES))
 def test_wrong_motions_are_found_out(name: str):
     run, places = CHANGES[name]
     assert differing(motions.claims(run)) >= places
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("run", "places"),
     [
@@ -202,6 +205,7 @@ def test_wrong_ends_are_found_out(run: Callable[..., Trajectory], places: set[st
     assert differing(ends.claims(run)) >= places
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("run", "places"),
     [

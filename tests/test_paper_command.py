@@ -28,6 +28,7 @@ def puck(*arguments: str) -> Result:
 FILES = ["claims.csv", *(f"figure_{n:02}.png" for n in range(2, 12))]
 
 
+@pytest.mark.thorough
 def test_the_command_writes_prints_and_says_what_it_wrote(
     subjects: dict[str, list[Claim]], claims: list[Claim], monkeypatch: pytest.MonkeyPatch
 ):

@@ -83,6 +83,7 @@ def test_few_frames_do_not_cut_a_bouncing_path_off_its_walls(drawn: Any) -> None
     assert len(leap) >= len(bounces) and np.abs(np.diff(speed[:, 1])[leap]).max() > 0.3
 
 
+@pytest.mark.thorough
 def test_a_path_of_many_turns_is_round(drawn: Any) -> None:
     tables = {
         "puck": {"radius": 0.02, "friction": 0.5}, "floor": {"turning": 9.0},
@@ -163,6 +164,7 @@ def incline(slopes: str, spins: str) -> Any:
     return sweep_scene(tables)
 
 
+@pytest.mark.thorough
 def test_few_values_are_curves_with_marks_for_ends(drawn: Any) -> None:
     stops = incline("0:0.2:5", "0:80:9")
     figure = drawn(stops)
@@ -191,6 +193,7 @@ def test_maps_tell_ends_apart(drawn: Any, ranges: tuple[str, str]) -> None:
 TITLES = ["$x_1^{", "a $\\frac{1}{2}$ b", "\N{ICE HOCKEY STICK AND PUCK} \u05d0"]
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("title", TITLES)
 def test_titles_are_drawn_as_they_stand(drawn: Any, title: str) -> None:
     tables = find_scene("incline")

@@ -55,6 +55,7 @@ def test_laws_at_pure_translation_and_pure_spin(law, mean_x2, mean_radius):
     np.testing.assert_allclose(np.array(spin)[1:], expected, rtol=0.0, atol=1e-10)
 
 
+@pytest.mark.thorough
 @LAWS
 @pytest.mark.parametrize("phi", [0.6, 1.1])  # centre of rotation outside and inside the disc
 def test_laws_against_the_definition(law, phi):

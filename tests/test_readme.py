@@ -17,6 +17,13 @@ PAGES = {path.name: path for path in [ROOT / "README.md", *sorted((ROOT / "docs"
 TEXTS = {name: path.read_text(encoding="utf-8") for name, path in PAGES.items()}
 EXAMPLES = sorted((ROOT / "docs" / "gallery").rglob("*.py"))
 every_page = pytest.mark.parametrize("page", PAGES)
+LONG = (
+    "fits.md",
+    "command-line.md",
+    "several-pucks.md",
+    "explorer.md",
+    "scenes.md",
+)  # their commands
 
 
 def console_examples(text: str) -> list[tuple[str, str]]:
@@ -28,7 +35,10 @@ def console_examples(text: str) -> list[tuple[str, str]]:
     return examples
 
 
-@every_page
+@pytest.mark.parametrize(
+    "page",
+    [pytest.param(name, marks=[pytest.mark.thorough] * (name in LONG)) for name in PAGES],
+)
 def test_console_examples(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     """In order, in one folder: numbers to seven digits, those of rounding size to a factor 10."""
     monkeypatch.chdir(tmp_path)

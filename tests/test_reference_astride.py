@@ -65,6 +65,7 @@ def by_scipy(answer: Answer, times: np.ndarray) -> np.ndarray:
     return found
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", ASTRIDE)
 def test_states_by_an_independent_integrator(name: str):
     """Within the bound printed, below 1e-10 of Q²/J and Q, to where 1e-4 of the time is left."""

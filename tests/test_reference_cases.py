@@ -181,6 +181,7 @@ def test_the_rebound_by_an_independent_integrator():
     assert np.abs(told.states[0, :2] - [last["x"], last["y"]]).max() < 1e-9
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", ["annulus", "tall-2"])
 def test_other_pucks_by_another_integrator(name: str):
     """On the friction of the law itself, which a grid judges: no table, none of the motion."""

@@ -7,6 +7,7 @@ import typing
 from pathlib import Path
 
 import numpy as np
+import pytest
 from conftest import ROOT
 
 BARE = ("kernel", "inner", "inlined")
@@ -41,6 +42,7 @@ def gives_arrays(path: Path, function: ast.FunctionDef) -> bool:
     return holds_arrays(typing.get_type_hints(getattr(value, "py_func", value))["return"])
 
 
+@pytest.mark.thorough
 def test_no_kernel_gives_arrays_to_a_function_that_counts():
     functions = compiled_functions()
     assert {kind for _, _, kind in functions} == {*BARE, "allocating"}
@@ -54,6 +56,7 @@ def test_no_kernel_gives_arrays_to_a_function_that_counts():
             assert not called & givers, (path, function.name, called & givers)
 
 
+@pytest.mark.thorough
 def test_no_kernel_makes_arrays():
     """numba says so itself, but only where it has not compiled the same for another before."""
     numbers = {"np.cbrt", "np.cos", "np.floor", "np.sin", "np.sqrt", "np.uint64"}

@@ -25,6 +25,7 @@ def measured(seed: int, noise: float = 0.03):
     return pt.profile_law(RADII, (1.0 - 0.5 * RADII**2) * (1.0 + noise * rng.standard_normal(21)))
 
 
+@pytest.mark.thorough
 def test_a_profile_with_noise_works_at_the_default_tolerance():
     """Against an integrator that has friction straight from the law."""
     law = measured(0)

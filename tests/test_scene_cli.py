@@ -22,6 +22,7 @@ def puck(*arguments):
     return CliRunner().invoke(main, list(arguments))
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", shipped_scenes())
 def test_every_scene_that_comes_along_runs_and_its_ledger_closes(name, tmp_path):
     picture = tmp_path / "scene.png"
@@ -129,6 +130,7 @@ def test_states_of_a_scene_as_files(tmp_path):
         assert simulate_scene(kept, [0.0]).end_time == data.attrs["end_time"]
 
 
+@pytest.mark.thorough
 def test_the_curve_of_an_asperity_is_the_friction_law_of_a_scene(tmp_path):
     law = tmp_path / "rough.csv"
     rough = ("--amplitude", "1e-5", "--wavelength", "1e-3", "--speeds", "0:0.2:21")

@@ -66,6 +66,7 @@ def test_runs_of_a_sweep_that_fail_are_not_a_number(tmp_path):
     assert np.isnan(stops.columns["energy_residual"][1:]).all()
 
 
+@pytest.mark.thorough
 def test_a_law_that_jumps_is_tabulated_in_bounded_time(tmp_path):
     (tmp_path / "law.csv").write_text("0,0.1\n0.24,0.12\n0.25,0\n0.3,0\n0.31,0.2\n0.6,0.2\n")
     run = simulate_scene({

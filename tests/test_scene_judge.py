@@ -88,6 +88,7 @@ def truth() -> dict[str, tuple[np.ndarray, np.ndarray]]:
     return found
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("tol", [1e-6, 1e-9, 1e-11])
 @pytest.mark.parametrize("name", SMOOTH)
 def test_as_the_judge_has_it(

@@ -53,6 +53,7 @@ def test_a_coefficient_in_proportion_to_speed_is_viscous(tmp_path):
     assert run.energy_residual < 1e-8
 
 
+@pytest.mark.thorough
 def test_the_slope_that_a_law_holds_is_that_of_slip_zero(tmp_path):
     rows = [(0.0, 0.3), (0.2, 0.1), (2.0, 0.1)]
     for slope, stays in ((0.99 * math.atan(0.3), True), (1.01 * math.atan(0.3), False)):
@@ -135,6 +136,7 @@ def by_quadrature(points, puck, launch, times):
     ).y
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("tol", [1e-6, 1e-9])
 def test_a_law_with_corners_keeps_the_tolerance_of_the_scene(tmp_path, tol):
     points = [0.0, 0.2, 0.5, 0.9, 2.0], [0.3, 0.12, 0.2, 0.2, 0.1]
@@ -173,6 +175,7 @@ def test_the_table_of_a_law_is_built_once_kept_and_listed(tmp_path, monkeypatch)
     assert "is damaged: it is built again" in done.stderr
 
 
+@pytest.mark.thorough
 def test_a_tolerance_that_the_corners_do_not_allow_is_refused_with_one_that_they_do(
     tmp_path, monkeypatch
 ):

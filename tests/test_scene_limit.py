@@ -202,6 +202,7 @@ def _crossing(seed: int) -> dict[str, Any]:
     }  # fmt: skip
 
 
+@pytest.mark.thorough
 def test_no_estimate_is_too_small(tmp_path: Path) -> None:
     assert max(_estimates((draw(i, tmp_path) for i in range(3000, 3030)), (1e-4, 1e-7))) <= 2.0
     assert max(_estimates(map(_crossing, range(60)), (1e-2, 1e-3, 1e-4))) <= 2.0

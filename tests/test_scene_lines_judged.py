@@ -31,6 +31,7 @@ def faults(count: int, seed: int, tol: float, folder: Path) -> list[str]:
     return found
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("tol", [1e-3, 1e-6, 1e-9])
 def test_no_boundary_is_missed(tol, tmp_path):
     assert faults(200, 1, tol, tmp_path) == []

@@ -98,6 +98,7 @@ def test_it_ends_and_the_ledger_closes(what: dict[str, Any]) -> None:
         assert (normal @ (place - np.array(line["point"])[:, None])).min() >= radius - 1e-12
 
 
+@pytest.mark.thorough
 def test_bounces_without_end_are_refused() -> None:
     """Hard walls with next to no room between them."""
     with pytest.raises(PuckError, match=r"100000 events by .* they crowd together"):

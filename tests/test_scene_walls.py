@@ -81,6 +81,7 @@ def test_a_rough_rim_that_settles_is_where_all_rebounds_bring_it(
     assert error <= tol and error <= 2.0 * run.error_estimate + 1e-12
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("rim", [{}, {"tangential": 1.0, "friction": 1.0}, {"tangential": -0.5}])
 @pytest.mark.parametrize("tol", [1e-3, 1e-6, 1e-9, 1e-11])
 def test_a_turning_floor_carries_no_puck_into_a_wall(rim: dict[str, float], tol: float) -> None:
@@ -109,6 +110,7 @@ def test_a_floor_that_leads_off_a_wall_carries_a_puck_off() -> None:
     assert run.last["y"] == pytest.approx(1.0 - 0.9 * math.cos(1.0), rel=1e-9)
 
 
+@pytest.mark.thorough
 def test_what_two_rough_walls_bear_is_what_a_linear_program_finds() -> None:
     rng, seen = np.random.default_rng(0), 0
     for _ in range(400):

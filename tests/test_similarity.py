@@ -49,6 +49,7 @@ def test_default_table_at_adversarial_points():
     assert table.accuracy.order == pytest.approx(4.0, abs=0.15)
 
 
+@pytest.mark.thorough
 def test_order_through_the_singular_angles():
     """Twice the cells, a sixteenth of the error, where T and X carry k^1.6, k² ln k, x³ ln x."""
     u = np.concatenate([np.linspace(-9, -2, 40), np.linspace(-0.1, 0.1, 41), np.linspace(1, 7, 40)])
@@ -272,6 +273,7 @@ def test_the_slip_angle_is_that_of_the_velocities_everywhere(v0: tuple[float, fl
 # ---- the table
 
 
+@pytest.mark.thorough
 def test_validation_passes_and_can_fail(rough: StopTable):
     assert rough.validate().passed
     bent = rough.values.copy()

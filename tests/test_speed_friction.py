@@ -203,6 +203,7 @@ def test_the_compiled_integrals_are_those_of_numpy(law):
         assert weight * found == pytest.approx(weight * truth, abs=1e-14)
 
 
+@pytest.mark.thorough
 def test_the_grid_is_cut_at_the_corners_so_that_order_four_holds():
     """On the patches of a law with corners, all halved alike."""
     errors = []
@@ -220,6 +221,7 @@ def test_the_grid_is_cut_at_the_corners_so_that_order_four_holds():
     assert errors[-1] < 3e-7
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("law", "accuracy"),
     few(3, [
@@ -247,6 +249,7 @@ def test_so_do_tables_of_measured_laws(seed):
     assert gap(table, *slips(table, seed), law) <= 1e-8
 
 
+@pytest.mark.thorough
 def test_a_law_given_as_a_function(smooth):
     assert smooth.accuracy.worst <= 1e-5
     assert gap(smooth, *slips(smooth, 6), stribeck) <= 1e-5
@@ -272,6 +275,7 @@ def test_too_fine_is_refused_with_what_can_be_reached_and_that_can(monkeypatch):
     assert table.accuracy.worst <= refused.value.reachable
 
 
+@pytest.mark.thorough
 def test_progress_rises_and_does_not_wait_at_the_end():
     heard = []
 
@@ -331,6 +335,7 @@ def test_bad_input_gets_a_sentence(change, error, message):
 # Files and commands
 
 
+@pytest.mark.thorough
 def test_a_table_file_holds_the_law_and_is_judged_by_it(tmp_path):
     law = SpeedLaw([0.0, 1.0, 2.0], [0.0, 0.2, 0.1])  # f(0) = 0: friction vanishes at rest
     saved = Table.build(law, 1e-3).save(tmp_path / "speed.h5")

@@ -203,6 +203,7 @@ def test_where_each_system_keeps_them(monkeypatch: pytest.MonkeyPatch):
     assert store.tables_folder() == Path.home() / ".cache/puck-tables/tables"
 
 
+@pytest.mark.thorough
 def test_builders_at_once_leave_one_whole_table(kept: Path):
     code = "import puck_tables as pt; print(pt.table_for('galin', 1e-6).resultants(0.3, 0.5).spin)"
     compiled = str(Path(cache_folder() or "").parent)  # the tables are what is to be made anew

@@ -150,6 +150,7 @@ def test_maps_of_scenes_and_boards_in_a_store(scene: str, tmp_path: Path):
         assert data.attrs["title"] == whole.scene.title
 
 
+@pytest.mark.thorough
 def test_the_command_line_writes_a_store_and_draws_it(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):

@@ -129,6 +129,7 @@ ABSURD: dict[str, list[dict[str, object]]] = {
 }  # fmt: skip
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("kind", ABSURD)
 def test_absurd_sizes_take_no_memory(kind: str, tmp_path: Path, saved: Callable[[str], Path]):
     """Loaded by a process that may have 2 GiB of addresses: each is refused in a sentence."""

@@ -98,6 +98,7 @@ def test_a_file_says_what_it_holds(kind: str, saved: Callable[[str], Path]):
 
 
 # that of stops takes long, and is judged in test_similarity too
+@pytest.mark.thorough
 @pytest.mark.parametrize("kind", few(len(KINDS) - 1, sorted(KINDS, key="stops".__eq__)))
 def test_an_honest_table_passes_and_a_bold_or_bent_one_fails(
     kind: str, saved: Callable[[str], Path]

@@ -181,6 +181,7 @@ def test_times_with_jitter_are_kept(tmp_path: Path):
     assert track.time.tolist() == times
 
 
+@pytest.mark.thorough
 def test_many_rows_are_read_block_by_block_as_few_are(tmp_path: Path):
     rng = np.random.default_rng(5)
     data = np.column_stack([np.arange(250_000) / 1000.0, rng.normal(size=(250_000, 2))])

@@ -91,6 +91,7 @@ def test_a_curling_ring_is_integrated():
     assert (run.last["x"][0], run.last["y"][0]) == pytest.approx(free.stop_position, abs=4e-8)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("restitution", few(1, [0.5, 0.0, 1.0]))
 def test_a_squeeze_is_refused_by_name(restitution: float):
     way = mallet((0, -0.2, 0), (1, 0.22, 0))  # its rim to 0.27: a puck has no room

@@ -98,6 +98,7 @@ def content(folder: Path) -> dict[str, bytes]:
     return {str(path): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", COMMANDS)
 def test_files_that_exist_are_kept(name: str, folder: Path):
     path = Path(COMMANDS[name][1].format("old"))
@@ -138,6 +139,7 @@ def no_room(descriptor: int) -> None:
     raise OSError(28, "No space left on device")
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", COMMANDS)
 def test_a_full_disk(name: str, folder: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr("os.fsync", no_room)
@@ -184,6 +186,7 @@ def test_a_disk_that_is_really_full(name: str, folder: Path, little_room: None):
     assert content(folder) == {}
 
 
+@pytest.mark.thorough
 def test_no_room_for_compiled_code(folder: Path):
     """A full cache disk costs time, not the answer."""
     code = (
