@@ -29,9 +29,10 @@ STICKS, APART = 0, 2
 HELD, YIELDS, MOVES, DRIVEN = range(4)
 
 # how a stretch ends
-TIME_UP, PARTS, RIM_STOPS, RIM_GIVES, RUNS_OFF, RESTS, SETS_OFF, FULL, UNSOLVED, NOT_FINITE = range(
-    10
-)
+(
+    TIME_UP, PARTS, RIM_STOPS, RIM_GIVES, RUNS_OFF, RESTS, SETS_OFF, FULL, UNSOLVED, NOT_FINITE,
+    OFF_BORDER,
+) = range(11)  # fmt: skip
 
 # columns of what is seen of a contact: the normal from the first to the second; how much a slip of
 # the centres opens it, 1/m; that slip, the approach, the slip of the rims, the gap; the radii of

@@ -16,6 +16,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner, kernel
+from puck_tables.world.footing import has_left, is_over, moves_along
 from puck_tables.world.forces import can_rest, count_rows, slip_of
 from puck_tables.world.group import (
     DRIVEN,
@@ -24,6 +25,7 @@ from puck_tables.world.group import (
     HELD,
     MOVES,
     NOT_FINITE,
+    OFF_BORDER,
     PARTS,
     RESTS,
     SETS_OFF,
@@ -174,7 +176,7 @@ def follow(
 
     Returns
     -------
-    how it ended (TIME_UP … NOT_FINITE), which contact or member is concerned, when, and the number
+    how it ended (TIME_UP … OFF_BORDER), which contact or member is concerned, when, and the number
     of rows for each member
     """
     size = members.shape[0]
@@ -189,8 +191,10 @@ def follow(
     watch(desk, modes, scales, False)
     still_there = False  # anybody at rest whom somebody touches
     for place in range(size):
-        forced = group.spans[members[place], 0] < group.spans[members[place], 1]
-        changes = contacts.shape[0] > 0 or forced or group.surface.spin != 0.0
+        number = members[place]
+        forced = group.spans[number, 0] < group.spans[number, 1]
+        over = is_over(group.regions, group.discs, number) and moves_along(group.surface)
+        changes = contacts.shape[0] > 0 or forced or over or group.surface.spin != 0.0
         still_there = still_there or (doings[place] == HELD and changes)
     h, start, passed, count = _FIRST * unit, t, 0.0, 0
     how, which = TIME_UP, -1
@@ -257,6 +261,8 @@ def follow(
             q, earlier = slip_of(group, number, after), slip_of(group, number, before)
             if doings[place] == YIELDS and (q > small_slip(scales) or q < earlier):
                 doings[place], begun = MOVES, True
+            elif how == TIME_UP and has_left(group.regions, group.discs, number, after):
+                how = OFF_BORDER  # its motion costs less from here
             elif how == TIME_UP and doings[place] == MOVES and can_rest(group, number):
                 how = RESTS if q <= STILL * scales.speed and q < earlier else how
                 which = place if how == RESTS else which

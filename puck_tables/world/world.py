@@ -339,13 +339,15 @@ class World:
         """A world of its own that goes on from here, to look ahead."""
         twin = object.__new__(World)
         twin.scene, twin._order = self.scene, self._order
-        # tables, floors and obstacles never change
+        # tables, floors and obstacles never change; in the ground it is written who lies where
         kept = (
-            "regions", "floors", "surface", "tides", "spans", "rims", "obstacles", "curves",
+            "floors", "surface", "tides", "spans", "rims", "obstacles", "curves",
             "launches", "drives",
         )  # fmt: skip
         parts: dict[str, Any] = self._game._asdict()
-        twin._game = g.Game(**{n: one if n in kept else one.copy() for n, one in parts.items()})
+        regions = parts.pop("regions")
+        own = {n: one if n in kept else one.copy() for n, one in parts.items()}
+        twin._game = g.Game(regions=regions._replace(ground=regions.ground.copy()), **own)
         twin._room = self._room._replace(
             **{name: part.copy() for name, part in self._room._asdict().items()}
         )
