@@ -8,6 +8,8 @@ ground for every disc, all of one length, for each has its own load.
 
 from __future__ import annotations
 
+import math
+
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
 from puck_tables.scene.astride import (
@@ -104,17 +106,17 @@ def is_over(regions: Regions, discs: FloatArray, i: int) -> bool:
 
 
 @inlined
-def has_left(regions: Regions, discs: FloatArray, i: int, state: FloatArray) -> bool:
-    """Whether a disc that is taken for astride lies on one friction in a state (6,)."""
-    if not is_over(regions, discs, i):
-        return False
+def room_on_floor(regions: Regions, discs: FloatArray, i: int, state: FloatArray) -> float:
+    """How far a disc in a state (6,) is from lying otherwise than it is taken to; < 0: it does."""
     first, last = ground_span(regions, discs, i)
-    ground = regions.ground[first:last]
-    for number in range(int(ground[BORDERS]) + int(ground[PATCHES])):
-        away = off_border(ground, number, state[X], state[Y])
-        if lies_to(away, discs[i, RADIUS]) == ASTRIDE:
-            return False
-    return True
+    ground, radius, room = regions.ground[first:last], discs[i, RADIUS], math.inf
+    for number in range(discs.shape[1] - LIES):
+        away, how = off_border(ground, number, state[X], state[Y]), int(discs[i, LIES + number])
+        if how == ASTRIDE:
+            room = min(room, radius - abs(away))
+        else:
+            room = min(room, (away if how == OUTSIDE else -away) - radius)
+    return room
 
 
 def lay_down(game: Game, i: int, state: FloatArray) -> None:
