@@ -11,7 +11,7 @@ import numpy as np
 from puck_tables.errors import InputError
 from puck_tables.motion.body import is_plain
 from puck_tables.scene.agreement import distance, floor_faults
-from puck_tables.scene.by_speed import speed_law
+from puck_tables.scene.by_speed import law_name, speed_law
 from puck_tables.scene.forces import drive_of
 from puck_tables.scene.holds import misfits
 from puck_tables.scene.parts import Drag, Edge, Force, Launch, Wall
@@ -91,7 +91,12 @@ def refuse_endless(scene: Scene) -> None:
     if any(floor.velocity) or floor.turning != 0.0:
         raise InputError("on a floor that moves nothing comes to rest: give run.time")
     for number, piece in enumerate(pieces_of(scene)):
-        if not scene.floor.law and 0.0 in frictions_under(scene, piece) and not piece.path:
+        if 0.0 in frictions_under(scene, piece) and not piece.path:
+            if floor.law:
+                raise InputError(
+                    f"{law_name(scene)}: its friction is 0 at slip zero, so that nothing comes to "
+                    "rest: give run.time"
+                )
             raise InputError(
                 f"nothing brings {called(piece, number)} to rest (its friction is 0): give "
                 "run.time, or friction"
@@ -107,7 +112,7 @@ def refuse_endless(scene: Scene) -> None:
 def frictions_under(scene: Scene, piece: Piece, fastest: float = 0.0) -> tuple[float, ...]:
     """Coulomb's coefficients under a puck: on each strip of the floor, then on each patch.
 
-    Where they depend on the slip the largest, up to slips of ``fastest`` m/s.
+    Where they depend on the slip the largest, up to slips of ``fastest`` m/s: at 0 that at rest.
 
     Examples
     --------
@@ -119,7 +124,8 @@ def frictions_under(scene: Scene, piece: Piece, fastest: float = 0.0) -> tuple[f
         return (speed_law(scene).largest(fastest),)
     if floor.orthotropic is not None:
         return (max(floor.orthotropic.friction),)
-    return scene.alone(piece).frictions
+    base = (piece.friction,) if floor.strips is None else floor.strips.friction
+    return (*base, *(patch.friction for patch in floor.patches))
 
 
 def has_closed_forms(piece: Piece, friction: float) -> bool:

@@ -15,8 +15,9 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.section_spline import NO_SECTION
 from puck_tables.scene.astride import NO_GROUND
 from puck_tables.scene.by_speed import NO_LAW, law_up_to
-from puck_tables.scene.friction import SPIN, VX
+from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.scene.ingredients import BySpeed, Regions, Surface, floor_velocity
+from puck_tables.scene.orthotropic import is_elliptic
 from puck_tables.scene.pieces import Piece
 from puck_tables.scene.regions import SLICE_SHARE, alone, axes_of, of_one_shape
 from puck_tables.scene.scene import Scene
@@ -62,13 +63,10 @@ def _row(scene: Scene, piece: Piece, friction: float, how: float) -> list[float]
     return [decel, 2.0 * friction * piece.height / piece.radius, how]
 
 
-def regions_of(
-    scene: Scene, pieces: list[Piece], floors: FloatArray, fastest: float, reach: float = 1.0
-) -> Regions:
+def regions_of(scene: Scene, pieces: list[Piece], floors: FloatArray, fastest: float) -> Regions:
     """The dry friction of every puck everywhere: closed forms, or tables if one needs them.
 
-    ``fastest``: the fastest slip of a rim at the launches, m/s; ``reach``: how many times farther
-    the table of a friction law by name goes.
+    ``fastest``: the fastest slip of a rim for which a friction law is to hold, m/s.
 
     Raises
     ------
@@ -82,7 +80,7 @@ def regions_of(
     count, delta = len(floors), floors[:, 1].copy()
     none = np.empty((count, *NO_SECTION.shape))
     if scene.floor.law:
-        table, largest = law_up_to(scene, fastest, reach)
+        table, largest = law_up_to(scene, fastest, 1.0)
         table.refuse_height(max(ratios, default=0.0))
         return alone(normals * largest, delta, none, BySpeed(table.compiled, 0.0, 1.0, 1.0))
     if scene.floor.orthotropic is not None:
@@ -109,18 +107,28 @@ def regions_of(
     return Regions(loads, delta, cuts, NO_LAW, astride, ground)
 
 
+def slip_of_rim(radius: float, surface: Surface, state: list[float]) -> float:
+    """The fastest slip of a rim over the floor in a state (6,), m/s."""
+    sx, sy, turning = floor_velocity(surface, state[X], state[Y])
+    return math.hypot(state[VX] - sx, state[VY] - sy) + radius * abs(state[SPIN] - turning)
+
+
 def fastest_rim(pieces: list[Piece], states: FloatArray, surface: Surface) -> float:
-    """The fastest slip of a rim over the floor in states (n, 6) and in launches to come, m/s."""
+    """The fastest in states (n, 6) and in launches to come, of all that slide, m/s."""
     most = 0.0
     for piece, state in zip(pieces, states.tolist(), strict=True):
-        if piece.path:
-            continue
-        sx, sy, turning = floor_velocity(surface, state[0], state[1])
-        launch = piece.launch
-        ways = [state[VX : SPIN + 1]]
+        launch, ways = piece.launch, [state]
         if launch.time > 0.0:
-            ways.append([*(launch.velocity or (0.0, 0.0)), launch.spin])
-        for vx, vy, spin in ways:
-            rim = piece.radius * abs(spin - turning)
-            most = max(most, math.hypot(vx - sx, vy - sy) + rim)
+            velocity = launch.velocity or (0.0, 0.0)
+            ways.append([*state[: Y + 1], 0.0, *velocity, launch.spin])
+        for way in () if piece.path else ways:
+            most = max(most, slip_of_rim(piece.radius, surface, way))
     return most
+
+
+def law_goes_to(regions: Regions) -> float:
+    """Up to which slip of a rim friction is known, m/s."""
+    law = regions.by_speed
+    if law.normal == 0.0 or is_elliptic(law.table):
+        return math.inf
+    return float(law.table[int(law.table[0])])

@@ -29,7 +29,7 @@ from puck_tables.world.flight import (
     Curves,
 )
 from puck_tables.world.floors import fastest_rim, floors_of, normal_on, regions_of
-from puck_tables.world.footing import lay_down
+from puck_tables.world.footing import lay_down, step_onto
 from puck_tables.world.game import (
     COUNTS,
     EVENT_COLUMNS,
@@ -155,6 +155,16 @@ def game_of(scene: Scene, order: Whole) -> tuple[Game, Room]:
     room.states[:] = states
     set_pace(game, states)
     return game, room
+
+
+def with_law_up_to(game: Game, scene: Scene, order: Whole, fastest: float) -> Game:
+    """With the table of a friction law by name for slips of the rim up to ``fastest``, m/s."""
+    pieces = [pieces_of(scene)[number] for number in order]
+    floors = floors_of(scene, pieces, fastest)
+    game = game._replace(regions=regions_of(scene, pieces, floors, fastest), floors=floors)
+    for i in range(len(pieces)):
+        step_onto(game, i)
+    return game
 
 
 def set_pace(game: Game, states: FloatArray) -> None:
