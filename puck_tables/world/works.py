@@ -2,7 +2,8 @@
 
 A group of discs, or one alone, is sent on at once; all go on from the same event, so the flight of
 any of them tells when that ended.  A row is a step of it: powers at both ends and the work between,
-of which a part is that of a polynomial of degree four.  A row without duration is a jump, at the start.
+of which a part is that of a polynomial of degree four.  A row without duration is a jump, at the
+start.
 """
 
 from __future__ import annotations
