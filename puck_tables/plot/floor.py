@@ -13,6 +13,7 @@ from puck_tables.scene.parts import Floor
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+_CLEAR = 0.6  # how much of what is below a patch it hides
 _ARROWS = (9, 5)  # of a moving floor, across and up
 
 
@@ -25,28 +26,74 @@ class Box(NamedTuple):
     high: float
 
 
+class Shade(NamedTuple):
+    """A part of the floor of one friction: a polygon, or without corners a circle, m; its colour.
+
+    ``patch``: whether it lies on others.
+    """
+
+    friction: float
+    corners: list[tuple[float, float]]
+    centre: tuple[float, float]
+    radius: float
+    colour: tuple[float, float, float]
+    patch: bool
+
+
 def draw_floor(axes: Axes, floor: Floor, box: Box, highest: float) -> None:
     """All of it that is seen in a box; ``highest``: the largest friction, the darkest patch."""
-    _draw_strips(axes, floor, box)
-    _draw_patches(axes, floor, highest or 1.0)
+    from matplotlib.patches import Circle, Polygon
+
+    told: set[tuple[bool, float]] = set()
+    for shade in shades_of(floor, box, highest):
+        key = (shade.patch, shade.friction)
+        label: dict[str, Any] = {} if key in told else {"label": f"f = {shade.friction:g}"}
+        told.add(key)
+        style: dict[str, Any] = {
+            "facecolor": shade.colour, "edgecolor": GREY, "linewidth": 0.8,
+            "zorder": 1 if shade.patch else 0, **label,
+        }  # fmt: skip
+        if shade.patch:
+            style["alpha"] = _CLEAR
+        axes.add_patch(
+            Polygon(shade.corners, **style)
+            if shade.corners
+            else Circle(shade.centre, shade.radius, **style)
+        )
     _draw_motion(axes, floor, box)
 
 
-def _draw_strips(axes: Axes, floor: Floor, box: Box) -> None:
-    """Strips of different friction, darker where it is higher."""
-    from matplotlib.patches import Polygon
+def shades_of(floor: Floor, box: Box, highest: float) -> list[Shade]:
+    """Strips as far as a box shows them, and patches; the darker the more friction.
 
+    Examples
+    --------
+    >>> from puck_tables import Patch
+    >>> wet = Floor(patches=[Patch(0.1, radius=1.0)])
+    >>> [shade.radius for shade in shades_of(wet, Box(-1.0, 1.0, -1.0, 1.0), 0.2)]
+    [1.0]
+    """
+    shades = _strips(floor, box)
+    for patch in floor.patches:
+        share = patch.friction / (highest or 1.0)
+        colour = (0.86 - 0.5 * share, 0.93 - 0.4 * share, 0.98 - 0.25 * share)
+        corners: Any = [tuple(row) for row in patch.corners]
+        shades.append(Shade(patch.friction, corners, patch.centre, patch.radius, colour, True))
+    return shades
+
+
+def _strips(floor: Floor, box: Box) -> list[Shade]:
+    """Strips of different friction."""
     strips = floor.strips
     if strips is None:
-        return
+        return []
     across = (math.cos(strips.direction), math.sin(strips.direction))
     middle = ((box.left + box.right) / 2, (box.low + box.high) / 2)
     half = math.hypot(box.right - box.left, box.high - box.low)
     centre = across[0] * middle[0] + across[1] * middle[1]
     along = across[0] * middle[1] - across[1] * middle[0]
     ends = [centre - half, *strips.borders, centre + half]
-    highest = max(strips.friction) or 1.0
-    told: set[float] = set()
+    highest, found = max(strips.friction) or 1.0, []
     for low, high, friction in zip(ends, ends[1:], strips.friction, strict=False):
         low, high = max(low, centre - half), min(high, centre + half)
         if low >= high:
@@ -57,35 +104,8 @@ def _draw_strips(axes: Axes, floor: Floor, box: Box) -> None:
                          (low, along + half))
         ]  # fmt: skip
         shade = 0.97 - 0.22 * friction / highest
-        label: dict[str, Any] = {} if friction in told else {"label": f"f = {friction:g}"}
-        told.add(friction)
-        axes.add_patch(
-            Polygon(
-                corners, facecolor=(shade, shade, shade), edgecolor="#707070", linewidth=0.8,
-                zorder=0, **label,
-            )
-        )  # fmt: skip
-
-
-def _draw_patches(axes: Axes, floor: Floor, highest: float) -> None:
-    """Patches of the floor, darker where friction is higher."""
-    from matplotlib.patches import Circle, Polygon
-
-    told: set[float] = set()
-    for patch in floor.patches:
-        share = patch.friction / highest
-        style: dict[str, Any] = {
-            "facecolor": (0.86 - 0.5 * share, 0.93 - 0.4 * share, 0.98 - 0.25 * share),
-            "edgecolor": GREY, "linewidth": 0.8, "alpha": 0.6, "zorder": 1,
-        }  # fmt: skip
-        if patch.friction not in told:
-            style["label"] = f"f = {patch.friction:g}"
-        told.add(patch.friction)
-        axes.add_patch(
-            Polygon(patch.corners, **style)
-            if patch.corners
-            else Circle(patch.centre, patch.radius, **style)
-        )
+        found.append(Shade(friction, corners, (0.0, 0.0), 0.0, (shade, shade, shade), False))
+    return found
 
 
 def _draw_motion(axes: Axes, floor: Floor, box: Box) -> None:
