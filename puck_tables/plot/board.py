@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from puck_tables.plot.film import Body, Box, Film
+from puck_tables.plot.floor import Box as Sight
+from puck_tables.plot.floor import draw_floor
 from puck_tables.plot.style import GREY, RED
 
 if TYPE_CHECKING:
@@ -32,9 +34,10 @@ def size_of(box: Box) -> tuple[float, float]:
 
 
 def draw_board(axes: Axes, film: Film) -> None:
-    """All that stands still, each kind labelled once, to scale."""
+    """The floor, and all that stands still, each kind labelled once, to scale."""
     from matplotlib.patches import Arc, Circle
 
+    draw_floor(axes, film.floor, Sight(*film.box), max(film.frictions, default=0.0))
     told: set[str] = set()
 
     def label(kind: str) -> dict[str, Any]:

@@ -19,9 +19,10 @@ from puck_tables._core.colours import brightness
 from puck_tables.plot.scene import states_drawn
 from puck_tables.result import TimedResult
 from puck_tables.scene.outcome import SceneRun
+from puck_tables.scene.parts import Floor
 from puck_tables.scene.scene import Scene
 from puck_tables.trajectory import Trajectory
-from puck_tables.world.agreement import pieces_of
+from puck_tables.world.agreement import frictions_under, pieces_of
 from puck_tables.world.drive import rows_of
 from puck_tables.world.outcome import WorldRun
 
@@ -93,6 +94,8 @@ class Film(NamedTuple):
     rounds: list[Round]
     happenings: list[Happening]
     box: Box
+    floor: Floor
+    frictions: tuple[float, ...]  # all that there are on it
 
 
 def film_of(result: TimedResult) -> Film:
@@ -178,7 +181,14 @@ def _film(
             for name, radius, colour, driven, states in bodies
         ],
         _lines(planes, box), rounds, happenings or [], box,
+        Floor() if scene is None else scene.floor, () if scene is None else _frictions(scene),
     )  # fmt: skip
+
+
+def _frictions(scene: Scene) -> tuple[float, ...]:
+    """All coefficients of the floor under its pucks."""
+    under = (frictions_under(scene, piece) for piece in pieces_of(scene))
+    return tuple(friction for one in under for friction in one)
 
 
 def colour_of(number: int) -> str:

@@ -18,6 +18,8 @@ from puck_tables.errors import MissingExtraError, OutputError
 from puck_tables.io.formats import ending_of
 from puck_tables.plot import board
 from puck_tables.plot.film import Body, Film, between, film_of, path_of
+from puck_tables.plot.floor import Box as Sight
+from puck_tables.plot.floor import shades_of
 from puck_tables.plot.style import RED, canvas, require_matplotlib, titled
 from puck_tables.result import TimedResult
 
@@ -101,6 +103,15 @@ def page(film: Film) -> str:
         "box": film.box,
         "bodies": [_body(body) for body in film.bodies],
         "lines": [line._asdict() for line in film.lines],
+        "shades": [
+            {
+                "corners": shade.corners,
+                "centre": shade.centre,
+                "radius": shade.radius,
+                "colour": "#" + "".join(f"{round(255 * part):02x}" for part in shade.colour),
+            }
+            for shade in shades_of(film.floor, Sight(*film.box), max(film.frictions, default=0.0))
+        ],
         "rounds": [one._asdict() for one in film.rounds],
         "happenings": [one._asdict() for one in film.happenings],
     }

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables.plot.floor import Box, draw_floor
 from puck_tables.plot.style import BLUE, GREY, LAUNCH, ORANGE, RED, STOP
 from puck_tables.scene.outcome import SceneRun
 from puck_tables.scene.parts import Edge, Wall
@@ -34,19 +35,9 @@ _DRAWN = (
     "blade",
 )
 _SHAPE = 2.2  # width of the panel over its height
-_ARROWS = (9, 5)  # of a moving floor, across and up
 _PURPLE = "#8b2fa0"
 _LEGEND_ROW = 4  # entries
 _MARKED = 2000  # impacts: more would be one blot
-
-
-class Box(NamedTuple):
-    """What is in sight, m."""
-
-    left: float
-    right: float
-    low: float
-    high: float
 
 
 def draw_plane(axes: Axes, run: SceneRun, columns: dict[str, FloatArray]) -> None:
@@ -54,9 +45,7 @@ def draw_plane(axes: Axes, run: SceneRun, columns: dict[str, FloatArray]) -> Non
     scene, radius = run.scene, run.scene.puck.radius
     x, y = columns["x"], columns["y"]
     box = _box(x, y, 1.6 * radius)
-    _draw_strips(axes, scene, box)
-    _draw_patches(axes, scene)
-    _draw_floor(axes, scene, box)
+    draw_floor(axes, scene.floor, box, max(scene.frictions))
     axes.plot(x, y, color=BLUE, linewidth=1.4, zorder=3)
     _draw_pucks(axes, scene, columns)
     _draw_lines(axes, scene.walls, box, "wall", color="black", linewidth=2.5)
@@ -109,94 +98,6 @@ def _draw_pucks(axes: Axes, scene: Scene, columns: dict[str, FloatArray]) -> Non
         axes.plot(
             [x[n] - back * dx, x[n] + dx], [y[n] - back * dy, y[n] + dy], zorder=2,
             **{"linewidth": 0.8, **style}, **label,
-        )  # fmt: skip
-
-
-def _draw_patches(axes: Axes, scene: Scene) -> None:
-    """Patches of the floor, darker where friction is higher."""
-    from matplotlib.patches import Circle, Polygon
-
-    highest = max(scene.frictions) or 1.0
-    told: set[float] = set()
-    for patch in scene.floor.patches:
-        share = patch.friction / highest
-        style: dict[str, Any] = {
-            "facecolor": (0.86 - 0.5 * share, 0.93 - 0.4 * share, 0.98 - 0.25 * share),
-            "edgecolor": GREY, "linewidth": 0.8, "alpha": 0.6, "zorder": 1,
-        }  # fmt: skip
-        if patch.friction not in told:
-            style["label"] = f"f = {patch.friction:g}"
-        told.add(patch.friction)
-        axes.add_patch(
-            Polygon(patch.corners, **style)
-            if patch.corners
-            else Circle(patch.centre, patch.radius, **style)
-        )
-
-
-def _draw_strips(axes: Axes, scene: Scene, box: Box) -> None:
-    """Strips of different friction, darker where it is higher."""
-    from matplotlib.patches import Polygon
-
-    strips = scene.floor.strips
-    if strips is None:
-        return
-    across = (math.cos(strips.direction), math.sin(strips.direction))
-    middle = ((box.left + box.right) / 2, (box.low + box.high) / 2)
-    half = math.hypot(box.right - box.left, box.high - box.low)
-    centre = across[0] * middle[0] + across[1] * middle[1]
-    along = across[0] * middle[1] - across[1] * middle[0]
-    ends = [centre - half, *strips.borders, centre + half]
-    highest = max(strips.friction) or 1.0
-    told: set[float] = set()
-    for low, high, friction in zip(ends, ends[1:], strips.friction, strict=False):
-        low, high = max(low, centre - half), min(high, centre + half)
-        if low >= high:
-            continue
-        corners = [
-            (s * across[0] - t * across[1], s * across[1] + t * across[0])
-            for s, t in ((low, along - half), (high, along - half), (high, along + half),
-                         (low, along + half))
-        ]  # fmt: skip
-        shade = 0.97 - 0.22 * friction / highest
-        label: dict[str, Any] = {} if friction in told else {"label": f"f = {friction:g}"}
-        told.add(friction)
-        axes.add_patch(
-            Polygon(
-                corners, facecolor=(shade, shade, shade), edgecolor="#707070", linewidth=0.8,
-                zorder=0, **label,
-            )
-        )  # fmt: skip
-
-
-def _draw_floor(axes: Axes, scene: Scene, box: Box) -> None:
-    """Arrows of a moving floor, and the centre of a turntable."""
-    floor = scene.floor
-    if not any(floor.velocity) and floor.turning == 0.0:
-        return
-    across, up = _ARROWS
-    x, y = np.meshgrid(
-        np.linspace(box.left, box.right, 2 * across + 1)[1::2],
-        np.linspace(box.low, box.high, 2 * up + 1)[1::2],
-    )
-    vx = floor.velocity[0] - floor.turning * (y - floor.centre[1])
-    vy = floor.velocity[1] + floor.turning * (x - floor.centre[0])
-    words = []
-    if any(floor.velocity):
-        words.append(f"belt ({floor.velocity[0]:g}, {floor.velocity[1]:g}) m/s")
-    if floor.turning != 0.0:
-        words.append(f"turntable {floor.turning:g} rad/s")
-    fastest = float(np.hypot(vx, vy).max())
-    cell = (box.right - box.left) / across
-    axes.quiver(
-        x, y, vx, vy, color="#b9cfe0", angles="xy", scale_units="xy",
-        scale=fastest / (0.7 * cell), width=0.003, zorder=1,
-    )  # fmt: skip
-    axes.plot([], [], color="#b9cfe0", marker=">", label="floor: " + ", ".join(words))
-    if floor.turning != 0.0:
-        axes.plot(
-            *floor.centre, "+", color="#4a7fa8", markersize=12, markeredgewidth=1.6, zorder=2,
-            linestyle="", label="centre of the turntable",
         )  # fmt: skip
 
 

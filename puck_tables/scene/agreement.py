@@ -29,16 +29,7 @@ def disagreements(scene: Scene) -> list[str]:
                 f"puck.{name} = {value:g}: must be from {_SMALLEST:g} to {_LARGEST:g} in a scene, "
                 "use other units"
             )
-    for name, there in (("strips", scene.floor.strips), ("patch", scene.floor.patches)):
-        if scene.floor.law and there:
-            faults.append(
-                f"floor.law and floor.{name}: each takes the place of puck.friction, give one"
-            )
-    if scene.floor.law and (scene.puck.pressure != "uniform"):
-        faults.append("floor.law: known under uniform pressure only, not with puck.pressure")
-    faults += bad_strips(scene.floor) or patch_faults(scene.floor) or _bad_astride(scene)
-    faults += _bad_rows(scene)
-    faults += _bad_axes(scene)
+    faults += floor_faults(scene)
     if not scene.run.frames.is_integer():
         faults.append(f"run.frames = {scene.run.frames:g}: must be a whole number")
     lines: list[tuple[str, Wall | Edge]] = [(f"wall[{i}]", w) for i, w in enumerate(scene.walls)]
@@ -61,6 +52,20 @@ def disagreements(scene: Scene) -> list[str]:
     if scene.walls:
         faults.append("constraint and wall: a scene has one of them, not both")
     return faults + misfits(scene.launch, hold, scene.floor, "")
+
+
+def floor_faults(scene: Scene) -> list[str]:
+    """What is wrong with the friction of the floor, under the puck."""
+    faults = []
+    for name, there in (("strips", scene.floor.strips), ("patch", scene.floor.patches)):
+        if scene.floor.law and there:
+            faults.append(
+                f"floor.law and floor.{name}: each takes the place of puck.friction, give one"
+            )
+    if scene.floor.law and (scene.puck.pressure != "uniform"):
+        faults.append("floor.law: known under uniform pressure only, not with puck.pressure")
+    faults += bad_strips(scene.floor) or patch_faults(scene.floor) or _bad_astride(scene)
+    return faults + _bad_rows(scene) + _bad_axes(scene)
 
 
 def _bad_astride(scene: Scene) -> list[str]:

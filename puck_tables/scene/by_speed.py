@@ -43,8 +43,22 @@ def friction_by_speed(scene: Scene, normal: float, reach: float) -> tuple[BySpee
     AccuracyError
         If it has too many corners for so fine a tolerance; it says which can be reached.
     """
-    law, puck = speed_law(scene), scene.puck
-    fastest = math.hypot(*slip_at_launch(scene)[:2]) + abs(slip_at_launch(scene)[2])
+    puck, (ux, uy, rim) = scene.puck, slip_at_launch(scene)
+    table, largest = law_up_to(scene, math.hypot(ux, uy) + abs(rim), reach)
+    height_ratio = 2.0 * puck.height / puck.radius
+    table.refuse_height(height_ratio)
+    return BySpeed(table.compiled, height_ratio, normal, 1.0), np.array([normal * largest])
+
+
+def law_up_to(scene: Scene, fastest: float, reach: float) -> tuple[SpeedTable, float]:
+    """The table of a friction law that holds for such slips of the rim, m/s, and the largest f.
+
+    Raises
+    ------
+    InputError, AccuracyError
+        As :func:`friction_by_speed`.
+    """
+    law = speed_law(scene)
     top = _first_top(law, fastest)
     if fastest > top:
         raise InputError(
@@ -55,9 +69,7 @@ def friction_by_speed(scene: Scene, normal: float, reach: float) -> tuple[BySpee
     if isinstance(law, FrictionLaw):
         top *= reach
     share = largest / law.largest(top) if largest > 0.0 else 1.0  # the unit of errors of the table
-    table, height_ratio = _law_table(law, scene, top, share), 2.0 * puck.height / puck.radius
-    table.refuse_height(height_ratio)
-    return BySpeed(table.compiled, height_ratio, normal, 1.0), np.array([normal * largest])
+    return _law_table(law, scene, top, share), largest
 
 
 def _first_top(law: SpeedLaw | FrictionLaw, fastest: float) -> float:

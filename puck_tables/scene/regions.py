@@ -15,6 +15,7 @@ from puck_tables.motion.friction import closed_form_friction, table_friction
 from puck_tables.scene.astride import NO_GROUND
 from puck_tables.scene.by_speed import NO_LAW, friction_by_speed, law_error
 from puck_tables.scene.ingredients import BySpeed, Regions
+from puck_tables.scene.parts import Orthotropic
 from puck_tables.scene.scene import Scene
 from puck_tables.scene.zones import ground_of, zones_of
 from puck_tables.table.friction_section import FINEST_ACCURACY
@@ -43,10 +44,8 @@ def regions_of(scene: Scene, reach: float = 1.0) -> Regions:
         by_speed, load = friction_by_speed(scene, normal, reach)
         return alone(load, np.zeros(1), closed_form_friction(0.0).cut[None, :], by_speed)
     if floor.orthotropic is not None:
-        along, across = floor.orthotropic.friction
-        turned = floor.orthotropic.direction
-        load = np.array([normal * max(along, across)])
-        axes = np.array([along, across, math.cos(turned), math.sin(turned)])
+        axes = axes_of(floor.orthotropic)
+        load = np.array([normal * axes[:2].max()])
         by_direction = BySpeed(axes, 2.0 * puck.height / puck.radius, normal, 1.0)
         return alone(load, np.zeros(1), closed_form_friction(0.0).cut[None, :], by_direction)
     heights = scene.heights
@@ -67,6 +66,11 @@ def regions_of(scene: Scene, reach: float = 1.0) -> Regions:
             f"run.tol (or --tol) of {rounded_up(error.reachable / SLICE_SHARE):g} or more"
         ) from None
     return _under_zones(scene, normal, load, np.array(heights), of_one_shape(slices))
+
+
+def axes_of(two: Orthotropic) -> FloatArray:
+    """Friction by direction as :func:`puck_tables.scene.orthotropic.ellipse_in` reads it."""
+    return np.array([*two.friction, math.cos(two.direction), math.sin(two.direction)])
 
 
 def alone(load: FloatArray, delta: FloatArray, cuts: FloatArray, by_speed: BySpeed) -> Regions:

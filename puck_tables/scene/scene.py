@@ -198,6 +198,23 @@ class Scene(SceneVerbs):
             )
         return self
 
+    def alone(self, puck: Puck) -> Scene:
+        """A puck alone on its floor, as long and as close; what does not fit is not looked for.
+
+        Examples
+        --------
+        >>> board = Scene(pucks=[Piece(0.5, friction=0.1)])
+        >>> board.alone(board.pucks[0]).frictions
+        (0.1,)
+        """
+        scene = object.__new__(type(self))
+        for spec in specs(type(self)).values():
+            object.__setattr__(scene, spec.name, spec.default)
+        for name, part in (("puck", puck), ("floor", self.floor), ("run", self.run)):
+            object.__setattr__(scene, name, part)
+        object.__setattr__(scene, "ranges", {})
+        return scene
+
     def at(self, numbers: Mapping[str, Any]) -> Scene:
         """The scene without ranges, with other numbers, by path.
 

@@ -10,7 +10,8 @@ import numpy as np
 
 from puck_tables.errors import InputError
 from puck_tables.motion.body import is_plain
-from puck_tables.scene.agreement import bad_strips, distance
+from puck_tables.scene.agreement import distance, floor_faults
+from puck_tables.scene.by_speed import law_name, speed_law
 from puck_tables.scene.forces import drive_of
 from puck_tables.scene.holds import misfits
 from puck_tables.scene.parts import Drag, Edge, Force, Launch, Wall
@@ -91,6 +92,11 @@ def refuse_endless(scene: Scene) -> None:
         raise InputError("on a floor that moves nothing comes to rest: give run.time")
     for number, piece in enumerate(pieces_of(scene)):
         if 0.0 in frictions_under(scene, piece) and not piece.path:
+            if floor.law:
+                raise InputError(
+                    f"{law_name(scene)}: its friction is 0 at slip zero, so that nothing comes to "
+                    "rest: give run.time"
+                )
             raise InputError(
                 f"nothing brings {called(piece, number)} to rest (its friction is 0): give "
                 "run.time, or friction"
@@ -103,16 +109,23 @@ def refuse_endless(scene: Scene) -> None:
             )
 
 
-def frictions_under(scene: Scene, piece: Piece) -> tuple[float, ...]:
-    """Coulomb's coefficient under a puck on each strip of the floor.
+def frictions_under(scene: Scene, piece: Piece, fastest: float = 0.0) -> tuple[float, ...]:
+    """Coulomb's coefficients under a puck: on each strip of the floor, then on each patch.
+
+    Where they depend on the slip the largest, up to slips of ``fastest`` m/s: at 0 that at rest.
 
     Examples
     --------
     >>> frictions_under(Scene(pucks=[Piece(0.1, friction=0.2)]), Piece(0.1, friction=0.2))
     (0.2,)
     """
-    strips = scene.floor.strips
-    return (piece.friction,) if strips is None else strips.friction
+    floor = scene.floor
+    if floor.law:
+        return (speed_law(scene).largest(fastest),)
+    if floor.orthotropic is not None:
+        return (max(floor.orthotropic.friction),)
+    base = (piece.friction,) if floor.strips is None else floor.strips.friction
+    return (*base, *(patch.friction for patch in floor.patches))
 
 
 def has_closed_forms(piece: Piece, friction: float) -> bool:
@@ -131,7 +144,8 @@ def is_integrated(scene: Scene, piece: Piece, friction: float) -> bool:
     True
     """
     drags, floor = scene.drag != Drag(), scene.floor
-    rough = friction > 0.0 and (drags or not has_closed_forms(piece, friction))
+    by_slip = bool(floor.law) or floor.orthotropic is not None
+    rough = friction > 0.0 and (drags or by_slip or not has_closed_forms(piece, friction))
     turns = floor.turning != 0.0 and (friction > 0.0 or drags)
     more = floor.slope > 0.0 or piece.force != Force() or piece.constraint is not None
     more = more or scene.lateral.strength != 0.0
@@ -141,7 +155,7 @@ def is_integrated(scene: Scene, piece: Piece, friction: float) -> bool:
 def disagreements(scene: Scene) -> list[str]:
     """What is wrong between fields that are each in range."""
     pieces = pieces_of(scene)
-    faults = [*_not_here(scene), *bad_strips(scene.floor)]
+    faults = [*_not_here(scene), *_bad_floors(scene, pieces)]
     names = [piece.name for piece in pieces if piece.name]
     for name in sorted({name for name in names if names.count(name) > 1}):
         faults.append(f"puck.name = {name!r}: {names.count(name)} pucks have it, it must be of one")
@@ -165,18 +179,6 @@ def disagreements(scene: Scene) -> list[str]:
 
 def _not_here(scene: Scene) -> Iterator[str]:
     """What a scene of several pucks does not take."""
-    if scene.floor.law:
-        yield (
-            "floor.law: is of one puck alone, without posts, arcs, pockets and laws of rims; give "
-            "each of several pucks its friction, or the floor strips"
-        )
-    if scene.floor.orthotropic is not None:
-        yield (
-            "floor.orthotropic: is of one puck alone, without posts, arcs, pockets and laws of "
-            "rims; give each of several pucks its friction"
-        )
-    if scene.floor.patches:
-        yield "floor.patch: is of one puck alone, without posts, arcs, pockets and laws of rims"
     if not scene.pucks:
         return
     for name, part, default in (
@@ -185,6 +187,17 @@ def _not_here(scene: Scene) -> Iterator[str]:
     ):  # fmt: skip
         if part != default:
             yield f"{name}: each of several pucks has its own, puck[0].{name}"
+
+
+def _bad_floors(scene: Scene, pieces: tuple[Piece, ...]) -> Iterator[str]:
+    """What is wrong with the friction of the floor, and whose base it does not fit."""
+    found: dict[str, list[str]] = {}
+    for number, piece in enumerate(pieces):
+        for fault in () if piece.path else floor_faults(scene.alone(piece)):
+            found.setdefault(fault, []).append(called(piece, number))
+    slides = sum(not piece.path for piece in pieces)
+    for fault, names in found.items():
+        yield fault if len(names) == slides else f"{', '.join(names)}: {fault}"
 
 
 def _of_one(scene: Scene, piece: Piece, path: str) -> Iterator[str]:

@@ -7,9 +7,9 @@ import math
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
 from puck_tables.scene.forces import given_by
-from puck_tables.scene.friction import VX, VY, dry_friction, size
-from puck_tables.scene.ingredients import carried_along, dry_in
-from puck_tables.world.footing import over_floor
+from puck_tables.scene.friction import VX, VY, X, Y, dry_friction, size
+from puck_tables.scene.ingredients import carried_along, put_at
+from puck_tables.world.footing import dry_under, over_floor
 from puck_tables.world.game import Game, Whole
 from puck_tables.world.holds import led
 from puck_tables.world.layout import (
@@ -18,7 +18,6 @@ from puck_tables.world.layout import (
     PULL_X,
     PULL_Y,
     RADIUS,
-    REGION,
     TURNABILITY,
     TWIST,
     dragged,
@@ -68,7 +67,8 @@ def acceleration(game: Game, i: int, t: float, state: FloatArray) -> tuple[float
         left = 1.0 - disc[DECEL] / push if push > disc[DECEL] else 0.0
         ax, ay = cx + left * (ax - cx), cy + left * (ay - cy)
     else:
-        dry = dry_in(game.regions, int(disc[REGION]))
+        dry = dry_under(game.regions, game.discs, i)
+        put_at(dry, state[X], state[Y])
         fx, fy, torque, _ = dry_friction(dry, disc[RADIUS], ux, uy, w)
         dx, dy, slows, _, _ = dragged(disc, ux, uy, w)
         ax += disc[LIGHTNESS] * fx + dx

@@ -151,6 +151,7 @@ def _paces(game: Game, first: FloatArray, discs: Whole, launches: FloatArray) ->
 def _own(game: Game, rows: int) -> Game:
     """A copy to run on, with so many rows for events and flights."""
     return game._replace(
+        regions=game.regions._replace(ground=game.regions.ground.copy()),
         discs=game.discs.copy(), clock=np.zeros(1), kinds=game.kinds.copy(),
         flights=game.flights.copy(), group=game.group.copy(), held=game.held.copy(),
         next_time=game.next_time.copy(), next_partner=game.next_partner.copy(),

@@ -11,6 +11,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.scene.ingredients import floor_velocity
+from puck_tables.scene.patches import ASTRIDE, INSIDE, OUTSIDE
 from puck_tables.world.flight import (
     DRIFT_X,
     DRIFT_Y,
@@ -27,13 +28,14 @@ from puck_tables.world.flight import (
     start_flight,
     state_at,
 )
-from puck_tables.world.footing import step_onto, strip_under
+from puck_tables.world.footing import ground_span, off_border, step_onto
 from puck_tables.world.game import (
     APPROACH,
     AT_X,
     AT_Y,
-    CROSSED,
+    ENTERS,
     IMPACT,
+    LEAVES,
     LOST,
     N_EVENTS,
     N_HISTORY,
@@ -60,7 +62,7 @@ from puck_tables.world.impact import (
     SUM_N,
     SUM_T,
 )
-from puck_tables.world.layout import FROM, RADIUS
+from puck_tables.world.layout import LIES, RADIUS, A
 from puck_tables.world.paths import DURATION, FIRST
 from puck_tables.world.paths import START as BEGINS
 
@@ -184,10 +186,17 @@ def note_impacts(game: Game, t: float, count: int, room: Room) -> None:
 
 @inlined
 def cross(game: Game, i: int, t: float, k: int, room: Room) -> None:
-    """The centre of a disc passes the border between two strips of the floor."""
-    note(game, t, CROSSED, i, -1 - k, room.states[i, X], room.states[i, Y])
-    after = int(game.obstacles[k, FROM])
-    step_onto(game, i, after - 1 if strip_under(game, i) == after else after)
+    """The rim of a disc comes over a border or a patch of the floor, or leaves it."""
+    number, x, y = int(game.obstacles[k, A]), room.states[i, X], room.states[i, Y]
+    enters = int(game.discs[i, LIES + number]) != ASTRIDE
+    how = ASTRIDE
+    if not enters:
+        first, last = ground_span(game.regions, game.discs, i)
+        away = off_border(game.regions.ground[first:last], number, x, y)
+        how = OUTSIDE if away > 0.0 else INSIDE
+    game.discs[i, LIES + number] = how
+    note(game, t, ENTERS if enters else LEAVES, i, -1 - k, x, y)
+    step_onto(game, i)
 
 
 @inlined

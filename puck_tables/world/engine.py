@@ -7,6 +7,7 @@ import math
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner, kernel
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
+from puck_tables.world.borders import next_border
 from puck_tables.world.departures import (
     CONCERNED,
     DISAPPOINTED,
@@ -62,7 +63,7 @@ from puck_tables.world.impact import (
     approach,
     collide,
 )
-from puck_tables.world.layout import BORDER, EDGE, KIND, POCKET, RADIUS
+from puck_tables.world.layout import EDGE, KIND, ON_FLOOR, POCKET, RADIUS
 from puck_tables.world.meeting import are_apart, next_crossing, next_meeting, rest_together
 from puck_tables.world.quiet import quieten
 from puck_tables.world.touching import find_touching, is_integrated, press_somewhere
@@ -92,7 +93,10 @@ def look_ahead(game: Game, i: int, t: float, room: Room) -> None:
     if game.kinds[i] == PATH:
         _earlier(game, i, game.flights[i, UNTIL], PATH_ENDS)
     for k in range(game.obstacles.shape[0]):
-        found = next_crossing(game, i, k, t, game.next_time[i], room.work, room.one)
+        if int(game.obstacles[k, KIND]) >= ON_FLOOR:
+            found = next_border(game, i, k, t, game.next_time[i], room.work, room.one)
+        else:
+            found = next_crossing(game, i, k, t, game.next_time[i], room.work, room.one)
         _earlier(game, i, found, -1 - k)
     kind = game.kinds[i]
     known = kind in (STILL, LOOKED_UP)
@@ -158,7 +162,7 @@ def _happen(game: Game, i: int, partner: int, t: float, room: Room) -> int:
             room.marks[j] = CONCERNED
     if partner < 0:
         shape = int(game.obstacles[-1 - partner, KIND])
-        if shape == BORDER:
+        if shape >= ON_FLOOR:
             cross(game, i, t, -1 - partner, room)
         if shape in (POCKET, EDGE):
             leave(game, i, t, POCKETED if shape == POCKET else OVER_EDGE, -1 - partner, room)

@@ -1,13 +1,47 @@
-"""What a disc stands on: a floor at rest, a belt, a turntable, one of several strips."""
+"""What a disc stands on: a floor at rest, a belt, a turntable, strips and patches of friction.
+
+Where friction differs, the rows of ``regions`` are all discs on the first strip, on the second, …,
+on every patch, and then all discs astride: on several frictions at once, each of which is felt
+under its own part of the base (:mod:`puck_tables.scene.astride`).  ``regions.ground`` has one such
+ground for every disc, all of one length, for each has its own load.
+"""
 
 from __future__ import annotations
 
+import math
+
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
+from puck_tables.scene.astride import (
+    ACROSS_X,
+    ACROSS_Y,
+    BORDERS,
+    PATCHES,
+    border_of,
+)
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
-from puck_tables.scene.ingredients import Surface, floor_velocity
+from puck_tables.scene.ingredients import (
+    ASTRIDE as SEVERAL,
+)
+from puck_tables.scene.ingredients import (
+    BySpeed,
+    Dry,
+    Regions,
+    Surface,
+    floor_velocity,
+)
+from puck_tables.scene.patches import ASTRIDE, INSIDE, OUTSIDE, distance_to
 from puck_tables.world.game import Game
-from puck_tables.world.layout import DECEL, DELTA, INTEGRATED, REGION
+from puck_tables.world.layout import (
+    DECEL,
+    DELTA,
+    HEIGHT_RATIO,
+    INTEGRATED,
+    LIES,
+    NORMAL,
+    RADIUS,
+    REGION,
+)
 
 
 @inlined
@@ -31,15 +65,91 @@ def moves_along(surface: Surface) -> bool:
 
 
 @inlined
-def strip_under(game: Game, i: int) -> int:
-    """The strip of the floor that a disc is on."""
-    return int(game.discs[i, REGION]) // game.discs.shape[0]
+def ground_span(regions: Regions, discs: FloatArray, i: int) -> tuple[int, int]:
+    """Where in ``regions.ground`` that of a disc begins and ends; empty where friction is one."""
+    size = regions.ground.size // discs.shape[0]
+    return i * size, (i + 1) * size
 
 
 @inlined
-def step_onto(game: Game, i: int, strip: int) -> None:
-    """A disc comes onto a strip of the floor, and has the friction there."""
-    disc, region = game.discs[i], strip * game.discs.shape[0] + i
+def dry_under(regions: Regions, discs: FloatArray, i: int) -> Dry:
+    """The dry friction on a disc where it is."""
+    region, law = int(discs[i, REGION]), regions.by_speed
+    if regions.astride[region]:
+        first, last = ground_span(regions, discs, i)
+        law = BySpeed(regions.ground[first:last], 0.0, SEVERAL, 1.0)
+    elif law.normal > 0.0:
+        law = BySpeed(law.table, discs[i, HEIGHT_RATIO], discs[i, NORMAL], 1.0)
+    return Dry(regions.load[region], regions.delta[region], regions.cuts[region], law)
+
+
+@inlined
+def off_border(ground: FloatArray, number: int, x: float, y: float) -> float:
+    """How far a point is from a border, or after all of them a patch; beyond or in it < 0."""
+    if number < int(ground[BORDERS]):
+        return border_of(ground, number) - (ground[ACROSS_X] * x + ground[ACROSS_Y] * y)
+    return distance_to(ground, number - int(ground[BORDERS]), x, y)
+
+
+@inlined
+def lies_to(away: float, radius: float) -> int:
+    """How a base lies to what its centre is so far from."""
+    if abs(away) < radius:
+        return ASTRIDE
+    return OUTSIDE if away > 0.0 else INSIDE
+
+
+@inlined
+def is_over(regions: Regions, discs: FloatArray, i: int) -> bool:
+    """Whether a disc is taken for astride."""
+    return regions.astride[int(discs[i, REGION])]
+
+
+@inlined
+def room_on_floor(regions: Regions, discs: FloatArray, i: int, state: FloatArray) -> float:
+    """How far a disc in a state (6,) is from lying otherwise than it is taken to; < 0: it does."""
+    first, last = ground_span(regions, discs, i)
+    ground, radius, room = regions.ground[first:last], discs[i, RADIUS], math.inf
+    for number in range(discs.shape[1] - LIES):
+        away, how = off_border(ground, number, state[X], state[Y]), int(discs[i, LIES + number])
+        if how == ASTRIDE:
+            room = min(room, radius - abs(away))
+        else:
+            room = min(room, (away if how == OUTSIDE else -away) - radius)
+    return room
+
+
+def lay_down(game: Game, i: int, state: FloatArray) -> None:
+    """See how the base of a disc lies at its start, and which friction it has there."""
+    first, last = ground_span(game.regions, game.discs, i)
+    ground = game.regions.ground[first:last]
+    for number in range(game.discs.shape[1] - LIES):
+        away = off_border(ground, number, state[X], state[Y])
+        game.discs[i, LIES + number] = lies_to(away, game.discs[i, RADIUS])
+    step_onto(game, i)
+
+
+@inlined
+def step_onto(game: Game, i: int) -> None:
+    """A disc has the friction that belongs to how it lies to borders and patches."""
+    disc = game.discs[i]
+    first, last = ground_span(game.regions, game.discs, i)
+    ground = game.regions.ground[first:last]
+    strip, patch, astride = 0, -1, False
+    if ground.size > 0:
+        borders, patches = int(ground[BORDERS]), int(ground[PATCHES])
+        for number in range(borders + patches):
+            how = int(disc[LIES + number])
+            astride = astride or how == ASTRIDE
+            if how == INSIDE and number < borders:
+                strip += 1
+            elif how == INSIDE:
+                patch = number - borders
+        if patch >= 0:
+            strip = borders + 1 + patch
+        if astride:
+            strip = borders + 1 + patches
+    region = strip * game.discs.shape[0] + i
     disc[REGION] = region
     disc[DECEL], disc[DELTA] = game.floors[region, 0], game.floors[region, 1]
     disc[INTEGRATED] = game.floors[region, 2]

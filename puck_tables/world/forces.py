@@ -20,12 +20,12 @@ from puck_tables.scene.ingredients import (
     Body,
     Hold,
     carried_along,
-    dry_in,
     floor_velocity,
+    put_at,
 )
 from puck_tables.scene.rest import constrained_yield, free_yield
 from puck_tables.world.alone import pull_on, rows_passed
-from puck_tables.world.footing import over_floor
+from puck_tables.world.footing import dry_under, over_floor
 from puck_tables.world.group import (
     ARM,
     DRIVEN,
@@ -144,7 +144,8 @@ def act(
         inverse[0], inverse[1] = light, turns
         sx, sy, turning = floor_velocity(group.surface, y[place, X], y[place, Y])
         ux, uy, w = vx - sx, vy - sy, spin - turning
-        dry = dry_in(group.regions, int(disc[REGION]))
+        dry = dry_under(group.regions, group.discs, number)
+        put_at(dry, y[place, X], y[place, Y])
         if doing == YIELDS:
             way = desk.ways[place]
             fx, fy, torque, _ = dry_friction(at_slip_zero(dry), radius, way[0], way[1], way[2])
@@ -217,7 +218,8 @@ def excess_on(
 ) -> tuple[float, float, float, float]:
     """By how much what acts on a disc at rest exceeds its friction, over f N, and the slip then."""
     disc = group.discs[members[place]]
-    dry = at_slip_zero(dry_in(group.regions, int(disc[REGION])))
+    dry = at_slip_zero(dry_under(group.regions, group.discs, members[place]))
+    put_at(dry, y[place, X], y[place, Y])
     fx, fy, torque = _asked_of_floor(group, members, place, count, desk)
     kind = int(disc[HOLD])
     if kind == FREE:

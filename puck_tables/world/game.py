@@ -17,8 +17,8 @@ Whole = npt.NDArray[np.int64]
 NOTHING, PATH_ENDS, LOOK_AGAIN = 1 << 40, (1 << 40) + 1, (1 << 40) + 2
 
 # events
-IMPACT, CONTACT, PART, POCKETED, OVER_EDGE, REST, STRUCK, CROSSED = range(8)
-EVENTS = ("impact", "contact", "part", "pocket", "edge", "rest", "launch", "border")
+IMPACT, CONTACT, PART, POCKETED, OVER_EDGE, REST, STRUCK, ENTERS, LEAVES = range(9)
+EVENTS = ("impact", "contact", "part", "pocket", "edge", "rest", "launch", "entry", "exit")
 # columns of an event: what, disc, partner, place of the contact, normal from the disc to its
 # partner, approach and slip before, normal and tangential impulse, energy lost, all in SI units
 (
@@ -42,9 +42,10 @@ COUNTS = 10
 class Game(NamedTuple):
     """Everything, as arrays: a copy of them is a copy of the world.
 
-    ``regions``: the dry friction of every disc on every strip of the floor, ``floors`` what of it
-    stands in its row there (strips · n, 3): deceleration, δ, and whether it is integrated, which a
-    disc takes over when it comes there; ``surface``: how the floor moves; ``tides``,
+    ``regions``: the dry friction of every disc everywhere on the floor, see
+    :mod:`puck_tables.world.footing`; ``floors`` what of it stands in its row there (places · n, 3):
+    deceleration, δ, and whether it is integrated, which a disc takes over when it comes there;
+    ``surface``: how the floor moves; ``tides``,
     ``spans``: see :class:`puck_tables.world.group.Group`; ``rims``: the laws
     by which they meet (:mod:`puck_tables.world.rims`).  ``clock`` (1,): now.  ``group``
     (n,): discs of one number push each other, 0: none; ``held`` (…, 2): their contacts.

@@ -29,9 +29,10 @@ STICKS, APART = 0, 2
 HELD, YIELDS, MOVES, DRIVEN = range(4)
 
 # how a stretch ends
-TIME_UP, PARTS, RIM_STOPS, RIM_GIVES, RUNS_OFF, RESTS, SETS_OFF, FULL, UNSOLVED, NOT_FINITE = range(
-    10
-)
+(
+    TIME_UP, PARTS, RIM_STOPS, RIM_GIVES, RUNS_OFF, RESTS, SETS_OFF, FULL, UNSOLVED, NOT_FINITE,
+    OFF_BORDER,
+) = range(11)  # fmt: skip
 
 # columns of what is seen of a contact: the normal from the first to the second; how much a slip of
 # the centres opens it, 1/m; that slip, the approach, the slip of the rims, the gap; the radii of
@@ -83,7 +84,7 @@ class Desk(NamedTuple):
     """Arrays to work in for m members and c contacts, of which h members are led.
 
     ``pairs``: the contacts by places of members; ``states``: at the start and the end of a step and
-    at a trial (3, m, 6); ``stages`` (8, m, 6) and ``powers`` (9, 5): rates of states and ledger;
+    at a trial (3, m, 6); ``stages`` (8, m, 6) and ``powers`` (10, 6): rates of states and ledger;
     ``own``, ``rates`` (m, 3): accelerations without and with contacts; ``inverse`` (m, 2): 1/m, 1/I
     of those that can move; ``sights``, ``midway`` (c, 11): at the end and in the middle of a step;
     ``watched`` (2, c, 4): see :func:`puck_tables.world.moments.watch`; ``pushes`` (c, 2): λ, τ;
@@ -141,7 +142,7 @@ def desk_for(members: int, contacts: int, led: int = 0) -> Desk:
     stages = len(DORMAND_PRINCE.c)
     return Desk(
         pairs=np.zeros((c, 2), np.int64), states=np.zeros((3, m, 6)),
-        stages=np.zeros((stages + 1, m, 6)), powers=np.zeros((stages + 2, LEDGER)),
+        stages=np.zeros((stages + 1, m, 6)), powers=np.zeros((stages + 3, LEDGER)),
         own=np.zeros((m, 3)), rates=np.zeros((m, 3)), inverse=np.zeros((m, 2)),
         sights=np.zeros((c, SIGHT)), midway=np.zeros((c, SIGHT)),
         watched=np.zeros((2, c, WATCHES)), pushes=np.zeros((c, 2)),

@@ -38,6 +38,7 @@ from puck_tables.world.flight import (
     STRONGEST,
     UNTIL,
 )
+from puck_tables.world.footing import moves_along
 from puck_tables.world.game import (
     CONTACT,
     LOST,
@@ -68,6 +69,7 @@ from puck_tables.world.layout import (
     LIGHTNESS,
     PULL_X,
     PULL_Y,
+    REGION,
     TURNABILITY,
     TWIST,
 )
@@ -225,6 +227,9 @@ def _follow(
     horizon = t + 2.0 * scales.speed / scales.rate if driven else math.inf
     horizon = min([horizon, *jumps])
     swings = surface.spin != 0.0 and (pulled.any() or bool(jumps))
+    # what holds those who lie astride changes as they are carried on
+    over = shared.regions.astride[discs[:, REGION].astype(np.int64)].any()
+    swings = swings or bool(over and moves_along(surface))
     for first, last in shared.reels[members]:
         if first < last:  # what drives may turn where its piece ends
             horizon = min(horizon, float(shared.films[first, [BEGINS, DURATION]].sum()))

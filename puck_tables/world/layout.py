@@ -19,27 +19,34 @@ from puck_tables.scene.forces import sideways
 RADIUS, LIGHTNESS, TURNABILITY, DECEL, DELTA = range(5)  # r, 1/m, 1/I, J = f g, 2 f h/r
 DAMPING, SPIN_DAMPING, WAKE = 5, 6, 7  # drag over mass, over inertia, 1/s; quadratic, 1/m
 RESTITUTION, TANGENTIAL, FRICTION = 8, 9, 10  # of its rim
-INTEGRATED = 11  # 1: also alone; what is known of its motion is an integral, no table
+# 1: also alone; what is known of its motion is an integral, no table.  2: nor does DECEL say what
+# holds it at rest
+INTEGRATED = 11
 MAKE = 12  # which kind of rim it has, where pairs of kinds have a law of their own
 PULL_X, PULL_Y, TWIST = 13, 14, 15  # accelerations of slope and given forces, m/s², rad/s²
 # a constraint, see :class:`puck_tables.scene.ingredients.Hold`, fixed in place at t = 0
 HOLD, HOLD_X, HOLD_Y, HOLD_REACH, HOLD_ANGLE, HOLD_VX, HOLD_VY, HOLD_PLACE = range(16, 24)
-REGION = 24  # of the dry friction under it: the strip on which it is, times discs, and its number
+REGION = 24  # of the dry friction under it: where on the floor it is, times discs, and its number
 SPIN_WAKE = 25  # quadratic drag of the spin, over inertia
 ACROSS, BY_SPEED, BY_SPIN = 26, 27, 28  # a lateral force: its acceleration and exponents
-DISC_COLUMNS = 29
+NORMAL, HEIGHT_RATIO = 29, 30  # N, and 2h/r: where friction depends on the slip
+# from here on how its base lies to every border of strips, and then to every patch
+# (:mod:`puck_tables.world.footing`)
+LIES = 31
+DISC_COLUMNS = 31  # without those
 
-# columns of an obstacle: for a wall, edge or border (A, B) is its unit normal, into the field, and
-# C its place along it; for the others (A, B) is the centre, C the radius; [FROM, FROM + SPAN] are
-# the angles of an arc, and FROM the strip that begins at a border
+# columns of an obstacle: for a wall or edge (A, B) is its unit normal, into the field, and C its
+# place along it; for the others (A, B) is the centre, C the radius; [FROM, FROM + SPAN] are the
+# angles of an arc.  Of a border or patch A is its number among both: the ground knows the rest
 KIND, A, B, C = range(4)
 WALL_RESTITUTION, WALL_TANGENTIAL, WALL_FRICTION = 4, 5, 6
 FROM, SPAN = 7, 8
 OBSTACLE_MAKE = 9
 OBSTACLE_COLUMNS = 10
 
-WALL, POST, ARC, POCKET, EDGE, BORDER = range(6)  # of the last three only the centre counts
+WALL, POST, ARC, POCKET, EDGE, BORDER, PATCH = range(7)  # of pocket and edge the centre counts
 NO_CUSHION = POCKET  # from there on: no impact
+ON_FLOOR = BORDER  # from there on: where friction changes under the base
 
 
 @inlined

@@ -38,16 +38,13 @@ from puck_tables.world.flight import (
     moves_until,
     state_at,
 )
-from puck_tables.world.footing import strip_under
 from puck_tables.world.game import N_HELD, N_LOOKS, Game
 from puck_tables.world.layout import (
     ARC,
-    BORDER,
     DAMPING,
     EDGE,
     FROM,
     KIND,
-    LIGHTNESS,
     POCKET,
     RADIUS,
     SPAN,
@@ -62,8 +59,8 @@ OUTSIDE = 1e-9  # of the radius
 ROUNDED = 1e-15  # of the places: a gap as small is none
 QUIET = 1e-12  # of the scale of speeds: an approach as slow is none
 HARDLY = 1e-11  # of the scales of speeds and accelerations: as good as none, of what touches
-_MOST_LOOKS = 20_000
-_PATIENCE = 8  # looks, before those who go beside each other are bounded closer
+MOST_LOOKS = 20_000
+PATIENCE = 8  # looks, before those who go beside each other are bounded closer
 
 
 @inlined
@@ -88,7 +85,7 @@ def normal_to(
 ) -> tuple[float, float, float, bool]:
     """The gap of a disc to an obstacle, the unit normal towards it, and whether it is there."""
     kind = int(obstacle[KIND])
-    if kind in (WALL, EDGE, BORDER):
+    if kind in (WALL, EDGE):
         margin = radius if kind == WALL else 0.0
         gap = obstacle[A] * x + obstacle[B] * y - obstacle[C] - margin
         return gap, -obstacle[A], -obstacle[B], True
@@ -102,25 +99,40 @@ def normal_to(
 
 
 @inlined
-def _arc_step(gap: float, dx: float, dy: float, vx: float, vy: float, bend: float) -> float:
-    """How long a centre inside an arc cannot meet it, (dx, dy) from its middle, gap to go."""
-    size, speed2 = math.hypot(dx, dy), vx * vx + vy * vy
-    reach = size + gap
-    along = dx * vx + dy * vy
-    if speed2 > 0.0:
-        root = math.sqrt(along * along + speed2 * (reach * reach - size * size))
-        out = (reach * reach - size * size) / (along + root)  # a straight path meets it then
-        nearer = reach - 0.5 * bend * out * out
-        if nearer > size:
-            rest = nearer * nearer - size * size
-            return rest / (along + math.sqrt(along * along + speed2 * rest))
-    speed = math.sqrt(speed2)
-    root = math.sqrt(speed2 + 2.0 * bend * gap)
-    return 2.0 * gap / (speed + root) if speed + root > 0.0 else math.inf
+def _to_circle(along: float, speed2: float, rest: float) -> float:
+    """When a straight path inside a circle meets it, ``rest`` the difference of the squares."""
+    root = math.sqrt(along * along + speed2 * rest)
+    return (root - along) / speed2 if along < 0.0 else rest / (along + root)
 
 
 @inlined
-def _distance2(ax: float, ay: float, bx: float, by: float, px: float, py: float) -> float:
+def arc_step(gap: float, dx: float, dy: float, vx: float, vy: float, bend: float) -> float:
+    """How long a centre inside an arc cannot meet it, (dx, dy) from its middle, gap to go.
+
+    One that comes nearer to the middle is, until it is nearest, within the chord of its distance:
+    so it may start on the arc.
+    """
+    size, speed2 = math.hypot(dx, dy), vx * vx + vy * vy
+    reach = size + gap
+    along = dx * vx + dy * vy
+    inwards = 0.0
+    if along < 0.0:
+        inwards = -along / speed2
+        closes = -along / (size + math.sqrt(max(size * size + along * inwards, 0.0)))
+        if 2.0 * closes < bend * inwards:
+            inwards = 2.0 * closes / bend
+    if speed2 > 0.0 and gap > 0.0:
+        out = _to_circle(along, speed2, reach * reach - size * size)
+        nearer = reach - 0.5 * bend * out * out
+        if nearer > size:
+            return max(inwards, _to_circle(along, speed2, nearer * nearer - size * size))
+    speed = math.sqrt(speed2)
+    root = math.sqrt(speed2 + 2.0 * bend * gap)
+    return max(inwards, 2.0 * gap / (speed + root)) if speed + root > 0.0 else math.inf
+
+
+@inlined
+def distance2(ax: float, ay: float, bx: float, by: float, px: float, py: float) -> float:
     """The square of the distance of a point from the segment a–b."""
     ex, ey = bx - ax, by - ay
     size2 = ex * ex + ey * ey
@@ -154,8 +166,8 @@ def are_apart(
     if first * second < 0.0 and third * fourth < 0.0:
         return False
     nearest = min(
-        min(_distance2(ax, ay, bx, by, cx, cy), _distance2(ax, ay, bx, by, dx, dy)),
-        min(_distance2(cx, cy, dx, dy, ax, ay), _distance2(cx, cy, dx, dy, bx, by)),
+        min(distance2(ax, ay, bx, by, cx, cy), distance2(ax, ay, bx, by, dx, dy)),
+        min(distance2(cx, cy, dx, dy, ax, ay), distance2(cx, cy, dx, dy, bx, by)),
     )
     return nearest > reach * reach * (1.0 + 1e-9)
 
@@ -182,7 +194,7 @@ def rest_together(kind: int, flight: FloatArray, other: int, second: FloatArray)
 
 
 @inlined
-def _bend(kind: int, flight: FloatArray, disc: FloatArray, state: FloatArray, t: float) -> float:
+def bend_of(kind: int, flight: FloatArray, disc: FloatArray, state: FloatArray, t: float) -> float:
     """The largest acceleration from now on; of drag alone it falls with the speed."""
     if kind == DAMPED:
         speed = math.hypot(state[VX] - flight[DRIFT_X], state[VY] - flight[DRIFT_Y])
@@ -191,15 +203,13 @@ def _bend(kind: int, flight: FloatArray, disc: FloatArray, state: FloatArray, t:
 
 
 @inlined
-def _once_round(kind: int, flight: FloatArray, now: float) -> float:
+def once_round(kind: int, flight: FloatArray, now: float) -> float:
     """When a disc on a turntable is back where it is now."""
     return now + 2.0 * math.pi / abs(flight[2]) if kind == CARRIED else math.inf
 
 
 @inlined
-def _way_left(
-    kind: int, flight: FloatArray, disc: FloatArray, state: FloatArray, t: float
-) -> float:
+def way_left(kind: int, flight: FloatArray, disc: FloatArray, state: FloatArray, t: float) -> float:
     """How far a disc goes at most."""
     speed = math.hypot(state[VX], state[VY])
     if drifts(flight) or kind in (PATH, CARRIED):
@@ -224,9 +234,9 @@ def next_meeting(
         return math.inf
     last = min(horizon, max(moves_until(kind, flight), moves_until(other, second)))
     if other == STILL and not drifts(second):
-        last = min(last, _once_round(kind, flight, now))
+        last = min(last, once_round(kind, flight, now))
     if kind == STILL and not drifts(flight):
-        last = min(last, _once_round(other, second, now))
+        last = min(last, once_round(other, second, now))
     if kind == PATH:
         last = min(last, flight[UNTIL])
     if other == PATH:
@@ -250,24 +260,24 @@ def next_meeting(
     if other not in (DAMPED, PATH):
         state_at(other, second, discs[j], curves, pieces, now, room, two)
     t = now
-    for look in range(_MOST_LOOKS):
+    for look in range(MOST_LOOKS):
         game.counts[N_LOOKS] += 1
         dx, dy = two[X] - one[X], two[Y] - one[Y]
         size = math.hypot(dx, dy)
         gap = size - reach
         rate = (dx * (two[VX] - one[VX]) + dy * (two[VY] - one[VY])) / size
         rounded = ROUNDED * (abs(one[X]) + abs(one[Y]) + reach)
-        bend = _bend(kind, flight, discs[i], one, t) + _bend(other, second, discs[j], two, t)
+        bend = bend_of(kind, flight, discs[i], one, t) + bend_of(other, second, discs[j], two, t)
         step = safe_step(max(gap, 0.0), rate, bend)
-        left = _way_left(kind, flight, discs[i], one, t)
-        if gap > (left + _way_left(other, second, discs[j], two, t)) * (1.0 + 1e-9):
+        left = way_left(kind, flight, discs[i], one, t)
+        if gap > (left + way_left(other, second, discs[j], two, t)) * (1.0 + 1e-9):
             return math.inf
         if gap <= rounded:
             if rate < -QUIET * game.pace[0]:
                 return t
             if bend > 0.0:
                 step = max(step, math.sqrt(2.0 * rounded / bend))
-        if look >= _PATIENCE:
+        if look >= PATIENCE:
             nx, ny, more = dx / size, dy / size, max(gap, rounded)
             longer = stays_apart(game, i, j, t, more, nx, ny, 0.0, False, room, one, two)
             step = max(step, longer)
@@ -285,25 +295,18 @@ def next_meeting(
 def next_crossing(
     game: Game, i: int, k: int, now: float, horizon: float, room: FloatArray, one: FloatArray
 ) -> float:
-    """The same of a disc and the obstacle k, or where its centre passes it."""
+    """The same of a disc and what stands: the obstacle k, or where its centre passes it."""
     kind, flight = game.kinds[i], game.flights[i]
-    last = min(horizon, moves_until(kind, flight), _once_round(kind, flight, now))
+    last = min(horizon, moves_until(kind, flight), once_round(kind, flight, now))
     if kind == GONE or not last > now or are_held(game, i, -1 - k):
         return math.inf
     disc, obstacle = game.discs[i], game.obstacles[k]
     radius, shape = disc[RADIUS], int(obstacle[KIND])
-    side = 1.0
-    if shape == BORDER:
-        strip = strip_under(game, i)
-        if strip not in (int(obstacle[FROM]), int(obstacle[FROM]) - 1) or disc[LIGHTNESS] == 0.0:
-            return math.inf
-        side = 1.0 if strip == int(obstacle[FROM]) else -1.0
     state_at(kind, flight, disc, game.curves, game.pieces, now, room, one)
     ax, ay, bx, by, margin = corridor(kind, flight, disc, one, last, now)
-    if shape in (WALL, EDGE, BORDER):
+    if shape in (WALL, EDGE):
         nearest = min(
-            side * normal_to(obstacle, radius, ax, ay)[0],
-            side * normal_to(obstacle, radius, bx, by)[0],
+            normal_to(obstacle, radius, ax, ay)[0], normal_to(obstacle, radius, bx, by)[0]
         )
         if nearest > margin * (1.0 + 1e-9):
             return math.inf
@@ -316,23 +319,20 @@ def next_crossing(
             return math.inf
     else:
         reach = obstacle[C] + (0.0 if shape == POCKET else radius) + margin
-        near = _distance2(ax, ay, bx, by, obstacle[A], obstacle[B])
+        near = distance2(ax, ay, bx, by, obstacle[A], obstacle[B])
         if near > reach * reach * (1.0 + 1e-9):
             return math.inf
     t = now
-    for look in range(_MOST_LOOKS):
+    for look in range(MOST_LOOKS):
         game.counts[N_LOOKS] += 1
         gap, nx, ny, there = normal_to(obstacle, radius, one[X], one[Y])
-        gap, nx, ny = side * gap, side * nx, side * ny
         rate = -(nx * one[VX] + ny * one[VY])
-        bend = _bend(kind, flight, disc, one, t)
-        if gap > _way_left(kind, flight, disc, one, t) * (1.0 + 1e-9):
+        bend = bend_of(kind, flight, disc, one, t)
+        if gap > way_left(kind, flight, disc, one, t) * (1.0 + 1e-9):
             return math.inf
         rounded = ROUNDED * (abs(one[X]) + abs(one[Y]) + radius + obstacle[C] * (shape == ARC))
         if shape == ARC and gap >= 0.0:
-            step = _arc_step(
-                gap, one[X] - obstacle[A], one[Y] - obstacle[B], one[VX], one[VY], bend
-            )
+            step = arc_step(gap, one[X] - obstacle[A], one[Y] - obstacle[B], one[VX], one[VY], bend)
         elif shape == ARC:
             step = safe_step(-gap, -rate, bend)  # outside it: until it comes back
         else:
@@ -345,7 +345,7 @@ def next_crossing(
                 step = max(step, math.sqrt(2.0 * rounded / bend))
             if not there and rate != 0.0:
                 step = max(step, 4.0 * rounded / abs(rate))
-        if look >= _PATIENCE and (shape != ARC or gap >= 0.0):
+        if look >= PATIENCE and (shape != ARC or gap >= 0.0):
             far = math.hypot(one[X] - obstacle[A], one[Y] - obstacle[B])
             step = max(step, stays_apart(
                 game, i, -1 - k, t, max(gap, rounded), nx, ny, far, shape == ARC, room, one, one,

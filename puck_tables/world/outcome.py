@@ -216,14 +216,16 @@ def _way_of(scene: Scene, piece: Piece) -> str:
             "force": piece.force != Force(),
             "drag": scene.drag != Drag(),
             "lateral force (empirical)": scene.lateral.strength != 0.0,
+            "friction law": bool(floor.law),
+            "orthotropic friction": floor.orthotropic is not None,
             "no closed forms": not all(has_closed_forms(piece, one) for one in frictions),
         }
         what = ", ".join(name for name, there in acts.items() if there)
-        where = "" if all(integrated) else " on some strips"
+        where = "" if all(integrated) else " on some of the floor"
         return f"integrated from impact to impact{where}: {what}"
     if not any(frictions):
         return "in closed form, without dry friction"
     way = "looked up from impact to impact"
-    if floor.strips is not None:
-        way = "looked up from impact or border to the next"
+    if floor.strips is not None or floor.patches:
+        way = "looked up from impact or border to the next, integrated where astride"
     return f"{way}, over the belt" if any(floor.velocity) else way

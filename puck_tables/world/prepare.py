@@ -3,32 +3,21 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
-from puck_tables.kernels.section_spline import NO_SECTION
-from puck_tables.scene.by_speed import NO_LAW
 from puck_tables.scene.forces import drive_of
 from puck_tables.scene.friction import SPIN, VX, VY
 from puck_tables.scene.holds import allowed_velocity
-from puck_tables.scene.ingredients import RAIL, Regions, Surface, floor_velocity, hold_of
+from puck_tables.scene.ingredients import RAIL, Surface, floor_velocity, hold_of
 from puck_tables.scene.parts import Wall
 from puck_tables.scene.pieces import Arc, Piece, Post
-from puck_tables.scene.regions import SLICE_SHARE, alone, of_one_shape
 from puck_tables.scene.scene import Scene
 from puck_tables.stopping.stop_table import StopTable
-from puck_tables.table.friction_section import FINEST_ACCURACY
 from puck_tables.world import layout
-from puck_tables.world.agreement import (
-    frictions_under,
-    has_closed_forms,
-    is_integrated,
-    pieces_of,
-    start_of,
-)
+from puck_tables.world.agreement import pieces_of, start_of
 from puck_tables.world.departures import Room, drive_on, room_for
 from puck_tables.world.drive import pieces_along, rows_of
 from puck_tables.world.flight import (
@@ -39,7 +28,8 @@ from puck_tables.world.flight import (
     PLACE_Y,
     Curves,
 )
-from puck_tables.world.footing import step_onto
+from puck_tables.world.floors import fastest_rim, floors_of, normal_on, regions_of
+from puck_tables.world.footing import lay_down, step_onto
 from puck_tables.world.game import (
     COUNTS,
     EVENT_COLUMNS,
@@ -82,7 +72,8 @@ def game_of(scene: Scene, order: Whole) -> tuple[Game, Room]:
     """
     pieces = [pieces_of(scene)[number] for number in order]
     count = len(pieces)
-    discs, states = np.zeros((count, layout.DISC_COLUMNS)), np.zeros((count, 6))
+    lies = len(borders_of(scene)) + len(scene.floor.patches)
+    discs, states = np.zeros((count, layout.DISC_COLUMNS + lies)), np.zeros((count, 6))
     surface = Surface(*scene.floor.velocity, *scene.floor.centre, scene.floor.turning)
     spans, tides = np.zeros((count, 2), np.int64), [np.zeros((0, 4))]
     drives, ways = np.zeros((count, 2), np.int64), [np.zeros((0, 20))]
@@ -106,6 +97,8 @@ def game_of(scene: Scene, order: Whole) -> tuple[Game, Room]:
             discs[i, layout.ACROSS] = scene.lateral.strength / piece.mass
             discs[i, layout.BY_SPEED] = scene.lateral.speed_exponent
             discs[i, layout.BY_SPIN] = scene.lateral.spin_exponent
+            discs[i, layout.NORMAL] = normal_on(scene, piece)
+            discs[i, layout.HEIGHT_RATIO] = 2.0 * piece.height / piece.radius
         discs[i, layout.RADIUS] = piece.radius
         discs[i, layout.RESTITUTION] = number_for(piece.restitution, called)
         discs[i, layout.TANGENTIAL], discs[i, layout.FRICTION] = piece.tangential, piece.rim
@@ -120,10 +113,12 @@ def game_of(scene: Scene, order: Whole) -> tuple[Game, Room]:
             launches.append([launch.time, i, *velocity, launch.spin])
         else:
             states[i, 3:5], states[i, 5] = velocity, launch.spin
-    floors = _floors(scene, pieces)
+    rim = fastest_rim(pieces, states, surface)
+    floors = floors_of(scene, pieces, rim)
+    regions = regions_of(scene, pieces, floors, rim)
     game = Game(
         discs=discs,
-        regions=_regions(scene, pieces, discs, floors),
+        regions=regions,
         floors=floors,
         surface=surface,
         tides=np.vstack(tides),
@@ -146,8 +141,8 @@ def game_of(scene: Scene, order: Whole) -> tuple[Game, Room]:
         counts=np.zeros(COUNTS, np.int64),
         pace=np.zeros(2),
     )
-    for i, strip in enumerate(_strips(scene, states)):
-        step_onto(game, i, strip)
+    for i in range(count):
+        lay_down(game, i, states[i])
     game.counts[N_PIECES] = len(game.pieces)
     room = room_for(count)
     for i in range(count):
@@ -160,6 +155,16 @@ def game_of(scene: Scene, order: Whole) -> tuple[Game, Room]:
     room.states[:] = states
     set_pace(game, states)
     return game, room
+
+
+def with_law_up_to(game: Game, scene: Scene, order: Whole, fastest: float) -> Game:
+    """With the table of a friction law by name for slips of the rim up to ``fastest``, m/s."""
+    pieces = [pieces_of(scene)[number] for number in order]
+    floors = floors_of(scene, pieces, fastest)
+    game = game._replace(regions=regions_of(scene, pieces, floors, fastest), floors=floors)
+    for i in range(len(pieces)):
+        step_onto(game, i)
+    return game
 
 
 def set_pace(game: Game, states: FloatArray) -> None:
@@ -244,50 +249,6 @@ def _hold_on(piece: Piece) -> tuple[float, ...]:
     return (*hold, place)
 
 
-def _floors(scene: Scene, pieces: list[Piece]) -> FloatArray:
-    """Deceleration, δ, and whether it is integrated, of every disc on every strip; see ``Game``."""
-    rows = []
-    for strip in range(len(scene.frictions) if scene.floor.strips else 1):
-        for piece in pieces:
-            friction = frictions_under(scene, piece)[strip]
-            decel = friction * piece.gravity * math.cos(scene.floor.slope)
-            delta = 2.0 * friction * piece.height / piece.radius
-            integrated = float(is_integrated(scene, piece, friction))
-            rows.append([0.0] * 3 if piece.path else [decel, delta, integrated])
-    return np.array(rows)
-
-
-def _strips(scene: Scene, states: FloatArray) -> list[int]:
-    """The strip of the floor on which each disc starts."""
-    strips = scene.floor.strips
-    if strips is None:
-        return [0] * len(states)
-    across = np.array([math.cos(strips.direction), math.sin(strips.direction)])
-    found: list[int] = np.searchsorted(strips.borders, states[:, :2] @ across, "right").tolist()
-    return found
-
-
-def _regions(scene: Scene, pieces: list[Piece], discs: FloatArray, floors: FloatArray) -> Regions:
-    """The dry friction of every disc on every strip: closed forms, or sections if one needs them.
-
-    Raises
-    ------
-    AccuracyError
-        If the friction of one cannot be tabulated as fine as the scene asks.
-    """
-    strips = len(floors) // len(discs)
-    light = np.tile(discs[:, layout.LIGHTNESS], strips)
-    load = np.where(light > 0.0, floors[:, 0] / np.where(light > 0.0, light, 1.0), 0.0)
-    delta = floors[:, 1].copy()
-    there = [(p, f[n]) for n in range(strips) for p in pieces for f in [frictions_under(scene, p)]]
-    if all(has_closed_forms(*one) for one in there):
-        return alone(load, delta, np.empty((len(floors), *NO_SECTION.shape)), NO_LAW)
-    accuracy = max(SLICE_SHARE * scene.run.tol, FINEST_ACCURACY)
-    bodies = [replace(piece, friction=friction).body for piece, friction in there]
-    cuts = of_one_shape([body.friction(accuracy).cut for body in bodies])
-    return alone(load, delta, cuts, NO_LAW)
-
-
 def _obstacles(scene: Scene, called: dict[object, float], makes: FloatArray) -> FloatArray:
     """Rows of :mod:`puck_tables.world.layout`: walls, posts, arcs, pockets, edges, borders."""
 
@@ -305,11 +266,10 @@ def _obstacles(scene: Scene, called: dict[object, float], makes: FloatArray) -> 
         rows.append([layout.POCKET, *pocket.point, pocket.radius, *[0.0] * 5])
     for edge in scene.edges:
         rows.append([layout.EDGE, *_line(edge.point, edge.normal), *[0.0] * 5])
-    if scene.floor.strips is not None:
-        way = scene.floor.strips.direction
-        across = math.cos(way), math.sin(way)
-        for number, place in enumerate(scene.floor.strips.borders):
-            rows.append([layout.BORDER, *across, place, 0.0, 0.0, 0.0, number + 1.0, 0.0])
+    borders = len(borders_of(scene))
+    for number in range(borders + len(scene.floor.patches)):
+        shape = layout.BORDER if number < borders else layout.PATCH
+        rows.append([shape, float(number), *[0.0] * 7])
     found = np.array(rows, np.float64).reshape(-1, layout.OBSTACLE_MAKE)
     return np.column_stack([found, makes])
 
@@ -318,8 +278,13 @@ def obstacle_names(scene: Scene) -> list[str]:
     """What the rows of the obstacles are called, in their order."""
     lists = {"wall": scene.walls, "post": scene.posts, "arc": scene.arcs,
              "pocket": scene.pockets, "edge": scene.edges,
-             "border": scene.floor.strips.borders if scene.floor.strips else ()}  # fmt: skip
+             "border": borders_of(scene), "patch": scene.floor.patches}  # fmt: skip
     return [f"{name} {number}" for name, ones in lists.items() for number in range(len(ones))]
+
+
+def borders_of(scene: Scene) -> tuple[float, ...]:
+    """The borders of its strips."""
+    return scene.floor.strips.borders if scene.floor.strips is not None else ()
 
 
 def _line(point: tuple[float, float], normal: tuple[float, float]) -> tuple[float, float, float]:

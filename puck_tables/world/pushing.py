@@ -16,6 +16,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner, kernel
+from puck_tables.world.footing import is_over, moves_along, room_on_floor
 from puck_tables.world.forces import can_rest, count_rows, slip_of
 from puck_tables.world.group import (
     DRIVEN,
@@ -24,6 +25,7 @@ from puck_tables.world.group import (
     HELD,
     MOVES,
     NOT_FINITE,
+    OFF_BORDER,
     PARTS,
     RESTS,
     SETS_OFF,
@@ -38,7 +40,7 @@ from puck_tables.world.group import (
     find_places,
     small_slip,
 )
-from puck_tables.world.layout import RADIUS
+from puck_tables.world.layout import LIES, LIGHTNESS, RADIUS
 from puck_tables.world.moments import first_negative, sets_off, watch
 from puck_tables.world.paths import DURATION, START, on_piece, piece_at
 from puck_tables.world.sights import look
@@ -58,6 +60,7 @@ _FIRST = 1e-3  # of Q/J: the first step
 _BRIEF = 1e-6  # of Q/J: on as short a step gaps are rounding
 _SHORTEST = 1e-16  # of Q/J: shorter steps lead nowhere
 _CLOSE = 1e-14  # of a step: how close a moment is found
+_OVER = 1e-12  # of a radius: beyond a border
 _NOBODY = cast(int, np.int64(-1))
 
 
@@ -124,6 +127,53 @@ def _moment(
 
 
 @inlined
+def _room_of(group: Group, members: IntArray, place: int, y: FloatArray) -> float:
+    """How far a member is from a border, in radii, and a little more."""
+    number = members[place]
+    room = room_on_floor(group.regions, group.discs, number, y[place])
+    return room / group.discs[number, RADIUS] + _OVER
+
+
+@inlined
+def _comes_over(group: Group, members: IntArray, desk: Desk) -> int:
+    """Which member has come over a border, or left it, on a step: there friction bends; −1: none.
+
+    One that only just touches one has long been there.
+    """
+    for place in range(members.shape[0]):
+        if group.discs[members[place], LIGHTNESS] > 0.0:
+            before = _room_of(group, members, place, desk.states[0])
+            if before > 0.0 > _room_of(group, members, place, desk.states[1]):
+                return place
+    return -1
+
+
+@inner
+def _when_over(
+    group: Group, members: IntArray, modes: IntArray, doings: IntArray, t: float, h: float,
+    place: int, scales: Scales, desk: Desk,
+) -> float:  # fmt: skip
+    """When within a step a member has just come over a border, as :func:`_moment`."""
+    low, high = 0.0, h
+    first = _room_of(group, members, place, desk.states[0])
+    last = _room_of(group, members, place, desk.states[1])
+    for _ in range(80):
+        middle = (low * last - high * first) / (last - first)
+        if not low < middle < high:
+            middle = 0.5 * (low + high)
+        if high - low <= _CLOSE * h or last > -_OVER or not low < middle < high:
+            break
+        _advance(group, members, modes, doings, t, middle, scales, desk)
+        value = _room_of(group, members, place, desk.states[1])
+        if value < 0.0:
+            high, last, first = middle, value, 0.5 * first
+        else:
+            low, first, last = middle, value, 0.5 * last
+    _advance(group, members, modes, doings, t, high, scales, desk)
+    return high
+
+
+@inlined
 def _opens_midway(
     group: Group, members: IntArray, contacts: int, pieces: FloatArray, count: int, start: float,
     h: float, tol: float, desk: Desk,
@@ -174,7 +224,7 @@ def follow(
 
     Returns
     -------
-    how it ended (TIME_UP … NOT_FINITE), which contact or member is concerned, when, and the number
+    how it ended (TIME_UP … OFF_BORDER), which contact or member is concerned, when, and the number
     of rows for each member
     """
     size = members.shape[0]
@@ -189,9 +239,12 @@ def follow(
     watch(desk, modes, scales, False)
     still_there = False  # anybody at rest whom somebody touches
     for place in range(size):
-        forced = group.spans[members[place], 0] < group.spans[members[place], 1]
-        changes = contacts.shape[0] > 0 or forced or group.surface.spin != 0.0
+        number = members[place]
+        forced = group.spans[number, 0] < group.spans[number, 1]
+        over = is_over(group.regions, group.discs, number) and moves_along(group.surface)
+        changes = contacts.shape[0] > 0 or forced or over or group.surface.spin != 0.0
         still_there = still_there or (doings[place] == HELD and changes)
+    borders = group.discs.shape[1] > LIES  # anywhere on the floor
     h, start, passed, count = _FIRST * unit, t, 0.0, 0
     how, which = TIME_UP, -1
     c, kind = first_negative(desk, 0, contacts.shape[0])
@@ -248,6 +301,11 @@ def follow(
                 length = _moment(
                     group, members, modes, doings, t, length, _NOBODY, BEGIN, scales, desk
                 )
+        if how == TIME_UP and borders:
+            which = _comes_over(group, members, desk)
+            if which >= 0:
+                how, landed = OFF_BORDER, False
+                length = _when_over(group, members, modes, doings, t, length, which, scales, desk)
         add_work(length, start + passed, works[count], desk)
         begun = False  # whether anybody's slip is so large that it has a direction of its own
         for place in range(size):

@@ -56,7 +56,8 @@ def rims_of(
     cushions = zip(CUSHIONS, (scene.walls, scene.posts, scene.arcs), strict=True)
     names = [(kind, f"{kind} {k}") for kind, ones in cushions for k in range(len(ones))]
     borders = scene.floor.strips.borders if scene.floor.strips is not None else ()
-    names += [("", "")] * (len(scene.pockets) + len(scene.edges) + len(borders))
+    without = (scene.pockets, scene.edges, borders, scene.floor.patches)
+    names += [("", "")] * sum(map(len, without))
     if not scene.rims:
         laws, called = _laws_of(scene, 1)
         rims = np.concatenate([[0.0], laws])

@@ -17,6 +17,7 @@ from puck_tables.world.agreement import frictions_under, is_integrated, pieces_o
 from puck_tables.world.bulk import follow_all
 from puck_tables.world.course import FATE, LENGTH, PASSES, PRINT, trace
 from puck_tables.world.engine import PUSHING, REACHED
+from puck_tables.world.floors import has_several
 from puck_tables.world.game import Whole
 from puck_tables.world.prepare import game_of, order_of
 from puck_tables.world.world import World
@@ -79,10 +80,14 @@ class Shots:
         self._disc = int(place[striker])
         self._watch = int(place[puck]), int(place[through]) if through >= 0 else -1, most
         pieces = pieces_of(scene)
-        self.patient = patient or any(
-            is_integrated(scene, piece, friction)
-            for piece in pieces
-            for friction in frictions_under(scene, piece)
+        self.patient = (
+            patient
+            or has_several(scene)
+            or any(
+                is_integrated(scene, piece, friction)
+                for piece in pieces
+                for friction in frictions_under(scene, piece)
+            )
         )
         self.runs = self.left_out = 0
 

@@ -41,6 +41,11 @@ from puck_tables.world.yielding import turn_ways
 
 _A, _C, _E = DORMAND_PRINCE.a, DORMAND_PRINCE.c, DORMAND_PRINCE.e
 STAGES = len(_C)
+# the weights of the method half way through a step, of order four (Shampine 1986)
+_HALF = 0.5 * np.array([
+    6025192743 / 30085553152, 0.0, 51252292925 / 65400821598, -2691868925 / 45128329728,
+    187940372067 / 1594534317056, -1776094331 / 19743644256, 11237099 / 235043384,
+])  # fmt: skip
 # where the rates at both ends of a step stand; plain numbers would compile ``rates_at`` for each
 BEGIN, END = cast(int, np.int64(0)), cast(int, np.int64(STAGES))
 _NEAR = 0.5  # of the time in which a slip would end, at most, is a step,
@@ -141,13 +146,14 @@ def longest_step(group: Group, members: IntArray, doings: IntArray, desk: Desk) 
 @inlined
 def add_work(h: float, start: float, row: FloatArray, desk: Desk) -> None:
     """Write down what a step adds to the ledger."""
-    done = desk.powers[END + 1]
+    done, halfway = desk.powers[END + 1], desk.powers[END + 2]
     for i in range(LEDGER):
-        total = 0.0
+        total, half = 0.0, _HALF[STAGES - 1] * desk.powers[STAGES - 1, i]
         for j in range(STAGES - 1):
             total += _A[STAGES - 1, j] * desk.powers[j, i]
-        done[i] = h * total
-    write_work(row, start, h, desk.powers[0], done, desk.powers[END])
+            half += _HALF[j] * desk.powers[j, i]
+        done[i], halfway[i] = h * total, h * half
+    write_work(row, start, h, desk.powers[0], done, desk.powers[END], halfway)
 
 
 @inlined

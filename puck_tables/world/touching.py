@@ -129,4 +129,5 @@ def is_integrated(game: Game, i: int, state: FloatArray) -> bool:
     if slips(game.surface, state) or game.surface.spin != 0.0 or disc[TWIST] != 0.0:
         return True
     forced = game.spans[i, 0] < game.spans[i, 1]
-    return forced or math.hypot(disc[PULL_X], disc[PULL_Y]) > disc[DECEL]
+    holds = disc[DECEL] if disc[INTEGRATED] == 1.0 else 0.0
+    return forced or math.hypot(disc[PULL_X], disc[PULL_Y]) > holds

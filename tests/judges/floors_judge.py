@@ -14,6 +14,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
+from astride_judge import Ground
+from astride_judge import friction as astride
 from reference import friction
 from scipy.integrate import solve_ivp
 
@@ -23,7 +25,11 @@ _STOP = 3e-8  # m/s: slower, a puck rests on its floor
 
 @dataclass
 class Floor:
-    """A belt or turntable, strips (direction, borders, frictions), a pull per mass (ax, ay)."""
+    """A belt or turntable, strips (direction, borders, frictions), a pull per mass (ax, ay).
+
+    ``spots``: round patches (x, y, radius, friction).  A base on several frictions feels each under
+    its own part, by ``astride_judge.py``.
+    """
 
     vx: float = 0.0
     vy: float = 0.0
@@ -31,6 +37,7 @@ class Floor:
     centre: tuple[float, float] = (0.0, 0.0)
     strips: tuple[float, list[float], list[float]] | None = None
     pull: tuple[float, float] = (0.0, 0.0)
+    spots: tuple[tuple[float, float, float, float], ...] = ()
 
     def velocity(self, q: np.ndarray) -> np.ndarray:
         dx, dy = q[0] - self.centre[0], q[1] - self.centre[1]
@@ -38,6 +45,58 @@ class Floor:
 
     def along(self, q: np.ndarray) -> float:
         return math.cos(self.strips[0]) * q[0] + math.sin(self.strips[0]) * q[1]
+
+    def shores(self, q: np.ndarray, radius: float) -> list[float]:
+        """How far the rim is from where it comes over something, or leaves it; of both signs."""
+        found = []
+        if self.strips is not None:
+            place = self.along(q)
+            found += [place - b + s * radius for b in self.strips[1] for s in (-1.0, 1.0)]
+        for x, y, reach, _ in self.spots:
+            away = math.hypot(q[0] - x, q[1] - y)
+            found += [away - reach + s * radius for s in (-1.0, 1.0)]
+        return found
+
+    def under(self, q: np.ndarray, radius: float, f: float) -> float | Ground:
+        """The one friction under a base, or all that there are around it."""
+        if self.strips is None and not self.spots:
+            return f
+        turn, borders, values = self.strips or (0.0, [], [f])
+        c, s = math.cos(turn), math.sin(turn)
+        place = np.array([c * q[0] + s * q[1], c * q[1] - s * q[0]])
+        spots = []
+        for x, y, reach, spot in self.spots:
+            away = math.hypot(q[0] - x, q[1] - y)
+            if away <= reach - radius:
+                return spot
+            if away < reach + radius:
+                middle = np.array([c * x + s * y, c * y - s * x]) - place
+                spots.append((*(middle / radius).tolist(), reach / radius, spot))
+        first = int(np.searchsorted(borders, place[0] - radius, "right"))
+        last = int(np.searchsorted(borders, place[0] + radius, "left"))
+        if first == last and not spots:
+            return values[first]
+        return Ground([(b - place[0]) / radius for b in borders], list(values), spots)
+
+    def rub(self, d: Disc, q: np.ndarray, u: np.ndarray) -> np.ndarray:
+        """Force and torque of the floor at a slip u of a disc."""
+        found, rub = self.under(q, d.radius, d.f), np.zeros(3)
+        speed, rim = math.hypot(u[0], u[1]), d.radius * u[2]
+        if isinstance(found, Ground):
+            turn = 0.0 if self.strips is None else self.strips[0]
+            c, s = math.cos(turn), math.sin(turn)
+            along, across, torque = astride(
+                found, c * u[0] + s * u[1], c * u[1] - s * u[0], rim, 2.0 * d.height / d.radius
+            )
+            rub[:] = -(c * along - s * across), -(s * along + c * across), -d.radius * torque
+            return rub * d.mass * G
+        if found > 0.0 and abs(rim) <= 1e-13 * speed:
+            rub[:2] = -u[:2] / speed
+        elif found > 0.0 and speed <= 1e-13 * abs(rim):
+            rub[2] = -4.0 / 3.0 * math.copysign(1.0, rim)
+        elif found > 0.0:
+            rub[:] = friction(u[0], u[1], rim, 2.0 * found * d.height / d.radius)
+        return rub * found * d.mass * G * np.array([1.0, 1.0, 0.5 * d.radius])
 
 
 Led = Callable[[float, np.ndarray, np.ndarray], np.ndarray]
@@ -79,7 +138,6 @@ class Disc:
     mu: float = math.inf
     force: Callable[[float], np.ndarray] | None = None
     led: Led | None = None
-    strip: int = 0
 
     @property
     def masses(self) -> np.ndarray:
@@ -113,18 +171,9 @@ def rates(floor: Floor, d: Disc, t: float, s: np.ndarray) -> tuple[np.ndarray, f
     q, v = s[:3], s[3:]
     ground = floor.velocity(q)
     u = v - ground
-    f = d.f if floor.strips is None else floor.strips[2][d.strip]
-    load, rub = f * d.mass * G, np.zeros(3)
-    slip = math.hypot(u[0], u[1], d.radius * u[2])
-    if slip > 0.01 * _STOP and f > 0.0:
-        speed, rim = math.hypot(u[0], u[1]), d.radius * u[2]
-        if abs(rim) <= 1e-13 * speed:
-            rub[:2] = -u[:2] / speed
-        elif speed <= 1e-13 * abs(rim):
-            rub[2] = -4.0 / 3.0 * math.copysign(1.0, rim)
-        else:
-            rub[:] = friction(u[0], u[1], rim, 2.0 * f * d.height / d.radius)
-        rub *= load * np.array([1.0, 1.0, 0.5 * d.radius])
+    rub = np.zeros(3)
+    if math.hypot(u[0], u[1], d.radius * u[2]) > 0.01 * _STOP:
+        rub = floor.rub(d, q, u)
     given = np.array([d.mass * floor.pull[0], d.mass * floor.pull[1], 0.0])
     if d.force is not None:
         given = given + d.force(t)
@@ -154,9 +203,6 @@ def play(floor: Floor, discs: list[Disc], lines: list[Line], until: float) -> To
         line = lines[-1 - j]
         return float(np.dot(line.normal, z[i, :2])) - line.place - discs[i].radius
 
-    if floor.strips is not None:
-        for d, row in zip(discs, y, strict=True):
-            d.strip = int(np.searchsorted(floor.strips[1], floor.along(row), "right"))
     while t < until:
 
         def whole(time: float, flat: np.ndarray) -> np.ndarray:
@@ -194,14 +240,12 @@ def play(floor: Floor, discs: list[Disc], lines: list[Line], until: float) -> To
                     return math.hypot(u[0], u[1], r * u[2]) - _STOP
 
                 watch(("rest", i), slip)
-            if floor.strips is not None:
-                for k, border in enumerate(floor.strips[1]):
-                    if k in (d.strip - 1, d.strip):
-                        side = 1.0 if k == d.strip - 1 else -1.0
-                        watch(
-                            ("cross", i, k + 1 if side < 0 else k),
-                            lambda z, i=i, b=border, s=side: s * (floor.along(z[i]) - b),
-                        )
+            for k, away in enumerate(floor.shores(y[i], d.radius)):
+                if abs(away) > 1e-10:  # else it has just come over it
+                    watch(
+                        ("cross", i),
+                        lambda z, i=i, k=k, r=d.radius: floor.shores(z[i], r)[k], 0.0,
+                    )  # fmt: skip
         start = np.concatenate([y.ravel(), [told.heat, told.support]])
         found = solve_ivp(
             whole, (t, until), start, "DOP853", rtol=3e-13, atol=1e-15, max_step=0.02,
@@ -216,14 +260,7 @@ def play(floor: Floor, discs: list[Disc], lines: list[Line], until: float) -> To
             if kind[0] == "rest":
                 rests[kind[1]] = True
                 y[kind[1], 3:] = floor.velocity(y[kind[1]])
-            elif kind[0] == "cross":
-                discs[kind[1]].strip = kind[2]
-                way = math.copysign(1e-13, np.dot(
-                    [math.cos(floor.strips[0]), math.sin(floor.strips[0])], y[kind[1], 3:5]
-                ))  # fmt: skip
-                y[kind[1], 0] += way * math.cos(floor.strips[0])
-                y[kind[1], 1] += way * math.sin(floor.strips[0])
-            else:
+            elif kind[0] == "hit":
                 collide(discs, lines, t, *kind[1:], y)
                 told.impacts.append((t, *kind[1:]))
                 for disc in kind[1:]:

@@ -1,0 +1,138 @@
+"""The floor of a scene on axes: strips and patches of friction, and how it moves."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from puck_tables.plot.style import GREY
+from puck_tables.scene.parts import Floor
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_CLEAR = 0.6  # how much of what is below a patch it hides
+_ARROWS = (9, 5)  # of a moving floor, across and up
+
+
+class Box(NamedTuple):
+    """What is in sight, m."""
+
+    left: float
+    right: float
+    low: float
+    high: float
+
+
+class Shade(NamedTuple):
+    """A part of the floor of one friction: a polygon, or without corners a circle, m; its colour.
+
+    ``patch``: whether it lies on others.
+    """
+
+    friction: float
+    corners: list[tuple[float, float]]
+    centre: tuple[float, float]
+    radius: float
+    colour: tuple[float, float, float]
+    patch: bool
+
+
+def draw_floor(axes: Axes, floor: Floor, box: Box, highest: float) -> None:
+    """All of it that is seen in a box; ``highest``: the largest friction, the darkest patch."""
+    from matplotlib.patches import Circle, Polygon
+
+    told: set[tuple[bool, float]] = set()
+    for shade in shades_of(floor, box, highest):
+        key = (shade.patch, shade.friction)
+        label: dict[str, Any] = {} if key in told else {"label": f"f = {shade.friction:g}"}
+        told.add(key)
+        style: dict[str, Any] = {
+            "facecolor": shade.colour, "edgecolor": GREY, "linewidth": 0.8,
+            "zorder": 1 if shade.patch else 0, **label,
+        }  # fmt: skip
+        if shade.patch:
+            style["alpha"] = _CLEAR
+        axes.add_patch(
+            Polygon(shade.corners, **style)
+            if shade.corners
+            else Circle(shade.centre, shade.radius, **style)
+        )
+    _draw_motion(axes, floor, box)
+
+
+def shades_of(floor: Floor, box: Box, highest: float) -> list[Shade]:
+    """Strips as far as a box shows them, and patches; the darker the more friction.
+
+    Examples
+    --------
+    >>> from puck_tables import Patch
+    >>> wet = Floor(patches=[Patch(0.1, radius=1.0)])
+    >>> [shade.radius for shade in shades_of(wet, Box(-1.0, 1.0, -1.0, 1.0), 0.2)]
+    [1.0]
+    """
+    shades = _strips(floor, box)
+    for patch in floor.patches:
+        share = patch.friction / (highest or 1.0)
+        colour = (0.86 - 0.5 * share, 0.93 - 0.4 * share, 0.98 - 0.25 * share)
+        corners: Any = [tuple(row) for row in patch.corners]
+        shades.append(Shade(patch.friction, corners, patch.centre, patch.radius, colour, True))
+    return shades
+
+
+def _strips(floor: Floor, box: Box) -> list[Shade]:
+    """Strips of different friction."""
+    strips = floor.strips
+    if strips is None:
+        return []
+    across = (math.cos(strips.direction), math.sin(strips.direction))
+    middle = ((box.left + box.right) / 2, (box.low + box.high) / 2)
+    half = math.hypot(box.right - box.left, box.high - box.low)
+    centre = across[0] * middle[0] + across[1] * middle[1]
+    along = across[0] * middle[1] - across[1] * middle[0]
+    ends = [centre - half, *strips.borders, centre + half]
+    highest, found = max(strips.friction) or 1.0, []
+    for low, high, friction in zip(ends, ends[1:], strips.friction, strict=False):
+        low, high = max(low, centre - half), min(high, centre + half)
+        if low >= high:
+            continue
+        corners = [
+            (s * across[0] - t * across[1], s * across[1] + t * across[0])
+            for s, t in ((low, along - half), (high, along - half), (high, along + half),
+                         (low, along + half))
+        ]  # fmt: skip
+        shade = 0.97 - 0.22 * friction / highest
+        found.append(Shade(friction, corners, (0.0, 0.0), 0.0, (shade, shade, shade), False))
+    return found
+
+
+def _draw_motion(axes: Axes, floor: Floor, box: Box) -> None:
+    """Arrows of a moving floor, and the centre of a turntable."""
+    if not any(floor.velocity) and floor.turning == 0.0:
+        return
+    across, up = _ARROWS
+    x, y = np.meshgrid(
+        np.linspace(box.left, box.right, 2 * across + 1)[1::2],
+        np.linspace(box.low, box.high, 2 * up + 1)[1::2],
+    )
+    vx = floor.velocity[0] - floor.turning * (y - floor.centre[1])
+    vy = floor.velocity[1] + floor.turning * (x - floor.centre[0])
+    words = []
+    if any(floor.velocity):
+        words.append(f"belt ({floor.velocity[0]:g}, {floor.velocity[1]:g}) m/s")
+    if floor.turning != 0.0:
+        words.append(f"turntable {floor.turning:g} rad/s")
+    fastest = float(np.hypot(vx, vy).max())
+    cell = (box.right - box.left) / across
+    axes.quiver(
+        x, y, vx, vy, color="#b9cfe0", angles="xy", scale_units="xy",
+        scale=fastest / (0.7 * cell), width=0.003, zorder=1,
+    )  # fmt: skip
+    axes.plot([], [], color="#b9cfe0", marker=">", label="floor: " + ", ".join(words))
+    if floor.turning != 0.0:
+        axes.plot(
+            *floor.centre, "+", color="#4a7fa8", markersize=12, markeredgewidth=1.6, zorder=2,
+            linestyle="", label="centre of the turntable",
+        )  # fmt: skip

@@ -1,0 +1,134 @@
+"""The dry friction of the floor under every puck, as the compiled engine reads it.
+
+Rows are all pucks at one place of the floor after the other, see
+:mod:`puck_tables.world.footing`.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.kernels.section_spline import NO_SECTION
+from puck_tables.scene.astride import NO_GROUND
+from puck_tables.scene.by_speed import NO_LAW, law_up_to
+from puck_tables.scene.friction import SPIN, VX, VY, X, Y
+from puck_tables.scene.ingredients import BySpeed, Regions, Surface, floor_velocity
+from puck_tables.scene.orthotropic import is_elliptic
+from puck_tables.scene.pieces import Piece
+from puck_tables.scene.regions import SLICE_SHARE, alone, axes_of, of_one_shape
+from puck_tables.scene.scene import Scene
+from puck_tables.scene.zones import ground_of
+from puck_tables.table.friction_section import FINEST_ACCURACY
+from puck_tables.world.agreement import frictions_under, has_closed_forms, is_integrated
+
+INTEGRATED, NOT_HELD = 1.0, 2.0  # see :mod:`puck_tables.world.layout`
+
+
+def normal_on(scene: Scene, piece: Piece) -> float:
+    """The force that presses a puck on the floor, N."""
+    return piece.mass * piece.gravity * math.cos(scene.floor.slope)
+
+
+def has_several(scene: Scene) -> bool:
+    """Whether a base may lie on several frictions of a floor."""
+    return scene.floor.strips is not None or bool(scene.floor.patches)
+
+
+def floors_of(scene: Scene, pieces: list[Piece], fastest: float) -> FloatArray:
+    """Deceleration, δ, and whether it is integrated, of every puck at every place of the floor.
+
+    Astride the largest of them.  ``fastest``: a slip to which a friction law is looked at, m/s.
+    """
+    frictions = [frictions_under(scene, piece, fastest) for piece in pieces]
+    by_slip = scene.floor.law or scene.floor.orthotropic is not None
+    rows = []
+    for place in range(len(frictions[0])):
+        for piece, given in zip(pieces, frictions, strict=True):
+            how = NOT_HELD if by_slip else float(is_integrated(scene, piece, given[place]))
+            rows.append(_row(scene, piece, given[place], how))
+    if has_several(scene):
+        for piece, given in zip(pieces, frictions, strict=True):
+            rows.append(_row(scene, piece, max(given), NOT_HELD))
+    return np.array(rows)
+
+
+def _row(scene: Scene, piece: Piece, friction: float, how: float) -> list[float]:
+    if piece.path:
+        return [0.0, 0.0, 0.0]
+    decel = friction * piece.gravity * math.cos(scene.floor.slope)
+    return [decel, 2.0 * friction * piece.height / piece.radius, how]
+
+
+def regions_of(scene: Scene, pieces: list[Piece], floors: FloatArray, fastest: float) -> Regions:
+    """The dry friction of every puck everywhere: closed forms, or tables if one needs them.
+
+    ``fastest``: the fastest slip of a rim for which a friction law is to hold, m/s.
+
+    Raises
+    ------
+    InputError, ContactError
+        If the friction law cannot be read, ends below the slips at the launches, or lifts a base.
+    AccuracyError
+        If the friction of one cannot be tabulated as fine as the scene asks.
+    """
+    normals = np.array([0.0 if piece.path else normal_on(scene, piece) for piece in pieces])
+    ratios = [2.0 * piece.height / piece.radius for piece in pieces if not piece.path]
+    count, delta = len(floors), floors[:, 1].copy()
+    none = np.empty((count, *NO_SECTION.shape))
+    if scene.floor.law:
+        table, largest = law_up_to(scene, fastest, 1.0)
+        table.refuse_height(max(ratios, default=0.0))
+        return alone(normals * largest, delta, none, BySpeed(table.compiled, 0.0, 1.0, 1.0))
+    if scene.floor.orthotropic is not None:
+        axes = axes_of(scene.floor.orthotropic)
+        return alone(normals * axes[:2].max(), delta, none, BySpeed(axes, 0.0, 1.0, 1.0))
+    there = [[(piece, f) for f in frictions_under(scene, piece)] for piece in pieces]
+    places = [one for rows in zip(*there, strict=True) for one in rows]
+    loads = np.array([
+        0.0 if piece.path else normal_on(scene, piece) * friction for piece, friction in places
+    ])  # fmt: skip
+    cuts = none[: len(places)]
+    if not all(has_closed_forms(*one) for one in places):
+        accuracy = max(SLICE_SHARE * scene.run.tol, FINEST_ACCURACY)
+        bodies = [replace(piece, friction=friction).body for piece, friction in places]
+        cuts = of_one_shape([body.friction(accuracy).cut for body in bodies])
+    ground = NO_GROUND
+    if has_several(scene):
+        most = loads.reshape(-1, len(pieces)).max(axis=0)
+        loads, cuts = np.concatenate([loads, most]), np.concatenate([cuts, cuts[: len(pieces)]])
+        ground = np.concatenate([
+            ground_of(scene.alone(piece), normal_on(scene, piece)) for piece in pieces
+        ])  # fmt: skip
+    astride = np.arange(count) >= len(places)
+    return Regions(loads, delta, cuts, NO_LAW, astride, ground)
+
+
+def slip_of_rim(radius: float, surface: Surface, state: list[float]) -> float:
+    """The fastest slip of a rim over the floor in a state (6,), m/s."""
+    sx, sy, turning = floor_velocity(surface, state[X], state[Y])
+    return math.hypot(state[VX] - sx, state[VY] - sy) + radius * abs(state[SPIN] - turning)
+
+
+def fastest_rim(pieces: list[Piece], states: FloatArray, surface: Surface) -> float:
+    """The fastest in states (n, 6) and in launches to come, of all that slide, m/s."""
+    most = 0.0
+    for piece, state in zip(pieces, states.tolist(), strict=True):
+        launch, ways = piece.launch, [state]
+        if launch.time > 0.0:
+            velocity = launch.velocity or (0.0, 0.0)
+            ways.append([*state[: Y + 1], 0.0, *velocity, launch.spin])
+        for way in () if piece.path else ways:
+            most = max(most, slip_of_rim(piece.radius, surface, way))
+    return most
+
+
+def law_goes_to(regions: Regions) -> float:
+    """Up to which slip of a rim friction is known, m/s."""
+    law = regions.by_speed
+    if law.normal == 0.0 or is_elliptic(law.table):
+        return math.inf
+    return float(law.table[int(law.table[0])])
