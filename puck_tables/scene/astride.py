@@ -145,6 +145,23 @@ def strip_at(ground: FloatArray, x: float, y: float) -> int:
 
 
 @inner
+def least_under(ground: FloatArray, radius: float) -> float:
+    """The least f N that a base may have under a part of it."""
+    x, y = ground[PLACE_X], ground[PLACE_Y]
+    place = ground[ACROSS_X] * x + ground[ACROSS_Y] * y
+    least = math.inf
+    for i in range(int(ground[BORDERS]) + 1):
+        below = i == 0 or border_of(ground, i - 1) < place + radius
+        if below and (i == int(ground[BORDERS]) or border_of(ground, i) > place - radius):
+            least = min(least, load_of(ground, i))
+    for k in range(int(ground[PATCHES])):
+        dx, dy = patch_of(ground, k, MIDDLE_X) - x, patch_of(ground, k, MIDDLE_Y) - y
+        if math.sqrt(dx * dx + dy * dy) < radius + patch_of(ground, k, REACH):
+            least = min(least, patch_of(ground, k, LOAD))
+    return ground[SHARE] * least
+
+
+@inner
 def _weighted(ground: FloatArray, radius: float, slip: Slip, mirrored: float, size: float) -> Sums:
     """Sums over a disc of radius ``size`` times f N; ``mirrored`` −1: of a clockwise spin.
 
