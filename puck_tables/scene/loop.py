@@ -308,7 +308,7 @@ def follow(
             )
         if patched:
             patch, met = first_patch(
-                regions.ground, lies, stretch, t, length, y, scale, work, last, trial
+                regions.ground, lies, stretch, t, length, y, new, scale, work, last, trial
             )
             if met < moment:
                 happens, which, moment = _PATCH, patch, met
