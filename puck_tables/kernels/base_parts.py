@@ -196,13 +196,23 @@ def disc_sums(alpha: float, beta: float, size: float) -> Sums:
 
 
 @inner
+def rim_sums(alpha: float, beta: float, size: float, start: float, turn: float) -> Sums:
+    """An arc of a disc about the centre of the base; of a long one the rest, and the whole disc."""
+    if abs(turn) <= math.pi:
+        return arc_sums(alpha, beta, 0.0, 0.0, size, start, turn)
+    way = 1.0 if turn > 0.0 else -1.0
+    rest = arc_sums(alpha, beta, 0.0, 0.0, size, start + turn, 2.0 * math.pi * way - turn)
+    return plus(plus(NOTHING, way, disc_sums(alpha, beta, size)), -1.0, rest)
+
+
+@inner
 def beyond_sums(alpha: float, beta: float, size: float, nx: float, ny: float, place: float) -> Sums:
     """What of a disc lies beyond the line n·x = place ≥ 0."""
     if place >= size:
         return NOTHING
     half = math.acos(place / size)
     end = math.sqrt((size - place) * (size + place))
-    sums = arc_sums(alpha, beta, 0.0, 0.0, size, math.atan2(ny, nx) - half, 2.0 * half)
+    sums = rim_sums(alpha, beta, size, math.atan2(ny, nx) - half, 2.0 * half)
     px, py = place * nx, place * ny
     chord = line_sums(
         alpha, beta, px - end * ny, py + end * nx, px + end * ny, py - end * nx
@@ -230,45 +240,28 @@ def common_sums(
     long = (apart + size + radius) * (apart - size + radius)
     other = 2.0 * math.atan2(math.sqrt(max(short, 0.0)), math.sqrt(max(long, 0.0)))
     way = math.atan2(cy, cx)
-    sums = arc_sums(alpha, beta, 0.0, 0.0, size, way - own, 2.0 * own)
+    sums = rim_sums(alpha, beta, size, way - own, 2.0 * own)
     back = arc_sums(alpha, beta, cx, cy, radius, way + math.pi - other, 2.0 * other)
     return plus(sums, 1.0, back)
 
 
 @inlined
-def _along_rim(
-    alpha: float, beta: float, size: float, x: float, y: float, to_x: float, to_y: float
-) -> Sums:
-    """The rim as seen from the centre between two points outside, or on it."""
-    turn = math.atan2(x * to_y - y * to_x, x * to_x + y * to_y)
-    return arc_sums(alpha, beta, 0.0, 0.0, size, math.atan2(y, x), turn)
+def turn_between(x: float, y: float, to_x: float, to_y: float) -> float:
+    """The angle from one point to another as seen from the centre."""
+    return math.atan2(x * to_y - y * to_x, x * to_x + y * to_y)
 
 
-@inner
-def edge_sums(
-    alpha: float, beta: float, size: float, x: float, y: float, to_x: float, to_y: float
-) -> Sums:
-    """What one edge of a polygon adds to the sums over what of a disc lies in the polygon.
-
-    The edge itself where it is in the disc, and else the rim under it, as seen from the centre.
-    """
+@inlined
+def inside_disc(size: float, x: float, y: float, to_x: float, to_y: float) -> tuple[float, float]:
+    """The shares of a straight piece between which it lies in a disc; low ≥ high: nowhere."""
     dx, dy = to_x - x, to_y - y
     square = dx * dx + dy * dy
     if square == 0.0:
-        return NOTHING
+        return 1.0, 0.0
     along = -(x * dx + y * dy) / square
     px, py = x + along * dx, y + along * dy
     room = size * size - (px * px + py * py)
     if room <= 0.0:
-        return _along_rim(alpha, beta, size, x, y, to_x, to_y)
+        return 1.0, 0.0
     half = math.sqrt(room / square)
-    low, high = max(along - half, 0.0), min(along + half, 1.0)
-    if low >= high:
-        return _along_rim(alpha, beta, size, x, y, to_x, to_y)
-    x1, y1, x2, y2 = x + low * dx, y + low * dy, x + high * dx, y + high * dy
-    sums = line_sums(alpha, beta, x1, y1, x2, y2)
-    if low > 0.0:
-        sums = plus(sums, 1.0, _along_rim(alpha, beta, size, x, y, x1, y1))
-    if high < 1.0:
-        sums = plus(sums, 1.0, _along_rim(alpha, beta, size, x2, y2, to_x, to_y))
-    return sums
+    return max(along - half, 0.0), min(along + half, 1.0)

@@ -29,8 +29,11 @@ from puck_tables.kernels.base_parts import (
     beyond_sums,
     common_sums,
     disc_sums,
-    edge_sums,
+    inside_disc,
+    line_sums,
     plus,
+    rim_sums,
+    turn_between,
 )
 from puck_tables.kernels.compile import inlined, inner
 
@@ -162,6 +165,43 @@ def least_under(ground: FloatArray, radius: float) -> float:
 
 
 @inner
+def _polygon_sums(
+    ground: FloatArray, first: int, count: int, radius: float, slip: Slip, mirrored: float,
+    size: float,
+) -> Sums:  # fmt: skip
+    """What of a disc lies in a polygon: around it, on its edges in the disc, else on the rim.
+
+    Where it is outside, the rim under it, as seen from the centre, up to where it comes in again.
+    """
+    alpha, beta = slip.along, slip.turning
+    cosine, sine = slip.cosine / radius, slip.sine / radius
+    x, y = ground[PLACE_X], ground[PLACE_Y]
+    sums, start, turn, px, py = NOTHING, 0.0, 0.0, 0.0, 0.0
+    for n in range(count + 1):
+        # the mirror image of a polygon runs the other way round
+        corner = corner_of(ground, first + (n % count if mirrored > 0.0 else (count - n) % count))
+        dx, dy = corner[0] - x, corner[1] - y
+        qx, qy = dx * cosine + dy * sine, mirrored * (dy * cosine - dx * sine)
+        if n == 0:
+            px, py, start = qx, qy, math.atan2(qy, qx)
+            continue
+        low, high = inside_disc(size, px, py, qx, qy)
+        if low >= high:
+            turn += turn_between(px, py, qx, qy)
+        else:
+            dx, dy = qx - px, qy - py
+            x1, y1, x2, y2 = px + low * dx, py + low * dy, px + high * dx, py + high * dy
+            if low > 0.0:
+                turn += turn_between(px, py, x1, y1)
+            sums = plus(sums, 1.0, rim_sums(alpha, beta, size, start, turn))
+            sums = plus(sums, 1.0, line_sums(alpha, beta, x1, y1, x2, y2))
+            start = math.atan2(y2, x2)
+            turn = turn_between(x2, y2, qx, qy) if high < 1.0 else 0.0
+        px, py = qx, qy
+    return plus(sums, 1.0, rim_sums(alpha, beta, size, start, turn))
+
+
+@inner
 def _weighted(ground: FloatArray, radius: float, slip: Slip, mirrored: float, size: float) -> Sums:
     """Sums over a disc of radius ``size`` times f N; ``mirrored`` −1: of a clockwise spin.
 
@@ -198,18 +238,10 @@ def _weighted(ground: FloatArray, radius: float, slip: Slip, mirrored: float, si
             px = dx * slip.cosine + dy * slip.sine
             py = mirrored * (dy * slip.cosine - dx * slip.sine)
             sums = plus(sums, more, common_sums(alpha, beta, size, px, py, reach))
-        for n in range(count):
-            one = corner_of(ground, first + n)
-            two = corner_of(ground, first + (n + 1 if n + 1 < count else 0))
-            dx, dy = (one[0] - x) / radius, (one[1] - y) / radius
-            px = dx * slip.cosine + dy * slip.sine
-            py = mirrored * (dy * slip.cosine - dx * slip.sine)
-            dx, dy = (two[0] - x) / radius, (two[1] - y) / radius
-            qx = dx * slip.cosine + dy * slip.sine
-            qy = mirrored * (dy * slip.cosine - dx * slip.sine)
-            if mirrored < 0.0:  # the mirror image of a polygon runs the other way round
-                px, py, qx, qy = qx, qy, px, py
-            sums = plus(sums, more, edge_sums(alpha, beta, size, px, py, qx, qy))
+        if count > 0:
+            sums = plus(
+                sums, more, _polygon_sums(ground, first, count, radius, slip, mirrored, size)
+            )
     return sums
 
 

@@ -145,7 +145,7 @@ def first_patch(
     y: FloatArray, end: FloatArray, scale: FloatArray, work: FloatArray, last: FloatArray,
     new: FloatArray,
 ) -> tuple[int, float]:  # fmt: skip
-    """The first patch whose border the rim meets or leaves on a step to ``end``, and when; −1: none.
+    """The first patch whose border the rim meets or leaves on a step to ``end``; −1: none.  When.
 
     ``last``: dy/dt at the end of the step.  It is looked for on the polynomials between both ends,
     and then found on real steps.
