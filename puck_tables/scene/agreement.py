@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from puck_tables.scene.scene import Scene
 
 _SMALLEST, _LARGEST = 1e-100, 1e100
+_GRIPS = 1000.0  # the largest coefficient that a rim may come over
 
 
 def disagreements(scene: Scene) -> list[str]:
@@ -73,6 +74,11 @@ def _bad_astride(scene: Scene) -> list[str]:
         return [
             f"{name}: friction under a base on two frictions is known for puck.pressure 'uniform' "
             f"and 'annulus:INNER' only, not for {law.name!r}"
+        ]
+    if max(scene.frictions) > _GRIPS:
+        return [
+            f"{name}: a friction of {max(scene.frictions):g} stops a rim within its first "
+            f"micrometres, which takes minutes to follow; give at most {_GRIPS:g}"
         ]
     highest = max(scene.heights)
     if highest > law.delta_max * (1.0 + 1e-12):
