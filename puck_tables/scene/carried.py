@@ -13,7 +13,10 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
-from puck_tables.scene.astride import (
+from puck_tables.scene.boundaries import Boundaries
+from puck_tables.scene.cushions import NX, NY
+from puck_tables.scene.friction import X, Y
+from puck_tables.scene.ground import (
     CORNER,
     CORNERS,
     MIDDLE_X,
@@ -22,9 +25,6 @@ from puck_tables.scene.astride import (
     corner_of,
     patch_of,
 )
-from puck_tables.scene.boundaries import Boundaries
-from puck_tables.scene.cushions import NX, NY
-from puck_tables.scene.friction import X, Y
 from puck_tables.scene.ingredients import Surface
 from puck_tables.scene.patches import INSIDE, OUTSIDE, distance_to
 

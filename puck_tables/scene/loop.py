@@ -14,7 +14,6 @@ import math
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, kernel
-from puck_tables.scene.astride import BORDERS as GROUND_BORDERS
 from puck_tables.scene.at_once import met_at_once
 from puck_tables.scene.boundaries import (
     BORDER,
@@ -43,6 +42,7 @@ from puck_tables.scene.equations import (
 )
 from puck_tables.scene.forces import jumps
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
+from puck_tables.scene.ground import BORDERS as GROUND_BORDERS
 from puck_tables.scene.ingredients import (
     CARRIED,
     FREE,

@@ -13,7 +13,9 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
-from puck_tables.scene.astride import (
+from puck_tables.scene.equations import SIZE
+from puck_tables.scene.friction import VX, VY, X, Y
+from puck_tables.scene.ground import (
     BORDERS,
     CORNER,
     CORNERS,
@@ -25,8 +27,6 @@ from puck_tables.scene.astride import (
     patches_on,
     strip_at,
 )
-from puck_tables.scene.equations import SIZE
-from puck_tables.scene.friction import VX, VY, X, Y
 from puck_tables.scene.ingredients import (
     Dry,
     Regions,
