@@ -51,6 +51,7 @@ from puck_tables.scene.ground import (
 )
 
 _GROWTH = 2.5  # of a part, over how far the next radius is from its near end
+_FAR = 4.0  # radii: a centre of rotation farther away is none
 _LEAST = 1e-5  # of the length between two radii: nearer ones beyond them count as one
 # Gauss's rule on [0, 1] in u with x = u³ (10 − 15 u + 6 u²): ends like √x do not harm it
 _NODES = 24
@@ -74,32 +75,62 @@ def _put(ground: FloatArray, count: int, value: float) -> int:
     return count + 1
 
 
+@inlined
+def _put_line(
+    ground: FloatArray, count: int, ax: float, ay: float, bx: float, by: float, cx: float, cy: float
+) -> int:
+    """Put how far a piece of a line from (ax, ay) along (bx, by) is, and its point next to C."""
+    square = bx * bx + by * by
+    if 0.0 < -(ax * bx + ay * by) < square:
+        count = _put(ground, count, abs(ax * by - ay * bx) / math.sqrt(square))
+    share = ((cx - ax) * bx + (cy - ay) * by) / square
+    if 0.0 < share < 1.0:
+        count = _put(ground, count, math.hypot(ax + share * bx, ay + share * by))
+    return count
+
+
 @inner
-def _radii(ground: FloatArray, radius: float, slip: Slip) -> int:
-    """Into their room the radii between 0 and 1 at which D(a) is not analytic; how many."""
-    x, y, count = ground[PLACE_X], ground[PLACE_Y], 0
-    if slip.turning > 0.0:
-        count = _put(ground, count, slip.along / slip.turning)
-    place = ground[ACROSS_X] * x + ground[ACROSS_Y] * y
+def _radii(ground: FloatArray, radius: float, slip: Slip, mirrored: float) -> int:
+    """Into their room the radii between 0 and 1 at which D(a) is not analytic; how many.
+
+    Also those at which the border on a circle passes closest to the centre of rotation, C.
+    """
+    x, y, count, c = ground[PLACE_X], ground[PLACE_Y], 0, _FAR
+    if slip.along < _FAR * slip.turning:
+        c = slip.along / slip.turning
+        count = _put(ground, count, c)
+    cx, cy = -mirrored * c * slip.sine, mirrored * c * slip.cosine
+    east, north = ground[ACROSS_X], ground[ACROSS_Y]
+    place = east * x + north * y
     for i in range(int(ground[BORDERS])):
-        count = _put(ground, count, abs(border_of(ground, i) - place) / radius)
+        away = (border_of(ground, i) - place) / radius
+        ax, ay = away * east + _FAR * north, away * north - _FAR * east
+        if abs(away) < 1.0:
+            count = _put_line(
+                ground, count, ax, ay, -2.0 * _FAR * north, 2.0 * _FAR * east, cx, cy
+            )  # fmt: skip
     for k in range(int(ground[PATCHES])):
-        dx, dy = patch_of(ground, k, MIDDLE_X) - x, patch_of(ground, k, MIDDLE_Y) - y
-        apart, reach = math.sqrt(dx * dx + dy * dy), patch_of(ground, k, REACH)
+        mx = (patch_of(ground, k, MIDDLE_X) - x) / radius
+        my = (patch_of(ground, k, MIDDLE_Y) - y) / radius
+        apart, reach = math.sqrt(mx * mx + my * my), patch_of(ground, k, REACH) / radius
         first, corners = int(patch_of(ground, k, CORNER)), int(patch_of(ground, k, CORNERS))
-        if corners == 0:
-            count = _put(ground, count, abs(apart - reach) / radius)
-            count = _put(ground, count, (apart + reach) / radius)
-        elif apart >= reach + radius:
+        if apart >= reach + 1.0:
             continue
+        if corners == 0:
+            count = _put(ground, count, abs(apart - reach))
+            count = _put(ground, count, apart + reach)
+            to_c = math.hypot(cx - mx, cy - my)
+            if to_c > 0.0:
+                share = reach / to_c
+                near = math.hypot(mx + share * (cx - mx), my + share * (cy - my))
+                count = _put(ground, count, near)
         for n in range(corners):
             one = corner_of(ground, first + n)
             two = corner_of(ground, first + (n + 1 if n + 1 < corners else 0))
-            ax, ay, bx, by = one[0] - x, one[1] - y, two[0] - one[0], two[1] - one[1]
-            square = bx * bx + by * by
-            count = _put(ground, count, math.sqrt(ax * ax + ay * ay) / radius)
-            if 0.0 < -(ax * bx + ay * by) < square:
-                count = _put(ground, count, abs(ax * by - ay * bx) / math.sqrt(square) / radius)
+            ax, ay = (one[0] - x) / radius, (one[1] - y) / radius
+            bx, by = (two[0] - one[0]) / radius, (two[1] - one[1]) / radius
+            count = _put(ground, count, math.sqrt(ax * ax + ay * ay))
+            count = _put_line(ground, count, ax, ay, bx, by, cx, cy)
     first = int(ground[PROFILE])
     for n in range(int(ground[ROWS])):
         count = _put(ground, count, ground[first + 2 * n])
@@ -111,7 +142,7 @@ def _part(
     ground: FloatArray, radius: float, slip: Slip, mirrored: float, law: int, low: float,
     high: float,
 ) -> Sums:  # fmt: skip
-    """∫ D da of a tabulated law, else ∫ D db or ∫ R db, over a part that is smooth between its ends."""
+    """∫ D da of a tabulated law, else ∫ D db or ∫ R db, over a part that is smooth within."""
     sums, length = NOTHING, high - low
     for i in range(_NODES):
         size = low + length * _PLACE[i]
@@ -149,7 +180,7 @@ def _graded(
 @inner
 def _piled(ground: FloatArray, radius: float, slip: Slip, mirrored: float, law: int) -> Sums:
     """Hertz's law, or Galin's, over all b."""
-    count, room = _radii(ground, radius, slip), int(ground[RADII])
+    count, room = _radii(ground, radius, slip, mirrored), int(ground[RADII])
     sums, low, left = NOTHING, 0.0, 1.0
     for n in range(count, -1, -1):
         a = ground[room + n - 1] if n > 0 else 0.0
@@ -166,7 +197,7 @@ def _piled(ground: FloatArray, radius: float, slip: Slip, mirrored: float, law: 
 @inner
 def _tabulated(ground: FloatArray, radius: float, slip: Slip, mirrored: float) -> Sums:
     """A tabulated law, straight between its radii."""
-    count, room = _radii(ground, radius, slip), int(ground[RADII])
+    count, room = _radii(ground, radius, slip, mirrored), int(ground[RADII])
     at, last = int(ground[PROFILE]), int(ground[ROWS]) - 1
     sums = weighted(ground, radius, slip, mirrored, 1.0, False)
     sums = plus(NOTHING, ground[at + 2 * last + 1], sums)

@@ -54,9 +54,9 @@ class Ground(NamedTuple):
             len(self.borders), len(self.patches), self.pressure, profile, len(self.profile),
             profile + self.profile.size,
         ]  # fmt: skip
-        room = len(self.borders) + 2 * len(self.patches) + 2 * len(self.corners) + len(self.profile)
+        room = 2 * len(self.borders) + 3 * (len(self.patches) + len(self.corners))
         return np.concatenate([
-            head, counts, *tables, self.profile.ravel(), np.zeros(room + 3)
+            head, counts, *tables, self.profile.ravel(), np.zeros(room + len(self.profile) + 3)
         ]).astype(np.float64)  # fmt: skip
 
 
