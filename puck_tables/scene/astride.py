@@ -11,9 +11,9 @@ is linear in b.  Nothing is symmetric here, so that its two components go togeth
     (1 − κ S) b = κ s ,   s = (N/A) ∫ f e dA ,   S_jk = (N/A) ∫ f e_j x_k dA ,   κ = h/(2r ⟨x²⟩ N) .
 
 |b| is at most κ f N for the largest f, which is δ/(4⟨x²⟩): where no strip or patch would lift the
-base, none does astride.  That is of uniform pressure; of another, 1/A becomes W/(π r²), and the sums
-those of :mod:`puck_tables.scene.astride_pressure`.  They are of the whole base with the coefficient
-under its centre, and of every part with what its own differs by.
+base, none does astride.  Of other than uniform pressure 1/A becomes W/π, and the sums are those of
+:mod:`puck_tables.scene.astride_pressure`.  They are of the whole base with the coefficient under
+its centre, and of every part with what its own differs by.
 """
 
 from __future__ import annotations

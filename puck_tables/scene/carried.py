@@ -30,6 +30,8 @@ from puck_tables.scene.patches import INSIDE, OUTSIDE, distance_to
 
 _PARALLEL = 1e-15  # of the speed of the floor: across a line, that is rounding of its direction
 
+_GRAZE = 1e-9  # of the radius: a rim that has just left a patch has it no closer ahead
+
 
 @inlined
 def _meets(surface: Surface, rows: FloatArray, i: int, sign: float, y: FloatArray) -> bool:
@@ -82,7 +84,8 @@ def _comes_over(
     if surface.spin == 0.0:
         speed = math.hypot(surface.vx, surface.vy)
         ux, uy = surface.vx / speed, surface.vy / speed
-        return how != OUTSIDE or _ray_to_patch(ground, k, y[X], y[Y], ux, uy) < radius
+        near = _ray_to_patch(ground, k, y[X], y[Y], ux, uy)
+        return how != OUTSIDE or near < (1.0 - _GRAZE) * radius
     mx, my, way = circle_of(surface, y[X], y[Y])
     apart = math.hypot(mx - patch_of(ground, k, MIDDLE_X), my - patch_of(ground, k, MIDDLE_Y))
     reach = patch_of(ground, k, REACH)
