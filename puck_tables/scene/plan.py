@@ -181,8 +181,8 @@ def plan_for(scene: Scene) -> Plan:
             law = scene.puck.body.law
             piled = law.profile is not None or law.name in ("hertz", "galin")
             why += (
-                "\nWhile the base is astride two frictions they are integrated over its parts, about "
-                f"{'a thousand' if piled else 'ten'} times the cost of a step elsewhere."
+                "\nWhile the base is astride two frictions they are integrated over its parts, "
+                f"about {'a thousand' if piled else 'ten'} times the cost of a step elsewhere."
             )
         return Plan(model, False, why)
     kind = scene.puck.regime(free_velocity(scene), scene.launch.spin)
