@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from puck_tables.kernels.compile import kernel
-from puck_tables.scene.astride import PLACE_X, PLACE_Y, Ground, astride_friction
+from puck_tables.scene.astride import astride_friction
+from puck_tables.scene.ground import PLACE_X, PLACE_Y, Ground
 
 NO_PATCHES, NO_CORNERS = np.empty((0, 6)), np.empty((0, 2))
 

@@ -106,9 +106,9 @@ def test_what_holds_at_rest(height, at, downhill):
 
 
 @pytest.mark.parametrize(("puck", "floor", "words"), [
-    ({"pressure": "hertz"}, {"strips": NARROW}, "'uniform' and 'annulus:INNER' only"),
     ({"height": 0.2}, {"strips": NARROW}, "loaded everywhere, delta = 2 f h / r up to 1"),
     ({}, {"patches": [ROUND, POLYGON]}, "overlap"),
+    ({"height": 0.0}, {"patches": [replace(ROUND, friction=1e6)]}, "give at most 1000"),
     ({}, {"patches": [ROUND], "strips": pt.Strips((0.3,), (0.1, 0.2))}, "lies over floor.strips"),
     ({}, {"patches": [pt.Patch(0.1)]}, "give a radius > 0 m, or corners"),
     ({}, {"patches": [replace(ROUND, corners=POLYGON.corners)]}, "not both"),

@@ -32,7 +32,9 @@ _NODES = 16
 _NODE, _WEIGHT = (side[_NODES // 2 :] for side in np.polynomial.legendre.leggauss(_NODES))
 _FAR = 2.0  # radii from which on the centre of rotation is no trouble for Gauss's rule
 _PANEL = 2.4  # the length of a panel over its distance from the centre of rotation
+_RING_PANEL = 1.6  # of a ring, where w is divided by
 _LEAST_GAP = 1e-5  # closer than this the centre is on the arc: the square of it is lost
+_RING_GAP = 1e-12  # of a ring it is lost itself
 
 _full_integrals: Any = inlined(closed_form.shape_integrals)
 
@@ -126,9 +128,22 @@ def line_sums(alpha: float, beta: float, x: float, y: float, to_x: float, to_y: 
 
 
 @inlined
+def _on_ring(alpha: float, beta: float, x: float, y: float) -> Sums:
+    """What is summed itself, at a point of a thin ring."""
+    across, up = alpha - beta * y, beta * x
+    w = math.sqrt(across * across + up * up)
+    if w == 0.0:
+        return NOTHING
+    ex, ey = across / w, up / w
+    moment = x * ey - y * ex
+    return ex, ey, x * ex, y * ex, x * ey, y * ey, x * moment, y * moment
+
+
+@inlined
 def _panel(
-    alpha: float, beta: float, cx: float, cy: float, radius: float, middle: float, half: float
-) -> Sums:
+    alpha: float, beta: float, cx: float, cy: float, radius: float, middle: float, half: float,
+    ring: bool,
+) -> Sums:  # fmt: skip
     cosine, sine = radius * math.cos(middle), radius * math.sin(middle)
     sums = NOTHING
     for i in range(_NODES // 2):
@@ -136,17 +151,25 @@ def _panel(
         weight = half * _WEIGHT[i]
         c, s = cosine_sine_of(turn)
         x, y = cosine * c - sine * s, sine * c + cosine * s
-        sums = plus(sums, weight, _at(alpha, beta, cx + x, cy + y, -y, x))
-        x, y = cosine * c + sine * s, sine * c - cosine * s
-        sums = plus(sums, weight, _at(alpha, beta, cx + x, cy + y, -y, x))
+        u, v = cosine * c + sine * s, sine * c - cosine * s
+        if ring:
+            sums = plus(sums, weight, _on_ring(alpha, beta, x, y))
+            sums = plus(sums, weight, _on_ring(alpha, beta, u, v))
+        else:
+            sums = plus(sums, weight, _at(alpha, beta, cx + x, cy + y, -y, x))
+            sums = plus(sums, weight, _at(alpha, beta, cx + u, cy + v, -v, u))
     return sums
 
 
 @inner
 def arc_sums(
-    alpha: float, beta: float, cx: float, cy: float, radius: float, start: float, turn: float
-) -> Sums:
-    """An arc about (cx, cy) from the angle ``start`` over ``turn``, clockwise where that is < 0."""
+    alpha: float, beta: float, cx: float, cy: float, radius: float, start: float, turn: float,
+    ring: bool,
+) -> Sums:  # fmt: skip
+    """An arc about (cx, cy) from the angle ``start`` over ``turn``, clockwise where that is < 0.
+
+    ``ring``: of the sums over the arc itself, as if all load were on it, not over what it bounds.
+    """
     if turn == 0.0:
         return NOTHING
     across, up = -beta * cx, alpha - beta * cy  # to the centre of rotation, times β
@@ -154,11 +177,13 @@ def arc_sums(
     reach = math.sqrt(across * across + up * up)
     gap = 1e3  # of angles: as far as that the arc is from the singularity
     if beta > 0.0:
-        gap = min(max(abs(math.log(max(reach, 1e-300) / (beta * radius))), _LEAST_GAP), gap)
+        least = _RING_GAP if ring else _LEAST_GAP
+        gap = min(max(abs(math.log(max(reach, 1e-300) / (beta * radius))), least), gap)
     whole = 2.0 * math.pi
     low = (start if turn > 0.0 else start + turn) - nearest
     low -= whole * math.floor(low / whole)
     high, sums = low + abs(turn), NOTHING
+    reach = _RING_PANEL if ring else _PANEL
     # from half-turn to half-turn: in the even ones the arc leads away from the centre of rotation
     number = float(math.floor(low / math.pi))
     while low < high:
@@ -167,12 +192,12 @@ def arc_sums(
         base = math.pi * (number if leads_away else number + 1.0)
         near, far = (low - base, edge - base) if leads_away else (base - edge, base - low)
         while near < far:
-            length = _PANEL * math.sqrt(gap * gap + near * near)
+            length = reach * math.sqrt(gap * gap + near * near)
             if length >= 0.7 * (far - near):
                 length = far - near if length >= far - near else 0.5 * (far - near)
             middle = near + 0.5 * length
             angle = nearest + (base + middle if leads_away else base - middle)
-            sums = plus(sums, 1.0, _panel(alpha, beta, cx, cy, radius, angle, 0.5 * length))
+            sums = plus(sums, 1.0, _panel(alpha, beta, cx, cy, radius, angle, 0.5 * length, ring))
             near = near + length if length < far - near else far
         low = edge
         number += 1.0
@@ -196,13 +221,27 @@ def disc_sums(alpha: float, beta: float, size: float) -> Sums:
 
 
 @inner
-def beyond_sums(alpha: float, beta: float, size: float, nx: float, ny: float, place: float) -> Sums:
-    """What of a disc lies beyond the line n·x = place ≥ 0."""
+def rim_sums(alpha: float, beta: float, size: float, start: float, turn: float, ring: bool) -> Sums:
+    """An arc of a disc about the centre of the base; of a long one the rest, and the whole disc."""
+    if ring or abs(turn) <= math.pi:
+        return arc_sums(alpha, beta, 0.0, 0.0, size, start, turn, ring)
+    way = 1.0 if turn > 0.0 else -1.0
+    rest = arc_sums(alpha, beta, 0.0, 0.0, size, start + turn, 2.0 * math.pi * way - turn, False)
+    return plus(plus(NOTHING, way, disc_sums(alpha, beta, size)), -1.0, rest)
+
+
+@inner
+def beyond_sums(
+    alpha: float, beta: float, size: float, nx: float, ny: float, place: float, ring: bool
+) -> Sums:
+    """What of a disc, or of a ring on its rim, lies beyond the line n·x = place ≥ 0."""
     if place >= size:
         return NOTHING
     half = math.acos(place / size)
     end = math.sqrt((size - place) * (size + place))
-    sums = arc_sums(alpha, beta, 0.0, 0.0, size, math.atan2(ny, nx) - half, 2.0 * half)
+    sums = rim_sums(alpha, beta, size, math.atan2(ny, nx) - half, 2.0 * half, ring)
+    if ring:
+        return sums
     px, py = place * nx, place * ny
     chord = line_sums(
         alpha, beta, px - end * ny, py + end * nx, px + end * ny, py - end * nx
@@ -212,16 +251,20 @@ def beyond_sums(alpha: float, beta: float, size: float, nx: float, ny: float, pl
 
 @inner
 def common_sums(
-    alpha: float, beta: float, size: float, cx: float, cy: float, radius: float
+    alpha: float, beta: float, size: float, cx: float, cy: float, radius: float, ring: bool
 ) -> Sums:
-    """What of a disc lies in a circle about (cx, cy)."""
+    """What of a disc, or of a ring on its rim, lies in a circle about (cx, cy)."""
     apart = math.sqrt(cx * cx + cy * cy)
     if apart >= size + radius:
         return NOTHING
     if apart + size <= radius:
+        if ring:
+            return rim_sums(alpha, beta, size, 0.0, 2.0 * math.pi, True)
         return disc_sums(alpha, beta, size)
     if apart + radius <= size:
-        return arc_sums(alpha, beta, cx, cy, radius, 0.0, 2.0 * math.pi)
+        if ring:
+            return NOTHING
+        return arc_sums(alpha, beta, cx, cy, radius, 0.0, 2.0 * math.pi, False)
     # half angles under which the two circles cut each other, by the half tangent
     short = (radius - apart + size) * (radius + apart - size)
     long = (apart + size + radius) * (apart + size - radius)
@@ -230,45 +273,30 @@ def common_sums(
     long = (apart + size + radius) * (apart - size + radius)
     other = 2.0 * math.atan2(math.sqrt(max(short, 0.0)), math.sqrt(max(long, 0.0)))
     way = math.atan2(cy, cx)
-    sums = arc_sums(alpha, beta, 0.0, 0.0, size, way - own, 2.0 * own)
-    back = arc_sums(alpha, beta, cx, cy, radius, way + math.pi - other, 2.0 * other)
+    sums = rim_sums(alpha, beta, size, way - own, 2.0 * own, ring)
+    if ring:
+        return sums
+    back = arc_sums(alpha, beta, cx, cy, radius, way + math.pi - other, 2.0 * other, False)
     return plus(sums, 1.0, back)
 
 
 @inlined
-def _along_rim(
-    alpha: float, beta: float, size: float, x: float, y: float, to_x: float, to_y: float
-) -> Sums:
-    """The rim as seen from the centre between two points outside, or on it."""
-    turn = math.atan2(x * to_y - y * to_x, x * to_x + y * to_y)
-    return arc_sums(alpha, beta, 0.0, 0.0, size, math.atan2(y, x), turn)
+def turn_between(x: float, y: float, to_x: float, to_y: float) -> float:
+    """The angle from one point to another as seen from the centre."""
+    return math.atan2(x * to_y - y * to_x, x * to_x + y * to_y)
 
 
-@inner
-def edge_sums(
-    alpha: float, beta: float, size: float, x: float, y: float, to_x: float, to_y: float
-) -> Sums:
-    """What one edge of a polygon adds to the sums over what of a disc lies in the polygon.
-
-    The edge itself where it is in the disc, and else the rim under it, as seen from the centre.
-    """
+@inlined
+def inside_disc(size: float, x: float, y: float, to_x: float, to_y: float) -> tuple[float, float]:
+    """The shares of a straight piece between which it lies in a disc; low ≥ high: nowhere."""
     dx, dy = to_x - x, to_y - y
     square = dx * dx + dy * dy
     if square == 0.0:
-        return NOTHING
+        return 1.0, 0.0
     along = -(x * dx + y * dy) / square
     px, py = x + along * dx, y + along * dy
     room = size * size - (px * px + py * py)
     if room <= 0.0:
-        return _along_rim(alpha, beta, size, x, y, to_x, to_y)
+        return 1.0, 0.0
     half = math.sqrt(room / square)
-    low, high = max(along - half, 0.0), min(along + half, 1.0)
-    if low >= high:
-        return _along_rim(alpha, beta, size, x, y, to_x, to_y)
-    x1, y1, x2, y2 = x + low * dx, y + low * dy, x + high * dx, y + high * dy
-    sums = line_sums(alpha, beta, x1, y1, x2, y2)
-    if low > 0.0:
-        sums = plus(sums, 1.0, _along_rim(alpha, beta, size, x, y, x1, y1))
-    if high < 1.0:
-        sums = plus(sums, 1.0, _along_rim(alpha, beta, size, x2, y2, to_x, to_y))
-    return sums
+    return max(along - half, 0.0), min(along + half, 1.0)

@@ -17,7 +17,7 @@ from puck_tables.plot.style import (
     draw_over,
     titled,
 )
-from puck_tables.scene.loop import CARRIED_AWAY
+from puck_tables.scene.loop import CARRIED_ROUND
 from puck_tables.scene.outcome import ENDS
 from puck_tables.scene.sweep import SceneMap
 
@@ -33,8 +33,8 @@ _MAPS = {
     "heat_dry": "heat of dry friction / J",
 }
 _LOOKS = (
-    (BLUE, "o"), (GREEN, "^"), (ORANGE, "D"), (RED, "v"), ("#555555", "x"), ("#8b2fa0", "x"),
-    ("black", "x"), ("#17becf", "x"), ("#c8a415", "x"), ("#b8b8b8", "x"),
+    (BLUE, "o"), (GREEN, "^"), (GREEN, "o"), (ORANGE, "D"), (RED, "v"), ("#555555", "x"),
+    ("#8b2fa0", "x"), ("black", "x"), ("#17becf", "x"), ("#c8a415", "x"), ("#b8b8b8", "x"),
 )  # fmt: skip
 _HATCH = "///"
 _LEGEND_ROW = 5  # entries
@@ -72,7 +72,7 @@ def draw(stops: SceneMap) -> Figure:
         color, marker = _LOOKS[code]
         curves.append(Line2D([], [], color=color, marker=marker, linestyle=""))
         words.append(ENDS[code])
-    if not panels.flat[0].lines and (end > CARRIED_AWAY).any():
+    if not panels.flat[0].lines and (end > CARRIED_ROUND).any():
         curves.append(Patch(facecolor="white", edgecolor="black", hatch=_HATCH))
         words.append("not at rest at the end")
     figure.legend(curves, words, loc="outside lower center", ncols=_LEGEND_ROW, frameon=False)
@@ -110,7 +110,7 @@ def _mark_ends(
 def _hatch(panel: Axes, axes: Mapping[str, Any], end: npt.NDArray[np.int8]) -> None:
     """Hatch what is no rest on a map."""
     rows, columns = axes.values()
-    moving = (end > CARRIED_AWAY).astype(np.float64)
+    moving = (end > CARRIED_ROUND).astype(np.float64)
     if moving.any():
         panel.contourf(columns, rows, moving, levels=[0.5, 1.5], colors="none", hatches=[_HATCH])
 

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from puck_tables.scene.scene import Scene
 
 _SMALLEST, _LARGEST = 1e-100, 1e100
+_MOST_ROWS = 60  # of a tabulated pressure astride: each look costs that of a disc 24 times a row
+_GRIPS = 1000.0  # the largest coefficient that a rim may come over
 
 
 def disagreements(scene: Scene) -> list[str]:
@@ -74,10 +76,15 @@ def _bad_astride(scene: Scene) -> list[str]:
     if floor.strips is None and not floor.patches:
         return []
     name = "floor.strips" if floor.strips is not None else "floor.patch"
-    if not law.can_lift and not law.name.startswith("annulus:"):
+    if law.profile is not None and len(law.profile[0]) > _MOST_ROWS:
         return [
-            f"{name}: friction under a base on two frictions is known for puck.pressure 'uniform' "
-            f"and 'annulus:INNER' only, not for {law.name!r}"
+            f"{name}: friction under a base on two frictions takes a tabulated puck.pressure of up "
+            f"to {_MOST_ROWS} rows, it has {len(law.profile[0])}: give fewer"
+        ]
+    if max(scene.frictions) > _GRIPS:
+        return [
+            f"{name}: a friction of {max(scene.frictions):g} stops a rim within its first "
+            f"micrometres, which takes minutes to follow; give at most {_GRIPS:g}"
         ]
     highest = max(scene.heights)
     if highest > law.delta_max * (1.0 + 1e-12):

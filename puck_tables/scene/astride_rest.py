@@ -13,7 +13,8 @@ import math
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inner
-from puck_tables.scene.astride import LEVER, held_friction
+from puck_tables.scene.astride import held_friction
+from puck_tables.scene.ground import LEVER
 
 Yield = tuple[float, float, float, float]
 

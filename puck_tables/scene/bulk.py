@@ -9,11 +9,11 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import allocating
-from puck_tables.scene.astride import patches_on
 from puck_tables.scene.at_once import AS_IT_COMES, FIRST_BY_NUMBER, GROWN, LAST_BY_NUMBER
 from puck_tables.scene.boundaries import BOUNCES, Boundaries
 from puck_tables.scene.desk import Ask, Desk, desk_for
 from puck_tables.scene.friction import X, Y
+from puck_tables.scene.ground import patches_on
 from puck_tables.scene.ingredients import Model, Regions
 from puck_tables.scene.loop import NOT_FINITE, UNDECIDED, follow
 from puck_tables.scene.records import EVENT_COLUMNS, FRAME_COLUMNS

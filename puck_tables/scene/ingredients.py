@@ -14,8 +14,8 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
-from puck_tables.scene.astride import PLACE_X, PLACE_Y
 from puck_tables.scene.forces import Forces
+from puck_tables.scene.ground import PLACE_X, PLACE_Y
 
 if TYPE_CHECKING:
     from puck_tables.scene.parts import Constraint, Launch

@@ -14,7 +14,6 @@ import math
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, kernel
-from puck_tables.scene.astride import BORDERS as GROUND_BORDERS
 from puck_tables.scene.at_once import met_at_once
 from puck_tables.scene.boundaries import (
     BORDER,
@@ -25,6 +24,7 @@ from puck_tables.scene.boundaries import (
     Boundaries,
     first_crossing,
 )
+from puck_tables.scene.carried import leads_on
 from puck_tables.scene.cushions import NX, NY
 from puck_tables.scene.desk import Ask, Desk
 from puck_tables.scene.equations import (
@@ -42,6 +42,7 @@ from puck_tables.scene.equations import (
 )
 from puck_tables.scene.forces import jumps
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
+from puck_tables.scene.ground import BORDERS as GROUND_BORDERS
 from puck_tables.scene.ingredients import (
     CARRIED,
     FREE,
@@ -89,7 +90,8 @@ from puck_tables.scene.standstill import from_standstill
 from puck_tables.scene.steps import STAGES, step
 
 # how a run ends
-AT_REST, CARRIED_AWAY, TIME_UP, OVER_EDGE, STEP_LIMIT, EVENT_LIMIT, NOT_FINITE = range(7)
+AT_REST, CARRIED_AWAY, CARRIED_ROUND, TIME_UP, OVER_EDGE = range(5)
+STEP_LIMIT, EVENT_LIMIT, NOT_FINITE = range(5, 8)
 UNDECIDED = NOT_FINITE + 1  # by more than one run
 # what happens on the way
 RESTS, SLIPS, LEANS = 0, 1, 3  # and those of boundaries
@@ -149,8 +151,9 @@ def follow(
     moves = surface.vx != 0.0 or surface.vy != 0.0 or surface.spin != 0.0
     pull_there = model.forces.x != 0.0 or model.forces.y != 0.0 or len(drive) > 0
     swings = surface.spin != 0.0 and pull_there  # else what a turning floor asks is constant
+    until, around, crossed = ask.until, math.inf, 0  # the end of a whole turn that carries it
     patched = len(lies) > 0
-    unbounded = len(bounds.walls) + len(bounds.edges) + len(bounds.borders) == 0 and not patched
+    unbounded = len(bounds.walls) + len(bounds.edges) + len(bounds.borders) == 0
     several = len(bounds.walls) + len(bounds.edges) > 1
     look_at_walls(bounds, contacts, body, y, ask.speed)
     leaning = contacts.rows[: touching(bounds, contacts)]
@@ -174,12 +177,13 @@ def follow(
     settle, known = True, False  # whether to look what holds the puck; whether work[0] is there
     newton = 0.0
     stretch = Stretch(model, dry, leaning, piece, mode, way, newton)
-    while t < ask.until:
+    while t < until:
         while piece < len(drive) and drive[piece, 0] <= t:
             piece += 1
-        target = min(drive[piece, 0], ask.until) if piece < len(drive) else ask.until
+        target = min(drive[piece, 0], until) if piece < len(drive) else until
         if calm > t:
             target = min(target, calm)
+        target = min(target, around)
         if settle and leaning.shape[0] > 0:
             stretch = Stretch(model, dry, leaning, piece, mode, way, 0.0)
             fx, fy = acting_force(stretch, t, y)
@@ -209,19 +213,34 @@ def follow(
                 where = region_at(regions.ground, y[X], y[Y])
                 noted(events[count], model, t, RESTS if resting else SLIPS, where, y)
                 count += 1
-            if mode == CARRIED and t >= calm:
-                alone = piece == len(drive) and unbounded and not ask.to_the_end
-                if alone if moves else rests_on(model, dry, leaning, piece, y):
-                    how = CARRIED_AWAY if moves else AT_REST  # nothing is to come
+            if mode == CARRIED and t >= calm and not moves:
+                if rests_on(model, dry, leaning, piece, y):
+                    how = AT_REST  # nothing is to come
                     break
+            elif mode == CARRIED and t >= calm and piece == len(drive) and not ask.to_the_end:
+                if not swings and not leads_on(
+                    surface, bounds, leans, regions.ground, lies, region, radius, y
+                ):
+                    how = CARRIED_AWAY
+                    break
+                if t >= around:  # and so it goes on for ever
+                    how = CARRIED_ROUND if count > crossed else CARRIED_AWAY
+                    break
+                if surface.spin != 0.0 and around == math.inf:
+                    around, crossed = t + 2.0 * math.pi / abs(surface.spin), count
+                    until = max(until, around)
+            around = around if mode == CARRIED else math.inf
             h = max(h, 1e-6 * (target - t))
             known = False
         elif settle:
             mode = SLIDES
-            resting = False
+            resting, around = False, math.inf
         h = -q / way[3] if mode == STOPS else h
         if mode == CARRIED and swings:
             h = min(h, swing / abs(surface.spin))
+        if mode == CARRIED and is_astride(dry):  # what holds it changes from place to place
+            sx, sy, _ = floor_velocity(surface, y[X], y[Y])
+            h = min(h, swing * radius / max(math.hypot(sx, sy), 1e-300))
         if settle or not known:
             newton = 0.0
             if stiff and mode == SLIDES:
@@ -289,7 +308,7 @@ def follow(
             )
         if patched:
             patch, met = first_patch(
-                regions.ground, lies, stretch, t, length, y, scale, work, last, trial
+                regions.ground, lies, stretch, t, length, y, new, scale, work, last, trial
             )
             if met < moment:
                 happens, which, moment = _PATCH, patch, met
@@ -332,7 +351,7 @@ def follow(
             slowly = slip_rate(radius, work) < _SLOWLY * (damps * q + turns)
             was, stiff = stiff, slowly and settles > (_MILD if newton > 0.0 else _STIFF)
             known = known and stiff == was
-        if landed and (target < ask.until or t == calm):
+        if landed and (target < until or t in (calm, around)):
             settle = True
         if mode in (SLIDES, STOPS) and q <= REST * ask.speed and q < before_it:
             settle = True
@@ -408,8 +427,15 @@ def follow(
             how = OVER_EDGE
             break
     stretch = Stretch(model, dry, leaning, piece, mode, way, 0.0)
-    if how == TIME_UP and mode == CARRIED and moves:
+    if how == TIME_UP and mode == CARRIED and moves and ask.to_the_end:
         how = CARRIED_AWAY
+    if how == CARRIED_AWAY and around <= t and events[count - 1, 1] == RESTS:  # since then
+        t = events[count - 1, 0]
+        for i in range(SIZE):
+            y[i] = events[count - 1, 3 + i]
+        y[VX] = y[VY] = y[SPIN] = 0.0
+        while frame > 0 and frames[frame - 1] > t:
+            frame -= 1
     while how == AT_REST and frame < len(frames):  # for ever
         framed(rows[frame], stretch, frames[frame], y, heat, work)
         frame += 1

@@ -16,6 +16,7 @@ from puck_tables.scene.ingredients import (
     Model,
     Stretch,
     floor_velocity,
+    is_astride,
 )
 from puck_tables.scene.leaning import GRIP, RIM
 from puck_tables.scene.orthotropic import is_elliptic
@@ -43,12 +44,13 @@ def lost(
 ) -> float:  # fmt: skip
     """When within a step to ``new`` the floor loses a puck that it carries; inf: it does not.
 
-    On a floor that turns the demand swings: it is looked at where a parabola has its top, too.
+    On a floor that turns the demand swings, and astride what holds changes: it is looked at where a
+    parabola has its top, too.
     """
     slack = SLACK * stretch.dry.load
     first, last = excess_at_rest(stretch, t, y)[0], excess_at_rest(stretch, t + h, new)[0]
     low, high = 0.0, h if last > slack else math.inf
-    if stretch.model.surface.spin != 0.0 and last <= slack:
+    if (stretch.model.surface.spin != 0.0 or is_astride(stretch.dry)) and last <= slack:
         step(stretch, t, 0.5 * h, y, scale, work, new)
         middle = excess_at_rest(stretch, t + 0.5 * h, new)[0]
         bend = 2.0 * (first - 2.0 * middle + last)

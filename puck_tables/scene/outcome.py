@@ -20,8 +20,8 @@ from puck_tables.scene.plan import Plan
 from puck_tables.scene.scene import Scene
 
 ENDS = (
-    "at rest", "carried by the floor", "time is up", "over the edge", "step limit", "event limit",
-    "not finite", "undecided", "no end found", "refused",
+    "at rest", "carried by the floor", "carried round", "time is up", "over the edge",
+    "step limit", "event limit", "not finite", "undecided", "no end found", "refused",
 )  # fmt: skip
 NO_END, REFUSED = len(ENDS) - 2, len(ENDS) - 1  # of a run in a sweep, which goes on
 EVENTS = ("stick", "slip", "impact", "contact", "entry", "edge", "exit")
@@ -49,8 +49,9 @@ class Event(NamedTuple):
 class SceneRun(TimedResult):
     """What happened.
 
-    ``end``: 'at rest', 'carried by the floor' (at rest on a moving one), 'time is up' or 'over the
-    edge'; ``end_time`` s; ``events``: what happened, one of stick (it comes to
+    ``end``: 'at rest', 'carried by the floor' (at rest on a moving one), 'carried round' (at rest
+    on one that turns, over the same borders again and again: a whole turn is followed), 'time is
+    up' or 'over the edge'; ``end_time`` s; ``events``: what happened, one of stick (it comes to
     rest on the floor), slip (it leaves that rest), impact, contact (it stays at a wall), border,
     edge.
     ``plan``: the model that was taken, and why.  ``energy_residual``: what the ledger misses, as a

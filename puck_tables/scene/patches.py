@@ -13,7 +13,9 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
-from puck_tables.scene.astride import (
+from puck_tables.scene.equations import SIZE
+from puck_tables.scene.friction import VX, VY, X, Y
+from puck_tables.scene.ground import (
     BORDERS,
     CORNER,
     CORNERS,
@@ -25,11 +27,11 @@ from puck_tables.scene.astride import (
     patches_on,
     strip_at,
 )
-from puck_tables.scene.friction import VX, VY, X, Y
 from puck_tables.scene.ingredients import (
     Dry,
     Regions,
     Stretch,
+    Surface,
     carried_along,
     dry_in,
 )
@@ -38,6 +40,7 @@ from puck_tables.scene.steps import step
 OUTSIDE, ASTRIDE, INSIDE = range(3)  # how a base lies to a patch
 _LOOKS = 256  # at a step, at most so many of one length; shorter grazes may pass unseen
 _CLOSE = 1e-13  # of a step: how well a moment in it is known
+_ASIDE, _SECANTS = 1e-4, 12  # of a step: how the slope is seen at first; then at most
 
 
 @inner
@@ -116,52 +119,100 @@ def after_patch(ground: FloatArray, number: int, how: int, x: float, y: float) -
     return OUTSIDE if distance_to(ground, number, x, y) > 0.0 else INSIDE
 
 
+@inlined
+def _on_curve(
+    dx: float, dy: float, h: float, surface: Surface, first: FloatArray, last: FloatArray, s: float
+) -> tuple[float, float]:
+    """How far a step has come at the share s of it, by the polynomials of degree 5 in between."""
+    ax, ay = carried_along(surface, first[X], first[Y])
+    bx, by = carried_along(surface, last[X], last[Y])
+    r = 1.0 - s
+    p, q = s * s * r * r, 0.5 * h * h
+    from_rate, from_bend = s * r * r * r * (1.0 + 3.0 * s), p * r
+    to_rate, to_bend = -s * s * s * r * (1.0 + 3.0 * r), p * s
+    come = s * s * s * (1.0 + 3.0 * r * (1.0 + 2.0 * r))
+    return (
+        come * dx + h * (from_rate * first[X] + to_rate * last[X])
+        + q * (from_bend * (first[VX] + ax) + to_bend * (last[VX] + bx)),
+        come * dy + h * (from_rate * first[Y] + to_rate * last[Y])
+        + q * (from_bend * (first[VY] + ay) + to_bend * (last[VY] + by)),
+    )  # fmt: skip
+
+
 @inner
 def first_patch(
     ground: FloatArray, lies: npt.NDArray[np.int64], stretch: Stretch, t: float, h: float,
-    y: FloatArray, scale: FloatArray, work: FloatArray, last: FloatArray, new: FloatArray,
+    y: FloatArray, end: FloatArray, scale: FloatArray, work: FloatArray, last: FloatArray,
+    new: FloatArray,
 ) -> tuple[int, float]:  # fmt: skip
-    """The first patch whose border the rim meets or leaves on a step, and when; −1: none.
+    """The first patch whose border the rim meets or leaves on a step to ``end``; −1: none.  When.
 
-    ``last``: dy/dt at the end of the step.
+    ``last``: dy/dt at the end of the step.  It is looked for on the polynomials between both ends,
+    and then found on real steps.
     """
     which, moment, radius = -1, math.inf, stretch.model.body.radius
-    surface = stretch.model.surface
-    speed = math.hypot(work[0, X], work[0, Y])
-    cx, cy = carried_along(surface, work[0, X], work[0, Y])
-    bend = math.hypot(work[0, VX] + cx, work[0, VY] + cy)
+    surface, first = stretch.model.surface, work[0]
+    speed = math.hypot(first[X], first[Y])
+    cx, cy = carried_along(surface, first[X], first[Y])
+    bend = math.hypot(first[VX] + cx, first[VY] + cy)
     speed = max(speed, math.hypot(last[X], last[Y]))
     cx, cy = carried_along(surface, last[X], last[Y])
     fastest = speed + h * max(bend, math.hypot(last[VX] + cx, last[VY] + cy))
+    wx, wy = end[SIZE], end[SIZE + 1]
     for k in range(lies.size):
-        room = room_by(ground, k, lies[k], radius, y[X], y[Y])
-        if room > fastest * h or fastest == 0.0:
+        how = lies[k]
+        before = room_by(ground, k, how, radius, y[X], y[Y])
+        if before > fastest * h or fastest == 0.0:
             continue
         # on from place to place, none further than the room there, to where there is none
-        low, high, before = 0.0, 0.0, max(room, 0.0)
-        while high < h and high < moment:
-            low, high = high, min(high + max(before / fastest, h / _LOOKS), h)
-            step(stretch, t, high, y, scale, work, new)
-            room = room_by(ground, k, lies[k], radius, new[X], new[Y])
+        low, high, room, before = 0.0, 0.0, 0.0, max(before, 0.0)
+        while high < 1.0 and high * h < moment:
+            low, high = high, min(high + max(before / (fastest * h), 1.0 / _LOOKS), 1.0)
+            mx, my = _on_curve(wx, wy, h, surface, first, last, high)
+            room = room_by(ground, k, how, radius, y[X] + mx, y[Y] + my)
             if room < 0.0:
                 break
             before = room
-        if room >= 0.0 or low >= moment:
+        if room >= 0.0 or low * h >= moment:
             continue
         after = room
         for _ in range(60):
-            if high - low <= _CLOSE * h or after == 0.0 or before == 0.0:
+            if high - low <= _CLOSE or after == 0.0 or before == 0.0:
                 break
             guess = (low * after - high * before) / (after - before)
-            guess = min(max(guess, low + 0.5 * _CLOSE * h), high - 0.5 * _CLOSE * h)
-            step(stretch, t, guess, y, scale, work, new)
-            value = room_by(ground, k, lies[k], radius, new[X], new[Y])
-            if value < 0.0:
-                high, after = guess, value
+            guess = min(max(guess, low + 0.5 * _CLOSE), high - 0.5 * _CLOSE)
+            mx, my = _on_curve(wx, wy, h, surface, first, last, guess)
+            room = room_by(ground, k, how, radius, y[X] + mx, y[Y] + my)
+            if room < 0.0:
+                high, after = guess, room
                 before *= 0.5
             else:
-                low, before = guess, value
+                low, before = guess, room
                 after *= 0.5
-        if high < moment:
-            which, moment = k, high
+        found = _on_steps(ground, k, how, stretch, t, high * h, h, y, scale, work, new)
+        if found < moment:
+            which, moment = k, found
     return which, moment
+
+
+@inner
+def _on_steps(
+    ground: FloatArray, k: int, how: int, stretch: Stretch, t: float, near: float, h: float,
+    y: FloatArray, scale: FloatArray, work: FloatArray, new: FloatArray,
+) -> float:  # fmt: skip
+    """When on real steps there is no room by a patch, from close by: by secants."""
+    radius = stretch.model.body.radius
+    one = near
+    step(stretch, t, one, y, scale, work, new)
+    value = room_by(ground, k, how, radius, new[X], new[Y])
+    two = min(max(one - _ASIDE * h, 0.0), h)
+    for _ in range(_SECANTS):
+        if abs(two - one) <= _CLOSE * h:
+            break
+        step(stretch, t, two, y, scale, work, new)
+        other = room_by(ground, k, how, radius, new[X], new[Y])
+        if other == value:
+            break
+        better = min(max(two - other * (two - one) / (other - value), 0.0), h)
+        one, value, two = two, other, better
+    return two

@@ -178,9 +178,11 @@ def plan_for(scene: Scene) -> Plan:
         if scene.lateral.strength != 0.0:
             why += f"\n{EMPIRICAL}"
         if scene.floor.strips is not None or scene.floor.patches:
+            law = scene.puck.body.law
+            piled = law.profile is not None or law.name in ("hertz", "galin")
             why += (
                 "\nWhile the base is astride two frictions they are integrated over its parts, "
-                "about ten times the cost of a step elsewhere."
+                f"about {'a thousand' if piled else 'ten'} times the cost of a step elsewhere."
             )
         return Plan(model, False, why)
     kind = scene.puck.regime(free_velocity(scene), scene.launch.spin)

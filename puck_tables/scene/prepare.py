@@ -13,7 +13,6 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import in_slices
 from puck_tables.errors import InputError
 from puck_tables.scene.agreement import launch_velocity
-from puck_tables.scene.astride import own_ground, patches_on
 from puck_tables.scene.at_once import AS_IT_COMES
 from puck_tables.scene.boundaries import Boundaries
 from puck_tables.scene.bulk import follow_many
@@ -21,6 +20,7 @@ from puck_tables.scene.desk import Ask, desk_for
 from puck_tables.scene.equations import SIZE
 from puck_tables.scene.forces import forces_of, impulse_over_time, strongest
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
+from puck_tables.scene.ground import own_ground, patches_on
 from puck_tables.scene.ingredients import (
     CARRIED,
     PIVOT,

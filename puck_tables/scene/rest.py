@@ -16,6 +16,7 @@ import math
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner, kernel
+from puck_tables.scene.astride_parts import least_under
 from puck_tables.scene.astride_rest import astride_yield
 from puck_tables.scene.forces import given_force
 from puck_tables.scene.friction import THETA, X, Y, at_slip_zero, dry_friction
@@ -256,6 +257,13 @@ def excess_at_rest(stretch: Stretch, t: float, y: FloatArray) -> Yield:
         return _corner_yield(dry, body, leaning, ax, ay, fx, fy, torque)
     if pushes == 1:
         return _wall_yield(dry, body, leaning, ax, ay, fx, fy, torque)
+    if is_astride(dry) and torque == 0.0 and (sx != 0.0 or sy != 0.0):
+        # Without a torque b = κ F, and as |u| is convex no slip gains where F is below the least f
+        # alone: ∫ σ |u| dA ≥ N |u at the centre of pressure|.  A puck that is carried asks often.
+        force = math.sqrt(fx * fx + fy * fy)
+        least = least_under(dry.by_speed.table, body.radius)
+        if force < least:
+            return force - least, fx / force if force > 0.0 else 1.0, fy / max(force, 1e-300), 0.0
     return free_yield(dry, body.radius, fx, fy, torque, False)
 
 

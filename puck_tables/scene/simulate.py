@@ -11,7 +11,7 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import finite_array
 from puck_tables.contact.speed_law import SpeedLaw
-from puck_tables.errors import AccuracyError, InputError, PuckError
+from puck_tables.errors import AccuracyError, ContactError, InputError, PuckError
 from puck_tables.scene.at_once import AS_IT_COMES, FIRST_BY_NUMBER, LAST_BY_NUMBER
 from puck_tables.scene.boundaries import BOUNCES
 from puck_tables.scene.by_speed import FARTHER, FARTHEST, law_name, speed_law
@@ -172,14 +172,24 @@ def _within_law(
     scene: Scene, last: float | None, times: FloatArray | None, room: FloatArray
 ) -> tuple[Prepared, _Followed, float, float]:
     """The scene, its run, estimate and doubt; the table of a law by name goes on as is needed."""
-    reach = 1.0
+    reach, grown = 1.0, ""
     while True:
-        prepared = prepare(scene, last, reach)
+        try:
+            prepared = prepare(scene, last, reach)
+        except ContactError as error:  # not of the slip at the launch
+            if not grown:
+                raise
+            raise InputError(
+                f"{grown}, where friction by this law tilts the pressure so much that part of the "
+                "base would lift: a slip that grows may never stop; give a shorter run.time, or "
+                "less that drives it"
+            ) from error
         try:
             return prepared, *_estimated(prepared, times, room)
-        except _BeyondLaw:
+        except _BeyondLaw as beyond:
             if isinstance(speed_law(scene), SpeedLaw) or reach >= FARTHEST:
                 raise
+            grown = str(beyond).partition(",")[0].replace(f"{FARTHEST:g} ", f"{reach:g} ")
             reach *= FARTHER
 
 
@@ -206,7 +216,7 @@ def _estimated(
     that it meets at once, the other one is first.
     """
     first = _followed(prepared, np.empty(0), events)
-    _refuse_failed(prepared.scene, first.how, first.end_time, prepared.ask.to_the_end)
+    _refuse_failed(prepared, first)
     if times is None:
         times = np.linspace(0.0, first.end_time, int(prepared.scene.run.frames))
     probes = first.end_time * np.arange(1, PROBES + 1) / (PROBES + 1)
@@ -269,8 +279,15 @@ def _gap(prepared: Prepared, twin: _Followed, run: _Followed) -> float:
     return float(max(gap[-1, 0] / unit, place.max() / (prepared.speed * unit)))
 
 
-def _refuse_failed(scene: Scene, how: int, end_time: float, to_the_end: bool) -> None:
+def _refuse_failed(prepared: Prepared, run: _Followed) -> None:
     """Say why a run has no end."""
+    scene, how, end_time = prepared.scene, run.how, run.end_time
+    to_the_end = prepared.ask.to_the_end
+    if how == TIME_UP and not to_the_end and run.last[LEDGER.index("carried")]:
+        raise InputError(
+            f"after {end_time:.4g} s the floor still carries the puck towards a wall, an edge, a "
+            "border or a patch, and it may slip there again; give run.time"
+        )
     if how in (TIME_UP, STEP_LIMIT) and scene.run.time is None and not to_the_end:
         long = "a million steps" if how == STEP_LIMIT else "a thousand times what friction takes"
         raise InputError(

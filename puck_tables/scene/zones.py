@@ -14,13 +14,23 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.laws import Law
-from puck_tables.scene.astride import NO_GROUND, PATCH_COLUMNS, Ground
 from puck_tables.scene.floor_patches import corners_of
+from puck_tables.scene.ground import (
+    GALIN,
+    HERTZ,
+    NO_GROUND,
+    PATCH_COLUMNS,
+    RING,
+    TABLE,
+    UNIFORM,
+    Ground,
+)
 from puck_tables.scene.scene import Scene
 
 # columns of a line at which the rim comes over a border or leaves it: its normal, its place, the
 # number of the border, and −1 or 1: it is met on the way there or on the way on
 BORDER_COLUMNS = 5
+_PRESSURES = {"ring": RING, "hertz": HERTZ, "galin": GALIN}
 
 
 class Zones(NamedTuple):
@@ -66,7 +76,7 @@ def ground_of(scene: Scene, normal: float) -> FloatArray:
     --------
     >>> from puck_tables import Floor, Puck, Strips
     >>> floor = Floor(strips=Strips((0.1,), (0.3, 0.1)))
-    >>> ground_of(Scene(Puck(0.04), floor), 2.0)[-3:].tolist()
+    >>> ground_of(Scene(Puck(0.04), floor), 2.0)[13:16].tolist()
     [0.1, 0.6, 0.2]
     """
     floor, puck = scene.floor, scene.puck
@@ -83,14 +93,26 @@ def ground_of(scene: Scene, normal: float) -> FloatArray:
             reach = float(np.hypot(*(places - middle).T).max())
             corners.append(places)
         rows.append([*middle, reach, begin, len(places), normal * patch.friction])
-    inner = hole_of(puck.body.law)
+    law = puck.body.law
     return Ground(
         math.cos(angle), math.sin(angle),
         np.array(() if strips is None else strips.borders, np.float64),
         normal * np.array((puck.friction,) if strips is None else strips.friction),
         np.array(rows).reshape(-1, PATCH_COLUMNS), np.concatenate(corners),
-        puck.height / (2.0 * puck.radius * 0.25 * (1.0 + inner * inner) * normal), inner,
+        puck.height / (2.0 * puck.radius * law.mean_square * normal), hole_of(law),
+        _PRESSURES.get(law.name, UNIFORM if law.profile is None else TABLE), _profile_of(law),
     ).packed()  # fmt: skip
+
+
+def _profile_of(law: Law) -> FloatArray:
+    """Rows (n, 2) of a tabulated law, radii over r and W with ∫ W ρ dρ = ½; none of another."""
+    if law.profile is None:
+        return np.empty((0, 2))
+    rho, weight = law.profile
+    middle = 0.25 * (rho[1:] + rho[:-1]) * (weight[1:] + weight[:-1])
+    ends = rho * weight
+    load = float(np.sum(np.diff(rho) * (ends[1:] + ends[:-1] + 4.0 * middle))) / 6.0
+    return np.stack([rho, 0.5 * weight / load], axis=1)
 
 
 def hole_of(law: Law) -> float:

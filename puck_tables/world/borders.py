@@ -15,7 +15,8 @@ import math
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
-from puck_tables.scene.astride import (
+from puck_tables.scene.friction import VX, VY, X, Y
+from puck_tables.scene.ground import (
     ACROSS_X,
     ACROSS_Y,
     BORDERS,
@@ -27,7 +28,6 @@ from puck_tables.scene.astride import (
     corner_of,
     patch_of,
 )
-from puck_tables.scene.friction import VX, VY, X, Y
 from puck_tables.scene.patches import ASTRIDE, INSIDE, OUTSIDE
 from puck_tables.world.beside import stays_apart
 from puck_tables.world.flight import GONE, corridor, moves_until, state_at

@@ -13,9 +13,9 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.section_spline import NO_SECTION
-from puck_tables.scene.astride import NO_GROUND
 from puck_tables.scene.by_speed import NO_LAW, law_up_to
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
+from puck_tables.scene.ground import NO_GROUND
 from puck_tables.scene.ingredients import BySpeed, Regions, Surface, floor_velocity
 from puck_tables.scene.orthotropic import is_elliptic
 from puck_tables.scene.pieces import Piece

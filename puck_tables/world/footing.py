@@ -12,14 +12,14 @@ import math
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
-from puck_tables.scene.astride import (
+from puck_tables.scene.friction import SPIN, VX, VY, X, Y
+from puck_tables.scene.ground import (
     ACROSS_X,
     ACROSS_Y,
     BORDERS,
     PATCHES,
     border_of,
 )
-from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.scene.ingredients import (
     ASTRIDE as SEVERAL,
 )

@@ -1,0 +1,115 @@
+"""The frictions of a floor and the base over them, as compiled code reads them: in one array."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.kernels.compile import inlined
+
+# A ground, all in one array, which is quick to hand on: where the centre of the base is, 1 or by
+# how much all friction is taken wrong, and what holds for all of it,
+PLACE_X, PLACE_Y, SHARE, LEVER, INNER, ACROSS_X, ACROSS_Y, BORDERS, PATCHES = range(9)
+PRESSURE, PROFILE, ROWS, RADII = range(9, 13)
+_HEAD = 13
+# the places of its borders, f N between them, a row for each patch (its middle, the radius of a
+# circle about it, the first of its corners, how many (none: it is that circle), and f N there),
+MIDDLE_X, MIDDLE_Y, REACH, CORNER, CORNERS, LOAD = range(6)
+PATCH_COLUMNS = 6
+# the corners of all patches, the rows of a tabulated pressure (radius, W) from PROFILE on, and from
+# RADII on room for the radii at which circles on the base meet something else.
+UNIFORM, RING, HERTZ, GALIN, TABLE = range(5)  # laws of pressure
+
+
+class Ground(NamedTuple):
+    """All frictions of a floor, and the base that may lie on several of them.
+
+    ``across_x``, ``across_y``: the direction across the borders of strips; ``borders`` (n,): their
+    places along it, ascending, m; ``loads`` (n + 1,): f N between them; ``patches`` (k, 6), and
+    ``corners`` (m, 2) of those that are polygons, counter-clockwise, m; ``lever``: κ, 1/N;
+    ``inner``: radius of the hole of the base over the outer, where the pressure is uniform;
+    ``pressure``: its law; ``profile`` (p, 2): of a tabulated one, radii over r and W with
+    ∫ W ρ dρ = ½, straight between them.
+    """
+
+    across_x: float
+    across_y: float
+    borders: FloatArray
+    loads: FloatArray
+    patches: FloatArray
+    corners: FloatArray
+    lever: float
+    inner: float
+    pressure: int = UNIFORM
+    profile: FloatArray = np.empty((0, 2))
+
+    def packed(self) -> FloatArray:
+        """In one array."""
+        head = [0.0, 0.0, 1.0, self.lever, self.inner, self.across_x, self.across_y]
+        tables = [self.borders, self.loads, self.patches.ravel(), self.corners.ravel()]
+        profile = _HEAD + sum(map(len, tables))
+        counts = [
+            len(self.borders), len(self.patches), self.pressure, profile, len(self.profile),
+            profile + self.profile.size,
+        ]  # fmt: skip
+        room = 2 * len(self.borders) + 3 * (len(self.patches) + len(self.corners))
+        return np.concatenate([
+            head, counts, *tables, self.profile.ravel(), np.zeros(room + len(self.profile) + 3)
+        ]).astype(np.float64)  # fmt: skip
+
+
+NO_GROUND = np.empty(0)
+
+
+def own_ground(ground: FloatArray, share: float) -> FloatArray:
+    """The ground of a run, with all friction so many times as large."""
+    own = ground.copy()
+    own[SHARE : SHARE + 1] *= share
+    return own
+
+
+@inlined
+def border_of(ground: FloatArray, number: int) -> float:
+    """The place of a border."""
+    return ground[_HEAD + number]
+
+
+@inlined
+def load_of(ground: FloatArray, strip: int) -> float:
+    """F N on a strip."""
+    return ground[_HEAD + int(ground[BORDERS]) + strip]
+
+
+@inlined
+def patch_of(ground: FloatArray, number: int, column: int) -> float:
+    """What is known of a patch."""
+    return ground[_HEAD + 2 * int(ground[BORDERS]) + 1 + PATCH_COLUMNS * number + column]
+
+
+@inlined
+def corner_of(ground: FloatArray, number: int) -> tuple[float, float]:
+    """A corner of a patch."""
+    first = _HEAD + 2 * int(ground[BORDERS]) + 1 + PATCH_COLUMNS * int(ground[PATCHES])
+    return ground[first + 2 * number], ground[first + 2 * number + 1]
+
+
+@inlined
+def patches_on(ground: FloatArray) -> int:
+    """How many patches there are."""
+    return int(ground[PATCHES]) if ground.size > 0 else 0
+
+
+@inlined
+def strip_at(ground: FloatArray, x: float, y: float) -> int:
+    """The number of the strip at a place; one on a border is beyond it."""
+    place = ground[ACROSS_X] * x + ground[ACROSS_Y] * y
+    low, high = 0, int(ground[BORDERS])
+    while low < high:
+        middle = (low + high) // 2
+        if border_of(ground, middle) <= place:
+            low = middle + 1
+        else:
+            high = middle
+    return low

@@ -1,0 +1,93 @@
+"""Friction under other pressures on several frictions: against circles, and scenes with them."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+
+import numpy as np
+import pressure_judge
+import pytest
+from astride_judge import Ground
+
+import puck_tables as pt
+from puck_tables.scene.floor_forces import friction_at
+
+CORNERS = np.array([[-0.5, -0.9], [1.4, -0.2], [0.1, 0.1], [0.3, 1.2]])
+FLOORS = {
+    "strips": (Ground([-0.3, 0.4], [0.3, 0.1, 0.2]),
+               pt.Floor(strips=pt.Strips((-0.3, 0.4), (0.3, 0.1, 0.2)))),
+    "round": (Ground([], [0.3], [(0.5, -0.4, 0.7, 0.05)]),
+              pt.Floor(patches=[pt.Patch(0.05, (0.5, -0.4), 0.7)])),
+    "polygon": (Ground([], [0.3], polygons=[(CORNERS, 0.05)]),
+                pt.Floor(patches=[pt.Patch(0.05, corners=CORNERS.tolist())])),
+}  # fmt: skip
+CONE = [(0.2, 1.0), (0.6, 2.0), (1.0, 0.5)]
+LAWS = {
+    "ring": (None, 0.5, ()),
+    "hertz": (lambda _, short: 1.5 * math.sqrt(short * (2.0 - short)), 0.2, ()),
+    "galin": (lambda _, short: 0.5 / math.sqrt(short * (2.0 - short)), 1.0 / 3.0, ()),
+}
+SLIPS = [
+    (1.0, 0.4, 0.0), (0.4, 0.9, -0.6), (0.3, -0.2, 0.8), (0.6, 0.8, 0.999), (0.0, 0.0, 1.0),
+]  # fmt: skip
+
+
+def found(pressure: str, floor: pt.Floor, slip: tuple[float, float, float], height: float):
+    puck = pt.Puck(1.0, height=height, friction=0.3, gravity=1.0, pressure=pressure)
+    state = np.array([[0.0, 0.0, 0.0, *slip]])
+    return -friction_at(pt.Scene(puck, floor), state)[0]
+
+
+@pytest.mark.parametrize("floor", FLOORS)
+@pytest.mark.parametrize("pressure", LAWS)
+def test_resultants_against_circles(pressure, floor):
+    law, square, bends = LAWS[pressure]
+    ground, surface = FLOORS[floor]
+    for slip in SLIPS if pressure == "ring" else SLIPS[1:4]:
+        truth = pressure_judge.friction(ground, slip, law, 0.5 * 0.8, square, bends)
+        assert np.abs(found(pressure, surface, slip, 0.8) - truth).max() <= 1e-10, slip
+
+
+def test_a_profile_against_circles(tmp_path):
+    """Straight between its radii, with a hole."""
+    path = tmp_path / "cone.csv"
+    path.write_text("rho,W\n" + "".join(f"{rho},{w}\n" for rho, w in CONE))
+    radii, heights = np.array(CONE).T
+    load, square = 0.0, 0.0  # ∫ W ρ dρ and ½ ∫ W ρ³ dρ by Gauss's rule, exact on each piece
+    node, weight = np.polynomial.legendre.leggauss(4)
+    for low, high in pairwise(radii):
+        rho = 0.5 * (low + high) + 0.5 * (high - low) * node
+        part = 0.5 * (high - low) * weight * np.interp(rho, radii, heights) * rho
+        load, square = load + part.sum(), square + 0.5 * (part * rho**2).sum()
+    square /= load
+
+    def law(at: float, _: float) -> float:
+        return float(np.interp(at, radii, heights)) * 0.5 / load if at >= 0.2 else 0.0
+
+    ground, surface = FLOORS["strips"]
+    for slip in SLIPS[1:3]:
+        truth = pressure_judge.friction(ground, slip, law, 0.4, square, (0.2, 0.6))
+        assert np.abs(found(str(path), surface, slip, 0.8) - truth).max() <= 1e-10, slip
+
+
+@pytest.mark.parametrize("pressure", LAWS)
+def test_a_border_between_equal_frictions_is_none(pressure):
+    puck = pt.Puck(0.04, height=0.02, friction=0.2, mass=0.2, pressure=pressure)
+    launch, run = pt.Launch((1.2, 0.1), 30.0), pt.Run(tol=1e-7)
+    ends = [
+        pt.Scene(puck, pt.Floor(slope=0.02, strips=strips), launch, run=run).simulate([0.0])
+        for strips in (None, pt.Strips((0.15,), (0.2, 0.2)))
+    ]
+    unit = ends[0].speed_scale ** 2 / ends[0].rate_scale
+    assert abs(ends[1].last["x"] - ends[0].last["x"]) <= 1e-7 * unit
+    assert [e.what for e in ends[1].events] == ["entry", "exit", "stick"]
+    assert ends[1].energy_residual < 1e-8
+
+
+def test_a_profile_of_too_many_rows_is_refused(tmp_path):
+    path = tmp_path / "fine.csv"
+    path.write_text("rho,W\n" + "".join(f"{rho},{1.0 + rho}\n" for rho in np.linspace(0, 1, 61)))
+    puck = pt.Puck(0.04, friction=0.2, pressure=str(path))
+    with pytest.raises(pt.InputError, match="it has 61: give fewer"):
+        pt.Scene(puck, pt.Floor(strips=pt.Strips((0.15,), (0.2, 0.1))))
