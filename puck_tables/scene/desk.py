@@ -11,8 +11,9 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import allocating
 from puck_tables.scene.boundaries import DEGREE, Boundaries
 from puck_tables.scene.equations import ROW
+from puck_tables.scene.explicit import STAGES
 from puck_tables.scene.settle import Contacts, contacts_for
-from puck_tables.scene.steps import STAGES, WIDE
+from puck_tables.scene.steps import WIDE
 
 
 class Ask(NamedTuple):
