@@ -39,7 +39,7 @@ class Ask(NamedTuple):
 class Desk(NamedTuple):
     """Arrays to work in.
 
-    Rates of the stages of a step (7, 12) and at its end (12,), a gap polynomial (6,), the state at
+    Rates of the stages of a step (13, 12) and at its end (12,), a gap polynomial (6,), the state at
     the start and the end of a step and at a trial (12,), what is known of the walls, and of lines
     that were met at once (4,): how often it matters which is first, when at first, and which two;
     how the base lies to every patch of the floor (k,).

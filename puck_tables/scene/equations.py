@@ -91,10 +91,8 @@ def settling_rates(model: Model, load: float) -> tuple[float, float]:
 @inlined
 def stopping(radius: float, y: FloatArray, work: FloatArray) -> tuple[float, float, float, float]:
     """The direction (ux, uy, w) of the slip, scaled to Q = 1, and the rate of Q."""
-    r2 = radius * radius
     q = slip_speed(radius, y)
-    rate = y[VX] * work[0, VX] + y[VY] * work[0, VY] + r2 * y[SPIN] * work[0, SPIN]
-    return y[VX] / q, y[VY] / q, y[SPIN] / q, rate / q
+    return y[VX] / q, y[VY] / q, y[SPIN] / q, slip_change(radius, y, work)
 
 
 @inlined

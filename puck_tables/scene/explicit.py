@@ -1,17 +1,17 @@
-"""An explicit step of order 8, on a time that is graded towards where a motion is not smooth.
+"""An explicit step of order 8, on a time that is graded towards where a slip stops.
 
 The pair 8(5,3) of Dormand and Prince as Hairer, Nørsett and Wanner have it (Solving Ordinary
 Differential Equations I, II.5 and II.10: dop853.f; the numbers as in SciPy).  Its error is
 h e₅²/√(e₅² + e₃²/100), of order 8, with e₅ and e₃ those of embedded methods of order 5 and 3.
 
-A step need not be uniform in time: with w from w₀ to w₁ its time is
+Where a slip stops, its direction changes like a power of what is left of it, so that steps uniform
+in time must be ever shorter shares of that.  A step that takes the share s of what is left goes
+uniformly from w = 1 to 1 − b, w⁴ being what is left and b = 1 − (1 − s)^(1/4) its bend, over times
 
-    t + h (w⁴ − w₀⁴)/(w₁⁴ − w₀⁴) ,
+    t + h (1 − w⁴)/(1 − (1 − b)⁴) .
 
-and the method steps in w.  Friction behaves like x² ln|x| in the distance from φ = π/4: towards
-such a line (w₁ = 0), and away from it (w₀ = 0), that is w⁸ ln|w|, so that one long step does what
-takes dozens of short ones.  Where a slip stops, its direction changes like a power of what is left
-of it: there w⁴ is that share.
+The share is only foreseen, from the slip and its rate at the start: any bend gives a step of the
+method, of the same order, and the error that it estimates is its own.
 """
 
 from __future__ import annotations
@@ -71,12 +71,13 @@ def _row(numbers: dict[int, float]) -> list[float]:
 
 _A = np.array([_row(numbers) for numbers in _ROWS])
 _C = np.array([math.fsum(numbers.values()) for numbers in _ROWS])
+# of each stage, the first one besides that at the start that it is made of; and of the end
 _SECOND = np.array([[*numbers, stage, stage][1] for stage, numbers in enumerate(_ROWS)])
+_LATE = int(_SECOND[-1])
 _B, _ERROR_5, _ERROR_3 = _A[-1], np.array(_row(_E5)), np.array(_row(_E3))
-_LATE = 5  # the first stage but that at the start of which the end is made
 UNIFORM = 0.0
 _ROOM = 0.02  # a step that takes a smaller share of what is left is as good without a bend
-CLOSEST = 0.87  # of what is left
+CLOSEST = 0.87  # of what is left: no step takes more, nor if it is a tenth longer to land
 
 
 @inlined

@@ -1,10 +1,11 @@
 """From a launch to the end of a scene: an adaptive integrator in time, with events.
 
-Dormand–Prince 5(4), or Radau IIA where the direction of the slip settles much faster than the slip
-changes (next to the limit of what friction holds).  Next to relative rest, where the direction of
-friction turns within Q/|Q′|, a step is at most half of that, and at the very end a slip stops on a
-straight line.  Every event is found on a real step of the method from the last step end and becomes
-a step end.  Rebounds that die out are a geometric series, of which only the first are taken one by
+The pair 8(5,3) (:mod:`puck_tables.scene.explicit`), or Radau IIA where the direction of the slip
+settles much faster than the slip changes (next to the limit of what friction holds).  Next to
+relative rest, where the direction of friction turns within Q over what changes it, a step is at
+most half of that; one that ends with the slip may take more, and is graded.  At the very end a slip
+stops on a straight line.  Every event is found on a real step of the method from the last step end
+and becomes a step end.  Rebounds that die out are a geometric series, of which only the first are taken one by
 one (see :mod:`puck_tables.scene.settle`).
 """
 
@@ -170,12 +171,8 @@ def follow(
     damps, turns = settling_rates(model, dry.load)
     how = TIME_UP
     h = 1e-2 * min(ask.until, scale[0] / ask.speed)
-    reach, closest, swing, halved = (
-        _NEAR,
-        CLOSEST,
-        _SWING,
-        False,
-    )  # halved: the step that ends here is cut in two
+    reach, closest, swing = _NEAR, CLOSEST, _SWING
+    halved = False  # the step that ends here is cut in two
     if ask.twin > 0.0:
         h, reach, swing = ask.twin * h, (1.0 + ask.twin) * reach, (1.0 + ask.twin) * swing
         closest *= 1.0 - 0.2 * ask.twin

@@ -1,4 +1,4 @@
-"""One step in time: Dormand–Prince 5(4), or where the slip settles fast, Radau IIA of order 5.
+"""One step in time: of order 8, or where the slip settles fast, Radau IIA of order 5.
 
 A step ends on the constraint, and off the walls that the puck leans on.
 """
