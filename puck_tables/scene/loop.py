@@ -5,8 +5,8 @@ settles much faster than the slip changes (next to the limit of what friction ho
 relative rest, where the direction of friction turns within Q over what changes it, a step is at
 most half of that; one that ends with the slip may take more, and is graded.  At the very end a slip
 stops on a straight line.  Every event is found on a real step of the method from the last step end
-and becomes a step end.  Rebounds that die out are a geometric series, of which only the first are taken one by
-one (see :mod:`puck_tables.scene.settle`).
+and becomes a step end.  Rebounds that die out are a geometric series, of which only the first are
+taken one by one (see :mod:`puck_tables.scene.settle`).
 """
 
 from __future__ import annotations
