@@ -18,9 +18,10 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import allocating, inlined
 from puck_tables.scene.cushions import NX, NY
 from puck_tables.scene.equations import SIZE
+from puck_tables.scene.explicit import STAGES
 from puck_tables.scene.friction import VX, VY, X, Y
 from puck_tables.scene.ingredients import Stretch, carried_along
-from puck_tables.scene.steps import STAGES, step
+from puck_tables.scene.steps import step
 
 BOUNCES, BORDER, EDGE = 2, 4, 5  # among what happens on the way
 BORDER_NUMBER, BORDER_SIDE = 3, 4  # columns of a border

@@ -11,8 +11,9 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import allocating
 from puck_tables.scene.boundaries import DEGREE, Boundaries
 from puck_tables.scene.equations import ROW
+from puck_tables.scene.explicit import STAGES
 from puck_tables.scene.settle import Contacts, contacts_for
-from puck_tables.scene.steps import STAGES, WIDE
+from puck_tables.scene.steps import WIDE
 
 
 class Ask(NamedTuple):
@@ -38,7 +39,7 @@ class Ask(NamedTuple):
 class Desk(NamedTuple):
     """Arrays to work in.
 
-    Rates of the stages of a step (7, 12) and at its end (12,), a gap polynomial (6,), the state at
+    Rates of the stages of a step (13, 12) and at its end (12,), a gap polynomial (6,), the state at
     the start and the end of a step and at a trial (12,), what is known of the walls, and of lines
     that were met at once (4,): how often it matters which is first, when at first, and which two;
     how the base lies to every patch of the floor (k,).

@@ -18,7 +18,17 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.forces import damping, drag_force, given_force
-from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y, dry_friction, size
+from puck_tables.scene.friction import (
+    SPIN,
+    THETA,
+    VX,
+    VY,
+    X,
+    Y,
+    dry_friction,
+    dry_friction_here,
+    size,
+)
 from puck_tables.scene.ingredients import (
     CARRIED,
     SLIDES,
@@ -61,6 +71,13 @@ def slip_rate(radius: float, work: FloatArray) -> float:
 
 
 @inlined
+def slip_change(radius: float, y: FloatArray, work: FloatArray) -> float:
+    """The rate of Q, from d/dt of the state in work[0]."""
+    spins = radius * radius * y[SPIN] * work[0, SPIN]
+    return (y[VX] * work[0, VX] + y[VY] * work[0, VY] + spins) / slip_speed(radius, y)
+
+
+@inlined
 def settling_rates(model: Model, load: float) -> tuple[float, float]:
     """How fast, at most, what is damped settles, 1/s, and times the slip its direction, m/s²."""
     body = model.body
@@ -74,10 +91,8 @@ def settling_rates(model: Model, load: float) -> tuple[float, float]:
 @inlined
 def stopping(radius: float, y: FloatArray, work: FloatArray) -> tuple[float, float, float, float]:
     """The direction (ux, uy, w) of the slip, scaled to Q = 1, and the rate of Q."""
-    r2 = radius * radius
     q = slip_speed(radius, y)
-    rate = y[VX] * work[0, VX] + y[VY] * work[0, VY] + r2 * y[SPIN] * work[0, SPIN]
-    return y[VX] / q, y[VY] / q, y[SPIN] / q, rate / q
+    return y[VX] / q, y[VY] / q, y[SPIN] / q, slip_change(radius, y, work)
 
 
 @inlined
@@ -93,6 +108,12 @@ def acting_force(stretch: Stretch, t: float, y: FloatArray) -> tuple[float, floa
 
 @inner
 def rates(stretch: Stretch, t: float, y: FloatArray, out: FloatArray, row: int) -> None:
+    """:func:`rates_here` for callers whose time it is not worth to paste it in."""
+    rates_here(stretch, t, y, out, row)
+
+
+@inlined
+def rates_here(stretch: Stretch, t: float, y: FloatArray, out: FloatArray, row: int) -> None:
     """d/dt of the state and λ into out[row] (12,); λ is not determined at rest.
 
     At rest the puck moves with the floor.  What is about to rest slips in the direction that
@@ -122,7 +143,7 @@ def rates(stretch: Stretch, t: float, y: FloatArray, out: FloatArray, row: int) 
         out[row, LAMBDA], out[row, LAMBDA + 1] = 0.0, 0.0
         return
     put_at(stretch.dry, y[X], y[Y])
-    hx, hy, hm, heat = dry_friction(stretch.dry, body.radius, y[VX], y[VY], y[SPIN])
+    hx, hy, hm, heat = dry_friction_here(stretch.dry, body.radius, y[VX], y[VY], y[SPIN])
     dx, dy, dm, warmth = drag_force(model.forces, y[VX], y[VY], y[SPIN])
     fx, fy, fm = gx + hx + dx, gy + hy + dy, gm + hm + dm
     if stretch.leaning.shape[0] > 0:

@@ -36,28 +36,61 @@ def dry_friction(
     dry: Dry, radius: float, ux: float, uy: float, w: float
 ) -> tuple[float, float, float, float]:
     """Force, torque and the power they take, at velocities relative to the floor."""
+    law, slip = dry.by_speed, size(ux, uy, radius * w)
+    if law.normal == 0.0 or dry.load == 0.0 or slip == 0.0:
+        return _plain_friction(dry, radius, ux, uy, w)
+    if is_astride(dry):
+        return astride_friction(law.table, radius, ux, uy, w, slip)
+    if is_elliptic(law.table):
+        axes = ellipse_in(law.table, law.height_ratio, law.normal)
+        return elliptic_friction(axes, radius, ux, uy, w)
+    speed, rim = size(ux, uy, 0.0), radius * abs(w)
+    fast = rim > speed
+    ratio = speed / rim if fast else rim / speed
+    along, across, turning = speed_ratios(
+        law.table, law.height_ratio, ratio, fast, law.moving * slip
+    )
+    normal = law.normal
+    return _against(
+        radius, ux, uy, w, speed, slip, along * normal, across * normal, turning * normal
+    )
+
+
+@inlined
+def dry_friction_here(
+    dry: Dry, radius: float, ux: float, uy: float, w: float
+) -> tuple[float, float, float, float]:
+    """The same; where it depends on nothing but the direction of the slip, pasted into the caller.
+
+    To hand on a record takes as long as to look friction up.
+    """
+    if dry.by_speed.normal != 0.0:
+        return dry_friction(dry, radius, ux, uy, w)
+    return _plain_friction(dry, radius, ux, uy, w)
+
+
+@inlined
+def _plain_friction(
+    dry: Dry, radius: float, ux: float, uy: float, w: float
+) -> tuple[float, float, float, float]:
     load, rim = dry.load, radius * abs(w)
     slip = size(ux, uy, rim)
     if load == 0.0 or slip == 0.0:
         return 0.0, 0.0, 0.0, 0.0
-    if is_astride(dry):
-        return astride_friction(dry.by_speed.table, radius, ux, uy, w, slip)
     speed = size(ux, uy, 0.0)
     fast = rim > speed
     ratio = speed / rim if fast else rim / speed
-    if dry.by_speed.normal > 0.0:
-        law = dry.by_speed
-        if is_elliptic(law.table):
-            axes = ellipse_in(law.table, law.height_ratio, law.normal)
-            return elliptic_friction(axes, radius, ux, uy, w)
-        along, across, turning = speed_ratios(
-            law.table, law.height_ratio, ratio, fast, law.moving * slip
-        )
-        along, across, turning = along * law.normal, across * law.normal, turning * law.normal
-    else:
-        inverse, bend, spin = ratios_at(ratio, fast, dry.cut, dry.delta)
-        along = load / inverse
-        across, turning = bend * along, spin * along
+    inverse, bend, spin = ratios_at(ratio, fast, dry.cut, dry.delta)
+    along = load / inverse
+    return _against(radius, ux, uy, w, speed, slip, along, bend * along, spin * along)
+
+
+@inlined
+def _against(
+    radius: float, ux: float, uy: float, w: float, speed: float, slip: float, along: float,
+    across: float, turning: float,
+) -> tuple[float, float, float, float]:  # fmt: skip
+    """Force, torque and power of the resultants f N ρ."""
     sine = radius * w / slip
     push, bent = along / slip, across * sine / slip
     cos2 = (speed / slip) * (speed / slip)

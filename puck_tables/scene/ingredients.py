@@ -146,7 +146,8 @@ class Stretch(NamedTuple):
     have passed; ``mode`` SLIDES, CARRIED (at rest on the floor), STOPS: with the constant relative
     acceleration way[3] times the direction way[:3]; ``newton``: 0 for explicit steps; for implicit
     ones, where the slip settles much faster than it changes, how well to solve their equations, in
-    units of the scales.
+    units of the scales; ``bend``: how the time of explicit ones is graded, see
+    :mod:`puck_tables.scene.explicit`.
     """
 
     model: Model
@@ -156,6 +157,7 @@ class Stretch(NamedTuple):
     mode: int
     way: tuple[float, float, float, float]
     newton: float
+    bend: float
 
 
 def hold_of(hold: Constraint | None, launch: Launch) -> Hold:

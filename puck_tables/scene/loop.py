@@ -1,11 +1,12 @@
 """From a launch to the end of a scene: an adaptive integrator in time, with events.
 
-Dormand–Prince 5(4), or Radau IIA where the direction of the slip settles much faster than the slip
-changes (next to the limit of what friction holds).  Next to relative rest, where the direction of
-friction turns within Q/|Q′|, a step is at most half of that, and at the very end a slip stops on a
-straight line.  Every event is found on a real step of the method from the last step end and becomes
-a step end.  Rebounds that die out are a geometric series, of which only the first are taken one by
-one (see :mod:`puck_tables.scene.settle`).
+The pair 8(5,3) (:mod:`puck_tables.scene.explicit`), or Radau IIA where the direction of the slip
+settles much faster than the slip changes (next to the limit of what friction holds).  Next to
+relative rest, where the direction of friction turns within Q over what changes it, a step is at
+most half of that; one that ends with the slip may take more, and is graded.  At the very end a slip
+stops on a straight line.  Every event is found on a real step of the method from the last step end
+and becomes a step end.  Rebounds that die out are a geometric series, of which only the first are
+taken one by one (see :mod:`puck_tables.scene.settle`).
 """
 
 from __future__ import annotations
@@ -35,11 +36,13 @@ from puck_tables.scene.equations import (
     kinetic_energy,
     rates,
     settling_rates,
+    slip_change,
     slip_rate,
     slip_side,
     slip_speed,
     to_laboratory,
 )
+from puck_tables.scene.explicit import CLOSEST, STAGES, UNIFORM, bend_of, share_of, stretched
 from puck_tables.scene.forces import jumps
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.scene.ground import BORDERS as GROUND_BORDERS
@@ -87,7 +90,7 @@ from puck_tables.scene.settle import (
     touching,
 )
 from puck_tables.scene.standstill import from_standstill
-from puck_tables.scene.steps import STAGES, step
+from puck_tables.scene.steps import step
 
 # how a run ends
 AT_REST, CARRIED_AWAY, CARRIED_ROUND, TIME_UP, OVER_EDGE = range(5)
@@ -170,13 +173,15 @@ def follow(
     straight = max(_LAST * ask.tolerance / slow, 2.0 * REST) * ask.speed
     damps, turns = settling_rates(model, dry.load)
     how = TIME_UP
-    h = 1e-3 * min(ask.until, scale[0] / ask.speed)
-    reach, swing, halved = _NEAR, _SWING, False  # halved: the step that ends here is cut in two
+    h = 1e-2 * min(ask.until, scale[0] / ask.speed)
+    reach, closest, swing = _NEAR, CLOSEST, _SWING
+    halved = False  # the step that ends here is cut in two
     if ask.twin > 0.0:
         h, reach, swing = ask.twin * h, (1.0 + ask.twin) * reach, (1.0 + ask.twin) * swing
+        closest *= 1.0 - 0.2 * ask.twin
     settle, known = True, False  # whether to look what holds the puck; whether work[0] is there
-    newton = 0.0
-    stretch = Stretch(model, dry, leaning, piece, mode, way, newton)
+    newton, bend = 0.0, UNIFORM
+    stretch = Stretch(model, dry, leaning, piece, mode, way, newton, bend)
     while t < until:
         while piece < len(drive) and drive[piece, 0] <= t:
             piece += 1
@@ -185,7 +190,7 @@ def follow(
             target = min(target, calm)
         target = min(target, around)
         if settle and leaning.shape[0] > 0:
-            stretch = Stretch(model, dry, leaning, piece, mode, way, 0.0)
+            stretch = Stretch(model, dry, leaning, piece, mode, way, 0.0, UNIFORM)
             fx, fy = acting_force(stretch, t, y)
             to_laboratory(model, y, 1.0)
             before = kinetic_energy(body, y)
@@ -203,7 +208,7 @@ def follow(
                 to_laboratory(model, y, -1.0)
                 y[VX] = y[VY] = y[SPIN] = 0.0
                 leaning = contacts.rows[: touching(bounds, contacts)]
-            at_rest = Stretch(model, dry, leaning, piece, CARRIED, NO_WAY, 0.0)
+            at_rest = Stretch(model, dry, leaning, piece, CARRIED, NO_WAY, 0.0, UNIFORM)
             mode, stiff, q = from_standstill(at_rest, ask.speed, t, y, work)
             if (mode == CARRIED) != resting and (t >= calm or mode != CARRIED):
                 if count == len(events):
@@ -245,13 +250,19 @@ def follow(
             newton = 0.0
             if stiff and mode == SLIDES:
                 newton = max(_NEWTON * ask.tolerance, _FINEST_NEWTON)
-            stretch = Stretch(model, dry, leaning, piece, mode, way, newton)
+            stretch = Stretch(model, dry, leaning, piece, mode, way, newton, UNIFORM)
             rates(stretch, t, y, work, FIRST)
         settle, known = False, True
+        ends = 0.0  # 1/s: of the slip
         if mode == SLIDES and dry.load > 0.0:
             pull = slip_rate(radius, work)
-            near = reach * max(q, REST * ask.speed)
-            h = near / pull if h * pull > near else h
+            near = max(q, REST * ask.speed)
+            brakes = -slip_change(radius, y, work) if q > 0.0 else 0.0
+            across = math.sqrt(max(pull * pull - brakes * brakes, 0.0))
+            most = pull / reach  # explicit steps follow how a slip stops
+            if newton == 0.0 and brakes > 0.0:
+                most, ends = max(across / reach, brakes / closest), brakes / near
+            h = near / most if h * most > near else h
             way = NO_WAY
             if 0.0 < q <= straight:
                 way = goes_straight(
@@ -263,12 +274,14 @@ def follow(
         # a step
         landed = t + 1.1 * h >= target
         length = target - t if landed else h
+        bend = bend_of(ends * length)
+        stretch = Stretch(model, dry, leaning, piece, mode, way, newton, bend)
         error = step(stretch, t, length, y, scale, work, new)
         steps += 1
         if steps > ask.step_limit:
             how = STEP_LIMIT
             break
-        power = 0.25 if newton > 0.0 else 0.2
+        power = 0.25 if newton > 0.0 else 0.125
         lifts = 0.0  # off a wall that the puck leant on: from where it leaves, it may come back
         for i in range(leaning.shape[0]):
             lifts = max(lifts, leaning[i, NX] * new[SIZE] + leaning[i, NY] * new[SIZE + 1])
@@ -279,12 +292,13 @@ def follow(
             shrink = 0.25 if newton > 0.0 else 0.1
             if error < math.inf:
                 shrink = max(0.1, 0.9 * (allowed / error) ** power)
-            h = length * shrink
+            h = stretched(bend, length, shrink)
             if (t + h == t and t > 0.0) or h < 1e-300:
                 how = NOT_FINITE
                 break
             continue
-        h = length * min(5.0, 5.0 if error == 0.0 else 0.9 * (allowed / error) ** power)
+        grows = min(5.0, 5.0 if error == 0.0 else 0.9 * (allowed / error) ** power)
+        h = (1.0 - share_of(bend)) * stretched(bend, length, grows)
         stuck, cut = -1, landed
         for passed in range(2 + leaning.shape[0]):
             what = _NOTHING
@@ -426,7 +440,7 @@ def follow(
         if happens == EDGE:
             how = OVER_EDGE
             break
-    stretch = Stretch(model, dry, leaning, piece, mode, way, 0.0)
+    stretch = Stretch(model, dry, leaning, piece, mode, way, 0.0, UNIFORM)
     if how == TIME_UP and mode == CARRIED and moves and ask.to_the_end:
         how = CARRIED_AWAY
     if how == CARRIED_AWAY and around <= t and events[count - 1, 1] == RESTS:  # since then

@@ -85,7 +85,7 @@ def rests_on(model: Model, dry: Dry, leaning: FloatArray, piece: int, y: FloatAr
         return True
     for row in range(piece, rows + 1):  # at last what is left when the rows have ended
         at = row if row == rows else max(row, 1)
-        stretch = Stretch(model, dry, leaning, at, CARRIED, NO_WAY, 0.0)
+        stretch = Stretch(model, dry, leaning, at, CARRIED, NO_WAY, 0.0, 0.0)
         if excess_at_rest(stretch, model.forces.drive[min(row, rows - 1), 0], y)[0] > level:
             return False
     return True
@@ -115,7 +115,7 @@ def zero(
     """
     low, high, close = 0.0, h, 0.5 * _CLOSE * h
     first, last = watched(stretch, what, y), watched(stretch, what, new)
-    sign = 1.0 if last > 0.0 else -1.0
+    sign, stays = 1.0 if last > 0.0 else -1.0, 0
     for _ in range(60):
         if high - low <= _CLOSE * h or last == 0.0:
             break
@@ -124,9 +124,11 @@ def zero(
         step(stretch, t, middle, y, scale, work, new)
         value = watched(stretch, what, new)
         if sign * value >= 0.0:
-            high, last, first = middle, value, 0.5 * first
+            first = 0.5 * first if stays > 0 else first
+            high, last, stays = middle, value, 1
         else:
-            low, first, last = middle, value, 0.5 * last
+            last = 0.5 * last if stays < 0 else last
+            low, first, stays = middle, value, -1
     step(stretch, t, high, y, scale, work, new)
     return high
 

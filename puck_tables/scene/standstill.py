@@ -48,6 +48,6 @@ def from_standstill(
         y[VX], y[VY], y[SPIN] = q * nx, q * ny, q * nw
         return SLIDES, True, q
     y[VX], y[VY], y[SPIN] = q * nx, q * ny, q * nw
-    slips = Stretch(model, stretch.dry, stretch.leaning, stretch.piece, SLIDES, NO_WAY, 0.0)
+    slips = Stretch(model, stretch.dry, stretch.leaning, stretch.piece, SLIDES, NO_WAY, 0.0, 0.0)
     settle_way(slips, t, q, y, work)
     return SLIDES, True, q

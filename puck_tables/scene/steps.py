@@ -1,4 +1,4 @@
-"""One step in time: Dormand–Prince 5(4), or where the slip settles fast, Radau IIA of order 5.
+"""One step in time: of order 8, or where the slip settles fast, Radau IIA of order 5.
 
 A step ends on the constraint, and off the walls that the puck leans on.
 """
@@ -9,8 +9,8 @@ import math
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
-from puck_tables.motion.steppers import DORMAND_PRINCE
 from puck_tables.scene.equations import SIZE, rates, to_laboratory
+from puck_tables.scene.explicit import STAGES, explicit_step
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
 from puck_tables.scene.ingredients import (
     BLADE,
@@ -29,8 +29,6 @@ from puck_tables.scene.ingredients import (
 from puck_tables.scene.leaning import keep_on
 from puck_tables.scene.radau import radau_step
 
-_A, _C, _E = DORMAND_PRINCE.a, DORMAND_PRINCE.c, DORMAND_PRINCE.e
-STAGES = len(_C)
 _LEVEL = 1e-12  # of the scale of accelerations: none
 WIDE = SIZE + 2  # of a new state: with the way of the step, exact however far out it is
 
@@ -65,36 +63,6 @@ def _accelerations(model: Model, work: FloatArray, row: int) -> tuple[float, flo
     return work[row, VX] + cx, work[row, VY] + cy, work[row, SPIN]
 
 
-@inlined
-def _explicit_step(
-    stretch: Stretch, t: float, h: float, y: FloatArray, scale: FloatArray, work: FloatArray,
-    new: FloatArray,
-) -> float:  # fmt: skip
-    """Dormand–Prince; the error in ``scale``.  The last stage stands at the end of the step."""
-    for stage in range(1, STAGES):
-        for i in range(SIZE):
-            new[i] = y[i]
-        for j in range(stage):
-            weight = h * _A[stage, j]
-            for i in range(SIZE):
-                new[i] += weight * work[j, i]
-        rates(stretch, t + _C[stage] * h, new, work, stage)
-    new[SIZE], new[SIZE + 1] = 0.0, 0.0
-    for j in range(STAGES - 1):
-        weight = h * _A[STAGES - 1, j]
-        new[SIZE] += weight * work[j, X]
-        new[SIZE + 1] += weight * work[j, Y]
-    largest = 0.0
-    for i in range(SIZE):
-        error = 0.0
-        for j in range(STAGES):
-            error += _E[j] * work[j, i]
-        share = abs(h * error) / scale[i]
-        if not share <= largest:
-            largest = share
-    return largest
-
-
 @inner
 def step(
     stretch: Stretch, t: float, h: float, y: FloatArray, scale: FloatArray, work: FloatArray,
@@ -108,7 +76,7 @@ def step(
         error = radau_step(stretch, t, h, y, scale, work, new)
         rates(stretch, t + h, new, work, STAGES - 1)
     else:
-        error = _explicit_step(stretch, t, h, y, scale, work, new)
+        error = explicit_step(stretch, t, h, y, scale, work, new)
     model = stretch.model
     if stretch.mode == CARRIED:
         new[VX] = new[VY] = new[SPIN] = 0.0

@@ -100,9 +100,9 @@ def regions_of(scene: Scene, pieces: list[Piece], floors: FloatArray, fastest: f
     if has_several(scene):
         most = loads.reshape(-1, len(pieces)).max(axis=0)
         loads, cuts = np.concatenate([loads, most]), np.concatenate([cuts, cuts[: len(pieces)]])
-        ground = np.concatenate([
-            ground_of(scene.alone(piece), normal_on(scene, piece)) for piece in pieces
-        ])  # fmt: skip
+        grounds = [ground_of(scene.alone(piece), normal_on(scene, piece)) for piece in pieces]
+        size = max(map(len, grounds))  # what they end with is room for radii
+        ground = np.concatenate([np.pad(own, (0, size - len(own))) for own in grounds])
     astride = np.arange(count) >= len(places)
     return Regions(loads, delta, cuts, NO_LAW, astride, ground)
 
