@@ -180,7 +180,7 @@ def follow(
         h, reach, swing = ask.twin * h, (1.0 + ask.twin) * reach, (1.0 + ask.twin) * swing
         closest *= 1.0 - 0.2 * ask.twin
     settle, known = True, False  # whether to look what holds the puck; whether work[0] is there
-    newton, bend = 0.0, UNIFORM
+    newton, bend, again = 0.0, UNIFORM, False  # again: the step before was too long
     stretch = Stretch(model, dry, leaning, piece, mode, way, newton, bend)
     while t < until:
         while piece < len(drive) and drive[piece, 0] <= t:
@@ -272,7 +272,7 @@ def follow(
                 mode, known = STOPS, False
                 continue
         # a step
-        landed = t + 1.1 * h >= target
+        landed = t + (1.0 if again else 1.1) * h >= target  # no longer than what was too long
         length = target - t if landed else h
         bend = bend_of(ends * length)
         stretch = Stretch(model, dry, leaning, piece, mode, way, newton, bend)
@@ -292,11 +292,12 @@ def follow(
             shrink = 0.25 if newton > 0.0 else 0.1
             if error < math.inf:
                 shrink = max(0.1, 0.9 * (allowed / error) ** power)
-            h = stretched(bend, length, shrink)
+            h, again = stretched(bend, length, shrink), True
             if (t + h == t and t > 0.0) or h < 1e-300:
                 how = NOT_FINITE
                 break
             continue
+        again = False
         grows = min(5.0, 5.0 if error == 0.0 else 0.9 * (allowed / error) ** power)
         h = (1.0 - share_of(bend)) * stretched(bend, length, grows)
         stuck, cut = -1, landed
