@@ -91,7 +91,7 @@ def said_by_the_program(app: Sphinx) -> None:
         [sys.executable, "-m", "puck_tables.cli.start", "scene", "fields"],
         check=True, capture_output=True, text=True,
     ).stdout  # fmt: skip
-    explorer = HERE / "_extra" / "explorer.html"
+    explorer = HERE / "_extra" / "explore.html"  # explorer.html is the page that tells of it
     explorer.parent.mkdir(exist_ok=True)
     explorer.write_text(explorer_page(), encoding="utf-8")
     page = "# Fields of scenes\n\nWhat `puck scene fields` prints.\n\n```text\n" + told + "```\n"
