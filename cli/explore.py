@@ -18,8 +18,9 @@ def explore(output: Path | None, overwrite: bool) -> None:
     """Open a page in which a launch is dragged, and its motion seen at once.
 
     One file, without a server or a network: path, stop, speeds and their ratio over time, pressure
-    under the base, stop times around; click where the puck shall stop.  Of homogeneous pucks under
-    uniform pressure, 0 <= delta <= 1; its numbers are within 1e-6 of Q/J and Q^2/J.
+    under the base, stop times around; click where the puck shall stop.  Of pucks under uniform
+    pressure, Hertz's, that of a washer and of a hoop, whole base loaded; its numbers are within
+    1e-6 of Q/J and Q^2/J.
 
     \b
     puck explore

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import click
-from puck_tables.cli.options import FILE, NUMBER, prepare_outputs, told
+from puck_tables.cli.options import FILE, NUMBER, body_options, prepare_outputs, puck_given, told
 
 
 @click.command()
@@ -24,25 +24,32 @@ from puck_tables.cli.options import FILE, NUMBER, prepare_outputs, told
     show_default=True,
     help="Largest error, in units of Q/J, Q^2/J, Q: 1e-9 to 0.01.",
 )
+@body_options()
 @click.option("-o", "--output", type=FILE, required=True, metavar="FILE", help="The file.")
 @click.option("--overwrite", is_flag=True, help="Replace an output file that exists.")
-def export(language: str, what: str, tol: float, output: Path, overwrite: bool) -> None:
+def export(
+    language: str, what: str, tol: float, pressure: str, gyration: float | None, output: Path,
+    overwrite: bool,
+) -> None:  # fmt: skip
     """Write one self-contained source file that computes motions without this program.
 
     The tables are in it, as small as the error allows, the licence, and self_test, which returns
-    how many numbers of the test vectors in the file are missed: 0.  Of homogeneous pucks under
-    uniform pressure, 0 <= delta <= 1.
+    how many numbers of the test vectors in the file are missed: 0.  For one pressure law and one
+    radius of gyration, and all heights under which the whole base stays loaded: delta up to 1 under
+    uniform pressure, 0.8 under Hertz's, 4/3 under Galin's, 2 on a ring, 1 + a^2 on annulus:a.
 
     \b
     puck export --language c -o puck.c
+    puck export --language c --pressure annulus:0.8 --gyration 0.905539 -o washer.c
     puck export --language js --what stop,state --tol 1e-4 -o puck.js
     """  # noqa: D301 - click reads the backspace
     from puck_tables.export.source import checked_ending, checked_request, export_source
 
     parts = checked_request(language, what, tol)
     checked_ending(output, language)
-    prepare_outputs(others=(output,), overwrite=overwrite)
-    source = export_source(language, parts, tol)
+    prepare_outputs(inputs=(pressure,), others=(output,), overwrite=overwrite)
+    puck = puck_given(None, None, None, None, None, None, pressure, gyration)
+    source = export_source(language, parts, tol, puck)
     source.save(output, overwrite)
     click.echo(repr(source), err=True)
     told(output)

@@ -78,7 +78,8 @@ html_theme_options = {
     "show_toc_level": 2,
 }
 html_context = {"default_mode": "auto"}
-html_static_path: list[str] = []
+html_static_path = ["_static"]
+html_css_files = ["site.css"]
 html_extra_path = ["_extra"]
 (HERE / "_extra").mkdir(exist_ok=True)
 html_show_sourcelink = False
@@ -90,7 +91,7 @@ def said_by_the_program(app: Sphinx) -> None:
         [sys.executable, "-m", "puck_tables.cli.start", "scene", "fields"],
         check=True, capture_output=True, text=True,
     ).stdout  # fmt: skip
-    explorer = HERE / "_extra" / "explorer.html"
+    explorer = HERE / "_extra" / "explore.html"  # explorer.html is the page that tells of it
     explorer.parent.mkdir(exist_ok=True)
     explorer.write_text(explorer_page(), encoding="utf-8")
     page = "# Fields of scenes\n\nWhat `puck scene fields` prints.\n\n```text\n" + told + "```\n"
@@ -108,7 +109,24 @@ def bars_are_bars(*given: Any) -> None:
             lines[n] = re.sub(r"\|(?=\S)", r"\|", line)
 
 
+def arrows_have_names(
+    app: Sphinx, page: str, template: str, context: dict[str, Any], tree: Any
+) -> None:
+    """The arrows that open a part of the menu say so to those who hear the page."""
+    made = context.get("generate_toctree_html")
+    if made is None:
+        return
+
+    def named(*given: Any, **how: Any) -> Any:
+        menu = made(*given, **how)
+        said = '<summary aria-label="Show or hide the pages of this part">'
+        return menu.replace("<summary>", said) if isinstance(menu, str) else menu
+
+    context["generate_toctree_html"] = named
+
+
 def setup(app: Sphinx) -> None:
     """Called by Sphinx."""
+    app.connect("html-page-context", arrows_have_names, priority=900)
     app.connect("builder-inited", said_by_the_program)
     app.connect("autodoc-process-docstring", bars_are_bars, priority=900)

@@ -63,6 +63,7 @@ DOORS = {
     "scipy": {
         "bulk.spreads",
         "chetaev",
+        "export.law_values",
         "fitting",
         "stopping",
         "table.speed_fit",

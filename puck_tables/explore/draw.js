@@ -139,7 +139,7 @@ function drawCurves(name, time, top, curves) {
     pen.fillText(written(value), 3, at([0, value])[1] + 4);
   }
   pen.textAlign = "center";
-  for (let t = 0; t < 0.93 * time; t += run) pen.fillText(written(t), at([t, 0])[0], height - 5);
+  for (let t = 0; at([t, 0])[0] < width - 28; t += run) pen.fillText(written(t), at([t, 0])[0], height - 5);
   pen.fillText("s", width - 10, height - 5);
   pen.textAlign = "left";
   curves.forEach(([colour, points, label, dash], n) => {
@@ -167,30 +167,36 @@ function drawRatio(found) {
 }
 
 function drawBase(found) {
-  const { pen, width, height } = paper("base"), size = Math.min(width, height) / 2 - 18, cells = 56;
+  const { pen, width, height } = paper("base"), size = Math.min(width, height) / 2 - 18, cells = 56, load = LOADS[now.law] || evenly;
   const picture = new ImageData(cells, cells), pixels = new Uint32Array(picture.data.buffer), [bx, by] = found.tilt;
   for (let row = 0; row < cells; row++) {
     for (let column = 0; column < cells; column++) {
       const x = 2 * (column + 0.5) / cells - 1, y = 1 - 2 * (row + 0.5) / cells;
-      if (x * x + y * y < 1) pixels[row * cells + column] = colourOf((1 + bx * x + by * y) / 2);
+      if (x * x + y * y < 1) pixels[row * cells + column] = colourOf(load(Math.hypot(x, y)) * (1 + bx * x + by * y) / 2);
     }
   }
   stamp(pen, "base", picture, width / 2 - size, height / 2 - size, 2 * size, 2 * size);
   disc(pen, width / 2, height / 2, size, null, "#1d2430");
+  if (HOLES[now.law]) {
+    pen.globalCompositeOperation = "destination-out";
+    disc(pen, width / 2, height / 2, size * HOLES[now.law], "#000");
+    pen.globalCompositeOperation = "source-over";
+    disc(pen, width / 2, height / 2, size * HOLES[now.law], null, "#1d2430");
+  }
   const [, , , vx, vy, spin] = found.moment, v = Math.hypot(vx, vy), q = Math.hypot(v, spin * now.radius / 1000);
   if (v > 0) {
     const long = size * v / q;
-    line(pen, [[width / 2, height / 2], [width / 2 + long * vx / v, height / 2 - long * vy / v]], "#fff", 3);
+    line(pen, [[width / 2, height / 2], [width / 2 + long * vx / v, height / 2 - long * vy / v]], HOLES[now.law] ? GREEN : "#fff", 3);
     const away = v / (spin * now.radius / 1000);  // centre of rotation, in radii to the left
     if (Math.abs(away) < 1) disc(pen, width / 2 - size * away * vy / v, height / 2 - size * away * vx / v, 5, "#fff", "#1d2430");
   }
   pen.fillStyle = GREY;
-  pen.fillText(`${written(Number((1 - Math.hypot(bx, by)).toFixed(3)))} to ${written(Number((1 + Math.hypot(bx, by)).toFixed(3)))} of the mean`, 6, height - 6);
+  pen.fillText(`${written(Number((1 - Math.hypot(bx, by)).toFixed(3)))} to ${written(Number((1 + Math.hypot(bx, by)).toFixed(3)))} × at rest`, 6, height - 6);
 }
 
 function drawMap() {
   const { pen, width, height } = paper("map"), left = 34, low = height - 20, wide = width - left - 8, tall = low - 8;
-  const key = [now.radius, now.height, now.friction, view.fastest, view.most].join();
+  const key = [now.law, now.radius, now.height, now.friction, view.fastest, view.most].join();
   if (pictures.key !== key) {
     pictures.key = key;
     pictures.times = stopTimes(view.fastest, view.most);
@@ -233,6 +239,6 @@ function draw(refit) {
   document.getElementById("told").textContent =
     `The puck stops after ${found.time.toFixed(4)} s at (${found.x.toFixed(4)}, ${found.y.toFixed(4)}) m, ${bend}. ` +
     `Its path is ${found.path.toFixed(4)} m long, and it turns ${(found.turn / 2 / Math.PI).toFixed(2)} times. ` +
-    `δ = 2fh/r = ${scale().delta.toFixed(3)}.`;
+    `δ = 2fh/r = ${scale().delta.toFixed(3)}, of ${law().tallest.toFixed(2)} at most.`;
   return found;
 }

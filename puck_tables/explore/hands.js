@@ -1,6 +1,6 @@
 "use strict";
 // What a hand does: sliders, the arrow, the ring, a target, keys, the address.
-const inputs = {};
+const inputs = {}, choice = document.createElement("select");
 let held = null, since = 0, later = 0;
 
 function refresh(refit) {
@@ -10,6 +10,7 @@ function refresh(refit) {
     if (document.activeElement !== box) box.value = Number(now[name].toFixed(digits));
     slider.value = now[name];
   }
+  choice.value = now.law;
   const shown = draw(refit);
   clearTimeout(later);  // browsers allow an address to change some times a second only
   later = setTimeout(remember, 300);
@@ -18,13 +19,29 @@ function refresh(refit) {
 
 function remember() {
   const kept = Object.keys(FIELDS).map((name) => `${name}=${Number(now[name].toPrecision(10))}`);
-  history.replaceState(null, "", `#${kept.join("&")}`);
+  history.replaceState(null, "", `#law=${now.law}&${kept.join("&")}`);
 }
 
 function recall() {
   for (const [name, value] of new URLSearchParams(location.hash.slice(1))) {
-    if (name in FIELDS) set(name, Number(value));
+    if (name === "law") setLaw(value);
+    else if (name in FIELDS) set(name, Number(value));
   }
+}
+
+function makeChoice() {
+  const row = document.createElement("label"), word = document.createElement("span");
+  word.textContent = "pressure";
+  choice.name = "law";
+  for (const [name, { title }] of Object.entries(puckLaws)) choice.append(new Option(title, name));
+  choice.addEventListener("input", () => {
+    setLaw(choice.value);
+    now.target = null;
+    refresh(true);
+  });
+  row.className = "choice";
+  row.append(word, choice);
+  document.getElementById("numbers").append(row);
 }
 
 function makeInputs() {
@@ -99,16 +116,19 @@ plane.addEventListener("keydown", (event) => {
   refresh(true);
 });
 
+// The law and the radius of gyration, where they are not what a puck has that nothing is said of.
+const kind = (before, between) => (now.law === "uniform" ? "" : `${before}${now.law}${between}${law().gyration}`);
+
 function asPython() {
   const a = now.heading * Math.PI / 180, short = (x) => Number(x.toPrecision(9));
-  return `import puck_tables as pt\npuck = pt.Puck(radius=${short(now.radius / 1000)}, height=${short(now.height / 1000)}, friction=${short(now.friction)})\n` +
+  return `import puck_tables as pt\npuck = pt.Puck(radius=${short(now.radius / 1000)}, height=${short(now.height / 1000)}, friction=${short(now.friction)}${kind(", pressure=\"", "\", gyration=")})\n` +
     `run = puck.simulate((${short(now.speed * Math.cos(a))}, ${short(now.speed * Math.sin(a))}), spin=${short(now.spin)})`;
 }
 
 function asCommand() {
   const a = now.heading * Math.PI / 180, short = (x) => Number(x.toPrecision(9));
   return `puck simulate --v0 ${short(now.speed * Math.cos(a))},${short(now.speed * Math.sin(a))} --w0 ${short(now.spin)} ` +
-    `--radius ${short(now.radius / 1000)} --height ${short(now.height / 1000)} --friction ${short(now.friction)}`;
+    `--radius ${short(now.radius / 1000)} --height ${short(now.height / 1000)} --friction ${short(now.friction)}${kind(" --pressure ", " --gyration ")}`;
 }
 
 function copy(text) {
@@ -124,7 +144,8 @@ window.addEventListener("resize", () => {
 });
 window.addEventListener("hashchange", () => { recall(); refresh(true); });
 
+makeChoice();
 makeInputs();
 recall();
 refresh(true);
-globalThis.explorer = { now, run, set, refresh, aimAt, asPython, asCommand, tipOfArrow, knobOfRing, seen };
+globalThis.explorer = { now, run, set, setLaw, draw, refresh, aimAt, asPython, asCommand, tipOfArrow, knobOfRing, seen };

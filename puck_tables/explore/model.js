@@ -11,18 +11,21 @@ const FIELDS = {  // label, unit, least, largest, digits of a step
   friction: ["friction", "", 0.01, 1, 3],
   moment: ["moment", "%", 0, 100, 0],
 };
-const now = { speed: 2, heading: 10, spin: 60, radius: 38.1, height: 25.4, friction: 0.1, moment: 0, target: null };
+const now = { law: "uniform", speed: 2, heading: 10, spin: 60, radius: 38.1, height: 25.4, friction: 0.1, moment: 0, target: null };
 const five = new Float64Array(5), six = new Float64Array(6), three = new Float64Array(3);
 
+// Its law (title, gyration, tallest delta) and its look-ups: all of them are in puckLaws.
+const law = () => puckLaws[now.law];
+
 const scale = () => {
-  const radius = now.radius / 1000;
-  return { radius, decel: now.friction * GRAVITY, delta: 2 * now.friction * now.height / now.radius };
+  const radius = now.radius / 1000, delta = Math.min(law().tallest, 2 * now.friction * now.height / now.radius);
+  return { radius, decel: now.friction * GRAVITY, delta };
 };
 
 // Where the puck stops that has this speed (m/s) along x and this spin: time s, x, y m, path m, turn rad.
 function stopOf(speed, spin) {
   const { radius, decel, delta } = scale();
-  puckTables.stop(speed, 0, spin, delta, decel, radius, five);
+  law().tables.stop(speed, 0, spin, delta, decel, radius, five);
   return five;
 }
 
@@ -30,7 +33,7 @@ function stopOf(speed, spin) {
 function run() {
   const { radius, decel, delta } = scale();
   const a = now.heading * Math.PI / 180, vx = now.speed * Math.cos(a), vy = now.speed * Math.sin(a);
-  const code = puckTables.stop(vx, vy, now.spin, delta, decel, radius, five);
+  const code = law().tables.stop(vx, vy, now.spin, delta, decel, radius, five);
   if (code !== 0) return { code };
   const [time, x, y, path, turn] = five;
   const states = [];
@@ -44,17 +47,21 @@ function run() {
 
 function stateAt(vx, vy, t) {
   const { radius, decel, delta } = scale();
-  puckTables.state(vx, vy, now.spin, delta, decel, radius, t, six);
+  law().tables.state(vx, vy, now.spin, delta, decel, radius, t, six);
   return six;
 }
 
-// How far friction tips the load: slopes of the pressure over its mean, along x and y, per radius.
+// What the base carries at rest at a distance from its middle, over the most that it carries; its hole.
+const LOADS = { "hertz": (rho) => Math.sqrt(1 - rho * rho) }, evenly = () => 1;
+const HOLES = { "annulus:0.8": 0.8, "ring": 0.94 };  // the ring is a line, drawn so broad that it is seen
+
+// How far friction tips the load: slopes of the pressure over that at rest, along x and y, per radius.
 function tiltOf([, , , vx, vy, spin]) {
-  const { radius, delta } = scale();
+  const { radius, delta } = scale(), share = delta / law().tallest;
   const v = Math.hypot(vx, vy), phi = Math.atan2(radius * spin, v);
   if (v === 0) return [0, 0];
-  puckTables.resultants(phi, delta, three);
-  const along = delta * Math.cos(phi) * three[0], left = delta * Math.sin(phi) * Math.cos(phi) * three[1];
+  law().tables.resultants(phi, delta, three);
+  const along = share * Math.cos(phi) * three[0], left = share * Math.sin(phi) * Math.cos(phi) * three[1];
   return [(along * vx - left * vy) / v, (along * vy + left * vx) / v];
 }
 
@@ -82,15 +89,21 @@ function stopTimes(fastest, most) {
   for (let row = 0; row < MAP; row++) {
     const spin = most * (1 - 2 * row / (MAP - 1));
     for (let column = 0; column < MAP; column++) {
-      puckTables.stop(fastest * column / (MAP - 1), 0, spin, delta, decel, radius, five);
+      law().tables.stop(fastest * column / (MAP - 1), 0, spin, delta, decel, radius, five);
       times[row * MAP + column] = five[0];
     }
   }
   return times;
 }
 
-// Only as tall as the base stays loaded in every motion: delta = 2 f h / r up to 1.
-const tallest = () => now.radius / (2 * now.friction);
+// Only as tall as the base stays loaded in every motion: delta = 2 f h / r up to 1 under uniform pressure.
+const tallest = () => law().tallest * now.radius / (2 * now.friction);
+
+function setLaw(name) {
+  if (!Object.hasOwn(puckLaws, name)) return;
+  now.law = name;
+  now.height = Math.min(now.height, tallest());
+}
 
 function set(name, value) {
   const [, , low, high] = FIELDS[name];

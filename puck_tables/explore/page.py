@@ -2,12 +2,36 @@
 
 from __future__ import annotations
 
+import json
 from importlib.resources import files
+from typing import NamedTuple
 
 from puck_tables.export.source import export_source
 
 TOL = 1e-6
 _SCRIPTS = ("model.js", "draw.js", "hands.js")
+
+
+class ShownLaw(NamedTuple):
+    """A pressure law of the page; the mass of its puck is spread as its pressure is, k² = 2⟨x²⟩.
+
+    ``file``: its look-ups in ``tables``, by ``puck export --language js --pressure LAW --gyration K
+    --tol 1e-6``, for making them takes ten seconds; those of plain pucks are made in one.
+    """
+
+    name: str
+    title: str
+    gyration: float
+    tallest: float
+    file: str
+
+
+LAWS = (
+    ShownLaw("uniform", "uniform, flat", 0.5**0.5, 1.0, ""),
+    ShownLaw("hertz", "Hertz, domed", 0.632456, 0.8, "hertz.js"),
+    ShownLaw("annulus:0.8", "annulus 0.8, washer", 0.905539, 1.64, "annulus.js"),
+    ShownLaw("ring", "ring, hoop", 1.0, 2.0, "ring.js"),
+)
 
 
 def explorer_page() -> str:
@@ -21,11 +45,29 @@ def explorer_page() -> str:
     Examples
     --------
     >>> page = explorer_page()
-    >>> page[:15], len(page) < 1_000_000
+    >>> page[:15], len(page) < 300_000
     ('<!DOCTYPE html>', True)
     """
     folder = files("puck_tables.explore")
     page = (folder / "page.html").read_text(encoding="utf-8")
     scripts = "".join((folder / name).read_text(encoding="utf-8") for name in _SCRIPTS)
-    look_ups = export_source("js", ("stop", "state", "resultants"), TOL).text
-    return page.replace("/*look-ups*/", look_ups).replace("/*page*/", scripts)
+    return page.replace("/*laws*/", _laws()).replace("/*page*/", scripts)
+
+
+def _laws() -> str:
+    """A script that fills ``puckLaws``: what is to be known of each law, and its look-ups."""
+    lines = ["const puckLaws = {};"]
+    for law in LAWS:
+        told = {"title": law.title, "gyration": law.gyration, "tallest": law.tallest}
+        name = json.dumps(law.name)
+        lines += [
+            _look_ups(law),
+            f"puckLaws[{name}] = {{ ...{json.dumps(told)}, tables: globalThis.puckTables }};",
+        ]
+    return "\n".join(lines)
+
+
+def _look_ups(law: ShownLaw) -> str:
+    if not law.file:
+        return export_source("js", ("stop", "state", "resultants"), TOL).text
+    return (files("puck_tables.tables") / law.file).read_text(encoding="utf-8")

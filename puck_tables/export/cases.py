@@ -8,15 +8,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.integrals import slip_direction
 from puck_tables.contact.quadrature import integrals
 from puck_tables.contact.resultants import moment_balance
 from puck_tables.puck import Puck
-from puck_tables.stopping.stops import stop
+from puck_tables.stopping.stops import Stops, stop
 
 Cases = tuple[int, tuple[float, ...]]
 
@@ -40,19 +41,20 @@ _ANGLES = (-0.5 * math.pi, -0.25 * math.pi, -0.3, 0.0, 0.8, 1.4)
 _HEIGHTS = (0.0, 1.0)
 
 
-def cases_of(functions: Sequence[str], tol: float) -> dict[str, Cases]:
+def cases_of(functions: Sequence[str], tol: float, kind: Puck | None = None) -> dict[str, Cases]:
     """Width of a vector and all their numbers, by function.
 
     Parameters
     ----------
     functions : of the exported file
     tol : of it; numbers have as many digits as tell it
+    kind : whose pressure law and gyration; default: homogeneous, under uniform pressure
     """
     made = {"stop": _stops, "state": _states, "turn": _turns, "resultants": _resultants}
     digits = round(-math.log10(tol)) + 3
     cases = {}
     for name in functions:
-        width, rows = made[name]()
+        width, rows = made[name](Puck(radius=1.0) if kind is None else kind)
         given = {"stop": 6, "state": 7, "turn": 6, "resultants": 2}[name]
         numbers = [
             value if n % width < given else float(f"{value:.{digits}g}")
@@ -62,13 +64,34 @@ def cases_of(functions: Sequence[str], tol: float) -> dict[str, Cases]:
     return cases
 
 
-@lru_cache(maxsize=1)
-def _stops() -> Cases:
+def _kind(puck: Puck) -> tuple[dict[str, Any], float, float]:
+    """Pressure and gyration, how δ of a launch is scaled, and the error of answers."""
+    if puck.body.has_closed_forms:
+        return {}, 1.0, 1e-12
+    law = puck.body.law
+    return {"pressure": law, "gyration": puck.gyration}, law.delta_max, 1e-11
+
+
+def _launched(puck: Puck) -> FloatArray:
+    """The launches of a kind of puck: of others three heights, for each must be prepared."""
     launches = np.array(_LAUNCHES)
-    found = stop(
+    kind, tallest, _ = _kind(puck)
+    if kind:
+        launches[:, 3] = np.floor(np.round(2.0 * launches[:, 3]) * 500.0 * tallest) / 1000.0
+    return launches
+
+
+def _found(puck: Puck, launches: FloatArray) -> Stops:
+    kind, _, tol = _kind(puck)
+    return stop(
         launches[:, :2], launches[:, 2], delta=launches[:, 3], decel=launches[:, 4],
-        radius=launches[:, 5], tol=1e-12, method="adaptive",
+        radius=launches[:, 5], tol=tol, method="adaptive", **kind,
     )  # fmt: skip
+
+
+def _stops(puck: Puck) -> Cases:
+    launches = _launched(puck)
+    found = _found(puck, launches)
     answers = (
         found.stop_time, found.stop_x, found.stop_y, found.path_length, found.body_angle,
     )  # fmt: skip
@@ -76,39 +99,44 @@ def _stops() -> Cases:
     return rows.shape[1], tuple(rows.ravel().tolist())
 
 
-@lru_cache(maxsize=1)
-def _turns() -> Cases:
-    launches = np.array([one for one in _LAUNCHES if one[2] != 0.0 and one[:2] != (0.0, 0.0)][:7])
-    found = stop(
-        launches[:, :2], launches[:, 2], delta=launches[:, 3], decel=launches[:, 4],
-        radius=launches[:, 5], tol=1e-12, method="adaptive",
-    )  # fmt: skip
-    rows = np.column_stack([launches, found.turn_angle])
+def _turns(puck: Puck) -> Cases:
+    launches = _launched(puck)
+    generic = (launches[:, 2] != 0.0) & (launches[:, :2] != 0.0).any(axis=1)
+    launches = launches[generic][: 3 if _kind(puck)[0] else 7]
+    rows = np.column_stack([launches, _found(puck, launches).turn_angle])
     return rows.shape[1], tuple(rows.ravel().tolist())
 
 
-@lru_cache(maxsize=1)
-def _states() -> Cases:
+def _states(puck: Puck) -> Cases:
     rows: list[float] = []
-    for (vx, vy, spin, delta, decel, radius), share in _moments():
-        puck = Puck.similar(delta=delta, decel=decel, radius=radius)
-        whole = stop((vx, vy), spin, delta=delta, decel=decel, radius=radius).stop_time.item()
-        time = float(f"{share * whole:.4g}")
-        run = puck.simulate((vx, vy), spin, times=[time], tol=1e-12, exact=True)
+    kind, _, tol = _kind(puck)
+    launches = _launched(puck)
+    whole = _found(puck, launches).stop_time
+    for n, share in _moments()[: len(launches) + 1 if kind else None]:
+        vx, vy, spin, delta, decel, radius = launches[n].tolist()
+        thrown = Puck.similar(delta=delta, decel=decel, radius=radius, **kind)
+        time = float(f"{share * whole[n]:.4g}")
+        run = thrown.simulate((vx, vy), spin, times=[time], tol=tol, exact=not kind)
         there = (run.x, run.y, run.orientation, run.vx, run.vy, run.spin)
         rows += [vx, vy, spin, delta, decel, radius, time, *(float(one[0]) for one in there)]
     return 13, tuple(rows)
 
 
-def _moments() -> list[tuple[tuple[float, ...], float]]:
+def _moments() -> list[tuple[int, float]]:
     """Every launch at one of the shares of its time, one at all of them, and after its stop."""
-    picked = [(one, _SHARES[n % len(_SHARES)]) for n, one in enumerate(_LAUNCHES)]
-    return [*picked, *((_LAUNCHES[1], share) for share in (*_SHARES[3:], 1.5))]
+    picked = [(n, _SHARES[n % len(_SHARES)]) for n in range(len(_LAUNCHES))]
+    return [*picked, *((1, share) for share in (1.5, *_SHARES[3:]))]
 
 
-@lru_cache(maxsize=1)
-def _resultants() -> Cases:
-    phi, delta = np.meshgrid(_ANGLES, _HEIGHTS, indexing="ij")
-    rho = moment_balance(integrals(phi.ravel()), slip_direction(phi.ravel()), delta.ravel())
-    rows = np.column_stack([phi.ravel(), delta.ravel(), *rho])
+def _resultants(puck: Puck) -> Cases:
+    kind, tallest, _ = _kind(puck)
+    phi, share = (
+        one.ravel() for one in np.meshgrid(_ANGLES[1 if kind else 0 :], _HEIGHTS, indexing="ij")
+    )
+    if kind:
+        share = np.floor(1000.0 * share * tallest) / 1000.0
+        rho = puck.body.law.resultants(phi, share)
+    else:
+        rho = moment_balance(integrals(phi), slip_direction(phi), share)
+    rows = np.column_stack([phi, share, *rho])
     return rows.shape[1], tuple(rows.ravel().tolist())

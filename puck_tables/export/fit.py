@@ -20,11 +20,42 @@ from puck_tables.stopping.axes import HEIGHTS, heights
 from puck_tables.stopping.stop_table import StopTable
 
 DEGREES = range(3, 8)
-CELLS = (4, 5, 6, 7, 8, 9, 10, 11, 12, 14, 16, 18, 20, 22, 24, 27, 30, 33, 36, 40, 45, 50, 56, 64)
+CELLS = (
+    4,
+    5,
+    6,
+    7,
+    8,
+    9,
+    10,
+    11,
+    12,
+    14,
+    16,
+    18,
+    20,
+    22,
+    24,
+    27,
+    30,
+    33,
+    36,
+    40,
+    45,
+    50,
+    56,
+    64,
+    72,
+    80,
+    90,
+)
 # Of the error asked for: of the functions of a stop, and of the curve and its inverse, so that what
 # is made of all of them keeps it (measured, tests/test_export_error.py).
 STOP_SHARE, CURVE_SHARE, CONSTANT_SHARE = 0.5, 0.3, 0.02
-_ROUNDING, _POWERS = 0.1, 0.65  # of a share: what whole quanta, and dropped powers, may take
+LAW_STOP_SHARE, ORBIT_SHARE, PATCH_SHARE = 0.7, 0.6, 0.25
+# Of a share: what whole quanta may take, in a file whose tables are many, and dropped powers.
+ROUNDING, COARSE_ROUNDING, _POWERS = 0.1, 0.45, 0.65
+_OUT_OF_REACH = "no table to export keeps an error of {:.1e}: ask for a larger one"
 # in the order of the programs
 STOP_COLUMNS = [0, 1, 2, 3, 4]  # time, along, across, length, body
 CURVE_COLUMNS = [5, 6]  # κR and S/δ
@@ -34,7 +65,7 @@ CURVE_COLUMNS = [5, 6]  # κR and S/δ
 class Fitted:
     """A table of whole numbers as the programs read it.
 
-    ``numbers``: array (2 sides, cells + degree, powers, functions); times ``quantum``, without the
+    ``numbers``: array (sides, cells + degree, powers, functions); times ``quantum``, without the
     factorial of the degree that unscaled B-splines carry, they are coefficients.
     """
 
@@ -87,7 +118,7 @@ def functions_of(table: StopTable) -> tuple[FloatArray, FloatArray, FloatArray]:
     return sides[..., STOP_COLUMNS], sides[..., CURVE_COLUMNS], inverse[..., None]
 
 
-def fitted(values: FloatArray, error: float, haste: int = 1) -> Fitted:
+def fitted(values: FloatArray, error: float, haste: int = 1, rounding: float = ROUNDING) -> Fitted:
     """The cheapest table that is wrong by no more than ``error`` at any node and height.
 
     Cheapest is the least product of the numbers on an axis and, to the power of ``haste``, of how
@@ -95,9 +126,10 @@ def fitted(values: FloatArray, error: float, haste: int = 1) -> Fitted:
 
     Parameters
     ----------
-    values : array (2, nodes, heights, functions), nodes uniform in ξ from 0 to 1
+    values : array (sides, nodes, heights, functions), nodes uniform in ξ from 0 to 1
     error : in the unit of the values
     haste : how much speed counts against size
+    rounding : share of the error that whole quanta may take
 
     Raises
     ------
@@ -112,31 +144,33 @@ def fitted(values: FloatArray, error: float, haste: int = 1) -> Fitted:
     >>> found.cells, found.degree, found.powers
     (6, 5, 2)
     """
-    nodes = values.shape[1]
+    sides, nodes, count = values.shape[:3]
     xi = np.arange(nodes) / (nodes - 1.0)
-    s = 2.0 * heights() ** 2 - 1.0
-    by_height = np.moveaxis(values, 2, 0).reshape(HEIGHTS, -1)
-    series = chebyshev.chebfit(s, by_height, HEIGHTS - 1)
+    s = 2.0 * heights(count) ** 2 - 1.0
+    by_height = np.moveaxis(values, 2, 0).reshape(count, -1)
+    series = chebyshev.chebfit(s, by_height, count - 1)
     dropped = np.abs(series)[::-1].cumsum(axis=0)[::-1].max(axis=1)
     powers = int(np.argmax(np.append(dropped, 0.0) <= _POWERS * error))
+    if dropped[-1] ** 2 > _POWERS * error * dropped[-2]:  # the next power would be missed
+        raise AccuracyError(_OUT_OF_REACH.format(error))
     to_powers = np.zeros((powers, powers))
     for m in range(powers):
         to_powers[: m + 1, m] = chebyshev.cheb2poly(np.eye(powers)[m, : m + 1])
-    by_power = (to_powers @ series[:powers]).reshape(powers, 2, nodes, -1)
-    wanted = by_power.transpose(1, 2, 0, 3).reshape(2, nodes, -1)
-    quantum = _quantum(_ROUNDING * error / powers)
+    by_power = (to_powers @ series[:powers]).reshape(powers, sides, nodes, -1)
+    wanted = by_power.transpose(1, 2, 0, 3).reshape(sides, nodes, -1)
+    quantum = _quantum(rounding * error / powers)
     sizes = np.array([one for one in CELLS if one < nodes // 4])
 
     def numbers_of(cells: int, degree: int) -> npt.NDArray[np.int64] | None:
         """Those of a table, if it is good enough."""
         matrix = weights(xi, cells, degree)
         solved = np.linalg.lstsq(matrix, np.concatenate(list(wanted), axis=1), rcond=None)[0]
-        numbers = np.rint(np.stack(np.split(solved, 2, axis=1)) / quantum)
-        got = (matrix @ (quantum * numbers)).reshape(2, nodes, powers, -1)
+        numbers = np.rint(np.stack(np.split(solved, sides, axis=1)) / quantum)
+        got = (matrix @ (quantum * numbers)).reshape(sides, nodes, powers, -1)
         found = np.einsum("snpf,ph->snhf", got, s ** np.arange(powers)[:, None])
         if np.abs(found - values).max() > error:
             return None
-        return numbers.astype(np.int64).reshape(2, cells + degree, powers, -1)
+        return numbers.astype(np.int64).reshape(sides, cells + degree, powers, -1)
 
     best: tuple[float, Fitted] | None = None
     for degree in DEGREES:
@@ -152,9 +186,7 @@ def fitted(values: FloatArray, error: float, haste: int = 1) -> Fitted:
             if best is None or cost < best[0]:
                 best = cost, Fitted(cells, degree, quantum, numbers)
     if best is None:
-        raise AccuracyError(
-            f"no table to export keeps an error of {error:.1e}: ask for a larger one"
-        )
+        raise AccuracyError(_OUT_OF_REACH.format(error))
     return best[1]
 
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import ast
 import inspect
-from collections.abc import Iterable, Sequence
+import re
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
-from math import factorial
+from functools import partial
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -17,19 +17,20 @@ from puck_tables._core.safe_write import write_bytes
 from puck_tables._version import __version__
 from puck_tables.errors import AccuracyError, InputError
 from puck_tables.export.cases import cases_of
-from puck_tables.export.fit import (
-    CONSTANT_SHARE,
-    CURVE_SHARE,
-    STOP_SHARE,
-    Fitted,
-    fitted,
-    fitted_constants,
-    functions_of,
-)
 from puck_tables.export.languages import LANGUAGES
 from puck_tables.export.licence import LICENCE
-from puck_tables.export.program import check, given, places, resultants, state, stop
-from puck_tables.stopping.stop_table import StopTable
+from puck_tables.export.program import (
+    check,
+    given,
+    law_places,
+    law_state,
+    places,
+    resultants,
+    state,
+    stop,
+)
+from puck_tables.export.tables import law_tables, plain_tables
+from puck_tables.puck import Puck
 
 FINEST, COARSEST = 1e-9, 1e-2
 # What can be asked for: the modules of it, and the functions that its user calls.
@@ -57,16 +58,21 @@ class Source:
     language : one of :func:`languages`
     what : what it computes
     tol : the largest error of it, in units of Q/J (times), Q²/J (places), Q (speeds), rad
+    kind : pressure and gyration in words, empty for homogeneous pucks under uniform pressure
+    tallest : δ up to which it holds
     """
 
     text: str
     language: str
     what: tuple[str, ...]
     tol: float
+    kind: str = ""
+    tallest: float = 1.0
 
     def __repr__(self) -> str:
         size = len(self.text.encode())
-        return f"Source({self.language}, {', '.join(self.what)} to {self.tol:g}, {size} bytes)"
+        of = f", {self.kind}, delta <= {self.tallest:g}" if self.kind else ""
+        return f"Source({self.language}, {', '.join(self.what)} to {self.tol:g}{of}, {size} bytes)"
 
     def save(self, path: str | Path, overwrite: bool = False) -> None:
         """Write the file.
@@ -97,7 +103,10 @@ class Source:
 
 
 def export_source(
-    language: str, what: str | Iterable[str] = ("stop", "state", "resultants"), tol: float = 1e-6
+    language: str,
+    what: str | Iterable[str] = ("stop", "state", "resultants"),
+    tol: float = 1e-6,
+    puck: Puck | None = None,
 ) -> Source:
     """A source file that computes stops, states or resultants without this package.
 
@@ -109,19 +118,25 @@ def export_source(
     tol : float
         Largest error, in units of Q/J (times), Q²/J (places), Q²/(J r) (body angle), Q (velocity),
         Q/r (spin) and 1 (turn of the heading), Q = hypot(v, rω) of the launch; 1e-9 to 0.01.
-        Resultants are in closed form, 1e-14.
+        Of resultants 1; in closed form, 1e-14, for homogeneous pucks under uniform pressure.
+    puck : Puck, optional
+        Whose pressure law and radius of gyration the file is for; the height and all else are
+        arguments of its functions.  Default: homogeneous, under uniform pressure.
 
     Returns
     -------
     Source
-        Of plain pucks: uniform pressure, homogeneous, 0 ≤ δ ≤ 1.
+        For all heights under which the whole base stays loaded in every motion, 0 ≤ δ ≤
+        ``tallest``: 1 under uniform pressure, 0.8 under Hertz's, 4/3 under Galin's, 2 on a ring,
+        1 + a² on an annulus.
 
     Raises
     ------
     InputError
         If a language or a part is not known.
     AccuracyError
-        If the tolerance is out of reach.
+        If the tolerance is out of reach: of states, where the limit ratio lies next to 0, to
+        infinity or to where the centre of rotation crosses an edge of the load.
 
     Notes
     -----
@@ -144,7 +159,13 @@ def export_source(
     (0, 4.0, 0)
     """
     parts = checked_request(language, what, tol)
-    return Source(_text(language, parts, float(tol)), language, parts, float(tol))
+    instance("puck", puck, Puck, type(None))
+    kind = Puck(radius=1.0) if puck is None else puck
+    of = plain_tables if kind.body.has_closed_forms else partial(law_tables, kind)
+    tables, constants = of(parts, float(tol))
+    tallest, words = float(constants["TALLEST"]), _words(kind)
+    text = _text(language, parts, float(tol), kind, tables, constants)
+    return Source(text, language, parts, float(tol), words, tallest)
 
 
 def checked_request(language: str, what: str | Iterable[str], tol: float) -> tuple[str, ...]:
@@ -198,45 +219,42 @@ def checked_ending(path: str | Path, language: str) -> None:
         raise InputError(f"{path}: a file of {of.title} ends in {' or '.join(of.endings)}")
 
 
-def _text(key: str, parts: tuple[str, ...], tol: float) -> str:
+def _text(
+    key: str, parts: tuple[str, ...], tol: float, kind: Puck, tables: Mapping[str, Sequence[float]],
+    constants: Mapping[str, float],
+) -> str:  # fmt: skip
     """The whole file."""
-    language = LANGUAGES[key]
+    language, by_law = LANGUAGES[key], not kind.body.has_closed_forms
     modules = [one for one in (places, stop, state, resultants) if one in _modules(parts)]
-    public = [name for part in parts for name in PARTS[part][1]]
-    public = list(dict.fromkeys(public))
-    cases = cases_of(public, tol)
-    functions = [node for module in modules for node in _functions(module)]
+    if by_law:
+        modules += [law_places] + [law_state] * (state in modules)
+    public = list(dict.fromkeys(name for part in parts for name in PARTS[part][1]))
     misses = [_MISSES[name] for name in public]
-    if modules == [places, resultants]:  # of places it needs but the refusal
-        functions = [f for f in functions if f.name == "refused" or f.name not in vars(places)]
-    tests = {"misses", "slip_of", *misses} if public != ["resultants"] else {"misses", *misses}
-    functions += [node for node in _functions(check) if node.name in tests]
-    functions.append(_self_test(misses))
+    functions = {node.name: node for module in [*modules, check] for node in _functions(module)}
+    functions["self_test"] = _self_test(misses)
+    functions = _needed(functions, [*public, "self_test"])
+    if by_law:  # room for the lines of the law
+        for name in functions.keys() - {*public, "self_test"}:
+            del functions[name].body[0]
     numbers: dict[str, Any] = {"TOLERANCE": tol}
-    tables: dict[str, Sequence[float]] = {}
-    for name in public:
-        width, values = cases[name]
-        tables[f"{_CASES[name]}_CASES"] = values
+    arrays: dict[str, Sequence[float]] = {}
+    for name, (width, values) in cases_of(public, tol, kind if by_law else None).items():
+        arrays[f"{_CASES[name]}_CASES"] = values
         numbers[f"{_CASES[name]}_COUNT"] = len(values) // width
-    if stop in modules:
-        for name, table in _tables(tol).items():
-            tables[name] = table.numbers.ravel().tolist()
-            numbers |= {
-                f"{name}_CELLS": table.cells, f"{name}_DEGREE": table.degree,
-                f"{name}_POWERS": table.powers,
-                f"{name}_QUANTUM": float(f"{table.quantum / factorial(table.degree):.15g}"),
-            }  # fmt: skip
+    arrays |= tables
+    numbers |= constants
     for module in modules:
         numbers |= {n: v for n, v in vars(module).items() if n.isupper() and n not in vars(given)}
     used = {
-        one.id for node in functions for one in ast.walk(node) if isinstance(one, ast.Name)
+        one.id for node in functions.values() for one in ast.walk(node) if isinstance(one, ast.Name)
     }  # fmt: skip
+    title = _title(language.title, parts, tol, public, kind, constants["TALLEST"])
     pieces = [
-        language.comment([*_title(language.title, parts, tol, public), "", *LICENCE.splitlines()]),
+        language.comment([*title, "", *LICENCE.splitlines()]),
         language.head([*public, "self_test"]),
         *(language.constant(n, v) for n, v in numbers.items() if n in used),
-        *(language.table(n, v) for n, v in tables.items() if n in used and v),
-        *(language.function(node) for node in functions),
+        *(language.table(n, v) for n, v in arrays.items() if n in used and v),
+        *(language.function(node) for node in functions.values()),
         language.foot([*public, "self_test"]),
     ]
     return "\n".join(piece for piece in pieces if piece) + "\n"
@@ -246,28 +264,42 @@ def _modules(parts: tuple[str, ...]) -> set[ModuleType]:
     return {module for part in parts for module in PARTS[part][0]}
 
 
-def _title(language: str, parts: tuple[str, ...], tol: float, public: Sequence[str]) -> list[str]:
+def _needed(
+    functions: Mapping[str, ast.FunctionDef], public: Sequence[str]
+) -> dict[str, ast.FunctionDef]:
+    """Those that these call, each after what it calls."""
+    found: dict[str, ast.FunctionDef] = {}
+
+    def add(name: str) -> None:
+        node = functions[name]
+        for one in ast.walk(node):
+            if isinstance(one, ast.Name) and one.id in functions and one.id != name:
+                add(one.id)
+        found.setdefault(name, node)
+
+    for name in public:
+        add(name)
+    return found
+
+
+def _title(
+    language: str, parts: tuple[str, ...], tol: float, public: Sequence[str], kind: Puck,
+    tallest: float,
+) -> list[str]:  # fmt: skip
+    of = _words(kind) or "uniform pressure, homogeneous"
     return [
         f"puck-tables {__version__}: {', '.join(parts)} of flat pucks that slide and spin under "
         "dry friction.",
-        f"{language}; error {tol:g} (see each function); uniform pressure, homogeneous, "
-        "0 <= delta <= 1.",
+        f"{language}; error {tol:g} (see each function); {of},",
+        f"0 <= delta <= {tallest:.12g}.",
         f"Functions: {', '.join(public)}; self_test returns how many numbers of its vectors are",
         "missed: 0.  Needs IEEE arithmetic (no -ffast-math).  Made by a program: do not edit.",
     ]
 
 
-@lru_cache(maxsize=8)
-def _tables(tol: float) -> dict[str, Fitted]:
-    """The tables of an error."""
-    table = StopTable.shipped()
-    stops, curve, inverse = functions_of(table)
-    return {
-        "STOP": fitted(stops, STOP_SHARE * tol, haste=2),
-        "CURVE": fitted(curve, CURVE_SHARE * tol),
-        "INVERSE": fitted(inverse, CURVE_SHARE * tol),
-        "CONSTANTS": fitted_constants(table.constants, CONSTANT_SHARE * tol),
-    }
+def _words(kind: Puck) -> str:
+    """Pressure and gyration, in letters that no language takes for the end of a comment."""
+    return re.sub(r"[^\w .,:=/+-]|\*/", "_", kind.body.kind, flags=re.ASCII)
 
 
 def _functions(module: ModuleType) -> list[ast.FunctionDef]:

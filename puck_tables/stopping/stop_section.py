@@ -126,7 +126,7 @@ class StopSection(SectionTable):
         cut, counts = friction.for_motion(body.gyration), np.array([1.0] * 5 + [_TURN])
 
         def off(phi: FloatArray) -> FloatArray:
-            truth = _stops(body, friction, cut, phi, 0.1 * allowed)
+            truth = stops_at(body, friction, cut, phi, 0.1 * allowed)
             missed: FloatArray = (self.spline.at(phi) - truth) * _factors(phi) * counts
             return missed
 
@@ -294,7 +294,7 @@ def stop_section(body: Body, accuracy: float, progress: Progress | None = None) 
         done += phi.size
         if progress is not None:
             progress(done, max(done, _FINEST_CELLS))
-        return _stops(body, friction, friction.for_motion(body.gyration), phi, accuracy)
+        return stops_at(body, friction, friction.for_motion(body.gyration), phi, accuracy)
 
     spline = slip_spline(
         functions, sides_of(lines, ends_too=True), _SHARE_OF_SPLINE * accuracy, even=False,
@@ -318,7 +318,7 @@ def _error_of_friction(body: Body, friction: FrictionSection, accuracy: float) -
     """What the error of the friction does to stops anywhere."""
     phi = np.linspace(0.0, 0.5 * np.pi, _SAMPLE + 2)[1:-1]
     whole, half = (
-        _stops(body, friction, friction.for_motion(body.gyration, coarser), phi, 0.1 * accuracy)
+        stops_at(body, friction, friction.for_motion(body.gyration, coarser), phi, 0.1 * accuracy)
         for coarser in (False, True)
     )
     off = np.abs(whole - half) * _factors(phi)
@@ -331,7 +331,7 @@ def _factors(phi: FloatArray) -> FloatArray:
     return np.stack([np.ones_like(sine), cosine, sine * cosine, cosine, sine, sine], axis=-1)
 
 
-def _stops(
+def stops_at(
     body: Body, friction: FrictionSection, cut: FloatArray, phi: FloatArray, accuracy: float
 ) -> FloatArray:
     """The functions at slip angles, by integration; at 0 and π/2 in closed form."""

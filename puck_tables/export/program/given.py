@@ -27,6 +27,22 @@ CONSTANTS: Numbers = ()
 CONSTANTS_POWERS = 1
 CONSTANTS_QUANTUM = 1.0
 
+# the kind of puck: its largest delta, s = STEEP delta^2 - 1 from -1 to 1, how long pure spin lasts
+# and more than any motion does, in Q/J
+TALLEST, STEEP, SPIN_TIME, LONGEST = 1.0, 2.0, 0.75, 2.0
+
+# tables under another pressure law (law_places, law_state)
+MARKS: Numbers = ()
+INVERSE_EXTENTS: Numbers = ()
+SIDES = 4
+PATCH: Numbers = ()
+PATCH_CELLS, PATCH_DEGREE = 1, 1
+PATCH_QUANTUM = 1.0
+ORBIT: Numbers = ()
+ORBIT_CELLS, ORBIT_DEGREE, ORBIT_POWERS = 1, 1, 1
+ORBIT_QUANTUM = 1.0
+REACH = 8.0
+
 # what the test of a file compares with
 TOLERANCE = 1.0
 STOP_CASES: Numbers = ()

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from math import nan, sqrt
 
-from puck_tables.export.program.given import Numbers, Out, room
+from puck_tables.export.program.given import LONGEST, TALLEST, Numbers, Out, room
 
-MOST_WEIGHTS, WIDEST = 8, 64
+MOST_WEIGHTS, WIDEST = 8, 70
 LARGEST = 1.7e308
 # of a measured launch
 SLIP, SPEED, RIM, EAST, NORTH, SIDE, SHARE, AROUND = 0, 1, 2, 3, 4, 5, 6, 7
@@ -38,7 +38,9 @@ def measured(
     m[AROUND] = 1.0
     if not (is_finite(vx) and is_finite(vy) and is_finite(spin) and is_finite(decel)):
         return 1
-    if not (delta >= 0.0 and delta <= 1.0 and decel > 0.0 and radius > 0.0 and is_finite(radius)):
+    if not (
+        delta >= 0.0 and delta <= TALLEST and decel > 0.0 and radius > 0.0 and is_finite(radius)
+    ):
         return 1
     edge: float = radius * spin
     if not is_finite(edge):
@@ -71,7 +73,7 @@ def measured(
     m[EAST] = x * unit
     m[NORTH] = y * unit
     duration: float = m[SLIP] / decel
-    size: float = 2.0 * duration * m[SLIP]
+    size: float = LONGEST * duration * m[SLIP]
     return 0 if size / radius + size < LARGEST else 2
 
 
@@ -85,7 +87,7 @@ def look_up(
     table: Numbers, cells: int, degree: int, powers: int, functions: int, quantum: float,
     side: int, xi: float, s: float, found: Out,
 ) -> None:  # fmt: skip
-    """The functions of a table at a place and at s = 2 delta^2 - 1."""
+    """The functions of a table at a place and at a height s."""
     w = room(MOST_WEIGHTS)
     p: float = xi * cells
     cell: int = int(p)

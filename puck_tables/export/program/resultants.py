@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import cos, pi, sin, sqrt
 
-from puck_tables.export.program.given import Out, room
+from puck_tables.export.program.given import TALLEST, Out, room
 from puck_tables.export.program.places import refused
 
 MOST_STEPS = 9
@@ -55,15 +55,15 @@ def shape_integrals(ratio: float, fast: bool, p: Out) -> None:
 
 
 def resultants(phi: float, delta: float, out: Out) -> int:
-    """rho_parallel, rho_perpendicular and rho_omega of uniform pressure, into out[3].
+    """rho_parallel, rho_perpendicular and rho_omega, into out[3].
 
-    phi = atan2(r w, v) from -pi/2 to pi/2, delta = 2 f h / r from 0 to 1.  Force on the puck
+    phi = atan2(r w, v) from -pi/2 to pi/2, delta = 2 f h / r from 0 to TALLEST.  Force on the puck
     -f N cos(phi) rho_parallel along its velocity and -f N sin(phi) cos(phi) rho_perpendicular to
-    its left, torque -(f N r / 2) sin(phi) rho_omega.  In closed form, 1e-14.  Returns 0, or 1 and
-    NaN where an argument is not in its range.
+    its left, torque -(f N r / 2) sin(phi) rho_omega.  Returns 0, or 1 and NaN where an argument is
+    not in its range.
     """
     p = room(3)
-    if not (abs(phi) <= HALF_PI and delta >= 0.0 and delta <= 1.0):
+    if not (abs(phi) <= HALF_PI and delta >= 0.0 and delta <= TALLEST):
         return refused(out, 3, 1)
     cosine: float = abs(cos(phi))
     sine: float = abs(sin(phi))
@@ -71,9 +71,10 @@ def resultants(phi: float, delta: float, out: Out) -> int:
     shape_integrals(cosine / sine if fast else sine / cosine, fast, p)
     cos2: float = cosine * cosine
     sin2: float = sine * sine
-    d2: float = delta * delta
+    share: float = delta / TALLEST
+    d2: float = share * share
     parallel: float = p[0] / (1.0 - d2 * sin2 * p[1] * (p[1] - p[2]))
     out[0] = parallel
-    out[1] = delta * parallel * p[1]
+    out[1] = share * parallel * p[1]
     out[2] = 2.0 * (p[2] + d2 * cos2 * parallel * p[1] * (p[2] - 2.0 * p[1]))
     return 0

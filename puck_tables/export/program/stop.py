@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from puck_tables.export.program.given import (
+    SPIN_TIME,
+    STEEP,
     STOP,
     STOP_CELLS,
     STOP_DEGREE,
@@ -36,15 +38,15 @@ def stop_functions(side: int, share: float, delta: float, f: Out) -> None:
     """T, along, across, path length and body angle; side 1 where r|w| > v."""
     look_up(
         STOP, STOP_CELLS, STOP_DEGREE, STOP_POWERS, STOP_FUNCTIONS, STOP_QUANTUM, side,
-        place_of(share), 2.0 * delta * delta - 1.0, f,
+        place_of(share), STEEP * delta * delta - 1.0, f,
     )  # fmt: skip
     if share == 0.0 and side == 0:
         f[TIME] = 1.0
         f[ALONG] = 0.5
         f[LENGTH] = 0.5
     elif share == 0.0:
-        f[TIME] = 0.75
-        f[BODY] = 0.375
+        f[TIME] = SPIN_TIME
+        f[BODY] = 0.5 * SPIN_TIME
 
 
 def stop(
@@ -52,8 +54,8 @@ def stop(
 ) -> int:
     """Stop time s, place x m, y m, path length m and body angle rad of a launch, into out[5].
 
-    vx, vy m/s; spin rad/s, counter-clockwise positive; delta = 2 f h / r from 0 to 1; decel = f g
-    m/s^2; radius m.  Errors: the tolerance times Q/J, Q^2/J, Q^2/J and Q^2/(J r), where
+    vx, vy m/s; spin rad/s, counter-clockwise positive; delta = 2 f h / r from 0 to TALLEST;
+    decel = f g m/s^2; radius m.  Errors: the tolerance times Q/J, Q^2/J, Q^2/J and Q^2/(J r), where
     Q = hypot(v, r w) and J is decel.  Returns 0; 1 where a number is not finite or out of range, 2
     where the motion is too large for floating point: nothing but NaN is in out then.
     """
