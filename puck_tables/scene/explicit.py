@@ -22,8 +22,9 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
+from puck_tables.scene.blade_axes import by_floor, has_axes, rates_by_blade
 from puck_tables.scene.equations import SIZE, rates_here
-from puck_tables.scene.friction import X, Y
+from puck_tables.scene.friction import VX, VY, X, Y
 from puck_tables.scene.ingredients import Stretch
 
 STAGES = 13  # the last one stands at the end of the step
@@ -112,9 +113,9 @@ def explicit_step(
     """A step from (t, y) over h into ``new`` (12,), the state and dx, dy; its error in ``scale``.
 
     On entry work[0] is dy/dt at t, on return work[STAGES − 1] that at the end; those between are by
-    the variable of the step.
+    the variable of the step.  Velocities of a blade are by its own axes, on entry and on return.
     """
-    bend = stretch.bend
+    bend, own = stretch.bend, has_axes(stretch)
     left = 1.0 - bend
     whole = 1.0 - left * left * left * left
     slope = steepness = 4.0 * bend / whole if bend != UNIFORM else 1.0
@@ -130,7 +131,13 @@ def explicit_step(
             weight = h * _A[stage, j]
             for i in range(SIZE):
                 new[i] += weight * work[j, i]
+        along, across = new[VX], new[VY]
+        if own:
+            by_floor(stretch, new)
         rates_here(stretch, moment, new, work, stage)
+        if own:
+            new[VX], new[VY] = along, across
+            rates_by_blade(stretch, new, work, stage)
         if bend != UNIFORM and stage < STAGES - 1:
             for i in range(SIZE):
                 work[stage, i] *= here

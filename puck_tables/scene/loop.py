@@ -30,6 +30,7 @@ from puck_tables.scene.cushions import NX, NY
 from puck_tables.scene.desk import Ask, Desk
 from puck_tables.scene.equations import (
     FIRST,
+    GIVEN,
     ROW,
     SIZE,
     acting_force,
@@ -52,6 +53,7 @@ from puck_tables.scene.ingredients import (
     NO_WAY,
     SLIDES,
     STOPS,
+    Body,
     Dry,
     Model,
     Regions,
@@ -108,6 +110,7 @@ _SLOWLY = 0.1  # if the slip changes by less than this of itself meanwhile
 _NEWTON, _FINEST_NEWTON = 1e-3, 1e-15  # of the local error: how well implicit steps are solved
 _SWING = 0.05  # rad that a carried puck turns, at most, in a step
 _NOTHING = -2  # is watched
+_ULP = 4e-16  # of a number: rounding of steps to it
 _ABRUPT, _ROUNDING = 0.03, 3e-14  # of the local error, astride, and the least
 
 
@@ -119,6 +122,21 @@ def _allowed(tolerance: float, dry: Dry) -> float:
     estimated to, and not by much less as on a smooth motion.
     """
     return max(_ABRUPT * tolerance, min(tolerance, _ROUNDING)) if is_astride(dry) else tolerance
+
+
+@inlined
+def _grow(scale: FloatArray, tolerance: float, body: Body, y: FloatArray) -> None:
+    """Let the scales follow a motion that leaves them: no step is better than rounding.
+
+    Energies are known to a share of the largest.
+    """
+    for i in range(GIVEN):
+        scale[i] = max(scale[i], _ULP / tolerance * abs(y[i]))
+    largest = kinetic_energy(body, y)
+    for i in range(GIVEN, SIZE):
+        largest = max(largest, abs(y[i]))
+    for i in range(GIVEN, SIZE):
+        scale[i] = max(scale[i], largest)
 
 
 @kernel
@@ -145,11 +163,11 @@ def follow(
     how it ended, when, number of events, of steps and of frames reached, sum of the errors of steps
     in units of ``ask.scale``
     """
-    work, last, gaps, y, new, trial, contacts, at_once, lies = desk
+    work, last, gaps, y, new, trial, contacts, at_once, lies, scale = desk
     at_once[0] = 0.0
     for i in range(SIZE):
-        y[i] = start[i]
-    body, scale, surface, drive = model.body, ask.scale, model.surface, model.forces.drive
+        y[i], scale[i] = start[i], ask.scale[i]
+    body, surface, drive, length_scale = model.body, model.surface, model.forces.drive, scale[X]
     radius, held_there = body.radius, model.hold.kind != FREE
     moves = surface.vx != 0.0 or surface.vy != 0.0 or surface.spin != 0.0
     pull_there = model.forces.x != 0.0 or model.forces.y != 0.0 or len(drive) > 0
@@ -173,7 +191,7 @@ def follow(
     straight = max(_LAST * ask.tolerance / slow, 2.0 * REST) * ask.speed
     damps, turns = settling_rates(model, dry.load)
     how = TIME_UP
-    h = 1e-2 * min(ask.until, scale[0] / ask.speed)
+    h = 1e-2 * min(ask.until, length_scale / ask.speed)
     reach, closest, swing = _NEAR, CLOSEST, _SWING
     halved = False  # the step that ends here is cut in two
     if ask.twin > 0.0:
@@ -285,7 +303,7 @@ def follow(
         lifts = 0.0  # off a wall that the puck leant on: from where it leaves, it may come back
         for i in range(leaning.shape[0]):
             lifts = max(lifts, leaning[i, NX] * new[SIZE] + leaning[i, NY] * new[SIZE + 1])
-        if lifts > ask.tolerance * scale[0] and error <= allowed:
+        if lifts > ask.tolerance * length_scale and error <= allowed:
             h = 0.25 * length
             continue
         if not error <= allowed:
@@ -355,6 +373,7 @@ def follow(
         t = end
         for i in range(SIZE):
             y[i] = new[i]
+        _grow(scale, ask.tolerance, body, y)
         for i in range(room.size):
             room[i] += bounds.walls[i, NX] * new[SIZE] + bounds.walls[i, NY] * new[SIZE + 1]
         for i in range(ROW):
@@ -393,7 +412,7 @@ def follow(
             to_laboratory(model, last, 1.0)
             happens, which, other = met_at_once(
                 bounds, contacts, happens, which, ask.order, body, t, last, ask.speed,
-                scale[0] / ask.speed, ask.tolerance, new, trial,
+                length_scale / ask.speed, ask.tolerance, new, trial,
             )  # fmt: skip
             if other >= 0:
                 at_once[0] += 1.0
@@ -421,14 +440,14 @@ def follow(
             before = kinetic_energy(body, y)
             rest_time = bounced(
                 bounds, contacts, which, body, y, t, floor_velocity(surface, y[X], y[Y]), ask.speed,
-                scale[0] / ask.speed, ask.tolerance,
+                length_scale / ask.speed, ask.tolerance,
             )  # fmt: skip
             heat += before - kinetic_energy(body, y)
             to_laboratory(model, y, -1.0)
             if rest_time >= 0.0:
                 happens = LEANS
                 calm = max(calm, t + rest_time) if rest_time > 0.0 else calm
-                share = ask.speed * rest_time / scale[0]
+                share = ask.speed * rest_time / length_scale
                 wrong += share * share
             leaning = contacts.rows[: touching(bounds, contacts)]
         if count == len(events):

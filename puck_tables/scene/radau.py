@@ -16,11 +16,11 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import allocating, inlined
+from puck_tables.scene.blade_axes import rates_in_step
 from puck_tables.scene.equations import (
     FIRST,
     SECOND,
     SIZE,
-    rates,
     settling_rates,
     slip_speed,
     stopping,
@@ -88,13 +88,13 @@ def _jacobian(
 ) -> None:
     """∂(vx, vy, spin)′/∂(vx, vy, spin) at (t, y) by one-sided differences into ``out`` (3, 3)."""
     slip, radius = slip_speed(stretch.model.body.radius, y), stretch.model.body.radius
-    rates(stretch, t, y, rows, FIRST)
+    rates_in_step(stretch, t, y, rows, FIRST)
     for j in range(_STIFF):
         nudge = _NUDGE * (slip if slip > 0.0 else 1.0) / (radius if VX + j == SPIN else 1.0)
         for i in range(SIZE):
             at[i] = y[i]
         at[VX + j] += nudge
-        rates(stretch, t, at, rows, SECOND)
+        rates_in_step(stretch, t, at, rows, SECOND)
         for i in range(_STIFF):
             out[i, j] = (rows[1, VX + i] - rows[0, VX + i]) / nudge
 
@@ -145,7 +145,7 @@ def radau_step(
         for stage in range(3):
             for i in range(SIZE):
                 at[i] = y[i] + z[stage, i]
-            rates(stretch, t + _C[stage] * h, at, rows, stage)
+            rates_in_step(stretch, t + _C[stage] * h, at, rows, stage)
         largest, carried = 0.0, 0.0
         for stage in range(3):
             for i in range(SIZE):

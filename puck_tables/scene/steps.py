@@ -9,7 +9,8 @@ import math
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
-from puck_tables.scene.equations import SIZE, rates, to_laboratory
+from puck_tables.scene.blade_axes import by_blade, by_floor, has_axes, rates_by_blade
+from puck_tables.scene.equations import FIRST, SIZE, rates, to_laboratory
 from puck_tables.scene.explicit import STAGES, explicit_step
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
 from puck_tables.scene.ingredients import (
@@ -72,11 +73,20 @@ def step(
 
     On entry work[0] is dy/dt at t; on return work[STAGES − 1] is that at the end.
     """
-    if stretch.newton > 0.0 and h > 0.0:  # not where something happens at once
+    own, implicit = has_axes(stretch), stretch.newton > 0.0 and h > 0.0  # something is at once
+    ux, uy, ax, ay = y[VX], y[VY], work[0, VX], work[0, VY]
+    if own:
+        by_blade(stretch, y)
+        rates_by_blade(stretch, y, work, FIRST)
+    if implicit:
         error = radau_step(stretch, t, h, y, scale, work, new)
-        rates(stretch, t + h, new, work, STAGES - 1)
     else:
         error = explicit_step(stretch, t, h, y, scale, work, new)
+    if own:
+        y[VX], y[VY], work[0, VX], work[0, VY] = ux, uy, ax, ay
+        by_floor(stretch, new)
+    if own or implicit:
+        rates(stretch, t + h, new, work, STAGES - 1)
     model = stretch.model
     if stretch.mode == CARRIED:
         new[VX] = new[VY] = new[SPIN] = 0.0
