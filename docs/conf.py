@@ -109,24 +109,18 @@ def bars_are_bars(*given: Any) -> None:
             lines[n] = re.sub(r"\|(?=\S)", r"\|", line)
 
 
-def arrows_have_names(
-    app: Sphinx, page: str, template: str, context: dict[str, Any], tree: Any
-) -> None:
+def arrows_have_names(app: Sphinx, failed: Exception | None) -> None:
     """The arrows that open a part of the menu say so to those who hear the page."""
-    made = context.get("generate_toctree_html")
-    if made is None:
-        return
-
-    def named(*given: Any, **how: Any) -> Any:
-        menu = made(*given, **how)
-        said = '<summary aria-label="Show or hide the pages of this part">'
-        return menu.replace("<summary>", said) if isinstance(menu, str) else menu
-
-    context["generate_toctree_html"] = named
+    bare = '<summary><span class="toctree-toggle"'
+    said = bare.replace("<summary>", '<summary aria-label="Show or hide the pages of this part">')
+    for path in Path(app.outdir).rglob("*.html"):
+        text = path.read_text(encoding="utf-8")
+        if bare in text:
+            path.write_text(text.replace(bare, said), encoding="utf-8")
 
 
 def setup(app: Sphinx) -> None:
     """Called by Sphinx."""
-    app.connect("html-page-context", arrows_have_names, priority=900)
+    app.connect("build-finished", arrows_have_names)
     app.connect("builder-inited", said_by_the_program)
     app.connect("autodoc-process-docstring", bars_are_bars, priority=900)
