@@ -21,6 +21,7 @@ from puck_tables.errors import InputError
 from puck_tables.motion import limit_ratio
 from puck_tables.plot import style
 from puck_tables.scene.library import find_scene
+from puck_tables.scene.outcome import ENDS
 
 
 @pytest.fixture
@@ -186,8 +187,8 @@ def test_maps_tell_ends_apart(drawn: Any, ranges: tuple[str, str]) -> None:
         for c in axes.collections if isinstance(c, QuadMesh)
     )  # fmt: skip
     assert np.array_equal(np.asarray(mesh.get_array()).reshape(stops.end.shape), stops.end)
-    colors = mesh.cmap(mesh.norm(np.arange(9)))
-    assert len({tuple(color) for color in colors}) == 9
+    colors = mesh.cmap(mesh.norm(np.arange(len(ENDS))))
+    assert len({tuple(color) for color in colors}) == len(ENDS)
 
 
 TITLES = ["$x_1^{", "a $\\frac{1}{2}$ b", "\N{ICE HOCKEY STICK AND PUCK} \u05d0"]

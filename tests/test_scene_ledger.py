@@ -16,7 +16,7 @@ def _closes(seeds: range, folder: Path) -> set[str]:
     seen = set()
     for seed in seeds:
         run = simulate_scene(draw(seed, folder))
-        assert run.end in ENDS[:4], seed
+        assert run.end in ENDS[:5], seed
         assert run.energy_residual <= 1e-8, (seed, run.energy_residual)
         for name, column in run.columns.items():
             assert np.isfinite(column).all(), (seed, name)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import pickle
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -73,12 +74,13 @@ def test_beside_another_far_away_a_puck_moves_as_alone(case: str):
     assert two.energy_residual < 1e-9
 
 
-def test_each_has_its_own_pressure_over_a_border():
+def test_each_has_its_own_pressure_over_a_border(tmp_path: Path):
     """Their grounds are of different lengths: one has rows of a tabulated pressure."""
     floor, launch = pt.Floor(strips=WIDE), pt.Launch((0.6, 0.1), 20.0, (0.37, 0.0))
-    ring, rows = {**PUCK, "pressure": "ring"}, [[0.0, 1.0], [0.5, 0.8], [1.0, 0.3]]
+    ring, rows = {**PUCK, "pressure": "ring"}, tmp_path / "rows.csv"
+    rows.write_text("rho,W\n0,1\n0.5,0.8\n1,0.3\n")
     alone = pt.Scene(pt.Puck(**ring), floor, launch, run=pt.Run(time=0.2, tol=1e-9))
-    pucks = [pt.Piece(**ring, launch=launch), piece(0.1, 0.5, pressure=rows)]
+    pucks = [pt.Piece(**ring, launch=launch), piece(0.1, 0.5, pressure=str(rows))]
     one = alone.simulate()
     two = pt.Scene(pucks=pucks, floor=floor, run=alone.run).simulate()
     for name in ("x", "y"):
@@ -196,10 +198,6 @@ def test_a_law_by_name_goes_on_as_they_slip_and_rows_end_with_a_sentence():
     assert world.state()[0, 3] == 2.0
 
 
-@pytest.mark.parametrize(("more", "words"), [
-    ({"friction": 2000.0, "height": 0.0}, r"puck 1: floor.strips: .*give at most 1000"),
-    ({"height": 0.2}, r"puck 1: floor.strips: .*loaded everywhere"),
-])  # fmt: skip
-def test_whose_base_does_not_fit_a_floor_is_named(more: dict, words: str):
-    with pytest.raises(pt.InputError, match=words):
-        pt.Scene(pucks=[piece(0.0, 0.0), piece(0.3, 0.0, **more)], floor=pt.Floor(strips=WIDE))
+def test_whose_base_does_not_fit_a_floor_is_named():
+    with pytest.raises(pt.InputError, match=r"puck 1: floor.strips: .*loaded everywhere"):
+        pt.Scene(pucks=[piece(0.0, 0.0), piece(0.3, 0.0, height=0.2)], floor=pt.Floor(strips=WIDE))

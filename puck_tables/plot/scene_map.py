@@ -33,7 +33,7 @@ _MAPS = {
     "heat_dry": "heat of dry friction / J",
 }
 _LOOKS = (
-    (BLUE, "o"), (GREEN, "^"), (GREEN, "o"), (ORANGE, "D"), (RED, "v"), ("#555555", "x"),
+    (BLUE, "o"), (GREEN, "^"), ("#8fd19e", "o"), (ORANGE, "D"), (RED, "v"), ("#555555", "x"),
     ("#8b2fa0", "x"), ("black", "x"), ("#17becf", "x"), ("#c8a415", "x"), ("#b8b8b8", "x"),
 )  # fmt: skip
 _HATCH = "///"

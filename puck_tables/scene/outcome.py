@@ -36,7 +36,12 @@ EVENT_UNITS = {"time": "s", "what": "1", "which": "1", "x": "m", "y": "m"}
 
 
 class Event(NamedTuple):
-    """What happened on the way: when (s), what, which wall, edge or region, where (m)."""
+    """What happened on the way: when (s), what, which, where (m).
+
+    ``which``, from 0: of impact and contact the wall, of edge the edge, of entry and exit the
+    border between strips and after all borders the patch, of stick and slip the strip under the
+    centre.
+    """
 
     time: float
     what: str
@@ -52,8 +57,8 @@ class SceneRun(TimedResult):
     ``end``: 'at rest', 'carried by the floor' (at rest on a moving one), 'carried round' (at rest
     on one that turns, over the same borders again and again: a whole turn is followed), 'time is
     up' or 'over the edge'; ``end_time`` s; ``events``: what happened, one of stick (it comes to
-    rest on the floor), slip (it leaves that rest), impact, contact (it stays at a wall), border,
-    edge.
+    rest on the floor), slip (it leaves that rest), impact, contact (it stays at a wall), entry (its
+    rim comes over a border or patch), exit (it has left it), edge.
     ``plan``: the model that was taken, and why.  ``energy_residual``: what the ledger misses, as a
     share of its largest entry.  ``error_estimate``: of the end time in
     units of Q/J and of places in Q²/J, with ``speed_scale`` = Q in m/s and ``rate_scale`` = J in
