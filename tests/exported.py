@@ -8,10 +8,12 @@ import subprocess
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
+import puck_tables as pt
 from puck_tables.export.source import export_source
 
 WIDTHS = {"stop": (6, 5), "state": (7, 6), "turn": (6, 1), "resultants": (2, 3)}
@@ -141,3 +143,33 @@ def units(rows: np.ndarray, name: str) -> np.ndarray:
     else:
         found = [np.ones_like(slip)]
     return np.maximum(np.column_stack(found), 1e-300)
+
+
+def answers(
+    rows: np.ndarray, rng: np.random.Generator, resultants: Any, **puck: Any
+) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    """Arguments and answers of the library to launches, by function, for a kind of puck."""
+    count = len(rows)
+    kind = {"delta": rows[:, 3], "decel": rows[:, 4], "radius": rows[:, 5], **puck}
+    stops = pt.stop(rows[:, :2], rows[:, 2], tol=1e-10, **kind)
+    share = np.where(
+        rng.random(count) < 0.3, 1.0 - 10.0 ** -rng.uniform(0.0, 8.0, count),
+        rng.uniform(0.0, 1.02, count),
+    )  # fmt: skip
+    share[::50] = 0.0
+    times = share * stops.stop_time
+    there = pt.states(rows[:, :2], rows[:, 2], times, **kind)
+    phi = rng.uniform(-0.5 * np.pi, 0.5 * np.pi, count)
+    phi[::5] = 0.25 * np.pi * (1.0 + 1e-7 * rng.normal(0.0, 1.0, phi[::5].size))
+    phi[:4] = 0.0, 0.5 * np.pi, -0.5 * np.pi, 0.25 * np.pi
+    rho = resultants(phi, rows[:, 3])
+    return {
+        "stop": (rows, np.column_stack([
+            stops.stop_time, stops.stop_position, stops.path_length, stops.body_angle,
+        ])),
+        "turn": (rows, stops.turn_angle[:, None]),
+        "state": (np.column_stack([rows, times]), np.column_stack([
+            there.x, there.y, there.orientation, there.vx, there.vy, there.spin,
+        ])),
+        "resultants": (np.column_stack([phi, rows[:, 3]]), np.column_stack(list(rho))),
+    }  # fmt: skip

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from exported import RUNNERS, WIDTHS, launches, runner, text_of, units
+from exported import RUNNERS, WIDTHS, answers, launches, runner, text_of, units
 
 import puck_tables as pt
 from puck_tables.export.languages import LANGUAGES
@@ -21,30 +21,7 @@ every_language = pytest.mark.parametrize("language", RUNNERS)
 @cache
 def by_library(count: int) -> dict[str, tuple[np.ndarray, np.ndarray]]:
     """Arguments and answers of the library, by function."""
-    rows, rng = launches(count, 16), np.random.default_rng(61)
-    kind = {"delta": rows[:, 3], "decel": rows[:, 4], "radius": rows[:, 5]}
-    stops = pt.stop(rows[:, :2], rows[:, 2], tol=1e-10, **kind)
-    share = np.where(
-        rng.random(count) < 0.3, 1.0 - 10.0 ** -rng.uniform(0.0, 8.0, count),
-        rng.uniform(0.0, 1.02, count),
-    )  # fmt: skip
-    share[::50] = 0.0
-    times = share * stops.stop_time
-    there = pt.states(rows[:, :2], rows[:, 2], times, **kind)
-    phi = rng.uniform(-0.5 * np.pi, 0.5 * np.pi, count)
-    phi[::5] = 0.25 * np.pi * (1.0 + 1e-7 * rng.normal(0.0, 1.0, phi[::5].size))
-    phi[:4] = 0.0, 0.5 * np.pi, -0.5 * np.pi, 0.25 * np.pi
-    rho = pt.resultants(phi, rows[:, 3])
-    return {
-        "stop": (rows, np.column_stack([
-            stops.stop_time, stops.stop_position, stops.path_length, stops.body_angle,
-        ])),
-        "turn": (rows, stops.turn_angle[:, None]),
-        "state": (np.column_stack([rows, times]), np.column_stack([
-            there.x, there.y, there.orientation, there.vx, there.vy, there.spin,
-        ])),
-        "resultants": (np.column_stack([phi, rows[:, 3]]), np.column_stack(list(rho))),
-    }  # fmt: skip
+    return answers(launches(count, 16), np.random.default_rng(61), pt.resultants)
 
 
 @every_language

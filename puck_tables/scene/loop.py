@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.kernels.compile import kernel
 from puck_tables.scene.at_once import met_at_once
 from puck_tables.scene.boundaries import (
     BORDER,
@@ -30,21 +30,17 @@ from puck_tables.scene.cushions import NX, NY
 from puck_tables.scene.desk import Ask, Desk
 from puck_tables.scene.equations import (
     FIRST,
-    GIVEN,
     ROW,
     SIZE,
     acting_force,
     kinetic_energy,
     rates,
     settling_rates,
-    slip_change,
     slip_rate,
-    slip_side,
     slip_speed,
     to_laboratory,
 )
 from puck_tables.scene.explicit import CLOSEST, STAGES, UNIFORM, bend_of, share_of, stretched
-from puck_tables.scene.forces import jumps
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.scene.ground import BORDERS as GROUND_BORDERS
 from puck_tables.scene.ingredients import (
@@ -53,24 +49,19 @@ from puck_tables.scene.ingredients import (
     NO_WAY,
     SLIDES,
     STOPS,
-    Body,
-    Dry,
     Model,
     Regions,
     Stretch,
     floor_velocity,
     is_astride,
 )
-from puck_tables.scene.leaning import GRIP, RIM
 from puck_tables.scene.moments import (
-    EQUAL,
+    NOTHING,
     REST,
-    SPINLESS,
+    cut_short,
     goes_straight,
     lost,
     rests_on,
-    watched,
-    zero,
 )
 from puck_tables.scene.patches import (
     ASTRIDE,
@@ -92,6 +83,7 @@ from puck_tables.scene.settle import (
     touching,
 )
 from puck_tables.scene.standstill import from_standstill
+from puck_tables.scene.step_size import allowed_error, follow_scales, up_to_the_stop
 from puck_tables.scene.steps import step
 
 # how a run ends
@@ -109,34 +101,6 @@ _STIFF, _MILD = 0.8, 0.3  # of the time in which a slip settles: longer steps ar
 _SLOWLY = 0.1  # if the slip changes by less than this of itself meanwhile
 _NEWTON, _FINEST_NEWTON = 1e-3, 1e-15  # of the local error: how well implicit steps are solved
 _SWING = 0.05  # rad that a carried puck turns, at most, in a step
-_NOTHING = -2  # is watched
-_ULP = 4e-16  # of a number: rounding of steps to it
-_ABRUPT, _ROUNDING = 0.03, 3e-14  # of the local error, astride, and the least
-
-
-@inlined
-def _allowed(tolerance: float, dry: Dry) -> float:
-    """The error of a step.
-
-    Where the rim comes over a border friction grows like t^(3/2): there a step errs by what it is
-    estimated to, and not by much less as on a smooth motion.
-    """
-    return max(_ABRUPT * tolerance, min(tolerance, _ROUNDING)) if is_astride(dry) else tolerance
-
-
-@inlined
-def _grow(scale: FloatArray, tolerance: float, body: Body, y: FloatArray) -> None:
-    """Let the scales follow a motion that leaves them: no step is better than rounding.
-
-    Energies are known to a share of the largest.
-    """
-    for i in range(GIVEN):
-        scale[i] = max(scale[i], _ULP / tolerance * abs(y[i]))
-    largest = kinetic_energy(body, y)
-    for i in range(GIVEN, SIZE):
-        largest = max(largest, abs(y[i]))
-    for i in range(GIVEN, SIZE):
-        scale[i] = max(scale[i], largest)
 
 
 @kernel
@@ -180,7 +144,7 @@ def follow(
     leaning = contacts.rows[: touching(bounds, contacts)]
     look_at_patches(regions.ground, lies, radius, y[X], y[Y])
     dry = dry_under(regions, region, lies)
-    allowed = _allowed(ask.tolerance, dry)
+    allowed = allowed_error(ask.tolerance, dry)
     room, leans = contacts.room, contacts.leans
     to_laboratory(model, y, -1.0)
     t, heat, mode, piece, way, stiff = 0.0, 0.0, SLIDES, 0, NO_WAY, False
@@ -274,13 +238,8 @@ def follow(
         ends = 0.0  # 1/s: of the slip
         if mode == SLIDES and dry.load > 0.0:
             pull = slip_rate(radius, work)
-            near = max(q, REST * ask.speed)
-            brakes = -slip_change(radius, y, work) if q > 0.0 else 0.0
-            across = math.sqrt(max(pull * pull - brakes * brakes, 0.0))
-            most = pull / reach  # explicit steps follow how a slip stops
-            if newton == 0.0 and brakes > 0.0:
-                most, ends = max(across / reach, brakes / closest), brakes / near
-            h = near / most if h * most > near else h
+            least = REST * ask.speed
+            h, ends = up_to_the_stop(stretch, h, q, least, pull, reach, closest, y, work)
             way = NO_WAY
             if 0.0 < q <= straight:
                 way = goes_straight(
@@ -318,20 +277,9 @@ def follow(
         again = False
         grows = min(5.0, 5.0 if error == 0.0 else 0.9 * (allowed / error) ** power)
         h = (1.0 - share_of(bend)) * stretched(bend, length, grows)
-        stuck, cut = -1, landed
-        for passed in range(2 + leaning.shape[0]):
-            what = _NOTHING
-            if passed == 0 and mode == SLIDES:
-                what = EQUAL if slip_side(radius, y) * slip_side(radius, new) < 0.0 else what
-            if passed == 1 and mode == SLIDES and y[SPIN] * new[SPIN] < 0.0 and jumps(model.forces):
-                what = SPINLESS
-            for i in range(leaning.shape[0]):
-                passes = leaning[i, RIM] * watched(stretch, i, new) < 0.0
-                if what == _NOTHING and leaning[i, GRIP] > 0.0 and passes:
-                    what = i
-            if what != _NOTHING:
-                landed, stuck, cut = False, what, True
-                length = zero(stretch, what, t, length, y, scale, work, new)
+        stuck, length = cut_short(stretch, t, length, y, scale, work, new)
+        landed = landed and stuck == NOTHING
+        cut = landed or stuck != NOTHING
         for i in range(ROW):
             last[i] = work[STAGES - 1, i]
         happens, which, moment = -1, -1, math.inf
@@ -351,10 +299,10 @@ def follow(
             if slips < math.inf:
                 happens, which, moment = SLIPS, region, slips
         if happens >= 0:
-            landed, stuck, cut, length = False, -1, True, moment
+            landed, stuck, cut, length = False, NOTHING, True, moment
         halved = ask.twin > 0.0 and cut and not halved
         if halved:
-            landed, stuck, happens, length = False, -1, -1, ask.twin * length
+            landed, stuck, happens, length = False, NOTHING, -1, ask.twin * length
         if halved or happens >= 0:
             error = step(stretch, t, length, y, scale, work, new)
             if not error <= allowed and is_astride(dry):  # the longer step may have leapt over all
@@ -373,7 +321,7 @@ def follow(
         t = end
         for i in range(SIZE):
             y[i] = new[i]
-        _grow(scale, ask.tolerance, body, y)
+        follow_scales(scale, ask.tolerance, body, y)
         for i in range(room.size):
             room[i] += bounds.walls[i, NX] * new[SIZE] + bounds.walls[i, NY] * new[SIZE + 1]
         for i in range(ROW):
@@ -430,7 +378,7 @@ def follow(
                 which += int(regions.ground[GROUND_BORDERS])
             happens = LEAVES if back else COMES_OVER
             dry = dry_under(regions, region, lies)
-            allowed = _allowed(ask.tolerance, dry)
+            allowed = allowed_error(ask.tolerance, dry)
             damps, turns = settling_rates(model, dry.load)
             mode = CARRIED if mode == CARRIED and dry.load > 0.0 else SLIDES
             contacts.chain[0] = -1

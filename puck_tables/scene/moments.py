@@ -8,10 +8,12 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.cushions import NX, NY, rim_slip
 from puck_tables.scene.equations import SECOND, rates, slip_side, stopping
+from puck_tables.scene.forces import jumps
 from puck_tables.scene.friction import SPIN, VX, VY, size
 from puck_tables.scene.ingredients import (
     CARRIED,
     NO_WAY,
+    SLIDES,
     Dry,
     Model,
     Stretch,
@@ -24,7 +26,7 @@ from puck_tables.scene.rest import SLACK, excess_at_rest, held_by_floor
 from puck_tables.scene.steps import step
 
 # watched: equal speeds of centre and rim; no spin; else the rim on a wall that is leant on
-EQUAL, SPINLESS = -1, -3
+EQUAL, NOTHING, SPINLESS = -1, -2, -3
 _TURNS, _SETTLED = 3000, 1e-12  # at most; of friction: a direction stays
 _SLOW = 1e-3  # of friction: what brakes less comes closer to rest before it goes straight
 _STEADY = 1e-4  # of its rate: a slip whose direction does not change
@@ -131,6 +133,29 @@ def zero(
             low, first, stays = middle, value, -1
     step(stretch, t, high, y, scale, work, new)
     return high
+
+
+@inlined
+def cut_short(
+    stretch: Stretch, t: float, h: float, y: FloatArray, scale: FloatArray, work: FloatArray,
+    new: FloatArray,
+) -> tuple[int, float]:  # fmt: skip
+    """What happens first on a step to ``new`` that is no line, or NOTHING; when; ``new`` then."""
+    radius, leaning, first = stretch.model.body.radius, stretch.leaning, NOTHING
+    for passed in range(2 + leaning.shape[0]):
+        what = NOTHING
+        if passed == 0 and stretch.mode == SLIDES:
+            what = EQUAL if slip_side(radius, y) * slip_side(radius, new) < 0.0 else what
+        turns_over = y[SPIN] * new[SPIN] < 0.0 and jumps(stretch.model.forces)
+        if passed == 1 and stretch.mode == SLIDES and turns_over:
+            what = SPINLESS
+        for i in range(leaning.shape[0]):
+            passes = leaning[i, RIM] * watched(stretch, i, new) < 0.0
+            if what == NOTHING and leaning[i, GRIP] > 0.0 and passes:
+                what = i
+        if what != NOTHING:
+            first, h = what, zero(stretch, what, t, h, y, scale, work, new)
+    return first, h
 
 
 @inner

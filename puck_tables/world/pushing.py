@@ -61,7 +61,7 @@ _BRIEF = 1e-6  # of Q/J: on as short a step gaps are rounding
 _SHORTEST = 1e-16  # of Q/J: shorter steps lead nowhere
 _CLOSE = 1e-14  # of a step: how close a moment is found
 _OVER = 1e-12  # of a radius: beyond a border
-_NOBODY = cast(int, np.int64(-1))
+_NOBODY = _OVER_BORDER = cast(int, np.int64(-1))  # in place of a contact, of what it does
 
 
 @inlined
@@ -94,38 +94,6 @@ def _advance(
     return error
 
 
-@inner
-def _moment(
-    group: Group, members: IntArray, modes: IntArray, doings: IntArray, t: float, h: float,
-    c: int, kind: int, scales: Scales, desk: Desk,
-) -> float:  # fmt: skip
-    """Until when within a step what is watched is positive; the step ends just after.
-
-    By false position, with the weight of an end that stays halved (Illinois).  ``c`` −1: until
-    when nobody at rest is set off, by halves.
-    """
-    low, high, first, last = 0.0, h, 1.0, -1.0
-    if c >= 0:
-        first, last = desk.watched[0, c, kind], desk.watched[1, c, kind]
-    for _ in range(80):
-        middle = (low * last - high * first) / (last - first)
-        if c < 0 or not low < middle < high:
-            middle = 0.5 * (low + high)
-        if high - low <= _CLOSE * h or not low < middle < high:
-            break
-        _advance(group, members, modes, doings, t, middle, scales, desk)
-        if c >= 0:
-            value = desk.watched[1, c, kind]
-        else:
-            value = -1.0 if sets_off(group, members, modes, doings, scales, desk) != 0 else 1.0
-        if value < 0.0:
-            high, last, first = middle, value, 0.5 * first
-        else:
-            low, first, last = middle, value, 0.5 * last
-    _advance(group, members, modes, doings, t, high, scales, desk)
-    return high
-
-
 @inlined
 def _room_of(group: Group, members: IntArray, place: int, y: FloatArray) -> float:
     """How far a member is from a border, in radii, and a little more."""
@@ -148,23 +116,44 @@ def _comes_over(group: Group, members: IntArray, desk: Desk) -> int:
     return -1
 
 
-@inner
-def _when_over(
-    group: Group, members: IntArray, modes: IntArray, doings: IntArray, t: float, h: float,
-    place: int, scales: Scales, desk: Desk,
+@inlined
+def _watched(
+    group: Group, members: IntArray, modes: IntArray, doings: IntArray, c: int, kind: int,
+    scales: Scales, desk: Desk,
 ) -> float:  # fmt: skip
-    """When within a step a member has just come over a border, as :func:`_moment`."""
-    low, high = 0.0, h
-    first = _room_of(group, members, place, desk.states[0])
-    last = _room_of(group, members, place, desk.states[1])
+    """What turns negative, at the end of a step."""
+    if kind == _OVER_BORDER:
+        return _room_of(group, members, c, desk.states[1])
+    if c >= 0:
+        return desk.watched[1, c, kind]
+    return -1.0 if sets_off(group, members, modes, doings, scales, desk) != 0 else 1.0
+
+
+@inner
+def _moment(
+    group: Group, members: IntArray, modes: IntArray, doings: IntArray, t: float, h: float,
+    c: int, kind: int, scales: Scales, desk: Desk,
+) -> float:  # fmt: skip
+    """Until when within a step what is watched is positive; the step ends just after.
+
+    By false position, with the weight of an end that stays halved (Illinois).  ``c``: a contact, or
+    the place of a member that comes over a border, up to _OVER beyond it; −1: until when nobody at
+    rest is set off, by halves.
+    """
+    low, high, first, last, enough = 0.0, h, 1.0, -1.0, 0.0
+    if kind == _OVER_BORDER:
+        first, enough = _room_of(group, members, c, desk.states[0]), -_OVER
+        last = _room_of(group, members, c, desk.states[1])
+    elif c >= 0:
+        first, last = desk.watched[0, c, kind], desk.watched[1, c, kind]
     for _ in range(80):
         middle = (low * last - high * first) / (last - first)
-        if not low < middle < high:
+        if c < 0 or not low < middle < high:
             middle = 0.5 * (low + high)
-        if high - low <= _CLOSE * h or last > -_OVER or not low < middle < high:
+        if high - low <= _CLOSE * h or last > enough or not low < middle < high:
             break
         _advance(group, members, modes, doings, t, middle, scales, desk)
-        value = _room_of(group, members, place, desk.states[1])
+        value = _watched(group, members, modes, doings, c, kind, scales, desk)
         if value < 0.0:
             high, last, first = middle, value, 0.5 * first
         else:
@@ -305,7 +294,9 @@ def follow(
             which = _comes_over(group, members, desk)
             if which >= 0:
                 how, landed = OFF_BORDER, False
-                length = _when_over(group, members, modes, doings, t, length, which, scales, desk)
+                length = _moment(
+                    group, members, modes, doings, t, length, which, _OVER_BORDER, scales, desk
+                )
         add_work(length, start + passed, works[count], desk)
         begun = False  # whether anybody's slip is so large that it has a direction of its own
         for place in range(size):

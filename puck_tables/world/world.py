@@ -11,9 +11,7 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import finite_array, real
-from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import InputError, PuckError
-from puck_tables.scene.by_speed import FARTHER, law_name, speed_law
 from puck_tables.scene.friction import SPIN, VX, VY
 from puck_tables.scene.holds import misfits
 from puck_tables.scene.ingredients import FREE, floor_velocity
@@ -21,7 +19,6 @@ from puck_tables.scene.parts import Launch
 from puck_tables.scene.scene import Scene
 from puck_tables.world import game as g
 from puck_tables.world.agreement import called, number_of, pieces_of
-from puck_tables.world.departures import CONCERNED
 from puck_tables.world.engine import (
     CROWDED,
     EVERYBODY,
@@ -37,10 +34,10 @@ from puck_tables.world.engine import (
     lacks_rows,
 )
 from puck_tables.world.flight import DAMPED, GONE, START, moves_until
-from puck_tables.world.floors import law_goes_to, slip_of_rim
 from puck_tables.world.footing import moves_along
 from puck_tables.world.holds import response
 from puck_tables.world.impact import FIRST_N, E
+from puck_tables.world.law_range import refuse_too_fast, with_law_for
 from puck_tables.world.layout import HOLD, LIGHTNESS, RADIUS
 from puck_tables.world.prepare import (
     game_of,
@@ -48,12 +45,10 @@ from puck_tables.world.prepare import (
     order_of,
     set_pace,
     shipped_curves,
-    with_law_up_to,
 )
 from puck_tables.world.record import states_at
 
 MOST_EVENTS = 1_000_000
-SURE = 1.0 - 1e-9  # of the last slip that a friction law knows: whoever is faster comes beyond
 CROWD = 1e-7  # of Q/J: 2000 events in less are a crowd
 CROWDED_PUSHES, PUSHED_IN = 3000, 1e-3  # and so many new groups that push, in that share of Q/J
 _FAILURES = {
@@ -287,19 +282,8 @@ class World:
         elif point is not None:
             raise InputError("point is where an impulse acts: give the impulse, too")
         self._refuse_misfit(int(self._order[i]), state)
-        self._refuse_too_fast(i, state)
+        refuse_too_fast(self._game, self.scene, self.names[self._order[i]], i, state)
         self._advance(self.time, i, state)
-
-    def _refuse_too_fast(self, i: int, state: FloatArray) -> None:
-        """Refuse a strike beyond what the friction law of the floor says."""
-        top = law_goes_to(self._game.regions)
-        fastest = slip_of_rim(self._game.discs[i, RADIUS], self._game.surface, state.tolist())
-        if fastest > top and isinstance(speed_law(self.scene), SpeedLaw):
-            raise InputError(
-                f"{self.names[self._order[i]]}: its rim would slip at {fastest:.6g} m/s, and the "
-                f"friction law {law_name(self.scene)} ends at {top:g} m/s: strike more softly, or "
-                "give it more speeds"
-            )
 
     def _refuse_misfit(self, number: int, state: FloatArray) -> None:
         """Refuse a velocity that the constraint of a puck does not allow."""
@@ -324,7 +308,9 @@ class World:
             elif how == PUSHING:
                 from puck_tables.world.groups import push_on  # compiled where it is needed
 
-                self._go_on_with_law()
+                self._game = with_law_for(
+                    self._game, self._room, self.scene, self._order, self.names, self.time
+                )
                 full = len(pushes) == CROWDED_PUSHES
                 if full and self.time - pushes[0] <= PUSHED_IN * unit:
                     raise PuckError(self._failure(CROWDED))
@@ -334,32 +320,6 @@ class World:
                 mark = self.time
             else:
                 raise PuckError(self._failure(CROWDED if how == PAUSED else how))
-
-    def _go_on_with_law(self) -> None:
-        """See to it that friction is known at all slips of those that set off now.
-
-        Raises
-        ------
-        InputError
-            If its law ends below one.
-        """
-        top = law_goes_to(self._game.regions)
-        if top == math.inf:
-            return
-        discs, surface = self._game.discs, self._game.surface
-        for i in np.flatnonzero(self._room.marks == CONCERNED):
-            state: list[float] = self._room.states[i].tolist()
-            fastest = slip_of_rim(discs[i, RADIUS], surface, state)
-            if discs[i, LIGHTNESS] == 0.0 or fastest < SURE * top:
-                continue
-            if isinstance(speed_law(self.scene), SpeedLaw):
-                raise InputError(
-                    f"at {self.time:.6g} s the rim of {self.names[self._order[i]]} slips at "
-                    f"{fastest:.6g} m/s, and the friction law {law_name(self.scene)} ends at "
-                    f"{top:g} m/s: nothing is known beyond; give it more speeds"
-                )
-            top = FARTHER * fastest
-            self._game = with_law_up_to(self._game, self.scene, self._order, top)
 
     def perturb(self, scale: float, turn: float) -> None:
         """Change the launches: their velocities and spins by a factor, their headings by an angle.

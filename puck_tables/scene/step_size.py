@@ -1,0 +1,59 @@
+"""How long a step of a scene may be, and how exact it has to be."""
+
+from __future__ import annotations
+
+import math
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.kernels.compile import inlined
+from puck_tables.scene.equations import GIVEN, SIZE, kinetic_energy, slip_change
+from puck_tables.scene.ingredients import Body, Dry, Stretch, is_astride
+
+_ULP = 4e-16  # of a number: rounding of steps to it
+_ABRUPT, _ROUNDING = 0.03, 3e-14  # of the local error, astride, and the least
+
+
+@inlined
+def allowed_error(tolerance: float, dry: Dry) -> float:
+    """The error of a step.
+
+    Where the rim comes over a border friction grows like t^(3/2): there a step errs by what it is
+    estimated to, and not by much less as on a smooth motion.
+    """
+    return max(_ABRUPT * tolerance, min(tolerance, _ROUNDING)) if is_astride(dry) else tolerance
+
+
+@inlined
+def follow_scales(scale: FloatArray, tolerance: float, body: Body, y: FloatArray) -> None:
+    """Let the scales follow a motion that leaves them: no step is better than rounding.
+
+    Energies are known to a share of the largest.
+    """
+    for i in range(GIVEN):
+        scale[i] = max(scale[i], _ULP / tolerance * abs(y[i]))
+    largest = kinetic_energy(body, y)
+    for i in range(GIVEN, SIZE):
+        largest = max(largest, abs(y[i]))
+    for i in range(GIVEN, SIZE):
+        scale[i] = max(scale[i], largest)
+
+
+@inlined
+def up_to_the_stop(
+    stretch: Stretch, h: float, q: float, least: float, pull: float, reach: float, closest: float,
+    y: FloatArray, work: FloatArray,
+) -> tuple[float, float]:  # fmt: skip
+    """The length of a step, no longer than where a slip q ≥ 0 leads; the rate at which that ends.
+
+    ``pull``: how fast the slip changes.  An implicit step takes at most the share ``reach`` of the
+    time in which that is as much as the slip, or ``least``.  Explicit ones follow how it stops: of
+    what brakes it they take at most the share ``closest``, and the rate of that, 1/s, is what their
+    time is graded by; else it is 0.
+    """
+    near, radius = max(q, least), stretch.model.body.radius
+    brakes = -slip_change(radius, y, work) if q > 0.0 else 0.0
+    across = math.sqrt(max(pull * pull - brakes * brakes, 0.0))
+    most, ends = pull / reach, 0.0
+    if stretch.newton == 0.0 and brakes > 0.0:
+        most, ends = max(across / reach, brakes / closest), brakes / near
+    return (near / most if h * most > near else h), ends

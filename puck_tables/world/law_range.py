@@ -1,0 +1,65 @@
+"""Up to which slip a friction law of the floor is known, as pucks get faster on the way."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.contact.speed_law import SpeedLaw
+from puck_tables.errors import InputError
+from puck_tables.scene.by_speed import FARTHER, law_name, speed_law
+from puck_tables.scene.scene import Scene
+from puck_tables.world.departures import CONCERNED, Room
+from puck_tables.world.floors import law_goes_to, slip_of_rim
+from puck_tables.world.game import Game, Whole
+from puck_tables.world.layout import LIGHTNESS, RADIUS
+from puck_tables.world.prepare import with_law_up_to
+
+SURE = 1.0 - 1e-9  # of the last slip that a friction law knows: whoever is faster comes beyond
+
+
+def refuse_too_fast(game: Game, scene: Scene, name: str, i: int, state: FloatArray) -> None:
+    """Refuse a strike beyond what rows of the friction law of the floor say.
+
+    Raises
+    ------
+    InputError
+    """
+    top = law_goes_to(game.regions)
+    fastest = slip_of_rim(game.discs[i, RADIUS], game.surface, state.tolist())
+    if fastest > top and isinstance(speed_law(scene), SpeedLaw):
+        raise InputError(
+            f"{name}: its rim would slip at {fastest:.6g} m/s, and the friction law "
+            f"{law_name(scene)} ends at {top:g} m/s: strike more softly, or give it more speeds"
+        )
+
+
+def with_law_for(
+    game: Game, room: Room, scene: Scene, order: Whole, names: Sequence[str], time: float
+) -> Game:
+    """The game with friction that is known at all slips of those that set off now.
+
+    Raises
+    ------
+    InputError
+        If its law ends below one.
+    """
+    top = law_goes_to(game.regions)
+    if top == math.inf:
+        return game
+    for i in np.flatnonzero(room.marks == CONCERNED):
+        fastest = slip_of_rim(game.discs[i, RADIUS], game.surface, room.states[i].tolist())
+        if game.discs[i, LIGHTNESS] == 0.0 or fastest < SURE * top:
+            continue
+        if isinstance(speed_law(scene), SpeedLaw):
+            raise InputError(
+                f"at {time:.6g} s the rim of {names[order[i]]} slips at {fastest:.6g} m/s, and the "
+                f"friction law {law_name(scene)} ends at {top:g} m/s: nothing is known beyond; "
+                "give it more speeds"
+            )
+        top = FARTHER * fastest
+        game = with_law_up_to(game, scene, order, top)
+    return game
