@@ -28,6 +28,7 @@ WISHES = (
 )
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("puck", [PLAIN, TALL], ids=["plain", "tall"])
 def test_all_branches_of_all_targets(puck: Puck):
     for wish in WISHES:

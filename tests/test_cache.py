@@ -59,6 +59,7 @@ def modules() -> list[str]:
     return [found.name for found in walked if "puck_tables.cli" not in found.name]
 
 
+@pytest.mark.thorough
 def test_an_edit_of_any_file_empties_the_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     """The folder of compiled code has another name then; what was compiled before is not found."""
     package = tmp_path / "puck_tables"
@@ -109,6 +110,7 @@ def test_four_processes_may_fill_the_cache_at_once(tmp_path: Path):
     assert all(process.returncode == 0 for process in running)
 
 
+@pytest.mark.thorough
 def test_no_writable_folder_still_computes(tmp_path: Path):
     ended = subprocess.run(
         [sys.executable, "-c", "import puck_tables as p; print(float(p.motion.limit_ratio(0.0)))"],

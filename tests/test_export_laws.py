@@ -29,6 +29,7 @@ def judged(law: str, language: str, what: str, tol: float, folder: Path, count: 
         assert (np.abs(found - wanted) / scale).max() <= tol, name
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("language", RUNNERS)
 def test_a_washer_equals_the_library(language: str, tmp_path: Path):
     judged("annulus:0.8", language, ALL, 1e-4, tmp_path, 300)
@@ -47,6 +48,7 @@ def test_stops_of_every_law_to_nine_digits(law: str, tmp_path: Path):
     judged(law, "c", "stop,resultants", 1e-9, tmp_path, 100_000)
 
 
+@pytest.mark.thorough
 def test_size_of_a_law():
     assert all(len(text_under("hertz", one, ALL, 1e-4).encode()) <= 30_000 for one in RUNNERS)
 
@@ -60,6 +62,7 @@ def test_heights_beyond_full_contact_are_refused():
     assert np.isnan(out).all()
 
 
+@pytest.mark.thorough
 def test_states_that_cannot_be_kept_are_refused_and_stops_are_not():
     """Under Hertz's law a homogeneous flat puck ends in pure spin: states have no limit inside."""
     homogeneous = puck_under("hertz", 0.5**0.5)
@@ -76,6 +79,7 @@ def test_a_profile_with_a_name_that_ends_a_comment():
     ast.parse(python)
 
 
+@pytest.mark.thorough
 def test_the_command_writes_the_same_file(tmp_path: Path):
     path = tmp_path / "puck.js"
     options = ["--language", "js", "--what", "stop", "--tol", "1e-4", "-o", str(path)]

@@ -29,6 +29,7 @@ def test_no_spin_tells_no_tilt(straight, seed):
     assert summary["error"] is None and summary["determined"] is False
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("seed", few(1, [1, 2, 4]))
 def test_a_straight_path_without_angles_does_not_even_tell_friction(straight, seed):
     # a flat puck that spins at the limit ratio loses speed at a constant rate, too

@@ -79,6 +79,7 @@ def test_an_angle_of_a_frame_whose_place_is_wrong_still_counts():
     assert 0.03 < found.outliers < 0.09
 
 
+@pytest.mark.thorough
 def test_a_rolling_shutter_is_found():
     times = TIMES
     for _ in range(30):  # a puck farther down is seen later

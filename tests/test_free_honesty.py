@@ -68,6 +68,7 @@ def test_states_between_launch_and_stop_keep_tol(puck: tuple[str, float, float],
         judged(*puck, u, tol)
 
 
+@pytest.mark.thorough
 def test_states_of_other_pucks_is_as_exact_as_it_says():
     for puck in (("annulus:0.7", 0.5, 0.4), ("uniform", 0.5, 0.15)):
         v0, w0 = launch(0.5)

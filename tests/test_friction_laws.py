@@ -105,6 +105,7 @@ def test_a_whole_power_without_an_offset_is_viscous():
     assert run.last["spin"] == pytest.approx(12.0 * left, rel=1e-9)
 
 
+@pytest.mark.thorough
 def test_a_slip_that_grows_beyond_the_first_table_is_followed():
     """Down a slope, f = a u: v′ = g sin β − a g cos β v, far above the launch."""
     law, slope, a = pt.PowerLaw(0.001, 1.0), 0.5, 0.001

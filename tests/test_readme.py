@@ -17,13 +17,8 @@ PAGES = {path.name: path for path in [ROOT / "README.md", *sorted((ROOT / "docs"
 TEXTS = {name: path.read_text(encoding="utf-8") for name, path in PAGES.items()}
 EXAMPLES = sorted((ROOT / "docs" / "gallery").rglob("*.py"))
 every_page = pytest.mark.parametrize("page", PAGES)
-LONG = (
-    "fits.md",
-    "command-line.md",
-    "several-pucks.md",
-    "explorer.md",
-    "scenes.md",
-)  # their commands
+# their commands take long
+LONG = ("fits.md", "command-line.md", "several-pucks.md", "explorer.md", "scenes.md", "export.md")
 
 
 def console_examples(text: str) -> list[tuple[str, str]]:

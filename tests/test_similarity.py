@@ -306,6 +306,7 @@ def test_sizes_and_accuracies_out_of_range():
         sweep(tol=1e-11, method="look-up")
 
 
+@pytest.mark.thorough
 def test_a_rough_stop_table_says_what_it_can(rough: StopTable):
     with pytest.raises(AccuracyError, match="that of the stop table"):
         stop((1, 0), 1.0, table=rough)

@@ -344,6 +344,7 @@ def test_a_table_file_holds_the_law_and_is_judged_by_it(tmp_path):
     assert not replace(saved, values=saved.values * 1.01).validate().passed
 
 
+@pytest.mark.thorough
 def test_what_a_file_cannot_hold_is_refused(fine, smooth, tmp_path):
     with pytest.raises(OutputError, match="is a function"):
         smooth.save(tmp_path / "speed.h5")

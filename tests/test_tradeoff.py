@@ -42,6 +42,7 @@ def measured() -> engine.TradeOff:
     )  # fmt: skip
 
 
+@pytest.mark.thorough
 def test_errors_are_properties_of_the_ways_and_ship_as_measured():
     """Every look-up and every fifth contender measured again: the same to the digits shipped."""
     points = random_points(40)
@@ -61,6 +62,7 @@ def test_errors_are_properties_of_the_ways_and_ship_as_measured():
     assert count >= 7 + 4
 
 
+@pytest.mark.thorough
 def test_errors_of_resultants_ship_as_measured():
     points = random_points(4000)
     flat = points.delta == 0.0
@@ -107,6 +109,7 @@ def test_closed_forms_beside_the_singular_angle_do_not_depend_on_the_block():
     assert np.isfinite(np.stack(beyond)).all()
 
 
+@pytest.mark.thorough
 def test_vectors_of_the_look_up_are_the_plain_sums():
     """Hand-made vector code against NumPy, double and single, at every number of powers."""
     table = StopTable(Table.shipped("stops").values[::6])
@@ -186,6 +189,7 @@ def test_files(measured: engine.TradeOff, tmp_path: Path):
         measured.save(tmp_path / "t.csv")
 
 
+@pytest.mark.thorough
 def test_picture_and_report(measured: engine.TradeOff, tmp_path: Path):
     measured.plot(tmp_path / "t.png")
     assert (tmp_path / "t.png").stat().st_size > 50_000

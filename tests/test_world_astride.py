@@ -74,6 +74,7 @@ def test_beside_another_far_away_a_puck_moves_as_alone(case: str):
     assert two.energy_residual < 1e-9
 
 
+@pytest.mark.thorough
 def test_each_has_its_own_pressure_over_a_border(tmp_path: Path):
     """Their grounds are of different lengths: one has rows of a tabulated pressure."""
     floor, launch = pt.Floor(strips=WIDE), pt.Launch((0.6, 0.1), 20.0, (0.37, 0.0))

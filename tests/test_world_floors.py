@@ -81,6 +81,7 @@ CASES = {
 }  # fmt: skip
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("case", CASES)
 def test_places_and_works_are_those_of_another_integrator(case: str):
     floor, ground, ours, theirs = CASES[case]

@@ -153,6 +153,7 @@ def test_a_full_disk(name: str, folder: Path, monkeypatch: pytest.MonkeyPatch):
     assert not list(folder.rglob(".puck-*"))
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", COMMANDS)
 def test_a_folder_that_vanishes_during_the_work(
     name: str, folder: Path, monkeypatch: pytest.MonkeyPatch
