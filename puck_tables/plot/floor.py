@@ -13,7 +13,6 @@ from puck_tables.scene.parts import Floor
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_CLEAR = 0.6  # how much of what is below a patch it hides
 _ARROWS = (9, 5)  # of a moving floor, across and up
 
 
@@ -53,8 +52,6 @@ def draw_floor(axes: Axes, floor: Floor, box: Box, highest: float) -> None:
             "facecolor": shade.colour, "edgecolor": GREY, "linewidth": 0.8,
             "zorder": 1 if shade.patch else 0, **label,
         }  # fmt: skip
-        if shade.patch:
-            style["alpha"] = _CLEAR
         axes.add_patch(
             Polygon(shade.corners, **style)
             if shade.corners
