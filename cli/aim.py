@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import json
 import math
+from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
+from puck_tables.cli.at_once import at_once
 from puck_tables.cli.board_aim import aim_on_board, number_or_name
 from puck_tables.cli.options import (
     FILE,
@@ -147,12 +149,13 @@ def aim(
         raise click.MissingParameter(param_hint="'--target'", param_type="option")
     read = (pressure, targets_file)
     prepare_outputs(output, plot=plot, overwrite=overwrite, inputs=read)
-    puck = puck_given(radius, height, friction, gravity, delta, decel, pressure, gyration)
-    where = targets[0] if targets_file is None else _read_targets(targets_file)
-    found: Any = puck.aim(
-        where, spin=w0, speed=speed, stop_time=stop_time, max_speed=max_speed, max_spin=max_spin,
-        count=8 if count is None else count,
-    )  # fmt: skip
+    with at_once() if targets_file is None else nullcontext():
+        puck = puck_given(radius, height, friction, gravity, delta, decel, pressure, gyration)
+        where = targets[0] if targets_file is None else _read_targets(targets_file)
+        found: Any = puck.aim(
+            where, spin=w0, speed=speed, stop_time=stop_time, max_speed=max_speed,
+            max_spin=max_spin, count=8 if count is None else count,
+        )  # fmt: skip
     something = found.launch_spin.size > 0
     deliver(found, output, plot if something else None, overwrite)
     if plot is not None and not something:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
+from puck_tables.cli.at_once import at_once
 from puck_tables.cli.completion import cases
 from puck_tables.cli.options import (
     FILE,
@@ -86,14 +87,15 @@ def reference(
         raise InputError("--epsilon and --friction both choose the ratios: give one of them")
     prepare_outputs(output, plot=plot, overwrite=overwrite, inputs=(times,))
     found: Any
-    if over:
-        from puck_tables.reference.friction import floor_friction
+    with at_once():
+        if over:
+            from puck_tables.reference.friction import floor_friction
 
-        found = floor_friction(case, epsilon)
-    else:
-        from puck_tables.reference.answer import reference_case
+            found = floor_friction(case, epsilon)
+        else:
+            from puck_tables.reference.answer import reference_case
 
-        found = reference_case(case, **frames)
+            found = reference_case(case, **frames)
     deliver(found, output, plot, overwrite)
     reported(found, explain, as_json, _friction if over else report)
 

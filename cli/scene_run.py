@@ -6,24 +6,18 @@ import math
 import tomllib
 from collections.abc import Callable
 from dataclasses import is_dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 from puck_tables.cli.completion import scenes
-from puck_tables.cli.options import (
-    DEFAULT_DECEL,
-    DEFAULT_DELTA,
-    deliver,
-    filmed,
-    reported,
-)
+from puck_tables.cli.options import DEFAULT_DECEL, DEFAULT_DELTA
 from puck_tables.cli.world_report import report as report_of_several
 
 from puck_tables.errors import InputError
 
 if TYPE_CHECKING:
     from puck_tables.bulk.finish import Stored
+    from puck_tables.result import TimedResult
     from puck_tables.scene.outcome import SceneRun
     from puck_tables.scene.scene import Scene
     from puck_tables.scene.sweep import SceneMap
@@ -159,19 +153,14 @@ def _value(text: str) -> Any:
 
 
 def run_scene(
-    tables: dict[str, Any], source: str, times: tuple[float, ...] | None, explain: bool,
-    as_json: bool,
-    output: Path | None, plot: Path | None, movie: Path | None, overwrite: bool,
-) -> None:  # fmt: skip
-    """One run of a scene, to the end of its command."""
+    tables: dict[str, Any], source: str, times: tuple[float, ...] | None
+) -> tuple[TimedResult, Callable[[Any], str]]:
+    """One run of a scene with its states at some times, and what tells of it in words."""
     from puck_tables.scene.scene import Scene
 
-    wanted = (0.0,) if output is None and plot is None and times is None else times
     scene = Scene.from_tables(tables, source)
-    run: Any = scene.simulate(wanted)  # a report needs no states
-    deliver(run, output, plot, overwrite)
-    filmed(run, movie, overwrite)
-    reported(run, explain, as_json, report_of_several if scene.is_board else report)
+    run: Any = scene.simulate(times)
+    return run, report_of_several if scene.is_board else report
 
 
 def report(run: SceneRun) -> str:

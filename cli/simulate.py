@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 from click.core import ParameterSource
+from puck_tables.cli.at_once import at_once
 from puck_tables.cli.options import (
     FILE,
     NUMBER,
@@ -35,6 +36,7 @@ from puck_tables.errors import InputError
 
 if TYPE_CHECKING:
     from puck_tables.puck import Puck
+    from puck_tables.result import TimedResult
     from puck_tables.trajectory import Trajectory
 
 _LAUNCHED = (
@@ -114,47 +116,58 @@ def simulate(
     puck simulate --v0 1,0 --w0 5 --pressure annulus:0.8 --gyration 0.9
     puck simulate --fit fit.json --track 1
     """  # noqa: D301 - click reads the backspace
-    if scene is not None or changes:
-        tables = scene_tables(ctx, scene, changes)
-        prepare_outputs(
-            output, plot=plot, movie=movie, overwrite=overwrite, inputs=files_read(scene, tables)
-        )
-        run_scene(tables, scene or "scene", times, explain, as_json, output, plot, movie, overwrite)
-        return
-    if track is not None and fit_path is None:
-        raise InputError("--track chooses a track of --fit: give that, too")
-    if exact and table_path is not None:
-        raise InputError("--exact and --table clash: closed forms need no table")
-    prepare_outputs(
-        output, plot=plot, movie=movie, overwrite=overwrite,
-        inputs=(table_path, pressure, fit_path),
-    )  # fmt: skip
-    if fit_path is not None:
-        puck, velocity, w0 = _fitted(ctx, fit_path, track)
-    elif v0 is not None:
-        puck = puck_given(radius, height, friction, gravity, delta, decel, pressure, gyration, mass)
-        velocity = v0
-    else:
-        raise click.MissingParameter(param_hint="'--v0'", param_type="option")
-    if output is None and plot is None and times is None and frames is None:
-        frames = 1  # a report needs no states
-    run = puck.simulate(
-        velocity, w0, frames=frames, times=times, tol=tol, method=method, exact=exact,
-        table=None if table_path is None else open_table(table_path),
-    )  # fmt: skip
+    unknown: tuple[str, ...] = ()
+    run: TimedResult
+    with at_once():
+        if scene is not None or changes:
+            tables = scene_tables(ctx, scene, changes)
+            prepare_outputs(
+                output, plot=plot, movie=movie, overwrite=overwrite,
+                inputs=files_read(scene, tables),
+            )  # fmt: skip
+            states = (0.0,) if output is None and plot is None and times is None else times
+            run, in_words = run_scene(tables, scene or "scene", states)
+        else:
+            if track is not None and fit_path is None:
+                raise InputError("--track chooses a track of --fit: give that, too")
+            if exact and table_path is not None:
+                raise InputError("--exact and --table clash: closed forms need no table")
+            prepare_outputs(
+                output, plot=plot, movie=movie, overwrite=overwrite,
+                inputs=(table_path, pressure, fit_path),
+            )  # fmt: skip
+            if fit_path is not None:
+                puck, velocity, w0, unknown = _fitted(ctx, fit_path, track)
+            elif v0 is not None:
+                puck = puck_given(
+                    radius, height, friction, gravity, delta, decel, pressure, gyration, mass
+                )
+                velocity = v0
+            else:
+                raise click.MissingParameter(param_hint="'--v0'", param_type="option")
+            if output is None and plot is None and times is None and frames is None:
+                frames = 1  # a report needs no states
+            run = puck.simulate(
+                velocity, w0, frames=frames, times=times, tol=tol, method=method, exact=exact,
+                table=None if table_path is None else open_table(table_path),
+            )  # fmt: skip
+            given = fit_path is not None or any(
+                x is not None for x in (radius, height, friction, delta, decel, gyration)
+            )
+            in_words = partial(
+                report, note="" if given else "   (defaults: see --help for a real puck)"
+            )
+    for sentence in unknown:
+        click.echo(printable(f"{fit_path}: {sentence}"), err=True)
     deliver(run, output, plot, overwrite)
     filmed(run, movie, overwrite)
-    given = fit_path is not None or any(
-        x is not None for x in (radius, height, friction, delta, decel, gyration)
-    )
-    note = "" if given else "   (defaults: see --help for a real puck)"
-    reported(run, explain, as_json, partial(report, note=note))
+    reported(run, explain, as_json, in_words)
 
 
 def _fitted(
     ctx: click.Context, path: Path, track: str | None
-) -> tuple[Puck, tuple[float, float], float]:
-    """The puck and the launch of a fit, which no option contradicts.
+) -> tuple[Puck, tuple[float, float], float, tuple[str, ...]]:
+    """The puck and the launch of a fit, which no option contradicts, and what it left open.
 
     Raises
     ------
@@ -167,10 +180,7 @@ def _fitted(
             )
     from puck_tables.fitting.saved import puck_and_launch
 
-    puck, velocity, spin, unknown = puck_and_launch(path, track)
-    for sentence in unknown:
-        click.echo(printable(f"{path}: {sentence}"), err=True)
-    return puck, velocity, spin
+    return puck_and_launch(path, track)
 
 
 def report(run: Trajectory, note: str) -> str:

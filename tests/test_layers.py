@@ -50,8 +50,8 @@ ROOMS = {
     "__init__": "_core _version",
 }
 DOORS = {
-    "numba": {"kernels.compile", "kernels.kept_code", "kernels.linking"},
-    "llvmlite": {"kernels.compile", "kernels.linking"},
+    "numba": {"kernels.compiled", "kernels.kept_code", "kernels.linking", "kernels.vectors"},
+    "llvmlite": {"kernels.linking", "kernels.vectors"},
     "h5py": {"film.poses", "io.hdf5", "table.file"},
     "xarray": {"io.frames"},
     "pandas": {"io.frames"},

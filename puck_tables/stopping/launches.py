@@ -242,7 +242,7 @@ def joined_mark(parts: Iterable[tuple[int, int]]) -> int:
     >>> joined_mark([(0, 5), (CHUNK, 7)])
     26
     """
-    return sum(mark * (2 * (start // CHUNK) + 1) for start, mark in parts) % (1 << 64)
+    return sum(int(mark) * (2 * (start // CHUNK) + 1) for start, mark in parts) % (1 << 64)
 
 
 @inlined

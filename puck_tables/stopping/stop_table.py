@@ -238,7 +238,7 @@ class StopTable(Table):
         fill, cut, both = stops_kernel(powers), self.cut(powers, thinning), place.reshape(-1)
         if size <= CHUNK:
             doubtful, bad, mark = fill(*launches.part(0, size), cut, time, both, both[1:], 2)
-            mark %= 1 << 64
+            mark = int(mark) % (1 << 64)
         else:
             found = []
 

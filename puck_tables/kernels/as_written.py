@@ -1,0 +1,126 @@
+"""Kernels as they are written, in Python: a hundred times slower, but at once.
+
+To compile what moves one puck takes longer than to move it.  So where ``NUMBA_DISABLE_JIT=1``,
+numba's own switch, is set as the package is imported, nothing is compiled and numba not even
+imported; the command line sets it for itself where there is little to compute.  Numbers agree with
+those of compiled code to rounding, not to the bit: a compiler contracts a·b + c.
+"""
+
+from __future__ import annotations
+
+import os
+import struct
+from collections.abc import Callable, Sequence
+from typing import Any, TypeVar
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+BLOCK = 128  # numbers in a row of a block
+
+
+def as_written() -> bool:
+    """Whether kernels are to run as they are written."""
+    return os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0")
+
+
+# Called before work that takes minutes as it is written, by whom could have it compiled.
+before_long_work: list[Callable[[], object]] = []
+
+
+def long_work() -> None:
+    """Say that work begins that should be compiled.
+
+    Examples
+    --------
+    >>> long_work()  # nobody listens
+    """
+    if as_written():
+        for listener in before_long_work:
+            listener()
+
+
+def unchanged(function: Function) -> Function:
+    """The function itself."""
+    return function
+
+
+def weighted_rows(c: FloatArray, k: int, weights: Sequence[float], width: int) -> Any:
+    """The sums a·c[k + m] + b·c[k + width + m] + …, m < width, with weights a, b, ….
+
+    Examples
+    --------
+    >>> weighted_rows(np.arange(6.0), 0, (1.0, 10.0), 3)
+    (30.0, 41.0, 52.0)
+    """
+    rows = c[k : k + len(weights) * width].reshape(-1, width)
+    return tuple((np.asarray(weights) @ rows).tolist())
+
+
+def spline_polynomials(
+    c: FloatArray, k: int, weights: Sequence[float], s: float, width: int, powers: int
+) -> Any:
+    """Polynomials in s of weighted rows, as many as width, then their derivatives by s.
+
+    Each row holds ``powers`` times ``width`` coefficients, powers ascending.
+
+    Examples
+    --------
+    >>> spline_polynomials(np.array([1.0, 2.0, 3.0, 4.0]), 0, (1.0,), 10.0, 2, 2)
+    (31.0, 42.0, 3.0, 4.0)
+    """
+    rows = c[k : k + len(weights) * width * powers].reshape(len(weights), -1)
+    sums = (np.asarray(weights) @ rows).reshape(powers, width)
+    value, slope = sums[-1], np.zeros(width)
+    for power in range(powers - 2, -1, -1):
+        slope = slope * s + value
+        value = value * s + sums[power]
+    return (*value.tolist(), *slope.tolist())
+
+
+def spline_values(
+    c: FloatArray, k: int, weights: Sequence[float], s: float, width: int, powers: int
+) -> Any:
+    """The values alone of :func:`spline_polynomials`, from double or single precision.
+
+    Examples
+    --------
+    >>> spline_values(np.array([1.0, 2.0, 3.0, 4.0]), 0, (1.0,), 10.0, 2, 2)
+    (31.0, 42.0)
+    """
+    return spline_polynomials(c, k, weights, s, width, powers)[:width]
+
+
+def bits_of(number: float) -> Any:
+    """The integer of the same bits.
+
+    Examples
+    --------
+    >>> hex(bits_of(1.0))
+    '0x3ff0000000000000'
+    """
+    return struct.unpack("<q", struct.pack("<d", number))[0]
+
+
+def number_of(bits: int) -> Any:
+    """The number of the same bits.
+
+    Examples
+    --------
+    >>> number_of(0x3FF0000000000000)
+    1.0
+    """
+    return struct.unpack("<d", struct.pack("<q", bits))[0]
+
+
+def row_of(block: FloatArray, row: int, n: int) -> Any:
+    """Number n of a row of a flat array of rows of ``BLOCK`` numbers."""
+    return block[row * BLOCK + n].item()
+
+
+def into_row(block: FloatArray, row: int, n: int, value: float) -> Any:
+    """Make the value number n of a row, see :func:`row_of`."""
+    block[row * BLOCK + n] = value

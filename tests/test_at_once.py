@@ -1,0 +1,164 @@
+"""Short commands compile nothing, tell what compiled code tells, and give way to it in time."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from puck_tables.cli import at_once, start
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.errors import InputError
+from puck_tables.kernels import as_written, vectors
+from puck_tables.kernels.compile import kernel
+
+LAUNCH = ["simulate", "--v0", "1,0", "--w0", "5"]
+
+
+def run(arguments: list[str], *, before: str = "", **environment: str) -> tuple[str, str]:
+    """What a command says on stdout and stderr, after some Python."""
+    code = f"from puck_tables.cli import at_once, start\n{before}\nstart.main()"
+    ended = subprocess.run(
+        [sys.executable, "-c", code, *arguments], env={**os.environ, **environment},
+        capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    return ended.stdout, ended.stderr
+
+
+def numbers(told: object) -> list[float]:
+    """All numbers of a JSON document, in order."""
+    if isinstance(told, dict):
+        return [one for value in told.values() for one in numbers(value)]
+    if isinstance(told, list):
+        return [one for value in told for one in numbers(value)]
+    return [float(told)] if isinstance(told, int | float) else []
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [LAUNCH, ["simulate", "--scene", "incline"], ["aim", "--target", "2,0.1", "--w0", "5"],
+     ["reference", "coin"]],
+    ids=["launch", "scene", "aim", "reference"],
+)  # fmt: skip
+def test_nothing_is_compiled(arguments: list[str], tmp_path: Path):
+    told, said = run([*arguments, "--json"], NUMBA_CACHE_DIR=str(tmp_path))
+    assert not said
+    assert not list(tmp_path.rglob("*.code"))
+    assert len(numbers(json.loads(told))) > 5
+
+
+COMPILED = {"NUMBA_DISABLE_JIT": "0"}
+
+
+def test_numbers_are_those_of_compiled_code():
+    told, compiled = run([*LAUNCH, "--json"])[0], run([*LAUNCH, "--json"], **COMPILED)[0]
+    found, expected = (numbers(json.loads(one)) for one in (told, compiled))
+    np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-15)
+    assert found != expected  # to rounding: so the next test sees which is which
+
+
+def test_what_takes_long_begins_anew_and_compiled():
+    soon = "at_once.AT_FIRST, at_once._OTHERS = 1e-3, ('none', 1e-3)"
+    again = run([*LAUNCH, "--json"], before=soon)[0]
+    assert again == run([*LAUNCH, "--json"], **COMPILED)[0]
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("name", ["wet-patch", "air-hockey", "carrom-break"])
+def test_scenes_run_alike(name: str):
+    command = ["simulate", "--scene", name, "--json"]
+    told, compiled = run(command)[0], run(command, **COMPILED)[0]
+    found, expected = json.loads(told), json.loads(compiled)
+    assert found.pop("steps", 0) == pytest.approx(expected.pop("steps", 0), rel=0.05)
+    np.testing.assert_allclose(numbers(found), numbers(expected), rtol=1e-6, atol=1e-8)
+
+
+@pytest.fixture
+def begun(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[str]]:
+    """How often the command began anew, in a process as if it were a command's own."""
+    anew: list[str] = []
+    monkeypatch.setattr(start, "alone", True)
+    monkeypatch.setattr(at_once, "_begin_compiled", lambda *_: anew.append("begun"))
+    monkeypatch.setenv("NUMBA_DISABLE_JIT", "")
+    monkeypatch.delenv("NUMBA_DISABLE_JIT")
+    with np.errstate():
+        yield anew
+
+
+@pytest.mark.parametrize(
+    "number", [lambda: 1.0 / 0.0, lambda: math.exp(1e3), lambda: math.sqrt(-1)]
+)
+def test_what_python_refuses_to_compute_is_compiled(number: Callable[[], float], begun: list[str]):
+    with at_once.at_once():
+        number()
+    assert begun == ["begun"]
+
+
+def test_a_refusal_stays_one(begun: list[str]):
+    with pytest.raises(InputError, match="of input"), at_once.at_once():
+        raise InputError("of input")
+    assert not begun
+
+
+def test_work_that_is_long_is_compiled(begun: list[str]):
+    with at_once.at_once():
+        as_written.long_work()
+    assert begun == ["begun"]
+    as_written.long_work()
+    assert begun == ["begun"]  # outside nobody listens
+
+
+@pytest.mark.parametrize("single", [False, True])
+def test_operations_on_vectors_are_those_of_compiled_code(single: bool):
+    rng = np.random.default_rng(8)
+    c = rng.normal(size=200).astype(np.float32 if single else np.float64)
+
+    @kernel
+    def sums(c: FloatArray, w: float, s: float) -> tuple[Any, Any]:
+        return (
+            vectors.weighted_rows(c, 3, (w, 1.0 - w, 2.0 * w), 4),
+            vectors.spline_values(c, 5, (w, 1.0 - w), s, 8, 3),
+        )
+
+    @kernel
+    def polynomials(c: FloatArray, w: float, s: float) -> Any:
+        return vectors.spline_polynomials(c, 7, (w, 1.0 - w), s, 8, 4)
+
+    w, s = 0.3, -0.7
+    rows, values = sums(c, w, s)
+    close = {"rtol": 1e-13, "atol": 1e-14}
+    found = as_written.weighted_rows(c, 3, (w, 1.0 - w, 2.0 * w), 4)
+    np.testing.assert_allclose(found, rows, **close)
+    np.testing.assert_allclose(
+        as_written.spline_values(c, 5, (w, 1.0 - w), s, 8, 3), values, **close
+    )
+    if not single:
+        found = as_written.spline_polynomials(c, 7, (w, 1.0 - w), s, 8, 4)
+        np.testing.assert_allclose(found, polynomials(c, w, s), **close)
+
+
+def test_bits_and_rows_are_those_of_compiled_code():
+    @kernel
+    def there_and_back(number: float, block: FloatArray) -> tuple[int, float, float]:
+        vectors.into_row(block, 1, 5, number)
+        return (
+            vectors.bits_of(number),
+            vectors.number_of(vectors.bits_of(number) + 1),
+            vectors.row_of(block, 1, 5),
+        )
+
+    for number in (1.0, -2.5e-300, 0.1):
+        block, other = np.zeros(2 * as_written.BLOCK), np.zeros(2 * as_written.BLOCK)
+        as_written.into_row(other, 1, 5, number)
+        bits = as_written.bits_of(number)
+        found = bits, as_written.number_of(bits + 1), as_written.row_of(other, 1, 5)
+        assert there_and_back(number, block) == found
+        assert (block == other).all()
