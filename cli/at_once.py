@@ -14,6 +14,8 @@ from collections.abc import Iterator
 
 from puck_tables.cli import start
 
+from puck_tables.errors import PuckError
+
 AT_FIRST = 1.0  # s of computing, with patience
 
 # modules that run a motion: their kernel that takes longest to compile, and how much longer to
@@ -47,10 +49,8 @@ def at_once() -> Iterator[None]:
     signal.setitimer(signal.ITIMER_PROF, AT_FIRST)
     try:
         yield
-    except ArithmeticError:  # where compiled code has inf or NaN
-        _begin_compiled()
-    except ValueError as error:
-        if str(error) != "math domain error":
+    except (ArithmeticError, ValueError) as error:  # where compiled code has inf or NaN
+        if isinstance(error, PuckError):
             raise
         _begin_compiled()
     finally:

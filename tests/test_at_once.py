@@ -94,7 +94,8 @@ def begun(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[str]]:
 
 
 @pytest.mark.parametrize(
-    "number", [lambda: 1.0 / 0.0, lambda: math.exp(1e3), lambda: math.sqrt(-1)]
+    "number",
+    [lambda: 1.0 / 0.0, lambda: math.exp(1e3), lambda: math.sqrt(-1), lambda: math.floor(math.nan)],
 )
 def test_what_python_refuses_to_compute_is_compiled(number: Callable[[], float], begun: list[str]):
     with at_once.at_once():

@@ -380,6 +380,7 @@ def follow(
             dry = dry_under(regions, region, lies)
             allowed = allowed_error(ask.tolerance, dry)
             damps, turns = settling_rates(model, dry.load)
+            stiff = stiff and dry.load > 0.0
             mode = CARRIED if mode == CARRIED and dry.load > 0.0 else SLIDES
             contacts.chain[0] = -1
         elif happens == BOUNCES:

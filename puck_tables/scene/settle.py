@@ -272,7 +272,8 @@ def bounced(
     tiny = goes <= max(0.01 * tolerance, _SLOWEST) * speed
     if tiny or corner >= 0:
         rest_time = 0.0
-    if corner < 0 and before == which and goes < contacts.pace[which] and goes <= 0.01 * speed:
+    falls = 0.0 < goes < contacts.pace[which]  # a wall that gives nothing back ends it at once
+    if corner < 0 and before == which and falls and goes <= 0.01 * speed:
         hop = t - contacts.hit[which]
         ratio = goes / contacts.pace[which]
         rest = hop * ratio / (1.0 - ratio)
