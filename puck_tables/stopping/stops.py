@@ -244,6 +244,6 @@ def stop(
     slopes = kind = None
     if jacobian:
         plain, bodies = solver.kinds(launches.matrix[3])
-        slopes = stop_jacobians(launches.matrix, plain, bodies, own or StopTable.shipped())
+        slopes = stop_jacobians(launches, plain, bodies, own or StopTable.shipped(), threads)
         kind = Kind(pressure, gyration, tol, method, table) if bodies else None
     return Stops(solver, launches, threads, slopes, own, kind)
