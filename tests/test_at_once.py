@@ -148,18 +148,18 @@ def test_operations_on_vectors_are_those_of_compiled_code(single: bool):
 
 def test_bits_and_rows_are_those_of_compiled_code():
     @kernel
-    def there_and_back(number: float, block: FloatArray) -> tuple[int, float, float]:
+    def there_and_back(number: float, block: FloatArray) -> tuple[Any, ...]:
         vectors.into_row(block, 1, 5, number)
-        return (
-            vectors.bits_of(number),
-            vectors.number_of(vectors.bits_of(number) + 1),
-            vectors.row_of(block, 1, 5),
-        )
+        vectors.into_rows(block, 2, 5, (number, 2.0 * number))
+        bits = vectors.bits_of(number)
+        rows = vectors.rows_of(block, 1, 3, 5)
+        return bits, vectors.number_of(bits + 1), vectors.row_of(block, 1, 5), rows
 
     for number in (1.0, -2.5e-300, 0.1):
-        block, other = np.zeros(2 * as_written.BLOCK), np.zeros(2 * as_written.BLOCK)
+        block, other = np.zeros(4 * as_written.BLOCK), np.zeros(4 * as_written.BLOCK)
         as_written.into_row(other, 1, 5, number)
-        bits = as_written.bits_of(number)
-        found = bits, as_written.number_of(bits + 1), as_written.row_of(other, 1, 5)
+        as_written.into_rows(other, 2, 5, (number, 2.0 * number))
+        bits, rows = as_written.bits_of(number), as_written.rows_of(other, 1, 3, 5)
+        found = bits, as_written.number_of(bits + 1), as_written.row_of(other, 1, 5), rows
         assert there_and_back(number, block) == found
         assert (block == other).all()

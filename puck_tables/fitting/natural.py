@@ -132,7 +132,7 @@ class PlainCurve(Curve):
         launch = np.array([[math.cos(phi), 0.0, math.sin(phi), delta, 1.0, 1.0]]).T
         table = StopTable.shipped()
         pucks, one = known_pucks(table, launch), np.zeros(tau.size, np.int64)
-        _, slopes = state_jacobians(table, pucks, one, tau)
+        slopes = state_jacobians(table, pucks, one, tau)
         values = looked_up(table, pucks, one, tau)
         path = values[[PUCK_X, PUCK_Y, ORIENTATION]]
         wanted = slopes[:, :3][..., [0, 2, 3, 6]]

@@ -124,3 +124,13 @@ def row_of(block: FloatArray, row: int, n: int) -> Any:
 def into_row(block: FloatArray, row: int, n: int, value: float) -> Any:
     """Make the value number n of a row, see :func:`row_of`."""
     block[row * BLOCK + n] = value
+
+
+def rows_of(block: FloatArray, row: int, count: int, n: int) -> Any:
+    """Number n of so many rows from one on, as a tuple."""
+    return tuple(block[row * BLOCK + n : (row + count) * BLOCK : BLOCK].tolist())
+
+
+def into_rows(block: FloatArray, row: int, n: int, values: Sequence[float]) -> Any:
+    """Make a tuple number n of so many rows from one on."""
+    block[row * BLOCK + n : (row + len(values)) * BLOCK : BLOCK] = values

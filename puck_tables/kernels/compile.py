@@ -8,8 +8,10 @@ if as_written():
     from puck_tables.kernels.as_written import (
         bits_of,
         into_row,
+        into_rows,
         number_of,
         row_of,
+        rows_of,
         spline_polynomials,
         spline_values,
         weighted_rows,
@@ -23,14 +25,16 @@ else:
     from puck_tables.kernels.vectors import (
         bits_of,
         into_row,
+        into_rows,
         number_of,
         row_of,
+        rows_of,
         spline_polynomials,
         spline_values,
         weighted_rows,
     )
 
 __all__ = [
-    "BLOCK", "allocating", "bits_of", "inlined", "inner", "into_row", "kernel", "number_of",
-    "row_of", "spline_polynomials", "spline_values", "weighted_rows",
+    "BLOCK", "allocating", "bits_of", "inlined", "inner", "into_row", "into_rows", "kernel",
+    "number_of", "row_of", "rows_of", "spline_polynomials", "spline_values", "weighted_rows",
 ]  # fmt: skip

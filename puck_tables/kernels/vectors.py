@@ -241,3 +241,40 @@ def _into_row(typing: Any, block: Any, row: Any, n: Any, value: Any) -> Any:
 
 row_of: Any = intrinsic(prefer_literal=True)(_row_of)
 into_row: Any = intrinsic(prefer_literal=True)(_into_row)
+
+
+def _rows_of(typing: Any, block: Any, row: Any, count: Any, n: Any) -> Any:
+    """Compiled (block, row, count, n) → number n of so many rows from one on, as a tuple."""
+    first, rows = row.literal_value, count.literal_value
+
+    def build(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        data = context.make_array(signature.args[0])(context, builder, args[0]).data
+        parts = []
+        for k in range(rows):
+            place = ir.Constant(args[3].type, (first + k) * BLOCK)
+            at = builder.add(args[3], place, flags=("nsw",))
+            parts.append(builder.load(builder.gep(data, [at], inbounds=True)))
+        return context.make_tuple(builder, signature.return_type, parts)
+
+    found: Any = types.UniTuple(types.float64, rows)  # type: ignore[no-untyped-call]
+    return found(block, row, count, n), build
+
+
+def _into_rows(typing: Any, block: Any, row: Any, n: Any, values: Any) -> Any:
+    """Compiled (block, row, n, values): number n of rows from one on are those of a tuple."""
+    first = row.literal_value
+
+    def build(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        data = context.make_array(signature.args[0])(context, builder, args[0]).data
+        for k in range(len(signature.args[3])):
+            place = ir.Constant(args[2].type, (first + k) * BLOCK)
+            at = builder.add(args[2], place, flags=("nsw",))
+            value = builder.extract_value(args[3], k)
+            builder.store(value, builder.gep(data, [at], inbounds=True))
+        return context.get_dummy_value()
+
+    return types.void(block, row, n, values), build
+
+
+rows_of: Any = intrinsic(prefer_literal=True)(_rows_of)
+into_rows: Any = intrinsic(prefer_literal=True)(_into_rows)

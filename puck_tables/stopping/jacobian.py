@@ -14,6 +14,8 @@ from puck_tables._core.executor import run_chunks
 from puck_tables.contact.laws import Law
 from puck_tables.errors import InputError
 from puck_tables.motion.body import Body
+from puck_tables.stopping.curve_lookup import LAUNCH_COLUMNS, SLIP, SPEED0
+from puck_tables.stopping.launches import Launches, in_chunks, launches_in
 from puck_tables.stopping.spread import Spread, spread_of
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.table.resultant_table import ResultantTable
@@ -22,7 +24,8 @@ LAUNCH_NAMES = ("vx", "vy", "spin", "delta", "decel", "radius")
 STOP_NAMES = ("stop_time", "stop_x", "stop_y", "path_length", "body_angle")
 STATE_NAMES = ("x", "y", "orientation", "vx", "vy", "spin")
 MOMENT_NAMES = (*LAUNCH_NAMES, "time")
-_CHUNK = 1 << 13
+_TINY = 1e-25  # slip ratio of the neighbours of pure motions, whose derivatives these have
+_LEAST = 1e-300
 
 Bodies = dict[float, Body]  # by height
 
@@ -165,9 +168,10 @@ def refuse_rest(launches: FloatArray, shape: tuple[int, ...]) -> None:
 
 
 def stop_jacobians(
-    launches: FloatArray, plain: npt.NDArray[np.bool_], bodies: Bodies, table: StopTable
-) -> FloatArray:
-    """Derivatives (n, 5, 6) of the stops of launches (6, n): of ``plain`` ones by the stop table.
+    launches: Launches, plain: npt.NDArray[np.bool_], bodies: Bodies, table: StopTable,
+    threads: int | None,
+) -> FloatArray:  # fmt: skip
+    """Derivatives (n, 5, 6) of the stops of launches: of ``plain`` ones by the stop table.
 
     Raises
     ------
@@ -175,66 +179,78 @@ def stop_jacobians(
         If the derivatives of other pucks are out of reach.
     """
     if plain.all():
-        return _of_plain(table, launches)
+        return _of_plain(table, launches, threads)
     from puck_tables.stopping.slope_section import stop_slopes_of
 
-    out = np.empty((launches.shape[1], len(STOP_NAMES), len(LAUNCH_NAMES)))
+    rows = launches.matrix
+    out = np.empty((launches.size, len(STOP_NAMES), len(LAUNCH_NAMES)))
     if plain.any():
-        out[plain] = _of_plain(table, np.ascontiguousarray(launches[:, plain]))
+        out[plain] = _of_plain(table, launches_in(rows[:, plain]), threads)
     for height, body in bodies.items():
-        mine = ~plain & (launches[3] == height)
-        out[mine] = stop_slopes_of(body, np.ascontiguousarray(launches[:, mine]))
+        mine = ~plain & (rows[3] == height)
+        out[mine] = stop_slopes_of(body, np.ascontiguousarray(rows[:, mine]), threads)
     return out
 
 
-def _of_plain(table: StopTable, launches: FloatArray) -> FloatArray:
+def _of_plain(table: StopTable, launches: Launches, threads: int | None) -> FloatArray:
     from puck_tables.stopping.stop_jacobian import fill_stop_jacobians
 
     slopes = table.slopes.stops
-    out = np.empty((launches.shape[1], len(STOP_NAMES), len(LAUNCH_NAMES)))
+    out = np.empty((launches.size, len(STOP_NAMES), len(LAUNCH_NAMES)))
 
     def work(start: int, stop: int) -> None:
-        some = np.ascontiguousarray(launches[:, start:stop])
-        fill_stop_jacobians(some, slopes, out[start:stop])
+        fill_stop_jacobians(*launches.part(start, stop), slopes, out[start:stop])
 
-    run_chunks(work, launches.shape[1], _CHUNK)
+    in_chunks(work, launches.size, threads)
     return out
 
 
 def state_jacobians(
-    table: StopTable, pucks: FloatArray, which: npt.NDArray[np.int64], moments: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """States (6, n) of plain ``pucks`` (20, m), and derivatives (n, 6, 7); ``which`` (n,) when.
+    table: StopTable, pucks: FloatArray, which: npt.NDArray[np.int64], moments: FloatArray,
+    threads: int | None = None,
+) -> FloatArray:  # fmt: skip
+    """Derivatives (n, 6, 7) of states of plain ``pucks`` (20, m); ``which`` (n,) when.
 
     ``pucks``: as :func:`puck_tables.stopping.state_values.known_pucks` gives them.
     """
-    from puck_tables.stopping.state_jacobian import fill_state_jacobians
+    from puck_tables.stopping.state_jacobian import (
+        FACTS,
+        fill_launch_facts,
+        fill_state_jacobians,
+    )
 
-    slopes, rows = table.slopes, np.ascontiguousarray(pucks.T)
-    values = np.empty((len(STATE_NAMES), which.size))
-    out = np.empty((which.size, len(STATE_NAMES), len(MOMENT_NAMES)))
+    slopes, out = table.slopes, np.empty((which.size, len(STATE_NAMES), len(MOMENT_NAMES)))
+    facts, natural = np.empty((FACTS, pucks.shape[1])), _beside_pure(table, pucks)
+    fill_launch_facts(pucks, natural, table.constants, slopes.stops, slopes.curve, facts)
 
     def work(start: int, stop: int) -> None:
-        part = np.empty((len(STATE_NAMES), stop - start))
         fill_state_jacobians(
-            rows, which[start:stop], moments[start:stop], table.stop_coefficients,
-            table.curve_coefficients, table.time_inverse, table.constants, slopes.stops,
-            slopes.curve, part, out[start:stop],
+            facts, which[start:stop], moments[start:stop], table.time_inverse, slopes.stops,
+            slopes.curve, out[start:stop],
         )  # fmt: skip
-        values[:, start:stop] = part
 
-    if (which[:-1] > which[1:]).any():  # what is known of a puck serves all its states
-        order = np.argsort(which, kind="stable")
-        found = state_jacobians(table, pucks, which[order], moments[order])
-        values[:, order], out[order] = found
-        return values, out
-    run_chunks(work, which.size, _CHUNK)
-    return values, out
+    in_chunks(work, which.size, threads)
+    return out
+
+
+def _beside_pure(table: StopTable, pucks: FloatArray) -> FloatArray:
+    """What is known of ``pucks`` (20, m), of a neighbour with Q = J = r = 1 where one is pure."""
+    speed, slip = pucks[LAUNCH_COLUMNS + SPEED0], pucks[LAUNCH_COLUMNS + SLIP]
+    rim = np.abs(pucks[5] * pucks[2])
+    pure = np.minimum(speed, rim) <= _TINY * slip
+    if not pure.any():
+        return pucks
+    beside, unit = np.ones((LAUNCH_COLUMNS, int(pure.sum()))), np.maximum(slip[pure], _LEAST)
+    beside[0], beside[1] = np.maximum(speed[pure] / unit, _TINY), 0.0
+    beside[2], beside[3] = np.maximum(rim[pure] / unit, _TINY), pucks[3, pure]
+    natural = pucks.copy()
+    natural[:, pure] = table.pucks(launches_in(beside))
+    return natural
 
 
 def integrated_jacobians(
     bodies: Bodies, launches: FloatArray, pucks: npt.NDArray[np.int64],
-    which: npt.NDArray[np.int64], moments: FloatArray, out: FloatArray,
+    which: npt.NDArray[np.int64], moments: FloatArray, out: FloatArray, threads: int | None,
 ) -> None:  # fmt: skip
     """Derivatives of states of other ``pucks`` into their places in ``out`` (n, 6, 7).
 
@@ -264,4 +280,4 @@ def integrated_jacobians(
                 fill_placed_states(launch, times, own, part)
             out[mine] = part
 
-    run_chunks(work, pucks.size, 1)
+    run_chunks(work, pucks.size, 1, threads)

@@ -5,19 +5,14 @@ from __future__ import annotations
 import math
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import inlined, kernel
-from puck_tables.stopping.stop_jacobian import (
-    BY_DECEL,
-    BY_DELTA,
-    BY_RADIUS,
-    BY_SPIN,
-    BY_TIME,
-    BY_VX,
-    BY_VY,
-)
+from puck_tables.kernels.compile import inlined, kernel, weighted_rows
+from puck_tables.stopping.stop_jacobian import Numbers, direction
 
 # what is differentiated
 STATE_X, STATE_Y, STATE_TURNED, STATE_VX, STATE_VY, STATE_SPIN = range(6)
+STATES, STATE_COLUMNS = 6, 7
+OWN_STATES = STATES * 6  # of each: itself; by v, v across, rω, δ, time
+PLACED_STATES = STATES * STATE_COLUMNS
 
 
 @inlined
@@ -27,55 +22,59 @@ def rotated(one: float, other: float, cosine: float, sine: float) -> tuple[float
 
 
 @inlined
-def place_state(puck: FloatArray, time: float, own: FloatArray, out: FloatArray) -> None:
-    """From natural units in the frame of the launch, ``own`` (6, 6), to ``out`` (6, 7)."""
-    vx, vy, spin = puck[0], puck[1], puck[2]
-    decel, radius = puck[4], puck[5]
-    speed = math.hypot(vx, vy)
-    slip = math.hypot(speed, radius * spin)
-    east, north = (vx / speed, vy / speed) if speed > 0.0 else (1.0, 0.0)
+def _pair(
+    ahead: Numbers, aside: Numbers, unit: float, by_speed: float, by_time: float, gone: float,
+    elapsed: float, around: float, east: float, north: float, spin: float, radius: float,
+) -> Numbers:  # fmt: skip
+    """Two rows of seven, along x and y, from those along and to the left of the launch."""
+    one_x, one_y = rotated(ahead[1], around * aside[1], east, north)
+    two_x, two_y = rotated(around * ahead[2], aside[2], east, north)
+    rim_x, rim_y = rotated(around * ahead[3], aside[3], east, north)
+    tilt_x, tilt_y = rotated(ahead[4], around * aside[4], east, north)
+    rate_x, rate_y = rotated(ahead[5], around * aside[5], east, north)
+    here_x, here_y = rotated(ahead[0], around * aside[0], east, north)
+    rim_x, rim_y = by_speed * rim_x, by_speed * rim_y
+    rate_x, rate_y = by_time * rate_x, by_time * rate_y
+    return (
+        by_speed * (east * one_x - north * two_x), by_speed * (north * one_x + east * two_x),
+        radius * rim_x, unit * tilt_x, elapsed * rate_x - gone * here_x, spin * rim_x, rate_x,
+        by_speed * (east * one_y - north * two_y), by_speed * (north * one_y + east * two_y),
+        radius * rim_y, unit * tilt_y, elapsed * rate_y - gone * here_y, spin * rim_y, rate_y,
+    )  # fmt: skip
+
+
+@inlined
+def _turn(
+    own: Numbers, unit: float, by_speed: float, by_time: float, gone: float, elapsed: float,
+    around: float, east: float, north: float, spin: float, radius: float,
+) -> Numbers:  # fmt: skip
+    """A row of seven, of what changes its sign with the spin."""
+    value, ahead = around * unit * own[0], around * by_speed * own[1]
+    rim, rate = by_speed * own[3], around * by_time * own[5]
+    return (
+        east * ahead, north * ahead, radius * rim, around * unit * own[4],
+        elapsed * rate - gone * value, spin * rim - value / radius, rate,
+    )  # fmt: skip
+
+
+@inlined
+def placed_state(
+    vx: float, vy: float, spin: float, decel: float, radius: float, speed: float, slip: float,
+    time: float, own: Numbers,
+) -> Numbers:  # fmt: skip
+    """From natural units in the frame of the launch, six rows of six, to six rows of seven."""
+    east, north = direction(vx, vy, speed)
     around = 1.0 if spin >= 0.0 else -1.0
-    duration = slip / decel
-    for row in (STATE_X, STATE_VX):  # pairs: along and to the left of the launch
-        place = row == STATE_X
-        unit = slip * duration if place else slip
-        unit_by_speed = duration if place else 1.0
-        unit_by_time = slip if place else decel
-        ahead, aside = own[row, 1], around * own[row + 1, 1]
-        one_x, one_y = rotated(ahead, aside, east, north)
-        two_x, two_y = rotated(around * own[row, 2], own[row + 1, 2], east, north)
-        out[row, BY_VX] = unit_by_speed * (east * one_x - north * two_x)
-        out[row + 1, BY_VX] = unit_by_speed * (east * one_y - north * two_y)
-        out[row, BY_VY] = unit_by_speed * (north * one_x + east * two_x)
-        out[row + 1, BY_VY] = unit_by_speed * (north * one_y + east * two_y)
-        rim_x, rim_y = rotated(around * own[row, 3], own[row + 1, 3], east, north)
-        out[row, BY_SPIN] = radius * unit_by_speed * rim_x
-        out[row + 1, BY_SPIN] = radius * unit_by_speed * rim_y
-        out[row, BY_RADIUS] = spin * unit_by_speed * rim_x
-        out[row + 1, BY_RADIUS] = spin * unit_by_speed * rim_y
-        tilt_x, tilt_y = rotated(own[row, 4], around * own[row + 1, 4], east, north)
-        out[row, BY_DELTA], out[row + 1, BY_DELTA] = unit * tilt_x, unit * tilt_y
-        rate_x, rate_y = rotated(own[row, 5], around * own[row + 1, 5], east, north)
-        out[row, BY_TIME], out[row + 1, BY_TIME] = unit_by_time * rate_x, unit_by_time * rate_y
-        here_x, here_y = rotated(own[row, 0], around * own[row + 1, 0], east, north)
-        own_unit = unit if place else 0.0
-        elapsed = time / decel
-        out[row, BY_DECEL] = elapsed * out[row, BY_TIME] - own_unit / decel * here_x
-        out[row + 1, BY_DECEL] = elapsed * out[row + 1, BY_TIME] - own_unit / decel * here_y
-    for row in (STATE_TURNED, STATE_SPIN):
-        angle = row == STATE_TURNED
-        unit = slip * duration / radius if angle else slip / radius
-        unit_by_speed = duration / radius if angle else 1.0 / radius
-        unit_by_time = slip / radius if angle else decel / radius
-        value = around * unit * own[row, 0]
-        by_speed, by_rim = around * unit_by_speed * own[row, 1], unit_by_speed * own[row, 3]
-        out[row, BY_VX], out[row, BY_VY] = east * by_speed, north * by_speed
-        out[row, BY_SPIN] = radius * by_rim
-        out[row, BY_RADIUS] = spin * by_rim - value / radius
-        out[row, BY_DELTA] = around * unit * own[row, 4]
-        out[row, BY_TIME] = around * unit_by_time * own[row, 5]
-        gone = value / decel if angle else 0.0
-        out[row, BY_DECEL] = time / decel * out[row, BY_TIME] - gone
+    unit, bend = 1.0 / decel, 1.0 / radius
+    duration, elapsed = slip * unit, time * unit
+    place = slip * duration
+    frame = elapsed, around, east, north, spin, radius
+    return (
+        *_pair(own[:6], own[6:12], place, duration, slip, unit * place, *frame),
+        *_turn(own[12:18], bend * place, bend * duration, bend * slip, unit, *frame),
+        *_pair(own[18:24], own[24:30], slip, 1.0, decel, 0.0, *frame),
+        *_turn(own[30:], bend * slip, bend, bend * decel, 0.0, *frame),
+    )  # fmt: skip
 
 
 @kernel
@@ -83,5 +82,12 @@ def fill_placed_states(
     puck: FloatArray, times: FloatArray, own: FloatArray, out: FloatArray
 ) -> None:
     """Derivatives of states (n, 6, 7) of a puck from natural ones ``own`` (n, 6, 6)."""
+    vx, vy, spin, radius = puck[0], puck[1], puck[2], puck[5]
+    speed = math.hypot(vx, vy)
+    slip = math.hypot(speed, radius * spin)
+    flat, numbers = own.reshape(-1), out.reshape(-1)
     for n in range(times.size):
-        place_state(puck, times[n], own[n], out[n])
+        row = weighted_rows(flat, OWN_STATES * n, (1.0,), OWN_STATES)
+        placed = placed_state(vx, vy, spin, puck[4], radius, speed, slip, times[n], row)
+        for k in range(PLACED_STATES):
+            numbers[PLACED_STATES * n + k] = placed[k]

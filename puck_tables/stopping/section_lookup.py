@@ -12,10 +12,10 @@ from puck_tables.kernels.compile import allocating, weighted_rows
 from puck_tables.kernels.section_spline import HEADER, section_place
 from puck_tables.kernels.spline import basis
 from puck_tables.stopping.lookup import LARGEST, SMALLEST
-from puck_tables.stopping.stop_jacobian import BY_VX, BY_VY, LENGTH, STOP_ROWS, place_stop
+from puck_tables.stopping.stop_jacobian import LAUNCH_COLUMNS, OWN, STOP_ROWS, placed_stop
 
 _FUNCTIONS = 6
-_SLOPES = 4 * STOP_ROWS
+_OUT = STOP_ROWS * LAUNCH_COLUMNS
 _LOWEST = 1e-290
 
 
@@ -71,26 +71,19 @@ def fill_section_jacobians(
     ``cut`` holds the functions of :mod:`puck_tables.stopping.slope_section`, ``good`` says in which
     cells they are good; ``left`` (n,): which launches are in others, and left out.
     """
-    own = np.empty((STOP_ROWS, 4))
-    flat = own.reshape(-1)
+    flat, numbers = cut.reshape(-1), out.reshape(-1)
     for n in range(launches.shape[1]):
-        launch = launches[:, n]
-        speed, rim = math.hypot(launch[0], launch[1]), abs(launch[5] * launch[2])
+        vx, vy, spin, radius = launches[0, n], launches[1, n], launches[2, n], launches[5, n]
+        speed, rim = math.hypot(vx, vy), abs(radius * spin)
         slip, larger = math.hypot(speed, rim), max(speed, rim)
         raised = 2.0**200 if larger < _LOWEST else 1.0
         ratio = (raised * min(speed, rim)) / (raised * larger)
-        side, i, place = section_place(ratio, rim > speed, cut, _SLOPES)
-        w0, w1, w2, w3 = basis(place)
+        side, i, place = section_place(ratio, rim > speed, cut, OWN)
         # a node is good whatever lies between
-        left[n] = place > 0.0 and not good[side, (i - HEADER) // _SLOPES]
+        left[n] = place > 0.0 and not good[side, (i - HEADER) // OWN]
         if left[n]:
             continue
-        row = cut[side, i : i + 4 * _SLOPES]
-        for f in range(_SLOPES):
-            flat[f] = (
-                w0 * row[f] + w1 * row[f + _SLOPES] + w2 * row[f + 2 * _SLOPES]
-                + w3 * row[f + 3 * _SLOPES]
-            )  # fmt: skip
-        place_stop(launch, speed, slip, own, out[n])
-        if speed == 0.0:
-            out[n, LENGTH, BY_VX] = out[n, LENGTH, BY_VY] = math.nan
+        own = weighted_rows(flat, side * cut.shape[1] + i, basis(place), OWN)
+        placed = placed_stop(vx, vy, spin, launches[4, n], radius, speed, slip, own)
+        for k in range(_OUT):
+            numbers[_OUT * n + k] = placed[k]

@@ -87,7 +87,7 @@ def slope_section(body: Body) -> SlopeSection:
         values, cells = finer, 2 * cells
 
 
-def stop_slopes_of(body: Body, launches: FloatArray) -> FloatArray:
+def stop_slopes_of(body: Body, launches: FloatArray, threads: int | None = None) -> FloatArray:
     """Derivatives (n, 5, 6) of the stops of launches (6, n) of one kind of puck, none at rest.
 
     Raises
@@ -119,7 +119,7 @@ def stop_slopes_of(body: Body, launches: FloatArray) -> FloatArray:
             some = np.ascontiguousarray(launches[:, start:stop])
             fill_section_jacobians(some, *section, out[start:stop], left[start:stop])
 
-        run_chunks(work, count, _CHUNK)
+        run_chunks(work, count, _CHUNK, threads)
     if left.any():
         some = np.ascontiguousarray(launches[:, left])
         slip = np.hypot(speed, rim)[left]

@@ -68,7 +68,8 @@ class States(Differentiated, Result):
     radius: FloatArray
     explanation: str = ""
     _jacobian: FloatArray | None = None
-    _arguments: FloatArray = field(default_factory=lambda: np.empty((7, 0)))
+    _launched: FloatArray = field(default_factory=lambda: np.empty((6, 0)))
+    _which: npt.NDArray[np.int64] = field(default_factory=lambda: np.empty(0, np.int64))
     _table: StopTable | None = None
     _kind: Kind | None = None
 
@@ -128,6 +129,10 @@ class States(Differentiated, Result):
     def slip_angle(self) -> FloatArray:
         """Φ = atan2(rω, v), rad; 0 at rest."""
         return np.arctan2(self.radius * self.spin, self.speed)
+
+    @property
+    def _arguments(self) -> FloatArray:  # type: ignore[override]
+        return np.concatenate([self._launched[:, self._which], self.time.reshape(1, -1)])
 
     def _again(self, arguments: FloatArray) -> FloatArray:
         if self._kind is not None:
@@ -268,34 +273,39 @@ def states(
         found = all_looked_up(chosen, launches, which, moments, threads)
         return _states(found, moments, launches, which, shape, _told(launches.size, 0))
     refuse_times(moments)
-    rows = launches.matrix
+    each = np.arange(moments.size)
+    if which.size:
+        each = np.ascontiguousarray(np.broadcast_to(which, moments.shape))
+    rows, slopes = launches.matrix, None
     plain = rows[3] <= highest
     bodies = _bodies(pressure, gyration, rows[3, ~plain])
-    longest = max((body.longest for body in bodies.values()), default=2.0)
-    if not fits(rows, longest).all():
-        raise InputError(_TOO_LARGE)
-    each = np.arange(moments.size) if not which.size else np.broadcast_to(which, moments.shape)
-    pucks = known_pucks(chosen, rows[:, plain], threads)
-    slopes = None
-    found = np.empty((STATE_ROWS, moments.size))
-    looked, others = plain[each], np.flatnonzero(~plain)
-    number = np.cumsum(plain) - 1  # of a plain puck among such
-    some = number[each[looked]], moments[looked]
-    found[:, looked] = looked_up(chosen, pucks, *some, threads)
-    if jacobian:
-        slopes = np.empty((moments.size, len(STATE_NAMES), len(MOMENT_NAMES)))
-        slopes[looked] = state_jacobians(chosen, pucks, *some)[1]
-        integrated_jacobians(bodies, rows, others, each, moments, slopes)
-    integrate(bodies, rows, others, each, moments, found, threads)
-    told = _told(int(plain.sum()), int((~plain).sum()))
+    if all_plain:
+        pucks = chosen.pucks(launches, threads)
+        found = looked_up(chosen, pucks, each, moments, threads)
+        slopes = state_jacobians(chosen, pucks, each, moments, threads)
+    else:
+        longest = max((body.longest for body in bodies.values()), default=2.0)
+        if not fits(rows, longest).all():
+            raise InputError(_TOO_LARGE)
+        pucks = known_pucks(chosen, rows[:, plain], threads)
+        found = np.empty((STATE_ROWS, moments.size))
+        looked, others = plain[each], np.flatnonzero(~plain)
+        number = np.cumsum(plain) - 1  # of a plain puck among such
+        some = number[each[looked]], moments[looked]
+        found[:, looked] = looked_up(chosen, pucks, *some, threads)
+        if jacobian:
+            slopes = np.empty((moments.size, len(STATE_NAMES), len(MOMENT_NAMES)))
+            slopes[looked] = state_jacobians(chosen, pucks, *some, threads)
+            integrated_jacobians(bodies, rows, others, each, moments, slopes, threads)
+        integrate(bodies, rows, others, each, moments, found, threads)
     found[HEADING] += directions(rows[0], rows[1])[each]
+    told = _told(int(plain.sum()), int((~plain).sum()))
     result = _states(found, moments, launches, which, shape, told)
     if slopes is None:
         return result
     return replace(
         result, _jacobian=slopes.reshape(*shape, *slopes.shape[1:]), _table=table,
-        _kind=Kind(pressure, gyration) if bodies else None,
-        _arguments=np.concatenate([rows[:, each], moments[None]]),
+        _kind=Kind(pressure, gyration) if bodies else None, _launched=rows, _which=each,
     )  # fmt: skip
 
 

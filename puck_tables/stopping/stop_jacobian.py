@@ -18,9 +18,28 @@ import math
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import allocating, inlined, spline_polynomials
-from puck_tables.kernels.spline import basis, cell_at
-from puck_tables.stopping.lookup import LARGEST, SMALLEST, quick_place, slip_place
+from puck_tables.kernels.compile import (
+    BLOCK,
+    allocating,
+    inlined,
+    into_rows,
+    row_of,
+    rows_of,
+    spline_polynomials,
+    weighted_rows,
+)
+from puck_tables.kernels.spline import basis
+from puck_tables.stopping.launches import (
+    DECEL,
+    DELTA,
+    RADIUS,
+    SPIN,
+    VX,
+    VY,
+    fetch_block,
+    fill_constants,
+)
+from puck_tables.stopping.lookup import EDGE, FIRST, INSIDE, PLACED, SLIP, SPEED, place_block
 from puck_tables.stopping.slopes import STOP_FUNCTIONS, STOP_POWERS, STOP_WIDTH
 
 # what is differentiated, and by what; rows of arrays
@@ -29,172 +48,162 @@ STOP_ROWS = 5
 BY_VX, BY_VY, BY_SPIN, BY_DELTA, BY_DECEL, BY_RADIUS, BY_TIME = range(7)
 LAUNCH_COLUMNS = 6
 
-# what a place on the curve says of a stop: five functions, D of each; all again, derived by δ
+# what a place on the curve says of a stop: five functions, D of each, and derivatives by δ
 T, ALONG, ACROSS, TURNED, WAY = range(STOP_FUNCTIONS)
-D, BY_HEIGHT = STOP_FUNCTIONS, STOP_WIDTH
-STOP_FOUND = 2 * STOP_WIDTH
+D, BY_HEIGHT = STOP_FUNCTIONS, 2 * STOP_FUNCTIONS
+STOP_FOUND = 3 * STOP_FUNCTIONS
 # of a stop in the frame of its launch: value, by v, by a, by δ; J = 1
 BY_SPEED, BY_RIM, BY_TILT = 1, 2, 3
-_BLOCK, _ROW = 64, STOP_POWERS * STOP_WIDTH
+OWN_COLUMNS = 4
+OWN = STOP_ROWS * OWN_COLUMNS
+STOP_ROW = STOP_POWERS * STOP_WIDTH
+_OUT = STOP_ROWS * LAUNCH_COLUMNS
+# rows of a block behind those of the launches and their places
+_FOUND = PLACED
+_PUT = PLACED + STOP_FOUND
+_ROWS = _PUT + _OUT
+
+Numbers = tuple[float, ...]
 
 
 @inlined
-def stop_found(
-    slopes: FloatArray, cells: int, side: int, xi: float, delta: float, found: FloatArray
-) -> None:
-    """The functions of the stop at a place of the curve, into ``found`` (24,); ``slopes`` flat."""
-    p = xi * cells
-    i = cell_at(p, cells)
-    _functions_in(slopes, (side * (cells + 3) + i) * _ROW, p - i, delta, found)
-
-
-@inlined
-def _functions_in(
-    slopes: FloatArray, first: int, inside: float, delta: float, found: FloatArray
-) -> None:
-    s = 2.0 * delta * delta - 1.0
-    values = spline_polynomials(slopes, first, basis(inside), s, STOP_WIDTH, STOP_POWERS)
-    for f in range(STOP_WIDTH):
-        found[f] = values[f]
-    for f in range(STOP_FUNCTIONS):
-        found[BY_HEIGHT + f] = 4.0 * delta * values[STOP_WIDTH + f]
+def stop_functions(slopes: FloatArray, first: int, inside: float, delta: float) -> Numbers:
+    """The functions of the stop at a place of the curve (15); ``slopes`` flat."""
+    s, k = 2.0 * delta * delta - 1.0, 4.0 * delta
+    f = spline_polynomials(slopes, first, basis(inside), s, STOP_WIDTH, STOP_POWERS)
+    return (
+        f[0], f[1], f[2], f[3], f[4], f[5], f[6], f[7], f[8], f[9],
+        k * f[12], k * f[13], k * f[14], k * f[15], k * f[16],
+    )  # fmt: skip
 
 
 @inlined
 def stop_by_speeds(
-    speed: float, rim: float, slip: float, c: float, s: float, delta: float, found: FloatArray,
-    out: FloatArray,
-) -> None:  # fmt: skip
-    """Time, z/v, way and body angle and their derivatives by v, a ≥ 0 and δ, into ``out`` (5, 4).
+    speed: float, rim: float, slip: float, c: float, s: float, delta: float, found: Numbers
+) -> Numbers:
+    """Time, z/v, way and body angle and their derivatives by v, a ≥ 0 and δ, five rows of four.
 
     Rows: time, along, to the left, path, body angle; J = r = 1.  Along and left: of z, but the
     first column holds z/v.
     """
     c2, sc2 = c * c, s * c * c
-    t, dt = found[T], found[D + T]
-    out[TIME, 0] = slip * t
-    out[TIME, BY_SPEED], out[TIME, BY_RIM] = c * (t - s * dt), s * t + c2 * dt
-    out[TIME, BY_TILT] = slip * found[BY_HEIGHT + T]
-    f, df = found[ALONG], found[D + ALONG]
-    out[STOP_X, 0] = slip * f
-    out[STOP_X, BY_SPEED] = slip * (f + c2 * (f - s * df))
-    out[STOP_X, BY_RIM] = speed * (s * f + c2 * df)
-    out[STOP_X, BY_TILT] = speed * slip * found[BY_HEIGHT + ALONG]
-    f, df = found[ACROSS], found[D + ACROSS]
-    out[STOP_Y, 0] = delta * rim * f
-    out[STOP_Y, BY_SPEED] = delta * rim * (f - sc2 * df)
-    out[STOP_Y, BY_RIM] = delta * speed * (f + sc2 * df)
-    out[STOP_Y, BY_TILT] = speed * rim * (f + delta * found[BY_HEIGHT + ACROSS])
-    f, df = found[WAY], found[D + WAY]
-    out[LENGTH, 0] = slip * speed * f
-    out[LENGTH, BY_SPEED] = slip * f + speed * c * (f - s * df)
-    out[LENGTH, BY_RIM] = speed * (s * f + c2 * df)
-    out[LENGTH, BY_TILT] = slip * speed * found[BY_HEIGHT + WAY]
-    f, df = found[TURNED], found[D + TURNED]
-    out[BODY, 0] = slip * rim * f
-    out[BODY, BY_SPEED] = rim * c * (f - s * df)
-    out[BODY, BY_RIM] = slip * f + rim * (s * f + c2 * df)
-    out[BODY, BY_TILT] = slip * rim * found[BY_HEIGHT + TURNED]
+    t, dt, t_tilt = found[T], found[D + T], found[BY_HEIGHT + T]
+    x, dx, x_tilt = found[ALONG], found[D + ALONG], found[BY_HEIGHT + ALONG]
+    y, dy, y_tilt = found[ACROSS], found[D + ACROSS], found[BY_HEIGHT + ACROSS]
+    w, dw, w_tilt = found[WAY], found[D + WAY], found[BY_HEIGHT + WAY]
+    b, db, b_tilt = found[TURNED], found[D + TURNED], found[BY_HEIGHT + TURNED]
+    return (
+        slip * t, c * (t - s * dt), s * t + c2 * dt, slip * t_tilt,
+        slip * x, slip * (x + c2 * (x - s * dx)), speed * (s * x + c2 * dx), speed * slip * x_tilt,
+        delta * rim * y, delta * rim * (y - sc2 * dy), delta * speed * (y + sc2 * dy),
+        speed * rim * (y + delta * y_tilt),
+        slip * speed * w, slip * w + speed * c * (w - s * dw), speed * (s * w + c2 * dw),
+        slip * speed * w_tilt,
+        slip * rim * b, rim * c * (b - s * db), slip * b + rim * (s * b + c2 * db),
+        slip * rim * b_tilt,
+    )  # fmt: skip
 
 
 @inlined
-def place_stop(
-    launch: FloatArray, speed: float, slip: float, own: FloatArray, out: FloatArray
-) -> None:
-    """From the frame of the launch and Q = J = r = 1, ``own`` (5, 4), to ``out`` (5, 6)."""
-    vx, vy, spin, radius = launch[0], launch[1], launch[2], launch[5]
-    unit, bend = 1.0 / launch[4], 1.0 / radius
+def direction(vx: float, vy: float, speed: float) -> tuple[float, float]:
+    """Cosine and sine of the direction of a velocity; along x where there is none."""
+    moving = speed if speed > 0.0 else 1.0
+    return (vx if speed > 0.0 else 1.0) / moving, vy / moving
+
+
+@inlined
+def placed_stop(
+    vx: float, vy: float, spin: float, decel: float, radius: float, speed: float, slip: float,
+    own: Numbers,
+) -> Numbers:  # fmt: skip
+    """From the frame of the launch and Q = J = r = 1, five rows of four, to five rows of six.
+
+    NaN for the path of pure spin by vx and vy.
+    """
+    unit, bend = 1.0 / decel, 1.0 / radius
     duration = slip * unit
     place = slip * duration
-    east, north = (vx / speed, vy / speed) if speed > 0.0 else (1.0, 0.0)
+    east, north = direction(vx, vy, speed)
     around = 1.0 if spin >= 0.0 else -1.0
-    for row in (TIME, LENGTH, BODY):
-        whole = duration if row == TIME else place
-        part = unit if row == TIME else duration
-        by_rim = around * part
-        if row == BODY:  # changes its sign with the spin
-            whole, part, by_rim = around * bend * whole, around * bend * part, bend * part
-        value, by_speed = whole * own[row, 0], part * own[row, BY_SPEED]
-        by_rim *= own[row, BY_RIM]
-        out[row, BY_VX], out[row, BY_VY] = east * by_speed, north * by_speed
-        out[row, BY_SPIN] = radius * by_rim
-        out[row, BY_DELTA] = whole * own[row, BY_TILT]
-        out[row, BY_DECEL] = -value * unit
-        out[row, BY_RADIUS] = spin * by_rim - (value * bend if row == BODY else 0.0)
+    turn = around * bend  # the body angle changes its sign with the spin
+    time, length, body = duration * own[0], place * own[12], turn * place * own[16]
+    t_speed, w_speed, b_speed = unit * own[1], duration * own[13], turn * duration * own[17]
+    w_speed = w_speed if speed > 0.0 else math.nan
+    t_rim, w_rim = around * unit * own[2], around * duration * own[14]
+    b_rim = bend * duration * own[18]
     # z = e (ahead + i aside) v: the derivatives along the velocity and across it
-    ahead, aside = duration * own[STOP_X, 0], around * duration * own[STOP_Y, 0]  # z/v
-    along, left = duration * own[STOP_X, BY_SPEED], around * duration * own[STOP_Y, BY_SPEED]
+    ahead, aside = duration * own[4], around * duration * own[8]  # z/v
+    along, left = duration * own[5], around * duration * own[9]
     xe, ye = east * along - north * left, east * left + north * along
     xn, yn = -east * aside - north * ahead, east * ahead - north * aside
-    out[STOP_X, BY_VX], out[STOP_Y, BY_VX] = east * xe - north * xn, east * ye - north * yn
-    out[STOP_X, BY_VY], out[STOP_Y, BY_VY] = north * xe + east * xn, north * ye + east * yn
-    along, left = around * duration * own[STOP_X, BY_RIM], duration * own[STOP_Y, BY_RIM]
-    x, y = east * along - north * left, east * left + north * along
-    out[STOP_X, BY_SPIN], out[STOP_Y, BY_SPIN] = radius * x, radius * y
-    out[STOP_X, BY_RADIUS], out[STOP_Y, BY_RADIUS] = spin * x, spin * y
-    along, left = place * own[STOP_X, BY_TILT], around * place * own[STOP_Y, BY_TILT]
-    out[STOP_X, BY_DELTA] = east * along - north * left
-    out[STOP_Y, BY_DELTA] = east * left + north * along
-    out[STOP_X, BY_DECEL] = -unit * (ahead * vx - aside * vy)
-    out[STOP_Y, BY_DECEL] = -unit * (ahead * vy + aside * vx)
+    along, left = around * duration * own[6], duration * own[10]
+    x_rim, y_rim = east * along - north * left, east * left + north * along
+    along, left = place * own[7], around * place * own[11]
+    return (
+        east * t_speed, north * t_speed, radius * t_rim, duration * own[3], -time * unit,
+        spin * t_rim,
+        east * xe - north * xn, north * xe + east * xn, radius * x_rim,
+        east * along - north * left, -unit * (ahead * vx - aside * vy), spin * x_rim,
+        east * ye - north * yn, north * ye + east * yn, radius * y_rim,
+        east * left + north * along, -unit * (ahead * vy + aside * vx), spin * y_rim,
+        east * w_speed, north * w_speed, radius * w_rim, place * own[15], -length * unit,
+        spin * w_rim,
+        east * b_speed, north * b_speed, radius * b_rim, turn * place * own[19], -body * unit,
+        spin * b_rim - body * bend,
+    )  # fmt: skip
+
+
+@inlined
+def row_by_row(room: FloatArray, first: int, rows: int, count: int, out: FloatArray) -> None:
+    """So many rows of a block, from one on, side by side into ``out`` (count · rows,)."""
+    for n in range(count):
+        for row in range(rows):
+            out[rows * n + row] = room[(first + row) * BLOCK + n]
 
 
 @allocating
-def fill_stop_jacobians(launches: FloatArray, slopes: FloatArray, out: FloatArray) -> None:
-    """∂(time, x, y, path, body angle)/∂(vx, vy, ω, δ, J, r) of launches (6, n) into (n, 5, 6).
+def fill_stop_jacobians(
+    vx: FloatArray, vy: FloatArray, step: int, spin: FloatArray, delta: FloatArray,
+    decel: FloatArray, radius: FloatArray, slopes: FloatArray, out: FloatArray,
+) -> None:  # fmt: skip
+    """∂(time, x, y, path, body angle)/∂(vx, vy, ω, δ, J, r) of launches into ``out`` (n, 5, 6).
 
-    ``slopes``: :attr:`puck_tables.stopping.slopes.Slopes.stops`.  NaN for a launch at rest, where
-    the time has no derivative, and for the path of pure spin by vx and vy, which grows like |v|.
+    Launches as for :func:`puck_tables.stopping.lookup.stops_kernel`; ``slopes``:
+    :attr:`puck_tables.stopping.slopes.Slopes.stops`.  NaN for a launch at rest, where the time has
+    no derivative, and for the path of pure spin by vx and vy, which grows like |v|.
     """
-    cells = slopes.shape[1] - 3
-    flat = slopes.reshape(-1)
-    found, own = np.empty(STOP_FOUND), np.empty((STOP_ROWS, 4))
-    first = np.empty(_BLOCK, np.int64)
-    inside, speeds = np.empty(_BLOCK), np.empty(_BLOCK)
-    rims, slips = np.empty(_BLOCK), np.empty(_BLOCK)
-    for start in range(0, launches.shape[1], _BLOCK):
-        block = launches[:, start : start + _BLOCK]
-        unsafe = 0
-        for n in range(block.shape[1]):
-            vx, vy, rim = block[0, n], block[1, n], abs(block[5, n] * block[2, n])
-            speed2 = vx * vx + vy * vy
-            slip2 = speed2 + rim * rim
-            speed, slip = math.sqrt(speed2), math.sqrt(slip2)
-            unsafe += 0 if (speed2 > SMALLEST) & (slip2 < LARGEST) else 1
-            cell, inside[n] = quick_place(speed, rim, float(cells))
-            first[n] = _ROW * (int(cell) + (cells + 3 if rim > speed else 0))
-            speeds[n], rims[n], slips[n] = speed, rim, slip
-        if unsafe > 0:  # anew, with care for rest along the way, and for the largest and smallest
-            for n in range(block.shape[1]):
-                vx, vy, rim = block[0, n], block[1, n], rims[n]
-                speed2 = vx * vx + vy * vy
-                if (speed2 > SMALLEST) & (speed2 + rim * rim < LARGEST):
-                    continue  # the same bits whatever else is in the block
-                speed = math.hypot(vx, vy)
-                slip = math.hypot(speed, rim)
-                side, xi = slip_place(speed, rim)
-                i = cell_at(xi * cells, cells)
-                inside[n], first[n] = xi * cells - i, _ROW * (i + side * (cells + 3))
-                speeds[n], slips[n] = speed, slip
-        for n in range(block.shape[1]):
-            delta = block[3, n]
-            _functions_in(flat, first[n], inside[n], delta, found)
-            speed, rim, slip = speeds[n], rims[n], slips[n]
-            cosine, sine = speed / slip, rim / slip
-            stop_by_speeds(cosine, sine, 1.0, cosine, sine, delta, found, own)
-            here = out[start + n]
-            place_stop(block[:, n], speed, slip, own, here)
-            if speed == 0.0:
-                here[LENGTH, BY_VX] = here[LENGTH, BY_VY] = math.nan
+    flat, numbers, room = slopes.reshape(-1), out.reshape(-1), np.empty(_ROWS * BLOCK)
+    fill_constants(vx, vy, spin, delta, decel, radius, room)
+    for start in range(0, len(out), BLOCK):
+        count = min(BLOCK, len(out) - start)
+        fetch_block(vx, vy, step, spin, delta, decel, radius, start, count, room)
+        place_block(room, count, slopes, STOP_ROW)
+        for n in range(count):
+            first, tilt = int(row_of(room, FIRST, n)), row_of(room, DELTA, n)
+            found = stop_functions(flat, first, row_of(room, INSIDE, n), tilt)
+            into_rows(room, _FOUND, n, found)
+        for n in range(count):
+            speed, slip = row_of(room, SPEED, n), row_of(room, SLIP, n)
+            c, s = speed / slip, abs(row_of(room, EDGE, n)) / slip
+            found = rows_of(room, _FOUND, STOP_FOUND, n)
+            own = stop_by_speeds(c, s, 1.0, c, s, row_of(room, DELTA, n), found)
+            placed = placed_stop(
+                row_of(room, VX, n), row_of(room, VY, n), row_of(room, SPIN, n),
+                row_of(room, DECEL, n), row_of(room, RADIUS, n), speed, slip, own,
+            )  # fmt: skip
+            into_rows(room, _PUT, n, placed)
+        row_by_row(room, _PUT, _OUT, count, numbers[_OUT * start :])
 
 
 @allocating
 def fill_placed_stops(launches: FloatArray, own: FloatArray, out: FloatArray) -> None:
     """Derivatives of stops (n, 5, 6) from natural ones ``own`` (n, 5, 4) of launches (6, n)."""
+    flat, numbers = own.reshape(-1), out.reshape(-1)
     for n in range(launches.shape[1]):
-        launch = launches[:, n]
-        speed = math.hypot(launch[0], launch[1])
-        slip = math.hypot(speed, launch[5] * launch[2])
-        place_stop(launch, speed, slip, own[n], out[n])
-        if speed == 0.0:
-            out[n, LENGTH, BY_VX] = out[n, LENGTH, BY_VY] = math.nan
+        vx, vy, spin, radius = launches[0, n], launches[1, n], launches[2, n], launches[5, n]
+        speed = math.hypot(vx, vy)
+        slip = math.hypot(speed, radius * spin)
+        row = weighted_rows(flat, OWN * n, (1.0,), OWN)
+        placed = placed_stop(vx, vy, spin, launches[4, n], radius, speed, slip, row)
+        for k in range(_OUT):
+            numbers[_OUT * n + k] = placed[k]

@@ -221,6 +221,9 @@ def stop(
     π/2, where stops carry broken powers of |φ|, they are the derivatives from both sides; only the
     path of exact pure spin grows like |v| and has none by vx and vy: NaN.
 
+    There is no column for ``gyration``, a number of the kind of puck: the difference of stops at
+    k ± 0.001, divided by 0.002, is its derivative to 1e-6 (with ``tol`` = 1e-10; Q = J = r = 1).
+
     References
     ----------
     Salnikova, Treschev, Gallyamov 2012, eq. 6.2–6.7.
@@ -244,6 +247,6 @@ def stop(
     slopes = kind = None
     if jacobian:
         plain, bodies = solver.kinds(launches.matrix[3])
-        slopes = stop_jacobians(launches.matrix, plain, bodies, own or StopTable.shipped())
+        slopes = stop_jacobians(launches, plain, bodies, own or StopTable.shipped(), threads)
         kind = Kind(pressure, gyration, tol, method, table) if bodies else None
     return Stops(solver, launches, threads, slopes, own, kind)
