@@ -170,7 +170,8 @@ def inverse_sum(c: FloatArray, side: int, xi: float, s: float, sums: FloatArray)
 def _spline(weights: FloatArray, xi: float) -> float:
     i, w0, w1, w2, w3 = _cell(xi, weights.size - 3)
     value: float = w0 * weights[i] + w1 * weights[i + 1]
-    return value + w2 * weights[i + 2] + w3 * weights[i + 3]
+    value += w2 * weights[i + 2] + w3 * weights[i + 3]
+    return value
 
 
 @allocating
