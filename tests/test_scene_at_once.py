@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from scenes import simulate_scene
 
+import puck_tables as pt
 from puck_tables import Scene
 from puck_tables.errors import InputError
 from puck_tables.scene.outcome import ENDS
@@ -83,6 +84,79 @@ def test_smooth_cushions_at_a_right_angle_need_no_order(rims: Any) -> None:
     v = math.sqrt(v0 * v0 - 2.0 * f * way)
     back = math.hypot(0.5, 0.7) * v / math.sqrt(2.0)
     assert run.end_time == pytest.approx((v0 - v + back) / f, rel=1e-9)
+
+
+def wedge(half: float, restitution: float, slope: float = 0.0, tol: float = 1e-9) -> dict[str, Any]:
+    """Along the x-axis into cushions that go off it by ``half`` at (1, 0)."""
+    return {
+        "puck": {"radius": 0.04, "height": 0.02, "friction": 0.1, "mass": 0.2},
+        "floor": {"slope": slope}, "launch": {"velocity": [2.0, 0.0]},
+        "wall": [
+            {"point": [1.0, 0.0], "normal": [-math.sin(half), side * math.cos(half)],
+             "restitution": restitution} for side in (1.0, -1.0)
+        ],
+        "run": {"tol": tol, "time": 20.0},
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize("restitution", [0.0, 0.6, 1.0])
+@pytest.mark.parametrize("degrees", [20.0, 45.0, 50.0, 80.0])
+def test_along_the_bisector_it_goes_back(degrees: float, restitution: float) -> None:
+    half = math.radians(degrees)
+    run = simulate_scene(wedge(half, restitution))
+    rate, way = 0.1 * 9.80665, 1.0 - 0.04 / math.sin(half)
+    hit = math.sqrt(4.0 - 2.0 * rate * way)
+    back = restitution * hit
+    assert run.end_time == pytest.approx((2.0 - hit + back) / rate, rel=1e-9)
+    assert run.last["x"] == pytest.approx(way - back * back / (2.0 * rate), abs=1e-9)
+    assert abs(run.last["y"]) <= 1e-12
+    assert run.last["spin"] == 0.0 and run.error_estimate <= 1e-9
+    assert abs(run.energy_residual) <= 1e-9
+
+
+@pytest.mark.parametrize("tol", [1e-4, 1e-9])
+@pytest.mark.parametrize("restitution", [0.3, 0.9, 0.99])
+def test_rebounds_along_the_bisector_are_a_series(restitution: float, tol: float) -> None:
+    """It lands with v √(down/up) after each hop, so hops are a geometric series."""
+    run = simulate_scene(wedge(0.7, restitution, slope=0.3, tol=tol))
+    down, up = (9.80665 * (math.sin(0.3) + s * 0.1 * math.cos(0.3)) for s in (-1.0, 1.0))
+    hit = math.sqrt(4.0 + 2.0 * down * (1.0 - 0.04 / math.sin(0.7)))
+    first, ratio = (hit - 2.0) / down, restitution * math.sqrt(down / up)
+    hop = restitution * hit * (1.0 / up + 1.0 / math.sqrt(up * down))
+    unit = run.speed_scale / run.rate_scale
+    assert run.end == "at rest"
+    assert abs(run.end_time - first - hop / (1.0 - ratio)) <= tol * unit
+    assert run.last["x"] == pytest.approx(1.0 - 0.04 / math.sin(0.7), abs=1e-12)
+
+
+def test_along_the_bisector_one_puck_is_as_one_of_several() -> None:
+    tables = wedge(0.6, 0.7)
+    alone = simulate_scene(tables)
+    one = pt.Piece(0.04, height=0.02, friction=0.1, mass=0.2, launch=pt.Launch((2.0, 0.0)))
+    other = pt.Piece(0.04, friction=0.1, launch=pt.Launch(position=(-5.0, 0.0)))
+    walls = [pt.Wall(tuple(w["point"]), tuple(w["normal"]), 0.7) for w in tables["wall"]]
+    last = pt.Scene(pucks=[one, other], walls=walls).simulate().last
+    assert last["x"][0] == pytest.approx(alone.last["x"], rel=1e-9)
+    assert last["y"][0] == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("part", [
+    {"restitution": 0.5}, {"tangential": 0.0}, {"tangential": -0.5, "friction": 0.1},
+])  # fmt: skip
+def test_a_wedge_that_is_no_mirror_of_itself_is_refused(part: dict[str, float]) -> None:
+    scene = wedge(0.6, 0.7)
+    scene["wall"][0] |= part
+    with pytest.raises(InputError, match="at the same moment"):
+        simulate_scene(scene)
+
+
+def test_beside_the_bisector_there_are_two_motions() -> None:
+    scene, ends = wedge(0.6, 0.7), []
+    for aside in (1e-8, -1e-8):
+        scene["launch"]["velocity"] = [2.0, aside]
+        ends.append(simulate_scene(scene).last)
+    assert abs(ends[0]["y"] - ends[1]["y"]) > 0.01
+    assert ends[0]["y"] == pytest.approx(-ends[1]["y"], abs=1e-6)
 
 
 def test_hard_cushions_at_sixty_degrees_need_no_order() -> None:

@@ -15,7 +15,7 @@ from __future__ import annotations
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.boundaries import BOUNCES, EDGE, Boundaries, outward, room_to
-from puck_tables.scene.cushions import NX, NY, rebound
+from puck_tables.scene.cushions import FRICTION, NX, NY, RESTITUTION, TANGENTIAL, rebound
 from puck_tables.scene.friction import SPIN, VX, VY, size
 from puck_tables.scene.ingredients import Body
 from puck_tables.scene.settle import Contacts
@@ -51,6 +51,15 @@ def _order_matters(
 
 
 @inlined
+def _mirrored(wall: FloatArray, other: FloatArray, y: FloatArray, speed: float) -> bool:
+    """Whether a puck comes along the line that bisects two walls, which are alike and smooth."""
+    smooth = wall[TANGENTIAL] == -1.0 or wall[FRICTION] == 0.0
+    smooth = smooth and (other[TANGENTIAL] == -1.0 or other[FRICTION] == 0.0)
+    off = (wall[NX] - other[NX]) * y[VX] + (wall[NY] - other[NY]) * y[VY]
+    return smooth and wall[RESTITUTION] == other[RESTITUTION] and abs(off) <= _STILL * speed
+
+
+@inlined
 def _nears(bounds: Boundaries, i: int, y: FloatArray) -> float:
     """How fast a puck nears a line, counted walls and then edges."""
     walls = len(bounds.walls)
@@ -71,8 +80,10 @@ def met_at_once(
     bounds: Boundaries, contacts: Contacts, happens: int, which: int, order: int, body: Body,
     t: float, y: FloatArray, speed: float, time: float, tolerance: float, one: FloatArray,
     two: FloatArray,
-) -> tuple[int, int, int]:  # fmt: skip
+) -> tuple[int, int, int, int]:  # fmt: skip
     """What a puck, in the laboratory at ``y``, meets first; and another line, −1: that is sure.
+
+    Also another wall that it hits as the mirror image of this one, −1: none.
 
     ``happens``, ``which``: the wall or edge that it is about to pass; ``order``: of lines of which
     it is not sure; ``speed``, ``time``: scales; ``tolerance``: local error in units of them;
@@ -81,7 +92,7 @@ def met_at_once(
     walls, edges = len(bounds.walls), len(bounds.edges)
     still = max(tolerance, _STILL) * speed
     number = which if happens == BOUNCES else walls + which
-    pick, unsure = number, -1
+    pick, unsure, image, unclear = number, -1, -1, 0
     length = speed * time
     doubt = GROWN * tolerance * _since(bounds, contacts, number, t, y, length)
     for i in range(walls + edges):
@@ -98,11 +109,15 @@ def met_at_once(
             wall, other = bounds.walls[number], bounds.walls[i]
             if not _order_matters(body, wall, other, still, y, one, two):
                 continue
-        unsure = i
+            if abs(room) <= _STILL * length and _mirrored(wall, other, y, speed):
+                image = i
+        unsure, unclear = i, unclear + 1
         if order == FIRST_BY_NUMBER:
             pick = min(pick, i)
         elif order == LAST_BY_NUMBER:
             pick = max(pick, i)
+    if image >= 0 and unclear == 1:
+        return BOUNCES, min(number, image), -1, max(number, image)
     if pick < walls:
-        return BOUNCES, pick, unsure
-    return EDGE, pick - walls, unsure
+        return BOUNCES, pick, unsure, -1
+    return EDGE, pick - walls, unsure, -1

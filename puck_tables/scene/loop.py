@@ -353,12 +353,12 @@ def follow(
                 leaning = contacts.rows[: touching(bounds, contacts)]
         if happens < 0:
             continue
-        settle = True
+        settle, image = True, -1
         if several and happens in (BOUNCES, EDGE):
             for i in range(SIZE):
                 last[i] = y[i]
             to_laboratory(model, last, 1.0)
-            happens, which, other = met_at_once(
+            happens, which, other, image = met_at_once(
                 bounds, contacts, happens, which, ask.order, body, t, last, ask.speed,
                 length_scale / ask.speed, ask.tolerance, new, trial,
             )  # fmt: skip
@@ -388,8 +388,8 @@ def follow(
             to_laboratory(model, y, 1.0)
             before = kinetic_energy(body, y)
             rest_time = bounced(
-                bounds, contacts, which, body, y, t, floor_velocity(surface, y[X], y[Y]), ask.speed,
-                length_scale / ask.speed, ask.tolerance,
+                bounds, contacts, which, image, body, y, t, floor_velocity(surface, y[X], y[Y]),
+                ask.speed, length_scale / ask.speed, ask.tolerance,
             )  # fmt: skip
             heat += before - kinetic_energy(body, y)
             to_laboratory(model, y, -1.0)
@@ -399,13 +399,16 @@ def follow(
                 share = ask.speed * rest_time / length_scale
                 wrong += share * share
             leaning = contacts.rows[: touching(bounds, contacts)]
-        if count == len(events):
+        if count + 1 >= len(events):
             how = EVENT_LIMIT
             break
         if happens == SLIPS:
             continue  # noted when it is known how
         noted(events[count], model, t, happens, which, y)
         count += 1
+        if image >= 0:
+            noted(events[count], model, t, happens, image, y)
+            count += 1
         if happens == EDGE:
             how = OVER_EDGE
             break

@@ -223,8 +223,8 @@ def _into_corner(one: FloatArray, other: FloatArray, y: FloatArray) -> None:
 
 @inlined
 def _doubt(
-    body: Body, wall: FloatArray, y: FloatArray, ground: tuple[float, float, float], hops: float,
-    changes: float,
+    body: Body, wall: FloatArray, along: float, spin: float, ground: tuple[float, float, float],
+    hops: float, changes: float,
 ) -> float:  # fmt: skip
     """By how much the velocity may be wrong where a puck leans, but rebounds at up to ``hops``.
 
@@ -233,20 +233,21 @@ def _doubt(
     to turn.
     """
     nx, ny, (sx, sy, turning) = wall[NX], wall[NY], ground
-    along = nx * (y[VY] - sy) - ny * (y[VX] - sx)
-    slip = size(along, nx * sx + ny * sy, body.radius * (y[SPIN] - turning))
+    along -= nx * sy - ny * sx
+    slip = size(along, nx * sx + ny * sy, body.radius * (spin - turning))
     share = hops / slip if slip > hops else 1.0
     return min(hops * share * share, slip + changes)
 
 
 @inlined
 def bounced(
-    bounds: Boundaries, contacts: Contacts, which: int, body: Body, y: FloatArray, t: float,
-    ground: tuple[float, float, float], speed: float, time: float, tolerance: float,
+    bounds: Boundaries, contacts: Contacts, which: int, image: int, body: Body, y: FloatArray,
+    t: float, ground: tuple[float, float, float], speed: float, time: float, tolerance: float,
 ) -> float:  # fmt: skip
     """Rebound of a puck, in the laboratory, from a wall.
 
     How long the rebounds go on if the puck leans on the wall from now on; −1: it does not.
+    ``image``: another wall that it hits at the same moment as the mirror image of this one, or −1.
     ``ground``: velocity and spin of the floor; ``speed`` and ``time``: scales; ``tolerance``: local
     error in units of them.
     """
@@ -256,11 +257,14 @@ def bounced(
     contacts.chain[1] = contacts.chain[1] + 1 if jams else 0
     wall, came = bounds.walls[which], -outward(bounds.walls, which, y)
     slips = rim_slip(body, wall[NX], wall[NY], y[VX], y[VY], y[SPIN])
-    hits, again = which, 0
-    while hits >= 0 and again < _AT_ONCE:
+    hits, hit = which, 0
+    if image >= 0:
+        y[VX], y[VY] = -wall[RESTITUTION] * y[VX], -wall[RESTITUTION] * y[VY]
+        hits = -1
+    while hits >= 0 and hit < _AT_ONCE:
         rebound(body, bounds.walls[hits], y)
         hits = _dead_ahead(bounds, contacts, which, y, here, speed)
-        again += 1
+        hit += 1
     goes = outward(bounds.walls, which, y)
     slides = rim_slip(body, wall[NX], wall[NY], y[VX], y[VY], y[SPIN])
     rest_time = -1.0
@@ -269,16 +273,20 @@ def bounced(
         corner = -1
     if contacts.chain[1] >= _JAM:
         corner = before
+    if corner >= 0 and image >= 0:
+        corner = image
     tiny = goes <= max(0.01 * tolerance, _SLOWEST) * speed
     if tiny or corner >= 0:
         rest_time = 0.0
-    falls = 0.0 < goes < contacts.pace[which]  # a wall that gives nothing back ends it at once
-    if corner < 0 and before == which and falls and goes <= 0.01 * speed:
+    # a wall that gives nothing back ends it at once
+    falls = before == which and 0.0 < goes < contacts.pace[which] and goes <= 0.01 * speed
+    if falls and (corner < 0 or image >= 0):
         hop = t - contacts.hit[which]
         ratio = goes / contacts.pace[which]
         rest = hop * ratio / (1.0 - ratio)
         changes = (abs(slips - contacts.slid[which]) + abs(slides - slips)) * ratio / (1.0 - ratio)
-        doubt = _doubt(body, wall, y, ground, speed * rest / time, changes)
+        along = wall[NX] * y[VY] - wall[NY] * y[VX] if image < 0 else 0.0
+        doubt = _doubt(body, wall, along, y[SPIN], ground, speed * rest / time, changes)
         short = hop > 0.0 and rest * rest <= tolerance * time * time
         if short and (tiny or doubt <= tolerance * speed):
             rest_time = rest
@@ -292,8 +300,10 @@ def bounced(
                 contacts.last[which], contacts.dying[which] = last - change, True
     contacts.room[which], contacts.slid[which] = 0.0, slides
     contacts.hit[which], contacts.pace[which], contacts.chain[0] = t, goes, which
+    if image >= 0:
+        contacts.room[image], contacts.hit[image], contacts.pace[image] = 0.0, t, goes
     if rest_time >= 0.0:
-        contacts.leans[which] = True
+        contacts.leans[which], corner = True, max(corner, image)
     if corner >= 0:
         contacts.leans[corner], contacts.room[corner] = True, 0.0
         _into_corner(wall, bounds.walls[corner], y)

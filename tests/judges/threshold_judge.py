@@ -152,7 +152,11 @@ def cartesian(
     close = closeness(scene)
     kinks = [_top(scene)] if scene["class"] == "peak" else []
     for stop in [k for k in kinks if k > t] + [until]:
-        run = solve_ivp(rates, (t, stop), y, "Radau", events=ends, rtol=close, atol=1e-2 * close)
+        # no rate depends on the place: scipy's differences by it take ever longer steps
+        with np.errstate(over="ignore"):
+            run = solve_ivp(
+                rates, (t, stop), y, "Radau", events=ends, rtol=close, atol=1e-2 * close
+            )
         if not run.success:
             raise ValueError(run.message)
         t, y = float(run.t[-1]), run.y[:, -1]
@@ -196,10 +200,11 @@ def by_direction(
     y = np.array([*(z / size), *(u / q), math.log(q / size), t])
     pieces = [kink, None] if scene["class"] == "peak" else [None]
     for extra in pieces:
-        run = solve_ivp(
-            rates, (0.0, 1e30), y, "BDF", events=[ends, *([extra] if extra else [])],
-            rtol=closeness(scene), atol=1e-2 * closeness(scene),
-        )  # fmt: skip
+        with np.errstate(over="ignore"):  # as above
+            run = solve_ivp(
+                rates, (0.0, 1e30), y, "BDF", events=[ends, *([extra] if extra else [])],
+                rtol=closeness(scene), atol=1e-2 * closeness(scene),
+            )  # fmt: skip
         y = run.y[:, -1]
         if run.status != 1:
             raise ValueError(run.message)
