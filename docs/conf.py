@@ -78,6 +78,7 @@ html_theme_options = {
     "show_toc_level": 2,
 }
 html_context = {"default_mode": "auto"}
+html_sidebars = {"*": []}  # pages of the top level have no pages below them to show
 html_static_path = ["_static"]
 html_css_files = ["site.css"]
 html_extra_path = ["_extra"]

@@ -15,11 +15,13 @@ import numpy as np
 import pytest
 from matplotlib.patches import Circle
 from PIL import Image
+from scipy.integrate import solve_ivp
 
-from puck_tables import Edge, InputError, Launch, Piece, Post, Scene, Trajectory, Wall
+from puck_tables import Edge, Floor, InputError, Launch, Piece, Post, Scene, Trajectory, Wall
 from puck_tables._core.colours import brightness, is_colour
 from puck_tables.errors import MissingExtraError, OutputError
 from puck_tables.plot.film import PALETTE, between, colour_of, film_of
+from puck_tables.plot.movie import page
 from puck_tables.plot.style import RED
 from puck_tables.puck import Puck
 
@@ -130,6 +132,58 @@ def test_the_script_of_a_page_runs(runs: dict[str, Any], tmp_path: Path) -> None
     assert drawn >= 2 * (8 + 1 + 4)  # posts, a pocket and discs, twice
     assert set_to == "0.300 s of 0.729 s, 2 impacts" and word == "Play"
     assert (marks, names) == (2, 4)
+
+
+@pytest.mark.skipif(shutil.which("node") is None, reason="needs node")
+@pytest.mark.parametrize(
+    "floor",
+    [
+        Floor(velocity=(0.3, -0.2)),
+        Floor(turning=-2.0, centre=(0.4, 0.1)),
+        Floor(velocity=(0.3, 0.1), turning=1.5, centre=(0.2, -0.1)),
+    ],
+    ids=["belt", "turntable", "both"],
+)
+def test_marks_of_a_movie_go_with_its_floor(floor: Floor, tmp_path: Path) -> None:
+    """Arrows begin where the floor brings them, integrated by scipy, and point along it."""
+    film = film_of(Puck.similar().simulate((1.0, 0.0)))._replace(
+        floor=floor, box=(0.0, 1.0, -1.0, 1.0)
+    )
+    (tmp_path / "run.html").write_text(page(film), encoding="utf-8")
+    told = json.dumps(told_in(tmp_path / "run.html"))
+    drawing = re.search(r"function drawMotion.*?\n}\n", page(film), re.DOTALL)
+    assert drawing is not None
+    script = f"""
+    const film = {told}, [left, right, low, high] = film.box;
+    const scale = 1, px = x => x, py = y => -y;
+    let seen = [];
+    const note = (x, y) => seen.push([x, -y]), pen = {{moveTo: note, lineTo: note}};
+    pen.beginPath = pen.stroke = () => {{}};
+    {drawing[0]}
+    console.log(JSON.stringify([0, 0.7].map(t => {{ seen = []; drawMotion(t); return seen; }})));
+    """
+    ended = subprocess.run(["node", "-"], input=script, capture_output=True, text=True)
+    assert ended.returncode == 0, ended.stderr[-600:]
+
+    def flow(_: float, at: np.ndarray) -> list[float]:
+        x, y = at[0] - floor.centre[0], at[1] - floor.centre[1]
+        return [floor.velocity[0] - floor.turning * y, floor.velocity[1] + floor.turning * x]
+
+    before, after = (  # five points an arrow; the cross in the centre of a turntable has four
+        np.array(points[: len(points) // 5 * 5]).reshape(-1, 5, 2)
+        for points in json.loads(ended.stdout)
+    )
+    kept = 0
+    for tail in before[:, 0]:
+        x, y = solve_ivp(flow, (0.0, 0.7), tail, rtol=1e-10, atol=1e-10).y[:, -1]
+        if 0.0 < x < 1.0 and -1.0 < y < 1.0:
+            kept += 1
+            assert np.hypot(*(after[:, 0] - (x, y)).T).min() < 1e-7
+    assert kept > 10
+    for tail, tip in after[:, :2]:
+        vx, vy = flow(0.0, tail)
+        assert np.cross([*(tip - tail), 0.0], [vx, vy, 0.0])[2] == pytest.approx(0.0, abs=1e-12)
+        assert (tip - tail) @ (vx, vy) >= 0.0
 
 
 def test_one_puck_has_a_movie_too(tmp_path: Path) -> None:

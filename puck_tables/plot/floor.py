@@ -105,9 +105,26 @@ def _strips(floor: Floor, box: Box) -> list[Shade]:
     return found
 
 
+def motion_said(floor: Floor) -> str:
+    """How a floor moves, in words; nothing of one that rests.
+
+    Examples
+    --------
+    >>> motion_said(Floor(velocity=(0.3, 0.0)))
+    'floor: belt (0.3, 0) m/s'
+    """
+    words = []
+    if any(floor.velocity):
+        words.append(f"belt ({floor.velocity[0]:g}, {floor.velocity[1]:g}) m/s")
+    if floor.turning != 0.0:
+        words.append(f"turntable {floor.turning:g} rad/s")
+    return "floor: " + ", ".join(words) if words else ""
+
+
 def _draw_motion(axes: Axes, floor: Floor, box: Box) -> None:
     """Arrows of a moving floor, and the centre of a turntable."""
-    if not any(floor.velocity) and floor.turning == 0.0:
+    words = motion_said(floor)
+    if not words:
         return
     across, up = _ARROWS
     x, y = np.meshgrid(
@@ -116,18 +133,13 @@ def _draw_motion(axes: Axes, floor: Floor, box: Box) -> None:
     )
     vx = floor.velocity[0] - floor.turning * (y - floor.centre[1])
     vy = floor.velocity[1] + floor.turning * (x - floor.centre[0])
-    words = []
-    if any(floor.velocity):
-        words.append(f"belt ({floor.velocity[0]:g}, {floor.velocity[1]:g}) m/s")
-    if floor.turning != 0.0:
-        words.append(f"turntable {floor.turning:g} rad/s")
     fastest = float(np.hypot(vx, vy).max())
     cell = (box.right - box.left) / across
     axes.quiver(
         x, y, vx, vy, color="#b9cfe0", angles="xy", scale_units="xy",
         scale=fastest / (0.7 * cell), width=0.003, zorder=1,
     )  # fmt: skip
-    axes.plot([], [], color="#b9cfe0", marker=">", label="floor: " + ", ".join(words))
+    axes.plot([], [], color="#b9cfe0", marker=">", label=words)
     if floor.turning != 0.0:
         axes.plot(
             *floor.centre, "+", color="#4a7fa8", markersize=12, markeredgewidth=1.6, zorder=2,

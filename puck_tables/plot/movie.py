@@ -19,9 +19,10 @@ from puck_tables.io.formats import ending_of
 from puck_tables.plot import board
 from puck_tables.plot.film import Body, Film, between, film_of, path_of
 from puck_tables.plot.floor import Box as Sight
-from puck_tables.plot.floor import shades_of
+from puck_tables.plot.floor import motion_said, shades_of
 from puck_tables.plot.style import RED, canvas, require_matplotlib, titled
 from puck_tables.result import TimedResult
+from puck_tables.scene.parts import Floor
 
 if TYPE_CHECKING:
     from matplotlib.lines import Line2D
@@ -112,6 +113,7 @@ def page(film: Film) -> str:
             }
             for shade in shades_of(film.floor, Sight(*film.box), max(film.frictions, default=0.0))
         ],
+        "moving": _motion(film.floor),
         "rounds": [one._asdict() for one in film.rounds],
         "happenings": [one._asdict() for one in film.happenings],
     }
@@ -132,6 +134,13 @@ def _body(body: Body) -> dict[str, Any]:
         "mark": body.mark,
         "knots": [[float(f"{x:.{DIGITS}g}") for x in row] for row in body.knots.tolist()],
     }
+
+
+def _motion(floor: Floor) -> dict[str, Any] | None:
+    """Of a floor that moves: velocity m/s, turning rad/s about a centre m, and words."""
+    words = motion_said(floor)
+    names = ("velocity", "turning", "centre")
+    return {name: getattr(floor, name) for name in names} | {"words": words} if words else None
 
 
 def _filmed(film: Film, kind: str) -> bytes:
