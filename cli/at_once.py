@@ -72,5 +72,6 @@ def _impatient(*_: object) -> None:
 
 def _begin_compiled(*_: object) -> None:
     """Begin this command anew, compiled."""
+    signal.setitimer(signal.ITIMER_PROF, 0.0)  # it would go on
     os.environ[_SWITCH] = "0"
     os.execv(sys.executable, [sys.executable, *sys.orig_argv[1:]])

@@ -18,6 +18,7 @@ from puck_tables.cli import at_once, start
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
 from puck_tables.kernels import as_written, vectors
+from puck_tables.kernels.cache import cache_folder
 from puck_tables.kernels.compile import kernel
 
 LAUNCH = ["simulate", "--v0", "1,0", "--w0", "5"]
@@ -69,6 +70,15 @@ def test_what_takes_long_begins_anew_and_compiled():
     soon = "at_once.AT_FIRST, at_once._OTHERS = 1e-3, ('none', 1e-3)"
     again = run([*LAUNCH, "--json"], before=soon)[0]
     assert again == run([*LAUNCH, "--json"], **COMPILED)[0]
+
+
+@pytest.mark.thorough
+def test_a_table_is_built_by_compiled_code(tmp_path: Path):
+    kept = {"NUMBA_CACHE_DIR": str(Path(cache_folder() or "").parent)}
+    command, own = [*LAUNCH, "--delta", "2.07", "--json"], tmp_path / "own"
+    soon = "at_once.AT_FIRST = 0.5"  # so that patience would end while the table is built
+    told = run(command, before=soon, XDG_CACHE_HOME=str(tmp_path), **kept)[0]
+    assert told == run(command, XDG_CACHE_HOME=str(own), **kept, **COMPILED)[0]
 
 
 @pytest.mark.thorough
