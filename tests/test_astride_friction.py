@@ -10,6 +10,7 @@ import pytest
 
 from puck_tables.kernels.compile import kernel
 from puck_tables.scene.astride import astride_friction
+from puck_tables.scene.astride_rest import astride_yield
 from puck_tables.scene.ground import PLACE_X, PLACE_Y, Ground
 
 NO_PATCHES, NO_CORNERS = np.empty((0, 6)), np.empty((0, 2))
@@ -119,3 +120,33 @@ def test_one_friction_is_that_of_the_closed_forms():
     spin = 16.0 * math.sqrt(2.0) / (9.0 * math.pi) * ((45.0 * math.pi) ** 2 - 2.0 * 32.0**2) / q
     root = math.sqrt(0.5)
     assert found == pytest.approx([root * parallel, 0.5 * across, 0.5 * root * spin], rel=1e-13)
+
+
+@kernel
+def _yield(ground, most, fx, fy, torque, guided):
+    return astride_yield(ground, most, 1.0, fx, fy, torque, guided)
+
+
+@pytest.mark.parametrize("guided", [False, True])
+@pytest.mark.parametrize("lever", [0.0, 0.4])
+def test_what_friction_takes_up_in_a_slip_is_held_only_just(guided, lever):
+    """Of a guided puck the guide bears what is across, but the load tilts by that, too."""
+    borders, loads = FLOORS["several"]
+    for ahead, turns in ((0.5, -1.9), (2.3, -0.6), (-1.2, 0.4), (0.2, 1.1)):
+        east, north = math.cos(ahead), math.sin(ahead)
+        slip = east * math.cos(turns), north * math.cos(turns), math.sin(turns)
+        fx, fy, torque = astride_judge.friction(
+            astride_judge.Ground(borders, loads), *slip, lever=lever, hole=0.0
+        )
+        if guided:
+            along = fx * east + fy * north
+            fx, fy = along * east, along * north
+        packed = strips(borders, loads, lever).packed()
+        for share, excess in ((1.0, 0.0), (0.99, -0.01), (1.01, 0.01)):
+            over, *way = _yield(packed, max(loads), share * fx, share * fy, share * torque, guided)
+            power = fx * slip[0] + fy * slip[1] + torque * slip[2]
+            assert over == pytest.approx(
+                excess * power, abs=3e-12 if share == 1.0 else 2e-3 * power
+            )
+        over, *way = _yield(packed, max(loads), fx, fy, torque, guided)
+        np.testing.assert_allclose(way, slip, atol=1e-6)

@@ -1,10 +1,11 @@
 """What a floor holds of a puck at rest astride several frictions.
 
-At rest the demand on the floor fixes the tilt of the pressure: b = κ F.  With the pressure known,
-friction holds a force and a torque if no slip gains energy: P·n ≤ D(n) = ∫ f σ |u| dA for all
-slips n = (u_x, u_y, r ω), P = (F_x, F_y, T/r).  D is convex and its gradient is the wrench of
-friction, so that the worst slip is the least of D on the plane P·n = 1.  Where the puck is held
-only just, this is the same as friction in that slip being P.
+At rest the demand on the floor fixes the tilt of the pressure: b = κ F; under a puck that is
+guided, which leaves open what the floor takes up across, friction in the slip that begins does.
+With the pressure known, friction holds a force and a torque if no slip gains energy: P·n ≤ D(n) =
+∫ f σ |u| dA for all slips n = (u_x, u_y, r ω), P = (F_x, F_y, T/r).  D is convex and its gradient
+is the wrench of friction, so that the worst slip is the least of D on the plane P·n = 1.  Where the
+puck is held only just, this is the same as friction in that slip being P.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ Yield = tuple[float, float, float, float]
 
 _NARROW = 1e-9  # of the slip: what is left of a bracket; the excess errs by the square
 _WIDEST, _TRIALS = 60, 60  # at most: to bracket, and in the bracket
+_TILTED = 1e-14  # of friction: what the load's tilt is known to
 
 
 @inner
@@ -98,14 +100,22 @@ def astride_yield(
     px, pw = force / size, rim / size
     n = (px * ex, px * ey, pw)
     level, turns = (-ey, ex, 0.0), (-pw * ex, -pw * ey, px)
-    a = _least_along(ground, radius, bx, by, n, turns, 1.0)
-    m = (n[0] + a * turns[0], n[1] + a * turns[1], n[2] + a * turns[2])
-    if not guided:
-        # of the least along every parallel of ``turns``: its slope across them grows, too
-        m = _least_in_plane(ground, radius, bx, by, n, level, turns)
-    whole = math.sqrt(m[0] * m[0] + m[1] * m[1] + m[2] * m[2])
-    m = (m[0] / whole, m[1] / whole, m[2] / whole)
-    gx, gy, gw = held_friction(ground, radius, m[0], m[1], m[2], bx, by)
+    for _ in range(_TRIALS):
+        a = _least_along(ground, radius, bx, by, n, turns, 1.0)
+        m = (n[0] + a * turns[0], n[1] + a * turns[1], n[2] + a * turns[2])
+        if not guided:
+            # of the least along every parallel of ``turns``: its slope across them grows, too
+            m = _least_in_plane(ground, radius, bx, by, n, level, turns)
+        whole = math.sqrt(m[0] * m[0] + m[1] * m[1] + m[2] * m[2])
+        m = (m[0] / whole, m[1] / whole, m[2] / whole)
+        gx, gy, gw = held_friction(ground, radius, m[0], m[1], m[2], bx, by)
+        if not guided:
+            break
+        # what tilts is friction, also that across, which the guide bears
+        off = abs(lever * gx - bx) + abs(lever * gy - by)
+        bx, by = lever * gx, lever * gy
+        if off <= _TILTED * most * lever:
+            break
     power = gx * m[0] + gy * m[1] + gw * m[2]
     return fx * m[0] + fy * m[1] + rim * m[2] - power, m[0], m[1], m[2] / radius
 
