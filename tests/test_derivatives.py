@@ -209,6 +209,28 @@ def test_values_are_the_same_bits_with_and_without():
         assert one == two
 
 
+def test_threads_change_no_bit():
+    rng = np.random.default_rng(12)
+    velocity, spin, heights = rng.normal(size=(70_000, 2)), rng.normal(size=70_000), [0.3, 0.9]
+    times = rng.uniform(0.0, 2.0, 35_000)
+    one, two = (
+        [
+            stop(velocity, spin, threads=threads, jacobian=True).jacobian,
+            states((1.0, 0.2), 2.0, times, delta=np.array(heights)[:, None], threads=threads,
+                   jacobian=True).jacobian,
+        ]
+        for threads in (1, 2)
+    )  # fmt: skip
+    for first, second in zip(one, two, strict=True):
+        assert np.array_equal(first, second)
+    some = slice(1000, 70_000, 7919)  # whatever else is in a block
+    alone = stop(velocity[some], spin[some], jacobian=True).jacobian
+    assert np.array_equal(alone, one[0][some])
+    assert np.array_equal(
+        states((1.0, 0.2), 2.0, times[-5:], delta=0.9, jacobian=True).jacobian, one[1][1, -5:]
+    )
+
+
 def test_shapes_and_names():
     found = states(np.ones((3, 1, 2)), 2.0, np.linspace(0.0, 1.0, 4), jacobian=True)
     assert found.jacobian.shape == (3, 4, 6, 7)

@@ -29,6 +29,16 @@ def test_no_spin_tells_no_tilt(straight, seed):
     assert summary["error"] is None and summary["determined"] is False
 
 
+def test_angles_that_are_all_zero_tell_no_tilt():
+    """As of a slide that was computed: without residuals the noise seemed to be none at all."""
+    times = np.linspace(0.0, 1.0, 200)
+    path = pt.Puck(radius=RADIUS, height=0.0254, friction=0.15).states((1.5, 0.0), 0.0, times)
+    place = np.stack([path.x, path.y], axis=1)
+    found = pt.fit(pt.Track(times, place, path.orientation, "computed"), KNOWN)
+    assert not found["delta"].determined and not found["height"].determined
+    assert found["friction"].value == pytest.approx(0.15, abs=1e-9)
+
+
 @pytest.mark.thorough
 @pytest.mark.parametrize("seed", few(1, [1, 2, 4]))
 def test_a_straight_path_without_angles_does_not_even_tell_friction(straight, seed):

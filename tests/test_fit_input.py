@@ -74,6 +74,8 @@ def test_questions_are_refused_before_anything_is_fitted(how, words, monkeypatch
         ),
         (pt.Track(TIMES[:5], PLACE[:5], name="few"), "too few to judge their noise"),
         (pt.Track(TIMES, NOISE, 0.0 * TIMES, "flat"), "flat lies still"),
+        (pt.Track(TIMES, 1e200 * PLACE, name="far"), "far: its places lie up to"),
+        (pt.Track(1e200 * TIMES, PLACE, name="long"), "long: its times lie up to"),
     ],
 )
 def test_tracks_are_refused(tracks, words):
@@ -85,6 +87,17 @@ def test_heights_that_tip_are_refused_before_anything_is_fitted(monkeypatch):
     monkeypatch.setattr("puck_tables.fitting.fit.fitted", None)
     with pytest.raises(pt.InputError, match="tip over"):
         pt.fit(TRACK, pt.Puck(radius=0.04, height=1e9))
+
+
+@pytest.mark.parametrize("radius", [1e-300, 1e300])
+def test_radii_of_no_puck_on_a_film_are_refused(radius):
+    with pytest.raises(pt.InputError, match="radius of a puck on a film"):
+        pt.fit(TRACK, pt.Puck(radius=radius))
+
+
+def test_a_friction_of_no_surface_is_remarked():
+    found = pt.fit(pt.Track(TIMES, 1e3 * PLACE), PUCK, fixed={"delta": 0.2})
+    assert any("the unit of the places" in text for text in found.remarks)
 
 
 def test_a_number_that_a_prior_frees_is_named():

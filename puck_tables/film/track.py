@@ -67,8 +67,13 @@ class Track:
             angle = real_array("angle", self.angle, "rad")
             if angle.shape != time.shape:
                 raise InputError(f"angle must be ({time.size},) as time is, got {angle.shape}")
-        if np.isinf(place).any() or (angle is not None and np.isinf(angle).any()):
-            raise InputError("places and angles must be numbers, or NaN where none was seen")
+        endless = np.isinf(place).any(axis=1)
+        endless |= False if angle is None else np.isinf(angle)
+        if endless.any():
+            raise InputError(
+                f"the place or the angle of frame {int(endless.argmax()) + 1} is infinite: give a "
+                "number, or NaN where none was seen"
+            )
         fields: tuple[tuple[str, FloatArray | None], ...] = (
             ("time", time), ("place", place), ("angle", angle),
         )  # fmt: skip

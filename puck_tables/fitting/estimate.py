@@ -26,6 +26,7 @@ _WIDE = 1.4
 _FEW = 2.5  # residuals for each unknown
 _ROUNDS = 6
 _SETTLED = 1e-3  # of a standard deviation of the noise
+_COMPUTED = 1e-10  # of a path, as well as motions are known: no residuals tell a smaller noise
 _AWAY = 1.5  # times the noise: a start so far off is fitted robustly first
 
 
@@ -34,7 +35,8 @@ class Estimate:
     """What is most likely.
 
     ``x`` (m,): the unknowns of ``problem``, whose noise is that of the residuals where none was
-    given; ``kept``: residuals that count; ``residuals`` (n,) and ``jacobian`` (n, m) at ``x``.
+    given; ``kept``: residuals that count; ``residuals`` (n,) and ``jacobian`` (n, m) at ``x``;
+    ``minima``: the deepest of one track, near which it was begun, where they are known.
     """
 
     problem: Problem
@@ -42,6 +44,7 @@ class Estimate:
     kept: npt.NDArray[np.bool_]
     residuals: FloatArray
     jacobian: FloatArray
+    minima: tuple[FloatArray, ...] = ()
 
     @property
     def chi2(self) -> float:
@@ -81,6 +84,7 @@ def estimate(problem: Problem, start: FloatArray, noise_known: Known) -> Estimat
         slopes = problem.jacobian(x)
         rows = problem.residuals(x)
         noise, jitter = _noise(problem, x, rows, slopes, kept, noise_known)
+        noise = _at_least(problem, x, noise, noise_known)
         change = max(abs(math.log(new / old)) for new, old in
                      zip(noise, problem.noise, strict=True))  # fmt: skip
         change = max(change, abs(jitter - problem.jitter) / (jitter or 1.0))
@@ -132,9 +136,27 @@ def _noise(
         mine = problem.kinds[kept] == kind
         free = float(mine.sum() - taken[mine].sum())
         if not known[kind] and free > 1.0:
-            square = float(np.sum(rows[kept][mine] ** 2)) / free
-            found[kind] *= max(math.sqrt(square), 1e-9)
+            found[kind] *= math.sqrt(float(np.sum(rows[kept][mine] ** 2)) / free)
     return (found[0], found[1]), problem.jitter
+
+
+def _at_least(
+    problem: Problem, x: FloatArray, noise: tuple[float, float], known: Known
+) -> tuple[float, float]:
+    """Noise of residuals, but no smaller than what is computed is known.
+
+    Places or angles that are all the same, as of a column of zeros, have no residuals at all.
+    """
+    paths = problem.paths(x)
+    radius = problem.asked.scales(problem.found(x))[2]
+    size = max(float(np.ptp(path[:2], axis=1).max()) for path in paths)
+    turned = max(float(np.ptp(path[2])) for path in paths)
+    length = max(size, radius * turned)
+    place, angle = _COMPUTED * length, _COMPUTED * length / radius
+    return (
+        noise[0] if known.place else max(noise[0], place),
+        noise[1] if known.angle else max(noise[1], angle),
+    )
 
 
 def _jittery(

@@ -13,7 +13,7 @@ from puck_tables.fitting.estimate import Estimate, estimate
 from puck_tables.fitting.free_motion import trimmed
 from puck_tables.fitting.numbers import plausible_for
 from puck_tables.fitting.problem import Problem
-from puck_tables.fitting.starts import start_of
+from puck_tables.fitting.starts import minima_of
 from puck_tables.fitting.timing import Known
 
 _LIFTS = 0.995  # δ from which on a uniform puck is fitted with part of its base lifted
@@ -46,8 +46,10 @@ def fitted(problem: Problem, known: Known, refit: bool) -> Estimate:
         replace(problem, films=(film,), rests=(rest,), jitter=0.0)
         for film, rest in zip(problem.films, rests, strict=True)
     ]
-    starts = [start_of(part) for part in parts]
-    found = estimate(problem, _joint_start(problem, parts, starts), known)
+    minima = [minima_of(part) for part in parts]
+    found = estimate(problem, _joint_start(problem, parts, minima), known)
+    if len(parts) == 1:
+        found = replace(found, minima=tuple(minima[0]))
     found = _lifted(found, known)
     if refit:
         films = trimmed(found)
@@ -70,18 +72,17 @@ def _lifted(found: Estimate, known: Known) -> Estimate:
 
 
 def _joint_start(
-    problem: Problem, parts: list[Problem], starts: list[tuple[dict[str, float], FloatArray]]
+    problem: Problem, parts: list[Problem], minima: list[list[FloatArray]]
 ) -> FloatArray:
     """The unknowns of all tracks from those of each: what is shared is their weighted mean."""
     if len(parts) == 1:
-        return problem.unknowns(starts[0][0], starts[0][1][None])
+        return minima[0][0]
     shared = len(problem.asked.free)
     weights, sums, launches = np.zeros((shared, shared)), np.zeros(shared), []
-    for part, (values, launch) in zip(parts, starts, strict=True):
-        launches.append(launch)
+    for part, (x, *_) in zip(parts, minima, strict=True):
+        launches.append(part.launches(x)[0])
         if part.rests[0]:  # it tells nothing of what moves
             continue
-        x = part.unknowns(values, launch[None])
         spread = certainty_of(part.jacobian(x), plausible_for(part, x)).covariance
         if shared:
             weight = np.linalg.pinv(spread[:shared, :shared])

@@ -24,6 +24,7 @@ from puck_tables.fitting.starts import slowing_of
 MOST_FRAMES = 100_000
 FIND = "find"
 _GUESS = 1e-3  # of the track: noise to begin with where differences tell none
+_FARTHEST = 1e6  # m or s, of a track
 _TWICE = 0.5  # of the frames: the same film again
 _SLOWER = 0.3  # times the deceleration seen: friction is no less
 _TIPS = 4.0  # δ
@@ -56,6 +57,7 @@ def films_of(
         if rows is not None:
             film = replace(film, row=(rows[0] - film.place[:, 1]) / (rows[0] - rows[1]))
         films.append(film)
+        _refuse_far(film)
         _refuse_still(film)
     for one, other in combinations(films, 2):
         _refuse_twice(one, other)
@@ -66,6 +68,22 @@ def films_of(
             "or a part (since, until)"
         )
     return tuple(films)
+
+
+def _refuse_far(film: Seen) -> None:
+    """Refuse a track, or a time, that is no slide of a puck by its size alone.
+
+    Raises
+    ------
+    InputError
+    """
+    size = float(np.ptp(film.place, axis=0).max())
+    for what, extent, unit in (("places", size, "m"), ("times", float(film.time[-1]), "s")):
+        if not extent < _FARTHEST:
+            raise InputError(
+                f"{film.name}: its {what} lie up to {extent:.3g} {unit} apart, which no puck "
+                "slides: say their unit, or leave out what is wrong"
+            )
 
 
 def _refuse_still(film: Seen) -> None:
@@ -79,7 +97,8 @@ def _refuse_still(film: Seen) -> None:
     spread = place if math.isfinite(place) else 0.0
     if rests_from(film, spread) == 0 and not turns(film):
         raise InputError(
-            f"the puck of {film.name} lies still: a fit needs a track of a slide or a spin"
+            f"the puck of {film.name} lies still, within {1e3 * spread:.3g} mm of noise: a fit "
+            "needs a track of a slide or a spin"
         )
 
 

@@ -19,7 +19,7 @@ from puck_tables.fitting.certainty import Z95, Certainty, profile_point
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.held_out import HeldOut
 from puck_tables.fitting.laws import LawScore
-from puck_tables.fitting.numbers import FoundLaunch, Number
+from puck_tables.fitting.numbers import KNOWN, FoundLaunch, Number
 from puck_tables.fitting.residual_tests import lengthways
 from puck_tables.fitting.tied import Impact
 from puck_tables.fitting.timing import Known
@@ -37,6 +37,7 @@ _COMPUTED = 1e-7  # of the path: residuals of tracks that were computed, not see
 _NOISY = 1.5  # times the noise of a smooth motion
 _ON_BOUND = 1e-4  # of a bound, or of an error: a number lies on it
 _LENGTHWAYS = 1.3
+_GRIP = 5.0  # friction coefficients of dry surfaces are smaller
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -207,6 +208,12 @@ class Fit(Result):
                         f"{name} lies on the end of its range, {end:.6g}: what fits best may be "
                         f"{way}, and its error and interval, and those of the rest, may mislead"
                     )
+        friction = self.numbers["friction"]
+        if friction.how != KNOWN and friction.low > _GRIP:
+            said.append(
+                f"A friction of {friction.value:.3g} is more than dry surfaces have: the unit of "
+                "the places, the scale or the frames a second may be wrong"
+            )
         if self.jitter == 0.0 and self.noise[0] > 0.0:
             ratio = lengthways(self.estimate)
             if ratio > _LENGTHWAYS:

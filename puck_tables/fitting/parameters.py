@@ -83,6 +83,7 @@ OF_IMPACTS = {**OF_WALLS, **OF_PAIRS}
 _KIND = ("gyration", "inner", "drag")  # change the curve itself
 _CLASHES = (("friction", "decel"), ("delta", "height"))
 _TINY = 1e-30
+_SMALLEST, _LARGEST = 1e-6, 1e6  # m, of pucks on films
 _POSITIVE, _LEAST = ("radius", "gravity", "friction", "decel", "mass_ratio"), 1e-9
 
 
@@ -139,6 +140,11 @@ class Asked:
     ) -> Asked:  # fmt: skip
         """Checked, with what is free where nothing is said: f, and δ of a puck without height."""
         instance("puck", puck, Puck)
+        if not _SMALLEST <= puck.radius <= _LARGEST:
+            raise InputError(
+                f"the radius of a puck on a film is from {_SMALLEST:g} to {_LARGEST:g} m, got "
+                f"{puck.radius:g}: say it in m"
+            )
         known = {name: _in_range(name, value) for name, value in fixed.items()}
         freed: tuple[str, ...] = ()
         if free is None:

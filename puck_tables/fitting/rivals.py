@@ -31,7 +31,7 @@ def rivals_of(found: Estimate, certainty: Certainty) -> tuple[Found, ...]:
         return ()
     rivals: list[FloatArray] = []
     summits = [(found.x, *_known(found, certainty))]
-    for start in minima_of(problem):
+    for start in found.minima or minima_of(problem):
         x, cost = minimise(problem, start, SQUARES, found.kept)
         off = [(np.abs(x - one)[: seen.size] > apart)[seen] for one, seen, apart in summits]
         if 2.0 * cost < found.chi2 + Z95**2 and all(one.any() for one in off):

@@ -51,12 +51,6 @@ class _Guess:
     score: float
 
 
-def start_of(problem: Problem) -> tuple[Found, FloatArray]:
-    """The numbers of the puck and the launch (6,) of the one track of a problem."""
-    x = minima_of(problem)[0]
-    return problem.found(x), problem.launches(x)[0]
-
-
 def minima_of(problem: Problem) -> list[FloatArray]:
     """The unknowns at the deepest minima of a problem of one track, the deepest first."""
     problem = replace(problem, weights=())
