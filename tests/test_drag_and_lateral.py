@@ -72,6 +72,18 @@ def test_several_pucks_feel_drag_and_lateral_force_as_one_does(friction):
         assert many.energy_residual < 2e-8  # works of drag follow the steps of the motion
 
 
+@pytest.mark.thorough
+def test_turns_without_end_are_refused_by_name():
+    """For k/r > 1/√2 the spin outlives the sliding, v → 0, and F/(m v) turns the way."""
+    puck = pt.Puck(0.06, friction=0.05, gyration=2.0)
+    launch, run = pt.Launch((0.3, 0.0), 5.0), pt.Run(tol=1e-6)
+    with pytest.raises(pt.InputError, match=r"a million steps .* lateral.speed_exponent is below"):
+        pt.Scene(puck, launch=launch, lateral=pt.Lateral(0.1), run=run).simulate()
+    with_speed = pt.Scene(puck, launch=launch, lateral=pt.Lateral(0.1, 1.0), run=run).simulate()
+    without = pt.Scene(puck, launch=launch, run=run).simulate()
+    assert with_speed.end_time == pytest.approx(without.end_time, rel=1e-6)
+
+
 def test_a_lateral_force_in_proportion_to_the_speed_is_a_circle_and_does_no_work():
     strength, turn = 0.1, 0.1 / MASS
     times = np.array([0.5, 2.0, 5.0])

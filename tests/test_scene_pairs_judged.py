@@ -49,7 +49,7 @@ def test_the_judge_lets_a_leaning_rim_feel_friction(restitution):
 def faults(scenes, tols, folder):
     found = []
     for scene in scenes:
-        best = known(scene, limit=40_000)
+        best = known(scene, limit=3_000_000)
         if best is None or not best["stable"] or best["amplification"] > 1e5:
             continue
         for tol in tols:

@@ -288,6 +288,12 @@ def _refuse_failed(prepared: Prepared, run: _Followed) -> None:
             f"after {end_time:.4g} s the floor still carries the puck towards a wall, an edge, a "
             "border or a patch, and it may slip there again; give run.time"
         )
+    if how == STEP_LIMIT and scene.lateral.strength != 0.0 and scene.lateral.speed_exponent < 1.0:
+        raise InputError(
+            f"a million steps by {end_time:.6g} s: the slower a puck that still spins, the faster "
+            "a lateral force turns its way if lateral.speed_exponent is below 1; give one from 1 "
+            "on, or end the run before with run.time"
+        )
     if how in (TIME_UP, STEP_LIMIT) and scene.run.time is None and not to_the_end:
         long = "a million steps" if how == STEP_LIMIT else "a thousand times what friction takes"
         raise InputError(

@@ -165,7 +165,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         for index in range(args.count):
             scene = draw(args.seed, index)
-            best = known(scene, limit=40_000)
+            best = known(scene, limit=3_000_000)
             if best is None:
                 gave_up += 1
                 continue

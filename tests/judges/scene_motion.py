@@ -25,6 +25,7 @@ class World(NamedTuple):
     """``body``: m, I, r; ``pull``: Fx, Fy, torque; ``floor``: vx, vy, cx, cy, Ω; ``drag``: two.
 
     ``hold``: kind, n_x, n_y of a rail, reach of a pivot, angle of both others, and v (side slip).
+    ``weakest``: by how much friction brakes a slip of any direction, at least, in each region.
     """
 
     body: np.ndarray
@@ -40,6 +41,7 @@ class World(NamedTuple):
     ends: np.ndarray
     series: np.ndarray
     counts: np.ndarray
+    weakest: np.ndarray
 
 
 @njit(cache=True)
@@ -177,6 +179,13 @@ def slow_way(world, ctx, base, t, y, guess, out, fr):
         allowed(world, y, n)
         rates(world, ctx, base, t, y, NONE * n[0], NONE * n[1], NONE * n[2] / r, out, fr)
         a[0], a[1], a[2] = out[3], out[4], r * out[5]
+        if again == 0 and world.hold[0] == FREE and ctx[LEAN] < 0:
+            load, (m, inertia, _) = world.loads[ctx[REGION]], world.body
+            fx, fy = a[0] - load * fr[0] / m, a[1] - load * fr[1] / m
+            pull = math.hypot(math.hypot(fx, fy), a[2] - load * r * r * fr[2] / inertia)
+            if pull < 0.9 * world.weakest[ctx[REGION]]:  # it is held, whatever the way
+                ctx[MODE] = mode
+                return n, pull - world.weakest[ctx[REGION]]
         gain = a[0] * n[0] + a[1] * n[1] + a[2] * n[2]
         off = 0.0
         for i in range(3):

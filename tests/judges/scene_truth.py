@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 import numpy as np
-from contact_truth import tabled
+from contact_truth import tabled, tabled_friction
 from numba import njit
 from report import lines
 from scene_events import (
@@ -357,6 +357,14 @@ def world_of(scene: dict[str, Any]) -> tuple[World, np.ndarray]:
                 v[1] - spin * reach * math.cos(angle + a),
             ]
     drive = np.array(scene.get("drive", []), float).reshape(-1, 4)
+    loads, weakest, slip = m * g * math.cos(slope) * np.array(frictions, float), [], np.empty(3)
+    for (places, part), load in zip(tables, loads, strict=True):
+        brakes = []
+        for angle in np.linspace(0.0, 0.5 * math.pi, 200):
+            c, s = math.cos(angle), math.sin(angle)
+            tabled_friction(places, part, len(part), c, 0.0, s, slip)
+            brakes.append(-load * (slip[0] * c / m + r * r * slip[2] * s / inertia))
+        weakest.append(min(brakes))
     world = World(
         np.array([m, inertia, r]), pull, drive,
         np.array([
@@ -364,8 +372,7 @@ def world_of(scene: dict[str, Any]) -> tuple[World, np.ndarray]:
             floor.get("turning", 0.0),
         ], float),
         np.array([drag.get("sliding", 0.0), drag.get("spinning", 0.0)], float), hold,
-        walls, edges, borders, m * g * math.cos(slope) * np.array(frictions, float), ends, series,
-        counts,
+        walls, edges, borders, loads, ends, series, counts, np.array(weakest),
     )  # fmt: skip
     return world, np.array([*place, angle, *velocity, spin], float)
 
