@@ -21,6 +21,7 @@ from pydrake.all import (
     MemoryFile,
     Mesh,
     MultibodyPlantConfig,
+    PlanarJoint,
     ProximityProperties,
     RigidTransform,
     Simulator,
@@ -28,7 +29,20 @@ from pydrake.all import (
     SpatialVelocity,
     UnitInertia,
 )
-from task import SETTLE, SPACE, Played, gravity, is_one_disc_on_a_plane, only_puck, timed
+from task import (
+    HEAVY,
+    SETTLE,
+    SPACE,
+    Played,
+    gravity,
+    has_one_puck_and_no_cushion,
+    hole_of,
+    moments_of,
+    motion_of,
+    only_puck,
+    strips_of,
+    timed,
+)
 
 SETTINGS = (
     "hydroelastic contact: rigid disc, its base in 8 rings of triangles, on a compliant half space "
@@ -37,11 +51,16 @@ SETTINGS = (
 STEPS = (4e-3, 2e-3, 1e-3, 5e-4)
 MODULUS, DISSIPATION, RINGS = 1e6, 10.0, 8
 APPROXIMATION = "lagged"  # SAP would let it glide above the floor
-can = is_one_disc_on_a_plane
 
 
-def disc_as_obj(r: float, h: float) -> str:
-    """A closed disc: the base in RINGS rings of alike triangles, the top the same."""
+def can(scene: dict[str, Any]) -> bool:
+    """A half space has one friction, and a compliant box grows soft towards its sides."""
+    return has_one_puck_and_no_cushion(scene) and not strips_of(scene)
+
+
+def disc_as_obj(r: float, h: float, hole: float) -> str:
+    """A closed disc or washer: the base in rings of alike triangles, the top the same."""
+    first = round(RINGS * hole)
     places, faces = [(0.0, 0.0)], []
     for ring in range(1, RINGS + 1):
         for n in range(6 * ring):
@@ -51,7 +70,7 @@ def disc_as_obj(r: float, h: float) -> str:
     def at(ring: int, n: int) -> int:
         return 1 + 3 * ring * (ring - 1) + n % (6 * ring) if ring else 0
 
-    for ring in range(1, RINGS + 1):
+    for ring in range(first + 1, RINGS + 1):
         for side in range(6):
             for n in range(ring):
                 outer, inner = side * ring + n, side * (ring - 1) + n
@@ -60,12 +79,14 @@ def disc_as_obj(r: float, h: float) -> str:
                     faces.append(
                         (at(ring - 1, inner), at(ring, outer + 1), at(ring - 1, inner + 1))
                     )
-    count, rim = len(places), 6 * RINGS
+    count = len(places)
     lines = [f"v {x:.17g} {y:.17g} {z:.17g}" for z in (-0.5 * h, 0.5 * h) for x, y in places]
     sides = []
-    for n in range(rim):
-        one, two = at(RINGS, n), at(RINGS, n + 1)
-        sides += [(one, two, two + count), (one, two + count, one + count)]
+    for ring in {first, RINGS} - {0}:
+        for n in range(6 * ring):
+            one, two = at(ring, n), at(ring, n + 1)
+            one, two = (one, two) if ring == RINGS else (two, one)
+            sides += [(one, two, two + count), (one, two + count, one + count)]
     base = [(a, c, b) for a, b, c in faces]
     top = [(a + count, b + count, c + count) for a, b, c in faces]
     lines += ["f " + " ".join(str(v + 1) for v in face) for face in (*base, *top, *sides)]
@@ -82,30 +103,45 @@ def _launched(scene: dict[str, Any], dt: float) -> tuple[Any, Any, Any]:
         ),
         builder,
     )
-    inertia = SpatialInertia(puck["mass"], np.zeros(3), UnitInertia.SolidCylinder(r, h, [0, 0, 1]))
+    flat, upright = np.array(moments_of(puck)) / puck["mass"]
+    inertia = SpatialInertia(puck["mass"], np.zeros(3), UnitInertia(flat, flat, upright))
     disc = plant.AddRigidBody("disc", inertia)
     soft, hard = ProximityProperties(), ProximityProperties()
     AddContactMaterial(friction=CoulombFriction(f, f), dissipation=DISSIPATION, properties=soft)
     AddCompliantHydroelasticPropertiesForHalfSpace(0.01, MODULUS, soft)
     AddContactMaterial(friction=CoulombFriction(f, f), properties=hard)
     AddRigidHydroelasticProperties(hard)
-    mesh = Mesh(InMemoryMesh(mesh_file=MemoryFile(disc_as_obj(r, h), ".obj", "disc")))
+    mesh = Mesh(
+        InMemoryMesh(mesh_file=MemoryFile(disc_as_obj(r, h, hole_of(puck)), ".obj", "disc"))
+    )
     plant.RegisterCollisionGeometry(disc, RigidTransform(), mesh, "disc", hard)
-    world = plant.world_body()
-    plant.RegisterCollisionGeometry(world, RigidTransform(), HalfSpace(), "floor", soft)
+    ground = plant.AddRigidBody("ground", SpatialInertia(HEAVY, np.zeros(3), UnitInertia(1, 1, 1)))
+    moves = any(motion_of(scene))
+    if moves:
+        joint = plant.AddJoint(PlanarJoint("floor", plant.world_frame(), ground.body_frame()))
+    else:
+        plant.WeldFrames(plant.world_frame(), ground.body_frame())
+    plant.RegisterCollisionGeometry(ground, RigidTransform(), HalfSpace(), "floor", soft)
     gx, gy, gz = gravity(scene)
     plant.mutable_gravity_field().set_gravity_vector([0.0, 0.0, gz])
     plant.Finalize()
     diagram = builder.Build()
     simulator = Simulator(diagram)
     context = plant.GetMyMutableContextFromRoot(simulator.get_mutable_context())
-    plant.SetFreeBodyPose(context, disc, RigidTransform([0.0, 0.0, 0.5 * h - 1e-7]))
+    launch = puck["launch"]
+    x, y = launch.get("position", (0.0, 0.0))
+    plant.SetFreeBodyPose(context, disc, RigidTransform([x, y, 0.5 * h - 1e-7]))
     simulator.AdvanceTo(round(SETTLE / dt) * dt)
     z = plant.EvalBodyPoseInWorld(context, disc).translation()[2]
     if gx or gy:  # gravity leans from the launch on; a force on the centre is the same
         raise_force(plant, context, disc, puck["mass"] * np.array([gx, gy, 0.0]))
-    plant.SetFreeBodyPose(context, disc, RigidTransform([0.0, 0.0, z]))
-    launch = puck["launch"]
+    plant.SetFreeBodyPose(context, disc, RigidTransform([x, y, z]))
+    if moves:
+        vx, vy, turning = motion_of(scene)
+        joint.set_translation(context, [0.0, 0.0])
+        joint.set_rotation(context, 0.0)
+        joint.set_translational_velocity(context, [vx, vy])
+        joint.set_angular_velocity(context, turning)
     velocity = SpatialVelocity([0.0, 0.0, launch["spin"]], [*launch["velocity"], 0.0])
     plant.SetFreeBodySpatialVelocity(context, disc, velocity)
     return simulator, plant, disc

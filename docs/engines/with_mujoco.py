@@ -7,50 +7,89 @@ from typing import Any
 
 import mujoco
 import numpy as np
-from task import SETTLE, SPACE, Played, gravity, is_one_disc_on_a_plane, only_puck, timed
+from task import (
+    FAR,
+    HEAVY,
+    SETTLE,
+    SPACE,
+    Played,
+    gravity,
+    has_one_puck_and_no_cushion,
+    hole_of,
+    moments_of,
+    motion_of,
+    only_puck,
+    strips_of,
+    timed,
+)
 
 SETTINGS = (
-    "cylinder on plane, condim 3, elliptic cone, impratio 10, Newton 100 iterations to 1e-12, "
+    "cylinder on a plane (on boxes where strips differ or the floor moves), condim 3, "
+    "elliptic cone, impratio 10, Newton 100 iterations to 1e-12, "
     "implicitfast, solref 0.01 1"
 )
 STEPS = (2e-3, 1e-3, 5e-4, 2.5e-4)
-can = is_one_disc_on_a_plane
+can = has_one_puck_and_no_cushion
 
 
-def _feet(radius: float, half: float, count: int) -> str:
+def _feet(puck: dict[str, Any], count: int) -> str:
     """Small spheres that share the base evenly, in place of a cylinder."""
-    golden, small = math.pi * (3.0 - math.sqrt(5.0)), 0.02 * radius
-    places = ((radius * math.sqrt((n + 0.5) / count), golden * n) for n in range(count))
+    golden, radius, hole = math.pi * (3.0 - math.sqrt(5.0)), puck["radius"], hole_of(puck)
+    small = 0.02 * radius
+    places = (
+        (radius * math.sqrt(hole**2 + (1.0 - hole**2) * (n + 0.5) / count), golden * n)
+        for n in range(count)
+    )
     return "".join(
         f'<geom type="sphere" size="{small}" pos="{rho * math.cos(a)} {rho * math.sin(a)} '
-        f'{small - half}"/>'
+        f'{small - 0.5 * puck["height"]}"/>'
         for rho, a in places
     )
 
 
+def _floor(scene: dict[str, Any], friction: float) -> str:
+    """A plane; a box for each strip; a heavy box on joints where the floor moves."""
+    looks = 'contype="2" conaffinity="1" friction="{} 0 0"'
+    if any(motion_of(scene)):
+        joints = [("slide", "1 0 0"), ("slide", "0 1 0"), ("hinge", "0 0 1")]
+        return (
+            "<body>"
+            + "".join(f'<joint type="{kind}" axis="{axis}"/>' for kind, axis in joints)
+            + f'<geom type="box" size="{FAR} {FAR} {FAR}" pos="0 0 {-FAR}" mass="{HEAVY}" '
+            f"{looks.format(friction)}/></body>"
+        )
+    direction = scene["floor"]["strips"]["direction"] if strips_of(scene) else 0.0
+    c, s = math.cos(direction), math.sin(direction)
+    boxes = [
+        f'<geom type="box" size="{0.5 * (high - low)} {FAR} {FAR}" {looks.format(f)} pos='
+        f'"{0.5 * (low + high) * c} {0.5 * (low + high) * s} {-FAR}" euler="0 0 {direction}"/>'
+        for low, high, f in strips_of(scene)
+    ]
+    return "".join(boxes) or f'<geom type="plane" size="10 10 1" {looks.format(friction)}/>'
+
+
 def _model(scene: dict[str, Any], dt: float, feet: int) -> Any:
     puck = only_puck(scene)
-    r, m, h = puck["radius"], puck["mass"], puck["height"]
-    flat = m * (r * r / 4.0 + h * h / 12.0)
-    body = f'<geom type="cylinder" size="{r} {0.5 * h}"/>'
-    if feet:
-        body = _feet(r, 0.5 * h, feet)
+    x, y = puck["launch"].get("position", (0.0, 0.0))
+    half = 0.5 * puck["height"]
+    flat, upright = moments_of(puck)
+    body = _feet(puck, feet) if feet else f'<geom type="cylinder" size="{puck["radius"]} {half}"/>'
     gx, gy, gz = gravity(scene)
-    half, f = 0.5 * puck["height"], puck["friction"]
     return mujoco.MjModel.from_xml_string(f"""
 <mujoco>
+  <compiler angle="radian"/>
   <option timestep="{dt}" gravity="{gx} {gy} {gz}" cone="elliptic" impratio="10" solver="Newton"
     iterations="100" tolerance="1e-12" integrator="implicitfast"/>
   <default>
-    <geom friction="{f} 0 0" condim="3" solref="0.01 1" contype="1" conaffinity="2"/>
+    <geom friction="0 0 0" condim="3" solref="0.01 1" contype="1" conaffinity="2"/>
   </default>
   <worldbody>
-    <geom type="plane" size="10 10 1" contype="2" conaffinity="1"/>
-    <body pos="0 0 {half}">
+    <body pos="{x} {y} {half}">
       <freejoint/>
-      <inertial pos="0 0 0" mass="{m}" diaginertia="{flat} {flat} {0.5 * m * r * r}"/>
+      <inertial pos="0 0 0" mass="{puck["mass"]}" diaginertia="{flat} {flat} {upright}"/>
       {body}
     </body>
+    {_floor(scene, puck["friction"])}
   </worldbody>
 </mujoco>""")
 
@@ -63,8 +102,10 @@ def _launched(scene: dict[str, Any], dt: float, feet: int) -> tuple[Any, Any]:
     mujoco.mj_step(model, data, round(SETTLE / dt))
     model.opt.gravity[:] = leaning
     data.time = 0.0
-    data.qpos[:2], data.qpos[3:] = 0.0, (1.0, 0.0, 0.0, 0.0)
-    data.qvel[:] = [*launch["velocity"], 0.0, 0.0, 0.0, launch["spin"]]
+    data.qpos[:2], data.qpos[3:7] = launch.get("position", (0.0, 0.0)), (1.0, 0.0, 0.0, 0.0)
+    data.qvel[:6] = [*launch["velocity"], 0.0, 0.0, 0.0, launch["spin"]]
+    if any(motion_of(scene)):
+        data.qpos[7:], data.qvel[6:] = 0.0, motion_of(scene)
     return model, data
 
 
@@ -76,7 +117,8 @@ def run(scene: dict[str, Any], dt: float, until: float, feet: int = 0) -> Played
         if n:
             mujoco.mj_step(model, data)
         turn = np.empty(9)  # spins of a free joint are in the axes of the body
-        mujoco.mju_quat2Mat(turn, data.qpos[3:])
-        rows[n] = [data.time, *data.qpos, *data.qvel[:3], *(turn.reshape(3, 3) @ data.qvel[3:])]
+        mujoco.mju_quat2Mat(turn, data.qpos[3:7])
+        spin = turn.reshape(3, 3) @ data.qvel[3:6]
+        rows[n] = [data.time, *data.qpos[:7], *data.qvel[:3], *spin]
     model, data = _launched(scene, dt, feet)
     return Played(rows, SPACE, timed(lambda: mujoco.mj_step(model, data, count)))

@@ -2,18 +2,72 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pybullet as p
-from task import SETTLE, SPACE, Played, gravity, is_one_disc_on_a_plane, only_puck, timed
+from task import (
+    FAR,
+    HEAVY,
+    SETTLE,
+    SPACE,
+    Played,
+    gravity,
+    has_one_puck_and_no_cushion,
+    moments_of,
+    motion_of,
+    only_puck,
+    strips_of,
+    timed,
+)
 
 SETTINGS = (
-    "GEOM_CYLINDER on a plane, friction product f x 1, 200 solver iterations to 1e-12, no damping, "
+    "GEOM_CYLINDER on a plane (on boxes where strips differ or the floor moves), friction 1 x f, "
+    "200 solver iterations to 1e-12, no damping, "
     "no sleeping, no restitution"
 )
+DEEP = 0.5  # m
 STEPS = (2e-3, 1e-3, 5e-4, 2.5e-4)
-can = is_one_disc_on_a_plane
+can = has_one_puck_and_no_cushion
+
+
+def _floor(scene: dict[str, Any], friction: float) -> Callable[[], None]:
+    """A plane; a box for each strip; a heavy box on a joint where the floor moves: it starts it."""
+    vx, vy, turning = motion_of(scene)
+    rubs: dict[str, Any] = {"restitution": 0.0, "linearDamping": 0.0, "angularDamping": 0.0}
+    if not (vx or vy or turning or strips_of(scene)):
+        plane = p.createMultiBody(0.0, p.createCollisionShape(p.GEOM_PLANE))
+        p.changeDynamics(plane, -1, lateralFriction=friction, **rubs)
+        return lambda: None
+    direction = scene["floor"]["strips"]["direction"] if strips_of(scene) else 0.0
+    turn = p.getQuaternionFromEuler([0.0, 0.0, direction])
+    for low, high, f in strips_of(scene):
+        shape = p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.5 * (high - low), FAR, DEEP])
+        place = 0.5 * (low + high) * np.array([np.cos(direction), np.sin(direction)])
+        strip = p.createMultiBody(0.0, shape, -1, [*place, -DEEP], turn)
+        p.changeDynamics(strip, -1, lateralFriction=f, **rubs)
+    if strips_of(scene):
+        return lambda: None
+    speed = float(np.hypot(vx, vy))
+    belt = p.createMultiBody(
+        baseMass=0.0,
+        linkMasses=[HEAVY],
+        linkCollisionShapeIndices=[
+            p.createCollisionShape(p.GEOM_BOX, halfExtents=[FAR, FAR, DEEP])
+        ],
+        linkVisualShapeIndices=[-1],
+        linkPositions=[[0.0, 0.0, -DEEP]],
+        linkOrientations=[[0.0, 0.0, 0.0, 1.0]],
+        linkInertialFramePositions=[[0.0, 0.0, 0.0]],
+        linkInertialFrameOrientations=[[0.0, 0.0, 0.0, 1.0]],
+        linkParentIndices=[0],
+        linkJointTypes=[p.JOINT_REVOLUTE if turning else p.JOINT_PRISMATIC],
+        linkJointAxis=[[0.0, 0.0, 1.0] if turning else [vx / speed, vy / speed, 0.0]],
+    )
+    p.changeDynamics(belt, 0, lateralFriction=friction, jointDamping=0.0, **rubs)
+    p.setJointMotorControl2(belt, 0, p.VELOCITY_CONTROL, force=0.0)
+    return lambda: p.resetJointState(belt, 0, 0.0, turning or speed)
 
 
 def _launched(scene: dict[str, Any], dt: float) -> int:
@@ -28,30 +82,31 @@ def _launched(scene: dict[str, Any], dt: float) -> int:
     )
     gx, gy, gz = gravity(scene)
     p.setGravity(0.0, 0.0, gz)
-    plane = p.createMultiBody(0.0, p.createCollisionShape(p.GEOM_PLANE))
+    start = _floor(scene, puck["friction"])
     shape = p.createCollisionShape(p.GEOM_CYLINDER, radius=puck["radius"], height=puck["height"])
-    disc = p.createMultiBody(puck["mass"], shape, basePosition=[0.0, 0.0, 0.5 * puck["height"]])
-    p.changeDynamics(plane, -1, lateralFriction=1.0, restitution=0.0)
-    inertia = puck["mass"] * (puck["radius"] ** 2 / 4.0 + puck["height"] ** 2 / 12.0)
+    launch = puck["launch"]
+    x, y = launch.get("position", (0.0, 0.0))
+    disc = p.createMultiBody(puck["mass"], shape, basePosition=[x, y, 0.5 * puck["height"]])
+    flat, upright = moments_of(puck)
     p.changeDynamics(
         disc,
         -1,
-        lateralFriction=puck["friction"],
+        lateralFriction=1.0,
         spinningFriction=0.0,
         rollingFriction=0.0,
         restitution=0.0,
         linearDamping=0.0,
         angularDamping=0.0,
         contactProcessingThreshold=1.0,
-        localInertiaDiagonal=[inertia, inertia, 0.5 * puck["mass"] * puck["radius"] ** 2],
+        localInertiaDiagonal=[flat, flat, upright],
         activationState=p.ACTIVATION_STATE_DISABLE_SLEEPING,
     )
     for _ in range(round(SETTLE / dt)):
         p.stepSimulation()
     p.setGravity(gx, gy, gz)
     (_, _, z), _ = p.getBasePositionAndOrientation(disc)
-    launch = puck["launch"]
-    p.resetBasePositionAndOrientation(disc, [0.0, 0.0, z], [0.0, 0.0, 0.0, 1.0])
+    start()
+    p.resetBasePositionAndOrientation(disc, [x, y, z], [0.0, 0.0, 0.0, 1.0])
     p.resetBaseVelocity(disc, [*launch["velocity"], 0.0], [0.0, 0.0, launch["spin"]])
     return disc
 

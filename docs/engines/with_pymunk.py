@@ -3,27 +3,23 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pymunk
-from task import FLAT, Played, gravity, timed
+from task import FLAT, Played, gravity, joint_limits, moments_of, motion_of, strips_of, timed
 
 SETTINGS = (
-    "view from above; PivotJoint of at most f m g and GearJoint of at most 2/3 f m g r to the "
-    "ground, max_bias 0, 10 iterations"
+    "view from above; PivotJoint of at most f m g and GearJoint of at most 2/3 f m g r to a "
+    "kinematic ground, f under the centre, max_bias 0, 10 iterations"
 )
 STEPS = (4e-3, 2e-3, 1e-3, 5e-4)
 
 
 def can(scene: dict[str, Any]) -> bool:
-    """Two limits of force know nothing of rings; floors that move, and borders, are left out."""
-    floor = scene.get("floor", {})
-    pucks = scene["puck"] if isinstance(scene["puck"], list) else [scene["puck"]]
-    moves = any(floor.get("velocity", (0.0, 0.0))) or floor.get("turning", 0.0)
-    if moves or floor.get("strips"):
-        return False
-    return all(p.get("pressure", "uniform") == "uniform" for p in pucks)
+    """All of them."""
+    return True
 
 
 def pucks_of(scene: dict[str, Any]) -> list[dict[str, Any]]:
@@ -33,13 +29,16 @@ def pucks_of(scene: dict[str, Any]) -> list[dict[str, Any]]:
     return [{**scene["puck"], "launch": scene["launch"]}]
 
 
-def _space(scene: dict[str, Any]) -> tuple[pymunk.Space, list[pymunk.Body]]:
-    space, bodies = pymunk.Space(), []
+def _space(scene: dict[str, Any]) -> tuple[pymunk.Space, list[pymunk.Body], Callable[[], None]]:
+    """The space, its bodies, and what must be done before each step."""
+    space, bodies, joints = pymunk.Space(), [], []
+    ground = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    *velocity, ground.angular_velocity = motion_of(scene)
+    ground.velocity = tuple(velocity)
+    space.add(ground)
     for puck in pucks_of(scene):
-        m, r, f = puck["mass"], puck["radius"], puck["friction"]
-        slope = scene.get("floor", {}).get("slope", 0.0)
-        load = f * m * puck["gravity"] * math.cos(slope)
-        body = pymunk.Body(m, pymunk.moment_for_circle(m, 0.0, r))
+        m, r = puck["mass"], puck["radius"]
+        body = pymunk.Body(m, moments_of(puck)[1])
         launch = puck["launch"]
         body.position = tuple(launch.get("position", (0.0, 0.0)))
         body.velocity = tuple(launch.get("velocity") or (0.0, 0.0))
@@ -47,12 +46,19 @@ def _space(scene: dict[str, Any]) -> tuple[pymunk.Space, list[pymunk.Body]]:
         shape = pymunk.Circle(body, r)
         shape.elasticity = math.sqrt(puck.get("restitution", 1.0))  # of two it takes the product
         shape.friction = math.sqrt(min(puck.get("rim", 0.0), 1e6))
-        slide = pymunk.PivotJoint(space.static_body, body, (0.0, 0.0), (0.0, 0.0))
-        turn = pymunk.GearJoint(space.static_body, body, 0.0, 1.0)
+        slide = pymunk.PivotJoint(ground, body, (0.0, 0.0), (0.0, 0.0))
+        turn = pymunk.GearJoint(ground, body, 0.0, 1.0)
         slide.max_bias = turn.max_bias = 0.0
-        slide.max_force, turn.max_force = load, 2.0 / 3.0 * load * r
+        slide.max_force, turn.max_force = joint_limits(scene, puck, body.position)
         space.add(body, shape, slide, turn)
         bodies.append(body)
+        joints.append((puck, body, slide, turn))
+
+    def follow() -> None:
+        for puck, body, slide, turn in joints:
+            slide.anchor_a = ground.world_to_local(body.position)
+            slide.max_force, turn.max_force = joint_limits(scene, puck, body.position)
+
     if scene.get("floor", {}).get("slope"):
         gx, gy, _ = gravity(scene)
         space.gravity = (gx, gy)
@@ -65,22 +71,24 @@ def _space(scene: dict[str, Any]) -> tuple[pymunk.Space, list[pymunk.Body]]:
         shape.elasticity = line.elasticity = math.sqrt(wall["restitution"])
         shape.friction = line.friction = math.sqrt(wall["friction"])
         space.add(line)
-    return space, bodies
+    return space, bodies, follow if any(motion_of(scene)) or strips_of(scene) else lambda: None
 
 
 def run(scene: dict[str, Any], dt: float, until: float) -> Played:
-    space, bodies = _space(scene)
+    space, bodies, follow = _space(scene)
     count = round(until / dt)
     rows = np.empty((count + 1, 7))
     for n in range(count + 1):
         if n:
+            follow()
             space.step(dt)
         b = bodies[0]
         rows[n] = [n * dt, *b.position, b.angle, *b.velocity, b.angular_velocity]
-    space, _ = _space(scene)
+    space, _, follow = _space(scene)
 
     def steps() -> None:
         for _ in range(count):
+            follow()
             space.step(dt)
 
     return Played(rows, FLAT, timed(steps))
