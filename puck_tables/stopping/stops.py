@@ -222,7 +222,7 @@ def stop(
     path of exact pure spin grows like |v| and has none by vx and vy: NaN.
 
     There is no column for ``gyration``, a number of the kind of puck: the difference of stops at
-    k ± 0.001, divided by 0.002, is its derivative to 1e-6 (with ``tol`` = 1e-10; Q = J = r = 1).
+    k ± 0.001 over 0.002 is its derivative to some 1e-6 (``tol`` = 1e-10, in units of Q, J, r).
 
     References
     ----------
