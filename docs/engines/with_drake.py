@@ -10,10 +10,12 @@ from typing import Any
 
 import numpy as np
 from pydrake.all import (
+    AddCompliantHydroelasticProperties,
     AddCompliantHydroelasticPropertiesForHalfSpace,
     AddContactMaterial,
     AddMultibodyPlant,
     AddRigidHydroelasticProperties,
+    Box,
     CoulombFriction,
     DiagramBuilder,
     HalfSpace,
@@ -24,12 +26,14 @@ from pydrake.all import (
     PlanarJoint,
     ProximityProperties,
     RigidTransform,
+    RotationMatrix,
     Simulator,
     SpatialInertia,
     SpatialVelocity,
     UnitInertia,
 )
 from task import (
+    FAR,
     HEAVY,
     SETTLE,
     SPACE,
@@ -49,13 +53,11 @@ SETTINGS = (
     "(1 cm, 1e6 Pa, dissipation 10 s/m), discrete steps, approximation lagged (the default)"
 )
 STEPS = (4e-3, 2e-3, 1e-3, 5e-4)
-MODULUS, DISSIPATION, RINGS = 1e6, 10.0, 8
+MODULUS, DEPTH, DISSIPATION, RINGS = 1e6, 0.01, 10.0, 8
+THIN = 1e-3  # m
+SLIPS = 1e9  # of the disc: f of two is 2 f1 f2/(f1 + f2), so twice the half that the floor has
 APPROXIMATION = "lagged"  # SAP would let it glide above the floor
-
-
-def can(scene: dict[str, Any]) -> bool:
-    """A half space has one friction, and a compliant box grows soft towards its sides."""
-    return has_one_puck_and_no_cushion(scene) and not strips_of(scene)
+can = has_one_puck_and_no_cushion
 
 
 def disc_as_obj(r: float, h: float, hole: float) -> str:
@@ -93,6 +95,25 @@ def disc_as_obj(r: float, h: float, hole: float) -> str:
     return "\n".join(lines) + "\n"
 
 
+def _floors(scene: dict[str, Any], friction: float) -> list[tuple[str, Any, Any, Any]]:
+    """A half space; or a box for each strip: thin, for so far from its sides it is softer."""
+    found = []
+    for low, high, f in strips_of(scene) or [(-FAR, FAR, friction)]:
+        soft, pose, form = ProximityProperties(), RigidTransform(), HalfSpace()
+        AddContactMaterial(
+            friction=CoulombFriction(0.5 * f, 0.5 * f), dissipation=DISSIPATION, properties=soft
+        )
+        if strips_of(scene):
+            turn = RotationMatrix.MakeZRotation(scene["floor"]["strips"]["direction"])
+            pose = RigidTransform(turn, turn @ [0.5 * (low + high), 0.0, -0.5 * THIN])
+            form = Box(high - low, 2.0 * FAR, THIN)
+            AddCompliantHydroelasticProperties(FAR, 0.5 * THIN / DEPTH * MODULUS, soft)
+        else:
+            AddCompliantHydroelasticPropertiesForHalfSpace(DEPTH, MODULUS, soft)
+        found.append((f"floor {len(found)}", pose, form, soft))
+    return found
+
+
 def _launched(scene: dict[str, Any], dt: float) -> tuple[Any, Any, Any]:
     puck = only_puck(scene)
     r, h, f = puck["radius"], puck["height"], puck["friction"]
@@ -106,10 +127,8 @@ def _launched(scene: dict[str, Any], dt: float) -> tuple[Any, Any, Any]:
     flat, upright = np.array(moments_of(puck)) / puck["mass"]
     inertia = SpatialInertia(puck["mass"], np.zeros(3), UnitInertia(flat, flat, upright))
     disc = plant.AddRigidBody("disc", inertia)
-    soft, hard = ProximityProperties(), ProximityProperties()
-    AddContactMaterial(friction=CoulombFriction(f, f), dissipation=DISSIPATION, properties=soft)
-    AddCompliantHydroelasticPropertiesForHalfSpace(0.01, MODULUS, soft)
-    AddContactMaterial(friction=CoulombFriction(f, f), properties=hard)
+    hard = ProximityProperties()
+    AddContactMaterial(friction=CoulombFriction(SLIPS, SLIPS), properties=hard)
     AddRigidHydroelasticProperties(hard)
     mesh = Mesh(
         InMemoryMesh(mesh_file=MemoryFile(disc_as_obj(r, h, hole_of(puck)), ".obj", "disc"))
@@ -121,7 +140,8 @@ def _launched(scene: dict[str, Any], dt: float) -> tuple[Any, Any, Any]:
         joint = plant.AddJoint(PlanarJoint("floor", plant.world_frame(), ground.body_frame()))
     else:
         plant.WeldFrames(plant.world_frame(), ground.body_frame())
-    plant.RegisterCollisionGeometry(ground, RigidTransform(), HalfSpace(), "floor", soft)
+    for name, pose, form, soft in _floors(scene, f):
+        plant.RegisterCollisionGeometry(ground, pose, form, name, soft)
     gx, gy, gz = gravity(scene)
     plant.mutable_gravity_field().set_gravity_vector([0.0, 0.0, gz])
     plant.Finalize()
