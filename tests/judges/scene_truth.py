@@ -46,6 +46,7 @@ from scene_motion import (
     World,
     best_way,
     floor_at,
+    leaving_way,
     rates,
 )
 from scene_steps import ALL, advance, dense, prepare_dense, stage
@@ -293,8 +294,7 @@ def follow(world, start, until, frames, states, events, tol, speed, length, limi
         else:
             events[count] = np.array([t, SLIP, ctx[REGION], px, py])
             count += 1
-            guess = np.array([0.6, 0.0, 0.8])
-            n, gain = best_way(world, ctx, base, t, y, guess, out, fr)
+            n, gain = leaving_way(world, ctx, base, t, y, out, fr)
             ctx[MODE] = SLIDES
             begun = begins(world, ctx, base, t, y, n, max(gain, 0.0), speed, target, out, fr)
             if begun == math.inf:
