@@ -1,5 +1,7 @@
 """Every ingredient of a scene in pairs and triples, against the judge's own integrator.
 
+Strips, which a base feels under each of its parts, have a judge of their own (astride_judge.py).
+
 The verdict is error <= tol * max(1, amplification): how much the judge's end moves when the launch
 and the forces change by 1e-7 of themselves, over that.  Units: the fastest slip and the sharpest
 acceleration along the way.
@@ -20,7 +22,7 @@ from report import arguments, table
 from verdicts import judged, known
 
 INGREDIENTS = (
-    "slope", "belt", "turntable", "strips", "drag", "force", "force over time", "smooth wall",
+    "slope", "belt", "turntable", "drag", "force", "force over time", "smooth wall",
     "rough wall", "edge", "rail", "pivot", "blade", "tall", "gyration", "pressure", "from rest",
 )  # fmt: skip
 _HOLDS = {"rail", "pivot", "blade"}
@@ -94,15 +96,6 @@ def draw(seed: int, index: int) -> dict[str, Any]:
         rows[:, 1:] = friction * weight * rng.normal(size=(5, 3))
         rows[:, 3] *= 0.3 * radius
         scene["drive"] = rows.tolist()
-    if "strips" in names:
-        middle = float(ahead @ (0.4 * stop * ahead))
-        wide = float(stop * rng.choice([0.003, 0.1, 0.5]))
-        shares = [[1.0, 0.5, 1.0], [0.5, 1.0, 0.5], [1.0, 0.0, 1.0]][int(rng.integers(3))]
-        del puck["friction"]
-        floor["strips"] = {
-            "borders": [middle, middle + wide], "friction": [s * friction for s in shares],
-            "direction": float(way + rng.uniform(-1.0, 1.0)),
-        }  # fmt: skip
     launch: dict[str, Any] = {
         "velocity": velocity.tolist(), "spin": spin,
         "orientation": float(rng.uniform(-math.pi, math.pi)),

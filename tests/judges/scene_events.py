@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
 from numba import njit
 from scene_motion import (
     BLADE,
@@ -23,6 +22,7 @@ from scene_motion import (
     STICKS,
     best_way,
     floor_at,
+    leaving_way,
     rates,
 )
 from scene_steps import dense
@@ -75,8 +75,7 @@ def test(world, ctx, base, t, y, which, out, fr, speed):
             return wall[5] * push - abs(grip), 0.0
         return ctx[RIM] * rim_slip(world, wall, base, y) + 1e-15 * speed, 0.0
     # whether the floor still holds
-    guess = np.array([0.6, 0.0, 0.8])
-    _, gain = best_way(world, ctx, base, t, y, guess, out, fr)
+    _, gain = leaving_way(world, ctx, base, t, y, out, fr)
     return -gain, 0.0
 
 

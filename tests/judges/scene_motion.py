@@ -235,3 +235,13 @@ def best_way(world, ctx, base, t, y, guess, out, fr):
                 n, gain, was = way, growth, rim
     ctx[RIM] = was
     return n, gain
+
+
+@njit(cache=True)
+def leaving_way(world, ctx, base, t, y, out, fr):
+    """:func:`best_way` from two guesses: where a constraint leaves two ways, one may end."""
+    n, gain = best_way(world, ctx, base, t, y, np.array([0.6, 0.0, 0.8]), out, fr)
+    other, growth = best_way(world, ctx, base, t, y, np.array([-0.48, 0.64, -0.6]), out, fr)
+    if growth > gain:
+        return other, growth
+    return n, gain

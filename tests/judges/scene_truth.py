@@ -46,6 +46,7 @@ from scene_motion import (
     World,
     best_way,
     floor_at,
+    leaving_way,
     rates,
 )
 from scene_steps import ALL, advance, dense, prepare_dense, stage
@@ -293,8 +294,7 @@ def follow(world, start, until, frames, states, events, tol, speed, length, limi
         else:
             events[count] = np.array([t, SLIP, ctx[REGION], px, py])
             count += 1
-            guess = np.array([0.6, 0.0, 0.8])
-            n, gain = best_way(world, ctx, base, t, y, guess, out, fr)
+            n, gain = leaving_way(world, ctx, base, t, y, out, fr)
             ctx[MODE] = SLIDES
             begun = begins(world, ctx, base, t, y, n, max(gain, 0.0), speed, target, out, fr)
             if begun == math.inf:
@@ -313,6 +313,16 @@ def follow(world, start, until, frames, states, events, tol, speed, length, limi
         states[frame, 5], states[frame, 6] = y[5] + turn, ctx[MODE]
         frame += 1
     return how, t, count, frame, steps, fastest, sharpest
+
+
+def _weakest(places: np.ndarray, series: np.ndarray, m: float, turns: float) -> float:
+    """By how much friction brakes a slip of any direction at least, for 1 N."""
+    brakes, slip = [], np.empty(3)
+    for way in np.linspace(0.0, 0.5 * math.pi, 200):
+        c, s = math.cos(way), math.sin(way)
+        tabled_friction(places, series, len(series), c, 0.0, s, slip)
+        brakes.append(-slip[0] * c / m - turns * slip[2] * s)
+    return min(brakes)
 
 
 def world_of(scene: dict[str, Any]) -> tuple[World, np.ndarray]:
@@ -357,14 +367,8 @@ def world_of(scene: dict[str, Any]) -> tuple[World, np.ndarray]:
                 v[1] - spin * reach * math.cos(angle + a),
             ]
     drive = np.array(scene.get("drive", []), float).reshape(-1, 4)
-    loads, weakest, slip = m * g * math.cos(slope) * np.array(frictions, float), [], np.empty(3)
-    for (places, part), load in zip(tables, loads, strict=True):
-        brakes = []
-        for angle in np.linspace(0.0, 0.5 * math.pi, 200):
-            c, s = math.cos(angle), math.sin(angle)
-            tabled_friction(places, part, len(part), c, 0.0, s, slip)
-            brakes.append(-load * (slip[0] * c / m + r * r * slip[2] * s / inertia))
-        weakest.append(min(brakes))
+    loads = m * g * math.cos(slope) * np.array(frictions, float)
+    weakest = [_weakest(*part, m, r * r / inertia) for part in tables] * loads
     world = World(
         np.array([m, inertia, r]), pull, drive,
         np.array([
@@ -372,7 +376,7 @@ def world_of(scene: dict[str, Any]) -> tuple[World, np.ndarray]:
             floor.get("turning", 0.0),
         ], float),
         np.array([drag.get("sliding", 0.0), drag.get("spinning", 0.0)], float), hold,
-        walls, edges, borders, loads, ends, series, counts, np.array(weakest),
+        walls, edges, borders, loads, ends, series, counts, weakest,
     )  # fmt: skip
     return world, np.array([*place, angle, *velocity, spin], float)
 
