@@ -83,7 +83,13 @@ def test_any_error_between_is_made():
 def test_the_program_of_the_page_prints_what_it_says(tmp_path: Path):
     text = (ROOT / "docs" / "export.md").read_text(encoding="utf-8")
     program = re.search(r"```js\n(.*?)```", text, re.DOTALL)[1]
-    pt.export_source("js", "stop").save(tmp_path / "puck.js")
-    (tmp_path / "main.mjs").write_text(program)
+    told = re.findall(r"//.*: (.*)", program)
+    pt.export_source("js", ["stop", "state"], 1e-4).save(tmp_path / "puck.js")
+    tells = re.sub(
+        r"//.*", "console.log(Array.from(out, one => one.toFixed(2)).join(', '));", program
+    )
+    (tmp_path / "main.mjs").write_text(tells)
     said = subprocess.run(["node", "main.mjs"], cwd=tmp_path, capture_output=True, text=True)
-    assert said.stdout.strip() == program.rpartition("// ")[2].strip(), said.stderr
+    lines = said.stdout.splitlines()
+    assert len(told) == 2 and len(lines) == 2, said.stderr
+    assert all(line.startswith(one) for line, one in zip(lines, told, strict=True)), lines

@@ -64,8 +64,8 @@ def test_two_marks_at_one_place_have_no_direction():
         ([0.0, np.nan], [[0, 0]] * 2, None, "finite"), ([0.0, 1.0], [[0, 0]] * 2, [1.0], "angle"),
         ([0.0, 1.0], [[0, np.nan], [0, 0]], None, "two frames"),
         ([], np.empty((0, 2)), None, "two frames"),
-        ([0.0, 1.0], [[0, np.inf], [0, 0]], None, "numbers"),
-        ([0.0, 1.0], [[0, 0]] * 2, [0.0, np.inf], "numbers"), (["a"], [[0, 0]], None, "time"),
+        ([0.0, 1.0], [[0, np.inf], [0, 0]], None, "is infinite"),
+        ([0.0, 1.0], [[0, 0]] * 2, [0.0, np.inf], "is infinite"), (["a"], [[0, 0]], None, "time"),
     ],
 )  # fmt: skip
 def test_a_track_is_checked_when_it_is_made(time, place, angle, words: str):

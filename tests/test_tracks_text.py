@@ -225,7 +225,7 @@ BAD = {
     "t,x [cm],y [mm]\n0,1,2\n.1,1,2\n": "not all in one unit",
     "t,x [furlong],y [furlong]\n0,1,2\n.1,1,2\n": "'furlong' is not known",
     "t,x_px,y_px\n0,1,2\n.1,2,3\n": "in pixels: give (the size|scale)",
-    "t,x,y\n0,1e400,2\n.1,2,3\n": "must be numbers",
+    "t,x,y\n0,1e400,2\n.1,2,3\n": "of frame 1 is infinite",
     "t,x,y,visible\n0,1,2,1\n.1,2,3,7\n": "must be 0 or 1",
     "t,x,y,visible\n0,1,2,yes\n.1,2,3,perhaps\n": "'perhaps' does not say",
     "t,x,y,confidence\n0,1,2,95\n.1,2,3,90\n": "likelihoods of up to 95",
