@@ -59,6 +59,7 @@ def test_nothing_is_compiled(arguments: list[str], tmp_path: Path):
 COMPILED = {"NUMBA_DISABLE_JIT": "0"}
 
 
+@pytest.mark.thorough
 def test_numbers_are_those_of_compiled_code():
     told, compiled = run([*LAUNCH, "--json"])[0], run([*LAUNCH, "--json"], **COMPILED)[0]
     found, expected = (numbers(json.loads(one)) for one in (told, compiled))
@@ -66,6 +67,7 @@ def test_numbers_are_those_of_compiled_code():
     assert found != expected  # to rounding: so the next test sees which is which
 
 
+@pytest.mark.thorough
 def test_what_takes_long_begins_anew_and_compiled():
     soon = "at_once.AT_FIRST, at_once._OTHERS = 1e-3, ('none', 1e-3)"
     again = run([*LAUNCH, "--json"], before=soon)[0]

@@ -59,6 +59,7 @@ def faults(scenes, tols, folder):
     return found
 
 
+@pytest.mark.thorough
 def test_pairs_and_triples(tmp_path):
     assert faults([draw(1, i) for i in (0, 1, 2, 3, 4, 5, 7, 8)], [1e-6, 1e-9], tmp_path) == []
 
