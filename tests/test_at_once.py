@@ -43,12 +43,18 @@ def numbers(told: object) -> list[float]:
     return [float(told)] if isinstance(told, int | float) else []
 
 
+THOROUGH = pytest.mark.thorough
+
+
 @pytest.mark.parametrize(
     "arguments",
-    [LAUNCH, ["simulate", "--scene", "incline"], ["aim", "--target", "2,0.1", "--w0", "5"],
-     ["reference", "coin"]],
-    ids=["launch", "scene", "aim", "reference"],
-)  # fmt: skip
+    [
+        pytest.param(LAUNCH, id="launch"),
+        pytest.param(["simulate", "--scene", "incline"], id="scene"),
+        pytest.param(["aim", "--target", "2,0.1", "--w0", "5"], id="aim", marks=THOROUGH),
+        pytest.param(["reference", "coin"], id="reference", marks=THOROUGH),
+    ],
+)
 def test_nothing_is_compiled(arguments: list[str], tmp_path: Path):
     told, said = run([*arguments, "--json"], NUMBA_CACHE_DIR=str(tmp_path))
     assert not said

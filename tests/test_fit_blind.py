@@ -75,6 +75,7 @@ def test_a_prior_determines_what_the_track_does_not(straight):
     assert found["delta"].error == pytest.approx(0.05, rel=0.02)
 
 
+@pytest.mark.thorough
 def test_a_forecast_is_the_bound():
     # hockey puck and rubber puck, films 1.1 times as long as the run
     rows = [

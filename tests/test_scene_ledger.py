@@ -28,6 +28,7 @@ def _closes(seeds: range, folder: Path) -> set[str]:
     return seen
 
 
+@pytest.mark.thorough
 def test_the_ledger_closes(tmp_path: Path) -> None:
     seen = _closes([*range(200), 469, 633], tmp_path)  # over an edge; twice to a dead cushion
     assert seen >= {
