@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
-from puck_tables.cli.at_once import at_once
 from puck_tables.cli.board_aim import aim_on_board, number_or_name
 from puck_tables.cli.options import (
     FILE,
@@ -24,6 +23,7 @@ from puck_tables.cli.options import (
     puck_options,
 )
 from puck_tables.cli.scene_run import files_read, scene_options, scene_tables
+from puck_tables.cli.uncompiled import uncompiled
 
 from puck_tables.errors import InputError
 
@@ -149,7 +149,7 @@ def aim(
         raise click.MissingParameter(param_hint="'--target'", param_type="option")
     read = (pressure, targets_file)
     prepare_outputs(output, plot=plot, overwrite=overwrite, inputs=read)
-    with at_once() if targets_file is None else nullcontext():
+    with uncompiled() if targets_file is None else nullcontext():
         puck = puck_given(radius, height, friction, gravity, delta, decel, pressure, gyration)
         where = targets[0] if targets_file is None else _read_targets(targets_file)
         found: Any = puck.aim(

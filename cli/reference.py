@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
-from puck_tables.cli.at_once import at_once
 from puck_tables.cli.completion import cases
 from puck_tables.cli.options import (
     FILE,
@@ -21,6 +20,7 @@ from puck_tables.cli.options import (
     prepare_outputs,
     reported,
 )
+from puck_tables.cli.uncompiled import uncompiled
 
 from puck_tables.errors import InputError
 
@@ -87,7 +87,7 @@ def reference(
         raise InputError("--epsilon and --friction both choose the ratios: give one of them")
     prepare_outputs(output, plot=plot, overwrite=overwrite, inputs=(times,))
     found: Any
-    with at_once():
+    with uncompiled():
         if over:
             from puck_tables.reference.friction import floor_friction
 

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 
 import click
 from click.core import ParameterSource
-from puck_tables.cli.at_once import at_once
 from puck_tables.cli.options import (
     FILE,
     NUMBER,
@@ -30,6 +29,7 @@ from puck_tables.cli.options import (
     table_option,
 )
 from puck_tables.cli.scene_run import files_read, run_scene, scene_options, scene_tables
+from puck_tables.cli.uncompiled import several_pucks, uncompiled
 
 from puck_tables.accuracy.methods import INTEGRATORS
 from puck_tables.errors import InputError
@@ -118,9 +118,11 @@ def simulate(
     """  # noqa: D301 - click reads the backspace
     unknown: tuple[str, ...] = ()
     run: TimedResult
-    with at_once():
+    with uncompiled():
         if scene is not None or changes:
             tables = scene_tables(ctx, scene, changes)
+            if isinstance(tables.get("puck"), list):
+                several_pucks()
             prepare_outputs(
                 output, plot=plot, movie=movie, overwrite=overwrite,
                 inputs=files_read(scene, tables),

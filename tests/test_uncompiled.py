@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from puck_tables.cli import at_once, start
+from puck_tables.cli import start, uncompiled
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
@@ -26,7 +26,7 @@ LAUNCH = ["simulate", "--v0", "1,0", "--w0", "5"]
 
 def run(arguments: list[str], *, before: str = "", **environment: str) -> tuple[str, str]:
     """What a command says on stdout and stderr, after some Python."""
-    code = f"from puck_tables.cli import at_once, start\n{before}\nstart.main()"
+    code = f"from puck_tables.cli import uncompiled, start\n{before}\nstart.main()"
     ended = subprocess.run(
         [sys.executable, "-c", code, *arguments], env={**os.environ, **environment},
         capture_output=True, text=True, check=True,
@@ -75,7 +75,7 @@ def test_numbers_are_those_of_compiled_code():
 
 @pytest.mark.thorough
 def test_what_takes_long_begins_anew_and_compiled():
-    soon = "at_once.AT_FIRST, at_once._OTHERS = 1e-3, ('none', 1e-3)"
+    soon = "uncompiled.AT_FIRST, uncompiled._OTHERS = 1e-3, ('none', 1e-3)"
     again = run([*LAUNCH, "--json"], before=soon)[0]
     assert again == run([*LAUNCH, "--json"], **COMPILED)[0]
 
@@ -84,7 +84,7 @@ def test_what_takes_long_begins_anew_and_compiled():
 def test_a_table_is_built_by_compiled_code(tmp_path: Path):
     kept = {"NUMBA_CACHE_DIR": str(Path(cache_folder() or "").parent)}
     command, own = [*LAUNCH, "--delta", "2.07", "--json"], tmp_path / "own"
-    soon = "at_once.AT_FIRST = 0.5"  # so that patience would end while the table is built
+    soon = "uncompiled.AT_FIRST = 0.5"  # so that patience would end while the table is built
     told = run(command, before=soon, XDG_CACHE_HOME=str(tmp_path), **kept)[0]
     assert told == run(command, XDG_CACHE_HOME=str(own), **kept, **COMPILED)[0]
 
@@ -104,7 +104,7 @@ def begun(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[str]]:
     """How often the command began anew, in a process as if it were a command's own."""
     anew: list[str] = []
     monkeypatch.setattr(start, "alone", True)
-    monkeypatch.setattr(at_once, "_begin_compiled", lambda *_: anew.append("begun"))
+    monkeypatch.setattr(uncompiled, "_begin_compiled", lambda *_: anew.append("begun"))
     monkeypatch.setenv("NUMBA_DISABLE_JIT", "")
     monkeypatch.delenv("NUMBA_DISABLE_JIT")
     with np.errstate():
@@ -113,26 +113,42 @@ def begun(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[str]]:
 
 @pytest.mark.parametrize(
     "number",
-    [lambda: 1.0 / 0.0, lambda: math.exp(1e3), lambda: math.sqrt(-1), lambda: math.floor(math.nan)],
+    [
+        lambda: 1.0 / 0.0,
+        lambda: math.exp(1e3),
+        lambda: math.sqrt(-1),
+        lambda: math.floor(math.nan),
+        lambda: math.sqrt((-0.1) ** 1.5),
+    ],
 )
 def test_what_python_refuses_to_compute_is_compiled(number: Callable[[], float], begun: list[str]):
-    with at_once.at_once():
+    with uncompiled.uncompiled():
         number()
     assert begun == ["begun"]
 
 
 def test_a_refusal_stays_one(begun: list[str]):
-    with pytest.raises(InputError, match="of input"), at_once.at_once():
+    with pytest.raises(InputError, match="of input"), uncompiled.uncompiled():
         raise InputError("of input")
     assert not begun
 
 
 def test_work_that_is_long_is_compiled(begun: list[str]):
-    with at_once.at_once():
+    with uncompiled.uncompiled():
         as_written.long_work()
     assert begun == ["begun"]
     as_written.long_work()
     assert begun == ["begun"]  # outside nobody listens
+
+
+def test_a_board_whose_compiled_code_is_kept_is_not_run_uncompiled(
+    begun: list[str], monkeypatch: pytest.MonkeyPatch
+):
+    for kept in (False, True):
+        monkeypatch.setattr(uncompiled, "_kept", lambda kernel, kept=kept: kept)
+        with uncompiled.uncompiled():
+            uncompiled.several_pucks()
+        assert len(begun) == kept
 
 
 @pytest.mark.parametrize("single", [False, True])

@@ -30,7 +30,7 @@ _SWITCH = "NUMBA_DISABLE_JIT"
 
 
 @contextlib.contextmanager
-def at_once() -> Iterator[None]:
+def uncompiled() -> Iterator[None]:
     """Compute within, and write nothing: kernels run as they are written while patience lasts.
 
     A process that is not the command's own, or whose user set the switch, is left as it is.
@@ -49,7 +49,8 @@ def at_once() -> Iterator[None]:
     signal.setitimer(signal.ITIMER_PROF, AT_FIRST)
     try:
         yield
-    except (ArithmeticError, ValueError) as error:  # where compiled code has inf or NaN
+    # where compiled code has inf or NaN; a broken power of a negative number is complex here
+    except (ArithmeticError, ValueError, TypeError) as error:
         if isinstance(error, PuckError):
             raise
         _begin_compiled()
@@ -58,13 +59,26 @@ def at_once() -> Iterator[None]:
         before_long_work.clear()
 
 
-def _impatient(*_: object) -> None:
-    """Go on for a while, if compiling would take longer."""
+def several_pucks() -> None:
+    """Say that a board is to run: what is compiled already is quicker than the first second."""
+    if signal.getsignal(signal.SIGPROF) is _impatient and _kept(
+        _KERNELS["puck_tables.world.world"][0]
+    ):
+        _begin_compiled()
+
+
+def _kept(kernel: str) -> bool:
+    """Whether compiled code of a kernel is kept."""
     from puck_tables.kernels.cache import cache_folder
 
     folder = cache_folder()
+    return folder is not None and any(folder.glob(f"puck_tables-{kernel}*.code"))
+
+
+def _impatient(*_: object) -> None:
+    """Go on for a while, if compiling would take longer."""
     kernel, wait = next((_KERNELS[name] for name in _KERNELS if name in sys.modules), _OTHERS)
-    if folder is not None and any(folder.glob(f"puck_tables-{kernel}*.code")):
+    if _kept(kernel):
         _begin_compiled()
     signal.signal(signal.SIGPROF, _begin_compiled)
     signal.setitimer(signal.ITIMER_PROF, wait)
