@@ -5,6 +5,7 @@ The first line of each group is the rival that the ratios are to.
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -24,29 +25,38 @@ def random_launches(rng: np.random.Generator, n: int) -> tuple[np.ndarray, ...]:
 
 @pytest.mark.benchmark(group="stops of a million launches")
 @pytest.mark.parametrize(
-    "way", ["kernel alone", "time and place", "all six", "tall pucks, all six"]
-)
+    "way",
+    [
+        "kernel alone", "time and place", "the same, two threads", "all six", "tall pucks, all six",
+        "rival: integrated, tol 1e-8",
+    ],
+)  # fmt: skip
 def test_stops(measure: Any, rng: np.random.Generator, way: str):
-    velocity, spin, delta = random_launches(rng, LAUNCHES)
+    n = FEW if "rival" in way else LAUNCHES
+    velocity, spin, delta = random_launches(rng, n)
     tall = Puck.similar(delta=2.0)
     tall.stop(velocity, spin)
-    time, x, y = (np.empty(LAUNCHES) for _ in range(3))
+    time, x, y = (np.empty(n) for _ in range(3))
     launches = launches_of(velocity, spin, delta, 1.0, 1.0)
     cut = StopTable.shipped().cut()
 
     def kernel() -> None:
-        for first in range(0, LAUNCHES, CHUNK):
-            part = slice(first, min(first + CHUNK, LAUNCHES))
+        for first in range(0, n, CHUNK):
+            part = slice(first, min(first + CHUNK, n))
             some = launches.part(part.start, part.stop)
             stops_kernel(STOP_POWERS)(*some, cut, time[part], x[part], y[part], 1)
 
     ways = {
         "kernel alone": kernel,
         "time and place": lambda: stop(velocity, spin, delta=delta, threads=1),
+        "the same, two threads": lambda: stop(velocity, spin, delta=delta, threads=2),
         "all six": lambda: stop(velocity, spin, delta=delta, threads=1).path_length,
         "tall pucks, all six": lambda: tall.stop(velocity, spin, threads=1),
+        "rival: integrated, tol 1e-8": lambda: stop(
+            velocity, spin, delta=delta, tol=1e-8, method="adaptive", threads=1
+        ),
     }
-    measure(way, ways[way], items=LAUNCHES, unit="stop")
+    measure(way, ways[way], items=n, unit="stop")
 
 
 @pytest.mark.benchmark(group="states of many pucks, one time each")
@@ -66,6 +76,31 @@ def test_states(measure: Any, rng: np.random.Generator, way: str):
         "at once": lambda: states(velocity, spin, times, delta=delta, threads=1),
     }
     measure(way, ways[way], items=n, unit="state")
+
+
+@pytest.mark.benchmark(group="states of one puck")
+@pytest.mark.parametrize("way", ["at a million times", "rival: simulate, at 9999 times"])
+def test_frames(measure: Any, way: str):
+    puck = Puck.similar()
+    times = np.linspace(0.0, 3.9, 9_999 if "rival" in way else LAUNCHES)
+    ways = {
+        "at a million times": lambda: puck.states((1.0, 0.0), 5.0, times),
+        "rival: simulate, at 9999 times": lambda: puck.simulate((1.0, 0.0), 5.0, times=times),
+    }
+    measure(way, ways[way], items=times.size, unit="state")
+
+
+@pytest.mark.benchmark(group="a map of a million stops")
+@pytest.mark.parametrize("way", ["in memory", "to the file"])
+def test_maps(measure: Any, tmp_path: Path, way: str):
+    spin, speed = np.linspace(-5.0, 5.0, 1000), np.linspace(0.0, 2.0, 1000)
+
+    def map_of_stops() -> None:
+        found = Puck.similar().sweep(spin, speed)
+        if way == "to the file":
+            found.save(tmp_path / "map.h5", overwrite=True)
+
+    measure(way, map_of_stops, unit="map")
 
 
 @pytest.mark.benchmark(group="launches to many targets")

@@ -9,10 +9,11 @@ from scenes import sweep_scene
 
 import puck_tables as pt
 from puck_tables import Scene
+from puck_tables.scene.bulk import ENDS_COLUMNS
+from puck_tables.scene.case import STATE
 from puck_tables.scene.entries import LAUNCH
 from puck_tables.scene.plan import ingredients
 from puck_tables.scene.prepare import prepare
-from puck_tables.scene.sweep import STATE
 
 ONE = pytest.mark.benchmark(group="one launch in a scene, 1600 at once, one thread")
 SWEEP = pytest.mark.benchmark(group="a scene with slope and drag, 100 x 100 launches")
@@ -65,7 +66,7 @@ def test_one_ingredient(measure: Any, name: str) -> None:
     grid = np.meshgrid(*(np.linspace(*ends, SIDE) for ends in RANGES.values()))
     for path, values in zip(RANGES, grid, strict=True):
         states[:, STATE[LAUNCH.index(path)]] = values.ravel()
-    out, status = np.empty((16, SIDE * SIDE)), np.empty(SIDE * SIDE, np.int8)
+    out, status = np.empty((ENDS_COLUMNS, SIDE * SIDE)), np.empty(SIDE * SIDE, np.int8)
     measure(
         name, lambda: prepared.follow_all(states, out, status), items=SIDE * SIDE, unit="trajectory"
     )

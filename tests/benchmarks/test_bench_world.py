@@ -6,7 +6,6 @@ import math
 import time
 from typing import Any
 
-import numba
 import numpy as np
 import pytest
 from boards import draw, hexagon, judged
@@ -14,6 +13,7 @@ from pucks_judge import play
 
 import puck_tables as pt
 from benchmarks.step_engines import Played, play_box2d, play_pymunk
+from puck_tables.kernels.compile import kernel
 from puck_tables.world.meeting import next_meeting
 
 BREAK = pytest.mark.benchmark(group="carrom break, 20 discs until rest, one thread")
@@ -105,8 +105,8 @@ def test_next_contact(measure: Any, which: str) -> None:
                     pairs.append((i, j))
     several = np.array(pairs)
 
-    @numba.njit
-    def look(game, pairs, room):  # type: ignore[no-untyped-def]
+    @kernel
+    def look(game: Any, pairs: Any, room: Any) -> Any:
         total = 0.0
         for row in range(pairs.shape[0]):
             total += next_meeting(
