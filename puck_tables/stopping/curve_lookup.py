@@ -21,10 +21,8 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import allocating, inlined
+from puck_tables.kernels.compile import inlined
 from puck_tables.kernels.spline import basis, cell_at
 from puck_tables.motion.state import HEADING, ORIENTATION, PUCK_X, PUCK_Y, SPEED, SPIN
 from puck_tables.stopping.axes import HEIGHTS
@@ -33,9 +31,6 @@ from puck_tables.stopping.lookup import STOP_POWERS, slip_place
 # order of the functions of the curve
 BODY_SUM, TURN_SUM, LENGTH_SUM, CURVE_SUM = range(4)
 
-_BLOCK = 64
-_ROUNDING = 2e-16
-_LOOKS = 100  # at most
 _SMALLEST_SHARE = 1e-300  # of the slower motion; less is a limit reached long before
 
 # rows of what is known of a launch
@@ -164,73 +159,6 @@ def inverse_sum(c: FloatArray, side: int, xi: float, s: float, sums: FloatArray)
     """2w/y."""
     _curve_sums(c, side, xi, sums, 1)
     return _polynomial(sums, 0, s)
-
-
-@inlined
-def _spline(weights: FloatArray, xi: float) -> float:
-    i, w0, w1, w2, w3 = _cell(xi, weights.size - 3)
-    value: float = w0 * weights[i] + w1 * weights[i + 1]
-    value += w2 * weights[i + 2] + w3 * weights[i + 3]
-    return value
-
-
-@allocating
-def fill_inverse(
-    stops: FloatArray, curve: FloatArray, constants: FloatArray, with_time: bool,
-    deltas: FloatArray, out: FloatArray,
-) -> None:  # fmt: skip
-    """2w/y at the nodes of ξ (both sides) and δ into ``out`` (2, cells + 1, heights).
-
-    By secants in a bracket, on the splines themselves, so that forward and back agree.
-    """
-    cells = stops.shape[1] - 3
-    times, sums = np.ones(cells + 3), np.empty(cells + 3)
-    for side in range(2):
-        for j in range(deltas.size):
-            delta = deltas[j]
-            s = 2.0 * delta * delta - 1.0
-            c0, kappa = _constant(constants, 0, s), _constant(constants, 1, s)
-            quarter = _constant(constants, 3, s)
-            for i in range(cells + 3):  # the splines at this height
-                sums[i] = _polynomial(curve[side, i], CURVE_SUM, s)
-                if with_time:
-                    times[i] = 0.0
-                    for m in range(STOP_POWERS - 1, -1, -1):
-                        times[i] = times[i] * s + stops[side, i, 3 * m]
-            ratio = 1.0
-            for i in range(cells):
-                xi = max(i / cells, 1e-6)  # at the end a limit, reached long before
-                q = xi * (2.0 - xi)
-                target = 4.0 * math.log(q)
-                low, high = 0.0, 1.0
-                place = place_of_share(min(ratio * q**4, 1.0))
-                before = off_before = math.nan
-                for _ in range(_LOOKS):
-                    q = place * (2.0 - place)
-                    double_share = q * q * q * q
-                    log_time = 0.0
-                    if with_time:
-                        log_time = math.log(_spline(times, place)) - quarter
-                    log_n = _log_n(
-                        side, double_share, c0, kappa, delta, _spline(sums, place), log_time
-                    )
-                    sign = 1.0 if side == 1 and 1.0 - double_share > c0 else -1.0
-                    off = _log_y(side, sign, log_n, kappa, delta) - target
-                    low, high = (place, high) if off < 0.0 else (low, place)
-                    slope = 8.0 * (1.0 - place) / q  # were the ratio the same everywhere
-                    if off != off_before and place != before:  # nor NaN
-                        slope = (off - off_before) / (place - before)
-                    before, off_before = place, off
-                    if slope > 0.0:
-                        place -= off / slope
-                    if not low < place < high:
-                        place = 0.5 * (low + high)
-                    if abs(off) <= _ROUNDING * (1.0 - target) or not low < place < high:
-                        break
-                q = before * (2.0 - before)
-                ratio = math.exp(4.0 * math.log(q) - target)
-                out[side, i, j] = ratio
-            out[side, cells, j] = 1.0
 
 
 @inlined

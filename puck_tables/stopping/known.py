@@ -52,7 +52,7 @@ from puck_tables.stopping.orbit_lookup import PUCK_ROWS, fill_orbit_states
 
 CURVE_WIDTH = 4  # body angle, S/δ, κR, path length
 _ROW, _CURVE_ROW = WIDTH * STOP_POWERS, CURVE_WIDTH * HEIGHTS
-_REST = 3  # rows of what a stop has besides time and place
+_REST, _ALL = 3, 6  # rows of what a stop has besides time and place, and with them
 # rows of a block: the functions, those of the height, and what becomes of it
 _F_TIME, _F_ALONG, _F_ACROSS, _F_BODY, _F_TURN, _F_CURVE, _F_LENGTH = range(PLACED, PLACED + 7)
 _C0, _KAPPA, _TURNING, _QUARTER, _S = range(PLACED + 7, PLACED + 12)
@@ -71,7 +71,8 @@ def fill_known(
 ) -> tuple[int, int]:  # fmt: skip
     """Launches, and what is known of them, into ``out`` (6 + 14, n).
 
-    Or (3, n): path length, turn of heading and of the body alone.  ``stops`` (2, cells + 3, 8 × 4)
+    Or of a stop alone: time, x, y, path length, turn of heading and of the body (6, n); without
+    time and place (3, n).  ``stops`` (2, cells + 3, 8 × 4)
     is a cut of the stop table, ``curve`` (2, cells + 3, 9 × 4) holds the other functions, ``turns``
     (2, cells + 3, 9) the heading's regular part over the place by Q; ``constants`` as for
     :func:`puck_tables.stopping.curve_lookup.know_launch`.  Returns of how many Q²/J or Q²/(J r)
@@ -115,8 +116,9 @@ def fill_known(
             into_row(room, _SWUNG, n, total)
         _find_turns(room, count)
         for row in range(out.shape[0]):
-            if is_rest:
-                first = _LENGTH if row == 0 else (_TURN if row == 1 else _BODY)
+            if out.shape[0] <= _ALL:
+                first = _OUT + _ALL - out.shape[0] + row
+                first = _TURN if first == _BODY else (_BODY if first == _TURN else first)
             else:
                 first = row if row < LAUNCH_COLUMNS else row - LAUNCH_COLUMNS + _OUT
             values, place = room[first * BLOCK : (first + 1) * BLOCK], out[row, start:]

@@ -16,15 +16,8 @@ import math
 
 import numpy as np
 
-from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import allocating, inlined
+from puck_tables.kernels.compile import inlined
 from puck_tables.kernels.elementary import exp_of, log_of
-from puck_tables.stopping.curve_lookup import (
-    end_logs,
-    end_rates,
-    functions_at,
-)
-from puck_tables.stopping.lookup import CURVE_ROW
 
 ORBIT_WIDTH = 8  # 2w/y, T, along, across; body angle, G and nothing
 SHARE, TIME_FACTOR, ALONG, ACROSS, BODY_FACTOR, REGULAR = range(6)
@@ -61,37 +54,3 @@ def cell_of(xi: float, is_fast: bool, cells: float, row: int) -> tuple[float, fl
     last = cells - 1.0
     cell = np.floor(inside if inside < last else last)
     return row * (cell + (cells + 3.0 if is_fast else 0.0)), p - cell
-
-
-@allocating
-def fill_orbit(
-    stops: FloatArray, curve: FloatArray, ratios: FloatArray, turning: FloatArray,
-    deltas: FloatArray, with_time: bool, out: FloatArray,
-) -> None:  # fmt: skip
-    """The functions at the nodes of ξ (both sides) and δ into ``out`` (2, cells + 1, heights, 6).
-
-    ``ratios`` (2, cells + 1, heights): 2w/y there; ``turning`` (heights,): h₀.
-    """
-    cells = ratios.shape[1] - 1
-    sums, found = np.empty(CURVE_ROW), np.empty(5)
-    for side in range(2):
-        for i in range(cells + 1):
-            xi = i / cells
-            q = xi * (2.0 - xi)
-            for j in range(deltas.size):
-                delta, ratio = deltas[j], ratios[side, i, j]
-                share = min(q * q * q * q * ratio, 1.0)
-                functions_at(stops, curve, side, share, 2.0 * delta * delta - 1.0, sums, found)
-                slow, fast, spin_turn = end_rates(delta)
-                by_slow, by_fast = turning[j] / slow, (turning[j] - spin_turn) / fast
-                plus, minus = end_logs(side, max(share, TINY))
-                if side == 0:
-                    regular = by_slow * math.log(ratio) + by_fast * minus
-                else:
-                    regular = by_slow * plus + by_fast * math.log(ratio)
-                if with_time:
-                    regular -= turning[j] * math.log(found[0])
-                out[side, i, j, SHARE] = ratio
-                for f in range(4):
-                    out[side, i, j, TIME_FACTOR + f] = found[f]
-                out[side, i, j, REGULAR] = regular / delta + found[4]

@@ -99,12 +99,11 @@ class LookUp(StopSolver):
 
     def all(self, launches: FloatArray, threads: int | None = 1) -> tuple[FloatArray, Status]:
         """All of the outputs (6, n) and status (n,)."""
-        given = launches_in(launches)
-        first = self.first(given, threads)
-        out = np.empty((len(OUTPUTS), launches.shape[1]))
-        out[0], out[1:3], out[3:] = first.time, first.place.T, self.rest(given, threads)
-        out[:, first.status != 0] = np.nan
-        return out, first.status
+        out, doubtful = self.table.outputs(launches_in(launches), threads)
+        status = np.zeros(launches.shape[1], np.int8)
+        if doubtful:
+            mark_too_large(out, status, launches)
+        return out, status
 
     def rest(self, launches: Launches, threads: int | None) -> FloatArray:
         """Path length, turn of heading and of the body (3, n)."""
@@ -193,7 +192,9 @@ class Integration(StopSolver):
         return out, status
 
 
-def mark_too_large(out: FloatArray, status: Status, launches: FloatArray, longest: float) -> None:
+def mark_too_large(
+    out: FloatArray, status: Status, launches: FloatArray, longest: float = 2.0
+) -> None:
     """Status 2 and NaN where a motion is too large for floating point."""
     status[~fits(launches, longest)] = _OVERFLOW
     out[:, status != 0] = np.nan

@@ -66,7 +66,7 @@ def all_looked_up(
     def work(start: int, stop: int) -> None:  # what is known of the launches stays in the cache
         for first in range(start, stop, _AT_ONCE):
             last = min(first + _AT_ONCE, stop)
-            pucks = table.fill_pucks(PUCK_ROWS, launches, first, last)
+            pucks, _ = table.fill_pucks(PUCK_ROWS, launches, first, last)
             bad.append(fill_orbit_states(pucks, which, moments, first, last, orbit, out))
             out[HEADING, first:last] += directions(pucks[0], pucks[1])
 

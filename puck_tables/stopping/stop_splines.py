@@ -7,11 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.stopping.axes import HEIGHTS, height_polynomials, heights
-from puck_tables.stopping.curve import limits
-from puck_tables.stopping.curve_lookup import fill_inverse
+from puck_tables.stopping.axes import HEIGHTS, height_polynomials
 from puck_tables.stopping.lookup import STOP_POWERS, WIDTH
-from puck_tables.stopping.orbit import REGULAR, fill_orbit
+from puck_tables.stopping.orbit_nodes import Curve
 from puck_tables.table.fit import clamped_coefficients
 
 if TYPE_CHECKING:
@@ -82,28 +80,13 @@ def cut_rows(sides: FloatArray, powers: int) -> FloatArray:
 
 def inverse_splines(table: StopTable, with_time: bool) -> FloatArray:
     """From the time that is left, or from Q, to the slip ratio, (2, cells + 3, 9)."""
-    return np.ascontiguousarray(by_power(_ratios(table, with_time)).transpose(2, 1, 0))
+    ratios = Curve(table).ratios(with_time)
+    return np.ascontiguousarray(by_power(ratios).transpose(2, 1, 0))
 
 
 def orbit_splines(table: StopTable, with_time: bool) -> FloatArray:
     """The functions of an orbit over the place by time or Q: (power, node, side, function)."""
-    ratios, delta = _ratios(table, with_time), heights()
-    values = np.empty((*ratios.shape, REGULAR + 1))
-    turning = np.array([limits(one).turn for one in delta.tolist()])
-    fill_orbit(
-        table.stop_coefficients, table.curve_coefficients, ratios, turning, delta, with_time, values
-    )
-    return by_power(values)
-
-
-def _ratios(table: StopTable, with_time: bool) -> FloatArray:
-    """2w/y at the nodes (2, cells + 1, heights)."""
-    values = np.empty((2, table.axis.cells + 1, HEIGHTS))
-    fill_inverse(
-        table.stop_coefficients, table.curve_coefficients, table.constants, with_time, heights(),
-        values,
-    )  # fmt: skip
-    return values
+    return by_power(Curve(table).orbit(with_time))
 
 
 def at_height(table: StopTable, delta: float) -> FloatArray:

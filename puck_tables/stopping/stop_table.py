@@ -266,25 +266,40 @@ class StopTable(Table):
         InputError
             If one of them is no launch, or too large for floating point.
         """
-        return self._filled(PUCK_ROWS, launches, threads)
+        return self._filled(PUCK_ROWS, launches, threads)[0]
+
+    def outputs(self, launches: Launches, threads: int | None) -> tuple[FloatArray, int]:
+        """Stop times, x, y and the rest (6, n), and how many may be too large.
+
+        Raises
+        ------
+        InputError
+            If one of them is no launch.
+        """
+        return self._filled(3 + len(OTHERS), launches, threads)
 
     def rest(self, launches: Launches, threads: int | None) -> FloatArray:
         """Path length, turn of heading and of the body (3, n) of checked launches."""
-        return self._filled(len(OTHERS), launches, threads)
+        return self._filled(len(OTHERS), launches, threads)[0]
 
-    def _filled(self, rows: int, launches: Launches, threads: int | None) -> FloatArray:
+    def _filled(self, rows: int, launches: Launches, threads: int | None) -> tuple[FloatArray, int]:
         if launches.size <= CHUNK:
             return self.fill_pucks(rows, launches, 0, launches.size)
-        out = np.empty((rows, launches.size))
+        out, doubtful = np.empty((rows, launches.size)), [0]
 
         def work(start: int, stop: int) -> None:
-            out[:, start:stop] = self.fill_pucks(rows, launches, start, stop)
+            out[:, start:stop], count = self.fill_pucks(rows, launches, start, stop)
+            doubtful.append(count)
 
         in_chunks(work, launches.size, threads)
-        return out
+        return out, sum(doubtful)
 
-    def fill_pucks(self, rows: int, launches: Launches, start: int, stop: int) -> FloatArray:
-        """Of some launches all that is known (20, n), or :data:`OTHERS` (3, n).
+    def fill_pucks(
+        self, rows: int, launches: Launches, start: int, stop: int
+    ) -> tuple[FloatArray, int]:
+        """All that is known of some launches (20, n), or their stops (6, n), or the rest (3, n).
+
+        And how many may be too large for floating point.
 
         Raises
         ------
@@ -306,7 +321,7 @@ class StopTable(Table):
                 "velocity, spin, radius and decel give a motion too large for floating point: "
                 "use larger units"
             )
-        return out
+        return out, doubtful
 
     def states_of_one(self, launch: Launches, moments: FloatArray) -> FloatArray | None:
         """States (6, n) of one launch at moments (n,), headings from its own; None: to be refused.
