@@ -99,7 +99,7 @@ def test_same_bits_for_any_threads_and_chunks(way: str, table: Table):
         for name in ARRAYS:
             assert getattr(other, name).tobytes() == getattr(base, name).tobytes()
     alone = stop((grid["speed"][5], 0.0), grid["spin"][3], delta=0.4, table=chosen)
-    # a map takes all outputs in one pass, a stop time and place by as coarse a cut as is good enough
+    # a map takes all outputs in one pass, a stop its place by as coarse a cut as is good enough
     allowed = 2e-9 if way == "look-up" else 0.0
     assert float(alone.stop_time) == pytest.approx(base.stop_time[1, 5, 3], rel=0.0, abs=allowed)
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable
-from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -52,10 +51,8 @@ class Launches:
     radius: FloatArray
     is_held: bool = False
 
-    @property
-    def size(self) -> int:
-        """How many."""
-        return math.prod(self.shape)
+    def __post_init__(self) -> None:
+        self.size = math.prod(self.shape) if self.shape else 1  # how many
 
     @property
     def tallest(self) -> float:
@@ -148,9 +145,11 @@ def launches_of(
     if isinstance(velocity, tuple | list) and len(velocity) == 2:
         numbers = (*velocity, *given)
         if _NUMBERS.issuperset(map(type, numbers)):  # one launch, as cheap as can be
-            with suppress(OverflowError):
-                row = np.array(numbers, np.float64).reshape(COLUMNS, 1)
-                return Launches((), row[0], row[1], 0, row[2], row[3], row[4], row[5])
+            try:
+                vx, vy, *others = np.array(numbers, np.float64).reshape(COLUMNS, 1)
+                return Launches((), vx, vy, 0, *others)
+            except OverflowError:  # an integer: said below
+                pass
     pairs = real_view("velocity", velocity, "m/s")
     if pairs.ndim == 0 or pairs.shape[-1] != 2:
         velocity_array(velocity)

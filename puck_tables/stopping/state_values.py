@@ -51,7 +51,8 @@ def all_looked_up(
     if which.size == launches.size == 1 and moments.size <= CHUNK:
         found = table.states_of_one(launches, moments)
         if found is not None:
-            found[HEADING] += directions(launches.vx, launches.vy)
+            heading = found[HEADING]
+            heading += directions(launches.vx, launches.vy)
             return found
     if which.size:
         pucks = table.pucks(launches, threads)

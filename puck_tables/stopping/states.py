@@ -49,6 +49,8 @@ from puck_tables.table.table import refuse_other_kind
 _TOO_LARGE = (
     "velocity, spin, radius and decel give a motion too large for floating point: use larger units"
 )
+# of nothing and of one, made once: to make them takes as long as a look-up
+_NO_LAUNCHES, _NONE, _FIRST = np.empty((6, 0)), np.empty(0, np.int64), np.zeros(1, np.int64)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -68,8 +70,8 @@ class States(Differentiated, Result):
     radius: FloatArray
     explanation: str = ""
     _jacobian: FloatArray | None = None
-    _launched: FloatArray = field(default_factory=lambda: np.empty((6, 0)))
-    _which: npt.NDArray[np.int64] = field(default_factory=lambda: np.empty(0, np.int64))
+    _launched: FloatArray = field(default_factory=lambda: _NO_LAUNCHES)
+    _which: npt.NDArray[np.int64] = field(default_factory=lambda: _NONE)
     _table: StopTable | None = None
     _kind: Kind | None = None
 
@@ -322,7 +324,7 @@ def _moments_of(
 ) -> tuple[npt.NDArray[np.int64], FloatArray, tuple[int, ...]]:
     """Which launch each moment is of, as compiled code reads it, the moments, and their shape."""
     if launches.shape == () or launches.shape == times.shape:
-        which = np.zeros(0 if launches.shape else 1, np.int64)
+        which = _NONE if launches.shape else _FIRST
         flat = times.reshape(-1)
         return which, flat if flat.flags.writeable else flat.copy(), times.shape
     numbers = np.arange(launches.size).reshape(launches.shape)
@@ -330,7 +332,7 @@ def _moments_of(
     moments = np.ascontiguousarray(other).reshape(-1)
     moments = moments if moments.flags.writeable else moments.copy()
     if one.shape == launches.shape:
-        return np.zeros(0, np.int64), moments, one.shape
+        return _NONE, moments, one.shape
     return one.reshape(-1).astype(np.int64), moments, one.shape
 
 
