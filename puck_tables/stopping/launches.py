@@ -15,7 +15,7 @@ from puck_tables._core.executor import run_chunks, usable_cores
 from puck_tables._core.real import broadcast, finite_array, real_view, velocity_array
 from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import InputError
-from puck_tables.kernels.compile import BLOCK, allocating, inlined, into_row
+from puck_tables.kernels.compile import BLOCK, inlined, into_row, kernel
 
 COLUMNS = 6
 VX, VY, SPIN, DELTA, DECEL, RADIUS = range(COLUMNS)  # rows of a block of launches
@@ -254,14 +254,12 @@ def _bits_of(values: FloatArray) -> int:
 
 
 @inlined
-def _fetch(column: FloatArray, start: int, count: int, row: int, room: FloatArray) -> int:
+def _fetch(column: FloatArray, start: int, count: int, row: int, room: FloatArray) -> None:
     """A block of a column (n,) into a row; of (1,) nothing: it was filled before."""
-    if column.size == 1:
-        return 0
-    values, block = column[start : start + count], room[row * BLOCK : (row + 1) * BLOCK]
-    for n in range(count):
-        block[n] = values[n]
-    return _bits_of(values)
+    if column.size > 1:
+        values, block = column[start : start + count], room[row * BLOCK : (row + 1) * BLOCK]
+        for n in range(count):
+            block[n] = values[n]
 
 
 @inlined
@@ -284,37 +282,50 @@ def fill_constants(
 def fetch_block(
     vx: FloatArray, vy: FloatArray, step: int, spin: FloatArray, delta: FloatArray,
     decel: FloatArray, radius: FloatArray, start: int, count: int, room: FloatArray,
-) -> int:  # fmt: skip
-    """Launches from ``start`` on into the first six rows of ``room``.
-
-    Returns a number that changes with the bits of the launches, or with their order.
-    """
-    mark = 0
+) -> None:  # fmt: skip
+    """Launches from ``start`` on into the first six rows of ``room``."""
     if step == 2:
         pairs = vx[2 * start : 2 * (start + count)]
         for n in range(count):
             into_row(room, VX, n, pairs[2 * n])
             into_row(room, VY, n, pairs[2 * n + 1])
-        mark += _bits_of(pairs)
     elif step == 1:
-        mark += _fetch(vx, start, count, VX, room) + 3 * _fetch(vy, start, count, VY, room)
-    mark += 5 * _fetch(spin, start, count, SPIN, room)
-    mark += 7 * _fetch(delta, start, count, DELTA, room)
-    mark += 11 * _fetch(decel, start, count, DECEL, room)
-    mark += 13 * _fetch(radius, start, count, RADIUS, room)
+        _fetch(vx, start, count, VX, room)
+        _fetch(vy, start, count, VY, room)
+    _fetch(spin, start, count, SPIN, room)
+    _fetch(delta, start, count, DELTA, room)
+    _fetch(decel, start, count, DECEL, room)
+    _fetch(radius, start, count, RADIUS, room)
+
+
+@inlined
+def mark_block(
+    vx: FloatArray, vy: FloatArray, step: int, spin: FloatArray, delta: FloatArray,
+    decel: FloatArray, radius: FloatArray, start: int, count: int,
+) -> int:  # fmt: skip
+    """A number that changes with the bits of launches from ``start`` on, or with their order."""
+    end, mark = start + count, 0
+    if step == 2:
+        mark += _bits_of(vx[2 * start : 2 * end])
+    elif step == 1:
+        mark += _bits_of(vx[start:end]) + 3 * _bits_of(vy[start:end])
+    mark += 5 * _bits_of(spin[start:end]) if spin.size > 1 else 0
+    mark += 7 * _bits_of(delta[start:end]) if delta.size > 1 else 0
+    mark += 11 * _bits_of(decel[start:end]) if decel.size > 1 else 0
+    mark += 13 * _bits_of(radius[start:end]) if radius.size > 1 else 0
     return mark * (2 * start + 1)
 
 
-@allocating
+@kernel
 def mark_of(
     vx: FloatArray, vy: FloatArray, step: int, spin: FloatArray, delta: FloatArray,
     decel: FloatArray, radius: FloatArray, size: int,
 ) -> int:  # fmt: skip
     """The sum of the marks of all blocks of ``size`` launches."""
-    room, mark = np.empty(COLUMNS * BLOCK), 0
+    mark = 0
     for start in range(0, size, BLOCK):
         count = min(BLOCK, size - start)
-        mark += fetch_block(vx, vy, step, spin, delta, decel, radius, start, count, room)
+        mark += mark_block(vx, vy, step, spin, delta, decel, radius, start, count)
     return mark
 
 

@@ -41,6 +41,7 @@ from puck_tables.stopping.launches import (
     VY,
     fetch_block,
     fill_constants,
+    mark_block,
 )
 
 # rows of a block behind those of the launches
@@ -178,7 +179,8 @@ def stops_kernel(powers: int) -> Callable[..., tuple[int, int, int]]:
         doubtful, bad, mark = 0, 0, 0
         for start in range(0, time.size, BLOCK):
             count = min(BLOCK, time.size - start)
-            mark += fetch_block(vx, vy, step, spin, delta, decel, radius, start, count, room)
+            fetch_block(vx, vy, step, spin, delta, decel, radius, start, count, room)
+            mark += mark_block(vx, vy, step, spin, delta, decel, radius, start, count)
             bad += place_block(room, count, coefficients, row)
             for n in range(count):
                 tilt = row_of(room, DELTA, n)

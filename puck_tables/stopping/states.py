@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from typing import ClassVar
 
 import numpy as np
@@ -50,7 +51,7 @@ _TOO_LARGE = (
     "velocity, spin, radius and decel give a motion too large for floating point: use larger units"
 )
 # of nothing and of one, made once: to make them takes as long as a look-up
-_NO_LAUNCHES, _NONE, _FIRST = np.empty((6, 0)), np.empty(0, np.int64), np.zeros(1, np.int64)
+_NONE, _FIRST = np.empty(0, np.int64), np.zeros(1, np.int64)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -70,8 +71,7 @@ class States(Differentiated, Result):
     radius: FloatArray
     explanation: str = ""
     _jacobian: FloatArray | None = None
-    _launched: FloatArray = field(default_factory=lambda: _NO_LAUNCHES)
-    _which: npt.NDArray[np.int64] = field(default_factory=lambda: _NONE)
+    _asked: tuple[FloatArray, npt.NDArray[np.int64]] | None = None  # launches (6, m), and which
     _table: StopTable | None = None
     _kind: Kind | None = None
 
@@ -134,7 +134,9 @@ class States(Differentiated, Result):
 
     @property
     def _arguments(self) -> FloatArray:  # type: ignore[override]
-        return np.concatenate([self._launched[:, self._which], self.time.reshape(1, -1)])
+        assert self._asked is not None
+        launched, which = self._asked
+        return np.concatenate([launched[:, which], self.time.reshape(1, -1)])
 
     def _again(self, arguments: FloatArray) -> FloatArray:
         if self._kind is not None:
@@ -307,15 +309,14 @@ def states(
         return result
     return replace(
         result, _jacobian=slopes.reshape(*shape, *slopes.shape[1:]), _table=table,
-        _kind=Kind(pressure, gyration) if bodies else None, _launched=rows, _which=each,
+        _kind=Kind(pressure, gyration) if bodies else None, _asked=(rows, each),
     )  # fmt: skip
 
 
+@lru_cache
 def _told(looked: int, integrated: int) -> str:
-    if not integrated:
-        return f"{looked} pucks looked up, to 1e-9 of Q, Q^2/J and Q^2/(J r)"
-    words = [f"{count} pucks {how}" for count, how in
-             ((looked, "looked up"), (integrated, "integrated")) if count]  # fmt: skip
+    each = ((looked, "looked up"), (integrated, "integrated"))
+    words = [f"{count} pucks {how}" for count, how in each if count or not integrated]
     return " and ".join(words) + ", to 1e-9 of Q, Q^2/J and Q^2/(J r)"
 
 

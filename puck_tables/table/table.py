@@ -201,7 +201,8 @@ class Table(ABC):
         >>> Table.shipped().tolerance, Table.shipped("stops").tolerance
         (2e-11, 1e-10)
         """
-        return cast(Self, _shipped(kind if cls is Table else cls.kind))
+        found: Self = _shipped(kind if cls is Table else cls.kind)
+        return found
 
     @classmethod
     def read(cls, content: bytes, source: str) -> Self:
@@ -361,7 +362,7 @@ def kind_named(name: str) -> type[Table]:
 
 
 @cache
-def _shipped(kind: str) -> Table:
+def _shipped(kind: str) -> Any:
     instance("kind", kind, str)
     place = files("puck_tables.tables").joinpath(f"{kind}.h5")
     if kind not in KINDS or not place.is_file():
