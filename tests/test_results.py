@@ -205,7 +205,9 @@ def test_a_column_that_follows_from_others_stands_in_every_result_that_has_those
     alone = puck.stop((1.0, 1.0), [0.0, 5.0])
     for result in (stops, alone):
         data = result.to_xarray()
-        assert np.array_equal(data.stop_distance.values, np.hypot(data.stop_x.values, data.stop_y.values))
+        assert np.array_equal(
+            data.stop_distance.values, np.hypot(data.stop_x.values, data.stop_y.values)
+        )
         assert result.stop_bearing[0] == pytest.approx(0.25 * math.pi, abs=1e-15)
         assert data.stop_bearing.units == "rad"
         with pytest.raises(AttributeError, match="no stop_colour"):

@@ -146,8 +146,8 @@ def launches_of(
         numbers = (*velocity, *given)
         if _NUMBERS.issuperset(map(type, numbers)):  # one launch, as cheap as can be
             try:
-                vx, vy, *others = np.array(numbers, np.float64).reshape(COLUMNS, 1)
-                return Launches((), vx, vy, 0, *others)
+                row = np.array(numbers, np.float64).reshape(COLUMNS, 1)
+                return Launches((), row[0], row[1], 0, row[2], row[3], row[4], row[5])
             except OverflowError:  # an integer: said below
                 pass
     pairs = real_view("velocity", velocity, "m/s")
