@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from reference import friction
@@ -75,11 +76,11 @@ def play(discs: list[Disc], lines: list[Line], until: float, most: int = 10**6) 
     pairs = [(i, j) for i in range(len(discs)) for j in range(i + 1, len(discs))]
     meetings = pairs + [(i, -1 - k) for i in range(len(discs)) for k in range(len(lines))]
 
-    def gap(i: int, j: int, z: np.ndarray) -> float:
+    def gap(i: int, j: int, z: np.ndarray) -> Any:
         if j >= 0:
-            return math.dist(z[i, :2], z[j, :2]) - discs[i].radius - discs[j].radius
+            return np.hypot(*(z[i, :2] - z[j, :2])) - discs[i].radius - discs[j].radius
         line = lines[-1 - j]
-        return float(np.dot(line.normal, z[i, :2])) - line.place - discs[i].radius
+        return np.dot(line.normal, z[i, :2]) - line.place - discs[i].radius
 
     def moves(i: int) -> bool:
         return math.hypot(y[i, 3], y[i, 4], discs[i].radius * y[i, 5]) > _STOP
@@ -112,6 +113,7 @@ def play(discs: list[Disc], lines: list[Line], until: float, most: int = 10**6) 
                 meets.terminal, meets.direction = True, -1.0  # type: ignore[attr-defined]
                 events.append(meets)
                 kinds.append((i, j))
+        meeting = list(kinds)
         for n, i in enumerate(going):
 
             def slow(_: float, flat: np.ndarray, n=n, i=i) -> float:
@@ -121,11 +123,16 @@ def play(discs: list[Disc], lines: list[Line], until: float, most: int = 10**6) 
             slow.terminal, slow.direction = True, -1.0  # type: ignore[attr-defined]
             events.append(slow)
             kinds.append((i, None))
-        found = solve_ivp(
-            rates, (t, until), y[going].ravel(), "DOP853", rtol=3e-13, atol=1e-15,
-            max_step=0.02, events=events,
-        )  # fmt: skip
-        assert found.success
+        for longest in (0.02, 0.0005):
+            found = solve_ivp(
+                rates, (t, until), y[going].ravel(), "DOP853", rtol=3e-13, atol=1e-15,
+                max_step=longest, events=events, dense_output=True,
+            )  # fmt: skip
+            assert found.success
+            between = found.sol(np.arange(t, found.t[-1], 2e-4)).T
+            states = np.moveaxis(np.stack([whole(z) for z in between]), 0, -1)
+            if not any((gap(*kind, states) < -1e-7).any() for kind in meeting):
+                break  # else two have met, and were apart again, within a step
         t = float(found.t[-1])
         y = whole(found.y[:, -1])
         for kind, hits in zip(kinds, found.t_events, strict=True):
