@@ -123,9 +123,10 @@ def play(discs: list[Disc], lines: list[Line], until: float, most: int = 10**6) 
             slow.terminal, slow.direction = True, -1.0  # type: ignore[attr-defined]
             events.append(slow)
             kinds.append((i, None))
+        # finer, rounding of the elliptic integrals where a spin is slow asks for steps of 1e-9 s
         for longest in (0.02, 0.0005):
             found = solve_ivp(
-                rates, (t, until), y[going].ravel(), "DOP853", rtol=3e-13, atol=1e-15,
+                rates, (t, until), y[going].ravel(), "DOP853", rtol=1e-11, atol=1e-13,
                 max_step=longest, events=events, dense_output=True,
             )  # fmt: skip
             assert found.success
