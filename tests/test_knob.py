@@ -184,7 +184,9 @@ def test_sweep_and_stop_take_the_same_way():
         grid = sweep([0.5, 2.0], [1.0, 3.0], tol=tol)
         alone = stop((3.0, 0.0), 2.0, tol=tol)
         assert grid.selections == alone.selections
-        assert grid.stop_time[1, 1] == float(alone.stop_time)
+        # to the bit where it is integrated; by look-up a map has all outputs of the whole table
+        allowed = tol * np.hypot(3.0, 2.0) if grid.method == "look-up" else 0.0
+        assert abs(grid.stop_time[1, 1] - float(alone.stop_time)) <= allowed
 
 
 def test_a_table_of_one_s_own_is_named_not_closed_forms():

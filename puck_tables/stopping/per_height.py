@@ -32,7 +32,7 @@ from puck_tables.motion.friction import Sections, integration_selected
 from puck_tables.motion.run import unseen_tail
 from puck_tables.motion.solve import FINEST_LOCAL, Estimate, Setting, close_enough, refined
 from puck_tables.motion.steppers import stepping_of
-from puck_tables.stopping.launches import Launches
+from puck_tables.stopping.launches import Launches, launches_in
 from puck_tables.stopping.solvers import (
     OUTPUTS,
     First,
@@ -247,7 +247,12 @@ class SolverPerHeight:
         if self._plain is None and isinstance(only, SectionLookUp):
             values, status = only.of(launches, threads)
         else:
-            values, status = self.all(launches.matrix, threads)
+            rows = launches.matrix
+            values, status = self.all(rows, threads)
+            plain = rows[3] <= self._plain_up_to
+            if isinstance(self._plain, LookUp) and plain.any():  # the same bits beside any others
+                some = self._plain.first(launches_in(rows[:, plain]), threads)
+                values[0, plain], values[1:3, plain] = some.time, some.place.T
         mark = launches.mark() if launches.is_held else 0
         return First(values[0], values[1:3].T.copy(), status, mark, values[3:])
 

@@ -64,7 +64,10 @@ class StopSolver(ABC):
 
 @dataclass(frozen=True)
 class LookUp(StopSolver):
-    """Stops from a stop table, as coarse a cut of it as is good enough: nothing is integrated."""
+    """Stops from a stop table: nothing is integrated.
+
+    Time and place from as coarse a cut of it as is good enough, all outputs from the whole table.
+    """
 
     table: StopTable
     powers: int = STOP_POWERS
