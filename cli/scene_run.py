@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from puck_tables.bulk.finish import Stored
     from puck_tables.result import TimedResult
     from puck_tables.scene.outcome import SceneRun
+    from puck_tables.scene.sample import SceneSample
     from puck_tables.scene.scene import Scene
     from puck_tables.scene.sweep import SceneMap
     from puck_tables.world.sweep import WorldMap
@@ -251,17 +252,21 @@ def _events(run: SceneRun) -> str:
     return ", ".join(told_of) + (f" and {more} more" if more > 0 else "")
 
 
-def summary_of_map(stops: SceneMap | WorldMap | Stored) -> str:
-    """A map over a scene in one line, and one for each way in which runs have no end."""
+def summary_of_map(stops: SceneMap | SceneSample | WorldMap | Stored) -> str:
+    """A map or samples of a scene in one line, and one for each way in which runs have no end."""
     from puck_tables.bulk.finish import Stored
     from puck_tables.bulk.work import Tally
 
     work: Any = stops.work if isinstance(stops, Stored) else stops
     tally = stops.tally if isinstance(stops, Stored) else Tally.of(stops.end)
-    ranged = " x ".join(f"{name} ({values.size})" for name, values in work.axes.items())
+    spreads = getattr(work, "spreads", None)  # of samples: no axes, no one model
+    if spreads is None:
+        ranged = " x ".join(f"{name} ({values.size})" for name, values in work.axes.items())
+    else:
+        ranged = ", ".join(f"{path} {one}" for path, one in spreads.items())
     counts = ", ".join(f"{count} {work.meanings[code]}" for code, count in tally.counts.items())
     lines = work.without_end(tally) if isinstance(stops, Stored) else stops.without_end()
-    model = "" if isinstance(stops, Stored) else f"; {stops.model}"
+    model = "" if isinstance(stops, Stored) or spreads is not None else f"; {stops.model}"
     estimate = getattr(stops, "error_estimate", None)  # of a map in memory over one puck
     if estimate is not None:
         model += f"; error <= {estimate:.1e} (Q/J, Q²/J) in the runs that were checked"

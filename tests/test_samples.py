@@ -162,3 +162,17 @@ def test_the_command_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     ):
         refused = invoked(*words)
         assert (refused.exit_code, said in refused.stderr) == (2, True), refused.stderr
+
+
+@pytest.mark.thorough
+def test_samples_of_a_scene_on_the_command_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.chdir(tmp_path)
+    words = ["--scene", "incline", "--random", "50", "--spread", "launch.spin=normal:5:0.2"]
+    told = "Puck on an incline over launch.spin normal:5.0:0.2: 50 at rest"
+    said = set()
+    for more in ([], ["-o", "s.h5"], ["--plot", "s.png"], ["-o", "s.zarr"]):
+        result = CliRunner().invoke(main, ["sweep", *words, *more])
+        assert result.exit_code == 0, result.stderr
+        assert told in result.stderr.splitlines()
+        said.add(result.stdout)
+    assert len(said) == 1  # one summary, wherever the samples are kept
