@@ -306,7 +306,7 @@ def a_million_steps() -> Iterator[float]:
     from puck_tables.kernels.section_spline import NO_SECTION
     from puck_tables.motion.path import STOPPED, integrate
     from puck_tables.motion.state import SIZE
-    from puck_tables.motion.steppers import RK4
+    from puck_tables.motion.tableaus import RK4
 
     result, none = np.empty(SIZE + 1), np.empty(0)
     status, steps = integrate(

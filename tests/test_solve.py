@@ -19,7 +19,8 @@ from puck_tables.motion.frame import frame_of
 from puck_tables.motion.friction import FullContact, Sections, closed_form_friction, source_of
 from puck_tables.motion.run import integrated
 from puck_tables.motion.solve import Estimate, Setting, close_enough, refined
-from puck_tables.motion.steppers import DORMAND_PRINCE, RK4, TABLEAUS, Stepping, _tableau
+from puck_tables.motion.steppers import TABLEAUS, Stepping
+from puck_tables.motion.tableaus import DORMAND_PRINCE, RK4, tableau_of
 
 
 def test_the_loop_ends_at_the_first_setting_that_is_good_enough():
@@ -123,7 +124,7 @@ def test_any_tableau_is_taken_by_the_same_loop():
     """Kutta's method of order 3 with fixed steps; the pair 3(2) of Bogacki and Shampine."""
     friction = closed_form_friction(0.8)
     truth = integrated(0.9, friction, Stepping(DORMAND_PRINCE, 0.0, 1e-14)).stop
-    third = _tableau([[], [1 / 2], [-1.0, 2.0]], [1 / 6, 2 / 3, 1 / 6], [0.0] * 3, 3)
+    third = tableau_of([[], [1 / 2], [-1.0, 2.0]], [1 / 6, 2 / 3, 1 / 6], [], 3)
     counts = np.array([80.0, 160.0, 320.0])
     errors = [
         np.abs(integrated(0.9, friction, Stepping(third, n, 1.0)).stop - truth)[2:5].max()
@@ -131,9 +132,9 @@ def test_any_tableau_is_taken_by_the_same_loop():
     ]
     order = -np.polyfit(np.log(counts), np.log(errors), 1)[0]
     assert 2.6 <= order <= 3.4
-    pair = _tableau(
+    pair = tableau_of(
         [[], [1 / 2], [0.0, 3 / 4], [2 / 9, 1 / 3, 4 / 9]], [2 / 9, 1 / 3, 4 / 9, 0.0],
-        [-5 / 72, 1 / 12, 1 / 9, -1 / 8], 3,
+        [[-5 / 72, 1 / 12, 1 / 9, -1 / 8]], 3,
     )  # fmt: skip
     assert pair.reused
     assert not third.reused

@@ -18,7 +18,7 @@ from puck_tables.accuracy.front import shipped_front
 from puck_tables.errors import OutputError
 from puck_tables.kernels.section_spline import NO_SECTION
 from puck_tables.motion.bulk import fill_stops
-from puck_tables.motion.steppers import DORMAND_PRINCE, RK4
+from puck_tables.motion.tableaus import DORMAND_PRINCE, RK4
 from puck_tables.stopping.exact import exact_stops
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.tradeoff import engine, resultant_methods, stop_methods

@@ -28,7 +28,8 @@ from puck_tables.motion.friction import Friction, section_friction
 from puck_tables.motion.limits import log_ratio
 from puck_tables.motion.run import Run, at_constant_slip, integrated
 from puck_tables.motion.state import HEADING, ORIENTATION, PUCK_X, PUCK_Y, SPIN, STATE_ROWS, T
-from puck_tables.motion.steppers import DORMAND_PRINCE, Stepping
+from puck_tables.motion.steppers import Stepping
+from puck_tables.motion.tableaus import DORMAND_PRINCE
 from puck_tables.stopping.jacobian import state_jacobians
 from puck_tables.stopping.state_values import known_pucks, looked_up
 from puck_tables.stopping.stop_table import StopTable

@@ -16,7 +16,7 @@ from puck_tables.motion.limits import log_ratio
 from puck_tables.motion.path import STOPPED, integrate
 from puck_tables.motion.rk4 import to_stop
 from puck_tables.motion.state import LENGTH, PSI, SIZE, THETA, T, U, X, Y
-from puck_tables.motion.steppers import Tableau
+from puck_tables.motion.tableaus import Tableau
 
 OVERFLOW = 2  # index of solvers.STATUS_MEANINGS
 

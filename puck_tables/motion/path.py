@@ -29,7 +29,8 @@ from puck_tables.motion.equations import (
     slowest_stop,
 )
 from puck_tables.motion.state import PSI, SIZE, WORK, T, U, X, Y
-from puck_tables.motion.steppers import ROWS, Tableau, step
+from puck_tables.motion.steppers import AT_EVENT, ROWS, estimated, step
+from puck_tables.motion.tableaus import Tableau
 
 TURN_SHARE = 1e-3
 TURN_Z = 1.0 - TURN_SHARE**0.25
@@ -131,7 +132,8 @@ def integrate(
         trial = h if z + 1.1 * h < target else target - z
         error = step(tableau, z, y, trial, cut, delta, work, new)
         if place_unit < 1.0:
-            error = max(error, _place_error(tableau, trial, work) / place_unit)
+            place = abs(estimated(tableau, work, X)) + abs(estimated(tableau, work, Y))
+            error = max(error, abs(trial) * place / place_unit)
         if adaptive and not error <= tolerance:
             shrink = (
                 0.2 if not error < math.inf else max(0.2, 0.9 * (tolerance / error) ** exponent)
@@ -171,16 +173,6 @@ def integrate(
     return STOPPED, count
 
 
-@inner
-def _place_error(tableau: Tableau, h: float, work: FloatArray) -> float:
-    """The local error estimate of the place in a step just done."""
-    along, left = 0.0, 0.0
-    for stage in range(tableau.b.size):
-        along += tableau.e[stage] * work[stage, X]
-        left += tableau.e[stage] * work[stage, Y]
-    return abs(h) * (abs(along) + abs(left))
-
-
 @inlined
 def _record(n: int, z: float, y: FloatArray, z_path: FloatArray, y_path: FloatArray) -> None:
     z_path[n] = z
@@ -210,8 +202,8 @@ def _land_on_line(
         step(tableau, z, y, h, cut, delta, work, new)
         if abs(new[U] - line) < 1e-15:
             break
-        derivatives(z + h, new, cut, delta, work[6])
-        rate = work[6, U]
+        derivatives(z + h, new, cut, delta, work[AT_EVENT])
+        rate = work[AT_EVENT, U]
     new[U] = line
     return h
 
@@ -261,8 +253,8 @@ def states_at(
         h = whole * (time - first[T]) / (y_path[i + 1, T] - first[T])
         for _ in range(20):
             step(tableau, z_path[i], first, h, cut, delta, work, new)
-            derivatives(z_path[i] + h, new, cut, delta, work[6])
-            change = (time - new[T]) / work[6, T]
+            derivatives(z_path[i] + h, new, cut, delta, work[AT_EVENT])
+            change = (time - new[T]) / work[AT_EVENT, T]
             h = min(max(h + change, 0.0), whole)
             if abs(change) <= 4e-16:
                 break

@@ -27,7 +27,7 @@ from puck_tables.kernels.compile import allocating, inlined, kernel
 from puck_tables.kernels.section_spline import INERTIA, LINE, section_flows
 from puck_tables.motion.path import STOPPED, integrate
 from puck_tables.motion.state import LENGTH, PSI, SIZE, THETA, T, U, X, Y
-from puck_tables.motion.steppers import Tableau
+from puck_tables.motion.tableaus import Tableau
 
 KEPT = 7  # of the state: all but the work of friction
 BY_U, BY_HEIGHT, BY_GYRATION = 1, 2, 3  # blocks; the first is the motion itself

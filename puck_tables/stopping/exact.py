@@ -13,7 +13,7 @@ from puck_tables.kernels.section_spline import NO_SECTION
 from puck_tables.motion.equations import at_constant_angle
 from puck_tables.motion.path import STOPPED, integrate
 from puck_tables.motion.state import LENGTH, PSI, SIZE, THETA, T, U, X, Y
-from puck_tables.motion.steppers import DORMAND_PRINCE, Tableau
+from puck_tables.motion.tableaus import DORMAND_PRINCE, DORMAND_PRINCE_8, Tableau
 
 _LOCAL_TOLERANCE = 2e-14
 _STEP_LIMIT = 100_000
@@ -72,13 +72,13 @@ def integrated_stops(
     array([ 0.98647594,  0.32409373, -0.04297451])
     """
     out = np.empty((u.size, 6))
+    # closed forms are as smooth as the higher order needs; splines of a section are not
+    tableau = DORMAND_PRINCE if cut.size else DORMAND_PRINCE_8
     unit = np.ascontiguousarray(np.broadcast_to(place_unit, u.shape), np.float64)
 
     def work(start: int, stop: int) -> None:
         part = slice(start, stop)
-        _fill_exact_stops(
-            u[part], delta[part], unit[part], cut, DORMAND_PRINCE, tolerance, out[part]
-        )
+        _fill_exact_stops(u[part], delta[part], unit[part], cut, tableau, tolerance, out[part])
 
     run_chunks(work, u.size, _CHUNK, threads)
     return out

@@ -81,7 +81,7 @@ def fill_known(
     flat, flat_curve, flat_turns = stops.reshape(-1), curve.reshape(-1), turns.reshape(-1)
     room, is_rest = np.empty(_ROWS * BLOCK), out.shape[0] == _REST
     cells, log_share = float(stops.shape[1] - 3), math.log(turn_share)
-    fill_constants(vx, vy, spin, delta, decel, radius, room)
+    fill_constants(vx, vy, spin, delta, decel, radius, out.shape[1], room)
     doubtful, bad = 0, 0
     for start in range(0, out.shape[1], BLOCK):
         count = min(BLOCK, out.shape[1] - start)

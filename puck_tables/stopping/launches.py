@@ -265,11 +265,11 @@ def _fetch(column: FloatArray, start: int, count: int, row: int, room: FloatArra
 @inlined
 def fill_constants(
     vx: FloatArray, vy: FloatArray, spin: FloatArray, delta: FloatArray, decel: FloatArray,
-    radius: FloatArray, room: FloatArray,
+    radius: FloatArray, count: int, room: FloatArray,
 ) -> None:  # fmt: skip
-    """The first numbers of all columns into all places of the first six rows of ``room``."""
+    """The first numbers of all columns into ``count`` places of the first six rows of ``room``."""
     if delta.size > 0 and spin.size > 0 and vx.size > 0 and decel.size > 0 and radius.size > 0:
-        for n in range(BLOCK):
+        for n in range(min(count, BLOCK)):
             into_row(room, VX, n, vx[0])
             into_row(room, VY, n, vy[0])
             into_row(room, SPIN, n, spin[0])

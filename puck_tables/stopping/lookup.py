@@ -175,7 +175,7 @@ def stops_kernel(powers: int) -> Callable[..., tuple[int, int, int]]:
         x: FloatArray, y: FloatArray, apart: int,
     ) -> tuple[int, int, int]:  # fmt: skip
         c, room = coefficients.reshape(-1), np.empty(_ROWS * BLOCK)
-        fill_constants(vx, vy, spin, delta, decel, radius, room)
+        fill_constants(vx, vy, spin, delta, decel, radius, time.size, room)
         doubtful, bad, mark = 0, 0, 0
         for start in range(0, time.size, BLOCK):
             count = min(BLOCK, time.size - start)

@@ -51,7 +51,7 @@ def _gather(
             for n in range(count):
                 block[n] = values[start - begin + n]
         elif which.size == 1:
-            for n in range(BLOCK):
+            for n in range(count):  # no block is larger than the first
                 block[n] = values[which[0]]
         else:
             for n in range(count):

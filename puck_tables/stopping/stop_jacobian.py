@@ -173,7 +173,7 @@ def fill_stop_jacobians(
     no derivative, and for the path of pure spin by vx and vy, which grows like |v|.
     """
     flat, numbers, room = slopes.reshape(-1), out.reshape(-1), np.empty(_ROWS * BLOCK)
-    fill_constants(vx, vy, spin, delta, decel, radius, room)
+    fill_constants(vx, vy, spin, delta, decel, radius, len(out), room)
     for start in range(0, len(out), BLOCK):
         count = min(BLOCK, len(out) - start)
         fetch_block(vx, vy, step, spin, delta, decel, radius, start, count, room)

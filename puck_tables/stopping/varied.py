@@ -25,7 +25,7 @@ from puck_tables.kernels.section_spline import LINE
 from puck_tables.motion.body import Body
 from puck_tables.motion.path import STOPPED, integrate
 from puck_tables.motion.state import LENGTH, PSI, SIZE, THETA, T, U, X, Y
-from puck_tables.motion.steppers import DORMAND_PRINCE
+from puck_tables.motion.tableaus import DORMAND_PRINCE
 from puck_tables.table.flow_section import FlowSection, flow_of_table, flow_section
 
 LOCAL = 1e-10

@@ -13,7 +13,7 @@ from puck_tables.kernels.section_spline import NO_SECTION
 from puck_tables.motion.limits import log_ratio
 from puck_tables.motion.path import integrate, states_at
 from puck_tables.motion.state import SIZE, STATE_ROWS
-from puck_tables.motion.steppers import DORMAND_PRINCE
+from puck_tables.motion.tableaus import DORMAND_PRINCE
 from puck_tables.stopping.launches import launches_in
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.table.resultant_table import ResultantTable

@@ -16,7 +16,8 @@ from puck_tables.motion.bulk import fill_stops
 from puck_tables.motion.limits import log_ratio
 from puck_tables.motion.path import integrate
 from puck_tables.motion.state import SIZE
-from puck_tables.motion.steppers import RK4, TABLEAUS, Stepping
+from puck_tables.motion.steppers import TABLEAUS, Stepping
+from puck_tables.motion.tableaus import RK4
 from puck_tables.stopping.launches import launches_in
 from puck_tables.stopping.lookup import WIDTH, stops_kernel
 from puck_tables.stopping.stop_table import StopTable

@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
-from puck_tables.motion.steppers import DORMAND_PRINCE
+from puck_tables.motion.tableaus import DORMAND_PRINCE
 from puck_tables.scene.ingredients import Regions, Surface
 from puck_tables.world.works import LEDGER
 

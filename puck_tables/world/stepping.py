@@ -9,7 +9,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
-from puck_tables.motion.steppers import DORMAND_PRINCE
+from puck_tables.motion.tableaus import DORMAND_PRINCE
 from puck_tables.scene.friction import size
 from puck_tables.scene.ingredients import carried_along
 from puck_tables.world.forces import (
@@ -39,7 +39,7 @@ from puck_tables.world.sights import look, look_at_ties
 from puck_tables.world.works import LEDGER, write_work
 from puck_tables.world.yielding import turn_ways
 
-_A, _C, _E = DORMAND_PRINCE.a, DORMAND_PRINCE.c, DORMAND_PRINCE.e
+_A, _C, _E = DORMAND_PRINCE.a, DORMAND_PRINCE.c, DORMAND_PRINCE.e[0]
 STAGES = len(_C)
 # the weights of the method half way through a step, of order four (Shampine 1986)
 _HALF = 0.5 * np.array([

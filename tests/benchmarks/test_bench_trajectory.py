@@ -35,7 +35,8 @@ from puck_tables.motion.friction import integration_selected
 from puck_tables.motion.limits import log_ratio
 from puck_tables.motion.path import integrate
 from puck_tables.motion.state import SIZE, T, X, Y
-from puck_tables.motion.steppers import DORMAND_PRINCE, stepping_of
+from puck_tables.motion.steppers import stepping_of
+from puck_tables.motion.tableaus import DORMAND_PRINCE
 from puck_tables.stopping.per_height import SolverPerHeight
 from puck_tables.stopping.solvers import Integration
 from puck_tables.table.resultant_table import ResultantTable
