@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import tomllib
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import is_dataclass
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -59,11 +59,13 @@ def scene_options(command: Command) -> Command:
 
 
 def scene_tables(
-    ctx: click.Context, scene: str | None, changes: tuple[str, ...], own: tuple[str, ...] = ()
-) -> dict[str, Any]:
+    ctx: click.Context, scene: str | None, changes: tuple[str, ...], own: tuple[str, ...] = (),
+    scattering: Iterable[str] = (),
+) -> dict[str, Any]:  # fmt: skip
     """The scene that options describe: a file or defaults, then options, then --set.
 
-    ``own``: parameters of the command that are no numbers of the scene.
+    ``own``: parameters of the command that are no numbers of the scene; ``scattering``: numbers of
+    it that --spread gives.
 
     Raises
     ------
@@ -83,7 +85,7 @@ def scene_tables(
     tables = {} if scene is None else find_scene(scene)
     if scene is None:
         tables = _default_tables(given)
-    named: dict[str, str] = {}
+    named = dict.fromkeys(scattering, "--spread")
     for name, value in given.items():
         if name in SCALED and scene is None:
             continue
@@ -91,6 +93,8 @@ def scene_tables(
             flag = next(p.opts[0] for p in ctx.command.params if p.name == name)
             hint = " (puck.height and puck.friction set it)" if name in SCALED else ""
             raise InputError(f"{flag} has no place in a scene{hint}: leave it out")
+        if PATHS[name] in named:
+            raise InputError(f"--{name} and --spread {PATHS[name]} clash: both give it")
         named[PATHS[name]] = f"--{name}"
         set_path(tables, PATHS[name], _as_toml(value))
     for change in changes:

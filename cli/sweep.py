@@ -89,7 +89,8 @@ REAL = ("height", "friction", "gravity")
     type=FILE,
     metavar="FILE",
     help="Save the map: .h5, .csv, .json, .jsonl, .parquet; or .zarr, which may be larger than "
-    "memory and goes on after any end.  Without -o and --plot, CSV goes to stdout.",
+    "memory and goes on after any end.  Without -o and --plot, CSV goes to stdout; of samples, a "
+    "summary does in any case.",
 )
 @output_options
 @scene_options
@@ -120,9 +121,11 @@ def sweep(
     Each delta above 1, or with another --pressure or --gyration, takes about a second to prepare.
     """  # noqa: D301, E501 - click reads the backspace
     whole = Whole(threads, cluster, output, plot, overwrite, explain)
-    inside = samples_checked(random, seed, spreads, regions)
-    if scene is not None or changes:
-        tables = scene_tables(ctx, scene, changes)
+    is_scene = scene is not None or bool(changes)
+    inside = samples_checked(random, seed, spreads, regions, "launch.spin" if is_scene else "w0")
+    drawn = spreads_given(spreads, None if is_scene else ARGUMENTS)
+    if is_scene:
+        tables = scene_tables(ctx, scene, changes, scattering=drawn)
         whole.refuse_outputs(files_read(scene, tables))
         from puck_tables.scene.scene import Scene
 
@@ -131,13 +134,11 @@ def sweep(
             if random is None:
                 ends: Any = one.sweep(progress=show, **whole.how)
             else:
-                drawn = spreads_given(spreads, None)
                 ends = one.sample(random, seed or 0, drawn, progress=show, **whole.how)
         whole.deliver(ends, summary_of_map(ends), inside)
         return
     if v0 is not None and numbers["speed"] is not None:
         raise InputError("--v0 and --speed clash: both give the launch velocity")
-    drawn = spreads_given(spreads, ARGUMENTS)
     for name, option in ARGUMENTS.items():
         if option in drawn and numbers.get(name) is not None:
             raise InputError(f"--{name} and --spread {name}=... clash: both give it")

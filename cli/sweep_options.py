@@ -46,8 +46,9 @@ def spreads_given(spreads: Iterable[str], names: Mapping[str, str] | None) -> di
 
 
 def samples_checked(
-    random: int | None, seed: int | None, spreads: tuple[str, ...], regions: tuple[str, ...]
-) -> list[tuple[float, ...]]:
+    random: int | None, seed: int | None, spreads: tuple[str, ...], regions: tuple[str, ...],
+    name_of_spin: str,
+) -> list[tuple[float, ...]]:  # fmt: skip
     """The regions asked for; options of samples that stand alone are refused.
 
     Raises
@@ -63,7 +64,9 @@ def samples_checked(
                 raise InputError(f"{name} is for samples: give --random COUNT too")
         return []
     if not spreads:
-        raise InputError("--random needs a --spread: say what scatters, like w0=normal:5:0.2")
+        raise InputError(
+            f"--random needs a --spread: say what scatters, like {name_of_spin}=normal:5:0.2"
+        )
     found = []
     for region in regions:
         try:
@@ -143,6 +146,10 @@ class Whole:
         ------
         InputError, OutputError, MissingExtraError
         """
+        from puck_tables.io.formats import FORMATS, STORE, ending_of
+
+        if self.output is not None:
+            ending_of(self.output, (*FORMATS, STORE))
         file = None if self.stored else self.output
         prepare_outputs(file, plot=self.plot, overwrite=self.overwrite, inputs=inputs)
         if self.cluster is not None:

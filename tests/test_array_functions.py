@@ -87,6 +87,7 @@ def test_a_dataset_of_launches_is_swept():
 @pytest.mark.parametrize(
     ("table", "more", "said"),
     [
+        ({}, {}, "the dataset has no launches: give it variables of"),
         ({"speed": ("n", [1.0])}, {}, "speed is no number of a launch"),
         ({"launch_speed": ("n", [1.0], {"units": "km/h"})}, {}, "is in km/h: it must be in m/s"),
         ({"launch_speed": ("n", [-1.0])}, {}, "speed must not be negative"),

@@ -142,6 +142,7 @@ def test_the_command_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
         return CliRunner().invoke(main, ["sweep", *words])
 
     spreads = ["--spread", "w0=normal:5:0.2", "--spread", "speed=uniform:0.9:1.1"]
+    scene = ["--scene", "incline", "--spread", "launch.spin=normal:5:0.2"]
     result = invoked("--random", "5000", "--seed", "7", *spreads, "--inside", "2.2,-0.16,0.1",
                      "-o", "s.h5", "--plot", "s.png")  # fmt: skip
     assert result.exit_code == 0, result.stderr
@@ -159,6 +160,11 @@ def test_the_command_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
         (["--random", "10", *spreads, "--delta", "0:1:5"], "cannot range"),
         (["--random", "10", *spreads, "--inside", "1,2"], "region"),
         (["--random", "1000000000", *spreads], "GiB"),
+        (["--random", "10", *spreads, "-o", "s.xyz"], ".parquet, .zarr"),
+        (["--random", "10", "--scene", "incline"], "like launch.spin=normal:5:0.2"),
+        (["--random", "10", *scene, "--set", "launch.spin=3"], "--spread and --set"),
+        (["--random", "10", *scene, "--w0", "3"], "--w0 and --spread launch.spin clash"),
+        (["--random", "10", *scene, "--spread", "puck.friction=uniform:-1:0.2"], "in the middle"),
     ):
         refused = invoked(*words)
         assert (refused.exit_code, said in refused.stderr) == (2, True), refused.stderr

@@ -29,8 +29,8 @@ def check_memory(shape: tuple[int, ...], per_item: int) -> None:
     if needed > available:
         sizes = " x ".join(str(n) for n in shape)
         raise InputError(
-            f"a map of {sizes} launches would need {needed / 2**30:.3g} GiB of memory, "
-            f"{available / 2**30:.3g} GiB are free: use smaller counts, or a Zarr store "
+            f"a map of {sizes} launches would need {needed / 2**30:,.1f} GiB of memory, "
+            f"{available / 2**30:,.1f} GiB are free: use smaller counts, or a Zarr store "
             "(-o NAME.zarr, store=), which grows on disk"
         )
 

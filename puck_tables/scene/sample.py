@@ -140,8 +140,11 @@ class SceneDraws(SceneWork):
                 "samples need a spread: say what scatters, such as launch.spin=normal:5:0.2"
             )
         self.spreads, self.seed = spreads, seed
-        first = {path: float(one.drawn(path, seed, 0, 1)[0]) for path, one in spreads.items()}
-        scene.at(first)  # what is no number of the scene is refused here
+        middle = {path: one.of(np.array([0.5])).item() for path, one in spreads.items()}
+        try:
+            scene.at(middle)  # what is no number of the scene is refused here
+        except InputError as error:
+            raise InputError(f"samples: in the middle of what is drawn, {error}") from None
         super().__init__(scene, part, read, {path: np.zeros(0) for path in spreads}, (count,))
         self.columns = {plain_name(path): () for path in spreads} | dict.fromkeys(RESULTS, ())
 

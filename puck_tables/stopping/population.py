@@ -208,8 +208,8 @@ def labelled(launches: Any, given: Mapping[str, Any], laws: Any) -> Population:
     sizes = {str(dim): int(n) for dim, n in launches.sizes.items()}
     unknown = [name for name in arrays if name not in _ARGUMENT and name not in sizes]
     unknown += [name for name in arrays if name == "pressure"]
+    known = ", ".join(column for column in _ARGUMENT if column != "pressure")
     if unknown:
-        known = ", ".join(column for column in _ARGUMENT if column != "pressure")
         raise InputError(f"{unknown[0]} is no number of a launch: there are {known}")
     numbers = {
         _ARGUMENT[name]: np.asarray(one.values) for name, one in arrays.items() if name in _ARGUMENT
@@ -221,8 +221,8 @@ def labelled(launches: Any, given: Mapping[str, Any], laws: Any) -> Population:
         expected, unit = COLUMNS[name].unit if name in COLUMNS else "", one.attrs.get("units")
         if name in _ARGUMENT and unit not in (None, expected):
             raise InputError(f"{name} of the dataset is in {unit}: it must be in {expected}")
-    if 0 in sizes.values():
-        raise InputError("the dataset has no launches")
+    if not numbers or 0 in sizes.values():
+        raise InputError(f"the dataset has no launches: give it variables of {known}")
     values, over, found = _values({**given, **numbers}, laws)
     for name, array in values.items():
         if name in numbers:
