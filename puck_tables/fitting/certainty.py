@@ -14,15 +14,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables.fitting.abreast import FROM_BESIDE, abreast
 from puck_tables.fitting.estimate import Estimate
-from puck_tables.fitting.least_squares import SQUARES, minimise
 
 Z95 = 1.959963984540054
 BLIND = 2.0  # plausible ranges per standard deviation
 _MEMBER = 0.2  # component of a direction that counts
 _PARABOLIC = 0.04  # of the drop of the likelihood
 _SEARCHES = 14
-_OUTWARDS = 3.0
+_OUTWARDS, _BEYOND, _LOOKS = 3.0, 1.15, 3
+_FAR, _NARROW = 2.0, 0.005
 _HARDLY = 0.05
 
 
@@ -143,30 +144,35 @@ def _end(
 ) -> tuple[float, bool]:
     """One end, and whether it is not the guess.
 
-    The root of the rise of χ² is followed outwards, by way of the limit where there is one: a
-    likelihood may level off below what bounds anything.
+    The root of the rise of χ² is followed outwards, in the end by way of the limit where there is
+    one: a likelihood may level off below what bounds anything.  Between two values the end is
+    sought by false position; a value that stays the second time counts half (Illinois).
     """
-    x0, start = float(found.x[k]), found.x
-    near, near_root = x0, 0.0
-    far: tuple[float, float] | None = None
-    at = side * min(side * guess, side * limit)
+    x0, start, wanted = float(found.x[k]), found.x, certainty.quantile
+    near, far = (x0, -wanted), (math.nan, math.inf)  # value, and how far its root is off
+    at, last = side * min(side * guess, side * limit), 0.0
     for n in range(_SEARCHES):
         cost, moved = profile_point(found, certainty, k, at, start)
-        root = math.sqrt(max(cost - found.chi2, 0.0))
-        exact = abs(root / certainty.quantile - 1.0)
-        if n == 0 and at == guess and exact < 0.5 * _PARABOLIC:
+        off = math.sqrt(max(cost - found.chi2, 0.0)) - wanted
+        if n == 0 and at == guess and abs(off) < 0.5 * _PARABOLIC * wanted:
             return guess, False
-        if exact < 0.25 * _PARABOLIC or (root < certainty.quantile and at == limit):
+        if abs(off) < 0.25 * _PARABOLIC * wanted or (off < 0.0 and at == limit):
             return at, True
-        if root < certainty.quantile:
-            near, near_root, start = at, root, moved
+        if off < 0.0:
+            far = (far[0], 0.5 * far[1]) if last < 0.0 else far
+            near, start = (at, off), moved
         else:
-            far = at, root
-        if far is None:
+            near = (near[0], 0.5 * near[1]) if last > 0.0 else near
+            far = at, min(off, _FAR * wanted)
+        last = off
+        if far[1] < math.inf:
+            at = near[0] + min(max(near[1] / (near[1] - far[1]), 0.1), 0.9) * (far[0] - near[0])
+            if abs(far[0] - near[0]) < _NARROW * abs(far[0] - x0):  # another minimum begins there
+                return at, True
+        elif off > -0.5 * wanted and n < _LOOKS:
+            at = x0 + side * min(_BEYOND * wanted / (wanted + off) * abs(at - x0), abs(limit - x0))
+        else:
             at = limit if math.isfinite(limit) else x0 + _OUTWARDS * (at - x0)
-        else:
-            share = (certainty.quantile - near_root) / (far[1] - near_root)
-            at = near + min(max(share, 0.1), 0.9) * (far[0] - near)
     return at, True
 
 
@@ -179,12 +185,12 @@ def profile_point(
     if variance > 0.0:
         moved += certainty.covariance[:, k] / variance * (at - start[k])
     moved[k] = at
-    best = minimise(found.problem, moved, SQUARES, found.kept, held=k)
+    starts = [(found.problem, moved)]
     if any(film.angle is None for film in found.problem.films):
         # without angles a motion with hardly any spin may be another minimum
         spins = [n for n, (_, name) in enumerate(found.problem.names) if name == "launch_spin"]
         slow = moved.copy()
         slow[spins] *= _HARDLY
-        other = minimise(found.problem, slow, SQUARES, found.kept, held=k)
-        best = min(best, other, key=lambda one: one[1])
-    return 2.0 * best[1], best[0]
+        starts.append((found.problem, slow))
+    (best, cost), *_ = abreast(starts, FROM_BESIDE, kept=found.kept, held=k)
+    return 2.0 * cost, best

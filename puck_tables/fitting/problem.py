@@ -235,8 +235,11 @@ class Problem:
 
     def off(self, x: FloatArray) -> list[FloatArray]:
         """Model less what was seen (3, n) of each track, m and rad; NaN where no angle was."""
+        return self._off(self.paths(x))
+
+    def _off(self, paths: list[FloatArray]) -> list[FloatArray]:
         rows = []
-        for n, (film, path) in enumerate(zip(self.films, self.paths(x), strict=True)):
+        for n, (film, path) in enumerate(zip(self.films, paths, strict=True)):
             turn = np.full(film.time.size, np.nan)
             if film.angle is not None:
                 whole = self.whole[n] if self.whole else None
@@ -248,7 +251,10 @@ class Problem:
 
     def residuals(self, x: FloatArray) -> FloatArray:
         """All of them, in units of the noise."""
-        rows = [self._weighed(n, off) for n, off in enumerate(self.off(x))]
+        return self._residuals(x, self.paths(x))
+
+    def _residuals(self, x: FloatArray, paths: list[FloatArray]) -> FloatArray:
+        rows = [self._weighed(n, off) for n, off in enumerate(self._off(paths))]
         rows += [np.array([(x[k] - value) / spread]) for k, value, spread in self.priors]
         return np.concatenate(rows)
 
@@ -266,18 +272,25 @@ class Problem:
 
     def jacobian(self, x: FloatArray) -> FloatArray:
         """Their derivatives, (residuals, unknowns)."""
+        return self.residuals_and_jacobian(x)[1]
+
+    def residuals_and_jacobian(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Both, from the same motions."""
         found = self.found(x)
         moving, (slides, _) = self.moving(found), self.slides(x)
         follow = slopes_of_slides(self, x) if self.meetings else []
         out = np.zeros((self.kinds.size, x.size))
         scales = {name: np.array(self.asked.slopes(found, name)) for name in self.asked.free}
         spots = {key: k for k, key in enumerate(self.names)}
-        row = 0
+        row, paths = 0, []
         for n, film in enumerate(self.films):
+            path = np.empty((3, film.time.size))
+            paths.append(path)
             whole = np.zeros((3, film.time.size, x.size))
             for m, (frames, times, slide) in enumerate(self._parts(n, found, slides[n])):
                 velocity, spin = slide.launch[2:4], float(slide.launch[4])
-                _, slopes = path_with_slopes(moving, velocity, spin, times)
+                path[:, frames], slopes = path_with_slopes(moving, velocity, spin, times)
+                path[:, frames] += slide.launch[[0, 1, 5], None]
                 block = whole[:, frames]
                 for name in self.asked.free:
                     k = spots[-1, name]
@@ -308,7 +321,7 @@ class Problem:
             row += len(rows)
         for n, (k, _, spread) in enumerate(self.priors):
             out[row + n, k] = 1.0 / spread
-        return out
+        return self._residuals(x, paths), out
 
     def _by_difference(
         self, found: Found, name: str, times: FloatArray, slide: Slide

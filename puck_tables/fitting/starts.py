@@ -6,7 +6,8 @@ A fit of nonlinear motions finds the nearest minimum, so it is begun near the de
 2. angles from frame to frame give the spin, up to whole turns from frame to frame; a puck that
    comes to rest says how many, others are tried; without angles a range of spins is;
 3. for each spin and a few δ, motions with a range of J are laid beside places and rates of turning;
-4. the best few are fitted to places and to the angles in one piece, and the best of these is taken.
+4. the best are fitted to places and to the angles in one piece, abreast: all take the same few
+   steps, then the worse half is left behind, and so on; the best of the last is taken.
 """
 
 from __future__ import annotations
@@ -18,8 +19,8 @@ from itertools import product
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables.fitting.abreast import FROM_AFAR, ROBUST, abreast
 from puck_tables.fitting.least_squares import LOOSE, minimise
-from puck_tables.fitting.natural import Curve
 from puck_tables.fitting.parameters import Asked
 from puck_tables.fitting.problem import Found, Problem
 from puck_tables.fitting.seen import Seen, Turning, rests_from, turning_of
@@ -32,9 +33,8 @@ _RATIOS = (0.0, 0.15, 0.3, 0.5, 0.75, 1.1, 1.6, 2.3, 3.5, 6.0, 12.0)
 _DECELS = 2.0 ** np.arange(-3.0, 3.1, 0.5)  # times the one that fits the loss of speed
 _FRAMES = 24  # laid beside each other
 _FITTED = 60  # frames to which the guesses are fitted
-_AT_HOME = 1.1  # a median residual, in units of the noise, that only the true motion has
 _KEPT, _KEPT_BLIND = 9, 22  # guesses that are fitted; of tracks without angles
-_RIVALS, _RIVAL, _APART = 4, 15.0, 1e-3  # minima compared on all frames: by cost, and how far apart
+_RIVAL = 15.0  # what minima that are compared on all frames may cost more
 _NEARER = 2.0 ** np.arange(-0.4, 0.41, 0.05)
 _PLACE_SHARE, _FINER_SHARE, _RATE_SHARE = 0.02, 0.005, 0.05
 _LEAST_SPEED = 1e-6
@@ -64,12 +64,8 @@ def minima_of(problem: Problem) -> list[FloatArray]:
     few = np.zeros(film.time.size, bool)
     few[np.linspace(0, film.time.size - 1, _FITTED).astype(int)] = True
     part = film.part(few)
-    minima: list[tuple[float, FloatArray]] = []
-    at_home: set[int] = set()
+    starts = []
     for guess in guesses:
-        if guess.turns in at_home:
-            continue
-        found = _found(asked, guess.decel, guess.delta)
         launch = np.array([*place, *velocity, guess.spin, 0.0])
         whole = None
         if turning is not None:
@@ -77,13 +73,9 @@ def minima_of(problem: Problem) -> list[FloatArray]:
             launch[5] = whole[np.isfinite(whole)][0]
             whole = whole[few]
         pieces = replace(problem, films=(part,), whole=(whole,))
-        x, cost = minimise(pieces, pieces.unknowns(found, launch[None]), LOOSE)
-        minima.append((cost, x))
-        # without angles there are near minima, and all have to be seen; with them few or noisy
-        # frames may look at home with whole turns too many, so each number of them is
-        if whole is not None and float(np.median(np.abs(pieces.residuals(x)))) < _AT_HOME:
-            at_home.add(guess.turns)
-    return _deepest(problem, minima)
+        found = _found(asked, guess.decel, guess.delta)
+        starts.append((pieces, pieces.unknowns(found, launch[None])))
+    return _deepest(problem, abreast(starts, FROM_AFAR, ROBUST))
 
 
 def _at_rest(problem: Problem) -> FloatArray:
@@ -96,15 +88,10 @@ def _at_rest(problem: Problem) -> FloatArray:
     return problem.unknowns(_any(problem.asked), launch[None])
 
 
-def _deepest(problem: Problem, minima: list[tuple[float, FloatArray]]) -> list[FloatArray]:
+def _deepest(problem: Problem, minima: list[tuple[FloatArray, float]]) -> list[FloatArray]:
     """Of minima for some of the frames those that are deepest for all, in order."""
-    minima.sort(key=lambda one: one[0])
-    least, x = minima[0]
-    rivals = [x]
-    for cost, other in minima[1:]:
-        new = all(np.abs(other - one).max() > _APART * np.abs(one).max() for one in rivals)
-        if new and cost < least + _RIVAL and len(rivals) < _RIVALS:
-            rivals.append(other)
+    (x, least), *others = minima
+    rivals = [x] + [other for other, cost in others if cost < least + _RIVAL]
     if len(rivals) == 1:
         return rivals
     polished = [minimise(problem, one, LOOSE) for one in rivals]
@@ -167,42 +154,43 @@ def _guesses(
     ahead = np.array([velocity, [-velocity[1], velocity[0]]]) / max(speed, _LEAST_SPEED)
     places = (film.place[chosen] - film.place[0]) @ ahead.T
     size = float(np.abs(places).max()) + problem.noise[0]
+    curve = problem.moving(_any(asked)).curve
     found = []
     for spin, turns in _spins(asked, turning, speed, radius, rests):
         slip = math.hypot(speed, radius * spin) or 1.0
         phi = math.atan2(radius * spin, speed)
         rates = None if turning is None else turning.with_more(turns, film.time)[0]
         moments = time if turning is None else np.concatenate([time, turning.time])
-        for delta, decels in _scales(asked, slowing / max(math.cos(phi), 0.1)):
-            curve = problem.moving(_found(asked, decels[0], delta)).curve
-            height = min(delta, curve.highest)
+        heights, decels = _scales(asked, slowing / max(math.cos(phi), 0.1))
+        heights = np.minimum(heights, curve.highest)
 
-            def scores(
-                decels: FloatArray, share: float, phi: float = phi, height: float = height,
-                slip: float = slip, rates: FloatArray | None = rates, curve: Curve = curve,
-                moments: FloatArray = moments,
-            ) -> FloatArray:  # fmt: skip
-                tau = np.outer(decels / slip, moments).reshape(1, -1)
-                states = curve.states(np.array([phi]), np.array([height]), tau)[:, 0]
-                states = states.reshape(6, decels.size, -1)
-                length = (slip * slip / decels)[:, None]
-                off = np.hypot(
-                    length * states[0, :, : time.size] - places[:, 0],
-                    length * states[1, :, : time.size] - places[:, 1],
-                ) / (share * size)  # fmt: skip
-                score: FloatArray = np.log1p(off * off).mean(axis=1)
-                if rates is not None:
-                    spins = states[5, :, time.size :] * (slip / radius)
-                    scale = _RATE_SHARE * abs(rates[0]) + 0.01 / film.usual_step
-                    score += np.log1p(((spins - rates) / scale) ** 2).mean(axis=1)
-                return score
+        def scores(
+            decels: FloatArray, share: float, phi: float = phi, heights: FloatArray = heights,
+            slip: float = slip, rates: FloatArray | None = rates, moments: FloatArray = moments,
+        ) -> FloatArray:  # fmt: skip
+            tau = (decels / slip)[..., None] * moments
+            same = np.full(heights.size, phi)
+            states = curve.states(same, heights, tau.reshape(heights.size, -1))
+            states = states.reshape(6, *tau.shape)
+            length = (slip * slip / decels)[..., None]
+            off = np.hypot(
+                length * states[0, ..., : time.size] - places[:, 0],
+                length * states[1, ..., : time.size] - places[:, 1],
+            ) / (share * size)  # fmt: skip
+            score: FloatArray = np.log1p(off * off).mean(axis=-1)
+            if rates is not None:
+                spins = states[5, ..., time.size :] * (slip / radius)
+                scale = _RATE_SHARE * abs(rates[0]) + 0.01 / film.usual_step
+                score += np.log1p(((spins - rates) / scale) ** 2).mean(axis=-1)
+            return score
 
-            decel = float(decels[scores(decels, _PLACE_SHARE).argmin()])
-            if decels.size > 1:
-                decels = decel * _NEARER
-            finer = scores(decels, _FINER_SHARE)
-            n = int(finer.argmin())
-            found.append(_Guess(float(decels[n]), height, spin, turns, float(finer[n])))
+        if decels.shape[1] > 1:
+            best = scores(decels, _PLACE_SHARE).argmin(axis=1)
+            decels = decels[np.arange(heights.size), best][:, None] * _NEARER
+        finer = scores(decels, _FINER_SHARE)
+        for n, k in enumerate(finer.argmin(axis=1).tolist()):
+            decel, height = float(decels[n, k]), float(heights[n])
+            found.append(_Guess(decel, height, spin, turns, float(finer[n, k])))
     found.sort(key=lambda guess: guess.score)
     if turning is not None:
         best = {guess.turns: guess for guess in reversed(found)}
@@ -254,22 +242,21 @@ def _any(asked: Asked) -> Found:
     return values
 
 
-def _scales(asked: Asked, slowing: float) -> list[tuple[float, FloatArray]]:
-    """Heights δ to try, each with a range of J."""
+def _scales(asked: Asked, slowing: float) -> tuple[FloatArray, FloatArray]:
+    """Heights δ to try (n,), each with a range of J (n, m)."""
     found = _any(asked)
     decel, delta, _ = asked.scales(found)
     decel_free = {"friction", "decel", "gravity"} & {*asked.free}
     decels = np.append(slowing * _DECELS, decel) if decel_free else np.array([decel])
+    heights = {delta}
     if {"delta", "height"} & {*asked.free}:
         low, high = asked.limits("delta") if "delta" in asked.free else (0.0, 4.0)
-        heights = {min(max(height, low), high) for height in (*_HEIGHTS, delta)}
-        if "delta" not in asked.start and "height" not in asked.start:
-            heights.discard(delta)
-        return [(height, decels) for height in sorted(heights)] or [(delta, decels)]
-    if asked.uses_delta:
-        return [(delta, decels)]
-    # δ = 2 f h / r goes with J
-    return [(delta * one / decel, np.array([one])) for one in decels.tolist()]
+        tried = {min(max(height, low), high) for height in (*_HEIGHTS, delta)}
+        known = "delta" in asked.start or "height" in asked.start
+        heights = (tried if known else tried - heights) or heights
+    elif not asked.uses_delta:  # δ = 2 f h / r goes with J
+        return delta * decels / decel, decels[:, None]
+    return np.array(sorted(heights)), np.tile(decels, (len(heights), 1))
 
 
 def _found(asked: Asked, decel: float, delta: float) -> Found:
