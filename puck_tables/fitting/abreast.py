@@ -1,4 +1,8 @@
-"""Steps towards a minimum from many starts abreast, of which fewer and fewer go on."""
+"""Steps towards a minimum from many starts abreast, of which fewer and fewer go on.
+
+They are of Levenberg and Marquardt, our own: scipy's least squares cannot stop and compare, and of
+so few unknowns its step costs twice what the motion of a track costs.
+"""
 
 from __future__ import annotations
 
@@ -13,10 +17,9 @@ from puck_tables.fitting.problem import Problem
 # steps, and how many starts then go on
 FROM_AFAR = ((1, 10), (4, 5), (12, 4))
 FROM_BESIDE = ((4, 2), (30, 1))
-ROBUST = (
-    3.0  # a residual that begins to count less, in units of the noise; at least twice the usual
-)
+ROBUST = 3.0  # where residuals begin to count less, in units of the noise
 _DAMPED, _EASED, _HARDER = 1e-3, 0.1, 10.0
+_LEAST = 1e-9  # damping: what is not seen stays where it is
 _LEVEL, _HARDEST = 1e-4, 1e6  # what costs fall by, or the damping, where a start has arrived
 _APART = 1e-2  # starts that are nearer have met
 
@@ -27,7 +30,7 @@ def abreast(
 ) -> list[tuple[FloatArray, float]]:  # fmt: skip
     """Unknowns at the deepest minima that starts lead to, and the cost there, the deepest first.
 
-    Steps are those of Levenberg and Marquardt; starts that have met go on as one.
+    Starts that have met go on as one.
 
     Parameters
     ----------
@@ -79,13 +82,16 @@ class _Walker:
         size = np.diag(square)
         damped = square + np.diag(np.where(size > 0.0, self.damping * size, 1.0))
         change = np.linalg.solve(damped, slopes.T @ (weights * self.rows))
+        if not np.isfinite(change).all():
+            self.arrived = True
+            return
         new = np.clip(self.x - change, *self.problem.limits)
         rows, slopes = self._at(new)
         before, after = _cost(self.rows, scale), _cost(rows, scale)
         if after < before:
             self.arrived = before - after < _LEVEL * before
             self.x, self.rows, self.slopes = new, rows, slopes
-            self.damping *= _EASED
+            self.damping = max(_EASED * self.damping, _LEAST)
         else:
             self.arrived = self.damping > _HARDEST
             self.damping *= _HARDER
