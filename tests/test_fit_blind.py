@@ -39,6 +39,18 @@ def test_angles_that_are_all_zero_tell_no_tilt():
     assert found["friction"].value == pytest.approx(0.15, abs=1e-9)
 
 
+def test_whole_turns_between_frames_that_fit_as_well_are_named():
+    """Without friction nothing tells them: the fewest are taken, the others said."""
+    times = np.arange(200) / 120.0
+    place = np.round(np.stack([0.1 + 1.2 * times, 0.3 * times], axis=1), 3)
+    found = pt.fit(pt.Track(times, place, np.round(5.0 * times, 2)), KNOWN)
+    assert found.launch().spin == pytest.approx(5.0, abs=1e-3)
+    assert not found.launch().numbers["launch_spin"].determined
+    rivals = [text for text in found.blind if "Another motion" in text]
+    assert rivals and all("launch spin" in text and "more frames" in text for text in rivals)
+    assert found["friction"].high < 1e-3
+
+
 @pytest.mark.thorough
 @pytest.mark.parametrize("seed", few(1, [1, 2, 4]))
 def test_a_straight_path_without_angles_does_not_even_tell_friction(straight, seed):

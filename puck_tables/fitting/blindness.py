@@ -62,7 +62,7 @@ def blind_spots(
 def rival_sentence(rival: Found, marked: bool) -> str:
     """Another motion that fits as well; ``marked``: whether angles are seen."""
     more = "more frames a second" if marked else "angle marks on the puck"
-    words = ", ".join(f"{name} {value:.4g}" for name, value in rival.items())
+    words = ", ".join(f"{name.replace('_', ' ')} {value:.4g}" for name, value in rival.items())
     return (
         f"Another motion, of another spin, fits as well: {words}. What would tell: {more}, or its "
         "launch spin, if it is known (launch_spin)."

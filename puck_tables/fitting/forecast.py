@@ -221,8 +221,7 @@ def fisher(
     rivals = () if camera.angle_noise is not None else _rivals(told)
     names = tuple(name for _, name in problem.names)
     for rival in rivals:
-        others = [*rival, "launch_spin"]
-        errors[[k for k, name in enumerate(names) if name in others]] = np.inf
+        errors[[k for k, name in enumerate(names) if name in rival]] = np.inf
     return Forecast(
         puck=puck,
         velocity=velocity,

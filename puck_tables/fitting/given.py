@@ -24,7 +24,7 @@ from puck_tables.fitting.starts import slowing_of
 MOST_FRAMES = 100_000
 FIND = "find"
 _GUESS = 1e-3  # of the track: noise to begin with where differences tell none
-_FARTHEST = 1e6  # m or s, of a track
+_NEAREST, _FARTHEST = 1e-30, 1e6  # m or s, of a track
 _TWICE = 0.5  # of the frames: the same film again
 _SLOWER = 0.3  # times the deceleration seen: friction is no less
 _TIPS = 4.0  # δ
@@ -79,7 +79,7 @@ def _refuse_far(film: Seen) -> None:
     """
     size = float(np.ptp(film.place, axis=0).max())
     for what, extent, unit in (("places", size, "m"), ("times", float(film.time[-1]), "s")):
-        if not extent < _FARTHEST:
+        if extent and not _NEAREST < extent < _FARTHEST:
             raise InputError(
                 f"{film.name}: its {what} lie up to {extent:.3g} {unit} apart, which no puck "
                 "slides: say their unit, or leave out what is wrong"

@@ -18,10 +18,11 @@ from puck_tables.fitting.problem import Found
 from puck_tables.fitting.starts import minima_of
 
 _APART = 4.0  # standard errors: another summit
+_SPIN = "launch_spin"
 
 
 def rivals_of(found: Estimate, certainty: Certainty) -> tuple[Found, ...]:
-    """The numbers of the puck at other summits within the 95 % limit.
+    """The numbers of the puck, and its launch spin, at other summits within the 95 % limit.
 
     Of one track; several have not been seen to have any.  With angles they are motions of whole
     turns more from frame to frame, where frames are few or noisy.
@@ -29,21 +30,32 @@ def rivals_of(found: Estimate, certainty: Certainty) -> tuple[Found, ...]:
     problem = found.problem
     if len(problem.films) > 1 or problem.meetings or problem.asked.speeds:
         return ()
-    rivals: list[FloatArray] = []
+    rivals, marked = [], problem.films[0].angle is not None
     summits = [(found.x, *_known(found, certainty))]
     for start in found.minima or minima_of(problem):
         x, cost = minimise(problem, start, SQUARES, found.kept)
-        off = [(np.abs(x - one)[: seen.size] > apart)[seen] for one, seen, apart in summits]
+        off = [
+            (np.abs(_told(x, marked) - _told(one, marked)) > apart)[seen]
+            for one, seen, apart in summits
+        ]
         if 2.0 * cost < found.chi2 + Z95**2 and all(one.any() for one in off):
             # what one motion tells another may not: each summit is as wide as it is
             own = certainty_of(problem.jacobian(x)[found.kept], plausible_for(problem, x))
             summits.append((x, *_known(found, own)))
             rivals.append(x)
-    return tuple(problem.found(x) for x in rivals)
+    mine = [(k, name) for k, (track, name) in enumerate(problem.names)
+            if track == -1 or name == _SPIN]  # fmt: skip
+    return tuple({name: float(x[k]) for k, name in mine} for x in rivals)
+
+
+def _told(x: FloatArray, marked: bool) -> FloatArray:
+    """Unknowns as they are compared: without angles a mirror image is no other motion."""
+    return x if marked else np.abs(x)
 
 
 def _known(found: Estimate, certainty: Certainty) -> tuple[npt.NDArray[np.bool_], FloatArray]:
-    """Which numbers of the puck a summit tells, and how far off another summit is."""
-    lost = certainty.undetermined[: len(found.problem.asked.free)]
-    seen = np.array([not one for one in lost], bool)
-    return seen, _APART * np.sqrt(np.diag(certainty.covariance))[: seen.size]
+    """Which numbers of the puck, and whether its spin, a summit tells; how far off another is."""
+    names = found.problem.names
+    asked = np.array([track == -1 or name == _SPIN for track, name in names], bool)
+    seen = asked & ~np.array(certainty.undetermined, bool)
+    return seen, _APART * np.sqrt(np.diag(certainty.covariance))

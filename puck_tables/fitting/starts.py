@@ -35,6 +35,7 @@ _FRAMES = 24  # laid beside each other
 _FITTED = 60  # frames to which the guesses are fitted
 _KEPT, _KEPT_BLIND = 9, 22  # guesses that are fitted; of tracks without angles
 _RIVAL = 15.0  # what minima that are compared on all frames may cost more
+_AS_WELL = 2.0  # by so much more a minimum is as deep, within its 95 % limit
 _NEARER = 2.0 ** np.arange(-0.4, 0.41, 0.05)
 _PLACE_SHARE, _FINER_SHARE, _RATE_SHARE = 0.02, 0.005, 0.05
 _LEAST_SPEED = 1e-6
@@ -75,7 +76,7 @@ def minima_of(problem: Problem) -> list[FloatArray]:
         pieces = replace(problem, films=(part,), whole=(whole,))
         found = _found(asked, guess.decel, guess.delta)
         starts.append((pieces, pieces.unknowns(found, launch[None])))
-    return _deepest(problem, abreast(starts, FROM_AFAR, ROBUST))
+    return _deepest(problem, abreast(starts, FROM_AFAR, ROBUST, _RIVAL))
 
 
 def _at_rest(problem: Problem) -> FloatArray:
@@ -89,13 +90,21 @@ def _at_rest(problem: Problem) -> FloatArray:
 
 
 def _deepest(problem: Problem, minima: list[tuple[FloatArray, float]]) -> list[FloatArray]:
-    """Of minima for some of the frames those that are deepest for all, in order."""
+    """Of minima for some of the frames those that are deepest for all, in order.
+
+    Of whole turns from frame to frame that fit as well the fewest come first.
+    """
     (x, least), *others = minima
     rivals = [x] + [other for other, cost in others if cost < least + _RIVAL]
     if len(rivals) == 1:
         return rivals
-    polished = [minimise(problem, one, LOOSE) for one in rivals]
-    return [one for one, _ in sorted(polished, key=lambda one: one[1])]
+    polished = sorted((minimise(problem, one, LOOSE) for one in rivals), key=lambda one: one[1])
+    found = [one for one, _ in polished]
+    if problem.films[0].angle is None or "launch_spin" in problem.asked.fixed:
+        return found
+    spin = problem.names.index((0, "launch_spin"))
+    as_well = sum(cost < polished[0][1] + _AS_WELL for _, cost in polished)
+    return sorted(found[:as_well], key=lambda x: abs(float(x[spin]))) + found[as_well:]
 
 
 def slowing_of(film: Seen, spread: float) -> float:
