@@ -124,14 +124,15 @@ def follow(
 
     Returns
     -------
-    how it ended, when, number of events, of steps and of frames reached, sum of the errors of steps
-    in units of ``ask.scale``
+    how it ended, when, number of events, of steps and of frames reached, root of the sum of
+    squares of the errors of steps, in units of ``ask.scale``
     """
     work, last, gaps, y, new, trial, contacts, at_once, lies, scale = desk
     at_once[0] = 0.0
     for i in range(SIZE):
         y[i], scale[i] = start[i], ask.scale[i]
     body, surface, drive, length_scale = model.body, model.surface, model.forces.drive, scale[X]
+    unit = length_scale / ask.speed  # s
     radius, held_there = body.radius, model.hold.kind != FREE
     moves = surface.vx != 0.0 or surface.vy != 0.0 or surface.spin != 0.0
     pull_there = model.forces.x != 0.0 or model.forces.y != 0.0 or len(drive) > 0
@@ -155,7 +156,7 @@ def follow(
     straight = max(_LAST * ask.tolerance / slow, 2.0 * REST) * ask.speed
     damps, turns = settling_rates(model, dry.load)
     how = TIME_UP
-    h = 1e-2 * min(ask.until, length_scale / ask.speed)
+    h = 1e-2 * min(ask.until, unit)
     reach, closest, swing = _NEAR, CLOSEST, _SWING
     halved = False  # the step that ends here is cut in two
     if ask.twin > 0.0:
@@ -240,13 +241,14 @@ def follow(
             pull = slip_rate(radius, work)
             least = REST * ask.speed
             h, ends = up_to_the_stop(stretch, h, q, least, pull, reach, closest, y, work)
-            way = NO_WAY
+            way, late = NO_WAY, 0.0
             if 0.0 < q <= straight:
-                way = goes_straight(
-                    stretch, ask.speed, ask.tolerance, t, q, pull, slow, y, work
+                way, late = goes_straight(
+                    stretch, ask.speed, ask.tolerance, unit, t, q, pull, slow, y, work
                 )  # fmt: skip
             if way[3] < 0.0:
                 mode, known = STOPS, False
+                wrong += (late / unit) ** 2
                 continue
         # a step
         landed = t + (1.0 if again else 1.1) * h >= target  # no longer than what was too long
@@ -278,6 +280,9 @@ def follow(
         grows = min(5.0, 5.0 if error == 0.0 else 0.9 * (allowed / error) ** power)
         h = (1.0 - share_of(bend)) * stretched(bend, length, grows)
         stuck, length = cut_short(stretch, t, length, y, scale, work, new)
+        if not math.isfinite(new[VX]):  # a shorter implicit step, which was not solved
+            h, again = 0.25 * length, True
+            continue
         landed = landed and stuck == NOTHING
         cut = landed or stuck != NOTHING
         for i in range(ROW):
@@ -305,13 +310,14 @@ def follow(
             landed, stuck, happens, length = False, NOTHING, -1, ask.twin * length
         if halved or happens >= 0:
             error = step(stretch, t, length, y, scale, work, new)
-            if not error <= allowed and is_astride(dry):  # the longer step may have leapt over all
+            # astride the longer step may have leapt over all; an implicit one is not solved
+            if not error <= allowed and (is_astride(dry) or not error < math.inf):
                 h = length * max(0.1, 0.9 * (allowed / error) ** power if error < math.inf else 0.1)
                 halved = False
                 continue
             for i in range(ROW):
                 last[i] = work[STAGES - 1, i]
-        wrong += error
+        wrong += error * error
         # the frames on it
         end = target if landed else t + length
         while frame < len(frames) and frames[frame] <= end:
@@ -359,8 +365,8 @@ def follow(
                 last[i] = y[i]
             to_laboratory(model, last, 1.0)
             happens, which, other, image = met_at_once(
-                bounds, contacts, happens, which, ask.order, body, t, last, ask.speed,
-                length_scale / ask.speed, ask.tolerance, new, trial,
+                bounds, contacts, happens, which, ask.order, body, t, last, ask.speed, unit,
+                ask.tolerance, new, trial,
             )  # fmt: skip
             if other >= 0:
                 at_once[0] += 1.0
@@ -389,15 +395,14 @@ def follow(
             before = kinetic_energy(body, y)
             rest_time = bounced(
                 bounds, contacts, which, image, body, y, t, floor_velocity(surface, y[X], y[Y]),
-                ask.speed, length_scale / ask.speed, ask.tolerance,
+                ask.speed, unit, ask.tolerance,
             )  # fmt: skip
             heat += before - kinetic_energy(body, y)
             to_laboratory(model, y, -1.0)
             if rest_time >= 0.0:
                 happens = LEANS
                 calm = max(calm, t + rest_time) if rest_time > 0.0 else calm
-                share = ask.speed * rest_time / length_scale
-                wrong += share * share
+                wrong += (rest_time / unit) ** 4
             leaning = contacts.rows[: touching(bounds, contacts)]
         if count + 1 >= len(events):
             how = EVENT_LIMIT
@@ -429,4 +434,4 @@ def follow(
     finite = True
     for i in range(SIZE):
         finite = finite and math.isfinite(y[i])
-    return (how if finite else NOT_FINITE), t, count, steps, frame, wrong
+    return (how if finite else NOT_FINITE), t, count, steps, frame, math.sqrt(wrong)

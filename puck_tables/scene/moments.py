@@ -113,7 +113,8 @@ def zero(
 ) -> float:  # fmt: skip
     """When within a step what is watched passes 0; ``new`` then.
 
-    By the method of false position, with the weight of an end that stays halved (Illinois).
+    By the method of false position, with the weight of an end that stays halved (Illinois).  Where
+    a step is not solved, ``new`` is NaN.
     """
     low, high, close = 0.0, h, 0.5 * _CLOSE * h
     first, last = watched(stretch, what, y), watched(stretch, what, new)
@@ -123,7 +124,9 @@ def zero(
             break
         middle = (low * last - high * first) / (last - first)
         middle = min(max(middle, low + close), high - close)  # past it, where it is an end
-        step(stretch, t, middle, y, scale, work, new)
+        error = step(stretch, t, middle, y, scale, work, new)
+        if not error < math.inf:  # an implicit step that is not solved
+            return middle
         value = watched(stretch, what, new)
         if sign * value >= 0.0:
             first = 0.5 * first if stays > 0 else first
@@ -185,33 +188,42 @@ def settle_way(stretch: Stretch, t: float, q: float, y: FloatArray, work: FloatA
 
 @inlined
 def goes_straight(
-    stretch: Stretch, speed: float, tolerance: float, t: float, q: float, pull: float, slow: float,
-    y: FloatArray, work: FloatArray,
-) -> tuple[float, float, float, float]:  # fmt: skip
+    stretch: Stretch, speed: float, tolerance: float, unit: float, t: float, q: float, pull: float,
+    slow: float, y: FloatArray, work: FloatArray,
+) -> tuple[tuple[float, float, float, float], float]:  # fmt: skip
     """The way of a slip that is about to stop: its direction and rate; no rate: not yet.
 
-    What brakes slowly takes so long that its direction must have settled, and all else be small.
-    Of a slip that is not more than the local errors that steps make, ``tolerance``, of ``speed``,
-    nobody knows which way a rim on a cushion turns it.
+    Also by how much, s, it may stop later: a direction that still turns may settle to the one that
+    brakes least, of which what friction leaves at rest is known.  That must be a local error, in
+    ``unit``, s, or the slip not be more than such errors are, ``tolerance``, of ``speed``: nobody
+    knows which way it is turned.  What brakes slowly must have settled, and all else be small.
     """
     way = stopping(stretch.model.body.radius, y, work)
+    brakes, mass = -way[3], stretch.model.body.mass
+    if not brakes > 0.0:
+        return NO_WAY, 0.0
     leaning, still = stretch.leaning.shape[0] > 0, q <= 2.0 * REST * speed
-    across = math.sqrt(max(pull * pull - way[3] * way[3], 0.0))
-    quick = way[3] < -_SLOW * stretch.dry.load / stretch.model.body.mass / slow
-    excess = excess_at_rest(stretch, t, y)[0] if way[3] < 0.0 else 0.0
+    across = math.sqrt(max(pull * pull - brakes * brakes, 0.0))
+    small = _SLOW * stretch.dry.load
+    excess = excess_at_rest(stretch, t, y)[0]
+    least = max(-excess, small) / (mass * slow)
+    late = max(q / least - q / brakes, 0.0) * min(across / brakes, 1.0)
+    blurred = q <= _BLURRED * tolerance * speed
+    quick = brakes > small / mass / slow and across <= brakes
+    quick = quick and (blurred or late <= tolerance * unit)
     if leaning and excess == math.inf:  # it goes through rest, for the floor goes into the wall
-        still = across <= _STEADY * -way[3] or q <= _LOST * speed
-        quick = False
+        still = across <= _STEADY * brakes or q <= _LOST * speed
+        quick, late = False, 0.0
     elif excess > SLACK * stretch.dry.load:
-        return NO_WAY
-    if leaning and q <= _BLURRED * tolerance * speed and way[3] <= -_BRAKED * pull:
-        return way
-    if not (quick and across <= -way[3]) and not still:
-        return NO_WAY
+        return NO_WAY, 0.0
+    if leaning and blurred and brakes >= _BRAKED * pull:
+        return way, late
+    if not quick and not still:
+        return NO_WAY, 0.0
     for i in range(stretch.leaning.shape[0]):  # the rim may stick before
         sticks = abs(watched(stretch, i, y)) <= _FAR * q
         rolls = stretch.leaning[i, RIM] == 0.0 and excess == math.inf  # and goes on to
         unsure = stretch.leaning[i, GRIP] > 0.0 and sticks and not rolls
         if unsure and q > 2.0 * REST * speed:
-            return NO_WAY
-    return way if way[3] < 0.0 else NO_WAY
+            return NO_WAY, 0.0
+    return way, late

@@ -53,7 +53,7 @@ TWINS = (Twin(30.0, 0.5), Twin(8.0, 0.3))
 FINER = 1 / 30  # of the tolerance before: tried one after the other
 FINEST = 1e-12
 TRIALS = 4  # at most, but where two lines are met at once
-STEP_SHARE = 0.1  # of the sum of the errors of steps, which are those of order 4
+ALIKE = 2.0  # times the gap more, where the steps of a run err as much as the twin's
 PROBES = 7  # states on the way that are compared too
 MOST_IN_VAIN = 2  # finer tolerances in a row that do not halve the estimate
 
@@ -212,8 +212,9 @@ def _estimated(
 ) -> tuple[_Followed, float, float]:
     """A run, and how far coarser twins are from it, in units of Q/J and Q²/J, on the way and last.
 
-    Errors grow alike in both, and its own are much larger.  Also how far off it is if, of two lines
-    that it meets at once, the other one is first.
+    Errors grow alike in both, and its own are much larger: a gap to one whose steps err no more,
+    because it could take no longer ones, may be small by chance, and counts for more.  Also how far
+    off it is if, of two lines that it meets at once, the other one is first.
     """
     first = _followed(prepared, np.empty(0), events)
     _refuse_failed(prepared, first)
@@ -235,8 +236,10 @@ def _estimated(
     probed = place[: len(run.states)] < PROBES
     seen = run._replace(states=run.states[probed])
     gaps = [max(_gap(prepared, other, seen), late / unit) for other, late in others]
-    gap, doubt = max(gaps[: len(TWINS)]), max([0.0, *gaps[len(TWINS) :]])
-    error = max(gap, doubt) + STEP_SHARE * run.wrong + friction_error(prepared.scene)
+    alike = [min(1.0, run.wrong / max(other.wrong, 1e-300)) for other, _ in others]
+    gap = max((1.0 + ALIKE * a) * g for a, g in zip(alike, gaps[: len(TWINS)], strict=False))
+    doubt = max([0.0, *gaps[len(TWINS) :]])
+    error = max(gap, doubt) + run.wrong + friction_error(prepared.scene)
     return run._replace(states=run.states[~probed]), error, doubt
 
 
