@@ -150,14 +150,11 @@ def _panel(
         c, s = cosine_sine_of(half * _NODE[i])
         weight = half * _WEIGHT[i]
         x, y = cosine * c - sine * s, sine * c + cosine * s
-        if ring:
-            more = _on_ring(alpha, beta, x, y)
-        else:
-            more = _at(alpha, beta, cx + x, cy + y, -y, x)
-        s0, s1 = summed(s0, weight * more[0]), summed(s1, weight * more[1])
-        s2, s3 = summed(s2, weight * more[2]), summed(s3, weight * more[3])
-        s4, s5 = summed(s4, weight * more[4]), summed(s5, weight * more[5])
-        s6, s7 = summed(s6, weight * more[6]), summed(s7, weight * more[7])
+        here = _on_ring(alpha, beta, x, y) if ring else _at(alpha, beta, cx + x, cy + y, -y, x)
+        s0, s1 = summed(s0, weight * here[0]), summed(s1, weight * here[1])
+        s2, s3 = summed(s2, weight * here[2]), summed(s3, weight * here[3])
+        s4, s5 = summed(s4, weight * here[4]), summed(s5, weight * here[5])
+        s6, s7 = summed(s6, weight * here[6]), summed(s7, weight * here[7])
     return s0, s1, s2, s3, s4, s5, s6, s7
 
 
