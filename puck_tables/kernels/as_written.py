@@ -94,6 +94,17 @@ def spline_values(
     return spline_polynomials(c, k, weights, s, width, powers)[:width]
 
 
+def summed(total: float, more: float) -> float:
+    """A sum whose order does not matter.
+
+    Examples
+    --------
+    >>> summed(1.0, 2.0)
+    3.0
+    """
+    return total + more
+
+
 def bits_of(number: float) -> Any:
     """The integer of the same bits.
 

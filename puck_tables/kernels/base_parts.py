@@ -22,14 +22,14 @@ from typing import Any
 import numpy as np
 
 from puck_tables.contact import closed_form
-from puck_tables.kernels.compile import inlined, inner
+from puck_tables.kernels.compile import inlined, inner, summed
 from puck_tables.kernels.elementary import cosine_sine_of
 
 Sums = tuple[float, float, float, float, float, float, float, float]
 NOTHING: Sums = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 _NODES = 16
-_NODE, _WEIGHT = (side[_NODES // 2 :] for side in np.polynomial.legendre.leggauss(_NODES))
+_NODE, _WEIGHT = np.polynomial.legendre.leggauss(_NODES)
 _FAR = 2.0  # radii from which on the centre of rotation is no trouble for Gauss's rule
 _PANEL = 2.4  # the length of a panel over its distance from the centre of rotation
 _RING_PANEL = 1.6  # of a ring, where w is divided by
@@ -97,11 +97,10 @@ def line_sums(alpha: float, beta: float, x: float, y: float, to_x: float, to_y: 
     if not _FAR * beta > alpha:
         sums, half = NOTHING, 0.5 * length
         mx, my = 0.5 * (x + to_x), 0.5 * (y + to_y)
-        for i in range(_NODES // 2):
+        for i in range(_NODES):
             way = half * _NODE[i]
             weight = half * _WEIGHT[i]
             sums = plus(sums, weight, _at(alpha, beta, mx + way * tx, my + way * ty, tx, ty))
-            sums = plus(sums, weight, _at(alpha, beta, mx - way * tx, my - way * ty, tx, ty))
         return sums
     # s along it from the foot (x0, y0) of the disc's centre; w/β = hypot(s − place, off)
     begin = x * tx + y * ty
@@ -144,21 +143,19 @@ def _panel(
     alpha: float, beta: float, cx: float, cy: float, radius: float, middle: float, half: float,
     ring: bool,
 ) -> Sums:  # fmt: skip
-    cosine, sine = radius * math.cos(middle), radius * math.sin(middle)
-    sums = NOTHING
-    for i in range(_NODES // 2):
-        turn = half * _NODE[i]
+    cosine, sine = cosine_sine_of(middle)
+    cosine, sine = radius * cosine, radius * sine
+    s0 = s1 = s2 = s3 = s4 = s5 = s6 = s7 = 0.0
+    for i in range(_NODES):
+        c, s = cosine_sine_of(half * _NODE[i])
         weight = half * _WEIGHT[i]
-        c, s = cosine_sine_of(turn)
         x, y = cosine * c - sine * s, sine * c + cosine * s
-        u, v = cosine * c + sine * s, sine * c - cosine * s
-        if ring:
-            sums = plus(sums, weight, _on_ring(alpha, beta, x, y))
-            sums = plus(sums, weight, _on_ring(alpha, beta, u, v))
-        else:
-            sums = plus(sums, weight, _at(alpha, beta, cx + x, cy + y, -y, x))
-            sums = plus(sums, weight, _at(alpha, beta, cx + u, cy + v, -v, u))
-    return sums
+        here = _on_ring(alpha, beta, x, y) if ring else _at(alpha, beta, cx + x, cy + y, -y, x)
+        s0, s1 = summed(s0, weight * here[0]), summed(s1, weight * here[1])
+        s2, s3 = summed(s2, weight * here[2]), summed(s3, weight * here[3])
+        s4, s5 = summed(s4, weight * here[4]), summed(s5, weight * here[5])
+        s6, s7 = summed(s6, weight * here[6]), summed(s7, weight * here[7])
+    return s0, s1, s2, s3, s4, s5, s6, s7
 
 
 @inner

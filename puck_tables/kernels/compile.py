@@ -14,6 +14,7 @@ if as_written():
         rows_of,
         spline_polynomials,
         spline_values,
+        summed,
         weighted_rows,
     )
     from puck_tables.kernels.as_written import unchanged as allocating
@@ -31,10 +32,12 @@ else:
         rows_of,
         spline_polynomials,
         spline_values,
+        summed,
         weighted_rows,
     )
 
 __all__ = [
     "BLOCK", "allocating", "bits_of", "inlined", "inner", "into_row", "into_rows", "kernel",
-    "number_of", "row_of", "rows_of", "spline_polynomials", "spline_values", "weighted_rows",
+    "number_of", "row_of", "rows_of", "spline_polynomials", "spline_values", "summed",
+    "weighted_rows",
 ]  # fmt: skip

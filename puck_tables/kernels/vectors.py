@@ -205,6 +205,16 @@ def _number_of(typing: Any, bits: Any) -> Any:
     return types.float64(types.int64), build
 
 
+def _summed(typing: Any, total: Any, more: Any) -> Any:
+    """Compiled a + b in a sum whose order does not matter: a loop over it may keep several."""
+
+    def build(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        return builder.fadd(args[0], args[1], flags=("contract", "reassoc", "nsz"))
+
+    return types.float64(types.float64, types.float64), build
+
+
+summed: Any = intrinsic(_summed)
 bits_of: Any = intrinsic(_bits_of)
 number_of: Any = intrinsic(_number_of)
 

@@ -27,6 +27,7 @@ BOUNCES, BORDER, EDGE = 2, 4, 5  # among what happens on the way
 BORDER_NUMBER, BORDER_SIDE = 3, 4  # columns of a border
 DEGREE = 5
 _SHORTEST = 1e-10  # of a step: turning points closer than this are one
+_CLOSE = 1e-8  # of a step: from so close a crossing is known by its slope
 
 
 class Boundaries(NamedTuple):
@@ -167,6 +168,24 @@ def _turning_points(b: FloatArray, out: FloatArray) -> int:
     return count
 
 
+@inlined
+def _root(b: FloatArray, low: float, high: float) -> float:
+    """Where a polynomial in Bernstein's basis, positive at one place, is 0 before the other."""
+    before, after = _value(b, DEGREE, low), _value(b, DEGREE, high)
+    for _ in range(50):
+        if high - low <= _SHORTEST or not before > 0.0 > after:
+            break
+        guess = min(max((low * after - high * before) / (after - before), low), high)
+        value = _value(b, DEGREE, guess)
+        if value < 0.0:
+            high, after, before = guess, value, 0.5 * before
+        elif value > 0.0:
+            low, before, after = guess, value, 0.5 * after
+        else:
+            return guess
+    return 0.5 * (low + high)
+
+
 @allocating
 def _crossing(
     line: Line, gaps: FloatArray, stretch: Stretch, t: float, h: float, y: FloatArray,
@@ -191,7 +210,7 @@ def _crossing(
         return math.inf
     if low == 0.0 and line.gap <= 0.0:
         return 0.0
-    guess = 0.5 * (low + high)
+    guess = h * _root(gaps, low / h, high / h)
     for _ in range(100):
         step(stretch, t, guess, y, scale, work, new)
         value = line.gap + (line.x * new[SIZE] + line.y * new[SIZE + 1])
@@ -203,9 +222,10 @@ def _crossing(
         better = guess - value / slope if slope != 0.0 else low
         if not low < better < high:
             better = 0.5 * (low + high)
-        if better == guess or high - low <= 1e-15 * h:
-            break
+        close = abs(better - guess) <= _CLOSE * h  # its square is rounding
         guess = better
+        if close or high - low <= 1e-15 * h:
+            break
     return guess
 
 

@@ -1,16 +1,7 @@
-"""An explicit step of order 8, on a time that is graded towards where a slip stops.
+"""An explicit step of order 8, on a graded time (:mod:`puck_tables.scene.grading`).
 
 The pair 8(5,3) of Dormand and Prince (:data:`puck_tables.motion.tableaus.DORMAND_PRINCE_8`).  Its
 error is h e₅²/√(e₅² + e₃²/100), of order 8, with e₅ and e₃ those of embedded methods of order 5, 3.
-
-Where a slip stops, its direction changes like a power of what is left of it, so that steps uniform
-in time must be ever shorter shares of that.  A step that takes the share s of what is left goes
-uniformly from w = 1 to 1 − b, w⁴ being what is left and b = 1 − (1 − s)^(1/4) its bend, over times
-
-    t + h (1 − w⁴)/(1 − (1 − b)⁴) .
-
-The share is only foreseen, from the slip and its rate at the start: any bend gives a step of the
-method, of the same order, and the error that it estimates is its own.
 """
 
 from __future__ import annotations
@@ -25,6 +16,7 @@ from puck_tables.motion.tableaus import DORMAND_PRINCE_8
 from puck_tables.scene.blade_axes import by_floor, has_axes, rates_by_blade
 from puck_tables.scene.equations import SIZE, rates_here
 from puck_tables.scene.friction import VX, VY, X, Y
+from puck_tables.scene.grading import powers_of
 from puck_tables.scene.ingredients import Stretch
 
 STAGES = len(DORMAND_PRINCE_8.c)  # the last one stands at the end of the step
@@ -36,33 +28,6 @@ _SECOND = np.array([
     [*np.flatnonzero(row), stage, stage][1] for stage, row in enumerate(_A)
 ])  # fmt: skip
 _LATE = int(_SECOND[-1])
-UNIFORM = 0.0
-_ROOM = 0.02  # a step that takes a smaller share of what is left is as good without a bend
-CLOSEST = 0.87  # of what is left: no step takes more, nor if it is a tenth longer to land
-
-
-@inlined
-def bend_of(share: float) -> float:
-    """The bend of a step that takes this share of what is left."""
-    return 1.0 - math.sqrt(math.sqrt(1.0 - share)) if share > _ROOM else UNIFORM
-
-
-@inlined
-def share_of(bend: float) -> float:
-    """The share of what is left that a step of this bend takes; none: 0."""
-    left = 1.0 - bend
-    return 1.0 - left * left * left * left
-
-
-@inlined
-def stretched(bend: float, h: float, factor: float) -> float:
-    """A step of so many times the length, as it counts: where h is the share s, 1 − (1 − s)^factor.
-
-    Until the next step begins, what is left has become less by 1 − s.
-    """
-    if bend == UNIFORM:
-        return h * factor
-    return h * (1.0 - (1.0 - bend) ** (4.0 * factor)) / share_of(bend)
 
 
 @inlined
@@ -94,15 +59,11 @@ def explicit_step(
     On entry work[0] is dy/dt at t, on return work[STAGES − 1] that at the end; those between are by
     the variable of the step.  Velocities of a blade are by its own axes, on entry and on return.
     """
-    bend, own = stretch.bend, has_axes(stretch)
-    left = 1.0 - bend
-    whole = 1.0 - left * left * left * left
-    slope = steepness = 4.0 * bend / whole if bend != UNIFORM else 1.0
+    graded, own = stretch.grade[1] != 0.0, has_axes(stretch)
+    slope, two, three, four = powers_of(stretch.grade)
     for stage in range(1, STAGES):
-        moment, here = t + _C[stage] * h, 1.0
-        if bend != UNIFORM:
-            w = 1.0 - bend * _C[stage]
-            moment, here = t + (h / whole) * (1.0 - w * w * w * w), steepness * w * w * w
+        s = _C[stage]
+        moment = t + h * (s * (slope + s * (two + s * (three + s * four))))
         _five(y, 0, h, slope, stage, work, new)
         _five(y, 5, h, slope, stage, work, new)
         along, across = new[VX], new[VY]
@@ -112,7 +73,8 @@ def explicit_step(
         if own:
             new[VX], new[VY] = along, across
             rates_by_blade(stretch, new, work, stage)
-        if bend != UNIFORM and stage < STAGES - 1:
+        if graded and stage < STAGES - 1:
+            here = slope + s * (2.0 * two + s * (3.0 * three + s * (4.0 * four)))
             for i in range(SIZE):
                 work[stage, i] *= here
     new[SIZE], new[SIZE + 1] = h * slope * _B[0] * work[0, X], h * slope * _B[0] * work[0, Y]

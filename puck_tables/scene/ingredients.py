@@ -15,6 +15,7 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
 from puck_tables.scene.forces import Forces
+from puck_tables.scene.grading import Grade
 from puck_tables.scene.ground import PLACE_X, PLACE_Y
 
 if TYPE_CHECKING:
@@ -146,8 +147,8 @@ class Stretch(NamedTuple):
     have passed; ``mode`` SLIDES, CARRIED (at rest on the floor), STOPS: with the constant relative
     acceleration way[3] times the direction way[:3]; ``newton``: 0 for explicit steps; for implicit
     ones, where the slip settles much faster than it changes, how well to solve their equations, in
-    units of the scales; ``bend``: how the time of explicit ones is graded, see
-    :mod:`puck_tables.scene.explicit`.
+    units of the scales; ``grade``: how the time of explicit ones is graded, see
+    :mod:`puck_tables.scene.grading`.
     """
 
     model: Model
@@ -157,7 +158,7 @@ class Stretch(NamedTuple):
     mode: int
     way: tuple[float, float, float, float]
     newton: float
-    bend: float
+    grade: Grade
 
 
 def hold_of(hold: Constraint | None, launch: Launch) -> Hold:

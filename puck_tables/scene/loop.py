@@ -3,10 +3,11 @@
 The pair 8(5,3) (:mod:`puck_tables.scene.explicit`), or Radau IIA where the direction of the slip
 settles much faster than the slip changes (next to the limit of what friction holds).  Next to
 relative rest, where the direction of friction turns within Q over what changes it, a step is at
-most half of that; one that ends with the slip may take more, and is graded.  At the very end a slip
-stops on a straight line.  Every event is found on a real step of the method from the last step end
-and becomes a step end.  Rebounds that die out are a geometric series, of which only the first are
-taken one by one (see :mod:`puck_tables.scene.settle`).
+most half of that; one that ends with the slip may take more, and is graded, as are those of a base
+on several frictions from one kink of them to the next.  At the very end a slip stops on a straight
+line.  Every event is found on a real step of the method from the last step end and becomes a step
+end.  Rebounds that die out are a geometric series, of which only the first are taken one by one
+(see :mod:`puck_tables.scene.settle`).
 """
 
 from __future__ import annotations
@@ -40,8 +41,17 @@ from puck_tables.scene.equations import (
     slip_speed,
     to_laboratory,
 )
-from puck_tables.scene.explicit import CLOSEST, STAGES, UNIFORM, bend_of, share_of, stretched
+from puck_tables.scene.explicit import STAGES
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
+from puck_tables.scene.grading import (
+    CLOSEST,
+    UNIFORM,
+    between,
+    left_after,
+    paced,
+    stretched,
+    towards_stop,
+)
 from puck_tables.scene.ground import BORDERS as GROUND_BORDERS
 from puck_tables.scene.ingredients import (
     CARRIED,
@@ -55,6 +65,7 @@ from puck_tables.scene.ingredients import (
     floor_velocity,
     is_astride,
 )
+from puck_tables.scene.kinks import next_kink
 from puck_tables.scene.moments import (
     NOTHING,
     REST,
@@ -83,7 +94,7 @@ from puck_tables.scene.settle import (
     touching,
 )
 from puck_tables.scene.standstill import from_standstill
-from puck_tables.scene.step_size import allowed_error, follow_scales, up_to_the_stop
+from puck_tables.scene.step_size import follow_scales, up_to_the_stop
 from puck_tables.scene.steps import step
 
 # how a run ends
@@ -100,6 +111,9 @@ _NEAR = 0.5  # of the time in which the slip would end, at most, is a step
 _STIFF, _MILD = 0.8, 0.3  # of the time in which a slip settles: longer steps are implicit,
 _SLOWLY = 0.1  # if the slip changes by less than this of itself meanwhile
 _NEWTON, _FINEST_NEWTON = 1e-3, 1e-15  # of the local error: how well implicit steps are solved
+_PACE = 2.7  # times the eighth root of the local error: how far a first step astride comes,
+_FASTEST, _SLOWEST = 0.5, 1e-6  # and how far any; shorter ones are not graded
+_NEAR_KINK = 0.01  # of a step to a kink: how well it was foreseen
 _SWING = 0.05  # rad that a carried puck turns, at most, in a step
 
 
@@ -145,8 +159,7 @@ def follow(
     leaning = contacts.rows[: touching(bounds, contacts)]
     look_at_patches(regions.ground, lies, radius, y[X], y[Y])
     dry = dry_under(regions, region, lies)
-    allowed = allowed_error(ask.tolerance, dry)
-    room, leans = contacts.room, contacts.leans
+    allowed, room, leans = ask.tolerance, contacts.room, contacts.leans
     to_laboratory(model, y, -1.0)
     t, heat, mode, piece, way, stiff = 0.0, 0.0, SLIDES, 0, NO_WAY, False
     resting, calm = False, 0.0  # whether its rest is noted; when rebounds have died out
@@ -158,13 +171,16 @@ def follow(
     how = TIME_UP
     h = 1e-2 * min(ask.until, unit)
     reach, closest, swing = _NEAR, CLOSEST, _SWING
+    # astride: how far a step comes between two kinks of friction, when the last was, how close
+    pace, fastest, since, near = min(_PACE * allowed**0.125, _FASTEST), _FASTEST, 0.0, 0.0
     halved = False  # the step that ends here is cut in two
     if ask.twin > 0.0:
         h, reach, swing = ask.twin * h, (1.0 + ask.twin) * reach, (1.0 + ask.twin) * swing
         closest *= 1.0 - 0.2 * ask.twin
+        fastest *= 1.0 - 0.2 * ask.twin
     settle, known = True, False  # whether to look what holds the puck; whether work[0] is there
-    newton, bend, again = 0.0, UNIFORM, False  # again: the step before was too long
-    stretch = Stretch(model, dry, leaning, piece, mode, way, newton, bend)
+    newton, grade, again = 0.0, UNIFORM, False  # again: the step before was too long
+    stretch = Stretch(model, dry, leaning, piece, mode, way, newton, grade)
     while t < until:
         while piece < len(drive) and drive[piece, 0] <= t:
             piece += 1
@@ -236,7 +252,7 @@ def follow(
             stretch = Stretch(model, dry, leaning, piece, mode, way, newton, UNIFORM)
             rates(stretch, t, y, work, FIRST)
         settle, known = False, True
-        ends = 0.0  # 1/s: of the slip
+        ends, left = 0.0, math.inf  # 1/s: of the slip; until friction bends
         if mode == SLIDES and dry.load > 0.0:
             pull = slip_rate(radius, work)
             least = REST * ask.speed
@@ -251,10 +267,16 @@ def follow(
                 wrong += (late / unit) ** 2
                 continue
         # a step
-        landed = t + (1.0 if again else 1.1) * h >= target  # no longer than what was too long
-        length = target - t if landed else h
-        bend = bend_of(ends * length)
-        stretch = Stretch(model, dry, leaning, piece, mode, way, newton, bend)
+        if mode == SLIDES and newton == 0.0 and is_astride(dry):
+            left = next_kink(regions.ground, radius, surface, y, work, near)
+            if ends * left > 1.0:  # it stops before
+                left = 1.0 / ends if ends * (t - since) < 1.0 else math.inf
+        paces = left < math.inf and pace > _SLOWEST
+        length = paced(t - since, left, min(pace, fastest)) if paces else h
+        landed = t + (1.0 if again or paces else 1.1) * length >= target  # not what was too long
+        length = target - t if landed else length
+        grade = between(t - since, left, length) if paces else towards_stop(ends * length)
+        stretch = Stretch(model, dry, leaning, piece, mode, way, newton, grade)
         error = step(stretch, t, length, y, scale, work, new)
         steps += 1
         if steps > ask.step_limit:
@@ -265,20 +287,24 @@ def follow(
         for i in range(leaning.shape[0]):
             lifts = max(lifts, leaning[i, NX] * new[SIZE] + leaning[i, NY] * new[SIZE + 1])
         if lifts > ask.tolerance * length_scale and error <= allowed:
-            h = 0.25 * length
+            h, pace = 0.25 * length, 0.25 * pace
             continue
         if not error <= allowed:
             shrink = 0.25 if newton > 0.0 else 0.1
             if error < math.inf:
                 shrink = max(0.1, 0.9 * (allowed / error) ** power)
-            h, again = stretched(bend, length, shrink), True
-            if (t + h == t and t > 0.0) or h < 1e-300:
+            shorter, again = stretched(grade, length, shrink), True
+            h, pace = (h, grade[1] * shrink) if paces else (shorter, pace)
+            if (t + shorter == t and t > 0.0) or shorter < 1e-300:
                 how = NOT_FINITE
                 break
             continue
         again = False
         grows = min(5.0, 5.0 if error == 0.0 else 0.9 * (allowed / error) ** power)
-        h = (1.0 - share_of(bend)) * stretched(bend, length, grows)
+        if paces:
+            pace = max(grade[1] * grows, pace if landed or length == left else 0.0)
+        else:
+            h = left_after(grade) * stretched(grade, length, grows)
         stuck, length = cut_short(stretch, t, length, y, scale, work, new)
         if not math.isfinite(new[VX]):  # a shorter implicit step, which was not solved
             h, again = 0.25 * length, True
@@ -312,7 +338,8 @@ def follow(
             error = step(stretch, t, length, y, scale, work, new)
             # astride the longer step may have leapt over all; an implicit one is not solved
             if not error <= allowed and (is_astride(dry) or not error < math.inf):
-                h = length * max(0.1, 0.9 * (allowed / error) ** power if error < math.inf else 0.1)
+                shrink = max(0.1, 0.9 * (allowed / error) ** power if error < math.inf else 0.1)
+                h, pace = (h, pace * shrink) if paces else (length * shrink, pace)
                 halved = False
                 continue
             for i in range(ROW):
@@ -324,6 +351,9 @@ def follow(
             step(stretch, t, frames[frame] - t, y, scale, work, trial)
             framed(rows[frame], stretch, frames[frame], trial, heat, work)
             frame += 1
+        near = 0.0
+        if length == left or happens in (BORDER, _PATCH):
+            since, near = end, _NEAR_KINK * length
         t = end
         for i in range(SIZE):
             y[i] = new[i]
@@ -384,7 +414,6 @@ def follow(
                 which += int(regions.ground[GROUND_BORDERS])
             happens = LEAVES if back else COMES_OVER
             dry = dry_under(regions, region, lies)
-            allowed = allowed_error(ask.tolerance, dry)
             damps, turns = settling_rates(model, dry.load)
             stiff = stiff and dry.load > 0.0
             mode = CARRIED if mode == CARRIED and dry.load > 0.0 else SLIDES

@@ -41,6 +41,7 @@ OUTSIDE, ASTRIDE, INSIDE = range(3)  # how a base lies to a patch
 _LOOKS = 256  # at a step, at most so many of one length; shorter grazes may pass unseen
 _CLOSE = 1e-13  # of a step: how well a moment in it is known
 _ASIDE, _SECANTS = 1e-4, 12  # of a step: how the slope is seen at first; then at most
+_NEAR = 1e-8  # of a step: from so close a moment is known by the slope
 
 
 @inner
@@ -189,7 +190,11 @@ def first_patch(
             else:
                 low, before = guess, room
                 after *= 0.5
-        found = _on_steps(ground, k, how, stretch, t, high * h, h, y, scale, work, new)
+        mx, my = _on_curve(wx, wy, h, surface, first, last, high - _ASIDE)
+        after = room_by(ground, k, how, radius, y[X] + mx, y[Y] + my)
+        mx, my = _on_curve(wx, wy, h, surface, first, last, high + _ASIDE)
+        slope = 0.5 * (room_by(ground, k, how, radius, y[X] + mx, y[Y] + my) - after) / _ASIDE
+        found = _on_steps(ground, k, how, stretch, t, high * h, h, slope / h, y, scale, work, new)
         if found < moment:
             which, moment = k, found
     return which, moment
@@ -198,21 +203,19 @@ def first_patch(
 @inner
 def _on_steps(
     ground: FloatArray, k: int, how: int, stretch: Stretch, t: float, near: float, h: float,
-    y: FloatArray, scale: FloatArray, work: FloatArray, new: FloatArray,
+    slope: float, y: FloatArray, scale: FloatArray, work: FloatArray, new: FloatArray,
 ) -> float:  # fmt: skip
-    """When on real steps there is no room by a patch, from close by: by secants."""
-    radius = stretch.model.body.radius
-    one = near
-    step(stretch, t, one, y, scale, work, new)
-    value = room_by(ground, k, how, radius, new[X], new[Y])
-    two = min(max(one - _ASIDE * h, 0.0), h)
-    for _ in range(_SECANTS):
-        if abs(two - one) <= _CLOSE * h:
+    """When on real steps there is no room by a patch, from close by and about how fast it goes."""
+    radius, one, other, before = stretch.model.body.radius, near, near, 0.0
+    for n in range(_SECANTS):
+        step(stretch, t, one, y, scale, work, new)
+        value = room_by(ground, k, how, radius, new[X], new[Y])
+        if n > 0 and value != before:
+            slope = (value - before) / (one - other)
+        if slope == 0.0:
             break
-        step(stretch, t, two, y, scale, work, new)
-        other = room_by(ground, k, how, radius, new[X], new[Y])
-        if other == value:
+        better = min(max(one - value / slope, 0.0), h)
+        other, one, before = one, better, value
+        if abs(one - other) <= _NEAR * h or t + one == t + other:  # what is left is rounding
             break
-        better = min(max(two - other * (two - one) / (other - value), 0.0), h)
-        one, value, two = two, other, better
-    return two
+    return one

@@ -7,20 +7,9 @@ import math
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
 from puck_tables.scene.equations import GIVEN, SIZE, kinetic_energy, slip_change
-from puck_tables.scene.ingredients import Body, Dry, Stretch, is_astride
+from puck_tables.scene.ingredients import Body, Stretch
 
 _ULP = 4e-16  # of a number: rounding of steps to it
-_ABRUPT, _ROUNDING = 0.03, 3e-14  # of the local error, astride, and the least
-
-
-@inlined
-def allowed_error(tolerance: float, dry: Dry) -> float:
-    """The error of a step.
-
-    Where the rim comes over a border friction grows like t^(3/2): there a step errs by what it is
-    estimated to, and not by much less as on a smooth motion.
-    """
-    return max(_ABRUPT * tolerance, min(tolerance, _ROUNDING)) if is_astride(dry) else tolerance
 
 
 @inlined
