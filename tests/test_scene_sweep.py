@@ -53,15 +53,16 @@ def test_same_bits_however_it_is_cut(whole: SceneMap, threads: int, chunk: int) 
 
 
 @pytest.mark.parametrize("index", [(0, 0, 0, 0), (1, 4, 2, 1), (2, 3, 3, 0)])
-def test_same_bits_as_single_runs(whole: SceneMap, index: tuple[int, ...]) -> None:
+def test_the_same_as_single_runs(whole: SceneMap, index: tuple[int, ...]) -> None:
+    """To rounding: each is compiled for itself, and a compiler chooses where to fuse a·b + c."""
     single = tables()
     for (path, values), i in zip(whole.axes.items(), index, strict=True):
         set_path(single, path, float(values[i]))
     run = simulate_scene(single)
     for name, value in run.last.items():
         if name != "time":
-            assert whole.columns[name][index] == value, name
-    assert whole.columns["end_time"][index] == run.end_time
+            assert whole.columns[name][index] == pytest.approx(value, abs=1e-13), name
+    assert whole.columns["end_time"][index] == pytest.approx(run.end_time, abs=1e-13)
     assert whole.columns["impacts"][index] == sum(e[1] == "impact" for e in run.events)
 
 
