@@ -94,6 +94,7 @@ def estimate(problem: Problem, start: FloatArray, noise_known: Known) -> Estimat
         if change < _SETTLED and np.array_equal(again, kept):
             break
         kept = again
+    x = problem.within(x)
     return Estimate(problem, x, kept, rows, problem.jacobian(x))
 
 

@@ -359,6 +359,14 @@ class Asked:
             pressure = law_of(f"annulus:{self.fixed['inner']!r}")
         return curve_of(pressure, self.known()["gyration"], tall).highest
 
+    def steepest(self, name: str) -> float:
+        """The largest friction, or J, of a puck of known height and radius: 2fh/r is its δ."""
+        known = self.known()
+        if self.uses_delta or {"height", "radius", "gravity"} & {*self.free} or not known["height"]:
+            return math.inf
+        friction = 0.5 * self.highest(True) * known["radius"] / known["height"]
+        return friction if name == "friction" else friction * known["gravity"]
+
     def limits(self, name: str) -> tuple[float, float]:
         """The range in which a parameter is looked for."""
         low, high = (ALL.get(name) or WALL[name])[1:3]

@@ -111,11 +111,13 @@ class Problem:
 
     @cached_property
     def limits(self) -> tuple[FloatArray, FloatArray]:
-        """The range of each unknown: δ no higher than its motions are known."""
+        """The range of each unknown: no δ higher than motions of such a puck are known."""
         pairs = np.array([self.asked.limits(name) for _, name in self.names]).reshape(-1, 2)
         for k, (_, name) in enumerate(self.names):
             if name == "delta":
                 pairs[k, 1] = min(pairs[k, 1], self.asked.highest(self.tall))
+            elif name in ("friction", "decel"):
+                pairs[k, 1] = min(pairs[k, 1], self.asked.steepest(name))
         return pairs[:, 0], pairs[:, 1]
 
     def found(self, x: FloatArray) -> Found:
@@ -156,6 +158,15 @@ class Problem:
                 wall, at = Wall(*x[at : at + len(WALL)].tolist()), at + len(WALL)
             found.append(wall)
         return tuple(found)
+
+    def within(self, x: FloatArray) -> FloatArray:
+        """The same, with the height of the tallest puck that moves so: all higher ones do, too."""
+        delta, highest = self.asked.scales(self.found(x))[1], self.asked.highest(self.tall)
+        if "height" not in self.asked.free or not delta > highest:
+            return x
+        lower = x.copy()
+        lower[self.asked.free.index("height")] *= highest / delta
+        return lower
 
     def moving(self, found: Found) -> Moving:
         """What moves the puck."""
