@@ -119,7 +119,8 @@ class Lateral:
 
     It is to the left of the motion over the floor where the spin is counter-clockwise, and does no
     work there.  Players of curling fit it to the curl of their stones; no dry friction over the
-    contact explains it.
+    contact explains it.  With b < 1 a puck that slides ever slower while it still spins turns its
+    way without end; a run that would follow that for over a million steps is refused.
 
     Examples
     --------

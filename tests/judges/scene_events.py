@@ -101,6 +101,26 @@ def tested(world, ctx, which):
 
 
 @njit(cache=True)
+def _dip(world, ctx, base, t, h, y, f, at, out, fr, speed, which, low, high):
+    """Where on a step (0 … 1) a test is least between two samples, and that value: by thirds."""
+    for _ in range(60):
+        left, right = low + (high - low) / 3.0, high - (high - low) / 3.0
+        dense(y, f, left, at)
+        one, _ = test(world, ctx, base, t + left * h, at, which, out, fr, speed)
+        if one < 0.0:
+            return left, one
+        dense(y, f, right, at)
+        two, _ = test(world, ctx, base, t + right * h, at, which, out, fr, speed)
+        if two < 0.0:
+            return right, two
+        if one <= two:
+            high = right
+        else:
+            low = left
+    return low, one
+
+
+@njit(cache=True)
 def first_event(world, ctx, base, t, h, y, f, at, out, fr, speed):
     """The first test that a step breaks, and where on it (0 … 1)."""
     total = len(world.walls) + len(world.edges) + len(world.borders)
@@ -117,6 +137,10 @@ def first_event(world, ctx, base, t, h, y, f, at, out, fr, speed):
             return which, 0.0
         if total <= which < total + 2 and value < 0.0:  # a wall does not pull
             return which, 0.0
+        friction = world.loads[ctx[REGION]] / world.body[0]
+        if which == total + 3 and value < -1e-10 * friction:  # it was not held, another way
+            return which, 0.0
+        earlier, first = low, value  # the sample before
         for i in range(SAMPLES):
             high = (i + 1.0) / SAMPLES
             if low >= best:
@@ -149,6 +173,13 @@ def first_event(world, ctx, base, t, h, y, f, at, out, fr, speed):
                     a = q
                 else:
                     a, b = low, low  # it never left
+            lowest = not line and 0.0 <= value < min(first, after)
+            if not broken and lowest and value < max(first, after) - value:
+                place, least = _dip(
+                    world, ctx, base, t, h, y, f, at, out, fr, speed, which, earlier, high
+                )
+                broken = least < 0.0
+                a, b = earlier, place
             if broken:
                 while True:
                     middle = 0.5 * (a + b)
@@ -163,6 +194,7 @@ def first_event(world, ctx, base, t, h, y, f, at, out, fr, speed):
                 if b < best:
                     best, found = b, which
                 break
+            earlier, first = low, value
             low, value, rate = high, after, pace
     return found, best
 

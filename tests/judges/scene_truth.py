@@ -100,7 +100,18 @@ def follow(world, start, until, frames, states, events, tol, speed, length, limi
         target = min(until, drive[ctx[PIECE], 0]) if ctx[PIECE] < len(drive) else until
         load = world.loads[ctx[REGION]]
         q = math.sqrt(y[3] ** 2 + y[4] ** 2 + (r * y[5]) ** 2)
-        if load > 0.0 and (q <= small and (look or ctx[MODE] == SLIDES)):
+        if load > 0.0 and q <= small and int(world.hold[0]) == RAIL and turn != 0.0:
+            # the floor goes on across the rail: the slip along it and the spin end, all the same
+            sx, sy = floor_at(world, base[0] + y[0], base[1] + y[1])
+            wait = 10.0 * small / max(abs(turn) * math.hypot(sx, sy), 1e-9 * load / m)
+            t += wait
+            y[0] += wait * sx
+            y[1] += wait * sy
+            y[2] += wait * turn
+            y[3], y[4], y[5] = 0.0, 0.0, 0.0
+            kept(world, base, y)
+            h = wait
+        elif load > 0.0 and (q <= small and (look or ctx[MODE] == SLIDES)):
             if ctx[MODE] == RESTS or q == 0.0:
                 n = np.array([0.6, 0.0, 0.8])
             else:
