@@ -254,16 +254,24 @@ def _panel(
     cosine, sine = cosine_sine_of(middle)
     cosine, sine = radius * cosine, radius * sine
     sums = NOTHING
-    for i in range(_NODES):
-        c, s = cosine_sine_of(half * _NODE[i])
-        x, y = cosine * c - sine * s, sine * c + cosine * s
-        if law == UNIFORM:
+    if law == UNIFORM:  # a loop each, which can do several nodes at once
+        for i in range(_NODES):
+            c, s = cosine_sine_of(half * _NODE[i])
+            x, y = cosine * c - sine * s, sine * c + cosine * s
             here = _at(alpha, beta, cx + x, cy + y, -y, x)
-        elif law == RING:
+            sums = _added(sums, half * _WEIGHT[i], here)
+    elif law == RING:
+        for i in range(_NODES):
+            c, s = cosine_sine_of(half * _NODE[i])
+            x, y = cosine * c - sine * s, sine * c + cosine * s
             here = _on_ring(alpha, beta, x, y)
-        else:
+            sums = _added(sums, half * _WEIGHT[i], here)
+    else:
+        for i in range(_NODES):
+            c, s = cosine_sine_of(half * _NODE[i])
+            x, y = cosine * c - sine * s, sine * c + cosine * s
             here = loaded_at(alpha, beta, x, y, -y, x, law, True)
-        sums = _added(sums, half * _WEIGHT[i], here)
+            sums = _added(sums, half * _WEIGHT[i], here)
     return sums
 
 
