@@ -1,4 +1,4 @@
-"""Logarithm, exponential, sine and cosine that loops can do for several numbers at once.
+"""Logarithm, exponential, sine, cosine and angle that loops can do for several numbers at once.
 
 Those of the machine's library are called for one number at a time, which costs more than all the
 rest of a look-up.  These are sums and products alone, with errors of some 1e-16 of the value (of 1
@@ -84,3 +84,27 @@ def cosine_sine_of(x: float) -> tuple[float, float]:
     quarter = bits_of(shifted) & 3
     one, other = (sine, cosine) if quarter & 1 else (cosine, sine)
     return (-one if (quarter + 1) & 2 else one), (-other if quarter & 2 else other)
+
+
+@inlined
+def angle_of(y: float, x: float) -> float:
+    """The angle of (x, y), x ≥ 0, between −π/2 and π/2; 0 of the origin (as Cephes has it)."""
+    size, long = abs(y), max(abs(y), x)
+    short = min(size, x) / (long if long > 0.0 else 1.0)
+    halved = short > 0.41421356237309504880
+    r = (short - 1.0) / (short + 1.0) if halved else short
+    z = r * r
+    above = -8.750608600031904122785e-1
+    above = above * z - 1.615753718733365076637e1
+    above = above * z - 7.500855792314704667340e1
+    above = above * z - 1.228866684490136173410e2
+    above = above * z - 6.485021904942025371773e1
+    below = z + 2.485846490142306297962e1
+    below = below * z + 1.650270098316988542046e2
+    below = below * z + 4.328810604912902668951e2
+    below = below * z + 4.853903996359136964868e2
+    below = below * z + 1.945506571482613964425e2
+    angle = r + r * z * above / below
+    angle = angle + 0.78539816339744830962 if halved else angle
+    angle = 1.57079632679489661923 - angle if size > x else angle
+    return -angle if y < 0.0 else angle

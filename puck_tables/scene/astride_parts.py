@@ -11,12 +11,12 @@ from puck_tables.kernels.base_parts import (
     Sums,
     beyond_sums,
     common_sums,
-    disc_sums,
     inside_disc,
     line_sums,
     plus,
     rim_sums,
     turn_between,
+    whole_sums,
 )
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.ground import (
@@ -32,6 +32,7 @@ from puck_tables.scene.ground import (
     PLACE_X,
     PLACE_Y,
     REACH,
+    RING,
     SHARE,
     border_of,
     corner_of,
@@ -78,7 +79,7 @@ def least_under(ground: FloatArray, radius: float) -> float:
 @inner
 def _polygon_sums(
     ground: FloatArray, first: int, count: int, radius: float, slip: Slip, mirrored: float,
-    size: float, ring: bool,
+    size: float, law: int,
 ) -> Sums:  # fmt: skip
     """What of a disc lies in a polygon: around it, on its edges in the disc, else on the rim.
 
@@ -104,23 +105,23 @@ def _polygon_sums(
             x1, y1, x2, y2 = px + low * dx, py + low * dy, px + high * dx, py + high * dy
             if low > 0.0:
                 turn += turn_between(px, py, x1, y1)
-            sums = plus(sums, 1.0, rim_sums(alpha, beta, size, start, turn, ring))
-            if not ring:
-                sums = plus(sums, 1.0, line_sums(alpha, beta, x1, y1, x2, y2))
+            sums = plus(sums, 1.0, rim_sums(alpha, beta, size, start, turn, law))
+            if law != RING:
+                sums = plus(sums, 1.0, line_sums(alpha, beta, x1, y1, x2, y2, law))
             start = math.atan2(y2, x2)
             turn = turn_between(x2, y2, qx, qy) if high < 1.0 else 0.0
         px, py = qx, qy
-    return plus(sums, 1.0, rim_sums(alpha, beta, size, start, turn, ring))
+    return plus(sums, 1.0, rim_sums(alpha, beta, size, start, turn, law))
 
 
 @inner
 def weighted(
-    ground: FloatArray, radius: float, slip: Slip, mirrored: float, size: float, ring: bool
+    ground: FloatArray, radius: float, slip: Slip, mirrored: float, size: float, law: int
 ) -> Sums:
     """Sums over a disc of radius ``size`` times f N; ``mirrored`` −1: of a clockwise spin.
 
-    ``ring``: instead over its rim, by the angle, which is d/d size of them over ``size``.  In axes
-    along the slip and across it.  A clockwise spin is the mirror image of the other.
+    ``law``: of pressure; of a ring over the rim, by the angle.  In axes along the slip and across
+    it.  A clockwise spin is the mirror image of the other.
     """
     alpha, beta = slip.along, slip.turning
     x, y = ground[PLACE_X], ground[PLACE_Y]
@@ -129,23 +130,19 @@ def weighted(
     nx = east * slip.cosine + north * slip.sine
     ny = mirrored * (north * slip.cosine - east * slip.sine)
     strip = strip_at(ground, x, y)
-    if ring:
-        sums = rim_sums(alpha, beta, size, 0.0, 2.0 * math.pi, True)
-    else:
-        sums = disc_sums(alpha, beta, size)
-    sums = plus(NOTHING, load_of(ground, strip), sums)
+    sums = plus(NOTHING, load_of(ground, strip), whole_sums(alpha, beta, size, law))
     for i in range(strip, int(ground[BORDERS])):
         away = (border_of(ground, i) - place) / radius
         if away >= size:
             break
         more = load_of(ground, i + 1) - load_of(ground, i)
-        sums = plus(sums, more, beyond_sums(alpha, beta, size, nx, ny, away, ring))
+        sums = plus(sums, more, beyond_sums(alpha, beta, size, nx, ny, away, law))
     for i in range(strip - 1, -1, -1):
         away = (place - border_of(ground, i)) / radius
         if away >= size:
             break
         more = load_of(ground, i) - load_of(ground, i + 1)
-        sums = plus(sums, more, beyond_sums(alpha, beta, size, -nx, -ny, away, ring))
+        sums = plus(sums, more, beyond_sums(alpha, beta, size, -nx, -ny, away, law))
     for k in range(int(ground[PATCHES])):
         mx, my = patch_of(ground, k, MIDDLE_X), patch_of(ground, k, MIDDLE_Y)
         dx, dy, reach = (mx - x) / radius, (my - y) / radius, patch_of(ground, k, REACH) / radius
@@ -156,9 +153,9 @@ def weighted(
         if count == 0:
             px = dx * slip.cosine + dy * slip.sine
             py = mirrored * (dy * slip.cosine - dx * slip.sine)
-            sums = plus(sums, more, common_sums(alpha, beta, size, px, py, reach, ring))
+            sums = plus(sums, more, common_sums(alpha, beta, size, px, py, reach, law))
         if count > 0:
             sums = plus(
-                sums, more, _polygon_sums(ground, first, count, radius, slip, mirrored, size, ring)
+                sums, more, _polygon_sums(ground, first, count, radius, slip, mirrored, size, law)
             )
     return sums

@@ -1,15 +1,14 @@
-"""Sums under a base on several frictions by its law of pressure, as a pile of discs or of rings.
+"""Sums under a base on several frictions by its law of pressure.
 
-With W(ρ) the pressure over its mean, D(a) the sums over the disc of radius a of
-:mod:`puck_tables.kernels.base_parts`, times f N, and R(a) = D'(a)/a those over its rim by the
-angle, the sums under the base are (1/π) times
+Uniform, Hertz's, Galin's and that of a ring are summed as they are.  A tabulated one is a pile of
+discs: with W(ρ) the pressure over its mean and D(a) the sums over the disc of radius a, times f N,
+those under the base are (1/π) times
 
-    D(1) uniform,  ½ R(1) ring,  W(1) D(1) − W(ρ₀) D(ρ₀) − ∫ W'(a) D(a) da tabulated from ρ₀ on,
-    3/2 ∫ D(√(1 − b²)) db Hertz,  ½ ∫ R(√(1 − b²)) db Galin, over 0 ≤ b ≤ 1.
+    W(1) D(1) − W(ρ₀) D(ρ₀) − ∫ W'(a) D(a) da , tabulated from ρ₀ on.
 
-D and R are analytic in a but where the circle touches a border, passes a corner or the centre of
-rotation: like powers and a half, or logarithms.  Between these radii it is Gauss's rule in a
-variable that goes slowly at both ends.
+D is analytic in a but where the circle touches a border, passes a corner or the centre of rotation:
+like powers and a half, or logarithms.  Between these radii it is Gauss's rule in a variable that
+goes slowly at both ends.
 """
 
 from __future__ import annotations
@@ -28,8 +27,6 @@ from puck_tables.scene.ground import (
     BORDERS,
     CORNER,
     CORNERS,
-    GALIN,
-    HERTZ,
     INNER,
     MIDDLE_X,
     MIDDLE_Y,
@@ -139,30 +136,25 @@ def _radii(ground: FloatArray, radius: float, slip: Slip, mirrored: float) -> in
 
 @inner
 def _part(
-    ground: FloatArray, radius: float, slip: Slip, mirrored: float, law: int, low: float,
-    high: float,
-) -> Sums:  # fmt: skip
-    """∫ D da of a tabulated law, else ∫ D db or ∫ R db, over a part that is smooth within."""
+    ground: FloatArray, radius: float, slip: Slip, mirrored: float, low: float, high: float
+) -> Sums:
+    """∫ D da over a part that is smooth within."""
     sums, length = NOTHING, high - low
     for i in range(_NODES):
-        size = low + length * _PLACE[i]
-        if law != TABLE:
-            size = math.sqrt((1.0 - size) * (1.0 + size))
-        if size > 0.0:
-            more = weighted(ground, radius, slip, mirrored, size, law == GALIN)
-            sums = plus(sums, length * _SHARE[i], more)
+        more = weighted(ground, radius, slip, mirrored, low + length * _PLACE[i], UNIFORM)
+        sums = plus(sums, length * _SHARE[i], more)
     return sums
 
 
 @inner
 def _graded(
-    ground: FloatArray, radius: float, slip: Slip, mirrored: float, law: int, low: float,
-    high: float, left: float, right: float,
+    ground: FloatArray, radius: float, slip: Slip, mirrored: float, low: float, high: float,
+    left: float, right: float,
 ) -> Sums:  # fmt: skip
     """The same, of parts that grow away from both ends: beyond them the next ones are near."""
     length = high - low
     if _GROWTH * min(left, right) >= length:
-        return _part(ground, radius, slip, mirrored, law, low, high)
+        return _part(ground, radius, slip, mirrored, low, high)
     sums, half = NOTHING, 0.5 * length
     for side in range(2):
         gap, near = max(left if side == 0 else right, _LEAST * length), 0.0
@@ -170,27 +162,10 @@ def _graded(
             far = near + _GROWTH * (gap + near)
             far = half if far > 0.8 * half else far
             if side == 0:
-                more = _part(ground, radius, slip, mirrored, law, low + near, low + far)
+                more = _part(ground, radius, slip, mirrored, low + near, low + far)
             else:
-                more = _part(ground, radius, slip, mirrored, law, high - far, high - near)
+                more = _part(ground, radius, slip, mirrored, high - far, high - near)
             sums, near = plus(sums, 1.0, more), far
-    return sums
-
-
-@inner
-def _piled(ground: FloatArray, radius: float, slip: Slip, mirrored: float, law: int) -> Sums:
-    """Hertz's law, or Galin's, over all b."""
-    count, room = _radii(ground, radius, slip, mirrored), int(ground[RADII])
-    sums, low, left = NOTHING, 0.0, 1.0
-    for n in range(count, -1, -1):
-        a = ground[room + n - 1] if n > 0 else 0.0
-        below = ground[room + n - 2] if n > 1 else 0.0
-        high = math.sqrt((1.0 - a) * (1.0 + a))
-        if high > low:
-            right = math.sqrt((1.0 - below) * (1.0 + below)) - high if n > 0 else 1.0
-            more = _graded(ground, radius, slip, mirrored, law, low, high, left, right)
-            sums = plus(sums, 0.5 if law == GALIN else 1.5, more)
-            left, low = high - low, high
     return sums
 
 
@@ -199,10 +174,10 @@ def _tabulated(ground: FloatArray, radius: float, slip: Slip, mirrored: float) -
     """A tabulated law, straight between its radii."""
     count, room = _radii(ground, radius, slip, mirrored), int(ground[RADII])
     at, last = int(ground[PROFILE]), int(ground[ROWS]) - 1
-    sums = weighted(ground, radius, slip, mirrored, 1.0, False)
+    sums = weighted(ground, radius, slip, mirrored, 1.0, UNIFORM)
     sums = plus(NOTHING, ground[at + 2 * last + 1], sums)
     if ground[at] > 0.0:
-        hole = weighted(ground, radius, slip, mirrored, ground[at], False)
+        hole = weighted(ground, radius, slip, mirrored, ground[at], UNIFORM)
         sums = plus(sums, -ground[at + 1], hole)
     low, left, row = ground[at], max(ground[at], 1e-3), 0
     for n in range(count + 1):
@@ -217,7 +192,7 @@ def _tabulated(ground: FloatArray, radius: float, slip: Slip, mirrored: float) -
         here = at + 2 * row
         slope = (ground[here + 3] - ground[here + 1]) / (ground[here + 2] - ground[here])
         if slope != 0.0:
-            more = _graded(ground, radius, slip, mirrored, TABLE, low, high, left, right)
+            more = _graded(ground, radius, slip, mirrored, low, high, left, right)
             sums = plus(sums, -slope, more)
         left, low = high - low, high
     return sums
@@ -227,16 +202,13 @@ def _tabulated(ground: FloatArray, radius: float, slip: Slip, mirrored: float) -
 def sums_under(ground: FloatArray, radius: float, slip: Slip, mirrored: float) -> Sums:
     """(1/A) ∫ W f N over the base, of what :mod:`puck_tables.kernels.base_parts` sums."""
     law, share = int(ground[PRESSURE]), ground[SHARE] / math.pi
-    if law == RING:
-        sums = weighted(ground, radius, slip, mirrored, 1.0, True)
-        return plus(NOTHING, 0.5 * share, sums)
-    if law in (HERTZ, GALIN):
-        return plus(NOTHING, share, _piled(ground, radius, slip, mirrored, law))
-    if law != UNIFORM:
+    if law == TABLE:
         return plus(NOTHING, share, _tabulated(ground, radius, slip, mirrored))
+    if law == RING:
+        share *= 0.5
     hole = ground[INNER]
     share /= 1.0 - hole * hole
-    sums = plus(NOTHING, share, weighted(ground, radius, slip, mirrored, 1.0, False))
+    sums = plus(NOTHING, share, weighted(ground, radius, slip, mirrored, 1.0, law))
     if hole > 0.0:
-        sums = plus(sums, -share, weighted(ground, radius, slip, mirrored, hole, False))
+        sums = plus(sums, -share, weighted(ground, radius, slip, mirrored, hole, UNIFORM))
     return sums

@@ -178,8 +178,7 @@ def plan_for(scene: Scene) -> Plan:
         if scene.lateral.strength != 0.0:
             why += f"\n{EMPIRICAL}"
         if scene.floor.strips is not None or scene.floor.patches:
-            law = scene.puck.body.law
-            piled = law.profile is not None or law.name in ("hertz", "galin")
+            piled = scene.puck.body.law.profile is not None
             why += (
                 "\nWhile the base is astride two frictions they are integrated over its parts, "
                 f"about {'a thousand' if piled else 'ten'} times the cost of a step elsewhere."
