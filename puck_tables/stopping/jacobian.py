@@ -26,6 +26,7 @@ STATE_NAMES = ("x", "y", "orientation", "vx", "vy", "spin")
 MOMENT_NAMES = (*LAUNCH_NAMES, "time")
 _TINY = 1e-25  # slip ratio of the neighbours of pure motions, whose derivatives these have
 _LEAST = 1e-300
+_AT_ONCE = 1 << 11  # launches whose facts stay in the cache
 
 Bodies = dict[float, Body]  # by height
 
@@ -220,16 +221,31 @@ def state_jacobians(
     )
 
     slopes, out = table.slopes, np.empty((which.size, len(STATE_NAMES), len(MOMENT_NAMES)))
-    facts, natural = np.empty((FACTS, pucks.shape[1])), _beside_pure(table, pucks)
-    fill_launch_facts(pucks, natural, table.constants, slopes.stops, slopes.curve, facts)
+    natural = _beside_pure(table, pucks)
 
-    def work(start: int, stop: int) -> None:
+    def facts_of(first: int, last: int) -> FloatArray:
+        facts = np.empty((FACTS, last - first))
+        mine = np.ascontiguousarray(pucks[:, first:last])
+        own = mine if natural is pucks else np.ascontiguousarray(natural[:, first:last])
+        fill_launch_facts(mine, own, table.constants, slopes.stops, slopes.curve, facts)
+        return facts
+
+    def fill(facts: FloatArray, mine: npt.NDArray[np.int64], start: int, stop: int) -> None:
         fill_state_jacobians(
-            facts, which[start:stop], moments[start:stop], table.time_inverse, slopes.stops,
-            slopes.curve, out[start:stop],
+            facts, mine, moments[start:stop], table.time_inverse, slopes.stops, slopes.curve,
+            out[start:stop],
         )  # fmt: skip
 
-    in_chunks(work, which.size, threads)
+    def work_alone(start: int, stop: int) -> None:
+        for first in range(start, stop, _AT_ONCE):
+            last = min(first + _AT_ONCE, stop)
+            fill(facts_of(first, last), np.arange(last - first), first, last)
+
+    if which.size == pucks.shape[1] and (which == np.arange(which.size)).all():
+        in_chunks(work_alone, which.size, threads)  # what is known of launches stays in the cache
+        return out
+    facts = facts_of(0, pucks.shape[1])
+    in_chunks(lambda start, stop: fill(facts, which[start:stop], start, stop), which.size, threads)
     return out
 
 
