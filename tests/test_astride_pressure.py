@@ -49,6 +49,16 @@ def test_resultants_against_circles(pressure, floor):
         assert np.abs(found(pressure, surface, slip, 0.8) - truth).max() <= 1e-10, slip
 
 
+def test_a_patch_that_touches_the_rim_from_inside():
+    """Where Galin's pressure has no bound."""
+    ground = Ground([], [0.3], [(0.6, 0.0, 0.4, 0.05)])
+    surface = pt.Floor(patches=[pt.Patch(0.05, (0.6, 0.0), 0.4)])
+    law, square, bends = LAWS["galin"]
+    for slip in SLIPS[1:3]:
+        truth = pressure_judge.friction(ground, slip, law, 0.5 * 0.8, square, bends)
+        assert np.abs(found("galin", surface, slip, 0.8) - truth).max() <= 1e-9, slip
+
+
 def test_a_profile_against_circles(tmp_path):
     """Straight between its radii, with a hole."""
     path = tmp_path / "cone.csv"
