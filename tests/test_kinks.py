@@ -47,7 +47,7 @@ SQUARE = pt.Floor(patches=[pt.Patch(0.1, corners=[(0, -0.3), (0.6, -0.3), (0.6, 
         (DISC, (-0.25, 0.0), 0.0, after(0.05)),  # the rim is all within
         (DISC, (0.25, 0.0), 0.0, after(0.15)),
         (SQUARE, (-0.05, 0.0), 0.0, after(0.15)),
-        (SQUARE, (-0.05, 0.35), 0.0, after(0.05 + math.sqrt(0.1**2 - 0.05**2))),  # a corner
+        (SQUARE, (-0.25, 0.3), 0.0, after(0.15)),  # a corner
     ],
 )
 def test_the_rim_meets_a_border(floor: pt.Floor, place, spin: float, due: float):
