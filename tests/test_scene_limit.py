@@ -219,6 +219,17 @@ def test_an_implicit_step_to_equal_speeds_that_is_not_solved(seed: int, tmp_path
     assert simulate_scene(scene).end == "at rest"
 
 
+@pytest.mark.thorough
+def test_a_slip_that_begins_below_what_steps_tell(tmp_path: Path) -> None:
+    """Along a smooth cushion on a turntable; it began, was cut at once and began again for ever."""
+    scene, ends = draw(42407, tmp_path), []
+    for tol in (1e-6, 1e-7):
+        scene["run"]["tol"] = tol
+        ends.append(simulate_scene(scene))
+    assert ends[1].steps < 5000
+    assert ends[1].last["x"] == pytest.approx(ends[0].last["x"], abs=1e-6)
+
+
 @pytest.mark.nightly
 def test_no_estimate_of_many_is_too_small(tmp_path: Path) -> None:
     scenes = (draw(i, tmp_path) for i in range(4000, 5000))

@@ -158,7 +158,11 @@ def cut_short(
             if what == NOTHING and leaning[i, GRIP] > 0.0 and passes:
                 what = i
         if what != NOTHING:
-            first, h = what, zero(stretch, what, t, h, y, scale, work, new)
+            when = zero(stretch, what, t, h, y, scale, work, new)
+            if what == EQUAL and t + when == t:  # the slip is too small for a step to tell
+                step(stretch, t, h, y, scale, work, new)
+            else:
+                first, h = what, when
     return first, h
 
 
