@@ -9,7 +9,7 @@ import pytest
 
 import puck_tables as pt
 from puck_tables.scene.equations import SIZE
-from puck_tables.scene.friction import SPIN, VX, VY, X, Y
+from puck_tables.scene.friction import SPIN, VX, X, Y
 from puck_tables.scene.grading import between, paced, powers_of, towards_stop
 from puck_tables.scene.ingredients import Surface
 from puck_tables.scene.kinks import next_kink
