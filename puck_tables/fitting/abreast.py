@@ -80,7 +80,9 @@ class _Walker:
 
     def step(self) -> None:
         """One step, or none where it leads up."""
-        scale = max(self.scale, 2.0 * float(np.median(np.abs(self.rows))))
+        scale = self.scale
+        if scale < math.inf:
+            scale = max(scale, 2.0 * float(np.median(np.abs(self.rows))))
         slopes, weights = self.slopes, self.weights / (1.0 + (self.rows / scale) ** 2)
         square = (slopes.T * weights) @ slopes
         size = np.diag(square)
