@@ -19,6 +19,7 @@ from puck_tables.kernels.base_parts import (
     whole_sums,
 )
 from puck_tables.kernels.compile import inlined, inner
+from puck_tables.kernels.load_parts import RING
 from puck_tables.scene.ground import (
     ACROSS_X,
     ACROSS_Y,
@@ -32,7 +33,6 @@ from puck_tables.scene.ground import (
     PLACE_X,
     PLACE_Y,
     REACH,
-    RING,
     SHARE,
     border_of,
     corner_of,

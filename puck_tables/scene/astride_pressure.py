@@ -20,6 +20,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.base_parts import NOTHING, Sums, plus
 from puck_tables.kernels.compile import inlined, inner
+from puck_tables.kernels.load_parts import RING, TABLE, UNIFORM
 from puck_tables.scene.astride_parts import Slip, weighted
 from puck_tables.scene.ground import (
     ACROSS_X,
@@ -37,11 +38,8 @@ from puck_tables.scene.ground import (
     PROFILE,
     RADII,
     REACH,
-    RING,
     ROWS,
     SHARE,
-    TABLE,
-    UNIFORM,
     border_of,
     corner_of,
     patch_of,

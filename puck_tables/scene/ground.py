@@ -8,7 +8,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined
-from puck_tables.kernels.load_parts import GALIN, HERTZ, RING, TABLE, UNIFORM
+from puck_tables.kernels.load_parts import UNIFORM
 
 # A ground, all in one array, which is quick to hand on: where the centre of the base is, 1 or by
 # how much all friction is taken wrong, and what holds for all of it,
@@ -21,9 +21,6 @@ MIDDLE_X, MIDDLE_Y, REACH, CORNER, CORNERS, LOAD = range(6)
 PATCH_COLUMNS = 6
 # the corners of all patches, the rows of a tabulated pressure (radius, W) from PROFILE on, and from
 # RADII on room for the radii at which circles on the base meet something else.
-
-
-__all__ = ["GALIN", "HERTZ", "RING", "TABLE", "UNIFORM"]
 
 
 class Ground(NamedTuple):
