@@ -7,8 +7,8 @@ import signal
 import threading
 import time
 from collections.abc import Callable, Iterator
-from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from contextlib import contextmanager
+from queue import Empty, SimpleQueue
 
 Progress = Callable[[int, int], None]
 
@@ -113,34 +113,49 @@ def _run(
     progress: Progress | None,
     check: Callable[[], None],
 ) -> None:
-    given_up = threading.Event()
+    given_up, starts, lock = threading.Event(), iter(range(0, items, chunk)), threading.Lock()
+    news: SimpleQueue[int | BaseException | None] = SimpleQueue()
 
-    def join() -> None:
+    def take() -> None:
+        """Chunk after chunk; the calling thread is woken only by what it wants to know."""
         _this_thread.given_up = given_up
+        try:
+            while not given_up.is_set():
+                with lock:
+                    start = next(starts, items)
+                if start == items:
+                    break
+                stop = min(start + chunk, items)
+                work(start, stop)
+                if progress is not None:
+                    news.put(stop - start)
+        except BaseException as error:
+            news.put(error)
+        else:
+            news.put(None)
 
-    pool = ThreadPoolExecutor(max_workers=count, initializer=join)
-    waiting: set[Future[None]] = set()
-    sizes: dict[Future[None], int] = {}
-    done_items = 0
+    threads = [threading.Thread(target=take) for _ in range(min(count, -(-items // chunk)))]
+    done, ended = 0, 0
     try:
-        for start in range(0, items, chunk):
-            stop = min(start + chunk, items)
-            future = pool.submit(work, start, stop)
-            waiting.add(future)
-            sizes[future] = stop - start
-            if len(waiting) < 2 * count and stop < items:
+        for thread in threads:
+            thread.start()
+        while ended < len(threads):
+            check()
+            try:
+                word = news.get(timeout=_LOOK)
+            except Empty:
                 continue
-            while len(waiting) >= 2 * count or (stop == items and waiting):
-                check()
-                finished, waiting = wait(waiting, timeout=_LOOK, return_when=FIRST_COMPLETED)
-                for one in finished:
-                    one.result()
-                    done_items += sizes.pop(one)
-                if progress is not None and finished:
-                    progress(done_items, items)
+            if isinstance(word, BaseException):
+                raise word
+            ended += word is None
+            done += word or 0
+            if progress is not None and word is not None:
+                progress(done, items)
     finally:
         given_up.set()
-        pool.shutdown(wait=True, cancel_futures=True)
+        for thread in threads:
+            if thread.ident is not None:
+                thread.join()
 
 
 @contextmanager

@@ -106,6 +106,14 @@ def end_rates(delta: float) -> tuple[float, float, float]:
 
 
 @inlined
+def inverse_end_rates(delta: float) -> tuple[float, float, float]:
+    """1/A, 1/B and h₁/B."""
+    d2 = delta * delta
+    one = 1.0 / (9.0 + 4.0 * d2)
+    return 8.0 / (4.0 + d2), (36.0 + 4.0 * d2) * one, 9.0 * delta * one
+
+
+@inlined
 def end_logs(side: int, double_share: float) -> tuple[float, float]:
     """ln(1 + c) and ln(1 − c) from 2w."""
     small, large = math.log(double_share), math.log1p(1.0 - double_share)

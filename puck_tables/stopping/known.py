@@ -18,13 +18,17 @@ from puck_tables.kernels.compile import (
     into_row,
     row_of,
     spline_values,
-    weighted_rows,
 )
 from puck_tables.kernels.elementary import log_of
 from puck_tables.kernels.spline import basis
 from puck_tables.motion.path import TURN_SHARE
 from puck_tables.stopping.axes import CONSTANT_HEIGHTS, HEIGHTS
-from puck_tables.stopping.curve_lookup import LAUNCH_COLUMNS, LAUNCH_ROWS, end_rates
+from puck_tables.stopping.curve_lookup import (
+    LAUNCH_COLUMNS,
+    LAUNCH_ROWS,
+    end_rates,
+    inverse_end_rates,
+)
 from puck_tables.stopping.launches import (
     DECEL,
     DELTA,
@@ -47,11 +51,19 @@ from puck_tables.stopping.lookup import (
     WIDTH,
     place_block,
 )
-from puck_tables.stopping.orbit import TINY, cell_of, log_place, place_of_log
+from puck_tables.stopping.orbit import (
+    TINY,
+    TURN_POWERS,
+    TURN_STEP,
+    cell_of,
+    log_place,
+    place_of_log,
+)
 from puck_tables.stopping.orbit_lookup import PUCK_ROWS, fill_orbit_states
 
 CURVE_WIDTH = 4  # body angle, S/δ, κR, path length
 _ROW, _CURVE_ROW = WIDTH * STOP_POWERS, CURVE_WIDTH * HEIGHTS
+_TURNS_ROW = TURN_STEP * TURN_POWERS
 _REST, _ALL = 3, 6  # rows of what a stop has besides time and place, and with them
 # rows of a block: the functions, those of the height, and what becomes of it
 _F_TIME, _F_ALONG, _F_ACROSS, _F_BODY, _F_TURN, _F_CURVE, _F_LENGTH = range(PLACED, PLACED + 7)
@@ -74,7 +86,7 @@ def fill_known(
     Or of a stop alone: time, x, y, path length, turn of heading and of the body (6, n); without
     time and place (3, n).  ``stops`` (2, cells + 3, 8 × 4)
     is a cut of the stop table, ``curve`` (2, cells + 3, 9 × 4) holds the other functions, ``turns``
-    (2, cells + 3, 9) the heading's regular part over the place by Q; ``constants`` as for
+    (2, cells + 3, 12) the heading's regular part over the place by Q; ``constants`` as for
     :func:`puck_tables.stopping.curve_lookup.know_launch`.  Returns of how many Q²/J or Q²/(J r)
     may be too large, and how many are no launches.
     """
@@ -108,12 +120,14 @@ def fill_known(
                 into_row(room, _F_ACROSS, n, f[2])
         doubtful += _find_stops(room, count)
         _find_places(room, count, cells, log_share)
+        if out.shape[0] > _ALL:
+            _find_numbers(room, count)
         for n in range(count):
-            at, weights = int(row_of(room, FIRST, n)), basis(row_of(room, INSIDE, n))
-            row, total = weighted_rows(flat_turns, at, weights, HEIGHTS), 0.0
-            for m in range(HEIGHTS - 1, -1, -1):
-                total = total * row_of(room, _S, n) + row[m]
-            into_row(room, _SWUNG, n, total)
+            s, weights = row_of(room, _S, n), basis(row_of(room, INSIDE, n))
+            s2 = s * s
+            at = int(row_of(room, FIRST, n))
+            f = spline_values(flat_turns, at, weights, s2 * s2, TURN_STEP, TURN_POWERS)
+            into_row(room, _SWUNG, n, (f[0] + f[1] * s) + s2 * (f[2] + f[3] * s))
         _find_turns(room, count)
         for row in range(out.shape[0]):
             if out.shape[0] <= _ALL:
@@ -154,21 +168,15 @@ def _find_constants(room: FloatArray, count: int, constants: FloatArray) -> None
     """c₀, κ, h₀, ln T(π/4) of the heights."""
     for n in range(count):
         tilt = row_of(room, DELTA, n)
-        into_row(room, _S, n, 2.0 * tilt * tilt - 1.0)
-        into_row(room, _C0, n, 0.0)
-        into_row(room, _KAPPA, n, 0.0)
-        into_row(room, _TURNING, n, 0.0)
-        into_row(room, _QUARTER, n, 0.0)
-    for m in range(CONSTANT_HEIGHTS - 1, -1, -1):
-        a, b, d, e = constants[0, m], constants[1, m], constants[2, m], constants[3, m]
-        for n in range(count):
-            s = row_of(room, _S, n)
-            into_row(room, _C0, n, row_of(room, _C0, n) * s + a)
-            into_row(room, _KAPPA, n, row_of(room, _KAPPA, n) * s + b)
-            into_row(room, _TURNING, n, row_of(room, _TURNING, n) * s + d)
-            into_row(room, _QUARTER, n, row_of(room, _QUARTER, n) * s + e)
-    for n in range(count):
-        into_row(room, _TURNING, n, row_of(room, _TURNING, n) * row_of(room, DELTA, n))
+        s, c0, kappa, turning, quarter = 2.0 * tilt * tilt - 1.0, 0.0, 0.0, 0.0, 0.0
+        for m in range(CONSTANT_HEIGHTS - 1, -1, -1):
+            c0, kappa = c0 * s + constants[0, m], kappa * s + constants[1, m]
+            turning, quarter = turning * s + constants[2, m], quarter * s + constants[3, m]
+        into_row(room, _S, n, s)
+        into_row(room, _C0, n, c0)
+        into_row(room, _KAPPA, n, kappa)
+        into_row(room, _TURNING, n, turning * tilt)
+        into_row(room, _QUARTER, n, quarter)
 
 
 @inlined
@@ -210,36 +218,45 @@ def _find_places(room: FloatArray, count: int, cells: float, log_share: float) -
             row_of(room, DELTA, n),
         )
         c0, kappa = row_of(room, _C0, n), row_of(room, _KAPPA, n)
-        turning, quarter = row_of(room, _TURNING, n), row_of(room, _QUARTER, n)
+        turning = row_of(room, _TURNING, n)
         larger, smaller = max(speed, rim), min(speed, rim)
         # max + min by parts: their sum may overflow
         ratio = smaller / (larger if larger > 0.0 else 1.0)
         share = max(2.0 * ratio / (1.0 + ratio), TINY)
-        slow, fast, spin_turn = end_rates(tilt)
+        slow, fast, _ = end_rates(tilt)
+        by_slow, by_fast, spin_turn = inverse_end_rates(tilt)
         is_fast = rim > speed
         small, large = log_of(share), log_of(2.0 - share)
-        plus = large if is_fast else small
+        plus = by_slow * (large if is_fast else small)
         minus = small if is_fast else large
         c = 1.0 - share if is_fast else share - 1.0
         sign = 1.0 if is_fast & (1.0 - share > c0) else -1.0
-        by_slow, by_fast = turning / slow, (turning - spin_turn) / fast
-        heading = by_slow * plus + by_fast * minus + tilt * row_of(room, _F_TURN, n)
-        by_slip = log_of(max(abs((c - c0) / c0), TINY)) - kappa * (plus / slow + minus / fast)
+        turn_fast = turning * by_fast - spin_turn
+        heading = turning * plus + turn_fast * minus + tilt * row_of(room, _F_TURN, n)
+        by_slip = log_of(max(abs((c - c0) / c0), TINY)) - kappa * (plus + by_fast * minus)
         by_slip += row_of(room, _F_CURVE, n)
-        log_n = by_slip + kappa * (log_of(row_of(room, _T, n)) - quarter)
         ends_fast, log_y = log_place(sign, by_slip + kappa * log_share, kappa, slow, fast)
         _, xi = place_of_log(log_y)
-        first, inside = cell_of(xi, ends_fast, cells, HEIGHTS)
-        swung = turning * log_share + (by_fast if ends_fast else by_slow) * log_y
+        first, inside = cell_of(xi, ends_fast, cells, _TURNS_ROW)
+        swung = turning * log_share + (turn_fast if ends_fast else turning * by_slow) * log_y
         constant = (speed == 0.0) | (rim == 0.0)
         into_row(room, FIRST, n, first)
         into_row(room, INSIDE, n, inside)
         into_row(room, _BEGUN, n, swung - heading)
-        into_row(room, _LOG_N, n, 0.0 if constant else log_n)
+        into_row(room, _LOG_N, n, by_slip)
         into_row(room, _SIGN_N, n, 0.0 if constant else sign)
         into_row(room, _HEADING, n, 0.0 if constant else heading)
+
+
+@inlined
+def _find_numbers(room: FloatArray, count: int) -> None:
+    """ln|N|, and the constants of the heights, for states."""
+    for n in range(count):
+        kappa, quarter = row_of(room, _KAPPA, n), row_of(room, _QUARTER, n)
+        log_n = row_of(room, _LOG_N, n) + kappa * (log_of(row_of(room, _T, n)) - quarter)
+        into_row(room, _LOG_N, n, 0.0 if row_of(room, _SIGN_N, n) == 0.0 else log_n)
         into_row(room, _OWN_KAPPA, n, kappa)
-        into_row(room, _OWN_TURNING, n, turning)
+        into_row(room, _OWN_TURNING, n, row_of(room, _TURNING, n))
 
 
 @inlined

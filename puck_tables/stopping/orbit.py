@@ -20,6 +20,7 @@ from puck_tables.kernels.compile import inlined
 from puck_tables.kernels.elementary import exp_of, log_of
 
 ORBIT_WIDTH = 8  # 2w/y, T, along, across; body angle, G and nothing
+TURN_STEP, TURN_POWERS = 4, 3  # of one function: powers m, m + 4, m + 8 of s, m = 0 … 3
 SHARE, TIME_FACTOR, ALONG, ACROSS, BODY_FACTOR, REGULAR = range(6)
 TINY = 1e-300
 
@@ -34,8 +35,8 @@ def log_place(
     moderate = log_n if log_n < 1.0 else 1.0
     power = exp_of(-log_n if is_large else moderate)
     log = log_of(1.0 + 2.0 * power if is_large else 2.0 + sign * power)
-    log_fast = -(fast / kappa) * (log + (log_n if is_large else 0.0))
-    return not is_slow, (-(slow / kappa) * log_n if is_slow else log_fast)
+    log_fast = fast * (log + (log_n if is_large else 0.0))
+    return not is_slow, -(slow * log_n if is_slow else log_fast) / kappa
 
 
 @inlined

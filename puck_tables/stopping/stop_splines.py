@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from puck_tables._core.arrays import FloatArray
+from puck_tables._core.arrays import FloatArray, aligned
 from puck_tables.stopping.axes import HEIGHTS, height_polynomials
 from puck_tables.stopping.lookup import STOP_POWERS, WIDTH
 from puck_tables.stopping.orbit_nodes import Curve
@@ -40,9 +40,7 @@ def side_by_side(coefficients: FloatArray) -> FloatArray:
     (2, 6, 36)
     """
     ordered = coefficients.transpose(2, 1, 0, 3)
-    kept = np.ascontiguousarray(ordered).reshape(*ordered.shape[:2], -1)
-    kept.flags.writeable = False
-    return kept
+    return aligned(ordered.reshape(*ordered.shape[:2], -1))
 
 
 def in_rows(coefficients: FloatArray, row: int, power_first: bool) -> FloatArray:
@@ -59,8 +57,7 @@ def in_rows(coefficients: FloatArray, row: int, power_first: bool) -> FloatArray
     flat = ordered.reshape(*ordered.shape[:2], -1)
     padded = np.zeros((*flat.shape[:2], row))
     padded[:, :, : flat.shape[2]] = flat
-    padded.flags.writeable = False
-    return padded
+    return aligned(padded)
 
 
 def cut_rows(sides: FloatArray, powers: int) -> FloatArray:
@@ -73,9 +70,7 @@ def cut_rows(sides: FloatArray, powers: int) -> FloatArray:
     found = np.zeros((2, times.shape[1], powers, WIDTH))
     found[..., 0] = times.transpose(2, 1, 0)
     found[:, :, :-1, 1:3] = places.transpose(2, 1, 0, 3)
-    kept = found.reshape(2, -1, powers * WIDTH)
-    kept.flags.writeable = False
-    return kept
+    return aligned(found.reshape(2, -1, powers * WIDTH))
 
 
 def inverse_splines(table: StopTable, with_time: bool) -> FloatArray:

@@ -38,7 +38,7 @@ from puck_tables.stopping.lookup import (
     STOP_ROW,
     stops_kernel,
 )
-from puck_tables.stopping.orbit import ORBIT_WIDTH, REGULAR
+from puck_tables.stopping.orbit import ORBIT_WIDTH, REGULAR, TURN_POWERS, TURN_STEP
 from puck_tables.stopping.orbit_lookup import PUCK_ROWS
 from puck_tables.stopping.slopes import Slopes, slopes_of
 from puck_tables.stopping.stop_splines import (
@@ -177,8 +177,9 @@ class StopTable(Table):
 
     @cached_property
     def turn_coefficients(self) -> FloatArray:
-        """The heading's regular part over the place by Q, (2, cells + 3, 9)."""
-        return side_by_side(orbit_splines(self, with_time=False)[..., REGULAR:])
+        """The heading's regular part over the place by Q, (2, cells + 3, 12)."""
+        parts = orbit_splines(self, with_time=False)[..., REGULAR:]
+        return in_rows(parts, TURN_STEP * TURN_POWERS, power_first=True)
 
     def _sides(self, functions: list[int], thinning: int = 1) -> FloatArray:
         """Some functions at the nodes (2, cells + 1, heights, functions), from k = 0 to k = 1."""

@@ -7,7 +7,7 @@ from functools import partial
 
 import numpy as np
 
-from puck_tables._core.arrays import FloatArray
+from puck_tables._core.arrays import FloatArray, aligned
 from puck_tables.accuracy.methods import INTEGRATED, LOOK_UP, Source
 from puck_tables.kernels.quadratic import NO_COLUMNS, room_for_cut
 from puck_tables.kernels.quadratic import cut as cut_table
@@ -94,7 +94,7 @@ def contenders(task: Task) -> Iterator[Contender]:
 
 
 def _fresh_cut(stops: StopTable, powers: int, thinning: int, dtype: type) -> FloatArray:
-    return StopTable(stops.values).cut(powers, thinning).astype(dtype)
+    return aligned(StopTable(stops.values).cut(powers, thinning).astype(dtype))
 
 
 def _looked_up(task: Task, powers: int, coefficients: object) -> Ready:
