@@ -130,6 +130,7 @@ def _run(
                 if progress is not None:
                     news.put(stop - start)
         except BaseException as error:
+            given_up.set()
             news.put(error)
         else:
             news.put(None)

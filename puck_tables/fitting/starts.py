@@ -96,13 +96,19 @@ def _deepest(problem: Problem, minima: list[tuple[FloatArray, float]]) -> list[F
     """
     (x, least), *others = minima
     rivals = [x] + [other for other, cost in others if cost < least + _RIVAL]
+    turns = problem.films[0].angle is not None and "launch_spin" not in problem.asked.fixed
+    spin = problem.names.index((0, "launch_spin")) if turns else 0
+    if turns:
+        whole = 2.0 * math.pi / float(np.median(np.diff(problem.films[0].time)))
+        if abs(x[spin]) > 0.5 * whole:
+            rivals.append(x.copy())
+            rivals[-1][spin] = math.remainder(x[spin], whole)
     if len(rivals) == 1:
         return rivals
     polished = sorted((minimise(problem, one, LOOSE) for one in rivals), key=lambda one: one[1])
     found = [one for one, _ in polished]
-    if problem.films[0].angle is None or "launch_spin" in problem.asked.fixed:
+    if not turns:
         return found
-    spin = problem.names.index((0, "launch_spin"))
     as_well = sum(cost < polished[0][1] + _AS_WELL for _, cost in polished)
     return sorted(found[:as_well], key=lambda x: abs(float(x[spin]))) + found[as_well:]
 
