@@ -146,12 +146,12 @@ def units(rows: np.ndarray, name: str) -> np.ndarray:
 
 
 def answers(
-    rows: np.ndarray, rng: np.random.Generator, resultants: Any, **puck: Any
+    rows: np.ndarray, rng: np.random.Generator, resultants: Any, tol: float = 1e-10, **puck: Any
 ) -> dict[str, tuple[np.ndarray, np.ndarray]]:
     """Arguments and answers of the library to launches, by function, for a kind of puck."""
     count = len(rows)
     kind = {"delta": rows[:, 3], "decel": rows[:, 4], "radius": rows[:, 5], **puck}
-    stops = pt.stop(rows[:, :2], rows[:, 2], tol=1e-10, **kind)
+    stops = pt.stop(rows[:, :2], rows[:, 2], tol=tol, **kind)
     share = np.where(
         rng.random(count) < 0.3, 1.0 - 10.0 ** -rng.uniform(0.0, 8.0, count),
         rng.uniform(0.0, 1.02, count),
