@@ -20,7 +20,7 @@ from puck_tables.stopping.lookup import STOP_POWERS
 from puck_tables.stopping.orbit import TINY
 
 if TYPE_CHECKING:
-    from puck_tables.stopping.stop_table import StopTable
+    from puck_tables.stopping.stop_coefficients import StopCoefficients
 
 _TIME, _ALONG, _ACROSS, _BODY, _TURN, _LENGTH, _CURVE = range(7)
 _FAST = np.array([False, True])[:, None, None]  # the side of r|ω| > v
@@ -31,7 +31,7 @@ _LOOKS = 100  # at most
 class Curve:
     """Functions and constants of a stop table at its heights."""
 
-    def __init__(self, table: StopTable) -> None:
+    def __init__(self, table: StopCoefficients) -> None:
         delta = heights()
         self.delta, self.cells = delta, table.axis.cells
         self.slow, self.fast, self.spin_turn = end_rates(delta)  # type: ignore[arg-type]

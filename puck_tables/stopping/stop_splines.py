@@ -13,7 +13,7 @@ from puck_tables.stopping.orbit_nodes import Curve
 from puck_tables.table.fit import clamped_coefficients
 
 if TYPE_CHECKING:
-    from puck_tables.stopping.stop_table import StopTable
+    from puck_tables.stopping.stop_coefficients import StopCoefficients
 
 
 def by_power(nodes: FloatArray, powers: int = HEIGHTS) -> FloatArray:
@@ -73,18 +73,18 @@ def cut_rows(sides: FloatArray, powers: int) -> FloatArray:
     return aligned(found.reshape(2, -1, powers * WIDTH))
 
 
-def inverse_splines(table: StopTable, with_time: bool) -> FloatArray:
+def inverse_splines(table: StopCoefficients, with_time: bool) -> FloatArray:
     """From the time that is left, or from Q, to the slip ratio, (2, cells + 3, 9)."""
     ratios = Curve(table).ratios(with_time)
     return np.ascontiguousarray(by_power(ratios).transpose(2, 1, 0))
 
 
-def orbit_splines(table: StopTable, with_time: bool) -> FloatArray:
+def orbit_splines(table: StopCoefficients, with_time: bool) -> FloatArray:
     """The functions of an orbit over the place by time or Q: (power, node, side, function)."""
     return by_power(Curve(table).orbit(with_time))
 
 
-def at_height(table: StopTable, delta: float) -> FloatArray:
+def at_height(table: StopCoefficients, delta: float) -> FloatArray:
     """T, along and δ · across at one height, (2, (cells + 3) × WIDTH): of no power any more.
 
     Examples

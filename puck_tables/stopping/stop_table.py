@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -15,14 +14,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import InputError
 from puck_tables.motion.state import STATE_ROWS
-from puck_tables.stopping.axes import (
-    CONSTANT_HEIGHTS,
-    HEIGHTS,
-    SlipAxis,
-    height_polynomials,
-    heights,
-)
-from puck_tables.stopping.curve import limits
+from puck_tables.stopping.axes import HEIGHTS, heights
 from puck_tables.stopping.curve_lookup import LAUNCH_COLUMNS
 from puck_tables.stopping.launches import (
     CHUNK,
@@ -32,25 +24,11 @@ from puck_tables.stopping.launches import (
     joined_mark,
     launches_in,
 )
-from puck_tables.stopping.lookup import (
-    CURVE_ROW,
-    STOP_POWERS,
-    STOP_ROW,
-    stops_kernel,
-)
-from puck_tables.stopping.orbit import ORBIT_WIDTH, REGULAR, TURN_POWERS, TURN_STEP
+from puck_tables.stopping.lookup import STOP_POWERS, stops_kernel
 from puck_tables.stopping.orbit_lookup import PUCK_ROWS
-from puck_tables.stopping.slopes import Slopes, slopes_of
-from puck_tables.stopping.stop_splines import (
-    by_power,
-    cut_rows,
-    in_rows,
-    inverse_splines,
-    orbit_splines,
-    side_by_side,
-)
+from puck_tables.stopping.stop_coefficients import StopCoefficients
 from puck_tables.table.check import CheckReport
-from puck_tables.table.table import Axis, Progress, Table
+from puck_tables.table.table import Axis, Progress
 
 UPPER_DELTA = 1.0
 OTHERS = ("path_length", "turn_angle", "body_angle")
@@ -73,7 +51,7 @@ _INTERPRETATION = (
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class StopTable(Table):
+class StopTable(StopCoefficients):
     """Where and when any puck stops, as functions of slip angle φ and height δ alone.
 
     Parameters
@@ -117,96 +95,6 @@ class StopTable(Table):
         ),
     }
     entries: ClassVar[Mapping[str, type]] = {"cells": int}
-
-    @cached_property
-    def axis(self) -> SlipAxis:
-        """The slip angles of its nodes."""
-        return SlipAxis(len(self.values) // 2)
-
-    @cached_property
-    def stop_coefficients(self) -> FloatArray:
-        """T, along, across as the kernels of curve_lookup read them."""
-        found = by_power(self._sides([0, 1, 2]), STOP_POWERS)
-        return in_rows(found, STOP_ROW, power_first=True)
-
-    @cached_property
-    def curve_coefficients(self) -> FloatArray:
-        """Body angle, S/δ, path length, κR as the kernels of curve_lookup read them."""
-        return in_rows(by_power(self._sides([4, 6, 3, 5])), CURVE_ROW, power_first=False)
-
-    @cached_property
-    def constants(self) -> FloatArray:
-        """c₀, κ, h₀/δ and ln T(π/4) as polynomials in 2δ² − 1, (4, 14)."""
-        rows = []
-        for delta in heights(CONSTANT_HEIGHTS):
-            at = limits(float(delta))
-            rows.append([math.tanh(0.5 * at.u), at.kappa, at.turn / delta])
-        polynomials = np.zeros((4, CONSTANT_HEIGHTS))
-        polynomials[:3] = height_polynomials(np.array(rows), CONSTANT_HEIGHTS).T
-        quarter = np.log(self.values[self.axis.cells, :, 0])
-        polynomials[3, :HEIGHTS] = height_polynomials(quarter)
-        return polynomials
-
-    @cached_property
-    def time_inverse(self) -> FloatArray:
-        """From the time that is left to the slip ratio."""
-        return inverse_splines(self, with_time=True)
-
-    @cached_property
-    def turn_inverse(self) -> FloatArray:
-        """From Q to the slip ratio."""
-        return inverse_splines(self, with_time=False)
-
-    @cached_property
-    def slopes(self) -> Slopes:
-        """What derivatives of stops and states need."""
-        return slopes_of(self.axis, self.values)
-
-    @cached_property
-    def launch_coefficients(self) -> FloatArray:
-        """Body angle, S/δ, κR, path length: as :mod:`known` reads them."""
-        return side_by_side(by_power(self._sides([4, 6, 5, 3])))
-
-    @cached_property
-    def orbit_coefficients(self) -> FloatArray:
-        """What :mod:`puck_tables.stopping.orbit_lookup` reads."""
-        values = orbit_splines(self, with_time=True)
-        padded = np.zeros((*values.shape[:3], ORBIT_WIDTH))
-        padded[..., : values.shape[3]] = values
-        return side_by_side(padded)
-
-    @cached_property
-    def turn_coefficients(self) -> FloatArray:
-        """The heading's regular part over the place by Q, (2, cells + 3, 12)."""
-        parts = orbit_splines(self, with_time=False)[..., REGULAR:]
-        return in_rows(parts, TURN_STEP * TURN_POWERS, power_first=True)
-
-    def _sides(self, functions: list[int], thinning: int = 1) -> FloatArray:
-        """Some functions at the nodes (2, cells + 1, heights, functions), from k = 0 to k = 1."""
-        n, values = self.axis.cells // thinning, self.values[::thinning, :, functions]
-        return np.stack([values[: n + 1], values[: n - 1 : -1]])
-
-    @cached_property
-    def _cuts(self) -> dict[tuple[int, int], FloatArray]:
-        return {}
-
-    def cut(self, powers: int = STOP_POWERS, thinning: int = 1) -> FloatArray:
-        """What :func:`puck_tables.stopping.lookup.stops_kernel` reads, as coarse as wanted.
-
-        Parameters
-        ----------
-        powers : powers of 2δ² − 1 to keep for T; along and across keep one fewer, enough for them
-        thinning : keep every so many nodes of the slip axis; divides ``axis.cells``
-
-        Returns
-        -------
-        array (2, cells/thinning + 3, powers × WIDTH)
-        """
-        if (powers, thinning) in self._cuts:
-            return self._cuts[powers, thinning]
-        kept = cut_rows(self._sides([0, 1, 2], thinning), powers)
-        self._cuts[powers, thinning] = kept
-        return kept
 
     def stops(
         self, launches: Launches, powers: int = STOP_POWERS, thinning: int = 1,
