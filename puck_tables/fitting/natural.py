@@ -30,7 +30,7 @@ from puck_tables.motion.run import Run, at_constant_slip, integrated
 from puck_tables.motion.state import HEADING, ORIENTATION, PUCK_X, PUCK_Y, SPIN, STATE_ROWS, T
 from puck_tables.motion.steppers import Stepping
 from puck_tables.motion.tableaus import DORMAND_PRINCE
-from puck_tables.stopping.jacobian import state_jacobians
+from puck_tables.stopping.plain_states import fill_state_slopes
 from puck_tables.stopping.state_values import known_pucks, looked_up
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.stopping.varied import Varied, natural_states, varied_by
@@ -132,9 +132,9 @@ class PlainCurve(Curve):
         """By the slopes of the stop table."""
         launch = np.array([[math.cos(phi), 0.0, math.sin(phi), delta, 1.0, 1.0]]).T
         table = StopTable.shipped()
-        pucks, one = known_pucks(table, launch), np.zeros(tau.size, np.int64)
-        slopes = state_jacobians(table, pucks, one, tau)
-        values = looked_up(table, pucks, one, tau)
+        pucks, one = known_pucks(table, launch), np.zeros(1, np.int64)
+        values, slopes = looked_up(table, pucks, one, tau), np.empty((tau.size, 6, 7))
+        fill_state_slopes(table, pucks, one, tau, values, slopes)
         path = values[[PUCK_X, PUCK_Y, ORIENTATION]]
         wanted = slopes[:, :3][..., [0, 2, 3, 6]]
         by_speed, by_rim, by_delta, rate = np.moveaxis(wanted, (2, 1), (0, 1))
