@@ -54,7 +54,6 @@ from puck_tables.stopping.curve_lookup import (
     T_LAUNCH,
     TIME,
     TURNING,
-    end_rates,
     place_of_share,
 )
 from puck_tables.stopping.launch_frame import PLACED_STATES, placed_state, rotated
@@ -78,9 +77,9 @@ _CURVE_ROW, _FLOWN, _PLACED = HEIGHTS * CURVE_WIDTH, 6, 7
 # what is known of a launch: its puck, its place on the curve in natural units, its stop
 _VX, _VY, _SPIN, _DELTA, _DECEL, _RADIUS, _TIME, _Q, _V = range(9)
 _OF_PUCK = (0, 1, 2, 3, 4, 5, *(LAUNCH_COLUMNS + row for row in (TIME, SLIP, SPEED0)))
-_V0, _A0, _T0 = range(9, 12)
-_FIXED, _KAPPA, _H0, _C0, _K_TILT, _H0_TILT, _C0_TILT = 12, *range(12, 18)
-_PLACE, _STOP, _STOPPED = 18, 18 + _PLACED, 11
+_V0, _A0, _U0, _LAUNCHED = 9, 10, 13, 7
+_FIXED, _KAPPA, _C0 = 16, 16, 18
+_PLACE, _STOP, _STOPPED = 22, 22 + _PLACED, 11
 FACTS = _STOP + _STOPPED
 # of a place on the curve
 _GAP, _CURVE, _CURVE_TILT, _POLE, _TURN_SLOPE, _TURN_TILT, _BEND = range(_PLACED)
@@ -99,18 +98,18 @@ def _flow_at(
 ) -> Numbers:
     """What the motion does at a place of the curve (7), from the functions there (6)."""
     kappa, h0, c0, k_tilt, h0_tilt = fixed[0], fixed[1], fixed[2], fixed[3], fixed[4]
-    slow, fast, h1 = end_rates(delta)
+    # A, B and h₁, and their derivatives by δ
+    # divisions cost most here; what is left are where a·b + c·d could be contracted in two ways
     d2 = delta * delta
-    below = 36.0 + 4.0 * d2
-    # derivatives of A, B and h₁ by δ
-    by_slow, by_fast = 0.25 * delta, 216.0 * delta / (below * below)
-    by_h1 = (9.0 - 72.0 * d2 / below) / below
+    below, inverse = 36.0 + 4.0 * d2, 1.0 / (36.0 + 4.0 * d2)
+    one_slow, one_fast, h1 = 8.0 / (4.0 + d2), below / (9.0 + 4.0 * d2), 9.0 * delta / below
+    by_slow, by_fast = 0.25 * delta, 216.0 * delta * (inverse * inverse)
+    by_h1 = (9.0 - 72.0 * d2 * inverse) / below
     near, far = share, 2.0 - share
     log_near, log_far = log_of(max(near, TINY)), log_of(far)
     log_plus, log_minus = (log_far, log_near) if is_fast else (log_near, log_far)
     plus, minus = (far, near) if is_fast else (near, far)  # 1 + c and 1 − c
     gap = (1.0 - share if is_fast else share - 1.0) - c0
-    one_slow, one_fast = 1.0 / slow, 1.0 / fast
     ends = 0.5 * (minus * one_slow - plus * one_fast)
     pole = -kappa / (0.5 * near * far + gap * (f[2] - kappa * ends))
     # κ g without its pole, and without the derivative of that
@@ -201,7 +200,7 @@ def fill_launch_facts(
     pucks: FloatArray, natural: FloatArray, constants: FloatArray, stop_slopes: FloatArray,
     curve_slopes: FloatArray, out: FloatArray,
 ) -> None:  # fmt: skip
-    """All that derivatives of states need of launches, into ``out`` (36, m).
+    """All that derivatives of states need of launches, into ``out`` (40, m).
 
     ``pucks`` (20, m), see :func:`puck_tables.stopping.known.fill_known`; ``natural``: the same, but
     with others beside them in place of exact pure motions.
@@ -222,8 +221,8 @@ def fill_launch_facts(
             ratio = smaller / larger
             into_row(room, _SHARE, n, 2.0 * ratio / (1.0 + ratio))
             into_row(room, _FAST, n, 1.0 if rim > speed else 0.0)
-            begun = speed / slip, rim / slip, known[T_LAUNCH, n], known[KAPPA, n], known[TURNING, n]
-            into_rows(room, _V0, n, begun)
+            into_rows(room, _V0, n, (speed / slip, rim / slip, known[T_LAUNCH, n], slip / speed))
+            into_rows(room, _KAPPA, n, (known[KAPPA, n], known[TURNING, n]))
         _find_constants(room, count, constants)
         _find_functions(room, count, stops, curve, stops[:0], cells)
         for n in range(count):
@@ -233,6 +232,9 @@ def fill_launch_facts(
                 row_of(room, _FAST, n) > 0.0, row_of(room, _SHARE, n), delta,
                 rows_of(room, _FIXED, 6, n), rows_of(room, _FLOW, _FLOWN, n), found[TURN_RATE],
             )  # fmt: skip
+            u0 = 1.0 / (c * s)
+            begun = u0, u0 / (flow[_GAP] * flow[_POLE]), 1.0 / flow[_POLE]
+            into_rows(room, _U0, n, begun)
             into_rows(room, _PLACE, n, flow)
             own = stop_by_speeds(c, s, 1.0, c, s, delta, found)
             stopped = (
@@ -305,18 +307,17 @@ def _change(
 
     ``u0``: of u at the launch; ``late``: of its stop; ``tilt``: of δ.
     """
-    slip, cosine, sine, cos_turn, sin_turn, log = gone
-    t, t_slope, t_tilt, rate, flown, raised, way = rates
+    slip, one_slip, cosine, sine, cos_turn, sin_turn, log = gone
+    t, t_slope, t_tilt, rate, flown, raised, one_way, begun = rates
     h0, h0_tilt = turnings
-    w = late / slip - t_tilt * tilt
+    w = late * one_slip - t_tilt * tilt
     y = flown * u0 + raised * tilt
-    u = (t * y - rate * w) / way
-    log_q = (w - t_slope * y) / way
+    u = (t * y - rate * w) * one_way
+    log_q = (w - t_slope * y) * one_way
     turn = h0 * log_q + flow[_TURN_SLOPE] * u - here[_TURN_SLOPE] * u0
     turn += (h0_tilt * log + flow[_TURN_TILT] - here[_TURN_TILT]) * tilt
     if tilt == 0.0:
-        begun = u0 / (here[_GAP] * here[_POLE])
-        far = flow[_BEND] * (w - t * begun) / way + here[_BEND] * begun
+        far = flow[_BEND] * (w - t * begun) * one_way + here[_BEND] * begun
         turn = far if abs(here[_GAP]) > _NEAR_LIMIT else turn
     speed, rim = slip * cosine, slip * sine
     v = speed * (log_q - sine * sine * u)
@@ -340,7 +341,7 @@ def _state_slopes(
     Rows: x, y, body angle, vx, vy, rω, y to the left of the launch.  Columns: itself; by v, v
     across, rω, δ, time.
     """
-    speed0, rim0, t0 = launched
+    speed0, rim0, t0, one_speed, u0, begun, one_pole = launched
     kappa, h0, _, k_tilt, h0_tilt, c0_tilt = fixed
     t = found[T]
     slip = (left if left > 0.0 else 1.0) * t0 / t
@@ -353,20 +354,21 @@ def _state_slopes(
     rate = flow[_GAP] * flow[_POLE]
     log = log_of(slip)
     ratio = exp_of(kappa * log - (flow[_CURVE] - here[_CURVE]))  # of c − c₀
-    flown = ratio * flow[_POLE] / here[_POLE]  # ρ over that at the launch
+    flown = ratio * flow[_POLE] * one_pole  # ρ over that at the launch
     raised = rate * (flow[_CURVE_TILT] - here[_CURVE_TILT] - k_tilt * log) / kappa
     raised += c0_tilt / kappa * flow[_POLE] * (ratio - 1.0)
     cos_turn, sin_turn = cosine_sine_of(turned)
-    gone = slip, cosine, sine, cos_turn, sin_turn, log
-    way = t - rate * t_slope
-    rates = t, t_slope, found[BY_HEIGHT + T], rate, flown, raised, way
+    one_slip = 1.0 / slip
+    gone = slip, one_slip, cosine, sine, cos_turn, sin_turn, log
+    one_way = 1.0 / (t - rate * t_slope)
+    rates = t, t_slope, found[BY_HEIGHT + T], rate, flown, raised, one_way, begun
     common = gone, rates, here, flow, (h0, h0_tilt), own
     k = 1.0 if left > 0.0 else 0.0  # at rest that of the stop alone
     # by φ and by δ
-    x1, y1, b1, p1, q1, a1 = _change(1.0 / (speed0 * rim0), stop[0], 0.0, *common)
+    x1, y1, b1, p1, q1, a1 = _change(u0, stop[0], 0.0, *common)
     x4, y4, b4, p4, q4, a4 = _change(0.0, stop[1], 1.0, *common)
     # by time: velocity and acceleration
-    log_q = -k / (slip * way)
+    log_q = -k * one_slip * one_way
     u = -rate * log_q
     p5, q5 = rotated(
         speed * (log_q - sine * sine * u), speed * flow[_BEND] * log_q, cos_turn, sin_turn
@@ -374,7 +376,7 @@ def _state_slopes(
     a5 = rim * (log_q + cosine * cosine * u)
     vx, vy, a = k * speed * cos_turn, k * speed * sin_turn, k * rim
     left_x, left_y = rotated(speed * own[4], speed * own[8], cos_turn, sin_turn)
-    x, y = stop[2] - k * left_x / speed0, stop[5] - k * left_y / speed0  # over v
+    x, y = stop[2] - k * left_x * one_speed, stop[5] - k * left_y * one_speed  # over v
     b = stop[8] - k * own[16]
     x1, y1, b1 = stop[3] - k * x1, stop[6] - k * y1, stop[9] - k * b1
     p1, q1, a1 = k * p1, k * q1, k * a1
@@ -386,8 +388,8 @@ def _state_slopes(
         speed0 * x, speed0 * x0 - rim0 * x1, -y, rim0 * x0 + speed0 * x1, stop[4] - k * x4, vx,
         speed0 * y, speed0 * y0 - rim0 * y1, x, rim0 * y0 + speed0 * y1, stop[7] - k * y4, vy,
         b, speed0 * b0 - rim0 * b1, 0.0, rim0 * b0 + speed0 * b1, stop[10] - k * b4, a,
-        vx, speed0 * p0 - rim0 * p1, -vy / speed0, rim0 * p0 + speed0 * p1, k * p4, p5,
-        vy, speed0 * q0 - rim0 * q1, vx / speed0, rim0 * q0 + speed0 * q1, k * q4, q5,
+        vx, speed0 * p0 - rim0 * p1, -vy * one_speed, rim0 * p0 + speed0 * p1, k * p4, p5,
+        vy, speed0 * q0 - rim0 * q1, vx * one_speed, rim0 * q0 + speed0 * q1, k * q4, q5,
         a, speed0 * a0 - rim0 * a1, 0.0, rim0 * a0 + speed0 * a1, k * a4, a5,
     )  # fmt: skip
 
@@ -400,7 +402,7 @@ def fill_state_jacobians(
 ) -> None:  # fmt: skip
     """Derivatives of states into ``out`` (n, 6, 7).
 
-    Of pucks ``which`` of ``facts`` (36, m) at ``times`` (n,) ≥ 0, from ``begin`` to ``end``; as in
+    Of pucks ``which`` of ``facts`` (40, m) at ``times`` (n,) ≥ 0, from ``begin`` to ``end``; as in
     :func:`puck_tables.stopping.orbit_lookup.fill_orbit_states`, whose ``states`` (6, n) are needed.
     ``section``: that of :func:`fill_section` where all have one height, or empty.
     Derivatives of x, y, body angle, vx, vy, ω by vx, vy, ω, δ, J, r, time; from the stop on those
@@ -427,7 +429,7 @@ def fill_state_jacobians(
             found, flow = rows_of(room, _FOUND, STOP_FOUND, n), rows_of(room, _FLOW, _FLOWN, n)
             own = _state_slopes(
                 row_of(room, _LEFT, n), row_of(room, _TURNED, n), is_fast, share, delta,
-                rows_of(room, _V0, 3, n), fixed, rows_of(room, _PLACE, _PLACED, n),
+                rows_of(room, _V0, _LAUNCHED, n), fixed, rows_of(room, _PLACE, _PLACED, n),
                 rows_of(room, _STOP, _STOPPED, n), found,
                 _flow_at(is_fast, share, delta, fixed, flow, found[TURN_RATE]),
             )  # fmt: skip
