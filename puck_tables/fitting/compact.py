@@ -34,9 +34,9 @@ def compact(
     for n, (x, y, turn) in enumerate(problem.each()):
         moved = [k for k, (of, _) in enumerate(problem.names) if of in (-1, n) or problem.meetings]
         for part, kind in ((slice(x.start, y.stop), PLACE), (turn, ANGLE)):
-            turned = np.column_stack([slopes[part][:, moved], rows[part]])
+            turned: FloatArray = np.column_stack([slopes[part][:, moved], rows[part]])
             if len(turned) > len(moved) + 1:
-                turned = np.linalg.qr(turned, mode="r")
+                turned = np.asarray(np.linalg.qr(turned, mode="r"))
             wide = np.zeros((len(turned), slopes.shape[1]))
             wide[:, moved] = turned[:, :-1]
             few.append(turned[:, -1])
