@@ -270,8 +270,6 @@ def states(
         launches.refuse_bad()
         if table is not None:
             table.checked_range(launches.delta)
-    if jacobian:
-        launches.refuse_bad()
     which, moments, shape = _moments_of(launches, times)
     slopes = np.empty((moments.size, len(STATE_NAMES), len(MOMENT_NAMES))) if jacobian else None
     if all_plain:
