@@ -10,8 +10,10 @@ import pytest
 from rarely import few
 
 import puck_tables as pt
+from puck_tables.fitting.compact import compact
 from puck_tables.fitting.launched import Moving, path_of, path_with_slopes
 from puck_tables.fitting.natural import curve_of
+from puck_tables.fitting.problem import ANGLE, PLACE, PRIOR
 
 RADIUS, DECEL, DELTA = 0.0381, 0.15 * film_judge.G, 0.2
 VELOCITY, SPIN = (1.9, 0.6), 60.0
@@ -244,3 +246,20 @@ def test_few_noisy_angles_do_not_hide_whole_turns(seed):
     found = pt.fit(track, pt.Puck(radius=RADIUS))
     assert found.launch().spin == pytest.approx(20.0, abs=0.1)
     assert abs(found["friction"].value - 0.002) <= 4.0 * found["friction"].error
+
+
+def test_compact_rows_keep_all_squares_and_products(true):
+    """Of each kind of residual by itself, where tracks and a prior share the puck."""
+    tracks = [film(true, 1), film(true, 2, angles=False, name="other")]
+    found = pt.fit(tracks, KNOWN, prior={"friction": (0.15, 0.01)}).estimate
+    problem, kept = found.problem, found.kept
+    rows, slopes = problem.residuals_and_jacobian(1.001 * found.x)
+    few = compact(problem, rows, slopes, kept)
+    assert len(few.rows) < 40 < len(rows)
+    both, fewer = (np.column_stack(pair) for pair in ((slopes, rows), (few.slopes, few.rows)))
+    for kind in (PLACE, ANGLE, PRIOR):
+        one, other = both[kept & (problem.kinds == kind)], fewer[few.kinds == kind]
+        size = np.sqrt((both**2).sum(axis=0))
+        assert (other.T @ other) / np.outer(size, size) == pytest.approx(
+            (one.T @ one) / np.outer(size, size), abs=1e-13
+        )

@@ -65,6 +65,19 @@ def test_a_straight_path_without_angles_does_not_even_tell_friction(straight, se
     assert known["friction"].error < 1e-3 and not known["delta"].determined
 
 
+def test_a_path_that_does_not_bend_does_not_tell_which_way_the_puck_spins():
+    """The mirror image of a motion bends to the other side, but for δ = 0."""
+    for delta, signs in ((DELTA, False), (0.0, True)):
+        spun = film_judge.path(VELOCITY, 40.0, DECEL, delta, RADIUS, TIMES)
+        found = pt.fit(film(spun, 1, angles=False), KNOWN)
+        assert abs(found.launch().spin) == pytest.approx(40.0, rel=0.02)
+        assert found["friction"].determined
+        assert any("either sign" in text for text in found.blind) == signs
+        assert found.launch().numbers["launch_spin"].determined != signs
+    one_way = pt.fit(film(spun, 1, angles=False), KNOWN, bounds={"launch_spin": (0.0, 100.0)})
+    assert one_way.launch().spin == pytest.approx(40.0, rel=0.02) and not one_way.blind
+
+
 def test_friction_and_height_need_gravity(straight):
     spun = film_judge.path(VELOCITY, 60.0, DECEL, DELTA, RADIUS, TIMES)
     found = pt.fit(film(spun, 1), KNOWN, free=["friction", "height", "gravity"])

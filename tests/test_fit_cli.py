@@ -103,5 +103,7 @@ def test_files_are_kept_and_others_refused(film, tmp_path):
         out.write_text(text)
         done = run("simulate", "--fit", out)
         assert done.exit_code == 2 and "no file of puck fit" in done.stderr, text
+    out.write_text('{"kind": "puck-tables fit 9"}')
+    assert "reads puck-tables fit 1: fit again" in run("simulate", "--fit", out).stderr
     assert run("simulate", "--fit", out, "--v0", "1,0").exit_code == 2
     assert run("simulate", "--track", "1", "--v0", "1,0").exit_code == 2

@@ -26,16 +26,21 @@ _SCALES = {"friction", "gravity", "height", "radius", "decel"}
 
 
 def blind_spots(
-    found: Estimate, certainty: Certainty, lost: tuple[str, ...], rivals: tuple[Found, ...] = ()
+    found: Estimate,
+    certainty: Certainty,
+    lost: tuple[str, ...],
+    rivals: tuple[Found, ...] = (),
+    unsigned: tuple[int, ...] = (),
 ) -> tuple[str, ...]:
     """A sentence for each direction that the tracks do not see.
 
     ``lost``: numbers of the puck that are not determined, by whatever; ``rivals``: its numbers in
-    other motions that fit as well.
+    other motions that fit as well; ``unsigned``: tracks that the opposite spin fits as well.
     """
     sentences = []
     marked = any(film.angle is not None for film in found.problem.films)
     sentences += [rival_sentence(rival, marked) for rival in rivals]
+    sentences += [mirror_sentence(found.problem.films[n].name) for n in unsigned]
     seen: set[frozenset[int]] = set()
     covered = {found.problem.names[k][1] for k in np.flatnonzero(certainty.undetermined)}
     for name in lost:
@@ -66,6 +71,14 @@ def rival_sentence(rival: Found, marked: bool) -> str:
     return (
         f"Another motion, of another spin, fits as well: {words}. What would tell: {more}, or its "
         "launch spin, if it is known (launch_spin)."
+    )
+
+
+def mirror_sentence(track: str) -> str:
+    """The mirror image of a motion along a straight line fits as well."""
+    return (
+        f"{ALL['launch_spin'].words} of {track} may be of either sign: the path is not seen to "
+        "bend to a side. What would tell: angle marks on the puck, or a bound of launch_spin."
     )
 
 

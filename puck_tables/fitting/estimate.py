@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables.fitting.compact import compact
 from puck_tables.fitting.least_squares import ROBUST, SQUARES, minimise
 from puck_tables.fitting.problem import ANGLE, PLACE, Problem
 from puck_tables.fitting.timing import Known, likeliest
@@ -81,8 +82,7 @@ def estimate(problem: Problem, start: FloatArray, noise_known: Known) -> Estimat
     kept = _kept(problem, rows)
     for _ in range(_ROUNDS):
         x, _ = minimise(problem, x, SQUARES, kept)
-        slopes = problem.jacobian(x)
-        rows = problem.residuals(x)
+        rows, slopes = problem.residuals_and_jacobian(x)
         noise, jitter = _noise(problem, x, rows, slopes, kept, noise_known)
         noise = _at_least(problem, x, noise, noise_known)
         change = max(abs(math.log(new / old)) for new, old in
@@ -130,12 +130,12 @@ def _noise(
         return problem.noise, problem.jitter
     if problem.jitter > 0.0 or not known.jitter:
         return _jittery(problem, x, kept, known)
-    q, _ = np.linalg.qr(slopes[kept])
-    taken = np.sum(q * q, axis=1)
+    few = compact(problem, rows, slopes, kept)
+    q, _ = np.linalg.qr(few.slopes)
     found = list(problem.noise)
     for kind in (PLACE, ANGLE):
         mine = problem.kinds[kept] == kind
-        free = float(mine.sum() - taken[mine].sum())
+        free = float(mine.sum() - np.sum(q[few.kinds == kind] ** 2))
         if not known[kind] and free > 1.0:
             found[kind] *= math.sqrt(float(np.sum(rows[kept][mine] ** 2)) / free)
     return (found[0], found[1]), problem.jitter

@@ -36,7 +36,7 @@ from puck_tables.fitting.outcome import Fit
 from puck_tables.fitting.parameters import NODES, Asked
 from puck_tables.fitting.problem import Problem
 from puck_tables.fitting.residual_tests import drift, runs
-from puck_tables.fitting.rivals import rivals_of
+from puck_tables.fitting.rivals import mirrored, rivals_of
 from puck_tables.fitting.seen import Seen, noise_of
 from puck_tables.fitting.tied import Impact, impacts_apart, impacts_joined, tie
 from puck_tables.fitting.timing import Known
@@ -186,7 +186,8 @@ def fit(
     say(1, steps)
     certainty = _certainty(found, known)
     rivals = rivals_of(found, certainty)
-    numbers, launches = numbers_of(found, certainty, rivals)
+    unsigned = mirrored(found, certainty)
+    numbers, launches = numbers_of(found, certainty, rivals, unsigned)
     lost = tuple(n for n in found.problem.asked.free if not numbers[n].determined)
     scores: tuple[LawScore, ...] = ()
     if laws:
@@ -222,7 +223,7 @@ def fit(
         runs=runs(found),
         drift=drift(found),
         left_out=_left_out((*films, *uncut), found.problem.films),
-        blind=blind_spots(found, certainty, lost, rivals),
+        blind=blind_spots(found, certainty, lost, rivals, unsigned),
         laws=scores,
         held_out=predictions,
         impacts=hits,

@@ -12,13 +12,13 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import instance, one_velocity, positive, real
 from puck_tables.errors import InputError
-from puck_tables.fitting.blindness import rival_sentence
+from puck_tables.fitting.blindness import mirror_sentence, rival_sentence
 from puck_tables.fitting.certainty import Certainty, certainty_of
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.numbers import plausible_for
 from puck_tables.fitting.parameters import Asked
-from puck_tables.fitting.problem import Found, Problem
-from puck_tables.fitting.rivals import rivals_of
+from puck_tables.fitting.problem import Problem
+from puck_tables.fitting.rivals import mirrored, rivals_of
 from puck_tables.fitting.seen import FEWEST, Seen
 from puck_tables.io.dataset import Dataset, variable
 from puck_tables.puck import Puck
@@ -218,10 +218,14 @@ def fisher(
     told = _bounds(puck, _Launch(velocity, spin), camera, free)
     problem, known = told.problem, told.certainty
     errors = known.errors
-    rivals = () if camera.angle_noise is not None else _rivals(told)
+    seen = _seen(told)
+    rivals = () if camera.angle_noise is not None else rivals_of(seen, known)
+    unsigned = mirrored(seen, known)
     names = tuple(name for _, name in problem.names)
     for rival in rivals:
         errors[[k for k, name in enumerate(names) if name in rival]] = np.inf
+    if unsigned:
+        errors[names.index("launch_spin")] = np.inf
     return Forecast(
         puck=puck,
         velocity=velocity,
@@ -232,7 +236,10 @@ def fisher(
         values=told.x,
         errors=errors,
         frames=problem.films[0].time.size,
-        rivals=tuple(rival_sentence(rival, False) for rival in rivals),
+        rivals=(
+            *(rival_sentence(rival, False) for rival in rivals),
+            *(mirror_sentence("the film") for _ in unsigned),
+        ),
         correlation=known.correlation,
     )
 
@@ -256,12 +263,11 @@ def _bounds(puck: Puck, launch: _Launch, camera: Camera, free: Iterable[str]) ->
     return _Bounds(problem, x, certainty_of(problem.jacobian(x), plausible_for(problem, x)))
 
 
-def _rivals(told: _Bounds) -> tuple[Found, ...]:
-    """Other motions that the film would show as well, by the film itself without its noise."""
+def _seen(told: _Bounds) -> Estimate:
+    """What would be found of the film itself, without its noise."""
     places = told.problem.paths(told.x)[0][:2].T
     film = replace(told.problem.films[0], place=places)
     problem = told.problem.with_films((film,))
     kept = np.ones(problem.kinds.size, bool)
     rows = problem.residuals(told.x)
-    seen = Estimate(problem, told.x, kept, rows, problem.jacobian(told.x))
-    return rivals_of(seen, told.certainty)
+    return Estimate(problem, told.x, kept, rows, problem.jacobian(told.x))

@@ -186,23 +186,28 @@ def _dry(
         heading, ahead = states[HEADING], states[SPEED]
         motion = np.stack([ahead * np.cos(heading), ahead * np.sin(heading), states[TURNING]])
         return path, _turned(turn, slip, moving.radius, motion)[None]
-    natural = curve.with_slopes(phi, height, tau)
-    path, to_phi, to_delta = (
-        _turned(turn, length, moving.radius, natural[n]) for n in (PATH, BY_PHI, BY_DELTA)
-    )
-    rate = _turned(turn, slip, moving.radius, natural[RATE])
+    natural = _turned(turn, 1.0, moving.radius, curve.with_slopes(phi, height, tau))
+    path, to_phi, rate = length * natural[PATH], length * natural[BY_PHI], slip * natural[RATE]
     to_log_slip = 2.0 * path - times * rate
-    across = np.stack([-path[1], path[0], np.zeros(times.size)]) / max(speed, _SLOWEST * slip)
-    to_speed = math.cos(phi) / slip * to_log_slip - math.sin(phi) / slip * to_phi
-    to_rim = math.sin(phi) / slip * to_log_slip + math.cos(phi) / slip * to_phi
-    to_radius = spin * to_rim
-    to_radius[2] -= path[2] / moving.radius
-    return path, np.stack([
-        cosine * to_speed - sine * across, sine * to_speed + cosine * across,
-        moving.radius * to_rim, (times * rate - path) / moving.decel, to_delta, to_radius, rate,
-    ])  # fmt: skip
+    to_speed = (math.cos(phi) / slip) * to_log_slip - (math.sin(phi) / slip) * to_phi
+    to_rim = (math.sin(phi) / slip) * to_log_slip + (math.cos(phi) / slip) * to_phi
+    across = path[:2] / max(speed, _SLOWEST * slip)
+    out = np.empty((7, 3, times.size))
+    out[VX], out[VY] = cosine * to_speed, sine * to_speed
+    out[VX, 0] += sine * across[1]
+    out[VX, 1] -= sine * across[0]
+    out[VY, 0] -= cosine * across[1]
+    out[VY, 1] += cosine * across[0]
+    out[SPIN], out[RADIUS], out[TIME] = moving.radius * to_rim, spin * to_rim, rate
+    out[RADIUS, 2] -= path[2] / moving.radius
+    out[DECEL] = (times * rate - path) / moving.decel
+    out[DELTA] = length * natural[BY_DELTA]
+    return path, out
 
 
 def _turned(turn: FloatArray, unit: float, radius: float, natural: FloatArray) -> FloatArray:
-    """x, y and body angle (3, n) from natural ones, in a unit of length."""
-    return unit * np.concatenate([turn @ natural[:2], natural[2:] / radius])
+    """x, y and body angle (…, 3, n) from natural ones, in a unit of length."""
+    whole = np.zeros((3, 3))
+    whole[:2, :2], whole[2, 2] = turn, 1.0 / radius
+    found: FloatArray = (unit * whole) @ natural
+    return found

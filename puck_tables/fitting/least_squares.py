@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables.fitting.compact import compact
 from puck_tables.fitting.problem import Problem
 
 
@@ -43,17 +44,21 @@ def minimise(
     whole = x.copy()
     low, high = (ends[moved] for ends in problem.limits)
     inside = _inside(x[moved], low, high)
-    weight = None if kept is None else kept.astype(np.float64)
+    latest: dict[bytes, FloatArray] = {}
 
     def residuals(values: FloatArray) -> FloatArray:
         whole[moved] = values
-        rows = problem.residuals(whole)
-        return rows if weight is None else rows * weight
+        rows, slopes = problem.residuals_and_jacobian(whole)
+        if how.loss == "linear":  # only their squares and products count
+            rows, slopes, _ = compact(problem, rows, slopes, kept)
+        latest.clear()
+        latest[values.tobytes()] = slopes[:, moved]
+        return rows
 
     def jacobian(values: FloatArray) -> FloatArray:
-        whole[moved] = values
-        rows = problem.jacobian(whole)[:, moved]
-        return rows if weight is None else rows * weight[:, None]
+        if values.tobytes() not in latest:
+            residuals(values)
+        return latest[values.tobytes()]
 
     scale = how.scale
     if how.loss != "linear":  # far from the minimum all residuals are large, none an outlier

@@ -30,7 +30,7 @@ from puck_tables.motion.run import Run, at_constant_slip, integrated
 from puck_tables.motion.state import HEADING, ORIENTATION, PUCK_X, PUCK_Y, SPIN, STATE_ROWS, T
 from puck_tables.motion.steppers import Stepping
 from puck_tables.motion.tableaus import DORMAND_PRINCE
-from puck_tables.stopping.jacobian import state_jacobians
+from puck_tables.stopping.plain_states import fill_state_slopes
 from puck_tables.stopping.state_values import known_pucks, looked_up
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.stopping.varied import Varied, natural_states, varied_by
@@ -44,6 +44,7 @@ _ACCURACY = 1e-7  # of friction ratios; a film knows places to 1e-4 of the path
 _STEPPING = Stepping(DORMAND_PRINCE, 0.0, 1e-9)
 _KEPT = 8
 PATH, RATE, BY_PHI, BY_DELTA = range(4)
+_PATH_ROWS = [PUCK_X, PUCK_Y, ORIENTATION]
 _ODD = [PUCK_Y, HEADING, ORIENTATION, SPIN]  # change sign with the spin
 
 
@@ -132,13 +133,14 @@ class PlainCurve(Curve):
         """By the slopes of the stop table."""
         launch = np.array([[math.cos(phi), 0.0, math.sin(phi), delta, 1.0, 1.0]]).T
         table = StopTable.shipped()
-        pucks, one = known_pucks(table, launch), np.zeros(tau.size, np.int64)
-        slopes = state_jacobians(table, pucks, one, tau)
-        values = looked_up(table, pucks, one, tau)
-        path = values[[PUCK_X, PUCK_Y, ORIENTATION]]
-        wanted = slopes[:, :3][..., [0, 2, 3, 6]]
-        by_speed, by_rim, by_delta, rate = np.moveaxis(wanted, (2, 1), (0, 1))
-        return np.stack([path, rate, math.cos(phi) * by_rim - math.sin(phi) * by_speed, by_delta])
+        pucks, one = known_pucks(table, launch), np.zeros(1, np.int64)
+        values, slopes = looked_up(table, pucks, one, tau), np.empty((tau.size, 6, 7))
+        fill_state_slopes(table, pucks, one, tau, values, slopes)
+        by_speed, _, by_rim, by_delta, _, _, rate = slopes[:, :3].T
+        out = np.empty((4, 3, tau.size))
+        out[PATH], out[RATE], out[BY_DELTA] = values[_PATH_ROWS], rate, by_delta
+        out[BY_PHI] = math.cos(phi) * by_rim - math.sin(phi) * by_speed
+        return out
 
 
 class IntegratedCurve(Curve):

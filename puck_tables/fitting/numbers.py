@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -92,12 +92,15 @@ def plausible_for(problem: Problem, x: FloatArray) -> FloatArray:
 
 
 def numbers_of(
-    found: Estimate, certainty: Certainty, rivals: tuple[Found, ...] = ()
+    found: Estimate,
+    certainty: Certainty,
+    rivals: tuple[Found, ...] = (),
+    unsigned: tuple[int, ...] = (),
 ) -> tuple[dict[str, Number], tuple[FoundLaunch, ...]]:
     """All numbers of the puck, and of each launch.
 
     ``rivals``: the puck's numbers at other summits of the likelihood; what they differ in is not
-    determined.
+    determined; ``unsigned``: tracks that do not tell which way the puck spins.
     """
     problem, x = found.problem, found.x
     asked, errors = problem.asked, certainty.errors
@@ -140,11 +143,16 @@ def numbers_of(
             number = number._replace(low=ends.low, high=ends.high)
         puck[name] = number._replace(low=max(number.low, PUCK[name].low))
     puck = {name: puck[name] for name in PUCK if name in puck}
-    return puck, _launches(found, certainty, bool(rivals))
+    return puck, _launches(found, certainty, unsigned if not rivals else range(len(problem.films)))
 
 
-def _launches(found: Estimate, certainty: Certainty, rivals: bool) -> tuple[FoundLaunch, ...]:
-    """The launches of all slides; those after an impact follow from the first."""
+def _launches(
+    found: Estimate, certainty: Certainty, unsure: Sequence[int]
+) -> tuple[FoundLaunch, ...]:
+    """The launches of all slides; those after an impact follow from the first.
+
+    ``unsure``: tracks of which motions of different spins fit as well.
+    """
     problem, errors = found.problem, certainty.errors
     plausible = dict(zip(problem.names, certainty.plausible.tolist(), strict=True))
     slides, slopes = problem.slides(found.x)[0], slopes_of_slides(problem, found.x)
@@ -161,7 +169,7 @@ def _launches(found: Estimate, certainty: Certainty, rivals: bool) -> tuple[Foun
                     error = certainty.error_of(slopes[n][m][k + 1], size)
                 elif (n, name) in problem.names:
                     error, how = float(errors[problem.names.index((n, name))]), FREE
-                    if rivals and name == "launch_spin":  # the motions differ in it
+                    if n in unsure and name == "launch_spin":
                         error = math.inf
                 numbers[name] = quadratic(value, error, ALL[name].unit, how, certainty.quantile)
             name = film.name if len(slides[n]) == 1 else slide_name(film.name, m)

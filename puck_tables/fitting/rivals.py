@@ -1,7 +1,9 @@
 """Other motions that fit a track as well: its likelihood may have more than one summit.
 
 Without angles a puck that slides straight without spin looks as one that spins at the ratio which
-every motion tends to: both lose speed at a constant rate, but not the same share of J.
+every motion tends to: both lose speed at a constant rate, but not the same share of J.  A path
+bends to a side that its spin and the tilt choose; one that is not seen to bend is its own mirror
+image, and does not say which way the puck spins.
 """
 
 from __future__ import annotations
@@ -11,6 +13,7 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.certainty import Z95, Certainty, certainty_of
+from puck_tables.fitting.compact import compact
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.least_squares import SQUARES, minimise
 from puck_tables.fitting.numbers import plausible_for
@@ -46,6 +49,31 @@ def rivals_of(found: Estimate, certainty: Certainty) -> tuple[Found, ...]:
     mine = [(k, name) for k, (track, name) in enumerate(problem.names)
             if track == -1 or name == _SPIN]  # fmt: skip
     return tuple({name: float(x[k]) for k, name in mine} for x in rivals)
+
+
+def mirrored(found: Estimate, certainty: Certainty) -> tuple[int, ...]:
+    """Tracks without angles that the opposite spin fits as well.
+
+    Where it does the tilt hardly differs from its least, to which it then falls, and what the other
+    unknowns can do is linear.
+    """
+    problem, low, high = found.problem, *found.problem.limits
+    tilts = [k for k, (_, name) in enumerate(problem.names) if name in ("delta", "height")]
+    errors, alike = certainty.errors, []
+    for k, (n, name) in enumerate(problem.names):
+        if name != _SPIN or problem.films[n].angle is not None:
+            continue
+        x = found.x.copy()
+        x[k] = -x[k]
+        if not (abs(x[k]) > _APART * errors[k] and low[k] <= x[k] <= high[k]):
+            continue
+        x[tilts] = low[tilts]
+        few = compact(problem, *problem.residuals_and_jacobian(x), found.kept)
+        q, _ = np.linalg.qr(np.delete(few.slopes, tilts, axis=1))
+        left = few.rows - q @ (few.rows @ q)
+        if float(left @ left) < found.chi2 + Z95**2:
+            alike.append(n)
+    return tuple(alike)
 
 
 def _told(x: FloatArray, marked: bool) -> FloatArray:

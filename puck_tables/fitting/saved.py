@@ -38,7 +38,10 @@ def puck_and_launch(
         data: Any = json.loads(read_whole(path, _LARGEST))
     except (ValueError, RecursionError):
         raise InputError(told) from None
-    if not isinstance(data, dict) or data.get("kind") != KIND:
+    kind = data.get("kind") if isinstance(data, dict) else None
+    if isinstance(kind, str) and kind != KIND and kind.startswith(KIND[:-1]):
+        raise InputError(f"{path} is of {kind:.40}, and this version reads {KIND}: fit again")
+    if kind != KIND:
         raise InputError(told)
     try:
         launches = {str(one["track"]): one for one in data["launches"]}

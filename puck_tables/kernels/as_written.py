@@ -19,7 +19,7 @@ from puck_tables._core.arrays import FloatArray
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
-BLOCK = 128  # numbers in a row of a block
+BLOCK = 136  # numbers in a row of a block: rows a power of two apart would share cache lines
 
 
 def as_written() -> bool:
@@ -145,3 +145,13 @@ def rows_of(block: FloatArray, row: int, count: int, n: int) -> Any:
 def into_rows(block: FloatArray, row: int, n: int, values: Sequence[float]) -> Any:
     """Make a tuple number n of so many rows from one on."""
     block[row * BLOCK + n : (row + len(values)) * BLOCK : BLOCK] = values
+
+
+def into_columns(block: FloatArray, row: int, n: int, out: FloatArray, at: int, step: int) -> Any:
+    """Numbers n to n + 3 of four rows from one on into ``out``: side by side those of a number.
+
+    The four of number n from ``at`` on, those of each further one ``step`` further.
+    """
+    for k in range(4):
+        first = row * BLOCK + n + k
+        out[at + k * step : at + k * step + 4] = block[first : first + 4 * BLOCK : BLOCK]

@@ -7,6 +7,7 @@ from puck_tables.kernels.as_written import BLOCK, as_written
 if as_written():
     from puck_tables.kernels.as_written import (
         bits_of,
+        into_columns,
         into_row,
         into_rows,
         number_of,
@@ -25,6 +26,7 @@ else:
     from puck_tables.kernels.compiled import allocating, inlined, inner, kernel
     from puck_tables.kernels.vectors import (
         bits_of,
+        into_columns,
         into_row,
         into_rows,
         number_of,
@@ -37,7 +39,7 @@ else:
     )
 
 __all__ = [
-    "BLOCK", "allocating", "bits_of", "inlined", "inner", "into_row", "into_rows", "kernel",
-    "number_of", "row_of", "rows_of", "spline_polynomials", "spline_values", "summed",
+    "BLOCK", "allocating", "bits_of", "inlined", "inner", "into_columns", "into_row", "into_rows",
+    "kernel", "number_of", "row_of", "rows_of", "spline_polynomials", "spline_values", "summed",
     "weighted_rows",
 ]  # fmt: skip

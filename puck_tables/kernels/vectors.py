@@ -288,3 +288,48 @@ def _into_rows(typing: Any, block: Any, row: Any, n: Any, values: Any) -> Any:
 
 rows_of: Any = intrinsic(prefer_literal=True)(_rows_of)
 into_rows: Any = intrinsic(prefer_literal=True)(_into_rows)
+
+
+def _into_columns(typing: Any, block: Any, row: Any, n: Any, out: Any, at: Any, step: Any) -> Any:
+    """Compiled (block, row, n, out, at, step): a square of four by four numbers turned over.
+
+    Numbers n to n + 3 of four rows of a block into a flat array, those of one number side by side
+    from ``at`` on, those of the next ``step`` further: as whole registers, where LLVM would move
+    each number by itself.
+    """
+    lanes = ir.VectorType(ir.DoubleType(), _LANES)
+
+    def build(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        source = context.make_array(signature.args[0])(context, builder, args[0]).data
+        target = context.make_array(signature.args[3])(context, builder, args[3]).data
+
+        def place(data: Any, number: Any) -> Any:
+            return builder.bitcast(builder.gep(data, [number]), lanes.as_pointer())
+
+        def mixed(one: Any, other: Any, *order: int) -> Any:
+            return builder.shuffle_vector(
+                one, other, ir.Constant(ir.VectorType(ir.IntType(32), _LANES), order)
+            )
+
+        number = builder.add(builder.mul(args[1], ir.Constant(args[1].type, BLOCK)), args[2])
+        rows = [
+            builder.load(
+                place(source, builder.add(number, ir.Constant(number.type, k * BLOCK))), align=8
+            )
+            for k in range(_LANES)
+        ]
+        even = [mixed(rows[k], rows[k + 1], 0, 4, 2, 6) for k in (0, 2)]
+        odd = [mixed(rows[k], rows[k + 1], 1, 5, 3, 7) for k in (0, 2)]
+        columns = [
+            mixed(*pair, *order) for order in ((0, 1, 4, 5), (2, 3, 6, 7)) for pair in (even, odd)
+        ]
+        goal = args[4]
+        for column in columns:
+            builder.store(column, place(target, goal), align=8)
+            goal = builder.add(goal, args[5])
+        return context.get_dummy_value()
+
+    return types.void(block, types.int64, types.int64, out, types.int64, types.int64), build
+
+
+into_columns: Any = intrinsic(_into_columns)

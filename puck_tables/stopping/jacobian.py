@@ -14,7 +14,6 @@ from puck_tables._core.executor import run_chunks
 from puck_tables.contact.laws import Law
 from puck_tables.errors import InputError
 from puck_tables.motion.body import Body
-from puck_tables.stopping.curve_lookup import LAUNCH_COLUMNS, SLIP, SPEED0
 from puck_tables.stopping.launches import Launches, in_chunks, launches_in
 from puck_tables.stopping.spread import Spread, spread_of
 from puck_tables.stopping.stop_table import StopTable
@@ -24,9 +23,6 @@ LAUNCH_NAMES = ("vx", "vy", "spin", "delta", "decel", "radius")
 STOP_NAMES = ("stop_time", "stop_x", "stop_y", "path_length", "body_angle")
 STATE_NAMES = ("x", "y", "orientation", "vx", "vy", "spin")
 MOMENT_NAMES = (*LAUNCH_NAMES, "time")
-_TINY = 1e-25  # slip ratio of the neighbours of pure motions, whose derivatives these have
-_LEAST = 1e-300
-_AT_ONCE = 1 << 11  # launches whose facts stay in the cache
 
 Bodies = dict[float, Body]  # by height
 
@@ -204,64 +200,6 @@ def _of_plain(table: StopTable, launches: Launches, threads: int | None) -> Floa
 
     in_chunks(work, launches.size, threads)
     return out
-
-
-def state_jacobians(
-    table: StopTable, pucks: FloatArray, which: npt.NDArray[np.int64], moments: FloatArray,
-    threads: int | None = None,
-) -> FloatArray:  # fmt: skip
-    """Derivatives (n, 6, 7) of states of plain ``pucks`` (20, m); ``which`` (n,) when.
-
-    ``pucks``: as :func:`puck_tables.stopping.state_values.known_pucks` gives them.
-    """
-    from puck_tables.stopping.state_jacobian import (
-        FACTS,
-        fill_launch_facts,
-        fill_state_jacobians,
-    )
-
-    slopes, out = table.slopes, np.empty((which.size, len(STATE_NAMES), len(MOMENT_NAMES)))
-    natural = _beside_pure(table, pucks)
-
-    def facts_of(first: int, last: int) -> FloatArray:
-        facts = np.empty((FACTS, last - first))
-        mine = np.ascontiguousarray(pucks[:, first:last])
-        own = mine if natural is pucks else np.ascontiguousarray(natural[:, first:last])
-        fill_launch_facts(mine, own, table.constants, slopes.stops, slopes.curve, facts)
-        return facts
-
-    def fill(facts: FloatArray, mine: npt.NDArray[np.int64], start: int, stop: int) -> None:
-        fill_state_jacobians(
-            facts, mine, moments[start:stop], table.time_inverse, slopes.stops, slopes.curve,
-            out[start:stop],
-        )  # fmt: skip
-
-    def work_alone(start: int, stop: int) -> None:
-        for first in range(start, stop, _AT_ONCE):
-            last = min(first + _AT_ONCE, stop)
-            fill(facts_of(first, last), np.arange(last - first), first, last)
-
-    if which.size == pucks.shape[1] and (which == np.arange(which.size)).all():
-        in_chunks(work_alone, which.size, threads)  # what is known of launches stays in the cache
-        return out
-    facts = facts_of(0, pucks.shape[1])
-    in_chunks(lambda start, stop: fill(facts, which[start:stop], start, stop), which.size, threads)
-    return out
-
-
-def _beside_pure(table: StopTable, pucks: FloatArray) -> FloatArray:
-    """What is known of ``pucks`` (20, m), of a neighbour with Q = J = r = 1 where one is pure."""
-    speed, slip = pucks[LAUNCH_COLUMNS + SPEED0], pucks[LAUNCH_COLUMNS + SLIP]
-    rim = np.abs(pucks[5] * pucks[2])
-    pure = np.minimum(speed, rim) <= _TINY * slip
-    if not pure.any():
-        return pucks
-    beside, unit = np.ones((LAUNCH_COLUMNS, int(pure.sum()))), np.maximum(slip[pure], _LEAST)
-    beside[0], beside[1] = np.maximum(speed[pure] / unit, _TINY), 0.0
-    beside[2], beside[3] = np.maximum(rim[pure] / unit, _TINY), pucks[3, pure]
-    natural = pucks.copy()
-    natural[:, pure] = table.pucks(launches_in(beside))
-    return natural
 
 
 def integrated_jacobians(

@@ -29,11 +29,10 @@ from puck_tables.stopping.axes import HEIGHTS, SlipAxis, height_polynomials, hei
 from puck_tables.stopping.curve import limits, regular_slopes
 from puck_tables.table.fit import clamped_coefficients
 
-STOP_FUNCTIONS = 5  # T, along, across, body, length; then the slopes of each
-STOP_WIDTH = 12  # both, padded to whole registers
+STOP_FUNCTIONS = 5  # T, along, across, body, length; then the slopes of each, and H
+STOP_WIDTH = 12  # all, padded to whole registers
 STOP_POWERS = 7  # of 2δ² − 1, enough for derivatives to 1e-9
-CURVE_FUNCTIONS = 5  # κR, S/δ; then (κR)_u, S_u/δ, H
-CURVE_WIDTH = 8
+CURVE_WIDTH = 4  # κR, S/δ, (κR)_u, S_u/δ
 _TIME, _ALONG, _ACROSS, _BODY, _LENGTH = range(STOP_FUNCTIONS)
 _NEAR_LIMIT = 0.02  # of ρ: nearer the quotient is nearly 0/0
 _SLOW_NODES, _FAST_NODES = (6, 12), (24, 36)  # of 282: farther, the quotient keeps its digits
@@ -45,9 +44,8 @@ _DIFFERENCE = np.array([1.0 / 280.0, -4.0 / 105.0, 0.2, -0.8, 0.0, 0.8, -0.2, 4.
 class Slopes(NamedTuple):
     """Spline coefficients, powers of 2δ² − 1 ascending, functions within a power side by side.
 
-    ``stops`` (2, cells + 3, 7 · 12): T, along, across, body, length, and D of each; ``curve`` (2,
-    cells + 3, 9 · 8): κR, S/δ, their derivatives by u, and H = h/(δ sin φ).  Rows are padded with
-    zeros.
+    ``stops`` (2, cells + 3, 7 · 12): T, along, across, body, length, D of each, H = h/(δ sin φ),
+    and a zero; ``curve`` (2, cells + 3, 9 · 4): κR, S/δ, and their derivatives by u.
     """
 
     stops: FloatArray
@@ -67,7 +65,7 @@ def slopes_of(axis: SlipAxis, values: FloatArray) -> Slopes:
     >>> from puck_tables import Table
     >>> table = Table.shipped("stops")
     >>> [one.shape for one in slopes_of(table.axis, table.values)]
-    [(2, 285, 84), (2, 285, 72)]
+    [(2, 285, 84), (2, 285, 36)]
     """
     n = axis.cells
     sides = np.stack([values[: n + 1], values[: n - 1 : -1]])  # both from k = 0 to k = 1
@@ -75,10 +73,8 @@ def slopes_of(axis: SlipAxis, values: FloatArray) -> Slopes:
     by_u, turning = np.empty_like(own), np.empty(own.shape[:3])
     for fast in range(2):
         by_u[fast], turning[fast] = _slopes_at_nodes(axis, own[fast], fast == 1)
-    curve = np.empty((*own.shape[:3], CURVE_FUNCTIONS))
-    curve[..., :2], curve[..., 4] = sides[..., [5, 6]], turning
-    curve[..., 2:4] = _curve_slopes(axis)
-    stops = np.concatenate([own, by_u], axis=-1)
+    curve = np.concatenate([sides[..., [5, 6]], _curve_slopes(axis)], axis=-1)
+    stops = np.concatenate([own, by_u, turning[..., None]], axis=-1)
     return Slopes(_splines(stops, STOP_POWERS, STOP_WIDTH), _splines(curve, HEIGHTS, CURVE_WIDTH))
 
 

@@ -14,12 +14,11 @@ from puck_tables.motion.frame import frame_of
 from puck_tables.motion.friction import source_of
 from puck_tables.motion.limits import regime_of
 from puck_tables.motion.run import solve
-from puck_tables.motion.state import HEADING, STATE_ROWS, T
-from puck_tables.stopping.launches import CHUNK, Launches, in_chunks, launches_in
+from puck_tables.motion.state import STATE_ROWS, T
+from puck_tables.stopping.launches import CHUNK, in_chunks, launches_in
 from puck_tables.stopping.stop_table import StopTable
 
 TOL = 1e-9
-_AT_ONCE = 1 << 11
 
 
 def refuse_times(moments: FloatArray) -> None:
@@ -41,40 +40,6 @@ def directions(vx: FloatArray, vy: FloatArray) -> FloatArray:
     if (vx.item() == 0.0) if vx.size == 1 else not vx.all():
         found[(vx == 0.0) & (vy == 0.0)] = 0.0
     return found
-
-
-def all_looked_up(
-    table: StopTable, launches: Launches, which: npt.NDArray[np.int64], moments: FloatArray,
-    threads: int | None,
-) -> FloatArray:  # fmt: skip
-    """States (6, n) of plain launches, with headings from x."""
-    if which.size == launches.size == 1 and moments.size <= CHUNK:
-        found = table.states_of_one(launches, moments)
-        if found is not None:
-            heading = found[HEADING]
-            heading += directions(launches.vx, launches.vy)
-            return found
-    if which.size:
-        pucks = table.pucks(launches, threads)
-        found = looked_up(table, pucks, which, moments, threads)
-        turned = directions(pucks[0], pucks[1])
-        found[HEADING] += turned[which] if which.size > 1 else turned
-        return found
-    from puck_tables.stopping.orbit_lookup import PUCK_ROWS, fill_orbit_states
-
-    out, orbit, bad = np.empty((STATE_ROWS, moments.size)), table.orbit_coefficients, [0]
-
-    def work(start: int, stop: int) -> None:  # what is known of the launches stays in the cache
-        for first in range(start, stop, _AT_ONCE):
-            last = min(first + _AT_ONCE, stop)
-            pucks, _ = table.fill_pucks(PUCK_ROWS, launches, first, last)
-            bad.append(fill_orbit_states(pucks, which, moments, first, last, orbit, out))
-            out[HEADING, first:last] += directions(pucks[0], pucks[1])
-
-    in_chunks(work, moments.size, threads)
-    if any(bad):
-        refuse_times(moments)
-    return out
 
 
 def known_pucks(table: StopTable, launches: FloatArray, threads: int | None = None) -> FloatArray:

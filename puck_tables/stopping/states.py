@@ -32,12 +32,11 @@ from puck_tables.stopping.jacobian import (
     Differentiated,
     Kind,
     integrated_jacobians,
-    state_jacobians,
 )
 from puck_tables.stopping.launches import Launches, fits, launches_of
 from puck_tables.stopping.per_height import refuse_many
+from puck_tables.stopping.plain_states import all_looked_up, fill_state_slopes
 from puck_tables.stopping.state_values import (
-    all_looked_up,
     directions,
     integrate,
     known_pucks,
@@ -136,7 +135,8 @@ class States(Differentiated, Result):
     def _arguments(self) -> FloatArray:  # type: ignore[override]
         assert self._asked is not None
         launched, which = self._asked
-        return np.concatenate([launched[:, which], self.time.reshape(1, -1)])
+        each = _each(which, self.time.size)
+        return np.concatenate([launched[:, each], self.time.reshape(1, -1)])
 
     def _again(self, arguments: FloatArray) -> FloatArray:
         if self._kind is not None:
@@ -270,24 +270,17 @@ def states(
         launches.refuse_bad()
         if table is not None:
             table.checked_range(launches.delta)
-    if jacobian:
-        launches.refuse_bad()
     which, moments, shape = _moments_of(launches, times)
-    if all_plain and not jacobian:
-        found = all_looked_up(chosen, launches, which, moments, threads)
-        return _states(found, moments, launches, which, shape, _told(launches.size, 0))
-    refuse_times(moments)
-    each = np.arange(moments.size)
-    if which.size:
-        each = np.ascontiguousarray(np.broadcast_to(which, moments.shape))
-    rows, slopes = launches.matrix, None
-    plain = rows[3] <= highest
-    bodies = _bodies(pressure, gyration, rows[3, ~plain])
+    slopes = np.empty((moments.size, len(STATE_NAMES), len(MOMENT_NAMES))) if jacobian else None
     if all_plain:
-        pucks = chosen.pucks(launches, threads)
-        found = looked_up(chosen, pucks, each, moments, threads)
-        slopes = state_jacobians(chosen, pucks, each, moments, threads)
+        found = all_looked_up(chosen, launches, which, moments, threads, slopes)
+        bodies, told = {}, _told(launches.size, 0)
     else:
+        refuse_times(moments)
+        each = _each(which, moments.size)
+        rows = launches.matrix
+        plain = rows[3] <= highest
+        bodies = _bodies(pressure, gyration, rows[3, ~plain])
         longest = max((body.longest for body in bodies.values()), default=2.0)
         if not fits(rows, longest).all():
             raise InputError(_TOO_LARGE)
@@ -296,20 +289,22 @@ def states(
         looked, others = plain[each], np.flatnonzero(~plain)
         number = np.cumsum(plain) - 1  # of a plain puck among such
         some = number[each[looked]], moments[looked]
-        found[:, looked] = looked_up(chosen, pucks, *some, threads)
-        if jacobian:
-            slopes = np.empty((moments.size, len(STATE_NAMES), len(MOMENT_NAMES)))
-            slopes[looked] = state_jacobians(chosen, pucks, *some, threads)
+        states_found = looked_up(chosen, pucks, *some, threads)
+        found[:, looked] = states_found
+        if slopes is not None:
+            part = np.empty((len(some[1]), *slopes.shape[1:]))
+            fill_state_slopes(chosen, pucks, *some, states_found, part, threads)
+            slopes[looked] = part
             integrated_jacobians(bodies, rows, others, each, moments, slopes, threads)
         integrate(bodies, rows, others, each, moments, found, threads)
-    found[HEADING] += directions(rows[0], rows[1])[each]
-    told = _told(int(plain.sum()), int((~plain).sum()))
+        found[HEADING] += directions(rows[0], rows[1])[each]
+        told = _told(int(plain.sum()), int((~plain).sum()))
     result = _states(found, moments, launches, which, shape, told)
     if slopes is None:
         return result
     return replace(
         result, _jacobian=slopes.reshape(*shape, *slopes.shape[1:]), _table=table,
-        _kind=Kind(pressure, gyration) if bodies else None, _asked=(rows, each),
+        _kind=Kind(pressure, gyration) if bodies else None, _asked=(launches.matrix, which),
     )  # fmt: skip
 
 
@@ -335,6 +330,11 @@ def _moments_of(
     if one.shape == launches.shape:
         return _NONE, moments, one.shape
     return one.reshape(-1).astype(np.int64), moments, one.shape
+
+
+def _each(which: npt.NDArray[np.int64], count: int) -> npt.NDArray[np.int64]:
+    """Which launch each of so many moments is of."""
+    return np.broadcast_to(which, count) if which.size else np.arange(count)
 
 
 def _bodies(pressure: str | Law, gyration: float, delta: FloatArray) -> dict[float, Body]:

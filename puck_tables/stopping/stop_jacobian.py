@@ -22,6 +22,7 @@ from puck_tables.kernels.compile import (
     BLOCK,
     allocating,
     inlined,
+    into_columns,
     into_rows,
     row_of,
     rows_of,
@@ -48,10 +49,11 @@ STOP_ROWS = 5
 BY_VX, BY_VY, BY_SPIN, BY_DELTA, BY_DECEL, BY_RADIUS, BY_TIME = range(7)
 LAUNCH_COLUMNS = 6
 
-# what a place on the curve says of a stop: five functions, D of each, and derivatives by δ
+# what a place on the curve says of a stop: five functions, D of each, and derivatives by δ; and H
 T, ALONG, ACROSS, TURNED, WAY = range(STOP_FUNCTIONS)
 D, BY_HEIGHT = STOP_FUNCTIONS, 2 * STOP_FUNCTIONS
-STOP_FOUND = 3 * STOP_FUNCTIONS
+TURN_RATE = 3 * STOP_FUNCTIONS
+STOP_FOUND = TURN_RATE + 1
 # of a stop in the frame of its launch: value, by v, by a, by δ; J = 1
 BY_SPEED, BY_RIM, BY_TILT = 1, 2, 3
 OWN_COLUMNS = 4
@@ -67,13 +69,13 @@ Numbers = tuple[float, ...]
 
 
 @inlined
-def stop_functions(slopes: FloatArray, first: int, inside: float, delta: float) -> Numbers:
-    """The functions of the stop at a place of the curve (15); ``slopes`` flat."""
+def stop_functions(slopes: FloatArray, first: int, weights: Numbers, delta: float) -> Numbers:
+    """The functions of the stop at a place of the curve (16); ``slopes`` flat."""
     s, k = 2.0 * delta * delta - 1.0, 4.0 * delta
-    f = spline_polynomials(slopes, first, basis(inside), s, STOP_WIDTH, STOP_POWERS)
+    f = spline_polynomials(slopes, first, weights, s, STOP_WIDTH, STOP_POWERS)
     return (
         f[0], f[1], f[2], f[3], f[4], f[5], f[6], f[7], f[8], f[9],
-        k * f[12], k * f[13], k * f[14], k * f[15], k * f[16],
+        k * f[12], k * f[13], k * f[14], k * f[15], k * f[16], f[10],
     )  # fmt: skip
 
 
@@ -156,7 +158,12 @@ def placed_stop(
 @inlined
 def row_by_row(room: FloatArray, first: int, rows: int, count: int, out: FloatArray) -> None:
     """So many rows of a block, from one on, side by side into ``out`` (count · rows,)."""
-    for n in range(count):
+    whole = count - count % 4
+    for n in range(0, whole, 4):
+        for row in range(0, rows, 4):
+            at = min(row, rows - 4)
+            into_columns(room, first + at, n, out, rows * n + at, rows)
+    for n in range(whole, count):
         for row in range(rows):
             out[rows * n + row] = room[(first + row) * BLOCK + n]
 
@@ -180,7 +187,7 @@ def fill_stop_jacobians(
         place_block(room, count, slopes, STOP_ROW)
         for n in range(count):
             first, tilt = int(row_of(room, FIRST, n)), row_of(room, DELTA, n)
-            found = stop_functions(flat, first, row_of(room, INSIDE, n), tilt)
+            found = stop_functions(flat, first, basis(row_of(room, INSIDE, n)), tilt)
             into_rows(room, _FOUND, n, found)
         for n in range(count):
             speed, slip = row_of(room, SPEED, n), row_of(room, SLIP, n)
