@@ -17,6 +17,7 @@ from puck_tables.errors import InputError, OutputError
 if TYPE_CHECKING:
     from puck_tables.bulk.spreads import Spread
 
+SUMMED = 1_000_000  # samples of a store that are summed up unasked: some 200 MB
 _RINGS = re.compile(r"annulus:([^:]*):([^:]*):([0-9]{1,10})")
 
 
@@ -194,8 +195,11 @@ class Whole:
             last_words[:] = last_words[:1]
         else:
             deliver(result, self.output, None, self.overwrite)
-        wanted = isinstance(result, Stored) and (self.plot is not None or result.is_sample)
-        drawn = result.load() if wanted else result
+        drawn, few = result, True
+        if isinstance(result, Stored):
+            few = not result.is_sample or result.work.size <= SUMMED
+            if self.plot is not None or regions or (result.is_sample and few):
+                drawn = result.load()
         deliver(drawn, None, self.plot, self.overwrite)
         if self.output is None and self.plot is None and not isinstance(result, Summary):
             from puck_tables.io.csv import encode
@@ -204,5 +208,11 @@ class Whole:
         click.echo(printable(summary), err=True)
         if isinstance(drawn, Summary):
             click.echo(drawn.summary(regions))
+        elif not few:
+            click.echo(
+                f"More than {SUMMED:,} samples are summed up only with --plot or --inside, in "
+                "memory (some 200 bytes each); or open the store with xarray.",
+                err=True,
+            )
         if self.explain:
             explained(result)

@@ -182,3 +182,18 @@ def test_samples_of_a_scene_on_the_command_line(tmp_path: Path, monkeypatch: pyt
         assert told in result.stderr.splitlines()
         said.add(result.stdout)
     assert len(said) == 1  # one summary, wherever the samples are kept
+
+
+def test_many_samples_of_a_store_are_not_read_unasked(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    pytest.importorskip("zarr")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("puck_tables.cli.sweep_options.SUMMED", 10)
+    words = ["sweep", "--random", "11", "--spread", "w0=normal:5:0.2", "-o", "s.zarr"]
+    quiet = CliRunner().invoke(main, words)
+    assert (quiet.exit_code, quiet.stdout) == (0, "")
+    assert "summed up only with --plot or --inside" in quiet.stderr
+    asked = CliRunner().invoke(main, [*words, "--inside", "2.2,-0.16,0.1"])
+    assert asked.exit_code == 0, asked.stderr
+    assert "ends inside" in asked.stdout
