@@ -120,9 +120,9 @@ def sweep(
 
     Each delta above 1, or with another --pressure or --gyration, takes about a second to prepare.
     """  # noqa: D301, E501 - click reads the backspace
-    whole = Whole(threads, cluster, output, plot, overwrite, explain)
     is_scene = scene is not None or bool(changes)
     inside = samples_checked(random, seed, spreads, regions, "launch.spin" if is_scene else "w0")
+    whole = Whole(threads, cluster, output, plot, overwrite, explain, inside)
     drawn = spreads_given(spreads, None if is_scene else ARGUMENTS)
     if is_scene:
         tables = scene_tables(ctx, scene, changes, scattering=drawn)
@@ -135,7 +135,7 @@ def sweep(
                 ends: Any = one.sweep(progress=show, **whole.how)
             else:
                 ends = one.sample(random, seed or 0, drawn, progress=show, **whole.how)
-        whole.deliver(ends, summary_of_map(ends), inside)
+        whole.deliver(ends, summary_of_map(ends))
         return
     if v0 is not None and numbers["speed"] is not None:
         raise InputError("--v0 and --speed clash: both give the launch velocity")
@@ -178,7 +178,7 @@ def sweep(
             stops: Any = puck.sweep(**launch, progress=show, **how)
         else:
             stops = puck.sample(random, seed or 0, **launch, progress=show, **how)
-    whole.deliver(stops, _summary(stops), inside)
+    whole.deliver(stops, _summary(stops))
 
 
 _OF_PUCK = ("radius", "height", "friction", "gravity", "delta", "decel", "gyration")

@@ -124,6 +124,7 @@ class Whole:
     plot: Path | None
     overwrite: bool
     explain: bool
+    regions: list[tuple[float, ...]]  # the chances of ending inside which are asked for
 
     @property
     def stored(self) -> bool:
@@ -179,13 +180,16 @@ class Whole:
         from puck_tables._core.memory import check_memory
         from puck_tables.stopping.sweep import BYTES_PER_LAUNCH, BYTES_PER_ROW
 
+        shape = tuple(n for n in sizes if n > 1) if samples is None else (samples,)
         if self.stored:
+            if self.plot is not None or self.regions:
+                advice = "--plot and --inside read a whole store, leave them out"
+                check_memory(shape, BYTES_PER_LAUNCH, advice)
             return
         as_text = self.plot is None if self.output is None else self.output.suffix.lower() != ".h5"
-        shape = tuple(n for n in sizes if n > 1) if samples is None else (samples,)
         check_memory(shape, BYTES_PER_ROW if as_text else BYTES_PER_LAUNCH)
 
-    def deliver(self, result: Any, summary: str, regions: list[tuple[float, ...]]) -> None:
+    def deliver(self, result: Any, summary: str) -> None:
         """Save, draw and sum up."""
         from puck_tables.bulk.finish import Stored
         from puck_tables.bulk.summary import Summary
@@ -195,11 +199,9 @@ class Whole:
             last_words[:] = last_words[:1]
         else:
             deliver(result, self.output, None, self.overwrite)
-        drawn, few = result, True
-        if isinstance(result, Stored):
-            few = not result.is_sample or result.work.size <= SUMMED
-            if self.plot is not None or regions or (result.is_sample and few):
-                drawn = result.load()
+        kept = isinstance(result, Stored)
+        summed = kept and result.is_sample and (bool(self.regions) or result.work.size <= SUMMED)
+        drawn = result.load() if summed or (kept and self.plot is not None) else result
         deliver(drawn, None, self.plot, self.overwrite)
         if self.output is None and self.plot is None and not isinstance(result, Summary):
             from puck_tables.io.csv import encode
@@ -207,8 +209,8 @@ class Whole:
             click.echo(encode(result.dataset()).decode(), nl=False)
         click.echo(printable(summary), err=True)
         if isinstance(drawn, Summary):
-            click.echo(drawn.summary(regions))
-        elif not few:
+            click.echo(drawn.summary(self.regions))
+        elif kept and result.is_sample:
             click.echo(
                 f"More than {SUMMED:,} samples are summed up only with --plot or --inside, in "
                 "memory (some 200 bytes each); or open the store with xarray.",

@@ -197,3 +197,9 @@ def test_many_samples_of_a_store_are_not_read_unasked(
     asked = CliRunner().invoke(main, [*words, "--inside", "2.2,-0.16,0.1"])
     assert asked.exit_code == 0, asked.stderr
     assert "ends inside" in asked.stdout
+    for more in (["--inside", "2.2,-0.16,0.1"], ["--plot", "s.png"]):
+        vast = [*words[:1], "--random", "1000000000", *words[3:5], "-o", "vast.zarr", *more]
+        refused = CliRunner().invoke(main, vast)
+        assert refused.exit_code == 2, refused.stderr
+        assert "--plot and --inside read a whole store" in refused.stderr
+    assert not (tmp_path / "vast.zarr").exists()

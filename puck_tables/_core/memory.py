@@ -7,14 +7,17 @@ import os
 
 from puck_tables.errors import InputError
 
+_ON_DISK = "use smaller counts, or a Zarr store (-o NAME.zarr, store=), which grows on disk"
 
-def check_memory(shape: tuple[int, ...], per_item: int) -> None:
+
+def check_memory(shape: tuple[int, ...], per_item: int, advice: str = _ON_DISK) -> None:
     """Refuse a map that would not fit in memory, before anything is allocated.
 
     Parameters
     ----------
     shape : the sizes of the ranges
     per_item : bytes needed for each launch
+    advice : what to do instead
 
     Raises
     ------
@@ -30,8 +33,7 @@ def check_memory(shape: tuple[int, ...], per_item: int) -> None:
         sizes = " x ".join(str(n) for n in shape)
         raise InputError(
             f"a map of {sizes} launches would need {needed / 2**30:,.1f} GiB of memory, "
-            f"{available / 2**30:,.1f} GiB are free: use smaller counts, or a Zarr store "
-            "(-o NAME.zarr, store=), which grows on disk"
+            f"{available / 2**30:,.1f} GiB are free: {advice}"
         )
 
 

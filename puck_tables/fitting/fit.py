@@ -11,6 +11,7 @@ import numpy as np
 
 from puck_tables._core.real import real
 from puck_tables.film.track import Track
+from puck_tables.fitting.asked import Asked
 from puck_tables.fitting.blindness import blind_spots
 from puck_tables.fitting.certainty import Z95, Certainty, certainty_of, quantile_of
 from puck_tables.fitting.estimate import Estimate, estimate
@@ -33,7 +34,7 @@ from puck_tables.fitting.joining import Line
 from puck_tables.fitting.laws import LawScore, chi2_under, compare, variants_of
 from puck_tables.fitting.numbers import numbers_of, plausible_for
 from puck_tables.fitting.outcome import Fit
-from puck_tables.fitting.parameters import NODES, Asked
+from puck_tables.fitting.parameters import NODES
 from puck_tables.fitting.problem import Problem
 from puck_tables.fitting.residual_tests import drift, runs
 from puck_tables.fitting.rivals import mirrored, rivals_of

@@ -12,11 +12,11 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import instance, one_velocity, positive, real
 from puck_tables.errors import InputError
+from puck_tables.fitting.asked import Asked
 from puck_tables.fitting.blindness import mirror_sentence, rival_sentence
 from puck_tables.fitting.certainty import Certainty, certainty_of
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.numbers import plausible_for
-from puck_tables.fitting.parameters import Asked
 from puck_tables.fitting.problem import Problem
 from puck_tables.fitting.rivals import mirrored, rivals_of
 from puck_tables.fitting.seen import FEWEST, Seen

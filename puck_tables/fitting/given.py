@@ -14,10 +14,11 @@ from puck_tables._core.real import instance, positive, real
 from puck_tables.contact.speed_law import KINDS
 from puck_tables.errors import InputError
 from puck_tables.film.track import Track
+from puck_tables.fitting.asked import Asked
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.impacts import turns
 from puck_tables.fitting.joining import Line
-from puck_tables.fitting.parameters import MOST_NODES, Asked
+from puck_tables.fitting.parameters import MOST_NODES
 from puck_tables.fitting.seen import Seen, noise_of, rests_from, seen_in
 from puck_tables.fitting.starts import slowing_of
 

@@ -21,10 +21,11 @@ from typing import NamedTuple
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables.fitting.asked import Asked
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.impacts import Piece
 from puck_tables.fitting.joined import Meeting, Slide, Wall, state_at
-from puck_tables.fitting.parameters import OF_PAIRS, OF_WALLS, Asked
+from puck_tables.fitting.parameters import OF_PAIRS, OF_WALLS
 from puck_tables.fitting.problem import Problem
 from puck_tables.fitting.seen import Seen
 

@@ -16,8 +16,8 @@ import numpy as np
 
 from puck_tables.contact.laws import law_of
 from puck_tables.errors import InputError
+from puck_tables.fitting.asked import Asked
 from puck_tables.fitting.estimate import FARTHEST, FARTHEST_PLACE, Estimate
-from puck_tables.fitting.parameters import Asked
 from puck_tables.fitting.problem import PRIOR
 from puck_tables.fitting.timing import Known
 

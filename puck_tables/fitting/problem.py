@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables.fitting.asked import Asked
 from puck_tables.fitting.chain import slopes_of_slides
 from puck_tables.fitting.joined import Hit, Meeting, Slide, Wall, met
 from puck_tables.fitting.launched import (
@@ -28,7 +29,7 @@ from puck_tables.fitting.launched import (
     path_with_slopes,
     rates_of,
 )
-from puck_tables.fitting.parameters import LAUNCH, WALL, Asked
+from puck_tables.fitting.parameters import LAUNCH, WALL
 from puck_tables.fitting.seen import Seen, wrapped
 from puck_tables.fitting.timing import weights_of
 

@@ -20,8 +20,8 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.abreast import FROM_AFAR, ROBUST, abreast
+from puck_tables.fitting.asked import Asked
 from puck_tables.fitting.least_squares import LOOSE, minimise
-from puck_tables.fitting.parameters import Asked
 from puck_tables.fitting.problem import Found, Problem
 from puck_tables.fitting.seen import Seen, Turning, rests_from, turning_of
 
@@ -96,18 +96,18 @@ def _deepest(problem: Problem, minima: list[tuple[FloatArray, float]]) -> list[F
     """
     (x, least), *others = minima
     rivals = [x] + [other for other, cost in others if cost < least + _RIVAL]
-    turns = problem.films[0].angle is not None and "launch_spin" not in problem.asked.fixed
-    spin = problem.names.index((0, "launch_spin")) if turns else 0
-    if turns:
-        whole = 2.0 * math.pi / float(np.median(np.diff(problem.films[0].time)))
-        if abs(x[spin]) > 0.5 * whole:
+    spin = None
+    if problem.films[0].angle is not None and "launch_spin" not in problem.asked.fixed:
+        spin = problem.names.index((0, "launch_spin"))
+        turn = 2.0 * math.pi / float(np.median(np.diff(problem.films[0].time)))  # in each frame
+        if abs(x[spin]) > 0.5 * turn:
             rivals.append(x.copy())
-            rivals[-1][spin] = math.remainder(x[spin], whole)
+            rivals[-1][spin] = math.remainder(x[spin], turn)
     if len(rivals) == 1:
         return rivals
     polished = sorted((minimise(problem, one, LOOSE) for one in rivals), key=lambda one: one[1])
     found = [one for one, _ in polished]
-    if not turns:
+    if spin is None:
         return found
     as_well = sum(cost < polished[0][1] + _AS_WELL for _, cost in polished)
     return sorted(found[:as_well], key=lambda x: abs(float(x[spin]))) + found[as_well:]

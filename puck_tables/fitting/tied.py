@@ -14,12 +14,13 @@ from typing import NamedTuple
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables.fitting.asked import Asked
 from puck_tables.fitting.certainty import Certainty
 from puck_tables.fitting.estimate import FARTHEST, FARTHEST_PLACE, Estimate, estimate
 from puck_tables.fitting.impacts import Piece
 from puck_tables.fitting.joining import Blow, Joined, Line, blows_of, joined
 from puck_tables.fitting.numbers import FOLLOWS, Number, quadratic
-from puck_tables.fitting.parameters import OF_PAIRS, OF_WALLS, Asked
+from puck_tables.fitting.parameters import OF_PAIRS, OF_WALLS
 from puck_tables.fitting.problem import Problem
 from puck_tables.fitting.residual_tests import chi_square_tail
 from puck_tables.fitting.seen import Seen

@@ -45,7 +45,7 @@ from puck_tables.kernels.spline import basis
 from puck_tables.motion.state import HEADING
 from puck_tables.motion.state import SPEED as FOUND_SPEED
 from puck_tables.motion.state import SPIN as FOUND_SPIN
-from puck_tables.stopping.axes import HEIGHTS
+from puck_tables.stopping.axes import CONSTANT_HEIGHTS, HEIGHTS
 from puck_tables.stopping.curve_lookup import (
     KAPPA,
     LAUNCH_COLUMNS,
@@ -175,24 +175,14 @@ def _find_functions(
 def _find_constants(room: FloatArray, count: int, constants: FloatArray) -> None:
     """c₀, and derivatives by δ of κ, h₀ and c₀."""
     for n in range(count):
-        into_rows(room, _C0, n, (0.0, 0.0, 0.0, 0.0))
-        into_rows(room, _FOUND, n, (0.0, 0.0))
-    for m in range(constants.shape[1] - 1, -1, -1):
-        a, b, d = constants[0, m], constants[1, m], constants[2, m]
-        for n in range(count):
-            s = 2.0 * row_of(room, _DELTA, n) ** 2 - 1.0
-            c0, k_tilt, h0_tilt, c0_tilt = rows_of(room, _C0, 4, n)
-            kappa, h0 = rows_of(room, _FOUND, 2, n)
-            slopes = c0 * s + a, k_tilt * s + kappa, h0_tilt * s + h0, c0_tilt * s + c0
-            into_rows(room, _C0, n, slopes)
-            into_rows(room, _FOUND, n, (kappa * s + b, h0 * s + d))
-    for n in range(count):
         delta = row_of(room, _DELTA, n)
-        k = 4.0 * delta
-        c0, k_tilt, h0_tilt, c0_tilt = rows_of(room, _C0, 4, n)
-        _, h0 = rows_of(room, _FOUND, 2, n)
-        turning = h0 + delta * k * h0_tilt
-        into_rows(room, _C0, n, (c0, k * k_tilt, turning, k * c0_tilt))
+        s, k = 2.0 * delta * delta - 1.0, 4.0 * delta
+        c0, c0_tilt, kappa, k_tilt, h0, h0_tilt = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+        for m in range(CONSTANT_HEIGHTS - 1, -1, -1):
+            c0_tilt, c0 = c0_tilt * s + c0, c0 * s + constants[0, m]
+            k_tilt, kappa = k_tilt * s + kappa, kappa * s + constants[1, m]
+            h0_tilt, h0 = h0_tilt * s + h0, h0 * s + constants[2, m]
+        into_rows(room, _C0, n, (c0, k * k_tilt, h0 + delta * k * h0_tilt, k * c0_tilt))
 
 
 @allocating

@@ -1,0 +1,343 @@
+"""What a fit may find of a puck, what it takes as known, and what of that moves the puck.
+
+Tracks tell J = f g and δ = 2 f h/r.  Friction, gravity and height stand in these two only, so one
+of the three has to be known; any of them may be free, with a prior, or fixed, and what the tracks
+cannot tell then is said (:mod:`puck_tables.fitting.certainty`).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from puck_tables._core.real import instance
+from puck_tables.contact.laws import law_of
+from puck_tables.contact.speed_law import SpeedLaw
+from puck_tables.errors import InputError
+from puck_tables.fitting.joined import Rims
+from puck_tables.fitting.launched import BySpeed, Moving
+from puck_tables.fitting.natural import curve_of
+from puck_tables.fitting.parameters import (
+    ALL,
+    NODES,
+    OF_IMPACTS,
+    OF_PAIRS,
+    OF_WALLS,
+    POSITIVE,
+    PUCK,
+    WALL,
+    bounds_of,
+    in_range,
+    prior_of,
+    refuse_unknown,
+)
+from puck_tables.puck import Puck
+
+_KIND = ("gyration", "inner", "drag")  # change the curve itself
+_CLASHES = (("friction", "decel"), ("delta", "height"))
+_TINY = 1e-30
+_SMALLEST, _LARGEST = 1e-6, 1e6  # m, of pucks on films
+_LEAST = 1e-9
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What is to be found and what is known.
+
+    Parameters
+    ----------
+    puck : Puck
+        Its numbers count where nothing else is said of them.
+    free : names to be found, of :data:`PUCK`
+    fixed : values by name, of :data:`PUCK` or :data:`LAUNCH`
+    priors : (value, standard deviation) by name
+    bounds : (low, high) by name
+    start : values to begin with, besides those that the tracks suggest
+    freed : names that are found since they have a prior or bounds
+    met : what is taken of the impacts that there are, by name, where nothing else is said
+
+    speeds : slip speeds (m/s) at which friction coefficients are found, friction_0 and so on
+    between : linear or cubic, f between these speeds
+
+    Raises
+    ------
+    InputError
+        If a name is not known (the nearest is told), or named in two ways that clash, or a number
+        is out of range.
+
+    Examples
+    --------
+    >>> asked = Asked.of(Puck(radius=0.0381), None, {}, {}, {}, {})
+    >>> asked.free
+    ('friction', 'delta')
+    >>> asked.scales({"friction": 0.2, "delta": 0.5})[0]
+    1.96133
+    """
+
+    puck: Puck
+    free: tuple[str, ...]
+    fixed: Mapping[str, float]
+    priors: Mapping[str, tuple[float, float]]
+    bounds: Mapping[str, tuple[float, float]]
+    start: Mapping[str, float]
+    freed: tuple[str, ...] = ()
+    met: Mapping[str, float] = field(default_factory=dict)
+    speeds: tuple[float, ...] = ()
+    between: str = "linear"
+
+    @classmethod
+    def of(
+        cls, puck: Puck, free: Iterable[str] | None, fixed: Mapping[str, Any],
+        priors: Mapping[str, Any], bounds: Mapping[str, Any], start: Mapping[str, Any],
+        impacts: bool = False, rows: bool = False,
+    ) -> Asked:  # fmt: skip
+        """Checked, with what is free where nothing is said: f, and δ of a puck without height."""
+        instance("puck", puck, Puck)
+        if not _SMALLEST <= puck.radius <= _LARGEST:
+            raise InputError(
+                f"the radius of a puck on a film is from {_SMALLEST:g} to {_LARGEST:g} m, got "
+                f"{puck.radius:g}: say it in m"
+            )
+        known = {name: in_range(name, value) for name, value in fixed.items()}
+        freed: tuple[str, ...] = ()
+        if free is None:
+            scale = () if {"friction", "decel"} & {*known} else ("friction",)
+            if "decel" in priors or "decel" in bounds:
+                scale = ("decel",)
+            tilt = () if {"delta", "height"} & {*known} or puck.height else ("delta",)
+            wanted = (*scale, *tilt)
+            named = dict.fromkeys((*priors, *bounds))
+            freed = tuple(name for name in named if name in PUCK and name not in wanted)
+            wanted += freed
+        else:
+            wanted = tuple([free] if isinstance(free, str) else free)
+        if rows and "readout" not in (*wanted, *known):
+            wanted += ("readout",)
+        for name in wanted:
+            refuse_unknown(name, PUCK, "free")
+        if len(set(wanted)) < len(wanted):
+            raise InputError(f"free names {', '.join(wanted)}: name each parameter once")
+        for name in (*wanted, *known):
+            if name in NODES:
+                raise InputError(
+                    f"{name} is found where slip speeds are given (--slip-speeds, slip_speeds=), "
+                    "and cannot be named"
+                )
+            if name == "readout" and not rows:
+                raise InputError(
+                    "readout is of a rolling shutter: say which y (m) the first and the last line "
+                    "of the picture show (--rows, rows=)"
+                )
+            if name in OF_IMPACTS and not impacts:
+                raise InputError(
+                    f"{name} is a number of impacts, which are not looked for: ask for them "
+                    "(--impacts, impacts=True)"
+                )
+        for name in wanted:
+            if name in known:
+                raise InputError(
+                    f"{name} is both free and fixed at {known[name]:g}: leave out one of the two"
+                )
+        for given, what in ((priors, "prior"), (bounds, "bounds"), (start, "start")):
+            for name in given:
+                refuse_unknown(name, ALL, what)
+                if name in known:
+                    raise InputError(f"{name} is fixed at {known[name]:g}: leave out its {what}")
+                if name in PUCK and name not in wanted and not (impacts and name in OF_IMPACTS):
+                    raise InputError(f"{name} is not free: name it in free to give it a {what}")
+        for one, other in _CLASHES:
+            both = [name for name in (*wanted, *known) if name in (one, other)]
+            if len(both) > 1 and not {"friction", "decel"} == set(both):
+                raise InputError(f"{one} and {other} say the same: leave out one of them")
+            if len(both) > 1:
+                raise InputError("friction and decel say the same, J = f g: leave out one of them")
+        if "inner" in (*wanted, *known) and not _is_annulus(puck):
+            raise InputError(
+                "inner is the inner radius of an annulus: give the puck the pressure 'annulus:0.8'"
+            )
+        return cls(
+            puck, wanted, known, {n: prior_of(n, v) for n, v in priors.items()},
+            {n: bounds_of(n, v) for n, v in bounds.items()},
+            {n: in_range(n, v) for n, v in start.items()}, freed,
+        )  # fmt: skip
+
+    def __post_init__(self) -> None:
+        scale = {"friction", "decel"} & {*self.free, *self.fixed}
+        if not scale and not self.speeds and self.puck.friction == 0.0:
+            raise InputError(
+                "the friction is neither free nor known: name friction in free, or give the puck "
+                "its friction"
+            )
+
+    @property
+    def uses_decel(self) -> bool:
+        """Whether J is given itself, not by friction."""
+        return "decel" in self.free or "decel" in self.fixed
+
+    @property
+    def uses_delta(self) -> bool:
+        """Whether δ is given itself, not by height."""
+        return "delta" in self.free or "delta" in self.fixed
+
+    def known(self) -> dict[str, float]:
+        """All numbers of the puck that are not found."""
+        puck = self.puck
+        numbers = {name: float(getattr(puck, name)) for name in
+                   ("radius", "height", "friction", "gravity", "gyration")}  # fmt: skip
+        numbers["drag"] = 0.0
+        if _is_annulus(puck):
+            numbers["inner"] = float(puck.body.law.name.partition(":")[2])
+        return {**numbers, **self.met, **{n: v for n, v in self.fixed.items() if n in PUCK}}
+
+    def scales(self, found: Mapping[str, Any]) -> tuple[Any, Any, Any]:
+        """J, δ and r of what is found; of complex numbers, too."""
+        all_of = {**self.known(), **found}
+        if self.speeds:  # that of a puck about to stop
+            all_of["friction"] = all_of[NODES[0]]
+        decel = all_of["decel"] if self.uses_decel else all_of["friction"] * all_of["gravity"]
+        if self.uses_delta:
+            return decel, all_of["delta"], all_of["radius"]
+        friction = decel / all_of["gravity"]
+        return decel, 2.0 * friction * all_of["height"] / all_of["radius"], all_of["radius"]
+
+    def slopes(self, found: Mapping[str, float], name: str) -> tuple[float, float, float]:
+        """The derivatives of J, δ and r to one that is found, by the complex step."""
+        complex_values = {**found, name: found[name] + 1j * _TINY}
+        return tuple(  # type: ignore[return-value]
+            float((value + 0j).imag) / _TINY for value in self.scales(complex_values)
+        )
+
+    def alone(self) -> Asked:
+        """The same without the numbers of impacts: of slides that nothing joins."""
+        own = tuple(name for name in self.free if name not in OF_IMPACTS)
+        priors = {name: one for name, one in self.priors.items() if name not in OF_IMPACTS}
+        return replace(self, free=own, priors=priors, met={})
+
+    def joined(self, sizes: Collection[int], grips: bool) -> Asked:
+        """The same with the numbers of the impacts that there are.
+
+        ``sizes``: how many pucks meet, 1 those with walls; ``grips``: whether rims stop on what
+        they meet in all of them, so that nothing tells their friction.
+
+        Raises
+        ------
+        InputError
+            If a number of impacts is named that are not there.
+        """
+        free, met = list(self.alone().free), {}
+        named = [name for name in self.free if name in OF_IMPACTS]
+        for size, numbers, what in ((1, OF_WALLS, "a wall"), (2, OF_PAIRS, "two pucks")):
+            if size not in sizes:
+                for name in (*named, *self.fixed, *self.priors, *self.bounds, *self.start):
+                    if name in numbers:
+                        raise InputError(f"there is no impact of {what} that {name} could be of")
+                continue
+            restitution, friction, tangential, *_ = numbers
+            rub = tangential if grips and friction not in named else friction
+            mine = [name for name in numbers if name in (restitution, rub, *named)]
+            free += [name for name in mine if name not in self.fixed]
+            met.update({n: v for n, v in numbers.items() if n not in mine and math.isfinite(v)})
+        return replace(self, free=tuple(free), met=met)
+
+    def rims(self, found: Mapping[str, float], pair: bool) -> Rims:
+        """How rims meet, of two pucks or of one and a wall."""
+        defaults = OF_PAIRS if pair else OF_WALLS
+        numbers = {**defaults, **self.fixed, **found}
+        values = [numbers[name] for name in defaults]
+        mass = values[3] if pair else math.inf
+        return Rims(values[0], values[1], values[2], mass)
+
+    def readout(self, found: Mapping[str, float]) -> float:
+        """The time in which a picture is read, s."""
+        return {**self.fixed, **found}.get("readout", 0.0)
+
+    def changes_curve(self, name: str) -> bool:
+        """Whether a parameter is none of the scales."""
+        return name in _KIND or name in NODES
+
+    def moving(self, found: Mapping[str, float], tall: bool) -> Moving:
+        """What moves the puck."""
+        decel, delta, radius = self.scales(found)
+        numbers = {**self.known(), **found}
+        pressure: Any = self.puck.body.law
+        if "inner" in found or "inner" in self.fixed:
+            pressure = f"annulus:{numbers['inner']!r}"
+        curve = curve_of(pressure, numbers["gyration"], tall)
+        by_speed = None
+        if self.speeds:
+            law = self.speed_law(numbers)
+            by_speed = BySpeed(law, numbers["gravity"], numbers["gyration"])
+        # while a minimum is sought J, r and h may lead beyond; where it lies is judged in the end
+        return Moving(decel, min(delta, curve.highest), radius, numbers["drag"], curve, by_speed)
+
+    def speed_law(self, numbers: Mapping[str, float]) -> SpeedLaw:
+        """The friction coefficient over slip speed."""
+        values = [numbers[name] for name in NODES[: len(self.speeds)]]
+        return SpeedLaw(list(self.speeds), values, self.between)
+
+    def over(self, speeds: tuple[float, ...], between: str) -> Asked:
+        """The same with a friction coefficient for each of these slip speeds.
+
+        Raises
+        ------
+        InputError
+            If friction is not what is found, or something is found that such a puck has not.
+        """
+        for name in ("decel", "gravity", "drag", "inner"):
+            if name in self.free or name in self.fixed:
+                raise InputError(
+                    f"{name} cannot be found or fixed beside a friction over slip speed: leave it "
+                    "out"
+                )
+        if "friction" not in self.free:
+            raise InputError("a friction over slip speed is found: do not give the friction")
+        if self.puck.body.law.name != "uniform":
+            raise InputError(
+                "a friction over slip speed is found of uniform pressure alone, not of "
+                f"{self.puck.body.law.name}"
+            )
+        nodes = NODES[: len(speeds)]
+        free = (*nodes, *(name for name in self.free if name != "friction"))
+        limits = {name: self.bounds["friction"] for name in nodes if "friction" in self.bounds}
+        known = {name: self.priors["friction"] for name in nodes if "friction" in self.priors}
+        return replace(
+            self, free=free, bounds={**self.bounds, **limits}, priors={**self.priors, **known},
+            speeds=speeds, between=between,
+        )  # fmt: skip
+
+    def highest(self, tall: bool) -> float:
+        """The largest δ of which motions are known, of an annulus that is free as of the puck's."""
+        pressure = self.puck.body.law
+        if "inner" in self.fixed:
+            pressure = law_of(f"annulus:{self.fixed['inner']!r}")
+        return curve_of(pressure, self.known()["gyration"], tall).highest
+
+    def steepest(self, name: str) -> float:
+        """The largest friction, or J, of a puck of known height and radius: 2fh/r is its δ."""
+        known = self.known()
+        if self.uses_delta or {"height", "radius", "gravity"} & {*self.free} or not known["height"]:
+            return math.inf
+        friction = 0.5 * self.highest(True) * known["radius"] / known["height"]
+        return friction if name == "friction" else friction * known["gravity"]
+
+    def limits(self, name: str) -> tuple[float, float]:
+        """The range in which a parameter is looked for."""
+        low, high = (ALL.get(name) or WALL[name])[1:3]
+        if name == "inner":
+            low, high = 1e-3, 0.999
+        elif name in POSITIVE or name in NODES:
+            low = _LEAST
+        wanted = self.bounds.get(name, (low, high))
+        return max(low, wanted[0]), min(high, wanted[1])
+
+    def plausible(self, name: str) -> float:
+        """Within about how much one would think the value to lie without the tracks."""
+        if name in ("height", "radius"):
+            return self.puck.radius
+        return PUCK[name].plausible
+
+
+def _is_annulus(puck: Puck) -> bool:
+    return puck.body.law.name.startswith("annulus:")
