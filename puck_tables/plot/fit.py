@@ -52,7 +52,7 @@ def draw_on(paths: Axes, found: Fit) -> None:
     for n, (film, track) in enumerate(zip(problem.films, slides, strict=True)):
         counts = found.estimate.kept[problem.each()[n][0]]
         colour = COLORS[n % len(COLORS)]
-        paths.plot(*film.place[counts].T, ".", color=colour, markersize=3, alpha=0.6)
+        paths.plot(*film.place[counts].T, ".", color=colour, markersize=7, alpha=0.3)
         if not counts.all():
             paths.plot(
                 *film.place[~counts].T, "x", color=RED, markersize=5,
@@ -62,7 +62,7 @@ def draw_on(paths: Axes, found: Fit) -> None:
         for slide, (start, stop) in zip(track, pairwise(ends), strict=True):
             fine = np.linspace(0.0, max(stop - start, 0.0), _FINE)
             way = path_of(moving, slide.launch[2:4], float(slide.launch[4]), fine)[:2]
-            paths.plot(*(way + slide.launch[:2, None]), color=colour, linewidth=1.1)
+            paths.plot(*(way + slide.launch[:2, None]), color=colour, linewidth=0.8)
         paths.plot(*track[0].launch[:2], **LAUNCH)
     for hit in hits:
         paths.plot(*hit.place, "o", color=GREY, markersize=7, fillstyle="none")

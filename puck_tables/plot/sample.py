@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.bulk.summary import Summary
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
 _FEWEST, _MOST, _PER_BIN = 12, 120, 40.0
 _TAIL = 5e-4  # of the samples beyond each side of the map
 _HELD = (0.95, 0.5)  # of the samples inside the lines
-_WIDE = 0.05
+_WIDE = 2.0  # cells: lines about anything narrower are but noise
 _SHARES = (0.025, 0.5, 0.975)
 
 
@@ -44,8 +45,7 @@ def draw_on(panel: Axes, samples: Summary) -> None:
     middles = [0.5 * (edges[1:] + edges[:-1]) for edges in (across, along)]
     area = (across[1] - across[0]) * (along[1] - along[0])
     levels = levels_holding(density, area)
-    wide = np.count_nonzero(density) > _WIDE * density.size  # else lines would be but noise
-    if wide and len(levels) == len(_HELD):
+    if len(levels) == len(_HELD) and _width(density >= levels[1]) > _WIDE:
         lines = panel.contour(
             *middles, density.T, levels=levels, colors=[GREY, ORANGE], linewidths=1.2
         )
@@ -71,6 +71,11 @@ def levels_holding(density: FloatArray, area: float) -> list[float]:
     places = np.minimum(np.searchsorted(held, _HELD), falling.size - 1)
     levels: list[float] = falling[places].tolist()
     return levels if 0.0 < levels[0] < levels[1] else []
+
+
+def _width(inside: npt.NDArray[np.bool_]) -> float:
+    """How many cells wide an area is in the mean, however it lies."""
+    return float(inside.sum() / max(inside.any(axis=0).sum(), inside.any(axis=1).sum()))
 
 
 def _bins(count: int) -> int:
