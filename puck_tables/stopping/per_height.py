@@ -254,7 +254,7 @@ class SolverPerHeight:
                 some = self._plain.first(launches_in(rows[:, plain]), threads)
                 values[0, plain], values[1:3, plain] = some.time, some.place.T
         mark = launches.mark() if launches.is_held else 0
-        return First(values[0], values[1:3].T.copy(), status, mark, values[3:])
+        return First(values[0], values[1:3].T, status, mark, values[3:])
 
     def rest(self, launches: Launches, threads: int | None) -> FloatArray:
         """The rest of the outputs (3, n) of launches whose first did not come with it."""
