@@ -150,6 +150,38 @@ def test_a_rail_that_moves_with_the_belt_is_a_rail_on_the_floor() -> None:
         assert np.abs(moves).max() <= 1e-9
 
 
+@pytest.mark.parametrize("tol", [1e-2, 1e-4, 1e-7])
+def test_a_rail_that_is_led_across_the_floor_lets_no_puck_rest(tol: float) -> None:
+    """A slip of 4 mm/s across is left when that along the rail has died out."""
+    run = simulate_scene(
+        scene(
+            launch={"velocity": [3.0, 0.004], "spin": 0.5},
+            run={"tol": tol, "time": 9.0},
+            constraint={"kind": "rail", "velocity": [0.0, 0.004]},
+        )
+    )
+    unit = 3.0**2 / (0.2 * G)
+    assert run.end == "time is up"
+    assert abs(run.last["y"] - 0.004 * 9.0) <= tol * unit
+    assert abs(run.last["vx"]) <= 3.0 * tol and run.last["vy"] == pytest.approx(0.004, rel=1e-12)
+
+
+@pytest.mark.parametrize("tol", [1e-2, 1e-4, 1e-7])
+def test_a_puck_follows_the_pivot_that_pulls_it_slowly(tol: float) -> None:
+    reach, speed = 0.1, 0.02
+    run = simulate_scene(
+        scene(
+            puck={"radius": 0.1},
+            run={"tol": tol, "time": 200.0},
+            launch={"velocity": [speed, -reach * 6.0], "spin": 6.0},
+            constraint={"kind": "pivot", "reach": reach, "velocity": [speed, 0.0]},
+        )
+    )
+    assert run.end == "time is up"
+    assert run.last["x"] == pytest.approx(reach + speed * 200.0 - reach, abs=tol * 0.2)
+    assert abs(run.last["y"]) <= tol * 0.2 and run.last["vx"] == pytest.approx(speed, rel=tol)
+
+
 def test_a_pivot_brakes_at_constant_rate() -> None:
     """The slip angle is atan(r/d) for ever, so is the torque."""
     reach, spin = 0.6, 5.0

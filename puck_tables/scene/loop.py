@@ -95,7 +95,7 @@ from puck_tables.scene.settle import (
 )
 from puck_tables.scene.standstill import from_standstill
 from puck_tables.scene.step_size import follow_scales, up_to_the_stop
-from puck_tables.scene.steps import step
+from puck_tables.scene.steps import nudged, step
 
 # how a run ends
 AT_REST, CARRIED_AWAY, CARRIED_ROUND, TIME_UP, OVER_EDGE = range(5)
@@ -114,6 +114,7 @@ _NEWTON, _FINEST_NEWTON = 1e-3, 1e-15  # of the local error: how well implicit s
 _PACE = 2.7  # times the eighth root of the local error: how far a first step astride comes,
 _FASTEST, _SLOWEST = 0.5, 1e-6  # and how far any; shorter ones are not graded
 _NEAR_KINK = 0.01  # of a step to a kink: how well it was foreseen
+_NUDGE = 0.3  # of its local error, which may be much less: by so much a twin on a blade errs more
 _SWING = 0.05  # rad that a carried puck turns, at most, in a step
 
 
@@ -363,6 +364,8 @@ def follow(
         for i in range(ROW):
             work[0, i] = last[i]
         known = happens < 0 and mode == SLIDES and not held_there and leaning.shape[0] == 0
+        if ask.twin > 0.0 and happens < 0 and mode == SLIDES and q > straight:
+            nudged(model, _NUDGE * min(error, allowed), steps, scale, y)
         before_it, q = q, slip_speed(radius, y)
         if newton > 0.0 or mode == SLIDES:
             settles = length * (damps + turns / q if q > 0.0 else damps)

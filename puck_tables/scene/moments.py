@@ -23,7 +23,7 @@ from puck_tables.scene.ingredients import (
 )
 from puck_tables.scene.leaning import GRIP, RIM
 from puck_tables.scene.orthotropic import is_elliptic
-from puck_tables.scene.rest import SLACK, excess_at_rest, held_by_floor
+from puck_tables.scene.rest import SLACK, excess_at_rest, held_by_floor, slip_led
 from puck_tables.scene.steps import step
 
 # watched: equal speeds of centre and rim; no spin; else the rim on a wall that is leant on
@@ -203,6 +203,8 @@ def goes_straight(
     ``unit``, s, or the slip not be more than such errors are, ``tolerance``, of ``speed``: nobody
     knows which way it is turned.  What brakes slowly must have settled, and all else be small.
     """
+    if slip_led(stretch.model.hold, stretch.model.surface, y) > 2.0 * REST * speed:
+        return NO_WAY, 0.0  # a constraint leads it on
     way = stopping(stretch.model.body.radius, y, work)
     brakes, mass = -way[3], stretch.model.body.mass
     if not brakes > 0.0:

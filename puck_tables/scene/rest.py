@@ -29,6 +29,7 @@ from puck_tables.scene.ingredients import (
     Dry,
     Hold,
     Stretch,
+    Surface,
     carried_along,
     floor_velocity,
     is_astride,
@@ -114,6 +115,21 @@ def free_yield(dry: Dry, radius: float, fx: float, fy: float, torque: float, gui
         return astride_yield(dry.by_speed.table, dry.load, radius, fx, fy, torque, guided)
     share, heat, ux, uy, w = demand(dry, radius, fx, fy, torque, guided)
     return (share - 1.0) * heat, ux, uy, w
+
+
+@inlined
+def slip_led(hold: Hold, surface: Surface, y: FloatArray) -> float:
+    """How fast a constraint leads a puck past its floor that slips no more than it must, m/s."""
+    sx, sy, turning = floor_velocity(surface, y[X], y[Y])
+    vx, vy = hold.vx - sx, hold.vy - sy
+    if hold.kind == RAIL:
+        return abs(hold.ax * vx + hold.ay * vy)
+    if hold.kind == BLADE:
+        return abs(hold.vx)
+    if hold.kind == PIVOT:
+        rim, angle = turning * hold.reach, y[THETA] + hold.angle
+        return math.hypot(vx + rim * math.sin(angle), vy - rim * math.cos(angle))
+    return 0.0
 
 
 @inlined

@@ -58,6 +58,20 @@ def _put_right(hold: Hold, surface: Surface, t: float, y: FloatArray) -> None:
 
 
 @inlined
+def nudged(model: Model, size: float, number: int, scale: FloatArray, y: FloatArray) -> None:
+    """Move a puck on a blade off its way by ``size``, in ``scale``, as its steps may err.
+
+    A blade that is led aside gains speed as it turns, and its heading errs for ever: what is small
+    at first grows a hundred times.  Two runs that err alike at first would not show it.
+    """
+    if model.hold.kind == BLADE:
+        bearing, speed = y[THETA] + model.hold.angle, size * scale[VX] * math.cos(number)
+        y[VX] += speed * math.cos(bearing)
+        y[VY] += speed * math.sin(bearing)
+        y[SPIN] += size * scale[SPIN] * math.sin(2.0 * number)
+
+
+@inlined
 def _accelerations(model: Model, work: FloatArray, row: int) -> tuple[float, float, float]:
     """Of the centre in the laboratory, and of the spin."""
     cx, cy = carried_along(model.surface, work[row, X], work[row, Y])
