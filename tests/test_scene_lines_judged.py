@@ -31,6 +31,12 @@ def faults(count: int, seed: int, tol: float, folder: Path) -> list[str]:
     return found
 
 
+@pytest.mark.parametrize("tol", [1e-4, 1e-9])
+def test_a_border_is_met_once(tol, tmp_path):
+    """A crossing that was found between two narrow bounds was left again before it was met."""
+    assert lines_judge.verdict(lines_judge.prepared(31, 468), tol, tmp_path)[0] == "right"
+
+
 @pytest.mark.thorough
 @pytest.mark.parametrize("tol", [1e-3, 1e-6, 1e-9])
 def test_no_boundary_is_missed(tol, tmp_path):

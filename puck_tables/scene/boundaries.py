@@ -220,10 +220,9 @@ def _crossing(
         else:
             high = guess
         better = guess - value / slope if slope != 0.0 else low
-        if not low < better < high:
-            better = 0.5 * (low + high)
-        close = abs(better - guess) <= _CLOSE * h  # its square is rounding
-        guess = better
+        inside = low <= better <= high
+        close = inside and abs(better - guess) <= _CLOSE * h  # its square is rounding
+        guess = better if inside else 0.5 * (low + high)
         if close or high - low <= 1e-15 * h:
             break
     return guess
