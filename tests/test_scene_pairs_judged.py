@@ -67,7 +67,7 @@ def test_pairs_and_triples(tmp_path):
 
 @pytest.mark.thorough
 def test_rebounds_that_settle(tmp_path):
-    scenes = [(1, i) for i in (0, 1, 4, 5, 6, 9)] + [(3, 27), (3, 37), (3, 44), (11, 23)]
+    scenes = [(1, i) for i in (0, 1, 4, 5, 6, 9)] + [(3, 27), (3, 37), (3, 44), (3, 112), (11, 23)]
     assert faults([draw_rebounds(*scene) for scene in scenes], [1e-9], tmp_path) == []
 
 

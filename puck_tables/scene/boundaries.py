@@ -211,6 +211,7 @@ def _crossing(
     if low == 0.0 and line.gap <= 0.0:
         return 0.0
     guess = h * _root(gaps, low / h, high / h)
+    first, last, before = low, high, math.inf  # a line that is grazed is passed twice beside them
     for _ in range(100):
         step(stretch, t, guess, y, scale, work, new)
         value = line.gap + (line.x * new[SIZE] + line.y * new[SIZE + 1])
@@ -220,9 +221,10 @@ def _crossing(
         else:
             high = guess
         better = guess - value / slope if slope != 0.0 else low
-        inside = low <= better <= high
-        close = inside and abs(better - guess) <= _CLOSE * h  # its square is rounding
-        guess = better if inside else 0.5 * (low + high)
+        inside, off = low <= better <= high, abs(better - guess)
+        alone = off <= _CLOSE * min(better - first, last - better)  # the square of that is rounding
+        close = inside and off <= _CLOSE * h and (alone or off >= 0.5 * before)
+        guess, before = (better if inside else 0.5 * (low + high)), off
         if close or high - low <= 1e-15 * h:
             break
     return guess
