@@ -155,3 +155,6 @@ def into_columns(block: FloatArray, row: int, n: int, out: FloatArray, at: int, 
     for k in range(4):
         first = row * BLOCK + n + k
         out[at + k * step : at + k * step + 4] = block[first : first + 4 * BLOCK : BLOCK]
+
+
+stream_columns = into_columns  # past the cache, where there is any to spare

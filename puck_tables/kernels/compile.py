@@ -15,6 +15,7 @@ if as_written():
         rows_of,
         spline_polynomials,
         spline_values,
+        stream_columns,
         summed,
         weighted_rows,
     )
@@ -34,12 +35,13 @@ else:
         rows_of,
         spline_polynomials,
         spline_values,
+        stream_columns,
         summed,
         weighted_rows,
     )
 
 __all__ = [
     "BLOCK", "allocating", "bits_of", "inlined", "inner", "into_columns", "into_row", "into_rows",
-    "kernel", "number_of", "row_of", "rows_of", "spline_polynomials", "spline_values", "summed",
-    "weighted_rows",
+    "kernel", "number_of", "row_of", "rows_of", "spline_polynomials", "spline_values",
+    "stream_columns", "summed", "weighted_rows",
 ]  # fmt: skip

@@ -61,6 +61,7 @@ from puck_tables.stopping.orbit import TINY, cell_of
 from puck_tables.stopping.slopes import CURVE_WIDTH
 from puck_tables.stopping.stop_jacobian import (
     BY_HEIGHT,
+    MANY_NUMBERS,
     STOP_FOUND,
     STOP_ROW,
     TURN_RATE,
@@ -90,6 +91,7 @@ _FLOW = _FOUND + STOP_FOUND
 SECTION_WIDTH = 24  # both, padded to whole registers
 _PUT = _FOUND + SECTION_WIDTH
 _ROWS = _PUT + PLACED_STATES
+_PART = 24  # columns of a block at a time: with so many rows the nearest cache holds no more
 
 
 @inlined
@@ -401,8 +403,9 @@ def fill_state_jacobians(
     cells = float(stop_slopes.shape[1] - 3)
     stops, curve, sections = stop_slopes.reshape(-1), curve_slopes.reshape(-1), section.reshape(-1)
     numbers, room = out.reshape(-1), np.empty(_ROWS * BLOCK)
-    for start in range(begin, end, BLOCK):
-        count = min(BLOCK, end - start)
+    part = _PART if which.size else BLOCK  # facts of many pucks are copied faster at length
+    for start in range(begin, end, part):
+        count = min(part, end - start)
         _gather(facts, which, begin, start, count, room)
         moments = times[start : start + count]
         for n in range(count):
@@ -423,10 +426,11 @@ def fill_state_jacobians(
                 rows_of(room, _STOP, _STOPPED, n), found,
                 _flow_at(is_fast, share, delta, fixed, flow, found[TURN_RATE]),
             )  # fmt: skip
-            placed = placed_state(
+            own = placed_state(
                 row_of(room, _VX, n), row_of(room, _VY, n), row_of(room, _SPIN, n),
                 row_of(room, _DECEL, n), row_of(room, _RADIUS, n), row_of(room, _V, n),
                 row_of(room, _Q, n), row_of(room, _MOMENT, n), own,
             )  # fmt: skip
-            into_rows(room, _PUT, n, placed)
-        row_by_row(room, _PUT, PLACED_STATES, count, numbers[PLACED_STATES * start :])
+            into_rows(room, _PUT, n, own)
+        placed = numbers[PLACED_STATES * start :]
+        row_by_row(room, _PUT, PLACED_STATES, count, placed, numbers.size > MANY_NUMBERS)

@@ -27,6 +27,7 @@ from puck_tables.kernels.compile import (
     row_of,
     rows_of,
     spline_polynomials,
+    stream_columns,
     weighted_rows,
 )
 from puck_tables.kernels.spline import basis
@@ -65,6 +66,7 @@ _FOUND = PLACED
 _PUT = PLACED + STOP_FOUND
 _ROWS = _PUT + _OUT
 
+MANY_NUMBERS = 1 << 19  # more than caches hold
 Numbers = tuple[float, ...]
 
 
@@ -156,13 +158,21 @@ def placed_stop(
 
 
 @inlined
-def row_by_row(room: FloatArray, first: int, rows: int, count: int, out: FloatArray) -> None:
-    """So many rows of a block, from one on, side by side into ``out`` (count · rows,)."""
+def row_by_row(
+    room: FloatArray, first: int, rows: int, count: int, out: FloatArray, large: bool
+) -> None:
+    """So many rows of a block, from one on, side by side into ``out`` (count · rows,).
+
+    ``large``: of an array that no cache holds.
+    """
     whole = count - count % 4
     for n in range(0, whole, 4):
         for row in range(0, rows, 4):
             at = min(row, rows - 4)
-            into_columns(room, first + at, n, out, rows * n + at, rows)
+            if large:
+                stream_columns(room, first + at, n, out, rows * n + at, rows)
+            else:
+                into_columns(room, first + at, n, out, rows * n + at, rows)
     for n in range(whole, count):
         for row in range(rows):
             out[rows * n + row] = room[(first + row) * BLOCK + n]
@@ -199,7 +209,7 @@ def fill_stop_jacobians(
                 row_of(room, DECEL, n), row_of(room, RADIUS, n), speed, slip, own,
             )  # fmt: skip
             into_rows(room, _PUT, n, placed)
-        row_by_row(room, _PUT, _OUT, count, numbers[_OUT * start :])
+        row_by_row(room, _PUT, _OUT, count, numbers[_OUT * start :], numbers.size > MANY_NUMBERS)
 
 
 @allocating
