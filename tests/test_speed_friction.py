@@ -17,7 +17,7 @@ from puck_tables.contact import speed_resultants
 from puck_tables.contact.integrals import slip_direction
 from puck_tables.contact.speed_quadrature import speed_integrals
 from puck_tables.errors import AccuracyError, ContactError, InputError, OutputError
-from puck_tables.kernels.speed_quadrature import fill_integrals
+from puck_tables.kernels.speed_quadrature import FINE, fill_integrals
 from puck_tables.kernels.speed_spline import speed_ratios
 from puck_tables.table import speed_build
 from puck_tables.table.speed_build import _Filled
@@ -195,7 +195,7 @@ def test_the_compiled_integrals_are_those_of_numpy(law):
     Q = 3.0 * rng.random(phi.size) ** 2 / (np.cos(phi) + np.sin(phi))
     direction = slip_direction(phi)
     out = np.empty((phi.size, 4))
-    fill_integrals(*law.pieces(law.top_speed), direction.ratio, direction.fast_spin, Q, out)
+    fill_integrals(*law.pieces(law.top_speed), direction.ratio, direction.fast_spin, Q, FINE, out)
     p, sine, cosine = speed_integrals(phi, Q, law), np.sin(phi), np.cos(phi)
     for found, truth, weight in zip(
         out.T, (p.a, p.b, p.d, p.e), (cosine, sine, sine, cosine), strict=True
@@ -208,7 +208,8 @@ def test_the_grid_is_cut_at_the_corners_so_that_order_four_holds():
     """On the patches of a law with corners, all halved alike."""
     errors = []
     for cells in (10, 20, 40):
-        parts = [_Filled(patch, CUBIC, 0.3, n) for n, patch in enumerate(patches_of(CUBIC.speeds))]
+        patches = enumerate(patches_of(CUBIC.speeds))
+        parts = [_Filled(patch, CUBIC, 0.3, n, FINE) for n, patch in patches]
         for part in parts:
             part.cells = [cells, cells]
             part.fill()

@@ -30,7 +30,7 @@ GRIDS = {
     "stops": ({"phi": 33, "delta": 9}, "time", "33 phi x 9 delta nodes"),
     "section": ({"phi": 129}, "spin_share", "129 phi nodes"),
     "stop section": ({"phi": 129}, "along", "129 phi nodes"),
-    "speed": ({"node": 1936, "patch": 16}, "p_d", "1936 nodes in 16 patches"),
+    "speed": ({"node": 968, "patch": 8}, "p_d", "968 nodes in 8 patches"),
 }
 every_kind = pytest.mark.parametrize("kind", KINDS)
 

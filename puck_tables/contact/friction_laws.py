@@ -115,7 +115,7 @@ class FrictionLaw:
         return _pieces(self, top)
 
 
-@lru_cache(maxsize=4)
+@lru_cache(maxsize=64)  # each slab of a table has a top of its own
 def _pieces(law: FrictionLaw, top: float) -> tuple[FloatArray, FloatArray]:
     """Worked out once for all patches of a table."""
     inner = sorted({speed for speed in law.scales if 0.0 < speed < top})

@@ -15,7 +15,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.kernels.compile import allocating, kernel
-from puck_tables.kernels.speed_quadrature import integrals_at
+from puck_tables.kernels.speed_quadrature import FINE, integrals_at
 
 _STEP, _STEPS = 0.08, 220
 _REST = 1e-7  # of the slip at the launch
@@ -33,7 +33,7 @@ def _rates(
     slip = math.sqrt(v * v + rim * rim)
     fast = rim > v
     ratio = v / rim if fast else (rim / v if v > 0.0 else 0.0)
-    integrals_at(breaks, pieces, ratio, fast, slip, edges, p)
+    integrals_at(breaks, pieces, ratio, fast, slip, FINE, edges, p)
     a, b, d, e = p[0], p[1], p[2], p[3]
     cosine, sine = v / slip, y[RIM] / slip
     bottom = 1.0 - height * height * sine * sine * b * (b - d)

@@ -18,12 +18,14 @@ from puck_tables.kernels.compile import allocating, inlined, inner
 
 PARTS = 4  # p_a, p_b, p_d, p_e
 
-_RULES = (14, 8, 5)  # nodes of a panel, the fewer the farther it is from the branch point
+# nodes of a panel, the fewer the farther it is from the branch point: to 1e-14, or 3e-11
+_RULES = (14, 8, 5, 12, 7, 5)
 _FAR, _FARTHER = 8.0, 20.0  # half widths
 _NODES = [np.polynomial.legendre.leggauss(n) for n in _RULES]
 _GAUSS = np.concatenate([nodes for nodes, _ in _NODES])
 _WEIGHTS = np.concatenate([weights for _, weights in _NODES])
-_FIRST, _SECOND, _THIRD = np.cumsum(_RULES).tolist()
+_ENDS = (0, *np.cumsum(_RULES).tolist())
+FINE, COARSE = 0, 3  # which rules to take
 _GROWTH = 3.0
 _GRADED = 40  # edges at most: 3^-34 is below any difference from 1
 _FACTORIALS = np.array([(-1.0) ** k / math.factorial(2 * k + 3) for k in range(10)])
@@ -72,14 +74,12 @@ def _short(x: float) -> float:
 
 
 @inlined
-def _rule(middle: float, half: float, branch: float, smooth: bool) -> tuple[int, int]:
+def _rule(middle: float, half: float, branch: float, smooth: bool, rules: int) -> tuple[int, int]:
     """First and last of the nodes to take in a panel."""
-    away, square = middle * middle + branch * branch, half * half
-    if away > _FARTHER * _FARTHER * square and not smooth:
-        return _SECOND, _THIRD
+    away, square, which = middle * middle + branch * branch, half * half, rules
     if away > _FAR * _FAR * square:
-        return _FIRST, _SECOND
-    return 0, _FIRST
+        which += 2 if away > _FARTHER * _FARTHER * square and not smooth else 1
+    return _ENDS[which], _ENDS[which + 1]
 
 
 @inlined
@@ -104,30 +104,30 @@ def _sorted_edges(edges: FloatArray, count: int, last: float, branch: float) -> 
 @inner
 def integrals_at(
     breaks: FloatArray, pieces: FloatArray, ratio: float, fast: bool, speed: float,
-    edges: FloatArray, out: FloatArray,
+    rules: int, edges: FloatArray, out: FloatArray,
 ) -> None:  # fmt: skip
     """p_a, p_b, p_d, p_e into ``out`` (4,).
 
     ``breaks`` (k + 1,): speeds, m/s; ``pieces`` (k, 2 + n): see
     :mod:`puck_tables.contact.law_pieces`;
     ``ratio`` = min(v, r|ω|)/max(v, r|ω|), ``fast`` whether r|ω| > v, ``speed`` = hypot(v, rω);
-    ``edges``: room for k + 45 numbers.
+    ``rules``: FINE or COARSE; ``edges``: room for k + 45 numbers.
     """
     if fast:
-        _centre_inside(breaks, pieces, ratio, speed, edges, out)
+        _centre_inside(breaks, pieces, ratio, speed, rules, edges, out)
     else:
-        _centre_outside(breaks, pieces, ratio, speed, edges, out)
+        _centre_outside(breaks, pieces, ratio, speed, rules, edges, out)
 
 
 @inlined
 def _centre_inside(
-    breaks: FloatArray, pieces: FloatArray, s: float, speed: float, edges: FloatArray,
-    out: FloatArray,
+    breaks: FloatArray, pieces: FloatArray, s: float, speed: float, rules: int,
+    edges: FloatArray, out: FloatArray,
 ) -> None:  # fmt: skip
     """|φ| > π/4, s = cot φ < 1: whole circles R ≤ 1 − s, then arcs R = 1 − s cos τ."""
     corners, sine = len(breaks) - 2, 1.0 / math.sqrt(1.0 + s * s)
     smooth = _is_smooth(pieces)
-    disc = (0, _FIRST) if smooth else (_SECOND, _THIRD)  # a polynomial
+    disc = rules if smooth else FINE + 2  # a polynomial
     rim = speed * sine
     whole, first = 0.0, 0.0
     for k in range(corners + 1):
@@ -136,7 +136,7 @@ def _centre_inside(
             last = breaks[k + 1] / rim
         half, middle = 0.5 * (last - first), 0.5 * (last + first)
         if half > 0.0:
-            for i in range(disc[0], disc[1]):
+            for i in range(_ENDS[disc], _ENDS[disc + 1]):
                 R = middle + half * _GAUSS[i]
                 whole += half * _WEIGHTS[i] * _value(pieces, k, rim * R) * R * R
         first = last
@@ -158,7 +158,7 @@ def _centre_inside(
         if half <= 0.0:
             continue
         k = _piece(breaks, rim * ((1.0 - s) + 2.0 * s * math.sin(0.5 * middle) ** 2))
-        rule = _rule(middle, half, branch, smooth)
+        rule = _rule(middle, half, branch, smooth, rules)
         for i in range(rule[0], rule[1]):
             tau = middle + half * _GAUSS[i]
             h, g = math.sin(0.5 * tau), math.cos(0.5 * tau)
@@ -188,8 +188,10 @@ def _centre_inside(
 
 
 @inlined
-def _slope(pieces: FloatArray, far: int, near: int, centre: float, step: float) -> float:
-    """(f(centre + step) − f(centre − step))/(2 step).
+def _both(
+    pieces: FloatArray, far: int, near: int, centre: float, step: float
+) -> tuple[float, float, float]:
+    """f(centre + step), f(centre − step), and their difference over 2 step.
 
     In one piece without subtracting: by Horner's scheme for P(t ± h) = even ± h odd.
     """
@@ -200,16 +202,16 @@ def _slope(pieces: FloatArray, far: int, near: int, centre: float, step: float) 
         even, odd = 0.0, 0.0
         for power in range(pieces.shape[1] - 1, FIRST_POWER - 1, -1):
             even, odd = even * t + h * h * odd + pieces[far, power], odd * t + even
-        return odd * pieces[far, SCALE]
-    rise = _value(pieces, far, centre + step)
-    rise -= _value(pieces, near, max(centre - step, 0.0))
-    return 0.5 * rise / step
+        return even + h * odd, even - h * odd, odd * pieces[far, SCALE]
+    f_far = _value(pieces, far, centre + step)
+    f_near = _value(pieces, near, max(centre - step, 0.0))
+    return f_far, f_near, 0.5 * (f_far - f_near) / step
 
 
 @inlined
 def _centre_outside(
-    breaks: FloatArray, pieces: FloatArray, kappa: float, speed: float, edges: FloatArray,
-    out: FloatArray,
+    breaks: FloatArray, pieces: FloatArray, kappa: float, speed: float, rules: int,
+    edges: FloatArray, out: FloatArray,
 ) -> None:  # fmt: skip
     """|φ| ≤ π/4, κ = tan φ = 1/s ≤ 1: the circles R = s ± cos τ together, as nothing cancels."""
     cosine, smooth = 1.0 / math.sqrt(1.0 + kappa * kappa), _is_smooth(pieces)
@@ -232,7 +234,7 @@ def _centre_outside(
             continue
         step = reach * math.cos(middle)
         far, near = _piece(breaks, centre + step), _piece(breaks, centre - step)
-        rule = _rule(middle, half, branch, smooth)
+        rule = _rule(middle, half, branch, smooth, rules)
         for i in range(rule[0], rule[1]):
             tau = middle + half * _GAUSS[i]
             h = math.sin(0.5 * tau)
@@ -241,15 +243,14 @@ def _centre_outside(
             step = reach * c
             if smooth:  # next to slip zero rounding may put a node into the next piece
                 far, near = _piece(breaks, centre + step), _piece(breaks, centre - step)
-            slope = centre * _slope(pieces, far, near, centre, step)
+            f_far, f_near, slope = _both(pieces, far, near, centre, step)
+            slope *= centre
             # T² = (2 ± κc)² − κ², by factors that do not cancel for κ, c → 1
             outer, inner = 2.0 + kappa * c, 2.0 * (1.0 - kappa) + 2.0 * kappa * h * h
             roots = (
                 math.sqrt((outer - kappa) * (outer + kappa)),
                 math.sqrt(inner * (2.0 - kappa * c + kappa)),
             )
-            f_far = _value(pieces, far, centre + step)
-            f_near = _value(pieces, near, max(centre - step, 0.0))
             total = roots[0] + roots[1]
             spin += weight * sin_tau * c * c * (4.0 * (f_far + f_near) / total + total * slope)
             for side in range(2):
@@ -275,9 +276,9 @@ def _centre_outside(
 @allocating
 def fill_integrals(
     breaks: FloatArray, pieces: FloatArray, ratio: FloatArray, fast: npt.NDArray[np.bool_],
-    speed: FloatArray, out: FloatArray,
+    speed: FloatArray, rules: int, out: FloatArray,
 ) -> None:  # fmt: skip
     """The four at flat arrays of points into ``out`` (n, 4)."""
     edges = np.empty(len(breaks) + _GRADED)
     for n in range(ratio.size):
-        integrals_at(breaks, pieces, ratio[n], fast[n], speed[n], edges, out[n])
+        integrals_at(breaks, pieces, ratio[n], fast[n], speed[n], rules, edges, out[n])

@@ -16,7 +16,7 @@ from puck_tables.contact.friction_laws import FrictionLaw
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.contact.speed_quadrature import SpeedFunction, speed_integrals
 from puck_tables.errors import AccuracyError
-from puck_tables.kernels.speed_quadrature import fill_integrals
+from puck_tables.kernels.speed_quadrature import COARSE, FINE, fill_integrals
 from puck_tables.kernels.speed_spline import fill_patch
 from puck_tables.table.accuracy import Accuracy
 from puck_tables.table.build import COARSEST
@@ -35,6 +35,7 @@ _ALSO = 0.2  # of what the other axis misses: refined too
 _NEXT = 0.03  # of the largest error: refined in the same round
 _PROBES = 100  # random points of a patch
 _SAFETY = 2.0  # for points that were not measured
+_COARSE_FROM = 5e-10  # from here on nodes of laws without corners are coarser; probes are not
 _BETWEEN_WORDS = 0.1  # s
 _AT_ONCE = 20_000  # nodes between two looks whether to go on: some 0.1 s
 
@@ -42,8 +43,8 @@ _AT_ONCE = 20_000  # nodes between two looks whether to go on: some 0.1 s
 class _Filled:
     """One patch with its node values, and how good the spline through them is."""
 
-    def __init__(self, patch: Patch, law: Law, unit: float, number: int):
-        self._law, self._unit = law, unit
+    def __init__(self, patch: Patch, law: Law, unit: float, number: int, rules: int):
+        self._law, self._unit, self._rules = law, unit, rules
         self.patch = patch
         self.cells = [COARSEST_CELLS, COARSEST_CELLS]
         self._probes = _probes(np.random.default_rng([1960, number]), patch)
@@ -63,7 +64,7 @@ class _Filled:
         """The integrals on a grid, (ξ, ζ, 4)."""
         direction, Q = self.patch.place(xi[:, None], zeta)
         fast = bool(self.patch.fast)
-        return truth_at(self._law, self.patch.top, direction.ratio, fast, Q)
+        return truth_at(self._law, self.patch.top, direction.ratio, fast, Q, self._rules)
 
     def _judge(self) -> None:
         """Errors (4, probes) of the spline, and what is missed along ξ and ζ by half the nodes."""
@@ -179,7 +180,8 @@ def tabulated(
     largest = largest_f(law, float(breaks[-1]))
     goal = accuracy / _SAFETY
     patches = patches_of(breaks, law.grade if isinstance(law, SpeedLaw | FrictionLaw) else 1)
-    parts = [_Filled(patch, law, largest or 1.0, n) for n, patch in enumerate(patches)]
+    rules = COARSE if isinstance(law, FrictionLaw) and accuracy >= _COARSE_FROM else FINE
+    parts = [_Filled(patch, law, largest or 1.0, n, rules) for n, patch in enumerate(patches)]
     share, told = 0.0, 0.0
 
     def tell() -> None:
@@ -250,8 +252,9 @@ def largest_f(law: Law, top: float) -> float:
 
 
 def truth_at(
-    law: Law, top: float, ratio: FloatArray, fast: npt.ArrayLike, speed: FloatArray
-) -> FloatArray:
+    law: Law, top: float, ratio: FloatArray, fast: npt.ArrayLike, speed: FloatArray,
+    rules: int = FINE,
+) -> FloatArray:  # fmt: skip
     """p_a, p_b, p_d, p_e by quadrature, (…, 4); ``top``: what the slip goes up to, m/s."""
     if not isinstance(law, SpeedLaw | FrictionLaw):
         p = speed_integrals(np.where(fast, np.arctan2(1.0, ratio), np.arctan(ratio)), speed, law)
@@ -264,7 +267,7 @@ def truth_at(
     for start in range(0, flat.size, each):
         keep_on()
         part = slice(start, start + each)
-        fill_integrals(ends, pieces, flat[part], inside[part], Q[part], out[part])
+        fill_integrals(ends, pieces, flat[part], inside[part], Q[part], rules, out[part])
     return out.reshape(*np.shape(ratio), 4)
 
 

@@ -3,8 +3,8 @@
 Where the integrals are singular, and in which coordinates they are not, stands in
 :mod:`puck_tables.kernels.speed_spline`; here is the way back, from the coordinates of a patch to
 the slip of the puck, and the choice of the breaks b_k.  Besides the corners of the law there are
-breaks of convenience, so that no patch is wider than twice its distance from slip zero, the scale
-on which anything varies there.
+breaks of convenience, so that no patch is wider than five times its distance from slip zero, the
+scale on which anything varies there.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from puck_tables.kernels.speed_spline import CORNER_POWER, EDGE_POWER
 
 COARSEST_CELLS, HALVINGS = 10, 6  # cells of a patch along an axis, and how often they are halved
 MOST_CORNERS = 40  # patches grow with their square; weaker ones are left to the splines
-_STEEPEST = 3.0  # between neighbouring breaks
+_STEEPEST = 6.0  # between neighbouring breaks
 _LEAST_SCALE = 1e-9  # of the top speed
 _SAME = 1e-9  # two corners as near as this to each other are one
 
@@ -130,8 +130,8 @@ def breaks_of(
 
     Examples
     --------
-    >>> breaks_of(SpeedLaw([0.0, 1.0, 6.0], [0.3, 0.2, 0.2]), None, None).round(3).tolist()
-    [0.0, 1.0, 2.449, 6.0]
+    >>> breaks_of(SpeedLaw([0.0, 1.0, 9.0], [0.3, 0.2, 0.2]), None, None).round(3).tolist()
+    [0.0, 1.0, 3.0, 9.0]
     """
     if isinstance(law, SpeedLaw):
         top = law.top_speed if top_speed is None else float(top_speed)
