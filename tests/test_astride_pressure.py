@@ -59,11 +59,10 @@ def test_a_patch_that_touches_the_rim_from_inside():
         assert np.abs(found("galin", surface, slip, 0.8) - truth).max() <= 1e-9, slip
 
 
-def test_a_profile_against_circles(tmp_path):
-    """Straight between its radii, with a hole."""
-    path = tmp_path / "cone.csv"
-    path.write_text("rho,W\n" + "".join(f"{rho},{w}\n" for rho, w in CONE))
-    radii, heights = np.array(CONE).T
+def against_circles(path, rows, floor, slip):
+    """How far friction under a profile, straight between its rows, is from the judge's."""
+    path.write_text("rho,W\n" + "".join(f"{rho!r},{w!r}\n" for rho, w in rows))
+    radii, heights = np.array(rows).T
     load, square = 0.0, 0.0  # ∫ W ρ dρ and ½ ∫ W ρ³ dρ by Gauss's rule, exact on each piece
     node, weight = np.polynomial.legendre.leggauss(4)
     for low, high in pairwise(radii):
@@ -73,12 +72,32 @@ def test_a_profile_against_circles(tmp_path):
     square /= load
 
     def law(at: float, _: float) -> float:
-        return float(np.interp(at, radii, heights)) * 0.5 / load if at >= 0.2 else 0.0
+        return float(np.interp(at, radii, heights)) * 0.5 / load if at >= radii[0] else 0.0
 
-    ground, surface = FLOORS["strips"]
+    ground, surface = FLOORS[floor]
+    # also where the circle is as close to a border as the centre of rotation of one slip
+    bends = (math.hypot(0.4, 0.1), *(float(rho) for rho in radii if 0.0 < rho < 1.0))
+    truth = pressure_judge.friction(ground, slip, law, 0.4, square, bends)
+    return np.abs(found(str(path), surface, slip, 0.8) - truth).max()
+
+
+def test_a_profile_against_circles(tmp_path):
+    """With a hole."""
     for slip in SLIPS[1:3]:
-        truth = pressure_judge.friction(ground, slip, law, 0.4, square, (0.2, 0.6))
-        assert np.abs(found(str(path), surface, slip, 0.8) - truth).max() <= 1e-10, slip
+        assert against_circles(tmp_path / "cone.csv", CONE, "strips", slip) <= 1e-10, slip
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("floor", FLOORS)
+def test_profiles_of_two_rows_and_of_many(tmp_path, floor):
+    """The centre of rotation within the base, beside a border, on it, at the rim and outside."""
+    rng = np.random.default_rng(5)
+    radii = np.concatenate([[0.0], np.sort(rng.uniform(0.02, 0.98, 12)), [1.0]]).tolist()
+    rough = [(rho, w) for rho, w in zip(radii, rng.uniform(0.2, 2.0, 14).tolist(), strict=True)]
+    for n, rows in enumerate(([(0.0, 2.0), (1.0, 0.3)], rough)):
+        for slip in [*SLIPS[1:3], (0.3, -0.4, 1.0), (0.1, 0.39, -1.0), (1.0, 0.4, 0.3)]:
+            wrong = against_circles(tmp_path / f"{n}.csv", rows, floor, slip)
+            assert wrong <= 1e-10, (rows, slip)
 
 
 @pytest.mark.parametrize("pressure", LAWS)

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from puck_tables.scene.scene import Scene
 
 _SMALLEST, _LARGEST = 1e-100, 1e100
-_MOST_ROWS = 60  # of a tabulated pressure astride: each look costs that of a disc 24 times a row
+_MOST_ROWS = 60  # of a tabulated pressure astride: each row adds to the cost of a look
 _GRIPS = 1000.0  # the largest coefficient that a rim may come over
 
 

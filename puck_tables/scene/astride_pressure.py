@@ -6,9 +6,11 @@ those under the base are (1/π) times
 
     W(1) D(1) − W(ρ₀) D(ρ₀) − ∫ W'(a) D(a) da , tabulated from ρ₀ on.
 
-D is analytic in a but where the circle touches a border, passes a corner or the centre of rotation:
-like powers and a half, or logarithms.  Between these radii it is Gauss's rule in a variable that
-goes slowly at both ends.
+D is that of the whole disc, times f N at the centre of rotation C, and a rest.  The whole is like
+(a − c)² ln|a − c| where the circle passes C, the rest like powers and a half where it touches a
+border or passes a corner, and next to singular where it passes what of a border is close to C.
+Between these radii both are polynomials in u with 3u² − 2u³ the place in between, known at Gauss's
+nodes; W' times those is integrated exactly, whatever number of rows W has.
 """
 
 from __future__ import annotations
@@ -18,7 +20,7 @@ import math
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.base_parts import NOTHING, Sums, plus
+from puck_tables.kernels.base_parts import NOTHING, Sums, disc_sums, plus, turn_between
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.kernels.load_parts import RING, TABLE, UNIFORM
 from puck_tables.scene.astride_parts import Slip, weighted
@@ -29,6 +31,7 @@ from puck_tables.scene.ground import (
     CORNER,
     CORNERS,
     INNER,
+    LOAD,
     MIDDLE_X,
     MIDDLE_Y,
     PATCHES,
@@ -40,20 +43,25 @@ from puck_tables.scene.ground import (
     REACH,
     ROWS,
     SHARE,
+    WEIGHTS,
     border_of,
     corner_of,
+    load_of,
     patch_of,
+    strip_at,
 )
 
-_GROWTH = 2.5  # of a part, over how far the next radius is from its near end
 _FAR = 4.0  # radii: a centre of rotation farther away is none
-_LEAST = 1e-5  # of the length between two radii: nearer ones beyond them count as one
-# Gauss's rule on [0, 1] in u with x = u³ (10 − 15 u + 6 u²): ends like √x do not harm it
-_NODES = 24
-_U, _BY_U = (0.5 * side for side in np.polynomial.legendre.leggauss(_NODES))
-_U = 0.5 + _U
-_PLACE = _U**3 * (10.0 + _U * (6.0 * _U - 15.0))
-_SHARE = _BY_U * 30.0 * (_U * (1.0 - _U)) ** 2
+_CLOSE = 0.5  # radii: a border farther from the centre of rotation does not show it
+_SMOOTH, _BENT = 18, 36  # nodes; where W bends, all that they know counts
+_T, _BY_T = (np.concatenate(both) for both in zip(
+    np.polynomial.legendre.leggauss(_SMOOTH), np.polynomial.legendre.leggauss(_BENT), strict=True
+))  # fmt: skip
+_U = 0.5 + 0.5 * _T
+_PLACE = _U * _U * (3.0 - 2.0 * _U)
+_SHARE = 3.0 * _BY_T * _U * (1.0 - _U)
+_INVERSE = 1.0 / np.arange(1.0, _BENT + 2.0)
+_LEGENDRE = np.polynomial.legendre.legvander(_T[_SMOOTH:], _BENT - 1)
 
 
 @inlined
@@ -71,6 +79,15 @@ def _put(ground: FloatArray, count: int, value: float) -> int:
 
 
 @inlined
+def _put_near(ground: FloatArray, count: int, ax: float, ay: float, cx: float, cy: float) -> int:
+    """Put how far a point of a border is, if it is close to C."""
+    off_x, off_y = ax - cx, ay - cy
+    if off_x * off_x + off_y * off_y < _CLOSE * _CLOSE:
+        return _put(ground, count, math.sqrt(ax * ax + ay * ay))
+    return count
+
+
+@inlined
 def _put_line(
     ground: FloatArray, count: int, ax: float, ay: float, bx: float, by: float, cx: float, cy: float
 ) -> int:
@@ -80,30 +97,28 @@ def _put_line(
         count = _put(ground, count, abs(ax * by - ay * bx) / math.sqrt(square))
     share = ((cx - ax) * bx + (cy - ay) * by) / square
     if 0.0 < share < 1.0:
-        count = _put(ground, count, math.hypot(ax + share * bx, ay + share * by))
+        count = _put_near(ground, count, ax + share * bx, ay + share * by, cx, cy)
     return count
 
 
 @inner
-def _radii(ground: FloatArray, radius: float, slip: Slip, mirrored: float) -> int:
-    """Into their room the radii between 0 and 1 at which D(a) is not analytic; how many.
+def _radii(ground: FloatArray, radius: float, cx: float, cy: float) -> tuple[int, float]:
+    """Into their room the radii between 0 and 1 where the rest is not smooth; how many; f N at C.
 
-    Also those at which the border on a circle passes closest to the centre of rotation, C.
+    Of a C that is not under the base, that under its centre.  (cx, cy): C from there, in radii.
     """
-    x, y, count, c = ground[PLACE_X], ground[PLACE_Y], 0, _FAR
-    if slip.along < _FAR * slip.turning:
-        c = slip.along / slip.turning
-        count = _put(ground, count, c)
-    cx, cy = -mirrored * c * slip.sine, mirrored * c * slip.cosine
+    x, y, count = ground[PLACE_X], ground[PLACE_Y], 0
+    within = 1.0 if cx * cx + cy * cy < 1.0 else 0.0
+    strip = strip_at(ground, x + within * radius * cx, y + within * radius * cy)
+    load = load_of(ground, strip)
     east, north = ground[ACROSS_X], ground[ACROSS_Y]
     place = east * x + north * y
     for i in range(int(ground[BORDERS])):
         away = (border_of(ground, i) - place) / radius
-        ax, ay = away * east + _FAR * north, away * north - _FAR * east
         if abs(away) < 1.0:
-            count = _put_line(
-                ground, count, ax, ay, -2.0 * _FAR * north, 2.0 * _FAR * east, cx, cy
-            )  # fmt: skip
+            count = _put(ground, count, abs(away))
+            more = away - (east * cx + north * cy)
+            count = _put_near(ground, count, cx + more * east, cy + more * north, cx, cy)
     for k in range(int(ground[PATCHES])):
         mx = (patch_of(ground, k, MIDDLE_X) - x) / radius
         my = (patch_of(ground, k, MIDDLE_Y) - y) / radius
@@ -111,14 +126,14 @@ def _radii(ground: FloatArray, radius: float, slip: Slip, mirrored: float) -> in
         first, corners = int(patch_of(ground, k, CORNER)), int(patch_of(ground, k, CORNERS))
         if apart >= reach + 1.0:
             continue
+        to_c, turns = math.hypot(cx - mx, cy - my), 0.0
         if corners == 0:
             count = _put(ground, count, abs(apart - reach))
             count = _put(ground, count, apart + reach)
-            to_c = math.hypot(cx - mx, cy - my)
             if to_c > 0.0:
                 share = reach / to_c
-                near = math.hypot(mx + share * (cx - mx), my + share * (cy - my))
-                count = _put(ground, count, near)
+                ax, ay = mx + share * (cx - mx), my + share * (cy - my)
+                count = _put_near(ground, count, ax, ay, cx, cy)
         for n in range(corners):
             one = corner_of(ground, first + n)
             two = corner_of(ground, first + (n + 1 if n + 1 < corners else 0))
@@ -126,73 +141,85 @@ def _radii(ground: FloatArray, radius: float, slip: Slip, mirrored: float) -> in
             bx, by = (two[0] - one[0]) / radius, (two[1] - one[1]) / radius
             count = _put(ground, count, math.sqrt(ax * ax + ay * ay))
             count = _put_line(ground, count, ax, ay, bx, by, cx, cy)
-    first = int(ground[PROFILE])
-    for n in range(int(ground[ROWS])):
-        count = _put(ground, count, ground[first + 2 * n])
-    return count
+            turns += turn_between(ax - cx, ay - cy, ax + bx - cx, ay + by - cy)
+        if within > 0.0 and (turns > math.pi or (corners == 0 and to_c < reach)):
+            load = patch_of(ground, k, LOAD)
+    return count, load
+
+
+@inlined
+def _slope(ground: FloatArray, row: int) -> float:
+    here = int(ground[PROFILE]) + 2 * row
+    return (ground[here + 3] - ground[here + 1]) / (ground[here + 2] - ground[here])
 
 
 @inner
-def _part(
-    ground: FloatArray, radius: float, slip: Slip, mirrored: float, low: float, high: float
-) -> Sums:
-    """∫ D da over a part that is smooth within."""
-    sums, length = NOTHING, high - low
-    for i in range(_NODES):
-        more = weighted(ground, radius, slip, mirrored, low + length * _PLACE[i], UNIFORM)
-        sums = plus(sums, length * _SHARE[i], more)
-    return sums
+def _weights(ground: FloatArray, row: int, low: float, high: float) -> tuple[int, int, int]:
+    """Into their room the weights of ∫ W' D da from one radius to another.
 
-
-@inner
-def _graded(
-    ground: FloatArray, radius: float, slip: Slip, mirrored: float, low: float, high: float,
-    left: float, right: float,
-) -> Sums:  # fmt: skip
-    """The same, of parts that grow away from both ends: beyond them the next ones are near."""
-    length = high - low
-    if _GROWTH * min(left, right) >= length:
-        return _part(ground, radius, slip, mirrored, low, high)
-    sums, half = NOTHING, 0.5 * length
-    for side in range(2):
-        gap, near = max(left if side == 0 else right, _LEAST * length), 0.0
-        while near < half:
-            far = near + _GROWTH * (gap + near)
-            far = half if far > 0.8 * half else far
-            if side == 0:
-                more = _part(ground, radius, slip, mirrored, low + near, low + far)
-            else:
-                more = _part(ground, radius, slip, mirrored, high - far, high - near)
-            sums, near = plus(sums, 1.0, more), far
-    return sums
+    The first node and how many, and the row at the end.  Legendre's polynomials P_k times a W' that
+    jumps give P_{k+1} − P_{k−1} where it does.
+    """
+    at, last, room = int(ground[PROFILE]), int(ground[ROWS]) - 2, int(ground[WEIGHTS])
+    while row < last and ground[at + 2 * row + 2] <= low:
+        row += 1
+    length, slope = high - low, _slope(ground, row)
+    if row == last or ground[at + 2 * row + 2] >= high:
+        for i in range(_SMOOTH):
+            ground[room + i] = length * slope * _SHARE[i]
+        return 0, _SMOOTH, row
+    sums = room + _BENT
+    for k in range(_BENT + 1):
+        ground[sums + k] = 0.0
+    while row < last and ground[at + 2 * row + 2] < high:
+        row += 1
+        after = _slope(ground, row)
+        before, here, slope = 0.0, after - slope, after
+        t = -2.0 * math.sin(math.asin(1.0 - 2.0 * (ground[at + 2 * row] - low) / length) / 3.0)
+        for k in range(_BENT + 1):
+            ground[sums + k] += here
+            before, here = here, ((2 * k + 1) * t * here - k * before) * _INVERSE[k]
+    for i in range(_BENT):
+        weight = slope - 0.5 * (ground[sums] + ground[sums + 1])
+        for k in range(1, _BENT):
+            weight -= 0.5 * (ground[sums + k + 1] - ground[sums + k - 1]) * _LEGENDRE[i, k]
+        ground[room + i] = length * weight * _SHARE[_SMOOTH + i]
+    return _SMOOTH, _BENT, row
 
 
 @inner
 def _tabulated(ground: FloatArray, radius: float, slip: Slip, mirrored: float) -> Sums:
     """A tabulated law, straight between its radii."""
-    count, room = _radii(ground, radius, slip, mirrored), int(ground[RADII])
-    at, last = int(ground[PROFILE]), int(ground[ROWS]) - 1
-    sums = weighted(ground, radius, slip, mirrored, 1.0, UNIFORM)
+    at, last, weights = int(ground[PROFILE]), int(ground[ROWS]) - 1, int(ground[WEIGHTS])
+    sums = weighted(ground, radius, slip, mirrored, 1.0, UNIFORM, 0.0)
     sums = plus(NOTHING, ground[at + 2 * last + 1], sums)
-    if ground[at] > 0.0:
-        hole = weighted(ground, radius, slip, mirrored, ground[at], UNIFORM)
+    begin = ground[at]
+    if begin > 0.0:
+        hole = weighted(ground, radius, slip, mirrored, begin, UNIFORM, 0.0)
         sums = plus(sums, -ground[at + 1], hole)
-    low, left, row = ground[at], max(ground[at], 1e-3), 0
+    c = slip.along / slip.turning if slip.along < _FAR * slip.turning else _FAR
+    count, load = _radii(ground, radius, -mirrored * c * slip.sine, mirrored * c * slip.cosine)
+    low, row = begin, 0
+    for n in range(2):
+        high = min(max(c, begin), 1.0) if n == 0 else 1.0
+        if high > low:
+            first, nodes, row = _weights(ground, row, low, high)
+            for i in range(nodes):
+                a = low + (high - low) * _PLACE[first + i]
+                more = disc_sums(slip.along, slip.turning, a)
+                sums = plus(sums, -load * ground[weights + i], more)
+            low = high
+    low, row = begin, 0
     for n in range(count + 1):
-        high = ground[room + n] if n < count else 1.0
+        high = ground[int(ground[RADII]) + n] if n < count else 1.0
         if not high > low:
             continue
-        right = 1.0
-        if n < count:
-            right = (ground[room + n + 1] if n + 1 < count else 1.0) - high
-        while row < last - 1 and ground[at + 2 * row + 2] <= low:
-            row += 1
-        here = at + 2 * row
-        slope = (ground[here + 3] - ground[here + 1]) / (ground[here + 2] - ground[here])
-        if slope != 0.0:
-            more = _graded(ground, radius, slip, mirrored, low, high, left, right)
-            sums = plus(sums, -slope, more)
-        left, low = high - low, high
+        first, nodes, row = _weights(ground, row, low, high)
+        for i in range(nodes):
+            a = low + (high - low) * _PLACE[first + i]
+            more = weighted(ground, radius, slip, mirrored, a, UNIFORM, load)
+            sums = plus(sums, -ground[weights + i], more)
+        low = high
     return sums
 
 
@@ -206,7 +233,7 @@ def sums_under(ground: FloatArray, radius: float, slip: Slip, mirrored: float) -
         share *= 0.5
     hole = ground[INNER]
     share /= 1.0 - hole * hole
-    sums = plus(NOTHING, share, weighted(ground, radius, slip, mirrored, 1.0, law))
+    sums = plus(NOTHING, share, weighted(ground, radius, slip, mirrored, 1.0, law, 0.0))
     if hole > 0.0:
-        sums = plus(sums, -share, weighted(ground, radius, slip, mirrored, hole, UNIFORM))
+        sums = plus(sums, -share, weighted(ground, radius, slip, mirrored, hole, UNIFORM, 0.0))
     return sums

@@ -28,6 +28,7 @@ BORDER_NUMBER, BORDER_SIDE = 3, 4  # columns of a border
 DEGREE = 5
 _SHORTEST = 1e-10  # of a step: turning points closer than this are one
 _CLOSE = 1e-8  # of a step: from so close a crossing is known by its slope
+_AT_END = 1e-4  # of a step: so close to its end by its slope and bend there
 
 
 class Boundaries(NamedTuple):
@@ -210,6 +211,11 @@ def _crossing(
         return math.inf
     if low == 0.0 and line.gap <= 0.0:
         return 0.0
+    rate, bend = DEGREE * (gaps[DEGREE] - gaps[DEGREE - 1]), gaps[DEGREE] - gaps[DEGREE - 1]
+    bend = DEGREE * (DEGREE - 1) * (bend - gaps[DEGREE - 1] + gaps[DEGREE - 2])
+    back = gaps[DEGREE] / rate if rate < 0.0 else math.inf
+    if count == 0 and back <= _AT_END:
+        return h * (1.0 - back * (1.0 + 0.5 * bend * back / rate))
     guess = h * _root(gaps, low / h, high / h)
     first, last, before = low, high, math.inf  # a line that is grazed is passed twice beside them
     for _ in range(100):

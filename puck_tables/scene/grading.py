@@ -23,6 +23,7 @@ Grade = tuple[float, float]  # the place of a step, and its bend
 UNIFORM: Grade = (0.0, 0.0)
 _TO_STOP = -1.0  # the place of a step towards where a slip stops
 _ROOM = 0.02  # a step that takes a smaller share of what is left is as good without a bend
+_STRETCH, _TWO = 1.1, 1.6  # times as far as it should: then one step is the last, or two are
 CLOSEST = 0.87  # of what is left: no step takes more, nor if it is a tenth longer to land
 
 
@@ -54,10 +55,13 @@ def between(since: float, left: float, h: float) -> Grade:
 
 @inlined
 def paced(since: float, left: float, pace: float) -> float:
-    """How long a step between two such moments is that comes so far."""
+    """How long a step between two such moments is that comes about so far; few are left short."""
     whole = since + left
-    to = _place(since / whole) + pace
-    return left if to >= 1.0 else whole * _passed(to) - since
+    place = _place(since / whole)
+    rest = 1.0 - place
+    if rest <= _STRETCH * pace:
+        return left
+    return whole * _passed(place + (pace if rest > _TWO * pace else 0.6 * rest)) - since
 
 
 @inlined

@@ -13,14 +13,16 @@ from puck_tables.kernels.load_parts import UNIFORM
 # A ground, all in one array, which is quick to hand on: where the centre of the base is, 1 or by
 # how much all friction is taken wrong, and what holds for all of it,
 PLACE_X, PLACE_Y, SHARE, LEVER, INNER, ACROSS_X, ACROSS_Y, BORDERS, PATCHES = range(9)
-PRESSURE, PROFILE, ROWS, RADII = range(9, 13)
-_HEAD = 13
+PRESSURE, PROFILE, ROWS, RADII, WEIGHTS = range(9, 14)
+_HEAD = 14
 # the places of its borders, f N between them, a row for each patch (its middle, the radius of a
 # circle about it, the first of its corners, how many (none: it is that circle), and f N there),
 MIDDLE_X, MIDDLE_Y, REACH, CORNER, CORNERS, LOAD = range(6)
 PATCH_COLUMNS = 6
+_WEIGHTS_ROOM = 96
 # the corners of all patches, the rows of a tabulated pressure (radius, W) from PROFILE on, and from
-# RADII on room for the radii at which circles on the base meet something else.
+# RADII on room for the radii at which circles on the base meet something else, and from WEIGHTS on
+# for the weights of a rule over them.
 
 
 class Ground(NamedTuple):
@@ -50,13 +52,13 @@ class Ground(NamedTuple):
         head = [0.0, 0.0, 1.0, self.lever, self.inner, self.across_x, self.across_y]
         tables = [self.borders, self.loads, self.patches.ravel(), self.corners.ravel()]
         profile = _HEAD + sum(map(len, tables))
+        radii = 2 * len(self.borders) + 3 * (len(self.patches) + len(self.corners))
         counts = [
             len(self.borders), len(self.patches), self.pressure, profile, len(self.profile),
-            profile + self.profile.size,
+            profile + self.profile.size, profile + self.profile.size + radii,
         ]  # fmt: skip
-        room = 2 * len(self.borders) + 3 * (len(self.patches) + len(self.corners))
         return np.concatenate([
-            head, counts, *tables, self.profile.ravel(), np.zeros(room + len(self.profile) + 3)
+            head, counts, *tables, self.profile.ravel(), np.zeros(radii + _WEIGHTS_ROOM)
         ]).astype(np.float64)  # fmt: skip
 
 

@@ -77,6 +77,7 @@ from puck_tables.scene.moments import (
 from puck_tables.scene.patches import (
     ASTRIDE,
     after_patch,
+    comes_at_most,
     dry_under,
     first_patch,
     look_at_patches,
@@ -175,6 +176,7 @@ def follow(
     # astride: how far a step comes between two kinks of friction, when the last was, how close
     pace, fastest, since, near = min(_PACE * allowed**0.125, _FASTEST), _FASTEST, 0.0, 0.0
     halved = False  # the step that ends here is cut in two
+    clear = 0.0  # no patch's border is nearer to the rim
     if ask.twin > 0.0:
         h, reach, swing = ask.twin * h, (1.0 + ask.twin) * reach, (1.0 + ask.twin) * swing
         closest *= 1.0 - 0.2 * ask.twin
@@ -320,11 +322,14 @@ def follow(
                 bounds, room, region, leans, stretch, t, length, y, scale, work, new, gaps, trial
             )
         if patched:
-            patch, met = first_patch(
-                regions.ground, lies, stretch, t, length, y, new, scale, work, last, trial
-            )
-            if met < moment:
-                happens, which, moment = _PATCH, patch, met
+            far = comes_at_most(surface, length, work[0], last)
+            if clear < far:
+                patch, met, clear = first_patch(
+                    regions.ground, lies, stretch, t, length, far, y, new, scale, work, last, trial
+                )
+                if met < moment:
+                    happens, which, moment = _PATCH, patch, met
+            clear -= far
         if mode == CARRIED and t >= calm:  # also before what it is carried to
             step(stretch, t, min(moment, length), y, scale, work, trial)
             slips = lost(stretch, t, min(moment, length), y, scale, work, trial)
@@ -413,6 +418,7 @@ def follow(
                 region, which = which, int(line[BORDER_NUMBER])
             else:
                 lies[which] = after_patch(regions.ground, which, lies[which], y[X], y[Y])
+                clear = 0.0
                 back = lies[which] != ASTRIDE
                 which += int(regions.ground[GROUND_BORDERS])
             happens = LEAVES if back else COMES_OVER

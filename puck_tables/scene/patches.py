@@ -2,6 +2,7 @@
 
 Within a step the distance between the rim and a patch changes no faster than the puck moves, so
 that it is looked at often enough; where it changes its sign is found on real steps of the method.
+Nor is it looked at before the puck has come as far as there was room at the last look.
 """
 
 from __future__ import annotations
@@ -140,35 +141,43 @@ def _on_curve(
     )  # fmt: skip
 
 
+@inlined
+def comes_at_most(surface: Surface, h: float, first: FloatArray, last: FloatArray) -> float:
+    """How far a base comes in a step over h at most, by dy/dt at its begin and at its end."""
+    cx, cy = carried_along(surface, first[X], first[Y])
+    ax, ay = first[VX] + cx, first[VY] + cy
+    cx, cy = carried_along(surface, last[X], last[Y])
+    bx, by = last[VX] + cx, last[VY] + cy
+    one, two = first[X] * first[X] + first[Y] * first[Y], last[X] * last[X] + last[Y] * last[Y]
+    bend = math.sqrt(max(ax * ax + ay * ay, bx * bx + by * by))
+    return h * (math.sqrt(max(one, two)) + h * bend)
+
+
 @inner
 def first_patch(
     ground: FloatArray, lies: npt.NDArray[np.int64], stretch: Stretch, t: float, h: float,
-    y: FloatArray, end: FloatArray, scale: FloatArray, work: FloatArray, last: FloatArray,
-    new: FloatArray,
-) -> tuple[int, float]:  # fmt: skip
+    far: float, y: FloatArray, end: FloatArray, scale: FloatArray, work: FloatArray,
+    last: FloatArray, new: FloatArray,
+) -> tuple[int, float, float]:  # fmt: skip
     """The first patch whose border the rim meets or leaves on a step to ``end``; −1: none.  When.
 
-    ``last``: dy/dt at the end of the step.  It is looked for on the polynomials between both ends,
-    and then found on real steps.
+    And how far the rim is from the next border when the step begins.  ``far``: as far as the step
+    comes at most; ``last``: dy/dt at its end.  It is looked for on the polynomials between both
+    ends, and then found on real steps.
     """
     which, moment, radius = -1, math.inf, stretch.model.body.radius
-    surface, first = stretch.model.surface, work[0]
-    speed = math.hypot(first[X], first[Y])
-    cx, cy = carried_along(surface, first[X], first[Y])
-    bend = math.hypot(first[VX] + cx, first[VY] + cy)
-    speed = max(speed, math.hypot(last[X], last[Y]))
-    cx, cy = carried_along(surface, last[X], last[Y])
-    fastest = speed + h * max(bend, math.hypot(last[VX] + cx, last[VY] + cy))
+    surface, first, clear = stretch.model.surface, work[0], math.inf
     wx, wy = end[SIZE], end[SIZE + 1]
     for k in range(lies.size):
         how = lies[k]
         before = room_by(ground, k, how, radius, y[X], y[Y])
-        if before > fastest * h or fastest == 0.0:
+        clear = min(clear, before)
+        if before > far or far == 0.0:
             continue
         # on from place to place, none further than the room there, to where there is none
         low, high, room, before = 0.0, 0.0, 0.0, max(before, 0.0)
         while high < 1.0 and high * h < moment:
-            low, high = high, min(high + max(before / (fastest * h), 1.0 / _LOOKS), 1.0)
+            low, high = high, min(high + max(before / far, 1.0 / _LOOKS), 1.0)
             mx, my = _on_curve(wx, wy, h, surface, first, last, high)
             room = room_by(ground, k, how, radius, y[X] + mx, y[Y] + my)
             if room < 0.0:
@@ -197,7 +206,7 @@ def first_patch(
         found = _on_steps(ground, k, how, stretch, t, high * h, h, slope / h, y, scale, work, new)
         if found < moment:
             which, moment = k, found
-    return which, moment
+    return which, moment, clear
 
 
 @inner

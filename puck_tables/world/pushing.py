@@ -60,6 +60,7 @@ _FIRST = 1e-3  # of Q/J: the first step
 _BRIEF = 1e-6  # of Q/J: on as short a step gaps are rounding
 _SHORTEST = 1e-16  # of Q/J: shorter steps lead nowhere
 _CLOSE = 1e-14  # of a step: how close a moment is found
+_ULP = 4e-16  # of a time: to which it is rounded, twice
 _OVER = 1e-12  # of a radius: beyond a border
 _NOBODY = _OVER_BORDER = cast(int, np.int64(-1))  # in place of a contact, of what it does
 
@@ -140,7 +141,9 @@ def _moment(
     the place of a member that comes over a border, up to _OVER beyond it; −1: until when nobody at
     rest is set off, by halves.
     """
-    low, high, first, last, enough = 0.0, h, 1.0, -1.0, 0.0
+    low, high, first, last, enough, close = 0.0, h, 1.0, -1.0, 0.0, _CLOSE * h
+    if c < 0 and kind != _OVER_BORDER:
+        close = max(close, _ULP * t)  # a moment after t, or nothing ever moves on
     if kind == _OVER_BORDER:
         first, enough = _room_of(group, members, c, desk.states[0]), -_OVER
         last = _room_of(group, members, c, desk.states[1])
@@ -150,7 +153,7 @@ def _moment(
         middle = (low * last - high * first) / (last - first)
         if c < 0 or not low < middle < high:
             middle = 0.5 * (low + high)
-        if high - low <= _CLOSE * h or last > enough or not low < middle < high:
+        if high - low <= close or last > enough or not low < middle < high:
             break
         _advance(group, members, modes, doings, t, middle, scales, desk)
         value = _watched(group, members, modes, doings, c, kind, scales, desk)
