@@ -28,8 +28,9 @@ class Number(NamedTuple):
     """One number.
 
     ``error``: its standard error, infinite where the tracks do not determine it, 0 where it was
-    known; ``low``, ``high``: its 95 % interval; ``how``: found, follows (from what is found) or
-    known; ``profiled``: whether the interval is that of the profile likelihood.
+    known, NaN where it, or what it follows from, lies on the end of its range; ``low``, ``high``:
+    its 95 % interval; ``how``: found, follows (from what is found) or known; ``profiled``: whether
+    the interval is that of the profile likelihood.
     """
 
     value: float
@@ -43,7 +44,12 @@ class Number(NamedTuple):
     @property
     def determined(self) -> bool:
         """Whether the tracks tell it."""
-        return math.isfinite(self.error)
+        return not math.isinf(self.error)
+
+    @property
+    def at_bound(self) -> bool:
+        """Whether it, or what it follows from, lies on the end of its range: no error is known."""
+        return math.isnan(self.error)
 
 
 class FoundLaunch(NamedTuple):
