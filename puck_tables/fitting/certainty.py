@@ -116,12 +116,14 @@ def certainty_of(jacobian: FloatArray, plausible: FloatArray, quantile: float = 
 
 
 def pinned_of(found: Estimate, certainty: Certainty) -> tuple[int, ...]:
-    """Which unknowns lie on the end of their range: −1 the lower, 1 the upper, 0 none."""
+    """Which unknowns that are seen lie on the end of their range: −1 the lower, 1 the upper."""
     low, high = found.problem.limits
     errors = certainty.errors
-    near = _ON_BOUND * np.where(np.isfinite(errors), errors, 0.0)
+    seen = np.isfinite(errors)
+    near = _ON_BOUND * np.where(seen, errors, 0.0)
     on = [
-        np.isfinite(end)
+        seen
+        & np.isfinite(end)
         & (np.abs(found.x - end) <= np.maximum(near, _ON_BOUND * np.maximum(np.abs(end), 1.0)))
         for end in (low, high)
     ]

@@ -20,6 +20,7 @@ _STEP = 1e-6
 # Scales are plausible within their own size, but not less than this
 _LEAST = {"friction": 1e-3, "decel": 1e-2, "gravity": 1e-2, "height": 1e-4, "radius": 1e-4}
 _ALL = 0.8  # of the range in which a number is looked for: an interval so wide tells nothing
+_TOLD = 0.75  # of the time between frames, twice the error of a readout that the tracks tell
 _MUCH = {"friction": 1.0, "decel": 10.0}  # an error that says nothing
 FREE, FOLLOWS, KNOWN = "found", "follows", "known"
 
@@ -75,6 +76,9 @@ def plausible_for(problem: Problem, x: FloatArray) -> FloatArray:
     radius = problem.asked.scales(found)[2]
     sizes = []
     for track, name in problem.names:
+        if name == "readout" and problem.read_within is not None:
+            sizes.append(_TOLD * problem.read_within)
+            continue
         if track == -1:
             least = _LEAST.get(name)
             sizes.append(

@@ -240,6 +240,13 @@ class Fit(Result):
                 f"Intervals are {self.certainty.quantile:.3g} standard errors to either side: "
                 f"Student's t of {self.degrees} degrees of freedom, which told the noise."
             )
+        problem = self.estimate.problem
+        if "readout" in problem.asked.free and problem.read_within is not None:
+            half = 500.0 * problem.read_within
+            lines.append(
+                f"A picture is taken to be read before the next one: a prior of {half:.3g} +- "
+                f"{half:.3g} ms for readout, unless a prior or bounds are given."
+            )
         profiled = [name for name, number in self.numbers.items() if number.profiled]
         if profiled:
             lines.append(f"Intervals by profile likelihood: {', '.join(profiled)}.")
