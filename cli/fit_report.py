@@ -78,7 +78,8 @@ def report(found: Fit) -> str:
             "",
             f"{'held out':<15} {held.z_place.size + held.z_angle.size} observations of "
             f"{', '.join(held.tracks)}: {100.0 * held.inside:.3g} % within 95 % of their "
-            f"prediction, z rms {held.rms:.3g} (1 if all is right)",
+            f"prediction, z rms {held.rms:.3g} (if all is right 1, by chance {held.chance[0]:.3g} "
+            f"to {held.chance[1]:.3g} in 95 of 100 films)",
         ]
     return "\n".join(lines)
 

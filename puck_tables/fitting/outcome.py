@@ -290,7 +290,7 @@ class Fit(Result):
         if self.held_out is not None:
             summary["held_out"] = {
                 "tracks": list(self.held_out.tracks), "rms": self.held_out.rms,
-                "inside": self.held_out.inside,
+                "rms_by_chance": list(self.held_out.chance), "inside": self.held_out.inside,
             }  # fmt: skip
         cleaned: dict[str, Any] = _without_nan(summary)
         return cleaned
