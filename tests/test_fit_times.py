@@ -109,6 +109,18 @@ def test_what_a_track_without_angles_tells_under_a_rolling_shutter():
 
 
 @pytest.mark.thorough
+def test_what_the_tracks_do_not_tell_may_be_bounded():
+    for seed in range(4):  # starts whose readout meets its bound still arrive
+        true = film_judge.path((1.5, 0.4), 40.0, DECEL, DELTA, RADIUS, TIMES[:200])
+        place = film_judge.noisy(np.random.default_rng(seed), true, NOISE)[0]
+        track = pt.Track(TIMES[:200], place)
+        found = pt.fit(track, KNOWN, rows=(1.0, 0.0), bounds={"readout": (-0.01, 0.01)})
+        assert found.complaints == ()
+        assert found["decel"].low < DECEL < found["decel"].high
+        assert abs(found["decel"].value - DECEL) < 4.0 * found["decel"].error
+
+
+@pytest.mark.thorough
 def test_a_rolling_shutter_is_found():
     times = rolled(VELOCITY, SPIN)
     found = pt.fit(seen_at(times, 1), KNOWN, rows=ROWS)
