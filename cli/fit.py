@@ -90,7 +90,7 @@ from puck_tables.errors import InputError
     "--rows",
     metavar="FIRST,LAST",
     help="Of a rolling shutter: y in m of the first and the last line of the picture. Its readout "
-    "time is found.",
+    "time is found, T/2 +- T/2 of the time T between frames unless --prior or --bound say more.",
 )
 @click.option(
     "--slip-speeds",

@@ -30,9 +30,9 @@ def report(found: Fit) -> str:
         lines += [
             f"\nlaunch of {launch.name}, at {launch.time:g} s",
             f"{'  place':<15} ({launch.place[0]:.6g}, {launch.place[1]:.6g}) m "
-            f"+- {v['launch_x'].error:.2g}, {v['launch_y'].error:.2g}",
+            f"{_errors(v['launch_x'], v['launch_y'])}",
             f"{'  velocity':<15} ({launch.velocity[0]:.6g}, {launch.velocity[1]:.6g}) m/s "
-            f"+- {v['launch_vx'].error:.2g}, {v['launch_vy'].error:.2g}",
+            f"{_errors(v['launch_vx'], v['launch_vy'])}",
             f"{'  spin':<15} {_shown(w)}",
         ]
     for one in found.impacts:
@@ -78,7 +78,8 @@ def report(found: Fit) -> str:
             "",
             f"{'held out':<15} {held.z_place.size + held.z_angle.size} observations of "
             f"{', '.join(held.tracks)}: {100.0 * held.inside:.3g} % within 95 % of their "
-            f"prediction, z rms {held.rms:.3g} (1 if all is right)",
+            f"prediction, z rms {held.rms:.3g} (if all is right 1, by chance {held.chance[0]:.3g} "
+            f"to {held.chance[1]:.3g} in 95 of 100 films)",
         ]
     return "\n".join(lines)
 
@@ -119,10 +120,17 @@ def _plainly(found: Fit) -> str:
 
 def _rounded(number: Number) -> str:
     """Value ± error, to two digits of the error."""
+    if number.at_bound:
+        return f"{number.value:.6g} (at its bound)"
     if not (number.error > 0.0 and math.isfinite(number.error)):
         return f"{number.value:.6g}"
     digits = max(0, 1 - math.floor(math.log10(number.error)))
     return f"{number.value:.{digits}f} +- {number.error:.{digits}f}"
+
+
+def _errors(*numbers: Number) -> str:
+    each = ("at its bound" if one.at_bound else f"{one.error:.2g}" for one in numbers)
+    return f"+- {', '.join(each)}"
 
 
 def _unit(number: Number) -> str:
@@ -137,8 +145,10 @@ def _shown(number: Number) -> str:
         return "not determined by these tracks"
     how = ", by profile likelihood" if number.profiled else ""
     follows = ", follows" if number.how == "follows" else ""
-    low, high = f"{number.low:.6g}", f"{number.high:.6g}"
-    return f"{_rounded(number)}{_unit(number)}   95 %: {low} to {high}{how}{follows}"
+    interval = ""
+    if math.isfinite(number.low) and math.isfinite(number.high):
+        interval = f"   95 %: {number.low:.6g} to {number.high:.6g}"
+    return f"{_rounded(number)}{_unit(number)}{interval}{how}{follows}"
 
 
 def _correlations(found: Fit) -> list[str]:

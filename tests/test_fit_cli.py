@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 
+import h5py
 import numpy as np
 import pytest
 from click.testing import CliRunner, Result
@@ -107,3 +108,23 @@ def test_files_are_kept_and_others_refused(film, tmp_path):
     assert "reads puck-tables fit 1: fit again" in run("simulate", "--fit", out).stderr
     assert run("simulate", "--fit", out, "--v0", "1,0").exit_code == 2
     assert run("simulate", "--track", "1", "--v0", "1,0").exit_code == 2
+
+
+def test_a_number_at_its_bound_has_no_error(film, tmp_path):
+    files = tmp_path / "fit.json", tmp_path / "fit.h5"
+    for out in files:
+        done = run("fit", film, "--radius", 0.0381, "--bound", "friction=0.16:0.3", "-o", out)
+        assert done.exit_code == 0, done.output
+    shown = dict(line.split(maxsplit=1) for line in done.stdout.splitlines() if " " in line)
+    for name in ("friction", "decel", "height"):  # the others follow from it
+        assert "(at its bound)" in shown[name] and "+-" not in shown[name]
+    assert "at its bound" not in shown["delta"] and "+-" in shown["delta"]
+    assert "friction coefficient is 0.16 (at its bound)" in done.stdout
+    told = json.loads(files[0].read_text())["numbers"]
+    for name in ("friction", "decel", "height"):
+        assert told[name]["error"] is None and told[name]["at_bound"] is True
+    assert told["delta"]["error"] > 0.0 and told["delta"]["at_bound"] is False
+    with h5py.File(files[1]) as saved:
+        names = [name.decode() for name in saved["number_name"][()]]
+        errors = dict(zip(names, saved["number_error"][()], strict=True))
+    assert np.isnan([errors["friction"], errors["decel"]]).all() and errors["delta"] > 0.0

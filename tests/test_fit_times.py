@@ -9,7 +9,7 @@ from test_fit import DECEL, DELTA, KNOWN, NOISE, RADIUS, SPIN, TIMES, VELOCITY
 
 import puck_tables as pt
 
-JITTER, READOUT, ROWS = 0.4e-3, 0.02, (1.0, -0.2)
+JITTER, READOUT, ROWS = 0.4e-3, 7e-3, (1.0, -0.2)
 
 
 def seen_at(times: np.ndarray, seed: int) -> pt.Track:
@@ -79,16 +79,55 @@ def test_an_angle_of_a_frame_whose_place_is_wrong_still_counts():
     assert 0.03 < found.outliers < 0.09
 
 
+def rolled(
+    velocity: tuple[float, float], spin: float, rows: tuple[float, float] = ROWS
+) -> np.ndarray:
+    """When the frames see the puck: farther down later."""
+    times = TIMES
+    for _ in range(30):
+        y = film_judge.path(velocity, spin, DECEL, DELTA, RADIUS, np.maximum(times, 0.0))[1]
+        times = TIMES + READOUT * (rows[0] - y) / (rows[0] - rows[1])
+    return times
+
+
+@pytest.mark.thorough
+def test_what_a_track_without_angles_tells_under_a_rolling_shutter():
+    inside, rows = [], (2.0, -2.0)
+    for seed in range(8):
+        way = 0.25 * np.pi * seed
+        velocity = 1.9 * np.cos(way), 1.9 * np.sin(way)
+        times = rolled(velocity, 70.0, rows)
+        true = film_judge.path(velocity, 70.0, DECEL, DELTA, RADIUS, times)
+        place = film_judge.noisy(np.random.default_rng(seed), true, NOISE)[0]
+        found = pt.fit(pt.Track(TIMES, place), KNOWN, rows=rows)
+        inside.append([found["decel"].low < DECEL < found["decel"].high,
+                       found["delta"].low < DELTA < found["delta"].high])  # fmt: skip
+        assert 0.0 < found["readout"].value < TIMES[1]
+        assert abs(found["decel"].value - DECEL) < 4.0 * found["decel"].error
+        assert found.blind[0].startswith("readout is not determined")
+    assert np.all(np.sum(inside, axis=0) >= 7)  # fewer of eight at 95 %: p = 0.06 each
+
+
+@pytest.mark.thorough
+def test_what_the_tracks_do_not_tell_may_be_bounded():
+    for seed in range(4):  # starts whose readout meets its bound still arrive
+        true = film_judge.path((1.5, 0.4), 40.0, DECEL, DELTA, RADIUS, TIMES[:200])
+        place = film_judge.noisy(np.random.default_rng(seed), true, NOISE)[0]
+        track = pt.Track(TIMES[:200], place)
+        found = pt.fit(track, KNOWN, rows=(1.0, 0.0), bounds={"readout": (-0.01, 0.01)})
+        assert found.complaints == ()
+        assert found["decel"].low < DECEL < found["decel"].high
+        assert abs(found["decel"].value - DECEL) < 4.0 * found["decel"].error
+
+
 @pytest.mark.thorough
 def test_a_rolling_shutter_is_found():
-    times = TIMES
-    for _ in range(30):  # a puck farther down is seen later
-        y = film_judge.path(VELOCITY, SPIN, DECEL, DELTA, RADIUS, np.maximum(times, 0.0))[1]
-        times = TIMES + READOUT * (ROWS[0] - y) / (ROWS[0] - ROWS[1])
+    times = rolled(VELOCITY, SPIN)
     found = pt.fit(seen_at(times, 1), KNOWN, rows=ROWS)
     assert abs(found["readout"].value - READOUT) < 4.0 * found["readout"].error
     assert found["readout"].error < 1e-3 and found.complaints == ()
     assert abs(found["friction"].value - 0.15) < 4.0 * found["friction"].error
+    assert "prior of 4.17 +- 4.17 ms" in found.explain()
     known = pt.fit(seen_at(times, 1), KNOWN, rows=ROWS, fixed={"readout": READOUT})
     assert known["friction"].error < found["friction"].error
     blind = pt.fit(seen_at(times, 1), KNOWN)

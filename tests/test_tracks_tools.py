@@ -33,6 +33,12 @@ def archive(members: dict[str, str | bytes]) -> bytes:
     return buffer.getvalue()
 
 
+def spoiled(content: bytes) -> bytes:
+    """The same with bytes in the middle that are others."""
+    middle = len(content) // 2
+    return content[:middle] + bytes(20) + content[middle + 20 :]
+
+
 def to_pixels(x: float, y: float, u0: float, v0: float, degrees: float, scale: float):
     """Tracker's way from places to pixels (its ImageCoordSystem): the other way round than ours."""
     cos, sin = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
@@ -109,7 +115,11 @@ GOOD = trk({"A": {0: (1.0, 2.0), 1: (2.0, 3.0)}}, {0: (0.0, 0.0, 0.0, 9.0)})
         ("a.trk", GOOD.replace('name="length_unit"', 'name="unit"'), "unit of x and y"),
         ("a.trk", GOOD.replace('yscale" type="double">9', 'yscale" type="double">8'), "scales"),
         ("a.trz", archive({"a.txt": "x"}), "without a .trk"),
-        ("a.trz", archive({"a.trk": GOOD})[:200], "damaged archive"),
+        ("a.trz", archive({"a.trk": GOOD})[:200], "not copied to its end .* Copy it once more"),
+        ("a.trz", archive({"a.trk": GOOD})[100:-30], "not copied to its end .* save it again"),
+        ("a.trz", spoiled(archive({"a.trk": GOOD})), "a.trk in it cannot be unpacked .* save it"),
+        ("a.trz", archive({"a.trk": GOOD[:-40]}), "a.trk is damaged XML .* save it again"),
+        ("a.trz", archive({"a.trk": GOOD}).replace(b"\x08\0", b"\x63\0"), "unpack it, and read"),
         ("a.trz", archive({"a.trk": b" " * ((1 << 26) + 1)}), "too large"),
         ("a.xlsx", archive({"xl/workbook.xml": "x"}), "a spreadsheet"),
         ("a.ods", archive({"content.xml": "x"}), "a spreadsheet"),

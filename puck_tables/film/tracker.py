@@ -81,6 +81,7 @@ def film_of_zip(path: str | Path) -> Film:
     if Path(path).stat().st_size > _LARGEST_ARCHIVE:
         raise InputError(f"{path} is too large: unpack it, and read its .trk file")
     films, left = {}, _LARGEST
+    name: PurePosixPath | None = None
     damage = (
         zipfile.BadZipFile, zlib.error, lzma.LZMAError, NotImplementedError, RuntimeError, EOFError,
         ValueError, OSError,
@@ -107,7 +108,7 @@ def film_of_zip(path: str | Path) -> Film:
     except damage as error:
         if isinstance(error, InputError):
             raise
-        raise InputError(f"{path} is a damaged archive: {error}") from None
+        raise InputError(_damage(path, name, error)) from None
     if not films:
         raise InputError(
             f"{path} is an archive without a .trk file of Tracker: unpack it, and read its tables"
@@ -124,6 +125,23 @@ def film_of_zip(path: str | Path) -> Film:
     return first
 
 
+def _damage(path: str | Path, member: PurePosixPath | None, error: Exception) -> str:
+    """What is wrong with an archive, and what to do."""
+    if isinstance(error, RuntimeError):  # encrypted, or packed by an uncommon method
+        return f"{path}: {member} cannot be read ({error}): unpack it, and read its .trk file"
+    where = (
+        f"{member} in it cannot be unpacked"
+        if member
+        else (
+            "its list of contents is missing or broken, as of a file that was not copied to its end"
+        )
+    )
+    return (
+        f"{path} is a damaged archive: {where} ({error}). Copy it once more, or open it in Tracker "
+        "and save it again"
+    )
+
+
 def _film(path: str, content: bytes) -> Film:
     """The film in the XML of a .trk file."""
     text = content.decode(encoding_of(path, content), errors="replace")
@@ -132,7 +150,9 @@ def _film(path: str, content: bytes) -> Film:
     try:
         root = ElementTree.fromstring(text)
     except (ElementTree.ParseError, ValueError, RecursionError) as error:
-        raise InputError(f"{path} is damaged XML: {error}") from None
+        raise InputError(
+            f"{path} is damaged XML ({error}): open it in Tracker and save it again"
+        ) from None
     if root.tag != "object" or not _kind(root):
         raise InputError(
             f"{path} is XML, but no file of Tracker: save the table of its points as CSV"

@@ -87,11 +87,17 @@ class _Walker:
         square = (slopes.T * weights) @ slopes
         size = np.diag(square)
         damped = square + np.diag(np.where(size > 0.0, self.damping * size, 1.0))
-        change = np.linalg.solve(damped, slopes.T @ (weights * self.rows))
+        down = slopes.T @ (weights * self.rows)
+        change = np.linalg.solve(damped, down)
         if not np.isfinite(change).all():
             self.arrived = True
             return
         new = np.clip(self.x - change, *self.problem.limits)
+        free = new == self.x - change
+        if not free.all():  # some end on their bounds: the others step as these do, not as wanted
+            short = down - damped @ np.where(free, 0.0, self.x - new)
+            change[free] = np.linalg.solve(damped[free][:, free], short[free])
+            new[free] = np.clip(self.x - change, *self.problem.limits)[free]
         rows, slopes = self._at(new)
         before, after = _cost(self.rows, scale), _cost(rows, scale)
         if after < before:

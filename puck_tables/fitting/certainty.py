@@ -25,6 +25,8 @@ _SEARCHES = 14
 _OUTWARDS, _BEYOND, _LOOKS = 3.0, 1.15, 3
 _FAR, _NARROW = 2.0, 0.005
 _HARDLY = 0.05
+_ON_BOUND = 1e-4  # of a bound, or of an error: an unknown lies on it
+_ROUNDING = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +36,8 @@ class Certainty:
     ``covariance`` (m, m); ``blind``: directions that are not seen, each a component for every
     unknown in units of its plausible range; ``undetermined`` (m,): unknowns that one of them moves;
     ``plausible`` (m,); ``quantile``: half a 95 % interval in standard errors, that of Student's t
-    where the noise is that of the residuals.
+    where the noise is that of the residuals; ``pinned`` (m,): −1 for an unknown on the lower end of
+    its range, 1 on the upper: χ² has no minimum there, so that it has no standard error (NaN).
     """
 
     covariance: FloatArray
@@ -42,21 +45,26 @@ class Certainty:
     undetermined: tuple[bool, ...]
     plausible: FloatArray
     quantile: float = Z95
+    pinned: tuple[int, ...] = ()
 
     def error_of(self, slope: FloatArray, plausible: float) -> float:
         """The standard error of what changes with the unknowns by ``slope`` (m,).
 
-        Infinite where a direction that is not seen changes it by a fifth of what is plausible.
+        Infinite where a direction that is not seen changes it by a fifth of what is plausible, NaN
+        where an unknown on the end of its range does.
         """
-        by_blind = np.abs(self.blind @ (slope * self.plausible))
-        if by_blind.max(initial=0.0) > _MEMBER * plausible:
+        by_each = slope * self.plausible
+        if np.abs(self.blind @ by_each).max(initial=0.0) > _MEMBER * plausible:
             return math.inf
+        if np.abs(by_each[np.flatnonzero(self.pinned)]).max(initial=0.0) > _ROUNDING * plausible:
+            return math.nan
         return math.sqrt(max(float(slope @ self.covariance @ slope), 0.0))
 
     @property
     def errors(self) -> FloatArray:
-        """Standard errors (m,), infinite of what is not determined."""
+        """Standard errors (m,), infinite of what is not determined, NaN on the end of a range."""
         found = np.sqrt(np.diag(self.covariance))
+        found[np.flatnonzero(self.pinned)] = np.nan
         return np.where(self.undetermined, np.inf, found)
 
     @property
@@ -105,6 +113,21 @@ def certainty_of(jacobian: FloatArray, plausible: FloatArray, quantile: float = 
         scaled * np.outer(plausible, plausible), blind, tuple(lost.tolist()), plausible,
         quantile,
     )  # fmt: skip
+
+
+def pinned_of(found: Estimate, certainty: Certainty) -> tuple[int, ...]:
+    """Which unknowns that are seen lie on the end of their range: −1 the lower, 1 the upper."""
+    low, high = found.problem.limits
+    errors = certainty.errors
+    seen = np.isfinite(errors)
+    near = _ON_BOUND * np.where(seen, errors, 0.0)
+    on = [
+        seen
+        & np.isfinite(end)
+        & (np.abs(found.x - end) <= np.maximum(near, _ON_BOUND * np.maximum(np.abs(end), 1.0)))
+        for end in (low, high)
+    ]
+    return tuple(np.where(on[0], -1, on[1].astype(int)).tolist())
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from puck_tables._core.real import real
 from puck_tables.film.track import Track
 from puck_tables.fitting.asked import Asked
 from puck_tables.fitting.blindness import blind_spots
-from puck_tables.fitting.certainty import Z95, Certainty, certainty_of, quantile_of
+from puck_tables.fitting.certainty import Z95, Certainty, certainty_of, pinned_of, quantile_of
 from puck_tables.fitting.estimate import Estimate, estimate
 from puck_tables.fitting.fitted import fitted
 from puck_tables.fitting.given import (
@@ -264,7 +264,8 @@ def _certainty(found: Estimate, known: Known) -> Certainty:
     given = known.place and (known.angle or not angled)
     quantile = Z95 if given else quantile_of(found.degrees)
     plausible = plausible_for(found.problem, found.x)
-    return certainty_of(found.jacobian[found.kept], plausible, quantile)
+    certainty = certainty_of(found.jacobian[found.kept], plausible, quantile)
+    return replace(certainty, pinned=pinned_of(found, certainty))
 
 
 def _left_out(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,12 +23,14 @@ class HeldOut:
     """Predictions of frames that the fit did not see.
 
     ``tracks``: whose later part it is; ``z_place`` (n,), ``z_angle`` (m,): what was seen less what
-    was predicted, over the standard deviation of noise and prediction together.
+    was predicted, over the standard deviation of noise and prediction together; ``chance``: the
+    range in which :attr:`rms` lies by chance, 95 of 100 times, if the model is right.
     """
 
     tracks: tuple[str, ...]
     z_place: FloatArray
     z_angle: FloatArray
+    chance: tuple[float, float]
 
     @property
     def inside(self) -> float:
@@ -95,11 +98,36 @@ def predicted(
     """How far the frames held out are from their predictions."""
     whole = part.problem.with_films(films).with_noise(part.problem.noise, part.x)
     rows, slopes = whole.residuals(part.x), whole.jacobian(part.x)
-    spread = np.sqrt(1.0 + np.einsum("ik,kl,il->i", slopes, certainty.covariance, slopes))
-    z, chosen = -rows / spread, np.zeros(rows.size, bool)
+    by_fit = np.einsum("ik,kl,il->i", slopes, certainty.covariance, slopes)
+    z, chosen = -rows / np.sqrt(1.0 + by_fit), np.zeros(rows.size, bool)
     for film, (x, y, turn), after in zip(films, whole.each(), later, strict=True):
         chosen[x] = chosen[y] = after
         if film.angle is not None:
             chosen[turn] = after[np.isfinite(film.angle)]
     names = tuple(film.name for film, after in zip(films, later, strict=True) if after.any())
-    return HeldOut(names, z[chosen & (whole.kinds == PLACE)], z[chosen & (whole.kinds == ANGLE)])
+    told = math.inf if certainty.quantile == Z95 else part.degrees
+    return HeldOut(
+        names, z[chosen & (whole.kinds == PLACE)], z[chosen & (whole.kinds == ANGLE)],
+        _by_chance(slopes[chosen], by_fit[chosen], certainty.covariance, told),
+    )  # fmt: skip
+
+
+def _by_chance(
+    slopes: FloatArray, by_fit: FloatArray, covariance: FloatArray, told: float
+) -> tuple[float, float]:
+    """Between which the rms of z lies with 95 %, ``told`` degrees of freedom having told the noise.
+
+    The z of one motion err together: with R their correlations Σz² is as (n/ν) χ² of
+    ν = n²/tr R² degrees (Satterthwaite), over the noise that was told as F.
+    """
+    from scipy.special import chdtri, fdtri
+
+    weight = 1.0 / (1.0 + by_fit)
+    shared = covariance @ (slopes.T * weight) @ slopes
+    square = float(np.sum(weight**2 * (1.0 + 2.0 * by_fit)) + np.sum(shared * shared.T))
+    degrees = by_fit.size**2 / square
+    if told == math.inf:
+        ends = [chdtri(degrees, tail) / degrees for tail in (0.975, 0.025)]
+    else:
+        ends = [fdtri(degrees, told, share) for share in (0.025, 0.975)]
+    return math.sqrt(ends[0]), math.sqrt(ends[1])

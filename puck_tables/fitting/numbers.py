@@ -20,6 +20,7 @@ _STEP = 1e-6
 # Scales are plausible within their own size, but not less than this
 _LEAST = {"friction": 1e-3, "decel": 1e-2, "gravity": 1e-2, "height": 1e-4, "radius": 1e-4}
 _ALL = 0.8  # of the range in which a number is looked for: an interval so wide tells nothing
+_TOLD = 0.75  # of the time between frames, twice the error of a readout that the tracks tell
 _MUCH = {"friction": 1.0, "decel": 10.0}  # an error that says nothing
 FREE, FOLLOWS, KNOWN = "found", "follows", "known"
 
@@ -28,8 +29,9 @@ class Number(NamedTuple):
     """One number.
 
     ``error``: its standard error, infinite where the tracks do not determine it, 0 where it was
-    known; ``low``, ``high``: its 95 % interval; ``how``: found, follows (from what is found) or
-    known; ``profiled``: whether the interval is that of the profile likelihood.
+    known, NaN where it, or what it follows from, lies on the end of its range; ``low``, ``high``:
+    its 95 % interval; ``how``: found, follows (from what is found) or known; ``profiled``: whether
+    the interval is that of the profile likelihood.
     """
 
     value: float
@@ -43,7 +45,12 @@ class Number(NamedTuple):
     @property
     def determined(self) -> bool:
         """Whether the tracks tell it."""
-        return math.isfinite(self.error)
+        return not math.isinf(self.error)
+
+    @property
+    def at_bound(self) -> bool:
+        """Whether it, or what it follows from, lies on the end of its range: no error is known."""
+        return math.isnan(self.error)
 
 
 class FoundLaunch(NamedTuple):
@@ -69,6 +76,9 @@ def plausible_for(problem: Problem, x: FloatArray) -> FloatArray:
     radius = problem.asked.scales(found)[2]
     sizes = []
     for track, name in problem.names:
+        if name == "readout" and problem.read_within is not None:
+            sizes.append(_TOLD * problem.read_within)
+            continue
         if track == -1:
             least = _LEAST.get(name)
             sizes.append(

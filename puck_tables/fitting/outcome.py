@@ -35,7 +35,6 @@ KIND = "puck-tables fit 1"
 _NO_PATTERN = 1e-3  # probability of residuals so patterned by chance
 _COMPUTED = 1e-7  # of the path: residuals of tracks that were computed, not seen
 _NOISY = 1.5  # times the noise of a smooth motion
-_ON_BOUND = 1e-4  # of a bound, or of an error: a number lies on it
 _LENGTHWAYS = 1.3
 _GRIP = 5.0  # friction coefficients of dry surfaces are smaller
 
@@ -84,8 +83,9 @@ class Fit(Result):
 
     def __repr__(self) -> str:
         words = ", ".join(
-            f"{name} {number.value:.6g} +- {number.error:.2g}" if number.determined
-            else f"{name} not determined"
+            f"{name} not determined" if not number.determined
+            else f"{name} {number.value:.6g} at its bound" if number.at_bound
+            else f"{name} {number.value:.6g} +- {number.error:.2g}"
             for name, number in self.numbers.items() if number.how == "found"
         )  # fmt: skip
         return f"Fit({words or 'launches alone'}; {len(self.launches)} tracks)"
@@ -192,22 +192,20 @@ class Fit(Result):
     @property
     def remarks(self) -> tuple[str, ...]:
         """What to know of the numbers before they are used."""
-        problem, x = self.estimate.problem, self.estimate.x
+        problem = self.estimate.problem
         said = [
             f"{name} is found, too, since it has a prior or bounds: without them it is known, "
             f"{float(getattr(self.given, name)):g}"
             for name in problem.asked.freed if hasattr(self.given, name)
         ]  # fmt: skip
-        low, high = problem.limits
-        for k, (_, name) in enumerate(problem.names):
-            error = self.certainty.errors[k]
-            for end, way in ((low[k], "below"), (high[k], "above")):
-                near = max(_ON_BOUND * abs(end), _ON_BOUND * (error if error < math.inf else 0.0))
-                if math.isfinite(end) and abs(float(x[k]) - end) <= max(near, _ON_BOUND):
-                    said.append(
-                        f"{name} lies on the end of its range, {end:.6g}: what fits best may be "
-                        f"{way}, and its error and interval, and those of the rest, may mislead"
-                    )
+        for k, side in enumerate(self.certainty.pinned):
+            if side:
+                end, way = problem.limits[side > 0][k], "above" if side > 0 else "below"
+                said.append(
+                    f"{problem.names[k][1]} lies on the end of its range, {end:.6g}: what fits "
+                    f"best may be {way}. So it has no standard error, and its interval, and errors "
+                    "and intervals of the rest, may mislead"
+                )
         friction = self.numbers["friction"]
         if friction.how != KNOWN and friction.low > _GRIP:
             said.append(
@@ -241,6 +239,13 @@ class Fit(Result):
             lines.append(
                 f"Intervals are {self.certainty.quantile:.3g} standard errors to either side: "
                 f"Student's t of {self.degrees} degrees of freedom, which told the noise."
+            )
+        problem = self.estimate.problem
+        if "readout" in problem.asked.free and problem.read_within is not None:
+            half = 500.0 * problem.read_within
+            lines.append(
+                f"A picture is taken to be read before the next one: a prior of {half:.3g} +- "
+                f"{half:.3g} ms for readout, unless a prior or bounds are given."
             )
         profiled = [name for name, number in self.numbers.items() if number.profiled]
         if profiled:
@@ -285,7 +290,7 @@ class Fit(Result):
         if self.held_out is not None:
             summary["held_out"] = {
                 "tracks": list(self.held_out.tracks), "rms": self.held_out.rms,
-                "inside": self.held_out.inside,
+                "rms_by_chance": list(self.held_out.chance), "inside": self.held_out.inside,
             }  # fmt: skip
         cleaned: dict[str, Any] = _without_nan(summary)
         return cleaned
@@ -322,7 +327,7 @@ class Fit(Result):
             raise InputError(f"'{name}' was not found: there are {', '.join(free) or 'none'}")
         k, number = free.index(name), self.numbers[name]
         low, high = (float(ends[k]) for ends in self.estimate.problem.limits)
-        error = number.error if number.determined else high - low
+        error = number.error if math.isfinite(number.error) else high - low
         if not math.isfinite(error):
             error = abs(number.value)
         ends = max(low, number.value - reach * error), min(high, number.value + reach * error)
@@ -424,7 +429,7 @@ class Fit(Result):
 
 
 def _told(number: Number) -> dict[str, Any]:
-    return {**number._asdict(), "determined": number.determined}
+    return {**number._asdict(), "determined": number.determined, "at_bound": number.at_bound}
 
 
 def _without_nan(value: Any) -> Any:

@@ -103,12 +103,24 @@ class Problem:
 
     @cached_property
     def priors(self) -> tuple[tuple[int, float, float], ...]:
-        """(unknown, value, standard deviation)."""
+        """(unknown, value, standard deviation).
+
+        That of a readout, unless it or bounds are given: a picture is read before the next one.
+        """
         found = []
         for k, (_, name) in enumerate(self.names):
             if name in self.asked.priors:
                 found.append((k, *self.asked.priors[name]))
+            elif name == "readout" and self.read_within is not None:
+                found.append((k, 0.5 * self.read_within, 0.5 * self.read_within))
         return tuple(found)
+
+    @property
+    def read_within(self) -> float | None:
+        """The usual time between two frames, s, None where readout has a prior or bounds."""
+        if "readout" in (*self.asked.priors, *self.asked.bounds):
+            return None
+        return min(film.usual_step for film in self.films)
 
     @cached_property
     def limits(self) -> tuple[FloatArray, FloatArray]:

@@ -147,7 +147,9 @@ COLUMNS = {
     "counts_angle": Column("1", "angle counts", "0 for an angle left out or not seen"),
     "number_name": Column("", "number", "name of a number of the puck"),
     "number_value": Column("1", "value", "its value, in SI units"),
-    "number_error": Column("1", "standard error", "its standard error, inf: not determined"),
+    "number_error": Column(
+        "1", "standard error", "its standard error; inf: not determined, nan: at its bound"
+    ),
     "number_low": Column("1", "low", "lower end of its 95 % interval"),
     "number_high": Column("1", "high", "upper end of its 95 % interval"),
     # a limit surface

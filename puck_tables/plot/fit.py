@@ -139,4 +139,4 @@ def _draw_profile(panel: Axes, found: Fit, name: str) -> None:
 
 
 def _told(value: float, error: float) -> str:
-    return f"{value:.6g} ± {error:.2g}"
+    return f"{value:.6g} " + ("at its bound" if math.isnan(error) else f"± {error:.2g}")
