@@ -214,7 +214,7 @@ def _crossing(
     rate, bend = DEGREE * (gaps[DEGREE] - gaps[DEGREE - 1]), gaps[DEGREE] - gaps[DEGREE - 1]
     bend = DEGREE * (DEGREE - 1) * (bend - gaps[DEGREE - 1] + gaps[DEGREE - 2])
     back = gaps[DEGREE] / rate if rate < 0.0 else math.inf
-    if count == 0 and back <= _AT_END:
+    if count == 0 and back <= _AT_END and abs(bend) * back <= -_AT_END * rate:
         return h * (1.0 - back * (1.0 + 0.5 * bend * back / rate))
     guess = h * _root(gaps, low / h, high / h)
     first, last, before = low, high, math.inf  # a line that is grazed is passed twice beside them

@@ -65,10 +65,11 @@ def nudged(model: Model, size: float, number: int, scale: FloatArray, y: FloatAr
     at first grows a hundred times.  Two runs that err alike at first would not show it.
     """
     if model.hold.kind == BLADE:
-        bearing, speed = y[THETA] + model.hold.angle, size * scale[VX] * math.cos(number)
+        bearing = y[THETA] + model.hold.angle
+        speed = math.copysign(size * scale[VX], math.cos(number))  # either way, in no order
         y[VX] += speed * math.cos(bearing)
         y[VY] += speed * math.sin(bearing)
-        y[SPIN] += size * scale[SPIN] * math.sin(2.0 * number)
+        y[SPIN] += math.copysign(size * scale[SPIN], math.sin(2.0 * number))
 
 
 @inlined
