@@ -74,7 +74,7 @@ def in_one_node(name: str, place: tuple[int, ...], change: float) -> Edit:
     [
         ("resultants", "spin", (7, 2), 1e-5), ("stops", "turn", (20, 8), 1e-2),
         ("washer", "parallel", (29, 1), 1e-3), ("profile", "spin", (101, 2), 1e-3),
-        ("speed", "p_d", (1234,), 0.02), ("section", "spin_share", (40,), 1e-3),
+        ("speed", "p_d", (617,), 0.02), ("section", "spin_share", (40,), 1e-3),
         ("stop section", "along", (40,), 1e-2),
     ],
 )  # fmt: skip
