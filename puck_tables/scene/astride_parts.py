@@ -6,14 +6,11 @@ import math
 from typing import NamedTuple
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables.kernels.base_boundary import NOTHING, Sums, line_sums, plus
 from puck_tables.kernels.base_parts import (
-    NOTHING,
-    Sums,
     beyond_sums,
     common_sums,
     inside_disc,
-    line_sums,
-    plus,
     rim_sums,
     turn_between,
     whole_sums,

@@ -20,7 +20,8 @@ import math
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.base_parts import NOTHING, Sums, disc_sums, plus, turn_between
+from puck_tables.kernels.base_boundary import NOTHING, Sums, plus
+from puck_tables.kernels.base_parts import disc_sums, turn_between
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.kernels.load_parts import RING, TABLE, UNIFORM
 from puck_tables.scene.astride_parts import Slip, weighted
@@ -225,7 +226,7 @@ def _tabulated(ground: FloatArray, radius: float, slip: Slip, mirrored: float) -
 
 @inner
 def sums_under(ground: FloatArray, radius: float, slip: Slip, mirrored: float) -> Sums:
-    """(1/A) ∫ W f N over the base, of what :mod:`puck_tables.kernels.base_parts` sums."""
+    """(1/A) ∫ W f N over the base, of what :mod:`puck_tables.kernels.base_boundary` sums."""
     law, share = int(ground[PRESSURE]), ground[SHARE] / math.pi
     if law == TABLE:
         return plus(NOTHING, share, _tabulated(ground, radius, slip, mirrored))

@@ -115,7 +115,7 @@ _NEWTON, _FINEST_NEWTON = 1e-3, 1e-15  # of the local error: how well implicit s
 _PACE = 2.7  # times the eighth root of the local error: how far a first step astride comes,
 _FASTEST, _SLOWEST = 0.5, 1e-6  # and how far any; shorter ones are not graded
 _NEAR_KINK = 0.01  # of a step to a kink: how well it was foreseen
-_NUDGE = 0.3  # of its local error, which may be much less: by so much a twin on a blade errs more
+_NUDGE = 0.3  # of its local error: by so much each step of a twin on a blade is put off its way
 _SWING = 0.05  # rad that a carried puck turns, at most, in a step
 
 

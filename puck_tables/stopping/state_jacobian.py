@@ -403,6 +403,7 @@ def fill_state_jacobians(
     cells = float(stop_slopes.shape[1] - 3)
     stops, curve, sections = stop_slopes.reshape(-1), curve_slopes.reshape(-1), section.reshape(-1)
     numbers, room = out.reshape(-1), np.empty(_ROWS * BLOCK)
+    large = numbers.size > MANY_NUMBERS
     part = _PART if which.size else BLOCK  # facts of many pucks are copied faster at length
     for start in range(begin, end, part):
         count = min(part, end - start)
@@ -426,11 +427,10 @@ def fill_state_jacobians(
                 rows_of(room, _STOP, _STOPPED, n), found,
                 _flow_at(is_fast, share, delta, fixed, flow, found[TURN_RATE]),
             )  # fmt: skip
-            own = placed_state(
+            placed = placed_state(
                 row_of(room, _VX, n), row_of(room, _VY, n), row_of(room, _SPIN, n),
                 row_of(room, _DECEL, n), row_of(room, _RADIUS, n), row_of(room, _V, n),
                 row_of(room, _Q, n), row_of(room, _MOMENT, n), own,
             )  # fmt: skip
-            into_rows(room, _PUT, n, own)
-        placed = numbers[PLACED_STATES * start :]
-        row_by_row(room, _PUT, PLACED_STATES, count, placed, numbers.size > MANY_NUMBERS)
+            into_rows(room, _PUT, n, placed)
+        row_by_row(room, _PUT, PLACED_STATES, count, numbers[PLACED_STATES * start :], large)

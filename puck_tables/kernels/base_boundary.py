@@ -1,0 +1,365 @@
+"""Sums of the slip direction over parts of a round base: along pieces of their boundary.
+
+With the slip velocity u = (α − β y, β x) in units of Q, x along the slip of the centre and lengths
+in radii, w = |u| and e = u/w, it is β e = (−∂w/∂y, ∂w/∂x): every sum of e, x e, … over a part of
+the base is an integral along its boundary (Green).  With h = (w − α)/β, which has a limit where β
+vanishes, and the part's boundary counter-clockwise,
+
+    ∫ e dA = ∮ h (dx, dy),   ∫ h dA = ⅓ ∮ [h (x dy − y dx) + α k dx],   k = (h + y)/β,
+
+and so on for one power of x and y more, which a tilted pressure needs.  On a straight piece these
+are elementary.  On an arc h is smooth but next to the instantaneous centre of rotation, (0, α/β):
+Gauss's rule on panels that shrink towards it.
+
+A :data:`Sums` is ∫ of e_x, e_y, x e_x, y e_x, x e_y, y e_y, x (x e_y − y e_x), y (x e_y − y e_x).
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from puck_tables.kernels.compile import inlined, inner, summed
+from puck_tables.kernels.elementary import cosine_sine_of
+from puck_tables.kernels.load_parts import RING, UNIFORM, loaded_at
+
+Sums = tuple[float, float, float, float, float, float, float, float]
+NOTHING: Sums = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+_NODES = 16
+_NODE, _WEIGHT = np.polynomial.legendre.leggauss(_NODES)
+_FAR = 2.0  # radii from which on the centre of rotation is no trouble for Gauss's rule
+_PANEL = 2.4  # the length of a panel over its distance from the centre of rotation
+_RING_PANEL = 1.6  # of a ring, where w is divided by
+# of a load that ends at the rim like a root, on [0, 1] in v with u = v² (3 − 2 v)
+_LOADED = 24
+_V, _BY_V = (0.5 * side for side in np.polynomial.legendre.leggauss(_LOADED))
+_V = 0.5 + _V
+_PLACE, _SHARE = _V**2 * (3.0 - 2.0 * _V), _BY_V * 6.0 * _V * (1.0 - _V)
+_LOADED_PANEL, _LOADED_GAP, _FARTHEST = 1.6, 1e-8, 1e3
+_LEAST_GAP = 1e-5  # closer than this the centre is on the arc: the square of it is lost
+_RING_GAP = 1e-12  # of a ring it is lost itself
+
+
+@inlined
+def plus(sums: Sums, weight: float, more: Sums) -> Sums:
+    """Sums and so many times others."""
+    return (
+        sums[0] + weight * more[0], sums[1] + weight * more[1], sums[2] + weight * more[2],
+        sums[3] + weight * more[3], sums[4] + weight * more[4], sums[5] + weight * more[5],
+        sums[6] + weight * more[6], sums[7] + weight * more[7],
+    )  # fmt: skip
+
+
+@inlined
+def _combined(
+    tx: float, ty: float, a: float, h: float, hx: float, hy: float, k: float, kx: float,
+    ky: float, q: float,
+) -> Sums:  # fmt: skip
+    """The integrands of a piece of boundary.
+
+    (tx, ty): its direction; a = x ty − y tx; h, hx, hy: h and its products with x and y; k, kx, ky:
+    the same of α k; q: what is left of α k, over β, where its divergence is taken.
+    """
+    mass = (a * h + tx * k) / 3.0  # of ∫ h
+    first = 0.25 * (a * hx + tx * kx)  # of ∫ x h
+    second = 0.25 * (a * hy + tx * ky) + (a * k + tx * q) / 12.0  # of ∫ y h
+    return (
+        tx * h, ty * h, tx * hx, tx * hy + mass, ty * hx - mass, ty * hy,
+        a * hx - 3.0 * first, a * hy - 3.0 * second,
+    )  # fmt: skip
+
+
+@inlined
+def _potentials(alpha: float, beta: float, x: float, y: float) -> tuple[float, float, float]:
+    """H, α k and what is left of that at a place (x, y)."""
+    up = alpha - beta * y
+    w = math.sqrt(up * up + beta * beta * x * x)
+    if _FAR * beta > alpha:
+        inverse = 1.0 / beta
+        c = alpha * inverse
+        h = (w - alpha) * inverse
+        k = c * (h + y)
+        return h, k, c * k
+    below = 1.0 / (w + alpha)
+    square = x * x + y * y
+    h = (beta * square - 2.0 * alpha * y) * below
+    k = alpha * (square + y * h) * below
+    return h, k, alpha * (y * k - 0.5 * h * x * x) * below
+
+
+@inlined
+def _at(alpha: float, beta: float, x: float, y: float, tx: float, ty: float) -> Sums:
+    """The integrands at a point of the boundary, with its direction (tx, ty)."""
+    h, k, q = _potentials(alpha, beta, x, y)
+    return _combined(tx, ty, x * ty - y * tx, h, x * h, y * h, k, x * k, y * k, q)
+
+
+@inlined
+def _added(sums: Sums, weight: float, more: Sums) -> Sums:
+    """Sums and so many times others, in any order."""
+    return (
+        summed(sums[0], weight * more[0]), summed(sums[1], weight * more[1]),
+        summed(sums[2], weight * more[2]), summed(sums[3], weight * more[3]),
+        summed(sums[4], weight * more[4]), summed(sums[5], weight * more[5]),
+        summed(sums[6], weight * more[6]), summed(sums[7], weight * more[7]),
+    )  # fmt: skip
+
+
+@inlined
+def _half_ray(alpha: float, beta: float, x: float, y: float) -> float:
+    """Half the chord of the base on which a ray from a centre outside it meets a point."""
+    ux, uy = alpha - beta * y, beta * x
+    place = ux * x + uy * y
+    if alpha < beta:
+        return 1.0
+    return math.sqrt(max(1.0 - place * place / (ux * ux + uy * uy + 1e-300), 0.0))
+
+
+@inlined
+def _end_gap(
+    alpha: float, beta: float, x: float, y: float, radius: float, dx: float, dy: float
+) -> float:
+    """How far, as an angle, an end of a circle about (x, y) is from what is no root there.
+
+    From a ray that touches the base, and from where the circle is next to the rim.
+    """
+    px, py = x + radius * dx, y + radius * dy
+    ray = _half_ray(alpha, beta, px, py) / radius
+    apart = math.sqrt(x * x + y * y)
+    if apart == 0.0:
+        return ray
+    off_x, off_y = dx - x / apart, dy - y / apart
+    room = max((1.0 - px) * (1.0 + px) - py * py, 0.0)
+    return min(ray, math.sqrt(room + off_x * off_x + off_y * off_y))
+
+
+@inner
+def _loaded_piece(
+    alpha: float, beta: float, x: float, y: float, tx: float, ty: float, radius: float,
+    length: float, foot: float, off: float, law: int,
+) -> Sums:  # fmt: skip
+    """A piece of boundary under a load, by panels that shrink towards the centre of rotation.
+
+    ``foot``, ``off``: where on the piece it is next, and how far away.  Straight from (x, y) along
+    (tx, ty); with a radius a round one about (x, y), by its angle, from the direction (tx, ty) on.
+    """
+    foot = 0.0 if foot < off else (length if length - foot < off else foot)  # ends are like roots
+    if radius > 0.0:
+        c, s = cosine_sine_of(length)
+        first = _end_gap(alpha, beta, x, y, radius, tx, ty)
+        last = _end_gap(alpha, beta, x, y, radius, tx * c - ty * s, ty * c + tx * s)
+    else:
+        first = _half_ray(alpha, beta, x, y)
+        last = _half_ray(alpha, beta, x + length * tx, y + length * ty)
+    sums = NOTHING
+    for side in range(4):  # from the foot to both ends, and from these half the way to it
+        up = side == 0 or side == 3
+        way, span = 1.0 if up else -1.0, 0.5 * (length - foot if side < 2 else foot)
+        begin, gap = foot, off
+        if side == 1 or side == 3:
+            begin, gap = (length, last) if side == 1 else (0.0, first)
+        elif foot == 0.0 or foot == length:
+            gap = min(off, first if foot == 0.0 else last)
+        near, gap = 0.0, max(gap, _LOADED_GAP)
+        while near < span:
+            piece = _LOADED_PANEL * math.sqrt(gap * gap + near * near)
+            if piece >= 0.7 * (span - near):
+                piece = span - near if piece >= span - near else 0.5 * (span - near)
+            for i in range(_LOADED):
+                at = begin + way * (near + piece * _PLACE[i])
+                if radius > 0.0:
+                    c, s = cosine_sine_of(at)
+                    dx, dy = radius * (tx * c - ty * s), radius * (ty * c + tx * s)
+                    here = loaded_at(alpha, beta, x + dx, y + dy, -dy, dx, law, False)
+                else:
+                    here = loaded_at(alpha, beta, x + at * tx, y + at * ty, tx, ty, law, False)
+                sums = _added(sums, piece * _SHARE[i], here)
+            near = near + piece if piece < span - near else span
+    return sums
+
+
+@inlined
+def _loaded_line(
+    alpha: float, beta: float, x: float, y: float, tx: float, ty: float, length: float, law: int
+) -> Sums:
+    foot, off = 0.0, _FARTHEST
+    if alpha < _FARTHEST * beta:
+        cx, cy = -x, alpha / beta - y
+        foot = min(max(cx * tx + cy * ty, 0.0), length)
+        cx, cy = cx - foot * tx, cy - foot * ty
+        off = math.sqrt(cx * cx + cy * cy)
+    return _loaded_piece(alpha, beta, x, y, tx, ty, 0.0, length, foot, off, law)
+
+
+@inner
+def line_sums(
+    alpha: float, beta: float, x: float, y: float, to_x: float, to_y: float, law: int
+) -> Sums:
+    """A straight piece of boundary from (x, y) to (to_x, to_y)."""
+    length = math.sqrt((to_x - x) * (to_x - x) + (to_y - y) * (to_y - y))
+    if length == 0.0:
+        return NOTHING
+    tx, ty = (to_x - x) / length, (to_y - y) / length
+    if law != UNIFORM:
+        return _loaded_line(alpha, beta, x, y, tx, ty, length, law)
+    if not _FAR * beta > alpha:
+        sums, half = NOTHING, 0.5 * length
+        mx, my = 0.5 * (x + to_x), 0.5 * (y + to_y)
+        for i in range(_NODES):
+            way = half * _NODE[i]
+            weight = half * _WEIGHT[i]
+            sums = plus(sums, weight, _at(alpha, beta, mx + way * tx, my + way * ty, tx, ty))
+        return sums
+    # s along it from the foot (x0, y0) of the disc's centre; w/β = hypot(s − place, off)
+    begin = x * tx + y * ty
+    end = begin + length
+    x0, y0 = x - begin * tx, y - begin * ty
+    c = alpha / beta
+    place, off = (c - y0) * ty - x0 * tx, (c - y0) * tx + x0 * ty
+    one, two = begin - place, end - place
+    far, near = math.sqrt(two * two + off * off), math.sqrt(one * one + off * off)
+    w0 = 0.5 * (two * far - one * near)
+    if off != 0.0:
+        size = abs(off)
+        w0 += 0.5 * off * off * (math.asinh(two / size) - math.asinh(one / size))
+    w1 = length * (one + two) * (far * far + far * near + near * near) / (3.0 * (far + near))
+    w1 += place * w0
+    l1 = 0.5 * length * (begin + end)
+    l2 = length * (begin * begin + begin * end + end * end) / 3.0
+    h0, h1 = w0 - c * length, w1 - c * l1
+    hx, hy = x0 * h0 + tx * h1, y0 * h0 + ty * h1
+    k = c * (h0 + y0 * length + ty * l1)
+    kx = c * (hx + x0 * y0 * length + (x0 * ty + y0 * tx) * l1 + tx * ty * l2)
+    ky = c * (hy + y0 * y0 * length + 2.0 * y0 * ty * l1 + ty * ty * l2)
+    return _combined(tx, ty, x0 * ty - y0 * tx, h0, hx, hy, k, kx, ky, c * k)
+
+
+@inlined
+def _on_ring(alpha: float, beta: float, x: float, y: float) -> Sums:
+    """What is summed itself, at a point of a thin ring."""
+    across, up = alpha - beta * y, beta * x
+    w = math.sqrt(across * across + up * up)
+    if w == 0.0:
+        return NOTHING
+    ex, ey = across / w, up / w
+    moment = x * ey - y * ex
+    return ex, ey, x * ex, y * ex, x * ey, y * ey, x * moment, y * moment
+
+
+@inlined
+def _rim_panel(alpha: float, beta: float, radius: float, middle: float, half: float) -> Sums:
+    """A panel of a circle about the centre of the base: its direction is (−y, x)."""
+    cosine, sine = cosine_sine_of(middle)
+    cosine, sine = radius * cosine, radius * sine
+    h0, hx, hy, hxy, hyy = 0.0, 0.0, 0.0, 0.0, 0.0
+    k0, ky, kxy, kyy, qy = 0.0, 0.0, 0.0, 0.0, 0.0
+    for i in range(_NODES):
+        c, s = cosine_sine_of(half * _NODE[i])
+        x, y = cosine * c - sine * s, sine * c + cosine * s
+        h, k, q = _potentials(alpha, beta, x, y)
+        weight = half * _WEIGHT[i]
+        h, k, q = weight * h, weight * k, weight * q
+        h0, hx, hy = summed(h0, h), summed(hx, x * h), summed(hy, y * h)
+        hxy, hyy = summed(hxy, x * y * h), summed(hyy, y * y * h)
+        k0, ky, kxy = summed(k0, k), summed(ky, y * k), summed(kxy, x * y * k)
+        kyy, qy = summed(kyy, y * y * k), summed(qy, y * q)
+    square = radius * radius
+    mass = (square * h0 - ky) / 3.0
+    first = 0.25 * (square * hx - kxy)
+    second = 0.25 * (square * hy - kyy) + (square * k0 - qy) / 12.0
+    return (
+        -hy, hx, -hxy, mass - hyy, square * h0 - hyy - mass, hxy,
+        square * hx - 3.0 * first, square * hy - 3.0 * second,
+    )  # fmt: skip
+
+
+@inlined
+def _panel(
+    alpha: float, beta: float, cx: float, cy: float, radius: float, middle: float, half: float,
+    law: int,
+) -> Sums:  # fmt: skip
+    cosine, sine = cosine_sine_of(middle)
+    cosine, sine = radius * cosine, radius * sine
+    sums = NOTHING
+    if law == UNIFORM:  # a loop each, which can do several nodes at once
+        for i in range(_NODES):
+            c, s = cosine_sine_of(half * _NODE[i])
+            x, y = cosine * c - sine * s, sine * c + cosine * s
+            here = _at(alpha, beta, cx + x, cy + y, -y, x)
+            sums = _added(sums, half * _WEIGHT[i], here)
+    elif law == RING:
+        for i in range(_NODES):
+            c, s = cosine_sine_of(half * _NODE[i])
+            x, y = cosine * c - sine * s, sine * c + cosine * s
+            here = _on_ring(alpha, beta, x, y)
+            sums = _added(sums, half * _WEIGHT[i], here)
+    else:
+        for i in range(_NODES):
+            c, s = cosine_sine_of(half * _NODE[i])
+            x, y = cosine * c - sine * s, sine * c + cosine * s
+            here = loaded_at(alpha, beta, x, y, -y, x, law, True)
+            sums = _added(sums, half * _WEIGHT[i], here)
+    return sums
+
+
+@inner
+def arc_sums(
+    alpha: float, beta: float, cx: float, cy: float, radius: float, start: float, turn: float,
+    law: int, rim: bool,
+) -> Sums:  # fmt: skip
+    """An arc about (cx, cy) from the angle ``start`` over ``turn``, clockwise where that is < 0.
+
+    Of a ring the sums over the arc itself, not over what it bounds.  ``rim``: it is that of the
+    base.
+    """
+    if turn == 0.0:
+        return NOTHING
+    across, up = -beta * cx, alpha - beta * cy  # to the centre of rotation, times β
+    nearest = math.atan2(up, across)
+    reach = math.sqrt(across * across + up * up)
+    gap = 1e3  # of angles: as far as that the arc is from the singularity
+    if beta > 0.0:
+        least = _LEAST_GAP if law == UNIFORM else (_RING_GAP if law == RING else _LOADED_GAP)
+        gap = min(max(abs(math.log(max(reach, 1e-300) / (beta * radius))), least), gap)
+    whole = 2.0 * math.pi
+    low = (start if turn > 0.0 else start + turn) - nearest
+    low -= whole * math.floor(low / whole)
+    high, sums = low + abs(turn), NOTHING
+    if law > RING and not rim:
+        foot, off = whole - low, gap
+        if high < whole:
+            foot = 0.0 if low < whole - high else abs(turn)
+            off = math.sqrt(gap * gap + min(low, whole - high) ** 2)
+        cosine, sine = cosine_sine_of(start if turn > 0.0 else start + turn)
+        sums = _loaded_piece(
+            alpha, beta, cx, cy, cosine, sine, radius, abs(turn), foot, off, law
+        )  # fmt: skip
+        return plus(NOTHING, 1.0 if turn > 0.0 else -1.0, sums)
+    reach = _PANEL if law == UNIFORM else (_RING_PANEL if law == RING else _LOADED_PANEL)
+    # of a load what rays leave by, not what they come in by
+    front = math.acos(beta / alpha) if law > RING and rim and alpha > beta else 0.0
+    # from half-turn to half-turn: in the even ones the arc leads away from the centre of rotation
+    number = float(math.floor(low / math.pi))
+    while low < high:
+        edge = min(math.pi * (number + 1.0), high)
+        leads_away = number % 2.0 == 0.0
+        base = math.pi * (number if leads_away else number + 1.0)
+        near, far = (low - base, edge - base) if leads_away else (base - edge, base - low)
+        near = max(near, front)
+        while near < far:
+            length = reach * math.sqrt(gap * gap + near * near)
+            if length >= 0.7 * (far - near):
+                length = far - near if length >= far - near else 0.5 * (far - near)
+            middle = near + 0.5 * length
+            angle = nearest + (base + middle if leads_away else base - middle)
+            half = 0.5 * length
+            if law == UNIFORM and rim:
+                sums = plus(sums, 1.0, _rim_panel(alpha, beta, radius, angle, half))
+            else:
+                sums = plus(sums, 1.0, _panel(alpha, beta, cx, cy, radius, angle, half, law))
+            near = near + length if length < far - near else far
+        low = edge
+        number += 1.0
+    return plus(NOTHING, 1.0 if turn > 0.0 else -1.0, sums)
