@@ -1,9 +1,10 @@
 """Sums of the slip direction over parts of a round base under Hertz's or Galin's pressure.
 
 As in :mod:`puck_tables.kernels.base_boundary`, of W = (3/2) √(1 − ρ²) or 1/(2 √(1 − ρ²)).  On a
-line through the centre of rotation C the slip direction e is the same everywhere: with p = x·e and the
-place s along it, ρ² = p² + s², and powers of s times W have elementary integrals J_k.  An area is
-the line integral of what lies between C, or where a ray from C enters the base, and its boundary,
+line through the centre of rotation C the slip direction e is the same everywhere: with p = x·e and
+the place s along it, ρ² = p² + s², and powers of s times W have elementary integrals J_k.  An area
+is the line integral of what lies between C, or where a ray from C enters the base, and its
+boundary,
 
     ∫ W s^k e dA = ∮ e (β J_{k+1} + α e_x J_k) (u·dx)/w² ,
 
