@@ -20,6 +20,7 @@ from puck_tables._core.arrays import FloatArray
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 BLOCK = 136  # numbers in a row of a block: rows a power of two apart would share cache lines
+LINE = 8  # numbers in a line of the cache
 
 
 def as_written() -> bool:
@@ -157,4 +158,6 @@ def into_columns(block: FloatArray, row: int, n: int, out: FloatArray, at: int, 
         out[at + k * step : at + k * step + 4] = block[first : first + 4 * BLOCK : BLOCK]
 
 
-stream_columns = into_columns  # past the cache, where there is any to spare
+def stream_line(source: FloatArray, begin: int, out: FloatArray, at: int) -> Any:
+    """Eight numbers from one flat array into another, past the cache where that can be."""
+    out[at : at + LINE] = source[begin : begin + LINE]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from puck_tables.kernels.as_written import BLOCK, as_written
+from puck_tables.kernels.as_written import BLOCK, LINE, as_written
 
 if as_written():
     from puck_tables.kernels.as_written import (
@@ -15,7 +15,7 @@ if as_written():
         rows_of,
         spline_polynomials,
         spline_values,
-        stream_columns,
+        stream_line,
         summed,
         weighted_rows,
     )
@@ -35,13 +35,13 @@ else:
         rows_of,
         spline_polynomials,
         spline_values,
-        stream_columns,
+        stream_line,
         summed,
         weighted_rows,
     )
 
 __all__ = [
-    "BLOCK", "allocating", "bits_of", "inlined", "inner", "into_columns", "into_row", "into_rows",
+    "BLOCK", "LINE", "allocating", "bits_of", "inlined", "inner", "into_columns", "into_row", "into_rows",
     "kernel", "number_of", "row_of", "rows_of", "spline_polynomials", "spline_values",
-    "stream_columns", "summed", "weighted_rows",
+    "stream_line", "summed", "weighted_rows",
 ]  # fmt: skip

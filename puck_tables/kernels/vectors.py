@@ -11,7 +11,7 @@ from llvmlite import ir
 from numba import types
 from numba.extending import intrinsic
 
-from puck_tables.kernels.as_written import BLOCK
+from puck_tables.kernels.as_written import BLOCK, LINE
 
 
 def _weighted_rows(typing: Any, c: Any, k: Any, weights: Any, width: Any) -> Any:
@@ -290,13 +290,12 @@ rows_of: Any = intrinsic(prefer_literal=True)(_rows_of)
 into_rows: Any = intrinsic(prefer_literal=True)(_into_rows)
 
 
-def _turned(streamed: bool, block: Any, out: Any) -> Any:
+def _into_columns(typing: Any, block: Any, row: Any, n: Any, out: Any, at: Any, step: Any) -> Any:
     """Compiled (block, row, n, out, at, step): a square of four by four numbers turned over.
 
     Numbers n to n + 3 of four rows of a block into a flat array, those of one number side by side
     from ``at`` on, those of the next ``step`` further: as whole registers, where LLVM would move
-    each number by itself.  ``streamed``: past the cache, for which all places are even and the
-    array begins at a multiple of 16 bytes, as those of numpy do.
+    each number by itself.
     """
     lanes = ir.VectorType(ir.DoubleType(), _LANES)
 
@@ -326,23 +325,32 @@ def _turned(streamed: bool, block: Any, out: Any) -> Any:
         ]
         goal = args[4]
         for column in columns:
-            stored = builder.store(column, place(target, goal), align=16 if streamed else 8)
-            if streamed:
-                one = ir.Constant(ir.IntType(32), 1)
-                stored.set_metadata("nontemporal", builder.module.add_metadata([one]))
+            builder.store(column, place(target, goal), align=8)
             goal = builder.add(goal, args[5])
         return context.get_dummy_value()
 
     return types.void(block, types.int64, types.int64, out, types.int64, types.int64), build
 
 
-def _into_columns(typing: Any, block: Any, row: Any, n: Any, out: Any, at: Any, step: Any) -> Any:
-    return _turned(False, block, out)
+def _stream_line(typing: Any, source: Any, begin: Any, out: Any, at: Any) -> Any:
+    """Compiled (source, begin, out, at): a whole line of the cache, eight numbers, past it.
 
+    Where they go is a multiple of 64 bytes.
+    """
+    line = ir.VectorType(ir.DoubleType(), LINE)
 
-def _stream_columns(typing: Any, block: Any, row: Any, n: Any, out: Any, at: Any, step: Any) -> Any:
-    return _turned(True, block, out)
+    def build(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        def place(array: int) -> Any:
+            data = context.make_array(signature.args[array])(context, builder, args[array]).data
+            return builder.bitcast(builder.gep(data, [args[array + 1]]), line.as_pointer())
+
+        stored = builder.store(builder.load(place(0), align=8), place(2), align=8 * LINE)
+        one = ir.Constant(ir.IntType(32), 1)
+        stored.set_metadata("nontemporal", builder.module.add_metadata([one]))
+        return context.get_dummy_value()
+
+    return types.void(source, types.int64, out, types.int64), build
 
 
 into_columns: Any = intrinsic(_into_columns)
-stream_columns: Any = intrinsic(_stream_columns)
+stream_line: Any = intrinsic(_stream_line)

@@ -46,34 +46,35 @@ def _pair(
 @inlined
 def _turn(
     own: Numbers, unit: float, by_speed: float, by_time: float, gone: float, elapsed: float,
-    around: float, east: float, north: float, spin: float, radius: float,
+    around: float, east: float, north: float, spin: float, radius: float, bend: float,
 ) -> Numbers:  # fmt: skip
     """A row of seven, of what changes its sign with the spin."""
     value, ahead = around * unit * own[0], around * by_speed * own[1]
     rim, rate = by_speed * own[3], around * by_time * own[5]
     return (
         east * ahead, north * ahead, radius * rim, around * unit * own[4],
-        elapsed * rate - gone * value, spin * rim - value / radius, rate,
+        elapsed * rate - gone * value, spin * rim - value * bend, rate,
     )  # fmt: skip
 
 
 @inlined
 def placed_state(
-    vx: float, vy: float, spin: float, decel: float, radius: float, speed: float, slip: float,
+    east: float, north: float, spin: float, decel: float, unit: float, radius: float, slip: float,
     time: float, own: Numbers,
 ) -> Numbers:  # fmt: skip
-    """From natural units in the frame of the launch, six rows of six, to six rows of seven."""
-    east, north = direction(vx, vy, speed)
-    around = 1.0 if spin >= 0.0 else -1.0
-    unit, bend = 1.0 / decel, 1.0 / radius
+    """From natural units in the frame of the launch, six rows of six, to six rows of seven.
+
+    (``east``, ``north``): its direction; ``unit``: 1/J.
+    """
+    around, bend = 1.0 if spin >= 0.0 else -1.0, 1.0 / radius
     duration, elapsed = slip * unit, time * unit
     place = slip * duration
     frame = elapsed, around, east, north, spin, radius
     return (
         *_pair(own[:6], own[6:12], place, duration, slip, unit * place, *frame),
-        *_turn(own[12:18], bend * place, bend * duration, bend * slip, unit, *frame),
+        *_turn(own[12:18], bend * place, bend * duration, bend * slip, unit, *frame, bend),
         *_pair(own[18:24], own[24:30], slip, 1.0, decel, 0.0, *frame),
-        *_turn(own[30:], bend * slip, bend, bend * decel, 0.0, *frame),
+        *_turn(own[30:], bend * slip, bend, bend * decel, 0.0, *frame, bend),
     )  # fmt: skip
 
 
@@ -82,12 +83,13 @@ def fill_placed_states(
     puck: FloatArray, times: FloatArray, own: FloatArray, out: FloatArray
 ) -> None:
     """Derivatives of states (n, 6, 7) of a puck from natural ones ``own`` (n, 6, 6)."""
-    vx, vy, spin, radius = puck[0], puck[1], puck[2], puck[5]
+    vx, vy, spin, decel, radius = puck[0], puck[1], puck[2], puck[4], puck[5]
     speed = math.hypot(vx, vy)
-    slip = math.hypot(speed, radius * spin)
+    slip, unit = math.hypot(speed, radius * spin), 1.0 / decel
+    east, north = direction(vx, vy, speed)
     flat, numbers = own.reshape(-1), out.reshape(-1)
     for n in range(times.size):
         row = weighted_rows(flat, OWN_STATES * n, (1.0,), OWN_STATES)
-        placed = placed_state(vx, vy, spin, puck[4], radius, speed, slip, times[n], row)
+        placed = placed_state(east, north, spin, decel, unit, radius, slip, times[n], row)
         for k in range(PLACED_STATES):
             numbers[PLACED_STATES * n + k] = placed[k]

@@ -61,13 +61,13 @@ from puck_tables.stopping.orbit import TINY, cell_of
 from puck_tables.stopping.slopes import CURVE_WIDTH
 from puck_tables.stopping.stop_jacobian import (
     BY_HEIGHT,
-    MANY_NUMBERS,
     STOP_FOUND,
     STOP_ROW,
     TURN_RATE,
     D,
     Numbers,
     T,
+    direction,
     row_by_row,
     stop_by_speeds,
     stop_functions,
@@ -76,7 +76,7 @@ from puck_tables.stopping.stop_jacobian import (
 _NEAR_LIMIT = 0.05  # of c − c₀
 _CURVE_ROW, _FLOWN, _PLACED = HEIGHTS * CURVE_WIDTH, 6, 7
 # what is known of a launch: its puck, its place on the curve in natural units, its stop
-_VX, _VY, _SPIN, _DELTA, _DECEL, _RADIUS, _TIME, _Q, _V = range(9)
+_EAST, _NORTH, _SPIN, _DELTA, _DECEL, _RADIUS, _TIME, _Q, _UNIT = range(9)
 _OF_PUCK = (0, 1, 2, 3, 4, 5, *(LAUNCH_COLUMNS + row for row in (TIME, SLIP, SPEED0)))
 _V0, _A0, _U0, _LAUNCHED = 9, 10, 13, 7
 _FIXED, _KAPPA, _C0 = 16, 16, 18
@@ -90,23 +90,26 @@ _FOUND = FACTS + 7
 _FLOW = _FOUND + STOP_FOUND
 SECTION_WIDTH = 24  # both, padded to whole registers
 _PUT = _FOUND + SECTION_WIDTH
-_ROWS = _PUT + PLACED_STATES
+_ROWS = _PUT + 2 * PLACED_STATES
 _PART = 24  # columns of a block at a time: with so many rows the nearest cache holds no more
 
 
 @inlined
 def _flow_at(
-    is_fast: bool, share: float, delta: float, fixed: Numbers, f: Numbers, turn_rate: float
-) -> Numbers:
+    is_fast: bool, share: float, sine: float, delta: float, fixed: Numbers, f: Numbers,
+    turn_rate: float,
+) -> Numbers:  # fmt: skip
     """What the motion does at a place of the curve (7), from the functions there (6)."""
     kappa, h0, c0, k_tilt, h0_tilt = fixed[0], fixed[1], fixed[2], fixed[3], fixed[4]
     # A, B and h₁, and their derivatives by δ
-    # divisions cost most here; what is left are where a·b + c·d could be contracted in two ways
+    # divisions cost most here
     d2 = delta * delta
-    below, inverse = 36.0 + 4.0 * d2, 1.0 / (36.0 + 4.0 * d2)
-    one_slow, one_fast, h1 = 8.0 / (4.0 + d2), below / (9.0 + 4.0 * d2), 9.0 * delta / below
+    slow, fast, below = 4.0 + d2, 9.0 + 4.0 * d2, 36.0 + 4.0 * d2
+    inverse_all = 1.0 / (slow * fast * below)
+    one_slow, inverse = 8.0 * (fast * below * inverse_all), slow * fast * inverse_all
+    one_fast, h1 = below * (below * slow * inverse_all), 9.0 * delta * inverse
     by_slow, by_fast = 0.25 * delta, 216.0 * delta * (inverse * inverse)
-    by_h1 = (9.0 - 72.0 * d2 * inverse) / below
+    by_h1 = (9.0 - 72.0 * d2 * inverse) * inverse
     near, far = share, 2.0 - share
     log_near, log_far = log_of(max(near, TINY)), log_of(far)
     log_plus, log_minus = (log_far, log_near) if is_fast else (log_near, log_far)
@@ -121,8 +124,6 @@ def _flow_at(
     rest = h0 - h1
     turn_tilt = (h0_tilt - h0 * one_slow * by_slow) * plus_slow
     turn_tilt += (h0_tilt - by_h1 - rest * one_fast * by_fast) * minus_fast
-    small, large = 0.5 * near, 0.5 * far
-    sine = (large if is_fast else small) / math.sqrt(small * small + large * large)
     return (
         gap, f[0] - kappa * logs, f[4] - k_tilt * logs + kappa * by_logs, pole,
         0.5 * (h0 * one_slow * minus - rest * one_fast * plus) + delta * f[3],
@@ -221,9 +222,12 @@ def fill_launch_facts(
             c, s, delta = row_of(room, _V0, n), row_of(room, _A0, n), row_of(room, _DELTA, n)
             found = rows_of(room, _FOUND, STOP_FOUND, n)
             flow = _flow_at(
-                row_of(room, _FAST, n) > 0.0, row_of(room, _SHARE, n), delta,
+                row_of(room, _FAST, n) > 0.0, row_of(room, _SHARE, n), s, delta,
                 rows_of(room, _FIXED, 6, n), rows_of(room, _FLOW, _FLOWN, n), found[TURN_RATE],
             )  # fmt: skip
+            vx, vy = row_of(room, _EAST, n), row_of(room, _NORTH, n)
+            into_rows(room, _EAST, n, direction(vx, vy, row_of(room, _UNIT, n)))
+            into_row(room, _UNIT, n, 1.0 / row_of(room, _DECEL, n))
             u0 = 1.0 / (c * s)
             begun = u0, u0 / (flow[_GAP] * flow[_POLE]), 1.0 / flow[_POLE]
             into_rows(room, _U0, n, begun)
@@ -325,7 +329,7 @@ def _change(
 @inlined
 def _state_slopes(
     left: float, turned: float, is_fast: bool, share: float, delta: float, launched: Numbers,
-    fixed: Numbers, here: Numbers, stop: Numbers, found: Numbers, flow: Numbers,
+    fixed: Numbers, here: Numbers, stop: Numbers, found: Numbers, curve: Numbers,
 ) -> Numbers:  # fmt: skip
     """A state and its derivatives in natural units, six rows of six.
 
@@ -335,11 +339,13 @@ def _state_slopes(
     """
     speed0, rim0, t0, one_speed, u0, begun, one_pole = launched
     kappa, h0, _, k_tilt, h0_tilt, c0_tilt = fixed
-    t = found[T]
-    slip = (left if left > 0.0 else 1.0) * t0 / t
+    t, to_go = found[T], (left if left > 0.0 else 1.0) * t0
+    inverse = 1.0 / (to_go * t)
+    slip, one_slip = to_go * to_go * inverse, t * t * inverse
     small, large = 0.5 * share, 1.0 - 0.5 * share
     norm = 1.0 / math.sqrt(small * small + large * large)
     cosine, sine = (norm * small, norm * large) if is_fast else (norm * large, norm * small)
+    flow = _flow_at(is_fast, share, sine, delta, fixed, curve, found[TURN_RATE])
     speed, rim = slip * cosine, slip * sine
     own = stop_by_speeds(speed, rim, slip, cosine, sine, delta, found)
     t_slope = sine * cosine * cosine * found[D + T]
@@ -347,10 +353,9 @@ def _state_slopes(
     log = log_of(slip)
     ratio = exp_of(kappa * log - (flow[_CURVE] - here[_CURVE]))  # of c − c₀
     flown = ratio * flow[_POLE] * one_pole  # ρ over that at the launch
-    raised = rate * (flow[_CURVE_TILT] - here[_CURVE_TILT] - k_tilt * log) / kappa
-    raised += c0_tilt / kappa * flow[_POLE] * (ratio - 1.0)
+    raised = rate * (flow[_CURVE_TILT] - here[_CURVE_TILT] - k_tilt * log)
+    raised = (raised + c0_tilt * flow[_POLE] * (ratio - 1.0)) / kappa
     cos_turn, sin_turn = cosine_sine_of(turned)
-    one_slip = 1.0 / slip
     gone = slip, one_slip, cosine, sine, cos_turn, sin_turn, log
     one_way = 1.0 / (t - rate * t_slope)
     rates = t, t_slope, found[BY_HEIGHT + T], rate, flown, raised, one_way, begun
@@ -403,7 +408,6 @@ def fill_state_jacobians(
     cells = float(stop_slopes.shape[1] - 3)
     stops, curve, sections = stop_slopes.reshape(-1), curve_slopes.reshape(-1), section.reshape(-1)
     numbers, room = out.reshape(-1), np.empty(_ROWS * BLOCK)
-    large = numbers.size > MANY_NUMBERS
     part = _PART if which.size else BLOCK  # facts of many pucks are copied faster at length
     for start in range(begin, end, part):
         count = min(part, end - start)
@@ -419,18 +423,17 @@ def fill_state_jacobians(
         _find_functions(room, count, stops, curve, sections, cells)
         for n in range(count):
             is_fast, share = row_of(room, _FAST, n) > 0.0, row_of(room, _SHARE, n)
-            delta, fixed = row_of(room, _DELTA, n), rows_of(room, _FIXED, 6, n)
-            found, flow = rows_of(room, _FOUND, STOP_FOUND, n), rows_of(room, _FLOW, _FLOWN, n)
             own = _state_slopes(
-                row_of(room, _LEFT, n), row_of(room, _TURNED, n), is_fast, share, delta,
-                rows_of(room, _V0, _LAUNCHED, n), fixed, rows_of(room, _PLACE, _PLACED, n),
-                rows_of(room, _STOP, _STOPPED, n), found,
-                _flow_at(is_fast, share, delta, fixed, flow, found[TURN_RATE]),
+                row_of(room, _LEFT, n), row_of(room, _TURNED, n), is_fast, share,
+                row_of(room, _DELTA, n), rows_of(room, _V0, _LAUNCHED, n),
+                rows_of(room, _FIXED, 6, n), rows_of(room, _PLACE, _PLACED, n),
+                rows_of(room, _STOP, _STOPPED, n), rows_of(room, _FOUND, STOP_FOUND, n),
+                rows_of(room, _FLOW, _FLOWN, n),
             )  # fmt: skip
             placed = placed_state(
-                row_of(room, _VX, n), row_of(room, _VY, n), row_of(room, _SPIN, n),
-                row_of(room, _DECEL, n), row_of(room, _RADIUS, n), row_of(room, _V, n),
+                row_of(room, _EAST, n), row_of(room, _NORTH, n), row_of(room, _SPIN, n),
+                row_of(room, _DECEL, n), row_of(room, _UNIT, n), row_of(room, _RADIUS, n),
                 row_of(room, _Q, n), row_of(room, _MOMENT, n), own,
             )  # fmt: skip
             into_rows(room, _PUT, n, placed)
-        row_by_row(room, _PUT, PLACED_STATES, count, numbers[PLACED_STATES * start :], large)
+        row_by_row(room, _PUT, PLACED_STATES, count, numbers, start)

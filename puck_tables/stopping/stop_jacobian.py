@@ -20,6 +20,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import (
     BLOCK,
+    LINE,
     allocating,
     inlined,
     into_columns,
@@ -27,7 +28,7 @@ from puck_tables.kernels.compile import (
     row_of,
     rows_of,
     spline_polynomials,
-    stream_columns,
+    stream_line,
     weighted_rows,
 )
 from puck_tables.kernels.spline import basis
@@ -64,9 +65,11 @@ _OUT = STOP_ROWS * LAUNCH_COLUMNS
 # rows of a block behind those of the launches and their places
 _FOUND = PLACED
 _PUT = PLACED + STOP_FOUND
-_ROWS = _PUT + _OUT
+_ROWS = _PUT + 2 * _OUT
 
-MANY_NUMBERS = 1 << 19  # more than caches hold
+# More than caches hold, but less than what C libraries ask of the system anew each time (32 MiB):
+# that has just been cleared, through the caches.
+_MANY, _NEW = 1 << 19, 1 << 22
 Numbers = tuple[float, ...]
 
 
@@ -159,23 +162,31 @@ def placed_stop(
 
 @inlined
 def row_by_row(
-    room: FloatArray, first: int, rows: int, count: int, out: FloatArray, large: bool
+    room: FloatArray, first: int, rows: int, count: int, out: FloatArray, start: int
 ) -> None:
-    """So many rows of a block, from one on, side by side into ``out`` (count · rows,).
+    """So many rows of a block, from one on, side by side into ``out``, from number start · rows.
 
-    ``large``: of an array that no cache holds.
+    Behind them as many rows are free.
     """
-    whole = count - count % 4
+    streamed, begin = _MANY < out.size <= _NEW, rows * start
+    side, goal = (room, (first + rows) * BLOCK) if streamed else (out, begin)
+    whole, size = count - count % 4, rows * count
     for n in range(0, whole, 4):
         for row in range(0, rows, 4):
             at = min(row, rows - 4)
-            if large:
-                stream_columns(room, first + at, n, out, rows * n + at, rows)
-            else:
-                into_columns(room, first + at, n, out, rows * n + at, rows)
+            into_columns(room, first + at, n, side, goal + rows * n + at, rows)
     for n in range(whole, count):
         for row in range(rows):
-            out[rows * n + row] = room[(first + row) * BLOCK + n]
+            side[goal + rows * n + row] = room[(first + row) * BLOCK + n]
+    if streamed:
+        head = min(-(out.ctypes.data // 8 + begin) % LINE, size)
+        tail = head + (size - head) // LINE * LINE
+        for n in range(head):
+            out[begin + n] = side[goal + n]
+        for n in range(head, tail, LINE):
+            stream_line(side, goal + n, out, begin + n)
+        for n in range(tail, size):
+            out[begin + n] = side[goal + n]
 
 
 @allocating
@@ -209,7 +220,7 @@ def fill_stop_jacobians(
                 row_of(room, DECEL, n), row_of(room, RADIUS, n), speed, slip, own,
             )  # fmt: skip
             into_rows(room, _PUT, n, placed)
-        row_by_row(room, _PUT, _OUT, count, numbers[_OUT * start :], numbers.size > MANY_NUMBERS)
+        row_by_row(room, _PUT, _OUT, count, numbers, start)
 
 
 @allocating
