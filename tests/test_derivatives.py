@@ -209,6 +209,21 @@ def test_values_are_the_same_bits_with_and_without():
         assert one == two
 
 
+def test_pucks_side_by_side_change_no_bit():
+    """Whatever blocks the moments of one puck fall into, and whichever puck is beside it."""
+    rng = np.random.default_rng(13)
+    velocity, spin, height = rng.normal(size=(7, 2)), rng.normal(size=7), rng.uniform(0, 1, 7)
+    times = rng.uniform(0.0, 1.5, 61)
+    rows = states(velocity[:, None], spin[:, None], times, delta=height[:, None], jacobian=True)
+    columns = states(velocity, spin, times[:, None], delta=height, jacobian=True)
+    for k in range(7):
+        alone = states(velocity[k], spin[k], times, delta=height[k], jacobian=True)
+        for found, part in ((rows, k), (columns, (slice(None), k))):
+            assert np.array_equal(found.jacobian[part], alone.jacobian)
+            for name in ("x", "y", "vx", "vy", "spin"):  # angles are added up in another order
+                assert np.array_equal(getattr(found, name)[part], getattr(alone, name))
+
+
 def test_threads_change_no_bit():
     rng = np.random.default_rng(12)
     velocity, spin, heights = rng.normal(size=(70_000, 2)), rng.normal(size=70_000), [0.3, 0.9]

@@ -41,7 +41,7 @@ else:
     )
 
 __all__ = [
-    "BLOCK", "LINE", "allocating", "bits_of", "inlined", "inner", "into_columns", "into_row", "into_rows",
-    "kernel", "number_of", "row_of", "rows_of", "spline_polynomials", "spline_values",
+    "BLOCK", "LINE", "allocating", "bits_of", "inlined", "inner", "into_columns", "into_row",
+    "into_rows", "kernel", "number_of", "row_of", "rows_of", "spline_polynomials", "spline_values",
     "stream_line", "summed", "weighted_rows",
 ]  # fmt: skip

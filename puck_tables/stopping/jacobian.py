@@ -190,13 +190,13 @@ def stop_jacobians(
 
 
 def _of_plain(table: StopTable, launches: Launches, threads: int | None) -> FloatArray:
-    from puck_tables.stopping.stop_jacobian import fill_stop_jacobians
+    from puck_tables.stopping.stop_jacobian import fill_stop_jacobians, is_streamed
 
     slopes = table.slopes.stops
     out = np.empty((launches.size, len(STOP_NAMES), len(LAUNCH_NAMES)))
 
     def work(start: int, stop: int) -> None:
-        fill_stop_jacobians(*launches.part(start, stop), slopes, out[start:stop])
+        fill_stop_jacobians(*launches.part(start, stop), slopes, is_streamed(out), out[start:stop])
 
     in_chunks(work, launches.size, threads)
     return out

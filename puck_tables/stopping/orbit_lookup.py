@@ -43,24 +43,38 @@ _TO_ANGLE, _TO_SPEED, _TO_SPIN = _OUT + ORIENTATION, _OUT + SPEED, _OUT + SPIN
 
 
 @inlined
-def _gather(
-    pucks: FloatArray, which: npt.NDArray[np.int64], begin: int, start: int, count: int,
-    room: FloatArray,
-) -> None:  # fmt: skip
-    """Columns of ``pucks`` (20, m) for a block of moments into the first rows of ``room``."""
-    if which.size == 1 and start > begin:
-        return  # they are there
-    for row in range(PUCK_ROWS):
-        values, block = pucks[row], room[row * BLOCK : (row + 1) * BLOCK]
-        if which.size == 0:
+def gather(
+    columns: FloatArray, which: npt.NDArray[np.int64], begin: int, start: int, count: int,
+    held: int, room: FloatArray,
+) -> int:  # fmt: skip
+    """Columns for a block of moments, from ``start`` on, into the first rows of ``room``.
+
+    Columns ``which`` (n,) or (1,); those from ``begin`` on, one after the other, where it is empty.
+    The column that all of the block hold, −1 if not one; ``held``: that of the block before.
+    """
+    first, same = 0, which.size == 1
+    if which.size > 1:
+        first, same = which[start], True
+        for n in range(count):
+            same &= which[start + n] == first
+    elif same:
+        first = which[0]
+    if same and first == held:
+        return held
+    for row in range(columns.shape[0]):
+        values, block = columns[row], room[row * BLOCK : (row + 1) * BLOCK]
+        if same:
+            value = values[first]
+            for n in range(BLOCK):
+                block[n] = value
+        elif which.size == 0:
+            own = values[start - begin : start - begin + count]
             for n in range(count):
-                block[n] = values[start - begin + n]
-        elif which.size == 1:
-            for n in range(count):  # no block is larger than the first
-                block[n] = values[which[0]]
+                block[n] = own[n]
         else:
             for n in range(count):
                 block[n] = values[which[start + n]]
+    return first if same else -1
 
 
 @allocating
@@ -77,10 +91,10 @@ def fill_orbit_states(
     none, or negative.
     """
     flat, cells, room = orbit.reshape(-1), float(orbit.shape[1] - 3), np.empty(_ROWS * BLOCK)
-    bad = 0
+    bad, held = 0, -1
     for start in range(begin, end, BLOCK):
         count = min(BLOCK, end - start)
-        _gather(pucks, which, begin, start, count, room)
+        held = gather(pucks, which, begin, start, count, held, room)
         moments = times[start : start + count]
         for n in range(count):
             into_row(room, _MOMENT, n, moments[n])

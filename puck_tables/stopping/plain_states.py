@@ -74,6 +74,7 @@ def fill_state_slopes(
         fill_section,
         fill_state_jacobians,
     )
+    from puck_tables.stopping.stop_jacobian import is_streamed
 
     slopes, facts = table.slopes, np.empty((FACTS, pucks.shape[1]))
     natural, seen = _beside_pure(table, pucks, which, moments, found)
@@ -86,8 +87,9 @@ def fill_state_slopes(
 
     def work(start: int, stop: int) -> None:
         fill_state_jacobians(
-            facts, which, moments, seen, start, stop, slopes.stops, slopes.curve, section, out
-        )
+            facts, which, moments, seen, start, stop, slopes.stops, slopes.curve, section,
+            is_streamed(out), out,
+        )  # fmt: skip
 
     in_chunks(work, moments.size, threads)
 

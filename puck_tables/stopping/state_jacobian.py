@@ -58,6 +58,7 @@ from puck_tables.stopping.curve_lookup import (
 )
 from puck_tables.stopping.launch_frame import PLACED_STATES, placed_state, rotated
 from puck_tables.stopping.orbit import TINY, cell_of
+from puck_tables.stopping.orbit_lookup import gather
 from puck_tables.stopping.slopes import CURVE_WIDTH
 from puck_tables.stopping.stop_jacobian import (
     BY_HEIGHT,
@@ -102,14 +103,12 @@ def _flow_at(
     """What the motion does at a place of the curve (7), from the functions there (6)."""
     kappa, h0, c0, k_tilt, h0_tilt = fixed[0], fixed[1], fixed[2], fixed[3], fixed[4]
     # A, B and h₁, and their derivatives by δ
-    # divisions cost most here
+    # divisions cost most here; what is left are where a·b + c·d could be contracted in two ways
     d2 = delta * delta
-    slow, fast, below = 4.0 + d2, 9.0 + 4.0 * d2, 36.0 + 4.0 * d2
-    inverse_all = 1.0 / (slow * fast * below)
-    one_slow, inverse = 8.0 * (fast * below * inverse_all), slow * fast * inverse_all
-    one_fast, h1 = below * (below * slow * inverse_all), 9.0 * delta * inverse
+    below, inverse = 36.0 + 4.0 * d2, 1.0 / (36.0 + 4.0 * d2)
+    one_slow, one_fast, h1 = 8.0 / (4.0 + d2), below / (9.0 + 4.0 * d2), 9.0 * delta / below
     by_slow, by_fast = 0.25 * delta, 216.0 * delta * (inverse * inverse)
-    by_h1 = (9.0 - 72.0 * d2 * inverse) * inverse
+    by_h1 = (9.0 - 72.0 * d2 * inverse) / below
     near, far = share, 2.0 - share
     log_near, log_far = log_of(max(near, TINY)), log_of(far)
     log_plus, log_minus = (log_far, log_near) if is_fast else (log_near, log_far)
@@ -247,35 +246,6 @@ def fill_launch_facts(
 
 
 @inlined
-def _gather(
-    facts: FloatArray, which: npt.NDArray[np.int64], begin: int, start: int, count: int,
-    room: FloatArray,
-) -> None:  # fmt: skip
-    """Columns of ``facts`` for a block of moments into the first rows of ``room``."""
-    first, same = 0, which.size == 1
-    if which.size > 1:
-        first, same = which[start], True
-        for n in range(count):
-            same &= which[start + n] == first
-    elif same:
-        first = which[0]
-    if same and start > begin and (which.size == 1 or which[start - 1] == first):
-        return  # they are there
-    for row in range(FACTS):
-        values, block = facts[row], room[row * BLOCK : (row + 1) * BLOCK]
-        if same:
-            value = values[first]
-            for n in range(BLOCK):
-                block[n] = value
-        elif which.size == 0:
-            for n in range(count):
-                block[n] = values[start - begin + n]
-        else:
-            for n in range(count):
-                block[n] = values[which[start + n]]
-
-
-@inlined
 def _find_places(room: FloatArray, count: int) -> None:
     """What time is left, and where on the curve the states are: side and 2w.
 
@@ -353,8 +323,9 @@ def _state_slopes(
     log = log_of(slip)
     ratio = exp_of(kappa * log - (flow[_CURVE] - here[_CURVE]))  # of c − c₀
     flown = ratio * flow[_POLE] * one_pole  # ρ over that at the launch
-    raised = rate * (flow[_CURVE_TILT] - here[_CURVE_TILT] - k_tilt * log)
-    raised = (raised + c0_tilt * flow[_POLE] * (ratio - 1.0)) / kappa
+    raised = c0_tilt * ratio - c0_tilt
+    raised += flow[_GAP] * (flow[_CURVE_TILT] - here[_CURVE_TILT] - k_tilt * log)
+    raised *= flow[_POLE] / kappa
     cos_turn, sin_turn = cosine_sine_of(turned)
     gone = slip, one_slip, cosine, sine, cos_turn, sin_turn, log
     one_way = 1.0 / (t - rate * t_slope)
@@ -395,7 +366,7 @@ def _state_slopes(
 def fill_state_jacobians(
     facts: FloatArray, which: npt.NDArray[np.int64], times: FloatArray, states: FloatArray,
     begin: int, end: int, stop_slopes: FloatArray, curve_slopes: FloatArray, section: FloatArray,
-    out: FloatArray,
+    streamed: bool, out: FloatArray,
 ) -> None:  # fmt: skip
     """Derivatives of states into ``out`` (n, 6, 7).
 
@@ -408,10 +379,13 @@ def fill_state_jacobians(
     cells = float(stop_slopes.shape[1] - 3)
     stops, curve, sections = stop_slopes.reshape(-1), curve_slopes.reshape(-1), section.reshape(-1)
     numbers, room = out.reshape(-1), np.empty(_ROWS * BLOCK)
-    part = _PART if which.size else BLOCK  # facts of many pucks are copied faster at length
+    held, part = (
+        -1,
+        _PART if which.size else BLOCK,
+    )  # facts of many pucks are copied faster at length
     for start in range(begin, end, part):
         count = min(part, end - start)
-        _gather(facts, which, begin, start, count, room)
+        held = gather(facts, which, begin, start, count, held, room)
         moments = times[start : start + count]
         for n in range(count):
             into_row(room, _MOMENT, n, moments[n])
@@ -436,4 +410,4 @@ def fill_state_jacobians(
                 row_of(room, _Q, n), row_of(room, _MOMENT, n), own,
             )  # fmt: skip
             into_rows(room, _PUT, n, placed)
-        row_by_row(room, _PUT, PLACED_STATES, count, numbers, start)
+        row_by_row(room, _PUT, PLACED_STATES, count, numbers, start, streamed)

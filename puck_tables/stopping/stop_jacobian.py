@@ -160,15 +160,21 @@ def placed_stop(
     )  # fmt: skip
 
 
+def is_streamed(out: FloatArray) -> bool:
+    """Whether an array, or that of which it is a part, is best written past the caches."""
+    size = out.size if out.base is None else out.base.size
+    return _MANY < size <= _NEW
+
+
 @inlined
 def row_by_row(
-    room: FloatArray, first: int, rows: int, count: int, out: FloatArray, start: int
+    room: FloatArray, first: int, rows: int, count: int, out: FloatArray, start: int, streamed: bool
 ) -> None:
     """So many rows of a block, from one on, side by side into ``out``, from number start · rows.
 
-    Behind them as many rows are free.
+    Behind them as many rows are free.  ``streamed``: see :func:`is_streamed`.
     """
-    streamed, begin = _MANY < out.size <= _NEW, rows * start
+    begin = rows * start
     side, goal = (room, (first + rows) * BLOCK) if streamed else (out, begin)
     whole, size = count - count % 4, rows * count
     for n in range(0, whole, 4):
@@ -192,7 +198,7 @@ def row_by_row(
 @allocating
 def fill_stop_jacobians(
     vx: FloatArray, vy: FloatArray, step: int, spin: FloatArray, delta: FloatArray,
-    decel: FloatArray, radius: FloatArray, slopes: FloatArray, out: FloatArray,
+    decel: FloatArray, radius: FloatArray, slopes: FloatArray, streamed: bool, out: FloatArray,
 ) -> None:  # fmt: skip
     """∂(time, x, y, path, body angle)/∂(vx, vy, ω, δ, J, r) of launches into ``out`` (n, 5, 6).
 
@@ -220,7 +226,7 @@ def fill_stop_jacobians(
                 row_of(room, DECEL, n), row_of(room, RADIUS, n), speed, slip, own,
             )  # fmt: skip
             into_rows(room, _PUT, n, placed)
-        row_by_row(room, _PUT, _OUT, count, numbers, start)
+        row_by_row(room, _PUT, _OUT, count, numbers, start, streamed)
 
 
 @allocating
