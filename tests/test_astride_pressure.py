@@ -141,3 +141,13 @@ def test_a_profile_of_too_many_rows_is_refused(tmp_path):
     puck = pt.Puck(0.04, friction=0.2, pressure=str(path))
     with pytest.raises(pt.InputError, match="it has 61: give fewer"):
         pt.Scene(puck, pt.Floor(strips=pt.Strips((0.15,), (0.2, 0.1))))
+
+
+@pytest.mark.parametrize("pressure", ["hertz", "galin"])
+def test_a_patch_that_reaches_from_the_centre_to_the_rim(pressure):
+    """It touches the rim to the last bit: the limit of those that are a little smaller."""
+    close, touching = (
+        found(pressure, pt.Floor(patches=[pt.Patch(0.05, (0.5, 0.0), r)]), SLIPS[1], 0.8)
+        for r in (0.5 - 1e-9, 0.5)
+    )
+    np.testing.assert_allclose(touching, close, atol=1e-8)

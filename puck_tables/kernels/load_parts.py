@@ -188,7 +188,9 @@ def _arc_node(
     c1, s1 = 1.0 - 2.0 * s2 * s2, 2.0 * s2 * c2
     leg = max(cosine * c1 - sine * s1, 0.0)
     sb, sa = piece.size * sine, piece.size * (sine * c1 + cosine * s1)
-    cb, ca = math.sqrt((1.0 - sb) * (1.0 + sb)), math.sqrt((1.0 - sa) * (1.0 + sa))
+    rest, full = (1.0 - piece.size) * (1.0 + piece.size), piece.size * piece.size
+    cb, ca = math.sqrt(rest + full * cosine * cosine), math.sqrt(rest + full * leg * leg)
+    ca = max(ca, 1e-300)  # 0 at the end of a circle that touches the rim
     quarter = 2.0 * piece.size * s2 * (cosine * c2 - sine * s2) / (ca + cb)
     gone = 4.0 * beta * piece.radius * quarter / (1.0 + quarter * quarter)
     c3, s3 = ca * cb - sa * sb, sa * cb + ca * sb  # of the mean of both
