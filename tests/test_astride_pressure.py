@@ -49,6 +49,27 @@ def test_resultants_against_circles(pressure, floor):
         assert np.abs(found(pressure, surface, slip, 0.8) - truth).max() <= 1e-10, slip
 
 
+@pytest.mark.thorough
+@pytest.mark.parametrize("pressure", ["hertz", "galin"])
+def test_a_centre_of_rotation_anywhere(pressure):
+    """Far, on a border, beside one, on the rim; patches within the base and most of it."""
+    law, square, bends = LAWS[pressure]
+    rounds = [(0.2, -0.1, 0.5), (0.1, 0.05, 1.0), (0.0, 0.3, 0.4), (0.05, 0.0, 0.8)]
+    floors = [*FLOORS.values()] + [
+        (Ground([], [0.3], [(x, y, r, 0.05)]), pt.Floor(patches=[pt.Patch(0.05, (x, y), r)]))
+        for x, y, r in rounds
+    ]
+    slips = [
+        (1.0, 0.4, 0.0), (1.0, 0.3, 0.05), (0.3, -0.4, 1.0), (0.1, 0.4 - 1e-7, -1.0),
+        (0.0, 0.0, 1.0), (0.7, 0.7, -0.97), (0.6, 0.8, -1.0), (0.0, 0.7, 1.0),
+    ]  # fmt: skip
+    for ground, surface in floors:
+        for slip in slips:
+            also = (*bends, 0.5, math.hypot(0.4, 0.1))
+            truth = pressure_judge.friction(ground, slip, law, 0.5 * 0.8, square, also)
+            assert np.abs(found(pressure, surface, slip, 0.8) - truth).max() <= 2e-11, slip
+
+
 def test_a_patch_that_touches_the_rim_from_inside():
     """Where Galin's pressure has no bound."""
     ground = Ground([], [0.3], [(0.6, 0.0, 0.4, 0.05)])
@@ -120,3 +141,13 @@ def test_a_profile_of_too_many_rows_is_refused(tmp_path):
     puck = pt.Puck(0.04, friction=0.2, pressure=str(path))
     with pytest.raises(pt.InputError, match="it has 61: give fewer"):
         pt.Scene(puck, pt.Floor(strips=pt.Strips((0.15,), (0.2, 0.1))))
+
+
+@pytest.mark.parametrize("pressure", ["hertz", "galin"])
+def test_a_patch_that_reaches_from_the_centre_to_the_rim(pressure):
+    """It touches the rim to the last bit: the limit of those that are a little smaller."""
+    close, touching = (
+        found(pressure, pt.Floor(patches=[pt.Patch(0.05, (0.5, 0.0), r)]), SLIPS[1], 0.8)
+        for r in (0.5 - 1e-9, 0.5)
+    )
+    np.testing.assert_allclose(touching, close, atol=1e-8)

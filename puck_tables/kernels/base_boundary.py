@@ -10,8 +10,6 @@ vanishes, and the part's boundary counter-clockwise,
 and so on for one power of x and y more, which a tilted pressure needs.  On a straight piece these
 are elementary.  On an arc h is smooth but next to the instantaneous centre of rotation, (0, α/β):
 Gauss's rule on panels that shrink towards it.
-
-A :data:`Sums` is ∫ of e_x, e_y, x e_x, y e_x, x e_y, y e_y, x (x e_y − y e_x), y (x e_y − y e_x).
 """
 
 from __future__ import annotations
@@ -20,36 +18,18 @@ import math
 
 import numpy as np
 
+from puck_tables.kernels.base_sums import NOTHING, UNIFORM, Sums, added, plus
 from puck_tables.kernels.compile import inlined, inner, summed
 from puck_tables.kernels.elementary import cosine_sine_of
-from puck_tables.kernels.load_parts import RING, UNIFORM, loaded_at
-
-Sums = tuple[float, float, float, float, float, float, float, float]
-NOTHING: Sums = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+from puck_tables.kernels.load_parts import loaded_line
 
 _NODES = 16
 _NODE, _WEIGHT = np.polynomial.legendre.leggauss(_NODES)
 _FAR = 2.0  # radii from which on the centre of rotation is no trouble for Gauss's rule
 _PANEL = 2.4  # the length of a panel over its distance from the centre of rotation
 _RING_PANEL = 1.6  # of a ring, where w is divided by
-# of a load that ends at the rim like a root, on [0, 1] in v with u = v² (3 − 2 v)
-_LOADED = 24
-_V, _BY_V = (0.5 * side for side in np.polynomial.legendre.leggauss(_LOADED))
-_V = 0.5 + _V
-_PLACE, _SHARE = _V**2 * (3.0 - 2.0 * _V), _BY_V * 6.0 * _V * (1.0 - _V)
-_LOADED_PANEL, _LOADED_GAP, _FARTHEST = 1.6, 1e-8, 1e3
 _LEAST_GAP = 1e-5  # closer than this the centre is on the arc: the square of it is lost
 _RING_GAP = 1e-12  # of a ring it is lost itself
-
-
-@inlined
-def plus(sums: Sums, weight: float, more: Sums) -> Sums:
-    """Sums and so many times others."""
-    return (
-        sums[0] + weight * more[0], sums[1] + weight * more[1], sums[2] + weight * more[2],
-        sums[3] + weight * more[3], sums[4] + weight * more[4], sums[5] + weight * more[5],
-        sums[6] + weight * more[6], sums[7] + weight * more[7],
-    )  # fmt: skip
 
 
 @inlined
@@ -96,103 +76,6 @@ def _at(alpha: float, beta: float, x: float, y: float, tx: float, ty: float) -> 
     return _combined(tx, ty, x * ty - y * tx, h, x * h, y * h, k, x * k, y * k, q)
 
 
-@inlined
-def _added(sums: Sums, weight: float, more: Sums) -> Sums:
-    """Sums and so many times others, in any order."""
-    return (
-        summed(sums[0], weight * more[0]), summed(sums[1], weight * more[1]),
-        summed(sums[2], weight * more[2]), summed(sums[3], weight * more[3]),
-        summed(sums[4], weight * more[4]), summed(sums[5], weight * more[5]),
-        summed(sums[6], weight * more[6]), summed(sums[7], weight * more[7]),
-    )  # fmt: skip
-
-
-@inlined
-def _half_ray(alpha: float, beta: float, x: float, y: float) -> float:
-    """Half the chord of the base on which a ray from a centre outside it meets a point."""
-    ux, uy = alpha - beta * y, beta * x
-    place = ux * x + uy * y
-    if alpha < beta:
-        return 1.0
-    return math.sqrt(max(1.0 - place * place / (ux * ux + uy * uy + 1e-300), 0.0))
-
-
-@inlined
-def _end_gap(
-    alpha: float, beta: float, x: float, y: float, radius: float, dx: float, dy: float
-) -> float:
-    """How far, as an angle, an end of a circle about (x, y) is from what is no root there.
-
-    From a ray that touches the base, and from where the circle is next to the rim.
-    """
-    px, py = x + radius * dx, y + radius * dy
-    ray = _half_ray(alpha, beta, px, py) / radius
-    apart = math.sqrt(x * x + y * y)
-    if apart == 0.0:
-        return ray
-    off_x, off_y = dx - x / apart, dy - y / apart
-    room = max((1.0 - px) * (1.0 + px) - py * py, 0.0)
-    return min(ray, math.sqrt(room + off_x * off_x + off_y * off_y))
-
-
-@inner
-def _loaded_piece(
-    alpha: float, beta: float, x: float, y: float, tx: float, ty: float, radius: float,
-    length: float, foot: float, off: float, law: int,
-) -> Sums:  # fmt: skip
-    """A piece of boundary under a load, by panels that shrink towards the centre of rotation.
-
-    ``foot``, ``off``: where on the piece it is next, and how far away.  Straight from (x, y) along
-    (tx, ty); with a radius a round one about (x, y), by its angle, from the direction (tx, ty) on.
-    """
-    foot = 0.0 if foot < off else (length if length - foot < off else foot)  # ends are like roots
-    if radius > 0.0:
-        c, s = cosine_sine_of(length)
-        first = _end_gap(alpha, beta, x, y, radius, tx, ty)
-        last = _end_gap(alpha, beta, x, y, radius, tx * c - ty * s, ty * c + tx * s)
-    else:
-        first = _half_ray(alpha, beta, x, y)
-        last = _half_ray(alpha, beta, x + length * tx, y + length * ty)
-    sums = NOTHING
-    for side in range(4):  # from the foot to both ends, and from these half the way to it
-        up = side == 0 or side == 3
-        way, span = 1.0 if up else -1.0, 0.5 * (length - foot if side < 2 else foot)
-        begin, gap = foot, off
-        if side == 1 or side == 3:
-            begin, gap = (length, last) if side == 1 else (0.0, first)
-        elif foot == 0.0 or foot == length:
-            gap = min(off, first if foot == 0.0 else last)
-        near, gap = 0.0, max(gap, _LOADED_GAP)
-        while near < span:
-            piece = _LOADED_PANEL * math.sqrt(gap * gap + near * near)
-            if piece >= 0.7 * (span - near):
-                piece = span - near if piece >= span - near else 0.5 * (span - near)
-            for i in range(_LOADED):
-                at = begin + way * (near + piece * _PLACE[i])
-                if radius > 0.0:
-                    c, s = cosine_sine_of(at)
-                    dx, dy = radius * (tx * c - ty * s), radius * (ty * c + tx * s)
-                    here = loaded_at(alpha, beta, x + dx, y + dy, -dy, dx, law, False)
-                else:
-                    here = loaded_at(alpha, beta, x + at * tx, y + at * ty, tx, ty, law, False)
-                sums = _added(sums, piece * _SHARE[i], here)
-            near = near + piece if piece < span - near else span
-    return sums
-
-
-@inlined
-def _loaded_line(
-    alpha: float, beta: float, x: float, y: float, tx: float, ty: float, length: float, law: int
-) -> Sums:
-    foot, off = 0.0, _FARTHEST
-    if alpha < _FARTHEST * beta:
-        cx, cy = -x, alpha / beta - y
-        foot = min(max(cx * tx + cy * ty, 0.0), length)
-        cx, cy = cx - foot * tx, cy - foot * ty
-        off = math.sqrt(cx * cx + cy * cy)
-    return _loaded_piece(alpha, beta, x, y, tx, ty, 0.0, length, foot, off, law)
-
-
 @inner
 def line_sums(
     alpha: float, beta: float, x: float, y: float, to_x: float, to_y: float, law: int
@@ -203,7 +86,7 @@ def line_sums(
         return NOTHING
     tx, ty = (to_x - x) / length, (to_y - y) / length
     if law != UNIFORM:
-        return _loaded_line(alpha, beta, x, y, tx, ty, length, law)
+        return loaded_line(alpha, beta, x, y, tx, ty, length, law)
     if not _FAR * beta > alpha:
         sums, half = NOTHING, 0.5 * length
         mx, my = 0.5 * (x + to_x), 0.5 * (y + to_y)
@@ -288,19 +171,13 @@ def _panel(
             c, s = cosine_sine_of(half * _NODE[i])
             x, y = cosine * c - sine * s, sine * c + cosine * s
             here = _at(alpha, beta, cx + x, cy + y, -y, x)
-            sums = _added(sums, half * _WEIGHT[i], here)
-    elif law == RING:
-        for i in range(_NODES):
-            c, s = cosine_sine_of(half * _NODE[i])
-            x, y = cosine * c - sine * s, sine * c + cosine * s
-            here = _on_ring(alpha, beta, x, y)
-            sums = _added(sums, half * _WEIGHT[i], here)
+            sums = added(sums, half * _WEIGHT[i], here)
     else:
         for i in range(_NODES):
             c, s = cosine_sine_of(half * _NODE[i])
             x, y = cosine * c - sine * s, sine * c + cosine * s
-            here = loaded_at(alpha, beta, x, y, -y, x, law, True)
-            sums = _added(sums, half * _WEIGHT[i], here)
+            here = _on_ring(alpha, beta, x, y)
+            sums = added(sums, half * _WEIGHT[i], here)
     return sums
 
 
@@ -321,25 +198,13 @@ def arc_sums(
     reach = math.sqrt(across * across + up * up)
     gap = 1e3  # of angles: as far as that the arc is from the singularity
     if beta > 0.0:
-        least = _LEAST_GAP if law == UNIFORM else (_RING_GAP if law == RING else _LOADED_GAP)
+        least = _LEAST_GAP if law == UNIFORM else _RING_GAP
         gap = min(max(abs(math.log(max(reach, 1e-300) / (beta * radius))), least), gap)
     whole = 2.0 * math.pi
     low = (start if turn > 0.0 else start + turn) - nearest
     low -= whole * math.floor(low / whole)
     high, sums = low + abs(turn), NOTHING
-    if law > RING and not rim:
-        foot, off = whole - low, gap
-        if high < whole:
-            foot = 0.0 if low < whole - high else abs(turn)
-            off = math.sqrt(gap * gap + min(low, whole - high) ** 2)
-        cosine, sine = cosine_sine_of(start if turn > 0.0 else start + turn)
-        sums = _loaded_piece(
-            alpha, beta, cx, cy, cosine, sine, radius, abs(turn), foot, off, law
-        )  # fmt: skip
-        return plus(NOTHING, 1.0 if turn > 0.0 else -1.0, sums)
-    reach = _PANEL if law == UNIFORM else (_RING_PANEL if law == RING else _LOADED_PANEL)
-    # of a load what rays leave by, not what they come in by
-    front = math.acos(beta / alpha) if law > RING and rim and alpha > beta else 0.0
+    reach = _PANEL if law == UNIFORM else _RING_PANEL
     # from half-turn to half-turn: in the even ones the arc leads away from the centre of rotation
     number = float(math.floor(low / math.pi))
     while low < high:
@@ -347,7 +212,6 @@ def arc_sums(
         leads_away = number % 2.0 == 0.0
         base = math.pi * (number if leads_away else number + 1.0)
         near, far = (low - base, edge - base) if leads_away else (base - edge, base - low)
-        near = max(near, front)
         while near < far:
             length = reach * math.sqrt(gap * gap + near * near)
             if length >= 0.7 * (far - near):

@@ -9,9 +9,11 @@ import math
 from typing import Any
 
 from puck_tables.contact import closed_form
-from puck_tables.kernels.base_boundary import NOTHING, Sums, arc_sums, line_sums, plus
+from puck_tables.kernels.base_boundary import arc_sums, line_sums
+from puck_tables.kernels.base_sums import NOTHING, RING, UNIFORM, Sums, plus
 from puck_tables.kernels.compile import inlined, inner
-from puck_tables.kernels.load_parts import RING, UNIFORM
+from puck_tables.kernels.load_parts import loaded_arc
+from puck_tables.kernels.load_rim import loaded_rim, loaded_whole
 
 # of the whole disc; up to a ratio of the two rates few steps are exact to rounding
 _full_integrals: Any = inlined(closed_form.shape_integrals)
@@ -39,6 +41,8 @@ def disc_sums(alpha: float, beta: float, size: float) -> Sums:
 @inner
 def rim_sums(alpha: float, beta: float, size: float, start: float, turn: float, law: int) -> Sums:
     """An arc of a disc about the centre of the base; of a long one the rest, and the whole disc."""
+    if law > RING:
+        return loaded_rim(alpha, beta, start, turn, law)
     if law != UNIFORM or abs(turn) <= math.pi:
         return arc_sums(alpha, beta, 0.0, 0.0, size, start, turn, law, True)
     way = 1.0 if turn > 0.0 else -1.0
@@ -51,6 +55,8 @@ def rim_sums(alpha: float, beta: float, size: float, start: float, turn: float, 
 @inlined
 def whole_sums(alpha: float, beta: float, size: float, law: int) -> Sums:
     """The whole base, or of a ring its rim."""
+    if law > RING:
+        return loaded_whole(alpha, beta, law)
     if law == UNIFORM:
         return disc_sums(alpha, beta, size)
     return rim_sums(alpha, beta, size, 0.0, 2.0 * math.pi, law)
@@ -88,19 +94,23 @@ def common_sums(
     if apart + radius <= size:
         if law == RING:
             return NOTHING
+        if law != UNIFORM:
+            return loaded_arc(alpha, beta, cx, cy, radius, law)
         way = math.atan2(cy, cx)  # where it is next to the rim
         return arc_sums(alpha, beta, cx, cy, radius, way, 2.0 * math.pi, law, False)
     # half angles under which the two circles cut each other, by the half tangent
     short = (radius - apart + size) * (radius + apart - size)
     long = (apart + size + radius) * (apart + size - radius)
     own = 2.0 * math.atan2(math.sqrt(max(short, 0.0)), math.sqrt(max(long, 0.0)))
-    short = (size - apart + radius) * (size + apart - radius)
-    long = (apart + size + radius) * (apart - size + radius)
-    other = 2.0 * math.atan2(math.sqrt(max(short, 0.0)), math.sqrt(max(long, 0.0)))
     way = math.atan2(cy, cx)
     sums = rim_sums(alpha, beta, size, way - own, 2.0 * own, law)
     if law == RING:
         return sums
+    if law != UNIFORM:
+        return plus(sums, 1.0, loaded_arc(alpha, beta, cx, cy, radius, law))
+    short = (size - apart + radius) * (size + apart - radius)
+    long = (apart + size + radius) * (apart - size + radius)
+    other = 2.0 * math.atan2(math.sqrt(max(short, 0.0)), math.sqrt(max(long, 0.0)))
     back = arc_sums(alpha, beta, cx, cy, radius, way + math.pi - other, 2.0 * other, law, False)
     return plus(sums, 1.0, back)
 

@@ -90,9 +90,10 @@ def cosine_sine_of(x: float) -> tuple[float, float]:
 def angle_of(y: float, x: float) -> float:
     """The angle of (x, y), x ≥ 0, between −π/2 and π/2; 0 of the origin (as Cephes has it)."""
     size, long = abs(y), max(abs(y), x)
-    short = min(size, x) / (long if long > 0.0 else 1.0)
-    halved = short > 0.41421356237309504880
-    r = (short - 1.0) / (short + 1.0) if halved else short
+    short = min(size, x)
+    halved = short > 0.41421356237309504880 * long
+    part, whole = (short - long, short + long) if halved else (short, long)
+    r = part / (whole if whole > 0.0 else 1.0)
     z = r * r
     above = -8.750608600031904122785e-1
     above = above * z - 1.615753718733365076637e1

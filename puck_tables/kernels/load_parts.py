@@ -1,38 +1,72 @@
-"""Sums of the slip direction over parts of a round base under Hertz's or Galin's pressure.
+"""Sums of the slip direction along borders under a base, under Hertz's or Galin's pressure.
 
 As in :mod:`puck_tables.kernels.base_boundary`, of W = (3/2) √(1 − ρ²) or 1/(2 √(1 − ρ²)).  On a
 line through the centre of rotation C the slip direction e is the same everywhere: with p = x·e and
-the place s along it, ρ² = p² + s², and powers of s times W have elementary integrals J_k.  An area
-is the line integral of what lies between C, or where a ray from C enters the base, and its
-boundary,
+the place s along it, ρ² = p² + s², and powers of s times W have elementary primitives J_k.  With
+the angle τ of e and c the distance of C,
 
-    ∫ W s^k e dA = ∮ e (β J_{k+1} + α e_x J_k) (u·dx)/w² ,
+    ∫ W s^k e dA = ∮ e (J_{k+1} + c e_x J_k) dτ ,   dτ = β (e·dx)/w ,
 
-u and w being the slip there and its size, in units of Q.
+along the boundary of a part.  J_k may begin next to the centre, not at C: what lies between is odd
+in e, and leaves nothing of a whole turn.
+
+A border that ends at the rim is a sine of an angle θ there, so that nothing is a root.  Next to C
+the direction turns at once, as the hyperbolic sine of a variable says that θ is of; what is left
+singular are rays that touch the base.  Gauss's rule on panels that are so short that an ellipse
+about their ends, of which what is singular is not inside, has axes of a given ratio.
 """
 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
-from puck_tables.kernels.compile import inlined
-from puck_tables.kernels.elementary import angle_of
+import numpy as np
 
-UNIFORM, RING, HERTZ, GALIN, TABLE = range(5)  # laws of pressure
-Sums = tuple[float, float, float, float, float, float, float, float]
+from puck_tables.kernels.base_sums import GALIN, NOTHING, Sums, added
+from puck_tables.kernels.compile import inlined, inner
+from puck_tables.kernels.elementary import angle_of, cosine_sine_of, exp_of, log_of
+
+# of the half of a panel behind its middle
+_NODE, _WEIGHT = (both[8:] for both in np.polynomial.legendre.leggauss(16))
+_REACH = 1.25  # of the ellipse about a panel, its long axis over the distance of its foci
+_LONGEST, _SHORTEST = 2.4, 1e-5  # of a panel
+_ROUND = 1.0  # rad: of the half angle of a circle
+_WIDEST = 3.0  # of the map about C
+_FARTHEST = 20.0  # radii: a C farther away is as good as there
+_INSIDE = 0.4  # radii: of a C closer to the centre no ray all but touches the base
+_ON = 1e-14  # radii: a C as close is not on a border
+_THIRD = 1.0 / 3.0
+
+
+class Piece(NamedTuple):
+    """A piece of a border.
+
+    Straight from (x, y) on along (tx, ty), by ``size`` sin θ; with a radius of a circle about (x,
+    y), from the direction (tx, ty) on, half whose angle has the sine ``size`` sin θ.  ``depth`` cos
+    θ and ``spare`` are the legs of a triangle over √(1 − ρ²).
+    """
+
+    x: float
+    y: float
+    tx: float
+    ty: float
+    radius: float
+    size: float
+    depth: float
+    spare: float
 
 
 @inlined
-def powers_along(
-    law: int, s: float, q: float, turn: float, square: float
-) -> tuple[float, float, float, float]:
-    """Primitives of W s^k, k = 0 … 3, with q = √(square − s²) and s = √square sin(turn)."""
+def powers_along(law: int, s: float, q: float) -> tuple[float, float, float, float]:
+    """Primitives of W s^k, k = 0 … 3, with q = √(1 − ρ²)."""
+    turn, square = angle_of(s, q), s * s + q * q
     if law == GALIN:
         return (
             0.5 * turn,
             -0.5 * q,
             0.25 * (square * turn - s * q),
-            0.5 * q * (q * q / 3.0 - square),
+            0.5 * q * (_THIRD * q * q - square),
         )
     cube = q * q * q
     return (
@@ -45,34 +79,286 @@ def powers_along(
 
 @inlined
 def loaded_at(
-    alpha: float, beta: float, x: float, y: float, tx: float, ty: float, law: int, rim: bool
-) -> Sums:
-    """The integrands at a point of the boundary, with its direction (tx, ty); ``rim``: of the base.
-
-    On the rim they are of where a ray leaves the base.
-    """
-    ux, uy = alpha - beta * y, beta * x
-    w = max(math.sqrt(ux * ux + uy * uy), 1e-300)
-    inverse = 1.0 / w
+    alpha: float, beta: float, x: float, y: float, ux: float, uy: float, along: float, q: float,
+    law: int,
+) -> Sums:  # fmt: skip
+    """The integrands at a point where the slip is u; ``along``: that along the boundary."""
+    inverse = 1.0 / math.sqrt(ux * ux + uy * uy)
     ex, ey = ux * inverse, uy * inverse
     s, p = x * ey - y * ex, x * ex + y * ey
-    room = (1.0 - x) * (1.0 + x) - y * y
-    q = 0.0 if rim else math.sqrt(max(room, 0.0))
-    square = s * s + q * q
-    turn = 0.5 * math.pi if rim else angle_of(s, q)
-    one = powers_along(law, s, q, turn, square)
-    within = alpha < beta
-    c = alpha / beta if within else 0.0
-    begin = -c * ex if within else -math.sqrt(square)
-    q = math.sqrt((1.0 - c) * (1.0 + c)) if within else 0.0
-    turn = angle_of(begin, q)
-    zero = powers_along(law, begin, q, turn, square)
-    j0, j1, j2, j3 = one[0] - zero[0], one[1] - zero[1], one[2] - zero[2], one[3] - zero[3]
-    far, share = alpha * ex, (ex * tx + ey * ty) * inverse
-    a0, a1 = share * (beta * j1 + far * j0), share * (beta * j2 + far * j1)
-    a2 = share * (beta * j3 + far * j2)
+    j0, j1, j2, j3 = powers_along(law, s, q)
+    far, share = alpha * ex, along * inverse * inverse
+    a0, a1, a2 = (
+        share * (beta * j1 + far * j0),
+        share * (beta * j2 + far * j1),
+        share * (beta * j3 + far * j2),
+    )
     at_x, at_y = p * ex * a0 + ey * a1, p * ey * a0 - ex * a1
     return (
         ex * a0, ey * a0, ex * at_x, ex * at_y, ey * at_x, ey * at_y,
         p * ex * a1 + ey * a2, p * ey * a1 - ex * a2,
     )  # fmt: skip
+
+
+@inlined
+def _inverse_sinh(x: float) -> float:
+    """To rounding of 1, or of a large value."""
+    size = abs(x)
+    value = log_of(size + math.sqrt(1.0 + size * size))
+    return value if x > 0.0 else -value
+
+
+@inlined
+def _inverse_sine(x: float, y: float) -> tuple[float, float, float, float]:
+    """Sine and cosine of the real part of asin(x + iy), cosh and sinh of its imaginary part ≥ 0."""
+    size = x * x + y * y - 1.0
+    root = math.sqrt(size * size + 4.0 * y * y)
+    if size > 0.0:
+        square = 0.5 * (size + root)
+        cosine = abs(y) / math.sqrt(square)
+    else:
+        square = 2.0 * y * y / (root - size) if y != 0.0 else 0.0
+        cosine = math.sqrt(0.5 * (root - size))
+    cosh = math.sqrt(1.0 + square)
+    return x / cosh, cosine, cosh, math.sqrt(square)
+
+
+@inlined
+def _angle_whose_sine(x: float) -> float:
+    return angle_of(x, math.sqrt(max((1.0 - x) * (1.0 + x), 0.0)))
+
+
+@inlined
+def _panel_to(a: float, place: float, gap: float) -> float:
+    """How long a panel from a on may be next to what is singular at place ± i gap."""
+    off = place - a
+    return 2.0 * (_REACH * math.sqrt(off * off + gap * gap) - off) / (_REACH * _REACH - 1.0)
+
+
+@inlined
+def _stretched(turn: float, gap: float) -> tuple[float, float]:
+    """Where asinh(turn ± i gap) is, of a small gap."""
+    root = math.sqrt(1.0 + turn * turn)
+    return math.copysign(log_of(abs(turn) + root), turn), gap / root
+
+
+@inlined
+def _point(piece: Piece, sine: float) -> tuple[float, float]:
+    """The point at an angle θ."""
+    if piece.radius == 0.0:
+        return piece.x + piece.size * sine * piece.tx, piece.y + piece.size * sine * piece.ty
+    part = piece.size * sine
+    ahead = piece.radius * (1.0 - 2.0 * part * part)
+    aside = 2.0 * piece.radius * part * math.sqrt((1.0 - part) * (1.0 + part))
+    x, y = piece.x + ahead * piece.tx, piece.y + ahead * piece.ty
+    return x - aside * piece.ty, y + aside * piece.tx
+
+
+@inlined
+def _off_touch(alpha: float, beta: float, piece: Piece, sine: float) -> float:
+    """How far an end of a piece at the rim is from where a ray touches the base, by √(1 − ρ²)."""
+    x, y = _point(piece, sine)
+    ux, uy = alpha - beta * y, beta * x
+    return abs(x * uy - y * ux) / (piece.depth * math.sqrt(max(ux * ux + uy * uy, 1e-300)))
+
+
+@inlined
+def _line_node(
+    alpha: float, beta: float, piece: Piece, u0: float, v0: float, sine: float, cosine: float,
+    turn: float, law: int,
+) -> tuple[Sums, float]:  # fmt: skip
+    """The integrands by θ, the angle ``turn`` behind one where the slip is (u0, v0)."""
+    c2, s2 = cosine_sine_of(0.5 * turn)
+    c1, s1 = 1.0 - 2.0 * s2 * s2, 2.0 * s2 * c2
+    gone = 2.0 * beta * piece.size * s2 * (cosine * c2 - sine * s2)
+    at, q = piece.size * (sine * c1 + cosine * s1), piece.depth * max(cosine * c1 - sine * s1, 0.0)
+    return loaded_at(
+        alpha, beta, piece.x + at * piece.tx, piece.y + at * piece.ty, u0 - gone * piece.ty,
+        v0 + gone * piece.tx, u0 * piece.tx + v0 * piece.ty, q, law,
+    ), q  # fmt: skip
+
+
+@inlined
+def _arc_node(
+    alpha: float, beta: float, piece: Piece, u0: float, v0: float, sine: float, cosine: float,
+    turn: float, law: int,
+) -> tuple[Sums, float]:  # fmt: skip
+    """The same of a round one; the angle from the one point to the other by its quarter."""
+    c2, s2 = cosine_sine_of(0.5 * turn)
+    c1, s1 = 1.0 - 2.0 * s2 * s2, 2.0 * s2 * c2
+    leg = max(cosine * c1 - sine * s1, 0.0)
+    sb, sa = piece.size * sine, piece.size * (sine * c1 + cosine * s1)
+    rest, full = (1.0 - piece.size) * (1.0 + piece.size), piece.size * piece.size
+    cb, ca = math.sqrt(rest + full * cosine * cosine), math.sqrt(rest + full * leg * leg)
+    ca = max(ca, 1e-300)  # 0 at the end of a circle that touches the rim
+    quarter = 2.0 * piece.size * s2 * (cosine * c2 - sine * s2) / (ca + cb)
+    gone = 4.0 * beta * piece.radius * quarter / (1.0 + quarter * quarter)
+    c3, s3 = ca * cb - sa * sb, sa * cb + ca * sb  # of the mean of both
+    u = u0 - gone * (c3 * piece.tx - s3 * piece.ty)
+    v = v0 - gone * (c3 * piece.ty + s3 * piece.tx)
+    c4, s4 = 1.0 - 2.0 * sa * sa, 2.0 * sa * ca
+    dx = piece.radius * (c4 * piece.tx - s4 * piece.ty)
+    dy = piece.radius * (c4 * piece.ty + s4 * piece.tx)
+    q = math.sqrt(piece.spare + piece.depth * piece.depth * leg * leg)
+    return loaded_at(
+        alpha, beta, piece.x + dx, piece.y + dy, u, v, v * dx - u * dy, q, law
+    ), 2.0 * piece.size * leg / ca  # fmt: skip
+
+
+@inlined
+def _grazed(
+    alpha: float, beta: float, piece: Piece, half: float, c: float, tangent: float
+) -> tuple[float, float]:
+    """Where a ray from C, ``tangent`` radii of it away, touches a circle, and 1 − p² is least.
+
+    By θ, and how far from there 1 − p² vanishes.
+    """
+    whole = math.sin(half)
+    sine = math.copysign(whole, whole * math.cos(half)) / piece.size
+    if abs(sine) >= 1.0:
+        return 0.0, math.inf
+    x, y = _point(piece, sine)
+    ux, uy = alpha - beta * y, beta * x
+    place = min(abs(x * ux + y * uy) / math.sqrt(max(ux * ux + uy * uy, 1e-300)), 1.0)
+    gap = 2.0 * (1.0 - place) * tangent / math.sqrt(max((c - place) * (c + place), 1e-300))
+    cosine, part = math.sqrt((1.0 - sine) * (1.0 + sine)), piece.size * sine
+    return angle_of(sine, cosine), 0.5 * math.sqrt(gap * (1.0 - part * part)) / (
+        piece.size * cosine
+    )
+
+
+@inner
+def _along(
+    alpha: float, beta: float, piece: Piece, low: float, high: float, across: float, apart: float,
+    seam: float, one: float, one_gap: float, two: float, two_gap: float, law: int,
+) -> Sums:  # fmt: skip
+    """A piece between two sines of θ; across + i apart is the sine of θ at C.
+
+    ``seam``: how far off its ends are where they are not roots, or what ends there is not smooth;
+    ``one``, ``two``: where something else is singular so far off.
+    """
+    sine, cosine, _, sinh = _inverse_sine(across, apart)
+    middle, off = angle_of(sine, cosine), _inverse_sinh(sinh)
+    scale = min(off, _WIDEST)
+    x, y = _point(piece, sine)
+    u0, v0 = alpha - beta * y, beta * x
+    tx, ty = piece.tx, piece.ty  # along the piece
+    if piece.radius > 0.0:
+        tx, ty = (piece.y - y) / piece.radius, (x - piece.x) / piece.radius
+    along = u0 * tx + v0 * ty
+    if abs(along) < _ON * beta:
+        u0, v0 = u0 + (_ON * beta - along) * tx, v0 + (_ON * beta - along) * ty
+    a = _inverse_sinh((_angle_whose_sine(low) - middle) / scale)
+    end = _inverse_sinh((_angle_whose_sine(high) - middle) / scale)
+    # what is singular: where rays touch the base, at its rim and unseen, and the ends of pieces
+    first, last = -0.5 * math.pi - middle, 0.5 * math.pi - middle
+    first_gap, last_gap, touch, touch_gap = seam, seam, 0.0, math.inf
+    if piece.spare > 0.0:  # C is next to both ends of a whole circle
+        other = math.sqrt(min(-first, last) ** 2 + off * off)
+        first_gap, last_gap = min(seam, other), min(seam, other)
+    elif alpha >= beta:
+        first_gap = min(seam, _off_touch(alpha, beta, piece, -1.0))
+        last_gap = min(seam, _off_touch(alpha, beta, piece, 1.0))
+    if _INSIDE * beta < alpha < beta:
+        c, whole = beta / alpha, u0 * u0 + v0 * v0
+        down = whole * (2.0 * c * c - 1.0) - (u0 - v0) * (u0 + v0)
+        more = 2.0 * sinh / (off * max(down, 1e-300))
+        turn = math.copysign(more * u0 * v0, u0 * v0 * along)
+        s1, c1, _, up = _inverse_sine(more * c * math.sqrt((c - 1.0) * (c + 1.0)) * whole, turn)
+        touch, touch_gap = math.copysign(_inverse_sinh(up), turn), angle_of(s1, c1)
+    first, first_gap = _stretched(first / scale, first_gap / scale)
+    last, last_gap = _stretched(last / scale, last_gap / scale)
+    one, one_gap = _stretched((one - middle) / scale, one_gap / scale)
+    two, two_gap = _stretched((two - middle) / scale, two_gap / scale)
+    sums = NOTHING
+    while a < end:
+        size = min(_panel_to(a, first, first_gap), _panel_to(a, last, last_gap))
+        size = min(size, _panel_to(a, one, one_gap), _panel_to(a, two, two_gap))
+        size = max(min(size, _LONGEST, _panel_to(a, touch, touch_gap)), _SHORTEST)
+        if piece.radius > 0.0:
+            grown = exp_of(a)
+            size = min(
+                size, _inverse_sinh(0.5 * (grown - 1.0 / grown) + _ROUND / (piece.size * scale)) - a
+            )
+        if size > 0.5 * (end - a):
+            size = end - a if size >= end - a else 0.5 * (end - a)
+        grown = 0.5 * scale * exp_of(a + 0.5 * size)
+        fallen = 0.25 * scale * scale / grown
+        if piece.radius == 0.0:
+            for i in range(_NODE.size):
+                grows = exp_of(0.5 * size * _NODE[i])
+                falls = 1.0 / grows
+                weight = 0.5 * size * _WEIGHT[i]
+                rise, fall = grown * grows, fallen * falls
+                here, by = _line_node(alpha, beta, piece, u0, v0, sine, cosine, rise - fall, law)
+                sums = added(sums, weight * (rise + fall) * by, here)
+                rise, fall = grown * falls, fallen * grows
+                here, by = _line_node(alpha, beta, piece, u0, v0, sine, cosine, rise - fall, law)
+                sums = added(sums, weight * (rise + fall) * by, here)
+        else:
+            for i in range(_NODE.size):
+                grows = exp_of(0.5 * size * _NODE[i])
+                falls = 1.0 / grows
+                weight = 0.5 * size * _WEIGHT[i]
+                rise, fall = grown * grows, fallen * falls
+                here, by = _arc_node(alpha, beta, piece, u0, v0, sine, cosine, rise - fall, law)
+                sums = added(sums, weight * (rise + fall) * by, here)
+                rise, fall = grown * falls, fallen * grows
+                here, by = _arc_node(alpha, beta, piece, u0, v0, sine, cosine, rise - fall, law)
+                sums = added(sums, weight * (rise + fall) * by, here)
+        a = a + size if size < end - a else end
+    return sums
+
+
+@inner
+def loaded_line(
+    alpha: float, beta: float, x: float, y: float, tx: float, ty: float, length: float, law: int
+) -> Sums:
+    """A straight piece from (x, y) along (tx, ty)."""
+    begin = x * tx + y * ty
+    x0, y0 = x - begin * tx, y - begin * ty
+    off = y0 * tx - x0 * ty
+    half = math.sqrt((1.0 - off) * (1.0 + off))
+    if half == 0.0:
+        return NOTHING
+    c = alpha / beta if alpha < _FARTHEST * beta else _FARTHEST
+    apart = c * tx - off
+    apart = apart if abs(apart) > _ON else _ON
+    piece = Piece(x0, y0, tx, ty, 0.0, half, half, 0.0)
+    return _along(
+        alpha, beta, piece, begin / half, (begin + length) / half, c * ty / half, apart / half,
+        math.inf, 0.0, math.inf, 0.0, math.inf, law,
+    )  # fmt: skip
+
+
+@inner
+def loaded_arc(
+    alpha: float, beta: float, cx: float, cy: float, radius: float, law: int
+) -> Sums:  # fmt: skip
+    """What of a circle about (cx, cy) lies in the base, all or up to its rim, counter-clockwise."""
+    apart = math.sqrt(cx * cx + cy * cy)
+    tx, ty = (-cx / apart, -cy / apart) if apart > 0.0 else (1.0, 0.0)
+    room = (1.0 - apart + radius) * (1.0 + apart - radius)  # 1 − ρ² where it is next to the centre
+    span = 4.0 * apart * radius
+    size = math.sqrt(room / span) if room < span else 1.0
+    spare = 0.0 if room < span else room - span
+    c = alpha / beta if alpha < _FARTHEST * beta else _FARTHEST
+    ahead, aside = ((c - cy) * ty - cx * tx) / radius, ((c - cy) * tx + cx * ty) / radius
+    ratio = math.sqrt(ahead * ahead + aside * aside)
+    if abs(ratio - 1.0) * radius < _ON:
+        ratio = 1.0 + _ON / radius
+    turn, root = 0.5 * math.atan2(aside, ahead), 2.0 * size * math.sqrt(max(ratio, 1e-6))
+    # no root is of the angle of a circle as the sine of its half is
+    far = 1.0 / size if spare == 0.0 else math.sqrt(room / max(span, _ON))
+    piece = Piece(cx, cy, tx, ty, radius, size, math.sqrt(min(room, span)), spare)
+    one, one_gap, two, two_gap = 0.0, math.inf, 0.0, math.inf
+    if ratio > 1.0:
+        tangent = math.sqrt((ratio - 1.0) * (ratio + 1.0))
+        off = 0.5 * math.atan2(tangent, 1.0)
+        one, one_gap = _grazed(alpha, beta, piece, turn + off, c, tangent)
+        two, two_gap = _grazed(alpha, beta, piece, turn - off, c, tangent)
+    across, apart = math.sin(turn) * (ratio + 1.0) / root, math.cos(turn) * (ratio - 1.0) / root
+    seam = _inverse_sinh(math.sqrt(max((far - 1.0) * (far + 1.0), 0.0)))
+    return _along(
+        alpha, beta, piece, -1.0, 1.0, across, apart, seam, one, one_gap, two, two_gap, law
+    )

@@ -19,7 +19,7 @@ its centre, and of every part with what its own differs by.
 from __future__ import annotations
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.base_boundary import Sums
+from puck_tables.kernels.base_sums import Sums
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.astride_parts import slip_of
 from puck_tables.scene.astride_pressure import sums_under

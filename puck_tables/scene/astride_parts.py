@@ -6,7 +6,7 @@ import math
 from typing import NamedTuple
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.base_boundary import NOTHING, Sums, line_sums, plus
+from puck_tables.kernels.base_boundary import line_sums
 from puck_tables.kernels.base_parts import (
     beyond_sums,
     common_sums,
@@ -15,8 +15,8 @@ from puck_tables.kernels.base_parts import (
     turn_between,
     whole_sums,
 )
+from puck_tables.kernels.base_sums import NOTHING, RING, Sums, plus
 from puck_tables.kernels.compile import inlined, inner
-from puck_tables.kernels.load_parts import RING
 from puck_tables.scene.ground import (
     ACROSS_X,
     ACROSS_Y,

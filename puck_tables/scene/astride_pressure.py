@@ -20,10 +20,9 @@ import math
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.base_boundary import NOTHING, Sums, plus
 from puck_tables.kernels.base_parts import disc_sums, turn_between
+from puck_tables.kernels.base_sums import NOTHING, RING, TABLE, UNIFORM, Sums, plus
 from puck_tables.kernels.compile import inlined, inner
-from puck_tables.kernels.load_parts import RING, TABLE, UNIFORM
 from puck_tables.scene.astride_parts import Slip, weighted
 from puck_tables.scene.ground import (
     ACROSS_X,

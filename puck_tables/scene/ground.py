@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables.kernels.base_sums import UNIFORM
 from puck_tables.kernels.compile import inlined
-from puck_tables.kernels.load_parts import UNIFORM
 
 # A ground, all in one array, which is quick to hand on: where the centre of the base is, 1 or by
 # how much all friction is taken wrong, and what holds for all of it,

@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.laws import Law
-from puck_tables.kernels.load_parts import GALIN, HERTZ, RING, TABLE, UNIFORM
+from puck_tables.kernels.base_sums import GALIN, HERTZ, RING, TABLE, UNIFORM
 from puck_tables.scene.floor_patches import corners_of
 from puck_tables.scene.ground import (
     NO_GROUND,

@@ -52,7 +52,8 @@ def _angles(ground: Ground, rho: float) -> list[float]:
     for cx, cy, r, _ in ground.discs:
         apart = math.hypot(cx, cy)
         if abs(rho - r) < apart < rho + r:
-            turn = math.acos((apart**2 + rho**2 - r**2) / (2.0 * apart * rho))
+            cosine = (apart**2 + rho**2 - r**2) / (2.0 * apart * rho)  # beyond 1 is rounding
+            turn = math.acos(min(max(cosine, -1.0), 1.0))
             found += [math.atan2(cy, cx) + turn, math.atan2(cy, cx) - turn]
     for a, b in _edges(ground):
         way = b - a
