@@ -103,7 +103,7 @@ def _plainly(found: Fit) -> str:
             f"would lose {found['decel'].value:.4g} m/s each second."
         )
     elif found["decel"].determined:
-        sentences.append(f"The puck would slide to rest at {_rounded(found['decel'])} m/s^2.")
+        sentences.append(f"The puck would slide to rest at {_rounded(found['decel'])}.")
     if tilt.determined and tilt.how != "known":
         sentences.append(
             f"Its dimensionless height is {_rounded(tilt)}: so much friction tips its load forward."
@@ -119,13 +119,14 @@ def _plainly(found: Fit) -> str:
 
 
 def _rounded(number: Number) -> str:
-    """Value ± error, to two digits of the error."""
+    """Value ± error, to two digits of the error, and the unit."""
+    unit = _unit(number)
     if number.at_bound:
-        return f"{number.value:.6g} (at its bound)"
+        return f"{number.value:.6g}{unit} (at its bound)"
     if not (number.error > 0.0 and math.isfinite(number.error)):
-        return f"{number.value:.6g}"
+        return f"{number.value:.6g}{unit}"
     digits = max(0, 1 - math.floor(math.log10(number.error)))
-    return f"{number.value:.{digits}f} +- {number.error:.{digits}f}"
+    return f"{number.value:.{digits}f} +- {number.error:.{digits}f}{unit}"
 
 
 def _errors(*numbers: Number) -> str:
@@ -148,7 +149,7 @@ def _shown(number: Number) -> str:
     interval = ""
     if math.isfinite(number.low) and math.isfinite(number.high):
         interval = f"   95 %: {number.low:.6g} to {number.high:.6g}"
-    return f"{_rounded(number)}{_unit(number)}{interval}{how}{follows}"
+    return f"{_rounded(number)}{interval}{how}{follows}"
 
 
 def _correlations(found: Fit) -> list[str]:

@@ -293,7 +293,8 @@ def test_every_file_has_its_bounds(ending: str, tmp_path: Path):
     elif ending == "json":
         whole = json.loads(path.read_text())
         assert whole["columns"]["place_bound"] == {
-            "unit": "m", "long_name": "what places, and r times angles, may", "dims": [],
+            "unit": "m", "long_name": "what places, and r times angles, may at most be wrong by",
+            "dims": [],
             "values": answer.place_bound,
         }  # fmt: skip
         assert (whole["case"], whole["version"]) == ("take-out", 1)

@@ -178,8 +178,12 @@ COLUMNS = {
     "floor_fy": Column("N", "force on the floor y", "force of the puck on the floor along y"),
     "floor_torque": Column("N m", "torque on the floor", "its torque about the vertical"),
     "time_bound": Column("s", "bound of times", "what times may at most be wrong by"),
-    "place_bound": Column("m", "bound of places", "what places, and r times angles, may"),
-    "speed_bound": Column("m/s", "bound of speeds", "what speeds, and r times spins, may"),
+    "place_bound": Column(
+        "m", "bound of places", "what places, and r times angles, may at most be wrong by"
+    ),
+    "speed_bound": Column(
+        "m/s", "bound of speeds", "what speeds, and r times spins, may at most be wrong by"
+    ),
     "force_along": Column("N", "force along", "force on the floor along the slip"),
     "force_across": Column("N", "force across", "force on the floor, to the left of the slip"),
     "share_along": Column("1", "F∥/(fN)", "force along over f N"),
