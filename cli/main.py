@@ -29,7 +29,7 @@ from puck_tables.cli.paper import paper
 from puck_tables.cli.reference import reference
 from puck_tables.cli.scene import scene
 from puck_tables.cli.simulate import simulate
-from puck_tables.cli.start import INTERRUPTED, end_at_once, last_words
+from puck_tables.cli.start import INTERRUPTED, end_at_once, interrupt, last_words
 from puck_tables.cli.sweep import sweep
 from puck_tables.cli.tables import tables
 from puck_tables.cli.track import track
@@ -74,7 +74,7 @@ class PuckGroup(click.Group):
         """Run a command."""
         at_start = signal.getsignal(signal.SIGINT) is end_at_once
         if at_start:
-            signal.signal(signal.SIGINT, signal.default_int_handler)
+            signal.signal(signal.SIGINT, interrupt)
         try:
             result = super().invoke(ctx)
             if sys.stdout is not None:

@@ -33,6 +33,13 @@ def end_at_once(number: int, frame: FrameType | None) -> None:
     os._exit(INTERRUPTED)
 
 
+def interrupt(number: int, frame: FrameType | None) -> None:
+    """What Ctrl-C does while a command runs: numba, half imported, would tell of it as a fault."""
+    if getattr(getattr(sys.modules.get("numba"), "__spec__", None), "_initializing", False):
+        end_at_once(number, frame)
+    signal.default_int_handler(number, frame)
+
+
 def _watch() -> None:
     """End the process some time after Ctrl-C, unless it has ended by then."""
     import socket

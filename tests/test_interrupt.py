@@ -111,3 +111,26 @@ def test_slices_cover_all_once():
     seen: list[int] = []
     executor.in_slices(lambda a, b: seen.extend(range(a, b)), 1000)
     assert seen == list(range(1000))
+
+
+def test_an_interrupt_as_numba_is_imported(tmp_path):
+    """Its compiled modules would drop it and fail to be imported."""
+    code = (
+        "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)\n"
+        "import builtins, os\n"
+        "whole = builtins.__import__\n"
+        "def watched(name, *rest):\n"
+        "    if name == 'numba._devicearray':\n"
+        "        builtins.__import__ = whole\n"
+        "        os.kill(os.getpid(), signal.SIGINT)\n"
+        "    return whole(name, *rest)\n"
+        "builtins.__import__ = watched\n"
+        "from puck_tables.cli.start import main; main()"
+    )
+    ended = subprocess.run(
+        [sys.executable, "-c", code, "build-tables", "-o", "n.h5"],
+        capture_output=True, text=True, cwd=tmp_path, timeout=60,
+    )  # fmt: skip
+    assert ended.returncode == 130
+    assert ended.stderr.splitlines() == ["Interrupted: nothing more was written."], ended.stderr
+    assert not list(tmp_path.iterdir())
