@@ -379,10 +379,8 @@ def fill_state_jacobians(
     cells = float(stop_slopes.shape[1] - 3)
     stops, curve, sections = stop_slopes.reshape(-1), curve_slopes.reshape(-1), section.reshape(-1)
     numbers, room = out.reshape(-1), np.empty(_ROWS * BLOCK)
-    held, part = (
-        -1,
-        _PART if which.size else BLOCK,
-    )  # facts of many pucks are copied faster at length
+    part = _PART if which.size else BLOCK  # facts of many pucks are copied faster at length
+    held = -1
     for start in range(begin, end, part):
         count = min(part, end - start)
         held = gather(facts, which, begin, start, count, held, room)
