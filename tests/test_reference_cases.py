@@ -145,8 +145,8 @@ def test_slopes_and_moving_floors_by_an_independent_integrator(name: str):
         assert np.abs(row - mine).max() < 3e-9 * unit
 
 
-def test_the_take_out_by_an_independent_integrator():
-    """Within its own bound, up to the judge's threshold of rest."""
+def discs_of_the_take_out() -> list[Disc]:
+    """The pucks of the case, for the judge."""
     tables = case_named("take-out").tables["puck"]
     discs = []
     for one in tables:
@@ -158,12 +158,32 @@ def test_the_take_out_by_an_independent_integrator():
         height = one["height"] * one["friction"] / f
         discs.append(Disc(one["radius"], one["mass"], f, height, one["restitution"],
                           one["tangential"], one["rim"], state))  # fmt: skip
-    told = play(discs, [], 2.0)
+    return discs
+
+
+def test_the_take_out_by_an_independent_integrator():
+    """Within its own bound, up to the judge's threshold of rest."""
+    told = play(discs_of_the_take_out(), [], 2.0)
     answer = reference_case("take-out")
+    assert answer.share_bound <= 1e-10
     assert len(told.impacts) == 1
     assert abs(told.impacts[0][0] - answer.run.events[0].time) < answer.time_bound
     stops = np.column_stack([answer.last()["x"], answer.last()["y"]])
     assert np.abs(stops - told.states[:, :2]).max() < answer.place_bound
+
+
+@pytest.mark.parametrize("time", [0.1, 0.35])
+def test_the_take_out_on_its_way(time: float):
+    """Places, angles, velocities and spins before and after the impact, within the bounds."""
+    truth = play(discs_of_the_take_out(), [], time).states
+    answer = reference_case("take-out")
+    ours = answer([time])
+    r, place = answer.pieces[0].radius, answer.place_bound
+    for n, (name, bound) in enumerate((
+        ("x", place), ("y", place), ("orientation", place / r), ("vx", answer.speed_bound),
+        ("vy", answer.speed_bound), ("spin", answer.speed_bound / r),
+    )):  # fmt: skip
+        assert np.abs(ours.columns[name][0] - truth[:, n]).max() <= bound
 
 
 def test_the_rebound_by_an_independent_integrator():

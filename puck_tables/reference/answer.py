@@ -141,7 +141,7 @@ class Answer(Result):
         if isinstance(self.run, SceneRun):
             return _STATES * max(self.run.error_estimate, TOL)
         length = self.speed_scale**2 / self.rate_scale
-        return _STATES * max(self.run.end_error / length, 1e-10)
+        return _STATES * max(self.run.end_error / length, TOL)
 
     @property
     def time_bound(self) -> float:

@@ -21,6 +21,7 @@ from puck_tables.world.drive import rows_of
 
 TOUCH = 1e-12  # of the radius: pucks that overlap less touch
 CUSHIONS = ("wall", "post", "arc")  # what rims may meet besides pucks
+TABLE_ERROR = 1e-9  # of looked-up states: of places in Q²/J, of velocities in Q
 _SMALLEST, _LARGEST = 1e-100, 1e100
 
 
@@ -134,6 +135,19 @@ def has_closed_forms(piece: Piece, friction: float) -> bool:
     return friction == 0.0 or is_plain(piece.pressure, piece.gyration, delta)
 
 
+def flight_error(scene: Scene) -> float:
+    """What flights may be wrong by, in units of Q²/J and Q; below that of tables none is looked up.
+
+    Examples
+    --------
+    >>> from puck_tables import Run
+    >>> men = [Piece(0.1, friction=0.2)]
+    >>> [flight_error(Scene(pucks=men, run=Run(tol=tol))) for tol in (1e-6, 1e-11)]
+    [1e-09, 1e-11]
+    """
+    return min(TABLE_ERROR, scene.run.tol)
+
+
 def is_integrated(scene: Scene, piece: Piece, friction: float) -> bool:
     """Whether the motion of a puck is integrated, on this friction, also while nothing touches it.
 
@@ -144,8 +158,8 @@ def is_integrated(scene: Scene, piece: Piece, friction: float) -> bool:
     True
     """
     drags, floor = scene.drag != Drag(), scene.floor
-    by_slip = bool(floor.law) or floor.orthotropic is not None
-    rough = friction > 0.0 and (drags or by_slip or not has_closed_forms(piece, friction))
+    unlike = bool(floor.law) or floor.orthotropic is not None or flight_error(scene) < TABLE_ERROR
+    rough = friction > 0.0 and (drags or unlike or not has_closed_forms(piece, friction))
     turns = floor.turning != 0.0 and (friction > 0.0 or drags)
     more = floor.slope > 0.0 or piece.force != Force() or piece.constraint is not None
     more = more or scene.lateral.strength != 0.0

@@ -52,8 +52,8 @@ class Game(NamedTuple):
     ``next_time``, ``next_partner`` (n,).  ``launches`` (…, 5), ascending in time.  ``drives``
     (n, 2): the rows of ``pieces`` along which a disc is driven. ``counts``: how many rows of
     events, history, pieces and held contacts are used, how many launches and what else was done,
-    and the contacts of the event at work.  ``pace`` (2,): the scales of speed, m/s, and
-    acceleration, m/s².
+    and the contacts of the event at work.  ``pace`` (3,): the scales of speed, m/s, and
+    acceleration, m/s², and the error of a step where motions are integrated, in units of them.
     """
 
     discs: FloatArray

@@ -81,7 +81,6 @@ from puck_tables.world.touching import is_integrated
 from puck_tables.world.works import DONE, FLIGHT, LEDGER, NO_FLIGHT, RIM_HEAT, WORK_COLUMNS
 from puck_tables.world.works import START as WORK_START
 
-STEP_TOL = 1e-11  # of a step, in units of Q and Q²/J
 ROWS = 400  # steps of a group before its flights end for a new look
 _GRACE = 1.5  # times accelerations at the ends of steps, between them
 _TRIES = 100
@@ -101,7 +100,7 @@ def push_on(game: Game, room: Room, books: list[FloatArray]) -> Game:
     held = game.held[: game.counts[N_HELD]]
     held_before = {frozenset(pair) for pair in held.tolist()}
     held = held[game.group[held[:, 0]] > 0]
-    t, scales = float(game.clock[0]), Scales(float(game.pace[0]), float(game.pace[1]), STEP_TOL)
+    t, scales = float(game.clock[0]), Scales(*game.pace.tolist())
     films, reels = _driven_now(game, t)
     shared = Group(
         game.discs, game.obstacles, game.regions, game.surface, game.rims, films, reels,

@@ -21,7 +21,9 @@ from puck_tables.scene.pieces import Piece
 from puck_tables.scene.plan import EMPIRICAL
 from puck_tables.scene.scene import Scene
 from puck_tables.world.agreement import (
+    TABLE_ERROR,
     called,
+    flight_error,
     frictions_under,
     has_closed_forms,
     is_integrated,
@@ -219,6 +221,7 @@ def _way_of(scene: Scene, piece: Piece) -> str:
             "friction law": bool(floor.law),
             "orthotropic friction": floor.orthotropic is not None,
             "no closed forms": not all(has_closed_forms(piece, one) for one in frictions),
+            f"tol below the {TABLE_ERROR:g} of tables": flight_error(scene) < TABLE_ERROR,
         }
         what = ", ".join(name for name, there in acts.items() if there)
         where = "" if all(integrated) else " on some of the floor"

@@ -17,7 +17,7 @@ from puck_tables.scene.pieces import Arc, Piece, Post
 from puck_tables.scene.scene import Scene
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.world import layout
-from puck_tables.world.agreement import pieces_of, start_of
+from puck_tables.world.agreement import flight_error, pieces_of, start_of
 from puck_tables.world.departures import Room, drive_on, room_for
 from puck_tables.world.drive import pieces_along, rows_of
 from puck_tables.world.flight import (
@@ -45,6 +45,7 @@ from puck_tables.world.rim_laws import number_for, rims_of
 
 FAR = 1e12  # radii that a puck may slide: its rounding is a thousandth of a radius
 ROWS = 256  # of events and flights at first
+STEP_SHARE = 1e-2  # of what a flight may be wrong by, of each step where it is integrated
 
 
 def order_of(scene: Scene) -> Whole:
@@ -139,7 +140,7 @@ def game_of(scene: Scene, order: Whole) -> tuple[Game, Room]:
         events=np.zeros((ROWS + 8 * count, EVENT_COLUMNS)),
         history=np.zeros((ROWS + 4 * count, HISTORY_COLUMNS)),
         counts=np.zeros(COUNTS, np.int64),
-        pace=np.zeros(2),
+        pace=np.array([0.0, 0.0, STEP_SHARE * flight_error(scene)]),
     )
     for i in range(count):
         lay_down(game, i, states[i])
@@ -170,7 +171,7 @@ def with_law_up_to(game: Game, scene: Scene, order: Whole, fastest: float) -> Ga
 def set_pace(game: Game, states: FloatArray) -> None:
     """Scales of speed and acceleration that hold for these states, and for those before."""
     speed, rate = scales_of(game, np.array([fastest(game, states)]))[0]
-    game.pace[:] = max(game.pace[0], speed), max(game.pace[1], rate)
+    game.pace[:2] = max(game.pace[0], speed), max(game.pace[1], rate)
 
 
 def fastest(game: Game, states: FloatArray) -> float:

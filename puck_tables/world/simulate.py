@@ -12,12 +12,10 @@ from puck_tables._core.real import finite_array
 from puck_tables.errors import InputError, PuckError
 from puck_tables.scene.library import files_of
 from puck_tables.scene.scene import Scene
-from puck_tables.world.agreement import refuse_endless
+from puck_tables.world.agreement import flight_error, refuse_endless
 from puck_tables.world.ledger import ledger
 from puck_tables.world.outcome import STATE, WorldRun
 from puck_tables.world.world import World
-
-TABLE_ERROR = 1e-9  # of places in Q²/J, of velocities in Q
 
 
 def simulate(scene: Scene, times: npt.ArrayLike | None = None) -> WorldRun:
@@ -70,12 +68,12 @@ def _in_play(world: World, times: FloatArray) -> FloatArray:
 
 
 def _error(scene: Scene, world: World, last: FloatArray) -> float:
-    """How far twins end whose launches are off by what the tables may be wrong by, m.
+    """How far twins end whose launches are off by what flights may be wrong by, m.
 
     With the rounding of the look-up, for pucks that could slide far.
     """
-    gaps, own = [], world.place_error
-    for scale, turn in ((1.0 + TABLE_ERROR, TABLE_ERROR), (1.0 - TABLE_ERROR, -TABLE_ERROR)):
+    gaps, own, share = [], world.place_error, flight_error(scene)
+    for scale, turn in ((1.0 + share, share), (1.0 - share, -share)):
         twin = World(scene)
         try:
             twin.perturb(scale, turn)

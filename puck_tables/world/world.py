@@ -343,7 +343,7 @@ class World:
     @property
     def place_error(self) -> float:
         """The rounding of looked-up places, m: 1e-15 of Q²/J of the largest slip."""
-        speed, rate = self._game.pace.tolist()
+        speed, rate = self._game.pace[:2].tolist()
         return 1e-15 * speed / rate * speed
 
     def copy(self) -> World:
