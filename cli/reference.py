@@ -142,6 +142,10 @@ def report(answer: Answer) -> str:
         f"<= {answer.time_bound:.1e} s, {answer.place_bound:.1e} m, {answer.speed_bound:.1e} m/s; "
         f"Q = {answer.speed_scale:.6g} m/s, J = {answer.rate_scale:.6g} m/s^2"
     )
+    lines["frames"] = (
+        f"{answer.time.size} from {answer.time.min():g} to {answer.time.max():.6g} s: -o FILE "
+        "saves them, --json prints them"
+    )
     return "\n".join(f"{name:<12} {text}" for name, text in lines.items())
 
 
