@@ -48,7 +48,8 @@ FACTS = STOP + STOP_ROWS
 # where a state is, what stands there, and its derivatives
 MOMENT, LEFT, TURNED, SHARE, FAST, _FIRST, _INSIDE = range(FACTS, FACTS + 7)
 FOUND = FACTS + 7
-PUT = FOUND + SECTION_WIDTH
+WORK, WORK_ROWS = FOUND + SECTION_WIDTH, 18
+PUT = WORK + WORK_ROWS
 _NEAR = PUT + PLACED_STATES  # rows of the table next to a block of places, all that are free
 ROWS = PUT + 2 * PLACED_STATES
 # the functions found at a place

@@ -41,6 +41,7 @@ from puck_tables.kernels.elementary import cosine_sine_of, exp_of, logs_of
 from puck_tables.motion import state
 from puck_tables.stopping.curve_flow import (
     BEND,
+    C0_TILT,
     CURVE,
     CURVE_TILT,
     DECEL,
@@ -51,13 +52,18 @@ from puck_tables.stopping.curve_flow import (
     FIXED,
     FIXED_ROWS,
     FOUND,
+    H0,
+    H0_TILT,
     HERE,
     HERE_ROWS,
+    K_TILT,
+    KAPPA,
     LAUNCHED,
     LAUNCHED_ROWS,
     LEFT,
     MOMENT,
     NORTH,
+    ONE_KAPPA,
     ONE_TIME,
     PART,
     PUT,
@@ -73,6 +79,7 @@ from puck_tables.stopping.curve_flow import (
     TURN_TILT,
     TURNED,
     UNIT,
+    WORK,
     find_functions,
     flow_at,
     of_stop,
@@ -83,7 +90,14 @@ from puck_tables.stopping.launch_facts import fetch, fill_up, find_facts
 from puck_tables.stopping.launch_frame import PLACED_STATES, placed_state, rotated
 from puck_tables.stopping.orbit import TINY
 from puck_tables.stopping.orbit_lookup import gather
-from puck_tables.stopping.stop_jacobian import Numbers, row_by_row, stop_by_speeds
+from puck_tables.stopping.stop_jacobian import BY_HEIGHT, Numbers, T, row_by_row, stop_by_speeds
+
+# rows of a block for what is found on the way
+_RATES, _RATES_FOUND, _FALL, _GAP, _POLE = WORK, 9, WORK + 2, WORK + 6, WORK + 7
+_LOGS, _LOGS_FOUND = WORK + 9, 3
+_FLOW, _FLOWN, _WAYS = WORK + 12, 4, WORK + 16
+_H0, _T0, _ONE_POLE = FIXED + H0, LAUNCHED + 2, LAUNCHED + 6
+_T, _ALONG, _T_SLOPE = 0, 1, SECTION_WIDTH - 4  # of what is found at a place
 
 
 @inlined
@@ -104,29 +118,95 @@ def _find_places(room: FloatArray) -> None:
 
 
 @inlined
+def _find_rates(room: FloatArray) -> None:
+    """How fast Q, u and the heading change where the states are."""
+    for n in range(PART):
+        is_fast, share = row_of(room, FAST, n) > 0.0, row_of(room, SHARE, n)
+        fixed, found = rows_of(room, FIXED, FIXED_ROWS, n), rows_of(room, FOUND, SECTION_WIDTH, n)
+        left, delta = row_of(room, LEFT, n), row_of(room, DELTA, n)
+        small, large = 0.5 * share, 1.0 - 0.5 * share
+        norm = 1.0 / math.sqrt(small * small + large * large)
+        cosine, sine = norm * (small if is_fast else large), norm * (large if is_fast else small)
+        t, to_go = found[_T], (left if left > 0.0 else 1.0) * row_of(room, _T0, n)
+        t_slope = sine * (cosine * cosine) * found[_T_SLOPE]
+        gap, below = pole_at(is_fast, share, fixed, found)
+        # all that is divided by in one division: T − ρ T_u is this over what ρ has below it
+        way = t * below + fixed[KAPPA] * (gap * t_slope)
+        one, other = to_go * t, below * way
+        inverse = 1.0 / ((one * found[_ALONG]) * other)
+        one_along = inverse * (one * other)
+        inverse *= found[_ALONG]
+        one_below, one_way = inverse * (one * way), below * (below * (inverse * one))
+        inverse *= other
+        pole = -fixed[KAPPA] * one_below
+        rate = gap * pole
+        rates = (
+            cosine, sine, to_go * (to_go * inverse), t * (t * inverse), t_slope, one_way, gap,
+            pole, turn_rate(rate, cosine, sine, delta, one_along, found),
+        )  # fmt: skip
+        into_rows(room, _RATES, n, rates)
+
+
+@inlined
+def _find_logs(room: FloatArray) -> None:
+    """Logarithms of 2w, 2 − 2w and Q."""
+    for n in range(PART):
+        share = row_of(room, SHARE, n)
+        logs = logs_of(max(share, TINY), 2.0 - share, row_of(room, _FALL, n))
+        into_rows(room, _LOGS, n, logs)
+
+
+@inlined
+def _find_flow(room: FloatArray) -> None:
+    """What places on the curve change by, and which way the states turned."""
+    for n in range(PART):
+        is_fast, share = row_of(room, FAST, n) > 0.0, row_of(room, SHARE, n)
+        fixed, here = rows_of(room, FIXED, FIXED_ROWS, n), rows_of(room, HERE, HERE_ROWS, n)
+        log_near, log_far, log = rows_of(room, _LOGS, _LOGS_FOUND, n)
+        flow = flow_at(
+            is_fast, share, log_near, log_far, row_of(room, DELTA, n), fixed,
+            rows_of(room, FOUND, SECTION_WIDTH, n),
+        )  # fmt: skip
+        pole = row_of(room, _POLE, n)
+        ratio = exp_of(fixed[KAPPA] * log - (flow[CURVE] - here[0]))  # of c − c₀
+        raised = fixed[C0_TILT] * ratio - fixed[C0_TILT]
+        raised += row_of(room, _GAP, n) * (flow[CURVE_TILT] - here[1] - fixed[K_TILT] * log)
+        turned = flow[TURN_TILT] - here[3] + fixed[H0_TILT] * log
+        # ρ over that at the launch
+        flown = ratio * (pole * row_of(room, _ONE_POLE, n))
+        into_rows(
+            room, _FLOW, n, (flown, raised * (pole * fixed[ONE_KAPPA]), flow[TURN_SLOPE], turned)
+        )
+    for n in range(PART):
+        cosine, sine = cosine_sine_of(row_of(room, TURNED, n))
+        ways = rotated(cosine, sine, row_of(room, EAST, n), row_of(room, NORTH, n))
+        into_rows(room, _WAYS, n, ways)
+
+
+@inlined
 def _change(
     u0: float, late: float, tilt: float, gone: Numbers, rates: Numbers, here: Numbers,
-    flow: Numbers, turnings: Numbers, own: Numbers,
+    flow: Numbers, own: Numbers,
 ) -> Numbers:  # fmt: skip
     """How a state changes with its launch: what is left of x, y, body angle; vx, vy, rω.
 
     ``u0``: of u at the launch; ``late``: of its stop; ``tilt``: of δ.
     """
-    speed, rim, one_slip, cosine, sine, log, ex, ey, fx, fy = gone
-    t, t_slope, t_tilt, rate, flown, raised, one_way, begun = rates
-    h0, h0_tilt, bend = turnings
-    _, _, turn0, turn_tilt0, far0, is_far = here
+    speed, rim, cosine, sine, one_slip, ex, ey, fx, fy = gone
+    t, t_slope, t_tilt, rate, one_way, h0, bend, begun = rates
+    flown, raised, turn_slope, turned = flow
+    _, _, turn0, _, far0, is_far = here
     if tilt == 0.0:
         w, y = late * one_slip, flown * u0
     else:
         w, y = late * one_slip - t_tilt, raised
     u = (t * y - rate * w) * one_way
     log_q = (w - t_slope * y) * one_way
-    turn = h0 * log_q + flow[TURN_SLOPE] * u
+    turn = h0 * log_q + turn_slope * u
     if tilt == 0.0:
         turn = bend * ((w - t * begun) * one_way) + far0 if is_far > 0.0 else turn - turn0
     else:
-        turn += h0_tilt * log + (flow[TURN_TILT] - turn_tilt0)
+        turn += turned
     v = speed * (log_q - sine * (sine * u))
     a = rim * (log_q + cosine * (cosine * u))
     aside = speed * turn
@@ -144,53 +224,25 @@ def _change(
 
 @inlined
 def _state_slopes(
-    left: float, turned: float, is_fast: bool, share: float, delta: float, east: float,
-    north: float, around: float, launched: Numbers, fixed: Numbers, here: Numbers, stop: Numbers,
-    found: Numbers,
+    left: float, delta: float, around: float, launched: Numbers, h0: float, here: Numbers,
+    stop: Numbers, found: Numbers, moving: Numbers, flow: Numbers, ways: Numbers,
 ) -> Numbers:  # fmt: skip
     """A state and its derivatives in natural units, along x and y, six rows of six.
 
-    At the place (is fast, 2w) on the curve, where the share ``left`` of time is left: 0 at rest.
-    Rows: x, y, body angle, vx, vy, rω.  Columns: itself; by v, v across, rω, δ, time.
+    Where the share ``left`` of time is left: 0 at rest.  Rows: x, y, body angle, vx, vy, rω.
+    Columns: itself; by v, v across, rω, δ, time.
     """
-    speed0, rim0, t0, one_speed, u0, begun, one_pole = launched
-    kappa, h0, _, k_tilt, h0_tilt, c0_tilt, one_kappa = fixed[:7]
+    speed0, rim0, t0, one_speed, u0, begun, _ = launched
+    cosine, sine, slip, one_slip, t_slope, one_way, gap, pole, bend = moving
     k = 1.0 if left > 0.0 else 0.0  # at rest that of the stop alone
-    small, large = 0.5 * share, 1.0 - 0.5 * share
-    norm = 1.0 / math.sqrt(small * small + large * large)
-    cosine, sine = (norm * small, norm * large) if is_fast else (norm * large, norm * small)
-    from_stop = of_stop(found, delta)
-    t, d_t, t_tilt = found[0], from_stop[5], from_stop[10]
-    to_go = (left if left > 0.0 else 1.0) * t0
-    t_slope = sine * cosine * cosine * d_t
-    gap, below = pole_at(is_fast, share, fixed, found)
-    # all that is divided by in one division: T − ρ T_u is this over what ρ has below it
-    way = t * below + kappa * (gap * t_slope)
-    one, other = to_go * t, below * way
-    inverse = 1.0 / ((one * found[1]) * other)
-    one_along = inverse * (one * other)
-    inverse *= found[1]
-    one_below, one_way = inverse * (one * way), below * (below * (inverse * one))
-    inverse *= other
-    slip, one_slip = to_go * (to_go * inverse), t * (t * inverse)
-    log_near, log_far, log = logs_of(max(share, TINY), 2.0 - share, slip)
-    flow = flow_at(is_fast, share, log_near, log_far, delta, fixed, found)
-    pole = -kappa * one_below
-    rate = gap * pole
-    bend = turn_rate(rate, cosine, sine, delta, one_along, found)
+    from_stop, rate = of_stop(found, delta), gap * pole
     speed, rim = slip * cosine, slip * sine
     own = stop_by_speeds(speed, rim, slip, cosine, sine, delta, from_stop)
-    ratio = exp_of(kappa * log - (flow[CURVE] - here[0]))  # of c − c₀
-    flown = ratio * (pole * one_pole)  # ρ over that at the launch
-    raised = c0_tilt * ratio - c0_tilt
-    raised += gap * (flow[CURVE_TILT] - here[1] - k_tilt * log)
-    raised *= pole * one_kappa
-    cos_turn, sin_turn = cosine_sine_of(turned)
-    ex, ey = rotated(cos_turn, sin_turn, east, north)
+    ex, ey = ways
     fx, fy = -around * ey, around * ex
-    gone = speed, rim, one_slip, cosine, sine, log, ex, ey, fx, fy
-    rates = t, t_slope, t_tilt, rate, flown, raised, one_way, begun
-    common = gone, rates, here, flow, (h0, h0_tilt, bend), own
+    gone = speed, rim, cosine, sine, one_slip, ex, ey, fx, fy
+    rates = from_stop[T], t_slope, from_stop[BY_HEIGHT + T], rate, one_way, h0, bend, begun
+    common = gone, rates, here, flow, own
     # by φ and by δ
     x1, y1, b1, p1, q1, a1 = _change(u0, stop[0], 0.0, *common)
     x4, y4, b4, p4, q4, a4 = _change(0.0, stop[1], 1.0, *common)
@@ -222,24 +274,27 @@ def _state_slopes(
 
 @inlined
 def _find_jacobians(room: FloatArray) -> None:
-    """Derivatives of a block of states from what is known of their launches and places."""
+    """Derivatives of a block of states from what is known of their launches and places.
+
+    In loops of their own: of one as long the machine sees too little at once, and waits.
+    """
+    _find_rates(room)
+    _find_logs(room)
+    _find_flow(room)
     for n in range(PART):
-        is_fast, spin = row_of(room, FAST, n) > 0.0, row_of(room, SPIN, n)
-        east, north, around = (
-            row_of(room, EAST, n),
-            row_of(room, NORTH, n),
-            1.0 if spin >= 0.0 else -1.0,
-        )
+        spin = row_of(room, SPIN, n)
+        around = 1.0 if spin >= 0.0 else -1.0
         own = _state_slopes(
-            row_of(room, LEFT, n), row_of(room, TURNED, n), is_fast, row_of(room, SHARE, n),
-            row_of(room, DELTA, n), east, north, around, rows_of(room, LAUNCHED, LAUNCHED_ROWS, n),
-            rows_of(room, FIXED, FIXED_ROWS, n), rows_of(room, HERE, HERE_ROWS, n),
-            rows_of(room, STOP, STOP_ROWS, n), rows_of(room, FOUND, SECTION_WIDTH, n),
+            row_of(room, LEFT, n), row_of(room, DELTA, n), around,
+            rows_of(room, LAUNCHED, LAUNCHED_ROWS, n), row_of(room, _H0, n),
+            rows_of(room, HERE, HERE_ROWS, n), rows_of(room, STOP, STOP_ROWS, n),
+            rows_of(room, FOUND, SECTION_WIDTH, n), rows_of(room, _RATES, _RATES_FOUND, n),
+            rows_of(room, _FLOW, _FLOWN, n), rows_of(room, _WAYS, 2, n),
         )  # fmt: skip
         placed = placed_state(
-            east, north, around, spin, row_of(room, DECEL, n), row_of(room, UNIT, n),
-            row_of(room, RADIUS, n), row_of(room, BEND, n), row_of(room, SLIP, n),
-            row_of(room, MOMENT, n), own,
+            row_of(room, EAST, n), row_of(room, NORTH, n), around, spin, row_of(room, DECEL, n),
+            row_of(room, UNIT, n), row_of(room, RADIUS, n), row_of(room, BEND, n),
+            row_of(room, SLIP, n), row_of(room, MOMENT, n), own,
         )  # fmt: skip
         into_rows(room, PUT, n, placed)
 
