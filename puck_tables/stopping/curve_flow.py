@@ -13,6 +13,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import (
     BLOCK,
     inlined,
+    inner,
     into_line,
     into_row,
     kernel,
@@ -30,6 +31,7 @@ from puck_tables.stopping.slopes import RATE_WIDTH, STATE_WIDTH, STOP_POWERS
 from puck_tables.stopping.stop_jacobian import Numbers
 
 PART = 32  # places of a block: with so many rows the nearest cache holds no more
+_SHARED = 2  # rows for each place for which it pays to have them evaluated once
 _STATE_ROW, _RATE_ROW = HEIGHTS * STATE_WIDTH, STOP_POWERS * RATE_WIDTH
 SECTION_WIDTH = 2 * STATE_WIDTH + RATE_WIDTH
 
@@ -50,7 +52,7 @@ MOMENT, LEFT, TURNED, SHARE, FAST, _FIRST, _INSIDE = range(FACTS, FACTS + 7)
 FOUND = FACTS + 7
 WORK, WORK_ROWS = FOUND + SECTION_WIDTH, 18
 PUT = WORK + WORK_ROWS
-_NEAR = PUT + PLACED_STATES  # rows of the table next to a block of places, all that are free
+_NEAR = PUT + PLACED_STATES  # from here on rows of the table next to a block of places
 ROWS = PUT + 2 * PLACED_STATES
 # the functions found at a place
 _T, _ALONG, _ACROSS, _BODY, _CURVE, _TURN, _CURVE_SLOPE, _TURN_SLOPE = range(STATE_WIDTH)
@@ -90,42 +92,70 @@ def turn_lines(room: FloatArray, width: int, row: int) -> None:
 
 
 @inlined
-def find_functions(
-    room: FloatArray, states: FloatArray, rates: FloatArray, section: FloatArray, cells: float,
-    same: bool,
-) -> None:  # fmt: skip
-    """The functions where the rows say: fast or not, and 2w; ``same``: all of one height.
+def _each_by_itself(
+    room: FloatArray, states: FloatArray, rates: FloatArray, begin: int, end: int
+) -> None:
+    """The functions of places from the table."""
+    for n in range(begin, end):
+        cell, weights = int(row_of(room, _FIRST, n)), basis(row_of(room, _INSIDE, n))
+        found = _functions(states, rates, cell, weights, row_of(room, DELTA, n))
+        into_line(room, PUT * BLOCK + SECTION_WIDTH * n, found)
 
-    From the table, from its ``section`` if there is one, or from rows that several places share:
-    to the same bits.
+
+@inlined
+def _of_one_height(
+    room: FloatArray, states: FloatArray, rates: FloatArray, begin: int, end: int
+) -> None:
+    """The functions of places of one height, from rows that they share if that are few."""
+    low, high = row_of(room, _FIRST, begin), row_of(room, _FIRST, begin)
+    for n in range(begin, end):
+        low, high = min(low, row_of(room, _FIRST, n)), max(high, row_of(room, _FIRST, n))
+    near, count = int(low), int(high) - int(low) + 4
+    if count > _SHARED * (end - begin):
+        _each_by_itself(room, states, rates, begin, end)
+        return
+    for row in range(count):
+        found = _functions(states, rates, near + row, (1.0,), row_of(room, DELTA, begin))
+        into_line(room, _NEAR * BLOCK + SECTION_WIDTH * row, found)
+    for n in range(begin, end):
+        cell, weights = int(row_of(room, _FIRST, n)), basis(row_of(room, _INSIDE, n))
+        first = _NEAR * BLOCK + SECTION_WIDTH * (cell - near)
+        values = weighted_rows(room, first, weights, SECTION_WIDTH)
+        into_line(room, PUT * BLOCK + SECTION_WIDTH * n, values)
+
+
+@inner
+def find_functions(
+    room: FloatArray, states: FloatArray, rates: FloatArray, section: FloatArray, cells: float
+) -> None:
+    """The functions where the rows say: fast or not, and 2w.
+
+    From the table, or from its ``section`` if there is one: to the same bits.
     """
-    low, high = 2.0 * cells + 6.0, 0.0
     for n in range(PART):
         # 1 − ξ from 2w: exact to √ε only where all slopes by ξ vanish
         q = math.sqrt(math.sqrt(row_of(room, SHARE, n)))
         first, inside = cell_of(1.0 - math.sqrt(1.0 - q), row_of(room, FAST, n) > 0.0, cells, 1)
         into_row(room, _FIRST, n, first)
         into_row(room, _INSIDE, n, inside)
-    for n in range(PART):
-        low, high = min(low, row_of(room, _FIRST, n)), max(high, row_of(room, _FIRST, n))
-    near, count = int(low), int(high) - int(low) + 4
-    shared = same & (count <= PART) & (section.size == 0)
-    if shared:
-        for row in range(count):
-            found = _functions(states, rates, near + row, (1.0,), row_of(room, DELTA, 0))
-            into_line(room, _NEAR * BLOCK + SECTION_WIDTH * row, found)
-    for n in range(PART):
-        cell, weights = int(row_of(room, _FIRST, n)), basis(row_of(room, _INSIDE, n))
-        at = PUT * BLOCK + SECTION_WIDTH * n
-        if shared:
-            begin = _NEAR * BLOCK + SECTION_WIDTH * (cell - near)
-            into_line(room, at, weighted_rows(room, begin, weights, SECTION_WIDTH))
-        elif section.size:
-            begin = SECTION_WIDTH * cell
-            into_line(room, at, weighted_rows(section, begin, weights, SECTION_WIDTH))
-        else:
-            found = _functions(states, rates, cell, weights, row_of(room, DELTA, n))
-            into_line(room, at, found)
+    if section.size:
+        for n in range(PART):
+            cell, weights = int(row_of(room, _FIRST, n)), basis(row_of(room, _INSIDE, n))
+            found = weighted_rows(section, SECTION_WIDTH * cell, weights, SECTION_WIDTH)
+            into_line(room, PUT * BLOCK + SECTION_WIDTH * n, found)
+        turn_lines(room, SECTION_WIDTH, FOUND)
+        return
+    alike = 0
+    for n in range(PART - 1):
+        alike += 1 if row_of(room, DELTA, n) == row_of(room, DELTA, n + 1) else 0
+    if alike < PART // 2:
+        _each_by_itself(room, states, rates, 0, PART)
+    else:
+        begin = 0
+        for end in range(1, PART + 1):
+            if end == PART or row_of(room, DELTA, end) != row_of(room, DELTA, begin):
+                _of_one_height(room, states, rates, begin, end)
+                begin = end
     turn_lines(room, SECTION_WIDTH, FOUND)
 
 

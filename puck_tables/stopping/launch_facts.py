@@ -153,7 +153,7 @@ def find_facts(
 ) -> None:
     """All facts of a block of launches, from what was fetched."""
     _find_fixed(room, constants)
-    find_functions(room, states, rates, states[:0], cells, False)
+    find_functions(room, states, rates, states[:0], cells)
     for n in range(PART):
         c, s, delta = row_of(room, V0, n), row_of(room, A0, n), row_of(room, DELTA, n)
         share, found = row_of(room, SHARE, n), rows_of(room, FOUND, SECTION_WIDTH, n)

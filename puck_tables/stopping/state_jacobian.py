@@ -336,6 +336,6 @@ def fill_state_jacobians(
         for row in (MOMENT, TURNED, SHARE, FAST):
             fill_up(room, row, count)
         _find_places(room)
-        find_functions(room, splines, rates, sections, cells, held >= 0)
+        find_functions(room, splines, rates, sections, cells)
         _find_jacobians(room)
         row_by_row(room, PUT, PLACED_STATES, count, numbers, start, streamed)
