@@ -7,6 +7,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import (
     BLOCK,
+    LINE,
     allocating,
     inlined,
     into_line,
@@ -202,7 +203,8 @@ def fill_launch_facts(
     with others beside them in place of exact pure motions; ``constants`` (14, 4), powers ascending.
     """
     cells, fixed = float(states.shape[1] - 3), constants.reshape(-1)
-    of_state, of_rate, room = states.reshape(-1), rates.reshape(-1), np.empty(ROWS * BLOCK)
+    of_state, of_rate, room = states.reshape(-1), rates.reshape(-1), np.empty(ROWS * BLOCK + LINE)
+    room = room[-(room.ctypes.data // 8) % LINE :]  # from the beginning of a line of the cache on
     for start in range(0, pucks.shape[1], PART):
         count = min(PART, pucks.shape[1] - start)
         fetch(pucks, natural, start, count, room)

@@ -25,7 +25,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from puck_tables._core.arrays import FloatArray
+from puck_tables._core.arrays import FloatArray, aligned
 from puck_tables.contact.closed_form import shape_integrals
 from puck_tables.stopping.axes import HEIGHTS, SlipAxis, height_polynomials, heights, ratio_at
 from puck_tables.stopping.curve import limits, regular_slopes
@@ -96,9 +96,7 @@ def _splines(values: FloatArray, powers: int) -> FloatArray:
 
 def _in_rows(splines: FloatArray) -> FloatArray:
     """All numbers of a node side by side."""
-    rows = np.ascontiguousarray(splines).reshape(*splines.shape[:2], -1)
-    rows.flags.writeable = False
-    return rows
+    return aligned(splines.reshape(*splines.shape[:2], -1))
 
 
 def _slopes_at_nodes(axis: SlipAxis, values: FloatArray, fast: bool) -> FloatArray:

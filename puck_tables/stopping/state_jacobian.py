@@ -30,6 +30,7 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import (
     BLOCK,
+    LINE,
     allocating,
     inlined,
     into_row,
@@ -318,7 +319,8 @@ def fill_state_jacobians(
     """
     cells, fixed, held = float(of_state.shape[1] - 3), constants.reshape(-1), -1
     splines, rates, sections = of_state.reshape(-1), of_rate.reshape(-1), section.reshape(-1)
-    numbers, room = out.reshape(-1), np.empty(ROWS * BLOCK)
+    numbers, room = out.reshape(-1), np.empty(ROWS * BLOCK + LINE)
+    room = room[-(room.ctypes.data // 8) % LINE :]  # from the beginning of a line of the cache on
     for start in range(begin, end, PART):
         count = min(PART, end - start)
         if which.size:
