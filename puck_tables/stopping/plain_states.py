@@ -15,7 +15,7 @@ from puck_tables.stopping.stop_table import StopTable
 _TINY = 1e-25  # slip ratio of the neighbours of pure motions, whose derivatives these have
 _SMALL, _LEAST = 1e-200, 1e-300  # slip speeds: below, one part of it may be no normal number
 _STOPPED = 9.0  # Q/J: a time after all stops
-_MANY = 1 << 10  # moments for which it pays to have all functions at their height
+_MANY = 1 << 12  # moments for which it pays to have all functions at their height
 _AT_ONCE = 1 << 11  # launches of which all that is known stays in the cache
 
 
@@ -75,8 +75,6 @@ def _fill_slopes(
     found: FloatArray, out: FloatArray, begin: int, end: int, threads: int | None,
 ) -> None:  # fmt: skip
     """The same from ``begin`` to ``end``, of which the first puck is where ``which`` is (0,)."""
-    from puck_tables.stopping.curve_flow import FACTS, SECTION_WIDTH, fill_section
-    from puck_tables.stopping.launch_facts import fill_launch_facts
     from puck_tables.stopping.state_jacobian import fill_state_jacobians
     from puck_tables.stopping.stop_jacobian import is_streamed
 
@@ -85,14 +83,21 @@ def _fill_slopes(
         moments, out = moments[begin:end], out[begin:end]
         natural, found = _beside_pure(table, pucks, pure, which, moments, found[:, begin:end])
         begin, end = 0, moments.size
+    if which.size == end - begin == 1 and pucks.shape[1] == 1:
+        which = which[:0]  # a moment of its own, of which all is found in one call
     known = pucks, natural, table.height_constants
-    facts = np.empty((FACTS, pucks.shape[1] if which.size else 0))
+    facts, section = np.empty((0, 0)), np.empty((2, 0, 0))
     if which.size:
+        from puck_tables.stopping.curve_flow import FACTS
+        from puck_tables.stopping.launch_facts import fill_launch_facts
+
+        facts = np.empty((FACTS, pucks.shape[1]))
         fill_launch_facts(*known, slopes.states, slopes.rates, facts)
-    heights, section = pucks[DELTA], np.empty((2, 0, SECTION_WIDTH))
-    if end - begin >= _MANY and (heights == heights[0]).all():
+    if end - begin >= _MANY and (pucks[DELTA] == pucks[DELTA, 0]).all():
+        from puck_tables.stopping.curve_flow import SECTION_WIDTH, fill_section
+
         section = np.empty((*slopes.states.shape[:2], SECTION_WIDTH))
-        fill_section(heights[0].item(), slopes.states, slopes.rates, section)
+        fill_section(pucks[DELTA, 0].item(), slopes.states, slopes.rates, section)
     streamed = is_streamed(out)
 
     def work(start: int, stop: int) -> None:
