@@ -224,6 +224,21 @@ def test_pucks_side_by_side_change_no_bit():
                 assert np.array_equal(getattr(found, name)[part], getattr(alone, name))
 
 
+def test_many_moments_of_a_puck_change_no_bit():
+    """Whether functions are looked up by itself, beside neighbours, or all at once before."""
+    times = np.linspace(0.0, 2.5, 3000)
+    whole = states((1.0, 0.2), 2.0, times, delta=0.7, jacobian=True).jacobian
+    close = states((1.0, 0.2), 2.0, times[:900], delta=0.7, jacobian=True).jacobian
+    apart = states((1.0, 0.2), 2.0, times[::17], delta=0.7, jacobian=True).jacobian
+    alone = states((1.0, 0.2), 2.0, times[40], delta=0.7, jacobian=True).jacobian
+    each = [np.broadcast_to(one, 900) for one in (1.0, 0.2, 2.0)]
+    own = states(np.stack(each[:2], axis=-1), each[2], times[:900], delta=0.7, jacobian=True)
+    assert np.array_equal(close, whole[:900])
+    assert np.array_equal(apart, whole[::17])
+    assert np.array_equal(alone, whole[40])
+    assert np.array_equal(own.jacobian, close)
+
+
 def test_threads_change_no_bit():
     rng = np.random.default_rng(12)
     velocity, spin, heights = rng.normal(size=(70_000, 2)), rng.normal(size=70_000), [0.3, 0.9]

@@ -50,8 +50,14 @@ ROOMS = {
     "__init__": "_core _version",
 }
 DOORS = {
-    "numba": {"kernels.compiled", "kernels.kept_code", "kernels.linking", "kernels.vectors"},
-    "llvmlite": {"kernels.linking", "kernels.vectors"},
+    "numba": {
+        "kernels.blocks",
+        "kernels.compiled",
+        "kernels.kept_code",
+        "kernels.linking",
+        "kernels.vectors",
+    },
+    "llvmlite": {"kernels.blocks", "kernels.linking", "kernels.vectors"},
     "h5py": {"film.poses", "io.hdf5", "table.file"},
     "xarray": {"io.frames"},
     "pandas": {"io.frames"},

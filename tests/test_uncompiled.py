@@ -17,7 +17,7 @@ from puck_tables.cli import start, uncompiled
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
-from puck_tables.kernels import as_written, vectors
+from puck_tables.kernels import as_written, blocks, vectors
 from puck_tables.kernels.cache import cache_folder
 from puck_tables.kernels.compile import kernel
 
@@ -164,8 +164,11 @@ def test_operations_on_vectors_are_those_of_compiled_code(single: bool):
         )
 
     @kernel
-    def polynomials(c: FloatArray, w: float, s: float) -> Any:
-        return vectors.spline_polynomials(c, 7, (w, 1.0 - w), s, 8, 4)
+    def polynomials(c: FloatArray, w: float, s: float) -> tuple[Any, Any]:
+        return (
+            vectors.spline_polynomials(c, 7, (w, 1.0 - w), s, 8, 4),
+            vectors.spline_slopes(c, 7, (w, 1.0 - w), s, 4, 3),
+        )
 
     w, s = 0.3, -0.7
     rows, values = sums(c, w, s)
@@ -176,18 +179,21 @@ def test_operations_on_vectors_are_those_of_compiled_code(single: bool):
         as_written.spline_values(c, 5, (w, 1.0 - w), s, 8, 3), values, **close
     )
     if not single:
+        one, other = polynomials(c, w, s)
         found = as_written.spline_polynomials(c, 7, (w, 1.0 - w), s, 8, 4)
-        np.testing.assert_allclose(found, polynomials(c, w, s), **close)
+        np.testing.assert_allclose(found, one, **close)
+        found = as_written.spline_slopes(c, 7, (w, 1.0 - w), s, 4, 3)
+        np.testing.assert_allclose(found, other, **close)
 
 
 def test_bits_and_rows_are_those_of_compiled_code():
     @kernel
     def there_and_back(number: float, block: FloatArray) -> tuple[Any, ...]:
-        vectors.into_row(block, 1, 5, number)
-        vectors.into_rows(block, 2, 5, (number, 2.0 * number))
+        blocks.into_row(block, 1, 5, number)
+        blocks.into_rows(block, 2, 5, (number, 2.0 * number))
         bits = vectors.bits_of(number)
-        rows = vectors.rows_of(block, 1, 3, 5)
-        return bits, vectors.number_of(bits + 1), vectors.row_of(block, 1, 5), rows
+        rows = blocks.rows_of(block, 1, 3, 5)
+        return bits, vectors.number_of(bits + 1), blocks.row_of(block, 1, 5), rows
 
     for number in (1.0, -2.5e-300, 0.1):
         block, other = np.zeros(4 * as_written.BLOCK), np.zeros(4 * as_written.BLOCK)
@@ -197,3 +203,17 @@ def test_bits_and_rows_are_those_of_compiled_code():
         found = bits, as_written.number_of(bits + 1), as_written.row_of(other, 1, 5), rows
         assert there_and_back(number, block) == found
         assert (block == other).all()
+
+
+def test_lines_and_squares_are_those_of_compiled_code():
+    @kernel
+    def moved(source: FloatArray, out: FloatArray) -> None:
+        blocks.into_line(out, 3, (source[0], source[1], 7.0, source[2]))
+        blocks.turn_square(source, 1, 9, out, 8, 5)
+
+    source, out, other = np.arange(40.0), np.zeros(40), np.zeros(40)
+    moved(source, out)
+    as_written.into_line(other, 3, (0.0, 1.0, 7.0, 2.0))
+    as_written.turn_square(source, 1, 9, other, 8, 5)
+    assert (out == other).all()
+    assert out[8:12].tolist() == [1.0, 10.0, 19.0, 28.0]

@@ -82,6 +82,13 @@ def spline_polynomials(
     return (*value.tolist(), *slope.tolist())
 
 
+def spline_slopes(
+    c: FloatArray, k: int, weights: Sequence[float], s: float, width: int, powers: int
+) -> Any:
+    """As :func:`spline_polynomials`: that compiled rows are evaluated first changes bits alone."""
+    return spline_polynomials(c, k, weights, s, width, powers)
+
+
 def spline_values(
     c: FloatArray, k: int, weights: Sequence[float], s: float, width: int, powers: int
 ) -> Any:
@@ -148,14 +155,26 @@ def into_rows(block: FloatArray, row: int, n: int, values: Sequence[float]) -> A
     block[row * BLOCK + n : (row + len(values)) * BLOCK : BLOCK] = values
 
 
-def into_columns(block: FloatArray, row: int, n: int, out: FloatArray, at: int, step: int) -> Any:
-    """Numbers n to n + 3 of four rows from one on into ``out``: side by side those of a number.
+def into_line(out: FloatArray, at: int, values: Sequence[float]) -> Any:
+    """The numbers of a tuple side by side, from one on; as many as fill registers of four."""
+    out[at : at + len(values)] = values
 
-    The four of number n from ``at`` on, those of each further one ``step`` further.
+
+def turn_square(
+    source: FloatArray, at: int, step: int, out: FloatArray, goal: int, further: int
+) -> Any:
+    """Four by four numbers turned: rows ``step`` apart to columns, ``further`` apart.
+
+    Examples
+    --------
+    >>> out = np.zeros(16)
+    >>> turn_square(np.arange(24.0), 1, 6, out, 0, 4)
+    >>> out.astype(int).tolist()
+    [1, 7, 13, 19, 2, 8, 14, 20, 3, 9, 15, 21, 4, 10, 16, 22]
     """
+    square = np.stack([source[at + k * step : at + k * step + 4] for k in range(4)])
     for k in range(4):
-        first = row * BLOCK + n + k
-        out[at + k * step : at + k * step + 4] = block[first : first + 4 * BLOCK : BLOCK]
+        out[goal + k * further : goal + k * further + 4] = square[:, k]
 
 
 def stream_line(source: FloatArray, begin: int, out: FloatArray, at: int) -> Any:

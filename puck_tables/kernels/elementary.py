@@ -18,13 +18,16 @@ _LEAST = -708.0
 
 
 @inlined
-def log_of(x: float) -> float:
-    """Ln of a normal number, x ≥ 2.3e-308."""
+def _split(x: float) -> tuple[float, float]:
+    """E and m of x = 2ᵉ (1 + m), m from √½ − 1 to √2 − 1."""
     bits = bits_of(x)
     power = (bits - _HALF_ROOT) >> 52
-    m = number_of(bits - (power << 52)) - 1.0  # √½ − 1 … √2 − 1
-    e = number_of(power + _SHIFT_BITS) - _SHIFT
-    s = m / (2.0 + m)
+    return number_of(power + _SHIFT_BITS) - _SHIFT, number_of(bits - (power << 52)) - 1.0
+
+
+@inlined
+def _joined(e: float, m: float, s: float) -> float:
+    """The logarithm from s = m/(2 + m)."""
     z = s * s
     w = z * z
     odd = w * (0.3999999999940941908 + w * (0.2222219843214978396 + w * 0.1531383769920937332))
@@ -33,6 +36,28 @@ def log_of(x: float) -> float:
     )
     half = 0.5 * m * m
     return e * _LN2_HIGH - ((half - (s * (half + odd + z * even) + e * _LN2_LOW)) - m)
+
+
+@inlined
+def log_of(x: float) -> float:
+    """Ln of a normal number, x ≥ 2.3e-308."""
+    e, m = _split(x)
+    return _joined(e, m, m / (2.0 + m))
+
+
+@inlined
+def logs_of(x: float, y: float, z: float) -> tuple[float, float, float]:
+    """Ln of three numbers by one division, which takes as long as half a logarithm."""
+    ex, mx = _split(x)
+    ey, my = _split(y)
+    ez, mz = _split(z)
+    dx, dy, dz = 2.0 + mx, 2.0 + my, 2.0 + mz
+    one = 1.0 / (dx * dy * dz)
+    return (
+        _joined(ex, mx, mx * (one * (dy * dz))),
+        _joined(ey, my, my * (one * (dx * dz))),
+        _joined(ez, mz, mz * (one * (dx * dy))),
+    )
 
 
 @inlined

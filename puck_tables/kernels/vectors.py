@@ -1,4 +1,4 @@
-"""Operations that numba cannot write: whole vectors of a spline, bits of numbers, rows of blocks.
+"""Operations that numba cannot write: whole vectors of a spline, bits of numbers.
 
 In Python they stand in :mod:`puck_tables.kernels.as_written`.
 """
@@ -10,8 +10,6 @@ from typing import Any
 from llvmlite import ir
 from numba import types
 from numba.extending import intrinsic
-
-from puck_tables.kernels.as_written import BLOCK, LINE
 
 
 def _weighted_rows(typing: Any, c: Any, k: Any, weights: Any, width: Any) -> Any:
@@ -60,6 +58,14 @@ weighted_rows: Any = intrinsic(prefer_literal=True)(_weighted_rows)
 _LANES = 4  # functions side by side in one register
 
 
+def _lanes_for(width: int) -> int:
+    """Functions side by side: as many as the largest registers hold, where that leaves no gap.
+
+    Where registers are shorter LLVM takes two; the numbers are the same.
+    """
+    return 2 * _LANES if width % (2 * _LANES) == 0 else _LANES
+
+
 def _spline_polynomials(
     typing: Any, c: Any, k: Any, weights: Any, s: Any, width: Any, powers: Any
 ) -> Any:
@@ -72,8 +78,9 @@ def _spline_polynomials(
     of the derivatives by s.
     """
     count, top = width.literal_value, powers.literal_value
-    lanes = ir.VectorType(ir.DoubleType(), _LANES)
-    nothing, spread = ir.Constant(lanes, ir.Undefined), [0] * _LANES
+    side = _lanes_for(count)
+    lanes = ir.VectorType(ir.DoubleType(), side)
+    nothing, spread = ir.Constant(lanes, ir.Undefined), [0] * side
     first = ir.Constant(ir.IntType(32), 0)
 
     def build(context: Any, builder: Any, signature: Any, args: Any) -> Any:
@@ -82,7 +89,7 @@ def _spline_polynomials(
         def everywhere(number: Any) -> Any:
             number = builder.insert_element(nothing, number, first)
             return builder.shuffle_vector(
-                number, nothing, ir.Constant(ir.VectorType(ir.IntType(32), _LANES), spread)
+                number, nothing, ir.Constant(ir.VectorType(ir.IntType(32), side), spread)
             )
 
         def times_plus(one: Any, other: Any, more: Any) -> Any:
@@ -93,8 +100,8 @@ def _spline_polynomials(
         weight = [everywhere(builder.extract_value(args[2], row)) for row in range(rows)]
         variable = everywhere(args[3])
         values, slopes = [], []
-        for part in range(0, count, _LANES):
-            value = slope = ir.Constant(lanes, [0.0] * _LANES)
+        for part in range(0, count, side):
+            value = slope = ir.Constant(lanes, [0.0] * side)
             for power in range(top - 1, -1, -1):
                 total = None
                 for row in range(rows):
@@ -110,7 +117,7 @@ def _spline_polynomials(
                 else:
                     slope = value if power == top - 2 else times_plus(slope, variable, value)
                     value = times_plus(value, variable, total)
-            for lane in range(_LANES):
+            for lane in range(side):
                 at = ir.Constant(ir.IntType(32), lane)
                 values.append(builder.extract_element(value, at))
                 slopes.append(builder.extract_element(slope, at))
@@ -121,6 +128,61 @@ def _spline_polynomials(
 
 
 spline_polynomials: Any = intrinsic(prefer_literal=True)(_spline_polynomials)
+
+
+def _rows_first(slopes: bool, c: Any, k: Any, weights: Any, s: Any, width: Any, powers: Any) -> Any:
+    """Rows evaluated first, then weighted and added; with derivatives by s behind the values."""
+    count, top = width.literal_value, powers.literal_value
+    side = _lanes_for(count) if slopes else _LANES
+    lanes = ir.VectorType(ir.DoubleType(), side)
+    nothing = ir.Constant(lanes, ir.Undefined)
+    spread = ir.Constant(ir.VectorType(ir.IntType(32), side), [0] * side)
+    first = ir.Constant(ir.IntType(32), 0)
+
+    def build(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        single = signature.args[0].dtype == types.float32
+        stored = ir.VectorType(ir.FloatType(), side) if single else lanes
+        data = context.make_array(signature.args[0])(context, builder, args[0]).data
+
+        def everywhere(number: Any) -> Any:
+            number = builder.insert_element(nothing, number, first)
+            return builder.shuffle_vector(number, nothing, spread)
+
+        def times_plus(one: Any, other: Any, more: Any) -> Any:
+            product = builder.fmul(one, other, flags=("contract",))
+            return builder.fadd(product, more, flags=("contract",)) if more else product
+
+        def coefficients(place: int) -> Any:
+            at = builder.add(args[1], ir.Constant(args[1].type, place))
+            pointer = builder.bitcast(builder.gep(data, [at]), stored.as_pointer())
+            values = builder.load(pointer, align=4 if single else 8)
+            return builder.fpext(values, lanes) if single else values
+
+        rows = len(signature.args[2])
+        weight = [everywhere(builder.extract_value(args[2], row)) for row in range(rows)]
+        variable = everywhere(args[3])
+        found: list[list[Any]] = [[], []]
+        for part in range(0, count, side):
+            totals = [None, None]
+            for row in range(rows):
+                value, slope = coefficients((row * top + top - 1) * count + part), None
+                for power in range(top - 2, -1, -1):
+                    if slopes:
+                        slope = times_plus(slope, variable, value) if slope else value
+                    more = coefficients((row * top + power) * count + part)
+                    value = times_plus(value, variable, more)
+                totals[0] = times_plus(value, weight[row], totals[0])
+                if slopes:
+                    totals[1] = times_plus(slope, weight[row], totals[1])
+            for total, numbers in zip(totals, found, strict=True):
+                for lane in range(side if total else 0):
+                    at = ir.Constant(ir.IntType(32), lane)
+                    numbers.append(builder.extract_element(total, at))
+        return context.make_tuple(builder, signature.return_type, [*found[0], *found[1]])
+
+    each = 2 * count if slopes else count
+    found: Any = types.UniTuple(types.float64, each)  # type: ignore[no-untyped-call]
+    return found(c, k, weights, s, width, powers), build
 
 
 def _spline_values(
@@ -135,56 +197,18 @@ def _spline_values(
     a table whose polynomials were evaluated before, with one power, gives the same bits.  LLVM does
     not see by itself that it may (the sums could overwrite the table).
     """
-    count, top = width.literal_value, powers.literal_value
-    lanes = ir.VectorType(ir.DoubleType(), _LANES)
-    nothing = ir.Constant(lanes, ir.Undefined)
-    spread = ir.Constant(ir.VectorType(ir.IntType(32), _LANES), [0] * _LANES)
-    first = ir.Constant(ir.IntType(32), 0)
+    return _rows_first(False, c, k, weights, s, width, powers)
 
-    def build(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        single = signature.args[0].dtype == types.float32
-        stored = ir.VectorType(ir.FloatType(), _LANES) if single else lanes
-        data = context.make_array(signature.args[0])(context, builder, args[0]).data
 
-        def everywhere(number: Any) -> Any:
-            number = builder.insert_element(nothing, number, first)
-            return builder.shuffle_vector(number, nothing, spread)
-
-        def times_plus(one: Any, other: Any, more: Any) -> Any:
-            product = builder.fmul(one, other, flags=("contract",))
-            return builder.fadd(product, more, flags=("contract",))
-
-        def coefficients(place: int) -> Any:
-            at = builder.add(args[1], ir.Constant(args[1].type, place))
-            pointer = builder.bitcast(builder.gep(data, [at]), stored.as_pointer())
-            values = builder.load(pointer, align=4 if single else 8)
-            return builder.fpext(values, lanes) if single else values
-
-        rows = len(signature.args[2])
-        weight = [everywhere(builder.extract_value(args[2], row)) for row in range(rows)]
-        variable = everywhere(args[3])
-        values = []
-        for part in range(0, count, _LANES):
-            total = None
-            for row in range(rows):
-                value = coefficients((row * top + top - 1) * count + part)
-                for power in range(top - 2, -1, -1):
-                    more = coefficients((row * top + power) * count + part)
-                    value = times_plus(value, variable, more)
-                if total is None:
-                    total = builder.fmul(value, weight[row], flags=("contract",))
-                else:
-                    total = times_plus(value, weight[row], total)
-            for lane in range(_LANES):
-                at = ir.Constant(ir.IntType(32), lane)
-                values.append(builder.extract_element(total, at))
-        return context.make_tuple(builder, signature.return_type, values)
-
-    found: Any = types.UniTuple(types.float64, count)  # type: ignore[no-untyped-call]
-    return found(c, k, weights, s, width, powers), build
+def _spline_slopes(
+    typing: Any, c: Any, k: Any, weights: Any, s: Any, width: Any, powers: Any
+) -> Any:
+    """As :func:`spline_values`, and behind the values their derivatives by s."""
+    return _rows_first(True, c, k, weights, s, width, powers)
 
 
 spline_values: Any = intrinsic(prefer_literal=True)(_spline_values)
+spline_slopes: Any = intrinsic(prefer_literal=True)(_spline_slopes)
 
 
 def _bits_of(typing: Any, number: Any) -> Any:
@@ -217,140 +241,3 @@ def _summed(typing: Any, total: Any, more: Any) -> Any:
 summed: Any = intrinsic(_summed)
 bits_of: Any = intrinsic(_bits_of)
 number_of: Any = intrinsic(_number_of)
-
-
-def _row_of(typing: Any, block: Any, row: Any, n: Any) -> Any:
-    """Compiled (block, row, n) → number n of a row (a constant) of a flat array of such rows.
-
-    Of rows of one array at known distances LLVM sees that they do not overlap, so that a loop over
-    them is done for several numbers at once; arrays of their own it would have to compare, and
-    gives up where they are many.
-    """
-    first = row.literal_value * BLOCK
-
-    def build(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        data = context.make_array(signature.args[0])(context, builder, args[0]).data
-        at = builder.add(args[2], ir.Constant(args[2].type, first), flags=("nsw",))
-        return builder.load(builder.gep(data, [at], inbounds=True))
-
-    return types.float64(block, row, n), build
-
-
-def _into_row(typing: Any, block: Any, row: Any, n: Any, value: Any) -> Any:
-    """Compiled (block, row, n, value): number n of a row is the value, see :func:`row_of`."""
-    first = row.literal_value * BLOCK
-
-    def build(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        data = context.make_array(signature.args[0])(context, builder, args[0]).data
-        at = builder.add(args[2], ir.Constant(args[2].type, first), flags=("nsw",))
-        builder.store(args[3], builder.gep(data, [at], inbounds=True))
-        return context.get_dummy_value()
-
-    return types.void(block, row, n, types.float64), build
-
-
-row_of: Any = intrinsic(prefer_literal=True)(_row_of)
-into_row: Any = intrinsic(prefer_literal=True)(_into_row)
-
-
-def _rows_of(typing: Any, block: Any, row: Any, count: Any, n: Any) -> Any:
-    """Compiled (block, row, count, n) → number n of so many rows from one on, as a tuple."""
-    first, rows = row.literal_value, count.literal_value
-
-    def build(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        data = context.make_array(signature.args[0])(context, builder, args[0]).data
-        parts = []
-        for k in range(rows):
-            place = ir.Constant(args[3].type, (first + k) * BLOCK)
-            at = builder.add(args[3], place, flags=("nsw",))
-            parts.append(builder.load(builder.gep(data, [at], inbounds=True)))
-        return context.make_tuple(builder, signature.return_type, parts)
-
-    found: Any = types.UniTuple(types.float64, rows)  # type: ignore[no-untyped-call]
-    return found(block, row, count, n), build
-
-
-def _into_rows(typing: Any, block: Any, row: Any, n: Any, values: Any) -> Any:
-    """Compiled (block, row, n, values): number n of rows from one on are those of a tuple."""
-    first = row.literal_value
-
-    def build(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        data = context.make_array(signature.args[0])(context, builder, args[0]).data
-        for k in range(len(signature.args[3])):
-            place = ir.Constant(args[2].type, (first + k) * BLOCK)
-            at = builder.add(args[2], place, flags=("nsw",))
-            value = builder.extract_value(args[3], k)
-            builder.store(value, builder.gep(data, [at], inbounds=True))
-        return context.get_dummy_value()
-
-    return types.void(block, row, n, values), build
-
-
-rows_of: Any = intrinsic(prefer_literal=True)(_rows_of)
-into_rows: Any = intrinsic(prefer_literal=True)(_into_rows)
-
-
-def _into_columns(typing: Any, block: Any, row: Any, n: Any, out: Any, at: Any, step: Any) -> Any:
-    """Compiled (block, row, n, out, at, step): a square of four by four numbers turned over.
-
-    Numbers n to n + 3 of four rows of a block into a flat array, those of one number side by side
-    from ``at`` on, those of the next ``step`` further: as whole registers, where LLVM would move
-    each number by itself.
-    """
-    lanes = ir.VectorType(ir.DoubleType(), _LANES)
-
-    def build(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        source = context.make_array(signature.args[0])(context, builder, args[0]).data
-        target = context.make_array(signature.args[3])(context, builder, args[3]).data
-
-        def place(data: Any, number: Any) -> Any:
-            return builder.bitcast(builder.gep(data, [number]), lanes.as_pointer())
-
-        def mixed(one: Any, other: Any, *order: int) -> Any:
-            return builder.shuffle_vector(
-                one, other, ir.Constant(ir.VectorType(ir.IntType(32), _LANES), order)
-            )
-
-        number = builder.add(builder.mul(args[1], ir.Constant(args[1].type, BLOCK)), args[2])
-        rows = [
-            builder.load(
-                place(source, builder.add(number, ir.Constant(number.type, k * BLOCK))), align=8
-            )
-            for k in range(_LANES)
-        ]
-        even = [mixed(rows[k], rows[k + 1], 0, 4, 2, 6) for k in (0, 2)]
-        odd = [mixed(rows[k], rows[k + 1], 1, 5, 3, 7) for k in (0, 2)]
-        columns = [
-            mixed(*pair, *order) for order in ((0, 1, 4, 5), (2, 3, 6, 7)) for pair in (even, odd)
-        ]
-        goal = args[4]
-        for column in columns:
-            builder.store(column, place(target, goal), align=8)
-            goal = builder.add(goal, args[5])
-        return context.get_dummy_value()
-
-    return types.void(block, types.int64, types.int64, out, types.int64, types.int64), build
-
-
-def _stream_line(typing: Any, source: Any, begin: Any, out: Any, at: Any) -> Any:
-    """Compiled (source, begin, out, at): a whole line of the cache, eight numbers, past it.
-
-    Where they go is a multiple of 64 bytes.
-    """
-    line = ir.VectorType(ir.DoubleType(), LINE)
-
-    def build(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        def place(array: int) -> Any:
-            data = context.make_array(signature.args[array])(context, builder, args[array]).data
-            return builder.bitcast(builder.gep(data, [args[array + 1]]), line.as_pointer())
-
-        stored = builder.store(builder.load(place(0), align=8), place(2), align=8 * LINE)
-        one = ir.Constant(ir.IntType(32), 1)
-        stored.set_metadata("nontemporal", builder.module.add_metadata([one]))
-        return context.get_dummy_value()
-
-    return types.void(source, types.int64, out, types.int64), build
-
-
-into_columns: Any = intrinsic(_into_columns)
-stream_line: Any = intrinsic(_stream_line)

@@ -22,24 +22,40 @@ def rotated(one: float, other: float, cosine: float, sine: float) -> tuple[float
 
 
 @inlined
-def _pair(
-    ahead: Numbers, aside: Numbers, unit: float, by_speed: float, by_time: float, gone: float,
-    elapsed: float, around: float, east: float, north: float, spin: float, radius: float,
-) -> Numbers:  # fmt: skip
-    """Two rows of seven, along x and y, from those along and to the left of the launch."""
-    one_x, one_y = rotated(ahead[1], around * aside[1], east, north)
-    two_x, two_y = rotated(around * ahead[2], aside[2], east, north)
-    rim_x, rim_y = rotated(around * ahead[3], aside[3], east, north)
-    tilt_x, tilt_y = rotated(ahead[4], around * aside[4], east, north)
-    rate_x, rate_y = rotated(ahead[5], around * aside[5], east, north)
-    here_x, here_y = rotated(ahead[0], around * aside[0], east, north)
-    rim_x, rim_y = by_speed * rim_x, by_speed * rim_y
-    rate_x, rate_y = by_time * rate_x, by_time * rate_y
+def in_world(own: Numbers, east: float, north: float, around: float) -> Numbers:
+    """Six rows of six along and to the left of the launch, as such along x and y.
+
+    (``east``, ``north``): the direction of the launch; ``around``: the sign of its spin.
+    """
+    x0, y0 = rotated(own[0], around * own[6], east, north)
+    x1, y1 = rotated(own[1], around * own[7], east, north)
+    x2, y2 = rotated(around * own[2], own[8], east, north)
+    x3, y3 = rotated(own[3], around * own[9], east, north)
+    x4, y4 = rotated(own[4], around * own[10], east, north)
+    x5, y5 = rotated(own[5], around * own[11], east, north)
+    p0, q0 = rotated(own[18], around * own[24], east, north)
+    p1, q1 = rotated(own[19], around * own[25], east, north)
+    p2, q2 = rotated(around * own[20], own[26], east, north)
+    p3, q3 = rotated(own[21], around * own[27], east, north)
+    p4, q4 = rotated(own[22], around * own[28], east, north)
+    p5, q5 = rotated(own[23], around * own[29], east, north)
     return (
-        by_speed * (east * one_x - north * two_x), by_speed * (north * one_x + east * two_x),
-        radius * rim_x, unit * tilt_x, elapsed * rate_x - gone * here_x, spin * rim_x, rate_x,
-        by_speed * (east * one_y - north * two_y), by_speed * (north * one_y + east * two_y),
-        radius * rim_y, unit * tilt_y, elapsed * rate_y - gone * here_y, spin * rim_y, rate_y,
+        x0, x1, x2, x3, x4, x5, y0, y1, y2, y3, y4, y5, *own[12:18],
+        p0, p1, p2, p3, p4, p5, q0, q1, q2, q3, q4, q5, *own[30:],
+    )  # fmt: skip
+
+
+@inlined
+def _line(
+    own: Numbers, unit: float, by_speed: float, by_time: float, gone: float, elapsed: float,
+    around: float, east: float, north: float, spin: float, radius: float,
+) -> Numbers:  # fmt: skip
+    """A row of seven, of what has a direction."""
+    rim, rate = around * by_speed * own[3], by_time * own[5]
+    east, north = by_speed * east, by_speed * north
+    return (
+        east * own[1] - north * own[2], north * own[1] + east * own[2], radius * rim,
+        unit * own[4], elapsed * rate - gone * own[0], spin * rim, rate,
     )  # fmt: skip
 
 
@@ -59,21 +75,23 @@ def _turn(
 
 @inlined
 def placed_state(
-    east: float, north: float, spin: float, decel: float, unit: float, radius: float, slip: float,
-    time: float, own: Numbers,
+    east: float, north: float, around: float, spin: float, decel: float, unit: float,
+    radius: float, bend: float, slip: float, time: float, own: Numbers,
 ) -> Numbers:  # fmt: skip
-    """From natural units in the frame of the launch, six rows of six, to six rows of seven.
+    """From natural units, along x and y (:func:`in_world`), six rows of six to six of seven.
 
-    (``east``, ``north``): its direction; ``unit``: 1/J.
+    ``unit``: 1/J; ``bend``: 1/r.
     """
-    around, bend = 1.0 if spin >= 0.0 else -1.0, 1.0 / radius
     duration, elapsed = slip * unit, time * unit
     place = slip * duration
     frame = elapsed, around, east, north, spin, radius
+    way, moving = (place, duration, slip, unit * place), (slip, 1.0, decel, 0.0)
     return (
-        *_pair(own[:6], own[6:12], place, duration, slip, unit * place, *frame),
+        *_line(own[:6], *way, *frame),
+        *_line(own[6:12], *way, *frame),
         *_turn(own[12:18], bend * place, bend * duration, bend * slip, unit, *frame, bend),
-        *_pair(own[18:24], own[24:30], slip, 1.0, decel, 0.0, *frame),
+        *_line(own[18:24], *moving, *frame),
+        *_line(own[24:30], *moving, *frame),
         *_turn(own[30:], bend * slip, bend, bend * decel, 0.0, *frame, bend),
     )  # fmt: skip
 
@@ -87,9 +105,13 @@ def fill_placed_states(
     speed = math.hypot(vx, vy)
     slip, unit = math.hypot(speed, radius * spin), 1.0 / decel
     east, north = direction(vx, vy, speed)
+    around = 1.0 if spin >= 0.0 else -1.0
     flat, numbers = own.reshape(-1), out.reshape(-1)
     for n in range(times.size):
         row = weighted_rows(flat, OWN_STATES * n, (1.0,), OWN_STATES)
-        placed = placed_state(east, north, spin, decel, unit, radius, slip, times[n], row)
+        placed = placed_state(
+            east, north, around, spin, decel, unit, radius, 1.0 / radius, slip, times[n],
+            in_world(row, east, north, around),
+        )  # fmt: skip
         for k in range(PLACED_STATES):
             numbers[PLACED_STATES * n + k] = placed[k]

@@ -45,9 +45,11 @@ _TO_ANGLE, _TO_SPEED, _TO_SPIN = _OUT + ORIENTATION, _OUT + SPEED, _OUT + SPIN
 @inlined
 def gather(
     columns: FloatArray, which: npt.NDArray[np.int64], begin: int, start: int, count: int,
-    held: int, room: FloatArray,
+    width: int, held: int, room: FloatArray,
 ) -> int:  # fmt: skip
     """Columns for a block of moments, from ``start`` on, into the first rows of ``room``.
+
+    ``width``: how many moments a block has that is full.
 
     Columns ``which`` (n,) or (1,); those from ``begin`` on, one after the other, where it is empty.
     The column that all of the block hold, −1 if not one; ``held``: that of the block before.
@@ -65,7 +67,7 @@ def gather(
         values, block = columns[row], room[row * BLOCK : (row + 1) * BLOCK]
         if same:
             value = values[first]
-            for n in range(BLOCK):
+            for n in range(width):
                 block[n] = value
         elif which.size == 0:
             own = values[start - begin : start - begin + count]
@@ -94,7 +96,7 @@ def fill_orbit_states(
     bad, held = 0, -1
     for start in range(begin, end, BLOCK):
         count = min(BLOCK, end - start)
-        held = gather(pucks, which, begin, start, count, held, room)
+        held = gather(pucks, which, begin, start, count, BLOCK, held, room)
         moments = times[start : start + count]
         for n in range(count):
             into_row(room, _MOMENT, n, moments[n])

@@ -15,7 +15,7 @@ from puck_tables.stopping.stop_table import StopTable
 _TINY = 1e-25  # slip ratio of the neighbours of pure motions, whose derivatives these have
 _SMALL, _LEAST = 1e-200, 1e-300  # slip speeds: below, one part of it may be no normal number
 _STOPPED = 9.0  # Q/J: a time after all stops
-_MANY = 1 << 10  # moments for which it pays to have all functions at their height
+_MANY = 1 << 12  # moments for which it pays to have all functions at their height
 _AT_ONCE = 1 << 11  # launches of which all that is known stays in the cache
 
 
@@ -48,8 +48,7 @@ def all_looked_up(
             pucks, _ = table.fill_pucks(PUCK_ROWS, launches, first, last)
             bad.append(fill_orbit_states(pucks, which, moments, first, last, orbit, out))
             if slopes is not None:
-                some = moments[first:last], out[:, first:last], slopes[first:last]
-                fill_state_slopes(table, pucks, which, *some, threads=1)
+                _fill_slopes(table, pucks, which, moments, out, slopes, first, last, threads=1)
             out[HEADING, first:last] += directions(pucks[0], pucks[1])
 
     in_chunks(work, moments.size, threads)
@@ -67,47 +66,70 @@ def fill_state_slopes(
     Those that :func:`puck_tables.stopping.state_values.looked_up` found at ``moments`` (n,);
     ``which``: (n,), (1,), or (0,), where each puck has one moment.
     """
-    from puck_tables.stopping.state_jacobian import (
-        FACTS,
-        SECTION_WIDTH,
-        fill_launch_facts,
-        fill_section,
-        fill_state_jacobians,
-    )
+    seen = np.ascontiguousarray(found)
+    _fill_slopes(table, pucks, which, moments, seen, out, 0, moments.size, threads)
+
+
+def _fill_slopes(
+    table: StopTable, pucks: FloatArray, which: npt.NDArray[np.int64], moments: FloatArray,
+    found: FloatArray, out: FloatArray, begin: int, end: int, threads: int | None,
+) -> None:  # fmt: skip
+    """The same from ``begin`` to ``end``, of which the first puck is where ``which`` is (0,)."""
+    from puck_tables.stopping.state_jacobian import fill_state_jacobians
     from puck_tables.stopping.stop_jacobian import is_streamed
 
-    slopes, facts = table.slopes, np.empty((FACTS, pucks.shape[1]))
-    natural, seen = _beside_pure(table, pucks, which, moments, found)
-    fill_launch_facts(pucks, natural, table.constants, slopes.stops, slopes.curve, facts)
+    natural, pure, slopes = pucks, _pure(pucks), table.slopes
+    if pure is not None:
+        moments, out = moments[begin:end], out[begin:end]
+        natural, found = _beside_pure(table, pucks, pure, which, moments, found[:, begin:end])
+        begin, end = 0, moments.size
+    if which.size == end - begin == 1 and pucks.shape[1] == 1:
+        which = which[:0]  # a moment of its own, of which all is found in one call
+    known = pucks, natural, table.height_constants
+    facts, section = np.empty((0, 0)), np.empty((2, 0, 0))
+    if which.size:
+        from puck_tables.stopping.curve_flow import FACTS
+        from puck_tables.stopping.launch_facts import fill_launch_facts
 
-    heights, section = pucks[DELTA], np.empty((2, 0, SECTION_WIDTH))
-    if moments.size >= _MANY and (heights == heights[0]).all():
-        section = np.empty((*slopes.stops.shape[:2], SECTION_WIDTH))
-        fill_section(heights[0].item(), slopes.stops, slopes.curve, section)
+        facts = np.empty((FACTS, pucks.shape[1]))
+        fill_launch_facts(*known, slopes.states, slopes.rates, facts)
+    if end - begin >= _MANY and (pucks[DELTA] == pucks[DELTA, 0]).all():
+        from puck_tables.stopping.curve_flow import SECTION_WIDTH, fill_section
+
+        section = np.empty((*slopes.states.shape[:2], SECTION_WIDTH))
+        fill_section(pucks[DELTA, 0].item(), slopes.states, slopes.rates, section)
+    streamed = is_streamed(out)
 
     def work(start: int, stop: int) -> None:
         fill_state_jacobians(
-            facts, which, moments, seen, start, stop, slopes.stops, slopes.curve, section,
-            is_streamed(out), out,
+            *known, facts, which, moments, found, begin + start, begin + stop, slopes.states,
+            slopes.rates, section, streamed, out,
         )  # fmt: skip
 
-    in_chunks(work, moments.size, threads)
+    in_chunks(work, end - begin, threads)
+
+
+def _pure(pucks: FloatArray) -> npt.NDArray[np.bool_] | None:
+    """Which pucks begin in a pure motion, or are the slowest; None: not one."""
+    speed, slip = pucks[LAUNCH_COLUMNS + SPEED0], pucks[LAUNCH_COLUMNS + SLIP]
+    rim = np.abs(pucks[5] * pucks[2])
+    less = np.minimum(speed, rim)
+    if less.size and less.min() > max(_TINY * float(slip.max()), _SMALL):
+        return None
+    pure: npt.NDArray[np.bool_] = (less <= _TINY * slip) | (slip < _SMALL)
+    return pure if pure.any() else None
 
 
 def _beside_pure(
-    table: StopTable, pucks: FloatArray, which: npt.NDArray[np.int64], moments: FloatArray,
-    found: FloatArray,
+    table: StopTable, pucks: FloatArray, pure: npt.NDArray[np.bool_],
+    which: npt.NDArray[np.int64], moments: FloatArray, found: FloatArray,
 ) -> tuple[FloatArray, FloatArray]:  # fmt: skip
     """What is known of ``pucks`` and their states, of a neighbour where a motion is pure.
 
     Neighbours have Q = J = r = 1 and ω > 0; so have those that stand for the slowest pucks.
     """
     speed, slip = pucks[LAUNCH_COLUMNS + SPEED0], pucks[LAUNCH_COLUMNS + SLIP]
-    rim = np.abs(pucks[5] * pucks[2])
-    pure = (np.minimum(speed, rim) <= _TINY * slip) | (slip < _SMALL)
-    if not pure.any():
-        return pucks, np.ascontiguousarray(found)
-    unit = np.maximum(slip, _LEAST)
+    rim, unit = np.abs(pucks[5] * pucks[2]), np.maximum(slip, _LEAST)
     beside = np.ones((LAUNCH_COLUMNS, int(pure.sum())))
     beside[0], beside[1] = np.maximum((speed / unit)[pure], _TINY), 0.0
     beside[2], beside[3] = np.maximum((rim / unit)[pure], _TINY), pucks[3, pure]

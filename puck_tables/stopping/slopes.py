@@ -15,6 +15,8 @@ dφ/dξ = 0, none at all.  What is splined is
 regular at both ends, where the Jacobian needs f_u/s and f_u/c².  At nodes next to the limit angle
 (ρ = 0) the derivative is the difference of order 8 along ξ; next to φ = 0 and π/2, where f_u is the
 difference of nearly equal numbers, the first terms of its expansion take over from farther nodes.
+
+H needs no spline: H = (ρ (β_u + (c² − s²) β) − 2β)/α, with α > 0.4.
 """
 
 from __future__ import annotations
@@ -23,16 +25,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-from puck_tables._core.arrays import FloatArray
+from puck_tables._core.arrays import FloatArray, aligned
 from puck_tables.contact.closed_form import shape_integrals
 from puck_tables.stopping.axes import HEIGHTS, SlipAxis, height_polynomials, heights, ratio_at
 from puck_tables.stopping.curve import limits, regular_slopes
 from puck_tables.table.fit import clamped_coefficients
 
-STOP_FUNCTIONS = 5  # T, along, across, body, length; then the slopes of each, and H
+STOP_FUNCTIONS = 5  # T, along, across, body, length; then the slopes of each
 STOP_WIDTH = 12  # all, padded to whole registers
 STOP_POWERS = 7  # of 2δ² − 1, enough for derivatives to 1e-9
-CURVE_WIDTH = 4  # κR, S/δ, (κR)_u, S_u/δ
+STATE_WIDTH = 8  # T, along, across, body; κR, S/δ, (κR)_u, S_u/δ
+RATE_WIDTH = 4  # slopes of the first four
 _TIME, _ALONG, _ACROSS, _BODY, _LENGTH = range(STOP_FUNCTIONS)
 _NEAR_LIMIT = 0.02  # of ρ: nearer the quotient is nearly 0/0
 _SLOW_NODES, _FAST_NODES = (6, 12), (24, 36)  # of 282: farther, the quotient keeps its digits
@@ -44,12 +47,14 @@ _DIFFERENCE = np.array([1.0 / 280.0, -4.0 / 105.0, 0.2, -0.8, 0.0, 0.8, -0.2, 4.
 class Slopes(NamedTuple):
     """Spline coefficients, powers of 2δ² − 1 ascending, functions within a power side by side.
 
-    ``stops`` (2, cells + 3, 7 · 12): T, along, across, body, length, D of each, H = h/(δ sin φ),
-    and a zero; ``curve`` (2, cells + 3, 9 · 4): κR, S/δ, and their derivatives by u.
+    ``stops`` (2, cells + 3, 7 · 12): T, along, across, body, length, D of each, and zeros;
+    ``states`` (2, cells + 3, 9 · 8): T, along, across, body, κR, S/δ, and the derivatives of both
+    by u; ``rates`` (2, cells + 3, 7 · 4): D of the first four of these.
     """
 
     stops: FloatArray
-    curve: FloatArray
+    states: FloatArray
+    rates: FloatArray
 
 
 def slopes_of(axis: SlipAxis, values: FloatArray) -> Slopes:
@@ -65,33 +70,37 @@ def slopes_of(axis: SlipAxis, values: FloatArray) -> Slopes:
     >>> from puck_tables import Table
     >>> table = Table.shipped("stops")
     >>> [one.shape for one in slopes_of(table.axis, table.values)]
-    [(2, 285, 84), (2, 285, 36)]
+    [(2, 285, 84), (2, 285, 72), (2, 285, 28)]
     """
     n = axis.cells
     sides = np.stack([values[: n + 1], values[: n - 1 : -1]])  # both from k = 0 to k = 1
     own = sides[..., [0, 1, 2, 4, 3]]
-    by_u, turning = np.empty_like(own), np.empty(own.shape[:3])
-    for fast in range(2):
-        by_u[fast], turning[fast] = _slopes_at_nodes(axis, own[fast], fast == 1)
+    by_u = np.stack([_slopes_at_nodes(axis, own[fast], fast == 1) for fast in range(2)])
+    stops = np.concatenate([own, by_u], axis=-1)
     curve = np.concatenate([sides[..., [5, 6]], _curve_slopes(axis)], axis=-1)
-    stops = np.concatenate([own, by_u, turning[..., None]], axis=-1)
-    return Slopes(_splines(stops, STOP_POWERS, STOP_WIDTH), _splines(curve, HEIGHTS, CURVE_WIDTH))
+    of_stops, of_curve = _splines(stops, STOP_POWERS), _splines(curve, HEIGHTS)
+    states = np.zeros((*of_curve.shape[:3], STATE_WIDTH))
+    states[:, :, :STOP_POWERS, :4], states[..., 4:] = of_stops[..., :4], of_curve
+    rates = of_stops[..., STOP_FUNCTIONS : STOP_FUNCTIONS + RATE_WIDTH]
+    padded = np.zeros((*of_stops.shape[:3], STOP_WIDTH))
+    padded[..., : of_stops.shape[3]] = of_stops
+    return Slopes(*(_in_rows(splines) for splines in (padded, states, rates)))
 
 
-def _splines(values: FloatArray, powers: int, width: int) -> FloatArray:
-    """Coefficients (2, cells + 3, powers · width) from values (2, cells + 1, 9, functions)."""
+def _splines(values: FloatArray, powers: int) -> FloatArray:
+    """Coefficients (2, cells + 3, powers, n) from values (2, cells + 1, 9, n)."""
     splines = clamped_coefficients(np.moveaxis(values, 1, 0)) / 6.0  # node, side, height, function
     by_power = height_polynomials(np.moveaxis(splines, 2, 0), powers)  # power, node, side, function
-    padded = np.zeros((2, len(splines), powers, width))
-    padded[..., : values.shape[-1]] = by_power.transpose(2, 1, 0, 3)
-    padded.flags.writeable = False
-    return padded.reshape(2, len(splines), -1)
+    return by_power.transpose(2, 1, 0, 3)
 
 
-def _slopes_at_nodes(
-    axis: SlipAxis, values: FloatArray, fast: bool
-) -> tuple[FloatArray, FloatArray]:
-    """D (cells + 1, 9, 5) and H (cells + 1, 9) on one side."""
+def _in_rows(splines: FloatArray) -> FloatArray:
+    """All numbers of a node side by side."""
+    return aligned(splines.reshape(*splines.shape[:2], -1))
+
+
+def _slopes_at_nodes(axis: SlipAxis, values: FloatArray, fast: bool) -> FloatArray:
+    """D (cells + 1, 9, 5) on one side."""
     xi = np.arange(axis.cells + 1) / axis.cells
     k, delta = ratio_at(xi)[:, None], heights()
     large = 1.0 / np.hypot(1.0, k)
@@ -115,7 +124,7 @@ def _slopes_at_nodes(
     near = (np.abs(rate) < _NEAR_LIMIT)[..., None]
     by_u = np.where(near, by_difference, by_u)
     _expand(by_u, k[:, 0], delta, fast, axis.cells)
-    return by_u, turning
+    return by_u
 
 
 def _by_difference(values: FloatArray, xi: FloatArray, fast: bool) -> FloatArray:

@@ -30,327 +30,238 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import (
     BLOCK,
+    LINE,
     allocating,
     inlined,
     into_row,
     into_rows,
-    kernel,
     row_of,
     rows_of,
-    spline_polynomials,
-    weighted_rows,
 )
-from puck_tables.kernels.elementary import cosine_sine_of, exp_of, log_of
-from puck_tables.kernels.spline import basis
-from puck_tables.motion.state import HEADING
-from puck_tables.motion.state import SPEED as FOUND_SPEED
-from puck_tables.motion.state import SPIN as FOUND_SPIN
-from puck_tables.stopping.axes import CONSTANT_HEIGHTS, HEIGHTS
-from puck_tables.stopping.curve_lookup import (
+from puck_tables.kernels.elementary import cosine_sine_of, exp_of, logs_of
+from puck_tables.motion import state
+from puck_tables.stopping.curve_flow import (
+    BEND,
+    C0_TILT,
+    CURVE,
+    CURVE_TILT,
+    DECEL,
+    DELTA,
+    EAST,
+    FACTS,
+    FAST,
+    FIXED,
+    FIXED_ROWS,
+    FOUND,
+    H0,
+    H0_TILT,
+    HERE,
+    HERE_ROWS,
+    K_TILT,
     KAPPA,
-    LAUNCH_COLUMNS,
+    LAUNCHED,
+    LAUNCHED_ROWS,
+    LEFT,
+    MOMENT,
+    NORTH,
+    ONE_KAPPA,
+    ONE_TIME,
+    PART,
+    PUT,
+    RADIUS,
+    ROWS,
+    SECTION_WIDTH,
+    SHARE,
     SLIP,
-    SPEED0,
-    T_LAUNCH,
-    TIME,
-    TURNING,
-    place_of_share,
+    SPIN,
+    STOP,
+    STOP_ROWS,
+    TURN_SLOPE,
+    TURN_TILT,
+    TURNED,
+    UNIT,
+    WORK,
+    find_functions,
+    flow_at,
+    of_stop,
+    pole_at,
+    turn_rate,
 )
+from puck_tables.stopping.launch_facts import fetch, fill_up, find_facts
 from puck_tables.stopping.launch_frame import PLACED_STATES, placed_state, rotated
-from puck_tables.stopping.orbit import TINY, cell_of
+from puck_tables.stopping.orbit import TINY
 from puck_tables.stopping.orbit_lookup import gather
-from puck_tables.stopping.slopes import CURVE_WIDTH
-from puck_tables.stopping.stop_jacobian import (
-    BY_HEIGHT,
-    STOP_FOUND,
-    STOP_ROW,
-    TURN_RATE,
-    D,
-    Numbers,
-    T,
-    direction,
-    row_by_row,
-    stop_by_speeds,
-    stop_functions,
-)
+from puck_tables.stopping.stop_jacobian import BY_HEIGHT, Numbers, T, row_by_row, stop_by_speeds
 
-_NEAR_LIMIT = 0.05  # of c − c₀
-_CURVE_ROW, _FLOWN, _PLACED = HEIGHTS * CURVE_WIDTH, 6, 7
-# what is known of a launch: its puck, its place on the curve in natural units, its stop
-_EAST, _NORTH, _SPIN, _DELTA, _DECEL, _RADIUS, _TIME, _Q, _UNIT = range(9)
-_OF_PUCK = (0, 1, 2, 3, 4, 5, *(LAUNCH_COLUMNS + row for row in (TIME, SLIP, SPEED0)))
-_V0, _A0, _U0, _LAUNCHED = 9, 10, 13, 7
-_FIXED, _KAPPA, _C0 = 16, 16, 18
-_PLACE, _STOP, _STOPPED = 22, 22 + _PLACED, 11
-FACTS = _STOP + _STOPPED
-# of a place on the curve
-_GAP, _CURVE, _CURVE_TILT, _POLE, _TURN_SLOPE, _TURN_TILT, _BEND = range(_PLACED)
-# rows of a block behind these: where a state is, what stands there, and its derivatives
-_MOMENT, _LEFT, _TURNED, _SHARE, _FAST, _FIRST, _INSIDE = range(FACTS, FACTS + 7)
-_FOUND = FACTS + 7
-_FLOW = _FOUND + STOP_FOUND
-SECTION_WIDTH = 24  # both, padded to whole registers
-_PUT = _FOUND + SECTION_WIDTH
-_ROWS = _PUT + 2 * PLACED_STATES
-_PART = 24  # columns of a block at a time: with so many rows the nearest cache holds no more
+# rows of a block for what is found on the way
+_RATES, _RATES_FOUND, _FALL, _GAP, _POLE = WORK, 9, WORK + 2, WORK + 6, WORK + 7
+_LOGS, _LOGS_FOUND = WORK + 9, 3
+_FLOW, _FLOWN, _WAYS = WORK + 12, 4, WORK + 16
+_H0, _T0, _ONE_POLE = FIXED + H0, LAUNCHED + 2, LAUNCHED + 6
+_T, _ALONG, _T_SLOPE = 0, 1, SECTION_WIDTH - 4  # of what is found at a place
 
 
 @inlined
-def _flow_at(
-    is_fast: bool, share: float, sine: float, delta: float, fixed: Numbers, f: Numbers,
-    turn_rate: float,
-) -> Numbers:  # fmt: skip
-    """What the motion does at a place of the curve (7), from the functions there (6)."""
-    kappa, h0, c0, k_tilt, h0_tilt = fixed[0], fixed[1], fixed[2], fixed[3], fixed[4]
-    # A, B and h₁, and their derivatives by δ
-    # divisions cost most here; what is left are where a·b + c·d could be contracted in two ways
-    d2 = delta * delta
-    below, inverse = 36.0 + 4.0 * d2, 1.0 / (36.0 + 4.0 * d2)
-    one_slow, one_fast, h1 = 8.0 / (4.0 + d2), below / (9.0 + 4.0 * d2), 9.0 * delta / below
-    by_slow, by_fast = 0.25 * delta, 216.0 * delta * (inverse * inverse)
-    by_h1 = (9.0 - 72.0 * d2 * inverse) / below
-    near, far = share, 2.0 - share
-    log_near, log_far = log_of(max(near, TINY)), log_of(far)
-    log_plus, log_minus = (log_far, log_near) if is_fast else (log_near, log_far)
-    plus, minus = (far, near) if is_fast else (near, far)  # 1 + c and 1 − c
-    gap = (1.0 - share if is_fast else share - 1.0) - c0
-    ends = 0.5 * (minus * one_slow - plus * one_fast)
-    pole = -kappa / (0.5 * near * far + gap * (f[2] - kappa * ends))
-    # κ g without its pole, and without the derivative of that
-    plus_slow, minus_fast = log_plus * one_slow, log_minus * one_fast
-    logs = plus_slow + minus_fast
-    by_logs = by_slow * one_slow * plus_slow + by_fast * one_fast * minus_fast
-    rest = h0 - h1
-    turn_tilt = (h0_tilt - h0 * one_slow * by_slow) * plus_slow
-    turn_tilt += (h0_tilt - by_h1 - rest * one_fast * by_fast) * minus_fast
-    return (
-        gap, f[0] - kappa * logs, f[4] - k_tilt * logs + kappa * by_logs, pole,
-        0.5 * (h0 * one_slow * minus - rest * one_fast * plus) + delta * f[3],
-        turn_tilt + f[1] + delta * f[5], delta * sine * turn_rate,
-    )  # fmt: skip
-
-
-@inlined
-def _functions(
-    stops: FloatArray, curve: FloatArray, cell: int, weights: Numbers, delta: float
-) -> Numbers:
-    """Those of the stop and of the curve from rows of a cell on (22), and nothing (2)."""
-    s, k = 2.0 * delta * delta - 1.0, 4.0 * delta
-    f = spline_polynomials(curve, _CURVE_ROW * cell, weights, s, CURVE_WIDTH, HEIGHTS)
-    of_stop = stop_functions(stops, STOP_ROW * cell, weights, delta)
-    return (*of_stop, f[0], f[1], f[2], f[3], k * f[4], k * f[5], 0.0, 0.0)
-
-
-@kernel
-def fill_section(
-    delta: float, stop_slopes: FloatArray, curve_slopes: FloatArray, out: FloatArray
-) -> None:
-    """The functions of one height into ``out`` (2, cells + 3, 24)."""
-    stops, curve, flat = stop_slopes.reshape(-1), curve_slopes.reshape(-1), out.reshape(-1)
-    for row in range(flat.size // SECTION_WIDTH):
-        found = _functions(stops, curve, row, (1.0,), delta)
-        for k in range(SECTION_WIDTH):
-            flat[SECTION_WIDTH * row + k] = found[k]
-
-
-@inlined
-def _find_functions(
-    room: FloatArray, count: int, stops: FloatArray, curve: FloatArray, section: FloatArray,
-    cells: float,
-) -> None:  # fmt: skip
-    """The functions of the stop and of the curve where the rows say."""
-    for n in range(count):
-        xi = place_of_share(row_of(room, _SHARE, n))
-        first, inside = cell_of(xi, row_of(room, _FAST, n) > 0.0, cells, 1)
-        into_row(room, _FIRST, n, first)
-        into_row(room, _INSIDE, n, inside)
-    for n in range(count):
-        cell, weights = int(row_of(room, _FIRST, n)), basis(row_of(room, _INSIDE, n))
-        if section.size:
-            found = weighted_rows(section, SECTION_WIDTH * cell, weights, SECTION_WIDTH)
-        else:
-            found = _functions(stops, curve, cell, weights, row_of(room, _DELTA, n))
-        into_rows(room, _FOUND, n, found)
-
-
-@inlined
-def _find_constants(room: FloatArray, count: int, constants: FloatArray) -> None:
-    """c₀, and derivatives by δ of κ, h₀ and c₀."""
-    for n in range(count):
-        delta = row_of(room, _DELTA, n)
-        s, k = 2.0 * delta * delta - 1.0, 4.0 * delta
-        c0, c0_tilt, kappa, k_tilt, h0, h0_tilt = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-        for m in range(CONSTANT_HEIGHTS - 1, -1, -1):
-            c0_tilt, c0 = c0_tilt * s + c0, c0 * s + constants[0, m]
-            k_tilt, kappa = k_tilt * s + kappa, kappa * s + constants[1, m]
-            h0_tilt, h0 = h0_tilt * s + h0, h0 * s + constants[2, m]
-        into_rows(room, _C0, n, (c0, k * k_tilt, h0 + delta * k * h0_tilt, k * c0_tilt))
-
-
-@allocating
-def fill_launch_facts(
-    pucks: FloatArray, natural: FloatArray, constants: FloatArray, stop_slopes: FloatArray,
-    curve_slopes: FloatArray, out: FloatArray,
-) -> None:  # fmt: skip
-    """All that derivatives of states need of launches, into ``out`` (40, m).
-
-    ``pucks`` (20, m), see :func:`puck_tables.stopping.known.fill_known`; ``natural``: the same, but
-    with others beside them in place of exact pure motions.
-    """
-    cells = float(stop_slopes.shape[1] - 3)
-    stops, curve, room = stop_slopes.reshape(-1), curve_slopes.reshape(-1), np.empty(_ROWS * BLOCK)
-    for start in range(0, pucks.shape[1], BLOCK):
-        count = min(BLOCK, pucks.shape[1] - start)
-        for row in range(len(_OF_PUCK)):
-            values = pucks[_OF_PUCK[row], start : start + count]
-            for n in range(count):
-                room[row * BLOCK + n] = values[n]
-        known = natural[LAUNCH_COLUMNS:, start : start + count]
-        for n in range(count):
-            slip, speed = known[SLIP, n], known[SPEED0, n]
-            rim = abs(natural[_RADIUS, start + n] * natural[_SPIN, start + n])
-            larger, smaller = max(speed, rim), min(speed, rim)
-            ratio = smaller / larger
-            into_row(room, _SHARE, n, 2.0 * ratio / (1.0 + ratio))
-            into_row(room, _FAST, n, 1.0 if rim > speed else 0.0)
-            into_rows(room, _V0, n, (speed / slip, rim / slip, known[T_LAUNCH, n], slip / speed))
-            into_rows(room, _KAPPA, n, (known[KAPPA, n], known[TURNING, n]))
-        _find_constants(room, count, constants)
-        _find_functions(room, count, stops, curve, stops[:0], cells)
-        for n in range(count):
-            c, s, delta = row_of(room, _V0, n), row_of(room, _A0, n), row_of(room, _DELTA, n)
-            found = rows_of(room, _FOUND, STOP_FOUND, n)
-            flow = _flow_at(
-                row_of(room, _FAST, n) > 0.0, row_of(room, _SHARE, n), s, delta,
-                rows_of(room, _FIXED, 6, n), rows_of(room, _FLOW, _FLOWN, n), found[TURN_RATE],
-            )  # fmt: skip
-            vx, vy = row_of(room, _EAST, n), row_of(room, _NORTH, n)
-            into_rows(room, _EAST, n, direction(vx, vy, row_of(room, _UNIT, n)))
-            into_row(room, _UNIT, n, 1.0 / row_of(room, _DECEL, n))
-            u0 = 1.0 / (c * s)
-            begun = u0, u0 / (flow[_GAP] * flow[_POLE]), 1.0 / flow[_POLE]
-            into_rows(room, _U0, n, begun)
-            into_rows(room, _PLACE, n, flow)
-            own = stop_by_speeds(c, s, 1.0, c, s, delta, found)
-            stopped = (
-                c * own[2] - s * own[1], own[3],
-                own[4], c * own[6] - s * own[5], own[7],
-                own[8], c * own[10] - s * own[9], own[11],
-                own[16], c * own[18] - s * own[17], own[19],
-            )  # fmt: skip
-            into_rows(room, _STOP, n, stopped)
-        for row in range(FACTS):
-            values, place = room[row * BLOCK :], out[row, start : start + count]
-            for n in range(count):
-                place[n] = values[n]
-
-
-@inlined
-def _find_places(room: FloatArray, count: int) -> None:
+def _find_places(room: FloatArray) -> None:
     """What time is left, and where on the curve the states are: side and 2w.
 
-    From heading, speed and spin in the rows of those.
+    From speed and spin in the rows of those.
     """
-    for n in range(count):
-        left = 1.0 - row_of(room, _MOMENT, n) / row_of(room, _TIME, n)
-        speed, spin = row_of(room, _SHARE, n), row_of(room, _FAST, n)
-        turned = row_of(room, _TURNED, n)
-        rim = abs(spin) * row_of(room, _RADIUS, n)
+    for n in range(PART):
+        left = 1.0 - row_of(room, MOMENT, n) * row_of(room, ONE_TIME, n)
+        speed, spin = row_of(room, SHARE, n), row_of(room, FAST, n)
+        rim = abs(spin) * row_of(room, RADIUS, n)
         larger, smaller = max(speed, rim), min(speed, rim)
-        ratio = smaller / (larger if larger > 0.0 else 1.0)
-        into_row(room, _LEFT, n, left if (larger > 0.0) & (left > 0.0) else 0.0)
-        into_row(room, _SHARE, n, 2.0 * ratio / (1.0 + ratio))
-        into_row(room, _FAST, n, 1.0 if rim > speed else 0.0)
-        into_row(room, _TURNED, n, turned if row_of(room, _SPIN, n) >= 0.0 else -turned)
+        both = 0.5 * larger + 0.5 * smaller
+        into_row(room, LEFT, n, left if (larger > 0.0) & (left > 0.0) else 0.0)
+        into_row(room, SHARE, n, smaller / (both if larger > 0.0 else 1.0))
+        into_row(room, FAST, n, 1.0 if rim > speed else 0.0)
+
+
+@inlined
+def _find_rates(room: FloatArray) -> None:
+    """How fast Q, u and the heading change where the states are."""
+    for n in range(PART):
+        is_fast, share = row_of(room, FAST, n) > 0.0, row_of(room, SHARE, n)
+        fixed, found = rows_of(room, FIXED, FIXED_ROWS, n), rows_of(room, FOUND, SECTION_WIDTH, n)
+        left, delta = row_of(room, LEFT, n), row_of(room, DELTA, n)
+        small, large = 0.5 * share, 1.0 - 0.5 * share
+        norm = 1.0 / math.sqrt(small * small + large * large)
+        cosine, sine = norm * (small if is_fast else large), norm * (large if is_fast else small)
+        t, to_go = found[_T], (left if left > 0.0 else 1.0) * row_of(room, _T0, n)
+        t_slope = sine * (cosine * cosine) * found[_T_SLOPE]
+        gap, below = pole_at(is_fast, share, fixed, found)
+        # all that is divided by in one division: T − ρ T_u is this over what ρ has below it
+        way = t * below + fixed[KAPPA] * (gap * t_slope)
+        one, other = to_go * t, below * way
+        inverse = 1.0 / ((one * found[_ALONG]) * other)
+        one_along = inverse * (one * other)
+        inverse *= found[_ALONG]
+        one_below, one_way = inverse * (one * way), below * (below * (inverse * one))
+        inverse *= other
+        pole = -fixed[KAPPA] * one_below
+        rate = gap * pole
+        rates = (
+            cosine, sine, to_go * (to_go * inverse), t * (t * inverse), t_slope, one_way, gap,
+            pole, turn_rate(rate, cosine, sine, delta, one_along, found),
+        )  # fmt: skip
+        into_rows(room, _RATES, n, rates)
+
+
+@inlined
+def _find_logs(room: FloatArray) -> None:
+    """Logarithms of 2w, 2 − 2w and Q."""
+    for n in range(PART):
+        share = row_of(room, SHARE, n)
+        logs = logs_of(max(share, TINY), 2.0 - share, row_of(room, _FALL, n))
+        into_rows(room, _LOGS, n, logs)
+
+
+@inlined
+def _find_flow(room: FloatArray) -> None:
+    """What places on the curve change by, and which way the states turned."""
+    for n in range(PART):
+        is_fast, share = row_of(room, FAST, n) > 0.0, row_of(room, SHARE, n)
+        fixed, here = rows_of(room, FIXED, FIXED_ROWS, n), rows_of(room, HERE, HERE_ROWS, n)
+        log_near, log_far, log = rows_of(room, _LOGS, _LOGS_FOUND, n)
+        flow = flow_at(
+            is_fast, share, log_near, log_far, row_of(room, DELTA, n), fixed,
+            rows_of(room, FOUND, SECTION_WIDTH, n),
+        )  # fmt: skip
+        pole = row_of(room, _POLE, n)
+        ratio = exp_of(fixed[KAPPA] * log - (flow[CURVE] - here[0]))  # of c − c₀
+        raised = fixed[C0_TILT] * ratio - fixed[C0_TILT]
+        raised += row_of(room, _GAP, n) * (flow[CURVE_TILT] - here[1] - fixed[K_TILT] * log)
+        turned = flow[TURN_TILT] - here[3] + fixed[H0_TILT] * log
+        # ρ over that at the launch
+        flown = ratio * (pole * row_of(room, _ONE_POLE, n))
+        into_rows(
+            room, _FLOW, n, (flown, raised * (pole * fixed[ONE_KAPPA]), flow[TURN_SLOPE], turned)
+        )
+    for n in range(PART):
+        cosine, sine = cosine_sine_of(row_of(room, TURNED, n))
+        ways = rotated(cosine, sine, row_of(room, EAST, n), row_of(room, NORTH, n))
+        into_rows(room, _WAYS, n, ways)
 
 
 @inlined
 def _change(
     u0: float, late: float, tilt: float, gone: Numbers, rates: Numbers, here: Numbers,
-    flow: Numbers, turnings: Numbers, own: Numbers,
+    flow: Numbers, own: Numbers,
 ) -> Numbers:  # fmt: skip
     """How a state changes with its launch: what is left of x, y, body angle; vx, vy, rω.
 
     ``u0``: of u at the launch; ``late``: of its stop; ``tilt``: of δ.
     """
-    slip, one_slip, cosine, sine, cos_turn, sin_turn, log = gone
-    t, t_slope, t_tilt, rate, flown, raised, one_way, begun = rates
-    h0, h0_tilt = turnings
-    w = late * one_slip - t_tilt * tilt
-    y = flown * u0 + raised * tilt
+    speed, rim, cosine, sine, one_slip, ex, ey, fx, fy = gone
+    t, t_slope, t_tilt, rate, one_way, h0, bend, begun = rates
+    flown, raised, turn_slope, turned = flow
+    _, _, turn0, _, far0, is_far = here
+    if tilt == 0.0:
+        w, y = late * one_slip, flown * u0
+    else:
+        w, y = late * one_slip - t_tilt, raised
     u = (t * y - rate * w) * one_way
     log_q = (w - t_slope * y) * one_way
-    turn = h0 * log_q + flow[_TURN_SLOPE] * u - here[_TURN_SLOPE] * u0
-    turn += (h0_tilt * log + flow[_TURN_TILT] - here[_TURN_TILT]) * tilt
+    turn = h0 * log_q + turn_slope * u
     if tilt == 0.0:
-        far = flow[_BEND] * (w - t * begun) * one_way + here[_BEND] * begun
-        turn = far if abs(here[_GAP]) > _NEAR_LIMIT else turn
-    speed, rim = slip * cosine, slip * sine
-    v = speed * (log_q - sine * sine * u)
-    a = rim * (log_q + cosine * cosine * u)
-    vx, vy = rotated(v, speed * turn, cos_turn, sin_turn)
+        turn = bend * ((w - t * begun) * one_way) + far0 if is_far > 0.0 else turn - turn0
+    else:
+        turn += turned
+    v = speed * (log_q - sine * (sine * u))
+    a = rim * (log_q + cosine * (cosine * u))
+    aside = speed * turn
     # what is left of the way
-    ahead = own[5] * v + own[6] * a + own[7] * tilt - speed * own[8] * turn
-    aside = own[9] * v + own[10] * a + own[11] * tilt + speed * own[4] * turn
-    x, y = rotated(ahead, aside, cos_turn, sin_turn)
-    return x, y, own[17] * v + own[18] * a + own[19] * tilt, vx, vy, a
+    along = own[5] * v + own[6] * a - own[8] * aside
+    left = own[9] * v + own[10] * a + own[4] * aside
+    body = own[17] * v + own[18] * a
+    if tilt != 0.0:
+        along, left, body = along + own[7], left + own[11], body + own[19]
+    return (
+        along * ex + left * fx, along * ey + left * fy, body, v * ex + aside * fx,
+        v * ey + aside * fy, a,
+    )  # fmt: skip
 
 
 @inlined
 def _state_slopes(
-    left: float, turned: float, is_fast: bool, share: float, delta: float, launched: Numbers,
-    fixed: Numbers, here: Numbers, stop: Numbers, found: Numbers, curve: Numbers,
+    left: float, delta: float, around: float, launched: Numbers, h0: float, here: Numbers,
+    stop: Numbers, found: Numbers, moving: Numbers, flow: Numbers, ways: Numbers,
 ) -> Numbers:  # fmt: skip
-    """A state and its derivatives in natural units, six rows of six.
+    """A state and its derivatives in natural units, along x and y, six rows of six.
 
-    At the place (is fast, 2w) on the curve, where the share ``left`` of time is left: 0 at rest.
-    Rows: x, y, body angle, vx, vy, rω, y to the left of the launch.  Columns: itself; by v, v
-    across, rω, δ, time.
+    Where the share ``left`` of time is left: 0 at rest.  Rows: x, y, body angle, vx, vy, rω.
+    Columns: itself; by v, v across, rω, δ, time.
     """
-    speed0, rim0, t0, one_speed, u0, begun, one_pole = launched
-    kappa, h0, _, k_tilt, h0_tilt, c0_tilt = fixed
-    t, to_go = found[T], (left if left > 0.0 else 1.0) * t0
-    inverse = 1.0 / (to_go * t)
-    slip, one_slip = to_go * to_go * inverse, t * t * inverse
-    small, large = 0.5 * share, 1.0 - 0.5 * share
-    norm = 1.0 / math.sqrt(small * small + large * large)
-    cosine, sine = (norm * small, norm * large) if is_fast else (norm * large, norm * small)
-    flow = _flow_at(is_fast, share, sine, delta, fixed, curve, found[TURN_RATE])
-    speed, rim = slip * cosine, slip * sine
-    own = stop_by_speeds(speed, rim, slip, cosine, sine, delta, found)
-    t_slope = sine * cosine * cosine * found[D + T]
-    rate = flow[_GAP] * flow[_POLE]
-    log = log_of(slip)
-    ratio = exp_of(kappa * log - (flow[_CURVE] - here[_CURVE]))  # of c − c₀
-    flown = ratio * flow[_POLE] * one_pole  # ρ over that at the launch
-    raised = c0_tilt * ratio - c0_tilt
-    raised += flow[_GAP] * (flow[_CURVE_TILT] - here[_CURVE_TILT] - k_tilt * log)
-    raised *= flow[_POLE] / kappa
-    cos_turn, sin_turn = cosine_sine_of(turned)
-    gone = slip, one_slip, cosine, sine, cos_turn, sin_turn, log
-    one_way = 1.0 / (t - rate * t_slope)
-    rates = t, t_slope, found[BY_HEIGHT + T], rate, flown, raised, one_way, begun
-    common = gone, rates, here, flow, (h0, h0_tilt), own
+    speed0, rim0, t0, one_speed, u0, begun, _ = launched
+    cosine, sine, slip, one_slip, t_slope, one_way, gap, pole, bend = moving
     k = 1.0 if left > 0.0 else 0.0  # at rest that of the stop alone
+    from_stop, rate = of_stop(found, delta), gap * pole
+    speed, rim = slip * cosine, slip * sine
+    own = stop_by_speeds(speed, rim, slip, cosine, sine, delta, from_stop)
+    ex, ey = ways
+    fx, fy = -around * ey, around * ex
+    gone = speed, rim, cosine, sine, one_slip, ex, ey, fx, fy
+    rates = from_stop[T], t_slope, from_stop[BY_HEIGHT + T], rate, one_way, h0, bend, begun
+    common = gone, rates, here, flow, own
     # by φ and by δ
     x1, y1, b1, p1, q1, a1 = _change(u0, stop[0], 0.0, *common)
     x4, y4, b4, p4, q4, a4 = _change(0.0, stop[1], 1.0, *common)
     # by time: velocity and acceleration
-    log_q = -k * one_slip * one_way
+    log_q = -k * (one_slip * one_way)
     u = -rate * log_q
-    p5, q5 = rotated(
-        speed * (log_q - sine * sine * u), speed * flow[_BEND] * log_q, cos_turn, sin_turn
-    )
-    a5 = rim * (log_q + cosine * cosine * u)
-    vx, vy, a = k * speed * cos_turn, k * speed * sin_turn, k * rim
-    left_x, left_y = rotated(speed * own[4], speed * own[8], cos_turn, sin_turn)
-    x, y = stop[2] - k * left_x * one_speed, stop[5] - k * left_y * one_speed  # over v
+    ahead, aside = speed * (log_q - sine * (sine * u)), speed * (bend * log_q)
+    p5, q5 = ahead * ex + aside * fx, ahead * ey + aside * fy
+    a5 = rim * (log_q + cosine * (cosine * u))
+    vx, vy, a = k * speed * ex, k * speed * ey, k * rim
+    ahead, aside = k * (speed * one_speed) * own[4], k * (speed * one_speed) * own[8]
+    x, y = stop[2] - (ahead * ex + aside * fx), stop[5] - (ahead * ey + aside * fy)  # over v
     b = stop[8] - k * own[16]
     x1, y1, b1 = stop[3] - k * x1, stop[6] - k * y1, stop[9] - k * b1
     p1, q1, a1 = k * p1, k * q1, k * a1
     # by ln Q, from the similarity
-    time = (1.0 - left) * t0
-    x0, y0, b0 = 2.0 * speed0 * x - time * vx, 2.0 * speed0 * y - time * vy, 2.0 * b - time * a
+    time, twice = (1.0 - left) * t0, 2.0 * speed0
+    x0, y0, b0 = twice * x - time * vx, twice * y - time * vy, 2.0 * b - time * a
     p0, q0, a0 = vx - time * p5, vy - time * q5, a - time * a5
     return (
         speed0 * x, speed0 * x0 - rim0 * x1, -y, rim0 * x0 + speed0 * x1, stop[4] - k * x4, vx,
@@ -362,50 +273,71 @@ def _state_slopes(
     )  # fmt: skip
 
 
+@inlined
+def _find_jacobians(room: FloatArray) -> None:
+    """Derivatives of a block of states from what is known of their launches and places.
+
+    In loops of their own: of one as long the machine sees too little at once, and waits.
+    """
+    _find_rates(room)
+    _find_logs(room)
+    _find_flow(room)
+    for n in range(PART):
+        spin = row_of(room, SPIN, n)
+        around = 1.0 if spin >= 0.0 else -1.0
+        own = _state_slopes(
+            row_of(room, LEFT, n), row_of(room, DELTA, n), around,
+            rows_of(room, LAUNCHED, LAUNCHED_ROWS, n), row_of(room, _H0, n),
+            rows_of(room, HERE, HERE_ROWS, n), rows_of(room, STOP, STOP_ROWS, n),
+            rows_of(room, FOUND, SECTION_WIDTH, n), rows_of(room, _RATES, _RATES_FOUND, n),
+            rows_of(room, _FLOW, _FLOWN, n), rows_of(room, _WAYS, 2, n),
+        )  # fmt: skip
+        placed = placed_state(
+            row_of(room, EAST, n), row_of(room, NORTH, n), around, spin, row_of(room, DECEL, n),
+            row_of(room, UNIT, n), row_of(room, RADIUS, n), row_of(room, BEND, n),
+            row_of(room, SLIP, n), row_of(room, MOMENT, n), own,
+        )  # fmt: skip
+        into_rows(room, PUT, n, placed)
+
+
 @allocating
 def fill_state_jacobians(
-    facts: FloatArray, which: npt.NDArray[np.int64], times: FloatArray, states: FloatArray,
-    begin: int, end: int, stop_slopes: FloatArray, curve_slopes: FloatArray, section: FloatArray,
-    streamed: bool, out: FloatArray,
+    pucks: FloatArray, natural: FloatArray, constants: FloatArray, facts: FloatArray,
+    which: npt.NDArray[np.int64], times: FloatArray, states: FloatArray, begin: int, end: int,
+    of_state: FloatArray, of_rate: FloatArray, section: FloatArray, streamed: bool,
+    out: FloatArray,
 ) -> None:  # fmt: skip
     """Derivatives of states into ``out`` (n, 6, 7).
 
-    Of pucks ``which`` of ``facts`` (40, m) at ``times`` (n,) ≥ 0, from ``begin`` to ``end``; as in
-    :func:`puck_tables.stopping.orbit_lookup.fill_orbit_states`, whose ``states`` (6, n) are needed.
-    ``section``: that of :func:`fill_section` where all have one height, or empty.
+    At ``times`` (n,) ≥ 0, from ``begin`` to ``end``, as in
+    :func:`puck_tables.stopping.orbit_lookup.fill_orbit_states`, whose ``states`` (6, n) are needed;
+    of pucks ``which`` of ``facts`` (49, m), or, where ``which`` is empty, of ``pucks``, see
+    :func:`puck_tables.stopping.launch_facts.fill_launch_facts`.  ``section``: that of
+    :func:`puck_tables.stopping.curve_flow.fill_section` where all have one height, or empty.
     Derivatives of x, y, body angle, vx, vy, ω by vx, vy, ω, δ, J, r, time; from the stop on those
     of the stop.
     """
-    cells = float(stop_slopes.shape[1] - 3)
-    stops, curve, sections = stop_slopes.reshape(-1), curve_slopes.reshape(-1), section.reshape(-1)
-    numbers, room = out.reshape(-1), np.empty(_ROWS * BLOCK)
-    part = _PART if which.size else BLOCK  # facts of many pucks are copied faster at length
-    held = -1
-    for start in range(begin, end, part):
-        count = min(part, end - start)
-        held = gather(facts, which, begin, start, count, held, room)
-        moments = times[start : start + count]
+    cells, fixed, held = float(of_state.shape[1] - 3), constants.reshape(-1), -1
+    splines, rates, sections = of_state.reshape(-1), of_rate.reshape(-1), section.reshape(-1)
+    numbers, room = out.reshape(-1), np.empty(ROWS * BLOCK + LINE)
+    room = room[-(room.ctypes.data // 8) % LINE :]  # from the beginning of a line of the cache on
+    for start in range(begin, end, PART):
+        count = min(PART, end - start)
+        if which.size:
+            held = gather(facts, which, begin, start, count, PART, held, room)
+            for row in range(FACTS if held < 0 else 0):
+                fill_up(room, row, count)
+        else:
+            fetch(pucks, natural, start - begin, count, room)
+            find_facts(room, fixed, splines, rates, cells)
+        moments, headings = times[start:], states[state.HEADING, start:]
+        speeds, spins = states[state.SPEED, start:], states[state.SPIN, start:]
         for n in range(count):
-            into_row(room, _MOMENT, n, moments[n])
-        heading, speed = states[HEADING, start:], states[FOUND_SPEED, start:]
-        spin = states[FOUND_SPIN, start:]
-        for n in range(count):
-            into_rows(room, _TURNED, n, (heading[n], speed[n], spin[n]))
-        _find_places(room, count)
-        _find_functions(room, count, stops, curve, sections, cells)
-        for n in range(count):
-            is_fast, share = row_of(room, _FAST, n) > 0.0, row_of(room, _SHARE, n)
-            own = _state_slopes(
-                row_of(room, _LEFT, n), row_of(room, _TURNED, n), is_fast, share,
-                row_of(room, _DELTA, n), rows_of(room, _V0, _LAUNCHED, n),
-                rows_of(room, _FIXED, 6, n), rows_of(room, _PLACE, _PLACED, n),
-                rows_of(room, _STOP, _STOPPED, n), rows_of(room, _FOUND, STOP_FOUND, n),
-                rows_of(room, _FLOW, _FLOWN, n),
-            )  # fmt: skip
-            placed = placed_state(
-                row_of(room, _EAST, n), row_of(room, _NORTH, n), row_of(room, _SPIN, n),
-                row_of(room, _DECEL, n), row_of(room, _UNIT, n), row_of(room, _RADIUS, n),
-                row_of(room, _Q, n), row_of(room, _MOMENT, n), own,
-            )  # fmt: skip
-            into_rows(room, _PUT, n, placed)
-        row_by_row(room, _PUT, PLACED_STATES, count, numbers, start, streamed)
+            into_row(room, MOMENT, n, moments[n])
+            into_rows(room, TURNED, n, (headings[n], speeds[n], spins[n]))
+        for row in (MOMENT, TURNED, SHARE, FAST):
+            fill_up(room, row, count)
+        _find_places(room)
+        find_functions(room, splines, rates, sections, cells)
+        _find_jacobians(room)
+        row_by_row(room, PUT, PLACED_STATES, count, numbers, start, streamed)

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import lru_cache
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -299,12 +299,11 @@ def states(
         integrate(bodies, rows, others, each, moments, found, threads)
         found[HEADING] += directions(rows[0], rows[1])[each]
         told = _told(int(plain.sum()), int((~plain).sum()))
-    result = _states(found, moments, launches, which, shape, told)
     if slopes is None:
-        return result
-    return replace(
-        result, _jacobian=slopes.reshape(*shape, *slopes.shape[1:]), _table=table,
-        _kind=Kind(pressure, gyration) if bodies else None, _asked=(launches.matrix, which),
+        return _states(found, moments, launches, which, shape, told)
+    return _states(
+        found, moments, launches, which, shape, told, slopes.reshape(*shape, *slopes.shape[1:]),
+        (launches.matrix, which), table, Kind(pressure, gyration) if bodies else None,
     )  # fmt: skip
 
 
@@ -349,9 +348,9 @@ def _bodies(pressure: str | Law, gyration: float, delta: FloatArray) -> dict[flo
 
 def _states(
     out: FloatArray, moments: FloatArray, launches: Launches, which: npt.NDArray[np.int64],
-    shape: tuple[int, ...], explanation: str,
+    shape: tuple[int, ...], explanation: str, *differentiated: Any,
 ) -> States:  # fmt: skip
-    """Rows of states in their shape."""
+    """Rows of states in their shape; ``differentiated``: derivatives, and of what they are."""
     radius = launches.radius
     if radius.size > 1:
         radius = radius[which] if which.size else radius.copy()
@@ -359,4 +358,4 @@ def _states(
         radius.reshape(shape) if radius.size == moments.size else np.broadcast_to(radius, shape)
     )
     rows = out.reshape((STATE_ROWS, *shape))
-    return States(moments.reshape(shape).copy(), rows, radius, explanation)
+    return States(moments.reshape(shape).copy(), rows, radius, explanation, *differentiated)

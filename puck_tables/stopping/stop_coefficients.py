@@ -65,6 +65,11 @@ class StopCoefficients(Table):
         return polynomials
 
     @cached_property
+    def height_constants(self) -> FloatArray:
+        """The same, those of a power side by side, (14, 4)."""
+        return np.ascontiguousarray(self.constants.T)
+
+    @cached_property
     def time_inverse(self) -> FloatArray:
         """From the time that is left to the slip ratio."""
         return inverse_splines(self, with_time=True)

@@ -23,12 +23,12 @@ from puck_tables.kernels.compile import (
     LINE,
     allocating,
     inlined,
-    into_columns,
     into_rows,
     row_of,
     rows_of,
     spline_polynomials,
     stream_line,
+    turn_square,
     weighted_rows,
 )
 from puck_tables.kernels.spline import basis
@@ -51,11 +51,10 @@ STOP_ROWS = 5
 BY_VX, BY_VY, BY_SPIN, BY_DELTA, BY_DECEL, BY_RADIUS, BY_TIME = range(7)
 LAUNCH_COLUMNS = 6
 
-# what a place on the curve says of a stop: five functions, D of each, and derivatives by δ; and H
+# what a place on the curve says of a stop: five functions, D of each, and derivatives by δ
 T, ALONG, ACROSS, TURNED, WAY = range(STOP_FUNCTIONS)
 D, BY_HEIGHT = STOP_FUNCTIONS, 2 * STOP_FUNCTIONS
-TURN_RATE = 3 * STOP_FUNCTIONS
-STOP_FOUND = TURN_RATE + 1
+STOP_FOUND = 3 * STOP_FUNCTIONS
 # of a stop in the frame of its launch: value, by v, by a, by δ; J = 1
 BY_SPEED, BY_RIM, BY_TILT = 1, 2, 3
 OWN_COLUMNS = 4
@@ -75,12 +74,12 @@ Numbers = tuple[float, ...]
 
 @inlined
 def stop_functions(slopes: FloatArray, first: int, weights: Numbers, delta: float) -> Numbers:
-    """The functions of the stop at a place of the curve (16); ``slopes`` flat."""
+    """The functions of the stop at a place of the curve (15); ``slopes`` flat."""
     s, k = 2.0 * delta * delta - 1.0, 4.0 * delta
     f = spline_polynomials(slopes, first, weights, s, STOP_WIDTH, STOP_POWERS)
     return (
         f[0], f[1], f[2], f[3], f[4], f[5], f[6], f[7], f[8], f[9],
-        k * f[12], k * f[13], k * f[14], k * f[15], k * f[16], f[10],
+        k * f[12], k * f[13], k * f[14], k * f[15], k * f[16],
     )  # fmt: skip
 
 
@@ -180,7 +179,7 @@ def row_by_row(
     for n in range(0, whole, 4):
         for row in range(0, rows, 4):
             at = min(row, rows - 4)
-            into_columns(room, first + at, n, side, goal + rows * n + at, rows)
+            turn_square(room, (first + at) * BLOCK + n, BLOCK, side, goal + rows * n + at, rows)
     for n in range(whole, count):
         for row in range(rows):
             side[goal + rows * n + row] = room[(first + row) * BLOCK + n]
