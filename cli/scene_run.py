@@ -240,7 +240,8 @@ def _error(run: SceneRun) -> str:
     place, tol = run.speed_scale * time, run.scene.run.tol
     words = f"about {run.error_estimate * time:.1e} s, {run.error_estimate * place:.1e} m; "
     if run.error_estimate > tol:
-        words += f"tol = {tol:g} is out of reach, this motion amplifies errors; "
+        known = "a finer table of its friction law" if run.scene.floor.law else "finer steps"
+        words += f"tol = {tol:g} is out of reach, {known} helps no more; "
     return words + f"Q = {run.speed_scale:.4g} m/s, J = {run.rate_scale:.4g} m/s^2"
 
 

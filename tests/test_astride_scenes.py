@@ -153,3 +153,20 @@ def test_a_polygon_may_close_itself():
         for patch in (POLYGON, closed)
     ]
     assert ends[0] == ends[1]
+
+
+def test_corners_from_a_file(tmp_path):
+    """The same run, the file kept with the result, and drawn; a file that is none is named."""
+    path = tmp_path / "spot.csv"
+    rows = "\n".join(f"{x!r},{y!r}" for x, y in POLYGON.corners)
+    path.write_text(f"x,y\n{rows}\n")
+    named = pt.Floor(patches=[replace(POLYGON, corners=str(path))])
+    run = pt.Scene(PUCK, named, LAUNCH).simulate()
+    assert run.end_time == pt.Scene(PUCK, pt.Floor(patches=[POLYGON]), LAUNCH).simulate().end_time
+    assert list(run.files.values()) == [path.read_text()]
+    run.plot(tmp_path / "run.png")
+    for text, words in (("a,b\n1,x\n", "from 3 to 200"), (None, "cannot read")):
+        path.write_text(text) if text else path.unlink()
+        with pytest.raises(pt.InputError, match="corners") as caught:
+            pt.Scene(PUCK, named, LAUNCH)
+        assert words in str(caught.value) and str(path) in str(caught.value)

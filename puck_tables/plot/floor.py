@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from puck_tables.plot.style import GREY
+from puck_tables.scene.floor_patches import corners_of
 from puck_tables.scene.parts import Floor
 
 if TYPE_CHECKING:
@@ -74,7 +75,7 @@ def shades_of(floor: Floor, box: Box, highest: float) -> list[Shade]:
     for patch in floor.patches:
         share = patch.friction / (highest or 1.0)
         colour = (0.86 - 0.5 * share, 0.93 - 0.4 * share, 0.98 - 0.25 * share)
-        corners: Any = [tuple(row) for row in patch.corners]
+        corners: Any = list(map(tuple, corners_of(patch).tolist()))
         shades.append(Shade(patch.friction, corners, patch.centre, patch.radius, colour, True))
     return shades
 

@@ -10,12 +10,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables._core.safe_read import read_numbers
 from puck_tables.errors import InputError
 
 if TYPE_CHECKING:
     from puck_tables.scene.parts import Floor, Patch
 
 MOST_CORNERS = 200
+_MOST_BYTES = 1 << 16  # of a file of corners
 _FLAT = 1e-12  # of the square of its size: the area of a polygon that has none
 
 
@@ -25,7 +27,7 @@ def corners_of(patch: Patch) -> FloatArray:
     Raises
     ------
     InputError
-        If they are no corners of a polygon.
+        If they are no corners of a polygon, or their file cannot be read.
 
     Examples
     --------
@@ -35,10 +37,11 @@ def corners_of(patch: Patch) -> FloatArray:
     """
     if not patch.corners:
         return np.empty((0, 2))
-    good = not isinstance(patch.corners, str) and all(len(row) == 2 for row in patch.corners)
-    if not (good and 3 <= len(patch.corners) <= MOST_CORNERS):
-        raise InputError(f"corners must be rows of x and y in m, from 3 to {MOST_CORNERS}")
-    corners = tuple(map(tuple, patch.corners))
+    rows = read_numbers(patch.corners, _MOST_BYTES)
+    if not (rows.ndim == 2 and rows.shape[1] == 2 and 3 <= len(rows) <= MOST_CORNERS):
+        where = f"corners = {patch.corners!r}: it" if isinstance(patch.corners, str) else "corners"
+        raise InputError(f"{where} must be rows of x and y in m, from 3 to {MOST_CORNERS}")
+    corners = tuple(map(tuple, rows.tolist()))
     closed = len(corners) > 3 and corners[0] == corners[-1]  # as maps have them
     return _around(corners[:-1] if closed else corners)
 

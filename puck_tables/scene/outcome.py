@@ -62,8 +62,9 @@ class SceneRun(TimedResult):
     ``plan``: the model that was taken, and why.  ``energy_residual``: what the ledger misses, as a
     share of its largest entry.  ``error_estimate``: of the end time in
     units of Q/J and of places in Q²/J, with ``speed_scale`` = Q in m/s and ``rate_scale`` = J in
-    m/s² (the slip at the launch, and the largest of friction, forces and what a turning floor asks
-    over the mass; without slip Q² = J r), and of the times of rebounds from one wall.  It is above
+    m/s² (the slip hypot(v, rω) at the launch, and the largest of friction, forces and what a
+    turning floor asks over the mass; without slip Q² = J r), and of the times of rebounds from one
+    wall.  It is above
     ``run.tol`` where the motion amplifies errors so much that tol cannot be kept.
     ``columns``: arrays (n,) over time by name, each also an attribute (``run.x``); ``heading``,
     ``slip_speed`` and ``slip_angle`` are of the motion in the laboratory, 0 at rest there.

@@ -34,7 +34,9 @@ class Patch:
     friction: float = of("number", low=0.0, doc="in place of that around it", acts="patches")
     centre: tuple[float, float] = of("pair", (0.0, 0.0), "m", doc="of a round one", acts="")
     radius: float = of("number", 0.0, "m", low=0.0, doc="of a round one", acts="")
-    corners: Rows = of("rows", (), doc="rows of x and y in m, around a polygon", acts="")
+    corners: str | Rows = of(
+        "rows", (), file="", doc="CSV or rows of x and y in m, around a polygon", acts=""
+    )
 
 
 @dataclass(frozen=True)

@@ -224,22 +224,21 @@ def _scales(
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Scales of the slip and of what changes it, and the speed of the floor; (n,) of launches.
 
-    ``tol`` refers to the first two: Q is the slip at the launch over the floor, or of the floor
-    against a rail or pivot; where there is none, what the rate J brings over a radius.  J is the
-    largest of friction, given forces and what a turning floor asks, over the mass.
+    ``tol`` refers to the first two: Q is the slip hypot(u, rω) at the launch over the floor, or of
+    the floor against a rail or pivot; where there is none, what the rate J brings over a radius.  J
+    is the largest of friction, given forces and what a turning floor asks, over the mass.
     """
     puck, floor, hold = scene.puck, scene.floor, model.hold
     arm = states[:, [X, Y]] - floor.centre
     sx = floor.velocity[0] - floor.turning * arm[:, 1]
     sy = floor.velocity[1] + floor.turning * arm[:, 0]
     ground = np.hypot(sx, sy)
-    slips = [
+    speed = np.hypot(
         np.hypot(states[:, VX] - sx, states[:, VY] - sy),
-        puck.radius * np.abs(states[:, SPIN] - floor.turning),
-    ]
+        puck.radius * (states[:, SPIN] - floor.turning),
+    )
     if hold.kind in (RAIL, PIVOT):
-        slips.append(np.hypot(hold.vx - sx, hold.vy - sy))
-    speed = np.max(slips, axis=0)
+        speed = np.maximum(speed, np.hypot(hold.vx - sx, hold.vy - sy))
     lab = np.maximum(ground, np.hypot(states[:, VX], states[:, VY]))
     speed[speed <= RELATIVE_REST * (lab + puck.radius * abs(floor.turning))] = 0.0
     pull = np.maximum(regions.load.max(), strongest(model.forces, puck.radius, speed))

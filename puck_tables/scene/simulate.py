@@ -158,7 +158,9 @@ def _close_enough(
             break
         if doubt <= asked and (trials == TRIALS or in_vain == MOST_IN_VAIN):
             break
-        tol = max(FINER * tol, FINEST)
+        # the table of a law costs more the finer it is, and its error goes with its tolerance
+        share = max(FINER, 0.5 * asked / estimate) if scene.floor.law else FINER
+        tol = max(share * tol, FINEST)
     if doubt > asked:
         raise InputError(_met_at_once(scene, run.at_once))
     return found[-1]
