@@ -33,7 +33,8 @@ from puck_tables.cli.options import (
     "--output",
     type=FILE,
     metavar="FILE",
-    help="Save it: .h5 or .csv.  Without -o and --plot, CSV goes to stdout.",
+    help="Save it: .h5, .csv, .json, .jsonl or .parquet.  Without -o and --plot, CSV goes to "
+    "stdout.",
 )
 @output_options
 def limit_surface(

@@ -142,6 +142,9 @@ def test_wrenches_of_any_size():
     found = puck.holds(sizes[:, None] * [0.3, -0.4], 0.2 * sizes)
     np.testing.assert_allclose(found.margin * sizes, found.margin[2], rtol=1e-12)
     assert found.held.tolist() == [True, True, True, False, False]
+    small = pt.Puck(radius=0.04, friction=0.1, mass=0.2)
+    most = [small.holds((0.0, 0.0), torque).margin * torque for torque in (1.0, 1e307, 1.7e308)]
+    np.testing.assert_allclose(most, most[0], rtol=1e-6)  # the margin itself is less than 1e-308
     nothing = puck.holds((0.0, 0.0))
     assert bool(nothing) and nothing.margin == math.inf
 
@@ -156,6 +159,7 @@ def test_wrenches_of_any_size():
         (lambda p: p.holds(1.0), r"force must have two components \(fx, fy\) in N"),
         (lambda p: p.holds((1.0, 0.0), "strong"), "torque"),
         (lambda p: p.holds(np.zeros((3, 2)), np.zeros(2)), "torque"),
+        (lambda p: p.limit_surface().ellipsoid.gauge(math.nan, 1.0), "force"),
         (lambda p: pt.Puck(1.0).limit_surface(), "friction = 0"),
         (lambda p: pt.Puck(1.0).holds((1.0, 0.0)), "friction = 0"),
     ],

@@ -50,14 +50,18 @@ def holds(puck: Puck, force: npt.ArrayLike, torque: npt.ArrayLike) -> Hold:
     rows = np.stack([one.ravel() for one in (fx, fy, moment)])
     regions = regions_of(Scene(puck))
     dry = dry_in(regions, 0)
-    # wrenches over their largest part: no square leaves floating point
-    scale = np.maximum(np.abs(rows[:2]).max(axis=0), np.abs(rows[2]) / puck.radius)
-    unit = np.where(scale > 0.0, scale, 1.0)
+    # wrenches over their largest number, then over their largest force: no square, and no force of
+    # a torque over the radius, leaves floating point
+    largest = np.abs(rows).max(axis=0)
+    acts = largest > 0.0
+    largest = np.where(acts, largest, 1.0)
+    rows = rows / largest
+    unit = np.maximum(np.abs(rows[:2]).max(axis=0), np.abs(rows[2]) / puck.radius)
+    unit = np.where(acts, unit, 1.0)
     share, heat = np.empty(unit.size), np.empty(unit.size)
     _fill(dry, puck.radius, dry.load * rows / unit, share, heat)
-    share = np.where(scale > 0.0, share, 0.0)
     with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
-        margin = np.where(share > 0.0, dry.load / unit / share, np.inf)
+        margin = np.where(acts, dry.load / unit / share / largest, np.inf)
         held = (1.0 / margin - 1.0) * heat <= SLACK * dry.load
     return Hold(held.reshape(fx.shape), margin.reshape(fx.shape))
 

@@ -15,9 +15,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 from scipy.optimize import least_squares
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables._core.real import finite_array
 
 _MOST_CROSS = 6.0  # B/√(A C) of a convex form
 
@@ -60,7 +62,11 @@ class Model:
             f"(M/{self.b:.5g})^4 = 1"
         )
 
-    def gauge(self, force: FloatArray, torque: FloatArray) -> FloatArray:
+    def _scaled(self, force: npt.ArrayLike, torque: npt.ArrayLike) -> tuple[FloatArray, FloatArray]:
+        force, torque = finite_array("force", force, "N"), finite_array("torque", torque, "N m")
+        return force / self.a, torque / self.b
+
+    def gauge(self, force: npt.ArrayLike, torque: npt.ArrayLike) -> FloatArray:
         """How large a wrench is: 1 on the surface, less inside.
 
         Parameters
@@ -71,23 +77,30 @@ class Model:
         -------
         array of that shape
 
+        Raises
+        ------
+        InputError
+            If one is not a finite number.
+
         Examples
         --------
-        >>> Model(2, 2.0, 1.0, 2.0, 0.0, 0.0).gauge(np.array(1.0), np.array(0.0)).item()
+        >>> Model(2, 2.0, 1.0, 2.0, 0.0, 0.0).gauge(1.0, 0.0).item()
         0.5
         """
-        return _gauge(np.asarray(force) / self.a, np.asarray(torque) / self.b, self.cross)
+        return _gauge(*self._scaled(force, torque), self.cross)
 
-    def twist(self, force: FloatArray, torque: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def twist(self, force: npt.ArrayLike, torque: npt.ArrayLike) -> tuple[FloatArray, FloatArray]:
         """The direction of slip under a wrench: the gradient of the gauge, (v, ω) of any length.
+
+        Of no wrench there is none: (0, 0).
 
         Examples
         --------
-        >>> v, w = Model(2, 2.0, 1.0, 2.0, 0.0, 0.0).twist(np.array(1.0), np.array(0.5))
+        >>> v, w = Model(2, 2.0, 1.0, 2.0, 0.0, 0.0).twist(1.0, 0.5)
         >>> float(w / v)
         2.0
         """
-        f, m = np.asarray(force) / self.a, np.asarray(torque) / self.b
+        f, m = self._scaled(force, torque)
         return (2.0 * f**3 + self.cross * f * m**2) / self.a, (
             2.0 * m**3 + self.cross * f**2 * m
         ) / self.b
@@ -98,7 +111,7 @@ def _gauge(f: FloatArray, m: FloatArray, cross: float) -> FloatArray:
 
 
 def ellipsoid(curve: FloatArray, unit: float, radius: float) -> Model:
-    """The best ellipsoid.
+    """The best ellipsoid, by least squares of the radial error.
 
     Parameters
     ----------
@@ -117,7 +130,7 @@ def ellipsoid(curve: FloatArray, unit: float, radius: float) -> Model:
 
 
 def quartic(curve: FloatArray, unit: float, radius: float) -> Model:
-    """The best convex polynomial of order 4, likewise.
+    """The best convex polynomial of order 4, by least squares of the radial error.
 
     Examples
     --------

@@ -91,12 +91,12 @@ class LimitSurface(Result):
 
     @cached_property
     def ellipsoid(self) -> Model:
-        """The best ellipsoid (F/a)² + (M/b)² = 1."""
+        """The best ellipsoid (F/a)² + (M/b)² = 1, by least squares of the radial error."""
         return ellipsoid(self._curve, self.unit_force, self.puck.radius)
 
     @cached_property
     def quartic(self) -> Model:
-        """The best convex polynomial of order 4, A F⁴ + B F² M² + C M⁴ = 1."""
+        """The best convex polynomial of order 4, A F⁴ + B F² M² + C M⁴ = 1, likewise."""
         return quartic(self._curve, self.unit_force, self.puck.radius)
 
     @property
