@@ -129,7 +129,9 @@ def puck_options(mass: bool, kind: click.ParamType = NUMBER) -> Callable[[Comman
         click.option("--decel", type=kind, help="J = f g in m/s^2 instead.  [default: 1]"),
     ]
     if mass:
-        options.insert(4, click.option("--mass", type=NUMBER, help="Mass in kg, for energies and forces."))
+        options.insert(
+            4, click.option("--mass", type=NUMBER, help="Mass in kg (energies, forces).")
+        )
 
     def decorate(command: Command) -> Command:
         for option in reversed(options):

@@ -18,7 +18,7 @@ from puck_tables.errors import InputError
 if TYPE_CHECKING:
     from puck_tables.bulk.finish import Stored
     from puck_tables.result import TimedResult
-    from puck_tables.scene.outcome import SceneRun
+    from puck_tables.scene.outcome import Event, SceneRun
     from puck_tables.scene.sample import SceneSample
     from puck_tables.scene.scene import Scene
     from puck_tables.scene.sweep import SceneMap
@@ -246,13 +246,24 @@ def _error(run: SceneRun) -> str:
 
 
 def _joule(energy: float) -> str:
-    return f"{energy:.6g} J"
+    return f"{energy + 0.0:.6g} J"  # a zero without its sign
+
+
+def _event(scene: Scene, event: Event) -> str:
+    """What happened, and at which wall, edge, border, patch or strip."""
+    at, number = {"impact": "wall", "contact": "wall", "edge": "edge"}.get(event.what), event.which
+    if event.what in ("entry", "exit"):
+        borders = 0 if scene.floor.strips is None else len(scene.floor.strips.borders)
+        at, number = ("border", number) if number < borders else ("patch", number - borders)
+    elif scene.floor.strips is not None and at is None:
+        at = "strip"
+    return event.what if at is None else f"{event.what} ({at} {number})"
 
 
 def _events(run: SceneRun) -> str:
     if not run.events:
         return "none"
-    told_of = [f"{event.what} ({event.which}) at {event.time:.6g} s" for event in run.events[:6]]
+    told_of = [f"{_event(run.scene, event)} at {event.time:.6g} s" for event in run.events[:6]]
     more = len(run.events) - 6
     return ", ".join(told_of) + (f" and {more} more" if more > 0 else "")
 

@@ -15,6 +15,7 @@ _ROUNDING = 1e-14  # of energies
 
 def report(run: WorldRun) -> str:
     """What happened in two sentences; a table of pucks; impacts, energies, and how sure it is."""
+    from puck_tables.scene.plan import EMPIRICAL
     from puck_tables.world.outcome import ways_of
 
     lines = {
@@ -22,8 +23,10 @@ def report(run: WorldRun) -> str:
         "energy": _energy(run),
         "heat": _heat(run),
         "error": _error(run),
-        "model": ways_of(run.scene).replace("\n", ", "),
+        "model": ", ".join(way for way in ways_of(run.scene).splitlines() if way != EMPIRICAL),
     }
+    if run.scene.lateral.strength != 0.0:
+        lines["lateral"] = EMPIRICAL
     parts = [
         plainly(run),
         "\n".join(_pucks(run)),
@@ -43,10 +46,12 @@ def plainly(run: WorldRun) -> str:
             f"{_counted(count, 'puck')}: nothing moves.\n"
             "Send one off: --set puck[0].launch.velocity=[1,0]"
         )
+    left = sum(event.what in ("pocket", "edge") for event in run.events)
     if run.end == "at rest":
-        first = f"{_counted(count, 'puck')} come to rest after {run.end_time:.4g} s and {impacts}."
-        if count == 1:
-            first = first.replace("come", "comes", 1)
+        rest = count - left
+        what = f"{rest or 'none'} of {count} pucks" if left else _counted(count, "puck")
+        verb = "comes" if rest == 1 else "come"
+        first = f"{what} {verb} to rest after {run.end_time:.4g} s and {impacts}."
     else:
         free = [not piece.path for piece in pieces_of(run.scene)]
         moving = int((run.stop_times > run.end_time)[free].sum())
@@ -147,6 +152,8 @@ def _energy(run: WorldRun) -> str:
 
 def _heat(run: WorldRun) -> str:
     """What floor, rims and impacts took; what is no more than rounding is told as 0."""
+    from puck_tables.scene.parts import Drag
+
     works = abs(run.work_driven) + abs(run.work_given) + abs(run.work_support)
     unseen = _ROUNDING * (run.kinetic_energy + works)
     floor, rims, impacts = (
@@ -156,7 +163,8 @@ def _heat(run: WorldRun) -> str:
     pushing = f"{rims:.6g} J rims, " if rims else ""
     rounding = run.energy_residual < _ROUNDING
     missed = f"under {_ROUNDING:g}" if rounding else f"{run.energy_residual:.1e}"
-    return f"{floor:.6g} J floor, {pushing}{impacts:.6g} J impacts; ledger misses {missed} of it"
+    braked = "floor" if run.scene.drag == Drag() else "floor and drag"
+    return f"{floor:.6g} J {braked}, {pushing}{impacts:.6g} J impacts; ledger misses {missed} of it"
 
 
 def _error(run: WorldRun) -> str:

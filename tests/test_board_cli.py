@@ -22,7 +22,8 @@ def test_a_report_says_first_what_happened() -> None:
     said = puck("simulate", "--scene", "carrom-break").stdout
     run = Scene.load("carrom-break").simulate()
     first, second = said.splitlines()[:2]
-    assert first == f"20 pucks come to rest after {run.end_time:.4g} s and {run.impacts} impacts."
+    told = f"18 of 20 pucks come to rest after {run.end_time:.4g} s and {run.impacts} impacts."
+    assert first == told
     assert second == "2 fall into pockets (white 1, black 2)."
     rows = {line[:9].strip(): line for line in said.splitlines()}
     assert f"in pocket 1 at {run.stop_times[0]:.6g} s" in rows["white 1"]
@@ -145,3 +146,10 @@ def test_check_says_how_pucks_would_be_moved() -> None:
     assert "[[puck]]" in puck("scene", "show", "crokinole").stdout
     fields = puck("scene", "fields").stdout
     assert "puck[0].launch.velocity" in fields and "a colour, '#rrggbb'" in fields
+
+
+def test_what_the_floor_and_the_air_took_is_told_together() -> None:
+    more = ("--set", "drag.quadratic=0.01", "--set", "lateral.strength=0.1")
+    said = puck("simulate", "--scene", "curling-take-out", *more).stdout
+    assert " J floor and drag, " in said
+    assert said.count("empirical, as somebody fitted it") == 1

@@ -136,10 +136,12 @@ def _law_table(law: SpeedLaw | FrictionLaw, scene: Scene, top: float, share: flo
         if error.reachable is None:
             raise
         finest = rounded_up(error.reachable / LAW_SHARE)
+        bends, smoother = "its exponent", "a law that bends less at its start"
+        if isinstance(law, SpeedLaw):
+            bends, smoother = "its corners", "a law with fewer points"
         raise AccuracyError(
-            f"tol = {scene.run.tol:g} is out of reach with the corners of the friction law "
-            f"{law_name(scene)}: give run.tol (or --tol) of {finest:g} or more, or a law with "
-            "fewer points"
+            f"tol = {scene.run.tol:g} is out of reach of a table of {law_name(scene)}, with "
+            f"{bends}: give run.tol (or --tol) of {finest:g} or more, or {smoother}"
         ) from None
 
 
