@@ -51,7 +51,7 @@ def cases_of(functions: Sequence[str], tol: float, kind: Puck | None = None) -> 
     kind : whose pressure law and gyration; default: homogeneous, under uniform pressure
     """
     made = {"stop": _stops, "state": _states, "turn": _turns, "resultants": _resultants}
-    digits = round(-math.log10(tol)) + 3
+    digits = round(-math.log10(tol)) + 2
     cases = {}
     for name in functions:
         width, rows = made[name](Puck(radius=1.0) if kind is None else kind)
@@ -77,6 +77,7 @@ def _launched(puck: Puck) -> FloatArray:
     launches = np.array(_LAUNCHES)
     kind, tallest, _ = _kind(puck)
     if kind:
+        launches = np.round(launches, 7)  # no limit ratio of theirs: fewer signs
         launches[:, 3] = np.floor(np.round(2.0 * launches[:, 3]) * 500.0 * tallest) / 1000.0
     return launches
 

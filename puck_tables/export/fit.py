@@ -1,18 +1,23 @@
 """The smallest tables of an error: uniform B-splines in ξ, polynomials in 2δ² − 1, whole numbers.
 
-What the stop table holds is fitted again on its own axes (:mod:`puck_tables.stopping.axes`), on
-either side of φ = π/4, with the degree, the cells and the powers that cost least.  The B-splines
-are a partition of unity: coefficients rounded to whole quanta err by no more than half a quantum.
+What the stop table holds is fitted again, on either side of φ = π/4, with the degree, the cells,
+the powers and the digits that cost least.  Of a place on the curve, 2k/(1 + k) = q² with
+q = ξ (2 − ξ): a root less than on the axis of the stop table (:mod:`puck_tables.stopping.axes`),
+and fewer cells for all errors that are exported but the smallest.  The B-splines are a partition of
+unity: coefficients rounded to whole quanta err by no more than half a quantum.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
 from numpy.polynomial import chebyshev
+from scipy.interpolate import make_interp_spline
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import AccuracyError
@@ -20,41 +25,15 @@ from puck_tables.stopping.axes import HEIGHTS, heights
 from puck_tables.stopping.stop_table import StopTable
 
 DEGREES = range(3, 8)
-CELLS = (
-    4,
-    5,
-    6,
-    7,
-    8,
-    9,
-    10,
-    11,
-    12,
-    14,
-    16,
-    18,
-    20,
-    22,
-    24,
-    27,
-    30,
-    33,
-    36,
-    40,
-    45,
-    50,
-    56,
-    64,
-    72,
-    80,
-    90,
-)
+CELLS = (*range(4, 28), *range(28, 48, 2), *range(48, 97, 4))
 # Of the error asked for: of the functions of a stop, and of the curve and its inverse, so that what
 # is made of all of them keeps it (measured, tests/test_export_error.py).
 STOP_SHARE, CURVE_SHARE, CONSTANT_SHARE = 0.5, 0.3, 0.02
-LAW_STOP_SHARE, ORBIT_SHARE, PATCH_SHARE = 0.7, 0.6, 0.25
-# Of a share: what whole quanta may take, in a file whose tables are many, and dropped powers.
-ROUNDING, COARSE_ROUNDING, _POWERS = 0.1, 0.45, 0.65
+LAW_STOP_SHARE, ORBIT_SHARE, PATCH_SHARE, LAW_CONSTANT_SHARE = 0.48, 0.44, 0.25, 0.05
+_POWERS = 0.65  # of a share: what dropped powers may take
+# quanta that are tried, of the largest that rounding alone would allow; cells beyond the fewest
+_QUANTA, _MORE_CELLS = (0.15, 0.25, 0.4, 0.5, 0.65, 0.8, 1.0), 3
+_NODES = 769  # at which plain pucks are fitted
 _OUT_OF_REACH = "no table to export keeps an error of {:.1e}: ask for a larger one"
 # in the order of the programs
 STOP_COLUMNS = [0, 1, 2, 3, 4]  # time, along, across, length, body
@@ -65,11 +44,12 @@ CURVE_COLUMNS = [5, 6]  # κR and S/δ
 class Fitted:
     """A table of whole numbers as the programs read it.
 
-    ``numbers``: array (sides, cells + degree, powers, functions); times ``quantum``, without the
-    factorial of the degree that unscaled B-splines carry, they are coefficients.
+    ``cells``: of each side; ``numbers``: array (rows, powers, functions), cells + degree rows for
+    each side; times ``quantum``, without the factorial of the degree that unscaled B-splines carry,
+    they are coefficients.
     """
 
-    cells: int
+    cells: tuple[int, ...]
     degree: int
     quantum: float
     numbers: npt.NDArray[np.int64]
@@ -77,7 +57,12 @@ class Fitted:
     @property
     def powers(self) -> int:
         """How many powers of 2δ² − 1."""
-        return int(self.numbers.shape[2])
+        return int(self.numbers.shape[1])
+
+    @property
+    def rows(self) -> list[int]:
+        """Where the rows of each side begin, and where all end."""
+        return [0, *np.cumsum(np.array(self.cells) + self.degree).tolist()]
 
 
 def weights(xi: FloatArray, cells: int, degree: int) -> FloatArray:
@@ -107,29 +92,37 @@ def weights(xi: FloatArray, cells: int, degree: int) -> FloatArray:
 def functions_of(table: StopTable) -> tuple[FloatArray, FloatArray, FloatArray]:
     """What is fitted, at the nodes: stop, curve and inverse, each (2, nodes, heights, functions).
 
-    Both sides from k = 0 to k = 1.
+    Both sides from k = 0 to k = 1; the inverse on its own axis, that of the table.
     """
     n = table.axis.cells
     sides = np.stack([table.values[: n + 1], table.values[: n - 1 : -1]])
+    xi = np.linspace(0.0, 1.0, _NODES)
+    there = 1.0 - np.sqrt(1.0 - np.sqrt(xi * (2.0 - xi)))
+    along = make_interp_spline(np.linspace(0.0, 1.0, n + 1), np.moveaxis(sides, 1, 0), 5)
+    moved = np.moveaxis(along(there), 0, 1)
     splines = table.time_inverse  # (2, nodes + 2, powers)
     at_nodes = splines[:, :-2] + 4.0 * splines[:, 1:-1] + splines[:, 2:]
     s = 2.0 * heights() ** 2 - 1.0
     inverse = at_nodes @ (s ** np.arange(HEIGHTS)[:, None])
-    return sides[..., STOP_COLUMNS], sides[..., CURVE_COLUMNS], inverse[..., None]
+    return moved[..., STOP_COLUMNS], moved[..., CURVE_COLUMNS], inverse[..., None]
 
 
-def fitted(values: FloatArray, error: float, haste: int = 1, rounding: float = ROUNDING) -> Fitted:
+def fitted(
+    values: FloatArray, error: float, haste: int = 1, even: bool = False,
+    degrees: Iterable[int] = DEGREES,
+) -> Fitted:  # fmt: skip
     """The cheapest table that is wrong by no more than ``error`` at any node and height.
 
-    Cheapest is the least product of the numbers on an axis and, to the power of ``haste``, of how
-    many of them are read for one look-up.
+    Cheapest is the least product of the signs that write it and, to the power of ``haste``, of how
+    many rows are read for one look-up.
 
     Parameters
     ----------
     values : array (sides, nodes, heights, functions), nodes uniform in ξ from 0 to 1
     error : in the unit of the values
     haste : how much speed counts against size
-    rounding : share of the error that whole quanta may take
+    even : whether all sides have the same cells; else each has those that it needs
+    degrees : that are tried
 
     Raises
     ------
@@ -141,59 +134,152 @@ def fitted(values: FloatArray, error: float, haste: int = 1, rounding: float = R
     >>> xi = np.linspace(0.0, 1.0, 101)[None, :, None, None]
     >>> wave = np.cos(3.0 * xi) * (1.0 + heights()[:, None] ** 2) * np.ones((2, 1, 1, 1))
     >>> found = fitted(wave, 1e-6)
-    >>> found.cells, found.degree, found.powers
-    (6, 5, 2)
+    >>> found.cells, found.degree, found.powers, found.rows
+    ((6, 6), 5, 2, [0, 11, 22])
     """
-    sides, nodes, count = values.shape[:3]
-    xi = np.arange(nodes) / (nodes - 1.0)
-    s = 2.0 * heights(count) ** 2 - 1.0
-    by_height = np.moveaxis(values, 2, 0).reshape(count, -1)
-    series = chebyshev.chebfit(s, by_height, count - 1)
-    dropped = np.abs(series)[::-1].cumsum(axis=0)[::-1].max(axis=1)
-    powers = int(np.argmax(np.append(dropped, 0.0) <= _POWERS * error))
-    if dropped[-1] ** 2 > _POWERS * error * dropped[-2]:  # the next power would be missed
-        raise AccuracyError(_OUT_OF_REACH.format(error))
-    to_powers = np.zeros((powers, powers))
-    for m in range(powers):
-        to_powers[: m + 1, m] = chebyshev.cheb2poly(np.eye(powers)[m, : m + 1])
-    by_power = (to_powers @ series[:powers]).reshape(powers, sides, nodes, -1)
-    wanted = by_power.transpose(1, 2, 0, 3).reshape(sides, nodes, -1)
-    quantum = _quantum(rounding * error / powers)
-    sizes = np.array([one for one in CELLS if one < nodes // 4])
-
-    def numbers_of(cells: int, degree: int) -> npt.NDArray[np.int64] | None:
-        """Those of a table, if it is good enough."""
-        matrix = weights(xi, cells, degree)
-        solved = np.linalg.lstsq(matrix, np.concatenate(list(wanted), axis=1), rcond=None)[0]
-        numbers = np.rint(np.stack(np.split(solved, sides, axis=1)) / quantum)
-        got = (matrix @ (quantum * numbers)).reshape(sides, nodes, powers, -1)
-        found = np.einsum("snpf,ph->snhf", got, s ** np.arange(powers)[:, None])
-        if np.abs(found - values).max() > error:
-            return None
-        return numbers.astype(np.int64).reshape(sides, cells + degree, powers, -1)
-
+    fits = _Fits(values, error)
+    sides = range(len(values))
+    groups = [list(sides)] if even else [[side] for side in sides]
     best: tuple[float, Fitted] | None = None
-    for degree in DEGREES:
-        low, high = -1, sizes.size  # the more cells, the better the fit
-        while high - low > 1:
-            middle = (low + high) // 2
-            cells = int(sizes[middle])
-            numbers = numbers_of(cells, degree)
-            if numbers is None:
-                low = middle
-                continue
-            high, cost = middle, (cells + degree) * (degree + 1.0) ** haste
-            if best is None or cost < best[0]:
-                best = cost, Fitted(cells, degree, quantum, numbers)
+    for degree in degrees:
+        tried = [fits.cells_to_try(group, degree) for group in groups]
+        for quantum in fits.quanta(degree):
+            found = [
+                fits.shortest(group, degree, cells, quantum)
+                for group, cells in zip(groups, tried, strict=True)
+            ]
+            parts = [numbers for group in found for numbers in group]
+            cost = sum(map(_signs, parts)) * (degree + 1.0) ** haste
+            if all(found) and (best is None or cost < best[0]):
+                cells = tuple(len(numbers) - degree for numbers in parts)
+                best = cost, Fitted(cells, degree, quantum, np.concatenate(parts))
     if best is None:
         raise AccuracyError(_OUT_OF_REACH.format(error))
     return best[1]
 
 
+def fitted_apart(values: FloatArray, error: float) -> list[Fitted]:
+    """A table for each side, of powers and digits of its own; all of one degree, the cheapest.
+
+    Raises
+    ------
+    AccuracyError
+        If none is good enough.
+
+    Examples
+    --------
+    >>> xi = np.linspace(0.0, 1.0, 101)[:, None, None]
+    >>> flat, high = np.cos(xi) + 0.0 * heights()[:, None], np.cos(xi) * heights()[:, None] ** 4
+    >>> [(one.cells, one.powers) for one in fitted_apart(np.stack([flat, high]), 1e-6)]
+    [((4,), 1), ((4,), 3)]
+    """
+    best: list[Fitted] = []
+    for degree in DEGREES:
+        try:
+            found = [fitted(side[None], error, degrees=[degree]) for side in values]
+        except AccuracyError:
+            continue
+        if not best or _cost(found) < _cost(best):
+            best = found
+    if not best:
+        raise AccuracyError(_OUT_OF_REACH.format(error))
+    return best
+
+
+def _cost(tables: list[Fitted]) -> float:
+    return sum(_signs(table.numbers) * (table.degree + 1.0) for table in tables)
+
+
+@lru_cache(maxsize=256)
+def _solver(nodes: int, cells: int, degree: int) -> tuple[FloatArray, FloatArray]:
+    """B-splines at nodes, and what makes the best coefficients of values there."""
+    matrix = weights(np.arange(nodes) / (nodes - 1.0), cells, degree)
+    solver: FloatArray = np.asarray(np.linalg.pinv(matrix), dtype=np.float64)
+    return matrix, solver
+
+
+class _Fits:
+    """Fits of values within an error."""
+
+    def __init__(self, values: FloatArray, error: float) -> None:
+        self._values, self._error = values, error
+        sides, nodes, count = values.shape[:3]
+        s = 2.0 * heights(count) ** 2 - 1.0
+        by_height = np.moveaxis(values, 2, 0).reshape(count, -1)
+        series = chebyshev.chebfit(s, by_height, count - 1)
+        dropped = np.abs(series)[::-1].cumsum(axis=0)[::-1].max(axis=1)
+        powers = int(np.argmax(np.append(dropped, 0.0) <= _POWERS * error))
+        if dropped[-1] ** 2 > _POWERS * error * dropped[-2]:  # the next power would be missed
+            raise AccuracyError(_OUT_OF_REACH.format(error))
+        to_powers = np.zeros((powers, powers))
+        for m in range(powers):
+            to_powers[: m + 1, m] = chebyshev.cheb2poly(np.eye(powers)[m, : m + 1])
+        by_power = (to_powers @ series[:powers]).reshape(powers, sides, nodes, -1)
+        self._wanted = by_power.transpose(2, 1, 0, 3)  # nodes, sides, powers, functions
+        self._at_heights = s ** np.arange(powers)[:, None]
+        self._sizes = [one for one in CELLS if one < nodes // 4]
+        self._solved: dict[tuple[int, int], tuple[FloatArray, FloatArray]] = {}
+
+    def quanta(self, degree: int) -> list[float]:
+        """What is tried: short numbers when the factorial of the degree is taken out."""
+        whole = math.factorial(degree)
+        largest = 2.0 * self._error / len(self._at_heights) / whole
+        return [whole * float(f"{share * largest:.2g}") for share in _QUANTA]
+
+    def cells_to_try(self, group: list[int], degree: int) -> list[int]:
+        """The fewest cells that are good enough, and the next: the more cells, the better."""
+        low, high = -1, len(self._sizes)
+        while high - low > 1:
+            middle = (low + high) // 2
+            _, exact = self._solution(degree, self._sizes[middle])
+            if all(self._is_good(degree, exact[:, side], side) for side in group):
+                high = middle
+            else:
+                low = middle
+        return self._sizes[high : high + _MORE_CELLS]
+
+    def shortest(
+        self, group: list[int], degree: int, tried: list[int], quantum: float
+    ) -> list[npt.NDArray[np.int64]]:
+        """The numbers of each side of a group with the fewest signs; empty if none are good."""
+        best: list[npt.NDArray[np.int64]] = []
+        for cells in tried:
+            _, exact = self._solution(degree, cells)
+            whole = [np.rint(exact[:, side] / quantum) for side in group]
+            if all(
+                self._is_good(degree, quantum * numbers, side)
+                for numbers, side in zip(whole, group, strict=True)
+            ):
+                found = [numbers.astype(np.int64) for numbers in whole]
+                if not best or sum(map(_signs, found)) < sum(map(_signs, best)):
+                    best = found
+        return best
+
+    def _solution(self, degree: int, cells: int) -> tuple[FloatArray, FloatArray]:
+        """B-splines at the nodes, and the coefficients (cells + degree, sides, powers, …)."""
+        if (degree, cells) not in self._solved:
+            matrix, solver = _solver(len(self._wanted), cells, degree)
+            solved = solver @ self._wanted.reshape(len(self._wanted), -1)
+            self._solved[degree, cells] = matrix, solved.reshape(-1, *self._wanted.shape[1:])
+        return self._solved[degree, cells]
+
+    def _is_good(self, degree: int, coefficients: FloatArray, side: int) -> bool:
+        """Whether a spline of one side is within the error at all nodes and heights."""
+        matrix, _ = self._solution(degree, len(coefficients) - degree)
+        got = np.tensordot(matrix, coefficients, axes=1)
+        found = np.einsum("npf,ph->nhf", got, self._at_heights)
+        return bool(np.abs(found - self._values[side]).max() <= self._error)
+
+
+def _signs(numbers: npt.NDArray[np.int64]) -> int:
+    """How many signs write numbers, each with its comma."""
+    return sum(len(str(number)) + 1 for number in numbers.ravel().tolist())
+
+
 def fitted_constants(constants: FloatArray, error: float) -> Fitted:
     """Polynomials (rows, powers) in 2δ² − 1 cut to the powers and digits that an error needs.
 
-    As a table of no cells: numbers (rows, 1, powers, 1).
+    As a table without cells: numbers (rows, powers, 1).
     """
     rows, count = constants.shape
     series = np.zeros((rows, count))
@@ -208,7 +294,7 @@ def fitted_constants(constants: FloatArray, error: float) -> Fitted:
         kept[row, : polynomial.size] = polynomial
     quantum = _quantum(error / count)
     whole = np.rint(kept / quantum).astype(np.int64)
-    return Fitted(0, 0, quantum, whole.reshape(rows, 1, powers, 1))
+    return Fitted((), 0, quantum, whole.reshape(rows, powers, 1))
 
 
 def _quantum(largest: float) -> float:

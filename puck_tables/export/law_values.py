@@ -11,15 +11,18 @@ pure spin to the limit ratio.  With θ the logarithm of the time that is left,
     du/dθ = −T (ρ_∥ − (r²/2k²) ρ_ω),    dψ/dθ = T sin φ ρ_⊥,    u = ln(rω/v),
 
 (Salnikova, Treschev, Gallyamov 2012, eq. 6.2–6.7), T J/Q the time to the stop.  θ = 0 where an
-orbit crosses its line; before and after, |θ| = REACH ξ²/(1 − ξ), ξ from 0 to 1.
+orbit crosses its line.  Before and after, an orbit comes to its end like exp(−z), z = rate |θ|: so
+seen, orbits of all heights and laws are much alike, and few powers of δ² tell them apart.  Places
+on them are z = REACH x²/(1 − x), x = end ξ; from ξ = 1 on nothing changes any more.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -34,10 +37,31 @@ from puck_tables.stopping.axes import heights
 from puck_tables.stopping.stop_section import stops_at
 
 NODES, HEIGHTS = 385, 14
-REACH = 8.0
+REACH = 16.0
+TURN_UNIT = 1.5  # of headings: they take less of the error than places on the orbits do
 _FINEST, _SHARE = 2e-11, 0.02  # of stops; of the error asked for
-_LAST, _STEP = 120.0, 1e-13  # the largest |θ| that is followed, and the local error
+_LAST, _STEP = 40.0, 1e-13  # the largest z that is followed, and the local error
+_TAIL = 0.1  # of the error asked for: what may still change after the end of a table
+_TRIED = 401  # places at which it is seen what still changes
+_BESIDE = 0.02  # of ln(rω/v): how far beside the limit it is seen how fast it draws orbits
 _INSIDE = 0.01  # a line so far from all limits is on the orbit
+
+
+class Orbits(NamedTuple):
+    """The two orbits of the pucks of a law.
+
+    ``pieces``: array (4, nodes, heights, 2), from pure sliding before and after θ = 0, from pure
+    spin before and after it: before it (1 ± c) exp(z), after it c less its limit; and the regular
+    part of the heading over the share of the largest δ, times the rate over its unit.
+    ``of_heights``: array (heights, 9): the limit of c; c at θ = 0 of both orbits; the rates, and
+    the turnings per θ over that share, in pure sliding, in pure spin and at the limit.
+    ``rate_units``: of the three rates.  ``end``: x at ξ = 1.
+    """
+
+    pieces: FloatArray
+    of_heights: FloatArray
+    rate_units: list[float]
+    end: float
 
 
 def marks_of(law: Law) -> FloatArray:
@@ -91,6 +115,17 @@ class LawValues:
         return np.repeat(0.5 * np.diff(self.marks), 2)
 
     @cached_property
+    def origins(self) -> FloatArray:
+        """The mark of each side (2 m − 2,), ascending."""
+        return self.marks[(np.arange(self.extents.size) + 1) // 2]
+
+    @cached_property
+    def borders(self) -> FloatArray:
+        """C between the sides (2 m − 3,), ascending: marks and the middles between them."""
+        middles = 0.5 * (self.marks[1:] + self.marks[:-1])
+        return np.sort(np.append(middles, self.marks[1:-1]))
+
+    @cached_property
     def pucks(self) -> list[Puck]:
         """One of each height of the fit, ascending."""
         shares = heights(HEIGHTS) * self.tallest
@@ -111,9 +146,9 @@ class LawValues:
     def phi(self) -> FloatArray:
         """Slip angles of the nodes (sides, nodes)."""
         sides = np.arange(self.extents.size)
-        owner, way = (sides + 1) // 2, np.where(sides % 2, -1.0, 1.0)
+        way = np.where(sides % 2, -1.0, 1.0)
         off = (way * self.extents)[:, None] * np.linspace(0.0, 1.0, NODES) ** 4
-        c = self.marks[owner][:, None] + off
+        c = self.origins[:, None] + off
         phi = np.arctan2(1.0 + c, 1.0 - c)
         # next to pure sliding and pure spin from the distance
         phi[0] = np.arctan2(off[0], 2.0 - off[0])
@@ -141,16 +176,11 @@ class LawValues:
         return np.stack(found, axis=2)
 
     @cached_property
-    def orbits(self) -> tuple[FloatArray, FloatArray]:
-        """The orbits (4, nodes, heights, 2), and what depends on the height alone (heights, 7).
-
-        From pure sliding and from pure spin; before θ = 0 (1 ± c) exp(rate θ), after it c, and the
-        regular part of the heading over δ.  The limit of c, the turning over δ per θ there and in
-        pure spin, and for both orbits the rates and c at θ = 0.
-        """
+    def orbits(self) -> Orbits:
+        """The two orbits, from pure sliding and from pure spin."""
         limits = np.array([_c(puck.limit_ratio) for puck in self.pucks])
         inertia, times = self.pucks[0].body.inertia, self.stops[..., 0]
-        return _orbits(self.law, inertia, self.marks, self.extents, times, limits)
+        return _orbits(self.law, inertia, self.marks, self.extents, times, limits, self.tol)
 
 
 @lru_cache(maxsize=8)
@@ -166,9 +196,9 @@ def _c(ratio: float) -> float:
 
 def _orbits(
     law: Law, inertia: float, marks: FloatArray, extents: FloatArray, times: FloatArray,
-    limits: FloatArray,
-) -> tuple[FloatArray, FloatArray]:  # fmt: skip
-    """The four pieces of the orbits (4, nodes, heights, 2), and the constants (heights, 7)."""
+    limits: FloatArray, tol: float,
+) -> Orbits:  # fmt: skip
+    """The orbits of a law, from its marks and times to the stop."""
     shares = heights(HEIGHTS)
     xi = np.linspace(0.0, 1.0, NODES)
     splines = [
@@ -193,49 +223,56 @@ def _orbits(
         phi = np.where(u > 0.0, 0.5 * np.pi - np.arctan(np.exp(-u)), np.arctan(np.exp(u)))
         return moment_balance(law.integrals(phi), slip_direction(phi), shares), np.sin(phi)
 
-    def slopes(_: float, y: FloatArray) -> FloatArray:
+    def slopes(y: FloatArray) -> FloatArray:
         u = np.clip(y[:HEIGHTS], -600.0, 600.0)
         rho, sine = friction(u)
         time = time_at(u)
         gap = rho.parallel - 0.5 / inertia * rho.spin
-        return np.concatenate([-time * gap, time * sine * rho.perpendicular])
+        return np.stack([-time * gap, time * sine * rho.perpendicular])
 
-    after = xi[1:-1] ** 2 / (1.0 - xi[1:-1]) * REACH
-    followed = after < _LAST
-    orbits = np.empty((4, NODES, HEIGHTS, 2))
+    slow_end, fast_end = slopes(np.full(HEIGHTS, -600.0)), slopes(np.full(HEIGHTS, 600.0))
+    u_limit = _u(limits)
+    drawn = (slopes(u_limit + _BESIDE)[0] - slopes(u_limit - _BESIDE)[0]) / (2.0 * _BESIDE)
+    # only a scale: a straight line in δ² needs no further powers
+    drawn = np.polyval(np.polyfit(shares**2, drawn, 1), shares**2)
+    rates = [-slow_end[0], fast_end[0], drawn]
+    turnings = [np.zeros(HEIGHTS), fast_end[1], slopes(u_limit)[1]]
+    units = [float(f"{TURN_UNIT * rate[-1]:.3g}") for rate in rates]
     starts = [_start(marks, limits, fast) for fast in (False, True)]
-    at_limit, slow_end, fast_end = (
-        slopes(0.0, np.concatenate([u, np.zeros(HEIGHTS)])).reshape(2, HEIGHTS)
-        for u in (_u(limits), np.full(HEIGHTS, -600.0), np.full(HEIGHTS, 600.0))
-    )
-    rates = (-slow_end[0], fast_end[0])
-    for piece in range(4):
+
+    def piece_at(piece: int) -> Callable[[FloatArray], FloatArray]:
+        """A piece of the orbits at z (z, heights, 2)."""
         fast, ahead = divmod(piece, 2)
-        sign = -1.0 if ahead else 1.0
-        turning = at_limit[1] if ahead else (fast_end[1] if fast else 0.0)
+        sign, end = (-1.0, 2) if ahead else (1.0, fast)
+        rate, turning, unit = rates[end], turnings[end], units[end]
         begin = np.concatenate([_u(starts[fast]), np.zeros(HEIGHTS)])
         way = solve_ivp(
-            slopes, (0.0, sign * _LAST), begin, method="DOP853", rtol=_STEP, atol=_STEP,
-            t_eval=sign * after[followed],
-        ).y  # fmt: skip
-        u, heading = way[:HEIGHTS].T, way[HEIGHTS:].T
-        regular = heading - sign * after[followed][:, None] * turning
-        count = followed.sum() + 1
-        if ahead:
-            orbits[piece, 0, :, 0], orbits[piece, count:, :, 0] = starts[fast], limits
-            orbits[piece, 1:count, :, 0] = np.tanh(0.5 * u)
-        else:
+            lambda _, y: (slopes(y) / rate).ravel(), (0.0, sign * _LAST), begin, method="DOP853",
+            rtol=_STEP, atol=_STEP, dense_output=True,
+        ).sol  # fmt: skip
+
+        def found(z: FloatArray) -> FloatArray:
+            u, heading = way(sign * z).reshape(2, HEIGHTS, -1).swapaxes(1, 2)
             towards = -1.0 if fast else 1.0
-            share = 2.0 / (1.0 + np.exp(-towards * u))
-            scaled = share * np.exp(rates[fast] * after[followed][:, None])
-            orbits[piece, 0, :, 0] = 1.0 + towards * starts[fast]
-            orbits[piece, 1:count, :, 0], orbits[piece, count:, :, 0] = scaled, scaled[-1]
-        orbits[piece, 0, :, 1] = 0.0
-        orbits[piece, 1:count, :, 1], orbits[piece, count:, :, 1] = regular, regular[-1]
-    delta = shares * law.delta_max
-    orbits[..., 1] /= delta
-    turnings = (at_limit[1] / delta, fast_end[1] / delta)
-    return orbits, np.stack([limits, *turnings, *rates, *starts], axis=1)
+            if ahead:
+                c = np.tanh(0.5 * u) - limits
+            else:
+                c = 2.0 / (1.0 + np.exp(-towards * u)) * np.exp(z[:, None])
+            regular = (heading - sign * z[:, None] / rate * turning) / shares * rate / unit
+            return np.stack([c, regular], axis=-1)
+
+        return found
+
+    pieces = [piece_at(piece) for piece in range(4)]
+    z = np.linspace(0.0, _LAST, _TRIED)
+    values = np.stack([piece(z) for piece in pieces])
+    left = np.abs(values - values[:, -1:]).max(axis=(0, 2, 3))
+    reach = z[np.argmax(left[:-1] <= _TAIL * tol)] / REACH
+    end = float(f"{0.5 * (math.sqrt(reach * (reach + 4.0)) - reach):.4g}")
+    x = end * xi
+    orbits = np.stack([piece(REACH * x**2 / (1.0 - x)) for piece in pieces])
+    of_heights = np.stack([limits, *starts, *rates, *(one / shares for one in turnings)], axis=1)
+    return Orbits(orbits, of_heights, units, end)
 
 
 def _u(c: FloatArray) -> FloatArray:
@@ -251,5 +288,5 @@ def _start(marks: FloatArray, limits: FloatArray, fast: bool) -> FloatArray:
         (marks[1:-1] > limits.max() + _INSIDE) if fast else (marks[1:-1] < limits.min() - _INSIDE)
     ]
     if inside.size:
-        return np.full(limits.size, inside[0] if fast else inside[-1])
+        return np.full(limits.size, inside[-1] if fast else inside[0])
     return 0.5 * (limits + (1.0 if fast else -1.0))

@@ -245,6 +245,8 @@ def _text(
     numbers |= constants
     for module in modules:
         numbers |= {n: v for n, v in vars(module).items() if n.isupper() and n not in vars(given)}
+    whole = _Whole({n: v for n, v in numbers.items() if isinstance(v, int)})
+    functions = {name: whole.visit(node) for name, node in functions.items()}
     used = {
         one.id for node in functions.values() for one in ast.walk(node) if isinstance(one, ast.Name)
     }  # fmt: skip
@@ -258,6 +260,17 @@ def _text(
         language.foot([*public, "self_test"]),
     ]
     return "\n".join(piece for piece in pieces if piece) + "\n"
+
+
+class _Whole(ast.NodeTransformer):
+    """Whole numbers, such as places in arrays and sizes of tables, in the stead of their names."""
+
+    def __init__(self, numbers: Mapping[str, int]) -> None:
+        self._numbers = numbers
+
+    def visit_Name(self, node: ast.Name) -> ast.expr:
+        """A number for a name, if it is one of them."""
+        return ast.Constant(self._numbers[node.id]) if node.id in self._numbers else node
 
 
 def _modules(parts: tuple[str, ...]) -> set[ModuleType]:

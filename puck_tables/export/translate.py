@@ -63,7 +63,7 @@ class Braces(ABC):
         >>> tree = ast.parse("def f(x: float) -> float: return -x if x < 0.0 else x")
         >>> print(LANGUAGES["js"].function(tree.body[0]))
         function f(x) {
-          return x < 0.0 ? -x : x;
+                return x < 0.0 ? -x : x;
         }
         """
         text = ast.get_docstring(node)
@@ -78,7 +78,7 @@ class Braces(ABC):
         return [line for one in statements for line in self._statement(one, depth)]
 
     def _statement(self, node: ast.stmt, depth: int) -> list[str]:
-        pad = "  " * depth
+        pad = "\t" * depth
         match node:
             case ast.AnnAssign(target=ast.Name(id=name), annotation=kind, value=value) if value:
                 return _folded(pad, self.declaration(name, ast.unparse(kind), self.of(value)))
@@ -98,23 +98,27 @@ class Braces(ABC):
             case ast.Expr(value=value):
                 return _folded(pad, f"{self.of(value)};")
             case ast.While(test=test, body=body):
-                head = f"{pad}while ({self.of(test)}) {{"
-                return [head, *self._block(body, depth + 1), pad + "}"]
+                return _closed(pad, f"while ({self.of(test)})", self._block(body, depth + 1))
             case ast.For(
                 target=ast.Name(id=name), iter=ast.Call(func=ast.Name(id="range"), args=args),
                 body=body,
             ):  # fmt: skip
-                return [pad + self._range(name, args), *self._block(body, depth + 1), pad + "}"]
+                return _closed(pad, self._range(name, args), self._block(body, depth + 1))
             case ast.If(test=test, body=body, orelse=other):
-                lines = [f"{pad}if ({self.of(test)}) {{", *self._block(body, depth + 1)]
+                lines = _closed(pad, f"if ({self.of(test)})", self._block(body, depth + 1))
+                if not other:
+                    return lines
+                if len(lines) == 1:
+                    lines = [
+                        f"{pad}if ({self.of(test)}) {{",
+                        *self._block(body, depth + 1),
+                        pad + "}",
+                    ]
                 if len(other) == 1 and isinstance(other[0], ast.If):
                     nested = self._statement(other[0], depth)
-                    return [*lines, f"{pad}}} else {nested[0].strip()}", *nested[1:]]
-                if not other and len(lines) == 2 and len(lines[0]) + len(lines[1].lstrip()) < _LINE:
-                    return [f"{lines[0][:-1]}{lines[1].lstrip()}"]
-                if other:
-                    lines += [pad + "} else {", *self._block(other, depth + 1)]
-                return [*lines, pad + "}"]
+                    return [*lines[:-1], f"{pad}}} else {nested[0].strip()}", *nested[1:]]
+                otherwise = self._block(other, depth + 1)
+                return [*lines[:-1], f"{pad}}} else {{", *otherwise, pad + "}"]
         _refuse(node)
 
     def _range(self, name: str, args: list[ast.expr]) -> str:
@@ -127,8 +131,8 @@ class Braces(ABC):
             step = self.of(args[2]) if len(args) == 3 else "1"
         first = self.declaration(counted, "counter", start)
         if step == "-1":
-            return f"for ({first} {counted} > {stop}; {counted}--) {{"
-        return f"for ({first} {counted} < {stop}; {counted}++) {{"
+            return f"for ({first} {counted} > {stop}; {counted}--)"
+        return f"for ({first} {counted} < {stop}; {counted}++)"
 
     # expressions
 
@@ -178,6 +182,13 @@ def _refuse(node: ast.AST) -> NoReturn:
     raise NotImplementedError(f"programs have no such words: {ast.unparse(node)}")
 
 
+def _closed(pad: str, head: str, body: list[str]) -> list[str]:
+    """A head and what belongs to it: a short statement beside it, else in braces."""
+    if len(body) == 1 and len(pad) + len(head) + len(body[0].lstrip()) < _LINE:
+        return [f"{pad}{head} {body[0].lstrip()}"]
+    return [f"{pad}{head} {{", *body, pad + "}"]
+
+
 def _folded(pad: str, line: str) -> list[str]:
     """A statement over as many lines as it needs."""
     lines: list[str] = []
@@ -185,5 +196,5 @@ def _folded(pad: str, line: str) -> list[str]:
     while len(indent) + len(line) > _LINE and " " in line[: _LINE - len(indent)]:
         cut = line.rindex(" ", 0, _LINE - len(indent))
         lines.append(indent + line[:cut])
-        line, indent = line[cut + 1 :], pad + "    "
+        line, indent = line[cut + 1 :], pad + "\t\t"
     return [*lines, indent + line]

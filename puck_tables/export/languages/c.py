@@ -9,7 +9,8 @@ from puck_tables.export.language import Language, rows_of
 from puck_tables.export.translate import Braces
 
 _KINDS = {"float": "double", "int": "int", "bool": "int", "counter": "int", "None": "void"}
-_ARRAYS = {"Numbers": "const double *", "Out": "double *"}
+_ARRAYS = {"Numbers": "const double *", "Rows": "const int *", "Out": "double *"}
+_COUNTS = ("_ROWS", "_CELLS", "_POWERS")  # tables of integers
 
 
 class C(Braces, Language):
@@ -42,10 +43,11 @@ class C(Braces, Language):
         return f"#define {self.name(name)} {value!r}"
 
     def table(self, name: str, numbers: Sequence[float]) -> str:
-        """Doubles."""
+        """Doubles; of what counts rows integers."""
         if not numbers:
             return ""
-        return f"static const double {self.name(name)}[] = {{\n{rows_of(numbers)}}};"
+        kind = "int" if name.endswith(_COUNTS) else "double"
+        return f"static const {kind} {self.name(name)}[] = {{\n{rows_of(numbers)}}};"
 
     def foot(self, public: Sequence[str]) -> str:
         """Nothing."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Sequence
 
 from puck_tables.export.language import Language, rows_of
@@ -24,8 +25,8 @@ class Python(Language):
             "from collections.abc import MutableSequence, Sequence\n"
             "from math import cos, exp, expm1, log, log1p, nan, pi, sin, sqrt\n\n"
             f"__all__ = {list(public)}\n\n"
-            "Numbers = Sequence\nOut = MutableSequence\n\n\n"
-            "def room(size):\n    return [0.0] * size\n\n"
+            "Numbers = Rows = Sequence\nOut = MutableSequence\n\n\n"
+            "def room(size):\n\treturn [0.0] * size\n\n"
         )
 
     def constant(self, name: str, value: float | int) -> str:
@@ -37,12 +38,26 @@ class Python(Language):
         return f"{name} = (\n{rows_of(numbers)},\n)" if numbers else f"{name} = ()"
 
     def function(self, node: ast.FunctionDef) -> str:
-        """As it is."""
-        return "\n" + ast.unparse(node) + "\n"
+        """As it is, but for the kinds of its variables."""
+        plain = ast.fix_missing_locations(_Plain().visit(node))
+        return "\n" + re.sub(r"^( {4})+", _tabs, ast.unparse(plain), flags=re.MULTILINE) + "\n"
 
     def foot(self, public: Sequence[str]) -> str:
         """Nothing."""
         return ""
+
+
+def _tabs(spaces: re.Match[str]) -> str:
+    return "\t" * (len(spaces[0]) // 4)
+
+
+class _Plain(ast.NodeTransformer):
+    """Variables without annotations; those of arguments stay."""
+
+    def visit_AnnAssign(self, node: ast.AnnAssign) -> ast.stmt:
+        """An assignment."""
+        assert node.value is not None
+        return ast.Assign([node.target], node.value)
 
 
 LANGUAGE = Python()

@@ -12,6 +12,7 @@ from collections.abc import MutableSequence, Sequence
 Numbers = Sequence[float]
 Out = MutableSequence[float]
 Room = list[float]
+Rows = Sequence[int]  # where the rows of each side begin, and where all end; how many they are
 
 # tables of one error: cells, degree, powers, quantum and numbers
 STOP: Numbers = ()
@@ -32,16 +33,23 @@ CONSTANTS_QUANTUM = 1.0
 TALLEST, STEEP, SPIN_TIME, LONGEST = 1.0, 2.0, 0.75, 2.0
 
 # tables under another pressure law (law_places, law_state)
-MARKS: Numbers = ()
-INVERSE_EXTENTS: Numbers = ()
+BORDERS: Numbers = ()
+ORIGINS: Numbers = ()
+SCALES: Numbers = ()
 SIDES = 4
+STOP_ROWS: Rows = ()
 PATCH: Numbers = ()
-PATCH_CELLS, PATCH_DEGREE = 1, 1
+PATCH_ROWS: Rows = ()
+PATCH_DEGREE = 1
 PATCH_QUANTUM = 1.0
 ORBIT: Numbers = ()
-ORBIT_CELLS, ORBIT_DEGREE, ORBIT_POWERS = 1, 1, 1
-ORBIT_QUANTUM = 1.0
-REACH = 8.0
+ORBIT_ROWS: Rows = ()
+ORBIT_CELLS: Rows = ()
+ORBIT_POWERS: Rows = ()
+ORBIT_DEGREE = 1
+ORBIT_QUANTA: Numbers = ()
+REACH, END = 16.0, 0.5
+RATE_UNITS: Numbers = ()  # in pure sliding, in pure spin, at the limit
 
 # what the test of a file compares with
 TOLERANCE = 1.0

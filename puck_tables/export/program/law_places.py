@@ -10,68 +10,63 @@ from __future__ import annotations
 from math import sqrt
 
 from puck_tables.export.program.given import (
-    INVERSE_EXTENTS,
-    MARKS,
+    BORDERS,
+    ORIGINS,
     PATCH,
-    PATCH_CELLS,
     PATCH_DEGREE,
     PATCH_QUANTUM,
+    PATCH_ROWS,
+    SCALES,
     SIDES,
-    SPIN_TIME,
     STEEP,
     STOP,
-    STOP_CELLS,
     STOP_DEGREE,
     STOP_POWERS,
     STOP_QUANTUM,
+    STOP_ROWS,
+    Numbers,
     Out,
+    Rows,
 )
 from puck_tables.export.program.places import look_up
-from puck_tables.export.program.stop import ALONG, BODY, LENGTH, STOP_FUNCTIONS, TIME
+from puck_tables.export.program.stop import STOP_FUNCTIONS
 
 PATCH_FUNCTIONS = 3
 
 
-def side_at(fast: bool, share: float) -> int:
-    """The side of c = 1 - share where r|w| > v, share - 1 elsewhere: each mark has two."""
-    c: float = 1.0 - share if fast else share - 1.0
-    mark: int = 1
-    while 2 * mark < SIDES and c >= MARKS[mark]:
-        mark = mark + 1
-    return 2 * mark - 1 if 2.0 * c >= MARKS[mark - 1] + MARKS[mark] else 2 * mark - 2
-
-
-def place_at(side: int, fast: bool, share: float) -> float:
-    """The place xi on a side: at the mark 0, at its other end 1."""
-    gap: float = share
-    if side > 0 and side < SIDES - 1:
-        gap = abs((1.0 - share if fast else share - 1.0) - MARKS[int(0.5 * side + 0.5)])
-    gap = gap * INVERSE_EXTENTS[side]
-    return sqrt(sqrt(gap)) if gap < 1.0 else 1.0
-
-
-def stop_functions(side: int, share: float, delta: float, f: Out) -> None:
-    """T, along, across, path length and body angle; side 1 where r|w| > v."""
-    fast: bool = side == 1
-    here: int = side_at(fast, share)
+def look_beside(
+    table: Numbers, rows: Rows, degree: int, powers: int, functions: int, quantum: float, c: float,
+    s: float, found: Out,
+) -> None:  # fmt: skip
+    """The functions of a table beside the mark of a side, xi = 0, up to the next side, xi = 1."""
+    side: int = 0
+    for n in range(SIDES - 1):
+        side += 1 if c >= BORDERS[n] else 0
     look_up(
-        STOP, STOP_CELLS, STOP_DEGREE, STOP_POWERS, STOP_FUNCTIONS, STOP_QUANTUM, here,
-        place_at(here, fast, share), STEEP * delta * delta - 1.0, f,
+        table, rows[side] * powers * functions, rows[side + 1] - rows[side] - degree, degree,
+        powers, functions, quantum, sqrt(sqrt((c - ORIGINS[side]) * SCALES[side])), s, found,
     )  # fmt: skip
-    if share == 0.0 and side == 0:
-        f[TIME] = 1.0
-        f[ALONG] = 0.5
-        f[LENGTH] = 0.5
-    elif share == 0.0:
-        f[TIME] = SPIN_TIME
-        f[BODY] = 0.5 * SPIN_TIME
+
+
+def table_at(side: int, share: float, delta: float, f: Out) -> None:
+    """T, along, across, path length and body angle by look-up; side 1 where r|w| > v."""
+    look_beside(
+        STOP, STOP_ROWS, STOP_DEGREE, STOP_POWERS, STOP_FUNCTIONS, STOP_QUANTUM,
+        1.0 - share if side == 1 else share - 1.0, STEEP * delta * delta - 1.0, f,
+    )  # fmt: skip
 
 
 def shape_integrals(ratio: float, fast: bool, p: Out) -> None:
     """p_a, p_b and p_d, by look-up."""
-    share: float = 2.0 * ratio / (1.0 + ratio)
-    here: int = side_at(fast, share)
-    place: float = place_at(here, fast, share)
-    look_up(
-        PATCH, PATCH_CELLS, PATCH_DEGREE, 1, PATCH_FUNCTIONS, PATCH_QUANTUM, here, place, 0.0, p
+    c: float = (1.0 - ratio) / (1.0 + ratio)
+    look_beside(
+        PATCH,
+        PATCH_ROWS,
+        PATCH_DEGREE,
+        1,
+        PATCH_FUNCTIONS,
+        PATCH_QUANTUM,
+        c if fast else -c,
+        0.0,
+        p,
     )

@@ -13,21 +13,24 @@ from puck_tables.export.program.given import (
     CONSTANTS,
     CONSTANTS_POWERS,
     CONSTANTS_QUANTUM,
+    END,
     ORBIT,
     ORBIT_CELLS,
     ORBIT_DEGREE,
     ORBIT_POWERS,
-    ORBIT_QUANTUM,
+    ORBIT_QUANTA,
+    ORBIT_ROWS,
+    RATE_UNITS,
     REACH,
     STEEP,
+    TALLEST,
+    TOLERANCE,
     Out,
     room,
 )
-from puck_tables.export.program.law_places import stop_functions
 from puck_tables.export.program.places import SHARE, SIDE, look_up
 from puck_tables.export.program.state import (
     HEADING,
-    KAPPA,
     LOG_N,
     REGULAR,
     SIGN,
@@ -37,13 +40,16 @@ from puck_tables.export.program.state import (
     THERE_SIDE,
     TURNING,
 )
+from puck_tables.export.program.stop import stop_functions
 
-LIMIT, TURNING_LIMIT, TURNING_SPIN, RATE, START = 0, 1, 2, 3, 5  # the last two for each orbit
-SEARCH, FURTHEST, SAME = 60, 0.9999, 1e-13
+# of the height alone: limit of c; c at theta = 0 of both orbits; rates and turnings over
+# delta/TALLEST in pure sliding, in pure spin and at the limit
+LIMIT, START, RATE, TURN = 0, 1, 3, 6
+SEARCH = 60
 
 
 def constant(row: int, s: float) -> float:
-    """Limit of c, turning per theta there and in pure spin, rates of both orbits, their start."""
+    """One of the numbers that depend on the height alone."""
     total: float = 0.0
     for m in range(CONSTANTS_POWERS - 1, -1, -1):
         total = total * s + CONSTANTS[row * CONSTANTS_POWERS + m]
@@ -51,26 +57,30 @@ def constant(row: int, s: float) -> float:
 
 
 def orbit_at(piece: int, xi: float, s: float, found: Out) -> None:
-    """C, on pieces 0 and 2 share exp(rate theta), and the regular part of the heading."""
-    look_up(ORBIT, ORBIT_CELLS, ORBIT_DEGREE, ORBIT_POWERS, 2, ORBIT_QUANTUM, piece, xi, s, found)
+    """C less its limit, on pieces 0 and 2 share exp(z); and the regular part of the heading."""
+    powers: int = ORBIT_POWERS[piece]
+    look_up(  # at least one: compilers see that all they read is set
+        ORBIT, ORBIT_ROWS[piece], ORBIT_CELLS[piece], ORBIT_DEGREE, powers if powers > 1 else 1, 2,
+        ORBIT_QUANTA[piece], xi, s, found,
+    )  # fmt: skip
 
 
-def off_by(piece: int, xi: float, s: float, wanted: float, rate: float, f: Out) -> float:
+def way_to(xi: float) -> float:
+    """z, the way from theta = 0 in units of 1/rate."""
+    x: float = END * xi
+    return REACH * x * x / (1.0 - x)
+
+
+def off_by(piece: int, xi: float, s: float, wanted: float, f: Out) -> float:
     """How far a place is from the launch: c, or before theta = 0 the log of the share."""
     orbit_at(piece, xi, s, f)
-    if piece == 1 or piece == 3:
-        return f[0] - wanted
-    return log(f[0] / wanted) - rate * REACH * xi * xi / (1.0 - xi)
+    return f[0] - wanted if piece == 1 or piece == 3 else log(f[0] / wanted) - way_to(xi)
 
 
-def heading_at(piece: int, theta: float, delta: float, s: float, regular: float) -> float:
-    """The heading on an orbit."""
-    slope: float = 0.0
-    if piece == 1 or piece == 3:
-        slope = constant(TURNING_LIMIT, s)
-    elif piece == 2:
-        slope = constant(TURNING_SPIN, s)
-    return delta * (slope * theta + regular)
+def heading_at(end: int, theta: float, rate: float, delta: float, s: float, part: float) -> float:
+    """The heading on an orbit that comes from, or to, an end."""
+    regular: float = part * RATE_UNITS[end] / rate
+    return delta / TALLEST * (constant(TURN + end, s) * theta + regular)
 
 
 def know(delta: float, time: float, known: Out) -> None:
@@ -78,25 +88,28 @@ def know(delta: float, time: float, known: Out) -> None:
     f = room(2)
     s: float = STEEP * delta * delta - 1.0
     c: float = 1.0 - known[SHARE] if known[SIDE] == 1.0 else known[SHARE] - 1.0
-    fast: int = 1 if c > constant(LIMIT, s) else 0
+    limit: float = constant(LIMIT, s)
+    fast: int = 1 if c > limit else 0
     start: float = constant(START + fast, s)
-    piece: int = 2 * fast + (1 if (c < start if fast == 1 else c > start) else 0)
-    rate: float = constant(RATE + fast, s)
-    wanted: float = c
-    if piece == 0 or piece == 2:
+    ahead: int = 1 if (c < start if fast == 1 else c > start) else 0
+    piece: int = 2 * fast + ahead
+    wanted: float = c - limit
+    if ahead == 0:
         wanted = known[SHARE] if known[SIDE] == fast else 2.0 - known[SHARE]
         wanted = wanted if wanted > SMALLEST else SMALLEST
     last: float = 0.0
-    xi: float = FURTHEST
-    was: float = off_by(piece, last, s, wanted, rate, f)
-    off: float = off_by(piece, xi, s, wanted, rate, f)
-    if was * off > 0.0:  # beside the table: at the end that is nearer
+    xi: float = 1.0
+    was: float = off_by(piece, last, s, wanted, f)
+    off: float = off_by(piece, xi, s, wanted, f)
+    beyond: float = 0.0
+    if was * off > 0.0:  # beside the table: at the end that is nearer, or where it goes on
         xi = last if abs(was) < abs(off) else xi
+        beyond = off if ahead == 0 and xi == 1.0 else 0.0
         off = 0.0
     n: int = 0
-    while n < SEARCH and abs(off) > SAME:  # the Illinois rule
+    while n < SEARCH and abs(off) > 1e-3 * TOLERANCE:  # the Illinois rule
         now: float = xi - (xi - last) * (off / (off - was))
-        here: float = off_by(piece, now, s, wanted, rate, f)
+        here: float = off_by(piece, now, s, wanted, f)
         if here * off < 0.0:
             last = xi
             was = off
@@ -106,13 +119,14 @@ def know(delta: float, time: float, known: Out) -> None:
         off = here
         n = n + 1
     orbit_at(piece, xi, s, f)
-    theta: float = REACH * xi * xi / (1.0 - xi)
-    theta = -theta if piece == 1 or piece == 3 else theta
+    end: int = 2 if ahead == 1 else fast
+    rate: float = constant(RATE + end, s)
+    theta: float = (way_to(xi) + beyond) / rate
+    theta = -theta if ahead == 1 else theta
     known[SIGN] = fast
-    known[KAPPA] = rate
     known[LOG_N] = theta
     known[TURNING] = 0.0
-    known[HEADING] = heading_at(piece, theta, delta, s, f[1])
+    known[HEADING] = heading_at(end, theta, rate, delta, s, f[1])
     known[T_LAUNCH] = time
 
 
@@ -122,18 +136,23 @@ def arrive(known: Out, delta: float, log_left: float, place: Out, f: Out) -> Non
     s: float = STEEP * delta * delta - 1.0
     theta: float = known[LOG_N] + log_left
     fast: int = int(known[SIGN])
-    piece: int = 2 * fast + (1 if theta < 0.0 else 0)
-    way: float = abs(theta) / REACH
-    orbit_at(piece, 2.0 * way / (way + sqrt(way * way + 4.0 * way)) if way > 0.0 else 0.0, s, o)
-    share: float = 1.0 - abs(o[0])
-    side: int = 1 if o[0] > 0.0 else 0
-    if theta >= 0.0:
-        share = o[0] * exp(-known[KAPPA] * theta)
+    ahead: int = 1 if theta < 0.0 else 0
+    end: int = 2 if ahead == 1 else fast
+    rate: float = constant(RATE + end, s)
+    z: float = abs(theta) * rate
+    way: float = z / REACH
+    xi: float = 0.5 * (sqrt(way * (way + 4.0)) - way) / END
+    orbit_at(2 * fast + ahead, xi if xi < 1.0 else 1.0, s, o)
+    c: float = constant(LIMIT, s) + o[0]
+    share: float = 1.0 - abs(c)
+    side: int = 1 if c > 0.0 else 0
+    if ahead == 0:
+        share = o[0] * exp(-z)
         side = fast if share <= 1.0 else 1 - fast
         share = share if share <= 1.0 else 2.0 - share
     if share < 0.0:
         share = 0.0
     place[THERE_SIDE] = side
     place[THERE_SHARE] = share
-    place[REGULAR] = heading_at(piece, theta, delta, s, o[1])
+    place[REGULAR] = heading_at(end, theta, rate, delta, s, o[1])
     stop_functions(side, share, delta, f)

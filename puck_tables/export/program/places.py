@@ -7,15 +7,10 @@ from math import nan, sqrt
 from puck_tables.export.program.given import LONGEST, TALLEST, Numbers, Out, room
 
 MOST_WEIGHTS, WIDEST = 8, 70
-LARGEST = 1.7e308
+LARGEST = 8e307  # of places, and of places over radii
 # of a measured launch
 SLIP, SPEED, RIM, EAST, NORTH, SIDE, SHARE, AROUND = 0, 1, 2, 3, 4, 5, 6, 7
 MEASURED = 8
-
-
-def is_finite(x: float) -> bool:
-    """Whether a number is one."""
-    return x - x == 0.0
 
 
 def refused(out: Out, size: int, code: int) -> int:
@@ -28,22 +23,17 @@ def refused(out: Out, size: int, code: int) -> int:
 def measured(
     vx: float, vy: float, spin: float, delta: float, decel: float, radius: float, m: Out
 ) -> int:
-    """What a launch is: see the names of its numbers; and the code of a refusal.
+    """What a launch is, and the code of a refusal.
 
-    Slip speed Q; v/Q, r|w|/Q, vx/Q, vy/Q; whether r|w| > v; 2 min(v, r|w|)/(v + r|w|); the sign
-    of w.
+    m: 0 slip speed Q, 1 v/Q, 2 r|w|/Q, 3 vx/Q, 4 vy/Q, 5 whether r|w| > v, 6 2 min(v, r|w|)/(v +
+    r|w|), 7 the sign of w.
     """
-    for n in range(AROUND):
-        m[n] = 0.0
-    m[AROUND] = 1.0
-    if not (is_finite(vx) and is_finite(vy) and is_finite(spin) and is_finite(decel)):
-        return 1
-    if not (
-        delta >= 0.0 and delta <= TALLEST and decel > 0.0 and radius > 0.0 and is_finite(radius)
-    ):
+    # 0, or not a number where one of them is infinite or none
+    none: float = vx - vx + (vy - vy) + (spin - spin) + (decel - decel) + (radius - radius)
+    if not (none == 0.0 and delta >= 0.0 and delta <= TALLEST and decel > 0.0 and radius > 0.0):
         return 1
     edge: float = radius * spin
-    if not is_finite(edge):
+    if edge - edge != 0.0:
         return 2
     x: float = vx
     y: float = vy
@@ -55,6 +45,9 @@ def measured(
         large = abs(vx) if abs(vx) > abs(vy) else abs(vy)
         large = abs(edge) if abs(edge) > large else large
         if large == 0.0:
+            for n in range(AROUND):
+                m[n] = 0.0
+            m[AROUND] = 1.0
             return 0
         x = vx / large
         y = vy / large
@@ -64,30 +57,29 @@ def measured(
     rim: float = abs(e)
     q: float = sqrt(speed2 + e * e)
     unit: float = 1.0 / q
-    m[SIDE] = 1.0 if rim > speed else 0.0
-    m[SHARE] = 2.0 * (rim if rim < speed else speed) / (speed + rim)
     m[SLIP] = large * q
-    m[AROUND] = -1.0 if edge < 0.0 else 1.0
     m[SPEED] = speed * unit
     m[RIM] = rim * unit
     m[EAST] = x * unit
     m[NORTH] = y * unit
-    duration: float = m[SLIP] / decel
-    size: float = LONGEST * duration * m[SLIP]
-    return 0 if size / radius + size < LARGEST else 2
+    m[SIDE] = 1.0 if rim > speed else 0.0
+    m[SHARE] = 2.0 * (rim if rim < speed else speed) / (speed + rim)
+    m[AROUND] = -1.0 if edge < 0.0 else 1.0
+    size: float = LONGEST * (m[SLIP] / decel) * m[SLIP]
+    return 0 if size < LARGEST and size < LARGEST * radius else 2
 
 
 def place_of(double_share: float) -> float:
     """The place xi on the axis of the tables, from 2 min(v, r|w|)/(v + r|w|)."""
-    q: float = sqrt(sqrt(double_share))
+    q: float = sqrt(double_share)
     return 1.0 - sqrt(1.0 - q if q < 1.0 else 0.0)
 
 
 def look_up(
-    table: Numbers, cells: int, degree: int, powers: int, functions: int, quantum: float,
-    side: int, xi: float, s: float, found: Out,
+    table: Numbers, first: int, cells: int, degree: int, powers: int, functions: int,
+    quantum: float, xi: float, s: float, found: Out,
 ) -> None:  # fmt: skip
-    """The functions of a table at a place and at a height s."""
+    """The functions of a table, from its number first on, at a place and at a height s."""
     w = room(MOST_WEIGHTS)
     p: float = xi * cells
     cell: int = int(p)
@@ -103,13 +95,13 @@ def look_up(
             saved = (t + (d - 1 - r)) * part
         w[d] = saved
     width: int = powers * functions
-    first: int = (side * (cells + degree) + cell) * width
+    here: int = first + cell * width
     row = room(WIDEST)
     for j in range(width):
-        row[j] = w[0] * table[first + j]
+        row[j] = w[0] * table[here + j]
     for n in range(1, degree + 1):
         for j in range(width):
-            row[j] += w[n] * table[first + n * width + j]
+            row[j] += w[n] * table[here + n * width + j]
     for f in range(functions):
         value: float = row[width - functions + f]
         for k in range(powers - 2, -1, -1):

@@ -34,13 +34,12 @@ from puck_tables.export.program.places import (
     SIDE,
     SLIP,
     SPEED,
-    is_finite,
     look_up,
     measured,
     place_of,
     refused,
 )
-from puck_tables.export.program.stop import ACROSS, ALONG, BODY, TIME, stop_functions
+from puck_tables.export.program.stop import ACROSS, ALONG, BODY, TIME, stop_functions, stopped
 
 SMALLEST = 1e-300
 TURN_SHARE = 1e-3  # of Q: where the turn of a heading is read off
@@ -86,16 +85,21 @@ def regular_heading(
     )
 
 
+def curve_at(side: int, share: float, s: float, found: Out) -> None:
+    """The regular parts of ln N and of the heading."""
+    look_up(
+        CURVE, side * (CURVE_CELLS + CURVE_DEGREE) * CURVE_POWERS * 2, CURVE_CELLS, CURVE_DEGREE,
+        CURVE_POWERS, 2, CURVE_QUANTUM, place_of(share), s, found,
+    )  # fmt: skip
+
+
 def know(delta: float, time: float, known: Out) -> None:
     """What the curve says of a measured launch that both slides and spins; ``time``: its T."""
     c = room(2)
     s: float = 2.0 * delta * delta - 1.0
     side: int = int(known[SIDE])
     share: float = known[SHARE]
-    look_up(
-        CURVE, CURVE_CELLS, CURVE_DEGREE, CURVE_POWERS, 2, CURVE_QUANTUM, side, place_of(share), s,
-        c,
-    )  # fmt: skip
+    curve_at(side, share, s, c)
     if share < SMALLEST:
         share = SMALLEST
     limit: float = constant(0, s)
@@ -140,18 +144,16 @@ def arrive(known: Out, delta: float, log_left: float, place: Out, f: Out) -> Non
     rest: float = -expm1(0.25 * log_y)
     xi: float = 1.0 - sqrt(rest if rest > 0.0 else 0.0)
     look_up(
-        INVERSE, INVERSE_CELLS, INVERSE_DEGREE, INVERSE_POWERS, 1, INVERSE_QUANTUM, side, xi, s, c
-    )
+        INVERSE, side * (INVERSE_CELLS + INVERSE_DEGREE) * INVERSE_POWERS, INVERSE_CELLS,
+        INVERSE_DEGREE, INVERSE_POWERS, 1, INVERSE_QUANTUM, xi, s, c,
+    )  # fmt: skip
     share: float = y * c[0]
     if share > 1.0:
         share = 1.0
     if share < SMALLEST:
         share = SMALLEST
     stop_functions(side, share, delta, f)
-    look_up(
-        CURVE, CURVE_CELLS, CURVE_DEGREE, CURVE_POWERS, 2, CURVE_QUANTUM, side, place_of(share), s,
-        c,
-    )  # fmt: skip
+    curve_at(side, share, s, c)
     place[THERE_SIDE] = side
     place[THERE_SHARE] = share
     place[REGULAR] = regular_heading(side, share, delta, known[TURNING], c[1])
@@ -170,45 +172,30 @@ def state(
     known = room(KNOWN)
     f = room(5)
     g = room(5)
+    end = room(5)
     place = room(3)
     code: int = measured(vx, vy, spin, delta, decel, radius, known)
-    if not (is_finite(time) and time >= 0.0):
+    if not (time - time == 0.0 and time >= 0.0):
         code = 1
     if code != 0:
         return refused(out, 6, code)
-    for n in range(6):
-        out[n] = 0.0
-    if known[SLIP] == 0.0:
-        return 0
-    slip: float = known[SLIP]
-    speed: float = known[SPEED]
-    rim: float = known[RIM]
-    around: float = known[AROUND]
     stop_functions(int(known[SIDE]), known[SHARE], delta, f)
-    duration: float = slip / decel
-    size: float = duration * slip
-    across: float = delta * around * rim * f[ACROSS]
-    x: float = size * (f[ALONG] * known[EAST] - across * known[NORTH])
-    y: float = size * (f[ALONG] * known[NORTH] + across * known[EAST])
-    body: float = size / radius * around * rim * f[BODY]
-    whole: float = duration * f[TIME]
-    if time >= whole:
-        out[0] = x
-        out[1] = y
-        out[2] = body
-        return 0
-    left: float = 1.0 - time / whole
-    if speed == 0.0 or rim == 0.0 or time == 0.0:
+    stopped(known, f, delta, decel, radius, end)
+    left: float = 1.0 - time / end[0] if time < end[0] else 0.0
+    if left == 0.0 or known[SPEED] == 0.0 or known[RIM] == 0.0 or time == 0.0:
         done: float = (1.0 - left) * (1.0 + left)
-        out[0] = x * done
-        out[1] = y * done
-        out[2] = body * done
+        out[0] = end[1] * done
+        out[1] = end[2] * done
+        out[2] = end[4] * done
         out[3] = left * vx
         out[4] = left * vy
         out[5] = left * spin
         return 0
+    slip: float = known[SLIP]
+    around: float = known[AROUND]
+    size: float = slip / decel * slip
     know(delta, f[TIME], known)
-    arrive(known, delta, log1p(-(time / whole)), place, g)
+    arrive(known, delta, log1p(-(time / end[0])), place, g)
     fall: float = left * known[T_LAUNCH] / g[TIME]
     small: float = 0.5 * place[THERE_SHARE]
     large: float = 1.0 - small
@@ -220,13 +207,13 @@ def state(
         heading = around * (known[TURNING] * log(fall) + place[REGULAR] - known[HEADING])
     cosine: float = cos(heading)
     sine: float = sin(heading)
-    east: float = (cosine * known[EAST] - sine * known[NORTH]) / speed
-    north: float = (cosine * known[NORTH] + sine * known[EAST]) / speed
+    east: float = (cosine * known[EAST] - sine * known[NORTH]) / known[SPEED]
+    north: float = (cosine * known[NORTH] + sine * known[EAST]) / known[SPEED]
     ahead: float = size * fall * now * g[ALONG]
     aside: float = size * around * delta * turn * now * g[ACROSS]
-    out[0] = x - (ahead * east - aside * north)
-    out[1] = y - (ahead * north + aside * east)
-    out[2] = body - size / radius * around * fall * turn * g[BODY]
+    out[0] = end[1] - (ahead * east - aside * north)
+    out[1] = end[2] - (ahead * north + aside * east)
+    out[2] = end[4] - size / radius * around * fall * turn * g[BODY]
     out[3] = slip * now * east
     out[4] = slip * now * north
     out[5] = slip / radius * around * turn

@@ -34,12 +34,18 @@ TIME, ALONG, ACROSS, LENGTH, BODY = 0, 1, 2, 3, 4
 STOP_FUNCTIONS = 5
 
 
-def stop_functions(side: int, share: float, delta: float, f: Out) -> None:
-    """T, along, across, path length and body angle; side 1 where r|w| > v."""
+def table_at(side: int, share: float, delta: float, f: Out) -> None:
+    """T, along, across, path length and body angle by look-up; side 1 where r|w| > v."""
     look_up(
-        STOP, STOP_CELLS, STOP_DEGREE, STOP_POWERS, STOP_FUNCTIONS, STOP_QUANTUM, side,
-        place_of(share), STEEP * delta * delta - 1.0, f,
+        STOP, side * (STOP_CELLS + STOP_DEGREE) * STOP_POWERS * STOP_FUNCTIONS, STOP_CELLS,
+        STOP_DEGREE, STOP_POWERS, STOP_FUNCTIONS, STOP_QUANTUM, place_of(share),
+        STEEP * delta * delta - 1.0, f,
     )  # fmt: skip
+
+
+def stop_functions(side: int, share: float, delta: float, f: Out) -> None:
+    """The same, and the exact values in pure sliding and in pure spin."""
+    table_at(side, share, delta, f)
     if share == 0.0 and side == 0:
         f[TIME] = 1.0
         f[ALONG] = 0.5
@@ -47,6 +53,18 @@ def stop_functions(side: int, share: float, delta: float, f: Out) -> None:
     elif share == 0.0:
         f[TIME] = SPIN_TIME
         f[BODY] = 0.5 * SPIN_TIME
+
+
+def stopped(m: Out, f: Out, delta: float, decel: float, radius: float, out: Out) -> None:
+    """Stop time, place, path length and body angle of a measured launch."""
+    duration: float = m[SLIP] / decel
+    size: float = duration * m[SLIP]
+    across: float = delta * m[AROUND] * m[RIM] * f[ACROSS]
+    out[0] = duration * f[TIME]
+    out[1] = size * (f[ALONG] * m[EAST] - across * m[NORTH])
+    out[2] = size * (f[ALONG] * m[NORTH] + across * m[EAST])
+    out[3] = size * m[SPEED] * f[LENGTH]
+    out[4] = size / radius * m[AROUND] * m[RIM] * f[BODY]
 
 
 def stop(
@@ -64,17 +82,6 @@ def stop(
     code: int = measured(vx, vy, spin, delta, decel, radius, m)
     if code != 0:
         return refused(out, 5, code)
-    if m[SLIP] == 0.0:
-        for n in range(5):
-            out[n] = 0.0
-        return 0
     stop_functions(int(m[SIDE]), m[SHARE], delta, f)
-    duration: float = m[SLIP] / decel
-    size: float = duration * m[SLIP]
-    across: float = delta * m[AROUND] * m[RIM] * f[ACROSS]
-    out[0] = duration * f[TIME]
-    out[1] = size * (f[ALONG] * m[EAST] - across * m[NORTH])
-    out[2] = size * (f[ALONG] * m[NORTH] + across * m[EAST])
-    out[3] = size * m[SPEED] * f[LENGTH]
-    out[4] = size / radius * m[AROUND] * m[RIM] * f[BODY]
+    stopped(m, f, delta, decel, radius, out)
     return 0
