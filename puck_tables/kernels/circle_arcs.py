@@ -6,7 +6,8 @@ a triangle, w² = A² + B² + 2AB cos η.  Of its two other angles, τ, that of 
 φ be the one next to the shorter side and r the shorter side over the longer; then Δ² = 1 − r² sin²φ
 is the square of the cosine of the other one, and along the circle all sums are those of
 
-    F = ∫ dφ/Δ ,   D = ∫ sin²φ dφ/Δ ,   E = F − r² D ,   T = ∫ sin²φ Δ dφ = (D + 2E − F − sin φ cos φ Δ)/3
+    F = ∫ dφ/Δ ,   D = ∫ sin²φ dφ/Δ ,   E = F − r² D ,   T = ∫ sin²φ Δ dφ
+      = (D + 2E − F − sin φ cos φ Δ)/3
 
 and powers of sin φ.  F and D come by the arithmetic–geometric mean, with the angle φ_n/2ⁿ known by
 how much the doubled angles fall short of being doubled: no digit is lost for r → 0 and for r → 1,
@@ -26,9 +27,7 @@ _TINY = 1e-300
 
 
 @inlined
-def _incomplete(
-    sine: float, cosine: float, delta: float, shorter: float
-) -> tuple[float, float]:
+def _incomplete(sine: float, cosine: float, delta: float, shorter: float) -> tuple[float, float]:
     """F and D of an angle between −π and π; ``shorter``: √(1 − r²)."""
     a, b = 1.0, shorter
     inverse = 1.0 / delta

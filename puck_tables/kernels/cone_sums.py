@@ -141,8 +141,10 @@ def piled(
     piece = min(i + 1, count - 1)
     slope = rows[2 * count + 1 + piece]
     height = rows[count + piece] + slope * size
-    cone = cone_sums(alpha, beta, size, _far(alpha, beta * size)) if size > rows[i] else (
-        room[8 * i], room[8 * i + 1], room[8 * i + 2], room[8 * i + 3]
+    cone = (
+        cone_sums(alpha, beta, size, _far(alpha, beta * size))
+        if size > rows[i]
+        else (room[8 * i], room[8 * i + 1], room[8 * i + 2], room[8 * i + 3])
     )
     return (
         height * disc[0] - room[8 * i + 4] - slope * (cone[0] - room[8 * i]),

@@ -24,11 +24,13 @@ from puck_tables.kernels.circle_arcs import arc_to
 from puck_tables.kernels.compile import inlined, inner, summed
 from puck_tables.kernels.elementary import angle_of, cosine_sine_of
 
-_NODES = 16
+_NODES = 24
 _NODE, _WEIGHT = np.polynomial.legendre.leggauss(_NODES)
-_LEGENDRE = np.ascontiguousarray((np.polynomial.legendre.legvander(_NODE, _NODES - 1) * _WEIGHT[:, None]).T)
+_LEGENDRE = np.ascontiguousarray(
+    (np.polynomial.legendre.legvander(_NODE, _NODES - 1) * _WEIGHT[:, None]).T
+)
 _INVERSE = 1.0 / np.arange(1.0, _NODES + 1.0)
-_REACH = 1.8  # of the ellipse about a panel, its long axis over the distance of its foci
+_REACH = 1.5  # of the ellipse about a panel, its long axis over the distance of its foci
 _GAP = 1e-4  # radii: what is singular and closer to a border is as good as there
 _FARTHEST = 20.0  # radii: and a C farther away
 
@@ -37,7 +39,9 @@ class Border(NamedTuple):
     """A border by a place u along it, 0 where it is next to the centre of the base.
 
     Straight, (x, y) + u (tx, ty), or of a circle with a radius about (x, y), u the angle from the
-    direction (tx, ty).  ``side``: on which side of C's ray from the centre it is, 0 if not given.
+    direction (tx, ty).  It goes from ``low`` to ``high``, and crosses the ray from the centre through
+    C at ``one`` and ``two``, or ends before; a straight one is on one side of the ray up to ``one``
+    and on another after that, −1 or 1, the latter right of it.
     """
 
     x: float
@@ -45,7 +49,12 @@ class Border(NamedTuple):
     tx: float
     ty: float
     radius: float
-    side: float
+    low: float
+    high: float
+    one: float
+    two: float
+    before: float
+    after: float
 
 
 @inlined
@@ -57,36 +66,44 @@ def _panel_to(a: float, place: float, gap: float) -> float:
 
 @inlined
 def _bends(
-    radii: FloatArray, places: FloatArray, pieces: FloatArray, border: Border, low: float,
-    high: float,
-) -> tuple[int, int]:  # fmt: skip
-    """Where the pressure bends between two places, ascending, and its piece from there on.
+    radii: FloatArray, places: FloatArray, pieces: FloatArray, turns: FloatArray, border: Border
+) -> tuple[int, int]:
+    """Where the pressure bends along a border, ascending, and its piece from there on.
 
-    How many, and its piece at the first place: how many rows are closer to the centre.
+    How many, and its piece where the border begins: how many rows are closer to the centre.
     """
     apart = math.sqrt(border.x * border.x + border.y * border.y)
-    near, span = apart, math.inf
+    near, first, last = apart, 0, radii.size - 1
     if border.radius > 0.0:
-        near, span = abs(apart - border.radius), 4.0 * apart * border.radius
-    first, last = 0, radii.size - 1
+        near = abs(apart - border.radius)
     while first < last and radii[first] <= near:
         first += 1
-    while last > first and (radii[last - 1] - near) * (radii[last - 1] + near) >= span:
-        last -= 1
+    if border.radius > 0.0:
+        span = 4.0 * apart * border.radius
+        while last > first and (radii[last - 1] - near) * (radii[last - 1] + near) >= span:
+            last -= 1
+        for i in range(last - first):
+            square = max((radii[first + i] - near) * (radii[first + i] + near), 0.0)
+            turns[i] = 2.0 * angle_of(math.sqrt(square), math.sqrt(max(span - square, 0.0)))
+    else:
+        for i in range(last - first):
+            turns[i] = math.sqrt(max((radii[first + i] - near) * (radii[first + i] + near), 0.0))
     count, start = 0, last
-    for n in range(2 * (last - first)):  # inwards, and out again
-        inwards = n < last - first
-        i = last - 1 - n if inwards else n - last + 2 * first
-        place = math.sqrt((radii[i] - near) * (radii[i] + near))
-        if border.radius > 0.0:
-            place = 2.0 * angle_of(place, math.sqrt(max(span - place * place, 0.0)))
-        place = -place if inwards else place
-        piece = i if inwards else i + 1
-        if place <= low:
-            start = piece
-        elif place < high:
-            places[count], pieces[count] = place, float(piece)
-            count += 1
+    for n in range(last - first):  # inwards
+        i = last - first - 1 - n
+        if turns[i] < -border.low:
+            if -turns[i] < border.high:
+                places[count], pieces[count] = -turns[i], float(first + i)
+                count += 1
+        else:
+            start = first + i
+    for i in range(last - first):  # and out again
+        if turns[i] > border.low:
+            if turns[i] < border.high:
+                places[count], pieces[count] = turns[i], float(first + i + 1)
+                count += 1
+        else:
+            start = first + i + 1
     return count, start
 
 
@@ -131,10 +148,9 @@ def _node(
 
 @inner
 def border_sums(
-    rows: FloatArray, room: FloatArray, count: int, alpha: float, beta: float, border: Border,
-    low: float, high: float,
-) -> Sums:  # fmt: skip
-    """−∫ W P ρ dρ along a border from one place to another.
+    rows: FloatArray, room: FloatArray, count: int, alpha: float, beta: float, border: Border
+) -> Sums:
+    """−∫ W P ρ dρ along a border.
 
     ``rows``: radii, and of the pieces of W = A + B ρ before and after each A and B, flat.
     """
@@ -143,32 +159,32 @@ def border_sums(
     places, pieces = room[: 2 * count], room[2 * count : 4 * count]
     wa, wb = room[4 * count : 4 * count + _NODES], room[4 * count + _NODES : 4 * count + 2 * _NODES]
     rest = room[4 * count + 2 * _NODES :]
-    bends, piece = _bends(radii, places, pieces, border, low, high)
+    bends, piece = _bends(radii, places, pieces, rest, border)
     x, y, tx, ty, radius = border.x, border.y, border.tx, border.ty, border.radius
-    side = border.side
     c = alpha / beta if alpha < _FARTHEST * beta else _FARTHEST
-    apart = math.sqrt(x * x + y * y)
     ahead, aside = (c - y) * ty - x * tx, (c - y) * tx + x * ty
-    centre, gap, lap = ahead, abs(aside), math.inf
-    own, per = apart, 1.0
+    own, centre, gap, least, lap = math.sqrt(x * x + y * y), ahead, abs(aside), _GAP, math.inf
+    per = own * radius
     if radius > 0.0:
-        lap = 2.0 * math.pi
-        centre = math.atan2(aside, ahead)
         reach = math.sqrt(ahead * ahead + aside * aside)
-        gap = abs(math.log(max(reach, 1e-300) / radius))
-        own, per = abs(math.log(apart / radius)), apart * radius
-    least = _GAP if radius == 0.0 else min(_GAP / radius, 0.3)
+        centre, gap = math.atan2(aside, ahead), abs(math.log(max(reach, 1e-300) / radius))
+        own, least, lap = abs(math.log(own / radius)), min(_GAP / radius, 0.3), 2.0 * math.pi
     gap, own = max(gap, least), max(own, least)
     other = centre - lap if centre > 0.0 else centre + lap
-    sums, a, k = NOTHING, low, 0
-    while a < high:
+    sums, a, k = NOTHING, border.low, 0
+    while a < border.high:
+        side, last = border.before, border.one
+        if a >= border.one:
+            side, last = border.after, border.two if a < border.two else border.high
         size = min(_panel_to(a, centre, gap), _panel_to(a, 0.0, own))
         if radius > 0.0:
-            size = min(size, _panel_to(a, other, gap), _panel_to(a, lap, own), _panel_to(a, -lap, own))
-        if size > 0.5 * (high - a):
-            size = high - a if size >= high - a else 0.5 * (high - a)
+            size = min(
+                size, _panel_to(a, other, gap), _panel_to(a, lap, own), _panel_to(a, -lap, own)
+            )
+        if size > 0.5 * (last - a):
+            size = last - a if size >= last - a else 0.5 * (last - a)
         half = 0.5 * size
-        middle, end, first = a + half, a + size if size < high - a else high, k
+        middle, end, first = a + half, a + size if size < last - a else last, k
         while k < bends and places[k] < end:
             k += 1
         if k > first:
@@ -183,9 +199,7 @@ def border_sums(
         if radius == 0.0:
             for j in range(_NODES):
                 u = middle + half * _NODE[j]
-                weight, here = _node(
-                    alpha, beta, x + u * tx, y + u * ty, side, wa[j], wb[j]
-                )
+                weight, here = _node(alpha, beta, x + u * tx, y + u * ty, side, wa[j], wb[j])
                 part = added(part, -half * u * weight, here)
         else:
             for j in range(_NODES):

@@ -50,9 +50,7 @@ def _with_whole(sums: Sums, weight: float, four: Four) -> Sums:
 
 
 @inner
-def _line(
-    ground: FloatArray, slip: Slip, px: float, py: float, qx: float, qy: float
-) -> Sums:
+def _line(ground: FloatArray, slip: Slip, px: float, py: float, qx: float, qy: float) -> Sums:
     """A straight border from p to q, what is to its left, and beyond it on the ray through C."""
     count, profile, room = int(ground[ROWS]), int(ground[PROFILE]), int(ground[ROOM])
     rows, piles, rest = ground[profile:room], ground[room:], ground[room + 8 * count :]
@@ -74,22 +72,18 @@ def _line(
         if above <= 0.0:  # it passes below, and is above on one side at most
             first = first if py > qy else second
     if above > 0.0:
-        sums = _with_whole(
-            sums, first, piled(rows, piles, count, alpha, beta, min(above, 1.0))
-        )
-    x, y = off * ty, -off * tx
-    middle = min(max(split, low), high)
-    if low < middle:
-        border = Border(x, y, tx, ty, 0.0, first)
-        sums = plus(sums, 1.0, border_sums(rows, rest, count, alpha, beta, border, low, middle))
-    if middle < high:
-        border = Border(x, y, tx, ty, 0.0, second)
-        sums = plus(sums, 1.0, border_sums(rows, rest, count, alpha, beta, border, middle, high))
+        sums = _with_whole(sums, first, piled(rows, piles, count, alpha, beta, min(above, 1.0)))
+    if low < high:
+        split = min(max(split, low), high)
+        border = Border(off * ty, -off * tx, tx, ty, 0.0, low, high, split, high, first, second)
+        sums = plus(sums, 1.0, border_sums(rows, rest, count, alpha, beta, border))
     return sums
 
 
 @inner
-def _beyond(ground: FloatArray, slip: Slip, nx: float, ny: float, place: float, whole: Four) -> Sums:
+def _beyond(
+    ground: FloatArray, slip: Slip, nx: float, ny: float, place: float, whole: Four
+) -> Sums:
     """What lies beyond the line n·x = place ≥ 0."""
     half = math.sqrt((1.0 - place) * (1.0 + place))
     mx, my, along_x, along_y = place * nx, place * ny, half * ny, -half * nx
@@ -131,16 +125,9 @@ def _round(ground: FloatArray, slip: Slip, cx: float, cy: float, radius: float) 
         one = math.atan2(-cx * -ty + (upper - cy) * tx, -cx * tx + (upper - cy) * ty)
     if 0.0 < lower < 1.0:
         two = math.atan2(-cx * -ty + (lower - cy) * tx, -cx * tx + (lower - cy) * ty)
-    one, two = min(one, two), max(one, two)
-    one, two = min(max(one, -end), end), min(max(two, -end), end)
-    border = Border(cx, cy, tx, ty, radius, 0.0)
-    low = -end
-    for n in range(3):
-        high = one if n == 0 else (two if n == 1 else end)
-        if high > low:
-            sums = plus(sums, 1.0, border_sums(rows, rest, count, alpha, beta, border, low, high))
-            low = high
-    return sums
+    one, two = min(max(min(one, two), -end), end), min(max(one, two, -end), end)
+    border = Border(cx, cy, tx, ty, radius, -end, end, one, two, 0.0, 0.0)
+    return plus(sums, 1.0, border_sums(rows, rest, count, alpha, beta, border))
 
 
 @inner

@@ -19,7 +19,7 @@ _HEAD = 13
 # circle about it, the first of its corners, how many (none: it is that circle), and f N there),
 MIDDLE_X, MIDDLE_Y, REACH, CORNER, CORNERS, LOAD = range(6)
 PATCH_COLUMNS = 6
-_ROOM, _ROOM_A_ROW = 32, 22
+_ROOM, _ROOM_A_ROW = 48, 22
 # the corners of all patches, and of a tabulated pressure from PROFILE on all radii, A and B of its
 # pieces W = A + B ρ, with one on either side where nothing presses, and from ROOM on room to work.
 
