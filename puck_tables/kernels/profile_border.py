@@ -39,8 +39,8 @@ class Border(NamedTuple):
     """A border by a place u along it, 0 where it is next to the centre of the base.
 
     Straight, (x, y) + u (tx, ty), or of a circle with a radius about (x, y), u the angle from the
-    direction (tx, ty).  It goes from ``low`` to ``high``, and crosses the ray from the centre through
-    C at ``one`` and ``two``, or ends before; a straight one is on one side of the ray up to ``one``
+    direction (tx, ty).  It goes from ``low`` to ``high``, and crosses the ray from the centre
+    through C at ``one`` and ``two``, if at all; a straight one is on one side of it up to ``one``
     and on another after that, −1 or 1, the latter right of it.
     """
 

@@ -22,7 +22,7 @@ def sums_under(ground: FloatArray, radius: float, slip: Slip, mirrored: float) -
         share *= 0.5
     hole = ground[INNER]
     share /= 1.0 - hole * hole
-    sums = plus(NOTHING, share, weighted(ground, radius, slip, mirrored, 1.0, law, 0.0))
+    sums = plus(NOTHING, share, weighted(ground, radius, slip, mirrored, 1.0, law))
     if hole > 0.0:
-        sums = plus(sums, -share, weighted(ground, radius, slip, mirrored, hole, UNIFORM, 0.0))
+        sums = plus(sums, -share, weighted(ground, radius, slip, mirrored, hole, UNIFORM))
     return sums
