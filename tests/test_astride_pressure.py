@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from itertools import pairwise
 
 import numpy as np
 import pressure_judge
@@ -22,7 +21,6 @@ FLOORS = {
     "polygon": (Ground([], [0.3], polygons=[(CORNERS, 0.05)]),
                 pt.Floor(patches=[pt.Patch(0.05, corners=CORNERS.tolist())])),
 }  # fmt: skip
-CONE = [(0.2, 1.0), (0.6, 2.0), (1.0, 0.5)]
 LAWS = {
     "ring": (None, 0.5, ()),
     "hertz": (lambda _, short: 1.5 * math.sqrt(short * (2.0 - short)), 0.2, ()),
@@ -80,47 +78,6 @@ def test_a_patch_that_touches_the_rim_from_inside():
         assert np.abs(found("galin", surface, slip, 0.8) - truth).max() <= 1e-9, slip
 
 
-def against_circles(path, rows, floor, slip):
-    """How far friction under a profile, straight between its rows, is from the judge's."""
-    path.write_text("rho,W\n" + "".join(f"{rho!r},{w!r}\n" for rho, w in rows))
-    radii, heights = np.array(rows).T
-    load, square = 0.0, 0.0  # ∫ W ρ dρ and ½ ∫ W ρ³ dρ by Gauss's rule, exact on each piece
-    node, weight = np.polynomial.legendre.leggauss(4)
-    for low, high in pairwise(radii):
-        rho = 0.5 * (low + high) + 0.5 * (high - low) * node
-        part = 0.5 * (high - low) * weight * np.interp(rho, radii, heights) * rho
-        load, square = load + part.sum(), square + 0.5 * (part * rho**2).sum()
-    square /= load
-
-    def law(at: float, _: float) -> float:
-        return float(np.interp(at, radii, heights)) * 0.5 / load if at >= radii[0] else 0.0
-
-    ground, surface = FLOORS[floor]
-    # also where the circle is as close to a border as the centre of rotation of one slip
-    bends = (math.hypot(0.4, 0.1), *(float(rho) for rho in radii if 0.0 < rho < 1.0))
-    truth = pressure_judge.friction(ground, slip, law, 0.4, square, bends)
-    return np.abs(found(str(path), surface, slip, 0.8) - truth).max()
-
-
-def test_a_profile_against_circles(tmp_path):
-    """With a hole."""
-    for slip in SLIPS[1:3]:
-        assert against_circles(tmp_path / "cone.csv", CONE, "strips", slip) <= 1e-10, slip
-
-
-@pytest.mark.thorough
-@pytest.mark.parametrize("floor", FLOORS)
-def test_profiles_of_two_rows_and_of_many(tmp_path, floor):
-    """The centre of rotation within the base, beside a border, on it, at the rim and outside."""
-    rng = np.random.default_rng(5)
-    radii = np.concatenate([[0.0], np.sort(rng.uniform(0.02, 0.98, 12)), [1.0]]).tolist()
-    rough = [(rho, w) for rho, w in zip(radii, rng.uniform(0.2, 2.0, 14).tolist(), strict=True)]
-    for n, rows in enumerate(([(0.0, 2.0), (1.0, 0.3)], rough)):
-        for slip in [*SLIPS[1:3], (0.3, -0.4, 1.0), (0.1, 0.39, -1.0), (1.0, 0.4, 0.3)]:
-            wrong = against_circles(tmp_path / f"{n}.csv", rows, floor, slip)
-            assert wrong <= 1e-10, (rows, slip)
-
-
 @pytest.mark.parametrize("pressure", LAWS)
 def test_a_border_between_equal_frictions_is_none(pressure):
     puck = pt.Puck(0.04, height=0.02, friction=0.2, mass=0.2, pressure=pressure)
@@ -133,14 +90,6 @@ def test_a_border_between_equal_frictions_is_none(pressure):
     assert abs(ends[1].last["x"] - ends[0].last["x"]) <= 1e-7 * unit
     assert [e.what for e in ends[1].events] == ["entry", "exit", "stick"]
     assert ends[1].energy_residual < 1e-8
-
-
-def test_a_profile_of_too_many_rows_is_refused(tmp_path):
-    path = tmp_path / "fine.csv"
-    path.write_text("rho,W\n" + "".join(f"{rho},{1.0 + rho}\n" for rho in np.linspace(0, 1, 61)))
-    puck = pt.Puck(0.04, friction=0.2, pressure=str(path))
-    with pytest.raises(pt.InputError, match="it has 61: give fewer"):
-        pt.Scene(puck, pt.Floor(strips=pt.Strips((0.15,), (0.2, 0.1))))
 
 
 @pytest.mark.parametrize("pressure", ["hertz", "galin"])

@@ -113,14 +113,12 @@ def _polygon_sums(
 
 @inner
 def weighted(
-    ground: FloatArray, radius: float, slip: Slip, mirrored: float, size: float, law: int,
-    less: float,
-) -> Sums:  # fmt: skip
+    ground: FloatArray, radius: float, slip: Slip, mirrored: float, size: float, law: int
+) -> Sums:
     """Sums over a disc of radius ``size`` times f N; ``mirrored`` −1: of a clockwise spin.
 
-    ``less``: f N that is taken from all of it; ``law``: of pressure; of a ring over the rim, by the
-    angle.  In axes along the slip and across it.  A clockwise spin is the mirror image of the
-    other.
+    ``law``: of pressure; of a ring over the rim, by the angle.  In axes along the slip and across
+    it.  A clockwise spin is the mirror image of the other.
     """
     alpha, beta = slip.along, slip.turning
     x, y = ground[PLACE_X], ground[PLACE_Y]
@@ -129,7 +127,7 @@ def weighted(
     nx = east * slip.cosine + north * slip.sine
     ny = mirrored * (north * slip.cosine - east * slip.sine)
     strip = strip_at(ground, x, y)
-    sums, whole = NOTHING, load_of(ground, strip) - less
+    sums, whole = NOTHING, load_of(ground, strip)
     if whole != 0.0:
         sums = plus(sums, whole, whole_sums(alpha, beta, size, law))
     for i in range(strip, int(ground[BORDERS])):

@@ -13,16 +13,15 @@ from puck_tables.kernels.compile import inlined
 # A ground, all in one array, which is quick to hand on: where the centre of the base is, 1 or by
 # how much all friction is taken wrong, and what holds for all of it,
 PLACE_X, PLACE_Y, SHARE, LEVER, INNER, ACROSS_X, ACROSS_Y, BORDERS, PATCHES = range(9)
-PRESSURE, PROFILE, ROWS, RADII, WEIGHTS = range(9, 14)
-_HEAD = 14
+PRESSURE, PROFILE, ROWS, ROOM = range(9, 13)
+_HEAD = 13
 # the places of its borders, f N between them, a row for each patch (its middle, the radius of a
 # circle about it, the first of its corners, how many (none: it is that circle), and f N there),
 MIDDLE_X, MIDDLE_Y, REACH, CORNER, CORNERS, LOAD = range(6)
 PATCH_COLUMNS = 6
-_WEIGHTS_ROOM = 96
-# the corners of all patches, the rows of a tabulated pressure (radius, W) from PROFILE on, and from
-# RADII on room for the radii at which circles on the base meet something else, and from WEIGHTS on
-# for the weights of a rule over them.
+_ROOM, _ROOM_A_ROW = 48, 22
+# the corners of all patches, and of a tabulated pressure from PROFILE on all radii, A and B of its
+# pieces W = A + B ρ, with one on either side where nothing presses, and from ROOM on room to work.
 
 
 class Ground(NamedTuple):
@@ -51,15 +50,21 @@ class Ground(NamedTuple):
         """In one array."""
         head = [0.0, 0.0, 1.0, self.lever, self.inner, self.across_x, self.across_y]
         tables = [self.borders, self.loads, self.patches.ravel(), self.corners.ravel()]
-        profile = _HEAD + sum(map(len, tables))
-        radii = 2 * len(self.borders) + 3 * (len(self.patches) + len(self.corners))
+        at, rows = _HEAD + sum(table.size for table in tables), len(self.profile)
+        pieces = _pieces(self.profile) if rows else np.empty(0)
         counts = [
-            len(self.borders), len(self.patches), self.pressure, profile, len(self.profile),
-            profile + self.profile.size, profile + self.profile.size + radii,
+            len(self.borders), len(self.patches), self.pressure, at, rows, at + pieces.size,
         ]  # fmt: skip
-        return np.concatenate([
-            head, counts, *tables, self.profile.ravel(), np.zeros(radii + _WEIGHTS_ROOM)
-        ]).astype(np.float64)  # fmt: skip
+        room = np.zeros(_ROOM + _ROOM_A_ROW * rows if rows else 0)
+        return np.concatenate([head, counts, *tables, pieces, room]).astype(np.float64)
+
+
+def _pieces(profile: FloatArray) -> FloatArray:
+    """The radii of a tabulated pressure, and A and B of its pieces, flat."""
+    radii, weights = profile.T
+    slope = np.diff(weights) / np.diff(radii)
+    base = weights[:-1] - slope * radii[:-1]
+    return np.concatenate([radii, np.pad(base, 1), np.pad(slope, 1)])
 
 
 NO_GROUND = np.empty(0)

@@ -181,7 +181,7 @@ def plan_for(scene: Scene) -> Plan:
             piled = scene.puck.body.law.profile is not None
             why += (
                 "\nWhile the base is astride two frictions they are integrated over its parts, "
-                f"about {'a thousand' if piled else 'ten'} times the cost of a step elsewhere."
+                f"about {'forty' if piled else 'ten'} times the cost of a step elsewhere."
             )
         return Plan(model, False, why)
     kind = scene.puck.regime(free_velocity(scene), scene.launch.spin)
