@@ -21,6 +21,7 @@ from puck_tables.stopping.per_height import MANY
 from puck_tables.stopping.stop_section import stop_section_for
 
 QUICK = [PUCKS[2], PUCKS[6]]
+TURNS = (("hertz", 0.8), ("ring", 0.8), ("annulus:0.8", 0.8), ("uniform", 2.0))
 
 
 def stops_of(puck: tuple[str, float, float], u: np.ndarray, **options: object) -> np.ndarray:
@@ -182,3 +183,20 @@ def test_a_tall_puck_may_be_aimed_in_three_ways():
     assert found.launch_spin.size == 6
     assert found.miss.max() <= 1e-8
     assert np.abs(found.stop_time - middle).max() <= 1e-8
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize(("law", "delta"), TURNS)
+def test_how_far_headings_turn(law: str, delta: float) -> None:
+    """Looked up to what the docstring says, of slides that hardly spin and spins that hardly slide.
+
+    Against integration, which reads friction from other tables.
+    """
+    ratio = np.geomspace(1e-3, 1e3, 200)
+    v = np.stack([1.0 / np.hypot(1.0, ratio), np.zeros(200)], axis=1)
+    told = [
+        stop(v, ratio * v[:, 0], delta=delta, pressure=law, tol=tol).turn_angle
+        for tol in (1e-6, 1e-8, 1e-11)
+    ]
+    for found, tol in ((told[0], 1e-6), (told[1], 1e-8)):
+        assert np.abs(found - told[2]).max() < 2000.0 * tol

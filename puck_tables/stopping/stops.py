@@ -41,8 +41,9 @@ class Stops(Differentiated, Result):
     with a stop table of one's own).
     Computed when first asked for: ``path_length`` (…) m, ``body_angle`` (…) rad, ``turn_angle``
     (…) rad: how far the heading has turned when Q has fallen to 1/1000 (for δ > 0 it turns on
-    without end).  For that more than 16384 launches are held as they were given, not copied: where
-    their arrays have been changed in the meantime it is refused.
+    without end); of other than plain pucks, looked up, it errs by up to some 2000 ``tol``.  For
+    that more than 16384 launches are held as they were given, not copied: where their arrays have
+    been changed in the meantime it is refused.
     """
 
     picture: ClassVar[str] = "places"
