@@ -26,7 +26,7 @@ def foreseen(floor: pt.Floor, place: tuple[float, float], spin: float) -> float:
     y[X], y[Y] = place
     y[VX], y[SPIN] = V, spin
     work[0, X], work[0, VX] = V, A
-    return float(next_kink(ground, RADIUS, STILL, y, work, 0.0))
+    return float(next_kink(ground, RADIUS, STILL, y, work[0], 0.0))
 
 
 def after(way: float) -> float:

@@ -53,11 +53,13 @@ def _sides(gap: float, rate: float, bend: float, one: float, two: float, after: 
 
 @inner
 def next_kink(
-    ground: FloatArray, radius: float, surface: Surface, y: FloatArray, work: FloatArray,
+    ground: FloatArray, radius: float, surface: Surface, y: FloatArray, first: FloatArray,
     near: float,
 ) -> float:  # fmt: skip
-    """In what time; inf: none is foreseen.  The centre of rotation may be on a border ``near``."""
-    first = work[0]
+    """In what time; inf: none is foreseen.  The centre of rotation may be on a border ``near``.
+
+    ``first``: dy/dt.
+    """
     px, py, vx, vy, ux, uy, w = y[X], y[Y], first[X], first[Y], y[VX], y[VY], y[SPIN]
     cx, cy = carried_along(surface, vx, vy)
     ax, ay = first[VX] + cx, first[VY] + cy

@@ -1,0 +1,177 @@
+"""A step from one kink of friction to the next, of a base on several frictions, by collocation.
+
+Between two kinks friction is smooth in the graded time of :mod:`puck_tables.scene.grading`, and a
+fast puck hardly changes its motion there: that the step is integrated is no more than a quadrature.
+The motion is a polynomial through Lobatto's points, on which friction is looked up where it was
+found to go before, with ever more points.  What the last points changed, times by how much less
+that was than the time before, is the error.  When the next kink comes is foreseen anew with every
+set of points, and the end of the step moved there.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.kernels.compile import inner
+from puck_tables.scene.equations import ROW, SIZE, rates
+from puck_tables.scene.explicit import STAGES
+from puck_tables.scene.friction import VX, X
+from puck_tables.scene.grading import powers_of
+from puck_tables.scene.ingredients import Stretch
+from puck_tables.scene.kinks import next_kink
+
+_DEGREES = (4, 8, 12, 16, 20, 24)  # of the polynomials, one after the other
+_MOVES = 3  # places, and their velocities
+_LEAST_GAIN, _NO_GAIN = 0.03, 0.5  # times the error before: better is not believed, worse is none
+_LEFT = 0.005  # of a step: from so close to its end the kink there is foreseen
+_OFF = 0.1  # of a step: a kink farther off is another
+_BEYOND = 5e-6  # of a step: so late it ends, so that the kink is passed
+_STAYS = 3e-6  # of a step: nor is its end moved by less
+_STATES = STAGES  # the first row of states, and
+_RATES = _STATES + _DEGREES[-1] + 1  # that of rates
+_NEAR = _RATES + _DEGREES[-1] + 1  # and that of rates next to the kink
+WORK_ROWS = _NEAR + 1
+
+
+def _points(degree: int) -> FloatArray:
+    """Lobatto's, between 0 and 1."""
+    slope = np.polynomial.legendre.Legendre.basis(degree).deriv()
+    return 0.5 + 0.5 * np.concatenate([[-1.0], np.sort(slope.roots().real), [1.0]])
+
+
+def _integrals(at: FloatArray, to: FloatArray) -> FloatArray:
+    """What integrates the polynomial through values at some points from 0 to others."""
+    basis = np.polynomial.legendre.legvander(2.0 * at - 1.0, len(at) - 1)
+    upto = [
+        0.5 * np.polynomial.legendre.Legendre.basis(k).integ(lbnd=-1.0)(2.0 * to - 1.0)
+        for k in range(len(at))
+    ]
+    return np.linalg.solve(basis.T, np.array(upto)).T
+
+
+_ALL = [_points(degree) for degree in _DEGREES]
+_POINT = np.concatenate(_ALL)
+_OWN = np.concatenate([_integrals(at, at).ravel() for at in _ALL])
+_NEXT = np.concatenate([
+    _integrals(at, to).ravel() for at, to in zip(_ALL, [*_ALL[1:], _ALL[-1]], strict=True)
+])  # fmt: skip
+_DEGREE = np.array(_DEGREES)
+
+
+@inner
+def _moved(
+    y: FloatArray, work: FloatArray, weights: FloatArray, first: int, points: int, number: int,
+    i: int,
+) -> tuple[float, float, float]:  # fmt: skip
+    """Three numbers of the state, from i on, at a point of so many; by their rates."""
+    a, b, c = y[i], y[i + 1], y[i + 2]
+    row = first + number * points
+    for j in range(points):
+        weight = weights[row + j]
+        a += weight * work[_RATES + j, i]
+        b += weight * work[_RATES + j, i + 1]
+        c += weight * work[_RATES + j, i + 2]
+    return a, b, c
+
+
+@inner
+def leap(
+    stretch: Stretch, t: float, h: float, to_kink: bool, y: FloatArray, scale: FloatArray,
+    work: FloatArray, new: FloatArray,
+) -> tuple[float, float]:  # fmt: skip
+    """A step from (t, y) over about h into ``new`` (12,); its error in ``scale``, and how long.
+
+    As :func:`puck_tables.scene.steps.step`; ``to_kink``: its end is moved to the kink there.  The
+    error is inf where the points do not settle.
+    """
+    slope, two, three, four = powers_of(stretch.grade)
+    model, error, before = stretch.model, math.inf, math.inf
+    points = _DEGREE[0] + 1
+    for k in range(points):
+        s = _POINT[k]
+        gone = h * (s * (slope + s * (two + s * (three + s * four))))
+        for i in range(_MOVES):
+            work[_STATES + k, VX + i] = y[VX + i] + gone * work[0, VX + i]
+            way = gone * (work[0, X + i] + 0.5 * gone * work[0, VX + i])
+            work[_STATES + k, X + i] = y[X + i] + way
+    for i in range(SIZE):
+        new[i] = y[i] + h * work[0, i]
+    first, own, onward = 0, 0, 0
+    for level in range(_DEGREE.size):
+        points = _DEGREE[level] + 1
+        near = 1  # the last point from which on the kink is foreseen
+        for j in range(points):
+            s, row = _POINT[first + j], _RATES + j
+            passed = s * (slope + s * (two + s * (three + s * four)))
+            pace = h * (slope + s * (2.0 * two + s * (3.0 * three + s * (4.0 * four))))
+            near = j if passed < 1.0 - _LEFT else near
+            if j == 0:
+                for i in range(ROW):
+                    work[row, i] = work[0, i]
+            elif pace > 1e-12 * h:
+                rates(stretch, t + h * passed, work[_STATES + j], work, row)
+            else:
+                for i in range(ROW):
+                    work[row, i] = 0.0
+            if j == near:
+                for i in range(ROW):
+                    work[_NEAR, i] = work[row, i]
+            for i in range(SIZE):
+                work[row, i] *= pace
+        # velocities, and by these the rates of places
+        for k in range(1, points):
+            s, row, state = _POINT[first + k], _RATES + k, _STATES + k
+            pace = h * (slope + s * (2.0 * two + s * (3.0 * three + s * (4.0 * four))))
+            a, b, c = _moved(y, work, _OWN, own, points, k, VX)
+            work[row, X] += pace * (a - work[state, VX])
+            work[row, X + 1] += pace * (b - work[state, VX + 1])
+            work[row, X + 2] += pace * (c - work[state, VX + 2])
+            work[state, VX], work[state, VX + 1], work[state, VX + 2] = a, b, c
+        if to_kink:
+            s, state = _POINT[first + near], _STATES + near
+            passed = s * (slope + s * (two + s * (three + s * four)))
+            a, b, c = _moved(y, work, _OWN, own, points, near, X)
+            work[state, X], work[state, X + 1], work[state, X + 2] = a, b, c
+            left = next_kink(
+                stretch.dry.by_speed.table, model.body.radius, model.surface, work[state],
+                work[_NEAR], 0.0,
+            )  # fmt: skip
+            longer = passed + left / h + _BEYOND
+            if _STAYS < abs(longer - 1.0) <= _OFF:
+                for k in range(points):
+                    s, row, state = _POINT[first + k], _RATES + k, _STATES + k
+                    pace = slope + s * (2.0 * two + s * (3.0 * three + s * (4.0 * four)))
+                    pace *= h * (longer - 1.0)
+                    for i in range(_MOVES):
+                        work[row, X + i] += pace * (work[state, VX + i] - y[VX + i])
+                    for i in range(SIZE):
+                        work[row, i] *= longer
+                h *= longer
+        change, last = 0.0, own + (points - 1) * points
+        for i in range(SIZE):
+            gone = 0.0
+            for j in range(points):
+                gone += _OWN[last + j] * work[_RATES + j, i]
+            change = max(change, abs(y[i] + gone - new[i]) / scale[i])
+            new[i] = y[i] + gone
+            if i < 2:
+                new[SIZE + i] = gone
+        gain = change / before if level > 0 else 1.0
+        error = max(gain, _LEAST_GAIN) * change if change > 0.0 else 0.0
+        before = change
+        if not gain <= _NO_GAIN and level > 1 and not error <= stretch.leap:
+            error = math.inf
+        if error <= stretch.leap or not error < math.inf or level == _DEGREE.size - 1:
+            break
+        after = _DEGREE[level + 1] + 1
+        for k in range(after):
+            a, b, c = _moved(y, work, _NEXT, onward, points, k, VX)
+            work[_STATES + k, VX], work[_STATES + k, VX + 1], work[_STATES + k, VX + 2] = a, b, c
+            a, b, c = _moved(y, work, _NEXT, onward, points, k, X)
+            work[_STATES + k, X], work[_STATES + k, X + 1], work[_STATES + k, X + 2] = a, b, c
+        first, own, onward = first + points, own + points * points, onward + points * after
+    rates(stretch, t + h, new, work, STAGES - 1)
+    return error, h
