@@ -25,7 +25,7 @@ from puck_tables.scene.kinks import next_kink
 
 _DEGREES = (4, 8, 12, 16, 20, 24)  # of the polynomials, one after the other
 _MOVES = 3  # places, and their velocities
-_LEAST_GAIN, _NO_GAIN = 0.03, 0.5  # times the error before: better is not believed, worse is none
+_LEAST_GAIN = 0.03  # times the error before: better is not believed
 _LEFT = 0.005  # of a step: from so close to its end the kink there is foreseen
 _OFF = 0.1  # of a step: a kink farther off is another
 _BEYOND = 5e-6  # of a step: so late it ends, so that the kink is passed
@@ -162,9 +162,11 @@ def leap(
         gain = change / before if level > 0 else 1.0
         error = max(gain, _LEAST_GAIN) * change if change > 0.0 else 0.0
         before = change
-        if not gain <= _NO_GAIN and level > 1 and not error <= stretch.leap:
+        to_come = _DEGREE.size - 1 - level
+        if error <= stretch.leap or to_come == 0:
+            break
+        if level > 1 and not error * gain**to_come <= stretch.leap:
             error = math.inf
-        if error <= stretch.leap or not error < math.inf or level == _DEGREE.size - 1:
             break
         after = _DEGREE[level + 1] + 1
         for k in range(after):

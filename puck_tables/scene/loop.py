@@ -116,6 +116,7 @@ _NEWTON, _FINEST_NEWTON = 1e-3, 1e-15  # of the local error: how well implicit s
 _PACE = 2.7  # times the eighth root of the local error: how far a first step astride comes,
 _FASTEST, _SLOWEST = 0.5, 1e-6  # and how far any; shorter ones are not graded
 _NEAR_KINK, _NEAR_LEAP = 0.01, 1e-4  # of a step to a kink, and a leap: how well it was foreseen
+_WHOLE, _SHORTEST = 1.0, 0.2  # how far a leap comes at first; shorter ones are not tried
 _LEAP = 0.3  # of the slip: what changes it more in a leap is left to steps
 _BACK = 2e-5  # of a step between kinks: so far back from its end the motion is known
 _NUDGE = 0.3  # of its local error: by so much each step of a twin on a blade is put off its way
@@ -178,14 +179,14 @@ def follow(
     reach, closest, swing = _NEAR, CLOSEST, _SWING
     # astride: how far a step comes between two kinks of friction, when the last was, how close
     pace, fastest, since, near = min(_PACE * allowed**0.125, _FASTEST), _FASTEST, 0.0, 0.0
-    farthest, smooth = 1.0, True  # and in a leap; whether one is worth to try
+    farthest = _WHOLE  # and in a leap
     halved = False  # the step that ends here is cut in two
     clear = 0.0  # no patch's border is nearer to the rim
     if ask.twin > 0.0:
         h, reach, swing = ask.twin * h, (1.0 + ask.twin) * reach, (1.0 + ask.twin) * swing
         closest *= 1.0 - 0.2 * ask.twin
         fastest *= 1.0 - 0.2 * ask.twin
-        farthest = 0.6
+        farthest *= 1.0 - 0.4 * ask.twin
     settle, known = True, False  # whether to look what holds the puck; whether work[0] is there
     newton, grade, again = 0.0, UNIFORM, False  # again: the step before was too long
     stretch = Stretch(model, dry, leaning, piece, mode, way, newton, grade, 0.0)
@@ -281,7 +282,7 @@ def follow(
                 left = 1.0 / ends if ends * (t - since) < 1.0 else math.inf
         paces = left < math.inf and pace > _SLOWEST
         free = not held_there and leaning.shape[0] == 0
-        leaps = paces and smooth and free and pull * left <= _LEAP * q
+        leaps = paces and farthest > _SHORTEST and free and pull * left <= _LEAP * q
         length = h
         if paces:
             length = paced(t - since, left, farthest if leaps else min(pace, fastest))
@@ -308,7 +309,7 @@ def follow(
             h, pace = 0.25 * length, 0.25 * pace
             continue
         if leaps and not error <= allowed:
-            smooth = False
+            farthest *= 0.5
             continue
         if not error <= allowed:
             shrink = 0.25 if newton > 0.0 else 0.1
@@ -379,7 +380,7 @@ def follow(
             frame += 1
         near = 0.0
         if length == left or happens in (BORDER, _PATCH):
-            since, near, smooth = end, (_NEAR_LEAP if leaps else _NEAR_KINK) * length, True
+            since, near = end, (_NEAR_LEAP if leaps else _NEAR_KINK) * length
         t = end
         for i in range(SIZE):
             y[i] = new[i]
@@ -443,6 +444,7 @@ def follow(
                 which += int(regions.ground[GROUND_BORDERS])
             happens = LEAVES if back else COMES_OVER
             dry = dry_under(regions, region, lies)
+            farthest = farthest if is_astride(dry) else _WHOLE * (1.0 - 0.4 * ask.twin)
             damps, turns = settling_rates(model, dry.load)
             stiff = stiff and dry.load > 0.0
             mode = CARRIED if mode == CARRIED and dry.load > 0.0 else SLIDES
