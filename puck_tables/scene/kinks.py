@@ -29,6 +29,7 @@ from puck_tables.scene.ingredients import Surface, carried_along
 
 _CLOSE = 1e-9  # of the time in which the slip goes a radius: nearer moments are now
 _BEYOND = 1e-5  # of the time to a kink: by so much later, so that it is passed
+_BESIDE = 1.3 * 1.3  # radii, squared: where the centre of rotation is felt, if not under the base
 _FAR = 8.0  # radii: nobody foresees more
 
 
@@ -67,7 +68,7 @@ def next_kink(
     close = _CLOSE * radius / (speed + radius * abs(w) + 1e-300)
     near = max(near, close)
     # the centre of rotation and its velocity
-    turns = ux * ux + uy * uy < radius * radius * w * w
+    turns = ux * ux + uy * uy < _BESIDE * radius * radius * w * w
     inverse = 1.0 / w if turns else 0.0
     cx, cy = px - uy * inverse, py + ux * inverse
     slows = first[SPIN] * inverse

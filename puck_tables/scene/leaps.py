@@ -15,8 +15,8 @@ import math
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import inner
-from puck_tables.scene.equations import ROW, SIZE, rates
+from puck_tables.kernels.compile import inlined, inner
+from puck_tables.scene.equations import ROW, SIZE, rates, rates_here
 from puck_tables.scene.explicit import STAGES
 from puck_tables.scene.friction import VX, X
 from puck_tables.scene.grading import powers_of
@@ -32,7 +32,8 @@ _BEYOND = 5e-6  # of a step: so late it ends, so that the kink is passed
 _STAYS = 3e-6  # of a step: nor is its end moved by less
 _STATES = STAGES  # the first row of states, and
 _RATES = _STATES + _DEGREES[-1] + 1  # that of rates
-_NEAR = _RATES + _DEGREES[-1] + 1  # and that of rates next to the kink
+_FOUND = _RATES + _DEGREES[-1] + 1  # that of velocities anew,
+_NEAR = _FOUND + _DEGREES[-1] + 1  # and that of rates next to the kink
 WORK_ROWS = _NEAR + 1
 
 
@@ -61,20 +62,26 @@ _NEXT = np.concatenate([
 _DEGREE = np.array(_DEGREES)
 
 
-@inner
+@inlined
 def _moved(
-    y: FloatArray, work: FloatArray, weights: FloatArray, first: int, points: int, number: int,
-    i: int,
-) -> tuple[float, float, float]:  # fmt: skip
-    """Three numbers of the state, from i on, at a point of so many; by their rates."""
-    a, b, c = y[i], y[i + 1], y[i + 2]
-    row = first + number * points
+    y: FloatArray, work: FloatArray, weights: FloatArray, row: int, points: int, out: int
+) -> None:  # fmt: skip
+    """Places and velocities at a point, from the rates at so many, into a row of states.
+
+    By name, as in :mod:`puck_tables.scene.explicit`.
+    """
+    a, b, c = y[X], y[X + 1], y[X + 2]
+    d, e, f = y[VX], y[VX + 1], y[VX + 2]
     for j in range(points):
-        weight = weights[row + j]
-        a += weight * work[_RATES + j, i]
-        b += weight * work[_RATES + j, i + 1]
-        c += weight * work[_RATES + j, i + 2]
-    return a, b, c
+        weight, at = weights[row + j], _RATES + j
+        a, b, c = (
+            a + weight * work[at, X], b + weight * work[at, X + 1], c + weight * work[at, X + 2]
+        )  # fmt: skip
+        d, e, f = (
+            d + weight * work[at, VX], e + weight * work[at, VX + 1], f + weight * work[at, VX + 2]
+        )  # fmt: skip
+    work[out, X], work[out, X + 1], work[out, X + 2] = a, b, c
+    work[out, VX], work[out, VX + 1], work[out, VX + 2] = d, e, f
 
 
 @inner
@@ -112,7 +119,7 @@ def leap(
                 for i in range(ROW):
                     work[row, i] = work[0, i]
             elif pace > 1e-12 * h:
-                rates(stretch, t + h * passed, work[_STATES + j], work, row)
+                rates_here(stretch, t + h * passed, work[_STATES + j], work, row)
             else:
                 for i in range(ROW):
                     work[row, i] = 0.0
@@ -122,19 +129,28 @@ def leap(
             for i in range(SIZE):
                 work[row, i] *= pace
         # velocities, and by these the rates of places
+        for k in range(1, points, 2):
+            other = min(k + 1, points - 1)
+            row, more = own + k * points, own + other * points
+            a, b, c, d, e, f = y[VX], y[VX + 1], y[VX + 2], y[VX], y[VX + 1], y[VX + 2]
+            for j in range(points):
+                at, weight, second = _RATES + j, _OWN[row + j], _OWN[more + j]
+                u, v, w = work[at, VX], work[at, VX + 1], work[at, VX + 2]
+                a, b, c = a + weight * u, b + weight * v, c + weight * w
+                d, e, f = d + second * u, e + second * v, f + second * w
+            work[_FOUND + k, 0], work[_FOUND + k, 1], work[_FOUND + k, 2] = a, b, c
+            work[_FOUND + other, 0], work[_FOUND + other, 1] = d, e
+            work[_FOUND + other, 2] = f
         for k in range(1, points):
             s, row, state = _POINT[first + k], _RATES + k, _STATES + k
             pace = h * (slope + s * (2.0 * two + s * (3.0 * three + s * (4.0 * four))))
-            a, b, c = _moved(y, work, _OWN, own, points, k, VX)
-            work[row, X] += pace * (a - work[state, VX])
-            work[row, X + 1] += pace * (b - work[state, VX + 1])
-            work[row, X + 2] += pace * (c - work[state, VX + 2])
-            work[state, VX], work[state, VX + 1], work[state, VX + 2] = a, b, c
+            for i in range(_MOVES):
+                work[row, X + i] += pace * (work[_FOUND + k, i] - work[state, VX + i])
+                work[state, VX + i] = work[_FOUND + k, i]
         if to_kink:
             s, state = _POINT[first + near], _STATES + near
             passed = s * (slope + s * (two + s * (three + s * four)))
-            a, b, c = _moved(y, work, _OWN, own, points, near, X)
-            work[state, X], work[state, X + 1], work[state, X + 2] = a, b, c
+            _moved(y, work, _OWN, own + near * points, points, state)
             left = next_kink(
                 stretch.dry.by_speed.table, model.body.radius, model.surface, work[state],
                 work[_NEAR], 0.0,
@@ -170,10 +186,7 @@ def leap(
             break
         after = _DEGREE[level + 1] + 1
         for k in range(after):
-            a, b, c = _moved(y, work, _NEXT, onward, points, k, VX)
-            work[_STATES + k, VX], work[_STATES + k, VX + 1], work[_STATES + k, VX + 2] = a, b, c
-            a, b, c = _moved(y, work, _NEXT, onward, points, k, X)
-            work[_STATES + k, X], work[_STATES + k, X + 1], work[_STATES + k, X + 2] = a, b, c
+            _moved(y, work, _NEXT, onward + k * points, points, _STATES + k)
         first, own, onward = first + points, own + points * points, onward + points * after
     rates(stretch, t + h, new, work, STAGES - 1)
     return error, h
