@@ -54,7 +54,7 @@ def test_a_puck_that_starts_or_stays_astride(launch):
 
 @pytest.mark.parametrize("pressure", ["uniform", "annulus:0.5"])
 def test_fast_crossings_at_once_are_those_of_scipy(pressure):
-    """From one kink of friction to the next in a single step, the rim of a hole at a border, too."""
+    """In a step from one kink of friction to the next; also where a hole meets a border."""
     puck = pt.Puck(0.04, height=0.02, mass=0.2, friction=0.1, pressure=pressure)
     floor, run = pt.Floor(strips=pt.Strips((0.2,), (0.1, 0.06))), pt.Run(time=0.2, tol=1e-9)
     speed, spins = (1.699, -0.0072), [20.621, -40.0]

@@ -1,11 +1,11 @@
 """A step from one kink of friction to the next, of a base on several frictions, by collocation.
 
 Between two kinks friction is smooth in the graded time of :mod:`puck_tables.scene.grading`, and a
-fast puck hardly changes its motion there: that the step is integrated is no more than a quadrature.
-The motion is a polynomial through Lobatto's points, on which friction is looked up where it was
-found to go before, with ever more points.  What the last points changed, times by how much less
-that was than the time before, is the error.  When the next kink comes is foreseen anew with every
-set of points, and the end of the step moved there.
+fast puck hardly changes its motion there: to integrate it is little more than a quadrature.  Rates
+are looked up at Lobatto's points, where the motion was found to be before (Picard's iteration), and
+integrated as a polynomial through them; each time at more points.  The error is what the last ones
+have changed, times by how much less that was than the time before.  When the kink comes is foreseen
+anew with every set of points, and the end of the step moved there.
 """
 
 from __future__ import annotations
@@ -91,8 +91,8 @@ def leap(
 ) -> tuple[float, float]:  # fmt: skip
     """A step from (t, y) over about h into ``new`` (12,); its error in ``scale``, and how long.
 
-    As :func:`puck_tables.scene.steps.step`; ``to_kink``: its end is moved to the kink there.  The
-    error is inf where the points do not settle.
+    As :func:`puck_tables.scene.steps.step`; ``to_kink``: its end is moved to the kink there, and
+    it is given up where the points do not settle; its error then is inf.
     """
     slope, two, three, four = powers_of(stretch.grade)
     model, error, before = stretch.model, math.inf, math.inf
@@ -171,17 +171,18 @@ def leap(
             gone = 0.0
             for j in range(points):
                 gone += _OWN[last + j] * work[_RATES + j, i]
-            change = max(change, abs(y[i] + gone - new[i]) / scale[i])
+            off = abs(y[i] + gone - new[i]) / scale[i]
+            change = change if off <= change else off  # also where it is no number
             new[i] = y[i] + gone
             if i < 2:
                 new[SIZE + i] = gone
         gain = change / before if level > 0 else 1.0
-        error = max(gain, _LEAST_GAIN) * change if change > 0.0 else 0.0
+        error = 0.0 if change == 0.0 else max(gain, _LEAST_GAIN) * change
         before = change
         to_come = _DEGREE.size - 1 - level
         if error <= stretch.leap or to_come == 0:
             break
-        if level > 1 and not error * gain**to_come <= stretch.leap:
+        if to_kink and level > 1 and not error * gain**to_come <= stretch.leap:
             error = math.inf
             break
         after = _DEGREE[level + 1] + 1

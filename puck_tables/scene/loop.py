@@ -4,7 +4,8 @@ The pair 8(5,3) (:mod:`puck_tables.scene.explicit`), or Radau IIA where the dire
 settles much faster than the slip changes (next to the limit of what friction holds).  Next to
 relative rest, where the direction of friction turns within Q over what changes it, a step is at
 most half of that; one that ends with the slip may take more, and is graded, as are those of a base
-on several frictions from one kink of them to the next.  At the very end a slip stops on a straight
+on several frictions from one kink of them to the next, which a fast one takes in one
+(:mod:`puck_tables.scene.leaps`).  At the very end a slip stops on a straight
 line.  Every event is found on a real step of the method from the last step end and becomes a step
 end.  Rebounds that die out are a geometric series, of which only the first are taken one by one
 (see :mod:`puck_tables.scene.settle`).
@@ -367,7 +368,7 @@ def follow(
             if not error <= allowed and (is_astride(dry) or not error < math.inf):
                 shrink = max(0.1, 0.9 * (allowed / error) ** power if error < math.inf else 0.1)
                 h, pace = (h, pace * shrink) if paces else (length * shrink, pace)
-                halved = False
+                farthest, halved = 0.5 * farthest if leaps else farthest, False
                 continue
             for i in range(ROW):
                 last[i] = work[STAGES - 1, i]
