@@ -50,7 +50,7 @@ def _integrals(at: FloatArray, to: FloatArray) -> FloatArray:
         0.5 * np.polynomial.legendre.Legendre.basis(k).integ(lbnd=-1.0)(2.0 * to - 1.0)
         for k in range(len(at))
     ]
-    return np.linalg.solve(basis.T, np.array(upto)).T
+    return np.asarray(np.linalg.solve(basis.T, np.array(upto)).T, np.float64)
 
 
 _ALL = [_points(degree) for degree in _DEGREES]
