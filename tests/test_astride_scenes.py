@@ -52,6 +52,20 @@ def test_a_puck_that_starts_or_stays_astride(launch):
     assert apart(scene, 0.9) <= 1e-9
 
 
+@pytest.mark.parametrize("pressure", ["uniform", "annulus:0.5"])
+def test_fast_crossings_at_once_are_those_of_scipy(pressure):
+    """In a step from one kink of friction to the next; also where a hole meets a border."""
+    puck = pt.Puck(0.04, height=0.02, mass=0.2, friction=0.1, pressure=pressure)
+    floor, run = pt.Floor(strips=pt.Strips((0.2,), (0.1, 0.06))), pt.Run(time=0.2, tol=1e-9)
+    speed, spins = (1.699, -0.0072), [20.621, -40.0]
+    found = pt.Scene(puck, floor, pt.Launch(speed, spins), run=run).sweep()
+    for n, spin in enumerate(spins):
+        scene = pt.Scene(puck, floor, pt.Launch(speed, spin), run=run)
+        truth = Motion(scene).states(scene, np.array([run.time]))[:, -1]
+        unit = (speed[0] ** 2 + (0.04 * spin) ** 2) / (0.1 * 9.81)
+        assert np.hypot(found.x[n] - truth[0], found.y[n] - truth[1]) <= 1e-9 * unit
+
+
 def test_the_rim_meets_a_border_a_radius_before_the_centre():
     floor = pt.Floor(strips=pt.Strips((0.3,), (0.2, 0.1)))
     entry, away, _ = pt.Scene(PUCK, floor, pt.Launch((1.5, 0.0))).simulate().events

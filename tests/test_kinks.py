@@ -19,14 +19,17 @@ STILL = Surface(0.0, 0.0, 0.0, 0.0, 0.0)
 RADIUS, V, A, W = 0.1, 1.0, -0.5, 40.0
 
 
-def foreseen(floor: pt.Floor, place: tuple[float, float], spin: float) -> float:
+def foreseen(
+    floor: pt.Floor, place: tuple[float, float], spin: float, pressure: str = "uniform"
+) -> float:
     """In what time, of a puck at V along x that slows down by A."""
-    ground = regions_of(pt.Scene(pt.Puck(RADIUS, friction=0.2), floor)).ground
-    y, work = np.zeros(SIZE), np.zeros((1, SIZE))
+    puck = pt.Puck(RADIUS, friction=0.2, pressure=pressure)
+    ground = regions_of(pt.Scene(puck, floor)).ground
+    y, first = np.zeros(SIZE), np.zeros(SIZE)
     y[X], y[Y] = place
     y[VX], y[SPIN] = V, spin
-    work[0, X], work[0, VX] = V, A
-    return float(next_kink(ground, RADIUS, STILL, y, work, 0.0))
+    first[X], first[VX] = V, A
+    return float(next_kink(ground, RADIUS, STILL, y, first, 0.0))
 
 
 def after(way: float) -> float:
@@ -54,11 +57,27 @@ def test_the_rim_meets_a_border(floor: pt.Floor, place, spin: float, due: float)
     assert foreseen(floor, place, spin) == pytest.approx(due, rel=2e-5)
 
 
+@pytest.mark.parametrize(
+    ("floor", "place", "way"),
+    [
+        (STRIPS, (-0.09, 0.0), 0.04),  # its rim comes
+        (STRIPS, (-0.02, 0.0), 0.07),  # and leaves
+        (DISC, (-0.38, 0.0), 0.03),
+        (SQUARE, (-0.09, 0.0), 0.04),
+        (SQUARE, (-0.09, 0.3), 0.04),  # a corner
+    ],
+)
+def test_the_rim_of_a_hole_meets_a_border(floor: pt.Floor, place, way: float):
+    assert foreseen(floor, place, 0.0, "annulus:0.5") == pytest.approx(after(way), rel=2e-5)
+
+
 def test_the_centre_of_rotation_passes_a_border():
     """At (x, y + v/ω): it goes along with the centre, as v/ω gets less."""
     border = pt.Floor(strips=pt.Strips((0.01,), (0.2, 0.1)))
     assert foreseen(border, (0.0, 0.0), W) == pytest.approx(0.01 / V, rel=2e-5)
     assert foreseen(border, (0.02, 0.0), W) > 0.05  # it is past it: the rim leaves later
+    beside = V / (1.1 * RADIUS)  # by a tenth of a radius of the base
+    assert foreseen(border, (0.0, 0.0), beside) < 0.03 < foreseen(border, (0.0, 0.0), 0.5 * beside)
 
 
 def test_both_ends_of_a_graded_time_are_smooth():

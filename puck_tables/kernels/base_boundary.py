@@ -93,7 +93,8 @@ def line_sums(
         for i in range(_NODES):
             way = half * _NODE[i]
             weight = half * _WEIGHT[i]
-            sums = plus(sums, weight, _at(alpha, beta, mx + way * tx, my + way * ty, tx, ty))
+            here = _at(alpha, beta, mx + way * tx, my + way * ty, tx, ty)
+            sums = added(sums, weight, here)
         return sums
     # s along it from the foot (x0, y0) of the disc's centre; w/β = hypot(s − place, off)
     begin = x * tx + y * ty

@@ -11,7 +11,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import allocating
 from puck_tables.scene.boundaries import DEGREE, Boundaries
 from puck_tables.scene.equations import ROW, SIZE
-from puck_tables.scene.explicit import STAGES
+from puck_tables.scene.leaps import WORK_ROWS
 from puck_tables.scene.settle import Contacts, contacts_for
 from puck_tables.scene.steps import WIDE
 
@@ -39,11 +39,11 @@ class Ask(NamedTuple):
 class Desk(NamedTuple):
     """Arrays to work in.
 
-    Rates of the stages of a step (13, 12) and at its end (12,), a gap polynomial (6,), the state at
-    the start and the end of a step and at a trial (12,), what is known of the walls, and of lines
-    that were met at once (4,): how often it matters which is first, when at first, and which two;
-    how the base lies to every patch of the floor (k,); and the scales of the state (10,), which
-    grow with it.
+    Rates of the stages of a step, and states and rates in a leap (n, 12), rates at its end (12,), a
+    gap polynomial (6,), the state at the start and the end of a step and at a trial (12,), what is
+    known of the walls, and of lines that were met at once (4,): how often it matters which is
+    first, when at first, and which two; how the base lies to every patch of the floor (k,); and the
+    scales of the state (10,), which grow with it.
     """
 
     work: FloatArray
@@ -62,7 +62,7 @@ class Desk(NamedTuple):
 def desk_for(bounds: Boundaries, patches: int) -> Desk:
     """A desk for a scene with these boundaries and so many patches on its floor."""
     return Desk(
-        np.empty((STAGES, ROW)), np.empty(ROW), np.empty(DEGREE + 1), np.empty(WIDE),
+        np.empty((WORK_ROWS, ROW)), np.empty(ROW), np.empty(DEGREE + 1), np.empty(WIDE),
         np.empty(WIDE), np.empty(WIDE), contacts_for(len(bounds.walls)), np.zeros(4),
         np.zeros(patches, np.int64), np.empty(SIZE),
     )  # fmt: skip

@@ -148,7 +148,8 @@ class Stretch(NamedTuple):
     acceleration way[3] times the direction way[:3]; ``newton``: 0 for explicit steps; for implicit
     ones, where the slip settles much faster than it changes, how well to solve their equations, in
     units of the scales; ``grade``: how the time of explicit ones is graded, see
-    :mod:`puck_tables.scene.grading`.
+    :mod:`puck_tables.scene.grading`; ``leap``: for those from kink to kink of friction at once, how
+    exact they have to be, see :mod:`puck_tables.scene.leaps`; else 0.
     """
 
     model: Model
@@ -159,6 +160,7 @@ class Stretch(NamedTuple):
     way: tuple[float, float, float, float]
     newton: float
     grade: Grade
+    leap: float
 
 
 def hold_of(hold: Constraint | None, launch: Launch) -> Hold:

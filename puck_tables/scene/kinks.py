@@ -1,7 +1,8 @@
 """When the friction on a base that lies on several will bend next, as the motion is now.
 
-It bends where the rim meets a border or leaves it, or passes a corner, and where the centre of
-rotation comes over a border under the base.  Only foreseen: steps end there, and begin anew.
+It bends where a rim, also that of a hole, meets a border or leaves it, or passes a corner, and
+where the centre of rotation comes over a border under the base, or close beside it.  Only foreseen:
+steps end there, and begin anew.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from puck_tables.scene.ground import (
     BORDERS,
     CORNER,
     CORNERS,
+    INNER,
     MIDDLE_X,
     MIDDLE_Y,
     PATCHES,
@@ -29,6 +31,7 @@ from puck_tables.scene.ingredients import Surface, carried_along
 
 _CLOSE = 1e-9  # of the time in which the slip goes a radius: nearer moments are now
 _BEYOND = 1e-5  # of the time to a kink: by so much later, so that it is passed
+_BESIDE = 1.3 * 1.3  # radii, squared: where the centre of rotation is felt, if not under the base
 _FAR = 8.0  # radii: nobody foresees more
 
 
@@ -53,11 +56,13 @@ def _sides(gap: float, rate: float, bend: float, one: float, two: float, after: 
 
 @inner
 def next_kink(
-    ground: FloatArray, radius: float, surface: Surface, y: FloatArray, work: FloatArray,
+    ground: FloatArray, radius: float, surface: Surface, y: FloatArray, first: FloatArray,
     near: float,
 ) -> float:  # fmt: skip
-    """In what time; inf: none is foreseen.  The centre of rotation may be on a border ``near``."""
-    first = work[0]
+    """In what time; inf: none is foreseen.  The centre of rotation may be on a border ``near``.
+
+    ``first``: dy/dt.
+    """
     px, py, vx, vy, ux, uy, w = y[X], y[Y], first[X], first[Y], y[VX], y[VY], y[SPIN]
     cx, cy = carried_along(surface, vx, vy)
     ax, ay = first[VX] + cx, first[VY] + cy
@@ -65,17 +70,19 @@ def next_kink(
     close = _CLOSE * radius / (speed + radius * abs(w) + 1e-300)
     near = max(near, close)
     # the centre of rotation and its velocity
-    turns = ux * ux + uy * uy < radius * radius * w * w
+    turns = ux * ux + uy * uy < _BESIDE * radius * radius * w * w
     inverse = 1.0 / w if turns else 0.0
     cx, cy = px - uy * inverse, py + ux * inverse
     slows = first[SPIN] * inverse
     ox, oy = vx - (first[VY] - uy * slows) * inverse, vy + (first[VX] - ux * slows) * inverse
     least = _FAR * radius / speed if speed > 0.0 else math.inf
-    nx, ny = ground[ACROSS_X], ground[ACROSS_Y]
+    nx, ny, hole = ground[ACROSS_X], ground[ACROSS_Y], ground[INNER] * radius
     for i in range(int(ground[BORDERS])):
         place = border_of(ground, i)
         gap, rate, bend = nx * px + ny * py - place, nx * vx + ny * vy, nx * ax + ny * ay
         least = min(least, _sides(gap, rate, bend, radius, -radius, close))
+        if hole > 0.0:
+            least = min(least, _sides(gap, rate, bend, hole, -hole, close))
         if turns:
             least = min(least, _when(nx * cx + ny * cy - place, nx * ox + ny * oy, 0.0, near))
     for k in range(int(ground[PATCHES])):
@@ -86,6 +93,9 @@ def next_kink(
             away, rate, bend = _from(px - mx, py - my, vx, vy, ax, ay)
             sides = _sides(away, rate, bend, reach + radius, abs(reach - radius), close)
             least = min(least, sides)
+            if hole > 0.0:
+                sides = _sides(away, rate, bend, reach + hole, abs(reach - hole), close)
+                least = min(least, sides)
             if turns:
                 away, rate, _ = _from(cx - mx, cy - my, ox, oy, 0.0, 0.0)
                 least = min(least, _when(away - reach, rate, 0.0, near))
@@ -94,6 +104,8 @@ def next_kink(
             two = corner_of(ground, begin + (n + 1 if n + 1 < corners else 0))
             away, rate, bend = _from(px - one[0], py - one[1], vx, vy, ax, ay)
             least = min(least, _when(away - radius, rate, bend, near))
+            if hole > 0.0:
+                least = min(least, _when(away - hole, rate, bend, near))
             ex, ey = two[0] - one[0], two[1] - one[1]
             size = math.sqrt(ex * ex + ey * ey)
             ex, ey = ex / size, ey / size
@@ -101,6 +113,8 @@ def next_kink(
                 ex * (py - one[1]) - ey * (px - one[0]), ex * vy - ey * vx, ex * ay - ey * ax,
             )  # fmt: skip
             t = _sides(gap, rate, bend, radius, -radius, close)
+            if hole > 0.0:
+                t = min(t, _sides(gap, rate, bend, hole, -hole, close))
             if t < least:
                 sx, sy = t * (vx + 0.5 * t * ax), t * (vy + 0.5 * t * ay)
                 along = ex * (px + sx - one[0]) + ey * (py + sy - one[1])

@@ -4,7 +4,8 @@ The pair 8(5,3) (:mod:`puck_tables.scene.explicit`), or Radau IIA where the dire
 settles much faster than the slip changes (next to the limit of what friction holds).  Next to
 relative rest, where the direction of friction turns within Q over what changes it, a step is at
 most half of that; one that ends with the slip may take more, and is graded, as are those of a base
-on several frictions from one kink of them to the next.  At the very end a slip stops on a straight
+on several frictions from one kink of them to the next, which a fast one takes in one
+(:mod:`puck_tables.scene.leaps`).  At the very end a slip stops on a straight
 line.  Every event is found on a real step of the method from the last step end and becomes a step
 end.  Rebounds that die out are a geometric series, of which only the first are taken one by one
 (see :mod:`puck_tables.scene.settle`).
@@ -66,6 +67,7 @@ from puck_tables.scene.ingredients import (
     is_astride,
 )
 from puck_tables.scene.kinks import next_kink
+from puck_tables.scene.leaps import leap
 from puck_tables.scene.moments import (
     NOTHING,
     REST,
@@ -96,7 +98,7 @@ from puck_tables.scene.settle import (
 )
 from puck_tables.scene.standstill import from_standstill
 from puck_tables.scene.step_size import follow_scales, up_to_the_stop
-from puck_tables.scene.steps import nudged, step
+from puck_tables.scene.steps import nudged, step, stepped_back
 
 # how a run ends
 AT_REST, CARRIED_AWAY, CARRIED_ROUND, TIME_UP, OVER_EDGE = range(5)
@@ -114,7 +116,10 @@ _SLOWLY = 0.1  # if the slip changes by less than this of itself meanwhile
 _NEWTON, _FINEST_NEWTON = 1e-3, 1e-15  # of the local error: how well implicit steps are solved
 _PACE = 2.7  # times the eighth root of the local error: how far a first step astride comes,
 _FASTEST, _SLOWEST = 0.5, 1e-6  # and how far any; shorter ones are not graded
-_NEAR_KINK = 0.01  # of a step to a kink: how well it was foreseen
+_NEAR_KINK, _NEAR_LEAP = 0.01, 1e-4  # of a step to a kink, and a leap: how well it was foreseen
+_WHOLE, _SHORTEST = 1.0, 0.2  # how far a leap comes at first; shorter ones are not tried
+_LEAP = 0.3  # of the slip: what changes it more in a leap is left to steps
+_BACK = 2e-5  # of a step between kinks: so far back from its end the motion is known
 _NUDGE = 0.3  # of its local error: by so much each step of a twin on a blade is put off its way
 _SWING = 0.05  # rad that a carried puck turns, at most, in a step
 
@@ -175,15 +180,17 @@ def follow(
     reach, closest, swing = _NEAR, CLOSEST, _SWING
     # astride: how far a step comes between two kinks of friction, when the last was, how close
     pace, fastest, since, near = min(_PACE * allowed**0.125, _FASTEST), _FASTEST, 0.0, 0.0
+    farthest = _WHOLE  # and in a leap
     halved = False  # the step that ends here is cut in two
     clear = 0.0  # no patch's border is nearer to the rim
     if ask.twin > 0.0:
         h, reach, swing = ask.twin * h, (1.0 + ask.twin) * reach, (1.0 + ask.twin) * swing
         closest *= 1.0 - 0.2 * ask.twin
         fastest *= 1.0 - 0.2 * ask.twin
+        farthest *= 1.0 - 0.4 * ask.twin
     settle, known = True, False  # whether to look what holds the puck; whether work[0] is there
     newton, grade, again = 0.0, UNIFORM, False  # again: the step before was too long
-    stretch = Stretch(model, dry, leaning, piece, mode, way, newton, grade)
+    stretch = Stretch(model, dry, leaning, piece, mode, way, newton, grade, 0.0)
     while t < until:
         while piece < len(drive) and drive[piece, 0] <= t:
             piece += 1
@@ -192,7 +199,7 @@ def follow(
             target = min(target, calm)
         target = min(target, around)
         if settle and leaning.shape[0] > 0:
-            stretch = Stretch(model, dry, leaning, piece, mode, way, 0.0, UNIFORM)
+            stretch = Stretch(model, dry, leaning, piece, mode, way, 0.0, UNIFORM, 0.0)
             fx, fy = acting_force(stretch, t, y)
             to_laboratory(model, y, 1.0)
             before = kinetic_energy(body, y)
@@ -210,7 +217,7 @@ def follow(
                 to_laboratory(model, y, -1.0)
                 y[VX] = y[VY] = y[SPIN] = 0.0
                 leaning = contacts.rows[: touching(bounds, contacts)]
-            at_rest = Stretch(model, dry, leaning, piece, CARRIED, NO_WAY, 0.0, UNIFORM)
+            at_rest = Stretch(model, dry, leaning, piece, CARRIED, NO_WAY, 0.0, UNIFORM, 0.0)
             mode, stiff, q = from_standstill(at_rest, ask.speed, t, y, work)
             if (mode == CARRIED) != resting and (t >= calm or mode != CARRIED):
                 if count == len(events):
@@ -252,7 +259,7 @@ def follow(
             newton = 0.0
             if stiff and mode == SLIDES:
                 newton = max(_NEWTON * ask.tolerance, _FINEST_NEWTON)
-            stretch = Stretch(model, dry, leaning, piece, mode, way, newton, UNIFORM)
+            stretch = Stretch(model, dry, leaning, piece, mode, way, newton, UNIFORM, 0.0)
             rates(stretch, t, y, work, FIRST)
         settle, known = False, True
         ends, left = 0.0, math.inf  # 1/s: of the slip; until friction bends
@@ -271,16 +278,26 @@ def follow(
                 continue
         # a step
         if mode == SLIDES and newton == 0.0 and is_astride(dry):
-            left = next_kink(regions.ground, radius, surface, y, work, near)
+            left = next_kink(regions.ground, radius, surface, y, work[0], near)
             if ends * left > 1.0:  # it stops before
                 left = 1.0 / ends if ends * (t - since) < 1.0 else math.inf
         paces = left < math.inf and pace > _SLOWEST
-        length = paced(t - since, left, min(pace, fastest)) if paces else h
+        free = not held_there and leaning.shape[0] == 0
+        leaps = paces and farthest > _SHORTEST and free and pull * left <= _LEAP * q
+        length = h
+        if paces:
+            length = paced(t - since, left, farthest if leaps else min(pace, fastest))
         landed = t + (1.0 if again or paces else 1.1) * length >= target  # not what was too long
         length = target - t if landed else length
         grade = between(t - since, left, length) if paces else towards_stop(ends * length)
-        stretch = Stretch(model, dry, leaning, piece, mode, way, newton, grade)
-        error = step(stretch, t, length, y, scale, work, new)
+        exact = allowed if leaps else 0.0
+        stretch = Stretch(model, dry, leaning, piece, mode, way, newton, grade, exact)
+        if leaps and length == left:
+            error, length = leap(stretch, t, length, True, y, scale, work, new)
+            landed, left = t + length >= target, length
+            error = math.inf if landed else error  # the kink came too late: up to the target
+        else:
+            error = step(stretch, t, length, y, scale, work, new)
         steps += 1
         if steps > ask.step_limit:
             how = STEP_LIMIT
@@ -291,6 +308,9 @@ def follow(
             lifts = max(lifts, leaning[i, NX] * new[SIZE] + leaning[i, NY] * new[SIZE + 1])
         if lifts > ask.tolerance * length_scale and error <= allowed:
             h, pace = 0.25 * length, 0.25 * pace
+            continue
+        if leaps and not error <= allowed:
+            farthest *= 0.5
             continue
         if not error <= allowed:
             shrink = 0.25 if newton > 0.0 else 0.1
@@ -304,9 +324,9 @@ def follow(
             continue
         again = False
         grows = min(5.0, 5.0 if error == 0.0 else 0.9 * (allowed / error) ** power)
-        if paces:
+        if paces and not leaps:
             pace = max(grade[1] * grows, pace if landed or length == left else 0.0)
-        else:
+        elif not paces:
             h = left_after(grade) * stretched(grade, length, grows)
         stuck, length = cut_short(stretch, t, length, y, scale, work, new)
         if not math.isfinite(new[VX]):  # a shorter implicit step, which was not solved
@@ -316,7 +336,7 @@ def follow(
         cut = landed or stuck != NOTHING
         for i in range(ROW):
             last[i] = work[STAGES - 1, i]
-        happens, which, moment = -1, -1, math.inf
+        happens, which, moment, whole = -1, -1, math.inf, length
         if not unbounded:
             happens, which, moment = first_crossing(
                 bounds, room, region, leans, stretch, t, length, y, scale, work, new, gaps, trial
@@ -340,13 +360,15 @@ def follow(
         halved = ask.twin > 0.0 and cut and not halved
         if halved:
             landed, stuck, happens, length = False, NOTHING, -1, ask.twin * length
-        if halved or happens >= 0:
+        if paces and happens in (BORDER, _PATCH) and whole - length <= _BACK * whole:
+            stepped_back(whole - length, last, new)
+        elif halved or happens >= 0:
             error = step(stretch, t, length, y, scale, work, new)
             # astride the longer step may have leapt over all; an implicit one is not solved
             if not error <= allowed and (is_astride(dry) or not error < math.inf):
                 shrink = max(0.1, 0.9 * (allowed / error) ** power if error < math.inf else 0.1)
                 h, pace = (h, pace * shrink) if paces else (length * shrink, pace)
-                halved = False
+                farthest, halved = 0.5 * farthest if leaps else farthest, False
                 continue
             for i in range(ROW):
                 last[i] = work[STAGES - 1, i]
@@ -359,7 +381,7 @@ def follow(
             frame += 1
         near = 0.0
         if length == left or happens in (BORDER, _PATCH):
-            since, near = end, _NEAR_KINK * length
+            since, near = end, (_NEAR_LEAP if leaps else _NEAR_KINK) * length
         t = end
         for i in range(SIZE):
             y[i] = new[i]
@@ -423,6 +445,7 @@ def follow(
                 which += int(regions.ground[GROUND_BORDERS])
             happens = LEAVES if back else COMES_OVER
             dry = dry_under(regions, region, lies)
+            farthest = farthest if is_astride(dry) else _WHOLE * (1.0 - 0.4 * ask.twin)
             damps, turns = settling_rates(model, dry.load)
             stiff = stiff and dry.load > 0.0
             mode = CARRIED if mode == CARRIED and dry.load > 0.0 else SLIDES
@@ -455,7 +478,7 @@ def follow(
         if happens == EDGE:
             how = OVER_EDGE
             break
-    stretch = Stretch(model, dry, leaning, piece, mode, way, 0.0, UNIFORM)
+    stretch = Stretch(model, dry, leaning, piece, mode, way, 0.0, UNIFORM, 0.0)
     if how == TIME_UP and mode == CARRIED and moves and ask.to_the_end:
         how = CARRIED_AWAY
     if how == CARRIED_AWAY and around <= t and events[count - 1, 1] == RESTS:  # since then

@@ -35,6 +35,7 @@ from puck_tables.scene.ingredients import (
     Surface,
     carried_along,
     dry_in,
+    is_astride,
 )
 from puck_tables.scene.steps import step
 
@@ -42,6 +43,7 @@ OUTSIDE, ASTRIDE, INSIDE = range(3)  # how a base lies to a patch
 _LOOKS = 256  # at a step, at most so many of one length; shorter grazes may pass unseen
 _CLOSE = 1e-13  # of a step: how well a moment in it is known
 _ASIDE, _SECANTS = 1e-4, 12  # of a step: how the slope is seen at first; then at most
+_AT_END = 2e-5  # of a step: so close to its end the curve is the motion
 _NEAR = 1e-8  # of a step: from so close a moment is known by the slope
 
 
@@ -199,6 +201,9 @@ def first_patch(
             else:
                 low, before = guess, room
                 after *= 0.5
+        if is_astride(stretch.dry) and high >= 1.0 - _AT_END:
+            which, moment = k, high * h
+            continue
         mx, my = _on_curve(wx, wy, h, surface, first, last, high - _ASIDE)
         after = room_by(ground, k, how, radius, y[X] + mx, y[Y] + my)
         mx, my = _on_curve(wx, wy, h, surface, first, last, high + _ASIDE)

@@ -268,7 +268,7 @@ def _slowest(
         if load > 0.0 and not regions.astride[number]:
             dry = dry_in(regions, number)
             at_rest = Stretch(
-                model, dry, np.empty((0, LEAN_COLUMNS)), 0, CARRIED, NO_WAY, 0.0, UNIFORM
+                model, dry, np.empty((0, LEAN_COLUMNS)), 0, CARRIED, NO_WAY, 0.0, UNIFORM, 0.0
             )
             excess = abs(float(excess_at_rest(at_rest, 0.0, np.zeros(SIZE))[0]))
             brakes.append(min(excess, load) if math.isfinite(excess) else load)

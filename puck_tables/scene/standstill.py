@@ -50,7 +50,7 @@ def from_standstill(
         return SLIDES, True, q
     y[VX], y[VY], y[SPIN] = q * nx, q * ny, q * nw
     slips = Stretch(
-        model, stretch.dry, stretch.leaning, stretch.piece, SLIDES, NO_WAY, 0.0, UNIFORM
+        model, stretch.dry, stretch.leaning, stretch.piece, SLIDES, NO_WAY, 0.0, UNIFORM, 0.0
     )
     settle_way(slips, t, q, y, work)
     return SLIDES, True, q

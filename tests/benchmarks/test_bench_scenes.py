@@ -16,6 +16,7 @@ from puck_tables.scene.plan import ingredients
 from puck_tables.scene.prepare import prepare
 
 ONE = pytest.mark.benchmark(group="one launch in a scene, 1600 at once, one thread")
+CROSSING = pytest.mark.benchmark(group="one launch over borders, 200 at once, one thread")
 SWEEP = pytest.mark.benchmark(group="a scene with slope and drag, 100 x 100 launches")
 
 PUCK = {"radius": 0.04, "height": 0.02, "mass": 0.2, "friction": 0.1}
@@ -34,6 +35,17 @@ SCENES: dict[str, dict[str, Any]] = {
     "edge": {"edge": [{"point": [9.0, 0.0], "normal": [-1.0, 0.0]}]},
     "blade": {"constraint": {"kind": "blade"}},
 }
+
+
+FLOORS: dict[str, dict[str, Any]] = {
+    "none": {},
+    "one border": {"strips": {"borders": [0.2], "friction": [0.1, 0.06]}},
+    "two borders": {"strips": {"borders": [0.2, 0.4], "friction": [0.1, 0.05, 0.1]}},
+    "a round patch": {"patch": [{"friction": 0.05, "centre": [0.3, 0.05], "radius": 0.1}]},
+    "a polygon": {"patch": [{"friction": 0.05, "corners": [
+        [0.2, -0.1], [0.4, -0.1], [0.4, 0.15], [0.2, 0.15],
+    ]}]},
+}  # fmt: skip
 
 
 def whole(parts: dict[str, Any], **launch: Any) -> dict[str, Any]:
@@ -71,6 +83,31 @@ def test_one_ingredient(measure: Any, name: str) -> None:
         name, lambda: prepared.follow_all(states, out, status), items=SIDE * SIDE, unit="trajectory"
     )
     assert not np.isnan(out).any()
+
+
+@CROSSING
+@pytest.mark.parametrize("tol", [1e-6, 1e-9])
+@pytest.mark.parametrize("floor", FLOORS)
+@pytest.mark.parametrize("pressure", ["uniform", "hertz", "galin"])
+def test_crossings(measure: Any, pressure: str, floor: str, tol: float) -> None:
+    """Of launches that all go on beyond what lies there."""
+    import numpy as np
+
+    parts = {"floor": FLOORS[floor], "run": {"tol": tol}, "puck": {**PUCK, "pressure": pressure}}
+    prepared = prepare(Scene.from_tables({**whole({}, velocity=[1.5, 0.0]), **parts}))
+    rng, count = np.random.default_rng(3), 200
+    states = np.tile(prepared.state, (count, 1))
+    for path, low, high in (
+        ("launch.velocity[0]", 1.2, 2.0), ("launch.velocity[1]", -0.1, 0.1),
+        ("launch.spin", -50.0, 50.0),
+    ):  # fmt: skip
+        states[:, STATE[LAUNCH.index(path)]] = rng.uniform(low, high, count)
+    out, status = np.empty((ENDS_COLUMNS, count)), np.empty(count, np.int8)
+    measure(
+        f"{pressure}, {floor}, {tol:.0e}", lambda: prepared.follow_all(states, out, status),
+        items=count, unit="trajectory",
+    )  # fmt: skip
+    assert out[1].min() > 0.45
 
 
 @SWEEP
