@@ -116,8 +116,8 @@ def in_words(found: Comparison) -> str:
     answer = found.answer
     lines = [
         f"case {answer.case.label}: {answer.case.title}",
-        f"exact: {answer.end} after {answer.end_time:.9g} s, known to {answer.time_bound:.1e} s "
-        f"and {answer.place_bound:.1e} m",
+        f"exact: {found.whose}{answer.end} after {found.end_time:.9g} s, known to "
+        f"{answer.time_bound:.1e} s and {answer.place_bound:.1e} m",
         f"rest counts from {', '.join(map(str, found.thresholds))} on; errors: theirs less exact",
         "",
     ]

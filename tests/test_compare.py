@@ -12,6 +12,7 @@ from click.testing import CliRunner
 from puck_tables.cli.main import main
 
 from puck_tables import InputError, compare, reference_case
+from puck_tables.plot.comparison_page import page
 from puck_tables.reference.attitude import turned
 
 HEADER = "t [s],x [m],y [m],angle [rad],vx [m/s],vy [m/s],w [rad/s]"
@@ -161,6 +162,29 @@ def test_quaternions_are_normalised_and_upright():
     unit[2] = [math.cos(0.5), math.sin(0.5), 0.0, 0.0]
     with pytest.raises(InputError, match="tilted by 57 degrees in row 3"):
         turned("a.csv", unit, 2)
+
+
+def of_the_take_out(path: Path, puck: int, until: float) -> Path:
+    exact = reference_case("take-out", times=np.arange(0.0, until, 2e-3))
+    names = ("x", "y", "orientation", "vx", "vy", "spin")
+    return written(path, {"t": exact.time} | {name: exact.columns[name][:, puck] for name in names})
+
+
+def test_the_stop_is_that_of_the_puck_compared(tmp_path: Path):
+    """Red rests by 0.372 s, yellow by 0.490 s; half of J t is what a threshold is early by."""
+    path = of_the_take_out(tmp_path / "red.csv", 0, 0.6)
+    found = compare(path, "take-out", puck="red", thresholds=["2mm/s"])
+    assert 0.371 < found.end_time < 0.372
+    early = found.end_time - found.exact_rest.time
+    assert 0.0 < early < 2.0 * 2e-3 / (0.2 * 9.81)
+    assert found.rows()[0]["stop_place_error"] < 1e-12
+    told = found.summary()
+    assert (told["puck"], told["end_time"]) == ("red", found.end_time)
+    assert found.dataset().attributes["end_time"] == found.end_time
+    assert found.plot().axes[1].get_xlim()[1] == pytest.approx(1.15 * found.end_time)
+    result = CliRunner().invoke(main, ["compare", str(path), "--case", "take-out", "--puck", "red"])
+    assert "exact: red at rest after 0.37160" in result.stdout
+    assert "The puck red ends after 0.37160" in page(found)
 
 
 @pytest.mark.parametrize("text", ["0.1", "fast", "-1 mm/s", "0rad/s", "1 kg", "1e999 m/s"])

@@ -186,6 +186,14 @@ def test_the_take_out_on_its_way(time: float):
         assert np.abs(ours.columns[name][0] - truth[:, n]).max() <= bound
 
 
+def test_each_puck_of_the_take_out_has_a_stop_of_its_own():
+    """The judge's red still slips five milliseconds before, by about J times that."""
+    answer = reference_case("take-out")
+    red = play(discs_of_the_take_out(), [], answer.end_time_of(0) - 5e-3).states[0]
+    assert math.hypot(*red[3:5], 0.05 * red[5]) == pytest.approx(5e-3 * 0.2 * 9.81, rel=0.2)
+    assert answer.end_time_of(0) < answer.end_time_of(1) == answer.end_time
+
+
 def test_the_rebound_by_an_independent_integrator():
     tables = case_named("rebound").tables
     one, wall, launch = tables["puck"], tables["wall"][0], tables["launch"]

@@ -41,8 +41,7 @@ def _colours(found: Comparison) -> list[tuple[float, float, float] | str]:
 
 
 def _exact(found: Comparison) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    end = found.answer.end_time
-    times = np.linspace(0.0, end, _CURVE)
+    times = np.linspace(0.0, found.end_time, _CURVE)
     return times, states_of(found.answer(times), found.puck)
 
 
@@ -113,6 +112,6 @@ def _draw_errors(axes: Axes, found: Comparison, name: str, label: str) -> None:
 
 
 def _over_time(axes: Axes, found: Comparison) -> None:
-    axes.set_xlim(0.0, 1.15 * found.answer.end_time)
+    axes.set_xlim(0.0, 1.15 * found.end_time)
     axes.set_xlabel("time / s")
     axes.grid(color="#e4e4e4", linewidth=0.6)

@@ -14,6 +14,7 @@ from puck_tables.io.formats import ending_of
 from puck_tables.plot.comparison import draw
 from puck_tables.plot.style import require_matplotlib
 from puck_tables.reference.comparison import Comparison
+from puck_tables.reference.threshold import states_of
 
 _STYLE = (
     "body{font:16px/1.5 system-ui,sans-serif;max-width:62em;margin:2em auto;padding:0 1em}"
@@ -65,10 +66,10 @@ def page(found: Comparison) -> str:
         + "".join(f"<td>{_written(row[name])}</td>" for name in names) + "</tr>"
         for run, row in zip(found.runs, rows, strict=True)
     )  # fmt: skip
-    exact = f"It ends after {answer.end_time:.12g} s ({escape(answer.end)})"
-    if not answer.names:
-        last = answer.last()
-        exact += f" at ({last['x']:.12g}, {last['y']:.12g}) m"
+    last = states_of(answer([found.end_time]), found.puck)
+    which = f"The puck {escape(found.whose)}" if found.whose else "It "
+    exact = f"{which}ends after {found.end_time:.12g} s ({escape(answer.end)})"
+    exact += f" at ({last['x'][0]:.12g}, {last['y'][0]:.12g}) m"
     exact += f", known to {answer.time_bound:.1e} s and {answer.place_bound:.1e} m."
     fallen = "".join(
         f"<li>{escape(words)}: {escape(what)}</li>" for words, what in found.convergence().items()

@@ -209,6 +209,12 @@ class Answer(Result):
             )
         return self.names.index(name)
 
+    def end_time_of(self, puck: int | None) -> float:
+        """When it ends for one of several pucks, s; None: the single one."""
+        if puck is None or not isinstance(self.run, WorldRun):
+            return self.end_time
+        return min(float(self.run.stop_times[puck]), self.end_time)
+
     def __getattr__(self, name: str) -> FloatArray:
         """A column by its name."""
         columns: Mapping[str, FloatArray] = self.__dict__.get("columns", {})

@@ -57,6 +57,16 @@ class Comparison(Result):
     picture: ClassVar[str] = "comparison"
 
     @property
+    def end_time(self) -> float:
+        """When the case ends for the puck that is compared, s."""
+        return self.answer.end_time_of(self.puck)
+
+    @property
+    def whose(self) -> str:
+        """The name of the puck with a blank behind it; nothing of a single one."""
+        return "" if self.puck is None else f"{self.answer.names[self.puck]} "
+
+    @property
     def transient(self) -> float | None:
         """Exact ε at the thresholds less its limit: no error of any engine; None: there is none."""
         limit, rest = self.answer.limit_epsilon, self.exact_rest
@@ -104,7 +114,7 @@ class Comparison(Result):
         if exact is not None:
             met = ", ".join(map(str, self.thresholds))
             told.append(
-                f"the threshold {met} is met {answer.end_time - exact.time:.4g} s before the exact "
+                f"the threshold {met} is met {self.end_time - exact.time:.4g} s before the exact "
                 "stop: a stop read there is early by that, in truth"
             )
         if exact is not None and self.transient is not None:
@@ -147,7 +157,8 @@ class Comparison(Result):
             "case": self.answer.case.name,
             "version": self.answer.case.version,
             "end": self.answer.end,
-            "end_time": self.answer.end_time,
+            "puck": self.whose.strip() or None,
+            "end_time": self.end_time,
             "thresholds": [str(one) for one in self.thresholds],
             "exact_rest": None if exact is None else _known(exact._asdict()),
             "limit_epsilon": self.answer.limit_epsilon,
@@ -173,6 +184,8 @@ class Comparison(Result):
             columns[name] = variable(name, np.array([row[name] for row in rows]), ("run",))
         told = self.summary()
         kept = {name: told[name] for name in ("case", "version", "end", "end_time", "thresholds")}
+        if self.puck is not None:
+            kept["puck"] = told["puck"]
         if self.transient is not None:
             kept |= {"limit_epsilon": told["limit_epsilon"], "transient_epsilon": self.transient}
         axes = {"run": variable("run", np.arange(len(rows)), ("run",))}

@@ -87,6 +87,7 @@ def measured(
     0.001
     """
     _refuse_other_launch(log, answer, puck)
+    end_time = answer.end_time_of(puck)
     until = answer.end_time if answer.end == "time is up" else math.inf
     rows = log.time <= until * (1.0 + 1e-12)
     time = np.minimum(log.time[rows], until)
@@ -115,12 +116,12 @@ def measured(
         seen_speed, seen_rim, _ = slip.sizes(piece.radius)
         if answer.end != "time is up":
             rest = rest_of_rows(time, theirs, answer, puck, thresholds)
-            more = np.arange(time[-1] + log.step, answer.end_time + 2.0 * log.step, log.step)
+            more = np.arange(time[-1] + log.step, end_time + 2.0 * log.step, log.step)
             longer = np.concatenate([time, more])  # a log may end with the rest in it
             exactly = states_of(answer(np.maximum(longer, 0.0)), puck)
             exact_rest = rest_of_rows(longer, exactly, answer, puck, thresholds)
             if rest is not None and answer.end == "at rest":
-                end = states_of(answer([answer.end_time]), puck)
+                end = states_of(answer([end_time]), puck)
                 stop_place = math.dist((log.x[-1], log.y[-1]), (end["x"][0], end["y"][0]))
     return Measured(
         log, log.step if step is None else step, time, dx, dy, np.hypot(dx, dy), angle, speed,
@@ -132,14 +133,15 @@ def _refuse_other_launch(log: Log, answer: Answer, puck: int | None) -> None:
     """Refuse a log that does not start at the launch of the case."""
     first = float(log.time[0])
     case = answer.case.name
-    tiny = 1e-9 * answer.end_time
+    end_time = answer.end_time_of(puck)
+    tiny = 1e-9 * end_time
     if first < -tiny or first > _LATE * log.step + tiny:
         raise InputError(
             f"{log.name}: its times start at {first:.6g} s, and must start at the launch, 0 s, or "
             f"a step later: say when the launch is with launch_time (--launch-time), if it is in "
             "the file"
         )
-    if first > answer.end_time:
+    if first > end_time:
         raise InputError(f"{log.name}: its first row is later than the end of case {case}")
     exact = states_of(answer([max(first, 0.0)]), puck)
     q, j = answer.speed_scale, answer.rate_scale

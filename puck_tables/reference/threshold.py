@@ -125,7 +125,7 @@ def exact_rest(answer: Answer, puck: int | None, thresholds: tuple[Threshold, ..
     """
     if answer.end == "time is up":
         return None
-    low, high = 0.0, answer.end_time
+    low, high = 0.0, answer.end_time_of(puck)
     rest = None
     for _ in range(_ROUNDS):
         times = np.linspace(low, high, _LOOKS)
@@ -138,7 +138,7 @@ def exact_rest(answer: Answer, puck: int | None, thresholds: tuple[Threshold, ..
         if rest is None:  # slower only at the very end
             return Rest(high, float(states["x"][-1]), float(states["y"][-1]), np.nan)
         low, high = float(times[n]), float(times[min(n + 1, times.size - 1)])
-        if not high - low > 1e-14 * answer.end_time:
+        if not high - low > 1e-14 * answer.end_time_of(puck):
             break
     return rest
 
