@@ -97,7 +97,8 @@ def reference(
 
             found = reference_case(case, **frames)
     deliver(found, output, plot, overwrite)
-    reported(found, explain, as_json, _friction if over else report)
+    words = _friction if over else report
+    reported(found, explain, False, _with_columns if as_json else words)
 
 
 def _listed(as_json: bool) -> str:
@@ -108,6 +109,14 @@ def _listed(as_json: bool) -> str:
         return json.dumps([{name: getattr(case, name) for name in fields} for case in CASES])
     width = max(len(case.name) for case in CASES)
     return "\n".join(f"{case.name:<{width}}  {case.version}  {case.title}" for case in CASES)
+
+
+def _with_columns(found: Answer | FloorFriction) -> str:
+    """The summary and the columns of a file as one JSON object."""
+    from puck_tables.io.json import encode
+
+    columns = json.loads(encode(found.dataset()))["columns"]
+    return json.dumps({**found.summary(), "columns": columns}, allow_nan=False)
 
 
 def report(answer: Answer) -> str:

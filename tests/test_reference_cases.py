@@ -9,6 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from any_puck import stops_by_truth
+from click.testing import CliRunner
+from puck_tables.cli.main import main
 from pucks_judge import Disc, Line, play
 from reference import states as flat_states
 from scipy.integrate import solve_ivp
@@ -307,6 +309,18 @@ def test_an_unknown_case_names_the_nearest():
         reference_case("turn-table")
     with pytest.raises(InputError, match=r"followed for 1\.5 s"):
         reference_case("incline-at", times=[2.0])
+
+
+@pytest.mark.parametrize(
+    "asked", [["coin", "--dt", "0.02"], ["coin", "--epsilon", "0:2:5"], ["take-out", "--fps", "9"]]
+)
+def test_json_on_stdout_has_the_columns_of_the_file(asked: list[str], tmp_path: Path):
+    path = tmp_path / "a.json"
+    result = CliRunner().invoke(main, ["reference", *asked, "--json", "-o", str(path)])
+    assert result.exit_code == 0, result.output
+    told, saved = json.loads(result.stdout), json.loads(path.read_text())
+    assert told["columns"] == saved["columns"]
+    assert told["case"] == asked[0] and len(told["columns"]) > 8
 
 
 @pytest.mark.parametrize("ending", ["csv", "json", "jsonl", "h5"])
