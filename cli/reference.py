@@ -179,4 +179,8 @@ def _friction(found: FloorFriction) -> str:
         for n in range(0, found.epsilon.size, step)
     ]
     what = f"{found.case.label}: on the floor, fN = {found.load:.6g} N, r = {found.puck.radius:g} m"
+    if step > 1:
+        rows.append(
+            f"one row in {step} of {found.epsilon.size}: -o FILE saves all, --json prints them"
+        )
     return "\n".join([what, head, *rows])

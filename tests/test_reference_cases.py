@@ -323,6 +323,13 @@ def test_json_on_stdout_has_the_columns_of_the_file(asked: list[str], tmp_path: 
     assert told["case"] == asked[0] and len(told["columns"]) > 8
 
 
+def test_rows_left_out_are_said():
+    told = CliRunner().invoke(main, ["reference", "coin", "--friction"]).stdout.splitlines()
+    assert told[-1].startswith("one row in 4 of 81: ") and len(told) == 2 + 21 + 1
+    whole = CliRunner().invoke(main, ["reference", "coin", "--epsilon", "0:2:20"]).stdout
+    assert len(whole.splitlines()) == 2 + 20
+
+
 @pytest.mark.parametrize("ending", ["csv", "json", "jsonl", "h5"])
 def test_every_file_has_its_bounds(ending: str, tmp_path: Path):
     answer = reference_case("take-out", dt=0.2)
