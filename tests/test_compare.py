@@ -187,6 +187,17 @@ def test_the_stop_is_that_of_the_puck_compared(tmp_path: Path):
     assert "The puck red ends after 0.37160" in page(found)
 
 
+def test_the_files_of_the_reference_itself(tmp_path: Path):
+    exact = reference_case("coin", dt=1e-3)
+    exact.save(tmp_path / "a.csv")
+    found = compare(tmp_path / "a.csv", "coin")
+    assert found.rows()[0]["place_error_max"] == found.rows()[0]["spin_error_max"] == 0.0
+    found.save(tmp_path / "b.csv")
+    assert (tmp_path / "b.csv").read_text().splitlines()[1].startswith("0,coin (version 1),a.csv,")
+    again = reference_case("coin", times=tmp_path / "a.csv")
+    assert again.time.tolist() == exact.time.tolist()
+
+
 @pytest.mark.parametrize("text", ["0.1", "fast", "-1 mm/s", "0rad/s", "1 kg", "1e999 m/s"])
 def test_thresholds_refused(text: str, tmp_path: Path):
     with pytest.raises(InputError, match="a threshold is a speed or a spin"):

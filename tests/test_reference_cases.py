@@ -339,6 +339,7 @@ def test_every_file_has_its_bounds(ending: str, tmp_path: Path):
         lines = path.read_text().splitlines()
         assert lines[0].endswith("time_bound[s],place_bound[m],speed_bound[m/s]")
         assert len(lines) == 1 + 2 * answer.time.size
+        assert all("take-out (version 1)" in line for line in lines[1:])
     elif ending == "json":
         whole = json.loads(path.read_text())
         assert whole["columns"]["place_bound"] == {
@@ -350,9 +351,17 @@ def test_every_file_has_its_bounds(ending: str, tmp_path: Path):
     elif ending == "jsonl":
         first = json.loads(path.read_text().splitlines()[0])
         assert first["time_bound"] == answer.time_bound
+        assert first["case"] == "take-out (version 1)"
     else:
         import h5py
 
         with h5py.File(path) as file:
             assert file["place_bound"][()] == answer.place_bound
             assert file["epsilon"].shape == (answer.time.size, 2)
+            assert (file.attrs["case"], file.attrs["version"]) == ("take-out", 1)
+
+
+def test_rows_of_forces_name_their_case(tmp_path: Path):
+    floor_friction("coin", [1.0]).save(tmp_path / "a.csv")
+    head, row = (tmp_path / "a.csv").read_text().splitlines()
+    assert dict(zip(head.split(","), row.split(","), strict=True))["case"] == "coin (version 1)"

@@ -278,7 +278,7 @@ class Answer(Result):
         """States over time (and pucks), with the bounds of their errors in each row."""
         dims = ("time", "puck") if self.names else ("time",)
         axes = {"time": variable("time", self.time, ("time",))}
-        columns: dict[str, Variable] = {}
+        columns: dict[str, Variable] = {"case": variable("case", self.case.label, ())}
         if self.names:
             axes["puck"] = variable("puck", np.arange(len(self.names)), ("puck",))
             columns["name"] = variable("name", list(self.names), ("puck",))

@@ -178,7 +178,8 @@ class Comparison(Result):
         """One row a run."""
         rows = self.rows()
         columns: dict[str, Variable] = {
-            "file": variable("file", [run.log.name for run in self.runs], ("run",))
+            "case": variable("case", self.answer.case.label, ()),
+            "file": variable("file", [run.log.name for run in self.runs], ("run",)),
         }
         for name in rows[0]:
             columns[name] = variable(name, np.array([row[name] for row in rows]), ("run",))
