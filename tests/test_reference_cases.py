@@ -17,6 +17,7 @@ from scipy.integrate import solve_ivp
 
 from puck_tables import InputError, floor_friction, reference_case
 from puck_tables.reference.cases import CASES, case_named
+from puck_tables.reference.words import lines_of
 
 FREE = ("coin", "slide-spin-0.2", "slide-spin-0.5", "slide-spin-1", "slide-spin-2", "slide-spin-5",
         "tall-0.5", "tall-1")  # fmt: skip
@@ -321,6 +322,25 @@ def test_json_on_stdout_has_the_columns_of_the_file(asked: list[str], tmp_path: 
     told, saved = json.loads(result.stdout), json.loads(path.read_text())
     assert told["columns"] == saved["columns"]
     assert told["case"] == asked[0] and len(told["columns"]) > 8
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("annulus", f"pressure annulus:0.5, gyration {math.sqrt(0.625)!r} r"),
+        ("incline-at", f"slope = {math.atan(0.2)!r} rad, downhill = {-0.5 * math.pi!r} rad"),
+        ("belt", "velocity = [0.5, 0] m/s"),
+        ("turntable", "turning = 4 rad/s"),
+        ("astride-stop", "borders = [0.1, 0.16] m, strips.friction = [0.15, 0.4, 0.1], "
+         "strips.direction = 0 rad"),
+        ("take-out", "delta = 0.016, restitution = 0.9, tangential = 0, rim = 0.1"),
+        ("rebound", "point = [0.2, 0] m, normal = [-1, 0], restitution = 0.8"),
+    ],
+)  # fmt: skip
+def test_the_numbers_of_a_case_have_all_digits_and_units(name: str, words: str):
+    assert words in "\n".join(lines_of(reference_case(name, times=[0.0])).values())
+    told = "".join(lines_of(reference_case("coin", times=[0.0])).values())
+    assert "pressure" not in told and "gyration" not in told
 
 
 def test_rows_left_out_are_said():
