@@ -200,6 +200,31 @@ def test_the_files_of_the_reference_itself(tmp_path: Path):
     assert again.time.tolist() == exact.time.tolist()
 
 
+def test_rows_of_several_pucks_one_below_the_other(tmp_path: Path):
+    """By names, by numbers, in any order; and rows that a column only counts."""
+    exact = reference_case("take-out", dt=0.01)
+    exact.save(tmp_path / "a.csv")
+    lines = (tmp_path / "a.csv").read_text().splitlines()
+    head = lines[0].split(",")
+    cells = [line.split(",") for line in lines[1:]]
+    no_name = [",".join(row[:2] + row[4:]) for row in sorted(cells, key=lambda row: row[1])]
+    assert head[1] == "puck[1]" and head[3] == "name"
+    (tmp_path / "b.csv").write_text("\n".join([",".join(head[:2] + head[4:]), *no_name]) + "\n")
+    for name in ("a.csv", "b.csv"):
+        for puck in ("red", "yellow"):
+            row = compare(tmp_path / name, "take-out", puck=puck).rows()[0]
+            assert row["place_error_max"] == row["spin_error_max"] == 0.0
+    other = (tmp_path / "a.csv").read_text().replace("red", "blue").replace("puck[1]", "n[1]")
+    (tmp_path / "c.csv").write_text(other)
+    with pytest.raises(InputError, match=r"several pucks, .* name \(blue, yellow\).*the puck red"):
+        compare(tmp_path / "c.csv", "take-out", puck="red")
+    with pytest.raises(InputError, match=r"rows of several pucks.*leave only those of one"):
+        compare(tmp_path / "a.csv", "coin")
+    counted = {"id": np.arange(columns()["t"].size, dtype=float)} | columns()
+    found = compare(written(tmp_path / "d.csv", counted, "id," + HEADER), "coin")
+    assert found.rows()[0]["place_error_max"] < 1e-14
+
+
 @pytest.mark.parametrize("text", ["0.1", "fast", "-1 mm/s", "0rad/s", "1 kg", "1e999 m/s"])
 def test_thresholds_refused(text: str, tmp_path: Path):
     with pytest.raises(InputError, match="a threshold is a speed or a spin"):

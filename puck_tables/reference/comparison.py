@@ -251,7 +251,7 @@ def compare(
     instance("thresholds", thresholds, list, tuple)
     answer = reference_case(case, times=[0.0])
     number = answer.puck_number(puck)
-    how = LogHow(columns, unit, angle_unit, up, puck, launch_time)
+    how = LogHow(columns, unit, angle_unit, up, puck, launch_time, number)
     given = tuple(threshold_of(one) for one in thresholds) or (usual(answer),)
     sizes: list[float | None] = [None] * len(paths)
     if steps is not None:
