@@ -131,7 +131,9 @@ def test_truth_at_a_finite_threshold_is_no_error(tmp_path: Path):
         (lambda rows: rows | {"w": -rows["w"]}, "is not the launch of case coin"),
         (lambda rows: {n: one[::-1] for n, one in rows.items()}, "times must increase"),
         (lambda rows: rows | {"vy": np.full(rows["t"].size, np.nan)}, "has no vy"),
-        (lambda rows: {n: one[:2] for n, one in rows.items()}, "at least three"),
+        (lambda rows: {n: one[:2] for n, one in rows.items()}, "has 2 rows of .*at least three"),
+        (lambda rows: {n: one[:1] for n, one in rows.items()}, "has 1 row of numbers"),
+        (lambda rows: {n: one[:0] for n, one in rows.items()}, "has no rows below its header, 't"),
     ],
 )  # fmt: skip
 def test_what_is_no_run_of_the_case(change, words: str, tmp_path: Path):
@@ -142,10 +144,13 @@ def test_what_is_no_run_of_the_case(change, words: str, tmp_path: Path):
 @pytest.mark.parametrize(
     ("header", "words"),
     [
-        ("t [s],a [m],b [m],angle [rad],vx [m/s],vy [m/s],w [rad/s]", "has no column x and y"),
+        ("t [s],a [m],b [m],angle [rad],vx [m/s],vy [m/s],w [rad/s]",
+         r"no column that is known as x or y \(its columns are t \[s\], a"),
+        ("t [s],x [furlong],y [m],-,-,-,-", r"a\.csv: the unit of the column 'x \[furlong\]'"),
         ("t [s],x [m],y [kg],angle [rad],vx [m/s],vy [m/s],w [rad/s]", "unit of the column"),
         ("t [s],x [m],y [m],angle [rad],vx [m/s],v2,w [rad/s]", "one component"),
         ("t [s],x [m],y [m],angle [rad],vx [m/s],vx [m/s],w [rad/s]", "two columns of vx"),
+        ("t [s],x [m],y [m],angle [rad],x_vel [m/s],v2,w [rad/s]", "one component"),
         ("t [s],x [m],y [m],qw,qx,qy,w [rad/s]", "all of qw, qx, qy, qz"),
         ("t [s],x [m],y [px],angle [rad],vx [m/s],vy [m/s],w [rad/s]", "unit of the column"),
     ],

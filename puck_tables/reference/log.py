@@ -13,7 +13,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import instance, real
 from puck_tables._core.safe_read import read_rows
 from puck_tables.errors import InputError
-from puck_tables.film.headings import heading
+from puck_tables.film.headings import heading, parted
 from puck_tables.film.layout import headed, name_of
 from puck_tables.film.reading import beginning, refuse_no_text
 from puck_tables.film.text import Look, look_at, read_columns
@@ -134,7 +134,8 @@ def read_log(path: str | Path, how: LogHow) -> Log:
             f"{time[back[0] + 1]:.9g} s after {time[back[0]]:.9g} s"
         )
     if time.size < _FEWEST:
-        raise InputError(f"{path} has {time.size} rows of numbers: at least three are compared")
+        rows = f"{time.size} row{'s' if time.size != 1 else ''}"
+        raise InputError(f"{where} has {rows} of numbers: at least three are compared")
     signs = {"y": -1.0, "vy": -1.0} if how.up == "y" else {}
     found = {
         name: signs.get(name, 1.0) * values[said[role]]
@@ -197,7 +198,10 @@ def _columns(path: str | Path, how: LogHow) -> tuple[Look, dict[int, LogHeading]
     names = headed(path, look, how.columns)[-1]
     columns: dict[int, LogHeading] = {}
     for n, name in enumerate(names):
-        one = log_heading(name, how.puck)
+        try:
+            one = log_heading(name, how.puck)
+        except InputError as error:
+            raise InputError(f"{path}: {error}") from None
         if not one.role:
             continue
         if any(other.role == one.role for other in columns.values()):
@@ -206,7 +210,10 @@ def _columns(path: str | Path, how: LogHow) -> tuple[Look, dict[int, LogHeading]
                 "(--columns), - for the other" + ("" if how.puck else ", or the puck (--puck)")
             )
         columns[n] = one
-    ids = [n for n, name in enumerate(names) if heading(name).role == "id"]
+    ids = [
+        n for n, name in enumerate(names)
+        if n not in columns and heading(parted(name)[0]).role == "id"
+    ]  # fmt: skip
     return look, columns, ids
 
 
@@ -231,7 +238,7 @@ def _floor_axes(path: str | Path, look: Look, said: dict[str, int], how: LogHow)
     if missing:
         names = ", ".join(name_of(look, n) for n in range(min(look.width, 12)))
         raise InputError(
-            f"{path} has no column {' and '.join(missing)} that is known by its name (they are "
+            f"{path} has no column that is known as {' or '.join(missing)} (its columns are "
             f"{names:.90}): say what they are, such as columns='t [s],x [m],y [m],angle [rad],"
             "vx [m/s],vy [m/s],w [rad/s]' (--columns), - for those to leave out"
         )
