@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import json
 import math
+from html import escape
 from pathlib import Path
 
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from puck_tables.cli.compare import in_words
 from puck_tables.cli.main import main
 
 from puck_tables import InputError, compare, reference_case
@@ -228,6 +230,33 @@ def test_rows_of_several_pucks_one_below_the_other(tmp_path: Path):
     counted = {"id": np.arange(columns()["t"].size, dtype=float)} | columns()
     found = compare(written(tmp_path / "d.csv", counted, "id," + HEADER), "coin")
     assert found.rows()[0]["place_error_max"] < 1e-14
+
+
+def test_what_a_file_does_not_tell_is_said(tmp_path: Path):
+    rows = columns()
+    short = {name: row[:60] for name, row in rows.items()}
+    trembling = rows | {"vx": np.where(rows["t"] == rows["t"][-1], 0.1, rows["vx"])}
+    bare = {name: rows[name] for name in ("t", "x", "y")}
+    paths = [
+        written(tmp_path / "a.csv", rows), written(tmp_path / "b.csv", short),
+        written(tmp_path / "c.csv", bare, "t [s],x [m],y [m]"),
+        written(tmp_path / "d.csv", trembling),
+    ]  # fmt: skip
+    found = compare(paths, "coin", thresholds=["2 mm/s"], steps=[4e-3, 3e-3, 2e-3, 1e-3])
+    said = [
+        "b.csv: never below v < 0.002 m/s in its 0.059 s",
+        "c.csv: no velocities and spin in it, so nothing of rest",
+        "d.csv: not below v < 0.002 m/s in its last row, at 0.136 s",
+    ]
+    assert found.untold() == said
+    whys = [run["why"] for run in found.summary()["runs"]]
+    assert whys == [None, *(one[7:] for one in said)]
+    assert all(one in in_words(found) and escape(one) in page(found) for one in said)
+    assert "carried on by it" in in_words(compare(of_the_belt(tmp_path / "e.csv"), "belt"))
+
+
+def of_the_belt(path: Path) -> Path:
+    return written(path, columns("belt", 5e-3))
 
 
 @pytest.mark.parametrize("text", ["0.1", "fast", "-1 mm/s", "0rad/s", "1 kg", "1e999 m/s"])

@@ -74,6 +74,7 @@ def page(found: Comparison) -> str:
     fallen = "".join(
         f"<li>{escape(words)}: {escape(what)}</li>" for words, what in found.convergence().items()
     )
+    untold = "".join(f"<li>{escape(one)}</li>" for one in found.untold())
     truths = "".join(f"<li>{escape(one)}</li>" for one in found.truths())
     met = escape(", ".join(map(str, found.thresholds)))
     return (
@@ -82,6 +83,7 @@ def page(found: Comparison) -> str:
         f"<h1>{escape(case.title)}</h1><p>Case {escape(case.label)}: {escape(case.tests)}. {exact} "
         f"Rest counts from {met} on.</p>"
         f"<h2>Errors</h2><table><tr><th>file</th>{head}</tr>{body}</table>"
+        + (f"<h2>Not told</h2><ul>{untold}</ul>" if untold else "")
         + (f"<h2>As the step falls</h2><ul>{fallen}</ul>" if fallen else "")
         + (f"<h2>Truth and not error</h2><ul>{truths}</ul>" if truths else "")
         + f"<h2>Picture</h2>{svg}<p>Made by puck-tables {__version__}.</p></body></html>\n"

@@ -107,6 +107,10 @@ class Comparison(Result):
             if all(math.isfinite(row[name]) for row in rows)
         }
 
+    def untold(self) -> list[str]:
+        """What files do not tell, and why."""
+        return [f"{run.log.name}: {run.why}" for run in self.runs if run.why]
+
     def truths(self) -> list[str]:
         """What is no error of an engine though it differs from a number of the literature."""
         answer, exact = self.answer, self.exact_rest
@@ -137,6 +141,8 @@ class Comparison(Result):
                 f"the limit {answer.limit_epsilon:.6g} is that of this puck with delta = "
                 f"{puck.delta:.4g} where it stops; 0.653 is that of a flat homogeneous disc"
             )
+        if answer.end == "carried by the floor":
+            told.append("at rest on the floor the puck is carried on by it: it has no stop place")
         if answer.end == "time is up":
             told.append("the motion of this case does not stop while it is followed")
         return told
@@ -167,7 +173,7 @@ class Comparison(Result):
                 n: getattr(self.answer, n) for n in ("time_bound", "place_bound", "speed_bound")
             },
             "runs": [
-                {"file": run.log.name, **_known(row)}
+                {"file": run.log.name, "why": run.why or None, **_known(row)}
                 for run, row in zip(self.runs, self.rows(), strict=True)
             ],
             "convergence": self.convergence(),

@@ -113,6 +113,21 @@ def rest_of_rows(
     return Rest(at(time), at(states["x"]), at(states["y"]), v / w if w > 0.0 else np.inf)
 
 
+def why_no_rest(
+    time: FloatArray, states: dict[str, FloatArray], answer: Answer, puck: int | None,
+    thresholds: tuple[Threshold, ...],
+) -> str:  # fmt: skip
+    """Why :func:`rest_of_rows` has found none: the threshold above which a run ends."""
+    slip = slip_over(answer.floor, states)
+    for one in thresholds:
+        above = one.excess(slip, answer.pieces[puck or 0].radius) >= 0.0
+        if above.all():
+            return f"never below {one} in its {time[-1]:.4g} s"
+        if above[-1]:
+            return f"not below {one} in its last row, at {time[-1]:.4g} s"
+    return ""
+
+
 def exact_rest(answer: Answer, puck: int | None, thresholds: tuple[Threshold, ...]) -> Rest | None:
     """From when on the exact motion is below the thresholds; None: not before it is left.
 
