@@ -255,6 +255,19 @@ def test_what_a_file_does_not_tell_is_said(tmp_path: Path):
     assert "carried on by it" in in_words(compare(of_the_belt(tmp_path / "e.csv"), "belt"))
 
 
+def test_chatter_without_spin_has_no_ratio(tmp_path: Path):
+    """Its speed falls below the threshold where nothing spins but rounding."""
+    rows = columns()
+    after = rows["t"] > reference_case("coin").end_time
+    rows["w"][after] = 1e-13
+    rows["vx"][after] = 3e-3 * (np.arange(after.sum()) < after.sum() - 3)
+    path = written(tmp_path / "a.csv", rows)
+    found = compare(path, "coin", thresholds=["1mm/s", "0.1rad/s"])
+    assert found.rows()[0]["rest_time"] > found.end_time
+    assert math.isnan(found.rows()[0]["epsilon_seen"])
+    assert math.isnan(found.rows()[0]["epsilon_error"])
+
+
 def of_the_belt(path: Path) -> Path:
     return written(path, columns("belt", 5e-3))
 

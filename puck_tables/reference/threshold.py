@@ -14,6 +14,7 @@ from puck_tables.reference.floor import Slip, slip_over
 from puck_tables.reference.headings import unit_size
 
 _USUAL = 0.01  # of Q at the launch
+_NO_SPIN = 1e-9  # of Q at the launch
 _LOOKS, _ROUNDS = 513, 6
 
 
@@ -78,7 +79,10 @@ def usual(answer: Answer) -> Threshold:
 
 
 class Rest(NamedTuple):
-    """From when on it is slower than all thresholds: time s, place m, ε = v/(r|ω|) there."""
+    """From when on it is slower than all thresholds: time s, place m, ε = v/(r|ω|) there.
+
+    NaN for ε where the rim is slower than 1e-9 of Q at the launch: that is no spin but rounding.
+    """
 
     time: float
     x: float
@@ -110,7 +114,8 @@ def rest_of_rows(
 
     speed, rim, _ = slip.sizes(radius)
     v, w = at(speed), at(rim)
-    return Rest(at(time), at(states["x"]), at(states["y"]), v / w if w > 0.0 else np.inf)
+    spins = w > _NO_SPIN * answer.speed_scale
+    return Rest(at(time), at(states["x"]), at(states["y"]), v / w if spins else np.nan)
 
 
 def why_no_rest(
