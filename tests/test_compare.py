@@ -16,6 +16,7 @@ from puck_tables.cli.main import main
 from puck_tables import InputError, compare, reference_case
 from puck_tables.plot.comparison_page import page
 from puck_tables.reference.attitude import turned
+from puck_tables.reference.words import lines_of
 
 HEADER = "t [s],x [m],y [m],angle [rad],vx [m/s],vy [m/s],w [rad/s]"
 
@@ -193,7 +194,9 @@ def test_the_stop_is_that_of_the_puck_compared(tmp_path: Path):
     assert found.plot().axes[1].get_xlim()[1] == pytest.approx(1.15 * found.end_time)
     result = CliRunner().invoke(main, ["compare", str(path), "--case", "take-out", "--puck", "red"])
     assert "exact: red at rest after 0.37160" in result.stdout
-    assert "The puck red ends after 0.37160" in page(found)
+    text = page(found)
+    assert "The puck red ends after 0.37160" in text
+    assert all(escape(told) in text for told in lines_of(found.answer).values())
 
 
 def test_the_files_of_the_reference_itself(tmp_path: Path):

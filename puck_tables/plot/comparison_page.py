@@ -15,11 +15,13 @@ from puck_tables.plot.comparison import draw
 from puck_tables.plot.style import require_matplotlib
 from puck_tables.reference.comparison import Comparison
 from puck_tables.reference.threshold import states_of
+from puck_tables.reference.words import lines_of
 
 _STYLE = (
     "body{font:16px/1.5 system-ui,sans-serif;max-width:62em;margin:2em auto;padding:0 1em}"
     "table{border-collapse:collapse;font-size:14px}td,th{border:1px solid #ccc;padding:.2em .6em;"
-    "text-align:right}td:first-child,th:first-child{text-align:left}svg{max-width:100%;height:auto}"
+    "text-align:right}td:first-child,th:first-child,.case td{text-align:left}"
+    "svg{max-width:100%;height:auto}"
 )
 
 
@@ -66,6 +68,10 @@ def page(found: Comparison) -> str:
         + "".join(f"<td>{_written(row[name])}</td>" for name in names) + "</tr>"
         for run, row in zip(found.runs, rows, strict=True)
     )  # fmt: skip
+    lines = "".join(
+        f"<tr><td>{escape(name)}</td><td>{escape(told)}</td></tr>"
+        for name, told in lines_of(answer).items()
+    )
     last = states_of(answer([found.end_time]), found.puck)
     which = f"The puck {escape(found.whose)}" if found.whose else "It "
     exact = f"{which}ends after {found.end_time:.12g} s ({escape(answer.end)})"
@@ -80,7 +86,7 @@ def page(found: Comparison) -> str:
     return (
         f"<!DOCTYPE html>\n<html lang='en'><head><meta charset='utf-8'>"
         f"<title>{escape(case.label)}</title><style>{_STYLE}</style></head><body>"
-        f"<h1>{escape(case.title)}</h1><p>Case {escape(case.label)}: {escape(case.tests)}. {exact} "
+        f"<h1>{escape(case.title)}</h1><table class='case'>{lines}</table><p>{exact} "
         f"Rest counts from {met} on.</p>"
         f"<h2>Errors</h2><table><tr><th>file</th>{head}</tr>{body}</table>"
         + (f"<h2>Not told</h2><ul>{untold}</ul>" if untold else "")

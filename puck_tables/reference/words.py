@@ -39,9 +39,12 @@ def lines_of(answer: Answer) -> dict[str, str]:
             lines[what if n == 0 else f"{what} {n + 1}"] = told
     lines["end"] = f"{answer.end} after {answer.end_time:.12g} s"
     last = answer.last()
-    for n, name in enumerate(answer.names or ("place",)):
-        x, y = (last[axis][n] if answer.names else last[axis] for axis in ("x", "y"))
-        lines[f"stop {name}" if answer.names else name] = f"({x:.12g}, {y:.12g}) m"
+    if not answer.names:
+        lines["place"] = f"({last['x']:.12g}, {last['y']:.12g}) m"
+    for n, name in enumerate(answer.names):
+        lines[f"stop {name}"] = (
+            f"({last['x'][n]:.12g}, {last['y'][n]:.12g}) m after {answer.end_time_of(n):.12g} s"
+        )
     if answer.limit_epsilon is not None:
         limit = answer.limit_epsilon
         inverse = f"{1.0 / limit:.9g}" if limit > 0.0 else "inf"
