@@ -344,6 +344,34 @@ def test_the_numbers_of_a_case_have_all_digits_and_units(name: str, words: str):
     assert "pressure" not in told and "gyration" not in told
 
 
+@pytest.mark.parametrize(
+    ("name", "labels", "outlines"),
+    [
+        ("coin", {"launch", "at rest"}, 2),
+        ("astride-stop", {"f = 0.15", "f = 0.4", "f = 0.1"}, 2),
+        ("rebound", {"wall", "impact of the rim"}, 3),
+        ("take-out", {"red", "yellow", "impact"}, 4),
+    ],
+)
+def test_pictures_show_floor_walls_and_pucks(name: str, labels: set[str], outlines: int):
+    from matplotlib.patches import Circle
+
+    answer = reference_case(name)
+    plane = answer.plot().axes[0]
+    assert plane.get_aspect() == 1.0
+    assert labels <= set(plane.get_legend_handles_labels()[1])
+    radii = [one.radius for one in plane.patches if isinstance(one, Circle)]
+    assert radii.count(answer.pieces[0].radius) == outlines
+
+
+def test_pictures_show_the_bend_and_no_rounding():
+    """The coin's bend of 0.07 mm fills its panel; a path along y has no width of 1e-19 m."""
+    low, high = reference_case("coin").plot().axes[1].get_ylim()
+    assert 7.3e-5 < high - low < 9e-5
+    low, high = reference_case("astride-spin").plot().axes[1].get_xlim()
+    assert high - low > 1e-5
+
+
 def test_rows_left_out_are_said():
     told = CliRunner().invoke(main, ["reference", "coin", "--friction"]).stdout.splitlines()
     assert told[-1].startswith("one row in 4 of 81: ") and len(told) == 2 + 21 + 1

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from puck_tables.plot.reference import no_rounding
 from puck_tables.plot.style import COLORS, GREY, canvas, shaded, titled
 from puck_tables.reference.comparison import Comparison
 from puck_tables.reference.floor import ratios, slip_over
@@ -52,6 +53,7 @@ def draw_on(axes: Axes, found: Comparison) -> None:
     for n, (run, colour) in enumerate(zip(found.runs, _colours(found), strict=True)):
         name = f"{run.log.name}" if n < _LABELLED else None
         axes.plot(run.log.x, run.log.y, color=colour, linewidth=1.0, label=name)
+    no_rounding(axes)
     axes.set_xlabel("x / m")
     axes.set_ylabel("y / m")
     axes.grid(color="#e4e4e4", linewidth=0.6)
