@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -97,9 +97,9 @@ def _draw_path(axes: Axes, answer: Answer, whole: Answer) -> None:
 
 def no_rounding(axes: Axes) -> None:
     """Not to stretch a straight path across it until its rounding is seen."""
-    sides = [axes.get_xlim(), axes.get_ylim()]
-    longest = max(high - low for low, high in sides)
-    for limit, (low, high) in zip((axes.set_xlim, axes.set_ylim), sides, strict=True):
+    sides: dict[str, Any] = {"xlim": axes.get_xlim(), "ylim": axes.get_ylim()}
+    longest = max(high - low for low, high in sides.values())
+    for side, (low, high) in sides.items():
         if high - low < _STRAIGHT * longest:
-            middle = 0.5 * (low + high)
-            limit(middle - 0.05 * longest, middle + 0.05 * longest)
+            middle, half = 0.5 * (low + high), 0.05 * longest
+            axes.set(**{side: (middle - half, middle + half)})
