@@ -116,8 +116,8 @@ def in_words(found: Comparison) -> str:
     answer = found.answer
     lines = [
         f"case {answer.case.label}: {answer.case.title}",
-        f"exact: {answer.end} after {answer.end_time:.9g} s, known to {answer.time_bound:.1e} s "
-        f"and {answer.place_bound:.1e} m",
+        f"exact: {found.whose}{answer.end} after {found.end_time:.9g} s, known to "
+        f"{answer.time_bound:.1e} s and {answer.place_bound:.1e} m",
         f"rest counts from {', '.join(map(str, found.thresholds))} on; errors: theirs less exact",
         "",
     ]
@@ -129,6 +129,8 @@ def in_words(found: Comparison) -> str:
     for run, row in zip(found.runs, found.rows(), strict=True):
         cells = (f"{row[name]:.6g}" if math.isfinite(row[name]) else "-" for name in _SHORT)
         lines.append(f"{run.log.name:<{width}} " + " ".join(f"{cell:>14}" for cell in cells))
+    if untold := found.untold():
+        lines += ["", "not told:", *(f"  {one}" for one in untold)]
     if fallen := found.convergence():
         lines += ["", "as the step falls:", *(f"  {name}: {what}" for name, what in fallen.items())]
     if truths := found.truths():

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -97,7 +96,8 @@ def reference(
 
             found = reference_case(case, **frames)
     deliver(found, output, plot, overwrite)
-    reported(found, explain, as_json, _friction if over else report)
+    words = _friction if over else report
+    reported(found, explain, False, _with_columns if as_json else words)
 
 
 def _listed(as_json: bool) -> str:
@@ -110,54 +110,24 @@ def _listed(as_json: bool) -> str:
     return "\n".join(f"{case.name:<{width}}  {case.version}  {case.title}" for case in CASES)
 
 
+def _with_columns(found: Answer | FloorFriction) -> str:
+    """The summary and the columns of a file as one JSON object."""
+    from puck_tables.io.json import encode
+
+    columns = json.loads(encode(found.dataset()))["columns"]
+    return json.dumps({**found.summary(), "columns": columns}, allow_nan=False)
+
+
 def report(answer: Answer) -> str:
     """A case and its answer."""
-    case = answer.case
-    lines = {"case": f"{case.label}: {case.title}", "tests": case.tests}
-    for n, (piece, name) in enumerate(zip(answer.pieces, answer.names or ("puck",), strict=True)):
-        lines[name] = (
-            f"r = {piece.radius:g} m, height {piece.height:g} m (centre of mass at "
-            f"{0.5 * piece.height:g} m), f = {piece.friction:g}, g = {piece.gravity:g} m/s^2, "
-            f"m = {piece.mass:g} kg, delta = {piece.delta:.6g}"
-        )
-        (vx, vy), launch = piece.launch.velocity or (0.0, 0.0), piece.launch
-        lines["launch" if n == 0 else f"launch {n + 1}"] = (
-            f"v = ({vx:g}, {vy:g}) m/s, w = {launch.spin:g} rad/s at "
-            f"({launch.position[0]:g}, {launch.position[1]:g}) m"
-        )
-    for what in ("floor", "wall"):
-        parts = case.tables.get(what, {})
-        for n, part in enumerate(parts if isinstance(parts, list) else [parts] if parts else []):
-            lines[what if n == 0 else f"{what} {n + 1}"] = ", ".join(_entries(part))
-    lines["end"] = f"{answer.end} after {answer.end_time:.12g} s"
-    last = answer.last()
-    for n, name in enumerate(answer.names or ("place",)):
-        x, y = (last[axis][n] if answer.names else last[axis] for axis in ("x", "y"))
-        lines[f"stop {name}" if answer.names else name] = f"({x:.12g}, {y:.12g}) m"
-    if answer.limit_epsilon is not None:
-        limit = answer.limit_epsilon
-        inverse = f"{1.0 / limit:.9g}" if limit > 0.0 else "inf"
-        lines["limit"] = f"v/(r w) -> {limit:.9g} as papers write it, r w/v -> {inverse} as here"
-    lines["error"] = (
-        f"<= {answer.time_bound:.1e} s, {answer.place_bound:.1e} m, {answer.speed_bound:.1e} m/s; "
-        f"Q = {answer.speed_scale:.6g} m/s, J = {answer.rate_scale:.6g} m/s^2"
-    )
+    from puck_tables.reference.words import lines_of
+
+    lines = lines_of(answer)
     lines["frames"] = (
         f"{answer.time.size} from {answer.time.min():g} to {answer.time.max():.6g} s: -o FILE "
         "saves them, --json prints them"
     )
     return "\n".join(f"{name:<12} {text}" for name, text in lines.items())
-
-
-def _entries(part: Mapping[str, Any], before: str = "") -> Iterator[str]:
-    """The entries of a table of a scene, as --set would take them, in SI units."""
-    for name, value in part.items():
-        if isinstance(value, dict):
-            yield from _entries(value, f"{before}{name}.")
-        else:
-            rows = isinstance(value, list)
-            told = f"[{', '.join(f'{one:g}' for one in value)}]" if rows else f"{value:g}"
-            yield f"{before}{name} = {told}"
 
 
 def _friction(found: FloorFriction) -> str:
@@ -170,4 +140,8 @@ def _friction(found: FloorFriction) -> str:
         for n in range(0, found.epsilon.size, step)
     ]
     what = f"{found.case.label}: on the floor, fN = {found.load:.6g} N, r = {found.puck.radius:g} m"
+    if step > 1:
+        rows.append(
+            f"one row in {step} of {found.epsilon.size}: -o FILE saves all, --json prints them"
+        )
     return "\n".join([what, head, *rows])

@@ -4,15 +4,19 @@ from __future__ import annotations
 
 import json
 import math
+from html import escape
 from pathlib import Path
 
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from puck_tables.cli.compare import in_words
 from puck_tables.cli.main import main
 
 from puck_tables import InputError, compare, reference_case
+from puck_tables.plot.comparison_page import page
 from puck_tables.reference.attitude import turned
+from puck_tables.reference.words import lines_of
 
 HEADER = "t [s],x [m],y [m],angle [rad],vx [m/s],vy [m/s],w [rad/s]"
 
@@ -130,7 +134,9 @@ def test_truth_at_a_finite_threshold_is_no_error(tmp_path: Path):
         (lambda rows: rows | {"w": -rows["w"]}, "is not the launch of case coin"),
         (lambda rows: {n: one[::-1] for n, one in rows.items()}, "times must increase"),
         (lambda rows: rows | {"vy": np.full(rows["t"].size, np.nan)}, "has no vy"),
-        (lambda rows: {n: one[:2] for n, one in rows.items()}, "at least three"),
+        (lambda rows: {n: one[:2] for n, one in rows.items()}, "has 2 rows of .*at least three"),
+        (lambda rows: {n: one[:1] for n, one in rows.items()}, "has 1 row of numbers"),
+        (lambda rows: {n: one[:0] for n, one in rows.items()}, "has no rows below its header, 't"),
     ],
 )  # fmt: skip
 def test_what_is_no_run_of_the_case(change, words: str, tmp_path: Path):
@@ -141,10 +147,13 @@ def test_what_is_no_run_of_the_case(change, words: str, tmp_path: Path):
 @pytest.mark.parametrize(
     ("header", "words"),
     [
-        ("t [s],a [m],b [m],angle [rad],vx [m/s],vy [m/s],w [rad/s]", "has no column x and y"),
+        ("t [s],a [m],b [m],angle [rad],vx [m/s],vy [m/s],w [rad/s]",
+         r"no column that is known as x or y \(its columns are t \[s\], a"),
+        ("t [s],x [furlong],y [m],-,-,-,-", r"a\.csv: the unit of the column 'x \[furlong\]'"),
         ("t [s],x [m],y [kg],angle [rad],vx [m/s],vy [m/s],w [rad/s]", "unit of the column"),
         ("t [s],x [m],y [m],angle [rad],vx [m/s],v2,w [rad/s]", "one component"),
         ("t [s],x [m],y [m],angle [rad],vx [m/s],vx [m/s],w [rad/s]", "two columns of vx"),
+        ("t [s],x [m],y [m],angle [rad],x_vel [m/s],v2,w [rad/s]", "one component"),
         ("t [s],x [m],y [m],qw,qx,qy,w [rad/s]", "all of qw, qx, qy, qz"),
         ("t [s],x [m],y [px],angle [rad],vx [m/s],vy [m/s],w [rad/s]", "unit of the column"),
     ],
@@ -159,8 +168,111 @@ def test_quaternions_are_normalised_and_upright():
     with pytest.raises(InputError, match="row 1 of its numbers has the length 2"):
         turned("a.csv", 2.0 * unit, 2)
     unit[2] = [math.cos(0.5), math.sin(0.5), 0.0, 0.0]
-    with pytest.raises(InputError, match="tilted by 57 degrees in row 3"):
+    with pytest.raises(InputError, match="tilted by 57 degrees from row 1 to row 3"):
         turned("a.csv", unit, 2)
+    tilted = np.tile(unit[2], (3, 1))  # the axes of a body are not known
+    assert np.array_equal(turned("a.csv", tilted, 2), np.zeros(3))
+
+
+def of_the_take_out(path: Path, puck: int, until: float) -> Path:
+    exact = reference_case("take-out", times=np.arange(0.0, until, 2e-3))
+    names = ("x", "y", "orientation", "vx", "vy", "spin")
+    return written(path, {"t": exact.time} | {name: exact.columns[name][:, puck] for name in names})
+
+
+def test_the_stop_is_that_of_the_puck_compared(tmp_path: Path):
+    """Red rests by 0.372 s, yellow by 0.490 s; half of J t is what a threshold is early by."""
+    path = of_the_take_out(tmp_path / "red.csv", 0, 0.6)
+    found = compare(path, "take-out", puck="red", thresholds=["2mm/s"])
+    assert 0.371 < found.end_time < 0.372
+    early = found.end_time - found.exact_rest.time
+    assert 0.0 < early < 2.0 * 2e-3 / (0.2 * 9.81)
+    assert found.rows()[0]["stop_place_error"] < 1e-12
+    told = found.summary()
+    assert (told["puck"], told["end_time"]) == ("red", found.end_time)
+    assert found.dataset().attributes["end_time"] == found.end_time
+    assert found.plot().axes[1].get_xlim()[1] == pytest.approx(1.15 * found.end_time)
+    result = CliRunner().invoke(main, ["compare", str(path), "--case", "take-out", "--puck", "red"])
+    assert "exact: red at rest after 0.37160" in result.stdout
+    text = page(found)
+    assert "The puck red ends after 0.37160" in text
+    assert all(escape(told) in text for told in lines_of(found.answer).values())
+
+
+def test_the_files_of_the_reference_itself(tmp_path: Path):
+    exact = reference_case("coin", dt=1e-3)
+    exact.save(tmp_path / "a.csv")
+    found = compare(tmp_path / "a.csv", "coin")
+    assert found.rows()[0]["place_error_max"] == found.rows()[0]["spin_error_max"] == 0.0
+    found.save(tmp_path / "b.csv")
+    assert (tmp_path / "b.csv").read_text().splitlines()[1].startswith("0,coin (version 1),a.csv,")
+    again = reference_case("coin", times=tmp_path / "a.csv")
+    assert again.time.tolist() == exact.time.tolist()
+
+
+def test_rows_of_several_pucks_one_below_the_other(tmp_path: Path):
+    """By names, by numbers, in any order; and rows that a column only counts."""
+    exact = reference_case("take-out", dt=0.01)
+    exact.save(tmp_path / "a.csv")
+    lines = (tmp_path / "a.csv").read_text().splitlines()
+    head = lines[0].split(",")
+    cells = [line.split(",") for line in lines[1:]]
+    no_name = [",".join(row[:2] + row[4:]) for row in sorted(cells, key=lambda row: row[1])]
+    assert head[1] == "puck[1]" and head[3] == "name"
+    (tmp_path / "b.csv").write_text("\n".join([",".join(head[:2] + head[4:]), *no_name]) + "\n")
+    for name in ("a.csv", "b.csv"):
+        for puck in ("red", "yellow"):
+            row = compare(tmp_path / name, "take-out", puck=puck).rows()[0]
+            assert row["place_error_max"] == row["spin_error_max"] == 0.0
+    other = (tmp_path / "a.csv").read_text().replace("red", "blue").replace("puck[1]", "n[1]")
+    (tmp_path / "c.csv").write_text(other)
+    with pytest.raises(InputError, match=r"several pucks, .* name \(blue, yellow\).*the puck red"):
+        compare(tmp_path / "c.csv", "take-out", puck="red")
+    with pytest.raises(InputError, match=r"rows of several pucks.*leave only those of one"):
+        compare(tmp_path / "a.csv", "coin")
+    counted = {"id": np.arange(columns()["t"].size, dtype=float)} | columns()
+    found = compare(written(tmp_path / "d.csv", counted, "id," + HEADER), "coin")
+    assert found.rows()[0]["place_error_max"] < 1e-14
+
+
+def test_what_a_file_does_not_tell_is_said(tmp_path: Path):
+    rows = columns()
+    short = {name: row[:60] for name, row in rows.items()}
+    trembling = rows | {"vx": np.where(rows["t"] == rows["t"][-1], 0.1, rows["vx"])}
+    bare = {name: rows[name] for name in ("t", "x", "y")}
+    paths = [
+        written(tmp_path / "a.csv", rows), written(tmp_path / "b.csv", short),
+        written(tmp_path / "c.csv", bare, "t [s],x [m],y [m]"),
+        written(tmp_path / "d.csv", trembling),
+    ]  # fmt: skip
+    found = compare(paths, "coin", thresholds=["2 mm/s"], steps=[4e-3, 3e-3, 2e-3, 1e-3])
+    said = [
+        "b.csv: never below v < 0.002 m/s in its 0.059 s",
+        "c.csv: no velocities and spin in it, so nothing of rest",
+        "d.csv: not below v < 0.002 m/s in its last row, at 0.136 s",
+    ]
+    assert found.untold() == said
+    whys = [run["why"] for run in found.summary()["runs"]]
+    assert whys == [None, *(one[7:] for one in said)]
+    assert all(one in in_words(found) and escape(one) in page(found) for one in said)
+    assert "carried on by it" in in_words(compare(of_the_belt(tmp_path / "e.csv"), "belt"))
+
+
+def test_chatter_without_spin_has_no_ratio(tmp_path: Path):
+    """Its speed falls below the threshold where nothing spins but rounding."""
+    rows = columns()
+    after = rows["t"] > reference_case("coin").end_time
+    rows["w"][after] = 1e-13
+    rows["vx"][after] = 3e-3 * (np.arange(after.sum()) < after.sum() - 3)
+    path = written(tmp_path / "a.csv", rows)
+    found = compare(path, "coin", thresholds=["1mm/s", "0.1rad/s"])
+    assert found.rows()[0]["rest_time"] > found.end_time
+    assert math.isnan(found.rows()[0]["epsilon_seen"])
+    assert math.isnan(found.rows()[0]["epsilon_error"])
+
+
+def of_the_belt(path: Path) -> Path:
+    return written(path, columns("belt", 5e-3))
 
 
 @pytest.mark.parametrize("text", ["0.1", "fast", "-1 mm/s", "0rad/s", "1 kg", "1e999 m/s"])

@@ -150,7 +150,7 @@ def test_friction_over_epsilon_is_refused(name: str):
 
 def test_the_command_line_says_where_the_borders_are():
     told = CliRunner().invoke(main, ["reference", "astride-spin"]).output
-    assert "strips.borders = [0], strips.friction = [0.78, 0.67]" in told
+    assert "strips.borders = [0] m, strips.friction = [0.78, 0.67]" in told
     listed = json.loads(CliRunner().invoke(main, ["reference", "--json"]).output)
     assert [one["name"] for one in listed] == [case.name for case in CASES]
     assert {*ASTRIDE} < {case.name for case in CASES}

@@ -245,6 +245,8 @@ def _separator(path: str | Path, lines: Sequence[str]) -> str | None:
         score = round(alike * (good + 0.5 * flags), 6)
         if score > best[0] + 1e-9:
             best = (score, max(sizes), separator)
+    if best[0] < 0.2 and len(lines) == 1:
+        raise InputError(f"{path} has no rows below its header, '{lines[0].strip():.60}'")
     if best[0] < 0.2:
         raise InputError(
             f"{path} is no table of numbers with two or more columns: a line of it is "

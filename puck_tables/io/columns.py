@@ -172,6 +172,7 @@ COLUMNS = {
     ),
     "flights_per_period": Column("1", "flights", "flights in a wavelength"),
     # cases to hold engines against
+    "case": Column("", "case", "name and version of the case"),
     "epsilon": Column("1", "ε = v/(rω)", "v/(r omega) of the slip over the floor; nan at rest"),
     "slip_ratio": Column("1", "rω/v", "r omega/v of the slip over the floor; nan at rest"),
     "floor_fx": Column("N", "force on the floor x", "force of the puck on the floor along x"),

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from puck_tables.plot.reference import no_rounding
 from puck_tables.plot.style import COLORS, GREY, canvas, shaded, titled
 from puck_tables.reference.comparison import Comparison
 from puck_tables.reference.floor import ratios, slip_over
@@ -41,8 +42,7 @@ def _colours(found: Comparison) -> list[tuple[float, float, float] | str]:
 
 
 def _exact(found: Comparison) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    end = found.answer.end_time
-    times = np.linspace(0.0, end, _CURVE)
+    times = np.linspace(0.0, found.end_time, _CURVE)
     return times, states_of(found.answer(times), found.puck)
 
 
@@ -53,6 +53,7 @@ def draw_on(axes: Axes, found: Comparison) -> None:
     for n, (run, colour) in enumerate(zip(found.runs, _colours(found), strict=True)):
         name = f"{run.log.name}" if n < _LABELLED else None
         axes.plot(run.log.x, run.log.y, color=colour, linewidth=1.0, label=name)
+    no_rounding(axes)
     axes.set_xlabel("x / m")
     axes.set_ylabel("y / m")
     axes.grid(color="#e4e4e4", linewidth=0.6)
@@ -113,6 +114,6 @@ def _draw_errors(axes: Axes, found: Comparison, name: str, label: str) -> None:
 
 
 def _over_time(axes: Axes, found: Comparison) -> None:
-    axes.set_xlim(0.0, 1.15 * found.answer.end_time)
+    axes.set_xlim(0.0, 1.15 * found.end_time)
     axes.set_xlabel("time / s")
     axes.grid(color="#e4e4e4", linewidth=0.6)

@@ -14,11 +14,14 @@ from puck_tables.io.formats import ending_of
 from puck_tables.plot.comparison import draw
 from puck_tables.plot.style import require_matplotlib
 from puck_tables.reference.comparison import Comparison
+from puck_tables.reference.threshold import states_of
+from puck_tables.reference.words import lines_of
 
 _STYLE = (
     "body{font:16px/1.5 system-ui,sans-serif;max-width:62em;margin:2em auto;padding:0 1em}"
     "table{border-collapse:collapse;font-size:14px}td,th{border:1px solid #ccc;padding:.2em .6em;"
-    "text-align:right}td:first-child,th:first-child{text-align:left}svg{max-width:100%;height:auto}"
+    "text-align:right}td:first-child,th:first-child,.case td{text-align:left}"
+    "svg{max-width:100%;height:auto}"
 )
 
 
@@ -65,22 +68,28 @@ def page(found: Comparison) -> str:
         + "".join(f"<td>{_written(row[name])}</td>" for name in names) + "</tr>"
         for run, row in zip(found.runs, rows, strict=True)
     )  # fmt: skip
-    exact = f"It ends after {answer.end_time:.12g} s ({escape(answer.end)})"
-    if not answer.names:
-        last = answer.last()
-        exact += f" at ({last['x']:.12g}, {last['y']:.12g}) m"
+    lines = "".join(
+        f"<tr><td>{escape(name)}</td><td>{escape(told)}</td></tr>"
+        for name, told in lines_of(answer).items()
+    )
+    last = states_of(answer([found.end_time]), found.puck)
+    which = f"The puck {escape(found.whose)}" if found.whose else "It "
+    exact = f"{which}ends after {found.end_time:.12g} s ({escape(answer.end)})"
+    exact += f" at ({last['x'][0]:.12g}, {last['y'][0]:.12g}) m"
     exact += f", known to {answer.time_bound:.1e} s and {answer.place_bound:.1e} m."
     fallen = "".join(
         f"<li>{escape(words)}: {escape(what)}</li>" for words, what in found.convergence().items()
     )
+    untold = "".join(f"<li>{escape(one)}</li>" for one in found.untold())
     truths = "".join(f"<li>{escape(one)}</li>" for one in found.truths())
     met = escape(", ".join(map(str, found.thresholds)))
     return (
         f"<!DOCTYPE html>\n<html lang='en'><head><meta charset='utf-8'>"
         f"<title>{escape(case.label)}</title><style>{_STYLE}</style></head><body>"
-        f"<h1>{escape(case.title)}</h1><p>Case {escape(case.label)}: {escape(case.tests)}. {exact} "
+        f"<h1>{escape(case.title)}</h1><table class='case'>{lines}</table><p>{exact} "
         f"Rest counts from {met} on.</p>"
         f"<h2>Errors</h2><table><tr><th>file</th>{head}</tr>{body}</table>"
+        + (f"<h2>Not told</h2><ul>{untold}</ul>" if untold else "")
         + (f"<h2>As the step falls</h2><ul>{fallen}</ul>" if fallen else "")
         + (f"<h2>Truth and not error</h2><ul>{truths}</ul>" if truths else "")
         + f"<h2>Picture</h2>{svg}<p>Made by puck-tables {__version__}.</p></body></html>\n"

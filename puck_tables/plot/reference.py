@@ -1,27 +1,33 @@
-"""Picture of a case: the path, speed and rim, their ratio, and what the floor feels."""
+"""Picture of a case: the plane, the path, speed and rim, their ratio, and what the floor feels."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from puck_tables.plot import pucks, scene
 from puck_tables.plot.style import BLUE, COLORS, GREEN, GREY, LAUNCH, ORANGE, STOP, canvas, titled
 from puck_tables.reference.answer import Answer
+from puck_tables.world.outcome import WorldRun
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 _CURVE = 400  # points of a curve
+_STRAIGHT = 1e-6  # of its length: a path that bends by less is drawn as a line
+_DOTS = 200  # states asked for: more would be one line
 
 
 def draw(answer: Answer) -> Figure:
-    """The path, and over time v and rω, ε = v/(rω), force and torque on the floor."""
-    figure = canvas(10.0, 7.0)
-    panels = [figure.add_subplot(2, 2, n) for n in range(1, 5)]
+    """The plane to scale; the path stretched; v and rω, their ratio, and forces over time."""
+    figure = canvas(10.0, 11.0)
+    grid = figure.add_gridspec(3, 2, height_ratios=(1.25, 1.0, 1.0))
+    draw_on(figure.add_subplot(grid[0, :]), answer)
+    panels = [figure.add_subplot(grid[n]) for n in ((1, 0), (1, 1), (2, 0), (2, 1))]
     whole = answer(np.linspace(0.0, answer.end_time, _CURVE))
-    draw_on(panels[0], answer)
+    _draw_path(panels[0], answer, whole)
     radii = [piece.radius for piece in answer.pieces]
     for n, (radius, style) in enumerate(zip(radii, ("-", "--", ":") * len(radii), strict=False)):
         name = f" ({answer.names[n]})" if answer.names else ""
@@ -60,23 +66,40 @@ def _tame(panel: Axes, epsilon: np.ndarray) -> None:
 
 
 def draw_on(axes: Axes, answer: Answer) -> None:
-    """The path, with the states asked for."""
-    whole = answer(np.linspace(0.0, answer.end_time, _CURVE))
-    count = len(answer.names) or 1
-    for n in range(count):
+    """The plane to scale: floor and walls, the pucks, and their ways."""
+    if isinstance(answer.run, WorldRun):
+        pucks.draw_on(axes, answer.run)
+    else:
+        scene.draw_on(axes, answer.run)
+
+
+def _draw_path(axes: Axes, answer: Answer, whole: Answer) -> None:
+    """The path with the states asked for, as wide and as high as there is room: bends are seen."""
+    for n, piece in enumerate(answer.pieces):
         x, y, px, py = (
             np.asarray(row)[:, n] if answer.names else row
             for row in (whole.x, whole.y, answer.x, answer.y)
         )
-        colour = COLORS[n % len(COLORS)]
+        colour = piece.colour or COLORS[n % len(COLORS)]
         axes.plot(x, y, color=colour, label=answer.names[n] if answer.names else None)
-        if answer.time.size <= 200:
-            axes.plot(px, py, ".", color=GREEN if count == 1 else colour, markersize=4)
+        if answer.time.size <= _DOTS:
+            axes.plot(px, py, ".", color=colour if answer.names else GREEN, markersize=4)
         axes.plot(x[0], y[0], **LAUNCH)
         axes.plot(x[-1], y[-1], **STOP)
-    axes.set_aspect("equal", adjustable="datalim")
+    no_rounding(axes)
     axes.grid(color="#e4e4e4", linewidth=0.6)
+    axes.set_title("path, not to scale", fontsize=10)
     axes.set_xlabel("x / m")
     axes.set_ylabel("y / m")
     if answer.names:
         axes.legend(frameon=False, fontsize=8)
+
+
+def no_rounding(axes: Axes) -> None:
+    """Not to stretch a straight path across it until its rounding is seen."""
+    sides: dict[str, Any] = {"xlim": axes.get_xlim(), "ylim": axes.get_ylim()}
+    longest = max(high - low for low, high in sides.values())
+    for side, (low, high) in sides.items():
+        if high - low < _STRAIGHT * longest:
+            middle, half = 0.5 * (low + high), 0.05 * longest
+            axes.set(**{side: (middle - half, middle + half)})

@@ -209,6 +209,12 @@ class Answer(Result):
             )
         return self.names.index(name)
 
+    def end_time_of(self, puck: int | None) -> float:
+        """When it ends for one of several pucks, s; None: the single one."""
+        if puck is None or not isinstance(self.run, WorldRun):
+            return self.end_time
+        return min(float(self.run.stop_times[puck]), self.end_time)
+
     def __getattr__(self, name: str) -> FloatArray:
         """A column by its name."""
         columns: Mapping[str, FloatArray] = self.__dict__.get("columns", {})
@@ -272,7 +278,7 @@ class Answer(Result):
         """States over time (and pucks), with the bounds of their errors in each row."""
         dims = ("time", "puck") if self.names else ("time",)
         axes = {"time": variable("time", self.time, ("time",))}
-        columns: dict[str, Variable] = {}
+        columns: dict[str, Variable] = {"case": variable("case", self.case.label, ())}
         if self.names:
             axes["puck"] = variable("puck", np.arange(len(self.names)), ("puck",))
             columns["name"] = variable("name", list(self.names), ("puck",))

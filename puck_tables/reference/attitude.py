@@ -27,7 +27,8 @@ def turned(where: str, quaternions: FloatArray, up: int) -> FloatArray:
     Raises
     ------
     InputError
-        If one is not normalised, or the body tilts: then their order, or the axis, is another.
+        If one is not normalised, or the tilt has changed by over 20 degrees since the first row:
+        then their order, or the axis, is another.
 
     Examples
     --------
@@ -56,8 +57,8 @@ def turned(where: str, quaternions: FloatArray, up: int) -> FloatArray:
         row = int(np.argmax(tilt > _TILTED))
         raise InputError(
             f"{where}: by its quaternions the puck has tilted by {math.degrees(tilt[row]):.0f} "
-            f"degrees in row {row + 1}, which no case does: their order must be w, x, y, z, or say "
-            "it with columns (--columns), or another axis points up (--up)"
+            f"degrees from row 1 to row {row + 1}, which no case does: their order must be w, "
+            "x, y, z, or say it with columns (--columns), or another axis points up (--up)"
         )
     angle: FloatArray = np.unwrap(2.0 * np.arctan2(vector[:, up], real))
     return angle

@@ -77,7 +77,7 @@ def _tall(delta: float, more: str) -> Case:
 
 
 def _incline(name: str, over: float, words: str, tests: str, time: float | None) -> Case:
-    """A spinning disc sent across and up a slope of ``over`` times its angle of friction."""
+    """A spinning disc sent across and up a slope whose tangent is ``over`` times f."""
     tables: dict[str, Any] = {
         "puck": _DISC, "floor": {"slope": math.atan(over * 0.2), "downhill": _DOWN},
         "launch": {"velocity": [0.5, 0.3], "spin": 20.0},

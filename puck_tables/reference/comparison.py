@@ -57,6 +57,16 @@ class Comparison(Result):
     picture: ClassVar[str] = "comparison"
 
     @property
+    def end_time(self) -> float:
+        """When the case ends for the puck that is compared, s."""
+        return self.answer.end_time_of(self.puck)
+
+    @property
+    def whose(self) -> str:
+        """The name of the puck with a blank behind it; nothing of a single one."""
+        return "" if self.puck is None else f"{self.answer.names[self.puck]} "
+
+    @property
     def transient(self) -> float | None:
         """Exact ε at the thresholds less its limit: no error of any engine; None: there is none."""
         limit, rest = self.answer.limit_epsilon, self.exact_rest
@@ -97,6 +107,10 @@ class Comparison(Result):
             if all(math.isfinite(row[name]) for row in rows)
         }
 
+    def untold(self) -> list[str]:
+        """What files do not tell, and why."""
+        return [f"{run.log.name}: {run.why}" for run in self.runs if run.why]
+
     def truths(self) -> list[str]:
         """What is no error of an engine though it differs from a number of the literature."""
         answer, exact = self.answer, self.exact_rest
@@ -104,7 +118,7 @@ class Comparison(Result):
         if exact is not None:
             met = ", ".join(map(str, self.thresholds))
             told.append(
-                f"the threshold {met} is met {answer.end_time - exact.time:.4g} s before the exact "
+                f"the threshold {met} is met {self.end_time - exact.time:.4g} s before the exact "
                 "stop: a stop read there is early by that, in truth"
             )
         if exact is not None and self.transient is not None:
@@ -127,6 +141,8 @@ class Comparison(Result):
                 f"the limit {answer.limit_epsilon:.6g} is that of this puck with delta = "
                 f"{puck.delta:.4g} where it stops; 0.653 is that of a flat homogeneous disc"
             )
+        if answer.end == "carried by the floor":
+            told.append("at rest on the floor the puck is carried on by it: it has no stop place")
         if answer.end == "time is up":
             told.append("the motion of this case does not stop while it is followed")
         return told
@@ -147,7 +163,8 @@ class Comparison(Result):
             "case": self.answer.case.name,
             "version": self.answer.case.version,
             "end": self.answer.end,
-            "end_time": self.answer.end_time,
+            "puck": self.whose.strip() or None,
+            "end_time": self.end_time,
             "thresholds": [str(one) for one in self.thresholds],
             "exact_rest": None if exact is None else _known(exact._asdict()),
             "limit_epsilon": self.answer.limit_epsilon,
@@ -156,7 +173,7 @@ class Comparison(Result):
                 n: getattr(self.answer, n) for n in ("time_bound", "place_bound", "speed_bound")
             },
             "runs": [
-                {"file": run.log.name, **_known(row)}
+                {"file": run.log.name, "why": run.why or None, **_known(row)}
                 for run, row in zip(self.runs, self.rows(), strict=True)
             ],
             "convergence": self.convergence(),
@@ -167,12 +184,15 @@ class Comparison(Result):
         """One row a run."""
         rows = self.rows()
         columns: dict[str, Variable] = {
-            "file": variable("file", [run.log.name for run in self.runs], ("run",))
+            "case": variable("case", self.answer.case.label, ()),
+            "file": variable("file", [run.log.name for run in self.runs], ("run",)),
         }
         for name in rows[0]:
             columns[name] = variable(name, np.array([row[name] for row in rows]), ("run",))
         told = self.summary()
         kept = {name: told[name] for name in ("case", "version", "end", "end_time", "thresholds")}
+        if self.puck is not None:
+            kept["puck"] = told["puck"]
         if self.transient is not None:
             kept |= {"limit_epsilon": told["limit_epsilon"], "transient_epsilon": self.transient}
         axes = {"run": variable("run", np.arange(len(rows)), ("run",))}
@@ -237,7 +257,7 @@ def compare(
     instance("thresholds", thresholds, list, tuple)
     answer = reference_case(case, times=[0.0])
     number = answer.puck_number(puck)
-    how = LogHow(columns, unit, angle_unit, up, puck, launch_time)
+    how = LogHow(columns, unit, angle_unit, up, puck, launch_time, number)
     given = tuple(threshold_of(one) for one in thresholds) or (usual(answer),)
     sizes: list[float | None] = [None] * len(paths)
     if steps is not None:

@@ -89,7 +89,8 @@ class FloorFriction(Result):
     def dataset(self) -> Dataset:
         """Forces over ε."""
         dims = ("epsilon",)
-        columns = {name: variable(name, getattr(self, name), dims) for name in COLUMNS}
+        columns = {"case": variable("case", self.case.label, ())}
+        columns |= {name: variable(name, getattr(self, name), dims) for name in COLUMNS}
         columns["share_bound"] = variable("share_bound", np.asarray(BOUND), ())
         axes = {"epsilon": variable("epsilon", self.epsilon, dims)}
         return Dataset(axes, columns, self.summary())

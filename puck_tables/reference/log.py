@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import instance, real
 from puck_tables._core.safe_read import read_rows
 from puck_tables.errors import InputError
+from puck_tables.film.headings import heading, parted
 from puck_tables.film.layout import headed, name_of
 from puck_tables.film.reading import beginning, refuse_no_text
 from puck_tables.film.text import Look, look_at, read_columns
@@ -18,6 +21,7 @@ from puck_tables.reference.attitude import turned
 from puck_tables.reference.headings import EXAMPLES, LogHeading, log_heading, unit_size
 
 _SLOW = 1.0  # s between rows: more, and times are hardly in seconds
+_FEWEST = 3  # rows that are compared
 _MOST_TIMES = 1 << 26  # bytes of a file of times
 _QUATERNION = ("qw", "qx", "qy", "qz")
 UP = ("y", "z")
@@ -29,8 +33,8 @@ class LogHow:
 
     ``columns``: headings in place of those in the file; ``unit``, ``angle_unit``: of lengths and
     angles (and of velocities and spins, a second) where it says none; ``up``: the axis that points
-    up, 'y' or 'z', where it has three; ``puck``: whose columns; ``launch_time`` s: when the launch
-    stands in it.
+    up, 'y' or 'z', where it has three; ``puck``: whose columns or rows, ``number``: the same by its
+    number from 0; ``launch_time`` s: when the launch stands in it.
     """
 
     columns: str | None = None
@@ -39,6 +43,7 @@ class LogHow:
     up: str | None = None
     puck: str | None = None
     launch_time: float = 0.0
+    number: int | None = None
 
     def __post_init__(self) -> None:
         for name in ("columns", "unit", "angle_unit", "up", "puck"):
@@ -105,11 +110,13 @@ def read_log(path: str | Path, how: LogHow) -> Log:
     ([0.0, 0.01, 0.02], [0.0, 0.002, 0.003], True)
     """
     instance("path", path, str, Path)
-    look, columns = _columns(path, how)
+    look, columns, ids = _columns(path, how)
     said = {one.role: n for n, one in columns.items()}
     floor = _floor_axes(path, look, said, how)
     wanted = ["time", *floor.values()]
-    values = _numbers(path, look, columns, how, [said[role] for role in wanted if role in said])
+    where, values = _numbers(
+        path, look, columns, how, [said[role] for role in wanted if role in said], ids
+    )
     time = values[said["time"]] - how.launch_time
     notes = [f"up is {how.up}"] if how.up else []
     if columns[said["time"]].unit is None:
@@ -123,11 +130,12 @@ def read_log(path: str | Path, how: LogHow) -> Log:
     back = np.flatnonzero(np.diff(time) <= 0.0)
     if back.size:
         raise InputError(
-            f"{path}: times must increase, but row {back[0] + 2} of its numbers stands at "
+            f"{where}: times must increase, but row {back[0] + 2} of its numbers stands at "
             f"{time[back[0] + 1]:.9g} s after {time[back[0]]:.9g} s"
         )
-    if time.size < 3:
-        raise InputError(f"{path} has {time.size} rows of numbers: at least three are compared")
+    if time.size < _FEWEST:
+        rows = f"{time.size} row{'s' if time.size != 1 else ''}"
+        raise InputError(f"{where} has {rows} of numbers: at least three are compared")
     signs = {"y": -1.0, "vy": -1.0} if how.up == "y" else {}
     found = {
         name: signs.get(name, 1.0) * values[said[role]]
@@ -136,7 +144,7 @@ def read_log(path: str | Path, how: LogHow) -> Log:
     angle = found.get("angle")
     if all(role in said for role in _QUATERNION):
         four = np.column_stack([values[said[role]] for role in _QUATERNION])
-        angle = turned(str(path), four, 1 if how.up == "y" else 2)
+        angle = turned(where, four, 1 if how.up == "y" else 2)
         notes.append("angles from quaternions")
     return Log(
         Path(path).name, time, found["x"], found["y"], angle, found.get("vx"), found.get("vy"),
@@ -168,17 +176,17 @@ def times_in(path: str | Path) -> FloatArray:
         raise InputError(f"cannot read {path}: {error.strerror or error}") from None
     except ValueError:
         pass  # no list of numbers: perhaps a table
-    look, columns = _columns(path, LogHow())
+    look, columns, _ = _columns(path, LogHow())
     clock = next((n for n, one in columns.items() if one.role == "time"), None)
     if clock is None:
         raise InputError(
             f"{path} holds no times: give one time in s a line, or a table with a column t"
         )
-    return _numbers(path, look, columns, LogHow(), [clock])[clock]
+    return _numbers(path, look, columns, LogHow(), [clock], [])[1][clock]
 
 
-def _columns(path: str | Path, how: LogHow) -> tuple[Look, dict[int, LogHeading]]:
-    """How a table is written, and what its columns are."""
+def _columns(path: str | Path, how: LogHow) -> tuple[Look, dict[int, LogHeading], list[int]]:
+    """How a table is written, what its columns are, and which say whose a row is."""
     if "\0" in str(path):
         raise InputError("the name of a file holds a NUL")
     try:
@@ -190,7 +198,10 @@ def _columns(path: str | Path, how: LogHow) -> tuple[Look, dict[int, LogHeading]
     names = headed(path, look, how.columns)[-1]
     columns: dict[int, LogHeading] = {}
     for n, name in enumerate(names):
-        one = log_heading(name, how.puck)
+        try:
+            one = log_heading(name, how.puck)
+        except InputError as error:
+            raise InputError(f"{path}: {error}") from None
         if not one.role:
             continue
         if any(other.role == one.role for other in columns.values()):
@@ -199,7 +210,11 @@ def _columns(path: str | Path, how: LogHow) -> tuple[Look, dict[int, LogHeading]
                 "(--columns), - for the other" + ("" if how.puck else ", or the puck (--puck)")
             )
         columns[n] = one
-    return look, columns
+    ids = [
+        n for n, name in enumerate(names)
+        if n not in columns and heading(parted(name)[0]).role == "id"
+    ]  # fmt: skip
+    return look, columns, ids
 
 
 def _floor_axes(path: str | Path, look: Look, said: dict[str, int], how: LogHow) -> dict[str, str]:
@@ -223,7 +238,7 @@ def _floor_axes(path: str | Path, look: Look, said: dict[str, int], how: LogHow)
     if missing:
         names = ", ".join(name_of(look, n) for n in range(min(look.width, 12)))
         raise InputError(
-            f"{path} has no column {' and '.join(missing)} that is known by its name (they are "
+            f"{path} has no column that is known as {' or '.join(missing)} (its columns are "
             f"{names:.90}): say what they are, such as columns='t [s],x [m],y [m],angle [rad],"
             "vx [m/s],vy [m/s],w [rad/s]' (--columns), - for those to leave out"
         )
@@ -238,18 +253,52 @@ def _floor_axes(path: str | Path, look: Look, said: dict[str, int], how: LogHow)
     return flat | {role: role for role in quaternion}
 
 
+def _rows_of_one(
+    path: str | Path, ids: list[tuple[str, npt.NDArray[Any], list[str]]], how: LogHow
+) -> npt.NDArray[Any] | None:
+    """Which rows are of the puck, by columns that say whose a row is; None: they are of one.
+
+    Parameters
+    ----------
+    ids : name of the column, of each row the number of its text, texts
+
+    Raises
+    ------
+    InputError
+        If rows are of several pucks, and none is of this one.
+    """
+    telling = [one for one in ids if len(one[2]) * _FEWEST <= one[1].size]  # more: rows counted
+    for mine in (how.puck, None if how.number is None else str(how.number)):
+        for _, codes, texts in telling:
+            if mine in texts:
+                return np.flatnonzero(codes == texts.index(mine))
+    for name, _, texts in telling:
+        if len(texts) > 1:
+            which = "one" if how.puck is None else f"the puck {how.puck}, and say which they are"
+            raise InputError(
+                f"{path} has rows of several pucks, by its column {name:.40} "
+                f"({', '.join(texts):.60}): leave only those of {which}"
+            )
+    return None
+
+
 def _numbers(
-    path: str | Path, look: Look, columns: dict[int, LogHeading], how: LogHow, wanted: list[int]
-) -> dict[int, FloatArray]:
-    """Columns in SI units, every cell a number."""
-    values, _ = read_columns(path, look, wanted, [])
+    path: str | Path, look: Look, columns: dict[int, LogHeading], how: LogHow, wanted: list[int],
+    ids: list[int],
+) -> tuple[str, dict[int, FloatArray]]:  # fmt: skip
+    """Whose rows they are, for messages; and columns in SI units, every cell a number."""
+    values, texts = read_columns(path, look, wanted, ids)
+    rows = _rows_of_one(path, [(name_of(look, n), *texts[n]) for n in ids], how)
+    where = str(path) if rows is None else f"{path} ({how.puck})"
+    if rows is not None:
+        values = {n: column[rows] for n, column in values.items()}
     found = {}
     for n in wanted:
         one = columns[n]
         gaps = np.flatnonzero(~np.isfinite(values[n]))
         if gaps.size:
             raise InputError(
-                f"{path}: row {gaps[0] + 1} of its numbers has no {one.role}: leave out rows that "
+                f"{where}: row {gaps[0] + 1} of its numbers has no {one.role}: leave out rows that "
                 "are not whole"
             )
         size = one.unit
@@ -266,4 +315,4 @@ def _numbers(
                     f"header, such as {one.role} [{EXAMPLES[one.kind]}], or give {option}"
                 )
         found[n] = values[n] * (1.0 if size is None else size)
-    return found
+    return where, found

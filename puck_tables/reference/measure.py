@@ -12,7 +12,7 @@ from puck_tables.errors import InputError
 from puck_tables.reference.answer import Answer
 from puck_tables.reference.floor import ratios, slip_over
 from puck_tables.reference.log import Log
-from puck_tables.reference.threshold import Rest, Threshold, rest_of_rows, states_of
+from puck_tables.reference.threshold import Rest, Threshold, rest_of_rows, states_of, why_no_rest
 
 _LATE = 1.5  # steps: a log may begin after the first of them
 _OFF = 0.02  # of Q and Q²/J: a launch that is off by more is another
@@ -29,7 +29,7 @@ class Measured:
     log has no such column.  ``rest``: when and where theirs is below the threshold, None: it is not
     within the log; ``exact_rest``: the same read from rows of the exact motion at the same times,
     so that rows far apart make no error; ``stop_place`` m: how far from the exact stop it lies at
-    the end of the log, None: it is not at rest there.
+    the end of the log, None: it is not at rest there; ``why``: why it tells nothing of rest.
     """
 
     log: Log
@@ -48,6 +48,7 @@ class Measured:
     rest: Rest | None
     exact_rest: Rest | None
     stop_place: float | None
+    why: str
 
     @property
     def epsilon(self) -> FloatArray | None:
@@ -87,6 +88,7 @@ def measured(
     0.001
     """
     _refuse_other_launch(log, answer, puck)
+    end_time = answer.end_time_of(puck)
     until = answer.end_time if answer.end == "time is up" else math.inf
     rows = log.time <= until * (1.0 + 1e-12)
     time = np.minimum(log.time[rows], until)
@@ -109,22 +111,26 @@ def measured(
         speed = np.hypot(log.vx[rows] - exact["vx"], log.vy[rows] - exact["vy"])
         theirs |= {"vx": log.vx, "vy": log.vy}
     rest = exact_rest = stop_place = None
+    lacks = {"velocities": log.vx is None, "spin": log.spin is None}
+    without = " and ".join(name for name, lacking in lacks.items() if lacking)
+    why = f"no {without} in it, so nothing of rest" if without else ""
     if len(theirs) == 5:
         slip = slip_over(answer.floor, {name: row[rows] for name, row in theirs.items()})
         seen_epsilon, _ = ratios(slip, piece.radius)
         seen_speed, seen_rim, _ = slip.sizes(piece.radius)
         if answer.end != "time is up":
             rest = rest_of_rows(time, theirs, answer, puck, thresholds)
-            more = np.arange(time[-1] + log.step, answer.end_time + 2.0 * log.step, log.step)
+            why = why_no_rest(time, theirs, answer, puck, thresholds) if rest is None else ""
+            more = np.arange(time[-1] + log.step, end_time + 2.0 * log.step, log.step)
             longer = np.concatenate([time, more])  # a log may end with the rest in it
             exactly = states_of(answer(np.maximum(longer, 0.0)), puck)
             exact_rest = rest_of_rows(longer, exactly, answer, puck, thresholds)
             if rest is not None and answer.end == "at rest":
-                end = states_of(answer([answer.end_time]), puck)
+                end = states_of(answer([end_time]), puck)
                 stop_place = math.dist((log.x[-1], log.y[-1]), (end["x"][0], end["y"][0]))
     return Measured(
         log, log.step if step is None else step, time, dx, dy, np.hypot(dx, dy), angle, speed,
-        spin, seen_speed, seen_rim, seen_epsilon, exact_epsilon, rest, exact_rest, stop_place,
+        spin, seen_speed, seen_rim, seen_epsilon, exact_epsilon, rest, exact_rest, stop_place, why,
     )  # fmt: skip
 
 
@@ -132,14 +138,15 @@ def _refuse_other_launch(log: Log, answer: Answer, puck: int | None) -> None:
     """Refuse a log that does not start at the launch of the case."""
     first = float(log.time[0])
     case = answer.case.name
-    tiny = 1e-9 * answer.end_time
+    end_time = answer.end_time_of(puck)
+    tiny = 1e-9 * end_time
     if first < -tiny or first > _LATE * log.step + tiny:
         raise InputError(
             f"{log.name}: its times start at {first:.6g} s, and must start at the launch, 0 s, or "
             f"a step later: say when the launch is with launch_time (--launch-time), if it is in "
             "the file"
         )
-    if first > answer.end_time:
+    if first > end_time:
         raise InputError(f"{log.name}: its first row is later than the end of case {case}")
     exact = states_of(answer([max(first, 0.0)]), puck)
     q, j = answer.speed_scale, answer.rate_scale

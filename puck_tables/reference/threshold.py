@@ -14,6 +14,7 @@ from puck_tables.reference.floor import Slip, slip_over
 from puck_tables.reference.headings import unit_size
 
 _USUAL = 0.01  # of Q at the launch
+_NO_SPIN = 1e-9  # of Q at the launch
 _LOOKS, _ROUNDS = 513, 6
 
 
@@ -78,7 +79,10 @@ def usual(answer: Answer) -> Threshold:
 
 
 class Rest(NamedTuple):
-    """From when on it is slower than all thresholds: time s, place m, ε = v/(r|ω|) there."""
+    """From when on it is slower than all thresholds: time s, place m, ε = v/(r|ω|) there.
+
+    NaN for ε where the rim is slower than 1e-9 of Q at the launch: that is no spin but rounding.
+    """
 
     time: float
     x: float
@@ -110,7 +114,23 @@ def rest_of_rows(
 
     speed, rim, _ = slip.sizes(radius)
     v, w = at(speed), at(rim)
-    return Rest(at(time), at(states["x"]), at(states["y"]), v / w if w > 0.0 else np.inf)
+    spins = w > _NO_SPIN * answer.speed_scale
+    return Rest(at(time), at(states["x"]), at(states["y"]), v / w if spins else np.nan)
+
+
+def why_no_rest(
+    time: FloatArray, states: dict[str, FloatArray], answer: Answer, puck: int | None,
+    thresholds: tuple[Threshold, ...],
+) -> str:  # fmt: skip
+    """Why :func:`rest_of_rows` has found none: the threshold above which a run ends."""
+    slip = slip_over(answer.floor, states)
+    for one in thresholds:
+        above = one.excess(slip, answer.pieces[puck or 0].radius) >= 0.0
+        if above.all():
+            return f"never below {one} in its {time[-1]:.4g} s"
+        if above[-1]:
+            return f"not below {one} in its last row, at {time[-1]:.4g} s"
+    return ""
 
 
 def exact_rest(answer: Answer, puck: int | None, thresholds: tuple[Threshold, ...]) -> Rest | None:
@@ -125,7 +145,7 @@ def exact_rest(answer: Answer, puck: int | None, thresholds: tuple[Threshold, ..
     """
     if answer.end == "time is up":
         return None
-    low, high = 0.0, answer.end_time
+    low, high = 0.0, answer.end_time_of(puck)
     rest = None
     for _ in range(_ROUNDS):
         times = np.linspace(low, high, _LOOKS)
@@ -138,7 +158,7 @@ def exact_rest(answer: Answer, puck: int | None, thresholds: tuple[Threshold, ..
         if rest is None:  # slower only at the very end
             return Rest(high, float(states["x"][-1]), float(states["y"][-1]), np.nan)
         low, high = float(times[n]), float(times[min(n + 1, times.size - 1)])
-        if not high - low > 1e-14 * answer.end_time:
+        if not high - low > 1e-14 * answer.end_time_of(puck):
             break
     return rest
 

@@ -1,0 +1,99 @@
+"""A case and its answer in words, line by line, as the command and the page show them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from puck_tables.puck import Puck
+from puck_tables.reference.answer import Answer
+from puck_tables.scene.entries import units_of
+from puck_tables.scene.parts import Launch
+
+_RIM = ("restitution", "tangential", "rim")  # what counts where pucks meet
+
+
+def lines_of(answer: Answer) -> dict[str, str]:
+    """What goes in, with all its digits, and what comes out, by what it is.
+
+    Examples
+    --------
+    >>> from puck_tables.reference.answer import reference_case
+    >>> lines_of(reference_case("incline-below"))["floor"]
+    'slope = 0.09966865249116204 rad, downhill = -1.5707963267948966 rad'
+    """
+    case = answer.case
+    lines = {"case": f"{case.label}: {case.title}", "tests": case.tests}
+    units = units_of(answer.run.scene)
+    for n, (piece, name) in enumerate(zip(answer.pieces, answer.names or ("puck",), strict=True)):
+        lines[name] = _puck(piece)
+        if answer.names:
+            given = case.tables["puck"][n]
+            rim = {one: given[one] for one in _RIM if one in given}
+            lines[name] += "".join(f", {told}" for told in _entries(rim, units, "puck."))
+        lines["launch" if n == 0 else f"launch {n + 1}"] = _launch(piece.launch)
+    for what in ("floor", "wall"):
+        parts = case.tables.get(what, {})
+        for n, part in enumerate(parts if isinstance(parts, list) else [parts] if parts else []):
+            told = ", ".join(_entries(part, units, f"{what}."))
+            lines[what if n == 0 else f"{what} {n + 1}"] = told
+    lines["end"] = f"{answer.end} after {answer.end_time:.12g} s"
+    last = answer.last()
+    if not answer.names:
+        lines["place"] = f"({last['x']:.12g}, {last['y']:.12g}) m"
+    for n, name in enumerate(answer.names):
+        lines[f"stop {name}"] = (
+            f"({last['x'][n]:.12g}, {last['y'][n]:.12g}) m after {answer.end_time_of(n):.12g} s"
+        )
+    if answer.limit_epsilon is not None:
+        limit = answer.limit_epsilon
+        inverse = f"{1.0 / limit:.9g}" if limit > 0.0 else "inf"
+        lines["limit"] = f"v/(r w) -> {limit:.9g} as papers write it, r w/v -> {inverse} as here"
+    lines["error"] = (
+        f"<= {answer.time_bound:.1e} s, {answer.place_bound:.1e} m, {answer.speed_bound:.1e} m/s; "
+        f"Q = {answer.speed_scale:.6g} m/s, J = {answer.rate_scale:.6g} m/s^2"
+    )
+    return lines
+
+
+def _puck(puck: Puck) -> str:
+    """Its numbers; of pressure and gyration those that are not the usual ones."""
+    told = (
+        f"r = {_digits(puck.radius)} m, height {_digits(puck.height)} m (centre of mass at "
+        f"{_digits(0.5 * puck.height)} m), f = {_digits(puck.friction)}, "
+        f"g = {_digits(puck.gravity)} m/s^2, m = {_digits(puck.mass)} kg, delta = {puck.delta:.6g}"
+    )
+    usual = Puck(puck.radius)
+    if puck.pressure != usual.pressure:
+        told += f", pressure {puck.body.law.name}"
+    if puck.gyration != usual.gyration:
+        told += f", gyration {_digits(puck.gyration)} r"
+    return told
+
+
+def _launch(launch: Launch) -> str:
+    vx, vy = launch.velocity or (0.0, 0.0)
+    return (
+        f"v = {_pair(vx, vy)} m/s, w = {_digits(launch.spin)} rad/s at {_pair(*launch.position)} m"
+    )
+
+
+def _entries(part: Mapping[str, Any], units: Mapping[str, str], path: str) -> Iterator[str]:
+    """The entries of a table of a scene, as --set would take them, in SI units."""
+    for name, value in part.items():
+        if isinstance(value, dict):
+            yield from (f"{name}.{told}" for told in _entries(value, units, f"{path}{name}."))
+        else:
+            rows = isinstance(value, list)
+            told = f"[{', '.join(map(_digits, value))}]" if rows else _digits(value)
+            unit = units.get(path + name, "1")
+            yield f"{name} = {told}" + (f" {unit}" if unit != "1" else "")
+
+
+def _pair(x: float, y: float) -> str:
+    return f"({_digits(x)}, {_digits(y)})"
+
+
+def _digits(value: float) -> str:
+    """A number with all its digits, whole ones without a point."""
+    return repr(float(value)).removesuffix(".0")
