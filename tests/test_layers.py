@@ -69,6 +69,7 @@ DOORS = {
     "scipy": {
         "bulk.spreads",
         "chetaev",
+        "export.fit",
         "export.law_values",
         "fitting",
         "stopping",

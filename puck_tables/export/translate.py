@@ -61,9 +61,9 @@ class Braces(ABC):
         --------
         >>> from puck_tables.export.languages import LANGUAGES
         >>> tree = ast.parse("def f(x: float) -> float: return -x if x < 0.0 else x")
-        >>> print(LANGUAGES["js"].function(tree.body[0]))
+        >>> print(LANGUAGES["js"].function(tree.body[0]).expandtabs(2))
         function f(x) {
-                return x < 0.0 ? -x : x;
+          return x < 0.0 ? -x : x;
         }
         """
         text = ast.get_docstring(node)

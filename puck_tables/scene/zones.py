@@ -72,7 +72,7 @@ def ground_of(scene: Scene, normal: float) -> FloatArray:
     --------
     >>> from puck_tables import Floor, Puck, Strips
     >>> floor = Floor(strips=Strips((0.1,), (0.3, 0.1)))
-    >>> ground_of(Scene(Puck(0.04), floor), 2.0)[14:17].tolist()
+    >>> ground_of(Scene(Puck(0.04), floor), 2.0)[13:16].tolist()
     [0.1, 0.6, 0.2]
     """
     floor, puck = scene.floor, scene.puck
