@@ -87,7 +87,8 @@ def _fitted_to(
             raise AccuracyError(
                 f"states of such pucks cannot be exported at tol {tol:g}, for their limit ratio "
                 "lies next to 0, infinity or an edge of the load at some height: ask for a larger "
-                "tol, for stops and resultants alone, or for another radius of gyration"
+                "tol, for stops and resultants alone (--what stop,resultants), or for another "
+                "radius of gyration"
             ) from None
         of_heights = values.orbits.of_heights
         polynomials = height_polynomials(of_heights, len(of_heights)).T
