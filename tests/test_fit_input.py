@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import puck_tables as pt
+from puck_tables.fitting.estimate import estimate
 
 TIMES = np.arange(60) / 60.0
 PATH = pt.Puck(radius=0.04, height=0.02, friction=0.2).states((1.0, 0.2), 30.0, TIMES)
@@ -36,6 +37,9 @@ PUCK = pt.Puck(radius=0.04)
         ({"prior": {"friction": (0.2, 0.0)}}, "standard deviation"),
         ({"prior": {"friction": 0.2}}, "standard deviation"),
         ({"bounds": {"friction": (0.3, 0.2)}}, "ascend"),
+        ({"bounds": {"friction": (-1.0, -0.5)}}, "friction is greater than 0"),
+        ({"bounds": {"delta": (5.0, 9.0)}}, "delta is from 0 to 4"),
+        ({"bounds": {"decel": (-2.0, 0.0)}}, "decel is greater than 0 (m/s^2)"),
         ({"start": {"gyration": 0.7}}, "not free"),
         ({"noise": 3e-4}, "metres, radians"),
         ({"noise": (0.0, 1e-3)}, "greater than 0"),
@@ -109,6 +113,39 @@ def test_a_number_that_a_prior_frees_is_named():
 def test_a_number_on_its_bound_is_named():
     found = pt.fit(TRACK, PUCK, fixed={"delta": 0.2}, bounds={"friction": (0.3, 0.5)})
     assert any("friction lies on the end of its range, 0.3" in text for text in found.remarks)
+
+
+@pytest.mark.parametrize("bounds", [(3.0, 9.0), (1.0, 2.0)])
+def test_bounds_of_a_base_that_lifts_hold_the_start(bounds):
+    found = pt.fit(TRACK, PUCK, bounds={"delta": bounds})["delta"]
+    assert found.value == pytest.approx(bounds[0], abs=1e-3) and found.at_bound
+
+
+def test_a_puck_whose_base_lifts_is_found_within_bounds():
+    path = pt.Puck(radius=0.04, height=0.16, friction=0.2).states((1.0, 0.2), 30.0, TIMES)
+    place = np.stack([path.x, path.y], axis=1) + NOISE
+    found = pt.fit(pt.Track(TIMES, place, path.orientation), PUCK, bounds={"delta": (1.3, 3.0)})
+    assert found["delta"].value == pytest.approx(1.6, abs=4.5 * found["delta"].error)
+
+
+@pytest.mark.parametrize(
+    ("pressure", "bounds", "words"),
+    [
+        ("uniform", (3.95, 4.0), "under pressure uniform delta is from 0 to 3.9"),
+        ("hertz", (2.0, 3.0), "under pressure hertz delta is from 0 to 0.8"),
+    ],
+)
+def test_bounds_beyond_motions_that_are_known_are_refused(pressure, bounds, words):
+    with pytest.raises(pt.InputError, match=re.escape(words)):
+        pt.fit(TRACK, pt.Puck(radius=0.04, pressure=pressure), bounds={"delta": bounds})
+
+
+def test_a_start_beyond_the_range_is_put_inside():
+    found = pt.fit(TRACK, PUCK)
+    start = found.estimate.x.copy()
+    start[found.estimate.problem.names.index((-1, "delta"))] = -0.4
+    again = estimate(found.estimate.problem, start, found.noise_known)
+    np.testing.assert_allclose(again.x, found.estimate.x, rtol=1e-5, atol=1e-6)
 
 
 def test_intervals_of_few_frames_are_those_of_student():
