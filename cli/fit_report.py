@@ -9,6 +9,8 @@ if TYPE_CHECKING:
     from puck_tables.fitting.numbers import Number
     from puck_tables.fitting.outcome import Fit
 
+_DIGITS = 9  # after the point: more are written with a power of ten
+
 
 def report(found: Fit) -> str:
     """What was found, plainly first, then the numbers."""
@@ -122,10 +124,13 @@ def _rounded(number: Number) -> str:
     """Value ± error, to two digits of the error, and the unit."""
     unit = _unit(number)
     if number.at_bound:
-        return f"{number.value:.6g}{unit} (at its bound)"
+        return f"{number.shown}{unit} (at its bound)"
     if not (number.error > 0.0 and math.isfinite(number.error)):
         return f"{number.value:.6g}{unit}"
     digits = max(0, 1 - math.floor(math.log10(number.error)))
+    if digits > _DIGITS and number.value != 0.0:
+        power = max(0, digits + math.floor(math.log10(abs(number.value))))
+        return f"{number.value:.{power}e} +- {number.error:.1e}{unit}"
     return f"{number.value:.{digits}f} +- {number.error:.{digits}f}{unit}"
 
 

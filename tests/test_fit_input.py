@@ -10,6 +10,7 @@ import pytest
 
 import puck_tables as pt
 from puck_tables.fitting.estimate import estimate
+from puck_tables.fitting.numbers import Number
 
 TIMES = np.arange(60) / 60.0
 PATH = pt.Puck(radius=0.04, height=0.02, friction=0.2).states((1.0, 0.2), 30.0, TIMES)
@@ -102,6 +103,33 @@ def test_radii_of_no_puck_on_a_film_are_refused(radius):
 def test_a_friction_of_no_surface_is_remarked():
     found = pt.fit(pt.Track(TIMES, 1e3 * PLACE), PUCK, fixed={"delta": 0.2})
     assert any("the unit of the places" in text for text in found.remarks)
+
+
+def test_times_that_are_a_thousand_times_too_long_are_no_end_of_a_range():
+    found = pt.fit(pt.Track(1e3 * TIMES, PLACE, TRACK.angle), PUCK)
+    assert 0.0 < found["friction"].error < 1e-3 * found["friction"].value
+    (remark,) = found.remarks
+    assert "less than dry surfaces have" in remark and "the times" in remark
+
+
+def test_advice_is_within_reason():
+    straight = pt.Puck(radius=0.04, height=0.02, friction=0.2).states((1.0, 0.2), 0.0, TIMES)
+    place = np.stack([straight.x, straight.y], axis=1) + NOISE
+    for scale, said in ((1.0, True), (1e6, False)):
+        found = pt.fit(pt.Track(TIMES, scale * place, 0.0 * TIMES), PUCK)
+        assert any("more spin" in text for text in found.blind) is said
+
+
+def test_a_puck_that_wobbles_lies_still():
+    place = np.stack([1e-4 * np.sin(17.0 * TIMES), 0.0 * TIMES], axis=1)
+    with pytest.raises(pt.InputError, match="wobbly lies still"):
+        pt.fit(pt.Track(TIMES, place, name="wobbly"), PUCK)
+
+
+def test_a_tilt_that_is_computed_to_be_none_is_shown_as_0():
+    one = Number(3.5e-21, math.nan, 0.0, 0.01, "1", "found")
+    assert (one.shown, one._replace(value=-1e-30).shown) == ("0", "0")
+    assert one._replace(value=0.16).shown == "0.16"
 
 
 def test_a_number_that_a_prior_frees_is_named():

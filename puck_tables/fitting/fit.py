@@ -24,6 +24,7 @@ from puck_tables.fitting.given import (
     refuse_faster,
     refuse_opening,
     refuse_tipping,
+    refuse_wobbling,
     rows_given,
     speeds_given,
     walls_given,
@@ -186,6 +187,7 @@ def fit(
         refuse_opening(found)
     say(1, steps)
     certainty = _certainty(found, known)
+    refuse_wobbling(found, certainty)
     rivals = rivals_of(found, certainty)
     unsigned = mirrored(found, certainty)
     numbers, launches = numbers_of(found, certainty, rivals, unsigned)

@@ -15,6 +15,7 @@ from puck_tables.contact.speed_law import KINDS
 from puck_tables.errors import InputError
 from puck_tables.film.track import Track
 from puck_tables.fitting.asked import Asked
+from puck_tables.fitting.certainty import Certainty
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.impacts import turns
 from puck_tables.fitting.joining import Line
@@ -95,7 +96,31 @@ def _refuse_still(film: Seen) -> None:
     InputError
     """
     place, _ = noise_of([film])
-    spread = place if math.isfinite(place) else 0.0
+    _refuse_within(film, place if math.isfinite(place) else 0.0)
+
+
+def refuse_wobbling(found: Estimate, certainty: Certainty) -> None:
+    """Refuse a track of a puck that goes nowhere beyond what any slide leaves of its places.
+
+    Raises
+    ------
+    InputError
+    """
+    problem = found.problem
+    for n, film in enumerate(problem.films):
+        speeds = [(n, name) for name in ("launch_vx", "launch_vy")]
+        lost = [certainty.undetermined[k] for k, key in enumerate(problem.names) if key in speeds]
+        if lost and all(lost):
+            _refuse_within(film, problem.noise[0])
+
+
+def _refuse_within(film: Seen, spread: float) -> None:
+    """Refuse a track of a puck that does not leave its place by more than some spread (m).
+
+    Raises
+    ------
+    InputError
+    """
     if rests_from(film, spread) == 0 and not turns(film):
         raise InputError(
             f"the puck of {film.name} lies still, within {1e3 * spread:.3g} mm of noise: a fit "

@@ -36,7 +36,7 @@ _NO_PATTERN = 1e-3  # probability of residuals so patterned by chance
 _COMPUTED = 1e-7  # of the path: residuals of tracks that were computed, not seen
 _NOISY = 1.5  # times the noise of a smooth motion
 _LENGTHWAYS = 1.3
-_GRIP = 5.0  # friction coefficients of dry surfaces are smaller
+_GRIP, _SLICK = 5.0, 1e-4  # friction coefficients of dry surfaces are smaller, and larger
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -84,7 +84,7 @@ class Fit(Result):
     def __repr__(self) -> str:
         words = ", ".join(
             f"{name} not determined" if not number.determined
-            else f"{name} {number.value:.6g} at its bound" if number.at_bound
+            else f"{name} {number.shown} at its bound" if number.at_bound
             else f"{name} {number.value:.6g} +- {number.error:.2g}"
             for name, number in self.numbers.items() if number.how == "found"
         )  # fmt: skip
@@ -207,10 +207,11 @@ class Fit(Result):
                     "and intervals of the rest, may mislead"
                 )
         friction = self.numbers["friction"]
-        if friction.how != KNOWN and friction.low > _GRIP:
+        if friction.how != KNOWN and (friction.low > _GRIP or friction.high < _SLICK):
+            than = "more" if friction.low > _GRIP else "less"
             said.append(
-                f"A friction of {friction.value:.3g} is more than dry surfaces have: the unit of "
-                "the places, the scale or the frames a second may be wrong"
+                f"A friction of {friction.value:.3g} is {than} than dry surfaces have: the unit of "
+                "the places, or of the times, the scale or the frames a second may be wrong"
             )
         if self.jitter == 0.0 and self.noise[0] > 0.0:
             ratio = lengthways(self.estimate)

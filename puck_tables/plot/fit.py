@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from puck_tables.fitting.launched import path_of
+from puck_tables.fitting.numbers import Number
 from puck_tables.fitting.outcome import Fit
 from puck_tables.plot.style import BLUE, COLORS, GREY, LAUNCH, ORANGE, RED, canvas, titled
 
@@ -37,10 +38,7 @@ def draw(found: Fit) -> Figure:
             _draw_friction(figure.add_subplot(inner[0, len(shown)]), found)
         for n, name in enumerate(shown):
             _draw_profile(figure.add_subplot(inner[0, n]), found, name)
-    told = [
-        f"{name} = {_told(found.numbers[name].value, found.numbers[name].error)}"
-        for name in names[:3]
-    ]
+    told = [f"{name} = {_told(found.numbers[name])}" for name in names[:3]]
     titled(figure, "; ".join([*told, f"chi² per degree {found.chi2 / max(found.degrees, 1):.3g}"]))
     return figure
 
@@ -138,5 +136,7 @@ def _draw_profile(panel: Axes, found: Fit, name: str) -> None:
     panel.tick_params(axis="x", labelrotation=30)
 
 
-def _told(value: float, error: float) -> str:
-    return f"{value:.6g} " + ("at its bound" if math.isnan(error) else f"± {error:.2g}")
+def _told(number: Number) -> str:
+    if number.at_bound:
+        return f"{number.shown} at its bound"
+    return f"{number.value:.6g} ± {number.error:.2g}"
