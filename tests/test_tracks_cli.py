@@ -37,7 +37,7 @@ def test_it_says_what_was_read():
     for words in (
         "a.csv\n", "40 from 0 s to 1.95 s, 20 a second; the puck is seen in 39 (97.5 %)",
         "x from 0 m to 1.95 m, y from 0 m to 0.190125 m", "seen in 39 frames",
-        "1 frames in 1 stretches, the longest from 0.35 s to 0.35 s", "vary by", "places in cm",
+        "1 frame in 1 stretch, the longest from 0.35 s to 0.35 s", "vary by", "places in cm",
     ):  # fmt: skip
         assert words in result.stdout, words
 
@@ -111,7 +111,7 @@ def test_gaps_and_leaps_are_named():
     place = np.column_stack([time, np.zeros(40)])
     place[33] = [-1.0, -1.0]
     words = "\n".join(described(Track(time, place)))
-    assert "1 gaps in its times, the longest of 0.11 s after 0.19 s" in words
+    assert "1 gap in its times, the longest of 0.11 s after 0.19 s" in words
     assert "2 leaps" in words
     quiet = "\n".join(described(Track(np.arange(40) / 100.0, np.zeros((40, 2)))))
     assert "odd" not in quiet

@@ -40,7 +40,7 @@ from puck_tables.fitting.problem import Problem
 from puck_tables.fitting.residual_tests import drift, runs
 from puck_tables.fitting.rivals import mirrored, rivals_of
 from puck_tables.fitting.seen import Seen, noise_of
-from puck_tables.fitting.tied import Impact, impacts_apart, impacts_joined, tie
+from puck_tables.fitting.tied import Impact, impacts_apart, impacts_joined, not_met, tie
 from puck_tables.fitting.timing import Known
 from puck_tables.puck import Puck
 
@@ -100,7 +100,7 @@ def fit(
         pair_restitution and pair_friction of two pucks (and mass_ratio, if it is named in free).
         Where rims stop on what they meet, tangential restitution takes the place of friction.
     walls : lines ((x, y), (x, y)) in m, two points of each, where walls are known
-        Others are found.
+        Others are found.  With walls impacts are looked for, whatever ``impacts`` says.
     slip_speeds : m/s, from 0 to the fastest slip, 2 to 8 of them
         The friction coefficient is found at each (friction_0, friction_1, …); of two it is f₀ + f₁u
         with u the slip speed.  It is one number where they are left out.
@@ -231,6 +231,7 @@ def fit(
         held_out=predictions,
         impacts=hits,
         untied=untied,
+        not_met=not_met(hits, found.problem, lines) if impacts else (),
         constant_chi2=chi2_under(constant, found.problem.noise) if speeds else math.nan,
         estimate=found,
         certainty=certainty,

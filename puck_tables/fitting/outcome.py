@@ -53,7 +53,8 @@ class Fit(Result):
     those compared, best
     first; ``held_out``: how well frames that were held out are predicted;
     ``impacts``: :class:`Impact` of those looked for; ``untied``: why they do not join the slides,
-    empty where they do.  ``constant_chi2``: χ² of one friction coefficient for all slip speeds,
+    empty where they do; ``not_met``: a sentence for each wall given on which there is none.
+    ``constant_chi2``: χ² of one friction coefficient for all slip speeds,
     where one over them was found.
     """
 
@@ -75,6 +76,7 @@ class Fit(Result):
     held_out: HeldOut | None
     impacts: tuple[Impact, ...]
     untied: str
+    not_met: tuple[str, ...]
     constant_chi2: float
     estimate: Estimate = field(repr=False)
     certainty: Certainty = field(repr=False)
@@ -206,6 +208,7 @@ class Fit(Result):
                     f"best may be {way}. So it has no standard error, and its interval, and errors "
                     "and intervals of the rest, may mislead"
                 )
+        said += self.not_met
         friction = self.numbers["friction"]
         if friction.how != KNOWN and (friction.low > _GRIP or friction.high < _SLICK):
             than = "more" if friction.low > _GRIP else "less"
@@ -425,7 +428,7 @@ class Fit(Result):
             text = json.dumps(self.summary(), indent=1, allow_nan=False) + "\n"
             write_bytes(path, text.encode(), overwrite)
             return
-        ending_of(path, (".json", *FORMATS))
+        ending_of(path, FORMATS)
         super().save(path, overwrite)
 
 

@@ -79,9 +79,10 @@ def refuse_unknown(name: str, known: Mapping[str, Parameter], what: str) -> None
     InputError
     """
     if name not in known:
-        near = difflib.get_close_matches(str(name), known, 1, 0.3)
+        usable = [one for one in known if one not in NODES]
+        near = difflib.get_close_matches(str(name), usable, 1, 0.3)
         meant = f": did you mean {near[0]}?" if near else ""
-        raise InputError(f"{what} names '{name}', which is none of {', '.join(known)}{meant}")
+        raise InputError(f"{what} names '{name}', which is none of {', '.join(usable)}{meant}")
 
 
 def in_range(name: str, value: Any) -> float:
