@@ -112,10 +112,13 @@ def _plainly(found: Fit) -> str:
         )
     sentences += [*found.blind, *found.remarks]
     if found.complaints:
-        sentences += [f"{text}." for text in found.complaints]
+        sentences += [text if text.endswith("?") else f"{text}." for text in found.complaints]
+        angled = any(film.angle is not None for film in found.estimate.problem.films)
+        said = "Or the radius, the unit of the angles or the way they turn is not as said."
         sentences.append(
             "So this may be no freely sliding puck, or not all of its motion: look at --plot, and "
             "give --since and --until if a hand or a wall touches it."
+            + (f" {said}" if angled and not found.misread else "")
         )
     return "\n".join(sentences)
 

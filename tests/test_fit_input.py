@@ -143,12 +143,15 @@ def test_a_number_on_its_bound_is_named():
     assert any("friction lies on the end of its range, 0.3" in text for text in found.remarks)
 
 
-@pytest.mark.parametrize("bounds", [(3.0, 9.0), (1.0, 2.0)])
+@pytest.mark.parametrize(
+    "bounds", [pytest.param((3.0, 9.0), marks=pytest.mark.thorough), (1.0, 2.0)]
+)
 def test_bounds_of_a_base_that_lifts_hold_the_start(bounds):
     found = pt.fit(TRACK, PUCK, bounds={"delta": bounds})["delta"]
     assert found.value == pytest.approx(bounds[0], abs=1e-3) and found.at_bound
 
 
+@pytest.mark.thorough
 def test_a_puck_whose_base_lifts_is_found_within_bounds():
     path = pt.Puck(radius=0.04, height=0.16, friction=0.2).states((1.0, 0.2), 30.0, TIMES)
     place = np.stack([path.x, path.y], axis=1) + NOISE
@@ -225,3 +228,22 @@ def test_the_same_film_twice_is_refused(again):
 def test_what_is_no_track_is_refused(tracks):
     with pytest.raises(pt.InputError, match="tracks must be a Track or several"):
         pt.fit(tracks, pt.Puck(radius=0.04))
+
+
+@pytest.mark.parametrize(
+    ("radius", "angle", "words"),
+    [
+        (0.04, -1.0, "if angles, or y, grew the other way"),
+        (0.04, 180.0 / math.pi, "if angles were in degrees"),
+        (0.04, math.pi / 180.0, "if angles were in rad"),
+        (0.06, 1.0, "with a radius of 0.04 m: is 0.06 m right?"),
+        (0.04, 1.0, ""),
+    ],
+)
+def test_what_was_said_wrongly_is_found_out(radius, angle, words):
+    path = pt.Puck(radius=0.04, height=0.02, friction=0.2).states((1.5, 0.2), 60.0, TIMES)
+    place = np.stack([path.x, path.y], axis=1) + NOISE
+    track = pt.Track(TIMES, place, angle * (path.orientation + 3.0 * NOISE[:, 0]))
+    found = pt.fit(track, pt.Puck(radius=radius))
+    assert words in found.misread and bool(found.misread) is bool(words)
+    assert bool(found.complaints) is bool(words)

@@ -33,6 +33,7 @@ from puck_tables.fitting.held_out import HeldOut, predicted, split
 from puck_tables.fitting.impacts import Piece, cut
 from puck_tables.fitting.joining import Line
 from puck_tables.fitting.laws import LawScore, chi2_under, compare, variants_of
+from puck_tables.fitting.misread import misread
 from puck_tables.fitting.numbers import numbers_of, plausible_for
 from puck_tables.fitting.outcome import Fit
 from puck_tables.fitting.parameters import NODES
@@ -212,7 +213,7 @@ def fit(
     elif impacts:
         names = [film.name for film in uncut]
         hits = impacts_apart(found, pieces, certainty, names)
-    return Fit(
+    result = Fit(
         given=puck,
         numbers=numbers,
         launches=launches,
@@ -236,6 +237,9 @@ def fit(
         estimate=found,
         certainty=certainty,
     )
+    if result.complaints:
+        result = replace(result, misread=misread(slides, problem, known))
+    return result
 
 
 def _over_speeds(

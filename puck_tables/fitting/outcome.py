@@ -54,6 +54,7 @@ class Fit(Result):
     first; ``held_out``: how well frames that were held out are predicted;
     ``impacts``: :class:`Impact` of those looked for; ``untied``: why they do not join the slides,
     empty where they do; ``not_met``: a sentence for each wall given on which there is none.
+    ``misread``: what else the tracks or the radius may be, if that fits far better.
     ``constant_chi2``: χ² of one friction coefficient for all slip speeds,
     where one over them was found.
     """
@@ -80,6 +81,7 @@ class Fit(Result):
     constant_chi2: float
     estimate: Estimate = field(repr=False)
     certainty: Certainty = field(repr=False)
+    misread: str = ""
 
     picture: ClassVar[str] = "fit"
 
@@ -187,6 +189,8 @@ class Fit(Result):
             )
         if self.untied:
             found.append(self.untied)
+        if self.misread:
+            found.append(self.misread)
         if self.outliers > 0.2:
             found.append(f"{100.0 * self.outliers:.3g} % of the observations had to be left out")
         return tuple(found)
