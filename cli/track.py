@@ -18,7 +18,8 @@ from puck_tables.cli.track_options import read_all, track_options
     "--output",
     type=FILE,
     metavar="FILE",
-    help="Save all tracks in m, s and rad: .csv, .h5, .json, .jsonl or .parquet.",
+    help="Save all tracks in m, s and rad: .csv, .h5, .json, .jsonl (puck fit reads these) or "
+    ".parquet (for other programs).",
 )
 @output_options
 def track(

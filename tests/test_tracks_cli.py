@@ -68,7 +68,26 @@ def test_what_is_saved_is_read_back_bit_by_bit():
     ):
         assert after.name == f"two.csv: {before.name}"
         assert_array_equal(before.place, after.place)
-    assert puck("b.csv", *how, "-o", "two.h5").exit_code == 0
+
+
+@pytest.mark.parametrize("ending", ["h5", "json", "jsonl"])
+def test_every_format_that_is_saved_is_read_back(ending):
+    how = ("--fps", "10", "--unit", "cm")
+    said = {"unit": "m", "angle_unit": "rad"} if ending == "jsonl" else {}
+    for name, given in (("a.csv", ()), ("b.csv", how)):
+        assert puck(name, *given, "-o", f"saved.{ending}", "--overwrite").exit_code == 0
+        assert puck(name, *given, "-o", "saved.csv", "--overwrite").exit_code == 0
+        before, after = read_tracks("saved.csv"), read_tracks(f"saved.{ending}", **said)
+        for one, other in zip(before, after, strict=True):
+            assert other.name == one.name.replace(".csv", f".{ending}", 1)
+            assert_array_equal(one.time, other.time)
+            assert_array_equal(one.place, other.place)
+            assert (one.angle is None) is (other.angle is None)
+            if one.angle is not None:
+                assert_array_equal(one.angle, other.angle)
+    if ending == "jsonl":
+        assert "does not say the unit" in puck("saved.jsonl").stderr
+    assert "leave columns" in puck(f"saved.{ending}", "--columns", "t,x,y").stderr
 
 
 def test_the_picture_is_drawn():

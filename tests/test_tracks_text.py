@@ -269,7 +269,10 @@ def test_what_is_asked_wrongly_is_said(tmp_path: Path, how: dict, words: str):
     [
         (b"\x80\x04\x95abc", "a pickle"), (bytes(range(256)) * 20, "binary"),
         (b"\x00" * 100, "binary"), (b"\x1f\x8b\x08junk", "unpack"), (b"PAR1....", "Parquet"),
-        (b'{"x": 1}', "JSON"), (b"\x89PNG\r\n", "a picture"), (b"\0\0\0\x18ftypmp42", "a film"),
+        (b'{"x": 1}', "JSON"), (b'{"x": [', "JSON"),
+        (b'{"columns": {"time": {"values": [1]}, "x": {}, "y": {}}}', "JSON"),
+        (b'{"time": [], "x": 1, "y": 2}', "JSON"), (b'{"a": ' * 9999, "JSON"), (b"[1]", "JSON"),
+        (b"\x89PNG\r\n", "a picture"), (b"\0\0\0\x18ftypmp42", "a film"),
         (b"x" * 300_000, "no table"),
     ],
 )  # fmt: skip
