@@ -40,6 +40,7 @@ def track(
     puck track bare.txt --columns 't [ms],x [mm],y [mm],-'
     """  # noqa: D301 - click reads the backspace
     prepare_outputs(output, plot=plot, overwrite=overwrite, inputs=[*files, how["marks"]])
+    from puck_tables.film.pairs import marks_of_one
     from puck_tables.film.report import dataset, described
 
     tracks = read_all(files, how)
@@ -56,3 +57,5 @@ def track(
         told(plot)
     for one in tracks:
         click.echo(printable("\n".join(described(one))))
+    if said := marks_of_one(tracks):
+        click.echo(printable(f"{said}."))

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import puck_tables as pt
+from puck_tables.film.pairs import marks_of_one
 from puck_tables.fitting.estimate import estimate
 from puck_tables.fitting.numbers import Number
 
@@ -247,3 +248,15 @@ def test_what_was_said_wrongly_is_found_out(radius, angle, words):
     found = pt.fit(track, pt.Puck(radius=radius))
     assert words in found.misread and bool(found.misread) is bool(words)
     assert bool(found.complaints) is bool(words)
+
+
+def test_two_marks_on_one_puck_are_no_two_pucks():
+    turned = PATH.orientation
+    away = 0.015 * np.stack([np.cos(turned), np.sin(turned)], axis=1)
+    red, blue = (pt.Track(TIMES, PLACE + side * away, name=name)
+                 for side, name in ((1.0, "a.csv: red"), (-1.0, "a.csv: blue")))  # fmt: skip
+    with pytest.raises(pt.InputError, match=r"two marks on one puck.*--centre red,blue"):
+        pt.fit([red, blue], PUCK)
+    assert marks_of_one([red, blue]) and not marks_of_one([red, blue], 0.02)
+    apart = pt.Track(TIMES, PLACE[::-1], name="a.csv: blue")
+    assert not marks_of_one([red, apart])

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from puck_tables._core.real import real
+from puck_tables._core.real import instance, real
 from puck_tables.film.track import Track
 from puck_tables.fitting.asked import Asked
 from puck_tables.fitting.blindness import blind_spots
@@ -145,7 +145,8 @@ def fit(
     >>> round(found["friction"].value, 3), round(found["height"].value, 3)
     (0.15, 0.025)
     """
-    films = films_of(tracks, since, until, rows_given(rows))
+    instance("puck", puck, Puck)
+    films = films_of(tracks, since, until, rows_given(rows), puck.radius)
     lines = walls_given(walls)
     impacts = impacts or bool(lines)
     asked = Asked.of(

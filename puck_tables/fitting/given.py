@@ -13,6 +13,7 @@ import numpy as np
 from puck_tables._core.real import instance, positive, real
 from puck_tables.contact.speed_law import KINDS
 from puck_tables.errors import InputError
+from puck_tables.film.pairs import marks_of_one
 from puck_tables.film.track import Track
 from puck_tables.fitting.asked import Asked
 from puck_tables.fitting.certainty import Certainty
@@ -33,9 +34,11 @@ _TIPS = 4.0  # δ
 
 
 def films_of(
-    tracks: Any, since: float, until: float, rows: tuple[float, float] | None
+    tracks: Any, since: float, until: float, rows: tuple[float, float] | None, radius: float
 ) -> tuple[Seen, ...]:
     """The tracks, checked, with different names.
+
+    ``radius`` m: of the puck, two of which are never nearer than twice that.
 
     ``rows``: y in m of the first and the last line of the picture.
 
@@ -50,6 +53,8 @@ def films_of(
         raise InputError("there is no track to fit: give one or more")
     for track in listed:
         instance("tracks", track, Track)
+    if said := marks_of_one(listed, 2.0 * radius):
+        raise InputError(f"{said}: two pucks of radius {radius:g} m are {2.0 * radius:g} m apart")
     names = [track.name for track in listed]
     films = []
     for n, track in enumerate(listed):
