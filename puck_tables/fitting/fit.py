@@ -237,6 +237,7 @@ def fit(
         constant_chi2=chi2_under(constant, found.problem.noise) if speeds else math.nan,
         estimate=found,
         certainty=certainty,
+        uncut=uncut,
     )
     if result.complaints:
         result = replace(result, misread=misread(slides, problem, known))

@@ -21,6 +21,7 @@ from puck_tables.fitting.held_out import HeldOut
 from puck_tables.fitting.laws import LawScore
 from puck_tables.fitting.numbers import KNOWN, FoundLaunch, Number
 from puck_tables.fitting.residual_tests import lengthways
+from puck_tables.fitting.seen import Seen
 from puck_tables.fitting.tied import Impact
 from puck_tables.fitting.timing import Known
 from puck_tables.io.dataset import Dataset, Variable, variable
@@ -54,6 +55,7 @@ class Fit(Result):
     first; ``held_out``: how well frames that were held out are predicted;
     ``impacts``: :class:`Impact` of those looked for; ``untied``: why they do not join the slides,
     empty where they do; ``not_met``: a sentence for each wall given on which there is none.
+    ``uncut``: the tracks with frames that are no free motion.
     ``misread``: what else the tracks or the radius may be, if that fits far better.
     ``constant_chi2``: χ² of one friction coefficient for all slip speeds,
     where one over them was found.
@@ -81,6 +83,7 @@ class Fit(Result):
     constant_chi2: float
     estimate: Estimate = field(repr=False)
     certainty: Certainty = field(repr=False)
+    uncut: tuple[Seen, ...] = field(default=(), repr=False)
     misread: str = ""
 
     picture: ClassVar[str] = "fit"
