@@ -79,7 +79,8 @@ from puck_tables.errors import InputError
     "--wall",
     multiple=True,
     metavar="X,Y:X,Y",
-    help="A straight wall, by two points on it in m (with impacts); others are found.",
+    help="A straight wall, by two points on it in m: impacts are then looked for, as with "
+    "--impacts, and other walls are found.",
 )
 @click.option(
     "--jitter",
@@ -151,7 +152,7 @@ def fit(
     """  # noqa: D301 - click reads the backspace
     from puck_tables.io.formats import FORMATS, ending_of
 
-    is_json = output is not None and ending_of(output, (".json", *FORMATS)) == ".json"
+    is_json = output is not None and ending_of(output, FORMATS) == ".json"
     prepare_outputs(
         *(() if is_json else (output,)), others=(output,) if is_json else (), plot=plot,
         overwrite=overwrite, inputs=[*files, how["marks"], pressure],
@@ -167,7 +168,7 @@ def fit(
         radius=radius, pressure=pressure, **{n: v for n, v in given.items() if v is not None}
     )
     fixed = {n: _number(v, "--fix", n) for n, v in _named(fix, "--fix").items()}
-    wanted = None if free is None else [name.strip() for name in free.split(",")]
+    wanted = None if free is None else _names(free, "--free", "friction,delta")
     for name, value in (("friction", friction), ("height", height)):
         if value is not None:
             if wanted is not None and name in wanted:
@@ -193,7 +194,7 @@ def fit(
             slip_speeds=None if slip_speeds is None
             else [_number(one, "--slip-speeds", "u") for one in slip_speeds.split(",")],
             between=between,
-            laws=() if laws is None else [name.strip() for name in laws.split(",")],
+            laws=() if laws is None else _names(laws, "--laws", "uniform,hertz"),
             hold_out=_held(hold_out), progress=show,
         )  # fmt: skip
     if is_json and output is not None:
@@ -201,6 +202,19 @@ def fit(
         told(output)
     deliver(found, None if is_json else output, plot, overwrite)
     reported(found, explain, as_json, report)
+
+
+def _names(text: str, option: str, like: str) -> list[str]:
+    """Names with commas.
+
+    Raises
+    ------
+    InputError
+    """
+    names = [name.strip() for name in text.split(",")]
+    if not all(names):
+        raise InputError(f"{option} '{text}' must be names with commas, like {like}")
+    return names
 
 
 def _named(given: tuple[str, ...], option: str) -> dict[str, str]:
@@ -296,4 +310,4 @@ def _held(text: str | None) -> float | tuple[str, ...] | None:
     try:
         return float(text)
     except ValueError:
-        return tuple(name.strip() for name in text.split(","))
+        return tuple(_names(text, "--hold-out", "one.csv,two.csv"))

@@ -9,6 +9,8 @@ if TYPE_CHECKING:
     from puck_tables.fitting.numbers import Number
     from puck_tables.fitting.outcome import Fit
 
+_DIGITS = 9  # after the point: more are written with a power of ten
+
 
 def report(found: Fit) -> str:
     """What was found, plainly first, then the numbers."""
@@ -110,10 +112,13 @@ def _plainly(found: Fit) -> str:
         )
     sentences += [*found.blind, *found.remarks]
     if found.complaints:
-        sentences += [f"{text}." for text in found.complaints]
+        sentences += [text if text.endswith("?") else f"{text}." for text in found.complaints]
+        angled = any(film.angle is not None for film in found.estimate.problem.films)
+        said = "Or the radius, the unit of the angles or the way they turn is not as said."
         sentences.append(
             "So this may be no freely sliding puck, or not all of its motion: look at --plot, and "
             "give --since and --until if a hand or a wall touches it."
+            + (f" {said}" if angled and not found.misread else "")
         )
     return "\n".join(sentences)
 
@@ -122,10 +127,13 @@ def _rounded(number: Number) -> str:
     """Value ± error, to two digits of the error, and the unit."""
     unit = _unit(number)
     if number.at_bound:
-        return f"{number.value:.6g}{unit} (at its bound)"
+        return f"{number.shown}{unit} (at its bound)"
     if not (number.error > 0.0 and math.isfinite(number.error)):
         return f"{number.value:.6g}{unit}"
     digits = max(0, 1 - math.floor(math.log10(number.error)))
+    if digits > _DIGITS and number.value != 0.0:
+        power = max(0, digits + math.floor(math.log10(abs(number.value))))
+        return f"{number.value:.{power}e} +- {number.error:.1e}{unit}"
     return f"{number.value:.{digits}f} +- {number.error:.{digits}f}{unit}"
 
 

@@ -18,7 +18,8 @@ from puck_tables.cli.track_options import read_all, track_options
     "--output",
     type=FILE,
     metavar="FILE",
-    help="Save all tracks in m, s and rad: .csv, .h5, .json, .jsonl or .parquet.",
+    help="Save all tracks in m, s and rad: .csv, .h5, .json, .jsonl (puck fit reads these) or "
+    ".parquet (for other programs).",
 )
 @output_options
 def track(
@@ -39,6 +40,7 @@ def track(
     puck track bare.txt --columns 't [ms],x [mm],y [mm],-'
     """  # noqa: D301 - click reads the backspace
     prepare_outputs(output, plot=plot, overwrite=overwrite, inputs=[*files, how["marks"]])
+    from puck_tables.film.pairs import marks_of_one
     from puck_tables.film.report import dataset, described
 
     tracks = read_all(files, how)
@@ -55,3 +57,5 @@ def track(
         told(plot)
     for one in tracks:
         click.echo(printable("\n".join(described(one))))
+    if said := marks_of_one(tracks):
+        click.echo(printable(f"{said}."))

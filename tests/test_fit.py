@@ -14,6 +14,7 @@ from puck_tables.fitting.compact import compact
 from puck_tables.fitting.launched import Moving, path_of, path_with_slopes
 from puck_tables.fitting.natural import curve_of
 from puck_tables.fitting.problem import ANGLE, PLACE, PRIOR
+from puck_tables.plot.fit import draw
 
 RADIUS, DECEL, DELTA = 0.0381, 0.15 * film_judge.G, 0.2
 VELOCITY, SPIN = (1.9, 0.6), 60.0
@@ -278,3 +279,22 @@ def test_compact_rows_keep_all_squares_and_products(true):
         assert (other.T @ other) / np.outer(size, size) == pytest.approx(
             (one.T @ one) / np.outer(size, size), abs=1e-13
         )
+
+
+def test_pictures_name_tracks_and_show_what_is_cut_off(true):
+    one, two = (film(true, seed, name=f"film {seed}") for seed in (1, 2))
+    hand = one.place.copy()
+    hand[:12] = hand[12] - 0.05 * np.arange(12, 0, -1)[:, None]
+    figure = draw(pt.fit([pt.Track(one.time, hand, one.angle, "film 1"), two], KNOWN))
+    words = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
+    assert {"film 1", "film 2", "cut off"} <= set(words)
+    curves = [line for line in figure.axes[3].lines if len(line.get_xdata()) > 50]
+    assert curves and np.all(np.diff(curves[0].get_ydata(), 2) > -1.0)
+
+
+@pytest.mark.thorough
+def test_the_picture_of_friction_over_slip_speed_shows_the_tilt(true):
+    figure = draw(pt.fit(film(true, 1), KNOWN, slip_speeds=(0.0, 4.8)))
+    labels = [axes.get_xlabel() for axes in figure.axes]
+    assert "delta" in labels and "slip speed / m/s" in labels
+    assert "different scale" not in figure.axes[0].get_title()

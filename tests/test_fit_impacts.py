@@ -50,6 +50,15 @@ def test_restitution_and_rim_friction_follow_from_an_impact():
     assert found.summary()["impacts"][0]["restitution"]["value"] == impact.restitution.value
 
 
+def test_walls_that_are_never_met_are_named():
+    wall = ((5.0, 0.0), (5.0, 1.0))
+    found = pt.fit(film(bank(0.3347), 1), KNOWN, walls=[wall])
+    assert len(found.impacts) == 1
+    assert [text for text in found.remarks if "(5, 0) and (5, 1)" in text]
+    free = film_judge.path((1.9, 0.6), 60.0, DECEL, DELTA, RADIUS, _LONG)
+    assert "No impact was found" in pt.fit(film(free, 3), KNOWN, walls=[wall]).remarks[0]
+
+
 def test_an_impact_not_asked_for_is_noticed():
     whole = pt.fit(film(bank(0.6), 2), KNOWN, noise=NOISE)
     assert whole.complaints or sum(whole.left_out[0][1:]) > 50

@@ -9,6 +9,9 @@ import numpy as np
 import pytest
 
 import puck_tables as pt
+from puck_tables.film.pairs import marks_of_one
+from puck_tables.fitting.estimate import estimate
+from puck_tables.fitting.numbers import Number
 
 TIMES = np.arange(60) / 60.0
 PATH = pt.Puck(radius=0.04, height=0.02, friction=0.2).states((1.0, 0.2), 30.0, TIMES)
@@ -36,6 +39,9 @@ PUCK = pt.Puck(radius=0.04)
         ({"prior": {"friction": (0.2, 0.0)}}, "standard deviation"),
         ({"prior": {"friction": 0.2}}, "standard deviation"),
         ({"bounds": {"friction": (0.3, 0.2)}}, "ascend"),
+        ({"bounds": {"friction": (-1.0, -0.5)}}, "friction is greater than 0"),
+        ({"bounds": {"delta": (5.0, 9.0)}}, "delta is from 0 to 4"),
+        ({"bounds": {"decel": (-2.0, 0.0)}}, "decel is greater than 0 (m/s^2)"),
         ({"start": {"gyration": 0.7}}, "not free"),
         ({"noise": 3e-4}, "metres, radians"),
         ({"noise": (0.0, 1e-3)}, "greater than 0"),
@@ -100,6 +106,33 @@ def test_a_friction_of_no_surface_is_remarked():
     assert any("the unit of the places" in text for text in found.remarks)
 
 
+def test_times_that_are_a_thousand_times_too_long_are_no_end_of_a_range():
+    found = pt.fit(pt.Track(1e3 * TIMES, PLACE, TRACK.angle), PUCK)
+    assert 0.0 < found["friction"].error < 1e-3 * found["friction"].value
+    (remark,) = found.remarks
+    assert "less than dry surfaces have" in remark and "the times" in remark
+
+
+def test_advice_is_within_reason():
+    straight = pt.Puck(radius=0.04, height=0.02, friction=0.2).states((1.0, 0.2), 0.0, TIMES)
+    place = np.stack([straight.x, straight.y], axis=1) + NOISE
+    for scale, said in ((1.0, True), (1e6, False)):
+        found = pt.fit(pt.Track(TIMES, scale * place, 0.0 * TIMES), PUCK)
+        assert any("more spin" in text for text in found.blind) is said
+
+
+def test_a_puck_that_wobbles_lies_still():
+    place = np.stack([1e-4 * np.sin(17.0 * TIMES), 0.0 * TIMES], axis=1)
+    with pytest.raises(pt.InputError, match="wobbly lies still"):
+        pt.fit(pt.Track(TIMES, place, name="wobbly"), PUCK)
+
+
+def test_a_tilt_that_is_computed_to_be_none_is_shown_as_0():
+    one = Number(3.5e-21, math.nan, 0.0, 0.01, "1", "found")
+    assert (one.shown, one._replace(value=-1e-30).shown) == ("0", "0")
+    assert one._replace(value=0.16).shown == "0.16"
+
+
 def test_a_number_that_a_prior_frees_is_named():
     found = pt.fit(TRACK, PUCK, prior={"radius": (0.04, 1e-4)})
     assert "radius is found, too" in found.remarks[0]
@@ -109,6 +142,42 @@ def test_a_number_that_a_prior_frees_is_named():
 def test_a_number_on_its_bound_is_named():
     found = pt.fit(TRACK, PUCK, fixed={"delta": 0.2}, bounds={"friction": (0.3, 0.5)})
     assert any("friction lies on the end of its range, 0.3" in text for text in found.remarks)
+
+
+@pytest.mark.parametrize(
+    "bounds", [pytest.param((3.0, 9.0), marks=pytest.mark.thorough), (1.0, 2.0)]
+)
+def test_bounds_of_a_base_that_lifts_hold_the_start(bounds):
+    found = pt.fit(TRACK, PUCK, bounds={"delta": bounds})["delta"]
+    assert found.value == pytest.approx(bounds[0], abs=1e-3) and found.at_bound
+
+
+@pytest.mark.thorough
+def test_a_puck_whose_base_lifts_is_found_within_bounds():
+    path = pt.Puck(radius=0.04, height=0.16, friction=0.2).states((1.0, 0.2), 30.0, TIMES)
+    place = np.stack([path.x, path.y], axis=1) + NOISE
+    found = pt.fit(pt.Track(TIMES, place, path.orientation), PUCK, bounds={"delta": (1.3, 3.0)})
+    assert found["delta"].value == pytest.approx(1.6, abs=4.5 * found["delta"].error)
+
+
+@pytest.mark.parametrize(
+    ("pressure", "bounds", "words"),
+    [
+        ("uniform", (3.95, 4.0), "under pressure uniform delta is from 0 to 3.9"),
+        ("hertz", (2.0, 3.0), "under pressure hertz delta is from 0 to 0.8"),
+    ],
+)
+def test_bounds_beyond_motions_that_are_known_are_refused(pressure, bounds, words):
+    with pytest.raises(pt.InputError, match=re.escape(words)):
+        pt.fit(TRACK, pt.Puck(radius=0.04, pressure=pressure), bounds={"delta": bounds})
+
+
+def test_a_start_beyond_the_range_is_put_inside():
+    found = pt.fit(TRACK, PUCK)
+    start = found.estimate.x.copy()
+    start[found.estimate.problem.names.index((-1, "delta"))] = -0.4
+    again = estimate(found.estimate.problem, start, found.noise_known)
+    np.testing.assert_allclose(again.x, found.estimate.x, rtol=1e-5, atol=1e-6)
 
 
 def test_intervals_of_few_frames_are_those_of_student():
@@ -160,3 +229,34 @@ def test_the_same_film_twice_is_refused(again):
 def test_what_is_no_track_is_refused(tracks):
     with pytest.raises(pt.InputError, match="tracks must be a Track or several"):
         pt.fit(tracks, pt.Puck(radius=0.04))
+
+
+@pytest.mark.parametrize(
+    ("radius", "angle", "words"),
+    [
+        (0.04, -1.0, "if angles, or y, grew the other way"),
+        (0.04, 180.0 / math.pi, "if angles were in degrees"),
+        (0.04, math.pi / 180.0, "if angles were in rad"),
+        (0.06, 1.0, "with a radius of 0.04 m: is 0.06 m right?"),
+        (0.04, 1.0, ""),
+    ],
+)
+def test_what_was_said_wrongly_is_found_out(radius, angle, words):
+    path = pt.Puck(radius=0.04, height=0.02, friction=0.2).states((1.5, 0.2), 60.0, TIMES)
+    place = np.stack([path.x, path.y], axis=1) + NOISE
+    track = pt.Track(TIMES, place, angle * (path.orientation + 3.0 * NOISE[:, 0]))
+    found = pt.fit(track, pt.Puck(radius=radius))
+    assert words in found.misread and bool(found.misread) is bool(words)
+    assert bool(found.complaints) is bool(words)
+
+
+def test_two_marks_on_one_puck_are_no_two_pucks():
+    turned = PATH.orientation
+    away = 0.015 * np.stack([np.cos(turned), np.sin(turned)], axis=1)
+    red, blue = (pt.Track(TIMES, PLACE + side * away, name=name)
+                 for side, name in ((1.0, "a.csv: red"), (-1.0, "a.csv: blue")))  # fmt: skip
+    with pytest.raises(pt.InputError, match=r"two marks on one puck.*--centre red,blue"):
+        pt.fit([red, blue], PUCK)
+    assert marks_of_one([red, blue]) and not marks_of_one([red, blue], 0.02)
+    apart = pt.Track(TIMES, PLACE[::-1], name="a.csv: blue")
+    assert not marks_of_one([red, apart])

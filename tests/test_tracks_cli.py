@@ -37,7 +37,7 @@ def test_it_says_what_was_read():
     for words in (
         "a.csv\n", "40 from 0 s to 1.95 s, 20 a second; the puck is seen in 39 (97.5 %)",
         "x from 0 m to 1.95 m, y from 0 m to 0.190125 m", "seen in 39 frames",
-        "1 frames in 1 stretches, the longest from 0.35 s to 0.35 s", "vary by", "places in cm",
+        "1 frame in 1 stretch, the longest from 0.35 s to 0.35 s", "vary by", "places in cm",
     ):  # fmt: skip
         assert words in result.stdout, words
 
@@ -68,7 +68,26 @@ def test_what_is_saved_is_read_back_bit_by_bit():
     ):
         assert after.name == f"two.csv: {before.name}"
         assert_array_equal(before.place, after.place)
-    assert puck("b.csv", *how, "-o", "two.h5").exit_code == 0
+
+
+@pytest.mark.parametrize("ending", ["h5", "json", "jsonl"])
+def test_every_format_that_is_saved_is_read_back(ending):
+    how = ("--fps", "10", "--unit", "cm")
+    said = {"unit": "m", "angle_unit": "rad"} if ending == "jsonl" else {}
+    for name, given in (("a.csv", ()), ("b.csv", how)):
+        assert puck(name, *given, "-o", f"saved.{ending}", "--overwrite").exit_code == 0
+        assert puck(name, *given, "-o", "saved.csv", "--overwrite").exit_code == 0
+        before, after = read_tracks("saved.csv"), read_tracks(f"saved.{ending}", **said)
+        for one, other in zip(before, after, strict=True):
+            assert other.name == one.name.replace(".csv", f".{ending}", 1)
+            assert_array_equal(one.time, other.time)
+            assert_array_equal(one.place, other.place)
+            assert (one.angle is None) is (other.angle is None)
+            if one.angle is not None:
+                assert_array_equal(one.angle, other.angle)
+    if ending == "jsonl":
+        assert "does not say the unit" in puck("saved.jsonl").stderr
+    assert "leave columns" in puck(f"saved.{ending}", "--columns", "t,x,y").stderr
 
 
 def test_the_picture_is_drawn():
@@ -111,7 +130,7 @@ def test_gaps_and_leaps_are_named():
     place = np.column_stack([time, np.zeros(40)])
     place[33] = [-1.0, -1.0]
     words = "\n".join(described(Track(time, place)))
-    assert "1 gaps in its times, the longest of 0.11 s after 0.19 s" in words
+    assert "1 gap in its times, the longest of 0.11 s after 0.19 s" in words
     assert "2 leaps" in words
     quiet = "\n".join(described(Track(np.arange(40) / 100.0, np.zeros((40, 2)))))
     assert "odd" not in quiet

@@ -11,7 +11,9 @@ from lookalikes import deeplabcut, sleap
 from test_tracks_text import ONE, TRACKMATE, TWO
 from test_tracks_tools import GOOD, LABELS, POSES, archive, pose_csv
 
-from puck_tables import InputError, read_tracks
+from puck_tables import InputError, Track, read_tracks
+from puck_tables.film.report import dataset
+from puck_tables.io import hdf5, json, jsonl
 
 BITS = [
     b",", b";", b"\t", b" ", b"\n", b"\r", b'"', b"x", b"t", b"0", b"-", b".", b"nan", b"1e999",
@@ -26,6 +28,9 @@ def seeds(folder: Path) -> list[tuple[bytes, dict]]:
     found += [(TRACKMATE.encode(), {"scale": 1}), (pose_csv(LABELS).encode(), pose)]
     found += [(GOOD.encode(), {}), (archive({"a.trk": GOOD}), {})]
     found.append((deeplabcut(folder / "d.h5", LABELS, POSES).read_bytes(), pose))
+    saved = dataset([Track([0.0, 0.1, 0.2], [[1.0, 2.0]] * 3, [0.1] * 3, "a")] * 2)
+    found += [(encode(saved), {}) for encode in (json.encode, hdf5.encode)]
+    found.append((jsonl.encode(saved), {"unit": "m", "angle_unit": "rad"}))
     places = np.arange(40.0).reshape(2, 2, 2, 5)
     found.append((sleap(folder / "s.h5", places, ["hub", "rim"], "ab").read_bytes(), pose))
     return found

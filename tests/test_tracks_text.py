@@ -213,7 +213,7 @@ BAD = {
     't,x,y\n0,"1,000.5",2\n1,"1,001.5",3\n': "'1,000.5' has a thousands separator",
     "t;x;y\n0;1'000;2\n1;1'001;3\n": "\"1'000\" has a thousands separator",
     "t\tx\ty\n0.5\t1,000\t2\n1.5\t1,001\t3\n": "no thousands",
-    "t,x,y\n0,1,2\n,2,3\n": "has no time",
+    "t,x,y\n0,1,2\n,2,3\n": "has no time: give it one, or leave its place empty",
     "t,x,y\n0,1,2\n8.3,2,3\n16.7,3,3\n": "unit of its times",
     "t,x\n0,1\n.1,2\n": "x without its y",
     "a,b,c\n0,1,3\n.1,2,4\n": "no columns x and y .*they are a, b, c",
@@ -269,7 +269,10 @@ def test_what_is_asked_wrongly_is_said(tmp_path: Path, how: dict, words: str):
     [
         (b"\x80\x04\x95abc", "a pickle"), (bytes(range(256)) * 20, "binary"),
         (b"\x00" * 100, "binary"), (b"\x1f\x8b\x08junk", "unpack"), (b"PAR1....", "Parquet"),
-        (b'{"x": 1}', "JSON"), (b"\x89PNG\r\n", "a picture"), (b"\0\0\0\x18ftypmp42", "a film"),
+        (b'{"x": 1}', "JSON"), (b'{"x": [', "JSON"),
+        (b'{"columns": {"time": {"values": [1]}, "x": {}, "y": {}}}', "JSON"),
+        (b'{"time": [], "x": 1, "y": 2}', "JSON"), (b'{"a": ' * 9999, "JSON"), (b"[1]", "JSON"),
+        (b"\x89PNG\r\n", "a picture"), (b"\0\0\0\x18ftypmp42", "a film"),
         (b"x" * 300_000, "no table"),
     ],
 )  # fmt: skip
@@ -279,7 +282,7 @@ def test_files_that_are_no_tables_are_named(tmp_path: Path, content: bytes, word
 
 
 def test_what_cannot_be_opened_is_said(tmp_path: Path):
-    for path, words in ((tmp_path, "regular file"), (tmp_path / "no.csv", "No such file")):
+    for path, words in ((tmp_path, "name a file in it"), (tmp_path / "no.csv", "No such file")):
         with pytest.raises(InputError, match=words):
             read_tracks(path)
     with pytest.raises(InputError, match="path must be"):

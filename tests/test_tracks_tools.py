@@ -200,7 +200,7 @@ def test_poses_of_deeplabcut(tmp_path: Path, kind: str):
     assert track.seen.tolist() == [True, False, True]
     assert_allclose(track.place[track.seen], [[0.01, -0.02]] * 2)
     assert_allclose(track.angle[track.seen], [0.0, -0.5 * np.pi], atol=1e-15)
-    assert any("1 frames less likely" in note for note in track.notes)
+    assert any("1 frame less likely" in note for note in track.notes)
     (all_seen,) = read_tracks(file, **PIXELS, centre="hub", likelihood=0.2)
     assert all_seen.seen.all()
     with pytest.raises(InputError, match="marks hub, rim"):

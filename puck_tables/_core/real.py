@@ -163,7 +163,7 @@ def positive(name: str, value: float, unit: str) -> float:
     """
     number = real(name, value, unit)
     if not number > 0.0:
-        raise InputError(f"{name} must be greater than 0 ({unit}), got {number:g}")
+        raise InputError(f"{name} must be greater than 0{bracketed(unit)}, got {number:g}")
     return number
 
 
@@ -185,10 +185,21 @@ def real(name: str, value: float, unit: str) -> float:
     try:
         number = float(value)
     except (TypeError, ValueError, OverflowError):
-        raise InputError(f"{name} must be a number ({unit}), got {value!r:.60}") from None
+        raise InputError(f"{name} must be a number{bracketed(unit)}, got {value!r:.60}") from None
     if not math.isfinite(number):
-        raise InputError(f"{name} must be a finite number ({unit}), got {number}")
+        raise InputError(f"{name} must be a finite number{bracketed(unit)}, got {number}")
     return number
+
+
+def bracketed(unit: str) -> str:
+    """A unit for a message; nothing of a pure number.
+
+    Examples
+    --------
+    >>> bracketed("m"), bracketed("1")
+    (' (m)', '')
+    """
+    return "" if unit == "1" else f" ({unit})"
 
 
 def velocity_array(velocity: npt.ArrayLike) -> npt.NDArray[np.float64]:

@@ -34,7 +34,7 @@ def read_whole(path: str | Path, largest: int) -> bytes:
     >>> read_whole("/dev/zero", 100)
     Traceback (most recent call last):
     ...
-    OSError: [Errno 22] it is not a regular file: '/dev/zero'
+    OSError: [Errno 22] it is not a regular file, save what it gives as one: '/dev/zero'
     """
     with opened(path, largest) as file:
         return file.read(os.fstat(file.fileno()).st_size)  # not more: it is allocated before
@@ -58,23 +58,29 @@ def opened(path: str | Path, largest: int) -> BinaryIO:
     >>> opened("/dev/zero", 100)
     Traceback (most recent call last):
     ...
-    OSError: [Errno 22] it is not a regular file: '/dev/zero'
+    OSError: [Errno 22] it is not a regular file, save what it gives as one: '/dev/zero'
     """
     # not blocking: to open a pipe would wait for who writes to it
     flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
     if Path(path).exists() and not Path(path).is_file():
-        raise OSError(errno.EINVAL, "it is not a regular file", str(path))
+        raise _irregular(path)
     file = open(os.open(path, flags), "rb")  # noqa: SIM115 - for the caller to close
     try:
         found = os.fstat(file.fileno())
         if not stat.S_ISREG(found.st_mode):
-            raise OSError(errno.EINVAL, "it is not a regular file", str(path))
+            raise _irregular(path)
         if found.st_size > largest:
             raise OSError(errno.EFBIG, f"it is too large, {largest} bytes are the most", str(path))
     except OSError:
         file.close()
         raise
     return file
+
+
+def _irregular(path: str | Path) -> OSError:
+    """What is no file to read from, and what to do."""
+    do = "it is a folder: name a file in it" if Path(path).is_dir() else "save what it gives as one"
+    return OSError(errno.EINVAL, f"it is not a regular file, {do}", str(path))
 
 
 def read_numbers(given: str | Sequence[Sequence[float]], most: int) -> FloatArray:

@@ -1,4 +1,4 @@
-"""Films in HDF5: tables that DeepLabCut wrote with pandas, and SLEAP's analysis files.
+"""Films in HDF5: tables that DeepLabCut wrote with pandas, SLEAP's analysis files, and our own.
 
 pandas keeps the names of columns as pickles.  They are never run: the few signs of which a list of
 names consists are read one by one (:mod:`pickletools` only takes a pickle apart), and all others
@@ -23,6 +23,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
 from puck_tables.film.film import Body, Film
+from puck_tables.film.saved import Column, film_of_columns
 
 _LARGEST = 1 << 27  # numbers in a file, a gigabyte
 _LIKELY = 0.6
@@ -35,7 +36,7 @@ def film_of_hdf5(path: str | Path) -> Film:
     Raises
     ------
     InputError
-        If it is none of DeepLabCut or SLEAP, damaged, or too large.
+        If it is none of DeepLabCut, SLEAP or this program, damaged, or too large.
 
     Examples
     --------
@@ -55,6 +56,8 @@ def film_of_hdf5(path: str | Path) -> Film:
             for group in file.values():
                 if isinstance(group, h5py.Group) and isinstance(group.get("table"), h5py.Dataset):
                     return _deeplabcut(path, group["table"])
+            if isinstance(file.get("time"), h5py.Dataset) and "source" in file.attrs:
+                return film_of_columns(path, _columns(path, file))
             if "metadata" in file and "points" in file:
                 raise InputError(
                     f"{path} is a project of SLEAP: export it as Analysis HDF5, or CSV"
@@ -67,6 +70,18 @@ def film_of_hdf5(path: str | Path) -> Film:
         f"{path} is HDF5, but none of DeepLabCut (a pandas table) or SLEAP (Analysis HDF5): save "
         "the table as CSV"
     )
+
+
+def _columns(path: str | Path, file: Any) -> dict[str, Column]:
+    """The columns of a file that this program saved."""
+    columns = {}
+    for name, one in file.items():
+        if getattr(one, "ndim", 0) == 1 and "units" in one.attrs:
+            if one.size > _LARGEST:
+                raise InputError(f"{path}: its column {name} holds more than {_LARGEST} numbers")
+            values = one.asstr()[()] if one.dtype.kind == "O" else one[()]
+            columns[name] = Column(values, str(one.attrs["units"]))
+    return columns
 
 
 def _deeplabcut(path: str | Path, table: Any) -> Film:

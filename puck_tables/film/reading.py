@@ -45,8 +45,9 @@ def read_tracks(
 
     Read are tables in text files (CSV and the like: any header, separator, encoding and decimal
     mark), the files and exports of Tracker (.trk, .trz), the tables of trackpy, DeepLabCut and
-    SLEAP, and the HDF5 files of the latter two.  What a file does not say is asked for, never
-    guessed; what was found and done stands in the ``notes`` of a track.
+    SLEAP, the HDF5 files of the latter two, and what ``puck track`` saves (HDF5, JSON, JSON
+    lines).  What a file does not say is asked for, never guessed; what was found and done stands
+    in the ``notes`` of a track.
 
     Parameters
     ----------
@@ -216,5 +217,9 @@ def _own_format(path: str | Path, head: bytes) -> Film | None:
         from puck_tables.film.tracker import film_of_xml
 
         return film_of_xml(path)
+    if text.startswith("{"):
+        from puck_tables.film.saved import film_of_json
+
+        return film_of_json(path)
     refuse_no_text(path, head)
     return None

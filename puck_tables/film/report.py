@@ -36,12 +36,23 @@ def described(track: Track) -> list[str]:
         lines.append("  angle   none")
     else:
         seen = int(np.isfinite(track.angle).sum())
-        lines.append(f"  angle   seen in {seen} frames")
+        lines.append(f"  angle   seen in {_count(seen, 'frame')}")
     lines += [f"  hidden  {words}" for words in _hidden(track)]
     lines += [f"  odd     {words}" for words in [*_steps(track), *_leaps(track)]]
     if track.notes:
         lines.append(f"  read    {'; '.join(track.notes)}")
     return lines
+
+
+def _count(count: int, what: str, many: str = "s") -> str:
+    """So many, in words.
+
+    Examples
+    --------
+    >>> _count(1, "gap"), _count(2, "stretch", "es")
+    ('1 gap', '2 stretches')
+    """
+    return f"{count} {what}{'' if count == 1 else many}"
 
 
 def _frames(track: Track) -> str:
@@ -64,7 +75,7 @@ def _hidden(track: Track) -> list[str]:
     runs = np.split(lost, np.flatnonzero(np.diff(lost) > 1) + 1)
     longest = max(runs, key=len)
     return [
-        f"{lost.size} frames in {len(runs)} stretches, the longest from "
+        f"{_count(lost.size, 'frame')} in {_count(len(runs), 'stretch', 'es')}, the longest from "
         f"{track.time[longest[0]]:.6g} s to {track.time[longest[-1]]:.6g} s"
     ]
 
@@ -78,7 +89,7 @@ def _steps(track: Track) -> list[str]:
     if wide.size:
         at = wide[np.argmax(steps[wide])]
         found.append(
-            f"{wide.size} gaps in its times, the longest of {steps[at]:.4g} s after "
+            f"{_count(wide.size, 'gap')} in its times, the longest of {steps[at]:.4g} s after "
             f"{track.time[at]:.6g} s"
         )
     even = steps[steps <= _GAP * usual]
@@ -104,8 +115,8 @@ def _leaps(track: Track) -> list[str]:
     at = leaps[np.argmax(speed[leaps])]
     apart = float(np.hypot(*(place[at + 1] - place[at])))
     return [
-        f"{leaps.size} leaps, the farthest of {apart:.4g} m before {time[at + 1]:.6g} s: was "
-        "something else taken for the puck?"
+        f"{_count(leaps.size, 'leap')}, the farthest of {apart:.4g} m before "
+        f"{time[at + 1]:.6g} s: was something else taken for the puck?"
     ]
 
 

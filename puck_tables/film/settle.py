@@ -115,7 +115,10 @@ def settled(path: str | Path, film: Film, how: How) -> tuple[Track, ...]:
             place, angle, hidden_notes = _seen(path, film, body, centre, how, scale)
             rows = np.flatnonzero(~np.isnan(time))
             if (lost := np.flatnonzero(np.isnan(time) & np.isfinite(place).all(axis=1))).size:
-                raise InputError(f"{path}: row {lost[0] + 1} of its numbers has no time")
+                raise InputError(
+                    f"{path}: row {lost[0] + 1} of its numbers has no time: give it one, or leave "
+                    "its place empty, too"
+                )
             try:
                 track = Track(
                     time[rows], place[rows], None if angle is None else angle[rows], name,
@@ -305,7 +308,10 @@ def _seen(
             )
         faint = shown & ~np.all([one >= bound for one in likely], axis=0)
         shown &= ~faint
-        notes.append(f"{np.count_nonzero(faint)} frames less likely than {bound:g} left out")
+        count = np.count_nonzero(faint)
+        notes.append(
+            f"{count} frame{'' if count == 1 else 's'} less likely than {bound:g} left out"
+        )
     points = {mark: np.where(shown[:, None], body.marks[mark], np.nan) for mark in used}
     places = {mark: scale.place(point) for mark, point in points.items()}
     place: FloatArray = np.mean([places[mark] for mark in centre], axis=0)

@@ -72,7 +72,8 @@ def film_of_table(path: str | Path, head: bytes, columns: str | None) -> Film:
             layout.columns[n] = (body, one._replace(unit="s"))
     film = Film(layout.kind, [], jointed=layout.jointed, likely=layout.likely)
     if unused := [n for n in range(look.width) if n not in wanted and layout.kind == "table"]:
-        film.notes.append(f"column {', '.join(name_of(look, n) for n in unused[:8])} left out")
+        names = ", ".join(name_of(look, n) for n in unused[:8])
+        film.notes.append(f"column{'' if len(unused) == 1 else 's'} {names} left out")
     if any(one.role == "step" for _, one in layout.columns):
         film.notes.append("times summed from steps, each since the row before")
     film.unit, film.angle_unit, film.timed = _units(path, layout)

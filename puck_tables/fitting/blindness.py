@@ -19,6 +19,7 @@ _MEMBER = 0.2
 _TOLD = 0.1  # of what is plausible: an error that says something
 _BETTER = 0.2  # times the error of the film that there is
 _SPINNING = 1.0  # rω/v of a launch with more spin
+_FASTEST = 1e3  # m/s, of a rim: more spin than that is no advice
 _LONGER = 2.5  # times as many frames: surely to rest
 _MARKS = 10.0  # mrad, of angle marks that are not there yet
 _ALIKE = "the tracks look alike whatever it is"
@@ -143,9 +144,10 @@ def _other_films(found: Estimate) -> list[tuple[str, Problem, FloatArray]]:
     speed = np.hypot(faster[:, 2], faster[:, 3])
     spin = np.maximum(np.abs(faster[:, 4]), _SPINNING * speed / radius)
     faster[:, 4] = np.copysign(spin, faster[:, 4])
-    if not np.allclose(faster, launches) and "launch_spin" not in problem.asked.fixed:
+    least = float(spin.max())
+    asks = not np.allclose(faster, launches) and "launch_spin" not in problem.asked.fixed
+    if asks and least * radius < _FASTEST:
         moderate = _with_heights_inside(values)
-        least = float(spin.max())
         films.append(
             (f"more spin (some {least:.2g} rad/s)", problem, problem.unknowns(moderate, faster))
         )

@@ -26,6 +26,7 @@ _OUTWARDS, _BEYOND, _LOOKS = 3.0, 1.15, 3
 _FAR, _NARROW = 2.0, 0.005
 _HARDLY = 0.05
 _ON_BOUND = 1e-4  # of a bound, or of an error: an unknown lies on it
+_OFF_BOUND = 0.5  # errors from a bound: it does not, however small numbers are
 _ROUNDING = 1e-6
 
 
@@ -120,13 +121,11 @@ def pinned_of(found: Estimate, certainty: Certainty) -> tuple[int, ...]:
     low, high = found.problem.limits
     errors = certainty.errors
     seen = np.isfinite(errors)
-    near = _ON_BOUND * np.where(seen, errors, 0.0)
-    on = [
-        seen
-        & np.isfinite(end)
-        & (np.abs(found.x - end) <= np.maximum(near, _ON_BOUND * np.maximum(np.abs(end), 1.0)))
-        for end in (low, high)
-    ]
+    near, off = _ON_BOUND * np.where(seen, errors, 0.0), _OFF_BOUND * np.where(seen, errors, 0.0)
+    on = []
+    for end in (low, high):
+        width = np.minimum(_ON_BOUND * np.maximum(np.abs(end), 1.0), off)
+        on.append(seen & np.isfinite(end) & (np.abs(found.x - end) <= np.maximum(near, width)))
     return tuple(np.where(on[0], -1, on[1].astype(int)).tolist())
 
 

@@ -69,11 +69,12 @@ def estimate(problem: Problem, start: FloatArray, noise_known: Known) -> Estimat
 
     Parameters
     ----------
-    problem, start : what is asked, and unknowns to begin with
+    problem, start : what is asked, and unknowns to begin with, which are put within their limits:
+        those of several tracks may have a mean beyond
     noise_known : whether the noise of places, angles and time stamps was given; else it is that of
         the residuals in the end
     """
-    x = start
+    x = np.clip(start, *problem.limits)
     problem = problem.with_noise(problem.noise, x)
     rows = problem.residuals(x)
     if np.median(np.abs(rows)) > _AWAY * _MEDIAN:

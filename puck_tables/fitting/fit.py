@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from puck_tables._core.real import real
+from puck_tables._core.real import instance, real
 from puck_tables.film.track import Track
 from puck_tables.fitting.asked import Asked
 from puck_tables.fitting.blindness import blind_spots
@@ -24,6 +24,7 @@ from puck_tables.fitting.given import (
     refuse_faster,
     refuse_opening,
     refuse_tipping,
+    refuse_wobbling,
     rows_given,
     speeds_given,
     walls_given,
@@ -32,6 +33,7 @@ from puck_tables.fitting.held_out import HeldOut, predicted, split
 from puck_tables.fitting.impacts import Piece, cut
 from puck_tables.fitting.joining import Line
 from puck_tables.fitting.laws import LawScore, chi2_under, compare, variants_of
+from puck_tables.fitting.misread import misread
 from puck_tables.fitting.numbers import numbers_of, plausible_for
 from puck_tables.fitting.outcome import Fit
 from puck_tables.fitting.parameters import NODES
@@ -39,7 +41,7 @@ from puck_tables.fitting.problem import Problem
 from puck_tables.fitting.residual_tests import drift, runs
 from puck_tables.fitting.rivals import mirrored, rivals_of
 from puck_tables.fitting.seen import Seen, noise_of
-from puck_tables.fitting.tied import Impact, impacts_apart, impacts_joined, tie
+from puck_tables.fitting.tied import Impact, impacts_apart, impacts_joined, not_met, tie
 from puck_tables.fitting.timing import Known
 from puck_tables.puck import Puck
 
@@ -99,7 +101,7 @@ def fit(
         pair_restitution and pair_friction of two pucks (and mass_ratio, if it is named in free).
         Where rims stop on what they meet, tangential restitution takes the place of friction.
     walls : lines ((x, y), (x, y)) in m, two points of each, where walls are known
-        Others are found.
+        Others are found.  With walls impacts are looked for, whatever ``impacts`` says.
     slip_speeds : m/s, from 0 to the fastest slip, 2 to 8 of them
         The friction coefficient is found at each (friction_0, friction_1, …); of two it is f₀ + f₁u
         with u the slip speed.  It is one number where they are left out.
@@ -143,7 +145,8 @@ def fit(
     >>> round(found["friction"].value, 3), round(found["height"].value, 3)
     (0.15, 0.025)
     """
-    films = films_of(tracks, since, until, rows_given(rows))
+    instance("puck", puck, Puck)
+    films = films_of(tracks, since, until, rows_given(rows), puck.radius)
     lines = walls_given(walls)
     impacts = impacts or bool(lines)
     asked = Asked.of(
@@ -186,6 +189,7 @@ def fit(
         refuse_opening(found)
     say(1, steps)
     certainty = _certainty(found, known)
+    refuse_wobbling(found, certainty)
     rivals = rivals_of(found, certainty)
     unsigned = mirrored(found, certainty)
     numbers, launches = numbers_of(found, certainty, rivals, unsigned)
@@ -210,7 +214,7 @@ def fit(
     elif impacts:
         names = [film.name for film in uncut]
         hits = impacts_apart(found, pieces, certainty, names)
-    return Fit(
+    result = Fit(
         given=puck,
         numbers=numbers,
         launches=launches,
@@ -229,10 +233,15 @@ def fit(
         held_out=predictions,
         impacts=hits,
         untied=untied,
+        not_met=not_met(hits, found.problem, lines) if impacts else (),
         constant_chi2=chi2_under(constant, found.problem.noise) if speeds else math.nan,
         estimate=found,
         certainty=certainty,
+        uncut=uncut,
     )
+    if result.complaints:
+        result = replace(result, misread=misread(slides, problem, known))
+    return result
 
 
 def _over_speeds(

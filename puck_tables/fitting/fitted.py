@@ -29,6 +29,7 @@ def fitted(problem: Problem, known: Known, refit: bool) -> Estimate:
     known : whether the noise of places, of angles and of time stamps is
     refit : whether frames at the ends that are no free motion are left out
     """
+    problem = _with_room(problem)
     left = _observations(problem) - len(problem.names) + len(problem.priors)
     if left <= 0:
         raise InputError(
@@ -56,6 +57,31 @@ def fitted(problem: Problem, known: Known, refit: bool) -> Estimate:
         if films != problem.films:
             return fitted(problem.with_films(films), known, refit=False)
     return found
+
+
+def _with_room(problem: Problem) -> Problem:
+    """The same, of pucks so tall as the bounds of δ want them.
+
+    Raises
+    ------
+    InputError
+        If no value within bounds is one of which motions are known.
+    """
+    low, high = problem.limits
+    narrow = np.flatnonzero(low >= high)
+    if not narrow.size:
+        return problem
+    k = int(narrow[0])
+    name = problem.names[k][1]
+    law = problem.asked.puck.body.law
+    if name == "delta" and law.can_lift and not problem.tall:
+        return _with_room(replace(problem, tall=True))
+    least, most = problem.asked.bounds[name]
+    low, high = replace(problem, asked=replace(problem.asked, bounds={})).limits
+    raise InputError(
+        f"the bounds of {name}, {least:g} to {most:g}, hold none of its values: of such a puck "
+        f"under pressure {law.name} {name} is from {low[k]:g} to {high[k]:g}"
+    )
 
 
 def _lifted(found: Estimate, known: Known) -> Estimate:

@@ -13,8 +13,10 @@ import numpy as np
 from puck_tables._core.real import instance, positive, real
 from puck_tables.contact.speed_law import KINDS
 from puck_tables.errors import InputError
+from puck_tables.film.pairs import marks_of_one
 from puck_tables.film.track import Track
 from puck_tables.fitting.asked import Asked
+from puck_tables.fitting.certainty import Certainty
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.impacts import turns
 from puck_tables.fitting.joining import Line
@@ -32,9 +34,11 @@ _TIPS = 4.0  # δ
 
 
 def films_of(
-    tracks: Any, since: float, until: float, rows: tuple[float, float] | None
+    tracks: Any, since: float, until: float, rows: tuple[float, float] | None, radius: float
 ) -> tuple[Seen, ...]:
     """The tracks, checked, with different names.
+
+    ``radius`` m: of the puck, two of which are never nearer than twice that.
 
     ``rows``: y in m of the first and the last line of the picture.
 
@@ -49,6 +53,8 @@ def films_of(
         raise InputError("there is no track to fit: give one or more")
     for track in listed:
         instance("tracks", track, Track)
+    if said := marks_of_one(listed, 2.0 * radius):
+        raise InputError(f"{said}: two pucks of radius {radius:g} m are {2.0 * radius:g} m apart")
     names = [track.name for track in listed]
     films = []
     for n, track in enumerate(listed):
@@ -95,7 +101,31 @@ def _refuse_still(film: Seen) -> None:
     InputError
     """
     place, _ = noise_of([film])
-    spread = place if math.isfinite(place) else 0.0
+    _refuse_within(film, place if math.isfinite(place) else 0.0)
+
+
+def refuse_wobbling(found: Estimate, certainty: Certainty) -> None:
+    """Refuse a track of a puck that goes nowhere beyond what any slide leaves of its places.
+
+    Raises
+    ------
+    InputError
+    """
+    problem = found.problem
+    for n, film in enumerate(problem.films):
+        speeds = [(n, name) for name in ("launch_vx", "launch_vy")]
+        lost = [certainty.undetermined[k] for k, key in enumerate(problem.names) if key in speeds]
+        if lost and all(lost):
+            _refuse_within(film, problem.noise[0])
+
+
+def _refuse_within(film: Seen, spread: float) -> None:
+    """Refuse a track of a puck that does not leave its place by more than some spread (m).
+
+    Raises
+    ------
+    InputError
+    """
     if rests_from(film, spread) == 0 and not turns(film):
         raise InputError(
             f"the puck of {film.name} lies still, within {1e3 * spread:.3g} mm of noise: a fit "

@@ -21,6 +21,7 @@ _STEP = 1e-6
 _LEAST = {"friction": 1e-3, "decel": 1e-2, "gravity": 1e-2, "height": 1e-4, "radius": 1e-4}
 _ALL = 0.8  # of the range in which a number is looked for: an interval so wide tells nothing
 _TOLD = 0.75  # of the time between frames, twice the error of a readout that the tracks tell
+_DECIMALS = 12  # of a value on the end of its range
 _MUCH = {"friction": 1.0, "decel": 10.0}  # an error that says nothing
 FREE, FOLLOWS, KNOWN = "found", "follows", "known"
 
@@ -51,6 +52,11 @@ class Number(NamedTuple):
     def at_bound(self) -> bool:
         """Whether it, or what it follows from, lies on the end of its range: no error is known."""
         return math.isnan(self.error)
+
+    @property
+    def shown(self) -> str:
+        """The value to six digits; 0 where it differs from 0 by what is computed alone."""
+        return f"{round(self.value, _DECIMALS) + 0.0:.6g}"
 
 
 class FoundLaunch(NamedTuple):

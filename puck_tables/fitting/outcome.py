@@ -21,6 +21,7 @@ from puck_tables.fitting.held_out import HeldOut
 from puck_tables.fitting.laws import LawScore
 from puck_tables.fitting.numbers import KNOWN, FoundLaunch, Number
 from puck_tables.fitting.residual_tests import lengthways
+from puck_tables.fitting.seen import Seen
 from puck_tables.fitting.tied import Impact
 from puck_tables.fitting.timing import Known
 from puck_tables.io.dataset import Dataset, Variable, variable
@@ -36,7 +37,7 @@ _NO_PATTERN = 1e-3  # probability of residuals so patterned by chance
 _COMPUTED = 1e-7  # of the path: residuals of tracks that were computed, not seen
 _NOISY = 1.5  # times the noise of a smooth motion
 _LENGTHWAYS = 1.3
-_GRIP = 5.0  # friction coefficients of dry surfaces are smaller
+_GRIP, _SLICK = 5.0, 1e-4  # friction coefficients of dry surfaces are smaller, and larger
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -53,7 +54,10 @@ class Fit(Result):
     those compared, best
     first; ``held_out``: how well frames that were held out are predicted;
     ``impacts``: :class:`Impact` of those looked for; ``untied``: why they do not join the slides,
-    empty where they do.  ``constant_chi2``: χ² of one friction coefficient for all slip speeds,
+    empty where they do; ``not_met``: a sentence for each wall given on which there is none.
+    ``uncut``: the tracks with frames that are no free motion.
+    ``misread``: what else the tracks or the radius may be, if that fits far better.
+    ``constant_chi2``: χ² of one friction coefficient for all slip speeds,
     where one over them was found.
     """
 
@@ -75,16 +79,19 @@ class Fit(Result):
     held_out: HeldOut | None
     impacts: tuple[Impact, ...]
     untied: str
+    not_met: tuple[str, ...]
     constant_chi2: float
     estimate: Estimate = field(repr=False)
     certainty: Certainty = field(repr=False)
+    uncut: tuple[Seen, ...] = field(default=(), repr=False)
+    misread: str = ""
 
     picture: ClassVar[str] = "fit"
 
     def __repr__(self) -> str:
         words = ", ".join(
             f"{name} not determined" if not number.determined
-            else f"{name} {number.value:.6g} at its bound" if number.at_bound
+            else f"{name} {number.shown} at its bound" if number.at_bound
             else f"{name} {number.value:.6g} +- {number.error:.2g}"
             for name, number in self.numbers.items() if number.how == "found"
         )  # fmt: skip
@@ -185,6 +192,8 @@ class Fit(Result):
             )
         if self.untied:
             found.append(self.untied)
+        if self.misread:
+            found.append(self.misread)
         if self.outliers > 0.2:
             found.append(f"{100.0 * self.outliers:.3g} % of the observations had to be left out")
         return tuple(found)
@@ -206,11 +215,13 @@ class Fit(Result):
                     f"best may be {way}. So it has no standard error, and its interval, and errors "
                     "and intervals of the rest, may mislead"
                 )
+        said += self.not_met
         friction = self.numbers["friction"]
-        if friction.how != KNOWN and friction.low > _GRIP:
+        if friction.how != KNOWN and (friction.low > _GRIP or friction.high < _SLICK):
+            than = "more" if friction.low > _GRIP else "less"
             said.append(
-                f"A friction of {friction.value:.3g} is more than dry surfaces have: the unit of "
-                "the places, the scale or the frames a second may be wrong"
+                f"A friction of {friction.value:.3g} is {than} than dry surfaces have: the unit of "
+                "the places, or of the times, the scale or the frames a second may be wrong"
             )
         if self.jitter == 0.0 and self.noise[0] > 0.0:
             ratio = lengthways(self.estimate)
@@ -424,7 +435,7 @@ class Fit(Result):
             text = json.dumps(self.summary(), indent=1, allow_nan=False) + "\n"
             write_bytes(path, text.encode(), overwrite)
             return
-        ending_of(path, (".json", *FORMATS))
+        ending_of(path, FORMATS)
         super().save(path, overwrite)
 
 

@@ -7,7 +7,7 @@ import math
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-from puck_tables._core.real import real
+from puck_tables._core.real import bracketed, real
 from puck_tables.errors import InputError
 from puck_tables.motion.body import LARGEST_GYRATION, SMALLEST_GYRATION
 
@@ -79,9 +79,10 @@ def refuse_unknown(name: str, known: Mapping[str, Parameter], what: str) -> None
     InputError
     """
     if name not in known:
-        near = difflib.get_close_matches(str(name), known, 1, 0.3)
+        usable = [one for one in known if one not in NODES]
+        near = difflib.get_close_matches(str(name), usable, 1, 0.3)
         meant = f": did you mean {near[0]}?" if near else ""
-        raise InputError(f"{what} names '{name}', which is none of {', '.join(known)}{meant}")
+        raise InputError(f"{what} names '{name}', which is none of {', '.join(usable)}{meant}")
 
 
 def in_range(name: str, value: Any) -> float:
@@ -93,11 +94,19 @@ def in_range(name: str, value: Any) -> float:
     """
     refuse_unknown(name, ALL, "the fit")
     number, kind = real(name, value, ALL[name].unit), ALL[name]
-    positive = name in POSITIVE
-    if not kind.low <= number <= kind.high or (positive and number == 0.0):
-        least = f"greater than {kind.low:g}" if positive else f"from {kind.low:g} to {kind.high:g}"
-        raise InputError(f"{name} must be {least} ({kind.unit}), got {number:g}")
+    if not kind.low <= number <= kind.high or (name in POSITIVE and number == 0.0):
+        raise InputError(f"{name} must be {_range(name)}{bracketed(kind.unit)}, got {number:g}")
     return number
+
+
+def _range(name: str) -> str:
+    """What values a parameter may have, in words."""
+    kind = ALL[name]
+    if name in POSITIVE:
+        return f"greater than {kind.low:g}"
+    if kind.high == math.inf:
+        return f"{kind.low:g} or more"
+    return f"from {kind.low:g} to {kind.high:g}"
 
 
 def prior_of(name: str, given: Any) -> tuple[float, float]:
@@ -126,6 +135,11 @@ def bounds_of(name: str, given: Any) -> tuple[float, float]:
     low, high = _pair(name, given, "bounds", "least and a largest value")
     if not low < high:
         raise InputError(f"the bounds of {name} must ascend, got {low:g} and {high:g}")
+    if high <= ALL[name].low or low >= ALL[name].high:
+        raise InputError(
+            f"the bounds of {name}, {low:g} to {high:g}, hold none of its values: {name} is "
+            f"{_range(name)}{bracketed(ALL[name].unit)}"
+        )
     return low, high
 
 

@@ -18,6 +18,7 @@ from puck_tables.fitting.asked import Asked
 from puck_tables.fitting.certainty import Certainty
 from puck_tables.fitting.estimate import FARTHEST, FARTHEST_PLACE, Estimate, estimate
 from puck_tables.fitting.impacts import Piece
+from puck_tables.fitting.joined import Wall
 from puck_tables.fitting.joining import Blow, Joined, Line, blows_of, joined
 from puck_tables.fitting.numbers import FOLLOWS, Number, quadratic
 from puck_tables.fitting.parameters import OF_PAIRS, OF_WALLS
@@ -28,6 +29,7 @@ from puck_tables.fitting.timing import Known
 
 _BY_CHANCE = 1e-5  # of the rise of χ²: less, and the law of impact is not that of these slides
 _STEP = 1e-6
+_SAME = 1e-9  # of the size of coordinates: a point lies on a wall
 
 Values = Callable[[FloatArray], FloatArray]
 
@@ -71,9 +73,37 @@ def tie(
     if chi_square_tail(rise, max(conditions, 1)) < _BY_CHANCE:
         return None, (
             "The slides are not joined at the impacts: one law of impact for all of them, with "
-            f"states that match, would raise chi^2 by {rise:.4g} for {conditions} conditions"
+            f"states that match, would raise chi^2 by {rise:.4g} for {conditions} "
+            f"condition{'' if conditions == 1 else 's'}"
         )
     return found, ""
+
+
+def not_met(impacts: Sequence[Impact], problem: Problem, lines: Sequence[Line]) -> tuple[str, ...]:
+    """A sentence for each wall that was given and never met, or one if there is no impact at all.
+
+    Parameters
+    ----------
+    impacts : that were found, where they were looked for
+    problem : of the joined slides, with the walls that they meet
+    lines : walls that were given, by two points each
+    """
+    if not impacts:
+        return ("No impact was found: each track is taken for one slide",)
+    if not problem.meetings:  # nothing is joined at walls
+        return ()
+    met = [wall for wall in problem.walls if wall is not None]
+    return tuple(
+        f"No impact was found on the wall through ({ax:g}, {ay:g}) and ({bx:g}, {by:g}): see that "
+        "its points are in m, along the axes of the tracks"
+        for (ax, ay), (bx, by) in lines
+        if not any(_through(wall, ax, ay) and _through(wall, bx, by) for wall in met)
+    )
+
+
+def _through(wall: Wall, x: float, y: float) -> bool:
+    off = x * math.cos(wall.angle) + y * math.sin(wall.angle) - wall.distance
+    return abs(off) <= _SAME * max(abs(x), abs(y), abs(wall.distance))
 
 
 def _rise(slides: Estimate, found: Estimate, whole: Joined) -> float:

@@ -7,9 +7,13 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.polynomial.polynomial import polyval
 
+from puck_tables._core.monotone import monotone_cubic
 from puck_tables.fitting.launched import path_of
+from puck_tables.fitting.numbers import Number
 from puck_tables.fitting.outcome import Fit
+from puck_tables.fitting.parameters import NODES
 from puck_tables.plot.style import BLUE, COLORS, GREY, LAUNCH, ORANGE, RED, canvas, titled
 
 if TYPE_CHECKING:
@@ -19,6 +23,7 @@ if TYPE_CHECKING:
 _POINTS = 9  # of a profile curve
 _REACH = 3.0  # standard errors to either side of it
 _FINE = 400
+_NARROW = 5.0  # times as long as wide: a path that is shown in scales of its own
 
 
 def draw(found: Fit) -> Figure:
@@ -30,17 +35,16 @@ def draw(found: Fit) -> Figure:
     _draw_residuals(figure.add_subplot(grid[0, 3:]), found)
     _draw_pulls(figure.add_subplot(grid[1, :2]), found)
     if names:
-        inner = grid[1, 2:].subgridspec(1, min(len(names), 3))
-        shown = names[:3]
-        if found.estimate.problem.asked.speeds:
-            shown = names[:2] if len(names) > 2 else names[:1]
+        speeds = found.estimate.problem.asked.speeds
+        # friction over slip speed has a panel of its own, for all of its numbers
+        shown = [name for name in names if not (speeds and name in NODES)][:3]
+        shown = (shown or names)[: 2 if speeds else 3]
+        inner = grid[1, 2:].subgridspec(1, len(shown) + bool(speeds))
+        if speeds:
             _draw_friction(figure.add_subplot(inner[0, len(shown)]), found)
         for n, name in enumerate(shown):
             _draw_profile(figure.add_subplot(inner[0, n]), found, name)
-    told = [
-        f"{name} = {_told(found.numbers[name].value, found.numbers[name].error)}"
-        for name in names[:3]
-    ]
+    told = [f"{name} = {_told(found.numbers[name])}" for name in names[:3]]
     titled(figure, "; ".join([*told, f"chi² per degree {found.chi2 / max(found.degrees, 1):.3g}"]))
     return figure
 
@@ -49,10 +53,22 @@ def draw_on(paths: Axes, found: Fit) -> None:
     """The paths alone."""
     problem, x = found.estimate.problem, found.estimate.x
     moving, (slides, hits) = problem.moving(problem.found(x)), problem.slides(x)
+    whole, cut = {film.name: film for film in found.uncut}, False
     for n, (film, track) in enumerate(zip(problem.films, slides, strict=True)):
+        if (before := whole.get(film.name)) is not None:
+            foreign = (before.frame < film.frame[0]) | (before.frame > film.frame[-1])
+            if foreign.any():
+                paths.plot(
+                    *before.place[foreign].T, "+", color=GREY, markersize=5,
+                    label=None if cut else "cut off",
+                )  # fmt: skip
+                cut = True
         counts = found.estimate.kept[problem.each()[n][0]]
         colour = COLORS[n % len(COLORS)]
-        paths.plot(*film.place[counts].T, ".", color=colour, markersize=7, alpha=0.3)
+        paths.plot(
+            *film.place[counts].T, ".", color=colour, markersize=7, alpha=0.3,
+            label=film.name if len(problem.films) > 1 and n < len(COLORS) else None,
+        )  # fmt: skip
         if not counts.all():
             paths.plot(
                 *film.place[~counts].T, "x", color=RED, markersize=5,
@@ -67,7 +83,11 @@ def draw_on(paths: Axes, found: Fit) -> None:
     for hit in hits:
         paths.plot(*hit.place, "o", color=GREY, markersize=7, fillstyle="none")
     paths.set(xlabel="x / m", ylabel="y / m", title="seen (dots) and found (lines)")
-    paths.set_aspect("equal", adjustable="datalim")
+    wide, high = (np.ptp(ends) for ends in (paths.get_xlim(), paths.get_ylim()))
+    if max(wide, high) < _NARROW * min(wide, high):  # else a narrow path would be a line
+        paths.set_aspect("equal", adjustable="datalim")
+    else:
+        paths.set_title("seen (dots) and found (lines), x and y of different scale")
     if paths.get_legend_handles_labels()[1]:
         paths.legend(frameon=False, fontsize=9)
 
@@ -125,9 +145,12 @@ def _draw_profile(panel: Axes, found: Fit, name: str) -> None:
     k = found.estimate.problem.asked.free.index(name)
     values, rises = found.profile(name, _POINTS, _REACH)
     number = found.numbers[name]
-    panel.plot(values, rises, "o-", color=BLUE, markersize=3)
-    error = float(found.certainty.errors[k])
     fine = np.linspace(values[0], values[-1], 100)
+    panel.plot(values, rises, "o", color=BLUE, markersize=3)
+    powers = monotone_cubic(values, rises) if values[-1] > values[0] else rises[:1, None]
+    part = np.clip(np.searchsorted(values, fine, "right") - 1, 0, len(powers) - 1)
+    panel.plot(fine, polyval(fine - values[part], powers[part].T, tensor=False), color=BLUE)
+    error = float(found.certainty.errors[k])
     if math.isfinite(error):
         panel.plot(fine, ((fine - number.value) / error) ** 2, ":", color=GREY)
     panel.axhline(found.certainty.quantile**2, color=ORANGE, linewidth=0.8)
@@ -138,5 +161,7 @@ def _draw_profile(panel: Axes, found: Fit, name: str) -> None:
     panel.tick_params(axis="x", labelrotation=30)
 
 
-def _told(value: float, error: float) -> str:
-    return f"{value:.6g} " + ("at its bound" if math.isnan(error) else f"± {error:.2g}")
+def _told(number: Number) -> str:
+    if number.at_bound:
+        return f"{number.shown} at its bound"
+    return f"{number.value:.6g} ± {number.error:.2g}"
