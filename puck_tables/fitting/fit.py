@@ -187,6 +187,11 @@ def fit(
     say(1, steps)
     certainty = _certainty(found, known)
     rivals = rivals_of(found, certainty)
+    lowest = min(rivals, key=lambda one: one.rise, default=None)
+    if lowest is not None and lowest.rise < 0.0:
+        found = replace(estimate(found.problem, lowest.estimate.x, known), minima=found.minima)
+        certainty = _certainty(found, known)
+        rivals = rivals_of(found, certainty)
     unsigned = mirrored(found, certainty)
     numbers, launches = numbers_of(found, certainty, rivals, unsigned)
     lost = tuple(n for n in found.problem.asked.free if not numbers[n].determined)

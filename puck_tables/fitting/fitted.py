@@ -89,6 +89,7 @@ def _joint_start(
             weights += weight
             sums += weight @ x[:shared]
     mean = np.linalg.solve(weights, sums) if shared else sums
+    mean = np.clip(mean, *(ends[:shared] for ends in problem.limits))
     return problem.unknowns(
         dict(zip(problem.asked.free, mean.tolist(), strict=True)), np.array(launches)
     )

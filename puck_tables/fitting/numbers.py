@@ -9,12 +9,12 @@ from typing import NamedTuple
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.fitting.certainty import Certainty, Interval, interval_of
+from puck_tables.fitting.certainty import Certainty, Interval, Rival, interval_of
 from puck_tables.fitting.chain import slopes_of_slides
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.impacts import slide_name
 from puck_tables.fitting.parameters import ALL, LAUNCH, PUCK
-from puck_tables.fitting.problem import Found, Problem
+from puck_tables.fitting.problem import Problem
 
 _STEP = 1e-6
 # Scales are plausible within their own size, but not less than this
@@ -104,12 +104,12 @@ def plausible_for(problem: Problem, x: FloatArray) -> FloatArray:
 def numbers_of(
     found: Estimate,
     certainty: Certainty,
-    rivals: tuple[Found, ...] = (),
+    rivals: tuple[Rival, ...] = (),
     unsigned: tuple[int, ...] = (),
 ) -> tuple[dict[str, Number], tuple[FoundLaunch, ...]]:
     """All numbers of the puck, and of each launch.
 
-    ``rivals``: the puck's numbers at other summits of the likelihood; what they differ in is not
+    ``rivals``: other summits of the likelihood; what they differ in, or do not tell, is not
     determined; ``unsigned``: tracks that do not tell which way the puck spins.
     """
     problem, x = found.problem, found.x
@@ -122,11 +122,16 @@ def numbers_of(
         if interval.profiled:  # the likelihood is no parabola: half of its width
             error = max(error, width / (2.0 * certainty.quantile))
         low, high = interval.low, interval.high
-        others = [values[name], *(rival[name] for rival in rivals)]
-        if min(others) < low or max(others) > high:  # another summit lies outside
-            half = 0.5 * width
-            low, high = min(low, min(others) - half), max(high, max(others) + half)
-            error = math.inf
+        for rival in rivals:
+            there = interval_of(rival.estimate, rival.certainty, k)
+            if (
+                not interval.low <= rival.numbers[name] <= interval.high
+                or rival.certainty.undetermined[k]
+            ):
+                error = math.inf
+            low, high = min(low, there.low), max(high, there.high)
+            error = max(error, (high - low) / (2.0 * certainty.quantile))
+        width = high - low
         least, largest = (float(limit[k]) for limit in problem.limits)
         if width >= _ALL * (largest - least) or error > _MUCH.get(name, math.inf):
             error = math.inf
