@@ -177,8 +177,7 @@ def fit(
     found = slides = fitted(problem, known, refit=True)
     untied = ""
     if impacts:
-        tied, untied = tie(slides, pieces, uncut, asked, lines, known)
-        found = found if tied is None else tied
+        found, untied = tie(slides, pieces, uncut, asked, lines, known)
     constant = found
     if speeds:
         refuse_faster(speeds, found)

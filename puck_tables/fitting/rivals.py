@@ -43,12 +43,15 @@ def rivals_of(found: Estimate, certainty: Certainty) -> tuple[Rival, ...]:
     """
     problem = found.problem
     marked = any(film.angle is not None for film in problem.films)
-    if problem.meetings or problem.asked.speeds or (marked and len(problem.films) > 1):
+    apart = not problem.meetings
+    signed = marked or not apart  # a wall tells a motion from its mirror image
+    single = len(problem.films) == 1
+    if problem.asked.speeds or not (single or found.minima or not (marked and apart)):
         return ()
     starts = list(found.minima)
-    if not starts and len(problem.films) == 1:
+    if not starts and apart and single:
         starts = minima_of(problem)
-    if not marked:
+    if not marked and apart:
         starts += _of_other_spins(found)
     rivals: list[Rival] = []
     summits = [(found.x, *_known(found, certainty))]
@@ -56,12 +59,13 @@ def rivals_of(found: Estimate, certainty: Certainty) -> tuple[Rival, ...]:
         x, cost = minimise(problem, start, SQUARES, found.kept)
         rise = 2.0 * cost - found.chi2
         off = [
-            (np.abs(_told(x, marked) - _told(one, marked)) > apart)[seen]
-            for one, seen, apart in summits
+            (np.abs(_told(x, signed) - _told(one, signed)) > far)[seen]
+            for one, seen, far in summits
         ]
         if rise < RISE and all(one.any() for one in off):
             # what one motion tells another may not: each summit is as wide as it is
             rows, slopes = problem.residuals_and_jacobian(x)
+            x = np.where(slopes.any(axis=0), x, start)  # what does nothing stays where it was
             there = replace(found, x=x, residuals=rows, jacobian=slopes, minima=())
             plausible = plausible_for(problem, x)
             own = certainty_of(slopes[found.kept], plausible, certainty.quantile)
@@ -141,9 +145,9 @@ def _near(found: Estimate, x: FloatArray, held: list[int]) -> bool:
     return float(left @ left) < found.chi2 + 2.0 * RISE
 
 
-def _told(x: FloatArray, marked: bool) -> FloatArray:
+def _told(x: FloatArray, signed: bool) -> FloatArray:
     """Unknowns as they are compared: without angles a mirror image is no other motion."""
-    return x if marked else np.abs(x)
+    return x if signed else np.abs(x)
 
 
 def _known(found: Estimate, certainty: Certainty) -> tuple[npt.NDArray[np.bool_], FloatArray]:
