@@ -115,6 +115,22 @@ def test_a_path_that_does_not_bend_does_not_tell_which_way_the_puck_spins():
     assert one_way.launch().spin == pytest.approx(40.0, rel=0.02) and not one_way.blind
 
 
+@pytest.mark.parametrize("seed", few(1, [1, 2, 3]))
+def test_what_follows_is_as_uncertain_as_what_it_follows_from(seed):
+    """A fast spin seen by places alone: the likelihood of friction is no parabola."""
+    times = np.arange(200) / 240.0
+    true = film_judge.path((0.9, 0.4), 80.0, DECEL, DELTA, RADIUS, times)
+    track = pt.Track(times, film_judge.noisy(np.random.default_rng(seed), true, NOISE)[0])
+    found = pt.fit(track, KNOWN)
+    friction, decel, height = (found[name] for name in ("friction", "decel", "height"))
+    assert friction.profiled and friction.determined
+    assert decel.error == pytest.approx(film_judge.G * friction.error, rel=1e-9)
+    assert decel.high == pytest.approx(film_judge.G * friction.high, rel=1e-9)
+    asked = pt.fit(track, KNOWN, free=["friction", "height"])["height"]
+    for one, other in zip(height[1:4], asked[1:4], strict=True):
+        assert one == pytest.approx(other, rel=0.02)
+
+
 def test_friction_and_height_need_gravity(straight):
     spun = film_judge.path(VELOCITY, 60.0, DECEL, DELTA, RADIUS, TIMES)
     found = pt.fit(film(spun, 1), KNOWN, free=["friction", "height", "gravity"])

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.fitting.certainty import Certainty, Interval, Rival, interval_of
+from puck_tables.fitting.certainty import Certainty, Interval, Rival, certainty_of, interval_of
 from puck_tables.fitting.chain import slopes_of_slides
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.impacts import slide_name
@@ -139,6 +140,12 @@ def numbers_of(
             values[name], error, low, high, PUCK[name].unit, FREE,
             interval.profiled,
         )  # fmt: skip
+    # what follows is as much less certain as what it follows from
+    widened, profiled = np.ones(x.size), False
+    for k, name in enumerate(asked.free):
+        if puck[name].profiled and 0.0 < errors[k] < math.inf and puck[name].determined:
+            widened[k] = max(puck[name].error / errors[k], 1.0)
+            profiled = True
     everything = {**asked.known(), **values}
     everything.update(_derived(asked.scales(values), everything))
     for name, value in everything.items():
@@ -148,12 +155,17 @@ def numbers_of(
         if not slope.any():
             puck[name] = Number(value, 0.0, value, value, PUCK[name].unit, KNOWN)
             continue
-        error = certainty.error_of(slope, max(abs(value), 1e-12))
+        error = certainty.error_of(slope * widened, max(abs(value), 1e-12))
         if any(slope[k] and not puck[one].determined for k, one in enumerate(asked.free)
                if not certainty.undetermined[k]):  # fmt: skip
             error = math.inf
         number = quadratic(value, error, PUCK[name].unit, FOLLOWS, certainty.quantile)
         ends = _follows(problem, x, name, slope, puck)
+        if ends is None and profiled and name == "height" and number.determined:
+            ends = _profiled(found, certainty, name)
+            if ends is not None and ends.profiled:
+                half = 0.5 * (ends.high - ends.low)
+                number = number._replace(error=half / certainty.quantile, profiled=True)
         if ends is not None:
             number = number._replace(low=ends.low, high=ends.high)
         puck[name] = number._replace(low=max(number.low, PUCK[name].low))
@@ -214,6 +226,29 @@ def _follows(
         everything.update(_derived(asked.scales(moved), everything))
         ends.append(everything[name])
     return Interval(min(ends), max(ends), False)
+
+
+def _profiled(found: Estimate, certainty: Certainty, name: str) -> Interval | None:
+    """The interval of height by the profile likelihood, with height in place of δ as an unknown.
+
+    None where δ is not found, or more is known of it than the tracks tell.
+    """
+    problem = found.problem
+    asked = problem.asked
+    if "delta" not in asked.free or "delta" in asked.priors or "delta" in asked.bounds:
+        return None
+    k = asked.free.index("delta")
+    values = {**asked.known(), **problem.found(found.x)}
+    height = _derived(asked.scales(values), values)[name]
+    other = replace(asked, free=tuple(name if one == "delta" else one for one in asked.free))
+    moved = replace(problem, asked=other)
+    x = found.x.copy()
+    x[k] = height
+    rows, slopes = moved.residuals_and_jacobian(x)
+    there = replace(found, problem=moved, x=x, residuals=rows, jacobian=slopes, minima=())
+    plausible = plausible_for(moved, x)
+    own = certainty_of(slopes[found.kept], plausible, certainty.quantile)
+    return interval_of(there, own, k)
 
 
 def _derived(scales: tuple[float, float, float], numbers: Mapping[str, float]) -> dict[str, float]:
