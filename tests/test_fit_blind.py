@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import film_judge
 import numpy as np
 import pytest
@@ -129,6 +131,24 @@ def test_what_follows_is_as_uncertain_as_what_it_follows_from(seed):
     asked = pt.fit(track, KNOWN, free=["friction", "height"])["height"]
     for one, other in zip(height[1:4], asked[1:4], strict=True):
         assert one == pytest.approx(other, rel=0.02)
+
+
+@pytest.mark.parametrize("seed", few(1, [1, 2, 3, 4, 5, 6]))
+def test_a_hand_before_the_launch_is_left_out(seed):
+    """A steady push of 0.4 s leads the fit of all frames astray: none of them seemed foreign."""
+    rng = np.random.default_rng([8, seed])
+    angle, spin = rng.uniform(0.0, 6.28), rng.uniform(20.0, 60.0) * rng.choice([-1.0, 1.0])
+    velocity = rng.uniform(1.2, 2.0) * np.array([math.cos(angle), math.sin(angle)])
+    times = np.arange(228) / 120.0
+    free = film_judge.path(
+        (velocity[0], velocity[1]), spin, DECEL, DELTA, RADIUS, np.maximum(times - 0.4, 0.0)
+    )
+    pushed = np.minimum(times - 0.4, 0.0)
+    free[:2] += velocity[:, None] * (pushed + pushed**2 / 0.8)
+    found = pt.fit(pt.Track(times, film_judge.noisy(rng, free, NOISE)[0]), KNOWN)
+    assert 43 <= found.left_out[0][1] <= 62 and found.complaints == ()
+    friction = found["friction"]
+    assert not friction.determined or abs(friction.value - 0.15) < 4.0 * friction.error
 
 
 def test_friction_and_height_need_gravity(straight):

@@ -161,7 +161,7 @@ def numbers_of(
             error = math.inf
         number = quadratic(value, error, PUCK[name].unit, FOLLOWS, certainty.quantile)
         ends = _follows(problem, x, name, slope, puck)
-        if ends is None and profiled and name == "height" and number.determined:
+        if ends is None and profiled and name == "height" and math.isfinite(error):
             ends = _profiled(found, certainty, name)
             if ends is not None and ends.profiled:
                 half = 0.5 * (ends.high - ends.low)
