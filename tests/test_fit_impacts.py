@@ -8,6 +8,7 @@ import film_judge
 import impacts_judge
 import numpy as np
 import pytest
+from rarely import few
 from test_fit import DECEL, DELTA, KNOWN, NOISE, RADIUS, film
 
 import puck_tables as pt
@@ -176,3 +177,42 @@ def test_a_puck_at_rest_may_be_hit():
     assert abs(found["pair_friction"].value - 0.15) < 4.0 * found["pair_friction"].error
     assert found.launch("puck 2, slide 1").spin == 0.0
     assert found.launch("puck 2, slide 2").velocity[0] > 1.0
+
+
+def one_wall(seed: int) -> pt.Track:
+    """Places alone of a puck that meets a wall at x = 0.6 m: e = 0.7, friction of the rim 0.05."""
+    rng = np.random.default_rng([7, seed])
+    spin = rng.uniform(20.0, 60.0) * rng.choice([-1.0, 1.0])
+    launch = np.array([0.0, 0.0, rng.uniform(1.5, 2.5), rng.uniform(-1.5, 1.5), spin, 0.0])
+    times, look = np.arange(180) / 240.0, np.linspace(0.0, 0.7, 400)
+    hit = look[int(np.argmax(impacts_judge.path(MOTION, launch, look)[0] > 0.6 - RADIUS))]
+    true = impacts_judge.wall_film(MOTION, launch, [(0.0, 0.6)], [hit], (0.7, 0.05), times)
+    return pt.Track(times, film_judge.noisy(rng, true, NOISE)[0])
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("seed", few(2, [4, 7, 12]))
+def test_without_angles_no_wrong_spin_is_told_alone(seed):
+    """A spin three times as fast, with more friction of floor and rim, fits about as well."""
+    found = pt.fit(one_wall(seed), KNOWN, impacts=True)
+    for name, truth in (("friction", 0.15), ("delta", DELTA), ("restitution", 0.7),
+                        ("rim_friction", 0.05)):  # fmt: skip
+        number = found[name]
+        assert not number.determined or abs(number.value - truth) < 4.0 * number.error, name
+    assert found["friction"].low < 0.16
+    assert any("Another motion" in text for text in found.blind)
+
+
+@pytest.mark.thorough
+def test_an_impact_that_slides_and_one_that_grips_have_one_law():
+    """The first rubs nearly as much as would stop its rim: both seemed to grip."""
+    at = impacts_judge.state(MOTION, TRUTH[2:8], HITS[0])
+    n = np.array([math.cos(WALLS[0][0]), math.sin(WALLS[0][0])])
+    slip = float(at[3] * n[0] - at[2] * n[1]) + RADIUS * at[4]
+    rim = 0.985 * slip / 3.0 / (1.8 * float(at[2:4] @ n))
+    true = impacts_judge.wall_film(MOTION, TRUTH[2:8], WALLS, HITS, (0.8, rim), TIMES)
+    found = pt.fit(seen(true, 1), KNOWN, impacts=True, noise=NOISE)
+    assert found.untied == "" and found.complaints == ()
+    for name, truth in (("restitution", 0.8), ("rim_friction", rim), ("friction", 0.15)):
+        assert abs(found[name].value - truth) < 4.0 * found[name].error, name
+    assert abs(found.impacts[1].rim.value) < 0.99 * rim

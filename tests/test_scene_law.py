@@ -183,7 +183,9 @@ def test_a_tolerance_that_the_corners_do_not_allow_is_refused_with_one_that_they
     rows = [(0.0, 0.3), (0.3, 0.3), (0.301, 0.1), (2.0, 0.1)]
     floor = {"law": law(tmp_path, rows)}
     scene = {"puck": {"radius": 0.04}, "floor": floor, "launch": LAUNCH}
-    with pytest.raises(pt.errors.AccuracyError, match="out of reach of a table of .*with its corners") as refused:
+    with pytest.raises(
+        pt.errors.AccuracyError, match="out of reach of a table of .*with its corners"
+    ) as refused:
         simulate_scene(scene)
     tol = float(re.search(r"--tol\) of (\S+) or more", str(refused.value)).group(1))
     assert 1e-9 < tol < 1e-2

@@ -8,11 +8,11 @@ from dataclasses import replace
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.fitting.certainty import Certainty, certainty_of
+from puck_tables.fitting.certainty import Z95, Certainty, Rival, certainty_of
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.numbers import plausible_for
 from puck_tables.fitting.parameters import ALL, OF_IMPACTS, WALL
-from puck_tables.fitting.problem import PRIOR, Found, Problem
+from puck_tables.fitting.problem import PRIOR, Problem
 from puck_tables.fitting.seen import Seen
 
 _MEMBER = 0.2
@@ -30,13 +30,13 @@ def blind_spots(
     found: Estimate,
     certainty: Certainty,
     lost: tuple[str, ...],
-    rivals: tuple[Found, ...] = (),
+    rivals: tuple[Rival, ...] = (),
     unsigned: tuple[int, ...] = (),
 ) -> tuple[str, ...]:
     """A sentence for each direction that the tracks do not see.
 
-    ``lost``: numbers of the puck that are not determined, by whatever; ``rivals``: its numbers in
-    other motions that fit as well; ``unsigned``: tracks that the opposite spin fits as well.
+    ``lost``: numbers of the puck that are not determined, by whatever; ``rivals``: other motions
+    that fit about as well; ``unsigned``: tracks that the opposite spin fits as well.
     """
     sentences = []
     marked = any(film.angle is not None for film in found.problem.films)
@@ -65,12 +65,15 @@ def blind_spots(
     return tuple(sentences)
 
 
-def rival_sentence(rival: Found, marked: bool) -> str:
-    """Another motion that fits as well; ``marked``: whether angles are seen."""
+def rival_sentence(rival: Rival, marked: bool) -> str:
+    """Another motion that fits about as well; ``marked``: whether angles are seen."""
     more = "more frames a second" if marked else "angle marks on the puck"
-    words = ", ".join(f"{name.replace('_', ' ')} {value:.4g}" for name, value in rival.items())
+    words = ", ".join(
+        f"{name.replace('_', ' ')} {value:.4g}" for name, value in rival.numbers.items()
+    )
+    close = "as well" if rival.rise < Z95**2 else f"nearly as well (chi^2 + {rival.rise:.2g})"
     return (
-        f"Another motion, of another spin, fits as well: {words}. What would tell: {more}, or its "
+        f"Another motion, of another spin, fits {close}: {words}. What would tell: {more}, or its "
         "launch spin, if it is known (launch_spin)."
     )
 

@@ -10,12 +10,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.abreast import FROM_BESIDE, abreast
 from puck_tables.fitting.estimate import Estimate
+from puck_tables.fitting.problem import Found
 
 Z95 = 1.959963984540054
 BLIND = 2.0  # plausible ranges per standard deviation
@@ -76,6 +78,27 @@ class Certainty:
             found: FloatArray = self.covariance / np.outer(root, root)
         found[~np.isfinite(root), :] = found[:, ~np.isfinite(root)] = np.nan
         return found
+
+
+class Rival(NamedTuple):
+    """Another summit.
+
+    ``estimate``: there; ``certainty``: how well it would tell its unknowns; ``rise``: of χ².
+    """
+
+    estimate: Estimate
+    certainty: Certainty
+    rise: float
+
+    @property
+    def numbers(self) -> Found:
+        """The numbers of the puck there, and the launch spin of a track alone."""
+        names, x = self.estimate.problem.names, self.estimate.x
+        alone = len(self.estimate.problem.films) == 1
+        return {
+            name: float(x[k]) for k, (track, name) in enumerate(names)
+            if track == -1 or (alone and name == "launch_spin")
+        }  # fmt: skip
 
 
 def quantile_of(degrees: int) -> float:

@@ -180,8 +180,7 @@ def fit(
     found = slides = fitted(problem, known, refit=True)
     untied = ""
     if impacts:
-        tied, untied = tie(slides, pieces, uncut, asked, lines, known)
-        found = found if tied is None else tied
+        found, untied = tie(slides, pieces, uncut, asked, lines, known)
     constant = found
     if speeds:
         refuse_faster(speeds, found)
@@ -191,6 +190,11 @@ def fit(
     certainty = _certainty(found, known)
     refuse_wobbling(found, certainty)
     rivals = rivals_of(found, certainty)
+    lowest = min(rivals, key=lambda one: one.rise, default=None)
+    if lowest is not None and lowest.rise < 0.0:
+        found = replace(estimate(found.problem, lowest.estimate.x, known), minima=found.minima)
+        certainty = _certainty(found, known)
+        rivals = rivals_of(found, certainty)
     unsigned = mirrored(found, certainty)
     numbers, launches = numbers_of(found, certainty, rivals, unsigned)
     lost = tuple(n for n in found.problem.asked.free if not numbers[n].determined)

@@ -10,13 +10,14 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
 from puck_tables.fitting.certainty import certainty_of
 from puck_tables.fitting.estimate import Estimate, estimate
-from puck_tables.fitting.free_motion import trimmed
+from puck_tables.fitting.free_motion import is_clean, is_hopeless, trimmed, without_ends
 from puck_tables.fitting.numbers import plausible_for
 from puck_tables.fitting.problem import Problem
 from puck_tables.fitting.starts import minima_of
 from puck_tables.fitting.timing import Known
 
 _LIFTS = 0.995  # δ from which on a uniform puck is fitted with part of its base lifted
+_TRIMS = 3
 _JUDGED = 10  # degrees of freedom that tell the noise
 
 
@@ -53,9 +54,9 @@ def fitted(problem: Problem, known: Known, refit: bool) -> Estimate:
         found = replace(found, minima=tuple(minima[0]))
     found = _lifted(found, known)
     if refit:
-        films = trimmed(found)
-        if films != problem.films:
-            return fitted(problem.with_films(films), known, refit=False)
+        found = _trimmed(found, problem, known)
+        if len(parts) == 1 and is_hopeless(found):
+            return _of_a_part(problem, known) or found
     return found
 
 
@@ -82,6 +83,34 @@ def _with_room(problem: Problem) -> Problem:
         f"the bounds of {name}, {least:g} to {most:g}, hold none of its values: of such a puck "
         f"under pressure {law.name} {name} is from {low[k]:g} to {high[k]:g}"
     )
+
+
+def _trimmed(found: Estimate, problem: Problem, known: Known) -> Estimate:
+    """The same without frames at the ends that are no free motion, the smaller part of each track.
+
+    What they did to the fit may have hidden more of them.
+    """
+    for _ in range(_TRIMS):
+        films = trimmed(found)
+        lost = (2 * part.time.size < film.time.size
+                for part, film in zip(films, problem.films, strict=True))  # fmt: skip
+        if films == found.problem.films or any(lost):
+            break
+        found = fitted(problem.with_films(films), known, refit=False)
+    return found
+
+
+def _of_a_part(problem: Problem, known: Known) -> Estimate | None:
+    """The estimate of a track without a hand or a wall at its end; None if that is not the matter.
+
+    They led the fit of all frames so far away that none of these was seen to be foreign.
+    """
+    for part in without_ends(problem.films[0]):
+        found = fitted(problem.with_films((part,)), known, refit=False)
+        found = _trimmed(found, problem, known)
+        if is_clean(found):
+            return found
+    return None
 
 
 def _lifted(found: Estimate, known: Known) -> Estimate:
@@ -115,6 +144,7 @@ def _joint_start(
             weights += weight
             sums += weight @ x[:shared]
     mean = np.linalg.solve(weights, sums) if shared else sums
+    mean = np.clip(mean, *(ends[:shared] for ends in problem.limits))
     return problem.unknowns(
         dict(zip(problem.asked.free, mean.tolist(), strict=True)), np.array(launches)
     )

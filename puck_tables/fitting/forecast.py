@@ -223,7 +223,7 @@ def fisher(
     unsigned = mirrored(seen, known)
     names = tuple(name for _, name in problem.names)
     for rival in rivals:
-        errors[[k for k, name in enumerate(names) if name in rival]] = np.inf
+        errors[[k for k, name in enumerate(names) if name in rival.numbers]] = np.inf
     if unsigned:
         errors[names.index("launch_spin")] = np.inf
     return Forecast(

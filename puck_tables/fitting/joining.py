@@ -22,7 +22,6 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.asked import Asked
-from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.impacts import Piece
 from puck_tables.fitting.joined import Meeting, Slide, Wall, state_at
 from puck_tables.fitting.parameters import OF_PAIRS, OF_WALLS
@@ -33,7 +32,7 @@ _TOGETHER = 2.0  # steps between frames within which two tracks bend at one mome
 _NEAR = 1.0  # radii: how far off two pucks, or a puck and a wall that was given, may seem to be
 _BOUNCES = 1.5  # the largest restitution that noise may show
 _GRIPS = 0.97  # of the impulse that stops the rims
-_REACH = 0.4  # of the time between impacts
+_REACH, _REACH_FRAMES = 0.4, 4.0  # of the time between impacts, and at least
 
 Line = tuple[tuple[float, float], tuple[float, float]]
 
@@ -62,9 +61,8 @@ class Blow(NamedTuple):
     mass: float
 
 
-def blows_of(slides: Estimate, pieces: tuple[Piece, ...], x: FloatArray) -> list[Blow]:
+def blows_of(problem: Problem, pieces: tuple[Piece, ...], x: FloatArray) -> list[Blow]:
     """The impacts that slides show, in the order of time; ``x``: their unknowns."""
-    problem = slides.problem
     bends = [
         _bend(problem, x, n) for n in range(len(pieces) - 1)
         if pieces[n].track == pieces[n + 1].track and pieces[n].slide + 1 == pieces[n + 1].slide
@@ -177,23 +175,25 @@ class Joined(NamedTuple):
 
 
 def joined(
-    slides: Estimate, pieces: tuple[Piece, ...], films: tuple[Seen, ...], asked: Asked,
-    lines: Sequence[Line],
-) -> Joined | None:  # fmt: skip
-    """The problem of slides that impacts join; None where there is no impact.
+    problem: Problem, x: FloatArray, pieces: tuple[Piece, ...], films: tuple[Seen, ...],
+    asked: Asked, lines: Sequence[Line],
+) -> list[Joined]:  # fmt: skip
+    """The problem of slides that impacts join; none where there is no impact.
+
+    Where rims seem to stop on what they meet in each of several impacts there is another, in which
+    they may slide.
 
     Parameters
     ----------
-    slides : each with a launch of its own
+    problem, x : of slides, each with a launch of its own, and a way in which they may move
     pieces : which they are
     films : the tracks, uncut
     asked : with the numbers of impacts
     lines : walls that are given, by two points each
     """
-    problem, x = slides.problem, slides.x
-    blows = blows_of(slides, pieces, x)
+    blows = blows_of(problem, pieces, x)
     if not blows:
-        return None
+        return []
     follows = {bend.piece + 1 for blow in blows for bend in blow.bends}
     chains: list[list[int]] = []
     for n in range(len(pieces)):
@@ -214,42 +214,48 @@ def joined(
     meetings = []
     shift = problem.films[0].start - tracks[0].start
     radius = _numbers(problem, x)[0]
+    step = max(film.usual_step for film in problem.films)
     known = dict(enumerate(lines))
     numbers: dict[int, int] = {}
     for blow in blows:
         bend = blow.bends[0]
-        ends = [slides.problem.films[one.piece].time[-1] for one in blow.bends]
-        ends += [slides.problem.films[one.piece + 1].time[-1] for one in blow.bends]
+        ends = [problem.films[one.piece].time[-1] for one in blow.bends]
+        ends += [problem.films[one.piece + 1].time[-1] for one in blow.bends]
         number = -1
         if len(blow.bends) == 1:
             given = _given(known, bend, radius)
             if given is None or given[0] not in numbers:
                 if given is not None:
                     numbers[given[0]] = len(walls)
-                found = given[1] if given else _wall(blow, radius)
+                met = given[1] if given else _wall(blow, radius)
                 number = len(walls)
                 walls.append(given[1] if given else None)
-                starts.append(found)
+                starts.append(met)
             else:
                 number = numbers[given[0]]
         films_met = tuple(home[one.piece] for one in blow.bends)
-        reach = _REACH * float(min(ends))
+        reach = max(_REACH * float(min(ends)), _REACH_FRAMES * step)
         meetings.append(Meeting(bend.time + shift, reach, films_met, number))
-    asked = asked.joined(
-        {len(blow.bends) for blow in blows}, all(abs(blow.grip) > _GRIPS for blow in blows)
-    )
+    sizes = {len(blow.bends) for blow in blows}
+    grip = all(abs(blow.grip) > _GRIPS for blow in blows)
+    ways = [asked.joined(sizes, grip)]
+    if grip and len(blows) > 1:
+        ways += [other for other in [asked.joined(sizes, False)] if other.free != ways[0].free]
     launches = problem.launches(x)[[chain[0] for chain in chains]]
-    tied = Problem(
-        asked, tuple(tracks), problem.noise, problem.tall,
-        rests=tuple(problem.rests[chain[0]] for chain in chains) if problem.rests else (),
-        walls=tuple(walls), meetings=tuple(meetings),
-    )  # fmt: skip
-    found_numbers = {**problem.found(x), **_begin(asked, blows)}
-    for name in asked.free:
-        low, high = asked.limits(name)
-        found_numbers[name] = min(max(found_numbers[name], low), high)
-    start = tied.unknowns(found_numbers, launches, tuple(starts))
-    return Joined(tied, start, tuple(home[n] for n in range(len(pieces))))
+    found = []
+    for one in ways:
+        tied = Problem(
+            one, tuple(tracks), problem.noise, problem.tall,
+            rests=tuple(problem.rests[chain[0]] for chain in chains) if problem.rests else (),
+            walls=tuple(walls), meetings=tuple(meetings),
+        )  # fmt: skip
+        values = {**problem.found(x), **_begin(one, blows)}
+        for name in one.free:
+            low, high = one.limits(name)
+            values[name] = min(max(values[name], low), high)
+        start = tied.unknowns(values, launches, tuple(starts))
+        found.append(Joined(tied, start, tuple(home[n] for n in range(len(pieces)))))
+    return found
 
 
 def _begin(asked: Asked, blows: list[Blow]) -> dict[str, float]:

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.fitting.certainty import Certainty, Interval, interval_of
+from puck_tables.fitting.certainty import Certainty, Interval, Rival, certainty_of, interval_of
 from puck_tables.fitting.chain import slopes_of_slides
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.impacts import slide_name
 from puck_tables.fitting.parameters import ALL, LAUNCH, PUCK
-from puck_tables.fitting.problem import Found, Problem
+from puck_tables.fitting.problem import Problem
 
 _STEP = 1e-6
 # Scales are plausible within their own size, but not less than this
@@ -110,12 +111,12 @@ def plausible_for(problem: Problem, x: FloatArray) -> FloatArray:
 def numbers_of(
     found: Estimate,
     certainty: Certainty,
-    rivals: tuple[Found, ...] = (),
+    rivals: tuple[Rival, ...] = (),
     unsigned: tuple[int, ...] = (),
 ) -> tuple[dict[str, Number], tuple[FoundLaunch, ...]]:
     """All numbers of the puck, and of each launch.
 
-    ``rivals``: the puck's numbers at other summits of the likelihood; what they differ in is not
+    ``rivals``: other summits of the likelihood; what they differ in, or do not tell, is not
     determined; ``unsigned``: tracks that do not tell which way the puck spins.
     """
     problem, x = found.problem, found.x
@@ -128,11 +129,16 @@ def numbers_of(
         if interval.profiled:  # the likelihood is no parabola: half of its width
             error = max(error, width / (2.0 * certainty.quantile))
         low, high = interval.low, interval.high
-        others = [values[name], *(rival[name] for rival in rivals)]
-        if min(others) < low or max(others) > high:  # another summit lies outside
-            half = 0.5 * width
-            low, high = min(low, min(others) - half), max(high, max(others) + half)
-            error = math.inf
+        for rival in rivals:
+            there = interval_of(rival.estimate, rival.certainty, k)
+            if (
+                not interval.low <= rival.numbers[name] <= interval.high
+                or rival.certainty.undetermined[k]
+            ):
+                error = math.inf
+            low, high = min(low, there.low), max(high, there.high)
+            error = max(error, (high - low) / (2.0 * certainty.quantile))
+        width = high - low
         least, largest = (float(limit[k]) for limit in problem.limits)
         if width >= _ALL * (largest - least) or error > _MUCH.get(name, math.inf):
             error = math.inf
@@ -140,6 +146,12 @@ def numbers_of(
             values[name], error, low, high, PUCK[name].unit, FREE,
             interval.profiled,
         )  # fmt: skip
+    # what follows is as much less certain as what it follows from
+    widened, profiled = np.ones(x.size), False
+    for k, name in enumerate(asked.free):
+        if puck[name].profiled and 0.0 < errors[k] < math.inf and puck[name].determined:
+            widened[k] = max(puck[name].error / errors[k], 1.0)
+            profiled = True
     everything = {**asked.known(), **values}
     everything.update(_derived(asked.scales(values), everything))
     for name, value in everything.items():
@@ -149,12 +161,17 @@ def numbers_of(
         if not slope.any():
             puck[name] = Number(value, 0.0, value, value, PUCK[name].unit, KNOWN)
             continue
-        error = certainty.error_of(slope, max(abs(value), 1e-12))
+        error = certainty.error_of(slope * widened, max(abs(value), 1e-12))
         if any(slope[k] and not puck[one].determined for k, one in enumerate(asked.free)
                if not certainty.undetermined[k]):  # fmt: skip
             error = math.inf
         number = quadratic(value, error, PUCK[name].unit, FOLLOWS, certainty.quantile)
         ends = _follows(problem, x, name, slope, puck)
+        if ends is None and profiled and name == "height" and math.isfinite(error):
+            ends = _profiled(found, certainty, name)
+            if ends is not None and ends.profiled:
+                half = 0.5 * (ends.high - ends.low)
+                number = number._replace(error=half / certainty.quantile, profiled=True)
         if ends is not None:
             number = number._replace(low=ends.low, high=ends.high)
         puck[name] = number._replace(low=max(number.low, PUCK[name].low))
@@ -215,6 +232,29 @@ def _follows(
         everything.update(_derived(asked.scales(moved), everything))
         ends.append(everything[name])
     return Interval(min(ends), max(ends), False)
+
+
+def _profiled(found: Estimate, certainty: Certainty, name: str) -> Interval | None:
+    """The interval of height by the profile likelihood, with height in place of δ as an unknown.
+
+    None where δ is not found, or more is known of it than the tracks tell.
+    """
+    problem = found.problem
+    asked = problem.asked
+    if "delta" not in asked.free or "delta" in asked.priors or "delta" in asked.bounds:
+        return None
+    k = asked.free.index("delta")
+    values = {**asked.known(), **problem.found(found.x)}
+    height = _derived(asked.scales(values), values)[name]
+    other = replace(asked, free=tuple(name if one == "delta" else one for one in asked.free))
+    moved = replace(problem, asked=other)
+    x = found.x.copy()
+    x[k] = height
+    rows, slopes = moved.residuals_and_jacobian(x)
+    there = replace(found, problem=moved, x=x, residuals=rows, jacobian=slopes, minima=())
+    plausible = plausible_for(moved, x)
+    own = certainty_of(slopes[found.kept], plausible, certainty.quantile)
+    return interval_of(there, own, k)
 
 
 def _derived(scales: tuple[float, float, float], numbers: Mapping[str, float]) -> dict[str, float]:

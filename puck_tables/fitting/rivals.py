@@ -4,81 +4,150 @@ Without angles a puck that slides straight without spin looks as one that spins 
 every motion tends to: both lose speed at a constant rate, but not the same share of J.  A path
 bends to a side that its spin and the tilt choose; one that is not seen to bend is its own mirror
 image, and does not say which way the puck spins.
+
+A summit that stands apart is told while χ² there is higher by less than :data:`RISE`, far beyond
+the 95 % limit of one summit.  Of two motions whose paths differ by D standard deviations the χ² of
+the wrong one is below that of the true one by T or more with probability Φ(−(D² + T)/(2 D)), at
+most Φ(−√T): of 4², as for outliers, that is one film in 30,000, whatever the motions are.
 """
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.fitting.certainty import Z95, Certainty, certainty_of
+from puck_tables.fitting.abreast import abreast
+from puck_tables.fitting.certainty import Z95, Certainty, Rival, certainty_of
 from puck_tables.fitting.compact import compact
-from puck_tables.fitting.estimate import Estimate
+from puck_tables.fitting.estimate import FARTHEST, Estimate
 from puck_tables.fitting.least_squares import SQUARES, minimise
 from puck_tables.fitting.numbers import plausible_for
-from puck_tables.fitting.problem import Found
-from puck_tables.fitting.starts import minima_of
+from puck_tables.fitting.starts import minima_of, numbers_with
 
+RISE = FARTHEST**2  # of χ², up to which another summit is told
 _APART = 4.0  # standard errors: another summit
 _SPIN = "launch_spin"
+_LIMIT = 1.5  # about rω/v that all motions tend to
+_TILT = 0.2  # any: without spin it does nothing
+_TO_OTHERS = ((3, 6), (12, 3))  # steps, and how many starts then go on
 
 
-def rivals_of(found: Estimate, certainty: Certainty) -> tuple[Found, ...]:
-    """The numbers of the puck, and its launch spin, at other summits within the 95 % limit.
+def rivals_of(found: Estimate, certainty: Certainty) -> tuple[Rival, ...]:
+    """Other summits whose χ² is higher by less than :data:`RISE`.
 
-    Of one track; several have not been seen to have any.  With angles they are motions of whole
-    turns more from frame to frame, where frames are few or noisy.
+    With angles they are motions of whole turns more from frame to frame, where frames are few or
+    noisy, and of one track alone; without them those of other spins.
     """
     problem = found.problem
-    if len(problem.films) > 1 or problem.meetings or problem.asked.speeds:
+    marked = any(film.angle is not None for film in problem.films)
+    apart = not problem.meetings
+    signed = marked or not apart  # a wall tells a motion from its mirror image
+    single = len(problem.films) == 1
+    if problem.asked.speeds or not (single or found.minima or not (marked and apart)):
         return ()
-    rivals, marked = [], problem.films[0].angle is not None
+    starts = list(found.minima)
+    if not starts and apart and single:
+        starts = minima_of(problem)
+    if not marked and apart:
+        starts += _of_other_spins(found)
+    rivals: list[Rival] = []
     summits = [(found.x, *_known(found, certainty))]
-    for start in found.minima or minima_of(problem):
+    for start in starts:
         x, cost = minimise(problem, start, SQUARES, found.kept)
+        rise = 2.0 * cost - found.chi2
         off = [
-            (np.abs(_told(x, marked) - _told(one, marked)) > apart)[seen]
-            for one, seen, apart in summits
+            (np.abs(_told(x, signed) - _told(one, signed)) > far)[seen]
+            for one, seen, far in summits
         ]
-        if 2.0 * cost < found.chi2 + Z95**2 and all(one.any() for one in off):
+        if rise < RISE and all(one.any() for one in off):
             # what one motion tells another may not: each summit is as wide as it is
-            own = certainty_of(problem.jacobian(x)[found.kept], plausible_for(problem, x))
-            summits.append((x, *_known(found, own)))
-            rivals.append(x)
-    mine = [(k, name) for k, (track, name) in enumerate(problem.names)
-            if track == -1 or name == _SPIN]  # fmt: skip
-    return tuple({name: float(x[k]) for k, name in mine} for x in rivals)
+            rows, slopes = problem.residuals_and_jacobian(x)
+            x = np.where(slopes.any(axis=0), x, start)  # what does nothing stays where it was
+            there = replace(found, x=x, residuals=rows, jacobian=slopes, minima=())
+            plausible = plausible_for(problem, x)
+            own = certainty_of(slopes[found.kept], plausible, certainty.quantile)
+            summits.append((x, *_known(there, own)))
+            rivals.append(Rival(there, own, rise))
+    return tuple(rivals)
+
+
+def _of_other_spins(found: Estimate) -> list[FloatArray]:
+    """Unknowns near other summits of tracks without angles, by spins of which a path may be.
+
+    All tracks without spin, at the ratio that all motions tend to, or mirrored.
+    """
+    problem = found.problem
+    if _SPIN in problem.asked.fixed:
+        return []
+    launches = problem.launches(found.x)
+    numbers = problem.found(found.x)
+    decel, delta, radius = problem.asked.scales(numbers)
+    speed = np.hypot(launches[:, 2], launches[:, 3])
+    limit = _LIMIT * speed / radius
+    starts = []
+    ways = (
+        (np.zeros(limit.size), _TILT), (np.copysign(limit, launches[:, 4]), delta),
+        (-np.copysign(limit, launches[:, 4]), 0.0), (-launches[:, 4], delta),
+    )  # fmt: skip
+    for spins, tilt in ways:
+        other = launches.copy()
+        other[:, 4] = spins
+        # what slows the puck is about J times the share of its speed in the slip
+        shares = [
+            np.hypot(speed, radius * one).sum() / speed.sum() for one in (launches[:, 4], spins)
+        ]
+        found_numbers = numbers_with(problem.asked, decel * shares[1] / shares[0], tilt)
+        starts.append(problem.unknowns({**numbers, **found_numbers}, other))
+    walked = abreast([(problem, x) for x in starts], _TO_OTHERS, rival=RISE, kept=found.kept)
+    return [x for x, cost in walked if 2.0 * cost < found.chi2 + 2.0 * RISE]
 
 
 def mirrored(found: Estimate, certainty: Certainty) -> tuple[int, ...]:
     """Tracks without angles that the opposite spin fits as well.
 
-    Where it does the tilt hardly differs from its least, to which it then falls, and what the other
-    unknowns can do is linear.
+    Where the tilt is free it hardly differs from its least there, to which it then falls.
     """
     problem, low, high = found.problem, *found.problem.limits
     tilts = [k for k, (_, name) in enumerate(problem.names) if name in ("delta", "height")]
-    errors, alike = certainty.errors, []
+    errors = np.sqrt(np.diag(certainty.covariance))
+    alike = []
     for k, (n, name) in enumerate(problem.names):
         if name != _SPIN or problem.films[n].angle is not None:
             continue
-        x = found.x.copy()
-        x[k] = -x[k]
-        if not (abs(x[k]) > _APART * errors[k] and low[k] <= x[k] <= high[k]):
-            continue
-        x[tilts] = low[tilts]
-        few = compact(problem, *problem.residuals_and_jacobian(x), found.kept)
-        q, _ = np.linalg.qr(np.delete(few.slopes, tilts, axis=1))
-        left = few.rows - q @ (few.rows @ q)
-        if float(left @ left) < found.chi2 + Z95**2:
-            alike.append(n)
+        for least in (True, False) if tilts else (False,):
+            x = found.x.copy()
+            x[k] = -x[k]
+            if not low[k] <= x[k] <= high[k]:
+                continue
+            if least:
+                x[tilts] = low[tilts]
+            if not _near(found, x, tilts if least else []):
+                continue
+            there, cost = minimise(problem, x, SQUARES, found.kept)
+            if (
+                there[k] * found.x[k] < 0.0 and abs(there[k] - found.x[k]) > Z95 * errors[k]
+                and 2.0 * cost < found.chi2 + RISE
+            ):  # fmt: skip
+                alike.append(n)
+                break
     return tuple(alike)
 
 
-def _told(x: FloatArray, marked: bool) -> FloatArray:
+def _near(found: Estimate, x: FloatArray, held: list[int]) -> bool:
+    """Whether χ² may come near that of the estimate, by what is linear in the unknowns."""
+    problem = found.problem
+    few = compact(problem, *problem.residuals_and_jacobian(x), found.kept)
+    q, _ = np.linalg.qr(np.delete(few.slopes, held, axis=1))
+    left = few.rows - q @ (few.rows @ q)
+    return float(left @ left) < found.chi2 + 2.0 * RISE
+
+
+def _told(x: FloatArray, signed: bool) -> FloatArray:
     """Unknowns as they are compared: without angles a mirror image is no other motion."""
-    return x if marked else np.abs(x)
+    return x if signed else np.abs(x)
 
 
 def _known(found: Estimate, certainty: Certainty) -> tuple[npt.NDArray[np.bool_], FloatArray]:

@@ -74,7 +74,7 @@ def minima_of(problem: Problem) -> list[FloatArray]:
             launch[5] = whole[np.isfinite(whole)][0]
             whole = whole[few]
         pieces = replace(problem, films=(part,), whole=(whole,))
-        found = _found(asked, guess.decel, guess.delta)
+        found = {**_any(asked), **numbers_with(asked, guess.decel, guess.delta)}
         starts.append((pieces, pieces.unknowns(found, launch[None])))
     return _deepest(problem, abreast(starts, FROM_AFAR, ROBUST, _RIVAL))
 
@@ -274,20 +274,21 @@ def _scales(asked: Asked, slowing: float) -> tuple[FloatArray, FloatArray]:
     return np.array(sorted(heights)), np.tile(decels, (len(heights), 1))
 
 
-def _found(asked: Asked, decel: float, delta: float) -> Found:
-    """The free numbers that mean these J and δ."""
-    found = _any(asked)
-    gravity = {**asked.known(), **found}["gravity"]
-    if "friction" in found:
+def numbers_with(asked: Asked, decel: float, delta: float) -> Found:
+    """The free numbers, of those that J and δ follow from, which mean these."""
+    found, others = {}, _any(asked)
+    gravity = {**asked.known(), **others}["gravity"]
+    if "friction" in others:
         found["friction"] = decel / gravity
-    elif "decel" in found:
+    elif "decel" in others:
         found["decel"] = decel
-    elif "gravity" in found:
+    elif "gravity" in others:
         found["gravity"] = decel / asked.known()["friction"]
-    if "delta" in found:
+    if "delta" in others:
         found["delta"] = delta
-    elif "height" in found:
-        radius, gravity = asked.scales(found)[2], {**asked.known(), **found}["gravity"]
+    elif "height" in others:
+        others.update(found)
+        radius, gravity = asked.scales(others)[2], {**asked.known(), **others}["gravity"]
         found["height"] = 0.5 * delta * radius * gravity / decel
     for name in found:
         low, high = asked.limits(name)

@@ -9,11 +9,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables.fitting.abreast import ROBUST, abreast
 from puck_tables.fitting.asked import Asked
 from puck_tables.fitting.certainty import Certainty
 from puck_tables.fitting.estimate import FARTHEST, FARTHEST_PLACE, Estimate, estimate
@@ -26,10 +28,16 @@ from puck_tables.fitting.problem import Problem
 from puck_tables.fitting.residual_tests import chi_square_tail
 from puck_tables.fitting.seen import Seen
 from puck_tables.fitting.timing import Known
+from puck_tables.fitting.ways import ways_of
 
 _BY_CHANCE = 1e-5  # of the rise of χ²: less, and the law of impact is not that of these slides
 _STEP = 1e-6
 _SAME = 1e-9  # of the size of coordinates: a point lies on a wall
+_WALK = ((8, 16), (12, 8), (25, 4))  # steps from each start, and how many then go on
+_RIVAL = 15.0  # what other minima may cost more
+_TRIED = 12  # ways of slides that are not joined, to see whether they have rivals
+_HARDER = 3.0  # times the friction of a rim that slides
+_EQUAL = 0.01  # of χ²: two forms of one law
 
 Values = Callable[[FloatArray], FloatArray]
 
@@ -56,27 +64,77 @@ class Impact(NamedTuple):
 def tie(
     slides: Estimate, pieces: tuple[Piece, ...], films: tuple[Seen, ...], asked: Asked,
     lines: Sequence[Line], known: Known,
-) -> tuple[Estimate | None, str]:  # fmt: skip
-    """The estimate of joined slides, and a sentence if it is none.
+) -> tuple[Estimate, str]:  # fmt: skip
+    """The estimate of joined slides; that of slides apart and a sentence if these are not joined.
 
     Parameters
     ----------
     slides, pieces, films, asked, lines : as :func:`puck_tables.fitting.joining.joined`
     known : whether the noise of places and of angles is
     """
-    whole = joined(slides, pieces, films, asked, lines)
-    if whole is None:
-        return None, ""
-    found = estimate(whole.problem, whole.start, known)
-    rise = _rise(slides, found, whole)
+    groups: dict[tuple[object, ...], list[Joined]] = {}
+    ways = ways_of(slides)
+    for x in ways:
+        for one in joined(slides.problem, x, pieces, films, asked, lines):
+            frames = tuple(film.time.size for film in one.problem.films)
+            groups.setdefault((one.problem.names, one.pieces, frames), []).append(one)
+    if not groups:
+        return slides, ""
+    most = max(len(group[0].problem.meetings) for group in groups.values())
+    fits = []
+    for group in groups.values():
+        whole = group[0]
+        if len(whole.problem.meetings) == most:
+            best = _deepest(group, known)
+            fits.append((_rise(slides, best, whole), best))
+    least = min(rise for rise, _ in fits)
+    near = [fit for fit in fits if fit[0] < least + _EQUAL]
+    rise, found = min(near, key=lambda fit: (_unlikely(fit[1]), fit[0]))
     conditions = slides.x.size - found.x.size
-    if chi_square_tail(rise, max(conditions, 1)) < _BY_CHANCE:
-        return None, (
+    if chi_square_tail(max(rise, 0.0), max(conditions, 1)) < _BY_CHANCE:
+        return replace(slides, minima=tuple(ways[:_TRIED])), (
             "The slides are not joined at the impacts: one law of impact for all of them, with "
             f"states that match, would raise chi^2 by {rise:.4g} for {conditions} "
             f"condition{'' if conditions == 1 else 's'}"
         )
-    return found, ""
+    return replace(found, minima=(*found.minima, *_gripping(found))), ""
+
+
+def _deepest(group: list[Joined], known: Known) -> Estimate:
+    """The estimate from the best of several starts, with other minima near which it may lie."""
+    if len(group) == 1:
+        return estimate(group[0].problem, group[0].start, known)
+    walked = abreast([(one.problem, one.start) for one in group], _WALK, ROBUST, _RIVAL)
+    found = estimate(group[0].problem, walked[0][0], known)
+    return replace(found, minima=tuple(x for x, cost in walked if cost < walked[0][1] + _RIVAL))
+
+
+def _gripping(found: Estimate) -> list[FloatArray]:
+    """Unknowns near which rims that slide may grip instead; with angles it is seen that they do."""
+    problem = found.problem
+    names = [name for _, name in problem.names]
+    rubs = [names.index(name) for name in ("rim_friction", "pair_friction") if name in names]
+    if not rubs or all(film.angle is not None for film in problem.films):
+        return []
+    x = found.x.copy()
+    x[rubs] = np.minimum(_HARDER * x[rubs], problem.limits[1][rubs])
+    return [x]
+
+
+def _unlikely(found: Estimate) -> int:
+    """Of forms of one law: friction where rims slide, 0, before tangential restitution, 1.
+
+    Last is a friction that no impact tells, as all rims grip.
+    """
+    problem = found.problem
+    if not {"rim_friction", "pair_friction"} & {*problem.asked.free}:
+        return 1
+    numbers = problem.found(found.x)
+    for meeting, hit in zip(problem.meetings, problem.slides(found.x)[1], strict=True):
+        friction = problem.asked.rims(numbers, meeting.wall < 0).friction
+        if abs(hit.ratio) >= (1.0 - _STEP) * friction:
+            return 0
+    return 2
 
 
 def not_met(impacts: Sequence[Impact], problem: Problem, lines: Sequence[Line]) -> tuple[str, ...]:
@@ -116,7 +174,7 @@ def _rise(slides: Estimate, found: Estimate, whole: Joined) -> float:
         track = whole.pieces[n]
         places = np.searchsorted(found.problem.films[track].frame, film.frame)
         rise += float((together[track][places] - squares).sum())
-    return max(rise, 0.0)
+    return rise
 
 
 def _frame_squares(problem: Problem, x: FloatArray) -> list[FloatArray]:
@@ -162,11 +220,11 @@ def impacts_apart(
 ) -> tuple[Impact, ...]:
     """The impacts between slides with launches of their own; ``names``: of the tracks."""
     problem = slides.problem
-    blows = blows_of(slides, pieces, slides.x)
+    blows = blows_of(problem, pieces, slides.x)
 
     def values(x: FloatArray) -> FloatArray:
         """Restitution, ratio and mass of each; as they are where an impact comes to nothing."""
-        others = {_key(blow): blow for blow in blows_of(slides, pieces, x)}
+        others = {_key(blow): blow for blow in blows_of(problem, pieces, x)}
         rows = [others.get(_key(blow), blow) for blow in blows]
         return np.array([[one.restitution, one.ratio, one.mass] for one in rows]).ravel()
 
