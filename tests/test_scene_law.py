@@ -184,7 +184,7 @@ def test_a_tolerance_that_the_corners_do_not_allow_is_refused_with_one_that_they
     floor = {"law": law(tmp_path, rows)}
     scene = {"puck": {"radius": 0.04}, "floor": floor, "launch": LAUNCH}
     with pytest.raises(
-        pt.errors.AccuracyError, match="out of reach of a table of .*with its corners"
+        pt.errors.AccuracyError, match=r"out of reach of a table of .*with its corners"
     ) as refused:
         simulate_scene(scene)
     tol = float(re.search(r"--tol\) of (\S+) or more", str(refused.value)).group(1))
