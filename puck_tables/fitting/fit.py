@@ -61,6 +61,7 @@ def fit(
     noise: tuple[float | None, float | None] | None = None,
     since: float = -math.inf,
     until: float = math.inf,
+    keep_all: bool = False,
     jitter: float | str | None = None,
     rows: tuple[float, float] | None = None,
     impacts: bool = False,
@@ -77,7 +78,8 @@ def fit(
     ----------
     tracks : Track, or several of one puck
         Of free motion: slid, not rolled or pushed, until it rests or the film ends.  Frames at
-        either end that are none of it are left out, if they are the smaller part.
+        either end before or after something touches the puck are left out, if they are the smaller
+        part: velocity or acceleration jump there, or it gets faster.
     puck : Puck
         What is known of it: its radius, and whatever ``free`` does not name.
     free : names, optional
@@ -92,6 +94,8 @@ def fit(
     noise : (m, rad), standard deviations of places and angles
         None for either: that of the residuals.
     since, until : s, of the free motion, as the tracks count time
+        No frame is left out at an end that is given.
+    keep_all : whether all frames are of free motion: none is left out at the ends
     jitter : s, standard deviation of time stamps; 'find': that of the residuals along the motion
     rows : y in m of the first and of the last line of the picture, of a rolling shutter
         Frames are then later by ``readout`` (s, a number that is found) times how far down they
@@ -146,7 +150,7 @@ def fit(
     (0.15, 0.025)
     """
     instance("puck", puck, Puck)
-    films = films_of(tracks, since, until, rows_given(rows), puck.radius)
+    films = films_of(tracks, since, until, keep_all, rows_given(rows), puck.radius)
     lines = walls_given(walls)
     impacts = impacts or bool(lines)
     asked = Asked.of(

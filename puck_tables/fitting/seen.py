@@ -25,7 +25,8 @@ class Seen:
 
     ``time`` (n,) s from ``start``; ``place`` (n, 2) m; ``angle`` (n,) rad, NaN where there is none,
     or None where there never is; ``frame`` (n,): numbers in the track; ``row`` (n,): how far down
-    the picture, 0 at its first line and 1 at its last, or None.
+    the picture, 0 at its first line and 1 at its last, or None; ``cuttable``: whether frames at its
+    start, and at its end, may be none of the free motion.
     """
 
     name: str
@@ -35,6 +36,7 @@ class Seen:
     angle: FloatArray | None
     frame: npt.NDArray[np.int64]
     row: FloatArray | None = None
+    cuttable: tuple[bool, bool] = (True, True)
 
     def part(self, chosen: npt.NDArray[np.bool_]) -> Seen:
         """Some of the frames; the first of them is the new start."""
@@ -52,8 +54,10 @@ class Seen:
         return float(np.median(np.diff(self.time)))
 
 
-def seen_in(track: Track, since: float = -math.inf, until: float = math.inf) -> Seen:
-    """The frames of a track, those of free motion if its start and end are told.
+def seen_in(
+    track: Track, since: float = -math.inf, until: float = math.inf, keep_all: bool = False
+) -> Seen:
+    """The frames of a track, those of free motion if its start and end are told, or all are.
 
     Raises
     ------
@@ -81,6 +85,7 @@ def seen_in(track: Track, since: float = -math.inf, until: float = math.inf) -> 
     return Seen(
         track.name, float(time[0]), time - time[0], track.place[chosen], angle,
         np.flatnonzero(chosen),
+        cuttable=(since == -math.inf and not keep_all, until == math.inf and not keep_all),
     )  # fmt: skip
 
 
