@@ -13,7 +13,14 @@ from puck_tables._core.real import instance, real
 from puck_tables.film.track import Track
 from puck_tables.fitting.asked import Asked
 from puck_tables.fitting.blindness import blind_spots
-from puck_tables.fitting.certainty import Z95, Certainty, certainty_of, pinned_of, quantile_of
+from puck_tables.fitting.certainty import (
+    Z95,
+    Certainty,
+    certainty_of,
+    pinned_of,
+    quantile_of,
+    widened,
+)
 from puck_tables.fitting.estimate import Estimate, estimate
 from puck_tables.fitting.fitted import fitted
 from puck_tables.fitting.given import (
@@ -38,7 +45,7 @@ from puck_tables.fitting.numbers import numbers_of, plausible_for
 from puck_tables.fitting.outcome import Fit
 from puck_tables.fitting.parameters import NODES
 from puck_tables.fitting.problem import Problem
-from puck_tables.fitting.residual_tests import drift, runs
+from puck_tables.fitting.residual_tests import drift, misfits, runs
 from puck_tables.fitting.rivals import mirrored, rivals_of
 from puck_tables.fitting.seen import Seen, noise_of
 from puck_tables.fitting.tied import Impact, impacts_apart, impacts_joined, not_met, tie
@@ -200,6 +207,8 @@ def fit(
         certainty = _certainty(found, known)
         rivals = rivals_of(found, certainty)
     unsigned = mirrored(found, certainty)
+    if misfits(found, known, judged):
+        certainty = widened(found, certainty)
     numbers, launches = numbers_of(found, certainty, rivals, unsigned)
     lost = tuple(n for n in found.problem.asked.free if not numbers[n].determined)
     scores: tuple[LawScore, ...] = ()

@@ -10,9 +10,10 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
 from puck_tables.fitting.certainty import certainty_of
 from puck_tables.fitting.estimate import Estimate, estimate, only_strays
-from puck_tables.fitting.free_motion import is_clean, is_hopeless, trimmed, without_ends
+from puck_tables.fitting.free_motion import is_clean, trimmed, without_ends
 from puck_tables.fitting.numbers import plausible_for
 from puck_tables.fitting.problem import Problem
+from puck_tables.fitting.residual_tests import NO_PATTERN, NOISY
 from puck_tables.fitting.starts import minima_of
 from puck_tables.fitting.timing import Known
 
@@ -56,7 +57,7 @@ def fitted(problem: Problem, known: Known, refit: bool) -> Estimate:
     if not refit:
         return found
     found = _trimmed(found, problem, known)
-    if len(parts) == 1 and is_hopeless(found):
+    if len(parts) == 1 and not is_clean(found, NOISY, NO_PATTERN):
         found = _of_a_part(problem, known) or found
     if only_strays(found):
         return found
@@ -107,7 +108,7 @@ def _trimmed(found: Estimate, problem: Problem, known: Known) -> Estimate:
 def _of_a_part(problem: Problem, known: Known) -> Estimate | None:
     """The estimate of a track without a hand or a wall at its end; None if that is not the matter.
 
-    They led the fit of all frames so far away that none of these was seen to be foreign.
+    They may lead the fit of all frames so far away that none of these is seen to be foreign.
     """
     for part in without_ends(problem.films[0]):
         found = fitted(problem.with_films((part,)), known, refit=False)

@@ -9,12 +9,11 @@ import numpy.typing as npt
 
 from puck_tables.fitting.estimate import FARTHEST, Estimate
 from puck_tables.fitting.residual_tests import drift, runs
-from puck_tables.fitting.seen import FEWEST, Seen, noise_of
+from puck_tables.fitting.seen import FEWEST, Seen, noise_of, rests_from
 from puck_tables.fitting.touched import pushed, touched
 
 _FEWEST_OUT = 3  # frames at an end that are more than single outliers
 _BESIDE = 0.1  # of the frames that are left, at most
-_HOPELESS, _CLEAN, _CHANCE = 10.0, 1.2, 0.01  # times the noise of a smooth motion; probability
 _SMALLER = 0.45  # of the frames: a hand or what a wall did
 _SLACK = 3  # frames
 _MOSTLY = 0.7  # of them are outliers
@@ -51,7 +50,8 @@ def trimmed(found: Estimate, uncut: tuple[Seen, ...]) -> tuple[Seen, ...]:
 
 def _ends(whole: Seen, at: int, beside: int, first: bool) -> bool:
     """Whether the free motion begins, or ends, about a frame since something touches the puck."""
-    if not whole.cuttable[0 if first else 1]:
+    rests = rests_from(whole, noise_of([whole])[0])
+    if not whole.cuttable[0 if first else 1] or (first and at >= rests - FEWEST):
         return False
     if touched(whole, at - beside - _SLACK, at + beside + _SLACK) is not None:
         return True
@@ -60,14 +60,9 @@ def _ends(whole: Seen, at: int, beside: int, first: bool) -> bool:
     return pushed(whole, *foreign) and not pushed(whole, *free)
 
 
-def is_hopeless(found: Estimate) -> bool:
-    """Whether the motion of a track is so far off that something else is in it."""
-    return _excess(found) > _HOPELESS
-
-
-def is_clean(found: Estimate) -> bool:
-    """Whether what is left of a track is noise."""
-    return _excess(found) < _CLEAN and min(runs(found), drift(found)) > _CHANCE
+def is_clean(found: Estimate, excess: float = 1.2, chance: float = 0.01) -> bool:
+    """Whether what is left of a track is noise, no more than that of a smooth motion."""
+    return _excess(found) < excess and min(runs(found), drift(found)) > chance
 
 
 def _excess(found: Estimate) -> float:

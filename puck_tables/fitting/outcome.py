@@ -20,7 +20,7 @@ from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.held_out import HeldOut
 from puck_tables.fitting.laws import LawScore
 from puck_tables.fitting.numbers import KNOWN, FoundLaunch, Number
-from puck_tables.fitting.residual_tests import lengthways
+from puck_tables.fitting.residual_tests import lengthways, misfits
 from puck_tables.fitting.seen import Seen
 from puck_tables.fitting.tied import Impact
 from puck_tables.fitting.timing import Known
@@ -33,9 +33,6 @@ if TYPE_CHECKING:
     from puck_tables.trajectory import Trajectory
 
 KIND = "puck-tables fit 1"
-_NO_PATTERN = 1e-3  # probability of residuals so patterned by chance
-_COMPUTED = 1e-7  # of the path: residuals of tracks that were computed, not seen
-_NOISY = 1.5  # times the noise of a smooth motion
 _LENGTHWAYS = 1.3
 _GRIP, _SLICK = 5.0, 1e-4  # friction coefficients of dry surfaces are smaller, and larger
 
@@ -164,31 +161,11 @@ class Fit(Result):
     @property
     def complaints(self) -> tuple[str, ...]:
         """Signs that the tracks are not those of such a puck."""
-        found = []
-        size = max(float(np.ptp(film.place, axis=0).max()) for film in self.estimate.problem.films)
-        # smaller residuals are the errors of what is computed
-        seen = self.noise[0] > _COMPUTED * size
-        excess = [
-            own / smooth for own, smooth in zip(self.noise, self.smooth_noise, strict=True)
-            if math.isfinite(smooth) and smooth > 0.0
-        ]  # fmt: skip
-        if seen and not any(self.noise_known[:2]) and max(excess, default=0.0) > _NOISY:
-            found.append(
-                f"The residuals are {max(excess):.3g} times what smooth tracks would leave"
-            )
-        per_degree = self.chi2 / max(self.degrees, 1)
-        expected = 1.0 + 5.0 * math.sqrt(2.0 / max(self.degrees, 1))
-        if any(self.noise_known[:2]) and per_degree > expected:
-            found.append(f"The residuals are {math.sqrt(per_degree):.3g} times the noise given")
-        if seen and min(self.runs, self.drift) < _NO_PATTERN:
-            found.append(
-                "The residuals are no noise, they have a pattern (probability by chance "
-                f"{min(self.runs, self.drift):.1g})"
-            )
+        found = list(misfits(self.estimate, self.noise_known, self.smooth_noise))
         if found:
             found.append(
-                "Standard errors and intervals are those of a model that fits: here they are too "
-                "small"
+                "Standard errors are widened by what parts of the frames do to the numbers: they "
+                "may still be too small"
             )
         if self.untied:
             found.append(self.untied)

@@ -43,7 +43,7 @@ def touched(film: Seen, first: int, last: int) -> int | None:
     best, where = 0.0, None
     for middle in range(max(first, _LEAST), min(last, film.time.size - _LEAST) + 1):
         for reach in _REACHES:
-            gain = _gain(film, noise, steady, middle, reach, middle >= rests - _LEAST)
+            gain = _gain(film, noise, steady, middle, reach, rests)
             if gain > best:
                 best, where = gain, middle
             if min(middle, film.time.size - middle) <= reach:
@@ -78,15 +78,18 @@ def pushed(film: Seen, start: int, stop: int) -> bool:
 
 
 def _gain(
-    film: Seen, noise: float, steady: npt.NDArray[np.bool_], middle: int, reach: int, stops: bool
+    film: Seen, noise: float, steady: npt.NDArray[np.bool_], middle: int, reach: int, rests: int
 ) -> float:
     """By how much two parabolas are nearer than one polynomial, 0 where that is by chance.
 
-    ``stops``: the puck rests afterwards, as it does by itself: its velocity has to jump.
+    ``rests``: the frame from which on the puck does.  It comes to rest by itself, where its
+    acceleration jumps: before that what comes after does not count, there the velocity has to jump.
     """
+    stops = middle >= rests - _LEAST
+    end = middle + reach if stops else min(middle + reach, rests)
     sides = [
-        np.flatnonzero(steady[start:end]) + start
-        for start, end in ((max(0, middle - reach), middle), (middle, middle + reach))
+        np.flatnonzero(steady[start:stop]) + start
+        for start, stop in ((max(0, middle - reach), middle), (middle, end))
     ]
     if min(side.size for side in sides) < _LEAST:
         return 0.0
@@ -106,8 +109,9 @@ def _gain(
     if stops:
         jump = math.hypot(*(slopes[1][0] - slopes[0][0]))
         error = math.sqrt(sum(spread / size**3 for _, spread, size, _ in slopes)) * noise
-        slowing = 2.0 * math.hypot(*slopes[0][3]) * film.usual_step
-        if jump < max(_JUMPS * error / film.usual_step, _LEAST * slowing):
+        slowing = 2.0 * math.hypot(*slopes[0][3])
+        hidden = _LEAST * film.usual_step + 2.0 * math.sqrt(10.0 * noise / max(slowing, 1e-12))
+        if jump < max(_JUMPS * error / film.usual_step, slowing * hidden):
             return 0.0
     return gain
 
