@@ -71,7 +71,10 @@ def rival_sentence(rival: Rival, marked: bool) -> str:
     words = ", ".join(
         f"{name.replace('_', ' ')} {value:.4g}" for name, value in rival.numbers.items()
     )
-    close = "as well" if rival.rise < Z95**2 else f"nearly as well (chi^2 + {rival.rise:.2g})"
+    close = "as well"
+    if abs(rival.rise) > Z95**2:
+        nearly = "nearly as well" if rival.rise > 0.0 else "a little better"
+        close = f"{nearly} (chi^2 {'+' if rival.rise > 0.0 else '-'} {abs(rival.rise):.2g})"
     return (
         f"Another motion, of another spin, fits {close}: {words}. What would tell: {more}, or its "
         "launch spin, if it is known (launch_spin)."

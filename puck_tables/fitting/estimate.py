@@ -146,15 +146,34 @@ def _noise(
         return problem.noise, problem.jitter
     if problem.jitter > 0.0 or not known.jitter:
         return _jittery(problem, x, kept, known)
-    few = compact(problem, rows, slopes, kept)
-    q, _ = np.linalg.qr(few.slopes)
     found = list(problem.noise)
-    for kind in (PLACE, ANGLE):
-        mine = problem.kinds[kept] == kind
-        free = float(mine.sum() - np.sum(q[few.kinds == kind] ** 2))
+    for kind, free in enumerate(_freedoms(problem, rows, slopes, kept)):
         if not known[kind] and free > 1.0:
+            mine = problem.kinds[kept] == kind
             found[kind] *= math.sqrt(float(np.sum(rows[kept][mine] ** 2)) / free)
     return (found[0], found[1]), problem.jitter
+
+
+def _freedoms(
+    problem: Problem, rows: FloatArray, slopes: FloatArray, kept: npt.NDArray[np.bool_]
+) -> list[float]:
+    """Residuals of places, and of angles, less what the unknowns take of them."""
+    few = compact(problem, rows, slopes, kept)
+    q, _ = np.linalg.qr(few.slopes)
+    return [
+        float((problem.kinds[kept] == kind).sum() - np.sum(q[few.kinds == kind] ** 2))
+        for kind in (PLACE, ANGLE)
+    ]
+
+
+def freedom(found: Estimate, known: Known) -> float:
+    """Of the kinds of residuals that told their noise, how many the fewest are; inf if none did."""
+    every = _freedoms(found.problem, found.residuals, found.jacobian, found.kept)
+    told = [
+        free for kind, free in enumerate(every)
+        if not known[kind] and (found.problem.kinds[found.kept] == kind).any()
+    ]  # fmt: skip
+    return min(told, default=math.inf)
 
 
 def _at_least(

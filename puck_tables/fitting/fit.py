@@ -10,18 +10,17 @@ from typing import Any
 import numpy as np
 
 from puck_tables._core.real import instance, real
+from puck_tables.errors import InputError
 from puck_tables.film.track import Track
 from puck_tables.fitting.asked import Asked
 from puck_tables.fitting.blindness import blind_spots
 from puck_tables.fitting.certainty import (
-    Z95,
     Certainty,
     certainty_of,
     pinned_of,
-    quantile_of,
     widened,
 )
-from puck_tables.fitting.estimate import Estimate, estimate
+from puck_tables.fitting.estimate import Estimate, estimate, freedom
 from puck_tables.fitting.fitted import fitted
 from puck_tables.fitting.given import (
     begin_noise,
@@ -45,14 +44,15 @@ from puck_tables.fitting.numbers import numbers_of, plausible_for
 from puck_tables.fitting.outcome import Fit
 from puck_tables.fitting.parameters import NODES
 from puck_tables.fitting.problem import Problem
-from puck_tables.fitting.residual_tests import drift, misfits, runs
-from puck_tables.fitting.rivals import mirrored, rivals_of
+from puck_tables.fitting.residual_tests import drift, excess_of, misfits, runs
+from puck_tables.fitting.rivals import mirrored, rivals_of, taken
 from puck_tables.fitting.seen import Seen, noise_of
 from puck_tables.fitting.tied import Impact, impacts_apart, impacts_joined, not_met, tie
 from puck_tables.fitting.timing import Known
 from puck_tables.puck import Puck
 
 Progress = Callable[[int, int], None]
+_JUDGED = 2.5  # degrees of freedom that tell the noise of a kind
 _JITTER = 0.3  # times the noise of a place over the speed: to begin with
 
 
@@ -201,9 +201,9 @@ def fit(
     certainty = _certainty(found, known)
     refuse_wobbling(found, certainty)
     rivals = rivals_of(found, certainty)
-    lowest = min(rivals, key=lambda one: one.rise, default=None)
-    if lowest is not None and lowest.rise < 0.0:
-        found = replace(estimate(found.problem, lowest.estimate.x, known), minima=found.minima)
+    other = taken(found, rivals, excess_of(found, judged))
+    if other is not None:
+        found = replace(estimate(found.problem, other.estimate.x, known), minima=found.minima)
         certainty = _certainty(found, known)
         rivals = rivals_of(found, certainty)
     unsigned = mirrored(found, certainty)
@@ -286,11 +286,14 @@ def _begin_jitter(problem: Problem, noise: float, stamps: float | None) -> float
 
 def _certainty(found: Estimate, known: Known) -> Certainty:
     """How well the unknowns of an estimate are known."""
-    angled = any(film.angle is not None for film in found.problem.films)
-    given = known.place and (known.angle or not angled)
-    quantile = Z95 if given else quantile_of(found.degrees)
+    degrees = freedom(found, known)
+    if degrees < _JUDGED:
+        raise InputError(
+            f"{found.residuals.size} observations of {found.x.size} unknowns are too few to judge "
+            "the noise of each kind by: give the noise, or more frames"
+        )
     plausible = plausible_for(found.problem, found.x)
-    certainty = certainty_of(found.jacobian[found.kept], plausible, quantile)
+    certainty = certainty_of(found.jacobian[found.kept], plausible, degrees)
     return replace(certainty, pinned=pinned_of(found, certainty))
 
 

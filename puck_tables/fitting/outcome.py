@@ -15,7 +15,7 @@ from puck_tables._core.real import instance
 from puck_tables._core.safe_write import write_bytes
 from puck_tables._version import __version__
 from puck_tables.errors import InputError
-from puck_tables.fitting.certainty import Z95, Certainty, profile_point
+from puck_tables.fitting.certainty import Certainty, profile_point
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.held_out import HeldOut
 from puck_tables.fitting.laws import LawScore
@@ -223,10 +223,11 @@ class Fit(Result):
             f"{100.0 * self.outliers:.3g} % of the observations, beyond 4 standard deviations, are "
             "left out.",
         ]
-        if self.certainty.quantile != Z95:
+        if math.isfinite(self.certainty.degrees):
             lines.append(
-                f"Intervals are {self.certainty.quantile:.3g} standard errors to either side: "
-                f"Student's t of {self.degrees} degrees of freedom, which told the noise."
+                f"Intervals are {self.certainty.reach:.3g} standard errors to either side: "
+                f"Student's t of {self.certainty.degrees:.0f} degrees of freedom, which told the "
+                "noise."
             )
         problem = self.estimate.problem
         if "readout" in problem.asked.free and problem.read_within is not None:

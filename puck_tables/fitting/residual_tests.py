@@ -62,6 +62,15 @@ def drift(found: Estimate) -> float:
     return chi_square_tail(total / scale, max(degrees - found.x.size, 1)) if degrees else 1.0
 
 
+def excess_of(found: Estimate, smooth: tuple[float, float]) -> float:
+    """The residuals over the noise (m, rad) that no model judged; 1 where that is not known."""
+    size = math.sqrt(found.chi2 / max(found.degrees, 1))
+    return max((
+        size * own / other for own, other in zip(found.problem.noise, smooth, strict=True)
+        if math.isfinite(other) and other > 0.0
+    ), default=1.0)  # fmt: skip
+
+
 def misfits(found: Estimate, known: Known, smooth: tuple[float, float]) -> tuple[str, ...]:
     """Signs that a model does not fit; ``smooth``: the noise (m, rad) that no model judged."""
     told = []
@@ -69,10 +78,7 @@ def misfits(found: Estimate, known: Known, smooth: tuple[float, float]) -> tuple
     size = max(float(np.ptp(film.place, axis=0).max()) for film in found.problem.films)
     # smaller residuals are the errors of what is computed
     seen = noise[0] > _COMPUTED * size
-    excess = max((
-        own / other for own, other in zip(noise, smooth, strict=True)
-        if math.isfinite(other) and other > 0.0
-    ), default=0.0)  # fmt: skip
+    excess = excess_of(found, smooth)
     given = any(known[:2])
     if seen and not given and excess > NOISY:
         told.append(f"The residuals are {excess:.3g} times what smooth tracks would leave")

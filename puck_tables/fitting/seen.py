@@ -17,6 +17,7 @@ _ALIKE = 0.1  # of the usual time between frames
 _MEDIAN = 0.6744897501960817  # of |a normal deviate|
 _THIRD = math.sqrt(20.0)  # the spread of a third difference of deviates
 _LAST = 5
+_FEW_WINDOWS, _ALIKE_TURNS, _FOLLOWED = 3, 0.5, 1.5  # of turns: mean of e^(iθ); rad
 
 
 @dataclass(frozen=True, eq=False)
@@ -154,13 +155,15 @@ class Turning:
     """How fast a body turns, up to whole turns from frame to frame.
 
     ``step`` s: the usual time between frames; ``time`` (w,) s, ``rate`` (w,) rad/s of windows of
-    frames; ``angle`` (n,) rad of the frames in one piece, NaN where it is not known.
+    frames; ``angle`` (n,) rad of the frames in one piece, NaN where it is not known; ``sure``:
+    whether rates can be followed from window to window.
     """
 
     step: float
     time: FloatArray
     rate: FloatArray
     angle: FloatArray
+    sure: bool
 
     def with_more(self, turns: int, time: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Rates (w,) and angles (n,) if the body makes so many more turns from frame to frame."""
@@ -193,9 +196,13 @@ def turning_of(film: Seen) -> Turning | None:
     forward = np.exp(1j * (film.angle[follow + 1] - film.angle[follow]))
     mean = np.array([part.mean() for part in np.array_split(forward, len(windows))])
     time = np.array([film.time[w].mean() + 0.5 * step for w in windows])
-    rate = np.unwrap(np.angle(mean)) / step
+    phases = np.unwrap(np.angle(mean))
+    rate = phases / step
+    apart = np.abs(np.diff(phases)).max(initial=0.0)
+    sure = len(windows) > _FEW_WINDOWS and np.abs(mean).min() > _ALIKE_TURNS and apart < _FOLLOWED
     speed = np.interp(film.time, time, rate)
     turned = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(film.time))])
     off = film.angle - turned
     middle = float(np.angle(np.nanmean(np.exp(1j * off))))
-    return Turning(step, time, rate, turned + middle + wrapped(off - middle))
+    angle = turned + middle + wrapped(off - middle)
+    return Turning(step, time, rate, angle, bool(sure))
