@@ -58,3 +58,12 @@ def test_a_python_without_what_it_needs_is_told_so(clone: Path):
         "ModuleNotFoundError: puck_tables needs numpy, which"
     )
     assert str(clone) in said
+
+
+def test_the_command_runs_as_a_module(clone: Path):
+    """As the site asks it for the fields of scenes."""
+    done = subprocess.run(
+        [sys.executable, "-m", "puck_tables.cli.start", "scene", "fields"],
+        cwd=clone, capture_output=True, text=True, timeout=60,
+    )  # fmt: skip
+    assert done.stdout.startswith("puck.radius ") and not done.stderr
