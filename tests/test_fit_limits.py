@@ -1,4 +1,4 @@
-"""Whatever is asked of a fit or a forecast, its numbers stay within limits or it ends in a sentence."""
+"""Whatever is asked of a fit or a forecast: numbers within limits, or a sentence."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def test_any_noise_may_be_given_of_any_track(seed):
 def test_a_forecast_of_anything_is_a_forecast_or_a_sentence():
     rng = np.random.default_rng(3511)
     puck, told, refused = pt.Puck(radius=0.04, height=0.02, friction=0.2), 0, 0
-    for _ in range(120):
+    for _ in range(60):
         wide = rng.choice([1.0, 8.0, 300.0])
         speed, spin, fps, place, angle, duration = 10.0 ** rng.uniform(-wide, wide, 6)
         try:
@@ -43,7 +43,7 @@ def test_a_forecast_of_anything_is_a_forecast_or_a_sentence():
                 fps, place, None if rng.random() < 0.3 else angle,
                 None if rng.random() < 0.5 else duration,
             )  # fmt: skip
-            if duration * fps > 1e4:
+            if duration * fps > 1e3:
                 continue
             forecast = pt.fisher(puck, pt.Launch((speed, 0.0), spin=spin), camera)
         except pt.InputError:
@@ -51,7 +51,7 @@ def test_a_forecast_of_anything_is_a_forecast_or_a_sentence():
             continue
         told += 1
         assert not np.isnan(forecast.errors).any()
-    assert told > 5 and refused > 50
+    assert told > 3 and refused > 20
 
 
 @pytest.mark.thorough

@@ -108,7 +108,7 @@ def test_a_law_of_rows_means_the_same_in_a_fit_and_in_a_scene(seed):
         ({"slip_speeds": [0.0, 1.0]}, "give speeds up to 3.7"),
         (
             {"slip_speeds": SPEEDS, "fixed": {"delta": 1.5}},
-            "where friction is largest delta = 2 f h/r is",
+            "friction is largest delta = 2 f h/r is",
         ),
         ({"free": ["friction_1"]}, "slip_speeds="),
     ],
