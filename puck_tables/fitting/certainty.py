@@ -187,6 +187,7 @@ def widened(found: Estimate, certainty: Certainty) -> Certainty:
     """
     problem, plausible = found.problem, certainty.plausible
     slopes, rows = found.jacobian * plausible * found.kept[:, None], found.residuals * found.kept
+    slopes[:, np.flatnonzero(certainty.pinned)] = 0.0
     square = slopes.T @ slopes + np.eye(plausible.size)
     covariance = certainty.covariance
     for count in _PARTS:
@@ -223,7 +224,7 @@ def interval_of(found: Estimate, certainty: Certainty, k: int) -> Interval:
     low, high = (float(ends[k]) for ends in found.problem.limits)
     if certainty.undetermined[k]:
         return Interval(low, high, False)
-    if certainty.widened:
+    if certainty.widened and not certainty.pinned[k]:
         half = certainty.quantile * error
         return Interval(max(x - half, low), min(x + half, high), False)
     ends, profiled = [], False

@@ -202,12 +202,13 @@ def fit(
     say(1, steps)
     certainty = _certainty(found, known)
     refuse_wobbling(found, certainty)
-    rivals = rivals_of(found, certainty)
-    other = taken(found, rivals, excess_of(found, judged))
+    excess = max(excess_of(found, judged), 1.0)
+    rivals = rivals_of(found, certainty, excess)
+    other = taken(found, rivals, excess)
     if other is not None:
         found = replace(estimate(found.problem, other.estimate.x, known), minima=found.minima)
         certainty = _certainty(found, known)
-        rivals = rivals_of(found, certainty)
+        rivals = rivals_of(found, certainty, max(excess_of(found, judged), 1.0))
     unsigned = mirrored(found, certainty)
     if misfits(found, known, judged):
         certainty = widened(found, certainty)

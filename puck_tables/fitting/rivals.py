@@ -27,7 +27,15 @@ from puck_tables.fitting.estimate import FARTHEST, Estimate
 from puck_tables.fitting.least_squares import SQUARES, minimise
 from puck_tables.fitting.numbers import plausible_for
 from puck_tables.fitting.starts import minima_of, numbers_with
-from puck_tables.fitting.turns import EXCLUDED, Judged, half_turns, is_slow, preferred
+from puck_tables.fitting.turns import (
+    EXCLUDED,
+    Judged,
+    half_turns,
+    is_slow,
+    most_of_slow,
+    on_another_floor,
+    preferred,
+)
 
 RISE = FARTHEST**2  # of χ², up to which another summit is told
 _APART = 4.0  # standard errors: another summit
@@ -38,11 +46,13 @@ _MORE_TURNS = 3
 _TO_OTHERS = ((3, 6), (12, 3))  # steps, and how many starts then go on
 
 
-def rivals_of(found: Estimate, certainty: Certainty) -> tuple[Rival, ...]:
+def rivals_of(found: Estimate, certainty: Certainty, excess: float = 1.0) -> tuple[Rival, ...]:
     """Other summits whose χ² is higher by less than :data:`RISE`.
 
     With angles they are motions of whole turns more from frame to frame; without them those of
-    other spins.  One of less than half a turn a frame is told up to :data:`.turns.EXCLUDED`.
+    other spins.  One of less than half a turn a frame is told as long as it may be taken.
+    ``excess``: the residuals over the noise that frames beside each other show, by which turns are
+    judged.
     """
     problem = found.problem
     marked = any(film.angle is not None for film in problem.films)
@@ -68,8 +78,10 @@ def rivals_of(found: Estimate, certainty: Certainty) -> tuple[Rival, ...]:
             (np.abs(_told(x, signed) - _told(one, signed)) > far)[seen]
             for one, seen, far in summits
         ]
-        most = EXCLUDED if is_slow(problem, x) and not is_slow(problem, found.x) else RISE
-        if rise < far * most and all(one.any() for one in off):
+        most = far * RISE / (excess**2 if marked else 1.0)
+        if is_slow(problem, x) and not is_slow(problem, found.x):
+            most = most_of_slow(far * found.chi2, excess)
+        if rise < most and all(one.any() for one in off):
             # what one motion tells another may not: each summit is as wide as it is
             rows, slopes = problem.residuals_and_jacobian(x)
             x = np.where(slopes.any(axis=0), x, start)  # what does nothing stays where it was
@@ -86,13 +98,25 @@ def taken(found: Estimate, rivals: tuple[Rival, ...], excess: float) -> Rival | 
 
     ``excess``: its residuals over the noise of smooth motions.
     """
-    chi2 = found.chi2 + np.array([0.0, *(rival.rise for rival in rivals)])
-    xs = [found.x, *(rival.estimate.x for rival in rivals)]
+    if not found.chi2 > 0.0:
+        return None
+    problem = found.problem
     motions = [
-        Judged(is_slow(found.problem, x), one, excess * math.sqrt(one / found.chi2))
-        for x, one in zip(xs, np.maximum(chi2, 0.0).tolist(), strict=True)
-    ]
-    first = preferred(motions) if found.chi2 > 0.0 else 0
+        Judged(is_slow(problem, x), excess**2 * (found.chi2 + rise), excess * math.sqrt(
+            max(1.0 + rise / found.chi2, 0.0)))
+        for x, rise in ((found.x, 0.0), *((one.estimate.x, one.rise) for one in rivals))
+    ]  # fmt: skip
+    first = preferred(motions)
+    if not motions[first].slow:
+        for k, motion in enumerate(motions):
+            x = rivals[k - 1].estimate.x if k else found.x
+            other = on_another_floor(problem, x) if motion.slow else None
+            if other is not None:
+                there, cost = minimise(*other, SQUARES, found.kept)
+                size = excess * math.sqrt(2.0 * cost / found.chi2)
+                one = Judged(is_slow(other[0], there), excess**2 * 2.0 * cost, size)
+                if preferred([one, motions[first]]) == 0:
+                    return rivals[k - 1] if k else None
     return rivals[first - 1] if first else None
 
 

@@ -32,8 +32,9 @@ def touched(film: Seen, first: int, last: int) -> int | None:
     >>> noise = np.random.default_rng(1).normal(0.0, 1e-4, (60, 2))
     >>> hit = np.stack([np.where(t < 0.5, t, 0.75 - 0.5 * t), 0.0 * t], axis=1) + noise
     >>> slid = np.stack([t - 0.4 * t * t, 0.0 * t], axis=1) + noise
-    >>> [touched(Seen("a", 0.0, t, place, None, np.arange(60)), 2, 57) for place in (hit, slid)]
-    [30, None]
+    >>> films = [Seen("a", 0.0, t, place, None, np.arange(60)) for place in (hit, slid)]
+    >>> [touched(film, 2, 57) for film in films]
+    [31, None]
     """
     noise = noise_of([film])[0]
     if not noise > 0.0:

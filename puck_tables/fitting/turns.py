@@ -17,11 +17,12 @@ from typing import NamedTuple
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables.fitting.least_squares import LOOSE, minimise
 from puck_tables.fitting.problem import ANGLE, PLACE, TURN, Problem
 from puck_tables.fitting.seen import Seen
 
 EXCLUDED = 25.0  # of χ²: a spin of less than half a turn a frame
-_MISFIT, _HALF = 1.5, 2.0  # residuals over the noise that are none, and how many times less count
+_MISFIT, _LESS = 1.5, 5.0  # residuals over the noise that are none, and how many times less count
 _FARTHEST = 16.0  # of the square of a residual
 _MEDIAN = 0.6744897501960817
 _DIRECTIONS, _TOLD, _WIDE = 3, 0.3, 3.5  # phases; rad that need no search; standard deviations
@@ -70,8 +71,30 @@ def preferred(motions: list[Judged]) -> int:
     slowest = min(slow, key=lambda k: motions[k].chi2)
     one, other = motions[slowest], motions[best]
     near = one.chi2 - other.chi2 <= EXCLUDED
-    poor = other.size > _MISFIT and one.size < _HALF * other.size
+    poor = other.size > _MISFIT and one.size < _LESS * other.size
     return slowest if near or poor else best
+
+
+def most_of_slow(chi2: float, excess: float) -> float:
+    """By how much χ² of a slow motion may be higher than that of a fast one, where it is taken.
+
+    In units of the residuals of the fast one, which are ``excess`` times the noise.
+    """
+    poor = (_LESS**2 - 1.0) * chi2 if excess > _MISFIT else 0.0
+    return max(EXCLUDED / excess**2, poor)
+
+
+def on_another_floor(problem: Problem, x: FloatArray) -> tuple[Problem, FloatArray] | None:
+    """The same motion on a floor with drag besides friction, if that may be and is not asked for.
+
+    Where such a slow motion fits as well as a fast one it is the floor that is another.
+    """
+    asked = problem.asked
+    if asked.speeds or "drag" in asked.free or "drag" in asked.fixed:
+        return None
+    free = len(asked.free)
+    moved = replace(problem, asked=replace(asked, free=(*asked.free, "drag")), weights=())
+    return moved, np.insert(x, free, 0.0)
 
 
 def in_order(problem: Problem, minima: list[FloatArray]) -> list[FloatArray]:
@@ -80,25 +103,36 @@ def in_order(problem: Problem, minima: list[FloatArray]) -> list[FloatArray]:
     Where residuals of the deepest say that the noise is larger than it was taken to be, it is.
     """
     rows = [problem.residuals(x) for x in minima]
-    sizes = np.ones((len(rows), problem.kinds.size))
-    told = np.ones((len(rows), 2))
+    slow = [is_slow(problem, x) for x in minima]
+    first, chi2 = _judged(problem, rows, slow)
+    if not slow[first] and any(slow):
+        x = min((k for k in range(len(minima)) if slow[k]), key=lambda k: chi2[k])
+        other = on_another_floor(problem, minima[x])
+        if other is not None:
+            there, _ = minimise(*other, LOOSE)
+            dragged = rows.copy()
+            dragged[x] = other[0].residuals(there)
+            if slow[_judged(problem, dragged, slow)[0]] and is_slow(other[0], there):
+                first = x
+    order = sorted(range(len(minima)), key=lambda k: (k != first, chi2[k]))
+    return [minima[k] for k in order]
+
+
+def _judged(
+    problem: Problem, rows: list[FloatArray], slow: list[bool]
+) -> tuple[int, list[float]]:  # fmt: skip
+    """Which motion is taken, and χ² of each, from the residuals of each."""
+    scale, told = np.ones((len(rows), problem.kinds.size)), np.ones((len(rows), 2))
     for kind in (PLACE, ANGLE):
         mine = problem.kinds == kind
         if mine.any():
             share = max(1.0 - 0.5 * len(problem.names) / mine.sum(), 0.1)
-            usual = [float(np.median(np.abs(one[mine]))) / _MEDIAN / share for one in rows]
-            told[:, kind] = usual
-            sizes[:, mine] = np.maximum(1.0, usual)[:, None]
-    costs = [float(np.minimum(one**2, _FARTHEST).sum()) for one in rows]
-    best = int(np.argmin(costs))
-    chi2 = [float(np.minimum((one / sizes[best]) ** 2, _FARTHEST).sum()) for one in rows]
-    judged = [
-        Judged(is_slow(problem, x), cost, float(size))
-        for x, cost, size in zip(minima, chi2, told.max(axis=1), strict=True)
-    ]
-    first = preferred(judged)
-    order = sorted(range(len(minima)), key=lambda k: (k != first, chi2[k]))
-    return [minima[k] for k in order]
+            told[:, kind] = [float(np.median(np.abs(one[mine]))) / _MEDIAN / share for one in rows]
+            scale[:, mine] = np.maximum(1.0, told[:, kind, None])
+    best = int(np.argmin([float(np.minimum(one**2, _FARTHEST).sum()) for one in rows]))
+    chi2 = [float(np.minimum((one / scale[best]) ** 2, _FARTHEST).sum()) for one in rows]
+    sizes = told.max(axis=1).tolist()
+    return preferred([Judged(*one) for one in zip(slow, chi2, sizes, strict=True)]), chi2
 
 
 def by_place(problem: Problem, blind: Problem, minima: list[FloatArray]) -> list[
