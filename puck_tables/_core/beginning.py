@@ -50,6 +50,24 @@ def beginning(path: str | Path, largest: int) -> bytes:
     """
     with opened(path, largest) as file:
         head = file.read(HEAD)
+    refuse_others(path, head)
+    return head
+
+
+def refuse_others(path: str | Path, head: bytes) -> None:
+    """Refuse a file that is empty, or of a kind in which no table stands.
+
+    Raises
+    ------
+    InputError
+
+    Examples
+    --------
+    >>> refuse_others("a.csv", b"")
+    Traceback (most recent call last):
+    ...
+    puck_tables.errors.InputError: a.csv is empty
+    """
     if not head:
         raise InputError(f"{path} is empty")
     for begin, what in _OTHERS:
@@ -59,7 +77,6 @@ def beginning(path: str | Path, largest: int) -> bytes:
         raise InputError(
             f"{path} is a film, not a table: first follow the puck in it, with Tracker for one"
         )
-    return head
 
 
 def refuse_no_text(path: str | Path, head: bytes) -> None:

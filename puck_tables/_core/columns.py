@@ -8,21 +8,32 @@ from __future__ import annotations
 
 import io
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache, partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.beginning import beginning, refuse_no_text
+from puck_tables._core.beginning import refuse_no_text, refuse_others
 from puck_tables._core.header import header_of
-from puck_tables._core.safe_read import opened, read_whole
-from puck_tables._core.text import MINUS, Look, encoding_of, is_row, look_at, number, read_columns
+from puck_tables._core.safe_read import read_whole
+from puck_tables._core.text import (
+    HEAD,
+    MINUS,
+    Look,
+    encoding_of,
+    is_row,
+    look_at,
+    number,
+    read_columns,
+)
 from puck_tables._core.units import EXAMPLES, bracketed, is_unit, unit_behind, unit_size
 from puck_tables.errors import InputError
 
+_KEPT = 1 << 16  # bytes of a file whose numbers are kept
 _TOKEN = re.compile(r"[^\W\d_]+")
 _ERRORS = {"std", "sd", "se", "sem", "sigma", "err", "error", "errors", "var", "uncertainty",
            "unsicherheit", "fehler"}  # fmt: skip
@@ -76,14 +87,12 @@ class Numbers:
 
     rows: FloatArray
     units: tuple[str, ...]
-    path: str | None = None
-    look: Look | None = None
+    path: str = ""
+    line: Callable[[int], int] | None = None
 
     def where(self, row: int) -> str:
         """A row in a message, by its line in the file."""
-        if self.path is None or self.look is None:
-            return f"row {row + 1}"
-        return f"{self.path}, line {_line(self.path, self.look, row)}"
+        return f"{self.path}, line {self.line(row)}" if self.line else f"row {row + 1}"
 
     def refuse_unless_ascending(self, what: str, equal: bool = False) -> None:
         """Refuse a first column that does not ascend, or of one row alone.
@@ -142,11 +151,25 @@ def numbers_of(
     """
     if not isinstance(given, str | Path):
         return Numbers(_given(given, columns, needed, name), ("",) * len(columns))
-    path = str(given)
-    head = _beginning(path, most)
+    content = _content(given, most)
+    read = _read if len(content) <= _KEPT else _read.__wrapped__
+    return read(str(given), content, tuple(columns), needed)
+
+
+@lru_cache(maxsize=16)  # a scene asks for its law again and again
+def _read(path: str, content: bytes, columns: tuple[Column, ...], needed: int) -> Numbers:
+    """Columns of numbers from the content of a file."""
+    head = content[:HEAD]
+    refuse_others(path, head)
+    refuse_no_text(path, head)
     look = look_at(path, head)
     header = header_of(look, lambda cells: all(_known(cell, columns) for cell in cells[:needed]))
     headings = header[-1] if header and sum(map(bool, header[-1])) > 1 else []  # a title is none
+    if look.header and 1 < len(look.header[-1]) < look.width:
+        raise InputError(
+            f"{path} has {len(look.header[-1])} names for {look.width} columns, so none can be told"
+            " from another: name all of them"
+        )
     if not headings:
         _refuse_unit_in_words(path, look, columns)
     taken = _taken(path, look, headings, columns, needed)
@@ -155,11 +178,11 @@ def numbers_of(
         unit, size = _unit(path, headings[n] if headings else "", column)
         sizes.append(size)
         units.append(unit)
-    found, _ = read_columns(path, look, list(taken.values()), ())
-    numbers = Numbers(
-        np.column_stack([found[n] for n in taken.values()]) * sizes, tuple(units), path, look
-    )
-    wrong = np.argwhere(~np.isfinite(numbers.rows))
+    found, _ = read_columns(path, look, list(taken.values()), (), content)
+    rows = np.column_stack([found[n] for n in taken.values()]) * sizes
+    rows.flags.writeable = False
+    numbers = Numbers(rows, tuple(units), path, partial(_line, look, content))
+    wrong = np.argwhere(~np.isfinite(rows))
     if len(wrong):
         row, column = wrong[0].tolist()
         raise InputError(
@@ -187,26 +210,34 @@ def list_of(path: str | Path, column: Column, most: int) -> FloatArray | None:
     ...     list_of(file, TIME, 1000).tolist()
     [0.0, 0.0125]
     """
-    head = _beginning(str(path), most)
-    text = read_whole(path, most).decode(encoding_of(path, head), "replace").replace(MINUS, "-")
+    content = _content(path, most)
+    refuse_others(path, content[:HEAD])
+    refuse_no_text(path, content[:HEAD])
+    encoding = encoding_of(path, content[:HEAD])
+    text = content.decode(encoding, "replace").replace(MINUS, "-")
     lines = [line.strip(" \t;,|\0") for line in text.splitlines() if is_row(line)]
     comma = not any("." in line for line in lines[1:])
     numbers = [number(line, comma) for line in lines]
     heading = lines[0] if lines and numbers[0] is None else ""
     numbers = numbers[1:] if heading else numbers
-    if not numbers or None in numbers or not np.isfinite(found := np.array(numbers, float)).all():
+    if not numbers or None in numbers or set(",;\t") & set(heading):
+        return None
+    if not np.isfinite(found := np.array(numbers, float)).all():
         return None
     return found * _unit(str(path), heading, column)[1]
 
 
-def _beginning(path: str, most: int) -> bytes:
-    """How a file begins that is a text."""
+def _content(path: str | Path, most: int) -> bytes:
+    """The content of a file.
+
+    Raises
+    ------
+    InputError
+    """
     try:
-        head = beginning(path, most)
+        return read_whole(path, most)
     except OSError as error:
         raise InputError(f"cannot read {path}: {error.strerror or error}") from None
-    refuse_no_text(path, head)
-    return head
 
 
 def _given(given: Any, columns: Sequence[Column], needed: int, name: str) -> FloatArray:
@@ -311,8 +342,8 @@ def _refuse_unit_in_words(path: str, look: Look, columns: Sequence[Column]) -> N
             )
 
 
-def _line(path: str, look: Look, row: int) -> int:
-    """The line of the file at which a row of numbers stands."""
-    with opened(path, 1 << 40) as raw, io.TextIOWrapper(raw, look.encoding, "replace") as file:
+def _line(look: Look, content: bytes, row: int) -> int:
+    """The line of a file at which a row of numbers stands."""
+    with io.TextIOWrapper(io.BytesIO(content), look.encoding, "replace") as file:
         rows = [n for n, text in enumerate(file, 1) if n > look.skip and is_row(text)]
     return rows[row]

@@ -81,6 +81,8 @@ def from_rest(speeds: FloatArray, values: FloatArray, name: str) -> tuple[FloatA
     """
     if speeds[0] < 0.0 or (np.diff(speeds) < 0.0).any():
         raise InputError("speeds must ascend, from 0 m/s or more")
+    if speeds[0] == 0.0 and (np.diff(speeds) > 0.0).all():
+        return speeds, values
     each, first, count = np.unique(speeds, return_index=True, return_counts=True)
     if each.size < speeds.size:
         twice = each[count > 1]

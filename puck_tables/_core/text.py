@@ -281,8 +281,9 @@ def _separator(path: str | Path, lines: Sequence[str]) -> str | None:
 
 
 def read_columns(
-    path: str | Path, look: Look, numbers: Sequence[int], texts: Sequence[int]
-) -> tuple[dict[int, FloatArray], dict[int, tuple[Any, list[str]]]]:
+    path: str | Path, look: Look, numbers: Sequence[int], texts: Sequence[int],
+    content: bytes | None = None,
+) -> tuple[dict[int, FloatArray], dict[int, tuple[Any, list[str]]]]:  # fmt: skip
     r"""Columns of a table, without its header, comments and empty lines.
 
     Parameters
@@ -290,6 +291,7 @@ def read_columns(
     path : the file
     look : how it is written
     numbers, texts : which columns, from 0
+    content : of the file, if it has been read
 
     Returns
     -------
@@ -313,7 +315,8 @@ def read_columns(
     parts: list[FloatArray] = []
     codes: dict[int, list[Any]] = {column: [] for column in texts}
     words: dict[int, dict[str, int]] = {column: {} for column in texts}
-    with opened(path, LARGEST) as raw, io.TextIOWrapper(raw, look.encoding, "replace") as file:
+    raw = opened(path, LARGEST) if content is None else io.BytesIO(content)
+    with raw, io.TextIOWrapper(raw, look.encoding, "replace") as file:
         line = 1
         for _ in range(look.skip):
             file.readline(_LINE)
