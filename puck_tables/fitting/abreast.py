@@ -82,7 +82,7 @@ class _Walker:
         """One step, or none where it leads up."""
         scale = self.scale
         if scale < math.inf:
-            scale = max(scale, 2.0 * float(np.median(np.abs(self.rows))))
+            scale = max(scale, 2.0 * self.problem.usual(self.rows))
         slopes, weights = self.slopes, self.weights / (1.0 + (self.rows / scale) ** 2)
         square = (slopes.T * weights) @ slopes
         size = np.diag(square)
