@@ -92,7 +92,10 @@ def seen_in(track: Track, since: float = -math.inf, until: float = math.inf) -> 
     chosen = track.seen & (track.time >= since) & (track.time <= until)
     count = int(chosen.sum())
     if count < FEWEST:
-        within = "" if since == -math.inf and until == math.inf else " in the time asked for"
+        within = ""
+        if since > -math.inf or until < math.inf:
+            first, last = track.time[track.seen][[0, -1]].tolist()
+            within = f" in the time asked for, of {first:.9g} s to {last:.9g} s"
         raise InputError(
             f"{track.name} shows the puck in {count} frame{'' if count == 1 else 's'}{within}: a "
             f"fit needs {FEWEST} or more"
