@@ -114,18 +114,20 @@ class Place:
         ------
         OutputError
         """
-        if not self._is_mine():
+        if not self.is_mine:
             with _renaming(self.path):  # it may be renamed at this moment
                 self._refuse_lost()
 
     def _refuse_lost(self) -> None:
-        if not self._is_mine():
+        if not self.is_mine:
             raise OutputError(
                 f"{self.path} was removed, or taken over by another work that said --overwrite "
                 "(overwrite=True): this one stops"
             )
 
-    def _is_mine(self) -> bool:
+    @property
+    def is_mine(self) -> bool:
+        """Whether the store belongs to this work."""
         beside = identity(beside_of(self.path))
         return (identity(self.path) if beside is None else beside) == self._is
 
@@ -150,7 +152,7 @@ class Place:
     def withdraw(self) -> None:
         """Remove what was to replace another store, which stays."""
         with contextlib.suppress(OutputError), _renaming(self.path) as aside:
-            if self._is_mine() and identity(self.path) != self._is:
+            if self.is_mine and identity(self.path) != self._is:
                 aside(beside_of(self.path))
 
 
