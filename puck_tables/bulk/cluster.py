@@ -246,7 +246,7 @@ def _refuse_others(where: str, security: Any) -> None:
             return await one.identity()
 
     try:
-        kind = asyncio.run(asyncio.wait_for(identity(), _PATIENCE)).get("type")
+        kind = asyncio.run(asyncio.wait_for(identity(), _REACH)).get("type")
     except Exception as error:  # what another program answers may be read as anything
         raise _no_scheduler(where, error) from None
     if kind != "Scheduler":

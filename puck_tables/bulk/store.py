@@ -103,9 +103,10 @@ class Store:
     def _mend(self, start: Mapping[str, bytes]) -> None:
         """Write anew what is missing or damaged of the axes and labels."""
         damaged = [key for key, one in start.items() if not _is_whole(self.place.content(key), one)]
-        for key in damaged:
-            self.place.put(key, start[key])
         if damaged:
+            self.place.refuse_lost()  # another work may be removing it
+            for key in damaged:
+                self.place.put(key, start[key])
             names = ", ".join(dict.fromkeys(key.split("/")[0] for key in damaged))
             say(f"{self.path}: missing or damaged, and written anew: {names}")
 
