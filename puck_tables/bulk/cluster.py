@@ -47,10 +47,12 @@ _REACH, _PATIENCE = 5.0, 10.0  # s to reach a scheduler, to find a worker
 _SILENT, _QUIET = 5.0, 2.0  # s without a block until the scheduler is asked, and it may be silent
 _AHEAD = 4  # blocks given to each thread of the workers
 _LOOK = 0.2  # s between two looks
-# so much memory a worker keeps for the next block, which else it asks of the system anew
-_KEPT = {
+_OWN = {  # of a cluster of one's own
+    # so much memory a worker keeps for the next block, which else it asks of the system anew
     "distributed.nanny.pre-spawn-environ.MALLOC_TRIM_THRESHOLD_": 1 << 27,
     "distributed.nanny.pre-spawn-environ.MALLOC_MMAP_THRESHOLD_": 1 << 25,
+    "distributed.scheduler.http.routes": [],  # no pages, for which nobody shows a certificate
+    "distributed.worker.http.routes": [],
 }
 _ADDRESS = re.compile(r"(tcp|tls)://[^\s/:]+:[0-9]{1,5}|(tcp|tls)://\[[0-9a-fA-F:.]+\]:[0-9]{1,5}")
 
@@ -277,7 +279,7 @@ def _own(workers: int) -> Iterator[Any]:
             "--cluster local:N needs cryptography: pip install 'puck-tables[cluster]'"
         ) from None
     with contextlib.ExitStack() as stack:
-        stack.enter_context(dask.config.set(_KEPT))
+        stack.enter_context(dask.config.set(_OWN))
         stack.enter_context(_quiet_children())
         try:
             with watched(f"starting {workers} workers"):
