@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from puck_tables.plot.reference import no_rounding
-from puck_tables.plot.style import COLORS, GREY, canvas, shaded, titled
+from puck_tables.plot.style import COLORS, GREY, canvas, shaded
+from puck_tables.plot.words import titled
 from puck_tables.reference.comparison import Comparison
 from puck_tables.reference.floor import ratios, slip_over
 from puck_tables.reference.threshold import states_of

@@ -14,7 +14,8 @@ from puck_tables.fitting.launched import path_of
 from puck_tables.fitting.numbers import Number
 from puck_tables.fitting.outcome import Fit
 from puck_tables.fitting.parameters import NODES
-from puck_tables.plot.style import BLUE, COLORS, GREY, LAUNCH, ORANGE, RED, canvas, titled
+from puck_tables.plot.style import BLUE, COLORS, GREY, LAUNCH, ORANGE, RED, canvas
+from puck_tables.plot.words import titled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from puck_tables.fitting.forecast import Forecast
-from puck_tables.plot.style import LAUNCH, canvas, titled
+from puck_tables.plot.style import LAUNCH, canvas
+from puck_tables.plot.words import titled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from puck_tables.plot import pucks, scene
-from puck_tables.plot.style import BLUE, COLORS, GREEN, GREY, LAUNCH, ORANGE, STOP, canvas, titled
+from puck_tables.plot.style import BLUE, COLORS, GREEN, GREY, LAUNCH, ORANGE, STOP, canvas
+from puck_tables.plot.words import titled
 from puck_tables.reference.answer import Answer
 from puck_tables.world.outcome import WorldRun
 

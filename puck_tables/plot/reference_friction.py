@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from puck_tables.plot.style import BLUE, GREEN, ORANGE, canvas, titled
+from puck_tables.plot.style import BLUE, GREEN, ORANGE, canvas
+from puck_tables.plot.words import titled
 from puck_tables.reference.friction import FloorFriction
 
 if TYPE_CHECKING:

@@ -9,7 +9,8 @@ import numpy as np
 
 from puck_tables.film.angles import unwrap
 from puck_tables.film.track import Track
-from puck_tables.plot.style import COLORS, canvas, titled
+from puck_tables.plot.style import COLORS, canvas
+from puck_tables.plot.words import titled
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
