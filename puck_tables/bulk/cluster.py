@@ -32,7 +32,7 @@ try:
     from distributed.protocol.pickle import dumps, loads
 except ImportError:
     raise MissingExtraError(
-        "--cluster (cluster=) needs dask and distributed: pip install 'puck-tables[cluster]'"
+        '--cluster (cluster=) needs dask and distributed: pip install "puck-tables[cluster]"'
     ) from None
 
 MOST_WORKERS = 1024

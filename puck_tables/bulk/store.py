@@ -29,7 +29,7 @@ try:
     import zarr
     from zarr.codecs import BytesCodec, Crc32cCodec
 except ImportError:
-    raise MissingExtraError("Zarr stores need zarr: pip install 'puck-tables[cluster]'") from None
+    raise MissingExtraError('Zarr stores need zarr: pip install "puck-tables[cluster]"') from None
 
 DIGEST = "puck_tables_work"
 NOT_DONE = -1  # the code of an item that is not computed yet

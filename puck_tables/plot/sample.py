@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from scipy.ndimage import gaussian_filter
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.colours import on_white
@@ -19,13 +19,14 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_FINE = 240  # cells along each side of the map
-_WIDTHS = (1, 2, 3, 4, 6, 8, 12, 16, 24)  # of these cells: deviations of what smooths samples
-_NEAR = 150.0  # samples that it takes together in the mean, at least
+_FINE = 160  # cells along each side of the map
+_WIDTHS = (1, 2, 3, 4, 6, 8, 11, 16)  # of these cells: deviations of what smooths samples
+_NEAR, _SHARE = 150.0, 0.125  # samples that it takes together, at least; of all of them
 _COVERED = 0.02  # of the largest density: where there is less, each sample is drawn
 _TAIL = 5e-4  # of the samples beyond each side of the map
 _HELD = (0.95, 0.5)  # of the samples inside the lines
-_FLAT = 1e-6  # a cloud thinner than this over its length is a line, and has no density
+_FLAT = 2e-3  # a cloud thinner than this over its length is seen as a line
+_FEW = 50  # samples have no density
 _LIGHT = 0.15  # of the ramp: less is not seen on white
 _SHARES = (0.025, 0.5, 0.975)
 
@@ -119,7 +120,7 @@ def cloud_of(x: FloatArray, y: FloatArray) -> Cloud | None:
     >>> bool(abs(np.hypot(x, y)[inside].max() - 1.18) < 0.3)  # the ellipse that holds half of them
     True
     """
-    if x.size < 3:
+    if x.size < _FEW:
         return None
     places = np.stack([x, y])
     middle = places.mean(axis=1, keepdims=True)
@@ -131,10 +132,11 @@ def cloud_of(x: FloatArray, y: FloatArray) -> Cloud | None:
     low, high = np.quantile(own, [_TAIL, 1.0 - _TAIL], axis=1)
     room = 0.15 * (high - low)
     edges = np.linspace(low - room, high + room, _FINE + 1).T
-    counts = np.histogram2d(*own, bins=list(edges))[0]
+    counts = np.histogram2d(own[0], own[1], (edges[0], edges[1]))[0]
+    enough = min(_NEAR, _SHARE * x.size)
     for width in _WIDTHS:
-        smooth = gaussian_filter(counts, width, mode="constant")
-        if 4.0 * np.pi * width**2 * float((counts * smooth).sum()) >= _NEAR * x.size:
+        smooth = _smoothed(counts, width)
+        if 4.0 * np.pi * width**2 * float((counts * smooth).sum()) >= enough * x.size:
             break
     cell = np.prod(edges[:, 1] - edges[:, 0]) * np.sqrt(spread.prod())
     density = smooth / (x.size * cell)
@@ -143,6 +145,13 @@ def cloud_of(x: FloatArray, y: FloatArray) -> Cloud | None:
     near = tuple(np.clip(at, 0, _FINE - 1))
     corners = np.tensordot(frame, np.stack(np.meshgrid(*edges, indexing="ij")), 1)
     return Cloud(corners + middle[:, :, None], density, np.where(inside, density[near], 0.0))
+
+
+def _smoothed(counts: FloatArray, width: float) -> FloatArray:
+    """Counts over cells, each spread by a normal distribution of this deviation, in cells."""
+    cells = np.arange(_FINE) / width
+    kernel = np.exp(-0.5 * (cells[:, None] - cells) ** 2) / (width * math.sqrt(2.0 * math.pi))
+    return np.asarray(kernel @ counts @ kernel)
 
 
 def _sides(samples: Summary, name: str) -> tuple[float, float]:
@@ -165,7 +174,10 @@ def _inside(
 
 def _histogram(panel: Axes, samples: Any, name: str) -> None:
     values = np.asarray(getattr(samples, name)).ravel()
-    panel.hist(values[np.isfinite(values)], bins=60, color=BLUE, density=True)
+    values = values[np.isfinite(values)]
+    low, high = float(values.min()), float(values.max())
+    room = max(1e-6 * max(abs(low), abs(high)), 1e-9)  # values may all be one
+    panel.hist(values, bins=60, range=(low - room, high + room), color=BLUE, density=True)
     for share, value in zip(_SHARES, samples.quantiles(_SHARES)[name].tolist(), strict=True):
         panel.axvline(value, color=ORANGE, linewidth=1.0, linestyle="-" if share == 0.5 else "--")
     panel.set_xlabel(COLUMNS[name].axis)

@@ -69,7 +69,7 @@ def require_matplotlib() -> None:
         import matplotlib  # noqa: F401
     except ImportError:
         raise MissingExtraError(
-            "pictures need matplotlib: pip install 'puck-tables[plot]'"
+            'pictures need matplotlib: pip install "puck-tables[plot]"'
         ) from None
 
 

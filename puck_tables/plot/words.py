@@ -85,7 +85,7 @@ def legend_below(
     handles, labels = given or _entries(where)
     if not labels:
         return
-    entries = {"handles": handles, "labels": [shortened(label) for label in labels]}
+    entries: dict[str, Any] = {"handles": handles, "labels": [shortened(label) for label in labels]}
     place: dict[str, Any] = {"loc": "outside lower center"}
     room = _ROOM * where.bbox.width
     if isinstance(where, Axes):
@@ -155,8 +155,8 @@ def _lines(text: str, fits: Callable[[str], bool]) -> Iterator[str]:
             if line:
                 yield line
             while len(word) > 1 and not fits(word):
-                tried = range(2, len(word))
-                count = 1 + bisect_left(tried, True, key=lambda n, word=word: not fits(word[:n]))
+                parts = [word[:n] for n in range(2, len(word))]
+                count = 1 + bisect_left(parts, True, key=lambda part: not fits(part))
                 yield word[:count]
                 word = word[count:]
             line = word
