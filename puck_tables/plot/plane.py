@@ -180,7 +180,8 @@ def _draw_line(
     middle = ((box.left + box.right) / 2, (box.low + box.high) / 2)
     half = math.hypot(box.right - box.left, box.high - box.low)
     off = nx * (middle[0] - point[0]) + ny * (middle[1] - point[1])
-    if abs(off) > half:
+    reach = 0.5 * (abs(nx) * (box.right - box.left) + abs(ny) * (box.high - box.low))
+    if abs(off) > reach:
         return False
     foot = (middle[0] - off * nx, middle[1] - off * ny)
     axes.plot(
