@@ -114,7 +114,7 @@ def _close_up(ends: WorldMap, film: Film) -> list[Box]:
     x, y = (ends.columns[name][there] for name in ("x", "y"))
     middle = [np.quantile(row, _MOST_ENDS) for row in (x, y)]
     radius = max(body.radius for body in film.bodies)
-    return close_up(film.box, np.stack(middle, axis=1), radius)
+    return close_up(_box(ends, film), np.stack(middle, axis=1), radius)
 
 
 def _box(ends: WorldMap, film: Film) -> Box:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.plot.style import BLUE, GREEN, ORANGE, RED, canvas, draw_over, in_order
+from puck_tables.plot.style import BLUE, GREEN, ORANGE, RED, canvas, draw_over, edges_of, in_order
 from puck_tables.plot.words import legend_below, noted, titled
 from puck_tables.scene.loop import CARRIED_ROUND
 from puck_tables.scene.outcome import ENDS
@@ -130,9 +130,9 @@ def _draw_ends(
     from matplotlib.colors import ListedColormap
 
     names = list(axes)
-    rows, codes = (axes[names[0]], end) if len(names) == 2 else (np.arange(2), np.array([end, end]))
+    rows, codes = (axes[names[0]], end) if len(names) == 2 else (np.zeros(1), end[None])
     panel.pcolormesh(
-        axes[names[-1]], rows, codes, shading="nearest", rasterized=True,
+        edges_of(axes[names[-1]]), edges_of(rows), codes, rasterized=True,
         cmap=ListedColormap([color for color, _ in _LOOKS]), vmin=-0.5, vmax=len(_LOOKS) - 0.5,
     )  # fmt: skip
     panel.set_title("how it ends", fontsize=10)

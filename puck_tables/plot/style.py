@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import numpy.typing as npt
 
 from puck_tables._core.safe_write import write_bytes
 from puck_tables.errors import InputError, MissingExtraError
@@ -225,6 +226,19 @@ def draw_over(
         panel.set_xlabel(labels[across])
 
 
+def edges_of(values: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    """Where the bands of a map end whose middles are these ascending values; one has a band, too.
+
+    Examples
+    --------
+    >>> edges_of(np.array([1.0, 2.0, 4.0])).tolist(), edges_of(np.array([3.0])).tolist()
+    ([0.5, 1.5, 3.0, 5.0], [2.5, 3.5])
+    """
+    middles = 0.5 * (values[1:] + values[:-1])
+    first, last = (0.5 * (values[n + 1] - values[n]) if values.size > 1 else 0.5 for n in (0, -2))
+    return np.concatenate([[values[0] - first], middles, [values[-1] + last]])
+
+
 def in_order(axes: Mapping[str, Any], *values: Any) -> tuple[dict[str, Any], list[Any]]:
     """Axes with their values ascending, and arrays over them: curves go on, bands lie side by side.
 
@@ -276,7 +290,7 @@ def _draw_map(
         limits = {"vmin": -largest, "vmax": largest, "cmap": "RdBu_r"}
     panel.grid(visible=False)
     panel.set_facecolor(NO_VALUE)
-    mesh = panel.pcolormesh(columns, rows, values, shading="nearest", rasterized=True, **limits)
+    mesh = panel.pcolormesh(edges_of(columns), edges_of(rows), values, rasterized=True, **limits)
     figure.colorbar(mesh, ax=panel)
     panel.set_title(text, fontsize=10)
     if _place(panel).is_last_row():
