@@ -83,7 +83,7 @@ def _draw(axes: Axes, ends: WorldMap, film: Film, box: Box) -> None:
             total[stays] += count
             words = f"{name}: {count} {'in' if stays else 'left'} play"
             axes.plot(
-                x[mine], y[mine], linestyle="", marker=marker, markersize=2.5,
+                x[mine], y[mine], linestyle="", marker=marker, markersize=3.0 if stays else 4.0,
                 color=on_white(body.colour), zorder=3, rasterized=True,
                 label=(" " * words.startswith("_") + words) if named and count else None,
             )  # fmt: skip

@@ -21,9 +21,9 @@ if TYPE_CHECKING:
 
 _FINE = 160  # cells along each side of the map
 _WIDTHS = (1, 2, 3, 4, 6, 8, 11, 16)  # of these cells: deviations of what smooths samples
-_NEAR, _SHARE = 150.0, 0.125  # samples that it takes together, at least; of all of them
+_NEAR, _SHARE = 800.0, 0.125  # samples that it takes together, at least; of all of them
 _COVERED = 0.02  # of the largest density: where there is less, each sample is drawn
-_TAIL = 5e-4  # of the samples beyond each side of the map
+_TAIL, _ALONE = 5e-4, 1.5  # of the samples beyond each side of the map; samples, at least
 _HELD = (0.95, 0.5)  # of the samples inside the lines
 _FLAT = 2e-3  # a cloud thinner than this over its length is seen as a line
 _FEW = 50  # samples have no density
@@ -129,7 +129,8 @@ def cloud_of(x: FloatArray, y: FloatArray) -> Cloud | None:
         return None
     frame = axes * np.sqrt(spread)  # columns: one deviation along each axis
     own = np.linalg.solve(frame, places - middle)
-    low, high = np.quantile(own, [_TAIL, 1.0 - _TAIL], axis=1)
+    tail = _tail(x.size)
+    low, high = np.quantile(own, [tail, 1.0 - tail], axis=1)
     room = 0.15 * (high - low)
     edges = np.linspace(low - room, high + room, _FINE + 1).T
     counts = np.histogram2d(own[0], own[1], (edges[0], edges[1]))[0]
@@ -154,9 +155,15 @@ def _smoothed(counts: FloatArray, width: float) -> FloatArray:
     return np.asarray(kernel @ counts @ kernel)
 
 
+def _tail(count: int) -> float:
+    """The share of the samples that may lie beyond each side."""
+    return max(_TAIL, min(_ALONE / count, 0.25))
+
+
 def _sides(samples: Summary, name: str) -> tuple[float, float]:
     """From where to where a map goes: all but a few samples far away."""
-    least, low, high, most = samples.quantiles((0.0, _TAIL, 1.0 - _TAIL, 1.0))[name].tolist()
+    tail = _tail(samples.ended)
+    least, low, high, most = samples.quantiles((0.0, tail, 1.0 - tail, 1.0))[name].tolist()
     room = 0.1 * (high - low) or max(1e-3 * abs(low), 1e-9)
     near = 3.0 * room  # what is as near as this is shown too
     return (

@@ -26,7 +26,7 @@ _MAPS = {
     "heat_dry": "heat of dry friction / J",
 }
 _LOOKS = (
-    (BLUE, "o"), (GREEN, "^"), ("#7aa329", "o"), (ORANGE, "D"), (RED, "v"), ("#555555", "x"),
+    (BLUE, "o"), (GREEN, "^"), ("#6f9a25", "o"), (ORANGE, "D"), (RED, "v"), ("#555555", "x"),
     ("#8b2fa0", "x"), ("black", "x"), ("#119eae", "x"), ("#a8840f", "x"), ("#939393", "x"),
 )  # fmt: skip
 _HATCH = "///"
