@@ -63,13 +63,14 @@ def draw_on(panel: Axes, samples: Summary) -> None:
     x, y = x[ended], y[ended]
     sides = [_sides(samples, name) for name in samples.place]
     seen = _inside(x, y, sides)
+    x, y = x[seen], y[seen]
     cloud = cloud_of(x, y)
     bare = np.ones(x.size, np.bool_)
     if cloud is not None:
         bare = cloud.at_samples < _COVERED * float(cloud.density.max())
         _draw_density(panel, cloud)
     panel.plot(
-        x[bare & seen], y[bare & seen], ".", color=on_white("#a8c4dc"), markersize=2.0,
+        x[bare], y[bare], ".", color=on_white("#a8c4dc"), markersize=2.0,
         rasterized=True, zorder=1, label="single samples",
     )  # fmt: skip
     mean = samples.mean()
