@@ -90,3 +90,7 @@ def main() -> None:
         if end.code in [128 + one for one in ENDINGS]:  # all is said; libraries might tell what
             os._exit(end.code)  # they left undone
         raise
+
+
+if __name__ == "__main__":
+    main()

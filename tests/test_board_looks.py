@@ -297,9 +297,9 @@ def test_a_board_is_drawn_to_its_corners() -> None:
     """Walls end where others begin; of a triangle three sides, and nothing beyond."""
     post = Post((0.3, 0.3), 0.02)
     walls = [
-        Wall((0.0, 0.0), (0.0, 1.0)),
-        Wall((0.0, 0.0), (2.0, 0.0)),
-        Wall((1.0, 0.0), (-1.0, -1.0)),
+        Wall((0.0, 0.0), normal=(0.0, 1.0)),
+        Wall((0.0, 0.0), normal=(2.0, 0.0)),
+        Wall((1.0, 0.0), normal=(-1.0, -1.0)),
     ]
     film = film_of(Scene(pucks=[Piece(0.01, friction=0.1, launch=Launch(position=(0.1, 0.1)))],
                          walls=walls, posts=[post]).simulate())  # fmt: skip
@@ -308,7 +308,7 @@ def test_a_board_is_drawn_to_its_corners() -> None:
     assert corners == {(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)}
     assert film.box[0] < 0.0 and film.box[1] > 1.0
     open_side = film_of(Scene(pucks=[Piece(0.01, friction=0.1)],
-                              edges=[Edge((5e6, 0.0), (-1.0, 0.0))]).simulate())  # fmt: skip
+                              edges=[Edge((5e6, 0.0), normal=(-1.0, 0.0))]).simulate())  # fmt: skip
     assert open_side.lines == [] and open_side.box[1] < 0.1
 
 
@@ -348,4 +348,4 @@ def test_maps_of_long_boards_have_a_close_up_too(runs: dict[str, Any]) -> None:
     assert (len(long), len(short)) == (2, 1)
     whole, close = (np.diff(axes.get_xlim())[0] for axes in long)
     assert close < 0.6 * whole
-    assert long[1].get_title() == "close-up"
+    assert long[1].get_title("left").startswith("close-up; ")

@@ -39,7 +39,7 @@ try:
     from distributed.security import Security
 except ImportError:
     raise MissingExtraError(
-        "--cluster (cluster=) needs dask and distributed: pip install 'puck-tables[cluster]'"
+        '--cluster (cluster=) needs dask and distributed: pip install "puck-tables[cluster]"'
     ) from None
 
 MOST_WORKERS = 1024
