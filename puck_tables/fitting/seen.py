@@ -117,7 +117,7 @@ def _straight(place: FloatArray) -> Straight | None:
 
     Examples
     --------
-    >>> x = np.arange(9.0) + 0.1 * np.random.default_rng(1).normal(size=9)
+    >>> x = np.arange(20.0) + 0.1 * np.random.default_rng(1).normal(size=20)
     >>> _straight(np.stack([0.3 * x, 0.4 * x], axis=1)).way
     (0.6, 0.8)
     """
