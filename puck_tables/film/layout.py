@@ -9,7 +9,7 @@ from pathlib import Path
 from puck_tables._core.header import header_of
 from puck_tables._core.text import Look
 from puck_tables.errors import InputError
-from puck_tables.film.headings import Heading, heading, headings
+from puck_tables.film.headings import Heading, heading, headings, on_a_line
 
 _TRACKPY = {"frame", "particle", "x", "y"}
 _SCORER = "scorer"  # begins DeepLabCut's tables
@@ -22,7 +22,8 @@ class Layout:
 
     ``columns``: each with the body that it is of ('' for all), ``kind``: of file, for messages,
     ``jointed``: whether marks are parts of a body, ``pixels``: whether such files are in pixels,
-    ``likely``: the likelihood below which a place is none.
+    ``likely``: the likelihood below which a place is none, ``along``: whether x or y alone is told,
+    of tracks along a line.
     """
 
     columns: list[tuple[str, Heading]]
@@ -30,6 +31,7 @@ class Layout:
     jointed: bool = False
     pixels: bool = False
     likely: float | None = _LIKELY
+    along: bool = False
 
 
 def layout_of(path: str | Path, look: Look, columns: str | None) -> Layout:
@@ -130,6 +132,8 @@ def _named(names: Sequence[str], owners: Sequence[str] = ()) -> Layout:
     if any(name.lower() == "instance.score" for name in names):
         read = [Heading("") if one.puck == "instance" else one for one in read]
     read = _own_times(read)
+    if (line := on_a_line(names, read)) is not None:
+        return Layout([("", one) for one in line], along=True)
     return Layout(list(zip(_blocks(read), read, strict=True)))
 
 

@@ -207,6 +207,13 @@ class Fit(Result):
             f"{float(getattr(self.given, name)):g}"
             for name in problem.asked.freed if hasattr(self.given, name)
         ]  # fmt: skip
+        for film, spinless in zip(problem.films, problem.spinless, strict=True):
+            if spinless:
+                said.append(
+                    f"{film.name} lies along a line and shows no angles: it is taken for a slide "
+                    "without spin. If it spun, friction may be up to 1.6 times as much "
+                    "(bounds or a start of launch_spin look for that)"
+                )
         for k, side in enumerate(self.certainty.pinned):
             if side:
                 end, way = problem.limits[side > 0][k], "above" if side > 0 else "below"
@@ -289,6 +296,7 @@ class Fit(Result):
             "laws": [one._asdict() for one in self.laws],
             "held_out": None,
             "slip_speeds": list(self.estimate.problem.asked.speeds),
+            "between": self.estimate.problem.asked.between,
             "constant_chi2": self.constant_chi2, "untied": self.untied, "impacts": [
                 {
                     **one._asdict(), "place": list(one.place),
@@ -353,6 +361,9 @@ class Fit(Result):
         self, speed: FloatArray | None = None
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
         """The friction coefficient over slip speed, with its standard error.
+
+        As rows of a scene's law, with the first two, these numbers mean the same there, unless they
+        were found with ``between="linear"``: a law of rows is cubic.
 
         Parameters
         ----------

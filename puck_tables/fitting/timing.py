@@ -79,7 +79,7 @@ def likeliest(
     known : which is given
     off : (3, n), m and rad, NaN where no angle is
     rates : (3, n)
-    kept : (2, n), whether place and angle count
+    kept : (3, n), whether the place along the motion, the angle, the place across it count
     share : of the squares that the unknowns have left
     """
     from scipy.optimize import minimize
@@ -93,6 +93,8 @@ def likeliest(
     usual = noise[0] / speed
     begin = np.log([noise[0], noise[1], jitter if jitter > 0.0 else 0.3 * usual])
     free = [k for k, one in enumerate(known) if not one and (k != 1 or angled.any())]
+    if not free:
+        return noise, jitter
     factor = 1.0 / share
 
     def cost(logs: FloatArray) -> float:
@@ -105,7 +107,9 @@ def likeliest(
         squares = (x**2 + y**2) / place + turn**2 / angle
         ahead = (x * vx + y * vy) / place + turn * spin / angle
         squares -= stamp * ahead**2 / (1.0 + stamp * gain)
-        logarithm = 2.0 * placed.sum() * math.log(place) + angled.sum() * math.log(angle)
+        logarithm = (placed.sum() + kept[2].sum()) * math.log(place) + angled.sum() * math.log(
+            angle
+        )
         return float(logarithm + np.log1p(stamp * gain).sum() + factor * squares.sum())
 
     bounds = [
