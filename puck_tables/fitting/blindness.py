@@ -16,6 +16,7 @@ from puck_tables.fitting.problem import PRIOR, Problem
 from puck_tables.fitting.seen import Seen
 
 _MEMBER = 0.2
+_TOLD_ALL = 2  # other motions that are told in full
 _TOLD = 0.1  # of what is plausible: an error that says something
 _BETTER = 0.2  # times the error of the film that there is
 _SPINNING = 1.0  # rω/v of a launch with more spin
@@ -40,7 +41,9 @@ def blind_spots(
     """
     sentences = []
     marked = any(film.angle is not None for film in found.problem.films)
-    sentences += [rival_sentence(rival, marked) for rival in rivals]
+    sentences += [rival_sentence(rival, marked) for rival in rivals[:_TOLD_ALL]]
+    if others := rivals[_TOLD_ALL:]:
+        sentences.append(f"{len(others)} more motions, of other spins still, fit about as well.")
     sentences += [mirror_sentence(found.problem.films[n].name) for n in unsigned]
     seen: set[frozenset[int]] = set()
     covered = {found.problem.names[k][1] for k in np.flatnonzero(certainty.undetermined)}
@@ -190,8 +193,8 @@ def _marked(film: Seen) -> Seen:
 
 def _longer(film: Seen) -> Seen:
     count = math.ceil(_LONGER * film.time.size)
-    return Seen(
-        film.name, film.start, film.usual_step * np.arange(float(count)), np.zeros((count, 2)),
-        None if film.angle is None else np.zeros(count), np.arange(count),
-        None if film.row is None else np.resize(film.row, count),
+    return replace(
+        film, time=film.usual_step * np.arange(float(count)), place=np.zeros((count, 2)),
+        angle=None if film.angle is None else np.zeros(count), frame=np.arange(count),
+        row=None if film.row is None else np.resize(film.row, count),
     )  # fmt: skip

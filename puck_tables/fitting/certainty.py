@@ -53,6 +53,11 @@ class Certainty:
     pinned: tuple[int, ...] = ()
     widened: bool = False
 
+    def lost(self) -> Certainty:
+        """The same where nothing is seen: no motion comes near the tracks."""
+        count = self.plausible.size
+        return replace(self, blind=np.eye(count), undetermined=(True,) * count)
+
     @property
     def quantile(self) -> float:
         """Half a 95 % interval where the noise is as it was found: that of Student's t."""

@@ -16,7 +16,7 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.compact import compact
 from puck_tables.fitting.least_squares import ROBUST, SQUARES, minimise
-from puck_tables.fitting.problem import ANGLE, PLACE, Problem
+from puck_tables.fitting.problem import ANGLE, PLACE, UNSEEN, Problem
 from puck_tables.fitting.strays import strays
 from puck_tables.fitting.timing import Known, likeliest
 
@@ -81,7 +81,7 @@ def estimate(
     x = np.clip(start, *problem.limits)
     problem = problem.with_noise(problem.noise, x)
     rows = problem.residuals(x)
-    if np.median(np.abs(rows)) > _AWAY * _MEDIAN:
+    if problem.usual(rows) > _AWAY * _MEDIAN:
         x, _ = minimise(problem, x, ROBUST)
         rows = problem.residuals(x)
     kept = _kept(problem, rows, strict)
@@ -110,7 +110,7 @@ def only_strays(found: Estimate) -> bool:
 
 def _kept(problem: Problem, rows: FloatArray, strict: bool) -> npt.NDArray[np.bool_]:
     """Residuals of frames that are no outliers; a place counts as a whole."""
-    kept = np.ones(rows.size, bool)
+    kept: npt.NDArray[np.bool_] = problem.kinds != UNSEEN
     if rows.size < _FEW * len(problem.names):  # too few to tell what is one
         return kept
     each = problem.each()
@@ -122,6 +122,7 @@ def _kept(problem: Problem, rows: FloatArray, strict: bool) -> npt.NDArray[np.bo
     for (x, y, turn), place, angle in zip(each, places, turns, strict=True):
         kept[x] = kept[y] = ~_out(place, most_place, strict)
         kept[turn] = ~_out(angle, most_turn, strict)
+    kept &= problem.kinds != UNSEEN
     return kept
 
 
@@ -200,11 +201,11 @@ def _jittery(
 ) -> tuple[tuple[float, float], float]:
     """The likeliest noise where time stamps jitter."""
     count = []
-    for film, (place, _, turn) in zip(problem.films, problem.each(), strict=True):
+    for film, (place, across, turn) in zip(problem.films, problem.each(), strict=True):
         angled = np.zeros(film.time.size, bool)
         if film.angle is not None:
             angled[np.isfinite(film.angle)] = kept[turn]
-        count.append(np.stack([kept[place], angled]))
+        count.append(np.stack([kept[place], angled, kept[across]]))
     seen = int((kept & (problem.kinds <= ANGLE)).sum())
     return likeliest(
         problem.noise, problem.jitter, known, np.concatenate(problem.off(x), axis=1),

@@ -45,7 +45,7 @@ from puck_tables.fitting.numbers import numbers_of, plausible_for
 from puck_tables.fitting.outcome import Fit
 from puck_tables.fitting.parameters import NODES
 from puck_tables.fitting.problem import Problem
-from puck_tables.fitting.residual_tests import drift, excess_of, misfits, runs
+from puck_tables.fitting.residual_tests import drift, excess_of, misfits, no_answer, runs
 from puck_tables.fitting.rivals import mirrored, rivals_of, taken
 from puck_tables.fitting.seen import Seen, noise_of
 from puck_tables.fitting.tied import Impact, impacts_apart, impacts_joined, not_met, tie
@@ -54,6 +54,7 @@ from puck_tables.puck import Puck
 
 Progress = Callable[[int, int], None]
 _JUDGED = 2.5  # degrees of freedom that tell the noise of a kind
+_MUCH = 0.1  # of the frames, left out at the ends
 _JITTER = 0.3  # times the noise of a place over the speed: to begin with
 
 
@@ -212,6 +213,8 @@ def fit(
     unsigned = mirrored(found, certainty)
     if misfits(found, known, judged):
         certainty = widened(found, certainty)
+    nowhere = no_answer(found, known, judged)
+    seen, certainty = certainty, certainty.lost() if nowhere else certainty
     numbers, launches = numbers_of(found, certainty, rivals, unsigned)
     lost = tuple(n for n in found.problem.asked.free if not numbers[n].determined)
     scores: tuple[LawScore, ...] = ()
@@ -234,6 +237,7 @@ def fit(
     elif impacts:
         names = [film.name for film in uncut]
         hits = impacts_apart(found, pieces, certainty, names)
+    left_out = _left_out((*films, *uncut), found.problem.films)
     result = Fit(
         given=puck,
         numbers=numbers,
@@ -247,8 +251,9 @@ def fit(
         outliers=found.outliers,
         runs=runs(found),
         drift=drift(found),
-        left_out=_left_out((*films, *uncut), found.problem.films),
-        blind=blind_spots(found, certainty, lost, rivals, unsigned),
+        left_out=left_out,
+        cut_off=_cut_off(slides, problem, known, left_out),
+        blind=(nowhere,) if nowhere else blind_spots(found, seen, lost, rivals, unsigned),
         laws=scores,
         held_out=predictions,
         impacts=hits,
@@ -315,6 +320,31 @@ def _left_out(
         )
         for left in after
     )  # fmt: skip
+
+
+def _cut_off(
+    found: Estimate, problem: Problem, known: Known, left_out: tuple[tuple[str, int, int], ...]
+) -> str:
+    """A sentence where many frames are left out at the ends, and what they would change."""
+    said = [
+        f"{first} frames at the start and {last} at the end of {name}"
+        for (name, first, last), film in zip(left_out, found.problem.films, strict=False)
+        if first + last > _MUCH * (first + last + film.time.size)
+    ]
+    if not said:
+        return ""
+    films = tuple(replace(film, cuttable=(False, False)) for film in problem.films)
+    kept = fitted(problem.with_films(films), known, refit=True)
+    numbers = ", ".join(
+        f"{name} {value:.4g}" for name, value in kept.problem.found(kept.x).items()
+    )  # fmt: skip
+    more = kept.problem.noise[0] * math.sqrt(kept.chi2 / max(kept.degrees, 1))
+    more /= found.problem.noise[0] * math.sqrt(found.chi2 / max(found.degrees, 1)) or 1.0
+    return (
+        f"{' and '.join(said)} are left out: something seems to touch the puck there. With all "
+        f"frames (--keep-all, keep_all=True) it would be {numbers or 'as known'}, residuals "
+        f"{more:.3g} times as large"
+    )
 
 
 def _held(hold_out: Any) -> float | tuple[str, ...]:

@@ -12,7 +12,7 @@ from puck_tables.fitting.certainty import certainty_of
 from puck_tables.fitting.estimate import Estimate, estimate, only_strays
 from puck_tables.fitting.free_motion import is_clean, trimmed, without_ends
 from puck_tables.fitting.numbers import plausible_for
-from puck_tables.fitting.problem import Problem
+from puck_tables.fitting.problem import ANGLE, Problem
 from puck_tables.fitting.residual_tests import NO_PATTERN, NOISY
 from puck_tables.fitting.starts import minima_of
 from puck_tables.fitting.timing import Known
@@ -156,4 +156,4 @@ def _joint_start(
 
 
 def _observations(problem: Problem) -> int:
-    return int(problem.kinds.size) - len(problem.priors)
+    return int((problem.kinds <= ANGLE).sum())

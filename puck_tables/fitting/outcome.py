@@ -46,7 +46,8 @@ class Fit(Result):
     ``noise`` (m, rad) and ``jitter`` (s, of time stamps), those of the residuals unless
     ``noise_known``, and ``smooth_noise``, judged without any model of the puck; ``outliers``: share
     of the observations that are left out; ``left_out``: (track, frames at its start, at its end)
-    that are no free motion; ``runs``, ``drift``: probabilities of residuals so patterned by chance;
+    that are no free motion; ``cut_off``: a sentence where these are many, with what they would
+    change; ``runs``, ``drift``: probabilities of residuals so patterned by chance;
     ``blind``: a sentence for each thing that the tracks do not tell; ``laws``: :class:`LawScore` of
     those compared, best
     first; ``held_out``: how well frames that were held out are predicted;
@@ -71,6 +72,7 @@ class Fit(Result):
     runs: float
     drift: float
     left_out: tuple[tuple[str, int, int], ...]
+    cut_off: str
     blind: tuple[str, ...]
     laws: tuple[LawScore, ...]
     held_out: HeldOut | None
@@ -184,6 +186,13 @@ class Fit(Result):
             f"{float(getattr(self.given, name)):g}"
             for name in problem.asked.freed if hasattr(self.given, name)
         ]  # fmt: skip
+        for film, spinless in zip(problem.films, problem.spinless, strict=True):
+            if spinless:
+                said.append(
+                    f"{film.name} lies along a line and shows no angles: it is taken for a slide "
+                    "without spin. If it spun, friction may be up to 1.6 times as much "
+                    "(bounds or a start of launch_spin look for that)"
+                )
         for k, side in enumerate(self.certainty.pinned):
             if side:
                 end, way = problem.limits[side > 0][k], "above" if side > 0 else "below"
@@ -261,6 +270,7 @@ class Fit(Result):
             "noise": list(self.noise), "noise_given": list(self.noise_known[:2]),
             "jitter": self.jitter, "jitter_given": self.noise_known.jitter,
             "outliers": self.outliers, "left_out": [list(one) for one in self.left_out],
+            "cut_off": self.cut_off,
             "runs": self.runs, "drift": self.drift,
             "not_determined": list(self.blind), "remarks": list(self.remarks),
             "complaints": list(self.complaints),

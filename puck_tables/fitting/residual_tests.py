@@ -13,6 +13,7 @@ from puck_tables.fitting.timing import Known
 NO_PATTERN = 1e-3  # probability of residuals so patterned by chance
 NOISY = 1.5  # times the noise of a smooth motion
 _COMPUTED = 1e-7  # of the path: residuals of tracks that were computed, not seen
+_NOWHERE, _FAR, _ANY = 20.0, 1e-3, 0.5  # times the noise; of the path; rad
 _PARTS = 8
 _MOVING, _ENOUGH = 0.1, 20  # of the greatest speed; frames
 
@@ -93,6 +94,25 @@ def misfits(found: Estimate, known: Known, smooth: tuple[float, float]) -> tuple
     return tuple(told)
 
 
+def no_answer(found: Estimate, known: Known, smooth: tuple[float, float]) -> str:
+    """A sentence where no motion comes near the tracks, and nothing is determined; else none."""
+    size = max(float(np.ptp(film.place, axis=0).max()) for film in found.problem.films)
+    usual = math.sqrt(found.chi2 / max(found.degrees, 1))
+    times = max(excess_of(found, smooth), usual if any(known[:2]) else 0.0)
+    angled = any(film.angle is not None for film in found.problem.films)
+    if times > _NOWHERE and usual * found.problem.noise[0] > _FAR * size:
+        far = f"the nearest is {times:.3g} times the noise off"
+    elif angled and usual * found.problem.noise[1] > _ANY:
+        far = f"angles are {usual * found.problem.noise[1]:.2g} rad off the nearest"
+    else:
+        return ""
+    return (
+        f"Nothing is determined: no motion of such a puck fits these tracks, {far}. What would "
+        "tell: a start near the truth (--start), more frames a second, or a floor, a radius or "
+        "units as they are"
+    )
+
+
 def lengthways(found: Estimate) -> float:
     """The spread of residuals along the motion over that across it, less what chance may do.
 
@@ -100,13 +120,16 @@ def lengthways(found: Estimate) -> float:
     """
     along, across = [], []
     off, rates = found.problem.off(found.x), found.problem.rates(found.x)
-    for (x, _, _), one, rate in zip(found.problem.each(), off, rates, strict=True):
+    films = found.problem.films
+    for film, (x, _, _), one, rate in zip(films, found.problem.each(), off, rates, strict=True):
+        if film.straight is not None:
+            continue
         speed = np.hypot(rate[0], rate[1])
         moving = found.kept[x] & (speed > _MOVING * speed.max(initial=0.0))
         ahead = rate[:2, moving] / speed[moving]
         along.append((one[:2, moving] * ahead).sum(axis=0))
         across.append(one[0, moving] * ahead[1] - one[1, moving] * ahead[0])
-    one, two = np.concatenate(along), np.concatenate(across)
+    one, two = (np.concatenate(part or [np.empty(0)]) for part in (along, across))
     if one.size < _ENOUGH or not two.any():
         return 1.0
     ratio = math.sqrt(float(np.mean(one**2) / np.mean(two**2)))

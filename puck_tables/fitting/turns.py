@@ -27,7 +27,9 @@ _FARTHEST = 16.0  # of the square of a residual
 _MEDIAN = 0.6744897501960817
 _DIRECTIONS, _TOLD, _WIDE = 3, 0.3, 3.5  # phases; rad that need no search; standard deviations
 _STEP, _MOST = 0.8, 2e6  # rad; phases of frames that are looked at
+_LOST = 1e4  # rad: places tell nothing of how it turns
 _FOLLOWED = 12
+_LITTLE_DRAG, _MOST_DRAG = 0.01, 10.0  # 1/s
 
 
 class Judged(NamedTuple):
@@ -93,8 +95,10 @@ def on_another_floor(problem: Problem, x: FloatArray) -> tuple[Problem, FloatArr
     if asked.speeds or "drag" in asked.free or "drag" in asked.fixed:
         return None
     free = len(asked.free)
-    moved = replace(problem, asked=replace(asked, free=(*asked.free, "drag")), weights=())
-    return moved, np.insert(x, free, 0.0)
+    bounds = {**asked.bounds, "drag": (0.0, _MOST_DRAG)}
+    asked = replace(asked, free=(*asked.free, "drag"), bounds=bounds)
+    moved = replace(problem, asked=asked, weights=())
+    return moved, np.insert(x, free, _LITTLE_DRAG)
 
 
 def in_order(problem: Problem, minima: list[FloatArray]) -> list[FloatArray]:
@@ -161,6 +165,8 @@ def by_place(problem: Problem, blind: Problem, minima: list[FloatArray]) -> list
         spreads, ways = np.sqrt(np.maximum(variances[order], 0.0)), ways[:, order]
         swings = spreads * np.abs(ways).max(axis=0)
         counts = [1 + 2 * math.ceil(_WIDE * one / _STEP) if one > _TOLD else 1 for one in swings]
+        if not np.isfinite(swings).all() or swings.max() > _LOST:
+            continue
         fewer = (math.prod(counts) * seen.sum() / _MOST) ** (1.0 / _DIRECTIONS)
         counts = [math.ceil(n / max(fewer, 1.0)) for n in counts]
         sides = [np.linspace(-_WIDE, _WIDE, n) if n > 1 else np.zeros(1) for n in counts]
