@@ -213,7 +213,10 @@ def fit(
     unsigned = mirrored(found, certainty)
     if misfits(found, known, judged):
         certainty = widened(found, certainty)
-    nowhere = no_answer(found, known, judged)
+    # bounds that the caller gives may keep every motion away: that is said of the bound
+    names = found.problem.names
+    held_off = any(names[k][1] in asked.bounds for k in np.flatnonzero(certainty.pinned))
+    nowhere = "" if held_off else no_answer(found, known, judged)
     seen, certainty = certainty, certainty.lost() if nowhere else certainty
     numbers, launches = numbers_of(found, certainty, rivals, unsigned)
     lost = tuple(n for n in found.problem.asked.free if not numbers[n].determined)

@@ -139,11 +139,14 @@ def _of_other_turns(found: Estimate) -> list[FloatArray]:
         if name != _SPIN or problem.films[n].angle is None:
             continue
         turn = 2.0 * half_turns(problem.films[n])
-        for more in (*range(-_MORE_TURNS, 0), *range(1, _MORE_TURNS + 1)):
-            x = found.x.copy()
-            x[k] += more * turn
-            within = problem.limits[0][k] <= x[k] <= problem.limits[1][k]
-            if within and _near(found, x, []):
+        for way in (-turn, turn):
+            x = found.x
+            for _ in range(_MORE_TURNS):  # as long as they are near
+                x = x.copy()
+                x[k] += way
+                within = problem.limits[0][k] <= x[k] <= problem.limits[1][k]
+                if not (within and _near(found, x, [])):
+                    break
                 starts.append(x)
     return starts
 
