@@ -214,8 +214,9 @@ def fit(
     if misfits(found, known, judged):
         certainty = widened(found, certainty)
     # bounds that the caller gives may keep every motion away: that is said of the bound
-    names = found.problem.names
-    held_off = any(names[k][1] in asked.bounds for k in np.flatnonzero(certainty.pinned))
+    held_off = any(
+        found.problem.names[k][1] in asked.bounds for k in np.flatnonzero(certainty.pinned)
+    )
     nowhere = "" if held_off else no_answer(found, known, judged)
     seen, certainty = certainty, certainty.lost() if nowhere else certainty
     numbers, launches = numbers_of(found, certainty, rivals, unsigned)
