@@ -13,6 +13,7 @@ from typing import BinaryIO
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables._core.real import shown
 from puck_tables.errors import InputError
 
 
@@ -61,6 +62,8 @@ def opened(path: str | Path, largest: int) -> BinaryIO:
     OSError: [Errno 22] it is not a regular file, save what it gives as one: '/dev/zero'
     """
     # not blocking: to open a pipe would wait for who writes to it
+    if not isinstance(path, str | os.PathLike) or "\0" in os.fspath(path):
+        raise OSError(errno.EINVAL, "it is no path of a file", shown(path))
     flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
     if Path(path).exists() and not Path(path).is_file():
         raise _irregular(path)

@@ -25,7 +25,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import finite_array
+from puck_tables._core.real import finite_array, instance, real
 from puck_tables.errors import AccuracyError, InputError
 
 _TOL = 1e-13
@@ -210,9 +210,10 @@ def asperity_motion(
         raise InputError(
             "times must be at least two numbers in s, ascending: the first is the start"
         )
-    place, rate = (
-        float(finite_array(n, v, u)) for n, v, u in (("x", x, "m"), ("speed", speed, "m/s"))
-    )
+    instance("asperity", asperity, Asperity)
+    place, rate = real("x", x, "m"), real("speed", speed, "m/s")
+    if not math.isfinite(asperity.mass * rate * rate):
+        raise InputError(f"speed = {rate:g} m/s gives an energy too large for floating point")
     end = float(when[-1])
     arc = _contact(asperity, float(when[0]), place, rate, 0.0)
     arcs, pieces = [arc], []

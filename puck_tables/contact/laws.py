@@ -21,7 +21,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import broadcast, instance, real_array
+from puck_tables._core.real import broadcast, instance, real_array, shown
 from puck_tables._core.safe_read import read_rows
 from puck_tables.contact import closed_form, one_sided, quadrature
 from puck_tables.contact.integrals import PatchIntegrals, checked_phi, slip_direction
@@ -194,7 +194,7 @@ def law_of(text: str) -> Law:
             )
         return _washer(inner)
     if not text.lower().endswith(".csv"):
-        raise InputError(f"no pressure law is called {text!r}: choose {NAMES}")
+        raise InputError(f"no pressure law is called {shown(text)}: choose {NAMES}")
     return profile_law(*_read(text), name=Path(text).name)
 
 

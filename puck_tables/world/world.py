@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import finite_array, real
+from puck_tables._core.real import finite_array, instance, real
 from puck_tables.errors import InputError, PuckError
 from puck_tables.scene.friction import SPIN, VX, VY
 from puck_tables.scene.holds import misfits
@@ -113,6 +113,7 @@ class World:
     """
 
     def __init__(self, scene: Scene) -> None:
+        instance("scene", scene, Scene)
         self.scene = scene.single()
         self._order = order_of(self.scene)
         self._game, self._room = game_of(self.scene, self._order)
@@ -217,7 +218,8 @@ class World:
         PuckError
             If events crowd together without end.
         """
-        span = math.inf if duration == math.inf else real("duration", duration, "s")
+        endless = isinstance(duration, float) and duration == math.inf
+        span = math.inf if endless else real("duration", duration, "s")
         if not span >= 0.0:
             raise InputError(f"duration must not be negative, got {span:g} s")
         if span == math.inf:
@@ -326,6 +328,7 @@ class World:
 
         To see how much an end depends on them.
         """
+        scale, turn = real("scale", scale, "1"), real("turn", turn, "rad")
         cosine, sine = scale * math.cos(turn), scale * math.sin(turn)
         turned = np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, scale]])
         later = self._game.launches.copy()
