@@ -37,6 +37,7 @@ KEPT = (
     "random", "seed", "spreads", "regions",
 )  # fmt: skip
 SCALED = ("delta", "decel")
+_AT = {"impact": "wall", "contact": "wall", "edge": "edge", "overhang": "edge"}
 MOST_PARTS = 16  # of a scene in a report
 
 
@@ -186,6 +187,10 @@ def report(run: SceneRun) -> str:
         "error": _error(run),
         "model": run.plan.model + (f", {run.steps} steps" if run.steps else ""),
     }
+    if any(event.what == "overhang" for event in run.events):
+        from puck_tables.scene.plan import OVERHANG
+
+        lines["overhang"] = OVERHANG
     if run.scene.lateral.strength != 0.0:
         lines["lateral"] += "; empirical: no dry friction over the contact explains it"
     if run.scene.constraint is not None:
@@ -251,7 +256,7 @@ def _joule(energy: float) -> str:
 
 def _event(scene: Scene, event: Event) -> str:
     """What happened, and at which wall, edge, border, patch or strip."""
-    at, number = {"impact": "wall", "contact": "wall", "edge": "edge"}.get(event.what), event.which
+    at, number = _AT.get(event.what), event.which
     if event.what in ("entry", "exit"):
         borders = 0 if scene.floor.strips is None else len(scene.floor.strips.borders)
         at, number = ("border", number) if number < borders else ("patch", number - borders)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -133,6 +134,27 @@ def instance(name: str, value: object, *kinds: type) -> None:
     if not isinstance(value, kinds):
         names = " or a ".join(kind.__name__ for kind in kinds if kind is not type(None))
         raise InputError(f"{name} must be a {names}, got a {type(value).__name__}")
+
+
+def listed(name: str, values: object, what: str) -> list[Any]:
+    """What stands in a list, a tuple or an array; a text is none.
+
+    Raises
+    ------
+    InputError
+
+    Examples
+    --------
+    >>> listed("names", ("x", "y"), "columns")
+    ['x', 'y']
+    """
+    try:
+        if isinstance(values, str | bytes):
+            raise TypeError
+        found: list[Any] = list(values)  # type: ignore[call-overload]
+    except TypeError:
+        raise InputError(f"{name} must be a list of {what}, got {shown(values)}") from None
+    return found
 
 
 def broadcast(**arrays: FloatArray) -> list[FloatArray]:

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import finite_array, shown
+from puck_tables._core.real import finite_array, listed, shown
 from puck_tables.errors import InputError
 
 _SIGMAS = 1.959963984540054  # of a 95 % interval
@@ -38,10 +38,10 @@ class Summary:
     place: tuple[str, str]
 
     def _rows(self, names: Sequence[str] | None = None) -> FloatArray:
-        names = self.summed if names is None else names
         known = ", ".join(self.summed)
-        if isinstance(names, str) or not isinstance(names, Iterable) or not list(names):
-            raise InputError(f"names must be a list of columns among {known}, got {shown(names)}")
+        names = self.summed if names is None else listed("names", names, "columns")
+        if not len(names):
+            raise InputError(f"names must be some of the columns {known}")
         for name in names:
             if not isinstance(name, str) or name not in self.summed:
                 raise InputError(f"{shown(name)} is no column of samples: there are {known}")
@@ -76,7 +76,7 @@ class Summary:
             If a share is not from 0 to 1.
         """
         wanted = finite_array("shares", shares, "1")
-        if not wanted.size or not ((wanted >= 0.0) & (wanted <= 1.0)).all():
+        if wanted.ndim > 1 or not wanted.size or not ((wanted >= 0.0) & (wanted <= 1.0)).all():
             raise InputError("shares of quantiles must be numbers from 0 to 1")
         found = np.quantile(self._rows(), wanted, axis=1)
         return {name: np.asarray(found[..., n]) for n, name in enumerate(self.summed)}
@@ -104,7 +104,7 @@ class Summary:
             sides = [_sides(x), _sides(y)]
         else:
             ends = finite_array("extent", extent, "m")
-            sides = [tuple(side) for side in ends.reshape(-1, 2).tolist()] if ends.size == 4 else []
+            sides = [(ends[0], ends[1]), (ends[2], ends[3])] if ends.shape == (4,) else []
             if ends.shape != (4,) or not (ends[1] > ends[0] and ends[3] > ends[2]):
                 raise InputError("extent must be (x1, x2, y1, y2) with x1 < x2 and y1 < y2, in m")
         counts, across, along = np.histogram2d(x, y, bins, sides)
@@ -128,8 +128,7 @@ class Summary:
 
     def summary(self, regions: Sequence[npt.ArrayLike] = ()) -> str:
         """Means, deviations and quantiles in a table, and the chances of regions; lines of text."""
-        if isinstance(regions, str) or not isinstance(regions, Iterable):
-            raise InputError(f"regions must be a list of regions, got {shown(regions)}")
+        regions = listed("regions", regions, "regions")
         mean, rows = self.mean(), self._rows()
         shares = self.quantiles()
         lines = [f"{'':<14}{'mean':>13}{'deviation':>13}{'2.5 %':>13}{'50 %':>13}{'97.5 %':>13}"]

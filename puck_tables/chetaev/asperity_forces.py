@@ -31,7 +31,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import checked_progress, finite_array, instance
+from puck_tables._core.real import checked_progress, finite_array, instance, shown
 from puck_tables.chetaev.asperity import Arc, Asperity, landing
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import InputError
@@ -146,7 +146,7 @@ class AsperityCurve(Result):
         0.25
         """
         if which not in ("crude", "greatest", "undriven", "mean"):
-            raise InputError(f"which must be crude, greatest, undriven or mean, got {which!r}")
+            raise InputError(f"which must be crude, greatest, undriven or mean, got {shown(which)}")
         return SpeedLaw(self.held_speed, getattr(self, which) / self.asperity.load)
 
 

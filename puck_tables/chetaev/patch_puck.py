@@ -297,6 +297,7 @@ def _checked(
     height = real("delta", delta, "2 f h / r")
     if not 0.0 <= height <= 1.0:
         raise InputError(f"delta must be from 0 to 1 (full contact) for patches, got {height:g}")
-    units = ("decel", decel, "m/s^2"), ("radius", radius, "m"), ("mass", mass, "kg")
-    scales = (positive(name, value, unit) for name, value, unit in units)
-    return height, *scales
+    return (
+        height, positive("decel", decel, "m/s^2"), positive("radius", radius, "m"),
+        positive("mass", mass, "kg"),
+    )  # fmt: skip

@@ -12,7 +12,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from puck_tables._core.real import instance, real, shown
+from puck_tables._core.real import instance, listed, real, shown
 from puck_tables._core.safe_write import write_bytes
 from puck_tables._version import __version__
 from puck_tables.errors import AccuracyError, InputError
@@ -189,10 +189,7 @@ def checked_request(language: str, what: str | Iterable[str], tol: float) -> tup
             f"tol must be from {FINEST:g} to {COARSEST:g} for exported files, got {error:g}: give "
             "a tol in that range"
         )
-    try:
-        asked = what.split(",") if isinstance(what, str) else list(what)
-    except TypeError:
-        raise InputError(f"what must be a name or a list of names, got {shown(what)}") from None
+    asked = what.split(",") if isinstance(what, str) else listed("what", what, "names")
     names = [one.strip() if isinstance(one, str) else one for one in asked]
     for name in names:
         if not isinstance(name, str) or name not in PARTS:

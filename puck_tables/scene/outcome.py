@@ -24,7 +24,7 @@ ENDS = (
     "step limit", "event limit", "not finite", "undecided", "no end found", "refused",
 )  # fmt: skip
 NO_END, REFUSED = len(ENDS) - 2, len(ENDS) - 1  # of a run in a sweep, which goes on
-EVENTS = ("stick", "slip", "impact", "contact", "entry", "edge", "exit")
+EVENTS = ("stick", "slip", "impact", "contact", "entry", "edge", "exit", "overhang")
 
 # rows of the compiled loop, and what follows from them
 LEDGER = (
@@ -38,9 +38,9 @@ EVENT_UNITS = {"time": "s", "what": "1", "which": "1", "x": "m", "y": "m"}
 class Event(NamedTuple):
     """What happened on the way: when (s), what, which, where (m).
 
-    ``which``, from 0: of impact and contact the wall, of edge the edge, of entry and exit the
-    border between strips and after all borders the patch, of stick and slip the strip under the
-    centre.
+    ``which``, from 0: of impact and contact the wall, of edge and overhang the edge, of entry and
+    exit the border between strips and after all borders the patch, of stick and slip the strip
+    under the centre.
     """
 
     time: float
@@ -58,7 +58,8 @@ class SceneRun(TimedResult):
     on one that turns, over the same borders again and again: a whole turn is followed), 'time is
     up' or 'over the edge'; ``end_time`` s; ``events``: what happened, one of stick (it comes to
     rest on the floor), slip (it leaves that rest), impact, contact (it stays at a wall), entry (its
-    rim comes over a border or patch), exit (it has left it), edge.
+    rim comes over a border or patch), exit (it has left it), overhang (its rim comes over an edge:
+    from there to the edge it is carried as if nothing of it hung in the air), edge.
     ``plan``: the model that was taken, and why.  ``energy_residual``: what the ledger misses, as a
     share of its largest entry.  ``error_estimate``: of the end time in
     units of Q/J and of places in Q²/J, with ``speed_scale`` = Q in m/s and ``rate_scale`` = J in

@@ -116,10 +116,13 @@ def _integrated(scene: Scene, plan: Plan, times: FloatArray | None) -> SceneRun:
         plan=plan,
         end=ENDS[run.how],
         end_time=run.end_time,
-        events=[
-            Event(float(e[0]), EVENTS[int(e[1])], int(e[2]), float(e[3 + X]), float(e[3 + Y]))
-            for e in events
-        ],
+        events=sorted(
+            (
+                Event(float(e[0]), EVENTS[int(e[1])], int(e[2]), float(e[3 + X]), float(e[3 + Y]))
+                for e in events
+            ),
+            key=lambda event: event.time,  # a rim may come over two edges on one step
+        ),
         energy_residual=ledger_residual(columns, float(energy)),
         error_estimate=estimate,
         speed_scale=prepared.speed,

@@ -6,14 +6,14 @@ is linear over the scatter.  Samples say whether it is.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import finite_array, shown
+from puck_tables._core.real import finite_array, listed, shown
 from puck_tables.bulk.spreads import checked_seed
 from puck_tables.errors import InputError
 
@@ -128,9 +128,7 @@ def spread_of(
     InputError
         If the covariance is none, or samples leave the range of an argument.
     """
-    if isinstance(of, str) or not isinstance(of, Iterable):
-        raise InputError(f"of must be a list of arguments of {', '.join(columns)}, got {shown(of)}")
-    which = [_place(name, columns) for name in of]
+    which = [_place(name, columns) for name in listed("of", of, "arguments")]
     if len(set(which)) < len(which) or not which:
         raise InputError(f"of must name different arguments of {', '.join(columns)}")
     shape = jacobian.shape[:-2]

@@ -62,7 +62,8 @@ _FAILURES = {
 class Meeting(NamedTuple):
     """What happened: when (s), what, to which puck, with whom.
 
-    An impact; a contact, which lasts; pocket or edge, where it leaves play; a launch.
+    An impact; a contact, which lasts; pocket or edge, where it leaves play; a launch; overhang,
+    where its rim comes over an edge (it is carried as if nothing of it hung in the air).
 
     ``x``, ``y`` m: where; ``approach``, ``slip`` m/s: how fast the rims came together and slid on
     each other before the first impact of this moment; ``impulse``, ``rub`` N s: along the line from
