@@ -66,7 +66,7 @@ def entries(part: Any, prefix: str = "") -> Iterator[Entry]:
     Examples
     --------
     >>> from puck_tables.scene.parts import Edge
-    >>> [entry.path for entry in entries(Edge((0.0, 1.0), (0.0, -1.0)), "edge[0].")]
+    >>> [entry.path for entry in entries(Edge((0.0, 1.0), normal=(0.0, -1.0)), "edge[0].")]
     ['edge[0].point', 'edge[0].normal']
     """
     for name, spec in specs(type(part)).items():
