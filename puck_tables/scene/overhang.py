@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import allocating, inlined
+from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.boundaries import Line, arc_of, crossing, gap_polynomial, line_to
 from puck_tables.scene.equations import SIZE
 from puck_tables.scene.ingredients import Stretch
@@ -43,7 +43,7 @@ def look_at_edges(
     return count
 
 
-@allocating
+@inner
 def come_over_edges(
     edges: FloatArray, radius: float, hangs: npt.NDArray[np.bool_], stretch: Stretch, t: float,
     h: float, y: FloatArray, scale: FloatArray, work: FloatArray, last: FloatArray,

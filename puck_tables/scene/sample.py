@@ -106,7 +106,8 @@ def sample(
     """Samples of a scene, as :meth:`puck_tables.Scene.sample` has it."""
     if scene.is_board:
         raise InputError(
-            "samples of boards are not drawn: give lists or ranges of a board, and sweep it"
+            "samples of boards are not drawn: let a number of the board range instead, such as "
+            "puck[0].launch.spin = '0:5:11', and sweep it"
         )
     check_part(chunk)
     checked_samples(count, seed)
