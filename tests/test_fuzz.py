@@ -213,7 +213,7 @@ def try_door(name: str, rng: np.random.Generator) -> None:
 
 def test_hostile_arguments():
     rng = np.random.default_rng(35)
-    for _ in range(8):
+    for _ in range(2):
         for name in QUICK:
             try_door(name, rng)
 

@@ -67,7 +67,8 @@ class SceneRun(TimedResult):
     turning floor asks over the mass; without slip Q² = J r), and of the times of rebounds from one
     wall.  It is above
     ``run.tol`` where the motion amplifies errors so much that tol cannot be kept.
-    ``columns``: arrays (n,) over time by name, each also an attribute (``run.x``); ``heading``,
+    ``columns``: arrays (n,) over time by name, each also an attribute (``run.x``); ``heat_dry`` is
+    that of the floor and of a rim that rubs on a cushion it leans on; ``heading``,
     ``slip_speed`` and ``slip_angle`` are of the motion in the laboratory, 0 at rest there.
     ``last``: the columns at the end, numbers.  ``files``: what stood in the files that the scene
     names, by the path of the entry.  Called with times it gives the same run with its states there.

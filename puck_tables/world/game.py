@@ -28,6 +28,13 @@ EVENTS = (
 ) = range(13)  # fmt: skip
 EVENT_COLUMNS = 13
 
+# why a run does not go on, whatever of it comes first, and where its books are wrong for the same
+TOGETHER = (
+    "by {time:.6g} s what touches meets again and again, or presses so that no forces satisfy the "
+    "laws of all rims: that is not solved here; give restitutions from 0.5 on or smooth rims "
+    "(tangential = -1), or move a puck"
+)
+
 LAUNCH_TIME, LAUNCHED, LAUNCH_VX, LAUNCH_VY, LAUNCH_SPIN = range(5)
 LAUNCH_COLUMNS = 5
 

@@ -18,6 +18,8 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.friction import VX, VY, X, Y
@@ -78,7 +80,7 @@ def safe_step(gap: float, rate: float, bend: float) -> float:
 def in_span(angle: float, start: float, span: float) -> bool:
     """Whether an angle lies in [start, start + span]."""
     turns = (angle - start) / (2.0 * math.pi)
-    return 2.0 * math.pi * (turns - math.floor(turns)) <= span
+    return 2.0 * math.pi * (turns - float(np.floor(turns))) <= span
 
 
 @inlined

@@ -28,7 +28,6 @@ from puck_tables.world.engine import (
     PAUSED,
     PUSHING,
     REACHED,
-    TANGLED,
     THOSE_LEFT,
     advance,
     lacks_rows,
@@ -51,12 +50,6 @@ from puck_tables.world.record import states_at
 MOST_EVENTS = 1_000_000
 CROWD = 1e-7  # of Q/J: 2000 events in less are a crowd
 CROWDED_PUSHES, PUSHED_IN = 3000, 1e-3  # and so many new groups that push, in that share of Q/J
-_FAILURES = {
-    CROWDED: "too many events by {time:.6g} s: they crowd together without end; change the "
-    "restitution of what meets there",
-    TANGLED: "the impacts of pucks that touch do not come to an end at {time:.6g} s: change their "
-    "restitution",
-}
 
 
 class Meeting(NamedTuple):
@@ -143,6 +136,11 @@ class World:
     def in_play(self) -> npt.NDArray[np.bool_]:
         """Which pucks are in no pocket and over no edge, array (pucks,)."""
         return self._game.kinds[self._place] != GONE
+
+    @property
+    def groups(self) -> int:
+        """How many groups of pucks have pushed each other."""
+        return int(self._game.counts[g.N_GROUPS])
 
     @property
     def moving(self) -> npt.NDArray[np.bool_]:
@@ -397,7 +395,7 @@ class World:
                     )
         if how == OFF_TABLE:
             return self._off_table()
-        return _FAILURES[how].format(time=self.time)
+        return g.TOGETHER.format(time=self.time)
 
     def _off_table(self) -> str:
         """Which impact is faster than its table of restitution goes."""
