@@ -93,7 +93,7 @@ def test_refusals(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     result = puck("paper", "--out", "new")
     assert result.exit_code == 1
-    assert "pip install 'puck-tables[plot]'" in result.stderr
+    assert 'pip install "puck-tables[plot]"' in result.stderr
     assert not Path("new").exists()
 
 

@@ -73,11 +73,8 @@ def test_there_are_examples():
     }
 
 
-def test_the_readme_is_short_and_every_page_is_named():
+def test_the_readme_is_short():
     assert len(TEXTS["README.md"].splitlines()) <= 150
-    shelves = TEXTS["index.md"].replace("\n", " ")
-    for page in PAGES.keys() - {"README.md", "index.md"}:
-        assert f" {page.removesuffix('.md')} " in shelves, page
 
 
 @pytest.mark.parametrize("script", EXAMPLES, ids=lambda path: path.stem)

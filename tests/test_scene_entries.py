@@ -55,6 +55,7 @@ CASES: dict[str, tuple[dict[str, Any], Any]] = {
     "puck.pressure": ({}, "ring"),
     "puck.friction": ({}, 0.3),
     "puck.gravity": ({}, 3.7),
+    "gravity": ({}, 3.7),
     "floor.slope": ({}, 0.1),
     "floor.downhill": ({"floor": {"slope": 0.1}}, 1.0),
     "floor.velocity": ({}, [0.1, 0.2]),

@@ -133,6 +133,10 @@ def tables_of(part: Any) -> dict[str, Any]:
         value = _plain(getattr(part, spec.name))
         if value is not None and value != [] and not (isinstance(value, float) and value == np.inf):
             tables[in_tables(name)] = value
+    if "gravity" in tables and "puck" in tables:  # a scene whose pucks have its own
+        pucks = tables["puck"]
+        for puck in pucks if isinstance(pucks, list) else [pucks]:
+            puck.pop("gravity", None)
     return tables
 
 

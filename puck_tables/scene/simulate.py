@@ -166,7 +166,7 @@ def _close_enough(
         tol = max(share * tol, FINEST)
     if doubt > asked:
         raise InputError(_met_at_once(scene, run.at_once))
-    for coarser in (asked / FINER, asked / FINER**2):  # where finer steps only add up rounding
+    for coarser in (10.0 * asked, 100.0 * asked):  # finer steps may only add up rounding
         if found[-1][2] > asked and coarser <= COARSEST:
             near = replace(scene, run=replace(scene.run, tol=coarser))
             prepared, run, estimate, doubt = _within_law(near, last, times, room)

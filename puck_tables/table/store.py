@@ -23,8 +23,8 @@ from typing import Any, NamedTuple, TypeVar, overload
 import numpy as np
 
 from puck_tables._core.own_folder import make_private, refuse_shared, say, user_cache
+from puck_tables._core.parts import PART_PATTERN
 from puck_tables._core.real import checked_progress, positive, real
-from puck_tables._core.safe_write import PART_PATTERN
 from puck_tables._core.sources import source_digest
 from puck_tables._core.waiting import watched
 from puck_tables.contact.friction_laws import FrictionLaw

@@ -80,14 +80,14 @@ class Meeting(NamedTuple):
 class World:
     """Pucks on a board, from now on.
 
+    It is made by :meth:`puck_tables.Scene.world`.  Nothing is stepped: between two events every
+    puck is on a curve that is known as a whole, so a call costs what happens in it.  The same calls
+    give the same bits, also of copies and of what was saved.
+
     Parameters
     ----------
     scene : Scene
         Without ranges.
-
-    It is made by :meth:`puck_tables.Scene.world`.  Nothing is stepped: between two events every
-    puck is on a curve that is known as a whole, so a call costs what happens in it.  The same calls
-    give the same bits, also of copies and of what was saved.
 
     Raises
     ------
