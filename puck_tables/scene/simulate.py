@@ -167,7 +167,7 @@ def _close_enough(
     if doubt > asked:
         raise InputError(_met_at_once(scene, run.at_once))
     for coarser in (10.0 * asked, 100.0 * asked):  # finer steps may only add up rounding
-        if found[-1][2] > asked and coarser <= COARSEST:
+        if found[-1][2] > asked and coarser <= COARSEST and not scene.floor.law:
             near = replace(scene, run=replace(scene.run, tol=coarser))
             prepared, run, estimate, doubt = _within_law(near, last, times, room)
             if estimate < found[-1][2] and doubt <= asked:
