@@ -44,9 +44,8 @@ ROOMS = {
     "tradeoff": "_core _version accuracy contact io kernels motion puck result stopping table",
     "plot": "_core _version accuracy bulk chetaev errors film fitting io motion reference result "
     "scene stopping tradeoff trajectory world wrench",
-    "paper": "_core contact motion plot puck trajectory",
     "cli": "_core _version accuracy bulk chetaev contact errors explore export film fitting io "
-    "kernels motion paper plot puck reference scene stopping table tradeoff world",
+    "kernels motion plot puck reference scene stopping table tradeoff world",
     "__init__": "_core _version",
 }
 DOORS = {
