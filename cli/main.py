@@ -26,7 +26,6 @@ from puck_tables.cli.fit import fit
 from puck_tables.cli.info import info
 from puck_tables.cli.limit_surface import limit_surface
 from puck_tables.cli.options import printable, said_first
-from puck_tables.cli.paper import paper
 from puck_tables.cli.reference import reference
 from puck_tables.cli.scene import scene
 from puck_tables.cli.simulate import simulate
@@ -146,7 +145,7 @@ def main() -> None:
 
 
 _ALL = (
-    simulate, sweep, aim, scene, track, fit, build_tables, validate, info, tables, paper, tradeoff,
+    simulate, sweep, aim, scene, track, fit, build_tables, validate, info, tables, tradeoff,
     asperity, limit_surface, reference, compare, export, explore,
 )  # fmt: skip
 for _command in _ALL:
