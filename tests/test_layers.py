@@ -20,7 +20,7 @@ ROOMS = {
     "io": "_core _version errors",
     "result": "_core io",
     "bulk": "_core _version errors io result",
-    "accuracy": "errors",
+    "accuracy": "_core errors",
     "chetaev": "_core contact errors io result",
     "kernels": "_core contact errors",
     "table": "_core _version contact errors kernels",
@@ -44,9 +44,8 @@ ROOMS = {
     "tradeoff": "_core _version accuracy contact io kernels motion puck result stopping table",
     "plot": "_core _version accuracy bulk chetaev errors film fitting io motion reference result "
     "scene stopping tradeoff trajectory world wrench",
-    "paper": "_core contact motion plot puck trajectory",
     "cli": "_core _version accuracy bulk chetaev contact errors explore export film fitting io "
-    "kernels motion paper plot puck reference scene stopping table tradeoff world",
+    "kernels motion plot puck reference scene stopping table tradeoff world",
     "__init__": "_core _version",
 }
 DOORS = {

@@ -40,8 +40,6 @@ def test_console_examples(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyP
     for command, output in console_examples(TEXTS[page]):
         program, *arguments = shlex.split(command)
         assert program == "puck"
-        if arguments[0] == "paper":  # test_paper_command.py runs it
-            continue
         Path("run.png").unlink(missing_ok=True)
         result = CliRunner().invoke(main, arguments)
         assert result.exit_code == 0, (command, result.output)
