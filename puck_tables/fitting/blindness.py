@@ -42,8 +42,14 @@ def blind_spots(
     sentences = []
     marked = any(film.angle is not None for film in found.problem.films)
     sentences += [rival_sentence(rival, marked) for rival in rivals[:_TOLD_ALL]]
-    if others := rivals[_TOLD_ALL:]:
-        sentences.append(f"{len(others)} more motions, of other spins still, fit about as well.")
+    if others := len(rivals[_TOLD_ALL:]):
+        more = "motion of another spin fits" if others == 1 else "motions of other spins fit"
+        sentences.append(f"{others} more {more} about as well.")
+    if marked and any(rival.rise < -(Z95**2) for rival in rivals):
+        sentences.append(
+            "That many turns a frame fit better may well be the floor: where friction changes with "
+            "the slip speed, as on an air table, it is no Coulomb floor."
+        )
     sentences += [mirror_sentence(found.problem.films[n].name) for n in unsigned]
     seen: set[frozenset[int]] = set()
     covered = {found.problem.names[k][1] for k in np.flatnonzero(certainty.undetermined)}

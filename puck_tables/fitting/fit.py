@@ -45,7 +45,7 @@ from puck_tables.fitting.numbers import numbers_of, plausible_for
 from puck_tables.fitting.outcome import Fit
 from puck_tables.fitting.parameters import NODES
 from puck_tables.fitting.problem import Problem
-from puck_tables.fitting.residual_tests import drift, excess_of, misfits, no_answer, runs
+from puck_tables.fitting.residual_tests import drift, excess_of, may_misfit, no_answer, runs
 from puck_tables.fitting.rivals import mirrored, rivals_of, taken
 from puck_tables.fitting.seen import Seen, noise_of
 from puck_tables.fitting.tied import Impact, impacts_apart, impacts_joined, not_met, tie
@@ -211,7 +211,7 @@ def fit(
         certainty = _certainty(found, known)
         rivals = rivals_of(found, certainty, max(excess_of(found, judged), 1.0))
     unsigned = mirrored(found, certainty)
-    if misfits(found, known, judged):
+    if any(certainty.pinned) or may_misfit(found, known, judged):
         certainty = widened(found, certainty)
     # bounds that the caller gives may keep every motion away: that is said of the bound
     held_off = any(

@@ -238,6 +238,11 @@ class Fit(Result):
                 f"Student's t of {self.certainty.degrees:.0f} degrees of freedom, which told the "
                 "noise."
             )
+        if self.certainty.widened:
+            lines.append(
+                "The model may not fit, or a number lies on the end of its range: standard errors "
+                "are widened by what halves, quarters and eighths of the frames do to the numbers."
+            )
         problem = self.estimate.problem
         if "readout" in problem.asked.free and problem.read_within is not None:
             half = 500.0 * problem.read_within

@@ -12,6 +12,7 @@ from puck_tables.fitting.timing import Known
 
 NO_PATTERN = 1e-3  # probability of residuals so patterned by chance
 NOISY = 1.5  # times the noise of a smooth motion
+_MAY_NOISY, _MAY_PATTERN = 1.3, 0.01  # the same, where that is hardly seen
 _COMPUTED = 1e-7  # of the path: residuals of tracks that were computed, not seen
 _NOWHERE, _FAR, _ANY = 20.0, 1e-3, 0.5  # times the noise; of the path; rad
 _PARTS = 8
@@ -92,6 +93,12 @@ def misfits(found: Estimate, known: Known, smooth: tuple[float, float]) -> tuple
             f"{by_chance:.1g})"
         )
     return tuple(told)
+
+
+def may_misfit(found: Estimate, known: Known, smooth: tuple[float, float]) -> bool:
+    """Whether a model may not fit: below what is complained of it may bias numbers by far."""
+    hardly = excess_of(found, smooth) > _MAY_NOISY or min(runs(found), drift(found)) < _MAY_PATTERN
+    return hardly or bool(misfits(found, known, smooth))
 
 
 def no_answer(found: Estimate, known: Known, smooth: tuple[float, float]) -> str:

@@ -89,7 +89,7 @@ def rivals_of(found: Estimate, certainty: Certainty, excess: float = 1.0) -> tup
             plausible = plausible_for(problem, x)
             own = certainty_of(slopes[found.kept], plausible, certainty.degrees)
             summits.append((x, *_known(there, own)))
-            rivals.append(Rival(there, own, rise, _spun_otherwise(found, x)))
+            rivals.append(Rival(there, own, rise, _spun_otherwise(found, x, certainty)))
     return tuple(rivals)
 
 
@@ -120,15 +120,19 @@ def taken(found: Estimate, rivals: tuple[Rival, ...], excess: float) -> Rival | 
     return rivals[first - 1] if first else None
 
 
-def _spun_otherwise(found: Estimate, x: FloatArray) -> tuple[int, ...]:
-    """Tracks that spin otherwise, by more than what may be of a slide of theirs."""
+def _spun_otherwise(found: Estimate, x: FloatArray, certainty: Certainty) -> tuple[int, ...]:
+    """Tracks that spin otherwise: with angles by whole turns, else by more than their errors."""
     problem = found.problem
-    was, there = (problem.launches(one)[:, 4] for one in (found.x, x))
-    spread = [
-        np.abs(found.jacobian[found.kept, problem.names.index((n, _SPIN))]).max()
-        if (n, _SPIN) in problem.names else 0.0 for n in range(len(problem.films))
-    ]  # fmt: skip
-    return tuple(np.flatnonzero(np.abs(was - there) * spread > 1.0).tolist())
+    change = np.abs(problem.launches(x)[:, 4] - problem.launches(found.x)[:, 4])
+    errors = _APART * np.sqrt(np.diag(certainty.covariance))
+    tracks = []
+    for n, film in enumerate(problem.films):
+        least = half_turns(film)
+        if film.angle is None and (n, _SPIN) in problem.names:
+            least = errors[problem.names.index((n, _SPIN))]
+        if change[n] > least:
+            tracks.append(n)
+    return tuple(tracks)
 
 
 def _of_other_turns(found: Estimate) -> list[FloatArray]:
