@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from puck_tables._core.text import Look, split
-from puck_tables._core.units import is_unit
+from puck_tables._core.header import header_of
+from puck_tables._core.text import Look
 from puck_tables.errors import InputError
 from puck_tables.film.headings import Heading, heading, headings, on_a_line
 
@@ -84,7 +83,6 @@ def headed(path: str | Path, look: Look, columns: str | None) -> list[list[str]]
     >>> headed("a.csv", look, None)
     [['t [s]', 'x [cm]']]
     """
-    header = [row[: look.width] + [""] * (look.width - len(row)) for row in look.header]
     if columns is not None:
         names = [name.strip() for name in columns.split(",")]
         if len(names) != look.width:
@@ -93,8 +91,7 @@ def headed(path: str | Path, look: Look, columns: str | None) -> list[list[str]]
                 f"with - for those to leave out (its first row is {_shown(look.rows[0])})"
             )
         return [["" if name == "-" else name for name in names]]
-    if not header and (said := _commented(look)):
-        header = [said]
+    header = header_of(look, lambda cells: {"x", "y"} <= {one.role for one in map(heading, cells)})
     if not header:
         raise InputError(
             f"{path} has no header: say what its {look.width} columns are, such as "
@@ -102,25 +99,12 @@ def headed(path: str | Path, look: Look, columns: str | None) -> list[list[str]]
         )
     if header[0][0].lower() == _SCORER:
         return header
-    if len(header) > 1 and _are_units(header[-1]):
-        units = header.pop()
-        header[-1] = [
-            f"{name} [{unit.strip('[]() ')}]" if is_unit(unit) else name
-            for name, unit in zip(header[-1], units, strict=True)
-        ]
     if look.header and len(look.header[-1]) < look.width:
         raise InputError(
             f"{path} has {len(look.header[-1])} names for {look.width} columns, so none can be told"
             " from another: name all with columns (--columns), - for those to leave out"
         )
     return header
-
-
-def _are_units(row: Sequence[str]) -> bool:
-    """Whether a row holds units: some that are known, and others in brackets."""
-    return any(map(is_unit, row)) and all(
-        is_unit(cell) or cell in ("", "-") or re.fullmatch(r"[\[(].*[\])]", cell) for cell in row
-    )
 
 
 def _owners(header: list[list[str]]) -> list[str]:
@@ -209,15 +193,6 @@ def _deeplabcut(path: str | Path, header: list[list[str]]) -> Layout:
         known = role if role in ("x", "y", "likelihood") else ""
         columns.append((owners[n], Heading(known, rows["bodyparts"][n], "")))
     return Layout(columns, "DeepLabCut table", jointed=True, pixels=True)
-
-
-def _commented(look: Look) -> list[str]:
-    """The header in the last comment over the numbers, if there is one."""
-    for line in reversed(look.said):
-        cells = split(re.sub(r"^[#%/\s]+", "", line), look.separator)
-        if len(cells) == look.width and {"x", "y"} <= {one.role for one in map(heading, cells)}:
-            return cells
-    return []
 
 
 def name_of(look: Look, column: int) -> str:
