@@ -60,12 +60,12 @@ def test_a_floor_whose_friction_falls_with_speed_is_named(seed):
         lambda u: fast + (rest - fast) * np.exp(-u / scale), way_of(rng, rng.uniform(1.2, 1.8)),
         rng.uniform(15.0, 40.0) * rng.choice([-1.0, 1.0]),
     )  # fmt: skip
-    found = pt.fit(film(path, seed), FLAT, fixed={"delta": 0.0}, keep_all=True)
+    found = pt.fit(film(path, seed), FLAT, fixed={"delta": 0.0})
     assert found.complaints
     assert "over slip speed" in found.misread or "drag" in found.misread
     speeds = [float(u) for u in found.misread.split("--slip-speeds ")[-1].rstrip(")").split(",")] \
         if "--slip-speeds" in found.misread else [0.0, 0.3, 1.0, 4.0]  # fmt: skip
-    asked = pt.fit(film(path, seed), FLAT, fixed={"delta": 0.0}, slip_speeds=speeds, keep_all=True)
+    asked = pt.fit(film(path, seed), FLAT, fixed={"delta": 0.0}, slip_speeds=speeds)
     assert asked.chi2 / asked.degrees < 1.5 and asked.noise[0] < 0.5 * found.noise[0]
 
 
@@ -86,7 +86,7 @@ def test_what_impacts_tell_keeps_its_error_where_the_tilt_is_at_its_end(seed):
     """A flat puck: the tilt that fits best lies at 0, or would below, in half of all films."""
     rng = np.random.default_rng([35, 120, seed])
     times, wall = np.arange(200) / 120.0, [(0.3, 0.9)]
-    start = [0.0, 0.0, 2.2, 0.9, rng.uniform(20.0, 50.0), 0.3]
+    start = np.array([0.0, 0.0, 2.2, 0.9, rng.uniform(20.0, 50.0), 0.3])
     true = impacts_judge.wall_film((1.5, 0.0, 0.04), start, wall, [0.41], (0.8, 0.12), times)
     track = pt.Track(times, *film_judge.noisy(rng, true, NOISE))
     found = pt.fit(track, pt.Puck(radius=0.04), impacts=True)

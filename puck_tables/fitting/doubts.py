@@ -43,7 +43,7 @@ def doubts(
             f"A friction of {friction.value:.3g} is {than} than dry surfaces have: {_UNITS}"
         )
     true = radius if own is None else own.value
-    if height is not None and height.value > _TALL * true and height.low > true:
+    if not said and height is not None and height.value > _TALL * true and height.low > true:
         said.append(
             f"A height of {height.value:.3g} m is {height.value / true:.3g} times the radius, as "
             "no puck is: the path bends for another reason, or the floor slopes; give the height "

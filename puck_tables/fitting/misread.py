@@ -73,7 +73,10 @@ def _may_change(asked: Asked) -> bool:
 
 def _by_speed(found: Estimate, best: float, noise: float) -> str:
     """A sentence on a friction over slip speed, if that fits far better than ``best``."""
-    other = tried(found)
+    try:
+        other = tried(found)
+    except InputError:  # hardly any friction, at no speed
+        return ""
     gain = _size(found, 1.0) - _size(other, 1.0)
     if not (gain > best and _fits(other, noise)):
         return ""
