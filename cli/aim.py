@@ -23,9 +23,9 @@ from puck_tables.cli.options import (
     puck_options,
 )
 from puck_tables.cli.scene_run import files_read, scene_options, scene_tables
-from puck_tables.cli.uncompiled import uncompiled
 
 from puck_tables.errors import InputError
+from puck_tables.kernels.patience import one_question
 
 if TYPE_CHECKING:
     from puck_tables._core.arrays import FloatArray
@@ -149,7 +149,7 @@ def aim(
         raise click.MissingParameter(param_hint="'--target'", param_type="option")
     read = (pressure, targets_file)
     prepare_outputs(output, plot=plot, overwrite=overwrite, inputs=read)
-    with uncompiled() if targets_file is None else nullcontext():
+    with one_question() if targets_file is None else nullcontext():
         puck = puck_given(radius, height, friction, gravity, delta, decel, pressure, gyration)
         where = targets[0] if targets_file is None else _read_targets(targets_file)
         found: Any = puck.aim(

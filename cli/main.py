@@ -137,10 +137,6 @@ def _drop(stream: Any) -> None:
 @click.version_option(__version__, package_name="puck-tables", prog_name="puck")
 def main() -> None:
     """Motion of a flat puck that slides and spins under dry friction, until it stops."""
-    from puck_tables.kernels.cache import announcements
-
-    words = "compiling for this machine, once: up to a minute"
-    announcements[:] = [lambda: click.echo(words, err=True)]
     watchers[:] = [said_first]
     del last_words[1:]
 

@@ -19,9 +19,9 @@ from puck_tables.cli.options import (
     prepare_outputs,
     reported,
 )
-from puck_tables.cli.uncompiled import uncompiled
 
 from puck_tables.errors import InputError
+from puck_tables.kernels.patience import one_question
 
 if TYPE_CHECKING:
     from puck_tables.reference.answer import Answer
@@ -86,7 +86,7 @@ def reference(
         raise InputError("--epsilon and --friction both choose the ratios: give one of them")
     prepare_outputs(output, plot=plot, overwrite=overwrite, inputs=(times,))
     found: Any
-    with uncompiled():
+    with one_question():
         if over:
             from puck_tables.reference.friction import floor_friction
 

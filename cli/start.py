@@ -21,8 +21,6 @@ if TYPE_CHECKING:  # the less is imported before the handler stands, the better
 INTERRUPTED = 130
 PATIENCE = 0.7  # s
 
-alone = False  # whether the process is the command's own
-
 # what is said on Ctrl-C, by the last of them; a command may have better ones
 last_words: list[Callable[[], str]] = [lambda: "Interrupted: nothing more was written."]
 
@@ -67,8 +65,6 @@ def _ignored(what: UnraisableHookArgs) -> None:
 
 def main() -> None:
     """Import the commands and run one."""
-    global alone
-    alone = True
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:  # unless it is ignored
         signal.signal(signal.SIGINT, end_at_once)
         sys.unraisablehook = _ignored

@@ -55,6 +55,7 @@ DOORS = {
         "kernels.compiled",
         "kernels.kept_code",
         "kernels.linking",
+        "kernels.numba_settings",
         "kernels.vectors",
     },
     "llvmlite": {"kernels.blocks", "kernels.linking", "kernels.vectors"},

@@ -16,7 +16,7 @@ from __future__ import annotations
 import math
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import kernel
+from puck_tables.kernels.compile import kernel, patience
 from puck_tables.scene.at_once import met_at_once
 from puck_tables.scene.boundaries import (
     BORDER,
@@ -192,6 +192,7 @@ def follow(
     newton, grade, again = 0.0, UNIFORM, False  # again: the step before was too long
     stretch = Stretch(model, dry, leaning, piece, mode, way, newton, grade, 0.0)
     while t < until:
+        patience(1)
         while piece < len(drive) and drive[piece, 0] <= t:
             piece += 1
         target = min(drive[piece, 0], until) if piece < len(drive) else until

@@ -31,7 +31,7 @@ from puck_tables.contact.friction_laws import FrictionLaw
 from puck_tables.contact.laws import Law, law_of
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import InputError, OutputError, TableError
-from puck_tables.kernels.as_written import long_work
+from puck_tables.kernels.patience import compiled_at_once
 from puck_tables.table.file import read_content, recipe_digest
 from puck_tables.table.friction_section import FrictionSection, friction_section
 from puck_tables.table.law_table import is_named
@@ -247,8 +247,8 @@ def fetch(name: str, command: str, kind: type[AnyTable], build: Callable[[], Any
     """
 
     def built() -> AnyTable:
-        long_work()
-        return build()
+        with compiled_at_once():
+            return build()
 
     folder = tables_folder()
     if folder is None:
