@@ -101,10 +101,11 @@ from puck_tables.errors import InputError
 )
 @click.option(
     "--between",
-    type=click.Choice(["linear", "cubic"]),
-    default="linear",
+    type=click.Choice(["cubic", "linear"]),
+    default="cubic",
     show_default=True,
-    help="How friction goes between --slip-speeds.",
+    help="How friction goes between --slip-speeds; cubic, as the law of a scene, rises and falls "
+    "only where f at them does.",
 )
 @click.option(
     "--laws",

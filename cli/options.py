@@ -180,7 +180,11 @@ def body_options(
 def output_options(command: Command) -> Command:
     """Where results go."""
     for option in (
-        click.option("--overwrite", is_flag=True, help="Replace output files that exist."),
+        click.option(
+            "--overwrite",
+            is_flag=True,
+            help="Replace output files that exist; pictures and movies always are.",
+        ),
         click.option("--plot", type=FILE, metavar="FILE", help="Draw: .png, .svg or .pdf."),
     ):
         command = option(command)
@@ -284,24 +288,12 @@ def prepare_outputs(
     outputs : files of results, in the format that the ending says
     plot, movie : a picture, a movie
     others : further files that are written
-    overwrite : whether existing files may be replaced
+    overwrite : whether existing files may be replaced; a picture or movie may by another
     inputs : the files that the command reads; names that are no files are left out
     """
     from puck_tables._core.safe_write import check_target
     from puck_tables.io.formats import encoder_for
 
-    chosen: list[Path] = []
-    for path in (*outputs, plot, movie, *others):
-        if path is None:
-            continue
-        target = check_target(path, overwrite)
-        for other in chosen:
-            if _same(target, other):
-                raise InputError(f"{path} is named for two outputs: give two file names")
-        for read in inputs:
-            if read is not None and os.path.isfile(read) and _same(target, Path(read)):
-                raise InputError(f"{path} is read by this command: give the output another name")
-        chosen.append(path)
     for path in outputs:
         if path is not None:
             encoder_for(path)
@@ -314,6 +306,25 @@ def prepare_outputs(
         from puck_tables.plot.movie import checked_movie
 
         checked_movie(movie)
+    chosen: list[Path] = []
+    for path in (*outputs, plot, movie, *others):
+        if path is None:
+            continue
+        target = check_target(path, overwrite or (path in (plot, movie) and _redrawn(path)))
+        for other in chosen:
+            if _same(target, other):
+                raise InputError(f"{path} is named for two outputs: give two file names")
+        for read in inputs:
+            if read is not None and os.path.isfile(read) and _same(target, Path(read)):
+                raise InputError(f"{path} is read by this command: give the output another name")
+        chosen.append(path)
+
+
+def _redrawn(path: Path) -> bool:
+    """Whether a picture or a movie lies there, that is drawn again without a word."""
+    from puck_tables.plot.style import may_replace
+
+    return may_replace(path)
 
 
 def deliver(result: Result, output: Path | None, plot: Path | None, overwrite: bool) -> None:

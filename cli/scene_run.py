@@ -29,7 +29,7 @@ Command = TypeVar("Command", bound=Callable[..., Any])
 PATHS = {
     "v0": "launch.velocity", "w0": "launch.spin", "speed": "launch.velocity[0]",
     "radius": "puck.radius", "height": "puck.height", "mass": "puck.mass",
-    "friction": "puck.friction", "gravity": "puck.gravity", "frames": "run.frames",
+    "friction": "puck.friction", "gravity": "gravity", "frames": "run.frames",
     "tol": "run.tol",
 }  # fmt: skip
 KEPT = (
@@ -96,6 +96,10 @@ def scene_tables(
         if PATHS[name] in named:
             raise InputError(f"--{name} and --spread {PATHS[name]} clash: both give it")
         named[PATHS[name]] = f"--{name}"
+        if name == "gravity":  # in place of what pucks of the file have
+            pucks = tables.get("puck", {})
+            for puck in pucks if isinstance(pucks, list) else [pucks]:
+                puck.pop("gravity", None)
         set_path(tables, PATHS[name], _as_toml(value))
     for change in changes:
         path, equals, text = change.partition("=")

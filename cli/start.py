@@ -77,3 +77,7 @@ def main() -> None:
         if end.code == INTERRUPTED:  # all is said; libraries might tell what they left undone
             os._exit(INTERRUPTED)
         raise
+
+
+if __name__ == "__main__":
+    main()

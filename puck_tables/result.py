@@ -76,9 +76,10 @@ class Result:
         Parameters
         ----------
         path : .png, .svg or .pdf, optional
+            A picture that is there is replaced: it can be drawn again.
         ax : matplotlib axes, optional
             To draw the main panel on, instead of a whole new figure.
-        overwrite : whether an existing file may be replaced
+        overwrite : whether a file that is no picture may be replaced, too
 
         Returns
         -------
@@ -91,7 +92,7 @@ class Result:
         MissingExtraError
             If matplotlib is not installed.
         OutputError
-            If the file exists or cannot be written.
+            If a file that is no picture has that name, or it cannot be written.
 
         Examples
         --------
@@ -174,8 +175,8 @@ class TimedResult(Result):
         ----------
         path : .html, .gif or .mp4
             HTML is one file for any browser, with a time slider; it needs nothing else.  GIF needs
-            matplotlib, MP4 the program ffmpeg besides.
-        overwrite : whether an existing file may be replaced
+            matplotlib, MP4 the program ffmpeg besides.  A movie that is there is replaced.
+        overwrite : whether a file that is no movie may be replaced, too
 
         Raises
         ------
@@ -184,7 +185,7 @@ class TimedResult(Result):
         MissingExtraError
             If matplotlib or ffmpeg is needed and not installed.
         OutputError
-            If the file exists or cannot be written.
+            If a file that is no movie has that name, or it cannot be written.
 
         Examples
         --------

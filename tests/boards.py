@@ -41,7 +41,7 @@ def draw(
             rim=float(rng.choice([math.inf, rng.uniform(0.0, 0.5)])),
         ))  # fmt: skip
     cushions = [
-        pt.Wall((-side * nx, -side * ny), (nx, ny), restitution=float(rng.uniform(0.3, 1.0)),
+        pt.Wall((-side * nx, -side * ny), normal=(nx, ny), restitution=float(rng.uniform(0.3, 1.0)),
                 tangential=float(rng.uniform(-1.0, 0.8)), friction=float(rng.uniform(0.0, 0.5)))
         for nx, ny in ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0))
     ]  # fmt: skip

@@ -43,7 +43,8 @@ def test_a_cut_is_the_ghost_of_the_striker() -> None:
 def test_a_cushion_is_a_mirror() -> None:
     """One puck alone, e = 1: it ends where it would end behind the mirror."""
     board = pt.Scene(
-        pucks=[piece(0.0, 0.0, **FLAT)], walls=[pt.Wall((0.0, 0.5), (0.0, -1.0), restitution=1.0)]
+        pucks=[piece(0.0, 0.0, **FLAT)],
+        walls=[pt.Wall((0.0, 0.5), normal=(0.0, -1.0), restitution=1.0)],
     )
     found = board.aim((0.6, 0.1), max_impacts=1)
     images = {"": (0.6, 0.1), "puck 0 - wall 0": (0.6, 2.0 * (0.5 - R) - 0.1)}
@@ -97,7 +98,7 @@ def test_speed_given_spin_is_looked_for_and_spins_are_each_asked() -> None:
 
 
 def test_sensitivities_are_those_of_runs_and_order_the_launches() -> None:
-    walls = [pt.Wall((0.0, 0.4), (0.0, -1.0), restitution=0.8)]
+    walls = [pt.Wall((0.0, 0.4), normal=(0.0, -1.0), restitution=0.8)]
     found = two(0.4, 0.1, walls=walls).aim((0.7, 0.2), striker="cue")
     assert len(found) >= 2
     size = np.hypot(found.per_degree, found.per_percent)
@@ -153,7 +154,7 @@ def test_that_none_was_found_is_said_as_such() -> None:
 )
 def test_bad_aims(how: dict, words: str) -> None:
     board = two(
-        walls=[pt.Wall((0.0, 0.5), (0.0, -1.0))], posts=[pt.Post((0.5, 0.1), 0.01)],
+        walls=[pt.Wall((0.0, 0.5), normal=(0.0, -1.0))], posts=[pt.Post((0.5, 0.1), 0.01)],
         pockets=[pt.Pocket((0.9, 0.2), 0.05)],
     )  # fmt: skip
     with pytest.raises(InputError) as refused:

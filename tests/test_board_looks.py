@@ -297,9 +297,9 @@ def test_a_board_is_drawn_to_its_corners() -> None:
     """Walls end where others begin; of a triangle three sides, and nothing beyond."""
     post = Post((0.3, 0.3), 0.02)
     walls = [
-        Wall((0.0, 0.0), (0.0, 1.0)),
-        Wall((0.0, 0.0), (2.0, 0.0)),
-        Wall((1.0, 0.0), (-1.0, -1.0)),
+        Wall((0.0, 0.0), normal=(0.0, 1.0)),
+        Wall((0.0, 0.0), normal=(2.0, 0.0)),
+        Wall((1.0, 0.0), normal=(-1.0, -1.0)),
     ]
     film = film_of(Scene(pucks=[Piece(0.01, friction=0.1, launch=Launch(position=(0.1, 0.1)))],
                          walls=walls, posts=[post]).simulate())  # fmt: skip
@@ -308,7 +308,7 @@ def test_a_board_is_drawn_to_its_corners() -> None:
     assert corners == {(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)}
     assert film.box[0] < 0.0 and film.box[1] > 1.0
     open_side = film_of(Scene(pucks=[Piece(0.01, friction=0.1)],
-                              edges=[Edge((5e6, 0.0), (-1.0, 0.0))]).simulate())  # fmt: skip
+                              edges=[Edge((5e6, 0.0), normal=(-1.0, 0.0))]).simulate())  # fmt: skip
     assert open_side.lines == [] and open_side.box[1] < 0.1
 
 

@@ -21,7 +21,7 @@ def mallet(*rows: tuple[float, float, float]) -> pt.Piece:
 @pytest.mark.parametrize(("place", "words"), [
     ({"posts": [pt.Post((0.5, 0.52), 0.02)]},
      r"post\[0\]: mallet is driven through it between 1 s and 2 s, 0.05 m deep"),
-    ({"walls": [pt.Wall((0.9, 0.0), (-1.0, 0.0))]},
+    ({"walls": [pt.Wall((0.9, 0.0), normal=(-1.0, 0.0))]},
      r"wall\[0\]: mallet is driven through it between 1 s and 2 s, 0.15 m deep"),
     ({"arcs": [pt.Arc((0.0, 0.5), 0.9)]}, r"arc\[0\]: mallet is driven through it"),
 ])  # fmt: skip
@@ -32,7 +32,7 @@ def test_a_path_through_what_stands_is_refused_by_name(place: dict, words: str):
 
 
 def test_a_path_that_touches_is_none():
-    wall, post = pt.Wall((1.05, 0.0), (-1.0, 0.0)), pt.Post((0.5, 0.57), 0.02)
+    wall, post = pt.Wall((1.05, 0.0), normal=(-1.0, 0.0)), pt.Post((0.5, 0.57), 0.02)
     driven = mallet((0.0, 0.0, 0.5), (2.0, 1.0, 0.5))
     assert pt.Scene(pucks=[PUCK, driven], walls=[wall], posts=[post]).pucks[1].path
 

@@ -13,7 +13,7 @@ PUCK = pt.Puck(radius=0.04, height=0.02, friction=0.2, mass=0.2)
 LAUNCH = pt.Launch((0.3, 0.1), 10.0, (0.05, 0.0))
 SPLIT = pt.Strips((0.1,), (0.2, 0.1))
 POLYGON = pt.Patch(0.05, corners=[[0.2, -0.1], [0.5, 0.02], [0.3, 0.3], [0.3, 0.1]])
-BEHIND = pt.Wall((0.5, 0.0), (-1.0, 0.0))
+BEHIND = pt.Wall((0.5, 0.0), normal=(-1.0, 0.0))
 
 
 @pytest.mark.parametrize(("floor", "walls"), [
@@ -85,7 +85,7 @@ def test_what_is_lost_in_the_middle_of_a_patch_is_seen():
 
 
 def test_what_a_belt_leads_to_too_late_asks_for_a_time():
-    edge = pt.Edge((1e6, 0.0), (-1.0, 0.0))
+    edge = pt.Edge((1e6, 0.0), normal=(-1.0, 0.0))
     scene = pt.Scene(PUCK, pt.Floor(velocity=(0.01, 0.0)), LAUNCH, edges=(edge,))
     with pytest.raises(pt.InputError, match="still carries the puck towards"):
         scene.simulate()

@@ -78,7 +78,8 @@ def test_no_output_replaces_the_other(link: str, folder: Path):
         Path(second).symlink_to(first)
     elif link == "the folder":
         (folder / "there").symlink_to(folder)
-        second = "there/a.csv"
+        Path(second).symlink_to(first)
+        second = "there/a.png"
     else:
         Path(first).write_text("old")
         if link == "soft":

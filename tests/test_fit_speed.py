@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 import pytest
 from film_judge import G, noisy
+from rarely import few
 from scipy.integrate import solve_ivp
+from scipy.interpolate import PchipInterpolator
 
 import puck_tables as pt
 
@@ -17,8 +20,10 @@ SPEEDS, VALUES = [0.0, 1.0, 4.0], [0.20, 0.14, 0.17]
 FLAT = pt.Puck(radius=RADIUS)
 
 
-@pytest.fixture(scope="module")
-def true() -> np.ndarray:
+Law = Callable[[np.ndarray], np.ndarray]
+
+
+def slid(law: Law, velocity: tuple[float, float], spin: float) -> np.ndarray:
     """x, y, angle (3, n) of a flat puck: rings of the base, their elements one by one."""
     rho = RADIUS * np.sqrt((np.arange(64) + 0.5) / 64)
     theta = 2.0 * math.pi * (np.arange(128) + 0.5) / 128
@@ -27,17 +32,23 @@ def true() -> np.ndarray:
     def rates(_: float, z: np.ndarray) -> list[float]:
         ux, uy = z[3] - z[5] * py, z[4] + z[5] * px
         u = np.hypot(ux, uy)
-        pull = G * np.interp(u, SPEEDS, VALUES) / np.maximum(u, 1e-9)
+        pull = G * law(u) / np.maximum(u, 1e-9)
         turn = -2.0 / RADIUS**2 * np.mean(pull * (px * uy - py * ux))
         return [*z[3:], -np.mean(pull * ux), -np.mean(pull * uy), turn]
 
     stop = lambda _, z: math.hypot(z[3], z[4], RADIUS * z[5]) - 1e-3  # noqa: E731
     stop.terminal = True
-    start = [0.0, 0.0, 0.0, 1.8, 0.4, 45.0]
+    start = [0.0, 0.0, 0.0, *velocity, spin]
     found = solve_ivp(
         rates, (0.0, 3.0), start, "RK45", rtol=1e-6, atol=1e-8, dense_output=True, events=stop
     )
     return found.sol(np.minimum(TIMES, found.t[-1]))[:3]
+
+
+@pytest.fixture(scope="module")
+def true() -> np.ndarray:
+    """Under a law of straight lines."""
+    return slid(lambda u: np.interp(u, SPEEDS, VALUES), (1.8, 0.4), 45.0)
 
 
 def film(true: np.ndarray, seed: int) -> pt.Track:
@@ -46,7 +57,7 @@ def film(true: np.ndarray, seed: int) -> pt.Track:
 
 @pytest.mark.thorough
 def test_friction_over_slip_speed_is_found(true, tmp_path):
-    found = pt.fit(film(true, 1), FLAT, fixed={"delta": 0.0}, slip_speeds=SPEEDS)
+    found = pt.fit(film(true, 1), FLAT, fixed={"delta": 0.0}, slip_speeds=SPEEDS, between="linear")
     speeds, values, errors = found.friction_over()
     assert speeds.tolist() == SPEEDS
     assert np.all(np.abs(values - VALUES) < 4.0 * errors) and np.all(errors < 3e-3)
@@ -61,6 +72,30 @@ def test_friction_over_slip_speed_is_found(true, tmp_path):
 
 
 @pytest.mark.thorough
+@pytest.mark.parametrize("seed", few(2, range(12)))
+def test_a_law_of_rows_means_the_same_in_a_fit_and_in_a_scene(seed):
+    """A cubic that rises and falls only where the rows do: scipy's."""
+    rng = np.random.default_rng([35, 6, seed])
+    speeds = np.concatenate([[0.0], np.cumsum(rng.uniform(0.3, 1.2, rng.integers(2, 5)))])
+    speeds[-1] = max(speeds[-1], 3.5)
+    values = rng.uniform(0.1, 0.3, speeds.size)
+    way, spin = rng.uniform(0.0, 2.0 * math.pi), rng.uniform(15.0, 40.0) * rng.choice([-1.0, 1.0])
+    velocity = 1.5 * math.cos(way), 1.5 * math.sin(way)
+    path = slid(PchipInterpolator(speeds, values), velocity, spin)
+    found = pt.fit(film(path, seed), FLAT, fixed={"delta": 0.0}, slip_speeds=speeds)
+    _, f, errors = found.friction_over()
+    told = np.array([found[f"friction_{k}"].determined for k in range(speeds.size)])
+    assert told.sum() >= speeds.size - 1
+    assert np.all(np.abs(f - values)[told] < 4.0 * errors[told])
+    floor = pt.Floor(law=np.column_stack([speeds, values]).tolist())
+    run = pt.Scene(
+        pt.Puck(RADIUS), floor, pt.Launch(velocity, spin=spin), run=pt.Run(tol=1e-5)
+    ).simulate()  # fmt: skip
+    states = run(np.minimum(TIMES, run.end_time))
+    assert np.abs(np.stack([states.x, states.y]) - path[:2]).max() < 1e-4
+
+
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("how", "words"),
     [
@@ -71,7 +106,10 @@ def test_friction_over_slip_speed_is_found(true, tmp_path):
         ({"slip_speeds": SPEEDS, "free": ["friction", "drag"]}, "drag"),
         ({"slip_speeds": SPEEDS, "fixed": {"friction": 0.2}}, "do not give the friction"),
         ({"slip_speeds": [0.0, 1.0]}, "give speeds up to 3.7"),
-        ({"slip_speeds": SPEEDS, "fixed": {"delta": 1.5}}, "delta = 2 f h/r is 1.5"),
+        (
+            {"slip_speeds": SPEEDS, "fixed": {"delta": 1.5}},
+            "friction is largest delta = 2 f h/r is",
+        ),
         ({"free": ["friction_1"]}, "slip_speeds="),
     ],
 )

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import re
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +20,7 @@ from scenes import simulate_scene, sweep_scene
 
 from puck_tables.chetaev.asperity import Asperity
 from puck_tables.chetaev.asperity_forces import asperity_curve
-from puck_tables.errors import InputError
+from puck_tables.errors import InputError, OutputError
 from puck_tables.motion import limit_ratio
 from puck_tables.plot import style
 from puck_tables.scene.library import find_scene
@@ -225,3 +228,40 @@ def test_the_examples_of_asperity_show_all_that_happens() -> None:
             assert (error / curves.crude[1:]).max() < 0.02, (example, name)
     coarse = asperity_curve(bumps, np.linspace(0.0, 7.0 * bumps.lift_speed, 201))
     assert coarse.leaps > 20 and curves.leaps == 0
+
+
+KINDS = [".png", ".svg", ".pdf", ".html", pytest.param(".gif", marks=pytest.mark.thorough)]
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_picture_is_drawn_again_and_nothing_else_is_replaced(kind: str, tmp_path: Path) -> None:
+    rng = np.random.default_rng(len(kind))
+    path = tmp_path / f"a{kind}"
+    for speed in rng.uniform(0.5, 2.0, 2):
+        run = simulate((speed, 0.3), 5.0, frames=3)
+        make = run.movie if kind in (".html", ".gif") else run.plot
+        before = path.read_bytes() if path.exists() else b""
+        make(path)
+        assert len(path.read_bytes()) > 100 and path.read_bytes() != before
+    numbers = "\n".join(",".join(f"{x:.6g}" for x in row) for row in rng.normal(size=(20, 3)))
+    page = f"<!DOCTYPE html><html><head></head><body>{numbers}</body></html>"
+    for content in (numbers.encode(), page.encode(), rng.bytes(300), b"%PDF-1.4\n" + rng.bytes(99)):
+        path.write_bytes(content)
+        with pytest.raises(OutputError, match="exists already"):
+            make(path)
+        assert path.read_bytes() == content
+    make(path, overwrite=True)
+    path.write_bytes(b"")  # as tempfile makes them
+    make(path)
+    assert path.stat().st_size > 100
+
+
+def test_an_odd_backend_of_matplotlib_is_said(tmp_path: Path) -> None:
+    """Pictures need none, but matplotlib does not start."""
+    code = "import puck_tables as pt; pt.Puck.similar().simulate((1, 0)).plot('a.png')"
+    ended = subprocess.run(
+        [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=False,
+        env={**os.environ, "MPLBACKEND": "nonsense"},
+    )  # fmt: skip
+    assert "InputError: matplotlib does not start: MPLBACKEND = 'nonsense'" in ended.stderr
+    assert not list(tmp_path.iterdir())

@@ -194,7 +194,10 @@ def test_a_pair_has_its_own_friction_along_the_rims():
 
 @pytest.mark.parametrize("cushion", ["wall 1", "wall"])
 def test_a_puck_may_meet_a_cushion_by_a_law_of_its_own(cushion: str):
-    walls = [pt.Wall((-9.0, 0.0), (1.0, 0.0)), pt.Wall((0.031, 0.0), (-1.0, 0.0), restitution=0.8)]
+    walls = [
+        pt.Wall((-9.0, 0.0), normal=(1.0, 0.0)),
+        pt.Wall((0.031, 0.0), normal=(-1.0, 0.0), restitution=0.8),
+    ]
     one = piece(0.0, 0.0, (1.0, 0.0), friction=1e-6, name="one")
     rims = [pt.Rim("one", cushion, restitution=0.2)]
     assert bounced(one, walls=walls, rims=rims)[1] == pytest.approx(0.2, abs=1e-9)
@@ -209,7 +212,7 @@ def test_a_puck_may_meet_a_cushion_by_a_law_of_its_own(cushion: str):
 ])  # fmt: skip
 def test_a_rim_of_nobody_is_told(rim: tuple[str, str], says: str):
     with pytest.raises(pt.InputError, match=says):
-        meets(0.5, 1.0, rims=[pt.Rim(*rim)], walls=[pt.Wall((9, 0), (-1, 0))])
+        meets(0.5, 1.0, rims=[pt.Rim(*rim)], walls=[pt.Wall((9, 0), normal=(-1, 0))])
 
 
 def test_laws_and_pairs_stand_in_files(tmp_path: Path):
@@ -245,7 +248,7 @@ tangential = 0.1
     assert "rim[0]: two and wall 0 meet by tangential 0.1, friction 0.3" in run.explain()
     assert "viscoelastic" in json.dumps(run.summary())
     by_object = pt.Scene(pucks=scene.pucks, rims=scene.rims, walls=[
-        pt.Wall((0.3, 0.0), (-1.0, 0.0), restitution=pt.Viscoelastic(0.2))
+        pt.Wall((0.3, 0.0), normal=(-1.0, 0.0), restitution=pt.Viscoelastic(0.2))
     ])  # fmt: skip
     assert by_object.simulate().events == run.events
     assert 'restitution = "viscoelastic:0.2"' in as_toml(by_object)

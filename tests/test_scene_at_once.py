@@ -134,7 +134,10 @@ def test_along_the_bisector_one_puck_is_as_one_of_several() -> None:
     alone = simulate_scene(tables)
     one = pt.Piece(0.04, height=0.02, friction=0.1, mass=0.2, launch=pt.Launch((2.0, 0.0)))
     other = pt.Piece(0.04, friction=0.1, launch=pt.Launch(position=(-5.0, 0.0)))
-    walls = [pt.Wall(tuple(w["point"]), tuple(w["normal"]), 0.7) for w in tables["wall"]]
+    walls = [
+        pt.Wall(tuple(w["point"]), normal=tuple(w["normal"]), restitution=0.7)
+        for w in tables["wall"]
+    ]
     last = pt.Scene(pucks=[one, other], walls=walls).simulate().last
     assert last["x"][0] == pytest.approx(alone.last["x"], rel=1e-9)
     assert last["y"][0] == pytest.approx(0.0, abs=1e-9)

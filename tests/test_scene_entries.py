@@ -55,6 +55,7 @@ CASES: dict[str, tuple[dict[str, Any], Any]] = {
     "puck.pressure": ({}, "ring"),
     "puck.friction": ({}, 0.3),
     "puck.gravity": ({}, 3.7),
+    "gravity": ({}, 3.7),
     "floor.slope": ({}, 0.1),
     "floor.downhill": ({"floor": {"slope": 0.1}}, 1.0),
     "floor.velocity": ({}, [0.1, 0.2]),
@@ -253,7 +254,7 @@ def test_an_ingredient_that_the_plan_does_not_know_is_an_error(kind: Any, path: 
 
 
 def test_an_ingredient_that_a_scene_does_not_have_is_an_error() -> None:
-    wall = BumpyWall((9.0, 0.0), (-1.0, 0.0))
+    wall = BumpyWall((9.0, 0.0), normal=(-1.0, 0.0))
     for made, path in (
         ({"floor": BumpyFloor(slope=0.1, bumps=0.1)}, "floor.bumps"),
         ({"walls": (wall,)}, r"wall\[0\].bumps"),
@@ -282,7 +283,7 @@ def test_numpy_numbers_arrays_and_tuples_are_numbers_and_lists() -> None:
     numpy: dict[str, Any] = {
         "puck": Puck(np.float64(0.04), np.array(0.03), np.float64(0.2), mass=0.2),
         "launch": {"velocity": np.array([0.8, 0.3]), "spin": np.int64(30)},
-        "wall": (parts.Wall((np.float64(0.1), 0), np.array([-1.0, 0.1]), tangential=0.2),),
+        "wall": (parts.Wall((np.float64(0.1), 0), normal=np.array([-1.0, 0.1]), tangential=0.2),),
     }
     assert Scene.from_tables(numpy) == Scene.from_tables(plain)
     numpy["walls"] = numpy.pop("wall")
@@ -294,7 +295,10 @@ def test_a_scene_made_from_dataclasses_is_checked_like_a_file() -> None:
         Scene(
             {"radius": -1.0, "height": np.nan, "pressure": 7},  # type: ignore[arg-type]
             launch=parts.Launch(velocity=np.zeros((2, 1)), spin=np.bool_(True)),  # type: ignore[arg-type]
-            walls=[parts.Wall((1.0, 0.0), (1.0,)), parts.Edge((0.0, 0.0), (0.0, 1.0))],  # type: ignore[arg-type]
+            walls=[
+                parts.Wall((1.0, 0.0), normal=(1.0,)),  # type: ignore[arg-type]
+                parts.Edge((0.0, 0.0), normal=(0.0, 1.0)),  # type: ignore[list-item]
+            ],
             force=parts.Force(constant=np.ma.array([1.0, 2.0], mask=[False, True])),
             run=None,  # type: ignore[arg-type]
         )
@@ -311,7 +315,7 @@ def test_a_scene_made_from_dataclasses_is_checked_like_a_file() -> None:
 def test_what_disagrees_in_dataclasses_is_told_too() -> None:
     good = Scene.from_tables(whole({}))
     with pytest.raises(InputError, match=r"wall\[0\]: the puck at launch\.position"):
-        replace(good, walls=(parts.Wall((0.0, 0.0), (1.0, 0.0)),))
+        replace(good, walls=(parts.Wall((0.0, 0.0), normal=(1.0, 0.0)),))
 
 
 def test_no_scene_at_all_is_a_sentence() -> None:

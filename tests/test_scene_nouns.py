@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,6 +12,7 @@ import pytest
 import xarray
 
 import puck_tables as pt
+from puck_tables.errors import InputError
 from puck_tables.scene.entries import as_toml, tables_of
 
 PUCK = pt.Puck(radius=0.04, height=0.02, friction=0.15, mass=0.2)
@@ -30,7 +32,7 @@ def test_a_scene_says_the_same_from_python_and_from_tables() -> None:
         PUCK,
         pt.Floor(slope=0.05),
         LAUNCH,
-        walls=[pt.Wall((0.5, 0.0), (-1.0, 0.0), restitution=0.5)],
+        walls=[pt.Wall((0.5, 0.0), normal=(-1.0, 0.0), restitution=0.5)],
     )
     tables = {
         "puck": {"radius": 0.04, "height": 0.02, "friction": 0.15, "mass": 0.2},
@@ -95,7 +97,7 @@ def test_many_launches_go_one_by_one(tmp_path: Path) -> None:
 
 def test_many_launches_beside_a_range_are_its_product_also_where_each_is_checked() -> None:
     velocities = [[0.4, 0.0], [0.0, 0.6]]
-    wall = pt.Wall((0.05, 0.0), (-1.0, 0.0), restitution=0.5)
+    wall = pt.Wall((0.05, 0.0), normal=(-1.0, 0.0), restitution=0.5)
     scene = pt.Scene(
         PUCK,
         pt.Floor(slope=[0.0, 0.05]),
@@ -189,7 +191,7 @@ def test_a_changed_copy_keeps_the_ranges_of_the_parts_that_it_keeps() -> None:
         ({"floor": pt.Floor(law=[[0.0, 0.1]])}, "floor.law: speeds and values"),
         ({"force": pt.Force(over_time=[[1, 0, 0], [0, 0, 0]])}, "force.over_time: forces are"),
         ({"ranges": {3: [1]}}, "ranges must be a mapping from paths"),
-        ({"walls": pt.Wall((1.0, 0.0), (1.0, 0.0))}, r"a list of tables, \[\[wall\]\], or of Wall"),
+        ({"walls": pt.Wall((1, 0), normal=(1, 0))}, r"a list of tables, \[\[wall\]\], or of Wall"),
         ({"floor": None}, "floor = None: must be a table or a Floor"),
     ],
 )  # fmt: skip
@@ -209,3 +211,37 @@ def test_many_launches_beside_a_range_stand_whole_in_a_table(tmp_path: Path) -> 
     stops.save(tmp_path / "stops.csv")
     assert len((tmp_path / "stops.csv").read_text().splitlines()) == 7
     assert stops.to_pandas().columns.tolist()[:2] == ["launch", "floor_slope"]
+
+
+@pytest.mark.parametrize("line", [pt.Wall, pt.Edge])
+def test_a_second_place_without_a_name_is_refused_with_what_to_write(line: type):
+    """Both normals that are named stand across the line through both places."""
+    rng = np.random.default_rng(35)
+    for _ in range(20):
+        ends = (rng.normal(size=(2, 2)) * 10.0 ** rng.integers(-3, 3)).round(6)
+        first, second = (tuple(end.tolist()) for end in ends)
+        with pytest.raises(InputError) as refused:
+            line(first, second)
+        said = str(refused.value)
+        assert f"write {line.__name__}({first!r}, normal={second!r})" in said
+        across = np.array(re.findall(r"\((-?[\d.e+-]+), (-?[\d.e+-]+)\)", said)[-2:], float)
+        assert np.abs(across @ (ends[1] - ends[0])).max() < 1e-4 * (across**2).sum()
+        assert (across[0] == -across[1]).all()
+    for odd in (0.5, "plastic:0.1", (1.0,), None, ("a", "b")):
+        with pytest.raises(InputError, match=f"write {line.__name__}"):
+            line((0.0, 0.0), odd)
+
+
+@pytest.mark.parametrize("length", [1e-9, 3.0, 1e12])
+def test_a_normal_has_any_length(length: float):
+    given = np.random.default_rng(7).normal(size=2)
+    given /= np.hypot(*given)
+    ends = []
+    for long in (1.0, length):
+        wall = pt.Wall(tuple(-0.3 * given), normal=tuple(long * given), restitution=0.5)
+        puck = pt.Puck(radius=0.04, friction=0.1)
+        start = pt.Launch(velocity=tuple(-given), spin=4.0)
+        ends.append(pt.Scene(puck, launch=start, walls=[wall]).simulate().last)
+    assert [ends[0][name] for name in ("x", "y")] == pytest.approx(
+        [ends[1][name] for name in ("x", "y")], rel=1e-9
+    )

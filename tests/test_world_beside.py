@@ -59,7 +59,7 @@ def test_pucks_side_by_side_whose_frictions_hardly_differ(drift: float):
 
 @pytest.mark.parametrize("drift", DRIFTS)
 @pytest.mark.parametrize("cushion", [
-    {"walls": [pt.Wall((0.0, -0.03), (0.0, 1.0), restitution=0.5)]},
+    {"walls": [pt.Wall((0.0, -0.03), normal=(0.0, 1.0), restitution=0.5)]},
     {"posts": [pt.Post((0.0, -0.1), 0.07, restitution=0.5)]},
     {"arcs": [pt.Arc((0.0, 0.2), 0.23, restitution=0.5)]},
 ], ids=["wall", "post", "arc"])  # fmt: skip

@@ -29,7 +29,7 @@ def scene(floor: pt.Floor, until: float, **of_the_second: object) -> pt.Scene:
             velocity = None
         pucks.append(piece(*place, velocity, spin, mass=0.1 * (1 + n), **RIM, **more))
     walls = [
-        pt.Wall((c * n[0], c * n[1]), n, restitution=0.7, tangential=0.0, friction=0.2)
+        pt.Wall((c * n[0], c * n[1]), normal=n, restitution=0.7, tangential=0.0, friction=0.2)
         for n, c in LINES
     ]
     return pt.Scene(pucks=pucks, walls=walls, floor=floor, run=pt.Run(time=until))
@@ -122,7 +122,7 @@ def test_a_puck_at_rest_on_a_belt_is_carried_into_a_wall_and_leans_there():
     """Two bodies of one floor never meet; at the wall friction works at the speed of the belt."""
     belt, f, m = 0.4, 0.2, 0.1
     one, two = piece(0.0, 0.0, (belt, 0.0), restitution=0.0), piece(-0.2, 0.3, (belt, 0.0))
-    wall = pt.Wall((0.13, 0.0), (-1.0, 0.0), restitution=0.0)
+    wall = pt.Wall((0.13, 0.0), normal=(-1.0, 0.0), restitution=0.0)
     floor = pt.Floor(velocity=(belt, 0.0))
     run = pt.Scene(pucks=[one, two], walls=[wall], floor=floor, run=pt.Run(time=0.75)).simulate()
     hit = [event.time for event in run.events if event.what == "impact"]

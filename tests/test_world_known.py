@@ -66,7 +66,7 @@ def test_rims_that_slide_take_no_more_than_friction():
 def test_a_wall_is_the_mirror_image_of_a_puck():
     launch, spin = (1.0, 0.4), 25.0
     how = {"restitution": 0.7}  # smooth: the rim of an image slides along with it
-    wall = pt.Wall((0.2, 0.0), (-1.0, 0.0), restitution=0.7)
+    wall = pt.Wall((0.2, 0.0), normal=(-1.0, 0.0), restitution=0.7)
     alone = pt.Scene(pucks=[piece(0, 0, launch, spin, **how)], walls=[wall]).simulate([0.4, 1.0])
     image = piece(0.4, 0.0, (-1.0, 0.4), -spin, **how)
     both = pt.Scene(pucks=[piece(0, 0, launch, spin, **how), image]).simulate([0.4, 1.0])
@@ -75,7 +75,7 @@ def test_a_wall_is_the_mirror_image_of_a_puck():
 
 
 def test_a_wall_does_what_it_does_to_one_puck_alone():
-    wall = pt.Wall((0.3, 0.0), (-1.0, 0.2), restitution=0.6, tangential=-0.3, friction=0.25)
+    wall = pt.Wall((0.3, 0.0), normal=(-1.0, 0.2), restitution=0.6, tangential=-0.3, friction=0.25)
     many = pt.Scene(pucks=[piece(0, 0, (1.0, 0.3), 20.0, friction=0.1)], walls=[wall]).simulate()
     puck = pt.Puck(0.03, 0.01, 0.1, 0.1)
     one = pt.Scene(puck, launch=pt.Launch((1.0, 0.3), 20.0), walls=[wall]).simulate()
@@ -201,7 +201,9 @@ def test_a_pocket_takes_the_puck_whose_centre_passes_its_rim():
 
 
 def test_over_the_edge():
-    scene = pt.Scene(pucks=[piece(0, 0, (1.0, 0.0))], edges=[pt.Edge((0.1, 0.0), (-1.0, 0.0))])
+    scene = pt.Scene(
+        pucks=[piece(0, 0, (1.0, 0.0))], edges=[pt.Edge((0.1, 0.0), normal=(-1.0, 0.0))]
+    )
     run = scene.simulate()
     assert [event.what for event in run.events] == ["edge"]
     assert run.last["in_play"].tolist() == [0.0]

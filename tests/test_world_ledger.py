@@ -114,7 +114,7 @@ def test_rims_of_a_group_are_booked_as_another_integrator_has_them():
 def test_a_slope_works_and_the_floor_heats():
     """F m g cos α s is heat; straight down, from rest to rest at a wall, e = 0."""
     slope, puck = 0.3, piece(0.0, 0.0, (0.0, -0.1), restitution=0.0)
-    wall = pt.Wall((0.0, -0.2), (0.0, 1.0), restitution=0.0)
+    wall = pt.Wall((0.0, -0.2), normal=(0.0, 1.0), restitution=0.0)
     floor = pt.Floor(slope=slope, downhill=-0.5 * math.pi)
     run = pt.Scene(pucks=[puck], walls=[wall], floor=floor, posts=[pt.Post((9, 9), 1)]).simulate()
     assert run.heat_floor == pytest.approx(0.2 * 0.1 * G * math.cos(slope) * 0.17, rel=1e-9)

@@ -63,7 +63,7 @@ def test_a_heavy_puck_pushes_a_light_one_that_brakes_more():
 
 
 def test_a_stack_on_a_slope_rests_against_its_cushion():
-    wall = pt.Wall((0.5, 0.0), (-1.0, 0.0), restitution=0.5)
+    wall = pt.Wall((0.5, 0.0), normal=(-1.0, 0.0), restitution=0.5)
     pucks = [piece(x, 0.0, friction=0.15, restitution=0.5, height=0.0) for x in (0.0, 0.2)]
     run = pt.Scene(pucks=pucks, floor=pt.Floor(slope=0.3), walls=[wall]).simulate()
     assert run.end == "at rest"
@@ -97,7 +97,7 @@ def test_a_squeeze_is_refused_by_name(restitution: float):
     way = mallet((0, -0.2, 0), (1, 0.22, 0))  # its rim to 0.27: a puck has no room
     scene = pt.Scene(
         pucks=[way, piece(0, 0, restitution=restitution)],
-        walls=[pt.Wall((0.3, 0.0), (-1.0, 0.0), restitution=restitution)],
+        walls=[pt.Wall((0.3, 0.0), normal=(-1.0, 0.0), restitution=restitution)],
     )
     with pytest.raises(pt.PuckError, match="mallet, which is driven, squeezes"):
         scene.simulate()
@@ -109,11 +109,12 @@ def test_a_squeeze_is_refused_by_name(restitution: float):
         ({"pucks": [piece(0, 0), piece(0.05, 0)]}, "puck 0 and puck 1 overlap by 0.01 m"),
         ({"pucks": [piece(0, 0, name="a"), piece(1, 0, name="a")]}, "2 pucks have it"),
         ({"pucks": [piece(0, 0)], "floor": pt.Floor(law=[[1, 0.2]])}, "floor.law: speeds"),
-        ({"pucks": [piece(0, 0)], "walls": [pt.Wall((0, -0.02), (0, 1))]}, "reaches through it by"),
+        ({"pucks": [piece(0, 0)], "walls": [pt.Wall((0, -0.02), normal=(0, 1))]},
+         "reaches through it by"),
         ({"pucks": [piece(0, 0)], "pockets": [pt.Pocket((0, 0.01), 0.02)]}, "lies in it by"),
         (
             {"pucks": [piece(0, 0)], "pockets": [pt.Pocket((0, 1.0), 0.6)],
-             "walls": [pt.Wall((-0.5, 0), (1, 0)), pt.Wall((0.5, 0), (-1, 0))]},
+             "walls": [pt.Wall((-0.5, 0), normal=(1, 0)), pt.Wall((0.5, 0), normal=(-1, 0))]},
             "wider than the board, 1 m between wall[0] and wall[1]",
         ),
         ({"pucks": [pt.Piece(0.03, path=[[0, 0, 0], [0, 1, 0]])]}, "t ascending"),

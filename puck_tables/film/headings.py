@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
-from puck_tables.film.units import known, unit_given
+from puck_tables._core.units import known, parted, unit_given
 
 _WORDS = {
     "time": "t time times zeit temps tiempo tempo tijd tid czas время 时间 時間 timestamp "
@@ -99,24 +99,6 @@ Heading(role='', puck='', unit=''))
     return Heading(role, _joined(tokens, [found[n] for n in kept]), unit)
 
 
-def parted(text: str) -> tuple[str, str]:
-    """A name and what stands as its unit, in brackets or after a stroke.
-
-    Examples
-    --------
-    >>> parted("x [mm]"), parted("t / s"), parted("x")
-    (('x', 'mm'), ('t', 's'), ('x', ''))
-    """
-    found = re.fullmatch(r"(.+?)\s*[\[(<]\s*([^\[\]()<>]*?)\s*[\])>]", text)
-    if found is not None:
-        return found[1], found[2]
-    for form in (r"(.+?)\s*/\s*([^\s/]+)", r"(.+?)\s+in\s+(\S+)"):
-        found = re.fullmatch(form, text)
-        if found is not None and is_unit(found[2]):
-            return found[1], found[2]
-    return text, ""
-
-
 def _joined(text: str, words: Sequence[tuple[str, int, int]]) -> str:
     """Words as they stood, with what was between neighbours."""
     joined, end = "", 0
@@ -151,15 +133,3 @@ def headings(names: Iterable[str]) -> list[Heading]:
         counted[key] = counted.get(key, 0) + 1
         numbered.append(one._replace(puck=f"{one.puck} {counted[key]}".strip()))
     return numbered
-
-
-def is_unit(text: str) -> bool:
-    """Whether a cell is a unit, in brackets or not: of a row of units under the names.
-
-    Examples
-    --------
-    >>> is_unit("(cm)"), is_unit("x")
-    (True, False)
-    """
-    bare = text.strip().strip("[]()<>").strip()
-    return any(known(bare, kind) for kind in ("length", "time", "angle"))

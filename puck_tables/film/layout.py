@@ -7,9 +7,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from puck_tables._core.text import Look, split
+from puck_tables._core.units import is_unit
 from puck_tables.errors import InputError
-from puck_tables.film.headings import Heading, heading, headings, is_unit
-from puck_tables.film.text import Look, split
+from puck_tables.film.headings import Heading, heading, headings
 
 _TRACKPY = {"frame", "particle", "x", "y"}
 _SCORER = "scorer"  # begins DeepLabCut's tables

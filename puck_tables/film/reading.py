@@ -8,12 +8,12 @@ from pathlib import Path
 
 from puck_tables._core.real import instance
 from puck_tables._core.safe_read import opened
+from puck_tables._core.text import LARGEST, encoding_of
 from puck_tables.errors import InputError
 from puck_tables.film.film import Film
 from puck_tables.film.plane import Marks
 from puck_tables.film.settle import How, settled
 from puck_tables.film.tables import film_of_table
-from puck_tables.film.text import LARGEST, encoding_of
 from puck_tables.film.track import Track
 
 _HEAD = 1 << 18

@@ -14,9 +14,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from puck_tables._core.safe_read import read_whole
+from puck_tables._core.units import factor, unit_given
 from puck_tables.errors import InputError
 from puck_tables.film.film import Body, Film
-from puck_tables.film.units import factor, unit_given
 
 _LARGEST = 1 << 29  # bytes of JSON
 _NEEDED = ("time", "x", "y")

@@ -11,13 +11,13 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import instance, positive, real
+from puck_tables._core.units import PIXEL, factor, pixel_size, unit_given
 from puck_tables.errors import InputError
 from puck_tables.film.angles import direction
 from puck_tables.film.film import Body, Film
 from puck_tables.film.marks_file import plane_from
 from puck_tables.film.plane import Marks, Plane
 from puck_tables.film.track import Track
-from puck_tables.film.units import PIXEL, factor, pixel_size, unit_given
 
 _SURE = 1.5  # likelihoods above are no shares of 1, whatever rounding or scoring did
 _SLOW = 1.0  # s between frames: more, and times are hardly in seconds

@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables._core.text import Look, look_at, number, read_columns
+from puck_tables._core.units import factor
 from puck_tables.errors import InputError
 from puck_tables.film.clock import is_clock, seconds
 from puck_tables.film.film import Body, Film, Flags
 from puck_tables.film.headings import Heading
 from puck_tables.film.layout import Layout, example, layout_of, name_of
-from puck_tables.film.text import Look, look_at, number, read_columns
-from puck_tables.film.units import factor
 
 MOST_PUCKS = 10_000
 _YES = {"true", "yes", "y", "t", "ja", "j", "oui", "si", "sí", "wahr", "ok"}

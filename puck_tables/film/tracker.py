@@ -31,10 +31,10 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.safe_read import read_whole
+from puck_tables._core.text import encoding_of
+from puck_tables._core.units import known
 from puck_tables.errors import InputError
 from puck_tables.film.film import Body, Film
-from puck_tables.film.text import encoding_of
-from puck_tables.film.units import known
 
 _LARGEST = 1 << 26  # bytes of a .trk, or of all in an archive
 _LARGEST_ARCHIVE = 1 << 32

@@ -21,12 +21,16 @@ from puck_tables.fitting.launched import BySpeed, Moving
 from puck_tables.fitting.natural import curve_of
 from puck_tables.fitting.parameters import (
     ALL,
+    LARGEST,
+    MOST,
     NODES,
     OF_IMPACTS,
     OF_PAIRS,
     OF_WALLS,
     POSITIVE,
     PUCK,
+    SMALLEST,
+    TALLEST,
     WALL,
     bounds_of,
     in_range,
@@ -38,7 +42,6 @@ from puck_tables.puck import Puck
 _KIND = ("gyration", "inner", "drag")  # change the curve itself
 _CLASHES = (("friction", "decel"), ("delta", "height"))
 _TINY = 1e-30
-_SMALLEST, _LARGEST = 1e-6, 1e6  # m, of pucks on films
 _LEAST = 1e-9
 
 
@@ -59,7 +62,7 @@ class Asked:
     met : what is taken of the impacts that there are, by name, where nothing else is said
 
     speeds : slip speeds (m/s) at which friction coefficients are found, friction_0 and so on
-    between : linear or cubic, f between these speeds
+    between : cubic or linear, f between these speeds
 
     Raises
     ------
@@ -85,7 +88,7 @@ class Asked:
     freed: tuple[str, ...] = ()
     met: Mapping[str, float] = field(default_factory=dict)
     speeds: tuple[float, ...] = ()
-    between: str = "linear"
+    between: str = "cubic"
 
     @classmethod
     def of(
@@ -95,9 +98,9 @@ class Asked:
     ) -> Asked:  # fmt: skip
         """Checked, with what is free where nothing is said: f, and δ of a puck without height."""
         instance("puck", puck, Puck)
-        if not _SMALLEST <= puck.radius <= _LARGEST:
+        if not SMALLEST <= puck.radius <= LARGEST:
             raise InputError(
-                f"the radius of a puck on a film is from {_SMALLEST:g} to {_LARGEST:g} m, got "
+                f"the radius of a puck on a film is from {SMALLEST:g} to {LARGEST:g} m, got "
                 f"{puck.radius:g}: say it in m"
             )
         known = {name: in_range(name, value) for name, value in fixed.items()}
@@ -327,8 +330,13 @@ class Asked:
         low, high = (ALL.get(name) or WALL[name])[1:3]
         if name == "inner":
             low, high = 1e-3, 0.999
+        elif name == "radius":
+            low, high = SMALLEST, LARGEST
+        elif name == "height":
+            high = TALLEST * self.known()["radius"]
         elif name in POSITIVE or name in NODES:
             low = _LEAST
+        high = min(high, MOST.get(name, high))
         wanted = self.bounds.get(name, (low, high))
         return max(low, wanted[0]), min(high, wanted[1])
 

@@ -33,6 +33,7 @@ from puck_tables.fitting.held_out import HeldOut, predicted, split
 from puck_tables.fitting.impacts import Piece, cut
 from puck_tables.fitting.joining import Line
 from puck_tables.fitting.laws import LawScore, chi2_under, compare, variants_of
+from puck_tables.fitting.least_squares import LOOSE, minimise
 from puck_tables.fitting.misread import misread
 from puck_tables.fitting.numbers import numbers_of, plausible_for
 from puck_tables.fitting.outcome import Fit
@@ -66,7 +67,7 @@ def fit(
     impacts: bool = False,
     walls: Sequence[Line] = (),
     slip_speeds: Sequence[float] | None = None,
-    between: str = "linear",
+    between: str = "cubic",
     laws: Sequence[str] = (),
     hold_out: float | Sequence[str] | None = None,
     progress: Progress | None = None,
@@ -105,7 +106,8 @@ def fit(
     slip_speeds : m/s, from 0 to the fastest slip, 2 to 8 of them
         The friction coefficient is found at each (friction_0, friction_1, …); of two it is f₀ + f₁u
         with u the slip speed.  It is one number where they are left out.
-    between : linear or cubic, f between these speeds
+    between : cubic or linear, f between these speeds
+        As :class:`SpeedLaw` takes it: a cubic that rises and falls only where f at the speeds does.
     laws : names of pressure laws to compare, as :class:`Puck` takes them; with '+drag' of those
         with drag
     hold_out : share of the moving frames at the end of each track, or names of tracks
@@ -259,6 +261,9 @@ def _over_speeds(
     moved = replace(problem, asked=asked, weights=())
     walls = problem.found_walls(found.x)
     start = moved.unknowns(numbers, problem.launches(found.x), walls)
+    # where f is the same at all speeds the slopes of a cubic jump: lines lead away from there
+    lines = replace(moved, asked=problem.asked.over(speeds, "linear"))
+    start, _ = minimise(lines, start, LOOSE)
     return estimate(moved, start, known)
 
 

@@ -25,6 +25,11 @@ from puck_tables.puck import Puck
 from puck_tables.result import Result
 
 MOST_FRAMES = 1_000_000
+_FASTEST = 1e6  # m/s
+_RANGES = {
+    "fps": ("1/s", 1e-6, 1e9), "place_noise": ("m", 1e-12, 1e3), "angle_noise": ("rad", 1e-12, 1e3),
+    "duration": ("s", 1e-9, 1e9),
+}  # fmt: skip
 
 
 class Launched(Protocol):
@@ -45,10 +50,10 @@ class Camera:
 
     Parameters
     ----------
-    fps : 1/s, > 0
-    place_noise : m, > 0, of each of x and y in a frame
-    angle_noise : rad, > 0, of the body in a frame; None without marks
-    duration : s, > 0, from the launch; None: to the stop
+    fps : 1/s, 1e-6 to 1e9
+    place_noise : m, 1e-12 to 1e3, of each of x and y in a frame
+    angle_noise : rad, 1e-12 to 1e3, of the body in a frame; None without marks
+    duration : s, 1e-9 to 1e9, from the launch; None: to the stop
 
     Raises
     ------
@@ -66,11 +71,14 @@ class Camera:
     duration: float | None = None
 
     def __post_init__(self) -> None:
-        for name, unit in (("fps", "1/s"), ("place_noise", "m"), ("angle_noise", "rad"),
-                           ("duration", "s")):  # fmt: skip
+        for name, (unit, low, high) in _RANGES.items():
             value = getattr(self, name)
-            if value is not None or name in ("fps", "place_noise"):
-                object.__setattr__(self, name, positive(name, value, unit))
+            if value is None and name in ("angle_noise", "duration"):
+                continue
+            number = positive(name, value, unit)
+            if not low <= number <= high:
+                raise InputError(f"{name} must be from {low:g} to {high:g} {unit}, got {number:g}")
+            object.__setattr__(self, name, number)
 
     def film(self, stop_time: float) -> Seen:
         """Its frames of a motion that stops at a time.
@@ -81,10 +89,11 @@ class Camera:
             If they are too few or too many.
         """
         duration = stop_time if self.duration is None else self.duration
-        count = math.floor(duration * self.fps * (1.0 + 1e-12)) + 1
+        count = math.floor(min(duration * self.fps, 2.0 * MOST_FRAMES) * (1.0 + 1e-12)) + 1
         if not FEWEST <= count <= MOST_FRAMES:
+            told = f"{count}" if count <= MOST_FRAMES else f"{duration * self.fps:.4g}"
             raise InputError(
-                f"{duration:.4g} s at {self.fps:g} frames a second are {count} frames: a forecast "
+                f"{duration:.4g} s at {self.fps:g} frames a second are {told} frames: a forecast "
                 f"takes {FEWEST} to {MOST_FRAMES}"
             )
         angle = None if self.angle_noise is None else np.zeros(count)
@@ -253,6 +262,12 @@ class _Bounds(NamedTuple):
 def _bounds(puck: Puck, launch: _Launch, camera: Camera, free: Iterable[str]) -> _Bounds:
     """How well a film tells the unknowns of a launch."""
     asked = Asked.of(puck, free, {}, {}, {}, {})
+    slip = math.hypot(*launch.velocity, puck.radius * launch.spin)
+    if not 0.0 < slip <= _FASTEST:
+        raise InputError(
+            f"a film is of a launch whose base slips at up to {_FASTEST:g} m/s, and at more than 0 "
+            f"m/s, got {slip:g} m/s"
+        )
     stop = puck.stop(launch.velocity, launch.spin)
     film = camera.film(float(stop.stop_time))
     noise = camera.place_noise, camera.angle_noise or 1.0

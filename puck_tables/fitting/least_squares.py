@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables.errors import InputError
 from puck_tables.fitting.compact import compact
 from puck_tables.fitting.problem import Problem
 
@@ -24,6 +25,8 @@ class How(NamedTuple):
     evaluations: int
     tolerance: float
 
+
+_FAR = 1e3  # ends that are farther would only bend the steps towards a minimum
 
 LOOSE = How("cauchy", 3.0, 40, 1e-4)
 ROBUST = How("cauchy", 3.0, 30, 1e-4)
@@ -42,13 +45,16 @@ def minimise(
 
     moved = np.array([k for k in range(x.size) if k != held], np.int64)
     whole = x.copy()
-    low, high = (ends[moved] for ends in problem.limits)
+    limits = tuple(ends[moved] for ends in problem.limits)
+    low, high = (np.where(np.abs(ends) < _FAR, ends, np.copysign(np.inf, ends)) for ends in limits)
     inside = _inside(x[moved], low, high)
     latest: dict[bytes, FloatArray] = {}
 
     def residuals(values: FloatArray) -> FloatArray:
         whole[moved] = values
         rows, slopes = problem.residuals_and_jacobian(whole)
+        if not (np.isfinite(slopes).all() and np.isfinite(rows).all()):
+            raise InputError(_astray(problem, whole))
         if how.loss == "linear":  # only their squares and products count
             rows, slopes, _ = compact(problem, rows, slopes, kept)
         latest.clear()
@@ -70,11 +76,20 @@ def minimise(
             gtol=1e-12,
         )  # fmt: skip
         if scale <= how.scale:
-            whole[moved] = found.x
+            whole[moved] = np.clip(found.x, *limits)
             return whole, float(found.cost)
         inside = _inside(found.x, low, high)
         rows = np.abs(found.fun)
         scale = max(how.scale, min(0.25 * scale, 2.0 * float(np.median(rows))))
+
+
+def _astray(problem: Problem, x: FloatArray) -> str:
+    """A sentence on unknowns of which no motion can be computed."""
+    told = ", ".join(f"{name} {value:.3g}" for name, value in problem.found(x).items())
+    return (
+        "the fit is led astray, to a motion that cannot be computed"
+        f"{f' ({told})' if told else ''}: give bounds or a prior of what it finds, or find less"
+    )
 
 
 def _inside(x: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:

@@ -289,6 +289,7 @@ class Fit(Result):
             "laws": [one._asdict() for one in self.laws],
             "held_out": None,
             "slip_speeds": list(self.estimate.problem.asked.speeds),
+            "between": self.estimate.problem.asked.between,
             "constant_chi2": self.constant_chi2, "untied": self.untied, "impacts": [
                 {
                     **one._asdict(), "place": list(one.place),
@@ -353,6 +354,9 @@ class Fit(Result):
         self, speed: FloatArray | None = None
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
         """The friction coefficient over slip speed, with its standard error.
+
+        As rows of a scene's law, with the first two, these numbers mean the same there, unless they
+        were found with ``between="linear"``: a law of rows is cubic.
 
         Parameters
         ----------

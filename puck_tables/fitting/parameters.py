@@ -68,6 +68,13 @@ OF_PAIRS = {
     "pair_restitution": 1.0, "pair_friction": math.inf, "pair_tangential": 0.0, "mass_ratio": 1.0,
 }  # fmt: skip
 OF_IMPACTS = {**OF_WALLS, **OF_PAIRS}
+# more of it has no puck on a film: where a fit runs away it ends here; a friction is far larger
+# where units are wrong, which is then said
+MOST = {
+    "friction": 1e6, "decel": 1e7, "gravity": 1e3, "drag": 100.0, "rim_friction": 100.0,
+    "pair_friction": 100.0, "mass_ratio": 1e3, **dict.fromkeys(NODES, 10.0),
+}  # fmt: skip
+TALLEST, LARGEST, SMALLEST = 100.0, 1e6, 1e-6  # times the radius; m
 POSITIVE = ("radius", "gravity", "friction", "decel", "mass_ratio")  # 0 is none of their values
 
 

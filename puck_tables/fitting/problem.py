@@ -37,6 +37,7 @@ Found = dict[str, float]
 X, Y, TURN = range(3)  # of a path
 PLACE, ANGLE, PRIOR = range(3)  # kinds of residuals
 _CURVE_STEP = 1e-4
+_DRAGGED = 100.0  # drag times the length of a film
 _MOTION = ("launch_vx", "launch_vy", "launch_spin")
 _WALL = -2  # the first wall in names, the next is one less
 
@@ -131,6 +132,9 @@ class Problem:
                 pairs[k, 1] = min(pairs[k, 1], self.asked.highest(self.tall))
             elif name in ("friction", "decel"):
                 pairs[k, 1] = min(pairs[k, 1], self.asked.steepest(name))
+            elif name == "drag":  # more leaves nothing, or all there is, of a speed
+                most = _DRAGGED / max(float(film.time[-1]) for film in self.films)
+                pairs[k] = max(pairs[k, 0], -most), min(pairs[k, 1], most)
         return pairs[:, 0], pairs[:, 1]
 
     def found(self, x: FloatArray) -> Found:

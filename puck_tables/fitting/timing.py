@@ -93,6 +93,8 @@ def likeliest(
     usual = noise[0] / speed
     begin = np.log([noise[0], noise[1], jitter if jitter > 0.0 else 0.3 * usual])
     free = [k for k, one in enumerate(known) if not one and (k != 1 or angled.any())]
+    if not free:
+        return noise, jitter
     factor = 1.0 / share
 
     def cost(logs: FloatArray) -> float:

@@ -20,7 +20,7 @@ from puck_tables.plot import board
 from puck_tables.plot.film import Body, Film, between, film_of, path_of
 from puck_tables.plot.floor import Box as Sight
 from puck_tables.plot.floor import motion_said, shades_of
-from puck_tables.plot.style import RED, canvas, require_matplotlib, titled
+from puck_tables.plot.style import RED, canvas, may_replace, require_matplotlib, titled
 from puck_tables.result import TimedResult
 from puck_tables.scene.parts import Floor
 
@@ -79,13 +79,13 @@ def save_movie(result: TimedResult, path: str | Path, overwrite: bool = False) -
     MissingExtraError
         If matplotlib or ffmpeg is needed and not installed.
     OutputError
-        If the file exists (without ``overwrite``) or cannot be written.
+        If a file is there that is no movie (without ``overwrite``) or cannot be written.
     """
     kind = checked_movie(path)
-    check_target(path, overwrite)
+    check_target(path, may_replace(path, overwrite))
     film = film_of(result)
     content = page(film).encode() if kind == ".html" else _filmed(film, kind)
-    write_bytes(path, content, overwrite)
+    write_bytes(path, content, may_replace(path, overwrite))
 
 
 def page(film: Film) -> str:

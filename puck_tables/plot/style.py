@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import io
+import os
 import warnings
 from collections.abc import Mapping
 from pathlib import Path
@@ -11,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from puck_tables._core.safe_write import write_bytes
-from puck_tables.errors import MissingExtraError
+from puck_tables.errors import InputError, MissingExtraError
 from puck_tables.io.formats import ending_of
 
 if TYPE_CHECKING:
@@ -20,6 +22,12 @@ if TYPE_CHECKING:
     from matplotlib.gridspec import SubplotSpec
 
 PICTURE_KINDS = (".png", ".svg", ".pdf")
+# what stands at the beginning or the end of those that may be drawn again
+_SIGNS = {
+    ".png": b"\x89PNG", ".svg": b"<svg", ".pdf": b"/Creator (Matplotlib", ".gif": b"GIF8",
+    ".mp4": b"ftyp", ".html": b'<meta name="generator" content="puck-tables movie">',
+}  # fmt: skip
+_LOOKED_AT = 4096  # bytes at each end
 
 BLUE, ORANGE, GREEN, GREY, RED = "#0b5fa5", "#d9660c", "#2f8f3a", "#8a8a8a", "#b3202a"
 COLORS = (BLUE, ORANGE, GREEN, "#8b2fa0", RED)
@@ -47,6 +55,9 @@ def require_matplotlib() -> None:
     Raises
     ------
     MissingExtraError
+        If matplotlib is not installed.
+    InputError
+        If its settings keep it from starting.
     """
     try:
         import matplotlib  # noqa: F401
@@ -54,6 +65,12 @@ def require_matplotlib() -> None:
         raise MissingExtraError(
             "pictures need matplotlib: pip install 'puck-tables[plot]'"
         ) from None
+    except ValueError as error:
+        chosen = os.environ.get("MPLBACKEND")
+        which = (
+            f"MPLBACKEND = {chosen!r:.60}: unset it, pictures need no backend; " if chosen else ""
+        )
+        raise InputError(f"matplotlib does not start: {which}it says: {error!s:.200}") from None
 
 
 def canvas(width: float, height: float) -> Figure:
@@ -121,15 +138,38 @@ def checked_kind(path: str | Path) -> str:
     return ending_of(path, PICTURE_KINDS)
 
 
+def may_replace(path: str | Path, overwrite: bool = False) -> bool:
+    """Whether what lies at a path may go for a picture or a movie: one of the same kind may.
+
+    It can be drawn again.  A PDF or a page must have been drawn by puck-tables or matplotlib; an
+    empty file holds nothing.
+
+    Examples
+    --------
+    >>> may_replace("/nowhere/run.png"), may_replace(__file__, overwrite=True)
+    (False, True)
+    """
+    sign = _SIGNS.get(Path(path).suffix.lower())
+    if overwrite or sign is None or not Path(path).is_file():
+        return overwrite
+    with contextlib.suppress(OSError), open(path, "rb") as file:
+        size = file.seek(0, os.SEEK_END)
+        file.seek(0)
+        found = file.read(_LOOKED_AT)
+        file.seek(max(file.tell(), size - _LOOKED_AT))
+        return sign in found + file.read() or not size
+    return False
+
+
 def save_figure(figure: Figure, path: str | Path, overwrite: bool = False) -> None:
-    """Write a figure whole or not at all.
+    """Write a figure whole or not at all, in the place of a picture, see :func:`may_replace`.
 
     Raises
     ------
     InputError
         If the ending of the name is none of pictures.
     OutputError
-        If the file exists (without ``overwrite``) or cannot be written.
+        If a file is there that is no picture (without ``overwrite``) or cannot be written.
 
     Examples
     --------
@@ -144,7 +184,7 @@ def save_figure(figure: Figure, path: str | Path, overwrite: bool = False) -> No
     with warnings.catch_warnings():  # a title may have signs that the font lacks
         warnings.filterwarnings("ignore", "Glyph .* missing from")
         figure.savefig(buffer, format=kind[1:], dpi=130)
-    write_bytes(path, buffer.getvalue(), overwrite)
+    write_bytes(path, buffer.getvalue(), may_replace(path, overwrite))
 
 
 def draw_over(

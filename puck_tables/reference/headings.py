@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
+from puck_tables._core.units import parted, unit_size
 from puck_tables.errors import InputError
-from puck_tables.film.headings import heading, parted
-from puck_tables.film.units import factor, known
+from puck_tables.film.headings import heading
 
 _NAMES = {
     "vx": "vx xvel velx velocityx xvelocity linvelx linearvelocityx vellinx xdot dx dxdt xd",
@@ -31,7 +31,6 @@ _KIND |= dict.fromkeys(("wx", "wy", "wz", "spin"), "spin")
 _KIND |= dict.fromkeys(("x", "y", "z"), "length")
 _KIND |= {"time": "time", "angle": "angle"}
 _FROM_FILM = ("time", "x", "y", "angle")
-_WHOLE = {"mps": "m/s", "rpm": "turn/min", "rps": "turn/s"}
 EXAMPLES = {"velocity": "m/s", "spin": "rad/s", "length": "m", "time": "s", "angle": "rad"}
 
 
@@ -99,31 +98,3 @@ def _unit(text: str, unit: str, kind: str) -> float | None:
             f"{EXAMPLES[kind]}"
         )
     return size
-
-
-def unit_size(unit: str, kind: str) -> float | None:
-    """A unit of a kind in SI units, None if it is none.
-
-    Parameters
-    ----------
-    unit : as somebody wrote it
-    kind : length, time, angle, velocity or spin
-
-    Examples
-    --------
-    >>> unit_size("cm/s", "velocity"), unit_size("m", "velocity"), unit_size("deg/s", "spin")
-    (0.01, None, 0.017453292519943295)
-    """
-    text = _WHOLE.get(unit.strip().lower(), unit.strip())
-    if kind in ("velocity", "spin"):
-        found = re.fullmatch(r"(.+?)\s*(?:/|\s+per\s+)\s*(.+)", text)
-        found = found or re.fullmatch(r"(\S+?)(?:\s+|\*|·|\.)?(s)\^?(?:-1|⁻¹)", text)
-        if found is None:
-            return None
-        above = unit_size(found[1], "length" if kind == "velocity" else "angle")
-        below = unit_size(found[2], "time")
-        return None if above is None or below is None else above / below
-    name = known(text, kind)
-    if not name or name == "px":
-        return None
-    return factor(name, kind)

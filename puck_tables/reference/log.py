@@ -12,13 +12,14 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import instance, real
 from puck_tables._core.safe_read import read_rows
+from puck_tables._core.text import Look, look_at, read_columns
+from puck_tables._core.units import parted, unit_size
 from puck_tables.errors import InputError
-from puck_tables.film.headings import heading, parted
+from puck_tables.film.headings import heading
 from puck_tables.film.layout import headed, name_of
 from puck_tables.film.reading import beginning, refuse_no_text
-from puck_tables.film.text import Look, look_at, read_columns
 from puck_tables.reference.attitude import turned
-from puck_tables.reference.headings import EXAMPLES, LogHeading, log_heading, unit_size
+from puck_tables.reference.headings import EXAMPLES, LogHeading, log_heading
 
 _SLOW = 1.0  # s between rows: more, and times are hardly in seconds
 _FEWEST = 3  # rows that are compared

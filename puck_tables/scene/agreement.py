@@ -191,7 +191,7 @@ def distance(line: Wall | Edge, place: tuple[float, float]) -> float:
 
     Examples
     --------
-    >>> distance(Edge((0.0, 1.0), (0.0, -2.0)), (5.0, 0.25))
+    >>> distance(Edge((0.0, 1.0), normal=(0.0, -2.0)), (5.0, 0.25))
     0.75
     """
     size = math.hypot(*line.normal)

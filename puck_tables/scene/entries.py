@@ -66,7 +66,7 @@ def entries(part: Any, prefix: str = "") -> Iterator[Entry]:
     Examples
     --------
     >>> from puck_tables.scene.parts import Edge
-    >>> [entry.path for entry in entries(Edge((0.0, 1.0), (0.0, -1.0)), "edge[0].")]
+    >>> [entry.path for entry in entries(Edge((0.0, 1.0), normal=(0.0, -1.0)), "edge[0].")]
     ['edge[0].point', 'edge[0].normal']
     """
     for name, spec in specs(type(part)).items():
@@ -130,6 +130,10 @@ def tables_of(part: Any) -> dict[str, Any]:
         value = _plain(getattr(part, spec.name))
         if value is not None and value != [] and not (isinstance(value, float) and value == np.inf):
             tables[in_tables(name)] = value
+    if "gravity" in tables and "puck" in tables:  # a scene whose pucks have its own
+        pucks = tables["puck"]
+        for puck in pucks if isinstance(pucks, list) else [pucks]:
+            puck.pop("gravity", None)
     return tables
 
 

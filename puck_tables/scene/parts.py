@@ -7,12 +7,17 @@ Numbers are in SI units, angles in radians, counter-clockwise positive.  They ar
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import KW_ONLY, dataclass
+from functools import wraps
+from typing import Any, TypeVar
 
 from puck_tables._core.fields import of
 from puck_tables.contact.friction_laws import NAMED, FrictionLaw
+from puck_tables.errors import InputError
 from puck_tables.scene.restitution import Restitution, restitution_of
 
+T = TypeVar("T")
 Rows = tuple[tuple[float, ...], ...]
 
 
@@ -77,7 +82,8 @@ class Floor:
         "",
         file="",
         kinds=NAMED,
-        doc="CSV or rows of slip speed in m/s and f, or a law by name, in place of friction",
+        doc="CSV or rows of slip speed in m/s and f (a cubic between that rises and falls only "
+        "where they do), or a law by name, in place of friction",
         acts="friction law",
     )
 
@@ -152,11 +158,49 @@ class Force:
     )
 
 
+def _one_place(part: type[T]) -> type[T]:
+    """Refuse a second place without a name: whoever gives two means the ends of a line."""
+    init: Callable[..., None] = part.__init__
+
+    @wraps(init)
+    def named(self: T, *places: Any, **rest: Any) -> None:
+        if len(places) > 1:
+            raise InputError(_two_places(part.__name__, *places[:2]))
+        init(self, *places, **rest)
+
+    part.__init__ = named  # type: ignore[assignment]
+    return part
+
+
+def _two_places(name: str, first: Any, second: Any) -> str:
+    """What to write in place of two places."""
+    said = (
+        f"{name} takes one value without a name, a point: for the line through {first!r:.60} that "
+        f"faces along {second!r:.60} write {name}({first!r:.60}, normal={second!r:.60})"
+    )
+    try:
+        (ax, ay), (bx, by) = ((float(x), float(y)) for x, y in (first, second))
+    except (TypeError, ValueError, OverflowError):
+        return said
+    return (
+        f"{said}; for the whole line through both places normal=({by - ay:g}, {ax - bx:g}) or "
+        f"({ay - by:g}, {bx - ax:g}), whichever points into the field (a {name.lower()} has no "
+        "ends)"
+    )
+
+
+@_one_place
 @dataclass(frozen=True)
 class Wall:
-    """A straight cushion that the rim of the puck bounces off."""
+    """A straight cushion that the rim of the puck bounces off: a line without ends.
+
+    Examples
+    --------
+    >>> board_end = Wall((1.0, 0.0), normal=(-1.0, 0.0), restitution=0.7)
+    """
 
     point: tuple[float, float] = of("pair", unit="m", doc="any point of it", acts="walls")
+    _: KW_ONLY
     normal: tuple[float, float] = of("pair", doc="into the field, any length", acts="")
     restitution: float | str | Restitution = restitution_of(1.0, acts="")
     tangential: float = of(
@@ -170,11 +214,13 @@ class Wall:
     friction: float = of("number", math.inf, low=0.0, doc="limits the tangential impulse", acts="")
 
 
+@_one_place
 @dataclass(frozen=True)
 class Edge:
-    """A straight boundary that ends the run when the centre passes it."""
+    """A straight boundary that ends the run when the centre passes it: a line without ends."""
 
     point: tuple[float, float] = of("pair", unit="m", doc="any point of it", acts="edges")
+    _: KW_ONLY
     normal: tuple[float, float] = of("pair", doc="into the field, any length", acts="")
 
 

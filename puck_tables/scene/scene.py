@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -16,6 +16,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.fields import of, specs
 from puck_tables._core.reading import Range, Reading, given_in, read_values
 from puck_tables.errors import InputError
+from puck_tables.motion.body import STANDARD_GRAVITY
 from puck_tables.puck import Puck
 from puck_tables.scene.agreement import disagreements
 from puck_tables.scene.entries import columns_of, entry_at, is_batch, set_path, tables_of
@@ -51,6 +52,8 @@ class Scene(SceneVerbs):
     pucks, posts, arcs, pockets, rims : sequences, optional
         As :mod:`puck_tables.scene.pieces` has them.
     constraint : Constraint, optional
+    gravity : m/s², > 0, optional
+        Of all its pucks; left out, each has its own.
     ranges : mapping, optional
         Values of numbers that take several, by path, such as ``{"puck.height": [0.0, 0.01]}``.  A
         changed copy (:func:`dataclasses.replace`) keeps those of the parts that it keeps.
@@ -91,13 +94,22 @@ class Scene(SceneVerbs):
     rims: tuple[Rim, ...] = of("parts", (), part=Rim, table="rim")
     constraint: Constraint | None = of("part", None, part=Constraint)
     run: Run = of("part", Run(), part=Run)
+    gravity: float | None = of(
+        "number",
+        None,
+        "m/s^2",
+        acts="",
+        low=0.0,
+        above=True,
+        doc="of all pucks; left out: each has its own",
+    )
     title: str = of("text", "")
     ranges: Mapping[str, FloatArray] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        tables, ranges = given_in(self, {}), self.ranges
+        tables, ranges, before = given_in(self, {}), self.ranges, None
         if isinstance(ranges, Ranges):  # of the scene of which this one is a changed copy
-            ranges = ranges.of_the_same(self)
+            before, ranges = ranges.parts["gravity"], ranges.of_the_same(self)
         else:
             refuse_twice(type(self), tables, ranges)
         if ranges:  # as if they stood where their numbers are
@@ -105,7 +117,7 @@ class Scene(SceneVerbs):
             for path, values in ranges.items():
                 for entry, column in columns_of(path, values):
                     set_path(tables, entry, column)
-        self._fill(tables, "scene")
+        self._fill(tables, "scene", before)
 
     @classmethod
     def from_tables(cls, tables: Mapping[str, Any], source: str = "scene") -> Scene:
@@ -265,8 +277,8 @@ class Scene(SceneVerbs):
             return faults
         return disagreements(self)
 
-    def _fill(self, tables: Mapping[str, Any], source: str) -> None:
-        """Check all that is given, and take it."""
+    def _fill(self, tables: Mapping[str, Any], source: str, before: float | None = None) -> None:
+        """Check all that is given, and take it; pucks may have the gravity ``before``."""
         found: dict[str, Range] = {}
         reading = Reading([], found)
         values = read_values(type(self), tables, "", reading)
@@ -278,6 +290,8 @@ class Scene(SceneVerbs):
                 f"{MAX_RUNS:g} runs: give fewer or shorter ones"
             )
         reading.errors.extend(_puck_or_pucks(values))
+        if values is not None and not reading.errors:
+            reading.errors.extend(_give_gravity(values, before))
         if values is None or reading.errors:
             raise _refusal(reading.errors, source)
         for spec in specs(type(self)).values():
@@ -306,3 +320,22 @@ def _puck_or_pucks(values: Mapping[str, Any] | None) -> Iterator[str]:
         yield "puck is missing: it must be a table, or a list of tables [[puck]]"
     if values.get("puck") and values.get("pucks"):
         yield "puck and pucks: give one puck with its launch, or a list of pucks"
+
+
+def _give_gravity(values: dict[str, Any], before: float | None) -> Iterator[str]:
+    """Give all pucks the gravity of the scene, if it has one; those that have another are told."""
+    gravity = values.get("gravity")
+    if gravity is None:
+        return
+    for name, path in (("puck", "puck"), ("pucks", "puck[{}]")):
+        given = values.get(name) or ()
+        pucks = (given,) if name == "puck" and given else given
+        for number, puck in enumerate(pucks):
+            if puck.gravity not in (STANDARD_GRAVITY, gravity, before):
+                yield (
+                    f"{path.format(number)}.gravity = {puck.gravity:g}: the scene's gravity, "
+                    f"{gravity:g} m/s^2, is that of all its pucks: leave one of them out"
+                )
+        heavy = tuple(replace(puck, gravity=gravity) for puck in pucks)
+        if heavy:
+            values[name] = heavy[0] if name == "puck" else heavy

@@ -47,7 +47,7 @@ from puck_tables.stopping.curve_lookup import (
 from puck_tables.stopping.exact import end_values, exact_stops
 from puck_tables.stopping.launches import launches_in
 from puck_tables.stopping.lookup import CURVE_ROW
-from puck_tables.stopping.node_equations import all_slopes, missed_by_curve, missed_by_stops
+from puck_tables.stopping.node_equations import missed_by_curve, missed_by_stops
 from puck_tables.stopping.stop_table import STOPS, StopTable
 from puck_tables.table.accuracy import Accuracy
 from puck_tables.table.build import Goal, built
@@ -306,7 +306,7 @@ def _at_nodes(table: StopTable) -> list[Check]:
     slow = np.log(np.maximum(ratio_at(np.arange(axis.cells + 1) / axis.cells), 1e-300))
     u, delta = np.broadcast_arrays(np.stack([slow, -slow])[..., None], heights())
     missed, allowed = missed_by_stops(axis, table.values)
-    of_curve = [missed_by_curve(axis, table.values, j, all_slopes) for j in range(HEIGHTS)]
+    of_curve = [missed_by_curve(axis, table.values, j) for j in range(HEIGHTS)]
     by_curve, allowed_curve = np.stack([one for one, _ in of_curve], axis=2), of_curve[0][1]
     places = u.ravel(), delta.ravel()
     of_stops, of_curves = (

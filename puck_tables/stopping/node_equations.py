@@ -14,8 +14,6 @@ milliseconds.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
@@ -23,13 +21,10 @@ from puck_tables.contact import closed_form
 from puck_tables.contact.integrals import PatchIntegrals, SlipDirection
 from puck_tables.contact.resultants import moment_balance
 from puck_tables.stopping.axes import SlipAxis, heights, ratio_at
-from puck_tables.stopping.curve import limits, rates, regular_slopes
-
-Slopes = Callable[[FloatArray, float], tuple[float, FloatArray]]
+from puck_tables.stopping.curve import limits, regular_slopes
 
 # measured: at most 67 and 1440 times cells⁻⁴ is missed by right values
 _MISSED, _MISSED_BY_CURVE, _ROUNDING = 150.0, 3000.0, 1e-10
-_STEP, _NEAR = 5e-4, 0.3  # of u, for κ; and where the pole at the limit magnifies its error
 
 
 def missed_by_stops(axis: SlipAxis, values: FloatArray) -> tuple[FloatArray, float]:
@@ -81,16 +76,13 @@ def missed_by_stops(axis: SlipAxis, values: FloatArray) -> tuple[FloatArray, flo
     return np.abs(sides), _MISSED / axis.cells**4 + _ROUNDING
 
 
-def missed_by_curve(
-    axis: SlipAxis, values: FloatArray, height: int, slopes: Slopes
-) -> tuple[FloatArray, float]:
+def missed_by_curve(axis: SlipAxis, values: FloatArray, height: int) -> tuple[FloatArray, float]:
     """The same of κR and S/δ at one of the nine heights: their slopes are known in closed form.
 
     Parameters
     ----------
     axis, values : as above
     height : index of the height
-    slopes : κ, and functions of u and δ: dR/du and dS/du, no numbers where they are not wanted
 
     Returns
     -------
@@ -100,7 +92,7 @@ def missed_by_curve(
     --------
     >>> from puck_tables.stopping.stop_table import StopTable
     >>> table = StopTable.shipped()
-    >>> missed, allowed = missed_by_curve(table.axis, table.values, 4, slopes_off_the_limit)
+    >>> missed, allowed = missed_by_curve(table.axis, table.values, 4)
     >>> bool(missed.max() < allowed < 1e-6)
     True
     """
@@ -110,46 +102,16 @@ def missed_by_curve(
     sides = []
     for fast, side in enumerate((own[: axis.cells + 1], own[: axis.cells - 1 : -1])):
         sign = -1.0 if fast else 1.0
-        kappa, by_u = slopes(sign * np.log(k[1:]), delta)
+        kappa, by_u = _slopes(sign * np.log(k[1:]), delta)
         missed = _derivative(side, xi[1])
         missed[1:] -= sign * stretch[1:, None] * by_u * np.array([kappa, 1.0 / delta])
-        sides.append(np.where(np.isnan(missed), 0.0, missed))
+        sides.append(missed)
     return np.abs(sides), _MISSED_BY_CURVE / axis.cells**4 + _ROUNDING
 
 
-def all_slopes(u: FloatArray, delta: float) -> tuple[float, FloatArray]:
+def _slopes(u: FloatArray, delta: float) -> tuple[float, FloatArray]:
     """κ, and dR/du and dS/du at u (n,), (n, 2), by series next to the limit."""
     return limits(delta).kappa, np.stack(regular_slopes(u, delta), axis=-1)
-
-
-def slopes_off_the_limit(u: FloatArray, delta: float) -> tuple[float, FloatArray]:
-    """The same but next to the limit, where no number stands: without compiled code.
-
-    Examples
-    --------
-    >>> kappa, slopes = slopes_off_the_limit(np.array([-1.0]), 0.5)
-    >>> round(kappa, 6), slopes.round(6).tolist()
-    (0.677204, [[-0.570145, -0.006117]])
-    """
-    low, high = 0.0, 1.0  # u₀ = 0.387 … 0.427
-    for _ in range(8):
-        grid = np.linspace(low, high, 65)
-        above = int(np.argmax(rates(grid, delta)[0] <= 0.0))
-        low, high = float(grid[above - 1]), float(grid[above])
-    u0 = 0.5 * (low + high)
-    around = u0 + _STEP * np.array([-2.0, -1.0, 0.0, 1.0, 2.0])
-    rho, turn = rates(np.array([*around, -np.inf, np.inf]), delta)
-    kappa = float((8.0 * (rho[1] - rho[3]) - rho[0] + rho[4]) / (12.0 * _STEP))
-    slow, fast, h0, h1 = rho[5], -rho[6], turn[2], turn[6]
-    rho, turn = rates(u, delta)
-    pole = 0.5 * np.cosh(0.5 * u0) / (np.cosh(0.5 * u) * np.sinh(0.5 * (u - u0)))
-    to_left, to_right = 1.0 / (1.0 + np.exp(u)), 1.0 / (1.0 + np.exp(-u))
-    by_u = np.stack([
-        -1.0 / rho - pole / kappa + to_left / slow - to_right / fast,
-        -(turn - h0) / rho - (h0 / slow) * to_left + ((h0 - h1) / fast) * to_right,
-    ], axis=-1)  # fmt: skip
-    by_u[np.abs(u - u0) < _NEAR] = np.nan
-    return kappa, by_u
 
 
 def _places(axis: SlipAxis) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -10,13 +10,12 @@ own, integrated.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import KW_ONLY, dataclass, replace
 from functools import cached_property, lru_cache
 from typing import Any, ClassVar
 
 import numpy as np
-import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import real
@@ -29,7 +28,7 @@ from puck_tables.motion.path import TURN_SHARE
 from puck_tables.motion.solve import Estimate, close_enough
 from puck_tables.stopping.exact import integrated_stops
 from puck_tables.table.check import CheckReport
-from puck_tables.table.friction_section import FINEST_ACCURACY, FrictionSection, friction_ratios
+from puck_tables.table.friction_section import FINEST_ACCURACY, FrictionSection
 from puck_tables.table.section_table import SectionTable
 from puck_tables.table.slip_axis import GRADING_POWER, LawAxis, sides_of
 from puck_tables.table.slip_spline import slip_spline
@@ -44,8 +43,7 @@ _FINEST_CELLS = 1024
 _SAMPLE = 48
 _COARSER_BY = 8.0
 _SHARE_OF_FRICTION, _SHARE_OF_SPLINE = 0.3, 0.6  # of the accuracy
-_LARGEST, _NODES = 1e4, 6  # of a value; how many nodes are compared as a file is read
-_END = 1e-9  # how well the values at φ = 0 and π/2 are known
+_LARGEST = 1e4  # of a value
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -170,59 +168,6 @@ class StopSection(SectionTable):
         if not 0.0 <= error <= COARSEST:
             raise ValueError("its error of the friction is none")
         return found | {"gyration": gyration, "friction_error": error}
-
-    def spot_checks(self) -> Iterator[tuple[FloatArray, float, str]]:
-        """Of nodes, those that fit their neighbours least among them, by the equations of motion.
-
-        The turn until Q has fallen so far obeys none of its own; at the ends it is elementary.
-        """
-        truth = friction_ratios(self.law, np.array([0.0, 0.5 * np.pi]), self.delta)
-        ends = np.abs(self.values[[0, -1]] - np.stack(_ends(self.body, truth)))
-        yield ends, _END * max(1.0, float(np.abs(self.values).max())), "elementary solutions"
-        random = np.random.default_rng().integers(0, len(self.values), _NODES)
-        odd = np.concatenate([self.odd_nodes(_NODES), random])
-        # measured: at most 0.43 of it is missed by right values, which are integrated with steps
-        allowed = min(self.tolerance, COARSEST) * self.axis.cells
-        yield self._missed(odd), allowed, "the equations of motion"
-
-    def _missed(self, nodes: npt.NDArray[np.int64]) -> FloatArray:
-        """What the functions about nodes miss of the equations of motion, (n, 5).
-
-        With the derivatives by ξ from five neighbours, as in
-        :mod:`puck_tables.stopping.node_equations`; all is multiplied with dφ/dξ sin φ cos φ, and
-        with what the functions are in a stop.
-        """
-        cells = self.axis.cells
-        side = np.minimum(nodes // cells, len(self.axis.sides) - 1)
-        rises = self.axis.numbers[side, 0] == side * cells
-        place = np.where(rises, nodes - side * cells, (side + 1) * cells - nodes)
-        place = np.clip(place, 2, cells - 2)
-        around = self.axis.numbers[side[:, None], place[:, None] + np.arange(-2, 3)]
-        there = self.values[around]
-        by_xi = (there[:, 0] - 8.0 * there[:, 1] + 8.0 * there[:, 3] - there[:, 4]) * (cells / 12.0)
-        extent = np.array([one.extent for one in self.axis.sides])[side]
-        xi = place / cells
-        stretch = GRADING_POWER * extent * xi**3 / (1.0 + extent**2 * xi**8)  # dφ/dξ
-        phi = self.axis.nodes()[around[:, 2]]
-        rho = self.law.friction(phi, self.delta)
-        c, s = np.cos(phi), np.sin(phi)
-        spin = 0.5 / self.body.inertia * rho.spin / rho.parallel
-        norm = 1.0 / (c**2 + s**2 * spin)
-        rate, way = (1.0 - spin) * norm, norm / rho.parallel
-        turn, both = s * rho.perpendicular / rho.parallel * norm, s * c
-        time, along, across, length, body, _ = there[:, 2].T
-        dt, dx, dy, dl, db, _ = (both[:, None] * by_xi).T
-        # dc/du = −s² c, ds/du = c² s
-        missed = np.stack([
-            stretch * (time - way) - rate * dt,
-            c * (stretch * (2.0 * along - turn * s * across - way)
-                 - rate * (dx - stretch * s**2 * along)),
-            c * (stretch * (2.0 * s * across + turn * along)
-                 - rate * s * (dy + stretch * (c**2 - s**2) * across)),
-            c * (stretch * (2.0 * length - way) - rate * (dl - stretch * s**2 * length)),
-            s * (stretch * (2.0 * body - way) - rate * (db + stretch * c**2 * body)),
-        ], axis=-1)  # fmt: skip
-        return np.asarray(np.abs(missed))
 
 
 @lru_cache(maxsize=64)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar
@@ -33,7 +33,7 @@ from puck_tables.table.table import Axis, Progress
 UPPER_DELTA = 1.0
 OTHERS = ("path_length", "turn_angle", "body_angle")
 STOPS = 5  # of the functions are of stops; the others of the curve of all motions
-_LARGEST, _NODE_ERROR = 10.0, 1e-12  # of a value, and how well some are known
+_LARGEST = 10.0  # of a value
 _INTERPRETATION = (
     "Where and when a uniform cylinder (radius r, height h) launched with speed v and spin omega "
     "on a rough plane stops, whole base loaded. Q = hypot(v, r omega), "
@@ -323,21 +323,3 @@ class StopTable(StopCoefficients):
     def fields(cls, attributes: dict[str, Any], arrays: dict[str, FloatArray]) -> dict[str, Any]:
         """Nothing."""
         return {}
-
-    def spot_checks(self) -> Iterator[tuple[FloatArray, float, str]]:
-        """As far as the equations between its nodes show what is wrong."""
-        from puck_tables.stopping.exact import end_values
-        from puck_tables.stopping.node_equations import (
-            missed_by_curve,
-            missed_by_stops,
-            slopes_off_the_limit,
-        )
-
-        axis, values = self.axis, self.values
-        ends = np.abs(values[[0, -1], :, :STOPS] - np.stack(end_values(heights())))
-        yield ends, _NODE_ERROR, "elementary solutions"
-        yield np.abs(values[axis.cells, :, STOPS:]), _NODE_ERROR, "the curve's origin"
-        yield *missed_by_stops(axis, values), "the equations of motion"
-        height = int(np.random.default_rng().integers(HEIGHTS))
-        missed = missed_by_curve(axis, values, height, slopes_off_the_limit)
-        yield *missed, "the curve of all motions"

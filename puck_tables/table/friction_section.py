@@ -7,7 +7,7 @@ analytic between a few lines (:mod:`puck_tables.table.singular_lines`).
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import Any, ClassVar
@@ -33,7 +33,7 @@ from puck_tables.table.tall_friction import tall_resultants
 
 DEFAULT_ACCURACY, FINEST_ACCURACY = 1e-9, 5e-13  # truth itself is good to 1e-13
 _LARGEST, _ROUNDING = 1e3, 1e-12  # of a ratio
-_NODES, _NODE_ERROR = 6, 1e-10  # how many are compared as a file is read, and how well known
+_NODE_ERROR = 1e-10  # how well the law is known at a node
 _CONSTANT = 1e-3  # no section is better than so many times cells⁻⁴
 AT_THE_LIMIT = 1e-6
 _FULL_CONTACT = 1.0  # δ up to which the whole base is loaded in every motion
@@ -163,13 +163,6 @@ class FrictionSection(SectionTable):
     def bounds(self) -> tuple[float, float, float]:
         """Of the values and of the accuracy."""
         return -_ROUNDING, _LARGEST, max(0.1 * FINEST_ACCURACY, _CONSTANT / self.axis.cells**4)
-
-    def spot_checks(self) -> Iterator[tuple[FloatArray, float, str]]:
-        """Of nodes, those that fit their neighbours least among them."""
-        nodes = np.random.default_rng().integers(0, len(self.values), _NODES)
-        nodes = np.concatenate([self.odd_nodes(_NODES), nodes])
-        truth = friction_ratios(self.law, self.axis.nodes()[nodes], self.delta)
-        yield np.abs(self.values[nodes] - truth), _NODE_ERROR, f"the law {self.law.name}"
 
 
 def section_of_table(table: ResultantTable, delta: float, accuracy: float) -> FrictionSection:

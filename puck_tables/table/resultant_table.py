@@ -8,7 +8,7 @@ one height is three.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar
@@ -32,9 +32,6 @@ HEIGHTS = 4
 _UNIFORM = "uniform"
 _LARGEST = 1e3  # of a resultant: 64 stands in an extreme profile
 _FINEST = 0.1  # no table is better than so many times cells⁻⁴
-# how many slip angles are compared with closed forms or with quadrature as a file is read, and how
-# well they are known
-_MOST_EXACT, _EXACT, _MOST, _KNOWN = 2001, 1e-12, 60, 1e-10
 _INTERPRETATION = (
     "Friction on a puck of radius r, height h, mass m sliding with speed v and spin omega "
     "on a rough plane, Coulomb coefficient f, weight N = m g, whole base loaded by the "
@@ -274,23 +271,6 @@ class ResultantTable(LawTable):
         return {"phi": shapes["phi"], "delta": (HEIGHTS,), **functions, **{
             name: shape for name, shape in shapes.items() if name not in ("phi", *functions)
         }}  # fmt: skip
-
-    def spot_checks(self) -> Iterator[tuple[FloatArray, float, str]]:
-        """Of nodes, those that fit their neighbours least among them."""
-        exact = self.law.can_lift
-        most, known = (_MOST_EXACT, _EXACT) if exact else (_MOST, _KNOWN)
-        rows = np.arange(len(self.values))
-        if rows.size > most:
-            some = np.random.default_rng().choice(rows, most // 4)
-            rows = np.unique([0, rows.size - 1, *self.odd_nodes(most // 2), *some])
-        truth = self.law.resultants(self.axis.nodes()[rows, None], self.heights)
-        what = "the closed forms" if exact else f"the law {self.law.name}"
-        yield np.abs(self.values[rows] - np.stack(truth, axis=-1)), known, what
-        parallel = self.values[..., :1]
-        ratios = np.concatenate([1.0 / parallel, self.values[..., 1:] / parallel], axis=-1)
-        bent = np.abs(np.diff(ratios, 3, axis=1))
-        bent /= 1.0 + np.abs(ratios).max(axis=1, keepdims=True)
-        yield bent, known, "polynomials of the height"
 
 
 def full_contact(law: Law) -> float:

@@ -12,7 +12,7 @@ from puck_tables.errors import InputError
 from puck_tables.table.build import COARSEST
 from puck_tables.table.check import Check, CheckReport, compared
 from puck_tables.table.oddities import odd_nodes
-from puck_tables.table.speed_build import largest_f, truth_at
+from puck_tables.table.speed_build import largest_f
 from puck_tables.table.speed_table import SpeedTable
 from puck_tables.table.table import Progress
 
@@ -76,29 +76,6 @@ def oddest(table: SpeedTable, count: int) -> IntArray:
         nodes = odd_nodes(np.stack([values[patch] for patch in alike]), (1, 2), count)
         found.append(np.column_stack([alike[nodes[:, 0]], nodes[:, 1:]]))
     return np.concatenate(found)
-
-
-def node_errors(table: SpeedTable, nodes: IntArray) -> FloatArray:
-    """Errors of values at nodes (n, 3) of a table that holds its law, in units of the largest f.
-
-    Weighted as forces and torque are, (n, 4).
-
-    Examples
-    --------
-    >>> from puck_tables import SpeedLaw
-    >>> table = SpeedTable.build(SpeedLaw([0.0, 1.0], [0.2, 0.3]), accuracy=1e-4)
-    >>> bool(node_errors(table, np.array([[0, 3, 1], [1, 2, 2]])).max() < 1e-14)
-    True
-    """
-    assert table.law is not None
-    ratio, fast, Q = _slips(table, nodes[:, 0], _places(table, nodes))
-    cosine, sine = _direction(ratio, fast)
-    weights = np.stack([cosine, sine, sine, cosine], axis=-1)
-    patch, i, j = nodes.T
-    first = np.cumsum([0, *(table.cells + 1).prod(axis=1)])[patch]
-    found = table.values[first + i * (table.cells[patch, 1] + 1) + j]
-    error = np.abs(weights * (found - truth_at(table.law, table.top, ratio, fast, Q)))
-    return np.asarray(error / (largest_f(table.law, table.top) or 1.0))
 
 
 def _places(table: SpeedTable, nodes: IntArray) -> FloatArray:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import KW_ONLY, dataclass, field
 from functools import cached_property
 from typing import Any, ClassVar
@@ -35,7 +35,6 @@ IntArray = npt.NDArray[np.int64]
 MAX_POINTS = 2000  # of a law in a file: HDF5 keeps no longer attribute
 _LARGEST = 10.0  # of a value, over the largest f and u f'
 # how many nodes are compared with the law as a file is read, and how well that is known
-_NODES, _NODE_ERROR = 20, 1e-9
 _FINEST = 5e-14  # no table is better
 _INTERPRETATION = (
     "Friction on a puck of radius r, height h, mass m sliding with speed v and spin omega on a "
@@ -376,18 +375,3 @@ class SpeedTable(Table):
                 f"{MAX_POINTS}; give it with fewer"
             )
         return None
-
-    def spot_checks(self) -> Iterator[tuple[FloatArray, float, str]]:
-        """The largest f, and nodes of which some fit their neighbours least."""
-        from puck_tables.table.speed_build import largest_f
-        from puck_tables.table.speed_check import node_errors, oddest
-
-        assert self.law is not None
-        largest = largest_f(self.law, self.top)
-        off = np.array([abs(self.largest_f - largest)])
-        yield off, _NODE_ERROR * largest, f"the largest f of its law, {largest:g}"
-        rng = np.random.default_rng()
-        patch = rng.integers(0, len(self.cells), _NODES)
-        place = rng.integers(0, self.cells[patch].T + 1)
-        nodes = np.concatenate([oddest(self, _NODES), np.stack([patch, *place], axis=-1)])
-        yield node_errors(self, nodes), _NODE_ERROR, "the friction law"

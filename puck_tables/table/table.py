@@ -8,7 +8,7 @@ tables are built, saved, read and refused is the same for all.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from importlib import import_module
@@ -171,7 +171,7 @@ class Table(ABC):
         ------
         TableError
             If the file is missing, not a table, of another kind or format, or altered: its digest
-            is checked at every load, and so are some of its values.
+            is checked at every load.
 
         Examples
         --------
@@ -319,13 +319,6 @@ class Table(ABC):
     def unsaveable(self) -> str | None:
         """Why no file can hold the table, in a sentence; None where one can."""
         return None
-
-    @abstractmethod
-    def spot_checks(self) -> Iterator[tuple[FloatArray, float, str]]:
-        """Errors of some values, what is allowed, and against what: in a few milliseconds.
-
-        Run at every load, so that nothing compiled is called: that would take a second.
-        """
 
 
 def refuse_other_kind(table: Table | None, *kinds: type[Table]) -> None:

@@ -345,7 +345,7 @@ def in_the_way(
     Examples
     --------
     >>> from puck_tables import Wall
-    >>> board = Scene(pucks=[Piece(0.1)], walls=[Wall((0.0, 0.5), (0.0, -1.0))])
+    >>> board = Scene(pucks=[Piece(0.1)], walls=[Wall((0.0, 0.5), normal=(0.0, -1.0))])
     >>> list(in_the_way(board, (0.0, 0.45), 0.1, holes=True))[0][:2]
     ('wall[0]', 'reaches through it')
     """

@@ -36,7 +36,9 @@ def carrom(gap: float) -> pt.Scene:
     striker = pt.Piece(STRIKER, mass=0.015, launch=strike, name="striker", **rim)
     side = 0.5 * BOARD
     walls = [
-        pt.Wall((-side * nx, -side * ny), (nx, ny), restitution=0.9, tangential=0.0, friction=0.2)
+        pt.Wall(
+            (-side * nx, -side * ny), normal=(nx, ny), restitution=0.9, tangential=0.0, friction=0.2
+        )
         for nx, ny in ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0))
     ]
     return pt.Scene(pucks=[*men, striker], walls=walls)
@@ -154,7 +156,7 @@ def hockey() -> pt.Scene:
                     launch=pt.Launch((3.0, 1.3), 10.0))  # fmt: skip
     mallets = [pt.Piece(0.05, path=way(x, x), restitution=0.9) for x in (-0.75, 0.75)]
     walls = [
-        pt.Wall((-1.0 * nx, -0.5 * ny), (nx, ny), restitution=0.9)
+        pt.Wall((-1.0 * nx, -0.5 * ny), normal=(nx, ny), restitution=0.9)
         for nx, ny in ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0))
     ]
     return pt.Scene(pucks=[puck, *mallets], walls=walls, drag=pt.Drag(sliding=0.002),

@@ -31,6 +31,7 @@ _ANGLES = {
 _RADIANS = {"rad": 1.0, "deg": math.pi / 180.0, "turn": 2.0 * math.pi}
 _KINDS = {"length": (_LENGTHS, {**_METRES, PIXEL: math.nan}), "time": (_TIMES, _SECONDS),
           "angle": (_ANGLES, _RADIANS)}  # fmt: skip
+_WHOLE = {"mps": "m/s", "rpm": "turn/min", "rps": "turn/s"}
 _NUMBER = r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?"
 
 
@@ -136,3 +137,61 @@ def unit_in(heading: str) -> str:
     """
     words = re.findall(r"[^\W_]+|°", heading)
     return known(words[-1], "length") if len(words) > 1 else ""
+
+
+def parted(text: str) -> tuple[str, str]:
+    """A name and what stands as its unit, in brackets or after a stroke.
+
+    Examples
+    --------
+    >>> parted("x [mm]"), parted("t / s"), parted("x")
+    (('x', 'mm'), ('t', 's'), ('x', ''))
+    """
+    found = re.fullmatch(r"(.+?)\s*[\[(<]\s*([^\[\]()<>]*?)\s*[\])>]", text)
+    if found is not None:
+        return found[1], found[2]
+    for form in (r"(.+?)\s*/\s*([^\s/]+)", r"(.+?)\s+in\s+(\S+)"):
+        found = re.fullmatch(form, text)
+        if found is not None and is_unit(found[2]):
+            return found[1], found[2]
+    return text, ""
+
+
+def is_unit(text: str) -> bool:
+    """Whether a cell is a unit, in brackets or not: of a row of units under the names.
+
+    Examples
+    --------
+    >>> is_unit("(cm)"), is_unit("x")
+    (True, False)
+    """
+    bare = text.strip().strip("[]()<>").strip()
+    return any(known(bare, kind) for kind in ("length", "time", "angle"))
+
+
+def unit_size(unit: str, kind: str) -> float | None:
+    """A unit of a kind in SI units, None if it is none.
+
+    Parameters
+    ----------
+    unit : as somebody wrote it
+    kind : length, time, angle, velocity or spin
+
+    Examples
+    --------
+    >>> unit_size("cm/s", "velocity"), unit_size("m", "velocity"), unit_size("deg/s", "spin")
+    (0.01, None, 0.017453292519943295)
+    """
+    text = _WHOLE.get(unit.strip().lower(), unit.strip())
+    if kind in ("velocity", "spin"):
+        found = re.fullmatch(r"(.+?)\s*(?:/|\s+per\s+)\s*(.+)", text)
+        found = found or re.fullmatch(r"(\S+?)(?:\s+|\*|·|\.)?(s)\^?(?:-1|⁻¹)", text)
+        if found is None:
+            return None
+        above = unit_size(found[1], "length" if kind == "velocity" else "angle")
+        below = unit_size(found[2], "time")
+        return None if above is None or below is None else above / below
+    name = known(text, kind)
+    if not name or name == "px":
+        return None
+    return factor(name, kind)

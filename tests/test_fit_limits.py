@@ -1,0 +1,80 @@
+"""Whatever is asked of a fit or a forecast: numbers within limits, or a sentence."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from film_judge import G
+from rarely import few
+
+import puck_tables as pt
+
+NOISE = (0.3e-3, 5e-3)
+
+
+@pytest.mark.parametrize("seed", few(3, range(16)))
+def test_any_noise_may_be_given_of_any_track(seed):
+    """All of it known: of a track without angles there was nothing left to look for."""
+    rng = np.random.default_rng([35, 11, seed])
+    times = np.arange(60) / rng.uniform(60.0, 240.0)
+    puck = pt.Puck(radius=0.04, height=0.02, friction=rng.uniform(0.1, 0.3))
+    path = puck.states((1.0, 0.4), rng.uniform(-40.0, 40.0), times)
+    place = np.stack([path.x, path.y], axis=1) + NOISE[0] * rng.normal(size=(60, 2))
+    angled = seed % 3 == 2
+    angle = path.orientation + NOISE[1] * rng.normal(size=60) if angled else None
+    noise = (NOISE[0], NOISE[1] if angled or seed % 2 else None)
+    jitter = rng.choice([1e-4, 1e-3])
+    found = pt.fit(pt.Track(times, place, angle), pt.Puck(radius=0.04), noise=noise, jitter=jitter)
+    assert found.noise[0] == NOISE[0] and found.jitter == jitter
+    friction = found["friction"]
+    assert not friction.determined or abs(friction.value - puck.friction) < 4.5 * friction.error
+
+
+def test_a_forecast_of_anything_is_a_forecast_or_a_sentence():
+    rng = np.random.default_rng(3511)
+    puck, told, refused = pt.Puck(radius=0.04, height=0.02, friction=0.2), 0, 0
+    for _ in range(60):
+        wide = rng.choice([1.0, 8.0, 300.0])
+        speed, spin, fps, place, angle, duration = 10.0 ** rng.uniform(-wide, wide, 6)
+        try:
+            camera = pt.Camera(
+                fps, place, None if rng.random() < 0.3 else angle,
+                None if rng.random() < 0.5 else duration,
+            )  # fmt: skip
+            if duration * fps > 1e3:
+                continue
+            forecast = pt.fisher(puck, pt.Launch((speed, 0.0), spin=spin), camera)
+        except pt.InputError:
+            refused += 1
+            continue
+        told += 1
+        assert not np.isnan(forecast.errors).any()
+    assert told > 3 and refused > 20
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("seed", few(1, range(8)))
+def test_a_law_that_the_film_does_not_tell_runs_nowhere(seed):
+    """Drag slows a puck that next to no friction does; slip speeds are asked beyond those seen."""
+    rng = np.random.default_rng([35, 12, seed])
+    drag, friction, speed = rng.uniform(0.02, 0.1), rng.uniform(0.002, 0.02), rng.uniform(1.0, 4.0)
+    times = np.arange(120) / 60.0
+    # v' = -f g - c v^2
+    limit = math.sqrt(friction * G / drag)
+    turn = math.atan(speed / limit)
+    phase = np.maximum(turn - times * math.sqrt(friction * G * drag), 0.0)
+    x = np.log(np.cos(phase) / math.cos(turn)) / drag
+    place = np.stack([x, 0.2 * x], axis=1) + 5e-4 * rng.normal(size=(120, 2))
+    track = pt.Track(times, place, 5e-3 * rng.normal(size=120))
+    try:
+        found = pt.fit(
+            track, pt.Puck(radius=0.03), fixed={"delta": 0.0},
+            slip_speeds=[0.0, 0.3 * speed, 1.3 * speed, 2.0 * speed],
+        )  # fmt: skip
+    except pt.InputError:
+        return
+    for name, number in found.numbers.items():
+        assert math.isfinite(number.value), name
+        assert not name.startswith("friction_") or 0.0 < number.value <= 10.0
