@@ -35,6 +35,7 @@ from puck_tables.cli.tables import tables
 from puck_tables.cli.track import track
 from puck_tables.cli.tradeoff import tradeoff
 from puck_tables.cli.validate import validate
+from puck_tables.cli.warm_up import warm_up
 
 from puck_tables._core.waiting import watchers
 from puck_tables._version import __version__
@@ -143,7 +144,7 @@ def main() -> None:
 
 _ALL = (
     simulate, sweep, aim, scene, track, fit, build_tables, validate, info, tables, paper, tradeoff,
-    asperity, limit_surface, reference, compare, export, explore,
+    asperity, limit_surface, reference, compare, export, explore, warm_up,
 )  # fmt: skip
 for _command in _ALL:
     main.add_command(_command)

@@ -71,7 +71,7 @@ def test_an_edit_of_any_file_empties_the_cache(tmp_path: Path, monkeypatch: pyte
     kernels = [
         p
         for p in package.rglob("*.py")
-        if re.search("^@(kernel|inlined|allocating)", p.read_text(), re.M)
+        if re.search("^@(kernel|inlined|allocating|look_up)", p.read_text(), re.M)
     ]
     assert {path.parent.name for path in kernels} >= {"kernels", "motion", "stopping", "tradeoff"}
     for path in kernels:

@@ -40,13 +40,14 @@ ROOMS = {
     "scene": "_core bulk contact errors io kernels motion puck result stopping table",
     "wrench": "_core contact errors io kernels puck result scene",
     "world": "_core bulk contact errors io kernels motion puck result scene stopping table",
+    "warming": "kernels puck scene",
     "reference": "_core contact errors film io puck result scene trajectory world",
     "tradeoff": "_core _version accuracy contact io kernels motion puck result stopping table",
     "plot": "_core _version accuracy bulk chetaev errors film fitting io motion reference result "
     "scene stopping tradeoff trajectory world wrench",
     "paper": "_core contact motion plot puck trajectory",
     "cli": "_core _version accuracy bulk chetaev contact errors explore export film fitting io "
-    "kernels motion paper plot puck reference scene stopping table tradeoff world",
+    "kernels motion paper plot puck reference scene stopping table tradeoff warming world",
     "__init__": "_core _version",
 }
 DOORS = {

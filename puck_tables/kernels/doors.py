@@ -29,7 +29,7 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 behind: dict[Any, bool] = {}
 
 _PER_INSTRUCTION = 5e-4  # s, to compile an instruction of Python; of some machine
-_SAID = 1.5  # s; what takes less is not worth a sentence
+_SAID = 1.0  # s; what takes less is not worth a sentence
 _importing = threading.RLock()
 
 
