@@ -170,18 +170,9 @@ def aim(
 
 def _read_targets(path: Path) -> FloatArray:
     """Places (n, 2) from a file."""
-    from puck_tables._core.safe_read import read_numbers
+    from puck_tables._core.columns import X, Y, numbers_of
 
-    rows = read_numbers(str(path), _LARGEST_FILE)
-    with path.open(encoding="utf-8-sig", errors="replace") as file:
-        head = [name.strip(' "').lower()[:1] for name in file.readline().split(",")]
-    if head == ["y", "x"]:
-        raise InputError(f"the columns of {path} are y and x: put x first")
-    if rows.ndim != 2 or rows.shape[1] != 2 or not len(rows):
-        raise InputError(
-            f"{path} must hold two columns of numbers, x and y in m, one target a line"
-        )
-    return rows
+    return numbers_of(path, (X, Y), 2, _LARGEST_FILE).rows
 
 
 def _refuse_of_scenes(

@@ -1,8 +1,8 @@
 """The command ``puck``: its commands, and how it ends when something is wrong.
 
 Exit codes: 0 all well; 1 a file or an optional package is at fault; 2 bad input; 3 a table failed
-its validation or a claim of the paper differs; 130 interrupted; 141 nobody reads the results any
-more, as after '| head'.
+its validation or a claim of the paper differs; 130 interrupted; 143 ended by SIGTERM; 141 nobody
+reads the results any more, as after '| head'.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ import sys
 from typing import Any
 
 import click
+from puck_tables.cli import start
 from puck_tables.cli.aim import aim
 from puck_tables.cli.asperity import asperity
 from puck_tables.cli.build_tables import build_tables
@@ -25,11 +26,9 @@ from puck_tables.cli.fit import fit
 from puck_tables.cli.info import info
 from puck_tables.cli.limit_surface import limit_surface
 from puck_tables.cli.options import printable, said_first
-from puck_tables.cli.paper import paper
 from puck_tables.cli.reference import reference
 from puck_tables.cli.scene import scene
 from puck_tables.cli.simulate import simulate
-from puck_tables.cli.start import INTERRUPTED, end_at_once, interrupt, last_words
 from puck_tables.cli.sweep import sweep
 from puck_tables.cli.tables import tables
 from puck_tables.cli.track import track
@@ -73,9 +72,9 @@ class PuckGroup(click.Group):
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run a command."""
-        at_start = signal.getsignal(signal.SIGINT) is end_at_once
-        if at_start:
-            signal.signal(signal.SIGINT, interrupt)
+        at_start = [one for one in start.ENDINGS if signal.getsignal(one) is start.end_at_once]
+        for one in at_start:
+            signal.signal(one, start.interrupt)
         try:
             result = super().invoke(ctx)
             if sys.stdout is not None:
@@ -102,11 +101,11 @@ class PuckGroup(click.Group):
             click.echo("Error: not enough memory: ask for fewer points", err=True)
             ctx.exit(1)
         except KeyboardInterrupt:
-            click.echo(last_words[-1](), err=True)
-            ctx.exit(INTERRUPTED)
+            click.echo(start.last_words[-1](), err=True)
+            ctx.exit(128 + start.received)
         finally:
-            if at_start:
-                signal.signal(signal.SIGINT, end_at_once)
+            for one in at_start:
+                signal.signal(one, start.end_at_once)
 
 
 def _told(error: OSError) -> str:
@@ -139,11 +138,11 @@ def _drop(stream: Any) -> None:
 def main() -> None:
     """Motion of a flat puck that slides and spins under dry friction, until it stops."""
     watchers[:] = [said_first]
-    del last_words[1:]
+    del start.last_words[1:]
 
 
 _ALL = (
-    simulate, sweep, aim, scene, track, fit, build_tables, validate, info, tables, paper, tradeoff,
+    simulate, sweep, aim, scene, track, fit, build_tables, validate, info, tables, tradeoff,
     asperity, limit_surface, reference, compare, export, explore, warm_up,
 )  # fmt: skip
 for _command in _ALL:

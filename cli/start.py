@@ -1,5 +1,7 @@
 """Where the command ``puck`` begins: Ctrl-C ends it within a second, with a sentence, at any time.
 
+So does SIGTERM, which batch systems and containers send.
+
 Until a command runs, and when it has run, there is nothing to clean up: it ends at once.  In
 between Python raises KeyboardInterrupt, but only when compiled code or a compiler gives it the
 chance; for those that do not there is a thread that hears of the signal by itself.  What is on disk
@@ -18,23 +20,29 @@ if TYPE_CHECKING:  # the less is imported before the handler stands, the better
     from sys import UnraisableHookArgs
     from types import FrameType
 
-INTERRUPTED = 130
+ENDINGS = {signal.SIGINT: signal.default_int_handler, signal.SIGTERM: signal.SIG_DFL}
 PATIENCE = 0.7  # s
 
-# what is said on Ctrl-C, by the last of them; a command may have better ones
+received = signal.SIGINT  # the signal that ends it
+
+# what is said then, by the last of them; a command may have better ones
 last_words: list[Callable[[], str]] = [lambda: "Interrupted: nothing more was written."]
 
 
 def end_at_once(number: int, frame: FrameType | None) -> None:
     """What Ctrl-C does while nothing runs yet, or any more."""
     os.write(2, f"{last_words[-1]()}\n".encode())
-    os._exit(INTERRUPTED)
+    if parts := sys.modules.get("puck_tables._core.parts"):
+        parts.remove_own()
+    os._exit(128 + number)  # as shells count
 
 
 def interrupt(number: int, frame: FrameType | None) -> None:
     """What Ctrl-C does while a command runs: numba, half imported, would tell of it as a fault."""
     if getattr(getattr(sys.modules.get("numba"), "__spec__", None), "_initializing", False):
         end_at_once(number, frame)
+    global received
+    received = signal.Signals(number)
     signal.default_int_handler(number, frame)
 
 
@@ -49,9 +57,9 @@ def _watch() -> None:
 
     def wait() -> None:
         while tells.fileno() >= 0 and (heard := hears.recv(1)):
-            if heard[0] == signal.SIGINT:
+            if heard[0] in ENDINGS:
                 time.sleep(PATIENCE)
-                end_at_once(signal.SIGINT, None)
+                end_at_once(heard[0], None)
 
     signal.set_wakeup_fd(tells.fileno(), warn_on_full_buffer=False)
     threading.Thread(target=wait, daemon=True).start()
@@ -65,8 +73,10 @@ def _ignored(what: UnraisableHookArgs) -> None:
 
 def main() -> None:
     """Import the commands and run one."""
-    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:  # unless it is ignored
-        signal.signal(signal.SIGINT, end_at_once)
+    ours = [one for one, usual in ENDINGS.items() if signal.getsignal(one) is usual]
+    for one in ours:  # unless they are ignored
+        signal.signal(one, end_at_once)
+    if ours:
         sys.unraisablehook = _ignored
         _watch()
     from puck_tables.cli.main import main as command
@@ -74,8 +84,8 @@ def main() -> None:
     try:
         command()
     except SystemExit as end:
-        if end.code == INTERRUPTED:  # all is said; libraries might tell what they left undone
-            os._exit(INTERRUPTED)
+        if end.code in [128 + one for one in ENDINGS]:  # all is said; libraries might tell what
+            os._exit(end.code)  # they left undone
         raise
 
 

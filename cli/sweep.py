@@ -79,7 +79,7 @@ REAL = ("height", "friction", "gravity")
 @explain_option
 @click.option("--threads", type=click.IntRange(1, 1024), help="[default: all cores]")
 @click.option(
-    "--cluster", metavar="local:N|tcp://HOST:PORT",
+    "--cluster", metavar="local:N|tcp://HOST:PORT|tls://HOST:PORT",
     help="Let N processes, or a Dask cluster that runs, do it; with -o NAME.zarr.",
 )  # fmt: skip
 @table_option

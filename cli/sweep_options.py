@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -166,9 +167,20 @@ class Whole:
             folder = self.output.absolute().parent
             if not folder.is_dir():
                 raise OutputError(f"cannot write {self.output}: the folder {folder} does not exist")
-            words = f"Interrupted: {self.output} keeps what is done; the same command goes on."
-            kept = self.output
-            last_words.append(lambda: words if kept.exists() else last_words[0]())
+            last_words.append(self._kept)
+
+    def _kept(self) -> str:
+        """What is said when the sweep is ended."""
+        from puck_tables.bulk.place import beside_of
+
+        if self.output is not None and self.output.exists():
+            if beside_of(Path(os.path.realpath(self.output))).exists():
+                return (
+                    f"Interrupted: {self.output} is as it was; what is done of the new one is kept "
+                    "beside it: the same command goes on."
+                )
+            return f"Interrupted: {self.output} keeps what is done; the same command goes on."
+        return last_words[0]()
 
     def refuse_memory(self, sizes: list[int], samples: int | None) -> None:
         """Refuse a map that would not fit in memory, as its format needs it.

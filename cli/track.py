@@ -37,7 +37,7 @@ def track(
     puck track film.trk -o run.csv
     puck track points.csv --fps 120 --scale 0.5mm
     puck track pose.h5 --fps 120 --marks floor.csv --centre red,blue --toward red
-    puck track bare.txt --columns 't [ms],x [mm],y [mm],-'
+    puck track bare.txt --columns "t [ms],x [mm],y [mm],-"
     """  # noqa: D301 - click reads the backspace
     prepare_outputs(output, plot=plot, overwrite=overwrite, inputs=[*files, how["marks"]])
     from puck_tables.film.pairs import marks_of_one

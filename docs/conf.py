@@ -35,6 +35,7 @@ nitpicky = False
 myst_enable_extensions = ["dollarmath", "deflist"]
 myst_heading_anchors = 3
 suppress_warnings = ["config.cache"]
+smartquotes = False  # --w0 is an option, no dash
 
 autosummary_generate = True
 autodoc_typehints = "none"  # numpydoc's sections give types in words and units
@@ -60,6 +61,7 @@ sphinx_gallery_conf = {
     "remove_config_comments": True,
     "show_memory": False,
     "abort_on_example_error": True,
+    "capture_repr": (),  # an example shows what it prints
     "image_scrapers": (figure_of,),
     "min_reported_time": 1000,
     "within_subsection_order": "FileNameSortKey",
@@ -74,11 +76,11 @@ html_title = "puck-tables"
 html_theme_options = {
     "navigation_with_keys": False,
     "show_nav_level": 2,
-    "header_links_before_dropdown": 4,
+    "header_links_before_dropdown": 6,
     "show_toc_level": 2,
 }
 html_context = {"default_mode": "auto"}
-html_sidebars = {"*": []}  # pages of the top level have no pages below them to show
+html_sidebars = {"index": [], "tutorial": [], "explorer": []}  # no pages below them to show
 html_static_path = ["_static"]
 html_css_files = ["site.css"]
 html_extra_path = ["_extra"]

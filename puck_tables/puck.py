@@ -26,6 +26,9 @@ from puck_tables.verbs import Verbs
 class Puck(Verbs):
     """A flat puck on a rough floor.
 
+    Its motion depends, up to scale, on ``delta`` = 2fh/r, the pressure and the gyration; the scale
+    of time is Q/J with ``decel`` = J = fg.
+
     Parameters
     ----------
     radius : m, > 0, of the base
@@ -40,9 +43,6 @@ class Puck(Verbs):
         a Law
     gyration : radius of gyration about the vertical axis over r, 0.1 to 10; √½ for a homogeneous
         puck, 1 for a ring
-
-    Its motion depends, up to scale, on ``delta`` = 2fh/r, the pressure and the gyration; the scale
-    of time is Q/J with ``decel`` = J = fg.
 
     Raises
     ------

@@ -5,11 +5,10 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable
 
-import numpy as np
-
+from puck_tables.bulk.spreads import Normal
 from puck_tables.kernels.patience import compiled_at_once
 from puck_tables.puck import Puck
-from puck_tables.scene.parts import Floor, Launch
+from puck_tables.scene.parts import Floor, Launch, Wall
 from puck_tables.scene.pieces import Piece
 from puck_tables.scene.scene import Scene
 
@@ -46,24 +45,26 @@ def _aims() -> None:
 def _scenes() -> None:
     scene = Scene(_PUCKS[0], floor=Floor(slope=0.02), launch=Launch(*_LAUNCH))
     scene.simulate()
-    scene.sample(2, 1, {})
+    scene.sample(2, 1, {"launch.spin": Normal(5.0, 0.1)})
 
 
 def _boards() -> None:
     world = _board().world()
-    world.advance(np.inf)
+    world.advance(2.0)
     world.state()
 
 
 def _boards_of_many() -> None:
-    _board().sample(2, 1, {})
+    one, two = (Piece(0.04, friction=0.1, launch=Launch(position=(x, 0.0))) for x in (0.0, 0.2))
+    Scene(pucks=(one, two)).aim((0.5, 0.0), puck=1, max_speed=2.0)
 
 
 def _board() -> Scene:
-    """Two pucks that meet, so softly that they push each other."""
+    """Two pucks that slide down to a cushion and push each other there."""
     sent, there = Launch((1.0, 0.0)), Launch(position=(0.1, 0.01))
-    one, two = (Piece(0.04, friction=0.1, restitution=0.0, launch=n) for n in (sent, there))
-    return Scene(pucks=(one, two))
+    one, two = (Piece(0.04, friction=0.1, restitution=0.2, launch=n) for n in (sent, there))
+    wall = Wall((0.3, 0.0), normal=(-1.0, 0.0), restitution=0.2)
+    return Scene(pucks=(one, two), floor=Floor(slope=0.3), walls=(wall,))
 
 
 _PARTS: tuple[tuple[str, Callable[[], None]], ...] = (

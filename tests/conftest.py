@@ -6,11 +6,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, settings
+from paper.claim import Claim
+from paper.claims import all_claims
 
 from puck_tables import Table
 from puck_tables.kernels.patience import here
-from puck_tables.paper.claim import Claim
-from puck_tables.paper.claims import all_claims
 
 QUARTER, HALF = 0.25 * math.pi, 0.5 * math.pi
 ROOT = Path(__file__).resolve().parent.parent

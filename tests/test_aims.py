@@ -135,11 +135,11 @@ def test_a_file_of_targets(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     rows = list(csv.DictReader(Path("shots.csv").read_text().splitlines()))
     assert [row["target_index[1]"] for row in rows] == ["0", "0"]
     for text, words in (
-        ("x,y\n1,2,3\n", "two columns"),
-        ("x,y\n1,a\n", "two columns"),
-        ("x,y\n", "two columns"),
-        ("x,y\n1,nan\n", "finite"),
-        ("y [m],x [m]\n1,2\n", "put x first"),
+        ("x,y\n1,2,3\n", "2 names for 3 columns"),
+        ("x,y\n1,a\n", "line 2, column 2: 'a' is no number"),
+        ("x,y\n", "no rows"),
+        ("x,y\n1,nan\n", "line 2: it has no y"),
+        ("x [kg],y [m]\n1,2\n", "the unit of its column 'x [kg]'"),
     ):
         Path("bad.csv").write_text(text)
         refused = run("--targets", "bad.csv", "-o", "bad-out.csv")

@@ -348,4 +348,4 @@ def test_maps_of_long_boards_have_a_close_up_too(runs: dict[str, Any]) -> None:
     assert (len(long), len(short)) == (2, 1)
     whole, close = (np.diff(axes.get_xlim())[0] for axes in long)
     assert close < 0.6 * whole
-    assert long[1].get_title() == "close-up"
+    assert long[1].get_title("left").startswith("close-up; ")

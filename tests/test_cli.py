@@ -250,7 +250,7 @@ def test_bad_input_is_one_sentence_and_writes_nothing(
 
 def test_pictures_without_matplotlib_say_what_to_install(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setitem(sys.modules, "matplotlib", None)
-    refused(puck(*V0, "--plot", "run.png"), 1, "pip install 'puck-tables[plot]'")
+    refused(puck(*V0, "--plot", "run.png"), 1, 'pip install "puck-tables[plot]"')
 
 
 def test_help_and_version_are_quick_and_load_nothing_heavy():

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
+import random
 import signal
+import socket
 import subprocess
 import sys
+import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -20,6 +24,8 @@ from puck_tables.errors import ClusterError, InputError
 
 pytest.importorskip("zarr")
 distributed = pytest.importorskip("distributed")
+dask = pytest.importorskip("dask")
+client_of = pytest.importorskip("puck_tables.bulk.cluster").client_of
 pytestmark = [
     pytest.mark.skipif(os.name == "nt", reason="signals of another kind"),
     pytest.mark.filterwarnings("ignore"),  # of what the libraries of clusters use
@@ -53,11 +59,13 @@ def waited_for(found: Callable[[], Any], seconds: float = 90.0) -> Any:
 
 
 @contextmanager
-def cluster(folder: Path, workers: int) -> Iterator[tuple[str, list[subprocess.Popen[bytes]]]]:
-    """The address of a scheduler of its own process, and the processes of its workers."""
+def cluster(
+    folder: Path, workers: int, options: Sequence[str] = ()
+) -> Iterator[tuple[str, list[subprocess.Popen[bytes]]]]:
+    """The address of a scheduler, and the processes: its own, those of its workers."""
     file, quiet = folder / "scheduler.json", {"stderr": subprocess.DEVNULL}
     file.unlink(missing_ok=True)  # of one before
-    common = ["--scheduler-file", str(file), "--no-dashboard"]
+    common = ["--scheduler-file", str(file), "--no-dashboard", *options]
     processes = [subprocess.Popen(
         [*DASK, *common, "--host", "127.0.0.1", "--port", "0"], **quiet, cwd=folder)]  # fmt: skip
     try:
@@ -69,7 +77,7 @@ def cluster(folder: Path, workers: int) -> Iterator[tuple[str, list[subprocess.P
             address = client.scheduler.address
             if workers:
                 client.wait_for_workers(workers, timeout=90)
-        yield address, processes[1:]
+        yield address, processes
     finally:
         for process in processes:
             process.kill()
@@ -108,11 +116,11 @@ def test_a_worker_killed_in_the_middle_costs_nothing(tmp_path: Path):
         store = tmp_path / "both.zarr"
 
         def kill(done: int, total: int) -> None:
-            if total // 8 < done and workers[0].poll() is None:
-                workers[0].kill()
+            if total // 8 < done and workers[1].poll() is None:
+                workers[1].kill()
 
         both = PUCK.sweep(**work, store=store, cluster=address, progress=kill)
-        assert workers[0].poll() is not None
+        assert workers[1].poll() is not None
     assert content(both.path) == content(alone.path)
     assert both.tally == alone.tally
 
@@ -138,7 +146,10 @@ def test_a_client_killed_in_the_middle_goes_on(tmp_path: Path):
 
 
 @pytest.mark.nightly
-def test_ctrl_c_leaves_a_cluster_of_its_own_within_a_second_and_goes_on(tmp_path: Path):
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_ctrl_c_leaves_a_cluster_of_its_own_within_a_second_and_goes_on(
+    number: signal.Signals, tmp_path: Path
+):
     code = "from puck_tables.cli.start import main; main()"
     words = ["sweep", "--w0", "0:5:2000", "--speed", "0:2:2000", "--method", "adaptive", "-o",
              "m.zarr", "--cluster", "local:2"]  # fmt: skip
@@ -149,10 +160,10 @@ def test_ctrl_c_leaves_a_cluster_of_its_own_within_a_second_and_goes_on(tmp_path
     )  # fmt: skip
     waited_for(lambda: blocks(tmp_path / "m.zarr") > 3)
     begin = time.monotonic()
-    os.killpg(client.pid, signal.SIGINT)
+    os.killpg(client.pid, number)
     error = client.communicate(timeout=60)[1]
     took = time.monotonic() - begin
-    assert client.returncode == 130, error
+    assert client.returncode == 128 + number, error
     words = "Interrupted: m.zarr keeps what is done; the same command goes on."
     assert error.splitlines()[-1] == words
     assert "Traceback" not in error
@@ -177,7 +188,133 @@ def test_a_scheduler_without_workers_and_one_that_is_lost(tmp_path: Path):
     with cluster(tmp_path, 1) as (address, workers):
 
         def kill(done: int, total: int) -> None:
-            workers[0].kill()
+            workers[1].kill()
 
         with pytest.raises(ClusterError, match=r"no workers any more|was lost"):
             PUCK.sweep(**SLOW, store=tmp_path / "n.zarr", cluster=address, progress=kill)
+
+
+@contextmanager
+def certificates(folder: Path) -> Iterator[list[str]]:
+    """Of a cluster, as Dask's configuration has them meanwhile; options of its processes."""
+    made = distributed.security.Security.temporary()
+    named = {"ca-file": made.tls_ca_file}
+    for role in ("scheduler", "worker", "client"):
+        found = made.get_tls_config_for_role(role)
+        named |= {f"{role}.cert": found["cert"], f"{role}.key": found["key"]}
+    for name, text in named.items():
+        (folder / f"{name}.pem").write_text(text)
+    files = {f"distributed.comm.tls.{name}": str(folder / f"{name}.pem") for name in named}
+    with dask.config.set(files):
+        yield [
+            "--protocol", "tls", "--tls-ca-file", str(folder / "ca-file.pem"), "--tls-cert",
+            str(folder / "scheduler.cert.pem"), "--tls-key", str(folder / "scheduler.key.pem"),
+        ]  # fmt: skip
+
+
+@pytest.mark.thorough
+def test_a_cluster_with_certificates_and_one_without(tmp_path: Path):
+    small: dict[str, Any] = {"spin": [1.0, 2.0], "speed": [1.0, 3.0]}
+    with certificates(tmp_path) as options, cluster(tmp_path, 1, options) as (address, _):
+        assert address.startswith("tls://")
+        kept = PUCK.sweep(**small, store=tmp_path / "m.zarr", cluster=address)
+        assert kept.load() == PUCK.sweep(**small)
+        nowhere = dask.config.set({"distributed.comm.tls.ca-file": str(tmp_path / "none.pem")})
+        with nowhere, pytest.raises(ClusterError, match="cannot be used"):
+            PUCK.sweep(**small, store=tmp_path / "n.zarr", cluster=address)
+        with certificates(tmp_path), pytest.raises(ClusterError, match="no scheduler answers"):
+            PUCK.sweep(**small, store=tmp_path / "n.zarr", cluster=address)  # of another
+    with pytest.raises(ClusterError, match="needs certificates"):
+        PUCK.sweep(**small, store=tmp_path / "n.zarr", cluster="tls://127.0.0.1:9")
+
+
+@pytest.mark.thorough
+def test_nobody_without_its_certificate_reaches_a_cluster_of_ones_own():
+    with client_of("local:1") as client:
+        assert client.submit(sum, (1, 2)).result() == 3
+        address = client.scheduler.address
+        workers = list(client.scheduler_info()["workers"])
+        assert address.startswith("tls://127.0.0.1:")
+        strangers = {
+            "nothing": None, "another certificate": distributed.security.Security.temporary(),
+        }  # fmt: skip
+        for one in (address, *workers, *(info["nanny"] for info in
+                    client.scheduler_info()["workers"].values())):  # fmt: skip
+            assert one.startswith("tls://")
+            for security in strangers.values():
+                for where in (one, one.replace("tls", "tcp")):
+                    with pytest.raises((OSError, TypeError, RuntimeError)):
+                        distributed.Client(where, security=security, timeout=1)
+
+
+ANSWERS = (
+    b"",
+    b"SSH-2.0-OpenSSH_9.6\r\n",
+    b"HTTP/1.1 400 Bad Request\r\n\r\n",
+    bytes(64),
+    b"\1" * 8,
+)
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("answer", ANSWERS)
+def test_where_something_else_answers_it_is_said(answer: str, tmp_path: Path):
+    with socket.create_server(("127.0.0.1", 0)) as server:
+
+        def serve() -> None:
+            with contextlib.suppress(OSError):
+                while True:
+                    kept.append(server.accept()[0])
+                    kept[-1].sendall(ANSWERS[answer])
+
+        kept: list[socket.socket] = []
+        threading.Thread(target=serve, daemon=True).start()
+        where = f"tcp://127.0.0.1:{server.getsockname()[1]}"
+        with pytest.raises(ClusterError, match=f"no scheduler answers at {where}"):
+            PUCK.sweep([1.0], 1.0, store=tmp_path / "m.zarr", cluster=where)
+        for one in kept:
+            one.close()
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("when", ["at first", "in the middle"])
+def test_a_frozen_scheduler_is_told_and_the_same_command_goes_on(when: str, tmp_path: Path):
+    with cluster(tmp_path, 1) as (address, processes):
+        scheduler = processes[0]
+
+        def freeze(done: int, total: int) -> None:
+            scheduler.send_signal(signal.SIGSTOP)
+
+        if when == "at first":
+            freeze(0, 1)
+        with pytest.raises(ClusterError, match="answer"):
+            PUCK.sweep(**SLOW, store=tmp_path / "m.zarr", cluster=address, progress=freeze)
+        scheduler.send_signal(signal.SIGCONT)
+        kept = PUCK.sweep(**SLOW, store=tmp_path / "m.zarr", cluster=address)
+        assert sum(kept.tally.counts.values()) == 160 * 160
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("seed", range(4))
+def test_workers_killed_while_they_start_are_a_sentence(seed: int, tmp_path: Path):
+    draw, code = random.Random(seed), "from puck_tables.cli.start import main; main()"
+    words = ["sweep", "--w0", "0:5:100", "-o", "m.zarr", "--cluster", "local:2"]
+    client = subprocess.Popen(
+        [sys.executable, "-c", code, *words], cwd=tmp_path, stderr=subprocess.PIPE, text=True
+    )
+
+    def workers() -> list[int]:
+        found = subprocess.run(
+            ["pgrep", "-P", str(client.pid), "-f", "spawn_main"], capture_output=True, text=True
+        )
+        return list(map(int, found.stdout.split()))
+
+    waited_for(lambda: workers() or client.poll() is not None)
+    time.sleep(draw.uniform(0.0, 3.0))
+    for worker in draw.sample(workers(), min(len(workers()), draw.randint(1, 2))):
+        with contextlib.suppress(ProcessLookupError):
+            os.kill(worker, signal.SIGKILL)
+    said = client.communicate(timeout=120)[1]
+    assert "Traceback" not in said, said
+    assert client.returncode == 0 or said.splitlines()[-1].startswith("Error: "), said

@@ -46,7 +46,6 @@ LONG = {
         ["sweep", "--scene", "incline", "--set", "launch.spin=0:80:900000", "-o", "m.h5"],
     ),
     "aim": ("stopping.aim", ["aim", "--target", "2,0.1", "--count", "9000", "-o", "a.csv"]),
-    "paper": ("paper.claims", ["paper", "--out", "deep/er"]),
     "tradeoff": ("tradeoff.engine", ["tradeoff", "-o", "t.h5"]),
 }  # fmt: skip
 
@@ -91,12 +90,8 @@ PRINTING = [
     ["simulate", "--scene", "incline"],
     ["simulate", "--v0", "1,0"],
     ["simulate", "--v0", "1,0", "--json"], ["sweep"], ["aim", "--target", "2,0.1"],
-    ["build-tables", "--accuracy", "1e-4"], ["validate", "rough.h5"], ["paper", "--out", "p"],
+    ["build-tables", "--accuracy", "1e-4"], ["validate", "rough.h5"],
 ]  # fmt: skip
-NO_CLAIMS = (  # the work of 'puck paper' has tests of its own
-    "from puck_tables.paper import claims, figures; "
-    "claims.all_claims = lambda show: {}; figures.FIGURES = {}; "
-)
 
 
 @pytest.mark.thorough
@@ -109,9 +104,8 @@ def test_a_reader_that_has_gone_is_no_trouble(arguments: list[str]):
         Table.build(accuracy=1e-4).save("rough.h5")
     read, write = os.pipe()
     os.close(read)
-    code = (NO_CLAIMS if arguments[0] == "paper" else "") + MAIN
     ended = subprocess.run(
-        [sys.executable, "-c", code, *arguments], stdout=write, text=True,
+        [sys.executable, "-c", MAIN, *arguments], stdout=write, text=True,
         stderr=write if arguments[0] == "sweep" else subprocess.PIPE,  # which speaks there, too
     )  # fmt: skip
     os.close(write)

@@ -233,17 +233,17 @@ def test_unknown_laws_are_refused(text, words):
 @pytest.mark.parametrize(
     ("content", "words"),
     [
-        ("", "two columns"),
-        ("rho,W\n", "two columns"),
-        ("0,1,2\n1,1,2\n", "two columns"),
-        ("0,1\n1,x\n", "two columns"),
-        ("1,1\n", "two or more rows"),
+        ("", "is empty"),
+        ("rho,W\n", "no rows of numbers"),
+        ("0,1,2\n1,1,2\n", r"must hold the columns r and p: .* \(its columns are 3"),
+        ("0,1\n1,x\n", "line 2, column 2: 'x' is no number"),
+        ("1,1\n", "line 1 is the only row of numbers: two or more"),
         ("0,1\n0.5,1\n", "ascend from 0 or more to 1"),
-        ("0,1\n0.5,1\n0.5,2\n1,1\n", "ascend"),
+        ("0,1\n0.5,1\n0.5,2\n1,1\n", "line 3: 0.5 again: the radii must ascend"),
         ("-0.1,1\n1,1\n", "ascend"),
         ("0,1\n1,-1\n", "nowhere negative"),
         ("0,0\n1,0\n", "not all zero"),
-        ("0,1\n1,nan\n", "finite"),
+        ("0,1\n1,nan\n", "line 2: it has no pressure"),
     ],
 )
 def test_bad_profiles_are_refused(content, words, tmp_path: Path):

@@ -20,7 +20,7 @@ ROOMS = {
     "io": "_core _version errors",
     "result": "_core io",
     "bulk": "_core _version errors io result",
-    "accuracy": "errors",
+    "accuracy": "_core errors",
     "chetaev": "_core contact errors io result",
     "kernels": "_core contact errors",
     "table": "_core _version contact errors kernels",
@@ -40,14 +40,13 @@ ROOMS = {
     "scene": "_core bulk contact errors io kernels motion puck result stopping table",
     "wrench": "_core contact errors io kernels puck result scene",
     "world": "_core bulk contact errors io kernels motion puck result scene stopping table",
-    "warming": "kernels puck scene",
+    "warming": "bulk kernels puck scene",
     "reference": "_core contact errors film io puck result scene trajectory world",
     "tradeoff": "_core _version accuracy contact io kernels motion puck result stopping table",
     "plot": "_core _version accuracy bulk chetaev errors film fitting io motion reference result "
     "scene stopping tradeoff trajectory world wrench",
-    "paper": "_core contact motion plot puck trajectory",
     "cli": "_core _version accuracy bulk chetaev contact errors explore export film fitting io "
-    "kernels motion paper plot puck reference scene stopping table tradeoff warming world",
+    "kernels motion plot puck reference scene stopping table tradeoff warming world",
     "__init__": "_core _version",
 }
 DOORS = {

@@ -40,8 +40,6 @@ def test_console_examples(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyP
     for command, output in console_examples(TEXTS[page]):
         program, *arguments = shlex.split(command)
         assert program == "puck"
-        if arguments[0] == "paper":  # test_paper_command.py runs it
-            continue
         Path("run.png").unlink(missing_ok=True)
         result = CliRunner().invoke(main, arguments)
         assert result.exit_code == 0, (command, result.output)
@@ -73,11 +71,8 @@ def test_there_are_examples():
     }
 
 
-def test_the_readme_is_short_and_every_page_is_named():
+def test_the_readme_is_short():
     assert len(TEXTS["README.md"].splitlines()) <= 150
-    shelves = TEXTS["index.md"].replace("\n", " ")
-    for page in PAGES.keys() - {"README.md", "index.md"}:
-        assert f" {page.removesuffix('.md')} " in shelves, page
 
 
 @pytest.mark.parametrize("script", EXAMPLES, ids=lambda path: path.stem)

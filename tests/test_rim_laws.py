@@ -151,10 +151,10 @@ def test_a_law_that_does_not_exist_is_told(given: object, says: str):
 
 
 @pytest.mark.parametrize(("text", "says"), [
-    ("0.1,0.5\n1,0.4\n", "ascend from 0"), ("0,0.5\n1,1.4\n", "from 0 to 1, got 1.4"),
-    ("0,0.5\n", "two or more"), ("0,0.5,1\n1,1,1\n", "rows of the speed"),
-    ("0,0.5\n2,0.3\n1,0.4\n", "ascend"), ("0,x\n1,2\n", "rows of the speed"),
-    ("0,nan\n1,0.5\n", "finite"), ("", "rows of the speed"),
+    ("-0.1,0.5\n1,0.4\n", "ascend, from 0"), ("0,0.5\n1,1.4\n", "from 0 to 1, got 1.4"),
+    ("0,0.5\n", "two or more"), ("0,0.5,1\n1,1,1\n", "must hold the columns v"),
+    ("0,0.5\n2,0.3\n1,0.4\n", "line 3: 1 after 2"), ("0,x\n1,2\n", "column 2: 'x' is no number"),
+    ("0,nan\n1,0.5\n", "line 1: it has no restitution"), ("", "is empty"),
 ])  # fmt: skip
 def test_a_bad_table_is_told(tmp_path: Path, text: str, says: str):
     (tmp_path / "e.csv").write_text(text)

@@ -92,3 +92,14 @@ def test_the_command_names_the_runs_without_an_end() -> None:
     assert "1 at rest, 2 no end found" in result.stderr
     assert "2 of 3 runs: no end found; the first at floor.slope = 0.2: none by" in result.stderr
     assert result.stdout.count("no end found") == 2
+
+
+def test_a_scene_written_by_powershell_is_read(tmp_path: Path) -> None:
+    """Its '>' writes UTF-16 with a mark of the order of its bytes, and line ends of its own."""
+    text = CliRunner().invoke(main, ["scene", "show", "incline"]).stdout.replace("\n", "\r\n")
+    for name, content in (
+        ("le", text.encode("utf-16")),
+        ("be", b"\xfe\xff" + text.encode("utf-16-be")),
+    ):
+        (tmp_path / f"{name}.toml").write_bytes(content)
+        assert Scene.load(tmp_path / f"{name}.toml") == Scene.load("incline")

@@ -81,18 +81,21 @@ def test_one_clear_sentence(more: dict[str, Any], said: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "text",
-    ["", "0,1\n1,2\n", "0,1,2\n", "0,1,2\n0,1,2\n", "1,0,0\n0,0,0\n", "0,nan,0\n1,0,0\n",
-     "0,1,2\n1,2\n", "a,b,c\nd,e,f\n", "\x00"],
+    ("text", "said"),
+    [("", " is empty"), ("0,1\n1,2\n", r" must hold the columns t \[s\], Fx \[N\] and Fy"),
+     ("0,1,2\n", ", line 1 is the only row"), ("0,1,2\n0,1,2\n", ", line 2: 0 again: the times"),
+     ("1,0,0\n0,0,0\n", ", line 2: 0 after 1"), ("0,nan,0\n1,0,0\n", ", line 1: it has no force"),
+     ("0,1,2\n1,2\n", ", line 2: 2 cells"), ("a,b,c\nd,e,f\n", " has no rows"),
+     ("\x00", " is no text")],
 )  # fmt: skip
-def test_a_file_of_forces_that_is_none(text: str, tmp_path: Path) -> None:
+def test_a_file_of_forces_that_is_none(text: str, said: str, tmp_path: Path) -> None:
     from scenes import simulate_scene
 
     path = tmp_path / "force.csv"
     path.write_text(text)
     puck = {"radius": 0.04, "friction": 0.1}
     scene = {**GOOD, "puck": puck, "force": {"over_time": str(path)}}
-    with pytest.raises(InputError, match=r"force\.csv: forces are a CSV file or rows of t, Fx, Fy"):
+    with pytest.raises(InputError, match=r"force\.csv" + said):
         simulate_scene(scene)
     path.unlink()
     with pytest.raises(InputError, match="cannot read"):

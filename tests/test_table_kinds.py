@@ -285,7 +285,7 @@ def test_a_name_in_a_file_opens_no_other_file(tmp_path: Path, monkeypatch: pytes
         opened.attrs["profile_rows"] = 0
 
     read: list[object] = []
-    monkeypatch.setattr("puck_tables.contact.laws.read_rows", read.append)
+    monkeypatch.setattr("puck_tables.contact.laws.numbers_of", read.append)
     with pytest.raises(TableError):
         Table.load(altered(path, Path("bare.h5"), emptied))
     assert read == []

@@ -215,7 +215,8 @@ BAD = {
     "t\tx\ty\n0.5\t1,000\t2\n1.5\t1,001\t3\n": "no thousands",
     "t,x,y\n0,1,2\n,2,3\n": "has no time: give it one, or leave its place empty",
     "t,x,y\n0,1,2\n8.3,2,3\n16.7,3,3\n": "unit of its times",
-    "t,x\n0,1\n.1,2\n": "x without its y",
+    "t,x,h\n0,1,2\n.1,2,3\n": "x without its y.*with - for what else",
+    "t,x1,y1,x2\n0,1,2,3\n.1,2,3,4\n": "x of 2 without its y",
     "a,b,c\n0,1,3\n.1,2,4\n": "no columns x and y .*they are a, b, c",
     "x,y,t\n1,0,1,2\n2,.1,1,2\n": "3 names for 4 columns",
     "0,1,3\n.1,2,4\n": "has no header.*columns='t,x,y'",
@@ -287,3 +288,35 @@ def test_what_cannot_be_opened_is_said(tmp_path: Path):
             read_tracks(path)
     with pytest.raises(InputError, match="path must be"):
         read_tracks(3)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_place_on_a_line_is_a_track(tmp_path: Path, seed: int):
+    rng = np.random.default_rng([35, 9, seed])
+    name = rng.choice(["x", "position", "x_pos", "Displacement", "distance", "y"])
+    unit, size = [("mm", 1e-3), ("cm", 1e-2), ("m", 1.0)][seed % 3]
+    place, time = rng.uniform(-9.0, 9.0, 8).round(3), np.arange(8) / 50.0
+    beside = rng.permutation(["v", "vx", "speed", "acceleration"])[: rng.integers(0, 3)].tolist()
+    header = [f"{name} [{unit}]", "t [s]", *beside]
+    rows = [[x, t, *rng.normal(size=len(beside))] for x, t in zip(place, time, strict=True)]
+    text = "\n".join(",".join(map(str, row)) for row in [header, *rows])
+    (track,) = read(tmp_path, text)
+    along = 1 if name == "y" else 0
+    np.testing.assert_allclose(track.place[:, along], size * place, rtol=1e-12)
+    assert not track.place[:, 1 - along].any()
+    assert any("along one line" in note for note in track.notes)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_stamps_of_a_clock_count_from_the_first_frame(tmp_path: Path, seed: int):
+    rng = np.random.default_rng([35, 10, seed])
+    first = [1718117925.836, 1.7e12 + 5.0, 86012.5, -4.0e6][seed]
+    unit, size = ("ms", 1e-3) if first > 1e12 else ("s", 1.0)
+    steps = np.concatenate([[0.0], np.cumsum(rng.uniform(2e-3, 6e-3, 20))]).tolist()
+    rows = [f"{first + t / size!r},{t},{t}" for t in steps]
+    (track,) = read(tmp_path, f"t [{unit}],x [m],y [m]\n" + "\n".join(rows))
+    assert track.time[0] == 0.0
+    np.testing.assert_allclose(track.time, steps, atol=1e-6)
+    assert any("times from its first frame on" in note for note in track.notes)
+    (plain,) = read(tmp_path, "t [s],x [m],y [m]\n" + "\n".join(f"{3 + t},{t},{t}" for t in steps))
+    assert plain.time[0] == 3.0

@@ -117,7 +117,7 @@ def test_a_squeeze_is_refused_by_name(restitution: float):
              "walls": [pt.Wall((-0.5, 0), normal=(1, 0)), pt.Wall((0.5, 0), normal=(-1, 0))]},
             "wider than the board, 1 m between wall[0] and wall[1]",
         ),
-        ({"pucks": [pt.Piece(0.03, path=[[0, 0, 0], [0, 1, 0]])]}, "t ascending"),
+        ({"pucks": [pt.Piece(0.03, path=[[0, 0, 0], [0, 1, 0]])]}, "row 2: 0 again: the times"),
         ({"pucks": [pt.Piece(0.03, path=[[1, 0, 0], [2, 1, 0]])]}, "must begin at t = 0"),
         ({"pucks": [piece(0, 0)], "launch": pt.Launch((1.0, 0.0))}, "each of several pucks"),
         ({"puck": pt.Puck(0.1), "pucks": [piece(0, 0)]}, "give one puck with its launch, or a"),

@@ -44,7 +44,6 @@ COMMANDS: dict[str, tuple[list[str], str]] = {
     "build law": (["build-tables", "--pressure", "ring", "--cells", "8", "-o", "{}.h5"], "{}.h5"),
     "tradeoff csv": (["tradeoff", "-o", "{}.csv"], "{}.csv"),
     "tradeoff h5": (["tradeoff", "-o", "{}.h5"], "{}.h5"),
-    "paper": (["paper", "--out", "{}"], "{}/figure_02.png"),
 }  # fmt: skip
 
 _built = StopTable.built
@@ -58,7 +57,6 @@ def built_once(of: str, cells: int) -> StopTable:
 @pytest.fixture(autouse=True)
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """An own folder, and little work: what is done there has tests of its own."""
-    from puck_tables.paper import figures
     from puck_tables.tradeoff import engine
     from puck_tables.tradeoff.doors import Door
     from puck_tables.tradeoff.machine import Machine
@@ -70,8 +68,6 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         machine, 25, 80.0,
     )  # fmt: skip
     monkeypatch.setattr(engine, "measure", lambda quick, show: measured)
-    monkeypatch.setattr("puck_tables.paper.claims.all_claims", lambda show: {})
-    monkeypatch.setattr(figures, "FIGURES", {2: figures.limit_angles})
     monkeypatch.setattr(
         StopTable, "built", lambda of, accuracy, cells, progress: built_once(of, cells)
     )
@@ -123,8 +119,7 @@ def test_places_where_nothing_can_be_written(name: str, folder: Path):
         said = refused(name, "at", "--overwrite")
         assert f"cannot write {path}" in said
         path.rmdir() if path.is_dir() else path.unlink()
-    if name != "paper":  # which makes its folder
-        assert "none does not exist" in refused(name, "none/at")
+    assert "none does not exist" in refused(name, "none/at")
     assert content(folder) == {}
 
 
@@ -159,7 +154,7 @@ def test_a_folder_that_vanishes_during_the_work(
     name: str, folder: Path, monkeypatch: pytest.MonkeyPatch
 ):
     target = Path("gone", COMMANDS[name][1].format("new"))
-    target.parent.mkdir(parents=True, exist_ok=name == "paper")
+    target.parent.mkdir(parents=True)
     true: Callable[..., object] = safe_write._part
 
     def gone(*given: object, **named: object) -> object:
@@ -180,7 +175,7 @@ def little_room() -> Iterator[None]:
     resource.setrlimit(resource.RLIMIT_FSIZE, room)
 
 
-@pytest.mark.parametrize("name", [n for n in COMMANDS if n != "paper"])  # whose files are small
+@pytest.mark.parametrize("name", COMMANDS)
 def test_a_disk_that_is_really_full(name: str, folder: Path, little_room: None):
     said = refused(name, "new").splitlines()[-1]
     assert said.startswith("Error: cannot ") and "File too large" in said

@@ -1,6 +1,6 @@
 """Every engine against every case, with one command: a table and a picture.
 
-    pip install '.[plot]' && pip install -r docs/engines/requirements.txt
+    pip install ".[plot]" && pip install -r docs/engines/requirements.txt
     python docs/engines/run_all.py FOLDER
 
 Engines in an environment of their own: --python /path/to/its/python.

@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from difflib import get_close_matches
 
+LEAST_CONTRAST = 3.0  # of lines, marks and words on white
+
 _NAMED: dict[str, str] = dict(
     re.findall(
         r"(\w+)=(\w+)",
@@ -63,9 +65,47 @@ def brightness(colour: str) -> float:
     >>> round(brightness("white"), 3), round(brightness("#0000ff"), 3)
     (1.0, 0.114)
     """
-    digits = colour[1:] if colour.startswith("#") else _NAMED[colour.lower()]
-    red, green, blue = (int(digits[n : n + 2], 16) / 255.0 for n in (0, 2, 4))
+    red, green, blue = _parts(colour)
     return 0.299 * red + 0.587 * green + 0.114 * blue
+
+
+def contrast(colour: str) -> float:
+    """Contrast against white, from 1 to 21 (WCAG 2: a line is to have 3 at least).
+
+    Examples
+    --------
+    >>> contrast("white"), round(contrast("yellow"), 3), contrast("black")
+    (1.0, 1.074, 21.0)
+    """
+    linear = (
+        part / 12.92 if part <= 0.04045 else ((part + 0.055) / 1.055) ** 2.4
+        for part in _parts(colour)
+    )  # fmt: skip
+    shares = zip((0.2126, 0.7152, 0.0722), linear, strict=True)
+    return 1.05 / (sum(share * part for share, part in shares) + 0.05)
+
+
+def on_white(colour: str) -> str:
+    """The colour, darkened as far as it must be to be seen as a line on white.
+
+    Examples
+    --------
+    >>> on_white("#0072b2"), on_white("yellow")
+    ('#0072b2', '#999900')
+    """
+    parts = [round(255.0 * part) for part in _parts(colour)]
+    dark = "#" + "".join(f"{part:02x}" for part in parts)
+    for share in range(99, 0, -1):
+        if contrast(dark) >= LEAST_CONTRAST:
+            break
+        dark = "#" + "".join(f"{round(0.01 * share * part):02x}" for part in parts)
+    return dark
+
+
+def _parts(colour: str) -> list[float]:
+    """Red, green and blue of '#rrggbb' or a name, from 0 to 1."""
+    digits = colour[1:] if colour.startswith("#") else _NAMED[colour.lower()]
+    return [int(digits[n : n + 2], 16) / 255.0 for n in (0, 2, 4)]
 
 
 def meant(text: str) -> str:

@@ -9,6 +9,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from queue import Empty, SimpleQueue
+from typing import Any
 
 Progress = Callable[[int, int], None]
 
@@ -161,7 +162,7 @@ def _run(
 
 @contextmanager
 def _interrupt_noted() -> Iterator[Callable[[], None]]:
-    """Ctrl-C is noted, and raised between looks at the threads.
+    """Ctrl-C is noted, and raised between looks at the threads; so is SIGTERM, if it is heard.
 
     Raised at once it could strike where Python swallows it, such as in a weak reference's callback
     inside the thread pool, and the work would go on.
@@ -169,21 +170,24 @@ def _interrupt_noted() -> Iterator[Callable[[], None]]:
     if threading.current_thread() is not threading.main_thread():
         yield keep_on  # a chunk of another run
         return
-    noted = False
-
-    def note(number: int, frame: object) -> None:
-        nonlocal noted
-        noted = True
+    noted: list[int] = []
+    before: dict[int, Any] = {signal.SIGINT: signal.getsignal(signal.SIGINT)}
+    if callable(term := signal.getsignal(signal.SIGTERM)):
+        before[signal.SIGTERM] = term
 
     def check() -> None:
         if noted:
+            if noted[0] == signal.SIGTERM:
+                before[signal.SIGTERM](noted[0], None)
             raise KeyboardInterrupt
 
-    before = signal.signal(signal.SIGINT, note)
+    for number in before:
+        signal.signal(number, lambda number, frame: noted.append(number))
     try:
         yield check
     finally:
-        signal.signal(signal.SIGINT, before)
+        for number, handler in before.items():
+            signal.signal(number, handler)
     check()
 
 

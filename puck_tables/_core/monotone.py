@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables._core.own_folder import say
+from puck_tables.errors import InputError
 
 _STEEPEST = 3.0  # times the difference, at an end
 
@@ -53,3 +55,42 @@ def _end_slope(near: float, far: float, first: float, second: float) -> float:
     if first * second <= 0.0 and abs(slope) > _STEEPEST * abs(first):
         return _STEEPEST * first
     return slope
+
+
+def from_rest(speeds: FloatArray, values: FloatArray, name: str) -> tuple[FloatArray, FloatArray]:
+    """Measured points over a speed, from 0 on, each speed once; what is done to them is said.
+
+    Below the first speed the value there holds; of a speed that is given more than once the mean of
+    its values is taken.
+
+    Parameters
+    ----------
+    speeds, values : ndarray (k,)
+    name : of the points, for what is said
+
+    Raises
+    ------
+    InputError
+        If the speeds do not ascend from 0 or more.
+
+    Examples
+    --------
+    >>> xs, ys = from_rest(np.array([0.0, 1.0, 1.0]), np.array([0.3, 0.2, 0.4]), "this law")
+    >>> xs.tolist(), ys.round(9).tolist()
+    ([0.0, 1.0], [0.3, 0.3])
+    """
+    if speeds[0] < 0.0 or (np.diff(speeds) < 0.0).any():
+        raise InputError("speeds must ascend, from 0 m/s or more")
+    if speeds[0] == 0.0 and (np.diff(speeds) > 0.0).all():
+        return speeds, values
+    each, first, count = np.unique(speeds, return_index=True, return_counts=True)
+    if each.size < speeds.size:
+        twice = each[count > 1]
+        values = np.add.reduceat(values, first) / count
+        which = f"{twice[0]:g} m/s" + (f" and {twice.size - 1} more" if twice.size > 1 else "")
+        said = "is a speed" if twice.size == 1 else "are speeds"
+        say(f"{name}: {which} {said} given more than once: the mean is taken")
+    if each[0] > 0.0:
+        say(f"{name}: below its first speed, {each[0]:g} m/s, the {values[0]:.6g} there is taken")
+        each, values = np.append(0.0, each), np.append(values[0], values)
+    return each, values

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import contextlib
 import os
-import secrets
 import stat
 import tempfile
+from collections.abc import Iterator
 from pathlib import Path
 
+from puck_tables._core.parts import forget, hold, new_part, remove_dead_once
 from puck_tables.errors import OutputError
-
-_PREFIX, _SUFFIX = ".puck-", ".part"
-PART_PATTERN = f"{_PREFIX}*{_SUFFIX}"  # of what an end in the middle of writing leaves
 
 
 def check_target(path: str | Path, overwrite: bool = False) -> Path:
@@ -80,38 +78,59 @@ def write_bytes(path: str | Path, content: bytes, overwrite: bool = False) -> No
     b'puck'
     """
     target = check_target(path, overwrite)
-    temporary = None
     try:
+        remove_dead_once(target.parent)
         before = target.stat() if target.exists() else None
-        temporary, descriptor = _part(target.parent, private=before is not None)
-        with open(descriptor, "wb") as file:
-            file.write(content)
-            file.flush()
-            os.fsync(file.fileno())
-        if before is not None:
-            _give_rights(temporary, before)
-        if overwrite:
-            temporary.replace(target)
-        else:
-            # link() fails if another process made the target meanwhile; rename would replace it
-            _rename_new(temporary, target)
-        temporary = None
+        with written_part(target.parent, content, private=before is not None) as part:
+            if before is not None:
+                _give_rights(part, before)
+            if overwrite:
+                part.replace(target)
+            else:
+                # link() fails if another process made the target meanwhile; rename would replace it
+                _rename_new(part, target)
     except OSError as error:
         raise OutputError(f"cannot write {target}: {error.strerror or error}") from None
-    finally:
-        if temporary is not None:
-            temporary.unlink(missing_ok=True)
 
 
-def _part(folder: Path, private: bool) -> tuple[Path, int]:
-    """A new file under a name of its own, open for writing.
+@contextlib.contextmanager
+def written_part(
+    folder: Path, content: bytes | memoryview, private: bool = False, at: int | None = None
+) -> Iterator[Path]:
+    """A whole file under a name of its own, held while it is renamed; else nothing is left of it.
 
-    The system takes the umask from its rights: to ask for the umask is to change it, for all
-    threads, for a moment.
+    Parameters
+    ----------
+    folder : where it is
+    content : of the file
+    private : whether only this user may read it; else the umask says who
+    at : the folder, open, in which it is made whatever that is called meanwhile, for content that
+        carries a checksum: the disk is not waited for
     """
+    part = new_part(folder)
+    name = part if at is None else part.name
+    # the system takes the umask from the rights: to ask for the umask is to change it, for all
+    # threads, for a moment
     flags = os.O_RDWR | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
-    path = folder / f"{_PREFIX}{secrets.token_hex(8)}{_SUFFIX}"
-    return path, os.open(path, flags, 0o600 if private else 0o666)
+    try:
+        descriptor = os.open(name, flags, 0o600 if private else 0o666, dir_fd=at)
+        hold(descriptor)
+        held = os.name != "nt"  # there an open file cannot be renamed
+        try:
+            with open(descriptor, "wb", buffering=0, closefd=not held) as file:
+                rest = memoryview(content)
+                while rest:
+                    rest = rest[file.write(rest) :]
+                if at is None:
+                    os.fsync(descriptor)
+            yield part
+        finally:
+            if held:
+                os.close(descriptor)
+    finally:
+        with contextlib.suppress(FileNotFoundError):
+            os.unlink(name, dir_fd=at)
+        forget(part)
 
 
 def _give_rights(path: Path, like: os.stat_result) -> None:
@@ -129,5 +148,3 @@ def _rename_new(temporary: Path, target: Path) -> None:
         raise
     except OSError:  # a file system without hard links
         temporary.replace(target)
-        return
-    temporary.unlink()

@@ -20,7 +20,7 @@ from puck_tables._core.safe_read import opened
 from puck_tables.errors import InputError
 
 LARGEST = 1 << 32  # bytes of a text file
-_HEAD = 1 << 18  # bytes from which encoding, separator and header are told
+HEAD = 1 << 18  # bytes from which encoding, separator and header are told
 _BLOCK = 1 << 22  # characters read at a time
 _LINE = 1 << 16  # characters of a line
 _SAMPLE, _HEADER_ROWS = 100, 20
@@ -33,7 +33,9 @@ _GROUPED = re.compile(
     r"[-+]?[0-9]{1,3}(?:(?:,[0-9]{3})+\.[0-9]*|(?:\.[0-9]{3})+,[0-9]*|(?:,[0-9]{3}){2,}"
     r"|(?:\.[0-9]{3}){2,}|(?:['\u2019 \u00a0\u2009\u202f][0-9]{3})+(?:[.,][0-9]*)?)"
 )
-_MINUS = "\N{MINUS SIGN}"  # of typesetters
+_THOUSANDS = re.compile(r"[-+]?[1-9][0-9]{0,2}(?:\.[0-9]{3})+")  # or with a decimal point
+_THOUSAND = re.compile(r"[-+]?[1-9][0-9]{0,2},[0-9]{3}")  # or with a decimal comma
+MINUS = "\N{MINUS SIGN}"  # of typesetters
 _SEPARATORS = ("\t", ";", ",", "|", None)  # the last: blanks
 
 
@@ -70,9 +72,9 @@ def look_at(path: str | Path, head: bytes) -> Look:
     (';', True, [['t', 'x', 'y']], 3)
     """
     encoding = encoding_of(path, head)
-    text = head.decode(encoding, errors="ignore").replace("\0", "").replace(_MINUS, "-")
+    text = head.decode(encoding, errors="ignore").replace("\0", "").replace(MINUS, "-")
     lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
-    if len(head) >= _HEAD:
+    if len(head) >= HEAD:
         lines = lines[:-1]  # cut
     if not lines:
         raise InputError(f"{path} is no table of numbers: its first line does not end")
@@ -93,7 +95,7 @@ def look_at(path: str | Path, head: bytes) -> Look:
     chosen = separator or _separator(path, sample)
     rows = [split(line, chosen) for line in sample]
     if chosen is None:
-        rows = [_whole_names(row) for row in rows]
+        rows = [whole_names(row) for row in rows]
     _refuse_groups(path, rows)
     comma = any(_COMMA.fullmatch(cell) for row in rows for cell in row)
     names = [n for n, row in enumerate(rows[:_HEADER_ROWS]) if _is_names(row)]
@@ -139,7 +141,7 @@ def encoding_of(path: str | Path, head: bytes) -> str:
     if odd > 0.01 * len(head):
         raise InputError(f"{path} is no text but a binary file: save the table as CSV")
     try:
-        codecs.getincrementaldecoder("utf-8")().decode(head, final=len(head) < _HEAD)
+        codecs.getincrementaldecoder("utf-8")().decode(head, final=len(head) < HEAD)
     except UnicodeDecodeError:
         return "cp1252"  # of Windows; it holds latin-1's letters
     return "utf-8"
@@ -167,14 +169,25 @@ def number(cell: str, comma: bool) -> float | None:
 
     Examples
     --------
-    >>> number("0,5", True), number("red", False)
-    (0.5, None)
+    >>> number("0,5", True), number("0.25", True), number("1.234", True), number("red", False)
+    (0.5, 0.25, None, None)
     """
-    if _POINT.fullmatch(cell) and not (comma and "." in cell):  # 1.234 may be a thousand
+    if _POINT.fullmatch(cell) and not (comma and _THOUSANDS.fullmatch(cell)):
         return float(cell)
     if comma and _COMMA.fullmatch(cell):
         return float(cell.replace(",", "."))
     return float("nan") if cell.lower() in _MISSING else None
+
+
+def is_row(line: str) -> bool:
+    """Whether a line is neither empty nor a comment.
+
+    Examples
+    --------
+    >>> is_row("0,1"), is_row("# by hand"), is_row(";;")
+    (True, False, False)
+    """
+    return bool(line.strip(" \t;,|\0\r\n")) and not line.lstrip().startswith(_COMMENTS)
 
 
 def _filled(row: Sequence[str]) -> int:
@@ -182,8 +195,14 @@ def _filled(row: Sequence[str]) -> int:
     return next((n for n in range(len(row), 0, -1) if row[n - 1]), 0)
 
 
-def _whole_names(row: list[str]) -> list[str]:
-    """Cells with units that a blank cut off put back to their names."""
+def whole_names(row: list[str]) -> list[str]:
+    """Cells with units that a blank cut off put back to their names.
+
+    Examples
+    --------
+    >>> whole_names(["v", "[mm/s]", "mu"])
+    ['v [mm/s]', 'mu']
+    """
     whole: list[str] = []
     for cell in row:
         if whole and re.fullmatch(r"[\[(].*[\])]", cell) and not _POINT.fullmatch(whole[-1]):
@@ -262,8 +281,9 @@ def _separator(path: str | Path, lines: Sequence[str]) -> str | None:
 
 
 def read_columns(
-    path: str | Path, look: Look, numbers: Sequence[int], texts: Sequence[int]
-) -> tuple[dict[int, FloatArray], dict[int, tuple[Any, list[str]]]]:
+    path: str | Path, look: Look, numbers: Sequence[int], texts: Sequence[int],
+    content: bytes | None = None,
+) -> tuple[dict[int, FloatArray], dict[int, tuple[Any, list[str]]]]:  # fmt: skip
     r"""Columns of a table, without its header, comments and empty lines.
 
     Parameters
@@ -271,6 +291,7 @@ def read_columns(
     path : the file
     look : how it is written
     numbers, texts : which columns, from 0
+    content : of the file, if it has been read
 
     Returns
     -------
@@ -294,7 +315,8 @@ def read_columns(
     parts: list[FloatArray] = []
     codes: dict[int, list[Any]] = {column: [] for column in texts}
     words: dict[int, dict[str, int]] = {column: {} for column in texts}
-    with opened(path, LARGEST) as raw, io.TextIOWrapper(raw, look.encoding, "replace") as file:
+    raw = opened(path, LARGEST) if content is None else io.BytesIO(content)
+    with raw, io.TextIOWrapper(raw, look.encoding, "replace") as file:
         line = 1
         for _ in range(look.skip):
             file.readline(_LINE)
@@ -327,7 +349,7 @@ def _blocks(path: str | Path, file: IO[str]) -> Iterator[str]:
             if len(rest) >= _LINE:
                 raise InputError(f"{path} has a line of more than {_LINE} characters: no table")
             block += rest
-        yield block.replace(_MINUS, "-")
+        yield block.replace(MINUS, "-")
 
 
 def _fast(
@@ -383,9 +405,10 @@ def _slow(
 ) -> tuple[FloatArray, dict[int, list[str]]]:  # fmt: skip
     """Rows of a block with gaps, texts or comments, or a sentence on what is wrong in them."""
     rows = []
+    pointed, doubtful = False, ""
     cells: dict[int, list[str]] = {column: [] for column in texts}
     for n, text in enumerate(block.split("\n"), start=line):
-        if not text.strip(" \t;,|\0") or text.lstrip().startswith(_COMMENTS):
+        if not is_row(text):
             continue
         row = split(text, look.separator)
         while len(row) > look.width and not row[-1]:
@@ -393,7 +416,7 @@ def _slow(
         if len(row) != look.width:
             raise InputError(
                 f"{path}, line {n}: {len(row)} cells where other rows have {look.width}: columns "
-                "must be equally long, leave cells empty where nothing was seen"
+                "must be equally long, leave cells empty where there is none"
             )
         values = [number(row[column], look.comma) for column in numbers]
         if None in values:
@@ -409,9 +432,18 @@ def _slow(
                 f"{path}, line {n}, column {column + 1}: '{row[column]:.30}' is no number"
                 + (f" with {'a comma' if look.comma else 'a point'} as its decimal mark"
                    if row[column][:1].isdigit() else "")
-                + "; leave cells empty where nothing was seen"
+                + "; leave cells empty where there is none"
             )  # fmt: skip
+        for column in numbers if look.comma else ():
+            pointed = pointed or bool(_POINT.fullmatch(row[column]) and "." in row[column])
+            if not doubtful and _THOUSAND.fullmatch(row[column]):
+                doubtful = f"line {n}, column {column + 1}: '{row[column]}'"
         rows.append(values)
         for column in texts:
             cells[column].append(row[column])
+    if pointed and doubtful:
+        raise InputError(
+            f"{path}, {doubtful} has a comma, other numbers a point: save the table with one "
+            "decimal mark and no thousands separators"
+        )
     return np.array(rows, dtype=np.float64).reshape(len(rows), len(numbers)), cells

@@ -1,4 +1,4 @@
-"""Units that people write: of lengths, times and angles, and the size of a pixel."""
+"""Units that people write, of every quantity that is read, and the size of a pixel."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ _METRES = {"m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 1e-3, "um": 1e-6, "km": 1e3, "
 _TIMES = {
     "s": "s sec secs second seconds sek sekunde sekunden", "ms": "ms msec millisecond milliseconds "
     "millis", "us": "us µs μs usec microsecond microseconds", "ns": "ns nanosecond nanoseconds",
-    "min": "min minute minutes",
+    "min": "min minute minutes", "h": "h hr hour hours",
 }  # fmt: skip
-_SECONDS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0}
+_SECONDS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0, "h": 3600.0}
 _ANGLES = {
     "rad": "rad radian radians", "deg": "deg degree degrees ° grad_deg", "turn": "turn turns rev "
     "revs revolution revolutions",
@@ -31,7 +31,17 @@ _ANGLES = {
 _RADIANS = {"rad": 1.0, "deg": math.pi / 180.0, "turn": 2.0 * math.pi}
 _KINDS = {"length": (_LENGTHS, {**_METRES, PIXEL: math.nan}), "time": (_TIMES, _SECONDS),
           "angle": (_ANGLES, _RADIANS)}  # fmt: skip
-_WHOLE = {"mps": "m/s", "rpm": "turn/min", "rps": "turn/s"}
+_FORCES = {"N": 1.0, "mN": 1e-3, "uN": 1e-6, "µN": 1e-6, "μN": 1e-6, "cN": 1e-2, "kN": 1e3,
+           "MN": 1e6, "newton": 1.0, "newtons": 1.0, "kgf": 9.80665, "gf": 9.80665e-3,
+           "lbf": 4.4482216152605}  # fmt: skip
+_RATIOS = dict.fromkeys(("1", "-", "–", "—", "dimensionless", "unitless", "ratio", "none"), 1.0)
+_RATIOS |= dict.fromkeys(("%", "percent", "prozent"), 0.01)
+_WHOLE = {
+    "mps": "m/s", "rpm": "turn/min", "rps": "turn/s", "mmps": "mm/s", "mms": "mm/s", "cmps": "cm/s",
+    "cms": "cm/s", "kmh": "km/h", "kmph": "km/h", "kph": "km/h",
+}  # fmt: skip
+EXAMPLES = {"velocity": "m/s", "spin": "rad/s", "length": "m", "time": "s", "angle": "rad",
+            "force": "N", "torque": "N m"}  # fmt: skip
 _NUMBER = r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?"
 
 
@@ -157,16 +167,45 @@ def parted(text: str) -> tuple[str, str]:
     return text, ""
 
 
+def bracketed(text: str) -> tuple[str, str]:
+    """A heading and what stands in brackets at its end.
+
+    Examples
+    --------
+    >>> bracketed("Sliding speed (mm/s)"), bracketed("v / [m s^-1]"), bracketed("mu")
+    (('Sliding speed', 'mm/s'), ('v', 'm s^-1'), ('mu', ''))
+    """
+    bare = text.strip().strip("\"'").strip()
+    found = re.fullmatch(r"(.*?)[\s/_,]*[\[(<{]\s*([^\[\]()<>{}]*?)\s*[\])>}]", bare)
+    return (found[1], found[2]) if found is not None and found[1] else (bare, "")
+
+
+def unit_behind(text: str, kind: str) -> str:
+    """The unit of a kind that stands at the end of a heading without brackets, '' if none.
+
+    Examples
+    --------
+    >>> unit_behind("speed_mm_s", "velocity"), unit_behind("r/R", "radius")
+    ('mm/s', '')
+    """
+    for found in re.finditer(r"\s+in\s+|[\s/_,]+", text):
+        behind = text[found.end() :]
+        for unit in (behind, behind.replace("_", "/")):
+            if found.start() and unit_size(unit, kind) is not None:
+                return unit
+    return ""
+
+
 def is_unit(text: str) -> bool:
     """Whether a cell is a unit, in brackets or not: of a row of units under the names.
 
     Examples
     --------
-    >>> is_unit("(cm)"), is_unit("x")
-    (True, False)
+    >>> is_unit("(cm)"), is_unit("mm/s"), is_unit("x")
+    (True, True, False)
     """
     bare = text.strip().strip("[]()<>").strip()
-    return any(known(bare, kind) for kind in ("length", "time", "angle"))
+    return bool(known(bare, "length")) or any(unit_size(bare, kind) for kind in EXAMPLES)
 
 
 def unit_size(unit: str, kind: str) -> float | None:
@@ -175,23 +214,38 @@ def unit_size(unit: str, kind: str) -> float | None:
     Parameters
     ----------
     unit : as somebody wrote it
-    kind : length, time, angle, velocity or spin
+    kind : length, time, angle, velocity, spin, force, torque; ratio: a pure number; radius: a
+        length or a pure number; any: whatever it is, of size 1
 
     Examples
     --------
     >>> unit_size("cm/s", "velocity"), unit_size("m", "velocity"), unit_size("deg/s", "spin")
     (0.01, None, 0.017453292519943295)
+    >>> unit_size("mN", "force"), unit_size("N mm", "torque"), unit_size("%", "ratio")
+    (0.001, 0.001, 0.01)
     """
     text = _WHOLE.get(unit.strip().lower(), unit.strip())
+    if kind == "any":
+        return 1.0
+    if kind == "ratio":
+        return _RATIOS.get(text.lower())
+    if kind == "radius":
+        size = _RATIOS.get(text.lower())
+        return unit_size(text, "length") if size is None else size
+    if kind == "force":
+        return _FORCES.get(text, _FORCES.get(text.lower()) if text.islower() else None)
+    if kind == "torque":
+        parts = re.fullmatch(r"(\w*?N|\w*?gf|lbf|newtons?)[\s*·.⋅-]*([a-zµμ]+)", text)
+        size = None if parts is None else unit_size(parts[1], "force")
+        arm = None if parts is None else unit_size(parts[2], "length")
+        return None if size is None or arm is None else size * arm
     if kind in ("velocity", "spin"):
         found = re.fullmatch(r"(.+?)\s*(?:/|\s+per\s+)\s*(.+)", text)
-        found = found or re.fullmatch(r"(\S+?)(?:\s+|\*|·|\.)?(s)\^?(?:-1|⁻¹)", text)
+        found = found or re.fullmatch(r"(\S+?)(?:\s+|\*|·|\.)?(s)\^?(?:-1|⁻¹|−1)", text)
         if found is None:
             return None
         above = unit_size(found[1], "length" if kind == "velocity" else "angle")
         below = unit_size(found[2], "time")
         return None if above is None or below is None else above / below
     name = known(text, kind)
-    if not name or name == "px":
-        return None
-    return factor(name, kind)
+    return None if not name or name == PIXEL else factor(name, kind)

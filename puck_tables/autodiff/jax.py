@@ -20,7 +20,7 @@ try:
     import jax.numpy as jnp
 except ImportError:
     raise MissingExtraError(
-        "puck_tables.autodiff.jax needs jax: pip install 'puck-tables[jax]'"
+        'puck_tables.autodiff.jax needs jax: pip install "puck-tables[jax]"'
     ) from None
 
 

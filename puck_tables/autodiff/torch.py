@@ -16,7 +16,7 @@ try:
     from torch.autograd.function import once_differentiable
 except ImportError:
     raise MissingExtraError(
-        "puck_tables.autodiff.torch needs torch: pip install 'puck-tables[torch]'"
+        'puck_tables.autodiff.torch needs torch: pip install "puck-tables[torch]"'
     ) from None
 
 

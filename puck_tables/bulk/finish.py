@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,7 +11,7 @@ import numpy as np
 
 from puck_tables._core.executor import Progress
 from puck_tables._core.memory import check_memory
-from puck_tables._core.real import instance
+from puck_tables._core.real import checked_progress, instance, shown
 from puck_tables.bulk.work import Tally, Work, in_memory
 from puck_tables.errors import InputError
 from puck_tables.io.dataset import Dataset
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
     import xarray
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+    from puck_tables.bulk.store import Store
 
 _COPIES = 3  # of the columns: as read, in their shape, and what follows from them
 
@@ -48,7 +51,9 @@ class Stored(Result):
         Raises
         ------
         InputError
-            If it does not fit.
+            If it does not fit, or blocks are damaged or missing.
+        OutputError
+            If the store holds other work by now.
         """
         from puck_tables.bulk.store import Store
 
@@ -90,12 +95,13 @@ def finish(
     progress : callable (done, total), optional
     store : path of a Zarr store, made or gone on with, optional
     cluster : 'local:N' or 'tcp://HOST:PORT', optional; needs a store
-    overwrite : whether a store of other work may be replaced
+    overwrite : whether it replaces a store of other work, when it is whole
 
     Raises
     ------
     InputError, OutputError, MissingExtraError, ClusterError
     """
+    checked_progress(progress)
     if store is None:
         if cluster is not None:
             raise InputError(
@@ -109,17 +115,28 @@ def finish(
 
     if cluster is None:
         tell = work.prepared(threads, progress)
-        kept = Store(store, work, overwrite)
-        tally = by_threads(kept, threads, tell)
+        kept = Store(store, work, begin=True, overwrite=overwrite)
+        tally = _accepted(kept, work, lambda: by_threads(kept, threads, tell))
     else:
         from puck_tables.bulk.cluster import by_cluster, client_of
 
         with client_of(cluster) as client:
             tell = work.prepared(threads, progress)
-            kept = Store(store, work, overwrite)
-            tally = by_cluster(client, kept, tell)
-    work.checked(tally)
+            kept = Store(store, work, begin=True, overwrite=overwrite)
+            tally = _accepted(kept, work, lambda: by_cluster(client, kept, tell))
     return Stored(kept.path, work, tally)
+
+
+def _accepted(kept: Store, work: Work, done: Callable[[], Tally]) -> Tally:
+    """Do a work; its store takes the place of another only if the work is not refused."""
+    try:
+        tally = done()
+        work.checked(tally)
+    except InputError:
+        kept.place.withdraw()
+        raise
+    kept.place.complete()
+    return tally
 
 
 def check_part(part: object) -> None:
@@ -133,5 +150,6 @@ def check_part(part: object) -> None:
     --------
     >>> check_part(1024)
     """
-    if isinstance(part, bool) or not isinstance(part, int | np.integer) or part < 1:
-        raise InputError(f"chunk must be a whole number from 1 on, got {part!r:.40}")
+    whole = isinstance(part, int | np.integer) and not isinstance(part, bool | np.timedelta64)
+    if not whole or part < 1:  # type: ignore[operator]
+        raise InputError(f"chunk must be a whole number from 1 on, got {shown(part)}")

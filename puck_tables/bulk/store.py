@@ -1,146 +1,114 @@
 """Results of long work in a Zarr store, block by block; the one door to zarr.
 
 A column is an array, a block of it a file with its CRC-32C, written under another name and renamed:
-whole or not there.  The code of a block is written last.  The attributes of the store say by a
-digest which work it is, so that the same work goes on and any other is refused.
+whole or not there.  The mark of a block is written last: it says by the checksums of its files that
+this work made them.  All else, axes and labels, follows from the work: what is damaged of it is
+written anew.
 """
 
 from __future__ import annotations
 
-import secrets
-import shutil
+import hashlib
+import json
+import os
 import warnings
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from puck_tables._core.executor import Progress, keep_on, run_chunks
-from puck_tables._core.safe_write import PART_PATTERN
+from puck_tables._core.own_folder import say
 from puck_tables._version import __version__
 from puck_tables.bulk.blocks import Blocks
+from puck_tables.bulk.place import DIGEST, joined, taken
 from puck_tables.bulk.work import Columns, Tally, Work, refuse_no_threads
-from puck_tables.errors import InputError, MissingExtraError, OutputError
+from puck_tables.errors import InputError, MissingExtraError
 from puck_tables.io.dataset import Variable
 
 try:
     import zarr
     from zarr.codecs import BytesCodec, Crc32cCodec
+    from zarr.core.buffer import default_buffer_prototype
+    from zarr.storage import MemoryStore
 except ImportError:
-    raise MissingExtraError("Zarr stores need zarr: pip install 'puck-tables[cluster]'") from None
+    raise MissingExtraError('Zarr stores need zarr: pip install "puck-tables[cluster]"') from None
 
-DIGEST = "puck_tables_work"
 NOT_DONE = -1  # the code of an item that is not computed yet
-_NO_STORE = (OSError, ValueError, KeyError, TypeError, AttributeError)  # what zarr says of others
 _AT_ONCE = {"write_empty_chunks": True}  # a block of NaN is a result, too
+_CRC = 4  # bytes at the end of a file
 
 
 class Store:
-    """What is done of a work, in a Zarr store: made, or gone on with if it holds the same work.
+    """What is done of a work, in a Zarr store.
 
     Parameters
     ----------
-    path : where it is, or is to be
+    path : where it is, or is to be; a link is followed
     work : the work
-    overwrite : whether a store of other work may be replaced
+    begin : whether it is made, or gone on with; else another process did so
+    overwrite : whether it replaces a store of other work, when it is whole
 
     Raises
     ------
     InputError
         If it holds other work, or is no store of this program.
     OutputError
-        If it cannot be made.
+        If it cannot be made, or is not there.
     """
 
-    def __init__(self, path: str | Path, work: Work, overwrite: bool = False) -> None:
-        self.path, self.work = Path(path).absolute(), work
+    def __init__(
+        self, path: str | Path, work: Work, begin: bool = False, overwrite: bool = False
+    ) -> None:
+        self.path, self.work = Path(os.path.realpath(path)), work
         self.blocks = Blocks(work.shape, work.block)
         self.digest = work.digest
-        if not (self.path.exists() and self._goes_on(overwrite)):
-            self._make()
-        self._open()
+        self._files: dict[str, Any] = {}  # as zarr has them, on their way to or from the disk
+        self._arrays = self._empty()
+        start = {key: one.to_bytes() for key, one in self._files.items()}
+        if begin:
+            self.place = taken(self.path, self.digest, overwrite, start)
+            self._mend(start)
+        else:
+            self.place = joined(self.path, self.digest)
 
-    def _open(self) -> None:
-        names = [*self.work.columns, self.work.code]
-        self._arrays: dict[str, Any] = {}
-        try:
-            self._arrays = {
-                name: zarr.open_array(self.path / name, mode="r+", config=_AT_ONCE)
-                for name in names
-            }
-        except _NO_STORE:
-            self._arrays.clear()
-        box = self.blocks.box
-        if not self._arrays or any(
-            array.shape[: len(box)] != self.work.shape or array.chunks[: len(box)] != box
-            for array in self._arrays.values()
-        ):
-            raise InputError(f"{self.path} is damaged: give another name, or remove it")
-
-    def _goes_on(self, overwrite: bool) -> bool:
-        """Whether the same work is there; what may be replaced is put away."""
-        try:
-            attributes = zarr.open_group(self.path, mode="r").attrs.asdict()
-        except _NO_STORE:
-            attributes = {}
-        found = attributes.get(DIGEST)
-        if found == self.digest:
-            return True
-        if found is None:
-            raise InputError(
-                f"{self.path} exists and is no Zarr store of this program: give another name"
-            )
-        if not overwrite:
-            raise InputError(
-                f"{self.path} holds other work: give the arguments, files and program that it was "
-                "begun with, another name, or --overwrite (overwrite=True) to replace it"
-            )
-        old = self._part()
-        self.path.rename(old)
-        shutil.rmtree(old)
-        return False
-
-    def _part(self) -> Path:
-        return self.path.with_name(PART_PATTERN.replace("*", secrets.token_hex(8)))
-
-    def _make(self) -> None:
-        """The store without results, under another name, then its own: never a part of it."""
-        part = self._part()
-        try:
-            part.mkdir()  # zarr would make those above it, too
-            self._fill(part)
-            if self.path.exists():
-                raise FileExistsError(17, "it has just been made by another process", str(part))
-            part.rename(self.path)
-        except OSError as error:
-            raise OutputError(f"cannot write {self.path}: {error.strerror or error}") from None
-        finally:
-            shutil.rmtree(part, ignore_errors=True)
-
-    def _fill(self, part: Path) -> None:
+    def _empty(self) -> dict[str, Any]:
+        """Make the files of a store without results; the arrays of columns, the code last."""
         labels, blocks = self.work.labelled(self.work.virtual()), self.blocks
         kept = {name: value for name, value in labels.attributes.items() if value is not None}
         kept |= {name: text for name, (text, _) in labels.texts.items()}
         kept |= {"source": f"puck-tables {__version__}", DIGEST: self.digest}
-        group = zarr.create_group(part, zarr_format=3, attributes=_plain(kept))
+        memory = MemoryStore(store_dict=self._files)
+        group = zarr.create_group(memory, zarr_format=3, attributes=_plain(kept))
         for name, one in labels.axes.items():
             _put_whole(group, name, one)
+        arrays = {}
         for name, one in labels.columns.items():
             if name not in self.work.columns and name != self.work.code:
                 _put_whole(group, name, one)
                 continue
             shape = np.shape(one.values)
             code = name == self.work.code
-            group.create_array(
+            arrays[name] = group.create_array(
                 name, shape=shape, chunks=(*blocks.box, *shape[len(blocks.box) :]),
                 dtype="i1" if code else "f8", fill_value=NOT_DONE if code else float("nan"),
                 **_coded(one),
             )  # fmt: skip
         with warnings.catch_warnings():  # that others than xarray may not know it
             warnings.simplefilter("ignore")
-            zarr.consolidate_metadata(part)
+            zarr.consolidate_metadata(memory)
+        return {name: arrays[name] for name in (*self.work.columns, self.work.code)}
+
+    def _mend(self, start: Mapping[str, bytes]) -> None:
+        """Write anew what is missing or damaged of the axes and labels."""
+        damaged = [key for key, one in start.items() if not _is_whole(self.place.content(key), one)]
+        if damaged:
+            self.place.refuse_lost()  # another work may be removing it
+            for key in damaged:
+                self.place.put(key, start[key])
+            names = ", ".join(dict.fromkeys(key.split("/")[0] for key in damaged))
+            say(f"{self.path}: missing or damaged, and written anew: {names}")
 
     def do(self, block: int) -> Tally:
         """Compute a block and keep it, unless it is there, whole; the tally of its codes.
@@ -148,65 +116,90 @@ class Store:
         Raises
         ------
         OutputError
-            If the disk does not take it; what was kept before stays.
+            If the disk does not take it, or the store belongs to another work by now; what was
+            kept before stays.
         """
+        self.place.refuse_lost()
         start, stop = self.blocks.run(block)
-        codes = self._done(block)
-        if codes is None:
+        found = self._kept(block)
+        if found is None:
             found = self.work.columns_of(stop - start)
             for begin in range(start, stop, self.work.part):
                 self.work.filled(found, begin, min(begin + self.work.part, stop), start)
                 keep_on()
             self._keep(block, found)
-            codes = found[self.work.code]
-        return Tally.of(codes, start)
+        return Tally.of(found[self.work.code], start)
 
-    def _done(self, block: int) -> npt.NDArray[np.int8] | None:
-        """The codes of a block whose files are all there and whole; nothing is left of others."""
-        files = [self._file(name, block) for name in self._arrays]
-        if all(file.is_file() for file in files):
+    def _kept(self, block: int) -> Columns | None:
+        """The columns of a block, flat, if this work made all its files and they are whole."""
+        keys = [self._key(name, block) for name in self._arrays]
+        ends = [self.place.content(key, _CRC) for key in keys]
+        if self.place.content(self._mark_key(block)) != self._mark(block, ends):
+            return None
+        box, (start, stop) = (*self.blocks.slices(block), ...), self.blocks.run(block)
+        found: Columns = {}
+        for key, (name, array) in zip(keys, self._arrays.items(), strict=True):
+            content = self.place.content(key)
+            if content is None:
+                return None
+            self._files[key] = default_buffer_prototype().buffer.from_bytes(content)
             try:
-                columns = self.read(block)
-                if (columns[self.work.code] != NOT_DONE).all():
-                    return columns[self.work.code]
-            except (OSError, ValueError, RuntimeError):
-                pass
-        for file in files:  # zarr would read what it is to write over
-            file.unlink(missing_ok=True)
-        return None
-
-    def _file(self, name: str, block: int) -> Path:
-        trailing = self._arrays[name].ndim - len(self.work.shape)
-        key = self._arrays[name].metadata.encode_chunk_key(
-            (*self.blocks.place(block), *(0,) * trailing)
-        )
-        return self.path / name / str(key)
+                values = np.asarray(array[box])
+            except (OSError, ValueError, RuntimeError):  # a wrong checksum
+                return None
+            finally:
+                del self._files[key]
+            found[name] = values.reshape((stop - start, *self.work.columns.get(name, ())))
+        return found
 
     def _keep(self, block: int, found: Columns) -> None:
         box = self.blocks.slices(block)
         shape = tuple(one.stop - one.start for one in box)
-        try:
-            for name, array in self._arrays.items():  # the code is the last of them
-                array[(*box, ...)] = found[name].reshape((*shape, *found[name].shape[1:]))
-        except OSError as error:
-            raise OutputError(f"cannot write {self.path}: {error.strerror or error}") from None
+        ends: list[bytes | None] = []
+        for name, array in self._arrays.items():
+            array[(*box, ...)] = found[name].reshape((*shape, *found[name].shape[1:]))
+            key = self._key(name, block)
+            content = memoryview(self._files.pop(key).as_numpy_array())
+            self.place.put(key, content)
+            ends.append(bytes(content[-_CRC:]))
+        self.place.put(self._mark_key(block), self._mark(block, ends))
+        self.place.refuse_lost()
 
-    def read(self, block: int | None = None) -> Columns:
-        """The columns of a block, flat, or of the whole shape.
+    def _key(self, name: str, block: int) -> str:
+        """The file of a block of a column."""
+        trailing = self._arrays[name].ndim - len(self.work.shape)
+        place = (*self.blocks.place(block), *(0,) * trailing)
+        return f"{name}/{self._arrays[name].metadata.encode_chunk_key(place)}"
+
+    def _mark_key(self, block: int) -> str:
+        return f"{self.work.code}/made/{block}"
+
+    def _mark(self, block: int, ends: list[bytes | None]) -> bytes:
+        """What says that this work made the files of a block, which end in these checksums."""
+        what = repr((self.digest, block, ends))
+        return hashlib.sha256(what.encode()).hexdigest().encode()
+
+    def read(self) -> Columns:
+        """The columns of the whole shape.
 
         Raises
         ------
-        ValueError
-            If a checksum is wrong.
+        InputError
+            If a block is missing or damaged.
         """
-        if block is None:
-            return {name: np.asarray(array[...]) for name, array in self._arrays.items()}
-        box = (*self.blocks.slices(block), ...)
-        start, stop = self.blocks.run(block)
-        shapes = {name: (stop - start, *self.work.columns.get(name, ())) for name in self._arrays}
+        found = self.work.columns_of(self.work.size)
+        for block in range(self.blocks.count):
+            one = self._kept(block)
+            if one is None:
+                raise InputError(
+                    f"{self.path}: block {block} of {self.blocks.count} is missing or damaged: the "
+                    "same work does it again"
+                )
+            start, stop = self.blocks.run(block)
+            for name, values in one.items():
+                found[name][start:stop] = values
         return {
-            name: np.asarray(array[box]).reshape(shapes[name])
-            for name, array in self._arrays.items()
+            name: one.reshape((*self.work.shape, *one.shape[1:])) for name, one in found.items()
         }
 
 
@@ -236,6 +229,22 @@ def by_threads(store: Store, threads: int | None, progress: Progress | None) -> 
     return sum(tallies.values(), Tally({}, {}))
 
 
+def _covers(found: Any, wanted: Any) -> bool:
+    """Whether all that is wanted is there, perhaps with attributes of others."""
+    if isinstance(found, dict) and isinstance(wanted, dict):
+        return all(key in found and _covers(found[key], one) for key, one in wanted.items())
+    return bool(found == wanted)
+
+
+def _is_whole(found: bytes | None, wanted: bytes) -> bool:
+    if found is None or found == wanted:
+        return found is not None
+    try:
+        return _covers(json.loads(found), json.loads(wanted))
+    except (ValueError, RecursionError):  # no labels, but an axis
+        return False
+
+
 def _put_whole(group: Any, name: str, one: Variable) -> None:
     """A coordinate, or what else does not belong to items, with its values; texts as codes."""
     values = np.asarray(one.values)
@@ -244,7 +253,11 @@ def _put_whole(group: Any, name: str, one: Variable) -> None:
         flags = tuple(dict.fromkeys(texts))
         codes = np.array([flags.index(text) for text in texts], np.int16).reshape(values.shape)
         one, values = Variable(codes, one.dims, one.unit, one.long_name, flags), codes
-    array = group.create_array(name, shape=values.shape, dtype=values.dtype, **_coded(one))
+    # what is missing is not read as zeros
+    fill = {"f": float("nan"), "i": -1}.get(values.dtype.kind, 0)
+    array = group.create_array(
+        name, shape=values.shape, dtype=values.dtype, fill_value=fill, **_coded(one)
+    )
     array[...] = values
 
 

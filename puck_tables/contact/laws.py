@@ -21,8 +21,10 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import broadcast, instance, real_array
-from puck_tables._core.safe_read import read_rows
+from puck_tables._core.columns import PRESSURE, RADIUS, numbers_of
+from puck_tables._core.own_folder import say
+from puck_tables._core.real import broadcast, instance, real_array, shown
+from puck_tables._core.units import unit_size
 from puck_tables.contact import closed_form, one_sided, quadrature
 from puck_tables.contact.integrals import PatchIntegrals, checked_phi, slip_direction
 from puck_tables.contact.pressure import GALIN, HERTZ
@@ -48,7 +50,7 @@ HOMOGENEOUS = 0.5**0.5  # radius of gyration over r of a homogeneous cylinder ab
 THINNEST = 1.0 - 1e-6  # inner radius of the thinnest washer; beyond it take the ring
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Law:
     """An axisymmetric pressure law as the tables need it.
 
@@ -72,7 +74,20 @@ class Law:
     name: str
     edges: tuple[float, ...]
     integrals: Callable[[npt.ArrayLike], PatchIntegrals]
-    profile: tuple[FloatArray, FloatArray] | None = field(default=None, repr=False, compare=False)
+    profile: tuple[FloatArray, FloatArray] | None = field(default=None, repr=False)
+
+    def __eq__(self, other: object) -> bool:
+        """Whether name, edges and profile are the same: what the integrals follow from."""
+        if not isinstance(other, Law):
+            return NotImplemented
+        if self.name != other.name or self.edges != other.edges:
+            return False
+        if self.profile is None or other.profile is None:
+            return self.profile is other.profile
+        return all(map(np.array_equal, self.profile, other.profile))
+
+    def __hash__(self) -> int:
+        return hash((self.name, self.edges))
 
     @property
     def mean_square(self) -> float:
@@ -157,7 +172,10 @@ class Law:
 
 
 def law_of(text: str) -> Law:
-    """The pressure law of a name, or of a CSV file with columns ρ (in units of r) and W.
+    """The pressure law of a name, or of a CSV file with columns of the radius and the pressure.
+
+    Radii are in units of r, or in the unit of length that their heading says; then the last is that
+    of the rim.
 
     Parameters
     ----------
@@ -194,7 +212,7 @@ def law_of(text: str) -> Law:
             )
         return _washer(inner)
     if not text.lower().endswith(".csv"):
-        raise InputError(f"no pressure law is called {text!r}: choose {NAMES}")
+        raise InputError(f"no pressure law is called {shown(text)}: choose {NAMES}")
     return profile_law(*_read(text), name=Path(text).name)
 
 
@@ -232,7 +250,10 @@ def profile_law(radii: npt.ArrayLike, pressure: npt.ArrayLike, name: str = "prof
     if not (rho.ndim == 1 and rho.shape == weight.shape and rho.size >= 2):
         raise InputError(f"{name}: a profile needs two or more rows of rho, W")
     if not (rho[0] >= 0.0 and rho[-1] == 1.0 and np.all(np.diff(rho) > 0.0)):
-        raise InputError(f"{name}: rho must ascend from 0 or more to 1 (units of the radius)")
+        raise InputError(
+            f"{name}: rho must ascend from 0 or more to 1, in units of the radius; of lengths in a "
+            "file the heading must say the unit, as in r [mm]"
+        )
     if not (np.all(weight >= 0.0) and np.all(np.isfinite(weight)) and weight.max() > 0.0):
         raise InputError(f"{name}: W must be finite, nowhere negative and not all zero")
     if np.diff(rho).min() < _LEAST_STEP:
@@ -268,15 +289,14 @@ def _edges(radii: FloatArray, pressure: FloatArray) -> tuple[float, ...]:
 
 
 def _read(path: str) -> tuple[FloatArray, FloatArray]:
-    """Two columns of a CSV file; a first line of words is its header."""
-    try:
-        rows = read_rows(path, MAX_PROFILE_BYTES)
-        first, second = np.array([[float(cell) for cell in row] for row in rows]).T
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
-    except ValueError:
-        raise InputError(f"{path}: a profile is a CSV file of two columns, rho and W") from None
-    return first, second
+    """Radii in units of the last, and pressures, from a CSV file."""
+    numbers = numbers_of(path, (RADIUS, PRESSURE), 2, MAX_PROFILE_BYTES)
+    numbers.refuse_unless_ascending("the radii")
+    radii, pressure = numbers.rows.T
+    if (unit := numbers.units[0]) and unit_size(unit, "ratio") is None and radii[-1] > 0.0:
+        say(f"{path}: its last radius, {radii[-1]:g} m, is taken as that of the rim")
+        radii = radii / radii[-1]
+    return radii, pressure
 
 
 _NAMED: dict[str, Callable[[npt.ArrayLike], PatchIntegrals]] = {

@@ -13,9 +13,9 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.monotone import monotone_cubic
-from puck_tables._core.real import finite_array, instance
-from puck_tables._core.safe_read import is_number, read_rows
+from puck_tables._core.columns import FRICTION, SPEED, numbers_of
+from puck_tables._core.monotone import from_rest, monotone_cubic
+from puck_tables._core.real import finite_array, instance, positive, shown
 from puck_tables._core.safe_write import write_bytes
 from puck_tables.errors import InputError
 
@@ -24,16 +24,16 @@ HEADER = ("speed[m/s]", "f[1]")
 _LARGEST = 1 << 24  # bytes of a file
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class SpeedLaw:
     """Friction coefficient f against slip speed, through points.
 
     Parameters
     ----------
     speeds : array_like (k,), m/s
-        Ascending from 0, at least two.
+        Ascending, at least two.  Below a first speed above 0 its f holds.
     values : array_like (k,)
-        f ≥ 0 at these speeds.
+        f ≥ 0 at these speeds; of a speed given more than once the mean is taken.
     kind : 'cubic' or 'linear'
         Between the points: a cubic with a continuous slope that rises and falls only where the
         points do (no overshoot), or straight lines.
@@ -66,8 +66,7 @@ class SpeedLaw:
                 "speeds and values must be two lists of one length, at least 2, got the shapes "
                 f"{speeds.shape} and {values.shape}"
             )
-        if speeds[0] != 0.0 or not (np.diff(speeds) > 0.0).all():
-            raise InputError("speeds must ascend from 0 m/s")
+        speeds, values = from_rest(speeds, values, "the friction law")
         if values.min() < 0.0:
             raise InputError(
                 f"a friction coefficient must not be negative, got {values.min():g} at the speed "
@@ -75,9 +74,21 @@ class SpeedLaw:
             )
         instance("kind", self.kind, str)
         if self.kind not in KINDS:
-            raise InputError(f"kind must be cubic or linear, got {self.kind!r}")
+            raise InputError(f"kind must be cubic or linear, got {shown(self.kind)}")
         object.__setattr__(self, "speeds", speeds)
         object.__setattr__(self, "values", values)
+
+    def __eq__(self, other: object) -> bool:
+        """Whether the points and what is between them are the same."""
+        if not isinstance(other, SpeedLaw):
+            return NotImplemented
+        return self.kind == other.kind and all(
+            np.array_equal(np.asarray(one), np.asarray(two))
+            for one, two in ((self.speeds, other.speeds), (self.values, other.values))
+        )
+
+    def __hash__(self) -> int:
+        return hash((self.kind, np.asarray(self.speeds).tobytes()))
 
     @property
     def top_speed(self) -> float:
@@ -132,24 +143,28 @@ class SpeedLaw:
 
     def largest(self, top: float) -> float:
         """The largest f up to a speed: it does not overshoot its points."""
-        speeds = np.asarray(self.speeds)
-        return float(self.extended(np.append(speeds[speeds < top], top)).max())
+        speeds, last = np.asarray(self.speeds), positive("top", top, "m/s")
+        return float(self.extended(np.append(speeds[speeds < last], last)).max())
 
     def steepest(self, top: float) -> float:
         """About the largest u f′ up to a speed."""
+        positive("top", top, "m/s")
         speeds, f = np.asarray(self.speeds), np.asarray(self.values)
         return float(np.max(speeds[1:] * np.abs(np.diff(f) / np.diff(speeds))))
 
     def pieces(self, top: float) -> tuple[FloatArray, FloatArray]:
         """The law in pieces up to a speed, see :mod:`puck_tables.contact.law_pieces`."""
-        speeds = np.asarray(self.speeds)
-        count = int(np.count_nonzero(speeds[:-1] < top))  # a corner at the top is not yet passed
+        speeds, last = np.asarray(self.speeds), positive("top", top, "m/s")
+        count = int(np.count_nonzero(speeds[:-1] < last))  # a corner at the top is not yet passed
         origins = np.stack([speeds[:count], np.ones(count)], axis=1)
         return speeds[: count + 1], np.concatenate([origins, self.coefficients[:count]], axis=1)
 
     @classmethod
     def from_csv(cls, path: str | Path, kind: str = "cubic") -> SpeedLaw:
-        """Read a law: two columns, speed in m/s and f, with or without a header line.
+        """Read a law: columns of speed and f, in m/s or in the unit that its heading says.
+
+        Columns are known by names (speed, v; mu, f, COF), in any order and beside others; without
+        headings they are speed and f.  Any separator and decimal mark, comments.
 
         Raises
         ------
@@ -161,24 +176,12 @@ class SpeedLaw:
         >>> SpeedLaw.from_csv("/nowhere/law.csv")
         Traceback (most recent call last):
         ...
-        puck_tables.errors.InputError: cannot read the friction law /nowhere/law.csv: No such file \
-or directory
+        puck_tables.errors.InputError: cannot read /nowhere/law.csv: No such file or directory
         """
+        numbers = numbers_of(path, (SPEED, FRICTION), 2, _LARGEST)
+        numbers.refuse_unless_ascending("the speeds", equal=True)
         try:
-            rows = read_rows(path, _LARGEST)
-        except (OSError, ValueError) as error:
-            reason = "it is not text" if isinstance(error, UnicodeDecodeError) else str(error)
-            reason = getattr(error, "strerror", None) or reason
-            raise InputError(f"cannot read the friction law {path}: {reason}") from None
-        for row in rows:
-            if len(row) != 2 or not all(map(is_number, row)):
-                raise InputError(
-                    f"{path}: each line of a friction law must be a speed in m/s and f, like "
-                    f"0.5,0.12; got '{','.join(row)[:60]}'"
-                )
-        points = np.array([[float(cell) for cell in row] for row in rows]).reshape(-1, 2)
-        try:
-            return cls(points[:, 0], points[:, 1], kind)
+            return cls(*from_rest(numbers.rows[:, 0], numbers.rows[:, 1], str(path)), kind)
         except InputError as error:
             raise InputError(f"{path}: {error}") from None
 

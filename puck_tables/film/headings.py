@@ -30,6 +30,9 @@ _FILLING = {"pos", "position", "coord", "coordinate", "coords", "value", "number
 _OTHER = {"v", "vel", "velocity", "speed", "acc", "acceleration", "err", "error", "std", "sigma",
           "var", "cov", "width", "height", "size", "mass", "area", "min", "max", "bbox", "momentum",
           "omega", "force", "mean", "raw"}  # fmt: skip
+_RATES = {"vx", "vy", "ax", "ay", "a", "dx", "dy"}
+# a place on a line, where nothing is called x or y
+_ALONG = ("position", "pos", "displacement", "distance", "ort", "weg")
 _KIND = {"x": "length", "y": "length", "time": "time", "step": "time", "angle": "angle"}
 _TOKEN = re.compile(r"[^\W\d_]+|\d+|°")
 _CAMEL = re.compile(r"(?<=[a-zà-ÿ])(?=[A-Z])")
@@ -133,3 +136,30 @@ def headings(names: Iterable[str]) -> list[Heading]:
         counted[key] = counted.get(key, 0) + 1
         numbered.append(one._replace(puck=f"{one.puck} {counted[key]}".strip()))
     return numbered
+
+
+def on_a_line(names: Sequence[str], read: Sequence[Heading]) -> list[Heading] | None:
+    """The headings of a track along a line, of which x or y alone is told; None if it is none.
+
+    What else there is has to be known, or to be of another quantity than places.
+
+    Examples
+    --------
+    >>> names = ["time", "position [cm]", "v"]
+    >>> [one.role for one in on_a_line(names, headings(names))]
+    ['time', 'x', '']
+    >>> on_a_line(["t", "x", "h"], headings(["t", "x", "h"]))
+    """
+    words = [{word.lower() for word in _TOKEN.findall(name)} for name in names]
+    found = list(read)
+    told = {one.role for one in read} & {"x", "y"}
+    named = [n for n, one in enumerate(read) if not one.role and words[n] & {*_ALONG}]
+    if not told and len(named) == 1:
+        n = named[0]
+        found[n] = heading(re.sub("|".join(_ALONG), "x", names[n], flags=re.IGNORECASE))
+        told = {found[n].role} & {"x"}
+    other = [
+        n for n, one in enumerate(found)
+        if not one.role and words[n] and not words[n] & (_OTHER | _RATES)
+    ]  # fmt: skip
+    return found if len(told) == 1 and not other else None

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from puck_tables._core.text import Look, split
-from puck_tables._core.units import is_unit
+from puck_tables._core.header import header_of
+from puck_tables._core.text import Look
 from puck_tables.errors import InputError
-from puck_tables.film.headings import Heading, heading, headings
+from puck_tables.film.headings import Heading, heading, headings, on_a_line
 
 _TRACKPY = {"frame", "particle", "x", "y"}
 _SCORER = "scorer"  # begins DeepLabCut's tables
@@ -23,7 +22,8 @@ class Layout:
 
     ``columns``: each with the body that it is of ('' for all), ``kind``: of file, for messages,
     ``jointed``: whether marks are parts of a body, ``pixels``: whether such files are in pixels,
-    ``likely``: the likelihood below which a place is none.
+    ``likely``: the likelihood below which a place is none, ``along``: whether x or y alone is told,
+    of tracks along a line.
     """
 
     columns: list[tuple[str, Heading]]
@@ -31,6 +31,7 @@ class Layout:
     jointed: bool = False
     pixels: bool = False
     likely: float | None = _LIKELY
+    along: bool = False
 
 
 def layout_of(path: str | Path, look: Look, columns: str | None) -> Layout:
@@ -82,7 +83,6 @@ def headed(path: str | Path, look: Look, columns: str | None) -> list[list[str]]
     >>> headed("a.csv", look, None)
     [['t [s]', 'x [cm]']]
     """
-    header = [row[: look.width] + [""] * (look.width - len(row)) for row in look.header]
     if columns is not None:
         names = [name.strip() for name in columns.split(",")]
         if len(names) != look.width:
@@ -91,8 +91,7 @@ def headed(path: str | Path, look: Look, columns: str | None) -> list[list[str]]
                 f"with - for those to leave out (its first row is {_shown(look.rows[0])})"
             )
         return [["" if name == "-" else name for name in names]]
-    if not header and (said := _commented(look)):
-        header = [said]
+    header = header_of(look, lambda cells: {"x", "y"} <= {one.role for one in map(heading, cells)})
     if not header:
         raise InputError(
             f"{path} has no header: say what its {look.width} columns are, such as "
@@ -100,25 +99,12 @@ def headed(path: str | Path, look: Look, columns: str | None) -> list[list[str]]
         )
     if header[0][0].lower() == _SCORER:
         return header
-    if len(header) > 1 and _are_units(header[-1]):
-        units = header.pop()
-        header[-1] = [
-            f"{name} [{unit.strip('[]() ')}]" if is_unit(unit) else name
-            for name, unit in zip(header[-1], units, strict=True)
-        ]
     if look.header and len(look.header[-1]) < look.width:
         raise InputError(
             f"{path} has {len(look.header[-1])} names for {look.width} columns, so none can be told"
             " from another: name all with columns (--columns), - for those to leave out"
         )
     return header
-
-
-def _are_units(row: Sequence[str]) -> bool:
-    """Whether a row holds units: some that are known, and others in brackets."""
-    return any(map(is_unit, row)) and all(
-        is_unit(cell) or cell in ("", "-") or re.fullmatch(r"[\[(].*[\])]", cell) for cell in row
-    )
 
 
 def _owners(header: list[list[str]]) -> list[str]:
@@ -146,6 +132,8 @@ def _named(names: Sequence[str], owners: Sequence[str] = ()) -> Layout:
     if any(name.lower() == "instance.score" for name in names):
         read = [Heading("") if one.puck == "instance" else one for one in read]
     read = _own_times(read)
+    if (line := on_a_line(names, read)) is not None:
+        return Layout([("", one) for one in line], along=True)
     return Layout(list(zip(_blocks(read), read, strict=True)))
 
 
@@ -205,15 +193,6 @@ def _deeplabcut(path: str | Path, header: list[list[str]]) -> Layout:
         known = role if role in ("x", "y", "likelihood") else ""
         columns.append((owners[n], Heading(known, rows["bodyparts"][n], "")))
     return Layout(columns, "DeepLabCut table", jointed=True, pixels=True)
-
-
-def _commented(look: Look) -> list[str]:
-    """The header in the last comment over the numbers, if there is one."""
-    for line in reversed(look.said):
-        cells = split(re.sub(r"^[#%/\s]+", "", line), look.separator)
-        if len(cells) == look.width and {"x", "y"} <= {one.role for one in map(heading, cells)}:
-            return cells
-    return []
 
 
 def name_of(look: Look, column: int) -> str:

@@ -6,8 +6,8 @@ import codecs
 from collections.abc import Sequence
 from pathlib import Path
 
+from puck_tables._core.beginning import HDF5, ZIP, beginning, refuse_no_text
 from puck_tables._core.real import instance
-from puck_tables._core.safe_read import opened
 from puck_tables._core.text import LARGEST, encoding_of
 from puck_tables.errors import InputError
 from puck_tables.film.film import Film
@@ -15,23 +15,6 @@ from puck_tables.film.plane import Marks
 from puck_tables.film.settle import How, settled
 from puck_tables.film.tables import film_of_table
 from puck_tables.film.track import Track
-
-_HEAD = 1 << 18
-_HDF5, _ZIP = b"\x89HDF\r\n\x1a\n", b"PK\x03\x04"
-_PICKLED = "a pickle, which could run anything: save the table as CSV (df.to_csv)"
-_OTHERS = (  # how files begin that are none of ours
-    (b"\x80\x02", _PICKLED), (b"\x80\x03", _PICKLED), (b"\x80\x04", _PICKLED),
-    (b"\x80\x05", _PICKLED), (b"ccopy_reg", _PICKLED), (b"\x1f\x8b", "compressed: unpack it first"),
-    (b"BZh", "compressed: unpack it first"), (b"\xfd7zXZ", "compressed: unpack it first"),
-    (b"\x93NUMPY", "a NumPy array: save it as CSV (numpy.savetxt)"),
-    (b"PAR1", "a Parquet file: save the table as CSV"),
-    (b"MATLAB", "a MATLAB file: save the table as CSV"),
-    (b"\xd0\xcf\x11\xe0", "a spreadsheet: save its table as CSV"),
-    (b"RIFF", "a film, not a track: first follow the puck in it, with Tracker for one"),
-    (b"%PDF", "a PDF: save the table as CSV"), (b"{\\rtf", "formatted text: save it as plain text"),
-    (b"\xff\xd8\xff", "a picture, not a track"), (b"\x89PNG", "a picture, not a track"),
-    (b"GIF8", "a picture, not a track"),
-)  # fmt: skip
 
 
 def read_tracks(
@@ -130,7 +113,7 @@ def film_of(path: str | Path, columns: str | None = None) -> Film:
     ...     film_of(file).unit
     'px'
     """
-    head = beginning(path)
+    head = beginning(path, LARGEST)
     film = _own_format(path, head)
     if film is None:
         return film_of_table(path, head, columns)
@@ -139,69 +122,13 @@ def film_of(path: str | Path, columns: str | None = None) -> Film:
     return film
 
 
-def beginning(path: str | Path) -> bytes:
-    """How a file begins.
-
-    Raises
-    ------
-    InputError
-        If it is empty, or of a kind in which no track stands.
-    OSError
-        If it cannot be read.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     _ = Path(folder, "a.csv").write_text("t,x,y")
-    ...     beginning(Path(folder, "a.csv"))
-    b't,x,y'
-    """
-    with opened(path, LARGEST) as file:
-        head = file.read(_HEAD)
-    if not head:
-        raise InputError(f"{path} is empty")
-    for begin, what in _OTHERS:
-        if head.startswith(begin):
-            raise InputError(f"{path} is {what}")
-    if head[4:8] == b"ftyp":
-        raise InputError(
-            f"{path} is a film, not a track: first follow the puck in it, with Tracker for one"
-        )
-    return head
-
-
-def refuse_no_text(path: str | Path, head: bytes) -> None:
-    """Refuse a file of tracks that is no table in a text file.
-
-    Raises
-    ------
-    InputError
-
-    Examples
-    --------
-    >>> refuse_no_text("a.json", b"{}")
-    Traceback (most recent call last):
-    ...
-    puck_tables.errors.InputError: a.json looks like JSON: save the table as CSV
-    """
-    for begin, what in ((_HDF5, "an HDF5 file"), (_ZIP, "a zip archive")):
-        if head.startswith(begin):
-            raise InputError(f"{path} is {what}: save the table as CSV")
-    text = head[:400].decode(encoding_of(path, head), errors="ignore").lstrip("\ufeff \t\r\n")
-    if text.startswith("<"):
-        raise InputError(f"{path} looks like XML: save the table as CSV")
-    if text.startswith(("{", "[")):
-        raise InputError(f"{path} looks like JSON: save the table as CSV")
-
-
 def _own_format(path: str | Path, head: bytes) -> Film | None:
     """The film in a file that is no table."""
-    if head.startswith(_HDF5):
+    if head.startswith(HDF5):
         from puck_tables.film.poses import film_of_hdf5
 
         return film_of_hdf5(path)
-    if head.startswith(_ZIP):
+    if head.startswith(ZIP):
         from puck_tables.film.tracker import film_of_zip
 
         return film_of_zip(path)

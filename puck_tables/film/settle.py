@@ -20,6 +20,7 @@ from puck_tables.film.plane import Marks, Plane
 from puck_tables.film.track import Track
 
 _SURE = 1.5  # likelihoods above are no shares of 1, whatever rounding or scoring did
+_STAMPED = 1e3  # lengths of a film: a first time that is later is that of a clock
 _SLOW = 1.0  # s between frames: more, and times are hardly in seconds
 
 
@@ -245,8 +246,10 @@ def _times(path: str | Path, film: Film, body: Body, how: How) -> tuple[FloatArr
         what = "frame numbers and no times" if body.frame is not None else "no times"
         row = "" if body.frame is not None else "; each row is then a frame"
         raise InputError(f"{path} has {what}: give frames a second with fps (--fps 120){row}")
+    first = _stamped(film)
+    said = [f"times from its first frame on, {first:.15g} s of its clock"] if first else []
     if film.timed:
-        return body.time, []
+        return body.time - first, said
     apart = np.diff(body.time[~np.isnan(body.time)])
     if apart.size and np.median(apart) > _SLOW:
         raise InputError(
@@ -254,7 +257,19 @@ def _times(path: str | Path, film: Film, body: Body, how: How) -> tuple[FloatArr
             f"{np.median(apart):.4g} s apart: say it in the header, or with columns "
             "(--columns 't [ms],x,y')"
         )
-    return body.time, ["times taken as seconds, of which the file says nothing"]
+    return body.time - first, ["times taken as seconds, of which the file says nothing", *said]
+
+
+def _stamped(film: Film) -> float:
+    """The first time of all bodies, where it is far from 0 for so short a film; 0 elsewhere.
+
+    Such times are stamps of a clock: as dates do, they mean nothing but the time between them.
+    """
+    times = [body.time[~np.isnan(body.time)] for body in film.bodies if body.time is not None]
+    known = np.concatenate(times) if times else np.empty(0)
+    if not known.size or not abs(known.min()) > _STAMPED * np.ptp(known) > 0.0:
+        return 0.0
+    return float(known.min())
 
 
 def _pucks(

@@ -60,7 +60,8 @@ def film_of_table(path: str | Path, head: bytes, columns: str | None) -> Film:
         names = ", ".join(name_of(look, n) for n in range(min(look.width, 8)))
         raise InputError(
             f"{path} has no columns x and y that are known by their names (they are {names:.90}): "
-            f"say what they are, such as columns='{example(look.width)}' (--columns)"
+            f"say what they are, such as columns='{example(look.width)}' (--columns), of a puck on "
+            "a line with x alone"
         )
     texts = [n for n in wanted if _holds_text(look, n, layout.columns[n][1])]
     values, words = read_columns(path, look, [n for n in wanted if n not in texts], texts)
@@ -76,6 +77,8 @@ def film_of_table(path: str | Path, head: bytes, columns: str | None) -> Film:
         film.notes.append(f"column{'' if len(unused) == 1 else 's'} {names} left out")
     if any(one.role == "step" for _, one in layout.columns):
         film.notes.append("times summed from steps, each since the row before")
+    if layout.along:
+        film.notes.append("places along one line, the other coordinate is 0")
     film.unit, film.angle_unit, film.timed = _units(path, layout)
     if layout.pixels:
         film.unit = film.unit or "px"
@@ -88,7 +91,7 @@ def film_of_table(path: str | Path, head: bytes, columns: str | None) -> Film:
                 n: one for n, (whose, one) in enumerate(layout.columns)
                 if one.role and whose in ("", body)
             }  # fmt: skip
-            found = _body(path, body, mine, values, words, chosen)
+            found = _body(path, body, mine, values, words, chosen, layout.along)
             if found.marks:
                 film.bodies.append(found)
     return film
@@ -159,9 +162,9 @@ def _rows(
 
 def _body(
     path: str | Path, name: str, columns: dict[int, Heading], values: dict[int, FloatArray],
-    words: dict[int, Any], rows: Any,
+    words: dict[int, Any], rows: Any, along: bool,
 ) -> Body:  # fmt: skip
-    """One body from its columns and rows."""
+    """One body from its columns and rows; ``along``: places along x or y alone, the other is 0."""
     found: dict[tuple[str, str], FloatArray] = {}
     units: dict[str, str] = {}
     seen: dict[str, Flags] = {}
@@ -181,13 +184,15 @@ def _body(
     for role, mark in found:
         if role not in ("x", "y"):
             continue
-        other = found.get(("y" if role == "x" else "x", mark))
+        where = found[role, mark]
+        other = found.get(("y" if role == "x" else "x", mark), 0.0 * where if along else None)
         if other is None:
             raise InputError(
                 f"{path} has a column {role} {f'of {mark} ' if mark else ''}without its "
-                f"{'y' if role == 'x' else 'x'}: name its columns with columns (--columns)"
+                f"{'y' if role == 'x' else 'x'}: name its columns with columns (--columns), of a "
+                f"puck that goes along {role} alone with - for what else there is"
             )
-        marks[mark] = np.column_stack([found["x", mark], found["y", mark]])
+        marks[mark] = np.column_stack([where, other] if role == "x" else [other, where])
     body = Body(name, marks, seen=seen)
     clocks = {}
     for (role, _), value in found.items():

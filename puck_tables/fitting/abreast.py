@@ -21,6 +21,7 @@ ROBUST = 3.0  # where residuals begin to count less, in units of the noise
 _DAMPED, _EASED, _HARDER = 1e-3, 0.1, 10.0
 _LEAST = 1e-9  # damping: what is not seen stays where it is
 _LEVEL, _HARDEST = 1e-4, 1e6  # what costs fall by, or the damping, where a start has arrived
+_ROUNDING = 1e-24  # of the largest square of slopes
 _APART = 1e-2  # starts that are nearer have met
 
 
@@ -82,11 +83,12 @@ class _Walker:
         """One step, or none where it leads up."""
         scale = self.scale
         if scale < math.inf:
-            scale = max(scale, 2.0 * float(np.median(np.abs(self.rows))))
+            scale = max(scale, 2.0 * self.problem.usual(self.rows))
         slopes, weights = self.slopes, self.weights / (1.0 + (self.rows / scale) ** 2)
         square = (slopes.T * weights) @ slopes
         size = np.diag(square)
-        damped = square + np.diag(np.where(size > 0.0, self.damping * size, 1.0))
+        seen = size > _ROUNDING * size.max()  # of the others slopes are rounding
+        damped = square + np.diag(np.where(seen, self.damping * size, 1.0))
         down = slopes.T @ (weights * self.rows)
         change = np.linalg.solve(damped, down)
         if not np.isfinite(change).all():

@@ -187,8 +187,8 @@ def _marked(film: Seen) -> Seen:
 
 def _longer(film: Seen) -> Seen:
     count = math.ceil(_LONGER * film.time.size)
-    return Seen(
-        film.name, film.start, film.usual_step * np.arange(float(count)), np.zeros((count, 2)),
-        None if film.angle is None else np.zeros(count), np.arange(count),
-        None if film.row is None else np.resize(film.row, count),
+    return replace(
+        film, time=film.usual_step * np.arange(float(count)), place=np.zeros((count, 2)),
+        angle=None if film.angle is None else np.zeros(count), frame=np.arange(count),
+        row=None if film.row is None else np.resize(film.row, count),
     )  # fmt: skip

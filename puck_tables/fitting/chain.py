@@ -49,6 +49,10 @@ def _first(problem: Problem, n: int, size: int) -> FloatArray:
     for k, name in enumerate(LAUNCH):
         if (n, name) in problem.names:
             found[1 + k, problem.names.index((n, name))] = 1.0
+    straight = problem.films[n].straight
+    if straight is not None:
+        for main in (1 + straight.main, 3 + straight.main):
+            found[main + 1 - 2 * straight.main] = straight.slope * found[main]
     row = problem.films[n].row
     if row is not None and "readout" in problem.asked.free:
         found[0, problem.asked.free.index("readout")] = row[0]

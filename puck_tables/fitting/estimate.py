@@ -16,7 +16,7 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.compact import compact
 from puck_tables.fitting.least_squares import ROBUST, SQUARES, minimise
-from puck_tables.fitting.problem import ANGLE, PLACE, Problem
+from puck_tables.fitting.problem import ANGLE, PLACE, UNSEEN, Problem
 from puck_tables.fitting.timing import Known, likeliest
 
 FARTHEST = 4.0  # standard deviations of a frame that counts
@@ -77,7 +77,7 @@ def estimate(problem: Problem, start: FloatArray, noise_known: Known) -> Estimat
     x = np.clip(start, *problem.limits)
     problem = problem.with_noise(problem.noise, x)
     rows = problem.residuals(x)
-    if np.median(np.abs(rows)) > _AWAY * _MEDIAN:
+    if problem.usual(rows) > _AWAY * _MEDIAN:
         x, _ = minimise(problem, x, ROBUST)
         rows = problem.residuals(x)
     kept = _kept(problem, rows)
@@ -101,7 +101,7 @@ def estimate(problem: Problem, start: FloatArray, noise_known: Known) -> Estimat
 
 def _kept(problem: Problem, rows: FloatArray) -> npt.NDArray[np.bool_]:
     """Residuals of frames that are no outliers; a place counts as a whole."""
-    kept = np.ones(rows.size, bool)
+    kept: npt.NDArray[np.bool_] = problem.kinds != UNSEEN
     if rows.size < _FEW * len(problem.names):  # too few to tell what is one
         return kept
     each = problem.each()
@@ -113,6 +113,7 @@ def _kept(problem: Problem, rows: FloatArray) -> npt.NDArray[np.bool_]:
     for (x, y, turn), place, angle in zip(each, places, turns, strict=True):
         kept[x] = kept[y] = place <= FARTHEST_PLACE * wide_place
         kept[turn] = angle <= FARTHEST**2 * wide_turn
+    kept &= problem.kinds != UNSEEN
     return kept
 
 
@@ -166,11 +167,11 @@ def _jittery(
 ) -> tuple[tuple[float, float], float]:
     """The likeliest noise where time stamps jitter."""
     count = []
-    for film, (place, _, turn) in zip(problem.films, problem.each(), strict=True):
+    for film, (place, across, turn) in zip(problem.films, problem.each(), strict=True):
         angled = np.zeros(film.time.size, bool)
         if film.angle is not None:
             angled[np.isfinite(film.angle)] = kept[turn]
-        count.append(np.stack([kept[place], angled]))
+        count.append(np.stack([kept[place], angled, kept[across]]))
     seen = int((kept & (problem.kinds <= ANGLE)).sum())
     return likeliest(
         problem.noise, problem.jitter, known, np.concatenate(problem.off(x), axis=1),

@@ -12,7 +12,7 @@ from puck_tables.fitting.certainty import certainty_of
 from puck_tables.fitting.estimate import Estimate, estimate
 from puck_tables.fitting.free_motion import is_clean, is_hopeless, trimmed, without_ends
 from puck_tables.fitting.numbers import plausible_for
-from puck_tables.fitting.problem import Problem
+from puck_tables.fitting.problem import ANGLE, Problem
 from puck_tables.fitting.starts import minima_of
 from puck_tables.fitting.timing import Known
 
@@ -151,4 +151,4 @@ def _joint_start(
 
 
 def _observations(problem: Problem) -> int:
-    return int(problem.kinds.size) - len(problem.priors)
+    return int((problem.kinds <= ANGLE).sum())

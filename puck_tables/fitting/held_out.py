@@ -101,7 +101,8 @@ def predicted(
     by_fit = np.einsum("ik,kl,il->i", slopes, certainty.covariance, slopes)
     z, chosen = -rows / np.sqrt(1.0 + by_fit), np.zeros(rows.size, bool)
     for film, (x, y, turn), after in zip(films, whole.each(), later, strict=True):
-        chosen[x] = chosen[y] = after
+        chosen[x] = after
+        chosen[y] = after & (film.straight is None)
         if film.angle is not None:
             chosen[turn] = after[np.isfinite(film.angle)]
     names = tuple(film.name for film, after in zip(films, later, strict=True) if after.any())

@@ -68,7 +68,7 @@ def minimise(
 
     scale = how.scale
     if how.loss != "linear":  # far from the minimum all residuals are large, none an outlier
-        scale = max(scale, 2.0 * float(np.median(np.abs(residuals(inside)))))
+        scale = max(scale, 2.0 * problem.usual(residuals(inside)))
     while True:
         found: Any = least_squares(
             residuals, inside, jacobian, bounds=(low, high), x_scale="jac", loss=how.loss,
@@ -79,8 +79,7 @@ def minimise(
             whole[moved] = np.clip(found.x, *limits)
             return whole, float(found.cost)
         inside = _inside(found.x, low, high)
-        rows = np.abs(found.fun)
-        scale = max(how.scale, min(0.25 * scale, 2.0 * float(np.median(rows))))
+        scale = max(how.scale, min(0.25 * scale, 2.0 * problem.usual(found.fun)))
 
 
 def _astray(problem: Problem, x: FloatArray) -> str:

@@ -207,6 +207,13 @@ class Fit(Result):
             f"{float(getattr(self.given, name)):g}"
             for name in problem.asked.freed if hasattr(self.given, name)
         ]  # fmt: skip
+        for film, spinless in zip(problem.films, problem.spinless, strict=True):
+            if spinless:
+                said.append(
+                    f"{film.name} lies along a line and shows no angles: it is taken for a slide "
+                    "without spin. If it spun, friction may be up to 1.6 times as much "
+                    "(bounds or a start of launch_spin look for that)"
+                )
         for k, side in enumerate(self.certainty.pinned):
             if side:
                 end, way = problem.limits[side > 0][k], "above" if side > 0 else "below"

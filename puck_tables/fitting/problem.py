@@ -30,15 +30,17 @@ from puck_tables.fitting.launched import (
     rates_of,
 )
 from puck_tables.fitting.parameters import LAUNCH, WALL
-from puck_tables.fitting.seen import Seen, wrapped
+from puck_tables.fitting.seen import Seen, Straight, wrapped
 from puck_tables.fitting.timing import weights_of
 
 Found = dict[str, float]
 X, Y, TURN = range(3)  # of a path
-PLACE, ANGLE, PRIOR = range(3)  # kinds of residuals
+PLACE, ANGLE, PRIOR, UNSEEN = range(4)  # kinds of residuals; across a line there are none
 _CURVE_STEP = 1e-4
 _DRAGGED = 100.0  # drag times the length of a film
 _MOTION = ("launch_vx", "launch_vy", "launch_spin")
+LAUNCH_NAMES = tuple(LAUNCH)
+_ACROSS = (("launch_y", "launch_vy"), ("launch_x", "launch_vx"))  # of lines that x, or y, tells
 _WALL = -2  # the first wall in names, the next is one less
 
 
@@ -80,9 +82,26 @@ class Problem:
                 if name not in self.asked.fixed
                 and (name != "launch_angle" or film.angle is not None)
                 and not (rests and name in _MOTION)
+                and not (spinless and name == "launch_spin")
+                and (film.straight is None or name not in _ACROSS[film.straight.main])
             )
-            for film, rests in zip(self.films, self.rests or [False] * len(self.films), strict=True)
+            for film, rests, spinless in zip(
+                self.films, self.rests or [False] * len(self.films), self.spinless, strict=True
+            )
         )  # fmt: skip
+
+    @cached_property
+    def spinless(self) -> tuple[bool, ...]:
+        """Which tracks are taken for slides without spin: those along a line, without angles.
+
+        Unless something is said of their spin.
+        """
+        asked = self.asked
+        said = any("launch_spin" in one for one in (asked.fixed, asked.priors, asked.bounds,
+                                                    asked.start))  # fmt: skip
+        return tuple(
+            not said and film.straight is not None and film.angle is None for film in self.films
+        )
 
     @cached_property
     def names(self) -> tuple[tuple[int, str], ...]:
@@ -98,7 +117,8 @@ class Problem:
         """What kind each residual is of."""
         kinds = []
         for film in self.films:
-            kinds += [PLACE] * (2 * film.time.size)
+            kinds += [PLACE] * film.time.size
+            kinds += [PLACE if film.straight is None else UNSEEN] * film.time.size
             kinds += [ANGLE] * int(self._angled(film).sum())
         return np.array(kinds + [PRIOR] * len(self.priors), np.int64)
 
@@ -149,6 +169,12 @@ class Problem:
         for k, (track, name) in enumerate(self.names):
             if track >= 0:
                 out[track, order.index(name)] = x[k]
+        for row, film in zip(out, self.films, strict=True):
+            if film.straight is not None:
+                main, point = film.straight.main, film.straight.point
+                other = 1 - main
+                row[other] = point[other] + film.straight.slope * (row[main] - point[main])
+                row[2 + other] = film.straight.slope * row[2 + main]
         return out
 
     def unknowns(
@@ -296,7 +322,16 @@ class Problem:
             rows = off / np.array([self.noise[0], self.noise[0], self.noise[1]]).reshape(
                 -1, *[1] * (off.ndim - 1)
             )
+        straight = self.films[n].straight
+        if straight is not None:
+            if not self.weights:  # which lie along the motion
+                rows[X] = straight.way[0] * rows[X] + straight.way[1] * rows[Y]
+            rows[Y] = 0.0
         return np.concatenate([rows[X], rows[Y], rows[TURN, angled]])
+
+    def usual(self, rows: FloatArray) -> float:
+        """The median size of residuals of what is seen."""
+        return float(np.median(np.abs(rows[self.kinds != UNSEEN])))
 
     def jacobian(self, x: FloatArray) -> FloatArray:
         """Their derivatives, (residuals, unknowns)."""
@@ -335,6 +370,8 @@ class Problem:
                     for name, which in _PUSHES.items():
                         if (n, name) in spots:
                             block[:, :, spots[n, name]] = slopes[which]
+                    if film.straight is not None:
+                        self._along_line(n, block, slopes, film.straight)
                     continue
                 since, place_x, place_y, *pushes, angle = follow[n][m]
                 begin = np.zeros(x.size)
@@ -350,6 +387,17 @@ class Problem:
         for n, (k, _, spread) in enumerate(self.priors):
             out[row + n, k] = 1.0 / spread
         return self._residuals(x, paths), out
+
+    def _along_line(
+        self, n: int, block: FloatArray, slopes: FloatArray, straight: Straight
+    ) -> None:
+        """What the other coordinate does with the main one, added to the derivatives (3, n, m)."""
+        place, push = (LAUNCH_NAMES[straight.main + by] for by in (0, 2))
+        spots = {name: k for k, (track, name) in enumerate(self.names) if track == n}
+        if place in spots:
+            block[1 - straight.main, :, spots[place]] = straight.slope
+        if push in spots:
+            block[:, :, spots[push]] += straight.slope * slopes[(VY, VX)[straight.main]]
 
     def _by_difference(
         self, found: Found, name: str, times: FloatArray, slide: Slide

@@ -65,13 +65,16 @@ def lengthways(found: Estimate) -> float:
     """
     along, across = [], []
     off, rates = found.problem.off(found.x), found.problem.rates(found.x)
-    for (x, _, _), one, rate in zip(found.problem.each(), off, rates, strict=True):
+    films = found.problem.films
+    for film, (x, _, _), one, rate in zip(films, found.problem.each(), off, rates, strict=True):
+        if film.straight is not None:
+            continue
         speed = np.hypot(rate[0], rate[1])
         moving = found.kept[x] & (speed > _MOVING * speed.max(initial=0.0))
         ahead = rate[:2, moving] / speed[moving]
         along.append((one[:2, moving] * ahead).sum(axis=0))
         across.append(one[0, moving] * ahead[1] - one[1, moving] * ahead[0])
-    one, two = np.concatenate(along), np.concatenate(across)
+    one, two = (np.concatenate(part or [np.empty(0)]) for part in (along, across))
     if one.size < _ENOUGH or not two.any():
         return 1.0
     ratio = math.sqrt(float(np.mean(one**2) / np.mean(two**2)))

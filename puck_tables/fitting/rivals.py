@@ -80,7 +80,7 @@ def _of_other_spins(found: Estimate) -> list[FloatArray]:
     All tracks without spin, at the ratio that all motions tend to, or mirrored.
     """
     problem = found.problem
-    if _SPIN in problem.asked.fixed:
+    if _SPIN in problem.asked.fixed or all(problem.spinless):
         return []
     launches = problem.launches(found.x)
     numbers = problem.found(found.x)

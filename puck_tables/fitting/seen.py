@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -19,13 +20,34 @@ _THIRD = math.sqrt(20.0)  # the spread of a third difference of deviates
 _LAST = 5
 
 
+class Straight(NamedTuple):
+    """The line through ``point`` (x, y) m along ``way`` (cos, sin), the only places of a track.
+
+    What lies across it was not measured: it has no noise, and tells nothing.
+    """
+
+    point: tuple[float, float]
+    way: tuple[float, float]
+
+    @property
+    def main(self) -> int:
+        """0 where x tells the place, 1 where y does."""
+        return int(abs(self.way[1]) > abs(self.way[0]))
+
+    @property
+    def slope(self) -> float:
+        """By how much the other coordinate changes with the main one."""
+        return self.way[1 - self.main] / self.way[self.main]
+
+
 @dataclass(frozen=True, eq=False)
 class Seen:
     """Frames of one track where its puck is seen.
 
     ``time`` (n,) s from ``start``; ``place`` (n, 2) m; ``angle`` (n,) rad, NaN where there is none,
     or None where there never is; ``frame`` (n,): numbers in the track; ``row`` (n,): how far down
-    the picture, 0 at its first line and 1 at its last, or None.
+    the picture, 0 at its first line and 1 at its last, or None; ``straight``: the line along which
+    alone places are told, or None.
     """
 
     name: str
@@ -35,6 +57,7 @@ class Seen:
     angle: FloatArray | None
     frame: npt.NDArray[np.int64]
     row: FloatArray | None = None
+    straight: Straight | None = None
 
     def part(self, chosen: npt.NDArray[np.bool_]) -> Seen:
         """Some of the frames; the first of them is the new start."""
@@ -69,7 +92,10 @@ def seen_in(track: Track, since: float = -math.inf, until: float = math.inf) -> 
     chosen = track.seen & (track.time >= since) & (track.time <= until)
     count = int(chosen.sum())
     if count < FEWEST:
-        within = "" if since == -math.inf and until == math.inf else " in the time asked for"
+        within = ""
+        if since > -math.inf or until < math.inf:
+            first, last = track.time[track.seen][[0, -1]].tolist()
+            within = f" in the time asked for, of {first:.9g} s to {last:.9g} s"
         raise InputError(
             f"{track.name} shows the puck in {count} frame{'' if count == 1 else 's'}{within}: a "
             f"fit needs {FEWEST} or more"
@@ -80,8 +106,36 @@ def seen_in(track: Track, since: float = -math.inf, until: float = math.inf) -> 
     time = track.time[chosen]
     return Seen(
         track.name, float(time[0]), time - time[0], track.place[chosen], angle,
-        np.flatnonzero(chosen),
+        np.flatnonzero(chosen), straight=_straight(track.place[chosen]),
     )  # fmt: skip
+
+
+def _straight(place: FloatArray) -> Straight | None:
+    """The line on which all places (n, 2) lie, or nearer to it than their noise along it.
+
+    Noise of two coordinates would spread far more across.
+
+    Examples
+    --------
+    >>> x = np.arange(20.0) + 0.1 * np.random.default_rng(1).normal(size=20)
+    >>> _straight(np.stack([0.3 * x, 0.4 * x], axis=1)).way
+    (0.6, 0.8)
+    """
+    size = np.ptp(place, axis=0)
+    if not size.any():
+        return None
+    point = np.median(place, axis=0)
+    if size.all():
+        way = np.linalg.svd(place - place.mean(axis=0), full_matrices=False)[2][0]
+        way *= np.copysign(1.0, way[np.abs(way).argmax()])
+        off = place - point
+        noise = _spread([np.diff(off @ way, 3)])
+        if not np.ptp(off @ [-way[1], way[0]]) <= noise:
+            return None
+    else:
+        way = (size > 0.0).astype(np.float64)
+    x, y, cosine, sine = np.round([*point, *way], 15).tolist()
+    return Straight((x, y), (cosine, sine))
 
 
 def noise_of(films: list[Seen]) -> tuple[float, float]:
@@ -101,11 +155,16 @@ def noise_of(films: list[Seen]) -> tuple[float, float]:
         step = np.diff(film.time)
         even = np.abs(step / np.median(step) - 1.0) < _ALIKE
         runs = even[2:] & even[1:-1] & even[:-2]
-        places.append(np.diff(film.place, 3, axis=0)[runs].ravel())
+        way = np.eye(2) if film.straight is None else np.array([film.straight.way]).T
+        places.append(np.diff(film.place @ way, 3, axis=0)[runs])
         if film.angle is not None:
             third = np.diff(film.angle, 3)[runs]
             angles.append(wrapped(third[np.isfinite(third)]))
-    return _spread(places), _spread(angles)
+    # one of the two may be rounded, and hardly have any
+    along = [_spread([one[:, k] for one in places if k < one.shape[1]]) for k in range(2)]
+    known = [one for one in along if math.isfinite(one)]
+    place = math.sqrt(sum(one * one for one in known) / len(known)) if known else math.nan
+    return place, _spread(angles)
 
 
 def _spread(thirds: list[FloatArray]) -> float:

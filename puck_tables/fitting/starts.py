@@ -171,7 +171,8 @@ def _guesses(
     size = float(np.abs(places).max()) + problem.noise[0]
     curve = problem.moving(_any(asked)).curve
     found = []
-    for spin, turns in _spins(asked, turning, speed, radius, rests):
+    spins = [(0.0, 0)] if problem.spinless[0] else _spins(asked, turning, speed, radius, rests)
+    for spin, turns in spins:
         slip = math.hypot(speed, radius * spin) or 1.0
         phi = math.atan2(radius * spin, speed)
         rates = None if turning is None else turning.with_more(turns, film.time)[0]

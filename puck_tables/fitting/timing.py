@@ -79,7 +79,7 @@ def likeliest(
     known : which is given
     off : (3, n), m and rad, NaN where no angle is
     rates : (3, n)
-    kept : (2, n), whether place and angle count
+    kept : (3, n), whether the place along the motion, the angle, the place across it count
     share : of the squares that the unknowns have left
     """
     from scipy.optimize import minimize
@@ -107,7 +107,9 @@ def likeliest(
         squares = (x**2 + y**2) / place + turn**2 / angle
         ahead = (x * vx + y * vy) / place + turn * spin / angle
         squares -= stamp * ahead**2 / (1.0 + stamp * gain)
-        logarithm = 2.0 * placed.sum() * math.log(place) + angled.sum() * math.log(angle)
+        logarithm = (placed.sum() + kept[2].sum()) * math.log(place) + angled.sum() * math.log(
+            angle
+        )
         return float(logarithm + np.log1p(stamp * gain).sum() + factor * squares.sum())
 
     bounds = [

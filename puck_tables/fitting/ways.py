@@ -71,7 +71,7 @@ def _spins_of(slides: Estimate, n: int, found: dict[str, float]) -> list[Option]
     problem = slides.problem
     launch = problem.launches(slides.x)[n]
     film = problem.films[n]
-    if film.angle is not None or (problem.rests and problem.rests[n]):
+    if film.angle is not None or problem.spinless[n] or (problem.rests and problem.rests[n]):
         return [(0.0, launch)]
     radius = problem.asked.scales(found)[2]
     speed = max(math.hypot(launch[2], launch[3]), _LEAST_SPEED)

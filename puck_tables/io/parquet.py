@@ -12,7 +12,7 @@ try:
     import pyarrow.parquet
 except ImportError:
     raise MissingExtraError(
-        "Parquet files need pyarrow: pip install 'puck-tables[parquet]'"
+        'Parquet files need pyarrow: pip install "puck-tables[parquet]"'
     ) from None
 
 

@@ -8,7 +8,8 @@ import numpy as np
 
 from puck_tables.errors import InputError
 from puck_tables.io.columns import COLUMNS
-from puck_tables.plot.style import BLUE, GREY, LAUNCH, ORANGE, canvas, titled
+from puck_tables.plot.style import BLUE, GREY, LAUNCH, ORANGE, canvas
+from puck_tables.plot.words import titled
 from puck_tables.stopping.aim import Aim
 
 if TYPE_CHECKING:

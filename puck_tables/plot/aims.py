@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 from puck_tables.errors import InputError
 from puck_tables.io.columns import COLUMNS
 from puck_tables.plot.aim import told
-from puck_tables.plot.style import GREY, LAUNCH, canvas, legend_below
+from puck_tables.plot.style import GREY, LAUNCH, canvas, ramp
+from puck_tables.plot.words import counted, legend_below
 from puck_tables.stopping.aims import Aims
 
 if TYPE_CHECKING:
@@ -20,7 +21,7 @@ def draw(found: Aims) -> Figure:
     figure = canvas(10.0, 4.6)
     targets, launches = figure.subplots(1, 2, width_ratios=(1.5, 1.0))
     draw_on(targets, found)
-    launches.scatter(found.launch_spin, found.launch_speed, c=found.stop_time, s=8)
+    launches.scatter(found.launch_spin, found.launch_speed, c=found.stop_time, s=8, cmap=ramp())
     told(figure, launches, found.puck, found.answer)
     return figure
 
@@ -37,8 +38,9 @@ def draw_on(axes: Axes, found: Aims) -> None:
         raise InputError(f"there is nothing to draw: {found.answer}")
     missed = found.target[found.launches == 0]
     if missed.size:
-        axes.plot(*missed.T, "x", color=GREY, markersize=4, label="no launch")
-    marks = axes.scatter(found.target_x, found.target_y, c=found.stop_time, s=12)
+        words = f"no launch ({len(missed)} of {counted(found.launches.size, 'target')})"
+        axes.plot(*missed.T, "x", color=GREY, markersize=4, label=words)
+    marks = axes.scatter(found.target_x, found.target_y, c=found.stop_time, s=12, cmap=ramp())
     axes.plot(0.0, 0.0, **LAUNCH, label="launch")
     figure = axes.get_figure()
     assert figure is not None

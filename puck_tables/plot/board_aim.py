@@ -9,7 +9,8 @@ import numpy as np
 
 from puck_tables.errors import InputError
 from puck_tables.plot import pucks
-from puck_tables.plot.style import GREY, titled
+from puck_tables.plot.style import GREY
+from puck_tables.plot.words import counted, titled
 from puck_tables.world.aimed import BoardAim
 
 if TYPE_CHECKING:
@@ -36,9 +37,19 @@ def draw(found: BoardAim) -> Figure:
         figure,
         f"{found.scene.title or 'Board'}: {found.puck} {found.where}\n"
         f"{found.striker} sent off at {speed:.4g} m/s, {heading:.2f}°, "
-        f"{found.launch_spin[0]:.4g} rad/s" + ("; grey: other launches" if len(found) > 1 else ""),
+        f"{found.launch_spin[0]:.4g} rad/s{_others(found)}",
     )
     return figure
+
+
+def _others(found: BoardAim) -> str:
+    """What is told of the other launches."""
+    others = len(found) - 1
+    if not others:
+        return ""
+    return f"; grey: {counted(min(others, _MOST), 'other launch', 'other launches')}" + (
+        f" of {others}" if others > _MOST else ""
+    )
 
 
 def draw_on(axes: Axes, found: BoardAim) -> None:

@@ -6,50 +6,104 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from puck_tables._core.arrays import FloatArray
+from puck_tables._core.colours import on_white
+from puck_tables.errors import InputError
 from puck_tables.plot.board import draw_board, show
 from puck_tables.plot.board_panels import close_up, legend_under, panels_for
 from puck_tables.plot.film import Box, Film, film_of
-from puck_tables.plot.style import titled
-from puck_tables.world.sweep import WorldMap
+from puck_tables.plot.style import GREY
+from puck_tables.plot.words import counted, legend_below, noted, titled
+from puck_tables.world.sweep import TIME_UP, WorldMap
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_NAMED, _MOST = 8, 20_000
+_NAMED = 8
 _MOST_ENDS = (0.02, 0.98)  # of the ends stand in a close-up
+_BOARD = ("wall", "edge", "post", "arc", "pocket", "floor")  # what may range and is drawn once
 
 
 def draw(ends: WorldMap) -> Figure:
-    """The ends of all runs as points in the colours of the pucks."""
-    film = film_of(ends.an_example())
+    """The ends of all runs as points in the colours of the pucks, crosses where they left play.
+
+    Raises
+    ------
+    InputError
+        If no run has an end.
+    """
+    film = _board(ends)
     boxes = [_box(ends, film), *_close_up(ends, film)]
     figure, panels = panels_for(boxes)
     for axes, box in zip(panels, boxes, strict=True):
         _draw(axes, ends, film, box)
     legend_under(figure, panels[0], boxes)
-    titled(figure, f"{ends.scene.title or 'Scene'}: ends of {ends.end.size} runs")
+    titled(figure, f"{ends.scene.title or 'Scene'}: ends of {counted(ends.end.size, 'run')}")
+    _note(panels[0], ends, film)
+    for axes, box in zip(panels[1:], boxes[1:], strict=True):
+        x, y = (ends.columns[name].ravel() for name in ("x", "y"))
+        inside = (x >= box[0]) & (x <= box[1]) & (y >= box[2]) & (y <= box[3])
+        beyond = int((np.isfinite(x) & ~inside).sum())
+        noted(axes, f"close-up; {beyond} of {np.isfinite(x).sum()} ends lie outside")
     return figure
 
 
 def draw_on(axes: Axes, ends: WorldMap) -> None:
-    """The board alone."""
-    film = film_of(ends.an_example())
+    """The board alone.
+
+    Raises
+    ------
+    InputError
+        If no run has an end.
+    """
+    film = _board(ends)
     _draw(axes, ends, film, _box(ends, film))
+    _note(axes, ends, film)
+    legend_below(axes)
+
+
+def _board(ends: WorldMap) -> Film:
+    if not (ends.end <= TIME_UP).any():
+        told = ends.told or ("no run has an end",)
+        raise InputError(f"there is nothing to draw: {'; '.join(told)}")
+    return film_of(ends.an_example())
 
 
 def _draw(axes: Axes, ends: WorldMap, film: Film, box: Box) -> None:
+    """The board, and every end on it."""
     draw_board(axes, film)
-    step = max(1, ends.end.size // _MOST)
+    named = len(ends.names) <= _NAMED
+    total = {True: 0, False: 0}
     for number, (name, body) in enumerate(zip(ends.names, film.bodies, strict=True)):
-        there = ends.in_play[..., number].ravel() > 0.0  # NaN: no end
-        x, y = (ends.columns[c][..., number].ravel()[there][::step] for c in ("x", "y"))
-        label = name if len(ends.names) <= _NAMED else None
-        axes.plot(
-            x, y, linestyle="", marker=".", markersize=2.5, alpha=0.6, color=body.colour,
-            label=label, zorder=3,
-        )  # fmt: skip
+        x, y, playing = (ends.columns[c][..., number].ravel() for c in ("x", "y", "in_play"))
+        for stays, marker in ((True, "."), (False, "x")):
+            mine = (playing > 0.0) if stays else (playing == 0.0)  # NaN: no end
+            count = int(mine.sum())
+            total[stays] += count
+            words = f"{name}: {count} {'in' if stays else 'left'} play"
+            axes.plot(
+                x[mine], y[mine], linestyle="", marker=marker, markersize=3.0 if stays else 4.0,
+                color=on_white(body.colour), zorder=3, rasterized=True,
+                label=(" " * words.startswith("_") + words) if named and count else None,
+            )  # fmt: skip
+    for stays, marker in ((True, "."), (False, "x")):
+        if not named and total[stays]:
+            words = f"{total[stays]} {'in' if stays else 'left'} play"
+            axes.plot([], [], linestyle="", marker=marker, color=GREY, label=words)
     show(axes, box)
+
+
+def _note(axes: Axes, ends: WorldMap, film: Film) -> None:
+    """Say above the board what is not on it."""
+    lost = int((ends.end > TIME_UP).sum())
+    notes = [f"{lost} of {counted(ends.end.size, 'run')} without an end"] if lost else []
+    if any(path.startswith(_BOARD) for path in ends.scene.ranges):
+        notes.append("the board is that of the first run")
+    if film.hidden:
+        notes.append(film.hidden)
+    if notes:
+        noted(axes, "; ".join(notes))
 
 
 def _close_up(ends: WorldMap, film: Film) -> list[Box]:
@@ -60,15 +114,17 @@ def _close_up(ends: WorldMap, film: Film) -> list[Box]:
     x, y = (ends.columns[name][there] for name in ("x", "y"))
     middle = [np.quantile(row, _MOST_ENDS) for row in (x, y)]
     radius = max(body.radius for body in film.bodies)
-    return close_up(film.box, np.stack(middle, axis=1), radius)
+    return close_up(_box(ends, film), np.stack(middle, axis=1), radius)
 
 
 def _box(ends: WorldMap, film: Film) -> Box:
     """What shows the board and all ends."""
     left, right, low, top = film.box
-    x, y = ends.columns["x"], ends.columns["y"]
     radius = max(piece.radius for piece in ends.scene.pucks) if ends.scene.pucks else 0.0
-    return (
-        min(left, float(np.nanmin(x)) - radius), max(right, float(np.nanmax(x)) + radius),
-        min(low, float(np.nanmin(y)) - radius), max(top, float(np.nanmax(y)) + radius),
-    )  # fmt: skip
+
+    def sides(name: str) -> tuple[float, float]:
+        found: FloatArray = ends.columns[name]
+        return float(np.nanmin(found)) - radius, float(np.nanmax(found)) + radius
+
+    (west, east), (south, north) = sides("x"), sides("y")
+    return min(left, west), max(right, east), min(low, south), max(top, north)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,14 +10,13 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.plot.board import size_of
 from puck_tables.plot.film import Box
 from puck_tables.plot.style import canvas
+from puck_tables.plot.words import legend_below
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-    from matplotlib.legend import Legend
 
 LEGEND_ROW = 6  # entries
-_LEGEND_HEIGHT = 0.2  # in
 _BESIDE, _UNDER, _TITLE = 0.85, 0.6, 0.35  # in, for the labels of axes and for the title
 _NARROW = 6.5  # in, at least: for the legend
 _SMALL = 0.012  # of the panel's width: smaller pucks are shown in a close-up as well
@@ -48,31 +46,17 @@ def close_up(box: Box, places: FloatArray, radius: float) -> list[Box]:
 
 
 def panels_for(boxes: list[Box]) -> tuple[Figure, list[Axes]]:
-    """A figure with a panel for each box, the second titled a close-up."""
+    """A figure with a panel for each box."""
     heights = [size_of(box)[1] for box in boxes]
-    figure = canvas(_NARROW, _NARROW)
+    figure = canvas(max(*(size_of(box)[0] + _BESIDE for box in boxes), _NARROW), _NARROW)
     panels = figure.subplots(len(boxes), 1, squeeze=False, height_ratios=heights)[:, 0]
-    if len(boxes) > 1:
-        panels[1].set_title("close-up", fontsize=10)
     return figure, list(panels)
 
 
 def legend_under(figure: Figure, panel: Axes, boxes: list[Box]) -> None:
-    """What is labelled in a panel, below all; and the size of the figure that all this takes."""
-    handles, labels = panel.get_legend_handles_labels()
-    rows = math.ceil(len(labels) / LEGEND_ROW)
-    sizes = [size_of(box) for box in boxes]
+    """What is labelled in a panel, below all; and the height of the figure that all this takes."""
+    legend_below(figure, LEGEND_ROW, given=panel.get_legend_handles_labels())
+    under = sum(one.get_window_extent().height for one in figure.legends) / figure.dpi
     figure.set_size_inches(
-        max(*(wide + _BESIDE for wide, _ in sizes), _NARROW),
-        sum(high + _UNDER for _, high in sizes) + _LEGEND_HEIGHT * rows + _TITLE,
+        figure.get_figwidth(), sum(size_of(box)[1] + _UNDER for box in boxes) + under + _TITLE
     )
-    legend = figure.legend(
-        handles, labels, loc="outside lower center", ncols=LEGEND_ROW, frameon=False, fontsize=9
-    )
-    as_they_stand(legend)
-
-
-def as_they_stand(legend: Legend) -> None:
-    """What users write is no mathematics."""
-    for text in legend.get_texts():
-        text.set_parse_math(False)

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from puck_tables.plot.reference import no_rounding
-from puck_tables.plot.style import COLORS, GREY, canvas, shaded, titled
+from puck_tables.plot.style import COLORS, GREY, canvas, shaded
+from puck_tables.plot.words import legend_below, noted, titled
 from puck_tables.reference.comparison import Comparison
 from puck_tables.reference.floor import ratios, slip_over
 from puck_tables.reference.threshold import states_of
@@ -50,15 +51,16 @@ def draw_on(axes: Axes, found: Comparison) -> None:
     """The paths."""
     _, exact = _exact(found)
     axes.plot(exact["x"], exact["y"], label="exact", **_EXACT)
-    for n, (run, colour) in enumerate(zip(found.runs, _colours(found), strict=True)):
-        name = f"{run.log.name}" if n < _LABELLED else None
+    for run, colour in zip(found.runs, _colours(found), strict=True):
+        name = run.log.name if len(found.runs) <= _LABELLED else None
         axes.plot(run.log.x, run.log.y, color=colour, linewidth=1.0, label=name)
     no_rounding(axes)
     axes.set_xlabel("x / m")
     axes.set_ylabel("y / m")
     axes.grid(color="#e4e4e4", linewidth=0.6)
-    for text in axes.legend(frameon=False, fontsize=8).get_texts():
-        text.set_parse_math(False)
+    if len(found.runs) > _LABELLED:
+        noted(axes, f"{len(found.runs)} runs, the first light and the last dark")
+    legend_below(axes)
 
 
 def _draw_speeds(axes: Axes, found: Comparison) -> None:
@@ -91,7 +93,10 @@ def _draw_ratio(axes: Axes, found: Comparison) -> None:
         axes.axvline(rest.time, color=GREY, linewidth=0.8, linestyle=":", label="threshold met")
     finite = epsilon[np.isfinite(epsilon)]
     if finite.size:
-        axes.set_ylim(0.0, 1.3 * min(float(finite.max()), 5.0 * float(np.median(finite))) or 1.0)
+        top = 5.0 * float(np.median(finite))
+        axes.set_ylim(0.0, 1.3 * min(float(finite.max()), top) or 1.0)
+        if finite.max() > 1.3 * top:
+            noted(axes, f"it goes up to {finite.max():.3g}")
     axes.set_ylabel("ε = v/(rω)")
     _over_time(axes, found)
     axes.legend(frameon=False, fontsize=8)

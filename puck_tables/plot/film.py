@@ -15,8 +15,9 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.colours import brightness
+from puck_tables._core.colours import brightness, on_white
 from puck_tables.plot.scene import states_drawn
+from puck_tables.plot.words import out_of_sight
 from puck_tables.result import TimedResult
 from puck_tables.scene.outcome import SceneRun
 from puck_tables.scene.parts import Floor
@@ -48,6 +49,11 @@ class Body(NamedTuple):
     driven: bool
     knots: FloatArray
     gone: float
+
+    @property
+    def line(self) -> str:
+        """The colour of its ways, which are seen on white."""
+        return on_white(self.colour)
 
     @property
     def mark(self) -> str:
@@ -96,6 +102,7 @@ class Film(NamedTuple):
     box: Box
     floor: Floor
     frictions: tuple[float, ...]  # all that there are on it
+    hidden: str = ""  # walls and edges out of sight, in words
 
 
 def film_of(result: TimedResult) -> Film:
@@ -172,6 +179,7 @@ def _film(
     box = _with_corners(box, [plane for _, plane in planes])
     size, smallest = max(box[1] - box[0], box[3] - box[2]), min(body[1] for body in bodies)
     unseen = min(_UNSEEN[0] * size, _UNSEEN[1] * smallest)
+    lines = _lines(planes, box)
     colours = (colour_of(number) for number in range(len(bodies)))
     return Film(
         title, end, end_time,
@@ -180,8 +188,8 @@ def _film(
                  math.inf)
             for name, radius, colour, driven, states in bodies
         ],
-        _lines(planes, box), rounds, happenings or [], box,
-        Floor() if scene is None else scene.floor, () if scene is None else _frictions(scene),
+        lines, rounds, happenings or [], box, Floor() if scene is None else scene.floor,
+        () if scene is None else _frictions(scene), out_of_sight(planes, lines),
     )  # fmt: skip
 
 

@@ -14,7 +14,8 @@ from puck_tables.fitting.launched import path_of
 from puck_tables.fitting.numbers import Number
 from puck_tables.fitting.outcome import Fit
 from puck_tables.fitting.parameters import NODES
-from puck_tables.plot.style import BLUE, COLORS, GREY, LAUNCH, ORANGE, RED, canvas, titled
+from puck_tables.plot.style import BLUE, COLORS, GREY, LAUNCH, ORANGE, RED, canvas
+from puck_tables.plot.words import legend_below, titled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -28,7 +29,8 @@ _NARROW = 5.0  # times as long as wide: a path that is shown in scales of its ow
 
 def draw(found: Fit) -> Figure:
     """Paths, residuals over time, pulls, and profile curves of the puck's numbers."""
-    names = [n for n in found.estimate.problem.asked.free if found.numbers[n].determined]
+    free = found.estimate.problem.asked.free
+    names = [n for n in free if found.numbers[n].determined]
     figure = canvas(11.0, 7.0)
     grid = figure.add_gridspec(2, 6)
     draw_on(figure.add_subplot(grid[0, :3]), found)
@@ -44,7 +46,8 @@ def draw(found: Fit) -> Figure:
             _draw_friction(figure.add_subplot(inner[0, len(shown)]), found)
         for n, name in enumerate(shown):
             _draw_profile(figure.add_subplot(inner[0, n]), found, name)
-    told = [f"{name} = {_told(found.numbers[name])}" for name in names[:3]]
+    told = [f"{name} = {_told(found.numbers[name])}" for name in names]
+    told += [f"{name} is not determined" for name in free if name not in names]
     titled(figure, "; ".join([*told, f"chi² per degree {found.chi2 / max(found.degrees, 1):.3g}"]))
     return figure
 
@@ -53,26 +56,33 @@ def draw_on(paths: Axes, found: Fit) -> None:
     """The paths alone."""
     problem, x = found.estimate.problem, found.estimate.x
     moving, (slides, hits) = problem.moving(problem.found(x)), problem.slides(x)
-    whole, cut = {film.name: film for film in found.uncut}, False
+    whole, told = {film.name: film for film in found.uncut}, set[str]()
+
+    def once(words: str) -> str | None:
+        """A label, if nothing bears it yet."""
+        new = words not in told
+        told.add(words)
+        return words if new else None
+
     for n, (film, track) in enumerate(zip(problem.films, slides, strict=True)):
         if (before := whole.get(film.name)) is not None:
             foreign = (before.frame < film.frame[0]) | (before.frame > film.frame[-1])
             if foreign.any():
                 paths.plot(
                     *before.place[foreign].T, "+", color=GREY, markersize=5,
-                    label=None if cut else "cut off",
+                    label=once("cut off"),
                 )  # fmt: skip
-                cut = True
         counts = found.estimate.kept[problem.each()[n][0]]
         colour = COLORS[n % len(COLORS)]
         paths.plot(
-            *film.place[counts].T, ".", color=colour, markersize=7, alpha=0.3,
-            label=film.name if len(problem.films) > 1 and n < len(COLORS) else None,
+            *film.place[counts].T, "o", color=colour, markersize=4, fillstyle="none",
+            markeredgewidth=0.6,
+            label=film.name if 1 < len(problem.films) <= len(COLORS) else None,
         )  # fmt: skip
         if not counts.all():
             paths.plot(
                 *film.place[~counts].T, "x", color=RED, markersize=5,
-                label="left out" if n == 0 else None,
+                label=once("left out"),
             )  # fmt: skip
         ends = [slide.since - track[0].since for slide in track] + [float(film.time[-1])]
         for slide, (start, stop) in zip(track, pairwise(ends), strict=True):
@@ -81,15 +91,18 @@ def draw_on(paths: Axes, found: Fit) -> None:
             paths.plot(*(way + slide.launch[:2, None]), color=colour, linewidth=0.8)
         paths.plot(*track[0].launch[:2], **LAUNCH)
     for hit in hits:
-        paths.plot(*hit.place, "o", color=GREY, markersize=7, fillstyle="none")
-    paths.set(xlabel="x / m", ylabel="y / m", title="seen (dots) and found (lines)")
+        paths.plot(
+            *hit.place, "o", color=GREY, markersize=7, fillstyle="none", label=once("impact")
+        )
+    films = "" if len(problem.films) <= len(COLORS) else f" of {len(problem.films)} films"
+    title = f"seen (rings) and found (lines){films}"
+    paths.set(xlabel="x / m", ylabel="y / m", title=title)
     wide, high = (np.ptp(ends) for ends in (paths.get_xlim(), paths.get_ylim()))
     if max(wide, high) < _NARROW * min(wide, high):  # else a narrow path would be a line
         paths.set_aspect("equal", adjustable="datalim")
     else:
-        paths.set_title("seen (dots) and found (lines), x and y of different scale")
-    if paths.get_legend_handles_labels()[1]:
-        paths.legend(frameon=False, fontsize=9)
+        paths.set_title(f"{title}\nx and y of different scale")
+    legend_below(paths)
 
 
 def _draw_residuals(panel: Axes, found: Fit) -> None:
@@ -105,7 +118,7 @@ def _draw_residuals(panel: Axes, found: Fit) -> None:
         for time, part, colour, label in zip(times, parts, COLORS, labels, strict=False):
             first = film is estimate.problem.films[0]
             panel.plot(
-                time, shown[part], ".", color=colour, markersize=3, alpha=0.6,
+                time, shown[part], ".", color=colour, markersize=3,
                 label=label if first else None,
             )  # fmt: skip
     panel.axhline(0.0, color=GREY, linewidth=0.8)
@@ -115,7 +128,7 @@ def _draw_residuals(panel: Axes, found: Fit) -> None:
         ylim=(-6.5, 6.5),
         title=f"runs p = {found.runs:.2g}, drift p = {found.drift:.2g}",
     )
-    panel.legend(frameon=False, fontsize=9, ncols=3, loc="upper right")
+    legend_below(panel)
 
 
 def _draw_pulls(panel: Axes, found: Fit) -> None:

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _ARROWS = (9, 5)  # of a moving floor, across and up
+_MOVING = "#6f97b8"
 
 
 class Box(NamedTuple):
@@ -137,10 +138,10 @@ def _draw_motion(axes: Axes, floor: Floor, box: Box) -> None:
     fastest = float(np.hypot(vx, vy).max())
     cell = (box.right - box.left) / across
     axes.quiver(
-        x, y, vx, vy, color="#b9cfe0", angles="xy", scale_units="xy",
+        x, y, vx, vy, color=_MOVING, angles="xy", scale_units="xy",
         scale=fastest / (0.7 * cell), width=0.003, zorder=1,
     )  # fmt: skip
-    axes.plot([], [], color="#b9cfe0", marker=">", label=words)
+    axes.plot([], [], color=_MOVING, marker=">", label=words)
     if floor.turning != 0.0:
         axes.plot(
             *floor.centre, "+", color="#4a7fa8", markersize=12, markeredgewidth=1.6, zorder=2,

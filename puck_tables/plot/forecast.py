@@ -7,23 +7,26 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from puck_tables.fitting.forecast import Forecast
-from puck_tables.plot.style import LAUNCH, canvas, titled
+from puck_tables.plot.style import LAUNCH, NO_VALUE, canvas
+from puck_tables.plot.words import titled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 _SPEEDS, _SPINS = 9, 13
+_ACROSS = 3  # panels in a row
 _WIDEST = 2.0  # times the launch's own
 _RIM = 3.0  # rω/v at the end of the spins, at least
 
 
 def draw(found: Forecast) -> Figure:
-    """Maps of the standard errors of the first two numbers."""
-    figure = canvas(5.2 * min(len(found.free), 2) + 0.6, 4.4)
-    panels = figure.subplots(1, min(len(found.free), 2), squeeze=False)[0]
-    for panel, name in zip(panels, found.free, strict=False):
-        _draw_map(panel, found, name)
+    """Maps of the standard errors of all numbers."""
+    across = min(len(found.free), _ACROSS)
+    down = -(-len(found.free) // across)
+    figure = canvas(5.2 * across + 0.6, 4.0 * down + 0.4)
+    for n, name in enumerate(found.free, start=1):
+        _draw_map(figure.add_subplot(down, across, n), found, name)
     camera = found.camera
     marks = "no angle marks" if camera.angle_noise is None else f"{1e3 * camera.angle_noise:g} mrad"
     titled(
@@ -56,7 +59,7 @@ def _draw_map(panel: Axes, found: Forecast, name: str) -> None:
             spins, speeds, shown, norm=norm, shading="nearest", cmap="viridis_r", rasterized=True
         )
         figure.colorbar(mesh, ax=panel, label=f"standard error of {name}")
-    panel.set_facecolor("#dddddd")  # not determined
+    panel.set_facecolor(NO_VALUE)
     panel.plot(abs(found.spin), speed, **LAUNCH)
     panel.set(xlabel="launch spin / rad/s", ylabel="launch speed / m/s",
               title=f"{name}; grey: not determined")  # fmt: skip

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.plot.style import COLORS, GREY, canvas, titled
+from puck_tables.plot.style import COLORS, GREY, canvas
+from puck_tables.plot.words import legend_below, titled
 from puck_tables.wrench.models import Model
 from puck_tables.wrench.surface import LimitSurface
 
@@ -52,7 +53,7 @@ def draw_on(axes: Axes, surface: LimitSurface) -> None:
     phi = surface.slip_angle[picked]
     normals = surface.normal_force[picked], surface.normal_torque[picked]
     for x, y, label, color, width in (
-        (np.cos(phi), np.sin(phi), "twist (v, rω)", "#c8c8c8", 0.012),
+        (np.cos(phi), np.sin(phi), "twist (v, rω)", GREY, 0.012),
         (*normals, "normal", COLORS[0], 0.004),
     ):
         axes.quiver(
@@ -66,7 +67,7 @@ def draw_on(axes: Axes, surface: LimitSurface) -> None:
     axes.set_ylim(-reach, reach)
     axes.set_aspect(1.0 / radius, adjustable="box")
     axes.grid(color="#e4e4e4", linewidth=0.6)
-    axes.legend(frameon=False, fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=3)
+    legend_below(axes, down=0.12)
 
 
 def _section(model: Model) -> tuple[FloatArray, FloatArray]:

@@ -20,7 +20,8 @@ from puck_tables.plot import board
 from puck_tables.plot.film import Body, Film, between, film_of, path_of
 from puck_tables.plot.floor import Box as Sight
 from puck_tables.plot.floor import motion_said, shades_of
-from puck_tables.plot.style import RED, canvas, may_replace, require_matplotlib, titled
+from puck_tables.plot.style import RED, canvas, may_replace, require_matplotlib
+from puck_tables.plot.words import titled
 from puck_tables.result import TimedResult
 from puck_tables.scene.parts import Floor
 
@@ -132,6 +133,7 @@ def _body(body: Body) -> dict[str, Any]:
         **body._asdict(),
         "gone": body.gone if math.isfinite(body.gone) else None,
         "mark": body.mark,
+        "line": body.line,
         "knots": [[float(f"{x:.{DIGITS}g}") for x in row] for row in body.knots.tolist()],
     }
 
@@ -192,10 +194,10 @@ class _Stage:
         for body in film.bodies:
             looks: dict[str, Any] = {"facecolor": body.colour, "edgecolor": "black"}
             if body.driven:
-                looks = {"facecolor": "white", "edgecolor": body.colour}
+                looks = {"facecolor": "white", "edgecolor": body.line}
             self._discs.append(board.disc(body, 0.0, 0.0, linewidth=0.7, **looks))
             axes.add_patch(self._discs[-1])
-            self._trails += axes.plot([], [], color=body.colour, linewidth=0.8, alpha=0.7)
+            self._trails += axes.plot([], [], color=body.line, linewidth=0.8)
             self._marks += axes.plot([], [], color=body.mark, linewidth=1.0)
         self._flashes = axes.plot(
             [], [], linestyle="", marker="o", markersize=9, fillstyle="none", color=RED

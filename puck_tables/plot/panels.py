@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.plot.style import COLORS, GREY, canvas, shaded, titled
+from puck_tables.plot.style import COLORS, GREY, canvas, shaded
+from puck_tables.plot.words import titled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

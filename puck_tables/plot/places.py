@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from puck_tables.io.columns import COLUMNS
-from puck_tables.plot.style import LAUNCH, canvas, legend_below
+from puck_tables.plot.style import LAUNCH, canvas, ramp
+from puck_tables.plot.words import counted, legend_below, noted
 from puck_tables.stopping.states import States
 from puck_tables.stopping.stops import Stops
 
@@ -26,7 +29,10 @@ def draw_on(axes: Axes, result: Stops | States) -> None:
     names = ("x", "y", "time") if isinstance(result, States) else ("stop_x", "stop_y", "stop_time")
     columns = result.dataset().columns
     x, y, time = (columns[name].values.ravel() for name in names)
-    marks = axes.scatter(x, y, c=time, s=14)
+    marks = axes.scatter(x, y, c=time, s=14, cmap=ramp())
+    lost = int(np.count_nonzero(~np.isfinite(x + y)))
+    if lost:
+        noted(axes, f"{lost} of {counted(x.size, 'launch', 'launches')} without a place")
     axes.plot(0.0, 0.0, **LAUNCH, label="launch")
     figure = axes.get_figure()
     assert figure is not None

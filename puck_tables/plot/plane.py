@@ -11,6 +11,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.plot.floor import Box, draw_floor
 from puck_tables.plot.style import BLUE, GREY, LAUNCH, ORANGE, RED, STOP
+from puck_tables.plot.words import legend_below, noted, out_of_sight
 from puck_tables.scene.outcome import SceneRun
 from puck_tables.scene.parts import Edge, Wall
 from puck_tables.scene.plan import acting
@@ -37,7 +38,6 @@ _DRAWN = (
 _SHAPE = 2.2  # width of the panel over its height
 _PURPLE = "#8b2fa0"
 _LEGEND_ROW = 4  # entries
-_MARKED = 2000  # impacts: more would be one blot
 
 
 def draw_plane(axes: Axes, run: SceneRun, columns: dict[str, FloatArray]) -> None:
@@ -48,24 +48,27 @@ def draw_plane(axes: Axes, run: SceneRun, columns: dict[str, FloatArray]) -> Non
     draw_floor(axes, scene.floor, box, max(scene.frictions))
     axes.plot(x, y, color=BLUE, linewidth=1.4, zorder=3)
     _draw_pucks(axes, scene, columns)
-    _draw_lines(axes, scene.walls, box, "wall", color="black", linewidth=2.5)
-    _draw_lines(axes, scene.edges, box, "edge", color=RED, linestyle="--")
-    turns = [event for event in run.events if event.what in ("impact", "contact")][:_MARKED]
+    walls = _draw_lines(axes, scene.walls, box, "wall", color="black", linewidth=2.5)
+    edges = _draw_lines(axes, scene.edges, box, "edge", color=RED, linestyle="--")
+    turns = [event for event in run.events if event.what in ("impact", "contact")]
     if turns:
         axes.plot(
             [e.x for e in turns], [e.y for e in turns], ".", markersize=6, color=RED, zorder=4,
-            label="impact of the rim",
+            label="impact of the rim", rasterized=True,
         )  # fmt: skip
     _draw_constraint(axes, scene, columns, box, run.end_time)
-    _draw_pulls(axes, scene, x, y, box)
+    also = _draw_pulls(axes, scene, x, y, box)
+    hidden = out_of_sight(
+        [("wall",)] * len(scene.walls) + [("edge",)] * len(scene.edges),
+        [("wall",)] * walls + [("edge",)] * edges,
+    )
+    if notes := [words for words in (also, hidden) if words]:
+        noted(axes, "; ".join(notes))
     axes.plot(x[0], y[0], **LAUNCH, label="launch")
     axes.plot(x[-1], y[-1], **STOP, label=run.end)
     axes.set(xlabel="x / m", ylabel="y / m", xlim=box[:2], ylim=box[2:])
     axes.set_aspect("equal")
-    axes.legend(
-        loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=_LEGEND_ROW, frameon=False,
-        fontsize=9,
-    )  # fmt: skip
+    legend_below(axes, _LEGEND_ROW, 0.13)
 
 
 def _box(x: FloatArray, y: FloatArray, margin: float) -> Box:
@@ -122,7 +125,7 @@ def _draw_constraint(
     axes.plot(*at, "P", color=_PURPLE, markersize=8, zorder=5, linestyle="", label=words)
 
 
-def _draw_pulls(axes: Axes, scene: Scene, x: FloatArray, y: FloatArray, box: Box) -> None:
+def _draw_pulls(axes: Axes, scene: Scene, x: FloatArray, y: FloatArray, box: Box) -> str:
     """Slope and constant force as arrows in corners that the path leaves free; what else pulls."""
     pulls = []
     if scene.floor.slope > 0.0:
@@ -142,8 +145,7 @@ def _draw_pulls(axes: Axes, scene: Scene, x: FloatArray, y: FloatArray, box: Box
     also = [name for name in acting(scene) if name not in _DRAWN]
     if scene.force.torque != 0.0:
         also.append(f"torque {scene.force.torque:g} N m")
-    if also:
-        axes.set_title(f"also acting: {', '.join(also)}", fontsize=9, loc="left")
+    return f"also acting: {', '.join(also)}" if also else ""
 
 
 def _free_corners(
@@ -160,11 +162,13 @@ def _free_corners(
 
 def _draw_lines(
     axes: Axes, lines: Sequence[Wall | Edge], box: Box, label: str, **style: Any
-) -> None:
-    """Walls or edges; the first that is in sight bears the label."""
+) -> int:
+    """Walls or edges, the first that is in sight with the label; how many are in sight."""
+    seen = 0
     for line in lines:
-        if _draw_line(axes, line.point, line.normal, box, label=label, **style):
-            label = ""
+        words = "" if seen else label
+        seen += _draw_line(axes, line.point, line.normal, box, label=words, **style)
+    return seen
 
 
 def _draw_line(
@@ -176,7 +180,8 @@ def _draw_line(
     middle = ((box.left + box.right) / 2, (box.low + box.high) / 2)
     half = math.hypot(box.right - box.left, box.high - box.low)
     off = nx * (middle[0] - point[0]) + ny * (middle[1] - point[1])
-    if abs(off) > half:
+    reach = 0.5 * (abs(nx) * (box.right - box.left) + abs(ny) * (box.high - box.low))
+    if abs(off) > reach:
         return False
     foot = (middle[0] - off * nx, middle[1] - off * ny)
     axes.plot(

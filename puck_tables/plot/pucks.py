@@ -8,15 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from puck_tables.plot.board import disc, draw_board, show
-from puck_tables.plot.board_panels import (
-    LEGEND_ROW,
-    as_they_stand,
-    close_up,
-    legend_under,
-    panels_for,
-)
+from puck_tables.plot.board_panels import LEGEND_ROW, close_up, legend_under, panels_for
 from puck_tables.plot.film import Body, Box, Film, between, film_of, path_of
-from puck_tables.plot.style import GREY, RED, titled
+from puck_tables.plot.style import GREY, RED
+from puck_tables.plot.words import legend_below, noted, titled
 from puck_tables.world.outcome import WorldRun
 
 if TYPE_CHECKING:
@@ -24,7 +19,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _NAMED = 8  # pucks: more are told apart by colour alone
-_MARKED = 2000  # impacts: more would be one blot
 
 
 def draw(run: WorldRun) -> Figure:
@@ -38,6 +32,8 @@ def draw(run: WorldRun) -> Figure:
     for axes, box in zip(panels, boxes, strict=True):
         _draw_film(axes, film, box)
     legend_under(figure, panels[0], boxes)
+    for panel in panels[1:]:
+        noted(panel, "close-up")
     title = film.title or "Scene"
     titled(figure, f"{title}: {film.end} after {film.end_time:.4g} s")
     return figure
@@ -47,11 +43,7 @@ def draw_on(axes: Axes, run: WorldRun) -> None:
     """The board alone."""
     film = film_of(run)
     _draw_film(axes, film, film.box)
-    legend = axes.legend(
-        loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=LEGEND_ROW // 2, frameon=False,
-        fontsize=9,
-    )  # fmt: skip
-    as_they_stand(legend)
+    legend_below(axes, LEGEND_ROW // 2)
 
 
 def _draw_film(axes: Axes, film: Film, box: Box) -> None:
@@ -59,14 +51,18 @@ def _draw_film(axes: Axes, film: Film, box: Box) -> None:
     few = _named(film) > 0
     for body in film.bodies:
         _draw_body(axes, body, body.name if few else "")
-    impacts = [one for one in film.happenings if one.what == "impact"][:_MARKED]
+    impacts = [one for one in film.happenings if one.what == "impact"]
     if impacts:
         axes.plot(
             [one.x for one in impacts], [one.y for one in impacts], linestyle="", marker="o",
             markersize=3.6, color=RED, markeredgecolor="white", markeredgewidth=0.5, zorder=6,
-            label="impact",
+            label="impact", rasterized=True,
         )  # fmt: skip
     _explain_looks(axes, film)
+    notes = [] if few else [f"{len(film.bodies)} pucks, by their colours alone"]
+    notes += [film.hidden] if film.hidden else []
+    if notes:
+        noted(axes, "; ".join(notes))
     show(axes, box)
 
 
@@ -77,20 +73,20 @@ def _draw_body(axes: Axes, body: Body, label: str) -> None:
     words: dict[str, Any] = {"label": hidden + label} if label else {}
     moves = float(np.abs(path - path[0]).max()) > 1e-9 * body.radius
     axes.plot(
-        path[:, 0], path[:, 1], color=body.colour, linewidth=1.1, zorder=3,
+        path[:, 0], path[:, 1], color=body.line, linewidth=1.1, zorder=3,
         linestyle=(0, (5, 2)) if body.driven else "-", **words,
     )  # fmt: skip
     if moves:
         axes.add_patch(
-            disc(body, *path[0], fill=False, edgecolor=body.colour, linewidth=0.9, zorder=2)
+            disc(body, *path[0], fill=False, edgecolor=body.line, linewidth=0.9, zorder=2)
         )
     left = body.gone < math.inf
     x, y, angle = between(body.knots, body.knots[-1:, 0])[0]
     looks: dict[str, Any] = {"facecolor": body.colour, "edgecolor": "black", "linewidth": 0.7}
     if left:
-        looks = {"facecolor": "none", "edgecolor": body.colour, "linewidth": 1.2, "linestyle": ":"}
+        looks = {"facecolor": "none", "edgecolor": body.line, "linewidth": 1.2, "linestyle": ":"}
     elif body.driven:
-        looks |= {"facecolor": "white", "edgecolor": body.colour, "linewidth": 1.2}
+        looks |= {"facecolor": "white", "edgecolor": body.line, "linewidth": 1.2}
     axes.add_patch(disc(body, x, y, zorder=4, **looks))
     if not left and not body.driven:
         axes.plot(

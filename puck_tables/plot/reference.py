@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from puck_tables.plot import pucks, scene
-from puck_tables.plot.style import BLUE, COLORS, GREEN, GREY, LAUNCH, ORANGE, STOP, canvas, titled
+from puck_tables.plot.style import BLUE, COLORS, GREEN, GREY, LAUNCH, ORANGE, STOP, canvas
+from puck_tables.plot.words import noted, titled
 from puck_tables.reference.answer import Answer
 from puck_tables.world.outcome import WorldRun
 
@@ -63,6 +64,7 @@ def _tame(panel: Axes, epsilon: np.ndarray) -> None:
     finite = epsilon[np.isfinite(epsilon)]
     if finite.size and finite.max() > 20.0 * max(float(np.median(finite)), 1e-3):
         panel.set_ylim(0.0, 5.0 * float(np.median(finite)) or 1.0)
+        noted(panel, f"it goes up to {finite.max():.3g}")
 
 
 def draw_on(axes: Axes, answer: Answer) -> None:

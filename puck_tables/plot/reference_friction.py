@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from puck_tables.plot.style import BLUE, GREEN, ORANGE, canvas, titled
+from puck_tables.plot.style import BLUE, GREEN, ORANGE, canvas
+from puck_tables.plot.words import noted, titled
 from puck_tables.reference.friction import FloorFriction
 
 if TYPE_CHECKING:
@@ -35,5 +36,7 @@ def draw_on(axes: Axes, friction: FloorFriction) -> None:
                   marker="." if shown.size < 30 else "")  # fmt: skip
     axes.set_xscale("log")
     axes.set_xlabel("ε = v/(rω)")
+    if shown.size < order.size:  # the axis is logarithmic
+        noted(axes, f"{order.size - shown.size} of {order.size} without slide or without spin")
     axes.grid(color="#e4e4e4", linewidth=0.6)
     axes.legend(frameon=False)

@@ -2,25 +2,45 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+import math
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables._core.colours import on_white
 from puck_tables.bulk.summary import Summary
 from puck_tables.io.columns import COLUMNS
-from puck_tables.plot.style import BLUE, GREY, ORANGE, canvas, titled
+from puck_tables.plot.style import BLUE, GREY, ORANGE, canvas
+from puck_tables.plot.words import legend_below, noted, titled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_FEWEST, _MOST, _PER_BIN = 12, 120, 40.0
-_TAIL = 5e-4  # of the samples beyond each side of the map
+_FINE = 160  # cells along each side of the map
+_WIDTHS = (1, 2, 3, 4, 6, 8, 11, 16)  # of these cells: deviations of what smooths samples
+_NEAR, _SHARE = 800.0, 0.125  # samples that it takes together, at least; of all of them
+_COVERED = 0.02  # of the largest density: where there is less, each sample is drawn
+_TAIL, _ALONE = 5e-4, 1.5  # of the samples beyond each side of the map; samples, at least
 _HELD = (0.95, 0.5)  # of the samples inside the lines
-_WIDE = 2.0  # cells: lines about anything narrower are but noise
+_FLAT = 2e-3  # a cloud thinner than this over its length is seen as a line
+_FEW = 50  # samples have no density
+_LIGHT = 0.15  # of the ramp: less is not seen on white
 _SHARES = (0.025, 0.5, 0.975)
+
+
+class Cloud(NamedTuple):
+    """Where samples end, as a density over cells that lie along the cloud.
+
+    ``corners``: x and y of the cells' corners, (2, n + 1, n + 1) m; ``density`` (n, n) 1/m²;
+    ``at_samples``: the density at each sample, 1/m², 0 outside.
+    """
+
+    corners: FloatArray
+    density: FloatArray
+    at_samples: FloatArray
 
 
 def draw(samples: Any) -> Figure:
@@ -30,73 +50,142 @@ def draw(samples: Any) -> Figure:
     draw_on(figure.add_subplot(grid[:, :2]), samples)
     for n, name in enumerate(samples.shown):
         _histogram(figure.add_subplot(grid[n, 2]), samples, name)
-    titled(figure, f"{samples.ended} samples: {samples.drawn_words}")
+    lost = np.size(getattr(samples, samples.place[0])) - samples.ended
+    without = f" and {lost} without an end" if lost else ""
+    titled(figure, f"{samples.ended} samples{without}: {samples.drawn_words}")
     return figure
 
 
 def draw_on(panel: Axes, samples: Summary) -> None:
-    """The density alone."""
-    across, along, density = samples.density(_bins(samples.ended), _extent(samples))
-    shown = np.ma.masked_equal(density.T, 0.0)
-    mesh = panel.pcolormesh(across, along, shown, cmap="Blues", rasterized=True)
+    """The density alone, and every sample where it is low."""
+    x, y = (np.asarray(getattr(samples, name), np.float64).ravel() for name in samples.place)
+    ended = np.isfinite(x) & np.isfinite(y)
+    x, y = x[ended], y[ended]
+    sides = [_sides(samples, name) for name in samples.place]
+    seen = _inside(x, y, sides)
+    x, y = x[seen], y[seen]
+    cloud = cloud_of(x, y)
+    bare = np.ones(x.size, np.bool_)
+    if cloud is not None:
+        bare = cloud.at_samples < _COVERED * float(cloud.density.max())
+        _draw_density(panel, cloud)
+    panel.plot(
+        x[bare], y[bare], ".", color=on_white("#a8c4dc"), markersize=2.0,
+        rasterized=True, zorder=1, label="single samples",
+    )  # fmt: skip
+    mean = samples.mean()
+    panel.plot(*(mean[name] for name in samples.place), "+", color=ORANGE, label="mean", zorder=4)
+    panel.set(xlim=sides[0], ylim=sides[1])
+    panel.set_xlabel(COLUMNS[samples.place[0]].axis)
+    panel.set_ylabel(COLUMNS[samples.place[1]].axis)
+    if not seen.all():
+        noted(panel, f"{np.count_nonzero(~seen)} of {seen.size} samples lie outside")
+    legend_below(panel, 4)
+
+
+def _draw_density(panel: Axes, cloud: Cloud) -> None:
+    """The density, and the lines inside which are 95 and 50 % of the samples."""
+    from matplotlib import colormaps
+    from matplotlib.colors import ListedColormap
+
+    blues = ListedColormap(colormaps["Blues"](np.linspace(_LIGHT, 1.0, 256)))
+    thick = np.ma.masked_less(cloud.density, _COVERED * float(cloud.density.max()))
+    mesh = panel.pcolormesh(*cloud.corners, thick, cmap=blues, rasterized=True, zorder=2)
     figure = panel.get_figure(root=True)
     assert figure is not None
     figure.colorbar(mesh, ax=panel, label="density / m⁻²")
-    middles = [0.5 * (edges[1:] + edges[:-1]) for edges in (across, along)]
-    area = (across[1] - across[0]) * (along[1] - along[0])
-    levels = levels_holding(density, area)
-    if len(levels) == len(_HELD) and _width(density >= levels[1]) > _WIDE:
-        lines = panel.contour(
-            *middles, density.T, levels=levels, colors=[GREY, ORANGE], linewidths=1.2
-        )
-        words = {level: f"{100 * held:.0f} %" for level, held in zip(levels, _HELD, strict=True)}
-        panel.clabel(lines, fmt=words, fontsize=8)
-    mean = samples.mean()
-    panel.plot(*(mean[name] for name in samples.place), "+", color=ORANGE, label="mean")
-    panel.legend(frameon=False, fontsize=9, loc="upper right")
-    panel.set_xlabel(COLUMNS[samples.place[0]].axis)
-    panel.set_ylabel(COLUMNS[samples.place[1]].axis)
+    levels = np.quantile(cloud.at_samples, [1.0 - held for held in _HELD])
+    if not 0.0 < levels[0] < levels[1]:
+        return
+    corners = cloud.corners
+    middles = 0.25 * (
+        corners[:, 1:, 1:] + corners[:, :-1, 1:] + corners[:, 1:, :-1] + corners[:, :-1, :-1]
+    )
+    colours = (GREY, ORANGE)
+    panel.contour(*middles, cloud.density, levels=levels, colors=colours, linewidths=1.2, zorder=3)
+    for held, colour in zip(_HELD, colours, strict=True):
+        panel.plot([], [], color=colour, linewidth=1.2, label=f"holds {100 * held:.0f} %")
 
 
-def levels_holding(density: FloatArray, area: float) -> list[float]:
-    """Densities above which 95 and 50 % of the samples lie, ascending; none if they are one.
+def cloud_of(x: FloatArray, y: FloatArray) -> Cloud | None:
+    """The density of places (n,); None where they lie on a line or are too few.
+
+    Cells lie along the axes of the cloud, in units of its deviations: a thin one has as many as a
+    round one.  Samples are smoothed as far as it takes to have enough of them together.
 
     Examples
     --------
-    >>> levels_holding(np.array([[0.1, 0.3], [0.6, 0.0]]), 1.0)
-    [0.1, 0.6]
+    >>> x, y = np.random.default_rng(1).normal(size=(2, 10000))
+    >>> thin = cloud_of(x + 1e-3 * y, x - 1e-3 * y)
+    >>> inside = thin.at_samples > np.quantile(thin.at_samples, 0.5)
+    >>> bool(abs(np.hypot(x, y)[inside].max() - 1.18) < 0.3)  # the ellipse that holds half of them
+    True
     """
-    falling = np.sort(density.ravel())[::-1]
-    held = np.cumsum(falling) * area
-    places = np.minimum(np.searchsorted(held, _HELD), falling.size - 1)
-    levels: list[float] = falling[places].tolist()
-    return levels if 0.0 < levels[0] < levels[1] else []
+    if x.size < _FEW:
+        return None
+    places = np.stack([x, y])
+    middle = places.mean(axis=1, keepdims=True)
+    spread, axes = np.linalg.eigh(np.cov(places))
+    if not spread[1] > 0.0 or not spread[0] > _FLAT**2 * spread[1]:
+        return None
+    frame = axes * np.sqrt(spread)  # columns: one deviation along each axis
+    own = np.linalg.solve(frame, places - middle)
+    tail = _tail(x.size)
+    low, high = np.quantile(own, [tail, 1.0 - tail], axis=1)
+    room = 0.15 * (high - low)
+    edges = np.linspace(low - room, high + room, _FINE + 1).T
+    counts = np.histogram2d(own[0], own[1], (edges[0], edges[1]))[0]
+    enough = min(_NEAR, _SHARE * x.size)
+    for width in _WIDTHS:
+        smooth = _smoothed(counts, width)
+        if 4.0 * np.pi * width**2 * float((counts * smooth).sum()) >= enough * x.size:
+            break
+    cell = np.prod(edges[:, 1] - edges[:, 0]) * np.sqrt(spread.prod())
+    density = smooth / (x.size * cell)
+    at = [np.searchsorted(row, one, "right") - 1 for row, one in zip(edges, own, strict=True)]
+    inside = np.all([(one >= 0) & (one < _FINE) for one in at], axis=0)
+    near = tuple(np.clip(at, 0, _FINE - 1))
+    corners = np.tensordot(frame, np.stack(np.meshgrid(*edges, indexing="ij")), 1)
+    return Cloud(corners + middle[:, :, None], density, np.where(inside, density[near], 0.0))
 
 
-def _width(inside: npt.NDArray[np.bool_]) -> float:
-    """How many cells wide an area is in the mean, however it lies."""
-    return float(inside.sum() / max(inside.any(axis=0).sum(), inside.any(axis=1).sum()))
+def _smoothed(counts: FloatArray, width: float) -> FloatArray:
+    """Counts over cells, each spread by a normal distribution of this deviation, in cells."""
+    cells = np.arange(_FINE) / width
+    kernel = np.exp(-0.5 * (cells[:, None] - cells) ** 2) / (width * math.sqrt(2.0 * math.pi))
+    return np.asarray(kernel @ counts @ kernel)
 
 
-def _bins(count: int) -> int:
-    return int(np.clip(np.sqrt(count / _PER_BIN), _FEWEST, _MOST))
+def _tail(count: int) -> float:
+    """The share of the samples that may lie beyond each side."""
+    return max(_TAIL, min(_ALONE / count, 0.25))
 
 
-def _extent(samples: Summary) -> list[float]:
-    shares = samples.quantiles((0.0, _TAIL, 1.0 - _TAIL, 1.0))
-    extent = []
-    for name in samples.place:
-        least, low, high, most = shares[name].tolist()
-        room = 0.1 * (high - low) or max(1e-3 * abs(low), 1e-9)
-        extent += [max(least, low - room), min(most, high + room)]
-        if not extent[-1] > extent[-2]:
-            extent[-2:] = [low - room, high + room]
-    return extent
+def _sides(samples: Summary, name: str) -> tuple[float, float]:
+    """From where to where a map goes: all but a few samples far away."""
+    tail = _tail(samples.ended)
+    least, low, high, most = samples.quantiles((0.0, tail, 1.0 - tail, 1.0))[name].tolist()
+    room = 0.1 * (high - low) or max(1e-3 * abs(low), 1e-9)
+    near = 3.0 * room  # what is as near as this is shown too
+    return (
+        (least if least > low - near else low) - room,
+        (most if most < high + near else high) + room,
+    )
+
+
+def _inside(
+    x: FloatArray, y: FloatArray, sides: list[tuple[float, float]]
+) -> npt.NDArray[np.bool_]:
+    (left, right), (low, high) = sides
+    return np.asarray((x >= left) & (x <= right) & (y >= low) & (y <= high))
 
 
 def _histogram(panel: Axes, samples: Any, name: str) -> None:
     values = np.asarray(getattr(samples, name)).ravel()
-    panel.hist(values[np.isfinite(values)], bins=60, color=BLUE, density=True)
+    values = values[np.isfinite(values)]
+    low, high = float(values.min()), float(values.max())
+    room = max(1e-6 * max(abs(low), abs(high)), 1e-9)  # values may all be one
+    panel.hist(values, bins=60, range=(low - room, high + room), color=BLUE, density=True)
     for share, value in zip(_SHARES, samples.quantiles(_SHARES)[name].tolist(), strict=True):
         panel.axvline(value, color=ORANGE, linewidth=1.0, linestyle="-" if share == 0.5 else "--")
     panel.set_xlabel(COLUMNS[name].axis)

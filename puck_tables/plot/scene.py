@@ -9,16 +9,8 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.plot.plane import draw_plane
-from puck_tables.plot.style import (
-    BLUE,
-    GREEN,
-    GREY,
-    ORANGE,
-    RED,
-    canvas,
-    legend_below,
-    titled,
-)
+from puck_tables.plot.style import BLUE, GREEN, GREY, ORANGE, RED, canvas
+from puck_tables.plot.words import legend_below, noted, titled
 from puck_tables.scene.outcome import SceneRun
 
 if TYPE_CHECKING:
@@ -89,7 +81,10 @@ def states_drawn(run: SceneRun) -> dict[str, FloatArray]:
 
 
 def _draw_events(axes: Axes, run: SceneRun) -> None:
-    """Thin lines at what happens, as long as there are not too many."""
+    """Thin lines at what happens, as long as there are not too many; else how many there are."""
     events = [e for e in run.events if e.what != "edge"]
-    for event in events if len(events) <= _EVENTS_DRAWN else ():
+    if len(events) > _EVENTS_DRAWN:
+        noted(axes, f"the moments of {len(events)} events are not drawn")
+        return
+    for event in events:
         axes.axvline(event.time, color=GREY, linewidth=0.5, linestyle=":")

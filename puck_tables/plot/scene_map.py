@@ -8,15 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.plot.style import (
-    BLUE,
-    GREEN,
-    ORANGE,
-    RED,
-    canvas,
-    draw_over,
-    titled,
-)
+from puck_tables.plot.style import BLUE, GREEN, ORANGE, RED, canvas, draw_over, edges_of, in_order
+from puck_tables.plot.words import legend_below, noted, titled
 from puck_tables.scene.loop import CARRIED_ROUND
 from puck_tables.scene.outcome import ENDS
 from puck_tables.scene.sweep import SceneMap
@@ -33,8 +26,8 @@ _MAPS = {
     "heat_dry": "heat of dry friction / J",
 }
 _LOOKS = (
-    (BLUE, "o"), (GREEN, "^"), ("#8fd19e", "o"), (ORANGE, "D"), (RED, "v"), ("#555555", "x"),
-    ("#8b2fa0", "x"), ("black", "x"), ("#17becf", "x"), ("#c8a415", "x"), ("#b8b8b8", "x"),
+    (BLUE, "o"), (GREEN, "^"), ("#6f9a25", "o"), (ORANGE, "D"), (RED, "v"), ("#555555", "x"),
+    ("#8b2fa0", "x"), ("black", "x"), ("#119eae", "x"), ("#a8840f", "x"), ("#939393", "x"),
 )  # fmt: skip
 _HATCH = "///"
 _LEGEND_ROW = 5  # entries
@@ -52,15 +45,11 @@ def draw(stops: SceneMap) -> Figure:
 
     figure = canvas(12.0, 7.6)
     panels = figure.subplots(2, 3, sharex=True)
-    names = list(stops.axes)
-    fixed = {name: stops.axes[name].size // 2 for name in names[:-2]}
-    place = tuple(fixed.values())
-    axes = {name: stops.axes[name] for name in names[-2:]}
-    units = {name: stops.scene.unit_of(name) for name in names}
-    labels = {name: f"{name} / {unit}" if unit else name for name, unit in units.items()}
-    end = stops.end[place]
-    for panel, (name, text) in zip(panels.flat, _MAPS.items(), strict=False):
-        values = stops.columns[name][place]
+    place, at = _middle(stops)
+    columns = [stops.columns[name][place] for name in _MAPS]
+    axes, (end, *columns) = in_order(_last_two(stops), stops.end[place], *columns)
+    labels = {name: _label(stops, name) for name in axes}
+    for panel, text, values in zip(panels.flat, _MAPS.values(), columns, strict=False):
         draw_over(figure, panel, axes, labels, values, text)
         if panel.lines:
             _mark_ends(panel, axes, values, end)
@@ -75,19 +64,38 @@ def draw(stops: SceneMap) -> Figure:
     if not panels.flat[0].lines and (end > CARRIED_ROUND).any():
         curves.append(Patch(facecolor="white", edgecolor="black", hatch=_HATCH))
         words.append("not at rest at the end")
-    figure.legend(curves, words, loc="outside lower center", ncols=_LEGEND_ROW, frameon=False)
-    at = ", ".join(f"{name} = {stops.axes[name][n]:g} {units[name]}" for name, n in fixed.items())
+    legend_below(figure, _LEGEND_ROW, given=(curves, words))
     titled(figure, (stops.scene.title or "Scene") + (f" at {at}" if at else ""))
     return figure
 
 
 def draw_on(axes: Axes, stops: SceneMap) -> None:
     """How each run ends, by colour; with more than two ranges at the middle of the first ones."""
-    names = list(stops.axes)
-    place = tuple(stops.axes[name].size // 2 for name in names[:-2])
-    ranged = {name: stops.axes[name] for name in names[-2:]}
-    labels = {name: f"{name} / {stops.scene.unit_of(name) or 1}" for name in ranged}
-    _draw_ends(axes, ranged, labels, stops.end[place])
+    place, at = _middle(stops)
+    ranged, (end,) = in_order(_last_two(stops), stops.end[place])
+    _draw_ends(axes, ranged, {name: _label(stops, name) for name in ranged}, end)
+    if at:
+        noted(axes, f"at {at}")
+
+
+def _middle(stops: SceneMap) -> tuple[tuple[int, ...], str]:
+    """Where all ranges but the last two are held, and that in words."""
+    fixed = {name: stops.axes[name].size // 2 for name in list(stops.axes)[:-2]}
+    words = (
+        f"{name} = {stops.axes[name][n]:g} {stops.scene.unit_of(name)}".rstrip()
+        + f" (one of {stops.axes[name].size})"
+        for name, n in fixed.items()
+    )
+    return tuple(fixed.values()), ", ".join(words)
+
+
+def _last_two(stops: SceneMap) -> dict[str, Any]:
+    return {name: stops.axes[name] for name in list(stops.axes)[-2:]}
+
+
+def _label(stops: SceneMap, name: str) -> str:
+    unit = stops.scene.unit_of(name)
+    return f"{name} / {unit}" if unit else name
 
 
 def _mark_ends(
@@ -122,9 +130,9 @@ def _draw_ends(
     from matplotlib.colors import ListedColormap
 
     names = list(axes)
-    rows, codes = (axes[names[0]], end) if len(names) == 2 else (np.arange(2), np.array([end, end]))
+    rows, codes = (axes[names[0]], end) if len(names) == 2 else (np.zeros(1), end[None])
     panel.pcolormesh(
-        axes[names[-1]], rows, codes, shading="nearest", rasterized=True,
+        edges_of(axes[names[-1]]), edges_of(rows), codes, rasterized=True,
         cmap=ListedColormap([color for color, _ in _LOOKS]), vmin=-0.5, vmax=len(_LOOKS) - 0.5,
     )  # fmt: skip
     panel.set_title("how it ends", fontsize=10)

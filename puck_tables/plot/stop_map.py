@@ -8,7 +8,8 @@ import numpy as np
 
 from puck_tables.errors import InputError
 from puck_tables.io.columns import COLUMNS
-from puck_tables.plot.style import FEW, canvas, draw_over, titled
+from puck_tables.plot.style import FEW, canvas, draw_over, in_order
+from puck_tables.plot.words import legend_below, noted, titled
 from puck_tables.stopping.solvers import OUTPUTS
 from puck_tables.stopping.sweep import StopMap
 
@@ -25,24 +26,31 @@ def draw(stops: StopMap) -> Figure:
     axes, fixed, left_out, place = _sections(stops)
     figure = canvas(11.0, 6.8)
     panels = figure.subplots(2, 3, sharex=True)
-    labels = {name: _label(name) for name in axes}
     for panel, name in zip(panels.flat, OUTPUTS, strict=True):
-        draw_over(figure, panel, axes, labels, getattr(stops, name)[place], COLUMNS[name].axis)
-        _name_laws(panel, stops)
-    if any(panel.get_legend_handles_labels()[1] for panel in panels.flat):
-        handles, words = panels.flat[0].get_legend_handles_labels()
-        figure.legend(handles, words, loc="outside lower center", ncols=FEW, frameon=False)
-    titled(figure, _fixed_title(fixed) + left_out)
+        _draw(figure, panel, stops, axes, name, place)
+    legend_below(figure, FEW)
+    titled(figure, _fixed_title(fixed) + (f" ({left_out})" if left_out else ""))
     return figure
 
 
 def draw_on(panel: Axes, stops: StopMap) -> None:
     """The stop time alone."""
-    axes, _, _, place = _sections(stops)
+    axes, _, left_out, place = _sections(stops)
     figure = panel.get_figure(root=True)
     assert figure is not None
-    labels = {name: _label(name) for name in axes}
-    draw_over(figure, panel, axes, labels, stops.stop_time[place], COLUMNS["stop_time"].axis)
+    _draw(figure, panel, stops, axes, "stop_time", place)
+    if left_out:
+        noted(panel, left_out)
+
+
+def _draw(
+    figure: Figure, panel: Axes, stops: StopMap, axes: dict[str, Any], name: str,
+    place: tuple[int, ...],
+) -> None:  # fmt: skip
+    """One column over the axes."""
+    labels = {axis: _label(axis) for axis in axes}
+    ordered, (values,) = in_order(axes, getattr(stops, name)[place])
+    draw_over(figure, panel, ordered, labels, values, COLUMNS[name].axis)
     _name_laws(panel, stops)
 
 
@@ -86,7 +94,7 @@ def _sections(
         if name == "pressure":
             words[-1] += f", {stops.laws[middle]}"
         del axes[name]
-    return axes, fixed, f" ({'; '.join(words)})" if words else "", tuple(place)
+    return axes, fixed, "; ".join(words), tuple(place)
 
 
 def _fixed_title(fixed: dict[str, float]) -> str:

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import numpy.typing as npt
 
 from puck_tables._core.safe_write import write_bytes
 from puck_tables.errors import InputError, MissingExtraError
@@ -18,6 +19,7 @@ from puck_tables.io.formats import ending_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.colors import Colormap
     from matplotlib.figure import Figure
     from matplotlib.gridspec import SubplotSpec
 
@@ -46,7 +48,23 @@ STOP: dict[str, Any] = {
     "zorder": 5,
 }
 FEW = 7  # values of an axis that are curves rather than bands of a map
+NO_VALUE = "#d0d0d0"  # of a map, where there is none: white and the colours of values are taken
 _STEADY = 1e-6  # of itself: a smaller change of a quantity is none
+
+
+def ramp() -> Colormap:
+    """Colours of marks from low to high, each of which is seen on white.
+
+    Examples
+    --------
+    >>> from matplotlib.colors import to_hex
+    >>> to_hex(ramp()(0.0)), to_hex(ramp()(1.0))
+    ('#0d0887', '#e16462')
+    """
+    from matplotlib import colormaps
+    from matplotlib.colors import ListedColormap
+
+    return ListedColormap(colormaps["plasma"](np.linspace(0.0, 0.6, 256)))
 
 
 def require_matplotlib() -> None:
@@ -63,7 +81,7 @@ def require_matplotlib() -> None:
         import matplotlib  # noqa: F401
     except ImportError:
         raise MissingExtraError(
-            "pictures need matplotlib: pip install 'puck-tables[plot]'"
+            'pictures need matplotlib: pip install "puck-tables[plot]"'
         ) from None
     except ValueError as error:
         chosen = os.environ.get("MPLBACKEND")
@@ -90,20 +108,6 @@ def canvas(width: float, height: float) -> Figure:
     from matplotlib.figure import Figure
 
     return Figure(figsize=(width, height), layout="constrained")
-
-
-def titled(figure: Figure, text: str) -> None:
-    """Write the title of a figure as it stands: what users write is no mathematics."""
-    figure.suptitle(text, parse_math=False)
-
-
-def legend_below(axes: Axes, columns: int = 3) -> None:
-    """A legend under its panel, where nothing is drawn."""
-    if axes.get_legend_handles_labels()[1]:
-        axes.legend(
-            loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=columns, frameon=False,
-            fontsize=9,
-        )  # fmt: skip
 
 
 def _plain_axes(axes: Axes) -> None:
@@ -193,11 +197,13 @@ def draw_over(
 ) -> None:  # fmt: skip
     """Draw values over one axis as a curve, over two as a map, or as curves if one has few values.
 
-    ``labels``: what to write at an axis, by its name; ``text``: what the values are.
+    ``labels``: what to write at an axis, by its name; ``text``: what the values are.  How many
+    there are not is said.
     """
     panel.grid(color="#dddddd", linewidth=0.6)
-    if not np.isfinite(values).any():
-        panel.text(0.5, 0.5, "no values", ha="center", transform=panel.transAxes, color=GREY)
+    missing = int(np.count_nonzero(~np.isfinite(values)))
+    if missing:
+        text += f"\nnone at {missing} of {values.size}"
     names = list(axes)
     if len(names) == 2 and min(axes[name].size for name in names) > FEW:
         _draw_map(figure, panel, axes, labels, values, text)
@@ -205,11 +211,12 @@ def draw_over(
     across = max(reversed(names), key=lambda name: axes[name].size)
     rows = values if len(names) == 2 and across == names[1] else np.transpose(values)
     family = [name for name in names if name != across]
-    marker = "." if axes[across].size < 30 else ""
+    alone = missing > 0 or axes[across].size < 30  # a value between two that are not has no line
+    marker = "." if alone else ""
     if not family:
         panel.plot(axes[across], values, color=BLUE, marker=marker)
     for n, row in enumerate(rows if family else ()):
-        share = n / (len(rows) - 1)
+        share = n / max(len(rows) - 1, 1)
         panel.plot(
             axes[across], row, color=shaded(share), marker=marker,
             label=_at(labels[family[0]], float(axes[family[0]][n])),
@@ -217,6 +224,32 @@ def draw_over(
     panel.set_ylabel(text)
     if _place(panel).is_last_row():
         panel.set_xlabel(labels[across])
+
+
+def edges_of(values: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    """Where the bands of a map end whose middles are these ascending values; one has a band, too.
+
+    Examples
+    --------
+    >>> edges_of(np.array([1.0, 2.0, 4.0])).tolist(), edges_of(np.array([3.0])).tolist()
+    ([0.5, 1.5, 3.0, 5.0], [2.5, 3.5])
+    """
+    middles = 0.5 * (values[1:] + values[:-1])
+    first, last = (0.5 * (values[n + 1] - values[n]) if values.size > 1 else 0.5 for n in (0, -2))
+    return np.concatenate([[values[0] - first], middles, [values[-1] + last]])
+
+
+def in_order(axes: Mapping[str, Any], *values: Any) -> tuple[dict[str, Any], list[Any]]:
+    """Axes with their values ascending, and arrays over them: curves go on, bands lie side by side.
+
+    Examples
+    --------
+    >>> in_order({"x": np.array([3.0, 1.0])}, np.array([9.0, 1.0]))
+    ({'x': array([1., 3.])}, [array([1., 9.])])
+    """
+    orders = [np.argsort(row, kind="stable") for row in axes.values()]
+    ordered = {name: row[order] for (name, row), order in zip(axes.items(), orders, strict=True)}
+    return ordered, [one[np.ix_(*orders)] for one in values]
 
 
 def _place(panel: Axes) -> SubplotSpec:
@@ -238,9 +271,9 @@ def shaded(share: float) -> tuple[float, float, float]:
     Examples
     --------
     >>> shaded(0.0)
-    (0.62, 0.8, 0.94)
+    (0.39, 0.59, 0.81)
     """
-    light, dark = np.array([0.62, 0.80, 0.94]), np.array([0.02, 0.17, 0.38])
+    light, dark = np.array([0.39, 0.59, 0.81]), np.array([0.02, 0.17, 0.38])
     red, green, blue = (light + share * (dark - light)).tolist()
     return red, green, blue
 
@@ -256,7 +289,8 @@ def _draw_map(
         largest = float(np.abs(finite).max())
         limits = {"vmin": -largest, "vmax": largest, "cmap": "RdBu_r"}
     panel.grid(visible=False)
-    mesh = panel.pcolormesh(columns, rows, values, shading="nearest", rasterized=True, **limits)
+    panel.set_facecolor(NO_VALUE)
+    mesh = panel.pcolormesh(edges_of(columns), edges_of(rows), values, rasterized=True, **limits)
     figure.colorbar(mesh, ax=panel)
     panel.set_title(text, fontsize=10)
     if _place(panel).is_last_row():

@@ -9,12 +9,13 @@ import numpy as np
 
 from puck_tables.film.angles import unwrap
 from puck_tables.film.track import Track
-from puck_tables.plot.style import COLORS, canvas, titled
+from puck_tables.plot.style import COLORS, canvas
+from puck_tables.plot.words import counted, legend_below, titled
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_LABELLED = 8
+_LABELLED = 12
 
 
 def draw(tracks: Sequence[Track]) -> Figure:
@@ -31,7 +32,7 @@ def draw(tracks: Sequence[Track]) -> Figure:
         }  # fmt: skip
         plane.plot(track.place[:, 0], track.place[:, 1], **look)
         plane.plot(*track.place[track.seen][0], marker="o", color=look["color"])
-        label = track.name if len(tracks) > 1 and number < _LABELLED else None
+        label = track.name if 1 < len(tracks) <= _LABELLED else None
         panels[0].plot(track.time, track.place[:, 0], label=label, **look)
         panels[1].plot(track.time, track.place[:, 1], **look)
         if track.angle is not None:
@@ -44,9 +45,10 @@ def draw(tracks: Sequence[Track]) -> Figure:
     plane.grid(color="#e4e4e4", linewidth=0.6)
     plane.set_xlabel("x / m")
     plane.set_ylabel("y / m")
-    if len(tracks) > 1:
-        figure.legend(loc="outside lower center", ncols=4, frameon=False, fontsize=8)
+    legend_below(figure, 4)
     seen = sum(int(np.count_nonzero(track.seen)) for track in tracks)
+    unseen = sum(track.time.size for track in tracks) - seen
     name = tracks[0].name if len(tracks) == 1 else f"{len(tracks)} tracks"
-    titled(figure, f"{name}, {seen} frames")
+    without = f", {unseen} without a place" if unseen else ""
+    titled(figure, f"{name}, {counted(seen, 'frame')}{without}")
     return figure

@@ -8,6 +8,7 @@ import numpy as np
 
 from puck_tables.accuracy.front import Measured, pareto
 from puck_tables.plot.style import BLUE, COLORS, GREY, canvas
+from puck_tables.plot.words import titled
 from puck_tables.tradeoff.engine import TradeOff
 
 if TYPE_CHECKING:
@@ -36,9 +37,10 @@ def draw(measured: TradeOff) -> Figure:
     for row, question in enumerate(_TITLES):
         draw_on(figure.add_subplot(grid[row]), measured, question)
     machine = measured.machine.description
-    figure.suptitle(
+    titled(
+        figure,
         f"error against cost: {machine['processor']}, one thread, "
-        f"medians of {measured.repeats} rounds"
+        f"medians of {measured.repeats} rounds",
     )
     return figure
 

@@ -7,17 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from puck_tables.plot.style import (
-    BLUE,
-    GREEN,
-    GREY,
-    LAUNCH,
-    ORANGE,
-    STOP,
-    canvas,
-    legend_below,
-    titled,
-)
+from puck_tables.plot.style import BLUE, GREEN, GREY, LAUNCH, ORANGE, STOP, canvas
+from puck_tables.plot.words import legend_below, titled
 from puck_tables.trajectory import Trajectory
 
 if TYPE_CHECKING:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
-from puck_tables._core.units import parted, unit_size
+from puck_tables._core.units import EXAMPLES, parted, unit_size
 from puck_tables.errors import InputError
 from puck_tables.film.headings import heading
 
@@ -31,7 +31,6 @@ _KIND |= dict.fromkeys(("wx", "wy", "wz", "spin"), "spin")
 _KIND |= dict.fromkeys(("x", "y", "z"), "length")
 _KIND |= {"time": "time", "angle": "angle"}
 _FROM_FILM = ("time", "x", "y", "angle")
-EXAMPLES = {"velocity": "m/s", "spin": "rad/s", "length": "m", "time": "s", "angle": "rad"}
 
 
 class LogHeading(NamedTuple):

@@ -10,16 +10,16 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables._core.beginning import beginning, refuse_no_text
+from puck_tables._core.columns import TIME, list_of
 from puck_tables._core.real import instance, real
-from puck_tables._core.safe_read import read_rows
-from puck_tables._core.text import Look, look_at, read_columns
-from puck_tables._core.units import parted, unit_size
+from puck_tables._core.text import LARGEST, Look, look_at, read_columns
+from puck_tables._core.units import EXAMPLES, parted, unit_size
 from puck_tables.errors import InputError
 from puck_tables.film.headings import heading
 from puck_tables.film.layout import headed, name_of
-from puck_tables.film.reading import beginning, refuse_no_text
 from puck_tables.reference.attitude import turned
-from puck_tables.reference.headings import EXAMPLES, LogHeading, log_heading
+from puck_tables.reference.headings import LogHeading, log_heading
 
 _SLOW = 1.0  # s between rows: more, and times are hardly in seconds
 _FEWEST = 3  # rows that are compared
@@ -169,14 +169,9 @@ def times_in(path: str | Path) -> FloatArray:
     ...     times_in(Path(folder, "a.txt")).tolist()
     [0.0, 0.1]
     """
-    try:
-        rows = read_rows(path, _MOST_TIMES)
-        if rows and all(len(row) == 1 for row in rows):
-            return np.array([float(row[0]) for row in rows])
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
-    except ValueError:
-        pass  # no list of numbers: perhaps a table
+    found = list_of(path, TIME, _MOST_TIMES)
+    if found is not None:
+        return found
     look, columns, _ = _columns(path, LogHow())
     clock = next((n for n, one in columns.items() if one.role == "time"), None)
     if clock is None:
@@ -191,7 +186,7 @@ def _columns(path: str | Path, how: LogHow) -> tuple[Look, dict[int, LogHeading]
     if "\0" in str(path):
         raise InputError("the name of a file holds a NUL")
     try:
-        head = beginning(path)
+        head = beginning(path, LARGEST)
     except OSError as error:
         raise InputError(f"cannot read {path}: {error.strerror or error}") from None
     refuse_no_text(path, head)

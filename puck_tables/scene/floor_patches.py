@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.safe_read import read_numbers
+from puck_tables._core.columns import X, Y, numbers_of
 from puck_tables.errors import InputError
 
 if TYPE_CHECKING:
@@ -37,10 +37,11 @@ def corners_of(patch: Patch) -> FloatArray:
     """
     if not patch.corners:
         return np.empty((0, 2))
-    rows = read_numbers(patch.corners, _MOST_BYTES)
-    if not (rows.ndim == 2 and rows.shape[1] == 2 and 3 <= len(rows) <= MOST_CORNERS):
-        where = f"corners = {patch.corners!r}: it" if isinstance(patch.corners, str) else "corners"
-        raise InputError(f"{where} must be rows of x and y in m, from 3 to {MOST_CORNERS}")
+    rows = numbers_of(patch.corners, (X, Y), 2, _MOST_BYTES, "corners").rows
+    if not 3 <= len(rows) <= MOST_CORNERS:
+        raise InputError(
+            f"corners must be from 3 to {MOST_CORNERS} rows of x and y, got {len(rows)}"
+        )
     corners = tuple(map(tuple, rows.tolist()))
     closed = len(corners) > 3 and corners[0] == corners[-1]  # as maps have them
     return _around(corners[:-1] if closed else corners)

@@ -7,14 +7,12 @@ All of them in one record, zero where a scene lacks them.  A new force is its en
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.safe_read import read_numbers
-from puck_tables.errors import InputError
+from puck_tables._core.columns import FORCE_X, FORCE_Y, TIME, TORQUE, numbers_of
 from puck_tables.kernels.compile import inlined
 from puck_tables.scene.parts import Rows
 
@@ -113,14 +111,9 @@ def drive_of(given: str | Rows) -> FloatArray:
     InputError
         If it cannot be read, or is no such file.
     """
-    rows = read_numbers(given, MAX_DRIVE)
-    good = rows.ndim == 2 and len(rows) >= 2 and rows.shape[1] in (3, 4)
-    if not (good and np.all(np.isfinite(rows)) and np.all(np.diff(rows[:, 0]) > 0.0)):
-        raise InputError(
-            f"{Path(given).name if isinstance(given, str) else 'force.over_time'}: forces are a "
-            "CSV file or rows of t, Fx, Fy and perhaps torque, in s, N and N m, two rows or more, "
-            "the times ascending"
-        )
+    numbers = numbers_of(given, (TIME, FORCE_X, FORCE_Y, TORQUE), 3, MAX_DRIVE, "force.over_time")
+    numbers.refuse_unless_ascending("the times")
+    rows = numbers.rows
     return np.pad(rows, ((0, 0), (0, 4 - rows.shape[1])))
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import tomllib
+from codecs import BOM_UTF16_BE, BOM_UTF16_LE
 from difflib import get_close_matches
 from importlib.resources import files
 from pathlib import Path
@@ -118,7 +119,9 @@ def read_scene(path: str | Path) -> dict[str, Any]:
         If it cannot be read or is not TOML.
     """
     try:
-        tables = tomllib.loads(read_whole(path, MAX_FILE).decode("utf-8-sig"))
+        content = read_whole(path, MAX_FILE)
+        wide = content.startswith((BOM_UTF16_LE, BOM_UTF16_BE))  # as '>' of PowerShell writes it
+        tables = tomllib.loads(content.decode("utf-16" if wide else "utf-8-sig"))
     except OSError as error:
         raise InputError(f"cannot read {path}: {error.strerror or error}") from None
     except UnicodeDecodeError as error:

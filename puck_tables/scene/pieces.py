@@ -131,14 +131,14 @@ class Pocket:
 class Rim:
     """How two meet, in place of what each of them says.
 
+    Where several fit a pair the last of the list counts.
+
     Parameters
     ----------
     puck : name of a puck, or colour of several
     partner : the same, or a cushion: 'wall 0', 'post 1', 'arc 0', or 'wall', 'post', 'arc' for all
     restitution, tangential, friction : optional
         As of a puck (whose ``rim`` is called friction here); what is left out is as without it.
-
-    Where several fit a pair the last of the list counts.
 
     Examples
     --------

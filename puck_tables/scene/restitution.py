@@ -11,17 +11,17 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from difflib import get_close_matches
-from pathlib import Path
 from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables._core.columns import RESTITUTION, SPEED, numbers_of
 from puck_tables._core.fields import of
-from puck_tables._core.monotone import monotone_cubic
+from puck_tables._core.monotone import from_rest, monotone_cubic
 from puck_tables._core.real import finite_array, real
-from puck_tables._core.safe_read import is_number, read_numbers
+from puck_tables._core.safe_read import is_number
 from puck_tables.errors import InputError
 
 VISCOELASTIC, PLASTIC, TABLE = range(3)
@@ -152,8 +152,10 @@ class RestitutionTable(Restitution):
 
     Parameters
     ----------
-    speeds : array_like (k,), m/s, ascending from 0, at least two
+    speeds : array_like (k,), m/s, ascending, at least two
+        Below a first speed above 0 its restitution holds.
     values : array_like (k,), from 0 to 1
+        Of a speed given more than once the mean is taken.
     file : the file it comes from; left out, its points are its name
 
     Raises
@@ -181,8 +183,7 @@ class RestitutionTable(Restitution):
                 "a table of restitution must be two or more rows of the speed of approach, m/s, "
                 "and the restitution"
             )
-        if speeds[0] != 0.0 or not (np.diff(speeds) > 0.0).all():
-            raise InputError("the speeds of a table of restitution must ascend from 0 m/s")
+        speeds, values = from_rest(speeds, values, "the restitution")
         if values.min() < 0.0 or values.max() > 1.0:
             wrong = values[(values < 0.0) | (values > 1.0)][0]
             raise InputError(f"a restitution must be from 0 to 1, got {wrong:g}")
@@ -251,16 +252,13 @@ file of speed in m/s and restitution
     if isinstance(given, Restitution):
         return given
     if given.lower().endswith(".csv"):
-        rows = read_numbers(given, MAX_BYTES)
-        if rows.ndim != 2 or rows.shape[1] != 2:
-            raise InputError(
-                f"{Path(given).name}: must be rows of the speed of approach in m/s and the "
-                "restitution, like 0.5,0.8"
-            )
+        numbers = numbers_of(given, (SPEED, RESTITUTION), 2, MAX_BYTES)
+        numbers.refuse_unless_ascending("the speeds", equal=True)
         try:
-            return RestitutionTable(rows[:, 0], rows[:, 1], given)
+            points = from_rest(numbers.rows[:, 0], numbers.rows[:, 1], given)
+            return RestitutionTable(*points, given)
         except InputError as error:
-            raise InputError(f"{Path(given).name}: {error}") from None
+            raise InputError(f"{given}: {error}") from None
     name, _, number = given.partition(":")
     if name == "table":
         return _table_of(number)

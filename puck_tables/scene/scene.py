@@ -15,6 +15,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.fields import of, specs
 from puck_tables._core.reading import Range, Reading, given_in, read_values
+from puck_tables._core.real import instance
 from puck_tables.errors import InputError
 from puck_tables.motion.body import STANDARD_GRAVITY
 from puck_tables.puck import Puck
@@ -43,6 +44,12 @@ MAX_RUNS = 1_000_000_000  # of one sweep
 class Scene(SceneVerbs):
     """A puck on a floor, its launch, and whatever acts on it: checked when it is made.
 
+    Parts may also be tables.  Numbers may be numpy scalars; where a number stands a list, an array
+    or a text 'START:STOP:COUNT' is a range, a dimension of :meth:`sweep`.  Such a number stands at
+    its first value (its last, where no puck can have the first), its values in ``ranges``.  Many
+    launches at once are velocities (n, 2), see :class:`puck_tables.Launch`: their range is
+    ``launch``, rows of vx, vy, spin, x, y, orientation.
+
     Parameters
     ----------
     puck : Puck
@@ -57,12 +64,6 @@ class Scene(SceneVerbs):
     ranges : mapping, optional
         Values of numbers that take several, by path, such as ``{"puck.height": [0.0, 0.01]}``.  A
         changed copy (:func:`dataclasses.replace`) keeps those of the parts that it keeps.
-
-    Parts may also be tables.  Numbers may be numpy scalars; where a number stands a list, an array
-    or a text 'START:STOP:COUNT' is a range, a dimension of :meth:`sweep`.  Such a number stands at
-    its first value (its last, where no puck can have the first), its values in ``ranges``.  Many
-    launches at once are velocities (n, 2), see :class:`puck_tables.Launch`: their range is
-    ``launch``, rows of vx, vy, spin, x, y, orientation.
 
     Raises
     ------
@@ -255,6 +256,7 @@ class Scene(SceneVerbs):
         >>> Scene(Puck(0.04)).unit_of("launch.position[1]")
         'm'
         """
+        instance("path", path, str)
         return "" if is_batch(path) else entry_at(self, path).kind.unit
 
     @property

@@ -348,7 +348,7 @@ class SpeedTable(Table):
             law, top = law_of_numbers(kind, values.tolist()), float(speeds[-1])
         else:
             law = SpeedLaw(speeds, values, kind)
-            top = law.top_speed
+            top = law.top_speed if np.array_equal(law.speeds, speeds) else np.nan
         codes = np.clip(np.nan_to_num(arrays["halvings"]), 0.0, 255.0).astype(np.int64)
         cells = COARSEST_CELLS << np.minimum(np.stack([codes // 16, codes % 16], axis=-1), HALVINGS)
         if not (

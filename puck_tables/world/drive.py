@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.safe_read import read_numbers
+from puck_tables._core.columns import ANGLE, TIME, X, Y, numbers_of
 from puck_tables.errors import InputError
 from puck_tables.scene.parts import Rows
 from puck_tables.world.paths import DURATION, FIRST, PIECE_COLUMNS, START
@@ -26,10 +26,9 @@ def rows_of(given: str | Rows) -> FloatArray:
     >>> rows_of(((0.0, 1.0, 2.0), (0.5, 1.0, 3.0)))[1].tolist()
     [0.5, 1.0, 3.0, 0.0]
     """
-    rows = read_numbers(given, MAX_BYTES)
-    good = rows.ndim == 2 and len(rows) >= 2 and rows.shape[1] in (3, 4)
-    if not (good and np.isfinite(rows).all() and (np.diff(rows[:, 0]) > 0.0).all()):
-        raise InputError("must be two or more rows of t, x, y and perhaps angle, t ascending")
+    numbers = numbers_of(given, (TIME, X, Y, ANGLE), 3, MAX_BYTES)
+    numbers.refuse_unless_ascending("the times")
+    rows = numbers.rows
     if rows[0, 0] != 0.0:
         raise InputError(f"must begin at t = 0, not at {rows[0, 0]:g} s")
     return np.hstack([rows, np.zeros((len(rows), 4 - rows.shape[1]))])

@@ -53,6 +53,8 @@ class Landings(NamedTuple):
 class Shots:
     """A board of which the launch of one puck, the striker, is open.
 
+    ``runs``, ``left_out``: how many were asked for, and how many of them were not followed.
+
     Parameters
     ----------
     scene : Scene
@@ -63,8 +65,6 @@ class Shots:
     velocities : from launches (n, 2) to vx, vy, spin (n, 3)
     patient : whether runs in which pucks push each other are followed
         One by one, which takes a thousand times as long.  Where pucks are integrated it is done.
-
-    ``runs``, ``left_out``: how many were asked for, and how many of them were not followed.
     """
 
     def __init__(

@@ -21,6 +21,6 @@ for vx, vy in velocities:
 ends = np.array(ends)
 figure, axes = plt.subplots(layout="constrained")
 axes.plot(*ends[:, 0].T, ".", color="firebrick", markersize=3, label="red, which was played")
-axes.plot(*ends[:, 1].T, ".", color="goldenrod", markersize=3, label="yellow, which was hit")
+axes.plot(*ends[:, 1].T, ".", color="darkgoldenrod", markersize=3, label="yellow, which was hit")
 axes.set(aspect="equal", xlabel="x / m", ylabel="y / m", title="Ends of 1000 deliveries")
 axes.legend()

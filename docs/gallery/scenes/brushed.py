@@ -18,6 +18,6 @@ for heading in np.radians([15.0, 45.0, 75.0]):
     launch = 1.2 * np.array([np.cos(heading), np.sin(heading)])
     for spin, style in ((0.0, "--"), (60.0, "-")):
         run = pt.Scene(puck, metal, pt.Launch(launch, spin)).simulate()
-        axes.plot(run.x, run.y, style, color=plt.cm.viridis(heading / 1.5))
+        axes.plot(run.x, run.y, style, color=plt.cm.plasma(heading / 2.2))
 axes.set(xlabel="along the grain / m", ylabel="across / m", aspect="equal")
 axes.set_title("f = 0.15 along, 0.3 across; solid: with spin")

@@ -10,7 +10,7 @@ import pytest
 from pucks import simulate
 from reference import REFERENCE_RUNS
 
-from puck_tables.paper import figures
+from paper import figures
 
 
 def test_stops_of_figure_4_and_paths_of_figure_3():

@@ -10,12 +10,9 @@ import math
 
 import numpy as np
 
-from puck_tables.contact.closed_form import by_closed_form
-from puck_tables.contact.resultants import Resultants
-from puck_tables.motion.limits import approach_exponent, curvature_slope, limit_angle
-from puck_tables.paper.claim import Claim, equal, farthest, more
-from puck_tables.paper.root import power
-from puck_tables.paper.runs import (
+from paper.claim import Claim, equal, farthest, more
+from paper.root import power
+from paper.runs import (
     Simulate,
     curvature_radius,
     launch,
@@ -23,6 +20,9 @@ from puck_tables.paper.runs import (
     slip_ratio,
     time_left,
 )
+from puck_tables.contact.closed_form import by_closed_form
+from puck_tables.contact.resultants import Resultants
+from puck_tables.motion.limits import approach_exponent, curvature_slope, limit_angle
 from puck_tables.trajectory import Trajectory
 
 DELTAS = (0.0, 0.5, 1.0)

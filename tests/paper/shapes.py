@@ -7,11 +7,11 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from paper.claim import Claim, equal, farthest, more
+from paper.runs import Simulate, curvature_radius, launch, simulate
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.closed_form import by_closed_form
 from puck_tables.motion.limits import curvature_slope, limit_ratio
-from puck_tables.paper.claim import Claim, equal, farthest, more
-from puck_tables.paper.runs import Simulate, curvature_radius, launch, simulate
 from puck_tables.trajectory import Trajectory
 
 Complex = npt.NDArray[np.complex128]

@@ -8,13 +8,13 @@ from collections.abc import Callable
 import numpy as np
 import numpy.typing as npt
 
+from paper.claim import Claim, at_least, equal, less, more
+from paper.root import root
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact import closed_form, quadrature
 from puck_tables.contact.integrals import PatchIntegrals, slip_direction
 from puck_tables.contact.pressure import PressureLaw
 from puck_tables.contact.resultants import moment_balance, pressure_tilt
-from puck_tables.paper.claim import Claim, at_least, equal, less, more
-from puck_tables.paper.root import root
 
 Integrals = Callable[[npt.ArrayLike], PatchIntegrals]
 

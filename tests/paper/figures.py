@@ -13,13 +13,13 @@ from collections.abc import Callable
 
 import numpy as np
 
+from paper.friction import slip_angle_rate
+from paper.patch import HEIGHTS, PHI, pressure_reserve
+from paper.runs import simulate
+from paper.shapes import SPIN, ends_against_spin
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.closed_form import by_closed_form, integrals
 from puck_tables.motion.limits import limit_angle
-from puck_tables.paper.friction import slip_angle_rate
-from puck_tables.paper.patch import HEIGHTS, PHI, pressure_reserve
-from puck_tables.paper.runs import simulate
-from puck_tables.paper.shapes import SPIN, ends_against_spin
 from puck_tables.plot.panels import Curve, Panel, Picture
 from puck_tables.puck import Puck
 

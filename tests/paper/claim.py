@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import astuple, dataclass, fields
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -118,62 +116,20 @@ def at_least(where: str, statement: str, bound: float, computed: float, allowed:
     return Claim(where, statement, f">= {bound:.6g}", computed, max(bound - computed, 0.0), allowed)
 
 
-def as_text(subjects: Mapping[str, Sequence[Claim]]) -> str:
-    """The claims, by subject, as a table for a terminal, ASCII, errata explained below.
-
-    Examples
-    --------
-    >>> print(as_text({"Patch": [more("Cor. 1", "p_b > 0", 0.0, 0.25)]}))
-    where   claim    paper  computed  margin
-    <BLANKLINE>
-    Patch
-    Cor. 1  p_b > 0  > 0    0.25      0.25 to spare  ok
-    <BLANKLINE>
-    1 claims: 1 ok, 0 errata of the paper, 0 differ
-    """
-    claims = [claim for group in subjects.values() for claim in group]
-    table = [("where", "claim", "paper", "computed", "margin", "")]
-    table += [
-        (c.where, c.statement, c.stated, f"{c.computed:.9g}", _margin(c), c.verdict) for c in claims
-    ]
-    widths = [max(len(row[i]) for row in table) for i in range(len(table[0]))]
-    rows = iter([
-        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
-        for row in table
-    ])  # fmt: skip
-    lines = [next(rows)]
+def as_page(subjects: Mapping[str, Sequence[Claim]]) -> str:
+    """The claims, by subject, as tables in Markdown."""
+    lines: list[str] = []
     for subject, group in subjects.items():
-        lines += ["", subject, *(next(rows) for _ in group)]
-    ok, errata, differ = (
-        sum(c.verdict == verdict for c in claims) for verdict in ("ok", "erratum", "DIFFERS")
-    )
-    lines += [
-        "",
-        f"{len(claims)} claims: {ok} ok, {errata} errata of the paper, {differ} differ",
-        *(f"erratum, {c.where}: {c.erratum}" for c in claims if c.erratum),
-    ]
+        lines += [f"## {subject}", "", "| where | claim | paper | computed | margin | |"]
+        lines += ["| --- | --- | --- | --- | --- | --- |"]
+        for c in group:
+            cells = (c.where, c.statement, c.stated, f"{c.computed:.6g}", _margin(c), c.verdict)
+            lines.append("| " + " | ".join(cell.replace("|", r"\|") for cell in cells) + " |")
+        lines.append("")
     return "\n".join(lines)
-
-
-def as_csv(subjects: Mapping[str, Sequence[Claim]]) -> str:
-    """The claims as CSV: subject, the fields of :class:`Claim`, holds and verdict.
-
-    ``allowed`` is empty where the margin is room to spare.
-
-    Examples
-    --------
-    >>> as_csv({"Patch": [more("Cor. 1", "p_b > 0", 0.0, 0.25)]}).splitlines()[1]
-    'Patch,Cor. 1,p_b > 0,> 0,0.25,0.25,,,True,ok'
-    """
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["subject", *(f.name for f in fields(Claim)), "holds", "verdict"])
-    for subject, group in subjects.items():
-        writer.writerows([subject, *astuple(c), c.holds, c.verdict] for c in group)
-    return text.getvalue()
 
 
 def _margin(claim: Claim) -> str:
     if claim.allowed is None:
-        return f"{claim.margin:.4g} to spare"
-    return f"off {claim.margin:.1e} {'<=' if claim.holds else '>'} {claim.allowed:.0e}"
+        return f"{claim.margin:.3g} to spare"
+    return f"off {claim.margin:.0e} {'<=' if claim.holds else '>'} {claim.allowed:.0e}"

@@ -8,13 +8,13 @@ from collections.abc import Callable
 import numpy as np
 import numpy.typing as npt
 
+from paper.claim import Claim, at_least, equal, less, more
+from paper.patch import ANGLES, HEIGHTS, PHI
+from paper.root import root
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.closed_form import by_closed_form
 from puck_tables.contact.resultants import Resultants
 from puck_tables.motion.limits import approach_exponent, curvature_slope, limit_angle
-from puck_tables.paper.claim import Claim, at_least, equal, less, more
-from puck_tables.paper.patch import ANGLES, HEIGHTS, PHI
-from puck_tables.paper.root import root
 
 Friction = Callable[[npt.ArrayLike, npt.ArrayLike], Resultants]
 

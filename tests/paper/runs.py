@@ -18,7 +18,7 @@ ACCURACY = 1e-13
 class Simulate(Protocol):
     """What :func:`simulate` does, or something put to the test."""
 
-    def __call__(  # noqa: D102
+    def __call__(
         self, velocity: npt.ArrayLike, spin: float, *, delta: float, frames: int | None = None,
         times: npt.ArrayLike | None = None,
     ) -> Trajectory: ...  # fmt: skip

@@ -6,12 +6,10 @@ import math
 
 import numpy as np
 
-from puck_tables._core.arrays import FloatArray
-from puck_tables.contact.closed_form import by_closed_form
-from puck_tables.paper.claim import Claim, equal, farthest, less, more
-from puck_tables.paper.friction import decline, excess
-from puck_tables.paper.root import power
-from puck_tables.paper.runs import (
+from paper.claim import Claim, equal, farthest, less, more
+from paper.friction import decline, excess
+from paper.root import power
+from paper.runs import (
     Simulate,
     launch,
     simulate,
@@ -19,6 +17,8 @@ from puck_tables.paper.runs import (
     time_left,
     velocity,
 )
+from puck_tables._core.arrays import FloatArray
+from puck_tables.contact.closed_form import by_closed_form
 from puck_tables.trajectory import Trajectory
 
 RATIOS = (-20.0, -2.0, -0.5, 0.05, 0.3, 1.0, 3.0, 8.0)

@@ -1,0 +1,349 @@
+"""Columns of numbers, given as rows or from a text file, by what their headings say: in SI units.
+
+Friction laws, profiles, forces, paths, corners, restitutions and targets are read here; tracks and
+logs of engines, which hold more, by the same reader of text (:mod:`puck_tables._core.text`).
+"""
+
+from __future__ import annotations
+
+import io
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import lru_cache, partial
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables._core.beginning import refuse_no_text, refuse_others
+from puck_tables._core.header import header_of
+from puck_tables._core.safe_read import read_whole
+from puck_tables._core.text import (
+    HEAD,
+    MINUS,
+    Look,
+    encoding_of,
+    is_row,
+    look_at,
+    number,
+    read_columns,
+)
+from puck_tables._core.units import EXAMPLES, bracketed, is_unit, unit_behind, unit_size
+from puck_tables.errors import InputError
+
+_KEPT = 1 << 16  # bytes of a file whose numbers are kept
+_TOKEN = re.compile(r"[^\W\d_]+")
+_ERRORS = {"std", "sd", "se", "sem", "sigma", "err", "error", "errors", "var", "uncertainty",
+           "unsicherheit", "fehler"}  # fmt: skip
+
+
+class Column(NamedTuple):
+    """A column that may be wanted.
+
+    ``name``: in messages; ``words``: by which a heading is known, the first as an example;
+    ``kind``: of its unit, see :func:`puck_tables._core.units.unit_size`.
+    """
+
+    name: str
+    words: str
+    kind: str
+
+    @property
+    def written(self) -> str:
+        """A heading as somebody may write it."""
+        word, unit = self.words.split()[0], EXAMPLES.get(self.kind)
+        return f"{word} [{unit}]" if unit else word
+
+
+TIME = Column("time", "t time times zeit temps tiempo tempo tijd sec secs seconds", "time")
+X = Column("x", "x xpos posx xcoord", "length")
+Y = Column("y", "y ypos posy ycoord", "length")
+ANGLE = Column("angle", "angle theta θ phi φ orientation rotation winkel", "angle")
+SPEED = Column(
+    "speed", "v u speed speeds velocity velocities geschwindigkeit vitesse velocidad", "velocity"
+)
+FRICTION = Column(
+    "friction coefficient", "f mu µ μ cof coef coeff coefficient friction reibwert reibzahl "
+    "reibungszahl reibungskoeffizient", "ratio",
+)  # fmt: skip
+RESTITUTION = Column("restitution", "e cor restitution", "ratio")
+RADIUS = Column("radius", "r radius radii rho ρ x radial", "radius")
+PRESSURE = Column("pressure", "p pressure w load stress druck pression", "any")
+FORCE_X = Column("force along x", "Fx fx forcex xforce", "force")
+FORCE_Y = Column("force along y", "Fy fy forcey yforce", "force")
+TORQUE = Column("torque", "torque moment mz tz tau drehmoment", "torque")
+_ALL = (TIME, X, Y, ANGLE, SPEED, FRICTION, RESTITUTION, RADIUS, PRESSURE, FORCE_X, FORCE_Y, TORQUE)
+
+
+@dataclass(frozen=True)
+class Numbers:
+    """Rows of numbers in SI units, and where they stand.
+
+    ``rows``: array (n, k), a column for each that was wanted and is there; ``units``: of each, as
+    its heading says it, '' if it says none.
+    """
+
+    rows: FloatArray
+    units: tuple[str, ...]
+    path: str = ""
+    line: Callable[[int], int] | None = None
+
+    def where(self, row: int) -> str:
+        """A row in a message, by its line in the file."""
+        return f"{self.path}, line {self.line(row)}" if self.line else f"row {row + 1}"
+
+    def refuse_unless_ascending(self, what: str, equal: bool = False) -> None:
+        """Refuse a first column that does not ascend, or of one row alone.
+
+        Parameters
+        ----------
+        what : what stands in it, for the message: 'the speeds'
+        equal : whether neighbours may be equal
+
+        Raises
+        ------
+        InputError
+            With the line at which it does not.
+        """
+        first = self.rows[:, 0]
+        if first.size < 2:
+            raise InputError(f"{self.where(0)} is the only row of numbers: two or more are needed")
+        wrong = np.flatnonzero(np.diff(first) < 0.0 if equal else np.diff(first) <= 0.0)
+        if wrong.size:
+            n = int(wrong[0])
+            how = "again" if first[n + 1] == first[n] else f"after {first[n]:.9g}"
+            raise InputError(f"{self.where(n + 1)}: {first[n + 1]:.9g} {how}: {what} must ascend")
+
+
+def numbers_of(
+    given: str | Path | Sequence[Sequence[float]], columns: Sequence[Column], needed: int,
+    most: int, name: str = "",
+) -> Numbers:  # fmt: skip
+    r"""Columns of numbers, given as rows or in a text file of any separator and decimal mark.
+
+    Columns are known by their headings, in any order, beside others; where the headings are not
+    known, or there are none, they must be just these in their order.
+
+    Parameters
+    ----------
+    given : name of a file, or rows in SI units
+    columns : those that are wanted
+    needed : how many of them, the first, must be there
+    most : bytes that a file may have
+    name : of rows that are given, for messages
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, a column is missing or its unit is not known, or a cell is no number;
+        with its line.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = Path(folder, "law.csv")
+    ...     _ = file.write_text("COF;slip speed (mm/s)\n0,3;0\n0,2;500\n")
+    ...     numbers_of(file, (SPEED, FRICTION), 2, 1000).rows.tolist()
+    [[0.0, 0.3], [0.5, 0.2]]
+    """
+    if not isinstance(given, str | Path):
+        return Numbers(_given(given, columns, needed, name), ("",) * len(columns))
+    content = _content(given, most)
+    read = _read if len(content) <= _KEPT else _read.__wrapped__
+    return read(str(given), content, tuple(columns), needed)
+
+
+@lru_cache(maxsize=16)  # a scene asks for its law again and again
+def _read(path: str, content: bytes, columns: tuple[Column, ...], needed: int) -> Numbers:
+    """Columns of numbers from the content of a file."""
+    head = content[:HEAD]
+    refuse_others(path, head)
+    refuse_no_text(path, head)
+    look = look_at(path, head)
+    header = header_of(look, lambda cells: all(_known(cell, columns) for cell in cells[:needed]))
+    headings = header[-1] if header and sum(map(bool, header[-1])) > 1 else []  # a title is none
+    if look.header and 1 < len(look.header[-1]) < look.width:
+        raise InputError(
+            f"{path} has {len(look.header[-1])} names for {look.width} columns, so none can be told"
+            " from another: name all of them"
+        )
+    if not headings:
+        _refuse_unit_in_words(path, look, columns)
+    taken = _taken(path, look, headings, columns, needed)
+    sizes, units = [], []
+    for column, n in taken.items():
+        unit, size = _unit(path, headings[n] if headings else "", column)
+        sizes.append(size)
+        units.append(unit)
+    found, _ = read_columns(path, look, list(taken.values()), (), content)
+    rows = np.column_stack([found[n] for n in taken.values()]) * sizes
+    rows.flags.writeable = False
+    numbers = Numbers(rows, tuple(units), path, partial(_line, look, content))
+    wrong = np.argwhere(~np.isfinite(rows))
+    if len(wrong):
+        row, column = wrong[0].tolist()
+        raise InputError(
+            f"{numbers.where(row)}: it has no {list(taken)[column].name}: every row needs one"
+        )
+    return numbers
+
+
+def list_of(path: str | Path, column: Column, most: int) -> FloatArray | None:
+    r"""The numbers of a file that has one a line, perhaps under a heading, in SI units.
+
+    None for a file of several columns.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, or its unit is not known.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = Path(folder, "a.txt")
+    ...     _ = file.write_text("t [ms]\n0\n12,5\n")
+    ...     list_of(file, TIME, 1000).tolist()
+    [0.0, 0.0125]
+    """
+    content = _content(path, most)
+    refuse_others(path, content[:HEAD])
+    refuse_no_text(path, content[:HEAD])
+    encoding = encoding_of(path, content[:HEAD])
+    text = content.decode(encoding, "replace").replace(MINUS, "-")
+    lines = [line.strip(" \t;,|\0") for line in text.splitlines() if is_row(line)]
+    comma = not any("." in line for line in lines[1:])
+    numbers = [number(line, comma) for line in lines]
+    heading = lines[0] if lines and numbers[0] is None else ""
+    numbers = numbers[1:] if heading else numbers
+    if not numbers or None in numbers or set(",;\t") & set(heading):
+        return None
+    if not np.isfinite(found := np.array(numbers, float)).all():
+        return None
+    return found * _unit(str(path), heading, column)[1]
+
+
+def _content(path: str | Path, most: int) -> bytes:
+    """The content of a file.
+
+    Raises
+    ------
+    InputError
+    """
+    try:
+        return read_whole(path, most)
+    except OSError as error:
+        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
+
+
+def _given(given: Any, columns: Sequence[Column], needed: int, name: str) -> FloatArray:
+    """Rows that somebody gave."""
+    try:
+        rows = np.array([[float(cell) for cell in row] for row in given])
+    except (TypeError, ValueError, OverflowError):
+        rows = np.empty((0, 0))
+    if rows.ndim != 2 or not needed <= rows.shape[1] <= len(columns) or not np.isfinite(rows).all():
+        raise InputError(f"{name} must be rows of {_listed(columns, needed)}".lstrip())
+    return rows
+
+
+def _listed(columns: Sequence[Column], needed: int) -> str:
+    """Columns in words, with those that may be left out."""
+    names = [one.written for one in columns]
+    text = f"{', '.join(names[: needed - 1])} and {names[needed - 1]}"
+    return text + "".join(f", and perhaps {name}" for name in names[needed:])
+
+
+def _taken(
+    path: str, look: Look, headings: Sequence[str], columns: Sequence[Column], needed: int
+) -> dict[Column, int]:
+    """Where the columns stand that are wanted, in the order in which they are."""
+    known = [_known(text, columns) for text in headings]
+    for column in columns:
+        if known.count(column) > 1:
+            both = ", ".join(f"'{headings[n]:.40}'" for n, one in enumerate(known) if one == column)
+            raise InputError(f"{path} has {known.count(column)} columns of {column.name}: {both}; "
+                             "leave one")  # fmt: skip
+    if all(column in known for column in columns[:needed]):
+        return {column: known.index(column) for column in columns if column in known}
+    fits = needed <= look.width <= len(columns)
+    strange = [
+        text for n, text in enumerate(headings)
+        if known[n] not in (None, columns[n] if n < len(columns) else None)
+        or (known[n] is None and _known(text, _ALL))
+    ]  # fmt: skip
+    if fits and not strange:
+        return dict(zip(columns, range(look.width), strict=False))
+    said = ", ".join(f"'{text:.40}'" for text in headings[:8]) or f"{look.width}, without names"
+    raise InputError(
+        f"{path} must hold the columns {_listed(columns, needed)}: name them so (its columns are "
+        f"{said})"
+    )
+
+
+def _known(text: str, columns: Sequence[Column]) -> Column | None:
+    """Which of several columns a heading names."""
+    tokens = [token.lower() for token in _TOKEN.findall(bracketed(text)[0])]
+    if _ERRORS & set(tokens):
+        return None
+    for token in ["".join(tokens), *reversed(tokens)]:  # the last says what it is: 'slip speed'
+        for column in columns:
+            if token in column.words.lower().split():
+                return column
+    return None
+
+
+def _unit(path: str, text: str, column: Column) -> tuple[str, float]:
+    """The unit in a heading as it is written, and its size.
+
+    Raises
+    ------
+    InputError
+        If it is none of the column's kind: what stands in brackets, or behind the name and is one
+        of another kind.
+    """
+    name, unit = bracketed(text)
+    words = bool(unit) and column.kind in ("ratio", "radius") and not text.rstrip().endswith("]")
+    if words and not is_unit(unit) and unit_size(unit, column.kind) is None:
+        unit = ""  # 'COF (dynamic)'
+    unit = unit or unit_behind(name, column.kind)
+    other = column.kind in EXAMPLES and any(unit_behind(name, kind) for kind in EXAMPLES)
+    if not (unit or other):
+        return "", 1.0
+    size = unit_size(unit, column.kind) if unit else None
+    if size is None:
+        example = EXAMPLES.get(column.kind)
+        what = f"write one such as {example}" if example else "it is a pure number"
+        raise InputError(
+            f"{path}: the unit of its column '{text:.40}', a {column.name}, is not known: {what}"
+        )
+    return unit, size
+
+
+def _refuse_unit_in_words(path: str, look: Look, columns: Sequence[Column]) -> None:
+    """Refuse a unit in a comment, or a line over numbers, that is no heading: whose is it?
+
+    Raises
+    ------
+    InputError
+    """
+    lines = [*look.said, *(" ".join(row) for row in look.header)]
+    for unit in re.findall(r"[\[(]([^\[\]()]+)[\])]|(\S+/\S+)", " ".join(lines)):
+        text = "".join(unit).strip()
+        sizes = {unit_size(text, column.kind) for column in columns if column.kind in EXAMPLES}
+        if sizes - {None, 1.0}:
+            raise InputError(
+                f"{path} says {text!r:.40} over its numbers, but not of which column: give it a "
+                f"line of headings, such as {', '.join(one.written for one in columns)}"
+            )
+
+
+def _line(look: Look, content: bytes, row: int) -> int:
+    """The line of a file at which a row of numbers stands."""
+    with io.TextIOWrapper(io.BytesIO(content), look.encoding, "replace") as file:
+        rows = [n for n, text in enumerate(file, 1) if n > look.skip and is_row(text)]
+    return rows[row]
