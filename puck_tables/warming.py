@@ -56,7 +56,7 @@ def _boards() -> None:
 
 def _boards_of_many() -> None:
     one, two = (Piece(0.04, friction=0.1, launch=Launch(position=(x, 0.0))) for x in (0.0, 0.2))
-    Scene(pucks=(one, two)).aim((0.5, 0.0), puck=1, max_speed=2.0)
+    Scene(pucks=(one, two)).aim((0.5, 0.0), puck=1, striker=0, max_speed=2.0)
 
 
 def _board() -> Scene:
