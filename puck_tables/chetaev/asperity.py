@@ -25,7 +25,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import finite_array
+from puck_tables._core.real import finite_array, positive, real
 from puck_tables.errors import AccuracyError, InputError
 
 _TOL = 1e-13
@@ -68,13 +68,8 @@ class Asperity:
 
     def __post_init__(self) -> None:
         for name, unit in (("amplitude", "m"), ("length", "m"), ("load", "N"), ("mass", "kg")):
-            value = getattr(self, name)
-            if not 0.0 < value < math.inf:
-                raise InputError(
-                    f"{name} must be a finite number greater than 0 {unit}, got {value:g}"
-                )
-        if not math.isfinite(self.pull):
-            raise InputError(f"pull must be a finite number in N, got {self.pull:g}")
+            object.__setattr__(self, name, positive(name, getattr(self, name), unit))
+        object.__setattr__(self, "pull", real("pull", self.pull, "N"))
 
     @property
     def slope(self) -> float:
