@@ -221,7 +221,7 @@ V0 = ["simulate", "--v0", "1,0"]
         ([*V0, "--exact", "--table", "x.h5"], ["--exact and --table clash"]),
         ([*V0, "-o", "run.xlsx"], [".h5, .csv, .json, .jsonl"]),
         ([*V0, "--plot", "run.bmp"], [".png"]),
-        ([*V0, "-o", "a.csv", "--plot", "a.csv"], ["two outputs"]),
+        ([*V0, "-o", "a.csv", "--plot", "a.csv"], ["a.csv: the ending", ".png"]),
         (["sweep", "--w0", "5:1:10"], ["STOP must be greater than START"]),
         (["sweep", "--w0", "1:5"], ["START:STOP:COUNT"]),
         (["sweep", "--w0", "-1e308:1e308:3"], ["too wide"]),
