@@ -72,8 +72,21 @@ from puck_tables.errors import InputError
     metavar="PLACE[,ANGLE]",
     help="Standard deviation of places in m and angles in rad.  [default: that of the residuals]",
 )
-@click.option("--since", type=TIME, help="Start of the free motion, in s of the track.")
-@click.option("--until", type=TIME, help="End of the free motion, in s of the track.")
+@click.option(
+    "--since",
+    type=TIME,
+    help="Start of the free motion, in s of the track: no frame after it is left out at the start.",
+)
+@click.option(
+    "--until",
+    type=TIME,
+    help="End of the free motion, in s of the track: no frame before it is left out at the end.",
+)
+@click.option(
+    "--keep-all",
+    is_flag=True,
+    help="All frames are of free motion: none is left out where something seems to touch the puck.",
+)
 @click.option(
     "--impacts",
     is_flag=True,
@@ -139,7 +152,7 @@ def fit(
     friction: float | None, mass: float | None, gravity: float | None, pressure: str,
     gyration: float | None, free: str | None, fix: tuple[str, ...], prior: tuple[str, ...],
     bound: tuple[str, ...], start: tuple[str, ...], noise: str | None, since: float | None,
-    until: float | None, impacts: bool, wall: tuple[str, ...], jitter: str | None,
+    until: float | None, keep_all: bool, impacts: bool, wall: tuple[str, ...], jitter: str | None,
     rows: str | None, slip_speeds: str | None, between: str, laws: str | None,
     hold_out: str | None, explain: bool, as_json: bool,
     output: Path | None, plot: Path | None, overwrite: bool,
@@ -194,7 +207,7 @@ def fit(
             bounds=_pairs(bound, "--bound", "LOW:HIGH"),
             start={n: _number(v, "--start", n) for n, v in _named(start, "--start").items()},
             noise=_noise(noise), since=-math.inf if since is None else since,
-            until=math.inf if until is None else until,
+            until=math.inf if until is None else until, keep_all=keep_all,
             jitter=_jitter(jitter), rows=None if rows is None else _point(rows, "--rows"),
             impacts=impacts, walls=[_wall(one) for one in wall],
             slip_speeds=None if slip_speeds is None

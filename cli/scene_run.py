@@ -37,6 +37,12 @@ KEPT = (
     "random", "seed", "spreads", "regions",
 )  # fmt: skip
 SCALED = ("delta", "decel")
+INSTEAD = {  # of options that no scene has
+    **dict.fromkeys(SCALED, "puck.height and puck.friction set it"),
+    "heading": "launch.velocity has it", "pressure": "--set puck.pressure=NAME has it",
+    "gyration": "--set puck.gyration=NUMBER has it",
+}  # fmt: skip
+_AT = {"impact": "wall", "contact": "wall", "edge": "edge", "overhang": "edge"}
 MOST_PARTS = 16  # of a scene in a report
 
 
@@ -89,10 +95,11 @@ def scene_tables(
     for name, value in given.items():
         if name in SCALED and scene is None:
             continue
+        flag = next(p.opts[0] for p in ctx.command.params if p.name == name)
         if name not in PATHS:
-            flag = next(p.opts[0] for p in ctx.command.params if p.name == name)
-            hint = " (puck.height and puck.friction set it)" if name in SCALED else ""
+            hint = f" ({_of_each(tables, INSTEAD[name])})" if name in INSTEAD else ""
             raise InputError(f"{flag} has no place in a scene{hint}: leave it out")
+        _refuse_one_for_all(tables, flag, PATHS[name], _as_text(value))
         if PATHS[name] in named:
             raise InputError(f"--{name} and --spread {PATHS[name]} clash: both give it")
         named[PATHS[name]] = f"--{name}"
@@ -106,12 +113,49 @@ def scene_tables(
         if not equals or not text:
             raise InputError(f"--set {change}: write PATH=VALUE, like floor.slope=0.1")
         path = path.strip()
+        _refuse_one_for_all(tables, f"--set {path}", path, text.strip())
         clash = named.get(path) or named.get(path.partition("[")[0])
         if clash is not None:
             raise InputError(f"{clash} and --set {path} clash: both give {path}")
         named[path] = "--set"
         set_path(tables, path, _value(text.strip()))
     return tables
+
+
+def _refuse_one_for_all(tables: dict[str, Any], flag: str, path: str, value: str) -> None:
+    """Refuse a number of the only puck where there are several.
+
+    Raises
+    ------
+    InputError
+    """
+    pucks, own = tables.get("puck"), _of_each(tables, path)
+    if isinstance(pucks, list) and own != path:
+        last = len(pucks) - 1
+        more = f", and so on to puck[{last}] for all of them" if last > 0 else ""
+        raise InputError(
+            f"{flag} is for a scene of one puck, and here each has its own: write "
+            f'--set "{own}={value}" for the first{more}'
+        )
+
+
+def _of_each(tables: dict[str, Any], words: str) -> str:
+    """Paths of a puck or its launch as a scene of several pucks has them, of the first."""
+    if not isinstance(tables.get("puck"), list):
+        return words
+    return re.sub(r"\b(?<!\.)(puck(?=\.)|launch\b)", _first_of, words)
+
+
+def _first_of(found: re.Match[str]) -> str:
+    return "puck[0]" if found[1] == "puck" else "puck[0].launch"
+
+
+def _as_text(value: Any) -> str:
+    """An option's value as --set takes it."""
+    written = _as_toml(value)
+    if isinstance(written, list):
+        return f"[{','.join(f'{number:.12g}' for number in written)}]"
+    return f"{written:.12g}" if isinstance(written, float) else str(written)
 
 
 def files_read(scene: str | None, tables: dict[str, Any]) -> list[str]:
@@ -196,6 +240,10 @@ def report(run: SceneRun) -> str:
         "error": _error(run),
         "model": run.plan.model + (f", {run.steps} steps" if run.steps else ""),
     }
+    if any(event.what == "overhang" for event in run.events):
+        from puck_tables.scene.plan import OVERHANG
+
+        lines["overhang"] = OVERHANG
     if run.scene.lateral.strength != 0.0:
         lines["lateral"] += "; empirical: no dry friction over the contact explains it"
     if run.scene.constraint is not None:
@@ -261,7 +309,7 @@ def _joule(energy: float) -> str:
 
 def _event(scene: Scene, event: Event) -> str:
     """What happened, and at which wall, edge, border, patch or strip."""
-    at, number = {"impact": "wall", "contact": "wall", "edge": "edge"}.get(event.what), event.which
+    at, number = _AT.get(event.what), event.which
     if event.what in ("entry", "exit"):
         borders = 0 if scene.floor.strips is None else len(scene.floor.strips.borders)
         at, number = ("border", number) if number < borders else ("patch", number - borders)

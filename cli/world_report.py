@@ -15,7 +15,7 @@ _ROUNDING = 1e-14  # of energies
 
 def report(run: WorldRun) -> str:
     """What happened in two sentences; a table of pucks; impacts, energies, and how sure it is."""
-    from puck_tables.scene.plan import EMPIRICAL
+    from puck_tables.scene.plan import EMPIRICAL, OVERHANG
     from puck_tables.world.outcome import ways_of
 
     lines = {
@@ -27,6 +27,8 @@ def report(run: WorldRun) -> str:
     }
     if run.scene.lateral.strength != 0.0:
         lines["lateral"] = EMPIRICAL
+    if any(event.what == "overhang" for event in run.events):
+        lines["overhang"] = OVERHANG
     parts = [
         plainly(run),
         "\n".join(_pucks(run)),
@@ -41,7 +43,7 @@ def plainly(run: WorldRun) -> str:
     from puck_tables.world.agreement import pieces_of
 
     count, impacts = len(run.names), _counted(run.impacts, "impact")
-    if not run.events and run.end_time == 0.0:
+    if run.end_time == 0.0 and all(event.what == "overhang" for event in run.events):
         return (
             f"{_counted(count, 'puck')}: nothing moves.\n"
             "Send one off: --set puck[0].launch.velocity=[1,0]"

@@ -8,7 +8,9 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import matplotlib.pyplot as plt
 from sphinx.application import Sphinx
+from sphinx.errors import ExtensionError
 from sphinx_gallery.scrapers import figure_rst
 
 import puck_tables
@@ -50,7 +52,8 @@ def figure_of(block: tuple[str, str, int], names: dict[str, Any], conf: dict[str
         return ""
     figure.is_shown = True
     path = next(names["image_path_iterator"])
-    figure.savefig(path, dpi=110)
+    figure.savefig(path, dpi=110, bbox_inches="tight")
+    plt.close(figure)  # or the next example draws on it
     return figure_rst([path], conf["src_dir"])
 
 
@@ -75,7 +78,7 @@ html_theme = "pydata_sphinx_theme"
 html_title = "puck-tables"
 html_theme_options = {
     "navigation_with_keys": False,
-    "show_nav_level": 2,
+    "show_nav_level": 1,
     "header_links_before_dropdown": 6,
     "show_toc_level": 2,
 }
@@ -122,8 +125,17 @@ def arrows_have_names(app: Sphinx, failed: Exception | None) -> None:
             path.write_text(text.replace(bare, said), encoding="utf-8")
 
 
+def examples_have_pictures(app: Sphinx, failed: Exception | None) -> None:
+    """An example that lost its picture stops the build."""
+    for script in (HERE / "gallery").rglob("*.py") if not failed else ():
+        page = Path(app.outdir) / "examples" / script.parent.name / f"{script.stem}.html"
+        if f"sphx_glr_{script.stem}_001.png" not in page.read_text(encoding="utf-8"):
+            raise ExtensionError(f"{script.name} has no picture: it is to be called figure")
+
+
 def setup(app: Sphinx) -> None:
     """Called by Sphinx."""
+    app.connect("build-finished", examples_have_pictures)
     app.connect("build-finished", arrows_have_names)
     app.connect("builder-inited", said_by_the_program)
     app.connect("autodoc-process-docstring", bars_are_bars, priority=900)

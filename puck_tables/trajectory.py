@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import finite_array, one_velocity, real
+from puck_tables._core.real import checked_flag, finite_array, one_velocity, real, shown
 from puck_tables.accuracy.front import Selection
 from puck_tables.accuracy.methods import INTEGRATORS, method_named
 from puck_tables.errors import InputError
@@ -186,6 +186,7 @@ def simulate(
     launch, w = one_velocity(velocity), real("spin", spin, "rad/s")
     wanted = real("tol", tol, "dimensionless")
     refuse_other_kind(table, ResultantTable)
+    checked_flag("exact", exact)
     if exact and table is not None:
         raise InputError("exact and table exclude each other: closed forms need no table")
     stepper = method_named(method, INTEGRATORS)
@@ -281,8 +282,11 @@ def _looked_up(
 def _check_frames(frames: int | None, times: npt.ArrayLike | None) -> None:
     if times is not None and frames is not None:
         raise InputError("frames and times both choose the states: give one of them")
-    if frames is not None and not (isinstance(frames, int) and 1 <= frames <= MAX_FRAMES):
-        raise InputError(f"frames must be from 1 to {MAX_FRAMES}, got {frames}")
+    whole = isinstance(frames, int) and not isinstance(frames, bool)
+    if frames is not None and not (whole and 1 <= frames <= MAX_FRAMES):
+        raise InputError(
+            f"frames must be a whole number from 1 to {MAX_FRAMES}, got {shown(frames)}"
+        )
 
 
 def _moments(frames: int | None, times: npt.ArrayLike | None, stop_time: float) -> FloatArray:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 import xarray
 from click.testing import CliRunner
@@ -128,6 +130,32 @@ def test_refusals_are_one_sentence_and_leave_nothing(
     assert ended.exit_code in (1, 2) and words in ended.stderr
     assert "Traceback" not in ended.stderr and ended.stdout == ""
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("command", "option", "path"),
+    [
+        ("simulate", "gravity", "puck[{}].gravity"),
+        ("simulate", "w0", "puck[{}].launch.spin"),
+        ("simulate", "mass", "puck[{}].mass"),
+        ("sweep", "w0", "puck[{}].launch.spin"),
+        ("sweep", "gravity", "puck[{}].gravity"),
+    ],
+)
+def test_a_number_of_the_only_puck_is_refused_with_what_to_write(
+    command: str, option: str, path: str
+) -> None:
+    """And what it says is what does it."""
+    low, high = sorted(np.random.default_rng(19).uniform(0.1, 9.0, 2).round(2).tolist())
+    value = f"{low!r}" if command == "simulate" else f"{low!r}:{high!r}:3"
+    only = path.replace("puck[{}].launch", "launch").replace("puck[{}]", "puck")
+    for given in ((f"--{option}", value), ("--set", f"{only}={value}")):
+        ended = puck(command, "--scene", "newtons-row", *given)
+        assert ended.exit_code == 2 and ended.stdout == ""
+        assert "here each has its own" in ended.stderr and "and so on to puck[" in ended.stderr
+        written = re.findall(r'--set "([^"]*)"', ended.stderr)
+        assert written == [f"{path.format(0)}={value}"]
+        assert puck(command, "--scene", "newtons-row", "--set", *written).exit_code == 0
 
 
 def test_a_sweep_of_several_pucks_says_where_each_ends() -> None:

@@ -146,7 +146,10 @@ def test_a_client_killed_in_the_middle_goes_on(tmp_path: Path):
 
 
 @pytest.mark.nightly
-def test_ctrl_c_leaves_a_cluster_of_its_own_within_a_second_and_goes_on(tmp_path: Path):
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_ctrl_c_leaves_a_cluster_of_its_own_within_a_second_and_goes_on(
+    number: signal.Signals, tmp_path: Path
+):
     code = "from puck_tables.cli.start import main; main()"
     words = ["sweep", "--w0", "0:5:2000", "--speed", "0:2:2000", "--method", "adaptive", "-o",
              "m.zarr", "--cluster", "local:2"]  # fmt: skip
@@ -157,10 +160,10 @@ def test_ctrl_c_leaves_a_cluster_of_its_own_within_a_second_and_goes_on(tmp_path
     )  # fmt: skip
     waited_for(lambda: blocks(tmp_path / "m.zarr") > 3)
     begin = time.monotonic()
-    os.killpg(client.pid, signal.SIGINT)
+    os.killpg(client.pid, number)
     error = client.communicate(timeout=60)[1]
     took = time.monotonic() - begin
-    assert client.returncode == 130, error
+    assert client.returncode == 128 + number, error
     words = "Interrupted: m.zarr keeps what is done; the same command goes on."
     assert error.splitlines()[-1] == words
     assert "Traceback" not in error

@@ -20,9 +20,11 @@ sys.meta_path[:] = [one for one in sys.meta_path if "editable" not in repr(one).
 @pytest.fixture(scope="module")
 def clone(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("somewhere") / "a clone"
+    folder.mkdir()
     for name in ("puck_tables", "cli", "tables"):
         shutil.copytree(ROOT / name, folder / name, ignore=shutil.ignore_patterns("__pycache__"))
-    shutil.copy(ROOT / "README.md", folder)
+    for name in ("README.md", "pyproject.toml"):
+        shutil.copy(ROOT / name, folder)
     return folder
 
 
@@ -52,7 +54,7 @@ def test_the_examples_of_the_readme(clone: Path):
 
 def test_a_python_without_what_it_needs_is_told_so(clone: Path):
     """As a system's Python is, in a clone that nothing was installed of."""
-    done = inside(clone, "import puck_tables", "-S")
+    done = inside(clone, "import puck_tables; puck_tables.Puck", "-S")
     said = done.stderr.splitlines()[-1]
     assert done.returncode and said.startswith(
         "ModuleNotFoundError: puck_tables needs numpy, which"

@@ -7,11 +7,17 @@ from __future__ import annotations
 
 import json
 import math
+import signal
 import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+import pytest
 from click.testing import CliRunner
+from hostile import doors, hostile
 from hypothesis import given
 from hypothesis import strategies as st
 from puck_tables.cli.main import main
@@ -155,3 +161,69 @@ def test_command_lines(line: list[str]):
             assert ended.stdout == ""
             assert list(Path(folder).iterdir()) == []
             assert len(ended.stderr.strip().splitlines()) <= 4
+
+
+NO_ANSWER = 300  # s, of one call
+QUICK = [name for name in doors() if name.startswith("pt.") or name in {
+    "stop", "states", "stop_arrays", "state_arrays", "resultants", "critical_delta", "Puck",
+    "limit_ratio", "regime", "elementary_stop_time", "Normal", "Uniform", "law_of", "profile_law",
+    "StribeckLaw", "PowerLaw", "CurlingLaw", "SpeedLaw", "RestitutionTable", "Table.shipped",
+    "Scene.load", "Scene.unit_of", "patch_stop", "patch_system", "Asperity", "Asperity.press",
+    "constrained_motion", "asperity_motion", "stops.spread", "states.derivative", "export_source",
+}]  # fmt: skip
+
+
+@contextmanager
+def watched(said: str) -> Iterator[None]:
+    """A call that gives no answer ends in a failure, not in a wait without end."""
+
+    def fail(*_: object) -> None:
+        raise AssertionError(f"no answer after {NO_ANSWER} s: {said}")
+
+    before = signal.signal(signal.SIGALRM, fail)
+    signal.alarm(NO_ANSWER)
+    try:
+        yield
+    finally:
+        signal.alarm(0)
+        signal.signal(signal.SIGALRM, before)
+
+
+def try_door(name: str, rng: np.random.Generator) -> None:
+    """One argument or two are nobody's wish: an answer without NaN, or a sentence."""
+    call, good = doors()[name]
+    values = hostile()
+    changed = rng.choice(list(good), min(int(rng.integers(1, 3)), len(good)), replace=False)
+    bad: dict[str, Any] = {str(one): values[int(rng.integers(len(values)))] for one in changed}
+    said = f"{name}({', '.join(f'{key}={value!r:.80}' for key, value in bad.items())})"
+    try:
+        with watched(said):
+            found = call(**{**good, **bad})
+    except PuckError as error:
+        assert str(error), said
+        long = any(isinstance(value, str) and len(value) > 1000 for value in bad.values())
+        assert long or len(str(error)) < 2000, said
+        return
+    except Exception as error:
+        raise AssertionError(said) from error
+    for part in found if isinstance(found, tuple) else (found,):
+        if isinstance(part, float | np.ndarray) and np.asarray(part).dtype.kind == "f":
+            assert not np.isnan(part).any(), said
+
+
+def test_hostile_arguments():
+    rng = np.random.default_rng(35)
+    for _ in range(2):
+        for name in QUICK:
+            try_door(name, rng)
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("name", list(doors()))
+def test_hostile_arguments_at_every_door(name: str):
+    call, good = doors()[name]
+    if not name.endswith((".load", ".from_csv")):
+        call(**good)  # what is not replaced is good
+    rng = np.random.default_rng(sum(map(ord, name)))
+    for _ in range(30 * len(good)):
+        try_door(name, rng)

@@ -307,7 +307,8 @@ def test_axes_and_labels_are_mended(seed: int, tmp_path: Path, capsys: pytest.Ca
         if (store / name).exists():
             harmed(draw, store / name)
     capsys.readouterr()
-    assert PUCK.sweep(**grid(0), store=store).load() == PUCK.sweep(**grid(0))
+    PUCK.sweep(**grid(0), store=store)
+    assert "written anew" in capsys.readouterr().err
     refuse_wrong(store, True)
     now = content(store)
     assert now.keys() == before.keys()

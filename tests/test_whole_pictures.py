@@ -139,6 +139,13 @@ def test_every_sample_is_in_sight_or_counted() -> None:
         assert len(single.get_xdata()) == bare.sum() and shown.sum() == 400 - lost - far
 
 
+@pytest.mark.parametrize("count", [2, 9, 49])
+def test_few_samples_are_all_drawn(count: int) -> None:
+    figure = Puck.similar().sample(count, count, speed=1.0, spin=Normal(0.0, 3.0)).plot()
+    single = next(one for one in figure.axes[0].lines if one.get_label() == "single samples")
+    assert len(single.get_xdata()) == count and not figure.axes[0].get_title("left")
+
+
 def words(figure: Figure) -> Iterator[Text]:
     """All that is written but the numbers at axes."""
     legends = [axes.get_legend() for axes in figure.axes] + list(figure.legends)

@@ -5,7 +5,12 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Mapping
 from importlib import import_module
+from pathlib import Path
 from typing import Any
+
+NEEDED = ("numpy", "numba", "scipy", "h5py", "click")
+_ROOT = Path(__file__).resolve().parent.parent.parent
+_CLONE = _ROOT if (_ROOT / "pyproject.toml").is_file() else None
 
 
 def lazily(
@@ -30,7 +35,17 @@ def lazily(
         if name not in homes:
             raise AttributeError(f"module {package!r} has no attribute {name!r}")
         module, _, original = homes[name].partition(":")
-        value: Any = import_module(f"{package}.{module or name}")
+        try:
+            value: Any = import_module(f"{package}.{module or name}")
+        except ModuleNotFoundError as error:
+            if error.name not in NEEDED:
+                raise
+            raise ModuleNotFoundError(
+                f"{package} needs {error.name}, which this Python does not have: "
+                f"python -m pip install '{_CLONE or package}', or take the Python that has it "
+                "(in a clone .venv/bin/python)",
+                name=error.name,
+            ) from None
         if module:
             value = getattr(value, original or name)
         setattr(sys.modules[package], name, value)

@@ -16,6 +16,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.colours import is_colour, meant
 from puck_tables._core.fields import LISTED, Kind, in_tables, specs
+from puck_tables._core.real import shown
 from puck_tables._core.units import SHOWN, quantity
 from puck_tables.errors import PuckError
 
@@ -23,7 +24,6 @@ T = TypeVar("T")
 
 RANGE = re.compile(r"([^:]+):([^:]+):([0-9]{1,9})")
 MAX_COUNT = 1_000_000  # numbers of one range
-_SHOWN = 60  # characters of a value in a message
 
 
 @dataclass(frozen=True)
@@ -57,15 +57,7 @@ class Reading:
 
 
 def _shown(value: Any) -> str:
-    """A value in a message, however large, deep or odd it is."""
-    if isinstance(value, Mapping):
-        return "a table"
-    plain = value.item() if isinstance(value, np.generic) else value
-    try:
-        shown = repr(plain)
-    except (ValueError, RecursionError):  # integers of thousands of digits, lists without end
-        shown = "a whole number of thousands of digits" if isinstance(value, int) else "a list"
-    return shown if len(shown) <= _SHOWN else shown[: _SHOWN - 3] + "..."
+    return "a table" if isinstance(value, Mapping) else shown(value)
 
 
 def read_part(kind: type[T], data: Any, path: str, reading: Reading) -> T | None:
@@ -126,8 +118,8 @@ def read_values(
     for name in data:
         if name not in known and name + LISTED not in known:
             near = ", ".join(dict.fromkeys(map(in_tables, known)))
-            shown = name if isinstance(name, str) and name.isprintable() else _shown(name)
-            reading.errors.append(f"{prefix}{shown[:_SHOWN]}: no such entry (there are: {near})")
+            called = name[:60] if isinstance(name, str) and name.isprintable() else _shown(name)
+            reading.errors.append(f"{prefix}{called}: no such entry (there are: {near})")
     values: dict[str, Any] = {}
     for name, spec in known.items():
         given = _given(data, name, known)

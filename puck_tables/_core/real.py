@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
+
+_SHOWN = 60  # characters of a value in a message
 
 
 def refuse_mask(name: str, values: object) -> None:
@@ -98,6 +101,22 @@ def finite_array(name: str, values: npt.ArrayLike, unit: str) -> FloatArray:
     return array
 
 
+def shown(value: object) -> str:
+    """A value in a message: on one line and short, however large, deep or odd it is.
+
+    Examples
+    --------
+    >>> shown(np.zeros((2, 2))), len(shown("a" * 1000))
+    ('array([[0., 0.], [0., 0.]])', 60)
+    """
+    plain = value.item() if isinstance(value, np.generic) else value
+    try:
+        text = " ".join(repr(plain).split())
+    except (ValueError, RecursionError):  # integers of thousands of digits, lists without end
+        text = "a whole number of thousands of digits" if isinstance(value, int) else "a list"
+    return text if len(text) <= _SHOWN else text[: _SHOWN - 3] + "..."
+
+
 def instance(name: str, value: object, *kinds: type) -> None:
     """Refuse a value that is not of one of these kinds.
 
@@ -115,6 +134,27 @@ def instance(name: str, value: object, *kinds: type) -> None:
     if not isinstance(value, kinds):
         names = " or a ".join(kind.__name__ for kind in kinds if kind is not type(None))
         raise InputError(f"{name} must be a {names}, got a {type(value).__name__}")
+
+
+def listed(name: str, values: object, what: str) -> list[Any]:
+    """What stands in a list, a tuple or an array; a text is none.
+
+    Raises
+    ------
+    InputError
+
+    Examples
+    --------
+    >>> listed("names", ("x", "y"), "columns")
+    ['x', 'y']
+    """
+    try:
+        if isinstance(values, str | bytes):
+            raise TypeError
+        found: list[Any] = list(values)  # type: ignore[call-overload]
+    except TypeError:
+        raise InputError(f"{name} must be a list of {what}, got {shown(values)}") from None
+    return found
 
 
 def broadcast(**arrays: FloatArray) -> list[FloatArray]:
@@ -183,9 +223,12 @@ def real(name: str, value: float, unit: str) -> float:
         return value
     refuse_mask(name, value)
     try:
+        # what float() would take all the same: texts, spans of time, lists of one
+        if isinstance(value, str | bytes | bytearray | np.timedelta64) or np.ndim(value):
+            raise TypeError
         number = float(value)
     except (TypeError, ValueError, OverflowError):
-        raise InputError(f"{name} must be a number{bracketed(unit)}, got {value!r:.60}") from None
+        raise InputError(f"{name} must be a number{bracketed(unit)}, got {shown(value)}") from None
     if not math.isfinite(number):
         raise InputError(f"{name} must be a finite number{bracketed(unit)}, got {number}")
     return number
@@ -253,5 +296,38 @@ def checked_threads(threads: int | None) -> None:
     >>> checked_threads(None), checked_threads(2)
     (None, None)
     """
-    if threads is not None and (not isinstance(threads, int) or threads < 1):
-        raise InputError(f"threads must be a whole number from 1 on, got {threads!r}")
+    if threads is not None and (
+        not isinstance(threads, int) or isinstance(threads, bool) or threads < 1
+    ):
+        raise InputError(f"threads must be a whole number from 1 on, got {shown(threads)}")
+
+
+def checked_flag(name: str, value: object) -> None:
+    """Refuse what is neither true nor false.
+
+    Raises
+    ------
+    InputError
+
+    Examples
+    --------
+    >>> checked_flag("jacobian", True)
+    """
+    if not isinstance(value, bool | np.bool_):
+        raise InputError(f"{name} must be True or False, got {shown(value)}")
+
+
+def checked_progress(progress: object) -> None:
+    """Refuse what cannot be told how far work is.
+
+    Raises
+    ------
+    InputError
+
+    Examples
+    --------
+    >>> checked_progress(None), checked_progress(print)
+    (None, None)
+    """
+    if progress is not None and not callable(progress):
+        raise InputError(f"progress must be a function of (done, total), got {shown(progress)}")

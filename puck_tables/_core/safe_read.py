@@ -8,6 +8,8 @@ import stat
 from pathlib import Path
 from typing import BinaryIO
 
+from puck_tables._core.real import shown
+
 
 def read_whole(path: str | Path, largest: int) -> bytes:
     """The bytes of a file.
@@ -54,6 +56,8 @@ def opened(path: str | Path, largest: int) -> BinaryIO:
     OSError: [Errno 22] it is not a regular file, save what it gives as one: '/dev/zero'
     """
     # not blocking: to open a pipe would wait for who writes to it
+    if not isinstance(path, str | os.PathLike) or "\0" in os.fspath(path):
+        raise OSError(errno.EINVAL, "it is no path of a file", shown(path))
     flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
     if Path(path).exists() and not Path(path).is_file():
         raise _irregular(path)

@@ -11,6 +11,7 @@ from collections.abc import Iterable
 from enum import StrEnum
 from typing import NamedTuple
 
+from puck_tables._core.real import shown
 from puck_tables.errors import InputError
 
 
@@ -93,7 +94,7 @@ def method_named(name: str | None, among: Iterable[Method] = METHODS) -> Method 
         return None
     known = {method.value: method for method in among}
     if not isinstance(name, str) or name not in known:
-        raise InputError(f"method must be one of {', '.join(known)}, got {name!r}")
+        raise InputError(f"method must be one of {', '.join(known)}, got {shown(name)}")
     return known[name]
 
 

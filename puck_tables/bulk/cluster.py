@@ -276,7 +276,7 @@ def _own(workers: int) -> Iterator[Any]:
         security = Security.temporary()
     except ImportError:
         raise MissingExtraError(
-            "--cluster local:N needs cryptography: pip install 'puck-tables[cluster]'"
+            '--cluster local:N needs cryptography: pip install "puck-tables[cluster]"'
         ) from None
     with contextlib.ExitStack() as stack:
         stack.enter_context(dask.config.set(_OWN))

@@ -11,7 +11,7 @@ import numpy as np
 
 from puck_tables._core.executor import Progress
 from puck_tables._core.memory import check_memory
-from puck_tables._core.real import instance
+from puck_tables._core.real import checked_progress, instance, shown
 from puck_tables.bulk.work import Tally, Work, in_memory
 from puck_tables.errors import InputError
 from puck_tables.io.dataset import Dataset
@@ -101,6 +101,7 @@ def finish(
     ------
     InputError, OutputError, MissingExtraError, ClusterError
     """
+    checked_progress(progress)
     if store is None:
         if cluster is not None:
             raise InputError(
@@ -149,5 +150,6 @@ def check_part(part: object) -> None:
     --------
     >>> check_part(1024)
     """
-    if isinstance(part, bool) or not isinstance(part, int | np.integer) or part < 1:
-        raise InputError(f"chunk must be a whole number from 1 on, got {part!r:.40}")
+    whole = isinstance(part, int | np.integer) and not isinstance(part, bool | np.timedelta64)
+    if not whole or part < 1:  # type: ignore[operator]
+        raise InputError(f"chunk must be a whole number from 1 on, got {shown(part)}")

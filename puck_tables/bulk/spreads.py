@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import real
+from puck_tables._core.real import real, shown
 from puck_tables.errors import InputError
 
 _LARGEST_SEED = 1 << 64
@@ -71,12 +71,15 @@ class Normal(Spread):
     deviation: float
 
     def __post_init__(self) -> None:
-        real("the mean of a normal spread", self.mean, "in the unit of the number")
-        if not real("the deviation of a normal spread", self.deviation, "the same unit") > 0.0:
+        mean = real("the mean of a normal spread", self.mean, "in the unit of the number")
+        deviation = real("the deviation of a normal spread", self.deviation, "the same unit")
+        if not deviation > 0.0:
             raise InputError(
-                f"the deviation of a normal spread must be greater than 0, got {self.deviation:g}: "
+                f"the deviation of a normal spread must be greater than 0, got {deviation:g}: "
                 "give the number alone to hold it fixed"
             )
+        object.__setattr__(self, "mean", mean)
+        object.__setattr__(self, "deviation", deviation)
 
     def of(self, uniform: FloatArray) -> FloatArray:
         """Its quantiles."""
@@ -118,6 +121,8 @@ class Uniform(Spread):
                 f"a uniform spread must go from a lower to a higher end, got {low:g} to {high:g}: "
                 "give the number alone to hold it fixed"
             )
+        object.__setattr__(self, "low", low)
+        object.__setattr__(self, "high", high)
 
     def of(self, uniform: FloatArray) -> FloatArray:
         """Its quantiles."""
@@ -166,7 +171,24 @@ def checked_samples(count: int, seed: int) -> None:
     --------
     >>> checked_samples(1000, 7)
     """
-    for name, value, low, high in (("samples", count, 2, 10**9), ("seed", seed, 0, None)):
-        above = _LARGEST_SEED - 1 if high is None else high
-        if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= above:
-            raise InputError(f"{name} must be a whole number from {low} to {above}, got {value!r}")
+    _checked_whole("samples", count, 2, 10**9)
+    checked_seed(seed)
+
+
+def checked_seed(seed: int) -> None:
+    """Refuse a seed that is none.
+
+    Raises
+    ------
+    InputError
+
+    Examples
+    --------
+    >>> checked_seed(7)
+    """
+    _checked_whole("seed", seed, 0, _LARGEST_SEED - 1)
+
+
+def _checked_whole(name: str, value: int, low: int, high: int) -> None:
+    if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
+        raise InputError(f"{name} must be a whole number from {low} to {high}, got {shown(value)}")

@@ -253,7 +253,11 @@ def _put_whole(group: Any, name: str, one: Variable) -> None:
         flags = tuple(dict.fromkeys(texts))
         codes = np.array([flags.index(text) for text in texts], np.int16).reshape(values.shape)
         one, values = Variable(codes, one.dims, one.unit, one.long_name, flags), codes
-    array = group.create_array(name, shape=values.shape, dtype=values.dtype, **_coded(one))
+    # what is missing is not read as zeros
+    fill = {"f": float("nan"), "i": -1}.get(values.dtype.kind, 0)
+    array = group.create_array(
+        name, shape=values.shape, dtype=values.dtype, fill_value=fill, **_coded(one)
+    )
     array[...] = values
 
 

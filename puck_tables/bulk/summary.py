@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import finite_array
+from puck_tables._core.real import finite_array, listed, shown
 from puck_tables.errors import InputError
 
 _SIGMAS = 1.959963984540054  # of a 95 % interval
@@ -38,10 +38,13 @@ class Summary:
     place: tuple[str, str]
 
     def _rows(self, names: Sequence[str] | None = None) -> FloatArray:
-        names = self.summed if names is None else names
+        known = ", ".join(self.summed)
+        names = self.summed if names is None else listed("names", names, "columns")
+        if not len(names):
+            raise InputError(f"names must be some of the columns {known}")
         for name in names:
-            if name not in self.summed:
-                raise InputError(f"{name} is no column of samples: there are {self.summed}")
+            if not isinstance(name, str) or name not in self.summed:
+                raise InputError(f"{shown(name)} is no column of samples: there are {known}")
         rows = np.stack([np.asarray(getattr(self, name), np.float64).ravel() for name in names])
         kept = rows[:, np.isfinite(rows).all(axis=0)]
         if kept.shape[1] < 2:
@@ -73,8 +76,8 @@ class Summary:
             If a share is not from 0 to 1.
         """
         wanted = finite_array("shares", shares, "1")
-        if not ((wanted >= 0.0) & (wanted <= 1.0)).all():
-            raise InputError("shares of quantiles must be from 0 to 1")
+        if wanted.ndim > 1 or not wanted.size or not ((wanted >= 0.0) & (wanted <= 1.0)).all():
+            raise InputError("shares of quantiles must be numbers from 0 to 1")
         found = np.quantile(self._rows(), wanted, axis=1)
         return {name: np.asarray(found[..., n]) for n, name in enumerate(self.summed)}
 
@@ -93,14 +96,16 @@ class Summary:
         InputError
         """
         if isinstance(bins, bool) or not isinstance(bins, int) or not 1 <= bins <= _MOST_BINS:
-            raise InputError(f"bins must be a whole number from 1 to {_MOST_BINS}, got {bins!r}")
+            raise InputError(
+                f"bins must be a whole number from 1 to {_MOST_BINS}, got {shown(bins)}"
+            )
         x, y = self._rows(self.place)
         if extent is None:
             sides = [_sides(x), _sides(y)]
         else:
-            x1, x2, y1, y2 = finite_array("extent", extent, "m").tolist()
-            sides = [(x1, x2), (y1, y2)]
-            if not (x2 > x1 and y2 > y1):
+            ends = finite_array("extent", extent, "m")
+            sides = [(ends[0], ends[1]), (ends[2], ends[3])] if ends.shape == (4,) else []
+            if ends.shape != (4,) or not (ends[1] > ends[0] and ends[3] > ends[2]):
                 raise InputError("extent must be (x1, x2, y1, y2) with x1 < x2 and y1 < y2, in m")
         counts, across, along = np.histogram2d(x, y, bins, sides)
         area = (across[1] - across[0]) * (along[1] - along[0])
@@ -123,6 +128,7 @@ class Summary:
 
     def summary(self, regions: Sequence[npt.ArrayLike] = ()) -> str:
         """Means, deviations and quantiles in a table, and the chances of regions; lines of text."""
+        regions = listed("regions", regions, "regions")
         mean, rows = self.mean(), self._rows()
         shares = self.quantiles()
         lines = [f"{'':<14}{'mean':>13}{'deviation':>13}{'2.5 %':>13}{'50 %':>13}{'97.5 %':>13}"]

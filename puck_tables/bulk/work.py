@@ -17,6 +17,7 @@ import numpy.typing as npt
 
 from puck_tables._core.digest import program, work_digest
 from puck_tables._core.executor import Progress, run_chunks
+from puck_tables._core.real import shown
 from puck_tables.errors import InputError
 from puck_tables.io.dataset import Dataset
 from puck_tables.result import Result
@@ -165,7 +166,7 @@ def refuse_no_threads(threads: int | None) -> None:
     """
     if threads is not None and (isinstance(threads, bool) or not isinstance(threads, int)
                                 or threads < 1):  # fmt: skip
-        raise InputError(f"threads must be a whole number from 1 on, got {threads!r:.40}")
+        raise InputError(f"threads must be a whole number from 1 on, got {shown(threads)}")
 
 
 def same_program(given: tuple[str, ...], where: str) -> None:

@@ -25,7 +25,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import finite_array, positive, real
+from puck_tables._core.real import broadcast, finite_array, instance, positive, real
 from puck_tables.errors import AccuracyError, InputError
 
 _TOL = 1e-13
@@ -81,18 +81,40 @@ class Asperity:
         """V₀ = b √(−Y/(m a)), m/s: a point that is not pulled leaves the crest above it."""
         return self.length * math.sqrt(self.load / (self.mass * self.amplitude))
 
-    def height(self, x: Any) -> Any:
-        """−a cos(x/b), m."""
+    def height(self, x: npt.ArrayLike) -> FloatArray:
+        """−a cos(x/b), m, at places x in m."""
+        return np.asarray(self._height(finite_array("x", x, "m")))
+
+    def incline(self, x: npt.ArrayLike) -> FloatArray:
+        """dy/dx of the support, κ sin(x/b), at places x in m."""
+        return np.asarray(self._incline(finite_array("x", x, "m")))
+
+    def press(self, x: npt.ArrayLike, speed: npt.ArrayLike) -> FloatArray:
+        """The numerator of λ, N: negative where the support falls away under a flying point."""
+        return self._pressed(x, speed)[2]
+
+    def _height(self, x: Any) -> Any:
         return -self.amplitude * np.cos(x / self.length)
 
-    def incline(self, x: Any) -> Any:
-        """dy/dx of the support, κ sin(x/b)."""
+    def _incline(self, x: Any) -> Any:
         return self.slope * np.sin(x / self.length)
 
-    def press(self, x: Any, speed: Any) -> Any:
-        """The numerator of λ, N: negative where the support falls away under a flying point."""
+    def _press(self, x: Any, speed: Any) -> Any:
         bend = self.mass * self.amplitude / self.length**2 * speed**2 * np.cos(x / self.length)
-        return self.load + bend + self.pull * self.incline(x)
+        return self.load + bend + self.pull * self._incline(x)
+
+    def _pressed(
+        self, x: npt.ArrayLike, speed: npt.ArrayLike
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Places, speeds and the press there, checked."""
+        place, rate = broadcast(
+            x=finite_array("x", x, "m"), speed=finite_array("speed", speed, "m/s")
+        )
+        with np.errstate(over="ignore", invalid="ignore"):
+            press = np.asarray(self._press(place, rate))
+        if not np.isfinite(press).all():
+            raise InputError("x and speed give a press too large for floating point")
+        return place, rate, press
 
     def multipliers(self, x: npt.ArrayLike, speed: npt.ArrayLike) -> tuple[FloatArray, ...]:
         """λ exact, by its leading terms, and crude, in N.
@@ -113,11 +135,9 @@ class Asperity:
         >>> [float(lam.round(6)) for lam in bumps.multipliers(np.pi / 4, 1.0)]
         [1.804738, 2.707107, 2.0]
         """
-        place, rate = np.broadcast_arrays(
-            finite_array("x", x, "m"), finite_array("speed", speed, "m/s")
-        )
+        place, rate, press = self._pressed(x, speed)
         bend = self.mass * self.amplitude / self.length**2 * rate**2 * np.cos(place / self.length)
-        exact = self.press(place, rate) / (1.0 + self.incline(place) ** 2)
+        exact = press / (1.0 + self._incline(place) ** 2)
         return exact, self.load + bend, np.full(place.shape, self.load)
 
 
@@ -205,9 +225,10 @@ def asperity_motion(
         raise InputError(
             "times must be at least two numbers in s, ascending: the first is the start"
         )
-    place, rate = (
-        float(finite_array(n, v, u)) for n, v, u in (("x", x, "m"), ("speed", speed, "m/s"))
-    )
+    instance("asperity", asperity, Asperity)
+    place, rate = real("x", x, "m"), real("speed", speed, "m/s")
+    if not math.isfinite(asperity.mass * rate * rate):
+        raise InputError(f"speed = {rate:g} m/s gives an energy too large for floating point")
     end = float(when[-1])
     arc = _contact(asperity, float(when[0]), place, rate, 0.0)
     arcs, pieces = [arc], []
@@ -244,8 +265,8 @@ def asperity_motion(
 
 def _contact(asperity: Asperity, time: float, x: float, vx: float, loss: float) -> Arc:
     """The arc that begins at a place of the support with a velocity along it."""
-    kind = "slide" if asperity.press(x, vx) > 0.0 else "fly"
-    y, vy = float(asperity.height(x)), float(asperity.incline(x)) * vx
+    kind = "slide" if asperity._press(x, vx) > 0.0 else "fly"
+    y, vy = float(asperity._height(x)), float(asperity._incline(x)) * vx
     return Arc(kind, time, x, y, vx, vy, loss)
 
 
@@ -265,7 +286,7 @@ def _fly(
         return None, states
     x = arc.x + (arc.vx + 0.5 * ax * flown) * flown
     vx, vy = arc.vx + ax * flown, arc.vy + ay * flown
-    incline = float(asperity.incline(x))
+    incline = float(asperity._incline(x))
     # along the support, in the direction (1, incline): kept
     lost = 0.5 * asperity.mass * (vy - incline * vx) ** 2 / (1.0 + incline**2)
     along = (vx + incline * vy) / (1.0 + incline**2)
@@ -294,7 +315,7 @@ def landing(asperity: Asperity, arc: Arc, longest: float) -> float:
         gap = (arc.vy + 0.5 * ay * t) * t - rise
         if gap <= _NOISE * (abs(arc.vy * t) + abs(ay * t * t) + abs(rise)):
             return t  # landed, to rounding: also flights too low to be seen
-        closing = arc.vy + ay * t - float(asperity.incline(x)) * vx
+        closing = arc.vy + ay * t - float(asperity._incline(x)) * vx
         fastest = abs(vx) + (abs(ax) * ahead if ax != 0.0 else 0.0)
         bend = -ay + asperity.amplitude / asperity.length**2 * fastest**2 + abs(ax) * asperity.slope
         root = math.sqrt(max(closing * closing + 2.0 * bend * gap, 0.0))
@@ -316,7 +337,7 @@ def _rising(asperity: Asperity, arc: Arc, ax: float) -> float:
     while t > 0.0:
         later = t * looks
         x = arc.x + (arc.vx + 0.5 * ax * later) * later
-        if (asperity.press(x, arc.vx + ax * later) < 0.0).all():
+        if (asperity._press(x, arc.vx + ax * later) < 0.0).all():
             return t
         t *= 0.5
     return t
@@ -330,8 +351,8 @@ def _slide(
 
     def slope(t: float, state: FloatArray) -> FloatArray:
         x, vx = state
-        lam = asperity.press(x, vx) / (1.0 + asperity.incline(x) ** 2)
-        return np.array([vx, (asperity.pull - lam * asperity.incline(x)) / asperity.mass])
+        lam = asperity._press(x, vx) / (1.0 + asperity._incline(x) ** 2)
+        return np.array([vx, (asperity.pull - lam * asperity._incline(x)) / asperity.mass])
 
     def at(state: FloatArray, start: float, time: float) -> FloatArray:
         if time == start:
@@ -357,19 +378,19 @@ def _slide(
         columns += [np.array([t, *at(before, start, t)]) for t in inside]
         wanted = wanted[inside.size :]
     t, x, vx = np.array(columns).reshape(-1, 3).T
-    exact = asperity.press(x, vx) / (1.0 + asperity.incline(x) ** 2)
-    states = np.stack([t, x, asperity.height(x), vx, asperity.incline(x) * vx, exact])
+    exact = asperity._press(x, vx) / (1.0 + asperity._incline(x) ** 2)
+    states = np.stack([t, x, asperity._height(x), vx, asperity._incline(x) * vx, exact])
     if leave == math.inf:
         return None, states
     off_x, off_vx = (float(value) for value in at(before, start, leave))
-    y, vy = float(asperity.height(off_x)), float(asperity.incline(off_x)) * off_vx
+    y, vy = float(asperity._height(off_x)), float(asperity._incline(off_x)) * off_vx
     return Arc("fly", leave, off_x, y, off_vx, vy, 0.0), states
 
 
 def _lift(asperity: Asperity, at: Any, state: FloatArray, start: float, solver: Any) -> float:
     """When in the last step the numerator of λ passes through zero downwards; infinite if never."""
     looks = np.linspace(start, solver.t, _LOOKS + 1)
-    press = asperity.press(*solver.dense_output()(looks))
+    press = asperity._press(*solver.dense_output()(looks))
     below = np.flatnonzero(press[1:] < 0.0)
     if below.size == 0:
         return math.inf
@@ -378,7 +399,7 @@ def _lift(asperity: Asperity, at: Any, state: FloatArray, start: float, solver: 
     from scipy.optimize import brentq
 
     def value(time: float) -> float:
-        return float(asperity.press(*at(state, start, time)))
+        return float(asperity._press(*at(state, start, time)))
 
     if value(early) <= 0.0:
         return early

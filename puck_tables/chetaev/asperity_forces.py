@@ -31,7 +31,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import finite_array
+from puck_tables._core.real import checked_progress, finite_array, instance, shown
 from puck_tables.chetaev.asperity import Arc, Asperity, landing
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import InputError
@@ -146,7 +146,7 @@ class AsperityCurve(Result):
         0.25
         """
         if which not in ("crude", "greatest", "undriven", "mean"):
-            raise InputError(f"which must be crude, greatest, undriven or mean, got {which!r}")
+            raise InputError(f"which must be crude, greatest, undriven or mean, got {shown(which)}")
         return SpeedLaw(self.held_speed, getattr(self, which) / self.asperity.load)
 
 
@@ -184,6 +184,8 @@ def asperity_curve(
     >>> curve.greatest.round(6).tolist(), curve.mean.round(6).tolist()
     ([0.25, 0.32476, 0.470022, 1.004852], [0.0, 0.0, 0.190728, 0.232894])
     """
+    instance("asperity", asperity, Asperity)
+    checked_progress(progress)
     V = finite_array("speed", speed, "m/s")
     if asperity.pull != 0.0:
         raise InputError("pull must be 0 where a drive holds the speed: its force is what is asked")

@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import finite_array
+from puck_tables._core.real import finite_array, instance, real, shown
 from puck_tables.chetaev.system import (
     ConstrainedSystem,
     Instant,
@@ -168,7 +168,10 @@ def constrained_motion(
     """
     from scipy.integrate import solve_ivp
 
-    x, v, t = _checked_start(system, position, velocity, times, tol)
+    x, v, t = _checked_start(system, position, velocity, times)
+    tol = checked_tol(tol)
+    if until is not None and not callable(until):
+        raise InputError(f"until must be a function of (x, v, t), got {shown(until)}")
     start = _checked_admissible(system, x, v, t)
     size, shape = x.size, x.shape
 
@@ -211,6 +214,24 @@ def constrained_motion(
     return _reported(system, when, states, instants)
 
 
+def checked_tol(tol: float) -> float:
+    """A local error that the integrator can keep.
+
+    Raises
+    ------
+    InputError, AccuracyError
+
+    Examples
+    --------
+    >>> checked_tol(1e-9)
+    1e-09
+    """
+    error = real("tol", tol, "relative")
+    if not FINEST <= error <= COARSEST:
+        raise AccuracyError(f"tol must be from {FINEST:g} to {COARSEST:g}, got {error:g}")
+    return error
+
+
 def _reported(
     system: ConstrainedSystem, when: FloatArray, states: FloatArray, instants: list[Instant]
 ) -> ConstrainedMotion:
@@ -241,8 +262,9 @@ def _scales(system: ConstrainedSystem, x: FloatArray, start: Instant, span: floa
 
 def _checked_start(
     system: ConstrainedSystem, position: npt.ArrayLike, velocity: npt.ArrayLike,
-    times: npt.ArrayLike, tol: float,
+    times: npt.ArrayLike,
 ) -> tuple[FloatArray, FloatArray, FloatArray]:  # fmt: skip
+    instance("system", system, ConstrainedSystem)
     x, v = finite_array("position", position, "m"), finite_array("velocity", velocity, "m/s")
     points = np.asarray(system.masses).size
     if x.ndim != 2 or x.shape[0] != points or x.shape[1] not in (2, 3) or v.shape != x.shape:
@@ -255,8 +277,6 @@ def _checked_start(
         raise InputError(
             "times must be at least two numbers in s, ascending: the first is the start"
         )
-    if not FINEST <= tol <= COARSEST:
-        raise AccuracyError(f"tol must be from {FINEST:g} to {COARSEST:g}, got {tol:g}")
     return x, v, t
 
 

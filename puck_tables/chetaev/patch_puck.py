@@ -24,11 +24,13 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import finite_array
+from puck_tables._core.real import one_velocity, positive, real, shown
+from puck_tables.chetaev.motion import checked_tol
 from puck_tables.chetaev.system import ConstrainedSystem
 from puck_tables.errors import InputError
 
 MAX_RINGS = 256
+MOST_PASSED, MOST_TURN = 1e6, 1e3  # patches times rad; rad
 # Q of the start at which the rest of the motion is taken as one at constant deceleration
 _LAST = 1e-7
 
@@ -55,8 +57,9 @@ def disc_points(rings: int) -> FloatArray:
     >>> len(points), float((points**2).sum(axis=1).mean().round(12))  # ⟨ρ²⟩ = 1/2 on a disc
     (36, 0.5)
     """
-    if not 1 <= rings <= MAX_RINGS:
-        raise InputError(f"rings must be from 1 to {MAX_RINGS}, got {rings}")
+    whole = isinstance(rings, int) and not isinstance(rings, bool)
+    if not whole or not 1 <= rings <= MAX_RINGS:
+        raise InputError(f"rings must be a whole number from 1 to {MAX_RINGS}, got {shown(rings)}")
     parts = []
     for k in range(1, rings + 1):
         count = 4 * (2 * k - 1)
@@ -147,8 +150,7 @@ def patch_system(
     >>> len(points), len(system.constraints(points, 0.0)[1])
     (16, 29)
     """
-    checked = {"delta": delta, "decel": decel, "radius": radius, "mass": mass}
-    _checked(**checked)
+    delta, decel, radius, mass = _checked(delta, decel, radius, mass)
     points = disc_points(rings) * radius
     count = len(points)
     others = np.arange(2, count)
@@ -197,7 +199,7 @@ def patch_stop(
     delta, decel, radius : float
         2fh/r in [0, 1], J = fg in m/s², r in m.
     tol : float
-        Local relative error of the integration.
+        Local relative error of the integration; 1e-13 to 0.01.
 
     Returns
     -------
@@ -207,7 +209,8 @@ def patch_stop(
     Raises
     ------
     InputError
-        If an argument is out of range.
+        If an argument is out of range, or the puck turns by more than some 1000 rad, or 1e6 over
+        the number of patches.
 
     Notes
     -----
@@ -227,15 +230,25 @@ def patch_stop(
     """
     from scipy.integrate import solve_ivp
 
-    _checked(delta=delta, decel=decel, radius=radius, mass=1.0)
-    velocity = finite_array("velocity", velocity, "m/s")
-    spin = float(finite_array("spin", spin, "rad/s"))
-    start = math.hypot(*velocity, radius * spin)
-    if velocity.shape != (2,):
-        raise InputError(f"velocity must be two numbers in m/s, got the shape {velocity.shape}")
-    points = disc_points(rings)
+    delta, decel, radius, _ = _checked(delta, decel, radius, 1.0)
+    tol, points = checked_tol(tol), disc_points(rings)
+    (vx, vy), rim = one_velocity(velocity), radius * real("spin", spin, "rad/s")
+    start = math.hypot(vx, vy, rim)
     if start == 0.0:
         return 0.0, np.zeros(2)
+    # speeds in units of that of the start, times and lengths in what it takes to brake it
+    last, length = start / decel, start / decel * start
+    turn = length / radius  # rad, of a rim as fast as the start
+    if not (math.isfinite(last) and math.isfinite(length)):
+        raise InputError(
+            "velocity, spin, radius and decel give a motion too large: use other units"
+        )
+    turns, most = abs(rim / start) * turn, min(MOST_TURN, MOST_PASSED / len(points))
+    if turns > most:
+        raise InputError(
+            f"the puck turns by some {turns:.3g} rad, and {len(points)} patches are followed for "
+            f"{most:.3g} at most: give less spin, more decel or fewer rings"
+        )
 
     def rates(state: FloatArray) -> tuple[FloatArray, float, float]:
         """Acceleration, r times angular acceleration, −dQ/dt."""
@@ -245,34 +258,30 @@ def patch_stop(
         slip = np.stack([vx - rim * places[:, 1], vy + rim * places[:, 0]], axis=-1)
         slip *= _inverse_speed(slip, rim)[:, None]
         force = pressures(places, slip, delta)[:, None] * slip
-        linear = -decel * force.mean(axis=0)
-        angular = (
-            -2.0 * decel * float((places[:, 0] * force[:, 1] - places[:, 1] * force[:, 0]).mean())
-        )
+        linear = -force.mean(axis=0)
+        angular = -2.0 * float((places[:, 0] * force[:, 1] - places[:, 1] * force[:, 0]).mean())
         Q = math.sqrt(vx * vx + vy * vy + rim * rim)
         return linear, angular, -(vx * linear[0] + vy * linear[1] + rim * angular) / Q
 
     def slope(tau: float, state: FloatArray) -> FloatArray:
         linear, angular, _ = rates(state)
         vx, vy, rim = state[:3]
-        scale = math.sqrt(vx * vx + vy * vy + rim * rim) / decel
-        return scale * np.array([*linear, angular, rim / radius, vx, vy, 1.0])
+        scale = math.sqrt(vx * vx + vy * vy + rim * rim)
+        return scale * np.array([*linear, angular, turn * rim, vx, vy, 1.0])
 
     def slow(tau: float, state: FloatArray) -> float:
-        return math.hypot(*state[:3]) / start - _LAST
+        return math.hypot(*state[:3]) - _LAST
 
     slow.terminal = True  # type: ignore[attr-defined]
     # the speeds keep their digits down to their last values; angle, place and time are sums
-    absolute = tol * np.array([_LAST, _LAST, _LAST, 1.0, start / decel, start / decel, 1.0 / decel])
-    absolute[:3] *= start
-    absolute[4:] *= (start, start, start)
+    absolute = tol * np.array([_LAST, _LAST, _LAST, 1.0, 1.0, 1.0, 1.0])
     solved = solve_ivp(
-        slope, (0.0, 1e3), np.array([*velocity, radius * spin, 0.0, 0.0, 0.0, 0.0]),
+        slope, (0.0, 1e3), np.array([vx / start, vy / start, rim / start, 0.0, 0.0, 0.0, 0.0]),
         method="DOP853", rtol=tol, atol=absolute, events=slow,
     )  # fmt: skip
-    last = solved.y[:, -1]
-    left = math.hypot(*last[:3]) / rates(last)[2]
-    return float(last[6] + left), last[4:6] + 0.5 * left * last[:2]
+    end = solved.y[:, -1]
+    left = math.hypot(*end[:3]) / rates(end)[2]
+    return last * float(end[6] + left), length * (end[4:6] + 0.5 * left * end[:2])
 
 
 def _inverse_speed(velocity: FloatArray, rim: float) -> FloatArray:
@@ -282,9 +291,13 @@ def _inverse_speed(velocity: FloatArray, rim: float) -> FloatArray:
     return np.where(speed == 0.0, 0.0, 1.0 / np.where(speed == 0.0, 1.0, speed))
 
 
-def _checked(delta: float, decel: float, radius: float, mass: float) -> None:
-    for name, value in (("decel", decel), ("radius", radius), ("mass", mass)):
-        if not 0.0 < value < math.inf:
-            raise InputError(f"{name} must be a finite number greater than 0, got {value:g}")
-    if not 0.0 <= delta <= 1.0:
-        raise InputError(f"delta must be from 0 to 1 (full contact) for patches, got {delta:g}")
+def _checked(
+    delta: float, decel: float, radius: float, mass: float
+) -> tuple[float, float, float, float]:
+    height = real("delta", delta, "2 f h / r")
+    if not 0.0 <= height <= 1.0:
+        raise InputError(f"delta must be from 0 to 1 (full contact) for patches, got {height:g}")
+    return (
+        height, positive("decel", decel, "m/s^2"), positive("radius", radius, "m"),
+        positive("mass", mass, "kg"),
+    )  # fmt: skip

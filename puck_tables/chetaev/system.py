@@ -25,7 +25,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import finite_array
+from puck_tables._core.real import finite_array, real_array, shown
 from puck_tables.errors import InputError
 
 Constraints = Callable[[Any, Any], tuple[npt.ArrayLike, npt.ArrayLike]]
@@ -85,6 +85,10 @@ class ConstrainedSystem:
             raise InputError(
                 "masses must be one number greater than 0 kg for each point, got an array of shape "
                 f"{masses.shape} with least value {masses.min(initial=np.inf):g}"
+            )
+        if not callable(self.constraints):
+            raise InputError(
+                f"constraints must be a function of (x, t), got {shown(self.constraints)}"
             )
         object.__setattr__(self, "masses", masses)
 
@@ -197,7 +201,8 @@ def _of_state(
     name: str, given: OfState | npt.ArrayLike, position: FloatArray, velocity: FloatArray,
     time: float, shape: tuple[int, ...],
 ) -> FloatArray:  # fmt: skip
-    values = np.asarray(given(position, velocity, time) if callable(given) else given, np.float64)
+    asked = given(position, velocity, time) if callable(given) else given
+    values = real_array(name, asked, "SI units")
     if values.shape not in ((), shape):
         raise InputError(f"{name} must have the shape {shape}, got {values.shape}")
     if not np.isfinite(values).all():

@@ -17,12 +17,13 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.fields import of, specs
 from puck_tables._core.reading import Reading, mark_checked, read_values
-from puck_tables._core.real import finite_array
+from puck_tables._core.real import finite_array, positive
 from puck_tables.contact.law_pieces import pieces_of_function
 from puck_tables.errors import InputError
 
 _LEAST_EXPONENT, _LARGEST_EXPONENT = 0.5, 8.0
 _SMOOTH = 6.0  # a table of degree 5 sees no singularity of this power and above
+_LARGEST_TOP = 1e100  # m/s
 _LOOKS = 513  # speeds at which the largest f is looked for
 
 
@@ -101,18 +102,29 @@ class FrictionLaw:
 
     def largest(self, top: float) -> float:
         """The largest f up to a speed."""
-        speeds = np.concatenate([[0.0], top * np.linspace(0.0, 1.0, _LOOKS), self.scales])
-        return float(self.formula(speeds[speeds <= top]).max())
+        last = _checked_top(top)
+        speeds = np.concatenate([[0.0], last * np.linspace(0.0, 1.0, _LOOKS), self.scales])
+        return float(self.formula(speeds[speeds <= last]).max())
 
     def steepest(self, top: float) -> float:
         """About the largest u f′ up to a speed."""
-        speeds = top * np.geomspace(1e-9, 1.0, _LOOKS)
+        speeds = _checked_top(top) * np.geomspace(1e-9, 1.0, _LOOKS)
         change = np.abs(np.diff(self.formula(speeds)) / np.diff(speeds))
         return float((speeds[1:] * change).max())
 
     def pieces(self, top: float) -> tuple[FloatArray, FloatArray]:
         """The law in pieces up to a speed, see :mod:`puck_tables.contact.law_pieces`."""
-        return _pieces(self, top)
+        return _pieces(self, _checked_top(top))
+
+
+def _checked_top(top: float) -> float:
+    """Up to which speed, m/s: one of which shares are still numbers."""
+    last = positive("top", top, "m/s")
+    if not 1.0 / _LARGEST_TOP <= last <= _LARGEST_TOP:
+        raise InputError(
+            f"top must be from {1.0 / _LARGEST_TOP:g} to {_LARGEST_TOP:g} m/s, got {last:g}"
+        )
+    return last
 
 
 @lru_cache(maxsize=64)  # each slab of a table has a top of its own

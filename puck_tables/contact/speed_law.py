@@ -15,7 +15,7 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.columns import FRICTION, SPEED, numbers_of
 from puck_tables._core.monotone import from_rest, monotone_cubic
-from puck_tables._core.real import finite_array, instance
+from puck_tables._core.real import finite_array, instance, positive, shown
 from puck_tables._core.safe_write import write_bytes
 from puck_tables.errors import InputError
 
@@ -74,7 +74,7 @@ class SpeedLaw:
             )
         instance("kind", self.kind, str)
         if self.kind not in KINDS:
-            raise InputError(f"kind must be cubic or linear, got {self.kind!r}")
+            raise InputError(f"kind must be cubic or linear, got {shown(self.kind)}")
         object.__setattr__(self, "speeds", speeds)
         object.__setattr__(self, "values", values)
 
@@ -143,18 +143,19 @@ class SpeedLaw:
 
     def largest(self, top: float) -> float:
         """The largest f up to a speed: it does not overshoot its points."""
-        speeds = np.asarray(self.speeds)
-        return float(self.extended(np.append(speeds[speeds < top], top)).max())
+        speeds, last = np.asarray(self.speeds), positive("top", top, "m/s")
+        return float(self.extended(np.append(speeds[speeds < last], last)).max())
 
     def steepest(self, top: float) -> float:
         """About the largest u f′ up to a speed."""
+        positive("top", top, "m/s")
         speeds, f = np.asarray(self.speeds), np.asarray(self.values)
         return float(np.max(speeds[1:] * np.abs(np.diff(f) / np.diff(speeds))))
 
     def pieces(self, top: float) -> tuple[FloatArray, FloatArray]:
         """The law in pieces up to a speed, see :mod:`puck_tables.contact.law_pieces`."""
-        speeds = np.asarray(self.speeds)
-        count = int(np.count_nonzero(speeds[:-1] < top))  # a corner at the top is not yet passed
+        speeds, last = np.asarray(self.speeds), positive("top", top, "m/s")
+        count = int(np.count_nonzero(speeds[:-1] < last))  # a corner at the top is not yet passed
         origins = np.stack([speeds[:count], np.ones(count)], axis=1)
         return speeds[: count + 1], np.concatenate([origins, self.coefficients[:count]], axis=1)
 

@@ -32,7 +32,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import broadcast, real_array
+from puck_tables._core.real import broadcast, real, real_array, shown
 from puck_tables.contact.integrals import (
     PatchIntegrals,
     SlipDirection,
@@ -49,6 +49,7 @@ _GAUSS_NODES = 12
 _NODE, _WEIGHT = np.polynomial.legendre.leggauss(_GAUSS_NODES)
 # Panels halved towards τ = 0, where for s → 1 a root has its branch point.
 _EDGES = np.append(0.5 ** np.arange(34), 0.0)[::-1]
+_HIGHEST = 1e100  # 2h/r: its square is still a number
 _DEFAULT_BREAKS = 16
 _CHUNK = 64
 _LEAST_STEP = 1e-5  # relative, of the difference quotient that stands for f′ as φ → 0
@@ -174,9 +175,9 @@ def checked_speed(speed: npt.ArrayLike) -> FloatArray:
 
 def checked_height_ratio(height_ratio: float) -> float:
     """2h/r as a number, refused unless finite and not negative."""
-    g = float(real_array("height_ratio", height_ratio, "units of 2h/r"))
-    if not 0.0 <= g < np.inf:
-        raise InputError(f"height_ratio = 2h/r must be finite and not negative, got {g}")
+    g = real("height_ratio", height_ratio, "2h/r")
+    if not 0.0 <= g <= _HIGHEST:
+        raise InputError(f"height_ratio = 2h/r must be from 0 to {_HIGHEST:g}, got {g:g}")
     return g
 
 
@@ -197,6 +198,8 @@ def _evaluation(
                 f"(0 to {law.top_speed:g} m/s)"
             )
         return law.extended, np.asarray(law.speeds)[1:-1]
+    if not callable(law):
+        raise InputError(f"law must be a friction law or a function of speeds, got {shown(law)}")
 
     def evaluate(u: FloatArray) -> FloatArray:
         values = np.asarray(law(u), dtype=np.float64)

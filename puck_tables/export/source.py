@@ -12,7 +12,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from puck_tables._core.real import instance, real
+from puck_tables._core.real import instance, listed, real, shown
 from puck_tables._core.safe_write import write_bytes
 from puck_tables._version import __version__
 from puck_tables.errors import AccuracyError, InputError
@@ -182,19 +182,20 @@ def checked_request(language: str, what: str | Iterable[str], tol: float) -> tup
     """
     instance("language", language, str)
     if language not in LANGUAGES:
-        raise InputError(f"no language is called {language!r}: choose {', '.join(LANGUAGES)}")
+        raise InputError(f"no language is called {shown(language)}: choose {', '.join(LANGUAGES)}")
     error = real("tol", tol, "units of Q/J, Q^2/J")
     if not FINEST <= error <= COARSEST:
         raise AccuracyError(
             f"tol must be from {FINEST:g} to {COARSEST:g} for exported files, got {error:g}: give "
             "a tol in that range"
         )
-    instance("what", what, str, Iterable)
-    asked = what.split(",") if isinstance(what, str) else list(what)
+    asked = what.split(",") if isinstance(what, str) else listed("what", what, "names")
     names = [one.strip() if isinstance(one, str) else one for one in asked]
     for name in names:
-        if name not in PARTS:
-            raise InputError(f"nothing to export is called {name!r}: choose {', '.join(PARTS)}")
+        if not isinstance(name, str) or name not in PARTS:
+            raise InputError(
+                f"nothing to export is called {shown(name)}: choose {', '.join(PARTS)}"
+            )
     if not names:
         raise InputError(f"there is nothing to export: choose {', '.join(PARTS)}")
     return tuple(part for part in PARTS if part in names)

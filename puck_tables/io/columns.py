@@ -91,7 +91,9 @@ COLUMNS = {
     "miss": Column("m", "miss", "distance from the target at which an integration ends"),
     # scenes
     "work_given": Column("J", "work of forces", "work of gravity and of given forces"),
-    "heat_dry": Column("J", "heat of dry friction", "heat of dry friction"),
+    "heat_dry": Column(
+        "J", "heat of dry friction", "heat of dry friction, of the floor and of a rim on a cushion"
+    ),
     "heat_viscous": Column("J", "heat of drag", "heat of drag, 2 f2"),
     "work_support": Column("J", "work of supports", "work of moving floor and constraints, -f1"),
     "lambda_1": Column(

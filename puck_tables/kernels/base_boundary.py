@@ -203,11 +203,11 @@ def arc_sums(
         gap = min(max(abs(math.log(max(reach, 1e-300) / (beta * radius))), least), gap)
     whole = 2.0 * math.pi
     low = (start if turn > 0.0 else start + turn) - nearest
-    low -= whole * math.floor(low / whole)
+    low -= whole * float(np.floor(low / whole))  # of a state beyond numbers none
     high, sums = low + abs(turn), NOTHING
     reach = _PANEL if law == UNIFORM else _RING_PANEL
     # from half-turn to half-turn: in the even ones the arc leads away from the centre of rotation
-    number = float(math.floor(low / math.pi))
+    number = float(np.floor(low / math.pi))
     while low < high:
         edge = min(math.pi * (number + 1.0), high)
         leads_away = number % 2.0 == 0.0

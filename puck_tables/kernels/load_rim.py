@@ -86,7 +86,7 @@ def _up_to(alpha: float, beta: float, angle: float, law: int) -> Sums:
     tau = angle + 0.5 * math.pi - angle_of(away, turning) if inside else angle_of(ey, ex)
     sums = _primitive(alpha, beta, tau, ex, ey, away * inverse, law)
     after = (angle - 0.5 * math.pi) / (2.0 * math.pi)  # the point of the rim next to C, in laps
-    laps = math.floor(after) + 1.0
+    laps = float(np.floor(after)) + 1.0
     if inside or (turning >= 0.0 and laps == 0.0):
         return sums
     side, even, odd = 1.0, 0.0, 4.0 * laps

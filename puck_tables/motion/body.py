@@ -33,8 +33,32 @@ def plain_up_to(pressure: str | Law, gyration: float) -> float:
     >>> plain_up_to("uniform", HOMOGENEOUS), plain_up_to("ring", HOMOGENEOUS)
     (1.0, -inf)
     """
+    if not isinstance(pressure, str):
+        instance("pressure", pressure, Law)
+    radius = gyration if type(gyration) is float else checked_gyration(gyration)
     uniform = pressure == "uniform" or (isinstance(pressure, Law) and pressure.can_lift)
-    return _FULL_CONTACT if uniform and gyration == HOMOGENEOUS else -math.inf
+    return _FULL_CONTACT if uniform and radius == HOMOGENEOUS else -math.inf
+
+
+def checked_gyration(gyration: float) -> float:
+    """A radius of gyration in units of r.
+
+    Raises
+    ------
+    InputError
+
+    Examples
+    --------
+    >>> checked_gyration(1)
+    1.0
+    """
+    radius = real("gyration", gyration, "k/r")
+    if not SMALLEST_GYRATION <= radius <= LARGEST_GYRATION:
+        raise InputError(
+            f"gyration must be the radius of gyration in units of r, from {SMALLEST_GYRATION:g} to "
+            f"{LARGEST_GYRATION:g} (homogeneous: 0.7071, a ring: 1), got {radius:g}"
+        )
+    return radius
 
 
 def is_plain(pressure: str | Law, gyration: float, delta: float) -> bool:
@@ -147,12 +171,7 @@ def body_of(
     """
     instance("pressure", pressure, str, Law)
     law = pressure if isinstance(pressure, Law) else law_of(pressure)
-    radius = real("gyration", gyration, "k/r")
-    if not SMALLEST_GYRATION <= radius <= LARGEST_GYRATION:
-        raise InputError(
-            f"gyration must be the radius of gyration in units of r, from {SMALLEST_GYRATION:g} to "
-            f"{LARGEST_GYRATION:g} (homogeneous: 0.7071, a ring: 1), got {radius:g}"
-        )
+    radius = checked_gyration(gyration)
     height = float(checked_delta(real("delta", delta, "units of 2 f h / r")))
     refuse_height(law, height)
     if table is not None:

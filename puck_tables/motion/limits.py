@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import one_velocity, positive, real
+from puck_tables._core.real import instance, one_velocity, positive, real
 from puck_tables.contact.closed_form import integrals
 from puck_tables.contact.laws import HOMOGENEOUS, Law, law_of
 from puck_tables.contact.laws import limit_ratio as law_limit_ratio
@@ -16,6 +16,7 @@ from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import ContactError
 from puck_tables.kernels.closed_form import friction_ratios, resultants
 from puck_tables.kernels.compile import kernel
+from puck_tables.motion.body import checked_gyration
 
 # A start this close to the limit ratio (in ln(rω/v)) is the limit motion itself.
 LIMIT_WIDTH = 1e-13
@@ -81,11 +82,12 @@ def limit_ratio(
     >>> float(limit_ratio(0.0, "ring", 1.0).round(12))
     1.0
     """
-    height = checked_delta(delta)
-    if pressure == "uniform" and gyration == HOMOGENEOUS and np.all(height <= 1.0):
+    height, radius = checked_delta(delta), checked_gyration(gyration)
+    instance("pressure", pressure, str, Law)
+    if pressure == "uniform" and radius == HOMOGENEOUS and np.all(height <= 1.0):
         return np.vectorize(lambda d: math.exp(limit_log_ratio(d)), otypes=[float])(height)
     law = pressure if isinstance(pressure, Law) else law_of(pressure)
-    return np.vectorize(lambda d: law_limit_ratio(law, d, gyration), otypes=[float])(height)
+    return np.vectorize(lambda d: law_limit_ratio(law, d, radius), otypes=[float])(height)
 
 
 def limit_angle(
@@ -241,7 +243,7 @@ def regime(
     """
     components = one_velocity(velocity)
     turning, r = real("spin", spin, "rad/s"), positive("radius", radius, "m")
-    ratio = float(limit_ratio(delta, pressure, gyration))
+    ratio = float(limit_ratio(real("delta", delta, "2 f h / r"), pressure, gyration))
     limit = math.log(ratio) if ratio > 0.0 else -math.inf
     return regime_of(math.hypot(*components), r * abs(turning), limit)
 
@@ -285,13 +287,14 @@ def elementary_stop_time(
     """
     kind = regime(velocity, spin, delta, radius, pressure, gyration)
     deceleration = positive("decel", decel, "m/s^2")
-    speed, rim = math.hypot(*one_velocity(velocity)), radius * abs(spin)
+    speed = math.hypot(*one_velocity(velocity))
+    rim = positive("radius", radius, "m") * abs(real("spin", spin, "rad/s"))
     law = pressure if isinstance(pressure, Law) else law_of(pressure)
     if kind == "D":
         parallel = float(law.friction(limit_angle(delta, law, gyration), delta).parallel)
         return math.hypot(speed, rim) / (deceleration * parallel)
     if kind == "B0":
-        square = 0.5 if gyration == HOMOGENEOUS else gyration**2
+        square = 0.5 if gyration == HOMOGENEOUS else checked_gyration(gyration) ** 2
         return 2.0 * square / float(law.friction(0.5 * math.pi, 0.0).spin) * rim / deceleration
     times = {"A": 0.0, "C0": speed / deceleration}
     return times.get(kind)

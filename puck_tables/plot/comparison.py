@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from puck_tables.plot.reference import no_rounding
-from puck_tables.plot.style import COLORS, GREY, canvas, shaded
+from puck_tables.plot.style import COLORS, GREY, canvas, no_rounding, shaded
 from puck_tables.plot.words import legend_below, noted, titled
 from puck_tables.reference.comparison import Comparison
 from puck_tables.reference.floor import ratios, slip_over
@@ -110,7 +109,7 @@ def _draw_errors(axes: Axes, found: Comparison, name: str, label: str) -> None:
             axes.plot(run.time, np.abs(row), color=colour, linewidth=1.0)
             drawn = True
     if drawn:
-        axes.set_yscale("log")
+        axes.set_yscale("log", nonpositive="mask")  # an error of 0 is no line downwards
     else:
         axes.text(0.5, 0.5, "none, or not in the file", ha="center", transform=axes.transAxes,
                   color=GREY)  # fmt: skip

@@ -2,12 +2,22 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from puck_tables.plot import pucks, scene
-from puck_tables.plot.style import BLUE, COLORS, GREEN, GREY, LAUNCH, ORANGE, STOP, canvas
+from puck_tables.plot.style import (
+    BLUE,
+    COLORS,
+    GREEN,
+    GREY,
+    LAUNCH,
+    ORANGE,
+    STOP,
+    canvas,
+    no_rounding,
+)
 from puck_tables.plot.words import noted, titled
 from puck_tables.reference.answer import Answer
 from puck_tables.world.outcome import WorldRun
@@ -17,7 +27,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _CURVE = 400  # points of a curve
-_STRAIGHT = 1e-6  # of its length: a path that bends by less is drawn as a line
 _DOTS = 200  # states asked for: more would be one line
 
 
@@ -95,13 +104,3 @@ def _draw_path(axes: Axes, answer: Answer, whole: Answer) -> None:
     axes.set_ylabel("y / m")
     if answer.names:
         axes.legend(frameon=False, fontsize=8)
-
-
-def no_rounding(axes: Axes) -> None:
-    """Not to stretch a straight path across it until its rounding is seen."""
-    sides: dict[str, Any] = {"xlim": axes.get_xlim(), "ylim": axes.get_ylim()}
-    longest = max(high - low for low, high in sides.values())
-    for side, (low, high) in sides.items():
-        if high - low < _STRAIGHT * longest:
-            middle, half = 0.5 * (low + high), 0.05 * longest
-            axes.set(**{side: (middle - half, middle + half)})

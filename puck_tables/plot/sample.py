@@ -12,7 +12,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.colours import on_white
 from puck_tables.bulk.summary import Summary
 from puck_tables.io.columns import COLUMNS
-from puck_tables.plot.style import BLUE, GREY, ORANGE, canvas
+from puck_tables.plot.style import BLUE, GREY, ORANGE, canvas, no_rounding
 from puck_tables.plot.words import legend_below, noted, titled
 
 if TYPE_CHECKING:
@@ -76,6 +76,7 @@ def draw_on(panel: Axes, samples: Summary) -> None:
     mean = samples.mean()
     panel.plot(*(mean[name] for name in samples.place), "+", color=ORANGE, label="mean", zorder=4)
     panel.set(xlim=sides[0], ylim=sides[1])
+    no_rounding(panel)
     panel.set_xlabel(COLUMNS[samples.place[0]].axis)
     panel.set_ylabel(COLUMNS[samples.place[1]].axis)
     if not seen.all():
@@ -157,8 +158,8 @@ def _smoothed(counts: FloatArray, width: float) -> FloatArray:
 
 
 def _tail(count: int) -> float:
-    """The share of the samples that may lie beyond each side."""
-    return max(_TAIL, min(_ALONE / count, 0.25))
+    """The share of the samples that may lie beyond each side; few are all shown."""
+    return max(_TAIL, _ALONE / count) if count >= _FEW else 0.0
 
 
 def _sides(samples: Summary, name: str) -> tuple[float, float]:
@@ -184,7 +185,9 @@ def _histogram(panel: Axes, samples: Any, name: str) -> None:
     values = np.asarray(getattr(samples, name)).ravel()
     values = values[np.isfinite(values)]
     low, high = float(values.min()), float(values.max())
-    room = max(1e-6 * max(abs(low), abs(high)), 1e-9)  # values may all be one
+    largest = max(abs(low), abs(high))
+    # values may all be one
+    room = 0.0 if high - low > 1e-6 * largest else max(0.05 * largest, 1e-9)
     panel.hist(values, bins=60, range=(low - room, high + room), color=BLUE, density=True)
     for share, value in zip(_SHARES, samples.quantiles(_SHARES)[name].tolist(), strict=True):
         panel.axvline(value, color=ORANGE, linewidth=1.0, linestyle="-" if share == 0.5 else "--")

@@ -50,6 +50,7 @@ STOP: dict[str, Any] = {
 FEW = 7  # values of an axis that are curves rather than bands of a map
 NO_VALUE = "#d0d0d0"  # of a map, where there is none: white and the colours of values are taken
 _STEADY = 1e-6  # of itself: a smaller change of a quantity is none
+_STRAIGHT = 1e-6  # of its length: a path that bends by less is drawn as a line
 
 
 def ramp() -> Colormap:
@@ -124,6 +125,16 @@ def _plain_axes(axes: Axes) -> None:
         if high - low < _STEADY * middle:
             wide = 0.05 * middle
             (axes.set_xlim if axis is axes.xaxis else axes.set_ylim)(low - wide, high + wide)
+
+
+def no_rounding(axes: Axes) -> None:
+    """Not to stretch a straight path across it until its rounding is seen."""
+    sides: dict[str, Any] = {"xlim": axes.get_xlim(), "ylim": axes.get_ylim()}
+    longest = max(high - low for low, high in sides.values())
+    for side, (low, high) in sides.items():
+        if high - low < _STRAIGHT * longest:
+            middle, half = 0.5 * (low + high), 0.05 * longest
+            axes.set(**{side: (middle - half, middle + half)})
 
 
 def checked_kind(path: str | Path) -> str:

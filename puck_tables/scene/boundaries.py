@@ -68,19 +68,19 @@ class Arc(NamedTuple):
 
 
 @inlined
-def _arc(stretch: Stretch, work: FloatArray, new: FloatArray) -> Arc:
-    surface, end = stretch.model.surface, STAGES - 1
-    cx, cy = carried_along(surface, work[0, X], work[0, Y])
-    dx, dy = carried_along(surface, work[end, X], work[end, Y])
+def arc_of(stretch: Stretch, first: FloatArray, last: FloatArray, new: FloatArray) -> Arc:
+    """From the rates at both ends of a step and its end."""
+    surface = stretch.model.surface
+    cx, cy = carried_along(surface, first[X], first[Y])
+    dx, dy = carried_along(surface, last[X], last[Y])
     return Arc(
-        work[0, X], work[0, Y], work[0, VX] + cx, work[0, VY] + cy,
-        work[end, X], work[end, Y], work[end, VX] + dx, work[end, VY] + dy,
-        new[SIZE], new[SIZE + 1],
+        first[X], first[Y], first[VX] + cx, first[VY] + cy,
+        last[X], last[Y], last[VX] + dx, last[VY] + dy, new[SIZE], new[SIZE + 1],
     )  # fmt: skip
 
 
 @inlined
-def _gap_polynomial(line: Line, arc: Arc, h: float, out: FloatArray) -> bool:
+def gap_polynomial(line: Line, arc: Arc, h: float, out: FloatArray) -> bool:
     """Its six coefficients in Bernstein's basis; whether it might fall below 0 on the step."""
     rate, bend = line.x * arc.vx + line.y * arc.vy, line.x * arc.ax + line.y * arc.ay
     last = line.gap + (line.x * arc.dx + line.y * arc.dy)
@@ -188,7 +188,7 @@ def _root(b: FloatArray, low: float, high: float) -> float:
 
 
 @allocating
-def _crossing(
+def crossing(
     line: Line, gaps: FloatArray, stretch: Stretch, t: float, h: float, y: FloatArray,
     scale: FloatArray, work: FloatArray, new: FloatArray,
 ) -> float:  # fmt: skip
@@ -248,7 +248,7 @@ def first_crossing(
     """
     happens, which, moment = -1, -1, math.inf
     walls, edges, borders = bounds.walls, bounds.edges, bounds.borders
-    arc = _arc(stretch, work, end)
+    arc = arc_of(stretch, work[0], work[STAGES - 1], end)
     for i in range(len(walls) + len(edges) + len(borders)):
         what, number = BOUNCES, i
         if i < len(walls):
@@ -257,24 +257,25 @@ def first_crossing(
             line = Line(walls[i, 0], walls[i, 1], room[i])
         elif i < len(walls) + len(edges):
             what, number = EDGE, i - len(walls)
-            line = _line(edges, number, 1.0, y)
+            line = line_to(edges, number, 1.0, y)
         else:
             border = i - len(walls) - len(edges)
             if border != region - 1 and border != region:  # not at this region
                 continue
             what = BORDER
             number, sign = (region - 1, 1.0) if border == region - 1 else (region + 1, -1.0)
-            line = _line(borders, border, sign, y)
-        if not _gap_polynomial(line, arc, h, gaps):
+            line = line_to(borders, border, sign, y)
+        if not gap_polynomial(line, arc, h, gaps):
             continue
-        when = _crossing(line, gaps, stretch, t, h, y, scale, work, new)
+        when = crossing(line, gaps, stretch, t, h, y, scale, work, new)
         if when < moment:
             happens, which, moment = what, number, when
     return happens, which, moment
 
 
 @inlined
-def _line(rows: FloatArray, i: int, sign: float, y: FloatArray) -> Line:
+def line_to(rows: FloatArray, i: int, sign: float, y: FloatArray) -> Line:
+    """A line of these rows as the puck at ``y`` has it, from the side of the sign."""
     gap = rows[i, 0] * y[X] + rows[i, 1] * y[Y] - rows[i, 2]
     return Line(sign * rows[i, 0], sign * rows[i, 1], sign * gap)
 
@@ -282,7 +283,7 @@ def _line(rows: FloatArray, i: int, sign: float, y: FloatArray) -> Line:
 @inlined
 def room_to(rows: FloatArray, i: int, y: FloatArray) -> float:
     """How far the puck is from a wall, or its centre from an edge."""
-    return _line(rows, i, 1.0, y).gap
+    return line_to(rows, i, 1.0, y).gap
 
 
 @inlined

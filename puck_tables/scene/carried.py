@@ -34,9 +34,11 @@ _GRAZE = 1e-9  # of the radius: a rim that has just left a patch has it no close
 
 
 @inlined
-def _meets(surface: Surface, rows: FloatArray, i: int, sign: float, y: FloatArray) -> bool:
-    """Whether a place that is carried along, where sign (n·x − c) ≥ 0, comes to a line."""
-    nx, ny, c = sign * rows[i, NX], sign * rows[i, NY], sign * rows[i, 2]
+def _meets(
+    surface: Surface, rows: FloatArray, i: int, sign: float, y: FloatArray, margin: float
+) -> bool:
+    """Whether a place that is carried along, where sign (n·x − c) ≥ 0, comes so close to a line."""
+    nx, ny, c = sign * rows[i, NX], sign * rows[i, NY], sign * rows[i, 2] + margin
     if surface.spin == 0.0:
         speed = math.hypot(surface.vx, surface.vy)
         return nx * surface.vx + ny * surface.vy < -_PARALLEL * speed
@@ -105,14 +107,14 @@ def leads_on(
     """
     walls, edges, borders = bounds.walls, bounds.edges, bounds.borders
     for i in range(len(walls)):
-        if not leans[i] and _meets(surface, walls, i, 1.0, y):
+        if not leans[i] and _meets(surface, walls, i, 1.0, y, 0.0):
             return True
     for i in range(len(edges)):
-        if _meets(surface, edges, i, 1.0, y):
+        if _meets(surface, edges, i, 1.0, y, radius):
             return True
-    if zone > 0 and _meets(surface, borders, zone - 1, 1.0, y):
+    if zone > 0 and _meets(surface, borders, zone - 1, 1.0, y, 0.0):
         return True
-    if zone < len(borders) and _meets(surface, borders, zone, -1.0, y):
+    if zone < len(borders) and _meets(surface, borders, zone, -1.0, y, 0.0):
         return True
     found = False
     for k in range(lies.size):

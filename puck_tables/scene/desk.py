@@ -42,8 +42,8 @@ class Desk(NamedTuple):
     Rates of the stages of a step, and states and rates in a leap (n, 12), rates at its end (12,), a
     gap polynomial (6,), the state at the start and the end of a step and at a trial (12,), what is
     known of the walls, and of lines that were met at once (4,): how often it matters which is
-    first, when at first, and which two; how the base lies to every patch of the floor (k,); and the
-    scales of the state (10,), which grow with it.
+    first, when at first, and which two; how the base lies to every patch of the floor (k,); the
+    scales of the state (10,), which grow with it; and over which edges the base hangs.
     """
 
     work: FloatArray
@@ -56,6 +56,7 @@ class Desk(NamedTuple):
     at_once: FloatArray
     lies: npt.NDArray[np.int64]
     scale: FloatArray
+    hangs: npt.NDArray[np.bool_]
 
 
 @allocating
@@ -64,5 +65,5 @@ def desk_for(bounds: Boundaries, patches: int) -> Desk:
     return Desk(
         np.empty((WORK_ROWS, ROW)), np.empty(ROW), np.empty(DEGREE + 1), np.empty(WIDE),
         np.empty(WIDE), np.empty(WIDE), contacts_for(len(bounds.walls)), np.zeros(4),
-        np.zeros(patches, np.int64), np.empty(SIZE),
+        np.zeros(patches, np.int64), np.empty(SIZE), np.zeros(len(bounds.edges), np.bool_),
     )  # fmt: skip

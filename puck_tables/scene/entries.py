@@ -12,7 +12,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.fields import Kind, in_tables, specs
-from puck_tables._core.real import finite_array
+from puck_tables._core.real import finite_array, shown
 from puck_tables._core.safe_write import as_utf8
 from puck_tables.errors import InputError
 
@@ -112,7 +112,10 @@ def entry_at(scene: Scene, path: str) -> Entry:
     'm'
     """
     whole = re.sub(r"\[\d+\]$", "", path)
-    return next(entry for entry in entries(scene) if entry.path == whole)
+    found = next((entry for entry in entries(scene) if entry.path == whole), None)
+    if found is None:
+        raise InputError(f"the scene has no entry {shown(path)}: see 'puck scene fields'")
+    return found
 
 
 def tables_of(part: Any) -> dict[str, Any]:

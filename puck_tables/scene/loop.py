@@ -76,6 +76,7 @@ from puck_tables.scene.moments import (
     lost,
     rests_on,
 )
+from puck_tables.scene.overhang import come_over_edges, look_at_edges
 from puck_tables.scene.patches import (
     ASTRIDE,
     after_patch,
@@ -107,7 +108,7 @@ UNDECIDED = NOT_FINITE + 1  # by more than one run
 # what happens on the way
 RESTS, SLIPS, LEANS = 0, 1, 3  # and those of boundaries
 COMES_OVER, LEAVES = BORDER, 6  # the rim, a border
-_PATCH = 7  # a border of a patch, until it is known which of both
+_PATCH = 8  # a border of a patch, until it is known which of both
 
 _LAST = 30.0  # times the local error: from there a stop goes straight
 _NEAR = 0.5  # of the time in which the slip would end, at most, is a step
@@ -148,7 +149,7 @@ def follow(
     how it ended, when, number of events, of steps and of frames reached, root of the sum of
     squares of the errors of steps, in units of ``ask.scale``
     """
-    work, last, gaps, y, new, trial, contacts, at_once, lies, scale = desk
+    work, last, gaps, y, new, trial, contacts, at_once, lies, scale, hangs = desk
     at_once[0] = 0.0
     for i in range(SIZE):
         y[i], scale[i] = start[i], ask.scale[i]
@@ -191,6 +192,7 @@ def follow(
     settle, known = True, False  # whether to look what holds the puck; whether work[0] is there
     newton, grade, again = 0.0, UNIFORM, False  # again: the step before was too long
     stretch = Stretch(model, dry, leaning, piece, mode, way, newton, grade, 0.0)
+    count = look_at_edges(bounds.edges, radius, hangs, stretch, t, y, events, count)
     while t < until:
         while piece < len(drive) and drive[piece, 0] <= t:
             piece += 1
@@ -373,6 +375,11 @@ def follow(
             for i in range(ROW):
                 last[i] = work[STAGES - 1, i]
         wrong += error * error
+        if len(hangs) > 0:
+            count = come_over_edges(
+                bounds.edges, radius, hangs, stretch, t, length, y, scale, work, last, new, gaps,
+                trial, events, count,
+            )  # fmt: skip
         # the frames on it
         end = target if landed else t + length
         while frame < len(frames) and frames[frame] <= end:

@@ -24,7 +24,7 @@ ENDS = (
     "step limit", "event limit", "not finite", "undecided", "no end found", "refused",
 )  # fmt: skip
 NO_END, REFUSED = len(ENDS) - 2, len(ENDS) - 1  # of a run in a sweep, which goes on
-EVENTS = ("stick", "slip", "impact", "contact", "entry", "edge", "exit")
+EVENTS = ("stick", "slip", "impact", "contact", "entry", "edge", "exit", "overhang")
 
 # rows of the compiled loop, and what follows from them
 LEDGER = (
@@ -38,9 +38,9 @@ EVENT_UNITS = {"time": "s", "what": "1", "which": "1", "x": "m", "y": "m"}
 class Event(NamedTuple):
     """What happened on the way: when (s), what, which, where (m).
 
-    ``which``, from 0: of impact and contact the wall, of edge the edge, of entry and exit the
-    border between strips and after all borders the patch, of stick and slip the strip under the
-    centre.
+    ``which``, from 0: of impact and contact the wall, of edge and overhang the edge, of entry and
+    exit the border between strips and after all borders the patch, of stick and slip the strip
+    under the centre.
     """
 
     time: float
@@ -58,7 +58,8 @@ class SceneRun(TimedResult):
     on one that turns, over the same borders again and again: a whole turn is followed), 'time is
     up' or 'over the edge'; ``end_time`` s; ``events``: what happened, one of stick (it comes to
     rest on the floor), slip (it leaves that rest), impact, contact (it stays at a wall), entry (its
-    rim comes over a border or patch), exit (it has left it), edge.
+    rim comes over a border or patch), exit (it has left it), overhang (its rim comes over an edge:
+    from there to the edge it is carried as if nothing of it hung in the air), edge.
     ``plan``: the model that was taken, and why.  ``energy_residual``: what the ledger misses, as a
     share of its largest entry.  ``error_estimate``: of the end time in
     units of Q/J and of places in Q²/J, with ``speed_scale`` = Q in m/s and ``rate_scale`` = J in
@@ -66,7 +67,8 @@ class SceneRun(TimedResult):
     turning floor asks over the mass; without slip Q² = J r), and of the times of rebounds from one
     wall.  It is above
     ``run.tol`` where the motion amplifies errors so much that tol cannot be kept.
-    ``columns``: arrays (n,) over time by name, each also an attribute (``run.x``); ``heading``,
+    ``columns``: arrays (n,) over time by name, each also an attribute (``run.x``); ``heat_dry`` is
+    that of the floor and of a rim that rubs on a cushion it leans on; ``heading``,
     ``slip_speed`` and ``slip_angle`` are of the motion in the laboratory, 0 at rest there.
     ``last``: the columns at the end, numbers.  ``files``: what stood in the files that the scene
     names, by the path of the entry.  Called with times it gives the same run with its states there.

@@ -23,6 +23,10 @@ from puck_tables.scene.entries import entries
 from puck_tables.scene.floor_patches import distances
 from puck_tables.scene.scene import Scene
 
+OVERHANG = (
+    "a rim comes over an edge; until its centre does, a puck is carried as if none of it hung in "
+    "the air, which it is not: its motion from there on is a guess"
+)
 EMPIRICAL = (
     "The lateral force is empirical, as somebody fitted it: no dry friction over the contact "
     "explains it."
@@ -126,7 +130,7 @@ def out_of_reach(scene: Scene) -> Scene:
     way = float(stopped.path_length) * (1.0 + 1e-6)
     place, radius = scene.launch.position, scene.puck.radius
     room = [distance(wall, place) - radius for wall in scene.walls]
-    room += [distance(edge, place) for edge in scene.edges]
+    room += [distance(edge, place) - radius for edge in scene.edges]  # the rim may hang over it
     if strips is not None:
         across = (math.cos(strips.direction), math.sin(strips.direction))
         along = across[0] * place[0] + across[1] * place[1]

@@ -13,6 +13,7 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import Progress
 from puck_tables._core.memory import check_memory
+from puck_tables._core.real import instance
 from puck_tables.bulk.finish import check_part, finish
 from puck_tables.bulk.spreads import Spread, checked_samples
 from puck_tables.bulk.summary import Summary
@@ -105,10 +106,12 @@ def sample(
     """Samples of a scene, as :meth:`puck_tables.Scene.sample` has it."""
     if scene.is_board:
         raise InputError(
-            "samples of boards are not drawn: give lists or ranges of a board, and sweep it"
+            "samples of boards are not drawn: let a number of the board range instead, such as "
+            "puck[0].launch.spin = '0:5:11', and sweep it"
         )
     check_part(chunk)
     checked_samples(count, seed)
+    instance("spreads", spreads, Mapping)
     work = SceneDraws(scene, chunk, None, count, seed, dict(spreads))
     if store is None:
         check_memory(work.shape, BYTES)

@@ -15,6 +15,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.fields import of, specs
 from puck_tables._core.reading import Range, Reading, given_in, read_values
+from puck_tables._core.real import instance
 from puck_tables.errors import InputError
 from puck_tables.motion.body import STANDARD_GRAVITY
 from puck_tables.puck import Puck
@@ -255,6 +256,7 @@ class Scene(SceneVerbs):
         >>> Scene(Puck(0.04)).unit_of("launch.position[1]")
         'm'
         """
+        instance("path", path, str)
         return "" if is_batch(path) else entry_at(self, path).kind.unit
 
     @property

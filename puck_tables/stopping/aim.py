@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import finite_array, positive, real
+from puck_tables._core.real import finite_array, positive, real, shown
 from puck_tables.errors import InputError
 from puck_tables.io.columns import COLUMNS as VARIABLES
 from puck_tables.io.dataset import Dataset, variable
@@ -217,7 +217,7 @@ def checked_bounds(
 ) -> tuple[float, float]:
     """Bounds on speed and spin, infinite where there is none."""
     if not isinstance(count, int) or not 1 <= count <= MAX_COUNT:
-        raise InputError(f"count must be a whole number from 1 to {MAX_COUNT}, got {count!r}")
+        raise InputError(f"count must be a whole number from 1 to {MAX_COUNT}, got {shown(count)}")
     return (
         math.inf if max_speed is None else positive("max_speed", max_speed, "m/s"),
         math.inf if max_spin is None else positive("max_spin", max_spin, "rad/s"),

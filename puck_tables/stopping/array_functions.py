@@ -10,12 +10,13 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import broadcast, finite_array
+from puck_tables._core.real import broadcast, finite_array, real
 from puck_tables.accuracy.methods import Method
 from puck_tables.contact.laws import HOMOGENEOUS, Law
+from puck_tables.errors import InputError
 from puck_tables.stopping.launches import launches_of
 from puck_tables.stopping.per_height import SolverPerHeight
-from puck_tables.stopping.states import states
+from puck_tables.stopping.states import TOO_LARGE, states
 from puck_tables.stopping.stop_section import FINEST_SECTION
 
 StopArrays = tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]
@@ -41,12 +42,13 @@ def stop_arrays(
     -------
     tuple of six arrays (…)
         ``stop_time`` s, ``stop_x``, ``stop_y``, ``path_length`` m, ``turn_angle``, ``body_angle``
-        rad; NaN where a motion is too large for floating point.
+        rad.
 
     Raises
     ------
     InputError, AccuracyError
-        As :func:`puck_tables.stop`.
+        As :func:`puck_tables.stop`, and where a motion is too large for floating point: there is no
+        column that could say so.
 
     Examples
     --------
@@ -54,13 +56,16 @@ def stop_arrays(
     >>> time.round(6).tolist(), x.round(6).tolist()
     ([3.962992, 4.472821], [2.213952, 4.736946])
     """
-    method = Method.LOOK_UP if tol >= FINEST_SECTION else Method.ADAPTIVE
-    solver = SolverPerHeight(pressure, gyration, tol, method.value, None)
+    error = real("tol", tol, "dimensionless")
+    method = Method.LOOK_UP if error >= FINEST_SECTION else Method.ADAPTIVE
+    solver = SolverPerHeight(pressure, gyration, error, method.value, None)
     launches = launches_of(_pairs(vx, vy), spin, delta, decel, radius)
     launches.refuse_bad()
     solver.prepare_for(launches, 1)
-    found = solver.all(launches.matrix)[0].reshape((6, *launches.shape))
-    time, x, y, length, turn, body = found
+    found, status = solver.all(launches.matrix)
+    if status.any():
+        raise InputError(TOO_LARGE)
+    time, x, y, length, turn, body = found.reshape((6, *launches.shape))
     return time, x, y, length, turn, body
 
 

@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import run_chunks
+from puck_tables._core.real import shown
 from puck_tables.contact.laws import Law
 from puck_tables.errors import InputError
 from puck_tables.motion.body import Body
@@ -88,8 +89,8 @@ class Differentiated:
         for word, name, names in (
             ("of", of, self.JACOBIAN_ROWS), ("by", by, self.JACOBIAN_COLUMNS),
         ):  # fmt: skip
-            if name not in names:
-                raise InputError(f"{word} must be one of {', '.join(names)}, got {name!r:.40}")
+            if not isinstance(name, str) or name not in names:
+                raise InputError(f"{word} must be one of {', '.join(names)}, got {shown(name)}")
             places.append(names.index(name))
         entry: FloatArray = self.jacobian[..., places[0], places[1]]
         return entry

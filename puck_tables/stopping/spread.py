@@ -13,7 +13,8 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import finite_array
+from puck_tables._core.real import finite_array, listed, shown
+from puck_tables.bulk.spreads import checked_seed
 from puck_tables.errors import InputError
 
 Again = Callable[[FloatArray], FloatArray]
@@ -127,13 +128,14 @@ def spread_of(
     InputError
         If the covariance is none, or samples leave the range of an argument.
     """
-    which = [_place(name, columns) for name in of]
+    which = [_place(name, columns) for name in listed("of", of, "arguments")]
     if len(set(which)) < len(which) or not which:
         raise InputError(f"of must name different arguments of {', '.join(columns)}")
     shape = jacobian.shape[:-2]
     root = _root(covariance, len(which), shape)
     if not isinstance(samples, int) or isinstance(samples, bool) or samples == 1 or samples < 0:
-        raise InputError(f"samples must be 0 or a whole number from 2 on, got {samples!r:.40}")
+        raise InputError(f"samples must be 0 or a whole number from 2 on, got {shown(samples)}")
+    checked_seed(seed)
     if not np.isfinite(jacobian).all():
         raise InputError(
             "a launch has no derivative (pure spin, the path by vx and vy; or too large for "
@@ -169,8 +171,8 @@ def spread_of(
 
 
 def _place(name: str, columns: tuple[str, ...]) -> int:
-    if name not in columns:
-        raise InputError(f"of must name arguments of {', '.join(columns)}, got {name!r:.40}")
+    if not isinstance(name, str) or name not in columns:
+        raise InputError(f"of must name arguments of {', '.join(columns)}, got {shown(name)}")
     return columns.index(name)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import broadcast, checked_threads, real_view
+from puck_tables._core.real import broadcast, checked_flag, checked_threads, real_view
 from puck_tables.contact.laws import HOMOGENEOUS, Law, law_of
 from puck_tables.errors import InputError
 from puck_tables.io.dataset import Dataset, variable
@@ -46,7 +46,7 @@ from puck_tables.stopping.state_values import (
 from puck_tables.stopping.stop_table import UPPER_DELTA, StopTable
 from puck_tables.table.table import refuse_other_kind
 
-_TOO_LARGE = (
+TOO_LARGE = (
     "velocity, spin, radius and decel give a motion too large for floating point: use larger units"
 )
 # of nothing and of one, made once: to make them takes as long as a look-up
@@ -256,6 +256,7 @@ def states(
     0.029301
     """
     checked_threads(threads)
+    checked_flag("jacobian", jacobian)
     refuse_other_kind(table, StopTable)
     highest = plain_up_to(pressure, gyration)
     if table is not None:
@@ -283,7 +284,7 @@ def states(
         bodies = _bodies(pressure, gyration, rows[3, ~plain])
         longest = max((body.longest for body in bodies.values()), default=2.0)
         if not fits(rows, longest).all():
-            raise InputError(_TOO_LARGE)
+            raise InputError(TOO_LARGE)
         pucks = known_pucks(chosen, rows[:, plain], threads)
         found = np.empty((STATE_ROWS, moments.size))
         looked, others = plain[each], np.flatnonzero(~plain)
@@ -324,8 +325,7 @@ def _moments_of(
         return which, flat if flat.flags.writeable else flat.copy(), times.shape
     numbers = np.arange(launches.size).reshape(launches.shape)
     one, other = broadcast(velocity=numbers.astype(np.float64), time=times)
-    moments = np.ascontiguousarray(other).reshape(-1)
-    moments = moments if moments.flags.writeable else moments.copy()
+    moments = np.array(other, order="C").reshape(-1)
     if one.shape == launches.shape:
         return _NONE, moments, one.shape
     return one.reshape(-1).astype(np.int64), moments, one.shape

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import checked_threads
+from puck_tables._core.real import checked_flag, checked_threads
 from puck_tables.accuracy.front import Selection
 from puck_tables.contact.laws import HOMOGENEOUS, Law
 from puck_tables.io.columns import derived, following
@@ -238,6 +238,7 @@ def stop(
     -0.310273
     """
     checked_threads(threads)
+    checked_flag("jacobian", jacobian)
     solver = SolverPerHeight(pressure, gyration, tol, method, table)
     launches = launches_of(velocity, spin, delta, decel, radius)
     if jacobian:

@@ -24,7 +24,7 @@ import numpy as np
 
 from puck_tables._core.own_folder import make_private, refuse_shared, say, user_cache
 from puck_tables._core.parts import PART_PATTERN
-from puck_tables._core.real import real_array
+from puck_tables._core.real import checked_progress, positive, real
 from puck_tables._core.sources import source_digest
 from puck_tables._core.waiting import watched
 from puck_tables.contact.friction_laws import FrictionLaw
@@ -107,11 +107,12 @@ def table_for(
     >>> float(table.resultants(0.0, 0.5).parallel.round(6))
     0.25
     """
+    checked_progress(progress)
     kind: type[ResultantTable] | type[SpeedTable]
     more: dict[str, Any] = {}
     if isinstance(law, SpeedLaw | FrictionLaw):
         kind, stem, said = SpeedTable, "slip-speed", "a friction law over the slip speed"
-        more = {} if top_speed is None else {"top_speed": float(top_speed)}
+        more = {} if top_speed is None else {"top_speed": positive("top_speed", top_speed, "m/s")}
         if isinstance(law, SpeedLaw):
             points = [np.asarray(part).tolist() for part in (law.speeds, law.values)]
         else:
@@ -132,7 +133,7 @@ def table_for(
             of["profile"] = [part.tolist() for part in law.profile]
     wanted = None
     if accuracy is not None:
-        wanted = real_array("accuracy", accuracy, "an absolute error").item()
+        wanted = real("accuracy", accuracy, "an absolute error")
     digest = _digest(kind, {**of, "accuracy": wanted})
     asked = "default" if wanted is None else f"{wanted:g}"
 

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any, ClassVar, NamedTuple, Self, cast
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import instance
+from puck_tables._core.real import instance, shown
 from puck_tables.errors import InputError
 from puck_tables.table import file
 from puck_tables.table.accuracy import Accuracy
@@ -201,6 +201,7 @@ class Table(ABC):
         >>> Table.shipped().tolerance, Table.shipped("stops").tolerance
         (2e-11, 1e-10)
         """
+        instance("kind", kind, str)
         found: Self = _shipped(kind if cls is Table else cls.kind)
         return found
 
@@ -356,8 +357,9 @@ def kind_named(name: str) -> type[Table]:
 
 @cache
 def _shipped(kind: str) -> Any:
-    instance("kind", kind, str)
     place = files("puck_tables.tables").joinpath(f"{kind}.h5")
     if kind not in KINDS or not place.is_file():
-        raise InputError(f"no table of {kind!r} comes along: there are 'resultants' and 'stops'")
+        raise InputError(
+            f"no table of {shown(kind)} comes along: there are 'resultants' and 'stops'"
+        )
     return kind_named(kind).read(place.read_bytes(), f"default table of {kind}")

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import Progress
-from puck_tables._core.real import finite_array, positive, real
+from puck_tables._core.real import checked_progress, finite_array, positive, real, shown
 from puck_tables.errors import InputError
 from puck_tables.scene.scene import Scene
 from puck_tables.world.agreement import pieces_of, start_of
@@ -87,6 +87,7 @@ def aim(
     max_spin: float | None, max_impacts: int, count: int, progress: Progress | None,
 ) -> BoardAim:  # fmt: skip
     """Launches on a board, as :meth:`puck_tables.Scene.aim` has them."""
+    checked_progress(progress)
     _whole("max_impacts", max_impacts, 0, MOST_IMPACTS)
     _whole("count", count, 1, MOST_COUNT)
     wanted = target_of(scene, target, pocket, puck, striker, hits)
@@ -199,4 +200,4 @@ def _plenty(scene: Scene, wanted: Target) -> float:
 
 def _whole(name: str, value: int, low: int, high: int) -> None:
     if not isinstance(value, int) or isinstance(value, bool) or not low <= value <= high:
-        raise InputError(f"{name} must be a whole number from {low} to {high}, got {value!r}")
+        raise InputError(f"{name} must be a whole number from {low} to {high}, got {shown(value)}")

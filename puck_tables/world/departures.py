@@ -42,6 +42,7 @@ from puck_tables.world.game import (
     N_IMPACTS,
     NORMAL_X,
     NORMAL_Y,
+    OVERHANGS,
     PARTNER,
     PUSH,
     RUB,
@@ -62,7 +63,7 @@ from puck_tables.world.impact import (
     SUM_N,
     SUM_T,
 )
-from puck_tables.world.layout import LIES, RADIUS, A
+from puck_tables.world.layout import EDGE_NUMBER, LIES, RADIUS, A
 from puck_tables.world.paths import DURATION, FIRST
 from puck_tables.world.paths import START as BEGINS
 
@@ -197,6 +198,15 @@ def cross(game: Game, i: int, t: float, k: int, room: Room) -> None:
     game.discs[i, LIES + number] = how
     note(game, t, ENTERS if enters else LEAVES, i, -1 - k, x, y)
     step_onto(game, i)
+
+
+@inlined
+def overhang(game: Game, i: int, t: float, k: int, room: Room) -> None:
+    """The rim of a disc comes over an edge, which is told, or is back; it flies on."""
+    number = int(game.obstacles[k, EDGE_NUMBER])
+    if game.hangs[i, number] == 0:
+        note(game, t, OVERHANGS, i, -1 - k, room.states[i, X], room.states[i, Y])
+    game.hangs[i, number] = 1 - game.hangs[i, number]
 
 
 @inlined

@@ -20,6 +20,7 @@ from puck_tables.world.departures import (
     locate,
     note,
     note_impacts,
+    overhang,
     take_off,
 )
 from puck_tables.world.flight import (
@@ -63,7 +64,7 @@ from puck_tables.world.impact import (
     approach,
     collide,
 )
-from puck_tables.world.layout import EDGE, KIND, ON_FLOOR, POCKET, RADIUS
+from puck_tables.world.layout import EDGE, KIND, LIGHTNESS, ON_FLOOR, OVERHANG, POCKET, RADIUS
 from puck_tables.world.meeting import are_apart, next_crossing, next_meeting, rest_together
 from puck_tables.world.quiet import quieten
 from puck_tables.world.touching import find_touching, is_integrated, press_somewhere
@@ -93,6 +94,8 @@ def look_ahead(game: Game, i: int, t: float, room: Room) -> None:
     if game.kinds[i] == PATH:
         _earlier(game, i, game.flights[i, UNTIL], PATH_ENDS)
     for k in range(game.obstacles.shape[0]):
+        if int(game.obstacles[k, KIND]) == OVERHANG and game.discs[i, LIGHTNESS] == 0.0:
+            continue  # what is driven is carried
         if int(game.obstacles[k, KIND]) >= ON_FLOOR:
             found = next_border(game, i, k, t, game.next_time[i], room.work, room.one)
         else:
@@ -150,6 +153,9 @@ def _happen(game: Game, i: int, partner: int, t: float, room: Room) -> int:
     locate(game, i, t, room)
     room.marks[i] = CONCERNED
     if partner == LOOK_AGAIN:
+        return REACHED
+    if partner < 0 and int(game.obstacles[-1 - partner, KIND]) == OVERHANG:
+        overhang(game, i, t, -1 - partner, room)
         return REACHED
     if partner == PATH_ENDS and game.drives[i, 0] < game.drives[i, 1]:
         drive_on(game, i, t, room)

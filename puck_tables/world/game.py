@@ -17,14 +17,23 @@ Whole = npt.NDArray[np.int64]
 NOTHING, PATH_ENDS, LOOK_AGAIN = 1 << 40, (1 << 40) + 1, (1 << 40) + 2
 
 # events
-IMPACT, CONTACT, PART, POCKETED, OVER_EDGE, REST, STRUCK, ENTERS, LEAVES = range(9)
-EVENTS = ("impact", "contact", "part", "pocket", "edge", "rest", "launch", "entry", "exit")
+IMPACT, CONTACT, PART, POCKETED, OVER_EDGE, REST, STRUCK, ENTERS, LEAVES, OVERHANGS = range(10)
+EVENTS = (
+    "impact", "contact", "part", "pocket", "edge", "rest", "launch", "entry", "exit", "overhang",
+)  # fmt: skip
 # columns of an event: what, disc, partner, place of the contact, normal from the disc to its
 # partner, approach and slip before, normal and tangential impulse, energy lost, all in SI units
 (
     TIME, WHAT, WHO, PARTNER, AT_X, AT_Y, NORMAL_X, NORMAL_Y, APPROACH, SLIDE, PUSH, RUB, LOST,
 ) = range(13)  # fmt: skip
 EVENT_COLUMNS = 13
+
+# why a run does not go on, whatever of it comes first, and where its books are wrong for the same
+TOGETHER = (
+    "by {time:.6g} s what touches meets again and again, or presses so that no forces satisfy the "
+    "laws of all rims: that is not solved here; give restitutions from 0.5 on or smooth rims "
+    "(tangential = -1), or move a puck"
+)
 
 LAUNCH_TIME, LAUNCHED, LAUNCH_VX, LAUNCH_VY, LAUNCH_SPIN = range(5)
 LAUNCH_COLUMNS = 5
@@ -50,7 +59,8 @@ class Game(NamedTuple):
     by which they meet (:mod:`puck_tables.world.rims`).  ``clock`` (1,): now.  ``group``
     (n,): discs of one number push each other, 0: none; ``held`` (…, 2): their contacts.
     ``next_time``, ``next_partner`` (n,).  ``launches`` (…, 5), ascending in time.  ``drives``
-    (n, 2): the rows of ``pieces`` along which a disc is driven. ``counts``: how many rows of
+    (n, 2): the rows of ``pieces`` along which a disc is driven.  ``hangs`` (n, edges): whether its
+    rim is over an edge.  ``counts``: how many rows of
     events, history, pieces and held contacts are used, how many launches and what else was done,
     and the contacts of the event at work.  ``pace`` (3,): the scales of speed, m/s, and
     acceleration, m/s², and the error of a step where motions are integrated, in units of them.
@@ -75,6 +85,7 @@ class Game(NamedTuple):
     launches: FloatArray
     pieces: FloatArray
     drives: Whole
+    hangs: Whole
     events: FloatArray
     history: FloatArray
     counts: Whole

@@ -48,6 +48,7 @@ from puck_tables.world.game import (
     N_HELD,
     N_HISTORY,
     N_PIECES,
+    TOGETHER,
     Game,
     Whole,
 )
@@ -258,10 +259,7 @@ def _follow(
         contacts = np.delete(contacts, which, axis=0)
         if not len(contacts):
             return contacts, t, nothing, jump, idle
-    raise PuckError(
-        f"at {t:.6g} s {len(members)} pucks press on each other so that no forces satisfy all laws "
-        "of their rims: give their rims a finite friction (rim), or move one of them"
-    )
+    raise PuckError(TOGETHER.format(time=t))
 
 
 def _with_pieces(game: Game, rows: FloatArray) -> Game:

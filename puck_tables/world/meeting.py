@@ -18,6 +18,8 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.friction import VX, VY, X, Y
@@ -43,8 +45,10 @@ from puck_tables.world.layout import (
     ARC,
     DAMPING,
     EDGE,
+    EDGE_NUMBER,
     FROM,
     KIND,
+    OVERHANG,
     POCKET,
     RADIUS,
     SPAN,
@@ -76,7 +80,7 @@ def safe_step(gap: float, rate: float, bend: float) -> float:
 def in_span(angle: float, start: float, span: float) -> bool:
     """Whether an angle lies in [start, start + span]."""
     turns = (angle - start) / (2.0 * math.pi)
-    return 2.0 * math.pi * (turns - math.floor(turns)) <= span
+    return 2.0 * math.pi * (turns - float(np.floor(turns))) <= span
 
 
 @inlined
@@ -85,8 +89,8 @@ def normal_to(
 ) -> tuple[float, float, float, bool]:
     """The gap of a disc to an obstacle, the unit normal towards it, and whether it is there."""
     kind = int(obstacle[KIND])
-    if kind in (WALL, EDGE):
-        margin = radius if kind == WALL else 0.0
+    if kind in (WALL, EDGE, OVERHANG):
+        margin = 0.0 if kind == EDGE else radius
         gap = obstacle[A] * x + obstacle[B] * y - obstacle[C] - margin
         return gap, -obstacle[A], -obstacle[B], True
     dx, dy = obstacle[A] - x, obstacle[B] - y
@@ -295,18 +299,22 @@ def next_meeting(
 def next_crossing(
     game: Game, i: int, k: int, now: float, horizon: float, room: FloatArray, one: FloatArray
 ) -> float:
-    """The same of a disc and what stands: the obstacle k, or where its centre passes it."""
+    """The same of a disc and what stands: the obstacle k, or where its centre or rim passes it."""
     kind, flight = game.kinds[i], game.flights[i]
     last = min(horizon, moves_until(kind, flight), once_round(kind, flight, now))
     if kind == GONE or not last > now or are_held(game, i, -1 - k):
         return math.inf
     disc, obstacle = game.discs[i], game.obstacles[k]
     radius, shape = disc[RADIUS], int(obstacle[KIND])
+    side = 1.0  # one that hangs over an edge comes back
+    if shape == OVERHANG and game.hangs[i, int(obstacle[EDGE_NUMBER])] != 0:
+        side = -1.0
     state_at(kind, flight, disc, game.curves, game.pieces, now, room, one)
     ax, ay, bx, by, margin = corridor(kind, flight, disc, one, last, now)
-    if shape in (WALL, EDGE):
+    if shape in (WALL, EDGE, OVERHANG):
         nearest = min(
-            normal_to(obstacle, radius, ax, ay)[0], normal_to(obstacle, radius, bx, by)[0]
+            side * normal_to(obstacle, radius, ax, ay)[0],
+            side * normal_to(obstacle, radius, bx, by)[0],
         )
         if nearest > margin * (1.0 + 1e-9):
             return math.inf
@@ -326,6 +334,7 @@ def next_crossing(
     for look in range(MOST_LOOKS):
         game.counts[N_LOOKS] += 1
         gap, nx, ny, there = normal_to(obstacle, radius, one[X], one[Y])
+        gap, nx, ny = side * gap, side * nx, side * ny
         rate = -(nx * one[VX] + ny * one[VY])
         bend = bend_of(kind, flight, disc, one, t)
         if gap > way_left(kind, flight, disc, one, t) * (1.0 + 1e-9):

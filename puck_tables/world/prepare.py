@@ -35,8 +35,10 @@ from puck_tables.world.game import (
     EVENT_COLUMNS,
     HISTORY_COLUMNS,
     LAUNCH_COLUMNS,
+    N_EVENTS,
     N_PIECES,
     NOTHING,
+    OVERHANGS,
     Game,
     Whole,
 )
@@ -137,13 +139,15 @@ def game_of(scene: Scene, order: Whole) -> tuple[Game, Room]:
         launches=np.array(sorted(launches)).reshape(-1, LAUNCH_COLUMNS),
         pieces=np.vstack(ways),
         drives=drives,
-        events=np.zeros((ROWS + 8 * count, EVENT_COLUMNS)),
+        hangs=np.zeros((count, len(scene.edges)), np.int64),
+        events=np.zeros((ROWS + (8 + len(scene.edges)) * count, EVENT_COLUMNS)),
         history=np.zeros((ROWS + 4 * count, HISTORY_COLUMNS)),
         counts=np.zeros(COUNTS, np.int64),
         pace=np.array([0.0, 0.0, STEP_SHARE * flight_error(scene)]),
     )
     for i in range(count):
         lay_down(game, i, states[i])
+        _hang_over(game, i, states[i])
     game.counts[N_PIECES] = len(game.pieces)
     room = room_for(count)
     for i in range(count):
@@ -156,6 +160,18 @@ def game_of(scene: Scene, order: Whole) -> tuple[Game, Room]:
     room.states[:] = states
     set_pace(game, states)
     return game, room
+
+
+def _hang_over(game: Game, i: int, state: FloatArray) -> None:
+    """See over which edges the rim of a disc is at its start, and note it."""
+    for k in np.flatnonzero(game.obstacles[:, layout.KIND] == layout.OVERHANG):
+        row, disc = game.obstacles[k], game.discs[i]
+        gap = row[layout.A] * state[0] + row[layout.B] * state[1] - row[layout.C]
+        if disc[layout.LIGHTNESS] > 0.0 and gap < disc[layout.RADIUS]:
+            game.hangs[i, int(row[layout.EDGE_NUMBER])] = 1
+            event = [0.0, OVERHANGS, i, -1 - k, state[0], state[1]]
+            game.events[game.counts[N_EVENTS], : len(event)] = event
+            game.counts[N_EVENTS] += 1
 
 
 def with_law_up_to(game: Game, scene: Scene, order: Whole, fastest: float) -> Game:
@@ -251,7 +267,7 @@ def _hold_on(piece: Piece) -> tuple[float, ...]:
 
 
 def _obstacles(scene: Scene, called: dict[object, float], makes: FloatArray) -> FloatArray:
-    """Rows of :mod:`puck_tables.world.layout`: walls, posts, arcs, pockets, edges, borders."""
+    """Rows of :mod:`puck_tables.world.layout`: what stands, edges twice, then borders."""
 
     def rim(cushion: Wall | Post | Arc) -> list[float]:
         return [number_for(cushion.restitution, called), cushion.tangential, cushion.friction]
@@ -267,6 +283,9 @@ def _obstacles(scene: Scene, called: dict[object, float], makes: FloatArray) -> 
         rows.append([layout.POCKET, *pocket.point, pocket.radius, *[0.0] * 5])
     for edge in scene.edges:
         rows.append([layout.EDGE, *_line(edge.point, edge.normal), *[0.0] * 5])
+    for number, edge in enumerate(scene.edges):
+        line = _line(edge.point, edge.normal)
+        rows.append([layout.OVERHANG, *line, 0.0, 0.0, 0.0, float(number), 0.0])
     borders = len(borders_of(scene))
     for number in range(borders + len(scene.floor.patches)):
         shape = layout.BORDER if number < borders else layout.PATCH
@@ -277,10 +296,10 @@ def _obstacles(scene: Scene, called: dict[object, float], makes: FloatArray) -> 
 
 def obstacle_names(scene: Scene) -> list[str]:
     """What the rows of the obstacles are called, in their order."""
-    lists = {"wall": scene.walls, "post": scene.posts, "arc": scene.arcs,
-             "pocket": scene.pockets, "edge": scene.edges,
-             "border": borders_of(scene), "patch": scene.floor.patches}  # fmt: skip
-    return [f"{name} {number}" for name, ones in lists.items() for number in range(len(ones))]
+    lists = (("wall", scene.walls), ("post", scene.posts), ("arc", scene.arcs),
+             ("pocket", scene.pockets), ("edge", scene.edges), ("edge", scene.edges),
+             ("border", borders_of(scene)), ("patch", scene.floor.patches))  # fmt: skip
+    return [f"{name} {number}" for name, ones in lists for number in range(len(ones))]
 
 
 def borders_of(scene: Scene) -> tuple[float, ...]:

@@ -56,7 +56,7 @@ def rims_of(
     cushions = zip(CUSHIONS, (scene.walls, scene.posts, scene.arcs), strict=True)
     names = [(kind, f"{kind} {k}") for kind, ones in cushions for k in range(len(ones))]
     borders = scene.floor.strips.borders if scene.floor.strips is not None else ()
-    without = (scene.pockets, scene.edges, borders, scene.floor.patches)
+    without = (scene.pockets, scene.edges, scene.edges, borders, scene.floor.patches)
     names += [("", "")] * sum(map(len, without))
     if not scene.rims:
         laws, called = _laws_of(scene, 1)

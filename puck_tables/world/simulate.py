@@ -13,9 +13,12 @@ from puck_tables.errors import InputError, PuckError
 from puck_tables.scene.library import files_of
 from puck_tables.scene.scene import Scene
 from puck_tables.world.agreement import flight_error, refuse_endless
+from puck_tables.world.game import TOGETHER
 from puck_tables.world.ledger import ledger
 from puck_tables.world.outcome import STATE, WorldRun
 from puck_tables.world.world import World
+
+MISSED = 1e-7  # of the ledger, where pucks pushed each other: their impacts were not solved
 
 
 def simulate(scene: Scene, times: npt.ArrayLike | None = None) -> WorldRun:
@@ -34,6 +37,9 @@ def simulate(scene: Scene, times: npt.ArrayLike | None = None) -> WorldRun:
             raise InputError("times must be a list of ascending numbers >= 0 s")
         if moving:
             moments = moments[moments <= end_time]
+    books = ledger(world)
+    if books["energy_residual"] > MISSED and world.groups > 0:
+        raise PuckError(TOGETHER.format(time=world.time))
     states = world.over(np.minimum(moments, world.time))
     last = world.state()
     columns = {**_columns(states), "in_play": _in_play(world, moments)}
@@ -47,7 +53,7 @@ def simulate(scene: Scene, times: npt.ArrayLike | None = None) -> WorldRun:
         columns=columns,
         last={**_columns(last), "in_play": world.in_play.astype(np.float64)},
         stop_times=world.stop_times,
-        **ledger(world),
+        **books,
         end_error=_error(scene, world, last),
         files=files,
     )

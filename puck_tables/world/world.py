@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import finite_array, real
+from puck_tables._core.real import finite_array, instance, real
 from puck_tables.errors import InputError, PuckError
 from puck_tables.scene.friction import SPIN, VX, VY
 from puck_tables.scene.holds import misfits
@@ -28,7 +28,6 @@ from puck_tables.world.engine import (
     PAUSED,
     PUSHING,
     REACHED,
-    TANGLED,
     THOSE_LEFT,
     advance,
     lacks_rows,
@@ -51,18 +50,13 @@ from puck_tables.world.record import states_at
 MOST_EVENTS = 1_000_000
 CROWD = 1e-7  # of Q/J: 2000 events in less are a crowd
 CROWDED_PUSHES, PUSHED_IN = 3000, 1e-3  # and so many new groups that push, in that share of Q/J
-_FAILURES = {
-    CROWDED: "too many events by {time:.6g} s: they crowd together without end; change the "
-    "restitution of what meets there",
-    TANGLED: "the impacts of pucks that touch do not come to an end at {time:.6g} s: change their "
-    "restitution",
-}
 
 
 class Meeting(NamedTuple):
     """What happened: when (s), what, to which puck, with whom.
 
-    An impact; a contact, which lasts; pocket or edge, where it leaves play; a launch.
+    An impact; a contact, which lasts; pocket or edge, where it leaves play; a launch; overhang,
+    where its rim comes over an edge (it is carried as if nothing of it hung in the air).
 
     ``x``, ``y`` m: where; ``approach``, ``slip`` m/s: how fast the rims came together and slid on
     each other before the first impact of this moment; ``impulse``, ``rub`` N s: along the line from
@@ -113,6 +107,7 @@ class World:
     """
 
     def __init__(self, scene: Scene) -> None:
+        instance("scene", scene, Scene)
         self.scene = scene.single()
         self._order = order_of(self.scene)
         self._game, self._room = game_of(self.scene, self._order)
@@ -141,6 +136,11 @@ class World:
     def in_play(self) -> npt.NDArray[np.bool_]:
         """Which pucks are in no pocket and over no edge, array (pucks,)."""
         return self._game.kinds[self._place] != GONE
+
+    @property
+    def groups(self) -> int:
+        """How many groups of pucks have pushed each other."""
+        return int(self._game.counts[g.N_GROUPS])
 
     @property
     def moving(self) -> npt.NDArray[np.bool_]:
@@ -217,7 +217,8 @@ class World:
         PuckError
             If events crowd together without end.
         """
-        span = math.inf if duration == math.inf else real("duration", duration, "s")
+        endless = isinstance(duration, float) and duration == math.inf
+        span = math.inf if endless else real("duration", duration, "s")
         if not span >= 0.0:
             raise InputError(f"duration must not be negative, got {span:g} s")
         if span == math.inf:
@@ -326,6 +327,7 @@ class World:
 
         To see how much an end depends on them.
         """
+        scale, turn = real("scale", scale, "1"), real("turn", turn, "rad")
         cosine, sine = scale * math.cos(turn), scale * math.sin(turn)
         turned = np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, scale]])
         later = self._game.launches.copy()
@@ -393,7 +395,7 @@ class World:
                     )
         if how == OFF_TABLE:
             return self._off_table()
-        return _FAILURES[how].format(time=self.time)
+        return g.TOGETHER.format(time=self.time)
 
     def _off_table(self) -> str:
         """Which impact is faster than its table of restitution goes."""

@@ -20,5 +20,5 @@ for spin in (0.3, 0.8, 1.2, 3.0, 10.0):
     axes.semilogx(states.slip_speed / states.slip_speed[0], states.speed / states.spin)
 axes.axhline(1.0 / pt.motion.limit_ratio(0.0), color="black", linestyle="--")
 axes.invert_xaxis()
-axes.set(ylim=(0, 1.5), xlabel="Q over that of the launch", ylabel="ε = v/(rω)",
+axes.set(ylim=(0, 3.5), xlabel="Q over that of the launch", ylabel="ε = v/(rω)",
          title="The ratio, on its way to the stop")  # fmt: skip
