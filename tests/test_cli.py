@@ -212,7 +212,7 @@ V0 = ["simulate", "--v0", "1,0"]
         ([*V0, "--friction", "1", "--decel", "0.5"], ["--friction and --decel clash"]),
         ([*V0, "--friction", "0.1", "--radius", "1"], ["--friction needs --height"]),
         ([*V0, "--gravity", "9.8"], ["--gravity needs --radius and --height and --friction"]),
-        ([*V0, "--frames", "0"], ["frames must be from 1"]),
+        ([*V0, "--frames", "0"], ["frames must be a whole number from 1"]),
         ([*V0, "--frames", "5", "--times", "1"], ["one of them"]),
         ([*V0, "--times", "2:1:5"], ["STOP must be greater"]),
         ([*V0, "--times", "-1,2"], ["times"]),
