@@ -13,6 +13,9 @@ from puck_tables.cli.board_aim import aim_on_board, number_or_name
 from puck_tables.cli.options import (
     FILE,
     NUMBER,
+    SPEED,
+    SPIN,
+    TIME,
     Vector,
     body_options,
     deliver,
@@ -40,7 +43,7 @@ _LARGEST_FILE = 1 << 30
 @click.option(
     "--target",
     "targets",
-    type=Vector(),
+    type=Vector("m"),
     multiple=True,
     help="Where to stop, in m from the launch, like 2,0.1; in a scene, on the board.",
 )
@@ -56,13 +59,13 @@ _LARGEST_FILE = 1 << 30
 @click.option("--striker", metavar="NAME", help="In a scene: which is sent off.")
 @click.option("--hits", metavar="NAME", help="In a scene: a puck to be hit on the way.")
 @click.option("--max-impacts", type=int, help="In a scene: at most so many.  [default: 3]")
-@click.option("--w0", type=NUMBER, help="The launch with this spin, in rad/s, with its sign.")
-@click.option("--speed", type=NUMBER, help="The launches with this speed, in m/s.")
+@click.option("--w0", type=SPIN, help="The launch with this spin, in rad/s, with its sign.")
+@click.option("--speed", type=SPEED, help="The launches with this speed, in m/s.")
 @click.option(
-    "--time", "stop_time", type=NUMBER, help="The launches that stop after this time, in s."
+    "--time", "stop_time", type=TIME, help="The launches that stop after this time, in s."
 )
-@click.option("--max-speed", type=NUMBER, help="No launch faster than this, in m/s.")
-@click.option("--max-spin", type=NUMBER, help="No launch with more spin than this, in rad/s.")
+@click.option("--max-speed", type=SPEED, help="No launch faster than this, in m/s.")
+@click.option("--max-spin", type=SPIN, help="No launch with more spin than this, in rad/s.")
 @click.option(
     "--count",
     type=int,

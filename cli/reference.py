@@ -11,6 +11,7 @@ from puck_tables.cli.completion import cases
 from puck_tables.cli.options import (
     FILE,
     NUMBER,
+    TIME,
     Times,
     deliver,
     explain_option,
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
 
 @click.command()
 @click.argument("case", required=False, shell_complete=cases)
-@click.option("--dt", type=NUMBER, help="Time between two frames, s.")
+@click.option("--dt", type=TIME, help="Time between two frames, s.")
 @click.option("--fps", type=NUMBER, help="Frames a second.")
 @click.option(
     "--times",

@@ -13,6 +13,7 @@ from click.core import ParameterSource
 from puck_tables.cli.options import (
     FILE,
     NUMBER,
+    SPIN,
     Times,
     Vector,
     body_options,
@@ -55,13 +56,13 @@ _LAUNCHED = (
     help="The puck and the launch that 'puck fit -o FILE.json' found.",
 )
 @click.option("--track", help="Which track of --fit, by its name or number from 1.")
-@click.option("--v0", type=Vector(), help="Launch velocity in m/s, like 1,0.")
-@click.option("--w0", type=NUMBER, default=0.0, show_default=True, help="Launch spin in rad/s.")
+@click.option("--v0", type=Vector("m/s"), help="Launch velocity in m/s, like 1,0.")
+@click.option("--w0", type=SPIN, default=0.0, show_default=True, help="Launch spin in rad/s.")
 @puck_options(mass=True)
 @click.option("--delta", type=NUMBER, help="delta = 2 f h / r instead.  [default: 0.5]")
 @body_options()
 @click.option("--frames", type=int, help="Number of states to save.  [default: 101]")
-@click.option("--times", type=Times(), help="Times of the states to save, in s.")
+@click.option("--times", type=Times("s"), help="Times of the states to save, in s.")
 @click.option(
     "--tol",
     type=NUMBER,

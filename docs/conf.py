@@ -52,7 +52,7 @@ def figure_of(block: tuple[str, str, int], names: dict[str, Any], conf: dict[str
         return ""
     figure.is_shown = True
     path = next(names["image_path_iterator"])
-    figure.savefig(path, dpi=110)
+    figure.savefig(path, dpi=110, bbox_inches="tight")
     plt.close(figure)  # or the next example draws on it
     return figure_rst([path], conf["src_dir"])
 

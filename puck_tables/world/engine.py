@@ -60,6 +60,7 @@ from puck_tables.world.impact import (
     NX,
     NY,
     SUM_N,
+    SUM_T,
     TOO_FAST,
     approach,
     collide,
@@ -183,6 +184,9 @@ def _happen(game: Game, i: int, partner: int, t: float, room: Room) -> int:
     if rounds < 0:
         game.counts[N_CONTACTS] = count
         return OFF_TABLE if rounds == TOO_FAST else TANGLED
+    for n in range(count):
+        if not math.isfinite(room.rows[n, SUM_N] + room.rows[n, SUM_T]):
+            return TANGLED
     note_impacts(game, t, count, room)
     # those that no impulse reached fly on
     for j in range(discs.shape[0]):
