@@ -10,7 +10,10 @@ import click
 from puck_tables.cli.fit_report import report
 from puck_tables.cli.options import (
     FILE,
+    LENGTH,
     NUMBER,
+    TIME,
+    Number,
     body_options,
     deliver,
     explain_option,
@@ -29,12 +32,14 @@ from puck_tables.errors import InputError
 @click.command()
 @click.argument("files", type=FILE, nargs=-1, required=True, metavar="TRACK...")
 @track_options
-@click.option("--radius", type=NUMBER, required=True, help="Radius r of the puck in m.")
+@click.option("--radius", type=LENGTH, required=True, help="Radius r of the puck in m.")
 @click.option(
-    "--height", type=NUMBER, help="Height h in m, if known: the tilt then follows from f."
+    "--height", type=LENGTH, help="Height h in m, if known: the tilt then follows from f."
 )
 @click.option("--friction", type=NUMBER, help="Coulomb coefficient f, if known.")
-@click.option("--mass", type=NUMBER, help="Mass in kg (for energies of what is simulated later).")
+@click.option(
+    "--mass", type=Number("kg"), help="Mass in kg (for energies of what is simulated later)."
+)
 @click.option("--gravity", type=NUMBER, help="Gravity in m/s^2.  [default: 9.80665]")
 @body_options()
 @click.option(
@@ -67,8 +72,21 @@ from puck_tables.errors import InputError
     metavar="PLACE[,ANGLE]",
     help="Standard deviation of places in m and angles in rad.  [default: that of the residuals]",
 )
-@click.option("--since", type=NUMBER, help="Start of the free motion, in s of the track.")
-@click.option("--until", type=NUMBER, help="End of the free motion, in s of the track.")
+@click.option(
+    "--since",
+    type=TIME,
+    help="Start of the free motion, in s of the track: no frame after it is left out at the start.",
+)
+@click.option(
+    "--until",
+    type=TIME,
+    help="End of the free motion, in s of the track: no frame before it is left out at the end.",
+)
+@click.option(
+    "--keep-all",
+    is_flag=True,
+    help="All frames are of free motion: none is left out where something seems to touch the puck.",
+)
 @click.option(
     "--impacts",
     is_flag=True,
@@ -134,7 +152,7 @@ def fit(
     friction: float | None, mass: float | None, gravity: float | None, pressure: str,
     gyration: float | None, free: str | None, fix: tuple[str, ...], prior: tuple[str, ...],
     bound: tuple[str, ...], start: tuple[str, ...], noise: str | None, since: float | None,
-    until: float | None, impacts: bool, wall: tuple[str, ...], jitter: str | None,
+    until: float | None, keep_all: bool, impacts: bool, wall: tuple[str, ...], jitter: str | None,
     rows: str | None, slip_speeds: str | None, between: str, laws: str | None,
     hold_out: str | None, explain: bool, as_json: bool,
     output: Path | None, plot: Path | None, overwrite: bool,
@@ -189,7 +207,7 @@ def fit(
             bounds=_pairs(bound, "--bound", "LOW:HIGH"),
             start={n: _number(v, "--start", n) for n, v in _named(start, "--start").items()},
             noise=_noise(noise), since=-math.inf if since is None else since,
-            until=math.inf if until is None else until,
+            until=math.inf if until is None else until, keep_all=keep_all,
             jitter=_jitter(jitter), rows=None if rows is None else _point(rows, "--rows"),
             impacts=impacts, walls=[_wall(one) for one in wall],
             slip_speeds=None if slip_speeds is None
@@ -236,9 +254,19 @@ def _named(given: tuple[str, ...], option: str) -> dict[str, str]:
     return found
 
 
+_UNITS = {
+    "place": "m", "radius": "m", "height": "m", "launch_x": "m", "launch_y": "m", "angle": "rad",
+    "launch_angle": "rad", "launch_vx": "m/s", "launch_vy": "m/s", "launch_spin": "rad/s",
+    "u": "m/s",
+}  # fmt: skip
+
+
 def _number(text: str, option: str, name: str) -> float:
+    from puck_tables._core.units import quantity
+
     try:
-        number = float(text)
+        measured = quantity(text, _UNITS.get(name, ""))
+        number = float(text) if measured is None else measured
     except ValueError:
         number = math.nan
     if not math.isfinite(number):
@@ -268,13 +296,18 @@ def _noise(text: str | None) -> tuple[float, float | None] | None:
     parts = text.split(",")
     if len(parts) > 2:
         raise InputError(f"--noise {text} must be PLACE or PLACE,ANGLE, like 0.0003,0.005")
-    numbers = [_number(part, "--noise", "sigma") for part in parts]
+    numbers = [
+        _number(part, "--noise", name)
+        for part, name in zip(parts, ("place", "angle"), strict=False)
+    ]
     return numbers[0], numbers[1] if len(numbers) == 2 else None
 
 
 def _jitter(text: str | None) -> float | str | None:
+    from puck_tables._core.units import quantity
+
     try:
-        return text if text is None else float(text)
+        return text if text is None else quantity(text, "s") or float(text)
     except ValueError:
         return text
 
@@ -289,7 +322,7 @@ def _point(text: str, option: str) -> tuple[float, float]:
     parts = text.split(",")
     if len(parts) != 2:
         raise InputError(f"{option}: '{text}' must be two numbers in m with a comma, like 0.1,0.5")
-    return _number(parts[0], option, "m"), _number(parts[1], option, "m")
+    return _number(parts[0], option, "place"), _number(parts[1], option, "place")
 
 
 def _wall(text: str) -> tuple[tuple[float, float], tuple[float, float]]:

@@ -35,7 +35,7 @@ def report(found: Fit) -> str:
             f"{_errors(v['launch_x'], v['launch_y'])}",
             f"{'  velocity':<15} ({launch.velocity[0]:.6g}, {launch.velocity[1]:.6g}) m/s "
             f"{_errors(v['launch_vx'], v['launch_vy'])}",
-            f"{'  spin':<15} {_shown(w)}",
+            f"{'  spin':<15} {_spin(found, w)}",
         ]
     for one in found.impacts:
         degrees = math.degrees(one.wall) % 360.0
@@ -97,7 +97,7 @@ def _cut_off(found: Fit) -> list[str]:
 
 def _plainly(found: Fit) -> str:
     """What was found and what was not, in sentences."""
-    sentences = []
+    sentences = [f"{found.cut_off}."] if found.cut_off else []
     friction, tilt = found.numbers["friction"], found.numbers["delta"]
     if friction.determined:
         sentences.append(
@@ -118,6 +118,7 @@ def _plainly(found: Fit) -> str:
         sentences.append(
             "So this may be no freely sliding puck, or not all of its motion: look at --plot, and "
             "give --since and --until if a hand or a wall touches it."
+            + ("" if found.misread else " Or speed changes its friction, or air slows it, too.")
             + (f" {said}" if angled and not found.misread else "")
         )
     return "\n".join(sentences)
@@ -158,6 +159,15 @@ def _shown(number: Number) -> str:
     if math.isfinite(number.low) and math.isfinite(number.high):
         interval = f"   95 %: {number.low:.6g} to {number.high:.6g}"
     return f"{_rounded(number)}{interval}{how}{follows}"
+
+
+def _spin(found: Fit, spin: Number) -> str:
+    """A launch spin, as it is taken where whole turns from frame to frame are open."""
+    films = found.estimate.problem.films
+    half = min((math.pi / film.usual_step for film in films if film.angle is not None), default=0.0)
+    if spin.determined or abs(spin.value) > half:
+        return _shown(spin)
+    return f"{spin.value:.5g} rad/s if it turns less than half a turn a frame; not determined"
 
 
 def _correlations(found: Fit) -> list[str]:

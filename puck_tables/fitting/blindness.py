@@ -16,6 +16,7 @@ from puck_tables.fitting.problem import PRIOR, Problem
 from puck_tables.fitting.seen import Seen
 
 _MEMBER = 0.2
+_TOLD_ALL = 2  # other motions that are told in full
 _TOLD = 0.1  # of what is plausible: an error that says something
 _BETTER = 0.2  # times the error of the film that there is
 _SPINNING = 1.0  # rω/v of a launch with more spin
@@ -40,7 +41,9 @@ def blind_spots(
     """
     sentences = []
     marked = any(film.angle is not None for film in found.problem.films)
-    sentences += [rival_sentence(rival, marked) for rival in rivals]
+    sentences += [rival_sentence(rival, marked) for rival in rivals[:_TOLD_ALL]]
+    if others := rivals[_TOLD_ALL:]:
+        sentences.append(f"{len(others)} more motions, of other spins still, fit about as well.")
     sentences += [mirror_sentence(found.problem.films[n].name) for n in unsigned]
     seen: set[frozenset[int]] = set()
     covered = {found.problem.names[k][1] for k in np.flatnonzero(certainty.undetermined)}
@@ -71,7 +74,10 @@ def rival_sentence(rival: Rival, marked: bool) -> str:
     words = ", ".join(
         f"{name.replace('_', ' ')} {value:.4g}" for name, value in rival.numbers.items()
     )
-    close = "as well" if rival.rise < Z95**2 else f"nearly as well (chi^2 + {rival.rise:.2g})"
+    close = "as well"
+    if abs(rival.rise) > Z95**2:
+        nearly = "nearly as well" if rival.rise > 0.0 else "a little better"
+        close = f"{nearly} (chi^2 {'+' if rival.rise > 0.0 else '-'} {abs(rival.rise):.2g})"
     return (
         f"Another motion, of another spin, fits {close}: {words}. What would tell: {more}, or its "
         "launch spin, if it is known (launch_spin)."

@@ -9,7 +9,7 @@ a likelihood is no parabola the 95 % interval is that of the profile likelihood.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -30,43 +30,70 @@ _HARDLY = 0.05
 _ON_BOUND = 1e-4  # of a bound, or of an error: an unknown lies on it
 _OFF_BOUND = 0.5  # errors from a bound: it does not, however small numbers are
 _ROUNDING = 1e-6
+_PARTS = (2, 4, 8)
 
 
 @dataclass(frozen=True, eq=False)
 class Certainty:
     """Of the unknowns of an estimate.
 
-    ``covariance`` (m, m); ``blind``: directions that are not seen, each a component for every
-    unknown in units of its plausible range; ``undetermined`` (m,): unknowns that one of them moves;
-    ``plausible`` (m,); ``quantile``: half a 95 % interval in standard errors, that of Student's t
-    where the noise is that of the residuals; ``pinned`` (m,): −1 for an unknown on the lower end of
-    its range, 1 on the upper: χ² has no minimum there, so that it has no standard error (NaN).
+    ``covariance`` (m, m) where the noise is as it was found; ``blind``: directions that are not
+    seen, each a component for every unknown in units of its plausible range; ``undetermined`` (m,):
+    unknowns that one of them moves; ``plausible`` (m,); ``degrees``: how many residuals told the
+    noise, infinite where it is known; ``pinned`` (m,): −1 for an unknown on the lower end of its
+    range, 1 on the upper: χ² has no minimum there, so that it has no standard error (NaN);
+    ``widened``: whether the covariance is that of a model that does not fit.
     """
 
     covariance: FloatArray
     blind: FloatArray
     undetermined: tuple[bool, ...]
     plausible: FloatArray
-    quantile: float = Z95
+    degrees: float = math.inf
     pinned: tuple[int, ...] = ()
+    widened: bool = False
+
+    def lost(self) -> Certainty:
+        """The same where nothing is seen: no motion comes near the tracks."""
+        count = self.plausible.size
+        return replace(self, blind=np.eye(count), undetermined=(True,) * count)
+
+    @property
+    def quantile(self) -> float:
+        """Half a 95 % interval where the noise is as it was found: that of Student's t."""
+        return quantile_of(self.degrees)
+
+    @property
+    def spread(self) -> float:
+        """A standard deviation of Student's t: by so much few residuals make errors larger."""
+        if self.degrees == math.inf:
+            return 1.0
+        return math.sqrt(self.degrees / max(self.degrees - 2.0, 0.2))
+
+    @property
+    def reach(self) -> float:
+        """Half a 95 % interval in standard errors."""
+        return self.quantile / self.spread
 
     def error_of(self, slope: FloatArray, plausible: float) -> float:
         """The standard error of what changes with the unknowns by ``slope`` (m,).
 
-        Infinite where a direction that is not seen changes it by a fifth of what is plausible, NaN
-        where an unknown on the end of its range does.
+        Infinite where a direction that is not seen changes it by a fifth of what is plausible.
         """
         by_each = slope * self.plausible
         if np.abs(self.blind @ by_each).max(initial=0.0) > _MEMBER * plausible:
             return math.inf
-        if np.abs(by_each[np.flatnonzero(self.pinned)]).max(initial=0.0) > _ROUNDING * plausible:
-            return math.nan
-        return math.sqrt(max(float(slope @ self.covariance @ slope), 0.0))
+        return self.spread * math.sqrt(max(float(slope @ self.covariance @ slope), 0.0))
+
+    def follows_end(self, slope: FloatArray, plausible: float) -> bool:
+        """Whether what changes by ``slope`` (m,) follows from what is on the end of its range."""
+        by_each = np.abs(slope * self.plausible)[np.flatnonzero(self.pinned)]
+        return bool(by_each.max(initial=0.0) > _ROUNDING * plausible)
 
     @property
     def errors(self) -> FloatArray:
         """Standard errors (m,), infinite of what is not determined, NaN on the end of a range."""
-        found = np.sqrt(np.diag(self.covariance))
+        found = self.spread * np.sqrt(np.diag(self.covariance))
         found[np.flatnonzero(self.pinned)] = np.nan
         return np.where(self.undetermined, np.inf, found)
 
@@ -75,7 +102,7 @@ class Certainty:
         """Correlations (m, m), NaN with what is not determined."""
         root = self.errors
         with np.errstate(invalid="ignore"):
-            found: FloatArray = self.covariance / np.outer(root, root)
+            found: FloatArray = self.spread**2 * self.covariance / np.outer(root, root)
         found[~np.isfinite(root), :] = found[:, ~np.isfinite(root)] = np.nan
         return found
 
@@ -83,38 +110,45 @@ class Certainty:
 class Rival(NamedTuple):
     """Another summit.
 
-    ``estimate``: there; ``certainty``: how well it would tell its unknowns; ``rise``: of χ².
+    ``estimate``: there; ``certainty``: how well it would tell its unknowns; ``rise``: of χ²;
+    ``tracks``: those that spin otherwise.
     """
 
     estimate: Estimate
     certainty: Certainty
     rise: float
+    tracks: tuple[int, ...]
 
     @property
     def numbers(self) -> Found:
-        """The numbers of the puck there, and the launch spin of a track alone."""
-        names, x = self.estimate.problem.names, self.estimate.x
-        alone = len(self.estimate.problem.films) == 1
-        return {
-            name: float(x[k]) for k, (track, name) in enumerate(names)
-            if track == -1 or (alone and name == "launch_spin")
-        }  # fmt: skip
+        """The numbers of the puck there, and the launch spins of tracks that spin otherwise."""
+        problem, x = self.estimate.problem, self.estimate.x
+        spins = problem.launches(x)[:, 4]
+        alone = len(problem.films) == 1
+        return problem.found(x) | {
+            "launch_spin" if alone else f"launch_spin of {problem.films[n].name}": float(spins[n])
+            for n in self.tracks
+        }
 
 
-def quantile_of(degrees: int) -> float:
-    """Half a 95 % interval in standard errors that so many degrees of freedom told.
+def quantile_of(degrees: float) -> float:
+    """Half a 95 % interval where so many degrees of freedom told the noise.
 
     Examples
     --------
     >>> round(quantile_of(10), 3), round(quantile_of(10**6), 3)
     (2.228, 1.96)
     """
+    if degrees == math.inf:
+        return Z95
     from scipy.special import stdtrit
 
     return float(stdtrit(max(degrees, 1), 0.975))
 
 
-def certainty_of(jacobian: FloatArray, plausible: FloatArray, quantile: float = Z95) -> Certainty:
+def certainty_of(
+    jacobian: FloatArray, plausible: FloatArray, degrees: float = math.inf
+) -> Certainty:
     """How well unknowns are known, from a Jacobian (n, m) in units of the noise.
 
     Examples
@@ -135,7 +169,7 @@ def certainty_of(jacobian: FloatArray, plausible: FloatArray, quantile: float = 
     lost = np.abs(blind).max(axis=0, initial=0.0) > _MEMBER
     return Certainty(
         scaled * np.outer(plausible, plausible), blind, tuple(lost.tolist()), plausible,
-        quantile,
+        degrees,
     )  # fmt: skip
 
 
@@ -150,6 +184,29 @@ def pinned_of(found: Estimate, certainty: Certainty) -> tuple[int, ...]:
         width = np.minimum(_ON_BOUND * np.maximum(np.abs(end), 1.0), off)
         on.append(seen & np.isfinite(end) & (np.abs(found.x - end) <= np.maximum(near, width)))
     return tuple(np.where(on[0], -1, on[1].astype(int)).tolist())
+
+
+def widened(found: Estimate, certainty: Certainty) -> Certainty:
+    """The same of a model that does not fit: what is left of it is no independent noise.
+
+    To the covariance is added what leaving out a part of the frames at a time does to the unknowns,
+    as the jackknife counts it: of halves, of quarters and of eighths.
+    """
+    problem, plausible = found.problem, certainty.plausible
+    slopes, rows = found.jacobian * plausible * found.kept[:, None], found.residuals * found.kept
+    slopes[:, np.flatnonzero(certainty.pinned)] = 0.0
+    square = slopes.T @ slopes + np.eye(plausible.size)
+    covariance = certainty.covariance
+    for count in _PARTS:
+        changes = []
+        for film in problem.each():
+            parts = zip(*(np.array_split(np.r_[one], count) for one in film), strict=True)
+            for frames in (np.concatenate(part) for part in parts):
+                mine = slopes[frames]
+                changes.append(np.linalg.solve(square - mine.T @ mine, mine.T @ rows[frames]))
+        each = (np.array(changes) - np.mean(changes, axis=0)) * plausible
+        covariance = covariance + (len(each) - 1.0) / len(each) * each.T @ each
+    return replace(certainty, covariance=covariance, widened=True)
 
 
 @dataclass(frozen=True)
@@ -174,6 +231,9 @@ def interval_of(found: Estimate, certainty: Certainty, k: int) -> Interval:
     low, high = (float(ends[k]) for ends in found.problem.limits)
     if certainty.undetermined[k]:
         return Interval(low, high, False)
+    if certainty.widened and not certainty.pinned[k]:
+        half = certainty.quantile * error
+        return Interval(max(x - half, low), min(x + half, high), False)
     ends, profiled = [], False
     for side, limit in ((-1.0, low), (1.0, high)):
         end, searched = _end(

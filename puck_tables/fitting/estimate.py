@@ -17,6 +17,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.compact import compact
 from puck_tables.fitting.least_squares import ROBUST, SQUARES, minimise
 from puck_tables.fitting.problem import ANGLE, PLACE, UNSEEN, Problem
+from puck_tables.fitting.strays import strays
 from puck_tables.fitting.timing import Known, likeliest
 
 FARTHEST = 4.0  # standard deviations of a frame that counts
@@ -64,7 +65,9 @@ class Estimate:
         return float(1.0 - self.kept[seen].mean())
 
 
-def estimate(problem: Problem, start: FloatArray, noise_known: Known) -> Estimate:
+def estimate(
+    problem: Problem, start: FloatArray, noise_known: Known, strict: bool = False
+) -> Estimate:
     """Fit, sort out, and fit again until the same frames are left out.
 
     Parameters
@@ -73,6 +76,7 @@ def estimate(problem: Problem, start: FloatArray, noise_known: Known) -> Estimat
         those of several tracks may have a mean beyond
     noise_known : whether the noise of places, angles and time stamps was given; else it is that of
         the residuals in the end
+    strict : whether only strays are left out, and not frames that are off together
     """
     x = np.clip(start, *problem.limits)
     problem = problem.with_noise(problem.noise, x)
@@ -80,7 +84,7 @@ def estimate(problem: Problem, start: FloatArray, noise_known: Known) -> Estimat
     if problem.usual(rows) > _AWAY * _MEDIAN:
         x, _ = minimise(problem, x, ROBUST)
         rows = problem.residuals(x)
-    kept = _kept(problem, rows)
+    kept = _kept(problem, rows, strict)
     for _ in range(_ROUNDS):
         x, _ = minimise(problem, x, SQUARES, kept)
         rows, slopes = problem.residuals_and_jacobian(x)
@@ -91,7 +95,7 @@ def estimate(problem: Problem, start: FloatArray, noise_known: Known) -> Estimat
         change = max(change, abs(jitter - problem.jitter) / (jitter or 1.0))
         problem = problem.with_noise(noise, x, kept, jitter)
         rows = problem.residuals(x)
-        again = _kept(problem, rows)
+        again = _kept(problem, rows, strict)
         if change < _SETTLED and np.array_equal(again, kept):
             break
         kept = again
@@ -99,27 +103,38 @@ def estimate(problem: Problem, start: FloatArray, noise_known: Known) -> Estimat
     return Estimate(problem, x, kept, rows, problem.jacobian(x))
 
 
-def _kept(problem: Problem, rows: FloatArray) -> npt.NDArray[np.bool_]:
+def only_strays(found: Estimate) -> bool:
+    """Whether all frames that an estimate leaves out are strays."""
+    return np.array_equal(found.kept, _kept(found.problem, found.residuals, True))
+
+
+def _kept(problem: Problem, rows: FloatArray, strict: bool) -> npt.NDArray[np.bool_]:
     """Residuals of frames that are no outliers; a place counts as a whole."""
     kept: npt.NDArray[np.bool_] = problem.kinds != UNSEEN
     if rows.size < _FEW * len(problem.names):  # too few to tell what is one
         return kept
     each = problem.each()
-    places = [rows[x] ** 2 + rows[y] ** 2 for x, y, _ in each]
-    turns = [rows[turn] ** 2 for _, _, turn in each]
+    places = [np.stack([rows[x], rows[y]], axis=1) for x, y, _ in each]
+    turns = [rows[turn, None] for _, _, turn in each]
     # where most are far off no frame is an outlier, but the noise is larger or the model wrong
-    wide_place = _wide(places, _MEDIAN_PLACE)
-    wide_turn = _wide(turns, _MEDIAN**2)
+    most_place = FARTHEST_PLACE * _wide(places, _MEDIAN_PLACE)
+    most_turn = FARTHEST**2 * _wide(turns, _MEDIAN**2)
     for (x, y, turn), place, angle in zip(each, places, turns, strict=True):
-        kept[x] = kept[y] = place <= FARTHEST_PLACE * wide_place
-        kept[turn] = angle <= FARTHEST**2 * wide_turn
+        kept[x] = kept[y] = ~_out(place, most_place, strict)
+        kept[turn] = ~_out(angle, most_turn, strict)
     kept &= problem.kinds != UNSEEN
     return kept
 
 
-def _wide(squares: list[FloatArray], usual: float) -> float:
+def _out(off: FloatArray, most: float, strict: bool) -> npt.NDArray[np.bool_]:
+    """Frames whose residuals (n, k) are too large."""
+    far: npt.NDArray[np.bool_] = (off**2).sum(axis=1) > most
+    return strays(off, far, most) if strict else far
+
+
+def _wide(off: list[FloatArray], usual: float) -> float:
     """How much larger than the noise most squares are, 1 at least."""
-    every = np.concatenate(squares)
+    every = (np.concatenate(off) ** 2).sum(axis=1)
     return max(1.0, float(np.median(every)) / usual / _WIDE) if every.size else 1.0
 
 
@@ -132,15 +147,34 @@ def _noise(
         return problem.noise, problem.jitter
     if problem.jitter > 0.0 or not known.jitter:
         return _jittery(problem, x, kept, known)
-    few = compact(problem, rows, slopes, kept)
-    q, _ = np.linalg.qr(few.slopes)
     found = list(problem.noise)
-    for kind in (PLACE, ANGLE):
-        mine = problem.kinds[kept] == kind
-        free = float(mine.sum() - np.sum(q[few.kinds == kind] ** 2))
+    for kind, free in enumerate(_freedoms(problem, rows, slopes, kept)):
         if not known[kind] and free > 1.0:
+            mine = problem.kinds[kept] == kind
             found[kind] *= math.sqrt(float(np.sum(rows[kept][mine] ** 2)) / free)
     return (found[0], found[1]), problem.jitter
+
+
+def _freedoms(
+    problem: Problem, rows: FloatArray, slopes: FloatArray, kept: npt.NDArray[np.bool_]
+) -> list[float]:
+    """Residuals of places, and of angles, less what the unknowns take of them."""
+    few = compact(problem, rows, slopes, kept)
+    q, _ = np.linalg.qr(few.slopes)
+    return [
+        float((problem.kinds[kept] == kind).sum() - np.sum(q[few.kinds == kind] ** 2))
+        for kind in (PLACE, ANGLE)
+    ]
+
+
+def freedom(found: Estimate, known: Known) -> float:
+    """Of the kinds of residuals that told their noise, how many the fewest are; inf if none did."""
+    every = _freedoms(found.problem, found.residuals, found.jacobian, found.kept)
+    told = [
+        free for kind, free in enumerate(every)
+        if not known[kind] and (found.problem.kinds[found.kept] == kind).any()
+    ]  # fmt: skip
+    return min(told, default=math.inf)
 
 
 def _at_least(

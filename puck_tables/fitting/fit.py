@@ -10,11 +10,18 @@ from typing import Any
 import numpy as np
 
 from puck_tables._core.real import instance, real
+from puck_tables.errors import InputError
 from puck_tables.film.track import Track
 from puck_tables.fitting.asked import Asked
 from puck_tables.fitting.blindness import blind_spots
-from puck_tables.fitting.certainty import Z95, Certainty, certainty_of, pinned_of, quantile_of
-from puck_tables.fitting.estimate import Estimate, estimate
+from puck_tables.fitting.by_speed import over_speeds
+from puck_tables.fitting.certainty import (
+    Certainty,
+    certainty_of,
+    pinned_of,
+    widened,
+)
+from puck_tables.fitting.estimate import Estimate, estimate, freedom
 from puck_tables.fitting.fitted import fitted
 from puck_tables.fitting.given import (
     begin_noise,
@@ -33,20 +40,21 @@ from puck_tables.fitting.held_out import HeldOut, predicted, split
 from puck_tables.fitting.impacts import Piece, cut
 from puck_tables.fitting.joining import Line
 from puck_tables.fitting.laws import LawScore, chi2_under, compare, variants_of
-from puck_tables.fitting.least_squares import LOOSE, minimise
 from puck_tables.fitting.misread import misread
 from puck_tables.fitting.numbers import numbers_of, plausible_for
 from puck_tables.fitting.outcome import Fit
-from puck_tables.fitting.parameters import NODES
 from puck_tables.fitting.problem import Problem
-from puck_tables.fitting.residual_tests import drift, runs
-from puck_tables.fitting.rivals import mirrored, rivals_of
+from puck_tables.fitting.residual_tests import drift, excess_of, misfits, no_answer, runs
+from puck_tables.fitting.rivals import mirrored, rivals_of, taken
 from puck_tables.fitting.seen import Seen, noise_of
 from puck_tables.fitting.tied import Impact, impacts_apart, impacts_joined, not_met, tie
 from puck_tables.fitting.timing import Known
+from puck_tables.fitting.unspun import without_spin
 from puck_tables.puck import Puck
 
 Progress = Callable[[int, int], None]
+_JUDGED = 2.5  # degrees of freedom that tell the noise of a kind
+_MUCH = 0.1  # of the frames, left out at the ends
 _JITTER = 0.3  # times the noise of a place over the speed: to begin with
 
 
@@ -62,6 +70,7 @@ def fit(
     noise: tuple[float | None, float | None] | None = None,
     since: float = -math.inf,
     until: float = math.inf,
+    keep_all: bool = False,
     jitter: float | str | None = None,
     rows: tuple[float, float] | None = None,
     impacts: bool = False,
@@ -78,7 +87,8 @@ def fit(
     ----------
     tracks : Track, or several of one puck
         Of free motion: slid, not rolled or pushed, until it rests or the film ends.  Frames at
-        either end that are none of it are left out, if they are the smaller part.
+        either end before or after something touches the puck are left out, if they are the smaller
+        part: velocity or acceleration jump there, or it gets faster.
     puck : Puck
         What is known of it: its radius, and whatever ``free`` does not name.
     free : names, optional
@@ -93,6 +103,8 @@ def fit(
     noise : (m, rad), standard deviations of places and angles
         None for either: that of the residuals.
     since, until : s, of the free motion, as the tracks count time
+        No frame is left out at an end that is given.
+    keep_all : whether all frames are of free motion: none is left out at the ends
     jitter : s, standard deviation of time stamps; 'find': that of the residuals along the motion
     rows : y in m of the first and of the last line of the picture, of a rolling shutter
         Frames are then later by ``readout`` (s, a number that is found) times how far down they
@@ -148,7 +160,7 @@ def fit(
     (0.15, 0.025)
     """
     instance("puck", puck, Puck)
-    films = films_of(tracks, since, until, rows_given(rows), puck.radius)
+    films = films_of(tracks, since, until, keep_all, rows_given(rows), puck.radius)
     lines = walls_given(walls)
     impacts = impacts or bool(lines)
     asked = Asked.of(
@@ -186,18 +198,27 @@ def fit(
     constant = found
     if speeds:
         refuse_faster(speeds, found)
-        found = _over_speeds(found, speeds, between, known)
+        found = over_speeds(found, speeds, between, known)
         refuse_opening(found)
     say(1, steps)
     certainty = _certainty(found, known)
     refuse_wobbling(found, certainty)
-    rivals = rivals_of(found, certainty)
-    lowest = min(rivals, key=lambda one: one.rise, default=None)
-    if lowest is not None and lowest.rise < 0.0:
-        found = replace(estimate(found.problem, lowest.estimate.x, known), minima=found.minima)
+    excess = max(excess_of(found, judged), 1.0)
+    rivals = rivals_of(found, certainty, excess)
+    other = taken(found, rivals, excess)
+    if other is not None:
+        found = replace(estimate(found.problem, other.estimate.x, known), minima=found.minima)
         certainty = _certainty(found, known)
-        rivals = rivals_of(found, certainty)
+        rivals = rivals_of(found, certainty, max(excess_of(found, judged), 1.0))
     unsigned = mirrored(found, certainty)
+    if misfits(found, known, judged):
+        certainty = widened(found, certainty)
+    # bounds that the caller gives may keep every motion away: that is said of the bound
+    held_off = any(
+        found.problem.names[k][1] in asked.bounds for k in np.flatnonzero(certainty.pinned)
+    )
+    nowhere = "" if held_off else no_answer(found, known, judged)
+    seen, certainty = certainty, certainty.lost() if nowhere else certainty
     numbers, launches = numbers_of(found, certainty, rivals, unsigned)
     lost = tuple(n for n in found.problem.asked.free if not numbers[n].determined)
     scores: tuple[LawScore, ...] = ()
@@ -220,6 +241,7 @@ def fit(
     elif impacts:
         names = [film.name for film in uncut]
         hits = impacts_apart(found, pieces, certainty, names)
+    left_out = _left_out((*films, *uncut), found.problem.films)
     result = Fit(
         given=puck,
         numbers=numbers,
@@ -233,8 +255,14 @@ def fit(
         outliers=found.outliers,
         runs=runs(found),
         drift=drift(found),
-        left_out=_left_out((*films, *uncut), found.problem.films),
-        blind=blind_spots(found, certainty, lost, rivals, unsigned),
+        left_out=left_out,
+        cut_off=_cut_off(slides, problem, known, left_out),
+        blind=(nowhere,)
+        if nowhere
+        else (
+            *without_spin(found, numbers, known),
+            *blind_spots(found, seen, lost, rivals, unsigned),
+        ),
         laws=scores,
         held_out=predictions,
         impacts=hits,
@@ -250,23 +278,6 @@ def fit(
     return result
 
 
-def _over_speeds(
-    found: Estimate, speeds: tuple[float, ...], between: str, known: Known
-) -> Estimate:
-    """The estimate with a friction coefficient for each slip speed, from that of one for all."""
-    problem = found.problem
-    asked = problem.asked.over(speeds, between)
-    numbers = problem.found(found.x)
-    numbers.update({name: numbers["friction"] for name in asked.free if name in NODES})
-    moved = replace(problem, asked=asked, weights=())
-    walls = problem.found_walls(found.x)
-    start = moved.unknowns(numbers, problem.launches(found.x), walls)
-    # where f is the same at all speeds the slopes of a cubic jump: lines lead away from there
-    lines = replace(moved, asked=problem.asked.over(speeds, "linear"))
-    start, _ = minimise(lines, start, LOOSE)
-    return estimate(moved, start, known)
-
-
 def _begin_jitter(problem: Problem, noise: float, stamps: float | None) -> float:
     """The jitter as given, or a value to begin with, s."""
     if stamps is not None:
@@ -278,11 +289,14 @@ def _begin_jitter(problem: Problem, noise: float, stamps: float | None) -> float
 
 def _certainty(found: Estimate, known: Known) -> Certainty:
     """How well the unknowns of an estimate are known."""
-    angled = any(film.angle is not None for film in found.problem.films)
-    given = known.place and (known.angle or not angled)
-    quantile = Z95 if given else quantile_of(found.degrees)
+    degrees = freedom(found, known)
+    if degrees < _JUDGED:
+        raise InputError(
+            f"{found.residuals.size} observations of {found.x.size} unknowns are too few to judge "
+            "the noise of each kind by: give the noise, or more frames"
+        )
     plausible = plausible_for(found.problem, found.x)
-    certainty = certainty_of(found.jacobian[found.kept], plausible, quantile)
+    certainty = certainty_of(found.jacobian[found.kept], plausible, degrees)
     return replace(certainty, pinned=pinned_of(found, certainty))
 
 
@@ -298,6 +312,31 @@ def _left_out(
         )
         for left in after
     )  # fmt: skip
+
+
+def _cut_off(
+    found: Estimate, problem: Problem, known: Known, left_out: tuple[tuple[str, int, int], ...]
+) -> str:
+    """A sentence where many frames are left out at the ends, and what they would change."""
+    said = [
+        f"{first} frames at the start and {last} at the end of {name}"
+        for (name, first, last), film in zip(left_out, found.problem.films, strict=False)
+        if first + last > _MUCH * (first + last + film.time.size)
+    ]
+    if not said:
+        return ""
+    films = tuple(replace(film, cuttable=(False, False)) for film in problem.films)
+    kept = fitted(problem.with_films(films), known, refit=True)
+    numbers = ", ".join(
+        f"{name} {value:.4g}" for name, value in kept.problem.found(kept.x).items()
+    )  # fmt: skip
+    more = kept.problem.noise[0] * math.sqrt(kept.chi2 / max(kept.degrees, 1))
+    more /= found.problem.noise[0] * math.sqrt(found.chi2 / max(found.degrees, 1)) or 1.0
+    return (
+        f"{' and '.join(said)} are left out: something seems to touch the puck there. With all "
+        f"frames (--keep-all, keep_all=True) it would be {numbers or 'as known'}, residuals "
+        f"{more:.3g} times as large"
+    )
 
 
 def _held(hold_out: Any) -> float | tuple[str, ...]:

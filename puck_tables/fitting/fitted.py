@@ -9,10 +9,11 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
 from puck_tables.fitting.certainty import certainty_of
-from puck_tables.fitting.estimate import Estimate, estimate
-from puck_tables.fitting.free_motion import is_clean, is_hopeless, trimmed, without_ends
+from puck_tables.fitting.estimate import Estimate, estimate, only_strays
+from puck_tables.fitting.free_motion import is_clean, trimmed, without_ends
 from puck_tables.fitting.numbers import plausible_for
 from puck_tables.fitting.problem import ANGLE, Problem
+from puck_tables.fitting.residual_tests import NO_PATTERN, NOISY
 from puck_tables.fitting.starts import minima_of
 from puck_tables.fitting.timing import Known
 
@@ -53,11 +54,15 @@ def fitted(problem: Problem, known: Known, refit: bool) -> Estimate:
     if len(parts) == 1:
         found = replace(found, minima=tuple(minima[0]))
     found = _lifted(found, known)
-    if refit:
-        found = _trimmed(found, problem, known)
-        if len(parts) == 1 and is_hopeless(found):
-            return _of_a_part(problem, known) or found
-    return found
+    if not refit:
+        return found
+    found = _trimmed(found, problem, known)
+    if len(parts) == 1 and not is_clean(found, NOISY, NO_PATTERN):
+        found = _of_a_part(problem, known) or found
+    if only_strays(found):
+        return found
+    # frames that are off together are good ones: what the model cannot follow is not hidden
+    return replace(estimate(found.problem, found.x, known, strict=True), minima=found.minima)
 
 
 def _with_room(problem: Problem) -> Problem:
@@ -91,7 +96,7 @@ def _trimmed(found: Estimate, problem: Problem, known: Known) -> Estimate:
     What they did to the fit may have hidden more of them.
     """
     for _ in range(_TRIMS):
-        films = trimmed(found)
+        films = trimmed(found, problem.films)
         lost = (2 * part.time.size < film.time.size
                 for part, film in zip(films, problem.films, strict=True))  # fmt: skip
         if films == found.problem.films or any(lost):
@@ -103,7 +108,7 @@ def _trimmed(found: Estimate, problem: Problem, known: Known) -> Estimate:
 def _of_a_part(problem: Problem, known: Known) -> Estimate | None:
     """The estimate of a track without a hand or a wall at its end; None if that is not the matter.
 
-    They led the fit of all frames so far away that none of these was seen to be foreign.
+    They may lead the fit of all frames so far away that none of these is seen to be foreign.
     """
     for part in without_ends(problem.films[0]):
         found = fitted(problem.with_films((part,)), known, refit=False)

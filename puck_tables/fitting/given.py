@@ -34,13 +34,14 @@ _TIPS = 4.0  # δ
 
 
 def films_of(
-    tracks: Any, since: float, until: float, rows: tuple[float, float] | None, radius: float
-) -> tuple[Seen, ...]:
+    tracks: Any, since: float, until: float, keep_all: bool, rows: tuple[float, float] | None,
+    radius: float,
+) -> tuple[Seen, ...]:  # fmt: skip
     """The tracks, checked, with different names.
 
-    ``radius`` m: of the puck, two of which are never nearer than twice that.
-
-    ``rows``: y in m of the first and the last line of the picture.
+    ``keep_all``: whether all their frames are of free motion; ``radius`` m: of the puck, two of
+    which are never nearer than twice that; ``rows``: y in m of the first and the last line of the
+    picture.
 
     Raises
     ------
@@ -58,7 +59,7 @@ def films_of(
     names = [track.name for track in listed]
     films = []
     for n, track in enumerate(listed):
-        film = seen_in(track, since, until)
+        film = seen_in(track, since, until, keep_all)
         if names.count(track.name) > 1:
             film = replace(film, name=f"{track.name} {n + 1}")
         if rows is not None:

@@ -106,7 +106,7 @@ def predicted(
         if film.angle is not None:
             chosen[turn] = after[np.isfinite(film.angle)]
     names = tuple(film.name for film, after in zip(films, later, strict=True) if after.any())
-    told = math.inf if certainty.quantile == Z95 else part.degrees
+    told = math.inf if certainty.degrees == math.inf else part.degrees
     return HeldOut(
         names, z[chosen & (whole.kinds == PLACE)], z[chosen & (whole.kinds == ANGLE)],
         _by_chance(slopes[chosen], by_fit[chosen], certainty.covariance, told),

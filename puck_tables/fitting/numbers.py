@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -127,7 +127,7 @@ def numbers_of(
         interval, error = interval_of(found, certainty, k), float(errors[k])
         width = interval.high - interval.low
         if interval.profiled:  # the likelihood is no parabola: half of its width
-            error = max(error, width / (2.0 * certainty.quantile))
+            error = max(error, width / (2.0 * certainty.reach))
         low, high = interval.low, interval.high
         for rival in rivals:
             there = interval_of(rival.estimate, rival.certainty, k)
@@ -137,7 +137,7 @@ def numbers_of(
             ):
                 error = math.inf
             low, high = min(low, there.low), max(high, there.high)
-            error = max(error, (high - low) / (2.0 * certainty.quantile))
+            error = max(error, (high - low) / (2.0 * certainty.reach))
         width = high - low
         least, largest = (float(limit[k]) for limit in problem.limits)
         if width >= _ALL * (largest - least) or error > _MUCH.get(name, math.inf):
@@ -161,26 +161,30 @@ def numbers_of(
         if not slope.any():
             puck[name] = Number(value, 0.0, value, value, PUCK[name].unit, KNOWN)
             continue
-        error = certainty.error_of(slope * widened, max(abs(value), 1e-12))
+        size = max(abs(value), 1e-12)
+        error = certainty.error_of(slope * widened, size)
+        if math.isfinite(error) and certainty.follows_end(slope, size):
+            error = math.nan
         if any(slope[k] and not puck[one].determined for k, one in enumerate(asked.free)
                if not certainty.undetermined[k]):  # fmt: skip
             error = math.inf
-        number = quadratic(value, error, PUCK[name].unit, FOLLOWS, certainty.quantile)
+        number = quadratic(value, error, PUCK[name].unit, FOLLOWS, certainty.reach)
         ends = _follows(problem, x, name, slope, puck)
         if ends is None and profiled and name == "height" and math.isfinite(error):
             ends = _profiled(found, certainty, name)
             if ends is not None and ends.profiled:
                 half = 0.5 * (ends.high - ends.low)
-                number = number._replace(error=half / certainty.quantile, profiled=True)
+                number = number._replace(error=half / certainty.reach, profiled=True)
         if ends is not None:
             number = number._replace(low=ends.low, high=ends.high)
         puck[name] = number._replace(low=max(number.low, PUCK[name].low))
     puck = {name: puck[name] for name in PUCK if name in puck}
-    return puck, _launches(found, certainty, unsigned if not rivals else range(len(problem.films)))
+    unsure = {*unsigned, *(n for rival in rivals for n in rival.tracks)}
+    return puck, _launches(found, certainty, unsure)
 
 
 def _launches(
-    found: Estimate, certainty: Certainty, unsure: Sequence[int]
+    found: Estimate, certainty: Certainty, unsure: Collection[int]
 ) -> tuple[FoundLaunch, ...]:
     """The launches of all slides; those after an impact follow from the first.
 
@@ -204,7 +208,7 @@ def _launches(
                     error, how = float(errors[problem.names.index((n, name))]), FREE
                     if n in unsure and name == "launch_spin":
                         error = math.inf
-                numbers[name] = quadratic(value, error, ALL[name].unit, how, certainty.quantile)
+                numbers[name] = quadratic(value, error, ALL[name].unit, how, certainty.reach)
             name = film.name if len(slides[n]) == 1 else slide_name(film.name, m)
             since = film.start + slide.since - slides[n][0].since
             px, py, vx, vy, spin, angle = row
@@ -212,9 +216,9 @@ def _launches(
     return tuple(launches)
 
 
-def quadratic(value: float, error: float, unit: str, how: str, quantile: float) -> Number:
-    """A number with the interval that its standard error says, ``quantile`` of them wide."""
-    return Number(value, error, value - quantile * error, value + quantile * error, unit, how)
+def quadratic(value: float, error: float, unit: str, how: str, reach: float) -> Number:
+    """A number with the interval that its standard error says, ``reach`` of them wide."""
+    return Number(value, error, value - reach * error, value + reach * error, unit, how)
 
 
 def _follows(
@@ -253,7 +257,7 @@ def _profiled(found: Estimate, certainty: Certainty, name: str) -> Interval | No
     rows, slopes = moved.residuals_and_jacobian(x)
     there = replace(found, problem=moved, x=x, residuals=rows, jacobian=slopes, minima=())
     plausible = plausible_for(moved, x)
-    own = certainty_of(slopes[found.kept], plausible, certainty.quantile)
+    own = certainty_of(slopes[found.kept], plausible, certainty.degrees)
     return interval_of(there, own, k)
 
 

@@ -15,12 +15,13 @@ from puck_tables._core.real import instance
 from puck_tables._core.safe_write import write_bytes
 from puck_tables._version import __version__
 from puck_tables.errors import InputError
-from puck_tables.fitting.certainty import Z95, Certainty, profile_point
+from puck_tables.fitting.certainty import Certainty, profile_point
+from puck_tables.fitting.doubts import doubts
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.held_out import HeldOut
 from puck_tables.fitting.laws import LawScore
-from puck_tables.fitting.numbers import KNOWN, FoundLaunch, Number
-from puck_tables.fitting.residual_tests import lengthways
+from puck_tables.fitting.numbers import FoundLaunch, Number
+from puck_tables.fitting.residual_tests import lengthways, misfits
 from puck_tables.fitting.seen import Seen
 from puck_tables.fitting.tied import Impact
 from puck_tables.fitting.timing import Known
@@ -33,11 +34,7 @@ if TYPE_CHECKING:
     from puck_tables.trajectory import Trajectory
 
 KIND = "puck-tables fit 1"
-_NO_PATTERN = 1e-3  # probability of residuals so patterned by chance
-_COMPUTED = 1e-7  # of the path: residuals of tracks that were computed, not seen
-_NOISY = 1.5  # times the noise of a smooth motion
 _LENGTHWAYS = 1.3
-_GRIP, _SLICK = 5.0, 1e-4  # friction coefficients of dry surfaces are smaller, and larger
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -49,7 +46,8 @@ class Fit(Result):
     ``noise`` (m, rad) and ``jitter`` (s, of time stamps), those of the residuals unless
     ``noise_known``, and ``smooth_noise``, judged without any model of the puck; ``outliers``: share
     of the observations that are left out; ``left_out``: (track, frames at its start, at its end)
-    that are no free motion; ``runs``, ``drift``: probabilities of residuals so patterned by chance;
+    that are no free motion; ``cut_off``: a sentence where these are many, with what they would
+    change; ``runs``, ``drift``: probabilities of residuals so patterned by chance;
     ``blind``: a sentence for each thing that the tracks do not tell; ``laws``: :class:`LawScore` of
     those compared, best
     first; ``held_out``: how well frames that were held out are predicted;
@@ -74,6 +72,7 @@ class Fit(Result):
     runs: float
     drift: float
     left_out: tuple[tuple[str, int, int], ...]
+    cut_off: str
     blind: tuple[str, ...]
     laws: tuple[LawScore, ...]
     held_out: HeldOut | None
@@ -164,31 +163,11 @@ class Fit(Result):
     @property
     def complaints(self) -> tuple[str, ...]:
         """Signs that the tracks are not those of such a puck."""
-        found = []
-        size = max(float(np.ptp(film.place, axis=0).max()) for film in self.estimate.problem.films)
-        # smaller residuals are the errors of what is computed
-        seen = self.noise[0] > _COMPUTED * size
-        excess = [
-            own / smooth for own, smooth in zip(self.noise, self.smooth_noise, strict=True)
-            if math.isfinite(smooth) and smooth > 0.0
-        ]  # fmt: skip
-        if seen and not any(self.noise_known[:2]) and max(excess, default=0.0) > _NOISY:
-            found.append(
-                f"The residuals are {max(excess):.3g} times what smooth tracks would leave"
-            )
-        per_degree = self.chi2 / max(self.degrees, 1)
-        expected = 1.0 + 5.0 * math.sqrt(2.0 / max(self.degrees, 1))
-        if any(self.noise_known[:2]) and per_degree > expected:
-            found.append(f"The residuals are {math.sqrt(per_degree):.3g} times the noise given")
-        if seen and min(self.runs, self.drift) < _NO_PATTERN:
-            found.append(
-                "The residuals are no noise, they have a pattern (probability by chance "
-                f"{min(self.runs, self.drift):.1g})"
-            )
+        found = list(misfits(self.estimate, self.noise_known, self.smooth_noise))
         if found:
             found.append(
-                "Standard errors and intervals are those of a model that fits: here they are too "
-                "small"
+                "Standard errors are widened by what parts of the frames do to the numbers: they "
+                "may still be too small"
             )
         if self.untied:
             found.append(self.untied)
@@ -223,13 +202,7 @@ class Fit(Result):
                     "and intervals of the rest, may mislead"
                 )
         said += self.not_met
-        friction = self.numbers["friction"]
-        if friction.how != KNOWN and (friction.low > _GRIP or friction.high < _SLICK):
-            than = "more" if friction.low > _GRIP else "less"
-            said.append(
-                f"A friction of {friction.value:.3g} is {than} than dry surfaces have: the unit of "
-                "the places, or of the times, the scale or the frames a second may be wrong"
-            )
+        said += doubts(self.numbers, self.launches, self.given.radius)
         if self.jitter == 0.0 and self.noise[0] > 0.0:
             ratio = lengthways(self.estimate)
             if ratio > _LENGTHWAYS:
@@ -253,10 +226,11 @@ class Fit(Result):
             f"{100.0 * self.outliers:.3g} % of the observations, beyond 4 standard deviations, are "
             "left out.",
         ]
-        if self.certainty.quantile != Z95:
+        if math.isfinite(self.certainty.degrees):
             lines.append(
-                f"Intervals are {self.certainty.quantile:.3g} standard errors to either side: "
-                f"Student's t of {self.degrees} degrees of freedom, which told the noise."
+                f"Intervals are {self.certainty.reach:.3g} standard errors to either side: "
+                f"Student's t of {self.certainty.degrees:.0f} degrees of freedom, which told the "
+                "noise."
             )
         problem = self.estimate.problem
         if "readout" in problem.asked.free and problem.read_within is not None:
@@ -290,6 +264,7 @@ class Fit(Result):
             "noise": list(self.noise), "noise_given": list(self.noise_known[:2]),
             "jitter": self.jitter, "jitter_given": self.noise_known.jitter,
             "outliers": self.outliers, "left_out": [list(one) for one in self.left_out],
+            "cut_off": self.cut_off,
             "runs": self.runs, "drift": self.drift,
             "not_determined": list(self.blind), "remarks": list(self.remarks),
             "complaints": list(self.complaints),

@@ -8,7 +8,12 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.estimate import Estimate
+from puck_tables.fitting.timing import Known
 
+NO_PATTERN = 1e-3  # probability of residuals so patterned by chance
+NOISY = 1.5  # times the noise of a smooth motion
+_COMPUTED = 1e-7  # of the path: residuals of tracks that were computed, not seen
+_NOWHERE, _FAR, _ANY = 20.0, 1e-3, 0.5  # times the noise; of the path; rad
 _PARTS = 8
 _MOVING, _ENOUGH = 0.1, 20  # of the greatest speed; frames
 
@@ -56,6 +61,56 @@ def drift(found: Estimate) -> float:
             degrees += 1
     scale = max(found.chi2 / max(found.degrees, 1), 1e-300)
     return chi_square_tail(total / scale, max(degrees - found.x.size, 1)) if degrees else 1.0
+
+
+def excess_of(found: Estimate, smooth: tuple[float, float]) -> float:
+    """The residuals over the noise (m, rad) that no model judged; 1 where that is not known."""
+    size = math.sqrt(found.chi2 / max(found.degrees, 1))
+    return max((
+        size * own / other for own, other in zip(found.problem.noise, smooth, strict=True)
+        if math.isfinite(other) and other > 0.0
+    ), default=1.0)  # fmt: skip
+
+
+def misfits(found: Estimate, known: Known, smooth: tuple[float, float]) -> tuple[str, ...]:
+    """Signs that a model does not fit; ``smooth``: the noise (m, rad) that no model judged."""
+    told = []
+    noise, chi2, degrees = found.problem.noise, found.chi2, max(found.degrees, 1)
+    size = max(float(np.ptp(film.place, axis=0).max()) for film in found.problem.films)
+    # smaller residuals are the errors of what is computed
+    seen = noise[0] > _COMPUTED * size
+    excess = excess_of(found, smooth)
+    given = any(known[:2])
+    if seen and not given and excess > NOISY:
+        told.append(f"The residuals are {excess:.3g} times what smooth tracks would leave")
+    if given and chi2 / degrees > 1.0 + 5.0 * math.sqrt(2.0 / degrees):
+        told.append(f"The residuals are {math.sqrt(chi2 / degrees):.3g} times the noise given")
+    by_chance = min(runs(found), drift(found))
+    if seen and by_chance < NO_PATTERN:
+        told.append(
+            "The residuals are no noise, they have a pattern (probability by chance "
+            f"{by_chance:.1g})"
+        )
+    return tuple(told)
+
+
+def no_answer(found: Estimate, known: Known, smooth: tuple[float, float]) -> str:
+    """A sentence where no motion comes near the tracks, and nothing is determined; else none."""
+    size = max(float(np.ptp(film.place, axis=0).max()) for film in found.problem.films)
+    usual = math.sqrt(found.chi2 / max(found.degrees, 1))
+    times = max(excess_of(found, smooth), usual if any(known[:2]) else 0.0)
+    angled = any(film.angle is not None for film in found.problem.films)
+    if times > _NOWHERE and usual * found.problem.noise[0] > _FAR * size:
+        far = f"the nearest is {times:.3g} times the noise off"
+    elif angled and usual * found.problem.noise[1] > _ANY:
+        far = f"angles are {usual * found.problem.noise[1]:.2g} rad off the nearest"
+    else:
+        return ""
+    return (
+        f"Nothing is determined: no motion of such a puck fits these tracks, {far}. What would "
+        "tell: a start near the truth (--start), more frames a second, or a floor, a radius or "
+        "units as they are"
+    )
 
 
 def lengthways(found: Estimate) -> float:

@@ -13,6 +13,7 @@ most Φ(−√T): of 4², as for outliers, that is one film in 30,000, whatever 
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -26,33 +27,48 @@ from puck_tables.fitting.estimate import FARTHEST, Estimate
 from puck_tables.fitting.least_squares import SQUARES, minimise
 from puck_tables.fitting.numbers import plausible_for
 from puck_tables.fitting.starts import minima_of, numbers_with
+from puck_tables.fitting.turns import (
+    EXCLUDED,
+    Judged,
+    half_turns,
+    is_slow,
+    most_of_slow,
+    on_another_floor,
+    preferred,
+)
 
 RISE = FARTHEST**2  # of χ², up to which another summit is told
 _APART = 4.0  # standard errors: another summit
 _SPIN = "launch_spin"
 _LIMIT = 1.5  # about rω/v that all motions tend to
 _TILT = 0.2  # any: without spin it does nothing
+_MORE_TURNS = 3
 _TO_OTHERS = ((3, 6), (12, 3))  # steps, and how many starts then go on
 
 
-def rivals_of(found: Estimate, certainty: Certainty) -> tuple[Rival, ...]:
+def rivals_of(found: Estimate, certainty: Certainty, excess: float = 1.0) -> tuple[Rival, ...]:
     """Other summits whose χ² is higher by less than :data:`RISE`.
 
-    With angles they are motions of whole turns more from frame to frame, where frames are few or
-    noisy, and of one track alone; without them those of other spins.
+    With angles they are motions of whole turns more from frame to frame; without them those of
+    other spins.  One of less than half a turn a frame is told as long as it may be taken.
+    ``excess``: the residuals over the noise that frames beside each other show, by which turns are
+    judged.
     """
     problem = found.problem
     marked = any(film.angle is not None for film in problem.films)
     apart = not problem.meetings
     signed = marked or not apart  # a wall tells a motion from its mirror image
     single = len(problem.films) == 1
-    if problem.asked.speeds or not (single or found.minima or not (marked and apart)):
+    if problem.asked.speeds:
         return ()
     starts = list(found.minima)
     if not starts and apart and single:
         starts = minima_of(problem)
     if not marked and apart:
         starts += _of_other_spins(found)
+    starts += _of_other_turns(found)
+    # few residuals tell their noise badly, and χ² with it
+    far = max(certainty.quantile / Z95, 1.0) ** 2
     rivals: list[Rival] = []
     summits = [(found.x, *_known(found, certainty))]
     for start in starts:
@@ -62,16 +78,77 @@ def rivals_of(found: Estimate, certainty: Certainty) -> tuple[Rival, ...]:
             (np.abs(_told(x, signed) - _told(one, signed)) > far)[seen]
             for one, seen, far in summits
         ]
-        if rise < RISE and all(one.any() for one in off):
+        most = far * RISE / (excess**2 if marked else 1.0)
+        if is_slow(problem, x) and not is_slow(problem, found.x):
+            most = most_of_slow(far * found.chi2, excess)
+        if rise < most and all(one.any() for one in off):
             # what one motion tells another may not: each summit is as wide as it is
             rows, slopes = problem.residuals_and_jacobian(x)
             x = np.where(slopes.any(axis=0), x, start)  # what does nothing stays where it was
             there = replace(found, x=x, residuals=rows, jacobian=slopes, minima=())
             plausible = plausible_for(problem, x)
-            own = certainty_of(slopes[found.kept], plausible, certainty.quantile)
+            own = certainty_of(slopes[found.kept], plausible, certainty.degrees)
             summits.append((x, *_known(there, own)))
-            rivals.append(Rival(there, own, rise))
+            rivals.append(Rival(there, own, rise, _spun_otherwise(found, x)))
     return tuple(rivals)
+
+
+def taken(found: Estimate, rivals: tuple[Rival, ...], excess: float) -> Rival | None:
+    """The motion that is taken in place of an estimate; None if that is.
+
+    ``excess``: its residuals over the noise of smooth motions.
+    """
+    if not found.chi2 > 0.0:
+        return None
+    problem = found.problem
+    motions = [
+        Judged(is_slow(problem, x), excess**2 * (found.chi2 + rise), excess * math.sqrt(
+            max(1.0 + rise / found.chi2, 0.0)))
+        for x, rise in ((found.x, 0.0), *((one.estimate.x, one.rise) for one in rivals))
+    ]  # fmt: skip
+    first = preferred(motions)
+    if not motions[first].slow:
+        for k, motion in enumerate(motions):
+            x = rivals[k - 1].estimate.x if k else found.x
+            other = on_another_floor(problem, x) if motion.slow else None
+            if other is not None:
+                there, cost = minimise(*other, SQUARES, found.kept)
+                size = excess * math.sqrt(2.0 * cost / found.chi2)
+                one = Judged(is_slow(other[0], there), excess**2 * 2.0 * cost, size)
+                if preferred([one, motions[first]]) == 0:
+                    return rivals[k - 1] if k else None
+    return rivals[first - 1] if first else None
+
+
+def _spun_otherwise(found: Estimate, x: FloatArray) -> tuple[int, ...]:
+    """Tracks that spin otherwise, by more than what may be of a slide of theirs."""
+    problem = found.problem
+    was, there = (problem.launches(one)[:, 4] for one in (found.x, x))
+    spread = [
+        np.abs(found.jacobian[found.kept, problem.names.index((n, _SPIN))]).max()
+        if (n, _SPIN) in problem.names else 0.0 for n in range(len(problem.films))
+    ]  # fmt: skip
+    return tuple(np.flatnonzero(np.abs(was - there) * spread > 1.0).tolist())
+
+
+def _of_other_turns(found: Estimate) -> list[FloatArray]:
+    """Unknowns near other summits of tracks with angles: whole turns more from frame to frame."""
+    problem = found.problem
+    starts = []
+    for k, (n, name) in enumerate(problem.names):
+        if name != _SPIN or problem.films[n].angle is None:
+            continue
+        turn = 2.0 * half_turns(problem.films[n])
+        for way in (-turn, turn):
+            x = found.x
+            for _ in range(_MORE_TURNS):  # as long as they are near
+                x = x.copy()
+                x[k] += way
+                within = problem.limits[0][k] <= x[k] <= problem.limits[1][k]
+                if not (within and _near(found, x, [])):
+                    break
+                starts.append(x)
+    return starts
 
 
 def _of_other_spins(found: Estimate) -> list[FloatArray]:
@@ -142,7 +219,7 @@ def _near(found: Estimate, x: FloatArray, held: list[int]) -> bool:
     few = compact(problem, *problem.residuals_and_jacobian(x), found.kept)
     q, _ = np.linalg.qr(np.delete(few.slopes, held, axis=1))
     left = few.rows - q @ (few.rows @ q)
-    return float(left @ left) < found.chi2 + 2.0 * RISE
+    return float(left @ left) < found.chi2 + 2.0 * EXCLUDED
 
 
 def _told(x: FloatArray, signed: bool) -> FloatArray:

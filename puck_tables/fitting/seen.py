@@ -18,6 +18,7 @@ _ALIKE = 0.1  # of the usual time between frames
 _MEDIAN = 0.6744897501960817  # of |a normal deviate|
 _THIRD = math.sqrt(20.0)  # the spread of a third difference of deviates
 _LAST = 5
+_FEW_WINDOWS, _ALIKE_TURNS, _FOLLOWED = 3, 0.5, 1.5  # of turns: mean of e^(iθ); rad
 
 
 class Straight(NamedTuple):
@@ -47,7 +48,8 @@ class Seen:
     ``time`` (n,) s from ``start``; ``place`` (n, 2) m; ``angle`` (n,) rad, NaN where there is none,
     or None where there never is; ``frame`` (n,): numbers in the track; ``row`` (n,): how far down
     the picture, 0 at its first line and 1 at its last, or None; ``straight``: the line along which
-    alone places are told, or None.
+    alone places are told, or None; ``cuttable``: whether frames at its start, and at its end, may
+    be none of the free motion.
     """
 
     name: str
@@ -58,6 +60,7 @@ class Seen:
     frame: npt.NDArray[np.int64]
     row: FloatArray | None = None
     straight: Straight | None = None
+    cuttable: tuple[bool, bool] = (True, True)
 
     def part(self, chosen: npt.NDArray[np.bool_]) -> Seen:
         """Some of the frames; the first of them is the new start."""
@@ -75,8 +78,10 @@ class Seen:
         return float(np.median(np.diff(self.time)))
 
 
-def seen_in(track: Track, since: float = -math.inf, until: float = math.inf) -> Seen:
-    """The frames of a track, those of free motion if its start and end are told.
+def seen_in(
+    track: Track, since: float = -math.inf, until: float = math.inf, keep_all: bool = False
+) -> Seen:
+    """The frames of a track, those of free motion if its start and end are told, or all are.
 
     Raises
     ------
@@ -107,6 +112,7 @@ def seen_in(track: Track, since: float = -math.inf, until: float = math.inf) -> 
     return Seen(
         track.name, float(time[0]), time - time[0], track.place[chosen], angle,
         np.flatnonzero(chosen), straight=_straight(track.place[chosen]),
+        cuttable=(since == -math.inf and not keep_all, until == math.inf and not keep_all),
     )  # fmt: skip
 
 
@@ -208,13 +214,15 @@ class Turning:
     """How fast a body turns, up to whole turns from frame to frame.
 
     ``step`` s: the usual time between frames; ``time`` (w,) s, ``rate`` (w,) rad/s of windows of
-    frames; ``angle`` (n,) rad of the frames in one piece, NaN where it is not known.
+    frames; ``angle`` (n,) rad of the frames in one piece, NaN where it is not known; ``sure``:
+    whether rates can be followed from window to window.
     """
 
     step: float
     time: FloatArray
     rate: FloatArray
     angle: FloatArray
+    sure: bool
 
     def with_more(self, turns: int, time: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Rates (w,) and angles (n,) if the body makes so many more turns from frame to frame."""
@@ -247,9 +255,13 @@ def turning_of(film: Seen) -> Turning | None:
     forward = np.exp(1j * (film.angle[follow + 1] - film.angle[follow]))
     mean = np.array([part.mean() for part in np.array_split(forward, len(windows))])
     time = np.array([film.time[w].mean() + 0.5 * step for w in windows])
-    rate = np.unwrap(np.angle(mean)) / step
+    phases = np.unwrap(np.angle(mean))
+    rate = phases / step
+    apart = np.abs(np.diff(phases)).max(initial=0.0)
+    sure = len(windows) > _FEW_WINDOWS and np.abs(mean).min() > _ALIKE_TURNS and apart < _FOLLOWED
     speed = np.interp(film.time, time, rate)
     turned = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(film.time))])
     off = film.angle - turned
     middle = float(np.angle(np.nanmean(np.exp(1j * off))))
-    return Turning(step, time, rate, turned + middle + wrapped(off - middle))
+    angle = turned + middle + wrapped(off - middle)
+    return Turning(step, time, rate, angle, bool(sure))

@@ -22,8 +22,10 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.abreast import FROM_AFAR, ROBUST, abreast
 from puck_tables.fitting.asked import Asked
 from puck_tables.fitting.least_squares import LOOSE, minimise
+from puck_tables.fitting.parameters import LAUNCH
 from puck_tables.fitting.problem import Found, Problem
 from puck_tables.fitting.seen import Seen, Turning, rests_from, turning_of
+from puck_tables.fitting.turns import by_place, half_turns, in_order
 
 _SHARE, _FEW = 0.25, 6  # of the moving frames, and at least: the parabola
 _MOST_TURNS = 3
@@ -35,7 +37,7 @@ _FRAMES = 24  # laid beside each other
 _FITTED = 60  # frames to which the guesses are fitted
 _KEPT, _KEPT_BLIND = 9, 22  # guesses that are fitted; of tracks without angles
 _RIVAL = 15.0  # what minima that are compared on all frames may cost more
-_AS_WELL = 2.0  # by so much more a minimum is as deep, within its 95 % limit
+_BLIND = 4  # motions that places alone allow
 _NEARER = 2.0 ** np.arange(-0.4, 0.41, 0.05)
 _PLACE_SHARE, _FINER_SHARE, _RATE_SHARE = 0.02, 0.005, 0.05
 _LEAST_SPEED = 1e-6
@@ -76,7 +78,26 @@ def minima_of(problem: Problem) -> list[FloatArray]:
         pieces = replace(problem, films=(part,), whole=(whole,))
         found = {**_any(asked), **numbers_with(asked, guess.decel, guess.delta)}
         starts.append((pieces, pieces.unknowns(found, launch[None])))
-    return _deepest(problem, abreast(starts, FROM_AFAR, ROBUST, _RIVAL))
+    more = _given(problem, place, velocity)
+    if turning is not None and not turning.sure:
+        blind = replace(problem, films=(replace(film, angle=None),))
+        by_angle = by_place(problem, blind, minima_of(blind)[:_BLIND])
+        more += [x for x, _ in abreast(by_angle, FROM_AFAR, ROBUST)]
+    return _deepest(problem, abreast(starts, FROM_AFAR, ROBUST, _RIVAL), more)
+
+
+def _given(problem: Problem, place: FloatArray, velocity: FloatArray) -> list[FloatArray]:
+    """The unknowns at which the caller wants to begin."""
+    start = problem.asked.start
+    if not start:
+        return []
+    launch = np.array([*place, *velocity, 0.0, 0.0])
+    film = problem.films[0]
+    if film.angle is not None:
+        launch[5] = film.angle[np.isfinite(film.angle)][0]
+    for n, name in enumerate(LAUNCH):
+        launch[n] = start.get(name, launch[n])
+    return [np.clip(problem.unknowns(_any(problem.asked), launch[None]), *problem.limits)]
 
 
 def _at_rest(problem: Problem) -> FloatArray:
@@ -89,28 +110,27 @@ def _at_rest(problem: Problem) -> FloatArray:
     return problem.unknowns(_any(problem.asked), launch[None])
 
 
-def _deepest(problem: Problem, minima: list[tuple[FloatArray, float]]) -> list[FloatArray]:
-    """Of minima for some of the frames those that are deepest for all, in order.
+def _deepest(
+    problem: Problem, minima: list[tuple[FloatArray, float]], more: list[FloatArray]
+) -> list[FloatArray]:
+    """Of minima for some of the frames, and ``more``, those that are deepest for all, in order.
 
-    Of whole turns from frame to frame that fit as well the fewest come first.
+    Spins of less than half a turn from frame to frame come first unless they are excluded.
     """
     (x, least), *others = minima
-    rivals = [x] + [other for other, cost in others if cost < least + _RIVAL]
-    spin = None
-    if problem.films[0].angle is not None and "launch_spin" not in problem.asked.fixed:
+    rivals = [x] + [other for other, cost in others if cost < least + _RIVAL] + more
+    marked = problem.films[0].angle is not None
+    if marked and "launch_spin" not in problem.asked.fixed:
         spin = problem.names.index((0, "launch_spin"))
-        turn = 2.0 * math.pi / float(np.median(np.diff(problem.films[0].time)))  # in each frame
-        if abs(x[spin]) > 0.5 * turn:
+        half = half_turns(problem.films[0])
+        if abs(x[spin]) > half:
             rivals.append(x.copy())
-            rivals[-1][spin] = math.remainder(x[spin], turn)
+            rivals[-1][spin] = math.remainder(x[spin], 2.0 * half)
     if len(rivals) == 1:
         return rivals
     polished = sorted((minimise(problem, one, LOOSE) for one in rivals), key=lambda one: one[1])
     found = [one for one, _ in polished]
-    if spin is None:
-        return found
-    as_well = sum(cost < polished[0][1] + _AS_WELL for _, cost in polished)
-    return sorted(found[:as_well], key=lambda x: abs(float(x[spin]))) + found[as_well:]
+    return in_order(problem, found) if marked else found
 
 
 def slowing_of(film: Seen, spread: float) -> float:

@@ -209,7 +209,7 @@ def impacts_joined(
         impacts.append(Impact(
             films[0], films[1] if pair else "", first + hit.time,
             (float(hit.place[0]), float(hit.place[1])), hit.toward, numbers[names[0]],
-            quadratic(hit.ratio, error, "1", FOLLOWS, certainty.quantile),
+            quadratic(hit.ratio, error, "1", FOLLOWS, certainty.reach),
             numbers[names[3]] if pair else None,
         ))  # fmt: skip
     return tuple(impacts)
@@ -234,7 +234,7 @@ def impacts_apart(
     impacts = []
     for blow, slope in zip(blows, slopes, strict=True):
         numbers = [
-            quadratic(value, certainty.error_of(one, 1.0), "1", FOLLOWS, certainty.quantile)
+            quadratic(value, certainty.error_of(one, 1.0), "1", FOLLOWS, certainty.reach)
             for value, one in zip((blow.restitution, blow.ratio, blow.mass), slope, strict=True)
             if math.isfinite(value)
         ]  # fmt: skip
