@@ -13,6 +13,9 @@ from puck_tables.cli.board_aim import aim_on_board, number_or_name
 from puck_tables.cli.options import (
     FILE,
     NUMBER,
+    SPEED,
+    SPIN,
+    TIME,
     Vector,
     body_options,
     deliver,
@@ -23,9 +26,9 @@ from puck_tables.cli.options import (
     puck_options,
 )
 from puck_tables.cli.scene_run import files_read, scene_options, scene_tables
-from puck_tables.cli.uncompiled import uncompiled
 
 from puck_tables.errors import InputError
+from puck_tables.kernels.patience import one_question
 
 if TYPE_CHECKING:
     from puck_tables._core.arrays import FloatArray
@@ -40,7 +43,7 @@ _LARGEST_FILE = 1 << 30
 @click.option(
     "--target",
     "targets",
-    type=Vector(),
+    type=Vector("m"),
     multiple=True,
     help="Where to stop, in m from the launch, like 2,0.1; in a scene, on the board.",
 )
@@ -56,13 +59,13 @@ _LARGEST_FILE = 1 << 30
 @click.option("--striker", metavar="NAME", help="In a scene: which is sent off.")
 @click.option("--hits", metavar="NAME", help="In a scene: a puck to be hit on the way.")
 @click.option("--max-impacts", type=int, help="In a scene: at most so many.  [default: 3]")
-@click.option("--w0", type=NUMBER, help="The launch with this spin, in rad/s, with its sign.")
-@click.option("--speed", type=NUMBER, help="The launches with this speed, in m/s.")
+@click.option("--w0", type=SPIN, help="The launch with this spin, in rad/s, with its sign.")
+@click.option("--speed", type=SPEED, help="The launches with this speed, in m/s.")
 @click.option(
-    "--time", "stop_time", type=NUMBER, help="The launches that stop after this time, in s."
+    "--time", "stop_time", type=TIME, help="The launches that stop after this time, in s."
 )
-@click.option("--max-speed", type=NUMBER, help="No launch faster than this, in m/s.")
-@click.option("--max-spin", type=NUMBER, help="No launch with more spin than this, in rad/s.")
+@click.option("--max-speed", type=SPEED, help="No launch faster than this, in m/s.")
+@click.option("--max-spin", type=SPIN, help="No launch with more spin than this, in rad/s.")
 @click.option(
     "--count",
     type=int,
@@ -149,7 +152,7 @@ def aim(
         raise click.MissingParameter(param_hint="'--target'", param_type="option")
     read = (pressure, targets_file)
     prepare_outputs(output, plot=plot, overwrite=overwrite, inputs=read)
-    with uncompiled() if targets_file is None else nullcontext():
+    with one_question() if targets_file is None else nullcontext():
         puck = puck_given(radius, height, friction, gravity, delta, decel, pressure, gyration)
         where = targets[0] if targets_file is None else _read_targets(targets_file)
         found: Any = puck.aim(

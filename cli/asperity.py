@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import click
 from puck_tables.cli.options import (
     FILE,
-    NUMBER,
+    LENGTH,
+    Number,
     Range,
     deliver,
     output_options,
@@ -29,11 +30,11 @@ MOST_LEAPS = 5  # more are no single steps of the force
 
 
 @click.command()
-@click.option("--amplitude", type=NUMBER, default=1e-6, show_default=True, help="a in m.")
-@click.option("--wavelength", type=NUMBER, default=2e-5, show_default=True, help="2 pi b in m.")
-@click.option("--load", type=NUMBER, default=1.0, show_default=True, help="-Y in N.")
-@click.option("--mass", type=NUMBER, help="m in kg.  [default: the load is its weight]")
-@click.option("--speeds", type=Range(), help="In m/s.  [default: 0 to 2.5 V0 in 501 steps]")
+@click.option("--amplitude", type=LENGTH, default=1e-6, show_default=True, help="a in m.")
+@click.option("--wavelength", type=LENGTH, default=2e-5, show_default=True, help="2 pi b in m.")
+@click.option("--load", type=Number("N"), default=1.0, show_default=True, help="-Y in N.")
+@click.option("--mass", type=Number("kg"), help="m in kg.  [default: the load is its weight]")
+@click.option("--speeds", type=Range("m/s"), help="In m/s.  [default: 0 to 2.5 V0 in 501 steps]")
 @click.option(
     "-o",
     "--output",
@@ -68,6 +69,8 @@ def asperity(
     prepare_outputs(output, plot=plot, others=(law,), overwrite=overwrite)
     if plot is not None and isinstance(speeds, float):
         raise InputError("--plot needs a range: give --speeds START:STOP:COUNT")
+    import numpy as np
+
     from puck_tables.chetaev.asperity import Asperity
     from puck_tables.chetaev.asperity_forces import asperity_curve
     from puck_tables.io.csv import encode
@@ -79,16 +82,14 @@ def asperity(
         load,
         load / STANDARD_GRAVITY if mass is None else mass,
     )
-    start, stop, count = (
-        (0.0, DEFAULT_TOP * support.lift_speed, DEFAULT_COUNT) if speeds is None
-        else speeds if isinstance(speeds, tuple) else (speeds, speeds, 1)
-    )  # fmt: skip
+    if speeds is None:
+        speeds = 0.0, DEFAULT_TOP * support.lift_speed, DEFAULT_COUNT
+    count = speeds[2] if isinstance(speeds, tuple) else np.size(speeds)
     if count > MAX_SPEEDS:
         raise InputError(f"--speeds asks for {count} speeds: at most {MAX_SPEEDS}")
-    import numpy as np
-
+    asked = np.linspace(*speeds) if isinstance(speeds, tuple) else np.atleast_1d(speeds)
     with progress("speeds") as show:
-        curve = asperity_curve(support, np.linspace(start, stop, count), show)
+        curve = asperity_curve(support, asked, show)
     deliver(curve, output, plot, overwrite)
     if law is not None:
         curve.law().to_csv(law, overwrite)

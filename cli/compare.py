@@ -10,7 +10,7 @@ import click
 from puck_tables.cli.completion import cases
 from puck_tables.cli.options import (
     FILE,
-    NUMBER,
+    TIME,
     Times,
     deliver,
     explain_option,
@@ -45,7 +45,7 @@ _SHORT = {
 )
 @click.option(
     "--steps",
-    type=Times(),
+    type=Times("s"),
     metavar="DT1,DT2,...",
     help="Step of the engine in each file, s.  [default: the distance of its rows]",
 )
@@ -56,7 +56,7 @@ _SHORT = {
 @click.option("--puck", help="Which puck, of a case of several: its name.")
 @click.option(
     "--launch-time",
-    type=NUMBER,
+    type=TIME,
     default=0.0,
     show_default=True,
     help="When the launch is in the files, s.",

@@ -10,7 +10,10 @@ import click
 from puck_tables.cli.fit_report import report
 from puck_tables.cli.options import (
     FILE,
+    LENGTH,
     NUMBER,
+    TIME,
+    Number,
     body_options,
     deliver,
     explain_option,
@@ -29,12 +32,14 @@ from puck_tables.errors import InputError
 @click.command()
 @click.argument("files", type=FILE, nargs=-1, required=True, metavar="TRACK...")
 @track_options
-@click.option("--radius", type=NUMBER, required=True, help="Radius r of the puck in m.")
+@click.option("--radius", type=LENGTH, required=True, help="Radius r of the puck in m.")
 @click.option(
-    "--height", type=NUMBER, help="Height h in m, if known: the tilt then follows from f."
+    "--height", type=LENGTH, help="Height h in m, if known: the tilt then follows from f."
 )
 @click.option("--friction", type=NUMBER, help="Coulomb coefficient f, if known.")
-@click.option("--mass", type=NUMBER, help="Mass in kg (for energies of what is simulated later).")
+@click.option(
+    "--mass", type=Number("kg"), help="Mass in kg (for energies of what is simulated later)."
+)
 @click.option("--gravity", type=NUMBER, help="Gravity in m/s^2.  [default: 9.80665]")
 @body_options()
 @click.option(
@@ -69,12 +74,12 @@ from puck_tables.errors import InputError
 )
 @click.option(
     "--since",
-    type=NUMBER,
+    type=TIME,
     help="Start of the free motion, in s of the track: no frame after it is left out at the start.",
 )
 @click.option(
     "--until",
-    type=NUMBER,
+    type=TIME,
     help="End of the free motion, in s of the track: no frame before it is left out at the end.",
 )
 @click.option(
@@ -249,9 +254,19 @@ def _named(given: tuple[str, ...], option: str) -> dict[str, str]:
     return found
 
 
+_UNITS = {
+    "place": "m", "radius": "m", "height": "m", "launch_x": "m", "launch_y": "m", "angle": "rad",
+    "launch_angle": "rad", "launch_vx": "m/s", "launch_vy": "m/s", "launch_spin": "rad/s",
+    "u": "m/s",
+}  # fmt: skip
+
+
 def _number(text: str, option: str, name: str) -> float:
+    from puck_tables._core.units import quantity
+
     try:
-        number = float(text)
+        measured = quantity(text, _UNITS.get(name, ""))
+        number = float(text) if measured is None else measured
     except ValueError:
         number = math.nan
     if not math.isfinite(number):
@@ -281,13 +296,18 @@ def _noise(text: str | None) -> tuple[float, float | None] | None:
     parts = text.split(",")
     if len(parts) > 2:
         raise InputError(f"--noise {text} must be PLACE or PLACE,ANGLE, like 0.0003,0.005")
-    numbers = [_number(part, "--noise", "sigma") for part in parts]
+    numbers = [
+        _number(part, "--noise", name)
+        for part, name in zip(parts, ("place", "angle"), strict=False)
+    ]
     return numbers[0], numbers[1] if len(numbers) == 2 else None
 
 
 def _jitter(text: str | None) -> float | str | None:
+    from puck_tables._core.units import quantity
+
     try:
-        return text if text is None else float(text)
+        return text if text is None else quantity(text, "s") or float(text)
     except ValueError:
         return text
 
@@ -302,7 +322,7 @@ def _point(text: str, option: str) -> tuple[float, float]:
     parts = text.split(",")
     if len(parts) != 2:
         raise InputError(f"{option}: '{text}' must be two numbers in m with a comma, like 0.1,0.5")
-    return _number(parts[0], option, "m"), _number(parts[1], option, "m")
+    return _number(parts[0], option, "place"), _number(parts[1], option, "place")
 
 
 def _wall(text: str) -> tuple[tuple[float, float], tuple[float, float]]:

@@ -118,6 +118,7 @@ def _plainly(found: Fit) -> str:
         sentences.append(
             "So this may be no freely sliding puck, or not all of its motion: look at --plot, and "
             "give --since and --until if a hand or a wall touches it."
+            + ("" if found.misread else " Or speed changes its friction, or air slows it, too.")
             + (f" {said}" if angled and not found.misread else "")
         )
     return "\n".join(sentences)

@@ -34,6 +34,7 @@ from puck_tables.cli.tables import tables
 from puck_tables.cli.track import track
 from puck_tables.cli.tradeoff import tradeoff
 from puck_tables.cli.validate import validate
+from puck_tables.cli.warm_up import warm_up
 
 from puck_tables._core.waiting import watchers
 from puck_tables._version import __version__
@@ -136,17 +137,13 @@ def _drop(stream: Any) -> None:
 @click.version_option(__version__, package_name="puck-tables", prog_name="puck")
 def main() -> None:
     """Motion of a flat puck that slides and spins under dry friction, until it stops."""
-    from puck_tables.kernels.cache import announcements
-
-    words = "compiling for this machine, once: up to a minute"
-    announcements[:] = [lambda: click.echo(words, err=True)]
     watchers[:] = [said_first]
     del start.last_words[1:]
 
 
 _ALL = (
     simulate, sweep, aim, scene, track, fit, build_tables, validate, info, tables, tradeoff,
-    asperity, limit_surface, reference, compare, export, explore,
+    asperity, limit_surface, reference, compare, export, explore, warm_up,
 )  # fmt: skip
 for _command in _ALL:
     main.add_command(_command)

@@ -33,45 +33,55 @@ QUIET_TIME, BETWEEN_LINES = 2.0, 10.0  # s, where stderr is no terminal
 
 
 class Number(click.ParamType):
-    """A finite number."""
+    """A finite number, in an SI unit; another unit may stand behind it."""
 
     name = "number"
 
+    def __init__(self, unit: str = "") -> None:
+        self.unit = unit
+
     def convert(self, value: Any, param: Any, ctx: Any) -> float:
         """Parse a finite number."""
-        return finite(str(value), self, param, ctx)
+        return finite(str(value), self, param, ctx, self.unit)
 
 
-class Vector(click.ParamType):
+class Vector(Number):
     """Two finite numbers: X,Y."""
 
     name = "X,Y"
 
-    def convert(self, value: Any, param: Any, ctx: Any) -> tuple[float, float]:
+    def convert(self, value: Any, param: Any, ctx: Any) -> Any:
         """Parse 'X,Y'."""
         if isinstance(value, tuple):
             return value
         parts = str(value).split(",")
         if len(parts) != 2:
             self.fail(f"'{value}' must be two numbers with a comma, like 1,0", param, ctx)
-        return finite(parts[0], self, param, ctx), finite(parts[1], self, param, ctx)
+        return tuple(finite(part, self, param, ctx, self.unit) for part in parts)
 
 
-class Range(click.ParamType):
-    """A number, or START:STOP:COUNT; a tuple of three for a range."""
+class Range(Number):
+    """A number, START:STOP:COUNT or A,B,...; a tuple of three for a range, a list for several."""
 
-    name = "NUMBER|START:STOP:COUNT"
+    name = "NUMBER|START:STOP:COUNT|A,B,..."
 
-    def convert(self, value: Any, param: Any, ctx: Any) -> float | tuple[float, float, int]:
-        """Parse a number or a range."""
-        if isinstance(value, float | tuple):
+    def convert(self, value: Any, param: Any, ctx: Any) -> Any:
+        """Parse a number, a range or a list."""
+        if isinstance(value, float | tuple | list):
             return value
+        if "," in str(value):
+            return [finite(part, self, param, ctx, self.unit) for part in str(value).split(",")]
         parts = str(value).split(":")
         if len(parts) == 1:
-            return finite(parts[0], self, param, ctx)
+            return finite(parts[0], self, param, ctx, self.unit)
         if len(parts) != 3:
-            self.fail(f"'{value}' must be a number or START:STOP:COUNT, like 0:10:101", param, ctx)
-        start, stop = finite(parts[0], self, param, ctx), finite(parts[1], self, param, ctx)
+            self.fail(
+                f"'{value}' must be a number, START:STOP:COUNT like 0:10:101, or numbers with "
+                "commas",
+                param,
+                ctx,
+            )
+        start, stop = (finite(part, self, param, ctx, self.unit) for part in parts[:2])
         if not re.fullmatch(r"[0-9]{1,10}", parts[2]) or not 2 <= int(parts[2]) <= MAX_COUNT:
             self.fail(f"the COUNT of '{value}' must be a whole number from 2 to 1e9", param, ctx)
         if not stop > start:
@@ -81,29 +91,34 @@ class Range(click.ParamType):
         return start, stop, int(parts[2])
 
 
-class Times(click.ParamType):
+class Times(Number):
     """Times in seconds with commas, or START:STOP:COUNT."""
 
     name = "T1,T2,...|START:STOP:COUNT"
 
-    def convert(self, value: Any, param: Any, ctx: Any) -> tuple[float, ...]:
+    def convert(self, value: Any, param: Any, ctx: Any) -> Any:
         """Parse a list of times or a range."""
         if ":" not in str(value):
-            return tuple(finite(part, self, param, ctx) for part in str(value).split(","))
-        start, stop, count = Range().convert(value, param, ctx)  # type: ignore[misc]
+            parts = str(value).split(",")
+            return tuple(finite(part, self, param, ctx, self.unit) for part in parts)
+        start, stop, count = Range(self.unit).convert(value, param, ctx)
         if count > 10_000_000:
             self.fail(f"'{value}' asks for too many states: at most 1e7", param, ctx)
         return tuple(start + (stop - start) * i / (count - 1) for i in range(count))
 
 
-def finite(text: str, kind: click.ParamType, param: Any, ctx: Any) -> float:
-    """A finite number, or click's error."""
+def finite(text: str, kind: click.ParamType, param: Any, ctx: Any, unit: str = "") -> float:
+    """A finite number, in an SI unit where another stands behind it, or click's error."""
+    from puck_tables._core.units import SHOWN, quantity
+
     try:
-        if "_" in text or not text.isascii():
+        measured = quantity(text, unit)
+        if measured is None and ("_" in text or not text.isascii()):
             raise ValueError
-        number = float(text)
+        number = float(text) if measured is None else measured
     except ValueError:
-        kind.fail(f"'{text}' is not a number", param, ctx)
+        example = f", or one with a unit as {SHOWN[unit]}" if unit else ""
+        kind.fail(f"'{text}' is not a number{example}", param, ctx)
     if not math.isfinite(number):
         kind.fail(f"'{text}' is not a finite number", param, ctx)
     return number
@@ -111,26 +126,30 @@ def finite(text: str, kind: click.ParamType, param: Any, ctx: Any) -> float:
 
 HUGE = 10.0  # m, of a real puck: millimetres were meant
 
-NUMBER = Number()
+NUMBER, LENGTH, SPEED, SPIN, TIME = map(Number, ("", "m", "m/s", "rad/s", "s"))
 FILE = click.Path(readable=False, path_type=Path)
 
 
-def puck_options(mass: bool, kind: click.ParamType = NUMBER) -> Callable[[Command], Command]:
+def puck_options(mass: bool, kind: type[Number] = Number) -> Callable[[Command], Command]:
     """The puck and the floor: by δ and J, or by dimensions and friction; numbers of one kind."""
     options = [
-        click.option("--radius", type=kind, help="Radius r in m.  [default: 1]"),
+        click.option(
+            "--radius",
+            type=kind("m"),
+            help="Radius r in m, or with its unit: 38.1mm.  [default: 1]",
+        ),
         click.option(
             "--height",
-            type=kind,
+            type=kind("m"),
             help="Height h of the puck in m, twice that of its centre of mass; with --friction.",
         ),
-        click.option("--friction", type=kind, help="Coulomb coefficient f; with --height."),
-        click.option("--gravity", type=kind, help="Gravity in m/s^2.  [default: 9.80665]"),
-        click.option("--decel", type=kind, help="J = f g in m/s^2 instead.  [default: 1]"),
+        click.option("--friction", type=kind(), help="Coulomb coefficient f; with --height."),
+        click.option("--gravity", type=kind(), help="Gravity in m/s^2.  [default: 9.80665]"),
+        click.option("--decel", type=kind(), help="J = f g in m/s^2 instead.  [default: 1]"),
     ]
     if mass:
         options.insert(
-            4, click.option("--mass", type=NUMBER, help="Mass in kg (energies, forces).")
+            4, click.option("--mass", type=Number("kg"), help="Mass in kg (energies, forces).")
         )
 
     def decorate(command: Command) -> Command:
@@ -141,9 +160,7 @@ def puck_options(mass: bool, kind: click.ParamType = NUMBER) -> Callable[[Comman
     return decorate
 
 
-def body_options(
-    kind: click.ParamType = NUMBER, many: bool = False
-) -> Callable[[Command], Command]:
+def body_options(kind: type[Number] = Number, many: bool = False) -> Callable[[Command], Command]:
     """The kind of puck: how it presses on the floor and how its mass is spread.
 
     ``kind``: of the radius of gyration; ``many``: whether several laws may be given.
@@ -154,7 +171,7 @@ def body_options(
     options = [
         click.option(
             "--gyration",
-            type=kind,
+            type=kind(),
             help="Radius of gyration about the vertical axis over r (a ratio, also with --radius), "
             "0.1 to 10.  [default: 0.7071, homogeneous]",
         ),

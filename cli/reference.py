@@ -11,6 +11,7 @@ from puck_tables.cli.completion import cases
 from puck_tables.cli.options import (
     FILE,
     NUMBER,
+    TIME,
     Times,
     deliver,
     explain_option,
@@ -19,9 +20,9 @@ from puck_tables.cli.options import (
     prepare_outputs,
     reported,
 )
-from puck_tables.cli.uncompiled import uncompiled
 
 from puck_tables.errors import InputError
+from puck_tables.kernels.patience import one_question
 
 if TYPE_CHECKING:
     from puck_tables.reference.answer import Answer
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
 
 @click.command()
 @click.argument("case", required=False, shell_complete=cases)
-@click.option("--dt", type=NUMBER, help="Time between two frames, s.")
+@click.option("--dt", type=TIME, help="Time between two frames, s.")
 @click.option("--fps", type=NUMBER, help="Frames a second.")
 @click.option(
     "--times",
@@ -86,7 +87,7 @@ def reference(
         raise InputError("--epsilon and --friction both choose the ratios: give one of them")
     prepare_outputs(output, plot=plot, overwrite=overwrite, inputs=(times,))
     found: Any
-    with uncompiled():
+    with one_question():
         if over:
             from puck_tables.reference.friction import floor_friction
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import re
-import tomllib
 from collections.abc import Callable, Iterable
 from dataclasses import is_dataclass
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -178,10 +177,10 @@ def _default_tables(given: dict[str, Any]) -> dict[str, Any]:
     if real:
         return tables
     for name in scaled:
-        if isinstance(given[name], tuple):
+        if isinstance(given[name], tuple | list):
             raise InputError(f"--{name} cannot range in a scene: let puck.height range (--set)")
     radius = given.get("radius", 1.0)
-    if isinstance(radius, tuple) or not radius > 0.0:
+    if isinstance(radius, tuple | list) or not radius > 0.0:
         raise InputError("--radius must be a number greater than 0 m")
     friction = given.get("decel", DEFAULT_DECEL) / STANDARD_GRAVITY
     if not friction > 0.0:
@@ -200,10 +199,16 @@ def _as_toml(value: Any) -> Any:
 
 def _value(text: str) -> Any:
     """A value of --set: TOML, or else a text such as a range."""
+    from puck_tables.scene.library import toml_in
+
     try:
-        return tomllib.loads(f"value = {text}")["value"]
+        return toml_in(f"value = {text}")["value"]
     except (ValueError, KeyError, RecursionError):
-        return text
+        pass
+    listed = text.removeprefix("[").removesuffix("]").split(",")  # 0,10,20 or [3cm,4cm]
+    if len(listed) > 1 and all(re.match(r"\s*[-+]?\.?[0-9]", one) for one in listed):
+        return [_value(one.strip()) for one in listed]
+    return text
 
 
 def run_scene(

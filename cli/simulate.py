@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from contextlib import nullcontext
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -12,6 +13,7 @@ from click.core import ParameterSource
 from puck_tables.cli.options import (
     FILE,
     NUMBER,
+    SPIN,
     Times,
     Vector,
     body_options,
@@ -29,10 +31,10 @@ from puck_tables.cli.options import (
     table_option,
 )
 from puck_tables.cli.scene_run import files_read, run_scene, scene_options, scene_tables
-from puck_tables.cli.uncompiled import several_pucks, uncompiled
 
 from puck_tables.accuracy.methods import INTEGRATORS
 from puck_tables.errors import InputError
+from puck_tables.kernels.patience import one_question
 
 if TYPE_CHECKING:
     from puck_tables.puck import Puck
@@ -54,13 +56,13 @@ _LAUNCHED = (
     help="The puck and the launch that 'puck fit -o FILE.json' found.",
 )
 @click.option("--track", help="Which track of --fit, by its name or number from 1.")
-@click.option("--v0", type=Vector(), help="Launch velocity in m/s, like 1,0.")
-@click.option("--w0", type=NUMBER, default=0.0, show_default=True, help="Launch spin in rad/s.")
+@click.option("--v0", type=Vector("m/s"), help="Launch velocity in m/s, like 1,0.")
+@click.option("--w0", type=SPIN, default=0.0, show_default=True, help="Launch spin in rad/s.")
 @puck_options(mass=True)
 @click.option("--delta", type=NUMBER, help="delta = 2 f h / r instead.  [default: 0.5]")
 @body_options()
 @click.option("--frames", type=int, help="Number of states to save.  [default: 101]")
-@click.option("--times", type=Times(), help="Times of the states to save, in s.")
+@click.option("--times", type=Times("s"), help="Times of the states to save, in s.")
 @click.option(
     "--tol",
     type=NUMBER,
@@ -118,47 +120,47 @@ def simulate(
     """  # noqa: D301 - click reads the backspace
     unknown: tuple[str, ...] = ()
     run: TimedResult
-    with uncompiled():
-        if scene is not None or changes:
-            tables = scene_tables(ctx, scene, changes)
-            if isinstance(tables.get("puck"), list):
-                several_pucks()
-            prepare_outputs(
-                output, plot=plot, movie=movie, overwrite=overwrite,
-                inputs=files_read(scene, tables),
-            )  # fmt: skip
-            states = (0.0,) if output is None and plot is None and times is None else times
+    if scene is not None or changes:
+        tables = scene_tables(ctx, scene, changes)
+        prepare_outputs(
+            output, plot=plot, movie=movie, overwrite=overwrite,
+            inputs=files_read(scene, tables),
+        )  # fmt: skip
+        states = (0.0,) if output is None and plot is None and times is None else times
+        board = isinstance(tables.get("puck"), list)  # quicker by what was compiled before
+        with nullcontext() if board else one_question():
             run, in_words = run_scene(tables, scene or "scene", states)
+    else:
+        if track is not None and fit_path is None:
+            raise InputError("--track chooses a track of --fit: give that, too")
+        if exact and table_path is not None:
+            raise InputError("--exact and --table clash: closed forms need no table")
+        prepare_outputs(
+            output, plot=plot, movie=movie, overwrite=overwrite,
+            inputs=(table_path, pressure, fit_path),
+        )  # fmt: skip
+        if fit_path is not None:
+            puck, velocity, w0, unknown = _fitted(ctx, fit_path, track)
+        elif v0 is not None:
+            puck = puck_given(
+                radius, height, friction, gravity, delta, decel, pressure, gyration, mass
+            )
+            velocity = v0
         else:
-            if track is not None and fit_path is None:
-                raise InputError("--track chooses a track of --fit: give that, too")
-            if exact and table_path is not None:
-                raise InputError("--exact and --table clash: closed forms need no table")
-            prepare_outputs(
-                output, plot=plot, movie=movie, overwrite=overwrite,
-                inputs=(table_path, pressure, fit_path),
-            )  # fmt: skip
-            if fit_path is not None:
-                puck, velocity, w0, unknown = _fitted(ctx, fit_path, track)
-            elif v0 is not None:
-                puck = puck_given(
-                    radius, height, friction, gravity, delta, decel, pressure, gyration, mass
-                )
-                velocity = v0
-            else:
-                raise click.MissingParameter(param_hint="'--v0'", param_type="option")
-            if output is None and plot is None and times is None and frames is None:
-                frames = 1  # a report needs no states
+            raise click.MissingParameter(param_hint="'--v0'", param_type="option")
+        if output is None and plot is None and times is None and frames is None:
+            frames = 1  # a report needs no states
+        with one_question():
             run = puck.simulate(
                 velocity, w0, frames=frames, times=times, tol=tol, method=method, exact=exact,
                 table=None if table_path is None else open_table(table_path),
             )  # fmt: skip
-            given = fit_path is not None or any(
-                x is not None for x in (radius, height, friction, delta, decel, gyration)
-            )
-            in_words = partial(
-                report, note="" if given else "   (defaults: see --help for a real puck)"
-            )
+        given = fit_path is not None or any(
+            x is not None for x in (radius, height, friction, delta, decel, gyration)
+        )
+        in_words = partial(
+            report, note="" if given else "   (defaults: see --help for a real puck)"
+        )
     for sentence in unknown:
         click.echo(printable(f"{fit_path}: {sentence}"), err=True)
     deliver(run, output, plot, overwrite)

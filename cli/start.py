@@ -23,7 +23,6 @@ if TYPE_CHECKING:  # the less is imported before the handler stands, the better
 ENDINGS = {signal.SIGINT: signal.default_int_handler, signal.SIGTERM: signal.SIG_DFL}
 PATIENCE = 0.7  # s
 
-alone = False  # whether the process is the command's own
 received = signal.SIGINT  # the signal that ends it
 
 # what is said then, by the last of them; a command may have better ones
@@ -74,8 +73,6 @@ def _ignored(what: UnraisableHookArgs) -> None:
 
 def main() -> None:
     """Import the commands and run one."""
-    global alone
-    alone = True
     ours = [one for one, usual in ENDINGS.items() if signal.getsignal(one) is usual]
     for one in ours:  # unless they are ignored
         signal.signal(one, end_at_once)

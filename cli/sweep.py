@@ -32,7 +32,6 @@ if TYPE_CHECKING:
     from puck_tables.stopping.stop_table import StopTable
     from puck_tables.table.resultant_table import ResultantTable
 
-RANGE = Range()
 ARGUMENTS = {  # of the library by the names of options
     "w0": "spin", "speed": "speed", "heading": "heading", "vx": "vx", "vy": "vy",
     "radius": "radius", "height": "height", "friction": "friction", "gravity": "gravity",
@@ -42,13 +41,13 @@ REAL = ("height", "friction", "gravity")
 
 
 @click.command()
-@click.option("--w0", type=RANGE, help="Launch spin in rad/s.")
-@click.option("--speed", type=RANGE, help="Launch speed in m/s, along x without --heading.")
-@click.option("--heading", type=RANGE, help="Direction of the launch from x, in rad.")
-@click.option("--v0", type=Vector(), help="One launch velocity in m/s instead of --speed.")
-@click.option("--delta", type=RANGE, help="delta = 2 f h / r.  [default: 0.5]")
-@puck_options(mass=False, kind=RANGE)
-@body_options(kind=RANGE, many=True)
+@click.option("--w0", type=Range("rad/s"), help="Launch spin in rad/s.")
+@click.option("--speed", type=Range("m/s"), help="Launch speed in m/s, along x without --heading.")
+@click.option("--heading", type=Range("rad"), help="Direction of the launch from x, in rad.")
+@click.option("--v0", type=Vector("m/s"), help="One launch velocity in m/s instead of --speed.")
+@click.option("--delta", type=Range(), help="delta = 2 f h / r.  [default: 0.5]")
+@puck_options(mass=False, kind=Range)
+@body_options(kind=Range, many=True)
 @click.option(
     "--random", type=click.IntRange(2, MAX_COUNT), metavar="COUNT",
     help="Samples instead of ranges: so many launches whose numbers scatter.",
@@ -104,7 +103,7 @@ def sweep(
 ) -> None:  # fmt: skip
     """Map where and when pucks stop, or how a scene ends.
 
-    Ranges are START:STOP:COUNT, ends included.  What is left out is fixed at --speed 1 --w0 0
+    Ranges are START:STOP:COUNT, ends included, or lists: --w0 0,10,20.  What is left out is fixed at --speed 1 --w0 0
     --delta 0.5 --radius 1 --decel 1; without --w0, --speed and --v0 the map is that of speeds from
     0 to 2 m/s by spins from -4 to 4 rad/s.  The status of a stop is 0, or 2 where the motion is too
     large for floating point.
@@ -144,7 +143,7 @@ def sweep(
             raise InputError(f"--{name} and --spread {name}=... clash: both give it")
     whole.refuse_outputs((table_path, *pressure))
     given = {ARGUMENTS[name]: value for name, value in numbers.items() if value is not None} | drawn
-    ranged = {name: value for name, value in given.items() if isinstance(value, tuple)}
+    ranged = {name: value for name, value in given.items() if isinstance(value, tuple | list)}
     laws = laws_given(pressure)
     if random is not None and (ranged or len(laws) > 1):
         first = next(iter(ranged), "pressure")
@@ -160,9 +159,10 @@ def sweep(
     ):
         raise InputError(
             "--plot needs a range: give --w0, --speed, --delta or another number as "
-            "START:STOP:COUNT"
+            "START:STOP:COUNT or a list"
         )
-    whole.refuse_memory([one[2] for one in ranged.values()] + [len(laws)], random)
+    sizes = [one[2] if isinstance(one, tuple) else len(one) for one in ranged.values()]
+    whole.refuse_memory([*sizes, len(laws)], random)
     puck = _puck(given, laws)
     launch = {name: _values(value) for name, value in given.items() if name not in _OF_PUCK}
     launch |= {name: _values(value) for name, value in given.items()
@@ -191,7 +191,7 @@ def _puck(given: dict[str, Any], laws: list[str]) -> Puck:
 
 
 def _first(value: Any) -> float | None:
-    if isinstance(value, tuple):
+    if isinstance(value, tuple | list):
         return float(value[0])
     if value is None or isinstance(value, float):
         return value

@@ -78,6 +78,7 @@ if TYPE_CHECKING:
     from puck_tables.table.store import table_for
     from puck_tables.table.table import Table
     from puck_tables.trajectory import Trajectory
+    from puck_tables.warming import warm_up
     from puck_tables.world.aimed import BoardAim
     from puck_tables.world.world import World
     from puck_tables.wrench.holds import Hold
@@ -169,6 +170,7 @@ _HOMES = {
     "stop": "stopping.stops",
     "stop_arrays": "stopping.array_functions",
     "table_for": "table.store",
+    "warm_up": "warming",
 }
 
 __all__ = [
@@ -253,6 +255,7 @@ __all__ = [
     "stop",
     "stop_arrays",
     "table_for",
+    "warm_up",
 ]
 
 __getattr__, __dir__ = lazily(__name__, _HOMES)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Sequence
 from importlib import import_module
 from pathlib import Path
@@ -179,7 +178,7 @@ class VerbsOfMany:
 def verb(module: str, name: str) -> Any:
     """What answers a question about a puck stands above it, and is loaded when it is asked."""
     path = f"puck_tables.{module}"
-    return getattr(sys.modules.get(path) or import_module(path), name)
+    return getattr(import_module(path), name)  # waits for whoever imports it just now
 
 
 def refuse_frictionless(puck: Any) -> None:

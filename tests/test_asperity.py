@@ -363,3 +363,14 @@ def test_the_command(tmp_path):
         assert done.exit_code == code, done.output
         assert len(done.stderr.strip().splitlines()[-1:]) == 1
         assert "Traceback" not in done.output
+
+
+@pytest.mark.parametrize("odd", [np.ones(3), [1.0], "a", None, np.nan, -1.0, 10**400])
+@pytest.mark.parametrize("name", ["amplitude", "length", "load", "mass", "pull"])
+def test_what_is_no_number_of_an_asperity_gets_a_sentence(name: str, odd: object):
+    given: dict = {"amplitude": 1e-6, "length": 4e-6, "load": 1.0, "mass": 0.1, name: odd}
+    if (name, odd is not np.nan and np.size(odd) == 1 and odd == -1.0) == ("pull", True):
+        assert Asperity(**given).pull == -1.0
+        return
+    with pytest.raises(InputError, match=name):
+        Asperity(**given)

@@ -135,18 +135,18 @@ def test_refusals_are_one_sentence_and_leave_nothing(
 @pytest.mark.parametrize(
     ("command", "option", "path"),
     [
-        ("simulate", "gravity", "puck[{}].gravity"),
+        ("simulate", "friction", "puck[{}].friction"),
         ("simulate", "w0", "puck[{}].launch.spin"),
         ("simulate", "mass", "puck[{}].mass"),
         ("sweep", "w0", "puck[{}].launch.spin"),
-        ("sweep", "gravity", "puck[{}].gravity"),
+        ("sweep", "height", "puck[{}].height"),
     ],
 )
 def test_a_number_of_the_only_puck_is_refused_with_what_to_write(
     command: str, option: str, path: str
 ) -> None:
     """And what it says is what does it."""
-    low, high = sorted(np.random.default_rng(19).uniform(0.1, 9.0, 2).round(2).tolist())
+    low, high = sorted(np.random.default_rng(19).uniform(0.001, 0.02, 2).round(4).tolist())
     value = f"{low!r}" if command == "simulate" else f"{low!r}:{high!r}:3"
     only = path.replace("puck[{}].launch", "launch").replace("puck[{}]", "puck")
     for given in ((f"--{option}", value), ("--set", f"{only}={value}")):

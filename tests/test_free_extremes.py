@@ -129,7 +129,10 @@ for puck in ({}, {"delta": 1.0}, {"delta": 2.0}, {"gyration": 3.0}):
 @pytest.mark.nightly
 def test_no_index_leaves_its_table(tmp_path: Path):
     """The same by numba's own check of bounds, in code compiled for it."""
-    environment = {**os.environ, "NUMBA_BOUNDSCHECK": "1", "NUMBA_CACHE_DIR": str(tmp_path)}
+    environment = {
+        **os.environ, "NUMBA_BOUNDSCHECK": "1", "NUMBA_DISABLE_JIT": "0",
+        "NUMBA_CACHE_DIR": str(tmp_path),
+    }  # fmt: skip
     done = subprocess.run(
         [sys.executable, "-c", BOUNDS], env=environment, capture_output=True, text=True
     )

@@ -124,4 +124,4 @@ def test_no_look_up_leaves_its_table():
 @pytest.mark.nightly
 def test_no_look_up_leaves_its_table_by_the_compilers_own_check():
     """The same with numba's test of every index, which raises."""
-    look_up_in_a_process(NUMBA_BOUNDSCHECK="1")
+    look_up_in_a_process(NUMBA_BOUNDSCHECK="1", NUMBA_DISABLE_JIT="0")

@@ -40,12 +40,13 @@ ROOMS = {
     "scene": "_core bulk contact errors io kernels motion puck result stopping table",
     "wrench": "_core contact errors io kernels puck result scene",
     "world": "_core bulk contact errors io kernels motion puck result scene stopping table",
+    "warming": "bulk kernels puck scene",
     "reference": "_core contact errors film io puck result scene trajectory world",
     "tradeoff": "_core _version accuracy contact io kernels motion puck result stopping table",
     "plot": "_core _version accuracy bulk chetaev errors film fitting io motion reference result "
     "scene stopping tradeoff trajectory world wrench",
     "cli": "_core _version accuracy bulk chetaev contact errors explore export film fitting io "
-    "kernels motion plot puck reference scene stopping table tradeoff world",
+    "kernels motion plot puck reference scene stopping table tradeoff warming world",
     "__init__": "_core _version",
 }
 DOORS = {
@@ -54,6 +55,7 @@ DOORS = {
         "kernels.compiled",
         "kernels.kept_code",
         "kernels.linking",
+        "kernels.numba_settings",
         "kernels.vectors",
     },
     "llvmlite": {"kernels.blocks", "kernels.linking", "kernels.vectors"},

@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from puck_tables.kernels.compile import inlined, inner, kernel
+from puck_tables.kernels.compiled import dispatcher_of
+from puck_tables.kernels.doors import Door
 from puck_tables.kernels.linking import Behind, Pasted
 
 
@@ -39,7 +41,10 @@ def _other_door(values: np.ndarray) -> float:
 
 
 def libraries(function) -> list:
-    return [overload.library for overload in function.overloads.values()]
+    of_numba = (
+        function.compiled if isinstance(function, Door) else dispatcher_of(function, fuses=False)
+    )
+    return [overload.library for overload in of_numba.overloads.values()]
 
 
 def test_what_lies_deep_is_linked_into_every_door():
@@ -66,4 +71,4 @@ def test_a_door_that_was_kept_is_linked_into_others_too():
         return kept(x)
 
     assert through(1.0) == expected
-    assert sum(kept._cache_hits.values()) == 1
+    assert sum(kept.compiled._cache_hits.values()) == 1

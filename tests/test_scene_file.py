@@ -8,12 +8,14 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pytest
 import xarray
 from click.testing import CliRunner
 from puck_tables.cli.main import main
 from scenes import simulate_scene, sweep_scene
 
-from puck_tables import Scene
+from puck_tables import InputError, Scene
+from puck_tables.scene.library import read_scene
 from puck_tables.scene.outcome import ENDS
 
 FORCE = "t,Fx,Fy\n0,0.1,0\n# Gewicht\n1,0,0\n"
@@ -103,3 +105,16 @@ def test_a_scene_written_by_powershell_is_read(tmp_path: Path) -> None:
     ):
         (tmp_path / f"{name}.toml").write_bytes(content)
         assert Scene.load(tmp_path / f"{name}.toml") == Scene.load("incline")
+
+
+def test_a_key_of_very_many_parts_is_refused_at_once(tmp_path: Path) -> None:
+    rng = np.random.default_rng(17)
+    for n in range(6):
+        parts = [["a", '"b c"', "puck", "'x'"][k] for k in rng.integers(0, 4, 30_000)]
+        key = [".", " . "][n % 2].join(parts)
+        text = [f"{key} = 1", f"[{key}]\n", f"a = {{ {key} = 1 }}"][n % 3]
+        (tmp_path / "deep.toml").write_text(f"title = 'a.b.c'\n# {'.' * 200}\n{text}\n")
+        with pytest.raises(InputError, match="a key in it has more than 50 parts"):
+            read_scene(tmp_path / "deep.toml")
+    (tmp_path / "plain.toml").write_text(f"# {'.' * 200}\ntitle = '{'v1.2 ' * 30}'\n")
+    assert read_scene(tmp_path / "plain.toml")["title"].startswith("v1.2")

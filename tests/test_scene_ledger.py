@@ -33,7 +33,7 @@ def test_the_ledger_closes(tmp_path: Path) -> None:
     seen = _closes([*range(200), 469, 633], tmp_path)  # over an edge; twice to a dead cushion
     assert seen >= {
         "at rest", "time is up", "over the edge",
-        "stick", "slip", "impact", "contact", "entry", "exit", "edge",
+        "stick", "slip", "impact", "contact", "entry", "exit", "edge", "overhang",
     }  # fmt: skip
 
 

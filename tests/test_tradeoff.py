@@ -121,7 +121,7 @@ def test_vectors_of_the_look_up_are_the_plain_sums():
         c = table.cut(powers)
         out = np.empty((3, 1))
         stops_kernel(powers)(*launch, c, *out, 1)
-        side, xi = slip_place.py_func(np.hypot(0.6, 0.1), 0.9)
+        side, xi = slip_place(np.hypot(0.6, 0.1), 0.9)
         cell, t = divmod(xi * 47, 1.0)
         weights = [(1 - t) ** 3, 4 - 6 * t**2 + 3 * t**3, 1 + 3 * t + 3 * t**2 - 3 * t**3, t**3]
         row = weights @ c[side, int(cell) : int(cell) + 4]

@@ -1,36 +1,39 @@
-"""Short commands compile nothing, tell what compiled code tells, and give way to it in time."""
+"""Single questions compile nothing, tell what compiled code tells, and give way to it in time."""
 
 from __future__ import annotations
 
 import json
 import math
 import os
+import pickle
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+import threading
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from puck_tables.cli import start, uncompiled
 
+import puck_tables as pt
 from puck_tables._core.arrays import FloatArray
-from puck_tables.errors import InputError
-from puck_tables.kernels import as_written, blocks, vectors
-from puck_tables.kernels.cache import cache_folder
-from puck_tables.kernels.compile import kernel
+from puck_tables.kernels import as_written, blocks, doors, vectors
+from puck_tables.kernels.compile import inner, kernel, patience
+from puck_tables.kernels.doors import Door
+from puck_tables.kernels.patience import here, one_question
 
 LAUNCH = ["simulate", "--v0", "1,0", "--w0", "5"]
+PUCK = [sys.executable, "-c", "from puck_tables.cli.start import main; main()"]
+COMPILED, AS_WRITTEN = {"NUMBA_DISABLE_JIT": "0"}, {"NUMBA_DISABLE_JIT": "1"}
+THOROUGH = pytest.mark.thorough
 
 
-def run(arguments: list[str], *, before: str = "", **environment: str) -> tuple[str, str]:
-    """What a command says on stdout and stderr, after some Python."""
-    code = f"from puck_tables.cli import uncompiled, start\n{before}\nstart.main()"
+def run(command: list[str], **environment: str) -> tuple[str, str]:
+    """What a command says on stdout and stderr."""
     ended = subprocess.run(
-        [sys.executable, "-c", code, *arguments], env={**os.environ, **environment},
-        capture_output=True, text=True, check=True,
-    )  # fmt: skip
+        command, env={**os.environ, **environment}, capture_output=True, text=True, check=True
+    )
     return ended.stdout, ended.stderr
 
 
@@ -43,9 +46,6 @@ def numbers(told: object) -> list[float]:
     return [float(told)] if isinstance(told, int | float) else []
 
 
-THOROUGH = pytest.mark.thorough
-
-
 @pytest.mark.parametrize(
     "arguments",
     [
@@ -55,100 +55,253 @@ THOROUGH = pytest.mark.thorough
         pytest.param(["reference", "coin"], id="reference", marks=THOROUGH),
     ],
 )
-def test_nothing_is_compiled(arguments: list[str], tmp_path: Path):
-    told, said = run([*arguments, "--json"], NUMBA_CACHE_DIR=str(tmp_path))
+def test_the_command_compiles_nothing(arguments: list[str], tmp_path: Path):
+    told, said = run([*PUCK, *arguments, "--json"], NUMBA_CACHE_DIR=str(tmp_path))
     assert not said
-    assert not list(tmp_path.rglob("*.code"))
+    assert not list(tmp_path.iterdir())
     assert len(numbers(json.loads(told))) > 5
 
 
-COMPILED = {"NUMBA_DISABLE_JIT": "0"}
+# questions to a puck drawn anew, and what is taken of the answers
+QUESTIONS = """
+def simulated(pt, puck, v, w, at): return puck.simulate(v, w, times=[at]).frames["x"]
+def stopped(pt, puck, v, w, at): return puck.stop(v, w).stop_position
+def states(pt, puck, v, w, at): return puck.states(v, w, at).x
+def aimed(pt, puck, v, w, at): return puck.aim((0.2 * v[0], 0.1 * v[1])).launch_spin
+def scene(pt, puck, v, w, at):
+    floor, launch = pt.Floor(slope=0.02), pt.Launch(v, w)
+    return pt.Scene(puck, launch=launch, floor=floor).simulate([at]).last["x"]
+def board(pt, puck, v, w, at):
+    r, there = puck.radius, pt.Launch(position=(2.5 * puck.radius, 0.01 * puck.radius))
+    one, two = (pt.Piece(r, friction=0.2, launch=one) for one in (pt.Launch(v, w), there))
+    world = pt.Scene(pucks=[one, two]).world()
+    for _ in range(6):
+        world.advance(at)
+    return world.state()
+"""
+ASKED = """
+import json, sys, numpy, puck_tables as pt
+radius, height, friction, vx, vy, spin, at = json.loads(sys.argv[1])
+puck = pt.Puck(radius=radius, height=height, friction=friction)
+answers = [
+    numpy.ravel(ask(pt, puck, (vx, vy), spin, at)).tolist()
+    for ask in (simulated, stopped, states, aimed, scene, board)
+]
+print(json.dumps([answers, "numba" in sys.modules]))
+"""
 
 
 @pytest.mark.thorough
-def test_numbers_are_those_of_compiled_code():
-    told, compiled = run([*LAUNCH, "--json"])[0], run([*LAUNCH, "--json"], **COMPILED)[0]
-    found, expected = (numbers(json.loads(one)) for one in (told, compiled))
-    np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-15)
-    assert found != expected  # to rounding: so the next test sees which is which
-
-
-@pytest.mark.thorough
-def test_what_takes_long_begins_anew_and_compiled():
-    soon = "uncompiled.AT_FIRST, uncompiled._OTHERS = 1e-3, ('none', 1e-3)"
-    again = run([*LAUNCH, "--json"], before=soon)[0]
-    assert again == run([*LAUNCH, "--json"], **COMPILED)[0]
-
-
-@pytest.mark.thorough
-def test_a_table_is_built_by_compiled_code(tmp_path: Path):
-    kept = {"NUMBA_CACHE_DIR": str(Path(cache_folder() or "").parent)}
-    command, own = [*LAUNCH, "--delta", "2.07", "--json"], tmp_path / "own"
-    soon = "uncompiled.AT_FIRST = 0.5"  # so that patience would end while the table is built
-    told = run(command, before=soon, XDG_CACHE_HOME=str(tmp_path), **kept)[0]
-    assert told == run(command, XDG_CACHE_HOME=str(own), **kept, **COMPILED)[0]
+@pytest.mark.parametrize("seed", range(3))
+def test_python_compiles_nothing_and_tells_what_compiled_code_tells(seed: int, tmp_path: Path):
+    rng = np.random.default_rng(seed)
+    radius, friction = rng.uniform(0.02, 0.1), rng.uniform(0.1, 0.5)
+    drawn = [
+        radius, rng.uniform(0.1, 0.9) * radius / friction, friction, *rng.uniform(0.3, 1.5, 2),
+        rng.uniform(-30.0, 30.0), rng.uniform(0.01, 0.1),
+    ]  # fmt: skip
+    asked = [sys.executable, "-c", QUESTIONS + ASKED, json.dumps(drawn)]
+    told, said = run(asked, XDG_CACHE_HOME=str(tmp_path))
+    answers, loaded = json.loads(told)
+    assert not said
+    assert not loaded
+    assert not list(tmp_path.rglob("*.code"))
+    compiled = json.loads(run(asked, **COMPILED)[0])[0]
+    for found, expected in zip(answers, compiled, strict=True):
+        np.testing.assert_allclose(found, expected, rtol=1e-11, atol=1e-13)
 
 
 @pytest.mark.thorough
 @pytest.mark.parametrize("name", ["wet-patch", "air-hockey", "carrom-break"])
 def test_scenes_run_alike(name: str):
-    command = ["simulate", "--scene", name, "--json"]
-    told, compiled = run(command)[0], run(command, **COMPILED)[0]
+    command = [*PUCK, "simulate", "--scene", name, "--json"]
+    told, compiled = run(command, **AS_WRITTEN)[0], run(command, **COMPILED)[0]
     found, expected = json.loads(told), json.loads(compiled)
     assert found.pop("steps", 0) == pytest.approx(expected.pop("steps", 0), rel=0.05)
     np.testing.assert_allclose(numbers(found), numbers(expected), rtol=1e-6, atol=1e-8)
 
 
 @pytest.fixture
-def begun(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[str]]:
-    """How often the command began anew, in a process as if it were a command's own."""
-    anew: list[str] = []
-    monkeypatch.setattr(start, "alone", True)
-    monkeypatch.setattr(uncompiled, "_begin_compiled", lambda *_: anew.append("begun"))
-    monkeypatch.setenv("NUMBA_DISABLE_JIT", "")
-    monkeypatch.delenv("NUMBA_DISABLE_JIT")
-    with np.errstate():
-        yield anew
+def patient(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Kernels run as they are written at first, in this thread."""
+    monkeypatch.setattr(here, "at_once", False)
+
+
+def is_compiled(door: Any) -> bool:
+    assert isinstance(door, Door)
+    return door._ready is not None and bool(door.compiled.overloads)
+
+
+@inner
+def _deeper(n: int, out: FloatArray) -> None:
+    out[1] += 1.0 / (n + 1.0)
+
+
+def counting() -> Any:
+    """A door to a kernel that takes its time, and changes what it is given."""
+
+    @kernel
+    def count(items: int, loops: int, out: FloatArray) -> float:
+        patience(items)
+        for n in range(loops):
+            patience(1)
+            out[0] += math.sqrt(n)
+            _deeper(n, out)
+        return float(out[0])
+
+    return count
+
+
+@pytest.mark.usefixtures("patient")
+def test_short_work_is_done_as_it_is_written():
+    count, out = counting(), np.zeros(2)
+    assert count(1, 3, out) == 1.0 + math.sqrt(2.0)
+    assert out.tolist() == [1.0 + math.sqrt(2.0), 1.0 + 0.5 + 1.0 / 3.0]
+    assert not is_compiled(count)
+
+
+@pytest.mark.usefixtures("patient")
+@pytest.mark.parametrize(("items", "at_first"), [(1, 1e-3), (65, 1.5)])
+def test_long_work_goes_on_compiled_from_what_it_was_given(
+    items: int, at_first: float, monkeypatch: pytest.MonkeyPatch
+):
+    monkeypatch.setattr(doors, "AT_FIRST", at_first)
+    count, out = counting(), np.array([1.0, 2.0])
+    loops = 50_000
+    total = count(items, loops, out)
+    assert is_compiled(count)
+    expected = [1.0, 2.0]
+    for n in range(loops):
+        expected[0] += math.sqrt(n)
+        expected[1] += 1.0 / (n + 1.0)
+    assert out.tolist() == expected
+    assert total == expected[0]
+    assert count.spent < 0.5  # and never tried again
+    spent = count.spent
+    count(1, 3, out)
+    assert count.spent == spent
+
+
+@pytest.mark.usefixtures("patient")
+@pytest.mark.parametrize(
+    ("number", "at"),
+    [
+        (lambda x: 1.0 / x, 0.0),
+        (lambda x: math.exp(x), 1e3),
+        (lambda x: math.sqrt(x), -1.0),
+        (lambda x: math.log(x), 0.0),
+        (lambda x: x**1.5, -0.1),
+        (lambda x: math.sqrt(x**1.5), -0.1),
+    ],
+)
+def test_what_python_refuses_to_compute_is_compiled(number: Callable[[float], float], at: float):
+    inside = inner(number)
+
+    @kernel
+    def marked(x: float, out: FloatArray) -> float:
+        out[0] += 1.0
+        return inside(x)
+
+    with np.errstate(all="ignore"):
+        expected = float(np.asarray(_numpy(number, at)))
+    out = np.zeros(1)
+    found = marked(at, out)
+    assert found == expected or (math.isnan(found) and math.isnan(expected))
+    assert out[0] == 1.0  # what was tried before has left no trace
+    assert is_compiled(marked)
+
+
+def _numpy(number: Callable[[Any], Any], at: float) -> Any:
+    """The same by NumPy, which has inf and NaN."""
+    named = {"exp": np.exp, "sqrt": np.sqrt, "log": np.log}
+    apart = {**number.__globals__, "math": type("of_numpy", (), named)}
+    return type(number)(number.__code__, apart)(np.float64(at))
+
+
+@pytest.mark.usefixtures("patient")
+def test_an_interrupt_leaves_what_was_given_as_it_was():
+    def stop_it(out: FloatArray) -> None:
+        out[0] = 7.0
+        raise KeyboardInterrupt
+
+    out = np.zeros(1)
+    with pytest.raises(KeyboardInterrupt):
+        kernel(stop_it)(out)
+    assert out[0] == 0.0
+    assert not here.as_written
+
+
+def test_many_threads_compile_once(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(doors, "AT_FIRST", 1e-3)
+    count, found, begin = counting(), [], threading.Barrier(8)
+
+    def ask() -> None:
+        here.at_once = False
+        begin.wait()
+        found.append(count(1, 20_000, np.zeros(2)))
+
+    threads = [threading.Thread(target=ask) for _ in range(8)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(found) == 8
+    assert len(set(found)) == 1
+    assert len(count.compiled.overloads) == 1
+
+
+@pytest.mark.usefixtures("patient")
+def test_what_was_compiled_before_is_taken_unless_one_question_is_asked(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+):
+    monkeypatch.setattr("puck_tables.kernels.kept_code.cache_folder", lambda: tmp_path)
+    monkeypatch.setattr("puck_tables.kernels.cache._place", lambda: tmp_path)
+    monkeypatch.setattr(here, "at_once", True)
+    counting()(1, 3, np.zeros(2))  # kept
+    monkeypatch.setattr(here, "at_once", False)
+    with one_question():
+        count = counting()
+        count(1, 3, np.zeros(2))
+        assert not is_compiled(count)
+    count = counting()
+    count(1, 3, np.zeros(2))
+    assert is_compiled(count)
+    assert sum(count.compiled.stats.cache_hits.values()) == 1
+
+
+def test_the_switch_of_numba_leaves_functions_as_they_are():
+    code = (
+        "from puck_tables.kernels.compile import kernel, inlined\n"
+        "def one(): pass\n"
+        "print(kernel(one) is one, inlined(one) is one)"
+    )
+    assert run([sys.executable, "-c", code], **AS_WRITTEN)[0] == "True True\n"
+
+
+def test_a_door_is_handed_to_other_processes_by_its_name():
+    from puck_tables.motion.limits import log_ratio
+
+    assert isinstance(log_ratio, Door)
+    assert pickle.loads(pickle.dumps(log_ratio)) is log_ratio
 
 
 @pytest.mark.parametrize(
-    "number",
+    ("name", "value"),
     [
-        lambda: 1.0 / 0.0,
-        lambda: math.exp(1e3),
-        lambda: math.sqrt(-1),
-        lambda: math.floor(math.nan),
-        lambda: math.sqrt((-0.1) ** 1.5),
+        ("NUMBA_NUM_THREADS", "0"), ("NUMBA_NUM_THREADS", "-2"), ("NUMBA_NUM_THREADS", "many"),
+        ("NUMBA_CPU_FEATURES", "nonsense"), ("NUMBA_OPT", "best"), ("NUMBA_BOUNDSCHECK", "x"),
     ],
-)
-def test_what_python_refuses_to_compute_is_compiled(number: Callable[[], float], begun: list[str]):
-    with uncompiled.uncompiled():
-        number()
-    assert begun == ["begun"]
-
-
-def test_a_refusal_stays_one(begun: list[str]):
-    with pytest.raises(InputError, match="of input"), uncompiled.uncompiled():
-        raise InputError("of input")
-    assert not begun
-
-
-def test_work_that_is_long_is_compiled(begun: list[str]):
-    with uncompiled.uncompiled():
-        as_written.long_work()
-    assert begun == ["begun"]
-    as_written.long_work()
-    assert begun == ["begun"]  # outside nobody listens
-
-
-def test_a_board_whose_compiled_code_is_kept_is_not_run_uncompiled(
-    begun: list[str], monkeypatch: pytest.MonkeyPatch
+)  # fmt: skip
+def test_settings_that_numba_cannot_use_are_refused_in_one_sentence(
+    name: str, value: str, tmp_path: Path
 ):
-    for kept in (False, True):
-        monkeypatch.setattr(uncompiled, "_kept", lambda kernel, kept=kept: kept)
-        with uncompiled.uncompiled():
-            uncompiled.several_pucks()
-        assert len(begun) == kept
+    given = {**os.environ, **COMPILED, name: value, "NUMBA_CACHE_DIR": str(tmp_path)}
+    ended = subprocess.run([*PUCK, *LAUNCH], env=given, capture_output=True, text=True)
+    assert ended.returncode == 2
+    assert ended.stdout == ""
+    assert len(ended.stderr.splitlines()) == 1
+    assert f"{name}={value}" in ended.stderr
+    assert pt.errors.InputError.__name__ not in ended.stderr
 
 
 @pytest.mark.parametrize("single", [False, True])
@@ -172,18 +325,12 @@ def test_operations_on_vectors_are_those_of_compiled_code(single: bool):
 
     w, s = 0.3, -0.7
     rows, values = sums(c, w, s)
-    close = {"rtol": 1e-13, "atol": 1e-14}
-    found = as_written.weighted_rows(c, 3, (w, 1.0 - w, 2.0 * w), 4)
-    np.testing.assert_allclose(found, rows, **close)
-    np.testing.assert_allclose(
-        as_written.spline_values(c, 5, (w, 1.0 - w), s, 8, 3), values, **close
-    )
+    assert as_written.weighted_rows(c, 3, (w, 1.0 - w, 2.0 * w), 4) == rows
+    assert as_written.spline_values(c, 5, (w, 1.0 - w), s, 8, 3) == values
     if not single:
         one, other = polynomials(c, w, s)
-        found = as_written.spline_polynomials(c, 7, (w, 1.0 - w), s, 8, 4)
-        np.testing.assert_allclose(found, one, **close)
-        found = as_written.spline_slopes(c, 7, (w, 1.0 - w), s, 4, 3)
-        np.testing.assert_allclose(found, other, **close)
+        assert as_written.spline_polynomials(c, 7, (w, 1.0 - w), s, 8, 4) == one
+        assert as_written.spline_slopes(c, 7, (w, 1.0 - w), s, 4, 3) == other
 
 
 def test_bits_and_rows_are_those_of_compiled_code():

@@ -205,7 +205,8 @@ def test_over_the_edge():
         pucks=[piece(0, 0, (1.0, 0.0))], edges=[pt.Edge((0.1, 0.0), normal=(-1.0, 0.0))]
     )
     run = scene.simulate()
-    assert [event.what for event in run.events] == ["edge"]
+    assert [event.what for event in run.events] == ["overhang", "edge"]
+    assert run.events[0].x == pytest.approx(0.1 - scene.pucks[0].radius, abs=1e-12)
     assert run.last["in_play"].tolist() == [0.0]
     assert run.energy_residual < 1e-12
 

@@ -17,12 +17,12 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.colours import is_colour, meant
 from puck_tables._core.fields import LISTED, Kind, in_tables, specs
 from puck_tables._core.real import shown
+from puck_tables._core.units import SHOWN, quantity
 from puck_tables.errors import PuckError
 
 T = TypeVar("T")
 
 RANGE = re.compile(r"([^:]+):([^:]+):([0-9]{1,9})")
-DEGREES = re.compile(r"([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?) ?deg")
 MAX_COUNT = 1_000_000  # numbers of one range
 
 
@@ -249,15 +249,17 @@ def _number(kind: Kind, value: Any, path: str, reading: Reading, default: Any) -
         except PuckError as error:
             reading.errors.append(f"{path}: {error}")
         return value  # type: ignore[return-value]  # a law in place of a number
-    if isinstance(value, str) and kind.unit == "rad" and DEGREES.fullmatch(value.strip()):
-        value = _angle(value.strip(), kind)
+    if isinstance(value, str) and (measured := quantity(value, kind.unit)) is not None:
+        value = measured
     if isinstance(value, str) and reading.ranges is not None:
         match = RANGE.fullmatch(value.strip())
         try:
-            start, stop = (_angle(match[n], kind) for n in (1, 2))  # type: ignore[index]
+            start, stop = (_measured(match[n], kind) for n in (1, 2))  # type: ignore[index]
             count = int(match[3])  # type: ignore[index]
         except (TypeError, ValueError):
-            reading.fault(path, value, f"{_one(kind)}, or a range 'START:STOP:COUNT' of them")
+            reading.fault(
+                path, value, f"{_one(kind, value)}, or a range 'START:STOP:COUNT' of them"
+            )
             return math.nan
         if not 2 <= count <= MAX_COUNT:
             reading.fault(path, value, f"a range of 2 to {MAX_COUNT} numbers")
@@ -269,7 +271,7 @@ def _number(kind: Kind, value: Any, path: str, reading: Reading, default: Any) -
     if type(value) not in (float, int) and (
         isinstance(value, bool | np.timedelta64) or not isinstance(value, Real)
     ):
-        reading.fault(path, value, _one(kind))
+        reading.fault(path, value, _one(kind, value))
         return math.nan
     try:
         number = float(value)
@@ -296,17 +298,14 @@ def _listed(kind: Kind, items: list[Any], path: str, reading: Reading) -> float:
     return numbers[0]
 
 
-def _angle(text: str, kind: Kind) -> float:
-    """A number; an angle may be in degrees.
-
-    Examples
-    --------
-    >>> _angle("180deg", Kind("number", "rad")), _angle("2", Kind("number", "m"))
-    (3.141592653589793, 2.0)
-    """
-    degrees = kind.unit == "rad" and DEGREES.fullmatch(text.strip())
-    return math.radians(float(degrees[1])) if degrees else float(text)
+def _measured(text: str, kind: Kind) -> float:
+    """A number, perhaps with a unit."""
+    found = quantity(text, kind.unit)
+    return float(text) if found is None else found
 
 
-def _one(kind: Kind) -> str:
-    return dataclasses.replace(kind, shape="number").allowed()
+def _one(kind: Kind, value: Any = None) -> str:
+    """A number that is allowed, in words; to who wrote a text, how units are written."""
+    words = dataclasses.replace(kind, shape="number").allowed()
+    hint = isinstance(value, str) and kind.unit in SHOWN
+    return f"{words}, or with its unit, as '{SHOWN[kind.unit]}'" if hint else words

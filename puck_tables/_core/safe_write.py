@@ -13,6 +13,17 @@ from puck_tables._core.parts import forget, hold, new_part, remove_dead_once
 from puck_tables.errors import OutputError
 
 
+def as_utf8(text: str) -> str:
+    r"""A text that a file can hold: what names of files have that are no text is escaped.
+
+    Examples
+    --------
+    >>> as_utf8("law" + chr(0xDCFF) + ".csv"), as_utf8("Stück")
+    ('law\\udcff.csv', 'Stück')
+    """
+    return text if text.isascii() else text.encode("utf-8", "backslashreplace").decode()
+
+
 def check_target(path: str | Path, overwrite: bool = False) -> Path:
     """Refuse an output that could not be written later, before any work is done.
 

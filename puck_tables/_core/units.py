@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from decimal import Decimal
 from difflib import get_close_matches
 
 from puck_tables.errors import InputError
@@ -40,6 +41,11 @@ _WHOLE = {
     "mps": "m/s", "rpm": "turn/min", "rps": "turn/s", "mmps": "mm/s", "mms": "mm/s", "cmps": "cm/s",
     "cms": "cm/s", "kmh": "km/h", "kmph": "km/h", "kph": "km/h",
 }  # fmt: skip
+_MASSES = {"kg": 1.0, "g": 1e-3, "mg": 1e-6, "t": 1e3, "lb": 0.45359237, "oz": 0.028349523125}
+KIND_OF = {"m": "length", "m/s": "velocity", "rad": "angle", "rad/s": "spin", "s": "time",
+           "N": "force", "N m": "torque", "kg": "mass"}  # fmt: skip
+SHOWN = {"m": "25mm", "m/s": "2km/h", "rad": "45deg", "rad/s": "30rpm", "s": "40ms", "kg": "20g",
+         "N": "5mN", "N m": "5 mN m"}  # fmt: skip
 EXAMPLES = {"velocity": "m/s", "spin": "rad/s", "length": "m", "time": "s", "angle": "rad",
             "force": "N", "torque": "N m"}  # fmt: skip
 _NUMBER = r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?"
@@ -98,6 +104,30 @@ mm, um, km, in, ft, yd, px
             f"{name} = {text!r:.40} is not known{hint} Known: {', '.join(_KINDS[kind][0])}"
         )
     return found
+
+
+def quantity(text: str, unit: str) -> float | None:
+    """A number with a unit behind it, such as '25.4mm', in an SI unit; None for anything else.
+
+    Parameters
+    ----------
+    text : as somebody wrote it
+    unit : the SI unit in which it is wanted, of :data:`KIND_OF`
+
+    Examples
+    --------
+    >>> quantity("25.4mm", "m"), quantity("2 km/h", "m/s"), quantity("180deg", "rad")
+    (0.0254, 0.5555555555555556, 3.141592653589793)
+    >>> quantity("25.4", "m"), quantity("25.4 kg", "m")
+    (None, None)
+    """
+    found = re.fullmatch(rf"\s*({_NUMBER})\s*([^\s\d].*?)\s*", text)
+    size = unit_size(found[2], KIND_OF[unit]) if found and unit in KIND_OF else None
+    if found is None or size is None:
+        return None
+    if known(found[2], "angle") == "deg":
+        return math.radians(float(found[1]))
+    return float(Decimal(found[1]) * Decimal(repr(size)))  # 25.4mm is 0.0254 to the last bit
 
 
 def pixel_size(scale: str | float) -> float:
@@ -214,7 +244,7 @@ def unit_size(unit: str, kind: str) -> float | None:
     Parameters
     ----------
     unit : as somebody wrote it
-    kind : length, time, angle, velocity, spin, force, torque; ratio: a pure number; radius: a
+    kind : length, time, angle, velocity, spin, force, torque, mass; ratio: a pure number; radius: a
         length or a pure number; any: whatever it is, of size 1
 
     Examples
@@ -234,6 +264,8 @@ def unit_size(unit: str, kind: str) -> float | None:
         return unit_size(text, "length") if size is None else size
     if kind == "force":
         return _FORCES.get(text, _FORCES.get(text.lower()) if text.islower() else None)
+    if kind == "mass":
+        return _MASSES.get(text)
     if kind == "torque":
         parts = re.fullmatch(r"(\w*?N|\w*?gf|lbf|newtons?)[\s*·.⋅-]*([a-zµμ]+)", text)
         size = None if parts is None else unit_size(parts[1], "force")

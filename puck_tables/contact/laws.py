@@ -24,6 +24,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.columns import PRESSURE, RADIUS, numbers_of
 from puck_tables._core.own_folder import say
 from puck_tables._core.real import broadcast, instance, real_array, shown
+from puck_tables._core.safe_write import as_utf8
 from puck_tables._core.units import unit_size
 from puck_tables.contact import closed_form, one_sided, quadrature
 from puck_tables.contact.integrals import PatchIntegrals, checked_phi, slip_direction
@@ -213,7 +214,7 @@ def law_of(text: str) -> Law:
         return _washer(inner)
     if not text.lower().endswith(".csv"):
         raise InputError(f"no pressure law is called {shown(text)}: choose {NAMES}")
-    return profile_law(*_read(text), name=Path(text).name)
+    return profile_law(*_read(text), name=as_utf8(Path(text).name))
 
 
 @lru_cache(maxsize=64)

@@ -78,15 +78,17 @@ class Certainty:
     def error_of(self, slope: FloatArray, plausible: float) -> float:
         """The standard error of what changes with the unknowns by ``slope`` (m,).
 
-        Infinite where a direction that is not seen changes it by a fifth of what is plausible, NaN
-        where an unknown on the end of its range does.
+        Infinite where a direction that is not seen changes it by a fifth of what is plausible.
         """
         by_each = slope * self.plausible
         if np.abs(self.blind @ by_each).max(initial=0.0) > _MEMBER * plausible:
             return math.inf
-        if np.abs(by_each[np.flatnonzero(self.pinned)]).max(initial=0.0) > _ROUNDING * plausible:
-            return math.nan
         return self.spread * math.sqrt(max(float(slope @ self.covariance @ slope), 0.0))
+
+    def follows_end(self, slope: FloatArray, plausible: float) -> bool:
+        """Whether what changes by ``slope`` (m,) follows from what is on the end of its range."""
+        by_each = np.abs(slope * self.plausible)[np.flatnonzero(self.pinned)]
+        return bool(by_each.max(initial=0.0) > _ROUNDING * plausible)
 
     @property
     def errors(self) -> FloatArray:

@@ -14,6 +14,7 @@ from puck_tables.errors import InputError
 from puck_tables.film.track import Track
 from puck_tables.fitting.asked import Asked
 from puck_tables.fitting.blindness import blind_spots
+from puck_tables.fitting.by_speed import over_speeds
 from puck_tables.fitting.certainty import (
     Certainty,
     certainty_of,
@@ -39,17 +40,16 @@ from puck_tables.fitting.held_out import HeldOut, predicted, split
 from puck_tables.fitting.impacts import Piece, cut
 from puck_tables.fitting.joining import Line
 from puck_tables.fitting.laws import LawScore, chi2_under, compare, variants_of
-from puck_tables.fitting.least_squares import LOOSE, minimise
 from puck_tables.fitting.misread import misread
 from puck_tables.fitting.numbers import numbers_of, plausible_for
 from puck_tables.fitting.outcome import Fit
-from puck_tables.fitting.parameters import NODES
 from puck_tables.fitting.problem import Problem
 from puck_tables.fitting.residual_tests import drift, excess_of, may_misfit, no_answer, runs
 from puck_tables.fitting.rivals import mirrored, rivals_of, taken
 from puck_tables.fitting.seen import Seen, noise_of
 from puck_tables.fitting.tied import Impact, impacts_apart, impacts_joined, not_met, tie
 from puck_tables.fitting.timing import Known
+from puck_tables.fitting.unspun import without_spin
 from puck_tables.puck import Puck
 
 Progress = Callable[[int, int], None]
@@ -198,7 +198,7 @@ def fit(
     constant = found
     if speeds:
         refuse_faster(speeds, found)
-        found = _over_speeds(found, speeds, between, known)
+        found = over_speeds(found, speeds, between, known)
         refuse_opening(found)
     say(1, steps)
     certainty = _certainty(found, known)
@@ -257,7 +257,12 @@ def fit(
         drift=drift(found),
         left_out=left_out,
         cut_off=_cut_off(slides, problem, known, left_out),
-        blind=(nowhere,) if nowhere else blind_spots(found, seen, lost, rivals, unsigned),
+        blind=(nowhere,)
+        if nowhere
+        else (
+            *without_spin(found, numbers, known),
+            *blind_spots(found, seen, lost, rivals, unsigned),
+        ),
         laws=scores,
         held_out=predictions,
         impacts=hits,
@@ -271,23 +276,6 @@ def fit(
     if result.complaints:
         result = replace(result, misread=misread(slides, problem, known))
     return result
-
-
-def _over_speeds(
-    found: Estimate, speeds: tuple[float, ...], between: str, known: Known
-) -> Estimate:
-    """The estimate with a friction coefficient for each slip speed, from that of one for all."""
-    problem = found.problem
-    asked = problem.asked.over(speeds, between)
-    numbers = problem.found(found.x)
-    numbers.update({name: numbers["friction"] for name in asked.free if name in NODES})
-    moved = replace(problem, asked=asked, weights=())
-    walls = problem.found_walls(found.x)
-    start = moved.unknowns(numbers, problem.launches(found.x), walls)
-    # where f is the same at all speeds the slopes of a cubic jump: lines lead away from there
-    lines = replace(moved, asked=problem.asked.over(speeds, "linear"))
-    start, _ = minimise(lines, start, LOOSE)
-    return estimate(moved, start, known)
 
 
 def _begin_jitter(problem: Problem, noise: float, stamps: float | None) -> float:

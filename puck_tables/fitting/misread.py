@@ -1,4 +1,4 @@
-"""What may have been said wrongly of tracks that do not fit: their angles, or the radius.
+"""Why tracks do not fit: their angles, the radius, drag, or a friction over the slip speed.
 
 Each is tried out: where residuals then are far smaller, about as noise is, that is told.
 """
@@ -13,8 +13,11 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
+from puck_tables.fitting.asked import Asked
+from puck_tables.fitting.by_speed import tried
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.fitted import fitted
+from puck_tables.fitting.parameters import NODES
 from puck_tables.fitting.problem import TURN, Problem
 from puck_tables.fitting.timing import Known
 
@@ -28,6 +31,8 @@ _ANGLES = (
     (_DEGREE, "if angles were in degrees, not in rad: say their unit"),
     (1.0 / _DEGREE, "if angles were in rad, not in degrees: say their unit"),
 )
+_DRAG = "with drag besides friction"
+_BETTER = math.log(1.2)  # more numbers always fit a little better
 _HELD = ("launch_spin", "launch_angle")  # what is said of these is said of the angles as they are
 
 
@@ -43,24 +48,53 @@ def misread(found: Estimate, problem: Problem, known: Known) -> str:
     told, best, given = "", math.log(_FAR), problem.asked.known()["radius"]
     for words, other, scale in _others(problem):
         try:
-            tried = fitted(other, known, refit=False)
+            one = fitted(other, known, refit=False)
         except InputError:  # such a puck, or such a track, there is not
             continue
-        gain = _size(found, 1.0) - _size(tried, scale)
-        radius = tried.problem.asked.scales(tried.problem.found(tried.x))[2]
-        same = other.films is problem.films and abs(radius / given - 1.0) < _NEAR
-        if gain > best and not same and _fits(tried, problem.noise[0]):
+        gain = _size(found, 1.0) - _size(one, scale)
+        radius = one.problem.asked.scales(one.problem.found(one.x))[2]
+        found_radius = "radius" in other.asked.free and "radius" not in problem.asked.free
+        same = found_radius and abs(radius / given - 1.0) < _NEAR
+        if gain > best and not same and _fits(one, problem.noise[0]):
             told = f"Residuals would be {math.exp(gain):.2g} times smaller " + words.format(radius)
             best = gain
+    if _may_change(problem.asked):
+        far = best + _BETTER if told else best
+        told = _by_speed(found, far, problem.noise[0]) or told
     return told
+
+
+def _may_change(asked: Asked) -> bool:
+    """Whether nothing was asked that goes with no friction over slip speed."""
+    named = {"drag", "inner", "decel", "gravity"} & {*asked.free, *asked.fixed}
+    uniform = asked.puck.body.law.name == "uniform"
+    return uniform and not named and not asked.speeds and "friction" in asked.free
+
+
+def _by_speed(found: Estimate, best: float, noise: float) -> str:
+    """A sentence on a friction over slip speed, if that fits far better than ``best``."""
+    try:
+        other = tried(found)
+    except InputError:  # hardly any friction, at no speed
+        return ""
+    gain = _size(found, 1.0) - _size(other, 1.0)
+    if not (gain > best and _fits(other, noise)):
+        return ""
+    asked, numbers = other.problem.asked, other.problem.found(other.x)
+    speeds = asked.speeds
+    values = [numbers[name] for name in NODES[: len(speeds)]]
+    told = ", ".join(f"{f:.2g} at {u:g} m/s" for u, f in zip(speeds, values, strict=True))
+    return (
+        f"Residuals would be {math.exp(gain):.2g} times smaller with a friction over slip speed "
+        f"({told}): find it (--slip-speeds {','.join(f'{u:g}' for u in speeds)})"
+    )
 
 
 def _others(problem: Problem) -> Iterator[tuple[str, Problem, float]]:
     """Other readings, each in words and with the factor of its angles."""
     asked = problem.asked
-    if all(film.angle is None for film in problem.films):  # the radius is told by angles alone
-        return
-    if not any(name in given for name in _HELD for given in (asked.fixed, asked.bounds)):
+    angled = any(film.angle is not None for film in problem.films)
+    if angled and not any(name in given for name in _HELD for given in (asked.fixed, asked.bounds)):
         for factor, words in _ANGLES:
             films = tuple(
                 film if film.angle is None else replace(film, angle=factor * film.angle)
@@ -68,10 +102,15 @@ def _others(problem: Problem) -> Iterator[tuple[str, Problem, float]]:
             )
             noise = problem.noise[0], abs(factor) * problem.noise[1]
             yield words, replace(problem.with_films(films), noise=noise), abs(factor)
-    if "radius" not in (*asked.free, *asked.fixed):
+    if angled and "radius" not in (*asked.free, *asked.fixed):  # told by angles alone
         words = "with a radius of {:.3g} m: is " + f"{asked.puck.radius:g} m right?"
         wider = replace(asked, free=(*asked.free, "radius"))
         yield words, replace(problem, asked=wider), 1.0
+    if _may_change(asked):
+        dragged = replace(asked, free=(*asked.free, "drag"))
+        free = ",".join(dragged.free)
+        words = f"{_DRAG}: find it, too (--free {free})"
+        yield words, replace(problem, asked=dragged), 1.0
 
 
 def _size(found: Estimate, scale: float) -> float:
@@ -97,7 +136,7 @@ def _fits(tried: Estimate, noise: float) -> bool:
 def _off(found: Estimate) -> tuple[FloatArray, FloatArray]:
     """How far places (m) and angles (rad) are off."""
     films, off = found.problem.films, found.problem.off(found.x)
-    angles = [
+    angles = [np.empty(0)] + [
         np.abs(one[TURN, np.isfinite(film.angle)]) for film, one in zip(films, off, strict=True)
         if film.angle is not None
     ]  # fmt: skip

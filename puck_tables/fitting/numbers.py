@@ -161,7 +161,10 @@ def numbers_of(
         if not slope.any():
             puck[name] = Number(value, 0.0, value, value, PUCK[name].unit, KNOWN)
             continue
-        error = certainty.error_of(slope * widened, max(abs(value), 1e-12))
+        size = max(abs(value), 1e-12)
+        error = certainty.error_of(slope * widened, size)
+        if math.isfinite(error) and certainty.follows_end(slope, size):
+            error = math.nan
         if any(slope[k] and not puck[one].determined for k, one in enumerate(asked.free)
                if not certainty.undetermined[k]):  # fmt: skip
             error = math.inf

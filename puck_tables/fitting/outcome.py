@@ -16,10 +16,11 @@ from puck_tables._core.safe_write import write_bytes
 from puck_tables._version import __version__
 from puck_tables.errors import InputError
 from puck_tables.fitting.certainty import Certainty, profile_point
+from puck_tables.fitting.doubts import doubts
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.held_out import HeldOut
 from puck_tables.fitting.laws import LawScore
-from puck_tables.fitting.numbers import KNOWN, FoundLaunch, Number
+from puck_tables.fitting.numbers import FoundLaunch, Number
 from puck_tables.fitting.residual_tests import lengthways, misfits
 from puck_tables.fitting.seen import Seen
 from puck_tables.fitting.tied import Impact
@@ -34,7 +35,6 @@ if TYPE_CHECKING:
 
 KIND = "puck-tables fit 1"
 _LENGTHWAYS = 1.3
-_GRIP, _SLICK = 5.0, 1e-4  # friction coefficients of dry surfaces are smaller, and larger
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -202,13 +202,7 @@ class Fit(Result):
                     "and intervals of the rest, may mislead"
                 )
         said += self.not_met
-        friction = self.numbers["friction"]
-        if friction.how != KNOWN and (friction.low > _GRIP or friction.high < _SLICK):
-            than = "more" if friction.low > _GRIP else "less"
-            said.append(
-                f"A friction of {friction.value:.3g} is {than} than dry surfaces have: the unit of "
-                "the places, or of the times, the scale or the frames a second may be wrong"
-            )
+        said += doubts(self.numbers, self.launches, self.given.radius)
         if self.jitter == 0.0 and self.noise[0] > 0.0:
             ratio = lengthways(self.estimate)
             if ratio > _LENGTHWAYS:

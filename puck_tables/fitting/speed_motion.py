@@ -14,7 +14,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.speed_law import SpeedLaw
-from puck_tables.kernels.compile import allocating, kernel
+from puck_tables.kernels.compile import allocating, kernel, patience
 from puck_tables.kernels.speed_quadrature import FINE, integrals_at
 
 _STEP, _STEPS = 0.08, 220
@@ -56,6 +56,7 @@ def _integrate(
     edges, p, k, y = np.empty(_ROOM + len(breaks)), np.empty(4), np.empty((4, 7)), np.empty(7)
     slip = math.hypot(states[0, V], states[0, RIM])
     for n in range(len(states) - 1):
+        patience(1)
         for stage in range(4):
             part = 0.0 if stage == 0 else (1.0 if stage == 3 else 0.5)
             for i in range(7):

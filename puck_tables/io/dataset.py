@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.safe_write import as_utf8
 from puck_tables.io.columns import COLUMNS
 
 
@@ -25,6 +26,11 @@ class Variable:
     unit: str
     long_name: str
     flags: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "flags", tuple(map(as_utf8, self.flags)))
+        if isinstance(self.values, list) and self.values and isinstance(self.values[0], str):
+            object.__setattr__(self, "values", list(map(as_utf8, self.values)))
 
     def readable(self) -> npt.NDArray[Any]:
         """The values, codes as words."""
@@ -61,6 +67,13 @@ class Dataset:
     columns: Mapping[str, Variable]
     attributes: Mapping[str, Any] = field(default_factory=dict)
     texts: Mapping[str, tuple[str, str]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        held = {name: as_utf8(one) if isinstance(one, str) else one
+                for name, one in self.attributes.items()}  # fmt: skip
+        object.__setattr__(self, "attributes", held)
+        texts = {name: (as_utf8(text), words) for name, (text, words) in self.texts.items()}
+        object.__setattr__(self, "texts", texts)
 
     def table(self) -> dict[str, Variable]:
         """The columns of a flat table: the axes, repeated as needed, then the rest; one row each.

@@ -1,23 +1,19 @@
 """Kernels as they are written, in Python: a hundred times slower, but at once.
 
-To compile what moves one puck takes longer than to move it.  So where ``NUMBA_DISABLE_JIT=1``,
-numba's own switch, is set as the package is imported, nothing is compiled and numba not even
-imported; the command line sets it for itself where there is little to compute.  Numbers agree with
-those of compiled code to rounding, not to the bit: a compiler contracts a·b + c.
+Where ``NUMBA_DISABLE_JIT=1``, numba's own switch, is set as the package is imported, nothing is
+compiled and numba not even imported.
 """
 
 from __future__ import annotations
 
 import os
 import struct
-from collections.abc import Callable, Sequence
-from typing import Any, TypeVar
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-
-Function = TypeVar("Function", bound=Callable[..., Any])
 
 BLOCK = 136  # numbers in a row of a block: rows a power of two apart would share cache lines
 LINE = 8  # numbers in a line of the cache
@@ -28,27 +24,6 @@ def as_written() -> bool:
     return os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0")
 
 
-# Called before work that takes minutes as it is written, by whom could have it compiled.
-before_long_work: list[Callable[[], object]] = []
-
-
-def long_work() -> None:
-    """Say that work begins that should be compiled.
-
-    Examples
-    --------
-    >>> long_work()  # nobody listens
-    """
-    if as_written():
-        for listener in before_long_work:
-            listener()
-
-
-def unchanged(function: Function) -> Function:
-    """The function itself."""
-    return function
-
-
 def weighted_rows(c: FloatArray, k: int, weights: Sequence[float], width: int) -> Any:
     """The sums a·c[k + m] + b·c[k + width + m] + …, m < width, with weights a, b, ….
 
@@ -57,8 +32,27 @@ def weighted_rows(c: FloatArray, k: int, weights: Sequence[float], width: int) -
     >>> weighted_rows(np.arange(6.0), 0, (1.0, 10.0), 3)
     (30.0, 41.0, 52.0)
     """
-    rows = c[k : k + len(weights) * width].reshape(-1, width)
-    return tuple((np.asarray(weights) @ rows).tolist())
+    rows = c[k : k + len(weights) * width].reshape(-1, width).tolist()
+    return tuple(_weighted(weights, rows))
+
+
+def _weighted(weights: Sequence[float], rows: list[list[float]]) -> list[float]:
+    """Weighted rows, added in their order, as compiled code does."""
+    total = [weights[0] * one for one in rows[0]]
+    for weight, row in zip(weights[1:], rows[1:], strict=True):
+        total = [sum_ + weight * one for sum_, one in zip(total, row, strict=True)]
+    return total
+
+
+def _by_powers(
+    rows: list[list[float]], s: float, width: int, powers: int
+) -> tuple[list[float], list[float]]:
+    """Polynomials in s of rows of coefficients, one a power, and their derivatives by s."""
+    value, slope = rows[-1], [0.0] * width
+    for power in range(powers - 2, -1, -1):
+        slope = [one * s + more for one, more in zip(slope, value, strict=True)]
+        value = [one * s + more for one, more in zip(value, rows[power], strict=True)]
+    return value, slope
 
 
 def spline_polynomials(
@@ -73,33 +67,39 @@ def spline_polynomials(
     >>> spline_polynomials(np.array([1.0, 2.0, 3.0, 4.0]), 0, (1.0,), 10.0, 2, 2)
     (31.0, 42.0, 3.0, 4.0)
     """
-    rows = c[k : k + len(weights) * width * powers].reshape(len(weights), -1)
-    sums = (np.asarray(weights) @ rows).reshape(powers, width)
-    value, slope = sums[-1], np.zeros(width)
-    for power in range(powers - 2, -1, -1):
-        slope = slope * s + value
-        value = value * s + sums[power]
-    return (*value.tolist(), *slope.tolist())
+    whole = weighted_rows(c, k, weights, width * powers)
+    rows = [list(whole[at : at + width]) for at in range(0, width * powers, width)]
+    value, slope = _by_powers(rows, s, width, powers)
+    return (*value, *slope)
 
 
 def spline_slopes(
     c: FloatArray, k: int, weights: Sequence[float], s: float, width: int, powers: int
 ) -> Any:
-    """As :func:`spline_polynomials`: that compiled rows are evaluated first changes bits alone."""
-    return spline_polynomials(c, k, weights, s, width, powers)
+    """As :func:`spline_polynomials`, but rows are evaluated first, then weighted and added.
+
+    Examples
+    --------
+    >>> spline_slopes(np.array([1.0, 2.0, 3.0, 4.0]), 0, (1.0,), 10.0, 2, 2)
+    (31.0, 42.0, 3.0, 4.0)
+    """
+    rows = c[k : k + len(weights) * width * powers].reshape(len(weights), powers, width).tolist()
+    found = [_by_powers(row, s, width, powers) for row in rows]
+    values, slopes = ([one[n] for one in found] for n in (0, 1))
+    return (*_weighted(weights, values), *_weighted(weights, slopes))
 
 
 def spline_values(
     c: FloatArray, k: int, weights: Sequence[float], s: float, width: int, powers: int
 ) -> Any:
-    """The values alone of :func:`spline_polynomials`, from double or single precision.
+    """The values alone of :func:`spline_slopes`, from double or single precision.
 
     Examples
     --------
     >>> spline_values(np.array([1.0, 2.0, 3.0, 4.0]), 0, (1.0,), 10.0, 2, 2)
     (31.0, 42.0)
     """
-    return spline_polynomials(c, k, weights, s, width, powers)[:width]
+    return spline_slopes(c, k, weights, s, width, powers)[:width]
 
 
 def summed(total: float, more: float) -> float:

@@ -7,14 +7,15 @@ the package: after any edit, nothing compiled before can be found.
 
 from __future__ import annotations
 
-import contextlib
 import os
+import re
 import shutil
 import tempfile
 import time
 from collections.abc import Callable
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
+from typing import Any
 
 from puck_tables._core.own_folder import make_private, say, user_cache
 from puck_tables._core.sources import source_digest
@@ -27,17 +28,15 @@ def cache_folder() -> Path | None:
     ``NUMBA_CACHE_DIR`` if set, else the user's cache folder.  Never beside the package: what an
     uninstalled package leaves in its folder would hide the one that is installed next.
     """
-    chosen = os.environ.get("NUMBA_CACHE_DIR")
-    base = Path(chosen).absolute() if chosen else user_cache()
-    if base is None:
+    folder = _place()
+    if folder is None:
         say("there is no cache folder for compiled code on this machine: it is not kept")
         return None
-    folder = base / f"compiled-{source_digest()}"
     try:
-        if not chosen:
-            make_private(base)
+        if not os.environ.get("NUMBA_CACHE_DIR"):
+            make_private(folder.parent)
         if not folder.exists():
-            _forget_unused(base)
+            _forget_unused(folder.parent)
         make_private(folder)
         os.utime(folder)
         tempfile.TemporaryFile(dir=folder).close()
@@ -47,27 +46,41 @@ def cache_folder() -> Path | None:
     return folder
 
 
+def _place() -> Path | None:
+    """Where it would be kept."""
+    chosen = os.environ.get("NUMBA_CACHE_DIR")
+    base = Path(chosen).absolute() if chosen else user_cache()
+    return None if base is None else base / f"compiled-{source_digest()}"
+
+
+def file_stem(function: Callable[..., Any]) -> str:
+    """How the names of files begin that keep compiled code of a function.
+
+    Examples
+    --------
+    >>> file_stem(Path.exists)
+    'pathlib-Path-exists'
+    """
+    return re.sub(r"\W+", "-", f"{function.__module__}.{function.__qualname__}")
+
+
+def is_any_kept(function: Callable[..., Any]) -> bool:
+    """Whether compiled code of a function is kept, for whatever arguments."""
+    folder = _place()
+    try:
+        return folder is not None and file_stem(function) in _kept(folder, folder.stat().st_mtime)
+    except OSError:  # not there yet
+        return False
+
+
+@lru_cache(maxsize=1)
+def _kept(folder: Path, changed: float) -> set[str]:
+    """Of which functions, since the folder was changed last."""
+    return {path.name.rpartition("-")[0] for path in folder.glob("*.code")}
+
+
 def _forget_unused(base: Path) -> None:
     """Remove what versions of the package not run for a month have left."""
     for folder in base.glob("compiled-????????????????"):
         if folder.stat().st_mtime < time.time() - 30 * 86400:
             shutil.rmtree(folder, ignore_errors=True)
-
-
-# Called once, when something is compiled because it is not kept yet.
-announcements: list[Callable[[], None]] = []
-
-
-def compiling() -> None:
-    """Tell those who asked that something is being compiled; an error of theirs is no error here.
-
-    Examples
-    --------
-    >>> heard: list[str] = []
-    >>> announcements.append(lambda: heard.append("compiling"))
-    >>> compiling(), compiling(), heard
-    (None, None, ['compiling'])
-    """
-    while announcements:
-        with contextlib.suppress(Exception):
-            announcements.pop()()

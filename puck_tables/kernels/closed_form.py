@@ -18,7 +18,7 @@ from puck_tables.contact.resultants import (
     checked_delta,
 )
 from puck_tables.errors import ContactError
-from puck_tables.kernels.compile import allocating, inlined
+from puck_tables.kernels.compile import allocating, inlined, patience
 
 _BLOCK = 256
 _HALF_PI_REST = 6.123233995736766e-17  # of π/2 beyond its double
@@ -77,6 +77,7 @@ def _fill(phi: FloatArray, delta: FloatArray, out: FloatArray) -> int:
     In blocks, both loops without a branch, so that they are vectorised; the few points next to
     φ = π/4 anew, with all steps of the arithmetic-geometric mean.
     """
+    patience(phi.size)
     ratio = np.empty(_BLOCK)
     fast = np.empty(_BLOCK)
     which = np.empty(_BLOCK, np.int64)

@@ -2,24 +2,29 @@
 
 from __future__ import annotations
 
+import contextlib
 import gc
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import partial
-from typing import Any, TypeVar
+from types import FunctionType
+from typing import Any
 
 import numba
 from numba import types
 from numba.core import event
+from numba.core.compiler_lock import global_compiler_lock
+from numba.core.registry import cpu_target
+from numba.core.typing.typeof import typeof_impl
 
-from puck_tables.kernels.cache import compiling
+from puck_tables.kernels import as_written, blocks, vectors
+from puck_tables.kernels.doors import Door, behind
 from puck_tables.kernels.kept_code import KeptCode
 from puck_tables.kernels.linking import LinkedAtDoors
-
-Function = TypeVar("Function", bound=Callable[..., Any])
+from puck_tables.kernels.patience import patience
 
 
 class _Announcer(event.Listener):
-    """Hears of what is compiled anew; what is only pasted into others is soon done.
+    """Hears of what is compiled anew.
 
     Compiling makes millions of small objects that live until it ends.  To look through them again
     and again for garbage takes a sixth of the time, so that it is done less often meanwhile.
@@ -31,8 +36,6 @@ class _Announcer(event.Listener):
     def on_start(self, event: Any) -> None:
         self._found.append(gc.get_threshold())
         gc.set_threshold(100_000, *self._found[-1][1:])
-        if type(event.data["dispatcher"]._cache).__name__ != "NullCache":
-            compiling()
 
     def on_end(self, event: Any) -> None:
         gc.set_threshold(*self._found.pop())
@@ -40,59 +43,91 @@ class _Announcer(event.Listener):
 
 event.register("numba:compile", _Announcer())  # type: ignore[no-untyped-call]
 
-
-def kernel(function: Function) -> Function:
-    """Compile a function: no Python objects, no GIL, IEEE rules except fused multiply-add.
-
-    It works in the arrays that it is given, and neither makes arrays nor gives any to a function
-    that does: it is compiled without counting references, which in a loop over small steps takes
-    longer than the steps.  Division by zero gives inf or NaN as in NumPy; kernels report trouble by
-    status codes.
-    """
-    return _compile(function, forceinline=False, counts=False)
+# what numba cannot write, by what stands for it in Python
+_intrinsics: dict[Any, Any] = {patience: vectors.patience} | {
+    getattr(as_written, name): one
+    for module in (blocks, vectors)
+    for name, one in vars(module).items()
+    if hasattr(one, "_defn") and hasattr(as_written, name)
+}
+_dispatchers: dict[tuple[Any, bool], Any] = {}
 
 
-def inlined(function: Function) -> Function:
-    """Compile a kernel that is pasted into every caller, so that loops over it vectorise.
-
-    The callers keep what was compiled; it needs no cache of its own, and no door to Python, which
-    would take a third of the time to compile it.  Called from Python it runs as it is written.
-    """
-    return _compile(function, forceinline=True, counts=False)
-
-
-def inner(function: Function) -> Function:
-    """Compile a kernel that only kernels call: without a door to Python, as :func:`inlined`.
-
-    A door unpacks every array of every record that is handed in, which takes longer to compile
-    than many a function; for what is too long to be pasted into each caller.  A function without a
-    door is optimised with those behind which it lies (:mod:`puck_tables.kernels.linking`).
-    """
-    return _compile(function, forceinline=False, counts=False, door=False)
+@contextlib.contextmanager
+def _compiling(door: Door) -> Iterator[None]:
+    """What is compiled within may fuse a·b + c or not, as its door wants it."""
+    lock: Any = global_compiler_lock
+    with lock:
+        before, vectors.fuses = vectors.fuses, door.fuses
+        try:
+            yield
+        finally:
+            vectors.fuses = before
 
 
-def allocating(function: Function) -> Function:
-    """Compile a function that makes arrays; it calls kernels that return numbers only."""
-    return _compile(function, forceinline=False, counts=True)
+def type_of(dispatcher: Any) -> Any:
+    """What a function is to those that call it."""
+    return types.Dispatcher(dispatcher)
 
 
-def _compile(function: Function, forceinline: bool, counts: bool, door: bool = True) -> Function:
-    door = door and not forceinline
+@typeof_impl.register(FunctionType)
+def _type_of_function(function: Any, purpose: Any) -> Any:
+    """A kernel is its compiled code, where kernels call it."""
+    if function in behind:
+        return type_of(dispatcher_of(function, vectors.fuses))
+    if function in _intrinsics:
+        context: Any = cpu_target.typing_context
+        return context.resolve_value_type(_intrinsics[function])
+    return typeof_impl.dispatch(object)(function, purpose)
+
+
+def dispatcher_of(function: Any, fuses: bool) -> Any:
+    """Numba's object for a kernel that only kernels call."""
+    if (function, fuses) not in _dispatchers:
+        made = _dispatcher(function, fuses, door=False, pasted=behind[function])
+        made.get_call_template = partial(_whatever_its_value, made.get_call_template)
+        made._insert = _not_entered
+        _dispatchers[function, fuses] = made
+    return _dispatchers[function, fuses]
+
+
+def dispatcher_at(door: Door) -> Any:
+    """Numba's object for a kernel that Python calls."""
+    made = _dispatcher(door.py_func, door.fuses, door=True, counts=door.counts)
+    made.get_call_template = partial(_at_door, door, made.get_call_template)
+    made._cache = KeptCode(door.py_func)
+    made._compile_for_args = door.way_for  # asked where nothing was compiled for arguments
+    return made
+
+
+def _dispatcher(
+    function: Any, fuses: bool, door: bool, pasted: bool = False, counts: bool = False
+) -> Any:
     options: dict[str, Any] = {
-        "forceinline": forceinline, "_nrt": counts,
+        "forceinline": pasted, "_nrt": counts, "fastmath": {"contract"} if fuses else False,
         "no_cpython_wrapper": not door, "no_cfunc_wrapper": not door,
     }  # fmt: skip
-    compiled: Any = numba.njit(
-        nogil=True, fastmath={"contract"}, error_model="numpy", pipeline_class=LinkedAtDoors,
-        **options,
-    )(function)  # fmt: skip
-    compiled.get_call_template = partial(_whatever_its_value, compiled.get_call_template)
-    if not door:
-        compiled._insert = _not_entered
-        compiled._compile_for_args = lambda *_, **__: function
-    else:
-        compiled._cache = KeptCode(function)
-    return compiled
+    return numba.njit(nogil=True, error_model="numpy", pipeline_class=LinkedAtDoors, **options)(
+        function
+    )
+
+
+def keeps(dispatcher: Any, args: tuple[Any, ...]) -> bool:
+    """Whether code for such arguments was compiled in this process, or is kept on disk."""
+    kinds = tuple(dispatcher.typeof_pyval(one) for one in args)
+    return kinds in dispatcher.overloads or dispatcher._cache.keeps(kinds, dispatcher.targetctx)
+
+
+def code_for(door: Door, args: tuple[Any, ...]) -> Callable[..., Any]:
+    """Compiled code for such arguments, from disk if it is kept."""
+    with _compiling(door):
+        code: Callable[..., Any] = type(door.compiled)._compile_for_args(door.compiled, *args)
+    return code
+
+
+def _at_door(door: Door, template_for: Callable[..., Any], args: Any, named: Any) -> Any:
+    with _compiling(door):
+        return _whatever_its_value(template_for, args, named)
 
 
 def _whatever_its_value(template_for: Callable[..., Any], args: Any, named: Any) -> Any:

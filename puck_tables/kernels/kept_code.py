@@ -12,7 +12,6 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import os
-import re
 import sys
 import tempfile
 from collections.abc import Callable
@@ -25,7 +24,7 @@ from numba.core import serialize
 from numba.core.caching import _Cache
 from numba.core.compiler import CompileResult
 
-from puck_tables.kernels.cache import cache_folder
+from puck_tables.kernels.cache import cache_folder, file_stem
 
 _DIGEST = hashlib.sha256().digest_size
 _dumps: Any = serialize.dumps
@@ -37,7 +36,7 @@ class KeptCode(_Cache):
 
     def __init__(self, function: Callable[..., Any]) -> None:
         self._function = function
-        self._name = re.sub(r"\W+", "-", f"{function.__module__}.{function.__qualname__}")
+        self._name = file_stem(function)
 
     @property
     def cache_path(self) -> str | None:
@@ -65,6 +64,11 @@ class KeptCode(_Cache):
             return result._rebuild(target_context, *payload)
         except Exception:  # not there, or whatever numba's objects raise
             return None
+
+    def keeps(self, sig: Any, target_context: Any) -> bool:
+        """Whether a file is there that was made for a signature."""
+        path = self._path(self._key(sig, target_context.codegen()))
+        return path is not None and path.exists()
 
     def save_overload(self, sig: Any, data: Any) -> None:
         """Keep what was compiled for a signature, unless the disk is full."""

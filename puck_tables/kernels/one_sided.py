@@ -14,7 +14,15 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import BLOCK, allocating, inlined, inner, into_row, row_of
+from puck_tables.kernels.compile import (
+    BLOCK,
+    allocating,
+    inlined,
+    inner,
+    into_row,
+    patience,
+    row_of,
+)
 from puck_tables.kernels.elementary import cosine_sine_of
 
 PARALLEL, PERPENDICULAR, SPIN, OFFSET, BEARING = range(5)
@@ -211,9 +219,11 @@ def fill_balances(
     int
         How many are not solved.
     """
+    patience(ratio.size)
     room, sums, chord = np.empty(_ROWS * BLOCK), np.empty(_SUMS), np.empty(2)
     solved, lost = 0, 0
     for n in range(ratio.size):
+        patience(1)
         done = False
         if solved == _NEIGHBOURS:  # on from three neighbours by a parabola
             for i in range(2):

@@ -19,7 +19,7 @@ import math
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import allocating, inlined, kernel
+from puck_tables.kernels.compile import allocating, inlined, kernel, patience
 from puck_tables.kernels.section_spline import (
     HEADER,
     INERTIA,
@@ -61,6 +61,7 @@ def fill_resultants(
     In blocks of three loops: where and with which weights (vectorised where π/4 is the only line),
     the sums (short dependency chains: one point does not wait for another), the division.
     """
+    patience(phi.size)
     n_eta = coefficients.shape[1] - 3
     c = coefficients.reshape(-1)
     side_stride = TERMS * (n_eta + 3)

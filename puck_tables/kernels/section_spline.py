@@ -20,7 +20,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.kernels.compile import inlined, kernel, patience
 from puck_tables.kernels.spline import basis, cell_at, row_sums
 
 # Columns of the header: the singular line of a side (cos, sin, ln tan), where the side ends towards
@@ -105,6 +105,7 @@ def fill_section(
 ) -> None:
     """All functions of a section at slip ratios (n,) into ``out`` (functions, n)."""
     for n in range(ratio.size):
+        patience(1)
         side, i, place = section_place(ratio[n], fast[n], cut, functions)
         weights = basis(place)
         for f in range(functions):

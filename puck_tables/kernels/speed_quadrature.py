@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import allocating, inlined, inner
+from puck_tables.kernels.compile import allocating, inlined, inner, patience
 
 PARTS = 4  # p_a, p_b, p_d, p_e
 
@@ -279,6 +279,8 @@ def fill_integrals(
     speed: FloatArray, rules: int, out: FloatArray,
 ) -> None:  # fmt: skip
     """The four at flat arrays of points into ``out`` (n, 4)."""
+    patience(ratio.size)
     edges = np.empty(len(breaks) + _GRADED)
     for n in range(ratio.size):
+        patience(1)
         integrals_at(breaks, pieces, ratio[n], fast[n], speed[n], rules, edges, out[n])

@@ -27,7 +27,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import inlined, kernel, weighted_rows
+from puck_tables.kernels.compile import inlined, kernel, patience, weighted_rows
 from puck_tables.kernels.spline import cell_at
 
 DONE, TOO_FAST = 0, 1
@@ -181,6 +181,7 @@ def fill_speed(
     """p_a, p_b, p_d, p_e at flat arrays of points into ``out`` (4, n); a status."""
     status = DONE
     for n in range(ratio.size):
+        patience(1)
         a, b, d, e = speed_integrals_at(table, ratio[n], fast[n], speed[n])
         out[0, n], out[1, n], out[2, n], out[3, n] = a, b, d, e
         if a != a:
@@ -195,5 +196,6 @@ def fill_patch(
 ) -> None:  # fmt: skip
     """The same by ξ and ζ within one patch, into ``out`` (n, 4)."""
     for n in range(xi.size):
+        patience(1)
         a, b, d, e = _spline(coefficients, 0, cells_u, cells_w, xi[n], zeta[n])
         out[n, 0], out[n, 1], out[n, 2], out[n, 3] = a, b, d, e

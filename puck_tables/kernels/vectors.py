@@ -11,6 +11,12 @@ from llvmlite import ir
 from numba import types
 from numba.extending import intrinsic
 
+fuses = False  # whether what is compiled just now may round a·b + c once
+
+
+def _rounding() -> tuple[str, ...]:
+    return ("contract",) if fuses else ()
+
 
 def _weighted_rows(typing: Any, c: Any, k: Any, weights: Any, width: Any) -> Any:
     """Compiled (c, k, (a, b, …), width) → the sums a·c[k+m] + b·c[k+width+m] + … as a tuple.
@@ -41,8 +47,8 @@ def _weighted_rows(typing: Any, c: Any, k: Any, weights: Any, width: Any) -> Any
             weight = builder.extract_value(args[2], row)
             weight = builder.insert_element(nothing, weight, first)
             weight = builder.shuffle_vector(weight, nothing, spread)
-            product = builder.fmul(values, weight, flags=("contract",))
-            total = product if row == 0 else builder.fadd(total, product, flags=("contract",))
+            product = builder.fmul(values, weight, flags=_rounding())
+            total = product if row == 0 else builder.fadd(total, product, flags=_rounding())
         parts = [
             builder.extract_element(total, ir.Constant(ir.IntType(32), i)) for i in range(count)
         ]
@@ -93,8 +99,8 @@ def _spline_polynomials(
             )
 
         def times_plus(one: Any, other: Any, more: Any) -> Any:
-            product = builder.fmul(one, other, flags=("contract",))
-            return builder.fadd(product, more, flags=("contract",))
+            product = builder.fmul(one, other, flags=_rounding())
+            return builder.fadd(product, more, flags=_rounding())
 
         rows = len(signature.args[2])
         weight = [everywhere(builder.extract_value(args[2], row)) for row in range(rows)]
@@ -109,7 +115,7 @@ def _spline_polynomials(
                     pointer = builder.gep(data, [builder.add(args[1], at)])
                     found = builder.load(builder.bitcast(pointer, lanes.as_pointer()), align=8)
                     if total is None:
-                        total = builder.fmul(found, weight[row], flags=("contract",))
+                        total = builder.fmul(found, weight[row], flags=_rounding())
                     else:
                         total = times_plus(found, weight[row], total)
                 if power == top - 1:
@@ -149,8 +155,8 @@ def _rows_first(slopes: bool, c: Any, k: Any, weights: Any, s: Any, width: Any, 
             return builder.shuffle_vector(number, nothing, spread)
 
         def times_plus(one: Any, other: Any, more: Any) -> Any:
-            product = builder.fmul(one, other, flags=("contract",))
-            return builder.fadd(product, more, flags=("contract",)) if more else product
+            product = builder.fmul(one, other, flags=_rounding())
+            return builder.fadd(product, more, flags=_rounding()) if more else product
 
         def coefficients(place: int) -> Any:
             at = builder.add(args[1], ir.Constant(args[1].type, place))
@@ -233,11 +239,21 @@ def _summed(typing: Any, total: Any, more: Any) -> Any:
     """Compiled a + b in a sum whose order does not matter: a loop over it may keep several."""
 
     def build(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        return builder.fadd(args[0], args[1], flags=("contract", "reassoc", "nsz"))
+        return builder.fadd(args[0], args[1], flags=(*_rounding(), "reassoc", "nsz"))
 
     return types.float64(types.float64, types.float64), build
 
 
+def _patience(typing: Any, items: Any) -> Any:
+    """Compiled (items): nothing."""
+
+    def build(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        return context.get_dummy_value()
+
+    return types.void(types.int64), build
+
+
 summed: Any = intrinsic(_summed)
+patience: Any = intrinsic(_patience)
 bits_of: Any = intrinsic(_bits_of)
 number_of: Any = intrinsic(_number_of)

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import allocating
+from puck_tables.kernels.compile import allocating, patience
 from puck_tables.kernels.quadratic import cut as cut_table
 from puck_tables.kernels.quadratic import room_for_cut
 from puck_tables.motion.equations import at_constant_angle
@@ -41,6 +41,7 @@ def fill_stops(
     are of; both are empty for closed forms.
     One launch never influences another, so any cutting into chunks gives the same bits.
     """
+    patience(launches.shape[1])
     by_table = columns.size > 0
     cut = room_for_cut(columns) if by_table else section
     cut_delta = -1.0
@@ -48,6 +49,7 @@ def fill_stops(
     start = np.empty(SIZE)
     result = np.empty(SIZE + 1)
     for n in range(launches.shape[1]):
+        patience(1)
         vx, vy, spin = launches[0, n], launches[1, n], launches[2, n]
         delta, decel, radius = launches[3, n], launches[4, n], launches[5, n]
         speed, rim = math.hypot(vx, vy), radius * abs(spin)

@@ -18,7 +18,7 @@ import math
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import allocating, inlined, inner
+from puck_tables.kernels.compile import allocating, inlined, inner, patience
 from puck_tables.motion.equations import (
     at_constant_angle,
     crossed_line,
@@ -123,6 +123,7 @@ def integrate(
     h = 0.005
     derivatives(z, y, cut, delta, work[0])
     while z < z_end:
+        patience(1)
         if count > step_limit:
             return STEP_LIMIT, count
         if not adaptive:
@@ -229,6 +230,7 @@ def states_at(
     new = np.empty(SIZE)
     last = z_path.size - 1
     for n in range(times.size):
+        patience(1)
         time = times[n]
         if time >= result[T]:
             _record(n, 0.0, result, q_out, y_out)

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.kernels.compile import inlined, kernel, patience
 from puck_tables.motion.equations import at_constant_angle, crossed_line, ratios_at, slip_ratio
 from puck_tables.motion.path import TURN_Z, end_of_steps, q_of, step_length
 from puck_tables.motion.state import LENGTH, PSI, THETA, T, U, X, Y
@@ -67,6 +67,7 @@ def to_stop(
     z, turn, turn_read, count = 0.0, 0.0, False, 0
     z_end = end_of_steps(steps, 1.0, cut)
     while z < z_end:
+        patience(1)
         h = step_length(y[0], steps, cut)
         target = z_end if turn_read else TURN_Z
         landed = z + 1.1 * h >= target  # never leave a sliver before the target

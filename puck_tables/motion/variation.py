@@ -23,7 +23,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import allocating, inlined, kernel
+from puck_tables.kernels.compile import allocating, inlined, kernel, patience
 from puck_tables.kernels.section_spline import INERTIA, LINE, section_flows
 from puck_tables.motion.path import STOPPED, integrate
 from puck_tables.motion.state import LENGTH, PSI, SIZE, THETA, T, U, X, Y
@@ -108,6 +108,7 @@ def advance(
     """A varied state (28,) from z to ``end``, in place; ``work`` (8, 28)."""
     state = work[_STAGES]
     while z < end:
+        patience(1)
         varied(z, y, cut, work[0])
         h = end - z
         rate = abs(work[0, U])
@@ -182,6 +183,7 @@ def fill_varied_stops(
     ``ratios``, ``cut``: friction for motions and for slopes, of one puck.  ``place_unit`` (n,) as
     :func:`puck_tables.motion.path.integrate` has it.
     """
+    patience(u.size)
     z, y = np.empty(_STEP_LIMIT), np.empty((_STEP_LIMIT, SIZE))
     result, work = np.empty(SIZE + 1), np.empty((8, VARIED))
     nobody = np.empty((0, VARIED))
@@ -208,6 +210,7 @@ def fill_varied_states(
     work = np.empty((8, VARIED))
     last = z_path.size - 1
     for n in range(z.size):
+        patience(1)
         i = which[n]
         y = out[n]
         for j in range(VARIED):

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import allocating
+from puck_tables.kernels.compile import allocating, patience
 from puck_tables.scene.at_once import AS_IT_COMES, FIRST_BY_NUMBER, GROWN, LAST_BY_NUMBER
 from puck_tables.scene.boundaries import BOUNCES, Boundaries
 from puck_tables.scene.desk import Ask, Desk, desk_for
@@ -76,6 +76,7 @@ def follow_many(
     ``asks`` (n, 12): until when, the scale of speeds, and the scales of the state.  One launch
     never influences another, so any cutting into chunks gives the same bits.
     """
+    patience(len(states))
     no_frames = np.empty(0)
     row = np.empty((1, FRAME_COLUMNS))
     events = np.empty((event_limit, EVENT_COLUMNS))

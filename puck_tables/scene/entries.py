@@ -13,6 +13,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.fields import Kind, in_tables, specs
 from puck_tables._core.real import finite_array, shown
+from puck_tables._core.safe_write import as_utf8
 from puck_tables.errors import InputError
 
 if TYPE_CHECKING:
@@ -268,5 +269,4 @@ def _value(value: Any) -> str:
     if isinstance(value, int | float | np.number):
         return repr(float(value))
     value = value if isinstance(value, str) else str(value.name)
-    text = value.encode("utf-8", "backslashreplace").decode()  # names of files may be no text
-    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
+    return json.dumps(as_utf8(value), ensure_ascii=False).replace("\x7f", "\\u007f")

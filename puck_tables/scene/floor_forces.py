@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import kernel
+from puck_tables.kernels.compile import kernel, patience
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y, dry_friction
 from puck_tables.scene.ingredients import Regions, dry_in, put_at
 from puck_tables.scene.regions import regions_of
@@ -17,8 +17,10 @@ def _forces(
     regions: Regions, region: int, radius: float, states: FloatArray, out: FloatArray
 ) -> None:
     """Force and torque on the puck into out (n, 3) at states (n, 6) over the floor."""
+    patience(states.shape[0])
     dry = dry_in(regions, region)
     for n in range(states.shape[0]):
+        patience(1)
         y = states[n]
         put_at(dry, y[X], y[Y])
         fx, fy, torque, _ = dry_friction(dry, radius, y[VX], y[VY], y[SPIN])

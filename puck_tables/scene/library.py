@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import tomllib
 from codecs import BOM_UTF16_BE, BOM_UTF16_LE
 from difflib import get_close_matches
@@ -17,6 +18,8 @@ from puck_tables.scene.entries import entries
 from puck_tables.scene.scene import Scene
 
 MAX_FILE = 1 << 20
+_PARTS = 50  # of a dotted key
+_POINT = re.compile(r"(?<!\.)\.(?!\.)")
 MAX_NAMED = 1 << 26  # bytes of a file that a scene names
 FILES = tuple(
     (in_tables(part), name, spec.metadata["kind"])
@@ -110,6 +113,25 @@ def _names() -> list[str]:
     return sorted(item.name[:-5] for item in _folder().iterdir() if item.name.endswith(".toml"))
 
 
+def toml_in(text: str) -> dict[str, Any]:
+    """The tables in a text; keys of very many parts, which take minutes to read, are refused.
+
+    Raises
+    ------
+    ValueError
+        If it is none.
+
+    Examples
+    --------
+    >>> toml_in("puck.radius = 0.04")
+    {'puck': {'radius': 0.04}}
+    """
+    keys = re.split(r"[=\[\]{},\n\r#]", text)
+    if any(len(_POINT.findall(key)) >= _PARTS for key in keys):
+        raise tomllib.TOMLDecodeError(f"a key in it has more than {_PARTS} parts")
+    return tomllib.loads(text)
+
+
 def read_scene(path: str | Path) -> dict[str, Any]:
     """The tables of a scene file.
 
@@ -121,7 +143,7 @@ def read_scene(path: str | Path) -> dict[str, Any]:
     try:
         content = read_whole(path, MAX_FILE)
         wide = content.startswith((BOM_UTF16_LE, BOM_UTF16_BE))  # as '>' of PowerShell writes it
-        tables = tomllib.loads(content.decode("utf-16" if wide else "utf-8-sig"))
+        tables = toml_in(content.decode("utf-16" if wide else "utf-8-sig"))
     except OSError as error:
         raise InputError(f"cannot read {path}: {error.strerror or error}") from None
     except UnicodeDecodeError as error:

@@ -16,7 +16,7 @@ from __future__ import annotations
 import math
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import kernel
+from puck_tables.kernels.compile import kernel, patience
 from puck_tables.scene.at_once import met_at_once
 from puck_tables.scene.boundaries import (
     BORDER,
@@ -194,6 +194,7 @@ def follow(
     stretch = Stretch(model, dry, leaning, piece, mode, way, newton, grade, 0.0)
     count = look_at_edges(bounds.edges, radius, hangs, stretch, t, y, events, count)
     while t < until:
+        patience(1)
         while piece < len(drive) and drive[piece, 0] <= t:
             piece += 1
         target = min(drive[piece, 0], until) if piece < len(drive) else until

@@ -27,7 +27,7 @@ from typing import NamedTuple
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.kernels.compile import inlined, kernel, patience
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(14)
 _GROWTH = 2.0  # of a panel, over its distance from what is nearly singular
@@ -120,6 +120,7 @@ def mean_friction(
     xx, xy, yx, yy, mx, my = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     start, last = -0.5 * math.pi, 0.5 * math.pi
     while start < last:
+        patience(1)
         end = _end_of_panel(start, last, -0.5 * math.pi, branch)
         end = _end_of_panel(start, end, 0.5 * math.pi, branch)
         end = _end_of_panel(start, end, place, sharp)

@@ -15,7 +15,7 @@ from __future__ import annotations
 import math
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import inlined, inner, kernel
+from puck_tables.kernels.compile import inlined, inner, kernel, patience
 from puck_tables.scene.astride_parts import least_under
 from puck_tables.scene.astride_rest import astride_yield
 from puck_tables.scene.forces import given_force
@@ -83,6 +83,7 @@ def demand(
     way = 1.0 if torque >= 0.0 else -1.0
     low, high, phi = 0.0, 0.5 * math.pi, (0.0 if torque == 0.0 else 0.25 * math.pi)
     while True:
+        patience(1)
         cosine, sine = math.cos(phi), way * math.sin(phi) / radius
         along, across, turning, heat = dry_friction(dry, radius, cosine, 0.0, sine)
         across = 0.0 if guided else across

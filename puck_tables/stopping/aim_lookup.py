@@ -16,7 +16,7 @@ import math
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import inlined, inner, kernel, spline_values
+from puck_tables.kernels.compile import inlined, inner, kernel, patience, spline_values
 from puck_tables.kernels.spline import basis
 from puck_tables.stopping.lookup import WIDTH, slip_place
 
@@ -118,6 +118,7 @@ def fill_logs(u: FloatArray, cut: FloatArray, pieces: FloatArray, out: FloatArra
     ``pieces`` (m, 26): of any other; none of a plain one.
     """
     for n in range(u.size):
+        patience(1)
         if u[n] == -math.inf:
             out[n, SPEED], out[n, RIM], out[n, TIME], out[n, BEND] = SLIDE, u[n], SLIDE, 0.0
         elif pieces.shape[0] > 0:
@@ -135,6 +136,7 @@ def fill_roots(
 ) -> None:  # fmt: skip
     """The u (n,) between ``low`` and ``high`` (n,) where a quantity has ``wanted`` (n,)."""
     for n in range(wanted.size):
+        patience(1)
         if low[n] == high[n]:
             out[n] = low[n]
         else:

@@ -17,6 +17,7 @@ from puck_tables.kernels.compile import (
     into_line,
     into_row,
     kernel,
+    patience,
     row_of,
     spline_slopes,
     spline_values,
@@ -78,6 +79,7 @@ def fill_section(delta: float, states: FloatArray, rates: FloatArray, out: Float
     """The functions of one height into ``out`` (2, cells + 3, 20)."""
     of_state, of_rate, flat = states.reshape(-1), rates.reshape(-1), out.reshape(-1)
     for row in range(flat.size // SECTION_WIDTH):
+        patience(1)
         found = _functions(of_state, of_rate, row, (1.0,), delta)
         into_line(flat, SECTION_WIDTH * row, found)
 

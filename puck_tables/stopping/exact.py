@@ -8,7 +8,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import run_chunks
-from puck_tables.kernels.compile import allocating
+from puck_tables.kernels.compile import allocating, patience
 from puck_tables.kernels.section_spline import NO_SECTION
 from puck_tables.motion.equations import at_constant_angle
 from puck_tables.motion.path import STOPPED, integrate
@@ -26,6 +26,7 @@ def _fill_exact_stops(
     tolerance: float, out: FloatArray,
 ) -> None:  # fmt: skip
     """T, X, Y, path, body angle, turn of launches at u, δ into ``out`` (n, 6); NaN: no stop."""
+    patience(u.size)
     no_z, no_y = np.empty(0), np.empty((0, SIZE))
     start, result = np.zeros(SIZE), np.empty(SIZE + 1)
     for n in range(u.size):

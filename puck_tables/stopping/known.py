@@ -13,9 +13,10 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import (
     BLOCK,
-    allocating,
     inlined,
     into_row,
+    look_up,
+    patience,
     row_of,
     spline_values,
 )
@@ -75,7 +76,7 @@ _TIME, _X, _Y, _LENGTH, _BODY, _TURN = range(_OUT, _OUT + 6)
 _Q, _V, _T, _LOG_N, _SIGN_N, _HEADING, _OWN_KAPPA, _OWN_TURNING = range(_OUT + 6, _ROWS)
 
 
-@allocating
+@look_up
 def fill_known(
     vx: FloatArray, vy: FloatArray, step: int, spin: FloatArray, delta: FloatArray,
     decel: FloatArray, radius: FloatArray, stops: FloatArray, curve: FloatArray,
@@ -90,6 +91,7 @@ def fill_known(
     :func:`puck_tables.stopping.curve_lookup.know_launch`.  Returns of how many Q²/J or Q²/(J r)
     may be too large, and how many are no launches.
     """
+    patience(out.shape[1])
     flat, flat_curve, flat_turns = stops.reshape(-1), curve.reshape(-1), turns.reshape(-1)
     room, is_rest = np.empty(_ROWS * BLOCK), out.shape[0] == _REST
     cells, log_share = float(stops.shape[1] - 3), math.log(turn_share)
@@ -141,7 +143,7 @@ def fill_known(
     return doubtful, bad
 
 
-@allocating
+@look_up
 def fill_states_of_one(
     vx: FloatArray, vy: FloatArray, step: int, spin: FloatArray, delta: FloatArray,
     decel: FloatArray, radius: FloatArray, stops: FloatArray, curve: FloatArray,

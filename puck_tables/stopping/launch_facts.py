@@ -8,11 +8,12 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import (
     BLOCK,
     LINE,
-    allocating,
     inlined,
     into_line,
     into_row,
     into_rows,
+    look_up,
+    patience,
     row_of,
     rows_of,
     spline_polynomials,
@@ -192,7 +193,7 @@ def find_facts(
         into_rows(room, ONE_TIME, n, more)
 
 
-@allocating
+@look_up
 def fill_launch_facts(
     pucks: FloatArray, natural: FloatArray, constants: FloatArray, states: FloatArray,
     rates: FloatArray, out: FloatArray,
@@ -202,6 +203,7 @@ def fill_launch_facts(
     ``pucks`` (20, m), see :func:`puck_tables.stopping.known.fill_known`; ``natural``: the same, but
     with others beside them in place of exact pure motions; ``constants`` (14, 4), powers ascending.
     """
+    patience(pucks.shape[1])
     cells, fixed = float(states.shape[1] - 3), constants.reshape(-1)
     of_state, of_rate, room = states.reshape(-1), rates.reshape(-1), np.empty(ROWS * BLOCK + LINE)
     room = room[-(room.ctypes.data // 8) % LINE :]  # from the beginning of a line of the cache on

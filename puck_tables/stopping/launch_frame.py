@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import inlined, kernel, weighted_rows
+from puck_tables.kernels.compile import inlined, kernel, patience, weighted_rows
 from puck_tables.stopping.stop_jacobian import Numbers, direction
 
 # what is differentiated
@@ -108,6 +108,7 @@ def fill_placed_states(
     around = 1.0 if spin >= 0.0 else -1.0
     flat, numbers = own.reshape(-1), out.reshape(-1)
     for n in range(times.size):
+        patience(1)
         row = weighted_rows(flat, OWN_STATES * n, (1.0,), OWN_STATES)
         placed = placed_state(
             east, north, around, spin, decel, unit, radius, 1.0 / radius, slip, times[n],

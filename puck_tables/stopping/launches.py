@@ -15,7 +15,7 @@ from puck_tables._core.executor import run_chunks, usable_cores
 from puck_tables._core.real import broadcast, finite_array, real_view, velocity_array
 from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import InputError
-from puck_tables.kernels.compile import BLOCK, inlined, into_row, kernel
+from puck_tables.kernels.compile import BLOCK, inlined, into_row, kernel, patience
 
 COLUMNS = 6
 VX, VY, SPIN, DELTA, DECEL, RADIUS = range(COLUMNS)  # rows of a block of launches
@@ -322,6 +322,7 @@ def mark_of(
     decel: FloatArray, radius: FloatArray, size: int,
 ) -> int:  # fmt: skip
     """The sum of the marks of all blocks of ``size`` launches."""
+    patience(size)
     mark = 0
     for start in range(0, size, BLOCK):
         count = min(BLOCK, size - start)

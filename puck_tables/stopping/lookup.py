@@ -24,9 +24,10 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import (
     BLOCK,
-    allocating,
     inlined,
     into_row,
+    look_up,
+    patience,
     row_of,
     spline_values,
 )
@@ -168,12 +169,13 @@ def stops_kernel(powers: int) -> Callable[..., tuple[int, int, int]]:
     """
     row = WIDTH * powers
 
-    @allocating
+    @look_up
     def fill(
         vx: FloatArray, vy: FloatArray, step: int, spin: FloatArray, delta: FloatArray,
         decel: FloatArray, radius: FloatArray, coefficients: FloatArray, time: FloatArray,
         x: FloatArray, y: FloatArray, apart: int,
     ) -> tuple[int, int, int]:  # fmt: skip
+        patience(time.size)
         c, room = coefficients.reshape(-1), np.empty(_ROWS * BLOCK)
         fill_constants(vx, vy, spin, delta, decel, radius, time.size, room)
         doubtful, bad, mark = 0, 0, 0

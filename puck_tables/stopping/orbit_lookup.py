@@ -10,9 +10,10 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import (
     BLOCK,
-    allocating,
     inlined,
     into_row,
+    look_up,
+    patience,
     row_of,
     spline_values,
 )
@@ -79,7 +80,7 @@ def gather(
     return first if same else -1
 
 
-@allocating
+@look_up
 def fill_orbit_states(
     pucks: FloatArray, which: npt.NDArray[np.int64], times: FloatArray, begin: int, end: int,
     orbit: FloatArray, out: FloatArray,
@@ -95,6 +96,7 @@ def fill_orbit_states(
     flat, cells, room = orbit.reshape(-1), float(orbit.shape[1] - 3), np.empty(_ROWS * BLOCK)
     bad, held = 0, -1
     for start in range(begin, end, BLOCK):
+        patience(1)
         count = min(BLOCK, end - start)
         held = gather(pucks, which, begin, start, count, BLOCK, held, room)
         moments = times[start : start + count]

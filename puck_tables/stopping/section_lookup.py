@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import allocating, weighted_rows
+from puck_tables.kernels.compile import look_up, patience, weighted_rows
 from puck_tables.kernels.section_spline import HEADER, section_place
 from puck_tables.kernels.spline import basis
 from puck_tables.stopping.lookup import LARGEST, SMALLEST
@@ -19,7 +19,7 @@ _OUT = STOP_ROWS * LAUNCH_COLUMNS
 _LOWEST = 1e-290
 
 
-@allocating
+@look_up
 def fill_section_stops(
     launches: FloatArray, cut: FloatArray, longest: float, out: FloatArray
 ) -> int:
@@ -29,8 +29,10 @@ def fill_section_stops(
     puck.  No direction is computed and nothing divided by zero.  Returns of how many ``longest``
     times Q²/J or Q²/(J r) is too large.
     """
+    patience(launches.shape[1])
     flat, too_large = cut.reshape(-1), 0
     for n in range(launches.shape[1]):
+        patience(1)
         vx, vy = launches[0, n], launches[1, n]
         decel, radius = launches[4, n], launches[5, n]
         rim = radius * launches[2, n]
@@ -61,7 +63,7 @@ def fill_section_stops(
     return too_large
 
 
-@allocating
+@look_up
 def fill_section_jacobians(
     launches: FloatArray, cut: FloatArray, good: npt.NDArray[np.bool_], out: FloatArray,
     left: npt.NDArray[np.bool_],
@@ -71,8 +73,10 @@ def fill_section_jacobians(
     ``cut`` holds the functions of :mod:`puck_tables.stopping.slope_section`, ``good`` says in which
     cells they are good; ``left`` (n,): which launches are in others, and left out.
     """
+    patience(launches.shape[1])
     flat, numbers = cut.reshape(-1), out.reshape(-1)
     for n in range(launches.shape[1]):
+        patience(1)
         vx, vy, spin, radius = launches[0, n], launches[1, n], launches[2, n], launches[5, n]
         speed, rim = math.hypot(vx, vy), abs(radius * spin)
         slip, larger = math.hypot(speed, rim), max(speed, rim)

@@ -31,10 +31,11 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import (
     BLOCK,
     LINE,
-    allocating,
     inlined,
     into_row,
     into_rows,
+    look_up,
+    patience,
     row_of,
     rows_of,
 )
@@ -300,7 +301,7 @@ def _find_jacobians(room: FloatArray) -> None:
         into_rows(room, PUT, n, placed)
 
 
-@allocating
+@look_up
 def fill_state_jacobians(
     pucks: FloatArray, natural: FloatArray, constants: FloatArray, facts: FloatArray,
     which: npt.NDArray[np.int64], times: FloatArray, states: FloatArray, begin: int, end: int,
@@ -322,6 +323,7 @@ def fill_state_jacobians(
     numbers, room = out.reshape(-1), np.empty(ROWS * BLOCK + LINE)
     room = room[-(room.ctypes.data // 8) % LINE :]  # from the beginning of a line of the cache on
     for start in range(begin, end, PART):
+        patience(1)
         count = min(PART, end - start)
         if which.size:
             held = gather(facts, which, begin, start, count, PART, held, room)

@@ -24,6 +24,8 @@ from puck_tables.kernels.compile import (
     allocating,
     inlined,
     into_rows,
+    look_up,
+    patience,
     row_of,
     rows_of,
     spline_polynomials,
@@ -194,7 +196,7 @@ def row_by_row(
             out[begin + n] = side[goal + n]
 
 
-@allocating
+@look_up
 def fill_stop_jacobians(
     vx: FloatArray, vy: FloatArray, step: int, spin: FloatArray, delta: FloatArray,
     decel: FloatArray, radius: FloatArray, slopes: FloatArray, streamed: bool, out: FloatArray,
@@ -205,6 +207,7 @@ def fill_stop_jacobians(
     :attr:`puck_tables.stopping.slopes.Slopes.stops`.  NaN for a launch at rest, where the time has
     no derivative, and for the path of pure spin by vx and vy, which grows like |v|.
     """
+    patience(len(out))
     flat, numbers, room = slopes.reshape(-1), out.reshape(-1), np.empty(_ROWS * BLOCK)
     fill_constants(vx, vy, spin, delta, decel, radius, len(out), room)
     for start in range(0, len(out), BLOCK):
@@ -233,6 +236,7 @@ def fill_placed_stops(launches: FloatArray, own: FloatArray, out: FloatArray) ->
     """Derivatives of stops (n, 5, 6) from natural ones ``own`` (n, 5, 4) of launches (6, n)."""
     flat, numbers = own.reshape(-1), out.reshape(-1)
     for n in range(launches.shape[1]):
+        patience(1)
         vx, vy, spin, radius = launches[0, n], launches[1, n], launches[2, n], launches[5, n]
         speed = math.hypot(vx, vy)
         slip = math.hypot(speed, radius * spin)

@@ -26,7 +26,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.safe_read import read_whole
-from puck_tables._core.safe_write import write_bytes
+from puck_tables._core.safe_write import as_utf8, write_bytes
 from puck_tables._version import __version__
 from puck_tables.errors import OutputError, TableError
 from puck_tables.table.accuracy import Accuracy
@@ -111,7 +111,7 @@ def encode(table: Table, command: str) -> bytes:
             f"HDF5 {h5py.version.hdf5_version}"
         ),
         "created": datetime.now(UTC).isoformat(timespec="seconds"),
-        "command": command,
+        "command": as_utf8(command),
         "recipe_digest": recipe_digest(recipe),
     }
     arrays: dict[str, FloatArray] = {}

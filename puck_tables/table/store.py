@@ -31,7 +31,6 @@ from puck_tables.contact.friction_laws import FrictionLaw
 from puck_tables.contact.laws import Law, law_of
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import InputError, OutputError, TableError
-from puck_tables.kernels.as_written import long_work
 from puck_tables.table.file import read_content, recipe_digest
 from puck_tables.table.friction_section import FrictionSection, friction_section
 from puck_tables.table.law_table import is_named
@@ -246,15 +245,10 @@ def fetch(name: str, command: str, kind: type[AnyTable], build: Callable[[], Any
     -------
     The table, as read from a file if there is a place for one.
     """
-
-    def built() -> AnyTable:
-        long_work()
-        return build()
-
     folder = tables_folder()
     if folder is None:
         say("there is no cache folder for built tables on this machine: this one is not kept")
-        return built()
+        return build()
     path = folder / name
     try:
         make_private(folder.parent)
@@ -269,8 +263,8 @@ def fetch(name: str, command: str, kind: type[AnyTable], build: Callable[[], Any
                 say(f"{path} is damaged: it is built again")
     except OSError as error:
         say(f"the table is used but not kept for the next time: {error.strerror or error}")
-        return built()
-    table = built()
+        return build()
+    table = build()
     try:
         return table.save(path, overwrite=True, command=command)
     except OSError as error:

@@ -6,7 +6,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.closed_form import by_closed_form
-from puck_tables.kernels.compile import allocating, kernel
+from puck_tables.kernels.compile import allocating, kernel, patience
 from puck_tables.kernels.spline import basis, cell_at, row_sums, side_and_eta
 from puck_tables.table.fit import clamped_coefficients
 from puck_tables.table.resultant_table import ResultantTable
@@ -88,6 +88,7 @@ def fill_uniform(
     c: FloatArray, phi: FloatArray, delta: FloatArray, sums: FloatArray, out: FloatArray
 ) -> None:
     """ρ_∥, ρ_⊥, ρ_ω at points with 0 ≤ φ ≤ π/2 into ``out`` (3, n); ``sums`` (3,) is work space."""
+    patience(phi.size)
     cells_delta, cells_phi = c.shape[0] - 3, c.shape[1] - 3
     scale = cells_phi / (0.5 * np.pi)
     for n in range(phi.size):
@@ -118,6 +119,7 @@ def fill_graded(
     In blocks of three loops: where and with which weights (vectorised), the sums (short dependency
     chains: one point does not wait for another), the division (vectorised).
     """
+    patience(phi.size)
     n_delta, n_eta = coefficients.shape[1] - 3, coefficients.shape[2] - 3
     c = coefficients.reshape(-1)
     row = 3 * (n_eta + 3)

@@ -13,6 +13,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.accuracy.front import Measured
 from puck_tables.io.dataset import Dataset, variable
+from puck_tables.kernels.patience import compiled_at_once
 from puck_tables.motion.limits import limit_ratio
 from puck_tables.result import Result
 from puck_tables.stopping.launches import launches_in
@@ -100,6 +101,7 @@ def _values(rows: tuple[Measured, ...] | tuple[Door, ...], name: str) -> Any:
     return values if isinstance(values[0], str) else np.asarray(values)
 
 
+@compiled_at_once()
 def measure(quick: bool = False, progress: Progress | None = None) -> TradeOff:
     """Measure accuracy against cost of every method of answering, on one thread of this machine.
 

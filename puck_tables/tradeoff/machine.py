@@ -13,7 +13,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._version import __version__
-from puck_tables.kernels.compile import kernel
+from puck_tables.kernels.compile import kernel, patience
 
 _WORKING_SET = 1 << 14  # doubles: 128 kB, what tables and blocks of the look-ups are held in
 _ROUNDS = 400
@@ -49,6 +49,7 @@ class Machine:
 @kernel
 def _polynomials(x: FloatArray, out: FloatArray) -> None:
     """Degree 32 in Horner's scheme: 64 flops for two memory accesses."""
+    patience(x.size)
     for i in range(x.size):
         t, total = x[i], 0.5
         for _ in range(32):
@@ -58,6 +59,7 @@ def _polynomials(x: FloatArray, out: FloatArray) -> None:
 
 @kernel
 def _triad(x: FloatArray, y: FloatArray, out: FloatArray) -> None:
+    patience(x.size)
     for i in range(x.size):
         out[i] = x[i] + 0.5 * y[i]
 

@@ -18,7 +18,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.laws import law_of
-from puck_tables.kernels.compile import kernel
+from puck_tables.kernels.compile import kernel, patience
 from puck_tables.table.resultant_table import HEIGHTS, ResultantTable
 from puck_tables.table.slip_axis import LawAxis
 
@@ -36,6 +36,7 @@ class LimitRatios:
 @kernel
 def fill_pade(phi: FloatArray, a: float, b: float, out: FloatArray) -> None:
     """ρ_∥, ρ_⊥ = 0, ρ_ω at angles 0 ≤ φ ≤ π/2 into ``out`` (3, n)."""
+    patience(phi.size)
     for n in range(phi.size):
         c, s = np.cos(phi[n]), np.sin(phi[n])
         out[0, n] = 1.0 / (c + a * s)
@@ -46,6 +47,7 @@ def fill_pade(phi: FloatArray, a: float, b: float, out: FloatArray) -> None:
 @kernel
 def fill_limit_surface(phi: FloatArray, out: FloatArray) -> None:
     """The same for the ellipsoidal limit surface."""
+    patience(phi.size)
     for n in range(phi.size):
         c, s = np.cos(phi[n]), np.sin(phi[n])
         w = 1.0 / np.sqrt(c * c + (4.0 / 9.0) * s * s)

@@ -8,7 +8,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import in_slices
-from puck_tables.kernels.compile import kernel
+from puck_tables.kernels.compile import kernel, patience
 from puck_tables.scene.friction import VX
 from puck_tables.world.course import COURSE_COLUMNS, LENGTH, trace
 from puck_tables.world.departures import Room, room_for
@@ -49,6 +49,7 @@ def _follow_all(
     disc whose courses are wanted, −1: none; the one that they are to pass; and how many impacts
     they may have: a run is given up when there are more.
     """
+    patience(launches.shape[0])
     count = first.shape[0]
     for run in range(launches.shape[0]):
         game.clock[0] = 0.0

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from puck_tables.kernels.compile import kernel
+from puck_tables.kernels.compile import kernel, patience
 from puck_tables.world.game import (
     CONTACT,
     IMPACT,
@@ -37,6 +37,7 @@ def trace(game: Game, disc: int, through: int, prints: Whole, marks: Whole, cour
     events = game.counts[N_EVENTS]
     course[FATE] = 0
     for n in range(events):
+        patience(1)
         what, i = int(game.events[n, WHAT]), int(game.events[n, WHO])
         if what not in (IMPACT, CONTACT, POCKETED, OVER_EDGE):
             continue

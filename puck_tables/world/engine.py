@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import inlined, inner, kernel
+from puck_tables.kernels.compile import inlined, inner, kernel, patience
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.world.borders import next_border
 from puck_tables.world.departures import (
@@ -60,6 +60,7 @@ from puck_tables.world.impact import (
     NX,
     NY,
     SUM_N,
+    SUM_T,
     TOO_FAST,
     approach,
     collide,
@@ -183,6 +184,9 @@ def _happen(game: Game, i: int, partner: int, t: float, room: Room) -> int:
     if rounds < 0:
         game.counts[N_CONTACTS] = count
         return OFF_TABLE if rounds == TOO_FAST else TANGLED
+    for n in range(count):
+        if not math.isfinite(room.rows[n, SUM_N] + room.rows[n, SUM_T]):
+            return TANGLED
     note_impacts(game, t, count, room)
     # those that no impulse reached fly on
     for j in range(discs.shape[0]):
@@ -272,6 +276,7 @@ def _look_again(game: Game, t: float, room: Room) -> None:
             game.next_time[i], game.next_partner[i] = math.inf, NOTHING
     for i in range(count):
         if room.marks[i] > 0:
+            patience(1)
             look_ahead(game, i, t, room)
 
 
@@ -315,6 +320,7 @@ def advance(game: Game, until: float, struck: int, state: FloatArray, room: Room
             return status
         _look_again(game, game.clock[0], room)
     while True:
+        patience(1)
         first, t = count - 1, math.inf
         for i in range(count):
             # a driven disc turns before those that it pushes are asked where they go

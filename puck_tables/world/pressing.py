@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.kernels.compile import inlined, kernel, patience
 from puck_tables.scene.friction import SPIN, VX
 from puck_tables.world.complementarity import rim_mode
 from puck_tables.world.footing import over_floor
@@ -140,6 +140,7 @@ def press(
     place_driven(group, members, doings, t, y, desk)
     stopped, again = desk.modes[1, : contacts.shape[0]], True
     while again:
+        patience(1)
         look(group, members, pairs, y, desk.sights)
         look_at_ties(group, members, t, y, desk)
         for c in range(contacts.shape[0]):

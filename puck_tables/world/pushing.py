@@ -15,7 +15,7 @@ from typing import cast
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import inlined, inner, kernel
+from puck_tables.kernels.compile import inlined, inner, kernel, patience
 from puck_tables.world.footing import is_over, moves_along, room_on_floor
 from puck_tables.world.forces import can_rest, count_rows, slip_of
 from puck_tables.world.group import (
@@ -243,6 +243,7 @@ def follow(
     if c >= 0:
         return PARTS + kind, c, t, 0
     while t < t_end:
+        patience(1)
         if count == pieces.shape[1]:
             how = FULL
             break

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import kernel
+from puck_tables.kernels.compile import kernel, patience
 from puck_tables.world.flight import ROOM, START, state_at
 from puck_tables.world.game import N_HISTORY, Game, Whole
 
@@ -51,6 +51,7 @@ def _states(game: Game, rows: Whole, times: FloatArray) -> FloatArray:
 @kernel
 def _fill(game: Game, rows: Whole, times: FloatArray, work: FloatArray, out: FloatArray) -> None:
     for n in range(rows.size):
+        patience(1)
         flight = game.history[rows[n]]
         state_at(
             int(flight[1]), flight[2:], game.discs[int(flight[0])], game.curves, game.pieces,

@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import inlined, kernel
+from puck_tables.kernels.compile import inlined, kernel, patience
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.scene.ingredients import FREE
 from puck_tables.world.group import (
@@ -100,6 +100,7 @@ def look_at_ties(group: Group, members: IntArray, t: float, y: FloatArray, desk:
 def look(group: Group, members: IntArray, pairs: IntArray, y: FloatArray, out: FloatArray) -> None:
     """What is seen of contacts ``pairs`` (c, 2) at the states y (m, 6), into ``out`` (≥ c, 11)."""
     for c in range(pairs.shape[0]):
+        patience(1)
         one, other, sight = pairs[c, 0], pairs[c, 1], out[c]
         i = members[one]
         radius = group.discs[i, RADIUS]

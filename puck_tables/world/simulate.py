@@ -27,6 +27,9 @@ def simulate(scene: Scene, times: npt.ArrayLike | None = None) -> WorldRun:
     refuse_endless(world.scene)
     files = files_of(scene)
     world.advance(math.inf if scene.run.time is None else scene.run.time)
+    books = ledger(world)
+    if world.groups > 0 and not books["energy_residual"] <= MISSED:
+        raise PuckError(TOGETHER.format(time=world.time))
     moving = bool(world.moving.any())
     end_time = world.time if moving else world.last_motion
     if times is None:
@@ -37,9 +40,6 @@ def simulate(scene: Scene, times: npt.ArrayLike | None = None) -> WorldRun:
             raise InputError("times must be a list of ascending numbers >= 0 s")
         if moving:
             moments = moments[moments <= end_time]
-    books = ledger(world)
-    if books["energy_residual"] > MISSED and world.groups > 0:
-        raise PuckError(TOGETHER.format(time=world.time))
     states = world.over(np.minimum(moments, world.time))
     last = world.state()
     columns = {**_columns(states), "in_play": _in_play(world, moments)}

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import inlined, inner
+from puck_tables.kernels.compile import inlined, inner, patience
 from puck_tables.scene.friction import X, Y
 from puck_tables.world.departures import CONCERNED, LOOKED_AT, NOT_CONCERNED, Room, locate
 from puck_tables.world.flight import GONE, PLACE_X, PLACE_Y, STILL, drifts
@@ -57,6 +57,7 @@ def find_touching(game: Game, t: float, room: Room) -> int:
         for i in range(discs.shape[0]):
             if room.marks[i] != CONCERNED:
                 continue
+            patience(1)
             room.marks[i] = LOOKED_AT
             # moments are rounded, and so are the gaps at them
             near = TOUCH * discs[i, RADIUS] + BLUR * t * game.pace[0]

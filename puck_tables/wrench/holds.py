@@ -15,7 +15,7 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import broadcast, finite_array, velocity_array
 from puck_tables.errors import InputError
-from puck_tables.kernels.compile import allocating
+from puck_tables.kernels.compile import allocating, patience
 from puck_tables.scene.ingredients import Dry, dry_in
 from puck_tables.scene.regions import regions_of
 from puck_tables.scene.rest import SLACK, demand
@@ -78,4 +78,5 @@ def _forces(force: npt.ArrayLike) -> FloatArray:
 def _fill(dry: Dry, radius: float, rows: FloatArray, share: FloatArray, heat: FloatArray) -> None:
     """The shares of wrenches (3, n), and the power of friction in their slip."""
     for n in range(rows.shape[1]):
+        patience(1)
         share[n], heat[n], _, _, _ = demand(dry, radius, rows[0, n], rows[1, n], rows[2, n], False)

@@ -1,0 +1,57 @@
+"""From one friction coefficient to one over slip speed."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from puck_tables._core.arrays import FloatArray
+from puck_tables.fitting.estimate import Estimate, estimate
+from puck_tables.fitting.least_squares import LOOSE, minimise
+from puck_tables.fitting.parameters import NODES
+from puck_tables.fitting.problem import Problem
+from puck_tables.fitting.timing import Known
+
+_FRAMES = 80  # that tell whether such a law may be the reason of a misfit
+_SHARES = (0.0, 0.08, 0.3, 1.0)  # of the fastest slip
+
+
+def over_speeds(found: Estimate, speeds: tuple[float, ...], between: str, known: Known) -> Estimate:
+    """The estimate with a friction coefficient for each slip speed, from that of one for all."""
+    moved, start = _begun(found.problem, found.x, speeds)
+    lines, _ = minimise(moved, start, LOOSE)
+    asked = replace(moved.asked, between=between)
+    return estimate(replace(moved, asked=asked), lines, known)
+
+
+def tried(found: Estimate) -> Estimate:
+    """About what a law of lines over slip speed leaves of the frames of an estimate."""
+    problem = found.problem
+    films = []
+    for film in problem.films:
+        few = np.zeros(film.time.size, bool)
+        few[np.linspace(0, film.time.size - 1, _FRAMES).astype(int)] = True
+        films.append(film.part(few))
+    radius = problem.asked.scales(problem.found(found.x))[2]
+    _, _, vx, vy, spin, _ = problem.launches(found.x).T
+    top = float((np.hypot(vx, vy) + radius * np.abs(spin)).max())
+    speeds = tuple(float(f"{1.1 * top * share:.2g}") for share in _SHARES)
+    fewer = problem.with_films(tuple(films))
+    moved, start = _begun(fewer, found.x, speeds)
+    x, _ = minimise(moved, start, LOOSE)
+    return replace(found, problem=moved, x=x, minima=())
+
+
+def _begun(
+    problem: Problem, x: FloatArray, speeds: tuple[float, ...]
+) -> tuple[Problem, FloatArray]:
+    """A problem of lines between slip speeds, with the friction of an estimate at each.
+
+    Where f is the same at all speeds the slopes of a cubic jump: lines lead away from there.
+    """
+    asked = problem.asked.over(speeds, "linear")
+    numbers = problem.found(x)
+    numbers.update({name: numbers["friction"] for name in asked.free if name in NODES})
+    moved = replace(problem, asked=asked, weights=())
+    return moved, moved.unknowns(numbers, problem.launches(x), problem.found_walls(x))

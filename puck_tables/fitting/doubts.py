@@ -1,0 +1,75 @@
+"""Numbers that nobody would believe, in words: units, scales or what was known may be wrong."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+
+from puck_tables.fitting.numbers import KNOWN, FoundLaunch, Number
+
+_GRIP, _SLICK = 5.0, 1e-4  # friction coefficients of dry surfaces are smaller, and larger
+_TALL = 8.0  # radii: pucks are lower
+_OTHER = 3.0  # times the radius that was given
+_FAST, _FAST_RIM = 100.0, 300.0  # m/s: no puck on a film slides, or turns, faster
+_HEAVIER = 100.0  # times the other puck
+_UNITS = "the unit of the places, or of the times, the scale or the frames a second may be wrong"
+
+
+def doubts(
+    numbers: Mapping[str, Number], launches: Sequence[FoundLaunch], radius: float
+) -> tuple[str, ...]:
+    """A sentence for each number that was found and that no puck has.
+
+    Parameters
+    ----------
+    numbers, launches : as they were found
+    radius : m, of the puck as it was given
+
+    Examples
+    --------
+    >>> tall = Number(10.0, 0.1, 9.8, 10.2, "m", "follows")
+    >>> doubts({"height": tall}, (), 0.026)[0][:55]
+    'A height of 10 m is 385 times the radius, as no puck is'
+    """
+    said = []
+    found = {
+        name: one for name, one in numbers.items()
+        if one.how != KNOWN and one.determined and math.isfinite(one.value)
+    }  # fmt: skip
+    friction, height, own = (found.get(name) for name in ("friction", "height", "radius"))
+    if friction is not None and (friction.low > _GRIP or friction.high < _SLICK):
+        than = "more" if friction.low > _GRIP else "less"
+        said.append(
+            f"A friction of {friction.value:.3g} is {than} than dry surfaces have: {_UNITS}"
+        )
+    true = radius if own is None else own.value
+    if not said and height is not None and height.value > _TALL * true and height.low > true:
+        said.append(
+            f"A height of {height.value:.3g} m is {height.value / true:.3g} times the radius, as "
+            "no puck is: the path bends for another reason, or the floor slopes; give the height "
+            "if it is known"
+        )
+    if own is not None and not 1.0 / _OTHER < own.value / radius < _OTHER:
+        said.append(
+            f"A radius of {own.value:.3g} m was found where {radius:.3g} m was said: the scale, or "
+            "the unit of the angles, may be wrong"
+        )
+    gyration = found.get("gyration")
+    if gyration is not None and gyration.low > 1.0:
+        said.append(
+            f"A radius of gyration of {gyration.value:.3g} r is that of no body within its rim: "
+            "the radius, or the unit of the angles, may be wrong"
+        )
+    ratio = found.get("mass_ratio")
+    if ratio is not None and not 1.0 / _HEAVIER < ratio.value < _HEAVIER:
+        said.append(f"A mass ratio of {ratio.value:.3g} is that of no two pucks of one size")
+    for one in launches:
+        speed, rim = math.hypot(*one.velocity), true * abs(one.spin)
+        if speed > _FAST:
+            said.append(f"{one.name} slides at {speed:.3g} m/s, as no puck does: {_UNITS}")
+        elif rim > _FAST_RIM and one.numbers["launch_spin"].determined:
+            said.append(
+                f"The rim of {one.name} turns at {rim:.3g} m/s, as no puck does: the unit of the "
+                "angles or of the times may be wrong, or it turns by whole turns less"
+            )
+    return tuple(said)

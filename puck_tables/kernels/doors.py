@@ -1,0 +1,231 @@
+"""What Python calls of the kernels: it runs them as they are written, or compiled.
+
+A kernel stays the function that is written there; how it is to be compiled is noted beside it, and
+read by :mod:`puck_tables.kernels.compiled` when that is needed.  Only what Python calls is wrapped.
+"""
+
+from __future__ import annotations
+
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from functools import cached_property, update_wrapper
+from typing import Any, TypeVar
+
+import numpy as np
+
+from puck_tables._core.own_folder import say
+from puck_tables.errors import PuckError
+from puck_tables.kernels.as_written import as_written
+from puck_tables.kernels.cache import is_any_kept
+from puck_tables.kernels.numba_settings import read_settings
+from puck_tables.kernels.patience import AT_FIRST, OutOfPatience, here
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+# kernels that only kernels call, and whether they are pasted into every caller
+behind: dict[Any, bool] = {}
+
+_PER_INSTRUCTION = 5e-4  # s, to compile an instruction of Python; of some machine
+_SAID = 1.0  # s; what takes less is not worth a sentence
+_importing = threading.RLock()
+
+
+class Door:
+    """A kernel that Python calls.
+
+    ``counts``: references to arrays; ``fuses``: a·b + c is rounded once where the machine can.
+    """
+
+    def __init__(self, function: Callable[..., Any], counts: bool, fuses: bool) -> None:
+        update_wrapper(self, function)
+        self.py_func, self.counts, self.fuses = function, counts, fuses
+        self.spent = 0.0  # s of computing, as it is written
+        self._ready: Any = None
+
+    def __call__(self, *args: Any) -> Any:
+        """Run it."""
+        if here.as_written:
+            return self.py_func(*args)
+        if self._ready is not None:
+            return self._ready(*args)
+        return self.way_for(*args)(*args)
+
+    def __reduce__(self) -> str:
+        return self.py_func.__qualname__
+
+    @property
+    def compiled(self) -> Any:
+        """Of numba, with what was compiled in this process."""
+        if self._ready is None:
+            with _importing:
+                self._ready = _from_numba().dispatcher_at(self)
+        return self._ready
+
+    @property
+    def _numba_type_(self) -> Any:
+        """What it is to kernels that call it."""
+        return _from_numba().type_of(self.compiled)
+
+    def way_for(self, *args: Any) -> Callable[..., Any]:
+        """What to call with such arguments: it, as it is written at first, or its compiled code."""
+        if here.at_once or (here.kept_first and self._keeps(args)) or self.spent >= self._allowed:
+            return self._compile(*args)
+        return self._try
+
+    @property
+    def _allowed(self) -> float:
+        """How long it may run as it is written, s; where one question is asked, much longer."""
+        if here.kept_first or is_any_kept(self.py_func):
+            return AT_FIRST
+        return max(AT_FIRST, 0.25 * self.seconds)
+
+    def _keeps(self, args: tuple[Any, ...]) -> bool:
+        """Whether compiled code for such arguments is there, in this process or on disk."""
+        there = self._ready is not None or is_any_kept(self.py_func)
+        return there and bool(_from_numba().keeps(self.compiled, args))
+
+    def _compile(self, *args: Any) -> Callable[..., Any]:
+        if self.seconds > _SAID and not self._keeps(args):
+            name = f"{self.py_func.__module__}.{self.py_func.__qualname__}"
+            say(f"compiling {name} for this machine, once: about {self.seconds:.2g} s")
+        code: Callable[..., Any] = _from_numba().code_for(self, args)
+        return code
+
+    def _try(self, *args: Any) -> Any:
+        """Run it as it is written while patience lasts, or else compiled from the same arguments.
+
+        Compiled code has inf or NaN where Python refuses; a broken power of a negative number is
+        complex here.
+        """
+        before = [(array, array.copy()) for array in _arrays(args) if array.flags.writeable]
+        begin = time.thread_time()
+        here.as_written, here.until = True, begin + self._allowed - self.spent
+        try:
+            with np.errstate(all="ignore"):
+                found = self.py_func(*args)
+            if not _is_complex(found):
+                return found
+        except (OutOfPatience, ArithmeticError, ValueError, TypeError) as error:
+            if isinstance(error, PuckError):
+                raise
+        except BaseException:
+            _put_back(before)
+            raise
+        finally:
+            here.as_written = False
+            self.spent += time.thread_time() - begin
+        _put_back(before)
+        return self._compile(*args)(*args)
+
+    @cached_property
+    def seconds(self) -> float:
+        """How long compiling takes, roughly: by what is written, here and in what it calls."""
+        return _PER_INSTRUCTION * sum(len(one.__code__.co_code) // 2 for one in _called(self))
+
+
+def _called(door: Door) -> set[Any]:
+    """The function behind a door, and all kernels that it calls."""
+    found: set[Any] = set()
+    waiting: list[Any] = [door.py_func]
+    while waiting:
+        function = waiting.pop()
+        if function not in found:
+            found.add(function)
+            cells = (cell.cell_contents for cell in function.__closure__ or ())
+            names = (function.__globals__.get(name) for name in function.__code__.co_names)
+            for one in (*cells, *names):
+                if isinstance(one, Door):
+                    waiting.append(one.py_func)
+                elif callable(one) and one in behind:
+                    waiting.append(one)
+    return found
+
+
+def _arrays(values: tuple[Any, ...]) -> Iterator[Any]:
+    """The arrays among arguments, and in tuples of them."""
+    for value in values:
+        if isinstance(value, np.ndarray):
+            yield value
+        elif isinstance(value, tuple):
+            yield from _arrays(value)
+
+
+def _put_back(before: list[tuple[Any, Any]]) -> None:
+    for array, copy in before:
+        array[...] = copy
+
+
+def _is_complex(found: Any) -> bool:
+    """Whether a number is complex, or one of a tuple."""
+    if isinstance(found, tuple):
+        return any(_is_complex(one) for one in found)
+    return isinstance(found, complex)
+
+
+def _from_numba() -> Any:
+    """What compiles, loaded by one thread.
+
+    Raises
+    ------
+    InputError
+        If numba cannot use an environment variable that is set for it.
+    """
+    with _importing:
+        if "puck_tables.kernels.compiled" not in sys.modules:
+            read_settings()
+        from puck_tables.kernels import compiled
+
+    return compiled
+
+
+def _door(function: Function, counts: bool, fuses: bool = False) -> Function:
+    made: Any = function if as_written() else Door(function, counts, fuses)
+    return made
+
+
+def kernel(function: Function) -> Function:
+    """A function for the compiler: no Python objects, no GIL, IEEE rules: the bits of Python.
+
+    It works in the arrays that it is given, and neither makes arrays nor gives any to a function
+    that does: it is compiled without counting references, which in a loop over small steps takes
+    longer than the steps.  Division by zero gives inf or NaN as in NumPy; kernels report trouble by
+    status codes.
+    """
+    return _door(function, counts=False)
+
+
+def allocating(function: Function) -> Function:
+    """A function for the compiler that makes arrays; it calls kernels that return numbers only."""
+    return _door(function, counts=True)
+
+
+def look_up(function: Function) -> Function:
+    """A kernel as :func:`allocating` that reads a table for many: it may fuse products and sums.
+
+    That takes a tenth to a sixth off it, and changes last bits.
+    """
+    return _door(function, counts=True, fuses=True)
+
+
+def inlined(function: Function) -> Function:
+    """A kernel that is pasted into every caller, so that loops over it vectorise.
+
+    The callers keep what was compiled; it needs no cache of its own, and no door to Python, which
+    would take a third of the time to compile it.  Called from Python it runs as it is written.
+    """
+    behind[function] = True
+    return function
+
+
+def inner(function: Function) -> Function:
+    """A kernel that only kernels call: without a door to Python, as :func:`inlined`.
+
+    A door unpacks every array of every record that is handed in, which takes longer to compile
+    than many a function; for what is too long to be pasted into each caller.  A function without a
+    door is optimised with those behind which it lies (:mod:`puck_tables.kernels.linking`).
+    """
+    behind[function] = False
+    return function

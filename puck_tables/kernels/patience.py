@@ -1,0 +1,85 @@
+"""How long kernels run as they are written, in Python, before they are compiled.
+
+To compile what moves one puck takes longer than to move it.  So a kernel that is called from Python
+runs as it is written until a second of computing is spent on it, or many items come; then it goes
+on compiled, from the arguments as they were.  Loops look at the clock by a call of
+:func:`patience`, of which nothing is left in compiled code.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import math
+import os
+import threading
+import time
+from collections.abc import Iterator
+
+AT_FIRST = 1.5  # s of computing of each kernel
+FEW = 64  # items; more are compiled for at once
+
+
+class OutOfPatience(BaseException):
+    """What runs as it is written is to go on compiled."""
+
+
+class _Thread(threading.local):
+    """What holds in a thread: whether a kernel runs as it is written, and until when."""
+
+    as_written = False
+    until = math.inf
+    at_once = os.environ.get("NUMBA_DISABLE_JIT") == "0"  # whether to compile without a try
+    kept_first = True  # whether what was compiled before is quicker than a try
+
+
+here = _Thread()
+
+
+def patience(items: int) -> None:
+    """Look at the clock, with so many items of work ahead; compiled code does not.
+
+    Raises
+    ------
+    OutOfPatience
+        Where a kernel runs as it is written, and too long.
+
+    Examples
+    --------
+    >>> patience(1000)  # no kernel runs
+    """
+    if here.as_written and (items > FEW or time.thread_time() > here.until):
+        raise OutOfPatience
+
+
+@contextlib.contextmanager
+def compiled_at_once() -> Iterator[None]:
+    """Compile what this thread calls within, for what is measured or called often.
+
+    Examples
+    --------
+    >>> with compiled_at_once():
+    ...     here.at_once
+    True
+    """
+    before, here.at_once = here.at_once, True
+    try:
+        yield
+    finally:
+        here.at_once = before
+
+
+@contextlib.contextmanager
+def one_question() -> Iterator[None]:
+    """Answer one question and end: what was compiled before is not loaded before it is needed.
+
+    Examples
+    --------
+    >>> with one_question():
+    ...     here.kept_first
+    False
+    """
+    before, here.kept_first = here.kept_first, False
+    try:
+        yield
+    finally:
+        here.kept_first = before

@@ -1,0 +1,77 @@
+"""Whoever uses the program first, and in however many threads at once, gets an answer."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+# a question for every public door that computes
+DOORS = {
+    "simulate": "PUCK.simulate((1.0, 0.2), 5.0).stop_time",
+    "stop": "PUCK.stop((1.0, 0.2), 5.0).stop_time",
+    "stop of": "pt.stop((1.0, 0.2), 5.0).stop_time",
+    "stops": "pt.stop_arrays([1.0, 0.9], [0.2, 0.1], [5.0, 4.0])[0]",
+    "states": "PUCK.states((1.0, 0.2), 5.0, 0.1).x",
+    "states of": "pt.states((1.0, 0.2), 5.0, 0.1).x",
+    "aim": "PUCK.aim((0.2, 0.1)).launch_spin",
+    "sweep": "PUCK.sweep([0.0, 1.0], [1.0, 2.0]).stop_time",
+    "sample": "PUCK.sample(4, seed=1, speed=pt.Normal(1.0, 0.1), spin=3.0).stop_time",
+    "regime": "PUCK.regime((1.0, 0.2), 5.0)",
+    "pull": "PUCK.limit_surface().unit_force",
+    "scene": "pt.Scene.load('incline').simulate().end_time",
+    "world": "pt.Scene.load('newtons-row').world().advance(0.01)",
+    "table": "pt.Table.shipped().resultants(0.3, 0.5).spin",
+    "resultants": "pt.resultants(0.3, 0.5).spin",
+    "limit": "pt.motion.limit_ratio(0.1)",
+    "share": "pt.contact.loaded_share(0.3, 0.5)",
+    "law": "pt.law_of('annulus:0.8').name",
+    "case": "pt.reference_case('coin').time",
+    "asperity": "pt.chetaev.Asperity",
+    "export": "pt.export_source('c', tol=1e-3).text",
+    "frame": "PUCK.stop((1.0, 0.2), 5.0).dataset()",
+}
+AT_ONCE = """
+import sys, threading
+import puck_tables as pt
+sys.setswitchinterval(1e-5)
+PUCK = pt.Puck(radius=0.04, height=0.02, friction=0.15)
+begin, wrong = threading.Barrier(8), []
+def ask(question):
+    begin.wait()
+    try:
+        eval(question)
+    except BaseException as error:
+        wrong.append(f"{question}: {type(error).__name__}: {error}")
+threads = [threading.Thread(target=ask, args=(question,)) for question in sys.argv[1:]]
+[thread.start() for thread in threads]
+[thread.join() for thread in threads]
+print(*wrong, sep="\\n", end="")
+"""
+
+
+def failures(questions: list[str]) -> str:
+    """What goes wrong where eight threads ask these first."""
+    ended = subprocess.run(
+        [sys.executable, "-c", AT_ONCE, *questions], capture_output=True, text=True, check=True
+    )
+    return ended.stdout
+
+
+def test_eight_threads_may_ask_the_same_first() -> None:
+    assert failures([DOORS["limit"]] * 8) == ""
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("door", DOORS)
+def test_eight_threads_may_use_any_door_first(door: str) -> None:
+    assert failures([DOORS[door]] * 8) == ""
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("seed", range(6))
+def test_eight_threads_may_use_different_doors_first(seed: int) -> None:
+    drawn = np.random.default_rng(seed).choice(list(DOORS.values()), 8)
+    assert failures(drawn.tolist()) == ""

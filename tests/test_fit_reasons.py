@@ -1,0 +1,99 @@
+"""What a film is if its puck did not spin, why it does not fit, and what nobody would believe."""
+
+from __future__ import annotations
+
+import math
+
+import film_judge
+import impacts_judge
+import numpy as np
+import pytest
+from film_judge import G
+from rarely import few
+from test_fit_speed import FLAT, film, slid
+
+import puck_tables as pt
+
+NOISE = (0.3e-3, 5e-3)
+
+
+def way_of(rng: np.random.Generator, speed: float) -> tuple[float, float]:
+    angle = rng.uniform(0.0, 2.0 * math.pi)
+    return speed * math.cos(angle), speed * math.sin(angle)
+
+
+@pytest.mark.parametrize("seed", few(3, range(24)))
+def test_a_slide_without_marks_is_told_as_one_first(seed):
+    """The commonest film: its friction hangs on a spin that nobody saw."""
+    rng = np.random.default_rng([35, 10, seed])
+    friction, velocity = rng.uniform(0.08, 0.5), np.array(way_of(rng, rng.uniform(0.8, 2.0)))
+    end = math.hypot(*velocity) / (friction * G)
+    times = np.linspace(0.0, 1.1 * end, int(rng.integers(60, 200)))
+    moving = np.minimum(times, end)
+    way = moving - 0.5 * moving**2 / end
+    place = np.outer(way, velocity) + NOISE[0] * rng.normal(size=(times.size, 2))
+    found = pt.fit(pt.Track(times, place), pt.Puck(radius=0.04))
+    if found["friction"].determined:
+        assert abs(found["friction"].value - friction) < 4.0 * found["friction"].error
+        return
+    first = found.blind[0]
+    assert first.startswith("friction = ") and "--fix launch_spin=0" in first
+    value, _, error = first.split()[2:5]
+    assert abs(float(value) - friction) < 4.0 * float(error) + 1e-4 * friction
+    assert not any("if it did not spin" in text for text in found.blind[1:])
+
+
+def test_a_puck_that_spun_is_not_told_without_spin():
+    rng = np.random.default_rng(3510)
+    times = np.arange(180) / 120.0
+    true = film_judge.path((1.5, 0.3), 90.0, 1.5, 0.3, 0.04, times)
+    found = pt.fit(pt.Track(times, film_judge.noisy(rng, true, NOISE)[0]), pt.Puck(radius=0.04))
+    assert not any("if it did not spin" in text for text in found.blind)
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("seed", few(1, range(8)))
+def test_a_floor_whose_friction_falls_with_speed_is_named(seed):
+    rng = np.random.default_rng([35, 100, seed])
+    rest, fast, scale = rng.uniform(0.25, 0.35), rng.uniform(0.1, 0.15), rng.uniform(0.2, 1.0)
+    path = slid(
+        lambda u: fast + (rest - fast) * np.exp(-u / scale), way_of(rng, rng.uniform(1.2, 1.8)),
+        rng.uniform(15.0, 40.0) * rng.choice([-1.0, 1.0]),
+    )  # fmt: skip
+    found = pt.fit(film(path, seed), FLAT, fixed={"delta": 0.0})
+    assert found.complaints
+    assert "over slip speed" in found.misread or "drag" in found.misread
+    speeds = [float(u) for u in found.misread.split("--slip-speeds ")[-1].rstrip(")").split(",")] \
+        if "--slip-speeds" in found.misread else [0.0, 0.3, 1.0, 4.0]  # fmt: skip
+    asked = pt.fit(film(path, seed), FLAT, fixed={"delta": 0.0}, slip_speeds=speeds)
+    assert asked.chi2 / asked.degrees < 1.5 and asked.noise[0] < 0.5 * found.noise[0]
+
+
+def test_a_height_that_no_puck_has_is_said():
+    """A path on a floor that slopes sideways bends as that of a tall puck does."""
+    rng = np.random.default_rng(3512)
+    times = np.arange(200) / 120.0
+    true = film_judge.path((1.2, 0.0), 30.0, 0.004 * G, 0.3, 0.013, times)
+    track = pt.Track(times, *film_judge.noisy(rng, true, (1e-4, 2e-3)))
+    found = pt.fit(track, pt.Puck(radius=0.013))
+    height = found["height"]
+    assert height.determined and height.value > 0.2
+    assert any("times the radius, as no puck is" in text for text in found.remarks)
+
+
+@pytest.mark.parametrize("seed", few(2, range(8)))
+def test_what_impacts_tell_keeps_its_error_where_the_tilt_is_at_its_end(seed):
+    """A flat puck: the tilt that fits best lies at 0, or would below, in half of all films."""
+    rng = np.random.default_rng([35, 120, seed])
+    times, wall = np.arange(200) / 120.0, [(0.3, 0.9)]
+    start = np.array([0.0, 0.0, 2.2, 0.9, rng.uniform(20.0, 50.0), 0.3])
+    true = impacts_judge.wall_film((1.5, 0.0, 0.04), start, wall, [0.41], (0.8, 0.12), times)
+    track = pt.Track(times, *film_judge.noisy(rng, true, NOISE))
+    found = pt.fit(track, pt.Puck(radius=0.04), impacts=True)
+    assert found["delta"].at_bound or found["delta"].value < 0.02
+    (hit,) = found.impacts
+    for number, truth in ((hit.restitution, 0.8), (hit.rim, 0.12)):
+        assert 0.0 < number.error < 0.05
+        assert abs(number.value - truth) < 5.0 * number.error
+    for launch in found.launches:
+        assert all(math.isfinite(one.error) for one in launch.numbers.values())

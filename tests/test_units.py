@@ -1,0 +1,128 @@
+"""Numbers with a unit behind them, and lists: in fields, files, --set and options, drawn."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from puck_tables.cli.main import main
+from puck_tables.cli.options import Number, Range, Times, Vector
+
+import puck_tables as pt
+from puck_tables.contact.laws import law_of
+from puck_tables.errors import InputError
+
+UNITS: dict[str, dict[str, float]] = {
+    "m": {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "um": 1e-6, "ft": 0.3048},
+    "m/s": {"m/s": 1.0, "cm/s": 0.01, "km/h": 1 / 3.6, "mm/s": 1e-3},
+    "rad/s": {"rad/s": 1.0, "deg/s": math.pi / 180, "rpm": math.pi / 30},
+    "rad": {"rad": 1.0, "deg": math.pi / 180, "turn": 2 * math.pi},
+    "s": {"s": 1.0, "ms": 1e-3, "min": 60.0}, "kg": {"kg": 1.0, "g": 1e-3},
+}  # fmt: skip
+
+
+def drawn(rng: np.random.Generator, unit: str, low: float = 0.5, high: float = 2.0) -> Any:
+    """A number as somebody may write it, and what it is in SI units."""
+    name, size = list(UNITS[unit].items())[rng.integers(len(UNITS[unit]))]
+    number = f"{float(rng.uniform(low, high)) / size:.9g}"
+    return f"{number}{['', ' '][rng.integers(2)]}{name}", float(number) * size
+
+
+def test_fields_and_files_take_units(tmp_path: Path):
+    rng = np.random.default_rng(51)
+    for _ in range(30):
+        written = {name: drawn(rng, unit) for name, unit in (
+            ("radius", "m"), ("height", "m"), ("mass", "kg"), ("vx", "m/s"), ("vy", "m/s"),
+            ("spin", "rad/s"), ("x", "m"), ("downhill", "rad"), ("time", "s"),
+        )}  # fmt: skip
+        text, value = ({name: one[n] for name, one in written.items()} for n in (0, 1))
+        (tmp_path / "a.toml").write_text(
+            f"[puck]\nradius = '{text['radius']}'\nheight = '{text['height']}'\n"
+            f"mass = '{text['mass']}'\nfriction = 0.05\n"
+            f"[launch]\nvelocity = ['{text['vx']}', '{text['vy']}']\nspin = '{text['spin']}'\n"
+            f"position = ['{text['x']}', 0.0]\n[floor]\ndownhill = '{text['downhill']}'\n"
+            f"[run]\ntime = '{text['time']}'\n"
+        )
+        scene = pt.Scene.load(tmp_path / "a.toml")
+        puck = pt.Puck(text["radius"], text["height"], 0.05, text["mass"])
+        assert puck == scene.puck
+        found = (
+            puck.radius, puck.height, puck.mass, *scene.launch.velocity, scene.launch.spin,
+            scene.launch.position[0], scene.floor.downhill, scene.run.time,
+        )  # fmt: skip
+        assert found == pytest.approx(list(value.values()), rel=1e-12)
+    ranged = pt.Scene(pt.Puck("4cm", 0.0, 0.1), launch=pt.Launch((1.0, 0.0), "10rpm:20rpm:3"))
+    assert ranged.ranges["launch.spin"] == pytest.approx(np.array([10, 15, 20]) * math.pi / 30)
+    assert pt.Puck("25.4mm").radius == 0.0254 == pt.Puck("1in").radius  # to the last bit
+
+
+@pytest.mark.parametrize("text", ["3.81 foo", "3 kg", "cm", "3 px", "1,5cm", "3cm2", "nan cm"])
+def test_what_is_no_length_gets_a_sentence(text: str):
+    with pytest.raises(
+        InputError, match=r"radius = '.*': must be a number > 0 m, or with its unit"
+    ):
+        pt.Puck(text)
+    ended = CliRunner().invoke(main, ["simulate", "--v0", "1,0", "--radius", text])
+    assert ended.exit_code == 2 and "is not a number, or one with a unit as 25mm" in ended.stderr
+
+
+def test_options_take_units_and_lists():
+    rng = np.random.default_rng(52)
+    for unit in UNITS:
+        for _ in range(10):
+            (a, first), (b, second) = drawn(rng, unit), drawn(rng, unit, 3.0, 4.0)
+            assert Number(unit).convert(a, None, None) == pytest.approx(first, rel=1e-12)
+            assert Vector(unit).convert(f"{a},{b}", None, None) == pytest.approx((first, second))
+            assert Range(unit).convert(f"{b},{a},{b}", None, None) == pytest.approx(
+                [second, first, second]
+            )
+            assert Range(unit).convert(f"{a}:{b}:3", None, None) == pytest.approx(
+                (first, second, 3)
+            )
+            assert Times(unit).convert(f"{a},{b}", None, None) == pytest.approx((first, second))
+
+
+@pytest.mark.thorough
+def test_commands_with_units_and_lists_answer_as_the_library_does():
+    rng = np.random.default_rng(53)
+    (r, radius), (h, height) = drawn(rng, "m", 0.03, 0.05), drawn(rng, "m", 0.01, 0.02)
+    (v, speed), (w, spin) = drawn(rng, "m/s"), drawn(rng, "rad/s", 5.0, 9.0)
+    real = ["--radius", r, "--height", h, "--friction", "0.1"]
+    shot = CliRunner().invoke(main, ["simulate", "--v0", f"{v},0", "--w0", w, *real, "--json"])
+    expected = pt.Puck(radius, height, 0.1).stop((speed, 0.0), spin)
+    assert json.loads(shot.stdout)["stop_time"] == pytest.approx(
+        expected.stop_time.item(), rel=1e-8
+    )
+    listed = f"0,{w},2"
+    ended = CliRunner().invoke(main, ["sweep", "--v0", f"{v},0", "--w0", listed, *real])
+    rows = [line.split(",") for line in ended.stdout.splitlines()]
+    at = rows[0].index("stop_time[s]")
+    times = pt.Puck(radius, height, 0.1).stop((speed, 0.0), [0.0, spin, 2.0]).stop_time
+    assert [float(row[at]) for row in rows[1:]] == pytest.approx(times.tolist(), rel=1e-8)
+    scene = ["--scene", "incline", "--set", f"puck.radius={r}"]
+    for spins in (["--w0", listed], ["--set", f"launch.spin={listed}"]):
+        ended = CliRunner().invoke(main, ["sweep", *scene, *spins])
+        found = [float(line.split(",")[0]) for line in ended.stdout.splitlines()[1:]]
+        assert found == pytest.approx([0.0, spin, 2.0])
+
+
+@pytest.mark.thorough
+@pytest.mark.skipif(os.name == "nt", reason="names are text there")
+def test_names_of_files_that_are_no_text(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.chdir(tmp_path)
+    rng = np.random.default_rng(54)
+    for n, ending in enumerate((".h5", ".csv", ".json", ".parquet")):
+        name = os.fsdecode(bytes(rng.integers(0x80, 0xFF, 3).tolist())) + ".csv"
+        Path(name).write_text("0,1\n0.5,2\n1,1\n")
+        law_of(name).name.encode()
+        pt.Puck.similar(pressure=name).simulate((1.0, 0.0)).save(f"run{ending}")
+        build = ["build-tables", "--accuracy", "1e-3", "-o", f"{n}.h5"]
+        made = CliRunner().invoke(main, [*build, "--pressure", name])
+        assert made.exit_code == 0, made.stderr
+        assert CliRunner().invoke(main, ["info", f"{n}.h5"]).exit_code == 0
