@@ -31,6 +31,7 @@ _ANGLES = (
     (_DEGREE, "if angles were in degrees, not in rad: say their unit"),
     (1.0 / _DEGREE, "if angles were in rad, not in degrees: say their unit"),
 )
+_MOST_DRAG = 20.0  # over the time of a film
 _DRAG = "with drag besides friction"
 _BETTER = math.log(1.2)  # more numbers always fit a little better
 _HELD = ("launch_spin", "launch_angle")  # what is said of these is said of the angles as they are
@@ -107,7 +108,10 @@ def _others(problem: Problem) -> Iterator[tuple[str, Problem, float]]:
         wider = replace(asked, free=(*asked.free, "radius"))
         yield words, replace(problem, asked=wider), 1.0
     if _may_change(asked):
-        dragged = replace(asked, free=(*asked.free, "drag"))
+        # from a speed e^20 times as slow, or as fast, at the end nothing is told any more
+        most = _MOST_DRAG / max(float(film.time[-1]) for film in problem.films)
+        bounds = {**asked.bounds, "drag": (-most, most)}
+        dragged = replace(asked, free=(*asked.free, "drag"), bounds=bounds)
         free = ",".join(dragged.free)
         words = f"{_DRAG}: find it, too (--free {free})"
         yield words, replace(problem, asked=dragged), 1.0
