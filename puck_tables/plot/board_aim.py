@@ -10,7 +10,7 @@ import numpy as np
 from puck_tables.errors import InputError
 from puck_tables.plot import pucks
 from puck_tables.plot.style import GREY
-from puck_tables.plot.words import counted, titled
+from puck_tables.plot.words import counted
 from puck_tables.world.aimed import BoardAim
 
 if TYPE_CHECKING:
@@ -29,16 +29,16 @@ def draw(found: BoardAim) -> Figure:
     InputError
         If there is no launch to draw.
     """
-    figure = pucks.draw(_first(found))
+    run = _first(found)
+    title = (
+        f"{found.scene.title or 'Board'}: {found.puck} {found.where}\n"
+        f"{found.striker} sent off at {found.launch_speed[0]:.4g} m/s, "
+        f"{math.degrees(found.launch_heading[0]):.2f}°, "
+        f"{found.launch_spin[0]:.4g} rad/s{_others(found)}"
+    )
+    figure = pucks.draw(run, title)
     for panel in figure.axes:
         _mark(panel, found)
-    speed, heading = float(found.launch_speed[0]), math.degrees(found.launch_heading[0])
-    titled(
-        figure,
-        f"{found.scene.title or 'Board'}: {found.puck} {found.where}\n"
-        f"{found.striker} sent off at {speed:.4g} m/s, {heading:.2f}°, "
-        f"{found.launch_spin[0]:.4g} rad/s{_others(found)}",
-    )
     return figure
 
 

@@ -10,10 +10,10 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.colours import on_white
 from puck_tables.errors import InputError
 from puck_tables.plot.board import draw_board, show
-from puck_tables.plot.board_panels import close_up, legend_under, panels_for
+from puck_tables.plot.board_panels import close_up, finished, panels_for
 from puck_tables.plot.film import Box, Film, film_of
 from puck_tables.plot.style import GREY
-from puck_tables.plot.words import counted, legend_below, noted, titled
+from puck_tables.plot.words import counted, legend_below, noted
 from puck_tables.world.sweep import TIME_UP, WorldMap
 
 if TYPE_CHECKING:
@@ -38,14 +38,14 @@ def draw(ends: WorldMap) -> Figure:
     figure, panels = panels_for(boxes)
     for axes, box in zip(panels, boxes, strict=True):
         _draw(axes, ends, film, box)
-    legend_under(figure, panels[0], boxes)
-    titled(figure, f"{ends.scene.title or 'Scene'}: ends of {counted(ends.end.size, 'run')}")
     _note(panels[0], ends, film)
     for axes, box in zip(panels[1:], boxes[1:], strict=True):
         x, y = (ends.columns[name].ravel() for name in ("x", "y"))
         inside = (x >= box[0]) & (x <= box[1]) & (y >= box[2]) & (y <= box[3])
         beyond = int((np.isfinite(x) & ~inside).sum())
         noted(axes, f"close-up; {beyond} of {np.isfinite(x).sum()} ends lie outside")
+    title = f"{ends.scene.title or 'Scene'}: ends of {counted(ends.end.size, 'run')}"
+    finished(figure, panels, boxes, title)
     return figure
 
 

@@ -10,14 +10,15 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.plot.board import size_of
 from puck_tables.plot.film import Box
 from puck_tables.plot.style import canvas
-from puck_tables.plot.words import legend_below
+from puck_tables.plot.words import legend_below, titled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 LEGEND_ROW = 6  # entries
-_BESIDE, _UNDER, _TITLE = 0.85, 0.6, 0.35  # in, for the labels of axes and for the title
+_BESIDE, _UNDER = 0.85, 0.6  # in, for the labels of axes
+_TITLE, _NOTE = 0.3, 0.2  # in, a line of the title, of a note above a panel
 _NARROW = 6.5  # in, at least: for the legend
 _SMALL = 0.012  # of the panel's width: smaller pucks are shown in a close-up as well
 
@@ -53,10 +54,13 @@ def panels_for(boxes: list[Box]) -> tuple[Figure, list[Axes]]:
     return figure, list(panels)
 
 
-def legend_under(figure: Figure, panel: Axes, boxes: list[Box]) -> None:
-    """What is labelled in a panel, below all; and the height of the figure that all this takes."""
-    legend_below(figure, LEGEND_ROW, given=panel.get_legend_handles_labels())
+def finished(figure: Figure, panels: list[Axes], boxes: list[Box], title: str) -> None:
+    """What is labelled in the first panel below all, the title, and the height that all takes."""
+    legend_below(figure, LEGEND_ROW, given=panels[0].get_legend_handles_labels())
+    titled(figure, title)
     under = sum(one.get_window_extent().height for one in figure.legends) / figure.dpi
-    figure.set_size_inches(
-        figure.get_figwidth(), sum(size_of(box)[1] + _UNDER for box in boxes) + under + _TITLE
-    )
+    lines = figure.get_suptitle().count("\n") + 1
+    notes = [one.get_title("left") for one in panels]
+    above = _TITLE * lines + _NOTE * sum(note.count("\n") + 1 for note in notes if note)
+    high = sum(size_of(box)[1] + _UNDER for box in boxes)
+    figure.set_size_inches(figure.get_figwidth(), high + under + above)

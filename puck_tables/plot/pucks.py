@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from puck_tables.plot.board import disc, draw_board, show
-from puck_tables.plot.board_panels import LEGEND_ROW, close_up, legend_under, panels_for
+from puck_tables.plot.board_panels import LEGEND_ROW, close_up, finished, panels_for
 from puck_tables.plot.film import Body, Box, Film, between, film_of, path_of
 from puck_tables.plot.style import GREY, RED
-from puck_tables.plot.words import legend_below, noted, titled
+from puck_tables.plot.words import legend_below, noted
 from puck_tables.world.outcome import WorldRun
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 _NAMED = 8  # pucks: more are told apart by colour alone
 
 
-def draw(run: WorldRun) -> Figure:
+def draw(run: WorldRun, title: str = "") -> Figure:
     """The board with all ways on it, and a close-up of the impacts where pucks are small.
 
     The whole motion is drawn, whatever states the run has: it is run again.
@@ -31,11 +31,10 @@ def draw(run: WorldRun) -> Figure:
     figure, panels = panels_for(boxes)
     for axes, box in zip(panels, boxes, strict=True):
         _draw_film(axes, film, box)
-    legend_under(figure, panels[0], boxes)
     for panel in panels[1:]:
         noted(panel, "close-up")
-    title = film.title or "Scene"
-    titled(figure, f"{title}: {film.end} after {film.end_time:.4g} s")
+    title = title or f"{film.title or 'Scene'}: {film.end} after {film.end_time:.4g} s"
+    finished(figure, panels, boxes, title)
     return figure
 
 
