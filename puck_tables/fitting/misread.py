@@ -34,6 +34,7 @@ _ANGLES = (
 _MOST_DRAG = 20.0  # over the time of a film
 _DRAG = "with drag besides friction"
 _BETTER = math.log(1.2)  # more numbers always fit a little better
+_MOST, _LEAST = 10.0, 1e-3  # times one friction for all speeds: laws that some floor has
 _HELD = ("launch_spin", "launch_angle")  # what is said of these is said of the angles as they are
 
 
@@ -84,6 +85,9 @@ def _by_speed(found: Estimate, best: float, noise: float) -> str:
     asked, numbers = other.problem.asked, other.problem.found(other.x)
     speeds = asked.speeds
     values = [numbers[name] for name in NODES[: len(speeds)]]
+    usual = found.problem.found(found.x)["friction"]
+    if max(values) > _MOST * usual or min(values) < _LEAST * usual:  # such a law fits noise
+        return ""
     told = ", ".join(f"{f:.2g} at {u:g} m/s" for u, f in zip(speeds, values, strict=True))
     return (
         f"Residuals would be {math.exp(gain):.2g} times smaller with a friction over slip speed "
