@@ -13,10 +13,9 @@ here are what most need; :mod:`puck_tables.contact` holds more of the friction o
 
 from __future__ import annotations
 
-import os
 from typing import TYPE_CHECKING
 
-from puck_tables._core.lazy import lazily
+from puck_tables._core.lazy import beside_the_package, lazily
 from puck_tables._version import __version__
 
 if TYPE_CHECKING:
@@ -84,10 +83,7 @@ if TYPE_CHECKING:
     from puck_tables.wrench.holds import Hold
     from puck_tables.wrench.surface import LimitSurface
 
-_HERE = os.path.dirname(os.path.abspath(__file__))
-if not os.path.isdir(os.path.join(_HERE, "tables")):
-    # Python in a clone takes this folder, installed or not: tables/ and cli/ lie beside it
-    __path__.append(os.path.dirname(_HERE))
+beside_the_package(__name__, __file__)
 
 _HOMES = {
     "AccuracyError": "errors",

@@ -56,7 +56,7 @@ def test_an_edit_in_another_file_is_never_stale(tmp_path: Path):
 
 
 def modules() -> list[str]:
-    walked = pkgutil.walk_packages(puck_tables.__path__[:1], "puck_tables.")
+    walked = pkgutil.walk_packages(puck_tables.__path__, "puck_tables.")
     return [found.name for found in walked if "puck_tables.cli" not in found.name]
 
 

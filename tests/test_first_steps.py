@@ -36,9 +36,9 @@ def inside(clone: Path, code: str, *flags: str) -> subprocess.CompletedProcess[s
 
 def test_every_module_is_found_where_it_lies(clone: Path):
     names = ("puck_tables", "puck_tables.tables", "puck_tables.cli")
-    done = inside(
-        clone, f"{PLAIN}for name in {names}: print(__import__(name, fromlist=['x']).__file__)"
-    )
+    code = f"{PLAIN}for name in {names}: print(__import__(name, fromlist=['x']).__file__)\n"
+    walk = "import pkgutil; list(pkgutil.walk_packages(sys.modules['puck_tables'].__path__))\n"
+    done = inside(clone, code + walk)
     assert done.stderr == ""
     homes = [Path(line).parent.relative_to(clone) for line in done.stdout.splitlines()]
     assert homes == [Path("puck_tables"), Path("tables"), Path("cli")]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Mapping
 from importlib import import_module
+from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from typing import Any
 
@@ -52,3 +53,22 @@ def lazily(
         return value
 
     return get, lambda: sorted({*vars(sys.modules[package]), *homes})
+
+
+def beside_the_package(package: str, file: str) -> None:
+    """Load cli/ and tables/ where they lie beside a package, not in it: in a clone.
+
+    Python there takes the package's folder, whatever is installed.
+    """
+    for name in ("cli", "tables"):
+        folder = Path(file).resolve().parent.parent / name
+        if not (Path(file).resolve().parent / name).is_dir() and folder.is_dir():
+            spec = spec_from_file_location(
+                f"{package}.{name}",
+                folder / "__init__.py",
+                submodule_search_locations=[str(folder)],
+            )
+            assert spec is not None and spec.loader is not None
+            module = sys.modules[spec.name] = module_from_spec(spec)
+            spec.loader.exec_module(module)
+            setattr(sys.modules[package], name, module)
