@@ -78,10 +78,14 @@ class Certainty:
     def error_of(self, slope: FloatArray, plausible: float) -> float:
         """The standard error of what changes with the unknowns by ``slope`` (m,).
 
-        Infinite where a direction that is not seen changes it by a fifth of what is plausible.
+        Infinite where a direction that is not seen changes it by a fifth of what is plausible, or
+        where nothing is seen.
         """
         by_each = slope * self.plausible
-        if np.abs(self.blind @ by_each).max(initial=0.0) > _MEMBER * plausible:
+        if (
+            all(self.undetermined)
+            or np.abs(self.blind @ by_each).max(initial=0.0) > _MEMBER * plausible
+        ):
             return math.inf
         return self.spread * math.sqrt(max(float(slope @ self.covariance @ slope), 0.0))
 
