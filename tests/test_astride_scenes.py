@@ -179,7 +179,11 @@ def test_corners_from_a_file(tmp_path):
     assert run.end_time == pt.Scene(PUCK, pt.Floor(patches=[POLYGON]), LAUNCH).simulate().end_time
     assert list(run.files.values()) == [path.read_text()]
     run.plot(tmp_path / "run.png")
-    for text, words in (("a,b\n1,x\n", "from 3 to 200"), (None, "cannot read")):
+    for text, words in (
+        ("x,y\n1,2\n", "from 3 to 200"),
+        ("x,y\n1,x\n", "is no number"),
+        (None, "cannot read"),
+    ):
         path.write_text(text) if text else path.unlink()
         with pytest.raises(pt.InputError, match="corners") as caught:
             pt.Scene(PUCK, named, LAUNCH)

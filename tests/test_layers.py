@@ -20,7 +20,7 @@ ROOMS = {
     "io": "_core _version errors",
     "result": "_core io",
     "bulk": "_core _version errors io result",
-    "accuracy": "_core errors",
+    "accuracy": "errors",
     "chetaev": "_core contact errors io result",
     "kernels": "_core contact errors",
     "table": "_core _version contact errors kernels",

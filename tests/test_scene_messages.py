@@ -64,11 +64,12 @@ def test_a_title_is_any_line_of_text(title: str, tmp_path: Path) -> None:
 
 def test_a_field_of_a_csv_file_that_is_too_long(tmp_path: Path) -> None:
     file = tmp_path / "wide.csv"
-    file.write_text("t,Fx,Fy\n0," + "1" * 200_000 + ",0\n1,0,0\n")
-    for entry in ("force.over_time", "floor.law", "puck.pressure"):
+    heads = {"force.over_time": "t,Fx", "floor.law": "v,f", "puck.pressure": "rho,W"}
+    for entry, head in heads.items():
+        file.write_text(f"{head},Fy\n0," + "1" * 200_000 + ",0\n1,0,0\n")
         result = puck("simulate", "--v0", "1,0", "--set", f"{entry}={file}")
         assert result.exit_code == 2
-        assert "CSV file" in result.stderr or "field larger than" in result.stderr
+        assert "is too large a number" in result.stderr
         assert len(result.stderr) < 500
 
 

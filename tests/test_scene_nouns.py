@@ -189,7 +189,7 @@ def test_a_changed_copy_keeps_the_ranges_of_the_parts_that_it_keeps() -> None:
         ({"launch": pt.Launch(([1, 2, 3], [0, 1, 2]))}, r"launch.velocity = .* rows of two"),
         ({"floor": pt.Floor(velocity=[[1, 0], [0, 1]])}, "not rows of them"),
         ({"floor": pt.Floor(law=[[0.0, 0.1]])}, "floor.law: speeds and values"),
-        ({"force": pt.Force(over_time=[[1, 0, 0], [0, 0, 0]])}, "force.over_time: forces are"),
+        ({"force": pt.Force(over_time=[[1, 0, 0], [0, 0, 0]])}, "row 2: 0 after 1: the times must"),
         ({"ranges": {3: [1]}}, "ranges must be a mapping from paths"),
         ({"walls": pt.Wall((1, 0), normal=(1, 0))}, r"a list of tables, \[\[wall\]\], or of Wall"),
         ({"floor": None}, "floor = None: must be a table or a Floor"),

@@ -223,11 +223,12 @@ def test_builders_at_once_leave_one_whole_table(kept: Path):
 def test_bad_requests():
     with pytest.raises(InputError, match="no pressure law is called"):
         pt.table_for("square")
-    for accuracy in (1e-14, 1.0, float("nan")):
+    for accuracy in (1e-14, 1.0):
         with pytest.raises(AccuracyError, match="from 1e-11"):
             pt.table_for("ring", accuracy=accuracy)
-    with pytest.raises(InputError, match="accuracy"):
-        pt.table_for("ring", accuracy="fine")
+    for accuracy in ("fine", float("nan")):
+        with pytest.raises(InputError, match="accuracy must be a"):
+            pt.table_for("ring", accuracy=accuracy)
     with pytest.raises(InputError, match="cannot be told from another"):
         pt.table_for(pt.law_of("ring"))
 

@@ -185,9 +185,10 @@ def _read(path: str, content: bytes, columns: tuple[Column, ...], needed: int) -
     wrong = np.argwhere(~np.isfinite(rows))
     if len(wrong):
         row, column = wrong[0].tolist()
-        raise InputError(
-            f"{numbers.where(row)}: it has no {list(taken)[column].name}: every row needs one"
-        )
+        name, where = list(taken)[column].name, numbers.where(row)
+        if np.isinf(rows[row, column]):
+            raise InputError(f"{where}: its {name} is too large a number")
+        raise InputError(f"{where}: it has no {name}: every row needs one")
     return numbers
 
 

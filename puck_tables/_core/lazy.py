@@ -43,7 +43,7 @@ def lazily(
                 raise
             raise ModuleNotFoundError(
                 f"{package} needs {error.name}, which this Python does not have: "
-                f"python -m pip install '{_CLONE or package}', or take the Python that has it "
+                f'python -m pip install "{_CLONE or package}", or take the Python that has it '
                 "(in a clone .venv/bin/python)",
                 name=error.name,
             ) from None

@@ -11,7 +11,6 @@ from collections.abc import Iterable
 from enum import StrEnum
 from typing import NamedTuple
 
-from puck_tables._core.real import shown
 from puck_tables.errors import InputError
 
 
@@ -94,7 +93,7 @@ def method_named(name: str | None, among: Iterable[Method] = METHODS) -> Method 
         return None
     known = {method.value: method for method in among}
     if not isinstance(name, str) or name not in known:
-        raise InputError(f"method must be one of {', '.join(known)}, got {shown(name)}")
+        raise InputError(f"method must be one of {', '.join(known)}, got {name!s:.60}")
     return known[name]
 
 

@@ -68,7 +68,12 @@ class Store:
         self._arrays = self._empty()
         start = {key: one.to_bytes() for key, one in self._files.items()}
         if begin:
-            self.place = taken(self.path, self.digest, overwrite, start)
+            try:
+                self.place = taken(self.path, self.digest, overwrite, start)
+            except InputError as error:
+                raise InputError(
+                    f"{path}, a link: {error}" if os.path.islink(path) else str(error)
+                ) from None
             self._mend(start)
         else:
             self.place = joined(self.path, self.digest)

@@ -101,8 +101,8 @@ class FrictionLaw:
         return np.asarray(law.formula(speeds))
 
     def largest(self, top: float) -> float:
-        """The largest f up to a speed."""
-        last = _checked_top(top)
+        """The largest f up to a speed, 0 included."""
+        last = 0.0 if top == 0.0 else _checked_top(top)
         speeds = np.concatenate([[0.0], last * np.linspace(0.0, 1.0, _LOOKS), self.scales])
         return float(self.formula(speeds[speeds <= last]).max())
 

@@ -15,7 +15,7 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.columns import FRICTION, SPEED, numbers_of
 from puck_tables._core.monotone import from_rest, monotone_cubic
-from puck_tables._core.real import finite_array, instance, positive, shown
+from puck_tables._core.real import finite_array, instance, positive, real, shown
 from puck_tables._core.safe_write import write_bytes
 from puck_tables.errors import InputError
 
@@ -142,8 +142,10 @@ class SpeedLaw:
     grade: ClassVar[int] = 1  # nodes of a table need not crowd at slip zero
 
     def largest(self, top: float) -> float:
-        """The largest f up to a speed: it does not overshoot its points."""
-        speeds, last = np.asarray(self.speeds), positive("top", top, "m/s")
+        """The largest f up to a speed, 0 included: it does not overshoot its points."""
+        speeds, last = np.asarray(self.speeds), real("top", top, "m/s")
+        if not last >= 0.0:
+            raise InputError(f"top must not be negative (m/s), got {last:g}")
         return float(self.extended(np.append(speeds[speeds < last], last)).max())
 
     def steepest(self, top: float) -> float:

@@ -117,7 +117,7 @@ def cloud_of(x: FloatArray, y: FloatArray) -> Cloud | None:
     Examples
     --------
     >>> x, y = np.random.default_rng(1).normal(size=(2, 10000))
-    >>> thin = cloud_of(x + 1e-3 * y, x - 1e-3 * y)
+    >>> thin = cloud_of(x + 1e-2 * y, x - 1e-2 * y)
     >>> inside = thin.at_samples > np.quantile(thin.at_samples, 0.5)
     >>> bool(abs(np.hypot(x, y)[inside].max() - 1.18) < 0.3)  # the ellipse that holds half of them
     True

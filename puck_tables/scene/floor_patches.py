@@ -39,8 +39,9 @@ def corners_of(patch: Patch) -> FloatArray:
         return np.empty((0, 2))
     rows = numbers_of(patch.corners, (X, Y), 2, _MOST_BYTES, "corners").rows
     if not 3 <= len(rows) <= MOST_CORNERS:
+        source = f" in {patch.corners}" if isinstance(patch.corners, str) else ""
         raise InputError(
-            f"corners must be from 3 to {MOST_CORNERS} rows of x and y, got {len(rows)}"
+            f"corners must be from 3 to {MOST_CORNERS} rows of x and y, got {len(rows)}{source}"
         )
     corners = tuple(map(tuple, rows.tolist()))
     closed = len(corners) > 3 and corners[0] == corners[-1]  # as maps have them

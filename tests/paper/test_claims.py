@@ -282,7 +282,7 @@ def test_the_page_says_what_is_computed(subjects: dict[str, list[Claim]]):
     claims = [claim for group in subjects.values() for claim in group]
     assert [row[1:4] + row[6:] for row in rows] == [row[1:4] + row[6:] for row in now]
     computed = [float(row[4]) for row in rows if row[4] not in ("computed", "---")]
-    assert computed == pytest.approx([claim.computed for claim in claims], rel=1e-5, abs=1e-9)
+    assert computed == pytest.approx([claim.computed for claim in claims], rel=1e-3, abs=1e-9)
     assert f"{sum(claim.verdict == 'ok' for claim in claims)} claims hold" in text
     assert [claim.where for claim in claims if claim.erratum] == [
         "eq. 5.3", "section 8", "Cor. 11", "Cor. 12"
