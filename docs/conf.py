@@ -52,7 +52,9 @@ def figure_of(block: tuple[str, str, int], names: dict[str, Any], conf: dict[str
         return ""
     figure.is_shown = True
     path = next(names["image_path_iterator"])
-    figure.savefig(path, dpi=110, bbox_inches="tight")
+    if figure.get_layout_engine() is None:  # of another library: nothing of it is cut off
+        figure.set_layout_engine("tight")
+    figure.savefig(path, dpi=110)
     plt.close(figure)  # or the next example draws on it
     return figure_rst([path], conf["src_dir"])
 
