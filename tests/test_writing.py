@@ -155,13 +155,13 @@ def test_a_folder_that_vanishes_during_the_work(
 ):
     target = Path("gone", COMMANDS[name][1].format("new"))
     target.parent.mkdir(parents=True)
-    true: Callable[..., object] = safe_write._part
+    true: Callable[..., object] = safe_write.new_part
 
     def gone(*given: object, **named: object) -> object:
         shutil.rmtree("gone", ignore_errors=True)
         return true(*given, **named)
 
-    monkeypatch.setattr(safe_write, "_part", gone)
+    monkeypatch.setattr(safe_write, "new_part", gone)
     assert "No such file or directory" in refused(name, "gone/new")
     assert not Path("gone").exists()
 

@@ -73,7 +73,7 @@ RADIUS = Column("radius", "r radius radii rho ρ x radial", "radius")
 PRESSURE = Column("pressure", "p pressure w load stress druck pression", "any")
 FORCE_X = Column("force along x", "Fx fx forcex xforce", "force")
 FORCE_Y = Column("force along y", "Fy fy forcey yforce", "force")
-TORQUE = Column("torque", "torque moment mz tz tau drehmoment", "torque")
+TORQUE = Column("torque", "torque moment m mz tz tau drehmoment", "torque")
 _ALL = (TIME, X, Y, ANGLE, SPEED, FRICTION, RESTITUTION, RADIUS, PRESSURE, FORCE_X, FORCE_Y, TORQUE)
 
 

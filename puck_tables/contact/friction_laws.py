@@ -17,7 +17,7 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.fields import of, specs
 from puck_tables._core.reading import Reading, mark_checked, read_values
-from puck_tables._core.real import finite_array, positive
+from puck_tables._core.real import finite_array, positive, real
 from puck_tables.contact.law_pieces import pieces_of_function
 from puck_tables.errors import InputError
 
@@ -102,7 +102,8 @@ class FrictionLaw:
 
     def largest(self, top: float) -> float:
         """The largest f up to a speed, 0 included."""
-        last = 0.0 if top == 0.0 else _checked_top(top)
+        last = real("top", top, "m/s")
+        last = last and _checked_top(last)
         speeds = np.concatenate([[0.0], last * np.linspace(0.0, 1.0, _LOOKS), self.scales])
         return float(self.formula(speeds[speeds <= last]).max())
 
