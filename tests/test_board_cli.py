@@ -32,7 +32,7 @@ def test_a_report_says_first_what_happened() -> None:
     striker = run.names.index("striker")
     assert f"{run.last['x'][striker]:.6g}" in rows["striker"]
     assert f"stops at {run.stop_times[striker]:.6g} s" in rows["striker"]
-    assert f"{run.heat_impact:.6g} J impacts; ledger misses under 1e-14 of it" in said
+    assert f"{run.last["heat_impact"]:.6g} J impacts; ledger misses under 1e-14 of it" in said
 
 
 def test_what_still_moves_and_what_is_driven_is_told() -> None:

@@ -16,7 +16,7 @@ from puck_tables._core.executor import Progress
 
 if TYPE_CHECKING:
     from puck_tables.bulk.spreads import Spread
-    from puck_tables.scene.outcome import SceneRun
+    from puck_tables.scene.run import Run
     from puck_tables.scene.sample import SceneSample
     from puck_tables.scene.sweep import SceneMap
     from puck_tables.world.aimed import BoardAim
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 class SceneVerbs:
     """Questions to a :class:`puck_tables.Scene`, which has these verbs."""
 
-    def simulate(self, times: npt.ArrayLike | None = None) -> SceneRun:
+    def simulate(self, times: npt.ArrayLike | None = None) -> Run:
         """Run it, from the launch to the end.
 
         Parameters
@@ -36,7 +36,7 @@ class SceneVerbs:
 
         Returns
         -------
-        SceneRun
+        Run
             States beyond the end of the run are left out, except at rest.
 
         Raises
@@ -59,7 +59,7 @@ class SceneVerbs:
         >>> run.end, round(run.end_time, 6)
         ('at rest', 2.253703)
         """
-        run: SceneRun = _answers(self, "simulate").simulate(self, times)
+        run: Run = _answers(self, "simulate").simulate(self, times)
         return run
 
     def sweep(

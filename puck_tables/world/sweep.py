@@ -27,11 +27,12 @@ from puck_tables.scene.entries import entry_at, is_batch, launch_paths, tables_o
 from puck_tables.scene.library import files_of
 from puck_tables.scene.outcome import column_of, plain_name, scene_texts
 from puck_tables.scene.pieces import Piece
+from puck_tables.scene.run import STATE, Run, number_of
 from puck_tables.scene.scene import Scene
-from puck_tables.world.agreement import called, number_of, pieces_of, refuse_endless
+from puck_tables.world.agreement import called, pieces_of, refuse_endless
 from puck_tables.world.bulk import Ends, follow_all
 from puck_tables.world.engine import PUSHING, REACHED
-from puck_tables.world.outcome import STATE, WorldRun, ways_of
+from puck_tables.world.outcome import ways_of
 from puck_tables.world.prepare import game_of, order_of
 from puck_tables.world.rim_laws import rule_of
 from puck_tables.world.world import World
@@ -104,7 +105,7 @@ class WorldMap(Result):
         """What was done."""
         return f"{len(self.names)} pucks from impact to impact"
 
-    def an_example(self) -> WorldRun:
+    def an_example(self) -> Run:
         """The first run that has an end."""
         first = np.argwhere(self.end <= TIME_UP)[0]
         places = zip(self.axes, first.tolist(), strict=True)
