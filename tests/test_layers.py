@@ -25,28 +25,26 @@ ROOMS = {
     "kernels": "_core contact errors",
     "table": "_core _version contact errors kernels",
     "motion": "_core accuracy contact errors kernels table",
-    "verbs_of_many": "_core errors",
-    "verbs": "verbs_of_many",
-    "puck": "_core contact errors motion verbs",
-    "stopping": "_core accuracy bulk contact errors io kernels motion puck result table "
-    "verbs_of_many",
-    "trajectory": "_core accuracy errors io motion puck result stopping table",
+    "stopping": "_core accuracy bulk contact errors io kernels motion result table",
+    "trajectory": "_core accuracy errors io motion result stopping table",
+    "scene": "_core bulk contact errors io kernels motion result stopping table",
+    "wrench": "_core contact errors io kernels motion result scene",
+    "verbs_of_many": "_core contact errors motion stopping table",
+    "puck": "_core contact motion stopping table trajectory verbs_of_many wrench",
+    "world": "_core bulk contact errors io kernels motion puck result scene stopping table",
     "film": "_core errors io",
     "fitting": "_core _version accuracy contact errors film io kernels motion puck result "
-    "stopping table",
+    "stopping table trajectory",
     "autodiff": "contact errors stopping",
     "export": "_core _version contact errors puck stopping",
     "explore": "export",
-    "scene": "_core bulk contact errors io kernels motion puck result stopping table",
-    "wrench": "_core contact errors io kernels puck result scene",
-    "world": "_core bulk contact errors io kernels motion puck result scene stopping table",
-    "warming": "bulk kernels puck scene",
-    "reference": "_core contact errors film io puck result scene trajectory world",
+    "warming": "bulk kernels puck scene world",
+    "reference": "_core contact errors film io motion puck result scene trajectory world",
     "tradeoff": "_core _version accuracy contact io kernels motion puck result stopping table",
-    "plot": "_core _version accuracy bulk chetaev errors film fitting io motion reference result "
-    "scene stopping tradeoff trajectory world wrench",
+    "plot": "_core _version accuracy bulk chetaev errors film fitting io motion puck reference "
+    "result scene stopping tradeoff trajectory world wrench",
     "cli": "_core _version accuracy bulk chetaev contact errors explore export film fitting io "
-    "kernels motion plot puck reference scene stopping table tradeoff warming world",
+    "kernels motion plot puck reference result scene stopping table tradeoff warming world",
     "__init__": "_core _version",
 }
 DOORS = {
