@@ -58,7 +58,6 @@ if TYPE_CHECKING:
         Launch,
         Orthotropic,
         Patch,
-        Run,
         Strips,
         Wall,
     )
@@ -127,7 +126,6 @@ _HOMES = {
     "RestitutionTable": "scene.restitution",
     "Result": "result",
     "Rim": "scene.pieces",
-    "Run": "scene.parts",
     "Scene": "world.scene",
     "SceneMap": "scene.sweep",
     "SceneRun": "scene.outcome",
@@ -211,7 +209,6 @@ __all__ = [
     "RestitutionTable",
     "Result",
     "Rim",
-    "Run",
     "Scene",
     "SceneMap",
     "SceneRun",

@@ -27,7 +27,7 @@ ROOMS = {
     "motion": "_core accuracy contact errors kernels table",
     "stopping": "_core accuracy bulk contact errors io kernels motion result table",
     "trajectory": "_core accuracy errors io motion result stopping table",
-    "scene": "_core bulk contact errors io kernels motion result stopping table",
+    "scene": "_core bulk contact errors io kernels motion result stopping table trajectory",
     "wrench": "_core contact errors io kernels motion result scene",
     "verbs_of_many": "_core contact errors motion stopping table",
     "puck": "_core contact motion stopping table trajectory verbs_of_many wrench",

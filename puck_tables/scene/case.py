@@ -33,7 +33,7 @@ class Case:
 
     def __init__(self, scene: SceneSpec) -> None:
         self.scene, self.plan = scene, plan_for(scene)
-        self.by_look_up = self.plan.plain and scene.run.time is None
+        self.by_look_up = self.plan.plain and scene.time is None
         if self.by_look_up:
             self.plan = Plan("free pucks: stop look-up", True, self.plan.why)
         self.endless = is_endless(scene)
@@ -63,7 +63,7 @@ class Case:
         else:
             self.prepared.follow_all(states, rows, status)
             self._farther(states, rows, status)
-            if scene.run.time is None:
+            if scene.time is None:
                 status[status == TIME_UP] = NO_END
         rows[:, status > OVER_EDGE] = np.nan  # how it failed stands in ``end``
         last = dict(zip(LEDGER[:-1], rows[:-1], strict=True))
@@ -92,7 +92,7 @@ class Case:
     def _look_up(self, states: FloatArray, rows: FloatArray, status: npt.NDArray[np.int8]) -> None:
         belt = self.scene.floor.velocity
         velocities, spins = states[:, [VX, VY]] - belt, states[:, SPIN]
-        stops = stop(velocities, spins, **self.scene.puck.arguments(), tol=self.scene.run.tol)
+        stops = stop(velocities, spins, **self.scene.puck.arguments(), tol=self.scene.tol)
         rows[...] = 0.0
         last = dict(zip(LEDGER[:-1], rows[:-1], strict=True))
         last["time"][:] = stops.stop_time

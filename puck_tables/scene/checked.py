@@ -32,7 +32,7 @@ def largest_error(
     >>> from puck_tables import Launch, Puck, Scene
     >>> scene = Scene(Puck(0.04, friction=0.2), launch=Launch((1.0, 0.0), spin=[0.0, 5.0]))
     >>> found = scene.sweep()
-    >>> largest_error(scene, found.axes, found.columns, found.end) <= scene.run.tol
+    >>> largest_error(scene, found.axes, found.columns, found.end) <= scene.tol
     True
     """
     valid = np.flatnonzero(end.ravel() <= OVER_EDGE)

@@ -26,15 +26,15 @@ def run_plain(
     """
     free, velocity, spin = needed.puck, free_velocity(needed), needed.launch.spin
     free_run = trajectory(
-        free, velocity, spin, frames=1, times=None, tol=scene.run.tol, method=None, exact=False,
+        free, velocity, spin, frames=1, times=None, tol=scene.tol, method=None, exact=False,
         table=None,
     )  # fmt: skip
     length = free_run.stop_time
-    limit = scene.run.time
+    limit = scene.time
     moves = any(scene.floor.velocity)
     stops = limit is None or length <= limit
     end_time = length if limit is None or (stops and not moves) else limit
-    moments = np.linspace(0.0, end_time, int(scene.run.frames)) if times is None else times
+    moments = np.linspace(0.0, end_time, int(scene.frames)) if times is None else times
     if moves or not stops:
         moments = moments[moments <= end_time]
     run = free_run(np.append(moments, end_time))

@@ -316,7 +316,7 @@ class SceneWork(Work):
         if code == REFUSED:
             return self._refusal(run)
         if code == NO_END:
-            return "none by a thousand times its time scale, it may never stop; give run.time"
+            return "none by a thousand times its time scale, it may never stop; give a time"
         if code == NOT_FINITE and self.scene.floor.law:
             return "its rim slips faster than the friction law goes; give the law more speeds"
         return FAILURES[code].partition(": ")[2] or FAILURES[code]

@@ -76,12 +76,16 @@ class Scene(SceneSpec):
     Parameters
     ----------
     puck : Puck
-    floor, launch, drag, lateral, force, run, title : optional
+    floor, launch, drag, lateral, force, title : optional
         As :mod:`puck_tables.scene.parts` has them.
     walls, edges : sequences of Wall, of Edge, optional
     pucks, posts, arcs, pockets, rims : sequences, optional
         As :mod:`puck_tables.scene.pieces` has them.
     constraint : Constraint, optional
+    time : s, > 0, optional
+        How long; left out, until rest.
+    frames, tol : optional
+        How many states to save; the error wanted, of Q/J and Q²/J.
     gravity : m/s², > 0, optional
         Of all its pucks; left out, each has its own.
     ranges : mapping, optional
@@ -137,7 +141,7 @@ class Scene(SceneSpec):
         Parameters
         ----------
         times : array_like, s, ≥ 0, ascending, optional
-            When to save states; else ``run.frames`` of them from the launch to the end.
+            When to save states; else ``frames`` of them from the launch to the end.
 
         Returns
         -------
@@ -148,7 +152,7 @@ class Scene(SceneSpec):
         ------
         InputError
             If a number of it is a range, or it has not ended after a thousand times its time scale
-            and gives no ``run.time``.
+            and gives no ``time``.
         PuckError
             If the motion leaves floating point, or too many events crowd together.
 

@@ -344,7 +344,7 @@ class _Case:
     def __init__(self, scene: SceneSpec) -> None:
         self.scene, self.pieces = scene, pieces_of(scene)
         refuse_endless(scene)
-        self.until = math.inf if scene.run.time is None else scene.run.time
+        self.until = math.inf if scene.time is None else scene.time
         order = order_of(scene)
         self.game, room = game_of(scene, order)
         self.first, self.place = room.states.copy(), np.argsort(order)
