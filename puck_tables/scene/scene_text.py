@@ -23,8 +23,8 @@ def as_toml(scene: SceneSpec) -> str:
     --------
     >>> from puck_tables import Puck, Scene
     >>> scene = Scene(Puck(0.04), ranges={"puck.height": np.array([0.0, 0.5, 1.0])})
-    >>> as_toml(scene).splitlines()[:5]
-    ['title = ""', '', '[puck]', 'radius = 0.04', 'height = "0.0:1.0:3"']
+    >>> as_toml(scene).splitlines()[4:7]
+    ['[puck]', 'radius = 0.04', 'height = "0.0:1.0:3"']
     """
     tables = tables_of(scene)
     for path, values in scene.ranges.items():

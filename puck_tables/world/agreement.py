@@ -142,7 +142,7 @@ def flight_error(scene: SceneSpec) -> float:
 
     Examples
     --------
-    >>> from puck_tables import Piece, Run, Scene
+    >>> from puck_tables import Piece, Scene
     >>> men = [Piece(0.1, friction=0.2)]
     >>> [flight_error(Scene(pucks=men, tol=tol)) for tol in (1e-6, 1e-11)]
     [1e-09, 1e-11]
