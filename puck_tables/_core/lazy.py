@@ -66,8 +66,8 @@ def above(name: str) -> Any:
 
     Examples
     --------
-    >>> above("draw").__module__
-    'puck_tables.plot.drawn'
+    >>> above("draw").__name__
+    'draw'
     """
     return getattr(import_module(_ABOVE[name]), name)
 
