@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from puck_tables._core.lazy import beside_the_package, lazily
+from puck_tables._core.lazy import beside_the_package, lazily, lead_up
 from puck_tables._version import __version__
 
 if TYPE_CHECKING:
@@ -60,10 +60,9 @@ if TYPE_CHECKING:
         Strips,
         Wall,
     )
-    from puck_tables.scene.pieces import Arc, Piece, Pocket, Post, Rim
+    from puck_tables.scene.pieces import Arc, Pocket, Post, Rim
     from puck_tables.scene.restitution import Plastic, RestitutionTable, Viscoelastic
     from puck_tables.scene.run import Run
-    from puck_tables.scene.scene import Scene
     from puck_tables.scene.sweep import SceneMap
     from puck_tables.stopping.aim import Aim
     from puck_tables.stopping.aims import Aims
@@ -78,6 +77,7 @@ if TYPE_CHECKING:
     from puck_tables.trajectory import Trajectory
     from puck_tables.warming import warm_up
     from puck_tables.world.aimed import BoardAim
+    from puck_tables.world.scene import Piece, Scene
     from puck_tables.world.world import World
     from puck_tables.wrench.holds import Hold
     from puck_tables.wrench.surface import LimitSurface
@@ -116,7 +116,7 @@ _HOMES = {
     "Orthotropic": "scene.parts",
     "OutputError": "errors",
     "Patch": "scene.parts",
-    "Piece": "scene.pieces",
+    "Piece": "world.scene",
     "Plastic": "scene.restitution",
     "Pocket": "scene.pieces",
     "Post": "scene.pieces",
@@ -126,7 +126,7 @@ _HOMES = {
     "RestitutionTable": "scene.restitution",
     "Result": "result",
     "Rim": "scene.pieces",
-    "Scene": "scene.scene",
+    "Scene": "world.scene",
     "SceneMap": "scene.sweep",
     "Run": "scene.run",
     "Source": "export.source",
@@ -252,3 +252,4 @@ __all__ = [
 ]
 
 __getattr__, __dir__ = lazily(__name__, _HOMES)
+lead_up({"draw": "puck_tables.plot.drawn", "save_movie": "puck_tables.plot.movie"})

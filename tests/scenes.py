@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from puck_tables import Scene, SceneMap, Run
+from puck_tables import Run, Scene, SceneMap
 
 
 def simulate_scene(tables: Any, times: Any = None) -> Run:

@@ -12,8 +12,8 @@ from scene_judge import Judge
 from scenes import simulate_scene
 
 from puck_tables import Scene
-from puck_tables.scene.run import Run
 from puck_tables.scene.prepare import prepare
+from puck_tables.scene.run import Run
 
 NAMES = ("x", "y", "orientation", "vx", "vy", "spin")
 

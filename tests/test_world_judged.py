@@ -137,7 +137,9 @@ def energy_is_kept(seed: int) -> None:
     assert np.diff(energy).max() <= 1e-10 * energy[0]
     assert energy[0] == pytest.approx(run.last["energy_given"], rel=1e-12)
     assert energy[-1] <= 1e-20 * energy[0]
-    assert run.last["heat_impact"] == pytest.approx(sum(event.lost for event in run.events), rel=1e-12)
+    assert run.last["heat_impact"] == pytest.approx(
+        sum(event.lost for event in run.events), rel=1e-12
+    )
     heat = run.last["heat_dry"] + run.last["heat_rims"] + run.last["heat_impact"]
     assert heat == pytest.approx(energy[0], rel=1e-9)
 

@@ -135,7 +135,9 @@ def test_a_board_on_a_slope_keeps_its_books(seed: int):
     masses = np.array([p.mass for p in scene.pucks])
     assert run.last["work_given"] == pytest.approx(float(masses @ (moved @ down)), rel=1e-8)
     assert run.energy_residual < 1e-9
-    assert min(run.last["heat_dry"], run.last["heat_rims"], run.last["heat_impact"]) > -1e-15  # J, rounding
+    assert (
+        min(run.last["heat_dry"], run.last["heat_rims"], run.last["heat_impact"]) > -1e-15
+    )  # J, rounding
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -147,7 +149,9 @@ def test_a_mallet_in_a_crowd_keeps_its_books(seed: int):
     run = pt.Scene(pucks=[*crowd.pucks, mallet]).simulate()
     assert run.energy_residual < 1e-9
     assert run.last["work_driven"] > 0.0
-    assert min(run.last["heat_dry"], run.last["heat_rims"], run.last["heat_impact"]) > -1e-15  # J, rounding
+    assert (
+        min(run.last["heat_dry"], run.last["heat_rims"], run.last["heat_impact"]) > -1e-15
+    )  # J, rounding
 
 
 def test_rims_that_grip_at_the_start():

@@ -14,27 +14,30 @@ from puck_tables.scene.outcome import EVENTS
 from puck_tables.scene.plan import Plan
 from puck_tables.scene.records import BEFORE
 from puck_tables.scene.run import Event, Run, residual
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.scene_spec import SceneSpec
 
 NAME = "puck 0"
 _MEETS = {"impact": "wall", "contact": "wall", "edge": "edge", "overhang": "edge"}
 
 
 def run_of(
-    scene: Scene, plan: Plan, end: str, end_time: float, events: list[Event],
+    scene: SceneSpec, plan: Plan, end: str, end_time: float, events: list[Event],
     whole: Mapping[str, FloatArray], given: float, more: dict[str, Any],
 ) -> Run:  # fmt: skip
     """The run; ``whole``: columns over time, the last row the end; ``given``: by the launch, J.
 
-    ``more``: how exact it is.
+    ``more``: how exact it is, and who simulates it again.
     """
     zero = np.zeros_like(whole["time"])
     in_play = zero + 1.0
     in_play[-1] = 0.0 if end == "over the edge" else 1.0
     bound = scene.constraint is not None
     columns = {
-        **{name: row for name, row in whole.items() if bound or not name.startswith("lambda")}, "in_play": in_play, "energy_given": zero + given, "energy_gone": zero,
-        "work_driven": zero, "heat_rims": zero,
+        name: row for name, row in whole.items() if bound or not name.startswith("lambda")
+    }  # fmt: skip
+    columns |= {
+        "in_play": in_play, "energy_given": zero + given, "energy_gone": zero, "work_driven": zero,
+        "heat_rims": zero,
     }  # fmt: skip
     more["energy_residual"] = max(more.get("energy_residual", 0.0), residual(columns))
     last = {name: float(column[-1]) for name, column in columns.items()}
@@ -49,13 +52,13 @@ def run_of(
     )  # fmt: skip
 
 
-def events_of(rows: FloatArray, scene: Scene) -> list[Event]:
+def events_of(rows: FloatArray, scene: SceneSpec) -> list[Event]:
     """Rows of the engine (n, 16) as events, in their order in time."""
     found = [_event(row, scene) for row in rows]
     return sorted(found, key=lambda event: event.time)  # a rim may come over two edges on one step
 
 
-def _event(row: FloatArray, scene: Scene) -> Event:
+def _event(row: FloatArray, scene: SceneSpec) -> Event:
     what, which = EVENTS[int(row[1])], int(row[2])
     state = row[3:]
     place = float(state[X]), float(state[Y])
@@ -79,7 +82,7 @@ def _event(row: FloatArray, scene: Scene) -> Event:
     )  # fmt: skip
 
 
-def partner_of(what: str, which: int, scene: Scene) -> str:
+def partner_of(what: str, which: int, scene: SceneSpec) -> str:
     """What a puck meets at an event, by its number in the engine."""
     strips = scene.floor.strips
     if what in ("entry", "exit"):

@@ -11,9 +11,9 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
 from puck_tables.io.columns import following
-from puck_tables.scene.entries import as_toml
 from puck_tables.scene.library import files_of
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.scene_spec import SceneSpec
+from puck_tables.scene.scene_text import as_toml
 
 ENDS = (
     "at rest", "carried by the floor", "carried round", "time is up", "over the edge",
@@ -29,7 +29,7 @@ LEDGER = (
 )  # fmt: skip
 
 
-def refuse_changed(scene: Scene, files: Mapping[str, str]) -> None:
+def refuse_changed(scene: SceneSpec, files: Mapping[str, str]) -> None:
     """Refuse to go on with a run of a scene whose files are no longer what they were.
 
     Raises
@@ -63,7 +63,7 @@ def plain_name(path: str) -> str:
     return path.replace("[", "_").replace("]", "").replace(".", "_")
 
 
-def scene_texts(scene: Scene, files: Mapping[str, str]) -> dict[str, tuple[str, str]]:
+def scene_texts(scene: SceneSpec, files: Mapping[str, str]) -> dict[str, tuple[str, str]]:
     """A scene as a scene file, the files it names, and what they are."""
     named = {
         plain_name(path): (text, f"what stands in the file that {path} of the scene names")

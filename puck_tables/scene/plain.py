@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 
@@ -13,16 +14,22 @@ from puck_tables.scene.one_run import NAME, partner_of, run_of
 from puck_tables.scene.outcome import LEDGER
 from puck_tables.scene.plan import Plan, free_velocity
 from puck_tables.scene.run import Event, Run
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.scene_spec import SceneSpec
+from puck_tables.trajectory import simulate as trajectory
 
 
-def run_plain(scene: Scene, needed: Scene, plan: Plan, times: FloatArray | None) -> Run:
+def run_plain(scene: SceneSpec, needed: SceneSpec, plan: Plan, times: FloatArray | None,
+    simulated: Callable[..., Run],
+) -> Run:  # fmt: skip
     """Run it as a free puck in the frame of the floor; on a belt the floor's work is m b·Δv.
 
     ``needed``: the scene without what the puck does not reach.
     """
     free, velocity, spin = needed.puck, free_velocity(needed), needed.launch.spin
-    free_run = free.simulate(velocity, spin, frames=1, tol=scene.tol)
+    free_run = trajectory(
+        free, velocity, spin, frames=1, times=None, tol=scene.tol, method=None, exact=False,
+        table=None,
+    )  # fmt: skip
     length = free_run.stop_time
     limit = scene.time
     moves = any(scene.floor.velocity)
@@ -73,7 +80,7 @@ def run_plain(scene: Scene, needed: Scene, plan: Plan, times: FloatArray | None)
     exact = {
         "energy_residual": run.energy_residual, "error_estimate": run.error_estimate,
         "speed_scale": math.hypot(*velocity, scene.puck.radius * spin), "rate_scale": free.decel,
-        "steps": run.steps,
+        "steps": run.steps, "simulated": simulated,
     }  # fmt: skip
     end = "time is up" if not stops else ("carried by the floor" if moves else "at rest")
     stick = Event(length, "stick", NAME, partner_of("stick", 0, scene), *stop_place)

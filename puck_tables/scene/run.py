@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from typing import Any, ClassVar, NamedTuple
@@ -18,7 +18,7 @@ from puck_tables.io.dataset import Dataset, Variable, variable
 from puck_tables.result import TimedResult
 from puck_tables.scene.entries import tables_of, units_of
 from puck_tables.scene.outcome import column_of, refuse_changed, scene_texts
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.scene_spec import SceneSpec
 
 STATE = ("x", "y", "orientation", "vx", "vy", "spin")
 HEATS = ("heat_dry", "heat_viscous", "heat_rims", "heat_impact")
@@ -87,7 +87,7 @@ class Run(TimedResult):
     times it gives the same run with its states there.
     """
 
-    scene: Scene
+    scene: SceneSpec
     model: str
     why: str
     end: str
@@ -102,6 +102,7 @@ class Run(TimedResult):
     steps: int
     last: Mapping[str, Any]
     columns: Mapping[str, FloatArray] = field(repr=False)
+    simulated: Callable[[SceneSpec, npt.ArrayLike], Run] = field(repr=False)
     files: Mapping[str, str] = field(default_factory=dict, repr=False)
 
     picture: ClassVar[str] = "run"
@@ -117,8 +118,7 @@ class Run(TimedResult):
             If they are no such times, or a file that the scene names has changed since the run.
         """
         refuse_changed(self.scene, self.files)
-        run: Run = self.scene.simulate(times)
-        return run
+        return self.simulated(self.scene, times)
 
     def __repr__(self) -> str:
         title = f"{self.scene.title}: " if self.scene.title else ""
@@ -192,7 +192,7 @@ class Run(TimedResult):
 
         Examples
         --------
-        >>> from puck_tables import Launch, Puck
+        >>> from puck_tables import Launch, Puck, Scene
         >>> scene = Scene(Puck(0.04, friction=0.1), launch=Launch((1.0, 0.0)))
         >>> told = scene.simulate().summary()
         >>> told["end"], told["scene"]["launch"]["velocity"], told["units"]["scene.launch.velocity"]

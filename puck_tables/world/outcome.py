@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from puck_tables.scene.parts import Drag, Force
-from puck_tables.scene.pieces import Piece
+from puck_tables.scene.pieces import PieceSpec
 from puck_tables.scene.plan import EMPIRICAL
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.agreement import (
     TABLE_ERROR,
     called,
@@ -19,12 +19,12 @@ from puck_tables.world.agreement import (
 _NAMED = 6  # pucks of one way
 
 
-def ways_of(scene: Scene) -> str:
+def ways_of(scene: SceneSpec) -> str:
     """How the pucks of a scene are moved, a line for each way, and which they are.
 
     Examples
     --------
-    >>> from puck_tables import Piece
+    >>> from puck_tables import Piece, Scene
     >>> ways_of(Scene(pucks=[Piece(0.1, friction=0.1)]))
     '1 puck looked up from impact to impact'
     """
@@ -44,7 +44,7 @@ def ways_of(scene: Scene) -> str:
     return "\n".join(lines)
 
 
-def _way_of(scene: Scene, piece: Piece) -> str:
+def _way_of(scene: SceneSpec, piece: PieceSpec) -> str:
     """How a puck is moved, and why it is not looked up."""
     if piece.path:
         return "driven along a path"

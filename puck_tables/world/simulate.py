@@ -13,7 +13,7 @@ from puck_tables._core.real import finite_array
 from puck_tables.errors import InputError, PuckError
 from puck_tables.scene.library import files_of
 from puck_tables.scene.run import STATE, Event, Run, residual
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world import game as g
 from puck_tables.world.agreement import flight_error, refuse_endless
 from puck_tables.world.ledger import energies_of
@@ -25,7 +25,7 @@ from puck_tables.world.world import World
 MISSED = 1e-7  # of the ledger, where pucks pushed each other: their impacts were not solved
 
 
-def simulate(scene: Scene, times: npt.ArrayLike | None = None) -> Run:
+def simulate(scene: SceneSpec, times: npt.ArrayLike | None = None) -> Run:
     """A run of a scene, as :meth:`puck_tables.Scene.simulate` has it."""
     world = World(scene)
     refuse_endless(world.scene)
@@ -40,6 +40,7 @@ def simulate(scene: Scene, times: npt.ArrayLike | None = None) -> Run:
     speed, rate = world._game.pace[:2].tolist()
     ways = ways_of(scene)
     return Run(
+        simulated=simulate,
         scene=world.scene,
         model=", ".join(ways.splitlines()),
         why=f"{ways}\n{rule_of(scene)}",
@@ -60,7 +61,7 @@ def simulate(scene: Scene, times: npt.ArrayLike | None = None) -> Run:
 
 
 def _moments(
-    scene: Scene, times: npt.ArrayLike | None, end_time: float, moving: bool
+    scene: SceneSpec, times: npt.ArrayLike | None, end_time: float, moving: bool
 ) -> FloatArray:  # fmt: skip
     """When states are saved."""
     if times is None:
@@ -120,7 +121,7 @@ def _events(world: World) -> list[Event]:
     return sorted([*world.events_since(0.0), *rests], key=lambda event: event.time)
 
 
-def _error(scene: Scene, world: World) -> float:
+def _error(scene: SceneSpec, world: World) -> float:
     """How far check runs end whose launches are off by what flights may be wrong by, m.
 
     With the rounding of the look-up, for pucks that could slide far.
