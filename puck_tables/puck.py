@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
-from puck_tables._core.fields import of
+from puck_tables._core.fields import Unsaid, of
 from puck_tables._core.reading import Reading, given_in, mark_checked, read_values
 from puck_tables._core.real import positive, real
 from puck_tables.contact.laws import HOMOGENEOUS, Law
@@ -38,7 +38,7 @@ class Puck(Verbs):
     friction : Coulomb coefficient f, ≥ 0
         0, where it is left out: a puck that never stops by itself, for scenes alone.
     mass : kg, > 0; of a free puck only energies depend on it
-    gravity : m/s², > 0
+    gravity : m/s², > 0; left out, that of its scene, or 9.80665
     pressure : contact pressure: uniform, galin, hertz, ring, annulus:INNER, a CSV file of ρ, W, or
         a Law
     gyration : radius of gyration about the vertical axis over r, 0.1 to 10; √½ for a homogeneous
@@ -70,7 +70,10 @@ class Puck(Verbs):
     )
     friction: float = of("number", 0.0, low=0.0, doc="Coulomb's coefficient f")
     mass: float = of("number", 1.0, "kg", low=0.0, above=True)
-    gravity: float = of("number", STANDARD_GRAVITY, "m/s^2", low=0.0, above=True)
+    gravity: float = of(
+        "number", Unsaid(STANDARD_GRAVITY), "m/s^2", low=0.0, above=True, objects=(Unsaid,),
+        doc="in a scene that has none of its own",
+    )  # fmt: skip
     pressure: str | Law = of(
         "text", "uniform", file=".csv", objects=(Law,),
         doc="pressure law, as build-tables --pressure takes it",
