@@ -17,16 +17,12 @@ import numpy as np
 
 from puck_tables._core.own_folder import say
 from puck_tables.errors import PuckError
-from puck_tables.kernels.as_written import as_written
+from puck_tables.kernels.as_written import as_written, behind
 from puck_tables.kernels.cache import is_any_kept
 from puck_tables.kernels.numba_settings import read_settings
 from puck_tables.kernels.patience import AT_FIRST, OutOfPatience, here
 
 Function = TypeVar("Function", bound=Callable[..., Any])
-
-
-# kernels that only kernels call, and whether they are pasted into every caller
-behind: dict[Any, bool] = {}
 
 _PER_INSTRUCTION = 5e-4  # s, to compile an instruction of Python; of some machine
 _TO_LOAD_NUMBA = 0.6  # s, of such a machine

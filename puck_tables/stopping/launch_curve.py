@@ -96,7 +96,7 @@ class LaunchCurve:
     @cached_property
     def _cut(self) -> FloatArray:
         if self.body.is_plain:
-            return at_height(StopTable.shipped(), self.body.delta)
+            return at_height(StopTable.shipped().cut(), self.body.delta)
         return np.empty((2, WIDTH))
 
     def is_tabulated(self, u: FloatArray) -> npt.NDArray[np.bool_]:

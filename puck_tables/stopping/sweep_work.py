@@ -22,6 +22,7 @@ from puck_tables.stopping.per_height import (
 )
 from puck_tables.stopping.population import COLUMN, Population, law_name
 from puck_tables.stopping.solvers import OUTPUTS, STATUS_MEANINGS
+from puck_tables.stopping.stop_map import StopMap, StopSample
 
 if TYPE_CHECKING:
     from puck_tables.accuracy.front import Selection
@@ -241,10 +242,10 @@ class StopWork(Work):
 
     def result(self, columns: Columns) -> Result:
         """A map, or samples."""
-        from puck_tables.stopping.sample import StopSample
-        from puck_tables.stopping.sweep import StopMap
-
-        return (StopSample if self.launches.spreads else StopMap)(self, columns)
+        return (StopSample if self.launches.spreads else StopMap)(
+            self.launches, self.tol, self.method, self.source, self.selections, self.explain(),
+            self.labelled(columns),
+        )  # fmt: skip
 
     @property
     def method(self) -> str:
