@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from puck_tables.result import TimedResult
     from puck_tables.scene.outcome import Event, SceneRun
     from puck_tables.scene.sample import SceneSample
-    from puck_tables.scene.scene import Scene
     from puck_tables.scene.sweep import SceneMap
+    from puck_tables.world.scene import Scene
     from puck_tables.world.sweep import WorldMap
 
 Command = TypeVar("Command", bound=Callable[..., Any])
@@ -217,7 +217,7 @@ def run_scene(
     tables: dict[str, Any], source: str, times: tuple[float, ...] | None
 ) -> tuple[TimedResult, Callable[[Any], str]]:
     """One run of a scene with its states at some times, and what tells of it in words."""
-    from puck_tables.scene.scene import Scene
+    from puck_tables.world.scene import Scene
 
     scene = Scene.from_tables(tables, source)
     run: Any = scene.simulate(times)
