@@ -27,8 +27,9 @@ if TYPE_CHECKING:
 Command = TypeVar("Command", bound=Callable[..., Any])
 Progress = Callable[[int, int], None]
 
+# dimensionless, m/s²: of a puck that nothing is said of, as the library has it
 DEFAULT_DELTA, DEFAULT_DECEL = 0.5, 1.0
-MAX_COUNT = 1_000_000_000
+MAX_COUNT = 1_000_000_000  # values of a range
 QUIET_TIME, BETWEEN_LINES = 2.0, 10.0  # s, where stderr is no terminal
 
 

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from puck_tables._core.lazy import beside_the_package, lazily
+from puck_tables._core.lazy import beside_the_package, lazily, lead_up
 from puck_tables._version import __version__
 
 if TYPE_CHECKING:
@@ -58,27 +58,25 @@ if TYPE_CHECKING:
         Launch,
         Orthotropic,
         Patch,
-        Run,
         Strips,
         Wall,
     )
-    from puck_tables.scene.pieces import Arc, Piece, Pocket, Post, Rim
+    from puck_tables.scene.pieces import Arc, Pocket, Post, Rim
     from puck_tables.scene.restitution import Plastic, RestitutionTable, Viscoelastic
-    from puck_tables.scene.scene import Scene
     from puck_tables.scene.sweep import SceneMap
     from puck_tables.stopping.aim import Aim
     from puck_tables.stopping.aims import Aims
     from puck_tables.stopping.array_functions import state_arrays, stop_arrays
-    from puck_tables.stopping.sample import StopSample
     from puck_tables.stopping.states import States, states
+    from puck_tables.stopping.stop_map import StopMap, StopSample
     from puck_tables.stopping.stops import Stops, stop
-    from puck_tables.stopping.sweep import StopMap
     from puck_tables.table.check import CheckReport
     from puck_tables.table.store import table_for
     from puck_tables.table.table import Table
     from puck_tables.trajectory import Trajectory
     from puck_tables.warming import warm_up
     from puck_tables.world.aimed import BoardAim
+    from puck_tables.world.scene import Piece, Scene
     from puck_tables.world.world import World
     from puck_tables.wrench.holds import Hold
     from puck_tables.wrench.surface import LimitSurface
@@ -117,7 +115,7 @@ _HOMES = {
     "Orthotropic": "scene.parts",
     "OutputError": "errors",
     "Patch": "scene.parts",
-    "Piece": "scene.pieces",
+    "Piece": "world.scene",
     "Plastic": "scene.restitution",
     "Pocket": "scene.pieces",
     "Post": "scene.pieces",
@@ -127,15 +125,14 @@ _HOMES = {
     "RestitutionTable": "scene.restitution",
     "Result": "result",
     "Rim": "scene.pieces",
-    "Run": "scene.parts",
-    "Scene": "scene.scene",
+    "Scene": "world.scene",
     "SceneMap": "scene.sweep",
     "SceneRun": "scene.outcome",
     "Source": "export.source",
     "SpeedLaw": "contact.speed_law",
     "States": "stopping.states",
-    "StopMap": "stopping.sweep",
-    "StopSample": "stopping.sample",
+    "StopMap": "stopping.stop_map",
+    "StopSample": "stopping.stop_map",
     "Stops": "stopping.stops",
     "StribeckLaw": "contact.friction_laws",
     "Strips": "scene.parts",
@@ -211,7 +208,6 @@ __all__ = [
     "RestitutionTable",
     "Result",
     "Rim",
-    "Run",
     "Scene",
     "SceneMap",
     "SceneRun",
@@ -255,3 +251,4 @@ __all__ = [
 ]
 
 __getattr__, __dir__ = lazily(__name__, _HOMES)
+lead_up({"draw": "puck_tables.plot.drawn", "save_movie": "puck_tables.plot.movie"})

@@ -20,8 +20,9 @@ from puck_tables.scene.loop import AT_REST, CARRIED_AWAY, NOT_FINITE, OVER_EDGE,
 from puck_tables.scene.outcome import LEDGER, NO_END, ledger
 from puck_tables.scene.plan import Plan, plan_for
 from puck_tables.scene.prepare import Prepared, prepare
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.scene.simulate import is_endless
+from puck_tables.stopping.stops import stop
 
 STATE = (VX, VY, SPIN, X, Y, THETA)  # where the numbers of LAUNCH stand in a state
 RESULTS = (*LEDGER[1:], "impacts", "energy_residual", "end_time")
@@ -30,9 +31,9 @@ RESULTS = (*LEDGER[1:], "impacts", "energy_residual", "end_time")
 class Case:
     """A scene of which only the launch still varies."""
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: SceneSpec) -> None:
         self.scene, self.plan = scene, plan_for(scene)
-        self.by_look_up = self.plan.plain and scene.run.time is None
+        self.by_look_up = self.plan.plain and scene.time is None
         if self.by_look_up:
             self.plan = Plan("free pucks: stop look-up", True, self.plan.why)
         self.endless = is_endless(scene)
@@ -62,7 +63,7 @@ class Case:
         else:
             self.prepared.follow_all(states, rows, status)
             self._farther(states, rows, status)
-            if scene.run.time is None:
+            if scene.time is None:
                 status[status == TIME_UP] = NO_END
         rows[:, status > OVER_EDGE] = np.nan  # how it failed stands in ``end``
         last = dict(zip(LEDGER[:-1], rows[:-1], strict=True))
@@ -91,7 +92,7 @@ class Case:
     def _look_up(self, states: FloatArray, rows: FloatArray, status: npt.NDArray[np.int8]) -> None:
         belt = self.scene.floor.velocity
         velocities, spins = states[:, [VX, VY]] - belt, states[:, SPIN]
-        stops = self.scene.puck.stop(velocities, spins, tol=self.scene.run.tol)
+        stops = stop(velocities, spins, **self.scene.puck.arguments(), tol=self.scene.tol)
         rows[...] = 0.0
         last = dict(zip(LEDGER[:-1], rows[:-1], strict=True))
         last["time"][:] = stops.stop_time
@@ -106,14 +107,14 @@ class Case:
         status[:] = np.where(stops.status == 0, CARRIED_AWAY if any(belt) else AT_REST, NOT_FINITE)
 
 
-def is_launch(path: str, scene: Scene) -> bool:
+def is_launch(path: str, scene: SceneSpec) -> bool:
     """Whether a range only changes the launch, and nothing has to be checked or fixed to it."""
     moves = path.startswith("launch.position") or path == BATCH
     fixed = moves and bool(scene.walls or scene.edges)
     return path in (*LAUNCH, BATCH) and scene.constraint is None and not fixed
 
 
-def told_apart(scene: Scene) -> dict[str, Any]:
+def told_apart(scene: SceneSpec) -> dict[str, Any]:
     """What tells a pressure law that is given as an object from another."""
     law = scene.puck.body.law
     ratios = np.stack(law.friction(np.linspace(0.0, 0.5 * np.pi, 99), 0.0))

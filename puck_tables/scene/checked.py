@@ -12,13 +12,14 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import PuckError
 from puck_tables.scene.entries import BATCH, LAUNCH
 from puck_tables.scene.loop import OVER_EDGE
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.scene_spec import SceneSpec
+from puck_tables.scene.simulate import simulate
 
 CHECKED = 8  # runs
 
 
 def largest_error(
-    scene: Scene, axes: Mapping[str, FloatArray], columns: Mapping[str, FloatArray],
+    scene: SceneSpec, axes: Mapping[str, FloatArray], columns: Mapping[str, FloatArray],
     end: npt.NDArray[np.int8],
 ) -> float:  # fmt: skip
     """The largest error found in the ends of a map, times in units of Q/J, places in Q²/J.
@@ -28,10 +29,10 @@ def largest_error(
 
     Examples
     --------
-    >>> from puck_tables import Launch, Puck
+    >>> from puck_tables import Launch, Puck, Scene
     >>> scene = Scene(Puck(0.04, friction=0.2), launch=Launch((1.0, 0.0), spin=[0.0, 5.0]))
     >>> found = scene.sweep()
-    >>> largest_error(scene, found.axes, found.columns, found.end) <= scene.run.tol
+    >>> largest_error(scene, found.axes, found.columns, found.end) <= scene.tol
     True
     """
     valid = np.flatnonzero(end.ravel() <= OVER_EDGE)
@@ -40,7 +41,7 @@ def largest_error(
     for number in valid[places].tolist():
         one = _scene_of(scene, axes, np.unravel_index(number, end.shape))
         try:
-            run = one.simulate([])
+            run = simulate(one, [])
         except PuckError:  # its own end is in doubt
             return math.inf
         last = {name: float(columns[name].ravel()[number]) for name in ("x", "y", "end_time")}
@@ -57,7 +58,9 @@ def _share(error: float, scale: float) -> float:
     return error / scale if scale > 0.0 else (math.inf if error > 0.0 else 0.0)
 
 
-def _scene_of(scene: Scene, axes: Mapping[str, FloatArray], place: tuple[np.intp, ...]) -> Scene:
+def _scene_of(
+    scene: SceneSpec, axes: Mapping[str, FloatArray], place: tuple[np.intp, ...]
+) -> SceneSpec:
     """The scene of one run."""
     changed: dict[str, float] = {}
     for (path, values), i in zip(axes.items(), place, strict=True):

@@ -25,7 +25,7 @@ from puck_tables.result import Result
 from puck_tables.scene.case import RESULTS
 from puck_tables.scene.entries import entry_at
 from puck_tables.scene.outcome import ENDS, column_of, plain_name, scene_texts
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.scene.sweep import BYTES, CHUNK, SceneWork
 
 SAMPLE = "sample"
@@ -39,7 +39,7 @@ class SceneSample(Result, Summary):
     ``end``: index of :data:`puck_tables.scene.outcome.ENDS`; ``spreads``: what scatters, by path.
     """
 
-    scene: Scene
+    scene: SceneSpec
     spreads: Mapping[str, Spread]
     seed: int
     columns: Mapping[str, FloatArray] = field(repr=False)
@@ -99,7 +99,7 @@ def _labelled(one: Any, columns: Mapping[str, Any], end: npt.NDArray[np.int8]) -
 
 
 def sample(
-    scene: Scene, count: int, seed: int, spreads: Mapping[str, Spread], *,
+    scene: SceneSpec, count: int, seed: int, spreads: Mapping[str, Spread], *,
     threads: int | None = None, chunk: int = CHUNK, progress: Progress | None = None,
     store: str | Path | None = None, cluster: str | None = None, overwrite: bool = False,
 ) -> SceneSample:  # fmt: skip
@@ -131,7 +131,7 @@ class SceneDraws(SceneWork):
     is_sample = True
 
     def __init__(
-        self, scene: Scene, part: int, read: dict[str, str] | None, count: int, seed: int,
+        self, scene: SceneSpec, part: int, read: dict[str, str] | None, count: int, seed: int,
         spreads: Mapping[str, Spread],
     ) -> None:  # fmt: skip
         if scene.ranges:

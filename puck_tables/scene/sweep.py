@@ -37,7 +37,7 @@ from puck_tables.scene.outcome import (
     scene_texts,
 )
 from puck_tables.scene.plan import Plan
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.scene.simulate import FAILURES
 
 CHUNK = 256
@@ -56,7 +56,7 @@ class SceneMap(Result):
     ``files``: what stands in the files that the scene names, by path.
     """
 
-    scene: Scene
+    scene: SceneSpec
     plan: Plan
     columns: Mapping[str, FloatArray] = field(repr=False)
     end: npt.NDArray[np.int8] = field(repr=False)
@@ -113,12 +113,12 @@ class SceneMap(Result):
         return list(self.told)
 
 
-def axes_of(scene: Scene) -> dict[str, FloatArray]:
+def axes_of(scene: SceneSpec) -> dict[str, FloatArray]:
     """What ranges in a scene, by path; many launches by their numbers from 0 on.
 
     Examples
     --------
-    >>> from puck_tables import Launch, Puck
+    >>> from puck_tables import Launch, Puck, Scene
     >>> axes_of(Scene(Puck(1.0), launch=Launch([[1.0, 0.0], [2.0, 0.0]])))
     {'launch': array([0., 1.])}
     """
@@ -129,7 +129,7 @@ def axes_of(scene: Scene) -> dict[str, FloatArray]:
 
 
 def labelled(
-    scene: Scene, axes: Mapping[str, FloatArray], files: Mapping[str, str], results: Columns,
+    scene: SceneSpec, axes: Mapping[str, FloatArray], files: Mapping[str, str], results: Columns,
     end: npt.NDArray[np.int8],
 ) -> Dataset:  # fmt: skip
     """Columns of the ends of a scene with axes, names and units."""
@@ -146,7 +146,7 @@ def labelled(
     return Dataset(along, columns, {"title": scene.title or "Scene"}, scene_texts(scene, files))
 
 
-def _along(scene: Scene, path: str, values: FloatArray, axis: str) -> Variable:
+def _along(scene: SceneSpec, path: str, values: FloatArray, axis: str) -> Variable:
     """Numbers of the scene along an axis."""
     if path == BATCH:
         return Variable(values, (axis,), "1", "number of the launch")
@@ -156,7 +156,7 @@ def _along(scene: Scene, path: str, values: FloatArray, axis: str) -> Variable:
 
 
 def sweep(
-    scene: Scene, *, threads: int | None = None, chunk: int = CHUNK,
+    scene: SceneSpec, *, threads: int | None = None, chunk: int = CHUNK,
     progress: Progress | None = None, store: str | Path | None = None, cluster: str | None = None,
     overwrite: bool = False,
 ) -> SceneMap:  # fmt: skip
@@ -182,7 +182,7 @@ class SceneWork(Work):
     meanings = ENDS
 
     def __init__(
-        self, scene: Scene, part: int, read: dict[str, str] | None = None,
+        self, scene: SceneSpec, part: int, read: dict[str, str] | None = None,
         axes: Mapping[str, FloatArray] | None = None, shape: tuple[int, ...] | None = None,
     ) -> None:  # fmt: skip
         self.scene, self.part = scene, part
@@ -316,7 +316,7 @@ class SceneWork(Work):
         if code == REFUSED:
             return self._refusal(run)
         if code == NO_END:
-            return "none by a thousand times its time scale, it may never stop; give run.time"
+            return "none by a thousand times its time scale, it may never stop; give a time"
         if code == NOT_FINITE and self.scene.floor.law:
             return "its rim slips faster than the friction law goes; give the law more speeds"
         return FAILURES[code].partition(": ")[2] or FAILURES[code]

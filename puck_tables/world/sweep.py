@@ -26,14 +26,15 @@ from puck_tables.result import Result
 from puck_tables.scene.entries import entry_at, is_batch, launch_paths, tables_of
 from puck_tables.scene.library import files_of
 from puck_tables.scene.outcome import column_of, plain_name, scene_texts
-from puck_tables.scene.pieces import Piece
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.pieces import PieceSpec
+from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.agreement import called, number_of, pieces_of, refuse_endless
 from puck_tables.world.bulk import Ends, follow_all
 from puck_tables.world.engine import PUSHING, REACHED
 from puck_tables.world.outcome import STATE, WorldRun, ways_of
 from puck_tables.world.prepare import game_of, order_of
 from puck_tables.world.rim_laws import rule_of
+from puck_tables.world.simulate import simulate
 from puck_tables.world.world import World
 
 CHUNK = 2048
@@ -62,7 +63,7 @@ class WorldMap(Result):
     ``end`` (axes…): index of :data:`ENDS`; ``told``: what :meth:`without_end` says.
     """
 
-    scene: Scene
+    scene: SceneSpec
     names: tuple[str, ...]
     columns: Mapping[str, FloatArray] = field(repr=False)
     end: npt.NDArray[np.int8] = field(repr=False)
@@ -109,8 +110,7 @@ class WorldMap(Result):
         first = np.argwhere(self.end <= TIME_UP)[0]
         places = zip(self.axes, first.tolist(), strict=True)
         changed = [one for path, place in places for one in _numbers(self.scene, path, place)]
-        run: Any = self.scene.at(dict(changed)).simulate()
-        return run
+        return simulate(self.scene.at(dict(changed)))
 
     def explain(self) -> str:
         """How it was got."""
@@ -127,7 +127,7 @@ class WorldMap(Result):
 
 
 def labelled(
-    scene: Scene, names: tuple[str, ...], files: Mapping[str, str], results: Columns,
+    scene: SceneSpec, names: tuple[str, ...], files: Mapping[str, str], results: Columns,
     end: npt.NDArray[np.int8],
 ) -> Dataset:  # fmt: skip
     """Columns of the ends of a board with axes, names and units."""
@@ -155,7 +155,7 @@ def labelled(
 
 
 def sweep(
-    scene: Scene, *, threads: int | None = None, chunk: int = CHUNK,
+    scene: SceneSpec, *, threads: int | None = None, chunk: int = CHUNK,
     progress: Progress | None = None, store: str | Path | None = None, cluster: str | None = None,
     overwrite: bool = False,
 ) -> WorldMap:  # fmt: skip
@@ -180,7 +180,7 @@ class WorldWork(Work):
     code = "end"
     meanings = ENDS
 
-    def __init__(self, scene: Scene, part: int, read: dict[str, str] | None = None) -> None:
+    def __init__(self, scene: SceneSpec, part: int, read: dict[str, str] | None = None) -> None:
         self.scene, self.part = scene, part
         self.axes = axes_of(scene)
         if not self.axes:
@@ -301,7 +301,7 @@ class WorldWork(Work):
         return WorldMap(self.scene, self.names, results, end, lines, self.files)
 
 
-def axes_of(scene: Scene) -> dict[str, FloatArray]:
+def axes_of(scene: SceneSpec) -> dict[str, FloatArray]:
     """What ranges, by path; many launches by their number."""
     return {
         path: np.arange(float(len(values))) if is_batch(path) else values
@@ -309,7 +309,7 @@ def axes_of(scene: Scene) -> dict[str, FloatArray]:
     }
 
 
-def _numbers(scene: Scene, path: str, place: int) -> list[tuple[str, float]]:
+def _numbers(scene: SceneSpec, path: str, place: int) -> list[tuple[str, float]]:
     """The numbers of the scene at a place along an axis, by path."""
     values = scene.ranges[path][place]
     if not is_batch(path):
@@ -318,7 +318,7 @@ def _numbers(scene: Scene, path: str, place: int) -> list[tuple[str, float]]:
 
 
 def _launches(
-    scene: Scene, path: str, pieces: tuple[Piece, ...]
+    scene: SceneSpec, path: str, pieces: tuple[PieceSpec, ...]
 ) -> list[tuple[str, re.Match[str]]]:
     """The velocities and spins that an axis changes, if it changes nothing else.
 
@@ -341,10 +341,10 @@ def _launches(
 class _Case:
     """A board of which only launches still vary."""
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: SceneSpec) -> None:
         self.scene, self.pieces = scene, pieces_of(scene)
         refuse_endless(scene)
-        self.until = math.inf if scene.run.time is None else scene.run.time
+        self.until = math.inf if scene.time is None else scene.time
         order = order_of(scene)
         self.game, room = game_of(scene, order)
         self.first, self.place = room.states.copy(), np.argsort(order)
