@@ -19,7 +19,7 @@ from puck_tables.stopping.orbit import TINY
 
 _TIME, _ALONG, _ACROSS, _BODY, _TURN, _LENGTH, _CURVE = range(7)
 _FAST = np.array([False, True])[:, None, None]  # the side of r|ω| > v
-_ROUNDING = 2e-16
+_ROUNDING = 2e-16  # of a double
 _LOOKS = 100  # at most
 
 

@@ -28,9 +28,9 @@ if TYPE_CHECKING:
     from puck_tables.accuracy.front import Selection
     from puck_tables.stopping.per_height import AnyTable
 
-PART = 1 << 13
+PART = 1 << 13  # launches that a thread takes at once
 BLOCKS = (1 << 14, 1 << 18), (1 << 8, 1 << 13)  # launches; the latter where one takes long
-_SLAB = 1 << 20
+_SLAB = 1 << 20  # pucks whose heights are sorted at once
 Kind = tuple[int, float]  # number of the pressure law, radius of gyration
 
 

@@ -33,7 +33,7 @@ from puck_tables.table.accuracy import Accuracy
 from puck_tables.table.record import Axis, Record, kind_named
 
 FORMAT, FORMAT_VERSION = "puck-tables", "3.0"
-MAX_FILE_BYTES = 1 << 31
+MAX_FILE_BYTES = 1 << 31  # bytes: more is no table
 _SEAL = b"\npuck-tables sha256 "
 
 # what every kind of table says of itself, besides its recipe

@@ -27,7 +27,7 @@ from puck_tables.table.law_table import LawTable
 from puck_tables.table.record import Axis
 from puck_tables.table.slip_axis import GRADING_POWER
 
-HEIGHTS = 4
+HEIGHTS = 4  # nodes of δ in a file
 _UNIFORM = "uniform"
 _LARGEST = 1e3  # of a resultant: 64 stands in an extreme profile
 _FINEST = 0.1  # no table is better than so many times cells⁻⁴

@@ -30,9 +30,9 @@ Law = SpeedLaw | FrictionLaw | SpeedFunction
 
 K = TypeVar("K", bound=SpeedValues)  # the kind that is made
 
-DEFAULT_ACCURACY = 1e-6
-FINEST_ACCURACY = 1e-13
-MAX_NODES = 2_000_000
+DEFAULT_ACCURACY = 1e-6  # of f
+FINEST_ACCURACY = 1e-13  # of f: finer is rounding
+MAX_NODES = 2_000_000  # more is an accuracy out of reach
 _ORDER = 64.0  # to the power 6, of what half the nodes miss: the spline's own share
 _ALSO = 0.2  # of what the other axis misses: refined too
 _NEXT = 0.03  # of the largest error: refined in the same round
