@@ -14,7 +14,7 @@ from puck_tables._core.real import finite_array, listed, shown
 from puck_tables.errors import InputError
 
 _SIGMAS = 1.959963984540054  # of a 95 % interval
-_MOST_BINS = 4096
+_MOST_BINS = 4096  # along one axis of a picture: finer than any screen
 Bins = npt.NDArray[np.bool_]
 
 
