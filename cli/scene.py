@@ -58,7 +58,7 @@ def fields() -> None:
 def check(name: str) -> None:
     """Check a scene: every error at once, or what it holds and how it would be run."""
     from puck_tables.scene.scene import Scene
-    from puck_tables.scene.sweep import axes_of
+    from puck_tables.sweeps.ends import axes_of
     from puck_tables.world.outcome import ways_of
 
     whole = Scene.load(name)

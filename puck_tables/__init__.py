@@ -65,7 +65,6 @@ if TYPE_CHECKING:
     from puck_tables.scene.pieces import Arc, Piece, Pocket, Post, Rim
     from puck_tables.scene.restitution import Plastic, RestitutionTable, Viscoelastic
     from puck_tables.scene.scene import Scene
-    from puck_tables.scene.sweep import SceneMap
     from puck_tables.stopping.aim import Aim
     from puck_tables.stopping.aims import Aims
     from puck_tables.stopping.array_functions import state_arrays, stop_arrays
@@ -73,6 +72,8 @@ if TYPE_CHECKING:
     from puck_tables.stopping.states import States, states
     from puck_tables.stopping.stops import Stops, stop
     from puck_tables.stopping.sweep import StopMap
+    from puck_tables.sweeps.map import Map
+    from puck_tables.sweeps.sample import Sample
     from puck_tables.table.check import CheckReport
     from puck_tables.table.store import table_for
     from puck_tables.table.table import Table
@@ -112,6 +113,7 @@ _HOMES = {
     "Launch": "scene.parts",
     "Law": "contact.laws",
     "LimitSurface": "wrench.surface",
+    "Map": "sweeps.map",
     "MissingExtraError": "errors",
     "Normal": "bulk.spreads",
     "Orthotropic": "scene.parts",
@@ -128,8 +130,8 @@ _HOMES = {
     "Result": "result",
     "Rim": "scene.pieces",
     "Run": "scene.parts",
+    "Sample": "sweeps.sample",
     "Scene": "scene.scene",
-    "SceneMap": "scene.sweep",
     "SceneRun": "scene.outcome",
     "Source": "export.source",
     "SpeedLaw": "contact.speed_law",
@@ -196,6 +198,7 @@ __all__ = [
     "Launch",
     "Law",
     "LimitSurface",
+    "Map",
     "MissingExtraError",
     "Normal",
     "Orthotropic",
@@ -212,8 +215,8 @@ __all__ = [
     "Result",
     "Rim",
     "Run",
+    "Sample",
     "Scene",
-    "SceneMap",
     "SceneRun",
     "Source",
     "SpeedLaw",

@@ -40,13 +40,14 @@ ROOMS = {
     "scene": "_core bulk contact errors io kernels motion puck result stopping table",
     "wrench": "_core contact errors io kernels puck result scene",
     "world": "_core bulk contact errors io kernels motion puck result scene stopping table",
+    "sweeps": "_core bulk contact errors io result scene world",
     "warming": "bulk kernels puck scene",
     "reference": "_core contact errors film io puck result scene trajectory world",
     "tradeoff": "_core _version accuracy contact io kernels motion puck result stopping table",
     "plot": "_core _version accuracy bulk chetaev errors film fitting io motion reference result "
-    "scene stopping tradeoff trajectory world wrench",
+    "scene stopping sweeps tradeoff trajectory world wrench",
     "cli": "_core _version accuracy bulk chetaev contact errors explore export film fitting io "
-    "kernels motion plot puck reference scene stopping table tradeoff warming world",
+    "kernels motion plot puck reference scene stopping sweeps table tradeoff warming world",
     "__init__": "_core _version",
 }
 DOORS = {
