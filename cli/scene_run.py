@@ -28,8 +28,8 @@ Command = TypeVar("Command", bound=Callable[..., Any])
 PATHS = {
     "v0": "launch.velocity", "w0": "launch.spin", "speed": "launch.velocity[0]",
     "radius": "puck.radius", "height": "puck.height", "mass": "puck.mass",
-    "friction": "puck.friction", "gravity": "gravity", "frames": "run.frames",
-    "tol": "run.tol",
+    "friction": "puck.friction", "gravity": "gravity", "frames": "frames",
+    "tol": "tol",
 }  # fmt: skip
 KEPT = (
     "times", "explain", "as_json", "output", "plot", "movie", "overwrite", "threads", "cluster",
@@ -258,11 +258,13 @@ def _inputs(scene: Scene) -> dict[str, str]:
     parts: dict[str, list[str]] = {}
     for entry in entries(scene):
         part, dot, name = entry.path.partition(".")
-        if is_dataclass(entry.value):  # its entries follow
+        told = dot or part not in ("title", "gravity")  # above all, and of each puck
+        if is_dataclass(entry.value) or not told:  # its entries follow
             continue
-        if dot and entry.value != entry.default and entry.value is not None:
+        if entry.value != entry.default and entry.value is not None:
             unit = f" {entry.kind.unit}" if entry.kind.unit else ""
-            parts.setdefault(part, []).append(f"{name} {_written(entry.value)}{unit}")
+            words = f"{name} {_written(entry.value)}{unit}".lstrip()
+            parts.setdefault(part, []).append(words)
     lines = {part: ", ".join(told_of) for part, told_of in parts.items()}
     most = list(lines)[:MOST_PARTS]
     return {part: lines[part] for part in most} | (
@@ -294,7 +296,7 @@ def _friction(scene: Scene) -> str:
 def _error(run: SceneRun) -> str:
     """The estimate, and what tol means here; a word where it could not be kept."""
     time = run.speed_scale / run.rate_scale if run.rate_scale > 0.0 else 0.0
-    place, tol = run.speed_scale * time, run.scene.run.tol
+    place, tol = run.speed_scale * time, run.scene.tol
     words = f"about {run.error_estimate * time:.1e} s, {run.error_estimate * place:.1e} m; "
     if run.error_estimate > tol:
         known = "a finer table of its friction law" if run.scene.floor.law else "finer steps"

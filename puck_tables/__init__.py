@@ -58,7 +58,6 @@ if TYPE_CHECKING:
         Launch,
         Orthotropic,
         Patch,
-        Run,
         Strips,
         Wall,
     )
@@ -129,7 +128,6 @@ _HOMES = {
     "RestitutionTable": "scene.restitution",
     "Result": "result",
     "Rim": "scene.pieces",
-    "Run": "scene.parts",
     "Sample": "sweeps.sample",
     "Scene": "scene.scene",
     "SceneRun": "scene.outcome",
@@ -214,7 +212,6 @@ __all__ = [
     "RestitutionTable",
     "Result",
     "Rim",
-    "Run",
     "Sample",
     "Scene",
     "SceneRun",

@@ -42,7 +42,7 @@ def test_what_still_moves_and_what_is_driven_is_told() -> None:
 
 
 def test_what_nobody_can_know_is_said(tmp_path: Path) -> None:
-    rows = ["[run]\ntime = 60.0\n[drag]\nsliding = 1e-6\n"]
+    rows = ["time = 60.0\n[drag]\nsliding = 1e-6\n"]
     for n in range(6):
         rows.append(f'[[puck]]\nradius = 0.05\nname = "{n}"\n[puck.launch]\n'
                     f"position = [{0.2 * n + 0.1}, {0.3 + 0.07 * n}]\n"

@@ -62,7 +62,7 @@ def test_points_that_are_none_are_refused():
 
 
 @pytest.mark.parametrize(("more", "words"), [
-    ({"floor": pt.Floor(turning=1.0), "run": pt.Run(time=1.0)}, "not for a moving floor"),
+    ({"floor": pt.Floor(turning=1.0), "time": 1.0}, "not for a moving floor"),
     ({"pucks": [pt.Piece(0.03, friction=0.1, constraint=pt.Constraint("rail"), name="led",
                          launch=pt.Launch((1.0, 0.0))), OTHER]}, "striker led is led by a rail"),
 ])  # fmt: skip

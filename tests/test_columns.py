@@ -128,8 +128,8 @@ def test_a_law_of_millimetres_stops_where_one_of_metres_does(tmp_path: Path):
         ]
         (tmp_path / f"{name}.csv").write_text("\n".join([f"Sliding speed ({unit}),COF", *rows]))
         floor = pt.Floor(law=str(tmp_path / f"{name}.csv"))
-        launch, run = pt.Launch((0.8, 0.0), 10.0), pt.Run(tol=1e-4)
-        scene = pt.Scene(pt.Puck(0.04, 0.02), floor, launch=launch, run=run)
+        launch = pt.Launch((0.8, 0.0), 10.0)
+        scene = pt.Scene(pt.Puck(0.04, 0.02), floor, launch=launch, tol=1e-4)
         stops.append(scene.simulate().last["x"])
     assert_allclose(stops[1:], stops[0], rtol=1e-6)
 

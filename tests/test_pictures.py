@@ -72,7 +72,7 @@ def test_a_trajectory_is_drawn_whole_whatever_states_it_has(drawn: Any, asked: A
 
 def test_few_frames_do_not_cut_a_bouncing_path_off_its_walls(drawn: Any) -> None:
     tables = find_scene("air-hockey")
-    tables["run"]["frames"] = 3
+    tables["frames"] = 3
     run = simulate_scene(tables)
     figure = drawn(run)
     line = curve(figure.axes[0])
@@ -92,7 +92,7 @@ def test_a_path_of_many_turns_is_round(drawn: Any) -> None:
     tables = {
         "puck": {"radius": 0.02, "friction": 0.5}, "floor": {"turning": 9.0},
         "launch": {"position": [0.05, 0.0], "velocity": [0.0, 0.45], "spin": 9.0},
-        "run": {"time": 60.0, "frames": 5},
+        "time": 60.0, "frames": 5,
     }  # fmt: skip
     figure = drawn(simulate_scene(tables))
     line = curve(figure.axes[0])

@@ -55,5 +55,5 @@ def test_a_far_post_changes_nothing():
         far = Scene.from_tables(alone | {"post": [{"point": [900.0, 900.0], "radius": 0.01}]})
         now, before = ends_of(far), ends_of(scene)
         run = scene.simulate()
-        before[:, 3] += scene.run.tol * run.speed_scale**2 / run.rate_scale
+        before[:, 3] += scene.tol * run.speed_scale**2 / run.rate_scale
         assert apart(now, before).max() < 1.0, seed

@@ -43,18 +43,18 @@ def test_fields_and_files_take_units(tmp_path: Path):
         )}  # fmt: skip
         text, value = ({name: one[n] for name, one in written.items()} for n in (0, 1))
         (tmp_path / "a.toml").write_text(
-            f"[puck]\nradius = '{text['radius']}'\nheight = '{text['height']}'\n"
+            f"time = '{text['time']}'\n[puck]\n"
+            f"radius = '{text['radius']}'\nheight = '{text['height']}'\n"
             f"mass = '{text['mass']}'\nfriction = 0.05\n"
             f"[launch]\nvelocity = ['{text['vx']}', '{text['vy']}']\nspin = '{text['spin']}'\n"
             f"position = ['{text['x']}', 0.0]\n[floor]\ndownhill = '{text['downhill']}'\n"
-            f"[run]\ntime = '{text['time']}'\n"
         )
         scene = pt.Scene.load(tmp_path / "a.toml")
         puck = pt.Puck(text["radius"], text["height"], 0.05, text["mass"])
         assert puck == scene.puck
         found = (
             puck.radius, puck.height, puck.mass, *scene.launch.velocity, scene.launch.spin,
-            scene.launch.position[0], scene.floor.downhill, scene.run.time,
+            scene.launch.position[0], scene.floor.downhill, scene.time,
         )  # fmt: skip
         assert found == pytest.approx(list(value.values()), rel=1e-12)
     ranged = pt.Scene(pt.Puck("4cm", 0.0, 0.1), launch=pt.Launch((1.0, 0.0), "10rpm:20rpm:3"))

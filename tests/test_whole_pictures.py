@@ -230,7 +230,7 @@ def of_a_scene() -> Iterator[Any]:
                              "friction": [0.1 + 0.012345 * n for n in range(12)]}},
         "wall": [{"point": [9.0, 0.0], "normal": [-1.0, 0.0]}],
         "launch": {"velocity": [1.0, 0.2]}, "drag": {"sliding": 0.01},
-        "force": {"constant": [0.01, 0.0], "torque": 1e-5}, "run": {"tol": 1e-6},
+        "force": {"constant": [0.01, 0.0], "torque": 1e-5}, "tol": 1e-6,
     }  # fmt: skip
     yield Scene.from_tables(tables).simulate()
     ranged = {**tables, "launch": {"velocity": ["0.5:1:2", 0.2], "spin": [3.0, 1.0, 2.0]}}

@@ -226,7 +226,7 @@ def test_a_driven_disc_hits_and_is_not_moved():
 def test_air_hockey_without_dry_friction_is_in_closed_form():
     drag = pt.Drag(sliding=0.006, quadratic=0.002, spinning=1e-6)
     one = piece(0, 0, (2.0, 1.0), 30.0, friction=0.0, mass=0.03)
-    run = pt.Scene(pucks=[one], drag=drag, run=pt.Run(time=3.0)).simulate([0.0, 1.0, 3.0])
+    run = pt.Scene(pucks=[one], drag=drag, time=3.0).simulate([0.0, 1.0, 3.0])
     assert run.end == "time is up"
     rate, wake, speed = 0.2, 0.002 / 0.03, math.hypot(2.0, 1.0)
     grown = (1 - np.exp(-rate * run.time)) / rate

@@ -126,7 +126,7 @@ def test_a_slope_works_and_the_floor_heats():
 def test_a_board_on_a_slope_keeps_its_books(seed: int):
     plain = draw(seed, 5)
     floor = pt.Floor(slope=0.1, downhill=1.0)
-    scene = pt.Scene(pucks=plain.pucks, walls=plain.walls, floor=floor, run=pt.Run(time=0.6))
+    scene = pt.Scene(pucks=plain.pucks, walls=plain.walls, floor=floor, time=0.6)
     run = scene.simulate()
     start = np.array([p.launch.position for p in scene.pucks])
     moved = np.stack([run.last["x"], run.last["y"]], axis=1) - start

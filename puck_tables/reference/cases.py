@@ -47,7 +47,7 @@ class Case(NamedTuple):
         """
         tables = deepcopy(dict(self.tables))
         tables["title"] = self.title
-        tables["run"] = {**tables.get("run", {}), "tol": TOL}
+        tables["tol"] = TOL
         return Scene.from_tables(tables, f"case {self.name}")
 
 
@@ -83,7 +83,7 @@ def _incline(name: str, over: float, words: str, tests: str, time: float | None)
         "launch": {"velocity": [0.5, 0.3], "spin": 20.0},
     }  # fmt: skip
     if time is not None:
-        tables["run"] = {"time": time}
+        tables |= {"time": time}
     return Case(f"incline-{name}", 1, f"Spinning disc on a slope {words}", tests, tables)
 
 
@@ -143,7 +143,7 @@ CASES = (
         "turntable", 1, "Disc set on a turntable that throws it off",
         "a floor whose velocity differs from place to place, and turns",
         {"puck": _DISC, "floor": {"turning": 4.0},
-         "launch": {"velocity": [0.0, 0.0], "position": [0.2, 0.0]}, "run": {"time": 1.0}},
+         "launch": {"velocity": [0.0, 0.0], "position": [0.2, 0.0]}, "time": 1.0},
     ),
     _astride(
         "spin", "Flat disc that spins on the border of two frictions",

@@ -32,8 +32,8 @@ def disagreements(scene: Scene) -> list[str]:
                 "use other units"
             )
     faults += floor_faults(scene)
-    if not scene.run.frames.is_integer():
-        faults.append(f"run.frames = {scene.run.frames:g}: must be a whole number")
+    if not scene.frames.is_integer():
+        faults.append(f"frames = {scene.frames:g}: must be a whole number")
     lines: list[tuple[str, Wall | Edge]] = [(f"wall[{i}]", w) for i, w in enumerate(scene.walls)]
     lines += [(f"edge[{i}]", edge) for i, edge in enumerate(scene.edges)]
     for name, line in lines:

@@ -82,7 +82,7 @@ def _first_top(law: SpeedLaw | FrictionLaw, fastest: float) -> float:
 
 def law_error(scene: Scene) -> float:
     """How wrong friction by slip speed may be, in units of the largest."""
-    return max(LAW_SHARE * scene.run.tol, FINEST_ACCURACY)
+    return max(LAW_SHARE * scene.tol, FINEST_ACCURACY)
 
 
 def speed_law(scene: Scene) -> SpeedLaw | FrictionLaw:
@@ -140,8 +140,8 @@ def _law_table(law: SpeedLaw | FrictionLaw, scene: Scene, top: float, share: flo
         if isinstance(law, SpeedLaw):
             bends, smoother = "its corners", "a law with fewer points"
         raise AccuracyError(
-            f"tol = {scene.run.tol:g} is out of reach of a table of {law_name(scene)}, with "
-            f"{bends}: give run.tol (or --tol) of {finest:g} or more, or {smoother}"
+            f"tol = {scene.tol:g} is out of reach of a table of {law_name(scene)}, with "
+            f"{bends}: give a tol (or --tol) of {finest:g} or more, or {smoother}"
         ) from None
 
 

@@ -41,7 +41,7 @@ class Case:
 
     def __init__(self, scene: Scene) -> None:
         plan = plan_for(scene)
-        by_look_up = plan.plain and scene.run.time is None
+        by_look_up = plan.plain and scene.time is None
         self.scene, self.explanation = scene, plan.why
         self.model = "free pucks: stop look-up" if by_look_up else plan.model
         self.endless = is_endless(scene)
@@ -70,7 +70,7 @@ class Case:
     def advice(scene: Scene, code: int) -> str:
         """What to do about runs that have no end."""
         if code == NO_END:
-            return "none by a thousand times its time scale, it may never stop; give run.time"
+            return "none by a thousand times its time scale, it may never stop; give time"
         if code == NOT_FINITE and scene.floor.law:
             return "its rim slips faster than the friction law goes; give the law more speeds"
         return FAILURES[code].partition(": ")[2] or FAILURES[code]
@@ -105,7 +105,7 @@ class Case:
         else:
             self.prepared.follow_all(states, rows, status)
             self._farther(states, rows, status)
-            if scene.run.time is None:
+            if scene.time is None:
                 status[status == TIME_UP] = NO_END
         rows[:, status > OVER_EDGE] = np.nan  # how it failed stands in ``end``
         last = dict(zip(LEDGER[:-1], rows[:-1], strict=True))
@@ -136,7 +136,7 @@ class Case:
     def _look_up(self, states: FloatArray, rows: FloatArray, status: npt.NDArray[np.int8]) -> None:
         belt = self.scene.floor.velocity
         velocities, spins = states[:, [VX, VY]] - belt, states[:, SPIN]
-        stops = self.scene.puck.stop(velocities, spins, tol=self.scene.run.tol)
+        stops = self.scene.puck.stop(velocities, spins, tol=self.scene.tol)
         rows[...] = 0.0
         last = dict(zip(LEDGER[:-1], rows[:-1], strict=True))
         last["time"][:] = stops.stop_time

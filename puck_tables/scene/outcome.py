@@ -68,7 +68,7 @@ class SceneRun(TimedResult):
     m/s² (the slip hypot(v, rω) at the launch, and the largest of friction, forces and what a
     turning floor asks over the mass; without slip Q² = J r), and of the times of rebounds from one
     wall.  It is above
-    ``run.tol`` where the motion amplifies errors so much that tol cannot be kept.
+    ``tol`` where the motion amplifies errors so much that tol cannot be kept.
     ``columns``: arrays (n,) over time by name, each also an attribute (``run.x``); ``heat_dry`` is
     that of the floor and of a rim that rubs on a cushion it leans on; ``heading``,
     ``slip_speed`` and ``slip_angle`` are of the motion in the laboratory, 0 at rest there.

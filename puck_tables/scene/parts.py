@@ -246,12 +246,3 @@ class Constraint:
     side_slip: float = of(
         "number", 0.0, "m/s", doc="of the blade over the floor, to its left", acts=""
     )
-
-
-@dataclass(frozen=True)
-class Run:
-    """How long, how close, how often."""
-
-    time: float | None = of("number", None, "s", low=0.0, above=True, doc="until rest if left out")
-    frames: float = of("number", 101.0, low=1.0, high=1e6, doc="states to save")
-    tol: float = of("number", 1e-9, low=1e-12, high=1e-2, doc="error wanted, of Q/J and Q^2/J")

@@ -20,13 +20,13 @@ def run_plain(scene: Scene, needed: Scene, plan: Plan, times: FloatArray | None)
     ``needed``: the scene without what the puck does not reach.
     """
     free, velocity, spin = needed.puck, free_velocity(needed), needed.launch.spin
-    free_run = free.simulate(velocity, spin, frames=1, tol=scene.run.tol)
+    free_run = free.simulate(velocity, spin, frames=1, tol=scene.tol)
     length = free_run.stop_time
-    limit = scene.run.time
+    limit = scene.time
     moves = any(scene.floor.velocity)
     stops = limit is None or length <= limit
     end_time = length if limit is None or (stops and not moves) else limit
-    moments = np.linspace(0.0, end_time, int(scene.run.frames)) if times is None else times
+    moments = np.linspace(0.0, end_time, int(scene.frames)) if times is None else times
     if moves or not stops:
         moments = moments[moments <= end_time]
     run = free_run(np.append(moments, end_time))

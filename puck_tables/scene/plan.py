@@ -45,7 +45,9 @@ class Plan:
 
 # what the motion of a free puck on a level floor takes into account, and what makes a scene one of
 # many pucks, which :mod:`puck_tables.world` runs
-FREE = ("title", "puck", "launch", "run", "puck[]", "post", "arc", "pocket", "rim")
+FREE = (
+    "title", "puck", "launch", "time", "frames", "tol", "puck[]", "post", "arc", "pocket", "rim",
+)  # fmt: skip
 
 
 def ingredients(scene: Scene) -> list[str]:
@@ -65,7 +67,7 @@ def ingredients(scene: Scene) -> list[str]:
     there = acting(scene)
     puck = scene.puck
     plain = is_plain(puck.pressure, puck.gyration, puck.delta)
-    if not plain and scene.run.tol < FINEST_TOL:
+    if not plain and scene.tol < FINEST_TOL:
         there.append("a tolerance finer than for free pucks of this kind")
     floor = scene.floor
     own = floor.strips is not None or bool(floor.law) or floor.orthotropic is not None

@@ -109,7 +109,7 @@ class Prepared:
             part = out[:, start:stop].copy()
             follow_many(
                 self.model, self.regions, self.bounds, asks[start:stop],
-                self.scene.run.time is not None, self.ask.tolerance, STEP_LIMIT, MAX_EVENTS,
+                self.scene.time is not None, self.ask.tolerance, STEP_LIMIT, MAX_EVENTS,
                 states[start:stop], starts[start:stop], part, status[start:stop],
             )  # fmt: skip
             out[:, start:stop] = part
@@ -154,11 +154,11 @@ def prepare(scene: Scene, last_time: float | None = None, reach: float = 1.0) ->
     state[[X, Y]], state[THETA] = scene.launch.position, scene.launch.orientation
     state[[VX, VY]], state[SPIN] = launch_velocity(scene), scene.launch.spin
     asks = _asks(scene, model, regions, state[None, :])[0]
-    until, to_the_end = scene.run.time, True
+    until, to_the_end = scene.time, True
     if until is None:
         to_the_end = moves and bool(last_time)
         until = last_time if to_the_end and last_time else float(asks[0])
-    tolerance = max(LOCAL_SHARE * scene.run.tol, FINEST_LOCAL)
+    tolerance = max(LOCAL_SHARE * scene.tol, FINEST_LOCAL)
     ask = Ask(until, to_the_end, tolerance, asks[2:], float(asks[1]), STEP_LIMIT, 0.0, AS_IT_COMES)
     speed, rate, _ = _scales(scene, model, regions, state[None, :])
     bounds = _bounds(scene)
@@ -197,13 +197,13 @@ def _asks(scene: Scene, model: Model, regions: Regions, states: FloatArray) -> F
         length = speed * time
         slow = max(1.0, 2.0 * scene.puck.gyration**2)  # by as much longer a spin takes to brake
         # what rounding leaves of places far out, and of what a fast floor does
-        ulp = 4e-16 / max(LOCAL_SHARE * scene.run.tol, FINEST_LOCAL)
+        ulp = 4e-16 / max(LOCAL_SHARE * scene.tol, FINEST_LOCAL)
         turning = abs(scene.floor.turning)
         place = np.maximum(length, ulp * (np.hypot(states[:, X], states[:, Y]) + floor * time))
         swift = np.maximum(speed, ulp * turning * floor * time)
         angle = np.maximum(length / radius, ulp * turning * time)
         energy = mass * speed * (speed + floor)
-        until = scene.run.time
+        until = scene.time
         asks: FloatArray = np.stack([
             np.full_like(speed, until) if until is not None
             else DEFAULT_TIME * _slowest(scene, model, regions, speed, rate),
@@ -246,7 +246,7 @@ def _scales(
     rate = np.max([pull / puck.mass, turning * ground, speed * turning], axis=0)
     still = speed == 0.0
     speed[still] = np.where(rate[still] > 0.0, np.sqrt(rate[still] * puck.radius), 1.0)
-    run = 1.0 if scene.run.time is None else scene.run.time
+    run = 1.0 if scene.time is None else scene.time
     rate = np.where(rate > 0.0, rate, speed / run)
     return speed, rate, ground
 

@@ -51,7 +51,7 @@ def regions_of(scene: Scene, reach: float = 1.0) -> Regions:
     heights = scene.heights
     load = normal * np.array(scene.frictions)
     if all(is_plain(puck.pressure, puck.gyration, delta) for delta in heights):
-        cuts = np.stack([_plain_cut(scene.run.tol, delta) for delta in heights])
+        cuts = np.stack([_plain_cut(scene.tol, delta) for delta in heights])
         return _under_zones(scene, normal, load, np.array(heights), cuts)
     accuracy = friction_error(scene)
     # how the mass is spread stands in the equations of the scene, not in its friction
@@ -62,8 +62,8 @@ def regions_of(scene: Scene, reach: float = 1.0) -> Regions:
         if error.reachable is None:
             raise
         raise AccuracyError(
-            f"tol = {scene.run.tol:g} is out of reach under the pressure law {puck.pressure}: give "
-            f"run.tol (or --tol) of {rounded_up(error.reachable / SLICE_SHARE):g} or more"
+            f"tol = {scene.tol:g} is out of reach under the pressure law {puck.pressure}: give "
+            f"a tol (or --tol) of {rounded_up(error.reachable / SLICE_SHARE):g} or more"
         ) from None
     return _under_zones(scene, normal, load, np.array(heights), of_one_shape(slices))
 
@@ -107,8 +107,8 @@ def friction_error(scene: Scene) -> float:
     if scene.floor.orthotropic is not None:
         return CLOSED_FORM_ERROR
     if all(is_plain(puck.pressure, puck.gyration, delta) for delta in scene.heights):
-        return CLOSED_FORM_ERROR if scene.run.tol < EXACT_BELOW else TABLE_ERROR
-    return max(SLICE_SHARE * scene.run.tol, FINEST_ACCURACY)
+        return CLOSED_FORM_ERROR if scene.tol < EXACT_BELOW else TABLE_ERROR
+    return max(SLICE_SHARE * scene.tol, FINEST_ACCURACY)
 
 
 def _plain_cut(tol: float, delta: float) -> FloatArray:

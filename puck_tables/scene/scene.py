@@ -29,7 +29,6 @@ from puck_tables.scene.parts import (
     Force,
     Lateral,
     Launch,
-    Run,
     Wall,
 )
 from puck_tables.scene.pieces import Arc, Piece, Pocket, Post, Rim
@@ -53,12 +52,16 @@ class Scene(SceneVerbs):
     Parameters
     ----------
     puck : Puck
-    floor, launch, drag, lateral, force, run, title : optional
+    floor, launch, drag, lateral, force, title : optional
         As :mod:`puck_tables.scene.parts` has them.
     walls, edges : sequences of Wall, of Edge, optional
     pucks, posts, arcs, pockets, rims : sequences, optional
         As :mod:`puck_tables.scene.pieces` has them.
     constraint : Constraint, optional
+    time : s, > 0, optional
+        How long; left out, until rest.
+    frames, tol : optional
+        How many states to save; the error wanted, of Q/J and Q²/J.
     gravity : m/s², > 0, optional
         Of all its pucks; left out, each has its own.
     ranges : mapping, optional
@@ -94,7 +97,7 @@ class Scene(SceneVerbs):
     edges: tuple[Edge, ...] = of("parts", (), part=Edge, table="edge")
     rims: tuple[Rim, ...] = of("parts", (), part=Rim, table="rim")
     constraint: Constraint | None = of("part", None, part=Constraint)
-    run: Run = of("part", Run(), part=Run)
+    title: str = of("text", "")
     gravity: float | None = of(
         "number",
         None,
@@ -104,7 +107,9 @@ class Scene(SceneVerbs):
         above=True,
         doc="of all pucks; left out: each has its own",
     )
-    title: str = of("text", "")
+    time: float | None = of("number", None, "s", low=0.0, above=True, doc="until rest if left out")
+    frames: float = of("number", 101.0, low=1.0, high=1e6, doc="states to save")
+    tol: float = of("number", 1e-9, low=1e-12, high=1e-2, doc="error wanted, of Q/J and Q^2/J")
     ranges: Mapping[str, FloatArray] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -223,8 +228,9 @@ class Scene(SceneVerbs):
         scene = object.__new__(type(self))
         for spec in specs(type(self)).values():
             object.__setattr__(scene, spec.name, spec.default)
-        for name, part in (("puck", puck), ("floor", self.floor), ("run", self.run)):
-            object.__setattr__(scene, name, part)
+        object.__setattr__(scene, "puck", puck)
+        for name in ("floor", "time", "tol"):
+            object.__setattr__(scene, name, getattr(self, name))
         object.__setattr__(scene, "ranges", {})
         return scene
 

@@ -32,7 +32,7 @@ class SceneVerbs:
         Parameters
         ----------
         times : array_like, s, ≥ 0, ascending, optional
-            When to save states; else ``run.frames`` of them from the launch to the end.
+            When to save states; else ``frames`` of them from the launch to the end.
 
         Returns
         -------
@@ -43,7 +43,7 @@ class SceneVerbs:
         ------
         InputError
             If a number of it is a range, or it has not ended after a thousand times its time scale
-            and gives no ``run.time``.
+            and gives no ``time``.
         PuckError
             If the motion leaves floating point, or too many events crowd together.
 

@@ -23,7 +23,7 @@ def largest_error(ends: SceneEnds) -> float:
     --------
     >>> from puck_tables import Launch, Puck, Scene
     >>> scene = Scene(Puck(0.04, friction=0.2), launch=Launch((1.0, 0.0), spin=[0.0, 5.0]))
-    >>> largest_error(scene.sweep()) <= scene.run.tol
+    >>> largest_error(scene.sweep()) <= scene.tol
     True
     """
     valid = np.flatnonzero(ends.end.ravel() <= OVER_EDGE)

@@ -86,27 +86,27 @@ def refuse_endless(scene: Scene) -> None:
     ------
     InputError
     """
-    if scene.run.time is not None:
+    if scene.time is not None:
         return
     floor = scene.floor
     if any(floor.velocity) or floor.turning != 0.0:
-        raise InputError("on a floor that moves nothing comes to rest: give run.time")
+        raise InputError("on a floor that moves nothing comes to rest: give a time")
     for number, piece in enumerate(pieces_of(scene)):
         if 0.0 in frictions_under(scene, piece) and not piece.path:
             if floor.law:
                 raise InputError(
                     f"{law_name(scene)}: its friction is 0 at slip zero, so that nothing comes to "
-                    "rest: give run.time"
+                    "rest: give a time"
                 )
             raise InputError(
                 f"nothing brings {called(piece, number)} to rest (its friction is 0): give "
-                "run.time, or friction"
+                "a time, or friction"
             )
         hold = piece.constraint
         if hold is not None and (any(hold.velocity) or hold.side_slip != 0.0):
             raise InputError(
                 f"the {hold.kind} of {called(piece, number)} moves, so it never comes to rest: "
-                "give run.time"
+                "give a time"
             )
 
 
@@ -142,10 +142,10 @@ def flight_error(scene: Scene) -> float:
     --------
     >>> from puck_tables import Run
     >>> men = [Piece(0.1, friction=0.2)]
-    >>> [flight_error(Scene(pucks=men, run=Run(tol=tol))) for tol in (1e-6, 1e-11)]
+    >>> [flight_error(Scene(pucks=men, tol=tol)) for tol in (1e-6, 1e-11)]
     [1e-09, 1e-11]
     """
-    return min(TABLE_ERROR, scene.run.tol)
+    return min(TABLE_ERROR, scene.tol)
 
 
 def is_integrated(scene: Scene, piece: Piece, friction: float) -> bool:
@@ -181,8 +181,8 @@ def disagreements(scene: Scene) -> list[str]:
         if not _SMALLEST < math.hypot(*line.normal) < _LARGEST:
             faults.append(f"{path}.normal = {list(line.normal)}: must have a direction")
     faults += _strange_rims(scene)
-    if not scene.run.frames.is_integer():
-        faults.append(f"run.frames = {scene.run.frames:g}: must be a whole number")
+    if not scene.frames.is_integer():
+        faults.append(f"frames = {scene.frames:g}: must be a whole number")
     if faults:
         return faults
     return [

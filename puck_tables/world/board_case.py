@@ -48,7 +48,7 @@ class BoardCase:
         count = len(self.pieces)
         self.model = f"{count} puck{'s' if count > 1 else ''} from impact to impact"
         self.explanation = f"{ways_of(scene)}\n{rule_of(scene)}"
-        self.until = math.inf if scene.run.time is None else scene.run.time
+        self.until = math.inf if scene.time is None else scene.time
         order = order_of(scene)
         self.game, room = game_of(scene, order)
         self.first, self.place = room.states.copy(), np.argsort(order)

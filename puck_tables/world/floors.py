@@ -93,7 +93,7 @@ def regions_of(scene: Scene, pieces: list[Piece], floors: FloatArray, fastest: f
     ])  # fmt: skip
     cuts = none[: len(places)]
     if not all(has_closed_forms(*one) for one in places):
-        accuracy = max(SLICE_SHARE * scene.run.tol, FINEST_ACCURACY)
+        accuracy = max(SLICE_SHARE * scene.tol, FINEST_ACCURACY)
         bodies = [replace(piece, friction=friction).body for piece, friction in places]
         cuts = of_one_shape([body.friction(accuracy).cut for body in bodies])
     ground = NO_GROUND

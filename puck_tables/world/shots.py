@@ -73,7 +73,7 @@ class Shots:
     ) -> None:  # fmt: skip
         self.scene, self.striker, self.velocities = scene, striker, velocities
         self._path = f"puck[{striker}].launch" if scene.pucks else "launch"
-        self.until = math.inf if scene.run.time is None else scene.run.time
+        self.until = math.inf if scene.time is None else scene.time
         order = order_of(scene)
         self._game, room = game_of(scene, order)
         self._first, place = room.states.copy(), np.argsort(order)
@@ -149,7 +149,7 @@ class Shots:
         """How near to a target is on it, m: the tolerance of the scene at a speed, m/s."""
         piece = pieces_of(self.scene)[self.striker]
         reach = speed * speed / piece.decel if piece.decel > 0.0 else piece.radius
-        return self.scene.run.tol * max(reach, piece.radius)
+        return self.scene.tol * max(reach, piece.radius)
 
     def sensitivities(self, starts: FloatArray) -> FloatArray:
         """How far the end moves per degree of heading and per cent of speed, (n, 2) m.

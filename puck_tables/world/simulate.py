@@ -26,14 +26,14 @@ def simulate(scene: Scene, times: npt.ArrayLike | None = None) -> WorldRun:
     world = World(scene)
     refuse_endless(world.scene)
     files = files_of(scene)
-    world.advance(math.inf if scene.run.time is None else scene.run.time)
+    world.advance(math.inf if scene.time is None else scene.time)
     books = ledger(world)
     if world.groups > 0 and not books["energy_residual"] <= MISSED:
         raise PuckError(TOGETHER.format(time=world.time))
     moving = bool(world.moving.any())
     end_time = world.time if moving else world.last_motion
     if times is None:
-        moments = np.linspace(0.0, end_time, int(scene.run.frames))
+        moments = np.linspace(0.0, end_time, int(scene.frames))
     else:
         moments = np.atleast_1d(finite_array("times", times, "s"))
         if moments.ndim != 1 or (moments < 0.0).any() or (np.diff(moments) < 0.0).any():
