@@ -70,7 +70,7 @@ class Case:
     def advice(scene: Scene, code: int) -> str:
         """What to do about runs that have no end."""
         if code == NO_END:
-            return "none by a thousand times its time scale, it may never stop; give time"
+            return "none by a thousand times its time scale, it may never stop; give a time"
         if code == NOT_FINITE and scene.floor.law:
             return "its rim slips faster than the friction law goes; give the law more speeds"
         return FAILURES[code].partition(": ")[2] or FAILURES[code]
