@@ -96,7 +96,9 @@ def _draw(axes: Axes, ends: SceneEnds, film: Film, box: Box) -> None:
         if isinstance(ends, Sample):
             _hold(axes, x[playing > 0.0], y[playing > 0.0], body.line)
     if isinstance(ends, Sample):
-        axes.plot([], [], color=GREY, linewidth=1.0, label=f"holds {100 * HELD:.0f} % of a puck's")
+        axes.plot(
+            [], [], color=GREY, linewidth=1.0, label=f"holds {100 * HELD:.0f} % of a puck in play"
+        )
     for stays, marker in ((True, "."), (False, "x")):
         if not named and total[stays]:
             words = f"{total[stays]} {'in' if stays else 'left'} play"

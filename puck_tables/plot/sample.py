@@ -59,9 +59,10 @@ def draw(samples: Any) -> Figure:
     draw_on(figure.add_subplot(grid[:, :2]), samples)
     for n, name in enumerate(samples.shown):
         _histogram(figure.add_subplot(grid[n, 2]), samples, name)
-    lost = np.size(getattr(samples, samples.place[0])) - samples.ended
+    lost = np.size(samples.counted(samples.place[0])) - samples.ended
     without = f" and {lost} without an end" if lost else ""
-    titled(figure, f"{samples.ended} samples{without}: {samples.drawn_words}")
+    whose = f" of {samples.whose}" if getattr(samples, "whose", "") else ""  # of several pucks
+    titled(figure, f"{samples.ended} samples{whose}{without}: {samples.drawn_words}")
     return figure
 
 
