@@ -152,7 +152,7 @@ class SceneVerbs:
         >>> spreads = {"puck[0].launch.velocity[1]": Normal(0.0, 0.01)}
         >>> found = Scene(pucks=[cue, red]).sample(100, 7, spreads)
         >>> round(found.of("red").mean()["x"], 3)
-        0.522
+        0.569
         """
         found: Sample = import_module("puck_tables.sweeps.runs").sample(
             self, count, seed, spreads, threads=threads, chunk=chunk, progress=progress,

@@ -54,7 +54,8 @@ class Map(SceneEnds):
         Examples
         --------
         >>> from puck_tables import Launch, Puck, Scene
-        >>> scene = Scene(Puck(0.04, friction=[0.1, 0.2]), launch=Launch((1.0, 0.0), [0.0, 3.0]))
+        >>> ranges = {"puck.friction": [0.1, 0.2], "launch.spin": [0.0, 3.0]}
+        >>> scene = Scene(Puck(0.04), launch=Launch((1.0, 0.0)), ranges=ranges)
         >>> scene.sweep().numbers(2)
         {'puck.friction': 0.2, 'launch.spin': 0.0}
         """
