@@ -19,9 +19,9 @@ if TYPE_CHECKING:
     from puck_tables.bulk.finish import Stored
     from puck_tables.result import TimedResult
     from puck_tables.scene.outcome import Event, SceneRun
-    from puck_tables.scene.scene import Scene
-    from puck_tables.sweeps.map import Map
-    from puck_tables.sweeps.sample import Sample
+    from puck_tables.world.map import Map
+    from puck_tables.world.sample import Sample
+    from puck_tables.world.scene import Scene
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
@@ -214,7 +214,7 @@ def run_scene(
     tables: dict[str, Any], source: str, times: tuple[float, ...] | None
 ) -> tuple[TimedResult, Callable[[Any], str]]:
     """One run of a scene with its states at some times, and what tells of it in words."""
-    from puck_tables.scene.scene import Scene
+    from puck_tables.world.scene import Scene
 
     scene = Scene.from_tables(tables, source)
     run: Any = scene.simulate(times)
@@ -331,7 +331,7 @@ def summary_of_map(ends: Map | Sample | Stored) -> str:
     """A map or samples of a scene in one line, and one for each way in which runs have no end."""
     from puck_tables.bulk.finish import Stored
     from puck_tables.bulk.work import Tally
-    from puck_tables.sweeps.map import Map
+    from puck_tables.world.map import Map
 
     work: Any = ends.work if isinstance(ends, Stored) else ends
     tally = ends.tally if isinstance(ends, Stored) else Tally.of(ends.end)

@@ -126,7 +126,7 @@ def sweep(
     if is_scene:
         tables = scene_tables(ctx, scene, changes, scattering=drawn)
         whole.refuse_outputs(files_read(scene, tables))
-        from puck_tables.scene.scene import Scene
+        from puck_tables.world.scene import Scene
 
         with progress("runs") as show:
             one = Scene.from_tables(tables)

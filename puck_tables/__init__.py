@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from puck_tables._core.lazy import beside_the_package, lazily
+from puck_tables._core.lazy import beside_the_package, lazily, lead_up
 from puck_tables._version import __version__
 
 if TYPE_CHECKING:
@@ -61,9 +61,8 @@ if TYPE_CHECKING:
         Strips,
         Wall,
     )
-    from puck_tables.scene.pieces import Arc, Piece, Pocket, Post, Rim
+    from puck_tables.scene.pieces import Arc, Pocket, Post, Rim
     from puck_tables.scene.restitution import Plastic, RestitutionTable, Viscoelastic
-    from puck_tables.scene.scene import Scene
     from puck_tables.stopping.aim import Aim
     from puck_tables.stopping.aims import Aims
     from puck_tables.stopping.array_functions import state_arrays, stop_arrays
@@ -71,14 +70,15 @@ if TYPE_CHECKING:
     from puck_tables.stopping.states import States, states
     from puck_tables.stopping.stops import Stops, stop
     from puck_tables.stopping.sweep import StopMap
-    from puck_tables.sweeps.map import Map
-    from puck_tables.sweeps.sample import Sample
     from puck_tables.table.check import CheckReport
     from puck_tables.table.store import table_for
     from puck_tables.table.table import Table
     from puck_tables.trajectory import Trajectory
     from puck_tables.warming import warm_up
     from puck_tables.world.aimed import BoardAim
+    from puck_tables.world.map import Map
+    from puck_tables.world.sample import Sample
+    from puck_tables.world.scene import Piece, Scene
     from puck_tables.world.world import World
     from puck_tables.wrench.holds import Hold
     from puck_tables.wrench.surface import LimitSurface
@@ -112,13 +112,13 @@ _HOMES = {
     "Launch": "scene.parts",
     "Law": "contact.laws",
     "LimitSurface": "wrench.surface",
-    "Map": "sweeps.map",
+    "Map": "world.map",
     "MissingExtraError": "errors",
     "Normal": "bulk.spreads",
     "Orthotropic": "scene.parts",
     "OutputError": "errors",
     "Patch": "scene.parts",
-    "Piece": "scene.pieces",
+    "Piece": "world.scene",
     "Plastic": "scene.restitution",
     "Pocket": "scene.pieces",
     "Post": "scene.pieces",
@@ -128,8 +128,8 @@ _HOMES = {
     "RestitutionTable": "scene.restitution",
     "Result": "result",
     "Rim": "scene.pieces",
-    "Sample": "sweeps.sample",
-    "Scene": "scene.scene",
+    "Sample": "world.sample",
+    "Scene": "world.scene",
     "SceneRun": "scene.outcome",
     "Source": "export.source",
     "SpeedLaw": "contact.speed_law",
@@ -255,3 +255,4 @@ __all__ = [
 ]
 
 __getattr__, __dir__ = lazily(__name__, _HOMES)
+lead_up({"draw": "puck_tables.plot.drawn", "save_movie": "puck_tables.plot.movie"})

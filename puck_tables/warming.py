@@ -9,8 +9,7 @@ from puck_tables.bulk.spreads import Normal
 from puck_tables.kernels.patience import compiled_at_once
 from puck_tables.puck import Puck
 from puck_tables.scene.parts import Floor, Launch, Wall
-from puck_tables.scene.pieces import Piece
-from puck_tables.scene.scene import Scene
+from puck_tables.world.scene import Piece, Scene
 
 _PUCKS = [Puck(0.04, 0.02, 0.15), Puck(0.04, 0.02, 0.15, pressure="ring")]
 _LAUNCH = (1.0, 0.2), 5.0

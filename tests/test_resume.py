@@ -18,7 +18,7 @@ from puck_tables._core import digest as kept_work
 from puck_tables._core.digest import work_digest
 from puck_tables.errors import InputError
 from puck_tables.scene.entries import set_path
-from puck_tables.sweeps.runs import Runs
+from puck_tables.world.runs import Runs
 
 pytest.importorskip("zarr")
 W0 = np.linspace(0.1, 5.0, 7)

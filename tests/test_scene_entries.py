@@ -17,10 +17,11 @@ from puck_tables import Puck
 from puck_tables._core.fields import described, of
 from puck_tables.errors import InputError, PuckError
 from puck_tables.scene import parts
-from puck_tables.scene.entries import as_toml, set_path, tables_of
+from puck_tables.scene.entries import set_path, tables_of
 from puck_tables.scene.library import shipped_scenes
 from puck_tables.scene.plan import ingredients, plan_for
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.scene_text import as_toml
+from puck_tables.world.scene import Scene
 
 FREE: dict[str, Any] = {
     "puck": {"radius": 0.04, "height": 0.03, "mass": 0.2, "friction": 0.2},

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 import puck_tables as pt
-from puck_tables.scene.entries import as_toml, tables_of
+from puck_tables.scene.entries import tables_of
+from puck_tables.scene.scene_text import as_toml
 
 PUCK = pt.Puck(0.04, height=0.02, friction=0.15)
 ROW = pt.Scene.load("curling-take-out")

@@ -16,8 +16,9 @@ from puck_tables.plot.sample import HELD, cloud_of
 from puck_tables.plot.style import GREY
 from puck_tables.plot.words import counted, legend_below, noted
 from puck_tables.scene.loop import OVER_EDGE
-from puck_tables.sweeps.ends import SceneEnds
-from puck_tables.sweeps.sample import Sample
+from puck_tables.world.sample import Sample
+from puck_tables.world.scene_ends import SceneEnds
+from puck_tables.world.simulate import simulate
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -73,7 +74,7 @@ def _board(ends: SceneEnds) -> Film:
     if not ended.size:
         told = ends.told or ("no run has an end",)
         raise InputError(f"there is nothing to draw: {'; '.join(told)}")
-    return film_of(ends.scene.at(ends.numbers(int(ended[0]))).simulate())
+    return film_of(simulate(ends.scene.at(ends.numbers(int(ended[0])))))
 
 
 def _draw(axes: Axes, ends: SceneEnds, film: Film, box: Box) -> None:

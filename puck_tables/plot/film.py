@@ -21,7 +21,7 @@ from puck_tables.plot.words import out_of_sight
 from puck_tables.result import TimedResult
 from puck_tables.scene.outcome import SceneRun
 from puck_tables.scene.parts import Floor
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.trajectory import Trajectory
 from puck_tables.world.agreement import frictions_under, pieces_of
 from puck_tables.world.drive import rows_of
@@ -170,7 +170,7 @@ def _stacked(*columns: FloatArray) -> FloatArray:
 
 def _film(
     title: str, end: str, end_time: float, bodies: list[tuple[str, float, str, bool, FloatArray]],
-    happenings: list[Happening] | None = None, scene: Scene | None = None,
+    happenings: list[Happening] | None = None, scene: SceneSpec | None = None,
 ) -> Film:  # fmt: skip
     """A film of bodies by name, radius, colour, whether driven, and states close to each other."""
     rounds = [] if scene is None else _rounds(scene)
@@ -193,7 +193,7 @@ def _film(
     )  # fmt: skip
 
 
-def _frictions(scene: Scene) -> tuple[float, ...]:
+def _frictions(scene: SceneSpec) -> tuple[float, ...]:
     """All coefficients of the floor under its pucks."""
     under = (frictions_under(scene, piece) for piece in pieces_of(scene))
     return tuple(friction for one in under for friction in one)
@@ -273,7 +273,7 @@ def _leaps(states: FloatArray) -> npt.NDArray[np.bool_]:
     return np.asarray(at_once & (np.abs(np.diff(rates, axis=0)) > 1e-9 * scale).any(axis=1))
 
 
-def _rounds(scene: Scene) -> list[Round]:
+def _rounds(scene: SceneSpec) -> list[Round]:
     posts = [Round("post", *post.point, post.radius) for post in scene.posts]
     arcs = [Round("arc", *arc.point, arc.radius, arc.start, arc.span) for arc in scene.arcs]
     return [*posts, *arcs, *(Round("pocket", *one.point, one.radius) for one in scene.pockets)]
@@ -293,7 +293,7 @@ def _sight(bodies: list[tuple[str, float, str, bool, FloatArray]], rounds: list[
     return float(low[0]), float(high[0]), float(low[1]), float(high[1])
 
 
-def _half_planes(scene: Scene) -> list[tuple[str, FloatArray]]:
+def _half_planes(scene: SceneSpec) -> list[tuple[str, FloatArray]]:
     """Walls and edges as unit normals into the field, and places along them."""
     planes = []
     for kind, lines in (("wall", scene.walls), ("edge", scene.edges)):

@@ -12,7 +12,7 @@ from puck_tables.plot.style import BLUE, GREEN, ORANGE, RED, canvas, draw_over, 
 from puck_tables.plot.words import legend_below, noted, titled
 from puck_tables.scene.loop import CARRIED_ROUND
 from puck_tables.scene.outcome import ENDS
-from puck_tables.sweeps.map import Map
+from puck_tables.world.map import Map
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -14,7 +14,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
 from puck_tables.io.columns import derived, following
 from puck_tables.io.dataset import Dataset, Variable, variable
-from puck_tables.puck import Puck
+from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.reference.cases import TOL, Case, case_named
 from puck_tables.reference.floor import on_the_floor, ratios, slip_over
 from puck_tables.reference.moments import frame_times
@@ -22,7 +22,7 @@ from puck_tables.result import Result
 from puck_tables.scene.entries import tables_of
 from puck_tables.scene.outcome import SceneRun
 from puck_tables.scene.parts import Floor
-from puck_tables.scene.pieces import Piece
+from puck_tables.scene.pieces import PieceSpec
 from puck_tables.scene.zones import zones_of
 from puck_tables.world.agreement import pieces_of
 from puck_tables.world.outcome import WorldRun
@@ -95,7 +95,7 @@ class Answer(Result):
         return self.run.names if isinstance(self.run, WorldRun) else ()
 
     @property
-    def pieces(self) -> tuple[Piece, ...]:
+    def pieces(self) -> tuple[PieceSpec, ...]:
         """The pucks."""
         return pieces_of(self.run.scene)
 
@@ -169,7 +169,7 @@ class Answer(Result):
         return None if puck is None else puck.limit_epsilon
 
     @property
-    def puck_at_end(self) -> Puck | None:
+    def puck_at_end(self) -> PuckSpec | None:
         """The one puck with the friction that it stops on; None: its base lies on several.
 
         None, too, where friction depends on the slip or several pucks are there.

@@ -13,7 +13,7 @@ from difflib import get_close_matches
 from typing import Any, NamedTuple
 
 from puck_tables.errors import InputError
-from puck_tables.scene.scene import Scene
+from puck_tables.world.scene import Scene
 
 TOL = 1e-11  # of Q/J and Q²/J
 

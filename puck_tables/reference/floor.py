@@ -17,10 +17,10 @@ from typing import NamedTuple
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.puck import Puck
+from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.scene.floor_forces import friction_at
 from puck_tables.scene.parts import Floor
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.scene_spec import SceneSpec
 
 
 class Slip(NamedTuple):
@@ -75,7 +75,7 @@ def ratios(slip: Slip, radius: float) -> tuple[FloatArray, FloatArray]:
 
 
 def wrench(
-    puck: Puck, phi: FloatArray, slope: float = 0.0
+    puck: PuckSpec, phi: FloatArray, slope: float = 0.0
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Force along the slip and to its left, N, and torque, N m, that a puck passes on.
 
@@ -87,6 +87,7 @@ def wrench(
 
     Examples
     --------
+    >>> from puck_tables import Puck
     >>> _, _, torque = wrench(Puck(0.05, friction=0.2, mass=0.1, gravity=9.81), np.array([np.pi/2]))
     >>> (torque / (0.2 * 0.1 * 9.81 * 0.05)).round(12).tolist()          # 2/3 of f m g r
     [0.666666666667]
@@ -114,12 +115,13 @@ def is_one_friction(floor: Floor) -> bool:
 
 
 def on_the_floor(
-    puck: Puck, scene: Scene, states: Mapping[str, FloatArray]
+    puck: PuckSpec, scene: SceneSpec, states: Mapping[str, FloatArray]
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Force along x and y, N, and torque, N m, of a puck of a scene on the floor, state by state.
 
     Examples
     --------
+    >>> from puck_tables import Puck, Scene
     >>> puck = Puck(0.05, friction=0.5, mass=0.1, gravity=10.0)
     >>> moves = {name: np.zeros(2) for name in ("x", "y", "vx", "vy", "spin")}
     >>> moves["vx"][0] = 1.0
@@ -146,7 +148,9 @@ def on_the_floor(
     )
 
 
-def _by_ratios(puck: Puck, slip: Slip, slope: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _by_ratios(
+    puck: PuckSpec, slip: Slip, slope: float
+) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Force along x and y and torque of a puck that slips on one friction."""
     speed, rim, _ = slip.sizes(puck.radius)
     phi = np.arctan2(rim, speed) * np.where(slip.spin < 0.0, -1.0, 1.0)

@@ -13,7 +13,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import real_array
 from puck_tables.errors import InputError
 from puck_tables.io.dataset import Dataset, variable
-from puck_tables.puck import Puck
+from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.reference.cases import Case, case_named
 from puck_tables.reference.floor import is_one_friction, wrench
 from puck_tables.result import Result
@@ -38,7 +38,7 @@ class FloorFriction(Result):
     """
 
     case: Case
-    puck: Puck
+    puck: PuckSpec
     slope: float
     epsilon: FloatArray
     slip_ratio: FloatArray

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.friction_laws import FrictionLaw
-from puck_tables.puck import Puck
+from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.scene.agreement import launch_velocity
 from puck_tables.scene.bulk import ENDS_COLUMNS
 from puck_tables.scene.by_speed import FARTHER, FARTHEST
@@ -21,8 +21,9 @@ from puck_tables.scene.loop import AT_REST, CARRIED_AWAY, NOT_FINITE, OVER_EDGE,
 from puck_tables.scene.outcome import LEDGER, NO_END, ledger
 from puck_tables.scene.plan import plan_for
 from puck_tables.scene.prepare import Prepared, prepare
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.scene.simulate import FAILURES, is_endless
+from puck_tables.stopping.stops import stop
 
 STATE = (VX, VY, SPIN, X, Y, THETA)  # where the numbers of LAUNCH stand in a state
 RESULTS = (*LEDGER[1:], "in_play", "impacts", "energy_residual", "end_time")
@@ -39,7 +40,7 @@ class Case:
         If no model holds for it.
     """
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: SceneSpec) -> None:
         plan = plan_for(scene)
         by_look_up = plan.plain and scene.time is None
         self.scene, self.explanation = scene, plan.why
@@ -48,17 +49,17 @@ class Case:
         self.prepared: Prepared | None = None if by_look_up else prepare(scene)
 
     @staticmethod
-    def names(scene: Scene) -> tuple[str, ...]:
+    def names(scene: SceneSpec) -> tuple[str, ...]:
         """None: its results have no dimension of pucks."""
         return ()
 
     @staticmethod
-    def columns(scene: Scene) -> dict[str, tuple[int, ...]]:
+    def columns(scene: SceneSpec) -> dict[str, tuple[int, ...]]:
         """What is known of an end, by name, and its shape."""
         return dict.fromkeys(RESULTS, ())
 
     @staticmethod
-    def launches(scene: Scene, path: str) -> tuple[str, ...]:
+    def launches(scene: SceneSpec, path: str) -> tuple[str, ...]:
         """The numbers of the launch that an axis changes, if nothing has to be checked for them."""
         moves = path.startswith("launch.position") or path == BATCH
         fixed = moves and bool(scene.walls or scene.edges)
@@ -67,7 +68,7 @@ class Case:
         return launch_paths(path) if path == BATCH else (path,)
 
     @staticmethod
-    def advice(scene: Scene, code: int) -> str:
+    def advice(scene: SceneSpec, code: int) -> str:
         """What to do about runs that have no end."""
         if code == NO_END:
             return "none by a thousand times its time scale, it may never stop; give a time"
@@ -136,7 +137,7 @@ class Case:
     def _look_up(self, states: FloatArray, rows: FloatArray, status: npt.NDArray[np.int8]) -> None:
         belt = self.scene.floor.velocity
         velocities, spins = states[:, [VX, VY]] - belt, states[:, SPIN]
-        stops = self.scene.puck.stop(velocities, spins, tol=self.scene.tol)
+        stops = stop(velocities, spins, **self.scene.puck.arguments(), tol=self.scene.tol)
         rows[...] = 0.0
         last = dict(zip(LEDGER[:-1], rows[:-1], strict=True))
         last["time"][:] = stops.stop_time
@@ -151,7 +152,7 @@ class Case:
         status[:] = np.where(stops.status == 0, CARRIED_AWAY if any(belt) else AT_REST, NOT_FINITE)
 
 
-def told_apart(puck: Puck) -> dict[str, Any]:
+def told_apart(puck: PuckSpec) -> dict[str, Any]:
     """What tells a pressure law that is given as an object from another."""
     law = puck.body.law
     ratios = np.stack(law.friction(np.linspace(0.0, 0.5 * np.pi, 99), 0.0))

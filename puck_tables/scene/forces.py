@@ -17,7 +17,7 @@ from puck_tables.kernels.compile import inlined
 from puck_tables.scene.parts import Rows
 
 if TYPE_CHECKING:
-    from puck_tables.scene.scene import Scene
+    from puck_tables.scene.scene_spec import SceneSpec
 
 
 MAX_DRIVE = 1 << 26  # bytes of a file of forces
@@ -46,7 +46,7 @@ class Forces(NamedTuple):
     by_spin: float
 
 
-def forces_of(scene: Scene) -> Forces:
+def forces_of(scene: SceneSpec) -> Forces:
     """The forces of a scene.
 
     Raises

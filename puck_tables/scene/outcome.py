@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, ClassVar, NamedTuple
 
@@ -14,10 +14,11 @@ from puck_tables.errors import InputError
 from puck_tables.io.columns import COLUMNS, derived, following
 from puck_tables.io.dataset import Dataset, variable
 from puck_tables.result import TimedResult
-from puck_tables.scene.entries import as_toml, tables_of, units_of
+from puck_tables.scene.entries import tables_of, units_of
 from puck_tables.scene.library import files_of
 from puck_tables.scene.plan import Plan
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.scene_spec import SceneSpec
+from puck_tables.scene.scene_text import as_toml
 
 ENDS = (
     "at rest", "carried by the floor", "carried round", "time is up", "over the edge",
@@ -76,7 +77,7 @@ class SceneRun(TimedResult):
     names, by the path of the entry.  Called with times it gives the same run with its states there.
     """
 
-    scene: Scene
+    scene: SceneSpec
     plan: Plan
     end: str
     end_time: float
@@ -88,6 +89,7 @@ class SceneRun(TimedResult):
     steps: int
     last: Mapping[str, float]
     columns: Mapping[str, FloatArray] = field(repr=False)
+    simulated: Callable[[SceneSpec, npt.ArrayLike], SceneRun] = field(repr=False)
     files: Mapping[str, str] = field(default_factory=dict, repr=False)
 
     picture: ClassVar[str] = "scene"
@@ -103,7 +105,7 @@ class SceneRun(TimedResult):
             If they are no such times, or a file that the scene names has changed since the run.
         """
         refuse_changed(self.scene, self.files)
-        return self.scene.simulate(times)
+        return self.simulated(self.scene, times)
 
     def __repr__(self) -> str:
         title = f"{self.scene.title}: " if self.scene.title else ""
@@ -138,7 +140,7 @@ class SceneRun(TimedResult):
 
         Examples
         --------
-        >>> from puck_tables import Launch, Puck
+        >>> from puck_tables import Launch, Puck, Scene
         >>> scene = Scene(Puck(0.04, friction=0.1), launch=Launch((1.0, 0.0)))
         >>> told = scene.simulate().summary()
         >>> told["end"], told["scene"]["launch"]["velocity"], told["units"]["scene.launch.velocity"]
@@ -185,7 +187,7 @@ class SceneRun(TimedResult):
         return Dataset(axes, over_time, attributes, scene_texts(self.scene, self.files))
 
 
-def refuse_changed(scene: Scene, files: Mapping[str, str]) -> None:
+def refuse_changed(scene: SceneSpec, files: Mapping[str, str]) -> None:
     """Refuse to go on with a run of a scene whose files are no longer what they were.
 
     Raises
@@ -219,7 +221,7 @@ def plain_name(path: str) -> str:
     return path.replace("[", "_").replace("]", "").replace(".", "_")
 
 
-def scene_texts(scene: Scene, files: Mapping[str, str]) -> dict[str, tuple[str, str]]:
+def scene_texts(scene: SceneSpec, files: Mapping[str, str]) -> dict[str, tuple[str, str]]:
     """A scene as a scene file, the files it names, and what they are."""
     named = {
         plain_name(path): (text, f"what stands in the file that {path} of the scene names")

@@ -1,7 +1,7 @@
 """The parts of a scene besides its puck: plain records of what a user says.
 
 Numbers are in SI units, angles in radians, counter-clockwise positive.  They are checked when a
-:class:`puck_tables.scene.scene.Scene` is made of them.
+:class:`puck_tables.Scene` is made of them.
 """
 
 from __future__ import annotations

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 
@@ -11,16 +12,23 @@ from puck_tables.errors import InputError
 from puck_tables.scene.agreement import launch_velocity
 from puck_tables.scene.outcome import LEDGER, Event, SceneRun, ledger_residual
 from puck_tables.scene.plan import Plan, free_velocity
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.scene_spec import SceneSpec
+from puck_tables.trajectory import simulate as trajectory
 
 
-def run_plain(scene: Scene, needed: Scene, plan: Plan, times: FloatArray | None) -> SceneRun:
+def run_plain(
+    scene: SceneSpec, needed: SceneSpec, plan: Plan, times: FloatArray | None,
+    simulated: Callable[..., SceneRun],
+) -> SceneRun:  # fmt: skip
     """Run it as a free puck in the frame of the floor; on a belt the floor's work is m b·Δv.
 
     ``needed``: the scene without what the puck does not reach.
     """
     free, velocity, spin = needed.puck, free_velocity(needed), needed.launch.spin
-    free_run = free.simulate(velocity, spin, frames=1, tol=scene.tol)
+    free_run = trajectory(
+        free, velocity, spin, frames=1, times=None, tol=scene.tol, method=None, exact=False,
+        table=None,
+    )  # fmt: skip
     length = free_run.stop_time
     limit = scene.time
     moves = any(scene.floor.velocity)
@@ -69,6 +77,7 @@ def run_plain(scene: Scene, needed: Scene, plan: Plan, times: FloatArray | None)
         scene.launch.position[1] + run.stop_position[1] + belt[1] * length,
     )
     return SceneRun(
+        simulated=simulated,
         scene=scene,
         plan=plan,
         end="time is up" if not stops else ("carried by the floor" if moves else "at rest"),

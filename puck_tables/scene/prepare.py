@@ -39,7 +39,7 @@ from puck_tables.scene.leaning import LEAN_COLUMNS
 from puck_tables.scene.loop import follow
 from puck_tables.scene.regions import friction_error, regions_of
 from puck_tables.scene.rest import excess_at_rest
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.scene.zones import zones_of
 
 LOCAL_SHARE = 0.01  # of the error wanted, per step and in units of the scales
@@ -70,7 +70,7 @@ class Prepared:
     model: Model
     regions: Regions
     bounds: Boundaries
-    scene: Scene
+    scene: SceneSpec
     state: FloatArray
     ask: Ask
     speed: float
@@ -129,7 +129,7 @@ class Prepared:
         return _asks(self.scene, self.model, self.regions, states)
 
 
-def prepare(scene: Scene, last_time: float | None = None, reach: float = 1.0) -> Prepared:
+def prepare(scene: SceneSpec, last_time: float | None = None, reach: float = 1.0) -> Prepared:
     """The loop's arguments; on a moving floor a run goes on to ``last_time``.
 
     ``reach``: of the table of a friction law, see :mod:`puck_tables.scene.by_speed`.
@@ -165,7 +165,7 @@ def prepare(scene: Scene, last_time: float | None = None, reach: float = 1.0) ->
     return Prepared(model, regions, bounds, scene, state, ask, float(speed[0]), float(rate[0]))
 
 
-def _bounds(scene: Scene) -> Boundaries:
+def _bounds(scene: SceneSpec) -> Boundaries:
     """Walls (moved in by the radius), edges and borders as lines n·x = c."""
     walls, edges = [], []
     for wall in scene.walls:
@@ -188,7 +188,7 @@ def _line(point: tuple[float, float], normal: tuple[float, float]) -> tuple[floa
     return nx, ny, nx * point[0] + ny * point[1]
 
 
-def _asks(scene: Scene, model: Model, regions: Regions, states: FloatArray) -> FloatArray:
+def _asks(scene: SceneSpec, model: Model, regions: Regions, states: FloatArray) -> FloatArray:
     """Time limit, scale of speeds and scales of the state for launches (n, 10); (n, 12)."""
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
         speed, rate, floor = _scales(scene, model, regions, states)
@@ -220,7 +220,7 @@ def _asks(scene: Scene, model: Model, regions: Regions, states: FloatArray) -> F
 
 
 def _scales(
-    scene: Scene, model: Model, regions: Regions, states: FloatArray
+    scene: SceneSpec, model: Model, regions: Regions, states: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Scales of the slip and of what changes it, and the speed of the floor; (n,) of launches.
 
@@ -252,7 +252,7 @@ def _scales(
 
 
 def _slowest(
-    scene: Scene, model: Model, regions: Regions, speed: FloatArray, rate: FloatArray
+    scene: SceneSpec, model: Model, regions: Regions, speed: FloatArray, rate: FloatArray
 ) -> FloatArray:
     """In what time, at most, a motion of this scene should come to rest, s (n,).
 

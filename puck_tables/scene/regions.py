@@ -16,7 +16,7 @@ from puck_tables.scene.by_speed import NO_LAW, friction_by_speed, law_error
 from puck_tables.scene.ground import NO_GROUND
 from puck_tables.scene.ingredients import BySpeed, Regions
 from puck_tables.scene.parts import Orthotropic
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.scene.zones import ground_of, zones_of
 from puck_tables.table.friction_section import FINEST_ACCURACY
 from puck_tables.table.resultant_table import ResultantTable
@@ -26,7 +26,7 @@ CLOSED_FORM_ERROR, TABLE_ERROR = 1e-14, 2e-11
 SLICE_SHARE = 0.1  # of the error wanted
 
 
-def regions_of(scene: Scene, reach: float = 1.0) -> Regions:
+def regions_of(scene: SceneSpec, reach: float = 1.0) -> Regions:
     """Friction ratios in every region at the height that it has, or by slip speed.
 
     ``reach``: see :func:`puck_tables.scene.by_speed.friction_by_speed`.
@@ -79,7 +79,7 @@ def alone(load: FloatArray, delta: FloatArray, cuts: FloatArray, by_speed: BySpe
 
 
 def _under_zones(
-    scene: Scene, normal: float, load: FloatArray, delta: FloatArray, cuts: FloatArray
+    scene: SceneSpec, normal: float, load: FloatArray, delta: FloatArray, cuts: FloatArray
 ) -> Regions:
     """Friction in every zone, on every patch, and astride a patch, of that on strips and patches.
 
@@ -99,7 +99,7 @@ def _under_zones(
     )  # fmt: skip
 
 
-def friction_error(scene: Scene) -> float:
+def friction_error(scene: SceneSpec) -> float:
     """How wrong the friction ratios of :func:`regions_of` may be."""
     puck = scene.puck
     if scene.floor.law:

@@ -31,10 +31,10 @@ from puck_tables.scene.plan import Plan, ingredients, out_of_reach, plan_for
 from puck_tables.scene.prepare import MAX_EVENTS, Prepared, Twin, prepare
 from puck_tables.scene.records import EVENT_COLUMNS, FRAME_COLUMNS
 from puck_tables.scene.regions import friction_error
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.scene_spec import SceneSpec
 
 
-def simulate(scene: Scene, times: npt.ArrayLike | None = None) -> SceneRun:
+def simulate(scene: SceneSpec, times: npt.ArrayLike | None = None) -> SceneRun:
     """A run of a scene, as :meth:`puck_tables.Scene.simulate` has it."""
     whole = scene.single()
     moments = None if times is None else _checked(times)
@@ -42,7 +42,7 @@ def simulate(scene: Scene, times: npt.ArrayLike | None = None) -> SceneRun:
     needed = out_of_reach(whole)
     plan = plan_for(needed)
     if plan.plain:
-        run = run_plain(whole, needed, plan, moments)
+        run = run_plain(whole, needed, plan, moments, simulate)
     else:
         run = _integrated(whole, plan, moments)
     return replace(run, files=files)
@@ -74,7 +74,7 @@ def _checked(times: npt.ArrayLike) -> FloatArray:
     return moments
 
 
-def is_endless(scene: Scene) -> bool:
+def is_endless(scene: SceneSpec) -> bool:
     """Whether a scene has no friction and says neither where nor when it ends."""
     return scene.time is None and not scene.edges and "no dry friction" in ingredients(scene)
 
@@ -102,7 +102,7 @@ def _followed(
     return _Followed(how, end_time, count, steps, wrong, at_once, rows[:reached], rows[reached])
 
 
-def _integrated(scene: Scene, plan: Plan, times: FloatArray | None) -> SceneRun:
+def _integrated(scene: SceneSpec, plan: Plan, times: FloatArray | None) -> SceneRun:
     """Run it at a tolerance of which a coarser twin tells that the error asked is kept."""
     if is_endless(scene):
         raise InputError(
@@ -112,6 +112,7 @@ def _integrated(scene: Scene, plan: Plan, times: FloatArray | None) -> SceneRun:
     columns = columns_of(np.vstack([run.states, run.last]), prepared)
     energy = kinetic(prepared.state[[VX, VY, SPIN]], prepared)
     return SceneRun(
+        simulated=simulate,
         scene=scene,
         plan=plan,
         end=ENDS[run.how],
@@ -134,7 +135,7 @@ def _integrated(scene: Scene, plan: Plan, times: FloatArray | None) -> SceneRun:
 
 
 def _close_enough(
-    scene: Scene, times: FloatArray | None
+    scene: SceneSpec, times: FloatArray | None
 ) -> tuple[Prepared, _Followed, float, FloatArray]:
     """The scene at the coarsest tolerance that keeps the one asked, its run, estimate and events.
 
@@ -180,7 +181,7 @@ class _BeyondLaw(InputError):
 
 
 def _within_law(
-    scene: Scene, last: float | None, times: FloatArray | None, room: FloatArray
+    scene: SceneSpec, last: float | None, times: FloatArray | None, room: FloatArray
 ) -> tuple[Prepared, _Followed, float, float]:
     """The scene, its run, estimate and doubt; the table of a law by name goes on as is needed."""
     reach, grown = 1.0, ""
@@ -204,7 +205,7 @@ def _within_law(
             reach *= FARTHER
 
 
-def _met_at_once(scene: Scene, at_once: FloatArray) -> str:
+def _met_at_once(scene: SceneSpec, at_once: FloatArray) -> str:
     """Why a run has no end: it is not known which of two lines is first."""
     _, when, *numbers = at_once.tolist()
     walls = len(scene.walls)

@@ -15,7 +15,7 @@ from puck_tables._core.real import finite_array, positive, real, shown
 from puck_tables.errors import InputError
 from puck_tables.io.columns import COLUMNS as VARIABLES
 from puck_tables.io.dataset import Dataset, variable
-from puck_tables.puck import PUCK_UNITS, Puck
+from puck_tables.motion.puck_spec import PUCK_UNITS, PuckSpec
 from puck_tables.stopping.aim_lookup import RIM, SPEED, TIME
 from puck_tables.stopping.aimed import Aimed
 from puck_tables.stopping.launch_curve import LaunchCurve, launch_curve
@@ -50,7 +50,7 @@ class Aim(Aimed):
     ``answer`` is one sentence: what was found, or why nothing can be.
     """
 
-    puck: Puck
+    puck: PuckSpec
     target: tuple[float, float]
     launch_velocity: FloatArray
     launch_spin: FloatArray
@@ -157,7 +157,7 @@ class _Family:
 
 
 def aim_at(
-    puck: Puck, target: npt.ArrayLike, *, spin: float | None, speed: float | None,
+    puck: PuckSpec, target: npt.ArrayLike, *, spin: float | None, speed: float | None,
     stop_time: float | None, max_speed: float | None, max_spin: float | None, count: int,
 ) -> Aim:  # fmt: skip
     """Launches after which a puck comes to rest at one target: :meth:`puck_tables.Puck.aim`."""

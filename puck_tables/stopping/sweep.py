@@ -24,7 +24,6 @@ from puck_tables.stopping.solvers import OUTPUTS
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.stopping.sweep_work import StopWork
 from puck_tables.table.resultant_table import ResultantTable
-from puck_tables.verbs_of_many import refuse_frictionless
 
 # Arrays, the encoded HDF5 file and working copies; as text (CSV) much more.
 BYTES_PER_LAUNCH, BYTES_PER_ROW = 160, 850
@@ -123,7 +122,7 @@ def numbers_given(puck: Any, given: Mapping[str, Any]) -> dict[str, Any]:
 def _whole(puck: Any, numbers: Mapping[str, Any], names: Container[str]) -> dict[str, Any]:
     """The numbers given, of arguments of these names, and what else a launch needs."""
     if "friction" not in names:
-        refuse_frictionless(puck)
+        puck.refuse_frictionless()
     whole: dict[str, Any] = {}
     if not any(name in names for name in ("speed", "vx", "vy")):
         whole["speed"] = 1.0

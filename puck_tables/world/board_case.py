@@ -14,7 +14,7 @@ from puck_tables.errors import PuckError
 from puck_tables.scene.entries import is_batch, launch_paths
 from puck_tables.scene.loop import AT_REST, EVENT_LIMIT, OVER_EDGE, TIME_UP
 from puck_tables.scene.outcome import IMPACTS_WITHOUT_END, TOO_FAST, UNSOLVED
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.agreement import called, pieces_of, refuse_endless
 from puck_tables.world.bulk import Ends, follow_all
 from puck_tables.world.engine import CROWDED, OFF_TABLE, PUSHING, REACHED, TANGLED
@@ -42,7 +42,7 @@ class BoardCase:
         If nothing on it ever comes to rest, and no time is given.
     """
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: SceneSpec) -> None:
         self.scene, self.pieces = scene, pieces_of(scene)
         refuse_endless(scene)
         count = len(self.pieces)
@@ -54,19 +54,19 @@ class BoardCase:
         self.first, self.place = room.states.copy(), np.argsort(order)
 
     @staticmethod
-    def names(scene: Scene) -> tuple[str, ...]:
+    def names(scene: SceneSpec) -> tuple[str, ...]:
         """What its pucks are called; of a scene of one puck none, it has no dimension of them."""
         return tuple(called(piece, number) for number, piece in enumerate(scene.pucks))
 
     @staticmethod
-    def columns(scene: Scene) -> dict[str, tuple[int, ...]]:
+    def columns(scene: SceneSpec) -> dict[str, tuple[int, ...]]:
         """What is known of an end, by name, and its shape."""
         each: tuple[int, ...] = (len(scene.pucks),) if scene.pucks else ()
         found = dict.fromkeys((*STATE, "in_play"), each)
         return found | dict.fromkeys(("end_time", "impacts"), ())
 
     @staticmethod
-    def launches(scene: Scene, path: str) -> tuple[str, ...]:
+    def launches(scene: SceneSpec, path: str) -> tuple[str, ...]:
         """The velocities and spins that an axis changes, if it changes nothing else.
 
         At the start: of later launches more depends on it than a velocity.
@@ -87,7 +87,7 @@ class BoardCase:
         return tuple(found)
 
     @staticmethod
-    def advice(scene: Scene, code: int) -> str:
+    def advice(scene: SceneSpec, code: int) -> str:
         """What to do about runs that have no end."""
         return "run it alone, which says what to do"
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.agreement import pieces_of, start_of
 from puck_tables.world.game import Whole
 from puck_tables.world.shots import NO_COURSE, Landings, Shots
@@ -47,7 +47,7 @@ class TriedLaunches(NamedTuple):
     landings: Landings
 
 
-def headings_for(scene: Scene, striker: int, count: int) -> FloatArray:
+def headings_for(scene: SceneSpec, striker: int, count: int) -> FloatArray:
     """Headings all around, rad, and closer ones towards pucks and posts that look small."""
     step = 2.0 * math.pi / count
     parts = [np.arange(count) * step]

@@ -12,7 +12,7 @@ from puck_tables.scene.friction import SPIN, VX, VY
 from puck_tables.scene.holds import allowed_velocity
 from puck_tables.scene.ingredients import BLADE, FREE, floor_velocity
 from puck_tables.scene.parts import Floor
-from puck_tables.scene.pieces import Piece
+from puck_tables.scene.pieces import PieceSpec
 from puck_tables.world import game as g
 from puck_tables.world.agreement import pieces_of
 from puck_tables.world.flight import DRIFT_X, DRIFT_Y, PATH, START
@@ -102,7 +102,7 @@ def _booked(game: g.Game, books: list[FloatArray]) -> list[float]:
     return booked
 
 
-def _launched(piece: Piece, floor: Floor) -> float:
+def _launched(piece: PieceSpec, floor: Floor) -> float:
     """The kinetic energy with which a puck is launched at the start, J."""
     launch = piece.launch
     if piece.path or launch.time > 0.0:  # driven, or struck later

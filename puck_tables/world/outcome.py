@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
@@ -17,9 +17,9 @@ from puck_tables.result import TimedResult
 from puck_tables.scene.entries import tables_of, units_of
 from puck_tables.scene.outcome import column_of, refuse_changed, scene_texts
 from puck_tables.scene.parts import Drag, Force
-from puck_tables.scene.pieces import Piece
+from puck_tables.scene.pieces import PieceSpec
 from puck_tables.scene.plan import EMPIRICAL
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.agreement import (
     TABLE_ERROR,
     called,
@@ -59,7 +59,7 @@ class WorldRun(TimedResult):
     the end, for the launch decides it by digits that it does not have.
     """
 
-    scene: Scene
+    scene: SceneSpec
     end: str
     end_time: float
     names: tuple[str, ...]
@@ -77,6 +77,7 @@ class WorldRun(TimedResult):
     work_support: float
     energy_residual: float
     end_error: float
+    simulated: Callable[[SceneSpec, npt.ArrayLike], WorldRun] = field(repr=False)
     files: Mapping[str, str] = field(default_factory=dict, repr=False)
 
     picture: ClassVar[str] = "pucks"
@@ -90,8 +91,7 @@ class WorldRun(TimedResult):
             If they are no such times, or a file that the scene names has changed since the run.
         """
         refuse_changed(self.scene, self.files)
-        run: Any = self.scene.simulate(times)
-        return run
+        return self.simulated(self.scene, times)
 
     def __repr__(self) -> str:
         title = f"{self.scene.title}: " if self.scene.title else ""
@@ -179,12 +179,12 @@ class WorldRun(TimedResult):
         return Dataset(axes, columns, attributes, scene_texts(self.scene, self.files))
 
 
-def ways_of(scene: Scene) -> str:
+def ways_of(scene: SceneSpec) -> str:
     """How the pucks of a scene are moved, a line for each way, and which they are.
 
     Examples
     --------
-    >>> from puck_tables import Piece
+    >>> from puck_tables import Piece, Scene
     >>> ways_of(Scene(pucks=[Piece(0.1, friction=0.1)]))
     '1 puck looked up from impact to impact'
     """
@@ -204,7 +204,7 @@ def ways_of(scene: Scene) -> str:
     return "\n".join(lines)
 
 
-def _way_of(scene: Scene, piece: Piece) -> str:
+def _way_of(scene: SceneSpec, piece: PieceSpec) -> str:
     """How a puck is moved, and why it is not looked up."""
     if piece.path:
         return "driven along a path"

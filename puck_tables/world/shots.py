@@ -12,7 +12,7 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import keep_on
 from puck_tables.errors import PuckError
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.agreement import frictions_under, is_integrated, pieces_of
 from puck_tables.world.bulk import follow_all
 from puck_tables.world.course import FATE, LENGTH, PASSES, PRINT, trace
@@ -57,7 +57,7 @@ class Shots:
 
     Parameters
     ----------
-    scene : Scene
+    scene : SceneSpec
         Without ranges.
     striker, puck : numbers of the puck that is sent, and of the one whose end is looked for
     through : number of a puck that is to be hit on the way, or −1
@@ -68,7 +68,7 @@ class Shots:
     """
 
     def __init__(
-        self, scene: Scene, striker: int, puck: int, through: int, most: int,
+        self, scene: SceneSpec, striker: int, puck: int, through: int, most: int,
         velocities: Callable[[FloatArray], FloatArray], patient: bool = False,
     ) -> None:  # fmt: skip
         self.scene, self.striker, self.velocities = scene, striker, velocities
@@ -116,7 +116,7 @@ class Shots:
             x, y, *(courses[:, column] for column in (PRINT, LENGTH, FATE, PASSES))
         )  # fmt: skip
 
-    def board(self, start: FloatArray) -> Scene:
+    def board(self, start: FloatArray) -> SceneSpec:
         """The board with a launch vx, vy, spin (3,)."""
         vx, vy, spin = start.tolist()
         return self.scene.at({f"{self._path}.velocity": [vx, vy], f"{self._path}.spin": spin})

@@ -11,7 +11,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import finite_array
 from puck_tables.errors import InputError, PuckError
 from puck_tables.scene.library import files_of
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.agreement import flight_error, refuse_endless
 from puck_tables.world.game import TOGETHER
 from puck_tables.world.ledger import ledger
@@ -21,7 +21,7 @@ from puck_tables.world.world import World
 MISSED = 1e-7  # of the ledger, where pucks pushed each other: their impacts were not solved
 
 
-def simulate(scene: Scene, times: npt.ArrayLike | None = None) -> WorldRun:
+def simulate(scene: SceneSpec, times: npt.ArrayLike | None = None) -> WorldRun:
     """A run of a scene, as :meth:`puck_tables.Scene.simulate` has it."""
     world = World(scene)
     refuse_endless(world.scene)
@@ -44,6 +44,7 @@ def simulate(scene: Scene, times: npt.ArrayLike | None = None) -> WorldRun:
     last = world.state()
     columns = {**_columns(states), "in_play": _in_play(world, moments)}
     return WorldRun(
+        simulated=simulate,
         scene=world.scene,
         end="time is up" if moving else "at rest",
         end_time=end_time,
@@ -73,7 +74,7 @@ def _in_play(world: World, times: FloatArray) -> FloatArray:
     return on_board
 
 
-def _error(scene: Scene, world: World, last: FloatArray) -> float:
+def _error(scene: SceneSpec, world: World, last: FloatArray) -> float:
     """How far twins end whose launches are off by what flights may be wrong by, m.
 
     With the rounding of the look-up, for pucks that could slide far.

@@ -10,13 +10,13 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.real import finite_array, instance, real
+from puck_tables._core.real import finite_array, real
 from puck_tables.errors import InputError, PuckError
 from puck_tables.scene.friction import SPIN, VX, VY
 from puck_tables.scene.holds import misfits
 from puck_tables.scene.ingredients import FREE, floor_velocity
 from puck_tables.scene.parts import Launch
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world import game as g
 from puck_tables.world.agreement import called, number_of, pieces_of
 from puck_tables.world.engine import (
@@ -86,7 +86,7 @@ class World:
 
     Parameters
     ----------
-    scene : Scene
+    scene : SceneSpec
         Without ranges.
 
     Raises
@@ -106,8 +106,9 @@ class World:
     [0.0, 0.803867]
     """
 
-    def __init__(self, scene: Scene) -> None:
-        instance("scene", scene, Scene)
+    def __init__(self, scene: SceneSpec) -> None:
+        if not isinstance(scene, SceneSpec):
+            raise InputError(f"scene must be a Scene, got a {type(scene).__name__}")
         self.scene = scene.single()
         self._order = order_of(self.scene)
         self._game, self._room = game_of(self.scene, self._order)

@@ -28,7 +28,7 @@ from puck_tables.result import Result
 from puck_tables.wrench.models import Model, ellipsoid, quartic
 
 if TYPE_CHECKING:
-    from puck_tables.puck import Puck
+    from puck_tables.motion.puck_spec import PuckSpec
 
 LEAST, MOST = 5, 1_000_001
 _FINE = 1441  # angles for what does not depend on how many were asked for
@@ -55,7 +55,7 @@ class LimitSurface(Result):
         What planar pushing takes for the surface, fitted to it, with their errors.
     """
 
-    puck: Puck
+    puck: PuckSpec
     slip_angle: FloatArray
     force_x: FloatArray
     force_y: FloatArray
@@ -138,7 +138,7 @@ class LimitSurface(Result):
         })  # fmt: skip
 
 
-def limit_surface(puck: Puck, count: int) -> LimitSurface:
+def limit_surface(puck: PuckSpec, count: int) -> LimitSurface:
     """The limit surface of a puck, as :meth:`puck_tables.Puck.limit_surface` has it."""
     number = real("n", count, "points")
     if not (number == int(number) and LEAST <= number <= MOST):

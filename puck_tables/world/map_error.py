@@ -8,7 +8,8 @@ import numpy as np
 
 from puck_tables.errors import PuckError
 from puck_tables.scene.loop import OVER_EDGE
-from puck_tables.sweeps.ends import SceneEnds
+from puck_tables.scene.simulate import simulate
+from puck_tables.world.scene_ends import SceneEnds
 
 CHECKED = 8  # runs
 
@@ -32,7 +33,7 @@ def largest_error(ends: SceneEnds) -> float:
     for number in valid[places].tolist():
         one = ends.scene.at(ends.numbers(number))
         try:
-            run = one.simulate([])
+            run = simulate(one, [])
         except PuckError:  # its own end is in doubt
             return math.inf
         last = {name: float(ends.columns[name].ravel()[number]) for name in ("x", "y", "end_time")}

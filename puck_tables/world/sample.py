@@ -14,7 +14,7 @@ from puck_tables.bulk.summary import Chance, Summary, chance_of, head
 from puck_tables.errors import InputError
 from puck_tables.io.dataset import Dataset, Variable
 from puck_tables.scene.outcome import plain_name
-from puck_tables.sweeps.ends import SceneEnds, number_along
+from puck_tables.world.scene_ends import SceneEnds, number_along
 
 SAMPLE = "sample"
 _PLACES = ("x", "y", "orientation")

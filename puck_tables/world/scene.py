@@ -1,30 +1,139 @@
-"""All that can be asked of a scene.
+"""The scene, and what can be asked of it.
 
-What answers stands above the scene, and is loaded when it is asked.
+What answers stands below, and is loaded when it is asked: importing the scene stays light.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from importlib import import_module
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy.typing as npt
 
 from puck_tables._core.executor import Progress
+from puck_tables._core.fields import of
+from puck_tables.puck import Puck
+from puck_tables.scene.library import find_scene
+from puck_tables.scene.pieces import PieceSpec
+from puck_tables.scene.scene_spec import SceneSpec
 
 if TYPE_CHECKING:
     from puck_tables.bulk.spreads import Spread
     from puck_tables.scene.outcome import SceneRun
-    from puck_tables.sweeps.map import Map
-    from puck_tables.sweeps.sample import Sample
     from puck_tables.world.aimed import BoardAim
+    from puck_tables.world.map import Map
+    from puck_tables.world.sample import Sample
     from puck_tables.world.world import World
 
 
-class SceneVerbs:
-    """Questions to a :class:`puck_tables.Scene`, which has these verbs."""
+@dataclass(frozen=True)
+class Piece(PieceSpec, Puck):
+    """One of several pucks: a puck with a name, a place or a launch, and a rim that others meet.
+
+    Parameters
+    ----------
+    radius, height, friction, mass, gravity, pressure, gyration
+        As :class:`puck_tables.Puck`.
+    name, colour : in reports and pictures
+        A colour is '#rrggbb' or a name of CSS, such as 'steelblue'.
+    launch : Launch
+        Its place, and how it is sent; left out it lies at rest until it is hit.  Before
+        ``launch.time`` it lies at its place.  Velocities (n, 2) are many launches, of one puck of
+        a scene: an axis of its sweep.
+    restitution, tangential, rim : impacts with other pucks
+        e, 0 to 1, or a law by which it falls with the speed of approach, see
+        :mod:`puck_tables.scene.restitution`; tangential restitution, −1 smooth, 0 the rims stop on
+        each other, 1 their slip reverses; Coulomb's coefficient of the rims, which limits the
+        tangential impulse.  Where two pucks meet the smaller of each counts, of restitutions at
+        that speed; cushions have their own; a :class:`Rim` of a pair comes before both.
+    path : rows or CSV of t, x, y and perhaps the angle
+        A body that is driven there, straight between the rows, such as a mallet: pucks bounce off
+        it, and nothing stops it.  :func:`puck_tables.path_along` makes rows of a function.
+    force, constraint : Force and Constraint, optional
+        What acts on this puck alone, and what leads it.
+
+    Examples
+    --------
+    >>> from puck_tables import Launch
+    >>> striker = Piece(0.0206, friction=0.1, name="striker", launch=Launch((3.0, 0.0)))
+    >>> striker.name, striker.rim
+    ('striker', inf)
+    """
+
+
+@dataclass(frozen=True, eq=False)
+class Scene(SceneSpec):
+    """A puck on a floor, its launch, and whatever acts on it: checked when it is made.
+
+    Parts may also be tables.  Numbers may be numpy scalars; where a number stands a list, an array
+    or a text 'START:STOP:COUNT' is a range, a dimension of :meth:`sweep`.  Such a number stands at
+    its first value (its last, where no puck can have the first), its values in ``ranges``.  Many
+    launches at once are velocities (n, 2), see :class:`puck_tables.Launch`: their range is
+    ``launch``, rows of vx, vy, spin, x, y, orientation.
+
+    Parameters
+    ----------
+    puck : Puck
+    floor, launch, drag, lateral, force, title : optional
+        As :mod:`puck_tables.scene.parts` has them.
+    walls, edges : sequences of Wall, of Edge, optional
+    pucks, posts, arcs, pockets, rims : sequences, optional
+        As :mod:`puck_tables.scene.pieces` has them.
+    constraint : Constraint, optional
+    time : s, > 0, optional
+        How long; left out, until rest.
+    frames, tol : optional
+        How many states to save; the error wanted, of Q/J and Q²/J.
+    gravity : m/s², > 0, optional
+        Of all its pucks; left out, each has its own.
+    ranges : mapping, optional
+        Values of numbers that take several, by path, such as ``{"puck.height": [0.0, 0.01]}``.  A
+        changed copy (:func:`dataclasses.replace`) keeps those of the parts that it keeps.
+
+    Raises
+    ------
+    InputError
+        If anything is wrong: every error with its path, its value and what is allowed.
+
+    Examples
+    --------
+    >>> from puck_tables import Floor, Launch
+    >>> puck = Puck(radius=0.04, friction=0.1)
+    >>> scene = Scene(puck, Floor(slope=0.05), Launch((1.0, 0.0), spin=20.0))
+    >>> round(scene.simulate().end_time, 6)
+    2.329592
+    >>> Scene(puck, launch=Launch(spin=[0.0, 5.0])).ranges["launch.spin"].tolist()
+    [0.0, 5.0]
+    """
+
+    puck: Puck = of("part", None, part=Puck)
+    pucks: tuple[Piece, ...] = of("parts", (), part=Piece, table="puck[]")
+
+    def _disagreements(self) -> list[str]:
+        """What is wrong between its parts."""
+        if self.is_board:
+            from puck_tables.world.agreement import disagreements
+        else:
+            from puck_tables.scene.agreement import disagreements
+        return disagreements(self)
+
+    @classmethod
+    def load(cls, name: str | Path) -> Self:
+        """A scene from a TOML file, or one that is shipped, by its name.
+
+        Raises
+        ------
+        InputError
+            If there is neither, or anything in it is wrong.
+
+        Examples
+        --------
+        >>> Scene.load("incline").title
+        'Puck on an incline'
+        """
+        return cls.from_tables(find_scene(str(name)), str(name))
 
     def simulate(self, times: npt.ArrayLike | None = None) -> SceneRun:
         """Run it, from the launch to the end.
@@ -59,8 +168,14 @@ class SceneVerbs:
         >>> run.end, round(run.end_time, 6)
         ('at rest', 2.253703)
         """
-        run: SceneRun = _answers(self, "simulate").simulate(self, times)
-        return run
+        if self.is_board:
+            from puck_tables.world.simulate import simulate as on_board
+
+            board: Any = on_board(self, times)
+            return board
+        from puck_tables.scene.simulate import simulate
+
+        return simulate(self, times)
 
     def sweep(
         self,
@@ -100,7 +215,9 @@ class SceneVerbs:
         >>> Scene(puck, launch=Launch(velocities, spin=[0.0, 9.0])).sweep().y.round(6).tolist()
         [0.0, 2.056068]
         """
-        ends: Map = import_module("puck_tables.sweeps.runs").sweep(
+        from puck_tables.world.runs import sweep
+
+        ends: Map = sweep(
             self, threads=threads, chunk=chunk, progress=progress, store=store, cluster=cluster,
             overwrite=overwrite,
         )  # fmt: skip
@@ -154,7 +271,9 @@ class SceneVerbs:
         >>> round(found.of("red").mean()["x"], 3)
         0.569
         """
-        found: Sample = import_module("puck_tables.sweeps.runs").sample(
+        from puck_tables.world.runs import sample
+
+        found: Sample = sample(
             self, count, seed, spreads, threads=threads, chunk=chunk, progress=progress,
             store=store, cluster=cluster, overwrite=overwrite,
         )  # fmt: skip
@@ -174,8 +293,9 @@ class SceneVerbs:
         >>> Scene(pucks=[Piece(0.03, friction=0.1)]).world()
         World(1 pucks, 0 moving, at 0 s)
         """
-        world: World = import_module("puck_tables.world.world").World(self)
-        return world
+        from puck_tables.world.world import World
+
+        return World(self)
 
     def aim(
         self,
@@ -237,14 +357,10 @@ class SceneVerbs:
         >>> found.courses, found.launch_speed.round(6).tolist()
         (('cue - red',), [1.23967])
         """
-        found: BoardAim = import_module("puck_tables.world.aim").aim(
+        from puck_tables.world.aim import aim
+
+        return aim(
             self, target, puck=puck, striker=striker, pocket=pocket, hits=hits, spin=spin,
             speed=speed, max_speed=max_speed, max_spin=max_spin, max_impacts=max_impacts,
             count=count, progress=progress,
         )  # fmt: skip
-        return found
-
-
-def _answers(scene: Any, question: str) -> Any:
-    """The module that answers: of boards another one than of one puck."""
-    return import_module(f"puck_tables.{'world' if scene.is_board else 'scene'}.{question}")

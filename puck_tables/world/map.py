@@ -13,8 +13,8 @@ from puck_tables.io.dataset import Dataset, Variable
 from puck_tables.scene.entries import is_batch, launch_paths
 from puck_tables.scene.library import files_of
 from puck_tables.scene.outcome import plain_name
-from puck_tables.sweeps.checked import largest_error
-from puck_tables.sweeps.ends import SceneEnds, axes_of, number_along
+from puck_tables.world.map_error import largest_error
+from puck_tables.world.scene_ends import SceneEnds, axes_of, number_along
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)

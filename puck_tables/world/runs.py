@@ -29,19 +29,19 @@ from puck_tables.scene.entries import is_batch, launch_paths, tables_of
 from puck_tables.scene.library import files_of
 from puck_tables.scene.loop import OVER_EDGE
 from puck_tables.scene.outcome import ENDS, REFUSED, plain_name
-from puck_tables.scene.scene import Scene
-from puck_tables.sweeps.ends import SceneEnds, axes_of
-from puck_tables.sweeps.map import Map
-from puck_tables.sweeps.sample import Sample
+from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.agreement import pieces_of
 from puck_tables.world.board_case import BoardCase
+from puck_tables.world.map import Map
+from puck_tables.world.sample import Sample
+from puck_tables.world.scene_ends import SceneEnds, axes_of
 
 FEWEST, MOST = 1 << 6, 1 << 13  # runs kept together in a store
 _COPIES = 4  # of the columns: as made, in their shape, and what follows from them
 
 
 def sweep(
-    scene: Scene, *, threads: int | None, chunk: int, progress: Progress | None,
+    scene: SceneSpec, *, threads: int | None, chunk: int, progress: Progress | None,
     store: str | Path | None, cluster: str | None, overwrite: bool,
 ) -> Any:  # fmt: skip
     """The map over a scene, as :meth:`puck_tables.Scene.sweep` has it."""
@@ -49,7 +49,7 @@ def sweep(
 
 
 def sample(
-    scene: Scene, count: int, seed: int, spreads: Mapping[str, Spread], *, threads: int | None,
+    scene: SceneSpec, count: int, seed: int, spreads: Mapping[str, Spread], *, threads: int | None,
     chunk: int, progress: Progress | None, store: str | Path | None, cluster: str | None,
     overwrite: bool,
 ) -> Any:  # fmt: skip
@@ -83,7 +83,7 @@ class Runs(Work):
     spreads: Mapping[str, Spread] = {}
 
     def __init__(
-        self, scene: Scene, part: int, read: dict[str, str] | None = None,
+        self, scene: SceneSpec, part: int, read: dict[str, str] | None = None,
         axes: Mapping[str, FloatArray] | None = None, shape: tuple[int, ...] | None = None,
     ) -> None:  # fmt: skip
         check_part(part)
@@ -282,7 +282,7 @@ class DrawnRuns(Runs):
     is_sample = True
 
     def __init__(
-        self, scene: Scene, part: int, read: dict[str, str] | None, count: int, seed: int,
+        self, scene: SceneSpec, part: int, read: dict[str, str] | None, count: int, seed: int,
         spreads: Mapping[str, Spread],
     ) -> None:  # fmt: skip
         if scene.ranges:

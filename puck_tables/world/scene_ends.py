@@ -16,7 +16,7 @@ from puck_tables.result import Result
 from puck_tables.scene.entries import entry_at, is_batch
 from puck_tables.scene.loop import OVER_EDGE
 from puck_tables.scene.outcome import ENDS, column_of, scene_texts
-from puck_tables.scene.scene import Scene
+from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.agreement import number_of
 
 
@@ -31,7 +31,7 @@ class SceneEnds(Result):
     stands in the files that the scene names, by path; ``whose``: the puck that it is of.
     """
 
-    scene: Scene
+    scene: SceneSpec
     names: tuple[str, ...]
     columns: Mapping[str, FloatArray] = field(repr=False)
     end: npt.NDArray[np.int8] = field(repr=False)
@@ -126,12 +126,12 @@ class SceneEnds(Result):
         return list(self.told)
 
 
-def axes_of(scene: Scene) -> dict[str, FloatArray]:
+def axes_of(scene: SceneSpec) -> dict[str, FloatArray]:
     """What ranges in a scene, by path; many launches by their numbers from 0 on.
 
     Examples
     --------
-    >>> from puck_tables import Launch, Puck
+    >>> from puck_tables import Launch, Puck, Scene
     >>> axes_of(Scene(Puck(1.0), launch=Launch([[1.0, 0.0], [2.0, 0.0]])))
     {'launch': array([0., 1.])}
     """
@@ -141,7 +141,7 @@ def axes_of(scene: Scene) -> dict[str, FloatArray]:
     }
 
 
-def number_along(scene: Scene, path: str, values: FloatArray, axis: str) -> Variable:
+def number_along(scene: SceneSpec, path: str, values: FloatArray, axis: str) -> Variable:
     """Numbers of the scene along an axis."""
     if is_batch(path):
         return Variable(values, (axis,), "1", "number of the launch")

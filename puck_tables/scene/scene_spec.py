@@ -1,4 +1,4 @@
-"""A scene: a puck, a floor, a launch, and whatever acts on it."""
+"""What a scene says: a puck, a floor, a launch, and whatever acts on it."""
 
 from __future__ import annotations
 
@@ -6,9 +6,7 @@ import math
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from importlib import import_module
-from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
@@ -18,8 +16,7 @@ from puck_tables._core.reading import Range, Reading, given_in, read_values
 from puck_tables._core.real import instance
 from puck_tables.errors import InputError
 from puck_tables.motion.body import STANDARD_GRAVITY
-from puck_tables.puck import Puck
-from puck_tables.scene.agreement import disagreements
+from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.scene.entries import columns_of, entry_at, is_batch, set_path, tables_of
 from puck_tables.scene.parts import (
     Constraint,
@@ -31,65 +28,33 @@ from puck_tables.scene.parts import (
     Launch,
     Wall,
 )
-from puck_tables.scene.pieces import Arc, Piece, Pocket, Post, Rim
+from puck_tables.scene.pieces import Arc, PieceSpec, Pocket, Post, Rim
 from puck_tables.scene.ranges import Ranges, batch_of, launch_rows, owner_of, refuse_twice
 from puck_tables.scene.restitution import Restitution
-from puck_tables.scene.verbs import SceneVerbs
 
 MAX_RUNS = 1_000_000_000  # of one sweep
 
 
 @dataclass(frozen=True, eq=False)
-class Scene(SceneVerbs):
-    """A puck on a floor, its launch, and whatever acts on it: checked when it is made.
+class SceneSpec:
+    """What a scene says, part by part, each checked; :class:`puck_tables.Scene` adds its verbs.
 
-    Parts may also be tables.  Numbers may be numpy scalars; where a number stands a list, an array
-    or a text 'START:STOP:COUNT' is a range, a dimension of :meth:`sweep`.  Such a number stands at
-    its first value (its last, where no puck can have the first), its values in ``ranges``.  Many
-    launches at once are velocities (n, 2), see :class:`puck_tables.Launch`: their range is
-    ``launch``, rows of vx, vy, spin, x, y, orientation.
-
-    Parameters
-    ----------
-    puck : Puck
-    floor, launch, drag, lateral, force, title : optional
-        As :mod:`puck_tables.scene.parts` has them.
-    walls, edges : sequences of Wall, of Edge, optional
-    pucks, posts, arcs, pockets, rims : sequences, optional
-        As :mod:`puck_tables.scene.pieces` has them.
-    constraint : Constraint, optional
-    time : s, > 0, optional
-        How long; left out, until rest.
-    frames, tol : optional
-        How many states to save; the error wanted, of Q/J and Q²/J.
-    gravity : m/s², > 0, optional
-        Of all its pucks; left out, each has its own.
-    ranges : mapping, optional
-        Values of numbers that take several, by path, such as ``{"puck.height": [0.0, 0.01]}``.  A
-        changed copy (:func:`dataclasses.replace`) keeps those of the parts that it keeps.
-
-    Raises
-    ------
-    InputError
-        If anything is wrong: every error with its path, its value and what is allowed.
+    What computes takes this class: it stands below all that can be asked of a scene.  Whether the
+    parts go together is checked by :class:`puck_tables.Scene`.
 
     Examples
     --------
-    >>> puck = Puck(radius=0.04, friction=0.1)
-    >>> scene = Scene(puck, Floor(slope=0.05), Launch((1.0, 0.0), spin=20.0))
-    >>> round(scene.simulate().end_time, 6)
-    2.329592
-    >>> Scene(puck, launch=Launch(spin=[0.0, 5.0])).ranges["launch.spin"].tolist()
+    >>> SceneSpec(PuckSpec(0.04), launch=Launch(spin=[0.0, 5.0])).ranges["launch.spin"].tolist()
     [0.0, 5.0]
     """
 
-    puck: Puck = of("part", None, part=Puck)
+    puck: PuckSpec = of("part", None, part=PuckSpec)
     floor: Floor = of("part", Floor(), part=Floor)
     launch: Launch = of("part", Launch(), part=Launch)
     drag: Drag = of("part", Drag(), part=Drag)
     lateral: Lateral = of("part", Lateral(), part=Lateral)
     force: Force = of("part", Force(), part=Force)
-    pucks: tuple[Piece, ...] = of("parts", (), part=Piece, table="puck[]")
+    pucks: tuple[PieceSpec, ...] = of("parts", (), part=PieceSpec, table="puck[]")
     walls: tuple[Wall, ...] = of("parts", (), part=Wall, table="wall")
     posts: tuple[Post, ...] = of("parts", (), part=Post, table="post")
     arcs: tuple[Arc, ...] = of("parts", (), part=Arc, table="arc")
@@ -115,7 +80,7 @@ class Scene(SceneVerbs):
     def __post_init__(self) -> None:
         tables, ranges, before = given_in(self, {}), self.ranges, None
         if isinstance(ranges, Ranges):  # of the scene of which this one is a changed copy
-            before, ranges = ranges.parts["gravity"], ranges.of_the_same(self)
+            before, ranges = ranges.parts["gravity"], ranges.of_the_same(self._parts())
         else:
             refuse_twice(type(self), tables, ranges)
         if ranges:  # as if they stood where their numbers are
@@ -126,7 +91,7 @@ class Scene(SceneVerbs):
         self._fill(tables, "scene", before)
 
     @classmethod
-    def from_tables(cls, tables: Mapping[str, Any], source: str = "scene") -> Scene:
+    def from_tables(cls, tables: Mapping[str, Any], source: str = "scene") -> Self:
         """A scene from nested tables, as a TOML file gives them; walls stand under ``wall``.
 
         ``source``: its name, for messages.
@@ -138,7 +103,7 @@ class Scene(SceneVerbs):
 
         Examples
         --------
-        >>> Scene.from_tables({"puck": {"radius": 0.04, "height": "0:0.01:2"}}).ranges
+        >>> SceneSpec.from_tables({"puck": {"radius": 0.04, "height": "0:0.01:2"}}).ranges
         {'puck.height': array([0.  , 0.01])}
         """
         if not isinstance(tables, Mapping):
@@ -146,23 +111,6 @@ class Scene(SceneVerbs):
         scene = object.__new__(cls)
         scene._fill(tables, source)
         return scene
-
-    @classmethod
-    def load(cls, name: str | Path) -> Scene:
-        """A scene from a TOML file, or one that is shipped, by its name.
-
-        Raises
-        ------
-        InputError
-            If there is neither, or anything in it is wrong.
-
-        Examples
-        --------
-        >>> Scene.load("incline").title
-        'Puck on an incline'
-        """
-        find: Any = import_module("puck_tables.scene.library").find_scene
-        return cls.from_tables(find(str(name)), str(name))
 
     def __eq__(self, other: object) -> bool:
         """Whether both say the same, ranges included."""
@@ -183,7 +131,7 @@ class Scene(SceneVerbs):
 
         Examples
         --------
-        >>> Scene(Puck(1.0, friction=0.1)).frictions
+        >>> SceneSpec(PuckSpec(1.0, friction=0.1)).frictions
         (0.1,)
         """
         strips = self.floor.strips
@@ -196,13 +144,13 @@ class Scene(SceneVerbs):
 
         Examples
         --------
-        >>> Scene(Puck(0.5, 1.0, 0.1)).heights
+        >>> SceneSpec(PuckSpec(0.5, 1.0, 0.1)).heights
         [0.4]
         """
         puck = self.puck
         return [2.0 * friction * puck.height / puck.radius for friction in self.frictions]
 
-    def single(self) -> Scene:
+    def single(self) -> Self:
         """Itself, if no number of it is a range.
 
         Raises
@@ -216,12 +164,12 @@ class Scene(SceneVerbs):
             )
         return self
 
-    def alone(self, puck: Puck) -> Scene:
+    def alone(self, puck: PuckSpec) -> Self:
         """A puck alone on its floor, as long and as close; what does not fit is not looked for.
 
         Examples
         --------
-        >>> board = Scene(pucks=[Piece(0.5, friction=0.1)])
+        >>> board = SceneSpec(pucks=[PieceSpec(0.5, friction=0.1)])
         >>> board.alone(board.pucks[0]).frictions
         (0.1,)
         """
@@ -234,7 +182,7 @@ class Scene(SceneVerbs):
         object.__setattr__(scene, "ranges", {})
         return scene
 
-    def at(self, numbers: Mapping[str, Any]) -> Scene:
+    def at(self, numbers: Mapping[str, Any]) -> Self:
         """The scene without ranges, with other numbers, by path.
 
         Raises
@@ -244,7 +192,7 @@ class Scene(SceneVerbs):
 
         Examples
         --------
-        >>> Scene(Puck(0.04)).at({"launch.spin": 5.0}).launch.spin
+        >>> SceneSpec(PuckSpec(0.04)).at({"launch.spin": 5.0}).launch.spin
         5.0
         """
         if not isinstance(numbers, Mapping):
@@ -259,7 +207,7 @@ class Scene(SceneVerbs):
 
         Examples
         --------
-        >>> Scene(Puck(0.04)).unit_of("launch.position[1]")
+        >>> SceneSpec(PuckSpec(0.04)).unit_of("launch.position[1]")
         'm'
         """
         instance("path", path, str)
@@ -271,19 +219,21 @@ class Scene(SceneVerbs):
 
         Examples
         --------
-        >>> Scene(Puck(0.04)).is_board
+        >>> SceneSpec(PuckSpec(0.04)).is_board
         False
         """
         more = self.pucks or self.posts or self.arcs or self.pockets or self.rims
         by_speed = any(isinstance(wall.restitution, str | Restitution) for wall in self.walls)
         return bool(more) or by_speed
 
+    def _parts(self) -> dict[str, Any]:
+        """Its parts by the tables that they stand in."""
+        known = specs(type(self)).items()
+        return {table: getattr(self, spec.name) for table, spec in known}
+
     def _disagreements(self) -> list[str]:
-        """What is wrong between its parts."""
-        if self.is_board:
-            faults: list[str] = import_module("puck_tables.world.agreement").disagreements(self)
-            return faults
-        return disagreements(self)
+        """What is wrong between its parts: known to :class:`puck_tables.Scene`."""
+        return []
 
     def _fill(self, tables: Mapping[str, Any], source: str, before: float | None = None) -> None:
         """Check all that is given, and take it; pucks may have the gravity ``before``."""
@@ -310,7 +260,7 @@ class Scene(SceneVerbs):
             number = re.match(r"puck\[(\d+)\]", owner)
             launch = self.pucks[int(number[1])].launch if number else self.launch
             axes = {owner: launch_rows(launch, batch, owner), **axes}
-        object.__setattr__(self, "ranges", Ranges(axes, self))
+        object.__setattr__(self, "ranges", Ranges(axes, self._parts()))
         if not axes and (faults := self._disagreements()):  # else they are up to each run
             raise _refusal(faults, source)
 

@@ -1,1 +1,0 @@
-"""Many runs of a scene at once: maps over its ranges, samples of what scatters."""
