@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from puck_tables.stopping.aim import Aim
     from puck_tables.stopping.aims import Aims
 
-_LARGEST_FILE = 1 << 30
+_LARGEST_FILE = 1 << 30  # bytes: more is no file of targets, and would fill the memory
 
 
 @click.command()

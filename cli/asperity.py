@@ -24,8 +24,9 @@ from puck_tables.errors import InputError
 if TYPE_CHECKING:
     from puck_tables.chetaev.asperity_forces import AsperityCurve
 
+# speeds, and times the lift speed up to which: enough for a smooth curve beyond it
 DEFAULT_COUNT, DEFAULT_TOP = 501, 2.5
-MAX_SPEEDS = 1_000_000
+MAX_SPEEDS = 1_000_000  # each a row of the answer
 MOST_LEAPS = 5  # more are no single steps of the force
 
 

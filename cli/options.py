@@ -27,8 +27,9 @@ if TYPE_CHECKING:
 Command = TypeVar("Command", bound=Callable[..., Any])
 Progress = Callable[[int, int], None]
 
+# dimensionless, m/s²: of a puck that nothing is said of, as the library has it
 DEFAULT_DELTA, DEFAULT_DECEL = 0.5, 1.0
-MAX_COUNT = 1_000_000_000
+MAX_COUNT = 1_000_000_000  # values of a range
 QUIET_TIME, BETWEEN_LINES = 2.0, 10.0  # s, where stderr is no terminal
 
 
@@ -144,8 +145,8 @@ def puck_options(mass: bool, kind: type[Number] = Number) -> Callable[[Command],
             help="Height h of the puck in m, twice that of its centre of mass; with --friction.",
         ),
         click.option("--friction", type=kind(), help="Coulomb coefficient f; with --height."),
-        click.option("--gravity", type=kind(), help="Gravity in m/s^2.  [default: 9.80665]"),
-        click.option("--decel", type=kind(), help="J = f g in m/s^2 instead.  [default: 1]"),
+        click.option("--gravity", type=kind("m/s^2"), help="Gravity in m/s^2.  [default: 9.80665]"),
+        click.option("--decel", type=kind("m/s^2"), help="J = f g in m/s^2 instead.  [default: 1]"),
     ]
     if mass:
         options.insert(

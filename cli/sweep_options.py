@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
+from puck_tables.cli.endings import last_words
 from puck_tables.cli.options import deliver, explained, prepare_outputs, printable, told
-from puck_tables.cli.start import last_words
 
 from puck_tables.errors import InputError, OutputError
 

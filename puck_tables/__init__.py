@@ -66,10 +66,9 @@ if TYPE_CHECKING:
     from puck_tables.stopping.aim import Aim
     from puck_tables.stopping.aims import Aims
     from puck_tables.stopping.array_functions import state_arrays, stop_arrays
-    from puck_tables.stopping.sample import StopSample
     from puck_tables.stopping.states import States, states
+    from puck_tables.stopping.stop_map import StopMap, StopSample
     from puck_tables.stopping.stops import Stops, stop
-    from puck_tables.stopping.sweep import StopMap
     from puck_tables.table.check import CheckReport
     from puck_tables.table.store import table_for
     from puck_tables.table.table import Table
@@ -134,8 +133,8 @@ _HOMES = {
     "Source": "export.source",
     "SpeedLaw": "contact.speed_law",
     "States": "stopping.states",
-    "StopMap": "stopping.sweep",
-    "StopSample": "stopping.sample",
+    "StopMap": "stopping.stop_map",
+    "StopSample": "stopping.stop_map",
     "Stops": "stopping.stops",
     "StribeckLaw": "contact.friction_laws",
     "Strips": "scene.parts",

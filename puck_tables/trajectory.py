@@ -37,9 +37,9 @@ SCALARS = {  # and their units
     "energy_residual": "1", "method": "", "steps": "1", "error_estimate": "1",
     "launch_velocity": "m/s", "launch_spin": "rad/s",
 }  # fmt: skip
-DEFAULT_TOL = 1e-9
-DEFAULT_FRAMES = 101
-MAX_FRAMES = 1_000_000
+DEFAULT_TOL = 1e-9  # of Q/J, Q²/J
+DEFAULT_FRAMES = 101  # a hundred steps: smooth in a picture
+MAX_FRAMES = 1_000_000  # more is a slip of the hand
 _LARGEST_U = 700.0  # of ln tan φ; beyond, φ is π/2
 LOOK_UP_FRAMES = 10_000  # from here on states are looked up: 0.2 µs each instead of 4
 

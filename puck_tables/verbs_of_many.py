@@ -17,8 +17,7 @@ if TYPE_CHECKING:
     import xarray
 
     from puck_tables.contact.laws import Law
-    from puck_tables.stopping.sample import StopSample
-    from puck_tables.stopping.sweep import StopMap
+    from puck_tables.stopping.stop_map import StopMap, StopSample
     from puck_tables.table.table import Table
 
 

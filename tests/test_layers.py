@@ -161,14 +161,7 @@ def arrows() -> dict[str, set[str]]:
 
 # those that are left: none may come
 CIRCLES = {
-    ("cli.main", "cli.start", "cli.sweep", "cli.sweep_options"),
-    ("contact.closed_form", "contact.resultants"),
-    ("fitting.chain", "fitting.problem"),
-    ("kernels.compiled", "kernels.doors"),
-    ("scene.restitution", "scene.restitution_at"),
     ("stopping.check", "stopping.stop_table"),
-    ("stopping.orbit_nodes", "stopping.stop_coefficients", "stopping.stop_splines"),
-    ("stopping.sample", "stopping.sweep", "stopping.sweep_work"),
     ("table.file", "table.table"),
     ("table.resultant_check", "table.resultant_table"),
     ("table.speed_build", "table.speed_check", "table.speed_table"),

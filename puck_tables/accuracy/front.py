@@ -18,7 +18,7 @@ from importlib.resources import files
 from puck_tables.accuracy.methods import INTEGRATED, LOOK_UP, MEASURED, Method, Scheme, Source
 from puck_tables.errors import AccuracyError, TableError
 
-COARSEST, FINEST = 0.01, 1e-13
+COARSEST, FINEST = 0.01, 1e-13  # of Q/J, Q²/J: looser nobody measured; finer is rounding
 MARGIN = 1.5  # errors are measured at a thousand starts: others may be a little worse
 UNITS = "of Q/J (times) and Q^2/J (places)"
 

@@ -15,7 +15,7 @@ from puck_tables.stopping.stops import stop
 Array = npt.NDArray[np.float64]
 
 ROWS = {len(LAUNCH_NAMES): len(STOP_NAMES), len(MOMENT_NAMES): len(STATE_NAMES)}
-_TOL = 2e-10
+_TOL = 2e-10  # of Q/J, Q²/J: twice the error of the stop table, so that it is taken
 
 
 class Kind(NamedTuple):

@@ -16,7 +16,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import real, shown
 from puck_tables.errors import InputError
 
-_LARGEST_SEED = 1 << 64
+_LARGEST_SEED = 1 << 64  # a seed is kept in files as an integer of 64 bits
 _AT_ONCE = 4  # numbers a step of the counter gives
 
 

@@ -14,8 +14,8 @@ from puck_tables._core.real import finite_array, listed, shown
 from puck_tables.errors import InputError
 
 _SIGMAS = 1.959963984540054  # of a 95 % interval
-_MOST_BINS = 4096
-_SHARES = (0.025, 0.5, 0.975)  # of the quantiles of a table
+_MOST_BINS = 4096  # along one axis of a picture: finer than any screen
+_SHARES = (0.025, 0.5, 0.975)  # of the quantiles of a table: the median, and 95 % of all
 _WIDE = 14  # signs of its first column
 Bins = npt.NDArray[np.bool_]
 

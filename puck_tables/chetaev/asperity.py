@@ -28,12 +28,12 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import broadcast, finite_array, instance, positive, real
 from puck_tables.errors import AccuracyError, InputError
 
-_TOL = 1e-13
+_TOL = 1e-13  # of a step, relative: near to what doubles hold
 _LARGEST_TURN = 0.25  # of θ in one step of sliding, so that no dip of λ is stepped over
-_LOOKS = 6
+_LOOKS = 6  # looks a step for a change of sign: a step is smooth
 _GAP_STEPS = 1_000_000  # flights that hardly leave the crest take that many
-_NOISE = 2.0**-53
-MAX_ARCS = 100_000
+_NOISE = 2.0**-53  # relative rounding of a double: a gap below it is none
+MAX_ARCS = 100_000  # slides and flights: then it is refused by name
 
 
 @dataclass(frozen=True)

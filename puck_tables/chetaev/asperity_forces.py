@@ -39,8 +39,8 @@ from puck_tables.io.dataset import Dataset, variable
 from puck_tables.result import Result
 
 CURVES = ("crude", "greatest", "undriven", "mean", "landing_phase", "flights_per_period")
-_FLIGHTS = 4000
-_LONGEST_CYCLE, _SAME_PHASE = 40, 1e-11
+_FLIGHTS = 4000  # landings without a period: then the mean is that of the later half
+_LONGEST_CYCLE, _SAME_PHASE = 40, 1e-11  # landings, rad: so far back the same phase is looked for
 LEAP = 0.2  # of Coulomb's force: by so much the mean force at neighbouring speeds may differ
 MAX_SPEED = 1e3  # of V₀: beyond it a flight passes a million periods and its landing is chance
 

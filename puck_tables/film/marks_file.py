@@ -12,7 +12,7 @@ from puck_tables._core.units import PIXEL, factor, unit_in
 from puck_tables.errors import InputError
 from puck_tables.film.plane import Marks, Plane, plane_of
 
-_LARGEST = 1 << 20
+_LARGEST = 1 << 20  # bytes: a file of marks has some hundred
 
 
 def plane_from(marks: Marks) -> Plane:

@@ -26,6 +26,7 @@ from puck_tables.film.film import Body, Film
 from puck_tables.film.saved import Column, film_of_columns
 
 _LARGEST = 1 << 27  # numbers in a file, a gigabyte
+# of 1, as DeepLabCut and SLEAP tell it: their own default below which a point is hidden
 _LIKELY = 0.6
 _DIMS = ("track", "xy", "node", "frame")
 

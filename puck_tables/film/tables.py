@@ -16,7 +16,7 @@ from puck_tables.film.film import Body, Film, Flags
 from puck_tables.film.headings import Heading
 from puck_tables.film.layout import Layout, example, layout_of, name_of
 
-MOST_PUCKS = 10_000
+MOST_PUCKS = 10_000  # in one file: more is a column of another meaning
 _YES = {"true", "yes", "y", "t", "ja", "j", "oui", "si", "sí", "wahr", "ok"}
 _NO = {"false", "no", "n", "f", "nein", "non", "falsch", ""}
 _SHOWN, _HIDDEN = (

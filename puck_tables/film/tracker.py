@@ -37,9 +37,9 @@ from puck_tables.errors import InputError
 from puck_tables.film.film import Body, Film
 
 _LARGEST = 1 << 26  # bytes of a .trk, or of all in an archive
-_LARGEST_ARCHIVE = 1 << 32
-_MOST_MEMBERS = 10_000
-_MOST_FRAMES = 10_000_000
+_LARGEST_ARCHIVE = 1 << 32  # bytes: more is no archive of Tracker, or one made to fill the memory
+_MOST_MEMBERS = 10_000  # files in it: the same
+_MOST_FRAMES = 10_000_000  # of a film: a day at 100 Hz
 _PANEL, _MASS = "TrackerPanel", "PointMass"
 
 

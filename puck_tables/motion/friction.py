@@ -35,10 +35,10 @@ FINEST_TOL = 1e-11  # of a motion whose friction is a section
 TABLE_FACTOR = 5.0  # an error of the friction enters a stop at most so many times
 # Looser, a step of a very tall puck leaps over the bend below φ = π/4, and no estimate sees it.
 LOOSEST_LOCAL = 1e-7
-_ROUNDING = 1e-15
+_ROUNDING = 1e-15  # of Q/J: of elementary functions
 _FROM_FRICTION = 20.0  # tol that surely goes with an error of the friction
-_SECTION_WIDTH = 1e-12
-_HIGHEST_CLOSED = 2.0
+_SECTION_WIDTH = 1e-12  # of u: nearer to the limit angle a section cannot tell
+_HIGHEST_CLOSED = 2.0  # δ: from there on some of the base lifts in every motion but pure spin
 
 
 @dataclass(frozen=True)

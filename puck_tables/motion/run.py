@@ -30,8 +30,8 @@ from puck_tables.motion.tableaus import DORMAND_PRINCE, Tableau
 
 GENERIC = ("B", "C")  # regimes that are integrated; the others are elementary
 
-_FINEST_TWIN = 4e-15
-_STEP_LIMIT = 20_000
+_FINEST_TWIN = 4e-15  # of a step: below, rounding is all that two runs differ by
+_STEP_LIMIT = 20_000  # room for so many is made; more is a motion that does not end
 _SAFETY = 1.5  # states between the moments compared
 _ROUNDING = 1e-14  # of a motion as long as Q/J
 _UNSEEN_SHARE = 0.1  # of the error of a section: two coarse ones may err alike

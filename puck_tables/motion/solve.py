@@ -12,6 +12,7 @@ from puck_tables.motion.steppers import Stepping
 Result = TypeVar("Result")
 AnySetting = TypeVar("AnySetting")
 
+# of a step, and steps: beyond, rounding grows as steps get finer
 FINEST_LOCAL, MOST_STEPS = 1e-15, 4096
 
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_NAMED = 8
+_NAMED = 8  # pucks: a legend of more hides the picture
 _MOST_ENDS = (0.02, 0.98)  # of the ends stand in a close-up
 _BOARD = ("wall", "edge", "post", "arc", "pocket", "floor")  # what may range and is drawn once
 

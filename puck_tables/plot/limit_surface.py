@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_ARROWS = 13
+_ARROWS = 13  # along the curve: more run into each other
 
 
 def draw(surface: LimitSurface) -> Figure:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-_PUCKS_DRAWN = 12
+_PUCKS_DRAWN = 12  # outlines along a track: more run into each other
 # ingredients that are seen in the plane; others are named above it
 _DRAWN = (
     "slope",

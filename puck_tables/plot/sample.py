@@ -29,7 +29,7 @@ _HELD = (HELD, 0.5)
 _FLAT = 2e-3  # a cloud thinner than this over its length is seen as a line
 _FEW = 50  # samples have no density
 _LIGHT = 0.15  # of the ramp: less is not seen on white
-_SHARES = (0.025, 0.5, 0.975)
+_SHARES = (0.025, 0.5, 0.975)  # of the samples: the median, and what 95 % lie between
 
 
 class Cloud(NamedTuple):

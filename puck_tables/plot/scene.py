@@ -27,7 +27,7 @@ _ENERGIES = {
     "work_support": ("work of supports", GREY),
 }
 _STATES = 2000  # of the picture, at least
-_STATES_A_TURN, _MOST_STATES = 60, 50_000
+_STATES_A_TURN, _MOST_STATES = 60, 50_000  # points a turn of the puck, and of a picture at the most
 _EVENTS_DRAWN = 60  # as lines over time
 
 

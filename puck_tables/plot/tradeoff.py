@@ -20,7 +20,7 @@ _TITLES = {
     "stop": "stop of a launch (time and place)",
     "state": "state at a moment",
 }
-_LOWEST = 1e-16
+_LOWEST = 1e-16  # the least error drawn, rounding: a logarithm has no 0
 _PAPER = {"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.4}
 _PIXELS = 100.0 / 72.0  # of a point, as long as the figure is not saved
 _MORE_COLORS = (*COLORS, "#7a5c00", "#00838a", "#a0527a", "#4f4f9a", "#6a8f00")

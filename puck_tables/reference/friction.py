@@ -20,7 +20,7 @@ from puck_tables.result import Result
 from puck_tables.world.agreement import pieces_of
 
 USUAL = np.geomspace(0.01, 100.0, 81)
-BOUND = 1e-11
+BOUND = 1e-11  # of a share: what the file promises
 COLUMNS = (
     "slip_ratio", "slip_angle", "share_along", "share_across", "share_torque", "force_along",
     "force_across", "floor_torque",

@@ -15,7 +15,7 @@ from puck_tables.reference.floor import Slip, slip_over
 
 _USUAL = 0.01  # of Q at the launch
 _NO_SPIN = 1e-9  # of Q at the launch
-_LOOKS, _ROUNDS = 513, 6
+_LOOKS, _ROUNDS = 513, 6  # angles looked at, and rounds that narrow down by as much
 
 
 class Threshold(NamedTuple):

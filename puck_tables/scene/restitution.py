@@ -23,8 +23,8 @@ from puck_tables._core.monotone import from_rest, monotone_cubic
 from puck_tables._core.real import finite_array, real
 from puck_tables._core.safe_read import is_number
 from puck_tables.errors import InputError
+from puck_tables.scene.restitution_at import PLASTIC, TABLE, VISCOELASTIC, restitution_at
 
-VISCOELASTIC, PLASTIC, TABLE = range(3)
 MAX_BYTES = 1 << 24
 
 
@@ -57,8 +57,6 @@ class Restitution:
         >>> Plastic(0.1)([0.05, 0.2]).round(6).tolist()
         [1.0, 0.930626]
         """
-        from puck_tables.scene.restitution_at import restitution_at  # compiled
-
         speeds = finite_array("speed", speed, "m/s")
         if (speeds < 0.0).any():
             raise InputError(f"speed = {speeds.min():g} m/s must not be negative")

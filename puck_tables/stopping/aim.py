@@ -27,9 +27,9 @@ COLUMNS = (
     "launch_spin", "launch_vx", "launch_vy", "launch_speed", "launch_heading", "launch_slip_angle",
     "stop_time", "miss",
 )  # fmt: skip
-MAX_COUNT = 10_000
-SLACK = 1e-12
-_LEAST_LOG, _LARGEST_LOG = -708.0, 709.0
+MAX_COUNT = 10_000  # launches of an answer: each a row
+SLACK = 1e-12  # relative: a bound as printed is met
+_LEAST_LOG, _LARGEST_LOG = -708.0, 709.0  # exp of them is still a number
 _SMALL_STEP = 1e-6  # of u, after which what a step leaves is less than rounding
 BEYOND = (
     "that takes a launch whose ratio of spin to speed is beyond 1e-260 to 1e260: "

@@ -40,9 +40,9 @@ _CHUNK = 4096  # targets that a thread takes at a time
 _TRIED = 100  # launches that are integrated to tell how well they do
 _QUANTITIES = {"spin": RIM, "speed": SPEED, "stop_time": TIME}
 _UNITS = {"spin": "rad/s", "speed": "m/s", "stop_time": "s"}
-_LARGEST_LOG = 708.0
+_LARGEST_LOG = 708.0  # exp of it is still a number
 _OF, _SPIN, _VX, _VY, _TIME = range(5)
-_LAUNCH = 5
+_LAUNCH = 5  # columns: vx, vy, ω, time, miss
 
 
 @dataclass(frozen=True, eq=False, repr=False)

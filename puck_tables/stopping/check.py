@@ -55,17 +55,18 @@ from puck_tables.table.check import Check, CheckReport, compared
 from puck_tables.table.table import Progress
 
 _GOAL = Goal(1e-10, 1e-11, "in units of Q/J and Q^2/J", 0.62, 1 << 12)
-_CHUNK = 64
+_CHUNK = 64  # launches at once, of integrations
 NAMES = StopTable.quantities
+# launches drawn; heights, both ends and between nodes
 _RANDOM, _CURVE_HEIGHTS = 1500, (0.0, 0.05, 0.3, 0.62, 0.9, 0.99, 1.0)
-_REFINED = 3
+_REFINED = 3  # places looked at in a cell
 _NODES = chebyshev.chebpts1(14)
 # How many times the tolerance an equation between several values may be off.
 EQUATION_FACTOR = 4.0
 # largest error × cells⁴ of stops and of the curve, about twice what was measured, and the errors of
 # the polynomials in δ²
 _CEILING, _POLYNOMIAL = 1.6, 5e-12
-_CURVE_CEILING, _CURVE_POLYNOMIAL = 10.0, 2e-10
+_CURVE_CEILING, _CURVE_POLYNOMIAL = 10.0, 2e-10  # of the curve
 
 
 def launch_points(

@@ -12,7 +12,7 @@ from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.stopping.exact import integrated_stops
 from puck_tables.stopping.launch_curve import SECTION_ACCURACY, cosine_of
 
-_CHECK_LOCAL = 1e-11
+_CHECK_LOCAL = 1e-11  # of a step: finer than an answer, and another than it was found with
 
 
 def misses(

@@ -35,6 +35,7 @@ from puck_tables.motion.steppers import stepping_of
 from puck_tables.stopping.launches import Launches, launches_in
 from puck_tables.stopping.solvers import (
     OUTPUTS,
+    EachAlone,
     First,
     Integration,
     LookUp,
@@ -49,10 +50,11 @@ from puck_tables.table.table import refuse_other_kind
 
 AnyTable = ResultantTable | StopTable | None
 
+ALONE = 32  # launches of one height up to which each is tried itself
 MANY = 300  # launches of one height from which on a stop section costs less than integrating them
-MOST_HEIGHTS = 500
+MOST_HEIGHTS = 500  # each takes about a second to prepare
 HEIGHT_COST = 2000  # launches that take as long as the preparation of a height
-_PROBES = 40
+_PROBES = 40  # launches over all φ, besides those next to lines
 
 
 class SolverPerHeight:
@@ -116,9 +118,12 @@ class SolverPerHeight:
 
     def prepare(
         self, delta: FloatArray, each: npt.ArrayLike = 1, threads: int | None = None,
-        progress: Progress | None = None,
+        progress: Progress | None = None, alone: int = 0,
     ) -> None:  # fmt: skip
         """Make what launches of heights ``delta`` (n,) need, of each of them so many.
+
+        Up to ``alone`` of one height are each tried themselves: for what is asked once, not in
+        blocks.
 
         Raises
         ------
@@ -150,7 +155,7 @@ class SolverPerHeight:
         def work(start: int, stop: int) -> None:
             for height, count in zip(heights[start:stop], counts[start:stop], strict=True):
                 body = body_of(law, float(height), self._gyration, self._law_table)
-                self._sections[body.delta] = self._made(body, int(count))
+                self._sections[body.delta] = self._made(body, int(count), alone)
 
         run_chunks(work, heights.size, 1, threads, progress)
 
@@ -198,7 +203,7 @@ class SolverPerHeight:
         stepping = stepping_of(selection)
         self._plain = Integration(columns, NO_SECTION, stepping, selection.method, selection.error)
 
-    def _made(self, body: Body, launches: int) -> StopSolver:
+    def _made(self, body: Body, launches: int, alone: int) -> StopSolver:
         """A solver for the launches of one height that is not plain."""
         look_up = self._wanted is Method.LOOK_UP
         if look_up or (not self._wanted and launches >= MANY and self.tol >= FINEST_SECTION):
@@ -208,6 +213,9 @@ class SolverPerHeight:
             except AccuracyError:  # functions too steep for a spline: not so for the integrator
                 if look_up:
                     raise
+        if launches <= alone:
+            taken = Sections(body).selected("trajectory", self.tol, self._wanted)
+            return EachAlone(body, self.tol, taken.method)
         return integration_of(body, self.tol, self._wanted)
 
     def prepare_for(self, launches: Launches, threads: int | None) -> None:
@@ -229,7 +237,7 @@ class SolverPerHeight:
             return
         launches.refuse_bad()
         self.checked_range(delta)
-        self.prepare(delta, launches.size // max(delta.size, 1), threads)
+        self.prepare(delta, launches.size // max(delta.size, 1), threads, alone=ALONE)
 
     def first(self, launches: Launches, threads: int | None) -> First:
         """Stop times, places, status and mark of launches, and the rest if it costs no more.

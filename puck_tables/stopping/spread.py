@@ -19,9 +19,9 @@ from puck_tables.errors import InputError
 
 Again = Callable[[FloatArray], FloatArray]
 
-_SYMMETRIC = 1e-9
-_MOST_SAMPLES = 10**9
-_AT_ONCE = 1 << 20
+_SYMMETRIC = 1e-9  # relative: rounding of a covariance as printed
+_MOST_SAMPLES = 10**9  # launches: more is refused by name
+_AT_ONCE = 1 << 20  # samples in memory
 _TRUSTED = 0.05  # of a deviation
 _NOISE = 4.0  # deviations of what samples themselves scatter by
 _LOWEST = {"delta": 0.0, "decel": 0.0, "radius": 0.0, "time": 0.0}

@@ -36,12 +36,12 @@ from puck_tables.table.store import kept_section
 from puck_tables.table.table import Progress
 
 FINEST_SECTION = 1e-10  # as fine as stops are looked up; beyond, they are integrated
-DEFAULT_ACCURACY = 1e-8
+DEFAULT_ACCURACY = 1e-8  # of Q²/J: the default tol of stops
 _COUNTED = slice(0, 5)  # the turn, until Q has fallen to 1/1000, is what it is
 _TURN = 0.01  # its errors count a hundredth
-_FINEST_CELLS = 1024
-_SAMPLE = 48
-_COARSER_BY = 8.0
+_FINEST_CELLS = 1024  # a side
+_SAMPLE = 48  # launches at which it is held against an integration
+_COARSER_BY = 8.0  # half as many cells are 16 times as bad; half of that is believed
 _SHARE_OF_FRICTION, _SHARE_OF_SPLINE = 0.3, 0.6  # of the accuracy
 _LARGEST = 1e4  # of a value
 

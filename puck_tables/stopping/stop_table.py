@@ -30,7 +30,7 @@ from puck_tables.stopping.stop_coefficients import StopCoefficients
 from puck_tables.table.check import CheckReport
 from puck_tables.table.table import Axis, Progress
 
-UPPER_DELTA = 1.0
+UPPER_DELTA = 1.0  # above, part of the base may lift
 OTHERS = ("path_length", "turn_angle", "body_angle")
 STOPS = 5  # of the functions are of stops; the others of the curve of all motions
 _LARGEST = 10.0  # of a value

@@ -28,7 +28,7 @@ from puck_tables.stopping.solvers import OUTPUTS, STATUS_MEANINGS
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.table.resultant_table import ResultantTable
 
-DEFAULT_TOL = 1e-8
+DEFAULT_TOL = 1e-8  # of Q/J, Q²/J
 _LAUNCHES = ("launch_vx", "launch_vy", "launch_spin", "delta")
 
 

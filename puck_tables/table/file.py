@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 
 FORMAT, FORMAT_VERSION = "puck-tables", "3.0"
-MAX_FILE_BYTES = 1 << 31
+MAX_FILE_BYTES = 1 << 31  # bytes: more is no table
 _SEAL = b"\npuck-tables sha256 "
 
 # what every kind of table says of itself, besides its recipe

@@ -35,7 +35,7 @@ DEFAULT_ACCURACY, FINEST_ACCURACY = 1e-9, 5e-13  # truth itself is good to 1e-13
 _LARGEST, _ROUNDING = 1e3, 1e-12  # of a ratio
 _NODE_ERROR = 1e-10  # how well the law is known at a node
 _CONSTANT = 1e-3  # no section is better than so many times cells⁻⁴
-AT_THE_LIMIT = 1e-6
+AT_THE_LIMIT = 1e-6  # relative: so close to it, a section says that motions tend there
 _FULL_CONTACT = 1.0  # δ up to which the whole base is loaded in every motion
 
 

@@ -28,7 +28,7 @@ from puck_tables.table.law_table import LawTable
 from puck_tables.table.slip_axis import GRADING_POWER
 from puck_tables.table.table import KINDS, Axis, Progress
 
-HEIGHTS = 4
+HEIGHTS = 4  # nodes of δ in a file
 _UNIFORM = "uniform"
 _LARGEST = 1e3  # of a resultant: 64 stands in an extreme profile
 _FINEST = 0.1  # no table is better than so many times cells⁻⁴

@@ -27,9 +27,9 @@ from puck_tables.table.table import Progress
 
 Law = SpeedLaw | FrictionLaw | SpeedFunction
 
-DEFAULT_ACCURACY = 1e-6
-FINEST_ACCURACY = 1e-13
-MAX_NODES = 2_000_000
+DEFAULT_ACCURACY = 1e-6  # of f
+FINEST_ACCURACY = 1e-13  # of f: finer is rounding
+MAX_NODES = 2_000_000  # more is an accuracy out of reach
 _ORDER = 64.0  # to the power 6, of what half the nodes miss: the spline's own share
 _ALSO = 0.2  # of what the other axis misses: refined too
 _NEXT = 0.03  # of the largest error: refined in the same round

@@ -18,7 +18,7 @@ from puck_tables.stopping.stops import stop
 _ROUNDS, _AT_LEAST = 5, 0.02  # a batch is asked so often, and so many seconds
 _LONG = 0.3  # s, of which one more call tells enough
 _AIM_LARGEST = 5  # power of ten
-_STEP = 2
+_STEP = 2  # powers of two from one size to the next
 
 
 @dataclass(frozen=True)

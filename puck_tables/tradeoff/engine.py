@@ -29,11 +29,11 @@ from puck_tables.tradeoff.truth import Points, known_starts, random_points
 
 Progress = Callable[[int, int], None]
 
-REPEATS, QUICK_REPEATS = 25, 5
-_POINTS, _QUICK_POINTS = 4000, 1000
+REPEATS, QUICK_REPEATS = 25, 5  # of a measurement, of which the least time counts
+_POINTS, _QUICK_POINTS = 4000, 1000  # at which errors are looked for
 _LARGEST_SWEEP, _QUICK_SWEEP = 8, 6  # powers of ten
 _LARGEST_BATCH, _QUICK_BATCH = 7, 6  # of a door
-_CHUNK = 10_000
+_CHUNK = 10_000  # points a call
 _POWERS, _THINNING = 6, 2  # the look-up that growth is measured with
 _SHORTEST = 1e-3  # s; below it a round repeats the run
 

@@ -32,8 +32,9 @@ from puck_tables.tradeoff.truth import Points
 Fill = Callable[[FloatArray, FloatArray, FloatArray], object]  # phi, delta, out (3, n)
 
 QUESTION = "resultants"
-SCATTERED = 40_000
+SCATTERED = 40_000  # points timed
 QUADRATIC, BICUBIC, UNIFORM = "quadratic in delta", "bicubic, graded", "bicubic, uniform"
+# along φ, doubled, and those of the table that comes along
 _NODES = (17, 33, 65, 129, 257, 513, 991, 2049)
 _POINT_TRAFFIC = 40.0  # bytes: φ, δ in, three numbers out
 # adds and products of one point: φ to η (two roots, one division), weights, last division

@@ -23,10 +23,10 @@ from puck_tables.tradeoff.rivals import rates
 Run = Callable[[], FloatArray]  # x, y of every moment of every puck (pucks, moments, 2)
 
 QUESTION = "state"
-DELTA = 0.5
-_PUCKS, _MOMENTS, _SCIPY_PUCKS = 40, 100, 4
-_LOCAL = (1e-6, 1e-8, 1e-10, 1e-12)
-_FINEST = 2e-14
+DELTA = 0.5  # dimensionless: that of a puck that nothing is said of
+_PUCKS, _MOMENTS, _SCIPY_PUCKS = 40, 100, 4  # and moments of each; of scipy, which is slow, fewer
+_LOCAL = (1e-6, 1e-8, 1e-10, 1e-12)  # of a step: the settings measured
+_FINEST = 2e-14  # of a step: truth
 
 
 class Task:

@@ -29,18 +29,20 @@ from puck_tables.tradeoff.rivals import PATCH_GRID, SCIPY_SETTINGS, patch_script
 from puck_tables.tradeoff.truth import Points, Starts
 
 QUESTION, TRAJECTORY = "stop", "trajectory"
-SCATTERED = 40_000
-DELTA = 0.5
+SCATTERED = 40_000  # launches timed
+DELTA = 0.5  # dimensionless: that of a puck that nothing is said of
 _CUTS = ((2, 6), (3, 6), (4, 6), (5, 3), (6, 2), (6, 1), (7, 1))  # powers, thinning
+# fixed: the settings measured
 _STEPS = (5, 6, 8, 10, 12, 16, 20, 24, 32, 48, 64, 96, 128, 192, 256)
 _STEPS_EXACT = (512, 1024)  # where the table's own error would show
+# of a step: the settings measured
 _LOCAL = (1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12)
-_LOCAL_EXACT = (1e-13, 2e-14)
+_LOCAL_EXACT = (1e-13, 2e-14)  # of a step, with closed forms only
 _EASY = 16  # starts that outsiders are judged at, none of them adversarial
 # adds and products of one launch: speeds and place (four roots, two divisions), weights, result
 _LAUNCH_WORK = 30.0 + 7.0 * HARD + 16.0 + 20.0
 _LAUNCH_TRAFFIC = 72.0  # bytes: six numbers in, three out
-_STEP_LIMIT = 100_000
+_STEP_LIMIT = 100_000  # more is a motion that does not end
 
 
 class Task:

@@ -30,7 +30,7 @@ from puck_tables.wrench.models import Model, ellipsoid, quartic
 if TYPE_CHECKING:
     from puck_tables.motion.puck_spec import PuckSpec
 
-LEAST, MOST = 5, 1_000_001
+LEAST, MOST = 5, 1_000_001  # points of a curve
 _FINE = 1441  # angles for what does not depend on how many were asked for
 _STEP = 1e-5  # rad, of differences for the normals
 _COLUMNS = ("force_x", "force_y", "torque", "normal_force", "normal_torque")
