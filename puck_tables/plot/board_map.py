@@ -11,7 +11,7 @@ from puck_tables._core.colours import on_white
 from puck_tables.errors import InputError
 from puck_tables.plot.board import draw_board, show
 from puck_tables.plot.board_panels import close_up, finished, panels_for
-from puck_tables.plot.film import Box, Film, film_of
+from puck_tables.plot.film import Animation, Box, film_of
 from puck_tables.plot.style import GREY
 from puck_tables.plot.words import counted, legend_below, noted
 from puck_tables.world.sweep import TIME_UP, WorldMap
@@ -63,14 +63,14 @@ def draw_on(axes: Axes, ends: WorldMap) -> None:
     legend_below(axes)
 
 
-def _board(ends: WorldMap) -> Film:
+def _board(ends: WorldMap) -> Animation:
     if not (ends.end <= TIME_UP).any():
         told = ends.told or ("no run has an end",)
         raise InputError(f"there is nothing to draw: {'; '.join(told)}")
     return film_of(ends.an_example())
 
 
-def _draw(axes: Axes, ends: WorldMap, film: Film, box: Box) -> None:
+def _draw(axes: Axes, ends: WorldMap, film: Animation, box: Box) -> None:
     """The board, and every end on it."""
     draw_board(axes, film)
     named = len(ends.names) <= _NAMED
@@ -94,7 +94,7 @@ def _draw(axes: Axes, ends: WorldMap, film: Film, box: Box) -> None:
     show(axes, box)
 
 
-def _note(axes: Axes, ends: WorldMap, film: Film) -> None:
+def _note(axes: Axes, ends: WorldMap, film: Animation) -> None:
     """Say above the board what is not on it."""
     lost = int((ends.end > TIME_UP).sum())
     notes = [f"{lost} of {counted(ends.end.size, 'run')} without an end"] if lost else []
@@ -106,7 +106,7 @@ def _note(axes: Axes, ends: WorldMap, film: Film) -> None:
         noted(axes, "; ".join(notes))
 
 
-def _close_up(ends: WorldMap, film: Film) -> list[Box]:
+def _close_up(ends: WorldMap, film: Animation) -> list[Box]:
     """Around most of the ends, where pucks are too small to be seen."""
     there = ends.columns["in_play"] > 0.0  # NaN: no end
     if not there.any():
@@ -117,7 +117,7 @@ def _close_up(ends: WorldMap, film: Film) -> list[Box]:
     return close_up(_box(ends, film), np.stack(middle, axis=1), radius)
 
 
-def _box(ends: WorldMap, film: Film) -> Box:
+def _box(ends: WorldMap, film: Animation) -> Box:
     """What shows the board and all ends."""
     left, right, low, top = film.box
     radius = max(piece.radius for piece in ends.scene.pucks) if ends.scene.pucks else 0.0
