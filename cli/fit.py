@@ -40,7 +40,7 @@ from puck_tables.errors import InputError
 @click.option(
     "--mass", type=NumberParam("kg"), help="Mass in kg (for energies of what is simulated later)."
 )
-@click.option("--gravity", type=NUMBER, help="Gravity in m/s^2.  [default: 9.80665]")
+@click.option("--gravity", type=NumberParam("m/s^2"), help="Gravity in m/s^2.  [default: 9.80665]")
 @body_options()
 @click.option(
     "--free",
@@ -257,7 +257,7 @@ def _named(given: tuple[str, ...], option: str) -> dict[str, str]:
 _UNITS = {
     "place": "m", "radius": "m", "height": "m", "launch_x": "m", "launch_y": "m", "angle": "rad",
     "launch_angle": "rad", "launch_vx": "m/s", "launch_vy": "m/s", "launch_spin": "rad/s",
-    "u": "m/s",
+    "u": "m/s", "gravity": "m/s^2", "decel": "m/s^2",
 }  # fmt: skip
 
 

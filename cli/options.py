@@ -145,8 +145,8 @@ def puck_options(mass: bool, kind: type[NumberParam] = NumberParam) -> Callable[
             help="Height h of the puck in m, twice that of its centre of mass; with --friction.",
         ),
         click.option("--friction", type=kind(), help="Coulomb coefficient f; with --height."),
-        click.option("--gravity", type=kind(), help="Gravity in m/s^2.  [default: 9.80665]"),
-        click.option("--decel", type=kind(), help="J = f g in m/s^2 instead.  [default: 1]"),
+        click.option("--gravity", type=kind("m/s^2"), help="Gravity in m/s^2.  [default: 9.80665]"),
+        click.option("--decel", type=kind("m/s^2"), help="J = f g in m/s^2 instead.  [default: 1]"),
     ]
     if mass:
         options.insert(

@@ -130,6 +130,8 @@ def _refuse_one_for_all(tables: dict[str, Any], flag: str, path: str, value: str
     InputError
     """
     pucks, own = tables.get("puck"), _of_each(tables, path)
+    if isinstance(pucks, list) and path == "puck.gravity":
+        raise InputError(f"{flag}: all pucks of a scene have its gravity: write --gravity {value}")
     if isinstance(pucks, list) and own != path:
         last = len(pucks) - 1
         more = f", and so on to puck[{last}] for all of them" if last > 0 else ""

@@ -251,4 +251,12 @@ __all__ = [
 ]
 
 __getattr__, __dir__ = lazily(__name__, _HOMES)
-lead_up({"draw": "puck_tables.plot.drawn", "save_movie": "puck_tables.plot.movie"})
+lead_up({
+    "FrictionSection": "puck_tables.table.friction_section",
+    "ResultantTable": "puck_tables.table.resultant_table",
+    "SpeedTable": "puck_tables.table.speed_table",
+    "StopSection": "puck_tables.stopping.stop_section",
+    "StopTable": "puck_tables.stopping.stop_table",
+    "draw": "puck_tables.plot.drawn",
+    "save_movie": "puck_tables.plot.movie",
+})  # fmt: skip

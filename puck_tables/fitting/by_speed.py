@@ -55,3 +55,18 @@ def _begun(
     numbers.update({name: numbers["friction"] for name in asked.free if name in NODES})
     moved = replace(problem, asked=asked, weights=())
     return moved, moved.unknowns(numbers, problem.launches(x), problem.found_walls(x))
+
+
+def law_over(
+    found: Estimate, covariance: FloatArray, at: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """The friction coefficient at slip speeds (n,) m/s, and its standard errors (n,)."""
+    asked, numbers = found.problem.asked, found.problem.found(found.x)
+    count = len(asked.speeds)
+    slopes = np.zeros((at.size, count))
+    for k, name in enumerate(asked.free[:count]):
+        step = 1e-4 * numbers[name]
+        ends = [asked.speed_law({**numbers, name: numbers[name] + by})(at) for by in (step, -step)]
+        slopes[:, k] = (ends[0] - ends[1]) / (2.0 * step)
+    spread = np.einsum("ni,ik,nk->n", slopes, covariance[:count, :count], slopes)
+    return np.asarray(asked.speed_law(numbers)(at)), np.sqrt(spread)

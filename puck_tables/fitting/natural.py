@@ -36,7 +36,8 @@ from puck_tables.stopping.stop_table import StopTable
 from puck_tables.stopping.varied import Varied, natural_states, varied_by
 from puck_tables.table.flow_section import flow_at_one_height, flow_of_table
 from puck_tables.table.friction_section import section_of_table
-from puck_tables.table.resultant_table import ResultantTable, full_contact
+from puck_tables.table.resultant_table import ResultantTable
+from puck_tables.table.resultant_values import full_contact
 
 HEIGHT_STEP = 0.05
 HIGHEST = 3.9

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Self
 
-from puck_tables._core.fields import of
+from puck_tables._core.fields import Unsaid, of
 from puck_tables._core.reading import Reading, given_in, mark_checked, read_values
 from puck_tables._core.real import positive, real
 from puck_tables.contact.laws import HOMOGENEOUS, Law
@@ -40,7 +40,10 @@ class PuckSpec:
     )
     friction: float = of("number", 0.0, low=0.0, doc="Coulomb's coefficient f")
     mass: float = of("number", 1.0, "kg", low=0.0, above=True)
-    gravity: float = of("number", STANDARD_GRAVITY, "m/s^2", low=0.0, above=True)
+    gravity: float = of(
+        "number", Unsaid(STANDARD_GRAVITY), "m/s^2", low=0.0, above=True, objects=(Unsaid,),
+        doc="in a scene that has none of its own",
+    )  # fmt: skip
     pressure: str | Law = of(
         "text", "uniform", file=".csv", objects=(Law,),
         doc="pressure law, as build-tables --pressure takes it",

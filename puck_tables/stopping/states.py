@@ -43,7 +43,8 @@ from puck_tables.stopping.state_values import (
     looked_up,
     refuse_times,
 )
-from puck_tables.stopping.stop_table import UPPER_DELTA, StopTable
+from puck_tables.stopping.stop_table import StopTable
+from puck_tables.stopping.stop_values import UPPER_DELTA
 from puck_tables.table.table import refuse_other_kind
 
 TOO_LARGE = (

@@ -29,11 +29,11 @@ from puck_tables.motion.solve import ErrorEstimate, close_enough
 from puck_tables.stopping.exact import integrated_stops
 from puck_tables.table.check import CheckReport
 from puck_tables.table.friction_section import FINEST_ACCURACY, FrictionSection
+from puck_tables.table.record import Progress
 from puck_tables.table.section_table import SectionTable
 from puck_tables.table.slip_axis import GRADING_POWER, LawAxis, sides_of
 from puck_tables.table.slip_spline import slip_spline
 from puck_tables.table.store import kept_section
-from puck_tables.table.table import Progress
 
 FINEST_SECTION = 1e-10  # as fine as stops are looked up; beyond, they are integrated
 DEFAULT_ACCURACY = 1e-8  # of Q²/J: the default tol of stops

@@ -34,10 +34,11 @@ from puck_tables.errors import InputError, OutputError, TableError
 from puck_tables.table.file import read_content, recipe_digest
 from puck_tables.table.friction_section import FrictionSection, friction_section
 from puck_tables.table.law_table import is_named
+from puck_tables.table.record import Progress
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.table.singular_lines import refuse_height
 from puck_tables.table.speed_table import SpeedTable
-from puck_tables.table.table import Progress, Table
+from puck_tables.table.table import Table
 
 AnyTable = TypeVar("AnyTable", bound=Table)
 

@@ -72,7 +72,7 @@ class ResultantTask:
 
 
 def _tabulated(size: int) -> ResultantTable:
-    return tabulate(law_of("uniform"), size // 2)
+    return tabulate(ResultantTable, law_of("uniform"), size // 2)
 
 
 _SIDES = np.array(_tabulated(9).axis.sides)

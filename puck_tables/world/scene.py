@@ -87,7 +87,7 @@ class Scene(SceneSpec):
     frames, tol : optional
         How many states to save; the error wanted, of Q/J and Q²/J.
     gravity : m/s², > 0, optional
-        Of all its pucks; left out, each has its own.
+        Of all its pucks.  Left out, it is what the pucks have: one, where there are several.
     ranges : mapping, optional
         Values of numbers that take several, by path, such as ``{"puck.height": [0.0, 0.01]}``.  A
         changed copy (:func:`dataclasses.replace`) keeps those of the parts that it keeps.
