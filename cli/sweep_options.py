@@ -18,7 +18,7 @@ from puck_tables.errors import InputError, OutputError
 if TYPE_CHECKING:
     from puck_tables.bulk.spreads import Spread
 
-SUMMED = 1_000_000  # samples of a store that are summed up unasked: some 200 MB
+SUMMED = 1_000_000  # samples (of each puck) of a store that are summed up unasked: some 200 MB
 _RINGS = re.compile(r"annulus:([^:]*):([^:]*):([0-9]{1,10})")
 
 
@@ -218,7 +218,8 @@ class Whole:
         else:
             deliver(result, self.output, None, self.overwrite)
         kept = isinstance(result, Stored)
-        summed = kept and result.is_sample and (bool(self.regions) or result.work.size <= SUMMED)
+        many = kept and result.work.size * max(1, len(getattr(result.work, "names", ()))) > SUMMED
+        summed = kept and result.is_sample and (bool(self.regions) or not many)
         drawn = result.load() if summed or (kept and self.plot is not None) else result
         deliver(drawn, None, self.plot, self.overwrite)
         if self.output is None and self.plot is None and not isinstance(result, Summary):

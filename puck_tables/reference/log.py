@@ -11,7 +11,8 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.beginning import beginning, refuse_no_text
-from puck_tables._core.columns import TIME, list_of
+from puck_tables._core.columns import list_of
+from puck_tables._core.quantities import TIME
 from puck_tables._core.real import instance, real
 from puck_tables._core.text import LARGEST, Look, look_at, read_columns
 from puck_tables._core.units import EXAMPLES, parted, unit_size

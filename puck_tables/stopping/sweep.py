@@ -11,6 +11,7 @@ import numpy as np
 
 from puck_tables._core.executor import Progress
 from puck_tables._core.memory import check_memory
+from puck_tables._core.own_folder import say
 from puck_tables._core.real import one_velocity
 from puck_tables.bulk.finish import check_part, finish
 from puck_tables.bulk.spreads import checked_samples
@@ -41,6 +42,9 @@ def sweep(puck: Any, given: Mapping[str, Any], launches: Any, *, how: SweepOptio
     laws = numbers.pop("pressure", puck.pressure)
     names = {*numbers, *(argument for argument, column in COLUMN.items()
                          if column in launches.variables)}  # fmt: skip
+    read = set(COLUMN.values())
+    if unread := [str(name) for name in launches.data_vars if name not in read]:
+        say(f"launches: variables not read: {', '.join(unread)[:400]}")
     return how.done(labelled(launches, _whole(puck, numbers, names), laws), puck)
 
 
