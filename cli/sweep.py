@@ -10,7 +10,7 @@ from puck_tables.cli.options import (
     FILE,
     MAX_COUNT,
     NUMBER,
-    Range,
+    RangeParam,
     Vector,
     body_options,
     explain_option,
@@ -41,13 +41,15 @@ REAL = ("height", "friction", "gravity")
 
 
 @click.command()
-@click.option("--w0", type=Range("rad/s"), help="Launch spin in rad/s.")
-@click.option("--speed", type=Range("m/s"), help="Launch speed in m/s, along x without --heading.")
-@click.option("--heading", type=Range("rad"), help="Direction of the launch from x, in rad.")
+@click.option("--w0", type=RangeParam("rad/s"), help="Launch spin in rad/s.")
+@click.option(
+    "--speed", type=RangeParam("m/s"), help="Launch speed in m/s, along x without --heading."
+)
+@click.option("--heading", type=RangeParam("rad"), help="Direction of the launch from x, in rad.")
 @click.option("--v0", type=Vector("m/s"), help="One launch velocity in m/s instead of --speed.")
-@click.option("--delta", type=Range(), help="delta = 2 f h / r.  [default: 0.5]")
-@puck_options(mass=False, kind=Range)
-@body_options(kind=Range, many=True)
+@click.option("--delta", type=RangeParam(), help="delta = 2 f h / r.  [default: 0.5]")
+@puck_options(mass=False, kind=RangeParam)
+@body_options(kind=RangeParam, many=True)
 @click.option(
     "--random", type=click.IntRange(2, MAX_COUNT), metavar="COUNT",
     help="Samples instead of ranges: so many launches whose numbers scatter.",

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 from puck_tables.cli.main import main
-from puck_tables.cli.options import Number, Range, Times, Vector
+from puck_tables.cli.options import NumberParam, RangeParam, Times, Vector
 
 import puck_tables as pt
 from puck_tables.bulk.spreads import spread_named
@@ -78,12 +78,12 @@ def test_options_take_units_and_lists():
     for unit in UNITS:
         for _ in range(10):
             (a, first), (b, second) = drawn(rng, unit), drawn(rng, unit, 3.0, 4.0)
-            assert Number(unit).convert(a, None, None) == pytest.approx(first, rel=1e-12)
+            assert NumberParam(unit).convert(a, None, None) == pytest.approx(first, rel=1e-12)
             assert Vector(unit).convert(f"{a},{b}", None, None) == pytest.approx((first, second))
-            assert Range(unit).convert(f"{b},{a},{b}", None, None) == pytest.approx(
+            assert RangeParam(unit).convert(f"{b},{a},{b}", None, None) == pytest.approx(
                 [second, first, second]
             )
-            assert Range(unit).convert(f"{a}:{b}:3", None, None) == pytest.approx(
+            assert RangeParam(unit).convert(f"{a}:{b}:3", None, None) == pytest.approx(
                 (first, second, 3)
             )
             assert Times(unit).convert(f"{a},{b}", None, None) == pytest.approx((first, second))
