@@ -13,7 +13,7 @@ from puck_tables.cli.options import (
     LENGTH,
     NUMBER,
     TIME,
-    Number,
+    NumberParam,
     body_options,
     deliver,
     explain_option,
@@ -38,9 +38,9 @@ from puck_tables.errors import InputError
 )
 @click.option("--friction", type=NUMBER, help="Coulomb coefficient f, if known.")
 @click.option(
-    "--mass", type=Number("kg"), help="Mass in kg (for energies of what is simulated later)."
+    "--mass", type=NumberParam("kg"), help="Mass in kg (for energies of what is simulated later)."
 )
-@click.option("--gravity", type=Number("m/s^2"), help="Gravity in m/s^2.  [default: 9.80665]")
+@click.option("--gravity", type=NumberParam("m/s^2"), help="Gravity in m/s^2.  [default: 9.80665]")
 @body_options()
 @click.option(
     "--free",

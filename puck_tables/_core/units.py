@@ -36,7 +36,9 @@ _FORCES = {"N": 1.0, "mN": 1e-3, "uN": 1e-6, "µN": 1e-6, "μN": 1e-6, "cN": 1e-
            "MN": 1e6, "newton": 1.0, "newtons": 1.0, "kgf": 9.80665, "gf": 9.80665e-3,
            "lbf": 4.4482216152605}  # fmt: skip
 _RATIOS = dict.fromkeys(("1", "-", "–", "—", "dimensionless", "unitless", "ratio", "none"), 1.0)
-_RATIOS |= dict.fromkeys(("%", "percent", "prozent"), 0.01)
+_RATIOS |= dict.fromkeys(("%", "percent", "per cent", "prozent"), 0.01)
+_RATIOS |= dict.fromkeys(("‰", "permille", "per mille", "promille"), 1e-3) | {"ppm": 1e-6}
+_SPEEDS = dict.fromkeys(("knot", "knots", "kt", "kts", "kn"), 1852.0 / 3600.0) | {"mph": 0.44704}
 _WHOLE = {
     "mps": "m/s", "rpm": "turn/min", "rps": "turn/s", "mmps": "mm/s", "mms": "mm/s", "cmps": "cm/s",
     "cms": "cm/s", "kmh": "km/h", "kmph": "km/h", "kph": "km/h",
@@ -275,6 +277,8 @@ def unit_size(unit: str, kind: str) -> float | None:
         return None if size is None or arm is None else size * arm
     if kind == "acceleration":
         return _acceleration(text)
+    if kind == "velocity" and text in _SPEEDS:
+        return _SPEEDS[text]
     if kind in ("velocity", "spin"):
         found = re.fullmatch(r"(.+?)\s*(?:/|\s+per\s+)\s*(.+)", text)
         found = found or re.fullmatch(r"(\S+?)(?:\s+|\*|·|\.)?(s)\^?(?:-1|⁻¹|−1)", text)
