@@ -207,9 +207,13 @@ def _named(kind: Kind, value: Any, path: str, reading: Reading) -> Any:
 
 
 def _rows(kind: Kind, value: Any, path: str, reading: Reading) -> tuple[tuple[float, ...], ...]:
-    """A table of numbers, as it may stand in a CSV file."""
+    """A table of numbers, as it may stand in a CSV file, or what can be one: a law with points."""
     try:
-        rows = np.array(value, dtype=np.float64)
+        given = value.as_rows() if hasattr(value, "as_rows") else value
+        rows = np.array(given, dtype=np.float64)
+    except PuckError as error:
+        reading.errors.append(f"{path}: {error}")
+        return ()
     except (TypeError, ValueError, OverflowError):
         rows = np.empty(0)
     if np.ma.is_masked(value) or rows.ndim != 2 or not rows.size or not np.isfinite(rows).all():

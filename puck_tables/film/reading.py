@@ -8,7 +8,8 @@ from pathlib import Path
 
 from puck_tables._core.beginning import HDF5, ZIP, beginning, refuse_no_text
 from puck_tables._core.real import instance
-from puck_tables._core.text import LARGEST, encoding_of
+from puck_tables._core.text import encoding_of
+from puck_tables._core.text_rows import LARGEST
 from puck_tables.errors import InputError
 from puck_tables.film.film import Film
 from puck_tables.film.plane import Marks

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.text import Look, look_at, number, read_columns
+from puck_tables._core.text import Look, look_at, number
+from puck_tables._core.text_rows import read_columns
 from puck_tables._core.units import factor
 from puck_tables.errors import InputError
 from puck_tables.film.clock import is_clock, seconds
