@@ -19,10 +19,9 @@ if TYPE_CHECKING:
     from puck_tables.bulk.finish import Stored
     from puck_tables.result import TimedResult
     from puck_tables.scene.outcome import Event, SceneRun
-    from puck_tables.scene.sample import SceneSample
-    from puck_tables.scene.sweep import SceneMap
+    from puck_tables.world.map import Map
+    from puck_tables.world.sample import Sample
     from puck_tables.world.scene import Scene
-    from puck_tables.world.sweep import WorldMap
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
@@ -330,22 +329,26 @@ def _events(run: SceneRun) -> str:
     return ", ".join(told_of) + (f" and {more} more" if more > 0 else "")
 
 
-def summary_of_map(stops: SceneMap | SceneSample | WorldMap | Stored) -> str:
+def summary_of_map(ends: Map | Sample | Stored) -> str:
     """A map or samples of a scene in one line, and one for each way in which runs have no end."""
     from puck_tables.bulk.finish import Stored
     from puck_tables.bulk.work import Tally
+    from puck_tables.world.map import Map
 
-    work: Any = stops.work if isinstance(stops, Stored) else stops
-    tally = stops.tally if isinstance(stops, Stored) else Tally.of(stops.end)
+    work: Any = ends.work if isinstance(ends, Stored) else ends
+    tally = ends.tally if isinstance(ends, Stored) else Tally.of(ends.end)
     spreads = getattr(work, "spreads", None)  # of samples: no axes, no one model
-    if spreads is None:
-        ranged = " x ".join(f"{name} ({values.size})" for name, values in work.axes.items())
-    else:
+    if spreads:
         ranged = ", ".join(f"{path} {one}" for path, one in spreads.items())
+    else:
+        ranged = " x ".join(f"{name} ({values.size})" for name, values in work.axes.items())
     counts = ", ".join(f"{count} {work.meanings[code]}" for code, count in tally.counts.items())
-    lines = work.without_end(tally) if isinstance(stops, Stored) else stops.without_end()
-    model = "" if isinstance(stops, Stored) or spreads is not None else f"; {stops.model}"
-    estimate = getattr(stops, "error_estimate", None)  # of a map in memory over one puck
-    if estimate is not None:
-        model += f"; error <= {estimate:.1e} (Q/J, Q²/J) in the runs that were checked"
+    lines = work.without_end(tally) if isinstance(ends, Stored) else ends.without_end()
+    model = ""
+    if isinstance(ends, Map):
+        model = f"; {ends.model}"
+        if ends.error_estimate is not None:
+            model += (
+                f"; error <= {ends.error_estimate:.1e} (Q/J, Q²/J) in the runs that were checked"
+            )
     return "\n".join([f"{work.scene.title or 'scene'} over {ranged}: {counts}{model}", *lines])

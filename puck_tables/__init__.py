@@ -63,7 +63,6 @@ if TYPE_CHECKING:
     )
     from puck_tables.scene.pieces import Arc, Pocket, Post, Rim
     from puck_tables.scene.restitution import Plastic, RestitutionTable, Viscoelastic
-    from puck_tables.scene.sweep import SceneMap
     from puck_tables.stopping.aim import Aim
     from puck_tables.stopping.aims import Aims
     from puck_tables.stopping.array_functions import state_arrays, stop_arrays
@@ -76,6 +75,8 @@ if TYPE_CHECKING:
     from puck_tables.trajectory import Trajectory
     from puck_tables.warming import warm_up
     from puck_tables.world.aimed import BoardAim
+    from puck_tables.world.map import Map
+    from puck_tables.world.sample import Sample
     from puck_tables.world.scene import Piece, Scene
     from puck_tables.world.world import World
     from puck_tables.wrench.holds import Hold
@@ -110,6 +111,7 @@ _HOMES = {
     "Launch": "scene.parts",
     "Law": "contact.laws",
     "LimitSurface": "wrench.surface",
+    "Map": "world.map",
     "MissingExtraError": "errors",
     "Normal": "bulk.spreads",
     "Orthotropic": "scene.parts",
@@ -125,8 +127,8 @@ _HOMES = {
     "RestitutionTable": "scene.restitution",
     "Result": "result",
     "Rim": "scene.pieces",
+    "Sample": "world.sample",
     "Scene": "world.scene",
-    "SceneMap": "scene.sweep",
     "SceneRun": "scene.outcome",
     "Source": "export.source",
     "SpeedLaw": "contact.speed_law",
@@ -193,6 +195,7 @@ __all__ = [
     "Launch",
     "Law",
     "LimitSurface",
+    "Map",
     "MissingExtraError",
     "Normal",
     "Orthotropic",
@@ -208,8 +211,8 @@ __all__ = [
     "RestitutionTable",
     "Result",
     "Rim",
+    "Sample",
     "Scene",
-    "SceneMap",
     "SceneRun",
     "Source",
     "SpeedLaw",

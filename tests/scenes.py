@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from puck_tables import Scene, SceneMap, SceneRun
+from puck_tables import Map, Scene, SceneRun
 
 
 def simulate_scene(tables: Any, times: Any = None) -> SceneRun:
@@ -13,7 +13,7 @@ def simulate_scene(tables: Any, times: Any = None) -> SceneRun:
     return made(tables).simulate(times)
 
 
-def sweep_scene(tables: Any, **how: Any) -> SceneMap:
+def sweep_scene(tables: Any, **how: Any) -> Map:
     """The map over its ranges."""
     return made(tables).sweep(**how)
 

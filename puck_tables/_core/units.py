@@ -36,7 +36,9 @@ _FORCES = {"N": 1.0, "mN": 1e-3, "uN": 1e-6, "µN": 1e-6, "μN": 1e-6, "cN": 1e-
            "MN": 1e6, "newton": 1.0, "newtons": 1.0, "kgf": 9.80665, "gf": 9.80665e-3,
            "lbf": 4.4482216152605}  # fmt: skip
 _RATIOS = dict.fromkeys(("1", "-", "–", "—", "dimensionless", "unitless", "ratio", "none"), 1.0)
-_RATIOS |= dict.fromkeys(("%", "percent", "prozent"), 0.01)
+_RATIOS |= dict.fromkeys(("%", "percent", "per cent", "prozent"), 0.01)
+_RATIOS |= dict.fromkeys(("‰", "permille", "per mille", "promille"), 1e-3) | {"ppm": 1e-6}
+_SPEEDS = dict.fromkeys(("knot", "knots", "kt", "kts", "kn"), 1852.0 / 3600.0) | {"mph": 0.44704}
 _WHOLE = {
     "mps": "m/s", "rpm": "turn/min", "rps": "turn/s", "mmps": "mm/s", "mms": "mm/s", "cmps": "cm/s",
     "cms": "cm/s", "kmh": "km/h", "kmph": "km/h", "kph": "km/h",
@@ -130,6 +132,25 @@ def quantity(text: str, unit: str) -> float | None:
     if known(found[2], "angle") == "deg":
         return math.radians(float(found[1]))
     return float(Decimal(found[1]) * Decimal(repr(size)))  # 25.4mm is 0.0254 to the last bit
+
+
+def measured(text: str, unit: str) -> float:
+    """A number in an SI unit, or with another unit behind it.
+
+    Raises
+    ------
+    ValueError
+        If it is none.
+
+    Examples
+    --------
+    >>> measured("1e-3", "m"), measured("2mm", "m")
+    (0.001, 0.002)
+    """
+    found = quantity(text, unit)
+    if found is None and ("_" in text or not text.isascii()):  # which float() takes
+        raise ValueError(text)
+    return float(text) if found is None else found
 
 
 def pixel_size(scale: str | float) -> float:
@@ -275,6 +296,8 @@ def unit_size(unit: str, kind: str) -> float | None:
         return None if size is None or arm is None else size * arm
     if kind == "acceleration":
         return _acceleration(text)
+    if kind == "velocity" and text in _SPEEDS:
+        return _SPEEDS[text]
     if kind in ("velocity", "spin"):
         found = re.fullmatch(r"(.+?)\s*(?:/|\s+per\s+)\s*(.+)", text)
         found = found or re.fullmatch(r"(\S+?)(?:\s+|\*|·|\.)?(s)\^?(?:-1|⁻¹|−1)", text)

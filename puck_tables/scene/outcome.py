@@ -22,9 +22,11 @@ from puck_tables.scene.scene_text import as_toml
 
 ENDS = (
     "at rest", "carried by the floor", "carried round", "time is up", "over the edge",
-    "step limit", "event limit", "not finite", "undecided", "no end found", "refused",
+    "step limit", "events crowd together", "not finite", "undecided", "impacts without end",
+    "unsolved", "faster than a table of restitution goes", "no end found", "refused",
 )  # fmt: skip
-NO_END, REFUSED = len(ENDS) - 2, len(ENDS) - 1  # of a run in a sweep, which goes on
+IMPACTS_WITHOUT_END, UNSOLVED, TOO_FAST = range(9, 12)  # of boards, beside the codes of the loop
+NO_END, REFUSED = len(ENDS) - 2, len(ENDS) - 1  # of one of many runs, which go on
 EVENTS = ("stick", "slip", "impact", "contact", "entry", "edge", "exit", "overhang")
 
 # rows of the compiled loop, and what follows from them

@@ -23,9 +23,9 @@ from puck_tables.scene.scene_spec import SceneSpec
 if TYPE_CHECKING:
     from puck_tables.bulk.spreads import Spread
     from puck_tables.scene.outcome import SceneRun
-    from puck_tables.scene.sample import SceneSample
-    from puck_tables.scene.sweep import SceneMap
     from puck_tables.world.aimed import BoardAim
+    from puck_tables.world.map import Map
+    from puck_tables.world.sample import Sample
     from puck_tables.world.world import World
 
 
@@ -187,7 +187,7 @@ class Scene(SceneSpec):
         store: str | Path | None = None,
         cluster: str | None = None,
         overwrite: bool = False,
-    ) -> SceneMap:
+    ) -> Map:
         """Run it for all combinations of the numbers in it that are ranges.
 
         Parameters
@@ -200,8 +200,9 @@ class Scene(SceneSpec):
 
         Returns
         -------
-        SceneMap
-            A run that has no end, or that is refused, is named in :meth:`SceneMap.without_end`.
+        Map
+            A run that has no end, or that is refused, is named in :meth:`Map.without_end`.  Of a
+            list of ``pucks`` its columns have a last dimension over them.
 
         Raises
         ------
@@ -215,16 +216,13 @@ class Scene(SceneSpec):
         >>> Scene(puck, launch=Launch(velocities, spin=[0.0, 9.0])).sweep().y.round(6).tolist()
         [0.0, 2.056068]
         """
-        sweep: Any
-        if self.is_board:
-            from puck_tables.world.sweep import sweep
-        else:
-            from puck_tables.scene.sweep import sweep
-        stops: SceneMap = sweep(
+        from puck_tables.world.runs import sweep
+
+        ends: Map = sweep(
             self, threads=threads, chunk=chunk, progress=progress, store=store, cluster=cluster,
             overwrite=overwrite,
         )  # fmt: skip
-        return stops
+        return ends
 
     def sample(
         self,
@@ -238,7 +236,7 @@ class Scene(SceneSpec):
         store: str | Path | None = None,
         cluster: str | None = None,
         overwrite: bool = False,
-    ) -> SceneSample:
+    ) -> Sample:
         """Run it with numbers that scatter.
 
         Parameters
@@ -250,13 +248,14 @@ class Scene(SceneSpec):
 
         Returns
         -------
-        SceneSample
-            With the summaries of :meth:`puck_tables.Puck.sample`.
+        Sample
+            With the summaries of :meth:`puck_tables.Puck.sample`; of a list of ``pucks`` those of
+            each, ``sample.of("red").mean()``, and how often it leaves play.
 
         Raises
         ------
         InputError
-            If nothing scatters, what does is no number of the scene, or it is a board.
+            If nothing scatters, or what does is no number of the scene.
 
         Examples
         --------
@@ -265,13 +264,21 @@ class Scene(SceneSpec):
         >>> found = scene.sample(1000, 7, {"launch.velocity[0]": Normal(1.0, 0.01)})
         >>> round(found.mean()["x"], 3)
         0.51
+        >>> from puck_tables import Launch, Piece
+        >>> cue = Piece(0.03, friction=0.1, name="cue", launch=Launch((1.0, 0.0)))
+        >>> red = Piece(0.03, friction=0.1, name="red", launch=Launch(position=(0.3, 0.0)))
+        >>> spreads = {"puck[0].launch.velocity[1]": Normal(0.0, 0.01)}
+        >>> found = Scene(pucks=[cue, red]).sample(100, 7, spreads)
+        >>> round(found.of("red").mean()["x"], 3)
+        0.569
         """
-        from puck_tables.scene.sample import sample
+        from puck_tables.world.runs import sample
 
-        return sample(
+        found: Sample = sample(
             self, count, seed, spreads, threads=threads, chunk=chunk, progress=progress,
             store=store, cluster=cluster, overwrite=overwrite,
         )  # fmt: skip
+        return found
 
     def world(self) -> World:
         """The same board to play on: advance it, strike pucks, look ahead.
