@@ -262,11 +262,10 @@ _UNITS = {
 
 
 def _number(text: str, option: str, name: str) -> float:
-    from puck_tables._core.units import quantity
+    from puck_tables._core.units import measured
 
     try:
-        measured = quantity(text, _UNITS.get(name, ""))
-        number = float(text) if measured is None else measured
+        number = measured(text, _UNITS.get(name, ""))
     except ValueError:
         number = math.nan
     if not math.isfinite(number):
@@ -304,10 +303,10 @@ def _noise(text: str | None) -> tuple[float, float | None] | None:
 
 
 def _jitter(text: str | None) -> float | str | None:
-    from puck_tables._core.units import quantity
+    from puck_tables._core.units import measured
 
     try:
-        return text if text is None else quantity(text, "s") or float(text)
+        return text if text is None else measured(text, "s")
     except ValueError:
         return text
 

@@ -110,13 +110,10 @@ class Times(NumberParam):
 
 def finite(text: str, kind: click.ParamType, param: Any, ctx: Any, unit: str = "") -> float:
     """A finite number, in an SI unit where another stands behind it, or click's error."""
-    from puck_tables._core.units import SHOWN, quantity
+    from puck_tables._core.units import SHOWN, measured
 
     try:
-        measured = quantity(text, unit)
-        if measured is None and ("_" in text or not text.isascii()):
-            raise ValueError
-        number = float(text) if measured is None else measured
+        number = measured(text, unit)
     except ValueError:
         example = f", or one with a unit as {SHOWN[unit]}" if unit else ""
         kind.fail(f"'{text}' is not a number{example}", param, ctx)

@@ -60,7 +60,7 @@ def samples_checked(
     ------
     InputError
     """
-    from puck_tables._core.units import quantity
+    from puck_tables._core.units import measured
     from puck_tables.bulk.summary import checked_regions
 
     alone = {"--seed": seed is not None, "--spread": spreads, "--inside": regions}
@@ -76,12 +76,7 @@ def samples_checked(
     found = []
     for region in regions:
         try:
-            found.append(
-                tuple(
-                    float(part) if (size := quantity(part, "m")) is None else size
-                    for part in region.split(",")
-                )
-            )
+            found.append(tuple(measured(part, "m") for part in region.split(",")))
         except ValueError:
             raise InputError(f"--inside {region}: write X,Y,R or X1,Y1,X2,Y2, in m") from None
     checked_regions(found)

@@ -14,7 +14,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import real, shown
-from puck_tables._core.units import SHOWN, quantity
+from puck_tables._core.units import SHOWN, measured
 from puck_tables.errors import InputError
 
 _LARGEST_SEED = 1 << 64  # a seed is kept in files as an integer of 64 bits
@@ -154,7 +154,7 @@ def spread_named(text: str, unit: str = "") -> Spread:
     try:
         if name not in KINDS or len(numbers) != 2:
             raise ValueError
-        first, second = (_measured(number, unit) for number in numbers)
+        first, second = (measured(number, unit) for number in numbers)
     except ValueError:
         hint = f", numbers or with a unit as {SHOWN[unit]}" if unit in SHOWN else ""
         raise InputError(
@@ -162,14 +162,6 @@ def spread_named(text: str, unit: str = "") -> Spread:
         ) from None
     found: Spread = KINDS[name](first, second)
     return found
-
-
-def _measured(text: str, unit: str) -> float:
-    """A number, perhaps with a unit behind it."""
-    found = quantity(text, unit)
-    if found is None and ("_" in text or not text.isascii()):
-        raise ValueError
-    return float(text) if found is None else found
 
 
 def checked_samples(count: int, seed: int) -> None:

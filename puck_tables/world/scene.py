@@ -15,6 +15,7 @@ import numpy.typing as npt
 from puck_tables._core.executor import Progress
 from puck_tables._core.fields import of
 from puck_tables.puck import Puck
+from puck_tables.scene.agreement import disagreements
 from puck_tables.scene.library import find_scene
 from puck_tables.scene.pieces import PieceSpec
 from puck_tables.scene.scene_spec import SceneSpec
@@ -114,9 +115,9 @@ class Scene(SceneSpec):
     def _disagreements(self) -> list[str]:
         """What is wrong between its parts."""
         if self.is_board:
-            from puck_tables.world.agreement import disagreements
-        else:
-            from puck_tables.scene.agreement import disagreements
+            from puck_tables.world.agreement import disagreements as of_board
+
+            return of_board(self)
         return disagreements(self)
 
     @classmethod
