@@ -173,7 +173,8 @@ def aim(
 
 def _read_targets(path: Path) -> FloatArray:
     """Places (n, 2) from a file."""
-    from puck_tables._core.columns import X, Y, numbers_of
+    from puck_tables._core.columns import numbers_of
+    from puck_tables._core.quantities import X, Y
 
     return numbers_of(path, (X, Y), 2, _LARGEST_FILE).rows
 

@@ -57,9 +57,9 @@ def fields() -> None:
 @click.argument("name", metavar="FILE|NAME", shell_complete=scenes)
 def check(name: str) -> None:
     """Check a scene: every error at once, or what it holds and how it would be run."""
-    from puck_tables.scene.sweep import axes_of
     from puck_tables.world.outcome import ways_of
     from puck_tables.world.scene import Scene
+    from puck_tables.world.scene_ends import axes_of
 
     whole = Scene.load(name)
     plan = ways_of(whole) if whole.is_board else _plan(whole)

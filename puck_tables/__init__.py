@@ -47,7 +47,6 @@ if TYPE_CHECKING:
     from puck_tables.reference.friction import FloorFriction, floor_friction
     from puck_tables.result import Result
     from puck_tables.scene.driven import path_along
-    from puck_tables.scene.outcome import SceneRun
     from puck_tables.scene.parts import (
         Constraint,
         Drag,
@@ -63,7 +62,7 @@ if TYPE_CHECKING:
     )
     from puck_tables.scene.pieces import Arc, Pocket, Post, Rim
     from puck_tables.scene.restitution import Plastic, RestitutionTable, Viscoelastic
-    from puck_tables.scene.sweep import SceneMap
+    from puck_tables.scene.run import Run
     from puck_tables.stopping.aim import Aim
     from puck_tables.stopping.aims import Aims
     from puck_tables.stopping.array_functions import state_arrays, stop_arrays
@@ -76,6 +75,8 @@ if TYPE_CHECKING:
     from puck_tables.trajectory import Trajectory
     from puck_tables.warming import warm_up
     from puck_tables.world.aimed import BoardAim
+    from puck_tables.world.map import Map
+    from puck_tables.world.sample import Sample
     from puck_tables.world.scene import Piece, Scene
     from puck_tables.world.world import World
     from puck_tables.wrench.holds import Hold
@@ -110,6 +111,7 @@ _HOMES = {
     "Launch": "scene.parts",
     "Law": "contact.laws",
     "LimitSurface": "wrench.surface",
+    "Map": "world.map",
     "MissingExtraError": "errors",
     "Normal": "bulk.spreads",
     "Orthotropic": "scene.parts",
@@ -125,9 +127,9 @@ _HOMES = {
     "RestitutionTable": "scene.restitution",
     "Result": "result",
     "Rim": "scene.pieces",
+    "Sample": "world.sample",
     "Scene": "world.scene",
-    "SceneMap": "scene.sweep",
-    "SceneRun": "scene.outcome",
+    "Run": "scene.run",
     "Source": "export.source",
     "SpeedLaw": "contact.speed_law",
     "States": "stopping.states",
@@ -193,6 +195,7 @@ __all__ = [
     "Launch",
     "Law",
     "LimitSurface",
+    "Map",
     "MissingExtraError",
     "Normal",
     "Orthotropic",
@@ -208,9 +211,9 @@ __all__ = [
     "RestitutionTable",
     "Result",
     "Rim",
+    "Run",
+    "Sample",
     "Scene",
-    "SceneMap",
-    "SceneRun",
     "Source",
     "SpeedLaw",
     "States",
@@ -251,4 +254,12 @@ __all__ = [
 ]
 
 __getattr__, __dir__ = lazily(__name__, _HOMES)
-lead_up({"draw": "puck_tables.plot.drawn", "save_movie": "puck_tables.plot.movie"})
+lead_up({
+    "FrictionSection": "puck_tables.table.friction_section",
+    "ResultantTable": "puck_tables.table.resultant_table",
+    "SpeedTable": "puck_tables.table.speed_table",
+    "StopSection": "puck_tables.stopping.stop_section",
+    "StopTable": "puck_tables.stopping.stop_table",
+    "draw": "puck_tables.plot.drawn",
+    "save_movie": "puck_tables.plot.movie",
+})  # fmt: skip

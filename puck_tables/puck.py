@@ -39,7 +39,7 @@ class Puck(VerbsOfMany):
     friction : Coulomb coefficient f, ≥ 0
         0, where it is left out: a puck that never stops by itself, for scenes alone.
     mass : kg, > 0; of a free puck only energies depend on it
-    gravity : m/s², > 0
+    gravity : m/s², > 0; left out, that of its scene, or 9.80665
     pressure : contact pressure: uniform, galin, hertz, ring, annulus:INNER, a CSV file of ρ, W, or
         a Law
     gyration : radius of gyration about the vertical axis over r, 0.1 to 10; √½ for a homogeneous

@@ -18,7 +18,7 @@ from puck_tables._core import digest as kept_work
 from puck_tables._core.digest import work_digest
 from puck_tables.errors import InputError
 from puck_tables.scene.entries import set_path
-from puck_tables.scene.sweep import SceneWork
+from puck_tables.world.runs import Runs
 
 pytest.importorskip("zarr")
 W0 = np.linspace(0.1, 5.0, 7)
@@ -161,7 +161,7 @@ def test_a_file_that_changes_while_it_is_swept_ends_the_sweep(tmp_path: Path):
 
     with pytest.raises(InputError, match=r"was changed while it was swept .*force\.csv"):
         sweep_scene(scene, chunk=1, threads=1, progress=changes)
-    work = SceneWork(Scene.from_tables(scene_of(tmp_path)), 1)
+    work = Runs(Scene.from_tables(scene_of(tmp_path)), 1)
     sent = pickle.dumps(work)
     edited("force.csv", "t,Fx,Fy\n0,0.03,0\n9,0,0\n")(scene, tmp_path)
     with pytest.raises(InputError, match="was changed while it was swept"):  # nor on a worker

@@ -133,7 +133,7 @@ RIM = {"puck": "a", "partner": "b", "restitution": 0.9, "tangential": 0.1, "fric
 BOARD: dict[str, Any] = {
     "launch.time": None, "puck[0].name": None, "puck[0].colour": None,
     "puck[0].radius": 0.025, "puck[0].height": 0.0, "puck[0].friction": 0.3, "puck[0].mass": 0.2,
-    "puck[0].gravity": 3.7, "puck[0].gyration": 0.9, "puck[0].pressure": "ring",
+    "puck[0].gravity": None, "puck[0].gyration": 0.9, "puck[0].pressure": "ring",
     "puck[0].launch.velocity": [1.4, 0.0], "puck[0].launch.spin": 10.0,
     "puck[0].launch.position": [0.005, 0.01], "puck[0].launch.orientation": 1.0,
     "puck[0].launch.time": 0.5, "puck[0].restitution": 0.5, "puck[0].tangential": -0.5,

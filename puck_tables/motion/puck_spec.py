@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Self
 
-from puck_tables._core.fields import of
+from puck_tables._core.fields import Unsaid, of
+from puck_tables._core.own_folder import say
 from puck_tables._core.reading import Reading, given_in, mark_checked, read_values
 from puck_tables._core.real import positive, real
 from puck_tables.contact.laws import HOMOGENEOUS, Law
@@ -19,6 +20,8 @@ from puck_tables.motion.body import (
     Body,
     body_of,
 )
+
+_ROUNDED = 0.01  # of a radius: what a profile and a puck may differ by
 
 
 @dataclass(frozen=True)
@@ -40,7 +43,10 @@ class PuckSpec:
     )
     friction: float = of("number", 0.0, low=0.0, doc="Coulomb's coefficient f")
     mass: float = of("number", 1.0, "kg", low=0.0, above=True)
-    gravity: float = of("number", STANDARD_GRAVITY, "m/s^2", low=0.0, above=True)
+    gravity: float = of(
+        "number", Unsaid(STANDARD_GRAVITY), "m/s^2", low=0.0, above=True, objects=(Unsaid,),
+        doc="in a scene that has none of its own",
+    )  # fmt: skip
     pressure: str | Law = of(
         "text", "uniform", file=".csv", objects=(Law,),
         doc="pressure law, as build-tables --pressure takes it",
@@ -66,6 +72,11 @@ class PuckSpec:
                 f"{self.decel:g} m/s^2: out of the range of floating point"
             )
         object.__setattr__(self, "gyration", self.body.gyration)
+        if (rim := self.body.law.rim) is not None and abs(rim - self.radius) > _ROUNDED * rim:
+            say(  # once for a law, however many radii
+                f"{self.body.law.name} ends at {rim:g} m: pucks of another radius have its "
+                "pressure over their own"
+            )
         mark_checked(self)
 
     @classmethod

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from puck_tables._core.fields import Kind, in_tables, specs
+from puck_tables._core.fields import Kind, Unsaid, in_tables, specs
 from puck_tables._core.real import finite_array, shown
 from puck_tables.errors import InputError
 
@@ -114,7 +114,8 @@ def entry_at(scene: Any, path: str) -> Entry:
 def tables_of(part: Any) -> dict[str, Any]:
     """A scene as nested tables that :meth:`puck_tables.Scene.from_tables` takes, without ranges.
 
-    What is left out stays out, and so does a number without bound.
+    What is left out stays out, and so does a number without bound, and a gravity that a puck was
+    not given.
 
     Examples
     --------
@@ -125,12 +126,16 @@ def tables_of(part: Any) -> dict[str, Any]:
     tables: dict[str, Any] = {}
     for name, spec in specs(type(part)).items():
         value = _plain(getattr(part, spec.name))
-        if value is not None and value != [] and not (isinstance(value, float) and value == np.inf):
+        unsaid = isinstance(value, Unsaid) and value == spec.default
+        if not (
+            unsaid or value is None or value == [] or (type(value) is float and value == np.inf)
+        ):
             tables[in_tables(name)] = value
-    if "gravity" in tables and "puck" in tables:  # a scene whose pucks have its own
+    if "gravity" in tables and "puck" in tables:  # a scene that gave it to its pucks
         pucks = tables["puck"]
         for puck in pucks if isinstance(pucks, list) else [pucks]:
-            puck.pop("gravity", None)
+            if isinstance(puck.get("gravity"), Unsaid):
+                del puck["gravity"]
     return tables
 
 

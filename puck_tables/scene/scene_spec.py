@@ -11,7 +11,7 @@ from typing import Any, Self
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.fields import of, specs
+from puck_tables._core.fields import Unsaid, of, specs
 from puck_tables._core.reading import Range, Reading, given_in, read_values
 from puck_tables._core.real import instance
 from puck_tables.errors import InputError
@@ -70,7 +70,7 @@ class SceneSpec:
         acts="",
         low=0.0,
         above=True,
-        doc="of all pucks; left out: each has its own",
+        doc="of all pucks; left out: that of the pucks",
     )
     time: float | None = of("number", None, "s", low=0.0, above=True, doc="until rest if left out")
     frames: float = of("number", 101.0, low=1.0, high=1e6, doc="states to save")
@@ -177,7 +177,7 @@ class SceneSpec:
         for spec in specs(type(self)).values():
             object.__setattr__(scene, spec.name, spec.default)
         object.__setattr__(scene, "puck", puck)
-        for name in ("floor", "time", "tol"):
+        for name in ("floor", "gravity", "time", "tol"):
             object.__setattr__(scene, name, getattr(self, name))
         object.__setattr__(scene, "ranges", {})
         return scene
@@ -236,7 +236,7 @@ class SceneSpec:
         return []
 
     def _fill(self, tables: Mapping[str, Any], source: str, before: float | None = None) -> None:
-        """Check all that is given, and take it; pucks may have the gravity ``before``."""
+        """Check all that is given, and take it; pucks may have got the gravity ``before``."""
         found: dict[str, Range] = {}
         reading = Reading([], found)
         values = read_values(type(self), tables, "", reading)
@@ -249,7 +249,7 @@ class SceneSpec:
             )
         reading.errors.extend(_puck_or_pucks(values))
         if values is not None and not reading.errors:
-            reading.errors.extend(_give_gravity(values, before))
+            reading.errors.extend(_give_gravity(values, found, before))
         if values is None or reading.errors:
             raise _refusal(reading.errors, source)
         for spec in specs(type(self)).values():
@@ -280,20 +280,42 @@ def _puck_or_pucks(values: Mapping[str, Any] | None) -> Iterator[str]:
         yield "puck and pucks: give one puck with its launch, or a list of pucks"
 
 
-def _give_gravity(values: dict[str, Any], before: float | None) -> Iterator[str]:
-    """Give all pucks the gravity of the scene, if it has one; those that have another are told."""
-    gravity = values.get("gravity")
-    if gravity is None:
-        return
-    for name, path in (("puck", "puck"), ("pucks", "puck[{}]")):
-        given = values.get(name) or ()
-        pucks = (given,) if name == "puck" and given else given
-        for number, puck in enumerate(pucks):
-            if puck.gravity not in (STANDARD_GRAVITY, gravity, before):
+def _give_gravity(
+    values: dict[str, Any], ranges: Mapping[str, Range], before: float | None
+) -> Iterator[str]:
+    """Give all pucks the gravity of the scene, if it has one; what contradicts it is told."""
+    gravity, several = values.get("gravity"), bool(values.get("pucks"))
+    if gravity is not None or before is not None:
+        _weigh(values, STANDARD_GRAVITY if gravity is None else gravity)
+    pucks = values["pucks"] if several else (values["puck"],)
+    for number, puck in enumerate(pucks):
+        path = f"puck[{number}].gravity" if several else "puck.gravity"
+        said = path if path in ranges else f"{path} = {puck.gravity:g}"
+        if gravity is None:
+            if several and (path in ranges or puck.gravity != pucks[0].gravity):
                 yield (
-                    f"{path.format(number)}.gravity = {puck.gravity:g}: the scene's gravity, "
-                    f"{gravity:g} m/s^2, is that of all its pucks: leave one of them out"
+                    f"{said}, where puck[0] has {pucks[0].gravity:g} m/s^2: pucks of one scene "
+                    f"have one gravity, write it once above all, as gravity = {puck.gravity:g}, "
+                    "and for no puck"
                 )
-        heavy = tuple(replace(puck, gravity=gravity) for puck in pucks)
-        if heavy:
-            values[name] = heavy[0] if name == "puck" else heavy
+                return
+        elif not isinstance(puck.gravity, Unsaid) and (
+            path in ranges or "gravity" in ranges or puck.gravity != gravity
+        ):
+            yield (
+                f"{said}: the scene's gravity, {gravity:g} m/s^2, is that of all its pucks: leave "
+                "one of them out"
+            )
+
+
+def _weigh(values: dict[str, Any], gravity: float) -> None:
+    """Give a gravity to all pucks that were not given one."""
+
+    def heavy(puck: PuckSpec) -> PuckSpec:
+        if puck.gravity == gravity or not isinstance(puck.gravity, Unsaid):
+            return puck
+        return replace(puck, gravity=Unsaid(gravity))
+
+    if values.get("puck"):
+        values["puck"] = heavy(values["puck"])
+    values["pucks"] = tuple(map(heavy, values.get("pucks") or ()))

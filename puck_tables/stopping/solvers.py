@@ -26,7 +26,8 @@ from puck_tables.motion.steppers import Stepping
 from puck_tables.stopping.launches import Launches, fits, in_chunks, launches_in
 from puck_tables.stopping.lookup import STOP_POWERS
 from puck_tables.stopping.stop_section import StopSection
-from puck_tables.stopping.stop_table import OTHERS, StopTable
+from puck_tables.stopping.stop_table import StopTable
+from puck_tables.stopping.stop_values import OTHERS
 
 Status = npt.NDArray[np.int8]
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from puck_tables._core.executor import Progress
 from puck_tables._core.memory import check_memory
+from puck_tables._core.own_folder import say
 from puck_tables._core.real import one_velocity
 from puck_tables.bulk.finish import check_part, finish
 from puck_tables.bulk.spreads import checked_samples
@@ -28,7 +29,7 @@ DEFAULT_SPEED = np.linspace(0.0, 2.0, 41)
 DEFAULT_SPIN = np.linspace(-4.0, 4.0, 41)
 
 
-def sweep(puck: Any, given: Mapping[str, Any], launches: Any, *, how: How) -> Result:
+def sweep(puck: Any, given: Mapping[str, Any], launches: Any, *, how: SweepOptions) -> Result:
     """Stops of all combinations of numbers: :meth:`puck_tables.Puck.sweep`."""
     numbers = numbers_given(puck, given)
     if launches is None:
@@ -41,10 +42,15 @@ def sweep(puck: Any, given: Mapping[str, Any], launches: Any, *, how: How) -> Re
     laws = numbers.pop("pressure", puck.pressure)
     names = {*numbers, *(argument for argument, column in COLUMN.items()
                          if column in launches.variables)}  # fmt: skip
+    read = set(COLUMN.values())
+    if unread := [str(name) for name in launches.data_vars if name not in read]:
+        say(f"launches: variables not read: {', '.join(unread)[:400]}")
     return how.done(labelled(launches, _whole(puck, numbers, names), laws), puck)
 
 
-def sample(puck: Any, count: int, seed: int, given: Mapping[str, Any], *, how: How) -> Result:
+def sample(
+    puck: Any, count: int, seed: int, given: Mapping[str, Any], *, how: SweepOptions
+) -> Result:
     """Stops of launches that scatter: :meth:`puck_tables.Puck.sample`."""
     checked_samples(count, seed)
     numbers = numbers_given(puck, given)
@@ -94,7 +100,7 @@ def _of(names: Container[str]) -> list[str]:
 
 
 @dataclass(frozen=True)
-class How:
+class SweepOptions:
     """How stops are computed, and where they go: arguments of :meth:`puck_tables.Puck.sweep`."""
 
     tol: float

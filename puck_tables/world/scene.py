@@ -8,23 +8,24 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Self
 
 import numpy.typing as npt
 
 from puck_tables._core.executor import Progress
 from puck_tables._core.fields import of
 from puck_tables.puck import Puck
+from puck_tables.scene.agreement import disagreements
 from puck_tables.scene.library import find_scene
 from puck_tables.scene.pieces import PieceSpec
 from puck_tables.scene.scene_spec import SceneSpec
 
 if TYPE_CHECKING:
     from puck_tables.bulk.spreads import Spread
-    from puck_tables.scene.outcome import SceneRun
-    from puck_tables.scene.sample import SceneSample
-    from puck_tables.scene.sweep import SceneMap
+    from puck_tables.scene.run import Run
     from puck_tables.world.aimed import BoardAim
+    from puck_tables.world.map import Map
+    from puck_tables.world.sample import Sample
     from puck_tables.world.world import World
 
 
@@ -87,7 +88,7 @@ class Scene(SceneSpec):
     frames, tol : optional
         How many states to save; the error wanted, of Q/J and Q²/J.
     gravity : m/s², > 0, optional
-        Of all its pucks; left out, each has its own.
+        Of all its pucks.  Left out, it is what the pucks have: one, where there are several.
     ranges : mapping, optional
         Values of numbers that take several, by path, such as ``{"puck.height": [0.0, 0.01]}``.  A
         changed copy (:func:`dataclasses.replace`) keeps those of the parts that it keeps.
@@ -114,9 +115,9 @@ class Scene(SceneSpec):
     def _disagreements(self) -> list[str]:
         """What is wrong between its parts."""
         if self.is_board:
-            from puck_tables.world.agreement import disagreements
-        else:
-            from puck_tables.scene.agreement import disagreements
+            from puck_tables.world.agreement import disagreements as of_board
+
+            return of_board(self)
         return disagreements(self)
 
     @classmethod
@@ -135,7 +136,7 @@ class Scene(SceneSpec):
         """
         return cls.from_tables(find_scene(str(name)), str(name))
 
-    def simulate(self, times: npt.ArrayLike | None = None) -> SceneRun:
+    def simulate(self, times: npt.ArrayLike | None = None) -> Run:
         """Run it, from the launch to the end.
 
         Parameters
@@ -145,7 +146,7 @@ class Scene(SceneSpec):
 
         Returns
         -------
-        SceneRun
+        Run
             States beyond the end of the run are left out, except at rest.
 
         Raises
@@ -171,8 +172,7 @@ class Scene(SceneSpec):
         if self.is_board:
             from puck_tables.world.simulate import simulate as on_board
 
-            board: Any = on_board(self, times)
-            return board
+            return on_board(self, times)
         from puck_tables.scene.simulate import simulate
 
         return simulate(self, times)
@@ -186,7 +186,7 @@ class Scene(SceneSpec):
         store: str | Path | None = None,
         cluster: str | None = None,
         overwrite: bool = False,
-    ) -> SceneMap:
+    ) -> Map:
         """Run it for all combinations of the numbers in it that are ranges.
 
         Parameters
@@ -199,8 +199,9 @@ class Scene(SceneSpec):
 
         Returns
         -------
-        SceneMap
-            A run that has no end, or that is refused, is named in :meth:`SceneMap.without_end`.
+        Map
+            A run that has no end, or that is refused, is named in :meth:`Map.without_end`.  Of a
+            list of ``pucks`` its columns have a last dimension over them.
 
         Raises
         ------
@@ -214,16 +215,13 @@ class Scene(SceneSpec):
         >>> Scene(puck, launch=Launch(velocities, spin=[0.0, 9.0])).sweep().y.round(6).tolist()
         [0.0, 2.056068]
         """
-        sweep: Any
-        if self.is_board:
-            from puck_tables.world.sweep import sweep
-        else:
-            from puck_tables.scene.sweep import sweep
-        stops: SceneMap = sweep(
+        from puck_tables.world.runs import sweep
+
+        ends: Map = sweep(
             self, threads=threads, chunk=chunk, progress=progress, store=store, cluster=cluster,
             overwrite=overwrite,
         )  # fmt: skip
-        return stops
+        return ends
 
     def sample(
         self,
@@ -237,7 +235,7 @@ class Scene(SceneSpec):
         store: str | Path | None = None,
         cluster: str | None = None,
         overwrite: bool = False,
-    ) -> SceneSample:
+    ) -> Sample:
         """Run it with numbers that scatter.
 
         Parameters
@@ -249,13 +247,14 @@ class Scene(SceneSpec):
 
         Returns
         -------
-        SceneSample
-            With the summaries of :meth:`puck_tables.Puck.sample`.
+        Sample
+            With the summaries of :meth:`puck_tables.Puck.sample`; of a list of ``pucks`` those of
+            each, ``sample.of("red").mean()``, and how often it leaves play.
 
         Raises
         ------
         InputError
-            If nothing scatters, what does is no number of the scene, or it is a board.
+            If nothing scatters, or what does is no number of the scene.
 
         Examples
         --------
@@ -264,13 +263,21 @@ class Scene(SceneSpec):
         >>> found = scene.sample(1000, 7, {"launch.velocity[0]": Normal(1.0, 0.01)})
         >>> round(found.mean()["x"], 3)
         0.51
+        >>> from puck_tables import Launch, Piece
+        >>> cue = Piece(0.03, friction=0.1, name="cue", launch=Launch((1.0, 0.0)))
+        >>> red = Piece(0.03, friction=0.1, name="red", launch=Launch(position=(0.3, 0.0)))
+        >>> spreads = {"puck[0].launch.velocity[1]": Normal(0.0, 0.01)}
+        >>> found = Scene(pucks=[cue, red]).sample(100, 7, spreads)
+        >>> round(found.of("red").mean()["x"], 3)
+        0.569
         """
-        from puck_tables.scene.sample import sample
+        from puck_tables.world.runs import sample
 
-        return sample(
+        found: Sample = sample(
             self, count, seed, spreads, threads=threads, chunk=chunk, progress=progress,
             store=store, cluster=cluster, overwrite=overwrite,
         )  # fmt: skip
+        return found
 
     def world(self) -> World:
         """The same board to play on: advance it, strike pucks, look ahead.
