@@ -274,7 +274,7 @@ def fit(
         uncut=uncut,
     )
     if result.complaints:
-        result = replace(result, misread=misread(slides, problem, known))
+        result = replace(result, misread=misread(slides, problem, known, bool(speeds)))
     return result
 
 
