@@ -10,7 +10,7 @@ import click
 from puck_tables.cli.options import FILE, deliver, output_options, prepare_outputs, progress
 
 if TYPE_CHECKING:
-    from puck_tables.accuracy.front import MeasuredMethod
+    from puck_tables.accuracy.method_errors import MeasuredMethod
     from puck_tables.tradeoff.measurement import TradeOff
 
 
@@ -44,7 +44,7 @@ def tradeoff(quick: bool, outputs: tuple[Path, ...], plot: Path | None, overwrit
 
 def report(measured: TradeOff) -> str:
     """The front of every question, the outsiders, how cost grows, and the machine."""
-    from puck_tables.accuracy.front import pareto
+    from puck_tables.accuracy.method_errors import pareto
 
     lines = []
     for question in dict.fromkeys(method.question for method in measured.methods):

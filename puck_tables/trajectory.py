@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import checked_flag, finite_array, one_velocity, real, shown
-from puck_tables.accuracy.front import Selection
+from puck_tables.accuracy.method_errors import Selection
 from puck_tables.accuracy.methods import INTEGRATORS, method_named
 from puck_tables.errors import InputError
 from puck_tables.io.dataset import Dataset, variable
@@ -259,7 +259,7 @@ def _integrated(
     run: MotionRun, frame: Frame, moments: FloatArray, stop_time: float
 ) -> dict[str, FloatArray]:
     """States of a motion in natural units as the columns of a trajectory."""
-    q, natural = run.states(frame.natural_times(moments, stop_time))
+    q, natural = run.states(frame.unit_times(moments, stop_time))
     x, y, turn, orientation, speed, spin = frame.states(q, natural)
     phi = np.arctan(np.exp(np.minimum(natural[:, U], _LARGEST_U)))
     slip_angle = np.where(q > 0.0, frame.side * phi, 0.0) + 0.0

@@ -15,7 +15,7 @@ from puck_tables.contact.laws import HOMOGENEOUS
 from puck_tables.errors import InputError
 from puck_tables.motion.body import body_of
 from puck_tables.stopping.aim_lookup import RIM, SPEED, TIME
-from puck_tables.stopping.launch_family import launch_curve
+from puck_tables.stopping.launch_family import launch_family_of
 
 U = np.linspace(-6.0, 4.0, 401)
 
@@ -81,7 +81,7 @@ def test_the_fastest_launch_of_a_tall_puck_spins():
 
 def test_between_two_folds_both_ranges_are_sampled():
     """δ = 3.9: the speed falls, grows and falls: a bound may leave two ranges of slip angles."""
-    section = launch_curve(body_of("uniform", 3.9, HOMOGENEOUS))
+    section = launch_family_of(body_of("uniform", 3.9, HOMOGENEOUS))
     turns = [n for n in range(1, section.u.size - 1)
              if -1.0 < section.u[n] < 0.5
              and (section.values[n, SPEED] - section.values[n - 1, SPEED])

@@ -111,7 +111,7 @@ def test_rk4_keeps_order_4_across_every_line(puck: tuple[str, float, float]):
     crossed = 0
     for u in (-4.0, 4.0):
         truth = integrated(u, friction, Stepping(DORMAND_PRINCE, 0.0, 1e-14))
-        lines = friction.cut[::2, 2]
+        lines = friction.coefficients[::2, 2]
         crossed += sum(bool((truth.y[:, 0] == line).any()) for line in lines)
         counts = np.array([60.0, 85.0, 120.0, 170.0, 240.0, 340.0])
         stops = [integrated(u, friction, Stepping(RK4, n, 1.0)).stop for n in counts]

@@ -74,7 +74,9 @@ def test_a_stop_section_everywhere_against_integration(puck: tuple[str, float, f
     phi = np.concatenate([rng.uniform(0.0, 0.5 * np.pi, 250), near])
     phi = phi[(phi > 0.0) & (phi < 0.5 * np.pi)]
     u = np.log(np.tan(phi))
-    truth = integrated_stops(u, np.full(u.size, delta), section_friction(body, 1e-8).cut, 1e-10)
+    truth = integrated_stops(
+        u, np.full(u.size, delta), section_friction(body, 1e-8).coefficients, 1e-10
+    )
     looked_up = stops_of((law, delta, gyration), u, tol=1e-6, method="look-up")
     assert np.abs(looked_up - truth[:, :5].T).max() <= 1.2 * found.error
     assert found.error <= 1e-6
@@ -175,7 +177,7 @@ def test_a_tall_puck_may_be_aimed_in_three_ways():
     """Just below φ = π/4 the stop time of a puck with δ = 3.9 falls with its spin."""
     u = np.linspace(-0.5, 0.5, 81)
     friction = section_friction(body_of("uniform", 3.9, HOMOGENEOUS), 1e-6)
-    stops = integrated_stops(u, np.full(u.size, 3.9), friction.cut, 1e-9)
+    stops = integrated_stops(u, np.full(u.size, 3.9), friction.coefficients, 1e-9)
     duration = stops[:, 0] / np.sqrt(np.hypot(stops[:, 1], stops[:, 2])) * math.sqrt(2.0)
     falling = np.flatnonzero(np.diff(duration) < 0.0)
     assert falling.size > 2

@@ -12,17 +12,17 @@ import pytest
 from puck_tables import SpeedLaw, Table
 from puck_tables.contact.laws import law_of
 from puck_tables.kernels.compile import kernel
-from puck_tables.kernels.quadratic import cut, fill_resultants, room_for_cut
+from puck_tables.kernels.quadratic import fill_resultants, room_for_section, section_at
 from puck_tables.kernels.section_spline import fill_section
 from puck_tables.kernels.speed_spline import fill_speed
 from puck_tables.kernels.spline import cell_at
 from puck_tables.motion.body import body_of
 from puck_tables.stopping.launch_arrays import launches_in
-from puck_tables.stopping.launch_lookup import fill_known
+from puck_tables.stopping.launch_lookup import fill_launch_lookup
 from puck_tables.stopping.lookup import stops_kernel
 from puck_tables.stopping.section_lookup import fill_section_stops
 from puck_tables.stopping.similarity_lookup import LAUNCH_COLUMNS, LAUNCH_ROWS
-from puck_tables.stopping.state_lookup import PUCK_ROWS, fill_orbit_states
+from puck_tables.stopping.state_lookup import PUCK_ROWS, fill_states_at
 from puck_tables.table.friction_section import friction_section
 from puck_tables.table.resultant_check import tabulate
 from puck_tables.table.resultant_table import ResultantTable
@@ -64,7 +64,7 @@ def look_up_everything() -> None:
         for c in (columns, np.random.default_rng(1).choice(WILD, columns.shape)):
             fill_resultants(c, sides, first, second, out)
             for height in WILD:
-                cut(c, height, room_for_cut(c))
+                section_at(c, height, room_for_section(c))
     wild = np.random.default_rng(1).choice(WILD, (2, 11, 19, 3))
     for c in (graded_coefficients(table), wild):
         fill_graded(c, 1.0, first, second, out)
@@ -77,8 +77,10 @@ def look_up_everything() -> None:
     for c in (speeds.compiled, wild_table):
         fill_speed(c, first, fast, second, out4)
     piece = friction_section(law_of("uniform"), 0.5, 1e-4).spline
-    hostile = np.where(np.random.default_rng(3).random(piece.cut.shape) < 0.5, 1e308, piece.cut)
-    for c in (piece.cut, hostile):
+    hostile = np.where(
+        np.random.default_rng(3).random(piece.coefficients.shape) < 0.5, 1e308, piece.coefficients
+    )
+    for c in (piece.coefficients, hostile):
         fill_section(c, 3, first, fast, out)
     fill_uniform(uniform_coefficients(9), first, second, np.empty(3), out)
     one = np.ones(n)
@@ -90,22 +92,22 @@ def look_up_everything() -> None:
     ):  # fmt: skip
         for powers in (4, 8):
             given = launches_in(launches).part(0, n)
-            stops_kernel(powers)(*given, stops.cut(powers, 1), *out, 1)
+            stops_kernel(powers)(*given, stops.thinned(powers, 1), *out, 1)
         for rows in (PUCK_ROWS, 3):
-            fill_known(
-                *given, stops.cut(), stops.launch_coefficients, stops.turn_coefficients,
+            fill_launch_lookup(
+                *given, stops.thinned(), stops.launch_coefficients, stops.turn_coefficients,
                 stops.constants, 1e-3, np.empty((rows, n)),
             )  # fmt: skip
         fill_section_stops(launches, body_stops(), 2.0, out6)
         pucks = np.ones((PUCK_ROWS, n))
         pucks[LAUNCH_COLUMNS:] = np.random.default_rng(4).choice(WILD, (LAUNCH_ROWS, n))
-        fill_orbit_states(pucks, np.arange(n), np.abs(first), 0, n, stops.orbit_coefficients, out6)
+        fill_states_at(pucks, np.arange(n), np.abs(first), 0, n, stops.state_coefficients, out6)
 
 
 def body_stops() -> np.ndarray:
     from puck_tables.stopping.stop_section import stop_section_for
 
-    return stop_section_for(body_of(law_of("uniform"), 0.5, 0.9), 1e-4).spline.cut
+    return stop_section_for(body_of(law_of("uniform"), 0.5, 0.9), 1e-4).spline.coefficients
 
 
 def look_up_in_a_process(**environment: str) -> None:

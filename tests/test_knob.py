@@ -13,7 +13,13 @@ from puck_tables.cli.main import main
 from pucks import simulate, sweep
 
 from puck_tables import Table, stop
-from puck_tables.accuracy.front import MARGIN, front_from_csv, pareto, select, shipped_front
+from puck_tables.accuracy.method_errors import (
+    MARGIN,
+    errors_from_csv,
+    pareto,
+    select,
+    shipped_errors,
+)
 from puck_tables.accuracy.methods import INTEGRATED, LOOK_UP
 from puck_tables.errors import AccuracyError, InputError, TableError
 from puck_tables.stopping.stop_table import StopTable
@@ -119,7 +125,7 @@ def test_the_cheapest_that_is_close_enough_is_taken():
         for tol in 10.0 ** -np.linspace(2, 12.9, 60):
             taken = select(question, tol, methods)
             assert MARGIN * taken.error <= tol
-            rows = [row for row in shipped_front() if row.question == question]
+            rows = [row for row in shipped_errors() if row.question == question]
             (row,) = (r for r in rows if r.scheme == taken.scheme and r.setting == taken.setting)
             for other in rows:
                 if other.scheme in methods and other.ns < row.ns:
@@ -144,10 +150,10 @@ def test_what_it_cannot_reach_it_says():
 
 
 def test_the_shipped_front_is_read_and_damage_is_named():
-    ways = shipped_front()
+    ways = shipped_errors()
     assert {way.question for way in ways} == {"resultants", "stop", "trajectory", "state"}
     with pytest.raises(TableError, match="damaged"):
-        front_from_csv("question,method\nstop,look-up\n")
+        errors_from_csv("question,method\nstop,look-up\n")
     front = pareto(way for way in ways if way.question == "stop" and not way.outsider)
     assert front[0].scheme == LOOK_UP
     assert front[-1].method == "adaptive, closed forms"

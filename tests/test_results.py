@@ -18,7 +18,7 @@ from matplotlib.figure import Figure
 from scenes import simulate_scene, sweep_scene
 
 from puck_tables import Puck, floor_friction, reference_case, states, stop
-from puck_tables.accuracy.front import shipped_front
+from puck_tables.accuracy.method_errors import shipped_errors
 from puck_tables.chetaev import Asperity, asperity_curve
 from puck_tables.errors import ContactError, InputError, OutputError
 from puck_tables.io.columns import COLUMNS
@@ -58,7 +58,7 @@ RESULTS: dict[str, Callable[[], Result]] = {
     "friction over epsilon": lambda: floor_friction("coin"),
     "asperity": lambda: asperity_curve(Asperity(1.0, 4.0, 1.0, 1.0), np.linspace(0.0, 9.0, 30)),
     "trade-off": lambda: TradeOff(
-        shipped_front(), COUNTS, COUNTS * 1.0, COUNTS * 1.0,
+        shipped_errors(), COUNTS, COUNTS * 1.0, COUNTS * 1.0,
         (CallCost("stop", "all six", 1, 1, 2e4),), {"truth": 1.5},
         Machine({"processor": "one"}, 1.0, 1.0), 1, 1.0,
     ),

@@ -10,7 +10,7 @@ from pucks import simulate
 
 from puck_tables import Puck, Table, stop
 from puck_tables.accuracy import methods
-from puck_tables.accuracy.front import select, shipped_front
+from puck_tables.accuracy.method_errors import select, shipped_errors
 from puck_tables.accuracy.methods import INTEGRATORS, METHODS, FrictionForm, Method, Scheme
 from puck_tables.contact.laws import HOMOGENEOUS
 from puck_tables.errors import AccuracyError, InputError
@@ -110,13 +110,13 @@ def test_the_frame_turns_mirrors_and_scales():
         np.testing.assert_allclose(scaled.x, along * east - left * north, atol=1e-13 * length)
         np.testing.assert_allclose(scaled.y, along * north + left * east, atol=1e-13 * length)
     still = frame_of((0.0, 0.0), 0.0, 1.0, 1.0)
-    assert still.natural_times(np.array([0.0, 1.0]), 0.0).tolist() == [math.inf, math.inf]
+    assert still.unit_times(np.array([0.0, 1.0]), 0.0).tolist() == [math.inf, math.inf]
 
 
 def test_methods_are_named_once():
     assert [method.value for method in METHODS] == ["look-up", "rk4", "adaptive"]
     assert set(TABLEAUS) == set(INTEGRATORS)
-    measured = {row.scheme for row in shipped_front()} - {None}
+    measured = {row.scheme for row in shipped_errors()} - {None}
     assert measured == set(methods.MEASURED.values())
     for name in ("euler", "", "RK4", "LOOK_UP", 4, ("rk4",)):
         with pytest.raises(InputError, match="method must be one of look-up, rk4, adaptive"):

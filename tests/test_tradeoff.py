@@ -14,7 +14,7 @@ from puck_tables.cli.main import main
 from puck_tables.cli.tradeoff import report
 
 from puck_tables import Table, resultants
-from puck_tables.accuracy.front import shipped_front
+from puck_tables.accuracy.method_errors import shipped_errors
 from puck_tables.errors import OutputError
 from puck_tables.kernels.section_spline import NO_SECTION
 from puck_tables.motion.bulk_stops import fill_stops
@@ -26,7 +26,7 @@ from puck_tables.tradeoff.bicubic import fill_graded, graded_coefficients
 from puck_tables.tradeoff.call_overhead import CallCost, measured_doors
 from puck_tables.tradeoff.literature_models import PADE_MATCHED, as_table, pade_limit_ratio
 from puck_tables.tradeoff.machine import measured_machine
-from puck_tables.tradeoff.truth import Points, known_starts, random_points
+from puck_tables.tradeoff.truth import Points, golden_starts, random_points
 
 DOORS = (CallCost("stop", "all six", 1, 1, 2e4), CallCost("stop", "all six", 1, 10**6, 75.0))
 
@@ -37,7 +37,7 @@ def measured() -> measurement.TradeOff:
     machine = replace(measured_machine(), description={"processor": "any", "cores": "1"})
     sizes = np.array([1e3, 1e4])
     return measurement.TradeOff(
-        shipped_front(), sizes, np.array([20.0, 15.0]), np.array([1e5, 1e6]), DOORS,
+        shipped_errors(), sizes, np.array([20.0, 15.0]), np.array([1e5, 1e6]), DOORS,
         {"truth": 1.531, "limit surface": np.inf}, machine, 25, 80.0,
     )  # fmt: skip
 
@@ -46,8 +46,8 @@ def measured() -> measurement.TradeOff:
 def test_errors_are_properties_of_the_ways_and_ship_as_measured():
     """Every look-up and every fifth contender measured again: the same to the digits shipped."""
     points = random_points(40)
-    task = stop_methods.StopTask(known_starts(), points, Table.shipped(), Table.shipped("stops"))
-    known = {(method.question, method.name): method for method in shipped_front()}
+    task = stop_methods.StopTask(golden_starts(), points, Table.shipped(), Table.shipped("stops"))
+    known = {(method.question, method.name): method for method in shipped_errors()}
     count = 0
     for number, contender in enumerate(stop_methods.contenders(task)):
         if contender.outsider or (contender.method != "look-up" and number % 5):
@@ -68,7 +68,7 @@ def test_errors_of_resultants_ship_as_measured():
     flat = points.delta == 0.0
     flat_points = Points(points.phi[flat], points.delta[flat], points.resultants[:, flat])
     task = resultant_methods.ResultantTask(points, flat_points)
-    known = {method.name: method for method in shipped_front() if method.question == "resultants"}
+    known = {method.name: method for method in shipped_errors() if method.question == "resultants"}
     for contender in resultant_methods.contenders(task):
         if contender.method in ("quadratic in delta", "bicubic, graded", "limit surface"):
             error = contender.ready(contender.build()).place_error.max()
@@ -78,12 +78,14 @@ def test_errors_of_resultants_ship_as_measured():
 
 def test_the_figures_asked_for_are_on_the_front():
     """Errors and sizes; times are for the benchmarks."""
-    methods = {method.name: method for method in shipped_front() if method.question == "resultants"}
+    methods = {
+        method.name: method for method in shipped_errors() if method.question == "resultants"
+    }
     table = methods["quadratic in delta (nodes=513)"]
     assert table.error <= 3e-9
     assert table.bytes <= 1 << 20
     assert methods["closed forms"].error <= 1e-14
-    stops = [method for method in shipped_front() if method.question == "stop"]
+    stops = [method for method in shipped_errors() if method.question == "stop"]
     assert any(method.method == "look-up" and method.error <= 3e-9 for method in stops)
 
 
@@ -118,7 +120,7 @@ def test_vectors_of_the_look_up_are_the_plain_sums():
 
     launch = launches_of((0.6, 0.1), 0.9, 0.7, 1.0, 1.0).part(0, 1)
     for powers in range(2, 8):
-        c = table.cut(powers)
+        c = table.thinned(powers)
         out = np.empty((3, 1))
         stops_kernel(powers)(*launch, c, *out, 1)
         side, xi = slip_place(np.hypot(0.6, 0.1), 0.9)

@@ -295,7 +295,7 @@ def test_one_alone_as_a_single_puck(spin: float):
     puck = pt.Puck(
         radius=0.04, height=0.02, friction=0.15, mass=0.2, pressure="annulus:0.8", gyration=0.9
     )
-    cut = body_of("annulus:0.8", puck.delta, 0.9).friction(1e-11).cut
+    cut = body_of("annulus:0.8", puck.delta, 0.9).friction(1e-11).coefficients
     group = group_of(
         [disc(radius=0.04, decel=0.15 * puck.gravity, delta=puck.delta, gyration=0.9)],
         cuts=cut[None],

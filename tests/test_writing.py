@@ -17,7 +17,7 @@ from click.testing import CliRunner
 from puck_tables.cli.main import main
 
 from puck_tables._core import safe_write
-from puck_tables.accuracy.front import shipped_front
+from puck_tables.accuracy.method_errors import shipped_errors
 from puck_tables.stopping.stop_table import StopTable
 
 # {} is the output without its ending; the path that is written is the one that follows
@@ -63,7 +63,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
     machine = Machine({"processor": "any"}, 1e9, 1e9)
     measured = measurement.TradeOff(
-        shipped_front(), np.array([1e3]), np.array([20.0]), np.array([1e5]),
+        shipped_errors(), np.array([1e3]), np.array([20.0]), np.array([1e5]),
         (CallCost("stop", "all six", 1, 1, 2e4),), {"truth": 1.531},
         machine, 25, 80.0,
     )  # fmt: skip

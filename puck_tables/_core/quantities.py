@@ -23,7 +23,7 @@ _FACTOR = re.compile(
 )  # fmt: skip
 
 
-class Column(NamedTuple):
+class InputColumn(NamedTuple):
     """A column that may be wanted.
 
     ``name``: in messages; ``words``: by which a heading is known, the first as an example;
@@ -41,27 +41,27 @@ class Column(NamedTuple):
         return f"{word} [{unit}]" if unit else word
 
 
-TIME = Column("time", "t time times zeit temps tiempo tempo tijd sec secs seconds", "time")
-X = Column("x", "x xpos posx xcoord", "length")
-Y = Column("y", "y ypos posy ycoord", "length")
-ANGLE = Column("angle", "angle theta θ phi φ orientation rotation winkel", "angle")
-SPEED = Column(
+TIME = InputColumn("time", "t time times zeit temps tiempo tempo tijd sec secs seconds", "time")
+X = InputColumn("x", "x xpos posx xcoord", "length")
+Y = InputColumn("y", "y ypos posy ycoord", "length")
+ANGLE = InputColumn("angle", "angle theta θ phi φ orientation rotation winkel", "angle")
+SPEED = InputColumn(
     "speed", "v u speed speeds velocity velocities geschwindigkeit vitesse velocidad", "velocity"
 )
-FRICTION = Column(
+FRICTION = InputColumn(
     "friction coefficient", "f mu µ μ cof coef coeff coefficient friction reibwert reibzahl "
     "reibungszahl reibungskoeffizient", "ratio",
 )  # fmt: skip
-RESTITUTION = Column("restitution", "e cor restitution", "ratio")
-RADIUS = Column("radius", f"r radius radii rho ρ x radial {' '.join(_DIAMETERS)}", "radius")
-PRESSURE = Column("pressure", "p pressure w load stress druck pression", "any")
-FORCE_X = Column("force along x", "Fx fx forcex xforce", "force")
-FORCE_Y = Column("force along y", "Fy fy forcey yforce", "force")
-TORQUE = Column("torque", "torque moment m mz tz tau drehmoment", "torque")
+RESTITUTION = InputColumn("restitution", "e cor restitution", "ratio")
+RADIUS = InputColumn("radius", f"r radius radii rho ρ x radial {' '.join(_DIAMETERS)}", "radius")
+PRESSURE = InputColumn("pressure", "p pressure w load stress druck pression", "any")
+FORCE_X = InputColumn("force along x", "Fx fx forcex xforce", "force")
+FORCE_Y = InputColumn("force along y", "Fy fy forcey yforce", "force")
+TORQUE = InputColumn("torque", "torque moment m mz tz tau drehmoment", "torque")
 ALL = (TIME, X, Y, ANGLE, SPEED, FRICTION, RESTITUTION, RADIUS, PRESSURE, FORCE_X, FORCE_Y, TORQUE)
 
 
-def known_as(text: str, columns: Sequence[Column]) -> Column | None:
+def known_as(text: str, columns: Sequence[InputColumn]) -> InputColumn | None:
     """Which of several columns a heading names."""
     tokens = _tokens(text)
     if _ERRORS & set(tokens):
@@ -95,7 +95,7 @@ def _tokens(text: str) -> list[str]:
     return [token.lower() for token in _TOKEN.findall(bracketed(text)[0])]
 
 
-def with_names(headings: Sequence[str], columns: Sequence[Column]) -> list[str]:
+def with_names(headings: Sequence[str], columns: Sequence[InputColumn]) -> list[str]:
     """Headings of which those that are a unit alone, 'mm/s', have the name of what it measures."""
     named = {known_as(text, columns) for text in headings}
     whole = []
@@ -112,7 +112,7 @@ def with_names(headings: Sequence[str], columns: Sequence[Column]) -> list[str]:
     return whole
 
 
-def unit_of(path: str, text: str, column: Column) -> tuple[str, float]:
+def unit_of(path: str, text: str, column: InputColumn) -> tuple[str, float]:
     """The unit in a heading as it is written, and its size.
 
     Raises

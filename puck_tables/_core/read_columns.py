@@ -23,7 +23,7 @@ from puck_tables._core.own_folder import say
 from puck_tables._core.quantities import (
     ALL,
     FRICTION,
-    Column,
+    InputColumn,
     is_frame,
     known_as,
     measures,
@@ -82,7 +82,7 @@ class Numbers:
 
 
 def numbers_of(
-    given: str | Path | Sequence[Sequence[float]], columns: Sequence[Column], needed: int,
+    given: str | Path | Sequence[Sequence[float]], columns: Sequence[InputColumn], needed: int,
     most: int, name: str = "",
 ) -> Numbers:  # fmt: skip
     r"""Columns of numbers, given as rows or in a text file of any separator and decimal mark.
@@ -122,7 +122,7 @@ def numbers_of(
 
 
 @lru_cache(maxsize=16)  # a scene asks for its law again and again
-def _read(path: str, content: bytes, columns: tuple[Column, ...], needed: int) -> Numbers:
+def _read(path: str, content: bytes, columns: tuple[InputColumn, ...], needed: int) -> Numbers:
     """Columns of numbers from the content of a file."""
     head = content[:HEAD]
     refuse_others(path, head)
@@ -175,7 +175,7 @@ def _tell_unread(path: str, headings: Sequence[str]) -> None:
         say(f"{path}: column{'s' if len(headings) > 1 else ''} {names}{more} not read")
 
 
-def list_of(path: str | Path, column: Column, most: int) -> FloatArray | None:
+def list_of(path: str | Path, column: InputColumn, most: int) -> FloatArray | None:
     r"""The numbers of a file that has one a line, perhaps under a heading, in SI units.
 
     None for a file of several columns.
@@ -225,7 +225,7 @@ def _content(path: str | Path, most: int) -> bytes:
         raise InputError(f"cannot read {path}: {error.strerror or error}") from None
 
 
-def _given(given: Any, columns: Sequence[Column], needed: int, name: str) -> FloatArray:
+def _given(given: Any, columns: Sequence[InputColumn], needed: int, name: str) -> FloatArray:
     """Rows that somebody gave."""
     try:
         rows = np.array([[float(cell) for cell in row] for row in given])
@@ -236,7 +236,7 @@ def _given(given: Any, columns: Sequence[Column], needed: int, name: str) -> Flo
     return rows
 
 
-def _listed(columns: Sequence[Column], needed: int) -> str:
+def _listed(columns: Sequence[InputColumn], needed: int) -> str:
     """Columns in words, with those that may be left out."""
     names = [one.written for one in columns]
     text = f"{', '.join(names[: needed - 1])} and {names[needed - 1]}"
@@ -244,8 +244,8 @@ def _listed(columns: Sequence[Column], needed: int) -> str:
 
 
 def _taken(
-    path: str, look: Look, headings: Sequence[str], columns: Sequence[Column], needed: int
-) -> dict[Column, int]:
+    path: str, look: Look, headings: Sequence[str], columns: Sequence[InputColumn], needed: int
+) -> dict[InputColumn, int]:
     """Where the columns stand that are wanted, in the order in which they are."""
     known = [known_as(text, columns) for text in headings]
     for column in columns:
@@ -271,7 +271,7 @@ def _taken(
     )
 
 
-def _refuse_unit_in_words(path: str, look: Look, columns: Sequence[Column]) -> None:
+def _refuse_unit_in_words(path: str, look: Look, columns: Sequence[InputColumn]) -> None:
     """Refuse a unit in a comment, or a line over numbers, that is no heading: whose is it?
 
     Raises

@@ -169,8 +169,8 @@ class LawValues:
         found = []
         for puck in self.pucks:
             friction = puck.body.friction(0.1 * accuracy)
-            cut = friction.for_motion(puck.gyration)
-            stops = stops_at(puck.body, friction, cut, self.phi.ravel(), accuracy)[:, :5]
+            section = friction.for_motion(puck.gyration)
+            stops = stops_at(puck.body, friction, section, self.phi.ravel(), accuracy)[:, :5]
             stops[:, 2] /= puck.delta
             found.append(stops.reshape(*self.phi.shape, 5))
         return np.stack(found, axis=2)

@@ -31,11 +31,11 @@ from puck_tables.motion.steppers import Stepping
 from puck_tables.motion.tableaus import DORMAND_PRINCE
 from puck_tables.motion.unit_motion import MotionRun, at_constant_slip, integrated
 from puck_tables.stopping.plain_states import fill_state_slopes
-from puck_tables.stopping.state_values import known_pucks, looked_up
+from puck_tables.stopping.state_values import looked_up, looked_up_launches
 from puck_tables.stopping.stop_table import StopTable
-from puck_tables.stopping.variational import Varied, natural_states, varied_by
+from puck_tables.stopping.variational import Variations, unit_states, variations_by
 from puck_tables.table.friction_section import section_of_table
-from puck_tables.table.friction_slopes import flow_at_one_height, flow_of_table
+from puck_tables.table.friction_slopes import slopes_at_one_height, slopes_of_table
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.table.resultant_values import full_contact
 
@@ -127,14 +127,14 @@ class PlainCurve(Curve):
         launches[4:] = 1.0
         which = np.repeat(np.arange(count), frames)
         table = StopTable.shipped()
-        found = looked_up(table, known_pucks(table, launches), which, tau.ravel())
+        found = looked_up(table, looked_up_launches(table, launches), which, tau.ravel())
         return found.reshape(STATE_ROWS, count, frames)
 
     def varied(self, phi: float, delta: float, tau: FloatArray) -> FloatArray:
         """By the slopes of the stop table."""
         launch = np.array([[math.cos(phi), 0.0, math.sin(phi), delta, 1.0, 1.0]]).T
         table = StopTable.shipped()
-        pucks, one = known_pucks(table, launch), np.zeros(1, np.int64)
+        pucks, one = looked_up_launches(table, launch), np.zeros(1, np.int64)
         values, slopes = looked_up(table, pucks, one, tau), np.empty((tau.size, 6, 7))
         fill_state_slopes(table, pucks, one, tau, values, slopes)
         by_speed, _, by_rim, by_delta, _, _, rate = slopes[:, :3].T
@@ -152,7 +152,7 @@ class IntegratedCurve(Curve):
         """Their friction at one height."""
 
     @abstractmethod
-    def flow(self, delta: float) -> Varied:
+    def flow(self, delta: float) -> Variations:
         """The same with its derivatives."""
 
     def varied(self, phi: float, delta: float, tau: FloatArray) -> FloatArray:
@@ -198,9 +198,9 @@ class LawCurve(IntegratedCurve):
             self._kept[delta] = Friction(FrictionForm.TABLE, delta, cut, section.tolerance)
         return self._kept[delta]
 
-    def flow(self, delta: float) -> Varied:
+    def flow(self, delta: float) -> Variations:
         """From the table of the law."""
-        return varied_by(flow_of_table(self._table, delta), self._gyration)
+        return variations_by(slopes_of_table(self._table, delta), self._gyration)
 
 
 class TallCurve(IntegratedCurve):
@@ -224,7 +224,7 @@ class TallCurve(IntegratedCurve):
         """A section of its own."""
         return section_friction(body_of("uniform", delta, self._gyration), _ACCURACY)
 
-    def flow(self, delta: float) -> Varied:
+    def flow(self, delta: float) -> Variations:
         """The same: how motions change with δ, their cubic tells."""
         return _tall_flow(delta, self._gyration)
 
@@ -265,9 +265,9 @@ def _heights(delta: float) -> list[tuple[float, float, float]]:
 
 
 @lru_cache(maxsize=64)
-def _tall_flow(delta: float, gyration: float) -> Varied:
+def _tall_flow(delta: float, gyration: float) -> Variations:
     section = body_of("uniform", delta, gyration).friction(_ACCURACY)
-    return varied_by(flow_at_one_height(section), gyration)
+    return variations_by(slopes_at_one_height(section), gyration)
 
 
 @lru_cache(maxsize=32)
@@ -307,10 +307,10 @@ def _integrated(phi: float, friction: Friction, tau: FloatArray) -> FloatArray:
     return np.stack(frame.states(*run.states(moments)))
 
 
-def _varied(phi: float, friction: Varied, tau: FloatArray) -> FloatArray:
+def _varied(phi: float, friction: Variations, tau: FloatArray) -> FloatArray:
     """A path and its derivatives, as :meth:`Curve.with_slopes`."""
     cosine, sine = math.cos(phi), math.sin(phi)
-    own = natural_states(friction, cosine, sine, tau, _STEPPING.local)[0][:, :3].T
+    own = unit_states(friction, cosine, sine, tau, _STEPPING.local)[0][:, :3].T
     return np.stack([own[0], own[5], cosine * own[3] - sine * own[1], own[4]])
 
 

@@ -64,7 +64,7 @@ class Door(Protocol):
     def compiled(self) -> Any:
         """Numba's object for it."""
 
-    def way_for(self, *args: Any) -> Callable[..., Any]:
+    def callable_for(self, *args: Any) -> Callable[..., Any]:
         """What to call with such arguments."""
 
 
@@ -111,7 +111,7 @@ def dispatcher_at(door: Door) -> Any:
     made = _dispatcher(door.py_func, door.fuses, door=True, counts=door.counts)
     made.get_call_template = partial(_at_door, door, made.get_call_template)
     made._cache = KeptCode(door.py_func)
-    made._compile_for_args = door.way_for  # asked where nothing was compiled for arguments
+    made._compile_for_args = door.callable_for  # asked where nothing was compiled for arguments
     return made
 
 

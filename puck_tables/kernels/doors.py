@@ -55,7 +55,7 @@ class Door:
             return self.py_func(*args)
         if self._ready is not None:
             return self._ready(*args)
-        return self.way_for(*args)(*args)
+        return self.callable_for(*args)(*args)
 
     def __reduce__(self) -> str:
         return self.py_func.__qualname__
@@ -73,7 +73,7 @@ class Door:
         """What it is to kernels that call it."""
         return _from_numba().type_of(self.compiled)
 
-    def way_for(self, *args: Any) -> Callable[..., Any]:
+    def callable_for(self, *args: Any) -> Callable[..., Any]:
         """What to call with such arguments: it, as it is written at first, or its compiled code."""
         if here.at_once or (here.kept_first and self._keeps(args)) or self.spent >= self._allowed:
             return self._compile(*args)

@@ -114,8 +114,8 @@ def fill_resultants(
 
 
 @kernel
-def cut(coefficients: FloatArray, delta: float, out: FloatArray) -> None:
-    """The section of plain pucks at one height into ``out``, of :func:`room_for_cut`."""
+def section_at(coefficients: FloatArray, delta: float, out: FloatArray) -> None:
+    """The section of plain pucks at one height into ``out``, of :func:`room_for_section`."""
     for side in range(coefficients.shape[0]):
         k = HEADER
         for i in range(coefficients.shape[1]):
@@ -127,7 +127,7 @@ def cut(coefficients: FloatArray, delta: float, out: FloatArray) -> None:
 
 
 @allocating
-def room_for_cut(coefficients: FloatArray) -> FloatArray:
+def room_for_section(coefficients: FloatArray) -> FloatArray:
     """A section with the header of plain pucks; no rows where there are no coefficients."""
     sides, nodes = coefficients.shape[0], coefficients.shape[1]
     out = np.zeros((sides if nodes > 0 else 0, HEADER + RATIOS * nodes))

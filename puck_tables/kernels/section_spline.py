@@ -8,7 +8,7 @@ direction of (v, r|ω|),
 
 A section is a matrix with one row a side, in the order of φ: :data:`HEADER` numbers, then the
 B-spline weights over 6 of its functions, node by node.  A plain puck has one line, φ = π/4, and
-extents of 1 (:func:`puck_tables.kernels.quadratic.cut`): marked in the header, because then
+extents of 1 (:func:`puck_tables.kernels.quadratic.section`): marked in the header, because then
 η⁴ = |r|ω| − v|/(r|ω| + v) keeps more digits.
 """
 
@@ -29,53 +29,55 @@ from puck_tables.kernels.spline import basis, cell_at, row_sums
 LINE_COS, LINE_SIN, LINE, UPPER_COS, UPPER_SIN, INVERSE_EXTENT, INERTIA, PLAIN = range(8)
 HEADER = 8  # the eight above
 RATIOS = 3  # 1/ρ_∥, ρ_⊥/ρ_∥ and ρ_ω/ρ_∥
-FLOWS = 6  # functions of a section that also holds the derivatives of the ratios by the height
+SLOPES = 6  # functions of a section that also holds the derivatives of the ratios by the height
 _LEAST = 0.5  # cells from a line: nearer the quotient of slopes is 0/0
 
 NO_SECTION = np.empty((0, HEADER))  # closed forms
 
 
 @inlined
-def section_place(k: float, fast: bool, cut: FloatArray, functions: int) -> tuple[int, int, float]:
+def section_place(
+    k: float, fast: bool, section: FloatArray, functions: int
+) -> tuple[int, int, float]:
     """Side, first column and place in the cell of a slip ratio k = min/max of v and r|ω|."""
-    if cut[0, PLAIN] > 0.0:
+    if section[0, PLAIN] > 0.0:
         side, extent = (1 if fast else 0), (1.0 - k) / (1.0 + k)
     else:
         c, s = (k, 1.0) if fast else (1.0, k)
-        side, last = 0, cut.shape[0] - 1
-        while side < last and s * cut[side, UPPER_COS] > c * cut[side, UPPER_SIN]:
+        side, last = 0, section.shape[0] - 1
+        while side < last and s * section[side, UPPER_COS] > c * section[side, UPPER_SIN]:
             side += 1
-        across = s * cut[side, LINE_COS] - c * cut[side, LINE_SIN]
-        along = c * cut[side, LINE_COS] + s * cut[side, LINE_SIN]
-        extent = abs(across / along) * cut[side, INVERSE_EXTENT]
+        across = s * section[side, LINE_COS] - c * section[side, LINE_SIN]
+        along = c * section[side, LINE_COS] + s * section[side, LINE_SIN]
+        extent = abs(across / along) * section[side, INVERSE_EXTENT]
     eta = math.sqrt(math.sqrt(extent))
-    cells = (cut.shape[1] - HEADER) // functions - 3
+    cells = (section.shape[1] - HEADER) // functions - 3
     p = min(eta, 1.0) * cells
     cell = cell_at(p, cells)
     return side, HEADER + functions * cell, p - cell
 
 
 @inlined
-def section_ratios(k: float, fast: bool, cut: FloatArray) -> tuple[float, float, float]:
+def section_ratios(k: float, fast: bool, section: FloatArray) -> tuple[float, float, float]:
     """The three friction ratios at a slip ratio."""
-    side, i, place = section_place(k, fast, cut, RATIOS)
+    side, i, place = section_place(k, fast, section, RATIOS)
     w0, w1, w2, w3 = basis(place)
-    return row_sums(cut[side], np.uint64(i), w0, w1, w2, w3)
+    return row_sums(section[side], np.uint64(i), w0, w1, w2, w3)
 
 
 @inlined
-def section_flows(
-    k: float, fast: bool, cut: FloatArray
+def section_slopes(
+    k: float, fast: bool, section: FloatArray
 ) -> tuple[float, float, float, float, float, float, float, float, float]:
     """The friction ratios at a slip ratio, their derivatives by u = ln tan φ and by the height.
 
     Those by u are of the spline itself.  Within a cell of a line they are wrong by its own size:
     steps there must be short.
     """
-    side, i, place = section_place(k, fast, cut, FLOWS)
-    row = cut[side]
-    cells = (cut.shape[1] - HEADER) // FLOWS - 3
-    eta = max((i - HEADER) // FLOWS + place, _LEAST) / cells
+    side, i, place = section_place(k, fast, section, SLOPES)
+    row = section[side]
+    cells = (section.shape[1] - HEADER) // SLOPES - 3
+    eta = max((i - HEADER) // SLOPES + place, _LEAST) / cells
     c, s = (k, 1.0) if fast else (1.0, k)
     across = s * row[LINE_COS] - c * row[LINE_SIN]
     eta3, extent = eta * eta * eta, 1.0 / row[INVERSE_EXTENT]
@@ -101,15 +103,19 @@ def section_flows(
 
 @kernel
 def fill_section(
-    cut: FloatArray, functions: int, ratio: FloatArray, fast: npt.NDArray[np.bool_], out: FloatArray
+    section: FloatArray,
+    functions: int,
+    ratio: FloatArray,
+    fast: npt.NDArray[np.bool_],
+    out: FloatArray,
 ) -> None:
     """All functions of a section at slip ratios (n,) into ``out`` (functions, n)."""
     for n in range(ratio.size):
         patience(1)
-        side, i, place = section_place(ratio[n], fast[n], cut, functions)
+        side, i, place = section_place(ratio[n], fast[n], section, functions)
         weights = basis(place)
         for f in range(functions):
             total = 0.0
             for m, w in enumerate(weights):
-                total += w * cut[side, i + functions * m + f]
+                total += w * section[side, i + functions * m + f]
             out[f, n] = total

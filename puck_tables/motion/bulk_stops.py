@@ -10,8 +10,7 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import allocating, patience
 from puck_tables.kernels.patience import A_MOTION
-from puck_tables.kernels.quadratic import cut as cut_table
-from puck_tables.kernels.quadratic import room_for_cut
+from puck_tables.kernels.quadratic import room_for_section, section_at
 from puck_tables.motion.equations_of_motion import at_constant_angle
 from puck_tables.motion.limits import log_ratio
 from puck_tables.motion.path import STOPPED, integrate
@@ -44,7 +43,7 @@ def fill_stops(
     """
     patience(A_MOTION * launches.shape[1])
     by_table = columns.size > 0
-    cut = room_for_cut(columns) if by_table else section
+    one_height = room_for_section(columns) if by_table else section
     cut_delta = -1.0
     no_z, no_y = np.empty(0), np.empty((0, SIZE))
     start = np.empty(SIZE)
@@ -66,7 +65,7 @@ def fill_stops(
                 out[i, n] = math.nan
             continue
         if by_table and delta != cut_delta:
-            cut_table(columns, delta, cut)
+            section_at(columns, delta, one_height)
             cut_delta = delta
         if speed == 0.0 or rim == 0.0:
             for i in range(SIZE):
@@ -74,11 +73,11 @@ def fill_stops(
             start[U] = math.inf if speed == 0.0 else -math.inf
             at_constant_angle(1.0, start, 0.0, section, delta, result)  # plain: closed forms
         elif steps > 0.0 and tableau.unrolled:
-            to_stop(log_ratio(speed, rim), steps, cut, delta, start, result)
+            to_stop(log_ratio(speed, rim), steps, one_height, delta, start, result)
         else:
             code, _ = integrate(
-                log_ratio(speed, rim), tableau, steps, tolerance, 1.0, cut, delta, _STEP_LIMIT,
-                no_z, no_y, result,
+                log_ratio(speed, rim), tableau, steps, tolerance, 1.0, one_height, delta,
+                _STEP_LIMIT, no_z, no_y, result,
             )  # fmt: skip
             status[n] = code
         side = 1.0 if spin >= 0.0 else -1.0

@@ -54,7 +54,7 @@ def contact_of(body: Body, regime: str, run: MotionRun) -> Contact:
     lifted, lifts = start < opening, end < opening
     if lifted == lifts:
         return Contact(launch, min(launch, last))
-    lines = run.friction.cut[::2, LINE]  # a step ends exactly on the line
+    lines = run.friction.coefficients[::2, LINE]  # a step ends exactly on the line
     line = lines[np.abs(lines - math.log(math.tan(opening))).argmin()]
     ends = np.flatnonzero(run.y[:, U] == line)
     time = float(run.y[ends[0], T]) if ends.size else 0.0

@@ -26,8 +26,8 @@ That is a homogeneous puck.  With radius of gyration k about the vertical axis o
 spin differs, r ω' = −(r²/2k²) J sin φ ρ_ω: then (r²/2k²) ρ_ω stands for ρ_ω, and in the work and
 the kinetic energy k²/r² for ½.
 
-Friction comes as a ``cut``: the section of a table at one height, which carries its singular lines
-and its inertia (:mod:`puck_tables.kernels.section_spline`); or, without rows, closed forms.
+Friction comes as a ``section``: the section of a table at one height, which carries its singular
+lines and its inertia (:mod:`puck_tables.kernels.section_spline`); or, without rows, closed forms.
 
 State vector: u, ψ, t, x, y, θ, l, W (:mod:`puck_tables.motion.state`).
 """
@@ -54,34 +54,36 @@ def slip_ratio(u: float) -> tuple[float, bool, float, float]:
 
 
 @inlined
-def ratios_at(k: float, fast: bool, cut: FloatArray, delta: float) -> tuple[float, float, float]:
+def ratios_at(
+    k: float, fast: bool, section: FloatArray, delta: float
+) -> tuple[float, float, float]:
     """The friction ratios at a slip ratio: from a section, or exact if it is empty."""
-    if cut.shape[0] == 0:
+    if section.shape[0] == 0:
         return friction_ratios(k, 1.0 if fast else 0.0, delta)
-    inverse, across, spin = section_ratios(k, fast, cut)
+    inverse, across, spin = section_ratios(k, fast, section)
     return inverse, (across if delta > 0.0 else 0.0), spin  # a flat puck goes exactly straight
 
 
 @inlined
-def inertia(cut: FloatArray) -> float:
+def inertia(section: FloatArray) -> float:
     """The square of the radius of gyration over r."""
-    return cut[0, INERTIA] if cut.shape[0] > 0 else 0.5
+    return section[0, INERTIA] if section.shape[0] > 0 else 0.5
 
 
 @inlined
-def slowest_stop(cut: FloatArray) -> float:
+def slowest_stop(section: FloatArray) -> float:
     """About the longest that any motion lasts, in units of Q/J: pure spin of much inertia, or 1."""
-    return max(1.0, 2.0 * inertia(cut))
+    return max(1.0, 2.0 * inertia(section))
 
 
 @inlined
-def crossed_line(u: float, new: float, cut: FloatArray) -> tuple[bool, float]:
+def crossed_line(u: float, new: float, section: FloatArray) -> tuple[bool, float]:
     """Whether a singular line lies strictly between u and ``new``, and the u of the first."""
-    if cut.shape[0] == 0:
+    if section.shape[0] == 0:
         return u * new < 0.0, 0.0
     crossed, first = False, 0.0
-    for row in range(0, cut.shape[0], 2):
-        line = cut[row, LINE]
+    for row in range(0, section.shape[0], 2):
+        line = section[row, LINE]
         between = (u - line) * (new - line) < 0.0
         if between and (not crossed or abs(line - u) < abs(first - u)):
             crossed, first = True, line
@@ -89,21 +91,23 @@ def crossed_line(u: float, new: float, cut: FloatArray) -> tuple[bool, float]:
 
 
 @inlined
-def distance_to_line(u: float, cut: FloatArray) -> float:
+def distance_to_line(u: float, section: FloatArray) -> float:
     """How far in u the nearest singular line is."""
-    if cut.shape[0] == 0:
+    if section.shape[0] == 0:
         return abs(u)
     nearest = math.inf
-    for row in range(0, cut.shape[0], 2):
-        nearest = min(nearest, abs(u - cut[row, LINE]))
+    for row in range(0, section.shape[0], 2):
+        nearest = min(nearest, abs(u - section[row, LINE]))
     return nearest
 
 
 @kernel
-def derivatives(z: float, y: FloatArray, cut: FloatArray, delta: float, out: FloatArray) -> None:
+def derivatives(
+    z: float, y: FloatArray, section: FloatArray, delta: float, out: FloatArray
+) -> None:
     """d/dz of the state vector into ``out``."""
     k, fast, cosine, sine = slip_ratio(y[U])
-    inverse, across, spin = ratios_at(k, fast, cut, delta)
+    inverse, across, spin = ratios_at(k, fast, section, delta)
     cos2, sin2 = cosine * cosine, sine * sine
     left = 1.0 - z
     q = left * left * left * left
@@ -117,12 +121,12 @@ def derivatives(z: float, y: FloatArray, cut: FloatArray, delta: float, out: Flo
     out[Y] = rate * cosine * math.sin(y[PSI])
     out[THETA] = rate * sine
     out[LENGTH] = rate * cosine
-    out[WORK] = q * q * (cos2 + inertia(cut) * sin2 * spin) * norm
+    out[WORK] = q * q * (cos2 + inertia(section) * sin2 * spin) * norm
 
 
 @kernel
 def at_constant_angle(
-    q: float, y: FloatArray, q_new: float, cut: FloatArray, delta: float, out: FloatArray
+    q: float, y: FloatArray, q_new: float, section: FloatArray, delta: float, out: FloatArray
 ) -> None:
     """The exact motion with u constant, from (q, y) to q_new ≤ q (0: the stop) into ``out``.
 
@@ -131,7 +135,7 @@ def at_constant_angle(
     spiral.
     """
     k, fast, cosine, sine = slip_ratio(y[U])
-    inverse, across, spin = ratios_at(k, fast, cut, delta)
+    inverse, across, spin = ratios_at(k, fast, section, delta)
     cos2, sin2 = cosine * cosine, sine * sine
     norm = 1.0 / (cos2 + sin2 * spin)
     turn = -sine * across * norm if cosine > 0.0 else 0.0  # a puck that stands has no heading
@@ -152,7 +156,7 @@ def at_constant_angle(
     half = 0.5 * (q - q_new) * (q + q_new)
     out[THETA] = y[THETA] + half * sine * inverse * norm
     out[LENGTH] = y[LENGTH] + half * cosine * inverse * norm
-    out[WORK] = y[WORK] + half * (cos2 + inertia(cut) * sin2 * spin) * norm
+    out[WORK] = y[WORK] + half * (cos2 + inertia(section) * sin2 * spin) * norm
 
 
 @inlined

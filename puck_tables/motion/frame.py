@@ -41,7 +41,7 @@ class Frame(NamedTuple):
             along * self.north + left * self.east + 0.0,
         )
 
-    def natural_times(self, times: FloatArray, stop_time: float) -> FloatArray:
+    def unit_times(self, times: FloatArray, stop_time: float) -> FloatArray:
         """Times (n,) s in natural units; infinite from the stop on."""
         scaled: FloatArray = np.where(times < stop_time, times, np.inf) / (self.time or 1.0)
         return scaled

@@ -15,7 +15,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import rounded_up
-from puck_tables.accuracy.front import COARSEST, UNITS, Selection, named, select
+from puck_tables.accuracy.method_errors import COARSEST, UNITS, Selection, named, select
 from puck_tables.accuracy.methods import INTEGRATORS, FrictionForm, Method, Scheme, schemes_of
 from puck_tables.contact.closed_form import by_closed_form
 from puck_tables.contact.integrals import SlipDirection
@@ -47,7 +47,7 @@ class Friction:
 
     source: FrictionForm
     delta: float
-    cut: FloatArray = field(repr=False)
+    coefficients: FloatArray = field(repr=False)
     error: float
 
 
@@ -103,8 +103,8 @@ def section_friction(body: Body, accuracy: float, coarser: bool = False) -> Fric
             f"an error of {accuracy:.1g} of the friction is out of reach under the pressure law "
             f"{body.law.name}: give tol (--tol) of {finest:g} or more"
         ) from None
-    cut = found.for_motion(body.gyration, coarser)
-    return Friction(FrictionForm.SECTION, body.delta, cut, found.error)
+    coefficients = found.for_motion(body.gyration, coarser)
+    return Friction(FrictionForm.SECTION, body.delta, coefficients, found.error)
 
 
 class FrictionSource(ABC):
@@ -137,7 +137,7 @@ class FrictionSource(ABC):
         """The setting of the integrator and the accuracy of the friction to begin with."""
 
     @abstractmethod
-    def told(self, selection: Selection, setting: Setting, error: ErrorEstimate) -> Selection:
+    def explained(self, selection: Selection, setting: Setting, error: ErrorEstimate) -> Selection:
         """What was taken in the end, with its error."""
 
     @abstractmethod
@@ -200,7 +200,7 @@ class FullContact(FrictionSource):
             accuracy = self.table.tolerance
         return Setting(stepping_of(selection), accuracy)
 
-    def told(self, selection: Selection, setting: Setting, error: ErrorEstimate) -> Selection:
+    def explained(self, selection: Selection, setting: Setting, error: ErrorEstimate) -> Selection:
         """More than what was selected."""
         source = FrictionForm.TABLE if setting.accuracy else FrictionForm.CLOSED_FORMS
         scheme = Scheme(selection.method, source)
@@ -264,7 +264,7 @@ class Sections(FrictionSource):
         accuracy = max(0.5 * selection.tol, FINEST_ACCURACY)
         return Setting(stepping_of(selection, LOOSEST_LOCAL), accuracy)
 
-    def told(self, selection: Selection, setting: Setting, error: ErrorEstimate) -> Selection:
+    def explained(self, selection: Selection, setting: Setting, error: ErrorEstimate) -> Selection:
         """The setting in the end, and what was measured."""
         scheme, spline = (
             Scheme(selection.method, FrictionForm.SECTION),

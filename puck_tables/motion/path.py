@@ -48,23 +48,23 @@ def q_of(z: float) -> float:
 
 
 @inlined
-def end_of_steps(steps: float, tolerance: float, cut: FloatArray) -> float:
+def end_of_steps(steps: float, tolerance: float, section: FloatArray) -> float:
     """The z from where the motion at constant angle leads to the stop.
 
     What it neglects is at most what is left of Q times the longest stop: a puck of much inertia may
     slide to a crawl with hardly any spin, and then spins for long.
     """
     left = max(tolerance, 1e-16) ** 0.25 if steps == 0.0 else 1.0 / steps
-    return max(1.0 - left / slowest_stop(cut) ** 0.25, 0.5 + 0.5 * TURN_Z)
+    return max(1.0 - left / slowest_stop(section) ** 0.25, 0.5 + 0.5 * TURN_Z)
 
 
 @inlined
-def step_length(u: float, steps: float, cut: FloatArray) -> float:
+def step_length(u: float, steps: float, section: FloatArray) -> float:
     """Length of the next step when about ``steps`` are to be taken in all.
 
     Like √|u − line| near a singular line: steps crowd there so that order 4 survives it.
     """
-    near = math.sqrt(min(distance_to_line(u, cut) / _NEAR_CROSSING, 1.0))
+    near = math.sqrt(min(distance_to_line(u, section) / _NEAR_CROSSING, 1.0))
     return max(near, _CROSSING_FLOOR / steps) / steps
 
 
@@ -75,7 +75,7 @@ def integrate(
     steps: float,
     tolerance: float,
     place_unit: float,
-    cut: FloatArray,
+    section: FloatArray,
     delta: float,
     step_limit: int,
     z_path: FloatArray,
@@ -92,7 +92,7 @@ def integrate(
     tolerance : the local error then allowed per step
     place_unit : what errors of the place are measured in, 1 for Q₀²/J; a launch of nearly pure spin
         moves by that times cos φ only
-    cut, delta : friction at this δ, see :mod:`puck_tables.motion.equations_of_motion`
+    section, delta : friction at this δ, see :mod:`puck_tables.motion.equations_of_motion`
     step_limit : the most steps
     z_path, y_path : arrays (n,), (n, 8) for the step ends, or empty when nobody wants them
     result : array (8 + 1): the state at the stop (its ψ: the turn), energy residual
@@ -110,10 +110,10 @@ def integrate(
         y[i] = 0.0
     y[U] = u
     z = 0.0
-    z_end = end_of_steps(steps, tolerance, cut)
+    z_end = end_of_steps(steps, tolerance, section)
     turn = 0.0
     turn_read = False
-    square = inertia(cut)
+    square = inertia(section)
     energy = kinetic_energy(1.0, u, square)
     residual = 0.0
     record = z_path.size > 0
@@ -121,17 +121,17 @@ def integrate(
     if record:
         _record(count - 1, z, y, z_path, y_path)
     h = 0.005
-    derivatives(z, y, cut, delta, work[0])
+    derivatives(z, y, section, delta, work[0])
     while z < z_end:
         patience(1)
         if count > step_limit:
             return STEP_LIMIT, count
         if not adaptive:
-            h = step_length(y[U], steps, cut)
+            h = step_length(y[U], steps, section)
         target = z_end if turn_read else TURN_Z
         # never leave a sliver before the target
         trial = h if z + 1.1 * h < target else target - z
-        error = step(tableau, z, y, trial, cut, delta, work, new)
+        error = step(tableau, z, y, trial, section, delta, work, new)
         if place_unit < 1.0:
             place = abs(estimated(tableau, work, X)) + abs(estimated(tableau, work, Y))
             error = max(error, abs(trial) * place / place_unit)
@@ -143,9 +143,9 @@ def integrate(
             if z + h == z:
                 return STEP_LIMIT, count
             continue
-        crossed, line = crossed_line(y[U], new[U], cut)
+        crossed, line = crossed_line(y[U], new[U], section)
         if crossed:
-            trial = _land_on_line(tableau, line, z, y, trial, cut, delta, work, new)
+            trial = _land_on_line(tableau, line, z, y, trial, section, delta, work, new)
         landed = not crossed and trial == target - z
         z = target if landed else z + trial
         for i in range(SIZE):
@@ -154,7 +154,7 @@ def integrate(
             for i in range(SIZE):
                 work[0, i] = work[tableau.b.size - 1, i]
         else:
-            derivatives(z, y, cut, delta, work[0])
+            derivatives(z, y, section, delta, work[0])
         if landed and not turn_read:
             turn = y[PSI]
             turn_read = True
@@ -168,7 +168,7 @@ def integrate(
         if adaptive and not crossed:
             grow = 5.0 if error == 0.0 else 0.9 * (tolerance / error) ** exponent
             h = min(trial * min(5.0, max(0.2, grow)), 0.5 * (1.0 - z))
-    at_constant_angle(q_of(z), y, 0.0, cut, delta, result)
+    at_constant_angle(q_of(z), y, 0.0, section, delta, result)
     result[PSI] = turn
     result[SIZE] = max(residual, abs(energy - result[WORK]) / energy)
     return STOPPED, count
@@ -188,7 +188,7 @@ def _land_on_line(
     z: float,
     y: FloatArray,
     h: float,
-    cut: FloatArray,
+    section: FloatArray,
     delta: float,
     work: FloatArray,
     new: FloatArray,
@@ -200,10 +200,10 @@ def _land_on_line(
     rate = (new[U] - y[U]) / h
     for _ in range(12):
         h = min(max(h - (new[U] - line) / rate, 0.0), 1.5 * h)
-        step(tableau, z, y, h, cut, delta, work, new)
+        step(tableau, z, y, h, section, delta, work, new)
         if abs(new[U] - line) < 1e-15:
             break
-        derivatives(z + h, new, cut, delta, work[AT_EVENT])
+        derivatives(z + h, new, section, delta, work[AT_EVENT])
         rate = work[AT_EVENT, U]
     new[U] = line
     return h
@@ -216,7 +216,7 @@ def states_at(
     y_path: FloatArray,
     result: FloatArray,
     tableau: Tableau,
-    cut: FloatArray,
+    section: FloatArray,
     delta: float,
     q_out: FloatArray,
     y_out: FloatArray,
@@ -247,19 +247,19 @@ def states_at(
             # the tail: the remaining time is proportional to Q
             left = (result[T] - time) / (result[T] - first[T])
             q = q_of(z_path[last])
-            at_constant_angle(q, first, q * min(left, 1.0), cut, delta, new)
+            at_constant_angle(q, first, q * min(left, 1.0), section, delta, new)
             _record(n, q * min(left, 1.0), new, q_out, y_out)
             continue
-        derivatives(z_path[i], first, cut, delta, work[0])
+        derivatives(z_path[i], first, section, delta, work[0])
         whole = z_path[i + 1] - z_path[i]
         h = whole * (time - first[T]) / (y_path[i + 1, T] - first[T])
         for _ in range(20):
-            step(tableau, z_path[i], first, h, cut, delta, work, new)
-            derivatives(z_path[i] + h, new, cut, delta, work[AT_EVENT])
+            step(tableau, z_path[i], first, h, section, delta, work, new)
+            derivatives(z_path[i] + h, new, section, delta, work[AT_EVENT])
             change = (time - new[T]) / work[AT_EVENT, T]
             h = min(max(h + change, 0.0), whole)
             if abs(change) <= 4e-16:
                 break
-        step(tableau, z_path[i], first, h, cut, delta, work, new)
+        step(tableau, z_path[i], first, h, section, delta, work, new)
         new[T] = time
         _record(n, q_of(z_path[i] + h), new, q_out, y_out)

@@ -6,7 +6,7 @@ import math
 from typing import NamedTuple
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.accuracy.front import Selection
+from puck_tables.accuracy.method_errors import Selection
 from puck_tables.accuracy.methods import Method
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.motion.equations_of_motion import derivatives
@@ -39,7 +39,7 @@ def stepping_of(selection: Selection, loosest: float = 1.0) -> Stepping:
 
     Examples
     --------
-    >>> from puck_tables.accuracy.front import select
+    >>> from puck_tables.accuracy.method_errors import select
     >>> from puck_tables.accuracy.methods import INTEGRATED
     >>> stepping_of(select("stop", 1e-4, INTEGRATED)).steps
     10.0
@@ -71,7 +71,7 @@ def step(
     z: float,
     y: FloatArray,
     h: float,
-    cut: FloatArray,
+    section: FloatArray,
     delta: float,
     work: FloatArray,
     out: FloatArray,
@@ -90,7 +90,7 @@ def step(
                 weight = h * tableau.a[stage, j]
                 for i in range(SIZE):
                     state[i] += weight * work[j, i]
-        derivatives(z + tableau.c[stage] * h, state, cut, delta, work[stage])
+        derivatives(z + tableau.c[stage] * h, state, section, delta, work[stage])
     largest = 0.0
     for i in range(SIZE):
         increment = 0.0

@@ -15,7 +15,7 @@ from functools import partial
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.accuracy.front import Selection
+from puck_tables.accuracy.method_errors import Selection
 from puck_tables.accuracy.methods import Method
 from puck_tables.errors import PuckError
 from puck_tables.motion.equations_of_motion import (
@@ -64,7 +64,7 @@ class MotionRun:
             return np.ones(times.size), np.tile(self.y[0], (times.size, 1))
         q, y = np.empty(times.size), np.empty((times.size, SIZE))
         states_at(
-            times, self.z, self.y, self.stop, self.tableau, self.friction.cut,
+            times, self.z, self.y, self.stop, self.tableau, self.friction.coefficients,
             self.friction.delta, q, y,
         )  # fmt: skip
         return q, y
@@ -107,7 +107,7 @@ def solve(
     first = source.first(selection)
     run, estimate, setting = close_enough(first, attempt, finer, tol, "this puck")
     if setting is not first or not source.is_measured:
-        selection = source.told(selection, setting, estimate)
+        selection = source.explained(selection, setting, estimate)
     run.error = estimate.total
     return run, selection
 
@@ -125,10 +125,10 @@ def at_constant_slip(regime: str, u: float, friction: Friction) -> MotionRun:
     start[0, U] = stop[U] = u
     residual = 0.0
     if regime != "A":
-        at_constant_angle(1.0, start[0], 0.0, friction.cut, friction.delta, stop)
-        at_constant_angle(1.0, start[0], TURN_SHARE, friction.cut, friction.delta, turned)
+        at_constant_angle(1.0, start[0], 0.0, friction.coefficients, friction.delta, stop)
+        at_constant_angle(1.0, start[0], TURN_SHARE, friction.coefficients, friction.delta, turned)
         stop[PSI] = turned[PSI]
-        energy = kinetic_energy(1.0, u, inertia(friction.cut))
+        energy = kinetic_energy(1.0, u, inertia(friction.coefficients))
         residual = abs(stop[WORK] - energy) / energy
     rate = -turned[PSI] / math.log(TURN_SHARE)
     return MotionRun(
@@ -155,7 +155,7 @@ def integrated(u: float, friction: Friction, stepping: Stepping) -> MotionRun:
     z, y = np.empty(_STEP_LIMIT), np.empty((_STEP_LIMIT, SIZE))
     result = np.empty(SIZE + 1)
     status, count = integrate(
-        u, stepping.tableau, float(stepping.steps), stepping.local, 1.0, friction.cut,
+        u, stepping.tableau, float(stepping.steps), stepping.local, 1.0, friction.coefficients,
         friction.delta, _STEP_LIMIT, z, y, result,
     )  # fmt: skip
     if status != STOPPED:
@@ -163,7 +163,7 @@ def integrated(u: float, friction: Friction, stepping: Stepping) -> MotionRun:
             f"the integration did not reach the stop in {_STEP_LIMIT} steps: ask for less accuracy"
         )
     rates = np.empty(SIZE)  # at z = 0, dz = −d ln Q/4
-    derivatives(0.0, y[count - 1], friction.cut, friction.delta, rates)
+    derivatives(0.0, y[count - 1], friction.coefficients, friction.delta, rates)
     return MotionRun(
         friction,
         stepping.tableau,

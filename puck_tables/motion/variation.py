@@ -24,7 +24,7 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import allocating, inlined, kernel, patience
-from puck_tables.kernels.section_spline import INERTIA, LINE, section_flows
+from puck_tables.kernels.section_spline import INERTIA, LINE, section_slopes
 from puck_tables.motion.path import STOPPED, integrate
 from puck_tables.motion.state import LENGTH, PSI, SIZE, THETA, T, U, X, Y
 from puck_tables.motion.tableaus import Tableau
@@ -42,24 +42,24 @@ _LAST, _TAIL_STEP = 1e-4, 0.25
 
 
 @inlined
-def _off_lines(u: float, cut: FloatArray) -> float:
+def _off_lines(u: float, section: FloatArray) -> float:
     """How far in u the nearest line is."""
     nearest = math.inf
-    for row in range(0, cut.shape[0], 2):
-        nearest = min(nearest, abs(u - cut[row, LINE]))
+    for row in range(0, section.shape[0], 2):
+        nearest = min(nearest, abs(u - section[row, LINE]))
     return nearest
 
 
 @kernel
-def varied(z: float, y: FloatArray, cut: FloatArray, out: FloatArray) -> None:
-    """d/dz of a state and its three variations (28,), into ``out``; ``cut``: all six functions."""
+def variation_rates(z: float, y: FloatArray, section: FloatArray, out: FloatArray) -> None:
+    """d/dz of a state and its three variations (28,), into ``out``, by all six functions."""
     u, turned = y[U], y[PSI]
     k = math.exp(-abs(u))
     large = 1.0 / math.sqrt(1.0 + k * k)
     fast = u > 0.0
     c, s = (k * large, large) if fast else (large, k * large)
-    inverse, across, spin, inverse_u, across_u, spin_u, inverse_h, across_h, spin_h = section_flows(
-        k, fast, cut
+    inverse, across, spin, inverse_u, across_u, spin_u, inverse_h, across_h, spin_h = (
+        section_slopes(k, fast, section)
     )
     c2, s2 = c * c, s * s
     left = 1.0 - z
@@ -73,7 +73,7 @@ def varied(z: float, y: FloatArray, cut: FloatArray, out: FloatArray) -> None:
     out[T] = q * inverse * norm
     out[X], out[Y] = rate * c * cosine, rate * c * sine
     out[THETA], out[LENGTH] = rate * s, rate * c
-    by_gyration = -2.0 * spin / math.sqrt(cut[0, INERTIA])
+    by_gyration = -2.0 * spin / math.sqrt(section[0, INERTIA])
     for block in range(1, BLOCKS):
         at = block * KEPT
         du, dturn = y[at + U], y[at + PSI]
@@ -103,16 +103,16 @@ def varied(z: float, y: FloatArray, cut: FloatArray, out: FloatArray) -> None:
 
 @kernel
 def advance(
-    z: float, end: float, y: FloatArray, tableau: Tableau, cut: FloatArray, work: FloatArray
+    z: float, end: float, y: FloatArray, tableau: Tableau, section: FloatArray, work: FloatArray
 ) -> None:
     """A varied state (28,) from z to ``end``, in place; ``work`` (8, 28)."""
     state = work[_STAGES]
     while z < end:
         patience(1)
-        varied(z, y, cut, work[0])
+        variation_rates(z, y, section, work[0])
         h = end - z
         rate = abs(work[0, U])
-        longest = min(_SHARE * _off_lines(y[U], cut) + _NEAREST, _LONGEST)
+        longest = min(_SHARE * _off_lines(y[U], section) + _NEAREST, _LONGEST)
         if rate * h > longest:
             h = longest / rate
         for stage in range(1, _STAGES):
@@ -121,7 +121,7 @@ def advance(
                 for j in range(stage):
                     total += tableau.a[stage, j] * work[j, i]
                 state[i] = y[i] + h * total
-            varied(z + tableau.c[stage] * h, state, cut, work[stage])
+            variation_rates(z + tableau.c[stage] * h, state, section, work[stage])
         for i in range(VARIED):
             total = 0.0
             for j in range(_STAGES):
@@ -131,9 +131,9 @@ def advance(
 
 
 @inlined
-def _to_the_stop(z: float, y: FloatArray, cut: FloatArray, rates: FloatArray) -> None:
+def _to_the_stop(z: float, y: FloatArray, section: FloatArray, rates: FloatArray) -> None:
     """The last of the time, at constant angle; of all else too little is left to tell."""
-    varied(z, y, cut, rates)
+    variation_rates(z, y, section, rates)
     # t goes on like q, so that dt/dz (1 − z)/4 is left
     share = 0.25 * (1.0 - z)
     for block in range(BLOCKS):
@@ -142,7 +142,7 @@ def _to_the_stop(z: float, y: FloatArray, cut: FloatArray, rates: FloatArray) ->
 
 @kernel
 def vary(
-    z_path: FloatArray, u: float, tableau: Tableau, cut: FloatArray, path: FloatArray,
+    z_path: FloatArray, u: float, tableau: Tableau, section: FloatArray, path: FloatArray,
     stop: FloatArray, work: FloatArray,
 ) -> None:  # fmt: skip
     """A motion from u₀ and its variations: at its step ends into ``path`` (n, 28), at the stop.
@@ -151,7 +151,7 @@ def vary(
     ----------
     z_path : array (n,), where the steps of the motion end
     u : ln(rω/v) at the launch
-    cut : six functions, see :meth:`puck_tables.table.friction_slopes.FlowSection.for_slopes`
+    section : six functions, see :meth:`puck_tables.table.friction_slopes.FlowSection.for_slopes`
     path : array (n, 28), or empty where nobody wants it
     stop : array (28,)
     work : room (8, 28)
@@ -161,27 +161,27 @@ def vary(
     stop[U], stop[BY_U * KEPT + U] = u, 1.0
     for n in range(z_path.size):
         if n > 0:
-            advance(z_path[n - 1], z_path[n], stop, tableau, cut, work)
+            advance(z_path[n - 1], z_path[n], stop, tableau, section, work)
         if path.size > 0:
             for i in range(VARIED):
                 path[n, i] = stop[i]
     z = z_path[-1]
     while 1.0 - z > _LAST:
         new = z + _TAIL_STEP * (1.0 - z)
-        advance(z, new, stop, tableau, cut, work)
+        advance(z, new, stop, tableau, section, work)
         z = new
-    _to_the_stop(z, stop, cut, work[0])
+    _to_the_stop(z, stop, section, work[0])
 
 
 @allocating
-def fill_varied_stops(
+def fill_stop_variations(
     u: FloatArray, place_unit: FloatArray, delta: float, tableau: Tableau, tolerance: float,
-    ratios: FloatArray, cut: FloatArray, out: FloatArray,
+    ratios: FloatArray, section: FloatArray, out: FloatArray,
 ) -> None:  # fmt: skip
     """Stops of launches at u (n,) and their variations into ``out`` (n, 28); NaN: no stop.
 
-    ``ratios``, ``cut``: friction for motions and for slopes, of one puck.  ``place_unit`` (n,) as
-    :func:`puck_tables.motion.path.integrate` has it.
+    ``ratios``, ``section``: friction for motions and for slopes, of one puck.  ``place_unit`` (n,)
+    as :func:`puck_tables.motion.path.integrate` has it.
     """
     patience(u.size)
     z, y = np.empty(_STEP_LIMIT), np.empty((_STEP_LIMIT, SIZE))
@@ -192,16 +192,16 @@ def fill_varied_stops(
             u[n], tableau, 0.0, tolerance, place_unit[n], ratios, delta, _STEP_LIMIT, z, y, result
         )
         if status == STOPPED:
-            vary(z[:count], u[n], tableau, cut, nobody, out[n], work)
+            vary(z[:count], u[n], tableau, section, nobody, out[n], work)
         else:
             for i in range(VARIED):
                 out[n, i] = math.nan
 
 
 @allocating
-def fill_varied_states(
+def fill_state_variations(
     z: FloatArray, which: npt.NDArray[np.int64], z_path: FloatArray, path: FloatArray,
-    stop: FloatArray, tableau: Tableau, cut: FloatArray, out: FloatArray, rates: FloatArray,
+    stop: FloatArray, tableau: Tableau, section: FloatArray, out: FloatArray, rates: FloatArray,
 ) -> None:  # fmt: skip
     """Varied states at z (n,) of one motion into ``out`` (n, 28), and their d/dz into ``rates``.
 
@@ -216,11 +216,11 @@ def fill_varied_states(
         for j in range(VARIED):
             y[j] = path[i, j]
         if i < last:
-            advance(z_path[i], z[n], y, tableau, cut, work)
-            varied(z[n], y, cut, rates[n])
+            advance(z_path[i], z[n], y, tableau, section, work)
+            variation_rates(z[n], y, section, rates[n])
             continue
         # at constant angle: the time that is left is like q
-        varied(z[n], y, cut, rates[n])
+        variation_rates(z[n], y, section, rates[n])
         share = 0.25 * (1.0 - z[n])
         for block in range(BLOCKS):
             at = block * KEPT

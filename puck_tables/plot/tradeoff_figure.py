@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from puck_tables.accuracy.front import MeasuredMethod, pareto
+from puck_tables.accuracy.method_errors import MeasuredMethod, pareto
 from puck_tables.plot.style import BLUE, COLORS, GREY, canvas
 from puck_tables.plot.titles import titled
 from puck_tables.tradeoff.measurement import TradeOff

@@ -42,12 +42,14 @@ def regions_of(scene: SceneSpec, reach: float = 1.0) -> Regions:
     normal = puck.mass * puck.gravity * math.cos(floor.slope)
     if floor.law:
         by_speed, load = friction_by_speed(scene, normal, reach)
-        return alone(load, np.zeros(1), closed_form_friction(0.0).cut[None, :], by_speed)
+        return alone(load, np.zeros(1), closed_form_friction(0.0).coefficients[None, :], by_speed)
     if floor.orthotropic is not None:
         axes = axes_of(floor.orthotropic)
         load = np.array([normal * axes[:2].max()])
         by_direction = BySpeed(axes, 2.0 * puck.height / puck.radius, normal, 1.0)
-        return alone(load, np.zeros(1), closed_form_friction(0.0).cut[None, :], by_direction)
+        return alone(
+            load, np.zeros(1), closed_form_friction(0.0).coefficients[None, :], by_direction
+        )
     heights = scene.heights
     load = normal * np.array(scene.frictions)
     if all(is_plain(puck.pressure, puck.gyration, delta) for delta in heights):
@@ -57,7 +59,7 @@ def regions_of(scene: SceneSpec, reach: float = 1.0) -> Regions:
     # how the mass is spread stands in the equations of the scene, not in its friction
     bodies = [body_of(puck.pressure, delta, puck.gyration) for delta in heights]
     try:
-        slices = [body.friction(accuracy).cut for body in bodies]
+        slices = [body.friction(accuracy).coefficients for body in bodies]
     except AccuracyError as error:
         if error.reachable is None:
             raise
@@ -113,8 +115,8 @@ def friction_error(scene: SceneSpec) -> float:
 
 def _plain_cut(tol: float, delta: float) -> FloatArray:
     if tol < EXACT_BELOW:
-        return closed_form_friction(delta).cut
-    return table_friction(delta, ResultantTable.shipped()).cut
+        return closed_form_friction(delta).coefficients
+    return table_friction(delta, ResultantTable.shipped()).coefficients
 
 
 def of_one_shape(slices: list[FloatArray]) -> FloatArray:

@@ -19,7 +19,7 @@ from puck_tables.motion.puck_spec import PUCK_UNITS, PuckSpec
 from puck_tables.stopping.aim_lookup import RIM, SPEED, TIME
 from puck_tables.stopping.launch_arrays import fits
 from puck_tables.stopping.launch_columns import Aimed
-from puck_tables.stopping.launch_family import LaunchCurve, launch_curve
+from puck_tables.stopping.launch_family import LaunchFamily, launch_family_of
 from puck_tables.stopping.launch_ranges import between, joined, sample
 from puck_tables.stopping.target_error import misses
 
@@ -96,7 +96,7 @@ class _Family:
 
     distance: float
     decel: float
-    curve: LaunchCurve
+    curve: LaunchFamily
     found: dict[float, tuple[float, ...]] = field(default_factory=dict)  # what stands at a u
 
     @property
@@ -109,8 +109,8 @@ class _Family:
         """Speed, rim speed, stop time, and arg(X + iY) for ω > 0."""
         if u not in self.found:
             self.found[u] = tuple((self.curve.rows(np.array([u]))[0] + self.scales).tolist())
-        speed, rim, time, bend = self.found[u]
-        return speed, rim, time, bend
+        speed, rim, time, deflection = self.found[u]
+        return speed, rim, time, deflection
 
     def all_where(self, quantity: int, value: float) -> list[float]:
         """All u where a quantity of the curve has a value; −∞ is a slide without spin."""
@@ -172,7 +172,7 @@ def aim_at(
         return _on_the_spot(given, spin, speed, stop_time)
     if distance == math.inf:
         raise InputError(f"target ({x:g}, {y:g}) m is too far for floating point: use larger units")
-    family = _Family(distance, J, launch_curve(puck.body))
+    family = _Family(distance, J, launch_family_of(puck.body))
     bounds = math.log(fastest), math.log(widest) + math.log(r)
     us: list[float] = []
     senses: tuple[float, ...] = (-1.0, 1.0)
@@ -195,11 +195,11 @@ def aim_at(
     bearing = math.atan2(y, x)
     launches = []
     for u in allowed:
-        log_speed, log_rim, log_time, bend = family.at(u)
+        log_speed, log_rim, log_time, deflection = family.at(u)
         v, time = _number(log_speed), _number(log_time)
         turning = _number(log_rim - math.log(r)) if u > -math.inf else 0.0
         for sense in senses if u > -math.inf else (1.0,):
-            heading = bearing - sense * bend
+            heading = bearing - sense * deflection
             launches.append((sense * turning, v * math.cos(heading), v * math.sin(heading), time))
     return _found(given, launches, answer)
 

@@ -31,7 +31,7 @@ from puck_tables.stopping.aim_at_target import (
 from puck_tables.stopping.aim_lookup import BEND, RIM, SPEED, TIME
 from puck_tables.stopping.launch_arrays import fits, positive_array
 from puck_tables.stopping.launch_columns import Aimed
-from puck_tables.stopping.launch_family import LaunchCurve, launch_curve
+from puck_tables.stopping.launch_family import LaunchFamily, launch_family_of
 from puck_tables.stopping.launch_ranges import between, joined, sample
 from puck_tables.stopping.target_error import misses
 
@@ -213,8 +213,8 @@ class _Search:
     count: int
 
     @cached_property
-    def curve(self) -> LaunchCurve:
-        return launch_curve(self.puck.body)
+    def curve(self) -> LaunchFamily:
+        return launch_family_of(self.puck.body)
 
     @property
     def _limits(self) -> FloatArray:

@@ -31,15 +31,17 @@ _STEPS = 200  # of a root at most
 
 
 @inlined
-def _plain_logs(u: float, cut: FloatArray) -> tuple[float, float, float, float, float]:
+def _plain_logs(u: float, section: FloatArray) -> tuple[float, float, float, float, float]:
     """Ln v, ln r|ω| and ln t₀ at a finite u; the place of the stop along and across the launch."""
     k = math.exp(-abs(u))
     side, xi = slip_place(1.0, k) if u <= 0.0 else slip_place(k, 1.0)
-    cells = cut.shape[1] // WIDTH - 3
+    cells = section.shape[1] // WIDTH - 3
     place = xi * cells
     cell = min(int(place), cells - 1)
-    at = side * cut.shape[1] + cell * WIDTH
-    time, along, across, _ = spline_values(cut.reshape(-1), at, basis(place - cell), 0.0, WIDTH, 1)
+    at = side * section.shape[1] + cell * WIDTH
+    time, along, across, _ = spline_values(
+        section.reshape(-1), at, basis(place - cell), 0.0, WIDTH, 1
+    )
     larger = -0.5 * math.log1p(k * k)
     log_cosine = larger - max(u, 0.0)
     left = math.exp(larger + min(u, 0.0)) * across
@@ -65,11 +67,13 @@ def _in_piece(quantity: int, u: float, pieces: FloatArray) -> float:
 
 
 @inner
-def _above(u: float, quantity: int, wanted: float, cut: FloatArray, pieces: FloatArray) -> float:
+def _above(
+    u: float, quantity: int, wanted: float, section: FloatArray, pieces: FloatArray
+) -> float:
     """How much a quantity is above a value."""
     if pieces.shape[0] > 0:
         return _in_piece(quantity, u, pieces) - wanted
-    speed, rim, time, _, _ = _plain_logs(u, cut)
+    speed, rim, time, _, _ = _plain_logs(u, section)
     if quantity == SPEED:
         return speed - wanted
     return (rim if quantity == RIM else time) - wanted
@@ -77,20 +81,23 @@ def _above(u: float, quantity: int, wanted: float, cut: FloatArray, pieces: Floa
 
 @inner
 def _root(
-    quantity: int, wanted: float, low: float, high: float, cut: FloatArray, pieces: FloatArray
+    quantity: int, wanted: float, low: float, high: float, section: FloatArray, pieces: FloatArray
 ) -> float:
     """The u between two where a quantity has a value, by Chandrupatla's method.
 
     Where the table does not tell it from that of both ends, the nearer of them.
     """
     a, b = low, high
-    at_a, at_b = _above(a, quantity, wanted, cut, pieces), _above(b, quantity, wanted, cut, pieces)
+    at_a, at_b = (
+        _above(a, quantity, wanted, section, pieces),
+        _above(b, quantity, wanted, section, pieces),
+    )
     if (at_a > 0.0) == (at_b > 0.0):
         return a if abs(at_a) < abs(at_b) else b
     share = 0.5
     for _ in range(_STEPS):
         x = a + share * (b - a)
-        here = _above(x, quantity, wanted, cut, pieces)
+        here = _above(x, quantity, wanted, section, pieces)
         if (here > 0.0) == (at_a > 0.0):
             c, at_c = a, at_a
         else:
@@ -111,10 +118,10 @@ def _root(
 
 
 @kernel
-def fill_logs(u: FloatArray, cut: FloatArray, pieces: FloatArray, out: FloatArray) -> None:
+def fill_logs(u: FloatArray, section: FloatArray, pieces: FloatArray, out: FloatArray) -> None:
     """Ln v, ln r|ω|, ln t₀ and arg Z for ω > 0 at ``u`` (n,) into ``out`` (n, 4); −∞ slides.
 
-    ``cut``: of a plain puck, :func:`puck_tables.stopping.stop_splines.at_height`;
+    ``section``: of a plain puck, :func:`puck_tables.stopping.stop_splines.at_height`;
     ``pieces`` (m, 26): of any other; none of a plain one.
     """
     for n in range(u.size):
@@ -125,13 +132,13 @@ def fill_logs(u: FloatArray, cut: FloatArray, pieces: FloatArray, out: FloatArra
             for quantity in range(LOGS):
                 out[n, quantity] = _in_piece(quantity, u[n], pieces)
         else:
-            out[n, SPEED], out[n, RIM], out[n, TIME], along, left = _plain_logs(u[n], cut)
+            out[n, SPEED], out[n, RIM], out[n, TIME], along, left = _plain_logs(u[n], section)
             out[n, BEND] = math.atan2(left, along)
 
 
 @kernel
 def fill_roots(
-    quantity: int, wanted: FloatArray, low: FloatArray, high: FloatArray, cut: FloatArray,
+    quantity: int, wanted: FloatArray, low: FloatArray, high: FloatArray, section: FloatArray,
     pieces: FloatArray, out: FloatArray,
 ) -> None:  # fmt: skip
     """The u (n,) between ``low`` and ``high`` (n,) where a quantity has ``wanted`` (n,)."""
@@ -140,4 +147,4 @@ def fill_roots(
         if low[n] == high[n]:
             out[n] = low[n]
         else:
-            out[n] = _root(quantity, wanted[n], low[n], high[n], cut, pieces)
+            out[n] = _root(quantity, wanted[n], low[n], high[n], section, pieces)

@@ -23,7 +23,7 @@ _CHUNK = 64  # motions that a thread takes at once
 
 @allocating
 def _fill_exact_stops(
-    u: FloatArray, delta: FloatArray, place_unit: FloatArray, cut: FloatArray, tableau: Tableau,
+    u: FloatArray, delta: FloatArray, place_unit: FloatArray, section: FloatArray, tableau: Tableau,
     tolerance: float, out: FloatArray,
 ) -> None:  # fmt: skip
     """T, X, Y, path, body angle, turn of launches at u, δ into ``out`` (n, 6); NaN: no stop."""
@@ -34,10 +34,10 @@ def _fill_exact_stops(
         status = STOPPED
         if math.isinf(u[n]):
             start[U] = u[n]
-            at_constant_angle(1.0, start, 0.0, cut, delta[n], result)
+            at_constant_angle(1.0, start, 0.0, section, delta[n], result)
         else:
             status, _ = integrate(
-                u[n], tableau, 0.0, tolerance, place_unit[n], cut, delta[n], _STEP_LIMIT, no_z,
+                u[n], tableau, 0.0, tolerance, place_unit[n], section, delta[n], _STEP_LIMIT, no_z,
                 no_y, result,
             )  # fmt: skip
         good = status == STOPPED
@@ -47,7 +47,7 @@ def _fill_exact_stops(
 
 
 def integrated_stops(
-    u: FloatArray, delta: FloatArray, cut: FloatArray, tolerance: float,
+    u: FloatArray, delta: FloatArray, section: FloatArray, tolerance: float,
     place_unit: float | FloatArray = 1.0, threads: int | None = None,
 ) -> FloatArray:  # fmt: skip
     """Stops in natural units by the integrator.
@@ -56,7 +56,7 @@ def integrated_stops(
     ----------
     u : array (n,), ln(rω/v), infinite for pure sliding (−) and pure spin (+)
     delta : array (n,)
-    cut : friction, see :mod:`puck_tables.motion.equations_of_motion`
+    section : friction, see :mod:`puck_tables.motion.equations_of_motion`
     tolerance : local error of a step
     place_unit : array (n,) or 1, what local errors of the place are measured in
         With cos φ places next to pure spin, all as small as that, keep their digits.
@@ -75,12 +75,12 @@ def integrated_stops(
     """
     out = np.empty((u.size, 6))
     # closed forms are as smooth as the higher order needs; splines of a section are not
-    tableau = DORMAND_PRINCE if cut.size else DORMAND_PRINCE_8
+    tableau = DORMAND_PRINCE if section.size else DORMAND_PRINCE_8
     unit = np.ascontiguousarray(np.broadcast_to(place_unit, u.shape), np.float64)
 
     def work(start: int, stop: int) -> None:
         part = slice(start, stop)
-        _fill_exact_stops(u[part], delta[part], unit[part], cut, tableau, tolerance, out[part])
+        _fill_exact_stops(u[part], delta[part], unit[part], section, tableau, tolerance, out[part])
 
     run_chunks(work, u.size, _CHUNK, threads)
     return out

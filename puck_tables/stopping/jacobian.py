@@ -212,9 +212,9 @@ def integrated_jacobians(
     ``which`` (n,): of ``launches`` (6, m), at ``moments`` (n,).
     """
     from puck_tables.stopping.launch_frame import fill_placed_states
-    from puck_tables.stopping.variational import natural_states, varied_of
+    from puck_tables.stopping.variational import unit_states, variations_of
 
-    frictions = {height: varied_of(body) for height, body in bodies.items()}
+    frictions = {height: variations_of(body) for height, body in bodies.items()}
     order = np.argsort(which, kind="stable")
     first = np.searchsorted(which[order], pucks)
     last = np.searchsorted(which[order], pucks, side="right")
@@ -228,7 +228,7 @@ def integrated_jacobians(
             if slip > 0.0 and mine.size:
                 frictions[float(launch[3])].refuse_limit(speed, rim)
                 times = moments[mine]
-                own = natural_states(
+                own = unit_states(
                     frictions[float(launch[3])], speed / slip, rim / slip,
                     times / slip * launch[4],
                 )[0]  # fmt: skip

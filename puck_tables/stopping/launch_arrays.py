@@ -93,7 +93,7 @@ class Launches:
         """A number that changes with their bits."""
         parts = range(0, self.size, CHUNK)
         ends = [(start, min(start + CHUNK, self.size)) for start in parts]
-        return joined_mark((a, mark_of(*self.part(a, b), b - a)) for a, b in ends)
+        return smallest_mark((a, mark_of(*self.part(a, b), b - a)) for a, b in ends)
 
     def refuse_changed(self, mark: int) -> None:
         """Refuse launches that are no longer those of a mark: their arrays are the caller's.
@@ -233,7 +233,7 @@ def in_chunks(work: Callable[[int, int], None], size: int, threads: int | None) 
         work(start, min(start + CHUNK, size))
 
 
-def joined_mark(parts: Iterable[tuple[int, int]]) -> int:
+def smallest_mark(parts: Iterable[tuple[int, int]]) -> int:
     """One mark from the starts of chunks and theirs.
 
     Examples

@@ -57,8 +57,8 @@ from puck_tables.stopping.similarity_rates import (
     U0,
     UNIT,
     V0,
+    coefficients_at,
     find_functions,
-    flow_at,
     of_stop,
     pole_at,
     turn_lines,
@@ -172,15 +172,15 @@ def find_facts(
         is_fast = row_of(room, FAST, n) > 0.0
         fixed = rows_of(room, FIXED, FIXED_ROWS, n)
         log_near, log_far, _ = logs_of(max(share, TINY), 2.0 - share, 1.0)
-        flow = flow_at(is_fast, share, log_near, log_far, delta, fixed, found)
+        coefficients = coefficients_at(is_fast, share, log_near, log_far, delta, fixed, found)
         gap, below = pole_at(is_fast, share, fixed, found)
         rate, u0 = gap * (-fixed[KAPPA] / below), 1.0 / (c * s)
-        bend = turn_rate(rate, c, s, delta, 1.0 / found[1], found)
+        deflection = turn_rate(rate, c, s, delta, 1.0 / found[1], found)
         into_rows(room, U0, n, (u0, u0 / rate, below * -fixed[ONE_KAPPA]))
         far = 1.0 if abs(gap) > _NEAR_LIMIT else 0.0
         here = (
-            flow[CURVE], flow[CURVE_TILT], flow[TURN_SLOPE] * u0, flow[TURN_TILT],
-            bend * (u0 / rate), far,
+            coefficients[CURVE], coefficients[CURVE_TILT], coefficients[TURN_SLOPE] * u0,
+            coefficients[TURN_TILT], deflection * (u0 / rate), far,
         )  # fmt: skip
         into_rows(room, HERE, n, here)
         speed, spin = row_of(room, UNIT, n), row_of(room, SPIN, n)
@@ -210,9 +210,9 @@ def fill_launch_facts(
 ) -> None:  # fmt: skip
     """All that derivatives of states need of launches, into ``out`` (49, m).
 
-    ``pucks`` (20, m), see :func:`puck_tables.stopping.launch_lookup.fill_known`; ``natural``: the
-    same, but with others beside them in place of exact pure motions; ``constants`` (14, 4), powers
-    ascending.
+    ``pucks`` (20, m), see :func:`puck_tables.stopping.launch_lookup.fill_launch_lookup`;
+    ``natural``: the same, but with others beside them in place of exact pure motions; ``constants``
+    (14, 4), powers ascending.
     """
     patience(pucks.shape[1])
     cells, fixed = float(states.shape[1] - 3), constants.reshape(-1)

@@ -71,7 +71,7 @@ Indices = npt.NDArray[np.int64]
 
 
 @dataclass(frozen=True)
-class LaunchCurve:
+class LaunchFamily:
     """Ln v, ln r|ω| and ln t₀ of all launches that stop at distance 1 m, J = 1 m/s².
 
     Parameters
@@ -96,7 +96,7 @@ class LaunchCurve:
     @cached_property
     def _cut(self) -> FloatArray:
         if self.body.is_plain:
-            return at_height(StopTable.shipped().cut(), self.body.delta)
+            return at_height(StopTable.shipped().thinned(), self.body.delta)
         return np.empty((2, WIDTH))
 
     def is_tabulated(self, u: FloatArray) -> npt.NDArray[np.bool_]:
@@ -228,7 +228,7 @@ class LaunchCurve:
 
 
 @lru_cache(maxsize=64)
-def launch_curve(body: Body) -> LaunchCurve:
+def launch_family_of(body: Body) -> LaunchFamily:
     """Of a puck: kept, the same call again costs nothing.
 
     Examples
@@ -243,7 +243,7 @@ def launch_curve(body: Body) -> LaunchCurve:
     """
     ends = np.array([-LARGEST_U, LARGEST_U])
     if body.is_plain:  # the quantities never turn
-        return LaunchCurve(body, ends, _values(body, ends), NO_PIECES, np.empty(0, bool))
+        return LaunchFamily(body, ends, _values(body, ends), NO_PIECES, np.empty(0, bool))
     u = _first_nodes(body)
     values, slopes = _with_slopes(body, u)
     middles = np.full((2, u.size - 1, LOGS), np.nan)  # values and slopes there
@@ -272,7 +272,7 @@ def launch_curve(body: Body) -> LaunchCurve:
     u = np.concatenate([u, more])
     values = np.concatenate([values[:, :BEND], _values(body, more)])
     order = np.argsort(u, kind="stable")
-    return LaunchCurve(body, u[order], values[order], pieces, fit)
+    return LaunchFamily(body, u[order], values[order], pieces, fit)
 
 
 def _first_nodes(body: Body) -> FloatArray:
@@ -310,8 +310,8 @@ def _stops(body: Body, u: FloatArray) -> FloatArray:
     heights = np.full(u.size, body.delta)
     if body.is_plain:
         return integrated_stops(u, heights, NO_SECTION, _PLAIN_LOCAL, cosine_of(u))[:, :3]
-    cut = body.friction(SECTION_ACCURACY).for_motion(body.gyration)
-    return integrated_stops(u, heights, cut, _LOCAL, cosine_of(u))[:, :3]
+    section = body.friction(SECTION_ACCURACY).for_motion(body.gyration)
+    return integrated_stops(u, heights, section, _LOCAL, cosine_of(u))[:, :3]
 
 
 def _logs(u: FloatArray, stops: FloatArray) -> tuple[FloatArray, ...]:

@@ -62,25 +62,25 @@ def _line(
 @inlined
 def _turn(
     own: Numbers, unit: float, by_speed: float, by_time: float, gone: float, elapsed: float,
-    around: float, east: float, north: float, spin: float, radius: float, bend: float,
+    around: float, east: float, north: float, spin: float, radius: float, deflection: float,
 ) -> Numbers:  # fmt: skip
     """A row of seven, of what changes its sign with the spin."""
     value, ahead = around * unit * own[0], around * by_speed * own[1]
     rim, rate = by_speed * own[3], around * by_time * own[5]
     return (
         east * ahead, north * ahead, radius * rim, around * unit * own[4],
-        elapsed * rate - gone * value, spin * rim - value * bend, rate,
+        elapsed * rate - gone * value, spin * rim - value * deflection, rate,
     )  # fmt: skip
 
 
 @inlined
 def placed_state(
     east: float, north: float, around: float, spin: float, decel: float, unit: float,
-    radius: float, bend: float, slip: float, time: float, own: Numbers,
+    radius: float, deflection: float, slip: float, time: float, own: Numbers,
 ) -> Numbers:  # fmt: skip
     """From natural units, along x and y (:func:`in_world`), six rows of six to six of seven.
 
-    ``unit``: 1/J; ``bend``: 1/r.
+    ``unit``: 1/J; ``deflection``: 1/r.
     """
     duration, elapsed = slip * unit, time * unit
     place = slip * duration
@@ -89,10 +89,11 @@ def placed_state(
     return (
         *_line(own[:6], *way, *frame),
         *_line(own[6:12], *way, *frame),
-        *_turn(own[12:18], bend * place, bend * duration, bend * slip, unit, *frame, bend),
-        *_line(own[18:24], *moving, *frame),
+        *_turn(own[12:18], deflection * place, deflection * duration, deflection * slip, unit,
+        *frame, deflection), *_line(own[18:24], *moving, *frame),
         *_line(own[24:30], *moving, *frame),
-        *_turn(own[30:], bend * slip, bend, bend * decel, 0.0, *frame, bend),
+        *_turn(own[30:], deflection * slip, deflection, deflection * decel, 0.0, *frame,
+        deflection),
     )  # fmt: skip
 
 

@@ -52,7 +52,7 @@ from puck_tables.stopping.similarity_lookup import (
     end_rates,
     inverse_end_rates,
 )
-from puck_tables.stopping.state_lookup import PUCK_ROWS, fill_orbit_states
+from puck_tables.stopping.state_lookup import PUCK_ROWS, fill_states_at
 from puck_tables.stopping.state_splines import (
     TINY,
     TURN_POWERS,
@@ -77,7 +77,7 @@ _Q, _V, _T, _LOG_N, _SIGN_N, _HEADING, _OWN_KAPPA, _OWN_TURNING = range(_OUT + 6
 
 
 @look_up
-def fill_known(
+def fill_launch_lookup(
     vx: FloatArray, vy: FloatArray, step: int, spin: FloatArray, delta: FloatArray,
     decel: FloatArray, radius: FloatArray, stops: FloatArray, curve: FloatArray,
     turns: FloatArray, constants: FloatArray, turn_share: float, out: FloatArray,
@@ -88,8 +88,8 @@ def fill_known(
     time and place (3, n).  ``stops`` (2, cells + 3, 8 × 4)
     is a cut of the stop table, ``curve`` (2, cells + 3, 9 × 4) holds the other functions, ``turns``
     (2, cells + 3, 12) the heading's regular part over the place by Q; ``constants`` as for
-    :func:`puck_tables.stopping.similarity_lookup.know_launch`.  Returns of how many Q²/J or Q²/(J
-    r) may be too large, and how many are no launches.
+    :func:`puck_tables.stopping.similarity_lookup.look_up_launch`.  Returns of how many Q²/J or
+    Q²/(J r) may be too large, and how many are no launches.
     """
     patience(out.shape[1])
     flat, flat_curve, flat_turns = stops.reshape(-1), curve.reshape(-1), turns.reshape(-1)
@@ -147,21 +147,21 @@ def fill_known(
 def fill_states_of_one(
     vx: FloatArray, vy: FloatArray, step: int, spin: FloatArray, delta: FloatArray,
     decel: FloatArray, radius: FloatArray, stops: FloatArray, curve: FloatArray,
-    turns: FloatArray, constants: FloatArray, orbit: FloatArray, moments: FloatArray,
+    turns: FloatArray, constants: FloatArray, splines: FloatArray, moments: FloatArray,
     out: FloatArray,
 ) -> int:  # fmt: skip
     """States at ``moments`` (n,) of the one launch into ``out`` (6, n).
 
-    The other arguments and the rows are those of :func:`fill_known` and
-    :func:`puck_tables.stopping.state_lookup.fill_orbit_states`, the same to the last bit.  Returns
+    The other arguments and the rows are those of :func:`fill_launch_lookup` and
+    :func:`puck_tables.stopping.state_lookup.fill_states_at`, the same to the last bit.  Returns
     how much of it may have to be refused: 0 if it is good.
     """
     puck = np.empty((PUCK_ROWS, 1))
-    doubtful, bad = fill_known(
+    doubtful, bad = fill_launch_lookup(
         vx, vy, step, spin, delta, decel, radius, stops, curve, turns, constants, TURN_SHARE, puck
     )
     which = np.zeros(1, np.int64)
-    late = fill_orbit_states(puck, which, moments, 0, moments.size, orbit, out)
+    late = fill_states_at(puck, which, moments, 0, moments.size, splines, out)
     return doubtful + bad + late
 
 

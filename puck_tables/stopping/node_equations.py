@@ -77,7 +77,7 @@ def missed_by_stops(axis: SlipAxis, values: FloatArray) -> tuple[FloatArray, flo
     return np.abs(sides), _MISSED / axis.cells**4 + _ROUNDING
 
 
-def missed_by_curve(axis: SlipAxis, values: FloatArray, height: int) -> tuple[FloatArray, float]:
+def similarity_error(axis: SlipAxis, values: FloatArray, height: int) -> tuple[FloatArray, float]:
     """The same of κR and S/δ at one of the nine heights: their slopes are known in closed form.
 
     Parameters

@@ -20,7 +20,7 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import Progress, run_chunks
 from puck_tables._core.real import real
-from puck_tables.accuracy.front import COARSEST, UNITS, Selection, select
+from puck_tables.accuracy.method_errors import COARSEST, UNITS, Selection, select
 from puck_tables.accuracy.methods import (
     INTEGRATED,
     LOOK_UP,
@@ -411,7 +411,10 @@ def integration_of(body: Body, tol: float, method: Method | None = None) -> Inte
 
     def attempt(setting: Setting) -> tuple[Integration, ErrorEstimate]:
         stepping = setting.stepping
-        cut, coarse = source.friction(setting.accuracy).cut, source.coarser(setting.accuracy).cut
+        cut, coarse = (
+            source.friction(setting.accuracy).coefficients,
+            source.coarser(setting.accuracy).coefficients,
+        )
         finer = stepping.finer(2.0, 0.01, FINEST_LOCAL)
         found, by_finer, by_coarse = (
             Integration(NO_COLUMNS, *how, selection.method, longest=body.longest)

@@ -38,15 +38,15 @@ def all_looked_up(
         turned = directions(pucks[0], pucks[1])
         found[HEADING] += turned[which] if which.size > 1 else turned
         return found
-    from puck_tables.stopping.state_lookup import PUCK_ROWS, fill_orbit_states
+    from puck_tables.stopping.state_lookup import PUCK_ROWS, fill_states_at
 
-    out, orbit, bad = np.empty((STATE_ROWS, moments.size)), table.orbit_coefficients, [0]
+    out, splines, bad = np.empty((STATE_ROWS, moments.size)), table.state_coefficients, [0]
 
     def work(start: int, stop: int) -> None:  # what is known of the launches stays in the cache
         for first in range(start, stop, _AT_ONCE):
             last = min(first + _AT_ONCE, stop)
             pucks, _ = table.fill_pucks(PUCK_ROWS, launches, first, last)
-            bad.append(fill_orbit_states(pucks, which, moments, first, last, orbit, out))
+            bad.append(fill_states_at(pucks, which, moments, first, last, splines, out))
             if slopes is not None:
                 _fill_slopes(table, pucks, which, moments, out, slopes, first, last, threads=1)
             out[HEADING, first:last] += directions(pucks[0], pucks[1])
@@ -81,7 +81,7 @@ def _fill_slopes(
     natural, pure, slopes = pucks, _pure(pucks), table.slopes
     if pure is not None:
         moments, out = moments[begin:end], out[begin:end]
-        natural, found = _beside_pure(table, pucks, pure, which, moments, found[:, begin:end])
+        natural, found = _away_from_pure(table, pucks, pure, which, moments, found[:, begin:end])
         begin, end = 0, moments.size
     if which.size == end - begin == 1 and pucks.shape[1] == 1:
         which = which[:0]  # a moment of its own, of which all is found in one call
@@ -120,7 +120,7 @@ def _pure(pucks: FloatArray) -> npt.NDArray[np.bool_] | None:
     return pure if pure.any() else None
 
 
-def _beside_pure(
+def _away_from_pure(
     table: StopTable, pucks: FloatArray, pure: npt.NDArray[np.bool_],
     which: npt.NDArray[np.int64], moments: FloatArray, found: FloatArray,
 ) -> tuple[FloatArray, FloatArray]:  # fmt: skip

@@ -21,16 +21,16 @@ _LOWEST = 1e-290  # below, a ratio of speeds loses digits: both are raised by a 
 
 @look_up
 def fill_section_stops(
-    launches: FloatArray, cut: FloatArray, longest: float, out: FloatArray
+    launches: FloatArray, section: FloatArray, longest: float, out: FloatArray
 ) -> int:
     """Stops of launches (6, n): vx, vy, ω, δ, J, r, into ``out`` (6, n), see solvers.OUTPUTS.
 
-    ``cut`` holds the functions of :mod:`puck_tables.stopping.stop_section`; all launches are of its
-    puck.  No direction is computed and nothing divided by zero.  Returns of how many ``longest``
-    times Q²/J or Q²/(J r) is too large.
+    ``section`` holds the functions of :mod:`puck_tables.stopping.stop_section`; all launches are of
+    its puck.  No direction is computed and nothing divided by zero.  Returns of how many
+    ``longest`` times Q²/J or Q²/(J r) is too large.
     """
     patience(launches.shape[1])
-    flat, too_large = cut.reshape(-1), 0
+    flat, too_large = section.reshape(-1), 0
     for n in range(launches.shape[1]):
         patience(1)
         vx, vy = launches[0, n], launches[1, n]
@@ -46,9 +46,9 @@ def fill_section_stops(
         larger = max(speed, edge)
         raised = 2.0**200 if larger < _LOWEST else 1.0
         ratio = (raised * min(speed, edge)) / (raised * larger) if larger > 0.0 else 0.0
-        side, i, place = section_place(ratio, edge > speed, cut, _FUNCTIONS)
+        side, i, place = section_place(ratio, edge > speed, section, _FUNCTIONS)
         time, along, across, length, body, turn = weighted_rows(
-            flat, side * cut.shape[1] + i, basis(place), _FUNCTIONS
+            flat, side * section.shape[1] + i, basis(place), _FUNCTIONS
         )
         scale = slip / decel
         straight, left = scale * along, (rim / decel) * across
@@ -65,16 +65,16 @@ def fill_section_stops(
 
 @look_up
 def fill_section_jacobians(
-    launches: FloatArray, cut: FloatArray, good: npt.NDArray[np.bool_], out: FloatArray,
+    launches: FloatArray, section: FloatArray, good: npt.NDArray[np.bool_], out: FloatArray,
     left: npt.NDArray[np.bool_],
 ) -> None:  # fmt: skip
     """Derivatives (n, 5, 6) of the stops of launches (6, n), none at rest, by splines.
 
-    ``cut`` holds the functions of :mod:`puck_tables.stopping.slope_section`, ``good`` says in which
-    cells they are good; ``left`` (n,): which launches are in others, and left out.
+    ``section`` holds the functions of :mod:`puck_tables.stopping.slope_section`, ``good`` says in
+    which cells they are good; ``left`` (n,): which launches are in others, and left out.
     """
     patience(launches.shape[1])
-    flat, numbers = cut.reshape(-1), out.reshape(-1)
+    flat, numbers = section.reshape(-1), out.reshape(-1)
     for n in range(launches.shape[1]):
         patience(1)
         vx, vy, spin, radius = launches[0, n], launches[1, n], launches[2, n], launches[5, n]
@@ -82,12 +82,12 @@ def fill_section_jacobians(
         slip, larger = math.hypot(speed, rim), max(speed, rim)
         raised = 2.0**200 if larger < _LOWEST else 1.0
         ratio = (raised * min(speed, rim)) / (raised * larger)
-        side, i, place = section_place(ratio, rim > speed, cut, OWN)
+        side, i, place = section_place(ratio, rim > speed, section, OWN)
         # a node is good whatever lies between
         left[n] = place > 0.0 and not good[side, (i - HEADER) // OWN]
         if left[n]:
             continue
-        own = weighted_rows(flat, side * cut.shape[1] + i, basis(place), OWN)
+        own = weighted_rows(flat, side * section.shape[1] + i, basis(place), OWN)
         placed = placed_stop(vx, vy, spin, launches[4, n], radius, speed, slip, own)
         for k in range(_OUT):
             numbers[_OUT * n + k] = placed[k]

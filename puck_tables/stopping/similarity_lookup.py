@@ -178,7 +178,7 @@ def _heading(side: int, double_share: float, delta: float, turning: float, part:
 
 
 @inlined
-def know_launch(
+def look_up_launch(
     launch: FloatArray, stops: FloatArray, curve: FloatArray, turn_inverse: FloatArray,
     constants: FloatArray, turn_share: float, sums: FloatArray, out: FloatArray,
 ) -> None:  # fmt: skip

@@ -183,7 +183,7 @@ def pole_at(is_fast: bool, share: float, fixed: Numbers, f: Numbers) -> tuple[fl
 
 
 @inlined
-def flow_at(
+def coefficients_at(
     is_fast: bool, share: float, log_near: float, log_far: float, delta: float, fixed: Numbers,
     f: Numbers,
 ) -> Numbers:  # fmt: skip

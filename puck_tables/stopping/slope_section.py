@@ -18,7 +18,7 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import run_chunks
 from puck_tables.motion.body import Body
-from puck_tables.stopping.variational import natural_stops, varied_of
+from puck_tables.stopping.variational import unit_stops, variations_of
 from puck_tables.table.singular_lines import lines_of
 from puck_tables.table.slip_axis import graded, sides_of
 from puck_tables.table.slip_spline import SlipSpline
@@ -35,10 +35,10 @@ class SlopeSection(NamedTuple):
     """Twenty functions of φ, and in which cells (sides, cells) they are good.
 
     Time, along, to the left, path, body angle, by four columns of
-    :func:`puck_tables.stopping.variational.natural_stops` each.
+    :func:`puck_tables.stopping.variational.unit_stops` each.
     """
 
-    cut: FloatArray
+    coefficients: FloatArray
     good: npt.NDArray[np.bool_]
 
 
@@ -63,15 +63,13 @@ def slope_section(body: Body) -> SlopeSection:
     >>> section.good.shape, bool(section.good[:, -1].all())
     ((4, 128), True)
     """
-    friction = varied_of(body)
+    friction = variations_of(body)
     sides = sides_of(lines_of(body.law, body.delta)[::-1], ends_too=True)
 
     def at(xi: FloatArray) -> FloatArray:
         phi = graded(sides, xi).ravel()
         cosine = np.where(phi >= 0.5 * np.pi, 0.0, np.cos(phi))
-        return natural_stops(friction, cosine, np.sin(phi))[:, :, :4].reshape(
-            len(sides), xi.size, -1
-        )
+        return unit_stops(friction, cosine, np.sin(phi))[:, :, :4].reshape(len(sides), xi.size, -1)
 
     cells = _COARSEST_CELLS
     values = at(np.arange(cells + 1) / cells)
@@ -82,7 +80,7 @@ def slope_section(body: Body) -> SlopeSection:
         guess = spline.at(graded(sides, xi).ravel()).reshape(between.shape)
         good = np.abs(guess - between).max(axis=2) <= SPLINE_ERROR
         if good[:, xi > _NEAR].all() or 2 * cells > _FINEST_CELLS:
-            return SlopeSection(spline.cut, good)
+            return SlopeSection(spline.coefficients, good)
         finer = np.empty((len(sides), 2 * cells + 1, values.shape[2]))
         finer[:, ::2], finer[:, 1::2] = values, between
         values, cells = finer, 2 * cells
@@ -109,7 +107,7 @@ def stop_slopes_of(body: Body, launches: FloatArray, threads: int | None = None)
     from puck_tables.stopping.section_lookup import fill_section_jacobians
     from puck_tables.stopping.stop_jacobian import fill_placed_stops
 
-    count, friction = launches.shape[1], varied_of(body)
+    count, friction = launches.shape[1], variations_of(body)
     out, left = np.empty((count, 5, 6)), np.ones(count, np.bool_)
     speed, rim = np.hypot(launches[0], launches[1]), np.abs(launches[5] * launches[2])
     friction.refuse_limit(speed, rim)
@@ -124,7 +122,7 @@ def stop_slopes_of(body: Body, launches: FloatArray, threads: int | None = None)
     if left.any():
         some = np.ascontiguousarray(launches[:, left])
         slip = np.hypot(speed, rim)[left]
-        own = natural_stops(friction, speed[left] / slip, rim[left] / slip)
+        own = unit_stops(friction, speed[left] / slip, rim[left] / slip)
         part = np.empty((some.shape[1], 5, 6))
         fill_placed_stops(some, np.ascontiguousarray(own[:, :, :4]), part)
         out[left] = part

@@ -131,7 +131,7 @@ class SectionLookUp(StopSolver):
     @property
     def work(self) -> dict[str, Any]:
         """The section."""
-        return {"by": self.method, "section": self.section.cut}
+        return {"by": self.method, "section": self.section.coefficients}
 
     def all(self, launches: FloatArray, threads: int | None = 1) -> tuple[FloatArray, Status]:
         """All of the outputs (6, n) and status (n,)."""
@@ -151,7 +151,7 @@ class SectionLookUp(StopSolver):
 
         def work(start: int, stop: int) -> None:
             some, part = rows(start, stop), out[:, start:stop]
-            if fill_section_stops(some, self.section.cut, longest, part):
+            if fill_section_stops(some, self.section.coefficients, longest, part):
                 mark_too_large(part, status[start:stop], some, longest)
 
         in_chunks(work, size, threads)

@@ -84,8 +84,8 @@ from puck_tables.stopping.similarity_rates import (
     TURNED,
     UNIT,
     WORK,
+    coefficients_at,
     find_functions,
-    flow_at,
     of_stop,
     pole_at,
     turn_rate,
@@ -159,25 +159,28 @@ def _find_logs(room: FloatArray) -> None:
 
 
 @inlined
-def _find_flow(room: FloatArray) -> None:
+def _find_coefficients(room: FloatArray) -> None:
     """What places on the curve change by, and which way the states turned."""
     for n in range(PART):
         is_fast, share = row_of(room, FAST, n) > 0.0, row_of(room, SHARE, n)
         fixed, here = rows_of(room, FIXED, FIXED_ROWS, n), rows_of(room, HERE, HERE_ROWS, n)
         log_near, log_far, log = rows_of(room, _LOGS, _LOGS_FOUND, n)
-        flow = flow_at(
+        coefficients = coefficients_at(
             is_fast, share, log_near, log_far, row_of(room, DELTA, n), fixed,
             rows_of(room, FOUND, SECTION_WIDTH, n),
         )  # fmt: skip
         pole = row_of(room, _POLE, n)
-        ratio = exp_of(fixed[KAPPA] * log - (flow[CURVE] - here[0]))  # of c − c₀
+        ratio = exp_of(fixed[KAPPA] * log - (coefficients[CURVE] - here[0]))  # of c − c₀
         raised = fixed[C0_TILT] * ratio - fixed[C0_TILT]
-        raised += row_of(room, _GAP, n) * (flow[CURVE_TILT] - here[1] - fixed[K_TILT] * log)
-        turned = flow[TURN_TILT] - here[3] + fixed[H0_TILT] * log
+        raised += row_of(room, _GAP, n) * (coefficients[CURVE_TILT] - here[1] - fixed[K_TILT] * log)
+        turned = coefficients[TURN_TILT] - here[3] + fixed[H0_TILT] * log
         # ρ over that at the launch
         flown = ratio * (pole * row_of(room, _ONE_POLE, n))
         into_rows(
-            room, _FLOW, n, (flown, raised * (pole * fixed[ONE_KAPPA]), flow[TURN_SLOPE], turned)
+            room,
+            _FLOW,
+            n,
+            (flown, raised * (pole * fixed[ONE_KAPPA]), coefficients[TURN_SLOPE], turned),
         )
     for n in range(PART):
         cosine, sine = cosine_sine_of(row_of(room, TURNED, n))
@@ -188,15 +191,15 @@ def _find_flow(room: FloatArray) -> None:
 @inlined
 def _change(
     u0: float, late: float, tilt: float, gone: Numbers, rates: Numbers, here: Numbers,
-    flow: Numbers, own: Numbers,
+    coefficients: Numbers, own: Numbers,
 ) -> Numbers:  # fmt: skip
     """How a state changes with its launch: what is left of x, y, body angle; vx, vy, rω.
 
     ``u0``: of u at the launch; ``late``: of its stop; ``tilt``: of δ.
     """
     speed, rim, cosine, sine, one_slip, ex, ey, fx, fy = gone
-    t, t_slope, t_tilt, rate, one_way, h0, bend, begun = rates
-    flown, raised, turn_slope, turned = flow
+    t, t_slope, t_tilt, rate, one_way, h0, deflection, begun = rates
+    flown, raised, turn_slope, turned = coefficients
     _, _, turn0, _, far0, is_far = here
     if tilt == 0.0:
         w, y = late * one_slip, flown * u0
@@ -206,7 +209,7 @@ def _change(
     log_q = (w - t_slope * y) * one_way
     turn = h0 * log_q + turn_slope * u
     if tilt == 0.0:
-        turn = bend * ((w - t * begun) * one_way) + far0 if is_far > 0.0 else turn - turn0
+        turn = deflection * ((w - t * begun) * one_way) + far0 if is_far > 0.0 else turn - turn0
     else:
         turn += turned
     v = speed * (log_q - sine * (sine * u))
@@ -227,7 +230,7 @@ def _change(
 @inlined
 def _state_slopes(
     left: float, delta: float, around: float, launched: Numbers, h0: float, here: Numbers,
-    stop: Numbers, found: Numbers, moving: Numbers, flow: Numbers, ways: Numbers,
+    stop: Numbers, found: Numbers, moving: Numbers, coefficients: Numbers, ways: Numbers,
 ) -> Numbers:  # fmt: skip
     """A state and its derivatives in natural units, along x and y, six rows of six.
 
@@ -235,7 +238,7 @@ def _state_slopes(
     Columns: itself; by v, v across, rω, δ, time.
     """
     speed0, rim0, t0, one_speed, u0, begun, _ = launched
-    cosine, sine, slip, one_slip, t_slope, one_way, gap, pole, bend = moving
+    cosine, sine, slip, one_slip, t_slope, one_way, gap, pole, deflection = moving
     k = 1.0 if left > 0.0 else 0.0  # at rest that of the stop alone
     from_stop, rate = of_stop(found, delta), gap * pole
     speed, rim = slip * cosine, slip * sine
@@ -243,15 +246,15 @@ def _state_slopes(
     ex, ey = ways
     fx, fy = -around * ey, around * ex
     gone = speed, rim, cosine, sine, one_slip, ex, ey, fx, fy
-    rates = from_stop[T], t_slope, from_stop[BY_HEIGHT + T], rate, one_way, h0, bend, begun
-    common = gone, rates, here, flow, own
+    rates = from_stop[T], t_slope, from_stop[BY_HEIGHT + T], rate, one_way, h0, deflection, begun
+    common = gone, rates, here, coefficients, own
     # by φ and by δ
     x1, y1, b1, p1, q1, a1 = _change(u0, stop[0], 0.0, *common)
     x4, y4, b4, p4, q4, a4 = _change(0.0, stop[1], 1.0, *common)
     # by time: velocity and acceleration
     log_q = -k * (one_slip * one_way)
     u = -rate * log_q
-    ahead, aside = speed * (log_q - sine * (sine * u)), speed * (bend * log_q)
+    ahead, aside = speed * (log_q - sine * (sine * u)), speed * (deflection * log_q)
     p5, q5 = ahead * ex + aside * fx, ahead * ey + aside * fy
     a5 = rim * (log_q + cosine * (cosine * u))
     vx, vy, a = k * speed * ex, k * speed * ey, k * rim
@@ -282,7 +285,7 @@ def _find_jacobians(room: FloatArray) -> None:
     """
     _find_rates(room)
     _find_logs(room)
-    _find_flow(room)
+    _find_coefficients(room)
     for n in range(PART):
         spin = row_of(room, SPIN, n)
         around = 1.0 if spin >= 0.0 else -1.0
@@ -311,7 +314,7 @@ def fill_state_jacobians(
     """Derivatives of states into ``out`` (n, 6, 7).
 
     At ``times`` (n,) ≥ 0, from ``begin`` to ``end``, as in
-    :func:`puck_tables.stopping.state_lookup.fill_orbit_states`, whose ``states`` (6, n) are needed;
+    :func:`puck_tables.stopping.state_lookup.fill_states_at`, whose ``states`` (6, n) are needed;
     of pucks ``which`` of ``facts`` (49, m), or, where ``which`` is empty, of ``pucks``, see
     :func:`puck_tables.stopping.launch_facts.fill_launch_facts`.  ``section``: that of
     :func:`puck_tables.stopping.similarity_rates.fill_section` where all have one height, or empty.

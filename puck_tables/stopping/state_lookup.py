@@ -81,19 +81,19 @@ def gather(
 
 
 @look_up
-def fill_orbit_states(
+def fill_states_at(
     pucks: FloatArray, which: npt.NDArray[np.int64], times: FloatArray, begin: int, end: int,
-    orbit: FloatArray, out: FloatArray,
+    splines: FloatArray, out: FloatArray,
 ) -> int:  # fmt: skip
     """States at ``times`` of ``pucks`` (20, m), see :mod:`puck_tables.stopping.launch_lookup`.
 
     Of ``times`` (n,) and into ``out`` (6, n) those from ``begin`` to ``end`` alone.  ``which``
     (n,): puck each of them is of; (1,): all of one; (0,): of puck after puck, the first of which is
-    that at ``begin``.  ``orbit`` (2, cells + 3, 9 × 8).  Rows: x, y, heading from that at the
+    that at ``begin``.  ``splines`` (2, cells + 3, 9 × 8).  Rows: x, y, heading from that at the
     launch, body angle, v, ω; at rest the angles are those of the stop.  Returns how many times are
     none, or negative.
     """
-    flat, cells, room = orbit.reshape(-1), float(orbit.shape[1] - 3), np.empty(_ROWS * BLOCK)
+    flat, cells, room = splines.reshape(-1), float(splines.shape[1] - 3), np.empty(_ROWS * BLOCK)
     bad, held = 0, -1
     for start in range(begin, end, BLOCK):
         patience(1)

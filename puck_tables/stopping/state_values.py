@@ -42,7 +42,9 @@ def directions(vx: FloatArray, vy: FloatArray) -> FloatArray:
     return found
 
 
-def known_pucks(table: StopTable, launches: FloatArray, threads: int | None = None) -> FloatArray:
+def looked_up_launches(
+    table: StopTable, launches: FloatArray, threads: int | None = None
+) -> FloatArray:
     """Launches (6, m) of plain pucks beside what the table knows of them, (20, m)."""
     return table.pucks(launches_in(launches), threads)
 
@@ -52,15 +54,15 @@ def looked_up(
     threads: int | None = None,
 ) -> FloatArray:  # fmt: skip
     """States (6, n) of plain ``pucks`` (20, m), ``which`` (n,) or (1,) at ``moments`` (n,)."""
-    from puck_tables.stopping.state_lookup import fill_orbit_states
+    from puck_tables.stopping.state_lookup import fill_states_at
 
-    out, orbit, bad = np.empty((STATE_ROWS, moments.size)), table.orbit_coefficients, [0]
+    out, splines, bad = np.empty((STATE_ROWS, moments.size)), table.state_coefficients, [0]
     if moments.size <= CHUNK:
-        bad.append(fill_orbit_states(pucks, which, moments, 0, moments.size, orbit, out))
+        bad.append(fill_states_at(pucks, which, moments, 0, moments.size, splines, out))
     else:
 
         def work(start: int, stop: int) -> None:
-            bad.append(fill_orbit_states(pucks, which, moments, start, stop, orbit, out))
+            bad.append(fill_states_at(pucks, which, moments, start, stop, splines, out))
 
         in_chunks(work, moments.size, threads)
     if any(bad):
@@ -115,5 +117,5 @@ def states_of(body: Body, launch: FloatArray, times: FloatArray) -> FloatArray:
     source = source_of(body)
     regime = regime_of(frame.speed, frame.rim, source.limit, source.limit_width)
     run, _ = solve(source, regime, frame.speed, frame.rim, TOL)
-    natural = run.states(frame.natural_times(times, float(run.stop[T]) * frame.time))
+    natural = run.states(frame.unit_times(times, float(run.stop[T]) * frame.time))
     return np.stack(frame.states(*natural))

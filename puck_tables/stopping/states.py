@@ -39,8 +39,8 @@ from puck_tables.stopping.plain_states import all_looked_up, fill_state_slopes
 from puck_tables.stopping.state_values import (
     directions,
     integrate,
-    known_pucks,
     looked_up,
+    looked_up_launches,
     refuse_times,
 )
 from puck_tables.stopping.stop_table import StopTable
@@ -148,7 +148,7 @@ class States(Differentiated, Result):
             )  # fmt: skip
             return np.stack([getattr(found, name) for name in STATE_NAMES])
         table, launches = self._table or StopTable.shipped(), arguments[: len(LAUNCH_NAMES)]
-        pucks = known_pucks(table, launches)
+        pucks = looked_up_launches(table, launches)
         which = np.arange(arguments.shape[1])
         rows = looked_up(table, pucks, which, arguments[len(LAUNCH_NAMES)].copy())
         turned = rows[HEADING] + np.arctan2(launches[1], launches[0])
@@ -276,7 +276,7 @@ def states(
     slopes = np.empty((moments.size, len(STATE_NAMES), len(MOMENT_NAMES))) if jacobian else None
     if all_plain:
         found = all_looked_up(chosen, launches, which, moments, threads, slopes)
-        bodies, told = {}, _told(launches.size, 0)
+        bodies, told = {}, _explained(launches.size, 0)
     else:
         refuse_times(moments)
         each = _each(which, moments.size)
@@ -286,7 +286,7 @@ def states(
         longest = max((body.longest for body in bodies.values()), default=2.0)
         if not fits(rows, longest).all():
             raise InputError(TOO_LARGE)
-        pucks = known_pucks(chosen, rows[:, plain], threads)
+        pucks = looked_up_launches(chosen, rows[:, plain], threads)
         found = np.empty((STATE_ROWS, moments.size))
         looked, others = plain[each], np.flatnonzero(~plain)
         number = np.cumsum(plain) - 1  # of a plain puck among such
@@ -300,7 +300,7 @@ def states(
             integrated_jacobians(bodies, rows, others, each, moments, slopes, threads)
         integrate(bodies, rows, others, each, moments, found, threads)
         found[HEADING] += directions(rows[0], rows[1])[each]
-        told = _told(int(plain.sum()), int((~plain).sum()))
+        told = _explained(int(plain.sum()), int((~plain).sum()))
     if slopes is None:
         return _states(found, moments, launches, which, shape, told)
     return _states(
@@ -310,7 +310,7 @@ def states(
 
 
 @lru_cache
-def _told(looked: int, integrated: int) -> str:
+def _explained(looked: int, integrated: int) -> str:
     each = ((looked, "looked up"), (integrated, "integrated"))
     words = [f"{count} pucks {how}" for count, how in each if count or not integrated]
     return " and ".join(words) + ", to 1e-9 of Q, Q^2/J and Q^2/(J r)"

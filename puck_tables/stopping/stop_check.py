@@ -36,7 +36,7 @@ from puck_tables.stopping.axes import HEIGHTS, SlipAxis, heights, ratio_at
 from puck_tables.stopping.exact import end_values, exact_stops
 from puck_tables.stopping.launch_arrays import launches_in
 from puck_tables.stopping.lookup import CURVE_ROW
-from puck_tables.stopping.node_equations import missed_by_curve, missed_by_stops
+from puck_tables.stopping.node_equations import missed_by_stops, similarity_error
 from puck_tables.stopping.similarity import limits, regular_parts
 from puck_tables.stopping.similarity_lookup import (
     BODY,
@@ -202,8 +202,10 @@ def measured(table: StopValues) -> Accuracy:
     deviation = np.empty((2, len(_CURVE_HEIGHTS), between.size))
     for row, one in enumerate(_CURVE_HEIGHTS):
         parts = regular_parts(between, one)
-        deviation[0, row] = _curve_between(table, CURVE_SUM, one) - limits(one).kappa * parts[:, 0]
-        deviation[1, row] = _curve_between(table, TURN_SUM, one) - parts[:, 1]
+        deviation[0, row] = (
+            _similarity_between(table, CURVE_SUM, one) - limits(one).kappa * parts[:, 0]
+        )
+        deviation[1, row] = _similarity_between(table, TURN_SUM, one) - parts[:, 1]
     nodes, height = np.broadcast_arrays(between.phi(), np.array(_CURVE_HEIGHTS)[:, None])
     curve = Accuracy.of(np.abs(deviation).reshape(2, -1), nodes.ravel(), height.ravel(), None)
     both = {
@@ -214,9 +216,9 @@ def measured(table: StopValues) -> Accuracy:
     return replace(stops, **both, order=order)
 
 
-def _curve_between(table: StopValues, function: int, delta: float) -> FloatArray:
+def _similarity_between(table: StopValues, function: int, delta: float) -> FloatArray:
     """κR or S at the nodes of an axis three times as fine, as the table's splines give them."""
-    c = table.curve_coefficients.reshape(2, -1, CURVE_ROW)[:, :, function * HEIGHTS :][
+    c = table.similarity_coefficients.reshape(2, -1, CURVE_ROW)[:, :, function * HEIGHTS :][
         :, :, :HEIGHTS
     ]
     at_height = c @ (2.0 * delta**2 - 1.0) ** np.arange(HEIGHTS)
@@ -289,7 +291,7 @@ def _equations(
         first[:, 1] + 1j * first[:, 2] - place
         - end_q**2 * turned * (last[:, 1] + 1j * last[:, 2])
     )  # fmt: skip
-    curve = _along_curve(table, end, delta) - _along_curve(table, start, delta)
+    curve = _along_motion(table, end, delta) - _along_motion(table, start, delta)
     stops = np.stack([rest_time, rest_place.real, rest_place.imag])
     by_way = np.stack([curve[0] - log_q[-1], curve[1] - psi[-1]])
     return [
@@ -314,7 +316,7 @@ def _at_nodes(table: StopValues) -> list[Check]:
     slow = np.log(np.maximum(ratio_at(np.arange(axis.cells + 1) / axis.cells), 1e-300))
     u, delta = np.broadcast_arrays(np.stack([slow, -slow])[..., None], heights())
     missed, allowed = missed_by_stops(axis, table.values)
-    of_curve = [missed_by_curve(axis, table.values, j) for j in range(HEIGHTS)]
+    of_curve = [similarity_error(axis, table.values, j) for j in range(HEIGHTS)]
     by_curve, allowed_curve = np.stack([one for one, _ in of_curve], axis=2), of_curve[0][1]
     places = u.ravel(), delta.ravel()
     of_stops, of_curves = (
@@ -326,7 +328,7 @@ def _at_nodes(table: StopValues) -> list[Check]:
     ]
 
 
-def _along_curve(table: StopValues, u: FloatArray, delta: FloatArray) -> FloatArray:
+def _along_motion(table: StopValues, u: FloatArray, delta: FloatArray) -> FloatArray:
     """Ln Q and ψ by the table, each up to a function of δ, (2, n)."""
     known = table.known(launches_at(u, delta))
     log_q = known[LOG_N] / known[KAPPA] - np.log(known[T_LAUNCH])

@@ -19,14 +19,14 @@ from puck_tables.stopping.axes import (
 from puck_tables.stopping.lookup import CURVE_ROW, STOP_POWERS, STOP_ROW
 from puck_tables.stopping.similarity import limits
 from puck_tables.stopping.slopes import Slopes, slopes_of
-from puck_tables.stopping.state_nodes import OrbitCurve
+from puck_tables.stopping.state_nodes import InverseSolution
 from puck_tables.stopping.state_splines import ORBIT_WIDTH, REGULAR, TURN_POWERS, TURN_STEP
 from puck_tables.stopping.stop_splines import (
     by_power,
     cut_rows,
     in_rows,
+    inverse_solution_splines,
     inverse_splines,
-    orbit_splines,
     side_by_side,
 )
 from puck_tables.table.table import Table
@@ -48,7 +48,7 @@ class StopCoefficients(Table):
         return in_rows(found, STOP_ROW, power_first=True)
 
     @cached_property
-    def curve_coefficients(self) -> FloatArray:
+    def similarity_coefficients(self) -> FloatArray:
         """Body angle, S/δ, path length, κR as the kernels of curve_lookup read them."""
         return in_rows(by_power(self._sides([4, 6, 3, 5])), CURVE_ROW, power_first=False)
 
@@ -91,9 +91,9 @@ class StopCoefficients(Table):
         return side_by_side(by_power(self._sides([4, 6, 5, 3])))
 
     @cached_property
-    def orbit_coefficients(self) -> FloatArray:
+    def state_coefficients(self) -> FloatArray:
         """What :mod:`puck_tables.stopping.state_lookup` reads."""
-        values = orbit_splines(self._curve, with_time=True)
+        values = inverse_solution_splines(self._curve, with_time=True)
         padded = np.zeros((*values.shape[:3], ORBIT_WIDTH))
         padded[..., : values.shape[3]] = values
         return side_by_side(padded)
@@ -101,13 +101,13 @@ class StopCoefficients(Table):
     @cached_property
     def turn_coefficients(self) -> FloatArray:
         """The heading's regular part over the place by Q, (2, cells + 3, 12)."""
-        parts = orbit_splines(self._curve, with_time=False)[..., REGULAR:]
+        parts = inverse_solution_splines(self._curve, with_time=False)[..., REGULAR:]
         return in_rows(parts, TURN_STEP * TURN_POWERS, power_first=True)
 
     @cached_property
-    def _curve(self) -> OrbitCurve:
-        return OrbitCurve(
-            self.axis.cells, self.constants, self.stop_coefficients, self.curve_coefficients
+    def _curve(self) -> InverseSolution:
+        return InverseSolution(
+            self.axis.cells, self.constants, self.stop_coefficients, self.similarity_coefficients
         )
 
     def _sides(self, functions: list[int], thinning: int = 1) -> FloatArray:
@@ -119,7 +119,7 @@ class StopCoefficients(Table):
     def _cuts(self) -> dict[tuple[int, int], FloatArray]:
         return {}
 
-    def cut(self, powers: int = STOP_POWERS, thinning: int = 1) -> FloatArray:
+    def thinned(self, powers: int = STOP_POWERS, thinning: int = 1) -> FloatArray:
         """What :func:`puck_tables.stopping.lookup.stops_kernel` reads, as coarse as wanted.
 
         Parameters

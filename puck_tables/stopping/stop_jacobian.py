@@ -128,17 +128,17 @@ def placed_stop(
 
     NaN for the path of pure spin by vx and vy.
     """
-    unit, bend = 1.0 / decel, 1.0 / radius
+    unit, deflection = 1.0 / decel, 1.0 / radius
     duration = slip * unit
     place = slip * duration
     east, north = direction(vx, vy, speed)
     around = 1.0 if spin >= 0.0 else -1.0
-    turn = around * bend  # the body angle changes its sign with the spin
+    turn = around * deflection  # the body angle changes its sign with the spin
     time, length, body = duration * own[0], place * own[12], turn * place * own[16]
     t_speed, w_speed, b_speed = unit * own[1], duration * own[13], turn * duration * own[17]
     w_speed = w_speed if speed > 0.0 else math.nan
     t_rim, w_rim = around * unit * own[2], around * duration * own[14]
-    b_rim = bend * duration * own[18]
+    b_rim = deflection * duration * own[18]
     # z = e (ahead + i aside) v: the derivatives along the velocity and across it
     ahead, aside = duration * own[4], around * duration * own[8]  # z/v
     along, left = duration * own[5], around * duration * own[9]
@@ -157,7 +157,7 @@ def placed_stop(
         east * w_speed, north * w_speed, radius * w_rim, place * own[15], -length * unit,
         spin * w_rim,
         east * b_speed, north * b_speed, radius * b_rim, turn * place * own[19], -body * unit,
-        spin * b_rim - body * bend,
+        spin * b_rim - body * deflection,
     )  # fmt: skip
 
 

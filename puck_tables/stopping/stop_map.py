@@ -12,7 +12,7 @@ from puck_tables.stopping.population import Population, law_name
 from puck_tables.stopping.solvers import OUTPUTS
 
 if TYPE_CHECKING:
-    from puck_tables.accuracy.front import Selection
+    from puck_tables.accuracy.method_errors import Selection
 
 
 class StopMap(Result):

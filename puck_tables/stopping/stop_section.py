@@ -19,7 +19,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import real
-from puck_tables.accuracy.front import COARSEST
+from puck_tables.accuracy.method_errors import COARSEST
 from puck_tables.contact.laws import Law
 from puck_tables.errors import AccuracyError
 from puck_tables.motion.body import Body, body_of
@@ -95,9 +95,9 @@ class StopSection(SectionTable):
     ends_too = True
 
     @property
-    def cut(self) -> FloatArray:
+    def coefficients(self) -> FloatArray:
         """What compiled code reads."""
-        return self.spline.cut
+        return self.spline.coefficients
 
     @cached_property
     def body(self) -> Body:
@@ -121,10 +121,10 @@ class StopSection(SectionTable):
         allowed = min(self.tolerance, COARSEST)
         body = self.body
         friction = body.friction(max(0.01 * allowed, FINEST_ACCURACY))
-        cut, counts = friction.for_motion(body.gyration), np.array([1.0] * 5 + [_TURN])
+        section, counts = friction.for_motion(body.gyration), np.array([1.0] * 5 + [_TURN])
 
         def off(phi: FloatArray) -> FloatArray:
-            truth = stops_at(body, friction, cut, phi, 0.1 * allowed)
+            truth = stops_at(body, friction, section, phi, 0.1 * allowed)
             missed: FloatArray = (self.spline.at(phi) - truth) * _factors(phi) * counts
             return missed
 
@@ -277,7 +277,7 @@ def _factors(phi: FloatArray) -> FloatArray:
 
 
 def stops_at(
-    body: Body, friction: FrictionSection, cut: FloatArray, phi: FloatArray, accuracy: float
+    body: Body, friction: FrictionSection, section: FloatArray, phi: FloatArray, accuracy: float
 ) -> FloatArray:
     """The functions at slip angles, by integration; at 0 and π/2 in closed form."""
     at_zero, at_half = phi <= 0.0, phi >= 0.5 * np.pi
@@ -285,7 +285,7 @@ def stops_at(
     out = np.empty((phi.size, len(StopSection.functions)))
     u = np.log(np.tan(phi[inner]))
     stops = integrated_stops(
-        u, np.full(u.size, body.delta), cut, min(0.03 * accuracy, LOOSEST_LOCAL)
+        u, np.full(u.size, body.delta), section, min(0.03 * accuracy, LOOSEST_LOCAL)
     )
     out[inner] = stops / _factors(phi[inner])
     out[at_zero], out[at_half] = _ends(body, friction.at_ends())

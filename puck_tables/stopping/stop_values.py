@@ -20,8 +20,8 @@ from puck_tables.stopping.launch_arrays import (
     Launches,
     fits,
     in_chunks,
-    joined_mark,
     launches_in,
+    smallest_mark,
 )
 from puck_tables.stopping.lookup import STOP_POWERS, stops_kernel
 from puck_tables.stopping.similarity_lookup import LAUNCH_COLUMNS
@@ -93,7 +93,7 @@ class StopValues(StopCoefficients):
         Parameters
         ----------
         launches : Launches
-        powers, thinning : see :meth:`cut`
+        powers, thinning : see :meth:`thinned`
         threads : as for :func:`puck_tables.stop`
 
         Raises
@@ -112,9 +112,9 @@ class StopValues(StopCoefficients):
         """
         size = launches.size
         time, place = np.empty(size), np.empty((size, 2))
-        fill, cut, both = stops_kernel(powers), self.cut(powers, thinning), place.reshape(-1)
+        fill, rows, both = stops_kernel(powers), self.thinned(powers, thinning), place.reshape(-1)
         if size <= CHUNK:
-            doubtful, bad, mark = fill(*launches.part(0, size), cut, time, both, both[1:], 2)
+            doubtful, bad, mark = fill(*launches.part(0, size), rows, time, both, both[1:], 2)
             mark = int(mark) % (1 << 64)
         else:
             found = []
@@ -122,17 +122,17 @@ class StopValues(StopCoefficients):
             def work(start: int, stop: int) -> None:
                 x, y = both[2 * start : 2 * stop], both[2 * start + 1 : 2 * stop]
                 part = launches.part(start, stop)
-                found.append((start, *fill(*part, cut, time[start:stop], x, y, 2)))
+                found.append((start, *fill(*part, rows, time[start:stop], x, y, 2)))
 
             in_chunks(work, size, threads)
             _, doubtful, bad, _ = map(sum, zip(*found, strict=True))
-            mark = joined_mark((at, mark) for at, _, _, mark in found)
+            mark = smallest_mark((at, mark) for at, _, _, mark in found)
         if bad:
             launches.refuse_bad()
         return time, place, doubtful, mark
 
     def known(self, launches: FloatArray) -> FloatArray:
-        """What the table knows of checked launches (6, n), see :func:`know_launch`; (14, n)."""
+        """What the table knows of checked launches (6, n), see :func:`look_up_launch`; (14, n)."""
         return self.pucks(launches_in(launches))[LAUNCH_COLUMNS:]
 
     def pucks(self, launches: Launches, threads: int | None = None) -> FloatArray:
@@ -184,11 +184,11 @@ class StopValues(StopCoefficients):
             If one of them is no launch, or, where all is asked, too large for floating point.
         """
         from puck_tables.motion.path import TURN_SHARE
-        from puck_tables.stopping.launch_lookup import fill_known
+        from puck_tables.stopping.launch_lookup import fill_launch_lookup
 
         out = np.empty((rows, stop - start))
-        doubtful, bad = fill_known(
-            *launches.part(start, stop), self.cut(), self.launch_coefficients,
+        doubtful, bad = fill_launch_lookup(
+            *launches.part(start, stop), self.thinned(), self.launch_coefficients,
             self.turn_coefficients, self.constants, TURN_SHARE, out,
         )  # fmt: skip
         if bad:
@@ -214,8 +214,8 @@ class StopValues(StopCoefficients):
         from puck_tables.stopping.launch_lookup import fill_states_of_one
 
         return fill_states_of_one, (
-            self.cut(), self.launch_coefficients, self.turn_coefficients, self.constants,
-            self.orbit_coefficients,
+            self.thinned(), self.launch_coefficients, self.turn_coefficients, self.constants,
+            self.state_coefficients,
         )  # fmt: skip
 
     def checked_range(self, delta: npt.ArrayLike) -> FloatArray:

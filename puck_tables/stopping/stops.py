@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import checked_flag, checked_threads
-from puck_tables.accuracy.front import Selection
+from puck_tables.accuracy.method_errors import Selection
 from puck_tables.contact.laws import HOMOGENEOUS, Law
 from puck_tables.io.columns import derived, following
 from puck_tables.io.dataset import Dataset, variable
@@ -37,8 +37,8 @@ class Stops(Differentiated, Result):
 
     ``stop_time`` (…) s, ``stop_position`` (…, 2) m from the launch, ``status`` (…) int8, 0 where
     all is well, ``method`` ('look-up', 'integrated', or both where heights differ), ``selections``
-    (what was selected for the tolerance, see :class:`puck_tables.accuracy.front.Selection`; empty
-    with a stop table of one's own).
+    (what was selected for the tolerance, see :class:`puck_tables.accuracy.method_errors.Selection`;
+    empty with a stop table of one's own).
     Computed when first asked for: ``path_length`` (…) m, ``body_angle`` (…) rad, ``turn_angle``
     (…) rad: how far the heading has turned when Q has fallen to 1/1000 (for δ > 0 it turns on
     without end); of other than plain pucks, looked up, it errs by up to some 2000 ``tol``.  For

@@ -25,7 +25,7 @@ from puck_tables.stopping.solvers import OUTPUTS, STATUS_MEANINGS
 from puck_tables.stopping.stop_map import StopMap, StopSample
 
 if TYPE_CHECKING:
-    from puck_tables.accuracy.front import Selection
+    from puck_tables.accuracy.method_errors import Selection
     from puck_tables.stopping.per_height import AnyTable
 
 PART = 1 << 13  # launches that a thread takes at once

@@ -32,7 +32,7 @@ def misses(
     >>> misses(puck, np.array([0.5, 0.1]), *slide).round(9).tolist()
     [0.1]
     """
-    cut = source_of(puck.body).friction(SECTION_ACCURACY).cut
+    cut = source_of(puck.body).friction(SECTION_ACCURACY).coefficients
     place = np.broadcast_to(target[..., 0] + 1j * target[..., 1], spin.shape)
     distance, miss = np.abs(place), np.zeros(spin.size)
     moved = distance > 0.0  # pure spin stays where it is

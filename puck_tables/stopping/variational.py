@@ -26,7 +26,7 @@ from puck_tables.motion.body import Body
 from puck_tables.motion.path import STOPPED, integrate
 from puck_tables.motion.state import LENGTH, PSI, SIZE, THETA, T, U, X, Y
 from puck_tables.motion.tableaus import DORMAND_PRINCE
-from puck_tables.table.friction_slopes import FlowSection, flow_of_table, flow_section
+from puck_tables.table.friction_slopes import FrictionSlopes, friction_slopes_of, slopes_of_table
 
 LOCAL = 1e-10  # of a step: derivatives are promised to 1e-7
 _TINY = 1e-25  # for a cos φ or sin φ that is divided by
@@ -38,7 +38,7 @@ _STOP = [T, X, Y, LENGTH, THETA]
 _LEAST_SHARE = 1e-30  # of Q
 
 
-class Varied(NamedTuple):
+class Variations(NamedTuple):
     """Friction of one kind of puck as motions and their variations read it.
 
     ``limits``: ln(rω/v) of lines of the friction that are the limit of its motions, as of a ring
@@ -47,7 +47,7 @@ class Varied(NamedTuple):
 
     delta: float
     ratios: FloatArray
-    flows: FloatArray
+    slopes: FloatArray
     limits: tuple[float, ...]
 
     def refuse_limit(self, speed: FloatArray, rim: FloatArray) -> None:
@@ -67,7 +67,7 @@ class Varied(NamedTuple):
 
 
 @lru_cache(maxsize=64)
-def varied_of(body: Body) -> Varied:
+def variations_of(body: Body) -> Variations:
     """The friction of a puck.
 
     Raises
@@ -82,9 +82,9 @@ def varied_of(body: Body) -> Varied:
     0.5
     """
     if body.table is not None:
-        return varied_by(flow_of_table(body.table, body.delta), body.gyration)
+        return variations_by(slopes_of_table(body.table, body.delta), body.gyration)
     try:
-        return varied_by(flow_section(body.law, body.delta), body.gyration)
+        return variations_by(friction_slopes_of(body.law, body.delta), body.gyration)
     except AccuracyError as error:
         raise AccuracyError(
             f"derivatives are out of reach of a puck of delta = {body.delta:g} under the pressure "
@@ -93,14 +93,14 @@ def varied_of(body: Body) -> Varied:
         ) from None
 
 
-def varied_by(flow: FlowSection, gyration: float) -> Varied:
+def variations_by(source: FrictionSlopes, gyration: float) -> Variations:
     """The same from a section."""
-    ratios, flows = flow.for_motion(gyration), flow.for_slopes(gyration)
-    limits = np.unique(flows[np.isinf(ratios[:, LINE]), LINE])
-    return Varied(flow.delta, ratios, flows, tuple(limits.tolist()))
+    ratios, slopes = source.for_motion(gyration), source.for_slopes(gyration)
+    limits = np.unique(slopes[np.isinf(ratios[:, LINE]), LINE])
+    return Variations(source.delta, ratios, slopes, tuple(limits.tolist()))
 
 
-def natural_stops(friction: Varied, cosine: FloatArray, sine: FloatArray) -> FloatArray:
+def unit_stops(friction: Variations, cosine: FloatArray, sine: FloatArray) -> FloatArray:
     """Stops with Q = J = r = 1 and their derivatives.
 
     Parameters
@@ -121,7 +121,7 @@ def natural_stops(friction: Varied, cosine: FloatArray, sine: FloatArray) -> Flo
     >>> (natural_stops(friction, np.array([1.0]), np.array([0.0]))[0, 0].round(6) + 0.0).tolist()
     [1.0, 1.0, 0.0, 0.0, 0.0]
     """
-    from puck_tables.motion.variation import KEPT, VARIED, fill_varied_stops
+    from puck_tables.motion.variation import KEPT, VARIED, fill_stop_variations
 
     c, s = np.maximum(cosine, _TINY), np.maximum(sine, _TINY)
     u = np.log(s / c)
@@ -129,9 +129,9 @@ def natural_stops(friction: Varied, cosine: FloatArray, sine: FloatArray) -> Flo
 
     def work(start: int, stop: int) -> None:
         part = slice(start, stop)
-        fill_varied_stops(
+        fill_stop_variations(
             u[part], c[part], friction.delta, DORMAND_PRINCE, LOCAL, friction.ratios,
-            friction.flows, rows[part],
+            friction.slopes, rows[part],
         )  # fmt: skip
 
     run_chunks(work, u.size, _CHUNK)
@@ -146,8 +146,8 @@ def natural_stops(friction: Varied, cosine: FloatArray, sine: FloatArray) -> Flo
     return out
 
 
-def natural_states(
-    friction: Varied, cosine: float, sine: float, times: FloatArray, local: float = LOCAL
+def unit_states(
+    friction: Variations, cosine: float, sine: float, times: FloatArray, local: float = LOCAL
 ) -> tuple[FloatArray, FloatArray]:
     """States of one launch with Q = J = r = 1 at times, and their derivatives.
 
@@ -168,7 +168,7 @@ def natural_states(
     AccuracyError
         If the stop is not reached.
     """
-    from puck_tables.motion.variation import BLOCKS, KEPT, VARIED, fill_varied_states, vary
+    from puck_tables.motion.variation import BLOCKS, KEPT, VARIED, fill_state_variations, vary
 
     c, s = max(cosine, _TINY), max(sine, _TINY)
     u = float(np.log(s / c))
@@ -181,12 +181,12 @@ def natural_states(
     if status != STOPPED:
         raise AccuracyError("a motion was too long to be differentiated: leave out jacobian=True")
     path, ends = np.empty((count, VARIED)), z[:count]
-    vary(ends, u, DORMAND_PRINCE, friction.flows, path, stop, work)
+    vary(ends, u, DORMAND_PRINCE, friction.slopes, path, stop, work)
     moving = times < stop[T]
     which, moments = _moments(times[moving], ends, path, stop, friction)
     rows, rates = np.empty((moments.size, VARIED)), np.empty((moments.size, VARIED))
-    fill_varied_states(
-        moments, which, ends, path, stop, DORMAND_PRINCE, friction.flows, rows, rates
+    fill_state_variations(
+        moments, which, ends, path, stop, DORMAND_PRINCE, friction.slopes, rows, rates
     )
     out, by_gyration = np.zeros((times.size, 6, 6)), np.zeros((times.size, 6))
     at_rest = stop.reshape(BLOCKS, KEPT)
@@ -207,7 +207,7 @@ def natural_states(
 
 
 def _moments(
-    times: FloatArray, ends: FloatArray, path: FloatArray, stop: FloatArray, friction: Varied
+    times: FloatArray, ends: FloatArray, path: FloatArray, stop: FloatArray, friction: Variations
 ) -> tuple[npt.NDArray[np.int64], FloatArray]:
     """The last step end before each time, and z there."""
     from puck_tables.motion.path import states_at
@@ -265,7 +265,7 @@ def _by_launch(
     value: FloatArray, slopes: FloatArray, by_time: FloatArray | None, times: FloatArray,
     c: float, s: float,
 ) -> tuple[FloatArray, FloatArray]:  # fmt: skip
-    """Values (n, 6) and their derivatives as :func:`natural_states` has them."""
+    """Values (n, 6) and their derivatives as :func:`unit_states` has them."""
     out = np.zeros((times.size, 6, 6))
     rate = np.zeros((times.size, 6)) if by_time is None else by_time
     powers = np.array([2.0, 2.0, 2.0, 1.0, 1.0, 1.0])

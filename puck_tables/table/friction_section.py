@@ -90,7 +90,7 @@ class FrictionSection(SectionTable):
         return tuple(side.line for side in self.spline.sides[::2])
 
     @cached_property
-    def cut(self) -> FloatArray:
+    def coefficients(self) -> FloatArray:
         """What compiled code reads: the pure ratios, for no motion in particular."""
         return self.spline.with_inertia(0.5, np.ones(3))
 
@@ -108,11 +108,11 @@ class FrictionSection(SectionTable):
         spline = self.spline.coarser() if coarser else self.spline
         # exactly 1 and ½ for a homogeneous puck
         square = 0.5 if gyration == HOMOGENEOUS else gyration * gyration
-        cut = spline.with_inertia(square, np.array([1.0, 1.0, 0.5 / square]))
+        coefficients = spline.with_inertia(square, np.array([1.0, 1.0, 0.5 / square]))
         # a line that is the limit of the motion is never crossed: rounding would, again and again
         limit = np.abs(self.spline.values[:, 0, 2] * (0.5 / square) - 1.0) < AT_THE_LIMIT
-        cut[limit, LINE] = math.inf
-        return cut
+        coefficients[limit, LINE] = math.inf
+        return coefficients
 
     def ratios(self, phi: FloatArray) -> FloatArray:
         """1/ρ_∥, ρ_⊥/ρ_∥, ρ_ω/ρ_∥ at slip angles (n,), (n, 3)."""

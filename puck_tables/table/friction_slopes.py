@@ -16,7 +16,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.contact import one_sided
 from puck_tables.contact.laws import HOMOGENEOUS, Law
 from puck_tables.contact.opening import critical_delta
-from puck_tables.kernels.section_spline import FLOWS, LINE, RATIOS
+from puck_tables.kernels.section_spline import LINE, RATIOS, SLOPES
 from puck_tables.table.friction_section import AT_THE_LIMIT, FrictionSection
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.table.singular_lines import lines_of
@@ -28,7 +28,7 @@ FLOW_ACCURACY = 1e-9  # motions differentiated with it err by at most 1e-8
 
 
 @dataclass(frozen=True, eq=False)
-class FlowSection:
+class FrictionSlopes:
     """The friction ratios of a puck, then their derivatives by δ, as a spline over φ.
 
     ``spline``: six functions; ``delta``: the height; ``error``: the largest, of the ratios.
@@ -41,15 +41,15 @@ class FlowSection:
     def for_motion(self, gyration: float) -> FloatArray:
         """What compiled motions read: the ratios alone, as a friction section gives them."""
         ratios = SlipSpline(self.spline.sides, self.spline.values[..., :RATIOS], True)
-        cut = ratios.with_inertia(*_inertia(gyration, RATIOS))
-        square = cut[0, 6]
+        coefficients = ratios.with_inertia(*_inertia(gyration, RATIOS))
+        square = coefficients[0, 6]
         limit = np.abs(self.spline.values[:, 0, 2] * (0.5 / square) - 1.0) < AT_THE_LIMIT
-        cut[limit, LINE] = np.inf
-        return cut
+        coefficients[limit, LINE] = np.inf
+        return coefficients
 
     def for_slopes(self, gyration: float) -> FloatArray:
         """What their derivatives read: all six."""
-        return self.spline.with_inertia(*_inertia(gyration, FLOWS))
+        return self.spline.with_inertia(*_inertia(gyration, SLOPES))
 
 
 def _inertia(gyration: float, functions: int) -> tuple[float, FloatArray]:
@@ -59,7 +59,7 @@ def _inertia(gyration: float, functions: int) -> tuple[float, FloatArray]:
 
 
 @lru_cache(maxsize=64)
-def flow_section(law: Law, delta: float, accuracy: float = FLOW_ACCURACY) -> FlowSection:
+def friction_slopes_of(law: Law, delta: float, accuracy: float = FLOW_ACCURACY) -> FrictionSlopes:
     """Tabulate the friction of one puck with its derivatives by the height.
 
     Parameters
@@ -83,11 +83,11 @@ def flow_section(law: Law, delta: float, accuracy: float = FLOW_ACCURACY) -> Flo
     [1.0, 0.25, 0.875, 0.0, 0.25, -0.25]
     """
     sides = sides_of(lines_of(law, delta)[::-1])
-    found = slip_spline(lambda phi: flows(law, phi, delta), sides, accuracy, even=True)
-    return FlowSection(found, delta, float(found.error[:RATIOS].max()))
+    found = slip_spline(lambda phi: slopes_at(law, phi, delta), sides, accuracy, even=True)
+    return FrictionSlopes(found, delta, float(found.error[:RATIOS].max()))
 
 
-def flow_of_table(table: ResultantTable, delta: float) -> FlowSection:
+def slopes_of_table(table: ResultantTable, delta: float) -> FrictionSlopes:
     """The same from a table of resultants: all that is asked.
 
     Raises
@@ -105,10 +105,10 @@ def flow_of_table(table: ResultantTable, delta: float) -> FlowSection:
     values = _with_slopes(height_terms(table.values, table.heights), delta)
     error = table.tolerance * float(values[:, 0].max() * (1.0 + values[:, :RATIOS].max()))
     sides, by_side = table.axis.sides, table.axis.by_side(values)
-    return FlowSection(SlipSpline(sides, by_side, True), delta, error)
+    return FrictionSlopes(SlipSpline(sides, by_side, True), delta, error)
 
 
-def flow_at_one_height(section: FrictionSection) -> FlowSection:
+def slopes_at_one_height(section: FrictionSection) -> FrictionSlopes:
     """The same from a friction section, for who asks nothing about other heights: slopes by δ 0.
 
     Examples
@@ -120,7 +120,7 @@ def flow_at_one_height(section: FrictionSection) -> FlowSection:
     """
     spline = section.spline
     values = np.concatenate([spline.values, np.zeros_like(spline.values)], axis=2)
-    return FlowSection(SlipSpline(spline.sides, values, True), section.delta, section.error)
+    return FrictionSlopes(SlipSpline(spline.sides, values, True), section.delta, section.error)
 
 
 def _with_slopes(terms: FloatArray, delta: float) -> FloatArray:
@@ -131,7 +131,7 @@ def _with_slopes(terms: FloatArray, delta: float) -> FloatArray:
     ], axis=-1)  # fmt: skip
 
 
-def flows(law: Law, phi: FloatArray, delta: float) -> FloatArray:
+def slopes_at(law: Law, phi: FloatArray, delta: float) -> FloatArray:
     """The friction ratios at slip angles (n,) by the law, then their derivatives by δ, (n, 6)."""
     ends = np.array([0.0, law.delta_max])
     rho = np.stack(law.resultants(phi[:, None], ends), axis=-1)

@@ -103,11 +103,11 @@ class ResultantValues(LawTable):
         InputError
             If δ is outside the range of the table, or it is not of uniform pressure.
         """
-        from puck_tables.kernels.quadratic import cut, room_for_cut
+        from puck_tables.kernels.quadratic import room_for_section, section_at
 
         height = float(self.checked_range(delta))
-        out = room_for_cut(self.columns)
-        cut(self.columns, height, out)
+        out = room_for_section(self.columns)
+        section_at(self.columns, height, out)
         return out
 
     def checked_range(self, delta: npt.ArrayLike, law: str = _UNIFORM) -> FloatArray:

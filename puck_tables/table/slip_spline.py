@@ -69,23 +69,25 @@ class SlipSpline:
         return int(self.values.shape[1]) - 1
 
     @cached_property
-    def cut(self) -> FloatArray:
+    def coefficients(self) -> FloatArray:
         """The matrix that :mod:`puck_tables.kernels.section_spline` reads; inertia left 0."""
-        cut = np.zeros((len(self.sides), HEADER + self.values.shape[2] * (self.cells + 3)))
-        cut[:, HEADER:] = sided_coefficients(self.values, self.even).reshape(len(cut), -1) / 6.0
+        rows = np.zeros((len(self.sides), HEADER + self.values.shape[2] * (self.cells + 3)))
+        rows[:, HEADER:] = sided_coefficients(self.values, self.even).reshape(len(rows), -1) / 6.0
         for n, side in enumerate(self.sides):
             upper = max(side.line, side.end)
-            cut[n, LINE_COS], cut[n, LINE_SIN] = _direction(side.line)
-            cut[n, LINE] = _log_tangent(side.line)
-            cut[n, UPPER_COS], cut[n, UPPER_SIN] = _direction(upper)
-            cut[n, INVERSE_EXTENT] = 1.0 / abs(side.extent)
-        return cut
+            rows[n, LINE_COS], rows[n, LINE_SIN] = _direction(side.line)
+            rows[n, LINE] = _log_tangent(side.line)
+            rows[n, UPPER_COS], rows[n, UPPER_SIN] = _direction(upper)
+            rows[n, INVERSE_EXTENT] = 1.0 / abs(side.extent)
+        return rows
 
     def at(self, phi: FloatArray) -> FloatArray:
         """The functions at slip angles (n,), radians, as (n, functions)."""
         direction = slip_direction(phi)
         out = np.empty((self.values.shape[2], phi.size))
-        fill_section(self.cut, self.values.shape[2], direction.ratio, direction.fast_spin, out)
+        fill_section(
+            self.coefficients, self.values.shape[2], direction.ratio, direction.fast_spin, out
+        )
         return out.T
 
     def coarser(self) -> SlipSpline:
@@ -93,11 +95,11 @@ class SlipSpline:
         return SlipSpline(self.sides, self.values[:, ::2], self.even)
 
     def with_inertia(self, square: float, factors: FloatArray) -> FloatArray:
-        """A copy of :attr:`cut` with this inertia and the functions multiplied by ``factors``."""
-        cut = self.cut.copy()
-        cut[:, INERTIA] = square
-        cut[:, HEADER:] *= np.tile(factors, self.cells + 3)
-        return cut
+        """Its :attr:`coefficients` with this inertia, the functions multiplied by ``factors``."""
+        rows = self.coefficients.copy()
+        rows[:, INERTIA] = square
+        rows[:, HEADER:] *= np.tile(factors, self.cells + 3)
+        return rows
 
 
 def _direction(phi: float) -> tuple[float, float]:

@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.accuracy.front import MeasuredMethod
+from puck_tables.accuracy.method_errors import MeasuredMethod
 from puck_tables.io.dataset import Dataset, variable
 from puck_tables.kernels.patience import compiled_at_once
 from puck_tables.motion.limits import limit_ratio
@@ -25,7 +25,7 @@ from puck_tables.tradeoff.call_overhead import CallCost, measured_doors
 from puck_tables.tradeoff.contender import Contender, Ready
 from puck_tables.tradeoff.literature_models import PADE_MATCHED, fitted_pade, pade_limit_ratio
 from puck_tables.tradeoff.machine import Machine, measured_machine
-from puck_tables.tradeoff.truth import Points, known_starts, random_points
+from puck_tables.tradeoff.truth import Points, golden_starts, random_points
 
 Progress = Callable[[int, int], None]
 
@@ -130,7 +130,7 @@ def measure(quick: bool = False, progress: Progress | None = None) -> TradeOff:
     table, stop_table = ResultantTable.shipped(), StopTable.shipped()
     contenders: list[Contender] = [
         *resultant_methods.contenders(resultant_methods.ResultantTask(points, flat)),
-        *stop_methods.contenders(stop_methods.StopTask(known_starts(), flat, table, stop_table)),
+        *stop_methods.contenders(stop_methods.StopTask(golden_starts(), flat, table, stop_table)),
         *state_methods.contenders(state_methods.StateTask(table, stop_table)),
     ]
     total, done = 2 * len(contenders) + repeats, 0
@@ -206,7 +206,7 @@ def _growth(largest: int) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Stops by look-up in chunks, from a thousand to 10^largest: ns for each and peak memory."""
     counts = np.array([10.0**power for power in range(3, largest + 1)])
     nanoseconds, peaks = np.empty(counts.size), np.empty(counts.size)
-    fill, coefficients = stops_kernel(_POWERS), StopTable.shipped().cut(_POWERS, _THINNING)
+    fill, coefficients = stops_kernel(_POWERS), StopTable.shipped().thinned(_POWERS, _THINNING)
     _fill(fill, np.ones((6, 1)), coefficients, np.empty((3, 1)))  # compiled before the clock starts
     for n, count in enumerate(counts):
         tracemalloc.start()

@@ -50,7 +50,7 @@ class StateTask:
 
     def integrated(self, local: float, exact: bool) -> Run:
         """Step ends of every puck, and from them every moment."""
-        cut = NO_SECTION if exact else self.table.section(DELTA)
+        section = NO_SECTION if exact else self.table.section(DELTA)
         z, y, result = np.empty(20_000), np.empty((20_000, SIZE)), np.empty(SIZE + 1)
 
         def run() -> FloatArray:
@@ -58,12 +58,12 @@ class StateTask:
             q, states = np.empty(_MOMENTS), np.empty((_MOMENTS, SIZE))
             for n, (vx, _, spin) in enumerate(self.launches[:3].T):
                 _, count = integrate(
-                    log_ratio(vx, spin), DORMAND_PRINCE, 0.0, local, 1.0, cut, DELTA, z.size, z, y,
-                    result,
+                    log_ratio(vx, spin), DORMAND_PRINCE, 0.0, local, 1.0, section, DELTA, z.size, z,
+                    y, result,
                 )  # fmt: skip
                 states_at(
-                    self.times[n], z[:count], y[:count], result, DORMAND_PRINCE, cut, DELTA, q,
-                    states,
+                    self.times[n], z[:count], y[:count], result, DORMAND_PRINCE, section, DELTA,
+                    q, states,
                 )  # fmt: skip
                 places[n] = states[:, 3:5]
             return places
@@ -72,15 +72,15 @@ class StateTask:
 
     def looked_up(self) -> Run:
         """Every moment from the stop table."""
-        from puck_tables.stopping.state_lookup import fill_orbit_states
+        from puck_tables.stopping.state_lookup import fill_states_at
 
         which = np.repeat(np.arange(_PUCKS), _MOMENTS)
         moments, out = self.times.ravel(), np.empty((STATE_ROWS, _PUCKS * _MOMENTS))
-        launches, orbit = launches_in(self.launches), self.stops.orbit_coefficients
+        launches, splines = launches_in(self.launches), self.stops.state_coefficients
 
         def run() -> FloatArray:
             pucks = self.stops.pucks(launches, threads=1)
-            fill_orbit_states(pucks, which, moments, 0, moments.size, orbit, out)
+            fill_states_at(pucks, which, moments, 0, moments.size, splines, out)
             return np.moveaxis(out[:2].reshape(2, _PUCKS, _MOMENTS), 0, -1)
 
         return run
@@ -118,7 +118,7 @@ def contenders(task: StateTask) -> Iterator[Contender]:
         return Contender(QUESTION, method, setting, lambda: None, ready, outsider)
 
     stops = task.stops
-    tables = (stops.launch_coefficients, stops.orbit_coefficients, stops.turn_coefficients)
+    tables = (stops.launch_coefficients, stops.state_coefficients, stops.turn_coefficients)
     yield contender(LOOK_UP.name, "", task.looked_up, sum(table.nbytes for table in tables))
     for source in (FrictionForm.TABLE, FrictionForm.CLOSED_FORMS):
         method, exact = Scheme(Method.ADAPTIVE, source).name, source is FrictionForm.CLOSED_FORMS

@@ -9,8 +9,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray, aligned
 from puck_tables.accuracy.methods import INTEGRATED, LOOK_UP, FrictionForm
-from puck_tables.kernels.quadratic import NO_COLUMNS, room_for_cut
-from puck_tables.kernels.quadratic import cut as cut_table
+from puck_tables.kernels.quadratic import NO_COLUMNS, room_for_section, section_at
 from puck_tables.kernels.section_spline import NO_SECTION
 from puck_tables.motion.bulk_stops import fill_stops
 from puck_tables.motion.limits import log_ratio
@@ -96,7 +95,7 @@ def contenders(task: StopTask) -> Iterator[Contender]:
 
 
 def _fresh_cut(stops: StopTable, powers: int, thinning: int, dtype: type) -> FloatArray:
-    return aligned(StopTable(stops.values).cut(powers, thinning).astype(dtype))
+    return aligned(StopTable(stops.values).thinned(powers, thinning).astype(dtype))
 
 
 def _looked_up(task: StopTask, powers: int, coefficients: object) -> Ready:
@@ -145,17 +144,19 @@ def _integrations(
     def trajectory(built: object) -> Ready:
         assert isinstance(built, np.ndarray)
         z, y, result = np.empty(20_000), np.empty((20_000, SIZE)), np.empty(SIZE + 1)
-        height, cut = -1.0, room_for_cut(built)
+        height, one_height = -1.0, room_for_section(built)
 
         def run(which: FloatArray) -> FloatArray:
             nonlocal height
             out = np.empty((3, which.shape[1]))
             for n, (vx, vy, spin, delta) in enumerate(which[:4].T):
                 if not exact and delta != height:
-                    cut_table(built, delta, cut)
+                    section_at(built, delta, one_height)
                     height = delta
                 u = log_ratio(np.hypot(vx, vy), abs(spin))
-                integrate(u, tableau, steps, local, 1.0, cut, delta, _STEP_LIMIT, z, y, result)
+                integrate(
+                    u, tableau, steps, local, 1.0, one_height, delta, _STEP_LIMIT, z, y, result
+                )
                 out[:, n] = result[2:5]
             return out
 

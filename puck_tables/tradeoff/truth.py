@@ -60,7 +60,7 @@ class Starts:
         return Starts(self.u[chosen], self.delta[chosen], self.stops[chosen])
 
 
-def known_starts() -> Starts:
+def golden_starts() -> Starts:
     """The launches that come with the package.
 
     Examples

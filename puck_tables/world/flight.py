@@ -38,7 +38,7 @@ from puck_tables.stopping.similarity_lookup import (
     STOP_X,
     STOP_Y,
     TIME,
-    know_launch,
+    look_up_launch,
     look_up_state,
 )
 from puck_tables.world.layout import (
@@ -203,7 +203,7 @@ def start_flight(
     if speed == 0.0 and spin == 0.0:
         return STILL
     if disc[DECEL] > 0.0:
-        know_launch(
+        look_up_launch(
             flight, curves.stops, curves.curve, curves.turn_inverse, curves.constants, NO_TURN,
             room, flight[KNOWN:],
         )  # fmt: skip

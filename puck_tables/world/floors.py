@@ -97,7 +97,7 @@ def regions_of(
     if not all(has_closed_forms(*one) for one in places):
         accuracy = max(SLICE_SHARE * scene.tol, FINEST_ACCURACY)
         bodies = [replace(piece, friction=friction).body for piece, friction in places]
-        cuts = of_one_shape([body.friction(accuracy).cut for body in bodies])
+        cuts = of_one_shape([body.friction(accuracy).coefficients for body in bodies])
     ground = NO_GROUND
     if has_several(scene):
         most = loads.reshape(-1, len(pieces)).max(axis=0)

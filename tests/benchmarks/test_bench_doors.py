@@ -38,13 +38,13 @@ def test_stops(measure: Any, rng: np.random.Generator, way: str):
     tall.stop(velocity, spin)
     time, x, y = (np.empty(n) for _ in range(3))
     launches = launches_of(velocity, spin, delta, 1.0, 1.0)
-    cut = StopTable.shipped().cut()
+    coefficients = StopTable.shipped().thinned()
 
     def kernel() -> None:
         for first in range(0, n, CHUNK):
             part = slice(first, min(first + CHUNK, n))
             some = launches.part(part.start, part.stop)
-            stops_kernel(STOP_POWERS)(*some, cut, time[part], x[part], y[part], 1)
+            stops_kernel(STOP_POWERS)(*some, coefficients, time[part], x[part], y[part], 1)
 
     ways = {
         "kernel alone": kernel,

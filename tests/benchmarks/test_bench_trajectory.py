@@ -289,15 +289,15 @@ TIGHT_TOL = 2e-10  # with a table of one's own its error counts five times
 @TIGHT
 @pytest.mark.parametrize("source", ["table", "closed forms"])
 def test_tight_integrator(measure: Any, table: ResultantTable, source: str) -> None:
-    cut = NO_SECTION
+    coefficients = NO_SECTION
     if source == "table":
-        cut = table.section(DELTA)
+        coefficients = table.section(DELTA)
     s, y, result = np.empty(20_000), np.empty((20_000, SIZE)), np.empty(SIZE + 1)
     u, q = log_ratio(math.hypot(*LAUNCH[:2]), abs(LAUNCH[2])), math.hypot(*LAUNCH)
 
     def run() -> tuple[int, int]:
         return integrate(
-            u, DORMAND_PRINCE, 0.0, 0.4 * TIGHT_ACCURACY, 1.0, cut, DELTA, s.size, s, y,
+            u, DORMAND_PRINCE, 0.0, 0.4 * TIGHT_ACCURACY, 1.0, coefficients, DELTA, s.size, s, y,
             result,
         )  # fmt: skip
 

@@ -98,7 +98,7 @@ def named(method: str, setting: str) -> str:
     return f"{method} ({setting})" if setting else method
 
 
-def front_from_csv(text: str) -> tuple[MeasuredMethod, ...]:
+def errors_from_csv(text: str) -> tuple[MeasuredMethod, ...]:
     """The front from what ``puck tradeoff -o front.csv`` saved.
 
     Raises
@@ -126,7 +126,7 @@ def front_from_csv(text: str) -> tuple[MeasuredMethod, ...]:
 
 
 @cache
-def shipped_front() -> tuple[MeasuredMethod, ...]:
+def shipped_errors() -> tuple[MeasuredMethod, ...]:
     """What came with the package.
 
     Examples
@@ -138,7 +138,7 @@ def shipped_front() -> tuple[MeasuredMethod, ...]:
         text = (files("puck_tables.tables") / "front.csv").read_text(encoding="utf-8")
     except OSError:
         raise TableError("tables/front.csv is missing: install the package anew") from None
-    return front_from_csv(text)
+    return errors_from_csv(text)
 
 
 def pareto(rows: Iterable[MeasuredMethod]) -> list[MeasuredMethod]:
@@ -185,7 +185,7 @@ def select(
     ('look-up', 'adaptive, closed forms')
     """
     added = 0.0 if own_table is None else own_table[1]
-    rows = [row for row in shipped_front() if row.question == question and row.scheme in schemes]
+    rows = [row for row in shipped_errors() if row.question == question and row.scheme in schemes]
     off = {row: MARGIN * row.error + added for row in rows}
     best = max(FINEST, min(off.values()))
     if not best <= tol <= COARSEST:
