@@ -10,8 +10,8 @@ import click
 from puck_tables.cli.options import (
     FILE,
     LENGTH,
-    Number,
-    Range,
+    NumberParam,
+    RangeParam,
     deliver,
     output_options,
     prepare_outputs,
@@ -33,9 +33,11 @@ MOST_LEAPS = 5  # more are no single steps of the force
 @click.command()
 @click.option("--amplitude", type=LENGTH, default=1e-6, show_default=True, help="a in m.")
 @click.option("--wavelength", type=LENGTH, default=2e-5, show_default=True, help="2 pi b in m.")
-@click.option("--load", type=Number("N"), default=1.0, show_default=True, help="-Y in N.")
-@click.option("--mass", type=Number("kg"), help="m in kg.  [default: the load is its weight]")
-@click.option("--speeds", type=Range("m/s"), help="In m/s.  [default: 0 to 2.5 V0 in 501 steps]")
+@click.option("--load", type=NumberParam("N"), default=1.0, show_default=True, help="-Y in N.")
+@click.option("--mass", type=NumberParam("kg"), help="m in kg.  [default: the load is its weight]")
+@click.option(
+    "--speeds", type=RangeParam("m/s"), help="In m/s.  [default: 0 to 2.5 V0 in 501 steps]"
+)
 @click.option(
     "-o",
     "--output",

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from puck_tables._core.lazy import above
-from puck_tables._core.real import instance
 from puck_tables.io.dataset import Dataset
 from puck_tables.io.formats import save
 
@@ -65,7 +64,6 @@ class Result:
         ...     print(Path(folder, "run.csv").read_text()[:17])
         time[s],x[m],y[m]
         """
-        instance("path", path, str, Path)
         save(self.dataset(), path, overwrite)
 
     def plot(
@@ -184,7 +182,6 @@ class TimedResult(Result):
         ...     print(Path(folder, "run.html").read_text()[:15])
         <!DOCTYPE html>
         """
-        instance("path", path, str, Path)
         above("save_movie")(self, path, overwrite)
 
 

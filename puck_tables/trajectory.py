@@ -21,7 +21,7 @@ from puck_tables.motion.frame import Frame, frame_of
 from puck_tables.motion.friction import source_of
 from puck_tables.motion.limits import regime_of
 from puck_tables.motion.puck_spec import PUCK_UNITS, PuckSpec
-from puck_tables.motion.run import GENERIC, Run, solve
+from puck_tables.motion.run import GENERIC, MotionRun, solve
 from puck_tables.motion.state import LENGTH, PSI, THETA, T, U, X, Y
 from puck_tables.result import TimedResult
 from puck_tables.table.resultant_table import ResultantTable
@@ -103,7 +103,7 @@ class Trajectory(TimedResult):
     spin: FloatArray = field(repr=False)
     slip_speed: FloatArray = field(repr=False)
     slip_angle: FloatArray = field(repr=False)
-    motion: Run = field(repr=False, compare=False)
+    motion: MotionRun = field(repr=False, compare=False)
 
     picture: ClassVar[str] = "trajectory"
 
@@ -256,7 +256,7 @@ def _refuse_too_large(frame: Frame, body: Body, energy: float, decel: float) -> 
 
 
 def _integrated(
-    run: Run, frame: Frame, moments: FloatArray, stop_time: float
+    run: MotionRun, frame: Frame, moments: FloatArray, stop_time: float
 ) -> dict[str, FloatArray]:
     """States of a motion in natural units as the columns of a trajectory."""
     q, natural = run.states(frame.natural_times(moments, stop_time))

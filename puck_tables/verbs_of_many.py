@@ -106,14 +106,14 @@ class VerbsOfMany(PuckSpec):
         >>> Puck(0.04, friction=0.1).sweep(0.0, 1.0, friction=[0.1, 0.2]).stop_x.round(4).tolist()
         [0.5099, 0.2549]
         """
-        from puck_tables.stopping.sweep import How, sweep
+        from puck_tables.stopping.sweep import SweepOptions, sweep
 
         given = {
             "spin": spin, "speed": speed, "velocity": velocity, "heading": heading,
             "radius": radius, "height": height, "friction": friction, "gravity": gravity,
             "delta": delta, "decel": decel, "gyration": gyration, "pressure": pressure,
         }  # fmt: skip
-        how = How(
+        how = SweepOptions(
             tol, method, cast(Any, table), threads, chunk, progress, store, cluster, overwrite
         )
         return cast("StopMap", sweep(self, given, launches, how=how))
@@ -167,13 +167,13 @@ class VerbsOfMany(PuckSpec):
         (3.961, True)
         """
         from puck_tables.stopping.population import COLUMN
-        from puck_tables.stopping.sweep import How, sample
+        from puck_tables.stopping.sweep import SweepOptions, sample
 
         known = {*COLUMN, "velocity"}
         unknown = [name for name in numbers if name not in known]
         if unknown:
             raise InputError(f"{unknown[0]} is no number of a launch: give {', '.join(known)}")
-        how = How(
+        how = SweepOptions(
             tol, method, cast(Any, table), threads, chunk, progress, store, cluster, overwrite
         )
         return cast("StopSample", sample(self, count, seed, numbers, how=how))

@@ -157,3 +157,16 @@ def test_a_law_in_python_is_checked_where_it_is_used():
         pt.Table.build(pt.PowerLaw(0.1, -0.5), top_speed=1.0)
     with pytest.raises(pt.InputError, match="needs top_speed"):
         pt.Table.build(pt.CurlingLaw(0.1, 1.0))
+
+
+def test_a_law_of_points_may_be_that_of_a_floor_and_one_of_lines_says_what_to_write():
+    rng = np.random.default_rng(31)
+    speeds = np.append(0.0, np.cumsum(rng.uniform(0.5, 2.0, 6)))
+    law = pt.SpeedLaw(speeds, rng.uniform(0.1, 0.3, 7))
+    by_law, by_rows = (
+        pt.Scene(pt.Puck(0.04), pt.Floor(law=one), launch=pt.Launch((0.5, 0.0)))
+        for one in (law, [*zip(law.speeds, law.values, strict=True)])
+    )
+    assert by_law == by_rows
+    with pytest.raises(pt.InputError, match=r"floor.law: a linear SpeedLaw .* law\(u\)\)"):
+        pt.Scene(pt.Puck(0.04), pt.Floor(law=pt.SpeedLaw(speeds, law.values, "linear")))

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 from puck_tables.cli.main import main
-from puck_tables.cli.options import Number
+from puck_tables.cli.options import NumberParam
 
 import puck_tables as pt
 from puck_tables.scene.entries import tables_of
@@ -104,7 +104,7 @@ def test_accelerations_have_units():
         value = float(text.removesuffix(unit)) * size
         assert pt.Puck(0.04, gravity=text).gravity == pytest.approx(value, rel=1e-12)
         assert pt.Scene(PUCK, gravity=text).gravity == pytest.approx(value, rel=1e-12)
-        assert Number("m/s^2").convert(text, None, None) == pytest.approx(value, rel=1e-12)
+        assert NumberParam("m/s^2").convert(text, None, None) == pytest.approx(value, rel=1e-12)
     for text in ("1.62 m/s", "1.62 m", "1.62 m/s^3", "1.62 s^2", "1.62 rad/s^2"):
         with pytest.raises(pt.InputError, match=r"must be a number > 0 m/s\^2, or with its unit"):
             pt.Puck(0.04, gravity=text)

@@ -31,16 +31,8 @@ from puck_tables._core.quantities import (
     with_names,
 )
 from puck_tables._core.safe_read import read_whole
-from puck_tables._core.text import (
-    HEAD,
-    MINUS,
-    Look,
-    encoding_of,
-    is_row,
-    look_at,
-    number,
-    read_columns,
-)
+from puck_tables._core.text import HEAD, MINUS, Look, encoding_of, is_row, look_at, number
+from puck_tables._core.text_rows import read_columns
 from puck_tables._core.units import EXAMPLES, unit_size
 from puck_tables.errors import InputError
 

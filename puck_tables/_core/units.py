@@ -134,6 +134,25 @@ def quantity(text: str, unit: str) -> float | None:
     return float(Decimal(found[1]) * Decimal(repr(size)))  # 25.4mm is 0.0254 to the last bit
 
 
+def measured(text: str, unit: str) -> float:
+    """A number in an SI unit, or with another unit behind it.
+
+    Raises
+    ------
+    ValueError
+        If it is none.
+
+    Examples
+    --------
+    >>> measured("1e-3", "m"), measured("2mm", "m")
+    (0.001, 0.002)
+    """
+    found = quantity(text, unit)
+    if found is None and ("_" in text or not text.isascii()):  # which float() takes
+        raise ValueError(text)
+    return float(text) if found is None else found
+
+
 def pixel_size(scale: str | float) -> float:
     """The size of a pixel in metres.
 

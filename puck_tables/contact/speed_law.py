@@ -96,6 +96,21 @@ class SpeedLaw:
         """The last speed, m/s; nothing is known beyond it."""
         return float(np.asarray(self.speeds)[-1])
 
+    def as_rows(self) -> FloatArray:
+        """Rows (k, 2) of speed and f, of which ``floor.law`` of a scene makes the same law.
+
+        Raises
+        ------
+        InputError
+            If it is one of straight lines: a floor's is cubic between its rows.
+        """
+        if self.kind != "cubic":
+            raise InputError(
+                f"a {self.kind} SpeedLaw is none of a floor, whose law is cubic between its points:"
+                " give its values at more of them, as SpeedLaw(u, law(u))"
+            )
+        return np.stack([np.asarray(self.speeds), np.asarray(self.values)], axis=1)
+
     @cached_property
     def coefficients(self) -> FloatArray:
         """Powers 0 to 3 of (speed − left end) in each interval, array (k − 1, 4)."""

@@ -11,7 +11,7 @@ from puck_tables._core.colours import on_white
 from puck_tables.errors import InputError
 from puck_tables.plot.board import draw_board, show
 from puck_tables.plot.board_panels import close_up, finished, panels_for
-from puck_tables.plot.film import Box, Film, film_of
+from puck_tables.plot.film import Animation, Box, film_of
 from puck_tables.plot.sample import HELD, cloud_of
 from puck_tables.plot.style import GREY
 from puck_tables.plot.words import counted, legend_below, noted
@@ -69,7 +69,7 @@ def draw_on(axes: Axes, ends: SceneEnds) -> None:
     legend_below(axes)
 
 
-def _board(ends: SceneEnds) -> Film:
+def _board(ends: SceneEnds) -> Animation:
     ended = np.flatnonzero(ends.end.ravel() <= OVER_EDGE)
     if not ended.size:
         told = ends.told or ("no run has an end",)
@@ -77,7 +77,7 @@ def _board(ends: SceneEnds) -> Film:
     return film_of(simulate(ends.scene.at(ends.numbers(int(ended[0])))))
 
 
-def _draw(axes: Axes, ends: SceneEnds, film: Film, box: Box) -> None:
+def _draw(axes: Axes, ends: SceneEnds, film: Animation, box: Box) -> None:
     """The board, and every end on it."""
     draw_board(axes, film)
     named = len(ends.names) <= _NAMED
@@ -119,7 +119,7 @@ def _hold(axes: Axes, x: FloatArray, y: FloatArray, colour: str) -> None:
         )
 
 
-def _note(axes: Axes, ends: SceneEnds, film: Film) -> None:
+def _note(axes: Axes, ends: SceneEnds, film: Animation) -> None:
     """Say above the board what is not on it."""
     lost = ends.end.size - ends.ended
     notes = [f"{lost} of {counted(ends.end.size, 'run')} without an end"] if lost else []
@@ -131,7 +131,7 @@ def _note(axes: Axes, ends: SceneEnds, film: Film) -> None:
         noted(axes, "; ".join(notes))
 
 
-def _close_up(ends: SceneEnds, film: Film) -> list[Box]:
+def _close_up(ends: SceneEnds, film: Animation) -> list[Box]:
     """Around most of the ends, where pucks are too small to be seen."""
     there = ends.columns["in_play"] > 0.0  # NaN: no end
     if not there.any():
@@ -142,7 +142,7 @@ def _close_up(ends: SceneEnds, film: Film) -> list[Box]:
     return close_up(_box(ends, film), np.stack(middle, axis=1), radius)
 
 
-def _box(ends: SceneEnds, film: Film) -> Box:
+def _box(ends: SceneEnds, film: Animation) -> Box:
     """What shows the board and all ends."""
     left, right, low, top = film.box
     radius = max(piece.radius for piece in ends.scene.pucks) if ends.scene.pucks else 0.0

@@ -15,7 +15,7 @@ from puck_tables.errors import InputError
 from puck_tables.io.columns import derived, following
 from puck_tables.io.dataset import Dataset, Variable, variable
 from puck_tables.motion.puck_spec import PuckSpec
-from puck_tables.reference.cases import TOL, Case, case_named
+from puck_tables.reference.cases import TOL, ReferenceCase, case_named
 from puck_tables.reference.floor import on_the_floor, ratios, slip_over
 from puck_tables.reference.moments import frame_times
 from puck_tables.result import Result
@@ -49,7 +49,7 @@ class Answer(Result):
     None.  Called with times it gives the states there.
     """
 
-    case: Case
+    case: ReferenceCase
     run: SceneRun | WorldRun
     time: FloatArray
     columns: Mapping[str, FloatArray] = field(repr=False)

@@ -14,7 +14,7 @@ from puck_tables._core.real import real_array
 from puck_tables.errors import InputError
 from puck_tables.io.dataset import Dataset, variable
 from puck_tables.motion.puck_spec import PuckSpec
-from puck_tables.reference.cases import Case, case_named
+from puck_tables.reference.cases import ReferenceCase, case_named
 from puck_tables.reference.floor import is_one_friction, wrench
 from puck_tables.result import Result
 from puck_tables.world.agreement import pieces_of
@@ -37,7 +37,7 @@ class FloorFriction(Result):
     counter-clockwise: with the other sense the force across and the torque change sign.
     """
 
-    case: Case
+    case: ReferenceCase
     puck: PuckSpec
     slope: float
     epsilon: FloatArray

@@ -83,7 +83,8 @@ class Floor:
         file="",
         kinds=NAMED,
         doc="CSV or rows of slip speed and f (m/s, or the unit in the heading; a cubic between "
-        "that rises and falls only where they do), or a law by name, in place of friction",
+        "that rises and falls only where they do), a SpeedLaw, or a law by name, in place of "
+        "friction",
         acts="friction law",
     )
 

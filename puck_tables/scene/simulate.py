@@ -99,6 +99,7 @@ def _followed(
     rows = np.empty((len(times) + 1, FRAME_COLUMNS))
     found, at_once = prepared.follow(times, rows, events, twin, order)
     how, end_time, count, steps, reached, wrong = found
+    how, end_time = int(how), float(end_time)  # as written they may be of NumPy
     return _Followed(how, end_time, count, steps, wrong, at_once, rows[:reached], rows[reached])
 
 

@@ -23,7 +23,7 @@ _ROUNDING = 2e-16  # of a double
 _LOOKS = 100  # at most
 
 
-class Curve:
+class OrbitCurve:
     """Functions and constants of a stop table at its heights, from its coefficients."""
 
     def __init__(

@@ -21,7 +21,14 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import Progress, run_chunks
 from puck_tables._core.real import real
 from puck_tables.accuracy.front import COARSEST, UNITS, Selection, select
-from puck_tables.accuracy.methods import INTEGRATED, LOOK_UP, Method, Scheme, Source, method_named
+from puck_tables.accuracy.methods import (
+    INTEGRATED,
+    LOOK_UP,
+    FrictionForm,
+    Method,
+    Scheme,
+    method_named,
+)
 from puck_tables.contact.laws import Law, law_of
 from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import AccuracyError, InputError
@@ -30,7 +37,7 @@ from puck_tables.kernels.section_spline import NO_SECTION
 from puck_tables.motion.body import Body, body_of, plain_up_to
 from puck_tables.motion.friction import Sections, integration_selected
 from puck_tables.motion.run import unseen_tail
-from puck_tables.motion.solve import FINEST_LOCAL, Estimate, Setting, close_enough, refined
+from puck_tables.motion.solve import FINEST_LOCAL, ErrorEstimate, Setting, close_enough, refined
 from puck_tables.motion.steppers import stepping_of
 from puck_tables.stopping.launches import Launches, launches_in
 from puck_tables.stopping.solvers import (
@@ -197,8 +204,8 @@ class SolverPerHeight:
             self._plain, self._plain_source = _shipped_look_up(selection)
             return
         columns = NO_COLUMNS
-        self._plain_source = Source.CLOSED_FORMS
-        if table is not None or selection.scheme.source is Source.TABLE:
+        self._plain_source = FrictionForm.CLOSED_FORMS
+        if table is not None or selection.scheme.source is FrictionForm.TABLE:
             resultants = table or ResultantTable.shipped()
             columns, self._plain_source = resultants.columns, resultants.source
         stepping = stepping_of(selection)
@@ -335,7 +342,7 @@ class SolverPerHeight:
     def _of_sections(self, solvers: list[StopSolver]) -> Selection:
         """What was selected for heights that are not plain, and their largest error."""
         error = max(solver.error for solver in solvers)
-        scheme = Scheme(solvers[0].method, Source.SECTION)
+        scheme = Scheme(solvers[0].method, FrictionForm.SECTION)
         what = "height" if len(solvers) == 1 else "heights"
         few_or_many = f"less than {MANY}"
         if scheme.method is Method.LOOK_UP:
@@ -402,7 +409,7 @@ def integration_of(body: Body, tol: float, method: Method | None = None) -> Inte
     source, probes = Sections(body), _probes(body)
     selection = source.selected("stop", tol, method)
 
-    def attempt(setting: Setting) -> tuple[Integration, Estimate]:
+    def attempt(setting: Setting) -> tuple[Integration, ErrorEstimate]:
         stepping = setting.stepping
         cut, coarse = source.friction(setting.accuracy).cut, source.coarser(setting.accuracy).cut
         finer = stepping.finer(2.0, 0.01, FINEST_LOCAL)
@@ -415,7 +422,7 @@ def integration_of(body: Body, tol: float, method: Method | None = None) -> Inte
             2.0 * float(np.abs(answer - other.all(probes)[0][:3]).max())
             for other in (by_finer, by_coarse)
         )
-        return found, Estimate(steps + 2.0 * unseen_tail(stepping), friction / 8.0)
+        return found, ErrorEstimate(steps + 2.0 * unseen_tail(stepping), friction / 8.0)
 
     finer = partial(refined, tol=tol, friction=source.next_accuracy)
     found, error, _ = close_enough(source.first(selection), attempt, finer, tol, "these pucks")

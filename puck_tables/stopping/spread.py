@@ -28,7 +28,7 @@ _LOWEST = {"delta": 0.0, "decel": 0.0, "radius": 0.0, "time": 0.0}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Spread:
+class ResultSpread:
     """How results scatter when launches do.
 
     Parameters
@@ -110,7 +110,7 @@ def spread_of(
     names: tuple[str, ...], columns: tuple[str, ...], jacobian: FloatArray, arguments: FloatArray,
     again: Again, covariance: npt.ArrayLike, of: Sequence[str], samples: int, seed: int,
     highest: float,
-) -> Spread:  # fmt: skip
+) -> ResultSpread:  # fmt: skip
     """The spread of results.
 
     Parameters
@@ -144,7 +144,7 @@ def spread_of(
     scattered = jacobian[..., which] @ root
     linear = scattered @ np.swapaxes(scattered, -1, -2)
     if not samples:
-        return Spread(names, linear)
+        return ResultSpread(names, linear)
     count = arguments.shape[1]
     if samples * count > _MOST_SAMPLES:
         raise InputError(
@@ -165,7 +165,7 @@ def spread_of(
             total, squares, done = total + off.sum(axis=1), squares + off @ off.T, done + part
         shift[n] = total / samples
         sampled[n] = (squares - samples * np.outer(shift[n], shift[n])) / (samples - 1)
-    return Spread(
+    return ResultSpread(
         names, linear, samples, sampled.reshape(linear.shape), shift.reshape(linear.shape[:-1])
     )
 

@@ -19,7 +19,7 @@ from puck_tables.stopping.axes import (
 from puck_tables.stopping.curve import limits
 from puck_tables.stopping.lookup import CURVE_ROW, STOP_POWERS, STOP_ROW
 from puck_tables.stopping.orbit import ORBIT_WIDTH, REGULAR, TURN_POWERS, TURN_STEP
-from puck_tables.stopping.orbit_nodes import Curve
+from puck_tables.stopping.orbit_nodes import OrbitCurve
 from puck_tables.stopping.slopes import Slopes, slopes_of
 from puck_tables.stopping.stop_splines import (
     by_power,
@@ -105,8 +105,8 @@ class StopCoefficients(Table):
         return in_rows(parts, TURN_STEP * TURN_POWERS, power_first=True)
 
     @cached_property
-    def _curve(self) -> Curve:
-        return Curve(
+    def _curve(self) -> OrbitCurve:
+        return OrbitCurve(
             self.axis.cells, self.constants, self.stop_coefficients, self.curve_coefficients
         )
 

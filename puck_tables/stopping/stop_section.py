@@ -25,7 +25,7 @@ from puck_tables.errors import AccuracyError
 from puck_tables.motion.body import Body, body_of
 from puck_tables.motion.friction import LOOSEST_LOCAL
 from puck_tables.motion.path import TURN_SHARE
-from puck_tables.motion.solve import Estimate, close_enough
+from puck_tables.motion.solve import ErrorEstimate, close_enough
 from puck_tables.stopping.exact import integrated_stops
 from puck_tables.table.check import CheckReport
 from puck_tables.table.friction_section import FINEST_ACCURACY, FrictionSection
@@ -219,12 +219,12 @@ def stop_section(body: Body, accuracy: float, progress: Progress | None = None) 
     section behind them contributes, against one of half as many cells.
     """
 
-    def attempt(of_friction: float) -> tuple[FrictionSection, Estimate]:
+    def attempt(of_friction: float) -> tuple[FrictionSection, ErrorEstimate]:
         friction = body.friction(of_friction)
         error = _error_of_friction(body, friction, accuracy)
-        return friction, Estimate(0.0, error / _SHARE_OF_FRICTION)
+        return friction, ErrorEstimate(0.0, error / _SHARE_OF_FRICTION)
 
-    def finer(of_friction: float, error: Estimate) -> float | None:
+    def finer(of_friction: float, error: ErrorEstimate) -> float | None:
         if of_friction <= FINEST_ACCURACY:
             return None
         return max(0.1 * of_friction, FINEST_ACCURACY)

@@ -7,7 +7,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray, aligned
 from puck_tables.stopping.axes import HEIGHTS, height_polynomials
 from puck_tables.stopping.lookup import STOP_POWERS, WIDTH
-from puck_tables.stopping.orbit_nodes import Curve
+from puck_tables.stopping.orbit_nodes import OrbitCurve
 from puck_tables.table.fit import clamped_coefficients
 
 
@@ -68,13 +68,13 @@ def cut_rows(sides: FloatArray, powers: int) -> FloatArray:
     return aligned(found.reshape(2, -1, powers * WIDTH))
 
 
-def inverse_splines(curve: Curve, with_time: bool) -> FloatArray:
+def inverse_splines(curve: OrbitCurve, with_time: bool) -> FloatArray:
     """From the time that is left, or from Q, to the slip ratio, (2, cells + 3, 9)."""
     ratios = curve.ratios(with_time)
     return np.ascontiguousarray(by_power(ratios).transpose(2, 1, 0))
 
 
-def orbit_splines(curve: Curve, with_time: bool) -> FloatArray:
+def orbit_splines(curve: OrbitCurve, with_time: bool) -> FloatArray:
     """The functions of an orbit over the place by time or Q: (power, node, side, function)."""
     return by_power(curve.orbit(with_time))
 

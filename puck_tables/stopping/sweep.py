@@ -29,7 +29,7 @@ DEFAULT_SPEED = np.linspace(0.0, 2.0, 41)
 DEFAULT_SPIN = np.linspace(-4.0, 4.0, 41)
 
 
-def sweep(puck: Any, given: Mapping[str, Any], launches: Any, *, how: How) -> Result:
+def sweep(puck: Any, given: Mapping[str, Any], launches: Any, *, how: SweepOptions) -> Result:
     """Stops of all combinations of numbers: :meth:`puck_tables.Puck.sweep`."""
     numbers = numbers_given(puck, given)
     if launches is None:
@@ -48,7 +48,9 @@ def sweep(puck: Any, given: Mapping[str, Any], launches: Any, *, how: How) -> Re
     return how.done(labelled(launches, _whole(puck, numbers, names), laws), puck)
 
 
-def sample(puck: Any, count: int, seed: int, given: Mapping[str, Any], *, how: How) -> Result:
+def sample(
+    puck: Any, count: int, seed: int, given: Mapping[str, Any], *, how: SweepOptions
+) -> Result:
     """Stops of launches that scatter: :meth:`puck_tables.Puck.sample`."""
     checked_samples(count, seed)
     numbers = numbers_given(puck, given)
@@ -98,7 +100,7 @@ def _of(names: Container[str]) -> list[str]:
 
 
 @dataclass(frozen=True)
-class How:
+class SweepOptions:
     """How stops are computed, and where they go: arguments of :meth:`puck_tables.Puck.sweep`."""
 
     tol: float

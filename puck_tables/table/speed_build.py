@@ -23,7 +23,7 @@ from puck_tables.table.accuracy import Accuracy
 from puck_tables.table.build import COARSEST
 from puck_tables.table.record import Progress
 from puck_tables.table.speed_fit import missed_by_half, quintic_coefficients
-from puck_tables.table.speed_grid import COARSEST_CELLS, HALVINGS, Patch, breaks_of, patches_of
+from puck_tables.table.speed_grid import COARSEST_CELLS, HALVINGS, SlipPatch, breaks_of, patches_of
 from puck_tables.table.speed_values import SpeedValues
 
 Law = SpeedLaw | FrictionLaw | SpeedFunction
@@ -46,7 +46,7 @@ _AT_ONCE = 20_000  # nodes between two looks whether to go on: some 0.1 s
 class _Filled:
     """One patch with its node values, and how good the spline through them is."""
 
-    def __init__(self, patch: Patch, law: Law, unit: float, number: int, rules: int):
+    def __init__(self, patch: SlipPatch, law: Law, unit: float, number: int, rules: int):
         self._law, self._unit, self._rules = law, unit, rules
         self.patch = patch
         self.cells = [COARSEST_CELLS, COARSEST_CELLS]
@@ -276,7 +276,7 @@ def truth_at(
     return out.reshape(*np.shape(ratio), 4)
 
 
-def _probes(rng: np.random.Generator, patch: Patch) -> tuple[FloatArray, FloatArray]:
+def _probes(rng: np.random.Generator, patch: SlipPatch) -> tuple[FloatArray, FloatArray]:
     """Points of a patch, ξ and ζ: anywhere, and next to all edges and corners."""
     share = rng.random((2, _PROBES))
     near = rng.random((2, _PROBES)) ** 6

@@ -27,7 +27,13 @@ from puck_tables.errors import InputError
 from puck_tables.kernels.speed_spline import DONE, fill_speed, packed
 from puck_tables.table.record import Axis
 from puck_tables.table.speed_fit import quintic_coefficients
-from puck_tables.table.speed_grid import COARSEST_CELLS, HALVINGS, Patch, patch_count, patches_of
+from puck_tables.table.speed_grid import (
+    COARSEST_CELLS,
+    HALVINGS,
+    SlipPatch,
+    patch_count,
+    patches_of,
+)
 from puck_tables.table.table import Table
 
 IntArray = npt.NDArray[np.int64]
@@ -102,13 +108,13 @@ class SpeedValues(Table):
         return float(self.breaks[-1])
 
     @cached_property
-    def patches(self) -> tuple[Patch, ...]:
+    def patches(self) -> tuple[SlipPatch, ...]:
         """Its patches, in the order of ``cells``."""
         return patches_of(self.breaks, self._grade)
 
     @property
     def _grade(self) -> int:
-        """See :class:`puck_tables.table.speed_grid.Patch`."""
+        """See :class:`puck_tables.table.speed_grid.SlipPatch`."""
         return 1 if self.law is None else self.law.grade
 
     @cached_property

@@ -42,7 +42,7 @@ _PLACE_WORK = 22.0 + 3.0 * HARD + 16.0
 _AGM_WORK = 14.0 + 2.0 * HARD  # a step; a root and a division
 
 
-class Task:
+class ResultantTask:
     """Points to answer at: scattered ones for the clock, judged ones for the error."""
 
     def __init__(self, truth: Points, flat_truth: Points) -> None:
@@ -106,7 +106,7 @@ def _quadrature(phi: FloatArray, delta: FloatArray, out: FloatArray) -> None:
     out[:] = moment_balance(quadrature.integrals(phi), slip_direction(phi), delta)
 
 
-def contenders(task: Task) -> Iterator[Contender]:
+def contenders(task: ResultantTask) -> Iterator[Contender]:
     """All methods to the resultants."""
 
     def contender(
@@ -154,7 +154,7 @@ def contenders(task: Task) -> Iterator[Contender]:
     yield from _outsiders(task, contender)
 
 
-def _outsiders(task: Task, contender: Callable[..., Contender]) -> Iterator[Contender]:
+def _outsiders(task: ResultantTask, contender: Callable[..., Contender]) -> Iterator[Contender]:
     for size in ((100, 9), (400, 17), (1600, 17)):
         yield contender(
             "scipy NdBSpline", f"nodes={size[0]}x{size[1]}", partial(_scipy_spline, *size),

@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray, aligned
-from puck_tables.accuracy.methods import INTEGRATED, LOOK_UP, Source
+from puck_tables.accuracy.methods import INTEGRATED, LOOK_UP, FrictionForm
 from puck_tables.kernels.quadratic import NO_COLUMNS, room_for_cut
 from puck_tables.kernels.quadratic import cut as cut_table
 from puck_tables.kernels.section_spline import NO_SECTION
@@ -45,7 +45,7 @@ _LAUNCH_TRAFFIC = 72.0  # bytes: six numbers in, three out
 _STEP_LIMIT = 100_000  # more is a motion that does not end
 
 
-class Task:
+class StopTask:
     """Launches: scattered ones for the clock, those of the truth for the error."""
 
     def __init__(
@@ -68,7 +68,7 @@ class Task:
         self.flat_starts = truth.some(truth.delta == 0.0)
 
 
-def contenders(task: Task) -> Iterator[Contender]:
+def contenders(task: StopTask) -> Iterator[Contender]:
     """All methods to a stop, and to a trajectory with its steps recorded."""
     for powers, thinning in _CUTS:
         yield Contender(
@@ -83,7 +83,7 @@ def contenders(task: Task) -> Iterator[Contender]:
             partial(_looked_up, task, powers),
         )  # fmt: skip
     for scheme in INTEGRATED:
-        exact, tableau = scheme.source is Source.CLOSED_FORMS, TABLEAUS[scheme.method]
+        exact, tableau = scheme.source is FrictionForm.CLOSED_FORMS, TABLEAUS[scheme.method]
         if tableau.e.any():
             for local in _LOCAL + (_LOCAL_EXACT if exact else ()):
                 stepping = Stepping(tableau, 0.0, local)
@@ -99,7 +99,7 @@ def _fresh_cut(stops: StopTable, powers: int, thinning: int, dtype: type) -> Flo
     return aligned(StopTable(stops.values).cut(powers, thinning).astype(dtype))
 
 
-def _looked_up(task: Task, powers: int, coefficients: object) -> Ready:
+def _looked_up(task: StopTask, powers: int, coefficients: object) -> Ready:
     assert isinstance(coefficients, np.ndarray)
     fill = stops_kernel(powers)
 
@@ -118,7 +118,7 @@ def _looked_up(task: Task, powers: int, coefficients: object) -> Ready:
 
 
 def _integrations(
-    task: Task, method: str, setting: str, stepping: Stepping, exact: bool
+    task: StopTask, method: str, setting: str, stepping: Stepping, exact: bool
 ) -> Iterator[Contender]:
     def coefficients() -> FloatArray:
         return NO_COLUMNS if exact else task.table.columns
@@ -168,7 +168,7 @@ def _integrations(
     yield Contender(TRAJECTORY, method, setting, coefficients, trajectory)
 
 
-def _outsiders(task: Task) -> Iterator[Contender]:
+def _outsiders(task: StopTask) -> Iterator[Contender]:
     def rival(method: str, setting: str, stop_of: Callable[..., FloatArray]) -> Contender:
         def ready(_: object) -> Ready:
             easy = task.easy.launches()

@@ -25,7 +25,7 @@ from puck_tables.errors import InputError
 from puck_tables.io.columns import following
 from puck_tables.io.dataset import Dataset, variable
 from puck_tables.result import Result
-from puck_tables.wrench.models import Model, ellipsoid, quartic
+from puck_tables.wrench.models import SurfaceModel, ellipsoid, quartic
 
 if TYPE_CHECKING:
     from puck_tables.motion.puck_spec import PuckSpec
@@ -90,12 +90,12 @@ class LimitSurface(Result):
         return np.stack([np.hypot(along, across), turning, *_normals(law, delta, phi)])
 
     @cached_property
-    def ellipsoid(self) -> Model:
+    def ellipsoid(self) -> SurfaceModel:
         """The best ellipsoid (F/a)² + (M/b)² = 1, by least squares of the radial error."""
         return ellipsoid(self._curve, self.unit_force, self.puck.radius)
 
     @cached_property
-    def quartic(self) -> Model:
+    def quartic(self) -> SurfaceModel:
         """The best convex polynomial of order 4, A F⁴ + B F² M² + C M⁴ = 1, likewise."""
         return quartic(self._curve, self.unit_force, self.puck.radius)
 
