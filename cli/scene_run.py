@@ -18,7 +18,7 @@ from puck_tables.errors import InputError
 if TYPE_CHECKING:
     from puck_tables.bulk.finish import Stored
     from puck_tables.result import TimedResult
-    from puck_tables.scene.outcome import Event, SceneRun
+    from puck_tables.scene.run import Event, Run
     from puck_tables.world.map import Map
     from puck_tables.world.sample import Sample
     from puck_tables.world.scene import Scene
@@ -41,7 +41,6 @@ INSTEAD = {  # of options that no scene has
     "heading": "launch.velocity has it", "pressure": "--set puck.pressure=NAME has it",
     "gyration": "--set puck.gyration=NUMBER has it",
 }  # fmt: skip
-_AT = {"impact": "wall", "contact": "wall", "edge": "edge", "overhang": "edge"}
 MOST_PARTS = 16  # of a scene in a report
 
 
@@ -223,7 +222,7 @@ def run_scene(
     return run, report_of_several if scene.is_board else report
 
 
-def report(run: SceneRun) -> str:
+def report(run: Run) -> str:
     """A scene run and what went in, each with its unit."""
     last = run.last
     lines = {
@@ -239,7 +238,7 @@ def report(run: SceneRun) -> str:
         "heat": f"{_joule(last['heat_dry'])} dry, {_joule(last['heat_viscous'])} viscous, "
         f"{_joule(last['heat_impact'])} impacts; ledger misses {run.energy_residual:.1e} of it",
         "error": _error(run),
-        "model": run.plan.model + (f", {run.steps} steps" if run.steps else ""),
+        "model": run.model + (f", {run.steps} steps" if run.steps else ""),
     }
     if any(event.what == "overhang" for event in run.events):
         from puck_tables.scene.plan import OVERHANG
@@ -295,7 +294,7 @@ def _friction(scene: Scene) -> str:
     return words + ("; part of the base may lift" if max(scene.heights) > 1.0 else "")
 
 
-def _error(run: SceneRun) -> str:
+def _error(run: Run) -> str:
     """The estimate, and what tol means here; a word where it could not be kept."""
     time = run.speed_scale / run.rate_scale if run.rate_scale > 0.0 else 0.0
     place, tol = run.speed_scale * time, run.scene.tol
@@ -310,21 +309,15 @@ def _joule(energy: float) -> str:
     return f"{energy + 0.0:.6g} J"  # a zero without its sign
 
 
-def _event(scene: Scene, event: Event) -> str:
+def _event(event: Event) -> str:
     """What happened, and at which wall, edge, border, patch or strip."""
-    at, number = _AT.get(event.what), event.which
-    if event.what in ("entry", "exit"):
-        borders = 0 if scene.floor.strips is None else len(scene.floor.strips.borders)
-        at, number = ("border", number) if number < borders else ("patch", number - borders)
-    elif scene.floor.strips is not None and at is None:
-        at = "strip"
-    return event.what if at is None else f"{event.what} ({at} {number})"
+    return event.what if event.partner == "floor" else f"{event.what} ({event.partner})"
 
 
-def _events(run: SceneRun) -> str:
+def _events(run: Run) -> str:
     if not run.events:
         return "none"
-    told_of = [f"{_event(run.scene, event)} at {event.time:.6g} s" for event in run.events[:6]]
+    told_of = [f"{_event(event)} at {event.time:.6g} s" for event in run.events[:6]]
     more = len(run.events) - 6
     return ", ".join(told_of) + (f" and {more} more" if more > 0 else "")
 

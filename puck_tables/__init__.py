@@ -47,7 +47,6 @@ if TYPE_CHECKING:
     from puck_tables.reference.friction import FloorFriction, floor_friction
     from puck_tables.result import Result
     from puck_tables.scene.driven import path_along
-    from puck_tables.scene.outcome import SceneRun
     from puck_tables.scene.parts import (
         Constraint,
         Drag,
@@ -63,6 +62,7 @@ if TYPE_CHECKING:
     )
     from puck_tables.scene.pieces import Arc, Pocket, Post, Rim
     from puck_tables.scene.restitution import Plastic, RestitutionTable, Viscoelastic
+    from puck_tables.scene.run import Run
     from puck_tables.stopping.aim import Aim
     from puck_tables.stopping.aims import Aims
     from puck_tables.stopping.array_functions import state_arrays, stop_arrays
@@ -129,7 +129,7 @@ _HOMES = {
     "Rim": "scene.pieces",
     "Sample": "world.sample",
     "Scene": "world.scene",
-    "SceneRun": "scene.outcome",
+    "Run": "scene.run",
     "Source": "export.source",
     "SpeedLaw": "contact.speed_law",
     "States": "stopping.states",
@@ -211,9 +211,9 @@ __all__ = [
     "RestitutionTable",
     "Result",
     "Rim",
+    "Run",
     "Sample",
     "Scene",
-    "SceneRun",
     "Source",
     "SpeedLaw",
     "States",

@@ -5,10 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from puck_tables import Map, Scene, SceneRun
+from puck_tables import Map, Run, Scene
 
 
-def simulate_scene(tables: Any, times: Any = None) -> SceneRun:
+def simulate_scene(tables: Any, times: Any = None) -> Run:
     """A run of a scene: its tables, itself, or the name of one that is shipped."""
     return made(tables).simulate(times)
 

@@ -61,10 +61,10 @@ def test_the_order_is_found_where_it_can_be(ahead: float, tol: float) -> None:
     unit = run.speed_scale / run.rate_scale
     assert abs(run.end_time - other.end_time) <= tol * unit
     assert run.error_estimate <= tol
-    hits = [event.which for event in run.events if event.what == "impact"]
+    hits = [int(event.partner[5:]) for event in run.events if event.what == "impact"]
     assert hits[:2] == ([0, 1] if ahead > 0.0 else [1, 0])
-    first = run.events[0]
-    v = math.sqrt(8.0 - 2.0 * 0.15 * 9.80665 * math.hypot(first.x, first.y)) / math.sqrt(2.0)
+    first = simulate_scene(scene, [run.events[0].time])
+    v = math.sqrt(8.0 - 2.0 * 0.15 * 9.80665 * math.hypot(first.x[0], first.y[0])) / math.sqrt(2.0)
     r, after = 0.04, simulate_scene(scene, [run.events[1].time * (1 + 1e-12)])
     along = v if ahead > 0.0 else -0.7 * v  # of the rim on the wall at x = 1, n = (−1, 0)
     change = min(abs(along) / 3.0, 0.2 * 1.5 * v)

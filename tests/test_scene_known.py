@@ -11,7 +11,7 @@ from pucks import simulate
 from scenes import simulate_scene
 
 from puck_tables import resultants
-from puck_tables.scene.outcome import SceneRun
+from puck_tables.scene.run import Run
 
 G = 9.80665
 
@@ -27,7 +27,7 @@ def scene(**parts: Any) -> dict[str, Any]:
     return whole
 
 
-def event(run: SceneRun, what: str, count: int = 0) -> float:
+def event(run: Run, what: str, count: int = 0) -> float:
     return [e[0] for e in run.events if e[1] == what][count]
 
 

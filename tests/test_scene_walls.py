@@ -178,7 +178,7 @@ def test_a_puck_that_leaves_a_wall_keeps_its_distance_to_it() -> None:
     })  # fmt: skip
     for event in run.events:
         if event.what in ("impact", "contact"):
-            gap = event.y - 0.1 if event.which == 0 else 0.9 - event.y
+            gap = event.y if event.partner == "wall 0" else 1.0 - event.y
             assert abs(gap) <= 1e-14
     assert run.last["y"] == pytest.approx(0.9, abs=1e-14)
 
@@ -198,9 +198,9 @@ def test_walls_without_restitution_catch_a_puck_at_once(half: float, rim: dict[s
         "launch": {"velocity": [1.0, 0.3], "spin": 30.0, "position": [-0.5, 0.0]},
         "force": {"constant": [5.0, 0.0]}, "time": 5.0,
     })  # fmt: skip
-    assert [(event.what, event.which) for event in run.events[:2]] == [
-        ("contact", 0),
-        ("contact", 1),
+    assert [(event.what, event.partner) for event in run.events[:2]] == [
+        ("contact", "wall 0"),
+        ("contact", "wall 1"),
     ]
     assert [event.what for event in run.events[2:]] == ["stick"] and run.end == "at rest"
     assert run.last["x"] == pytest.approx(1.0 - 0.02 / math.sin(half), rel=1e-12)

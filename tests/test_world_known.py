@@ -219,7 +219,7 @@ def test_a_driven_disc_hits_and_is_not_moved():
     assert event.time == pytest.approx(0.32, abs=1e-12)
     assert event.approach == pytest.approx(1.0, abs=1e-12)
     assert run["mallet"]["x"][-1] == pytest.approx(0.8)
-    assert run.work_driven == pytest.approx(2 * 0.1 * 1.0 * 1.0, rel=0.5)
+    assert run.last["work_driven"] == pytest.approx(2 * 0.1 * 1.0 * 1.0, rel=0.5)
     assert run.energy_residual < 1e-12
 
 

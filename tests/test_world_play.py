@@ -41,7 +41,7 @@ def test_a_mallet_pushes_until_it_stops():
     )
     run = scene.simulate()
     assert run.last["x"][1] == pytest.approx(0.18 + 0.5 / J, abs=1e-9)
-    assert [event.what for event in run.events] == ["impact", "contact"]
+    assert [event.what for event in run.events] == ["impact", "contact", "stick"]
 
 
 def test_two_equal_pucks_that_stick_slide_as_one():

@@ -62,9 +62,10 @@ def _shown(value: Any) -> str:
 
 def read_part(kind: type[T], data: Any, path: str, reading: Reading) -> T | None:
     """A dataclass from a table, or from an unchecked one; None if something in it is wrong."""
-    if type(data) is kind and "_checked" in vars(data):
-        return data
     if isinstance(data, kind):
+        same = type(data) is kind or specs(type(data)).keys() == specs(kind).keys()
+        if same and "_checked" in vars(data):  # it, or one with verbs besides
+            return data
         data = given_in(data, specs(kind))
     if not isinstance(data, Mapping):
         reading.fault(path or kind.__name__.lower(), data, f"a table or a {kind.__name__}")

@@ -19,13 +19,12 @@ from puck_tables._core.colours import brightness, on_white
 from puck_tables.plot.scene import states_drawn
 from puck_tables.plot.words import out_of_sight
 from puck_tables.result import TimedResult
-from puck_tables.scene.outcome import SceneRun
 from puck_tables.scene.parts import Floor
+from puck_tables.scene.run import Run
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.trajectory import Trajectory
 from puck_tables.world.agreement import frictions_under, pieces_of
 from puck_tables.world.drive import rows_of
-from puck_tables.world.outcome import WorldRun
 
 # dark and light by turns, so that neighbours differ in grey as well (Okabe and Ito)
 PALETTE = (
@@ -123,7 +122,9 @@ def film_of(result: TimedResult) -> Animation:
         return _film(
             "Puck", "at rest", run.stop_time, [("puck", run.puck.radius, "", False, states)]
         )
-    if isinstance(result, SceneRun):
+    if isinstance(result, Run) and result.scene.is_board:
+        return _film_of_several(result)
+    if isinstance(result, Run):
         columns = states_drawn(result)
         names = ("time", "x", "y", "orientation", "vx", "vy", "spin")
         states = _stacked(*(columns[name] for name in names))
@@ -134,12 +135,10 @@ def film_of(result: TimedResult) -> Animation:
         return _film(
             result.scene.title, result.end, result.end_time, [body], happenings, result.scene
         )
-    if isinstance(result, WorldRun):
-        return _film_of_several(result)
     raise TypeError(f"{type(result).__name__} has no film")
 
 
-def _film_of_several(run: WorldRun) -> Animation:
+def _film_of_several(run: Run) -> Animation:
     scene, pieces = run.scene, pieces_of(run.scene)
     kinks = [rows_of(piece.path)[:, 0] for piece in pieces if piece.path]
     sudden = np.concatenate([[event.time for event in run.events], *kinks])
@@ -152,7 +151,7 @@ def _film_of_several(run: WorldRun) -> Animation:
     bodies = [
         (
             name, piece.radius, piece.colour, bool(piece.path),
-            _stacked(seen.time, *(seen.columns[column][:, number] for column in names)),
+            _stacked(seen.time, *(seen[number][column] for column in names)),
         )
         for number, (name, piece) in enumerate(zip(run.names, pieces, strict=True))
     ]  # fmt: skip

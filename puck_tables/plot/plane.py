@@ -12,9 +12,9 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.plot.floor import Box, draw_floor
 from puck_tables.plot.style import BLUE, GREY, LAUNCH, ORANGE, RED, STOP
 from puck_tables.plot.words import legend_below, noted, out_of_sight
-from puck_tables.scene.outcome import SceneRun
 from puck_tables.scene.parts import Edge, Wall
 from puck_tables.scene.plan import acting
+from puck_tables.scene.run import Run
 from puck_tables.scene.scene_spec import SceneSpec
 
 if TYPE_CHECKING:
@@ -40,7 +40,7 @@ _PURPLE = "#8b2fa0"
 _LEGEND_ROW = 4  # entries
 
 
-def draw_plane(axes: Axes, run: SceneRun, columns: dict[str, FloatArray]) -> None:
+def draw_plane(axes: Axes, run: Run, columns: dict[str, FloatArray]) -> None:
     """Draw the plane of a run; ``columns``: its states close to each other, (n,) by name."""
     scene, radius = run.scene, run.scene.puck.radius
     x, y = columns["x"], columns["y"]

@@ -12,7 +12,7 @@ from puck_tables.plot.board_panels import LEGEND_ROW, close_up, finished, panels
 from puck_tables.plot.film import Animation, Box, MovingDisc, between, film_of, path_of
 from puck_tables.plot.style import GREY, RED
 from puck_tables.plot.words import legend_below, noted
-from puck_tables.world.outcome import WorldRun
+from puck_tables.scene.run import Run
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 _NAMED = 8  # pucks: more are told apart by colour alone
 
 
-def draw(run: WorldRun, title: str = "") -> Figure:
+def draw(run: Run, title: str = "") -> Figure:
     """The board with all ways on it, and a close-up of the impacts where pucks are small.
 
     The whole motion is drawn, whatever states the run has: it is run again.
@@ -38,7 +38,7 @@ def draw(run: WorldRun, title: str = "") -> Figure:
     return figure
 
 
-def draw_on(axes: Axes, run: WorldRun) -> None:
+def draw_on(axes: Axes, run: Run) -> None:
     """The board alone."""
     film = film_of(run)
     _draw_film(axes, film, film.box)

@@ -20,12 +20,11 @@ from puck_tables.reference.floor import on_the_floor, ratios, slip_over
 from puck_tables.reference.moments import frame_times
 from puck_tables.result import Result
 from puck_tables.scene.entries import tables_of
-from puck_tables.scene.outcome import SceneRun
 from puck_tables.scene.parts import Floor
 from puck_tables.scene.pieces import PieceSpec
+from puck_tables.scene.run import Run
 from puck_tables.scene.zones import zones_of
 from puck_tables.world.agreement import pieces_of
-from puck_tables.world.outcome import WorldRun
 
 STATE = ("x", "y", "orientation", "vx", "vy", "spin")
 ON_FLOOR = ("slip_speed", "epsilon", "slip_ratio", "floor_fx", "floor_fy", "floor_torque")
@@ -50,7 +49,7 @@ class Answer(Result):
     """
 
     case: ReferenceCase
-    run: SceneRun | WorldRun
+    run: Run
     time: FloatArray
     columns: Mapping[str, FloatArray] = field(repr=False)
 
@@ -92,7 +91,7 @@ class Answer(Result):
     @property
     def names(self) -> tuple[str, ...]:
         """Of the pucks, in their order; none of a single one."""
-        return self.run.names if isinstance(self.run, WorldRun) else ()
+        return self.run.names if self.run.scene.pucks else ()
 
     @property
     def pieces(self) -> tuple[PieceSpec, ...]:
@@ -117,7 +116,7 @@ class Answer(Result):
     @property
     def speed_scale(self) -> float:
         """Q of the launch, m/s."""
-        if isinstance(self.run, SceneRun):
+        if not self.names:
             return self.run.speed_scale
         return max(
             float(
@@ -131,15 +130,13 @@ class Answer(Result):
     @property
     def rate_scale(self) -> float:
         """J, m/s²."""
-        if isinstance(self.run, SceneRun):
+        if not self.names:
             return self.run.rate_scale
         return max(one.decel for one in self.pieces)
 
     @property
     def share_bound(self) -> float:
         """What times, places and speeds may be wrong by, in units of Q/J, Q²/J and Q."""
-        if isinstance(self.run, SceneRun):
-            return _STATES * max(self.run.error_estimate, TOL)
         length = self.speed_scale**2 / self.rate_scale
         return _STATES * max(self.run.end_error / length, TOL)
 
@@ -211,7 +208,7 @@ class Answer(Result):
 
     def end_time_of(self, puck: int | None) -> float:
         """When it ends for one of several pucks, s; None: the single one."""
-        if puck is None or not isinstance(self.run, WorldRun):
+        if puck is None:
             return self.end_time
         return min(float(self.run.stop_times[puck]), self.end_time)
 

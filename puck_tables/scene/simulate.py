@@ -25,16 +25,18 @@ from puck_tables.scene.loop import (
     TIME_UP,
     UNDECIDED,
 )
-from puck_tables.scene.outcome import ENDS, EVENTS, LEDGER, Event, SceneRun, ledger_residual
+from puck_tables.scene.one_run import events_of, run_of
+from puck_tables.scene.outcome import ENDS, LEDGER
 from puck_tables.scene.plain import run_plain
 from puck_tables.scene.plan import Plan, ingredients, out_of_reach, plan_for
 from puck_tables.scene.prepare import MAX_EVENTS, Prepared, Twin, prepare
 from puck_tables.scene.records import EVENT_COLUMNS, FRAME_COLUMNS
 from puck_tables.scene.regions import friction_error
+from puck_tables.scene.run import Run
 from puck_tables.scene.scene_spec import SceneSpec
 
 
-def simulate(scene: SceneSpec, times: npt.ArrayLike | None = None) -> SceneRun:
+def simulate(scene: SceneSpec, times: npt.ArrayLike | None = None) -> Run:
     """A run of a scene, as :meth:`puck_tables.Scene.simulate` has it."""
     whole = scene.single()
     moments = None if times is None else _checked(times)
@@ -103,7 +105,7 @@ def _followed(
     return _Followed(how, end_time, count, steps, wrong, at_once, rows[:reached], rows[reached])
 
 
-def _integrated(scene: SceneSpec, plan: Plan, times: FloatArray | None) -> SceneRun:
+def _integrated(scene: SceneSpec, plan: Plan, times: FloatArray | None) -> Run:
     """Run it at a tolerance of which a coarser twin tells that the error asked is kept."""
     if is_endless(scene):
         raise InputError(
@@ -112,27 +114,14 @@ def _integrated(scene: SceneSpec, plan: Plan, times: FloatArray | None) -> Scene
     prepared, run, estimate, events = _close_enough(scene, times)
     columns = columns_of(np.vstack([run.states, run.last]), prepared)
     energy = kinetic(prepared.state[[VX, VY, SPIN]], prepared)
-    return SceneRun(
-        simulated=simulate,
-        scene=scene,
-        plan=plan,
-        end=ENDS[run.how],
-        end_time=run.end_time,
-        events=sorted(
-            (
-                Event(float(e[0]), EVENTS[int(e[1])], int(e[2]), float(e[3 + X]), float(e[3 + Y]))
-                for e in events
-            ),
-            key=lambda event: event.time,  # a rim may come over two edges on one step
-        ),
-        energy_residual=ledger_residual(columns, float(energy)),
-        error_estimate=estimate,
-        speed_scale=prepared.speed,
-        rate_scale=prepared.rate,
-        steps=run.steps,
-        last={name: float(column[-1]) for name, column in columns.items()},
-        columns={name: column[:-1] for name, column in columns.items()},
-    )
+    exact = {
+        "error_estimate": estimate, "speed_scale": prepared.speed, "rate_scale": prepared.rate,
+        "steps": run.steps, "simulated": simulate,
+    }  # fmt: skip
+    return run_of(
+        scene, plan, ENDS[run.how], run.end_time, events_of(events, scene), columns, float(energy),
+        exact,
+    )  # fmt: skip
 
 
 def _close_enough(

@@ -57,29 +57,6 @@ def called(piece: PieceSpec, number: int) -> str:
     return piece.name or f"puck {number}"
 
 
-def number_of(puck: int | str, names: tuple[str, ...]) -> int:
-    """The number of a puck, from its name or number.
-
-    Raises
-    ------
-    InputError
-        If there is no such puck.
-
-    Examples
-    --------
-    >>> number_of("man", ("striker", "man")), number_of(0, ("striker", "man"))
-    (1, 0)
-    """
-    if isinstance(puck, str) and puck in names:
-        return names.index(puck)
-    if isinstance(puck, int | np.integer) and 0 <= puck < len(names) and puck is not True:
-        return int(puck)
-    shown = ", ".join(names[:8]) + (", ..." if len(names) > 8 else "")
-    near = get_close_matches(str(puck), names, 1, 0.6)
-    meant = f" (did you mean {near[0]!r}?)" if near else ""
-    raise InputError(f"no puck {puck!r}{meant}: there are {len(names)}, {shown}")
-
-
 def refuse_endless(scene: SceneSpec) -> None:
     """Refuse a run that has no end of its own and is given none.
 

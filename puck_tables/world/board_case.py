@@ -14,12 +14,13 @@ from puck_tables.errors import PuckError
 from puck_tables.scene.entries import is_batch, launch_paths
 from puck_tables.scene.loop import AT_REST, EVENT_LIMIT, OVER_EDGE, TIME_UP
 from puck_tables.scene.outcome import IMPACTS_WITHOUT_END, TOO_FAST, UNSOLVED
+from puck_tables.scene.run import STATE, residual
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.agreement import called, pieces_of, refuse_endless
 from puck_tables.world.bulk import Ends, follow_all
 from puck_tables.world.engine import CROWDED, OFF_TABLE, PUSHING, REACHED, TANGLED
-from puck_tables.world.ledger import ledger
-from puck_tables.world.outcome import STATE, ways_of
+from puck_tables.world.ledger import energies_of
+from puck_tables.world.outcome import ways_of
 from puck_tables.world.prepare import game_of, order_of
 from puck_tables.world.rim_laws import rule_of
 from puck_tables.world.simulate import MISSED
@@ -134,7 +135,8 @@ class BoardCase:
         try:
             world = World(self.scene.at(numbers))
             world.advance(self.until)
-            if world.groups > 0 and not ledger(world)["energy_residual"] <= MISSED:
+            now = energies_of(world, np.array([world.time]))
+            if world.groups > 0 and not residual(now) <= MISSED:
                 raise PuckError
         except PuckError:
             ends.how[run] = _FAILED

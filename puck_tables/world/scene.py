@@ -8,20 +8,21 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Self
 
 import numpy.typing as npt
 
 from puck_tables._core.executor import Progress
 from puck_tables._core.fields import of
 from puck_tables.puck import Puck
+from puck_tables.scene.agreement import disagreements
 from puck_tables.scene.library import find_scene
 from puck_tables.scene.pieces import PieceSpec
 from puck_tables.scene.scene_spec import SceneSpec
 
 if TYPE_CHECKING:
     from puck_tables.bulk.spreads import Spread
-    from puck_tables.scene.outcome import SceneRun
+    from puck_tables.scene.run import Run
     from puck_tables.world.aimed import BoardAim
     from puck_tables.world.map import Map
     from puck_tables.world.sample import Sample
@@ -114,9 +115,9 @@ class Scene(SceneSpec):
     def _disagreements(self) -> list[str]:
         """What is wrong between its parts."""
         if self.is_board:
-            from puck_tables.world.agreement import disagreements
-        else:
-            from puck_tables.scene.agreement import disagreements
+            from puck_tables.world.agreement import disagreements as of_board
+
+            return of_board(self)
         return disagreements(self)
 
     @classmethod
@@ -135,7 +136,7 @@ class Scene(SceneSpec):
         """
         return cls.from_tables(find_scene(str(name)), str(name))
 
-    def simulate(self, times: npt.ArrayLike | None = None) -> SceneRun:
+    def simulate(self, times: npt.ArrayLike | None = None) -> Run:
         """Run it, from the launch to the end.
 
         Parameters
@@ -145,7 +146,7 @@ class Scene(SceneSpec):
 
         Returns
         -------
-        SceneRun
+        Run
             States beyond the end of the run are left out, except at rest.
 
         Raises
@@ -171,8 +172,7 @@ class Scene(SceneSpec):
         if self.is_board:
             from puck_tables.world.simulate import simulate as on_board
 
-            board: Any = on_board(self, times)
-            return board
+            return on_board(self, times)
         from puck_tables.scene.simulate import simulate
 
         return simulate(self, times)

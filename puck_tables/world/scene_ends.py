@@ -16,8 +16,8 @@ from puck_tables.result import Result
 from puck_tables.scene.entries import entry_at, is_batch
 from puck_tables.scene.loop import OVER_EDGE
 from puck_tables.scene.outcome import ENDS, column_of, scene_texts
+from puck_tables.scene.run import number_of
 from puck_tables.scene.scene_spec import SceneSpec
-from puck_tables.world.agreement import number_of
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)

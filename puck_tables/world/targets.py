@@ -12,6 +12,7 @@ from puck_tables._core.real import finite_array
 from puck_tables.errors import InputError
 from puck_tables.scene.parts import Floor, Force
 from puck_tables.scene.pieces import PieceSpec
+from puck_tables.scene.run import number_of
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.agreement import (
     TOUCH,
@@ -19,7 +20,6 @@ from puck_tables.world.agreement import (
     disagreements,
     has_closed_forms,
     in_the_way,
-    number_of,
     pieces_of,
     refuse_endless,
     start_of,

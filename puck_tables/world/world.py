@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -16,9 +16,10 @@ from puck_tables.scene.friction import SPIN, VX, VY
 from puck_tables.scene.holds import misfits
 from puck_tables.scene.ingredients import FREE, floor_velocity
 from puck_tables.scene.parts import Launch
+from puck_tables.scene.run import Event, number_of
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world import game as g
-from puck_tables.world.agreement import called, number_of, pieces_of
+from puck_tables.world.agreement import called, pieces_of
 from puck_tables.world.engine import (
     CROWDED,
     EVERYBODY,
@@ -50,31 +51,6 @@ from puck_tables.world.record import states_at
 MOST_EVENTS = 1_000_000
 CROWD = 1e-7  # of Q/J: 2000 events in less are a crowd
 CROWDED_PUSHES, PUSHED_IN = 3000, 1e-3  # and so many new groups that push, in that share of Q/J
-
-
-class Meeting(NamedTuple):
-    """What happened: when (s), what, to which puck, with whom.
-
-    An impact; a contact, which lasts; pocket or edge, where it leaves play; a launch; overhang,
-    where its rim comes over an edge (it is carried as if nothing of it hung in the air).
-
-    ``x``, ``y`` m: where; ``approach``, ``slip`` m/s: how fast the rims came together and slid on
-    each other before the first impact of this moment; ``impulse``, ``rub`` N s: along the line from
-    the puck to its partner and 90° to the left of it; ``lost`` J: kinetic energy lost, of several
-    impacts at one moment right in sum only.
-    """
-
-    time: float
-    what: str
-    puck: str
-    partner: str
-    x: float
-    y: float
-    approach: float
-    slip: float
-    impulse: float
-    rub: float
-    lost: float
 
 
 class World:
@@ -204,7 +180,7 @@ class World:
         states: FloatArray = states_at(self._game, times)[:, self._place]
         return states
 
-    def advance(self, duration: float) -> list[Meeting]:
+    def advance(self, duration: float) -> list[Event]:
         """Let time pass; what happened in it.
 
         Parameters
@@ -238,7 +214,7 @@ class World:
         if (self._game.kinds == DAMPED).any():
             raise InputError("pucks without dry friction never come to rest: give a duration")
 
-    def events_since(self, time: float) -> list[Meeting]:
+    def events_since(self, time: float) -> list[Event]:
         """What happened from a time on."""
         moment = real("time", time, "s")
         times = self._game.events[: self._game.counts[g.N_EVENTS], g.TIME]
@@ -418,10 +394,10 @@ class World:
         }
         self._game = self._game._replace(**more)
 
-    def _events(self, first: int) -> list[Meeting]:
+    def _events(self, first: int) -> list[Event]:
         rows = self._game.events[first : self._game.counts[g.N_EVENTS]]
         return [
-            Meeting(
+            Event(
                 float(row[g.TIME]), g.EVENTS[int(row[g.WHAT])], self._name(row[g.WHO]),
                 self._name(row[g.PARTNER]), *row[[g.AT_X, g.AT_Y]].tolist(),
                 *row[[g.APPROACH, g.SLIDE, g.PUSH, g.RUB, g.LOST]].tolist(),

@@ -179,7 +179,9 @@ def verdict(scene: dict[str, Any], tol: float, folder: Path) -> tuple[str, str, 
     run, words = engine(scene, tol, folder)
     if run is None:
         return "refused", words, sure
-    found = [(e.time, WORDS[e.what], e.which) for e in run.events if e.what in WORDS]
+    found = [
+        (e.time, WORDS[e.what], int(e.partner.split()[-1])) for e in run.events if e.what in WORDS
+    ]
     events[:, 2] = _borders(scene, events)
     complete = sure == len(events)
     for i in range(sure):
