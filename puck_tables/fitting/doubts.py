@@ -41,16 +41,9 @@ def doubts(
         name: one for name, one in numbers.items()
         if one.how != KNOWN and one.determined and math.isfinite(one.value)
     }  # fmt: skip
-    height, own = found.get("height"), found.get("radius")
-    friction = numbers.get("friction")
-    if friction is not None and friction.how != KNOWN and friction.determined:
-        low, high = friction.low, friction.high
-    elif friction is not None and friction.how != KNOWN:
-        low = high = friction.value
-    else:
-        low, high = _SLICK, _GRIP
-    if friction is not None and (low > _GRIP or high < _SLICK):
-        than = "more" if low > _GRIP else "less"
+    friction, height, own = (found.get(name) for name in ("friction", "height", "radius"))
+    if friction is not None and (friction.low > _GRIP or friction.high < _SLICK):
+        than = "more" if friction.low > _GRIP else "less"
         said.append(
             f"A friction of {friction.value:.3g} is {than} than dry surfaces have: {_UNITS}"
         )

@@ -15,7 +15,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.asked import Asked
-from puck_tables.fitting.parameters import LAUNCH, WALL
+from puck_tables.fitting.parameters import LAUNCH, MOST, WALL
 from puck_tables.fitting.seen import Seen
 
 _DRAGGED = 100.0  # drag times the length of a film: nothing, or all there is, is left of a speed
@@ -43,7 +43,7 @@ def limits_of(
         elif name in ("friction", "decel"):
             high = min(high, asked.steepest(name))
         elif name == "drag":
-            most = _DRAGGED / max(float(film.time[-1]) for film in films)
+            most = min(_DRAGGED / max(float(film.time[-1]) for film in films), MOST["drag"])
             low, high = max(low, -most), min(high, most)
         elif name not in asked.bounds and name in (*LAUNCH, *WALL):
             own = films if track < 0 else [films[track]]

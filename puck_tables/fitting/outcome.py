@@ -22,7 +22,7 @@ from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.held_out import HeldOut
 from puck_tables.fitting.laws import LawScore
 from puck_tables.fitting.numbers import FoundLaunch, Number
-from puck_tables.fitting.residual_tests import lengthways, misfits
+from puck_tables.fitting.residual_tests import NO_PATTERN, lengthways, misfits
 from puck_tables.fitting.seen import Seen
 from puck_tables.fitting.tied import Impact
 from puck_tables.fitting.timing import Known
@@ -223,7 +223,8 @@ class Fit(Result):
                 )
         said += self.not_met
         said += self.doubts
-        if self.jitter == 0.0 and self.noise[0] > 0.0:
+        # stamps that jitter leave no drift, as another law does
+        if self.jitter == 0.0 and self.noise[0] > 0.0 and self.drift > NO_PATTERN:
             ratio = lengthways(self.estimate)
             if ratio > _LENGTHWAYS:
                 said.append(
