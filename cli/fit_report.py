@@ -6,8 +6,8 @@ import math
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from puck_tables.fitting.fit_result import Fit
     from puck_tables.fitting.numbers import Number
-    from puck_tables.fitting.outcome import Fit
 
 _DIGITS = 9  # after the point: more are written with a power of ten
 
@@ -118,8 +118,8 @@ def _plainly(found: Fit) -> str:
         sentences.append(
             "So this may be no freely sliding puck, or not all of its motion: look at --plot, and "
             "give --since and --until if a hand or a wall touches it."
-            + ("" if found.misread else " Or speed changes its friction, or air slows it, too.")
-            + (f" {said}" if angled and not found.misread else "")
+            + ("" if found.misfit else " Or speed changes its friction, or air slows it, too.")
+            + (f" {said}" if angled and not found.misfit else "")
         )
     return "\n".join(sentences)
 

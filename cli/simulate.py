@@ -81,11 +81,7 @@ _LAUNCHED = (
 @table_option
 @json_option
 @click.option(
-    "-o",
-    "--output",
-    type=FILE,
-    metavar="FILE",
-    help="Save: .h5, .csv, .json, .jsonl or .parquet.",
+    "-o", "--output", type=FILE, metavar="FILE", help="Save: .h5, .csv, .json, .jsonl or .parquet."
 )
 @click.option(
     "--movie",
@@ -182,7 +178,7 @@ def _fitted(
             raise InputError(
                 f"--fit and --{name} clash: the file of the fit has the puck and its launch"
             )
-    from puck_tables.fitting.saved import puck_and_launch
+    from puck_tables.fitting.fit_reading import puck_and_launch
 
     return puck_and_launch(path, track)
 

@@ -11,9 +11,9 @@ from rarely import few
 
 import puck_tables as pt
 from puck_tables.fitting.compact import compact
-from puck_tables.fitting.launched import Moving, path_of, path_with_slopes
-from puck_tables.fitting.natural import curve_of
+from puck_tables.fitting.forward_model import Moving, path_of, path_with_slopes
 from puck_tables.fitting.problem import ANGLE, PLACE, PRIOR
+from puck_tables.fitting.unit_motions import unit_motions_of
 from puck_tables.plot.fit_figure import draw
 
 RADIUS, DECEL, DELTA = 0.0381, 0.15 * film_judge.G, 0.2
@@ -96,7 +96,7 @@ def test_estimates_scatter_as_the_bound_says_over_1000_tracks(true, wrong, angle
 def test_derivatives_of_a_path_are_those_of_the_judge():
     times = np.linspace(0.0, 1.5, 40)
     truth = np.array([1.9, 0.6, 20.0, DECEL, 0.6, RADIUS])
-    moving = Moving(DECEL, 0.6, RADIUS, 0.0, curve_of("uniform", 0.5**0.5))
+    moving = Moving(DECEL, 0.6, RADIUS, 0.0, unit_motions_of("uniform", 0.5**0.5))
     _, slopes = path_with_slopes(moving, truth[:2], 20.0, times)
     for k in range(6):
         step = 1e-3 * abs(truth[k])
@@ -109,7 +109,7 @@ def test_derivatives_of_a_path_are_those_of_the_judge():
 
 
 def test_drag_by_look_up_is_drag_integrated():
-    moving = Moving(DECEL, DELTA, RADIUS, 0.3, curve_of("uniform", 0.5**0.5))
+    moving = Moving(DECEL, DELTA, RADIUS, 0.3, unit_motions_of("uniform", 0.5**0.5))
     times = np.linspace(0.0, 1.9, 50)
     found = path_of(moving, np.array(VELOCITY), SPIN, times)
     expected = film_judge.path(VELOCITY, SPIN, DECEL, DELTA, RADIUS, times, drag=0.3)

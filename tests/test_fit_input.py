@@ -64,7 +64,7 @@ PUCK = pt.Puck(radius=0.04)
     ],
 )
 def test_questions_are_refused_before_anything_is_fitted(how, words, monkeypatch):
-    monkeypatch.setattr("puck_tables.fitting.fit.fitted", None)
+    monkeypatch.setattr("puck_tables.fitting.fit_tracks.initial_estimate", None)
     with pytest.raises(pt.InputError, match=re.escape(words)):
         pt.fit(TRACK, PUCK, **how)
 
@@ -90,7 +90,7 @@ def test_tracks_are_refused(tracks, words):
 
 
 def test_heights_that_tip_are_refused_before_anything_is_fitted(monkeypatch):
-    monkeypatch.setattr("puck_tables.fitting.fit.fitted", None)
+    monkeypatch.setattr("puck_tables.fitting.fit_tracks.initial_estimate", None)
     with pytest.raises(pt.InputError, match="tip over"):
         pt.fit(TRACK, pt.Puck(radius=0.04, height=1e9))
 
@@ -246,7 +246,7 @@ def test_what_was_said_wrongly_is_found_out(radius, angle, words):
     place = np.stack([path.x, path.y], axis=1) + NOISE
     track = pt.Track(TIMES, place, angle * (path.orientation + 3.0 * NOISE[:, 0]))
     found = pt.fit(track, pt.Puck(radius=radius))
-    assert words in found.misread and bool(found.misread) is bool(words)
+    assert words in found.misfit and bool(found.misfit) is bool(words)
     assert bool(found.complaints) is bool(words)
 
 

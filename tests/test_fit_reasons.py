@@ -62,9 +62,9 @@ def test_a_floor_whose_friction_falls_with_speed_is_named(seed):
     )  # fmt: skip
     found = pt.fit(film(path, seed), FLAT, fixed={"delta": 0.0})
     assert found.complaints
-    assert "over slip speed" in found.misread or "drag" in found.misread
-    speeds = [float(u) for u in found.misread.split("--slip-speeds ")[-1].rstrip(")").split(",")] \
-        if "--slip-speeds" in found.misread else [0.0, 0.3, 1.0, 4.0]  # fmt: skip
+    assert "over slip speed" in found.misfit or "drag" in found.misfit
+    speeds = [float(u) for u in found.misfit.split("--slip-speeds ")[-1].rstrip(")").split(",")] \
+        if "--slip-speeds" in found.misfit else [0.0, 0.3, 1.0, 4.0]  # fmt: skip
     asked = pt.fit(film(path, seed), FLAT, fixed={"delta": 0.0}, slip_speeds=speeds)
     assert asked.chi2 / asked.degrees < 1.5 and asked.noise[0] < 0.5 * found.noise[0]
 
@@ -117,5 +117,5 @@ def test_what_slows_a_puck_is_named_before_jitter_radius_or_a_hand(seed, spinnin
     found = pt.fit(track, pt.Puck(radius=0.04))
     assert found.complaints
     told = ("--free", "--slip-speeds") if spinning else ("as air does",)
-    assert any(words in found.misread for words in told), found.misread
+    assert any(words in found.misfit for words in told), found.misfit
     assert not any("jitter" in text for text in found.remarks)

@@ -15,9 +15,9 @@ from typing import NamedTuple
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.fitting.abreast import FROM_BESIDE, abreast
 from puck_tables.fitting.estimate import Estimate
-from puck_tables.fitting.unknowns import Found
+from puck_tables.fitting.multi_start import FROM_BESIDE, multi_start
+from puck_tables.fitting.unknowns import NumbersOf
 
 Z95 = 1.959963984540054
 BLIND = 2.0  # plausible ranges per standard deviation
@@ -111,7 +111,7 @@ class Certainty:
         return found
 
 
-class Rival(NamedTuple):
+class OtherMinimum(NamedTuple):
     """Another summit.
 
     ``estimate``: there; ``certainty``: how well it would tell its unknowns; ``rise``: of χ²;
@@ -124,12 +124,12 @@ class Rival(NamedTuple):
     tracks: tuple[int, ...]
 
     @property
-    def numbers(self) -> Found:
+    def numbers(self) -> NumbersOf:
         """The numbers of the puck there, and the launch spins of tracks that spin otherwise."""
         problem, x = self.estimate.problem, self.estimate.x
         spins = problem.launches(x)[:, 4]
         alone = len(problem.films) == 1
-        return problem.found(x) | {
+        return problem.numbers_at(x) | {
             "launch_spin" if alone else f"launch_spin of {problem.films[n].name}": float(spins[n])
             for n in self.tracks
         }
@@ -182,10 +182,13 @@ def pinned_of(found: Estimate, certainty: Certainty) -> tuple[int, ...]:
     low, high = found.problem.limits
     errors = certainty.errors
     seen = np.isfinite(errors)
-    near, off = _ON_BOUND * np.where(seen, errors, 0.0), _OFF_BOUND * np.where(seen, errors, 0.0)
+    near, deviations = (
+        _ON_BOUND * np.where(seen, errors, 0.0),
+        _OFF_BOUND * np.where(seen, errors, 0.0),
+    )
     on = []
     for end in (low, high):
-        width = np.minimum(_ON_BOUND * np.maximum(np.abs(end), 1.0), off)
+        width = np.minimum(_ON_BOUND * np.maximum(np.abs(end), 1.0), deviations)
         on.append(seen & np.isfinite(end) & (np.abs(found.x - end) <= np.maximum(near, width)))
     return tuple(np.where(on[0], -1, on[1].astype(int)).tolist())
 
@@ -262,24 +265,26 @@ def _end(
     at, last = side * min(side * guess, side * limit), 0.0
     for n in range(_SEARCHES):
         cost, moved = profile_point(found, certainty, k, at, start)
-        off = math.sqrt(max(cost - found.chi2, 0.0)) - wanted
-        if n == 0 and at == guess and abs(off) < 0.5 * _PARABOLIC * wanted:
+        deviations = math.sqrt(max(cost - found.chi2, 0.0)) - wanted
+        if n == 0 and at == guess and abs(deviations) < 0.5 * _PARABOLIC * wanted:
             return guess, False
-        if abs(off) < 0.25 * _PARABOLIC * wanted or (off < 0.0 and at == limit):
+        if abs(deviations) < 0.25 * _PARABOLIC * wanted or (deviations < 0.0 and at == limit):
             return at, True
-        if off < 0.0:
+        if deviations < 0.0:
             far = (far[0], 0.5 * far[1]) if last < 0.0 else far
-            near, start = (at, off), moved
+            near, start = (at, deviations), moved
         else:
             near = (near[0], 0.5 * near[1]) if last > 0.0 else near
-            far = at, min(off, _FAR * wanted)
-        last = off
+            far = at, min(deviations, _FAR * wanted)
+        last = deviations
         if far[1] < math.inf:
             at = near[0] + min(max(near[1] / (near[1] - far[1]), 0.1), 0.9) * (far[0] - near[0])
             if abs(far[0] - near[0]) < _NARROW * abs(far[0] - x0):  # another minimum begins there
                 return at, True
-        elif off > -0.5 * wanted and n < _LOOKS:
-            at = x0 + side * min(_BEYOND * wanted / (wanted + off) * abs(at - x0), abs(limit - x0))
+        elif deviations > -0.5 * wanted and n < _LOOKS:
+            at = x0 + side * min(
+                _BEYOND * wanted / (wanted + deviations) * abs(at - x0), abs(limit - x0)
+            )
         else:
             at = limit if math.isfinite(limit) else x0 + _OUTWARDS * (at - x0)
     return at, True
@@ -301,5 +306,5 @@ def profile_point(
         slow = moved.copy()
         slow[spins] *= _HARDLY
         starts.append((found.problem, slow))
-    (best, cost), *_ = abreast(starts, FROM_BESIDE, kept=found.kept, held=k)
+    (best, cost), *_ = multi_start(starts, FROM_BESIDE, kept=found.kept, held=k)
     return 2.0 * cost, best

@@ -32,7 +32,9 @@ def compact(
         rows, slopes = rows * kept, slopes * kept[:, None]
     few, slope, kinds = [], [], []
     for n, (x, y, turn) in enumerate(problem.each()):
-        moved = [k for k, (of, _) in enumerate(problem.names) if of in (-1, n) or problem.meetings]
+        moved = [
+            k for k, (of, _) in enumerate(problem.names) if of in (-1, n) or problem.impact_specs
+        ]
         for part, kind in ((slice(x.start, y.stop), PLACE), (turn, ANGLE)):
             turned: FloatArray = np.column_stack([slopes[part][:, moved], rows[part]])
             if len(turned) > len(moved) + 1:

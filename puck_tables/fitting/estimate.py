@@ -16,8 +16,8 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.compact import compact
 from puck_tables.fitting.least_squares import ROBUST, SQUARES, minimise
+from puck_tables.fitting.outliers import outliers_of
 from puck_tables.fitting.problem import ANGLE, PLACE, UNSEEN, Problem
-from puck_tables.fitting.strays import strays
 from puck_tables.fitting.timing import Known, likeliest
 
 FARTHEST = 4.0  # standard deviations of a frame that counts
@@ -103,7 +103,7 @@ def estimate(
     return Estimate(problem, x, kept, rows, problem.jacobian(x))
 
 
-def only_strays(found: Estimate) -> bool:
+def only_outliers(found: Estimate) -> bool:
     """Whether all frames that an estimate leaves out are strays."""
     return np.array_equal(found.kept, _kept(found.problem, found.residuals, True))
 
@@ -126,15 +126,15 @@ def _kept(problem: Problem, rows: FloatArray, strict: bool) -> npt.NDArray[np.bo
     return kept
 
 
-def _out(off: FloatArray, most: float, strict: bool) -> npt.NDArray[np.bool_]:
+def _out(deviations: FloatArray, most: float, strict: bool) -> npt.NDArray[np.bool_]:
     """Frames whose residuals (n, k) are too large."""
-    far: npt.NDArray[np.bool_] = (off**2).sum(axis=1) > most
-    return strays(off, far, most) if strict else far
+    far: npt.NDArray[np.bool_] = (deviations**2).sum(axis=1) > most
+    return outliers_of(deviations, far, most) if strict else far
 
 
-def _wide(off: list[FloatArray], usual: float) -> float:
+def _wide(deviations: list[FloatArray], usual: float) -> float:
     """How much larger than the noise most squares are, 1 at least."""
-    every = (np.concatenate(off) ** 2).sum(axis=1)
+    every = (np.concatenate(deviations) ** 2).sum(axis=1)
     return max(1.0, float(np.median(every)) / usual / _WIDE) if every.size else 1.0
 
 
@@ -185,7 +185,7 @@ def _at_least(
     Places or angles that are all the same, as of a column of zeros, have no residuals at all.
     """
     paths = problem.paths(x)
-    radius = problem.asked.scales(problem.found(x))[2]
+    radius = problem.spec.scales(problem.numbers_at(x))[2]
     size = max(float(np.ptp(path[:2], axis=1).max()) for path in paths)
     turned = max(float(np.ptp(path[2])) for path in paths)
     length = max(size, radius * turned)
@@ -208,7 +208,7 @@ def _jittery(
         count.append(np.stack([kept[place], angled, kept[across]]))
     seen = int((kept & (problem.kinds <= ANGLE)).sum())
     return likeliest(
-        problem.noise, problem.jitter, known, np.concatenate(problem.off(x), axis=1),
+        problem.noise, problem.jitter, known, np.concatenate(problem.deviations(x), axis=1),
         np.concatenate(problem.rates(x), axis=1), np.concatenate(count, axis=1),
         max(1.0 - x.size / seen, 0.1),
     )  # fmt: skip

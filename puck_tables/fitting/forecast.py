@@ -12,14 +12,14 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.real import instance, one_velocity, positive, real
 from puck_tables.errors import InputError
-from puck_tables.fitting.asked import Asked
-from puck_tables.fitting.blindness import mirror_sentence, rival_sentence
 from puck_tables.fitting.certainty import Certainty, certainty_of
 from puck_tables.fitting.estimate import Estimate
+from puck_tables.fitting.fit_spec import FitSpec
+from puck_tables.fitting.identifiability import minimum_sentence, mirror_sentence
 from puck_tables.fitting.numbers import plausible_for
+from puck_tables.fitting.observations import FEWEST, Observations
+from puck_tables.fitting.other_minima import mirrored, other_minima
 from puck_tables.fitting.problem import Problem
-from puck_tables.fitting.rivals import mirrored, rivals_of
-from puck_tables.fitting.seen import FEWEST, Seen
 from puck_tables.io.dataset import Dataset, variable
 from puck_tables.puck import Puck
 from puck_tables.result import Result
@@ -32,7 +32,7 @@ _RANGES = {
 }  # fmt: skip
 
 
-class Launched(Protocol):
+class LaunchLike(Protocol):
     """A velocity (vx, vy) m/s and a spin rad/s, as :class:`puck_tables.Launch` has them."""
 
     @property
@@ -80,7 +80,7 @@ class Camera:
                 raise InputError(f"{name} must be from {low:g} to {high:g} {unit}, got {number:g}")
             object.__setattr__(self, name, number)
 
-    def film(self, stop_time: float) -> Seen:
+    def film(self, stop_time: float) -> Observations:
         """Its frames of a motion that stops at a time.
 
         Raises
@@ -97,7 +97,7 @@ class Camera:
                 f"takes {FEWEST} to {MOST_FRAMES}"
             )
         angle = None if self.angle_noise is None else np.zeros(count)
-        return Seen(
+        return Observations(
             "film", 0.0, np.arange(count) / self.fps, np.zeros((count, 2)), angle, np.arange(count)
         )
 
@@ -182,7 +182,7 @@ class _Launch:
 
 
 def fisher(
-    puck: Puck, launch: Launched, camera: Camera, *, free: Iterable[str] = ("friction", "delta")
+    puck: Puck, launch: LaunchLike, camera: Camera, *, free: Iterable[str] = ("friction", "delta")
 ) -> Forecast:
     """What a film of a launch would tell of a puck, before the experiment.
 
@@ -228,11 +228,11 @@ def fisher(
     problem, known = told.problem, told.certainty
     errors = known.errors
     seen = _seen(told)
-    rivals = () if camera.angle_noise is not None else rivals_of(seen, known)
+    rivals = () if camera.angle_noise is not None else other_minima(seen, known)
     unsigned = mirrored(seen, known)
     names = tuple(name for _, name in problem.names)
-    for rival in rivals:
-        errors[[k for k, name in enumerate(names) if name in rival.numbers]] = np.inf
+    for minimum in rivals:
+        errors[[k for k, name in enumerate(names) if name in minimum.numbers]] = np.inf
     if unsigned:
         errors[names.index("launch_spin")] = np.inf
     return Forecast(
@@ -240,13 +240,13 @@ def fisher(
         velocity=velocity,
         spin=spin,
         camera=camera,
-        free=problem.asked.free,
+        free=problem.spec.free,
         names=names,
         values=told.x,
         errors=errors,
         frames=problem.films[0].time.size,
         rivals=(
-            *(rival_sentence(rival, False) for rival in rivals),
+            *(minimum_sentence(minimum, False) for minimum in rivals),
             *(mirror_sentence("the film") for _ in unsigned),
         ),
         correlation=known.correlation,
@@ -261,7 +261,7 @@ class _Bounds(NamedTuple):
 
 def _bounds(puck: Puck, launch: _Launch, camera: Camera, free: Iterable[str]) -> _Bounds:
     """How well a film tells the unknowns of a launch."""
-    asked = Asked.of(puck, free, {}, {}, {}, {})
+    spec = FitSpec.of(puck, free, {}, {}, {}, {})
     slip = math.hypot(*launch.velocity, puck.radius * launch.spin)
     if not 0.0 < slip <= _FASTEST:
         raise InputError(
@@ -271,9 +271,9 @@ def _bounds(puck: Puck, launch: _Launch, camera: Camera, free: Iterable[str]) ->
     stop = puck.stop(launch.velocity, launch.spin)
     film = camera.film(float(stop.stop_time))
     noise = camera.place_noise, camera.angle_noise or 1.0
-    problem = Problem(asked, (film,), noise, tall=puck.delta > 1.0)
-    numbers = {**asked.known(), "decel": puck.decel, "delta": puck.delta}
-    found = {name: numbers[name] for name in asked.free}
+    problem = Problem(spec, (film,), noise, tall=puck.delta > 1.0)
+    numbers = {**spec.known(), "decel": puck.decel, "delta": puck.delta}
+    found = {name: numbers[name] for name in spec.free}
     x = problem.unknowns(found, np.array([[0.0, 0.0, *launch.velocity, launch.spin, 0.0]]))
     return _Bounds(problem, x, certainty_of(problem.jacobian(x), plausible_for(problem, x)))
 

@@ -8,10 +8,10 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables.fitting.estimate import FARTHEST, Estimate
+from puck_tables.fitting.observations import FEWEST, Observations, noise_of, rests_from
 from puck_tables.fitting.problem import UNSEEN
 from puck_tables.fitting.residual_tests import drift, runs
-from puck_tables.fitting.seen import FEWEST, Seen, noise_of, rests_from
-from puck_tables.fitting.touched import pushed, touched
+from puck_tables.fitting.touch_detection import first_touch, pushed
 
 _FEWEST_OUT = 3  # frames at an end that are more than single outliers
 _BESIDE = 0.1  # of the frames that are left, at most
@@ -20,17 +20,17 @@ _SLACK = 3  # frames
 _MOSTLY = 0.7  # of them are outliers
 
 
-def trimmed(found: Estimate, uncut: tuple[Seen, ...]) -> tuple[Seen, ...]:
+def trimmed(found: Estimate, uncut: tuple[Observations, ...]) -> tuple[Observations, ...]:
     """The tracks without what lies at their ends and is not of the motion.
 
-    What is off there is left out where something touches the puck (:mod:`.touched`); else it is the
-    model that is wrong.  A hand that lets go slows otherwise by about J, and is off by as much as
-    an outlier only the time √(2 · 4σ/J) before: so long beside what is foreign is left out, too.
+    What is off there is left out where something touches the puck (:mod:`.first_touch`); else it is
+    the model that is wrong.  A hand that lets go slows otherwise by about J, and is off by as much
+    as an outlier only the time √(2 · 4σ/J) before: so long beside what is foreign is left out, too.
     ``uncut``: the tracks with all frames.
     """
     films = []
     problem = found.problem
-    decel = problem.asked.scales(problem.found(found.x))[0]
+    decel = problem.spec.scales(problem.numbers_at(found.x))[0]
     hidden = math.sqrt(2.0 * FARTHEST * problem.noise[0] / decel)
     for film, whole, (x, _, _) in zip(problem.films, uncut, problem.each(), strict=True):
         out = ~found.kept[x] & (problem.kinds[x] != UNSEEN)
@@ -49,12 +49,12 @@ def trimmed(found: Estimate, uncut: tuple[Seen, ...]) -> tuple[Seen, ...]:
     return found.problem.films if same else tuple(films)
 
 
-def _ends(whole: Seen, at: int, beside: int, first: bool) -> bool:
+def _ends(whole: Observations, at: int, beside: int, first: bool) -> bool:
     """Whether the free motion begins, or ends, about a frame since something touches the puck."""
     rests = rests_from(whole, noise_of([whole])[0])
     if not whole.cuttable[0 if first else 1] or (first and at >= rests - FEWEST):
         return False
-    if touched(whole, at - beside - _SLACK, at + beside + _SLACK) is not None:
+    if first_touch(whole, at - beside - _SLACK, at + beside + _SLACK) is not None:
         return True
     count = whole.time.size
     foreign, free = ((0, at), (at, count)) if first else ((at, count), (0, at))
@@ -73,15 +73,15 @@ def _excess(found: Estimate) -> float:
     return size / smooth if smooth > 0.0 else 1.0
 
 
-def without_ends(film: Seen) -> list[Seen]:
+def without_ends(film: Observations) -> list[Observations]:
     """A track without what lies before or after a touch, where that is the smaller part."""
     order = np.arange(film.time.size)
     count = round(_SMALLER * order.size)
     parts = []
-    at = touched(film, 0, count) if film.cuttable[0] else None
+    at = first_touch(film, 0, count) if film.cuttable[0] else None
     if at is not None:
         parts.append(film.part(order >= at))
-    at = touched(film, order.size - count, order.size) if film.cuttable[1] else None
+    at = first_touch(film, order.size - count, order.size) if film.cuttable[1] else None
     if at is not None:
         parts.append(film.part(order < at))
     return [part for part in parts if part.time.size >= FEWEST + 2]

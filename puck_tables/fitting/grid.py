@@ -43,10 +43,10 @@ def step_of(*columns: FloatArray) -> float:
     step = float(np.median(near))
     size = np.round(gaps / step)
     step = float((gaps * size).sum() / (size * size).sum())
-    off = np.concatenate([
+    deviations = np.concatenate([
         np.diff(values) / step - np.round(np.diff(values) / step) for values in found
     ])  # fmt: skip
-    return step if np.abs(off).max() < _OFF else 0.0
+    return step if np.abs(deviations).max() < _OFF else 0.0
 
 
 def coarse(step: float, noise: float) -> float:

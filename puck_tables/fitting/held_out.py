@@ -12,8 +12,8 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
 from puck_tables.fitting.certainty import Z95, Certainty
 from puck_tables.fitting.estimate import Estimate
+from puck_tables.fitting.observations import FEWEST, Observations, rests_from
 from puck_tables.fitting.problem import ANGLE, PLACE
-from puck_tables.fitting.seen import FEWEST, Seen, rests_from
 
 LEAST_SHARE, LARGEST_SHARE = 0.05, 0.9
 
@@ -49,8 +49,8 @@ class HeldOut:
 
 
 def split(
-    films: tuple[Seen, ...], hold_out: float | tuple[str, ...], spread: float
-) -> tuple[tuple[Seen, ...], tuple[npt.NDArray[np.bool_], ...]]:
+    films: tuple[Observations, ...], hold_out: float | tuple[str, ...], spread: float
+) -> tuple[tuple[Observations, ...], tuple[npt.NDArray[np.bool_], ...]]:
     """The tracks with what is fitted of them alone, and which frames of each are predicted.
 
     Parameters
@@ -92,7 +92,7 @@ def split(
 
 
 def predicted(
-    part: Estimate, certainty: Certainty, films: tuple[Seen, ...],
+    part: Estimate, certainty: Certainty, films: tuple[Observations, ...],
     later: tuple[npt.NDArray[np.bool_], ...],
 ) -> HeldOut:  # fmt: skip
     """How far the frames held out are from their predictions."""

@@ -2,7 +2,7 @@
 
 A track is cut between two frames where its velocity jumps by far more than it changes nearby.  The
 pieces are fitted together, as slides of one puck with launches of their own; then the law of impact
-joins them (:mod:`puck_tables.fitting.joining`).
+joins them (:mod:`puck_tables.fitting.impact_matching`).
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.fitting.seen import FEWEST, Seen, noise_of, rests_from, turning_of
+from puck_tables.fitting.observations import FEWEST, Observations, noise_of, rests_from, turning_of
 from puck_tables.fitting.starts import robust_parabola
 
 _WINDOW, _WIDER = 5, 15  # frames to either side
@@ -24,14 +24,14 @@ _STILL, _LEAST_TURN = 3.0, 1e-9  # times the noise; rad
 _TOP = 0.95  # of the largest jump around: in the middle of these is the kink
 
 
-class Piece(NamedTuple):
+class SlideIndex(NamedTuple):
     """Which slide of which track a piece is, both counted from 0."""
 
     track: int
     slide: int
 
 
-def kinks(film: Seen, noise: float) -> list[int]:
+def kinks(film: Observations, noise: float) -> list[int]:
     """Frames after which the velocity of a track jumps.
 
     Examples
@@ -66,7 +66,7 @@ def kinks(film: Seen, noise: float) -> list[int]:
     ]  # fmt: skip
 
 
-def _jumps(film: Seen, noise: float, start: int, middle: int, stop: int) -> bool:
+def _jumps(film: Observations, noise: float, start: int, middle: int, stop: int) -> bool:
     """Whether robust parabolas over more frames tell a jump, too: several outliers are none."""
     start, stop = max(start, middle - _WIDER), min(stop, middle + _WIDER)
     if min(middle - start, stop - middle) < FEWEST:
@@ -93,7 +93,7 @@ def _around(change: FloatArray) -> FloatArray:
     return out
 
 
-def _velocity(film: Seen, start: int, stop: int) -> FloatArray:
+def _velocity(film: Observations, start: int, stop: int) -> FloatArray:
     """The median of the slopes between any two frames, which one outlier in five does not move."""
     time, place = film.time[start:stop], film.place[start:stop]
     one, two = np.triu_indices(time.size, 1)
@@ -104,8 +104,8 @@ def _velocity(film: Seen, start: int, stop: int) -> FloatArray:
 
 
 def cut(
-    films: tuple[Seen, ...], noise: float
-) -> tuple[tuple[Seen, ...], tuple[Piece, ...], tuple[bool, ...]]:
+    films: tuple[Observations, ...], noise: float
+) -> tuple[tuple[Observations, ...], tuple[SlideIndex, ...], tuple[bool, ...]]:
     """The tracks cut at their kinks, which pieces they are, and whether the puck rests in each.
 
     A piece too short to be fitted is left out.
@@ -120,7 +120,7 @@ def cut(
             piece = film.part((number >= start) & (number < stop))
             name = film.name if len(ends) == 2 else slide_name(film.name, k)
             pieces.append(replace(piece, name=name))
-            numbers.append(Piece(n, k))
+            numbers.append(SlideIndex(n, k))
             rests.append(len(ends) > 2 and rests_from(piece, noise) == 0 and not turns(piece))
     return tuple(pieces), tuple(numbers), tuple(rests)
 
@@ -130,7 +130,7 @@ def slide_name(track: str, k: int) -> str:
     return f"{track}, slide {k + 1}"
 
 
-def turns(film: Seen) -> bool:
+def turns(film: Observations) -> bool:
     """Whether the body of a track turns.
 
     Examples

@@ -93,7 +93,7 @@ def minimise(
 
 def _astray(problem: Problem, x: FloatArray) -> str:
     """A sentence on unknowns of which no motion can be computed."""
-    told = ", ".join(f"{name} {value:.3g}" for name, value in problem.found(x).items())
+    told = ", ".join(f"{name} {value:.3g}" for name, value in problem.numbers_at(x).items())
     return (
         "the fit is led astray, to a motion that cannot be computed"
         f"{f' ({told})' if told else ''}: give bounds or a prior of what it finds, or find less"
@@ -104,7 +104,7 @@ def _near(
     ends: FloatArray, problem: Problem, moved: npt.NDArray[np.int64]
 ) -> npt.NDArray[np.bool_]:
     """Ends that count from the first: of the puck, and bounds that are given."""
-    given = [problem.names[k][0] == -1 or problem.names[k][1] in problem.asked.bounds
+    given = [problem.names[k][0] == -1 or problem.names[k][1] in problem.spec.bounds
              for k in moved]  # fmt: skip
     near: npt.NDArray[np.bool_] = (np.abs(ends) < _FAR) & np.array(given, bool)
     return near

@@ -10,9 +10,15 @@ from typing import NamedTuple
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.fitting.certainty import Certainty, Interval, Rival, certainty_of, interval_of
-from puck_tables.fitting.chain import slopes_of_slides
+from puck_tables.fitting.certainty import (
+    Certainty,
+    Interval,
+    OtherMinimum,
+    certainty_of,
+    interval_of,
+)
 from puck_tables.fitting.estimate import Estimate
+from puck_tables.fitting.impact_derivatives import slopes_of_slides
 from puck_tables.fitting.impacts import slide_name
 from puck_tables.fitting.parameters import ALL, LAUNCH, PUCK
 from puck_tables.fitting.problem import Problem
@@ -60,7 +66,7 @@ class Number(NamedTuple):
         return f"{round(self.value, _DECIMALS) + 0.0:.6g}"
 
 
-class FoundLaunch(NamedTuple):
+class EstimatedLaunch(NamedTuple):
     """How a track begins.
 
     ``name``: of the track; ``time`` s: of its first frame; then what was found there: ``place``
@@ -79,8 +85,8 @@ class FoundLaunch(NamedTuple):
 
 def plausible_for(problem: Problem, x: FloatArray) -> FloatArray:
     """What is plausible for every unknown (m,): of scales their own size."""
-    found, launches = problem.found(x), problem.launches(x)
-    radius = problem.asked.scales(found)[2]
+    found, launches = problem.numbers_at(x), problem.launches(x)
+    radius = problem.spec.scales(found)[2]
     sizes = []
     for track, name in problem.names:
         if name == "readout" and problem.read_within is not None:
@@ -89,7 +95,7 @@ def plausible_for(problem: Problem, x: FloatArray) -> FloatArray:
         if track == -1:
             least = _LEAST.get(name)
             sizes.append(
-                problem.asked.plausible(name) if least is None else max(abs(found[name]), least)
+                problem.spec.plausible(name) if least is None else max(abs(found[name]), least)
             )
             continue
         if track < -1:
@@ -111,29 +117,29 @@ def plausible_for(problem: Problem, x: FloatArray) -> FloatArray:
 def numbers_of(
     found: Estimate,
     certainty: Certainty,
-    rivals: tuple[Rival, ...] = (),
+    rivals: tuple[OtherMinimum, ...] = (),
     unsigned: tuple[int, ...] = (),
-) -> tuple[dict[str, Number], tuple[FoundLaunch, ...]]:
+) -> tuple[dict[str, Number], tuple[EstimatedLaunch, ...]]:
     """All numbers of the puck, and of each launch.
 
     ``rivals``: other summits of the likelihood; what they differ in, or do not tell, is not
     determined; ``unsigned``: tracks that do not tell which way the puck spins.
     """
     problem, x = found.problem, found.x
-    asked, errors = problem.asked, certainty.errors
-    values = problem.found(x)
+    spec, errors = problem.spec, certainty.errors
+    values = problem.numbers_at(x)
     puck: dict[str, Number] = {}
-    for k, name in enumerate(asked.free):
+    for k, name in enumerate(spec.free):
         interval, error = interval_of(found, certainty, k), float(errors[k])
         width = interval.high - interval.low
         if interval.profiled:  # the likelihood is no parabola: half of its width
             error = max(error, width / (2.0 * certainty.reach))
         low, high = interval.low, interval.high
-        for rival in rivals:
-            there = interval_of(rival.estimate, rival.certainty, k)
+        for minimum in rivals:
+            there = interval_of(minimum.estimate, minimum.certainty, k)
             if (
-                not interval.low <= rival.numbers[name] <= interval.high
-                or rival.certainty.undetermined[k]
+                not interval.low <= minimum.numbers[name] <= interval.high
+                or minimum.certainty.undetermined[k]
             ):
                 error = math.inf
             low, high = min(low, there.low), max(high, there.high)
@@ -148,12 +154,12 @@ def numbers_of(
         )  # fmt: skip
     # what follows is as much less certain as what it follows from
     widened, profiled = np.ones(x.size), False
-    for k, name in enumerate(asked.free):
+    for k, name in enumerate(spec.free):
         if puck[name].profiled and 0.0 < errors[k] < math.inf and puck[name].determined:
             widened[k] = max(puck[name].error / errors[k], 1.0)
             profiled = True
-    everything = {**asked.known(), **values}
-    everything.update(_derived(asked.scales(values), everything))
+    everything = {**spec.known(), **values}
+    everything.update(_derived(spec.scales(values), everything))
     for name, value in everything.items():
         if name in puck or (name == "drag" and value == 0.0):
             continue
@@ -165,7 +171,7 @@ def numbers_of(
         error = certainty.error_of(slope * widened, size)
         if math.isfinite(error) and certainty.follows_end(slope, size):
             error = math.nan
-        if any(slope[k] and not puck[one].determined for k, one in enumerate(asked.free)
+        if any(slope[k] and not puck[one].determined for k, one in enumerate(spec.free)
                if not certainty.undetermined[k]):  # fmt: skip
             error = math.inf
         number = quadratic(value, error, PUCK[name].unit, FOLLOWS, certainty.reach)
@@ -179,13 +185,13 @@ def numbers_of(
             number = number._replace(low=ends.low, high=ends.high)
         puck[name] = number._replace(low=max(number.low, PUCK[name].low))
     puck = {name: puck[name] for name in PUCK if name in puck}
-    unsure = {*unsigned, *(n for rival in rivals for n in rival.tracks)}
+    unsure = {*unsigned, *(n for minimum in rivals for n in minimum.tracks)}
     return puck, _launches(found, certainty, unsure)
 
 
 def _launches(
     found: Estimate, certainty: Certainty, unsure: Collection[int]
-) -> tuple[FoundLaunch, ...]:
+) -> tuple[EstimatedLaunch, ...]:
     """The launches of all slides; those after an impact follow from the first.
 
     ``unsure``: tracks of which motions of different spins fit as well.
@@ -212,7 +218,7 @@ def _launches(
             name = film.name if len(slides[n]) == 1 else slide_name(film.name, m)
             since = film.start + slide.since - slides[n][0].since
             px, py, vx, vy, spin, angle = row
-            launches.append(FoundLaunch(name, since, (px, py), (vx, vy), spin, angle, numbers))
+            launches.append(EstimatedLaunch(name, since, (px, py), (vx, vy), spin, angle, numbers))
     return tuple(launches)
 
 
@@ -225,15 +231,15 @@ def _follows(
     problem: Problem, x: FloatArray, name: str, slope: FloatArray, puck: Mapping[str, Number]
 ) -> Interval | None:
     """The interval of what follows from one number alone: from the ends of that one's."""
-    asked, values = problem.asked, problem.found(x)
+    spec, values = problem.spec, problem.numbers_at(x)
     of = np.flatnonzero(slope)
-    if of.size != 1 or not math.isfinite(puck[asked.free[of[0]]].high):
+    if of.size != 1 or not math.isfinite(puck[spec.free[of[0]]].high):
         return None
-    one, ends = asked.free[of[0]], []
+    one, ends = spec.free[of[0]], []
     for end in (puck[one].low, puck[one].high):
         moved = {**values, one: end}
-        everything = {**asked.known(), **moved}
-        everything.update(_derived(asked.scales(moved), everything))
+        everything = {**spec.known(), **moved}
+        everything.update(_derived(spec.scales(moved), everything))
         ends.append(everything[name])
     return Interval(min(ends), max(ends), False)
 
@@ -244,14 +250,14 @@ def _profiled(found: Estimate, certainty: Certainty, name: str) -> Interval | No
     None where δ is not found, or more is known of it than the tracks tell.
     """
     problem = found.problem
-    asked = problem.asked
-    if "delta" not in asked.free or "delta" in asked.priors or "delta" in asked.bounds:
+    spec = problem.spec
+    if "delta" not in spec.free or "delta" in spec.priors or "delta" in spec.bounds:
         return None
-    k = asked.free.index("delta")
-    values = {**asked.known(), **problem.found(found.x)}
-    height = _derived(asked.scales(values), values)[name]
-    other = replace(asked, free=tuple(name if one == "delta" else one for one in asked.free))
-    moved = replace(problem, asked=other)
+    k = spec.free.index("delta")
+    values = {**spec.known(), **problem.numbers_at(found.x)}
+    height = _derived(spec.scales(values), values)[name]
+    other = replace(spec, free=tuple(name if one == "delta" else one for one in spec.free))
+    moved = replace(problem, spec=other)
     x = found.x.copy()
     x[k] = height
     rows, slopes = moved.residuals_and_jacobian(x)
@@ -273,15 +279,15 @@ def _derived(scales: tuple[float, float, float], numbers: Mapping[str, float]) -
 
 def _slope(problem: Problem, x: FloatArray, name: str) -> FloatArray:
     """How a number changes with the unknowns (m,)."""
-    asked, values = problem.asked, problem.found(x)
+    spec, values = problem.spec, problem.numbers_at(x)
     slope = np.zeros(x.size)
-    for k, free in enumerate(asked.free):
+    for k, free in enumerate(spec.free):
         ends = []
         step = _STEP * (abs(values[free]) or 1.0)
         for side in (-1.0, 1.0):
             moved = {**values, free: values[free] + side * step}
-            everything = {**asked.known(), **moved}
-            everything.update(_derived(asked.scales(moved), everything))
+            everything = {**spec.known(), **moved}
+            everything.update(_derived(spec.scales(moved), everything))
             ends.append(everything[name])
         slope[k] = (ends[1] - ends[0]) / (2.0 * step)
         if abs(slope[k]) * step < 1e-13 * abs(ends[1]):  # rounding

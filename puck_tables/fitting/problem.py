@@ -16,10 +16,8 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.fitting.asked import Asked
-from puck_tables.fitting.chain import slopes_of_slides
-from puck_tables.fitting.joined import Hit, Meeting, Slide, Wall, met
-from puck_tables.fitting.launched import (
+from puck_tables.fitting.fit_spec import FitSpec
+from puck_tables.fitting.forward_model import (
     SPIN,
     TIME,
     VX,
@@ -29,10 +27,12 @@ from puck_tables.fitting.launched import (
     path_with_slopes,
     rates_of,
 )
+from puck_tables.fitting.impact_derivatives import slopes_of_slides
+from puck_tables.fitting.impact_law import ImpactSpec, ImpactState, Slide, WallLine, impact_at
+from puck_tables.fitting.observations import Observations, Straight, wrapped
 from puck_tables.fitting.parameters import LAUNCH
-from puck_tables.fitting.seen import Seen, Straight, wrapped
 from puck_tables.fitting.timing import weights_of
-from puck_tables.fitting.unknowns import Found, Unknowns
+from puck_tables.fitting.unknowns import NumbersOf, Unknowns
 
 X, Y, TURN = range(3)  # of a path
 PLACE, ANGLE, PRIOR, UNSEEN = range(4)  # kinds of residuals; of what does not count there are none
@@ -46,7 +46,7 @@ class Problem(Unknowns):
 
     Parameters
     ----------
-    asked : what is to be found of the puck
+    spec : what is to be found of the puck
     films : the tracks
     noise : standard deviations of places (m) and angles (rad)
     tall : whether part of the base may lift
@@ -58,14 +58,14 @@ class Problem(Unknowns):
     weights : what makes residuals of each track's frames independent (n, 3, 3); empty: the noise
     """
 
-    asked: Asked
-    films: tuple[Seen, ...]
+    spec: FitSpec
+    films: tuple[Observations, ...]
     noise: tuple[float, float]
     tall: bool = False
     whole: tuple[FloatArray | None, ...] = ()
     rests: tuple[bool, ...] = ()
-    walls: tuple[Wall | None, ...] = ()
-    meetings: tuple[Meeting, ...] = ()
+    walls: tuple[WallLine | None, ...] = ()
+    impact_specs: tuple[ImpactSpec, ...] = ()
     jitter: float = 0.0
     weights: tuple[FloatArray, ...] = ()
 
@@ -79,48 +79,50 @@ class Problem(Unknowns):
             kinds.append(np.where(turn, ANGLE, UNSEEN)[self._angled(film)])
         return np.concatenate([*kinds, np.full(len(self.priors), PRIOR)]).astype(np.int64)
 
-    def moving(self, found: Found) -> Moving:
+    def moving(self, found: NumbersOf) -> Moving:
         """What moves the puck."""
-        return self.asked.moving(found, self.tall)
+        return self.spec.moving(found, self.tall)
 
-    def slides(self, x: FloatArray) -> tuple[list[list[Slide]], list[Hit]]:
+    def slides(self, x: FloatArray) -> tuple[list[list[Slide]], list[ImpactState]]:
         """The slides of each track, in their order, and the impacts between them.
 
         Times are those after the start of the first track.
         """
-        found = self.found(x)
+        found = self.numbers_at(x)
         slides = [
             [Slide(self._begin(n, found), launch)] for n, launch in enumerate(self.launches(x))
         ]
-        hits = []
-        if self.meetings:
-            moving, walls = self.moving(found), self.found_walls(x)
-            gyration = {**self.asked.known(), **found}["gyration"]
-        for meeting in self.meetings:
-            wall = None if meeting.wall < 0 else walls[meeting.wall]
-            before = tuple(slides[n][-1] for n in meeting.films)
-            hit = met(moving, gyration, self.asked.rims(found, wall is None), meeting, before, wall)
-            for n, slide in zip(meeting.films, hit.after, strict=True):
+        impacts = []
+        if self.impact_specs:
+            moving, walls = self.moving(found), self.estimated_walls(x)
+            gyration = {**self.spec.known(), **found}["gyration"]
+        for impact_spec in self.impact_specs:
+            wall = None if impact_spec.wall < 0 else walls[impact_spec.wall]
+            before = tuple(slides[n][-1] for n in impact_spec.films)
+            impact = impact_at(
+                moving, gyration, self.spec.rims(found, wall is None), impact_spec, before, wall
+            )
+            for n, slide in zip(impact_spec.films, impact.after, strict=True):
                 slides[n].append(slide)
-            hits.append(hit)
-        return slides, hits
+            impacts.append(impact)
+        return slides, impacts
 
-    def _begin(self, n: int, found: Found) -> float:
+    def _begin(self, n: int, found: NumbersOf) -> float:
         """When a track begins, s after the start of the first."""
         film = self.films[n]
-        late = 0.0 if film.row is None else self.asked.readout(found) * float(film.row[0])
+        late = 0.0 if film.row is None else self.spec.readout(found) * float(film.row[0])
         return film.start - self.films[0].start + late
 
-    def _times(self, n: int, found: Found) -> FloatArray:
+    def _times(self, n: int, found: NumbersOf) -> FloatArray:
         """The times of a track's frames after its first: lines of a picture are read in turn."""
         film = self.films[n]
         if film.row is None:
             return film.time
-        late: FloatArray = self.asked.readout(found) * (film.row - film.row[0])
+        late: FloatArray = self.spec.readout(found) * (film.row - film.row[0])
         return film.time + late
 
     def _parts(
-        self, n: int, found: Found, slides: list[Slide]
+        self, n: int, found: NumbersOf, slides: list[Slide]
     ) -> list[tuple[slice, FloatArray, Slide]]:
         """The frames of each slide of a track, their times after its launch, and the slide."""
         times = self._times(n, found)
@@ -143,7 +145,7 @@ class Problem(Unknowns):
         return self._along(x, rates_of, False)
 
     def _along(self, x: FloatArray, of: Along, placed: bool) -> list[FloatArray]:
-        found = self.found(x)
+        found = self.numbers_at(x)
         moving, (slides, _) = self.moving(found), self.slides(x)
         tracks = []
         for n, track in enumerate(slides):
@@ -155,11 +157,11 @@ class Problem(Unknowns):
             tracks.append(parts[0] if len(parts) == 1 else np.concatenate(parts, axis=1))
         return tracks
 
-    def off(self, x: FloatArray) -> list[FloatArray]:
+    def deviations(self, x: FloatArray) -> list[FloatArray]:
         """Model less what was seen (3, n) of each track, m and rad; NaN where no angle was."""
-        return self._off(self.paths(x))
+        return self._deviations(self.paths(x))
 
-    def _off(self, paths: list[FloatArray]) -> list[FloatArray]:
+    def _deviations(self, paths: list[FloatArray]) -> list[FloatArray]:
         rows = []
         for n, (film, path) in enumerate(zip(self.films, paths, strict=True)):
             turn = np.full(film.time.size, np.nan)
@@ -176,26 +178,32 @@ class Problem(Unknowns):
         return self._residuals(x, self.paths(x))
 
     def _residuals(self, x: FloatArray, paths: list[FloatArray]) -> FloatArray:
-        rows = [self._weighed(n, off) for n, off in enumerate(self._off(paths))]
+        rows = [
+            self._weighed(n, deviations) for n, deviations in enumerate(self._deviations(paths))
+        ]
         rows += [np.array([(x[k] - value) / spread]) for k, value, spread in self.priors]
         return np.concatenate(rows)
 
-    def _weighed(self, n: int, off: FloatArray) -> FloatArray:
+    def _weighed(self, n: int, deviations: FloatArray) -> FloatArray:
         """What is off (3, n, …) in units of the noise, one frame's x after the other's, …"""
         angled = self._angled(self.films[n])
         if self.weights:
-            known = np.where(angled.reshape(-1, *[1] * (off.ndim - 2)), off[TURN], 0.0)
-            rows = np.einsum("nab,bn...->an...", self.weights[n], np.stack([*off[:TURN], known]))
+            known = np.where(
+                angled.reshape(-1, *[1] * (deviations.ndim - 2)), deviations[TURN], 0.0
+            )
+            rows = np.einsum(
+                "nab,bn...->an...", self.weights[n], np.stack([*deviations[:TURN], known])
+            )
         else:
-            rows = off / np.array([self.noise[0], self.noise[0], self.noise[1]]).reshape(
-                -1, *[1] * (off.ndim - 1)
+            rows = deviations / np.array([self.noise[0], self.noise[0], self.noise[1]]).reshape(
+                -1, *[1] * (deviations.ndim - 1)
             )
         straight = self.films[n].straight
         if straight is not None and not self.weights:  # which lie along the motion
             rows[X] = straight.way[0] * rows[X] + straight.way[1] * rows[Y]
         if straight is not None or self.films[n].counts is not None:
             counts = counting_of(self.films[n])
-            rows *= counts.reshape(3, -1, *[1] * (off.ndim - 2))
+            rows *= counts.reshape(3, -1, *[1] * (deviations.ndim - 2))
         return np.concatenate([rows[X], rows[Y], rows[TURN, angled]])
 
     def usual(self, rows: FloatArray) -> float:
@@ -208,11 +216,11 @@ class Problem(Unknowns):
 
     def residuals_and_jacobian(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Both, from the same motions."""
-        found = self.found(x)
+        found = self.numbers_at(x)
         moving, (slides, _) = self.moving(found), self.slides(x)
-        follow = slopes_of_slides(self, x) if self.meetings else []
+        follow = slopes_of_slides(self, x) if self.impact_specs else []
         out = np.zeros((self.kinds.size, x.size))
-        scales = {name: np.array(self.asked.slopes(found, name)) for name in self.asked.free}
+        scales = {name: np.array(self.spec.slopes(found, name)) for name in self.spec.free}
         spots = {key: k for k, key in enumerate(self.names)}
         row, paths = 0, []
         for n, film in enumerate(self.films):
@@ -224,9 +232,9 @@ class Problem(Unknowns):
                 path[:, frames], slopes = path_with_slopes(moving, velocity, spin, times)
                 path[:, frames] += slide.launch[[0, 1, 5], None]
                 block = whole[:, frames]
-                for name in self.asked.free:
+                for name in self.spec.free:
                     k = spots[-1, name]
-                    if self.asked.changes_curve(name):
+                    if self.spec.changes_motion(name):
                         block[:, :, k] = self._by_difference(found, name, times, slide)
                     else:
                         block[:, :, k] = np.einsum("k,kan->an", scales[name], slopes[3:TIME])
@@ -269,10 +277,10 @@ class Problem(Unknowns):
             block[:, :, spots[push]] += straight.slope * slopes[(VY, VX)[straight.main]]
 
     def _by_difference(
-        self, found: Found, name: str, times: FloatArray, slide: Slide
+        self, found: NumbersOf, name: str, times: FloatArray, slide: Slide
     ) -> FloatArray:
         """The derivative of a path to what changes the curve itself."""
-        low, high = self.asked.limits(name)
+        low, high = self.spec.limits(name)
         ends = [min(max(found[name] + s * _CURVE_STEP, low), high) for s in (-1.0, 1.0)]
         path: list[FloatArray] = []
         for value in ends:
@@ -282,7 +290,7 @@ class Problem(Unknowns):
         return slope
 
     @staticmethod
-    def _angled(film: Seen) -> npt.NDArray[np.bool_]:
+    def _angled(film: Observations) -> npt.NDArray[np.bool_]:
         if film.angle is None:
             return np.zeros(film.time.size, bool)
         known: npt.NDArray[np.bool_] = np.isfinite(film.angle)
@@ -315,12 +323,12 @@ class Problem(Unknowns):
             weights.append(weights_of(noise, moved.jitter, rates, placed))
         return replace(moved, weights=tuple(weights))
 
-    def with_films(self, films: tuple[Seen, ...]) -> Problem:
+    def with_films(self, films: tuple[Observations, ...]) -> Problem:
         """The same of other frames, before anything is known of their motion."""
         return replace(self, films=films, whole=(), weights=())
 
 
-def counting_of(film: Seen) -> npt.NDArray[np.bool_]:
+def counting_of(film: Observations) -> npt.NDArray[np.bool_]:
     """Whether x, or what lies along a line, y, and angle of each frame count (3, n)."""
     counts = np.ones((3, film.time.size), bool) if film.counts is None else film.counts.T.copy()
     if film.straight is not None:

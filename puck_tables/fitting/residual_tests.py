@@ -38,7 +38,7 @@ def runs(found: Estimate) -> float:
 
     Of all tracks, x, y and angles together.
     """
-    off, variance = 0.0, 0.0
+    deviations, variance = 0.0, 0.0
     for rows in _series(found):
         above = rows > 0.0
         n, plus = above.size, int(above.sum())
@@ -47,11 +47,11 @@ def runs(found: Estimate) -> float:
             continue
         mean = 2.0 * plus * minus / n
         changes = int((above[1:] != above[:-1]).sum())
-        off += changes - mean
+        deviations += changes - mean
         variance += mean * (2.0 * plus * minus - n) / (n * (n - 1.0))
     if variance == 0.0:
         return 1.0
-    return math.erfc(abs(off) / math.sqrt(2.0 * variance))
+    return math.erfc(abs(deviations) / math.sqrt(2.0 * variance))
 
 
 def drift(found: Estimate) -> float:
@@ -144,9 +144,11 @@ def lengthways(found: Estimate) -> float:
     Of frames that move, by three standard errors of such a ratio; 1 of too few.
     """
     along, across = [], []
-    off, rates = found.problem.off(found.x), found.problem.rates(found.x)
+    deviations, rates = found.problem.deviations(found.x), found.problem.rates(found.x)
     films = found.problem.films
-    for film, (x, _, _), one, rate in zip(films, found.problem.each(), off, rates, strict=True):
+    for film, (x, _, _), one, rate in zip(
+        films, found.problem.each(), deviations, rates, strict=True
+    ):
         if film.straight is not None:
             continue
         speed = np.hypot(rate[0], rate[1])

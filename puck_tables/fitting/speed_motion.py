@@ -111,7 +111,7 @@ def speed_path(
     u = (at - time[n]) / h
     one, two, left, right = known[:, n], known[:, n + 1], slopes[:, n] * h, slopes[:, n + 1] * h
     rise = two - one
-    bend, twist = 3.0 * rise - 2.0 * left - right, left + right - 2.0 * rise
-    path = one + u * (left + u * (bend + u * twist))
-    rate = np.where(times < time[-1], (left + u * (2.0 * bend + 3.0 * u * twist)) / h, 0.0)
+    kink, twist = 3.0 * rise - 2.0 * left - right, left + right - 2.0 * rise
+    path = one + u * (left + u * (kink + u * twist))
+    rate = np.where(times < time[-1], (left + u * (2.0 * kink + 3.0 * u * twist)) / h, 0.0)
     return path, rate

@@ -19,14 +19,14 @@ from itertools import product
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.fitting.abreast import FROM_AFAR, ROBUST, abreast
-from puck_tables.fitting.asked import Asked
+from puck_tables.fitting.fit_spec import FitSpec
 from puck_tables.fitting.least_squares import LOOSE, minimise
+from puck_tables.fitting.multi_start import FROM_AFAR, ROBUST, multi_start
+from puck_tables.fitting.observations import Observations, Turning, rests_from, turning_of
 from puck_tables.fitting.parameters import LAUNCH
 from puck_tables.fitting.problem import Problem
-from puck_tables.fitting.seen import Seen, Turning, rests_from, turning_of
-from puck_tables.fitting.turns import by_place, half_turns, in_order
-from puck_tables.fitting.unknowns import Found
+from puck_tables.fitting.unknowns import NumbersOf
+from puck_tables.fitting.whole_turns import by_place, half_turns, in_order
 
 _SHARE, _FEW = 0.25, 6  # of the moving frames, and at least: the parabola
 _MOST_TURNS = 3
@@ -58,7 +58,7 @@ class _Guess:
 def minima_of(problem: Problem) -> list[FloatArray]:
     """The unknowns at the deepest minima of a problem of one track, the deepest first."""
     problem = replace(problem, weights=())
-    film, asked = problem.films[0], problem.asked
+    film, spec = problem.films[0], problem.spec
     if problem.rests and problem.rests[0]:
         return [_at_rest(problem)]
     moving = _moving_frames(film, problem.noise[0])
@@ -77,19 +77,19 @@ def minima_of(problem: Problem) -> list[FloatArray]:
             launch[5] = whole[np.isfinite(whole)][0]
             whole = whole[few]
         pieces = replace(problem, films=(part,), whole=(whole,))
-        found = {**_any(asked), **numbers_with(asked, guess.decel, guess.delta)}
+        found = {**_any(spec), **numbers_with(spec, guess.decel, guess.delta)}
         starts.append((pieces, pieces.unknowns(found, launch[None])))
     more = _given(problem, place, velocity)
     if turning is not None and not turning.sure:
         blind = replace(problem, films=(replace(film, angle=None),))
         by_angle = by_place(problem, blind, minima_of(blind)[:_BLIND])
-        more += [x for x, _ in abreast(by_angle, FROM_AFAR, ROBUST)]
-    return _deepest(problem, abreast(starts, FROM_AFAR, ROBUST, _RIVAL), more)
+        more += [x for x, _ in multi_start(by_angle, FROM_AFAR, ROBUST)]
+    return _deepest(problem, multi_start(starts, FROM_AFAR, ROBUST, _RIVAL), more)
 
 
 def _given(problem: Problem, place: FloatArray, velocity: FloatArray) -> list[FloatArray]:
     """The unknowns at which the caller wants to begin."""
-    start = problem.asked.start
+    start = problem.spec.start
     if not start:
         return []
     launch = np.array([*place, *velocity, 0.0, 0.0])
@@ -98,7 +98,7 @@ def _given(problem: Problem, place: FloatArray, velocity: FloatArray) -> list[Fl
         launch[5] = film.angle[np.isfinite(film.angle)][0]
     for n, name in enumerate(LAUNCH):
         launch[n] = start.get(name, launch[n])
-    return [np.clip(problem.unknowns(_any(problem.asked), launch[None]), *problem.limits)]
+    return [np.clip(problem.unknowns(_any(problem.spec), launch[None]), *problem.limits)]
 
 
 def _at_rest(problem: Problem) -> FloatArray:
@@ -108,7 +108,7 @@ def _at_rest(problem: Problem) -> FloatArray:
     launch[:2] = np.median(film.place, axis=0)
     if film.angle is not None:
         launch[5] = np.angle(np.nanmean(np.exp(1j * film.angle)))
-    return problem.unknowns(_any(problem.asked), launch[None])
+    return problem.unknowns(_any(problem.spec), launch[None])
 
 
 def _deepest(
@@ -121,7 +121,7 @@ def _deepest(
     (x, least), *others = minima
     rivals = [x] + [other for other, cost in others if cost < least + _RIVAL] + more
     marked = problem.films[0].angle is not None
-    if marked and "launch_spin" not in problem.asked.fixed:
+    if marked and "launch_spin" not in problem.spec.fixed:
         spin = problem.names.index((0, "launch_spin"))
         half = half_turns(problem.films[0])
         if abs(x[spin]) > half:
@@ -134,7 +134,7 @@ def _deepest(
     return in_order(problem, found) if marked else found
 
 
-def slowing_of(film: Seen, spread: float) -> float:
+def slowing_of(film: Observations, spread: float) -> float:
     """About how fast a puck slows down while it moves, m/s²; ``spread`` m: of its places.
 
     Examples
@@ -147,12 +147,12 @@ def slowing_of(film: Seen, spread: float) -> float:
     return _first_parabola(film, _moving_frames(film, spread))[2]
 
 
-def _moving_frames(film: Seen, spread: float) -> int:
+def _moving_frames(film: Observations, spread: float) -> int:
     """How many frames it moves for, at least so many as a parabola needs."""
     return max(rests_from(film, spread), min(_FEW, film.time.size))
 
 
-def _first_parabola(film: Seen, moving: int) -> tuple[FloatArray, FloatArray, float]:
+def _first_parabola(film: Observations, moving: int) -> tuple[FloatArray, FloatArray, float]:
     """Place and velocity at the start, and the deceleration along it over the whole run, m/s²."""
     first = robust_parabola(film.time, film.place, 0, min(max(_FEW, int(_SHARE * moving)), moving))
     last = robust_parabola(film.time, film.place, max(0, moving - max(_FEW, moving // 4)), moving)
@@ -172,9 +172,9 @@ def robust_parabola(time: FloatArray, place: FloatArray, start: int, stop: int) 
     for _ in range(6):
         root = np.sqrt(weights)[:, None]
         coefficients = np.linalg.lstsq(powers * root, p * root, rcond=None)[0]
-        off = np.hypot(*(p - powers @ coefficients).T)
-        spread = max(float(np.median(off)), 1e-9 * float(np.abs(p).max()), 1e-150)
-        weights = 1.0 / (1.0 + (off / (2.0 * spread)) ** 2) ** 2
+        deviations = np.hypot(*(p - powers @ coefficients).T)
+        spread = max(float(np.median(deviations)), 1e-9 * float(np.abs(p).max()), 1e-150)
+        weights = 1.0 / (1.0 + (deviations / (2.0 * spread)) ** 2) ** 2
     found[: len(coefficients)] = coefficients
     return found
 
@@ -183,23 +183,23 @@ def _guesses(
     problem: Problem, velocity: FloatArray, slowing: float, turning: Turning | None, rests: bool
 ) -> list[_Guess]:
     """The motions that lie nearest to the track, of different spins or heights."""
-    asked, film = problem.asked, problem.films[0]
-    speed, radius = math.hypot(*velocity), asked.scales(_any(asked))[2]
+    spec, film = problem.spec, problem.films[0]
+    speed, radius = math.hypot(*velocity), spec.scales(_any(spec))[2]
     chosen = np.unique(np.linspace(0, film.time.size - 1, _FRAMES).astype(int))
     time = film.time[chosen]
     ahead = np.array([velocity, [-velocity[1], velocity[0]]]) / max(speed, _LEAST_SPEED)
     places = (film.place[chosen] - film.place[0]) @ ahead.T
     size = float(np.abs(places).max()) + problem.noise[0]
-    curve = problem.moving(_any(asked)).curve
+    motions = problem.moving(_any(spec)).motions
     found = []
-    spins = [(0.0, 0)] if problem.spinless[0] else _spins(asked, turning, speed, radius, rests)
+    spins = [(0.0, 0)] if problem.spinless[0] else _spins(spec, turning, speed, radius, rests)
     for spin, turns in spins:
         slip = math.hypot(speed, radius * spin) or 1.0
         phi = math.atan2(radius * spin, speed)
         rates = None if turning is None else turning.with_more(turns, film.time)[0]
         moments = time if turning is None else np.concatenate([time, turning.time])
-        heights, decels = _scales(asked, slowing / max(math.cos(phi), 0.1))
-        heights = np.minimum(heights, curve.highest)
+        heights, decels = _scales(spec, slowing / max(math.cos(phi), 0.1))
+        heights = np.minimum(heights, motions.highest)
 
         def scores(
             decels: FloatArray, share: float, phi: float = phi, heights: FloatArray = heights,
@@ -207,14 +207,14 @@ def _guesses(
         ) -> FloatArray:  # fmt: skip
             tau = (decels / slip)[..., None] * moments
             same = np.full(heights.size, phi)
-            states = curve.states(same, heights, tau.reshape(heights.size, -1))
+            states = motions.states(same, heights, tau.reshape(heights.size, -1))
             states = states.reshape(6, *tau.shape)
             length = (slip * slip / decels)[..., None]
-            off = np.hypot(
+            deviations = np.hypot(
                 length * states[0, ..., : time.size] - places[:, 0],
                 length * states[1, ..., : time.size] - places[:, 1],
             ) / (share * size)  # fmt: skip
-            score: FloatArray = np.log1p(off * off).mean(axis=-1)
+            score: FloatArray = np.log1p(deviations * deviations).mean(axis=-1)
             if rates is not None:
                 spins = states[5, ..., time.size :] * (slip / radius)
                 scale = _RATE_SHARE * abs(rates[0]) + 0.01 / film.usual_step
@@ -241,16 +241,16 @@ def _guesses(
 
 
 def _spins(
-    asked: Asked, turning: Turning | None, speed: float, radius: float, rests: bool
+    spec: FitSpec, turning: Turning | None, speed: float, radius: float, rests: bool
 ) -> list[tuple[float, int]]:
     """Spins to try, with how many more turns from frame to frame each means."""
-    if "launch_spin" in asked.fixed:
-        spin = asked.fixed["launch_spin"]
+    if "launch_spin" in spec.fixed:
+        spin = spec.fixed["launch_spin"]
         if turning is None:
             return [(spin, 0)]
         first = float(turning.rate[0])
         return [(spin, round((spin - first) * turning.step / (2.0 * math.pi)))]
-    more = [(asked.start["launch_spin"], 0)] if "launch_spin" in asked.start else []
+    more = [(spec.start["launch_spin"], 0)] if "launch_spin" in spec.start else []
     if turning is None:
         scale = max(speed, _LEAST_SPEED) / radius
         spins = sorted({sign * ratio * scale for ratio, sign in product(_RATIOS, (1.0, -1.0))})
@@ -267,52 +267,52 @@ def _spins(
     return [(first + k * whole, k) for k in sorted(turns)]
 
 
-def _any(asked: Asked) -> Found:
+def _any(spec: FitSpec) -> NumbersOf:
     """Any numbers for what is free."""
-    known = asked.known()
-    middle = {"friction": 0.2, "decel": 2.0, "delta": 0.3, "height": 0.3 * asked.puck.radius}
+    known = spec.known()
+    middle = {"friction": 0.2, "decel": 2.0, "delta": 0.3, "height": 0.3 * spec.puck.radius}
     values = {}
-    for name in asked.free:
-        value = asked.start.get(name, asked.priors.get(name, (known.get(name) or 0.0,))[0])
-        low, high = asked.limits(name)
+    for name in spec.free:
+        value = spec.start.get(name, spec.priors.get(name, (known.get(name) or 0.0,))[0])
+        low, high = spec.limits(name)
         values[name] = min(max(value or middle.get(name, value), low), high)
     return values
 
 
-def _scales(asked: Asked, slowing: float) -> tuple[FloatArray, FloatArray]:
+def _scales(spec: FitSpec, slowing: float) -> tuple[FloatArray, FloatArray]:
     """Heights δ to try (n,), each with a range of J (n, m)."""
-    found = _any(asked)
-    decel, delta, _ = asked.scales(found)
-    decel_free = {"friction", "decel", "gravity"} & {*asked.free}
+    found = _any(spec)
+    decel, delta, _ = spec.scales(found)
+    decel_free = {"friction", "decel", "gravity"} & {*spec.free}
     decels = np.append(slowing * _DECELS, decel) if decel_free else np.array([decel])
     heights = {delta}
-    if {"delta", "height"} & {*asked.free}:
-        low, high = asked.limits("delta") if "delta" in asked.free else (0.0, 4.0)
+    if {"delta", "height"} & {*spec.free}:
+        low, high = spec.limits("delta") if "delta" in spec.free else (0.0, 4.0)
         tried = {min(max(height, low), high) for height in (*_HEIGHTS, delta)}
-        known = "delta" in asked.start or "height" in asked.start
+        known = "delta" in spec.start or "height" in spec.start
         heights = (tried if known else tried - heights) or heights
-    elif not asked.uses_delta:  # δ = 2 f h / r goes with J
+    elif not spec.uses_delta:  # δ = 2 f h / r goes with J
         return delta * decels / decel, decels[:, None]
     return np.array(sorted(heights)), np.tile(decels, (len(heights), 1))
 
 
-def numbers_with(asked: Asked, decel: float, delta: float) -> Found:
+def numbers_with(spec: FitSpec, decel: float, delta: float) -> NumbersOf:
     """The free numbers, of those that J and δ follow from, which mean these."""
-    found, others = {}, _any(asked)
-    gravity = {**asked.known(), **others}["gravity"]
+    found, others = {}, _any(spec)
+    gravity = {**spec.known(), **others}["gravity"]
     if "friction" in others:
         found["friction"] = decel / gravity
     elif "decel" in others:
         found["decel"] = decel
     elif "gravity" in others:
-        found["gravity"] = decel / asked.known()["friction"]
+        found["gravity"] = decel / spec.known()["friction"]
     if "delta" in others:
         found["delta"] = delta
     elif "height" in others:
         others.update(found)
-        radius, gravity = asked.scales(others)[2], {**asked.known(), **others}["gravity"]
+        radius, gravity = spec.scales(others)[2], {**spec.known(), **others}["gravity"]
         found["height"] = 0.5 * delta * radius * gravity / decel
     for name in found:
-        low, high = asked.limits(name)
+        low, high = spec.limits(name)
         found[name] = min(max(found[name], low), high)
     return found

@@ -68,8 +68,8 @@ def weights_of(
 
 
 def likeliest(
-    noise: tuple[float, float], jitter: float, known: Known, off: FloatArray, rates: FloatArray,
-    kept: npt.NDArray[np.bool_], share: float,
+    noise: tuple[float, float], jitter: float, known: Known, deviations: FloatArray, rates:
+    FloatArray, kept: npt.NDArray[np.bool_], share: float,
 ) -> tuple[tuple[float, float], float]:  # fmt: skip
     """The noise of places and angles, and σ_t, under which residuals are most likely.
 
@@ -84,9 +84,13 @@ def likeliest(
     """
     from scipy.optimize import minimize
 
-    angled = kept[1] & np.isfinite(off[2])
+    angled = kept[1] & np.isfinite(deviations[2])
     placed = kept[0]
-    x, y, turn = np.where(placed, off[0], 0.0), np.where(placed, off[1], 0.0), off[2]
+    x, y, turn = (
+        np.where(placed, deviations[0], 0.0),
+        np.where(placed, deviations[1], 0.0),
+        deviations[2],
+    )
     turn = np.where(angled, turn, 0.0)
     vx, vy, spin = rates
     speed = float(np.sqrt(np.mean(vx**2 + vy**2))) or 1.0

@@ -10,13 +10,13 @@ from functools import cached_property
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.fitting.asked import Asked
-from puck_tables.fitting.joined import Wall
-from puck_tables.fitting.limits import limits_of
+from puck_tables.fitting.fit_spec import FitSpec
+from puck_tables.fitting.impact_law import WallLine
+from puck_tables.fitting.observations import Observations
 from puck_tables.fitting.parameters import LAUNCH, WALL
-from puck_tables.fitting.seen import Seen
+from puck_tables.fitting.search_bounds import limits_of
 
-Found = dict[str, float]
+NumbersOf = dict[str, float]
 _MOTION = ("launch_vx", "launch_vy", "launch_spin")
 _ACROSS = (("launch_y", "launch_vy"), ("launch_x", "launch_vx"))  # of lines that x, or y, tells
 _WALL = -2  # the first wall in names, the next is one less
@@ -25,11 +25,11 @@ _WALL = -2  # the first wall in names, the next is one less
 class Unknowns:
     """What is asked of some tracks, and the vector of unknowns that answers it."""
 
-    asked: Asked
-    films: tuple[Seen, ...]
+    spec: FitSpec
+    films: tuple[Observations, ...]
     tall: bool
     rests: tuple[bool, ...]
-    walls: tuple[Wall | None, ...]
+    walls: tuple[WallLine | None, ...]
 
     @cached_property
     def launch_names(self) -> tuple[tuple[str, ...], ...]:
@@ -37,7 +37,7 @@ class Unknowns:
         return tuple(
             tuple(
                 name for name in LAUNCH
-                if name not in self.asked.fixed
+                if name not in self.spec.fixed
                 and (name != "launch_angle" or film.angle is not None)
                 and not (rests and name in _MOTION)
                 and not (spinless and name == "launch_spin")
@@ -54,9 +54,9 @@ class Unknowns:
 
         Unless something is said of their spin.
         """
-        asked = self.asked
-        said = any("launch_spin" in one for one in (asked.fixed, asked.priors, asked.bounds,
-                                                    asked.start))  # fmt: skip
+        spec = self.spec
+        said = any("launch_spin" in one for one in (spec.fixed, spec.priors, spec.bounds,
+                                                    spec.start))  # fmt: skip
         return tuple(
             not said and film.straight is not None and film.angle is None for film in self.films
         )
@@ -68,7 +68,7 @@ class Unknowns:
         walls = [
             (_WALL - n, name) for n, wall in enumerate(self.walls) if wall is None for name in WALL
         ]
-        return (*((-1, name) for name in self.asked.free), *launches, *walls)
+        return (*((-1, name) for name in self.spec.free), *launches, *walls)
 
     @cached_property
     def priors(self) -> tuple[tuple[int, float, float], ...]:
@@ -78,8 +78,8 @@ class Unknowns:
         """
         found = []
         for k, (_, name) in enumerate(self.names):
-            if name in self.asked.priors:
-                found.append((k, *self.asked.priors[name]))
+            if name in self.spec.priors:
+                found.append((k, *self.spec.priors[name]))
             elif name == "readout" and self.read_within is not None:
                 found.append((k, 0.5 * self.read_within, 0.5 * self.read_within))
         return tuple(found)
@@ -87,23 +87,23 @@ class Unknowns:
     @property
     def read_within(self) -> float | None:
         """The usual time between two frames, s, None where readout has a prior or bounds."""
-        if "readout" in (*self.asked.priors, *self.asked.bounds):
+        if "readout" in (*self.spec.priors, *self.spec.bounds):
             return None
         return min(film.usual_step for film in self.films)
 
     @cached_property
     def limits(self) -> tuple[FloatArray, FloatArray]:
         """The range in which each unknown is looked for."""
-        return limits_of(self.asked, self.films, self.names, self.tall)
+        return limits_of(self.spec, self.films, self.names, self.tall)
 
-    def found(self, x: FloatArray) -> Found:
+    def numbers_at(self, x: FloatArray) -> NumbersOf:
         """The numbers of the puck that are found."""
-        return dict(zip(self.asked.free, x[: len(self.asked.free)].tolist(), strict=True))
+        return dict(zip(self.spec.free, x[: len(self.spec.free)].tolist(), strict=True))
 
     def launches(self, x: FloatArray) -> FloatArray:
         """The launch (6,) of each track: x, y, vx, vy, spin, angle; (tracks, 6)."""
         out = np.empty((len(self.films), len(LAUNCH)))
-        out[:] = [self.asked.fixed.get(name, 0.0) for name in LAUNCH]
+        out[:] = [self.spec.fixed.get(name, 0.0) for name in LAUNCH]
         order = list(LAUNCH)
         for k, (track, name) in enumerate(self.names):
             if track >= 0:
@@ -117,7 +117,7 @@ class Unknowns:
         return out
 
     def unknowns(
-        self, found: Found, launches: FloatArray, walls: tuple[Wall, ...] = ()
+        self, found: NumbersOf, launches: FloatArray, walls: tuple[WallLine, ...] = ()
     ) -> FloatArray:
         """The vector of unknowns from what they mean."""
         order = list(LAUNCH)
@@ -131,21 +131,21 @@ class Unknowns:
                 values.append(launches[track, order.index(name)])
         return np.array(values, float)
 
-    def found_walls(self, x: FloatArray) -> tuple[Wall, ...]:
+    def estimated_walls(self, x: FloatArray) -> tuple[WallLine, ...]:
         """All walls, given or found."""
-        found: list[Wall] = []
+        found: list[WallLine] = []
         at = len(self.names) - len(WALL) * self.walls.count(None)
         for wall in self.walls:
             if wall is None:
-                wall, at = Wall(*x[at : at + len(WALL)].tolist()), at + len(WALL)
+                wall, at = WallLine(*x[at : at + len(WALL)].tolist()), at + len(WALL)
             found.append(wall)
         return tuple(found)
 
     def within(self, x: FloatArray) -> FloatArray:
         """The same, with the height of the tallest puck that moves so: all higher ones do, too."""
-        delta, highest = self.asked.scales(self.found(x))[1], self.asked.highest(self.tall)
-        if "height" not in self.asked.free or not delta > highest:
+        delta, highest = self.spec.scales(self.numbers_at(x))[1], self.spec.highest(self.tall)
+        if "height" not in self.spec.free or not delta > highest:
             return x
         lower = x.copy()
-        lower[self.asked.free.index("height")] *= highest / delta
+        lower[self.spec.free.index("height")] *= highest / delta
         return lower

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.polynomial.polynomial import polyval
 
 from puck_tables._core.monotone import monotone_cubic
-from puck_tables.fitting.launched import path_of
+from puck_tables.fitting.fit_result import Fit
+from puck_tables.fitting.forward_model import path_of
 from puck_tables.fitting.numbers import Number
-from puck_tables.fitting.outcome import Fit
 from puck_tables.fitting.parameters import NODES
 from puck_tables.plot.style import BLUE, COLORS, GREY, LAUNCH, ORANGE, RED, canvas
 from puck_tables.plot.titles import legend_below, titled
@@ -29,7 +29,7 @@ _NARROW = 5.0  # times as long as wide: a path that is shown in scales of its ow
 
 def draw(found: Fit) -> Figure:
     """Paths, residuals over time, pulls, and profile curves of the puck's numbers."""
-    free = found.estimate.problem.asked.free
+    free = found.estimate.problem.spec.free
     names = [n for n in free if found.numbers[n].determined]
     figure = canvas(11.0, 7.0)
     grid = figure.add_gridspec(2, 6)
@@ -37,7 +37,7 @@ def draw(found: Fit) -> Figure:
     _draw_residuals(figure.add_subplot(grid[0, 3:]), found)
     _draw_pulls(figure.add_subplot(grid[1, :2]), found)
     if names:
-        speeds = found.estimate.problem.asked.speeds
+        speeds = found.estimate.problem.spec.speeds
         # friction over slip speed has a panel of its own, for all of its numbers
         shown = [name for name in names if not (speeds and name in NODES)][:3]
         shown = (shown or names)[: 2 if speeds else 3]
@@ -55,7 +55,7 @@ def draw(found: Fit) -> Figure:
 def draw_on(paths: Axes, found: Fit) -> None:
     """The paths alone."""
     problem, x = found.estimate.problem, found.estimate.x
-    moving, (slides, hits) = problem.moving(problem.found(x)), problem.slides(x)
+    moving, (slides, hits) = problem.moving(problem.numbers_at(x)), problem.slides(x)
     whole, told = {film.name: film for film in found.uncut}, set[str]()
 
     def once(words: str) -> str | None:
@@ -155,7 +155,7 @@ def _draw_friction(panel: Axes, found: Fit) -> None:
 
 def _draw_profile(panel: Axes, found: Fit, name: str) -> None:
     """By how much χ² rises when one number is held elsewhere."""
-    k = found.estimate.problem.asked.free.index(name)
+    k = found.estimate.problem.spec.free.index(name)
     values, rises = found.profile(name, _POINTS, _REACH)
     number = found.numbers[name]
     fine = np.linspace(values[0], values[-1], 100)

@@ -18,8 +18,8 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.least_squares import LOOSE, minimise
+from puck_tables.fitting.observations import Observations
 from puck_tables.fitting.problem import ANGLE, PLACE, TURN, Problem
-from puck_tables.fitting.seen import Seen
 
 EXCLUDED = 25.0  # of χ²: a spin of less than half a turn a frame
 _MISFIT, _LESS = 1.5, 5.0  # residuals over the noise that are none, and how many times less count
@@ -40,7 +40,7 @@ class Judged(NamedTuple):
     size: float
 
 
-def half_turns(film: Seen) -> float:
+def half_turns(film: Observations) -> float:
     """The spin of half a turn a frame, rad/s, infinite of a track without angles."""
     return math.inf if film.angle is None else math.pi / film.usual_step
 
@@ -91,13 +91,13 @@ def on_another_floor(problem: Problem, x: FloatArray) -> tuple[Problem, FloatArr
 
     Where such a slow motion fits as well as a fast one it is the floor that is another.
     """
-    asked = problem.asked
-    if asked.speeds or "drag" in asked.free or "drag" in asked.fixed:
+    spec = problem.spec
+    if spec.speeds or "drag" in spec.free or "drag" in spec.fixed:
         return None
-    free = len(asked.free)
-    bounds = {**asked.bounds, "drag": (0.0, _MOST_DRAG)}
-    asked = replace(asked, free=(*asked.free, "drag"), bounds=bounds)
-    moved = replace(problem, asked=asked, weights=())
+    free = len(spec.free)
+    bounds = {**spec.bounds, "drag": (0.0, _MOST_DRAG)}
+    spec = replace(spec, free=(*spec.free, "drag"), bounds=bounds)
+    moved = replace(problem, spec=spec, weights=())
     return moved, np.insert(x, free, _LITTLE_DRAG)
 
 
@@ -155,7 +155,7 @@ def by_place(problem: Problem, blind: Problem, minima: list[FloatArray]) -> list
     seen = np.isfinite(film.angle)
     starts = []
     for x in minima:
-        whole = problem.unknowns(blind.found(x), blind.launches(x))
+        whole = problem.unknowns(blind.numbers_at(x), blind.launches(x))
         moved = np.array([k for k, (_, name) in enumerate(problem.names) if name != "launch_angle"])
         covariance = _covariance(blind, x)
         slopes = problem.jacobian(whole)[problem.kinds == ANGLE][:, moved] * problem.noise[1]
@@ -172,8 +172,8 @@ def by_place(problem: Problem, blind: Problem, minima: list[FloatArray]) -> list
         sides = [np.linspace(-_WIDE, _WIDE, n) if n > 1 else np.zeros(1) for n in counts]
         grid = np.array(list(product(*sides)))
         path = problem.paths(whole)[0][TURN, seen]
-        off = np.exp(1j * (film.angle[seen] - path))
-        together = np.exp(-1j * (grid * spreads) @ ways.T) @ off / off.size
+        deviations = np.exp(1j * (film.angle[seen] - path))
+        together = np.exp(-1j * (grid * spreads) @ ways.T) @ deviations / deviations.size
         for k in np.argsort(-np.abs(together))[:_FOLLOWED]:
             change = ways @ (grid[k] * np.divide(1.0, spreads, where=spreads > 0.0,
                                                  out=np.zeros_like(spreads)))  # fmt: skip
@@ -193,7 +193,7 @@ def _covariance(blind: Problem, x: FloatArray) -> FloatArray:
     """Of unknowns that places alone tell, no wider than what may be."""
     rows, slopes = blind.residuals_and_jacobian(x)
     (film,) = blind.films
-    radius = blind.asked.scales(blind.found(x))[2]
+    radius = blind.spec.scales(blind.numbers_at(x))[2]
     rim = float(np.hypot(*blind.launches(x)[0, 2:4])) / radius
     wide = {"launch_spin": max(abs(float(blind.launches(x)[0, 4])), rim), "delta": 1.0}
     sizes = np.array([wide.get(name, max(abs(float(x[k])), 1e-3 * (film.time[-1] or 1.0)))

@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.fitting.seen import Seen, noise_of, rests_from
+from puck_tables.fitting.observations import Observations, noise_of, rests_from
 
 FAR = 25.0  # of χ²: by so much nearer, and by as much for each 1 of it that is left
 _REACHES = (6, 12, 24, 48)  # frames to either side
@@ -23,7 +23,7 @@ _SPIKE = 6.0  # standard deviations of a frame that is no motion
 _JUMPS, _PARTS, _FASTER = 5.0, 4, 1.1
 
 
-def touched(film: Seen, first: int, last: int) -> int | None:
+def first_touch(film: Observations, first: int, last: int) -> int | None:
     """The frame from ``first`` to ``last`` before which the motion jumps most; None if none does.
 
     Examples
@@ -52,7 +52,7 @@ def touched(film: Seen, first: int, last: int) -> int | None:
     return where
 
 
-def pushed(film: Seen, start: int, stop: int) -> bool:
+def pushed(film: Observations, start: int, stop: int) -> bool:
     """Whether the puck gets faster between two frames.
 
     Examples
@@ -79,7 +79,12 @@ def pushed(film: Seen, start: int, stop: int) -> bool:
 
 
 def _gain(
-    film: Seen, noise: float, steady: npt.NDArray[np.bool_], middle: int, reach: int, rests: int
+    film: Observations,
+    noise: float,
+    steady: npt.NDArray[np.bool_],
+    middle: int,
+    reach: int,
+    rests: int,
 ) -> float:
     """By how much two parabolas are nearer than one polynomial, 0 where that is by chance.
 
@@ -98,8 +103,8 @@ def _gain(
     left, count, slopes = 0.0, 0, []
     for side in sides:
         order = 2 if side.size >= _CURVED else 1
-        found, off = _near(time[side], film.place[side], order)
-        left, count = left + off, count + order + 1
+        found, deviations = _near(time[side], film.place[side], order)
+        left, count = left + deviations, count + order + 1
         slopes.append((found[1], 192.0 if order == 2 else 12.0, side.size, found[order]))
     both = np.concatenate(sides)
     one = _near(time[both], film.place[both], count - 1)[1]
@@ -128,9 +133,9 @@ def _near(time: FloatArray, place: FloatArray, order: int) -> tuple[FloatArray, 
 
 def _spikes(place: FloatArray, noise: float) -> npt.NDArray[np.bool_]:
     """Frames that lie far from the cubic through the two before and the two after (n,)."""
-    off = np.zeros(len(place))
+    deviations = np.zeros(len(place))
     inner = place[2:-2] - (4.0 * (place[1:-3] + place[3:-1]) - place[:-4] - place[4:]) / 6.0
-    off[2:-2] = np.hypot(*inner.T) / (1.4 * noise)
-    around = np.stack([np.roll(off, k) for k in (-2, -1, 1, 2)]).max(axis=0)
-    spikes: npt.NDArray[np.bool_] = (off > _SPIKE) & (off >= around)
+    deviations[2:-2] = np.hypot(*inner.T) / (1.4 * noise)
+    around = np.stack([np.roll(deviations, k) for k in (-2, -1, 1, 2)]).max(axis=0)
+    spikes: npt.NDArray[np.bool_] = (deviations > _SPIKE) & (deviations >= around)
     return spikes

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from puck_tables.fitting.coupled_fit import Impact
 from puck_tables.fitting.estimate import Estimate
-from puck_tables.fitting.numbers import FoundLaunch, Number
-from puck_tables.fitting.tied import Impact
+from puck_tables.fitting.numbers import EstimatedLaunch, Number
 from puck_tables.io.dataset import Variable, variable
 
 _FRAMES = (
@@ -40,7 +40,7 @@ def frames_of(found: Estimate) -> dict[str, Variable]:
     }
 
 
-def numbers_told(numbers: Mapping[str, Number]) -> dict[str, Variable]:
+def numbers_as_json(numbers: Mapping[str, Number]) -> dict[str, Variable]:
     """Columns of the numbers of the puck."""
     known = {name: number for name, number in numbers.items() if math.isfinite(number.value)}
     columns = {"number_name": variable("number_name", list(known), ("number",))}
@@ -50,26 +50,26 @@ def numbers_told(numbers: Mapping[str, Number]) -> dict[str, Variable]:
     return columns
 
 
-def told(number: Number) -> dict[str, Any]:
+def as_json(number: Number) -> dict[str, Any]:
     """A number as JSON has it."""
     return {**number._asdict(), "determined": number.determined, "at_bound": number.at_bound}
 
 
-def launch_told(one: FoundLaunch) -> dict[str, Any]:
+def launch_as_json(one: EstimatedLaunch) -> dict[str, Any]:
     """A launch as JSON has it."""
     return {
         "track": one.name, "time": one.time, "place": list(one.place),
         "velocity": list(one.velocity), "spin": one.spin, "angle": one.angle,
-        "numbers": {name: told(number) for name, number in one.numbers.items()},
+        "numbers": {name: as_json(number) for name, number in one.numbers.items()},
     }  # fmt: skip
 
 
-def impact_told(one: Impact) -> dict[str, Any]:
+def impact_as_json(one: Impact) -> dict[str, Any]:
     """An impact as JSON has it."""
     return {
-        **one._asdict(), "place": list(one.place), "restitution": told(one.restitution),
-        "rim": told(one.rim),
-        "mass_ratio": None if one.mass_ratio is None else told(one.mass_ratio),
+        **one._asdict(), "place": list(one.place), "restitution": as_json(one.restitution),
+        "rim": as_json(one.rim),
+        "mass_ratio": None if one.mass_ratio is None else as_json(one.mass_ratio),
     }  # fmt: skip
 
 

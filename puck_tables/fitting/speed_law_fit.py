@@ -12,7 +12,7 @@ from puck_tables.fitting.least_squares import LOOSE, minimise
 from puck_tables.fitting.parameters import NODES
 from puck_tables.fitting.problem import Problem
 from puck_tables.fitting.timing import Known
-from puck_tables.fitting.turns import on_another_floor
+from puck_tables.fitting.whole_turns import on_another_floor
 
 _FRAMES = 80  # that tell whether such a law may be the reason of a misfit
 _LEAST = 0.02  # of the largest friction of a line: the smallest
@@ -23,8 +23,8 @@ def over_speeds(found: Estimate, speeds: tuple[float, ...], between: str, known:
     """The estimate with a friction coefficient for each slip speed, from that of one for all."""
     moved, start = _begun(found.problem, found.x, speeds)
     lines, _ = minimise(moved, start, LOOSE)
-    asked = replace(moved.asked, between=between)
-    return estimate(replace(moved, asked=asked), lines, known)
+    spec = replace(moved.spec, between=between)
+    return estimate(replace(moved, spec=spec), lines, known)
 
 
 def tried(found: Estimate) -> Estimate:
@@ -35,14 +35,14 @@ def tried(found: Estimate) -> Estimate:
         few = np.zeros(film.time.size, bool)
         few[np.linspace(0, film.time.size - 1, _FRAMES).astype(int)] = True
         films.append(film.part(few))
-    radius = problem.asked.scales(problem.found(found.x))[2]
+    radius = problem.spec.scales(problem.numbers_at(found.x))[2]
     _, _, vx, vy, spin, _ = problem.launches(found.x).T
     top = float((np.hypot(vx, vy) + radius * np.abs(spin)).max())
     speeds = tuple(float(f"{1.1 * top * share:.2g}") for share in _SHARES)
     fewer = problem.with_films(tuple(films))
     moved, start = _begun(fewer, found.x, speeds)
     lines, _ = minimise(moved, start, LOOSE)
-    smooth = replace(moved, asked=replace(moved.asked, between="cubic"))
+    smooth = replace(moved, spec=replace(moved.spec, between="cubic"))
     x, _ = minimise(smooth, lines, LOOSE)
     return replace(found, problem=smooth, x=x, minima=())
 
@@ -55,16 +55,16 @@ def _begun(
     Where drag besides friction is nearer to the tracks, which is a line, it is that of the line.
     Where f is the same at all speeds the slopes of a cubic jump: lines lead away from there.
     """
-    asked = problem.asked.over(speeds, "linear")
-    numbers, launches = problem.found(x), problem.launches(x)
-    numbers.update({name: numbers["friction"] for name in asked.free if name in NODES})
-    moved = replace(problem, asked=asked, weights=(), tall=False)
-    start = moved.unknowns(numbers, launches, problem.found_walls(x))
-    line = None if problem.meetings else on_another_floor(problem, x)
+    spec = problem.spec.over(speeds, "linear")
+    numbers, launches = problem.numbers_at(x), problem.launches(x)
+    numbers.update({name: numbers["friction"] for name in spec.free if name in NODES})
+    moved = replace(problem, spec=spec, weights=(), tall=False)
+    start = moved.unknowns(numbers, launches, problem.estimated_walls(x))
+    line = None if problem.impact_specs else on_another_floor(problem, x)
     if line is None:
         return moved, start
     there, _ = minimise(*line, LOOSE)
-    found, gravity = line[0].found(there), problem.asked.known()["gravity"]
+    found, gravity = line[0].numbers_at(there), problem.spec.known()["gravity"]
     values = found["friction"] + found["drag"] / gravity * np.array(speeds)
     values = np.maximum(values, _LEAST * values.max())
     numbers.update(dict(zip(NODES, values.tolist(), strict=False)))
@@ -79,12 +79,12 @@ def law_over(
     found: Estimate, covariance: FloatArray, at: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """The friction coefficient at slip speeds (n,) m/s, and its standard errors (n,)."""
-    asked, numbers = found.problem.asked, found.problem.found(found.x)
-    count = len(asked.speeds)
+    spec, numbers = found.problem.spec, found.problem.numbers_at(found.x)
+    count = len(spec.speeds)
     slopes = np.zeros((at.size, count))
-    for k, name in enumerate(asked.free[:count]):
+    for k, name in enumerate(spec.free[:count]):
         step = 1e-4 * numbers[name]
-        ends = [asked.speed_law({**numbers, name: numbers[name] + by})(at) for by in (step, -step)]
+        ends = [spec.speed_law({**numbers, name: numbers[name] + by})(at) for by in (step, -step)]
         slopes[:, k] = (ends[0] - ends[1]) / (2.0 * step)
     spread = np.einsum("ni,ik,nk->n", slopes, covariance[:count, :count], slopes)
-    return np.asarray(asked.speed_law(numbers)(at)), np.sqrt(spread)
+    return np.asarray(spec.speed_law(numbers)(at)), np.sqrt(spread)

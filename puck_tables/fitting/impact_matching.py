@@ -21,12 +21,12 @@ from typing import NamedTuple
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.fitting.asked import Asked
-from puck_tables.fitting.impacts import Piece
-from puck_tables.fitting.joined import Meeting, Slide, Wall, state_at
+from puck_tables.fitting.fit_spec import FitSpec
+from puck_tables.fitting.impact_law import ImpactSpec, Slide, WallLine, state_at
+from puck_tables.fitting.impacts import SlideIndex
+from puck_tables.fitting.observations import Observations
 from puck_tables.fitting.parameters import OF_PAIRS, OF_WALLS
 from puck_tables.fitting.problem import Problem
-from puck_tables.fitting.seen import Seen
 
 _TOGETHER = 2.0  # steps between frames within which two tracks bend at one moment
 _NEAR = 1.0  # radii: how far off two pucks, or a puck and a wall that was given, may seem to be
@@ -37,7 +37,7 @@ _REACH, _REACH_FRAMES = 0.4, 4.0  # of the time between impacts, and at least
 Line = tuple[tuple[float, float], tuple[float, float]]
 
 
-class Bend(NamedTuple):
+class Kink(NamedTuple):
     """What is seen of an impact from the slides on both sides.
 
     ``piece``: the one before; ``time`` s after the start of the first track; ``before``,
@@ -50,10 +50,10 @@ class Bend(NamedTuple):
     after: FloatArray
 
 
-class Blow(NamedTuple):
+class ImpactMatch(NamedTuple):
     """An impact as both sides show it: of one bend with a wall, or of two."""
 
-    bends: tuple[Bend, ...]
+    kinks_of_slides: tuple[Kink, ...]
     toward: float
     restitution: float
     ratio: float
@@ -61,42 +61,44 @@ class Blow(NamedTuple):
     mass: float
 
 
-def blows_of(problem: Problem, pieces: tuple[Piece, ...], x: FloatArray) -> list[Blow]:
+def matched_impacts(
+    problem: Problem, pieces: tuple[SlideIndex, ...], x: FloatArray
+) -> list[ImpactMatch]:
     """The impacts that slides show, in the order of time; ``x``: their unknowns."""
-    bends = [
+    kinks_of_slides = [
         _bend(problem, x, n) for n in range(len(pieces) - 1)
         if pieces[n].track == pieces[n + 1].track and pieces[n].slide + 1 == pieces[n + 1].slide
     ]  # fmt: skip
-    radius = problem.asked.scales(problem.found(x))[2]
+    radius = problem.spec.scales(problem.numbers_at(x))[2]
     step = max(film.usual_step for film in problem.films)
     taken: set[int] = set()
-    blows = []
+    matches = []
     near = [
         (abs(_apart(one, two) - 2.0 * radius), i, k)
-        for (i, one), (k, two) in combinations(enumerate(bends), 2)
+        for (i, one), (k, two) in combinations(enumerate(kinks_of_slides), 2)
         if pieces[one.piece].track != pieces[two.piece].track
         and abs(one.time - two.time) <= _TOGETHER * step
     ]
-    for off, i, k in sorted(near):
-        if off < _NEAR * radius and not taken & {i, k}:
-            blow = _of_two(problem, x, bends[i], bends[k])
-            if blow is not None:
-                blows.append(blow)
+    for deviations, i, k in sorted(near):
+        if deviations < _NEAR * radius and not taken & {i, k}:
+            match_ = _of_two(problem, x, kinks_of_slides[i], kinks_of_slides[k])
+            if match_ is not None:
+                matches.append(match_)
                 taken |= {i, k}
-    for k, bend in enumerate(bends):
-        blow = None if k in taken else _of_wall(problem, x, bend)
-        if blow is not None:
-            blows.append(blow)
-    return sorted(blows, key=lambda one: one.bends[0].time)
+    for k, kink in enumerate(kinks_of_slides):
+        match_ = None if k in taken else _of_wall(problem, x, kink)
+        if match_ is not None:
+            matches.append(match_)
+    return sorted(matches, key=lambda one: one.kinks_of_slides[0].time)
 
 
-def _apart(one: Bend, two: Bend) -> float:
+def _apart(one: Kink, two: Kink) -> float:
     return math.hypot(*(one.before[:2] - two.before[:2]))
 
 
-def _bend(problem: Problem, x: FloatArray, n: int) -> Bend:
+def _bend(problem: Problem, x: FloatArray, n: int) -> Kink:
     """Between piece ``n`` and the next."""
-    launches, found = problem.launches(x), problem.found(x)
+    launches, found = problem.launches(x), problem.numbers_at(x)
     moving = problem.moving(found)
     first = problem.films[0].start
     one, two = problem.films[n], problem.films[n + 1]
@@ -114,35 +116,35 @@ def _bend(problem: Problem, x: FloatArray, n: int) -> Bend:
     later = state_at(moving, slides[1], start + gap)
     back = begin[2:5] - (later[2:5] - begin[2:5]) * (start - time) / gap
     before = state_at(moving, slides[0], max(time, slides[0].since))
-    return Bend(n, time, before[:5], np.concatenate([begin[:2], back]))
+    return Kink(n, time, before[:5], np.concatenate([begin[:2], back]))
 
 
 def _numbers(problem: Problem, x: FloatArray) -> tuple[float, float]:
     """Radius of the puck and its radius of gyration over it."""
-    found = problem.found(x)
-    return problem.asked.scales(found)[2], {**problem.asked.known(), **found}["gyration"]
+    found = problem.numbers_at(x)
+    return problem.spec.scales(found)[2], {**problem.spec.known(), **found}["gyration"]
 
 
-def _of_wall(problem: Problem, x: FloatArray, bend: Bend) -> Blow | None:
+def _of_wall(problem: Problem, x: FloatArray, kink: Kink) -> ImpactMatch | None:
     """An impact with a wall; None if nothing pushed the puck back."""
     radius, gyration = _numbers(problem, x)
-    kick = bend.before[2:4] - bend.after[2:4]
-    rub = float(bend.before[4] - bend.after[4]) * gyration**2 * radius
+    kick = kink.before[2:4] - kink.after[2:4]
+    rub = float(kink.before[4] - kink.after[4]) * gyration**2 * radius
     if not abs(rub) < 0.7 * math.hypot(*kick):  # without angles spin is hardly known
         rub = 0.0
     push = math.sqrt(max(float(kick @ kick) - rub * rub, 0.0))
     toward = math.atan2(kick[1], kick[0]) - math.atan2(rub, push)
     normal = np.array([math.cos(toward), math.sin(toward)])
-    approach = float(bend.before[2:4] @ normal)
+    approach = float(kink.before[2:4] @ normal)
     if not (approach > 0.0 and approach < push < (1.0 + _BOUNCES) * approach):
         return None
-    slip = float(bend.before[3] * normal[0] - bend.before[2] * normal[1])
-    slip += radius * float(bend.before[4])
+    slip = float(kink.before[3] * normal[0] - kink.before[2] * normal[1])
+    slip += radius * float(kink.before[4])
     grip = rub * (1.0 + gyration**-2) / slip if slip != 0.0 else 1.0
-    return Blow((bend,), toward, push / approach - 1.0, rub / push, grip, math.inf)
+    return ImpactMatch((kink,), toward, push / approach - 1.0, rub / push, grip, math.inf)
 
 
-def _of_two(problem: Problem, x: FloatArray, one: Bend, two: Bend) -> Blow | None:
+def _of_two(problem: Problem, x: FloatArray, one: Kink, two: Kink) -> ImpactMatch | None:
     """An impact of two pucks; None if they were not pushed apart."""
     radius, gyration = _numbers(problem, x)
     across = two.before[:2] - one.before[:2]
@@ -160,10 +162,10 @@ def _of_two(problem: Problem, x: FloatArray, one: Bend, two: Bend) -> Blow | Non
     lightness = (1.0 + gyration**-2) * (1.0 + 1.0 / mass)
     grip = rub * lightness / slip if slip != 0.0 else 1.0
     toward = math.atan2(normal[1], normal[0])
-    return Blow((one, two), toward, leaving / approach, rub / push, grip, mass)
+    return ImpactMatch((one, two), toward, leaving / approach, rub / push, grip, mass)
 
 
-class Joined(NamedTuple):
+class CoupledFit(NamedTuple):
     """Slides that are joined: what least squares are asked, unknowns to begin with.
 
     ``pieces``: for each piece its track in ``problem``, and the first of its frames there.
@@ -174,10 +176,10 @@ class Joined(NamedTuple):
     pieces: tuple[int, ...]
 
 
-def joined(
-    problem: Problem, x: FloatArray, pieces: tuple[Piece, ...], films: tuple[Seen, ...],
-    asked: Asked, lines: Sequence[Line],
-) -> list[Joined]:  # fmt: skip
+def coupled(
+    problem: Problem, x: FloatArray, pieces: tuple[SlideIndex, ...], films: tuple[Observations,
+    ...], spec: FitSpec, lines: Sequence[Line],
+) -> list[CoupledFit]:  # fmt: skip
     """The problem of slides that impacts join; none where there is no impact.
 
     Where rims seem to stop on what they meet in each of several impacts there is another, in which
@@ -188,13 +190,13 @@ def joined(
     problem, x : of slides, each with a launch of its own, and a way in which they may move
     pieces : which they are
     films : the tracks, uncut
-    asked : with the numbers of impacts
+    spec : with the numbers of impacts
     lines : walls that are given, by two points each
     """
-    blows = blows_of(problem, pieces, x)
-    if not blows:
+    matches = matched_impacts(problem, pieces, x)
+    if not matches:
         return []
-    follows = {bend.piece + 1 for blow in blows for bend in blow.bends}
+    follows = {kink.piece + 1 for match_ in matches for kink in match_.kinks_of_slides}
     chains: list[list[int]] = []
     for n in range(len(pieces)):
         if n in follows:
@@ -209,88 +211,88 @@ def joined(
         name = whole.name if len(chain) > 1 else first.name
         tracks.append(replace(whole.part(inside), name=name))
         home.update(dict.fromkeys(chain, k))
-    walls: list[Wall | None] = []
-    starts: list[Wall] = []
-    meetings = []
+    walls: list[WallLine | None] = []
+    starts: list[WallLine] = []
+    impact_specs = []
     shift = problem.films[0].start - tracks[0].start
     radius = _numbers(problem, x)[0]
     step = max(film.usual_step for film in problem.films)
     known = dict(enumerate(lines))
     numbers: dict[int, int] = {}
-    for blow in blows:
-        bend = blow.bends[0]
-        ends = [problem.films[one.piece].time[-1] for one in blow.bends]
-        ends += [problem.films[one.piece + 1].time[-1] for one in blow.bends]
+    for match_ in matches:
+        kink = match_.kinks_of_slides[0]
+        ends = [problem.films[one.piece].time[-1] for one in match_.kinks_of_slides]
+        ends += [problem.films[one.piece + 1].time[-1] for one in match_.kinks_of_slides]
         number = -1
-        if len(blow.bends) == 1:
-            given = _given(known, bend, radius)
+        if len(match_.kinks_of_slides) == 1:
+            given = _given(known, kink, radius)
             if given is None or given[0] not in numbers:
                 if given is not None:
                     numbers[given[0]] = len(walls)
-                met = given[1] if given else _wall(blow, radius)
+                impact_at = given[1] if given else _wall(match_, radius)
                 number = len(walls)
                 walls.append(given[1] if given else None)
-                starts.append(met)
+                starts.append(impact_at)
             else:
                 number = numbers[given[0]]
-        films_met = tuple(home[one.piece] for one in blow.bends)
+        films_met = tuple(home[one.piece] for one in match_.kinks_of_slides)
         reach = max(_REACH * float(min(ends)), _REACH_FRAMES * step)
-        meetings.append(Meeting(bend.time + shift, reach, films_met, number))
-    sizes = {len(blow.bends) for blow in blows}
-    grip = all(abs(blow.grip) > _GRIPS for blow in blows)
-    ways = [asked.joined(sizes, grip)]
-    if grip and len(blows) > 1:
-        ways += [other for other in [asked.joined(sizes, False)] if other.free != ways[0].free]
+        impact_specs.append(ImpactSpec(kink.time + shift, reach, films_met, number))
+    sizes = {len(match_.kinks_of_slides) for match_ in matches}
+    grip = all(abs(match_.grip) > _GRIPS for match_ in matches)
+    ways = [spec.coupled(sizes, grip)]
+    if grip and len(matches) > 1:
+        ways += [other for other in [spec.coupled(sizes, False)] if other.free != ways[0].free]
     launches = problem.launches(x)[[chain[0] for chain in chains]]
     found = []
     for one in ways:
         tied = Problem(
             one, tuple(tracks), problem.noise, problem.tall,
             rests=tuple(problem.rests[chain[0]] for chain in chains) if problem.rests else (),
-            walls=tuple(walls), meetings=tuple(meetings),
+            walls=tuple(walls), impact_specs=tuple(impact_specs),
         )  # fmt: skip
-        values = {**problem.found(x), **_begin(one, blows)}
+        values = {**problem.numbers_at(x), **_begin(one, matches)}
         for name in one.free:
             low, high = one.limits(name)
             values[name] = min(max(values[name], low), high)
         start = tied.unknowns(values, launches, tuple(starts))
-        found.append(Joined(tied, start, tuple(home[n] for n in range(len(pieces)))))
+        found.append(CoupledFit(tied, start, tuple(home[n] for n in range(len(pieces)))))
     return found
 
 
-def _begin(asked: Asked, blows: list[Blow]) -> dict[str, float]:
+def _begin(spec: FitSpec, matches: list[ImpactMatch]) -> dict[str, float]:
     """Values of the numbers of impacts to begin with."""
     found = {}
     for names, count in ((OF_WALLS, 1), (OF_PAIRS, 2)):
-        mine = [blow for blow in blows if len(blow.bends) == count]
+        mine = [match_ for match_ in matches if len(match_.kinks_of_slides) == count]
         if not mine:
             continue
         e, mu, turned, *mass = names
-        found[e] = float(np.median([blow.restitution for blow in mine]))
-        found[mu] = max(abs(blow.ratio) for blow in mine)  # rims that grip rub less
-        found[turned] = float(np.median([blow.grip for blow in mine])) - 1.0
+        found[e] = float(np.median([match_.restitution for match_ in mine]))
+        found[mu] = max(abs(match_.ratio) for match_ in mine)  # rims that grip rub less
+        found[turned] = float(np.median([match_.grip for match_ in mine])) - 1.0
         if mass:
-            found[mass[0]] = float(np.median([blow.mass for blow in mine]))
-    return {name: asked.start.get(name, value) for name, value in found.items()}
+            found[mass[0]] = float(np.median([match_.mass for match_ in mine]))
+    return {name: spec.start.get(name, value) for name, value in found.items()}
 
 
-def _wall(blow: Blow, radius: float) -> Wall:
+def _wall(match_: ImpactMatch, radius: float) -> WallLine:
     """The wall where an impact was."""
-    normal = np.array([math.cos(blow.toward), math.sin(blow.toward)])
-    return Wall(blow.toward, float(blow.bends[0].before[:2] @ normal) + radius)
+    normal = np.array([math.cos(match_.toward), math.sin(match_.toward)])
+    return WallLine(match_.toward, float(match_.kinks_of_slides[0].before[:2] @ normal) + radius)
 
 
-def _given(lines: dict[int, Line], bend: Bend, radius: float) -> tuple[int, Wall] | None:
+def _given(lines: dict[int, Line], kink: Kink, radius: float) -> tuple[int, WallLine] | None:
     """The given wall that a puck touched, and its number; None if it was none of them."""
-    best: tuple[float, int, Wall] | None = None
+    best: tuple[float, int, WallLine] | None = None
     for n, (one, two) in lines.items():
         along = np.subtract(two, one)
         normal = np.array([along[1], -along[0]]) / math.hypot(*along)
-        if float((np.array(one) - bend.before[:2]) @ normal) < 0.0:
+        if float((np.array(one) - kink.before[:2]) @ normal) < 0.0:
             normal = -normal
         distance = float(np.array(one) @ normal)
-        off = abs(distance - float(bend.before[:2] @ normal) - radius)
-        closes = float(bend.before[2:4] @ normal) > 0.0
-        if closes and off < _NEAR * radius and (best is None or off < best[0]):
-            best = off, n, Wall(math.atan2(normal[1], normal[0]), distance)
+        deviations = abs(distance - float(kink.before[:2] @ normal) - radius)
+        closes = float(kink.before[2:4] @ normal) > 0.0
+        if closes and deviations < _NEAR * radius and (best is None or deviations < best[0]):
+            best = deviations, n, WallLine(math.atan2(normal[1], normal[0]), distance)
     return None if best is None else best[1:]

@@ -20,15 +20,15 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.fitting.abreast import abreast
-from puck_tables.fitting.certainty import Z95, Certainty, Rival, certainty_of
+from puck_tables.fitting.certainty import Z95, Certainty, OtherMinimum, certainty_of
 from puck_tables.fitting.compact import compact
-from puck_tables.fitting.doubts import ran_away
 from puck_tables.fitting.estimate import FARTHEST, Estimate
 from puck_tables.fitting.least_squares import SQUARES, minimise
+from puck_tables.fitting.multi_start import multi_start
 from puck_tables.fitting.numbers import plausible_for
+from puck_tables.fitting.plausibility import ran_away
 from puck_tables.fitting.starts import minima_of, numbers_with
-from puck_tables.fitting.turns import (
+from puck_tables.fitting.whole_turns import (
     EXCLUDED,
     Judged,
     half_turns,
@@ -47,7 +47,9 @@ _MORE_TURNS = 3
 _TO_OTHERS = ((3, 6), (12, 3))  # steps, and how many starts then go on
 
 
-def rivals_of(found: Estimate, certainty: Certainty, excess: float = 1.0) -> tuple[Rival, ...]:
+def other_minima(
+    found: Estimate, certainty: Certainty, excess: float = 1.0
+) -> tuple[OtherMinimum, ...]:
     """Other summits whose χ² is higher by less than :data:`RISE`.
 
     With angles they are motions of whole turns more from frame to frame; without them those of
@@ -57,10 +59,10 @@ def rivals_of(found: Estimate, certainty: Certainty, excess: float = 1.0) -> tup
     """
     problem = found.problem
     marked = any(film.angle is not None for film in problem.films)
-    apart = not problem.meetings
+    apart = not problem.impact_specs
     signed = marked or not apart  # a wall tells a motion from its mirror image
     single = len(problem.films) == 1
-    if problem.asked.speeds:
+    if problem.spec.speeds:
         return ()
     starts = list(found.minima)
     if not starts and apart and single:
@@ -70,19 +72,19 @@ def rivals_of(found: Estimate, certainty: Certainty, excess: float = 1.0) -> tup
     starts += _of_other_turns(found)
     # few residuals tell their noise badly, and χ² with it
     far = max(certainty.quantile / Z95, 1.0) ** 2
-    rivals: list[Rival] = []
+    rivals: list[OtherMinimum] = []
     summits = [(found.x, *_known(found, certainty))]
     for start in starts:
         x, cost = minimise(problem, start, SQUARES, found.kept)
         rise = 2.0 * cost - found.chi2
-        off = [
+        deviations = [
             (np.abs(_told(x, signed) - _told(one, signed)) > far)[seen]
             for one, seen, far in summits
         ]
         most = far * RISE / (excess**2 if marked else 1.0)
         if is_slow(problem, x) and not is_slow(problem, found.x):
             most = most_of_slow(far * found.chi2, excess)
-        if rise < most and all(one.any() for one in off):
+        if rise < most and all(one.any() for one in deviations):
             # what one motion tells another may not: each summit is as wide as it is
             rows, slopes = problem.residuals_and_jacobian(x)
             x = np.where(slopes.any(axis=0), x, start)  # what does nothing stays where it was
@@ -90,11 +92,11 @@ def rivals_of(found: Estimate, certainty: Certainty, excess: float = 1.0) -> tup
             plausible = plausible_for(problem, x)
             own = certainty_of(slopes[found.kept], plausible, certainty.degrees)
             summits.append((x, *_known(there, own)))
-            rivals.append(Rival(there, own, rise, _spun_otherwise(found, x, certainty)))
+            rivals.append(OtherMinimum(there, own, rise, _spun_otherwise(found, x, certainty)))
     return tuple(rivals)
 
 
-def taken(found: Estimate, rivals: tuple[Rival, ...], excess: float) -> Rival | None:
+def taken(found: Estimate, rivals: tuple[OtherMinimum, ...], excess: float) -> OtherMinimum | None:
     """The motion that is taken in place of an estimate; None if that is.
 
     Of one that ran away any that did not is taken, of those that fit about as well.
@@ -166,11 +168,11 @@ def _of_other_spins(found: Estimate) -> list[FloatArray]:
     All tracks without spin, at the ratio that all motions tend to, or mirrored.
     """
     problem = found.problem
-    if _SPIN in problem.asked.fixed or all(problem.spinless):
+    if _SPIN in problem.spec.fixed or all(problem.spinless):
         return []
     launches = problem.launches(found.x)
-    numbers = problem.found(found.x)
-    decel, delta, radius = problem.asked.scales(numbers)
+    numbers = problem.numbers_at(found.x)
+    decel, delta, radius = problem.spec.scales(numbers)
     speed = np.hypot(launches[:, 2], launches[:, 3])
     limit = _LIMIT * speed / radius
     starts = []
@@ -185,9 +187,9 @@ def _of_other_spins(found: Estimate) -> list[FloatArray]:
         shares = [
             np.hypot(speed, radius * one).sum() / speed.sum() for one in (launches[:, 4], spins)
         ]
-        found_numbers = numbers_with(problem.asked, decel * shares[1] / shares[0], tilt)
+        found_numbers = numbers_with(problem.spec, decel * shares[1] / shares[0], tilt)
         starts.append(problem.unknowns({**numbers, **found_numbers}, other))
-    walked = abreast([(problem, x) for x in starts], _TO_OTHERS, rival=RISE, kept=found.kept)
+    walked = multi_start([(problem, x) for x in starts], _TO_OTHERS, minimum=RISE, kept=found.kept)
     return [x for x, cost in walked if 2.0 * cost < found.chi2 + 2.0 * RISE]
 
 
@@ -239,6 +241,6 @@ def _told(x: FloatArray, signed: bool) -> FloatArray:
 def _known(found: Estimate, certainty: Certainty) -> tuple[npt.NDArray[np.bool_], FloatArray]:
     """Which numbers of the puck, and whether its spin, a summit tells; how far off another is."""
     names = found.problem.names
-    asked = np.array([track == -1 or name == _SPIN for track, name in names], bool)
-    seen = asked & ~np.array(certainty.undetermined, bool)
+    spec = np.array([track == -1 or name == _SPIN for track, name in names], bool)
+    seen = spec & ~np.array(certainty.undetermined, bool)
     return seen, _APART * np.sqrt(np.diag(certainty.covariance))

@@ -8,12 +8,12 @@ from dataclasses import replace
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.fitting.certainty import Z95, Certainty, Rival, certainty_of
+from puck_tables.fitting.certainty import Z95, Certainty, OtherMinimum, certainty_of
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.numbers import plausible_for
+from puck_tables.fitting.observations import Observations
 from puck_tables.fitting.parameters import ALL, OF_IMPACTS, WALL
 from puck_tables.fitting.problem import PRIOR, Problem
-from puck_tables.fitting.seen import Seen
 
 _MEMBER = 0.2
 _TOLD_ALL = 2  # other motions that are told in full
@@ -27,11 +27,11 @@ _ALIKE = "the tracks look alike whatever it is"
 _SCALES = {"friction", "gravity", "height", "radius", "decel"}
 
 
-def blind_spots(
+def not_identifiable(
     found: Estimate,
     certainty: Certainty,
     lost: tuple[str, ...],
-    rivals: tuple[Rival, ...] = (),
+    rivals: tuple[OtherMinimum, ...] = (),
     unsigned: tuple[int, ...] = (),
 ) -> tuple[str, ...]:
     """A sentence for each direction that the tracks do not see.
@@ -41,11 +41,11 @@ def blind_spots(
     """
     sentences = []
     marked = any(film.angle is not None for film in found.problem.films)
-    sentences += [rival_sentence(rival, marked) for rival in rivals[:_TOLD_ALL]]
+    sentences += [minimum_sentence(minimum, marked) for minimum in rivals[:_TOLD_ALL]]
     if others := len(rivals[_TOLD_ALL:]):
         more = "motion of another spin fits" if others == 1 else "motions of other spins fit"
         sentences.append(f"{others} more {more} about as well.")
-    if marked and any(rival.rise < -(Z95**2) for rival in rivals):
+    if marked and any(minimum.rise < -(Z95**2) for minimum in rivals):
         sentences.append(
             "That many turns a frame fit better may well be the floor: where friction changes with "
             "the slip speed, as on an air table, it is no Coulomb floor."
@@ -74,16 +74,16 @@ def blind_spots(
     return tuple(sentences)
 
 
-def rival_sentence(rival: Rival, marked: bool) -> str:
+def minimum_sentence(minimum: OtherMinimum, marked: bool) -> str:
     """Another motion that fits about as well; ``marked``: whether angles are seen."""
     more = "more frames a second" if marked else "angle marks on the puck"
     words = ", ".join(
-        f"{name.replace('_', ' ')} {value:.4g}" for name, value in rival.numbers.items()
+        f"{name.replace('_', ' ')} {value:.4g}" for name, value in minimum.numbers.items()
     )
     close = "as well"
-    if abs(rival.rise) > Z95**2:
-        nearly = "nearly as well" if rival.rise > 0.0 else "a little better"
-        close = f"{nearly} (chi^2 {'+' if rival.rise > 0.0 else '-'} {abs(rival.rise):.2g})"
+    if abs(minimum.rise) > Z95**2:
+        nearly = "nearly as well" if minimum.rise > 0.0 else "a little better"
+        close = f"{nearly} (chi^2 {'+' if minimum.rise > 0.0 else '-'} {abs(minimum.rise):.2g})"
     return (
         f"Another motion, of another spin, fits {close}: {words}. What would tell: {more}, or its "
         "launch spin, if it is known (launch_spin)."
@@ -140,13 +140,13 @@ def _remedy(found: Estimate, shared: list[str], members: list[tuple[int, str]]) 
 
 def _other_films(found: Estimate) -> list[tuple[str, Problem, FloatArray]]:
     """Films that could have been made instead, each with its unknowns."""
-    values, launches = found.problem.found(found.x), found.problem.launches(found.x)
+    values, launches = found.problem.numbers_at(found.x), found.problem.launches(found.x)
     problem = replace(
-        found.problem, asked=found.problem.asked.alone(), weights=(), meetings=(), walls=(),
+        found.problem, spec=found.problem.spec.alone(), weights=(), impact_specs=(), walls=(),
         rests=(),
     )  # fmt: skip
     x = problem.unknowns(values, launches)
-    radius = problem.asked.scales(values)[2]
+    radius = problem.spec.scales(values)[2]
     films = []
     marked = problem
     if any(film.angle is None for film in problem.films):
@@ -160,7 +160,7 @@ def _other_films(found: Estimate) -> list[tuple[str, Problem, FloatArray]]:
     spin = np.maximum(np.abs(faster[:, 4]), _SPINNING * speed / radius)
     faster[:, 4] = np.copysign(spin, faster[:, 4])
     least = float(spin.max())
-    asks = not np.allclose(faster, launches) and "launch_spin" not in problem.asked.fixed
+    asks = not np.allclose(faster, launches) and "launch_spin" not in problem.spec.fixed
     if asks and least * radius < _FASTEST:
         moderate = _with_heights_inside(values)
         films.append(
@@ -193,11 +193,11 @@ def _errors(problem: Problem, x: FloatArray, members: list[tuple[int, str]]) -> 
     return errors
 
 
-def _marked(film: Seen) -> Seen:
+def _marked(film: Observations) -> Observations:
     return replace(film, angle=np.zeros(film.time.size), counts=None)
 
 
-def _longer(film: Seen) -> Seen:
+def _longer(film: Observations) -> Observations:
     count = math.ceil(_LONGER * film.time.size)
     return replace(
         film, time=film.usual_step * np.arange(float(count)), place=np.zeros((count, 2)),

@@ -16,15 +16,15 @@ import numpy as np
 
 from puck_tables.contact.laws import law_of
 from puck_tables.errors import InputError
-from puck_tables.fitting.asked import Asked
 from puck_tables.fitting.estimate import FARTHEST, FARTHEST_PLACE, Estimate
+from puck_tables.fitting.fit_spec import FitSpec
 from puck_tables.fitting.problem import PRIOR
 from puck_tables.fitting.timing import Known
 
 DRAG = "+drag"
 _CONTENDS = 60.0  # of χ²: laws worse than the best by more are not fitted again
 
-Fitted = Callable[[Asked, tuple[float, float], Known], Estimate]
+Fitted = Callable[[FitSpec, tuple[float, float], Known], Estimate]
 
 
 class LawScore(NamedTuple):
@@ -43,11 +43,14 @@ class LawScore(NamedTuple):
 
 
 def compare(
-    variants: Mapping[str, Asked], noise: tuple[float, float], known: Known, fitted: Fitted
+    variants: Mapping[str, FitSpec],
+    noise: tuple[float, float],
+    known: Known,
+    fit_law: Fitted,
 ) -> tuple[LawScore, ...]:
-    """The laws named, best first; ``fitted`` fits what is asked with a noise, known or not."""
+    """The laws named, best first; ``fit_law`` fits each with a noise, known or not."""
     names, questions = list(variants), list(variants.values())
-    first = [fitted(one, noise, known) for one in questions]
+    first = [fit_law(one, noise, known) for one in questions]
     common = [
         noise[kind] if known[kind] else min(one.problem.noise[kind] for one in first)
         for kind in range(2)
@@ -58,20 +61,20 @@ def compare(
     again = list(first)
     for k in np.flatnonzero(score < score.min() + _CONTENDS):
         if not (known.place and known.angle):
-            again[k] = fitted(questions[k], (common[0], common[1]), Known(True, True, True))
+            again[k] = fit_law(questions[k], (common[0], common[1]), Known(True, True, True))
             chi2[k] = chi2_under(again[k], (common[0], common[1]))
     score = chi2 + 2.0 * unknowns
     weight = np.exp(-0.5 * (score - score.min()))
     weight /= weight.sum()
     found = [
-        LawScore(name, float(c), int(m), float(w), one.problem.found(one.x))
+        LawScore(name, float(c), int(m), float(w), one.problem.numbers_at(one.x))
         for name, c, m, w, one in zip(names, chi2, unknowns, weight, again, strict=True)
     ]
     order = np.argsort(score, kind="stable")
     return tuple(found[k] for k in order)
 
 
-def variants_of(asked: Asked, names: Any) -> dict[str, Asked]:
+def variants_of(spec: FitSpec, names: Any) -> dict[str, FitSpec]:
     """What is asked of each law by its name.
 
     Raises
@@ -83,18 +86,18 @@ def variants_of(asked: Asked, names: Any) -> dict[str, Asked]:
         raise InputError(f"laws must be a list of names, got the text '{names}'")
     if len(set(names)) < len(names):
         raise InputError(f"laws {', '.join(names)}: name each law once")
-    return {name: _variant(asked, name) for name in names}
+    return {name: _variant(spec, name) for name in names}
 
 
-def _variant(asked: Asked, name: str) -> Asked:
+def _variant(spec: FitSpec, name: str) -> FitSpec:
     """The same question of another law."""
     drags = name.endswith(DRAG)
     law = law_of(name.removesuffix(DRAG))
-    free = tuple(n for n in asked.free if n != "inner" and (n != "drag" or drags))
+    free = tuple(n for n in spec.free if n != "inner" and (n != "drag" or drags))
     if drags and "drag" not in free:
         free = (*free, "drag")
-    fixed = {n: v for n, v in asked.fixed.items() if n != "inner"}
-    return replace(asked, puck=replace(asked.puck, pressure=law), free=free, fixed=fixed)
+    fixed = {n: v for n, v in spec.fixed.items() if n != "inner"}
+    return replace(spec, puck=replace(spec.puck, pressure=law), free=free, fixed=fixed)
 
 
 def chi2_under(found: Estimate, noise: tuple[float, float]) -> float:

@@ -14,9 +14,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.fitting.asked import Asked
+from puck_tables.fitting.fit_spec import FitSpec
+from puck_tables.fitting.observations import Observations
 from puck_tables.fitting.parameters import LAUNCH, MOST, WALL
-from puck_tables.fitting.seen import Seen
 
 _DRAGGED = 100.0  # drag times the length of a film: nothing, or all there is, is left of a speed
 _FASTER = 10.0  # times the fastest that a track goes from frame to frame
@@ -28,7 +28,7 @@ _SPEEDS = ("launch_vx", "launch_vy")
 
 
 def limits_of(
-    asked: Asked, films: Sequence[Seen], names: Sequence[tuple[int, str]], tall: bool
+    spec: FitSpec, films: Sequence[Observations], names: Sequence[tuple[int, str]], tall: bool
 ) -> tuple[FloatArray, FloatArray]:
     """The least and the largest value of each unknown (m,), ``names`` as of a problem.
 
@@ -37,20 +37,20 @@ def limits_of(
     """
     pairs = []
     for track, name in names:
-        low, high = asked.limits(name)
+        low, high = spec.limits(name)
         if name == "delta":
-            high = min(high, asked.highest(tall))
+            high = min(high, spec.highest(tall))
         elif name in ("friction", "decel"):
-            high = min(high, asked.steepest(name))
+            high = min(high, spec.steepest(name))
         elif name == "drag":
             most = min(_DRAGGED / max(float(film.time[-1]) for film in films), MOST["drag"])
             low, high = max(low, -most), min(high, most)
-        elif name not in asked.bounds and name in (*LAUNCH, *WALL):
+        elif name not in spec.bounds and name in (*LAUNCH, *WALL):
             own = films if track < 0 else [films[track]]
-            low, high = _of_films(name, own, asked.puck.radius)
-            wanted = [asked.start[name]] if name in asked.start else []
-            if name in asked.priors:
-                value, spread = asked.priors[name]
+            low, high = _of_films(name, own, spec.puck.radius)
+            wanted = [spec.start[name]] if name in spec.start else []
+            if name in spec.priors:
+                value, spread = spec.priors[name]
                 wanted += [value - _PRIOR * spread, value + _PRIOR * spread]
             low, high = min([low, *wanted]), max([high, *wanted])
         pairs.append((low, high))
@@ -58,7 +58,7 @@ def limits_of(
     return ends[:, 0], ends[:, 1]
 
 
-def _of_films(name: str, films: Sequence[Seen], radius: float) -> tuple[float, float]:
+def _of_films(name: str, films: Sequence[Observations], radius: float) -> tuple[float, float]:
     """The range of a number of a launch, or of a wall that the pucks of some tracks meet."""
     place = np.concatenate([film.place for film in films])
     size = max(float(np.ptp(place, axis=0).max()), radius)

@@ -24,12 +24,12 @@ from typing import NamedTuple
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.fitting.launched import Moving, path_and_rate
+from puck_tables.fitting.forward_model import Moving, path_and_rate
 
 _NEWTON, _EXACT, _TOUCHES = 12, 1e-10, 1e-6  # of the radius
 
 
-class Wall(NamedTuple):
+class WallLine(NamedTuple):
     """A straight wall: cos(angle) x + sin(angle) y = distance (m), the puck where it is less."""
 
     angle: float
@@ -45,7 +45,7 @@ class Rims(NamedTuple):
     mass: float
 
 
-class Meeting(NamedTuple):
+class ImpactSpec(NamedTuple):
     """An impact that joins slides.
 
     ``time`` s: about when; ``reach`` s: it is looked for so near; ``films``: numbers of the one
@@ -65,7 +65,7 @@ class Slide(NamedTuple):
     launch: FloatArray
 
 
-class Hit(NamedTuple):
+class ImpactState(NamedTuple):
     """What happens at an impact.
 
     ``time`` s; ``place`` (2,) m of the first puck's centre; ``toward`` rad: the direction to what
@@ -91,10 +91,10 @@ def state_at(moving: Moving, slide: Slide, time: float) -> FloatArray:
     return np.array([x, y, *rate[:, 0], turn])
 
 
-def met(
-    moving: Moving, gyration: float, rims: Rims, meeting: Meeting, before: tuple[Slide, ...],
-    wall: Wall | None,
-) -> Hit:  # fmt: skip
+def impact_at(
+    moving: Moving, gyration: float, rims: Rims, impact_spec: ImpactSpec, before: tuple[Slide, ...],
+    wall: WallLine | None,
+) -> ImpactState:  # fmt: skip
     """An impact, from the slides before it.
 
     Parameters
@@ -107,7 +107,7 @@ def met(
 
     Examples
     --------
-    >>> from puck_tables.fitting.natural import curve_of
+    >>> from puck_tables.fitting.unit_motions import curve_of
     >>> puck = Moving(1.0, 0.0, 0.1, 0.0, curve_of("uniform", 0.5**0.5))
     >>> slide = Slide(0.0, np.array([0.0, 0.0, 2.0, 0.0, 0.0, 0.0]))
     >>> hit = met(
@@ -116,24 +116,24 @@ def met(
     >>> round(hit.time, 9), hit.after[0].launch[2:4].round(9).tolist()  # x = 0.875 = 2t − t²/2
     (0.5, [-0.75, 0.0])
     """
-    low = max(meeting.time - meeting.reach, *(slide.since for slide in before))
-    high = max(meeting.time + meeting.reach, low)
-    time = min(max(meeting.time, low), high)
+    low = max(impact_spec.time - impact_spec.reach, *(slide.since for slide in before))
+    high = max(impact_spec.time + impact_spec.reach, low)
+    time = min(max(impact_spec.time, low), high)
     for _ in range(_NEWTON):
         states = [state_at(moving, slide, time) for slide in before]
         gap, approach, _ = gap_of(states, wall, moving.radius)
         if approach <= 0.0 or abs(gap) <= _EXACT * moving.radius:
             break
         time = min(max(time + gap / approach, low), high)
-    after, toward, ratio = struck(states, moving.radius, gyration, rims, wall)
-    return Hit(
+    after, toward, ratio = after_impact(states, moving.radius, gyration, rims, wall)
+    return ImpactState(
         time, states[0][:2], toward, ratio, tuple(states), abs(gap) <= _TOUCHES * moving.radius,
         tuple(Slide(time, state) for state in after),
     )  # fmt: skip
 
 
-def struck(
-    states: Sequence[FloatArray], radius: float, gyration: float, rims: Rims, wall: Wall | None
+def after_impact(
+    states: Sequence[FloatArray], radius: float, gyration: float, rims: Rims, wall: WallLine | None
 ) -> tuple[list[FloatArray], float, float]:
     """States (6,) after an impact, the direction across, and tangential over normal impulse."""
     _, approach, toward = gap_of(states, wall, radius)
@@ -158,7 +158,7 @@ def struck(
 
 
 def gap_of(
-    states: Sequence[FloatArray], wall: Wall | None, radius: float
+    states: Sequence[FloatArray], wall: WallLine | None, radius: float
 ) -> tuple[float, float, float]:
     """How far the rims are apart (m), how fast they close (m/s), and the direction across."""
     if wall is not None:

@@ -6,10 +6,10 @@ import math
 from collections.abc import Mapping, Sequence
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.fitting.numbers import KNOWN, FoundLaunch, Number
+from puck_tables.fitting.numbers import KNOWN, EstimatedLaunch, Number
+from puck_tables.fitting.observations import Observations
 from puck_tables.fitting.parameters import ALL, LAUNCH, WALL
 from puck_tables.fitting.problem import Problem
-from puck_tables.fitting.seen import Seen
 
 _GRIP, _SLICK = 5.0, 1e-4  # friction coefficients of dry surfaces are smaller, and larger
 _TALL = 8.0  # radii: pucks are lower
@@ -21,7 +21,7 @@ _UNITS = "the unit of the places, or of the times, the scale or the frames a sec
 
 
 def doubts(
-    numbers: Mapping[str, Number], launches: Sequence[FoundLaunch], radius: float
+    numbers: Mapping[str, Number], launches: Sequence[EstimatedLaunch], radius: float
 ) -> tuple[str, ...]:
     """A sentence for each number that was found and that no puck has.
 
@@ -80,7 +80,7 @@ def doubts(
     return tuple(said)
 
 
-def rounded(film: Seen) -> list[str]:
+def rounded(film: Observations) -> list[str]:
     """A sentence for what is rounded more coarsely than its noise is."""
     return [
         f"{what} of {film.name} are rounded to {step:.3g} {unit}, which is no noise where the puck "
@@ -95,7 +95,7 @@ def rounded(film: Seen) -> list[str]:
 def ran_away(problem: Problem, x: FloatArray) -> str:
     """A sentence where a launch lies on the end of what the film leaves it; else none."""
     for (track, name), value, low, high in zip(problem.names, x, *problem.limits, strict=True):
-        if name in problem.asked.bounds or name not in (*LAUNCH, *WALL) or low == -math.inf:
+        if name in problem.spec.bounds or name not in (*LAUNCH, *WALL) or low == -math.inf:
             continue
         if min(value - low, high - value) <= _AT_END * (high - low):
             kind = ALL.get(name) or WALL[name]

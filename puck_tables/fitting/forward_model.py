@@ -26,8 +26,8 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.speed_law import SpeedLaw
-from puck_tables.fitting.natural import BY_DELTA, BY_PHI, PATH, RATE, Curve
 from puck_tables.fitting.speed_motion import speed_path
+from puck_tables.fitting.unit_motions import BY_DELTA, BY_PHI, PATH, RATE, UnitMotions
 from puck_tables.motion.state import HEADING, ORIENTATION, PUCK_X, PUCK_Y, SPEED
 from puck_tables.motion.state import SPIN as TURNING
 
@@ -40,7 +40,7 @@ VX, VY, SPIN, DECEL, DELTA, RADIUS, TIME = range(7)
 _PATH, _RATE, _SLOPES = range(3)  # what is wanted: places; rates, too; derivatives, too
 
 
-class BySpeed(NamedTuple):
+class SpeedFriction(NamedTuple):
     """A friction coefficient over slip speed, gravity m/s², and the radius of gyration over r."""
 
     law: SpeedLaw
@@ -58,8 +58,8 @@ class Moving(NamedTuple):
     delta: float
     radius: float
     drag: float
-    curve: Curve
-    by_speed: BySpeed | None = None
+    motions: UnitMotions
+    by_speed: SpeedFriction | None = None
 
 
 def path_of(moving: Moving, velocity: FloatArray, spin: float, times: FloatArray) -> FloatArray:
@@ -67,7 +67,7 @@ def path_of(moving: Moving, velocity: FloatArray, spin: float, times: FloatArray
 
     Examples
     --------
-    >>> from puck_tables.fitting.natural import curve_of
+    >>> from puck_tables.fitting.unit_motions import curve_of
     >>> plain = Moving(1.0, 0.5, 1.0, 0.0, curve_of("uniform", 0.5**0.5))
     >>> path_of(plain, np.array([1.0, 0.0]), 5.0, np.array([2.0]))[0].round(6).tolist()
     [1.590682]
@@ -89,7 +89,7 @@ def path_and_rate(
 
     Examples
     --------
-    >>> from puck_tables.fitting.natural import curve_of
+    >>> from puck_tables.fitting.unit_motions import curve_of
     >>> plain = Moving(1.0, 0.5, 1.0, 0.0, curve_of("uniform", 0.5**0.5))
     >>> path_and_rate(plain, np.array([1.0, 0.0]), 0.0, np.array([0.25]))[1].ravel().tolist()
     [0.75, 0.0, 0.0]
@@ -177,17 +177,21 @@ def _dry(
     turn = np.array([[cosine, -sine], [sine, cosine]])
     length = slip * slip / moving.decel
     tau = times * (moving.decel / slip)
-    curve, height = moving.curve, moving.delta
+    motions, height = moving.motions, moving.delta
     if want != _SLOPES:
-        states = curve.states(np.array([phi]), np.array([height]), tau[None])[:, 0]
+        states = motions.states(np.array([phi]), np.array([height]), tau[None])[:, 0]
         path = _turned(turn, length, moving.radius, states[[PUCK_X, PUCK_Y, ORIENTATION]])
         if want == _PATH:
             return path, np.empty((0, 3, times.size))
         heading, ahead = states[HEADING], states[SPEED]
         motion = np.stack([ahead * np.cos(heading), ahead * np.sin(heading), states[TURNING]])
         return path, _turned(turn, slip, moving.radius, motion)[None]
-    natural = _turned(turn, 1.0, moving.radius, curve.with_slopes(phi, height, tau))
-    path, to_phi, rate = length * natural[PATH], length * natural[BY_PHI], slip * natural[RATE]
+    unit_motion = _turned(turn, 1.0, moving.radius, motions.with_slopes(phi, height, tau))
+    path, to_phi, rate = (
+        length * unit_motion[PATH],
+        length * unit_motion[BY_PHI],
+        slip * unit_motion[RATE],
+    )
     to_log_slip = 2.0 * path - times * rate
     to_speed = (math.cos(phi) / slip) * to_log_slip - (math.sin(phi) / slip) * to_phi
     to_rim = (math.sin(phi) / slip) * to_log_slip + (math.cos(phi) / slip) * to_phi
@@ -201,13 +205,13 @@ def _dry(
     out[SPIN], out[RADIUS], out[TIME] = moving.radius * to_rim, spin * to_rim, rate
     out[RADIUS, 2] -= path[2] / moving.radius
     out[DECEL] = (times * rate - path) / moving.decel
-    out[DELTA] = length * natural[BY_DELTA]
+    out[DELTA] = length * unit_motion[BY_DELTA]
     return path, out
 
 
-def _turned(turn: FloatArray, unit: float, radius: float, natural: FloatArray) -> FloatArray:
+def _turned(turn: FloatArray, unit: float, radius: float, unit_motion: FloatArray) -> FloatArray:
     """x, y and body angle (…, 3, n) from natural ones, in a unit of length."""
     whole = np.zeros((3, 3))
     whole[:2, :2], whole[2, 2] = turn, 1.0 / radius
-    found: FloatArray = (unit * whole) @ natural
+    found: FloatArray = (unit * whole) @ unit_motion
     return found

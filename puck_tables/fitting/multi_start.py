@@ -25,9 +25,9 @@ _ROUNDING = 1e-24  # of the largest square of slopes
 _APART = 1e-2  # starts that are nearer have met
 
 
-def abreast(
+def multi_start(
     starts: list[tuple[Problem, FloatArray]], rounds: tuple[tuple[int, int], ...],
-    scale: float = math.inf, rival: float = 0.0, kept: npt.NDArray[np.bool_] | None = None,
+    scale: float = math.inf, minimum: float = 0.0, kept: npt.NDArray[np.bool_] | None = None,
     held: int | None = None,
 ) -> list[tuple[FloatArray, float]]:  # fmt: skip
     """Unknowns at the deepest minima that starts lead to, and the cost there, the deepest first.
@@ -51,7 +51,7 @@ def abreast(
                     walker.step()
         walkers.sort(key=lambda one: one.cost)
         walkers = _apart(walkers)
-        near = sum(one.cost < walkers[0].cost + rival for one in walkers)
+        near = sum(one.cost < walkers[0].cost + minimum for one in walkers)
         walkers = walkers[: max(most, near)]
     return [(walker.x, walker.cost) for walker in walkers]
 

@@ -49,7 +49,7 @@ _PATH_ROWS = [PUCK_X, PUCK_Y, ORIENTATION]
 _ODD = [PUCK_Y, HEADING, ORIENTATION, SPIN]  # change sign with the spin
 
 
-class Curve(ABC):
+class UnitMotions(ABC):
     """States of pucks of one kind, with Q₀ = J = r = 1 and the launch along x.
 
     ``highest``: the largest δ for which it is known.
@@ -62,7 +62,7 @@ class Curve(ABC):
         """States for 0 ≤ φ ≤ π/2, as :meth:`states`."""
 
     @abstractmethod
-    def varied(self, phi: float, delta: float, tau: FloatArray) -> FloatArray:
+    def with_variations(self, phi: float, delta: float, tau: FloatArray) -> FloatArray:
         """Paths and their derivatives for 0 ≤ φ ≤ π/2, as :meth:`with_slopes`."""
 
     def states(self, phi: FloatArray, delta: FloatArray, tau: FloatArray) -> FloatArray:
@@ -100,14 +100,14 @@ class Curve(ABC):
         array (4, 3, n)
             Of x, y and body angle: themselves, their rates, by φ, by δ.
         """
-        out = self.varied(abs(phi), delta, tau)
+        out = self.with_variations(abs(phi), delta, tau)
         if phi < 0.0:
             out[:, 1:] *= -1.0  # y and the body angle are odd
             out[BY_PHI] *= -1.0
         return out
 
 
-class PlainCurve(Curve):
+class PlainMotions(UnitMotions):
     """Homogeneous pucks under uniform pressure, δ ≤ 1, looked up.
 
     Examples
@@ -130,7 +130,7 @@ class PlainCurve(Curve):
         found = looked_up(table, looked_up_launches(table, launches), which, tau.ravel())
         return found.reshape(STATE_ROWS, count, frames)
 
-    def varied(self, phi: float, delta: float, tau: FloatArray) -> FloatArray:
+    def with_variations(self, phi: float, delta: float, tau: FloatArray) -> FloatArray:
         """By the slopes of the stop table."""
         launch = np.array([[math.cos(phi), 0.0, math.sin(phi), delta, 1.0, 1.0]]).T
         table = StopTable.shipped()
@@ -144,7 +144,7 @@ class PlainCurve(Curve):
         return out
 
 
-class IntegratedCurve(Curve):
+class IntegratedMotions(UnitMotions):
     """Pucks whose friction is a section."""
 
     @abstractmethod
@@ -152,12 +152,12 @@ class IntegratedCurve(Curve):
         """Their friction at one height."""
 
     @abstractmethod
-    def flow(self, delta: float) -> Variations:
+    def variations(self, delta: float) -> Variations:
         """The same with its derivatives."""
 
-    def varied(self, phi: float, delta: float, tau: FloatArray) -> FloatArray:
+    def with_variations(self, phi: float, delta: float, tau: FloatArray) -> FloatArray:
         """By variational equations."""
-        return _varied(phi, self.flow(delta), tau)
+        return _with_variations(phi, self.variations(delta), tau)
 
     def first_quadrant(self, phi: FloatArray, delta: FloatArray, tau: FloatArray) -> FloatArray:
         """Each integrated."""
@@ -171,7 +171,7 @@ class IntegratedCurve(Curve):
         return _integrated(phi, self.friction(delta), tau)
 
 
-class LawCurve(IntegratedCurve):
+class LawMotions(IntegratedMotions):
     """Pucks of any pressure law and spread of mass, in full contact.
 
     Examples
@@ -198,12 +198,12 @@ class LawCurve(IntegratedCurve):
             self._kept[delta] = Friction(FrictionForm.TABLE, delta, cut, section.tolerance)
         return self._kept[delta]
 
-    def flow(self, delta: float) -> Variations:
+    def variations(self, delta: float) -> Variations:
         """From the table of the law."""
         return variations_by(slopes_of_table(self._table, delta), self._gyration)
 
 
-class TallCurve(IntegratedCurve):
+class TallMotions(IntegratedMotions):
     """Uniform pucks of any height: motions interpolated between those of a few heights.
 
     Examples
@@ -217,16 +217,16 @@ class TallCurve(IntegratedCurve):
     highest = HIGHEST
 
     def __init__(self, gyration: float) -> None:
-        self._gyration, self._plain = gyration, PlainCurve()
+        self._gyration, self._plain = gyration, PlainMotions()
         self._is_plain = plain_up_to("uniform", gyration) > 0.0
 
     def friction(self, delta: float) -> Friction:
         """A section of its own."""
         return section_friction(body_of("uniform", delta, self._gyration), _ACCURACY)
 
-    def flow(self, delta: float) -> Variations:
+    def variations(self, delta: float) -> Variations:
         """The same: how motions change with δ, their cubic tells."""
-        return _tall_flow(delta, self._gyration)
+        return _tall_variations(delta, self._gyration)
 
     def motion(self, phi: float, delta: float, tau: FloatArray) -> FloatArray:
         """Cubic in δ through the motions of four heights; looked up up to δ = 1."""
@@ -239,13 +239,13 @@ class TallCurve(IntegratedCurve):
                 out += weight * _integrated(phi, self.friction(height), tau)
         return out
 
-    def varied(self, phi: float, delta: float, tau: FloatArray) -> FloatArray:
+    def with_variations(self, phi: float, delta: float, tau: FloatArray) -> FloatArray:
         """Of the same cubic, by δ exactly."""
         if self._is_plain and delta <= self._plain.highest:
-            return self._plain.varied(phi, delta, tau)
+            return self._plain.with_variations(phi, delta, tau)
         out = np.zeros((4, 3, tau.size))
         for height, weight, slope in _heights(delta):
-            found = _varied(phi, self.flow(height), tau)
+            found = _with_variations(phi, self.variations(height), tau)
             out[:BY_DELTA] += weight * found[:BY_DELTA]
             out[BY_DELTA] += slope * found[PATH]
         return out
@@ -265,7 +265,7 @@ def _heights(delta: float) -> list[tuple[float, float, float]]:
 
 
 @lru_cache(maxsize=64)
-def _tall_flow(delta: float, gyration: float) -> Variations:
+def _tall_variations(delta: float, gyration: float) -> Variations:
     section = body_of("uniform", delta, gyration).friction(_ACCURACY)
     return variations_by(slopes_at_one_height(section), gyration)
 
@@ -276,7 +276,7 @@ def _law_table(law: Law) -> ResultantTable:
 
 
 @lru_cache(maxsize=64)
-def curve_of(pressure: str | Law, gyration: float, tall: bool = False) -> Curve:
+def unit_motions_of(pressure: str | Law, gyration: float, tall: bool = False) -> UnitMotions:
     """The motions of a kind of puck.
 
     Parameters
@@ -292,10 +292,10 @@ def curve_of(pressure: str | Law, gyration: float, tall: bool = False) -> Curve:
     """
     law = pressure if isinstance(pressure, Law) else law_of(pressure)
     if law.can_lift and tall:
-        return TallCurve(gyration)
+        return TallMotions(gyration)
     if plain_up_to(law, gyration) > 0.0:
-        return PlainCurve()
-    return LawCurve(law, gyration)
+        return PlainMotions()
+    return LawMotions(law, gyration)
 
 
 def _integrated(phi: float, friction: Friction, tau: FloatArray) -> FloatArray:
@@ -307,7 +307,7 @@ def _integrated(phi: float, friction: Friction, tau: FloatArray) -> FloatArray:
     return np.stack(frame.states(*run.states(moments)))
 
 
-def _varied(phi: float, friction: Variations, tau: FloatArray) -> FloatArray:
+def _with_variations(phi: float, friction: Variations, tau: FloatArray) -> FloatArray:
     """A path and its derivatives, as :meth:`Curve.with_slopes`."""
     cosine, sine = math.cos(phi), math.sin(phi)
     own = unit_states(friction, cosine, sine, tau, _STEPPING.local)[0][:, :3].T

@@ -15,25 +15,25 @@ from puck_tables._core.real import instance
 from puck_tables._core.safe_write import write_bytes
 from puck_tables._version import __version__
 from puck_tables.errors import InputError
-from puck_tables.fitting.by_speed import law_over
 from puck_tables.fitting.certainty import Certainty, profile_point
-from puck_tables.fitting.doubts import doubts, rounded
+from puck_tables.fitting.coupled_fit import Impact
 from puck_tables.fitting.estimate import Estimate
-from puck_tables.fitting.held_out import HeldOut
-from puck_tables.fitting.laws import LawScore
-from puck_tables.fitting.numbers import FoundLaunch, Number
-from puck_tables.fitting.residual_tests import NO_PATTERN, lengthways, misfits
-from puck_tables.fitting.seen import Seen
-from puck_tables.fitting.tied import Impact
-from puck_tables.fitting.timing import Known
-from puck_tables.fitting.written import (
+from puck_tables.fitting.fit_columns import (
+    as_json,
     frames_of,
-    impact_told,
-    launch_told,
-    numbers_told,
-    told,
+    impact_as_json,
+    launch_as_json,
+    numbers_as_json,
     without_nan,
 )
+from puck_tables.fitting.held_out import HeldOut
+from puck_tables.fitting.law_comparison import LawScore
+from puck_tables.fitting.numbers import EstimatedLaunch, Number
+from puck_tables.fitting.observations import Observations
+from puck_tables.fitting.plausibility import doubts, rounded
+from puck_tables.fitting.residual_tests import NO_PATTERN, lengthways, misfits
+from puck_tables.fitting.speed_law_fit import law_over
+from puck_tables.fitting.timing import Known
 from puck_tables.io.dataset import Dataset
 from puck_tables.io.formats import FORMATS, ending_of
 from puck_tables.puck import Puck
@@ -64,14 +64,14 @@ class Fit(Result):
     ``impacts``: :class:`Impact` of those looked for; ``untied``: why they do not join the slides,
     empty where they do; ``not_met``: a sentence for each wall given on which there is none.
     ``uncut``: the tracks with frames that are no free motion.
-    ``misread``: what else the tracks or the radius may be, if that fits far better.
+    ``misfit``: what else the tracks or the radius may be, if that fits far better.
     ``constant_chi2``: χ² of one friction coefficient for all slip speeds,
     where one over them was found.
     """
 
     given: Puck
     numbers: dict[str, Number]
-    launches: tuple[FoundLaunch, ...]
+    launches: tuple[EstimatedLaunch, ...]
     chi2: float
     degrees: int
     noise: tuple[float, float]
@@ -92,8 +92,8 @@ class Fit(Result):
     constant_chi2: float
     estimate: Estimate = field(repr=False)
     certainty: Certainty = field(repr=False)
-    uncut: tuple[Seen, ...] = field(default=(), repr=False)
-    misread: str = ""
+    uncut: tuple[Observations, ...] = field(default=(), repr=False)
+    misfit: str = ""
     astray: str = ""
 
     picture: ClassVar[str] = "fit"
@@ -131,7 +131,7 @@ class Fit(Result):
         """Drag of speed and spin besides dry friction, 1/s."""
         return self.numbers["drag"].value if "drag" in self.numbers else 0.0
 
-    def launch(self, track: int | str = 0) -> FoundLaunch:
+    def launch(self, track: int | str = 0) -> EstimatedLaunch:
         """The launch of a track, by its number from 0 or its name.
 
         Raises
@@ -162,7 +162,7 @@ class Fit(Result):
         launch = self.launch(track)
         if self.astray:
             raise InputError(f"{self.astray}: there is nothing to simulate")
-        if self.estimate.problem.asked.speeds:
+        if self.estimate.problem.spec.speeds:
             raise InputError(
                 "the puck was found with friction over slip speed, which a free puck has not: put "
                 "it into a Scene with the law that fit.friction_over() gives"
@@ -185,8 +185,8 @@ class Fit(Result):
             )
         if self.untied:
             found.append(self.untied)
-        if self.misread:
-            found.append(self.misread)
+        if self.misfit:
+            found.append(self.misfit)
         if self.outliers > 0.2:
             found.append(f"{100.0 * self.outliers:.3g} % of the observations had to be left out")
         return tuple(found)
@@ -203,7 +203,7 @@ class Fit(Result):
         said = [
             f"{name} is found, too, since it has a prior or bounds: without them it is known, "
             f"{float(getattr(self.given, name)):g}"
-            for name in problem.asked.freed if hasattr(self.given, name)
+            for name in problem.spec.freed if hasattr(self.given, name)
         ]  # fmt: skip
         for film, spinless in zip(problem.films, problem.spinless, strict=True):
             if spinless:
@@ -259,7 +259,7 @@ class Fit(Result):
                 "are widened by what halves, quarters and eighths of the frames do to the numbers."
             )
         problem = self.estimate.problem
-        if "readout" in problem.asked.free and problem.read_within is not None:
+        if "readout" in problem.spec.free and problem.read_within is not None:
             half = 500.0 * problem.read_within
             lines.append(
                 f"A picture is taken to be read before the next one: a prior of {half:.3g} +- "
@@ -277,8 +277,8 @@ class Fit(Result):
         puck = self.puck.described()
         summary: dict[str, Any] = {
             "kind": KIND, "source": f"puck-tables {__version__}", "puck": puck, "drag": self.drag,
-            "numbers": {name: told(number) for name, number in self.numbers.items()},
-            "launches": [launch_told(one) for one in self.launches],
+            "numbers": {name: as_json(number) for name, number in self.numbers.items()},
+            "launches": [launch_as_json(one) for one in self.launches],
             "correlation": self.correlation(), "chi2": self.chi2, "degrees": self.degrees,
             "noise": list(self.noise), "noise_given": list(self.noise_known[:2]),
             "jitter": self.jitter, "jitter_given": self.noise_known.jitter,
@@ -290,10 +290,10 @@ class Fit(Result):
             "complaints": list(self.complaints),
             "laws": [one._asdict() for one in self.laws],
             "held_out": None,
-            "slip_speeds": list(self.estimate.problem.asked.speeds),
-            "between": self.estimate.problem.asked.between,
+            "slip_speeds": list(self.estimate.problem.spec.speeds),
+            "between": self.estimate.problem.spec.between,
             "constant_chi2": self.constant_chi2, "untied": self.untied,
-            "impacts": [impact_told(one) for one in self.impacts],
+            "impacts": [impact_as_json(one) for one in self.impacts],
         }  # fmt: skip
         if self.held_out is not None:
             summary["held_out"] = {
@@ -305,7 +305,7 @@ class Fit(Result):
 
     def correlation(self) -> dict[str, dict[str, float]]:
         """Correlations of the numbers of the puck that were found."""
-        names, matrix = self.estimate.problem.asked.free, self.certainty.correlation
+        names, matrix = self.estimate.problem.spec.free, self.certainty.correlation
         return {
             one: {other: float(matrix[i, k]) for k, other in enumerate(names)}
             for i, one in enumerate(names)
@@ -330,7 +330,7 @@ class Fit(Result):
         ------
         InputError
         """
-        free = self.estimate.problem.asked.free
+        free = self.estimate.problem.spec.free
         if name not in free:
             raise InputError(f"'{name}' was not found: there are {', '.join(free) or 'none'}")
         k, number = free.index(name), self.numbers[name]
@@ -367,10 +367,10 @@ class Fit(Result):
         InputError
             If one friction for all slip speeds was found, or a speed is outside the law.
         """
-        asked = self.estimate.problem.asked
-        if not asked.speeds:
+        spec = self.estimate.problem.spec
+        if not spec.speeds:
             raise InputError("one friction for all slip speeds was found: give slip_speeds to fit")
-        at = np.array(asked.speeds) if speed is None else np.asarray(speed, float)
+        at = np.array(spec.speeds) if speed is None else np.asarray(speed, float)
         return at, *law_over(self.estimate, self.certainty.covariance, at)
 
     def dataset(self) -> Dataset:
@@ -381,7 +381,7 @@ class Fit(Result):
             "drift": self.drift, **self.puck.described(),
         }  # fmt: skip
         texts = {"summary": (json.dumps(self.summary()), "all that was found, as JSON")}
-        columns = {**frames_of(self.estimate), **numbers_told(self.numbers)}
+        columns = {**frames_of(self.estimate), **numbers_as_json(self.numbers)}
         return Dataset({}, columns, attributes, texts)
 
     def save(self, path: str | Path, overwrite: bool = False) -> None:

@@ -14,12 +14,12 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
-from puck_tables.fitting.asked import Asked
-from puck_tables.fitting.by_speed import tried
 from puck_tables.fitting.estimate import Estimate
-from puck_tables.fitting.fitted import fitted
+from puck_tables.fitting.fit_spec import FitSpec
+from puck_tables.fitting.initial_estimate import initial_estimate
 from puck_tables.fitting.parameters import NODES
 from puck_tables.fitting.problem import TURN, Problem
+from puck_tables.fitting.speed_law_fit import tried
 from puck_tables.fitting.timing import Known
 
 _FAR = 1.5  # times smaller are residuals of a reading that is told
@@ -50,7 +50,7 @@ class _Reading(NamedTuple):
     fits: bool = True
 
 
-def misread(found: Estimate, problem: Problem, known: Known, speeds: bool) -> str:
+def misfit(found: Estimate, problem: Problem, known: Known, speeds: bool) -> str:
     """A sentence that says which other reading fits far better; empty if none does.
 
     A floor is named before angles or a radius that fit about as well.
@@ -62,14 +62,14 @@ def misread(found: Estimate, problem: Problem, known: Known, speeds: bool) -> st
     known : whether the noise of places, of angles and of time stamps is
     speeds : whether a friction over slip speed does not fit, either
     """
-    floor = _may_change(problem.asked) and not speeds
+    floor = _may_change(problem.spec) and not speeds
     told = [one for one in (_by_drag(found, problem, known), _by_speed(found, problem)) if one] \
         if floor else []  # fmt: skip
     if len(told) == 2 and told[1].gain < told[0].gain + _BETTER:  # more numbers fit a little better
         del told[1]
     told = sorted(told, key=lambda one: -one.gain)[:1]
     told += _otherwise(found, problem, known)
-    air = _may_change(problem.asked) and not any(one.fits for one in told)
+    air = _may_change(problem.spec) and not any(one.fits for one in told)
     if air and (words := _by_air(found, problem, known)):
         return words
     best = max((one.gain for one in told), default=0.0)
@@ -82,15 +82,15 @@ def misread(found: Estimate, problem: Problem, known: Known, speeds: bool) -> st
 
 def _otherwise(found: Estimate, problem: Problem, known: Known) -> list[_Reading]:
     """The angles, or the radius, read otherwise, if one of these fits far better."""
-    best, given = _Reading("", math.log(_FAR)), problem.asked.known()["radius"]
+    best, given = _Reading("", math.log(_FAR)), problem.spec.known()["radius"]
     for words, other, scale in _others(problem):
         try:
-            one = fitted(other, known, refit=False)
+            one = initial_estimate(other, known, refit=False)
         except InputError:  # such a puck, or such a track, there is not
             continue
         gain = _size(found, 1.0) - _size(one, scale)
-        radius = one.problem.asked.scales(one.problem.found(one.x))[2]
-        found_radius = "radius" in other.asked.free and "radius" not in problem.asked.free
+        radius = one.problem.spec.scales(one.problem.numbers_at(one.x))[2]
+        found_radius = "radius" in other.spec.free and "radius" not in problem.spec.free
         same = found_radius and abs(radius / given - 1.0) < _NEAR
         if gain > best.gain and not same and _fits(one, problem.noise[0]):
             best = _Reading(words.format(radius), gain)
@@ -104,7 +104,7 @@ def _tells(found: Estimate, other: Estimate, noise: float) -> float:
     or a floor changes in a way that no few numbers tell it may still leave more than noise.
     """
     gain = _size(found, 1.0) - _size(other, 1.0)
-    left = float(np.median(_off(other)[0])) / noise
+    left = float(np.median(_deviations(other)[0])) / noise
     clean = gain > _LITTLE and left < _CLEAN
     fits = (gain > math.log(_FAR) or clean) and _fits(other, noise)
     return gain if fits or (gain > _MUCH and _explained(other)) else 0.0
@@ -112,30 +112,30 @@ def _tells(found: Estimate, other: Estimate, noise: float) -> float:
 
 def _dragged(problem: Problem) -> Problem:
     """The same with drag besides friction."""
-    asked = problem.asked
+    spec = problem.spec
     # from a speed e^20 times as slow, or as fast, at the end nothing is told any more
     most = _MOST_DRAG / max(float(film.time[-1]) for film in problem.films)
-    bounds = {**asked.bounds, "drag": (-most, most)}
-    return replace(problem, asked=replace(asked, free=(*asked.free, "drag"), bounds=bounds))
+    bounds = {**spec.bounds, "drag": (-most, most)}
+    return replace(problem, spec=replace(spec, free=(*spec.free, "drag"), bounds=bounds))
 
 
 def _by_drag(found: Estimate, problem: Problem, known: Known) -> _Reading | None:
     """Drag of speed and spin alike, if that fits far better."""
     other = _dragged(problem)
     try:
-        one = fitted(other, known, refit=False)
+        one = initial_estimate(other, known, refit=False)
     except InputError:
         return None
     gain = _tells(found, one, problem.noise[0])
-    words = f"with drag besides friction: find it, too (--free {','.join(other.asked.free)})"
+    words = f"with drag besides friction: find it, too (--free {','.join(other.spec.free)})"
     return _Reading(words, gain, True, _fits(one, problem.noise[0])) if gain else None
 
 
-def _may_change(asked: Asked) -> bool:
+def _may_change(spec: FitSpec) -> bool:
     """Whether nothing was asked that goes with no friction over slip speed."""
-    named = {"drag", "inner", "decel", "gravity"} & {*asked.free, *asked.fixed}
-    uniform = asked.puck.body.law.name == "uniform"
-    return uniform and not named and not asked.speeds and "friction" in asked.free
+    named = {"drag", "inner", "decel", "gravity"} & {*spec.free, *spec.fixed}
+    uniform = spec.puck.body.law.name == "uniform"
+    return uniform and not named and not spec.speeds and "friction" in spec.free
 
 
 def _by_speed(found: Estimate, problem: Problem) -> _Reading | None:
@@ -145,10 +145,10 @@ def _by_speed(found: Estimate, problem: Problem) -> _Reading | None:
     except InputError:  # hardly any friction, at no speed
         return None
     gain = _tells(found, other, problem.noise[0])
-    asked, numbers = other.problem.asked, other.problem.found(other.x)
-    speeds = asked.speeds
+    spec, numbers = other.problem.spec, other.problem.numbers_at(other.x)
+    speeds = spec.speeds
     values = [numbers[name] for name in NODES[: len(speeds)]]
-    usual = found.problem.found(found.x)["friction"]
+    usual = found.problem.numbers_at(found.x)["friction"]
     if max(values) > _MOST * usual or min(values) < _LEAST * usual:  # such a law fits noise
         return None
     told = ", ".join(f"{f:.2g} at {u:g} m/s" for u, f in zip(speeds, values, strict=True))
@@ -166,13 +166,13 @@ def _by_air(found: Estimate, problem: Problem, known: Known) -> str:
     """
     if len(problem.films) > 1 or problem.films[0].angle is None:
         return ""
-    asked, spin = problem.asked, float(found.problem.launches(found.x)[0, 4])
-    asked = asked.spinning(spin)
+    spec, spin = problem.spec, float(found.problem.launches(found.x)[0, 4])
+    spec = spec.spinning(spin)
     films = tuple(replace(film, angle=None) for film in problem.films)
-    blind = replace(problem.with_films(films), asked=asked)
+    blind = replace(problem.with_films(films), spec=spec)
     try:
-        one = fitted(blind, known, refit=False)
-        others = [tried(one), fitted(_dragged(blind), known, refit=False)]
+        one = initial_estimate(blind, known, refit=False)
+        others = [tried(one), initial_estimate(_dragged(blind), known, refit=False)]
     except InputError:
         return ""
     if not any(_tells(one, other, problem.noise[0]) for other in others):
@@ -187,9 +187,9 @@ def _by_air(found: Estimate, problem: Problem, known: Known) -> str:
 
 def _others(problem: Problem) -> Iterator[tuple[str, Problem, float]]:
     """Other readings, each in words and with the factor of its angles."""
-    asked = problem.asked
+    spec = problem.spec
     angled = any(film.angle is not None for film in problem.films)
-    if angled and not any(name in given for name in _HELD for given in (asked.fixed, asked.bounds)):
+    if angled and not any(name in given for name in _HELD for given in (spec.fixed, spec.bounds)):
         for factor, words in _ANGLES:
             films = tuple(
                 film if film.angle is None else replace(film, angle=factor * film.angle)
@@ -197,10 +197,10 @@ def _others(problem: Problem) -> Iterator[tuple[str, Problem, float]]:
             )
             noise = problem.noise[0], abs(factor) * problem.noise[1]
             yield words, replace(problem.with_films(films), noise=noise), abs(factor)
-    if angled and "radius" not in (*asked.free, *asked.fixed):  # told by angles alone
-        words = "with a radius of {:.3g} m: is " + f"{asked.puck.radius:g} m right?"
-        wider = replace(asked, free=(*asked.free, "radius"))
-        yield words, replace(problem, asked=wider), 1.0
+    if angled and "radius" not in (*spec.free, *spec.fixed):  # told by angles alone
+        words = "with a radius of {:.3g} m: is " + f"{spec.puck.radius:g} m right?"
+        wider = replace(spec, free=(*spec.free, "radius"))
+        yield words, replace(problem, spec=wider), 1.0
 
 
 def _size(found: Estimate, scale: float) -> float:
@@ -208,7 +208,7 @@ def _size(found: Estimate, scale: float) -> float:
 
     Angles that nothing explains are as far off in any unit.
     """
-    places, angles = _off(found)
+    places, angles = _deviations(found)
     if angles.size and float(np.median(angles)) < _BY_CHANCE:
         angles = angles / scale
     sizes = [size for size in (places, angles) if size.size]
@@ -218,20 +218,20 @@ def _size(found: Estimate, scale: float) -> float:
 
 def _fits(tried: Estimate, noise: float) -> bool:
     """Whether places are about as far off as their noise, and angles are explained."""
-    return _explained(tried) and float(np.median(_off(tried)[0])) < _AS_NOISE * noise
+    return _explained(tried) and float(np.median(_deviations(tried)[0])) < _AS_NOISE * noise
 
 
 def _explained(tried: Estimate) -> bool:
     """Whether angles are explained."""
-    angles = _off(tried)[1]
+    angles = _deviations(tried)[1]
     return not angles.size or float(np.median(angles)) < _BY_CHANCE
 
 
-def _off(found: Estimate) -> tuple[FloatArray, FloatArray]:
+def _deviations(found: Estimate) -> tuple[FloatArray, FloatArray]:
     """How far places (m) and angles (rad) are off."""
-    films, off = found.problem.films, found.problem.off(found.x)
+    films, deviations = found.problem.films, found.problem.deviations(found.x)
     angles = [np.empty(0)] + [
-        np.abs(one[TURN, np.isfinite(film.angle)]) for film, one in zip(films, off, strict=True)
-        if film.angle is not None
+        np.abs(one[TURN, np.isfinite(film.angle)]) for film, one in zip(films, deviations,
+        strict=True) if film.angle is not None
     ]  # fmt: skip
-    return np.concatenate([np.hypot(*one[:TURN]) for one in off]), np.concatenate(angles)
+    return np.concatenate([np.hypot(*one[:TURN]) for one in deviations]), np.concatenate(angles)

@@ -16,7 +16,9 @@ _FEW = 5  # frames in a row that may be strays by chance
 _LEAP, _MORE = 6.0, 3.0  # standard deviations, and times the way between frames beside
 
 
-def strays(off: FloatArray, far: npt.NDArray[np.bool_], limit: float) -> npt.NDArray[np.bool_]:
+def outliers_of(
+    deviations: FloatArray, far: npt.NDArray[np.bool_], limit: float
+) -> npt.NDArray[np.bool_]:
     """Which of the frames that are far off are strays (n,).
 
     Parameters
@@ -37,11 +39,15 @@ def strays(off: FloatArray, far: npt.NDArray[np.bool_], limit: float) -> npt.NDA
         return far
     found = far.copy()
     usual = np.stack([
-        np.median(off[max(0, n - _AROUND) : n + _AROUND + 1], axis=0) for n in range(len(off))
+        np.median(deviations[max(0, n - _AROUND) : n + _AROUND + 1], axis=0) for n in
+        range(len(deviations))
     ])  # fmt: skip
-    together = far & (((off - usual) ** 2).sum(axis=1) <= limit)
+    together = far & (((deviations - usual) ** 2).sum(axis=1) <= limit)
     for start, stop in _stretches(together):
-        ends = (start > 0 and not _leaps(off, start), stop < len(off) and not _leaps(off, stop))
+        ends = (
+            start > 0 and not _leaps(deviations, start),
+            stop < len(deviations) and not _leaps(deviations, stop),
+        )
         if stop - start >= _FEW and any(ends):
             found[start:stop] &= ~together[start:stop]
     return found
@@ -55,9 +61,9 @@ def _stretches(together: npt.NDArray[np.bool_]) -> list[tuple[int, int]]:
     return list(zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True))
 
 
-def _leaps(off: FloatArray, at: int) -> bool:
+def _leaps(deviations: FloatArray, at: int) -> bool:
     """Whether residuals leap between two frames, and not those beside."""
-    ways = np.linalg.norm(np.diff(off[max(0, at - 3) : at + 3], axis=0), axis=1)
+    ways = np.linalg.norm(np.diff(deviations[max(0, at - 3) : at + 3], axis=0), axis=1)
     middle = at - max(0, at - 3) - 1
     beside = np.delete(ways, middle)
     return bool(ways[middle] > max(_LEAP, _MORE * float(np.median(beside))))

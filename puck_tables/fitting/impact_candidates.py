@@ -16,8 +16,8 @@ from itertools import product
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.fitting.abreast import ROBUST, abreast
 from puck_tables.fitting.estimate import Estimate
+from puck_tables.fitting.multi_start import ROBUST, multi_start
 from puck_tables.fitting.problem import Problem
 from puck_tables.fitting.starts import numbers_with
 
@@ -35,7 +35,7 @@ _LEAST_SPEED = 1e-6
 Option = tuple[float, FloatArray]
 
 
-def ways_of(slides: Estimate) -> list[FloatArray]:
+def candidates_of(slides: Estimate) -> list[FloatArray]:
     """Unknowns of slides apart, those that were found first.
 
     Where all slides have angles there are no others.
@@ -43,19 +43,19 @@ def ways_of(slides: Estimate) -> list[FloatArray]:
     problem = slides.problem
     if all(film.angle is not None for film in problem.films):
         return [slides.x]
-    asked, numbers = problem.asked, problem.found(slides.x)
-    decel, delta, _ = asked.scales(numbers)
+    spec, numbers = problem.spec, problem.numbers_at(slides.x)
+    decel, delta, _ = spec.scales(numbers)
     decels = [decel * one for one in _DECELS] \
-        if {"friction", "decel", "gravity"} & {*asked.free} else [decel]  # fmt: skip
-    deltas = _DELTAS if {"delta", "height"} & {*asked.free} else (delta,)
-    low, high = (ends[: len(asked.free)] for ends in problem.limits)
+        if {"friction", "decel", "gravity"} & {*spec.free} else [decel]  # fmt: skip
+    deltas = _DELTAS if {"delta", "height"} & {*spec.free} else (delta,)
+    low, high = (ends[: len(spec.free)] for ends in problem.limits)
     ranked: list[tuple[float, FloatArray]] = []
     for one in decels:
         mine: list[tuple[float, FloatArray]] = []
         for tilt in deltas:
-            found = {**numbers, **numbers_with(asked, one, tilt)}
-            values = np.clip([found[name] for name in asked.free], low, high).tolist()
-            found = dict(zip(asked.free, values, strict=True))
+            found = {**numbers, **numbers_with(spec, one, tilt)}
+            values = np.clip([found[name] for name in spec.free], low, high).tolist()
+            found = dict(zip(spec.free, values, strict=True))
             options = [_spins_of(slides, n, found) for n in range(len(problem.films))]
             for chosen in product(*options):
                 launches = np.array([launch for _, launch in chosen])
@@ -73,12 +73,12 @@ def _spins_of(slides: Estimate, n: int, found: dict[str, float]) -> list[Option]
     film = problem.films[n]
     if film.angle is not None or problem.spinless[n] or (problem.rests and problem.rests[n]):
         return [(0.0, launch)]
-    radius = problem.asked.scales(found)[2]
+    radius = problem.spec.scales(found)[2]
     speed = max(math.hypot(launch[2], launch[3]), _LEAST_SPEED)
     # of few frames no spin but an absurd one is seen
     moderate = {"launch_spin": (0.0, _MODERATE * speed / radius)}
-    fixed, priors = {**problem.asked.fixed, **found}, {**moderate, **problem.asked.priors}
-    held = replace(problem.asked, free=(), fixed=fixed, priors=priors)
+    fixed, priors = {**problem.spec.fixed, **found}, {**moderate, **problem.spec.priors}
+    held = replace(problem.spec, free=(), fixed=fixed, priors=priors)
     few = np.zeros(film.time.size, bool)
     few[np.linspace(0, film.time.size - 1, _FRAMES).astype(int)] = True
     alone = Problem(held, (film.part(few),), problem.noise, problem.tall)
@@ -87,7 +87,7 @@ def _spins_of(slides: Estimate, n: int, found: dict[str, float]) -> list[Option]
         other = launch.copy()
         other[4] = held.fixed.get("launch_spin", sign * ratio * speed / radius)
         starts.append((alone, alone.unknowns({}, other[None])))
-    walked = abreast(starts, _STEPS, ROBUST)
+    walked = multi_start(starts, _STEPS, ROBUST)
     options: list[Option] = []
     for x, cost in walked:
         one = alone.launches(x)[0]

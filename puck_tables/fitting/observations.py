@@ -43,7 +43,7 @@ class Straight(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Seen:
+class Observations:
     """Frames of one track where its puck is seen.
 
     ``time`` (n,) s from ``start``; ``place`` (n, 2) m; ``angle`` (n,) rad, NaN where there is none,
@@ -66,7 +66,7 @@ class Seen:
     steps: tuple[float, float] = (0.0, 0.0)
     counts: npt.NDArray[np.bool_] | None = None
 
-    def part(self, chosen: npt.NDArray[np.bool_]) -> Seen:
+    def part(self, chosen: npt.NDArray[np.bool_]) -> Observations:
         """Some of the frames; the first of them is the new start."""
         first = float(self.time[chosen][0])
         return replace(
@@ -83,9 +83,9 @@ class Seen:
         return float(np.median(np.diff(self.time)))
 
 
-def seen_in(
+def observations_in(
     track: Track, since: float = -math.inf, until: float = math.inf, keep_all: bool = False
-) -> Seen:
+) -> Observations:
     """The frames of a track, those of free motion if its start and end are told, or all are.
 
     Raises
@@ -114,14 +114,14 @@ def seen_in(
     if angle is not None and not np.isfinite(angle).any():
         angle = None
     time = track.time[chosen]
-    return _on_grid(Seen(
+    return _on_grid(Observations(
         track.name, float(time[0]), time - time[0], track.place[chosen], angle,
         np.flatnonzero(chosen), straight=_straight(track.place[chosen]),
         cuttable=(since == -math.inf and not keep_all, until == math.inf and not keep_all),
     ))  # fmt: skip
 
 
-def _on_grid(film: Seen) -> Seen:
+def _on_grid(film: Observations) -> Observations:
     """The same with what is to be known of its rounding."""
     place, angle = noise_of([film])
     steps = [coarse(step_of(*film.place.T), place), 0.0]
@@ -157,9 +157,9 @@ def _straight(place: FloatArray) -> Straight | None:
     if size.all():
         way = np.linalg.svd(place - place.mean(axis=0), full_matrices=False)[2][0]
         way *= np.copysign(1.0, way[np.abs(way).argmax()])
-        off = place - point
-        noise = _spread([np.diff(off @ way, 3)])
-        if not np.ptp(off @ [-way[1], way[0]]) <= noise:
+        deviations = place - point
+        noise = _spread([np.diff(deviations @ way, 3)])
+        if not np.ptp(deviations @ [-way[1], way[0]]) <= noise:
             return None
     else:
         way = (size > 0.0).astype(np.float64)
@@ -167,7 +167,7 @@ def _straight(place: FloatArray) -> Straight | None:
     return Straight((x, y), (cosine, sine))
 
 
-def noise_of(films: list[Seen]) -> tuple[float, float]:
+def noise_of(films: list[Observations]) -> tuple[float, float]:
     """The spread of places (m) and angles (rad) about smooth motions, by their third differences.
 
     No model of the puck is in it, so it can judge one.  Of what is rounded it is no less than that
@@ -222,7 +222,7 @@ def wrapped(angle: FloatArray) -> FloatArray:
     return found
 
 
-def rests_from(film: Seen, spread: float) -> int:
+def rests_from(film: Observations, spread: float) -> int:
     """The first frame from which on the puck does not move any more; n where it does to the end.
 
     Examples
@@ -260,7 +260,7 @@ class Turning:
         return self.rate + more / self.step, self.angle + more * np.round(time / self.step)
 
 
-def turning_of(film: Seen) -> Turning | None:
+def turning_of(film: Observations) -> Turning | None:
     """How fast the body of a track turns; None where no angles follow each other.
 
     Means over windows are taken on the circle, so that outliers hardly count.
@@ -291,7 +291,7 @@ def turning_of(film: Seen) -> Turning | None:
     sure = len(windows) > _FEW_WINDOWS and np.abs(mean).min() > _ALIKE_TURNS and apart < _FOLLOWED
     speed = np.interp(film.time, time, rate)
     turned = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(film.time))])
-    off = film.angle - turned
-    middle = float(np.angle(np.nanmean(np.exp(1j * off))))
-    angle = turned + middle + wrapped(off - middle)
+    deviations = film.angle - turned
+    middle = float(np.angle(np.nanmean(np.exp(1j * deviations))))
+    angle = turned + middle + wrapped(deviations - middle)
     return Turning(step, time, rate, angle, bool(sure))

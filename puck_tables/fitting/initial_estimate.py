@@ -9,7 +9,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
 from puck_tables.fitting.certainty import certainty_of
-from puck_tables.fitting.estimate import Estimate, estimate, only_strays
+from puck_tables.fitting.estimate import Estimate, estimate, only_outliers
 from puck_tables.fitting.free_motion import is_clean, trimmed, without_ends
 from puck_tables.fitting.numbers import plausible_for
 from puck_tables.fitting.problem import ANGLE, Problem
@@ -22,7 +22,7 @@ _TRIMS = 3
 _JUDGED = 10  # degrees of freedom that tell the noise
 
 
-def fitted(problem: Problem, known: Known, refit: bool) -> Estimate:
+def initial_estimate(problem: Problem, known: Known, refit: bool) -> Estimate:
     """The estimate of a problem, from starts of its own.
 
     Parameters
@@ -59,7 +59,7 @@ def fitted(problem: Problem, known: Known, refit: bool) -> Estimate:
     found = _trimmed(found, problem, known)
     if len(parts) == 1 and not is_clean(found, NOISY, NO_PATTERN):
         found = _of_a_part(problem, known) or found
-    if only_strays(found):
+    if only_outliers(found):
         return found
     # frames that are off together are good ones: what the model cannot follow is not hidden
     return replace(estimate(found.problem, found.x, known, strict=True), minima=found.minima)
@@ -79,11 +79,11 @@ def _with_room(problem: Problem) -> Problem:
         return problem
     k = int(narrow[0])
     name = problem.names[k][1]
-    law = problem.asked.puck.body.law
+    law = problem.spec.puck.body.law
     if name == "delta" and law.can_lift and not problem.tall:
         return _with_room(replace(problem, tall=True))
-    least, most = problem.asked.bounds[name]
-    low, high = replace(problem, asked=replace(problem.asked, bounds={})).limits
+    least, most = problem.spec.bounds[name]
+    low, high = replace(problem, spec=replace(problem.spec, bounds={})).limits
     raise InputError(
         f"the bounds of {name}, {least:g} to {most:g}, hold none of its values: of such a puck "
         f"under pressure {law.name} {name} is from {low[k]:g} to {high[k]:g}"
@@ -101,7 +101,7 @@ def _trimmed(found: Estimate, problem: Problem, known: Known) -> Estimate:
                 for part, film in zip(films, problem.films, strict=True))  # fmt: skip
         if films == found.problem.films or any(lost):
             break
-        found = fitted(problem.with_films(films), known, refit=False)
+        found = initial_estimate(problem.with_films(films), known, refit=False)
     return found
 
 
@@ -111,7 +111,7 @@ def _of_a_part(problem: Problem, known: Known) -> Estimate | None:
     They may lead the fit of all frames so far away that none of these is seen to be foreign.
     """
     for part in without_ends(problem.films[0]):
-        found = fitted(problem.with_films((part,)), known, refit=False)
+        found = initial_estimate(problem.with_films((part,)), known, refit=False)
         found = _trimmed(found, problem, known)
         if is_clean(found):
             return found
@@ -121,12 +121,12 @@ def _of_a_part(problem: Problem, known: Known) -> Estimate | None:
 def _lifted(found: Estimate, known: Known) -> Estimate:
     """The same with part of the base lifted, where δ seems to be above that of full contact."""
     problem = found.problem
-    law = problem.asked.puck.body.law
-    delta = problem.asked.scales(problem.found(found.x))[1]
+    law = problem.spec.puck.body.law
+    delta = problem.spec.scales(problem.numbers_at(found.x))[1]
     if problem.tall or not law.can_lift or delta < _LIFTS:
         return found
     certainty = certainty_of(found.jacobian[found.kept], plausible_for(problem, found.x))
-    if certainty.undetermined[: len(problem.asked.free)].count(True):
+    if certainty.undetermined[: len(problem.spec.free)].count(True):
         return found
     return estimate(replace(problem, tall=True), found.x, known)
 
@@ -137,7 +137,7 @@ def _joint_start(
     """The unknowns of all tracks from those of each: what is shared is their weighted mean."""
     if len(parts) == 1:
         return minima[0][0]
-    shared = len(problem.asked.free)
+    shared = len(problem.spec.free)
     weights, sums, launches = np.zeros((shared, shared)), np.zeros(shared), []
     for part, (x, *_) in zip(parts, minima, strict=True):
         launches.append(part.launches(x)[0])
@@ -151,7 +151,7 @@ def _joint_start(
     mean = np.linalg.solve(weights, sums) if shared else sums
     mean = np.clip(mean, *(ends[:shared] for ends in problem.limits))
     return problem.unknowns(
-        dict(zip(problem.asked.free, mean.tolist(), strict=True)), np.array(launches)
+        dict(zip(problem.spec.free, mean.tolist(), strict=True)), np.array(launches)
     )
 
 

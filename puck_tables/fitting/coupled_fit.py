@@ -15,20 +15,26 @@ from typing import NamedTuple
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.fitting.abreast import ROBUST, abreast
-from puck_tables.fitting.asked import Asked
 from puck_tables.fitting.certainty import Certainty
 from puck_tables.fitting.estimate import FARTHEST, FARTHEST_PLACE, Estimate, estimate
-from puck_tables.fitting.impacts import Piece
-from puck_tables.fitting.joined import Wall
-from puck_tables.fitting.joining import Blow, Joined, Line, blows_of, joined
+from puck_tables.fitting.fit_spec import FitSpec
+from puck_tables.fitting.impact_candidates import candidates_of
+from puck_tables.fitting.impact_law import WallLine
+from puck_tables.fitting.impact_matching import (
+    CoupledFit,
+    ImpactMatch,
+    Line,
+    coupled,
+    matched_impacts,
+)
+from puck_tables.fitting.impacts import SlideIndex
+from puck_tables.fitting.multi_start import ROBUST, multi_start
 from puck_tables.fitting.numbers import FOLLOWS, Number, quadratic
+from puck_tables.fitting.observations import Observations
 from puck_tables.fitting.parameters import OF_PAIRS, OF_WALLS
 from puck_tables.fitting.problem import Problem
 from puck_tables.fitting.residual_tests import chi_square_tail
-from puck_tables.fitting.seen import Seen
 from puck_tables.fitting.timing import Known
-from puck_tables.fitting.ways import ways_of
 
 _BY_CHANCE = 1e-5  # of the rise of χ²: less, and the law of impact is not that of these slides
 _STEP = 1e-6
@@ -61,30 +67,30 @@ class Impact(NamedTuple):
     mass_ratio: Number | None
 
 
-def tie(
-    slides: Estimate, pieces: tuple[Piece, ...], films: tuple[Seen, ...], asked: Asked,
-    lines: Sequence[Line], known: Known,
+def couple(
+    slides: Estimate, pieces: tuple[SlideIndex, ...], films: tuple[Observations, ...], spec:
+    FitSpec, lines: Sequence[Line], known: Known,
 ) -> tuple[Estimate, str]:  # fmt: skip
     """The estimate of joined slides; that of slides apart and a sentence if these are not joined.
 
     Parameters
     ----------
-    slides, pieces, films, asked, lines : as :func:`puck_tables.fitting.joining.joined`
+    slides, pieces, films, spec, lines : as :func:`puck_tables.fitting.impact_matching.coupled`
     known : whether the noise of places and of angles is
     """
-    groups: dict[tuple[object, ...], list[Joined]] = {}
-    ways = ways_of(slides)
+    groups: dict[tuple[object, ...], list[CoupledFit]] = {}
+    ways = candidates_of(slides)
     for x in ways:
-        for one in joined(slides.problem, x, pieces, films, asked, lines):
+        for one in coupled(slides.problem, x, pieces, films, spec, lines):
             frames = tuple(film.time.size for film in one.problem.films)
             groups.setdefault((one.problem.names, one.pieces, frames), []).append(one)
     if not groups:
         return slides, ""
-    most = max(len(group[0].problem.meetings) for group in groups.values())
+    most = max(len(group[0].problem.impact_specs) for group in groups.values())
     fits = []
     for group in groups.values():
         whole = group[0]
-        if len(whole.problem.meetings) == most:
+        if len(whole.problem.impact_specs) == most:
             best = _deepest(group, known)
             fits.append((_rise(slides, best, whole), best))
     least = min(rise for rise, _ in fits)
@@ -100,11 +106,11 @@ def tie(
     return replace(found, minima=(*found.minima, *_gripping(found))), ""
 
 
-def _deepest(group: list[Joined], known: Known) -> Estimate:
+def _deepest(group: list[CoupledFit], known: Known) -> Estimate:
     """The estimate from the best of several starts, with other minima near which it may lie."""
     if len(group) == 1:
         return estimate(group[0].problem, group[0].start, known)
-    walked = abreast([(one.problem, one.start) for one in group], _WALK, ROBUST, _RIVAL)
+    walked = multi_start([(one.problem, one.start) for one in group], _WALK, ROBUST, _RIVAL)
     found = estimate(group[0].problem, walked[0][0], known)
     return replace(found, minima=tuple(x for x, cost in walked if cost < walked[0][1] + _RIVAL))
 
@@ -127,12 +133,12 @@ def _unlikely(found: Estimate) -> int:
     Last is a friction that no impact tells, as all rims grip.
     """
     problem = found.problem
-    if not {"rim_friction", "pair_friction"} & {*problem.asked.free}:
+    if not {"rim_friction", "pair_friction"} & {*problem.spec.free}:
         return 1
-    numbers = problem.found(found.x)
-    for meeting, hit in zip(problem.meetings, problem.slides(found.x)[1], strict=True):
-        friction = problem.asked.rims(numbers, meeting.wall < 0).friction
-        if abs(hit.ratio) >= (1.0 - _STEP) * friction:
+    numbers = problem.numbers_at(found.x)
+    for impact_spec, impact in zip(problem.impact_specs, problem.slides(found.x)[1], strict=True):
+        friction = problem.spec.rims(numbers, impact_spec.wall < 0).friction
+        if abs(impact.ratio) >= (1.0 - _STEP) * friction:
             return 0
     return 2
 
@@ -148,23 +154,23 @@ def not_met(impacts: Sequence[Impact], problem: Problem, lines: Sequence[Line]) 
     """
     if not impacts:
         return ("No impact was found: each track is taken for one slide",)
-    if not problem.meetings:  # nothing is joined at walls
+    if not problem.impact_specs:  # nothing is joined at walls
         return ()
-    met = [wall for wall in problem.walls if wall is not None]
+    impact_at = [wall for wall in problem.walls if wall is not None]
     return tuple(
         f"No impact was found on the wall through ({ax:g}, {ay:g}) and ({bx:g}, {by:g}): see that "
         "its points are in m, along the axes of the tracks"
         for (ax, ay), (bx, by) in lines
-        if not any(_through(wall, ax, ay) and _through(wall, bx, by) for wall in met)
+        if not any(_through(wall, ax, ay) and _through(wall, bx, by) for wall in impact_at)
     )
 
 
-def _through(wall: Wall, x: float, y: float) -> bool:
-    off = x * math.cos(wall.angle) + y * math.sin(wall.angle) - wall.distance
-    return abs(off) <= _SAME * max(abs(x), abs(y), abs(wall.distance))
+def _through(wall: WallLine, x: float, y: float) -> bool:
+    deviations = x * math.cos(wall.angle) + y * math.sin(wall.angle) - wall.distance
+    return abs(deviations) <= _SAME * max(abs(x), abs(y), abs(wall.distance))
 
 
-def _rise(slides: Estimate, found: Estimate, whole: Joined) -> float:
+def _rise(slides: Estimate, found: Estimate, whole: CoupledFit) -> float:
     """By how much χ² is larger, over the frames of all slides, with the noise of these."""
     noise = slides.problem.noise
     apart = _frame_squares(slides.problem, slides.x)
@@ -188,68 +194,68 @@ def _frame_squares(problem: Problem, x: FloatArray) -> list[FloatArray]:
     return found
 
 
-def impacts_joined(
+def impacts_coupled(
     found: Estimate, certainty: Certainty, numbers: dict[str, Number]
 ) -> tuple[Impact, ...]:
     """The impacts of a joint fit."""
     problem = found.problem
 
     def ratios(x: FloatArray) -> FloatArray:
-        return np.array([hit.ratio for hit in problem.slides(x)[1]])
+        return np.array([impact.ratio for impact in problem.slides(x)[1]])
 
     slopes = _slopes(found, certainty, ratios)
     first = problem.films[0].start
     impacts = []
-    hits = problem.slides(found.x)[1]
-    for meeting, hit, slope in zip(problem.meetings, hits, slopes, strict=True):
-        pair = meeting.wall < 0
+    impact_states = problem.slides(found.x)[1]
+    for impact_spec, impact, slope in zip(problem.impact_specs, impact_states, slopes, strict=True):
+        pair = impact_spec.wall < 0
         names = list(OF_PAIRS if pair else OF_WALLS)
         error = certainty.error_of(slope, 1.0)
-        films = [problem.films[n].name for n in meeting.films]
+        films = [problem.films[n].name for n in impact_spec.films]
         impacts.append(Impact(
-            films[0], films[1] if pair else "", first + hit.time,
-            (float(hit.place[0]), float(hit.place[1])), hit.toward, numbers[names[0]],
-            quadratic(hit.ratio, error, "1", FOLLOWS, certainty.reach),
+            films[0], films[1] if pair else "", first + impact.time,
+            (float(impact.place[0]), float(impact.place[1])), impact.toward,
+            numbers[names[0]], quadratic(impact.ratio, error, "1", FOLLOWS, certainty.reach),
             numbers[names[3]] if pair else None,
         ))  # fmt: skip
     return tuple(impacts)
 
 
 def impacts_apart(
-    slides: Estimate, pieces: tuple[Piece, ...], certainty: Certainty, names: Sequence[str]
+    slides: Estimate, pieces: tuple[SlideIndex, ...], certainty: Certainty, names: Sequence[str]
 ) -> tuple[Impact, ...]:
     """The impacts between slides with launches of their own; ``names``: of the tracks."""
     problem = slides.problem
-    blows = blows_of(problem, pieces, slides.x)
+    matches = matched_impacts(problem, pieces, slides.x)
 
     def values(x: FloatArray) -> FloatArray:
         """Restitution, ratio and mass of each; as they are where an impact comes to nothing."""
-        others = {_key(blow): blow for blow in blows_of(problem, pieces, x)}
-        rows = [others.get(_key(blow), blow) for blow in blows]
+        others = {_key(match_): match_ for match_ in matched_impacts(problem, pieces, x)}
+        rows = [others.get(_key(match_), match_) for match_ in matches]
         return np.array([[one.restitution, one.ratio, one.mass] for one in rows]).ravel()
 
-    if not blows:
+    if not matches:
         return ()
-    slopes = _slopes(slides, certainty, values).reshape(len(blows), 3, -1)
+    slopes = _slopes(slides, certainty, values).reshape(len(matches), 3, -1)
     impacts = []
-    for blow, slope in zip(blows, slopes, strict=True):
+    for match_, slope in zip(matches, slopes, strict=True):
         numbers = [
             quadratic(value, certainty.error_of(one, 1.0), "1", FOLLOWS, certainty.reach)
-            for value, one in zip((blow.restitution, blow.ratio, blow.mass), slope, strict=True)
-            if math.isfinite(value)
+            for value, one in zip((match_.restitution, match_.ratio, match_.mass), slope,
+            strict=True) if math.isfinite(value)
         ]  # fmt: skip
-        tracks = [names[pieces[bend.piece].track] for bend in blow.bends]
-        x, y = blow.bends[0].before[:2].tolist()
+        tracks = [names[pieces[kink.piece].track] for kink in match_.kinks_of_slides]
+        x, y = match_.kinks_of_slides[0].before[:2].tolist()
         impacts.append(Impact(
             tracks[0], tracks[1] if len(tracks) > 1 else "",
-            problem.films[0].start + blow.bends[0].time, (x, y), blow.toward, numbers[0],
-            numbers[1], numbers[2] if len(tracks) > 1 else None,
+            problem.films[0].start + match_.kinks_of_slides[0].time, (x, y), match_.toward,
+            numbers[0], numbers[1], numbers[2] if len(tracks) > 1 else None,
         ))  # fmt: skip
     return tuple(impacts)
 
 
-def _key(blow: Blow) -> tuple[int, ...]:
-    return tuple(bend.piece for bend in blow.bends)
+def _key(match_: ImpactMatch) -> tuple[int, ...]:
+    return tuple(kink.piece for kink in match_.kinks_of_slides)
 
 
 def _slopes(found: Estimate, certainty: Certainty, of: Values) -> FloatArray:

@@ -12,45 +12,40 @@ import numpy as np
 from puck_tables._core.real import instance, real
 from puck_tables.errors import InputError
 from puck_tables.film.puck_track import Track
-from puck_tables.fitting.asked import Asked
-from puck_tables.fitting.blindness import blind_spots
-from puck_tables.fitting.by_speed import over_speeds
-from puck_tables.fitting.certainty import (
-    Certainty,
-    certainty_of,
-    pinned_of,
-    widened,
-)
-from puck_tables.fitting.doubts import ran_away
+from puck_tables.fitting.certainty import Certainty, certainty_of, pinned_of, widened
+from puck_tables.fitting.coupled_fit import Impact, couple, impacts_apart, impacts_coupled, not_met
 from puck_tables.fitting.estimate import Estimate, estimate, freedom
-from puck_tables.fitting.fitted import fitted
-from puck_tables.fitting.given import (
+from puck_tables.fitting.fit_result import Fit
+from puck_tables.fitting.fit_spec import FitSpec
+from puck_tables.fitting.held_out import HeldOut, predicted, split
+from puck_tables.fitting.identifiability import not_identifiable
+from puck_tables.fitting.impact_matching import Line
+from puck_tables.fitting.impacts import SlideIndex, cut
+from puck_tables.fitting.initial_estimate import initial_estimate
+from puck_tables.fitting.inputs import (
     begin_noise,
-    films_of,
-    jitter_given,
-    noise_given,
+    checked_jitter,
+    checked_noise,
+    checked_rows,
+    checked_speeds,
+    checked_walls,
+    observations_of,
     refuse_faster,
     refuse_opening,
     refuse_tipping,
     refuse_wobbling,
-    rows_given,
-    speeds_given,
-    walls_given,
 )
-from puck_tables.fitting.held_out import HeldOut, predicted, split
-from puck_tables.fitting.impacts import Piece, cut
-from puck_tables.fitting.joining import Line
-from puck_tables.fitting.laws import LawScore, chi2_under, compare, variants_of
-from puck_tables.fitting.misread import misread
+from puck_tables.fitting.law_comparison import LawScore, chi2_under, compare, variants_of
+from puck_tables.fitting.misfit import misfit
+from puck_tables.fitting.no_spin import without_spin
 from puck_tables.fitting.numbers import numbers_of, plausible_for
-from puck_tables.fitting.outcome import Fit
+from puck_tables.fitting.observations import Observations, noise_of
+from puck_tables.fitting.other_minima import mirrored, other_minima, taken
+from puck_tables.fitting.plausibility import ran_away
 from puck_tables.fitting.problem import Problem
 from puck_tables.fitting.residual_tests import drift, excess_of, may_misfit, no_answer, runs
-from puck_tables.fitting.rivals import mirrored, rivals_of, taken
-from puck_tables.fitting.seen import Seen, noise_of
-from puck_tables.fitting.tied import Impact, impacts_apart, impacts_joined, not_met, tie
+from puck_tables.fitting.speed_law_fit import over_speeds
 from puck_tables.fitting.timing import Known
-from puck_tables.fitting.unspun import without_spin
 from puck_tables.puck import Puck
 
 Progress = Callable[[int, int], None]
@@ -161,41 +156,41 @@ def fit(
     (0.15, 0.025)
     """
     instance("puck", puck, Puck)
-    films = films_of(tracks, since, until, keep_all, rows_given(rows), puck.radius)
-    lines = walls_given(walls)
+    films = observations_of(tracks, since, until, keep_all, checked_rows(rows), puck.radius)
+    lines = checked_walls(walls)
     impacts = impacts or bool(lines)
-    asked = Asked.of(
+    spec = FitSpec.of(
         puck, free, fixed or {}, prior or {}, bounds or {}, start or {}, impacts, rows is not None
     )
-    given, known_noise = noise_given(noise)
-    stamps = jitter_given(jitter)
-    speeds = speeds_given(slip_speeds, between)
+    given, known_noise = checked_noise(noise)
+    stamps = checked_jitter(jitter)
+    speeds = checked_speeds(slip_speeds, between)
     if speeds:
-        asked.over(speeds, between)
+        spec.over(speeds, between)
     known = Known(*known_noise, stamps is not None)
     judged = noise_of(list(films))
     begin = tuple(
         value if value is not None else begin_noise(one, films)
         for value, one in zip(given, judged, strict=True)
     )
-    refuse_tipping(asked, films, begin[0])
-    questions = variants_of(asked.alone(), laws)
+    refuse_tipping(spec, films, begin[0])
+    questions = variants_of(spec.alone(), laws)
     uncut = films
-    pieces: tuple[Piece, ...] = ()
+    pieces: tuple[SlideIndex, ...] = ()
     rests: tuple[bool, ...] = ()
     if impacts:
         films, pieces, rests = cut(films, begin[0])
-    problem = Problem(asked.alone(), films, (begin[0], begin[1]), rests=rests)
+    problem = Problem(spec.alone(), films, (begin[0], begin[1]), rests=rests)
     problem = replace(problem, jitter=_begin_jitter(problem, begin[0], stamps))
     held = None if hold_out is None else _held(hold_out)
     if held is not None:
         split(films, held, begin[0])
     steps = 1 + len(laws) + (hold_out is not None)
     say = progress or (lambda done, total: None)
-    found = slides = fitted(problem, known, refit=True)
+    found = slides = initial_estimate(problem, known, refit=True)
     untied = ""
     if impacts:
-        found, untied = tie(slides, pieces, uncut, asked, lines, known)
+        found, untied = couple(slides, pieces, uncut, spec, lines, known)
     constant = found
     if speeds:
         refuse_faster(speeds, found)
@@ -205,31 +200,31 @@ def fit(
     certainty = _certainty(found, known)
     refuse_wobbling(found, certainty)
     excess = max(excess_of(found, judged), 1.0)
-    rivals = rivals_of(found, certainty, excess)
+    rivals = other_minima(found, certainty, excess)
     other = taken(found, rivals, excess)
     if other is not None:
         found = replace(estimate(found.problem, other.estimate.x, known), minima=found.minima)
         certainty = _certainty(found, known)
-        rivals = rivals_of(found, certainty, max(excess_of(found, judged), 1.0))
+        rivals = other_minima(found, certainty, max(excess_of(found, judged), 1.0))
     unsigned = mirrored(found, certainty)
     if any(certainty.pinned) or may_misfit(found, known, judged):
         certainty = widened(found, certainty)
     # bounds that the caller gives may keep every motion away: that is said of the bound
     held_off = any(
-        found.problem.names[k][1] in asked.bounds for k in np.flatnonzero(certainty.pinned)
+        found.problem.names[k][1] in spec.bounds for k in np.flatnonzero(certainty.pinned)
     )
     nowhere = "" if held_off else no_answer(found, known, judged)
     astray = nowhere or ran_away(found.problem, found.x)
     seen, certainty = certainty, certainty.lost() if astray else certainty
     numbers, launches = numbers_of(found, certainty, rivals, unsigned)
-    lost = tuple(n for n in found.problem.asked.free if not numbers[n].determined)
+    lost = tuple(n for n in found.problem.spec.free if not numbers[n].determined)
     scores: tuple[LawScore, ...] = ()
     if laws:
 
-        def of_law(one: Asked, noise: tuple[float, float], fixed_noise: Known) -> Estimate:
+        def of_law(one: FitSpec, noise: tuple[float, float], fixed_noise: Known) -> Estimate:
             # frames that another law leaves out at the ends may be those that tell
-            same = replace(problem, asked=one, noise=noise, jitter=slides.problem.jitter)
-            return fitted(same, fixed_noise._replace(jitter=True), refit=False)
+            same = replace(problem, spec=one, noise=noise, jitter=slides.problem.jitter)
+            return initial_estimate(same, fixed_noise._replace(jitter=True), refit=False)
 
         scores = compare(questions, (begin[0], begin[1]), known, of_law)
         say(1 + len(laws), steps)
@@ -238,13 +233,13 @@ def fit(
         predictions = _held_out(found, held, known)
         say(steps, steps)
     blind = () if nowhere else without_spin(found, numbers, known)
-    blind += (f"{astray}.",) if astray else blind_spots(found, seen, lost, rivals, unsigned)
-    hits: tuple[Impact, ...] = ()
-    if found.problem.meetings:
-        hits = impacts_joined(found, certainty, numbers)
+    blind += (f"{astray}.",) if astray else not_identifiable(found, seen, lost, rivals, unsigned)
+    impact_states: tuple[Impact, ...] = ()
+    if found.problem.impact_specs:
+        impact_states = impacts_coupled(found, certainty, numbers)
     elif impacts:
         names = [film.name for film in uncut]
-        hits = impacts_apart(found, pieces, certainty, names)
+        impact_states = impacts_apart(found, pieces, certainty, names)
     left_out = _left_out((*films, *uncut), found.problem.films)
     result = Fit(
         given=puck,
@@ -265,16 +260,16 @@ def fit(
         astray=astray,
         laws=scores,
         held_out=predictions,
-        impacts=hits,
+        impacts=impact_states,
         untied=untied,
-        not_met=not_met(hits, found.problem, lines) if impacts else (),
+        not_met=not_met(impact_states, found.problem, lines) if impacts else (),
         constant_chi2=chi2_under(constant, found.problem.noise) if speeds else math.nan,
         estimate=found,
         certainty=certainty,
         uncut=uncut,
     )
     if result.complaints:
-        result = replace(result, misread=misread(slides, problem, known, bool(speeds)))
+        result = replace(result, misfit=misfit(slides, problem, known, bool(speeds)))
     return result
 
 
@@ -301,7 +296,7 @@ def _certainty(found: Estimate, known: Known) -> Certainty:
 
 
 def _left_out(
-    before: tuple[Seen, ...], after: tuple[Seen, ...]
+    before: tuple[Observations, ...], after: tuple[Observations, ...]
 ) -> tuple[tuple[str, int, int], ...]:
     """How many frames at the start and the end of each track are no free motion."""
     named = {film.name: film for film in reversed(before)}
@@ -326,9 +321,9 @@ def _cut_off(
     if not said:
         return ""
     films = tuple(replace(film, cuttable=(False, False)) for film in problem.films)
-    kept = fitted(problem.with_films(films), known, refit=True)
+    kept = initial_estimate(problem.with_films(films), known, refit=True)
     numbers = ", ".join(
-        f"{name} {value:.4g}" for name, value in kept.problem.found(kept.x).items()
+        f"{name} {value:.4g}" for name, value in kept.problem.numbers_at(kept.x).items()
     )  # fmt: skip
     more = kept.problem.noise[0] * math.sqrt(kept.chi2 / max(kept.degrees, 1))
     more /= found.problem.noise[0] * math.sqrt(found.chi2 / max(found.degrees, 1)) or 1.0
@@ -350,8 +345,8 @@ def _held_out(found: Estimate, wanted: float | tuple[str, ...], known: Known) ->
     problem = found.problem
     films, later = split(problem.films, wanted, problem.noise[0])
     fewer = problem.with_films(films)
-    if problem.meetings or problem.asked.speeds:
+    if problem.impact_specs or problem.spec.speeds:
         part = estimate(fewer, found.x, known)
     else:
-        part = fitted(fewer, known, refit=False)
+        part = initial_estimate(fewer, known, refit=False)
     return predicted(part, _certainty(part, known), problem.films, later)

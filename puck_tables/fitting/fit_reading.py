@@ -9,7 +9,7 @@ from typing import Any
 from puck_tables._core.real import one_velocity, real
 from puck_tables._core.safe_read import read_whole
 from puck_tables.errors import InputError
-from puck_tables.fitting.outcome import KIND
+from puck_tables.fitting.fit_result import KIND
 from puck_tables.puck import Puck
 
 _LARGEST = 1 << 26  # bytes

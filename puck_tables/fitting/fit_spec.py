@@ -16,9 +16,8 @@ from puck_tables._core.real import instance
 from puck_tables.contact.laws import law_of
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import InputError
-from puck_tables.fitting.joined import Rims
-from puck_tables.fitting.launched import BySpeed, Moving
-from puck_tables.fitting.natural import curve_of
+from puck_tables.fitting.forward_model import Moving, SpeedFriction
+from puck_tables.fitting.impact_law import Rims
 from puck_tables.fitting.parameters import (
     ALL,
     LARGEST,
@@ -37,6 +36,7 @@ from puck_tables.fitting.parameters import (
     prior_of,
     refuse_unknown,
 )
+from puck_tables.fitting.unit_motions import unit_motions_of
 from puck_tables.puck import Puck
 
 _KIND = ("gyration", "inner", "drag")  # change the curve itself
@@ -46,7 +46,7 @@ _LEAST = 1e-9
 
 
 @dataclass(frozen=True)
-class Asked:
+class FitSpec:
     """What is to be found and what is known.
 
     Parameters
@@ -86,7 +86,7 @@ class Asked:
     bounds: Mapping[str, tuple[float, float]]
     start: Mapping[str, float]
     freed: tuple[str, ...] = ()
-    met: Mapping[str, float] = field(default_factory=dict)
+    impact_at: Mapping[str, float] = field(default_factory=dict)
     speeds: tuple[float, ...] = ()
     between: str = "cubic"
 
@@ -95,7 +95,7 @@ class Asked:
         cls, puck: Puck, free: Iterable[str] | None, fixed: Mapping[str, Any],
         priors: Mapping[str, Any], bounds: Mapping[str, Any], start: Mapping[str, Any],
         impacts: bool = False, rows: bool = False,
-    ) -> Asked:  # fmt: skip
+    ) -> FitSpec:  # fmt: skip
         """Checked, with what is free where nothing is said: f, and δ of a puck without height."""
         instance("puck", puck, Puck)
         if not SMALLEST <= puck.radius <= LARGEST:
@@ -192,7 +192,7 @@ class Asked:
         numbers["drag"] = 0.0
         if _is_annulus(puck):
             numbers["inner"] = float(puck.body.law.name.partition(":")[2])
-        return {**numbers, **self.met, **{n: v for n, v in self.fixed.items() if n in PUCK}}
+        return {**numbers, **self.impact_at, **{n: v for n, v in self.fixed.items() if n in PUCK}}
 
     def scales(self, found: Mapping[str, Any]) -> tuple[Any, Any, Any]:
         """J, δ and r of what is found; of complex numbers, too."""
@@ -212,13 +212,13 @@ class Asked:
             float((value + 0j).imag) / _TINY for value in self.scales(complex_values)
         )
 
-    def alone(self) -> Asked:
+    def alone(self) -> FitSpec:
         """The same without the numbers of impacts: of slides that nothing joins."""
         own = tuple(name for name in self.free if name not in OF_IMPACTS)
         priors = {name: one for name, one in self.priors.items() if name not in OF_IMPACTS}
-        return replace(self, free=own, priors=priors, met={})
+        return replace(self, free=own, priors=priors, impact_at={})
 
-    def spinning(self, spin: float) -> Asked:
+    def spinning(self, spin: float) -> FitSpec:
         """The same with the launch spin (rad/s) held."""
         priors, bounds, start = {**self.priors}, {**self.bounds}, {**self.start}
         for given in (priors, bounds, start):
@@ -226,7 +226,7 @@ class Asked:
         fixed = {**self.fixed, "launch_spin": spin}
         return replace(self, fixed=fixed, priors=priors, bounds=bounds, start=start)
 
-    def joined(self, sizes: Collection[int], grips: bool) -> Asked:
+    def coupled(self, sizes: Collection[int], grips: bool) -> FitSpec:
         """The same with the numbers of the impacts that there are.
 
         ``sizes``: how many pucks meet, 1 those with walls; ``grips``: whether rims stop on what
@@ -237,7 +237,7 @@ class Asked:
         InputError
             If a number of impacts is named that are not there.
         """
-        free, met = list(self.alone().free), {}
+        free, impact_at = list(self.alone().free), {}
         named = [name for name in self.free if name in OF_IMPACTS]
         for size, numbers, what in ((1, OF_WALLS, "a wall"), (2, OF_PAIRS, "two pucks")):
             if size not in sizes:
@@ -249,8 +249,10 @@ class Asked:
             rub = tangential if grips and friction not in named else friction
             mine = [name for name in numbers if name in (restitution, rub, *named)]
             free += [name for name in mine if name not in self.fixed]
-            met.update({n: v for n, v in numbers.items() if n not in mine and math.isfinite(v)})
-        return replace(self, free=tuple(free), met=met)
+            impact_at.update(
+                {n: v for n, v in numbers.items() if n not in mine and math.isfinite(v)}
+            )
+        return replace(self, free=tuple(free), impact_at=impact_at)
 
     def rims(self, found: Mapping[str, float], pair: bool) -> Rims:
         """How rims meet, of two pucks or of one and a wall."""
@@ -264,7 +266,7 @@ class Asked:
         """The time in which a picture is read, s."""
         return {**self.fixed, **found}.get("readout", 0.0)
 
-    def changes_curve(self, name: str) -> bool:
+    def changes_motion(self, name: str) -> bool:
         """Whether a parameter is none of the scales."""
         return name in _KIND or name in NODES
 
@@ -275,20 +277,22 @@ class Asked:
         pressure: Any = self.puck.body.law
         if "inner" in found or "inner" in self.fixed:
             pressure = f"annulus:{numbers['inner']!r}"
-        curve = curve_of(pressure, numbers["gyration"], tall)
+        motions = unit_motions_of(pressure, numbers["gyration"], tall)
         by_speed = None
         if self.speeds:
             law = self.speed_law(numbers)
-            by_speed = BySpeed(law, numbers["gravity"], numbers["gyration"])
+            by_speed = SpeedFriction(law, numbers["gravity"], numbers["gyration"])
         # while a minimum is sought J, r and h may lead beyond; where it lies is judged in the end
-        return Moving(decel, min(delta, curve.highest), radius, numbers["drag"], curve, by_speed)
+        return Moving(
+            decel, min(delta, motions.highest), radius, numbers["drag"], motions, by_speed
+        )
 
     def speed_law(self, numbers: Mapping[str, float]) -> SpeedLaw:
         """The friction coefficient over slip speed."""
         values = [numbers[name] for name in NODES[: len(self.speeds)]]
         return SpeedLaw(list(self.speeds), values, self.between)
 
-    def over(self, speeds: tuple[float, ...], between: str) -> Asked:
+    def over(self, speeds: tuple[float, ...], between: str) -> FitSpec:
         """The same with a friction coefficient for each of these slip speeds.
 
         Raises
@@ -323,7 +327,7 @@ class Asked:
         pressure = self.puck.body.law
         if "inner" in self.fixed:
             pressure = law_of(f"annulus:{self.fixed['inner']!r}")
-        return curve_of(pressure, self.known()["gyration"], tall).highest
+        return unit_motions_of(pressure, self.known()["gyration"], tall).highest
 
     def steepest(self, name: str) -> float:
         """The largest friction, or J, of a puck of known height and radius: 2fh/r is its δ."""

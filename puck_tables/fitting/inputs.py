@@ -15,13 +15,13 @@ from puck_tables.contact.speed_law import KINDS
 from puck_tables.errors import InputError
 from puck_tables.film.pairs import marks_of_one
 from puck_tables.film.puck_track import Track
-from puck_tables.fitting.asked import Asked
 from puck_tables.fitting.certainty import Certainty
 from puck_tables.fitting.estimate import Estimate
+from puck_tables.fitting.fit_spec import FitSpec
+from puck_tables.fitting.impact_matching import Line
 from puck_tables.fitting.impacts import turns
-from puck_tables.fitting.joining import Line
+from puck_tables.fitting.observations import Observations, noise_of, observations_in, rests_from
 from puck_tables.fitting.parameters import MOST_NODES
-from puck_tables.fitting.seen import Seen, noise_of, rests_from, seen_in
 from puck_tables.fitting.starts import slowing_of
 
 MOST_FRAMES = 100_000
@@ -33,10 +33,10 @@ _SLOWER = 0.3  # times the deceleration seen: friction is no less
 _TIPS = 4.0  # δ
 
 
-def films_of(
+def observations_of(
     tracks: Any, since: float, until: float, keep_all: bool, rows: tuple[float, float] | None,
     radius: float,
-) -> tuple[Seen, ...]:  # fmt: skip
+) -> tuple[Observations, ...]:  # fmt: skip
     """The tracks, checked, with different names.
 
     ``keep_all``: whether all their frames are of free motion; ``radius`` m: of the puck, two of
@@ -59,7 +59,7 @@ def films_of(
     names = [track.name for track in listed]
     films = []
     for n, track in enumerate(listed):
-        film = seen_in(track, since, until, keep_all)
+        film = observations_in(track, since, until, keep_all)
         if names.count(track.name) > 1:
             film = replace(film, name=f"{track.name} {n + 1}")
         if rows is not None:
@@ -78,7 +78,7 @@ def films_of(
     return tuple(films)
 
 
-def _refuse_far(film: Seen) -> None:
+def _refuse_far(film: Observations) -> None:
     """Refuse a track, or a time, that is no slide of a puck by its size alone.
 
     Raises
@@ -94,7 +94,7 @@ def _refuse_far(film: Seen) -> None:
             )
 
 
-def _refuse_still(film: Seen) -> None:
+def _refuse_still(film: Observations) -> None:
     """Refuse a track of a puck that lies still.
 
     Raises
@@ -120,7 +120,7 @@ def refuse_wobbling(found: Estimate, certainty: Certainty) -> None:
             _refuse_within(film, problem.noise[0])
 
 
-def _refuse_within(film: Seen, spread: float) -> None:
+def _refuse_within(film: Observations, spread: float) -> None:
     """Refuse a track of a puck that does not leave its place by more than some spread (m).
 
     Raises
@@ -134,7 +134,7 @@ def _refuse_within(film: Seen, spread: float) -> None:
         )
 
 
-def _refuse_twice(one: Seen, other: Seen) -> None:
+def _refuse_twice(one: Observations, other: Observations) -> None:
     """Refuse a film that is given twice: it would count for two.
 
     Raises
@@ -154,18 +154,18 @@ def _refuse_twice(one: Seen, other: Seen) -> None:
         )
 
 
-def refuse_tipping(asked: Asked, films: tuple[Seen, ...], noise: float) -> None:
+def refuse_tipping(spec: FitSpec, films: tuple[Observations, ...], noise: float) -> None:
     """Refuse a height at which a puck that slows down as these would tip over.
 
     Raises
     ------
     InputError
     """
-    known = asked.known()
-    if asked.uses_delta or "height" in asked.free or known["height"] == 0.0:
+    known = spec.known()
+    if spec.uses_delta or "height" in spec.free or known["height"] == 0.0:
         return
-    decel = known["decel"] if "decel" in asked.fixed else known["friction"] * known["gravity"]
-    if {"decel", "friction", "gravity"} & {*asked.free}:
+    decel = known["decel"] if "decel" in spec.fixed else known["friction"] * known["gravity"]
+    if {"decel", "friction", "gravity"} & {*spec.free}:
         decel = _SLOWER * min(slowing_of(film, noise) for film in films)
     tilt = 2.0 * decel * known["height"] / (known["gravity"] * known["radius"])
     if tilt > _TIPS:
@@ -176,7 +176,7 @@ def refuse_tipping(asked: Asked, films: tuple[Seen, ...], noise: float) -> None:
         )
 
 
-def jitter_given(given: Any) -> float | None:
+def checked_jitter(given: Any) -> float | None:
     """The standard deviation of time stamps, s; None if it is to be found, 0 if there is none.
 
     Raises
@@ -192,7 +192,7 @@ def jitter_given(given: Any) -> float | None:
     return positive("jitter", given, "s")
 
 
-def rows_given(given: Any) -> tuple[float, float] | None:
+def checked_rows(given: Any) -> tuple[float, float] | None:
     """Y of the first and the last line of a picture, m.
 
     Raises
@@ -214,7 +214,7 @@ def rows_given(given: Any) -> tuple[float, float] | None:
     return first, last
 
 
-def speeds_given(given: Any, between: Any) -> tuple[float, ...]:
+def checked_speeds(given: Any, between: Any) -> tuple[float, ...]:
     """Slip speeds at which friction is found, m/s, none where it does not depend on them.
 
     Raises
@@ -244,7 +244,7 @@ def refuse_faster(speeds: tuple[float, ...], found: Estimate) -> None:
     InputError
     """
     problem = found.problem
-    radius = problem.asked.scales(problem.found(found.x))[2]
+    radius = problem.spec.scales(problem.numbers_at(found.x))[2]
     fastest = max(
         math.hypot(vx, vy) + radius * abs(spin)
         for _, _, vx, vy, spin, _ in problem.launches(found.x).tolist()
@@ -264,9 +264,9 @@ def refuse_opening(found: Estimate) -> None:
     InputError
     """
     problem = found.problem
-    numbers = problem.found(found.x)
-    law = problem.asked.speed_law(numbers)
-    _, delta, _ = problem.asked.scales(numbers)
+    numbers = problem.numbers_at(found.x)
+    law = problem.spec.speed_law(numbers)
+    _, delta, _ = problem.spec.scales(numbers)
     largest = float(delta * law.largest(law.top_speed) / law(0.0))
     if largest > 1.0:
         raise InputError(
@@ -275,7 +275,7 @@ def refuse_opening(found: Estimate) -> None:
         )
 
 
-def walls_given(given: Any) -> tuple[Line, ...]:
+def checked_walls(given: Any) -> tuple[Line, ...]:
     """Walls, each by two points (x, y) m on it.
 
     Raises
@@ -302,7 +302,7 @@ def walls_given(given: Any) -> tuple[Line, ...]:
     return tuple(lines)
 
 
-def noise_given(given: Any) -> tuple[tuple[float | None, float | None], tuple[bool, bool]]:
+def checked_noise(given: Any) -> tuple[tuple[float | None, float | None], tuple[bool, bool]]:
     """The noise as given, and which of it was.
 
     Raises
@@ -329,7 +329,7 @@ def noise_given(given: Any) -> tuple[tuple[float | None, float | None], tuple[bo
     return (checked[0], checked[1]), (checked[0] is not None, checked[1] is not None)
 
 
-def begin_noise(judged: float, films: tuple[Seen, ...]) -> float:
+def begin_noise(judged: float, films: tuple[Observations, ...]) -> float:
     """Noise to begin with."""
     size = max(float(np.ptp(film.place, axis=0).max()) for film in films)
     least = 1e-9 * (size or 1.0)

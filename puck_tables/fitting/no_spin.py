@@ -7,10 +7,10 @@ from dataclasses import replace
 from puck_tables.errors import InputError
 from puck_tables.fitting.certainty import certainty_of
 from puck_tables.fitting.estimate import Estimate, freedom
-from puck_tables.fitting.fitted import fitted
-from puck_tables.fitting.laws import chi2_under
+from puck_tables.fitting.initial_estimate import initial_estimate
+from puck_tables.fitting.law_comparison import chi2_under
 from puck_tables.fitting.numbers import Number, numbers_of, plausible_for
-from puck_tables.fitting.rivals import RISE
+from puck_tables.fitting.other_minima import RISE
 from puck_tables.fitting.timing import Known
 
 _SPIN = "launch_spin"
@@ -23,18 +23,20 @@ def without_spin(found: Estimate, numbers: dict[str, Number], known: Known) -> t
     The commonest film shows a slide without marks: its friction hangs on the spin that nobody saw.
     """
     problem = found.problem
-    asked = problem.asked
-    (*scale, _) = (*(name for name in _SCALES if name in asked.free), "")
+    spec = problem.spec
+    (*scale, _) = (*(name for name in _SCALES if name in spec.free), "")
     if (
-        not scale or numbers[scale[0]].determined or _SPIN in asked.fixed or problem.meetings
+        not scale or numbers[scale[0]].determined or _SPIN in spec.fixed or problem.impact_specs
         or all(problem.spinless) or any(film.angle is not None for film in problem.films)
     ):  # fmt: skip
         return ()
-    low, high = asked.bounds.get(_SPIN, (0.0, 0.0))
+    low, high = spec.bounds.get(_SPIN, (0.0, 0.0))
     if not low <= 0.0 <= high:
         return ()
     try:
-        still = fitted(replace(problem, asked=asked.spinning(0.0), weights=()), known, refit=False)
+        still = initial_estimate(
+            replace(problem, spec=spec.spinning(0.0), weights=()), known, refit=False
+        )
     except InputError:  # too few frames
         return ()
     noise = found.problem.noise
