@@ -108,7 +108,7 @@ def errors_from_csv(text: str) -> tuple[MeasuredMethod, ...]:
 
     Examples
     --------
-    >>> front_from_csv("question,method")
+    >>> errors_from_csv("question,method")
     ()
     """
     kinds = {"str": str, "int": int, "float": float}
@@ -131,7 +131,7 @@ def shipped_errors() -> tuple[MeasuredMethod, ...]:
 
     Examples
     --------
-    >>> {row.question for row in shipped_front()} >= {"resultants", "stop", "trajectory", "state"}
+    >>> {row.question for row in shipped_errors()} >= {"resultants", "stop", "trajectory", "state"}
     True
     """
     try:
@@ -146,7 +146,7 @@ def pareto(rows: Iterable[MeasuredMethod]) -> list[MeasuredMethod]:
 
     Examples
     --------
-    >>> front = pareto(row for row in shipped_front() if row.question == "stop")
+    >>> front = pareto(row for row in shipped_errors() if row.question == "stop")
     >>> all(a.error > b.error for a, b in zip(front[:-1], front[1:]))
     True
     """

@@ -72,10 +72,10 @@ class FitSpec:
 
     Examples
     --------
-    >>> asked = Asked.of(Puck(radius=0.0381), None, {}, {}, {}, {})
-    >>> asked.free
+    >>> spec = FitSpec.of(Puck(radius=0.0381), None, {}, {}, {}, {})
+    >>> spec.free
     ('friction', 'delta')
-    >>> asked.scales({"friction": 0.2, "delta": 0.5})[0]
+    >>> spec.scales({"friction": 0.2, "delta": 0.5})[0]
     1.96133
     """
 

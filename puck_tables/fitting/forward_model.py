@@ -67,8 +67,8 @@ def path_of(moving: Moving, velocity: FloatArray, spin: float, times: FloatArray
 
     Examples
     --------
-    >>> from puck_tables.fitting.unit_motions import curve_of
-    >>> plain = Moving(1.0, 0.5, 1.0, 0.0, curve_of("uniform", 0.5**0.5))
+    >>> from puck_tables.fitting.unit_motions import unit_motions_of
+    >>> plain = Moving(1.0, 0.5, 1.0, 0.0, unit_motions_of("uniform", 0.5**0.5))
     >>> path_of(plain, np.array([1.0, 0.0]), 5.0, np.array([2.0]))[0].round(6).tolist()
     [1.590682]
     """
@@ -89,8 +89,8 @@ def path_and_rate(
 
     Examples
     --------
-    >>> from puck_tables.fitting.unit_motions import curve_of
-    >>> plain = Moving(1.0, 0.5, 1.0, 0.0, curve_of("uniform", 0.5**0.5))
+    >>> from puck_tables.fitting.unit_motions import unit_motions_of
+    >>> plain = Moving(1.0, 0.5, 1.0, 0.0, unit_motions_of("uniform", 0.5**0.5))
     >>> path_and_rate(plain, np.array([1.0, 0.0]), 0.0, np.array([0.25]))[1].ravel().tolist()
     [0.75, 0.0, 0.0]
     """

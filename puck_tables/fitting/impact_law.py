@@ -107,13 +107,13 @@ def impact_at(
 
     Examples
     --------
-    >>> from puck_tables.fitting.unit_motions import curve_of
-    >>> puck = Moving(1.0, 0.0, 0.1, 0.0, curve_of("uniform", 0.5**0.5))
+    >>> from puck_tables.fitting.unit_motions import unit_motions_of
+    >>> puck = Moving(1.0, 0.0, 0.1, 0.0, unit_motions_of("uniform", 0.5**0.5))
     >>> slide = Slide(0.0, np.array([0.0, 0.0, 2.0, 0.0, 0.0, 0.0]))
-    >>> hit = met(
+    >>> impact = impact_at(
     ...     puck, 0.5**0.5, Rims(0.5, 0.1, 0.0, np.inf), Meeting(0.5, 1.0, (0,), 0), (slide,),
-    ...     Wall(0.0, 0.975))
-    >>> round(hit.time, 9), hit.after[0].launch[2:4].round(9).tolist()  # x = 0.875 = 2t − t²/2
+    ...     WallLine(0.0, 0.975))
+    >>> round(impact.time, 9), impact.after[0].launch[2:4].round(9).tolist()  # 0.875 = 2t − t²/2
     (0.5, [-0.75, 0.0])
     """
     low = max(impact_spec.time - impact_spec.reach, *(slide.since for slide in before))

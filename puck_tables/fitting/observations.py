@@ -96,7 +96,7 @@ def observations_in(
     Examples
     --------
     >>> track = Track(0.1 * np.arange(9), np.zeros((9, 2)), name="a")
-    >>> seen_in(track, since=0.25).time.size
+    >>> observations_in(track, since=0.25).time.size
     6
     """
     chosen = track.seen & (track.time >= since) & (track.time <= until)
@@ -177,7 +177,7 @@ def noise_of(films: list[Observations]) -> tuple[float, float]:
     --------
     >>> noise = np.random.default_rng(1).normal(0.0, 1e-3, (900, 2))
     >>> track = Track(0.01 * np.arange(900), noise + np.arange(900)[:, None])
-    >>> round(noise_of([seen_in(track)])[0], 4)
+    >>> round(noise_of([observations_in(track)])[0], 4)
     0.001
     """
     places, angles = [], []
@@ -228,7 +228,7 @@ def rests_from(film: Observations, spread: float) -> int:
     Examples
     --------
     >>> x = np.minimum(np.arange(20.0), 9.0)
-    >>> rests_from(seen_in(Track(np.arange(20.0), np.stack([x, 0 * x], axis=1))), 1e-3)
+    >>> rests_from(observations_in(Track(np.arange(20.0), np.stack([x, 0 * x], axis=1))), 1e-3)
     9
     """
     end = np.median(film.place[-_LAST:], axis=0)
@@ -268,7 +268,7 @@ def turning_of(film: Observations) -> Turning | None:
     Examples
     --------
     >>> t = 0.01 * np.arange(50)
-    >>> film = seen_in(Track(t, np.zeros((50, 2)), (30.0 * t) % 6.28318530718))
+    >>> film = observations_in(Track(t, np.zeros((50, 2)), (30.0 * t) % 6.28318530718))
     >>> turning = turning_of(film)
     >>> turning.rate.round(6).tolist()[:2], turning.angle[-1].round(6).item()
     ([30.0, 30.0], 14.7)

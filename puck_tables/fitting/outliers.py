@@ -29,10 +29,10 @@ def outliers_of(
 
     Examples
     --------
-    >>> off = np.zeros((40, 1))
-    >>> off[20:, 0] = np.linspace(0.0, 20.0, 20)  # a motion that is another
-    >>> off[7] = 30.0
-    >>> np.flatnonzero(strays(off, np.abs(off[:, 0]) > 4.0, 16.0)).tolist()
+    >>> deviations = np.zeros((40, 1))
+    >>> deviations[20:, 0] = np.linspace(0.0, 20.0, 20)  # a motion that is another
+    >>> deviations[7] = 30.0
+    >>> np.flatnonzero(outliers_of(deviations, np.abs(deviations[:, 0]) > 4.0, 16.0)).tolist()
     [7]
     """
     if far.sum() < _FEW:

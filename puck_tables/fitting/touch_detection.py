@@ -30,10 +30,10 @@ def first_touch(film: Observations, first: int, last: int) -> int | None:
     --------
     >>> t = np.arange(60) / 60.0
     >>> noise = np.random.default_rng(1).normal(0.0, 1e-4, (60, 2))
-    >>> hit = np.stack([np.where(t < 0.5, t, 0.75 - 0.5 * t), 0.0 * t], axis=1) + noise
+    >>> impact = np.stack([np.where(t < 0.5, t, 0.75 - 0.5 * t), 0.0 * t], axis=1) + noise
     >>> slid = np.stack([t - 0.4 * t * t, 0.0 * t], axis=1) + noise
-    >>> films = [Seen("a", 0.0, t, place, None, np.arange(60)) for place in (hit, slid)]
-    >>> [touched(film, 2, 57) for film in films]
+    >>> films = [Observations("a", 0.0, t, place, None, np.arange(60)) for place in (impact, slid)]
+    >>> [first_touch(film, 2, 57) for film in films]
     [31, None]
     """
     noise = noise_of([film])[0]

@@ -287,8 +287,8 @@ def unit_motions_of(pressure: str | Law, gyration: float, tall: bool = False) ->
 
     Examples
     --------
-    >>> type(curve_of("uniform", 0.5**0.5)).__name__, curve_of("ring", 1.0).highest
-    ('PlainCurve', 2.0)
+    >>> type(unit_motions_of("uniform", 0.5**0.5)).__name__, unit_motions_of("ring", 1.0).highest
+    ('PlainMotions', 2.0)
     """
     law = pressure if isinstance(pressure, Law) else law_of(pressure)
     if law.can_lift and tall:

@@ -234,10 +234,10 @@ def launch_family_of(body: Body) -> LaunchFamily:
     Examples
     --------
     >>> from puck_tables.motion.body import body_of
-    >>> _, u = launch_curve(body_of("uniform", 0.5, 0.5**0.5)).roots(RIM, np.array([1.0]))
+    >>> _, u = launch_family_of(body_of("uniform", 0.5, 0.5**0.5)).roots(RIM, np.array([1.0]))
     >>> u.round(6).tolist()
     [1.216315]
-    >>> u, fastest = launch_curve(body_of("uniform", 3.9, 0.1)).extreme(SPEED)
+    >>> u, fastest = launch_family_of(body_of("uniform", 3.9, 0.1)).extreme(SPEED)
     >>> u > -4.0, fastest > 0.5 * math.log(2.0)
     (True, True)
     """

@@ -118,7 +118,7 @@ def unit_stops(friction: Variations, cosine: FloatArray, sine: FloatArray) -> Fl
     --------
     >>> from puck_tables.motion.body import body_of
     >>> friction = varied_of(body_of("ring", 0.5, 1.0))
-    >>> (natural_stops(friction, np.array([1.0]), np.array([0.0]))[0, 0].round(6) + 0.0).tolist()
+    >>> (unit_stops(friction, np.array([1.0]), np.array([0.0]))[0, 0].round(6) + 0.0).tolist()
     [1.0, 1.0, 0.0, 0.0, 0.0]
     """
     from puck_tables.motion.variation import KEPT, VARIED, fill_stop_variations

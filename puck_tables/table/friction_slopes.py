@@ -78,7 +78,7 @@ def friction_slopes_of(law: Law, delta: float, accuracy: float = FLOW_ACCURACY) 
     Examples
     --------
     >>> from puck_tables.contact.laws import law_of
-    >>> found = flow_section(law_of("ring"), 1.0, 1e-6)
+    >>> found = friction_slopes_of(law_of("ring"), 1.0, 1e-6)
     >>> (found.spline.at(np.array([0.0]))[0].round(6) + 0.0).tolist()  # 1, δ/4, 1 − δ²/8 …
     [1.0, 0.25, 0.875, 0.0, 0.25, -0.25]
     """
@@ -97,7 +97,7 @@ def slopes_of_table(table: ResultantTable, delta: float) -> FrictionSlopes:
 
     Examples
     --------
-    >>> found = flow_of_table(ResultantTable.build("ring", 1e-6), 1.0)
+    >>> found = slopes_of_table(ResultantTable.build("ring", 1e-6), 1.0)
     >>> (found.spline.at(np.array([0.0]))[0].round(5) + 0.0).tolist()
     [1.0, 0.25, 0.875, 0.0, 0.25, -0.25]
     """
@@ -115,7 +115,7 @@ def slopes_at_one_height(section: FrictionSection) -> FrictionSlopes:
     --------
     >>> from puck_tables.contact.laws import law_of
     >>> from puck_tables.table.friction_section import friction_section
-    >>> flow_at_one_height(friction_section(law_of("ring"), 1.0, 1e-6)).spline.values.shape[2]
+    >>> slopes_at_one_height(friction_section(law_of("ring"), 1.0, 1e-6)).spline.values.shape[2]
     6
     """
     spline = section.spline
