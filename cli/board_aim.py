@@ -31,7 +31,7 @@ def aim_on_board(
     reported(found, False, as_json, _report)
 
 
-def number_or_name(given: str | None) -> int | str | None:
+def number_or_name(text: str | None) -> int | str | None:
     """A puck as it is given on the command line: a number, or a name.
 
     Examples
@@ -39,7 +39,7 @@ def number_or_name(given: str | None) -> int | str | None:
     >>> number_or_name("2"), number_or_name("queen")
     (2, 'queen')
     """
-    return int(given) if given is not None and given.isascii() and given.isdecimal() else given
+    return int(text) if text is not None and text.isascii() and text.isdecimal() else text
 
 
 def _report(found: BoardAim) -> str:

@@ -179,12 +179,12 @@ def fit(
     from puck_tables.fitting.fit_tracks import fit as find
     from puck_tables.puck import Puck
 
-    given = {
+    texts = {
         "height": height, "friction": friction, "gravity": gravity, "gyration": gyration,
         "mass": mass,
     }  # fmt: skip
     puck = Puck(
-        radius=radius, pressure=pressure, **{n: v for n, v in given.items() if v is not None}
+        radius=radius, pressure=pressure, **{n: v for n, v in texts.items() if v is not None}
     )
     fixed = {n: _number(v, "--fix", n) for n, v in _named(fix, "--fix").items()}
     wanted = None if free is None else _names(free, "--free", "friction,delta")
@@ -236,7 +236,7 @@ def _names(text: str, option: str, like: str) -> list[str]:
     return names
 
 
-def _named(given: tuple[str, ...], option: str) -> dict[str, str]:
+def _named(texts: tuple[str, ...], option: str) -> dict[str, str]:
     """NAME=VALUE, several times.
 
     Raises
@@ -244,7 +244,7 @@ def _named(given: tuple[str, ...], option: str) -> dict[str, str]:
     InputError
     """
     found: dict[str, str] = {}
-    for text in given:
+    for text in texts:
         name, equals, value = text.partition("=")
         if not equals or not name.strip() or not value.strip():
             raise InputError(f"{option} '{text}' must be NAME=VALUE, like friction=0.2")
@@ -273,7 +273,7 @@ def _number(text: str, option: str, name: str) -> float:
     return number
 
 
-def _pairs(given: tuple[str, ...], option: str, form: str) -> dict[str, tuple[float, float]]:
+def _pairs(texts: tuple[str, ...], option: str, form: str) -> dict[str, tuple[float, float]]:
     """NAME=NUMBER:NUMBER, several times.
 
     Raises
@@ -281,7 +281,7 @@ def _pairs(given: tuple[str, ...], option: str, form: str) -> dict[str, tuple[fl
     InputError
     """
     found = {}
-    for name, text in _named(given, option).items():
+    for name, text in _named(texts, option).items():
         parts = text.split(":")
         if len(parts) != 2:
             raise InputError(f"{option} {name}={text} must be {name}={form}, like {name}=0.2:0.05")

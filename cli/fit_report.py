@@ -65,7 +65,7 @@ def report(found: Fit) -> str:
         f"{'residuals':<15} probability of such a pattern by chance: runs {found.runs:.2g}, "
         f"drift {found.drift:.2g}",
     ]
-    if speeds := found.estimate.problem.asked.speeds:
+    if speeds := found.estimate.problem.spec.speeds:
         fewer = found.constant_chi2 - found.chi2
         lines += [
             "", f"{'slip speeds':<15} {', '.join(f'{u:g}' for u in speeds)} m/s, of friction_0 and "

@@ -67,7 +67,7 @@ class PuckGroup(click.Group):
             raise SystemExit(BROKEN_PIPE) from None
         except OSError as error:
             _drop(sys.stdout)
-            click.echo(f"Error: {_told(error)}", err=True)
+            click.echo(f"Error: {_explained(error)}", err=True)
             raise SystemExit(1) from None
 
     def invoke(self, ctx: click.Context) -> Any:
@@ -95,7 +95,7 @@ class PuckGroup(click.Group):
             ctx.exit(BROKEN_PIPE)
         except OSError as error:
             _drop(sys.stdout)
-            click.echo(f"Error: {_told(error)}", err=True)
+            click.echo(f"Error: {_explained(error)}", err=True)
             ctx.exit(1)
         except MemoryError:
             click.echo("Error: not enough memory: ask for fewer points", err=True)
@@ -108,7 +108,7 @@ class PuckGroup(click.Group):
                 signal.signal(one, endings.end_at_once)
 
 
-def _told(error: OSError) -> str:
+def _explained(error: OSError) -> str:
     """What failed: a file that the system names, or else what was printed."""
     what = "write the results" if error.filename is None else f"use {error.filename}"
     return printable(f"cannot {what}: {error.strerror or error}")

@@ -348,17 +348,17 @@ def deliver(result: Result, output: Path | None, plot: Path | None, overwrite: b
     """Save and draw a result, and say so on stderr."""
     if output is not None:
         result.save(output, overwrite)
-        told(output)
+        note(output)
     if plot is not None:
         result.plot(plot, overwrite=overwrite)
-        told(plot)
+        note(plot)
 
 
 def filmed(run: TimedResult, movie: Path | None, overwrite: bool) -> None:
     """Make a movie of a motion, and say so on stderr."""
     if movie is not None:
         run.movie(movie, overwrite)
-        told(movie)
+        note(movie)
 
 
 def _same(one: Path, other: Path) -> bool:
@@ -395,7 +395,7 @@ def tables_named(path: Path | None) -> list[Table]:
     return [Table.shipped(), Table.shipped("stops")] if path is None else [Table.load(path)]
 
 
-def told(path: Path) -> None:
+def note(path: Path) -> None:
     """Say on stderr that a file was written."""
     click.echo(f"wrote {click.format_filename(path)}", err=True)
 

@@ -175,10 +175,10 @@ class Whole:
 
     def _kept(self) -> str:
         """What is said when the sweep is ended."""
-        from puck_tables.bulk.store_folder import beside_of
+        from puck_tables.bulk.store_folder import sibling_of
 
         if self.output is not None and self.output.exists():
-            if beside_of(Path(os.path.realpath(self.output))).exists():
+            if sibling_of(Path(os.path.realpath(self.output))).exists():
                 return (
                     f"Interrupted: {self.output} is as it was; what is done of the new one is kept "
                     "beside it: the same command goes on."

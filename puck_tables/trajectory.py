@@ -15,7 +15,7 @@ from puck_tables.accuracy.method_errors import Selection
 from puck_tables.accuracy.methods import INTEGRATORS, method_named
 from puck_tables.errors import InputError
 from puck_tables.io.dataset import Dataset, variable
-from puck_tables.motion.body import Body, body_of
+from puck_tables.motion.body import UnitPuck, body_of
 from puck_tables.motion.contact import contact_of
 from puck_tables.motion.frame import Frame, frame_of
 from puck_tables.motion.friction_source import source_of
@@ -245,7 +245,7 @@ def simulate(
     )
 
 
-def _refuse_too_large(frame: Frame, body: Body, energy: float, decel: float) -> None:
+def _refuse_too_large(frame: Frame, body: UnitPuck, energy: float, decel: float) -> None:
     """Refuse a motion that leaves floating point."""
     times, lengths = body.longest * frame.time, body.longest * frame.length
     if not all(map(math.isfinite, (times, lengths, lengths / frame.radius, energy))):

@@ -251,7 +251,7 @@ def test_a_store_that_replaces_another_goes_on_beside_it(
 def test_a_store_killed_between_two_renames_is_found_again(tmp_path: Path):
     store = tmp_path / "m.zarr"
     PUCK.sweep(**grid(0), store=store)
-    store.rename(store_folder.beside_of(store))
+    store.rename(store_folder.sibling_of(store))
     with pytest.raises(InputError, match="holds other work"):
         PUCK.sweep(**grid(1), store=store)
     assert refuse_wrong(store, True) == 0

@@ -5,11 +5,11 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Sequence
 
-from puck_tables._core.text import Look, split, whole_names
+from puck_tables._core.text import TextForm, split, whole_names
 from puck_tables._core.units import is_unit
 
 
-def header_of(look: Look, names: Callable[[list[str]], bool]) -> list[list[str]]:
+def header_of(form: TextForm, names: Callable[[list[str]], bool]) -> list[list[str]]:
     """The rows of names over the columns of a table; the last has their units in brackets.
 
     Parameters
@@ -25,16 +25,16 @@ def header_of(look: Look, names: Callable[[list[str]], bool]) -> list[list[str]]
 
     Examples
     --------
-    >>> look = Look("utf-8", ",", False, [["t", "x"], ["s", "cm"]], [], [["0", "1"]], 2, 2)
-    >>> header_of(look, bool)
+    >>> form = TextForm("utf-8", ",", False, [["t", "x"], ["s", "cm"]], [], [["0", "1"]], 2, 2)
+    >>> header_of(form, bool)
     [['t [s]', 'x [cm]']]
     """
-    header = [row[: look.width] + [""] * (look.width - len(row)) for row in look.header]
+    header = [row[: form.width] + [""] * (form.width - len(row)) for row in form.header]
     if not header:
-        for line in reversed(look.said):
-            cells = split(re.sub(r"^[#%/\s]+", "", line), look.separator)
-            cells = cells if look.separator else whole_names(cells)
-            if len(cells) == look.width and names(cells):
+        for line in reversed(form.said):
+            cells = split(re.sub(r"^[#%/\s]+", "", line), form.separator)
+            cells = cells if form.separator else whole_names(cells)
+            if len(cells) == form.width and names(cells):
                 return [cells]
     if len(header) > 1 and _are_units(header[-1]):
         units = header.pop()

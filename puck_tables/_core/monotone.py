@@ -48,8 +48,8 @@ def _slopes(width: FloatArray, rise: FloatArray) -> FloatArray:
     return slope
 
 
-def _end_slope(near: float, far: float, first: float, second: float) -> float:
-    slope = ((2.0 * near + far) * first - near * second) / (near + far)
+def _end_slope(near: float, last: float, first: float, second: float) -> float:
+    slope = ((2.0 * near + last) * first - near * second) / (near + last)
     if slope * first <= 0.0:
         return 0.0
     if first * second <= 0.0 and abs(slope) > _STEEPEST * abs(first):

@@ -31,7 +31,7 @@ from puck_tables._core.quantities import (
     with_names,
 )
 from puck_tables._core.safe_read import read_whole
-from puck_tables._core.text import HEAD, MINUS, Look, encoding_of, is_row, look_at, number
+from puck_tables._core.text import HEAD, MINUS, TextForm, encoding_of, is_row, number, text_form_of
 from puck_tables._core.text_rows import read_columns
 from puck_tables._core.units import EXAMPLES, unit_size
 from puck_tables.errors import InputError
@@ -115,7 +115,7 @@ def numbers_of(
     [[0.0, 0.3], [0.5, 0.2]]
     """
     if not isinstance(given, str | Path):
-        return Numbers(_given(given, columns, needed, name), ("",) * len(columns))
+        return Numbers(_checked(given, columns, needed, name), ("",) * len(columns))
     content = _content(given, most)
     read = _read if len(content) <= _KEPT else _read.__wrapped__
     return read(str(given), content, tuple(columns), needed)
@@ -127,28 +127,28 @@ def _read(path: str, content: bytes, columns: tuple[InputColumn, ...], needed: i
     head = content[:HEAD]
     refuse_others(path, head)
     refuse_no_text(path, head)
-    look = look_at(path, head)
-    header = header_of(look, lambda cells: all(known_as(cell, columns) for cell in cells[:needed]))
+    form = text_form_of(path, head)
+    header = header_of(form, lambda cells: all(known_as(cell, columns) for cell in cells[:needed]))
     headings = header[-1] if header and sum(map(bool, header[-1])) > 1 else []  # a title is none
-    if look.header and 1 < len(look.header[-1]) < look.width:
+    if form.header and 1 < len(form.header[-1]) < form.width:
         raise InputError(
-            f"{path} has {len(look.header[-1])} names for {look.width} columns, so none can be told"
+            f"{path} has {len(form.header[-1])} names for {form.width} columns, so none can be told"
             " from another: name all of them"
         )
     if not headings:
-        _refuse_unit_in_words(path, look, columns)
+        _refuse_unit_in_words(path, form, columns)
     headings = with_names(headings, columns)
-    taken = _taken(path, look, headings, columns, needed)
+    taken = _taken(path, form, headings, columns, needed)
     sizes, units = [], []
     for column, n in taken.items():
         unit, size = unit_of(path, headings[n] if headings else "", column)
         sizes.append(size)
         units.append(unit)
     _tell_unread(path, [text for n, text in enumerate(headings) if n not in taken.values()])
-    found, _ = read_columns(path, look, list(taken.values()), (), content)
+    found, _ = read_columns(path, form, list(taken.values()), (), content)
     rows = np.column_stack([found[n] for n in taken.values()]) * sizes
     rows.flags.writeable = False
-    numbers = Numbers(rows, tuple(units), path, partial(_line, look, content))
+    numbers = Numbers(rows, tuple(units), path, partial(_line, form, content))
     wrong = np.argwhere(~np.isfinite(rows))
     if len(wrong):
         row, column = wrong[0].tolist()
@@ -225,7 +225,7 @@ def _content(path: str | Path, most: int) -> bytes:
         raise InputError(f"cannot read {path}: {error.strerror or error}") from None
 
 
-def _given(given: Any, columns: Sequence[InputColumn], needed: int, name: str) -> FloatArray:
+def _checked(given: Any, columns: Sequence[InputColumn], needed: int, name: str) -> FloatArray:
     """Rows that somebody gave."""
     try:
         rows = np.array([[float(cell) for cell in row] for row in given])
@@ -244,7 +244,7 @@ def _listed(columns: Sequence[InputColumn], needed: int) -> str:
 
 
 def _taken(
-    path: str, look: Look, headings: Sequence[str], columns: Sequence[InputColumn], needed: int
+    path: str, form: TextForm, headings: Sequence[str], columns: Sequence[InputColumn], needed: int
 ) -> dict[InputColumn, int]:
     """Where the columns stand that are wanted, in the order in which they are."""
     known = [known_as(text, columns) for text in headings]
@@ -255,30 +255,30 @@ def _taken(
                              "leave one")  # fmt: skip
     if all(column in known for column in columns[:needed]):
         return {column: known.index(column) for column in columns if column in known}
-    fits = needed <= look.width <= len(columns)
+    fits = needed <= form.width <= len(columns)
     strange = any(known) or any(known_as(text, ALL) or measures(text) for text in headings)
     said = ", ".join(f"'{text:.40}'" for text in headings[:_SHOWN])
     if fits and not strange:
         if headings:
-            taken = ", ".join(one.written for one in columns[: look.width])
+            taken = ", ".join(one.written for one in columns[: form.width])
             say(f"{path}: its columns {said} are taken as {taken}")
-        return dict(zip(columns, range(look.width), strict=False))
+        return dict(zip(columns, range(form.width), strict=False))
     frames = any(map(is_frame, headings))
     hint = "; of frames write their times, frame / frames a second" if frames else ""
     raise InputError(
         f"{path} must hold the columns {_listed(columns, needed)}: name them so (its columns are "
-        f"{said or f'{look.width}, without names'}){hint}"
+        f"{said or f'{form.width}, without names'}){hint}"
     )
 
 
-def _refuse_unit_in_words(path: str, look: Look, columns: Sequence[InputColumn]) -> None:
+def _refuse_unit_in_words(path: str, form: TextForm, columns: Sequence[InputColumn]) -> None:
     """Refuse a unit in a comment, or a line over numbers, that is no heading: whose is it?
 
     Raises
     ------
     InputError
     """
-    lines = [*look.said, *(" ".join(row) for row in look.header)]
+    lines = [*form.said, *(" ".join(row) for row in form.header)]
     for unit in re.findall(r"[\[(]([^\[\]()]+)[\])]|(\S+/\S+)", " ".join(lines)):
         text = "".join(unit).strip()
         sizes = {unit_size(text, column.kind) for column in columns if column.kind in EXAMPLES}
@@ -289,8 +289,8 @@ def _refuse_unit_in_words(path: str, look: Look, columns: Sequence[InputColumn])
             )
 
 
-def _line(look: Look, content: bytes, row: int) -> int:
+def _line(form: TextForm, content: bytes, row: int) -> int:
     """The line of a file at which a row of numbers stands."""
-    with io.TextIOWrapper(io.BytesIO(content), look.encoding, "replace") as file:
-        rows = [n for n, text in enumerate(file, 1) if n > look.skip and is_row(text)]
+    with io.TextIOWrapper(io.BytesIO(content), form.encoding, "replace") as file:
+        rows = [n for n, text in enumerate(file, 1) if n > form.skip and is_row(text)]
     return rows[row]

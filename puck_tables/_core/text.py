@@ -30,7 +30,7 @@ _SEPARATORS = ("\t", ";", ",", "|", None)  # the last: blanks
 
 
 @dataclass
-class Look:
+class TextForm:
     """How a table is written.
 
     ``header``: the rows of names over the numbers, ``said``: comments before them, ``rows``: the
@@ -47,7 +47,7 @@ class Look:
     width: int = 0
 
 
-def look_at(path: str | Path, head: bytes) -> Look:
+def text_form_of(path: str | Path, head: bytes) -> TextForm:
     r"""How the table in a text file is written, from how it begins.
 
     Raises
@@ -57,8 +57,8 @@ def look_at(path: str | Path, head: bytes) -> Look:
 
     Examples
     --------
-    >>> look = look_at("a.csv", b"t;x;y\n0;0,5;1\n0,1;0,6;1\n")
-    >>> look.separator, look.comma, look.header, look.width
+    >>> form = text_form_of("a.csv", b"t;x;y\n0;0,5;1\n0,1;0,6;1\n")
+    >>> form.separator, form.comma, form.header, form.width
     (';', True, [['t', 'x', 'y']], 3)
     """
     encoding = encoding_of(path, head)
@@ -97,7 +97,7 @@ def look_at(path: str | Path, head: bytes) -> Look:
     width = max(set(sizes), key=lambda size: (sizes.count(size), size))
     if first and chosen is not None:
         width = max(width, _filled(rows[first - 1]))  # of rows whose last cells are empty
-    return Look(
+    return TextForm(
         encoding, chosen, comma, rows[:first], said, rows[first:], numbered[first][0], width
     )
 

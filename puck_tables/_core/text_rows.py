@@ -17,7 +17,7 @@ from puck_tables._core.text import (
     MINUS,
     POINT,
     THOUSAND,
-    Look,
+    TextForm,
     is_row,
     number,
     refuse_groups,
@@ -31,7 +31,7 @@ _LINE = 1 << 16  # characters of a line
 
 
 def read_columns(
-    path: str | Path, look: Look, numbers: Sequence[int], texts: Sequence[int],
+    path: str | Path, form: TextForm, numbers: Sequence[int], texts: Sequence[int],
     content: bytes | None = None,
 ) -> tuple[dict[int, FloatArray], dict[int, tuple[Any, list[str]]]]:  # fmt: skip
     r"""Columns of a table, without its header, comments and empty lines.
@@ -56,25 +56,25 @@ def read_columns(
     Examples
     --------
     >>> import tempfile
-    >>> from puck_tables._core.text import look_at
+    >>> from puck_tables._core.text import text_form_of
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     file, content = Path(folder, "a.csv"), b"t,x\n0,3\n1,\n"
     ...     _ = file.write_bytes(content)
-    ...     read_columns(file, look_at(file, content), [1], [])[0][1].tolist()
+    ...     read_columns(file, text_form_of(file, content), [1], [])[0][1].tolist()
     [3.0, nan]
     """
     parts: list[FloatArray] = []
     codes: dict[int, list[Any]] = {column: [] for column in texts}
     words: dict[int, dict[str, int]] = {column: {} for column in texts}
     raw = opened(path, LARGEST) if content is None else io.BytesIO(content)
-    with raw, io.TextIOWrapper(raw, look.encoding, "replace") as file:
+    with raw, io.TextIOWrapper(raw, form.encoding, "replace") as file:
         line = 1
-        for _ in range(look.skip):
+        for _ in range(form.skip):
             file.readline(_LINE)
             line += 1
         for block in _blocks(path, file):
-            fast = _fast(block, look, numbers, texts)
-            found, cells = fast or _slow(path, block, look, numbers, texts, line)
+            fast = _fast(block, form, numbers, texts)
+            found, cells = fast or _slow(path, block, form, numbers, texts, line)
             for column in texts:
                 known = words[column]
                 codes[column].append(
@@ -104,18 +104,18 @@ def _blocks(path: str | Path, file: IO[str]) -> Iterator[str]:
 
 
 def _fast(
-    block: str, look: Look, numbers: Sequence[int], texts: Sequence[int]
+    block: str, form: TextForm, numbers: Sequence[int], texts: Sequence[int]
 ) -> tuple[FloatArray, dict[int, list[str]]] | None:
     """Rows of a block whose columns of numbers hold nothing else; None for any other."""
-    separator = look.separator
+    separator = form.separator
     if texts and separator is None:
         return None
     count = block.count("\n") + (not block.endswith("\n"))
     if '"' in block or any(sign in block for sign in COMMENTS):
         return None
-    if separator is not None and block.count(separator) != count * (_written(look) - 1):
+    if separator is not None and block.count(separator) != count * (_written(form) - 1):
         return None
-    text = block.replace(",", ".") if look.comma else block
+    text = block.replace(",", ".") if form.comma else block
     if separator is not None:  # nothing between two separators
         empty, filled = separator + separator, f"{separator}nan{separator}"
         if empty in text:
@@ -136,22 +136,22 @@ def _fast(
             }  # fmt: skip
     except ValueError:
         return None
-    if found.shape[0] != count or (look.comma and "." in block):
+    if found.shape[0] != count or (form.comma and "." in block):
         return None
     if any(one.size != count for one in cells.values()):
         return None
     if separator is None:
-        return (found[:, list(numbers)], {}) if found.shape[1] == look.width else None
+        return (found[:, list(numbers)], {}) if found.shape[1] == form.width else None
     return found, {column: [text.strip() for text in one.tolist()] for column, one in cells.items()}
 
 
-def _written(look: Look) -> int:
+def _written(form: TextForm) -> int:
     """Cells in a line as it is written, with those behind a last separator."""
-    return max(len(row) for row in look.rows)
+    return max(len(row) for row in form.rows)
 
 
 def _slow(
-    path: str | Path, block: str, look: Look, numbers: Sequence[int], texts: Sequence[int],
+    path: str | Path, block: str, form: TextForm, numbers: Sequence[int], texts: Sequence[int],
     line: int,
 ) -> tuple[FloatArray, dict[int, list[str]]]:  # fmt: skip
     """Rows of a block with gaps, texts or comments, or a sentence on what is wrong in them."""
@@ -161,19 +161,19 @@ def _slow(
     for n, text in enumerate(block.split("\n"), start=line):
         if not is_row(text):
             continue
-        row = split(text, look.separator)
-        while len(row) > look.width and not row[-1]:
+        row = split(text, form.separator)
+        while len(row) > form.width and not row[-1]:
             row.pop()
-        if len(row) != look.width:
+        if len(row) != form.width:
             raise InputError(
-                f"{path}, line {n}: {len(row)} cells where other rows have {look.width}: columns "
+                f"{path}, line {n}: {len(row)} cells where other rows have {form.width}: columns "
                 "must be equally long, leave cells empty where there is none"
             )
-        values = [number(row[column], look.comma) for column in numbers]
+        values = [number(row[column], form.comma) for column in numbers]
         if None in values:
             column = numbers[values.index(None)]
             refuse_groups(f"{path}, line {n}, column {column + 1}", [[row[column]]])
-            if look.comma and POINT.fullmatch(row[column]):
+            if form.comma and POINT.fullmatch(row[column]):
                 raise InputError(
                     f"{path}, line {n}, column {column + 1}: '{row[column]:.30}' has a point, "
                     "other numbers a comma: save the table with one decimal mark and no thousands "
@@ -181,11 +181,11 @@ def _slow(
                 )
             raise InputError(
                 f"{path}, line {n}, column {column + 1}: '{row[column]:.30}' is no number"
-                + (f" with {'a comma' if look.comma else 'a point'} as its decimal mark"
+                + (f" with {'a comma' if form.comma else 'a point'} as its decimal mark"
                    if row[column][:1].isdigit() else "")
                 + "; leave cells empty where there is none"
             )  # fmt: skip
-        for column in numbers if look.comma else ():
+        for column in numbers if form.comma else ():
             pointed = pointed or bool(POINT.fullmatch(row[column]) and "." in row[column])
             if not doubtful and THOUSAND.fullmatch(row[column]):
                 doubtful = f"line {n}, column {column + 1}: '{row[column]}'"

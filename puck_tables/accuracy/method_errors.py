@@ -189,7 +189,7 @@ def select(
     off = {row: MARGIN * row.error + added for row in rows}
     best = max(FINEST, min(off.values()))
     if not best <= tol <= COARSEST:
-        names = " / ".join(_told_scheme(scheme, own_table) for scheme in schemes)
+        names = " / ".join(_said_scheme(scheme, own_table) for scheme in schemes)
         exact = Scheme(Method.ADAPTIVE, FrictionForm.CLOSED_FORMS)
         hint = "" if exact in schemes else "; integration with closed forms reaches 1e-13"
         raise AccuracyError(
@@ -204,33 +204,33 @@ def select(
     closer = next((r for r in pareto(rows) if r.ns > taken.ns and r.error < taken.error), None)
     lines = [
         f"Asked: an error of at most {tol:.3g} {UNITS}.",
-        f"Taken: {_told(taken, own_table)}, {_duration(taken.ns)} when measured.",
+        f"Taken: {_said(taken, own_table)}, {_duration(taken.ns)} when measured.",
         f"It errs by {taken.error:.2g} at the worst of the starts; times {MARGIN:g} for those not "
         f"measured{f', plus {added:.2g} of the table' if added else ''}, that is within the "
         "tolerance.",
     ]
     if cheaper is not None:
         lines.append(
-            f"A cheaper method, {_told(cheaper, own_table)}, errs by {cheaper.error:.2g} (times "
+            f"A cheaper method, {_said(cheaper, own_table)}, errs by {cheaper.error:.2g} (times "
             f"{MARGIN:g}), more than the tolerance asks."
         )
     if closer is not None:
         lines.append(
-            f"A closer method, {_told(closer, own_table)}, errs by {closer.error:.2g} and costs "
+            f"A closer method, {_said(closer, own_table)}, errs by {closer.error:.2g} and costs "
             f"more: {_duration(closer.ns)}."
         )
     scheme = MEASURED[taken.method]
     return Selection(scheme, taken.setting, taken.error, tol, "\n".join(lines))
 
 
-def _told_scheme(scheme: Scheme, own_table: tuple[str, float] | None) -> str:
+def _said_scheme(scheme: Scheme, own_table: tuple[str, float] | None) -> str:
     if own_table is None or scheme.source is None:
         return scheme.name
     return f"{scheme.method}, the table {own_table[0]}"
 
 
-def _told(row: MeasuredMethod, own_table: tuple[str, float] | None) -> str:
-    return named(_told_scheme(MEASURED[row.method], own_table), row.setting)
+def _said(row: MeasuredMethod, own_table: tuple[str, float] | None) -> str:
+    return named(_said_scheme(MEASURED[row.method], own_table), row.setting)
 
 
 def _duration(ns: float) -> str:

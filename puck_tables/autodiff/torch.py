@@ -34,10 +34,10 @@ class _Found(torch.autograd.Function):
 
     @staticmethod
     @once_differentiable
-    def backward(ctx: Any, given: Any) -> Any:
+    def backward(ctx: Any, cotangent: Any) -> Any:
         (arguments,) = ctx.saved_tensors
         slopes = _slopes(arguments, ctx.kind)
-        return torch.einsum("...rc,...r->...c", slopes, given), None
+        return torch.einsum("...rc,...r->...c", slopes, cotangent), None
 
     @staticmethod
     def jvp(ctx: Any, moved: Any, _: Any) -> Any:

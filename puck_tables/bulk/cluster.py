@@ -27,7 +27,7 @@ from puck_tables._core.digest import program
 from puck_tables._core.executor import Progress
 from puck_tables._core.waiting import watched
 from puck_tables.bulk.store import Store
-from puck_tables.bulk.store_folder import beside_of
+from puck_tables.bulk.store_folder import sibling_of
 from puck_tables.bulk.work import Tally, Work, same_program
 from puck_tables.errors import ClusterError, InputError, MissingExtraError
 
@@ -280,7 +280,7 @@ def _own(workers: int) -> Iterator[Any]:
         ) from None
     with contextlib.ExitStack() as stack:
         stack.enter_context(dask.config.set(_OWN))
-        stack.enter_context(_quiet_children())
+        stack.enter_context(_silent_children())
         try:
             with watched(f"starting {workers} workers"):
                 cluster = distributed.LocalCluster(
@@ -297,7 +297,7 @@ def _own(workers: int) -> Iterator[Any]:
 
 
 @contextlib.contextmanager
-def _quiet_children() -> Iterator[None]:
+def _silent_children() -> Iterator[None]:
     """No warnings from the processes that are started meanwhile: after Ctrl-C they complain."""
     before = os.environ.get("PYTHONWARNINGS")
     os.environ["PYTHONWARNINGS"] = "ignore"
@@ -328,7 +328,7 @@ def _block(received: tuple[Work, str], path: str, block: int) -> Tally:
     work, digest = received
     if (path, digest) not in _open or not _open[path, digest].place.is_mine:
         _open.pop((path, digest), None)
-        if not (Path(path).is_dir() or beside_of(Path(path)).is_dir()):
+        if not (Path(path).is_dir() or sibling_of(Path(path)).is_dir()):
             raise InputError(
                 f"a worker does not see {path}: put the store into a folder that all machines share"
             )

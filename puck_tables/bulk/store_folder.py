@@ -60,7 +60,7 @@ class Place:
     @property
     def folder(self) -> Path:
         """What it is called now."""
-        beside = beside_of(self.path)
+        beside = sibling_of(self.path)
         return beside if identity(beside) == self._is else self.path
 
     def content(self, key: str, last: int = 0) -> bytes | None:
@@ -128,7 +128,7 @@ class Place:
     @property
     def is_mine(self) -> bool:
         """Whether the store belongs to this work."""
-        beside = identity(beside_of(self.path))
+        beside = identity(sibling_of(self.path))
         return (identity(self.path) if beside is None else beside) == self._is
 
     def complete(self) -> None:
@@ -146,22 +146,22 @@ class Place:
                     if Place(self.path, self.path).digest is None:
                         raise OutputError(f"{self.path} is no store any more: it is not replaced")
                     aside(self.path)
-                beside_of(self.path).rename(self.path)
+                sibling_of(self.path).rename(self.path)
         remove_dead(self.path)
 
     def withdraw(self) -> None:
         """Remove what was to replace another store, which stays."""
         with contextlib.suppress(OutputError), _renaming(self.path) as aside:
             if self.is_mine and identity(self.path) != self._is:
-                aside(beside_of(self.path))
+                aside(sibling_of(self.path))
 
 
-def beside_of(path: Path) -> Path:
+def sibling_of(path: Path) -> Path:
     """Where a store that is to replace another is made.
 
     Examples
     --------
-    >>> beside_of(Path("maps/m.zarr")).name
+    >>> sibling_of(Path("maps/m.zarr")).name
     '.m.zarr.new'
     """
     return path.with_name(f".{path.name}.new")
@@ -184,7 +184,7 @@ def taken(path: Path, digest: str, overwrite: bool, start: Content) -> Place:
     OutputError
         If it cannot be made.
     """
-    beside = beside_of(path)
+    beside = sibling_of(path)
     remove_dead(path.parent)
     with _renaming(path) as aside:
         if not os.path.lexists(path) and os.path.lexists(beside):
@@ -212,7 +212,7 @@ def taken(path: Path, digest: str, overwrite: bool, start: Content) -> Place:
     return place
 
 
-def joined(path: Path, digest: str) -> Place:
+def shared(path: Path, digest: str) -> Place:
     """The place of a work that another process has taken.
 
     Raises
@@ -220,7 +220,7 @@ def joined(path: Path, digest: str) -> Place:
     OutputError
         If it is not there.
     """
-    for folder in (beside_of(path), path):
+    for folder in (sibling_of(path), path):
         place = Place(path, folder) if folder.is_dir() else None
         if place is not None and place.digest == digest:
             return place

@@ -169,7 +169,7 @@ def refuse_no_threads(threads: int | None) -> None:
         raise InputError(f"threads must be a whole number from 1 on, got {shown(threads)}")
 
 
-def same_program(given: tuple[str, ...], where: str) -> None:
+def same_program(version: tuple[str, ...], where: str) -> None:
     """Refuse another program than the one that a work was made by.
 
     Raises
@@ -180,7 +180,7 @@ def same_program(given: tuple[str, ...], where: str) -> None:
     --------
     >>> same_program(program(), "worker 1")
     """
-    if tuple(given) != program():
+    if tuple(version) != program():
         raise InputError(
             f"{where} runs another version of puck-tables, Python, numba, numpy or scipy, or "
             "another processor: bits would differ; install the same everywhere"

@@ -145,10 +145,12 @@ def instant(
     force = _of_state("force", system.force, position, moving, time, shape)
     mu = _of_state("friction", system.friction, position, moving, time, shape[:1])
     friction = mu[:, None] * moving
-    given = (force + friction).ravel()
-    multipliers = -_solve(factor, flat @ (per_mass * given) + rate(system, position, moving, time))
+    function = (force + friction).ravel()
+    multipliers = -_solve(
+        factor, flat @ (per_mass * function) + rate(system, position, moving, time)
+    )
     smooth = flat.T @ multipliers
-    acceleration = (per_mass * (given + smooth)).reshape(shape)
+    acceleration = (per_mass * (function + smooth)).reshape(shape)
     return Instant(
         moving, acceleration, multipliers, smooth.reshape(shape), friction, force, a, e, residual
     )
@@ -198,10 +200,10 @@ def _constraints(
 
 
 def _of_state(
-    name: str, given: OfState | npt.ArrayLike, position: FloatArray, velocity: FloatArray,
+    name: str, function: OfState | npt.ArrayLike, position: FloatArray, velocity: FloatArray,
     time: float, shape: tuple[int, ...],
 ) -> FloatArray:  # fmt: skip
-    asked = given(position, velocity, time) if callable(given) else given
+    asked = function(position, velocity, time) if callable(function) else function
     values = real_array(name, asked, "SI units")
     if values.shape not in ((), shape):
         raise InputError(f"{name} must have the shape {shape}, got {values.shape}")

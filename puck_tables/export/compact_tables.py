@@ -42,7 +42,7 @@ CURVE_COLUMNS = [5, 6]  # κR and S/δ
 
 
 @dataclass(frozen=True)
-class Fitted:
+class SplineFit:
     """A table of whole numbers as the programs read it.
 
     ``cells``: of each side; ``numbers``: array (rows, powers, functions), cells + degree rows for
@@ -108,10 +108,10 @@ def functions_of(table: StopTable) -> tuple[FloatArray, FloatArray, FloatArray]:
     return moved[..., STOP_COLUMNS], moved[..., CURVE_COLUMNS], inverse[..., None]
 
 
-def fitted(
+def spline_fit(
     values: FloatArray, error: float, haste: int = 1, even: bool = False,
     degrees: Iterable[int] = DEGREES,
-) -> Fitted:  # fmt: skip
+) -> SplineFit:  # fmt: skip
     """The cheapest table that is wrong by no more than ``error`` at any node and height.
 
     Cheapest is the least product of the signs that write it and, to the power of ``haste``, of how
@@ -134,14 +134,14 @@ def fitted(
     --------
     >>> xi = np.linspace(0.0, 1.0, 101)[None, :, None, None]
     >>> wave = np.cos(3.0 * xi) * (1.0 + heights()[:, None] ** 2) * np.ones((2, 1, 1, 1))
-    >>> found = fitted(wave, 1e-6)
+    >>> found = spline_fit(wave, 1e-6)
     >>> found.cells, found.degree, found.powers, found.rows
     ((6, 6), 5, 2, [0, 11, 22])
     """
     fits = _Fits(values, error)
     sides = range(len(values))
     groups = [list(sides)] if even else [[side] for side in sides]
-    best: tuple[float, Fitted] | None = None
+    best: tuple[float, SplineFit] | None = None
     for degree in degrees:
         tried = [fits.cells_to_try(group, degree) for group in groups]
         for quantum in fits.quanta(degree):
@@ -153,13 +153,13 @@ def fitted(
             cost = sum(map(_signs, parts)) * (degree + 1.0) ** haste
             if all(found) and (best is None or cost < best[0]):
                 cells = tuple(len(numbers) - degree for numbers in parts)
-                best = cost, Fitted(cells, degree, quantum, np.concatenate(parts))
+                best = cost, SplineFit(cells, degree, quantum, np.concatenate(parts))
     if best is None:
         raise AccuracyError(_OUT_OF_REACH.format(error))
     return best[1]
 
 
-def fitted_apart(values: FloatArray, error: float) -> list[Fitted]:
+def spline_fits(values: FloatArray, error: float) -> list[SplineFit]:
     """A table for each side, of powers and digits of its own; all of one degree, the cheapest.
 
     Raises
@@ -171,13 +171,13 @@ def fitted_apart(values: FloatArray, error: float) -> list[Fitted]:
     --------
     >>> xi = np.linspace(0.0, 1.0, 101)[:, None, None]
     >>> flat, high = np.cos(xi) + 0.0 * heights()[:, None], np.cos(xi) * heights()[:, None] ** 4
-    >>> [(one.cells, one.powers) for one in fitted_apart(np.stack([flat, high]), 1e-6)]
+    >>> [(one.cells, one.powers) for one in spline_fits(np.stack([flat, high]), 1e-6)]
     [((4,), 1), ((4,), 3)]
     """
-    best: list[Fitted] = []
+    best: list[SplineFit] = []
     for degree in DEGREES:
         try:
-            found = [fitted(side[None], error, degrees=[degree]) for side in values]
+            found = [spline_fit(side[None], error, degrees=[degree]) for side in values]
         except AccuracyError:
             continue
         if not best or _cost(found) < _cost(best):
@@ -187,7 +187,7 @@ def fitted_apart(values: FloatArray, error: float) -> list[Fitted]:
     return best
 
 
-def _cost(tables: list[Fitted]) -> float:
+def _cost(tables: list[SplineFit]) -> float:
     return sum(_signs(table.numbers) * (table.degree + 1.0) for table in tables)
 
 
@@ -277,7 +277,7 @@ def _signs(numbers: npt.NDArray[np.int64]) -> int:
     return sum(len(str(number)) + 1 for number in numbers.ravel().tolist())
 
 
-def fitted_constants(constants: FloatArray, error: float) -> Fitted:
+def fit_constants(constants: FloatArray, error: float) -> SplineFit:
     """Polynomials (rows, powers) in 2δ² − 1 cut to the powers and digits that an error needs.
 
     As a table without cells: numbers (rows, powers, 1).
@@ -295,7 +295,7 @@ def fitted_constants(constants: FloatArray, error: float) -> Fitted:
         kept[row, : polynomial.size] = polynomial
     quantum = _quantum(error / count)
     whole = np.rint(kept / quantum).astype(np.int64)
-    return Fitted((), 0, quantum, whole.reshape(rows, powers, 1))
+    return SplineFit((), 0, quantum, whole.reshape(rows, powers, 1))
 
 
 def _quantum(largest: float) -> float:

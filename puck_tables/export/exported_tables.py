@@ -18,11 +18,11 @@ from puck_tables.export.compact_tables import (
     ORBIT_SHARE,
     PATCH_SHARE,
     STOP_SHARE,
-    Fitted,
-    fitted,
-    fitted_apart,
-    fitted_constants,
+    SplineFit,
+    fit_constants,
     functions_of,
+    spline_fit,
+    spline_fits,
 )
 from puck_tables.export.law_values import REACH, LawValues, law_values
 from puck_tables.puck import Puck
@@ -41,14 +41,14 @@ def plain_tables(parts: tuple[str, ...], tol: float) -> Tables:
 
 
 @lru_cache(maxsize=8)
-def _shipped(tol: float) -> dict[str, Fitted]:
+def _shipped(tol: float) -> dict[str, SplineFit]:
     table = StopTable.shipped()
     stops, curve, inverse = functions_of(table)
     return {
-        "STOP": fitted(stops, STOP_SHARE * tol, haste=2, even=True),
-        "CURVE": fitted(curve, CURVE_SHARE * tol, even=True),
-        "INVERSE": fitted(inverse, CURVE_SHARE * tol, even=True),
-        "CONSTANTS": fitted_constants(table.constants, CONSTANT_SHARE * tol),
+        "STOP": spline_fit(stops, STOP_SHARE * tol, haste=2, even=True),
+        "CURVE": spline_fit(curve, CURVE_SHARE * tol, even=True),
+        "INVERSE": spline_fit(inverse, CURVE_SHARE * tol, even=True),
+        "CONSTANTS": fit_constants(table.constants, CONSTANT_SHARE * tol),
     }
 
 
@@ -60,29 +60,29 @@ def law_tables(kind: Puck, parts: tuple[str, ...], tol: float) -> Tables:
         "TALLEST": values.tallest, "STEEP": 2.0 / values.tallest**2,
         "SPIN_TIME": values.spin_time, "LONGEST": values.longest, "SIDES": sides,
     }  # fmt: skip
-    tables, constants = _written(_fitted_to(values, parts, tol), constants)
+    tables, constants = _written(_fit_within(values, parts, tol), constants)
     way = np.where(np.arange(sides) % 2, -1.0, 1.0)
     lines = {
         "BORDERS": _short(values.borders), "ORIGINS": _short(values.origins),
         "SCALES": _short(way / values.extents),
     }  # fmt: skip
     if "state" in parts:
-        constants |= {"REACH": REACH, "END": values.orbits.end}
-        lines["RATE_UNITS"] = values.orbits.rate_units
+        constants |= {"REACH": REACH, "END": values.limit_motions.end}
+        lines["RATE_UNITS"] = values.limit_motions.rate_units
     return lines | tables, constants
 
 
-def _fitted_to(
+def _fit_within(
     values: LawValues, parts: tuple[str, ...], tol: float
-) -> dict[str, Fitted | list[Fitted]]:
-    found: dict[str, Fitted | list[Fitted]] = {}
+) -> dict[str, SplineFit | list[SplineFit]]:
+    found: dict[str, SplineFit | list[SplineFit]] = {}
     if "resultants" in parts:
-        found["PATCH"] = fitted(values.patch, PATCH_SHARE * tol)
+        found["PATCH"] = spline_fit(values.patch, PATCH_SHARE * tol)
     if parts != ("resultants",):
-        found["STOP"] = fitted(values.stops, LAW_STOP_SHARE * tol, haste=2)
+        found["STOP"] = spline_fit(values.stops, LAW_STOP_SHARE * tol, haste=2)
     if "state" in parts:
         try:
-            found["ORBIT"] = fitted_apart(values.orbits.pieces, ORBIT_SHARE * tol)
+            found["ORBIT"] = spline_fits(values.limit_motions.parts, ORBIT_SHARE * tol)
         except AccuracyError:
             raise AccuracyError(
                 f"states of such pucks cannot be exported at tol {tol:g}, for their limit ratio "
@@ -90,13 +90,15 @@ def _fitted_to(
                 "tol, for stops and resultants alone (--what stop,resultants), or for another "
                 "radius of gyration"
             ) from None
-        of_heights = values.orbits.of_heights
+        of_heights = values.limit_motions.of_heights
         polynomials = height_polynomials(of_heights, len(of_heights)).T
-        found["CONSTANTS"] = fitted_constants(polynomials, LAW_CONSTANT_SHARE * tol)
+        found["CONSTANTS"] = fit_constants(polynomials, LAW_CONSTANT_SHARE * tol)
     return found
 
 
-def _written(fits: Mapping[str, Fitted | list[Fitted]], constants: Mapping[str, float]) -> Tables:
+def _written(
+    fits: Mapping[str, SplineFit | list[SplineFit]], constants: Mapping[str, float]
+) -> Tables:
     """Numbers and constants of tables as the programs call them.
 
     Of a table whose sides have cells of their own, where the rows of each begin and end; of tables
@@ -132,6 +134,6 @@ def _short(places: FloatArray) -> list[float]:
     return [float(f"{place:.12g}") for place in places]
 
 
-def _quantum(table: Fitted) -> float:
+def _quantum(table: SplineFit) -> float:
     """The unit of the numbers of a table, without the factorial of its degree."""
     return float(f"{table.quantum / factorial(table.degree):.15g}")

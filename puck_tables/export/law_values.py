@@ -47,10 +47,10 @@ _BESIDE = 0.02  # of ln(rω/v): how far beside the limit it is seen how fast it 
 _INSIDE = 0.01  # a line so far from all limits is on the orbit
 
 
-class Orbits(NamedTuple):
+class LimitMotions(NamedTuple):
     """The two orbits of the pucks of a law.
 
-    ``pieces``: array (4, nodes, heights, 2), from pure sliding before and after θ = 0, from pure
+    ``parts``: array (4, nodes, heights, 2), from pure sliding before and after θ = 0, from pure
     spin before and after it: before it (1 ± c) exp(z), after it c less its limit; and the regular
     part of the heading over the share of the largest δ, times the rate over its unit.
     ``of_heights``: array (heights, 9): the limit of c; c at θ = 0 of both orbits; the rates, and
@@ -58,7 +58,7 @@ class Orbits(NamedTuple):
     ``rate_units``: of the three rates.  ``end``: x at ξ = 1.
     """
 
-    pieces: FloatArray
+    parts: FloatArray
     of_heights: FloatArray
     rate_units: list[float]
     end: float
@@ -176,11 +176,11 @@ class LawValues:
         return np.stack(found, axis=2)
 
     @cached_property
-    def orbits(self) -> Orbits:
+    def limit_motions(self) -> LimitMotions:
         """The two orbits, from pure sliding and from pure spin."""
         limits = np.array([_c(puck.limit_ratio) for puck in self.pucks])
         inertia, times = self.pucks[0].body.inertia, self.stops[..., 0]
-        return _orbits(self.law, inertia, self.marks, self.extents, times, limits, self.tol)
+        return _limit_motions(self.law, inertia, self.marks, self.extents, times, limits, self.tol)
 
 
 @lru_cache(maxsize=8)
@@ -194,10 +194,10 @@ def _c(ratio: float) -> float:
     return 1.0 if math.isinf(ratio) else (ratio - 1.0) / (ratio + 1.0)
 
 
-def _orbits(
+def _limit_motions(
     law: Law, inertia: float, marks: FloatArray, extents: FloatArray, times: FloatArray,
     limits: FloatArray, tol: float,
-) -> Orbits:  # fmt: skip
+) -> LimitMotions:  # fmt: skip
     """The orbits of a law, from its marks and times to the stop."""
     shares = heights(HEIGHTS)
     xi = np.linspace(0.0, 1.0, NODES)
@@ -240,9 +240,9 @@ def _orbits(
     units = [float(f"{TURN_UNIT * rate[-1]:.3g}") for rate in rates]
     starts = [_start(marks, limits, fast) for fast in (False, True)]
 
-    def piece_at(piece: int) -> Callable[[FloatArray], FloatArray]:
+    def part_at(part: int) -> Callable[[FloatArray], FloatArray]:
         """A piece of the orbits at z (z, heights, 2)."""
-        fast, ahead = divmod(piece, 2)
+        fast, ahead = divmod(part, 2)
         sign, end = (-1.0, 2) if ahead else (1.0, fast)
         rate, turning, unit = rates[end], turnings[end], units[end]
         begin = np.concatenate([_u(starts[fast]), np.zeros(HEIGHTS)])
@@ -263,16 +263,16 @@ def _orbits(
 
         return found
 
-    pieces = [piece_at(piece) for piece in range(4)]
+    parts = [part_at(part) for part in range(4)]
     z = np.linspace(0.0, _LAST, _TRIED)
-    values = np.stack([piece(z) for piece in pieces])
+    values = np.stack([part(z) for part in parts])
     left = np.abs(values - values[:, -1:]).max(axis=(0, 2, 3))
     reach = z[np.argmax(left[:-1] <= _TAIL * tol)] / REACH
     end = float(f"{0.5 * (math.sqrt(reach * (reach + 4.0)) - reach):.4g}")
     x = end * xi
-    orbits = np.stack([piece(REACH * x**2 / (1.0 - x)) for piece in pieces])
+    limit_motions = np.stack([part(REACH * x**2 / (1.0 - x)) for part in parts])
     of_heights = np.stack([limits, *starts, *rates, *(one / shares for one in turnings)], axis=1)
-    return Orbits(orbits, of_heights, units, end)
+    return LimitMotions(limit_motions, of_heights, units, end)
 
 
 def _u(c: FloatArray) -> FloatArray:

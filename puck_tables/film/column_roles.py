@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from puck_tables._core.header import header_of
-from puck_tables._core.text import Look
+from puck_tables._core.text import TextForm
 from puck_tables.errors import InputError
 from puck_tables.film.headings import Heading, heading, headings, on_a_line
 
@@ -34,7 +34,7 @@ class Layout:
     along: bool = False
 
 
-def layout_of(path: str | Path, look: Look, columns: str | None) -> Layout:
+def layout_of(path: str | Path, form: TextForm, columns: str | None) -> Layout:
     """What the columns of a table are, by its header or by headings given in its place.
 
     Raises
@@ -44,11 +44,11 @@ def layout_of(path: str | Path, look: Look, columns: str | None) -> Layout:
 
     Examples
     --------
-    >>> look = Look("utf-8", ",", False, [["t", "x1", "y1"]], [], [["0", "1", "2"]], 1, 3)
-    >>> [one.role for _, one in layout_of("a.csv", look, None).columns]
+    >>> form = TextForm("utf-8", ",", False, [["t", "x1", "y1"]], [], [["0", "1", "2"]], 1, 3)
+    >>> [one.role for _, one in layout_of("a.csv", form, None).columns]
     ['time', 'x', 'y']
     """
-    header = headed(path, look, columns)
+    header = headed(path, form, columns)
     if columns is not None:
         return _named(header[0])
     if header[0][0].lower() == _SCORER:
@@ -63,7 +63,7 @@ def layout_of(path: str | Path, look: Look, columns: str | None) -> Layout:
     return layout
 
 
-def headed(path: str | Path, look: Look, columns: str | None) -> list[list[str]]:
+def headed(path: str | Path, form: TextForm, columns: str | None) -> list[list[str]]:
     """The rows of names over the columns of a table; the last has their units in brackets.
 
     Parameters
@@ -79,29 +79,29 @@ def headed(path: str | Path, look: Look, columns: str | None) -> list[list[str]]
 
     Examples
     --------
-    >>> look = Look("utf-8", ",", False, [["t", "x"], ["s", "cm"]], [], [["0", "1"]], 2, 2)
-    >>> headed("a.csv", look, None)
+    >>> form = TextForm("utf-8", ",", False, [["t", "x"], ["s", "cm"]], [], [["0", "1"]], 2, 2)
+    >>> headed("a.csv", form, None)
     [['t [s]', 'x [cm]']]
     """
     if columns is not None:
         names = [name.strip() for name in columns.split(",")]
-        if len(names) != look.width:
+        if len(names) != form.width:
             raise InputError(
-                f"{path} has {look.width} columns, and columns names {len(names)}: name each, "
-                f"with - for those to leave out (its first row is {_shown(look.rows[0])})"
+                f"{path} has {form.width} columns, and columns names {len(names)}: name each, "
+                f"with - for those to leave out (its first row is {_shown(form.rows[0])})"
             )
         return [["" if name == "-" else name for name in names]]
-    header = header_of(look, lambda cells: {"x", "y"} <= {one.role for one in map(heading, cells)})
+    header = header_of(form, lambda cells: {"x", "y"} <= {one.role for one in map(heading, cells)})
     if not header:
         raise InputError(
-            f"{path} has no header: say what its {look.width} columns are, such as "
-            f"columns='{example(look.width)}' (--columns); its first row is {_shown(look.rows[0])}"
+            f"{path} has no header: say what its {form.width} columns are, such as "
+            f"columns='{example(form.width)}' (--columns); its first row is {_shown(form.rows[0])}"
         )
     if header[0][0].lower() == _SCORER:
         return header
-    if look.header and len(look.header[-1]) < look.width:
+    if form.header and len(form.header[-1]) < form.width:
         raise InputError(
-            f"{path} has {len(look.header[-1])} names for {look.width} columns, so none can be told"
+            f"{path} has {len(form.header[-1])} names for {form.width} columns, so none can be told"
             " from another: name all with columns (--columns), - for those to leave out"
         )
     return header
@@ -195,15 +195,15 @@ def _deeplabcut(path: str | Path, header: list[list[str]]) -> Layout:
     return Layout(columns, "DeepLabCut table", jointed=True, pixels=True)
 
 
-def name_of(look: Look, column: int) -> str:
+def name_of(form: TextForm, column: int) -> str:
     """A column in words: its name in the last row of them, or its number from 1.
 
     Examples
     --------
-    >>> name_of(Look("utf-8", ",", False, [["t", ""]], []), 1)
+    >>> name_of(TextForm("utf-8", ",", False, [["t", ""]], []), 1)
     '2'
     """
-    names = look.header[-1] if look.header else []
+    names = form.header[-1] if form.header else []
     return names[column] if column < len(names) and names[column] else str(column + 1)
 
 

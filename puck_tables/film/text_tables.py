@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables._core.text import Look, look_at, number
+from puck_tables._core.text import TextForm, number, text_form_of
 from puck_tables._core.text_rows import read_columns
 from puck_tables._core.units import factor
 from puck_tables.errors import InputError
@@ -50,22 +50,22 @@ def film_of_table(path: str | Path, head: bytes, columns: str | None) -> Film:
     >>> film.unit, film.bodies[0].marks["red"].tolist()
     ('cm', [[3.0, 1.0], [4.0, 1.0]])
     """
-    look = look_at(path, head)
-    layout = layout_of(path, look, columns)
+    form = text_form_of(path, head)
+    layout = layout_of(path, form, columns)
     for n, (body, one) in enumerate(layout.columns):
-        cells = {row[n].lower() for row in look.rows if n < len(row)}
+        cells = {row[n].lower() for row in form.rows if n < len(row)}
         if not one.role and cells & _HIDDEN and cells <= _SHOWN | _HIDDEN:
             layout.columns[n] = (body, Heading("seen"))  # whatever it is called
     wanted = [n for n, (_, one) in enumerate(layout.columns) if one.role]
     if not {one.role for _, one in layout.columns} & {"x", "y"}:
-        names = ", ".join(name_of(look, n) for n in range(min(look.width, 8)))
+        names = ", ".join(name_of(form, n) for n in range(min(form.width, 8)))
         raise InputError(
             f"{path} has no columns x and y that are known by their names (they are {names:.90}): "
-            f"say what they are, such as columns='{example(look.width)}' (--columns), of a puck on "
+            f"say what they are, such as columns='{example(form.width)}' (--columns), of a puck on "
             "a line with x alone"
         )
-    texts = [n for n in wanted if _holds_text(look, n, layout.columns[n][1])]
-    values, words = read_columns(path, look, [n for n in wanted if n not in texts], texts)
+    texts = [n for n in wanted if _holds_text(form, n, layout.columns[n][1])]
+    values, words = read_columns(path, form, [n for n in wanted if n not in texts], texts)
     for n in texts:
         body, one = layout.columns[n]
         if one.role == "time":
@@ -73,8 +73,8 @@ def film_of_table(path: str | Path, head: bytes, columns: str | None) -> Film:
             values[n] = seconds(f"{path}, column {n + 1}", named)[codes]
             layout.columns[n] = (body, one._replace(unit="s"))
     film = Film(layout.kind, [], jointed=layout.jointed, likely=layout.likely)
-    if unused := [n for n in range(look.width) if n not in wanted and layout.kind == "table"]:
-        names = ", ".join(name_of(look, n) for n in unused[:8])
+    if unused := [n for n in range(form.width) if n not in wanted and layout.kind == "table"]:
+        names = ", ".join(name_of(form, n) for n in unused[:8])
         film.notes.append(f"column{'' if len(unused) == 1 else 's'} {names} left out")
     if any(one.role == "step" for _, one in layout.columns):
         film.notes.append("times summed from steps, each since the row before")
@@ -98,14 +98,14 @@ def film_of_table(path: str | Path, head: bytes, columns: str | None) -> Film:
     return film
 
 
-def _holds_text(look: Look, column: int, what: Heading) -> bool:
+def _holds_text(form: TextForm, column: int, what: Heading) -> bool:
     """Whether a column of ids or flags holds texts, or one of times those of a clock."""
-    cells = [row[column] for row in look.rows if column < len(row)]
+    cells = [row[column] for row in form.rows if column < len(row)]
     if what.role == "time":
         return any(map(is_clock, cells))
     if what.role not in ("id", "seen", "hidden"):
         return False
-    return any(number(cell, look.comma) is None for cell in cells) or not any(cells)
+    return any(number(cell, form.comma) is None for cell in cells) or not any(cells)
 
 
 def _units(path: str | Path, layout: Layout) -> tuple[str, str, bool]:

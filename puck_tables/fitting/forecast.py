@@ -91,9 +91,9 @@ class Camera:
         duration = stop_time if self.duration is None else self.duration
         count = math.floor(min(duration * self.fps, 2.0 * MOST_FRAMES) * (1.0 + 1e-12)) + 1
         if not FEWEST <= count <= MOST_FRAMES:
-            told = f"{count}" if count <= MOST_FRAMES else f"{duration * self.fps:.4g}"
+            words = f"{count}" if count <= MOST_FRAMES else f"{duration * self.fps:.4g}"
             raise InputError(
-                f"{duration:.4g} s at {self.fps:g} frames a second are {told} frames: a forecast "
+                f"{duration:.4g} s at {self.fps:g} frames a second are {words} frames: a forecast "
                 f"takes {FEWEST} to {MOST_FRAMES}"
             )
         angle = None if self.angle_noise is None else np.zeros(count)
@@ -127,8 +127,8 @@ class Forecast(Result):
     picture: ClassVar[str] = "forecast"
 
     def __repr__(self) -> str:
-        told = ", ".join(f"{name} +- {self[name]:.2g}" for name in self.free)
-        return f"Forecast({told}; {self.frames} frames)"
+        words = ", ".join(f"{name} +- {self[name]:.2g}" for name in self.free)
+        return f"Forecast({words}; {self.frames} frames)"
 
     def __getitem__(self, name: str) -> float:
         """The standard error of a number by its name."""
@@ -224,10 +224,10 @@ def fisher(
     instance("camera", camera, Camera)
     velocity = one_velocity(getattr(launch, "velocity", None))  # type: ignore[arg-type]
     spin = real("spin", getattr(launch, "spin", None), "rad/s")  # type: ignore[arg-type]
-    told = _bounds(puck, _Launch(velocity, spin), camera, free)
-    problem, known = told.problem, told.certainty
+    words = _bounds(puck, _Launch(velocity, spin), camera, free)
+    problem, known = words.problem, words.certainty
     errors = known.errors
-    seen = _seen(told)
+    seen = _forecast_estimate(words)
     rivals = () if camera.angle_noise is not None else other_minima(seen, known)
     unsigned = mirrored(seen, known)
     names = tuple(name for _, name in problem.names)
@@ -242,7 +242,7 @@ def fisher(
         camera=camera,
         free=problem.spec.free,
         names=names,
-        values=told.x,
+        values=words.x,
         errors=errors,
         frames=problem.films[0].time.size,
         rivals=(
@@ -278,11 +278,11 @@ def _bounds(puck: Puck, launch: _Launch, camera: Camera, free: Iterable[str]) ->
     return _Bounds(problem, x, certainty_of(problem.jacobian(x), plausible_for(problem, x)))
 
 
-def _seen(told: _Bounds) -> Estimate:
+def _forecast_estimate(words: _Bounds) -> Estimate:
     """What would be found of the film itself, without its noise."""
-    places = told.problem.paths(told.x)[0][:2].T
-    film = replace(told.problem.films[0], place=places)
-    problem = told.problem.with_films((film,))
+    places = words.problem.paths(words.x)[0][:2].T
+    film = replace(words.problem.films[0], place=places)
+    problem = words.problem.with_films((film,))
     kept = np.ones(problem.kinds.size, bool)
-    rows = problem.residuals(told.x)
-    return Estimate(problem, told.x, kept, rows, problem.jacobian(told.x))
+    rows = problem.residuals(words.x)
+    return Estimate(problem, words.x, kept, rows, problem.jacobian(words.x))

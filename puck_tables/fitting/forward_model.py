@@ -110,12 +110,12 @@ def _path(
     if moving.by_speed is not None:
         return _by_speed(moving, velocity, spin, times, want)
     if c == 0.0:
-        return _dry(moving, velocity, spin, times, want)
+        return _dry_friction(moving, velocity, spin, times, want)
     s = np.expm1(c * times) / c
     ends = np.concatenate([[0.0], s])
     half, middle = 0.5 * np.diff(ends), 0.5 * (ends[1:] + ends[:-1])
     inner = middle[:, None] + half[:, None] * _POINTS
-    path, slope = _dry(moving, velocity, spin, np.concatenate([s, inner.ravel()]), want)
+    path, slope = _dry_friction(moving, velocity, spin, np.concatenate([s, inner.ravel()]), want)
     weights = half[:, None] * _WEIGHTS / (1.0 + c * inner) ** 3
 
     def dragged(rows: FloatArray) -> FloatArray:
@@ -164,7 +164,7 @@ def _by_speed(
     return found, out
 
 
-def _dry(
+def _dry_friction(
     moving: Moving, velocity: FloatArray, spin: float, times: FloatArray, want: int
 ) -> tuple[FloatArray, FloatArray]:
     vx, vy = velocity.tolist()

@@ -106,17 +106,17 @@ def predicted(
         if film.angle is not None:
             chosen[turn] = after[np.isfinite(film.angle)]
     names = tuple(film.name for film, after in zip(films, later, strict=True) if after.any())
-    told = math.inf if certainty.degrees == math.inf else part.degrees
+    noise_degrees = math.inf if certainty.degrees == math.inf else part.degrees
     return HeldOut(
         names, z[chosen & (whole.kinds == PLACE)], z[chosen & (whole.kinds == ANGLE)],
-        _by_chance(slopes[chosen], by_fit[chosen], certainty.covariance, told),
+        _by_chance(slopes[chosen], by_fit[chosen], certainty.covariance, noise_degrees),
     )  # fmt: skip
 
 
 def _by_chance(
-    slopes: FloatArray, by_fit: FloatArray, covariance: FloatArray, told: float
+    slopes: FloatArray, by_fit: FloatArray, covariance: FloatArray, noise_degrees: float
 ) -> tuple[float, float]:
-    """Between which the rms of z lies with 95 %, ``told`` degrees of freedom having told the noise.
+    """Between which the rms of z lies with 95 %, over ``noise_degrees`` of its noise.
 
     The z of one motion err together: with R their correlations Σz² is as (n/ν) χ² of
     ν = n²/tr R² degrees (Satterthwaite), over the noise that was told as F.
@@ -127,8 +127,8 @@ def _by_chance(
     shared = covariance @ (slopes.T * weight) @ slopes
     square = float(np.sum(weight**2 * (1.0 + 2.0 * by_fit)) + np.sum(shared * shared.T))
     degrees = by_fit.size**2 / square
-    if told == math.inf:
+    if noise_degrees == math.inf:
         ends = [chdtri(degrees, tail) / degrees for tail in (0.975, 0.025)]
     else:
-        ends = [fdtri(degrees, told, share) for share in (0.025, 0.975)]
+        ends = [fdtri(degrees, noise_degrees, share) for share in (0.025, 0.975)]
     return math.sqrt(ends[0]), math.sqrt(ends[1])

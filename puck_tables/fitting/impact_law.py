@@ -111,7 +111,7 @@ def impact_at(
     >>> puck = Moving(1.0, 0.0, 0.1, 0.0, unit_motions_of("uniform", 0.5**0.5))
     >>> slide = Slide(0.0, np.array([0.0, 0.0, 2.0, 0.0, 0.0, 0.0]))
     >>> impact = impact_at(
-    ...     puck, 0.5**0.5, Rims(0.5, 0.1, 0.0, np.inf), Meeting(0.5, 1.0, (0,), 0), (slide,),
+    ...     puck, 0.5**0.5, Rims(0.5, 0.1, 0.0, np.inf), ImpactSpec(0.5, 1.0, (0,), 0), (slide,),
     ...     WallLine(0.0, 0.975))
     >>> round(impact.time, 9), impact.after[0].launch[2:4].round(9).tolist()  # 0.875 = 2t − t²/2
     (0.5, [-0.75, 0.0])

@@ -39,7 +39,7 @@ def kinks(film: Observations, noise: float) -> list[int]:
     >>> t = np.arange(80.0) / 100.0
     >>> x = np.where(t < 0.395, t, 0.79 - t)
     >>> place = np.stack([x, 0.0 * x], axis=1)
-    >>> kinks(Seen("a", 0.0, t, place, None, np.arange(80)), 1e-5)
+    >>> kinks(Observations("a", 0.0, t, place, None, np.arange(80)), 1e-5)
     [39]
     """
     count = film.time.size
@@ -136,7 +136,7 @@ def turns(film: Observations) -> bool:
     Examples
     --------
     >>> t = 0.01 * np.arange(50)
-    >>> turns(Seen("a", 0.0, t, np.zeros((50, 2)), 3.0 * t, np.arange(50)))
+    >>> turns(Observations("a", 0.0, t, np.zeros((50, 2)), 3.0 * t, np.arange(50)))
     True
     """
     turning = turning_of(film)

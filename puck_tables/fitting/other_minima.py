@@ -78,7 +78,7 @@ def other_minima(
         x, cost = minimise(problem, start, SQUARES, found.kept)
         rise = 2.0 * cost - found.chi2
         deviations = [
-            (np.abs(_told(x, signed) - _told(one, signed)) > far)[seen]
+            (np.abs(_words(x, signed) - _words(one, signed)) > far)[seen]
             for one, seen, far in summits
         ]
         most = far * RISE / (excess**2 if marked else 1.0)
@@ -233,7 +233,7 @@ def _near(found: Estimate, x: FloatArray, held: list[int]) -> bool:
     return float(left @ left) < found.chi2 + 2.0 * EXCLUDED
 
 
-def _told(x: FloatArray, signed: bool) -> FloatArray:
+def _words(x: FloatArray, signed: bool) -> FloatArray:
     """Unknowns as they are compared: without angles a mirror image is no other motion."""
     return x if signed else np.abs(x)
 

@@ -43,7 +43,7 @@ def outliers_of(
         range(len(deviations))
     ])  # fmt: skip
     together = far & (((deviations - usual) ** 2).sum(axis=1) <= limit)
-    for start, stop in _stretches(together):
+    for start, stop in _intervals(together):
         ends = (
             start > 0 and not _leaps(deviations, start),
             stop < len(deviations) and not _leaps(deviations, stop),
@@ -53,7 +53,7 @@ def outliers_of(
     return found
 
 
-def _stretches(together: npt.NDArray[np.bool_]) -> list[tuple[int, int]]:
+def _intervals(together: npt.NDArray[np.bool_]) -> list[tuple[int, int]]:
     """From where to where frames lie off together, over single ones that do not."""
     filled = together.copy()
     filled[1:-1] |= together[:-2] & together[2:]

@@ -141,7 +141,7 @@ def slowing_of(film: Observations, spread: float) -> float:
     --------
     >>> t = np.arange(40.0) / 100.0
     >>> place = np.stack([t - 0.5 * t * t, 0.0 * t], axis=1)
-    >>> round(slowing_of(Seen("a", 0.0, t, place, None, np.arange(40)), 1e-6), 6)
+    >>> round(slowing_of(Observations("a", 0.0, t, place, None, np.arange(40)), 1e-6), 6)
     1.0
     """
     return _first_parabola(film, _moving_frames(film, spread))[2]

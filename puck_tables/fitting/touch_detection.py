@@ -59,7 +59,8 @@ def pushed(film: Observations, start: int, stop: int) -> bool:
     --------
     >>> t = np.arange(40) / 40.0
     >>> noise = np.random.default_rng(1).normal(0.0, 1e-4, (40, 2))
-    >>> film = Seen("a", 0.0, t, np.stack([t * t, 0.0 * t], axis=1) + noise, None, np.arange(40))
+    >>> place = np.stack([t * t, 0.0 * t], axis=1) + noise
+    >>> film = Observations("a", 0.0, t, place, None, np.arange(40))
     >>> pushed(film, 0, 40), pushed(film, 0, 6)
     (True, False)
     """

@@ -113,7 +113,7 @@ class PlainMotions(UnitMotions):
     Examples
     --------
     >>> one = np.array([math.pi / 4]), np.array([1.0]), np.array([[9.0]])
-    >>> PlainCurve().states(*one)[:2, 0, 0].round(8).tolist()  # X, Y at the stop
+    >>> PlainMotions().states(*one)[:2, 0, 0].round(8).tolist()  # X, Y at the stop
     [0.32409373, -0.04297451]
     """
 
@@ -176,7 +176,7 @@ class LawMotions(IntegratedMotions):
 
     Examples
     --------
-    >>> ring = LawCurve(law_of("ring"), 1.0)
+    >>> ring = LawMotions(law_of("ring"), 1.0)
     >>> one = np.array([math.pi / 4]), np.array([0.0]), np.array([[0.5]])
     >>> speed, spin = ring.states(*one)[4:, 0, 0]  # its limit motion
     >>> round(float(spin / speed), 6)
@@ -209,7 +209,7 @@ class TallMotions(IntegratedMotions):
     Examples
     --------
     >>> one = np.array([math.atan(5.0)]), np.array([2.0]), np.array([[9.0]])
-    >>> place = TallCurve(0.5**0.5).states(*one)[:2, 0, 0] * 26.0
+    >>> place = TallMotions(0.5**0.5).states(*one)[:2, 0, 0] * 26.0
     >>> place.round(5).tolist()  # of v = 1, r ω = 5
     [2.40884, -0.57795]
     """

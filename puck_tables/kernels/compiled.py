@@ -53,8 +53,8 @@ _intrinsics: dict[Any, Any] = {patience: vectors.patience} | {
 _dispatchers: dict[tuple[Any, bool], Any] = {}
 
 
-class Door(Protocol):
-    """What is read of a :class:`puck_tables.kernels.doors.Door`, which stands above."""
+class KernelDoor(Protocol):
+    """What is read of a :class:`puck_tables.kernels.doors.KernelDoor`, which stands above."""
 
     py_func: Any
     counts: bool
@@ -69,7 +69,7 @@ class Door(Protocol):
 
 
 @contextlib.contextmanager
-def _compiling(door: Door) -> Iterator[None]:
+def _compiling(door: KernelDoor) -> Iterator[None]:
     """What is compiled within may fuse a·b + c or not, as its door wants it."""
     lock: Any = global_compiler_lock
     with lock:
@@ -106,7 +106,7 @@ def dispatcher_of(function: Any, fuses: bool) -> Any:
     return _dispatchers[function, fuses]
 
 
-def dispatcher_at(door: Door) -> Any:
+def dispatcher_at(door: KernelDoor) -> Any:
     """Numba's object for a kernel that Python calls."""
     made = _dispatcher(door.py_func, door.fuses, door=True, counts=door.counts)
     made.get_call_template = partial(_at_door, door, made.get_call_template)
@@ -133,14 +133,14 @@ def keeps(dispatcher: Any, args: tuple[Any, ...]) -> bool:
     return kinds in dispatcher.overloads or dispatcher._cache.keeps(kinds, dispatcher.targetctx)
 
 
-def code_for(door: Door, args: tuple[Any, ...]) -> Callable[..., Any]:
+def code_for(door: KernelDoor, args: tuple[Any, ...]) -> Callable[..., Any]:
     """Compiled code for such arguments, from disk if it is kept."""
     with _compiling(door):
         code: Callable[..., Any] = type(door.compiled)._compile_for_args(door.compiled, *args)
     return code
 
 
-def _at_door(door: Door, template_for: Callable[..., Any], args: Any, named: Any) -> Any:
+def _at_door(door: KernelDoor, template_for: Callable[..., Any], args: Any, named: Any) -> Any:
     with _compiling(door):
         return _whatever_its_value(template_for, args, named)
 

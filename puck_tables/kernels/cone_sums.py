@@ -37,25 +37,27 @@ def _discs(t: FloatArray) -> FloatArray:
     return np.stack([slides * a, turns * (b - d), turns * b, slides * (d - 2.0 * b)])
 
 
-def _along(way: float, first: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _along(sine_of: float, first: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Coefficients (spans, powers, 4) by the place in a span, −1 to 1, and the cones at a = c.
 
-    ``way``: the sign of q; ``first``: the cones where that side begins, at a = 0 or c = 1.
+    ``sine_of``: the sign of q; ``first``: the cones where that side begins, at a = 0 or c = 1.
     """
     node, weight = (rule[:, None] for rule in np.polynomial.legendre.leggauss(24))
     place = -np.cos(np.linspace(0.0, math.pi, _POWERS))
     y = (np.arange(_SPANS)[:, None] + 0.5 + 0.5 * place[:-1]).ravel() / _SPANS
-    y = np.append(y, 1.0)[::-1] if way < 0.0 else y  # of q > 0 without its end, where a/c has none
+    y = (
+        np.append(y, 1.0)[::-1] if sine_of < 0.0 else y
+    )  # of q > 0 without its end, where a/c has none
     half = 0.5 * np.diff(y)
     at = y[:-1] + half + half * node
-    share = 1.0 - way * at * at
-    t = (1.0 + way * at * at) / share
-    by = weight * half * 4.0 * way * at / (share * share)
+    share = 1.0 - sine_of * at * at
+    t = (1.0 + sine_of * at * at) / share
+    by = weight * half * 4.0 * sine_of * at / (share * share)
     powers = _DEGREES[:, None] + 1.0
     steps = (by * _discs(t) * t ** (powers[:, None] - 1.0)).sum(axis=1)
     cones = np.cumsum(np.concatenate([first[:, None], steps], axis=1), axis=1)
-    t = (1.0 + way * y * y) / (1.0 - way * y * y)
-    if way > 0.0:
+    t = (1.0 + sine_of * y * y) / (1.0 - sine_of * y * y)
+    if sine_of > 0.0:
         values = (cones - _FAR[:, None] * np.log(t)) / t**powers
         values = np.append(values, _discs(np.array([1e300])) / powers, axis=1)
     else:

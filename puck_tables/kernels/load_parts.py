@@ -155,7 +155,7 @@ def _point(piece: BorderPiece, sine: float) -> tuple[float, float]:
 
 
 @inlined
-def _off_touch(alpha: float, beta: float, piece: BorderPiece, sine: float) -> float:
+def _from_touch(alpha: float, beta: float, piece: BorderPiece, sine: float) -> float:
     """How far an end of a piece at the rim is from where a ray touches the base, by √(1 − ρ²)."""
     x, y = _point(piece, sine)
     ux, uy = alpha - beta * y, beta * x
@@ -257,8 +257,8 @@ def _along(
         other = math.sqrt(min(-first, last) ** 2 + off * off)
         first_gap, last_gap = min(seam, other), min(seam, other)
     elif alpha >= beta:
-        first_gap = min(seam, _off_touch(alpha, beta, piece, -1.0))
-        last_gap = min(seam, _off_touch(alpha, beta, piece, 1.0))
+        first_gap = min(seam, _from_touch(alpha, beta, piece, -1.0))
+        last_gap = min(seam, _from_touch(alpha, beta, piece, 1.0))
     if _INSIDE * beta < alpha < beta:
         c, whole = beta / alpha, u0 * u0 + v0 * v0
         down = whole * (2.0 * c * c - 1.0) - (u0 - v0) * (u0 + v0)

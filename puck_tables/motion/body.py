@@ -74,7 +74,7 @@ def is_plain(pressure: str | Law, gyration: float, delta: float) -> bool:
 
 
 @dataclass(frozen=True)
-class Body:
+class UnitPuck:
     """What the motion of a puck depends on besides its scale.
 
     Parameters
@@ -155,7 +155,7 @@ class Body:
 
 def body_of(
     pressure: str | Law, delta: float, gyration: float, table: ResultantTable | None = None
-) -> Body:
+) -> UnitPuck:
     """A puck, checked; ``table``: where its friction comes from, if not from the law itself.
 
     Raises
@@ -178,4 +178,4 @@ def body_of(
     if table is not None:
         table.refuse_other(law)
         table.checked_range(height, law.name)
-    return Body(law, height, radius, table)
+    return UnitPuck(law, height, radius, table)

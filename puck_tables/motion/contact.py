@@ -10,7 +10,7 @@ import numpy as np
 from puck_tables.accuracy.methods import FrictionForm
 from puck_tables.contact.one_sided import loaded_share
 from puck_tables.kernels.section_spline import LINE
-from puck_tables.motion.body import Body
+from puck_tables.motion.body import UnitPuck
 from puck_tables.motion.state import T, U
 from puck_tables.motion.unit_motion import GENERIC, MotionRun
 from puck_tables.table.singular_lines import opening_angle
@@ -30,7 +30,7 @@ class Contact:
     closes: float | None = None
 
 
-def contact_of(body: Body, regime: str, run: MotionRun) -> Contact:
+def contact_of(body: UnitPuck, regime: str, run: MotionRun) -> Contact:
     """What carries load along a motion: the share grows with φ, and φ is monotonic in time.
 
     Examples

@@ -23,7 +23,7 @@ from puck_tables.contact.resultants import CONTACT_SLACK, pressure_tilt
 from puck_tables.errors import AccuracyError, InputError
 from puck_tables.kernels.closed_form_kernel import outside_full_contact
 from puck_tables.kernels.section_spline import NO_SECTION
-from puck_tables.motion.body import Body
+from puck_tables.motion.body import UnitPuck
 from puck_tables.motion.limits import LIMIT_WIDTH, limit_log_ratio
 from puck_tables.motion.solve import ErrorEstimate, Setting
 from puck_tables.motion.steppers import stepping_of
@@ -79,7 +79,7 @@ def table_friction(delta: float, table: ResultantTable) -> Friction:
 
 
 @lru_cache(maxsize=64)
-def section_friction(body: Body, accuracy: float, coarser: bool = False) -> Friction:
+def section_friction(body: UnitPuck, accuracy: float, coarser: bool = False) -> Friction:
     """Friction by a section; ``coarser``: of half as many cells, to see what the spline adds.
 
     Raises
@@ -239,7 +239,7 @@ class FullContact(FrictionSource):
 class Sections(FrictionSource):
     """The section of a table at the height of a puck, made for it and as fine as it needs."""
 
-    body: Body
+    body: UnitPuck
     limit_width = _SECTION_WIDTH  # its truth is good to 1e-13
     is_measured = False
 
@@ -303,7 +303,7 @@ class Sections(FrictionSource):
 
 
 def source_of(
-    body: Body, table: ResultantTable | None = None, exact: bool = False
+    body: UnitPuck, table: ResultantTable | None = None, exact: bool = False
 ) -> FrictionSource:
     """Where the friction of a puck comes from.
 

@@ -17,7 +17,7 @@ from puck_tables.motion.body import (
     LARGEST_GYRATION,
     SMALLEST_GYRATION,
     STANDARD_GRAVITY,
-    Body,
+    UnitPuck,
     body_of,
 )
 
@@ -127,7 +127,7 @@ class PuckSpec:
         return self.friction * self.gravity
 
     @cached_property
-    def body(self) -> Body:
+    def body(self) -> UnitPuck:
         """Pressure law, δ and gyration: what the motion depends on besides its scale."""
         return body_of(self.pressure, self.delta, self.gyration)
 

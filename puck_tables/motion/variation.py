@@ -151,7 +151,7 @@ def vary(
     ----------
     z_path : array (n,), where the steps of the motion end
     u : ln(rω/v) at the launch
-    section : six functions, see :meth:`puck_tables.table.friction_slopes.FlowSection.for_slopes`
+    section : six functions, see :meth:`puck_tables.table.friction_slopes.FrictionSlopes.for_slopes`
     path : array (n, 28), or empty where nobody wants it
     stop : array (28,)
     work : room (8, 28)

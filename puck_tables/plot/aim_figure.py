@@ -34,11 +34,11 @@ def draw(found: Aim) -> Figure:
         found.launch_spin, found.launch_speed, c=colours.to_rgba(found.launch_spin), zorder=2
     )
     x, y = found.target
-    told(figure, launches, found.puck, f"launches that stop at ({x:g}, {y:g}) m")
+    caption(figure, launches, found.puck, f"launches that stop at ({x:g}, {y:g}) m")
     return figure
 
 
-def told(figure: Figure, launches: Axes, puck: PuckSpec, answer: str) -> None:
+def caption(figure: Figure, launches: Axes, puck: PuckSpec, answer: str) -> None:
     """Label the panel of speeds against spins, and say above all what is drawn, of which puck."""
     launches.set(xlabel=COLUMNS["launch_spin"].axis, ylabel=COLUMNS["launch_speed"].axis)
     launches.set_ylim(bottom=0.0)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from puck_tables.errors import InputError
 from puck_tables.io.columns import COLUMNS
-from puck_tables.plot.aim_figure import told
+from puck_tables.plot.aim_figure import caption
 from puck_tables.plot.style import GREY, LAUNCH, canvas, ramp
 from puck_tables.plot.titles import counted, legend_below
 from puck_tables.stopping.aim_at_targets import Aims
@@ -22,7 +22,7 @@ def draw(found: Aims) -> Figure:
     targets, launches = figure.subplots(1, 2, width_ratios=(1.5, 1.0))
     draw_on(targets, found)
     launches.scatter(found.launch_spin, found.launch_speed, c=found.stop_time, s=8, cmap=ramp())
-    told(figure, launches, found.puck, found.answer)
+    caption(figure, launches, found.puck, found.answer)
     return figure
 
 

@@ -46,7 +46,7 @@ def draw(found: Fit) -> Figure:
             _draw_friction(figure.add_subplot(inner[0, len(shown)]), found)
         for n, name in enumerate(shown):
             _draw_profile(figure.add_subplot(inner[0, n]), found, name)
-    told = [f"{name} = {_told(found.numbers[name])}" for name in names]
+    told = [f"{name} = {_in_words(found.numbers[name])}" for name in names]
     told += [f"{name} is not determined" for name in free if name not in names]
     titled(figure, "; ".join([*told, f"chi² per degree {found.chi2 / max(found.degrees, 1):.3g}"]))
     return figure
@@ -174,7 +174,7 @@ def _draw_profile(panel: Axes, found: Fit, name: str) -> None:
     panel.tick_params(axis="x", labelrotation=30)
 
 
-def _told(number: Number) -> str:
+def _in_words(number: Number) -> str:
     if number.at_bound:
         return f"{number.shown} at its bound"
     return f"{number.value:.6g} ± {number.error:.2g}"

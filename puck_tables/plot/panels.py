@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class PlotCurve:
+class PlotLine:
     """A curve, or points if it has a ``marker`` (``hollow`` or not).
 
     ``shade`` from 0 to 1 gives its place in a family of curves, light to dark; without it colours
@@ -45,7 +45,7 @@ class Panel:
 
     x_label: str
     y_label: str
-    curves: Sequence[PlotCurve]
+    lines: Sequence[PlotLine]
     title: str = ""
     x_ticks: dict[float, str] | None = None
 
@@ -64,7 +64,7 @@ def draw(picture: Picture) -> Figure:
 
     Examples
     --------
-    >>> line = PlotCurve(np.array([0.0, 1.0]), np.array([0.0, 2.0]), "twice")
+    >>> line = PlotLine(np.array([0.0, 1.0]), np.array([0.0, 2.0]), "twice")
     >>> len(draw(Picture("A line", [Panel("x / m", "y / m", [line])])).axes)
     1
     """
@@ -78,8 +78,8 @@ def draw(picture: Picture) -> Figure:
 
 def draw_panel(axes: Axes, panel: Panel) -> None:
     """Draw the curves of a panel on given axes."""
-    for number, curve in enumerate(panel.curves):
-        look = _look(curve, number)
+    for number, curve in enumerate(panel.lines):
+        look = _style(curve, number)
         leaps = np.flatnonzero(np.abs(np.diff(curve.y)) > curve.leap)
         x = np.insert(curve.x, leaps + 1, np.nan)
         y = np.insert(curve.y, leaps + 1, np.nan)
@@ -99,11 +99,11 @@ def draw_panel(axes: Axes, panel: Panel) -> None:
     low, high = axes.get_ylim()
     if low < 0.0 < high:
         axes.axhline(0.0, color=GREY, linewidth=0.8, zorder=1)
-    if any(curve.label for curve in panel.curves):
+    if any(curve.label for curve in panel.lines):
         axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
 
 
-def _look(curve: PlotCurve, number: int) -> dict[str, Any]:
+def _style(curve: PlotLine, number: int) -> dict[str, Any]:
     """How matplotlib is to draw a curve, the ``number``-th of its panel."""
     if curve.dashed:
         return {"color": GREY, "linestyle": "--", "linewidth": 1.2}

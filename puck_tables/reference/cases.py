@@ -87,7 +87,7 @@ def _incline(name: str, over: float, words: str, tests: str, time: float | None)
     return ReferenceCase(f"incline-{name}", 1, f"Spinning disc on a slope {words}", tests, tables)
 
 
-def _astride(
+def _over_edge(
     name: str, title: str, tests: str, puck: dict[str, Any], borders: list[float],
     friction: list[float], direction: float, launch: dict[str, Any],
 ) -> ReferenceCase:  # fmt: skip
@@ -145,19 +145,19 @@ CASES = (
         {"puck": _DISC, "floor": {"turning": 4.0},
          "launch": {"velocity": [0.0, 0.0], "position": [0.2, 0.0]}, "time": 1.0},
     ),
-    _astride(
+    _over_edge(
         "spin", "Flat disc that spins on the border of two frictions",
         "it is pushed along the border, at first by (f1 - f2) g/pi = 0.3501 m/s^2",
         {**_DISC, "height": 0.0, "friction": 0.78, "gravity": 10.0}, [0.0], [0.78, 0.67], 0.0,
         {"velocity": [0.0, 0.0], "spin": 20.0},
     ),
-    _astride(
+    _over_edge(
         "crossing", "Cylinder slides and spins over a border aslant",
         "each friction acts under its own part of the base, the pressure tilted by both",
         {**_DISC, "height": 0.05}, [0.1], [0.2, 0.35], 0.4,
         {"velocity": [1.0, 0.3], "spin": 20.0},
     ),
-    _astride(
+    _over_edge(
         "stop", "Disc slides and spins onto a strip narrower than itself, and stops there",
         "three frictions under one base for a while, two to the very stop",
         _DISC, [0.1, 0.16], [0.15, 0.4, 0.1], 0.0,

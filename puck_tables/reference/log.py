@@ -14,7 +14,7 @@ from puck_tables._core.beginning import beginning, refuse_no_text
 from puck_tables._core.quantities import TIME
 from puck_tables._core.read_columns import list_of
 from puck_tables._core.real import instance, real
-from puck_tables._core.text import Look, look_at
+from puck_tables._core.text import TextForm, text_form_of
 from puck_tables._core.text_rows import LARGEST, read_columns
 from puck_tables._core.units import EXAMPLES, parted, unit_size
 from puck_tables.errors import InputError
@@ -113,12 +113,12 @@ def read_log(path: str | Path, how: LogHow) -> Log:
     ([0.0, 0.01, 0.02], [0.0, 0.002, 0.003], True)
     """
     instance("path", path, str, Path)
-    look, columns, ids = _columns(path, how)
+    form, columns, ids = _columns(path, how)
     said = {one.role: n for n, one in columns.items()}
-    floor = _floor_axes(path, look, said, how)
+    floor = _floor_axes(path, form, said, how)
     wanted = ["time", *floor.values()]
     where, values = _numbers(
-        path, look, columns, how, [said[role] for role in wanted if role in said], ids
+        path, form, columns, how, [said[role] for role in wanted if role in said], ids
     )
     time = values[said["time"]] - how.launch_time
     notes = [f"up is {how.up}"] if how.up else []
@@ -174,16 +174,16 @@ def times_in(path: str | Path) -> FloatArray:
     found = list_of(path, TIME, _MOST_TIMES)
     if found is not None:
         return found
-    look, columns, _ = _columns(path, LogHow())
+    form, columns, _ = _columns(path, LogHow())
     clock = next((n for n, one in columns.items() if one.role == "time"), None)
     if clock is None:
         raise InputError(
             f"{path} holds no times: give one time in s a line, or a table with a column t"
         )
-    return _numbers(path, look, columns, LogHow(), [clock], [])[1][clock]
+    return _numbers(path, form, columns, LogHow(), [clock], [])[1][clock]
 
 
-def _columns(path: str | Path, how: LogHow) -> tuple[Look, dict[int, LogHeading], list[int]]:
+def _columns(path: str | Path, how: LogHow) -> tuple[TextForm, dict[int, LogHeading], list[int]]:
     """How a table is written, what its columns are, and which say whose a row is."""
     if "\0" in str(path):
         raise InputError("the name of a file holds a NUL")
@@ -192,8 +192,8 @@ def _columns(path: str | Path, how: LogHow) -> tuple[Look, dict[int, LogHeading]
     except OSError as error:
         raise InputError(f"cannot read {path}: {error.strerror or error}") from None
     refuse_no_text(path, head)
-    look = look_at(path, head)
-    names = headed(path, look, how.columns)[-1]
+    form = text_form_of(path, head)
+    names = headed(path, form, how.columns)[-1]
     columns: dict[int, LogHeading] = {}
     for n, name in enumerate(names):
         try:
@@ -212,10 +212,12 @@ def _columns(path: str | Path, how: LogHow) -> tuple[Look, dict[int, LogHeading]
         n for n, name in enumerate(names)
         if n not in columns and heading(parted(name)[0]).role == "id"
     ]  # fmt: skip
-    return look, columns, ids
+    return form, columns, ids
 
 
-def _floor_axes(path: str | Path, look: Look, said: dict[str, int], how: LogHow) -> dict[str, str]:
+def _floor_axes(
+    path: str | Path, form: TextForm, said: dict[str, int], how: LogHow
+) -> dict[str, str]:
     """Which of its columns are x, y, angle, vx, vy and spin on the floor, seen from above."""
     flat = {"x": "x", "y": "y", "angle": "angle", "vx": "vx", "vy": "vy", "spin": "spin"}
     three = [role for role in ("z", "vz") if role in said]
@@ -234,7 +236,7 @@ def _floor_axes(path: str | Path, look: Look, said: dict[str, int], how: LogHow)
         )
     missing = [role for role in ("time", flat["x"], flat["y"]) if role not in said]
     if missing:
-        names = ", ".join(name_of(look, n) for n in range(min(look.width, 12)))
+        names = ", ".join(name_of(form, n) for n in range(min(form.width, 12)))
         raise InputError(
             f"{path} has no column that is known as {' or '.join(missing)} (its columns are "
             f"{names:.90}): say what they are, such as columns='t [s],x [m],y [m],angle [rad],"
@@ -281,12 +283,12 @@ def _rows_of_one(
 
 
 def _numbers(
-    path: str | Path, look: Look, columns: dict[int, LogHeading], how: LogHow, wanted: list[int],
-    ids: list[int],
+    path: str | Path, form: TextForm, columns: dict[int, LogHeading], how: LogHow, wanted:
+    list[int], ids: list[int],
 ) -> tuple[str, dict[int, FloatArray]]:  # fmt: skip
     """Whose rows they are, for messages; and columns in SI units, every cell a number."""
-    values, texts = read_columns(path, look, wanted, ids)
-    rows = _rows_of_one(path, [(name_of(look, n), *texts[n]) for n in ids], how)
+    values, texts = read_columns(path, form, wanted, ids)
+    rows = _rows_of_one(path, [(name_of(form, n), *texts[n]) for n in ids], how)
     where = str(path) if rows is None else f"{path} ({how.puck})"
     if rows is not None:
         values = {n: column[rows] for n, column in values.items()}

@@ -18,9 +18,9 @@ from puck_tables.io.dataset import Dataset, variable
 from puck_tables.motion.puck_spec import PUCK_UNITS, PuckSpec
 from puck_tables.stopping.aim_lookup import RIM, SPEED, TIME
 from puck_tables.stopping.launch_arrays import fits
-from puck_tables.stopping.launch_columns import Aimed
+from puck_tables.stopping.launch_columns import LaunchColumns
 from puck_tables.stopping.launch_family import LaunchFamily, launch_family_of
-from puck_tables.stopping.launch_ranges import between, joined, sample
+from puck_tables.stopping.launch_ranges import between, concatenated, sample
 from puck_tables.stopping.target_error import misses
 
 COLUMNS = (
@@ -41,7 +41,7 @@ TOO_LARGE = (
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Aim(Aimed):
+class Aim(LaunchColumns):
     """Launches of a ``puck`` that come to rest at ``target`` (2,) m from where they start.
 
     Arrays (n,), ordered by spin, the most clockwise first: ``launch_velocity`` (n, 2) m/s,
@@ -153,7 +153,7 @@ class _Family:
         for low, high in intervals:
             speed, rim, _, _ = self.at(between(low, high))
             inside.append(speed <= fastest and rim <= widest)
-        return joined(intervals, inside)
+        return concatenated(intervals, inside)
 
 
 def aim_at(

@@ -30,9 +30,9 @@ from puck_tables.stopping.aim_at_target import (
 )
 from puck_tables.stopping.aim_lookup import BEND, RIM, SPEED, TIME
 from puck_tables.stopping.launch_arrays import fits, positive_array
-from puck_tables.stopping.launch_columns import Aimed
+from puck_tables.stopping.launch_columns import LaunchColumns
 from puck_tables.stopping.launch_family import LaunchFamily, launch_family_of
-from puck_tables.stopping.launch_ranges import between, joined, sample
+from puck_tables.stopping.launch_ranges import between, concatenated, sample
 from puck_tables.stopping.target_error import misses
 
 ROWS = ("target_index", "target_x", "target_y", *COLUMNS[:-1])  # of a file: no miss, see Aims
@@ -46,7 +46,7 @@ _LAUNCH = 5  # columns: vx, vy, ω, time, miss
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Aims(Aimed):
+class Aims(LaunchColumns):
     """Launches of a ``puck`` that come to rest at one of many targets from where they start.
 
     ``target`` (…, 2) m; ``launches`` (…): how many lead to each.  Arrays (n,) of all launches,
@@ -297,7 +297,10 @@ class _Search:
         logs = self.curve.looked_up(middles) + np.repeat(scales, sizes, axis=0)
         allowed = np.all(logs[:, [SPEED, RIM]] <= limits, axis=1)
         inside = iter(allowed.tolist())
-        us = [sample(joined(some, [next(inside) for _ in some]), self.count) for some in intervals]
+        us = [
+            sample(concatenated(some, [next(inside) for _ in some]), self.count)
+            for some in intervals
+        ]
         which = np.repeat(np.arange(n), [len(one) for one in us])
         return which, np.array([u for one in us for u in one])
 

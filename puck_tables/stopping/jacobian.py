@@ -14,7 +14,7 @@ from puck_tables._core.executor import run_chunks
 from puck_tables._core.real import shown
 from puck_tables.contact.laws import Law
 from puck_tables.errors import InputError
-from puck_tables.motion.body import Body
+from puck_tables.motion.body import UnitPuck
 from puck_tables.stopping.launch_arrays import Launches, in_chunks, launches_in
 from puck_tables.stopping.spread import ResultSpread, spread_of
 from puck_tables.stopping.stop_table import StopTable
@@ -25,7 +25,7 @@ STOP_NAMES = ("stop_time", "stop_x", "stop_y", "path_length", "body_angle")
 STATE_NAMES = ("x", "y", "orientation", "vx", "vy", "spin")
 MOMENT_NAMES = (*LAUNCH_NAMES, "time")
 
-Bodies = dict[float, Body]  # by height
+Bodies = dict[float, UnitPuck]  # by height
 
 
 class StopSettings(NamedTuple):

@@ -238,7 +238,7 @@ def smallest_mark(parts: Iterable[tuple[int, int]]) -> int:
 
     Examples
     --------
-    >>> joined_mark([(0, 5), (CHUNK, 7)])
+    >>> smallest_mark([(0, 5), (CHUNK, 7)])
     26
     """
     return sum(int(mark) * (2 * (start // CHUNK) + 1) for start, mark in parts) % (1 << 64)

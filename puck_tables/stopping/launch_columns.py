@@ -9,7 +9,7 @@ from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.result import Result
 
 
-class Aimed(Result):
+class LaunchColumns(Result):
     """Launches of a ``puck``: velocities (n, 2) m/s and spins (n,) rad/s, and what follows."""
 
     puck: PuckSpec

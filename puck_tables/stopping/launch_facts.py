@@ -106,7 +106,7 @@ def fill_up(room: FloatArray, row: int, count: int) -> None:
 
 
 @inlined
-def fetch(pucks: FloatArray, natural: FloatArray, start: int, count: int, room: FloatArray) -> None:
+def fetch(pucks: FloatArray, generic: FloatArray, start: int, count: int, room: FloatArray) -> None:
     """What is known of ``count`` pucks from ``start`` on into the rows of a block."""
     for row, known in _OF_PUCK:
         values = pucks[known, start : start + count]
@@ -114,7 +114,7 @@ def fetch(pucks: FloatArray, natural: FloatArray, start: int, count: int, room: 
             room[row * BLOCK + n] = values[n]
         fill_up(room, row, count)
     for row, known in _OF_NEIGHBOUR:
-        values = natural[known, start : start + count]
+        values = generic[known, start : start + count]
         for n in range(count):
             room[row * BLOCK + n] = values[n]
         fill_up(room, row, count)
@@ -205,13 +205,13 @@ def find_facts(
 
 @look_up
 def fill_launch_facts(
-    pucks: FloatArray, natural: FloatArray, constants: FloatArray, states: FloatArray,
+    pucks: FloatArray, generic: FloatArray, constants: FloatArray, states: FloatArray,
     rates: FloatArray, out: FloatArray,
 ) -> None:  # fmt: skip
     """All that derivatives of states need of launches, into ``out`` (49, m).
 
     ``pucks`` (20, m), see :func:`puck_tables.stopping.launch_lookup.fill_launch_lookup`;
-    ``natural``: the same, but with others beside them in place of exact pure motions; ``constants``
+    ``generic``: the same, but with others beside them in place of exact pure motions; ``constants``
     (14, 4), powers ascending.
     """
     patience(pucks.shape[1])
@@ -220,7 +220,7 @@ def fill_launch_facts(
     room = room[-(room.ctypes.data // 8) % LINE :]  # from the beginning of a line of the cache on
     for start in range(0, pucks.shape[1], PART):
         count = min(PART, pucks.shape[1] - start)
-        fetch(pucks, natural, start, count, room)
+        fetch(pucks, generic, start, count, room)
         find_facts(room, fixed, of_state, of_rate, cells)
         for row in range(FACTS):
             values, place = room[row * BLOCK :], out[row, start : start + count]

@@ -30,7 +30,7 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.section_spline import NO_SECTION
-from puck_tables.motion.body import Body
+from puck_tables.motion.body import UnitPuck
 from puck_tables.stopping.aim_lookup import (
     BEND,
     LOGS,
@@ -83,7 +83,7 @@ class LaunchFamily:
     fit : array (m,), which of them fit the curve
     """
 
-    body: Body
+    body: UnitPuck
     u: FloatArray = field(repr=False)
     values: FloatArray = field(repr=False)
     pieces: FloatArray = field(repr=False)
@@ -161,10 +161,10 @@ class LaunchFamily:
         """A root between two u by integrations alone."""
         from scipy.optimize import brentq
 
-        def off(u: float) -> float:
+        def error(u: float) -> float:
             return float(self.rows(np.array([u]))[0, quantity]) - wanted
 
-        return float(brentq(off, low, high, xtol=1e-14, rtol=1e-15))
+        return float(brentq(error, low, high, xtol=1e-14, rtol=1e-15))
 
     def brackets(self, quantity: int, values: FloatArray) -> tuple[Indices, FloatArray, FloatArray]:
         """Where a quantity has one of ``values`` (n,): of which, and intervals of u, (m,) each.
@@ -199,9 +199,9 @@ class LaunchFamily:
             after = first + at[inside]
             found.append((inside, u[after - 1], u[after]))
         for turn in self._turns(levels)[1:-1]:
-            off = levels[turn] - values
-            beyond = off * (levels[turn] - levels[turn - 1]) <= 0.0
-            short = np.flatnonzero(finite & beyond & (np.abs(off) <= _ROUNDED))
+            error = levels[turn] - values
+            beyond = error * (levels[turn] - levels[turn - 1]) <= 0.0
+            short = np.flatnonzero(finite & beyond & (np.abs(error) <= _ROUNDED))
             found.append((short, u[turn], u[turn]))
         which = np.concatenate([one for one, _, _ in found])
         low, high = (
@@ -228,7 +228,7 @@ class LaunchFamily:
 
 
 @lru_cache(maxsize=64)
-def launch_family_of(body: Body) -> LaunchFamily:
+def launch_family_of(body: UnitPuck) -> LaunchFamily:
     """Of a puck: kept, the same call again costs nothing.
 
     Examples
@@ -254,10 +254,10 @@ def launch_family_of(body: Body) -> LaunchFamily:
         new, new_slopes = middles[:, n] = _with_slopes(body, 0.5 * (u[n] + u[n + 1]))
         guess = 0.5 * (values[n] + values[n + 1])
         guess += 0.125 * width[:, None] * (slopes[n] - slopes[n + 1])
-        off = np.abs(guess - new).max(axis=1)
+        error = np.abs(guess - new).max(axis=1)
         # no derivative next to the limit, where the curve is analytic
         kept = np.isfinite(new_slopes).all(axis=1)
-        into = kept & ~(off <= _RESOLVED) & (width > _NARROWEST)
+        into = kept & ~(error <= _RESOLVED) & (width > _NARROWEST)
         n = n[into]
         u = np.insert(u, n + 1, 0.5 * (u[n] + u[n + 1]))
         values = np.insert(values, n + 1, new[into], axis=0)
@@ -275,7 +275,7 @@ def launch_family_of(body: Body) -> LaunchFamily:
     return LaunchFamily(body, u[order], values[order], pieces, fit)
 
 
-def _first_nodes(body: Body) -> FloatArray:
+def _first_nodes(body: UnitPuck) -> FloatArray:
     """Everywhere, and next to the lines of the friction on both sides; none next to the limit."""
     lines = np.log(np.tan(np.array(body.friction(SECTION_ACCURACY).lines)))
     near = np.outer([-1.0, 1.0], 10.0 ** -np.arange(1.0, 6.5, 0.5)).ravel()
@@ -305,7 +305,7 @@ def _turns(u: FloatArray, values: FloatArray, slopes: FloatArray) -> FloatArray:
     return turns
 
 
-def _stops(body: Body, u: FloatArray) -> FloatArray:
+def _stops(body: UnitPuck, u: FloatArray) -> FloatArray:
     """T, X, Y at u (n,), (n, 3)."""
     heights = np.full(u.size, body.delta)
     if body.is_plain:
@@ -331,11 +331,11 @@ def cosine_of(u: FloatArray) -> FloatArray:
     return cosine
 
 
-def _values(body: Body, u: FloatArray) -> FloatArray:
+def _values(body: UnitPuck, u: FloatArray) -> FloatArray:
     return np.column_stack(_logs(u, _stops(body, u))[:BEND])
 
 
-def _with_slopes(body: Body, u: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _with_slopes(body: UnitPuck, u: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Values and their derivatives, both (n, 4); the derivatives NaN next to the limit."""
     stops = _stops(body, u)
     values = np.column_stack(_logs(u, stops))
@@ -353,7 +353,7 @@ def _with_slopes(body: Body, u: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def _pieces(
-    body: Body, u: FloatArray, values: FloatArray, slopes: FloatArray, middles: FloatArray
+    body: UnitPuck, u: FloatArray, values: FloatArray, slopes: FloatArray, middles: FloatArray
 ) -> tuple[FloatArray, npt.NDArray[np.bool_]]:
     """The powers of u between nodes, (n − 1, 26), and which of them fit, (n − 1,).
 

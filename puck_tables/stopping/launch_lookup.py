@@ -79,20 +79,20 @@ _Q, _V, _T, _LOG_N, _SIGN_N, _HEADING, _OWN_KAPPA, _OWN_TURNING = range(_OUT + 6
 @look_up
 def fill_launch_lookup(
     vx: FloatArray, vy: FloatArray, step: int, spin: FloatArray, delta: FloatArray,
-    decel: FloatArray, radius: FloatArray, stops: FloatArray, curve: FloatArray,
+    decel: FloatArray, radius: FloatArray, stops: FloatArray, functions: FloatArray,
     turns: FloatArray, constants: FloatArray, turn_share: float, out: FloatArray,
 ) -> tuple[int, int]:  # fmt: skip
     """Launches, and what is known of them, into ``out`` (6 + 14, n).
 
     Or of a stop alone: time, x, y, path length, turn of heading and of the body (6, n); without
     time and place (3, n).  ``stops`` (2, cells + 3, 8 × 4)
-    is a cut of the stop table, ``curve`` (2, cells + 3, 9 × 4) holds the other functions, ``turns``
-    (2, cells + 3, 12) the heading's regular part over the place by Q; ``constants`` as for
-    :func:`puck_tables.stopping.similarity_lookup.look_up_launch`.  Returns of how many Q²/J or
+    is a cut of the stop table, ``functions`` (2, cells + 3, 9 × 4) holds the other functions,
+    ``turns`` (2, cells + 3, 12) the heading's regular part over the place by Q; ``constants`` as
+    for :func:`puck_tables.stopping.similarity_lookup.look_up_launch`.  Returns of how many Q²/J or
     Q²/(J r) may be too large, and how many are no launches.
     """
     patience(out.shape[1])
-    flat, flat_curve, flat_turns = stops.reshape(-1), curve.reshape(-1), turns.reshape(-1)
+    flat, flat_curve, flat_turns = stops.reshape(-1), functions.reshape(-1), turns.reshape(-1)
     room, is_rest = np.empty(_ROWS * BLOCK), out.shape[0] == _REST
     cells, log_share = float(stops.shape[1] - 3), math.log(turn_share)
     fill_constants(vx, vy, spin, delta, decel, radius, out.shape[1], room)
@@ -146,7 +146,7 @@ def fill_launch_lookup(
 @look_up
 def fill_states_of_one(
     vx: FloatArray, vy: FloatArray, step: int, spin: FloatArray, delta: FloatArray,
-    decel: FloatArray, radius: FloatArray, stops: FloatArray, curve: FloatArray,
+    decel: FloatArray, radius: FloatArray, stops: FloatArray, functions: FloatArray,
     turns: FloatArray, constants: FloatArray, splines: FloatArray, moments: FloatArray,
     out: FloatArray,
 ) -> int:  # fmt: skip
@@ -158,7 +158,19 @@ def fill_states_of_one(
     """
     puck = np.empty((PUCK_ROWS, 1))
     doubtful, bad = fill_launch_lookup(
-        vx, vy, step, spin, delta, decel, radius, stops, curve, turns, constants, TURN_SHARE, puck
+        vx,
+        vy,
+        step,
+        spin,
+        delta,
+        decel,
+        radius,
+        stops,
+        functions,
+        turns,
+        constants,
+        TURN_SHARE,
+        puck,
     )
     which = np.zeros(1, np.int64)
     late = fill_states_at(puck, which, moments, 0, moments.size, splines, out)

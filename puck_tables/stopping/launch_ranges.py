@@ -20,12 +20,14 @@ def between(low: float, high: float) -> float:
     return 0.5 * (max(low, min(high, 0.0) - 2.0) + min(high, max(low, 0.0) + 2.0))
 
 
-def joined(intervals: list[tuple[float, float]], inside: list[bool]) -> list[tuple[float, float]]:
+def concatenated(
+    intervals: list[tuple[float, float]], inside: list[bool]
+) -> list[tuple[float, float]]:
     """The intervals that are inside, neighbours as one.
 
     Examples
     --------
-    >>> joined([(0.0, 1.0), (1.0, 2.0), (2.0, 3.0)], [True, True, False])
+    >>> concatenated([(0.0, 1.0), (1.0, 2.0), (2.0, 3.0)], [True, True, False])
     [(0.0, 2.0)]
     """
     within: list[tuple[float, float]] = []

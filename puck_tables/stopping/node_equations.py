@@ -93,7 +93,7 @@ def similarity_error(axis: SlipAxis, values: FloatArray, height: int) -> tuple[F
     --------
     >>> from puck_tables.stopping.stop_table import StopTable
     >>> table = StopTable.shipped()
-    >>> missed, allowed = missed_by_curve(table.axis, table.values, 4)
+    >>> missed, allowed = similarity_error(table.axis, table.values, 4)
     >>> bool(missed.max() < allowed < 1e-6)
     True
     """

@@ -34,7 +34,7 @@ from puck_tables.contact.resultants import checked_delta
 from puck_tables.errors import AccuracyError, InputError
 from puck_tables.kernels.quadratic import NO_COLUMNS
 from puck_tables.kernels.section_spline import NO_SECTION
-from puck_tables.motion.body import Body, body_of, plain_up_to
+from puck_tables.motion.body import UnitPuck, body_of, plain_up_to
 from puck_tables.motion.friction_source import Sections, integration_selected
 from puck_tables.motion.solve import FINEST_LOCAL, ErrorEstimate, Setting, close_enough, refined
 from puck_tables.motion.steppers import stepping_of
@@ -167,7 +167,7 @@ class SolverPerHeight:
 
         run_chunks(work, heights.size, 1, threads, progress)
 
-    def kinds(self, delta: FloatArray) -> tuple[npt.NDArray[np.bool_], dict[float, Body]]:
+    def kinds(self, delta: FloatArray) -> tuple[npt.NDArray[np.bool_], dict[float, UnitPuck]]:
         """Which of the heights ``delta`` (n,) are plain, and the pucks of the others."""
         plain = delta <= self._plain_up_to
         return plain, {height: self._body(height) for height in np.unique(delta[~plain]).tolist()}
@@ -176,7 +176,7 @@ class SolverPerHeight:
         """Which heights are not plain, (n,)."""
         return delta > self._plain_up_to
 
-    def _body(self, delta: float) -> Body:
+    def _body(self, delta: float) -> UnitPuck:
         return body_of(self._pressure, delta, self._gyration, self._law_table)
 
     def _prepare_plain(self) -> None:
@@ -211,7 +211,7 @@ class SolverPerHeight:
         stepping = stepping_of(selection)
         self._plain = Integration(columns, NO_SECTION, stepping, selection.method, selection.error)
 
-    def _made(self, body: Body, launches: int, alone: int) -> StopSolver:
+    def _made(self, body: UnitPuck, launches: int, alone: int) -> StopSolver:
         """A solver for the launches of one height that is not plain."""
         look_up = self._wanted is Method.LOOK_UP
         if look_up or (not self._wanted and launches >= MANY and self.tol >= FINEST_SECTION):
@@ -393,7 +393,7 @@ def refuse_many(heights: FloatArray) -> None:
         )
 
 
-def integration_of(body: Body, tol: float, method: Method | None = None) -> Integration:
+def integration_of(body: UnitPuck, tol: float, method: Method | None = None) -> Integration:
     """An integration good for every launch of a puck, tried at both sides of singular lines.
 
     Raises
@@ -432,7 +432,7 @@ def integration_of(body: Body, tol: float, method: Method | None = None) -> Inte
     return replace(found, error=error.total)
 
 
-def _probes(body: Body) -> FloatArray:
+def _probes(body: UnitPuck) -> FloatArray:
     """Launches (6, n) with Q = J = r = 1: anywhere, and next to all lines and both ends."""
     lines = np.array([0.0, *body.friction(COARSEST).lines, 0.5 * np.pi])
     near = (lines[:, None] + np.outer([-1.0, 1.0], 10.0 ** -np.arange(1.0, 8.0)).ravel()).ravel()

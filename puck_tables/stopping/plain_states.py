@@ -78,14 +78,14 @@ def _fill_slopes(
     from puck_tables.stopping.state_jacobian import fill_state_jacobians
     from puck_tables.stopping.stop_jacobian import is_streamed
 
-    natural, pure, slopes = pucks, _pure(pucks), table.slopes
+    generic, pure, slopes = pucks, _pure(pucks), table.slopes
     if pure is not None:
         moments, out = moments[begin:end], out[begin:end]
-        natural, found = _away_from_pure(table, pucks, pure, which, moments, found[:, begin:end])
+        generic, found = _away_from_pure(table, pucks, pure, which, moments, found[:, begin:end])
         begin, end = 0, moments.size
     if which.size == end - begin == 1 and pucks.shape[1] == 1:
         which = which[:0]  # a moment of its own, of which all is found in one call
-    known = pucks, natural, table.height_constants
+    known = pucks, generic, table.height_constants
     facts, section = np.empty((0, 0)), np.empty((2, 0, 0))
     if which.size:
         from puck_tables.stopping.launch_facts import fill_launch_facts
@@ -133,14 +133,14 @@ def _away_from_pure(
     beside = np.ones((LAUNCH_COLUMNS, int(pure.sum())))
     beside[0], beside[1] = np.maximum((speed / unit)[pure], _TINY), 0.0
     beside[2], beside[3] = np.maximum((rim / unit)[pure], _TINY), pucks[3, pure]
-    natural, seen = pucks.copy(), found.copy()
-    natural[:, pure] = table.pucks(launches_in(beside))
+    generic, seen = pucks.copy(), found.copy()
+    generic[:, pure] = table.pucks(launches_in(beside))
     each = np.broadcast_to(which, moments.shape) if which.size else np.arange(moments.size)
     here = np.flatnonzero(pure[each])
     mine = each[here]
     times = np.minimum(moments[here] / unit[mine] * pucks[4, mine], _STOPPED)
-    states = looked_up(table, natural, mine, times)
+    states = looked_up(table, generic, mine, times)
     states[HEADING] *= np.where(pucks[2, mine] >= 0.0, 1.0, -1.0)
     states[SPIN] /= pucks[5, mine]
     seen[:, here] = states
-    return natural, seen
+    return generic, seen

@@ -90,7 +90,7 @@ def _stop_functions(
 
 
 @inlined
-def _curve_sums(c: FloatArray, side: int, xi: float, sums: FloatArray, functions: int) -> None:
+def _similarity_sums(c: FloatArray, side: int, xi: float, sums: FloatArray, functions: int) -> None:
     """Polynomials of the first functions of: body, S/δ, length, κR."""
     i, w0, w1, w2, w3 = _cell(xi, c.shape[1] - 3)
     for m in range(functions * HEIGHTS):
@@ -165,7 +165,7 @@ def _inverse_place(
 @inlined
 def inverse_sum(c: FloatArray, side: int, xi: float, s: float, sums: FloatArray) -> float:
     """2w/y."""
-    _curve_sums(c, side, xi, sums, 1)
+    _similarity_sums(c, side, xi, sums, 1)
     return _polynomial(sums, 0, s)
 
 
@@ -195,7 +195,7 @@ def look_up_launch(
     s = 2.0 * delta * delta - 1.0
     side, xi = slip_place(speed, rim)
     t, along, across = _stop_functions(stops, side, xi, s, sums)
-    _curve_sums(curve, side, xi, sums, 4)
+    _similarity_sums(curve, side, xi, sums, 4)
     body, length = _polynomial(sums, BODY_SUM, s), _polynomial(sums, LENGTH_SUM, s)
     r, part = _polynomial(sums, CURVE_SUM, s), _polynomial(sums, TURN_SUM, s)
     if rim == 0.0:
@@ -230,7 +230,7 @@ def look_up_launch(
         log_share = math.log(turn_share)
         end, xi, y = _inverse_place(sign, log_n + kappa * log_share, kappa, delta)
         share = min(y * inverse_sum(turn_inverse, end, xi, s, sums), 1.0)
-        _curve_sums(curve, end, place_of_share(share), sums, 2)
+        _similarity_sums(curve, end, place_of_share(share), sums, 2)
         part = _polynomial(sums, TURN_SUM, s)
         turn = turning * log_share + _heading(end, share, delta, turning, part) - heading
         out[TURN] = turn if edge > 0.0 else -turn
@@ -299,7 +299,7 @@ def functions_at(
     """T, along, across, body angle, S/δ into ``found`` (5,)."""
     xi = place_of_share(double_share)
     found[0], found[1], found[2] = _stop_functions(stops, side, xi, s, sums)
-    _curve_sums(curve, side, xi, sums, 2)
+    _similarity_sums(curve, side, xi, sums, 2)
     found[3], found[4] = _polynomial(sums, BODY_SUM, s), _polynomial(sums, TURN_SUM, s)
 
 

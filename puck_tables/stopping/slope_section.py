@@ -1,7 +1,7 @@
 """Derivatives of stops of one kind of puck: splines over the slip angle, or each launch by itself.
 
 What is splined are the derivatives in natural units (:func:`puck_tables.stopping.variational
-.natural_stops`): a launch costs a look-up and the way back to SI units, once a second or two were
+.unit_stops`): a launch costs a look-up and the way back to SI units, once a second or two were
 spent on the splines.  They carry broken powers of φ at both ends, by one smaller than those of the
 stop, and may be too steep there, or next to a line of the friction, for any spline: launches in
 such cells, few as these are, are integrated.
@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import run_chunks
-from puck_tables.motion.body import Body
+from puck_tables.motion.body import UnitPuck
 from puck_tables.stopping.variational import unit_stops, variations_of
 from puck_tables.table.singular_lines import lines_of
 from puck_tables.table.slip_axis import graded, sides_of
@@ -43,7 +43,7 @@ class SlopeSection(NamedTuple):
 
 
 @lru_cache(maxsize=16)
-def slope_section(body: Body) -> SlopeSection:
+def slope_section(body: UnitPuck) -> SlopeSection:
     """Tabulate the derivatives of the stops of one kind of puck.
 
     Raises
@@ -86,7 +86,7 @@ def slope_section(body: Body) -> SlopeSection:
         values, cells = finer, 2 * cells
 
 
-def stop_slopes_of(body: Body, launches: FloatArray, threads: int | None = None) -> FloatArray:
+def stop_slopes_of(body: UnitPuck, launches: FloatArray, threads: int | None = None) -> FloatArray:
     """Derivatives (n, 5, 6) of the stops of launches (6, n) of one kind of puck, none at rest.
 
     Raises

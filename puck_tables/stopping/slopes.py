@@ -77,8 +77,8 @@ def slopes_of(axis: SlipAxis, values: FloatArray) -> Slopes:
     own = sides[..., [0, 1, 2, 4, 3]]
     by_u = np.stack([_slopes_at_nodes(axis, own[fast], fast == 1) for fast in range(2)])
     stops = np.concatenate([own, by_u], axis=-1)
-    curve = np.concatenate([sides[..., [5, 6]], _curve_slopes(axis)], axis=-1)
-    of_stops, of_curve = _splines(stops, STOP_POWERS), _splines(curve, HEIGHTS)
+    functions = np.concatenate([sides[..., [5, 6]], _similarity_slopes(axis)], axis=-1)
+    of_stops, of_curve = _splines(stops, STOP_POWERS), _splines(functions, HEIGHTS)
     states = np.zeros((*of_curve.shape[:3], STATE_WIDTH))
     states[:, :, :STOP_POWERS, :4], states[..., 4:] = of_stops[..., :4], of_curve
     rates = of_stops[..., STOP_FUNCTIONS : STOP_FUNCTIONS + RATE_WIDTH]
@@ -161,7 +161,7 @@ def _expand(by_u: FloatArray, k: FloatArray, delta: FloatArray, fast: bool, cell
             by_u[:first, j, f] = terms[:first] @ fitted
 
 
-def _curve_slopes(axis: SlipAxis) -> FloatArray:
+def _similarity_slopes(axis: SlipAxis) -> FloatArray:
     """d(κR)/du and dS/du over δ at the nodes, (2, cells + 1, 9, 2)."""
     out = np.zeros((2, axis.cells + 1, HEIGHTS, 2))
     u = np.log(ratio_at(np.arange(1, axis.cells + 1) / axis.cells))

@@ -16,7 +16,7 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import in_slices, run_chunks
 from puck_tables.accuracy.methods import Method
-from puck_tables.motion.body import Body
+from puck_tables.motion.body import UnitPuck
 from puck_tables.motion.frame import frame_of
 from puck_tables.motion.friction_source import source_of
 from puck_tables.motion.limits import regime_of
@@ -210,7 +210,7 @@ class EachAlone(StopSolver):
     ``tol``: of each; ``error``: the largest of those that were answered.
     """
 
-    body: Body
+    body: UnitPuck
     tol: float
     method: Method
     error: float = 0.0

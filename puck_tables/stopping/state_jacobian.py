@@ -184,8 +184,8 @@ def _find_coefficients(room: FloatArray) -> None:
         )
     for n in range(PART):
         cosine, sine = cosine_sine_of(row_of(room, TURNED, n))
-        ways = rotated(cosine, sine, row_of(room, EAST, n), row_of(room, NORTH, n))
-        into_rows(room, _WAYS, n, ways)
+        directions = rotated(cosine, sine, row_of(room, EAST, n), row_of(room, NORTH, n))
+        into_rows(room, _WAYS, n, directions)
 
 
 @inlined
@@ -229,21 +229,21 @@ def _change(
 
 @inlined
 def _state_slopes(
-    left: float, delta: float, around: float, launched: Numbers, h0: float, here: Numbers,
-    stop: Numbers, found: Numbers, moving: Numbers, coefficients: Numbers, ways: Numbers,
+    left: float, delta: float, around: float, launch_row: Numbers, h0: float, here: Numbers,
+    stop: Numbers, found: Numbers, moving: Numbers, coefficients: Numbers, directions: Numbers,
 ) -> Numbers:  # fmt: skip
     """A state and its derivatives in natural units, along x and y, six rows of six.
 
     Where the share ``left`` of time is left: 0 at rest.  Rows: x, y, body angle, vx, vy, rω.
     Columns: itself; by v, v across, rω, δ, time.
     """
-    speed0, rim0, t0, one_speed, u0, begun, _ = launched
+    speed0, rim0, t0, one_speed, u0, begun, _ = launch_row
     cosine, sine, slip, one_slip, t_slope, one_way, gap, pole, deflection = moving
     k = 1.0 if left > 0.0 else 0.0  # at rest that of the stop alone
     from_stop, rate = of_stop(found, delta), gap * pole
     speed, rim = slip * cosine, slip * sine
     own = stop_by_speeds(speed, rim, slip, cosine, sine, delta, from_stop)
-    ex, ey = ways
+    ex, ey = directions
     fx, fy = -around * ey, around * ex
     gone = speed, rim, cosine, sine, one_slip, ex, ey, fx, fy
     rates = from_stop[T], t_slope, from_stop[BY_HEIGHT + T], rate, one_way, h0, deflection, begun
@@ -306,7 +306,7 @@ def _find_jacobians(room: FloatArray) -> None:
 
 @look_up
 def fill_state_jacobians(
-    pucks: FloatArray, natural: FloatArray, constants: FloatArray, facts: FloatArray,
+    pucks: FloatArray, generic: FloatArray, constants: FloatArray, facts: FloatArray,
     which: npt.NDArray[np.int64], times: FloatArray, states: FloatArray, begin: int, end: int,
     of_state: FloatArray, of_rate: FloatArray, section: FloatArray, streamed: bool,
     out: FloatArray,
@@ -333,7 +333,7 @@ def fill_state_jacobians(
             for row in range(FACTS if held < 0 else 0):
                 fill_up(room, row, count)
         else:
-            fetch(pucks, natural, start - begin, count, room)
+            fetch(pucks, generic, start - begin, count, room)
             find_facts(room, fixed, splines, rates, cells)
         moments, headings = times[start:], states[state.HEADING, start:]
         speeds, spins = states[state.SPEED, start:], states[state.SPIN, start:]

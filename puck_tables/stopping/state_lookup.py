@@ -159,7 +159,7 @@ def _find_states(room: FloatArray, count: int) -> None:
             row_of(room, _DELTA, n),
             row_of(room, _RADIUS, n),
         )
-        left, launched = row_of(room, _LEFT, n), row_of(room, _V, n)
+        left, launch_row = row_of(room, _LEFT, n), row_of(room, _V, n)
         around = 1.0 if spin > 0.0 else -1.0
         slip = row_of(room, _Q, n) * (left * row_of(room, _T, n) / row_of(room, _F_TIME, n))
         share = min(row_of(room, _SHARE, n) * row_of(room, _F_SHARE, n), 1.0)
@@ -175,7 +175,7 @@ def _find_states(room: FloatArray, count: int) -> None:
         # the way that is left, along and across the new heading
         along = row_of(room, _F_ALONG, n) * duration * speed
         across = around * tilt * row_of(room, _F_ACROSS, n) * (rim / decel) * speed
-        one = 1.0 / (launched if launched > 0.0 else 1.0)
+        one = 1.0 / (launch_row if launch_row > 0.0 else 1.0)
         east, north = row_of(room, _VX, n) * one, row_of(room, _VY, n) * one
         ahead, aside = along * cosine - across * sine, along * sine + across * cosine
         x, y, body = row_of(room, _X, n), row_of(room, _Y, n), row_of(room, _BODY, n)
@@ -188,5 +188,5 @@ def _find_states(room: FloatArray, count: int) -> None:
         into_row(room, _TO_Y, n, y - (ahead * north + aside * east) if on_curve else y * done)
         into_row(room, _TO_HEADING, n, turn if on_curve else at_rest)
         into_row(room, _TO_ANGLE, n, body - turned if on_curve else body * done)
-        into_row(room, _TO_SPEED, n, speed if on_curve else left * launched)
+        into_row(room, _TO_SPEED, n, speed if on_curve else left * launch_row)
         into_row(room, _TO_SPIN, n, turning if on_curve else left * spin)

@@ -9,7 +9,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import run_chunks
 from puck_tables._core.real import finite_array
 from puck_tables.errors import InputError
-from puck_tables.motion.body import Body
+from puck_tables.motion.body import UnitPuck
 from puck_tables.motion.frame import frame_of
 from puck_tables.motion.friction_source import source_of
 from puck_tables.motion.limits import regime_of
@@ -71,7 +71,7 @@ def looked_up(
 
 
 def integrate(
-    bodies: dict[float, Body], launches: FloatArray, pucks: npt.NDArray[np.int64],
+    bodies: dict[float, UnitPuck], launches: FloatArray, pucks: npt.NDArray[np.int64],
     which: npt.NDArray[np.int64], moments: FloatArray, out: FloatArray, threads: int | None,
 ) -> None:  # fmt: skip
     """States of other ``pucks``, each integrated, into their places in ``out`` (6, n)."""
@@ -88,7 +88,7 @@ def integrate(
     run_chunks(work, pucks.size, 1, threads)
 
 
-def states_of(body: Body, launch: FloatArray, times: FloatArray) -> FloatArray:
+def states_of(body: UnitPuck, launch: FloatArray, times: FloatArray) -> FloatArray:
     """States of one puck at times (n,) s, integrated.
 
     Parameters

@@ -14,7 +14,7 @@ from puck_tables._core.real import broadcast, checked_flag, checked_threads, rea
 from puck_tables.contact.laws import HOMOGENEOUS, Law, law_of
 from puck_tables.errors import InputError
 from puck_tables.io.dataset import Dataset, variable
-from puck_tables.motion.body import Body, body_of, plain_up_to
+from puck_tables.motion.body import UnitPuck, body_of, plain_up_to
 from puck_tables.motion.state import (
     HEADING,
     ORIENTATION,
@@ -337,7 +337,7 @@ def _each(which: npt.NDArray[np.int64], count: int) -> npt.NDArray[np.int64]:
     return np.broadcast_to(which, count) if which.size else np.arange(count)
 
 
-def _bodies(pressure: str | Law, gyration: float, delta: FloatArray) -> dict[float, Body]:
+def _bodies(pressure: str | Law, gyration: float, delta: FloatArray) -> dict[float, UnitPuck]:
     """The pucks of these heights."""
     heights = np.unique(delta)
     refuse_many(heights)

@@ -259,7 +259,7 @@ def judged(table: StopValues, progress: Progress | None) -> CheckReport:
 
 
 def _equations(
-    table: StopValues, rng: np.random.Generator, count: int, allowed: float, by_curve: float
+    table: StopValues, rng: np.random.Generator, count: int, allowed: float, by_similarity: float
 ) -> list[Check]:
     delta = rng.random(count)
     start = rng.choice([-1.0, 1.0], count) * np.exp(rng.uniform(-9.0, 3.5, count))
@@ -296,7 +296,7 @@ def _equations(
     by_way = np.stack([curve[0] - log_q[-1], curve[1] - psi[-1]])
     return [
         *_checks("equation", NAMES[:3], stops, start, delta, EQUATION_FACTOR * allowed),
-        *_checks("equation", NAMES[STOPS:], by_way, start, delta, EQUATION_FACTOR * by_curve),
+        *_checks("equation", NAMES[STOPS:], by_way, start, delta, EQUATION_FACTOR * by_similarity),
     ]
 
 
@@ -317,10 +317,10 @@ def _at_nodes(table: StopValues) -> list[Check]:
     u, delta = np.broadcast_arrays(np.stack([slow, -slow])[..., None], heights())
     missed, allowed = missed_by_stops(axis, table.values)
     of_curve = [similarity_error(axis, table.values, j) for j in range(HEIGHTS)]
-    by_curve, allowed_curve = np.stack([one for one, _ in of_curve], axis=2), of_curve[0][1]
+    by_similarity, allowed_curve = np.stack([one for one, _ in of_curve], axis=2), of_curve[0][1]
     places = u.ravel(), delta.ravel()
     of_stops, of_curves = (
-        np.moveaxis(m, -1, 0).reshape(m.shape[-1], -1) for m in (missed, by_curve)
+        np.moveaxis(m, -1, 0).reshape(m.shape[-1], -1) for m in (missed, by_similarity)
     )
     return [
         *_checks("equation, every node", NAMES[:STOPS], of_stops, *places, allowed),

@@ -23,10 +23,10 @@ from puck_tables.stopping.state_nodes import InverseSolution
 from puck_tables.stopping.state_splines import ORBIT_WIDTH, REGULAR, TURN_POWERS, TURN_STEP
 from puck_tables.stopping.stop_splines import (
     by_power,
-    cut_rows,
     in_rows,
     inverse_solution_splines,
     inverse_splines,
+    section_rows,
     side_by_side,
 )
 from puck_tables.table.table import Table
@@ -133,6 +133,6 @@ class StopCoefficients(Table):
         """
         if (powers, thinning) in self._cuts:
             return self._cuts[powers, thinning]
-        kept = cut_rows(self._sides([0, 1, 2], thinning), powers)
+        kept = section_rows(self._sides([0, 1, 2], thinning), powers)
         self._cuts[powers, thinning] = kept
         return kept

@@ -22,7 +22,7 @@ from puck_tables._core.real import real
 from puck_tables.accuracy.method_errors import COARSEST
 from puck_tables.contact.laws import Law
 from puck_tables.errors import AccuracyError
-from puck_tables.motion.body import Body, body_of
+from puck_tables.motion.body import UnitPuck, body_of
 from puck_tables.motion.friction_source import LOOSEST_LOCAL
 from puck_tables.motion.path import TURN_SHARE
 from puck_tables.motion.solve import ErrorEstimate, close_enough
@@ -100,7 +100,7 @@ class StopSection(SectionTable):
         return self.spline.coefficients
 
     @cached_property
-    def body(self) -> Body:
+    def body(self) -> UnitPuck:
         """The puck."""
         return body_of(self.law, self.delta, self.gyration)
 
@@ -171,7 +171,7 @@ class StopSection(SectionTable):
 
 
 @lru_cache(maxsize=64)
-def stop_section_for(body: Body, accuracy: float) -> StopSection:
+def stop_section_for(body: UnitPuck, accuracy: float) -> StopSection:
     """The stops of one kind of puck: read if they are kept, else tabulated.
 
     Parameters
@@ -199,7 +199,7 @@ def stop_section_for(body: Body, accuracy: float) -> StopSection:
     )  # fmt: skip
 
 
-def stop_section(body: Body, accuracy: float, progress: Progress | None = None) -> StopSection:
+def stop_section(body: UnitPuck, accuracy: float, progress: Progress | None = None) -> StopSection:
     """Tabulate the stops of one kind of puck.
 
     Parameters
@@ -259,7 +259,7 @@ def _cotangent(phi: float) -> float:
     return 1.0 if phi == 0.25 * math.pi else 1.0 / math.tan(phi)
 
 
-def _error_of_friction(body: Body, friction: FrictionSection, accuracy: float) -> float:
+def _error_of_friction(body: UnitPuck, friction: FrictionSection, accuracy: float) -> float:
     """What the error of the friction does to stops anywhere."""
     phi = np.linspace(0.0, 0.5 * np.pi, _SAMPLE + 2)[1:-1]
     whole, half = (
@@ -277,7 +277,7 @@ def _factors(phi: FloatArray) -> FloatArray:
 
 
 def stops_at(
-    body: Body, friction: FrictionSection, section: FloatArray, phi: FloatArray, accuracy: float
+    body: UnitPuck, friction: FrictionSection, section: FloatArray, phi: FloatArray, accuracy: float
 ) -> FloatArray:
     """The functions at slip angles, by integration; at 0 and π/2 in closed form."""
     at_zero, at_half = phi <= 0.0, phi >= 0.5 * np.pi
@@ -292,7 +292,7 @@ def stops_at(
     return out
 
 
-def _ends(body: Body, ratios: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _ends(body: UnitPuck, ratios: FloatArray) -> tuple[FloatArray, FloatArray]:
     """The functions at φ → 0 and φ → π/2, elementary, from the friction ratios there (2, 3).
 
     Next to pure sliding v falls like t₀ − t and rω like its power σ(0); next to pure spin rω falls

@@ -55,7 +55,7 @@ def in_rows(coefficients: FloatArray, row: int, power_first: bool) -> FloatArray
     return aligned(padded)
 
 
-def cut_rows(sides: FloatArray, powers: int) -> FloatArray:
+def section_rows(sides: FloatArray, powers: int) -> FloatArray:
     """Rows (2, nodes + 2, powers × WIDTH) of T, along, across (2 sides, nodes, heights, 3).
 
     Along and across have one power fewer.

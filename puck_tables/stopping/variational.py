@@ -22,7 +22,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import run_chunks
 from puck_tables.errors import AccuracyError, InputError
 from puck_tables.kernels.section_spline import LINE
-from puck_tables.motion.body import Body
+from puck_tables.motion.body import UnitPuck
 from puck_tables.motion.path import STOPPED, integrate
 from puck_tables.motion.state import LENGTH, PSI, SIZE, THETA, T, U, X, Y
 from puck_tables.motion.tableaus import DORMAND_PRINCE
@@ -67,7 +67,7 @@ class Variations(NamedTuple):
 
 
 @lru_cache(maxsize=64)
-def variations_of(body: Body) -> Variations:
+def variations_of(body: UnitPuck) -> Variations:
     """The friction of a puck.
 
     Raises
@@ -78,7 +78,7 @@ def variations_of(body: Body) -> Variations:
     Examples
     --------
     >>> from puck_tables.motion.body import body_of
-    >>> varied_of(body_of("ring", 0.5, 1.0)).delta
+    >>> variations_of(body_of("ring", 0.5, 1.0)).delta
     0.5
     """
     if body.table is not None:
@@ -105,7 +105,7 @@ def unit_stops(friction: Variations, cosine: FloatArray, sine: FloatArray) -> Fl
 
     Parameters
     ----------
-    friction : Varied
+    friction : Variations
     cosine, sine : arrays (n,), of the slip angle of the launch, ≥ 0, one or the other may be 0
 
     Returns
@@ -117,7 +117,7 @@ def unit_stops(friction: Variations, cosine: FloatArray, sine: FloatArray) -> Fl
     Examples
     --------
     >>> from puck_tables.motion.body import body_of
-    >>> friction = varied_of(body_of("ring", 0.5, 1.0))
+    >>> friction = variations_of(body_of("ring", 0.5, 1.0))
     >>> (unit_stops(friction, np.array([1.0]), np.array([0.0]))[0, 0].round(6) + 0.0).tolist()
     [1.0, 1.0, 0.0, 0.0, 0.0]
     """
@@ -153,7 +153,7 @@ def unit_states(
 
     Parameters
     ----------
-    friction : Varied
+    friction : Variations
     cosine, sine : of the slip angle of the launch, ≥ 0
     times : array (n,), ≥ 0
     local : the error of a step

@@ -51,10 +51,10 @@ class SectionTable(LawTable):
         return SlipSpline(self.axis.sides, by_side, not self.ends_too, self.accuracy)
 
     def judged(
-        self, off: Callable[[FloatArray], FloatArray], truth: str, points: int, allowed: float,
+        self, error: Callable[[FloatArray], FloatArray], truth: str, points: int, allowed: float,
         at_nodes: float, progress: Progress | None,
     ) -> CheckReport:  # fmt: skip
-        """How far off it is (``off``: of φ (n,), as (n, functions)) from what truth, in words.
+        """How far off it is (``error``: of φ (n,), as (n, functions)) from what truth, in words.
 
         ``points`` are compared at random, and as many next to the lines, in cells and at nodes.
         """
@@ -74,7 +74,9 @@ class SectionTable(LawTable):
         checks: list[Check] = []
         for done, (where, phi, most) in enumerate(routes, 1):
             second = 0.0 * phi + self.delta
-            checks += compared(f"{truth}, {where}", self.quantities, off(phi).T, phi, second, most)
+            checks += compared(
+                f"{truth}, {where}", self.quantities, error(phi).T, phi, second, most
+            )
             if progress is not None:
                 progress(done, len(routes))
         return CheckReport(self.source, self.tolerance, tuple(checks))

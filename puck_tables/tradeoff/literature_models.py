@@ -76,14 +76,14 @@ def fitted_pade(phi: FloatArray, resultants: FloatArray) -> tuple[float, float]:
 
     c, s = np.cos(phi), np.sin(phi)
 
-    def off_parallel(a: float) -> float:
+    def error_parallel(a: float) -> float:
         return float(np.abs(1.0 / (c + a * s) - resultants[0]).max())
 
-    def off_spin(b: float) -> float:
+    def error_spin(b: float) -> float:
         return float(np.abs((4.0 / 3.0) / (s + b * c) - resultants[2]).max())
 
-    a = minimize_scalar(off_parallel, bounds=(0.3, 1.5), method="bounded").x
-    b = minimize_scalar(off_spin, bounds=(1.5, 4.0), method="bounded").x
+    a = minimize_scalar(error_parallel, bounds=(0.3, 1.5), method="bounded").x
+    b = minimize_scalar(error_spin, bounds=(1.5, 4.0), method="bounded").x
     return float(a), float(b)
 
 

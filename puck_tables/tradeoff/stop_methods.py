@@ -170,7 +170,7 @@ def _integrations(
 
 
 def _outsiders(task: StopTask) -> Iterator[Contender]:
-    def rival(method: str, setting: str, stop_of: Callable[..., FloatArray]) -> Contender:
+    def outside(method: str, setting: str, stop_of: Callable[..., FloatArray]) -> Contender:
         def ready(_: object) -> Ready:
             easy = task.easy.launches()
             stops = np.stack([stop_of(*launch[:4]) for launch in easy.T], axis=-1)
@@ -180,11 +180,13 @@ def _outsiders(task: StopTask) -> Iterator[Contender]:
         return Contender(QUESTION, method, setting, lambda: None, ready, outsider=True)
 
     for method, rtol, atol in SCIPY_SETTINGS:
-        yield rival(
+        yield outside(
             f"scipy {method}, closed forms", f"rtol={rtol:g} atol={atol:g}",
             partial(scipy_stop, method, rtol, atol),
         )  # fmt: skip
-    yield rival("patches and scipy RK45", f"patches={PATCH_GRID[0]}x{PATCH_GRID[1]}", patch_script)
+    yield outside(
+        "patches and scipy RK45", f"patches={PATCH_GRID[0]}x{PATCH_GRID[1]}", patch_script
+    )
 
     def modelled(method: str, build: Callable[[], ResultantTable]) -> Contender:
         def ready(table: object) -> Ready:

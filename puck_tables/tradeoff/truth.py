@@ -65,7 +65,7 @@ def golden_starts() -> Starts:
 
     Examples
     --------
-    >>> known_starts().stops.shape
+    >>> golden_starts().stops.shape
     (1000, 3)
     """
     content = (files("puck_tables.tables") / "starts.npz").read_bytes()

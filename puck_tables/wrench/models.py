@@ -110,7 +110,7 @@ def _gauge(f: FloatArray, m: FloatArray, cross: float) -> FloatArray:
     return np.asarray((f**4 + cross * f**2 * m**2 + m**4) ** 0.25)
 
 
-def ellipsoid(curve: FloatArray, unit: float, radius: float) -> SurfaceModel:
+def ellipsoid(section: FloatArray, unit: float, radius: float) -> SurfaceModel:
     """The best ellipsoid, by least squares of the radial error.
 
     Parameters
@@ -126,10 +126,10 @@ def ellipsoid(curve: FloatArray, unit: float, radius: float) -> SurfaceModel:
     >>> round(found.a, 6), round(found.b, 6), found.error < 1e-9, found.normal_error < 1e-9
     (3.0, 1.5, True, True)
     """
-    return _fitted(2, curve, unit, radius)
+    return _fit(2, section, unit, radius)
 
 
-def quartic(curve: FloatArray, unit: float, radius: float) -> SurfaceModel:
+def quartic(section: FloatArray, unit: float, radius: float) -> SurfaceModel:
     """The best convex polynomial of order 4, by least squares of the radial error.
 
     Examples
@@ -139,11 +139,11 @@ def quartic(curve: FloatArray, unit: float, radius: float) -> SurfaceModel:
     >>> round(quartic(circle, 3.0, 0.5).cross, 6)  # an ellipsoid is one
     2.0
     """
-    return _fitted(4, curve, unit, radius)
+    return _fit(4, section, unit, radius)
 
 
-def _fitted(order: int, curve: FloatArray, unit: float, radius: float) -> SurfaceModel:
-    force, torque, normal_force, normal_torque = curve
+def _fit(order: int, section: FloatArray, unit: float, radius: float) -> SurfaceModel:
+    force, torque, normal_force, normal_torque = section
     top = float(np.max(np.abs(torque)))
     count = 2 if order == 2 else 3
     # points count by the angle that they cover, seen from the middle of the scaled curve

@@ -82,7 +82,7 @@ class LimitSurface(Result):
         return self.puck.mass * self.puck.decel
 
     @cached_property
-    def _curve(self) -> FloatArray:
+    def _section(self) -> FloatArray:
         """|F|, M/r over f m g and the normals at many angles, (4, n): the models are its own."""
         phi = np.linspace(-0.5 * np.pi, 0.5 * np.pi, _FINE)
         law, delta = self.puck.body.law, self.puck.delta
@@ -92,12 +92,12 @@ class LimitSurface(Result):
     @cached_property
     def ellipsoid(self) -> SurfaceModel:
         """The best ellipsoid (F/a)² + (M/b)² = 1, by least squares of the radial error."""
-        return ellipsoid(self._curve, self.unit_force, self.puck.radius)
+        return ellipsoid(self._section, self.unit_force, self.puck.radius)
 
     @cached_property
     def quartic(self) -> SurfaceModel:
         """The best convex polynomial of order 4, A F⁴ + B F² M² + C M⁴ = 1, likewise."""
-        return quartic(self._curve, self.unit_force, self.puck.radius)
+        return quartic(self._section, self.unit_force, self.puck.radius)
 
     @property
     def is_convex(self) -> bool:
@@ -109,7 +109,7 @@ class LimitSurface(Result):
         >>> Puck.similar(delta=0.0).limit_surface().is_convex
         True
         """
-        f, m = np.diff(self._curve[:2])
+        f, m = np.diff(self._section[:2])
         return bool(np.all(f[:-1] * m[1:] - f[1:] * m[:-1] >= -1e-15))
 
     def explain(self) -> str:
@@ -174,11 +174,11 @@ def _normals(law: Law, delta: float, phi: FloatArray) -> FloatArray:
     end = 0.5 * np.pi
     inside = np.clip(phi, -end + _STEP, end - _STEP)
 
-    def curve(angle: FloatArray) -> FloatArray:
+    def section_at(angle: FloatArray) -> FloatArray:
         along, across, turning = wrenches(law, delta, np.clip(angle, -end, end))
         return np.stack([np.hypot(along, across), turning])
 
-    tangent = curve(inside + _STEP) - curve(inside - _STEP)
+    tangent = section_at(inside + _STEP) - section_at(inside - _STEP)
     normal: FloatArray = np.stack([tangent[1], -tangent[0]]) / np.hypot(*tangent)
     normal[:, np.abs(phi) == end] = 0.0  # there F vanishes like cos φ, and M is level
     normal[1] = np.where(np.abs(phi) == end, np.sign(phi), normal[1])

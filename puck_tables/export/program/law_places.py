@@ -34,9 +34,9 @@ from puck_tables.export.program.stop import STOP_FUNCTIONS
 PATCH_FUNCTIONS = 3  # ρ_∥, ρ_⊥, ρ_ω
 
 
-def look_beside(
+def look_up_near(
     table: Numbers, rows: Rows, degree: int, powers: int, functions: int, quantum: float, c: float,
-    s: float, found: Out,
+    s: float, out_row: Out,
 ) -> None:  # fmt: skip
     """The functions of a table beside the mark of a side, xi = 0, up to the next side, xi = 1."""
     side: int = 0
@@ -44,13 +44,13 @@ def look_beside(
         side += 1 if c >= BORDERS[n] else 0
     look_up(
         table, rows[side] * powers * functions, rows[side + 1] - rows[side] - degree, degree,
-        powers, functions, quantum, sqrt(sqrt((c - ORIGINS[side]) * SCALES[side])), s, found,
+        powers, functions, quantum, sqrt(sqrt((c - ORIGINS[side]) * SCALES[side])), s, out_row,
     )  # fmt: skip
 
 
 def table_at(side: int, share: float, delta: float, f: Out) -> None:
     """T, along, across, path length and body angle by look-up; side 1 where r|w| > v."""
-    look_beside(
+    look_up_near(
         STOP, STOP_ROWS, STOP_DEGREE, STOP_POWERS, STOP_FUNCTIONS, STOP_QUANTUM,
         1.0 - share if side == 1 else share - 1.0, STEEP * delta * delta - 1.0, f,
     )  # fmt: skip
@@ -59,7 +59,7 @@ def table_at(side: int, share: float, delta: float, f: Out) -> None:
 def shape_integrals(ratio: float, fast: bool, p: Out) -> None:
     """p_a, p_b and p_d, by look-up."""
     c: float = (1.0 - ratio) / (1.0 + ratio)
-    look_beside(
+    look_up_near(
         PATCH,
         PATCH_ROWS,
         PATCH_DEGREE,

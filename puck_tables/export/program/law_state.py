@@ -56,12 +56,12 @@ def constant(row: int, s: float) -> float:
     return CONSTANTS_QUANTUM * total
 
 
-def orbit_at(piece: int, xi: float, s: float, found: Out) -> None:
+def limit_motion_at(piece: int, xi: float, s: float, out_row: Out) -> None:
     """C less its limit, on pieces 0 and 2 share exp(z); and the regular part of the heading."""
     powers: int = ORBIT_POWERS[piece]
     look_up(  # at least one: compilers see that all they read is set
         ORBIT, ORBIT_ROWS[piece], ORBIT_CELLS[piece], ORBIT_DEGREE, powers if powers > 1 else 1, 2,
-        ORBIT_QUANTA[piece], xi, s, found,
+        ORBIT_QUANTA[piece], xi, s, out_row,
     )  # fmt: skip
 
 
@@ -71,9 +71,9 @@ def way_to(xi: float) -> float:
     return REACH * x * x / (1.0 - x)
 
 
-def off_by(piece: int, xi: float, s: float, wanted: float, f: Out) -> float:
+def error_of(piece: int, xi: float, s: float, wanted: float, f: Out) -> float:
     """How far a place is from the launch: c, or before theta = 0 the log of the share."""
-    orbit_at(piece, xi, s, f)
+    limit_motion_at(piece, xi, s, f)
     return f[0] - wanted if piece == 1 or piece == 3 else log(f[0] / wanted) - way_to(xi)
 
 
@@ -83,11 +83,11 @@ def heading_at(end: int, theta: float, rate: float, delta: float, s: float, part
     return delta / TALLEST * (constant(TURN + end, s) * theta + regular)
 
 
-def know(delta: float, time: float, known: Out) -> None:
+def know(delta: float, time: float, launch: Out) -> None:
     """Where on its orbit a measured launch is that both slides and spins; ``time``: its T."""
     f = room(2)
     s: float = STEEP * delta * delta - 1.0
-    c: float = 1.0 - known[SHARE] if known[SIDE] == 1.0 else known[SHARE] - 1.0
+    c: float = 1.0 - launch[SHARE] if launch[SIDE] == 1.0 else launch[SHARE] - 1.0
     limit: float = constant(LIMIT, s)
     fast: int = 1 if c > limit else 0
     start: float = constant(START + fast, s)
@@ -95,54 +95,54 @@ def know(delta: float, time: float, known: Out) -> None:
     piece: int = 2 * fast + ahead
     wanted: float = c - limit
     if ahead == 0:
-        wanted = known[SHARE] if known[SIDE] == fast else 2.0 - known[SHARE]
+        wanted = launch[SHARE] if launch[SIDE] == fast else 2.0 - launch[SHARE]
         wanted = wanted if wanted > SMALLEST else SMALLEST
     last: float = 0.0
     xi: float = 1.0
-    was: float = off_by(piece, last, s, wanted, f)
-    off: float = off_by(piece, xi, s, wanted, f)
+    was: float = error_of(piece, last, s, wanted, f)
+    error: float = error_of(piece, xi, s, wanted, f)
     beyond: float = 0.0
-    if was * off > 0.0:  # beside the table: at the end that is nearer, or where it goes on
-        xi = last if abs(was) < abs(off) else xi
-        beyond = off if ahead == 0 and xi == 1.0 else 0.0
-        off = 0.0
+    if was * error > 0.0:  # beside the table: at the end that is nearer, or where it goes on
+        xi = last if abs(was) < abs(error) else xi
+        beyond = error if ahead == 0 and xi == 1.0 else 0.0
+        error = 0.0
     n: int = 0
-    while n < SEARCH and abs(off) > 1e-3 * TOLERANCE:  # the Illinois rule
-        now: float = xi - (xi - last) * (off / (off - was))
-        here: float = off_by(piece, now, s, wanted, f)
-        if here * off < 0.0:
+    while n < SEARCH and abs(error) > 1e-3 * TOLERANCE:  # the Illinois rule
+        now: float = xi - (xi - last) * (error / (error - was))
+        here: float = error_of(piece, now, s, wanted, f)
+        if here * error < 0.0:
             last = xi
-            was = off
+            was = error
         else:
             was = 0.5 * was
         xi = now
-        off = here
+        error = here
         n = n + 1
-    orbit_at(piece, xi, s, f)
+    limit_motion_at(piece, xi, s, f)
     end: int = 2 if ahead == 1 else fast
     rate: float = constant(RATE + end, s)
     theta: float = (way_to(xi) + beyond) / rate
     theta = -theta if ahead == 1 else theta
-    known[SIGN] = fast
-    known[LOG_N] = theta
-    known[TURNING] = 0.0
-    known[HEADING] = heading_at(end, theta, rate, delta, s, f[1])
-    known[T_LAUNCH] = time
+    launch[SIGN] = fast
+    launch[LOG_N] = theta
+    launch[TURNING] = 0.0
+    launch[HEADING] = heading_at(end, theta, rate, delta, s, f[1])
+    launch[T_LAUNCH] = time
 
 
-def arrive(known: Out, delta: float, log_left: float, place: Out, f: Out) -> None:
+def arrive(launch: Out, delta: float, log_left: float, place: Out, f: Out) -> None:
     """The place on the orbit and the functions of a stop there, from the time that is left."""
     o = room(2)
     s: float = STEEP * delta * delta - 1.0
-    theta: float = known[LOG_N] + log_left
-    fast: int = int(known[SIGN])
+    theta: float = launch[LOG_N] + log_left
+    fast: int = int(launch[SIGN])
     ahead: int = 1 if theta < 0.0 else 0
     end: int = 2 if ahead == 1 else fast
     rate: float = constant(RATE + end, s)
     z: float = abs(theta) * rate
-    way: float = z / REACH
-    xi: float = 0.5 * (sqrt(way * (way + 4.0)) - way) / END
-    orbit_at(2 * fast + ahead, xi if xi < 1.0 else 1.0, s, o)
+    heading: float = z / REACH
+    xi: float = 0.5 * (sqrt(heading * (heading + 4.0)) - heading) / END
+    limit_motion_at(2 * fast + ahead, xi if xi < 1.0 else 1.0, s, o)
     c: float = constant(LIMIT, s) + o[0]
     share: float = 1.0 - abs(c)
     side: int = 1 if c > 0.0 else 0

@@ -77,7 +77,7 @@ def place_of(double_share: float) -> float:
 
 def look_up(
     table: Numbers, first: int, cells: int, degree: int, powers: int, functions: int,
-    quantum: float, xi: float, s: float, found: Out,
+    quantum: float, xi: float, s: float, out_row: Out,
 ) -> None:  # fmt: skip
     """The functions of a table, from its number first on, at a place and at a height s."""
     w = room(MOST_WEIGHTS)
@@ -106,4 +106,4 @@ def look_up(
         value: float = row[width - functions + f]
         for k in range(powers - 2, -1, -1):
             value = value * s + row[k * functions + f]
-        found[f] = value
+        out_row[f] = value

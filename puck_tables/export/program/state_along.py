@@ -85,21 +85,21 @@ def regular_heading(
     )
 
 
-def curve_at(side: int, share: float, s: float, found: Out) -> None:
+def similarity_at(side: int, share: float, s: float, out_row: Out) -> None:
     """The regular parts of ln N and of the heading."""
     look_up(
         CURVE, side * (CURVE_CELLS + CURVE_DEGREE) * CURVE_POWERS * 2, CURVE_CELLS, CURVE_DEGREE,
-        CURVE_POWERS, 2, CURVE_QUANTUM, place_of(share), s, found,
+        CURVE_POWERS, 2, CURVE_QUANTUM, place_of(share), s, out_row,
     )  # fmt: skip
 
 
-def know(delta: float, time: float, known: Out) -> None:
+def know(delta: float, time: float, launch: Out) -> None:
     """What the curve says of a measured launch that both slides and spins; ``time``: its T."""
     c = room(2)
     s: float = 2.0 * delta * delta - 1.0
-    side: int = int(known[SIDE])
-    share: float = known[SHARE]
-    curve_at(side, share, s, c)
+    side: int = int(launch[SIDE])
+    share: float = launch[SHARE]
+    similarity_at(side, share, s, c)
     if share < SMALLEST:
         share = SMALLEST
     limit: float = constant(0, s)
@@ -113,33 +113,33 @@ def know(delta: float, time: float, known: Out) -> None:
     gap: float = abs((place - limit) / limit)
     if gap < SMALLEST:
         gap = SMALLEST
-    known[KAPPA] = kappa
-    known[TURNING] = turning
-    known[SIGN] = 1.0 if place > limit else -1.0
-    known[LOG_N] = (
+    launch[KAPPA] = kappa
+    launch[TURNING] = turning
+    launch[SIGN] = 1.0 if place > limit else -1.0
+    launch[LOG_N] = (
         log(gap)
         - kappa * (plus / slow_rate(delta) + minus / fast_rate(delta))
         + kappa * (log(time) - constant(3, s))
         + c[0]
     )
-    known[HEADING] = regular_heading(side, share, delta, turning, c[1])
-    known[T_LAUNCH] = time
+    launch[HEADING] = regular_heading(side, share, delta, turning, c[1])
+    launch[T_LAUNCH] = time
 
 
-def arrive(known: Out, delta: float, log_left: float, place: Out, f: Out) -> None:
+def arrive(launch: Out, delta: float, log_left: float, place: Out, f: Out) -> None:
     """The place on the curve and the functions of a stop there, from the time that is left."""
     c = room(2)
     s: float = 2.0 * delta * delta - 1.0
-    sign: float = known[SIGN]
-    log_n: float = known[LOG_N] + known[KAPPA] * log_left
+    sign: float = launch[SIGN]
+    log_n: float = launch[LOG_N] + launch[KAPPA] * log_left
     side: int = 0 if sign < 0.0 and log_n >= 0.0 else 1
     log_y: float = 0.0
     if side == 0:
-        log_y = -slow_rate(delta) / known[KAPPA] * log_n
+        log_y = -slow_rate(delta) / launch[KAPPA] * log_n
     elif sign > 0.0 and log_n > 1.0:
-        log_y = -fast_rate(delta) / known[KAPPA] * (log_n + log1p(2.0 * exp(-log_n)))
+        log_y = -fast_rate(delta) / launch[KAPPA] * (log_n + log1p(2.0 * exp(-log_n)))
     else:
-        log_y = -fast_rate(delta) / known[KAPPA] * log1p(1.0 + sign * exp(log_n))
+        log_y = -fast_rate(delta) / launch[KAPPA] * log1p(1.0 + sign * exp(log_n))
     y: float = exp(log_y)
     rest: float = -expm1(0.25 * log_y)
     xi: float = 1.0 - sqrt(rest if rest > 0.0 else 0.0)
@@ -153,10 +153,10 @@ def arrive(known: Out, delta: float, log_left: float, place: Out, f: Out) -> Non
     if share < SMALLEST:
         share = SMALLEST
     stop_functions(side, share, delta, f)
-    curve_at(side, share, s, c)
+    similarity_at(side, share, s, c)
     place[THERE_SIDE] = side
     place[THERE_SHARE] = share
-    place[REGULAR] = regular_heading(side, share, delta, known[TURNING], c[1])
+    place[REGULAR] = regular_heading(side, share, delta, launch[TURNING], c[1])
 
 
 def state(
@@ -169,20 +169,20 @@ def state(
     tolerance times Q^2/J (place), Q^2/(J r) (angle), Q (velocity) and Q/r (spin) of the launch.
     Returns 0, 1 or 2 as stop() does.
     """
-    known = room(KNOWN)
+    launch = room(KNOWN)
     f = room(5)
     g = room(5)
     end = room(5)
     place = room(3)
-    code: int = measured(vx, vy, spin, delta, decel, radius, known)
+    code: int = measured(vx, vy, spin, delta, decel, radius, launch)
     if not (time - time == 0.0 and time >= 0.0):
         code = 1
     if code != 0:
         return refused(out, 6, code)
-    stop_functions(int(known[SIDE]), known[SHARE], delta, f)
-    stopped(known, f, delta, decel, radius, end)
+    stop_functions(int(launch[SIDE]), launch[SHARE], delta, f)
+    stopped(launch, f, delta, decel, radius, end)
     left: float = 1.0 - time / end[0] if time < end[0] else 0.0
-    if left == 0.0 or known[SPEED] == 0.0 or known[RIM] == 0.0 or time == 0.0:
+    if left == 0.0 or launch[SPEED] == 0.0 or launch[RIM] == 0.0 or time == 0.0:
         done: float = (1.0 - left) * (1.0 + left)
         out[0] = end[1] * done
         out[1] = end[2] * done
@@ -191,12 +191,12 @@ def state(
         out[4] = left * vy
         out[5] = left * spin
         return 0
-    slip: float = known[SLIP]
-    around: float = known[AROUND]
+    slip: float = launch[SLIP]
+    around: float = launch[AROUND]
     size: float = slip / decel * slip
-    know(delta, f[TIME], known)
-    arrive(known, delta, log1p(-(time / end[0])), place, g)
-    fall: float = left * known[T_LAUNCH] / g[TIME]
+    know(delta, f[TIME], launch)
+    arrive(launch, delta, log1p(-(time / end[0])), place, g)
+    fall: float = left * launch[T_LAUNCH] / g[TIME]
     small: float = 0.5 * place[THERE_SHARE]
     large: float = 1.0 - small
     unit: float = fall / sqrt(small * small + large * large)
@@ -204,11 +204,11 @@ def state(
     turn: float = unit * (large if place[THERE_SIDE] == 1.0 else small)
     heading: float = 0.0
     if delta > 0.0:
-        heading = around * (known[TURNING] * log(fall) + place[REGULAR] - known[HEADING])
+        heading = around * (launch[TURNING] * log(fall) + place[REGULAR] - launch[HEADING])
     cosine: float = cos(heading)
     sine: float = sin(heading)
-    east: float = (cosine * known[EAST] - sine * known[NORTH]) / known[SPEED]
-    north: float = (cosine * known[NORTH] + sine * known[EAST]) / known[SPEED]
+    east: float = (cosine * launch[EAST] - sine * launch[NORTH]) / launch[SPEED]
+    north: float = (cosine * launch[NORTH] + sine * launch[EAST]) / launch[SPEED]
     ahead: float = size * fall * now * g[ALONG]
     aside: float = size * around * delta * turn * now * g[ACROSS]
     out[0] = end[1] - (ahead * east - aside * north)
@@ -228,21 +228,21 @@ def turn(
     For delta > 0 it turns on without end.  The launch is that of stop(), the error the tolerance in
     rad, the code as there.
     """
-    known = room(KNOWN)
+    launch = room(KNOWN)
     g = room(5)
     place = room(3)
-    code: int = measured(vx, vy, spin, delta, decel, radius, known)
+    code: int = measured(vx, vy, spin, delta, decel, radius, launch)
     if code != 0:
         return refused(out, 1, code)
     out[0] = 0.0
-    if known[SPEED] == 0.0 or known[RIM] == 0.0 or delta == 0.0:
+    if launch[SPEED] == 0.0 or launch[RIM] == 0.0 or delta == 0.0:
         return 0
-    stop_functions(int(known[SIDE]), known[SHARE], delta, g)
-    know(delta, g[TIME], known)
+    stop_functions(int(launch[SIDE]), launch[SHARE], delta, g)
+    know(delta, g[TIME], launch)
     left: float = TURN_SHARE
     for _ in range(ROUNDS):  # T changes little: each round takes an error to a tenth or less
-        arrive(known, delta, log(left), place, g)
-        left = TURN_SHARE * g[TIME] / known[T_LAUNCH]
-    heading: float = known[TURNING] * log(TURN_SHARE) + place[REGULAR] - known[HEADING]
-    out[0] = known[AROUND] * heading
+        arrive(launch, delta, log(left), place, g)
+        left = TURN_SHARE * g[TIME] / launch[T_LAUNCH]
+    heading: float = launch[TURNING] * log(TURN_SHARE) + place[REGULAR] - launch[HEADING]
+    out[0] = launch[AROUND] * heading
     return 0
